@@ -10,9 +10,9 @@ use crate::engine::yielding::{self, Yielding};
 use crate::levels::level::Level;
 use crate::mechanics::impact;
 use crate::mechanics::restraint::Dissipators;
-use crate::series::first_crossing::{self, Crossing, first_time_all_closed};
+use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
-use crate::{Phase, Side};
+use crate::{Phase, Side, Structure};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
@@ -51,7 +51,7 @@ pub(crate) trait Guard: Sync {
     /// The first instant of `step` at which the guard closes.
     fn first(&self, step: &Step) -> (Crossing, Way);
 
-    /// Takes `motion`, which is where the guard has closed, over the transition.
+    /// Applies the transition to `motion`, which has reached the instant at which the guard closes.
     fn apply(&self, level: &dyn Level, motion: &mut Motion, way: Way) -> TransitionKind;
 
     /// Whether the guard certainly stays open for `ahead` (s), a tiny time.
@@ -78,8 +78,16 @@ pub(crate) struct Watched {
     /// A cheap proof that no guard closes over a step.
     pub stays: Option<fn(&Step) -> bool>,
     pub guards: &'static [&'static dyn Guard],
-    /// The dissipators at the reach of a step, if the step moves them.
-    pub dissipators: fn(&Step) -> Option<Dissipators>,
+    /// The dissipators at the reach of a step, if a step moves them.
+    pub moved: Option<fn(&Step) -> Dissipators>,
+}
+
+impl Watched {
+    /// The dissipators at the reach of `step`, if it moves them.
+    #[inline]
+    pub(crate) fn moved(&self, structure: &Structure, step: &Step) -> Option<Dissipators> {
+        self.moved.filter(|_| structure.is_restrained()).map(|moved| moved(step))
+    }
 }
 
 /// Full contact that is held after too many transitions.
@@ -90,21 +98,26 @@ static CONTACT: Watched = Watched { guards: &[&Uplift], ..RESTING };
 
 /// Rocking about either side.
 static ROCKING: Watched = Watched {
-    stays: Some(|step| !yielding::is_possible(step.level.structure()) && stays_about(step.arc, step.side)),
-    guards: &[&Yielding, &Overturning, &Impact],
-    dissipators: yielding::moved,
+    stays: Some(|step| stays_about(step.arc, step.side)),
+    guards: &[&Overturning, &Impact],
+    moved: Some(yielding::moved),
     ..RESTING
 };
 
-/// A phase in which the base does not move, without guards.
-pub(super) const RESTING: Watched = Watched { lasts: None, stays: None, guards: &[], dissipators: |_| None };
+/// Rocking with dissipators that may yield.
+static ROCKING_YIELDING: Watched =
+    Watched { guards: &[&Yielding, &Overturning, &Impact], moved: Some(yielding::moved), ..RESTING };
 
-/// The phase of `motion`; none once the structure has overturned.
+/// A phase in which the base does not move, without guards.
+pub(super) const RESTING: Watched = Watched { lasts: None, stays: None, guards: &[], moved: None };
+
+/// The phase of `motion` of `structure`; none once the structure has overturned.
 #[inline]
-pub(crate) fn of(motion: &Motion) -> Option<&'static Watched> {
+pub(crate) fn of(structure: &Structure, motion: &Motion) -> Option<&'static Watched> {
     match motion.phase {
         Phase::FullContact if motion.held() > 0.0 => Some(&HELD),
         Phase::FullContact => Some(&CONTACT),
+        Phase::Rocking(_) if structure.parameters().F_y > 0.0 => Some(&ROCKING_YIELDING),
         Phase::Rocking(_) => Some(&ROCKING),
         Phase::Overturned(_) => None,
     }
@@ -156,7 +169,7 @@ struct Overturning;
 impl Guard for Overturning {
     fn first(&self, step: &Step) -> (Crossing, Way) {
         let theta = step.arc.used(&step.arc.theta);
-        let falls = first_crossing::Guard::new(theta, -step.side.sign(), FRAC_PI_2);
+        let falls = Gap::new(theta, -step.side.sign(), FRAC_PI_2);
         (first_time_all_closed([falls], step.reach), Way::default())
     }
 
@@ -184,14 +197,14 @@ impl Guard for Overturning {
 struct Impact;
 
 impl Guard for Impact {
-    /// A start at θ = 0 is divided out: s θ/σ^z is searched, z the number of leading zeros, so that the start is no return and a
-    /// return right after it is not missed. A coefficient that underflows counts as zero; a θ that is zero throughout, over a step
-    /// of 1e-200 s say, has not returned.
+    /// A start at θ = 0 is a root of θ. With z leading zeros the polynomial that is searched is therefore s θ/σ^z. The start is then
+    /// no return, and a return right after the start is found. A coefficient that underflows counts as zero. If θ is zero
+    /// throughout, over a step of 1e-200 s say, there is no return.
     fn first(&self, step: &Step) -> (Crossing, Way) {
         let theta = step.arc.used(&step.arc.theta);
         let crossing = match theta.iter().position(|c| c.is_normal()) {
             Some(zeros) => {
-                let height = first_crossing::Guard::new(&theta[zeros..], step.side.sign(), 0.0);
+                let height = Gap::new(&theta[zeros..], step.side.sign(), 0.0);
                 first_time_all_closed([height], step.reach)
             }
             None => Crossing::None,

@@ -1,8 +1,8 @@
-//! Elastoplastic dissipators while the base rocks: when they begin to yield and cease to, and what they have taken.
+//! Elastoplastic dissipators while the base rocks: when they begin and cease to yield, and the energy that they have taken.
 //!
-//! One that is elastic reaches ±F_y where θ has a value that follows from its e_p; one that yields ceases to where its
-//! elongation turns round, which is where θ̇ does. Right after it has turned its force is still F_y: it yields again only once
-//! it moves that way, so that the zeros of θ̇ at the start are divided out as those of θ are at an uplift.
+//! An elastic dissipator reaches ±F_y at a rotation θ that follows from its e_p. A dissipator ceases to yield when its elongation
+//! turns round, at a zero of θ̇. Its force is then still ±F_y, and yielding resumes only after the elongation moves that way again.
+//! The zeros of θ̇ at the start are therefore divided out, like the zeros of θ at an uplift.
 
 use crate::engine::motion::Motion;
 use crate::engine::phases::{BAND, Guard, Step, Way, way};
@@ -10,24 +10,18 @@ use crate::engine::piece::Sample;
 use crate::engine::transition::TransitionKind;
 use crate::levels::level::Level;
 use crate::mechanics::restraint::{Dissipators, levers};
-use crate::series::first_crossing::{self, Crossing, first_time_all_closed};
+use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::ZERO;
 use crate::series::terms::Terms;
 use crate::{Side, Structure};
 
-/// Rotation at which a dissipator would begin to yield as the base comes down, as a fraction of the rotation that takes it from 0 to
-/// F_y, below which the impact comes first. A dissipator that has yielded up to an impact returns to F_y at the next one: rounding
-/// alone would decide.
+/// The smallest rotation at which a dissipator begins to yield as the base comes down, as a fraction of the rotation from 0 to F_y.
+/// Below this rotation the impact comes first. A dissipator that has yielded up to an impact returns to F_y exactly at the next
+/// impact, so that rounding alone would decide.
 const AT_CONTACT: f64 = 1e-10;
 
-/// A dissipator begins to yield, pulled or pressed by the sign, or ceases to, where the sign is 0.
+/// A dissipator begins to yield, pulled or pressed by the sign, or ceases to yield if the sign is 0.
 pub(crate) struct Yielding;
-
-/// Whether `structure` has dissipators that yield.
-#[inline]
-pub(crate) fn is_possible(structure: &Structure) -> bool {
-    structure.parameters().F_y > 0.0
-}
 
 impl Guard for Yielding {
     fn first(&self, &Step { level, side, start, arc, reach }: &Step) -> (Crossing, Way) {
@@ -35,15 +29,15 @@ impl Guard for Yielding {
         let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
         let mut found = (Crossing::None, Way::default());
         let theta_dot = arc.used(&arc.theta_dot);
-        let Some(zeros) = theta_dot.iter().position(|c| c.is_normal()).filter(|_| F_y > 0.0) else { return found };
+        let Some(zeros) = theta_dot.iter().position(|c| c.is_normal()) else { return found };
         let mut see = |crossing: Crossing, j: usize, sign: i8| {
             if crossing.sigma() < found.0.sigma() {
                 found = (crossing, Way { which: j as u8, sign });
             }
         };
         for (j, lever) in moving(structure, side) {
-            // positive while it moves that way
-            let moves = |way: f64| first_crossing::Guard::new(&theta_dot[zeros..], (way * lever).signum(), 0.0);
+            // positive while the elongation moves that way
+            let moves = |way: f64| Gap::new(&theta_dot[zeros..], (way * lever).signum(), 0.0);
             match dissipators.yields[j] {
                 0 => {
                     for way in [1_i8, -1] {
@@ -54,7 +48,7 @@ impl Guard for Yielding {
                         if is_at_contact && towards != side.sign() {
                             continue;
                         }
-                        let is_less = first_crossing::Guard::new(arc.used(&arc.theta), -towards, towards * theta);
+                        let is_less = Gap::new(arc.used(&arc.theta), -towards, towards * theta);
                         let moves_back = moves(-f64::from(way));
                         see(first_time_all_closed([is_less, moves_back], reach), j, way);
                     }
@@ -71,14 +65,11 @@ impl Guard for Yielding {
         if way.sign != 0 {
             return TransitionKind::Yielding(which);
         }
-        motion.state.theta_dot = 0.0; // it ceases to yield where the elongation turns round
+        motion.state.theta_dot = 0.0; // the elongation turns round
         TransitionKind::Unloading(which)
     }
 
     fn stays_open(&self, now: &Sample, ahead: f64) -> bool {
-        if !is_possible(now.level.structure()) {
-            return true;
-        }
         let [_, theta_ddot] = now.accelerations();
         let changes = [now.motion.state.theta_dot, 2.0 * theta_ddot].map(|rate| way(ahead, rate));
         least_margin(now, changes) > 0.0
@@ -89,20 +80,19 @@ impl Guard for Yielding {
     }
 }
 
-/// The dissipators, by number, with their levers about `side`; without one at the pivot, which rocking does not elongate.
+/// The dissipators, by number, with their levers about `side`. A dissipator at the pivot is left out: rocking does not elongate it.
 fn moving(structure: &Structure, side: Side) -> impl Iterator<Item = (usize, f64)> {
     levers(structure, side).into_iter().enumerate().filter(|(_, lever)| *lever != 0.0)
 }
 
-/// Distance of the dissipators from beginning to yield, as a fraction of F_y, or from ceasing to, as a fraction of p_l α_cg: the
-/// smallest, less the most that changes of θ and θ̇ by `changes` (rad, rad/s) can take of it.
+/// The smallest distance of the dissipators from beginning or ceasing to yield, less the most by which `changes` of θ and θ̇ (rad,
+/// rad/s) can reduce the distance. The distance from yielding is a fraction of F_y, and from ceasing a fraction of p_l α_cg.
 fn least_margin(now: &Sample, changes: [f64; 2]) -> f64 {
     let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
     let (side, angles) = (phase.side(), now.level.angles());
     let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
     let chord = angles.chord(state.theta, 0.0).length;
     let of = |(j, lever): (usize, f64)| match f64::from(dissipators.yields[j]) {
-        _ if F_y == 0.0 => 1.0,
         0.0 => 1.0 - k_d * ((lever * chord - dissipators.plastic[j]).abs() + lever.abs() * changes[0]) / F_y,
         way => {
             let natural = structure.p_l * libm::atan(structure.tan_alpha_cg);
@@ -112,12 +102,9 @@ fn least_margin(now: &Sample, changes: [f64; 2]) -> f64 {
     moving(structure, side).map(of).fold(1.0, f64::min)
 }
 
-/// The dissipators at the reach of a step, if there are any.
-pub(crate) fn moved(&Step { level, side, start, arc, reach }: &Step) -> Option<Dissipators> {
+/// The dissipators at the reach of a step.
+pub(crate) fn moved(&Step { level, side, start, arc, reach }: &Step) -> Dissipators {
     let (structure, angles, dissipators) = (level.structure(), level.angles(), start.dissipators);
-    if !structure.is_restrained() {
-        return None;
-    }
     let &crate::Parameters { B, xi_d, c_d, k_d, F_y, .. } = structure.parameters();
     let (mut moved, theta) = (*dissipators, arc.at(reach).theta);
     for (j, lever) in levers(structure, side).into_iter().enumerate() {
@@ -134,7 +121,7 @@ pub(crate) fn moved(&Step { level, side, start, arc, reach }: &Step) -> Option<D
         let squared = square_integral(rate.used(), reach) * arc.span;
         moved.viscous += 2.0 * c_d * (B * B + xi_d * xi_d) * squared;
     }
-    Some(moved)
+    moved
 }
 
 /// ∫ (Σ c_k σᵏ)² dσ from 0 to `reach`.

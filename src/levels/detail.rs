@@ -1,6 +1,6 @@
-//! Levels of detail: the equations by which a structure moves. The same code finds and applies transitions at all levels. One
-//! type for each level holds all that depends on it: the rigid limit has its own condition of uplift and its own end of
-//! bouncing, and a fixed base has no uplift.
+//! Levels of detail: the equations by which a structure moves. The same code finds and applies transitions at all levels. Each
+//! level is a type that contains all differences from other levels. The rigid limit has its own condition of uplift and its own
+//! end of bouncing. A fixed base has no uplift.
 //!
 //! | level | equations | solved by |
 //! |---|---|---|
@@ -25,7 +25,7 @@ use crate::mechanics::restraint::Angles;
 use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift::{self, TurningMoment};
 use crate::series::first_crossing::Crossing;
-use crate::series::taylor::{Arc, Start};
+use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
 use crate::{Phase, Side, State, Structure};
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
@@ -210,6 +210,10 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
     }
 
     fn first_uplift(&self, start: &Start, arc: &Arc) -> (Crossing, Side) {
+        let farthest = arc.u[0].abs() + sum_of_magnitudes(&arc.u[1..=arc.order]) * arc.reach;
+        if farthest < self.least_displacement(start) {
+            return (Crossing::None, Side::Right);
+        }
         first_uplift::first(self.structure(), &self.turning, start, arc)
     }
 

@@ -199,7 +199,7 @@ pub(crate) struct Rates {
 }
 
 impl Rates {
-    /// No bounds.
+    /// Bounds of a motion of which nothing is known.
     pub(crate) const NONE: Rates = {
         const ANY: f64 = f64::INFINITY;
         Rates { u: ANY, u_dot: ANY, u_ddot: ANY, u_dddot: ANY, theta: ANY, theta_dot: ANY, theta_ddot: ANY }

@@ -193,6 +193,12 @@ impl LinearLoad {
         if self.value.F_t.abs() + self.slope.F_t.abs() == 0.0 {
             return self.on_foundation(); // the result of the division, at less cost
         }
+        self.on_pushed_top(structure)
+    }
+
+    /// [`LinearLoad::on_top`] with a force.
+    #[cold]
+    fn on_pushed_top(self, structure: &Structure) -> Ramp {
         Ramp { value: self.value.on_top(structure), slope: self.slope.on_top(structure) }
     }
 }
