@@ -218,7 +218,7 @@ impl Engine {
         let phase = initial.initial_phase()?;
         let level = settings.level(structure)?;
         level.check_start(&initial)?;
-        let chord = level.angles().chord(initial.theta, 0.0);
+        let chord = level.subject().angles.chord(initial.theta, 0.0);
         let moved = Dissipators::NEW.moved_by(&structure, phase.side(), chord);
         let motion = Motion {
             time,
@@ -389,7 +389,7 @@ impl Engine {
         }
         let [_, theta_ddot] = self.sample(load).accelerations();
         let restraint = Restraint::about(self.structure(), phase.side(), dissipators);
-        Restraints::rates(&restraint, self.level.angles(), state, theta_ddot)
+        Restraints::rates(&restraint, self.level.subject().angles, state, theta_ddot)
     }
 
     /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned.

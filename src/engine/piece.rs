@@ -95,14 +95,14 @@ impl Sample<'_> {
             return reactions;
         }
         let restraint = Restraint::about(structure, phase.side(), dissipators);
-        let [up, right, moment] = restraint.pulls(&level.angles().chord(state.theta, state.theta_dot));
+        let [up, right, moment] = restraint.pulls(&level.subject().angles.chord(state.theta, state.theta_dot));
         reactions.of_edges(up, right, moment)
     }
 
     /// The forces of the restraints.
     pub fn restraints(&self) -> Restraints {
         let Motion { phase, state, dissipators, .. } = &self.motion;
-        let chord = self.level.angles().chord(state.theta, state.theta_dot);
+        let chord = self.level.subject().angles.chord(state.theta, state.theta_dot);
         Restraint::about(self.level.structure(), phase.side(), dissipators).forces(&chord)
     }
 
@@ -210,7 +210,7 @@ pub(crate) struct Part<'a> {
 impl<'a> Part<'a> {
     /// The part as a step.
     #[inline]
-    fn step(&self) -> Start<'a> {
+    pub(crate) fn step(&self) -> Start<'a> {
         let Part { piece, start: (passed, state), end: (until, _) } = *self;
         piece.level.subject().start(state, &piece.before.dissipators, piece.load.from(passed), until - passed)
     }

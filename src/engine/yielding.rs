@@ -42,7 +42,7 @@ impl Guard for Yielding {
                 0 => {
                     for way in [1_i8, -1] {
                         let elongation = dissipators.plastic[j] + f64::from(way) * F_y / k_d;
-                        let Some(theta) = level.angles().rotation(elongation / lever) else { continue };
+                        let Some(theta) = level.subject().angles.rotation(elongation / lever) else { continue };
                         let towards = (f64::from(way) * lever).signum();
                         let is_at_contact = theta.abs() <= AT_CONTACT * (F_y / (k_d * lever)).abs();
                         if is_at_contact && towards != side.sign() {
@@ -89,7 +89,7 @@ fn moving(structure: &Structure, side: Side) -> impl Iterator<Item = (usize, f64
 /// rad/s) can reduce the distance. The distance from yielding is a fraction of F_y, and from ceasing a fraction of p_l α_cg.
 fn least_margin(now: &Sample, changes: [f64; 2]) -> f64 {
     let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
-    let (side, angles) = (phase.side(), now.level.angles());
+    let (side, angles) = (phase.side(), now.level.subject().angles);
     let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
     let chord = angles.chord(state.theta, 0.0).length;
     let of = |(j, lever): (usize, f64)| match f64::from(dissipators.yields[j]) {
@@ -104,7 +104,7 @@ fn least_margin(now: &Sample, changes: [f64; 2]) -> f64 {
 
 /// The dissipators at the reach of a step.
 pub(crate) fn moved(&Step { level, side, start, arc, reach }: &Step) -> Dissipators {
-    let (structure, angles, dissipators) = (level.structure(), level.angles(), start.dissipators);
+    let (structure, angles, dissipators) = (level.structure(), level.subject().angles, start.dissipators);
     let &crate::Parameters { B, xi_d, c_d, k_d, F_y, .. } = structure.parameters();
     let (mut moved, theta) = (*dissipators, arc.at(reach).theta);
     for (j, lever) in levers(structure, side).into_iter().enumerate() {

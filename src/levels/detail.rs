@@ -79,7 +79,7 @@ impl Detail {
         is_vertical: bool,
     ) -> Result<AnyLevel, InitialStateError> {
         let is_tied = structure.is_restrained() || is_vertical;
-        let subject = Subject { structure, local_error, is_tied };
+        let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
         let contact = ExactContact::new(&structure);
         Ok(match self {
             Detail::Auto => AnyLevel::Nonlinear(Elastic::new(Some(contact), NonlinearRocking::new(subject))),
@@ -203,10 +203,6 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
 
     fn is_singular(&self, phase: Phase, state: &State) -> bool {
         matches!(phase, Phase::Rocking(side) if self.rocking.is_singular(side, state))
-    }
-
-    fn angles(&self) -> Angles {
-        self.rocking.angles()
     }
 
     fn first_uplift(&self, start: &Start, arc: &Arc) -> (Crossing, Side) {

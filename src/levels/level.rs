@@ -26,6 +26,8 @@ pub(crate) struct Subject {
     pub local_error: f64,
     /// Whether the structure is restrained or shaken vertically: its equations of rocking then have more terms.
     pub is_tied: bool,
+    /// The angles at which the ties elongate.
+    pub angles: Angles,
 }
 
 impl Subject {
@@ -64,11 +66,6 @@ pub(crate) trait Level {
     /// Whether the equations of rocking are about to have no solution.
     fn is_singular(&self, _phase: Phase, _state: &State) -> bool {
         false
-    }
-
-    /// The angles at which the ties elongate.
-    fn angles(&self) -> Angles {
-        Angles::Any
     }
 
     /// The first instant of `arc`, a motion in full contact from `start`, at which uplift is due, and about which side.
@@ -133,10 +130,6 @@ pub(crate) trait ElasticRocking {
         false
     }
 
-    fn angles(&self) -> Angles {
-        Angles::Any
-    }
-
     /// The moment that gives the sign of θ̈ at the start of rocking.
     fn turning_moment(&self) -> TurningMoment {
         TurningMoment::new(&self.subject().structure)
@@ -158,14 +151,11 @@ pub(crate) struct Pace {
 }
 
 impl Pace {
-    /// The pace of `structure`. Restraints make it stiffer, and may damp it faster than it vibrates.
+    /// The pace of `structure`.
     pub(crate) fn new(structure: &Structure) -> Pace {
-        let &crate::Parameters { m, H, B, g, k_t, xi_d, c_d, k_d, .. } = structure.parameters();
-        let &Structure { omega_u, p_l, foundation, tan_alpha_cg, .. } = structure;
-        let (inertia, pair) = (m * (foundation + B * B), 2.0 * (B * B + xi_d * xi_d));
-        let stiffness = k_t * B * B + k_d * pair;
-        let fastest = (omega_u * omega_u + stiffness / inertia).sqrt().max(p_l).max(c_d * pair / inertia);
-        Pace { longest_span: LONGEST_SPAN / fastest, omega: omega_u, gravity: g * tan_alpha_cg, height: H }
+        let &crate::Parameters { H, g, .. } = structure.parameters();
+        let &Structure { rocking_rate, omega_u, tan_alpha_cg, .. } = structure;
+        Pace { longest_span: LONGEST_SPAN / rocking_rate, omega: omega_u, gravity: g * tan_alpha_cg, height: H }
     }
 
     /// The span of a series from `start`, s.

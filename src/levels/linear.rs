@@ -146,10 +146,6 @@ impl ElasticRocking for LinearRocking {
         &self.subject
     }
 
-    fn angles(&self) -> Angles {
-        Angles::Small
-    }
-
     /// The state after the interval of `start` if rocking about `side` certainly continues until then. Two bounds can prove it: θ
     /// leaves its chord by at most |θ̈| h²/8, and its cubic by at most [`LinearRocking::off_cubic`]. The Bernstein coefficients of
     /// the cubic bound the cubic.
@@ -283,7 +279,8 @@ mod tests {
     fn the_accelerations_satisfy_equations_7_and_8() {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         let &Parameters { m, H, B, g, .. } = structure.parameters();
-        let system = LinearRocking::new(Subject { structure, local_error: 1e-9, is_tied: false }).system;
+        let system =
+            LinearRocking::new(Subject { structure, local_error: 1e-9, is_tied: false, angles: Angles::Small }).system;
         let (side, a_g) = (Side::Left, 0.8);
         let distance = |scale: f64| {
             let state = State { u: 1e-3 * scale, u_dot: 0.1 * scale, theta: -0.01 * scale, theta_dot: 0.05 * scale };

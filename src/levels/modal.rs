@@ -171,6 +171,7 @@ impl ElasticRocking for ModalRocking {
 mod tests {
     use super::*;
     use crate::Parameters;
+    use crate::mechanics::restraint::Angles;
     use approx::assert_relative_eq;
 
     /// The accelerations are those of Eqs 11, 16 and 18 as they stand.
@@ -181,9 +182,10 @@ mod tests {
         let g = structure.parameters().g;
         let state = State { u: 8e-4, u_dot: -0.03, theta: 0.02, theta_dot: 0.3 };
         let (s, a_g) = (1.0, -2.5);
-        let [u_ddot, theta_ddot] = ModalRocking::new(Subject { structure, local_error: 1e-9, is_tied: false })
-            .system
-            .accelerations(Side::Right, &state, a_g);
+        let [u_ddot, theta_ddot] =
+            ModalRocking::new(Subject { structure, local_error: 1e-9, is_tied: false, angles: Angles::Any })
+                .system
+                .accelerations(Side::Right, &state, a_g);
         let forcing = -a_g + s * chi / (1.0 - chi) * g * tan_alpha_cg;
         let left = u_ddot + 2.0 * zeta_u * omega_u * state.u_dot + omega_u * omega_u * state.u;
         assert_relative_eq!(left, forcing, max_relative = 1e-12);

@@ -260,7 +260,7 @@ mod tests {
             let load = LinearLoad { value, slope: Load { a_g: slope, F_t: force_slope, a_v: 0.0 } };
             let (a_g, a_top) = (load.on_foundation(), load.on_top(&structure));
             let start = Start { state, a_g, a_top, interval: 2e-3, local_error: 1e-16, ..Start::default() };
-            let subject = Subject { structure, local_error: 1e-16, is_tied: false };
+            let subject = Subject { structure, local_error: 1e-16, is_tied: false, angles: Angles::Any };
             NonlinearRocking::new(subject).series(side, &start, &mut arc);
             for sigma in [0.0, 0.2, 0.55, 1.0] {
                 let load = load.at(sigma * arc.span);

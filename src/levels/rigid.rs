@@ -214,7 +214,7 @@ mod tests {
     fn the_order_follows_the_forcing() {
         let structure =
             Structure::new(Parameters { m0: 0.0, J0: 0.0, H: 0.02, B: 0.005, ..Parameters::EVISON }).unwrap();
-        let rigid = Rigid::new(Subject { structure, local_error: 1e-9, is_tied: false });
+        let rigid = Rigid::new(Subject { structure, local_error: 1e-9, is_tied: false, angles: Angles::Any });
         let (state, mut arc) = (State { theta: 0.01, ..State::default() }, Arc::default());
         for tenths in 10..25 {
             let interval = 0.1 * f64::from(tenths) / structure.p_l;
