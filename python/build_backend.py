@@ -9,12 +9,16 @@ import maturin
 from maturin import get_requires_for_build_editable, get_requires_for_build_sdist, get_requires_for_build_wheel  # noqa: F401
 
 BUILD = ["cargo", "build", "--release", "--locked", "--package", "rocking-cli", "--package", "flexible-rocking-fmu"]
+WORKSPACE = Path("Cargo.toml")
 SCRIPTS = Path("out/wheel/scripts")
 FMU = Path("out/wheel/data/share/flexible-rocking/FlexibleRocking.fmu")
 
 
 def _after_program(hook):
     def build(*arguments):
+        # maturin writes a package of the source whose workspace has the dependencies of the module alone
+        if '"cli"' not in (manifest := WORKSPACE.read_text()):
+            WORKSPACE.write_text(manifest.replace("members = [", 'members = ["cli", ', 1))
         messages = subprocess.run([*BUILD, "--message-format", "json-render-diagnostics"], check=True, stdout=subprocess.PIPE).stdout
         (program,) = filter(None, (json.loads(message).get("executable") for message in messages.splitlines()))
         SCRIPTS.mkdir(parents=True, exist_ok=True)

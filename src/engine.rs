@@ -5,9 +5,9 @@
 //! cannot step over it. [Phases](phases) say which guards are watched, and what happens when a guard closes.
 //!
 //! The number of steps is bounded because the number of transitions is ([`crate::levels::rules`]). One advance takes at most one
-//! step, plus two steps per transition, plus one step per time 1/Ω. Ω is the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc, p_l and the
-//! rates that restraints add. A violent motion takes up to four steps per 1/Ω, and Ω is then the largest of these rates and |θ̇|,
-//! |u̇|/ρ and √(|ü|/ρ), where ρ² = (J0 + m0 B²)/m + (sB − u)². One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. At levels
+//! step, plus two steps per transition, plus one step per time 1/Ω. The rate Ω is the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc, p_l
+//! and the rates that restraints add. A violent motion takes up to four steps per 1/Ω, and Ω is then the largest of these rates and
+//! |θ̇|, |u̇|/ρ and √(|ü|/ρ), where ρ² = (J0 + m0 B²)/m + (sB − u)². One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. At levels
 //! with an exact flow of full contact, one step covers the rest of a long interval once the base stays down for good.
 
 pub mod motion;
@@ -52,10 +52,10 @@ const LARGEST_LOCAL_ERROR: f64 = 1e-11;
 /// searched for transitions throughout. A longer interval has to be cut.
 pub const MAX_STEPS_PER_ADVANCE: u64 = 2_000_000;
 
-/// An advance over more than this, as ω_fc h in rad, may be long over before it ends.
+/// An interval longer than FAR/ω_fc is advanced in parts, because the structure may come to rest long before its end.
 const FAR: f64 = 1000.0;
 
-/// A step shorter than this part of 1/ω_u is not the doing of the step's end or of a transition: the solution ends.
+/// If a step ends without a transition and is shorter than this part of 1/ω_u, the solution ends there.
 const STALLED: f64 = 1e-12;
 
 /// Whether `tolerance` is a relative tolerance of results.
@@ -68,13 +68,13 @@ pub fn check_tolerance(tolerance: f64) -> Result<(), InitialStateError> {
 pub enum Progress {
     /// To the end of the interval.
     Complete,
-    /// To the instant of overturning, which is the motion's time now; it stays there.
+    /// To the instant of overturning, at which the motion's time stays.
     Overturned,
     /// To the instant at which another transition is due, if the engine stops there ([`Settings::stops`]).
     Transition,
 }
 
-/// Why an advance failed; the motion is then as it was before, whatever has been shown on the way.
+/// The reason why an advance failed. The motion is then as before the advance, whatever has been shown on the way.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AdvanceError {
     /// The interval is not positive and finite.
@@ -147,7 +147,7 @@ pub enum AdvanceError {
 }
 
 impl AdvanceError {
-    /// The instant from which on it cannot go on, s, where that lies within the interval.
+    /// The instant beyond which the motion cannot continue, s, if the instant lies within the interval.
     pub fn time(&self) -> Option<f64> {
         match *self {
             AdvanceError::TooLong { time, .. } | AdvanceError::Singular { time, .. } => Some(time),
@@ -269,7 +269,7 @@ impl Engine {
         let phase = initial.initial_phase()?;
         let level = settings.level(structure)?;
         level.check_start(&initial)?;
-        let chord = level.angles().chord(initial.theta, 0.0);
+        let chord = level.subject().angles.chord(initial.theta, 0.0);
         let moved = Dissipators::NEW.moved_by(&structure, phase.side(), chord);
         Ok(Engine::start(level, settings, time, initial, phase, Dissipators { hysteretic: 0.0, ..moved }))
     }
@@ -288,7 +288,8 @@ impl Engine {
     /// Whether certainly no transition comes within `ahead` (s), a tiny time, under `load`.
     pub fn goes_on_for(&self, ahead: f64, load: LinearLoad) -> bool {
         let now = self.sample(load.value);
-        phases::of(&self.motion).is_none_or(|watched| watched.guards.iter().all(|guard| guard.stays_open(&now, ahead)))
+        phases::of(self.structure(), &self.motion)
+            .is_none_or(|watched| watched.guards.iter().all(|guard| guard.stays_open(&now, ahead)))
     }
 
     /// Whether the structure, in full contact now, stays there while nothing acts on it.
@@ -330,11 +331,11 @@ impl Engine {
         }
         let [_, theta_ddot] = self.sample(load).accelerations();
         let restraint = Restraint::about(self.structure(), phase.side(), dissipators);
-        Restraints::rates(&restraint, self.level.angles(), state, theta_ddot)
+        Restraints::rates(&restraint, self.level.subject().angles, state, theta_ddot)
     }
 
     /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned.
-    /// At a transition they are those just after it.
+    /// The derivatives at a transition are taken just after the transition.
     pub fn rates(&self, load: LinearLoad) -> (Outputs, Reactions) {
         let derivatives = self.derivatives(load);
         let Motion { phase, state, .. } = &self.motion;
@@ -368,7 +369,8 @@ impl Engine<Modes> {
     ) -> Result<Engine<Modes>, InitialStateError> {
         let phase = state.phase()?;
         let is_tied = frame.base.is_restrained() || settings.vertical;
-        let subject = Subject { structure: frame, local_error: settings.local_error()?, is_tied };
+        let angles = settings.detail.angles();
+        let subject = Subject { structure: frame, local_error: settings.local_error()?, is_tied, angles };
         let is_exact = match settings.detail {
             Detail::Auto => true,
             Detail::Nonlinear => false,
@@ -435,7 +437,8 @@ impl<Q: Moves> Engine<Q> {
 
     /// Applies the transition that is due, if there is one, and shows it to `watch`.
     pub fn transit<W: Watch<Q>>(&mut self, watch: &mut W) {
-        if let Some(transition) = transit(&**self.level, phases::of(&self.motion), &mut self.motion) {
+        let watched = phases::of(self.level.structure(), &self.motion);
+        if let Some(transition) = transit(&**self.level, watched, &mut self.motion) {
             watch.transition(&transition);
         }
     }
@@ -483,7 +486,7 @@ impl<Q: Moves> Engine<Q> {
         if is_admitted { Ok(()) } else { self.refusal(interval, load) }
     }
 
-    /// Why it cannot.
+    /// The reason why `load` cannot act over `interval` (s).
     #[cold]
     fn refusal(&self, interval: f64, load: &LinearLoad<Q>) -> Result<(), AdvanceError> {
         if !(interval > 0.0 && interval <= f64::MAX) {
@@ -571,7 +574,8 @@ impl<Q: Moves, W: Watch<Q>> Task<'_, Q, W> {
             motion.time += interval;
             return Ok(Progress::Complete);
         }
-        Loop { any, level, phases: phases::of, arc, last_step, stops }.go(motion, before, interval, load, watch)
+        let phases = |motion: &Motion<Q>| phases::of::<Q>(level.structure(), motion);
+        Loop { any, level, phases, arc, last_step, stops }.go(motion, before, interval, load, watch)
     }
 }
 
@@ -645,7 +649,7 @@ impl<Q: Moves, L: Level<Q>, P: Fn(&Motion<Q>) -> Option<&'static Watched<Q>>> Lo
             let mut step =
                 Step { level, side: motion.phase.side(), start: &begin, arc: self.arc, reach: self.arc.reach };
             let closed = first(watched, &mut step);
-            let (reach, moved) = (step.reach, (watched.dissipators)(&step));
+            let (reach, moved) = (step.reach, watched.moved(level.subject(), &step));
             self.arc.reach = reach;
             let duration = self.arc.duration();
             if !self.arc.is_finite() || reach < 1.0 && self.is_at_its_end(motion, closed) {
@@ -710,7 +714,7 @@ fn first<Q: Moves>(watched: &Watched<Q>, step: &mut Step<Q>) -> Option<Closed> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::series::first_crossing::{self, first_time_all_closed};
+    use crate::series::first_crossing::{Gap, first_time_all_closed};
     use crate::{Parameters, TransitionKind};
     use approx::assert_relative_eq;
     use phases::{Guard, Way};
@@ -724,8 +728,8 @@ mod tests {
 
     impl Guard for Wall {
         fn first(&self, &Step { arc, reach, .. }: &Step) -> (Crossing, Way) {
-            let is_there = first_crossing::Guard::new(arc.used(&arc.u), -1.0, 0.5 * AMPLITUDE);
-            let moves_on = first_crossing::Guard::new(arc.used(&arc.u_dot), -1.0, 0.0);
+            let is_there = Gap::new(arc.used(&arc.u), -1.0, 0.5 * AMPLITUDE);
+            let moves_on = Gap::new(arc.used(&arc.u_dot), -1.0, 0.0);
             (first_time_all_closed([is_there, moves_on], reach), Way::default())
         }
 

@@ -149,14 +149,7 @@ impl Description<'_> {
 
     /// The variable at position `at` in FMI 2.0, whose type is an element of its own.
     fn scalar_variable(&self, at: usize, variable: &Variable) -> Element {
-        let name = match variable.data_type {
-            DataType::Real { .. } => "Real",
-            DataType::Integer => "Integer",
-            DataType::Boolean => "Boolean",
-            DataType::String => "String",
-            DataType::Enumeration(_) => "Enumeration",
-        };
-        let of_type = self.of_type(Element::new(name), variable, index);
+        let of_type = self.of_type(typed(Version::Fmi2, variable), variable, index);
         let of_type = match variable.data_type {
             DataType::String => of_type.with_any("start", start(variable)),
             _ => of_type,
@@ -166,16 +159,9 @@ impl Description<'_> {
 
     /// The variable at position `at` in FMI 3.0.
     fn typed_variable(&self, at: usize, variable: &Variable) -> Element {
-        let name = match variable.data_type {
-            DataType::Real { .. } => "Float64",
-            DataType::Integer => "Int32",
-            DataType::Boolean => "Boolean",
-            DataType::String => "String",
-            DataType::Enumeration(_) => "Enumeration",
-        };
         let is_given_within_steps =
             variability(variable) == "continuous" && variable.causality != Causality::Independent;
-        let element = common(Element::new(name), at, variable)
+        let element = common(typed(Version::Fmi3, variable), at, variable)
             .with_any("intermediateUpdate", is_given_within_steps.then_some(true));
         let of_type = self.of_type(element, variable, |at| at);
         match variable.data_type {
@@ -286,6 +272,19 @@ fn enumeration(version: Version, of: &Enumeration) -> Element {
         Version::Fmi2 => named(Element::new("SimpleType")).holding([Element::new("Enumeration").holding(items)]),
         Version::Fmi3 => named(Element::new("EnumerationType")).holding(items),
     }
+}
+
+/// The element of the type of `variable`.
+fn typed(version: Version, variable: &Variable) -> Element {
+    Element::new(match (variable.data_type, version) {
+        (DataType::Real { .. }, Version::Fmi2) => "Real",
+        (DataType::Real { .. }, Version::Fmi3) => "Float64",
+        (DataType::Integer, Version::Fmi2) => "Integer",
+        (DataType::Integer, Version::Fmi3) => "Int32",
+        (DataType::Boolean, _) => "Boolean",
+        (DataType::String, _) => "String",
+        (DataType::Enumeration(_), _) => "Enumeration",
+    })
 }
 
 /// `element` with the attributes that the variable at position `at` has whatever its type.

@@ -71,7 +71,7 @@ pub(crate) struct Chatter {
 }
 
 impl Chatter {
-    /// No transition so far.
+    /// The state of a motion that has had no transition.
     pub(crate) const NONE: Chatter = Chatter { age: f64::MAX, transitions: 0, held: 0.0 };
 
     /// Passes `duration` seconds.

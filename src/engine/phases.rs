@@ -8,12 +8,12 @@ use crate::engine::motion::Motion;
 use crate::engine::piece::Sample;
 use crate::engine::transition::{TransitionKind, enter};
 use crate::engine::yielding::{self, Yielding};
-use crate::levels::level::{Level, way};
+use crate::levels::level::{Level, Subject, way};
 use crate::mechanics::impact;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::LinearLoad;
 use crate::mechanics::restraint::Dissipators;
-use crate::series::first_crossing::{self, Crossing, first_time_all_closed};
+use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
 use crate::{Phase, Side};
 use serde::{Deserialize, Serialize};
@@ -54,7 +54,7 @@ pub(crate) trait Guard<Q: Moves = f64>: Sync {
     /// The first instant of `step` at which the guard closes.
     fn first(&self, step: &Step<Q>) -> (Crossing, Way);
 
-    /// Takes `motion`, which is where the guard has closed, over the transition.
+    /// Applies the transition to `motion`, which has reached the instant at which the guard closes.
     fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind;
 
     /// Whether the guard certainly stays open for `ahead` (s), a tiny time.
@@ -81,13 +81,13 @@ pub(crate) struct Watched<Q: Moves = f64> {
     /// A cheap proof that no guard closes over a step.
     pub stays: Option<fn(&Step<Q>) -> bool>,
     pub guards: &'static [&'static dyn Guard<Q>],
-    /// The dissipators at the reach of a step, if the step moves them.
-    pub dissipators: fn(&Step<Q>) -> Option<Dissipators>,
+    /// The dissipators at the reach of a step, if a step moves them.
+    pub moved: Option<fn(&Step<Q>) -> Dissipators>,
 }
 
 impl<Q: Moves> Watched<Q> {
     /// A phase in which the base does not move, without guards.
-    pub(super) const RESTING: Watched<Q> = Watched { lasts: None, stays: None, guards: &[], dissipators: |_| None };
+    pub(super) const RESTING: Watched<Q> = Watched { lasts: None, stays: None, guards: &[], moved: None };
 
     /// Full contact that is held after too many transitions.
     const HELD: &'static Watched<Q> = &Watched { lasts: Some(Motion::held), ..Watched::RESTING };
@@ -97,19 +97,31 @@ impl<Q: Moves> Watched<Q> {
 
     /// Rocking about either side.
     const ROCKING: &'static Watched<Q> = &Watched {
-        stays: Some(|step| !yielding::is_possible(Q::base(step.level.structure())) && stays_about(step.arc, step.side)),
-        guards: &[&Yielding, &Overturning, &Impact],
-        dissipators: yielding::moved,
+        stays: Some(|step| stays_about(step.arc, step.side)),
+        guards: &[&Overturning, &Impact],
+        moved: Some(yielding::moved),
         ..Watched::RESTING
     };
+
+    /// Rocking with dissipators that may yield.
+    const ROCKING_YIELDING: &'static Watched<Q> =
+        &Watched { guards: &[&Yielding, &Overturning, &Impact], moved: Some(yielding::moved), ..Watched::RESTING };
+
+    /// The dissipators at the reach of `step`, if it moves them.
+    #[inline]
+    pub(crate) fn moved(&self, subject: &Subject<Q>, step: &Step<Q>) -> Option<Dissipators> {
+        let is_restrained = || subject.is_tied && Q::base(&subject.structure).is_restrained();
+        self.moved.filter(|_| is_restrained()).map(|moved| moved(step))
+    }
 }
 
-/// The phase of `motion`; none once the structure has overturned.
+/// The phase of `motion` of `structure`; none once the structure has overturned.
 #[inline]
-pub(crate) fn of<Q: Moves>(motion: &Motion<Q>) -> Option<&'static Watched<Q>> {
+pub(crate) fn of<Q: Moves>(structure: &Q::Structure, motion: &Motion<Q>) -> Option<&'static Watched<Q>> {
     match motion.phase {
         Phase::FullContact if motion.held() > 0.0 => Some(Watched::HELD),
         Phase::FullContact => Some(Watched::CONTACT),
+        Phase::Rocking(_) if Q::base(structure).ties.F_y > 0.0 => Some(Watched::ROCKING_YIELDING),
         Phase::Rocking(_) => Some(Watched::ROCKING),
         Phase::Overturned(_) => None,
     }
@@ -156,7 +168,7 @@ struct Overturning;
 impl<Q: Moves> Guard<Q> for Overturning {
     fn first(&self, step: &Step<Q>) -> (Crossing, Way) {
         let theta = step.arc.used(&step.arc.theta);
-        let falls = first_crossing::Guard::new(theta, -step.side.sign(), FRAC_PI_2);
+        let falls = Gap::new(theta, -step.side.sign(), FRAC_PI_2);
         (first_time_all_closed([falls], step.reach), Way::default())
     }
 
@@ -184,14 +196,14 @@ impl<Q: Moves> Guard<Q> for Overturning {
 struct Impact;
 
 impl<Q: Moves> Guard<Q> for Impact {
-    /// A start at θ = 0 is divided out: s θ/σ^z is searched, z the number of leading zeros, so that the start is no return and a
-    /// return right after it is not missed. A coefficient that underflows counts as zero; a θ that is zero throughout, over a step
-    /// of 1e-200 s say, has not returned.
+    /// A start at θ = 0 is a root of θ. With z leading zeros the polynomial that is searched is therefore s θ/σ^z. The start is then
+    /// no return, and a return right after the start is found. A coefficient that underflows counts as zero. If θ is zero
+    /// throughout, over a step of 1e-200 s say, there is no return.
     fn first(&self, step: &Step<Q>) -> (Crossing, Way) {
         let theta = step.arc.used(&step.arc.theta);
         let crossing = match theta.iter().position(|c| c.is_normal()) {
             Some(zeros) => {
-                let height = first_crossing::Guard::new(&theta[zeros..], step.side.sign(), 0.0);
+                let height = Gap::new(&theta[zeros..], step.side.sign(), 0.0);
                 first_time_all_closed([height], step.reach)
             }
             None => Crossing::None,

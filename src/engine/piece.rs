@@ -104,14 +104,14 @@ impl Sample<'_> {
             return reactions;
         }
         let restraint = Restraint::about(structure, phase.side(), dissipators);
-        let [up, right, moment] = restraint.pulls(&level.angles().chord(state.theta, state.theta_dot));
+        let [up, right, moment] = restraint.pulls(&level.subject().angles.chord(state.theta, state.theta_dot));
         reactions.of_edges(up, right, moment)
     }
 
     /// The forces of the restraints.
     pub fn restraints(&self) -> Restraints {
         let Motion { phase, state, dissipators, .. } = &self.motion;
-        let chord = self.level.angles().chord(state.theta, state.theta_dot);
+        let chord = self.level.subject().angles.chord(state.theta, state.theta_dot);
         Restraint::about(self.level.structure(), phase.side(), dissipators).forces(&chord)
     }
 
@@ -186,9 +186,10 @@ impl Piece<'_> {
 
     /// The dissipators `tau` seconds after the start of the piece.
     fn dissipators_at(&self, tau: f64) -> Dissipators {
-        let moved = phases::of(self.before).zip(self.arc).and_then(|(watched, arc)| {
+        let moved = phases::of(self.level.structure(), self.before).zip(self.arc).and_then(|(watched, arc)| {
             let (level, side) = (&**self.level, self.before.phase.side());
-            (watched.dissipators)(&Step { level, side, start: &self.whole().step(), arc, reach: tau / arc.span })
+            let step = Step { level, side, start: &self.whole().step(), arc, reach: tau / arc.span };
+            watched.moved(level.subject(), &step)
         });
         moved.unwrap_or(self.before.dissipators)
     }
@@ -217,7 +218,7 @@ pub(crate) struct Part<'a> {
 impl<'a> Part<'a> {
     /// The part as a step.
     #[inline]
-    fn step(&self) -> Start<'a> {
+    pub(crate) fn step(&self) -> Start<'a> {
         let Part { piece, start: (passed, state), end: (until, _) } = *self;
         piece.level.subject().start(state, &piece.before.dissipators, piece.load.from(passed), until - passed)
     }
@@ -339,7 +340,7 @@ impl Arcs<'_> {
     /// Leaves out the middle of what is left of a long leap.
     ///
     /// The motion in full contact is a line and a decaying vibration about the line. The magnitudes of the line and of the
-    /// vibration are convex, and so is their sum, which the motion touches once a period. The largest magnitude is therefore
+    /// vibration are convex. Their sum is convex too, and the motion touches the sum once a period. The largest magnitude is therefore
     /// within a period of an end. Without vibration (ζ ≥ 1) only the line is left in the middle.
     pub(crate) fn skip_middle(&mut self) {
         let Some(part) = &mut self.left else { return };

@@ -1,8 +1,8 @@
-//! Elastoplastic dissipators while the base rocks: when they begin to yield and cease to, and what they have taken.
+//! Elastoplastic dissipators while the base rocks: when they begin and cease to yield, and the energy that they have taken.
 //!
-//! One that is elastic reaches ±F_y where θ has a value that follows from its e_p; one that yields ceases to where its
-//! elongation turns round, which is where θ̇ does. Right after it has turned its force is still F_y: it yields again only once
-//! it moves that way, so that the zeros of θ̇ at the start are divided out as those of θ are at an uplift.
+//! An elastic dissipator reaches ±F_y at a rotation θ that follows from its e_p. A dissipator ceases to yield when its elongation
+//! turns round, at a zero of θ̇. Its force is then still ±F_y, and yielding resumes only after the elongation moves that way again.
+//! The zeros of θ̇ at the start are therefore divided out, like the zeros of θ at an uplift.
 
 use crate::Side;
 use crate::engine::Moves;
@@ -12,24 +12,18 @@ use crate::engine::piece::Sample;
 use crate::engine::transition::TransitionKind;
 use crate::levels::level::{Level, way};
 use crate::mechanics::restraint::{Dissipators, levers};
-use crate::series::first_crossing::{self, Crossing, first_time_all_closed};
+use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{ZERO, evaluate};
 use crate::series::terms::Terms;
 use crate::structure::{Base, Ties};
 
-/// Rotation at which a dissipator would begin to yield as the base comes down, as a fraction of the rotation that takes it from 0 to
-/// F_y, below which the impact comes first. A dissipator that has yielded up to an impact returns to F_y at the next one: rounding
-/// alone would decide.
+/// The smallest rotation at which a dissipator begins to yield as the base comes down, as a fraction of the rotation from 0 to F_y.
+/// Below this rotation the impact comes first. A dissipator that has yielded up to an impact returns to F_y exactly at the next
+/// impact, so that rounding alone would decide.
 const AT_CONTACT: f64 = 1e-10;
 
-/// A dissipator begins to yield, pulled or pressed by the sign, or ceases to, where the sign is 0.
+/// A dissipator begins to yield, pulled or pressed by the sign, or ceases to yield if the sign is 0.
 pub(crate) struct Yielding;
-
-/// Whether `base` has dissipators that yield.
-#[inline]
-pub(crate) fn is_possible(base: &Base) -> bool {
-    base.ties.F_y > 0.0
-}
 
 impl<Q: Moves> Guard<Q> for Yielding {
     fn first(&self, &Step { level, side, start, arc, reach }: &Step<Q>) -> (Crossing, Way) {
@@ -37,26 +31,26 @@ impl<Q: Moves> Guard<Q> for Yielding {
         let Ties { k_d, F_y, .. } = base.ties;
         let mut found = (Crossing::None, Way::default());
         let theta_dot = arc.used(&arc.theta_dot);
-        let Some(zeros) = theta_dot.iter().position(|c| c.is_normal()).filter(|_| F_y > 0.0) else { return found };
+        let Some(zeros) = theta_dot.iter().position(|c| c.is_normal()) else { return found };
         let mut see = |crossing: Crossing, j: usize, sign: i8| {
             if crossing.sigma() < found.0.sigma() {
                 found = (crossing, Way { which: j as u8, sign });
             }
         };
         for (j, lever) in moving(base, side) {
-            // positive while it moves that way
-            let moves = |way: f64| first_crossing::Guard::new(&theta_dot[zeros..], (way * lever).signum(), 0.0);
+            // positive while the elongation moves that way
+            let moves = |way: f64| Gap::new(&theta_dot[zeros..], (way * lever).signum(), 0.0);
             match dissipators.yields[j] {
                 0 => {
                     for way in [1_i8, -1] {
                         let elongation = dissipators.plastic[j] + f64::from(way) * F_y / k_d;
-                        let Some(theta) = level.angles().rotation(elongation / lever) else { continue };
+                        let Some(theta) = level.subject().angles.rotation(elongation / lever) else { continue };
                         let towards = (f64::from(way) * lever).signum();
                         let is_at_contact = theta.abs() <= AT_CONTACT * (F_y / (k_d * lever)).abs();
                         if is_at_contact && towards != side.sign() {
                             continue;
                         }
-                        let is_less = first_crossing::Guard::new(arc.used(&arc.theta), -towards, towards * theta);
+                        let is_less = Gap::new(arc.used(&arc.theta), -towards, towards * theta);
                         let moves_back = moves(-f64::from(way));
                         see(first_time_all_closed([is_less, moves_back], reach), j, way);
                     }
@@ -73,14 +67,11 @@ impl<Q: Moves> Guard<Q> for Yielding {
         if way.sign != 0 {
             return TransitionKind::Yielding(which);
         }
-        motion.state.theta_dot = 0.0; // it ceases to yield where the elongation turns round
+        motion.state.theta_dot = 0.0; // the elongation turns round
         TransitionKind::Unloading(which)
     }
 
     fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {
-        if !is_possible(Q::base(now.level.structure())) {
-            return true;
-        }
         let theta_ddot = now.second().theta_ddot;
         let changes = [now.motion.state.theta_dot, 2.0 * theta_ddot].map(|rate| way(ahead, rate));
         least_margin(now, changes) > 0.0
@@ -91,20 +82,19 @@ impl<Q: Moves> Guard<Q> for Yielding {
     }
 }
 
-/// The dissipators, by number, with their levers about `side`; without one at the pivot, which rocking does not elongate.
+/// The dissipators, by number, with their levers about `side`. A dissipator at the pivot is left out: rocking does not elongate it.
 fn moving(base: &Base, side: Side) -> impl Iterator<Item = (usize, f64)> {
     levers(base, side).into_iter().enumerate().filter(|(_, lever)| *lever != 0.0)
 }
 
-/// Distance of the dissipators from beginning to yield, as a fraction of F_y, or from ceasing to, as a fraction of p_l α_cg: the
-/// smallest, less the most that changes of θ and θ̇ by `changes` (rad, rad/s) can take of it.
+/// The smallest distance of the dissipators from beginning or ceasing to yield, less the most by which `changes` of θ and θ̇ (rad,
+/// rad/s) can reduce the distance. The distance from yielding is a fraction of F_y, and from ceasing a fraction of p_l α_cg.
 fn least_margin<Q: Moves>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
     let (base, Motion { phase, state, dissipators, .. }) = (Q::base(now.level.structure()), &now.motion);
-    let (side, angles) = (phase.side(), now.level.angles());
+    let (side, angles) = (phase.side(), now.level.subject().angles);
     let Ties { k_d, F_y, .. } = base.ties;
     let chord = angles.chord(state.theta, 0.0).length;
     let of = |(j, lever): (usize, f64)| match f64::from(dissipators.yields[j]) {
-        _ if F_y == 0.0 => 1.0,
         0.0 => 1.0 - k_d * ((lever * chord - dissipators.plastic[j]).abs() + lever.abs() * changes[0]) / F_y,
         way => {
             let natural = base.p_l * libm::atan(base.tan_alpha_cg);
@@ -114,12 +104,9 @@ fn least_margin<Q: Moves>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
     moving(base, side).map(of).fold(1.0, f64::min)
 }
 
-/// The dissipators at the reach of a step, if there are any.
-pub(crate) fn moved<Q: Moves>(&Step { level, side, start, arc, reach }: &Step<Q>) -> Option<Dissipators> {
-    let (base, angles, dissipators) = (Q::base(level.structure()), level.angles(), start.dissipators);
-    if !base.is_restrained() {
-        return None;
-    }
+/// The dissipators at the reach of a step.
+pub(crate) fn moved<Q: Moves>(&Step { level, side, start, arc, reach }: &Step<Q>) -> Dissipators {
+    let (base, angles, dissipators) = (Q::base(level.structure()), level.subject().angles, start.dissipators);
     let &Base { B, ties: Ties { xi_d, c_d, k_d, F_y, .. }, .. } = base;
     let (mut moved, theta) = (*dissipators, evaluate(arc.used(&arc.theta), reach));
     for (j, lever) in levers(base, side).into_iter().enumerate() {
@@ -136,7 +123,7 @@ pub(crate) fn moved<Q: Moves>(&Step { level, side, start, arc, reach }: &Step<Q>
         let squared = square_integral(rate.used(), reach) * arc.span;
         moved.viscous += 2.0 * c_d * (B * B + xi_d * xi_d) * squared;
     }
-    Some(moved)
+    moved
 }
 
 /// ∫ (Σ c_k σᵏ)² dσ from 0 to `reach`.

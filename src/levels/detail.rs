@@ -1,6 +1,6 @@
-//! Levels of detail: the equations by which a structure moves. The same code finds and applies transitions at all levels. One
-//! type for each level holds all that depends on it: the rigid limit has its own condition of uplift and its own end of
-//! bouncing, and a fixed base has no uplift.
+//! Levels of detail: the equations by which a structure moves. The same code finds and applies transitions at all levels. Each
+//! level is a type that contains all differences from other levels. The rigid limit has its own condition of uplift and its own
+//! end of bouncing. A fixed base has no uplift.
 //!
 //! | level | equations | solved by |
 //! |---|---|---|
@@ -26,7 +26,7 @@ use crate::mechanics::restraint::{Angles, Dissipators};
 use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift::{self, TurningMoment};
 use crate::series::first_crossing::Crossing;
-use crate::series::taylor::{Arc, Start};
+use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
 use crate::{Phase, Side, State, Structure};
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
@@ -80,7 +80,7 @@ impl Detail {
         is_vertical: bool,
     ) -> Result<AnyLevel, InitialStateError> {
         let is_tied = structure.is_restrained() || is_vertical;
-        let subject = Subject { structure, local_error, is_tied };
+        let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
         let contact = ExactContact::new(&structure);
         Ok(match self {
             Detail::Auto => AnyLevel::Nonlinear(Elastic::new(Some(contact), NonlinearRocking::new(subject))),
@@ -218,11 +218,11 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
         matches!(phase, Phase::Rocking(side) if self.rocking.is_singular(side, state))
     }
 
-    fn angles(&self) -> Angles {
-        self.rocking.angles()
-    }
-
     fn first_uplift(&self, start: &Start, arc: &Arc) -> (Crossing, Side) {
+        let farthest = arc.u[0].abs() + sum_of_magnitudes(&arc.u[1..=arc.order]) * arc.reach;
+        if farthest < self.least_displacement(start) {
+            return (Crossing::None, Side::Right);
+        }
         first_uplift::first(self.structure(), &self.turning, start, arc)
     }
 

@@ -2,7 +2,7 @@
 
 use crate::mechanics::restraint::Restraint;
 use crate::mechanics::uplift::{self, LEAST_EXCESS, TurningMoment};
-use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
+use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Arc, Series, Start};
 use crate::{Side, Structure};
 
@@ -26,11 +26,14 @@ fn first_about(structure: &Structure, turning: &TurningMoment, start: &Start, ar
     let end = if a_v_change == 0.0 { hold } else { restraint.hold(a_v + a_v_change) };
     let [rise, gain] = [end.displacement - hold.displacement, end.moment - hold.moment];
     let moving = a_v_change != 0.0;
-    let mut displacement = arc.u;
+    let mut risen;
+    let mut displacement = &arc.u;
     if moving {
-        displacement[1] -= s * rise;
+        risen = arc.u;
+        risen[1] -= s * rise;
+        displacement = &risen;
     }
-    let displacement = Guard::new(arc.used(&displacement), -s, hold.displacement);
+    let displacement = Gap::new(arc.used(displacement), -s, hold.displacement);
     let is_held = hold.displacement.min(end.displacement) > 0.0;
     if is_held && displacement.is_open_throughout(arc.reach) {
         return Crossing::None;
@@ -42,14 +45,14 @@ fn first_about(structure: &Structure, turning: &TurningMoment, start: &Start, ar
             *coefficient += a_v_change * arc.u[k - 1] - if k == 1 { s * gain } else { 0.0 };
         }
     }
-    let moment = Guard::new(arc.used(&moment), -s, (1.0 + LEAST_EXCESS) * turning.weight + hold.moment);
+    let moment = Gap::new(arc.used(&moment), -s, (1.0 + LEAST_EXCESS) * turning.weight + hold.moment);
     let far = first_time_all_closed([displacement, moment], arc.reach);
     if is_held {
         return far;
     }
     // nothing holds the base while u_cr,s is not above 0
     let limit = [hold.displacement, if moving { rise } else { 0.0 }];
-    let loose = first_time_all_closed([Guard::new(&limit, 1.0, 0.0), moment], arc.reach);
+    let loose = first_time_all_closed([Gap::new(&limit, 1.0, 0.0), moment], arc.reach);
     if far.sigma() <= loose.sigma() { far } else { loose }
 }
 

@@ -26,7 +26,7 @@ pub(crate) fn series(structure: &Structure, start: &Start, arc: &mut Arc) {
     let forcing = a_top.value.abs() + a_top.slope.abs() * span;
     let response_time = span.min(1.0 / omega_fc);
     let u_dot = state.u_dot.abs() + response_time * (stiffness * state.u.abs() + forcing);
-    // a structure that comes to rest must not ask for less than numbers can tell
+    // a structure that comes to rest must not require terms that underflow
     let u_dot = u_dot.max(NEGLIGIBLE * omega_fc * structure.u_cr);
     let truncation = Truncation { u_dot: local_error * u_dot, theta_dot: 0.0 };
     let mut u_dot = state.u_dot;
@@ -51,8 +51,8 @@ impl ExactContact {
         ExactContact { oscillator, flows: Kept::new(Flow::NONE) }
     }
 
-    /// The state after the interval of `start` if |u| certainly stays below `limit` (m) until then: u is no farther than its
-    /// whole swing, nor, on the way, from its chord than |ü| h²/8.
+    /// The state after the interval of `start` if |u| certainly stays below `limit` (m) until then. Two bounds can prove it: |u| is
+    /// at most the whole swing, and u leaves its chord by at most |ü| h²/8.
     #[inline]
     pub(crate) fn leap(&self, start: &Start, limit: f64) -> Option<State> {
         let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;

@@ -28,6 +28,8 @@ pub(crate) struct Subject<Q: Coordinates = f64> {
     pub local_error: f64,
     /// Whether the structure is restrained or shaken vertically: its equations of rocking then have more terms.
     pub is_tied: bool,
+    /// The angles at which the ties elongate.
+    pub angles: Angles,
 }
 
 impl<Q: Coordinates> Subject<Q> {
@@ -67,11 +69,6 @@ pub trait Level<Q: Coordinates = f64> {
     /// Whether the equations of rocking are about to have no solution.
     fn is_singular(&self, _phase: Phase, _state: &State<Q>) -> bool {
         false
-    }
-
-    /// The angles at which the ties elongate.
-    fn angles(&self) -> Angles {
-        Angles::Any
     }
 
     /// The first instant of `arc`, a motion in full contact from `start`, at which uplift is due, and about which side.
@@ -143,10 +140,6 @@ pub(crate) trait ElasticRocking {
         false
     }
 
-    fn angles(&self) -> Angles {
-        Angles::Any
-    }
-
     /// The moment that gives the sign of θ̈ at the start of rocking.
     fn turning_moment(&self) -> TurningMoment {
         TurningMoment::new(&self.subject().structure)
@@ -168,14 +161,11 @@ pub(crate) struct Pace {
 }
 
 impl Pace {
-    /// The pace of `structure`. Restraints make it stiffer, and may damp it faster than it vibrates.
+    /// The pace of `structure`.
     pub(crate) fn new(structure: &Structure) -> Pace {
-        let &crate::Parameters { m, H, B, g, k_t, xi_d, c_d, k_d, .. } = structure.parameters();
-        let &Structure { omega_u, p_l, foundation, tan_alpha_cg, .. } = structure;
-        let (inertia, pair) = (m * (foundation + B * B), 2.0 * (B * B + xi_d * xi_d));
-        let stiffness = k_t * B * B + k_d * pair;
-        let fastest = (omega_u * omega_u + stiffness / inertia).sqrt().max(p_l).max(c_d * pair / inertia);
-        Pace { longest_span: LONGEST_SPAN / fastest, omega: omega_u, gravity: g * tan_alpha_cg, height: H }
+        let &crate::Parameters { H, g, .. } = structure.parameters();
+        let &Structure { rocking_rate, omega_u, tan_alpha_cg, .. } = structure;
+        Pace { longest_span: LONGEST_SPAN / rocking_rate, omega: omega_u, gravity: g * tan_alpha_cg, height: H }
     }
 
     /// The span of a series from `start`, s.
@@ -209,7 +199,7 @@ pub(crate) struct Rates {
 }
 
 impl Rates {
-    /// No bounds.
+    /// Bounds of a motion of which nothing is known.
     pub(crate) const NONE: Rates = {
         const ANY: f64 = f64::INFINITY;
         Rates { u: ANY, u_dot: ANY, u_ddot: ANY, u_dddot: ANY, theta: ANY, theta_dot: ANY, theta_ddot: ANY }

@@ -85,11 +85,12 @@ impl LinearRocking {
         }
     }
 
-    /// Bounds of the speed of the vibration and of |θ̈| over the interval of `start` about `side`, whose [`amplification`] is
-    /// given, and where the vibration is about; no bounds where θ turns too far back on u.
+    /// Bounds of the speed of the vibration and of |θ̈| over the interval of `start` about `side`, and the displacement that the
+    /// vibration is about. The [`amplification`] over the interval is given. If θ acts too strongly back on u, the bounds
+    /// are infinite.
     ///
-    /// With f = g θ − a_top + s U_s, the vibration about f/Ω² has an energy that grows by the change of f alone, which
-    /// bounds its speed v and with it |θ̈|, on which the change of f depends in turn.
+    /// With f = g θ − a_top + s U_s, the energy of the vibration about f/Ω² grows only by the change of f. The energy bounds the
+    /// speed v, and v bounds |θ̈|. The change of f depends in turn on θ̈.
     #[inline(always)]
     fn swing(&self, side: Side, start: &Start, amplification: f64) -> Swing {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
@@ -145,13 +146,9 @@ impl ElasticRocking for LinearRocking {
         &self.subject
     }
 
-    fn angles(&self) -> Angles {
-        Angles::Small
-    }
-
-    /// The state after the interval of `start` if rocking about `side` certainly goes on until then: θ is no farther
-    /// from its chord than |θ̈| h²/8, and no closer to 0 than the Bernstein coefficients of its cubic but for what it leaves
-    /// that.
+    /// The state after the interval of `start` if rocking about `side` certainly continues until then. Two bounds can prove it: θ
+    /// leaves its chord by at most |θ̈| h²/8, and its cubic by at most [`LinearRocking::off_cubic`]. The Bernstein coefficients of
+    /// the cubic bound the cubic.
     #[inline(always)]
     fn leap(&self, side: Side, start: &Start) -> Option<State> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
@@ -282,7 +279,8 @@ mod tests {
     fn the_accelerations_satisfy_equations_7_and_8() {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         let &Parameters { m, H, B, g, .. } = structure.parameters();
-        let system = LinearRocking::new(Subject { structure, local_error: 1e-9, is_tied: false }).system;
+        let system =
+            LinearRocking::new(Subject { structure, local_error: 1e-9, is_tied: false, angles: Angles::Small }).system;
         let (side, a_g) = (Side::Left, 0.8);
         let distance = |scale: f64| {
             let state = State { u: 1e-3 * scale, u_dot: 0.1 * scale, theta: -0.01 * scale, theta_dot: 0.05 * scale };

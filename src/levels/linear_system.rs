@@ -10,7 +10,7 @@ use crate::mechanics::uplift::TurningMoment;
 use crate::series::taylor::{Arc, Start};
 use crate::{Side, State};
 
-/// One of the two equations: the coefficients of u, u̇, θ, a_g − F_t/m and s.
+/// Coefficients of u, u̇, θ, a_g − F_t/m and s in one equation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {
     pub u: f64,
@@ -28,7 +28,7 @@ pub(crate) struct LinearSystem {
 }
 
 impl Row {
-    /// What it has of the loads.
+    /// The terms of the loads.
     #[inline]
     fn forcing(&self, a_top: f64, side: f64) -> f64 {
         self.a_top * a_top + self.side * side

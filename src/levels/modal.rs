@@ -6,8 +6,8 @@
 //! θ = q_r + q_u,      q_u = −(p_l²/g) u                                                                    (16)
 //! ```
 //!
-//! A force F_t on the top mass makes a_g − F_t/m of a_g. Both have closed forms under loads that are linear in time;
-//! series serve the steps on which a transition may happen, from the same equations written for θ = q_r − (p_l²/g) u.
+//! A force F_t on the top mass replaces a_g by a_g − F_t/m. Both equations have closed forms under loads that are linear in time.
+//! Steps on which a transition may happen use series instead, of the same equations written for θ = q_r − (p_l²/g) u.
 
 use crate::levels::level::{ElasticRocking, Now, Pace, Rates, Subject};
 use crate::levels::linear_system::{LinearSystem, Row};
@@ -32,13 +32,13 @@ pub(crate) struct ModalRocking {
     flows: Kept<(Flow, Growth)>,
 }
 
-/// What takes the rocking mode over a length of time h: q_r grows from q by cosh(p_l h) and is driven by the load from 0.
+/// Coefficients of the rocking mode over a time h: q_r grows from q by cosh(p_l h), and the load drives q_r from 0.
 #[derive(Clone, Copy, Debug, Default)]
 struct Growth {
     sinh: f64,
-    /// cosh − 1, which a load that is held drives.
+    /// cosh − 1, the response to a constant load.
     step: f64,
-    /// (sinh − p_l h)/p_l, which its slope drives, s.
+    /// (sinh − p_l h)/p_l, the response to the slope of the load, s.
     ramp: f64,
 }
 
@@ -171,6 +171,7 @@ impl ElasticRocking for ModalRocking {
 mod tests {
     use super::*;
     use crate::Parameters;
+    use crate::mechanics::restraint::Angles;
     use approx::assert_relative_eq;
 
     /// The accelerations are those of Eqs 11, 16 and 18 as they stand.
@@ -181,9 +182,10 @@ mod tests {
         let g = structure.parameters().g;
         let state = State { u: 8e-4, u_dot: -0.03, theta: 0.02, theta_dot: 0.3 };
         let (s, a_g) = (1.0, -2.5);
-        let [u_ddot, theta_ddot] = ModalRocking::new(Subject { structure, local_error: 1e-9, is_tied: false })
-            .system
-            .accelerations(Side::Right, &state, a_g);
+        let [u_ddot, theta_ddot] =
+            ModalRocking::new(Subject { structure, local_error: 1e-9, is_tied: false, angles: Angles::Any })
+                .system
+                .accelerations(Side::Right, &state, a_g);
         let forcing = -a_g + s * chi / (1.0 - chi) * g * tan_alpha_cg;
         let left = u_ddot + 2.0 * zeta_u * omega_u * state.u_dot + omega_u * omega_u * state.u;
         assert_relative_eq!(left, forcing, max_relative = 1e-12);

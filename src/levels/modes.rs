@@ -18,7 +18,7 @@ use crate::mechanics::lateral::{Coordinates, Lateral, MOST_MODES, Modes};
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{self, Angles, Dissipators};
 use crate::mechanics::uplift::LEAST_EXCESS;
-use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
+use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Series, Start, Truncation, ZERO, product};
 use crate::structure::frame::Frame;
 use crate::structure::{Base, Mode};
@@ -274,19 +274,19 @@ impl Nonlinear {
         }
         springs[1] -= s * change;
         all[1] -= s * change;
-        let rule = Guard::new(arc.used(&springs), -s, held);
+        let rule = Gap::new(arc.used(&springs), -s, held);
         if is_held && rule.is_open_throughout(arc.reach) {
             return Crossing::None;
         }
         let excess = LEAST_EXCESS * (base.m_t * base.g + base.ties.P_0) * base.B;
-        let turns = Guard::new(arc.used(&all), -s, held + excess);
+        let turns = Gap::new(arc.used(&all), -s, held + excess);
         let far = first_time_all_closed([rule, turns], arc.reach);
         if is_held {
             return far;
         }
         // nothing holds the base while the right side of (M3) is not above 0
         let limit = [held, change];
-        let loose = first_time_all_closed([Guard::new(&limit, 1.0, 0.0), turns], arc.reach);
+        let loose = first_time_all_closed([Gap::new(&limit, 1.0, 0.0), turns], arc.reach);
         if far.sigma() <= loose.sigma() { far } else { loose }
     }
 
@@ -450,7 +450,7 @@ mod tests {
     }
 
     fn level(frame: Frame) -> Nonlinear {
-        Nonlinear::new(Subject { structure: frame, local_error: 1e-16, is_tied: true }, false)
+        Nonlinear::new(Subject { structure: frame, local_error: 1e-16, is_tied: true, angles: Angles::Any }, false)
     }
 
     /// One mode of any scale, under all loads and with all ties, against Eqs 5 and 6.

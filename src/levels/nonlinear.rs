@@ -10,10 +10,15 @@
 //!
 //! A force F_t on the top mass adds F_t cos θ to (5) and F_t [H cos θ + (sB − u) sin θ] to (6).
 //!
-//! The series are those of momenta rather than velocities, which takes the fewest products. With w = sB − u, κ = (c_u
-//! u̇ + k u)/m, i = (J0 + m0 B²)/m, and y = u̇ + H θ̇ (over m the momentum along u), L = (i + w²) θ̇ (over m the
-//! angular momentum about the pivot of all but y), a = a_g − F_t/m, F = g sin θ − a cos θ, G = g cos θ + a sin θ and G₀
-//! = g cos θ + a_g sin θ, Eq 5 and (6) − H (5) read
+//! The series are series of momenta instead of velocities, which takes the fewest products. Let y be the momentum along u over m,
+//! and L the angular momentum about the pivot over m without the part of y:
+//!
+//! ```text
+//! y = u̇ + H θ̇        L = (i + w²) θ̇        w = sB − u        κ = (c_u u̇ + k u)/m        i = (J0 + m0 B²)/m
+//! a = a_g − F_t/m     F = g sin θ − a cos θ     G = g cos θ + a sin θ     G₀ = g cos θ + a_g sin θ
+//! ```
+//!
+//! Eq 5 and (6) − H (5) then read
 //!
 //! ```text
 //! ẏ = F − κ − w θ̇²
@@ -70,8 +75,8 @@ pub fn accelerations(
     Some(mass.try_inverse()? * force)
 }
 
-/// Part of its inertia at u = 0, height apart, that a structure must keep about its pivot: with less of it, (6) − H (5)
-/// asks for steps without number on the way to a singularity.
+/// The smallest inertia about the pivot, without the height, as a fraction of the inertia at u = 0. Below this limit the solution of
+/// (6) − H (5) would take ever shorter steps towards a singularity.
 const LEAST_INERTIA: f64 = 1e-6;
 
 /// One order of the factors of six products.
@@ -119,8 +124,8 @@ fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row, n: usize) 
 /// right:  cos θ   sin θ   w, next   w, next   θ̇       G
 /// ```
 ///
-/// of order i ("next": of order i + 1). Column by column they multiply to the rates of sin θ and −cos θ, to what the
-/// later coefficients of w contribute to w θ̇ and w² θ̇, to w θ̇² and to the moment of the top mass's weight.
+/// of order i ("next": of order i + 1). The products of the columns are, in order: the rates of sin θ and −cos θ, the parts of w θ̇
+/// and w² θ̇ from the later coefficients of w, w θ̇², and the moment of the top mass's weight.
 #[derive(Clone, Debug)]
 pub(crate) struct NonlinearRocking {
     subject: Subject,
@@ -255,7 +260,7 @@ mod tests {
             let load = LinearLoad { value, slope: Load { a_g: slope, F_t: force_slope, a_v: 0.0 } };
             let (a_g, a_top) = (load.on_foundation(), load.on_top(&structure));
             let start = Start { state, a_g, a_top, interval: 2e-3, local_error: 1e-16, ..Start::default() };
-            let subject = Subject { structure, local_error: 1e-16, is_tied: false };
+            let subject = Subject { structure, local_error: 1e-16, is_tied: false, angles: Angles::Any };
             NonlinearRocking::new(subject).series(side, &start, &mut arc);
             for sigma in [0.0, 0.2, 0.55, 1.0] {
                 let load = load.at(sigma * arc.span);

@@ -19,7 +19,7 @@ pub(crate) struct Oscillator {
     pub zeta: f64,
 }
 
-/// What takes an oscillator over a length of time.
+/// Coefficients that advance an oscillator by a given time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flow {
     free: Matrix2<f64>,
@@ -68,7 +68,7 @@ impl Oscillator {
         self.omega * ((1.0 - self.zeta) * (1.0 + self.zeta)).abs().sqrt()
     }
 
-    /// What takes it `tau` seconds ahead.
+    /// The coefficients that advance the oscillator by `tau` seconds.
     pub(crate) fn flow(&self, tau: f64) -> Flow {
         let &Oscillator { omega, zeta } = self;
         let free = self.free(tau);
@@ -118,8 +118,8 @@ impl Oscillator {
         [step * tau * tau, ramp * tau * tau * tau]
     }
 
-    /// About the motion that follows the load a + b τ, w = −(a + b (τ − 2ζ/ω))/ω², the rest vibrates freely, and the
-    /// energy of free vibration does not grow: where it is bound to stay for `tau` seconds from `start`.
+    /// The region in which the oscillator stays for `tau` seconds from `start`. The motion that follows the load a + b τ is
+    /// w = −(a + b (τ − 2ζ/ω))/ω². The rest vibrates freely about that motion, with an energy that does not grow.
     #[inline]
     pub(crate) fn swing(&self, start: [f64; 2], value: f64, slope: f64, tau: f64) -> Swing {
         let per_stiffness = 1.0 / (self.omega * self.omega);
@@ -139,12 +139,12 @@ impl Oscillator {
     }
 }
 
-/// Where a driven oscillator is bound to be.
+/// The region in which a driven oscillator stays.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Swing {
     /// Position that follows the load, at the start and at the end; linear in between.
     pub following: [f64; 2],
-    /// Bound of the distance from it.
+    /// Bound of the distance from that position.
     pub amplitude: f64,
 }
 
@@ -159,8 +159,8 @@ impl Swing {
 /// Flows kept at once. Records sampled at t = i·dt have a handful of step lengths, which differ in their last bits.
 const KEPT: usize = 16;
 
-/// The flows used last, by the exact length of time; what is not kept is computed anew, so that results do not depend
-/// on what is.
+/// The flows used last, by the exact length of time. A flow that is not kept is computed again, so that results do not depend on
+/// which flows are kept.
 #[derive(Clone, Debug)]
 pub(crate) struct Kept<Flow> {
     flows: RefCell<[(f64, Flow); KEPT]>,
@@ -192,8 +192,8 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    /// On both sides of the limit between series and closed form W and R are the same to rounding, and for a motion
-    /// much shorter than the period they are τ²/2 and τ³/6.
+    /// On both sides of the limit between series and closed form, W and R are the same to rounding. For a motion much shorter than
+    /// the period, W is τ²/2 and R is τ³/6.
     #[test]
     fn loads_keep_their_digits_over_short_times() {
         for zeta in [0.0, 0.02, 0.7, 1.0, 4.0] {

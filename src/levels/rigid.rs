@@ -8,15 +8,15 @@
 //!
 //! P' = Q θ̇ and Q' = −P θ̇, so that its series take two products. A force F_t on the top mass adds p_l² (F_t/(m g)) T
 //! to θ̈, T = cos θ + s (B/H) sin θ, a combination of P and Q. The base lifts off when |a_g − F_t/m| ≥ g tan α_cg,
-//! towards the side away from the push; an impact leaves r θ̇ about the other pivot, also of a structure so squat that
-//! the momentum rule of the other levels would end rocking: with u = 0 that rule speaks of the shape alone.
+//! towards the side away from the push. An impact leaves r θ̇ about the other pivot, however squat the structure is. At other levels
+//! the momentum rule ends the rocking of a squat structure, but with u = 0 that rule would depend on the shape alone.
 //!
 //! # Zeno
 //!
-//! With r < 1 the structure comes to rest by infinitely many impacts in finite time. It is brought to rest at the first
-//! impact after which |θ̇| ≤ ε p_l tan α_cg, ε the error that a step may have: what is left out, while the ground may still
-//! move, is an error that later impacts amplify like a step's. The kinetic energy left behind, ½ J_P θ̇², is at most ε² of
-//! ½ m g H tan² α_cg, which overturning takes at small angles.
+//! With r < 1 the structure comes to rest by infinitely many impacts in finite time. The engine brings it to rest at the first
+//! impact after which |θ̇| ≤ ε p_l tan α_cg, where ε is the error that a step may have. Later impacts amplify the error of this rest
+//! like the error of a step. The kinetic energy that is left out, ½ J_P θ̇², is at most the part ε² of ½ m g H tan² α_cg, the energy
+//! for overturning at small angles.
 
 use crate::levels::level::{Level, Now, Rates, Subject};
 use crate::levels::rules::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
@@ -25,7 +25,7 @@ use crate::mechanics::instant::Second;
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
 use crate::mechanics::uplift::least_push;
-use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
+use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation, ZERO, product};
 use crate::{Phase, Side, State, Structure};
 
@@ -59,12 +59,12 @@ impl Rigid {
     }
 
     /// Writes the motion while rocking from `start` about `side` into `arc`.
-    fn rocking(&self, side: Side, start: &Start, arc: &mut Arc) {
-        let &Subject { ref structure, is_tied, .. } = &self.subject;
+    fn rocking<const TIED: bool>(&self, side: Side, start: &Start, arc: &mut Arc) {
+        let structure = &self.subject.structure;
         let &Start { state, a_g, a_top, a_v, interval, local_error, dissipators } = start;
         let &Structure { p_l, tan_alpha_cg, J_P, .. } = structure;
         let g = structure.parameters().g;
-        let tie = is_tied.then(|| Restraint::about(structure, side, dissipators).moments());
+        let tie = TIED.then(|| Restraint::about(structure, side, dissipators).moments());
         let mut ties = tie.map(|tie| TieSeries::new(tie, Angles::Any, state.theta));
         let fastest = tie.map_or(p_l, |tie| (p_l * p_l + tie.stiffness / J_P).sqrt().max(tie.damping / J_P));
         let span = interval.min(LONGEST_SPAN / fastest.max(state.theta_dot.abs()));
@@ -85,7 +85,7 @@ impl Rigid {
         arc.expand(&State { u: 0.0, u_dot: 0.0, ..state }, span, truncation, |arc, k, per| {
             let shaped = p_now * p[k - 1] + q_now * q[k - 1] + q_slope * q_before + p_slope * p_before;
             let mut theta_ddot = stiffness * shaped;
-            if let Some(ties) = &mut ties {
+            if TIED && let Some(ties) = &mut ties {
                 theta_ddot -= ties.next(&arc.theta_dot, k - 1, per) / J_P;
             }
             let theta_dot = theta_ddot * per;
@@ -120,7 +120,8 @@ impl Level for Rigid {
     /// The series; rest on the ground in full contact.
     fn series(&self, phase: Phase, start: &Start, arc: &mut Arc) {
         match phase {
-            Phase::Rocking(side) => self.rocking(side, start, arc),
+            Phase::Rocking(side) if self.subject.is_tied => self.rocking::<true>(side, start, arc),
+            Phase::Rocking(side) => self.rocking::<false>(side, start, arc),
             Phase::FullContact | Phase::Overturned(_) => {
                 let nothing = Truncation { u_dot: 0.0, theta_dot: 0.0 };
                 arc.expand(&State::default(), start.interval, nothing, |_, _, _| (0.0, 0.0));
@@ -138,7 +139,7 @@ impl Level for Rigid {
                 let held = more(start.a_v.value);
                 push = [push[0] + held, push[1] + (more(start.a_v.at(arc.span)) - held)];
             }
-            first_time_all_closed([Guard::new(&push, side.sign(), limit)], 1.0)
+            first_time_all_closed([Gap::new(&push, side.sign(), limit)], 1.0)
         };
         let (right, left) = (first(Side::Right), first(Side::Left));
         if right.sigma() == left.sigma() && right.sigma() < f64::INFINITY {
@@ -150,7 +151,7 @@ impl Level for Rigid {
         if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
     }
 
-    /// Without u the load alone decides.
+    /// Without u only the load decides.
     fn holds(&self, _start: &Start) -> bool {
         false
     }
@@ -216,7 +217,7 @@ mod tests {
     fn the_order_follows_the_forcing() {
         let structure =
             Structure::new(Parameters { m0: 0.0, J0: 0.0, H: 0.02, B: 0.005, ..Parameters::EVISON }).unwrap();
-        let rigid = Rigid::new(Subject { structure, local_error: 1e-9, is_tied: false });
+        let rigid = Rigid::new(Subject { structure, local_error: 1e-9, is_tied: false, angles: Angles::Any });
         let (state, mut arc) = (State { theta: 0.01, ..State::default() }, Arc::default());
         for tenths in 10..25 {
             let interval = 0.1 * f64::from(tenths) / structure.p_l;

@@ -1,6 +1,6 @@
 //! How many transitions there may be.
 //!
-//! Transitions are counted from the first of them on for a vibration period 2π/ω_u, then anew. After
+//! Transitions are counted from the first of them on for a vibration period 2π/ω_u, then from 0 again. After
 //! [`MAX_TRANSITIONS_PER_PERIOD`] the next impact is a landing whatever its momentum, and contact is held to the end of
 //! the period ([`Settling`](crate::TransitionKind::Settling)): it sees two more at most. Bounces that fast are the start of infinitely
 //! many in finite time, which end in contact; neither specimen comes near them. The rigid limit, which has no vibration

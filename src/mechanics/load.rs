@@ -198,6 +198,12 @@ impl<Q: Coordinates> LinearLoad<Q> {
             let Ramp { value, slope } = self.on_foundation(); // the result of the divisions, at less cost
             return Ramp { value: Q::parts(structure, value), slope: Q::parts(structure, slope) };
         }
+        self.on_pushed_top(structure)
+    }
+
+    /// [`LinearLoad::on_top`] with a force.
+    #[cold]
+    fn on_pushed_top(self, structure: &Q::Structure) -> Ramp<Q> {
         Ramp { value: self.value.on_modes(structure), slope: self.slope.on_modes(structure) }
     }
 }

@@ -7,7 +7,7 @@ use crate::engine::piece::Expansion;
 use crate::mechanics::restraint::{Dissipators, Restraint};
 use crate::run::ground_motion::GroundMotion;
 use crate::series::bisection::last_where;
-use crate::series::first_crossing::{Crossing, Guard, first_time_closed_from};
+use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
 use crate::series::taylor;
 use crate::{Detail, Outputs, Piece, Side, Structure, Transition, TransitionKind, Watch};
 use serde::{Deserialize, Serialize};
@@ -163,7 +163,7 @@ fn last_passing(angle: f64, side: f64, expansion: &Expansion) -> Option<(f64, f6
     let mut theta = arc.theta;
     let back = &mut theta[..=arc.order];
     taylor::stretch(back, arc.reach, -arc.reach);
-    let beyond = Guard::new(back, side, -angle);
+    let beyond = Gap::new(back, side, -angle);
     let mut sigma = 0.0;
     loop {
         match first_time_closed_from(beyond, sigma, 1.0) {

@@ -37,7 +37,7 @@ impl Sample<'_> {
     /// for impact while rocking. The second is for overturning and for dissipators that begin or cease to yield.
     pub fn event_indicators(&self) -> [f64; INDICATORS] {
         let mut indicators = [f64::INFINITY; INDICATORS];
-        for guard in phases::of(&self.motion).map_or(&[][..], |watched| watched.guards) {
+        for guard in phases::of(self.level.structure(), &self.motion).map_or(&[][..], |watched| watched.guards) {
             let (place, value) = guard.indicator(self);
             if value < indicators[place] || value.is_nan() {
                 indicators[place] = value;
@@ -151,7 +151,7 @@ impl Engine {
     /// The guard that is closed from the start under `load`.
     fn due_at_once(&self, load: Load) -> Option<Closed> {
         let now = self.sample(load);
-        let mut guards = phases::of(&now.motion)?.guards.iter().enumerate();
+        let mut guards = phases::of(self.structure(), &now.motion)?.guards.iter().enumerate();
         guards.find_map(|(guard, of)| Some(Closed { guard: guard as u8, way: of.closed(&now)? }))
     }
 }

@@ -37,7 +37,7 @@ pub(crate) fn series(
     if !is_tied {
         return reactions;
     }
-    let (restraint, angles) = (Restraint::about(structure, phase.side(), dissipators), level.angles());
+    let (restraint, angles) = (Restraint::about(structure, phase.side(), dissipators), level.subject().angles);
     let [up, right, moment] = match phase {
         Phase::FullContact => restraint.pulls(&angles.chord(0.0, 0.0)).map(Terms::constant),
         _ => {

@@ -260,9 +260,8 @@ impl Validity {
             let strut = c_fc * state.u_dot + k * state.u;
             [strut - m0 * piece.load.at(tau).a_g, H * strut + m * g * state.u]
         });
-        let start =
-            piece.level.subject().start(piece.before.state, &piece.before.dissipators, piece.load, piece.duration);
-        let Rates { u_ddot, u_dddot, .. } = piece.level.rates(piece.before.phase, &start, &piece.end);
+        let step = piece.whole().step();
+        let Rates { u_ddot, u_dddot, .. } = piece.level.rates(piece.before.phase, &step, &piece.end);
         let per_bend = piece.duration * piece.duration / 8.0;
         let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
         let extent = |i: usize, off: f64| {

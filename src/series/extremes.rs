@@ -1,6 +1,6 @@
 //! The largest magnitude of a polynomial: bounds over a step, and all of its stationary points.
 
-use crate::series::first_crossing::{Crossing, Guard, first_time_closed_from};
+use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
 use crate::series::taylor::{MAX_ORDER, Series, ZERO, evaluate, weighed_sum};
 
 /// max (σ − σᵏ) over 0 ≤ σ ≤ 1 for each k, rounded up.
@@ -87,7 +87,7 @@ pub fn ranges<const N: usize>(row: impl Fn(usize) -> [f64; N], order: usize, rea
     let mut end: [f64; N] = std::array::from_fn(|i| start[i] + first[i]);
     let [mut off, mut turning] = [[0.0; N]; 2];
     let mut power = reach;
-    for (k, off_chord) in OFF_CHORD.iter().enumerate().take(order + 1).skip(2) {
+    for (k, off_chord) in OFF_CHORD[..=order].iter().enumerate().skip(2) {
         power *= reach;
         let (terms, order) = (row(k), k as f64);
         for i in 0..N {
@@ -168,7 +168,7 @@ pub fn stationary_points(coefficients: &[f64], reach: f64, mut show: impl FnMut(
         let rises = evaluate(&slope[..orders], sigma);
         let (at, is_root) = match rises.is_normal() {
             false => (sigma, true),
-            true => match first_time_closed_from(Guard::new(&slope[..orders], rises.signum(), 0.0), sigma, reach) {
+            true => match first_time_closed_from(Gap::new(&slope[..orders], rises.signum(), 0.0), sigma, reach) {
                 Crossing::None => return,
                 Crossing::At(at) => (at, true),
                 // no further without a root that cannot be told from where this is

@@ -1,17 +1,17 @@
-//! The first instant at which guards close, found without ever stepping over it.
+//! The first instant at which gaps close, found without ever stepping over it.
 //!
-//! A guard is open while its polynomial g is positive. From σ on, with |g''| ≤ M over the step, g stays positive at
+//! A gap is open while its polynomial g is positive. From σ on, with |g''| ≤ M over the step, g stays positive at
 //! least for δ, the positive root of g(σ) + g'(σ) δ − M δ²/2 = 0. Marching by δ cannot pass a root, however close two
-//! of them are, and converges to a simple one quadratically, from the left. Where a guard has only just opened its
+//! of them are, and converges to a simple one quadratically, from the left. Where a gap has only just opened its
 //! first terms are so small that marching would hardly move; their signs then say how far it is open.
 
 use crate::series::taylor::{Series, ZERO, sum_of_magnitudes};
 use std::ops::Add;
 use wide::f64x2;
 
-/// A guard over one step: the polynomial `offset + sign·Σ c_k σ^k`.
+/// A gap over one step: the polynomial `offset + sign·Σ c_k σ^k`.
 #[derive(Clone, Copy, Debug)]
-pub struct Guard<'a> {
+pub struct Gap<'a> {
     coefficients: &'a [f64],
     sign: f64,
     offset: f64,
@@ -20,7 +20,7 @@ pub struct Guard<'a> {
 /// What a search over one step found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Crossing {
-    /// The guards do not close over the step.
+    /// The gaps do not close over the step.
     None,
     /// They close at this σ.
     At(f64),
@@ -44,10 +44,10 @@ const MAX_EVALUATIONS: usize = 100;
 /// Part of its way that a march clears, or it goes on over a quarter of that way, for which M is smaller.
 const LEAST_CLEARED: f64 = 1.0 / 16.0;
 
-impl<'a> Guard<'a> {
-    /// The guard `offset + sign·Σ c_k σ^k`, of no more coefficients than a [`Series`] has.
-    pub fn new(coefficients: &'a [f64], sign: f64, offset: f64) -> Guard<'a> {
-        Guard { coefficients, sign, offset }
+impl<'a> Gap<'a> {
+    /// The gap `offset + sign·Σ c_k σ^k`, of no more coefficients than a [`Series`] has.
+    pub fn new(coefficients: &'a [f64], sign: f64, offset: f64) -> Gap<'a> {
+        Gap { coefficients, sign, offset }
     }
 
     /// Whether the magnitudes of its terms prove it positive up to σ = `reach` ≤ 1.
@@ -121,33 +121,33 @@ fn value_and_slope(coefficients: &[f64], sigma: f64) -> (f64, f64) {
     (even + sigma * odd, 2.0 * sigma * (even_slope + sigma * odd_slope) + odd)
 }
 
-/// The first σ in [0, `reach`] at which all `guards` are closed at once (≤ 0, to rounding).
-pub fn first_time_all_closed<const N: usize>(guards: [Guard; N], reach: f64) -> Crossing {
-    if guards.iter().any(|guard| guard.is_open_throughout(reach)) {
+/// The first σ in [0, `reach`] at which all `gaps` are closed at once (≤ 0, to rounding).
+pub fn first_time_all_closed<const N: usize>(gaps: [Gap; N], reach: f64) -> Crossing {
+    if gaps.iter().any(|gap| gap.is_open_throughout(reach)) {
         return Crossing::None;
     }
-    match march(&guards, 0.0, reach) {
+    match march(&gaps, 0.0, reach) {
         Crossing::NoneUntil(cleared) => {
-            let open = guards.iter().map(Guard::open_by_signs).fold(cleared, f64::max);
-            march_over_parts(&guards, open, reach)
+            let open = gaps.iter().map(Gap::open_by_signs).fold(cleared, f64::max);
+            march_over_parts(&gaps, open, reach)
         }
         crossing => crossing,
     }
 }
 
-/// The first σ from `sigma` to `reach` at which `guard` is closed.
-pub fn first_time_closed_from(guard: Guard, sigma: f64, reach: f64) -> Crossing {
-    match march(&[guard], sigma, reach) {
-        Crossing::NoneUntil(cleared) => march_over_parts(&[guard], cleared, reach),
+/// The first σ from `sigma` to `reach` at which `gap` is closed.
+pub fn first_time_closed_from(gap: Gap, sigma: f64, reach: f64) -> Crossing {
+    match march(&[gap], sigma, reach) {
+        Crossing::NoneUntil(cleared) => march_over_parts(&[gap], cleared, reach),
         crossing => crossing,
     }
 }
 
-/// The first σ in [`sigma`, `reach`] at which all `guards` are closed at once, over as much of the way as can be cleared.
-fn march_over_parts<const N: usize>(guards: &[Guard; N], mut sigma: f64, reach: f64) -> Crossing {
+/// The first σ in [`sigma`, `reach`] at which all `gaps` are closed at once, over as much of the way as can be cleared.
+fn march_over_parts<const N: usize>(gaps: &[Gap; N], mut sigma: f64, reach: f64) -> Crossing {
     let mut end = reach;
     loop {
-        match march(guards, sigma, end) {
+        match march(gaps, sigma, end) {
             Crossing::NoneUntil(cleared) if cleared < LEAST_CLEARED * end => (sigma, end) = (cleared, 0.25 * end),
             Crossing::None if end < reach => return Crossing::NoneUntil(end),
             crossing => return crossing,
@@ -155,14 +155,14 @@ fn march_over_parts<const N: usize>(guards: &[Guard; N], mut sigma: f64, reach: 
     }
 }
 
-/// The first such σ from `sigma` on, up to where the guards are known not to close at once.
-fn march<const N: usize>(guards: &[Guard; N], mut sigma: f64, reach: f64) -> Crossing {
+/// The first such σ from `sigma` on, up to where the gaps are known not to close at once.
+fn march<const N: usize>(gaps: &[Gap; N], mut sigma: f64, reach: f64) -> Crossing {
     if sigma > reach {
         return Crossing::None;
     }
-    let curvatures = guards.map(|guard| guard.curvature(reach));
+    let curvatures = gaps.map(|gap| gap.curvature(reach));
     for _ in 0..MAX_EVALUATIONS {
-        let still_open = guards.iter().zip(curvatures).map(|(guard, curvature)| guard.open_for(sigma, curvature));
+        let still_open = gaps.iter().zip(curvatures).map(|(gap, curvature)| gap.open_for(sigma, curvature));
         let next = sigma + still_open.fold(0.0, f64::max);
         if next > reach {
             return Crossing::None;
@@ -183,7 +183,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn first(coefficients: &[f64], reach: f64) -> Crossing {
-        first_time_all_closed([Guard::new(coefficients, 1.0, 0.0)], reach)
+        first_time_all_closed([Gap::new(coefficients, 1.0, 0.0)], reach)
     }
 
     fn from_roots(roots: &[f64], lead: f64) -> Vec<f64> {
@@ -220,7 +220,7 @@ mod tests {
 
     /// As just after an uplift: a triple root at the start, but for terms that are next to nothing.
     #[test]
-    fn a_guard_that_has_just_opened_is_not_searched_in_vain() {
+    fn a_gap_that_has_just_opened_is_not_searched_in_vain() {
         assert_eq!(first(&[4e-46, 3e-34, 7e-23, 1e-15, -2e-16], 1.0), Crossing::None);
         let Crossing::At(sigma) = first(&[4e-46, 3e-34, 7e-23, 1e-15, -2e-15], 1.0) else { panic!("missed") };
         assert_abs_diff_eq!(sigma, 0.5, epsilon = 1e-7);
@@ -228,18 +228,18 @@ mod tests {
     }
 
     #[test]
-    fn a_guard_closed_from_the_start_closes_at_once() {
+    fn a_gap_closed_from_the_start_closes_at_once() {
         assert_eq!(first(&[-1.0, 5.0], 1.0), Crossing::At(0.0));
     }
 
     #[test]
-    fn all_guards_must_be_closed_at_once() {
+    fn all_gaps_must_be_closed_at_once() {
         let (one, two) = ([0.2, -1.0], [0.5, -1.0]); // closed from 0.2 on, from 0.5 on
-        let both = |reach| first_time_all_closed([Guard::new(&one, 1.0, 0.0), Guard::new(&two, 1.0, 0.0)], reach);
+        let both = |reach| first_time_all_closed([Gap::new(&one, 1.0, 0.0), Gap::new(&two, 1.0, 0.0)], reach);
         assert_eq!(both(1.0), Crossing::At(0.5));
         assert_eq!(both(0.4), Crossing::None);
         let closed_before = [-0.1, 1.0]; // closed until 0.1
-        let never = first_time_all_closed([Guard::new(&closed_before, 1.0, 0.0), Guard::new(&two, 1.0, 0.0)], 1.0);
+        let never = first_time_all_closed([Gap::new(&closed_before, 1.0, 0.0), Gap::new(&two, 1.0, 0.0)], 1.0);
         assert_eq!(never, Crossing::None);
     }
 

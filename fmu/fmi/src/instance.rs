@@ -58,9 +58,8 @@ struct Kind {
 
 impl From<&Variable> for Kind {
     fn from(variable: &Variable) -> Kind {
-        let DataType::Real { range, .. } = variable.data_type else { return Kind { is: 0, min: 0.0, max: 0.0 } };
+        let Some((min, max)) = variable.data_type.limits() else { return Kind { is: 0, min: 0.0, max: 0.0 } };
         let is = if variable.causality == Causality::Input { REAL | INPUT } else { REAL };
-        let (min, max) = range.unwrap_or((f64::MIN, f64::MAX));
         Kind { is, min, max }
     }
 }
@@ -311,7 +310,10 @@ impl Instance {
         let mut states: Option<Vec<f64>> = None;
         for (reference, &value) in references.iter().zip(values) {
             let variable = self.find(*reference)?;
-            let DataType::Real { unit, range } = variable.data_type else { return Err(refused(variable)) };
+            let data_type = variable.data_type;
+            let (DataType::Real { unit, .. }, Some((min, max))) = (data_type, data_type.limits()) else {
+                return Err(refused(variable));
+            };
             if variable.role == Role::State && self.stage == Stage::ContinuousTimeMode {
                 let which = state_references(&self.variables).position(|state| state == *reference);
                 let states = states.get_or_insert(self.model.states()?);
@@ -325,8 +327,7 @@ impl Instance {
                 _ if self.stage.has_started() => return Err(Failure::Fixed { name }),
                 _ => (),
             }
-            let (min, max) = range.unwrap_or((f64::MIN, f64::MAX));
-            if !(min..=max).contains(&value) {
+            if !data_type.accepts(value) {
                 return Err(Failure::OutOfRange { name, value, unit, min, max, description });
             }
         }

@@ -84,11 +84,15 @@ pub enum DataType {
 }
 
 impl DataType {
+    /// The least and the largest value of a real number; every finite value is in a range that is not stated.
+    pub fn limits(&self) -> Option<(f64, f64)> {
+        let DataType::Real { range, .. } = self else { return None };
+        Some(range.unwrap_or((f64::MIN, f64::MAX)))
+    }
+
     /// Whether `value` is a real number in the range of the type.
     pub fn accepts(&self, value: f64) -> bool {
-        let DataType::Real { range, .. } = self else { return false };
-        let (min, max) = range.unwrap_or((f64::MIN, f64::MAX));
-        (min..=max).contains(&value)
+        self.limits().is_some_and(|(min, max)| (min..=max).contains(&value))
     }
 }
 
