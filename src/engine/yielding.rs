@@ -133,6 +133,7 @@ fn square_integral(coefficients: &[f64], reach: f64) -> f64 {
         *term = c * power;
         power * reach
     });
+    let terms = &terms[..coefficients.len()];
     let with = |(i, a): (usize, &f64)| terms.iter().enumerate().map(|(j, b)| a * b / (i + j + 1) as f64).sum::<f64>();
     terms.iter().enumerate().map(with).sum::<f64>() * reach
 }
