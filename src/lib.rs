@@ -48,6 +48,6 @@ pub use mechanics::state::{Phase, Side, State};
 pub use run::Run;
 pub use run::ground_motion::GroundMotion;
 pub use structure::Structure;
-pub use structure::frame::Frame;
+pub use structure::frame::{Body, Floor, Frame, FrameError};
 pub use structure::parameters::Parameters;
 pub use structure::quantity::{OutOfRange, Quantity};

@@ -60,6 +60,8 @@ pub struct Base {
     pub m_t: f64,
     /// Mass that no mode carries, m_t − Σ Γ²/μ, kg; of one mass, the mass of the foundation.
     pub m0: f64,
+    /// First moment of this mass about the height of the pivots, kg·m; of one mass, 0.
+    pub S_res: f64,
     /// Half-width B, m.
     pub B: f64,
     /// Inertia of the mass that no mode carries, about the middle of the base, kg·m².
@@ -197,7 +199,7 @@ impl Structure {
         Ok(Structure {
             parameters,
             is_restrained: [P_0, k_t, c_d, k_d].iter().any(|restraint| *restraint > 0.0),
-            base: Base { m_t: m + m0, m0, B, J0, J_P, r: Some(r), g, c_ratio, p_l, tan_alpha_cg, ties },
+            base: Base { m_t: m + m0, m0, S_res: 0.0, B, J0, J_P, r: Some(r), g, c_ratio, p_l, tan_alpha_cg, ties },
             mode: Mode { mass: m, gamma: m, share: 1.0, height: H, stiffness: k, damping: c_fc },
             gamma,
             omega_fc,

@@ -4,9 +4,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 use rocking::engine::Settings;
-use rocking::structure::{Base, Mode, Ties};
+use rocking::structure::{Mode, Ties};
 use rocking::{
-    Detail, Engine, Frame, LinearLoad, Load, Modes, Parameters, Progress, Side, State, Structure, Transition,
+    Body, Detail, Engine, Frame, LinearLoad, Load, Modes, Parameters, Progress, Side, State, Structure, Transition,
     TransitionKind,
 };
 use std::f64::consts::TAU;
@@ -30,14 +30,10 @@ impl Masses {
         let shapes = root * eigen.eigenvectors;
         let mode = |j: usize| {
             let of = |with: Vector3<f64>| shapes.column(j).dot(&m.component_mul(&with));
-            let (gamma, kappa, omega) = (of(Vector3::repeat(1.0)), of(h), eigen.eigenvalues[j].sqrt());
-            let damping = 2.0 * zeta * omega;
-            Mode { mass: 1.0, gamma, share: gamma, height: kappa, stiffness: omega * omega, damping }
+            Mode::new(eigen.eigenvalues[j].sqrt(), zeta, of(Vector3::repeat(1.0)), of(h))
         };
-        let (m_t, S_1) = (m.sum() + m0, m.dot(&h));
-        let J_P = J0 + m_t * B * B + m.dot(&h.component_mul(&h));
-        let base = base([m_t, m0, B, J0, J_P, S_1], r, G);
-        Masses { frame: Frame::new(base, &[mode(0), mode(1), mode(2)]).unwrap(), shapes }
+        let body = body([m0, J0, B], [m.sum(), m.dot(&h), m.dot(&h.component_mul(&h))], r, G);
+        Masses { frame: Frame::new(body, &[mode(0), mode(1), mode(2)], &[]).unwrap(), shapes }
     }
 
     /// Displacements of the masses.
@@ -46,9 +42,8 @@ impl Masses {
     }
 }
 
-fn base([m_t, m0, B, J0, J_P, S_1]: [f64; 6], r: f64, g: f64) -> Base {
-    let (p_l, tan_alpha_cg) = ((g * S_1 / J_P).sqrt(), m_t * B / S_1);
-    Base { m_t, m0, B, J0, J_P, r: Some(r), g, c_ratio: 1.0, p_l, tan_alpha_cg, ties: Ties::default() }
+fn body([m0, J0, B]: [f64; 3], [m_s, S_1, I_2]: [f64; 3], r: f64, g: f64) -> Body {
+    Body { m0, J0, m_s, S_1, I_2, B, r: Some(r), g, c_ratio: 1.0, ties: Ties::default() }
 }
 
 fn at_rest(modes: usize) -> State<Modes> {
@@ -92,7 +87,7 @@ fn a_frame_moves_as_its_masses_do() {
     let masses = Masses::new(0.02, 0.93);
     for detail in [Detail::Nonlinear, Detail::Auto] {
         let settings = Settings { detail, tolerance: 1e-10, ..Settings::default() };
-        let mut engine = Engine::of_modes(masses.frame, at_rest(3), 0.0, settings).unwrap();
+        let mut engine = Engine::of_modes(masses.frame.clone(), at_rest(3), 0.0, settings).unwrap();
         let mut found: Vec<Transition<Modes>> = Vec::new();
         let mut watch = |transition: &Transition<Modes>| found.push(*transition);
         for i in 0..250 {
@@ -119,7 +114,7 @@ fn a_frame_keeps_its_energy_between_impacts() {
     let mut state = at_rest(3);
     (state.u, state.theta) = (Modes::new(&[2.0, -1.0, 0.5]), 0.03);
     let settings = Settings { detail: Detail::Nonlinear, ..Settings::default() };
-    let mut engine = Engine::of_modes(masses.frame, state, 0.0, settings).unwrap();
+    let mut engine = Engine::of_modes(masses.frame.clone(), state, 0.0, settings).unwrap();
     let (mut last, mut seen, mut impacts, mut pieces) = (engine.energy(), 0, 0, 0);
     for _ in 0..600 {
         engine.advance(0.01, ground(3, 0.0, 0.0, 0.01), &mut ()).unwrap();
@@ -153,11 +148,10 @@ fn one_mode_is_one_mass() {
         stiffness: mass * structure.omega_fc.powi(2),
         damping: mass * structure.c_fc / m,
     };
-    let base = base([m + m0, m0, B, J0, structure.J_P, m * H], r, g);
-    let frame = Frame::new(base, &[mode]).unwrap();
+    let frame = Frame::new(body([m0, J0, B], [m, m * H, m * H * H], r, g), &[mode], &[]).unwrap();
     for detail in [Detail::Nonlinear, Detail::Auto] {
         let settings = Settings { detail, tolerance: 1e-10, ..Settings::default() };
-        let mut many = Engine::of_modes(frame, at_rest(1), 0.0, settings).unwrap();
+        let mut many = Engine::of_modes(frame.clone(), at_rest(1), 0.0, settings).unwrap();
         let mut one = Engine::with(structure, State::default(), 0.0, settings).unwrap();
         let (mut u, mut theta, mut off) = (0.0_f64, 0.0_f64, [0.0_f64; 2]);
         for i in 0..250 {

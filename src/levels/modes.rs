@@ -425,6 +425,7 @@ mod tests {
     use super::*;
     use crate::levels::nonlinear::accelerations;
     use crate::mechanics::load::LinearLoad;
+    use crate::structure::frame::Body;
     use crate::{Parameters, Structure};
     use approx::assert_relative_eq;
 
@@ -446,11 +447,19 @@ mod tests {
             }
         };
         let modes: Vec<_> = shares.iter().enumerate().map(mode).collect();
-        (structure, Frame::new(structure.base, &modes).unwrap())
+        let Parameters { m0, J0, B, r, g, c_ratio, .. } = *structure.parameters();
+        let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum();
+        let (m_s, S_1) = (of(|mode| mode.gamma * mode.share), of(|mode| mode.gamma * mode.height));
+        let (I_2, ties) = (of(|mode| mode.mass * mode.height * mode.height), structure.base.ties);
+        let body = Body { m0, J0, m_s, S_1, I_2, B, r: Some(r), g, c_ratio, ties };
+        (structure, Frame::new(body, &modes, &[]).unwrap())
     }
 
-    fn level(frame: Frame) -> Nonlinear {
-        Nonlinear::new(Subject { structure: frame, local_error: 1e-16, is_tied: true, angles: Angles::Any }, false)
+    fn level(frame: &Frame) -> Nonlinear {
+        Nonlinear::new(
+            Subject { structure: frame.clone(), local_error: 1e-16, is_tied: true, angles: Angles::Any },
+            false,
+        )
     }
 
     /// One mode of any scale, under all loads and with all ties, against Eqs 5 and 6.
@@ -467,7 +476,7 @@ mod tests {
             let state = State { u: of(one.u / scale), u_dot: of(one.u_dot / scale), theta, theta_dot: one.theta_dot };
             let load = Load { a_g: load.a_g, F_t: of(load.F_t * scale), a_v: load.a_v };
             let now = Now { state: &state, load, dissipators: &dissipators };
-            let found = level(frame).accelerations(Phase::Rocking(side), &now);
+            let found = level(&frame).accelerations(Phase::Rocking(side), &now);
             assert_relative_eq!(scale * found.u_ddot.of(0), expected[0], max_relative = 1e-12);
             assert_relative_eq!(found.theta_ddot, expected[1], max_relative = 1e-12);
         }
@@ -477,7 +486,7 @@ mod tests {
     #[test]
     fn the_series_satisfies_the_equations_of_many_masses() {
         let (_, frame) = frame(&[1.3, -0.6, 0.4]);
-        let level = level(frame);
+        let level = level(&frame);
         let dissipators = Dissipators { plastic: [2e-3, -1e-3], ..Dissipators::NEW };
         let modes = |numbers: [f64; 3]| Modes::new(&numbers);
         let state =

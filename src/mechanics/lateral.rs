@@ -14,7 +14,7 @@ use std::fmt::Debug;
 /// Lateral coordinates in numbers of the kind `N`.
 pub trait Lateral<N: Number>: Copy {
     /// The structures with these coordinates.
-    type Structure: Copy + Debug;
+    type Structure: Clone + Debug;
 
     /// The base of a structure.
     fn base(structure: &Self::Structure) -> &Base;
@@ -284,6 +284,7 @@ mod tests {
     use crate::mechanics::outputs::acceleration;
     use crate::mechanics::reactions::{Impulse, Reactions};
     use crate::structure::Ties;
+    use crate::structure::frame::Body;
     use crate::{Load, Parameters, Phase, Side, State};
     use approx::assert_relative_eq;
     use nalgebra::{Matrix3, Vector3};
@@ -335,12 +336,10 @@ mod tests {
             let modes: Vec<_> = (0..3).map(mode).collect();
             let weights = Matrix3::from_diagonal(&Vector3::from_fn(|j, _| modes[j].damping / modes[j].mass.powi(2)));
             let damping = mass * shapes * weights * shapes.transpose() * mass;
-            let m_t = m.sum() + m0;
-            let J_P = J0 + m_t * B * B + m.dot(&h.component_mul(&h));
-            let S_1 = m.dot(&h);
-            let (p_l, tan_alpha_cg, ties) = ((g * S_1 / J_P).sqrt(), m_t * B / S_1, Ties::default());
-            let base = Base { m_t, m0, B, J0, J_P, r: Some(r), g, c_ratio, p_l, tan_alpha_cg, ties };
-            let frame = Frame::new(base, &modes).unwrap();
+            let (S_1, I_2) = (m.dot(&h), m.dot(&h.component_mul(&h)));
+            let ties = Ties::default();
+            let body = Body { m0, J0, m_s: m.sum(), S_1, I_2, B, r: Some(r), g, c_ratio, ties };
+            let frame = Frame::new(body, &modes, &[]).unwrap();
             Masses { frame, m, h, stiffness, damping, shapes }
         }
 
@@ -433,7 +432,7 @@ mod tests {
             assert_relative_eq!(I_h, 0.0, epsilon = 1e-9);
             assert_relative_eq!(I_v, -(s * frame.base.m_t * B - mu) * theta_dot, max_relative = 1e-12);
             // (M19)
-            let momentum = Frame::new(Base { r: None, ..frame.base }, frame.modes()).unwrap();
+            let momentum = Frame::new(Body { r: None, ..*frame.body() }, frame.modes(), &[]).unwrap();
             let of_masses = |with: &dyn Fn(usize) -> f64| (0..3).map(|i| frame.m[i] * with(i)).sum::<f64>();
             let rest = of_masses(&|i| B * B - u[i] * u[i]) + m0 * B * B - J0;
             let height = of_masses(&|i| frame.h[i] * frame.h[i]);
