@@ -147,6 +147,11 @@ impl Frame {
         &self.body
     }
 
+    /// The rigid base.
+    pub fn base(&self) -> &Base {
+        &self.base
+    }
+
     /// The modes of vibration in full contact.
     #[inline(always)]
     pub fn modes(&self) -> &[Mode] {
