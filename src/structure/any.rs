@@ -3,12 +3,13 @@
 use crate::mechanics::impact::restitution;
 use crate::mechanics::lateral::Modes;
 use crate::structure::building::Building;
-use crate::structure::{Derived, Mode, derived};
+use crate::structure::{Base, Derived, Mode, derived};
 use crate::{Side, State, Structure};
 use std::f64::consts::TAU;
 
 /// A structure of one mass or of many.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "one mass is the usual structure")]
 pub enum AnyStructure {
     /// One mass.
     One(Structure),
@@ -76,6 +77,14 @@ impl AnyStructure {
         match self {
             AnyStructure::One(structure) => Ok(*structure),
             AnyStructure::Many(building) => Err(ManyMasses { task, modes: building.frame.modes().len() }),
+        }
+    }
+
+    /// The rigid base.
+    pub fn base(&self) -> &Base {
+        match self {
+            AnyStructure::One(structure) => &structure.base,
+            AnyStructure::Many(building) => &building.frame.base,
         }
     }
 }
