@@ -1,7 +1,7 @@
 //! The structure: its parameters and the constants that follow from them (before Eq 11, after 4, 8 and 13, before 18).
 
 pub mod any;
-pub mod building;
+pub mod description;
 pub mod frame;
 pub mod natural_quantities;
 pub mod parameters;

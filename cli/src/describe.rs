@@ -39,8 +39,8 @@ const STEPS: u32 = 20;
 pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     let structure = match args.structure.load_any()? {
         AnyStructure::Many(_) if args.template => bail!("--template writes structures of one mass only"),
-        AnyStructure::Many(building) if args.restoring.is_none() => {
-            return args.results.print(|| Ok(describe::building(&building)?), &describe::numbers(&building));
+        AnyStructure::Many(frame) if args.restoring.is_none() => {
+            return args.results.print(|| Ok(describe::frame(&frame)?), &describe::numbers(&frame));
         }
         any => any.one("--restoring")?,
     };

@@ -5,7 +5,7 @@ use anyhow::{Context, anyhow, bail};
 use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource};
 use rocking::structure::Derived;
 use rocking::structure::any::AnyStructure;
-use rocking::structure::building::Described;
+use rocking::structure::description::Described;
 use rocking::structure::natural_quantities::{Given, GivenError, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::quantity::{Quantity, with_unit};
@@ -78,7 +78,7 @@ fn of_file(text: &str) -> anyhow::Result<AnyStructure> {
     let keys: toml::Table = toml::from_str(text)?;
     if ["base", "storeys", "floors", "modes"].iter().any(|key| keys.contains_key(*key)) {
         let described: Described = toml::from_str(text)?;
-        return Ok(AnyStructure::Many(Box::new(described.building()?)));
+        return Ok(AnyStructure::Many(described.frame()?));
     }
     let given: Given = toml::from_str(text)?;
     Ok(AnyStructure::One(Structure::new(given.parameters()?)?))

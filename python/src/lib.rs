@@ -4,8 +4,8 @@
 
 mod advice;
 mod arguments;
-mod building;
 mod interruptible;
+mod many_masses;
 mod record;
 mod run;
 mod structure;

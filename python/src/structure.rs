@@ -1,8 +1,8 @@
 //! `Structure`: parameters and what follows from them, by the names in the library's tables.
 
 use crate::arguments::{numbers, one_of, refused};
-use crate::building::{OF_MANY, building, given};
 use crate::interruptible::interruptible;
+use crate::many_masses::{OF_MANY, frame, given};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyAttributeError, PyValueError};
 use pyo3::prelude::*;
@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::estimates::modal_split::{ModalAccelerations, Modes};
 use rocking::estimates::pushover::{self, Equilibrium};
-use rocking::structure::any::{AnyStructure, OF_BUILDING, OF_MODE};
+use rocking::structure::any::{AnyStructure, OF_FRAME, OF_MODE};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::{DERIVED, Derived};
 use rocking::{Parameters, Side, State};
@@ -60,7 +60,7 @@ impl Structure {
 
     fn many(keywords: &Bound<'_, PyDict>) -> PyResult<Structure> {
         let kept = keywords.py().import("copy")?.call_method1("deepcopy", (keywords,))?.cast_into::<PyDict>()?;
-        let of = AnyStructure::Many(Box::new(building(kept.copy()?)?));
+        let of = AnyStructure::Many(frame(kept.copy()?)?);
         Ok(Structure { of, keywords: Some(kept.unbind()) })
     }
 
@@ -76,9 +76,7 @@ impl Structure {
                 PARAMETERS.iter().map(|of| (of.name, (of.get)(structure.parameters()))).collect(),
                 DERIVED.iter().map(|of| (of.name, (of.value)(structure))).collect(),
             ],
-            AnyStructure::Many(building) => {
-                [Vec::new(), OF_BUILDING.iter().map(|of| (of.name, (of.value)(building))).collect()]
-            }
+            AnyStructure::Many(frame) => [Vec::new(), OF_FRAME.iter().map(|of| (of.name, (of.value)(frame))).collect()],
         }
     }
 }
@@ -171,14 +169,14 @@ impl Structure {
     /// Raises ValueError for a structure of one mass, whose attributes have these numbers.
     #[getter]
     fn mode_table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let AnyStructure::Many(building) = &self.of else {
+        let AnyStructure::Many(frame) = &self.of else {
             return Err(PyValueError::new_err(
                 "mode_table needs a structure of many masses; see f_fc, zeta_fc, chi, f_u",
             ));
         };
         let all = PyDict::new(py);
         for Derived { name, value, .. } in &OF_MODE {
-            all.set_item(name, PyArray1::from_iter(py, building.modes().map(|mode| value(&mode))))?;
+            all.set_item(name, PyArray1::from_iter(py, frame.mode_table().map(|mode| value(&mode))))?;
         }
         Ok(all)
     }
@@ -262,7 +260,7 @@ impl Structure {
     fn __str__(&self) -> PyResult<String> {
         match &self.of {
             AnyStructure::One(structure) => describe::text(structure),
-            AnyStructure::Many(building) => describe::building(building),
+            AnyStructure::Many(frame) => describe::frame(frame),
         }
         .map_err(refused)
     }

@@ -2,7 +2,7 @@
 
 use crate::mechanics::impact::restitution;
 use crate::mechanics::lateral::Modes;
-use crate::structure::building::Building;
+use crate::structure::frame::Frame;
 use crate::structure::{Base, Derived, Mode, derived};
 use crate::{Side, State, Structure};
 use std::f64::consts::TAU;
@@ -14,7 +14,7 @@ pub enum AnyStructure {
     /// One mass.
     One(Structure),
     /// Many masses.
-    Many(Box<Building>),
+    Many(Frame),
 }
 
 /// A structure of many masses where one mass is needed.
@@ -50,25 +50,25 @@ pub const OF_MODE: [Derived<ModeOf>; 7] = [
 ];
 
 /// The numbers of a structure of many masses that are shown, apart from the numbers of its modes.
-pub const OF_BUILDING: [Derived<Building>; 15] = [
-    derived!("m_s" ["kg"] "mass above the base", "", |of| of.m_s),
-    derived!("m_t" ["kg"] "mass of the whole structure", "", |of| of.frame.base.m_t),
-    derived!("S_1" ["kg.m"] "first moment of the mass above the base", "", |of| of.frame.first_moment()),
-    derived!("B" ["m"] "half-width of the base", "", |of| of.frame.base.B),
-    derived!("J_P" ["kg.m2"] "inertia about a pivot", "", |of| of.frame.base.J_P),
-    derived!("p_l" ["rad/s"] "frequency parameter", "", |of| of.frame.base.p_l),
-    derived!("alpha_cg" ["rad"] "slenderness of the centre of gravity", "", |of| libm::atan(of.frame.base.tan_alpha_cg)),
+pub const OF_FRAME: [Derived<Frame>; 15] = [
+    derived!("m_s" ["kg"] "mass above the base", "", |of| of.body().m_s),
+    derived!("m_t" ["kg"] "mass of the whole structure", "", |of| of.base.m_t),
+    derived!("S_1" ["kg.m"] "first moment of the mass above the base", "", |of| of.body().S_1),
+    derived!("B" ["m"] "half-width of the base", "", |of| of.base.B),
+    derived!("J_P" ["kg.m2"] "inertia about a pivot", "", |of| of.base.J_P),
+    derived!("p_l" ["rad/s"] "frequency parameter", "", |of| of.base.p_l),
+    derived!("alpha_cg" ["rad"] "slenderness of the centre of gravity", "", |of| libm::atan(of.base.tan_alpha_cg)),
     derived!("r" ["1"] "coefficient of restitution without displacement", "", |of| {
         let undeformed = State { u: Modes::default(), u_dot: Modes::default(), theta: 0.0, theta_dot: 0.0 };
-        restitution(&of.frame, Side::Right, &undeformed)
+        restitution(of, Side::Right, &undeformed)
     }),
-    derived!("g" ["m/s2"] "acceleration of gravity", "", |of| of.frame.base.g),
-    derived!("P_0" ["N"] "prestress of the tendon with the base down", "", |of| of.frame.base.ties.P_0),
-    derived!("k_t" ["N/m"] "stiffness of the tendon", "", |of| of.frame.base.ties.k_t),
-    derived!("xi_d" ["m"] "distance of each dissipator from the middle of the base", "", |of| of.frame.base.ties.xi_d),
-    derived!("c_d" ["N.s/m"] "damping of each viscous dissipator", "", |of| of.frame.base.ties.c_d),
-    derived!("k_d" ["N/m"] "elastic stiffness of each elastoplastic dissipator", "", |of| of.frame.base.ties.k_d),
-    derived!("F_y" ["N"] "force at which an elastoplastic dissipator yields", "", |of| of.frame.base.ties.F_y),
+    derived!("g" ["m/s2"] "acceleration of gravity", "", |of| of.base.g),
+    derived!("P_0" ["N"] "prestress of the tendon with the base down", "", |of| of.base.ties.P_0),
+    derived!("k_t" ["N/m"] "stiffness of the tendon", "", |of| of.base.ties.k_t),
+    derived!("xi_d" ["m"] "distance of each dissipator from the middle of the base", "", |of| of.base.ties.xi_d),
+    derived!("c_d" ["N.s/m"] "damping of each viscous dissipator", "", |of| of.base.ties.c_d),
+    derived!("k_d" ["N/m"] "elastic stiffness of each elastoplastic dissipator", "", |of| of.base.ties.k_d),
+    derived!("F_y" ["N"] "force at which an elastoplastic dissipator yields", "", |of| of.base.ties.F_y),
 ];
 
 impl AnyStructure {
@@ -76,7 +76,7 @@ impl AnyStructure {
     pub fn one(&self, task: &'static str) -> Result<Structure, ManyMasses> {
         match self {
             AnyStructure::One(structure) => Ok(*structure),
-            AnyStructure::Many(building) => Err(ManyMasses { task, modes: building.frame.modes().len() }),
+            AnyStructure::Many(frame) => Err(ManyMasses { task, modes: frame.modes().len() }),
         }
     }
 
@@ -84,17 +84,16 @@ impl AnyStructure {
     pub fn base(&self) -> &Base {
         match self {
             AnyStructure::One(structure) => &structure.base,
-            AnyStructure::Many(building) => &building.frame.base,
+            AnyStructure::Many(frame) => &frame.base,
         }
     }
 }
 
-impl Building {
-    /// The modes, lowest frequency first.
-    pub fn modes(&self) -> impl Iterator<Item = ModeOf> {
-        let &Building { ref frame, m_s, .. } = self;
-        let J_P = frame.base.J_P;
-        let modes = frame.modes().iter().zip(frame.rocking_frequencies());
+impl Frame {
+    /// The numbers of each mode, lowest frequency first.
+    pub fn mode_table(&self) -> impl Iterator<Item = ModeOf> {
+        let (J_P, m_s) = (self.base.J_P, self.body().m_s);
+        let modes = self.modes().iter().zip(self.rocking_frequencies());
         modes.map(move |(&mode, omega_u)| ModeOf { mode, J_P, m_s, omega_u })
     }
 }

@@ -4,7 +4,8 @@ use crate::arguments::{matrix, number, numbers, refused};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rocking::structure::building::{Building, Damping, Described, FoundMode, Place, Storey, Total};
+use rocking::Frame;
+use rocking::structure::description::{Damping, Described, FoundMode, Place, Storey, Total};
 use rocking::structure::natural_quantities::Given;
 
 /// Keywords that only a structure of many masses has.
@@ -39,7 +40,7 @@ impl<'py> Keywords<'py> {
 }
 
 /// The structure of many masses that `keywords` describe.
-pub fn building(keywords: Bound<'_, PyDict>) -> PyResult<Building> {
+pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Frame> {
     let keywords = Keywords(keywords);
     let missing = |name: &str| PyValueError::new_err(format!("{name} is missing"));
     let zeta = keywords.take("zeta")?.ok_or_else(|| missing("zeta (damping ratio in full contact)"))?;
@@ -64,7 +65,7 @@ pub fn building(keywords: Bound<'_, PyDict>) -> PyResult<Building> {
         }),
     };
     let described = Described { zeta: damping(&zeta)?, storeys, floors, K, modes, total, base: given(&keywords.0)? };
-    described.building().map_err(refused)
+    described.frame().map_err(refused)
 }
 
 /// The numbers of one mass, or of a base, by their names.
