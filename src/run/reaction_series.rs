@@ -89,6 +89,12 @@ impl Extent {
     /// The extent of a reaction without bounds.
     pub(crate) const ANY: Extent = Extent { least: f64::NEG_INFINITY, largest: f64::INFINITY };
 
+    /// Bound of the magnitude.
+    #[inline]
+    pub(crate) fn most(&self) -> f64 {
+        self.least.abs().max(self.largest.abs())
+    }
+
     /// The extent of a reaction, given the course of its linear part.
     fn of<const L: usize>(course: &Range, reaction: &Linear<L>) -> Extent {
         let off = course.off_chord + reaction.rest;

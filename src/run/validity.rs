@@ -235,20 +235,22 @@ impl Validity {
 
     /// Whether reactions within these bounds may hold something worse than what has been seen, or go beyond a limit.
     fn may_matter(&self, phase: Phase, reactions: &Reactions<Extent>) -> bool {
-        let has_weight = reactions.R_v.least > 0.0; // otherwise no friction is enough
-        !has_weight
-            || self.may_break::<EdgeLoad>(phase, reactions)
-            || self.may_break::<Friction>(phase, reactions)
-            || self.may_break::<Tension>(phase, reactions)
+        let Reactions { R_h, R_v, R_m } = reactions;
+        let worst = Reactions { R_h: R_h.most(), R_v: R_v.least, R_m: R_m.most() };
+        self.may_break::<EdgeLoad>(phase, &worst)
+            || self.may_break::<Friction>(phase, &worst)
+            || self.may_break::<Tension>(phase, &worst)
     }
 
-    fn may_break<A: OfReactions>(&self, phase: Phase, reactions: &Reactions<Extent>) -> bool {
+    /// The same of one assumption, given reactions that break it more than others do.
+    #[inline]
+    fn may_break<A: OfReactions>(&self, phase: Phase, reactions: &Reactions) -> bool {
         let Assumption { limit, passing, .. } = &ASSUMPTIONS[A::PLACE];
-        let (worst, limit) = (self.found.worst[A::PLACE].value, limit(&self.limits));
-        let first = if passing.is_worse(worst, limit) { limit } else { worst };
-        let slack = MARGIN * self.scale().W;
-        let is_closed = |combination: &Combination| combination.extent(reactions).largest < slack;
-        A::holds_in(phase) && !A::worse(self.scale(), first).iter().flatten().all(is_closed)
+        let (seen, limit) = (self.found.worst[A::PLACE].value, limit(&self.limits));
+        let first = if passing.is_worse(seen, limit) { limit } else { seen };
+        let value = A::value(self.scale(), reactions);
+        let is_better = if *passing == Passing::Above { value < first + MARGIN } else { value > first - MARGIN };
+        A::holds_in(phase) && !is_better
     }
 
     /// Bounds of the reactions over a leap in full contact: a quantity whose second derivative is at most M over the time h
