@@ -21,9 +21,11 @@ use crate::levels::linear::LinearRocking;
 use crate::levels::modal::ModalRocking;
 use crate::levels::nonlinear::NonlinearRocking;
 use crate::levels::rigid::Rigid;
+use crate::mechanics::instant::Second;
 use crate::mechanics::restraint::Angles;
 use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift::{self, TurningMoment};
+use crate::numbers::bend::Bend;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
 use crate::{Phase, Side, State, Structure};
@@ -191,6 +193,10 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
             (_, Some(contact)) => contact.rates(start),
             (_, None) => Rates::NONE,
         }
+    }
+
+    fn second(&self, rates: &Rates) -> Option<Second<Bend>> {
+        self.rocking.second(rates)
     }
 
     #[inline(always)]

@@ -2,9 +2,11 @@
 
 use crate::levels::rules::{ChatterLimit, MAX_TRANSITIONS_PER_PERIOD};
 use crate::mechanics::impact;
+use crate::mechanics::instant::Second;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::restraint::{Angles, Dissipators};
 use crate::mechanics::uplift::{self, TurningMoment};
+use crate::numbers::bend::Bend;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{Phase, Side, State, Structure};
@@ -59,6 +61,11 @@ pub(crate) trait Level {
 
     /// Bounds of the motion over such a leap from `start` to `end`.
     fn rates(&self, phase: Phase, start: &Start, end: &State) -> Rates;
+
+    /// Bounds of (ü, θ̈) and of their derivatives over such a leap while rocking.
+    fn second(&self, _rates: &Rates) -> Option<Second<Bend>> {
+        None
+    }
 
     /// Writes the motion from `start` in `phase` into `arc`.
     fn series(&self, phase: Phase, start: &Start, arc: &mut Arc);
@@ -122,6 +129,10 @@ pub(crate) trait ElasticRocking {
 
     fn rates(&self, _side: Side, _start: &Start, _end: &State) -> Rates {
         Rates::NONE
+    }
+
+    fn second(&self, _rates: &Rates) -> Option<Second<Bend>> {
+        None
     }
 
     fn series(&self, side: Side, start: &Start, arc: &mut Arc);

@@ -97,8 +97,13 @@ impl Extent {
 
     /// The extent of a reaction, given the course of its linear part.
     fn of<const L: usize>(course: &Range, reaction: &Linear<L>) -> Extent {
-        let off = course.off_chord + reaction.rest;
-        Extent { least: course.start.min(course.end) - off, largest: course.start.max(course.end) + off }
+        Extent::between(course.start, course.end, course.off_chord + reaction.rest)
+    }
+
+    /// The extent of a reaction that leaves the chord between `first` and `last` by at most `off`.
+    #[inline(always)]
+    pub(crate) fn between(first: f64, last: f64, off: f64) -> Extent {
+        Extent { least: first.min(last) - off, largest: first.max(last) + off }
     }
 }
 

@@ -27,8 +27,10 @@ mod assumptions;
 use super::reaction_series::{self, Extent, extents};
 use super::{Finish, Run, RunError};
 use crate::engine::piece::{Expansion, Piece, Sample, Watch};
-use crate::levels::level::Rates;
+use crate::levels::level::{Now, Rates};
 use crate::mechanics::impact;
+use crate::mechanics::instant::{Instant, Second};
+use crate::mechanics::reactions::forces;
 use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::evaluate;
@@ -253,26 +255,35 @@ impl Validity {
         A::holds_in(phase) && !is_better
     }
 
-    /// Bounds of the reactions over a leap in full contact: a quantity whose second derivative is at most M over the time h
-    /// stays within M h²/8 of its chord.
-    fn extents_of_leap(&self, piece: &Piece) -> Reactions<Extent> {
+    /// Bounds of the reactions over a leap, if they are known: a quantity whose second derivative is at most M over the time h stays
+    /// within M h²/8 of its chord.
+    fn extents_of_leap(&self, piece: &Piece) -> Option<Reactions<Extent>> {
+        let &Piece { level, before: &Motion { phase, .. }, duration, load, .. } = piece;
+        let rates = level.rates(phase, &piece.whole().step(), &piece.end);
+        let states = [(0.0, &piece.before.state), (duration, &piece.end)];
+        let per_bend = duration * duration / 8.0;
+        if phase != Phase::FullContact {
+            let bends = level.bends_of_forces(phase, load, duration, &rates, &level.second(&rates)?);
+            let [first, last] = states.map(|(tau, state)| {
+                let now = Now { state, load: load.at(tau), dissipators: &piece.before.dissipators };
+                let [u_ddot, theta_ddot] = level.accelerations(phase, &now);
+                forces(&Instant::of(&self.structure, phase, state, now.load), &Second { u_ddot, theta_ddot })
+            });
+            let [R_h, R_v] = std::array::from_fn(|i| Extent::between(first[i], last[i], bends[i].bend * per_bend));
+            return Some(Reactions { R_h, R_v, R_m: Extent::ANY });
+        }
         let &Parameters { m, m0, H, g, .. } = self.structure.parameters();
         let &Structure { k, c_fc, .. } = &self.structure;
-        let ends = [(0.0, &piece.before.state), (piece.duration, &piece.end)].map(|(tau, state)| {
+        let [first, last] = states.map(|(tau, state)| {
             let strut = c_fc * state.u_dot + k * state.u;
-            [strut - m0 * piece.load.at(tau).a_g, H * strut + m * g * state.u]
+            [strut - m0 * load.at(tau).a_g, H * strut + m * g * state.u]
         });
-        let step = piece.whole().step();
-        let Rates { u_ddot, u_dddot, .. } = piece.level.rates(piece.before.phase, &step, &piece.end);
-        let per_bend = piece.duration * piece.duration / 8.0;
+        let Rates { u_ddot, u_dddot, .. } = rates;
         let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
-        let extent = |i: usize, off: f64| {
-            let [from, to]: [f64; 2] = [ends[0][i], ends[1][i]];
-            Extent { least: from.min(to) - off, largest: from.max(to) + off }
-        };
+        let off = [strut, H * strut + per_bend * m * g * u_ddot];
         let W = self.scale().W;
-        let R_v = Extent { least: W, largest: W };
-        Reactions { R_h: extent(0, strut), R_v, R_m: extent(1, H * strut + per_bend * m * g * u_ddot) }
+        let [R_h, R_m] = std::array::from_fn(|i| Extent::between(first[i], last[i], off[i]));
+        Some(Reactions { R_h, R_v: Extent::between(W, W, 0.0), R_m })
     }
 
     /// Looks at the motion over a polynomial, which may be halved `halvings` times; `extents` are bounds of its reactions.
@@ -370,9 +381,9 @@ impl Watch for Validity {
             self.found.see(WEIGHT, 1.0, piece.before.time);
         }
         let (phase, is_restrained) = (piece.before.phase, piece.level.subject().is_tied);
-        // bounds over a whole leap are known in full contact under gravity only
-        let is_leap = piece.arc.is_none() && phase == Phase::FullContact && !piece.load.is_vertical();
-        if is_leap && !is_restrained && !self.may_matter(phase, &self.extents_of_leap(piece)) {
+        // bounds over a whole leap are known under gravity only
+        let is_leap = piece.arc.is_none() && !piece.load.is_vertical() && !is_restrained;
+        if is_leap && self.extents_of_leap(piece).is_some_and(|extents| !self.may_matter(phase, &extents)) {
             return;
         }
         let mut arcs = piece.arcs();
