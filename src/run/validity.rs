@@ -383,16 +383,18 @@ impl Watch for Validity {
         let (phase, is_restrained) = (piece.before.phase, piece.level.subject().is_tied);
         // bounds over a whole leap are known under gravity only
         let is_leap = piece.arc.is_none() && !piece.load.is_vertical() && !is_restrained;
-        if is_leap && self.extents_of_leap(piece).is_some_and(|extents| !self.may_matter(phase, &extents)) {
+        let of_leap = if is_leap { self.extents_of_leap(piece) } else { None };
+        if of_leap.is_some_and(|extents| !self.may_matter(phase, &extents)) {
             return;
         }
         let mut arcs = piece.arcs();
         let mut count = 0;
         while let Some(expansion) = arcs.next() {
             // of what the ties pull there are no bounds
-            let extents = match is_restrained {
-                true => Reactions { R_h: Extent::ANY, R_v: Extent::ANY, R_m: Extent::ANY },
-                false => extents(&self.structure, phase, piece.load.from(expansion.from), expansion.arc),
+            let extents = match of_leap {
+                Some(extents) if phase == Phase::FullContact => extents,
+                _ if is_restrained => Reactions { R_h: Extent::ANY, R_v: Extent::ANY, R_m: Extent::ANY },
+                _ => extents(&self.structure, phase, piece.load.from(expansion.from), expansion.arc),
             };
             if self.may_matter(phase, &extents) {
                 self.look(expansion, &extents, FINEST_PART);
