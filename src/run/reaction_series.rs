@@ -7,7 +7,7 @@ use crate::levels::level::Subject;
 use crate::levels::shown::{linear_parts, over, turning};
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::load::LinearLoad;
-use crate::mechanics::reactions::forces;
+use crate::mechanics::reactions::{forces, forces_by_momentum};
 use crate::mechanics::restraint::Restraint;
 use crate::numbers::linear::{Leaf, Linear};
 use crate::numbers::{Number, Turn};
@@ -29,8 +29,7 @@ pub(crate) fn series(
         in_full_contact(level, load, arc)
     } else {
         let x = level.terms(phase, load, arc);
-        let second = Second { u_ddot: x.u_dot.slope(arc.span), theta_ddot: x.theta_dot.slope(arc.span) };
-        let [R_h, R_v] = forces(&x, &second);
+        let [R_h, R_v] = forces_by_momentum(&x, |momentum| momentum.slope(arc.span));
         Reactions { R_h, R_v, R_m: Terms::constant(0.0) }
     };
     let &Subject { ref structure, is_tied, .. } = level.subject();
@@ -54,7 +53,7 @@ fn in_full_contact(level: &AnyLevel, load: LinearLoad, arc: &Arc) -> Reactions<T
     let Reactions { R_h, R_v, R_m } = linear_in_full_contact(level.structure(), load, arc);
     if R_m.rest == 0.0 {
         let of = |reaction: Linear<3>| Terms::from_fn(arc.order, |k| reaction.coefficient(k, &contact_leaves(arc, k)));
-        return Reactions { R_h: of(R_h), R_v: of(R_v), R_m: of(R_m) };
+        return Reactions { R_h: of(R_h), R_v: Terms::constant(R_v.coefficient(0, &[0.0; 2])), R_m: of(R_m) };
     }
     let x = level.terms(Phase::FullContact, load, arc);
     Reactions::at(&x, &Second { u_ddot: x.u_dot.slope(arc.span), theta_ddot: Terms::constant(0.0) })
