@@ -12,7 +12,7 @@ use crate::mechanics::restraint::Restraint;
 use crate::numbers::linear::{Leaf, Linear};
 use crate::numbers::{Number, Turn};
 use crate::series::extremes::Range;
-use crate::series::taylor::{Arc, Series};
+use crate::series::taylor::{Arc, ORDERS, ZERO};
 use crate::series::terms::Terms;
 use crate::{Dissipators, Phase, Reactions, Structure};
 
@@ -63,12 +63,9 @@ fn in_full_contact(level: &AnyLevel, load: LinearLoad, arc: &Arc) -> Reactions<T
 #[inline(always)]
 fn linear_in_full_contact(structure: &Structure, load: LinearLoad, arc: &Arc) -> Reactions<Linear<3>> {
     let none = (Linear::constant(0.0), Turn::none());
-    let x = Instant {
-        u: Linear::leaf(0, 1.0, Leaf::of(arc.used(&arc.u)).changing()),
-        ..over(structure, Phase::FullContact, load, arc, none)
-    };
-    let u_ddot = Linear::leaf(1, 1.0 / arc.span, Leaf::of_slope(arc.used(&arc.u_dot)));
-    Reactions::at(&x, &Second { u_ddot, theta_ddot: Linear::constant(0.0) })
+    let [u, u_ddot] = Leaf::several(arc.order, |k| contact_leaves(arc, k));
+    let x = Instant { u: Linear::leaf(0, 1.0, u), ..over(structure, Phase::FullContact, load, arc, none) };
+    Reactions::at(&x, &Second { u_ddot: Linear::leaf(1, 1.0 / arc.span, u_ddot), theta_ddot: Linear::constant(0.0) })
 }
 
 /// Coefficient `k` of u and ü, the latter per unit of σ.
@@ -117,22 +114,23 @@ pub(crate) fn extents(structure: &Structure, phase: Phase, load: LinearLoad, arc
         let [R_h, R_v, R_m] = std::array::from_fn(|i| Extent::of(&parts[i], &reactions[i]));
         return Reactions { R_h, R_v, R_m };
     }
-    let of = |series: &Series| Leaf::of(arc.used(series)).changing();
-    let slope = |series: &Series| Leaf::of_slope(arc.used(series));
-    let per_span = 1.0 / arc.span;
+    let [mut u_slope, mut theta_slope] = [ZERO; 2];
+    for k in 1..ORDERS.len().min(arc.order + 1) {
+        (u_slope[k - 1], theta_slope[k - 1]) = (ORDERS[k] * arc.u_dot[k], ORDERS[k] * arc.theta_dot[k]);
+    }
+    let coefficients = |k: usize| [arc.u[k], arc.u_dot[k], arc.theta_dot[k], arc.theta[k], u_slope[k], theta_slope[k]];
+    let [u, u_dot, theta_dot, theta, u_ddot, theta_ddot] = Leaf::several(arc.order, coefficients);
     let x = Instant {
-        u: Linear::loose(of(&arc.u)),
-        u_dot: Linear::loose(of(&arc.u_dot)),
-        theta_dot: Linear::loose(of(&arc.theta_dot)),
-        ..over::<4>(structure, phase, load, arc, turning(of(&arc.theta)))
+        u: Linear::loose(u),
+        u_dot: Linear::loose(u_dot),
+        theta_dot: Linear::loose(theta_dot),
+        ..over::<4>(structure, phase, load, arc, turning(theta))
     };
-    let second = Second {
-        u_ddot: Linear::leaf(1, per_span, slope(&arc.u_dot)),
-        theta_ddot: Linear::leaf(2, per_span, slope(&arc.theta_dot)),
-    };
+    let per_span = 1.0 / arc.span;
+    let second =
+        Second { u_ddot: Linear::leaf(1, per_span, u_ddot), theta_ddot: Linear::leaf(2, per_span, theta_ddot) };
     let reactions = forces(&x, &second);
-    let leaves = |k: usize| [arc.theta[k], arc.slope(&arc.u_dot, k), arc.slope(&arc.theta_dot, k)];
-    let parts = linear_parts(&reactions, leaves, arc);
+    let parts = linear_parts(&reactions, |k| [arc.theta[k], u_slope[k], theta_slope[k]], arc);
     let [R_h, R_v] = std::array::from_fn(|i| Extent::of(&parts[i], &reactions[i]));
     Reactions { R_h, R_v, R_m: Extent::ANY }
 }
