@@ -74,32 +74,43 @@ fn contact_leaves(arc: &Arc, k: usize) -> [f64; 2] {
     [arc.u[k], arc.slope(&arc.u_dot, k)]
 }
 
-/// Bounds of a reaction over a polynomial.
+/// Bounds of a reaction over a polynomial: it stays within `half` of `middle`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extent {
-    pub least: f64,
-    pub largest: f64,
+    pub middle: f64,
+    pub half: f64,
 }
 
 impl Extent {
     /// The extent of a reaction without bounds.
-    pub(crate) const ANY: Extent = Extent { least: f64::NEG_INFINITY, largest: f64::INFINITY };
-
-    /// Bound of the magnitude.
-    #[inline]
-    pub(crate) fn most(&self) -> f64 {
-        self.least.abs().max(self.largest.abs())
-    }
-
-    /// The extent of a reaction, given the course of its linear part.
-    fn of<const L: usize>(course: &Range, reaction: &Linear<L>) -> Extent {
-        Extent::between(course.start, course.end, course.off_chord + reaction.rest)
-    }
+    pub(crate) const ANY: Extent = Extent { middle: 0.0, half: f64::INFINITY };
 
     /// The extent of a reaction that leaves the chord between `first` and `last` by at most `off`.
     #[inline(always)]
     pub(crate) fn between(first: f64, last: f64, off: f64) -> Extent {
-        Extent { least: first.min(last) - off, largest: first.max(last) + off }
+        Extent { middle: 0.5 * (first + last), half: 0.5 * (last - first).abs() + off }
+    }
+
+    /// The extent of a reaction, given the course of its linear part.
+    #[inline(always)]
+    fn of<const L: usize>(course: &Range, reaction: &Linear<L>) -> Extent {
+        Extent::between(course.start, course.end, course.off_chord + reaction.rest)
+    }
+
+    #[inline(always)]
+    pub(crate) fn least(&self) -> f64 {
+        self.middle - self.half
+    }
+
+    #[inline(always)]
+    pub(crate) fn largest(&self) -> f64 {
+        self.middle + self.half
+    }
+
+    /// Bound of the magnitude.
+    #[inline(always)]
+    pub(crate) fn most(&self) -> f64 {
+        self.middle.abs() + self.half
     }
 }
 

@@ -238,7 +238,7 @@ impl Validity {
     /// Whether reactions within these bounds may hold something worse than what has been seen, or go beyond a limit.
     fn may_matter(&self, phase: Phase, reactions: &Reactions<Extent>) -> bool {
         let Reactions { R_h, R_v, R_m } = reactions;
-        let worst = Reactions { R_h: R_h.most(), R_v: R_v.least, R_m: R_m.most() };
+        let worst = Reactions { R_h: R_h.most(), R_v: R_v.least(), R_m: R_m.most() };
         self.may_break::<EdgeLoad>(phase, &worst)
             || self.may_break::<Friction>(phase, &worst)
             || self.may_break::<Tension>(phase, &worst)
@@ -470,18 +470,18 @@ impl<'a> Polynomial<'a> {
 
     /// The series of a combination that may exceed `least`.
     fn combination(&self, combination: &Combination, least: f64) -> Option<Terms> {
-        (combination.extent(self.extents).largest > least).then(|| combination.series(&self.series))
+        (combination.extent(self.extents).largest() > least).then(|| combination.series(&self.series))
     }
 
     /// The intervals of σ on which one of `combinations` is positive, in their order.
     fn above(&self, combinations: [Option<Combination>; 2]) -> Vec<(f64, f64)> {
         let (mut found, reach): (Vec<(f64, f64)>, _) = (Vec::new(), self.of.arc.reach);
         for combination in combinations.iter().flatten() {
-            let Extent { least, largest } = combination.extent(self.extents);
-            if least > 0.0 {
+            let extent = combination.extent(self.extents);
+            if extent.least() > 0.0 {
                 return vec![(0.0, reach)];
             }
-            if largest > 0.0 {
+            if extent.largest() > 0.0 {
                 let series = combination.series(&self.series);
                 if highest(series.used(), reach) > 0.0 {
                     positive(series.used(), reach, &mut found);
