@@ -29,7 +29,7 @@ use super::{Finish, Run, RunError};
 use crate::engine::piece::{Expansion, Piece, Sample, Watch};
 use crate::levels::level::{Now, Rates};
 use crate::mechanics::impact;
-use crate::mechanics::instant::{Instant, Second};
+use crate::mechanics::instant::Instant;
 use crate::mechanics::reactions::forces;
 use crate::series::bisection::last_where;
 use crate::series::extremes;
@@ -266,8 +266,7 @@ impl Validity {
             let bends = level.bends_of_forces(phase, load, duration, &rates, &level.second(&rates)?);
             let [first, last] = states.map(|(tau, state)| {
                 let now = Now { state, load: load.at(tau), dissipators: &piece.before.dissipators };
-                let [u_ddot, theta_ddot] = level.accelerations(phase, &now);
-                forces(&Instant::of(&self.structure, phase, state, now.load), &Second { u_ddot, theta_ddot })
+                forces(&Instant::of(&self.structure, phase, state, now.load), &level.accelerations(phase, &now))
             });
             let [R_h, R_v] = std::array::from_fn(|i| Extent::between(first[i], last[i], bends[i].bend * per_bend));
             return Some(Reactions { R_h, R_v, R_m: Extent::ANY });
