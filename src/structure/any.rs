@@ -9,7 +9,6 @@ use std::f64::consts::TAU;
 
 /// A structure of one mass or of many.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "one mass is the usual structure")]
 pub enum AnyStructure {
     /// One mass.
     One(Structure),
