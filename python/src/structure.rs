@@ -104,7 +104,7 @@ impl Structure {
     /// The structure of these masses (kg) at these heights (m) above the base, lowest first, and of the stiffness matrix K
     /// (N/m) on a fixed base. zeta and the numbers of the base as in Structure.
     #[staticmethod]
-    #[pyo3(signature = (masses, heights, K, **numbers))]
+    #[pyo3(signature = (masses, heights, K, **numbers), text_signature = "(masses, heights, K, *, zeta, **base)")]
     fn from_matrices<'py>(
         masses: Bound<'py, PyAny>,
         heights: Bound<'py, PyAny>,
@@ -125,6 +125,10 @@ impl Structure {
     /// floors have all mass. zeta and the numbers of the base as in Structure.
     #[staticmethod]
     #[pyo3(signature = (*, mass, **numbers))]
+    #[pyo3(
+        text_signature = "(*, mass, zeta, f=None, period=None, height=None, moment=None, m_s=None, S_1=None, I_2=None, \
+                             J_P=None, masses=None, heights=None, shapes=None, **base)"
+    )]
     fn from_modes<'py>(mass: Bound<'py, PyAny>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<Structure> {
         let keywords = numbers.map_or_else(|| Ok(PyDict::new(mass.py())), |numbers| numbers.copy())?;
         keywords.set_item("mass", mass)?;

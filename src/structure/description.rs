@@ -223,10 +223,11 @@ impl Described {
 impl Frame {
     /// A shear building, whose storeys resist the drift between its floors.
     pub fn from_storeys(base: &Given, damping: &Damping, storeys: &[Storey]) -> Result<Frame, DescriptionError> {
-        for (i, storey) in storeys.iter().enumerate() {
-            STOREY.check(storey.k).map_err(|cause| DescriptionError::At { what: "storey", number: i + 1, cause })?;
+        for (number, storey) in (1..).zip(storeys) {
+            STOREY.check(storey.k).map_err(|cause| DescriptionError::At { what: "storey", number, cause })?;
         }
         let floors: Vec<_> = storeys.iter().map(|&Storey { m, h, .. }| Place { m, h }).collect();
+        check_floors(&floors, 1)?;
         if let Some(i) = (1..floors.len()).find(|&i| floors[i].h == floors[i - 1].h) {
             let (h, below) = (floors[i].h, floors[i - 1].h);
             return Err(DescriptionError::Order { number: i + 1, h, below });
@@ -250,11 +251,8 @@ impl Frame {
         floors: &[Place],
         K: &[Vec<f64>],
     ) -> Result<Frame, DescriptionError> {
-        check_floors(floors)?;
+        check_floors(floors, 1)?;
         let n = floors.len();
-        if !(1..=MOST_FLOORS).contains(&n) {
-            return Err(DescriptionError::Floors(n));
-        }
         length("K", K.len(), n, "floor")?;
         for (i, row) in K.iter().enumerate() {
             length(&format!("K[{}]", i + 1), row.len(), n, "floor")?;
@@ -296,13 +294,13 @@ impl Frame {
         total: Option<Total>,
         floors: &[Place],
     ) -> Result<Frame, DescriptionError> {
-        check_floors(floors)?;
+        check_floors(floors, 0)?;
         let (mut omegas, mut participations) = (Vec::new(), Vec::new());
         for (number, found) in (1..).zip(modes_found) {
             let at = |cause| DescriptionError::At { what: "mode", number, cause };
             MASS.check(found.mass).map_err(at)?;
             let f = match (found.f, found.period) {
-                (Some(f), None) => F.check(f).map(|()| f),
+                (Some(f), None) => Ok(f),
                 (None, Some(period)) => PERIOD.check(period).map(|()| period.recip()),
                 _ => return Err(DescriptionError::Either { number, one: "f (Hz)", other: "period (s)" }),
             };
@@ -347,6 +345,9 @@ fn body(given: &Given, [m_s, S_1, I_2]: [f64; 3]) -> Result<Body, DescriptionErr
 
 /// The modes of the frequencies `omegas` (rad/s) with these Γ and κ.
 fn modes(omegas: &[f64], damping: &Damping, participations: &[(f64, f64)]) -> Result<Vec<Mode>, DescriptionError> {
+    for (number, omega) in (1..).zip(omegas) {
+        F.check(omega / TAU).map_err(|cause| DescriptionError::At { what: "mode", number, cause })?;
+    }
     let modes = omegas.iter().zip(damping.ratios(omegas)?).zip(participations);
     Ok(modes.map(|((omega, zeta), (gamma, kappa))| Mode::new(*omega, zeta, *gamma, *kappa)).collect())
 }
@@ -356,8 +357,11 @@ fn shown(floors: &[Place], shapes: &[DVector<f64>]) -> Vec<Floor> {
     let of_floor = |i: usize| Modes::new(&shapes.iter().map(|shape| shape[i]).collect::<Vec<_>>());
     floors.iter().enumerate().map(|(i, &Place { m, h })| Floor { mass: m, height: h, shape: of_floor(i) }).collect()
 }
-/// Checks the numbers of the `floors` and their order.
-fn check_floors(floors: &[Place]) -> Result<(), DescriptionError> {
+/// Checks that there are `least` floors or more, their numbers and their order.
+fn check_floors(floors: &[Place], least: usize) -> Result<(), DescriptionError> {
+    if !(least..=MOST_FLOORS).contains(&floors.len()) {
+        return Err(DescriptionError::Floors(floors.len()));
+    }
     let mut below = 0.0;
     for (number, &Place { m, h }) in (1..).zip(floors) {
         let fits = FLOOR_MASS.check(m).and_then(|()| FLOOR_HEIGHT.check(h));
@@ -609,6 +613,7 @@ mod tests {
         assert!(damped(Damping::Rayleigh { f: [0.0, 1.0], zeta: 0.1 }).starts_with("f = 0 Hz is out of range"));
         let of_base = |base, storeys: &[Storey]| Frame::from_storeys(&base, &all, storeys).unwrap_err().to_string();
         assert_eq!(of_base(usual(), &[]), "0 floors are given: a structure has 1 to 500");
+        assert!(of_base(usual(), &[STOREYS[0]; 501]).starts_with("501 floors are given"));
         let without_width = of_base(base(&[("m0", 1.0)]), &STOREYS);
         assert!(without_width.starts_with("base: B (half-width of the base) is missing: give B (m) or width (m)"));
         let of_one = of_base(base(&[("m0", 1.0), ("B", 1.0), ("H", 1.0)]), &STOREYS);
