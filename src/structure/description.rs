@@ -121,7 +121,7 @@ pub enum DescriptionError {
     Frame(#[from] FrameError),
     #[error("{0} floors are given: a structure has 1 to {MOST_FLOORS}")]
     Floors(usize),
-    #[error("the centre of the mass above the base is {0} B high: it must not exceed {MAX_SLENDERNESS} B; raise B")]
+    #[error("the centre of the mass above the base is {0:.1} B high: it must not exceed {MAX_SLENDERNESS} B; raise B")]
     Slender(f64),
     #[error("{0}")]
     OutOfRange(#[from] OutOfRange),
@@ -283,7 +283,7 @@ impl Frame {
         let participation = |shape| (part(shape, |floor| floor.m), part(shape, |floor| floor.m * floor.h));
         let modes = modes(&omegas, damping, &shapes.iter().map(participation).collect::<Vec<_>>())?;
         let moments = moments(floors.iter().map(|&Place { m, h }| (m, h)));
-        Ok(Frame::new(body(base, moments)?, &modes, &shown(floors, &shapes))?)
+        checked(Frame::new(body(base, moments)?, &modes, &shown(floors, &shapes))?)
     }
 
     /// The modes of a fixed base that another program found. Without a `total`, the floors have all mass.
@@ -328,8 +328,15 @@ impl Frame {
         if rest.abs() > limit {
             return Err(DescriptionError::Moment { S_1: body.S_1, rest, limit });
         }
-        Ok(frame)
+        checked(frame)
     }
+}
+
+/// The `frame` unless it is too slender.
+fn checked(frame: Frame) -> Result<Frame, DescriptionError> {
+    let &Body { m_s, S_1, B, .. } = frame.body();
+    let slenderness = S_1 / (m_s * B);
+    if slenderness > MAX_SLENDERNESS { Err(DescriptionError::Slender(slenderness)) } else { Ok(frame) }
 }
 
 /// The base of `given` under mass of these moments m_s, S_1 and I_2.
@@ -337,9 +344,6 @@ fn body(given: &Given, [m_s, S_1, I_2]: [f64; 3]) -> Result<Body, DescriptionErr
     let (parameters, r) = given.base()?;
     parameters.check()?;
     let Parameters { m0, J0, B, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
-    if S_1 > MAX_SLENDERNESS * m_s * B {
-        return Err(DescriptionError::Slender(S_1 / (m_s * B)));
-    }
     Ok(Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y } })
 }
 
@@ -637,8 +641,8 @@ mod tests {
             "the shape of mode 1 has the effective mass 9.64566e3 kg with the masses of the floors, but mass = 9.77829e4 kg: \
              check the order of the floors and of the modes"
         );
-        let beyond = refused(|_, total| total.m_s = 100e3);
-        assert!(beyond.ends_with("kg of the m_s = 100000.0 kg above the foundation: check masses, heights and units"));
+        let tonnes = refused(|_, total| total.m_s = 110.0);
+        assert!(tonnes.ends_with("kg of the m_s = 110.0 kg above the foundation: check masses, heights and units"));
         assert!(
             refused(|_, total| total.I_2 = Some(5e6)).contains("of the I_2 = 5000000.0 kg·m² above the foundation")
         );
