@@ -349,6 +349,9 @@ fn body(given: &Given, [m_s, S_1, I_2]: [f64; 3]) -> Result<Body, DescriptionErr
 
 /// The modes of the frequencies `omegas` (rad/s) with these Γ and κ.
 fn modes(omegas: &[f64], damping: &Damping, participations: &[(f64, f64)]) -> Result<Vec<Mode>, DescriptionError> {
+    if omegas.len() > MOST_MODES {
+        return Err(FrameError::Modes(omegas.len()).into());
+    }
     for (number, omega) in (1..).zip(omegas) {
         F.check(omega / TAU).map_err(|cause| DescriptionError::At { what: "mode", number, cause })?;
     }
@@ -361,6 +364,7 @@ fn shown(floors: &[Place], shapes: &[DVector<f64>]) -> Vec<Floor> {
     let of_floor = |i: usize| Modes::new(&shapes.iter().map(|shape| shape[i]).collect::<Vec<_>>());
     floors.iter().enumerate().map(|(i, &Place { m, h })| Floor { mass: m, height: h, shape: of_floor(i) }).collect()
 }
+
 /// Checks that there are `least` floors or more, their numbers and their order.
 fn check_floors(floors: &[Place], least: usize) -> Result<(), DescriptionError> {
     if !(least..=MOST_FLOORS).contains(&floors.len()) {
@@ -659,6 +663,9 @@ mod tests {
         assert!(
             refused(|_, total| total.J_P = Some(1.0)).starts_with("I_2 (kg.m2) or J_P (kg.m2) is needed, and not both")
         );
+        let many = vec![found(&frame())[0].clone(); 25];
+        let many = Frame::from_modes(&usual(), &Damping::All(0.0), &many, None, &places());
+        assert_eq!(many, Err(FrameError::Modes(25).into()));
         let without_total = Frame::from_modes(&usual(), &Damping::All(0.0), &found(&frame())[..1], None, &[]);
         assert_eq!(without_total, Err(DescriptionError::NoTotal));
     }
