@@ -30,7 +30,7 @@ impl AnyLevel {
     /// The outputs in `phase`.
     #[inline]
     pub(crate) fn outputs(&self, phase: Phase, now: &Now) -> Outputs {
-        let strut = self.strut(phase, || self.accelerations(phase, now)[1]);
+        let strut = self.strut(phase, || self.accelerations(phase, now).theta_ddot);
         Outputs::at(&Instant { strut, ..Instant::of(self.structure(), phase, now.state, now.load) })
     }
 
