@@ -618,10 +618,10 @@ def test_the_sweep_on_dask_comes_to_the_same(tmp_path):
     command = [sys.executable, ROOT / "examples" / "fragility_dask.py"]
     printed = subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
     found = pd.read_csv(tmp_path / "fragility_dask.csv")
-    piers = [fr.Structure(preset="mcmanus", f_fc=f_fc) for f_fc in (2, 4, 8)]
+    piers = [fr.Structure(preset="mcmanus", f_fc=f_fc) for f_fc in np.geomspace(2, 8, 8)]
     expected = fr.sweep({"piers": piers}, {RECORD.name: fr.Record.read(RECORD, time_scale=0.2)}, scale=np.linspace(0.2, 2, 10))
     pd.testing.assert_frame_equal(found, expected, check_exact=True)
-    assert printed.startswith(f"{sum(expected['ending'] == 'overturned')} of 30 overturned")
+    assert printed.startswith(f"{sum(expected['ending'] == 'overturned')} of 80 overturned")
 
 
 def test_formats_read_back(tmp_path):
@@ -646,7 +646,7 @@ def test_formats_read_back(tmp_path):
             assert numbers(state) == (of.probability(levels).tolist() if levels else counted)
 
 
-@pytest.mark.parametrize("name", ["python", "choose_numbers"])
+@pytest.mark.parametrize("name", ["python", "choose_numbers", "questions"])
 def test_a_page_of_the_module_prints_what_it_shows(name, tmp_path, monkeypatch):
     """WRITE_PAGE=1 writes what is printed into it."""
     page = ROOT / "docs" / "howto" / f"{name}.md"
