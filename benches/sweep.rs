@@ -1,4 +1,4 @@
-//! What a sweep takes beside the engine: 300,000 trivial runs, three samples each, in which the structure stays in contact.
+//! The cost of a sweep beside the engine: 300,000 trivial runs, three samples each, in which the structure stays in contact.
 //! The least of some rounds, in which all ways take turns, on one thread, in µs per run.
 
 use rocking::Parameters;

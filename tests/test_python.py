@@ -624,6 +624,15 @@ def test_the_sweep_on_dask_comes_to_the_same(tmp_path):
     assert printed.startswith(f"{sum(expected['ending'] == 'overturned')} of 80 overturned")
 
 
+def test_the_sweep_on_ray_comes_to_the_same(tmp_path):
+    pytest.importorskip("ray")
+    (tmp_path / "out").mkdir()
+    shutil.copy(RECORD, tmp_path / "out")
+    for name in ("dask", "ray"):
+        subprocess.run([sys.executable, ROOT / "examples" / f"fragility_{name}.py"], cwd=tmp_path, check=True, capture_output=True)
+    assert (tmp_path / "fragility_ray.csv").read_text() == (tmp_path / "fragility_dask.csv").read_text()
+
+
 def test_formats_read_back(tmp_path):
     pulses = {f"{f} Hz": fr.pulse("sine", amplitude=0.5, frequency=f) for f in (1.0, 1.5, 2.0, 3.0)}
     runs = fr.sweep(fr.Structure(preset="mcmanus"), pulses, scale=np.linspace(0.2, 3, 15), intensity="S_a")
@@ -664,3 +673,23 @@ def test_a_page_of_the_module_prints_what_it_shows(name, tmp_path, monkeypatch):
     if os.environ.get("WRITE_PAGE"):
         page.write_text(shown, encoding="utf-8")
     assert shown == text
+
+
+def test_statistics_of_the_page_of_questions_are_those_of_statsmodels(tmp_path, monkeypatch):
+    stats, api = pytest.importorskip("scipy.stats"), pytest.importorskip("statsmodels.api")
+    text = (ROOT / "docs" / "howto" / "questions.md").read_text(encoding="utf-8")
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    monkeypatch.chdir(tmp_path)
+    of = {}
+    with contextlib.redirect_stdout(io.StringIO()):
+        exec("".join(re.findall(r"```py\n(.*?)```\n", text, re.DOTALL)), of)
+    printed = re.search(r"median    beta.*\n((?:.*\n)+?)```", text)[1].splitlines()
+    for line, name in zip(printed, of["measures"], strict=True):
+        values = of["target"][name]
+        deviation, _, median = stats.lognorm.fit(values, floc=0)
+        p = [api.OLS(np.log(values).to_numpy(), api.add_constant(other.to_numpy())).fit().pvalues[1] for other in of["others"].values()]
+        expected = [median, deviation * np.sqrt(len(values) / (len(values) - 1)), *p]
+        assert [float(number) for number in line.split()[-4:]] == pytest.approx(expected, abs=6e-4)
+    rotation = of["rotation"]["pier"]
+    assert (np.exp(-of["a"] / of["b"]), 1 / of["b"]) == pytest.approx((rotation.median, rotation.dispersion), rel=1e-5)
+    assert of["rate"] == pytest.approx(of["closed"], rel=1e-3)

@@ -37,13 +37,15 @@ def sweep(
     """Runs every structure under every record at every scale on all cores: a DataFrame with a row per run.
 
     structures: one, several, or populations by name, each one or several. records: one, several, or by name.
-    scale: factors on the accelerations. intensity: the measure for `fragility`, "PGA" (g), "PGV" (m/s), "S_a" (g, at the
-    structure's own f_fc and zeta_fc), "CAV" (m/s), "I_A" (m/s, Arias), "D_5_95" (s, significant duration) or "S_a_avg" (g, the
-    geometric mean of S_a at ten periods from 0.2/f_fc to 3/f_fc). Tables have a column for each; of S_a_avg, which takes the
-    longest, if it is the measure. detail, tolerance, duration and initial values: as in `simulate`.
+    scale: factors on the accelerations. detail, tolerance, duration and initial values: as in `simulate`.
     validity: whether the rows have how far each run exceeds the model's limits. threads: 0 is one per core.
-    progress: True shows runs, rate and time left, as a bar of tqdm if tqdm is installed; or a function of the numbers of runs
-    done and to do, called 20 times per second.
+
+    intensity: the measure for `fragility`, "PGA" (g), "PGV" (m/s), "S_a" (g, at the structure's own f_fc and zeta_fc), "CAV"
+    (m/s), "I_A" (m/s, Arias), "D_5_95" (s, significant duration) or "S_a_avg". S_a_avg (g) is the geometric mean of S_a at ten
+    periods, evenly spaced from 0.2/f_fc to 3/f_fc. The table has S_a_avg only if that is the measure, and always the others.
+
+    progress: True shows the runs, their rate and the time left: by tqdm, or without tqdm on one line. A function is called
+    with the numbers of runs done and to do, 20 times per second.
 
     The columns are those of `rocking-fmu sweep`: structures, parameters, record, scale, intensities, ending, peaks
     ("peak_theta[rad]", ...), transitions, ... A run that cannot go on is a row with the ending "failed" and a reason.
@@ -89,7 +91,7 @@ def _values(column: Any) -> Any:
 
 @contextmanager
 def _told(progress: "bool | Callable[[int, int], object]") -> "Iterator[Callable[[int, int], object] | None]":
-    """What is called with the numbers of runs done and to do."""
+    """The function that `sweep` calls with the numbers of runs done and to do."""
     if not isinstance(progress, bool):
         yield progress
     elif not progress:
@@ -186,8 +188,8 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, by: str | Non
 
     limit: "overturned", or a peak such as "theta/alpha_cg >= 0.5", "theta >= 3 deg", "uplift >= 1 cm", "a_t >= 0.3 g" (the
     structure's own g). A run that overturned has exceeded every limit. intensity: a measure of `sweep` or a column of the
-    table; by default the measure of the sweep. by: a column, such as "structures" or "f_fc[Hz]"; the result is then a dict with
-    the curve of each of its values. Runs that failed are not counted. How sure the curve
+    table; by default the measure of the sweep. by: a column, such as "structures" or "f_fc[Hz]". With by, the result is a dict
+    with the curve of each value of the column. Runs that failed are not counted. How sure the curve
     is follows from the records, whose runs do not depend on each other; where there is one record, from the structures.
     Several structures that `sweep` ran under one name are one population. Raises ValueError with the reason if there is no
     curve (never exceeded, always exceeded, no overlap). A table with several populations or conditions, with a run twice, with
@@ -253,9 +255,9 @@ def intensity_at(
     0.1 to 30 times g tan(alpha_cg). The structure runs at all of them under each record. Between the first stripe that reaches
     the limit and the one below, bisection finds the scale to `accuracy`, relative. options: as in `sweep`, but for path.
 
-    Returns a DataFrame with a row per record: that of `sweep` at the weakest scale found that reaches the limit, and `note`. The
-    note is empty, or says why there is no such scale, in which case the numbers are NaN, or at which stronger stripes the
-    structure stays within the limit again, or which stripes below are unknown because runs failed or still rock.
+    Returns a DataFrame with a row per record: the row of `sweep` at the weakest scale found that reaches the limit, and `note`.
+    The numbers are NaN if there is no such scale, and the note then says why. Otherwise the note names the stronger stripes at
+    which the structure stays within the limit again. It also names weaker stripes whose runs failed or still rock.
     """
     import numpy as np
 

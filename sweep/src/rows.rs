@@ -32,7 +32,7 @@ pub struct Sweep<'a> {
     validity: bool,
     /// Of every run, what stands for all that the run depends on.
     keys: Vec<Uuid>,
-    /// What stands for the samples of each ground motion, whatever its file is called.
+    /// Digest of the samples of each ground motion, whatever its file is called.
     digests: Vec<String>,
     done: Vec<OnceLock<Done>>,
     file: Option<RowFile>,
@@ -197,7 +197,7 @@ impl Column {
         Column::Counts(Vec::with_capacity(rows))
     }
 
-    /// Adds the value of the next row. What the column is of follows from its values.
+    /// Adds the value of the next row. The values decide whether the column has counts, numbers or texts.
     fn push(&mut self, cell: Cell) {
         match (&mut *self, cell) {
             (Column::Counts(of), Cell::Count(count)) => of.push(count),
