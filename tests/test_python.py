@@ -683,7 +683,7 @@ def test_statistics_of_the_page_of_questions_are_those_of_statsmodels(tmp_path, 
     of = {}
     with contextlib.redirect_stdout(io.StringIO()):
         exec("".join(re.findall(r"```py\n(.*?)```\n", text, re.DOTALL)), of)
-    printed = re.search(r"median    beta.*\n((?:.*\n)+?)```", text)[1].splitlines()
+    printed = re.search(r"\n +median    beta.*\n((?:.*\n)+?)```", text)[1].splitlines()
     for line, name in zip(printed, of["measures"], strict=True):
         values = of["target"][name]
         deviation, _, median = stats.lognorm.fit(values, floc=0)
