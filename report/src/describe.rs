@@ -44,11 +44,7 @@ pub fn frame(frame: &Frame) -> Result<String, fmt::Error> {
     let [mass, first, second] = frame.rest();
     let part = |rest: f64, whole: f64| format!("{:.2} %", 100.0 * (1.0 - rest / whole));
     let [mass, first, second] = [part(mass, m_s), part(first, S_1), part(second, I_2)];
-    writeln!(
-        out,
-        "  {} modes carry {mass} of m_s, {first} of S_1, {second} of I_2; the rest turns with the base",
-        frame.modes().len()
-    )?;
+    writeln!(out, "  the modes carry {mass} of m_s, {first} of S_1, {second} of I_2; the rest turns with the base")?;
     writeln!(out, "\nModes of vibration: f_u is the frequency while the structure rocks, share a part of m_s")?;
     write!(out, "  mode")?;
     for Derived { name, unit, .. } in &OF_MODE {
