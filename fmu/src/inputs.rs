@@ -83,27 +83,29 @@ impl Inputs {
     /// Sets the value of the input `which` of [`LOADS`].
     #[inline]
     pub(crate) fn set(&mut self, which: usize, value: f64) {
-        let Inputs { between, next, set, given, followed, before: (before, ago), ended_early, .. } = self;
-        let given = &mut given[which];
-        set[which] = value;
-        if *given == Given::Slope {
-            next.value[which] = value;
-            return;
+        self.set[which] = value;
+        let mut acts = value;
+        if self.given[which] != Given::Slope {
+            self.given[which] = Given::Value;
+            (acts, self.next.slope[which]) = match self.between[which] {
+                Between::Held => (value, 0.0),
+                Between::Late => return,
+                Between::Extrapolated => self.extrapolated(which, value),
+            };
         }
-        *given = Given::Value;
-        let (value, slope) = match between[which] {
-            Between::Late => return,
-            Between::Held => (value, 0.0),
-            Between::Extrapolated if *ended_early && value == before[which] => {
-                *given = Given::Nothing;
-                (followed.value[which], followed.slope[which])
-            }
-            Between::Extrapolated => {
-                let slope = (value - before[which]) / *ago;
-                (value, if slope.is_finite() { slope } else { 0.0 })
-            }
-        };
-        (next.value[which], next.slope[which]) = (value, slope);
+        self.next.value[which] = acts;
+    }
+
+    /// The value that acts and its slope where `value` alone is set of an input that goes on.
+    #[inline]
+    fn extrapolated(&mut self, which: usize, value: f64) -> (f64, f64) {
+        let Inputs { given, followed, before: (before, ago), ended_early, .. } = self;
+        if *ended_early && value == before[which] {
+            given[which] = Given::Nothing;
+            return (followed.value[which], followed.slope[which]);
+        }
+        let slope = (value - before[which]) / *ago;
+        (value, if slope.is_finite() { slope } else { 0.0 })
     }
 
     /// Sets the slope of an input over the next step, from what has been set of it or else from what acts.
@@ -135,10 +137,12 @@ impl Inputs {
     /// if its line would lead out of its range.
     #[inline]
     pub(crate) fn over(&self, duration: f64) -> LinearLoad {
+        if self.between == HELD { self.next } else { self.lines(duration) }
+    }
+
+    #[inline(never)]
+    fn lines(&self, duration: f64) -> LinearLoad {
         let mut load = self.next;
-        if self.between == HELD {
-            return load;
-        }
         for (which, between) in self.between.into_iter().enumerate() {
             if between == Between::Held || self.given[which] == Given::Slope {
                 continue;
@@ -178,21 +182,28 @@ impl Inputs {
             self.before = (load.value, 0.0);
         }
         self.before.1 += duration;
-        let (value, set) = (load.at(duration), self.set);
+        let value = load.at(duration);
         let slope = if ended_early { load.slope } else { Load::default() };
-        (self.next, self.set, self.ended_early) = (LinearLoad { value, slope }, value, ended_early);
-        if self.between != HELD {
-            for which in 0..LOADS.len() {
-                if self.acts_at_once(which) {
-                    continue;
-                }
-                self.set[which] = set[which];
-                if !ended_early {
-                    self.next.value[which] = set[which]; // whatever the rounding
-                }
-            }
+        (self.next, self.ended_early) = (LinearLoad { value, slope }, ended_early);
+        if self.between == HELD {
+            self.set = value;
+        } else {
+            self.arrive();
         }
         self.followed = LinearLoad { value: self.next.value, slope: load.slope };
         self.given = [Given::Nothing; LOADS.len()];
+    }
+
+    /// Sets the inputs that act at once to where they have come. Those that act late have come to where they are set, whatever
+    /// the rounding, unless the step has ended early.
+    #[inline(never)]
+    fn arrive(&mut self) {
+        for which in 0..LOADS.len() {
+            if self.acts_at_once(which) {
+                self.set[which] = self.next.value[which];
+            } else if !self.ended_early {
+                self.next.value[which] = self.set[which];
+            }
+        }
     }
 }

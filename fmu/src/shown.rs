@@ -9,7 +9,7 @@ use std::cell::OnceCell;
 /// The values of a scene under a load.
 pub(crate) struct Shown<'a> {
     scene: &'a Scene,
-    setup: &'a Setup,
+    pub setup: &'a Setup,
     load: Load,
     /// The outputs.
     pub outputs: Outputs,
@@ -55,7 +55,6 @@ impl<'a> Shown<'a> {
     }
 
     /// The value of a Real from `source`, if it is one that is computed.
-    #[inline(never)]
     pub fn value(&self, source: Source) -> Option<f64> {
         let Shown { scene, setup, load, .. } = *self;
         Some(match source {

@@ -108,11 +108,18 @@ impl Unit {
         Ok(())
     }
 
-    /// Whether one of `values` moves the ground vertically.
+    /// Whether one of `values` moves the ground vertically, which did not move so before.
     #[inline]
-    fn is_vertical(&self, references: &[u32], values: &[f64]) -> bool {
-        references.iter().zip(values).any(|(reference, value)| *reference == VERTICAL as u32 && *value != 0.0)
+    fn is_new(&self, references: &[u32], values: &[f64]) -> bool {
+        let is_vertical = |(reference, value): (&u32, &f64)| *reference == VERTICAL as u32 && *value != 0.0;
+        !self.setup.vertical && references.iter().zip(values).any(is_vertical)
     }
+}
+
+/// The value of a real number that is no output.
+#[inline(never)]
+fn other(shown: &Shown, inputs: &Inputs, source: Source) -> f64 {
+    shown.value(source).unwrap_or_else(|| setting(shown.setup, inputs, source))
 }
 
 /// The value of a real number that the host sets.
@@ -174,7 +181,7 @@ impl Model for Unit {
         for (reference, value) in references.iter().zip(values) {
             *value = match sources[*reference as usize] {
                 Source::Output(of) => of(&shown.outputs),
-                source => shown.value(source).unwrap_or_else(|| setting(setup, inputs, source)),
+                source => other(&shown, inputs, source),
             };
         }
         match shown.unsolved(references, sources) {
@@ -196,8 +203,9 @@ impl Model for Unit {
 
     #[inline]
     fn set_inputs(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
-        if self.is_vertical(references, values) {
+        if self.is_new(references, values) {
             self.admit_vertical()?;
+            return self.set_inputs(references, values);
         }
         references.iter().zip(values).for_each(|(reference, value)| self.inputs.set(*reference as usize, *value));
         Ok(())
@@ -205,15 +213,16 @@ impl Model for Unit {
 
     #[inline]
     fn set_slopes(&mut self, references: &[u32], slopes: &[f64]) -> Result<(), Failure> {
-        if self.is_vertical(references, slopes) {
+        if self.is_new(references, slopes) {
             self.admit_vertical()?;
+            return self.set_slopes(references, slopes);
         }
         references.iter().zip(slopes).for_each(|(reference, slope)| self.inputs.set_slope(*reference as usize, *slope));
         Ok(())
     }
 
     fn lead(&mut self, reference: u32, value: f64, step: f64) -> Result<(), Failure> {
-        if self.is_vertical(&[reference], &[value]) {
+        if self.is_new(&[reference], &[value]) {
             self.admit_vertical()?;
         }
         self.inputs.lead(reference as usize, value, step);
@@ -255,7 +264,7 @@ impl Model for Unit {
 
     #[inline]
     fn time(&mut self) -> Result<f64, Failure> {
-        Ok(self.scene()?.engine.motion().time)
+        Ok(self.scene.as_ref().map_or(self.setup.start_time, |scene| scene.engine.motion().time))
     }
 
     fn advance(&mut self, step: Step, logger: &Logger) -> Result<Progress, Failure> {
@@ -279,9 +288,10 @@ impl Model for Unit {
             Refusal::from(error)
         })?;
         let reached = scene.engine.motion().time;
-        let passed = if reached == point + step { step } else { reached - point };
+        let ended_early = reached < point + step;
+        let passed = if ended_early { reached - point } else { step };
         if passed > 0.0 {
-            inputs.pass(load, passed, reached < point + step);
+            inputs.pass(load, passed, ended_early);
         }
         known.iter().for_each(|known| warn(logger, known, &scene.validity));
         if inputs.makes_stairs() && !self.told_of_stairs {

@@ -156,9 +156,7 @@ pub(crate) unsafe fn free<F: Function>(c: *mut c_void) {
 #[inline]
 unsafe fn component<'a, F: Function>(c: *mut c_void) -> Option<&'a Component<F>> {
     let c = c.cast::<Component<F>>();
-    if c.is_null() || !c.is_aligned() {
-        return None;
-    }
+    check_pointer("component", c).ok()?;
     // The magic number is read alone first: if it is wrong, the rest is no component.
     let magic = unsafe { (&raw const (*c).magic).cast::<u64>().read() };
     if magic == F::MAGIC { Some(unsafe { &*c }) } else { None }
@@ -208,29 +206,43 @@ unsafe fn call_in<F: Function>(
     let instance = unsafe { &mut *component.instance.get() };
     let guarded = || {
         let (stage, stages) = (instance.stage(), allowed(component.allowed_in));
-        let refused = || Err(Failure::WrongStage { stage, allowed_in: names(stages) });
-        let result = if stage.bit() & stages != 0 { body(instance) } else { refused() };
-        result.map_or_else(|failure| report(instance, function, &failure), |()| Status::Ok)
+        let result = if stage.bit() & stages != 0 { body(instance) } else { Err(wrong_stage(stage, stages)) };
+        result.map_or_else(|failure| report(instance, function, failure), |()| Status::Ok)
     };
-    let (status, availability) = match catch_unwind(AssertUnwindSafe(guarded)) {
-        Ok(status) => (status, READY),
-        Err(panic) => {
-            let failure = Failure::Panicked(panic_message(&*panic).to_owned());
-            // The logger may panic, too; the status is known without it.
-            let _ = catch_unwind(AssertUnwindSafe(|| report(instance, function, &failure)));
-            (Status::Fatal, BROKEN)
+    match catch_unwind(AssertUnwindSafe(guarded)) {
+        Ok(status) => {
+            component.availability.store(READY, Ordering::Release);
+            status as c_int
         }
-    };
-    component.availability.store(availability, Ordering::Release);
-    status as c_int
+        Err(panic) => {
+            broken(instance, function, panic);
+            component.availability.store(BROKEN, Ordering::Release);
+            Status::Fatal as c_int
+        }
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn wrong_stage(stage: Stage, stages: Stages) -> Failure {
+    Failure::WrongStage { stage, allowed_in: names(stages) }
 }
 
 /// Logs why `function` is not done, and returns its status.
 #[cold]
 #[inline(never)]
-fn report<F: Function>(instance: &Instance, function: F, failure: &Failure) -> Status {
-    instance.logger.failure(failure.status(), &format!("{}: {failure}{}", function.name(), F::WORDS.remedy(failure)));
+fn report<F: Function>(instance: &Instance, function: F, failure: Failure) -> Status {
+    instance.logger.failure(failure.status(), &format!("{}: {failure}{}", function.name(), F::WORDS.remedy(&failure)));
     failure.status()
+}
+
+/// Logs that `function` has panicked.
+#[cold]
+#[inline(never)]
+fn broken<F: Function>(instance: &Instance, function: F, panic: Box<dyn Any + Send>) {
+    let failure = Failure::Panicked(panic_message(&*panic).to_owned());
+    // The logger may panic, too; the status is known without it.
+    let _ = catch_unwind(AssertUnwindSafe(|| report(instance, function, failure)));
 }
 
 fn panic_message(panic: &(dyn Any + Send)) -> &str {
@@ -244,12 +256,7 @@ fn panic_message(panic: &(dyn Any + Send)) -> &str {
 /// The `length` values at `pointer`.
 #[inline]
 pub(crate) unsafe fn values<'a, T>(name: &'static str, pointer: *const T, length: size_t) -> Result<&'a [T], Failure> {
-    check_length(length)?;
-    if length == 0 {
-        return Ok(&[]);
-    }
-    check_pointer(name, pointer)?;
-    Ok(unsafe { slice::from_raw_parts(pointer, length) })
+    Ok(unsafe { slice::from_raw_parts(start(name, pointer.cast_mut(), length)?, length) })
 }
 
 /// Room for `length` values at `pointer`.
@@ -259,12 +266,19 @@ pub(crate) unsafe fn room<'a, T>(
     pointer: *mut T,
     length: size_t,
 ) -> Result<&'a mut [MaybeUninit<T>], Failure> {
-    check_length(length)?;
+    Ok(unsafe { slice::from_raw_parts_mut(start(name, pointer, length)?.cast(), length) })
+}
+
+/// The start of `length` values at `pointer`; where there are none, the pointer may be anything.
+#[inline]
+fn start<T>(name: &'static str, pointer: *mut T, length: size_t) -> Result<*mut T, Failure> {
     if length == 0 {
-        return Ok(&mut []);
+        return Ok(ptr::dangling_mut());
     }
-    check_pointer(name, pointer)?;
-    Ok(unsafe { slice::from_raw_parts_mut(pointer.cast(), length) })
+    if length > MAX_LENGTH {
+        return Err(too_long(length));
+    }
+    check_pointer(name, pointer).map(|()| pointer)
 }
 
 /// The `needed` numbers at `pointer`, of which `count`, the argument `of`, has to say that they are as many.
@@ -286,9 +300,15 @@ pub(crate) unsafe fn write_all(
     numbers: Vec<f64>,
 ) -> Result<(), Failure> {
     check_count(of, count, numbers.len())?;
-    let places = unsafe { room(name, pointer, count) }?;
-    places.iter_mut().zip(numbers).for_each(|(place, number)| _ = place.write(number));
+    fill(unsafe { room(name, pointer, count) }?, &numbers);
     Ok(())
+}
+
+/// Writes `numbers` to `places`, of which there are as many.
+#[inline]
+pub(crate) fn fill(places: &mut [MaybeUninit<f64>], numbers: &[f64]) {
+    assert_eq!(places.len(), numbers.len());
+    unsafe { ptr::copy_nonoverlapping(numbers.as_ptr(), places.as_mut_ptr().cast(), numbers.len()) };
 }
 
 /// Refuses a number of values, given as `name`, that is not the right one.
@@ -310,13 +330,21 @@ pub(crate) unsafe fn write<T>(name: &'static str, pointer: *mut T, value: T) -> 
 }
 
 #[inline]
-fn check_length(length: size_t) -> Result<(), Failure> {
-    if length > MAX_LENGTH { Err(Failure::TooLong { length, limit: MAX_LENGTH }) } else { Ok(()) }
+pub(crate) fn check_pointer<T>(name: &'static str, pointer: *const T) -> Result<(), Failure> {
+    if pointer.is_null() {
+        return Err(bad_pointer(name));
+    }
+    if pointer.is_aligned() { Ok(()) } else { Err(bad_pointer(name)) }
 }
 
-#[inline]
-pub(crate) fn check_pointer<T>(name: &'static str, pointer: *const T) -> Result<(), Failure> {
-    if pointer.is_null() || !pointer.is_aligned() { Err(Failure::BadPointer(name)) } else { Ok(()) }
+#[cold]
+fn bad_pointer(name: &'static str) -> Failure {
+    Failure::BadPointer(name)
+}
+
+#[cold]
+fn too_long(length: size_t) -> Failure {
+    Failure::TooLong { length, limit: MAX_LENGTH }
 }
 
 /// The text at `pointer`.

@@ -5,7 +5,7 @@
 mod stages;
 
 use crate::c_abi::{
-    self, Words, check_pointer, complete_step, escaped, free_state, functions, keep_state, names_events, read_all,
+    self, Words, check_pointer, complete_step, escaped, fill, free_state, functions, keep_state, names_events, read_all,
     read_state, room, text, values, write, write_all, write_state, write_state_size,
 };
 use crate::failure::Failure;
@@ -197,7 +197,9 @@ functions! {
     fmi2Reset = Reset() |instance| { instance.reset() }
 
     fmi2GetReal = GetReal(vr: *const c_uint, nvr: size_t, value: *mut c_double) |instance| {
-        instance.get_real(values("vr", vr, nvr)?, room("value", value, nvr)?)
+        let (references, places) = (values("vr", vr, nvr)?, room("value", value, nvr)?);
+        fill(places, instance.get_real(references)?);
+        Ok(())
     }
 
     fmi2GetInteger = GetInteger(vr: *const c_uint, nvr: size_t, value: *mut c_int) |instance| {
@@ -281,10 +283,8 @@ functions! {
     fmi2DoStep = DoStep(
         currentCommunicationPoint: c_double, communicationStepSize: c_double, _noSetFMUStatePriorToCurrentPoint: c_int,
     ) |instance| {
-        match instance.do_step(currentCommunicationPoint, communicationStepSize)? {
-            Progress::Ended => instance.ending()?.map_or(Ok(()), Err),
-            Progress::Complete | Progress::Event => Ok(()),
-        }
+        let progress = instance.do_step(currentCommunicationPoint, communicationStepSize)?;
+        if progress == Progress::Ended { instance.ending()?.map_or(Ok(()), Err) } else { Ok(()) }
     }
 
     /// Never allowed: no step is ever pending.

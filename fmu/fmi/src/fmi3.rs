@@ -10,7 +10,7 @@
 mod stages;
 
 use crate::c_abi::{
-    self, Words, call, call_back, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions,
+    self, Words, call, call_back, call_on, check_count, check_pointer, complete_step, escaped, fill, free_state, functions,
     keep_state, names_events, read_all, read_state, room, text, values, write, write_all, write_state,
     write_state_size,
 };
@@ -282,7 +282,9 @@ functions! {
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut f64, nValues: size_t,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
-        instance.get_real(references, room("values", value, nValues)?)
+        let places = room("values", value, nValues)?;
+        fill(places, instance.get_real(references)?);
+        Ok(())
     }
 
     fmi3GetInt32 = GetInt32(

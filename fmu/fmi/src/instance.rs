@@ -16,18 +16,12 @@ use std::sync::Arc;
 /// How close two times that mean the same are, in parts of the step, or in units in the last place if that is more.
 const SAME_TIME: (f64, f64) = (1e-4, 8.0);
 
-/// The variable is a real number.
-const REAL: u8 = 1;
-
-/// The variable is an input.
-const INPUT: u8 = 2;
-
 /// One instance.
 pub struct Instance {
     /// The model, for what needs no check but that of the stage.
     pub(crate) model: Box<dyn Model>,
     variables: Arc<[Variable]>,
-    /// The variables' limits as inputs and their kinds, packed for the calls of every step.
+    /// The part of each variable that the calls of every step ask for.
     kinds: Vec<Kind>,
     interface: Interface,
     stage: Stage,
@@ -49,18 +43,19 @@ pub struct Instance {
     led_to: Option<Stage>,
 }
 
-#[derive(Clone, Copy)]
 struct Kind {
-    is: u8,
+    is_real: bool,
+    /// The range of an input. No number is in that of other variables.
     min: f64,
     max: f64,
 }
 
 impl From<&Variable> for Kind {
     fn from(variable: &Variable) -> Kind {
-        let Some((min, max)) = variable.data_type.limits() else { return Kind { is: 0, min: 0.0, max: 0.0 } };
-        let is = if variable.causality == Causality::Input { REAL | INPUT } else { REAL };
-        Kind { is, min, max }
+        let limits = variable.data_type.limits();
+        let of_input = limits.filter(|_| variable.causality == Causality::Input);
+        let (min, max) = of_input.unwrap_or((f64::INFINITY, f64::NEG_INFINITY));
+        Kind { is_real: limits.is_some(), min, max }
     }
 }
 
@@ -228,18 +223,25 @@ impl Instance {
 impl Instance {
     /// Reads real numbers.
     #[inline(always)]
-    pub(crate) fn get_real(&mut self, references: &[u32], values: &mut [MaybeUninit<f64>]) -> Result<(), Failure> {
-        let is_real = |reference: &u32| self.kinds.get(*reference as usize).is_some_and(|kind| kind.is & REAL != 0);
-        if let Some(wrong) = references.iter().find(|reference| !is_real(reference)) {
-            return Err(self.find(*wrong).map_or_else(|failure| failure, Failure::wrong_type));
+    pub(crate) fn get_real(&mut self, references: &[u32]) -> Result<&[f64], Failure> {
+        let is_real = |reference: &u32| self.kinds.get(*reference as usize).is_some_and(|kind| kind.is_real);
+        if !references.iter().all(is_real) {
+            return Err(self.not_real(references));
         }
         if self.reals.len() < references.len() {
             self.reals.resize(references.len(), 0.0);
         }
         let reals = &mut self.reals[..references.len()];
         self.model.get_reals(references, reals)?;
-        values.iter_mut().zip(reals).for_each(|(place, value)| _ = place.write(*value));
-        Ok(())
+        Ok(reals)
+    }
+
+    #[cold]
+    fn not_real(&self, references: &[u32]) -> Failure {
+        let is_real = |variable: &&Variable| matches!(variable.data_type, DataType::Real { .. });
+        let mut found = references.iter().map(|reference| self.find(*reference));
+        let wrong = found.find(|variable| variable.as_ref().ok().is_none_or(|variable| !is_real(variable)));
+        wrong.expect("one is wrong").map_or_else(|failure| failure, Failure::wrong_type)
     }
 
     /// Reads what is no real number, of the types that are `of_type`.
@@ -296,7 +298,7 @@ impl Instance {
     pub(crate) fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
         let is_fit = |(reference, value): (&u32, &f64)| {
             let kind = self.kinds.get(*reference as usize);
-            kind.is_some_and(|kind| kind.is & INPUT != 0 && *value >= kind.min && *value <= kind.max)
+            kind.is_some_and(|kind| *value >= kind.min && *value <= kind.max)
         };
         if self.asked.is_none() && references.iter().zip(values).all(is_fit) {
             return self.model.set_inputs(references, values);
@@ -432,7 +434,7 @@ impl Instance {
         values: &[f64],
     ) -> Result<(), Failure> {
         for ((reference, &order), &value) in references.iter().zip(orders).zip(values) {
-            let is_input = self.kinds.get(*reference as usize).is_some_and(|kind| kind.is & INPUT != 0);
+            let is_input = self.kinds.get(*reference as usize).is_some_and(|kind| kind.min <= kind.max);
             if !(is_input && order == 1 && value.is_finite()) {
                 return Err(self.no_slope(*reference, order, value));
             }
@@ -540,13 +542,12 @@ impl Instance {
         self.check_step(point, step)?;
         let stops_at_events = self.interface.stepping().hands_over();
         let step = Step { start: point, duration: step, stops_at_events };
-        match self.model.advance(step, &self.logger) {
-            Ok(Progress::Ended) => {
-                self.stage = Stage::StepFailed;
-                Ok(Progress::Ended)
-            }
-            result => self.stop_if_stuck(result),
+        let progress = self.model.advance(step, &self.logger);
+        let progress = self.stop_if_stuck(progress)?;
+        if progress == Progress::Ended {
+            self.stage = Stage::StepFailed;
         }
+        Ok(progress)
     }
 
     /// If the host reads outputs within steps, returns how to call it back, which comes before [`Instance::end_step`].
