@@ -16,15 +16,14 @@ pub(crate) enum Between {
     Extrapolated,
 }
 
-/// All of them held: nothing else is asked then.
-const HELD: [Between; LOADS.len()] = [Between::Held; LOADS.len()];
-
 /// The inputs. A slope is followed for one step, after which the value that it led to is held; a step that ended early
 /// goes on where it ended, along the same lines.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Inputs {
     /// How they act, in the order of [`LOADS`].
     between: [Between; LOADS.len()],
+    /// Whether some are not held, so that more than that is asked.
+    is_any_led: bool,
     /// The inputs that act now, and the slopes of the next step, except for late ones.
     next: LinearLoad,
     /// The values that the host has set, or that the last step led to.
@@ -77,7 +76,7 @@ impl Inputs {
 
     /// Makes the inputs act as `between` says. Until then, and where no steps are made, they act at once.
     pub(crate) fn start(&mut self, between: [Between; LOADS.len()]) {
-        self.between = between;
+        (self.between, self.is_any_led) = (between, between != [Between::Held; LOADS.len()]);
     }
 
     /// Sets the value of the input `which` of [`LOADS`].
@@ -97,7 +96,7 @@ impl Inputs {
     }
 
     /// The value that acts and its slope where `value` alone is set of an input that goes on.
-    #[inline]
+    #[inline(never)]
     fn extrapolated(&mut self, which: usize, value: f64) -> (f64, f64) {
         let Inputs { given, followed, before: (before, ago), ended_early, .. } = self;
         if *ended_early && value == before[which] {
@@ -137,7 +136,7 @@ impl Inputs {
     /// if its line would lead out of its range.
     #[inline]
     pub(crate) fn over(&self, duration: f64) -> LinearLoad {
-        if self.between == HELD { self.next } else { self.lines(duration) }
+        if self.is_any_led { self.lines(duration) } else { self.next }
     }
 
     #[inline(never)]
@@ -169,10 +168,10 @@ impl Inputs {
         load
     }
 
-    /// Goes on after `duration` (s) of a step that followed `load`, and that ended early or at the next communication
-    /// point.
+    /// Goes on after `duration` (s) of a step that followed `load` to `value`, and that ended early or at the next
+    /// communication point.
     #[inline]
-    pub(crate) fn pass(&mut self, load: LinearLoad, duration: f64, ended_early: bool) {
+    pub(crate) fn pass(&mut self, load: LinearLoad, duration: f64, value: Load, ended_early: bool) {
         if !self.ended_early {
             let is_stair = [0, VERTICAL].into_iter().any(|which| {
                 let is_held = self.given[which] == Given::Value && self.between[which] == Between::Held;
@@ -182,15 +181,14 @@ impl Inputs {
             self.before = (load.value, 0.0);
         }
         self.before.1 += duration;
-        let value = load.at(duration);
         let slope = if ended_early { load.slope } else { Load::default() };
         (self.next, self.ended_early) = (LinearLoad { value, slope }, ended_early);
-        if self.between == HELD {
-            self.set = value;
-        } else {
+        if self.is_any_led {
             self.arrive();
+        } else {
+            self.set = value;
         }
-        self.followed = LinearLoad { value: self.next.value, slope: load.slope };
+        (self.followed.value, self.followed.slope) = (self.next.value, load.slope);
         self.given = [Given::Nothing; LOADS.len()];
     }
 

@@ -108,15 +108,14 @@ impl Unit {
         Ok(())
     }
 
-    /// Whether one of `values` moves the ground vertically, which did not move so before.
+    /// Whether one of `values` moves the ground vertically.
     #[inline]
-    fn is_new(&self, references: &[u32], values: &[f64]) -> bool {
-        let is_vertical = |(reference, value): (&u32, &f64)| *reference == VERTICAL as u32 && *value != 0.0;
-        !self.setup.vertical && references.iter().zip(values).any(is_vertical)
+    fn is_vertical(&self, references: &[u32], values: &[f64]) -> bool {
+        references.iter().zip(values).any(|(reference, value)| *reference == VERTICAL as u32 && *value != 0.0)
     }
 }
 
-/// The value of a real number that is no output.
+/// The value of a real number that is no output: one that is `shown`, or set.
 #[inline(never)]
 fn other(shown: &Shown, inputs: &Inputs, source: Source) -> f64 {
     shown.value(source).unwrap_or_else(|| setting(shown.setup, inputs, source))
@@ -165,6 +164,7 @@ impl Model for Unit {
         })
     }
 
+    #[inline(always)]
     fn get_reals(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Failure> {
         if self.scene.is_none() {
             let is_set = |reference: &u32| self.table.sources[*reference as usize].is_set();
@@ -176,21 +176,21 @@ impl Model for Unit {
         let Unit { table: Table { sources, .. }, setup, inputs, scene: Some(scene), .. } = self else {
             unreachable!("it is built")
         };
-        let shown = Shown::new(scene, setup, scene.load(setup, inputs.values().into()).value);
-        let sources: &[Source] = sources;
+        let load = scene.load(setup, inputs.values().into()).value;
+        let outputs = scene.engine.outputs(load);
+        let (mut shown, sources): (_, &[Source]) = (None, sources);
         for (reference, value) in references.iter().zip(values) {
             *value = match sources[*reference as usize] {
-                Source::Output(of) => of(&shown.outputs),
-                source => other(&shown, inputs, source),
+                Source::Output(of) => of(&outputs),
+                source => {
+                    let shown = shown.get_or_insert_with(|| Shown::new(scene, setup, load, &outputs));
+                    other(shown, inputs, source)
+                }
             };
         }
-        match shown.unsolved(references, sources) {
-            Some(reference) => {
-                let time = scene.engine.motion().time;
-                Err(Refusal::NoReaction { name: self.name(reference), time }.into())
-            }
-            None => Ok(()),
-        }
+        let Some(shown) = shown else { return Ok(()) };
+        let Some(reference) = shown.unsolved(references, sources) else { return Ok(()) };
+        Err(Refusal::NoReaction { name: self.name(reference), time: self.time()? }.into())
     }
 
     fn set(&mut self, reference: u32, value: Value) {
@@ -201,28 +201,26 @@ impl Model for Unit {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn set_inputs(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
-        if self.is_new(references, values) {
+        if self.is_vertical(references, values) {
             self.admit_vertical()?;
-            return self.set_inputs(references, values);
         }
         references.iter().zip(values).for_each(|(reference, value)| self.inputs.set(*reference as usize, *value));
         Ok(())
     }
 
-    #[inline]
+    #[inline(always)]
     fn set_slopes(&mut self, references: &[u32], slopes: &[f64]) -> Result<(), Failure> {
-        if self.is_new(references, slopes) {
+        if self.is_vertical(references, slopes) {
             self.admit_vertical()?;
-            return self.set_slopes(references, slopes);
         }
         references.iter().zip(slopes).for_each(|(reference, slope)| self.inputs.set_slope(*reference as usize, *slope));
         Ok(())
     }
 
     fn lead(&mut self, reference: u32, value: f64, step: f64) -> Result<(), Failure> {
-        if self.is_new(&[reference], &[value]) {
+        if self.is_vertical(&[reference], &[value]) {
             self.admit_vertical()?;
         }
         self.inputs.lead(reference as usize, value, step);
@@ -267,11 +265,13 @@ impl Model for Unit {
         Ok(self.scene.as_ref().map_or(self.setup.start_time, |scene| scene.engine.motion().time))
     }
 
+    #[inline(always)]
     fn advance(&mut self, step: Step, logger: &Logger) -> Result<Progress, Failure> {
         let Step { start: point, duration: step, stops_at_events: stops } = step;
         let (scene, setup, inputs) = self.parts()?;
         let load = inputs.over(step);
-        load.at(step).check().map_err(Refusal::InputRunsOut)?;
+        let end = load.at(step);
+        end.check().map_err(Refusal::InputRunsOut)?;
 
         let time = scene.engine.motion().time;
         scene.engine.set_time(point);
@@ -289,9 +289,10 @@ impl Model for Unit {
         })?;
         let reached = scene.engine.motion().time;
         let ended_early = reached < point + step;
-        let passed = if ended_early { reached - point } else { step };
-        if passed > 0.0 {
-            inputs.pass(load, passed, ended_early);
+        if !ended_early {
+            inputs.pass(load, step, end, false);
+        } else if reached > point {
+            inputs.pass(load, reached - point, load.at(reached - point), true);
         }
         known.iter().for_each(|known| warn(logger, known, &scene.validity));
         if inputs.makes_stairs() && !self.told_of_stairs {

@@ -5,8 +5,8 @@
 mod stages;
 
 use crate::c_abi::{
-    self, Words, check_pointer, complete_step, escaped, fill, free_state, functions, keep_state, names_events, read_all,
-    read_state, room, text, values, write, write_all, write_state, write_state_size,
+    self, Words, check_pointer, complete_step, escaped, fill, free_state, functions, keep_state, names_events,
+    read_all, read_state, room, text, values, write, write_all, write_state, write_state_size,
 };
 use crate::failure::Failure;
 use crate::instance::Instance;
@@ -60,18 +60,6 @@ pub struct EventInfo {
     pub next_event_time: c_double,
 }
 
-/// `fmi2GetTypesPlatform`
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2GetTypesPlatform() -> *const c_char {
-    c"default".as_ptr()
-}
-
-/// `fmi2GetVersion`
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2GetVersion() -> *const c_char {
-    c"2.0".as_ptr()
-}
-
 /// `fmi2Instantiate` of the model `M`
 pub unsafe fn instantiate<M: Model>(
     instanceName: *const c_char,
@@ -79,6 +67,7 @@ pub unsafe fn instantiate<M: Model>(
     fmuGUID: *const c_char,
     fmuResourceLocation: *const c_char,
     functions: *const CallbackFunctions,
+    _visible: c_int,
     loggingOn: c_int,
 ) -> *mut c_void {
     let create = || {
@@ -116,7 +105,7 @@ pub unsafe fn instantiate<M: Model>(
             }
         }
     };
-    c_abi::instantiate::<Function>(create)
+    c_abi::instantiate::<Function, M>(create)
 }
 
 fn sink(functions: &CallbackFunctions, instance_name: &str) -> Sink {
@@ -129,10 +118,9 @@ fn sink(functions: &CallbackFunctions, instance_name: &str) -> Sink {
     })
 }
 
-/// `fmi2FreeInstance`. Ignored for null, and while a call is under way, as from within the logger.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2FreeInstance(c: *mut c_void) {
-    unsafe { c_abi::free::<Function>(c) }
+/// `fmi2FreeInstance` of the model `M`. Ignored for null, and while a call is under way, as from within the logger.
+pub unsafe fn fmi2FreeInstance<M: Model>(c: *mut c_void) {
+    unsafe { c_abi::free::<Function, M>(c) }
 }
 
 /// The truth that the `fmi2Boolean` `value`, given as `name`, stands for.
@@ -172,6 +160,8 @@ const WORDS: Words = Words {
 };
 
 functions! {
+    export_fmi2
+
     fmi2SetDebugLogging = SetDebugLogging(
         loggingOn: c_int, nCategories: size_t, categories: *const *const c_char,
     ) |instance| {
@@ -381,12 +371,12 @@ mod tests {
             component_environment: ptr::null_mut(),
         };
         unsafe {
-            let c = instantiate::<Touchy>(c"a".as_ptr(), 1, token().as_ptr(), c"file:///".as_ptr(), &functions, 0);
-            assert_eq!(fmi2EnterInitializationMode(c), Status::Ok as c_int);
-            assert_eq!(fmi2GetReal(c, &PANICS, 1, &mut 0.0), Status::Fatal as c_int);
-            assert_eq!(fmi2ExitInitializationMode(c), Status::Fatal as c_int);
-            assert_eq!(fmi2Reset(c), Status::Fatal as c_int);
-            fmi2FreeInstance(c);
+            let c = instantiate::<Touchy>(c"a".as_ptr(), 1, token().as_ptr(), c"file:///".as_ptr(), &functions, 0, 0);
+            assert_eq!(fmi2EnterInitializationMode::<Touchy>(c), Status::Ok as c_int);
+            assert_eq!(fmi2GetReal::<Touchy>(c, &PANICS, 1, &mut 0.0), Status::Fatal as c_int);
+            assert_eq!(fmi2ExitInitializationMode::<Touchy>(c), Status::Fatal as c_int);
+            assert_eq!(fmi2Reset::<Touchy>(c), Status::Fatal as c_int);
+            fmi2FreeInstance::<Touchy>(c);
         }
     }
 }

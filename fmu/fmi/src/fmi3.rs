@@ -10,8 +10,8 @@
 mod stages;
 
 use crate::c_abi::{
-    self, Words, call, call_back, call_on, check_count, check_pointer, complete_step, escaped, fill, free_state, functions,
-    keep_state, names_events, read_all, read_state, room, text, values, write, write_all, write_state,
+    self, Words, call, call_back, call_on, check_count, check_pointer, complete_step, escaped, fill, free_state,
+    functions, keep_state, names_events, read_all, read_state, room, text, values, write, write_all, write_state,
     write_state_size,
 };
 use crate::failure::Failure;
@@ -29,12 +29,6 @@ use std::path::Path;
 pub type LogMessageCallback = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
 
 const MAGIC: u64 = 0x466d_6955_6e69_7433;
-
-/// `fmi3GetVersion`
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3GetVersion() -> *const c_char {
-    c"3.0".as_ptr()
-}
 
 /// Name, token and folder of an instance.
 type Texts = [*const c_char; 3];
@@ -91,7 +85,7 @@ unsafe fn create<M: Model>(
     (environment, log, logging_on): Log,
     interface: impl FnOnce(&M) -> Result<(Interface, &'static Table, Option<IntermediateUpdate>), Failure>,
 ) -> *mut c_void {
-    c_abi::instantiate::<Function>(|| {
+    c_abi::instantiate::<Function, M>(|| {
         let logger = Logger::new(sink(log, environment));
         let found = || {
             let name = unsafe { text("instanceName", name) }?;
@@ -149,10 +143,9 @@ impl IntermediateUpdate {
     }
 }
 
-/// `fmi3FreeInstance`. Ignored for null, and while a call is under way, as from within a callback.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3FreeInstance(instance: *mut c_void) {
-    unsafe { c_abi::free::<Function>(instance) }
+/// `fmi3FreeInstance` of the model `M`. Ignored for null, and while a call is under way, as from within a callback.
+pub unsafe fn fmi3FreeInstance<M: Model>(instance: *mut c_void) {
+    unsafe { c_abi::free::<Function, M>(instance) }
 }
 
 /// The truth that the `fmi3Boolean` `value`, given as `name`, stands for.
@@ -194,8 +187,7 @@ const WORDS: Words = Words {
 ///
 /// `noSetFMUStatePriorToCurrentPoint` is ignored: FMU states are kept until the host frees them. Between the parts of
 /// this function the host is called back, and may call the instance.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3DoStep(
+pub unsafe fn fmi3DoStep<M: Model>(
     c: *mut c_void,
     currentCommunicationPoint: f64,
     communicationStepSize: f64,
@@ -213,7 +205,7 @@ pub unsafe extern "C" fn fmi3DoStep(
         check_pointer("lastSuccessfulTime", lastSuccessfulTime)
     };
     let (mut asked, mut told) = (None, None);
-    let mut compute = |instance: &mut Instance| unsafe {
+    let mut compute = |instance: &mut Instance<M>| unsafe {
         let progress = instance.do_step(point, step)?;
         let (time, may_return_early) = (instance.model.time()?, instance.may_return_early());
         if let (Progress::Ended, Some(ending)) = (progress, instance.ending()?) {
@@ -226,19 +218,19 @@ pub unsafe extern "C" fn fmi3DoStep(
         told = instance.show_step().map(|host| (host, time));
         Ok(())
     };
-    let begin = |instance: &mut Instance| {
+    let begin = |instance: &mut Instance<M>| {
         check()?;
         asked = instance.begin_step(point, step)?;
         if asked.is_none() { compute(instance) } else { Ok(()) }
     };
     let mut status = unsafe { call(c, Function::DoStep, begin) };
     if let Some(host) = asked {
-        unsafe { call_back::<Function>(c, || host.ask_for_inputs(point + step)) };
+        unsafe { call_back::<Function, M>(c, || host.ask_for_inputs(point + step)) };
         status = unsafe { call_on(c, Function::DoStep, compute) };
     }
     if let Some((host, time)) = told {
-        unsafe { call_back::<Function>(c, || host.show_outputs(time)) };
-        let end = |instance: &mut Instance| {
+        unsafe { call_back::<Function, M>(c, || host.show_outputs(time)) };
+        let end = |instance: &mut Instance<M>| {
             instance.end_step();
             Ok(())
         };
@@ -248,7 +240,12 @@ pub unsafe extern "C" fn fmi3DoStep(
 }
 
 functions! {
-    [fmi3DoStep = DoStep]
+    export_fmi3
+
+    [fmi3DoStep = DoStep(
+        currentCommunicationPoint: f64, communicationStepSize: f64, noSetFMUStatePriorToCurrentPoint: u8,
+        eventHandlingNeeded: *mut u8, terminateSimulation: *mut u8, earlyReturn: *mut u8, lastSuccessfulTime: *mut f64,
+    )]
 
     fmi3SetDebugLogging = SetDebugLogging(
         loggingOn: u8, nCategories: size_t, categories: *const *const c_char,
@@ -518,8 +515,8 @@ mod tests {
     unsafe extern "C" fn update(c: *mut c_void, _: f64, _: u8, _: u8, _: u8, _: u8, _: *mut u8, _: *mut f64) {
         unsafe {
             let c = *c.cast::<*mut c_void>();
-            assert_eq!(fmi3GetFloat64(c, &PANICS, 1, &mut 0.0, 1), Status::Fatal as c_int);
-            fmi3FreeInstance(c);
+            assert_eq!(fmi3GetFloat64::<Touchy>(c, &PANICS, 1, &mut 0.0, 1), Status::Fatal as c_int);
+            fmi3FreeInstance::<Touchy>(c);
             assert_eq!(DROPPED.get(), 0);
         }
     }
@@ -532,11 +529,17 @@ mod tests {
         unsafe {
             let texts = [c"a".as_ptr(), token.as_ptr(), c"/".as_ptr()];
             c = instantiate_co_simulation::<Touchy>(texts, log, [0, 0], (&PANICS, 1), Some(update));
-            assert_eq!((fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), fmi3ExitInitializationMode(c)), (0, 0));
+            assert_eq!(
+                (
+                    fmi3EnterInitializationMode::<Touchy>(c, 0, 0.0, 0.0, 0, 0.0),
+                    fmi3ExitInitializationMode::<Touchy>(c)
+                ),
+                (0, 0)
+            );
             let (mut flags, mut time) = ([0; 3], 0.0);
             let [event, end, early] = &mut flags;
-            assert_eq!(fmi3DoStep(c, 0.0, 0.1, 0, event, end, early, &mut time), Status::Fatal as c_int);
-            fmi3FreeInstance(c);
+            assert_eq!(fmi3DoStep::<Touchy>(c, 0.0, 0.1, 0, event, end, early, &mut time), Status::Fatal as c_int);
+            fmi3FreeInstance::<Touchy>(c);
         }
         assert_eq!(DROPPED.get(), 1);
     }

@@ -17,12 +17,14 @@ use std::sync::Arc;
 const SAME_TIME: (f64, f64) = (1e-4, 8.0);
 
 /// One instance.
-pub struct Instance {
+pub struct Instance<M> {
     /// The model, for what needs no check but that of the stage.
-    pub(crate) model: Box<dyn Model>,
+    pub(crate) model: M,
     variables: Arc<[Variable]>,
-    /// The part of each variable that the calls of every step ask for.
-    kinds: Vec<Kind>,
+    /// Whether each variable is a real number.
+    are_real: Vec<bool>,
+    /// The range of each input; no number is in that of other variables.
+    ranges: Vec<(f64, f64)>,
     interface: Interface,
     stage: Stage,
     experiment: Experiment,
@@ -43,41 +45,32 @@ pub struct Instance {
     led_to: Option<Stage>,
 }
 
-struct Kind {
-    is_real: bool,
-    /// The range of an input. No number is in that of other variables.
-    min: f64,
-    max: f64,
+fn range(variable: &Variable) -> (f64, f64) {
+    let of_input = variable.data_type.limits().filter(|_| variable.causality == Causality::Input);
+    of_input.unwrap_or((f64::INFINITY, f64::NEG_INFINITY))
 }
 
-impl From<&Variable> for Kind {
-    fn from(variable: &Variable) -> Kind {
-        let limits = variable.data_type.limits();
-        let of_input = limits.filter(|_| variable.causality == Causality::Input);
-        let (min, max) = of_input.unwrap_or((f64::INFINITY, f64::NEG_INFINITY));
-        Kind { is_real: limits.is_some(), min, max }
-    }
-}
-
-impl Instance {
+impl<M: Model> Instance<M> {
     /// An instance of `model`, just instantiated; `events` says whether events are logged.
     pub(crate) fn new(
-        model: Box<dyn Model>,
+        model: M,
         interface: Interface,
         events: bool,
         mut logger: Logger,
         host: Option<IntermediateUpdate>,
-    ) -> Instance {
+    ) -> Instance<M> {
         logger.set_events(events);
         let variables = model.variables();
-        let kinds = variables.iter().map(Kind::from).collect();
+        let are_real = variables.iter().map(|variable| variable.data_type.limits().is_some()).collect();
+        let ranges = variables.iter().map(range).collect();
         let (stage, events_at_start, mut at_start) = (Stage::Instantiated, events, Vec::new());
         model.state(&mut at_start);
         let (experiment, snapshots, reals, shown, asked, led_to) = Default::default();
         Instance {
             model,
             variables,
-            kinds,
+            are_real,
+            ranges,
             interface,
             stage,
             experiment,
@@ -220,12 +213,11 @@ impl Instance {
 }
 
 /// How values are read and set: all of a call, or none if one is refused.
-impl Instance {
+impl<M: Model> Instance<M> {
     /// Reads real numbers.
     #[inline(always)]
     pub(crate) fn get_real(&mut self, references: &[u32]) -> Result<&[f64], Failure> {
-        let is_real = |reference: &u32| self.kinds.get(*reference as usize).is_some_and(|kind| kind.is_real);
-        if !references.iter().all(is_real) {
+        if !references.iter().all(|reference| self.are_real.get(*reference as usize) == Some(&true)) {
             return Err(self.not_real(references));
         }
         if self.reals.len() < references.len() {
@@ -297,8 +289,7 @@ impl Instance {
     #[inline(always)]
     pub(crate) fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
         let is_fit = |(reference, value): (&u32, &f64)| {
-            let kind = self.kinds.get(*reference as usize);
-            kind.is_some_and(|kind| *value >= kind.min && *value <= kind.max)
+            self.ranges.get(*reference as usize).is_some_and(|(min, max)| value >= min && value <= max)
         };
         if self.asked.is_none() && references.iter().zip(values).all(is_fit) {
             return self.model.set_inputs(references, values);
@@ -434,12 +425,12 @@ impl Instance {
         values: &[f64],
     ) -> Result<(), Failure> {
         for ((reference, &order), &value) in references.iter().zip(orders).zip(values) {
-            let is_input = self.kinds.get(*reference as usize).is_some_and(|kind| kind.min <= kind.max);
-            if !(is_input && order == 1 && value.is_finite()) {
+            let is_input = self.ranges.get(*reference as usize).is_some_and(|(min, max)| min <= max);
+            if !(is_input && order == 1 && value.abs() <= f64::MAX) {
                 return Err(self.no_slope(*reference, order, value));
             }
         }
-        if references.is_empty() { Ok(()) } else { self.model.set_slopes(references, values) }
+        self.model.set_slopes(references, values)
     }
 
     #[cold]
@@ -519,7 +510,7 @@ fn refused(variable: &Variable) -> Failure {
 }
 
 /// Steps of a co-simulation.
-impl Instance {
+impl<M: Model> Instance<M> {
     /// Begins a step over `step` (s) from `point` (s). If the host sets inputs within steps, returns how to call it back,
     /// which comes before [`Instance::do_step`].
     pub(crate) fn begin_step(&mut self, point: f64, step: f64) -> Result<Option<IntermediateUpdate>, Failure> {
@@ -536,7 +527,8 @@ impl Instance {
     /// handed over. The instance takes over the host's clock.
     #[inline(always)]
     pub(crate) fn do_step(&mut self, point: f64, step: f64) -> Result<Progress, Failure> {
-        if self.asked.take().is_some() {
+        if self.asked.is_some() {
+            self.asked = None;
             self.stage = Stage::StepComplete;
         }
         self.check_step(point, step)?;
@@ -600,7 +592,7 @@ fn is_same_time(a: f64, b: f64, step: f64) -> bool {
 }
 
 /// The service of an instance to a host that integrates.
-impl Instance {
+impl<M: Model> Instance<M> {
     /// Goes to the host's `time` (s).
     pub(crate) fn set_time(&mut self, time: f64) -> Result<(), Failure> {
         if !(time.is_finite() && (time - self.experiment.start_time).is_finite()) {

@@ -1,8 +1,8 @@
 //! FMI 3.0 where it is not FMI 2.0: events, messages, calls back within a step.
 
 use crate::host::{ERROR, OK, reference, resources};
+use FlexibleRocking::fmi3::{self, *};
 use FlexibleRocking::unit::Unit;
-use fmi_unit::fmi3::{self, *};
 use fmi_unit::interface::Stepping;
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
@@ -215,8 +215,8 @@ fn the_other_versions_functions_refuse_an_instance() {
     let host = Host::started(None, 2.0);
     let before = host.bytes();
     unsafe {
-        assert_eq!(fmi_unit::fmi2::fmi2Reset(host.c), ERROR);
-        fmi_unit::fmi2::fmi2FreeInstance(host.c);
+        assert_eq!(FlexibleRocking::fmi2::fmi2Reset(host.c), ERROR);
+        FlexibleRocking::fmi2::fmi2FreeInstance(host.c);
     }
     assert_eq!(host.bytes(), before);
 }

@@ -2,8 +2,8 @@
 
 use crate::host::*;
 use FlexibleRocking::BUILD;
+use FlexibleRocking::fmi2::*;
 use FlexibleRocking::unit::Condition;
-use fmi_unit::fmi2::*;
 use std::ffi::c_void;
 use std::ptr::{null_mut, without_provenance_mut};
 

@@ -2,8 +2,8 @@
 
 use crate::directional_derivatives::derivatives;
 use crate::host::*;
+use FlexibleRocking::fmi2::*;
 use approx::assert_relative_eq;
-use fmi_unit::fmi2::*;
 
 const PHASE_IN_CONTACT: i32 = 1;
 

@@ -3,10 +3,11 @@
 use super::arguments::{
     CATEGORIES, calls, is_any, is_boolean, is_integer, is_number, is_number_to_set, is_output, is_switch, is_text,
 };
-use super::{C, ERROR, STAGES_OF_MODEL, Subject, Table, Told, Version};
+use super::{C, ERROR, STAGES_OF_MODEL, Table, Told, Version};
+use crate::Model;
+use crate::fmi3::*;
 use fastrand::Rng;
 use fmi_unit::c_abi::Function as _;
-use fmi_unit::fmi3::*;
 use fmi_unit::interface::{Interface, Stepping};
 use fmi_unit::state_machine::Stage;
 use libc::{c_char, c_int, c_void};
@@ -128,16 +129,15 @@ const MODEL: Table = Table {
         - - - x - -  EnterEventMode CompletedIntegratorStep SetContinuousStates",
 };
 
-fn instantiate(subject: &Subject, rng: &mut Rng, interface: Interface, texts: [*const c_char; 3], told: &Told) -> C {
-    let environment = (&raw const *told).cast_mut().cast();
-    let log = (environment, Some(tell as LogMessageCallback), rng.u8(0..2));
+fn instantiate(rng: &mut Rng, interface: Interface, texts: [*const c_char; 3], told: &Told) -> C {
+    let log = ((&raw const *told).cast_mut().cast(), Some(tell as LogMessageCallback), rng.u8(0..2));
     unsafe {
         match interface {
             Interface::CoSimulation(Stepping { event_mode, early_return }) => {
                 let flags = [event_mode.into(), early_return.into()];
-                (subject.instantiate_3)(texts, log, flags, (null(), 0), None)
+                instantiate_co_simulation::<Model>(texts, log, flags, (null(), 0), None)
             }
-            Interface::ModelExchange => (subject.instantiate_model_3)(texts, log),
+            Interface::ModelExchange => instantiate_model_exchange::<Model>(texts, log),
         }
     }
 }
