@@ -17,7 +17,7 @@
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
 # make docs    the site in out/site; fails at a link, an anchor or a picture that is not there (seconds)
 # make pages   write anew what README and the pages print (a minute)
-# make pictures  draw anew those of README and of the model (minutes)
+# make pictures  draw anew those of README, of the model and of how to choose numbers (minutes)
 # make report  regenerate docs/evidence/paper.md, docs/evidence/literature.md and their figures (minutes)
 # make restrained  regenerate docs/evidence/restrained.md and its pictures (minutes)
 # make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
@@ -249,8 +249,8 @@ docs: .venv/docs
 pages: .venv/test exporter records
 	PYTHONPATH=examples $(PYTHON) docs/pages.py $(TARGET)/release/rocking-fmu
 
-pictures: module out/mcmanus.fmu
-	PYTHONPATH=examples $(PYTHON) examples/pictures.py out/mcmanus.fmu
+pictures: module
+	PYTHONPATH=examples $(PYTHON) examples/pictures.py
 
 report: module
 	PYTHONPATH=examples $(PYTHON) -m validation

@@ -1,29 +1,31 @@
 """Draws the pictures of README and of the model, docs/img: `make pictures`.
 
     schematic.svg  the structure with its symbols
-    motion.gif     McManus's pier under a pulse
+    motion.gif     a bridge pier under the record of Pacoima Dam
     headline.svg   error against cost, of the numbers that the study has left in docs/evidence
     levels.svg     which level of detail is enough, over frequency and intensity
+    tornado.svg    what a wrong number changes, by the script of docs/howto/choose_numbers.md
 """
 
 import argparse
+import re
 from pathlib import Path
 
 import flexible_rocking as fr
 import numpy as np
 import pandas as pd
-from fmpy import simulate_fmu
 from first_run import G, RECORD, TIME_SCALE
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Arc, Circle
 from tqdm import tqdm
-from validation.figures import FIXED, ROCKING, plt, save, subplots
+from validation.figures import FIXED, QUIET, ROCKING, plt, save, subplots
 from validation.specimens import MCMANUS
 
 INK, LIGHT = "#263238", "0.82"
-BEND = 10  # u is drawn this many times as large in the animation
-SHOWN, FRAMES_PER_SECOND, ROWS_PER_FRAME = 6.0, 16, 8  # s
+PIER = fr.Structure(m=1.2e6, m0=0.4e6, H=22, B=3.5, J0=0, f_fc=0.8, zeta_fc=0.03, r=0.95)
+DRAWN = 12  # the motion is drawn this many times as large
+BEGINS, ENDS, FRAMES_PER_SECOND, ROWS_PER_FRAME = 2.0, 12.5, 12.5, 8  # s; u is below 5 mm at both, so the film loops
 
 
 def placed(points: np.ndarray, theta: float, half_width: float) -> np.ndarray:
@@ -100,26 +102,29 @@ def schematic(path: Path) -> None:
          "Left: full contact, with top mass m, height H, half-width B, foundation m0 and J0. Right: rocking.")
 
 
-def motion(fmu: str, path: Path) -> None:
-    """The pier's rotation true to scale, its bend exaggerated."""
-    result = simulate_fmu(fmu, stop_time=SHOWN, output_interval=1 / (FRAMES_PER_SECOND * ROWS_PER_FRAME),
-                          output=["theta", "u", "a_ground"],
-                          start_values={"record": str(Path(__file__).with_name("pulse.csv").resolve())})
-    time, degrees = result["time"], np.degrees(result["theta"])
-    figure, (axis, below) = plt.subplots(2, 1, figsize=(4.6, 5.2), height_ratios=[3, 1], layout="constrained")
+def motion(path: Path) -> None:
+    """The pier's motion, enlarged, over the ground acceleration and the rotation."""
+    time = np.arange(BEGINS, ENDS, 1 / (FRAMES_PER_SECOND * ROWS_PER_FRAME))
+    response = fr.simulate(PIER, fr.Record.read(RECORD)).at(time)
+    figure, (axis, ground, below) = plt.subplots(3, 1, figsize=(4.6, 5.6), height_ratios=[4, 1, 1], layout="constrained")
+    limits = {"xlim": (-16, 16), "ylim": (-1.05, 25.5)}
+    marks = []
+    for trace, color, values, label in ((ground, QUIET, response["a_g"] / G, "ground (g)"),
+                                        (below, ROCKING, np.degrees(response["theta"]), "rotation (°)")):
+        trace.plot(time, values, color=color, linewidth=0.8)
+        trace.axhline(0, color="0.5", linewidth=0.6)
+        trace.set(xlim=(BEGINS, ENDS), ylabel=label)
+        marks.append((trace.plot([], [], "o", color=color)[0], values))
+    ground.tick_params(labelbottom=False)
+    below.set(xlabel="time (s)")
+    figure.align_ylabels()
 
     def frame(i: int) -> None:
         axis.clear()
-        draw(axis, result["theta"][i], BEND * result["u"][i], MCMANUS.H, MCMANUS.B)
-        axis.set(xlim=(-1.1, 1.1), ylim=(-0.12, 2.15))
-        if result["a_ground"][i]:
-            arrow(axis, (0, -0.06), (0.08 * result["a_ground"][i], -0.06), style="->", color=FIXED)
-        axis.text(-1.1, 2.0, f"{time[i]:.1f} s", color=INK)
-        below.clear()
-        below.plot(time[: i + 1], degrees[: i + 1], color=ROCKING)
-        below.plot(time[i], degrees[i], "o", color=ROCKING)
-        below.axhline(0, color="0.5", linewidth=0.6)
-        below.set(xlim=(0, SHOWN), ylim=(-10, 10), xlabel="time (s)", ylabel="rotation (°)")
+        draw(axis, DRAWN * response["theta"][i], DRAWN * response["u"][i], PIER.H, PIER.B)
+        axis.set(**limits)
+        for mark, values in marks:
+            mark.set_data([time[i]], [values[i]])
 
     path.parent.mkdir(parents=True, exist_ok=True)
     frames = range(0, len(time), ROWS_PER_FRAME)
@@ -200,15 +205,23 @@ def levels(path: Path) -> None:
          "The cheapest level that is good enough, over f_fc and PGA over g tan α_cg.")
 
 
+def tornado(path: Path) -> None:
+    """What a wrong number changes, drawn by the page's own script."""
+    page = Path("docs/howto/choose_numbers.md").read_text(encoding="utf-8")
+    script = re.search(r"^```py\n(.*?)figure\.savefig.*?^```$", page, re.MULTILINE | re.DOTALL)[1]
+    drawn = {}
+    exec(script, drawn)
+    save(drawn["figure"], path, "Change of the peaks for each wrong number",
+         "Bars: medians of six components of ground motion. Strokes: single components.")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("fmu", nargs="?", default="out/mcmanus.fmu", help="of McManus's pier")
     parser.add_argument("--folder", type=Path, default=Path("docs/img"), help="where to save them")
-    arguments = parser.parse_args()
-    schematic(arguments.folder / "schematic.svg")
-    motion(arguments.fmu, arguments.folder / "motion.gif")
-    headline(arguments.folder / "headline.svg")
-    levels(arguments.folder / "levels.svg")
+    folder = parser.parse_args().folder
+    for draw_picture, name in ((schematic, "schematic.svg"), (motion, "motion.gif"), (headline, "headline.svg"),
+                               (levels, "levels.svg"), (tornado, "tornado.svg")):
+        draw_picture(folder / name)
 
 
 if __name__ == "__main__":

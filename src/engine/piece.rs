@@ -3,12 +3,13 @@
 //! Within a piece there is no transition. If the engine expanded the motion into a polynomial, the piece has that polynomial. If
 //! the engine leapt by an exact flow, the piece has bounds, and makes polynomials on request.
 
+use crate::engine::Moves;
 use crate::engine::motion::Motion;
 use crate::engine::phases::{self, Step};
 use crate::engine::transition::Transition;
-use crate::levels::detail::AnyLevel;
 use crate::levels::level::{Now, Subject};
 use crate::levels::shown::Searched;
+use crate::mechanics::instant::Second;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::Measure;
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
@@ -18,39 +19,39 @@ use crate::{Outputs, Phase, Reactions, State};
 use std::f64::consts::TAU;
 
 /// Watches a motion go by.
-pub trait Watch {
+pub trait Watch<Q: Moves = f64> {
     /// Whether the watcher looks at pieces. If not, the engine makes none for it.
     const SEES_PIECES: bool;
 
     /// Sees the next piece.
     #[inline]
-    fn piece(&mut self, _piece: &Piece) {}
+    fn piece(&mut self, _piece: &Piece<Q>) {}
 
     /// Sees the transition at the end of the last piece.
     #[inline]
-    fn transition(&mut self, _transition: &Transition) {}
+    fn transition(&mut self, _transition: &Transition<Q>) {}
 }
 
 /// The watcher that ignores pieces and transitions.
-impl Watch for () {
+impl<Q: Moves> Watch<Q> for () {
     const SEES_PIECES: bool = false;
 }
 
 /// A watcher of transitions only.
-impl<F: FnMut(&Transition)> Watch for F {
+impl<Q: Moves, F: FnMut(&Transition<Q>)> Watch<Q> for F {
     const SEES_PIECES: bool = false;
 
-    fn transition(&mut self, transition: &Transition) {
+    fn transition(&mut self, transition: &Transition<Q>) {
         self(transition);
     }
 }
 
 /// Two watchers of the same motion.
-impl<A: Watch, B: Watch> Watch for (&mut A, &mut B) {
+impl<Q: Moves, A: Watch<Q>, B: Watch<Q>> Watch<Q> for (&mut A, &mut B) {
     const SEES_PIECES: bool = A::SEES_PIECES || B::SEES_PIECES;
 
     #[inline]
-    fn piece(&mut self, piece: &Piece) {
+    fn piece(&mut self, piece: &Piece<Q>) {
         if A::SEES_PIECES {
             self.0.piece(piece);
         }
@@ -59,7 +60,7 @@ impl<A: Watch, B: Watch> Watch for (&mut A, &mut B) {
         }
     }
 
-    fn transition(&mut self, transition: &Transition) {
+    fn transition(&mut self, transition: &Transition<Q>) {
         self.0.transition(transition);
         self.1.transition(transition);
     }
@@ -67,12 +68,20 @@ impl<A: Watch, B: Watch> Watch for (&mut A, &mut B) {
 
 /// A motion at one instant; at a transition, just after it.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample<'a> {
+pub struct Sample<'a, Q: Moves = f64> {
     /// Time, state and phase, transitions and impulses so far.
-    pub motion: Motion,
+    pub motion: Motion<Q>,
     /// Load at the instant.
-    pub load: Load,
-    pub(crate) level: &'a AnyLevel,
+    pub load: Load<Q>,
+    pub(crate) level: &'a Q::Level,
+}
+
+impl<Q: Moves> Sample<'_, Q> {
+    /// ü and θ̈; once overturned, those of the instant before.
+    pub(crate) fn second(&self) -> Second<f64, Q> {
+        let Sample { motion, load, level } = self;
+        level.accelerations(motion.phase.in_motion(), &motion.under(*load))
+    }
 }
 
 impl Sample<'_> {
@@ -108,8 +117,7 @@ impl Sample<'_> {
 
     /// (ü, θ̈), m/s² and rad/s²; once overturned, those of the instant before.
     pub(crate) fn accelerations(&self) -> [f64; 2] {
-        let Sample { motion, load, level } = self;
-        level.accelerations(motion.phase.in_motion(), &motion.under(*load))
+        self.second().into()
     }
 }
 
@@ -121,18 +129,18 @@ const FINEST_PART: u32 = 5;
 
 /// A stretch of time without a transition.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece<'a> {
+pub struct Piece<'a, Q: Moves = f64> {
     /// The motion at its start: time, state, and the phase that it is in throughout.
-    pub before: &'a Motion,
+    pub before: &'a Motion<Q>,
     /// Duration of the piece, s.
     pub duration: f64,
     /// Load from the start of the piece on.
-    pub load: LinearLoad,
+    pub load: LinearLoad<Q>,
     /// State at its end.
-    pub end: State,
-    pub(crate) level: &'a AnyLevel,
+    pub end: State<Q>,
+    pub(crate) level: &'a Q::Level,
     /// Polynomial of the piece; none if the engine leapt over the piece.
-    pub(crate) arc: Option<&'a Arc>,
+    pub(crate) arc: Option<&'a Arc<Q>>,
 }
 
 impl Piece<'_> {
@@ -181,7 +189,7 @@ impl Piece<'_> {
         let moved = phases::of(self.level.structure(), self.before).zip(self.arc).and_then(|(watched, arc)| {
             let (level, side) = (&**self.level, self.before.phase.side());
             let step = Step { level, side, start: &self.whole().step(), arc, reach: tau / arc.span };
-            watched.moved(level.structure(), &step)
+            watched.moved(level.subject(), &step)
         });
         moved.unwrap_or(self.before.dissipators)
     }
@@ -286,7 +294,7 @@ impl<'a> Part<'a> {
         let bends = level.bends(phase, load, h, &level.rates(phase, &step, end));
         let [(_, first), (_, last)] = self.ends();
         let now = Now { state: &step.state, load: load.value, dissipators: step.dissipators };
-        let accelerations = level.accelerations(phase, &now);
+        let accelerations = level.accelerations(phase, &now).into();
         let rates = level.searched_rates(phase, &step.state, accelerations, load);
         std::array::from_fn(|i| {
             let of = |outputs: &Outputs| Measure::SEARCHED[i].of(outputs).abs();
