@@ -96,6 +96,7 @@ impl Inputs {
     }
 
     /// The value that acts and its slope where `value` alone is set of an input that goes on.
+    #[cold]
     #[inline(never)]
     fn extrapolated(&mut self, which: usize, value: f64) -> (f64, f64) {
         let Inputs { given, followed, before: (before, ago), ended_early, .. } = self;
@@ -139,6 +140,7 @@ impl Inputs {
         if self.is_any_led { self.lines(duration) } else { self.next }
     }
 
+    #[cold]
     #[inline(never)]
     fn lines(&self, duration: f64) -> LinearLoad {
         let mut load = self.next;
@@ -194,6 +196,7 @@ impl Inputs {
 
     /// Sets the inputs that act at once to where they have come. Those that act late have come to where they are set, whatever
     /// the rounding, unless the step has ended early.
+    #[cold]
     #[inline(never)]
     fn arrive(&mut self) {
         for which in 0..LOADS.len() {

@@ -12,7 +12,7 @@ pub(crate) struct Shown<'a> {
     pub setup: &'a Setup,
     load: Load,
     /// The outputs.
-    outputs: &'a Outputs,
+    outputs: Outputs,
     /// Computed when they are first asked for, as the next.
     reactions: OnceCell<Reactions>,
     /// Derivatives of the states.
@@ -21,8 +21,7 @@ pub(crate) struct Shown<'a> {
 
 impl<'a> Shown<'a> {
     /// The values of `scene`, which follows `setup` and has these `outputs`, under `load`.
-    #[inline(never)]
-    pub fn new(scene: &'a Scene, setup: &'a Setup, load: Load, outputs: &'a Outputs) -> Shown<'a> {
+    pub fn new(scene: &'a Scene, setup: &'a Setup, load: Load, outputs: Outputs) -> Shown<'a> {
         let (reactions, rates) = Default::default();
         Shown { scene, setup, load, outputs, reactions, rates }
     }
@@ -53,7 +52,7 @@ impl<'a> Shown<'a> {
     pub fn value(&self, source: Source) -> Option<f64> {
         let Shown { scene, setup, load, .. } = *self;
         Some(match source {
-            Source::Output(of) => of(self.outputs),
+            Source::Output(of) => of(&self.outputs),
             Source::Reaction(of) => of(self.reactions()),
             Source::StateRate(which) => self.state_rates().components()[which],
             Source::Indicator(which) => scene.engine.sample(load).event_indicators()[which],

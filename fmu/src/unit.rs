@@ -116,6 +116,7 @@ impl Unit {
 }
 
 /// The value of a real number that is no output: one that is `shown`, or set.
+#[cold]
 #[inline(never)]
 fn other(shown: &Shown, inputs: &Inputs, source: Source) -> f64 {
     shown.value(source).unwrap_or_else(|| setting(shown.setup, inputs, source))
@@ -183,7 +184,7 @@ impl Model for Unit {
             *value = match sources[*reference as usize] {
                 Source::Output(of) => of(&outputs),
                 source => {
-                    let shown = shown.get_or_insert_with(|| Shown::new(scene, setup, load, &outputs));
+                    let shown = shown.get_or_insert_with(|| Shown::new(scene, setup, load, outputs));
                     other(shown, inputs, source)
                 }
             };
@@ -275,7 +276,9 @@ impl Model for Unit {
 
         let time = scene.engine.motion().time;
         scene.engine.set_time(point);
-        scene.set(|settings| settings.stops = stops)?;
+        if scene.engine.settings().stops != stops {
+            scene.set(|settings| settings.stops = stops)?;
+        }
         let known = setup.validity.then_some(scene.validity);
         let mut watch = |transition: &Transition| log(logger, transition);
         let result = if stops {

@@ -452,12 +452,13 @@ pub(crate) fn escaped(message: &str, marks: &[char]) -> CString {
 
 /// The functions that take an instance, in the words of a version of the standard: of each the name, the item of the
 /// version's [`Function`] that it is, the arguments after the component, and what is asked of the instance: nothing of
-/// those that are never allowed. Those in brackets are written out elsewhere. The macro `$export` exports them for a model,
-/// where the types of the arguments are in scope.
+/// those that are never allowed. Those in brackets are written out elsewhere, those in braces take no instance. The macro
+/// `$export` exports all of them for a model, where the types of the arguments are in scope.
 macro_rules! functions {
     (@) => { |_| Ok(()) };
     (@ |$instance:ident| $body:block) => { |$instance| $body };
     ($export:ident
+    $({$other:ident($($other_argument:ident: $other_type:ty),* $(,)?) $(-> $returned:ty)?})*
     $([$apart:ident = $apart_function:ident($($apart_argument:ident: $apart_type:ty),* $(,)?)])* $(
         $(#[$doc:meta])*
         $name:ident = $function:ident($($argument:ident: $type:ty),* $(,)?) $(|$instance:ident| $body:block)?
@@ -507,8 +508,9 @@ macro_rules! functions {
             ($model:ty, $version:ident) => {
                 $crate::exported! {
                     $model, $version:
-                    $($apart($($apart_argument: $apart_type),*))*
-                    $($name($($argument: $type),*))*
+                    $($other($($other_argument: $other_type),*) $(-> $returned)?;)*
+                    $($apart(c: *mut c_void $(, $apart_argument: $apart_type)*) -> c_int;)*
+                    $($name(c: *mut c_void $(, $argument: $type)*) -> c_int;)*
                 }
             };
         }
@@ -516,15 +518,15 @@ macro_rules! functions {
 }
 pub(crate) use functions;
 
-/// Exports functions of a version, which take a component, for a model.
+/// Exports functions of a version for a model.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! exported {
-    ($model:ty, $version:ident: $($name:ident($($argument:ident: $type:ty),*))*) => { $(
+    ($model:ty, $version:ident: $($name:ident($($argument:ident: $type:ty),*) $(-> $returned:ty)?;)*) => { $(
         #[doc = concat!("`", stringify!($name), "`")]
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $name(c: *mut c_void $(, $argument: $type)*) -> c_int {
-            unsafe { $crate::$version::$name::<$model>(c $(, $argument)*) }
+        pub unsafe extern "C" fn $name($($argument: $type),*) $(-> $returned)? {
+            unsafe { $crate::$version::$name::<$model>($($argument),*) }
         }
     )* };
 }

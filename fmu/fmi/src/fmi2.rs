@@ -60,8 +60,18 @@ pub struct EventInfo {
     pub next_event_time: c_double,
 }
 
+/// `fmi2GetTypesPlatform`
+pub unsafe fn fmi2GetTypesPlatform<M>() -> *const c_char {
+    c"default".as_ptr()
+}
+
+/// `fmi2GetVersion`
+pub unsafe fn fmi2GetVersion<M>() -> *const c_char {
+    c"2.0".as_ptr()
+}
+
 /// `fmi2Instantiate` of the model `M`
-pub unsafe fn instantiate<M: Model>(
+pub unsafe fn fmi2Instantiate<M: Model>(
     instanceName: *const c_char,
     fmuType: c_int,
     fmuGUID: *const c_char,
@@ -161,6 +171,13 @@ const WORDS: Words = Words {
 
 functions! {
     export_fmi2
+    {fmi2GetTypesPlatform() -> *const c_char}
+    {fmi2GetVersion() -> *const c_char}
+    {fmi2Instantiate(
+        instanceName: *const c_char, fmuType: c_int, fmuGUID: *const c_char, fmuResourceLocation: *const c_char,
+        functions: *const CallbackFunctions, visible: c_int, loggingOn: c_int,
+    ) -> *mut c_void}
+    {fmi2FreeInstance(c: *mut c_void)}
 
     fmi2SetDebugLogging = SetDebugLogging(
         loggingOn: c_int, nCategories: size_t, categories: *const *const c_char,
@@ -371,7 +388,8 @@ mod tests {
             component_environment: ptr::null_mut(),
         };
         unsafe {
-            let c = instantiate::<Touchy>(c"a".as_ptr(), 1, token().as_ptr(), c"file:///".as_ptr(), &functions, 0, 0);
+            let c =
+                fmi2Instantiate::<Touchy>(c"a".as_ptr(), 1, token().as_ptr(), c"file:///".as_ptr(), &functions, 0, 0);
             assert_eq!(fmi2EnterInitializationMode::<Touchy>(c), Status::Ok as c_int);
             assert_eq!(fmi2GetReal::<Touchy>(c, &PANICS, 1, &mut 0.0), Status::Fatal as c_int);
             assert_eq!(fmi2ExitInitializationMode::<Touchy>(c), Status::Fatal as c_int);

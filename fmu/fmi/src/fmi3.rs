@@ -30,24 +30,32 @@ pub type LogMessageCallback = unsafe extern "C" fn(*mut c_void, c_int, *const c_
 
 const MAGIC: u64 = 0x466d_6955_6e69_7433;
 
-/// Name, token and folder of an instance.
-type Texts = [*const c_char; 3];
-
-/// The logger of an instance, and whether it takes events, too.
-type Log = (*mut c_void, Option<LogMessageCallback>, u8);
+/// `fmi3GetVersion`
+pub unsafe fn fmi3GetVersion<M>() -> *const c_char {
+    c"3.0".as_ptr()
+}
 
 /// `fmi3InstantiateCoSimulation` of the model `M`
-pub unsafe fn instantiate_co_simulation<M: Model>(
-    texts: Texts,
-    log: Log,
-    [eventModeUsed, earlyReturnAllowed]: [u8; 2],
-    required: (*const c_uint, size_t),
+#[allow(clippy::too_many_arguments)] // the standard's
+pub unsafe fn fmi3InstantiateCoSimulation<M: Model>(
+    instanceName: *const c_char,
+    instantiationToken: *const c_char,
+    resourcePath: *const c_char,
+    _visible: u8,
+    loggingOn: u8,
+    eventModeUsed: u8,
+    earlyReturnAllowed: u8,
+    requiredIntermediateVariables: *const c_uint,
+    nRequiredIntermediateVariables: size_t,
+    environment: *mut c_void,
+    logMessage: Option<LogMessageCallback>,
     intermediateUpdate: Option<IntermediateUpdateCallback>,
 ) -> *mut c_void {
     let interface = |model: &M| {
         let event_mode = boolean("eventModeUsed", eventModeUsed)?;
         let early_return = boolean("earlyReturnAllowed", earlyReturnAllowed)?;
-        let required = unsafe { values("requiredIntermediateVariables", required.0, required.1) }?;
+        let (name, length) = ("requiredIntermediateVariables", nRequiredIntermediateVariables);
+        let required = unsafe { values(name, requiredIntermediateVariables, length) }?;
         let variables = model.variables();
         let (mut sets_inputs, mut gets_outputs) = (false, false);
         for &reference in required {
@@ -56,33 +64,52 @@ pub unsafe fn instantiate_co_simulation<M: Model>(
             let is_input = variable.causality == Causality::Input;
             (sets_inputs, gets_outputs) = (sets_inputs || is_input, gets_outputs || !is_input);
         }
-        let environment = log.0;
         let host =
             intermediateUpdate.map(|update| IntermediateUpdate { update, environment, sets_inputs, gets_outputs });
         let allowed_in: &Table = &stages::CO_SIMULATION;
         Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), allowed_in, host))
     };
+    let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
     unsafe { create("fmi3InstantiateCoSimulation", texts, log, interface) }
 }
 
 /// `fmi3InstantiateModelExchange` of the model `M`
-pub unsafe fn instantiate_model_exchange<M: Model>(texts: Texts, log: Log) -> *mut c_void {
+pub unsafe fn fmi3InstantiateModelExchange<M: Model>(
+    instanceName: *const c_char,
+    instantiationToken: *const c_char,
+    resourcePath: *const c_char,
+    _visible: u8,
+    loggingOn: u8,
+    environment: *mut c_void,
+    logMessage: Option<LogMessageCallback>,
+) -> *mut c_void {
     let allowed_in: &Table = &stages::MODEL_EXCHANGE;
     let interface = |_: &M| Ok((Interface::ModelExchange, allowed_in, None));
+    let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
     unsafe { create("fmi3InstantiateModelExchange", texts, log, interface) }
 }
 
-/// `fmi3InstantiateScheduledExecution`: there is nothing to schedule.
-pub unsafe fn instantiate_scheduled_execution<M: Model>(texts: Texts, log: Log) -> *mut c_void {
+/// `fmi3InstantiateScheduledExecution`: there is nothing to schedule. Three more arguments are not read, and not declared:
+/// the caller removes them.
+pub unsafe fn fmi3InstantiateScheduledExecution<M: Model>(
+    instanceName: *const c_char,
+    instantiationToken: *const c_char,
+    resourcePath: *const c_char,
+    _visible: u8,
+    loggingOn: u8,
+    environment: *mut c_void,
+    logMessage: Option<LogMessageCallback>,
+) -> *mut c_void {
     let interface = |_: &M| Err(Failure::NotThisInterface);
+    let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
     unsafe { create("fmi3InstantiateScheduledExecution", texts, log, interface) }
 }
 
 /// An instance of the `interface` that `function` makes; null, with the reason in the log, if there is none.
 unsafe fn create<M: Model>(
     function: &str,
-    [name, token, folder]: Texts,
-    (environment, log, logging_on): Log,
+    [name, token, folder]: [*const c_char; 3],
+    (environment, log, logging_on): (*mut c_void, Option<LogMessageCallback>, u8),
     interface: impl FnOnce(&M) -> Result<(Interface, &'static Table, Option<IntermediateUpdate>), Failure>,
 ) -> *mut c_void {
     c_abi::instantiate::<Function, M>(|| {
@@ -241,6 +268,22 @@ pub unsafe fn fmi3DoStep<M: Model>(
 
 functions! {
     export_fmi3
+    {fmi3GetVersion() -> *const c_char}
+    {fmi3InstantiateCoSimulation(
+        instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, visible: u8,
+        loggingOn: u8, eventModeUsed: u8, earlyReturnAllowed: u8, requiredIntermediateVariables: *const c_uint,
+        nRequiredIntermediateVariables: size_t, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
+        intermediateUpdate: Option<IntermediateUpdateCallback>,
+    ) -> *mut c_void}
+    {fmi3InstantiateModelExchange(
+        instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, visible: u8,
+        loggingOn: u8, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
+    ) -> *mut c_void}
+    {fmi3InstantiateScheduledExecution(
+        instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, visible: u8,
+        loggingOn: u8, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
+    ) -> *mut c_void}
+    {fmi3FreeInstance(instance: *mut c_void)}
 
     [fmi3DoStep = DoStep(
         currentCommunicationPoint: f64, communicationStepSize: f64, noSetFMUStatePriorToCurrentPoint: u8,
@@ -524,11 +567,12 @@ mod tests {
     #[test]
     fn an_instance_that_broke_within_a_step_is_freed_after_it() {
         let mut c: *mut c_void = ptr::null_mut();
-        let (token, log) = (token(), ((&raw mut c).cast(), None, 0));
+        let (token, environment) = (token(), (&raw mut c).cast());
         DROPPED.set(0);
         unsafe {
-            let texts = [c"a".as_ptr(), token.as_ptr(), c"/".as_ptr()];
-            c = instantiate_co_simulation::<Touchy>(texts, log, [0, 0], (&PANICS, 1), Some(update));
+            let [name, token, folder] = [c"a".as_ptr(), token.as_ptr(), c"/".as_ptr()];
+            let instantiate = fmi3InstantiateCoSimulation::<Touchy>;
+            c = instantiate(name, token, folder, 0, 0, 0, 0, &PANICS, 1, environment, None, Some(update));
             assert_eq!(
                 (
                     fmi3EnterInitializationMode::<Touchy>(c, 0, 0.0, 0.0, 0, 0.0),

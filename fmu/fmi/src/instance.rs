@@ -21,8 +21,8 @@ pub struct Instance<M> {
     /// The model, for what needs no check but that of the stage.
     pub(crate) model: M,
     variables: Arc<[Variable]>,
-    /// Whether each variable is a real number.
-    are_real: Vec<bool>,
+    /// The part of each variable that the calls of every step ask for.
+    kinds: Vec<Kind>,
     /// The range of each input; no number is in that of other variables.
     ranges: Vec<(f64, f64)>,
     interface: Interface,
@@ -45,6 +45,26 @@ pub struct Instance<M> {
     led_to: Option<Stage>,
 }
 
+/// What a variable is to the calls of every step.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    /// A real number that the host sets while time goes on.
+    Input,
+    /// Another real number.
+    Real,
+    Other,
+}
+
+impl From<&Variable> for Kind {
+    fn from(variable: &Variable) -> Kind {
+        match (variable.data_type, variable.causality) {
+            (DataType::Real { .. }, Causality::Input) => Kind::Input,
+            (DataType::Real { .. }, _) => Kind::Real,
+            _ => Kind::Other,
+        }
+    }
+}
+
 fn range(variable: &Variable) -> (f64, f64) {
     let of_input = variable.data_type.limits().filter(|_| variable.causality == Causality::Input);
     of_input.unwrap_or((f64::INFINITY, f64::NEG_INFINITY))
@@ -61,7 +81,7 @@ impl<M: Model> Instance<M> {
     ) -> Instance<M> {
         logger.set_events(events);
         let variables = model.variables();
-        let are_real = variables.iter().map(|variable| variable.data_type.limits().is_some()).collect();
+        let kinds = variables.iter().map(Kind::from).collect();
         let ranges = variables.iter().map(range).collect();
         let (stage, events_at_start, mut at_start) = (Stage::Instantiated, events, Vec::new());
         model.state(&mut at_start);
@@ -69,7 +89,7 @@ impl<M: Model> Instance<M> {
         Instance {
             model,
             variables,
-            are_real,
+            kinds,
             ranges,
             interface,
             stage,
@@ -217,7 +237,8 @@ impl<M: Model> Instance<M> {
     /// Reads real numbers.
     #[inline(always)]
     pub(crate) fn get_real(&mut self, references: &[u32]) -> Result<&[f64], Failure> {
-        if !references.iter().all(|reference| self.are_real.get(*reference as usize) == Some(&true)) {
+        let is_real = |reference: &u32| self.kinds.get(*reference as usize).is_some_and(|kind| *kind != Kind::Other);
+        if !references.iter().all(is_real) {
             return Err(self.not_real(references));
         }
         if self.reals.len() < references.len() {
@@ -425,7 +446,7 @@ impl<M: Model> Instance<M> {
         values: &[f64],
     ) -> Result<(), Failure> {
         for ((reference, &order), &value) in references.iter().zip(orders).zip(values) {
-            let is_input = self.ranges.get(*reference as usize).is_some_and(|(min, max)| min <= max);
+            let is_input = self.kinds.get(*reference as usize) == Some(&Kind::Input);
             if !(is_input && order == 1 && value.abs() <= f64::MAX) {
                 return Err(self.no_slope(*reference, order, value));
             }

@@ -79,38 +79,6 @@ macro_rules! export_fmu {
             pub use $crate::fmi2::*;
             use $crate::libc::{c_char, c_double, c_int, c_uint, c_void, size_t};
 
-            /// `fmi2GetTypesPlatform`
-            #[unsafe(no_mangle)]
-            pub extern "C" fn fmi2GetTypesPlatform() -> *const c_char {
-                c"default".as_ptr()
-            }
-
-            /// `fmi2GetVersion`
-            #[unsafe(no_mangle)]
-            pub extern "C" fn fmi2GetVersion() -> *const c_char {
-                c"2.0".as_ptr()
-            }
-
-            /// `fmi2Instantiate`
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn fmi2Instantiate(
-                name: *const c_char,
-                fmu_type: c_int,
-                guid: *const c_char,
-                resources: *const c_char,
-                functions: *const CallbackFunctions,
-                visible: c_int,
-                logging_on: c_int,
-            ) -> *mut c_void {
-                unsafe { instantiate::<$model>(name, fmu_type, guid, resources, functions, visible, logging_on) }
-            }
-
-            /// `fmi2FreeInstance`
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn fmi2FreeInstance(c: *mut c_void) {
-                unsafe { $crate::fmi2::fmi2FreeInstance::<$model>(c) }
-            }
-
             $crate::export_fmi2!($model, fmi2);
         }
 
@@ -120,70 +88,6 @@ macro_rules! export_fmu {
             use super::*;
             pub use $crate::fmi3::*;
             use $crate::libc::{c_char, c_int, c_uint, c_void, size_t};
-
-            /// `fmi3GetVersion`
-            #[unsafe(no_mangle)]
-            pub extern "C" fn fmi3GetVersion() -> *const c_char {
-                c"3.0".as_ptr()
-            }
-
-            /// `fmi3InstantiateCoSimulation`
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
-                name: *const c_char,
-                token: *const c_char,
-                resources: *const c_char,
-                _visible: u8,
-                logging_on: u8,
-                event_mode: u8,
-                early_return: u8,
-                required: *const c_uint,
-                n_required: size_t,
-                environment: *mut c_void,
-                log: Option<LogMessageCallback>,
-                update: Option<IntermediateUpdateCallback>,
-            ) -> *mut c_void {
-                let (texts, log) = ([name, token, resources], (environment, log, logging_on));
-                let (flags, required) = ([event_mode, early_return], (required, n_required));
-                unsafe { instantiate_co_simulation::<$model>(texts, log, flags, required, update) }
-            }
-
-            /// `fmi3InstantiateModelExchange`
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn fmi3InstantiateModelExchange(
-                name: *const c_char,
-                token: *const c_char,
-                resources: *const c_char,
-                _visible: u8,
-                logging_on: u8,
-                environment: *mut c_void,
-                log: Option<LogMessageCallback>,
-            ) -> *mut c_void {
-                let (texts, log) = ([name, token, resources], (environment, log, logging_on));
-                unsafe { instantiate_model_exchange::<$model>(texts, log) }
-            }
-
-            /// `fmi3InstantiateScheduledExecution`. Three more arguments are not read, and not declared: the caller removes
-            /// them.
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
-                name: *const c_char,
-                token: *const c_char,
-                resources: *const c_char,
-                _visible: u8,
-                logging_on: u8,
-                environment: *mut c_void,
-                log: Option<LogMessageCallback>,
-            ) -> *mut c_void {
-                let (texts, log) = ([name, token, resources], (environment, log, logging_on));
-                unsafe { instantiate_scheduled_execution::<$model>(texts, log) }
-            }
-
-            /// `fmi3FreeInstance`
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn fmi3FreeInstance(c: *mut c_void) {
-                unsafe { $crate::fmi3::fmi3FreeInstance::<$model>(c) }
-            }
 
             $crate::export_fmi3!($model, fmi3);
         }

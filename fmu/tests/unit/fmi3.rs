@@ -1,8 +1,7 @@
 //! FMI 3.0 where it is not FMI 2.0: events, messages, calls back within a step.
 
 use crate::host::{ERROR, OK, reference, resources};
-use FlexibleRocking::fmi3::{self, *};
-use FlexibleRocking::unit::Unit;
+use FlexibleRocking::fmi3::*;
 use fmi_unit::interface::Stepping;
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
@@ -31,14 +30,17 @@ impl Host {
         let (resources, log) = (resources(), Box::<Log>::default());
         let token = CString::new(FlexibleRocking::guid(&Parameters::EVISON.into())).unwrap();
         let folder = CString::new(format!("{}/", resources.path().display())).unwrap();
-        let texts = [c"wall".as_ptr(), token.as_ptr(), folder.as_ptr()];
-        let told = ((&raw const *log).cast_mut().cast(), Some(record as LogMessageCallback), 0);
+        let [name, token, folder] = [c"wall".as_ptr(), token.as_ptr(), folder.as_ptr()];
+        let (log_of, record) = ((&raw const *log).cast_mut().cast(), Some(record as LogMessageCallback));
         let c = match stepping {
             Some(Stepping { event_mode, early_return }) => unsafe {
-                let flags = [event_mode.into(), early_return.into()];
-                fmi3::instantiate_co_simulation::<Unit>(texts, told, flags, (null(), 0), None)
+                let [events, early] = [event_mode.into(), early_return.into()];
+                let (required, count, update) = (null(), 0, None);
+                fmi3InstantiateCoSimulation(
+                    name, token, folder, 0, 0, events, early, required, count, log_of, record, update,
+                )
             },
-            None => unsafe { fmi3::instantiate_model_exchange::<Unit>(texts, told) },
+            None => unsafe { fmi3InstantiateModelExchange(name, token, folder, 0, 0, log_of, record) },
         };
         assert!(!c.is_null(), "{log:?}");
         Host { c, log, _resources: resources }
@@ -268,11 +270,12 @@ fn a_host_that_is_called_back_sets_inputs_reads_and_does_no_harm() {
     let token = CString::new(FlexibleRocking::guid(&Parameters::EVISON.into())).unwrap();
     let folder = CString::new(resources.path().to_str().unwrap()).unwrap();
     let mut called = Called { c: null_mut(), end: 2.0, read: Vec::new() };
-    let texts = [c"wall".as_ptr(), token.as_ptr(), folder.as_ptr()];
+    let [name, token, folder] = [c"wall".as_ptr(), token.as_ptr(), folder.as_ptr()];
     let (a_g, theta, environment) = (reference("a_g"), reference("theta"), &raw mut called);
     let with = |required: &[c_uint], environment: *mut Called| unsafe {
-        let required = (required.as_ptr(), required.len());
-        fmi3::instantiate_co_simulation::<Unit>(texts, (environment.cast(), None, 0), [0, 0], required, Some(update))
+        let (required, count, environment) = (required.as_ptr(), required.len(), environment.cast());
+        let instantiate = fmi3InstantiateCoSimulation;
+        instantiate(name, token, folder, 0, 0, 0, 0, required, count, environment, None, Some(update))
     };
     assert!(with(&[a_g, c_uint::MAX], environment).is_null());
     for (required, sets, reads) in [(&[a_g][..], true, false), (&[theta], false, true), (&[a_g, theta], true, true)] {
