@@ -184,8 +184,9 @@ fn a_refusal_names_the_function_and_what_to_call() {
             step(1.0, 0.1),
             step(0.0, 3.0),
             fmi3SerializeFMUState(c, state, null_mut(), 0),
+            fmi3GetDirectionalDerivative(c, &2, 1, &0, 1, &1.0, 2, &mut 0.0, 1),
         ];
-        assert_eq!(refused, [ERROR; 9]);
+        assert_eq!(refused, [ERROR; 10]);
         assert_eq!((fmi3EnterContinuousTimeMode(model.c), fmi3SetTime(model.c, -1.0)), (OK, OK));
         assert_eq!(fmi3CompletedIntegratorStep(model.c, 1, &mut 0, &mut 0), ERROR);
     }
@@ -205,6 +206,7 @@ fn a_refusal_names_the_function_and_what_to_call() {
          fmi3SetFMUState",
         "fmi3DoStep: the step would end at t = 3 s, past stopTime = 2 s given to fmi3EnterInitializationMode: shorten it",
         &format!("fmi3SerializeFMUState: size = 0 does not fit: the serialized FMU state {bytes}"),
+        "fmi3GetDirectionalDerivative: nSeed = 2 is not 1",
     ];
     assert_eq!(host.log.take(), expected);
     let ends = "time must not fall below the last event or complete step; to go back, call fmi3SetFMUState";
