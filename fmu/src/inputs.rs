@@ -194,8 +194,8 @@ impl Inputs {
         self.given = [Given::Nothing; LOADS.len()];
     }
 
-    /// Sets the inputs that act at once to where they have come. Those that act late have come to where they are set, whatever
-    /// the rounding, unless the step has ended early.
+    /// Sets the inputs that act at once to where the step has led. Late inputs go to their set values, whatever the rounding,
+    /// unless the step has ended early.
     #[cold]
     #[inline(never)]
     fn arrive(&mut self) {

@@ -37,7 +37,7 @@ pub struct Unit {
     told_of_stairs: bool,
 }
 
-/// A few dozen numbers from which an instance goes on to the same bits: its part of an FMU state.
+/// All from which an instance goes on to the same bits: its part of an FMU state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Condition {
     /// The settings before the start.

@@ -452,14 +452,19 @@ pub(crate) fn escaped(message: &str, marks: &[char]) -> CString {
 
 /// The functions that take an instance, in the words of a version of the standard: of each the name, the item of the
 /// version's [`Function`] that it is, the arguments after the component, and what is asked of the instance: nothing of
-/// those that are never allowed. Those in brackets are written out elsewhere, those in braces take no instance. The macro
-/// `$export` exports all of them for a model, where the types of the arguments are in scope.
+/// those that are never allowed. Those in brackets call the instance themselves, those in braces make one, free it or take
+/// none. The macro `$export` exports all of them for a model, where the types of the arguments are in scope.
 macro_rules! functions {
     (@) => { |_| Ok(()) };
     (@ |$instance:ident| $body:block) => { |$instance| $body };
     ($export:ident
-    $({$other:ident($($other_argument:ident: $other_type:ty),* $(,)?) $(-> $returned:ty)?})*
-    $([$apart:ident = $apart_function:ident($($apart_argument:ident: $apart_type:ty),* $(,)?)])* $(
+    $({
+        $(#[$other_doc:meta])*
+        $other:ident($($other_argument:ident: $other_type:ty),* $(,)?) $(-> $returned:ty)? $other_body:block
+    })* $([
+        $(#[$apart_doc:meta])*
+        $apart:ident = $apart_function:ident($($apart_argument:ident: $apart_type:ty),* $(,)?) $apart_body:block
+    ])* $(
         $(#[$doc:meta])*
         $name:ident = $function:ident($($argument:ident: $type:ty),* $(,)?) $(|$instance:ident| $body:block)?
     )*) => {
@@ -489,6 +494,20 @@ macro_rules! functions {
         }
 
         $(
+            #[doc = concat!("`", stringify!($other), "`")]
+            #[doc = ""]
+            $(#[$other_doc])*
+            pub unsafe fn $other<M: $crate::Model>($($other_argument: $other_type),*) $(-> $returned)? $other_body
+        )*
+
+        $(
+            #[doc = concat!("`", stringify!($apart), "`")]
+            #[doc = ""]
+            $(#[$apart_doc])*
+            pub unsafe fn $apart<M: $crate::Model>($($apart_argument: $apart_type),*) -> c_int $apart_body
+        )*
+
+        $(
             #[doc = concat!("`", stringify!($name), "`")]
             #[doc = ""]
             $(#[$doc])*
@@ -509,7 +528,7 @@ macro_rules! functions {
                 $crate::exported! {
                     $model, $version:
                     $($other($($other_argument: $other_type),*) $(-> $returned)?;)*
-                    $($apart(c: *mut c_void $(, $apart_argument: $apart_type)*) -> c_int;)*
+                    $($apart($($apart_argument: $apart_type),*) -> c_int;)*
                     $($name(c: *mut c_void $(, $argument: $type)*) -> c_int;)*
                 }
             };

@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::instance::Instance;
 use crate::interface::{Interface, Stepping};
 use crate::logger::{Logger, Sink};
-use crate::model::{Experiment, Model, Progress, Update};
+use crate::model::{Experiment, Progress, Update};
 use crate::state_machine::{Stage, Table};
 use crate::uri;
 use crate::variables::{DataType, Role};
@@ -60,64 +60,6 @@ pub struct EventInfo {
     pub next_event_time: c_double,
 }
 
-/// `fmi2GetTypesPlatform`
-pub unsafe fn fmi2GetTypesPlatform<M>() -> *const c_char {
-    c"default".as_ptr()
-}
-
-/// `fmi2GetVersion`
-pub unsafe fn fmi2GetVersion<M>() -> *const c_char {
-    c"2.0".as_ptr()
-}
-
-/// `fmi2Instantiate` of the model `M`
-pub unsafe fn fmi2Instantiate<M: Model>(
-    instanceName: *const c_char,
-    fmuType: c_int,
-    fmuGUID: *const c_char,
-    fmuResourceLocation: *const c_char,
-    functions: *const CallbackFunctions,
-    _visible: c_int,
-    loggingOn: c_int,
-) -> *mut c_void {
-    let create = || {
-        check_pointer("functions", functions).ok()?;
-        let name = unsafe { text("instanceName", instanceName) };
-        let logger = Logger::new(sink(unsafe { &*functions }, name.as_ref().unwrap_or(&"")));
-        let arguments = || {
-            let accepted = "0 (fmi2ModelExchange), 1 (fmi2CoSimulation)";
-            let interface = match fmuType {
-                MODEL_EXCHANGE => Interface::ModelExchange,
-                CO_SIMULATION => Interface::CoSimulation(Stepping::default()),
-                value => return Err(Failure::BadChoice { name: "fmuType".into(), value, accepted }),
-            };
-            let guid = unsafe { text("fmuGUID", fmuGUID) };
-            let location = unsafe { text("fmuResourceLocation", fmuResourceLocation) };
-            let events = boolean("loggingOn", loggingOn);
-            if name?.is_empty() {
-                return Err(Failure::NoName);
-            }
-            let location = location?;
-            let folder = uri::path(location).ok_or_else(|| Failure::NotAFileUri(location.to_owned()))?;
-            Ok((c_abi::open::<M>("fmuGUID", guid?, &folder)?, interface, events?))
-        };
-        match arguments() {
-            Ok((model, interface, events)) => {
-                let allowed_in: &Table = match interface {
-                    Interface::ModelExchange => &stages::MODEL_EXCHANGE,
-                    Interface::CoSimulation(_) => &stages::CO_SIMULATION,
-                };
-                Some((Instance::new(model, interface, events, logger, None), allowed_in))
-            }
-            Err(failure) => {
-                logger.failure(failure.status(), &format!("fmi2Instantiate: {failure}"));
-                None
-            }
-        }
-    };
-    c_abi::instantiate::<Function, M>(create)
-}
-
 fn sink(functions: &CallbackFunctions, instance_name: &str) -> Sink {
     let Some(logger) = functions.logger else { return Box::new(|_, _, _| ()) };
     let environment = functions.component_environment;
@@ -126,11 +68,6 @@ fn sink(functions: &CallbackFunctions, instance_name: &str) -> Sink {
     Box::new(move |status, category, message| unsafe {
         logger(environment, name.as_ptr(), status as c_int, category.as_ptr(), escaped(message, &['%', '#']).as_ptr());
     })
-}
-
-/// `fmi2FreeInstance` of the model `M`. Ignored for null, and while a call is under way, as from within the logger.
-pub unsafe fn fmi2FreeInstance<M: Model>(c: *mut c_void) {
-    unsafe { c_abi::free::<Function, M>(c) }
 }
 
 /// The truth that the `fmi2Boolean` `value`, given as `name`, stands for.
@@ -171,13 +108,57 @@ const WORDS: Words = Words {
 
 functions! {
     export_fmi2
-    {fmi2GetTypesPlatform() -> *const c_char}
-    {fmi2GetVersion() -> *const c_char}
-    {fmi2Instantiate(
+
+    { fmi2GetTypesPlatform() -> *const c_char { c"default".as_ptr() } }
+
+    { fmi2GetVersion() -> *const c_char { c"2.0".as_ptr() } }
+
+    { fmi2Instantiate(
         instanceName: *const c_char, fmuType: c_int, fmuGUID: *const c_char, fmuResourceLocation: *const c_char,
-        functions: *const CallbackFunctions, visible: c_int, loggingOn: c_int,
-    ) -> *mut c_void}
-    {fmi2FreeInstance(c: *mut c_void)}
+        functions: *const CallbackFunctions, _visible: c_int, loggingOn: c_int,
+    ) -> *mut c_void {
+        let create = || {
+            check_pointer("functions", functions).ok()?;
+            let name = unsafe { text("instanceName", instanceName) };
+            let logger = Logger::new(sink(unsafe { &*functions }, name.as_ref().unwrap_or(&"")));
+            let arguments = || {
+                let accepted = "0 (fmi2ModelExchange), 1 (fmi2CoSimulation)";
+                let interface = match fmuType {
+                    MODEL_EXCHANGE => Interface::ModelExchange,
+                    CO_SIMULATION => Interface::CoSimulation(Stepping::default()),
+                    value => return Err(Failure::BadChoice { name: "fmuType".into(), value, accepted }),
+                };
+                let guid = unsafe { text("fmuGUID", fmuGUID) };
+                let location = unsafe { text("fmuResourceLocation", fmuResourceLocation) };
+                let events = boolean("loggingOn", loggingOn);
+                if name?.is_empty() {
+                    return Err(Failure::NoName);
+                }
+                let location = location?;
+                let folder = uri::path(location).ok_or_else(|| Failure::NotAFileUri(location.to_owned()))?;
+                Ok((c_abi::open::<M>("fmuGUID", guid?, &folder)?, interface, events?))
+            };
+            match arguments() {
+                Ok((model, interface, events)) => {
+                    let allowed_in: &Table = match interface {
+                        Interface::ModelExchange => &stages::MODEL_EXCHANGE,
+                        Interface::CoSimulation(_) => &stages::CO_SIMULATION,
+                    };
+                    Some((Instance::new(model, interface, events, logger, None), allowed_in))
+                }
+                Err(failure) => {
+                    logger.failure(failure.status(), &format!("fmi2Instantiate: {failure}"));
+                    None
+                }
+            }
+        };
+        c_abi::instantiate::<Function, M>(create)
+    } }
+
+    {
+        /// Ignored for null, and while a call is under way, as from within the logger.
+        fmi2FreeInstance(c: *mut c_void) { unsafe { c_abi::free::<Function, M>(c) } }
+    }
 
     fmi2SetDebugLogging = SetDebugLogging(
         loggingOn: c_int, nCategories: size_t, categories: *const *const c_char,

@@ -30,81 +30,6 @@ pub type LogMessageCallback = unsafe extern "C" fn(*mut c_void, c_int, *const c_
 
 const MAGIC: u64 = 0x466d_6955_6e69_7433;
 
-/// `fmi3GetVersion`
-pub unsafe fn fmi3GetVersion<M>() -> *const c_char {
-    c"3.0".as_ptr()
-}
-
-/// `fmi3InstantiateCoSimulation` of the model `M`
-#[allow(clippy::too_many_arguments)] // the standard's
-pub unsafe fn fmi3InstantiateCoSimulation<M: Model>(
-    instanceName: *const c_char,
-    instantiationToken: *const c_char,
-    resourcePath: *const c_char,
-    _visible: u8,
-    loggingOn: u8,
-    eventModeUsed: u8,
-    earlyReturnAllowed: u8,
-    requiredIntermediateVariables: *const c_uint,
-    nRequiredIntermediateVariables: size_t,
-    environment: *mut c_void,
-    logMessage: Option<LogMessageCallback>,
-    intermediateUpdate: Option<IntermediateUpdateCallback>,
-) -> *mut c_void {
-    let interface = |model: &M| {
-        let event_mode = boolean("eventModeUsed", eventModeUsed)?;
-        let early_return = boolean("earlyReturnAllowed", earlyReturnAllowed)?;
-        let (name, length) = ("requiredIntermediateVariables", nRequiredIntermediateVariables);
-        let required = unsafe { values(name, requiredIntermediateVariables, length) }?;
-        let variables = model.variables();
-        let (mut sets_inputs, mut gets_outputs) = (false, false);
-        for &reference in required {
-            let last = variables.len() - 1;
-            let variable = variables.get(reference as usize).ok_or(Failure::UnknownReference { reference, last })?;
-            let is_input = variable.causality == Causality::Input;
-            (sets_inputs, gets_outputs) = (sets_inputs || is_input, gets_outputs || !is_input);
-        }
-        let host =
-            intermediateUpdate.map(|update| IntermediateUpdate { update, environment, sets_inputs, gets_outputs });
-        let allowed_in: &Table = &stages::CO_SIMULATION;
-        Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), allowed_in, host))
-    };
-    let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
-    unsafe { create("fmi3InstantiateCoSimulation", texts, log, interface) }
-}
-
-/// `fmi3InstantiateModelExchange` of the model `M`
-pub unsafe fn fmi3InstantiateModelExchange<M: Model>(
-    instanceName: *const c_char,
-    instantiationToken: *const c_char,
-    resourcePath: *const c_char,
-    _visible: u8,
-    loggingOn: u8,
-    environment: *mut c_void,
-    logMessage: Option<LogMessageCallback>,
-) -> *mut c_void {
-    let allowed_in: &Table = &stages::MODEL_EXCHANGE;
-    let interface = |_: &M| Ok((Interface::ModelExchange, allowed_in, None));
-    let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
-    unsafe { create("fmi3InstantiateModelExchange", texts, log, interface) }
-}
-
-/// `fmi3InstantiateScheduledExecution`: there is nothing to schedule. Three more arguments are not read, and not declared:
-/// the caller removes them.
-pub unsafe fn fmi3InstantiateScheduledExecution<M: Model>(
-    instanceName: *const c_char,
-    instantiationToken: *const c_char,
-    resourcePath: *const c_char,
-    _visible: u8,
-    loggingOn: u8,
-    environment: *mut c_void,
-    logMessage: Option<LogMessageCallback>,
-) -> *mut c_void {
-    let interface = |_: &M| Err(Failure::NotThisInterface);
-    let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
-    unsafe { create("fmi3InstantiateScheduledExecution", texts, log, interface) }
-}
-
 /// An instance of the `interface` that `function` makes; null, with the reason in the log, if there is none.
 unsafe fn create<M: Model>(
     function: &str,
@@ -170,11 +95,6 @@ impl IntermediateUpdate {
     }
 }
 
-/// `fmi3FreeInstance` of the model `M`. Ignored for null, and while a call is under way, as from within a callback.
-pub unsafe fn fmi3FreeInstance<M: Model>(instance: *mut c_void) {
-    unsafe { c_abi::free::<Function, M>(instance) }
-}
-
 /// The truth that the `fmi3Boolean` `value`, given as `name`, stands for.
 fn boolean(name: &str, value: u8) -> Result<bool, Failure> {
     match value {
@@ -210,85 +130,117 @@ const WORDS: Words = Words {
     status: "", // none is ever asked for
 };
 
-/// `fmi3DoStep`
-///
-/// `noSetFMUStatePriorToCurrentPoint` is ignored: FMU states are kept until the host frees them. Between the parts of
-/// this function the host is called back, and may call the instance.
-pub unsafe fn fmi3DoStep<M: Model>(
-    c: *mut c_void,
-    currentCommunicationPoint: f64,
-    communicationStepSize: f64,
-    _noSetFMUStatePriorToCurrentPoint: u8,
-    eventHandlingNeeded: *mut u8,
-    terminateSimulation: *mut u8,
-    earlyReturn: *mut u8,
-    lastSuccessfulTime: *mut f64,
-) -> c_int {
-    let (point, step) = (currentCommunicationPoint, communicationStepSize);
-    let check = || {
-        check_pointer("eventHandlingNeeded", eventHandlingNeeded)?;
-        check_pointer("terminateSimulation", terminateSimulation)?;
-        check_pointer("earlyReturn", earlyReturn)?;
-        check_pointer("lastSuccessfulTime", lastSuccessfulTime)
-    };
-    let (mut asked, mut told) = (None, None);
-    let mut compute = |instance: &mut Instance<M>| unsafe {
-        let progress = instance.do_step(point, step)?;
-        let (time, may_return_early) = (instance.model.time()?, instance.may_return_early());
-        if let (Progress::Ended, Some(ending)) = (progress, instance.ending()?) {
-            instance.logger.warning(&format!("fmi3DoStep: {ending}"));
-        }
-        write("eventHandlingNeeded", eventHandlingNeeded, u8::from(progress == Progress::Event))?;
-        write("terminateSimulation", terminateSimulation, u8::from(progress == Progress::Ended))?;
-        write("earlyReturn", earlyReturn, u8::from(may_return_early && time < point + step))?;
-        write("lastSuccessfulTime", lastSuccessfulTime, time)?;
-        told = instance.show_step().map(|host| (host, time));
-        Ok(())
-    };
-    let begin = |instance: &mut Instance<M>| {
-        check()?;
-        asked = instance.begin_step(point, step)?;
-        if asked.is_none() { compute(instance) } else { Ok(()) }
-    };
-    let mut status = unsafe { call(c, Function::DoStep, begin) };
-    if let Some(host) = asked {
-        unsafe { call_back::<Function, M>(c, || host.ask_for_inputs(point + step)) };
-        status = unsafe { call_on(c, Function::DoStep, compute) };
-    }
-    if let Some((host, time)) = told {
-        unsafe { call_back::<Function, M>(c, || host.show_outputs(time)) };
-        let end = |instance: &mut Instance<M>| {
-            instance.end_step();
-            Ok(())
-        };
-        status = unsafe { call_on(c, Function::DoStep, end) };
-    }
-    status
-}
-
 functions! {
     export_fmi3
-    {fmi3GetVersion() -> *const c_char}
-    {fmi3InstantiateCoSimulation(
-        instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, visible: u8,
+
+    { fmi3GetVersion() -> *const c_char { c"3.0".as_ptr() } }
+
+    {
+        #[allow(clippy::too_many_arguments)] // the standard's
+        fmi3InstantiateCoSimulation(
+        instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, _visible: u8,
         loggingOn: u8, eventModeUsed: u8, earlyReturnAllowed: u8, requiredIntermediateVariables: *const c_uint,
         nRequiredIntermediateVariables: size_t, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
         intermediateUpdate: Option<IntermediateUpdateCallback>,
-    ) -> *mut c_void}
-    {fmi3InstantiateModelExchange(
-        instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, visible: u8,
-        loggingOn: u8, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
-    ) -> *mut c_void}
-    {fmi3InstantiateScheduledExecution(
-        instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, visible: u8,
-        loggingOn: u8, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
-    ) -> *mut c_void}
-    {fmi3FreeInstance(instance: *mut c_void)}
+    ) -> *mut c_void {
+        let interface = |model: &M| {
+            let event_mode = boolean("eventModeUsed", eventModeUsed)?;
+            let early_return = boolean("earlyReturnAllowed", earlyReturnAllowed)?;
+            let (name, length) = ("requiredIntermediateVariables", nRequiredIntermediateVariables);
+            let required = unsafe { values(name, requiredIntermediateVariables, length) }?;
+            let variables = model.variables();
+            let (mut sets_inputs, mut gets_outputs) = (false, false);
+            for &reference in required {
+                let last = variables.len() - 1;
+                let variable = variables.get(reference as usize).ok_or(Failure::UnknownReference { reference, last })?;
+                let is_input = variable.causality == Causality::Input;
+                (sets_inputs, gets_outputs) = (sets_inputs || is_input, gets_outputs || !is_input);
+            }
+            let host =
+                intermediateUpdate.map(|update| IntermediateUpdate { update, environment, sets_inputs, gets_outputs });
+            let allowed_in: &Table = &stages::CO_SIMULATION;
+            Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), allowed_in, host))
+        };
+        let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
+        unsafe { create("fmi3InstantiateCoSimulation", texts, log, interface) }
+    } }
 
-    [fmi3DoStep = DoStep(
-        currentCommunicationPoint: f64, communicationStepSize: f64, noSetFMUStatePriorToCurrentPoint: u8,
-        eventHandlingNeeded: *mut u8, terminateSimulation: *mut u8, earlyReturn: *mut u8, lastSuccessfulTime: *mut f64,
-    )]
+    { fmi3InstantiateModelExchange(
+        instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, _visible: u8,
+        loggingOn: u8, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
+    ) -> *mut c_void {
+        let allowed_in: &Table = &stages::MODEL_EXCHANGE;
+        let interface = |_: &M| Ok((Interface::ModelExchange, allowed_in, None));
+        let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
+        unsafe { create("fmi3InstantiateModelExchange", texts, log, interface) }
+    } }
+
+    {
+        /// There is nothing to schedule. Three more arguments are not read, and not declared: the caller removes them.
+        fmi3InstantiateScheduledExecution(
+        instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, _visible: u8,
+        loggingOn: u8, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
+    ) -> *mut c_void {
+        let interface = |_: &M| Err(Failure::NotThisInterface);
+        let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
+        unsafe { create("fmi3InstantiateScheduledExecution", texts, log, interface) }
+    } }
+
+    {
+        /// Ignored for null, and while a call is under way, as from within a callback.
+        fmi3FreeInstance(instance: *mut c_void) { unsafe { c_abi::free::<Function, M>(instance) } }
+    }
+
+    [
+        /// `noSetFMUStatePriorToCurrentPoint` is ignored: FMU states are kept until the host frees them. Between the parts of
+        /// this function the host is called back, and may call the instance.
+        #[allow(clippy::too_many_arguments)] // the standard's
+        fmi3DoStep = DoStep(
+        c: *mut c_void, currentCommunicationPoint: f64, communicationStepSize: f64,
+        _noSetFMUStatePriorToCurrentPoint: u8, eventHandlingNeeded: *mut u8, terminateSimulation: *mut u8,
+        earlyReturn: *mut u8, lastSuccessfulTime: *mut f64,
+    ) {
+        let (point, step) = (currentCommunicationPoint, communicationStepSize);
+        let check = || {
+            check_pointer("eventHandlingNeeded", eventHandlingNeeded)?;
+            check_pointer("terminateSimulation", terminateSimulation)?;
+            check_pointer("earlyReturn", earlyReturn)?;
+            check_pointer("lastSuccessfulTime", lastSuccessfulTime)
+        };
+        let (mut asked, mut told) = (None, None);
+        let mut compute = |instance: &mut Instance<M>| unsafe {
+            let progress = instance.do_step(point, step)?;
+            let (time, may_return_early) = (instance.model.time()?, instance.may_return_early());
+            if let (Progress::Ended, Some(ending)) = (progress, instance.ending()?) {
+                instance.logger.warning(&format!("fmi3DoStep: {ending}"));
+            }
+            write("eventHandlingNeeded", eventHandlingNeeded, u8::from(progress == Progress::Event))?;
+            write("terminateSimulation", terminateSimulation, u8::from(progress == Progress::Ended))?;
+            write("earlyReturn", earlyReturn, u8::from(may_return_early && time < point + step))?;
+            write("lastSuccessfulTime", lastSuccessfulTime, time)?;
+            told = instance.show_step().map(|host| (host, time));
+            Ok(())
+        };
+        let begin = |instance: &mut Instance<M>| {
+            check()?;
+            asked = instance.begin_step(point, step)?;
+            if asked.is_none() { compute(instance) } else { Ok(()) }
+        };
+        let mut status = unsafe { call(c, Function::DoStep, begin) };
+        if let Some(host) = asked {
+            unsafe { call_back::<Function, M>(c, || host.ask_for_inputs(point + step)) };
+            status = unsafe { call_on(c, Function::DoStep, compute) };
+        }
+        if let Some((host, time)) = told {
+            unsafe { call_back::<Function, M>(c, || host.show_outputs(time)) };
+            let end = |instance: &mut Instance<M>| {
+                instance.end_step();
+                Ok(())
+            };
+            status = unsafe { call_on(c, Function::DoStep, end) };
+        }
+        status
+    } ]
 
     fmi3SetDebugLogging = SetDebugLogging(
         loggingOn: u8, nCategories: size_t, categories: *const *const c_char,

@@ -238,8 +238,8 @@ impl<M: Model> Instance<M> {
     #[inline(always)]
     pub(crate) fn get_real(&mut self, references: &[u32]) -> Result<&[f64], Failure> {
         let is_real = |reference: &u32| self.kinds.get(*reference as usize).is_some_and(|kind| *kind != Kind::Other);
-        if !references.iter().all(is_real) {
-            return Err(self.not_real(references));
+        if let Some(wrong) = references.iter().find(|reference| !is_real(reference)) {
+            return Err(self.not_real(*wrong));
         }
         if self.reals.len() < references.len() {
             self.reals.resize(references.len(), 0.0);
@@ -250,11 +250,8 @@ impl<M: Model> Instance<M> {
     }
 
     #[cold]
-    fn not_real(&self, references: &[u32]) -> Failure {
-        let is_real = |variable: &&Variable| matches!(variable.data_type, DataType::Real { .. });
-        let mut found = references.iter().map(|reference| self.find(*reference));
-        let wrong = found.find(|variable| variable.as_ref().ok().is_none_or(|variable| !is_real(variable)));
-        wrong.expect("one is wrong").map_or_else(|failure| failure, Failure::wrong_type)
+    fn not_real(&self, reference: u32) -> Failure {
+        self.find(reference).map_or_else(|failure| failure, Failure::wrong_type)
     }
 
     /// Reads what is no real number, of the types that are `of_type`.

@@ -12,8 +12,7 @@ use std::thread;
 
 #[test]
 fn the_library_says_what_it_is() {
-    let [platform, version] =
-        unsafe { [fmi2GetTypesPlatform(), fmi2GetVersion()].map(|text| CStr::from_ptr(text)) };
+    let [platform, version] = unsafe { [fmi2GetTypesPlatform(), fmi2GetVersion()].map(|text| CStr::from_ptr(text)) };
     assert_eq!((platform, version), (c"default", c"2.0"));
     let [evison, mcmanus] = [Parameters::EVISON, Parameters::MCMANUS].map(|parameters| guid(&parameters.into()));
     for guid in [BUILD, &evison, &mcmanus] {

@@ -448,6 +448,11 @@ impl<'a> Sequence<'a> {
             "EnterStepMode" => Stage::StepComplete,
             "EnterContinuousTimeMode" => Stage::ContinuousTimeMode,
             "Terminate" => Stage::Terminated,
+            "GetNumberOfContinuousStates" | "GetNumberOfEventIndicators" => {
+                let counts = [self.subject.states().count(), self.subject.indicators()];
+                assert_eq!(self.drawn.rooms[0].words[0] as usize, counts[usize::from(name.ends_with("Indicators"))]);
+                before.stage
+            }
             "Reset" => {
                 assert!(after == self.new, "it is not what it was when it was made");
                 Stage::Instantiated
