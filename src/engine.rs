@@ -20,7 +20,7 @@ use crate::levels::detail::{AnyLevel, Detail, by_level};
 use crate::levels::level::{Level, Subject};
 use crate::levels::modes::Nonlinear;
 use crate::mechanics::energy::energy;
-use crate::mechanics::lateral::{Coordinates, Modes};
+use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
@@ -368,6 +368,8 @@ impl Engine<Modes> {
         settings: Settings,
     ) -> Result<Engine<Modes>, InitialStateError> {
         let phase = state.phase()?;
+        let of_frame = |numbers: Modes| Modes::each(&frame, |j, _| numbers.of(j));
+        let state = State { u: of_frame(state.u), u_dot: of_frame(state.u_dot), ..state };
         let is_tied = frame.base.is_restrained() || settings.vertical;
         let angles = settings.detail.angles();
         let subject = Subject { structure: frame, local_error: settings.local_error()?, is_tied, angles };

@@ -97,6 +97,13 @@ impl Mode {
     }
 }
 
+impl Floor {
+    /// Elastic displacement of the floor at the coordinates `u`, m.
+    pub fn displacement(&self, u: &Modes) -> f64 {
+        self.shape.dot(u)
+    }
+}
+
 impl Frame {
     /// The structure of this `body` with these `modes`, which shows these `floors`.
     pub fn new(body: Body, modes: &[Mode], floors: &[Floor]) -> Result<Frame, FrameError> {
