@@ -1,5 +1,5 @@
-//! A frame of many masses under accelerations that are linear between samples: numbers are read, transitions and the motion of
-//! the floors at the samples are printed (tests/test_frames.py).
+//! A frame of many masses under accelerations that are linear between samples: numbers are read, transitions, and
+//! rotation, displacements and accelerations of the floors at the samples are printed (tests/test_frames.py).
 #![allow(non_snake_case)] // the letters of the equations
 
 use rocking::engine::Settings;
@@ -38,9 +38,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let [value, end] = [pair[0], pair[1]].map(|[a_g, a_v]| Load { a_g, a_v, ..Load::default() });
         let slope = Load { a_g: (end.a_g - value.a_g) / dt, a_v: (end.a_v - value.a_v) / dt, ..value };
         engine.advance(dt, LinearLoad { value, slope }, &mut show)?;
-        let State { theta, u, .. } = &engine.motion().state;
+        let (State { theta, u, .. }, now) = (&engine.motion().state, engine.sample(end));
         print!("S {theta:?}");
         engine.frame().floors().iter().for_each(|floor| print!(" {:?}", floor.displacement(u)));
+        engine.frame().gauges().a.iter().for_each(|gauge| print!(" {:?}", now.value(gauge)));
         println!();
     }
     Ok(())

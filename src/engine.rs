@@ -298,11 +298,6 @@ impl Engine {
         *phase == Phase::FullContact && self.level.stays_down(state, dissipators)
     }
 
-    /// The motion now, under `load`.
-    pub fn sample(&self, load: Load) -> Sample<'_> {
-        Sample { motion: self.motion, load, level: &self.level }
-    }
-
     /// The outputs now under `load`; once overturned, those of the instant before.
     pub fn outputs(&self, load: Load) -> Outputs {
         self.level.outputs(self.motion.phase.in_motion(), &self.motion.under(load)) // a sample would copy the motion
@@ -425,6 +420,11 @@ impl<Q: Moves> Engine<Q> {
     /// The motion now.
     pub fn motion(&self) -> &Motion<Q> {
         &self.motion
+    }
+
+    /// The motion now, under `load`.
+    pub fn sample(&self, load: Load<Q>) -> Sample<'_, Q> {
+        Sample { motion: self.motion, load, level: &self.level }
     }
 
     /// Puts the structure in this `motion`.

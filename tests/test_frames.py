@@ -41,7 +41,7 @@ def program():
 
 
 def engine(program: Path, frame: Frame, dt: float, a_g, a_v, ties: Ties, detail: str):
-    """Transitions, and rows of theta and u at the samples, by the modes of the frame (examples/frame_scene.rs)."""
+    """Transitions, and rows of theta, u and a at the samples, by the modes of the frame (examples/frame_scene.rs)."""
     phi, M_phi = frame.phi, frame.m[:, None] * frame.phi
     zeta = np.diag(phi.T @ frame.C @ phi) / (2 * frame.omega)
     numbers = [detail == "auto", 1e-11, frame.m0, frame.J0, frame.m.sum(), frame.S_1, frame.I_2, frame.B, frame.r or -1, frame.g,
@@ -56,13 +56,14 @@ def engine(program: Path, frame: Frame, dt: float, a_g, a_v, ties: Ties, detail:
 
 @pytest.mark.parametrize("name, motion, tied", SCENES)
 def test_modes_move_as_the_masses_do(name, motion, tied, program):
-    """Every transition, and theta and u of every floor at every sample, to 1e-9 of the peak, at both levels."""
+    """Every transition, and theta, u and a of every floor at every sample, to 1e-9 of the peak, at both levels."""
     frame, *rest = scene(name, motion, tied)
+    n = len(frame.masses)
     exact = frames_reference.simulate(frame, *rest)
     times, kinds = zip(*((transition.time, transition.kind.split()[0]) for transition in exact.transitions))
     for detail in ("auto", "nonlinear"):
         transitions, rows = engine(program, frame, *rest, detail)
         assert [kind for _, kind in transitions] == list(kinds)
         np.testing.assert_allclose([time for time, _ in transitions], times, rtol=0, atol=1e-9)
-        for found, expected in ((rows[:, 0], exact.theta[1:]), (rows[:, 1:], exact.u[1:])):
+        for found, expected in zip(np.split(rows, [1, n + 1], axis=1), (exact.theta[1:, None], exact.u[1:], exact.a[1:])):
             np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9 * np.abs(expected).max())

@@ -71,6 +71,8 @@ type PairSeries = [f64x2; MAX_ORDER + 1];
 /// Two modes side by side; beside the last of an odd number, a mode without mass that stays at rest.
 #[derive(Clone, Debug, Default)]
 struct Pair {
+    /// The number of the first mode.
+    first: usize,
     mass: f64x2,
     share: f64x2,
     height: f64x2,
@@ -93,9 +95,10 @@ struct Pair {
 }
 
 impl Pair {
-    fn new(modes: &[Mode]) -> Pair {
+    fn new((place, modes): (usize, &[Mode])) -> Pair {
         let both = |of: fn(&Mode) -> f64| f64x2::new([0, 1].map(|i| modes.get(i).map_or(0.0, of)));
         Pair {
+            first: 2 * place,
             mass: both(|mode| mode.mass),
             share: both(|mode| mode.share),
             height: both(|mode| mode.height),
@@ -153,10 +156,11 @@ fn hold(base: &Base, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
     base.m_t * (base.g + a_v) * base.B + tendon.force * base.B + side.sign() * residual
 }
 
-/// The moments that lift the base, to the right, N·m: of the springs (M3), and of all that gives D θ̈ at θ = θ̇ = 0 (M2).
-fn lifting(frame: &Frame, u: &Modes, u_dot: &Modes, weight: f64) -> [f64; 2] {
-    let &Base { c_ratio, .. } = Modes::base(frame);
-    let springs = Modes::sum(frame, |j, mode| mode.height * mode.stiffness * u.of(j));
+/// The moments that lift the base, to the right, N·m: of the springs and of the mass that rides rigidly under the ground acceleration
+/// `a_g` (M3), and of all that gives D θ̈ at θ = θ̇ = 0 (M2).
+fn lifting(frame: &Frame, u: &Modes, u_dot: &Modes, [a_g, weight]: [f64; 2]) -> [f64; 2] {
+    let &Base { S_res, c_ratio, .. } = Modes::base(frame);
+    let springs = Modes::sum(frame, |j, mode| mode.height * mode.stiffness * u.of(j)) - S_res * a_g;
     let others = Modes::sum(frame, |j, mode| {
         mode.height * (c_ratio * mode.damping) * u_dot.of(j) + mode.gamma * weight * u.of(j)
     });
@@ -185,7 +189,7 @@ impl Nonlinear {
             quickening: base.J_P / left,
             longest_span: LONGEST_SPAN / fastest,
             scratch: RefCell::new(Box::new(Scratch {
-                pairs: frame.modes().chunks(2).map(Pair::new).collect(),
+                pairs: frame.modes().chunks(2).enumerate().map(Pair::new).collect(),
                 factors: [[NO_ROW; MAX_ORDER + 1]; 2],
                 square: [f64x2::ZERO; MAX_ORDER + 1],
             })),
@@ -224,14 +228,16 @@ impl Nonlinear {
         let Start { state, a_top, interval, .. } = start;
         let span = interval.min(LONGEST_SPAN / Modes::vibration(&self.subject.structure).rocking[1]);
         let pairs = &mut self.scratch.borrow_mut().pairs;
-        for (pair, j) in pairs.iter_mut().zip((0..).step_by(2)) {
+        for pair in pairs.iter_mut() {
+            let j = pair.first;
             pair.motion = [state.u.pair(j), state.u_dot.pair(j)];
             pair.push = [a_top.value.pair(j), a_top.slope.pair(j) * span];
         }
         let truncation = self.truncation(start, span, false);
         arc.expand_in_place(state, span, &truncation, |arc, k, per| {
             arc.u_dot[k].count_as(&state.u_dot);
-            for (pair, j) in pairs.iter_mut().zip((0..).step_by(2)) {
+            for pair in pairs.iter_mut() {
+                let j = pair.first;
                 let [u, u_dot] = pair.motion;
                 let mut rate = pair.damping * u_dot + pair.stiffness * u;
                 if let Some(load) = pair.push.get(k - 1) {
@@ -259,7 +265,8 @@ impl Nonlinear {
         let (ground, ground_slope) = (a_g.value, a_g.slope * span);
         let Scratch { pairs, factors: [left, right], square } = &mut **self.scratch.borrow_mut();
         let (mut inertia, mut offset, mut is_pushed) = (f64x2::ZERO, f64x2::ZERO, false);
-        for (pair, j) in pairs.iter_mut().zip((0..).step_by(2)) {
+        for pair in pairs.iter_mut() {
+            let j = pair.first;
             let lever = pair.share * pivot - state.u.pair(j);
             let heavy = pair.start(lever);
             inertia += lever * heavy;
@@ -311,7 +318,8 @@ impl Nonlinear {
             }
             theta_dot = per_inertia * (moment * per - known);
             arc.u_dot[k].count_as(&state.u_dot);
-            for (pair, j) in pairs.iter_mut().zip((0..).step_by(2)) {
+            for pair in pairs.iter_mut() {
+                let j = pair.first;
                 let mut along = pair.share * fall - pair.held;
                 if is_pushed {
                     along += pair.push[0] * cos + pair.push[1] * cos_before;
@@ -337,7 +345,8 @@ impl Nonlinear {
         let is_held = held.min(held + change) > 0.0;
         let [mut springs, mut all] = [ZERO; 2];
         for k in 0..=arc.order {
-            [springs[k], all[k]] = lifting(frame, &arc.u[k], &arc.u_dot[k], base.g + a_v);
+            [springs[k], all[k]] =
+                lifting(frame, &arc.u[k], &arc.u_dot[k], [start.a_g.coefficient(k, arc.span), base.g + a_v]);
             if k > 0 {
                 all[k] += a_v_change * Modes::sum(frame, |j, mode| mode.gamma * arc.u[k - 1].of(j));
             }
@@ -396,7 +405,9 @@ impl Level<Modes> for Nonlinear {
             end.u.set(j, to[0]);
             end.u_dot.set(j, to[1]);
         }
-        let held = self.least_hold(start);
+        // what the mass that rides rigidly takes of the hold
+        let rigid = Modes::base(frame).S_res.abs() * start.a_g.value.abs().max(start.a_g.at(interval).abs());
+        let held = self.least_hold(start) - rigid;
         let near = springs[0].abs().max(springs[1].abs()) + bend * interval * interval / 8.0;
         (farthest < held || near < held).then_some(end)
     }
@@ -433,7 +444,8 @@ impl Level<Modes> for Nonlinear {
         let &Start { state, interval, .. } = start;
         let most = |j: usize| state.u.of(j).abs() + way(interval, state.u_dot.of(j));
         let springs = Modes::sum(&self.subject.structure, |j, mode| (mode.height * mode.stiffness).abs() * most(j));
-        springs < self.least_hold(start)
+        let &Base { S_res, .. } = Modes::base(&self.subject.structure);
+        springs + (S_res * start.a_g.value).abs() < self.least_hold(start)
     }
 
     fn stays_down(&self, state: &State<Modes>, dissipators: &Dissipators) -> bool {
@@ -448,7 +460,8 @@ impl Level<Modes> for Nonlinear {
         let frame = &self.subject.structure;
         let base = Modes::base(frame);
         let weight = (base.m_t * base.g + base.ties.P_0) * base.B;
-        let [springs, all] = lifting(frame, &state.u, &state.u_dot, base.g + load.a_v).map(|moment| moment / weight);
+        let [springs, all] =
+            lifting(frame, &state.u, &state.u_dot, [load.a_g, base.g + load.a_v]).map(|moment| moment / weight);
         let about = |side: Side| {
             let (s, held) = (side.sign(), hold(base, side, load.a_v, dissipators) / weight);
             let turns = held + LEAST_EXCESS - s * all;
@@ -495,13 +508,17 @@ impl Level<Modes> for Nonlinear {
 mod tests {
     use super::*;
     use crate::levels::nonlinear::accelerations;
+    use crate::mechanics::gauge::{Gauge, Reading};
+    use crate::mechanics::instant::Instant;
     use crate::mechanics::load::LinearLoad;
-    use crate::structure::frame::Body;
+    use crate::mechanics::reactions::Reactions;
+    use crate::structure::Ties;
+    use crate::structure::frame::{Body, Floor};
     use crate::{Parameters, Structure};
     use approx::assert_relative_eq;
 
-    /// A restrained structure whose modes have these shares.
-    fn frame(shares: &[f64]) -> (Structure, Frame) {
+    /// A restrained structure whose modes have these shares and carry the whole mass, or less of `more` mass.
+    fn frame(shares: &[f64], more: f64) -> (Structure, Frame) {
         let restrained =
             Parameters { P_0: 200.0, k_t: 3e4, xi_d: 0.1, c_d: 40.0, k_d: 1e5, F_y: 400.0, ..Parameters::MCMANUS };
         let structure = Structure::new(Parameters { zeta_fc: 0.1, c_ratio: 1.3, ..restrained }).unwrap();
@@ -519,7 +536,7 @@ mod tests {
         };
         let modes: Vec<_> = shares.iter().enumerate().map(mode).collect();
         let Parameters { m0, J0, B, r, g, c_ratio, .. } = *structure.parameters();
-        let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum();
+        let of = |part: fn(&Mode) -> f64| more * modes.iter().map(part).sum::<f64>();
         let (m_s, S_1) = (of(|mode| mode.gamma * mode.share), of(|mode| mode.gamma * mode.height));
         let (I_2, ties) = (of(|mode| mode.mass * mode.height * mode.height), structure.base.ties);
         let body = Body { m0, J0, m_s, S_1, I_2, B, r: Some(r), g, c_ratio, ties };
@@ -537,7 +554,7 @@ mod tests {
     #[test]
     fn one_mode_has_the_accelerations_of_equations_5_and_6() {
         let (scale, dissipators) = (1.7, Dissipators { plastic: [2e-3, -1e-3], yields: [0, 1], ..Dissipators::NEW });
-        let (structure, frame) = frame(&[1.0 / scale]);
+        let (structure, frame) = frame(&[1.0 / scale], 1.0);
         for side in [Side::Right, Side::Left] {
             let theta = 0.1 * side.sign();
             let one = State { u: 0.02, u_dot: -0.7, theta, theta_dot: 0.6 };
@@ -556,7 +573,7 @@ mod tests {
     /// The derivatives of the series are the accelerations along it, under all loads and with all ties.
     #[test]
     fn the_series_satisfies_the_equations_of_many_masses() {
-        let (_, frame) = frame(&[1.3, -0.6, 0.4]);
+        let (_, frame) = frame(&[1.3, -0.6, 0.4], 1.25);
         let level = level(&frame);
         let dissipators = Dissipators { plastic: [2e-3, -1e-3], ..Dissipators::NEW };
         let modes = |numbers: [f64; 3]| Modes::new(&numbers);
@@ -582,6 +599,62 @@ mod tests {
                 for j in 0..3 {
                     assert_relative_eq!(slope(&|k| arc.u_dot[k].of(j)), u_ddot.of(j), epsilon = 1e-9);
                 }
+            }
+        }
+    }
+
+    /// Newton's law for a floor, for the moments about the pivot, and the shear of a storey as a sum, with mass that rides rigidly.
+    #[test]
+    fn gauges_and_reactions_follow_from_the_motion() {
+        let (structure, frame) = frame(&[1.3, -0.6, 0.4], 1.25);
+        let base = Base { ties: Ties::default(), ..structure.base };
+        let floor = |mass, height, shape: [f64; 3]| Floor { mass, height, shape: Modes::new(&shape) };
+        let floors = [floor(3.0, 1.1, [0.2, 0.5, -0.3]), floor(2.0, 2.3, [0.9, -0.4, 0.1])];
+        let frame = Frame::new(Body { ties: base.ties, ..*frame.body() }, frame.modes(), &floors).unwrap();
+        let level = level(&frame);
+        let modes = |numbers: [f64; 3]| Modes::new(&numbers);
+        let (u, u_dot) = (modes([0.01, -0.02, 0.005]), modes([0.3, 0.1, -0.2]));
+        let load = Load { a_g: 3.0, F_t: Modes::ZERO, a_v: -1.5 };
+        let turned = State { u, u_dot, theta: -0.2, theta_dot: 0.5 };
+        for (phase, state) in
+            [(Phase::Rocking(Side::Left), turned), (Phase::FullContact, State { theta: 0.0, theta_dot: 0.0, ..turned })]
+        {
+            let now = Now { state: &state, load, dissipators: &Dissipators::NEW };
+            let second = level.accelerations(phase, &now);
+            let x = Instant::of(&frame, phase, &state, load);
+            let Instant { turn, theta_dot, a_g, a_v, s, .. } = x;
+            let value = |gauge: &Gauge| {
+                let elastic = gauge.elastic(&frame, frame.base.damping(phase), &u, &u_dot);
+                let theta_ddot = second.theta_ddot;
+                gauge.value(&frame.base, s, &Reading { elastic, push: 0.0, turn, theta_dot, theta_ddot, a_g, a_v })
+            };
+            let (mut storey, gauges) = (0.0, frame.gauges());
+            for (i, floor) in floors.iter().enumerate().rev() {
+                let lever = s * frame.base.B - floor.displacement(&u);
+                let along = floor.displacement(&second.u_ddot) + floor.height * second.theta_ddot;
+                let expected = along + theta_dot * theta_dot * lever + a_g * turn.cos - a_v * turn.sin;
+                assert_relative_eq!(value(&gauges.a[i]), expected, max_relative = 1e-12);
+                storey += floor.mass * expected;
+                assert_relative_eq!(value(&gauges.V[i]), storey, max_relative = 1e-12);
+            }
+            let reactions = Reactions::at(&x, &second);
+            if let Phase::Rocking(_) = phase {
+                assert_relative_eq!(reactions.R_m, x.pivot() * reactions.R_v, max_relative = 1e-11);
+            } else {
+                let weight = frame.base.g + a_v;
+                let [springs, others] = lifting(&frame, &u, &u_dot, [a_g, weight]);
+                let c_ratio = frame.base.c_ratio;
+                let damped = Modes::sum(&frame, |j, mode| mode.height * mode.damping * u_dot.of(j));
+                assert_relative_eq!(reactions.R_m, others - (c_ratio - 1.0) * damped, max_relative = 1e-12);
+                assert!(springs != others);
+                // the foundation carries its own a_g, and the masses carry the base shear
+                let carried = value(&gauges.V_t) + frame.body().m0 * a_g;
+                assert_relative_eq!(reactions.R_h, -carried, max_relative = 1e-12);
+                assert_relative_eq!(
+                    value(&gauges.M_t),
+                    -(reactions.R_m - weight * x.sum(|j, mode| mode.gamma * u.of(j))),
+                    max_relative = 1e-12
+                );
             }
         }
     }
