@@ -25,6 +25,7 @@ use crate::mechanics::instant::Second;
 use crate::mechanics::restraint::{Angles, Dissipators};
 use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift::{self, TurningMoment};
+use crate::numbers::bend::Bend;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
 use crate::{Phase, Side, State, Structure};
@@ -204,6 +205,10 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
             (_, Some(contact)) => contact.rates(start),
             (_, None) => Rates::NONE,
         }
+    }
+
+    fn second(&self, rates: &Rates) -> Option<Second<Bend>> {
+        self.rocking.second(rates)
     }
 
     #[inline(always)]

@@ -7,6 +7,7 @@ use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::restraint::{Angles, Dissipators};
 use crate::mechanics::uplift::TurningMoment;
+use crate::numbers::bend::Bend;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{Phase, Side, State, Structure};
@@ -62,6 +63,11 @@ pub trait Level<Q: Coordinates = f64> {
 
     /// Bounds of the motion over such a leap from `start` to `end`.
     fn rates(&self, phase: Phase, start: &Start<Q>, end: &State<Q>) -> Rates;
+
+    /// Bounds of (ü, θ̈) and of their derivatives over such a leap while rocking.
+    fn second(&self, _rates: &Rates) -> Option<Second<Bend>> {
+        None
+    }
 
     /// Writes the motion from `start` in `phase` into `arc`.
     fn series(&self, phase: Phase, start: &Start<Q>, arc: &mut Arc<Q>);
@@ -132,6 +138,10 @@ pub(crate) trait ElasticRocking {
 
     fn rates(&self, _side: Side, _start: &Start, _end: &State) -> Rates {
         Rates::NONE
+    }
+
+    fn second(&self, _rates: &Rates) -> Option<Second<Bend>> {
+        None
     }
 
     fn series(&self, side: Side, start: &Start, arc: &mut Arc);

@@ -27,8 +27,10 @@ mod assumptions;
 use super::reaction_series::{self, Extent, extents};
 use super::{Finish, Run, RunError};
 use crate::engine::piece::{Expansion, Piece, Sample, Watch};
-use crate::levels::level::Rates;
+use crate::levels::level::{Now, Rates};
 use crate::mechanics::impact;
+use crate::mechanics::instant::Instant;
+use crate::mechanics::reactions::forces;
 use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::evaluate;
@@ -235,42 +237,52 @@ impl Validity {
 
     /// Whether reactions within these bounds may hold something worse than what has been seen, or go beyond a limit.
     fn may_matter(&self, phase: Phase, reactions: &Reactions<Extent>) -> bool {
-        let has_weight = reactions.R_v.least > 0.0; // otherwise no friction is enough
-        !has_weight
-            || self.may_break::<EdgeLoad>(phase, reactions)
-            || self.may_break::<Friction>(phase, reactions)
-            || self.may_break::<Tension>(phase, reactions)
+        let Reactions { R_h, R_v, R_m } = reactions;
+        let worst = Reactions { R_h: R_h.most(), R_v: R_v.least(), R_m: R_m.most() };
+        self.may_break::<EdgeLoad>(phase, &worst)
+            || self.may_break::<Friction>(phase, &worst)
+            || self.may_break::<Tension>(phase, &worst)
     }
 
-    fn may_break<A: OfReactions>(&self, phase: Phase, reactions: &Reactions<Extent>) -> bool {
+    /// The same of one assumption, given reactions that break it more than others do.
+    #[inline]
+    fn may_break<A: OfReactions>(&self, phase: Phase, reactions: &Reactions) -> bool {
         let Assumption { limit, passing, .. } = &ASSUMPTIONS[A::PLACE];
-        let (worst, limit) = (self.found.worst[A::PLACE].value, limit(&self.limits));
-        let first = if passing.is_worse(worst, limit) { limit } else { worst };
-        let slack = MARGIN * self.scale().W;
-        let is_closed = |combination: &Combination| combination.extent(reactions).largest < slack;
-        A::holds_in(phase) && !A::worse(self.scale(), first).iter().flatten().all(is_closed)
+        let (seen, limit) = (self.found.worst[A::PLACE].value, limit(&self.limits));
+        let first = if passing.is_worse(seen, limit) { limit } else { seen };
+        let value = A::value(self.scale(), reactions);
+        let is_better = if *passing == Passing::Above { value < first + MARGIN } else { value > first - MARGIN };
+        A::holds_in(phase) && !is_better
     }
 
-    /// Bounds of the reactions over a leap in full contact: a quantity whose second derivative is at most M over the time h
-    /// stays within M h²/8 of its chord.
-    fn extents_of_leap(&self, piece: &Piece) -> Reactions<Extent> {
+    /// Bounds of the reactions over a leap, if they are known: a quantity whose second derivative is at most M over the time h stays
+    /// within M h²/8 of its chord.
+    fn extents_of_leap(&self, piece: &Piece) -> Option<Reactions<Extent>> {
+        let &Piece { level, before: &Motion { phase, .. }, duration, load, .. } = piece;
+        let rates = level.rates(phase, &piece.whole().step(), &piece.end);
+        let states = [(0.0, &piece.before.state), (duration, &piece.end)];
+        let per_bend = duration * duration / 8.0;
+        if phase != Phase::FullContact {
+            let bends = level.bends_of_forces(phase, load, duration, &rates, &level.second(&rates)?);
+            let [first, last] = states.map(|(tau, state)| {
+                let now = Now { state, load: load.at(tau), dissipators: &piece.before.dissipators };
+                forces(&Instant::of(&self.structure, phase, state, now.load), &level.accelerations(phase, &now))
+            });
+            let [R_h, R_v] = std::array::from_fn(|i| Extent::between(first[i], last[i], bends[i].bend * per_bend));
+            return Some(Reactions { R_h, R_v, R_m: Extent::ANY });
+        }
         let &Parameters { m, m0, H, g, .. } = self.structure.parameters();
         let &Structure { k, c_fc, .. } = &self.structure;
-        let ends = [(0.0, &piece.before.state), (piece.duration, &piece.end)].map(|(tau, state)| {
+        let [first, last] = states.map(|(tau, state)| {
             let strut = c_fc * state.u_dot + k * state.u;
-            [strut - m0 * piece.load.at(tau).a_g, H * strut + m * g * state.u]
+            [strut - m0 * load.at(tau).a_g, H * strut + m * g * state.u]
         });
-        let step = piece.whole().step();
-        let Rates { u_ddot, u_dddot, .. } = piece.level.rates(piece.before.phase, &step, &piece.end);
-        let per_bend = piece.duration * piece.duration / 8.0;
+        let Rates { u_ddot, u_dddot, .. } = rates;
         let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
-        let extent = |i: usize, off: f64| {
-            let [from, to]: [f64; 2] = [ends[0][i], ends[1][i]];
-            Extent { least: from.min(to) - off, largest: from.max(to) + off }
-        };
+        let off = [strut, H * strut + per_bend * m * g * u_ddot];
         let W = self.scale().W;
-        let R_v = Extent { least: W, largest: W };
-        Reactions { R_h: extent(0, strut), R_v, R_m: extent(1, H * strut + per_bend * m * g * u_ddot) }
+        let [R_h, R_m] = std::array::from_fn(|i| Extent::between(first[i], last[i], off[i]));
+        Some(Reactions { R_h, R_v: Extent::between(W, W, 0.0), R_m })
     }
 
     /// Looks at the motion over a polynomial, which may be halved `halvings` times; `extents` are bounds of its reactions.
@@ -368,18 +380,20 @@ impl Watch for Validity {
             self.found.see(WEIGHT, 1.0, piece.before.time);
         }
         let (phase, is_restrained) = (piece.before.phase, piece.level.subject().is_tied);
-        // bounds over a whole leap are known in full contact under gravity only
-        let is_leap = piece.arc.is_none() && phase == Phase::FullContact && !piece.load.is_vertical();
-        if is_leap && !is_restrained && !self.may_matter(phase, &self.extents_of_leap(piece)) {
+        // bounds over a whole leap are known under gravity only
+        let is_leap = piece.arc.is_none() && !piece.load.is_vertical() && !is_restrained;
+        let of_leap = if is_leap { self.extents_of_leap(piece) } else { None };
+        if of_leap.is_some_and(|extents| !self.may_matter(phase, &extents)) {
             return;
         }
         let mut arcs = piece.arcs();
         let mut count = 0;
         while let Some(expansion) = arcs.next() {
             // of what the ties pull there are no bounds
-            let extents = match is_restrained {
-                true => Reactions { R_h: Extent::ANY, R_v: Extent::ANY, R_m: Extent::ANY },
-                false => extents(&self.structure, phase, piece.load.from(expansion.from), expansion.arc),
+            let extents = match of_leap {
+                Some(extents) if phase == Phase::FullContact => extents,
+                _ if is_restrained => Reactions { R_h: Extent::ANY, R_v: Extent::ANY, R_m: Extent::ANY },
+                _ => extents(&self.structure, phase, piece.load.from(expansion.from), expansion.arc),
             };
             if self.may_matter(phase, &extents) {
                 self.look(expansion, &extents, FINEST_PART);
@@ -455,18 +469,18 @@ impl<'a> Polynomial<'a> {
 
     /// The series of a combination that may exceed `least`.
     fn combination(&self, combination: &Combination, least: f64) -> Option<Terms> {
-        (combination.extent(self.extents).largest > least).then(|| combination.series(&self.series))
+        (combination.extent(self.extents).largest() > least).then(|| combination.series(&self.series))
     }
 
     /// The intervals of σ on which one of `combinations` is positive, in their order.
     fn above(&self, combinations: [Option<Combination>; 2]) -> Vec<(f64, f64)> {
         let (mut found, reach): (Vec<(f64, f64)>, _) = (Vec::new(), self.of.arc.reach);
         for combination in combinations.iter().flatten() {
-            let Extent { least, largest } = combination.extent(self.extents);
-            if least > 0.0 {
+            let extent = combination.extent(self.extents);
+            if extent.least() > 0.0 {
                 return vec![(0.0, reach)];
             }
-            if largest > 0.0 {
+            if extent.largest() > 0.0 {
                 let series = combination.series(&self.series);
                 if highest(series.used(), reach) > 0.0 {
                     positive(series.used(), reach, &mut found);

@@ -158,10 +158,10 @@ impl Combination {
 
     /// Bounds of the combination.
     pub fn extent(&self, reactions: &Reactions<Extent>) -> Extent {
-        let n = Extent { least: self.0[3], largest: self.0[3] };
-        self.weighed(reactions).fold(n, |sum, (weight, of)| {
-            let (low, high) = (weight * of.least, weight * of.largest);
-            Extent { least: sum.least + low.min(high), largest: sum.largest + low.max(high) }
+        let n = Extent { middle: self.0[3], half: 0.0 };
+        self.weighed(reactions).fold(n, |sum, (weight, of)| Extent {
+            middle: sum.middle + weight * of.middle,
+            half: sum.half + weight.abs() * of.half,
         })
     }
 }
