@@ -139,7 +139,7 @@ impl Four {
         let half = k.div_ceil(2);
         let mut square = Four::product(&lever[..half], &heavy[MAX_ORDER - k..]);
         square += square;
-        if k % 2 == 0 {
+        if k.is_multiple_of(2) {
             square += lever[half] * heavy[MAX_ORDER - half];
         }
         [square, heavy[MAX_ORDER - k]]
