@@ -5,6 +5,7 @@
     headline.svg   error against cost, of the numbers that the study has left in docs/evidence
     levels.svg     which level of detail is enough, over frequency and intensity
     tornado.svg    what a wrong number changes, by the script of docs/howto/choose_numbers.md
+    questions.svg  rotation and probabilities over PGV, by the script of docs/howto/questions.md
 """
 
 import argparse
@@ -219,14 +220,22 @@ def levels(path: Path) -> None:
          "The cheapest level that is good enough, over f_fc and PGA over g tan α_cg.")
 
 
-def tornado(path: Path) -> None:
-    """What a wrong number changes, drawn by the page's own script."""
-    page = Path("docs/howto/choose_numbers.md").read_text(encoding="utf-8")
-    script = re.search(r"^```py\n(.*?)figure\.savefig.*?^```$", page, re.MULTILINE | re.DOTALL)[1]
+def drawn_by(page: str):
+    """The figure that the script of a page draws."""
+    blocks = re.findall(r"^```py\n(.*?)^```$", Path(page).read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
     drawn = {}
-    exec(script, drawn)
-    save(drawn["figure"], path, "Change of the peaks for each wrong number",
+    exec(re.sub(r"^figure\.savefig.*", "", "".join(blocks), flags=re.MULTILINE), drawn)
+    return drawn["figure"]
+
+
+def tornado(path: Path) -> None:
+    save(drawn_by("docs/howto/choose_numbers.md"), path, "Change of the peaks for each wrong number",
          "Bars: medians of six components of ground motion. Strokes: single components.")
+
+
+def questions(path: Path) -> None:
+    save(drawn_by("docs/howto/questions.md"), path, "Rotation and probabilities over the peak ground velocity",
+         "Left: one line per record, without the runs that overturn. Right: fragility curves of two piers.")
 
 
 def main() -> None:
@@ -234,7 +243,7 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, default=Path("docs/img"), help="where to save them")
     folder = parser.parse_args().folder
     for draw_picture, name in ((schematic, "schematic.svg"), (motion, "motion.gif"), (headline, "headline.svg"),
-                               (levels, "levels.svg"), (tornado, "tornado.svg")):
+                               (levels, "levels.svg"), (tornado, "tornado.svg"), (questions, "questions.svg")):
         draw_picture(folder / name)
 
 
