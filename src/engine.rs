@@ -18,9 +18,9 @@ pub(crate) mod yielding;
 
 use crate::levels::detail::{AnyLevel, Detail, by_level};
 use crate::levels::level::{Level, Subject};
-use crate::levels::modes::Nonlinear;
+use crate::levels::modes::ManyModes;
 use crate::mechanics::energy::energy;
-use crate::mechanics::lateral::{Coordinates, Modes};
+use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
@@ -213,7 +213,7 @@ impl Moves for f64 {
 #[doc(hidden)]
 #[derive(Debug)]
 #[allow(private_interfaces)] // the coordinates name the type, and nobody else can use it
-pub struct LevelOfModes(Nonlinear);
+pub struct LevelOfModes(ManyModes);
 
 impl Deref for LevelOfModes {
     type Target = dyn Level<Modes>;
@@ -298,11 +298,6 @@ impl Engine {
         *phase == Phase::FullContact && self.level.stays_down(state, dissipators)
     }
 
-    /// The motion now, under `load`.
-    pub fn sample(&self, load: Load) -> Sample<'_> {
-        Sample { motion: self.motion, load, level: &self.level }
-    }
-
     /// The outputs now under `load`; once overturned, those of the instant before.
     pub fn outputs(&self, load: Load) -> Outputs {
         self.level.outputs(self.motion.phase.in_motion(), &self.motion.under(load)) // a sample would copy the motion
@@ -360,7 +355,7 @@ impl Engine {
 }
 
 impl Engine<Modes> {
-    /// Starts the structure `frame` of many masses at `time` (s) from `state`, at the level of detail `auto` or `nonlinear`.
+    /// Starts the structure `frame` of many masses at `time` (s) from `state`, at any level of detail but `modal` and `rigid`.
     pub fn of_modes(
         frame: Frame,
         state: State<Modes>,
@@ -368,15 +363,17 @@ impl Engine<Modes> {
         settings: Settings,
     ) -> Result<Engine<Modes>, InitialStateError> {
         let phase = state.phase()?;
+        let of_frame = |numbers: Modes| Modes::each(&frame, |j, _| numbers.of(j));
+        let state = State { u: of_frame(state.u), u_dot: of_frame(state.u_dot), ..state };
         let is_tied = frame.base.is_restrained() || settings.vertical;
         let angles = settings.detail.angles();
         let subject = Subject { structure: frame, local_error: settings.local_error()?, is_tied, angles };
-        let is_exact = match settings.detail {
-            Detail::Auto => true,
-            Detail::Nonlinear => false,
-            other => return Err(InitialStateError::OneMass(other.name())),
-        };
-        let level = Box::new(LevelOfModes(Nonlinear::new(subject, is_exact)));
+        match settings.detail {
+            Detail::FixedBase if state.theta != 0.0 => return Err(InitialStateError::TurnedFixedBase(state.theta)),
+            Detail::Modal | Detail::Rigid => return Err(InitialStateError::OneMass(settings.detail.name())),
+            _ => (),
+        }
+        let level = Box::new(LevelOfModes(ManyModes::new(subject, settings.detail)));
         Ok(Engine::start(level, settings, time, state, phase, Dissipators::NEW))
     }
 
@@ -423,6 +420,11 @@ impl<Q: Moves> Engine<Q> {
     /// The motion now.
     pub fn motion(&self) -> &Motion<Q> {
         &self.motion
+    }
+
+    /// The motion now, under `load`.
+    pub fn sample(&self, load: Load<Q>) -> Sample<'_, Q> {
+        Sample { motion: self.motion, load, level: &self.level }
     }
 
     /// Puts the structure in this `motion`.
