@@ -172,13 +172,13 @@ impl<'a> Run<'a> {
     }
 
     /// The run before its start.
-    fn course(&self) -> Result<Course<impl Iterator<Item = Segment> + use<'a>>, RunError> {
+    fn course(&self) -> Result<Follower<impl Iterator<Item = Segment> + use<'a>>, RunError> {
         let until = match self.end {
             End::AtRest => self.ground.end(),
             End::At(end) => end,
         };
         let segments = self.ground.segments(until - self.ground.start());
-        Ok(Course { engine: self.start()?, segments, end: self.end, rest: LONGEST_REST })
+        Ok(Follower { engine: self.start()?, segments, end: self.end, rest: LONGEST_REST })
     }
 
     /// The structure at the first sample.
@@ -218,7 +218,7 @@ impl<'a> Run<'a> {
 
 /// A run on its way, segment by segment: from sample to sample of its record, and then for 1/p_l each until nothing more can
 /// happen.
-struct Course<Segments> {
+struct Follower<Segments> {
     engine: Engine,
     /// The ground motion that is left.
     segments: Segments,
@@ -227,7 +227,7 @@ struct Course<Segments> {
     rest: f64,
 }
 
-impl<Segments: Iterator<Item = Segment>> Course<Segments> {
+impl<Segments: Iterator<Item = Segment>> Follower<Segments> {
     /// Follows the motion to the end.
     fn finish<W: Watch>(mut self, watch: &mut W) -> Result<(Ending, Engine), RunError> {
         loop {
@@ -240,7 +240,7 @@ impl<Segments: Iterator<Item = Segment>> Course<Segments> {
     /// Follows the motion over the next segment. Returns the ending of the run if the run has ended.
     #[inline(always)]
     fn go_on<W: Watch>(&mut self, watch: &mut W) -> Result<Option<Ending>, RunError> {
-        let Course { engine, segments, end, rest } = self;
+        let Follower { engine, segments, end, rest } = self;
         let went_on = match segments.next() {
             Some(segment) => over(engine, segment, watch)
                 .map(|progress| (progress == Progress::Overturned).then_some(Ending::Overturned)),

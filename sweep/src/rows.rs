@@ -9,7 +9,7 @@ use anyhow::ensure;
 use csv::StringRecord;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::mechanics::state::INITIAL_VALUES;
-use rocking::run::validity::{ASSUMPTIONS, Found as Beyond, Limits, Validity};
+use rocking::run::validity::{ASSUMPTIONS, Findings, Limits, Validity};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::ptr;
@@ -55,7 +55,7 @@ impl<'a> Sweep<'a> {
     pub fn finish(mut self, goes_on: impl Fn() -> bool + Sync) -> anyhow::Result<(Vec<Uuid>, Vec<Outcome>)> {
         let run = |&index: &usize| {
             let case = self.plan.case(index);
-            let found = Beyond::since(case.motion.record().start());
+            let found = Findings::since(case.motion.record().start());
             let mut validity = self.validity.then(|| Validity::new(&case.structure, Limits::default(), found));
             let outcome = match &mut validity {
                 Some(validity) => case.outcome_watched(validity),
@@ -141,7 +141,7 @@ fn row(
     key: &Key,
     case: &Case,
     outcome: &Outcome,
-    beyond: Option<&Beyond>,
+    beyond: Option<&Findings>,
     program: &Program,
 ) -> anyhow::Result<Vec<u8>> {
     let values = AXES.map(|axis| case.value(axis));
@@ -161,7 +161,7 @@ fn row(
 }
 
 /// Results of the check of validity, in the order of the headings.
-fn columns(beyond: Option<&Beyond>) -> Vec<Option<f64>> {
+fn columns(beyond: Option<&Findings>) -> Vec<Option<f64>> {
     let Some(beyond) = beyond else { return vec![None; 2 * ASSUMPTIONS.len() + 2] };
     let worst = beyond.worst.iter().flat_map(|worst| [worst.value, worst.time]);
     worst.chain([beyond.gains as f64, beyond.settlings as f64]).map(Some).collect()
