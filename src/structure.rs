@@ -1,5 +1,7 @@
 //! The structure: its parameters and the constants that follow from them (before Eq 11, after 4, 8 and 13, before 18).
 
+pub mod any;
+pub mod description;
 pub mod frame;
 pub mod natural_quantities;
 pub mod parameters;
@@ -134,9 +136,9 @@ pub struct Vibration {
     pub rocking: [f64; 2],
 }
 
-/// A derived quantity, for `describe` and the FMU.
+/// A derived quantity of a `T`, for `describe` and the FMU.
 #[derive(Debug)]
-pub struct Derived {
+pub struct Derived<T = Structure> {
     /// Symbol.
     pub name: &'static str,
     /// Unit.
@@ -146,7 +148,7 @@ pub struct Derived {
     /// Equation of the paper that defines the quantity.
     pub equation: &'static str,
     /// Value for a structure.
-    pub value: fn(&Structure) -> f64,
+    pub value: fn(&T) -> f64,
 }
 
 macro_rules! derived {
@@ -154,6 +156,8 @@ macro_rules! derived {
         Derived { name: $name, unit: $unit, description: $description, equation: $equation, value: $value }
     };
 }
+
+use derived;
 
 /// The derived quantities that are shown, in the order of the paper.
 pub const DERIVED: [Derived; 16] = [

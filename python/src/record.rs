@@ -334,7 +334,10 @@ pub fn pulse(
     #[pyo3(from_py_with = argument::g)] g: f64,
 ) -> PyResult<Record> {
     let shape = one_of("shape", shape, Shape::ALL.map(|of| (of.name(), of)))?;
-    let (of_amplitude, of_frequency) = structure.map_or((g, 1.0), |structure| units_of(&structure.0));
+    let (of_amplitude, of_frequency) = match structure {
+        Some(structure) => units_of(&structure.one("pulse")?),
+        None => (g, 1.0),
+    };
     let pulse = Pulse::new(shape, amplitude * of_amplitude, frequency * of_frequency);
     let cycles = cycles.map_or(Ok(pulse.cycles), |cycles| number("cycles", cycles))?;
     let pulse = Pulse { cycles, phase, error, ..pulse };

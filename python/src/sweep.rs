@@ -46,10 +46,11 @@ pub fn sweep(
 ) -> PyResult<Vec<String>> {
     let scales = numbers("scale", scale)?;
     let population = |(name, of): &(String, Vec<Py<Structure>>)| {
-        Population::of(name, of.iter().map(|structure| *structure.get().0.parameters()).collect())
+        let parameters = |structure: &Py<Structure>| Ok(*structure.get().one("sweep")?.parameters());
+        Population::of(name, of.iter().map(parameters).collect::<PyResult<_>>()?).map_err(refused)
     };
-    let populations = structures.iter().map(population).collect::<Result<_, _>>().map_err(refused)?;
-    let mut gs = structures.iter().flat_map(|(_, of)| of).map(|structure| structure.get().0.parameters().g);
+    let populations = structures.iter().map(population).collect::<PyResult<_>>()?;
+    let mut gs = structures.iter().flat_map(|(_, of)| of).map(|structure| structure.get().of.base().g);
     let g = gs.next().unwrap_or(G);
     let other = gs.find(|other| *other != g);
     let motion = |(name, Ground(record)): &(String, Ground)| {

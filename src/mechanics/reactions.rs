@@ -116,8 +116,8 @@ pub(crate) fn forces<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Secon
 /// R_h and R_v, N, given a rule for rates: the forces of the loads less the rate of the momentum. It takes fewer products than
 /// [`forces`], which has the rates of the motion.
 pub(crate) fn forces_by_momentum<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, rate: impl Fn(&N) -> N) -> [N; 2] {
-    let &Base { m_t, m0, g, .. } = x.base();
-    let (mut along, mut lever, mut push) = (N::constant(0.0), N::constant(m0 * x.pivot()), -(x.a_g * m_t));
+    let &Base { m_t, m0, S_res, g, .. } = x.base();
+    let (mut along, mut lever, mut push) = (x.theta_dot * S_res, N::constant(m0 * x.pivot()), -(x.a_g * m_t));
     for (j, mode) in Q::modes(x.structure).iter().enumerate() {
         along = along + (x.u_dot.of(j) + x.theta_dot * mode.height) * mode.gamma;
         lever = lever + x.place(j, mode).lever(x.pivot()) * mode.gamma;

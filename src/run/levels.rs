@@ -158,7 +158,7 @@ struct Trial<'a, Segments> {
     run: Run<'a>,
     /// Whether its ground moves horizontally alone and the reference's does not.
     is_level: bool,
-    course: Follower<Segments>,
+    course: Follower<f64, Segments>,
     peaks: FallWatch<'a>,
     /// The part of the motion that is still to be compared with the reference.
     history: History,

@@ -147,6 +147,11 @@ impl Frame {
         &self.body
     }
 
+    /// The rigid base.
+    pub fn base(&self) -> &Base {
+        &self.base
+    }
+
     /// The modes of vibration in full contact.
     #[inline(always)]
     pub fn modes(&self) -> &[Mode] {
@@ -157,14 +162,30 @@ impl Frame {
     pub fn floors(&self) -> &[Floor] {
         &self.floors
     }
+
+    /// Circular frequencies of vibration while the structure rocks, rad/s, lowest first.
+    pub fn rocking_frequencies(&self) -> Vec<f64> {
+        (1..=self.modes.len()).map(|n| rocking(&self.base, &self.modes, n)).collect()
+    }
+
+    /// Mass (kg), first (kg·m) and second moment (kg·m²) that no mode carries.
+    pub fn rest(&self) -> [f64; 3] {
+        [self.base.m0 - self.body.m0, self.base.S_res, self.base.J0 - self.body.J0]
+    }
 }
 
-/// The frequencies of vibration. While the structure rocks they are the roots of (M13):
+/// The lowest and the highest frequency of vibration.
+fn vibration(base: &Base, modes: &[Mode]) -> Vibration {
+    let contact = modes.iter().map(|mode| mode.stiffness / mode.mass).fold(f64::INFINITY, f64::min).sqrt();
+    Vibration { contact, rocking: [rocking(base, modes, 1), rocking(base, modes, modes.len())] }
+}
+
+/// The circular frequency number `n` of vibration while the structure rocks, rad/s, from 1: a root λ = ω² of (M13):
 ///
 /// ```text
 /// J_P = Σ μ h² λ/(λ − ω²)
 /// ```
-fn vibration(base: &Base, modes: &[Mode]) -> Vibration {
+fn rocking(base: &Base, modes: &[Mode], n: usize) -> f64 {
     let square = |mode: &Mode| mode.stiffness / mode.mass;
     let inertia = |mode: &Mode| mode.mass * mode.height * mode.height;
     let held = base.J_P - modes.iter().map(inertia).sum::<f64>();
@@ -177,6 +198,5 @@ fn vibration(base: &Base, modes: &[Mode]) -> Vibration {
         passed - usize::from(passed > 0 && held + secular < 0.0)
     };
     let beyond = highest * (2.0 * base.J_P / held);
-    let root = |roots: usize| last_where(lowest, beyond, |lambda| roots_below(lambda) < roots).sqrt();
-    Vibration { contact: lowest.sqrt(), rocking: [root(1), root(modes.len())] }
+    last_where(lowest, beyond, |lambda| roots_below(lambda) < n).sqrt()
 }
