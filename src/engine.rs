@@ -20,7 +20,7 @@ use crate::levels::detail::{AnyLevel, Detail, by_level};
 use crate::levels::level::{Level, Subject};
 use crate::levels::modes::Nonlinear;
 use crate::mechanics::energy::energy;
-use crate::mechanics::lateral::{Coordinates, Modes};
+use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
@@ -202,6 +202,9 @@ pub trait Moves: Coordinates {
         settings: Settings,
     ) -> Result<Engine<Self>, InitialStateError>;
 
+    /// The loads of a ground motion alone.
+    fn loads(ground: LinearLoad) -> LinearLoad<Self>;
+
     /// Advances with a level by its type: each gets a loop of its own, so that nothing stands between the loop and the level's
     /// equations.
     #[doc(hidden)]
@@ -218,6 +221,11 @@ impl Moves for f64 {
         settings: Settings,
     ) -> Result<Engine, InitialStateError> {
         Engine::with(structure, initial, time, settings)
+    }
+
+    #[inline(always)]
+    fn loads(ground: LinearLoad) -> LinearLoad {
+        ground
     }
 
     #[inline(always)]
@@ -250,6 +258,11 @@ impl Moves for Modes {
         settings: Settings,
     ) -> Result<Engine<Modes>, InitialStateError> {
         Engine::of_modes(structure, initial, time, settings)
+    }
+
+    fn loads(LinearLoad { value, slope }: LinearLoad) -> LinearLoad<Modes> {
+        let [value, slope] = [value, slope].map(|Load { a_g, a_v, .. }| Load { a_g, F_t: Modes::ZERO, a_v });
+        LinearLoad { value, slope }
     }
 
     fn advance<W: Watch<Modes>>(any: &LevelOfModes, task: Task<'_, Modes, W>) -> Result<Progress, AdvanceError> {
@@ -378,6 +391,8 @@ impl Engine<Modes> {
         settings: Settings,
     ) -> Result<Engine<Modes>, InitialStateError> {
         let phase = state.phase()?;
+        let of_frame = |numbers: Modes| Modes::each(&frame, |j, _| numbers.of(j));
+        let state = State { u: of_frame(state.u), u_dot: of_frame(state.u_dot), ..state };
         let is_tied = frame.base.is_restrained() || settings.vertical;
         let angles = settings.detail.angles();
         let subject = Subject { structure: frame, local_error: settings.local_error()?, is_tied, angles };

@@ -10,6 +10,7 @@ mod history;
 pub mod levels;
 pub mod outside_step;
 pub mod peaks;
+pub mod profile;
 mod reaction_series;
 pub mod record;
 mod samples;
@@ -286,7 +287,7 @@ fn over<Q: Moves, W: Watch<Q>>(
     segment: Segment,
     watch: &mut W,
 ) -> Result<Progress, AdvanceError> {
-    let progress = engine.advance(segment.duration, segment.ground.of_ground(), watch)?;
+    let progress = engine.advance(segment.duration, Q::loads(segment.ground), watch)?;
     if progress != Progress::Overturned {
         engine.set_time(segment.until);
     }
@@ -308,13 +309,13 @@ fn come_to_rest<Q: Moves, W: Watch<Q>>(
         return Ok(Some(Ending::AtTime));
     }
     if engine.stays_down() {
-        engine.advance(TAU / omega_fc, still.of_ground(), watch)?;
+        engine.advance(TAU / omega_fc, Q::loads(still), watch)?;
         return Ok(Some(Ending::AtRest));
     }
     if *rest == 0.0 {
         return Ok(Some(Ending::StillRocking));
     }
     *rest -= 1.0;
-    let progress = engine.advance(1.0 / p_l, still.of_ground(), watch)?;
+    let progress = engine.advance(1.0 / p_l, Q::loads(still), watch)?;
     Ok((progress == Progress::Overturned).then_some(Ending::Overturned))
 }

@@ -9,13 +9,15 @@ use crate::engine::phases::{self, Step};
 use crate::engine::transition::Transition;
 use crate::levels::level::{Now, Subject};
 use crate::levels::shown::Searched;
-use crate::mechanics::instant::Second;
+use crate::mechanics::gauge::{Gauge, Reading};
+use crate::mechanics::instant::{Instant, Place, Second};
+use crate::mechanics::lateral::Modes;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::Measure;
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
 use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Series, Start, evaluate};
-use crate::{Outputs, Phase, Reactions, State};
+use crate::{Floor, Outputs, Phase, Reactions, State};
 use std::f64::consts::TAU;
 
 /// Watches a motion go by.
@@ -118,6 +120,34 @@ impl Sample<'_> {
     /// (ü, θ̈), m/s² and rad/s²; once overturned, those of the instant before.
     pub(crate) fn accelerations(&self) -> [f64; 2] {
         self.second().into()
+    }
+}
+
+impl Sample<'_, Modes> {
+    /// The value of `gauge`; once overturned, the value of the instant before.
+    pub fn value(&self, gauge: &Gauge) -> f64 {
+        let (frame, x) = (self.level.structure(), self.instant());
+        let damping = frame.base.damping(self.motion.phase);
+        let theta_ddot = if gauge.has_feedthrough() { self.second().theta_ddot } else { 0.0 };
+        let (elastic, push) = (gauge.elastic(frame, damping, &x.u, &x.u_dot), gauge.push(frame, &x.F_t));
+        let Instant { turn, theta_dot, a_g, a_v, .. } = x;
+        gauge.value(&frame.base, x.s, &Reading { elastic, push, turn, theta_dot, theta_ddot, a_g, a_v })
+    }
+
+    /// Displacement of `floor` relative to the ground δ, m (Eq 26).
+    pub fn displacement(&self, floor: &Floor) -> f64 {
+        let x = self.instant();
+        let place = Place { share: 1.0, height: floor.height, u: floor.displacement(&x.u) };
+        place.right(x.pivot(), &x.turn)
+    }
+
+    /// The reactions; once overturned, those of the instant before.
+    pub fn reactions(&self) -> Reactions {
+        Reactions::at(&self.instant(), &self.second())
+    }
+
+    fn instant(&self) -> Instant<'_, f64, Modes> {
+        Instant::of(self.level.structure(), self.motion.phase.in_motion(), &self.motion.state, self.load)
     }
 }
 
@@ -379,6 +409,13 @@ impl<Q: Moves> Expansion<'_, Q> {
     /// The instant of `sigma`, s.
     pub(crate) fn time(&self, sigma: f64) -> f64 {
         self.piece.before.time + self.from + sigma * self.arc.span
+    }
+
+    /// The motion at `sigma`, with the dissipators of the start of the piece.
+    pub(crate) fn sample(&self, sigma: f64) -> Sample<'_, Q> {
+        let &Piece { before, load, level, .. } = self.piece;
+        let motion = Motion { time: self.time(sigma), state: self.arc.at(sigma), ..*before };
+        Sample { motion, load: load.at(self.from + sigma * self.arc.span), level }
     }
 }
 

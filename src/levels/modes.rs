@@ -11,19 +11,21 @@
 //! The angular momentum D θ̇ has no Coriolis term. An order takes five products and one more for each mode. g is g + a_v.
 
 use crate::levels::level::{Level, Now, Rates, Subject, way};
+use crate::levels::nonlinear::{Factors, NO_ROW, products, row};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::instant::Second;
-use crate::mechanics::lateral::{Coordinates, Lateral, MOST_MODES, Modes};
+use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{self, Angles, Dissipators};
 use crate::mechanics::uplift::LEAST_EXCESS;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
-use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Series, Start, Truncation, ZERO, product};
+use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation, ZERO};
 use crate::structure::frame::Frame;
 use crate::structure::{Base, Mode};
 use crate::{Phase, Side, State};
 use std::cell::RefCell;
+use wide::f64x2;
 
 /// Part of its inertia at u = 0 that a structure must keep about its pivot.
 const LEAST_INERTIA: f64 = 1e-6;
@@ -51,22 +53,93 @@ pub(crate) struct Nonlinear {
 /// Room for the series of one step.
 #[derive(Clone, Debug)]
 struct Scratch {
-    /// w of each mode.
-    lever: Series<Modes>,
-    /// μ w of each mode.
-    moment: Series<Modes>,
-    /// D.
-    inertia: Series,
-    /// X.
-    offset: Series,
-    sin: Series,
-    cos: Series,
-    /// g cos θ + a_g sin θ.
-    weight: Series,
-    /// θ̇².
-    square: Series,
-    /// Σ φᵀF w.
-    push: Series,
+    pairs: Vec<Pair>,
+    /// Row i of the left factors, and of the right ones counted from their end, of six products of order i ("next": of order i + 1):
+    ///
+    /// ```text
+    /// left:   θ̇       θ̇       θ̇    D, next   X        Σ φᵀF w
+    /// right:  cos θ   sin θ   θ̇    θ̇         weight   sin θ
+    /// ```
+    factors: [Factors; 2],
+    /// θ̇² for both modes of a pair, from the end.
+    square: PairSeries,
+}
+
+/// Coefficients for two modes.
+type PairSeries = [f64x2; MAX_ORDER + 1];
+
+/// Two modes side by side; beside the last of an odd number, a mode without mass that stays at rest.
+#[derive(Clone, Debug, Default)]
+struct Pair {
+    /// The number of the first mode.
+    first: usize,
+    mass: f64x2,
+    share: f64x2,
+    height: f64x2,
+    /// μ h.
+    arm: f64x2,
+    /// k/μ.
+    stiffness: f64x2,
+    /// c/μ in full contact.
+    damping: f64x2,
+    /// The newest coefficients of u and u̇.
+    motion: [f64x2; 2],
+    /// Force over mass, and its change over the span.
+    push: [f64x2; 2],
+    /// e + w θ̇² of the newest order.
+    held: f64x2,
+    /// w.
+    lever: PairSeries,
+    /// μ w, from the end.
+    heavy: PairSeries,
+}
+
+impl Pair {
+    fn new((place, modes): (usize, &[Mode])) -> Pair {
+        let both = |of: fn(&Mode) -> f64| f64x2::new([0, 1].map(|i| modes.get(i).map_or(0.0, of)));
+        Pair {
+            first: 2 * place,
+            mass: both(|mode| mode.mass),
+            share: both(|mode| mode.share),
+            height: both(|mode| mode.height),
+            arm: both(|mode| mode.mass * mode.height),
+            stiffness: both(|mode| mode.stiffness / mode.mass),
+            damping: both(|mode| mode.damping / mode.mass),
+            ..Pair::default()
+        }
+    }
+
+    /// Σ a_i b_{k−i} over the first terms of `a`, with b kept from its end.
+    #[inline(always)]
+    fn product(a: &[f64x2], b: &[f64x2]) -> f64x2 {
+        let mut sum = f64x2::ZERO;
+        a.iter().zip(b).for_each(|(a, b)| sum += a * b);
+        sum
+    }
+
+    /// Puts w in order 0.
+    #[inline(always)]
+    fn start(&mut self, lever: f64x2) -> f64x2 {
+        let heavy = self.mass * lever;
+        (self.lever[0], self.heavy[MAX_ORDER]) = (lever, heavy);
+        heavy
+    }
+
+    /// Puts −u in order `k` of w, and returns that order of μ w² and μ w.
+    #[inline(always)]
+    fn next(&mut self, k: usize, per: f64) -> [f64x2; 2] {
+        let Pair { lever, heavy, .. } = self;
+        lever[k] = self.motion[1] * -per;
+        heavy[MAX_ORDER - k] = self.mass * lever[k];
+        // both halves of Σ w_i μ w_{k−i} are the same
+        let half = k.div_ceil(2);
+        let mut square = Pair::product(&lever[..half], &heavy[MAX_ORDER - k..]);
+        square += square;
+        if k % 2 == 0 {
+            square += lever[half] * heavy[MAX_ORDER - half];
+        }
+        [square, heavy[MAX_ORDER - k]]
+    }
 }
 
 /// Inertia D (kg·m²) about the pivot of `side`.
@@ -83,10 +156,11 @@ fn hold(base: &Base, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
     base.m_t * (base.g + a_v) * base.B + tendon.force * base.B + side.sign() * residual
 }
 
-/// The moments that lift the base, to the right, N·m: of the springs (M3), and of all that gives D θ̈ at θ = θ̇ = 0 (M2).
-fn lifting(frame: &Frame, u: &Modes, u_dot: &Modes, weight: f64) -> [f64; 2] {
-    let &Base { c_ratio, .. } = Modes::base(frame);
-    let springs = Modes::sum(frame, |j, mode| mode.height * mode.stiffness * u.of(j));
+/// The moments that lift the base, to the right, N·m: of the springs and of the mass that rides rigidly under the ground acceleration
+/// `a_g` (M3), and of all that gives D θ̈ at θ = θ̇ = 0 (M2).
+fn lifting(frame: &Frame, u: &Modes, u_dot: &Modes, [a_g, weight]: [f64; 2]) -> [f64; 2] {
+    let &Base { S_res, c_ratio, .. } = Modes::base(frame);
+    let springs = Modes::sum(frame, |j, mode| mode.height * mode.stiffness * u.of(j)) - S_res * a_g;
     let others = Modes::sum(frame, |j, mode| {
         mode.height * (c_ratio * mode.damping) * u_dot.of(j) + mode.gamma * weight * u.of(j)
     });
@@ -115,15 +189,9 @@ impl Nonlinear {
             quickening: base.J_P / left,
             longest_span: LONGEST_SPAN / fastest,
             scratch: RefCell::new(Box::new(Scratch {
-                lever: [Modes::ZERO; MAX_ORDER + 2],
-                moment: [Modes::ZERO; MAX_ORDER + 2],
-                inertia: ZERO,
-                offset: ZERO,
-                sin: ZERO,
-                cos: ZERO,
-                weight: ZERO,
-                square: ZERO,
-                push: ZERO,
+                pairs: frame.modes().chunks(2).enumerate().map(Pair::new).collect(),
+                factors: [[NO_ROW; MAX_ORDER + 1]; 2],
+                square: [f64x2::ZERO; MAX_ORDER + 1],
             })),
             subject,
         }
@@ -157,102 +225,112 @@ impl Nonlinear {
 
     /// Writes the motion in full contact into `arc` (M1).
     fn resting(&self, start: &Start<Modes>, arc: &mut Arc<Modes>) {
-        let &Start { state, a_top, interval, .. } = start;
-        let frame = &self.subject.structure;
-        let span = interval.min(LONGEST_SPAN / Modes::vibration(frame).rocking[1]);
-        arc.expand(&state, span, self.truncation(start, span, false), |arc, k, per| {
-            let (u, u_dot, load) = (&arc.u[k - 1], &arc.u_dot[k - 1], a_top.coefficient(k - 1, span));
-            let rate = Modes::each(frame, |j, mode| {
-                -load.of(j) - (mode.damping * u_dot.of(j) + mode.stiffness * u.of(j)) / mode.mass
-            });
-            (rate.times(per), 0.0)
+        let Start { state, a_top, interval, .. } = start;
+        let span = interval.min(LONGEST_SPAN / Modes::vibration(&self.subject.structure).rocking[1]);
+        let pairs = &mut self.scratch.borrow_mut().pairs;
+        for pair in pairs.iter_mut() {
+            let j = pair.first;
+            pair.motion = [state.u.pair(j), state.u_dot.pair(j)];
+            pair.push = [a_top.value.pair(j), a_top.slope.pair(j) * span];
+        }
+        let truncation = self.truncation(start, span, false);
+        arc.expand_in_place(state, span, &truncation, |arc, k, per| {
+            arc.u_dot[k].count_as(&state.u_dot);
+            for pair in pairs.iter_mut() {
+                let j = pair.first;
+                let [u, u_dot] = pair.motion;
+                let mut rate = pair.damping * u_dot + pair.stiffness * u;
+                if let Some(load) = pair.push.get(k - 1) {
+                    rate += *load;
+                }
+                pair.motion = [u_dot * per, rate * -per];
+                arc.u_dot[k].set_pair(j, pair.motion[1]);
+            }
+            0.0
         });
     }
 
     /// Writes the motion while rocking about `side` into `arc` (M8, M9).
     fn rocking(&self, side: Side, start: &Start<Modes>, arc: &mut Arc<Modes>) {
-        let &Start { state, a_g, a_top, a_v, .. } = start;
-        let frame = &self.subject.structure;
-        let &Base { m0, J0, B, g, c_ratio, .. } = Modes::base(frame);
+        let Start { state, a_g, a_top, a_v, .. } = start;
+        let &Base { m0, J0, S_res, B, g, c_ratio, .. } = Modes::base(&self.subject.structure);
         let span = start.interval.min(self.longest_span);
         let mut ties = self.subject.is_tied.then(|| {
-            let ties = restraint::sum(&restraint::ties(Modes::base(frame), side, start.dissipators), |tie| tie.lever);
+            let base = Modes::base(&self.subject.structure);
+            let ties = restraint::sum(&restraint::ties(base, side, start.dissipators), |tie| tie.lever);
             TieSeries::new(ties, Angles::Any, state.theta)
         });
         let pivot = side.sign() * B;
         let (g, lift) = (g + a_v.value, a_v.slope * span);
         let (ground, ground_slope) = (a_g.value, a_g.slope * span);
-        // forces of the modes, over their masses
-        let force = |a: &Modes, a_g: f64| Modes::each(frame, |j, mode| mode.share * a_g - a.of(j));
-        let (pushed, push_slope) = (force(&a_top.value, a_g.value), force(&a_top.slope, a_g.slope).times(span));
-        let is_pushed = !(pushed.is_within(&Modes::ZERO) && push_slope.is_within(&Modes::ZERO));
-        let Scratch { lever, moment: heavy, inertia, offset, sin, cos, weight, square, push } =
-            &mut **self.scratch.borrow_mut();
-        lever[0] = Modes::each(frame, |j, mode| pivot * mode.share - state.u.of(j));
-        (sin[0], cos[0]) = libm::sincos(state.theta);
-        inertia[0] = J0 + m0 * B * B + Modes::sum(frame, |j, mode| mode.mass * lever[0].of(j) * lever[0].of(j));
-        offset[0] = pivot * m0 + Modes::sum(frame, |j, mode| mode.gamma * lever[0].of(j));
-        let (modes, mut elastic) = (frame.modes().len(), [[0.0; 2]; MOST_MODES]);
-        elastic.iter_mut().zip(frame.modes()).for_each(|(elastic, mode)| {
-            *elastic = [mode.stiffness / mode.mass, c_ratio * mode.damping / mode.mass];
-        });
-        heavy[0] = Modes::each(frame, |j, mode| mode.mass * lever[0].of(j));
-        let shares = Modes::each(frame, |_, mode| mode.share);
-        let arms = Modes::each(frame, |_, mode| mode.mass * mode.height);
-        let per_inertia = 1.0 / inertia[0];
-        arc.expand(&state, span, self.truncation(start, span, true), |arc, k, per| {
+        let Scratch { pairs, factors: [left, right], square } = &mut **self.scratch.borrow_mut();
+        let (mut inertia, mut offset, mut is_pushed) = (f64x2::ZERO, f64x2::ZERO, false);
+        for pair in pairs.iter_mut() {
+            let j = pair.first;
+            let lever = pair.share * pivot - state.u.pair(j);
+            let heavy = pair.start(lever);
+            inertia += lever * heavy;
+            offset += pair.share * heavy;
+            pair.motion = [state.u.pair(j), state.u_dot.pair(j)];
+            let parts = [a_top.value.pair(j), a_top.slope.pair(j)];
+            pair.push = [pair.share * a_g.value - parts[0], (pair.share * a_g.slope - parts[1]) * span];
+            is_pushed |= pair.push != [f64x2::ZERO; 2];
+        }
+        let per_inertia = 1.0 / (J0 + m0 * B * B + inertia.reduce_add());
+        let (mut offset, mut theta_dot) = (pivot * m0 + offset.reduce_add(), state.theta_dot);
+        let ((mut sin, mut cos), [mut sin_before, mut cos_before]) = (libm::sincos(state.theta), [0.0; 2]);
+        let pushes = |pairs: &[Pair], k: usize| {
+            let mut sum = f64x2::ZERO;
+            for Pair { mass, push, lever, .. } in pairs {
+                sum += mass * (push[0] * lever[k] + if k > 0 { push[1] * lever[k - 1] } else { f64x2::ZERO });
+            }
+            sum.reduce_add()
+        };
+        let truncation = self.truncation(start, span, true);
+        arc.expand_in_place(state, span, &truncation, |arc, k, per| {
             let n = k - 1;
-            let before = |series: &Series| if n > 0 { series[n - 1] } else { 0.0 };
-            let (sin_before, cos_before) = (before(sin), before(cos));
-            // g sin θ, a_g cos θ and g cos θ + a_g sin θ of order n
-            let fall = g * sin[n] + lift * sin_before - (ground * cos[n] + ground_slope * cos_before);
-            weight[n] = g * cos[n] + lift * cos_before + ground * sin[n] + ground_slope * sin_before;
-            square[n] = product(&arc.theta_dot, &arc.theta_dot, n);
-            let mut turning = Modes::ZERO; // w θ̇²
-            for i in 0..=n {
-                turning.add(&lever[i], square[n - i]);
+            let [mut inertia, mut next_offset] = [f64x2::ZERO; 2];
+            for pair in pairs.iter_mut() {
+                let [square, heavy] = pair.next(k, per);
+                inertia += square;
+                next_offset += pair.share * heavy;
             }
-            let (u, u_dot) = (&arc.u[n], &arc.u_dot[n]);
-            // e + w θ̇²
-            let mut held = turning;
-            for (j, [stiffness, damping]) in elastic.iter().enumerate().take(modes) {
-                held.set(j, held.of(j) + (stiffness * u.of(j) + damping * u_dot.of(j)));
+            // g sin θ − a_g cos θ, and g cos θ + a_g sin θ
+            let fall = g * sin + lift * sin_before - (ground * cos + ground_slope * cos_before);
+            let weight = g * cos + lift * cos_before + ground * sin + ground_slope * sin_before;
+            let push = if is_pushed { pushes(pairs, n) } else { 0.0 };
+            let newest_left = row([theta_dot, theta_dot, theta_dot, inertia.reduce_add(), offset, push]);
+            let newest_right = row([cos, sin, theta_dot, theta_dot, weight, sin]);
+            (left[n], right[MAX_ORDER - n]) = (newest_left, newest_right);
+            let [sin_rate, minus_cos_rate, turning, known, weight_moment, push_moment] =
+                products(left, right, &newest_left, &newest_right, n);
+            square[MAX_ORDER - n] = f64x2::splat(turning);
+            let mut moment = f64x2::ZERO;
+            for pair in pairs.iter_mut() {
+                let [u, u_dot] = pair.motion;
+                let elastic = pair.stiffness * u + pair.damping * c_ratio * u_dot;
+                pair.held = Pair::product(&pair.lever[..k], &square[MAX_ORDER - n..]) + elastic;
+                moment += pair.arm * pair.held;
             }
-            let mut moment = arms.dot(&held) - product(offset, weight, n);
-            if is_pushed {
-                let lever_before = if n > 0 { lever[n - 1] } else { Modes::ZERO };
-                push[n] = Modes::sum(frame, |j, mode| {
-                    mode.mass * (pushed.of(j) * lever[n].of(j) + push_slope.of(j) * lever_before.of(j))
-                });
-                moment += product(push, sin, n);
-            }
+            let mut moment = moment.reduce_add() - weight_moment + push_moment + S_res * fall;
             if let Some(ties) = &mut ties {
                 moment -= ties.next(&arc.theta_dot, n, per);
             }
-            // what the orders before leave of D θ̇
-            lever[k] = arc.u[k].times(-1.0);
-            heavy[k] = Modes::each(frame, |j, mode| mode.mass * lever[k].of(j));
-            let (mut of_inertia, half) = (0.0, k.div_ceil(2));
-            for i in 0..half {
-                of_inertia += 2.0 * lever[i].dot(&heavy[k - i]);
-            }
-            if k % 2 == 0 {
-                of_inertia += lever[half].dot(&heavy[half]);
-            }
-            inertia[k] = of_inertia;
-            offset[k] = shares.dot(&heavy[k]);
-            let known: f64 = (1..=k).map(|i| inertia[i] * arc.theta_dot[k - i]).sum();
-            let theta_dot = per_inertia * (moment * per - known);
-            let u_dot = Modes::each(frame, |j, mode| {
-                let mut along = mode.share * fall - held.of(j);
+            theta_dot = per_inertia * (moment * per - known);
+            arc.u_dot[k].count_as(&state.u_dot);
+            for pair in pairs.iter_mut() {
+                let j = pair.first;
+                let mut along = pair.share * fall - pair.held;
                 if is_pushed {
-                    along += pushed.of(j) * cos[n] + push_slope.of(j) * cos_before;
+                    along += pair.push[0] * cos + pair.push[1] * cos_before;
                 }
-                along * per - mode.height * theta_dot
-            });
-            let [sin_next, cos_next] = [product(cos, &arc.theta_dot, n) * per, -product(sin, &arc.theta_dot, n) * per];
-            (sin[k], cos[k]) = (sin_next, cos_next);
-            (u_dot, theta_dot)
+                pair.motion = [pair.motion[1] * per, along * per - pair.height * theta_dot];
+                arc.u_dot[k].set_pair(j, pair.motion[1]);
+            }
+            offset = next_offset.reduce_add();
+            (sin_before, cos_before) = (sin, cos);
+            (sin, cos) = (sin_rate * per, -minus_cos_rate * per);
+            theta_dot
         });
     }
 
@@ -267,7 +345,8 @@ impl Nonlinear {
         let is_held = held.min(held + change) > 0.0;
         let [mut springs, mut all] = [ZERO; 2];
         for k in 0..=arc.order {
-            [springs[k], all[k]] = lifting(frame, &arc.u[k], &arc.u_dot[k], base.g + a_v);
+            [springs[k], all[k]] =
+                lifting(frame, &arc.u[k], &arc.u_dot[k], [start.a_g.coefficient(k, arc.span), base.g + a_v]);
             if k > 0 {
                 all[k] += a_v_change * Modes::sum(frame, |j, mode| mode.gamma * arc.u[k - 1].of(j));
             }
@@ -326,7 +405,9 @@ impl Level<Modes> for Nonlinear {
             end.u.set(j, to[0]);
             end.u_dot.set(j, to[1]);
         }
-        let held = self.least_hold(start);
+        // what the mass that rides rigidly takes of the hold
+        let rigid = Modes::base(frame).S_res.abs() * start.a_g.value.abs().max(start.a_g.at(interval).abs());
+        let held = self.least_hold(start) - rigid;
         let near = springs[0].abs().max(springs[1].abs()) + bend * interval * interval / 8.0;
         (farthest < held || near < held).then_some(end)
     }
@@ -363,7 +444,8 @@ impl Level<Modes> for Nonlinear {
         let &Start { state, interval, .. } = start;
         let most = |j: usize| state.u.of(j).abs() + way(interval, state.u_dot.of(j));
         let springs = Modes::sum(&self.subject.structure, |j, mode| (mode.height * mode.stiffness).abs() * most(j));
-        springs < self.least_hold(start)
+        let &Base { S_res, .. } = Modes::base(&self.subject.structure);
+        springs + (S_res * start.a_g.value).abs() < self.least_hold(start)
     }
 
     fn stays_down(&self, state: &State<Modes>, dissipators: &Dissipators) -> bool {
@@ -378,7 +460,8 @@ impl Level<Modes> for Nonlinear {
         let frame = &self.subject.structure;
         let base = Modes::base(frame);
         let weight = (base.m_t * base.g + base.ties.P_0) * base.B;
-        let [springs, all] = lifting(frame, &state.u, &state.u_dot, base.g + load.a_v).map(|moment| moment / weight);
+        let [springs, all] =
+            lifting(frame, &state.u, &state.u_dot, [load.a_g, base.g + load.a_v]).map(|moment| moment / weight);
         let about = |side: Side| {
             let (s, held) = (side.sign(), hold(base, side, load.a_v, dissipators) / weight);
             let turns = held + LEAST_EXCESS - s * all;
@@ -395,7 +478,7 @@ impl Level<Modes> for Nonlinear {
         let &Now { state, load, dissipators } = now;
         let &State { u, u_dot, theta, theta_dot } = state;
         let base = Modes::base(frame);
-        let &Base { m0, B, .. } = base;
+        let &Base { m0, S_res, B, .. } = base;
         let a_top = load.on_modes(frame);
         let elastic = |j: usize, mode: &Mode, damping: f64| {
             (damping * mode.damping * u_dot.of(j) + mode.stiffness * u.of(j)) / mode.mass
@@ -413,7 +496,8 @@ impl Level<Modes> for Nonlinear {
         });
         let back = restraint::sum(&restraint::ties(base, side, dissipators), |tie| tie.lever);
         let back = back.moment(&Angles::Any.chord(theta, theta_dot));
-        let moment = moment - pivot * m0 * (g * cos + load.a_g * sin) - back;
+        let fall = g * sin - load.a_g * cos;
+        let moment = moment - pivot * m0 * (g * cos + load.a_g * sin) + S_res * fall - back;
         let theta_ddot = moment / inertia(frame, side, &u);
         let along = |j: usize, mode: &Mode| mode.share * g * sin - a_top.of(j) * cos - held(j, mode);
         Second { u_ddot: Modes::each(frame, |j, mode| along(j, mode) - mode.height * theta_ddot), theta_ddot }
@@ -424,13 +508,17 @@ impl Level<Modes> for Nonlinear {
 mod tests {
     use super::*;
     use crate::levels::nonlinear::accelerations;
+    use crate::mechanics::gauge::{Gauge, Reading};
+    use crate::mechanics::instant::Instant;
     use crate::mechanics::load::LinearLoad;
-    use crate::structure::frame::Body;
+    use crate::mechanics::reactions::Reactions;
+    use crate::structure::Ties;
+    use crate::structure::frame::{Body, Floor};
     use crate::{Parameters, Structure};
     use approx::assert_relative_eq;
 
-    /// A restrained structure whose modes have these shares.
-    fn frame(shares: &[f64]) -> (Structure, Frame) {
+    /// A restrained structure whose modes have these shares and carry the whole mass, or less of `more` mass.
+    fn frame(shares: &[f64], more: f64) -> (Structure, Frame) {
         let restrained =
             Parameters { P_0: 200.0, k_t: 3e4, xi_d: 0.1, c_d: 40.0, k_d: 1e5, F_y: 400.0, ..Parameters::MCMANUS };
         let structure = Structure::new(Parameters { zeta_fc: 0.1, c_ratio: 1.3, ..restrained }).unwrap();
@@ -448,7 +536,7 @@ mod tests {
         };
         let modes: Vec<_> = shares.iter().enumerate().map(mode).collect();
         let Parameters { m0, J0, B, r, g, c_ratio, .. } = *structure.parameters();
-        let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum();
+        let of = |part: fn(&Mode) -> f64| more * modes.iter().map(part).sum::<f64>();
         let (m_s, S_1) = (of(|mode| mode.gamma * mode.share), of(|mode| mode.gamma * mode.height));
         let (I_2, ties) = (of(|mode| mode.mass * mode.height * mode.height), structure.base.ties);
         let body = Body { m0, J0, m_s, S_1, I_2, B, r: Some(r), g, c_ratio, ties };
@@ -466,7 +554,7 @@ mod tests {
     #[test]
     fn one_mode_has_the_accelerations_of_equations_5_and_6() {
         let (scale, dissipators) = (1.7, Dissipators { plastic: [2e-3, -1e-3], yields: [0, 1], ..Dissipators::NEW });
-        let (structure, frame) = frame(&[1.0 / scale]);
+        let (structure, frame) = frame(&[1.0 / scale], 1.0);
         for side in [Side::Right, Side::Left] {
             let theta = 0.1 * side.sign();
             let one = State { u: 0.02, u_dot: -0.7, theta, theta_dot: 0.6 };
@@ -485,7 +573,7 @@ mod tests {
     /// The derivatives of the series are the accelerations along it, under all loads and with all ties.
     #[test]
     fn the_series_satisfies_the_equations_of_many_masses() {
-        let (_, frame) = frame(&[1.3, -0.6, 0.4]);
+        let (_, frame) = frame(&[1.3, -0.6, 0.4], 1.25);
         let level = level(&frame);
         let dissipators = Dissipators { plastic: [2e-3, -1e-3], ..Dissipators::NEW };
         let modes = |numbers: [f64; 3]| Modes::new(&numbers);
@@ -511,6 +599,62 @@ mod tests {
                 for j in 0..3 {
                     assert_relative_eq!(slope(&|k| arc.u_dot[k].of(j)), u_ddot.of(j), epsilon = 1e-9);
                 }
+            }
+        }
+    }
+
+    /// Newton's law for a floor, for the moments about the pivot, and the shear of a storey as a sum, with mass that rides rigidly.
+    #[test]
+    fn gauges_and_reactions_follow_from_the_motion() {
+        let (structure, frame) = frame(&[1.3, -0.6, 0.4], 1.25);
+        let base = Base { ties: Ties::default(), ..structure.base };
+        let floor = |mass, height, shape: [f64; 3]| Floor { mass, height, shape: Modes::new(&shape) };
+        let floors = [floor(3.0, 1.1, [0.2, 0.5, -0.3]), floor(2.0, 2.3, [0.9, -0.4, 0.1])];
+        let frame = Frame::new(Body { ties: base.ties, ..*frame.body() }, frame.modes(), &floors).unwrap();
+        let level = level(&frame);
+        let modes = |numbers: [f64; 3]| Modes::new(&numbers);
+        let (u, u_dot) = (modes([0.01, -0.02, 0.005]), modes([0.3, 0.1, -0.2]));
+        let load = Load { a_g: 3.0, F_t: Modes::ZERO, a_v: -1.5 };
+        let turned = State { u, u_dot, theta: -0.2, theta_dot: 0.5 };
+        for (phase, state) in
+            [(Phase::Rocking(Side::Left), turned), (Phase::FullContact, State { theta: 0.0, theta_dot: 0.0, ..turned })]
+        {
+            let now = Now { state: &state, load, dissipators: &Dissipators::NEW };
+            let second = level.accelerations(phase, &now);
+            let x = Instant::of(&frame, phase, &state, load);
+            let Instant { turn, theta_dot, a_g, a_v, s, .. } = x;
+            let value = |gauge: &Gauge| {
+                let elastic = gauge.elastic(&frame, frame.base.damping(phase), &u, &u_dot);
+                let theta_ddot = second.theta_ddot;
+                gauge.value(&frame.base, s, &Reading { elastic, push: 0.0, turn, theta_dot, theta_ddot, a_g, a_v })
+            };
+            let (mut storey, gauges) = (0.0, frame.gauges());
+            for (i, floor) in floors.iter().enumerate().rev() {
+                let lever = s * frame.base.B - floor.displacement(&u);
+                let along = floor.displacement(&second.u_ddot) + floor.height * second.theta_ddot;
+                let expected = along + theta_dot * theta_dot * lever + a_g * turn.cos - a_v * turn.sin;
+                assert_relative_eq!(value(&gauges.a[i]), expected, max_relative = 1e-12);
+                storey += floor.mass * expected;
+                assert_relative_eq!(value(&gauges.V[i]), storey, max_relative = 1e-12);
+            }
+            let reactions = Reactions::at(&x, &second);
+            if let Phase::Rocking(_) = phase {
+                assert_relative_eq!(reactions.R_m, x.pivot() * reactions.R_v, max_relative = 1e-11);
+            } else {
+                let weight = frame.base.g + a_v;
+                let [springs, others] = lifting(&frame, &u, &u_dot, [a_g, weight]);
+                let c_ratio = frame.base.c_ratio;
+                let damped = Modes::sum(&frame, |j, mode| mode.height * mode.damping * u_dot.of(j));
+                assert_relative_eq!(reactions.R_m, others - (c_ratio - 1.0) * damped, max_relative = 1e-12);
+                assert!(springs != others);
+                // the foundation carries its own a_g, and the masses carry the base shear
+                let carried = value(&gauges.V_t) + frame.body().m0 * a_g;
+                assert_relative_eq!(reactions.R_h, -carried, max_relative = 1e-12);
+                assert_relative_eq!(
+                    value(&gauges.M_t),
+                    -(reactions.R_m - weight * x.sum(|j, mode| mode.gamma * u.of(j))),
+                    max_relative = 1e-12
+                );
             }
         }
     }

@@ -209,13 +209,6 @@ impl<Q: Coordinates> LinearLoad<Q> {
 }
 
 impl LinearLoad {
-    /// The ground accelerations alone, for a structure with other coordinates.
-    #[inline(always)]
-    pub(crate) fn of_ground<Q: Coordinates>(self) -> LinearLoad<Q> {
-        let [value, slope] = [self.value, self.slope].map(|Load { a_g, a_v, .. }| Load { a_g, F_t: Q::ZERO, a_v });
-        LinearLoad { value, slope }
-    }
-
     /// These loads with the accelerations of `ground` added.
     pub fn on_ground(self, ground: LinearLoad) -> LinearLoad {
         let and = |own: Load, ground: Load| Load { a_g: own.a_g + ground.a_g, a_v: own.a_v + ground.a_v, ..own };

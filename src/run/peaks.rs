@@ -37,7 +37,7 @@ pub struct Peak {
 }
 
 impl Peak {
-    fn see(&mut self, value: f64, time: f64) {
+    pub(super) fn see(&mut self, value: f64, time: f64) {
         let magnitude = value.abs();
         if !self.may_be_same(magnitude) {
             return;
@@ -54,7 +54,7 @@ impl Peak {
     }
 
     /// Whether a magnitude of at most `bound` at `time` (s) or later may be more than it, or the same and sooner.
-    fn may_change(&self, bound: f64, time: f64) -> bool {
+    pub(super) fn may_change(&self, bound: f64, time: f64) -> bool {
         bound > self.magnitude * if time < self.time { 1.0 - SAME } else { 1.0 + ROUNDING }
     }
 }

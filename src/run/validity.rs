@@ -451,9 +451,7 @@ impl<'a> Polynomial<'a> {
 
     /// The reactions at `sigma`, from the state there.
     fn reactions(&self, sigma: f64) -> Reactions {
-        let Expansion { piece: &Piece { level, before, load, .. }, from, arc } = self.of;
-        let motion = Motion { state: arc.at(sigma), ..*before };
-        Sample { motion, load: load.at(from + sigma * arc.span), level }.edges()
+        self.of.sample(sigma).edges()
     }
 
     /// Whether the series of R_h and R_v end in the reactions `last` of the state.
