@@ -1,6 +1,5 @@
 from collections.abc import Callable, Sequence
 from os import PathLike
-from pathlib import Path
 from typing import Any, Literal, TypedDict, final
 
 import numpy as np
@@ -67,14 +66,14 @@ class Structure:
 class Record:
     def __new__(
         cls,
-        time: ArrayLike,
-        a_g: ArrayLike,
+        time: Any,  # numbers, or a Trace or Stream of ObsPy
+        a_g: ArrayLike | None = None,
         a_v: ArrayLike | None = None,
         *,
-        unit: _Unit = "m/s2",
+        unit: _Unit | None = None,
         time_scale: float = 1.0,
         scale: float = 1.0,
-        title: str = "record",
+        title: str | None = None,
     ) -> Record: ...
     @staticmethod
     def read(
@@ -199,18 +198,21 @@ def sweep(
     structures: list[tuple[str, list[Structure]]],
     records: list[tuple[str, Record]],
     scale: ArrayLike,
-    path: Path,
+    intensity: str,
+    path: _Path | None,
     detail: str,
     tolerance: float,
     duration: float | None,
     initial: dict[str, float],
     validity: bool,
     threads: int,
-    progress: Callable[[int, int], None] | None,
-) -> list[str]: ...
+    progress: Callable[[int, int], object] | None,
+) -> tuple[list[str], list[tuple[str, Any]], BaseException | None]: ...
+def exceeds(
+    endings: list[str], peaks: list[float], gs: list[float], limit: str, half_width: float
+) -> list[bool | None]: ...
 def fragility(
-    groups: list[int], intensities: list[float], endings: list[str], peaks: list[float], gs: list[float], limit: str,
-    half_width: float,
+    groups: list[int], intensities: list[float], exceeds: list[bool | None]
 ) -> tuple[Curve, list[tuple[float, float, float, int, int, int]]]: ...
 def measure_of(limit: str) -> str | None: ...
 def intensity_measures() -> dict[str, str]: ...
