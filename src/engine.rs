@@ -194,6 +194,17 @@ pub trait Moves: Coordinates {
     /// The levels of detail of these structures.
     type Level: Deref<Target = dyn Level<Self>> + Debug;
 
+    /// Starts `structure` at `time` (s) from `initial`.
+    fn engine(
+        structure: Self::Structure,
+        initial: State<Self>,
+        time: f64,
+        settings: Settings,
+    ) -> Result<Engine<Self>, InitialStateError>;
+
+    /// The loads of a ground motion alone.
+    fn loads(ground: LinearLoad) -> LinearLoad<Self>;
+
     /// Advances with a level by its type: each gets a loop of its own, so that nothing stands between the loop and the level's
     /// equations.
     #[doc(hidden)]
@@ -202,6 +213,20 @@ pub trait Moves: Coordinates {
 
 impl Moves for f64 {
     type Level = AnyLevel;
+
+    fn engine(
+        structure: Structure,
+        initial: State,
+        time: f64,
+        settings: Settings,
+    ) -> Result<Engine, InitialStateError> {
+        Engine::with(structure, initial, time, settings)
+    }
+
+    #[inline(always)]
+    fn loads(ground: LinearLoad) -> LinearLoad {
+        ground
+    }
 
     #[inline(always)]
     fn advance<W: Watch>(any: &AnyLevel, task: Task<'_, f64, W>) -> Result<Progress, AdvanceError> {
@@ -225,6 +250,20 @@ impl Deref for LevelOfModes {
 
 impl Moves for Modes {
     type Level = LevelOfModes;
+
+    fn engine(
+        structure: Frame,
+        initial: State<Modes>,
+        time: f64,
+        settings: Settings,
+    ) -> Result<Engine<Modes>, InitialStateError> {
+        Engine::of_modes(structure, initial, time, settings)
+    }
+
+    fn loads(LinearLoad { value, slope }: LinearLoad) -> LinearLoad<Modes> {
+        let [value, slope] = [value, slope].map(|Load { a_g, a_v, .. }| Load { a_g, F_t: Modes::ZERO, a_v });
+        LinearLoad { value, slope }
+    }
 
     fn advance<W: Watch<Modes>>(any: &LevelOfModes, task: Task<'_, Modes, W>) -> Result<Progress, AdvanceError> {
         task.with(any, &any.0)
@@ -280,22 +319,11 @@ impl Engine {
         Ok(Engine { level, settings, motion: self.motion, arc: Arc::default() })
     }
 
-    /// The structure.
-    pub fn structure(&self) -> &Structure {
-        self.level.structure()
-    }
-
     /// Whether certainly no transition comes within `ahead` (s), a tiny time, under `load`.
     pub fn goes_on_for(&self, ahead: f64, load: LinearLoad) -> bool {
         let now = self.sample(load.value);
         phases::of(self.structure(), &self.motion)
             .is_none_or(|watched| watched.guards.iter().all(|guard| guard.stays_open(&now, ahead)))
-    }
-
-    /// Whether the structure, in full contact now, stays there while nothing acts on it.
-    pub fn stays_down(&self) -> bool {
-        let Motion { phase, state, dissipators, .. } = &self.motion;
-        *phase == Phase::FullContact && self.level.stays_down(state, dissipators)
     }
 
     /// The outputs now under `load`; once overturned, those of the instant before.
@@ -377,14 +405,9 @@ impl Engine<Modes> {
         Ok(Engine::start(level, settings, time, state, phase, Dissipators::NEW))
     }
 
-    /// The structure.
-    pub fn frame(&self) -> &Frame {
-        self.level.structure()
-    }
-
     /// Mechanical energy now, J.
     pub fn energy(&self) -> f64 {
-        energy(self.frame(), self.motion.phase, &self.motion.state)
+        energy(self.structure(), self.motion.phase, &self.motion.state)
     }
 }
 
@@ -412,6 +435,22 @@ impl<Q: Moves> Engine<Q> {
         Engine { level, settings, motion, arc: Arc::default() }
     }
 
+    /// The structure.
+    pub fn structure(&self) -> &Q::Structure {
+        self.level.structure()
+    }
+
+    /// Whether the structure, in full contact now, stays there while nothing acts on it.
+    pub fn stays_down(&self) -> bool {
+        let Motion { phase, state, dissipators, .. } = &self.motion;
+        *phase == Phase::FullContact && self.level.stays_down(state, dissipators)
+    }
+
+    /// The motion now, under `load`.
+    pub fn sample(&self, load: Load<Q>) -> Sample<'_, Q> {
+        Sample { motion: self.motion, load, level: &self.level }
+    }
+
     /// The settings of the engine.
     pub fn settings(&self) -> Settings {
         self.settings
@@ -420,11 +459,6 @@ impl<Q: Moves> Engine<Q> {
     /// The motion now.
     pub fn motion(&self) -> &Motion<Q> {
         &self.motion
-    }
-
-    /// The motion now, under `load`.
-    pub fn sample(&self, load: Load<Q>) -> Sample<'_, Q> {
-        Sample { motion: self.motion, load, level: &self.level }
     }
 
     /// Puts the structure in this `motion`.

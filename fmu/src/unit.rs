@@ -16,7 +16,7 @@ use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::load::VERTICAL;
 use rocking::run::fall::FallingPeaks;
 use rocking::run::ground_motion::Elapsed;
-use rocking::run::validity::{self, Found};
+use rocking::run::validity::{self, Findings};
 use rocking::{Motion, State, Transition};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -60,7 +60,7 @@ pub struct Course {
     /// Peaks so far, if they are watched.
     pub peaks: FallingPeaks,
     /// Which limits of the model have been passed so far, if they are watched.
-    pub validity: Found,
+    pub validity: Findings,
     /// Names the record that the ground follows.
     pub record: Option<Digest>,
 }
