@@ -461,7 +461,7 @@ def test_a_picture_and_a_film_show_the_page(opened, browser, tmp_path):
     page.select_option("#speed", "2")
     with page.expect_download() as download:
         page.locator("#film").click()
-        page.wait_for_timeout(1500)
+        page.wait_for_timeout(3000)
         page.locator("#play").click()
     download.value.save_as(tmp_path / "film.webm")
     player = browser.new_page()

@@ -432,7 +432,7 @@ function motionView() {
       if (magnitude > 0) {
         element(g, "circle", { class: "peak", cx: across(instant), cy: y(signed(panel.name, instant)), r: 3.5 });
       }
-      panel.dot = element(g, "circle", { r: 3.5, style: `fill:var(${panel.colour})` });
+      panel.dot = element(g, "circle", { class: "dot", r: 3.5, style: `fill:var(${panel.colour})` });
     });
 
     element(svg, "rect", { class: "rocking key", x: edge - 122, y: gap - 18, width: 14, height: 11 });

@@ -721,5 +721,5 @@
   update(1e-2); // lays out the page, which shows the scene of the link after it
   await follow();
   open(tab);
-  if (!matchMedia("(prefers-reduced-motion: reduce)").  view.play(true);
+  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) view.play(true);
 })();
