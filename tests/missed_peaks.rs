@@ -5,7 +5,7 @@
 use fastrand::Rng;
 use rocking::engine::Settings;
 use rocking::run::peaks::{PEAKS, Peaks};
-use rocking::run::validity::{Found, Limits, Validity};
+use rocking::run::validity::{Findings, Limits, Validity};
 use rocking::{
     Detail, Engine, LinearLoad, Load, Outputs, Parameters, Phase, Piece, Progress, Reactions, State, Structure, Watch,
 };
@@ -144,7 +144,7 @@ fn no_peak_is_missed() {
         let start = || Engine::with(structure, state, 0.0, settings).unwrap();
         let mut engine = start();
         let [mut peaks, mut alone] = [Peaks::since(0.0, &structure, detail); 2];
-        let mut validity = Validity::new(&structure, Limits::default(), Found::since(0.0));
+        let mut validity = Validity::new(&structure, Limits::default(), Findings::since(0.0));
         let mut dense = Dense {
             parameters,
             largest: [0.0; PEAKS.len()],
