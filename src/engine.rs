@@ -18,7 +18,7 @@ pub(crate) mod yielding;
 
 use crate::levels::detail::{AnyLevel, Detail, by_level};
 use crate::levels::level::{Level, Subject};
-use crate::levels::modes::Nonlinear;
+use crate::levels::modes::ManyModes;
 use crate::mechanics::energy::energy;
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
@@ -238,7 +238,7 @@ impl Moves for f64 {
 #[doc(hidden)]
 #[derive(Debug)]
 #[allow(private_interfaces)] // the coordinates name the type, and nobody else can use it
-pub struct LevelOfModes(Nonlinear);
+pub struct LevelOfModes(ManyModes);
 
 impl Deref for LevelOfModes {
     type Target = dyn Level<Modes>;
@@ -383,7 +383,7 @@ impl Engine {
 }
 
 impl Engine<Modes> {
-    /// Starts the structure `frame` of many masses at `time` (s) from `state`, at the level of detail `auto` or `nonlinear`.
+    /// Starts the structure `frame` of many masses at `time` (s) from `state`, at any level of detail but `modal` and `rigid`.
     pub fn of_modes(
         frame: Frame,
         state: State<Modes>,
@@ -396,12 +396,12 @@ impl Engine<Modes> {
         let is_tied = frame.base.is_restrained() || settings.vertical;
         let angles = settings.detail.angles();
         let subject = Subject { structure: frame, local_error: settings.local_error()?, is_tied, angles };
-        let is_exact = match settings.detail {
-            Detail::Auto => true,
-            Detail::Nonlinear => false,
-            other => return Err(InitialStateError::OneMass(other.name())),
-        };
-        let level = Box::new(LevelOfModes(Nonlinear::new(subject, is_exact)));
+        match settings.detail {
+            Detail::FixedBase if state.theta != 0.0 => return Err(InitialStateError::TurnedFixedBase(state.theta)),
+            Detail::Modal | Detail::Rigid => return Err(InitialStateError::OneMass(settings.detail.name())),
+            _ => (),
+        }
+        let level = Box::new(LevelOfModes(ManyModes::new(subject, settings.detail)));
         Ok(Engine::start(level, settings, time, state, phase, Dissipators::NEW))
     }
 

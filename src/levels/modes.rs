@@ -1,4 +1,4 @@
-//! Structures of many masses: exact modes in full contact, nonlinear rocking on a base that carries the modes.
+//! Structures of many masses: exact modes in full contact, and a rocking base that carries the modes, nonlinear or linear.
 //!
 //! Each mode has μ, h and Γ, and takes the part S = Γ/μ in a translation. With w = sB S − u and e = (c u̇ + k u)/μ, (M8) and (M9) are
 //!
@@ -10,6 +10,7 @@
 //!
 //! The angular momentum D θ̇ has no Coriolis term. An order takes five products and one more for each mode. g is g + a_v.
 
+use crate::levels::detail::Detail;
 use crate::levels::level::{Level, Now, Rates, Subject, way};
 use crate::levels::nonlinear::{Factors, NO_ROW, products, row};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
@@ -25,7 +26,7 @@ use crate::structure::frame::Frame;
 use crate::structure::{Base, Mode};
 use crate::{Phase, Side, State};
 use std::cell::RefCell;
-use wide::f64x2;
+use wide::f64x4;
 
 /// Part of its inertia at u = 0 that a structure must keep about its pivot.
 const LEAST_INERTIA: f64 = 1e-6;
@@ -33,17 +34,20 @@ const LEAST_INERTIA: f64 = 1e-6;
 /// Part of the acceleration of gravity by which a motion is as good as none.
 const NEGLIGIBLE: f64 = 1e-30;
 
-/// Nonlinear motion of a structure of many masses.
+/// Motion of a structure of many masses.
 #[derive(Clone, Debug)]
-pub(crate) struct Nonlinear {
+pub(crate) struct ManyModes {
     subject: Subject<Modes>,
+    detail: Detail,
     /// The oscillators of full contact, if their exact flow is used.
     contact: Option<Vec<(Oscillator, Kept<Flow>)>>,
     /// The mass of all modes, kg.
     mass: f64,
     /// Radius of their inertia about the base, m.
     height: f64,
-    /// J_P over the inertia about a pivot that the modes leave: how much faster the structure vibrates while rocking, squared.
+    /// Inertia about a pivot that the modes leave, kg·m².
+    left: f64,
+    /// J_P over this inertia: how much faster the structure vibrates while rocking, squared.
     quickening: f64,
     /// The longest span of a series while rocking, s.
     longest_span: f64,
@@ -53,7 +57,7 @@ pub(crate) struct Nonlinear {
 /// Room for the series of one step.
 #[derive(Clone, Debug)]
 struct Scratch {
-    pairs: Vec<Pair>,
+    fours: Vec<Four>,
     /// Row i of the left factors, and of the right ones counted from their end, of six products of order i ("next": of order i + 1):
     ///
     /// ```text
@@ -61,65 +65,65 @@ struct Scratch {
     /// right:  cos θ   sin θ   θ̇    θ̇         weight   sin θ
     /// ```
     factors: [Factors; 2],
-    /// θ̇² for both modes of a pair, from the end.
-    square: PairSeries,
+    /// θ̇² for the modes of a four, from the end.
+    square: FourSeries,
 }
 
-/// Coefficients for two modes.
-type PairSeries = [f64x2; MAX_ORDER + 1];
+/// Coefficients for four modes.
+type FourSeries = [f64x4; MAX_ORDER + 1];
 
-/// Two modes side by side; beside the last of an odd number, a mode without mass that stays at rest.
+/// Four modes side by side; modes that are none have no mass and stay at rest.
 #[derive(Clone, Debug, Default)]
-struct Pair {
+struct Four {
     /// The number of the first mode.
     first: usize,
-    mass: f64x2,
-    share: f64x2,
-    height: f64x2,
+    mass: f64x4,
+    share: f64x4,
+    height: f64x4,
     /// μ h.
-    arm: f64x2,
+    arm: f64x4,
     /// k/μ.
-    stiffness: f64x2,
+    stiffness: f64x4,
     /// c/μ in full contact.
-    damping: f64x2,
+    damping: f64x4,
     /// The newest coefficients of u and u̇.
-    motion: [f64x2; 2],
+    motion: [f64x4; 2],
     /// Force over mass, and its change over the span.
-    push: [f64x2; 2],
+    push: [f64x4; 2],
     /// e + w θ̇² of the newest order.
-    held: f64x2,
+    held: f64x4,
     /// w.
-    lever: PairSeries,
+    lever: FourSeries,
     /// μ w, from the end.
-    heavy: PairSeries,
+    heavy: FourSeries,
 }
 
-impl Pair {
-    fn new((place, modes): (usize, &[Mode])) -> Pair {
-        let both = |of: fn(&Mode) -> f64| f64x2::new([0, 1].map(|i| modes.get(i).map_or(0.0, of)));
-        Pair {
-            first: 2 * place,
+impl Four {
+    fn new((place, modes): (usize, &[Mode])) -> Four {
+        let both = |of: fn(&Mode) -> f64| f64x4::new([0, 1, 2, 3].map(|i| modes.get(i).map_or(0.0, of)));
+        Four {
+            first: 4 * place,
             mass: both(|mode| mode.mass),
             share: both(|mode| mode.share),
             height: both(|mode| mode.height),
             arm: both(|mode| mode.mass * mode.height),
             stiffness: both(|mode| mode.stiffness / mode.mass),
             damping: both(|mode| mode.damping / mode.mass),
-            ..Pair::default()
+            ..Four::default()
         }
     }
 
     /// Σ a_i b_{k−i} over the first terms of `a`, with b kept from its end.
     #[inline(always)]
-    fn product(a: &[f64x2], b: &[f64x2]) -> f64x2 {
-        let mut sum = f64x2::ZERO;
+    fn product(a: &[f64x4], b: &[f64x4]) -> f64x4 {
+        let mut sum = f64x4::ZERO;
         a.iter().zip(b).for_each(|(a, b)| sum += a * b);
         sum
     }
 
     /// Puts w in order 0.
     #[inline(always)]
-    fn start(&mut self, lever: f64x2) -> f64x2 {
+    fn start(&mut self, lever: f64x4) -> f64x4 {
         let heavy = self.mass * lever;
         (self.lever[0], self.heavy[MAX_ORDER]) = (lever, heavy);
         heavy
@@ -127,15 +131,15 @@ impl Pair {
 
     /// Puts −u in order `k` of w, and returns that order of μ w² and μ w.
     #[inline(always)]
-    fn next(&mut self, k: usize, per: f64) -> [f64x2; 2] {
-        let Pair { lever, heavy, .. } = self;
+    fn next(&mut self, k: usize, per: f64) -> [f64x4; 2] {
+        let Four { lever, heavy, .. } = self;
         lever[k] = self.motion[1] * -per;
         heavy[MAX_ORDER - k] = self.mass * lever[k];
         // both halves of Σ w_i μ w_{k−i} are the same
         let half = k.div_ceil(2);
-        let mut square = Pair::product(&lever[..half], &heavy[MAX_ORDER - k..]);
+        let mut square = Four::product(&lever[..half], &heavy[MAX_ORDER - k..]);
         square += square;
-        if k % 2 == 0 {
+        if k.is_multiple_of(2) {
             square += lever[half] * heavy[MAX_ORDER - half];
         }
         [square, heavy[MAX_ORDER - k]]
@@ -151,8 +155,8 @@ fn inertia(frame: &Frame, side: Side, u: &Modes) -> f64 {
 
 /// The moment that holds the base down about `side` under the vertical acceleration `a_v`, N·m: the right side of (M3).
 fn hold(base: &Base, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
-    let [tendon, pair @ ..] = restraint::ties(base, side, dissipators);
-    let residual: f64 = pair.iter().map(|tie| tie.lever * tie.force).sum();
+    let [tendon, four @ ..] = restraint::ties(base, side, dissipators);
+    let residual: f64 = four.iter().map(|tie| tie.lever * tie.force).sum();
     base.m_t * (base.g + a_v) * base.B + tendon.force * base.B + side.sign() * residual
 }
 
@@ -167,9 +171,9 @@ fn lifting(frame: &Frame, u: &Modes, u_dot: &Modes, [a_g, weight]: [f64; 2]) -> 
     [springs, springs + others]
 }
 
-impl Nonlinear {
-    /// The level of the structure of `subject`, in full contact by exact flow or by series.
-    pub(crate) fn new(subject: Subject<Modes>, is_exact: bool) -> Nonlinear {
+impl ManyModes {
+    /// The level of this `detail` of the structure of `subject`: `auto`, `nonlinear`, `linear` or `fixed_base`.
+    pub(crate) fn new(subject: Subject<Modes>, detail: Detail) -> ManyModes {
         let frame = &subject.structure;
         let base = Modes::base(frame);
         let mass = Modes::sum(frame, |_, mode| mode.gamma * mode.share);
@@ -182,17 +186,19 @@ impl Nonlinear {
         let ties = restraint::sum(&restraint::ties(base, Side::Right, &Dissipators::NEW), |tie| tie.lever);
         let [_, highest] = Modes::vibration(frame).rocking;
         let fastest = (highest * highest + ties.stiffness / left).sqrt().max(base.p_l).max(ties.damping / left);
-        Nonlinear {
-            contact: is_exact.then(|| frame.modes().iter().map(oscillator).collect()),
+        ManyModes {
+            contact: (detail != Detail::Nonlinear).then(|| frame.modes().iter().map(oscillator).collect()),
             mass,
             height: (of_modes / mass).sqrt(),
+            left,
             quickening: base.J_P / left,
             longest_span: LONGEST_SPAN / fastest,
             scratch: RefCell::new(Box::new(Scratch {
-                pairs: frame.modes().chunks(2).enumerate().map(Pair::new).collect(),
+                fours: frame.modes().chunks(4).enumerate().map(Four::new).collect(),
                 factors: [[NO_ROW; MAX_ORDER + 1]; 2],
-                square: [f64x2::ZERO; MAX_ORDER + 1],
+                square: [f64x4::ZERO; MAX_ORDER + 1],
             })),
+            detail,
             subject,
         }
     }
@@ -227,24 +233,24 @@ impl Nonlinear {
     fn resting(&self, start: &Start<Modes>, arc: &mut Arc<Modes>) {
         let Start { state, a_top, interval, .. } = start;
         let span = interval.min(LONGEST_SPAN / Modes::vibration(&self.subject.structure).rocking[1]);
-        let pairs = &mut self.scratch.borrow_mut().pairs;
-        for pair in pairs.iter_mut() {
-            let j = pair.first;
-            pair.motion = [state.u.pair(j), state.u_dot.pair(j)];
-            pair.push = [a_top.value.pair(j), a_top.slope.pair(j) * span];
+        let fours = &mut self.scratch.borrow_mut().fours;
+        for four in fours.iter_mut() {
+            let j = four.first;
+            four.motion = [state.u.four(j), state.u_dot.four(j)];
+            four.push = [a_top.value.four(j), a_top.slope.four(j) * span];
         }
         let truncation = self.truncation(start, span, false);
         arc.expand_in_place(state, span, &truncation, |arc, k, per| {
             arc.u_dot[k].count_as(&state.u_dot);
-            for pair in pairs.iter_mut() {
-                let j = pair.first;
-                let [u, u_dot] = pair.motion;
-                let mut rate = pair.damping * u_dot + pair.stiffness * u;
-                if let Some(load) = pair.push.get(k - 1) {
+            for four in fours.iter_mut() {
+                let j = four.first;
+                let [u, u_dot] = four.motion;
+                let mut rate = four.damping * u_dot + four.stiffness * u;
+                if let Some(load) = four.push.get(k - 1) {
                     rate += *load;
                 }
-                pair.motion = [u_dot * per, rate * -per];
-                arc.u_dot[k].set_pair(j, pair.motion[1]);
+                four.motion = [u_dot * per, rate * -per];
+                arc.u_dot[k].set_four(j, four.motion[1]);
             }
             0.0
         });
@@ -263,54 +269,54 @@ impl Nonlinear {
         let pivot = side.sign() * B;
         let (g, lift) = (g + a_v.value, a_v.slope * span);
         let (ground, ground_slope) = (a_g.value, a_g.slope * span);
-        let Scratch { pairs, factors: [left, right], square } = &mut **self.scratch.borrow_mut();
-        let (mut inertia, mut offset, mut is_pushed) = (f64x2::ZERO, f64x2::ZERO, false);
-        for pair in pairs.iter_mut() {
-            let j = pair.first;
-            let lever = pair.share * pivot - state.u.pair(j);
-            let heavy = pair.start(lever);
+        let Scratch { fours, factors: [left, right], square } = &mut **self.scratch.borrow_mut();
+        let (mut inertia, mut offset, mut is_pushed) = (f64x4::ZERO, f64x4::ZERO, false);
+        for four in fours.iter_mut() {
+            let j = four.first;
+            let lever = four.share * pivot - state.u.four(j);
+            let heavy = four.start(lever);
             inertia += lever * heavy;
-            offset += pair.share * heavy;
-            pair.motion = [state.u.pair(j), state.u_dot.pair(j)];
-            let parts = [a_top.value.pair(j), a_top.slope.pair(j)];
-            pair.push = [pair.share * a_g.value - parts[0], (pair.share * a_g.slope - parts[1]) * span];
-            is_pushed |= pair.push != [f64x2::ZERO; 2];
+            offset += four.share * heavy;
+            four.motion = [state.u.four(j), state.u_dot.four(j)];
+            let parts = [a_top.value.four(j), a_top.slope.four(j)];
+            four.push = [four.share * a_g.value - parts[0], (four.share * a_g.slope - parts[1]) * span];
+            is_pushed |= four.push != [f64x4::ZERO; 2];
         }
         let per_inertia = 1.0 / (J0 + m0 * B * B + inertia.reduce_add());
         let (mut offset, mut theta_dot) = (pivot * m0 + offset.reduce_add(), state.theta_dot);
         let ((mut sin, mut cos), [mut sin_before, mut cos_before]) = (libm::sincos(state.theta), [0.0; 2]);
-        let pushes = |pairs: &[Pair], k: usize| {
-            let mut sum = f64x2::ZERO;
-            for Pair { mass, push, lever, .. } in pairs {
-                sum += mass * (push[0] * lever[k] + if k > 0 { push[1] * lever[k - 1] } else { f64x2::ZERO });
+        let pushes = |fours: &[Four], k: usize| {
+            let mut sum = f64x4::ZERO;
+            for Four { mass, push, lever, .. } in fours {
+                sum += mass * (push[0] * lever[k] + if k > 0 { push[1] * lever[k - 1] } else { f64x4::ZERO });
             }
             sum.reduce_add()
         };
         let truncation = self.truncation(start, span, true);
         arc.expand_in_place(state, span, &truncation, |arc, k, per| {
             let n = k - 1;
-            let [mut inertia, mut next_offset] = [f64x2::ZERO; 2];
-            for pair in pairs.iter_mut() {
-                let [square, heavy] = pair.next(k, per);
+            let [mut inertia, mut next_offset] = [f64x4::ZERO; 2];
+            for four in fours.iter_mut() {
+                let [square, heavy] = four.next(k, per);
                 inertia += square;
-                next_offset += pair.share * heavy;
+                next_offset += four.share * heavy;
             }
             // g sin θ − a_g cos θ, and g cos θ + a_g sin θ
             let fall = g * sin + lift * sin_before - (ground * cos + ground_slope * cos_before);
             let weight = g * cos + lift * cos_before + ground * sin + ground_slope * sin_before;
-            let push = if is_pushed { pushes(pairs, n) } else { 0.0 };
+            let push = if is_pushed { pushes(fours, n) } else { 0.0 };
             let newest_left = row([theta_dot, theta_dot, theta_dot, inertia.reduce_add(), offset, push]);
             let newest_right = row([cos, sin, theta_dot, theta_dot, weight, sin]);
             (left[n], right[MAX_ORDER - n]) = (newest_left, newest_right);
             let [sin_rate, minus_cos_rate, turning, known, weight_moment, push_moment] =
                 products(left, right, &newest_left, &newest_right, n);
-            square[MAX_ORDER - n] = f64x2::splat(turning);
-            let mut moment = f64x2::ZERO;
-            for pair in pairs.iter_mut() {
-                let [u, u_dot] = pair.motion;
-                let elastic = pair.stiffness * u + pair.damping * c_ratio * u_dot;
-                pair.held = Pair::product(&pair.lever[..k], &square[MAX_ORDER - n..]) + elastic;
-                moment += pair.arm * pair.held;
+            square[MAX_ORDER - n] = f64x4::splat(turning);
+            let mut moment = f64x4::ZERO;
+            for four in fours.iter_mut() {
+                let [u, u_dot] = four.motion;
+                let elastic = four.stiffness * u + four.damping * c_ratio * u_dot;
+                four.held = Four::product(&four.lever[..k], &square[MAX_ORDER - n..]) + elastic;
+                moment += four.arm * four.held;
             }
             let mut moment = moment.reduce_add() - weight_moment + push_moment + S_res * fall;
             if let Some(ties) = &mut ties {
@@ -318,18 +324,73 @@ impl Nonlinear {
             }
             theta_dot = per_inertia * (moment * per - known);
             arc.u_dot[k].count_as(&state.u_dot);
-            for pair in pairs.iter_mut() {
-                let j = pair.first;
-                let mut along = pair.share * fall - pair.held;
+            for four in fours.iter_mut() {
+                let j = four.first;
+                let mut along = four.share * fall - four.held;
                 if is_pushed {
-                    along += pair.push[0] * cos + pair.push[1] * cos_before;
+                    along += four.push[0] * cos + four.push[1] * cos_before;
                 }
-                pair.motion = [pair.motion[1] * per, along * per - pair.height * theta_dot];
-                arc.u_dot[k].set_pair(j, pair.motion[1]);
+                four.motion = [four.motion[1] * per, along * per - four.height * theta_dot];
+                arc.u_dot[k].set_four(j, four.motion[1]);
             }
             offset = next_offset.reduce_add();
             (sin_before, cos_before) = (sin, cos);
             (sin, cos) = (sin_rate * per, -minus_cos_rate * per);
+            theta_dot
+        });
+    }
+
+    /// Writes the motion while rocking about `side` by small angles into `arc`. From (M10) and (M11), with e = (c u̇ + k u)/μ,
+    ///
+    /// ```text
+    /// ü + h θ̈ = −e + S g θ − a,      (J_P − Σ μ h²) θ̈ = Σ (μ h e + Γ g u) − s m_t g B + S_res (g θ − a_g) − ties
+    /// ```
+    fn rocking_little(&self, side: Side, start: &Start<Modes>, arc: &mut Arc<Modes>) {
+        let Start { state, a_g, a_top, a_v, .. } = start;
+        let base = Modes::base(&self.subject.structure);
+        let &Base { m_t, S_res, B, g, c_ratio, .. } = base;
+        let span = start.interval.min(self.longest_span);
+        let mut ties = self.subject.is_tied.then(|| {
+            let ties = restraint::sum(&restraint::ties(base, side, start.dissipators), |tie| tie.lever);
+            TieSeries::new(ties, Angles::Small, state.theta)
+        });
+        let (g, lift, pivot) = (g + a_v.value, a_v.slope * span, side.sign() * B);
+        let fours = &mut self.scratch.borrow_mut().fours;
+        for four in fours.iter_mut() {
+            let j = four.first;
+            four.motion = [state.u.four(j), state.u_dot.four(j)];
+            four.push = [a_top.value.four(j), a_top.slope.four(j) * span];
+        }
+        let mut before = f64x4::ZERO; // Σ Γ u of the order before
+        let truncation = self.truncation(start, span, true);
+        arc.expand_in_place(state, span, &truncation, |arc, k, per| {
+            let n = k - 1;
+            let of_order = |values: [f64; 2]| values.get(n).copied().unwrap_or(0.0);
+            let weight = of_order([g, lift]);
+            let lean = g * arc.theta[n] + if n > 0 { lift * arc.theta[n - 1] } else { 0.0 };
+            let (mut moment, mut offset) = (f64x4::ZERO, f64x4::ZERO);
+            for four in fours.iter_mut() {
+                let [u, u_dot] = four.motion;
+                four.held = four.stiffness * u + four.damping * c_ratio * u_dot;
+                moment += four.arm * four.held;
+                offset += four.mass * four.share * u;
+            }
+            let mut moment = (moment + offset * g + before * lift).reduce_add() - pivot * m_t * weight;
+            moment += S_res * (lean - of_order([a_g.value, a_g.slope * span]));
+            before = offset;
+            if let Some(ties) = &mut ties {
+                moment -= ties.next(&arc.theta_dot, n, per);
+            }
+            let theta_dot = moment / self.left * per;
+            arc.u_dot[k].count_as(&state.u_dot);
+            for four in fours.iter_mut() {
+                let mut along = four.share * lean - four.held;
+                if let Some(load) = four.push.get(n) {
+                    along -= *load;
+                }
+                four.motion = [four.motion[1] * per, along * per - four.height * theta_dot];
+                arc.u_dot[k].set_four(four.first, four.motion[1]);
+            }
             theta_dot
         });
     }
@@ -371,6 +432,9 @@ impl Nonlinear {
 
     /// The moment that the base's hold has at least over the interval of `start`, N·m.
     fn least_hold(&self, start: &Start<Modes>) -> f64 {
+        if self.detail == Detail::FixedBase {
+            return f64::INFINITY;
+        }
         let base = Modes::base(&self.subject.structure);
         let least = start.a_v.value.min(start.a_v.at(start.interval));
         [Side::Right, Side::Left]
@@ -380,7 +444,7 @@ impl Nonlinear {
     }
 }
 
-impl Level<Modes> for Nonlinear {
+impl Level<Modes> for ManyModes {
     #[inline(always)]
     fn subject(&self) -> &Subject<Modes> {
         &self.subject
@@ -418,6 +482,7 @@ impl Level<Modes> for Nonlinear {
 
     fn series(&self, phase: Phase, start: &Start<Modes>, arc: &mut Arc<Modes>) {
         match phase {
+            Phase::Rocking(side) if self.detail == Detail::Linear => self.rocking_little(side, start, arc),
             Phase::Rocking(side) => self.rocking(side, start, arc),
             Phase::FullContact | Phase::Overturned(_) => self.resting(start, arc),
         }
@@ -426,10 +491,14 @@ impl Level<Modes> for Nonlinear {
     fn is_singular(&self, phase: Phase, state: &State<Modes>) -> bool {
         let frame = &self.subject.structure;
         let &Base { m_t, J0, B, .. } = Modes::base(frame);
-        matches!(phase, Phase::Rocking(side) if inertia(frame, side, &state.u) < LEAST_INERTIA * (J0 + m_t * B * B))
+        self.detail != Detail::Linear
+            && matches!(phase, Phase::Rocking(side) if inertia(frame, side, &state.u) < LEAST_INERTIA * (J0 + m_t * B * B))
     }
 
     fn first_uplift(&self, start: &Start<Modes>, arc: &Arc<Modes>) -> (Crossing, Side) {
+        if self.detail == Detail::FixedBase {
+            return (Crossing::None, Side::Right);
+        }
         let [right, left] = [Side::Right, Side::Left].map(|side| self.first_about(side, start, arc));
         if right.sigma() == left.sigma() && right.sigma() < f64::INFINITY {
             let at = right.sigma() * arc.span;
@@ -457,6 +526,9 @@ impl Level<Modes> for Nonlinear {
     }
 
     fn uplift_margin(&self, &Now { state, load, dissipators }: &Now<Modes>) -> (f64, Side) {
+        if self.detail == Detail::FixedBase {
+            return (1.0, Side::Right);
+        }
         let frame = &self.subject.structure;
         let base = Modes::base(frame);
         let weight = (base.m_t * base.g + base.ties.P_0) * base.B;
@@ -472,7 +544,7 @@ impl Level<Modes> for Nonlinear {
         if is_right { (right.0, Side::Right) } else { (left.0, Side::Left) }
     }
 
-    /// (M1), or (M8) and (M9) as they stand.
+    /// (M1), or the equations of rocking as they stand.
     fn accelerations(&self, phase: Phase, now: &Now<Modes>) -> Second<f64, Modes> {
         let frame = &self.subject.structure;
         let &Now { state, load, dissipators } = now;
@@ -487,15 +559,28 @@ impl Level<Modes> for Nonlinear {
             let u_ddot = Modes::each(frame, |j, mode| -a_top.of(j) - elastic(j, mode, 1.0));
             return Second { u_ddot, theta_ddot: 0.0 };
         };
-        let (g, pivot, (sin, cos)) = (base.g + load.a_v, side.sign() * B, libm::sincos(theta));
+        let (g, pivot) = (base.g + load.a_v, side.sign() * B);
+        let ties = restraint::sum(&restraint::ties(base, side, dissipators), |tie| tie.lever);
+        let back = ties.moment(&self.subject.angles.chord(theta, theta_dot));
+        if self.detail == Detail::Linear {
+            let moment = Modes::sum(frame, |j, mode| {
+                mode.mass * mode.height * elastic(j, mode, base.c_ratio) + mode.gamma * g * u.of(j)
+            });
+            let moment = moment - pivot * base.m_t * g + S_res * (g * theta - load.a_g) - back;
+            let theta_ddot = moment / self.left;
+            let along = |j: usize, mode: &Mode| mode.share * g * theta - a_top.of(j) - elastic(j, mode, base.c_ratio);
+            return Second {
+                u_ddot: Modes::each(frame, |j, mode| along(j, mode) - mode.height * theta_ddot),
+                theta_ddot,
+            };
+        }
+        let (sin, cos) = libm::sincos(theta);
         let lever = |j: usize, mode: &Mode| pivot * mode.share - u.of(j);
         let held = |j: usize, mode: &Mode| elastic(j, mode, base.c_ratio) + lever(j, mode) * theta_dot * theta_dot;
         let moment = Modes::sum(frame, |j, mode| {
             let weight = mode.share * g * cos + a_top.of(j) * sin;
             mode.mass * (mode.height * held(j, mode) + lever(j, mode) * (2.0 * theta_dot * u_dot.of(j) - weight))
         });
-        let back = restraint::sum(&restraint::ties(base, side, dissipators), |tie| tie.lever);
-        let back = back.moment(&Angles::Any.chord(theta, theta_dot));
         let fall = g * sin - load.a_g * cos;
         let moment = moment - pivot * m0 * (g * cos + load.a_g * sin) + S_res * fall - back;
         let theta_ddot = moment / inertia(frame, side, &u);
@@ -543,11 +628,9 @@ mod tests {
         (structure, Frame::new(body, &modes, &[]).unwrap())
     }
 
-    fn level(frame: &Frame) -> Nonlinear {
-        Nonlinear::new(
-            Subject { structure: frame.clone(), local_error: 1e-16, is_tied: true, angles: Angles::Any },
-            false,
-        )
+    fn level(frame: &Frame, detail: Detail) -> ManyModes {
+        let angles = detail.angles();
+        ManyModes::new(Subject { structure: frame.clone(), local_error: 1e-16, is_tied: true, angles }, detail)
     }
 
     /// One mode of any scale, under all loads and with all ties, against Eqs 5 and 6.
@@ -564,7 +647,7 @@ mod tests {
             let state = State { u: of(one.u / scale), u_dot: of(one.u_dot / scale), theta, theta_dot: one.theta_dot };
             let load = Load { a_g: load.a_g, F_t: of(load.F_t * scale), a_v: load.a_v };
             let now = Now { state: &state, load, dissipators: &dissipators };
-            let found = level(&frame).accelerations(Phase::Rocking(side), &now);
+            let found = level(&frame, Detail::Nonlinear).accelerations(Phase::Rocking(side), &now);
             assert_relative_eq!(scale * found.u_ddot.of(0), expected[0], max_relative = 1e-12);
             assert_relative_eq!(found.theta_ddot, expected[1], max_relative = 1e-12);
         }
@@ -574,7 +657,6 @@ mod tests {
     #[test]
     fn the_series_satisfies_the_equations_of_many_masses() {
         let (_, frame) = frame(&[1.3, -0.6, 0.4], 1.25);
-        let level = level(&frame);
         let dissipators = Dissipators { plastic: [2e-3, -1e-3], ..Dissipators::NEW };
         let modes = |numbers: [f64; 3]| Modes::new(&numbers);
         let state =
@@ -583,7 +665,12 @@ mod tests {
             value: Load { a_g: 3.0, F_t: modes([100.0, -200.0, 50.0]), a_v: -1.5 },
             slope: Load { a_g: 200.0, F_t: modes([-3e3, 1e4, 2e4]), a_v: 80.0 },
         };
-        for phase in [Phase::Rocking(Side::Left), Phase::FullContact] {
+        for (detail, phase) in [
+            (Detail::Nonlinear, Phase::Rocking(Side::Left)),
+            (Detail::Linear, Phase::Rocking(Side::Left)),
+            (Detail::Nonlinear, Phase::FullContact),
+        ] {
+            let level = level(&frame, detail);
             let start = level.subject().start(level.admissible(phase, state), &dissipators, load, 3e-3);
             let mut arc = Arc::default();
             level.series(phase, &start, &mut arc);
@@ -611,7 +698,7 @@ mod tests {
         let floor = |mass, height, shape: [f64; 3]| Floor { mass, height, shape: Modes::new(&shape) };
         let floors = [floor(3.0, 1.1, [0.2, 0.5, -0.3]), floor(2.0, 2.3, [0.9, -0.4, 0.1])];
         let frame = Frame::new(Body { ties: base.ties, ..*frame.body() }, frame.modes(), &floors).unwrap();
-        let level = level(&frame);
+        let level = level(&frame, Detail::Nonlinear);
         let modes = |numbers: [f64; 3]| Modes::new(&numbers);
         let (u, u_dot) = (modes([0.01, -0.02, 0.005]), modes([0.3, 0.1, -0.2]));
         let load = Load { a_g: 3.0, F_t: Modes::ZERO, a_v: -1.5 };

@@ -10,7 +10,7 @@ use crate::structure::frame::Frame;
 use crate::structure::{Base, Mode, Vibration};
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
-use wide::f64x2;
+use wide::f64x4;
 
 /// Lateral coordinates in numbers of the kind `N`.
 pub trait Lateral<N: Number>: Copy {
@@ -183,16 +183,16 @@ impl Modes {
         self.count = other.count;
     }
 
-    /// Writes the numbers of modes `j` and `j + 1`.
+    /// Writes the numbers of four modes from `j` on.
     #[inline(always)]
-    pub(crate) fn set_pair(&mut self, j: usize, pair: f64x2) {
-        self.of[j..j + 2].copy_from_slice(&pair.to_array());
+    pub(crate) fn set_four(&mut self, j: usize, four: f64x4) {
+        self.of[j..j + 4].copy_from_slice(&four.to_array());
     }
 
-    /// The numbers of modes `j` and `j + 1`; 0 of a mode that is none.
+    /// The numbers of four modes from `j` on; 0 of a mode that is none.
     #[inline(always)]
-    pub(crate) fn pair(&self, j: usize) -> f64x2 {
-        f64x2::new([self.of[j], self.of[j + 1]])
+    pub(crate) fn four(&self, j: usize) -> f64x4 {
+        f64x4::new([self.of[j], self.of[j + 1], self.of[j + 2], self.of[j + 3]])
     }
 
     /// The numbers in fours, with 0 for modes that are none.

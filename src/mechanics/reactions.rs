@@ -121,7 +121,10 @@ pub(crate) fn forces<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Secon
 /// [`forces`], which has the rates of the motion.
 pub(crate) fn forces_by_momentum<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, rate: impl Fn(&N) -> N) -> [N; 2] {
     let &Base { m_t, m0, S_res, g, .. } = x.base();
-    let (mut along, mut lever, mut push) = (x.theta_dot * S_res, N::constant(m0 * x.pivot()), -(x.a_g * m_t));
+    let (mut along, mut lever, mut push) = (N::constant(0.0), N::constant(m0 * x.pivot()), -(x.a_g * m_t));
+    if S_res != 0.0 {
+        along = x.theta_dot * S_res;
+    }
     for (j, mode) in Q::modes(x.structure).iter().enumerate() {
         along = along + (x.u_dot.of(j) + x.theta_dot * mode.height) * mode.gamma;
         lever = lever + x.place(j, mode).lever(x.pivot()) * mode.gamma;

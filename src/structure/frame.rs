@@ -54,7 +54,7 @@ pub struct Frame {
     body: Body,
     modes: Vec<Mode>,
     floors: Vec<Floor>,
-    gauges: Gauges,
+    gauges: Box<Gauges>,
     pub(crate) vibration: Vibration,
 }
 
@@ -182,7 +182,7 @@ impl Frame {
             tan_alpha_cg: m_t * B / S_1,
             ties,
         };
-        let (gauges, vibration) = (Gauges::new(&body, modes, floors), vibration(&base, modes));
+        let (gauges, vibration) = (Box::new(Gauges::new(&body, modes, floors)), vibration(&base, modes));
         Ok(Frame { base, body, modes: modes.to_vec(), floors: floors.to_vec(), gauges, vibration })
     }
 
