@@ -40,8 +40,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         engine.advance(dt, LinearLoad { value, slope }, &mut show)?;
         let (State { theta, u, .. }, now) = (&engine.motion().state, engine.sample(end));
         print!("S {theta:?}");
-        engine.frame().floors().iter().for_each(|floor| print!(" {:?}", floor.displacement(u)));
-        engine.frame().gauges().a.iter().for_each(|gauge| print!(" {:?}", now.value(gauge)));
+        engine.structure().floors().iter().for_each(|floor| print!(" {:?}", floor.displacement(u)));
+        engine.structure().gauges().a.iter().for_each(|gauge| print!(" {:?}", now.value(gauge)));
         println!();
     }
     Ok(())
