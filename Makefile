@@ -14,10 +14,10 @@
 # make docs/img/explore.png  the picture of that page
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux, Windows and macOS with module, command line and archive, and one of the source
-# make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
+# make release out/release: archive, packages, page, checksums and changes of a version that has no tag yet, tested
 # make docs    the site in out/site; fails at a link, an anchor or a picture that is not there (seconds)
 # make pages   write anew what README and the pages print (a minute)
-# make pictures  draw anew those of README and of the model (minutes)
+# make pictures  draw anew those of README, of the model and of how to choose numbers (minutes)
 # make report  regenerate docs/evidence/paper.md, docs/evidence/literature.md and their figures (minutes)
 # make restrained  regenerate docs/evidence/restrained.md and its pictures (minutes)
 # make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
@@ -214,7 +214,7 @@ wheels: wheel
 # packages; the one of the source is built and installed here alone, for it takes minutes.
 VERSION = $(shell sed -n 's/^version = "\(.*\)"$$/\1/p' Cargo.toml)
 release: releasable
-	$(MAKE) wheels qemu arm_python old_glibc host_packages .venv/heavy module
+	$(MAKE) wheels qemu arm_python old_glibc host_packages .venv/heavy module explore
 	$(MAKE) test
 	$(PYTEST) -m heavy -n auto --dist loadfile
 	PACKAGE='*.tar.gz' $(PYTEST) -m heavy tests/test_wheel.py
@@ -224,7 +224,7 @@ release: releasable
 out/release:
 	rm -rf $@
 	mkdir -p $@
-	cp out/FlexibleRocking.fmu out/wheels/* $@/
+	cp out/FlexibleRocking.fmu out/explore.html out/wheels/* $@/
 	awk '/^## /{is_meant = $$2 == "$(VERSION)"} is_meant' CHANGELOG.md >$@/CHANGES.md
 	cd $@ && sha256sum * >SHA256SUMS && cat SHA256SUMS
 
@@ -251,8 +251,8 @@ docs: .venv/docs
 pages: .venv/test exporter records
 	PYTHONPATH=examples $(PYTHON) docs/pages.py $(TARGET)/release/rocking-fmu
 
-pictures: module out/mcmanus.fmu
-	PYTHONPATH=examples $(PYTHON) examples/pictures.py out/mcmanus.fmu
+pictures: module
+	PYTHONPATH=examples $(PYTHON) examples/pictures.py
 
 report: module
 	PYTHONPATH=examples $(PYTHON) -m validation

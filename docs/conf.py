@@ -1,6 +1,10 @@
 """The site, `make docs`. Its source is the repository: links of README and of the pages hold on it as in the files."""
 
+import re
+
 import latex2mathml.converter
+
+FUNCTION = re.compile(r"<msup><mi>(?:sin|cos|tan|ln)</mi><mn>\d</mn></msup>|(?<!<msup>)<mi>(?:sin|cos|tan|ln)</mi>")
 
 project = "FlexibleRocking"
 extensions = ["myst_parser", "sphinx_external_toc"]
@@ -10,6 +14,8 @@ external_toc_path = "docs/toc.yml"
 html_theme = "furo"
 html_title = project
 html_copy_source = False
+html_static_path = ["static"]
+html_css_files = ["site.css"]
 html_math_renderer = "mathml"
 myst_enable_extensions = ["dollarmath"]
 myst_fence_as_directive = ["math"]
@@ -23,7 +29,8 @@ def mathml(translator, node):
 
     block = node.tagname == "math_block"
     equation = latex2mathml.converter.convert(node.astext(), display="block" if block else "inline")
-    translator.body.append(f'<div style="overflow: auto hidden">{equation}</div>' if block else equation)
+    equation = FUNCTION.sub(r'<mspace width="0.17em"/>\g<0><mspace width="0.17em"/>', equation)  # as TeX sets them
+    translator.body.append(f'<div class="equation">{equation}</div>' if block else equation)
     raise SkipNode
 
 

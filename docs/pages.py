@@ -60,20 +60,57 @@ def prepare(folder: Path, exporter: Path) -> Path:
     return folder
 
 
-def command_line(exporter: Path) -> str:
-    """docs/reference/command_line.md."""
-    def told(*arguments: str) -> str:
-        printed = subprocess.run([exporter, *arguments, "--help"], check=True, capture_output=True, text=True).stdout
-        return "\n".join(line.rstrip() for line in printed.strip().splitlines())
+OPTION = re.compile(r"^ {2,6}(?P<name>-[-\w].*?|[<\[].*?)(?: {2,}|\n)(?P<meaning>.*\n(?: {10}.*\n|\n)*)", re.MULTILINE)
+EVERYWHERE = ("-h, --help", "--quiet")
 
-    help_of_all = told()
-    listed = re.search(r"^Commands:\n(.*?)\n\n", help_of_all, re.MULTILINE | re.DOTALL)[1]
-    commands = [line.split(maxsplit=1) for line in listed.splitlines() if not line.startswith("  help")]
-    rows = "\n".join(f"| [`{name}`](#{name}) | {what} |" for name, what in commands)
-    sections = "\n\n".join(f"## {name}\n\n```text\n{told(name)}\n```" for name, _ in commands)
-    return (f"# Command line\n\nWhich commands and options does `rocking-fmu` have? This is what `--help` prints.\n"
-            f"[Runs](runs.md) has the rules that every run follows.\n\n"
-            f"| command | does |\n|---|---|\n{rows}\n\n```text\n{help_of_all}\n```\n\n{sections}\n")
+
+def options(text: str) -> list[tuple[str, str]]:
+    """Name and meaning of each option in a command's help."""
+    found = ((option["name"], option["meaning"].strip()) for option in OPTION.finditer(text))
+    return [option for option in found if option[0] not in EVERYWHERE]
+
+
+def table(head: list[str], rows: list[list[str]]) -> str:
+    return "".join(f"| {' | '.join(row)} |\n" for row in [head, ["---"] * len(head), *rows])
+
+
+def row(name: str, meaning: str) -> list[str]:
+    plain = re.sub(r"\s+Possible values:", ":", meaning).replace("|", "\\|").replace("<", "&lt;")
+    parts = [" ".join(part.split()) for part in re.split(r"^ +- ", plain, flags=re.MULTILINE)]
+    return [f"`{name}`".replace("|", "\\|"), "<br>".join(parts)]
+
+
+def command_line(exporter: Path) -> str:
+    """docs/reference/command_line.md: an option that several commands have stands once."""
+    def printed(*arguments: str) -> str:
+        text = subprocess.run([exporter, *arguments, "--help"], check=True, capture_output=True, text=True).stdout
+        return "".join(f"{line.rstrip()}\n" for line in text.splitlines())
+
+    whole = printed()
+    listed = re.search(r"^Commands:\n(.*?)\n\n", whole, re.MULTILINE | re.DOTALL)[1]
+    summaries = dict(line.split(maxsplit=1) for line in listed.splitlines() if not line.startswith("  help"))
+    helps = {name: printed(name).partition("\nExamples:\n") for name in summaries}
+    commands: dict[tuple[str, str], list[str]] = {}
+    for command, (text, _, _) in helps.items():
+        for option in options(text):
+            commands.setdefault(option, []).append(command)
+
+    page = ("# Command line\n\nWhich commands and options does `rocking-fmu` have? `rocking-fmu COMMAND --help` prints the same text.\n"
+            "[Runs](runs.md) has the rules that every run follows.\n\n")
+    page += table(["command", "does"], [[f"[`{name}`](#{name})", what] for name, what in summaries.items()])
+    page += f"\n{re.search(r'^A structure .*?(?=^Usage)', whole, re.MULTILINE | re.DOTALL)[0]}"
+    page += "## Options of several commands\n\nEvery command has `--help` and `--quiet`, which prints only errors on standard error.\n"
+    for group in dict.fromkeys(map(tuple, commands.values())):
+        if len(group) > 1:
+            shared = [row(*option) for option, names in commands.items() if tuple(names) == group]
+            page += f"\n{', '.join(f'`{name}`' for name in group)}:\n\n{table(['option', 'meaning'], shared)}"
+    for command, (text, _, examples) in helps.items():
+        about, usage = re.match(r"(.*)^Usage: (.*?)$", text, re.MULTILINE | re.DOTALL).groups()
+        page += f"\n## {command}\n\n{about}`{usage}`\n"
+        own = [row(*option) for option in options(text) if len(commands[option]) == 1]
+        page += f"\n{table(['option', 'meaning'], own)}" if own else ""
+        page += f"\n```text\n{examples.rstrip()}\n```\n"
+    return page
 
 
 INITIAL_VALUES = ("theta_0", "theta_dot_0", "u_0", "u_dot_0")

@@ -17,7 +17,10 @@ pub mod transition;
 pub(crate) mod yielding;
 
 use crate::levels::detail::{AnyLevel, Detail, by_level};
-use crate::levels::level::Level;
+use crate::levels::level::{Level, Subject};
+use crate::levels::modes::ManyModes;
+use crate::mechanics::energy::energy;
+use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
@@ -25,10 +28,12 @@ use crate::mechanics::state::InitialStateError;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, Start};
 use crate::structure::quantity::with_unit;
-use crate::{Outputs, Phase, State, Structure};
+use crate::{Frame, Outputs, Phase, State, Structure};
 use motion::{Chatter, Motion, Work};
 use phases::{Closed, Step, Watched};
 use piece::{Piece, Sample, Watch};
+use std::fmt::Debug;
+use std::ops::Deref;
 use transition::Transition;
 
 /// The default relative tolerance of the results.
@@ -174,20 +179,105 @@ impl Default for Settings {
 impl Settings {
     /// The level of detail of `structure`.
     fn level(&self, structure: Structure) -> Result<Box<AnyLevel>, InitialStateError> {
+        self.detail.level(structure, self.local_error()?, self.vertical).map(Box::new)
+    }
+
+    /// The truncation error that a step may have.
+    fn local_error(&self) -> Result<f64, InitialStateError> {
         check_tolerance(self.tolerance)?;
-        let local_error = (LOCAL_SHARE * self.tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR);
-        self.detail.level(structure, local_error, self.vertical).map(Box::new)
+        Ok((LOCAL_SHARE * self.tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR))
+    }
+}
+
+/// Lateral coordinates of the structures that an engine moves.
+pub trait Moves: Coordinates {
+    /// The levels of detail of these structures.
+    type Level: Deref<Target = dyn Level<Self>> + Debug;
+
+    /// Starts `structure` at `time` (s) from `initial`.
+    fn engine(
+        structure: Self::Structure,
+        initial: State<Self>,
+        time: f64,
+        settings: Settings,
+    ) -> Result<Engine<Self>, InitialStateError>;
+
+    /// The loads of a ground motion alone.
+    fn loads(ground: LinearLoad) -> LinearLoad<Self>;
+
+    /// Advances with a level by its type: each gets a loop of its own, so that nothing stands between the loop and the level's
+    /// equations.
+    #[doc(hidden)]
+    fn advance<W: Watch<Self>>(level: &Self::Level, task: Task<'_, Self, W>) -> Result<Progress, AdvanceError>;
+}
+
+impl Moves for f64 {
+    type Level = AnyLevel;
+
+    fn engine(
+        structure: Structure,
+        initial: State,
+        time: f64,
+        settings: Settings,
+    ) -> Result<Engine, InitialStateError> {
+        Engine::with(structure, initial, time, settings)
+    }
+
+    #[inline(always)]
+    fn loads(ground: LinearLoad) -> LinearLoad {
+        ground
+    }
+
+    #[inline(always)]
+    fn advance<W: Watch>(any: &AnyLevel, task: Task<'_, f64, W>) -> Result<Progress, AdvanceError> {
+        by_level!(any, level => task.with(any, level))
+    }
+}
+
+/// The levels of detail of structures of many masses.
+#[doc(hidden)]
+#[derive(Debug)]
+#[allow(private_interfaces)] // the coordinates name the type, and nobody else can use it
+pub struct LevelOfModes(ManyModes);
+
+impl Deref for LevelOfModes {
+    type Target = dyn Level<Modes>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+impl Moves for Modes {
+    type Level = LevelOfModes;
+
+    fn engine(
+        structure: Frame,
+        initial: State<Modes>,
+        time: f64,
+        settings: Settings,
+    ) -> Result<Engine<Modes>, InitialStateError> {
+        Engine::of_modes(structure, initial, time, settings)
+    }
+
+    fn loads(LinearLoad { value, slope }: LinearLoad) -> LinearLoad<Modes> {
+        let [value, slope] = [value, slope].map(|Load { a_g, a_v, .. }| Load { a_g, F_t: Modes::ZERO, a_v });
+        LinearLoad { value, slope }
+    }
+
+    fn advance<W: Watch<Modes>>(any: &LevelOfModes, task: Task<'_, Modes, W>) -> Result<Progress, AdvanceError> {
+        task.with(any, &any.0)
     }
 }
 
 /// A structure in motion.
 #[derive(Debug)]
-pub struct Engine {
-    level: Box<AnyLevel>,
+pub struct Engine<Q: Moves = f64> {
+    level: Box<Q::Level>,
     settings: Settings,
-    motion: Motion,
+    motion: Motion<Q>,
     /// The step in hand.
-    arc: Arc,
+    arc: Arc<Q>,
 }
 
 impl Engine {
@@ -220,18 +310,7 @@ impl Engine {
         level.check_start(&initial)?;
         let chord = level.subject().angles.chord(initial.theta, 0.0);
         let moved = Dissipators::NEW.moved_by(&structure, phase.side(), chord);
-        let motion = Motion {
-            time,
-            state: initial,
-            phase,
-            transitions: 0,
-            work: Work::default(),
-            impulse: Impulse::default(),
-            dissipators: Dissipators { hysteretic: 0.0, ..moved },
-            chatter: Chatter::NONE,
-            due: None,
-        };
-        Ok(Engine { level, settings, motion, arc: Arc::default() })
+        Ok(Engine::start(level, settings, time, initial, phase, Dissipators { hysteretic: 0.0, ..moved }))
     }
 
     /// The same structure in the same motion, with other `settings`.
@@ -240,125 +319,11 @@ impl Engine {
         Ok(Engine { level, settings, motion: self.motion, arc: Arc::default() })
     }
 
-    /// The settings of the engine.
-    pub fn settings(&self) -> Settings {
-        self.settings
-    }
-
-    /// The structure.
-    pub fn structure(&self) -> &Structure {
-        self.level.structure()
-    }
-
-    /// The motion now.
-    pub fn motion(&self) -> &Motion {
-        &self.motion
-    }
-
-    /// Puts the structure in this `motion`.
-    pub fn set_motion(&mut self, motion: Motion) {
-        self.motion = motion;
-    }
-
-    /// Sets the clock to `time` (s). Nothing but the times that the engine reports depends on it.
-    pub fn set_time(&mut self, time: f64) {
-        self.motion.time = time;
-    }
-
-    /// Applies the transition that is due, if there is one, and shows it to `watch`.
-    pub fn transit<W: Watch>(&mut self, watch: &mut W) {
-        if let Some(transition) =
-            transit(&**self.level, phases::of(self.level.structure(), &self.motion), &mut self.motion)
-        {
-            watch.transition(&transition);
-        }
-    }
-
-    /// Advances by `interval` (s) under `load`, which is given from the present time on. Every piece and every
-    /// transition on the way is shown to `watch`, once.
-    pub fn advance<W: Watch>(
-        &mut self,
-        interval: f64,
-        load: impl Into<LinearLoad>,
-        watch: &mut W,
-    ) -> Result<Progress, AdvanceError> {
-        self.advance_within(self.motion.work.steps + MAX_STEPS_PER_ADVANCE, interval, load.into(), watch)
-    }
-
-    /// Advances until `last_step` steps have been taken since the start.
-    #[inline]
-    pub(crate) fn advance_within<W: Watch>(
-        &mut self,
-        last_step: u64,
-        interval: f64,
-        load: LinearLoad,
-        watch: &mut W,
-    ) -> Result<Progress, AdvanceError> {
-        self.check(interval, &load)?;
-        let mut before = None;
-        if self.motion.due.is_some() {
-            before = Some(self.motion);
-            self.transit(watch);
-        }
-        let &mut Engine { level: ref any, settings: Settings { stops, .. }, ref mut motion, ref mut arc } = self;
-        // each level gets a loop of its own, so that nothing stands between the loop and the level's equations
-        let result = by_level!(&**any, level => {
-            let start = level.subject().start(motion.state, &motion.dissipators, load, interval);
-            // most advances are one leap
-            if motion.work.steps != last_step && let Some(end) = leap(level, motion, &start) {
-                leapt(any, motion, interval, load, end, watch);
-                motion.time += interval;
-                return Ok(Progress::Complete);
-            }
-            let phases = |motion: &Motion| phases::of(level.structure(), motion);
-            Loop { any, level, phases, arc, last_step, stops }.go(motion, &mut before, interval, load, watch)
-        });
-        if let (Err(_), Some(before)) = (&result, before) {
-            *motion = before;
-        }
-        result
-    }
-
-    /// Whether `load` can act over `interval` (s).
-    #[inline]
-    pub(crate) fn check(&self, interval: f64, load: &LinearLoad) -> Result<(), AdvanceError> {
-        let is_ahead = interval > 0.0 && interval <= f64::MAX;
-        let is_admitted = is_ahead && load.is_finite_over(interval) && (!load.is_vertical() || self.settings.vertical);
-        if is_admitted { Ok(()) } else { self.refusal(interval, load) }
-    }
-
-    /// The reason why `load` cannot act over `interval` (s).
-    #[cold]
-    fn refusal(&self, interval: f64, load: &LinearLoad) -> Result<(), AdvanceError> {
-        if !(interval > 0.0 && interval <= f64::MAX) {
-            return Err(AdvanceError::NotAhead { from: self.motion.time, interval });
-        }
-        let Ramp { value, slope } = load.upwards();
-        if !self.settings.vertical && (value, slope) != (0.0, 0.0) {
-            return Err(AdvanceError::Vertical { value, slope });
-        }
-        let end = load.at(interval);
-        let Some(bad) = LOADS.iter().find(|quantity| !(quantity.get)(&end).is_finite()) else { return Ok(()) };
-        let [value, slope] = [&load.value, &load.slope].map(bad.get);
-        Err(AdvanceError::Load { name: bad.name, unit: bad.unit, value, slope, interval })
-    }
-
     /// Whether certainly no transition comes within `ahead` (s), a tiny time, under `load`.
     pub fn goes_on_for(&self, ahead: f64, load: LinearLoad) -> bool {
         let now = self.sample(load.value);
         phases::of(self.structure(), &self.motion)
             .is_none_or(|watched| watched.guards.iter().all(|guard| guard.stays_open(&now, ahead)))
-    }
-
-    /// Whether the structure, in full contact now, stays there while nothing acts on it.
-    pub fn stays_down(&self) -> bool {
-        let Motion { phase, state, dissipators, .. } = &self.motion;
-        *phase == Phase::FullContact && self.level.stays_down(state, dissipators)
-    }
-
-    /// The motion now, under `load`.
-    pub fn sample(&self, load: Load) -> Sample<'_> {
-        Sample { motion: self.motion, load, level: &self.level }
     }
 
     /// The outputs now under `load`; once overturned, those of the instant before.
@@ -417,8 +382,173 @@ impl Engine {
     }
 }
 
+impl Engine<Modes> {
+    /// Starts the structure `frame` of many masses at `time` (s) from `state`, at any level of detail but `modal` and `rigid`.
+    pub fn of_modes(
+        frame: Frame,
+        state: State<Modes>,
+        time: f64,
+        settings: Settings,
+    ) -> Result<Engine<Modes>, InitialStateError> {
+        let phase = state.phase()?;
+        let of_frame = |numbers: Modes| Modes::each(&frame, |j, _| numbers.of(j));
+        let state = State { u: of_frame(state.u), u_dot: of_frame(state.u_dot), ..state };
+        let is_tied = frame.base.is_restrained() || settings.vertical;
+        let angles = settings.detail.angles();
+        let subject = Subject { structure: frame, local_error: settings.local_error()?, is_tied, angles };
+        match settings.detail {
+            Detail::FixedBase if state.theta != 0.0 => return Err(InitialStateError::TurnedFixedBase(state.theta)),
+            Detail::Modal | Detail::Rigid => return Err(InitialStateError::OneMass(settings.detail.name())),
+            _ => (),
+        }
+        let level = Box::new(LevelOfModes(ManyModes::new(subject, settings.detail)));
+        Ok(Engine::start(level, settings, time, state, phase, Dissipators::NEW))
+    }
+
+    /// Mechanical energy now, J.
+    pub fn energy(&self) -> f64 {
+        energy(self.structure(), self.motion.phase, &self.motion.state)
+    }
+}
+
+impl<Q: Moves> Engine<Q> {
+    /// The engine of a structure that starts in `phase`.
+    fn start(
+        level: Box<Q::Level>,
+        settings: Settings,
+        time: f64,
+        state: State<Q>,
+        phase: Phase,
+        dissipators: Dissipators,
+    ) -> Engine<Q> {
+        let motion = Motion {
+            time,
+            state,
+            phase,
+            transitions: 0,
+            work: Work::default(),
+            impulse: Impulse::default(),
+            dissipators,
+            chatter: Chatter::NONE,
+            due: None,
+        };
+        Engine { level, settings, motion, arc: Arc::default() }
+    }
+
+    /// The structure.
+    pub fn structure(&self) -> &Q::Structure {
+        self.level.structure()
+    }
+
+    /// Whether the structure, in full contact now, stays there while nothing acts on it.
+    pub fn stays_down(&self) -> bool {
+        let Motion { phase, state, dissipators, .. } = &self.motion;
+        *phase == Phase::FullContact && self.level.stays_down(state, dissipators)
+    }
+
+    /// The motion now, under `load`.
+    pub fn sample(&self, load: Load<Q>) -> Sample<'_, Q> {
+        Sample { motion: self.motion, load, level: &self.level }
+    }
+
+    /// The settings of the engine.
+    pub fn settings(&self) -> Settings {
+        self.settings
+    }
+
+    /// The motion now.
+    pub fn motion(&self) -> &Motion<Q> {
+        &self.motion
+    }
+
+    /// Puts the structure in this `motion`.
+    pub fn set_motion(&mut self, motion: Motion<Q>) {
+        self.motion = motion;
+    }
+
+    /// Sets the clock to `time` (s). Nothing but the times that the engine reports depends on it.
+    pub fn set_time(&mut self, time: f64) {
+        self.motion.time = time;
+    }
+
+    /// Applies the transition that is due, if there is one, and shows it to `watch`.
+    pub fn transit<W: Watch<Q>>(&mut self, watch: &mut W) {
+        let watched = phases::of(self.level.structure(), &self.motion);
+        if let Some(transition) = transit(&**self.level, watched, &mut self.motion) {
+            watch.transition(&transition);
+        }
+    }
+
+    /// Advances by `interval` (s) under `load`, which is given from the present time on. Every piece and every
+    /// transition on the way is shown to `watch`, once.
+    pub fn advance<W: Watch<Q>>(
+        &mut self,
+        interval: f64,
+        load: impl Into<LinearLoad<Q>>,
+        watch: &mut W,
+    ) -> Result<Progress, AdvanceError> {
+        self.advance_within(self.motion.work.steps + MAX_STEPS_PER_ADVANCE, interval, load.into(), watch)
+    }
+
+    /// Advances until `last_step` steps have been taken since the start.
+    #[inline]
+    pub(crate) fn advance_within<W: Watch<Q>>(
+        &mut self,
+        last_step: u64,
+        interval: f64,
+        load: LinearLoad<Q>,
+        watch: &mut W,
+    ) -> Result<Progress, AdvanceError> {
+        self.check(interval, &load)?;
+        let mut before = None;
+        if self.motion.due.is_some() {
+            before = Some(self.motion);
+            self.transit(watch);
+        }
+        let &mut Engine { ref level, settings: Settings { stops, .. }, ref mut motion, ref mut arc } = self;
+        let task = Task { motion, arc, before: &mut before, interval, load, watch, last_step, stops };
+        let result = Q::advance(level, task);
+        if let (Err(_), Some(before)) = (&result, before) {
+            self.motion = before;
+        }
+        result
+    }
+
+    /// Whether `load` can act over `interval` (s).
+    #[inline]
+    pub(crate) fn check(&self, interval: f64, load: &LinearLoad<Q>) -> Result<(), AdvanceError> {
+        let is_ahead = interval > 0.0 && interval <= f64::MAX;
+        let is_admitted = is_ahead && load.is_finite_over(interval) && (!load.is_vertical() || self.settings.vertical);
+        if is_admitted { Ok(()) } else { self.refusal(interval, load) }
+    }
+
+    /// The reason why `load` cannot act over `interval` (s).
+    #[cold]
+    fn refusal(&self, interval: f64, load: &LinearLoad<Q>) -> Result<(), AdvanceError> {
+        if !(interval > 0.0 && interval <= f64::MAX) {
+            return Err(AdvanceError::NotAhead { from: self.motion.time, interval });
+        }
+        let Ramp { value, slope } = load.upwards();
+        if !self.settings.vertical && (value, slope) != (0.0, 0.0) {
+            return Err(AdvanceError::Vertical { value, slope });
+        }
+        let [end, value, slope] = [load.at(interval), load.value, load.slope].map(|load| Load {
+            a_g: load.a_g,
+            F_t: load.F_t.total(),
+            a_v: load.a_v,
+        });
+        let Some(bad) = LOADS.iter().find(|quantity| !(quantity.get)(&end).is_finite()) else { return Ok(()) };
+        let [value, slope] = [&value, &slope].map(bad.get);
+        Err(AdvanceError::Load { name: bad.name, unit: bad.unit, value, slope, interval })
+    }
+}
+
 /// Applies the transition that is due in `motion`, if there is one, in the phase that is `watched`.
-fn transit(level: &dyn Level, watched: Option<&Watched>, motion: &mut Motion) -> Option<Transition> {
+fn transit<Q: Moves>(
+    level: &dyn Level<Q>,
+    watched: Option<&Watched<Q>>,
+    motion: &mut Motion<Q>,
+) -> Option<Transition<Q>> {
     let (Closed { guard, way }, before) = (motion.due.take()?, motion.state);
     let kind = watched?.guards.get(usize::from(guard))?.apply(level, motion, way);
     motion.transitions += 1;
@@ -427,7 +557,7 @@ fn transit(level: &dyn Level, watched: Option<&Watched>, motion: &mut Motion) ->
 
 /// The state at the end of `start`, if it is known exactly and no transition can happen until then.
 #[inline(always)]
-fn leap(level: &impl Level, motion: &Motion, start: &Start) -> Option<State> {
+fn leap<Q: Moves>(level: &impl Level<Q>, motion: &Motion<Q>, start: &Start<Q>) -> Option<State<Q>> {
     if motion.chatter.held > 0.0 {
         return None;
     }
@@ -436,7 +566,14 @@ fn leap(level: &impl Level, motion: &Motion, start: &Start) -> Option<State> {
 
 /// Takes `motion`, all but its time, over a leap to the state `end`.
 #[inline(always)]
-fn leapt<W: Watch>(level: &AnyLevel, motion: &mut Motion, duration: f64, load: LinearLoad, end: State, watch: &mut W) {
+fn leapt<Q: Moves, W: Watch<Q>>(
+    level: &Q::Level,
+    motion: &mut Motion<Q>,
+    duration: f64,
+    load: LinearLoad<Q>,
+    end: State<Q>,
+    watch: &mut W,
+) {
     if W::SEES_PIECES {
         watch.piece(&Piece { before: motion, duration, load, end, level, arc: None });
     }
@@ -445,39 +582,72 @@ fn leapt<W: Watch>(level: &AnyLevel, motion: &mut Motion, duration: f64, load: L
     motion.chatter.pass(duration);
 }
 
+/// One advance.
+#[doc(hidden)]
+#[derive(Debug)]
+pub struct Task<'a, Q: Moves, W> {
+    motion: &'a mut Motion<Q>,
+    arc: &'a mut Arc<Q>,
+    before: &'a mut Option<Motion<Q>>,
+    interval: f64,
+    load: LinearLoad<Q>,
+    watch: &'a mut W,
+    last_step: u64,
+    stops: bool,
+}
+
+impl<Q: Moves, W: Watch<Q>> Task<'_, Q, W> {
+    /// Advances with `level`, which is `any` by its type.
+    #[inline(always)]
+    fn with<L: Level<Q>>(self, any: &Q::Level, level: &L) -> Result<Progress, AdvanceError> {
+        let Task { motion, arc, before, interval, load, watch, last_step, stops } = self;
+        let start = level.subject().start(motion.state, &motion.dissipators, load, interval);
+        // most advances are one leap
+        if motion.work.steps != last_step
+            && let Some(end) = leap(level, motion, &start)
+        {
+            leapt(any, motion, interval, load, end, watch);
+            motion.time += interval;
+            return Ok(Progress::Complete);
+        }
+        let phases = |motion: &Motion<Q>| phases::of::<Q>(level.structure(), motion);
+        Loop { any, level, phases, arc, last_step, stops }.go(motion, before, interval, load, watch)
+    }
+}
+
 /// The loop over the steps of one advance.
-struct Loop<'a, L, P> {
-    any: &'a AnyLevel,
+struct Loop<'a, Q: Moves, L, P> {
+    any: &'a Q::Level,
     /// The same level by its type.
     level: &'a L,
     /// Gives the phase of a motion; none where the motion is over.
     phases: P,
     /// The step.
-    arc: &'a mut Arc,
+    arc: &'a mut Arc<Q>,
     /// Steps since the start after which the advance ends.
     last_step: u64,
     /// Whether the advance ends where a transition is due.
     stops: bool,
 }
 
-impl<L: Level, P: Fn(&Motion) -> Option<&'static Watched>> Loop<'_, L, P> {
+impl<Q: Moves, L: Level<Q>, P: Fn(&Motion<Q>) -> Option<&'static Watched<Q>>> Loop<'_, Q, L, P> {
     /// Advances step by step: expands the motion, finds the first guard that closes, applies its transition. A long interval is
     /// taken in parts, each twice as long as the one before, until the rest is one leap. The motion `before` the first change is
     /// kept: an advance that fails changes nothing.
     #[inline(never)]
-    fn go<W: Watch>(
+    fn go<W: Watch<Q>>(
         &mut self,
-        motion: &mut Motion,
-        before: &mut Option<Motion>,
+        motion: &mut Motion<Q>,
+        before: &mut Option<Motion<Q>>,
         interval: f64,
-        load: LinearLoad,
+        load: LinearLoad<Q>,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
         let level = self.level;
         let Start { a_g, a_top, a_v, local_error, .. } =
             level.subject().start(motion.state, &motion.dissipators, load, interval);
         let (start, until) = (motion.time, motion.time + interval);
-        let mut part = FAR / level.structure().omega_fc;
+        let mut part = FAR / Q::vibration(level.structure()).contact;
         // Time runs from the start of the interval: transitions are then as sharp at t = 1000 s as at 0.
         let (mut elapsed, mut end) = (0.0, if interval > part { 0.0 } else { interval });
         loop {
@@ -515,12 +685,12 @@ impl<L: Level, P: Fn(&Motion) -> Option<&'static Watched>> Loop<'_, L, P> {
             let mut step =
                 Step { level, side: motion.phase.side(), start: &begin, arc: self.arc, reach: self.arc.reach };
             let closed = first(watched, &mut step);
-            let (reach, moved) = (step.reach, watched.moved(level.structure(), &step));
+            let (reach, moved) = (step.reach, watched.moved(level.subject(), &step));
             self.arc.reach = reach;
             let duration = self.arc.duration();
             if !self.arc.is_finite() || reach < 1.0 && self.is_at_its_end(motion, closed) {
                 let State { u, theta, .. } = motion.state;
-                return Err(AdvanceError::Singular { time: motion.time, u, theta });
+                return Err(AdvanceError::Singular { time: motion.time, u: u.total(), theta });
             }
             if motion.work.steps == self.last_step {
                 return Err(AdvanceError::TooLong { time: motion.time, until });
@@ -554,15 +724,15 @@ impl<L: Level, P: Fn(&Motion) -> Option<&'static Watched>> Loop<'_, L, P> {
     }
 
     /// Whether the step in hand, which goes from `motion` to less than the requested end, is the last that there can be.
-    fn is_at_its_end(&self, motion: &Motion, closed: Option<Closed>) -> bool {
-        let has_stalled = self.arc.duration() <= STALLED / self.level.structure().omega_u;
+    fn is_at_its_end(&self, motion: &Motion<Q>, closed: Option<Closed>) -> bool {
+        let has_stalled = self.arc.duration() <= STALLED / Q::vibration(self.level.structure()).rocking[1];
         has_stalled && closed.is_none() || self.level.is_singular(motion.phase, &motion.state)
     }
 }
 
 /// The first guard of `watched` that closes on `step`, which is cut there.
 #[inline]
-fn first(watched: &Watched, step: &mut Step) -> Option<Closed> {
+fn first<Q: Moves>(watched: &Watched<Q>, step: &mut Step<Q>) -> Option<Closed> {
     if watched.stays.is_some_and(|stays| stays(step)) {
         return None;
     }
@@ -583,7 +753,7 @@ mod tests {
     use crate::series::first_crossing::{Gap, first_time_all_closed};
     use crate::{Parameters, TransitionKind};
     use approx::assert_relative_eq;
-    use phases::{Guard, RESTING, Way};
+    use phases::{Guard, Way};
     use std::f64::consts::PI;
 
     /// Amplitude of the vibration, m.
@@ -625,7 +795,7 @@ mod tests {
     /// Vibration without damping between the wall and its far end takes 2/3 of a period.
     #[test]
     fn a_new_phase_is_one_more_list_of_guards() {
-        static WALLED: Watched = Watched { guards: &[&Wall], ..RESTING };
+        static WALLED: Watched = Watched { guards: &[&Wall], ..Watched::RESTING };
         let structure = Structure::new(Parameters { zeta_fc: 0.0, ..Parameters::EVISON }).unwrap();
         let released = State { u: -AMPLITUDE, ..State::default() };
         let mut engine = Engine::with_detail(structure, released, 0.0, 1e-12, Detail::Nonlinear).unwrap();
@@ -634,7 +804,7 @@ mod tests {
         let mut watch = |transition: &Transition| bounces.push(transition.time);
         let AnyLevel::Nonlinear(of_its_type) = &**level else { panic!("another level") };
         Loop {
-            any: level,
+            any: &**level,
             level: of_its_type,
             phases: |_: &Motion| Some(&WALLED),
             arc,

@@ -7,6 +7,7 @@ pub(crate) mod level;
 mod linear;
 mod linear_system;
 mod modal;
+pub(crate) mod modes;
 pub mod nonlinear;
 pub(crate) mod oscillator;
 mod rigid;

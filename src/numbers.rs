@@ -130,3 +130,55 @@ impl Angle for f64 {
         Turn { sin, cos, versine: sin * sin / (1.0 + cos) } // without cancellation: cos θ ≥ 0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::bend::Bend;
+    use super::dual::Dual;
+    use super::linear::{Leaf, Linear};
+    use super::most::Most;
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Turns, and products with turns.
+    fn quantities<N: Number>(x: N, theta: N, Turn { sin, cos, versine }: Turn<N>) -> [N; 6] {
+        [sin, cos, versine, x * cos, x * sin - theta * x, x * x * theta]
+    }
+
+    /// The polynomial Σ c_k σᵏ with its first two derivatives.
+    fn moving(c: &[f64; 3], sigma: f64) -> Dual<Dual<f64>> {
+        let rate = c[1] + 2.0 * c[2] * sigma;
+        let value = Dual { value: c[0] + (c[1] + c[2] * sigma) * sigma, rate };
+        Dual { value, rate: Dual { value: rate, rate: 2.0 * c[2] } }
+    }
+
+    proptest! {
+        #[test]
+        fn bounds_hold_over_a_step(x in prop::array::uniform3(-0.5..0.5f64), theta in prop::array::uniform3(-0.5..0.5f64)) {
+            let bend = |c: &[f64; 3]| {
+                let [value, rate, bend] = [c[0].abs() + c[1].abs() + c[2].abs(), c[1].abs() + 2.0 * c[2].abs(), 2.0 * c[2].abs()];
+                Bend { value, rate, bend }
+            };
+            let most = |c: &[f64; 3]| Most(bend(c).value);
+            let (first, leaf) = (libm::sincos(theta[0]), Leaf::of(&theta));
+            let bends = quantities(bend(&x), bend(&theta), bend(&theta).turn());
+            let mosts = quantities(most(&x), most(&theta), most(&theta).turn());
+            let linear: [Linear<3>; 6] =
+                quantities(Linear::leaf(1, 1.0, Leaf::of(&x)), Linear::leaf(0, 1.0, leaf), Linear::turn(0, leaf, first));
+            for sigma in (0..=20).map(|i| f64::from(i) / 20.0) {
+                let rotation = moving(&theta, sigma);
+                let found = quantities(moving(&x, sigma), rotation, rotation.turn());
+                for (i, Dual { value: Dual { value, rate }, rate: Dual { rate: second, .. } }) in found.into_iter().enumerate() {
+                    let within = |of: f64, bound: f64| of.abs() <= bound * (1.0 + 1e-12) + 1e-14;
+                    prop_assert!(within(value, mosts[i].0), "{i}: {value} beyond {:?}", mosts[i]);
+                    let Bend { value: most, rate: fastest, bend } = bends[i];
+                    prop_assert!(within(value, most) && within(rate, fastest) && within(second, bend), "{i}: {:?}", bends[i]);
+                    let c = [0, 1, 2].map(|k| linear[i].coefficient(k, &[theta[k], x[k]]));
+                    let course = moving(&c, sigma).value;
+                    prop_assert!(within(value - course.value, linear[i].rest), "{i}: {value} and {:?}", linear[i]);
+                    prop_assert!(within(rate - course.rate, linear[i].rest_rate), "{i}: {rate} and {:?}", linear[i]);
+                }
+            }
+        }
+    }
+}

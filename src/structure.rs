@@ -1,5 +1,8 @@
 //! The structure: its parameters and the constants that follow from them (before Eq 11, after 4, 8 and 13, before 18).
 
+pub mod any;
+pub mod description;
+pub mod frame;
 pub mod natural_quantities;
 pub mod parameters;
 pub mod quantity;
@@ -59,18 +62,52 @@ pub struct Base {
     pub m_t: f64,
     /// Mass that no mode carries, m_t − Σ Γ²/μ, kg; of one mass, the mass of the foundation.
     pub m0: f64,
+    /// First moment of this mass about the height of the pivots, kg·m; of one mass, 0.
+    pub S_res: f64,
     /// Half-width B, m.
     pub B: f64,
     /// Inertia of the mass that no mode carries, about the middle of the base, kg·m².
     pub J0: f64,
     /// Inertia of the whole structure about a pivot J_P, kg·m².
     pub J_P: f64,
-    /// Coefficient of restitution.
-    pub r: f64,
+    /// Coefficient of restitution; without one, momentum with the shape frozen gives a coefficient for each impact.
+    pub r: Option<f64>,
     /// Acceleration of gravity, m/s².
     pub g: f64,
     /// Viscous damping while rocking as a fraction of the damping in full contact.
     pub c_ratio: f64,
+    /// Frequency parameter √(g S_1/J_P), rad/s.
+    pub p_l: f64,
+    /// Slenderness of the centre of gravity m_t B/S_1.
+    pub tan_alpha_cg: f64,
+    /// What restrains the base.
+    pub ties: Ties,
+}
+
+/// The tendon and the dissipators between the base and the ground, by their parameters.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ties {
+    /// Prestress of the tendon with the base down, N.
+    pub P_0: f64,
+    /// Stiffness of the tendon, N/m.
+    pub k_t: f64,
+    /// Distance of both dissipators from the middle of the base, m.
+    pub xi_d: f64,
+    /// Damping of each viscous dissipator, N·s/m.
+    pub c_d: f64,
+    /// Elastic stiffness of each elastoplastic dissipator, N/m.
+    pub k_d: f64,
+    /// Force at which it yields, N.
+    pub F_y: f64,
+}
+
+impl Base {
+    /// Whether a tendon or dissipators restrain the structure.
+    #[inline]
+    pub fn is_restrained(&self) -> bool {
+        let &Ties { P_0, k_t, c_d, k_d, .. } = &self.ties;
+        [P_0, k_t, c_d, k_d].iter().any(|restraint| *restraint > 0.0)
+    }
 }
 
 /// A mode of vibration in full contact: an oscillator on the base. One mass is one mode with the shape 1.
@@ -90,9 +127,18 @@ pub struct Mode {
     pub damping: f64,
 }
 
-/// A derived quantity, for `describe` and the FMU.
+/// Circular frequencies of vibration, rad/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vibration {
+    /// The lowest in full contact.
+    pub contact: f64,
+    /// The lowest and the highest while rocking.
+    pub rocking: [f64; 2],
+}
+
+/// A derived quantity of a `T`, for `describe` and the FMU.
 #[derive(Debug)]
-pub struct Derived {
+pub struct Derived<T = Structure> {
     /// Symbol.
     pub name: &'static str,
     /// Unit.
@@ -102,7 +148,7 @@ pub struct Derived {
     /// Equation of the paper that defines the quantity.
     pub equation: &'static str,
     /// Value for a structure.
-    pub value: fn(&Structure) -> f64,
+    pub value: fn(&T) -> f64,
 }
 
 macro_rules! derived {
@@ -110,6 +156,8 @@ macro_rules! derived {
         Derived { name: $name, unit: $unit, description: $description, equation: $equation, value: $value }
     };
 }
+
+use derived;
 
 /// The derived quantities that are shown, in the order of the paper.
 pub const DERIVED: [Derived; 16] = [
@@ -135,7 +183,7 @@ impl Structure {
     /// Derives a structure from its parameters, or returns the first parameter that is out of range.
     pub fn new(parameters: Parameters) -> Result<Structure, ParameterError> {
         parameters.check()?;
-        let Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, r, g, P_0, k_t, xi_d, c_d, k_d, .. } = parameters;
+        let Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, r, g, P_0, k_t, xi_d, c_d, k_d, F_y } = parameters;
         let gamma = (m + m0) / m;
         let omega_fc = TAU * f_fc;
         let k = m * omega_fc * omega_fc;
@@ -149,12 +197,13 @@ impl Structure {
         let (p_l, omega_u) = ((m * g * H / J_P).sqrt(), omega_fc / one_minus_chi.sqrt());
         let foundation = (J0 + m0 * B * B) / m;
         let (inertia, pair) = (m * (foundation + B * B), 2.0 * (B * B + xi_d * xi_d));
-        let ties = k_t * B * B + k_d * pair;
-        let rocking_rate = (omega_u * omega_u + ties / inertia).sqrt().max(p_l).max(c_d * pair / inertia);
+        let held = k_t * B * B + k_d * pair;
+        let ties = Ties { P_0, k_t, xi_d, c_d, k_d, F_y };
+        let rocking_rate = (omega_u * omega_u + held / inertia).sqrt().max(p_l).max(c_d * pair / inertia);
         Ok(Structure {
             parameters,
             is_restrained: [P_0, k_t, c_d, k_d].iter().any(|restraint| *restraint > 0.0),
-            base: Base { m_t: m + m0, m0, B, J0, J_P, r, g, c_ratio },
+            base: Base { m_t: m + m0, m0, S_res: 0.0, B, J0, J_P, r: Some(r), g, c_ratio, p_l, tan_alpha_cg, ties },
             mode: Mode { mass: m, gamma: m, share: 1.0, height: H, stiffness: k, damping: c_fc },
             gamma,
             omega_fc,

@@ -149,6 +149,26 @@ fn the_rates_of_the_forces_are_their_slopes() {
     }
 }
 
+/// While a dissipator yields, too.
+#[test]
+fn forces_within_a_piece_are_the_forces_of_a_motion_that_ends_there() {
+    let ground = Record::from_samples("at rest", vec![0.0, 1.0], vec![0.0, 0.0]).unwrap();
+    let initial = State { theta: 0.3, theta_dot: -2.0, ..State::default() };
+    let run = Run { initial, end: End::At(0.1), tolerance: 1e-12, ..Run::new(structure(RESTRAINED), &ground) };
+    let mut samples = Vec::new();
+    let show = |at: &Sample| samples.push((at.motion.time, at.restraints(), at.motion.dissipators.hysteretic));
+    run.sample((1..20).map(|i| 5e-3 * f64::from(i)), show, &mut ()).unwrap();
+    for (time, found, taken) in &samples {
+        let mut engine = Engine::new(run.structure, initial, 0.0, 1e-12).unwrap();
+        engine.advance(*time, Load::default(), &mut ()).unwrap();
+        let expected = engine.restraints();
+        assert_relative_eq!(found.F_d1, expected.F_d1, max_relative = 1e-9);
+        assert_relative_eq!(found.F_d2, expected.F_d2, max_relative = 1e-9);
+        assert_relative_eq!(*taken, engine.motion().dissipators.hysteretic, epsilon = 1e-9);
+    }
+    assert!(samples[2].2 < samples[3].2 && samples.len() == 20, "no dissipator yields: {samples:?}");
+}
+
 /// Undamped, u = U sin ωt below u_cr at rest: the weight falls, and the base lifts off where u meets what u_cr has come to.
 #[test]
 fn uplift_is_due_where_the_vertical_acceleration_and_the_prestress_put_it() {
@@ -465,6 +485,11 @@ fn the_warning_of_a_base_held_down_beyond_its_edge_knows_the_tendon() {
     assert_eq!(tied.u_cr, Restraint::about(&tied, Side::Right, &Dissipators::NEW).uplift_displacement(0.0));
     let warnings = of_parameters(&tied, Detail::Auto);
     assert!(warnings[0].starts_with("u_cr = 0.6") && warnings[0].contains("exceeds B = 0.285 m"), "{warnings:?}");
+    // u k H = (W + P_0) B less the moment m g u of the weight, beyond which it topples
+    let &Parameters { m, m0, H, B, g, P_0, .. } = tied.parameters();
+    let balanced = ((m + m0) * g * B + P_0 * B) / (tied.k * H + m * g);
+    let shown = warnings[0].split("from u = ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+    assert_relative_eq!(shown.parse::<f64>().unwrap(), balanced, max_relative = 1e-12);
 }
 
 #[test]

@@ -164,7 +164,7 @@ def test_what_is_refused_has_the_command_lines_text(said, arguments, options):
     (lambda ground: fr.Record(0.1, np.array(["1", 2.0], object)), "a_g: numbers are needed"),
     (lambda ground: fr.Record(0.1, [True, 1.0]), "a_g: these are bools"),
     (lambda ground: fr.Record(0.1, np.array([0.0, np.True_], object)), "a_g: these are bools"),
-    (lambda ground: fr.Record(0.1, [0, 1], unit=None), 'unit = "None" is unknown; these are known: g, m/s2'),
+    (lambda ground: fr.Record(0.1, [0, 1], unit="m"), 'unit = "m" is unknown; these are known: g, m/s2'),
     (lambda ground: fr.Record(0.1, [0, 1], scale="2"), "scale = '2': it is no number"),
     (lambda ground: fr.export("a.fmu", fr.Structure(preset="mcmanus"), fmi="3.0"), 'fmi = "3.0" is unknown; these are known: 2, 3'),
     (lambda ground: fr.advise(fr.Structure(preset="mcmanus"), ground, within="5%"), "within = '5%': it is no number"),
@@ -186,7 +186,7 @@ def test_what_is_refused_has_the_command_lines_text(said, arguments, options):
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground).at([0, -1]), "times[1] = -1 s is out of range"),
     (lambda ground: fr.sweep([], ground), 'structures "structures" is empty: give one or more'),
     (lambda ground: fr.sweep(fr.Structure(preset="mcmanus"), [ground, ground]), "two ground motions have the name"),
-    (lambda ground: fr.sweep(fr.Structure(preset="mcmanus"), ground, intensity="PGD"), "intensity = 'PGD' is unknown"),
+    (lambda ground: fr.sweep(fr.Structure(preset="mcmanus"), ground, intensity="PGD"), 'intensity = "PGD" is unknown; these are known: PGA, PGV, S_a, CAV'),
     (lambda ground: fr.sweep(fr.Structure(preset="mcmanus"), ground, path="/dev/full"), "/dev/full: rows need a file"),
     (lambda ground: fr.advise(fr.Structure(preset="mcmanus"), ground, within=5), "within = 5 is out of range"),
 ])
@@ -407,11 +407,48 @@ def test_a_sweep_goes_on_where_the_command_line_was(exporter, tmp_path):
     assert table["peak_theta[rad]"][7] == alone.peaks["theta"].value
 
 
+def test_a_table_in_memory_is_that_of_the_file_of_rows(tmp_path):
+    soft = fr.Structure(preset="mcmanus", m0=0, J0=0, f_fc=0.2)  # some runs fail
+    groups = {"piers": [fr.Structure(preset="mcmanus", f_fc=f) for f in (2, 4)], "soft": soft}
+    pulses = {f"{f} Hz": fr.pulse("sine", amplitude=0.6, frequency=f) for f in (1, 2)}
+    for options in ({}, {"validity": True, "duration": 3, "theta_0": 0.01}, {"groups": {"piers": groups["piers"]}}):
+        structures = options.pop("groups", groups)
+        options["scale"] = [0.5, 2, 6]
+        in_memory = fr.sweep(structures, pulses, **options)
+        rows = tmp_path / f"{len(options)}{len(structures)}.csv"
+        written, read = (fr.sweep(structures, pulses, path=rows, **options) for _ in range(2))
+        by_pandas = pd.read_csv(rows, dtype={"record_digest": "str"})
+        by_pandas = by_pandas.set_index("run").loc[in_memory["run"]].reset_index()
+        for table in (written, read, by_pandas):
+            pd.testing.assert_frame_equal(in_memory, table)
+        assert set(in_memory["ending"]) >= ({"failed"} if "soft" in structures else {"overturned"})
+
+
+def test_a_sweep_says_how_far_it_is(capsys, monkeypatch):
+    pier, pulse = fr.Structure(preset="mcmanus"), fr.pulse("sine", amplitude=0.6, frequency=2)
+    told = []
+    fr.sweep(pier, pulse, scale=np.linspace(0.1, 1, 2000), threads=1, progress=lambda done, of: told.append((done, of)))
+    assert told == sorted(told) and told[-1] == (2000, 2000) and len(told) > 1
+    fr.sweep(pier, pulse, scale=[0.1, 0.2], progress=True)
+    assert re.search(r"100%.*2/2 .*runs/s", capsys.readouterr().err)
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    fr.sweep(pier, pulse, scale=[0.1, 0.2], progress=True)
+    assert capsys.readouterr().err.endswith("\r2 of 2 runs, 0 s left \n")
+
+    def stop(done, of):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough") as stopped:
+        fr.sweep(pier, pulse, scale=np.linspace(0.1, 1, 100_000), progress=stop)
+    assert 0 < len(stopped.value.table) < 100_000
+
+
 def test_a_sweep_that_is_stopped_keeps_its_rows(tmp_path):
     script = ("import flexible_rocking as fr, numpy as np, sys\n"
+              "say = lambda done, of: print(done, 'of', of, file=sys.stderr, flush=True)\n"
               "try:\n"
               "    pulse = fr.pulse('sine', amplitude=0.6, frequency=2)\n"
-              "    fr.sweep(fr.Structure(preset='mcmanus'), pulse, scale=np.linspace(0.1, 1, 1000000), progress=True)\n"
+              "    fr.sweep(fr.Structure(preset='mcmanus'), pulse, scale=np.linspace(0.1, 1, 1000000), progress=say)\n"
               "except KeyboardInterrupt as stopped:\n"
               "    print(len(stopped.table), set(stopped.table['ending']))\n")
     command = ["env", "--default-signal=INT", sys.executable, "-c", script]  # where the tests run in the background it is ignored
@@ -480,16 +517,120 @@ def test_limits_have_usual_units(two_populations):
             fr.fragility(alone, limit)
 
 
+def test_curves_by_a_column_are_those_of_its_rows(two_populations):
+    limit = "theta/alpha_cg >= 0.3"
+    curves = fr.fragility(two_populations, limit, by="structures")
+    assert list(curves) == ["mcmanus", "evison"]
+    for name, curve in curves.items():
+        alone = fr.fragility(two_populations[two_populations["structures"] == name], limit)
+        assert (curve.median, curve.dispersion) == (alone.median, alone.dispersion)
+    low = two_populations["PGV[m/s]"] < two_populations["PGV[m/s]"].min() * 1.01
+    for refused, options in [("structures = 'mcmanus': never exceeded: raise", {"table": two_populations[low], "by": "structures"}),
+                             ("by = 'period' is no column of the table: give one of run, ", {"table": two_populations, "by": "period"})]:
+        with pytest.raises(ValueError, match=re.escape(refused)):
+            fr.fragility(limit=limit, **options)
+
+
+def test_curve_and_band_are_those_of_statsmodels(two_populations):
+    """A probit regression with a covariance that is robust against clusters; the band by Student's distribution."""
+    statistics, api = pytest.importorskip("scipy.stats"), pytest.importorskip("statsmodels.api")
+    rows = two_populations[two_populations["structures"] == "mcmanus"]
+    found = fr.fragility(rows, "theta/alpha_cg >= 0.3")
+    x, over = np.log(rows["PGV[m/s]"]), (rows["peak_theta/alpha_cg"] >= 0.3) | (rows["ending"] == "overturned")
+    family = api.families.Binomial(api.families.links.Probit())
+    model = api.GLM(over.astype(float), api.add_constant(x), family=family)
+    a, b = params = model.fit(tol=1e-12).params
+    assert [found.median, found.dispersion] == pytest.approx([np.exp(-a / b), 1 / b], rel=1e-6)
+    scores = pd.DataFrame(model.score_obs(params)).groupby(rows["record"].to_numpy()).sum().to_numpy()
+    information, groups = np.linalg.inv(model.hessian(params, observed=False)), len(scores)
+    covariance = groups / (groups - 1) * information @ scores.T @ scores @ information
+    at = np.array([0.2, 0.4, 0.9])
+    table = found.table(at)
+    assert table["probability"].to_numpy() == pytest.approx(statistics.norm.cdf(np.log(at / found.median) / found.dispersion), rel=1e-12)
+    row = np.column_stack([np.ones(3), np.log(at)])
+    half = statistics.t.ppf(0.975, groups - 1) * np.sqrt(np.sum(row @ covariance * row, axis=1))
+    for name, sign in (("low", -1), ("high", 1)):
+        assert table[name].to_numpy() == pytest.approx(statistics.norm.cdf(row @ params + sign * half), rel=5e-3)
+
+
+def test_the_weakest_motion_that_reaches_a_limit_is_found():
+    pier = fr.Structure(preset="mcmanus")
+    pulses = {f"{f} Hz": fr.pulse("sine", amplitude=0.3, frequency=f) for f in (0.8, 1.5, 2.5)}
+    limit = "theta/alpha_cg >= 0.3"
+    found = fr.intensity_at(pier, pulses, limit, accuracy=1e-6).set_index("record")
+    for name, pulse in pulses.items():
+        scale = found["scale"][name]
+        below, at = (fr.simulate(pier, pulse.scaled(scale * factor)).peaks["theta"] / pier.alpha_cg for factor in (1 - 2e-6, 1))
+        assert below < 0.3 <= at == found["peak_theta/alpha_cg"][name]
+        assert found["PGA[g]"][name] == pytest.approx(scale * pulse.pga / pier.g, rel=1e-12)
+        weaker = fr.sweep(pier, pulse, scale=np.linspace(0.1, 0.999, 200) * scale)
+        assert (weaker["peak_theta/alpha_cg"] < 0.3).all()
+
+
+def test_what_has_no_weakest_motion_is_said():
+    pier, pulse = fr.Structure(preset="mcmanus"), {"pulse": fr.pulse("cosine", amplitude=0.5, frequency=1)}
+    note = lambda **options: fr.intensity_at(pier, pulse, **options)["note"][0]
+    runs = fr.sweep(pier, pulse, scale=np.linspace(0.5, 8, 31))
+    over = runs["ending"] == "overturned"
+    again = runs["scale"][~over & (over.cumsum() > 0)]
+    assert len(again) and note(scale=runs["scale"]) == f"within the limit again at scale {', '.join(f'{at:.4g}' for at in again)}"
+    assert note(scale=[0.1, 0.2]) == "not reached up to scale 0.2"
+    assert note(scale=[7.5, 8]) == "reached at the weakest stripe, scale 7.5: begin lower"
+    assert np.isnan(fr.intensity_at(pier, pulse, scale=[0.1, 0.2])["PGA[g]"][0])
+    with pytest.raises(ValueError, match="increasing factors greater than 0 are needed"):
+        fr.intensity_at(pier, pulse, scale=[2, 1])
+
+
+def test_a_trace_of_obspy_is_a_record():
+    obspy = pytest.importorskip("obspy")
+    trace = obspy.Trace(np.array([0, 100, -50, 25], "int32"), {"delta": 0.02, "network": "NZ", "station": "CBGS", "channel": "HNE"})
+    record = fr.Record(trace, unit="cm/s2")
+    assert record == fr.Record(0.02, [0, 100, -50, 25], unit="cm/s2", title="NZ.CBGS..HNE") == fr.Record(obspy.Stream([trace]), unit="cm/s2")
+    refused = [(lambda: fr.Record(trace), "the trace NZ.CBGS..HNE does not state the unit of its samples: say unit="),
+               (lambda: fr.Record(obspy.Stream([trace, trace]), unit="g"), "the stream has 2 traces, NZ.CBGS..HNE, NZ.CBGS..HNE, and"),
+               (lambda: fr.Record([0, 1]), "a_g is needed beside time = [0, 1]")]
+    gap = trace.copy()
+    gap.data = np.ma.masked_equal(gap.data, 25)
+    for make, text in [*refused, (lambda: fr.Record(gap, unit="g"), "a_g: some of it is masked")]:
+        with pytest.raises(ValueError, match=re.escape(text)):
+            make()
+
+
+def test_intensities_of_a_row_are_those_of_numpy():
+    """On samples so close that sums are integrals."""
+    pier, time = fr.Structure(preset="mcmanus"), np.linspace(0, 8, 80_001)
+    a_g = 2 * np.exp(-((time - 4) ** 2)) * np.sin(7 * time)
+    record = fr.Record(time, a_g)
+    row = fr.sweep(pier, record, scale=-1.5, duration=0.1, intensity="S_a_avg").iloc[0]
+    dt, squares = time[1], np.cumsum(a_g**2)
+    instants = [time[np.searchsorted(squares, part * squares[-1])] for part in (0.05, 0.95)]
+    periods = np.linspace(0.2, 3, 10) / pier.f_fc
+    expected = {"CAV[m/s]": 1.5 * np.abs(a_g).sum() * dt, "I_A[m/s]": 1.5**2 * np.pi / 2 / 9.81 * squares[-1] * dt,
+                "D_5_95[s]": instants[1] - instants[0], "PGA[g]": 1.5 * np.abs(a_g).max() / 9.81,
+                "PGV[m/s]": 1.5 * np.abs(np.cumsum(a_g)).max() * dt,
+                "S_a_avg[g]": 1.5 * np.exp(np.log(record.spectrum(periods, pier.zeta_fc)).mean()) / 9.81}
+    assert {name: row[name] for name in expected} == pytest.approx(expected, rel=1e-3)
+
+
 def test_the_sweep_on_dask_comes_to_the_same(tmp_path):
     (tmp_path / "out").mkdir()
     shutil.copy(RECORD, tmp_path / "out")
     command = [sys.executable, ROOT / "examples" / "fragility_dask.py"]
     printed = subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
     found = pd.read_csv(tmp_path / "fragility_dask.csv")
-    piers = [fr.Structure(preset="mcmanus", f_fc=f_fc) for f_fc in (2, 4, 8)]
+    piers = [fr.Structure(preset="mcmanus", f_fc=f_fc) for f_fc in np.geomspace(2, 8, 8)]
     expected = fr.sweep({"piers": piers}, {RECORD.name: fr.Record.read(RECORD, time_scale=0.2)}, scale=np.linspace(0.2, 2, 10))
     pd.testing.assert_frame_equal(found, expected, check_exact=True)
-    assert printed.startswith(f"{sum(expected['ending'] == 'overturned')} of 30 overturned")
+    assert printed.startswith(f"{sum(expected['ending'] == 'overturned')} of 80 overturned")
+
+
+def test_the_sweep_on_ray_comes_to_the_same(tmp_path):
+    pytest.importorskip("ray")
+    (tmp_path / "out").mkdir()
+    shutil.copy(RECORD, tmp_path / "out")
+    for name in ("dask", "ray"):
+        subprocess.run([sys.executable, ROOT / "examples" / f"fragility_{name}.py"], cwd=tmp_path, check=True, capture_output=True)
+    assert (tmp_path / "fragility_ray.csv").read_text() == (tmp_path / "fragility_dask.csv").read_text()
 
 
 def test_formats_read_back(tmp_path):
@@ -514,7 +655,7 @@ def test_formats_read_back(tmp_path):
             assert numbers(state) == (of.probability(levels).tolist() if levels else counted)
 
 
-@pytest.mark.parametrize("name", ["python", "choose_numbers"])
+@pytest.mark.parametrize("name", ["python", "choose_numbers", "questions"])
 def test_a_page_of_the_module_prints_what_it_shows(name, tmp_path, monkeypatch):
     """WRITE_PAGE=1 writes what is printed into it."""
     page = ROOT / "docs" / "howto" / f"{name}.md"
@@ -532,3 +673,23 @@ def test_a_page_of_the_module_prints_what_it_shows(name, tmp_path, monkeypatch):
     if os.environ.get("WRITE_PAGE"):
         page.write_text(shown, encoding="utf-8")
     assert shown == text
+
+
+def test_statistics_of_the_page_of_questions_are_those_of_statsmodels(tmp_path, monkeypatch):
+    stats, api = pytest.importorskip("scipy.stats"), pytest.importorskip("statsmodels.api")
+    text = (ROOT / "docs" / "howto" / "questions.md").read_text(encoding="utf-8")
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    monkeypatch.chdir(tmp_path)
+    of = {}
+    with contextlib.redirect_stdout(io.StringIO()):
+        exec("".join(re.findall(r"```py\n(.*?)```\n", text, re.DOTALL)), of)
+    printed = re.search(r"\n +median    beta.*\n((?:.*\n)+?)```", text)[1].splitlines()
+    for line, name in zip(printed, of["measures"], strict=True):
+        values = of["target"][name]
+        deviation, _, median = stats.lognorm.fit(values, floc=0)
+        p = [api.OLS(np.log(values).to_numpy(), api.add_constant(other.to_numpy())).fit().pvalues[1] for other in of["others"].values()]
+        expected = [median, deviation * np.sqrt(len(values) / (len(values) - 1)), *p]
+        assert [float(number) for number in line.split()[-4:]] == pytest.approx(expected, abs=6e-4)
+    rotation = of["rotation"]["pier"]
+    assert (np.exp(-of["a"] / of["b"]), 1 / of["b"]) == pytest.approx((rotation.median, rotation.dispersion), rel=1e-5)
+    assert of["rate"] == pytest.approx(of["closed"], rel=1e-3)

@@ -7,14 +7,14 @@ use crate::{
     significant::significant,
     structure_args::StructureArgs,
 };
-use anyhow::ensure;
+use anyhow::{bail, ensure};
 use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::Quantity;
 use rocking::{
-    estimates::restoring::{Point, flag},
-    structure::{DERIVED, Derived},
+    estimates::restoring::{FlagPoint, flag},
+    structure::{DERIVED, Derived, any::AnyStructure},
 };
-use rocking_report::{describe::text, quantities::NamedValue};
+use rocking_report::{describe, quantities::NamedValue};
 use std::f64::consts::FRAC_PI_2;
 
 /// Arguments of `describe`.
@@ -37,7 +37,13 @@ const STEPS: u32 = 20;
 
 /// Prints the parameters as they were given and the derived quantities with the equations that define them.
 pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
-    let structure = args.structure.load()?;
+    let structure = match args.structure.load_any()? {
+        AnyStructure::Many(_) if args.template => bail!("--template writes structures of one mass only"),
+        AnyStructure::Many(frame) if args.restoring.is_none() => {
+            return args.results.print(|| Ok(describe::frame(&frame)?), &describe::numbers(&frame));
+        }
+        any => any.one("--restoring")?,
+    };
     if args.template {
         let mut out = String::new();
         template::write(&mut out, &structure)?;
@@ -56,11 +62,12 @@ pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
         NamedValue::new(name, value(&structure), unit, equation, description)
     });
     let lines: Vec<_> = given.chain(derived).collect();
-    args.results.print(|| Ok(text(&structure)?), &lines)
+    args.results.print(|| Ok(describe::text(&structure)?), &lines)
 }
 
 /// The moment that turns the base back on the way there and back, for people.
-fn text_of_loop(rows: &[Point]) -> String {
-    let line = |Point { theta, moment }: &Point| format!("{:>12} {:>14}\n", significant(*theta), significant(*moment));
+fn text_of_loop(rows: &[FlagPoint]) -> String {
+    let line =
+        |FlagPoint { theta, moment }: &FlagPoint| format!("{:>12} {:>14}\n", significant(*theta), significant(*moment));
     format!("{:>12} {:>14}\n{}", "theta (rad)", "moment (N.m)", rows.iter().map(line).collect::<String>())
 }

@@ -10,13 +10,13 @@ pub struct LimitArgs {
     /// EN 1992-1-1, 6.2.5(2)]
     #[arg(long, value_name = "MU", default_value_t = Limits::default().friction, allow_negative_numbers = true)]
     friction: f64,
-    /// Tension at the base that is tolerated without a warning, over the weight; at an impact, over its impulse
+    /// Largest tension at the base without a warning, as a fraction of the weight, or of the impulse of an impact
     #[arg(long, value_name = "PART", default_value_t = Limits::default().tension, allow_negative_numbers = true)]
     tension: f64,
-    /// Least load of the edge in contact that is tolerated without a warning, over the weight
+    /// Smallest load of the edge in contact without a warning, as a fraction of the weight
     #[arg(long, value_name = "PART", default_value_t = Limits::default().edge_load, allow_negative_numbers = true)]
     edge_load: f64,
-    /// Energy gained at an impact that is tolerated without a warning, over the kinetic energy before it
+    /// Largest energy gained at an impact without a warning, as a fraction of the kinetic energy before it
     #[arg(long, value_name = "PART", default_value_t = Limits::default().energy_gain, allow_negative_numbers = true)]
     energy_gain: f64,
 }

@@ -58,7 +58,7 @@ enum Command {
     Export(export::ExportArgs),
     /// Simulate the response to a ground motion record, or free vibration
     ///
-    /// Prints the peaks of the response, and writes it as CSV where -o asks for it. The ground acceleration is linear
+    /// Prints the peaks of the response. The option -o writes the response as CSV. The ground acceleration is linear
     /// between samples; the structure starts at rest unless initial values are given. Overturning ends the run.
     #[command(after_help = "Examples:
   rocking-fmu simulate --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
@@ -72,7 +72,7 @@ enum Command {
     /// Write a page that shows the structure in motion, with its histories below
     ///
     /// One HTML file for any browser, which needs no network. Lengths are true to scale; how far the motion is
-    /// exaggerated is chosen on the page, and stated.
+    /// exaggerated is chosen and shown on the page.
     #[command(after_help = "Examples:
   rocking-fmu view --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
   rocking-fmu view --preset evison --free 2 --theta-0 0.04 -o wall.html")]
@@ -87,7 +87,7 @@ enum Command {
   rocking-fmu advise --record RSN77_SFERN_PUL164.AT2 --within 10% --of theta,a_t
   rocking-fmu advise --preset evison --free 2 --theta-0 0.04 --within 0.1%")]
     Advise(advise::AdviseArgs),
-    /// Show the parameters and all that follows from them
+    /// Show the parameters and the derived quantities
     #[command(after_help = "Examples:
   rocking-fmu describe
   rocking-fmu describe --preset evison --f-fc 8 --r 0.9
@@ -114,8 +114,8 @@ enum Command {
     /// structure over frequency and amplitude. The map shows whether the structure lifts off, stands or overturns, and
     /// after how many impacts.
     ///
-    /// Appends a row per run to the CSV file as the runs end. A sweep that was stopped goes on where it was when the
-    /// same command is given again; once all runs are there, the command shows the results alone.
+    /// Appends a row per run to the CSV file as the runs end. The same command continues a sweep that was stopped. Once
+    /// all runs are done, the command only shows the results.
     #[command(after_help = "Examples:
   rocking-fmu sweep fragility.toml
   rocking-fmu sweep fragility.toml -o runs.csv --threads 2
@@ -145,16 +145,15 @@ A file of pulses, spectrum.toml, a map of each structure:
     Sweep(sweep::SweepArgs),
     /// Write a pulse as a record: half sine, sine, cosine, Ricker, Mavroeidis and Papageorgiou
     ///
-    /// The field's standard motions as their papers define them, in straight lines that keep to --error and have the
-    /// curve's impulse on each. Amplitude and frequency can be given in units of the structure's g tan(alpha_cg) and
-    /// p_l.
+    /// The standard pulses as their papers define them. Straight lines replace the curve within --error, each with the
+    /// impulse of the curve. Amplitude and frequency may be in units of g tan(alpha_cg) and p_l of a structure.
     #[command(after_help = "Examples:
   rocking-fmu pulse sine --amplitude 0.6 --period 0.5
   rocking-fmu pulse cosine --amplitude-ratio 2.5 --frequency-ratio 4 --preset evison -o cosine.csv
   rocking-fmu pulse mavroeidis_papageorgiou --amplitude 0.4 --period 1.2 --cycles 2.5 --phase 1.5708
   rocking-fmu pulse ricker --amplitude 0.5 --frequency 1 -o ricker.csv && rocking-fmu simulate --record ricker.csv")]
     Pulse(pulse::PulseArgs),
-    /// Show what is understood of a record, and write it as a table that is read without options
+    /// Show how a record is read, and write it as a table that needs no options
     ///
     /// Prints the samples and their step, the peaks, the duration of shaking, and the velocity and displacement of the
     /// ground at the end. An offset, a wrong column or a wrong unit leaves a velocity or displacement far from 0.

@@ -47,7 +47,7 @@ impl MotionArgs {
 pub struct GroundArgs {
     #[command(flatten)]
     pub record: RecordArgs,
-    /// Simulated time; the ground is at rest after the record's end [default: until the structure stands for good, or still rocks 100/p_l after the record]
+    /// Simulated time; the ground is at rest after the record's end [default: until the base is down for good, at the latest 100/p_l after the record]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     duration: Option<f64>,
     /// Free vibration over this time instead of a record
@@ -92,7 +92,7 @@ struct LevelArgs {
 }
 
 impl GroundArgs {
-    /// The ground motion; `g` (m/s²) is what a record's g stands for.
+    /// The ground motion; a record's g means `g` (m/s²).
     pub fn load(&self, g: f64) -> anyhow::Result<Record> {
         let record = self.record.load(g)?;
         Ok(record.unwrap_or_else(|| Record::at_rest(self.free.expect("clap asks for --record or --free"))))

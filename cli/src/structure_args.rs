@@ -1,9 +1,11 @@
 //! Which structure a command works on: one of the paper's specimens, or parameters from a file, with single numbers in
 //! the place of theirs, or numbers that are all of it.
 use crate::{record_args::one_of, significant::in_full, talk::say};
-use anyhow::{Context, anyhow};
+use anyhow::{Context, anyhow, bail};
 use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource};
 use rocking::structure::Derived;
+use rocking::structure::any::AnyStructure;
+use rocking::structure::description::Described;
 use rocking::structure::natural_quantities::{Given, GivenError, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::quantity::{Quantity, with_unit};
@@ -43,17 +45,22 @@ impl StructureArgs {
         self.parameters.as_deref()
     }
 
-    /// Reads the parameters and derives the structure; a refusal names the file, the line and the key.
+    /// Reads a structure of one mass.
     pub fn load(&self) -> anyhow::Result<Structure> {
+        Ok(self.load_any()?.one("this command")?)
+    }
+
+    /// Reads the structure; a refusal names the file, the line and the key.
+    pub fn load_any(&self) -> anyhow::Result<AnyStructure> {
         let numbers = &self.numbers.0;
         let parameters = match (&self.parameters, self.preset) {
             (Some(path), _) => {
-                let read = || -> anyhow::Result<Structure> {
-                    let given: Given = toml::from_str(&input::text(path)?)?;
-                    Ok(Structure::new(given.parameters()?)?)
-                };
-                let structure = read().with_context(|| format!("parameters in {}", input::name(path)))?;
-                numbers.over(structure.parameters())?
+                let read = || of_file(&input::text(path)?);
+                match read().with_context(|| format!("parameters in {}", input::name(path)))? {
+                    AnyStructure::One(structure) => numbers.over(structure.parameters())?,
+                    many if numbers.is_empty() => return Ok(many),
+                    _ => bail!("single numbers replace those of one mass only: change them in {}", input::name(path)),
+                }
             }
             (None, Some(preset)) => numbers.over(&preset)?,
             (None, None) if numbers.is_empty() => {
@@ -62,8 +69,19 @@ impl StructureArgs {
             }
             (None, None) => numbers.parameters().map_err(with_options)?,
         };
-        Ok(Structure::new(parameters)?)
+        Ok(AnyStructure::One(Structure::new(parameters)?))
     }
+}
+
+/// The structure that the TOML `text` describes: of many masses if there are tables of them.
+fn of_file(text: &str) -> anyhow::Result<AnyStructure> {
+    let keys: toml::Table = toml::from_str(text)?;
+    if ["base", "storeys", "floors", "modes"].iter().any(|key| keys.contains_key(*key)) {
+        let described: Described = toml::from_str(text)?;
+        return Ok(AnyStructure::Many(described.frame()?));
+    }
+    let given: Given = toml::from_str(text)?;
+    Ok(AnyStructure::One(Structure::new(given.parameters()?)?))
 }
 
 /// The error with the options that help.

@@ -80,7 +80,7 @@ fn run_records(
 ) -> anyhow::Result<()> {
     let RecordSweep { plan, limits, measure, records } = sweep;
     let program = program();
-    let runs = Sweep::open(&plan, args.validity, &program, output)?;
+    let runs = Sweep::open(&plan, args.validity, &program, Some(output))?;
     let missing = runs.missing();
     let done = plan.len() - missing.len();
     let (name, [members, motions, scales]) = (output.display(), plan.size());
@@ -92,8 +92,9 @@ fn run_records(
     runs.others.others(output, "runs that are not in this sweep").iter().for_each(|line| say!("{line}"));
 
     let (bar, goes_on) = progress(missing.len(), "runs")?;
-    let (keys, outcomes) = pool.install(|| runs.finish(goes_on))?;
+    pool.install(|| runs.finish(goes_on))?;
     bar.finish_and_clear();
+    let (keys, outcomes) = runs.outcomes();
 
     let populations = exceedances::count(&plan, measure, &limits, &outcomes);
     let text = || {

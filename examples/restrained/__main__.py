@@ -73,7 +73,7 @@ RESTRAINTS = {
     "tendon, P_0 = W/2, k_t = 0": lambda s: {"P_0": 0.5 * weight(s)},
     "tendon, P_0 = W/2, k_t critical": tendon,
     "viscous, 10 % of J_P p_l": viscous,
-    "elastoplastic, half of what it could centre": elastoplastic,
+    "elastoplastic, F_y = W/4": elastoplastic,
     "tendon and elastoplastic": lambda s: tendon(s) | elastoplastic(s),
 }
 COLORS = ["black", SMOOTH, FIXED, QUIET, ROCKING, "#2e8b57"]
@@ -132,10 +132,10 @@ def vertical(structures, alone, both, picture: Path) -> dict:
 def draw_vertical(path: Path, changes: pd.DataFrame) -> None:
     figure, axis = subplots(1, 1, 4.2)
     axis.loglog(changes["size"], changes["theta"].clip(lower=1e-5), ".", markersize=2, alpha=0.3, color=ROCKING,
-                label="the vertical component, a run a dot")
+                label="the vertical component, one dot per run")
     edges = np.geomspace(1e-3, 1, 13)
     of_bins = changes.groupby(pd.cut(changes["size"], edges), observed=False)
-    for column, color, label in (("theta", "black", "its median"),
+    for column, color, label in (("theta", "black", "median of the vertical component"),
                                  ("larger", SMOOTH, "median of a horizontal component 1 % larger")):
         axis.plot(np.sqrt(edges[1:] * edges[:-1]), of_bins[column].median(), color=color, linewidth=2, label=label)
     axis.axhline(CHANGED, color=QUIET, label=f"{100 * CHANGED:.0f} %")
@@ -163,7 +163,7 @@ def restraints(structures, both, picture: Path) -> dict:
     draw_restraints(picture, sizes)
     _, bare_median, _, bare_overturned, *_ = lines["none"]
     *_, tendon_overturned, _, tendon_a_t = lines["tendon, P_0 = W/2, k_t critical"]
-    _, plastic_median, *_, plastic_a_t = lines["elastoplastic, half of what it could centre"]
+    _, plastic_median, *_, plastic_a_t = lines["elastoplastic, F_y = W/4"]
     return dict(
         restrained_runs=len(sizes["none"]), bare_median=bare_median, bare_overturned=bare_overturned,
         tendon_overturned=tendon_overturned, tendon_a_t=tendon_a_t, plastic_median=plastic_median, plastic_a_t=plastic_a_t,
@@ -178,8 +178,8 @@ def draw_restraints(path: Path, sizes: dict[str, np.ndarray]) -> None:
         finite = np.sort(of[np.isfinite(of)])
         axis.loglog(finite, 1 - np.arange(len(finite)) / len(of), color=color, label=name)
     axis.set(xlim=(1e-2, 3), ylim=(3e-4, 1.1), xlabel="θ_max/α_cg",
-             ylabel="part of the runs that rotate farther or overturn",
-             title="A tendon keeps structures up; dissipators shorten the tail")
+             ylabel="fraction of the runs that rotate farther or overturn",
+             title="A tendon keeps structures upright; dissipators shorten the tail")
     axis.legend(loc="lower left")
     save(figure, path)
 

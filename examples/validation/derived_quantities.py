@@ -39,11 +39,10 @@ def section(_folder: Path) -> Section:
     """The section, which has no figure."""
     return Section(
         title="Derived quantities (Tables 1 and 2)",
-        introduction="""The tables' parameters go in as they are printed (B, H, m, m0, J0, f_fc, ζ_fc, r); what the
-tables derive from them is compared.""",
+        introduction="""The inputs are the tables' printed parameters (B, H, m, m0, J0, f_fc, ζ_fc, r). We compare the quantities that the
+tables derive from them.""",
         rows=rows(),
-        findings=[f"""Everything follows from the parameters but Evison's χ, printed 0.92 where the same table's
-p_l, H and g give {EVISON.chi:.2f}. It matters more than it looks: 1−χ is {1 - EVISON.chi:.3f} instead of 0.08, so that the
-vibration frequency while rocking is {EVISON.f_u:.1f} Hz instead of the 39 Hz of the text, and nearer
-to the measured 35 Hz."""],
+        findings=[f"""Every quantity follows from the parameters except Evison's χ. The table prints 0.92, and its own p_l, H and g give
+{EVISON.chi:.2f}. The difference matters because 1−χ is {1 - EVISON.chi:.3f} instead of 0.08. The vibration frequency while
+rocking is therefore {EVISON.f_u:.1f} Hz instead of the 39 Hz of the text, and nearer to the measured 35 Hz."""],
     )

@@ -119,8 +119,8 @@ def section(folder: Path) -> Section:
     rigid = [rigid_rotation(before) / before for before in theta[:-1]]
     return Section(
         title="Free vibration of Evison's specimen (Fig 5)",
-        introduction=f"""Released at rest with u = u_cr, as the paper's simulation. The paper took the rotation from
-the measured trace and does not print it; θ = {THETA_0} rad is taken here. The accelerations hardly depend on it:
+        introduction=f"""The specimen is released at rest with u = u_cr, as in the paper's simulation. The paper took the rotation from
+the measured trace and does not print it. We take θ = {THETA_0} rad. The accelerations hardly depend on it:
 between {min(OTHER_THETA_0)} and {max(OTHER_THETA_0)} rad the largest of the first three cycles is
 {min(of.other_peaks):.2f} to {max(of.other_peaks):.2f} g.""",
         rows=rows(of),
@@ -128,8 +128,8 @@ between {min(OTHER_THETA_0)} and {max(OTHER_THETA_0)} rad the largest of the fir
         caption="Uplift, lateral acceleration and lateral displacement after the release, in the layout of Fig 5.",
         findings=["Decay of the amplitude, half cycle by half cycle:", decay(of),
                   f"""Each impact keeps {100 * min(kept):.0f} to {100 * max(kept):.0f} % of the rotation. A rigid
-structure, which keeps r² = {100 * EVISON.r**2:.0f} % of its energy, would keep {100 * np.mean(rigid):.0f} % (third
-column); the rest goes into the vibrations that each impact excites, and with them into the damper. The acceleration
-alternates between ±{STEP:.2f} g, with a vibration on top that starts at each impact and dies out towards the
-next: the trace that the paper describes."""],
+structure keeps r² = {100 * EVISON.r**2:.0f} % of its energy and would keep {100 * np.mean(rigid):.0f} % of the rotation (third
+column). Each impact excites vibrations, and the damper takes their energy. The acceleration
+alternates between ±{STEP:.2f} g. A vibration starts at each impact and dies out towards the
+next impact. The paper describes the same trace."""],
     )

@@ -147,22 +147,22 @@ def section(folder: Path) -> Section:
         introduction=f"""McManus's specimen under Pacoima Dam 1971 (component 164, time divided by 5, acceleration ×
 5 × 0.29, as the paper scales it), rocking and on a fixed base.
 
-The Bucharest record of 1977 is not to be had openly. In its place stands **a pulse of the same kind, not the
-record**: a Mavroeidis-Papageorgiou velocity pulse of one cycle (γ = 1, ν = 0), with the two values that the text
-gives: a peak ground acceleration of {FIRST_TERM_BUCHAREST:g} g/(1−χ) = {pulse.pga:.2f} g (its first term of Eq 22,
-which is (1−χ) PGA, see below), and a fixed-base response of {FIXED_BASE_BUCHAREST:g} g, which fixes its period at
-{T_p:.3f} s. What follows from these two is compared; the fixed-base 1.1 g itself cannot be reproduced, only put in.""",
+The Bucharest record of 1977 is not publicly available. **A pulse of the same kind replaces the record**: a
+Mavroeidis-Papageorgiou velocity pulse of one cycle (γ = 1, ν = 0). The pulse has the two values that the text gives. Its peak ground
+acceleration is {FIRST_TERM_BUCHAREST:g} g/(1−χ) = {pulse.pga:.2f} g, from the first term of Eq 22, which is (1−χ) PGA, see below. Its
+period of {T_p:.3f} s gives the fixed-base response of {FIXED_BASE_BUCHAREST:g} g. We compare the results of these two inputs. The
+fixed-base 1.1 g is itself an input.""",
         rows=rows(dam, pulse),
         figure="isolation.png",
         caption="Ground acceleration, uplift, lateral acceleration rocking and on a fixed base (Fig 9).",
-        findings=[f"""The isolation is as the paper shows it: {dam.fixed_peak:.1f} g on a fixed base,
-{dam.peak('a_t') / G:.2f} g rocking, between the paper's simulation (0.5 g) and its measurement (0.55 g), and below
-Eq 22. The paper puts Evison's larger acceleration, 0.85 g to 0.55 g measured, a ratio of 1.5, down to slenderness:
-the second terms of Eq 22 are in the ratio {STEP / mcmanus_step:.2f}, the computed peaks in the ratio
+        findings=[f"""The isolation agrees with the paper: {dam.fixed_peak:.1f} g on a fixed base and {dam.peak('a_t') / G:.2f} g rocking. The
+rocking value lies between the paper's simulation (0.5 g) and its measurement (0.55 g), and below
+Eq 22. The paper explains Evison's larger acceleration (0.85 g to 0.55 g measured, a ratio of 1.5) by slenderness. The ratio of
+the second terms of Eq 22 is {STEP / mcmanus_step:.2f}, the ratio of the computed peaks is
 {release().first_peak / dam.peak('a_t') * G:.2f}.""",
-                  f"""The first term of Eq 22 is where the paper's number does not follow from its equation. 0.10 g
-is (1−χ) × {dam.pga:.2f} g, the peak ground acceleration, as if the vibration mode were rigid; 0.02 g for Bucharest
-fits the same reading. S_a at T_u = {dam.estimate['T_u']:.4f} s and ζ_u = {100 * dam.estimate['zeta_u']:.0f} % is
+                  f"""The paper's first term of Eq 22 does not follow from its equation. The printed 0.10 g
+is (1−χ) × {dam.pga:.2f} g, with the peak ground acceleration, as if the vibration mode were rigid. The 0.02 g for Bucharest
+agrees with this. S_a at T_u = {dam.estimate['T_u']:.4f} s and ζ_u = {100 * dam.estimate['zeta_u']:.0f} % is
 {dam.estimate['S_a(T_u, zeta_u)'] / G:.2f} g, and the term {dam.estimate['(1-chi) S_a'] / G:.2f} g. The conclusion
-stands: it is the smaller term by far."""],
+remains true: it is by far the smaller term."""],
     )

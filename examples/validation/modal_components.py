@@ -135,20 +135,20 @@ def section(folder: Path) -> Section:
     likeness = np.corrcoef(model[inside], c.emd_oscillation[inside])[0, 1]
     return Section(
         title="Modal components (Fig 6)",
-        introduction="""The half cycle between the first and the second impact, split twice: with the model's own
-modes, θ = q_r + q_u and q_u = −(p_l²/g) u (Eq 16; accelerations by Eqs 12 and 19); and as
-the paper did it, by empirical mode decomposition of the uplift alone, which knows nothing of the model.""",
+        introduction="""We split the half cycle between the first and the second impact in two ways. The first way uses the model's own
+modes, θ = q_r + q_u and q_u = −(p_l²/g) u (Eq 16; accelerations by Eqs 12 and 19). The second way is the paper's: empirical mode
+decomposition of the uplift, without the model.""",
         rows=rows(of, c),
         figure="modal_components.png",
         caption="""Left: uplift and its smooth and oscillatory parts. Right: acceleration from the release to the
 second impact with the rocking mode's step, and the vibration mode's part after the first impact. Layout of Fig 6.""",
-        findings=[f"""The decomposition of the signal alone finds the model's two modes: one smooth part, one
-oscillation, whose correlation with the model's vibration mode over the middle half of the half cycle is
-{likeness:.3f}; at the ends the decomposition has no neighbours to lean on. Both oscillate at f_u,
-{EVISON.f_u:.1f} Hz, not at the 11 Hz of full contact. Of the three frequencies, the measured 35 Hz lies
-nearer to the model's than to the printed 39 Hz, which follows from the printed χ = 0.92.""",
-                  f"""C is where model and test part. In the model the weight changes sides at once, C = 2, and
-damping takes it to 1.7 by the first peak; the test had 1.4. The paper concludes that the transition in the test was
-gradual. In the model the same peak would need ζ_u = {100 * zeta_for_1_4:.0f} % instead of {100 * EVISON.zeta_u:.0f} %,
-while the paper suspects its damping while rocking of being too high (of McManus's tests)."""],
+        findings=[f"""The decomposition of the signal finds the model's two modes, one smooth part and one oscillation. The correlation of
+the oscillation with the model's vibration mode is {likeness:.3f} over the middle half of the half cycle. At the ends the
+decomposition is less exact, because it has no neighbouring cycles. Both oscillate at f_u,
+{EVISON.f_u:.1f} Hz, not at the 11 Hz of full contact. The measured 35 Hz is nearer to the model's frequency than to the printed
+39 Hz, which follows from the printed χ = 0.92.""",
+                  f"""Model and test differ in C. In the model the weight changes sides without delay, C = 2, and damping reduces C to 1.7 at
+the first peak. The test had 1.4. The paper concludes that the transition in the test was
+gradual. In the model the same peak would need ζ_u = {100 * zeta_for_1_4:.0f} % instead of {100 * EVISON.zeta_u:.0f} %.
+For McManus's tests the paper suspects that its damping while rocking is too high."""],
     )

@@ -83,9 +83,9 @@ def summary(sections: list[Section]) -> str:
              if not row.agrees]
     headings = ["section", "quantity", "paper or its formula", "computed", "difference", "why"]
     return (f"{sum(row.agrees for row in printed)} of the {len(printed)} numbers that the paper prints agree to every "
-            f"digit. Beside them stand {len(others)} that the paper does not print for its own scenes: its formulas give "
-            f"them, or they belong to the stand-in for a record that cannot be had, or they were put in; "
-            f"{sum(row.agrees for row in others)} of these agree. All that do not:\n\n"
+            f"digit. The tables have {len(others)} more numbers that the paper does not print for its own scenes. They "
+            f"come from its formulas, belong to the substitute for a missing record, or are inputs. "
+            f"{sum(row.agrees for row in others)} of these agree. The numbers that do not agree are:\n\n"
             f"{table(headings, lines, texts=(1, 5))}")
 
 
@@ -119,10 +119,10 @@ def filled(block: str) -> str:
 
 INTRODUCTION = """# Validation against the paper
 
-Which of the paper's numbers does the unit reproduce? Every number that the text gives the data for stands beside the one
-that the [Python module](../howto/python.md) gives, the engine of the FMU, at a tolerance of 1e-10.
-Equation, figure and table numbers are the paper's. Its measured histories are printed as pictures only and are not
-redrawn; of them the values that the text states are compared. Closed forms, and what others publish, are
-[the second part](literature.md).
+Which of the paper's numbers does the model reproduce? The tables compare every number for which the text gives the data with the
+number that the [Python module](../howto/python.md) computes at a tolerance of 1e-10. The module has the engine of the FMU.
+Equation, figure and table numbers are the paper's. The paper prints its measured histories only as pictures; we compare the values
+that its text states. [Another page](literature.md) compares with closed forms and other publications.
+[Architecture](../dev/architecture.md#where-the-equations-come-from) describes the paper, whose title and authors we do not know.
 
-"computed" is ours; "to its digits" says that it rounds to what is printed."""
+"computed" is our number. "to its digits" means that our number rounds to the printed number."""

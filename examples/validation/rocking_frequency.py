@@ -95,13 +95,13 @@ def section(folder: Path) -> Section:
     draw(of, folder / "rocking_frequency.png")
     return Section(
         title="Effective rocking frequency against amplitude (Fig 7)",
-        introduction=f"""One simulated decay of Evison's specimen from θ = {AMPLITUDE:g} tan α_cg, near overturning,
-down to vibration in full contact. As in the paper, f_t is the inverse of twice the time between zero crossings of
-δ_t, and the amplitude the largest δ_t between them. Eq 14 is taken at θ = δ_t/H.""",
+        introduction=f"""We simulate one decay of Evison's specimen from θ = {AMPLITUDE:g} tan α_cg, near overturning,
+to vibration in full contact. As in the paper, f_t is the inverse of twice the time between zero crossings of
+δ_t, and the amplitude is the largest δ_t between them. We evaluate Eq 14 at θ = δ_t/H.""",
         rows=rows(of),
         figure="rocking_frequency.png",
         caption="Effective frequency of each half cycle over its largest displacement, with Eq 14 and f_fc (Fig 7).",
-        findings=["""Eq 14 does better than the paper asks of it: from a few u_cr to near overturning it is the
-frequency of the full nonlinear model, because δ_t/H is the rotation of the rocking mode to within (1−χ) u/H. It
-fails where the paper says, below u_cr, where the frequency is that of full contact, f_fc."""],
+        findings=["""Eq 14 is better than the paper claims. From a few u_cr to near overturning it gives the frequency of the full
+nonlinear model, because δ_t/H is the rotation of the rocking mode to within (1−χ) u/H. As the paper says, it
+fails below u_cr, where the frequency is the frequency of full contact, f_fc."""],
     )

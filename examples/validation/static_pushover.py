@@ -121,16 +121,16 @@ def section(folder: Path) -> Section:
     evison, mcmanus = pushovers.values()
     return Section(
         title="Pushover of the static system (Fig 1)",
-        introduction="""Claims: elastic in full contact; uplift at u_cr; from there negative stiffness, because the
-weight, not the strut, restores; no restoring moment at overturning. The curve solves the equilibrium
-of Eqs 5 and 6 without inertia exactly; time histories are asked for the two corners, by a ramp of ground acceleration slow
-enough to be static and by releases at rest near overturning.""",
+        introduction="""The paper claims that the system is elastic in full contact and lifts off at u_cr. Beyond u_cr the stiffness is
+negative, because the weight restores and not the strut. The restoring moment is zero at overturning. Our curve solves the
+equilibrium of Eqs 5 and 6 without inertia exactly. Time histories check its two corners: a ramp of ground acceleration slow
+enough to be static, and releases at rest near overturning.""",
         rows=rows(pushovers),
         figure="pushover.png",
         caption="Moment of the lateral force about the base over the displacement of the top mass, as in Fig 1.",
-        findings=[f"""All of the picture is there. Two things are finer than in it. The moment drops at uplift, by
-{100 * evison.drop:.1f} % (Evison) and {100 * mcmanus.drop:.1f} % (McManus): u_cr leaves out the moment m g u of the
-top mass's own lean, which Eq 6 counts from the instant of uplift. And overturning comes
+        findings=[f"""Our curve agrees with the picture and differs in two details. The moment drops at uplift, by
+{100 * evison.drop:.1f} % (Evison) and {100 * mcmanus.drop:.1f} % (McManus). The reason is the moment m g u of the
+leaning top mass: u_cr does not include it, and Eq 6 includes it from the instant of uplift. Overturning comes
 {1e3 * (EVISON.alpha_cg - evison.theta[-1]):.2f} mrad (Evison) and
 {1e3 * (MCMANUS.alpha_cg - mcmanus.theta[-1]):.2f} mrad (McManus) before α_cg, for the same reason."""],
         source="formula",

@@ -9,7 +9,8 @@
     run.at([0.5, 1.0]).to_pandas()
 
 A Structure is shaken by a Record, which is a ground motion; simulate returns a Run. advise recommends a level of detail. estimate
-gives the demands that need no time history. sweep does many runs on all cores, and fragility fits a curve to them. export writes
+gives the demands that need no time history. sweep does many runs on all cores, fragility fits a curve to them, and
+intensity_at finds how strong each record must be to reach a limit. export writes
 an FMU; fmu is the path of one. help() of each has units, shapes, equation numbers of the paper, and errors. docs/howto/python.md is
 the page of the module.
 
@@ -25,10 +26,10 @@ from pathlib import Path
 from . import _native
 from ._native import Curve, Record, Run, Structure, __version__, advise, estimate, pulse, simulate
 from ._results import Advice, Estimate, Peak, Response, Transition, Transitions, Worst
-from ._sweep import Fragility, fragility, sweep
+from ._sweep import Fragility, fragility, intensity_at, sweep
 
 __all__ = ["Advice", "Curve", "Estimate", "Fragility", "Peak", "Record", "Response", "Run", "Structure", "Transition",
-           "Transitions", "Worst", "__version__", "advise", "estimate", "export", "fmu", "fragility", "pulse", "simulate", "sweep"]
+           "Transitions", "Worst", "__version__", "advise", "estimate", "export", "fmu", "fragility", "intensity_at", "pulse", "simulate", "sweep"]
 
 
 def fmu() -> Path:

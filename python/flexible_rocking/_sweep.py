@@ -1,12 +1,13 @@
 """Many runs, and the fragility curves through them."""
 
-import io
+import math
 import sys
-import tempfile
-from collections.abc import Mapping, Sequence
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from importlib import import_module
 from os import PathLike
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 from . import _native
 
@@ -30,60 +31,97 @@ def sweep(
     validity: bool = False,
     threads: int = 0,
     path: str | PathLike[str] | None = None,
-    progress: bool = False,
+    progress: "bool | Callable[[int, int], object]" = False,
     **initial: float,
 ) -> "pd.DataFrame":
     """Runs every structure under every record at every scale on all cores: a DataFrame with a row per run.
 
     structures: one, several, or populations by name, each one or several. records: one, several, or by name.
-    scale: factors on the accelerations. intensity: the measure for `fragility`, "PGA" (g), "PGV" (m/s) or "S_a" (g, at the
-    structure's own f_fc and zeta_fc). detail, tolerance, duration and initial values: as in `simulate`.
+    scale: factors on the accelerations. detail, tolerance, duration and initial values: as in `simulate`.
     validity: whether the rows have how far each run exceeds the model's limits. threads: 0 is one per core.
+
+    intensity: the measure for `fragility`, "PGA" (g), "PGV" (m/s), "S_a" (g, at the structure's own f_fc and zeta_fc), "CAV"
+    (m/s), "I_A" (m/s, Arias), "D_5_95" (s, significant duration) or "S_a_avg". S_a_avg (g) is the geometric mean of S_a at ten
+    periods, evenly spaced from 0.2/f_fc to 3/f_fc. The table has S_a_avg only if that is the measure, and always the others.
+
+    progress: True shows the runs, their rate and the time left: by tqdm, or without tqdm on one line. A function is called
+    with the numbers of runs done and to do, 20 times per second.
 
     The columns are those of `rocking-fmu sweep`: structures, parameters, record, scale, intensities, ending, peaks
     ("peak_theta[rad]", ...), transitions, ... A run that cannot go on is a row with the ending "failed" and a reason.
 
     path: the command line's file of rows. Runs whose rows are there are not repeated. Rows are added as runs end, and a
-    stopped sweep continues after them. Ctrl-C raises KeyboardInterrupt, whose attribute `table` has the rows that are there.
+    stopped sweep continues after them. Ctrl-C raises KeyboardInterrupt, whose attribute `table` has the runs that are done.
     Raises ValueError where a structure or record is there twice, has no name of its own, or cannot be run.
     """
+    import pandas
+
     groups = structures if isinstance(structures, Mapping) else {"structures": structures}
     populations = [(name, [of] if isinstance(of, _native.Structure) else list(of)) for name, of in groups.items()]
-    given: Any = [records] if isinstance(records, (_native.Record, str, PathLike)) else records
-    # all but a Record is refused by name
-    titled = ((of.title if isinstance(of, _native.Record) else "", of) for of in given)
-    motions = list(records.items() if isinstance(records, Mapping) else titled)
-    units = _native.intensity_measures()
-    if intensity not in units:
-        raise ValueError(f"intensity = {intensity!r} is unknown; these are known: {', '.join(units)}")
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder, "sweep.csv") if path is None else Path(path)
-        try:
-            keys = _native.sweep(populations, motions, scale, file, detail, tolerance, duration, initial, validity, threads,
-                                 _say if progress else None)
-        except KeyboardInterrupt as stopped:
-            stopped.table = _rows(file)  # type: ignore[attr-defined]
-            raise
-        finally:
-            if progress:
-                print(file=sys.stderr)
-        table = _rows(file).drop_duplicates("run").set_index("run").loc[keys].reset_index()
-    table.attrs["intensity"] = f"{intensity}[{units[intensity]}]"
+    with _told(progress) as tell:
+        keys, columns, stopped = _native.sweep(populations, _named(records), scale, intensity, path, detail, tolerance, duration,
+                                               initial, validity, threads, tell)
+    table = pandas.DataFrame({"run": keys} | {name: _values(of) for name, of in columns}, copy=False)
+    table.attrs["intensity"] = f"{intensity}[{_native.intensity_measures()[intensity]}]"
+    if stopped is not None:
+        stopped.table = table  # type: ignore[attr-defined]
+        raise stopped
     return table
 
 
-def _rows(file: Path) -> "pd.DataFrame":
-    """The complete rows of a file, number for number."""
+def _named(records: "Record | Sequence[Record] | Mapping[str, Record]") -> "list[tuple[str, Record]]":
+    """Records with their names."""
+    if isinstance(records, Mapping):
+        return list(records.items())
+    given: Any = [records] if isinstance(records, (_native.Record, str, PathLike)) else records
+    # all but a Record is refused by name
+    return [(of.title if isinstance(of, _native.Record) else "", of) for of in given]
+
+
+def _values(column: Any) -> Any:
+    """A column of a table: numbers, counts, or texts and the positions of theirs, behind the last one where there is none."""
+    import numpy as np
     import pandas
 
-    complete = io.BytesIO(file.read_bytes().rpartition(b"\n")[0])
-    if int(pandas.__version__.partition(".")[0]) < 3:  # later ones do not round
-        return pandas.read_csv(complete, float_precision="round_trip")
-    return pandas.read_csv(complete)
+    if isinstance(column, tuple):
+        texts, positions = column
+        return pandas.Series([*texts, math.nan]).array.take(np.minimum(positions, len(texts)).astype(np.intp))
+    return column if column.dtype == np.float64 else column.view(np.int64)
 
 
-def _say(done: int, of: int) -> None:
-    print(f"\r{done} of {of} runs", end="", file=sys.stderr, flush=True)
+@contextmanager
+def _told(progress: "bool | Callable[[int, int], object]") -> "Iterator[Callable[[int, int], object] | None]":
+    """The function that `sweep` calls with the numbers of runs done and to do."""
+    if not isinstance(progress, bool):
+        yield progress
+    elif not progress:
+        yield None
+    elif tqdm := _tqdm():
+        with tqdm(unit=" runs") as bar:
+            def move(done: int, of: int) -> None:
+                bar.total = of
+                bar.update(done - bar.n)
+
+            yield move
+    else:
+        start = time.monotonic()
+
+        def say(done: int, of: int) -> None:
+            left = f"{(time.monotonic() - start) * (of / done - 1):.0f}" if done else "?"
+            print(f"\r{done} of {of} runs, {left} s left ", end="", file=sys.stderr, flush=True)
+
+        try:
+            yield say
+        finally:
+            print(file=sys.stderr)
+
+
+def _tqdm() -> Any:
+    """The bar of tqdm, if it is installed."""
+    try:
+        return import_module("tqdm.auto").tqdm
+    except ImportError:
+        return None
 
 
 class Fragility:
@@ -110,6 +148,17 @@ class Fragility:
         """The probability that the limit is exceeded at each of `intensities` (n,): an array (n,)."""
         return self.curve.probability(intensities)
 
+    def table(self, intensities: "ArrayLike") -> "pd.DataFrame":
+        """The curve as numbers at `intensities` (n,): a DataFrame of intensity, probability, and low and high, between which the
+        probability lies with a probability of 95 %, NaN where that is unknown."""
+        import numpy as np
+        import pandas
+
+        at = np.atleast_1d(np.asarray(intensities, float))
+        band = self.curve.band(at)
+        low, high = band.T if band is not None else np.full((2, len(at)), np.nan)
+        return pandas.DataFrame({self.intensity: at, "probability": self.probability(at), "low": low, "high": high})
+
     def __repr__(self) -> str:
         return f"<Fragility {self.limit!r} over {self.intensity}: median {self.median:.6g}, dispersion {self.dispersion:.6g}>"
 
@@ -130,12 +179,17 @@ class Fragility:
         return axes
 
 
-def fragility(table: "pd.DataFrame", limit: str = "overturned", *, intensity: str | None = None) -> Fragility:
+@overload
+def fragility(table: "pd.DataFrame", limit: str = ..., *, by: None = ..., intensity: str | None = ...) -> Fragility: ...
+@overload
+def fragility(table: "pd.DataFrame", limit: str = ..., *, by: str, intensity: str | None = ...) -> dict[Any, Fragility]: ...
+def fragility(table: "pd.DataFrame", limit: str = "overturned", *, by: str | None = None, intensity: str | None = None) -> Any:
     """Fits the lognormal curve of greatest likelihood to the runs of one population in a sweep's table, or to some of its rows.
 
     limit: "overturned", or a peak such as "theta/alpha_cg >= 0.5", "theta >= 3 deg", "uplift >= 1 cm", "a_t >= 0.3 g" (the
-    structure's own g). A run that overturned has exceeded every limit. intensity: "PGA", "PGV", "S_a" or a column of the
-    table; by default the measure of the sweep. Runs that failed are not counted. How sure the curve
+    structure's own g). A run that overturned has exceeded every limit. intensity: a measure of `sweep` or a column of the
+    table; by default the measure of the sweep. by: a column, such as "structures" or "f_fc[Hz]". With by, the result is a dict
+    with the curve of each value of the column. Runs that failed are not counted. How sure the curve
     is follows from the records, whose runs do not depend on each other; where there is one record, from the structures.
     Several structures that `sweep` ran under one name are one population. Raises ValueError with the reason if there is no
     curve (never exceeded, always exceeded, no overlap). A table with several populations or conditions, with a run twice, with
@@ -150,23 +204,93 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, intensity: st
     column = known.get(intensity, intensity) if intensity else table.attrs["intensity"]
     if column not in table:
         raise ValueError(f"intensity = {intensity!r} is unknown; these are known: {', '.join(units)}, and the table's columns")
+    if by is not None:
+        if by not in table:
+            raise ValueError(f"by = {by!r} is no column of the table: give one of {', '.join(table.columns)}")
+        curves = {}
+        for value, rows in table.groupby(by, sort=False, dropna=False):
+            try:
+                curves[value] = fragility(rows, limit, intensity=column)
+            except ValueError as refused:
+                raise ValueError(f"{by} = {value!r}: {refused}") from None
+        return curves
     conditions = ["structures", "detail", "tolerance", "duration[s]", *table.filter(regex=r"_0\[(rad|m)(/s)?]$")]
     for name in table.columns.intersection(conditions):
         if len(values := table[name].unique()) > 1:
             several = ", ".join(map(repr, values[:5].tolist())) + (", ..." if len(values) > 5 else "")
             raise ValueError(f"the table has {len(values)} values of {name}, {several}, and a curve is of one: choose the rows, "
-                             f"table[table[{name!r}] == {values[0]!r}], or call fragility for each of table.groupby({name!r})")
+                             f"table[table[{name!r}] == {values[0]!r}], or give by={name!r} for a curve of each")
     if twice := int(table["run"].duplicated().sum()):
         raise ValueError(f"the table has {twice} rows of runs that it has already: leave them out by table.drop_duplicates('run')")
-    peak = _native.measure_of(limit)
     ended = table[table["ending"] != "failed"]
     varying = ["record"] if ended["record"].nunique() > 1 else list(table.columns[1:table.columns.get_loc("record")])
     groups = ended.groupby(varying, sort=False, dropna=False).ngroup()
-    peaks = ended[peak or "peak_theta[rad]"]
-    if missing := int((peaks.isna() & (ended["ending"] != "overturned")).sum()):
-        raise ValueError(f"{peaks.name} is NaN in {missing} rows of runs that ended: run them again, or leave them out by "
-                         f"table.dropna(subset={[peaks.name]!r}), and with them what they would have counted")
-    curve, bins = _native.fragility(groups.tolist(), ended[column].tolist(), [str(ending) for ending in ended["ending"]],
-                                    peaks.tolist(), ended["g[m/s2]"].tolist(), limit, ended["B[m]"].max())
+    curve, bins = _native.fragility(groups.tolist(), ended[column].tolist(), _exceeds(ended, limit))
     names = ["lowest", "mean", "highest", "runs", "known", "exceedances"]
     return Fragility(limit, column, curve, pandas.DataFrame(bins, columns=names))
+
+
+def _exceeds(table: "pd.DataFrame", limit: str) -> list[bool | None]:
+    """Whether each run of a sweep's table exceeds the limit; None where that is unknown."""
+    peaks = table[_native.measure_of(limit) or "peak_theta[rad]"]
+    if missing := int((peaks.isna() & ~table["ending"].isin(["overturned", "failed"])).sum()):
+        raise ValueError(f"{peaks.name} is NaN in {missing} rows of runs that ended: run them again, or leave them out by "
+                         f"table.dropna(subset={[peaks.name]!r}), and with them what they would have counted")
+    endings = [str(ending) for ending in table["ending"]]
+    return _native.exceeds(endings, peaks.tolist(), table["g[m/s2]"].tolist(), limit, table["B[m]"].max())
+
+
+def intensity_at(
+    structure: "Structure",
+    records: "Record | Sequence[Record] | Mapping[str, Record]",
+    limit: str = "overturned",
+    *,
+    scale: "ArrayLike | None" = None,
+    accuracy: float = 1e-3,
+    **options: Any,
+) -> "pd.DataFrame":
+    """The weakest ground motion that reaches a limit, record by record: incremental dynamic analysis to a target.
+
+    limit: as in `fragility`. scale: increasing factors on the accelerations, the stripes; by default 60 that take the PGA from
+    0.1 to 30 times g tan(alpha_cg). The structure runs at all of them under each record. Between the first stripe that reaches
+    the limit and the one below, bisection finds the scale to `accuracy`, relative. options: as in `sweep`, but for path.
+
+    Returns a DataFrame with a row per record: the row of `sweep` at the weakest scale found that reaches the limit, and `note`.
+    The numbers are NaN if there is no such scale, and the note then says why. Otherwise the note names the stronger stripes at
+    which the structure stays within the limit again. It also names weaker stripes whose runs failed or still rock.
+    """
+    import numpy as np
+
+    motions = dict(_named(records))
+    onset = structure.g * math.tan(structure.alpha_cg)
+    unit = {name: onset / of.pga if scale is None else 1.0 for name, of in motions.items()}
+    stripes = np.geomspace(0.1, 30, 60) if scale is None else np.asarray(scale, float)
+    if (np.diff(stripes) <= 0).any() or stripes[0] <= 0:
+        raise ValueError(f"scale = {stripes.tolist()}: increasing factors greater than 0 are needed")
+
+    def runs(factors: dict[str, float], scale: "ArrayLike") -> "tuple[pd.DataFrame, list[bool | None]]":
+        table = sweep(structure, {name: motions[name].scaled(factor) for name, factor in factors.items()}, scale=scale, **options)
+        table["scale"] *= table["record"].map(factors)
+        return table, _exceeds(table, limit)
+
+    reached = np.array(runs(unit, stripes)[1], object).reshape(len(motions), -1)
+    notes, low, high = {}, {}, {}
+    for (name, factor), at_stripes in zip(unit.items(), reached):
+        over = np.flatnonzero(at_stripes == True)  # noqa: E712
+        below = np.arange(len(stripes)) < (over[0] if len(over) else len(stripes))
+        said = {"unknown at scale": factor * stripes[(at_stripes == None) & below],  # noqa: E711
+                "within the limit again at scale": factor * stripes[(at_stripes == False) & ~below]}  # noqa: E712
+        notes[name] = "; ".join(f"{what} {', '.join(f'{at:.4g}' for at in scales)}" for what, scales in said.items() if len(scales))
+        if not len(over):
+            notes[name] = "; ".join(filter(None, [f"not reached up to scale {factor * stripes[-1]:.4g}", notes[name]]))
+        elif over[0] == 0:
+            notes[name] = f"reached at the weakest stripe, scale {factor * stripes[0]:.4g}: begin lower"
+        else:
+            low[name], high[name] = factor * stripes[over[0] - 1], factor * stripes[over[0]]
+    while open_ := [name for name in high if high[name] > low[name] * (1 + accuracy)]:
+        middle = {name: math.sqrt(low[name] * high[name]) for name in open_}
+        for name, exceeds in zip(open_, runs(middle, 1.0)[1]):
+            (low if exceeds is False else high)[name] = middle[name]
+    found = runs(high or unit, 1.0)[0].set_index("record")
+    found = found[found.index.isin(list(high))].reindex(list(motions)).reset_index()
+    return found.assign(note=[notes[name] for name in motions])

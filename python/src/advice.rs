@@ -46,8 +46,9 @@ pub fn advise<'py>(
     }
     let criteria = of.map_or(Ok(Criterion::ALL.into()), criteria)?;
     let conditions = conditions(Detail::Auto, DEFAULT_TOLERANCE, duration, initial)?;
-    conditions.check(&structure.0).map_err(refused)?;
-    let (structure, record) = (structure.0, record.0.get().under(structure.0.parameters().g));
+    let structure = structure.one("advise")?;
+    conditions.check(&structure).map_err(refused)?;
+    let record = record.0.get().under(structure.parameters().g);
     let (text, detail, levels) = interruptible(py, move |_| -> anyhow::Result<_> {
         let run = conditions.run(structure, &record);
         let comparison = compare(&run)?;
@@ -87,7 +88,8 @@ pub fn estimate<'py>(
     record: Option<Ground>,
     #[pyo3(from_py_with = argument::amplification)] amplification: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let (structure, g) = (structure.0, structure.0.parameters().g);
+    let structure = structure.one("estimate")?;
+    let g = structure.parameters().g;
     let record = record.map(|Ground(record)| record.get().under(g));
     let estimated = interruptible(py, move |_| estimates::Estimate::new(&structure, record.as_deref(), amplification))?;
     let mut text = String::new();

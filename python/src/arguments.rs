@@ -55,6 +55,18 @@ pub fn numbers(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     array.to_vec().map_err(refused)
 }
 
+/// The rows of an array of two dimensions, which messages call `name`.
+pub fn matrix(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<f64>>> {
+    let array = array(name, value)?;
+    let &[_, columns] = array.shape() else {
+        return Err(PyValueError::new_err(format!(
+            "{name} has the shape {:?}: two dimensions are needed",
+            array.shape()
+        )));
+    };
+    Ok(array.to_vec().map_err(refused)?.chunks(columns.max(1)).map(<[f64]>::to_vec).collect())
+}
+
 /// The array that numpy makes of `value`, contiguous and aligned: the one place where arrays enter. The function refuses all but
 /// plain numbers, because numpy would convert the rest into wrong numbers.
 fn array<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {

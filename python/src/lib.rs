@@ -5,6 +5,7 @@
 mod advice;
 mod arguments;
 mod interruptible;
+mod many_masses;
 mod record;
 mod run;
 mod structure;
@@ -34,7 +35,7 @@ mod _native {
     #[pymodule_export]
     use super::structure::Structure;
     #[pymodule_export]
-    use super::sweep::{Curve, fragility, intensity_measures, measure_of, sweep};
+    use super::sweep::{Curve, exceeds, fragility, intensity_measures, measure_of, sweep};
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "as Python has it")]
@@ -59,6 +60,7 @@ fn export(
     fmi: &Bound<'_, PyAny>,
     library: PathBuf,
 ) -> PyResult<()> {
+    let structure = structure.one("export")?;
     let version = one_of("fmi", fmi, [("2", Version::Fmi2), ("3", Version::Fmi3)])?;
     let mut files = OutputFiles::of_inputs([library.as_path()]);
     for packed in &records {
@@ -78,7 +80,7 @@ fn export(
             }
             Packed::File(path) => path,
         };
-        let understood = understand(path, &Reading::default(), [1.0; 2], structure.0.parameters().g);
+        let understood = understand(path, &Reading::default(), [1.0; 2], structure.parameters().g);
         warn(py, understood.map_err(refused)?.sentences[1..].to_vec(), 2)?;
         Ok(vec![(path.clone(), rocking_records::read_file(path).map_err(refused)?)])
     };
@@ -88,7 +90,6 @@ fn export(
         return Err(PyValueError::new_err(format!("record {}: {needed}", other + 2)));
     }
     let vertical = records.first_mut().filter(|first| first.len() > 1).and_then(Vec::pop);
-    let structure = structure.0;
     interruptible(py, move |_| -> anyhow::Result<()> {
         let (libraries, name) = (Library::read(&library)?, name.parse()?);
         let records = records.into_iter().flatten().collect();

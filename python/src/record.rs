@@ -27,9 +27,10 @@ pub const G: f64 = Parameters::EVISON.g;
 /// Record(time, a_g): arrays of one shape (n,), n >= 2, time in s, strictly increasing; a_g, horizontal, in `unit`.
 /// Record(dt, a_g): samples every dt seconds from 0 on.
 /// Record(time, a_g, a_v): with the vertical component, positive upwards, of the same shape and unit.
+/// Record(trace, unit="m/s2"): the samples of an ObsPy Trace, or of a Stream of one, once they are accelerations.
 /// Record.read(file): a file as the archives publish it.
 ///
-/// unit: "m/s2" (default), "g", "cm/s2", "gal", "mm/s2", "in/s2", "ft/s2", "mg", "%g". A record keeps its unit: "g" means the
+/// unit: "m/s2" (the default for arrays), "g", "cm/s2", "gal", "mm/s2", "in/s2", "ft/s2", "mg", "%g". A record keeps its unit: "g" means the
 /// g of the structure that the record shakes. The attributes of the record are in m/s2, with 9.81 m/s2 for g. time_scale
 /// multiplies the times and scale the accelerations. Tables call the record by its title. The samples are copied. A Python
 /// warning names a likely fault. Raises ValueError for other shapes, NaN and infinity, and times that do not increase.
@@ -88,6 +89,37 @@ impl Record {
     }
 }
 
+/// The step (s), the samples, their unit and the title of an ObsPy Trace, or of a Stream of one.
+fn of_trace<'py>(
+    given: &Bound<'py, PyAny>,
+    unit: Option<Unit>,
+) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>, Unit, String)> {
+    let refused = |why: String| Err(PyValueError::new_err(why));
+    let trace = match given.getattr("traces") {
+        Ok(traces) if traces.len()? == 1 => traces.get_item(0)?,
+        Ok(traces) => {
+            let needed = "a Record has one: give one of them, such as Record(stream[0], unit=...)";
+            return refused(format!("the stream has {} traces, {}, and {needed}", traces.len()?, ids(&traces)?));
+        }
+        Err(_) => given.clone(),
+    };
+    let (Ok(data), Ok(stats)) = (trace.getattr("data"), trace.getattr("stats")) else {
+        return refused(format!("a_g is needed beside time = {given:?}, unless that is a Trace or a Stream of ObsPy"));
+    };
+    let title = trace.getattr("id")?.str()?.to_string();
+    let Some(unit) = unit else {
+        let needed = "say unit=, such as unit=\"m/s2\" after trace.remove_response(output=\"ACC\")";
+        return refused(format!("the trace {title} does not state the unit of its samples: {needed}"));
+    };
+    Ok((stats.getattr("delta")?, data, unit, title))
+}
+
+/// The names of traces.
+fn ids(traces: &Bound<'_, PyAny>) -> PyResult<String> {
+    let id = |trace: PyResult<Bound<'_, PyAny>>| Ok(trace?.getattr("id")?.str()?.to_string());
+    Ok(traces.try_iter()?.map(id).collect::<PyResult<Vec<_>>>()?.join(", "))
+}
+
 /// A Record that is asked for, as `record`.
 pub struct Ground(pub Py<Record>);
 
@@ -104,20 +136,25 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Ground {
 #[pymethods]
 impl Record {
     #[new]
-    #[pyo3(signature = (time, a_g, a_v=None, *, unit=Unit::MetrePerSecondSquared, time_scale=1.0, scale=1.0, title="record"))]
-    #[pyo3(text_signature = "(time, a_g, a_v=None, *, unit='m/s2', time_scale=1.0, scale=1.0, title='record')")]
+    #[pyo3(signature = (time, a_g=None, a_v=None, *, unit=None, time_scale=1.0, scale=1.0, title=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn of_arrays(
         py: Python<'_>,
         time: &Bound<'_, PyAny>,
-        a_g: &Bound<'_, PyAny>,
+        a_g: Option<&Bound<'_, PyAny>>,
         a_v: Option<&Bound<'_, PyAny>>,
-        #[pyo3(from_py_with = unit)] unit: Unit,
+        unit: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = argument::time_scale)] time_scale: f64,
         #[pyo3(from_py_with = argument::scale)] scale: f64,
-        title: &str,
+        title: Option<&str>,
     ) -> PyResult<Record> {
-        let record = Record::_of(time, a_g, a_v, unit, scale, title)?.scaled(1.0, time_scale)?;
+        let unit = unit.map(self::unit).transpose()?;
+        let (time, a_g, unit, name) = match a_g {
+            Some(a_g) => (time.clone(), a_g.clone(), unit.unwrap_or(Unit::MetrePerSecondSquared), "record".into()),
+            None => of_trace(time, unit)?,
+        };
+        let title = title.unwrap_or(&name);
+        let record = Record::_of(&time, &a_g, a_v, unit, scale, title)?.scaled(1.0, time_scale)?;
         warn(py, doubts(&record.usual, G).into_iter().map(|doubt| format!("{title}: {doubt}")), 1)?;
         Ok(record)
     }
@@ -334,7 +371,10 @@ pub fn pulse(
     #[pyo3(from_py_with = argument::g)] g: f64,
 ) -> PyResult<Record> {
     let shape = one_of("shape", shape, Shape::ALL.map(|of| (of.name(), of)))?;
-    let (of_amplitude, of_frequency) = structure.map_or((g, 1.0), |structure| units_of(&structure.0));
+    let (of_amplitude, of_frequency) = match structure {
+        Some(structure) => units_of(&structure.one("pulse")?),
+        None => (g, 1.0),
+    };
     let pulse = Pulse::new(shape, amplitude * of_amplitude, frequency * of_frequency);
     let cycles = cycles.map_or(Ok(pulse.cycles), |cycles| number("cycles", cycles))?;
     let pulse = Pulse { cycles, phase, error, ..pulse };

@@ -45,9 +45,14 @@ pub struct Run {
 }
 
 impl Run {
+    /// The structure that was followed.
+    fn followed(&self) -> rocking::Structure {
+        self.structure.get().one("a run").expect("simulate asks for one mass")
+    }
+
     /// The run of the library.
     fn run(&self) -> rocking::Run<'_> {
-        self.conditions.run(self.structure.get().0, &self.ground)
+        self.conditions.run(self.followed(), &self.ground)
     }
 }
 
@@ -85,7 +90,7 @@ impl Run {
         let named = PyDict::new(py);
         let peak = |Peak { magnitude, time }, unit| result(py, "Peak", (magnitude, time, unit));
         named.set_item("a_g", peak(self.found.ground, "m/s2")?)?;
-        for of in peaks::of(&self.structure.get().0) {
+        for of in peaks::of(&self.followed()) {
             named.set_item(of.name, peak(of.of(&self.found.peaks), of.unit)?)?;
         }
         Ok(named)
@@ -344,7 +349,7 @@ pub fn simulate(
     initial: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Run> {
     let conditions = conditions(detail, tolerance, duration, initial)?;
-    let followed = structure.get().0;
+    let followed = structure.get().one("simulate")?;
     conditions.check(&followed).map_err(refused)?;
     let record = match (record, conditions.duration) {
         (Some(Ground(record)), _) => record,

@@ -1,7 +1,8 @@
 //! `Structure`: parameters and what follows from them, by the names in the library's tables.
 
-use crate::arguments::{number, numbers, one_of, refused};
+use crate::arguments::{numbers, one_of, refused};
 use crate::interruptible::interruptible;
+use crate::many_masses::{OF_MANY, frame, given};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyAttributeError, PyValueError};
 use pyo3::prelude::*;
@@ -9,7 +10,7 @@ use pyo3::types::PyDict;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::estimates::modal_split::{ModalAccelerations, Modes};
 use rocking::estimates::pushover::{self, Equilibrium};
-use rocking::structure::natural_quantities::Given;
+use rocking::structure::any::{AnyStructure, OF_FRAME, OF_MODE};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::{DERIVED, Derived};
 use rocking::{Parameters, Side, State};
@@ -30,28 +31,52 @@ use rocking_report::describe;
 /// Derived quantities are attributes, too: alpha_cg, p_l, chi, u_cr, f_u, ... `parameters` and `derived` have all of them,
 /// and print(structure) shows them with units and equation numbers. A structure cannot be changed; `replace` makes another.
 ///
+/// Structure(storeys=[dict(m=4e4, h=3.5, k=6e7), dict(m=3e4, h=7, k=4e7)], zeta=0.02, m0=2e4, J0=3e4, B=1.5)
+///
+/// A shear building of many masses. Each storey has the stiffness k (N/m), and the mass m (kg) and height h (m) above the base
+/// of its floor. zeta: one damping ratio, one for each mode, or dict(f=(Hz, Hz), zeta=...) for Rayleigh damping. The numbers of
+/// the base are those above. Without r, momentum gives a coefficient for each impact. See also from_matrices and from_modes.
+///
 /// Raises ValueError where a number is unknown, missing, given twice in different ways or out of its range.
 #[pyclass(frozen, eq, module = "flexible_rocking")]
-#[derive(PartialEq)]
-pub struct Structure(pub rocking::Structure);
+pub struct Structure {
+    pub of: AnyStructure,
+    /// The keywords that make a structure of many masses.
+    keywords: Option<Py<PyDict>>,
+}
 
-fn given(numbers: Option<&Bound<'_, PyDict>>) -> PyResult<Given> {
-    let mut given = Given::default();
-    for (name, value) in numbers.into_iter().flatten() {
-        let name: String = name.extract()?;
-        given.give(&name, number(&name, &value)?).map_err(refused)?;
+impl PartialEq for Structure {
+    fn eq(&self, other: &Structure) -> bool {
+        self.of == other.of
     }
-    Ok(given)
 }
 
 impl Structure {
     fn of(parameters: Parameters) -> PyResult<Structure> {
-        rocking::Structure::new(parameters).map(Structure).map_err(refused)
+        let of = AnyStructure::One(rocking::Structure::new(parameters).map_err(refused)?);
+        Ok(Structure { of, keywords: None })
     }
 
-    /// Its parameters by name.
-    fn named(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        PARAMETERS.iter().map(|of| (of.name, (of.get)(self.0.parameters())))
+    fn many(keywords: &Bound<'_, PyDict>) -> PyResult<Structure> {
+        let kept = keywords.py().import("copy")?.call_method1("deepcopy", (keywords,))?.cast_into::<PyDict>()?;
+        let of = AnyStructure::Many(frame(kept.copy()?)?);
+        Ok(Structure { of, keywords: Some(kept.unbind()) })
+    }
+
+    /// The structure of one mass, which `task` needs.
+    pub fn one(&self, task: &'static str) -> PyResult<rocking::Structure> {
+        self.of.one(task).map_err(refused)
+    }
+
+    /// Its numbers by name: first the parameters of one mass, then what follows from them.
+    fn named(&self) -> [Vec<(&'static str, f64)>; 2] {
+        match &self.of {
+            AnyStructure::One(structure) => [
+                PARAMETERS.iter().map(|of| (of.name, (of.get)(structure.parameters()))).collect(),
+                DERIVED.iter().map(|of| (of.name, (of.value)(structure))).collect(),
+            ],
+            AnyStructure::Many(frame) => [Vec::new(), OF_FRAME.iter().map(|of| (of.name, (of.value)(frame))).collect()],
+        }
     }
 }
 
@@ -59,35 +84,103 @@ impl Structure {
 impl Structure {
     #[new]
     #[pyo3(signature = (*, preset=None, **numbers))]
-    fn new(preset: Option<&Bound<'_, PyAny>>, numbers: Option<&Bound<'_, PyDict>>) -> PyResult<Structure> {
-        let given = given(numbers)?;
+    fn new<'py>(
+        py: Python<'py>,
+        preset: Option<&Bound<'py, PyAny>>,
+        numbers: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Structure> {
+        let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
         let parameters = match preset {
-            None => given.parameters(),
-            Some(preset) => given.over(&one_of("preset", preset, PRESETS)?),
+            None if OF_MANY.iter().any(|name| numbers.contains(name).unwrap_or(false)) => {
+                return Structure::many(&numbers);
+            }
+            None => given(&numbers)?.parameters(),
+            Some(preset) => given(&numbers)?.over(&one_of("preset", preset, PRESETS)?),
         };
         Structure::of(parameters.map_err(refused)?)
     }
 
-    /// This structure with other numbers in the place of its own, by the same names as in Structure(...).
-    #[pyo3(signature = (**numbers))]
-    fn replace(&self, numbers: Option<&Bound<'_, PyDict>>) -> PyResult<Structure> {
-        Structure::of(given(numbers)?.over(self.0.parameters()).map_err(refused)?)
+    /// The structure of these masses (kg) at these heights (m) above the base, lowest first. K (N/m) is the stiffness matrix on
+    /// a fixed base. zeta and the numbers of the base as in Structure.
+    #[staticmethod]
+    #[pyo3(signature = (masses, heights, K, **numbers), text_signature = "(masses, heights, K, *, zeta, **base)")]
+    fn from_matrices<'py>(
+        masses: Bound<'py, PyAny>,
+        heights: Bound<'py, PyAny>,
+        K: Bound<'py, PyAny>,
+        numbers: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Structure> {
+        let keywords = numbers.map_or_else(|| Ok(PyDict::new(masses.py())), |numbers| numbers.copy())?;
+        for (name, value) in [("masses", &masses), ("heights", &heights), ("K", &K)] {
+            keywords.set_item(name, value)?;
+        }
+        Structure::many(&keywords)
     }
 
-    /// The parameters by name, in SI units.
+    /// The structure of the modes of a fixed base that another program found, lowest first. Arrays with a number for each mode: f
+    /// (Hz) or period (s), mass (effective, kg), height (effective, m) or moment (mass x height, kg.m). All mass above the
+    /// base: m_s (kg), S_1 (the sum of m h, kg.m), and I_2 (the sum of m h^2, kg.m2) or J_P (inertia about a pivot, kg.m2).
+    /// Floors, if they are to be shown: masses, heights, and shapes (floors, modes) in any scale. Without m_s, S_1 and I_2 the
+    /// floors have all mass. zeta and the numbers of the base as in Structure.
+    #[staticmethod]
+    #[pyo3(signature = (*, mass, **numbers))]
+    #[pyo3(
+        text_signature = "(*, mass, zeta, f=None, period=None, height=None, moment=None, m_s=None, S_1=None, I_2=None, \
+                             J_P=None, masses=None, heights=None, shapes=None, **base)"
+    )]
+    fn from_modes<'py>(mass: Bound<'py, PyAny>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<Structure> {
+        let keywords = numbers.map_or_else(|| Ok(PyDict::new(mass.py())), |numbers| numbers.copy())?;
+        keywords.set_item("mass", mass)?;
+        Structure::many(&keywords)
+    }
+
+    /// This structure with other numbers in the place of its own, by the same names as in Structure(...).
+    #[pyo3(signature = (**numbers))]
+    fn replace<'py>(&self, py: Python<'py>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<Structure> {
+        let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
+        if let AnyStructure::One(structure) = &self.of {
+            return Structure::of(given(&numbers)?.over(structure.parameters()).map_err(refused)?);
+        }
+        let keywords = self.parameters(py)?;
+        keywords.update(numbers.as_mapping())?;
+        Structure::many(&keywords)
+    }
+
+    /// The parameters by name, in SI units; of many masses the keywords that make the structure.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        if let Some(keywords) = &self.keywords {
+            return keywords.bind(py).copy();
+        }
         let all = PyDict::new(py);
-        self.named().try_for_each(|(name, value)| all.set_item(name, value))?;
+        self.named()[0].iter().try_for_each(|(name, value)| all.set_item(name, value))?;
         Ok(all)
     }
 
     /// The derived quantities by name: gamma, omega_fc (rad/s), k (N/m), u_cr (m), J_P (kg.m2), p_l (rad/s), alpha_cg (rad),
-    /// chi, f_u (Hz), weight (kN), ...
+    /// chi, f_u (Hz), weight (kN), ... Of many masses: m_s, m_t (kg), S_1 (kg.m), J_P, p_l, alpha_cg, r, ...
     #[getter]
     fn derived<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
-        DERIVED.iter().try_for_each(|Derived { name, value, .. }| all.set_item(name, value(&self.0)))?;
+        self.named()[1].iter().try_for_each(|(name, value)| all.set_item(name, value))?;
+        Ok(all)
+    }
+
+    /// The modes of many masses, lowest first. A dict of arrays (modes,): f (Hz) and zeta in full contact, mass (effective, kg),
+    /// share (of m_s), height (effective, m), chi, and f_u (Hz) while the structure rocks.
+    ///
+    /// Raises ValueError for a structure of one mass, whose attributes have these numbers.
+    #[getter]
+    fn mode_table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let AnyStructure::Many(frame) = &self.of else {
+            return Err(PyValueError::new_err(
+                "mode_table needs a structure of many masses; see f_fc, zeta_fc, chi, f_u",
+            ));
+        };
+        let all = PyDict::new(py);
+        for Derived { name, value, .. } in &OF_MODE {
+            all.set_item(name, PyArray1::from_iter(py, frame.mode_table().map(|mode| value(&mode))))?;
+        }
         Ok(all)
     }
 
@@ -95,7 +188,7 @@ impl Structure {
     ///
     /// Raises ValueError for a structure with a tendon or dissipators.
     fn effective_frequency(&self, theta: f64) -> PyResult<f64> {
-        effective_frequency(&self.0, theta).map_err(refused)
+        effective_frequency(&self.one("effective_frequency")?, theta).map_err(refused)
     }
 
     /// The static pushover of Fig 1 to the right, from rest to overturning (Eqs 5 and 6 without inertia). Returns a dict of
@@ -105,7 +198,7 @@ impl Structure {
     /// Raises ValueError where the strut is too soft to hold the structure, and for other than 2 to 1,000,000 points.
     #[pyo3(signature = (points=100))]
     fn pushover<'py>(&self, py: Python<'py>, points: u32) -> PyResult<Bound<'py, PyDict>> {
-        let structure = self.0;
+        let structure = self.one("pushover")?;
         let curve = interruptible(py, move |_| pushover::curve(&structure, points))?;
         let column = |of: fn(&Equilibrium) -> f64| PyArray1::from_iter(py, curve.iter().map(of));
         let named = PyDict::new(py);
@@ -122,6 +215,7 @@ impl Structure {
     ///
     /// Raises ValueError for a structure with a tendon or dissipators.
     fn modes<'py>(&self, response: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
+        let structure = self.one("modes")?;
         let of = |name: &str| -> PyResult<Bound<'py, PyAny>> {
             response.get_item(name)?.ok_or_else(|| PyValueError::new_err(format!("response has no {name:?}")))
         };
@@ -131,9 +225,9 @@ impl Structure {
         for (phase, (((theta, u), u_dot), a_g)) in of("phase")?.try_iter()?.zip(motion) {
             response.py().check_signals()?;
             let state = State { u, u_dot, theta, theta_dot: 0.0 }; // whose rate the split does not need
-            let of = Modes::of(&self.0, &state).map_err(refused)?;
+            let of = Modes::of(&structure, &state).map_err(refused)?;
             let split = |side| {
-                let accelerations = ModalAccelerations::of(&self.0, side, &state, a_g).map_err(refused)?;
+                let accelerations = ModalAccelerations::of(&structure, side, &state, a_g).map_err(refused)?;
                 PyResult::Ok([of.q_r, of.q_u, accelerations.a_r, accelerations.a_u])
             };
             let split = match phase?.extract()? {
@@ -150,30 +244,33 @@ impl Structure {
     }
 
     fn __getattr__(&self, name: &str) -> PyResult<f64> {
-        let derived = || DERIVED.iter().find(|of| of.name == name).map(|of| (of.value)(&self.0));
-        let value = self.named().find_map(|(known, value)| (known == name).then_some(value)).or_else(derived);
+        let value = self.named().concat().into_iter().find_map(|(known, value)| (known == name).then_some(value));
         value.ok_or_else(|| PyAttributeError::new_err(format!("a Structure has no {name:?}")))
     }
 
     fn __dir__(slf: Bound<'_, Self>) -> PyResult<Vec<String>> {
         let own: Vec<String> =
             slf.py().import("builtins")?.getattr("object")?.call_method1("__dir__", (&slf,))?.extract()?;
-        let numbers = PARAMETERS.iter().map(|of| of.name).chain(DERIVED.iter().map(|of| of.name));
-        Ok(own.into_iter().chain(numbers.map(str::to_owned)).collect())
+        let numbers = slf.get().named().concat().into_iter().map(|(name, _)| name.to_owned());
+        Ok(own.into_iter().chain(numbers).collect())
     }
 
-    fn __repr__(&self) -> String {
-        let numbers: Vec<_> = self.named().map(|(name, value)| format!("{name}={value:?}")).collect();
-        format!("Structure({})", numbers.join(", "))
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let numbers: Vec<_> = self.parameters(py)?.iter().map(|(name, value)| format!("{name}={value:?}")).collect();
+        Ok(format!("Structure({})", numbers.join(", ")))
     }
 
     fn __str__(&self) -> PyResult<String> {
-        describe::text(&self.0).map_err(refused)
+        match &self.of {
+            AnyStructure::One(structure) => describe::text(structure),
+            AnyStructure::Many(frame) => describe::frame(frame),
+        }
+        .map_err(refused)
     }
 
     pub fn __hash__(&self) -> u64 {
         let bits = |value: f64| (value + 0.0).to_bits(); // of -0 as of 0, which it equals
-        self.named().fold(0, |hash, (_, value)| hash.rotate_left(7).wrapping_mul(31) ^ bits(value))
+        self.named().concat().into_iter().fold(0, |hash, (_, value)| hash.rotate_left(7).wrapping_mul(31) ^ bits(value))
     }
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((), Bound<'py, PyDict>)> {

@@ -1,6 +1,6 @@
 //! `sweep` and `fragility`: many runs on all cores, and what they say together.
 
-use crate::arguments::{argument, conditions, numbers, refused};
+use crate::arguments::{argument, conditions, numbers, one_of, refused};
 use crate::interruptible::{FAULT, MOMENT};
 use crate::record::{G, Ground};
 use crate::structure::Structure;
@@ -17,7 +17,7 @@ use rocking_sweep::fragility::{Certainty, FragilityCurve};
 use rocking_sweep::outcome::{Limit, MEASURES, Outcome, Summary};
 use rocking_sweep::plan::{NamedRecord, Plan, Population};
 use rocking_sweep::row_file::heading;
-use rocking_sweep::rows::Sweep;
+use rocking_sweep::rows::{Column, FAILED, Sweep};
 use rocking_sweep::thread_pool;
 use serde::Deserialize;
 use serde::de::IntoDeserializer;
@@ -26,16 +26,22 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 
-/// Does every run that is not in the file at `path` yet: every one of the populations of structures under every record
-/// at every scale. Returns the keys of all runs, in that order. `progress` is told how many runs of how many are done.
+/// A table: the keys of its rows, its columns with their headings, and the error that stopped the sweep before its end, if one
+/// did.
+type Table<'py> = (Vec<String>, Vec<(String, Bound<'py, PyAny>)>, Option<PyErr>);
+
+/// Does every one of the populations of structures under every record at every scale, but for the runs whose rows are in the
+/// file at `path`. Returns the rows in that order, with a column of the measure `intensity`. `progress` is called with how
+/// many runs of how many are done.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
-pub fn sweep(
-    py: Python<'_>,
+pub fn sweep<'py>(
+    py: Python<'py>,
     structures: Vec<(String, Vec<Py<Structure>>)>,
     records: Vec<(String, Ground)>,
     scale: &Bound<'_, PyAny>,
-    path: PathBuf,
+    intensity: &Bound<'_, PyAny>,
+    path: Option<PathBuf>,
     #[pyo3(from_py_with = argument::detail)] detail: Detail,
     #[pyo3(from_py_with = argument::tolerance)] tolerance: f64,
     duration: Option<&Bound<'_, PyAny>>,
@@ -43,13 +49,15 @@ pub fn sweep(
     validity: bool,
     threads: usize,
     progress: Option<Bound<'_, PyAny>>,
-) -> PyResult<Vec<String>> {
+) -> PyResult<Table<'py>> {
     let scales = numbers("scale", scale)?;
+    let intensity = one_of("intensity", intensity, IntensityMeasure::ALL.map(|of| (of.name(), of)))?;
     let population = |(name, of): &(String, Vec<Py<Structure>>)| {
-        Population::of(name, of.iter().map(|structure| *structure.get().0.parameters()).collect())
+        let parameters = |structure: &Py<Structure>| Ok(*structure.get().one("sweep")?.parameters());
+        Population::of(name, of.iter().map(parameters).collect::<PyResult<_>>()?).map_err(refused)
     };
-    let populations = structures.iter().map(population).collect::<Result<_, _>>().map_err(refused)?;
-    let mut gs = structures.iter().flat_map(|(_, of)| of).map(|structure| structure.get().0.parameters().g);
+    let populations = structures.iter().map(population).collect::<PyResult<_>>()?;
+    let mut gs = structures.iter().flat_map(|(_, of)| of).map(|structure| structure.get().of.base().g);
     let g = gs.next().unwrap_or(G);
     let other = gs.find(|other| *other != g);
     let motion = |(name, Ground(record)): &(String, Ground)| {
@@ -65,7 +73,7 @@ pub fn sweep(
     let plan = py.detach(|| Plan::new(populations, motions, scales)?.under(conditions)).map_err(refused)?;
 
     let (program, done, stopped) = (program(), AtomicUsize::new(0), AtomicBool::new(false));
-    let sweep = py.detach(|| Sweep::open(&plan, validity, &program, &path)).map_err(refused)?;
+    let sweep = py.detach(|| Sweep::open(&plan, validity, &program, path.as_deref())).map_err(refused)?;
     let all = sweep.missing().len();
     let pool = thread_pool(threads).map_err(refused)?;
     let progress = progress.map(Bound::unbind);
@@ -92,13 +100,29 @@ pub fn sweep(
                     stopped.store(interruption.is_err(), Ordering::Relaxed);
                 }
             }
-            let finished = runs.join().map_err(|_| PyRuntimeError::new_err(FAULT));
-            interruption.and(finished?.map_err(refused))
+            let finished = runs.join().map_err(|_| PyRuntimeError::new_err(FAULT))?;
+            match interruption {
+                Err(interruption) => Ok(Some(interruption)),
+                Ok(()) => finished.map(|()| None).map_err(refused),
+            }
         })
     });
-    let (keys, _) = finished?;
-    say(py)?;
-    Ok(keys.iter().map(ToString::to_string).collect())
+    let stopped = match finished? {
+        None => say(py).err(),
+        stopped => stopped,
+    };
+    let (keys, columns) = py.detach(|| sweep.table(intensity));
+    let columns = columns.into_iter().map(|(heading, column)| Ok((heading, values(py, column)?)));
+    Ok((keys.iter().map(ToString::to_string).collect(), columns.collect::<PyResult<_>>()?, stopped))
+}
+
+/// An array of the numbers of a column; of texts, each once, and the array of their positions.
+fn values(py: Python<'_>, column: Column) -> PyResult<Bound<'_, PyAny>> {
+    Ok(match column {
+        Column::Numbers(of) => PyArray1::from_vec(py, of).into_any(),
+        Column::Counts(of) => PyArray1::from_vec(py, of).into_any(),
+        Column::Texts(texts, of) => (texts, PyArray1::from_vec(py, of)).into_pyobject(py)?.into_any(),
+    })
 }
 
 /// Names and units of the measures by which a ground motion's intensity is told.
@@ -167,31 +191,41 @@ impl Curve {
 /// known, and how many exceed the limit.
 type Counted = (f64, f64, f64, usize, usize, usize);
 
-/// The curve of runs, and the counted runs that are drawn beside the curve. Each run has its group, its intensity, its ending, the
-/// peak that `limit` compares, and g (m/s²). `half_width` (m) is the largest B of their structures.
+/// Whether each run exceeds `limit`; None where that is unknown. Each run has its ending, the peak that `limit` compares, and g
+/// (m/s²). `half_width` (m) is the largest B of their structures.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "columns of a table")]
-pub fn fragility(
-    py: Python<'_>,
-    groups: Vec<usize>,
-    intensities: Vec<f64>,
+pub fn exceeds(
     endings: Vec<String>,
     peaks: Vec<f64>,
     gs: Vec<f64>,
     limit: &str,
     half_width: f64,
-) -> PyResult<(Curve, Vec<Counted>)> {
+) -> PyResult<Vec<Option<bool>>> {
     let limit: Limit = limit.parse().map_err(refused)?;
     limit.check(half_width).map_err(refused)?;
-    let exceeds = |ending: &String, peak: f64, g: f64| -> PyResult<Option<bool>> {
+    let exceeds = |((ending, peak), g): ((&String, f64), f64)| -> PyResult<Option<bool>> {
+        if ending == FAILED {
+            return Ok(None);
+        }
         let ending: Result<_, serde::de::value::Error> = Ending::deserialize(ending.as_str().into_deserializer());
         let (ending, peaks) = (ending.map_err(refused)?, [peak; MEASURES.len()]);
         let summary = Summary { ending, end: 0.0, peaks, transitions: 0, steps: 0, evaluations: 0 };
         Ok(Outcome::Ended(summary).exceeds(&limit, g))
     };
-    let runs = groups.into_iter().zip(intensities).zip(endings.iter().zip(peaks.into_iter().zip(gs)));
-    let runs = runs.map(|((group, at), (ending, (peak, g)))| Ok((group, at, exceeds(ending, peak, g)?)));
-    let runs = runs.collect::<PyResult<Vec<_>>>()?;
+    endings.iter().zip(peaks).zip(gs).map(exceeds).collect()
+}
+
+/// The curve of runs, and the counted runs that are drawn beside the curve. Each run has its group, its intensity, and whether
+/// the limit is exceeded, if that is known.
+#[pyfunction]
+pub fn fragility(
+    py: Python<'_>,
+    groups: Vec<usize>,
+    intensities: Vec<f64>,
+    exceeds: Vec<Option<bool>>,
+) -> PyResult<(Curve, Vec<Counted>)> {
+    let runs = groups.into_iter().zip(intensities).zip(exceeds);
+    let runs: Vec<_> = runs.map(|((group, at), exceeds)| (group, at, exceeds)).collect();
     let (curve, bins) = py.detach(|| exceedances::of_runs(runs)).map_err(refused)?;
     let counts = |(of, tally): (Bin, Tally)| (of.lowest, of.mean, of.highest, of.runs, tally.known, tally.exceedances);
     Ok((Curve(curve), bins.into_iter().map(counts).collect()))

@@ -3,6 +3,7 @@
 use crate::engine::phases::Closed;
 use crate::levels::level::Now;
 use crate::levels::rules::ChatterLimit;
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
 use crate::mechanics::reactions::Impulse;
 use crate::mechanics::restraint::Dissipators;
@@ -20,11 +21,11 @@ pub struct Work {
 
 /// Everything about a structure that changes with time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Motion {
+pub struct Motion<Q = f64> {
     /// Time, s.
     pub time: f64,
     /// State at that time.
-    pub state: State,
+    pub state: State<Q>,
     /// Phase at that time.
     pub phase: Phase,
     /// Transitions so far.
@@ -40,10 +41,10 @@ pub struct Motion {
     pub(crate) due: Option<Closed>,
 }
 
-impl Motion {
+impl<Q: Coordinates> Motion<Q> {
     /// The motion under `load`.
     #[inline]
-    pub(crate) fn under(&self, load: Load) -> Now<'_> {
+    pub(crate) fn under(&self, load: Load<Q>) -> Now<'_, Q> {
         Now { state: &self.state, load, dissipators: &self.dissipators }
     }
 

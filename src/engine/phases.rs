@@ -3,16 +3,19 @@
 //! The loop of the [engine](crate::engine) expands the motion, finds the first guard that closes, and applies the guard's transition.
 //! A new kind of contact is one more [`Watched`] here, with its guards.
 
+use crate::engine::Moves;
 use crate::engine::motion::Motion;
 use crate::engine::piece::Sample;
 use crate::engine::transition::{TransitionKind, enter};
 use crate::engine::yielding::{self, Yielding};
-use crate::levels::level::Level;
+use crate::levels::level::{Level, Subject, way};
 use crate::mechanics::impact;
+use crate::mechanics::lateral::Coordinates;
+use crate::mechanics::load::LinearLoad;
 use crate::mechanics::restraint::Dissipators;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
-use crate::{Phase, Side, Structure};
+use crate::{Phase, Side};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
@@ -21,12 +24,12 @@ use std::f64::consts::FRAC_PI_2;
 pub const BAND: f64 = 1e-9;
 
 /// One expanded step in one phase.
-pub(crate) struct Step<'a> {
-    pub level: &'a dyn Level,
+pub(crate) struct Step<'a, Q: Moves = f64> {
+    pub level: &'a dyn Level<Q>,
     /// The side about which the structure rocks.
     pub side: Side,
-    pub start: &'a Start<'a>,
-    pub arc: &'a Arc,
+    pub start: &'a Start<'a, Q>,
+    pub arc: &'a Arc<Q>,
     /// The σ up to which no guard is known to close.
     pub reach: f64,
 }
@@ -47,21 +50,21 @@ pub(crate) struct Closed {
 }
 
 /// A condition that ends a phase, or changes the equations within it.
-pub(crate) trait Guard: Sync {
+pub(crate) trait Guard<Q: Moves = f64>: Sync {
     /// The first instant of `step` at which the guard closes.
-    fn first(&self, step: &Step) -> (Crossing, Way);
+    fn first(&self, step: &Step<Q>) -> (Crossing, Way);
 
     /// Applies the transition to `motion`, which has reached the instant at which the guard closes.
-    fn apply(&self, level: &dyn Level, motion: &mut Motion, way: Way) -> TransitionKind;
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind;
 
     /// Whether the guard certainly stays open for `ahead` (s), a tiny time.
-    fn stays_open(&self, now: &Sample, ahead: f64) -> bool;
+    fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool;
 
     /// Place and value of the event indicator: continuous, of order one, positive while the guard is open.
-    fn indicator(&self, now: &Sample) -> (usize, f64);
+    fn indicator(&self, now: &Sample<Q>) -> (usize, f64);
 
     /// The way in which the guard is closed from the start, after a transition or a jump of the load.
-    fn closed(&self, _now: &Sample) -> Option<Way> {
+    fn closed(&self, _now: &Sample<Q>) -> Option<Way> {
         None
     }
 
@@ -72,88 +75,84 @@ pub(crate) trait Guard: Sync {
 }
 
 /// A phase as the loop knows it.
-pub(crate) struct Watched {
+pub(crate) struct Watched<Q: Moves = f64> {
     /// Duration of the phase at most, s.
-    pub lasts: Option<fn(&Motion) -> f64>,
+    pub lasts: Option<fn(&Motion<Q>) -> f64>,
     /// A cheap proof that no guard closes over a step.
-    pub stays: Option<fn(&Step) -> bool>,
-    pub guards: &'static [&'static dyn Guard],
+    pub stays: Option<fn(&Step<Q>) -> bool>,
+    pub guards: &'static [&'static dyn Guard<Q>],
     /// The dissipators at the reach of a step, if a step moves them.
-    pub moved: Option<fn(&Step) -> Dissipators>,
+    pub moved: Option<fn(&Step<Q>) -> Dissipators>,
 }
 
-impl Watched {
+impl<Q: Moves> Watched<Q> {
+    /// A phase in which the base does not move, without guards.
+    pub(super) const RESTING: Watched<Q> = Watched { lasts: None, stays: None, guards: &[], moved: None };
+
+    /// Full contact that is held after too many transitions.
+    const HELD: &'static Watched<Q> = &Watched { lasts: Some(Motion::held), ..Watched::RESTING };
+
+    /// Full contact.
+    const CONTACT: &'static Watched<Q> = &Watched { guards: &[&Uplift], ..Watched::RESTING };
+
+    /// Rocking about either side.
+    const ROCKING: &'static Watched<Q> = &Watched {
+        stays: Some(|step| stays_about(step.arc, step.side)),
+        guards: &[&Overturning, &Impact],
+        moved: Some(yielding::moved),
+        ..Watched::RESTING
+    };
+
+    /// Rocking with dissipators that may yield.
+    const ROCKING_YIELDING: &'static Watched<Q> =
+        &Watched { guards: &[&Yielding, &Overturning, &Impact], moved: Some(yielding::moved), ..Watched::RESTING };
+
     /// The dissipators at the reach of `step`, if it moves them.
     #[inline]
-    pub(crate) fn moved(&self, structure: &Structure, step: &Step) -> Option<Dissipators> {
-        self.moved.filter(|_| structure.is_restrained()).map(|moved| moved(step))
+    pub(crate) fn moved(&self, subject: &Subject<Q>, step: &Step<Q>) -> Option<Dissipators> {
+        let is_restrained = || subject.is_tied && Q::base(&subject.structure).is_restrained();
+        self.moved.filter(|_| is_restrained()).map(|moved| moved(step))
     }
 }
-
-/// Full contact that is held after too many transitions.
-static HELD: Watched = Watched { lasts: Some(Motion::held), ..RESTING };
-
-/// Full contact.
-static CONTACT: Watched = Watched { guards: &[&Uplift], ..RESTING };
-
-/// Rocking about either side.
-static ROCKING: Watched = Watched {
-    stays: Some(|step| stays_about(step.arc, step.side)),
-    guards: &[&Overturning, &Impact],
-    moved: Some(yielding::moved),
-    ..RESTING
-};
-
-/// Rocking with dissipators that may yield.
-static ROCKING_YIELDING: Watched =
-    Watched { guards: &[&Yielding, &Overturning, &Impact], moved: Some(yielding::moved), ..RESTING };
-
-/// A phase in which the base does not move, without guards.
-pub(super) const RESTING: Watched = Watched { lasts: None, stays: None, guards: &[], moved: None };
 
 /// The phase of `motion` of `structure`; none once the structure has overturned.
 #[inline]
-pub(crate) fn of(structure: &Structure, motion: &Motion) -> Option<&'static Watched> {
+pub(crate) fn of<Q: Moves>(structure: &Q::Structure, motion: &Motion<Q>) -> Option<&'static Watched<Q>> {
     match motion.phase {
-        Phase::FullContact if motion.held() > 0.0 => Some(&HELD),
-        Phase::FullContact => Some(&CONTACT),
-        Phase::Rocking(_) if structure.parameters().F_y > 0.0 => Some(&ROCKING_YIELDING),
-        Phase::Rocking(_) => Some(&ROCKING),
+        Phase::FullContact if motion.held() > 0.0 => Some(Watched::HELD),
+        Phase::FullContact => Some(Watched::CONTACT),
+        Phase::Rocking(_) if Q::base(structure).ties.F_y > 0.0 => Some(Watched::ROCKING_YIELDING),
+        Phase::Rocking(_) => Some(Watched::ROCKING),
         Phase::Overturned(_) => None,
     }
-}
-
-/// The most by which a quantity with this `rate` changes over `ahead` (s), whatever accelerates it.
-pub(crate) fn way(ahead: f64, rate: f64) -> f64 {
-    ahead * (rate.abs() + 1.0)
 }
 
 /// The base lifts off about the side of the sign.
 struct Uplift;
 
-impl Guard for Uplift {
-    fn first(&self, step: &Step) -> (Crossing, Way) {
+impl<Q: Moves> Guard<Q> for Uplift {
+    fn first(&self, step: &Step<Q>) -> (Crossing, Way) {
         let (crossing, side) = step.level.first_uplift(step.start, step.arc);
         (crossing, about(side))
     }
 
-    fn apply(&self, level: &dyn Level, motion: &mut Motion, way: Way) -> TransitionKind {
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind {
         let side = Side::of(way.sign.into());
         enter(level, motion, Phase::Rocking(side), motion.state);
         TransitionKind::Uplift(side)
     }
 
-    fn stays_open(&self, now: &Sample, ahead: f64) -> bool {
+    fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {
         let Motion { state, dissipators, .. } = &now.motion;
-        let start = now.level.subject().start(*state, dissipators, now.load.into(), ahead);
-        state.u.abs() + way(ahead, state.u_dot) < now.level.least_displacement(&start)
+        let start = now.level.subject().start(*state, dissipators, LinearLoad::held(now.load), ahead);
+        now.level.holds(&start)
     }
 
-    fn indicator(&self, now: &Sample) -> (usize, f64) {
+    fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
         (0, now.level.uplift_margin(&now.motion.under(now.load)).0 + BAND)
     }
 
-    fn closed(&self, now: &Sample) -> Option<Way> {
+    fn closed(&self, now: &Sample<Q>) -> Option<Way> {
         let (margin, side) = now.level.uplift_margin(&now.motion.under(now.load));
         (margin <= 0.0).then_some(about(side))
     }
@@ -166,25 +165,25 @@ fn about(side: Side) -> Way {
 /// |θ| reaches π/2.
 struct Overturning;
 
-impl Guard for Overturning {
-    fn first(&self, step: &Step) -> (Crossing, Way) {
+impl<Q: Moves> Guard<Q> for Overturning {
+    fn first(&self, step: &Step<Q>) -> (Crossing, Way) {
         let theta = step.arc.used(&step.arc.theta);
         let falls = Gap::new(theta, -step.side.sign(), FRAC_PI_2);
         (first_time_all_closed([falls], step.reach), Way::default())
     }
 
-    fn apply(&self, level: &dyn Level, motion: &mut Motion, _way: Way) -> TransitionKind {
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, _way: Way) -> TransitionKind {
         let side = motion.phase.side();
         enter(level, motion, Phase::Overturned(side), motion.state);
         TransitionKind::Overturning(side)
     }
 
-    fn stays_open(&self, now: &Sample, ahead: f64) -> bool {
+    fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {
         let state = &now.motion.state;
         state.theta.abs() < FRAC_PI_2 - way(ahead, state.theta_dot)
     }
 
-    fn indicator(&self, now: &Sample) -> (usize, f64) {
+    fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
         (1, 1.0 - now.motion.state.theta.abs() / FRAC_PI_2)
     }
 
@@ -196,11 +195,11 @@ impl Guard for Overturning {
 /// s θ returns to 0.
 struct Impact;
 
-impl Guard for Impact {
+impl<Q: Moves> Guard<Q> for Impact {
     /// A start at θ = 0 is a root of θ. With z leading zeros the polynomial that is searched is therefore s θ/σ^z. The start is then
     /// no return, and a return right after the start is found. A coefficient that underflows counts as zero. If θ is zero
     /// throughout, over a step of 1e-200 s say, there is no return.
-    fn first(&self, step: &Step) -> (Crossing, Way) {
+    fn first(&self, step: &Step<Q>) -> (Crossing, Way) {
         let theta = step.arc.used(&step.arc.theta);
         let crossing = match theta.iter().position(|c| c.is_normal()) {
             Some(zeros) => {
@@ -212,11 +211,11 @@ impl Guard for Impact {
         (crossing, Way::default())
     }
 
-    fn apply(&self, level: &dyn Level, motion: &mut Motion, _way: Way) -> TransitionKind {
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, _way: Way) -> TransitionKind {
         let (before, limit) = (motion.state, level.chatter_limit());
         let (kind, phase, after) = if motion.chatter.is_too_much(limit) {
             motion.chatter.hold(limit);
-            let landed = level.admissible(Phase::FullContact, impact::land(level.structure(), &before));
+            let landed = level.admissible(Phase::FullContact, impact::land::<Q>(level.structure(), &before));
             (TransitionKind::Settling, Phase::FullContact, landed)
         } else {
             match level.after_impact(motion.phase.side(), &before) {
@@ -228,20 +227,20 @@ impl Guard for Impact {
         kind
     }
 
-    fn stays_open(&self, now: &Sample, ahead: f64) -> bool {
+    fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {
         let state = &now.motion.state;
         state.theta.abs() >= way(ahead, state.theta_dot)
     }
 
-    fn indicator(&self, now: &Sample) -> (usize, f64) {
+    fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
         let Motion { phase, state, .. } = &now.motion;
-        let alpha_cg = libm::atan(now.level.structure().tan_alpha_cg);
+        let alpha_cg = libm::atan(Q::base(now.level.structure()).tan_alpha_cg);
         (0, phase.side().sign() * state.theta / alpha_cg + BAND)
     }
 }
 
 /// Whether the magnitudes of the terms of θ prove that s θ stays between 0 and π/2 on `arc`.
-fn stays_about(arc: &Arc, side: Side) -> bool {
+fn stays_about<Q: Coordinates>(arc: &Arc<Q>, side: Side) -> bool {
     let start = side.sign() * arc.theta[0];
     let excursion = sum_of_magnitudes(&arc.theta[1..=arc.order]);
     excursion < start && excursion + start < FRAC_PI_2

@@ -3,54 +3,57 @@
 //! Within a piece there is no transition. If the engine expanded the motion into a polynomial, the piece has that polynomial. If
 //! the engine leapt by an exact flow, the piece has bounds, and makes polynomials on request.
 
+use crate::engine::Moves;
 use crate::engine::motion::Motion;
 use crate::engine::phases::{self, Step};
 use crate::engine::transition::Transition;
-use crate::levels::detail::AnyLevel;
 use crate::levels::level::{Now, Subject};
 use crate::levels::shown::Searched;
+use crate::mechanics::gauge::{Gauge, Reading};
+use crate::mechanics::instant::{Instant, Place, Second};
+use crate::mechanics::lateral::Modes;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::Measure;
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
 use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Series, Start, evaluate};
-use crate::{Outputs, Phase, Reactions, State};
+use crate::{Floor, Outputs, Phase, Reactions, State};
 use std::f64::consts::TAU;
 
 /// Watches a motion go by.
-pub trait Watch {
+pub trait Watch<Q: Moves = f64> {
     /// Whether the watcher looks at pieces. If not, the engine makes none for it.
     const SEES_PIECES: bool;
 
     /// Sees the next piece.
     #[inline]
-    fn piece(&mut self, _piece: &Piece) {}
+    fn piece(&mut self, _piece: &Piece<Q>) {}
 
     /// Sees the transition at the end of the last piece.
     #[inline]
-    fn transition(&mut self, _transition: &Transition) {}
+    fn transition(&mut self, _transition: &Transition<Q>) {}
 }
 
 /// The watcher that ignores pieces and transitions.
-impl Watch for () {
+impl<Q: Moves> Watch<Q> for () {
     const SEES_PIECES: bool = false;
 }
 
 /// A watcher of transitions only.
-impl<F: FnMut(&Transition)> Watch for F {
+impl<Q: Moves, F: FnMut(&Transition<Q>)> Watch<Q> for F {
     const SEES_PIECES: bool = false;
 
-    fn transition(&mut self, transition: &Transition) {
+    fn transition(&mut self, transition: &Transition<Q>) {
         self(transition);
     }
 }
 
 /// Two watchers of the same motion.
-impl<A: Watch, B: Watch> Watch for (&mut A, &mut B) {
+impl<Q: Moves, A: Watch<Q>, B: Watch<Q>> Watch<Q> for (&mut A, &mut B) {
     const SEES_PIECES: bool = A::SEES_PIECES || B::SEES_PIECES;
 
     #[inline]
-    fn piece(&mut self, piece: &Piece) {
+    fn piece(&mut self, piece: &Piece<Q>) {
         if A::SEES_PIECES {
             self.0.piece(piece);
         }
@@ -59,7 +62,7 @@ impl<A: Watch, B: Watch> Watch for (&mut A, &mut B) {
         }
     }
 
-    fn transition(&mut self, transition: &Transition) {
+    fn transition(&mut self, transition: &Transition<Q>) {
         self.0.transition(transition);
         self.1.transition(transition);
     }
@@ -67,12 +70,20 @@ impl<A: Watch, B: Watch> Watch for (&mut A, &mut B) {
 
 /// A motion at one instant; at a transition, just after it.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample<'a> {
+pub struct Sample<'a, Q: Moves = f64> {
     /// Time, state and phase, transitions and impulses so far.
-    pub motion: Motion,
+    pub motion: Motion<Q>,
     /// Load at the instant.
-    pub load: Load,
-    pub(crate) level: &'a AnyLevel,
+    pub load: Load<Q>,
+    pub(crate) level: &'a Q::Level,
+}
+
+impl<Q: Moves> Sample<'_, Q> {
+    /// ü and θ̈; once overturned, those of the instant before.
+    pub(crate) fn second(&self) -> Second<f64, Q> {
+        let Sample { motion, load, level } = self;
+        level.accelerations(motion.phase.in_motion(), &motion.under(*load))
+    }
 }
 
 impl Sample<'_> {
@@ -108,8 +119,35 @@ impl Sample<'_> {
 
     /// (ü, θ̈), m/s² and rad/s²; once overturned, those of the instant before.
     pub(crate) fn accelerations(&self) -> [f64; 2] {
-        let Sample { motion, load, level } = self;
-        level.accelerations(motion.phase.in_motion(), &motion.under(*load))
+        self.second().into()
+    }
+}
+
+impl Sample<'_, Modes> {
+    /// The value of `gauge`; once overturned, the value of the instant before.
+    pub fn value(&self, gauge: &Gauge) -> f64 {
+        let (frame, x) = (self.level.structure(), self.instant());
+        let damping = frame.base.damping(self.motion.phase);
+        let theta_ddot = if gauge.has_feedthrough() { self.second().theta_ddot } else { 0.0 };
+        let (elastic, push) = (gauge.elastic(frame, damping, &x.u, &x.u_dot), gauge.push(frame, &x.F_t));
+        let Instant { turn, theta_dot, a_g, a_v, .. } = x;
+        gauge.value(&frame.base, x.s, &Reading { elastic, push, turn, theta_dot, theta_ddot, a_g, a_v })
+    }
+
+    /// Displacement of `floor` relative to the ground δ, m (Eq 26).
+    pub fn displacement(&self, floor: &Floor) -> f64 {
+        let x = self.instant();
+        let place = Place { share: 1.0, height: floor.height, u: floor.displacement(&x.u) };
+        place.right(x.pivot(), &x.turn)
+    }
+
+    /// The reactions; once overturned, those of the instant before.
+    pub fn reactions(&self) -> Reactions {
+        Reactions::at(&self.instant(), &self.second())
+    }
+
+    fn instant(&self) -> Instant<'_, f64, Modes> {
+        Instant::of(self.level.structure(), self.motion.phase.in_motion(), &self.motion.state, self.load)
     }
 }
 
@@ -121,40 +159,34 @@ const FINEST_PART: u32 = 5;
 
 /// A stretch of time without a transition.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece<'a> {
+pub struct Piece<'a, Q: Moves = f64> {
     /// The motion at its start: time, state, and the phase that it is in throughout.
-    pub before: &'a Motion,
+    pub before: &'a Motion<Q>,
     /// Duration of the piece, s.
     pub duration: f64,
     /// Load from the start of the piece on.
-    pub load: LinearLoad,
+    pub load: LinearLoad<Q>,
     /// State at its end.
-    pub end: State,
-    pub(crate) level: &'a AnyLevel,
+    pub end: State<Q>,
+    pub(crate) level: &'a Q::Level,
     /// Polynomial of the piece; none if the engine leapt over the piece.
-    pub(crate) arc: Option<&'a Arc>,
+    pub(crate) arc: Option<&'a Arc<Q>>,
 }
 
-impl Piece<'_> {
+impl<Q: Moves> Piece<'_, Q> {
     /// The whole piece as a part.
     #[inline]
-    pub(crate) fn whole(&self) -> Part<'_> {
+    pub(crate) fn whole(&self) -> Part<'_, Q> {
         Part { piece: self, start: (0.0, self.before.state), end: (self.duration, self.end) }
     }
 
     /// The motion of the piece as polynomials, in order of time.
-    pub(crate) fn arcs(&self) -> Arcs<'_> {
+    pub(crate) fn arcs(&self) -> Arcs<'_, Q> {
         self.whole().arcs()
     }
 
-    /// The outputs in `state`, `tau` seconds after the start of the piece.
-    pub(crate) fn outputs(&self, tau: f64, state: &State) -> Outputs {
-        let now = Now { state, load: self.load.at(tau), dissipators: &self.before.dissipators };
-        self.level.outputs(self.before.phase, &now)
-    }
-
     /// The state `tau` seconds after the start of the piece.
-    pub(crate) fn state_at(&self, tau: f64) -> State {
+    pub(crate) fn state_at(&self, tau: f64) -> State<Q> {
         if tau <= 0.0 {
             return self.before.state;
         }
@@ -178,16 +210,16 @@ impl Piece<'_> {
 
     /// The dissipators `tau` seconds after the start of the piece.
     fn dissipators_at(&self, tau: f64) -> Dissipators {
-        let moved = phases::of(self.level.structure(), self.before).zip(self.arc).and_then(|(watched, arc)| {
+        let moved = phases::of::<Q>(self.level.structure(), self.before).zip(self.arc).and_then(|(watched, arc)| {
             let (level, side) = (&**self.level, self.before.phase.side());
             let step = Step { level, side, start: &self.whole().step(), arc, reach: tau / arc.span };
-            watched.moved(level.structure(), &step)
+            watched.moved(level.subject(), &step)
         });
         moved.unwrap_or(self.before.dissipators)
     }
 
     /// The motion at `time` (s), which lies within the piece.
-    pub fn sample(&self, time: f64) -> Sample<'_> {
+    pub fn sample(&self, time: f64) -> Sample<'_, Q> {
         let end = self.before.time + self.duration;
         // an instant that misses the end by the clock's rounding is the end
         let is_before = time < end - 2.0 * f64::EPSILON * end.abs();
@@ -197,24 +229,39 @@ impl Piece<'_> {
     }
 }
 
-/// A part of a piece.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Part<'a> {
-    pub piece: &'a Piece<'a>,
-    /// Seconds from the piece's start to its own, and the state there.
-    pub start: (f64, State),
-    /// Seconds from the piece's start to its end, and the state there.
-    pub end: (f64, State),
+impl Piece<'_> {
+    /// The outputs in `state`, `tau` seconds after the start of the piece.
+    pub(crate) fn outputs(&self, tau: f64, state: &State) -> Outputs {
+        let now = Now { state, load: self.load.at(tau), dissipators: &self.before.dissipators };
+        self.level.outputs(self.before.phase, &now)
+    }
 }
 
-impl<'a> Part<'a> {
+/// A part of a piece.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part<'a, Q: Moves = f64> {
+    pub piece: &'a Piece<'a, Q>,
+    /// Seconds from the piece's start to its own, and the state there.
+    pub start: (f64, State<Q>),
+    /// Seconds from the piece's start to its end, and the state there.
+    pub end: (f64, State<Q>),
+}
+
+impl<'a, Q: Moves> Part<'a, Q> {
     /// The part as a step.
     #[inline]
-    pub(crate) fn step(&self) -> Start<'a> {
+    pub(crate) fn step(&self) -> Start<'a, Q> {
         let Part { piece, start: (passed, state), end: (until, _) } = *self;
         piece.level.subject().start(state, &piece.before.dissipators, piece.load.from(passed), until - passed)
     }
 
+    /// The motion of the part as polynomials, in order of time.
+    pub(crate) fn arcs(&self) -> Arcs<'a, Q> {
+        Arcs { begin: self.start.0, left: Some(*self), arc: None, evaluations: 0 }
+    }
+}
+
+impl<'a> Part<'a> {
     /// The halves of the part, if the state between them is known without expanding the motion.
     pub(crate) fn halves(&self) -> Option<[Part<'a>; 2]> {
         let Part { piece, start, .. } = *self;
@@ -226,11 +273,6 @@ impl<'a> Part<'a> {
         let middle = piece.level.leap(piece.before.phase, &half)?;
         let middle = (start.0 + half.interval, middle);
         Some([Part { end: middle, ..*self }, Part { start: middle, ..*self }])
-    }
-
-    /// The motion of the part as polynomials, in order of time.
-    pub(crate) fn arcs(&self) -> Arcs<'a> {
-        Arcs { begin: self.start.0, left: Some(*self), arc: None, evaluations: 0 }
     }
 
     /// The outputs at both ends of the part, with seconds from the start of the piece.
@@ -286,7 +328,7 @@ impl<'a> Part<'a> {
         let bends = level.bends(phase, load, h, &level.rates(phase, &step, end));
         let [(_, first), (_, last)] = self.ends();
         let now = Now { state: &step.state, load: load.value, dissipators: step.dissipators };
-        let accelerations = level.accelerations(phase, &now);
+        let accelerations = level.accelerations(phase, &now).into();
         let rates = level.searched_rates(phase, &step.state, accelerations, load);
         std::array::from_fn(|i| {
             let of = |outputs: &Outputs| Measure::SEARCHED[i].of(outputs).abs();
@@ -301,19 +343,19 @@ impl<'a> Part<'a> {
 
 /// Goes through a part of a piece polynomial by polynomial.
 #[derive(Debug)]
-pub(crate) struct Arcs<'a> {
+pub(crate) struct Arcs<'a, Q: Moves = f64> {
     /// Start of the part, s after the start of the piece.
     begin: f64,
-    left: Option<Part<'a>>,
+    left: Option<Part<'a, Q>>,
     /// Of a leap: the polynomial in hand.
-    arc: Option<Arc>,
+    arc: Option<Arc<Q>>,
     /// Right-hand-side evaluations that the polynomials took.
     pub evaluations: u64,
 }
 
-impl Arcs<'_> {
+impl<Q: Moves> Arcs<'_, Q> {
     /// The motion from where the last one ends on, as far as one polynomial reaches.
-    pub(crate) fn next(&mut self) -> Option<Expansion<'_>> {
+    pub(crate) fn next(&mut self) -> Option<Expansion<'_, Q>> {
         let part = self.left.take()?;
         let Part { piece, start: (from, _), end: (until, _) } = part;
         if let Some(arc) = piece.arc {
@@ -328,7 +370,9 @@ impl Arcs<'_> {
         }
         Some(Expansion { piece, from, arc })
     }
+}
 
+impl Arcs<'_> {
     /// Leaves out the middle of what is left of a long leap.
     ///
     /// The motion in full contact is a line and a decaying vibration about the line. The magnitudes of the line and of the
@@ -354,19 +398,28 @@ impl Arcs<'_> {
 
 /// A polynomial of the motion of a piece.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Expansion<'a> {
-    pub piece: &'a Piece<'a>,
+pub(crate) struct Expansion<'a, Q: Moves = f64> {
+    pub piece: &'a Piece<'a, Q>,
     /// Start of the polynomial, s after the start of the piece.
     pub from: f64,
-    pub arc: &'a Arc,
+    pub arc: &'a Arc<Q>,
 }
 
-impl Expansion<'_> {
+impl<Q: Moves> Expansion<'_, Q> {
     /// The instant of `sigma`, s.
     pub(crate) fn time(&self, sigma: f64) -> f64 {
         self.piece.before.time + self.from + sigma * self.arc.span
     }
 
+    /// The motion at `sigma`, with the dissipators of the start of the piece.
+    pub(crate) fn sample(&self, sigma: f64) -> Sample<'_, Q> {
+        let &Piece { before, load, level, .. } = self.piece;
+        let motion = Motion { time: self.time(sigma), state: self.arc.at(sigma), ..*before };
+        Sample { motion, load: load.at(self.from + sigma * self.arc.span), level }
+    }
+}
+
+impl Expansion<'_> {
     /// The outputs at `sigma`.
     pub(crate) fn outputs(&self, sigma: f64) -> Outputs {
         self.piece.outputs(self.from + sigma * self.arc.span, &self.arc.at(sigma))

@@ -2,6 +2,7 @@
 
 use crate::engine::motion::Motion;
 use crate::levels::level::Level;
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::reactions::Impulse;
 use crate::{Phase, Side, State};
 
@@ -46,23 +47,30 @@ impl TransitionKind {
 
 /// One transition, as the engine reports it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Transition {
+pub struct Transition<Q = f64> {
     /// Instant of the transition, s.
     pub time: f64,
     /// The change.
     pub kind: TransitionKind,
     /// State just before.
-    pub before: State,
+    pub before: State<Q>,
     /// State just after.
-    pub after: State,
+    pub after: State<Q>,
+}
+
+impl<Q> Transition<Q> {
+    /// The coefficient of restitution of an impact after which rocking continues: given, or by momentum with the shape frozen (M19).
+    pub fn restitution(&self) -> Option<f64> {
+        matches!(self.kind, TransitionKind::Impact(_)).then(|| self.after.theta_dot / self.before.theta_dot)
+    }
 }
 
 /// Takes `motion` into `phase` with the state `after`, and counts the transition.
-pub(crate) fn enter(level: &dyn Level, motion: &mut Motion, phase: Phase, after: State) {
+pub(crate) fn enter<Q: Coordinates>(level: &dyn Level<Q>, motion: &mut Motion<Q>, phase: Phase, after: State<Q>) {
     let structure = level.structure();
     motion.chatter.count(level.chatter_limit());
-    motion.impulse = motion.impulse.and(Impulse::of(structure, (motion.phase, &motion.state), (phase, &after)));
+    motion.impulse = motion.impulse.and(Impulse::of::<Q>(structure, (motion.phase, &motion.state), (phase, &after)));
     let rocking = if let Phase::Rocking(side) = phase { Some((side, after.theta_dot)) } else { None };
-    motion.dissipators = motion.dissipators.after(structure, rocking);
+    motion.dissipators = motion.dissipators.after(Q::base(structure), rocking);
     (motion.phase, motion.state) = (phase, after);
 }

@@ -4,16 +4,18 @@
 //! turns round, at a zero of θ̇. Its force is then still ±F_y, and yielding resumes only after the elongation moves that way again.
 //! The zeros of θ̇ at the start are therefore divided out, like the zeros of θ at an uplift.
 
+use crate::Side;
+use crate::engine::Moves;
 use crate::engine::motion::Motion;
-use crate::engine::phases::{BAND, Guard, Step, Way, way};
+use crate::engine::phases::{BAND, Guard, Step, Way};
 use crate::engine::piece::Sample;
 use crate::engine::transition::TransitionKind;
-use crate::levels::level::Level;
+use crate::levels::level::{Level, way};
 use crate::mechanics::restraint::{Dissipators, levers};
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
-use crate::series::taylor::ZERO;
+use crate::series::taylor::{ZERO, evaluate};
 use crate::series::terms::Terms;
-use crate::{Side, Structure};
+use crate::structure::{Base, Ties};
 
 /// The smallest rotation at which a dissipator begins to yield as the base comes down, as a fraction of the rotation from 0 to F_y.
 /// Below this rotation the impact comes first. A dissipator that has yielded up to an impact returns to F_y exactly at the next
@@ -23,10 +25,10 @@ const AT_CONTACT: f64 = 1e-10;
 /// A dissipator begins to yield, pulled or pressed by the sign, or ceases to yield if the sign is 0.
 pub(crate) struct Yielding;
 
-impl Guard for Yielding {
-    fn first(&self, &Step { level, side, start, arc, reach }: &Step) -> (Crossing, Way) {
-        let (structure, dissipators) = (level.structure(), start.dissipators);
-        let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
+impl<Q: Moves> Guard<Q> for Yielding {
+    fn first(&self, &Step { level, side, start, arc, reach }: &Step<Q>) -> (Crossing, Way) {
+        let (base, dissipators) = (Q::base(level.structure()), start.dissipators);
+        let Ties { k_d, F_y, .. } = base.ties;
         let mut found = (Crossing::None, Way::default());
         let theta_dot = arc.used(&arc.theta_dot);
         let Some(zeros) = theta_dot.iter().position(|c| c.is_normal()) else { return found };
@@ -35,7 +37,7 @@ impl Guard for Yielding {
                 found = (crossing, Way { which: j as u8, sign });
             }
         };
-        for (j, lever) in moving(structure, side) {
+        for (j, lever) in moving(base, side) {
             // positive while the elongation moves that way
             let moves = |way: f64| Gap::new(&theta_dot[zeros..], (way * lever).signum(), 0.0);
             match dissipators.yields[j] {
@@ -59,7 +61,7 @@ impl Guard for Yielding {
         found
     }
 
-    fn apply(&self, _level: &dyn Level, motion: &mut Motion, way: Way) -> TransitionKind {
+    fn apply(&self, _level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind {
         let which = usize::from(way.which);
         motion.dissipators.yields[which] = way.sign;
         if way.sign != 0 {
@@ -69,45 +71,45 @@ impl Guard for Yielding {
         TransitionKind::Unloading(which)
     }
 
-    fn stays_open(&self, now: &Sample, ahead: f64) -> bool {
-        let [_, theta_ddot] = now.accelerations();
+    fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {
+        let theta_ddot = now.second().theta_ddot;
         let changes = [now.motion.state.theta_dot, 2.0 * theta_ddot].map(|rate| way(ahead, rate));
         least_margin(now, changes) > 0.0
     }
 
-    fn indicator(&self, now: &Sample) -> (usize, f64) {
+    fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
         (1, least_margin(now, [0.0; 2]) + BAND)
     }
 }
 
 /// The dissipators, by number, with their levers about `side`. A dissipator at the pivot is left out: rocking does not elongate it.
-fn moving(structure: &Structure, side: Side) -> impl Iterator<Item = (usize, f64)> {
-    levers(structure, side).into_iter().enumerate().filter(|(_, lever)| *lever != 0.0)
+fn moving(base: &Base, side: Side) -> impl Iterator<Item = (usize, f64)> {
+    levers(base, side).into_iter().enumerate().filter(|(_, lever)| *lever != 0.0)
 }
 
 /// The smallest distance of the dissipators from beginning or ceasing to yield, less the most by which `changes` of θ and θ̇ (rad,
 /// rad/s) can reduce the distance. The distance from yielding is a fraction of F_y, and from ceasing a fraction of p_l α_cg.
-fn least_margin(now: &Sample, changes: [f64; 2]) -> f64 {
-    let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
+fn least_margin<Q: Moves>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
+    let (base, Motion { phase, state, dissipators, .. }) = (Q::base(now.level.structure()), &now.motion);
     let (side, angles) = (phase.side(), now.level.subject().angles);
-    let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
+    let Ties { k_d, F_y, .. } = base.ties;
     let chord = angles.chord(state.theta, 0.0).length;
     let of = |(j, lever): (usize, f64)| match f64::from(dissipators.yields[j]) {
         0.0 => 1.0 - k_d * ((lever * chord - dissipators.plastic[j]).abs() + lever.abs() * changes[0]) / F_y,
         way => {
-            let natural = structure.p_l * libm::atan(structure.tan_alpha_cg);
+            let natural = base.p_l * libm::atan(base.tan_alpha_cg);
             (way * lever.signum() * state.theta_dot - changes[1]) / natural
         }
     };
-    moving(structure, side).map(of).fold(1.0, f64::min)
+    moving(base, side).map(of).fold(1.0, f64::min)
 }
 
 /// The dissipators at the reach of a step.
-pub(crate) fn moved(&Step { level, side, start, arc, reach }: &Step) -> Dissipators {
-    let (structure, angles, dissipators) = (level.structure(), level.subject().angles, start.dissipators);
-    let &crate::Parameters { B, xi_d, c_d, k_d, F_y, .. } = structure.parameters();
-    let (mut moved, theta) = (*dissipators, arc.at(reach).theta);
-    for (j, lever) in levers(structure, side).into_iter().enumerate() {
+pub(crate) fn moved<Q: Moves>(&Step { level, side, start, arc, reach }: &Step<Q>) -> Dissipators {
+    let (base, angles, dissipators) = (Q::base(level.structure()), level.subject().angles, start.dissipators);
+    let &Base { B, ties: Ties { xi_d, c_d, k_d, F_y, .. }, .. } = base;
+    let (mut moved, theta) = (*dissipators, evaluate(arc.used(&arc.theta), reach));
+    for (j, lever) in levers(base, side).into_iter().enumerate() {
         let way = f64::from(dissipators.yields[j]);
         if way != 0.0 {
             let plastic = lever * angles.chord(theta, 0.0).length - way * F_y / k_d;
@@ -131,6 +133,7 @@ fn square_integral(coefficients: &[f64], reach: f64) -> f64 {
         *term = c * power;
         power * reach
     });
+    let terms = &terms[..coefficients.len()];
     let with = |(i, a): (usize, &f64)| terms.iter().enumerate().map(|(j, b)| a * b / (i + j + 1) as f64).sum::<f64>();
     terms.iter().enumerate().map(with).sum::<f64>() * reach
 }

@@ -5,12 +5,14 @@
 //! | PGA | largest magnitude of the ground acceleration, max abs(a_g) | g |
 //! | PGV | largest magnitude of the ground velocity, max abs(∫ a_g dt), at rest before the first sample | m/s |
 //! | I_A | Arias intensity, π/(2 g) ∫ a_g² dt | m/s |
-//! | D_5–95 | time from 5 % to 95 % of the Arias intensity, the significant duration | s |
+//! | CAV | cumulative absolute velocity, ∫ abs(a_g) dt | m/s |
+//! | D_5_95 | time from 5 % to 95 % of the Arias intensity, the significant duration | s |
 //! | S_a | largest acceleration of the structure on a fixed base, S_a(1/f_fc, ζ_fc) | g |
+//! | S_a_avg | geometric mean of S_a at ten periods, evenly spaced from 0.2/f_fc to 3/f_fc | g |
 //!
-//! All are exact for a record that is linear between its samples. PGA, PGV and S_a grow in proportion to the record and can
-//! be the horizontal axis of a fragility curve ([`IntensityMeasure`]).
+//! All are exact for a record that is linear between its samples.
 
+use crate::estimates::response_spectrum::spectral_acceleration;
 use crate::run::record::Record;
 use crate::series::bisection::last_where;
 use std::f64::consts::FRAC_PI_2;
@@ -25,11 +27,30 @@ pub enum IntensityMeasure {
     Pgv,
     /// Spectral acceleration of the fixed base (see [`crate::estimates::response_spectrum`]), g.
     Sa,
+    /// Cumulative absolute velocity, m/s.
+    Cav,
+    /// Arias intensity, m/s.
+    Arias,
+    /// Significant duration, s.
+    Duration,
+    /// Average spectral acceleration of the fixed base, g.
+    AverageSa,
 }
 
 impl IntensityMeasure {
     /// All intensity measures.
-    pub const ALL: [IntensityMeasure; 3] = [IntensityMeasure::Pga, IntensityMeasure::Pgv, IntensityMeasure::Sa];
+    pub const ALL: [IntensityMeasure; 7] = [
+        IntensityMeasure::Pga,
+        IntensityMeasure::Pgv,
+        IntensityMeasure::Sa,
+        IntensityMeasure::Cav,
+        IntensityMeasure::Arias,
+        IntensityMeasure::Duration,
+        IntensityMeasure::AverageSa,
+    ];
+
+    /// The measures that every row of a sweep has: all but the average, which takes as long as many a run.
+    pub const COLUMNS: [IntensityMeasure; 6] = *IntensityMeasure::ALL.first_chunk().expect("there are seven");
 
     /// Its name in files and tables.
     pub const fn name(self) -> &'static str {
@@ -37,14 +58,19 @@ impl IntensityMeasure {
             IntensityMeasure::Pga => "PGA",
             IntensityMeasure::Pgv => "PGV",
             IntensityMeasure::Sa => "S_a",
+            IntensityMeasure::Cav => "CAV",
+            IntensityMeasure::Arias => "I_A",
+            IntensityMeasure::Duration => "D_5_95",
+            IntensityMeasure::AverageSa => "S_a_avg",
         }
     }
 
     /// Its unit.
     pub const fn unit(self) -> &'static str {
         match self {
-            IntensityMeasure::Pga | IntensityMeasure::Sa => "g",
-            IntensityMeasure::Pgv => "m/s",
+            IntensityMeasure::Pga | IntensityMeasure::Sa | IntensityMeasure::AverageSa => "g",
+            IntensityMeasure::Pgv | IntensityMeasure::Cav | IntensityMeasure::Arias => "m/s",
+            IntensityMeasure::Duration => "s",
         }
     }
 
@@ -54,6 +80,10 @@ impl IntensityMeasure {
             IntensityMeasure::Pga => "peak ground acceleration PGA",
             IntensityMeasure::Pgv => "peak ground velocity PGV",
             IntensityMeasure::Sa => "spectral acceleration of the fixed base S_a(1/f_fc, zeta_fc)",
+            IntensityMeasure::Cav => "cumulative absolute velocity CAV",
+            IntensityMeasure::Arias => "Arias intensity I_A",
+            IntensityMeasure::Duration => "significant duration D_5_95",
+            IntensityMeasure::AverageSa => "average spectral acceleration of the fixed base from 0.2/f_fc to 3/f_fc",
         }
     }
 }
@@ -77,6 +107,24 @@ pub fn peak_velocity(record: &Record) -> f64 {
 /// Arias intensity π/(2 g) ∫ a_g² dt of `record`, m/s; `g` in m/s².
 pub fn arias_intensity(record: &Record, g: f64) -> f64 {
     FRAC_PI_2 / g * squares(record).sum::<f64>()
+}
+
+/// Cumulative absolute velocity ∫ |a_g| dt of `record`, m/s.
+pub fn cumulative_absolute_velocity(record: &Record) -> f64 {
+    let area = |(t, a): (&[f64], &[f64])| match a[0] * a[1] < 0.0 {
+        true => 0.5 * (t[1] - t[0]) * (a[0] * a[0] + a[1] * a[1]) / (a[0] - a[1]).abs(),
+        false => 0.5 * (t[1] - t[0]) * (a[0] + a[1]).abs(),
+    };
+    record.times().windows(2).zip(record.acceleration().windows(2)).map(area).sum()
+}
+
+/// Average spectral acceleration of `record` about the period `T` (s) at the damping ratio `zeta`, m/s²: the geometric mean of
+/// S_a at ten periods, evenly spaced from 0.2 T to 3 T.
+pub fn average_spectral_acceleration(record: &Record, T: f64, zeta: f64) -> f64 {
+    const PERIODS: u32 = 10;
+    let period = |i| T * (0.2 + 2.8 * f64::from(i) / f64::from(PERIODS - 1));
+    let logarithms = (0..PERIODS).map(|i| libm::log(spectral_acceleration(record, period(i), zeta)));
+    libm::exp(logarithms.sum::<f64>() / f64::from(PERIODS))
 }
 
 /// The instants at which 5 % and 95 % of the Arias intensity of `record` are reached, s. The significant duration D_5–95 is between
@@ -124,6 +172,17 @@ mod tests {
         assert_relative_eq!(peak(&[5.0, 6.0, 7.0], &[0.0, -3.0, 0.0]), 3.0, max_relative = 1e-15);
         assert_relative_eq!(peak(&[0.0, 1.0], &[1.0, -3.0]), 1.0, max_relative = 1e-15); // ends at -1, was 1/8
         assert_relative_eq!(peak(&[0.0, 0.5, 2.0], &[4.0, -4.0, -4.0]), 6.0, max_relative = 1e-15);
+    }
+
+    /// Areas of triangles, by hand; S_a at ten periods is that of the spectrum.
+    #[test]
+    fn the_absolute_velocity_adds_up_and_the_average_is_over_ten_periods() {
+        let record = Record::from_samples("", vec![0.0, 1.0, 4.0, 6.0], vec![0.0, 2.0, -4.0, -4.0]).unwrap();
+        assert_relative_eq!(cumulative_absolute_velocity(&record), 1.0 + 1.0 + 4.0 + 8.0, max_relative = 1e-15);
+        let periods = [0.1, 0.255_555_6, 0.411_111_1, 0.566_666_7, 0.722_222_2, 0.877_777_8, 1.033_333_3, 1.188_888_9];
+        let product: f64 =
+            periods.iter().chain(&[1.344_444_4, 1.5]).map(|T| spectral_acceleration(&record, *T, 0.03)).product();
+        assert_relative_eq!(average_spectral_acceleration(&record, 0.5, 0.03), product.powf(0.1), max_relative = 1e-6);
     }
 
     /// Of a_g = t over 1 s: ∫ t² = 1/3, of which a part comes until its cube root; then of a rest, which adds nothing.

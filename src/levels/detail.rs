@@ -16,14 +16,16 @@
 
 use crate::levels::first_uplift;
 use crate::levels::full_contact::{self, ExactContact};
-use crate::levels::level::{ElasticRocking, Level, Now, Rates, Subject};
+use crate::levels::level::{ElasticRocking, Level, Now, Rates, Subject, way};
 use crate::levels::linear::LinearRocking;
 use crate::levels::modal::ModalRocking;
 use crate::levels::nonlinear::NonlinearRocking;
 use crate::levels::rigid::Rigid;
-use crate::mechanics::restraint::Angles;
+use crate::mechanics::instant::Second;
+use crate::mechanics::restraint::{Angles, Dissipators};
 use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift::{self, TurningMoment};
+use crate::numbers::bend::Bend;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
 use crate::{Phase, Side, State, Structure};
@@ -66,6 +68,16 @@ impl Detail {
         }
     }
 
+    /// Whether the base can lift off at this level.
+    pub const fn has_uplift(self) -> bool {
+        !matches!(self, Detail::FixedBase)
+    }
+
+    /// Whether an elastic strut carries the top mass at this level.
+    pub const fn has_strut(self) -> bool {
+        !matches!(self, Detail::Rigid)
+    }
+
     /// The angles at which the ties elongate at this level.
     pub(crate) fn angles(self) -> Angles {
         if self == Detail::Linear { Angles::Small } else { Angles::Any }
@@ -97,8 +109,10 @@ impl Detail {
 
 /// A level of any type.
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 #[allow(clippy::large_enum_variant)] // an engine keeps one, behind a pointer
-pub(crate) enum AnyLevel {
+#[allow(private_interfaces)] // the coordinates of one mass name the type, and nobody else can use it
+pub enum AnyLevel {
     Nonlinear(Elastic<NonlinearRocking>),
     Linear(Elastic<LinearRocking>),
     Modal(Elastic<ModalRocking>),
@@ -168,6 +182,16 @@ impl<Rocking: ElasticRocking> Elastic<Rocking> {
     fn new(contact: Option<ExactContact>, rocking: Rocking) -> Elastic<Rocking> {
         Elastic { contact, turning: rocking.turning_moment(), rocking }
     }
+
+    /// The |u| (m) below which the base stays down over the interval of `start`, whatever pushes the top mass.
+    #[inline(always)]
+    fn least_displacement(&self, start: &Start) -> f64 {
+        let &Subject { ref structure, is_tied, .. } = self.rocking.subject();
+        match is_tied {
+            false => structure.u_cr, // every leap asks
+            true => uplift::least_displacement(structure, start.a_v, start.interval, start.dissipators),
+        }
+    }
 }
 
 impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
@@ -193,6 +217,10 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
         }
     }
 
+    fn second(&self, rates: &Rates) -> Option<Second<Bend>> {
+        self.rocking.second(rates)
+    }
+
     #[inline(always)]
     fn series(&self, phase: Phase, start: &Start, arc: &mut Arc) {
         match phase {
@@ -213,25 +241,26 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
         first_uplift::first(self.structure(), &self.turning, start, arc)
     }
 
-    #[inline(always)]
-    fn least_displacement(&self, start: &Start) -> f64 {
-        let &Subject { ref structure, is_tied, .. } = self.subject();
-        match is_tied {
-            false => structure.u_cr, // every leap asks
-            true => uplift::least_displacement(structure, start.a_v, start.interval, start.dissipators),
-        }
+    fn holds(&self, start: &Start) -> bool {
+        start.state.u.abs() + way(start.interval, start.state.u_dot) < self.least_displacement(start)
+    }
+
+    fn stays_down(&self, state: &State, dissipators: &Dissipators) -> bool {
+        let at_rest = Start { dissipators, ..Start::default() };
+        uplift::farthest(self.structure(), state) < self.least_displacement(&at_rest)
     }
 
     fn uplift_margin(&self, now: &Now) -> (f64, Side) {
         uplift::margin(self.structure(), &self.turning, now.state, now.load.a_v, now.dissipators)
     }
 
-    fn accelerations(&self, phase: Phase, now: &Now) -> [f64; 2] {
+    fn accelerations(&self, phase: Phase, now: &Now) -> Second<f64> {
         match phase {
             Phase::FullContact => [full_contact::acceleration(self.structure(), now.state, now.load), 0.0],
             Phase::Rocking(side) => self.rocking.accelerations(side, now),
             Phase::Overturned(_) => [0.0; 2],
         }
+        .into()
     }
 }
 
@@ -261,15 +290,15 @@ impl Level for FixedBase {
         full_contact::series(self.structure(), start, arc);
     }
 
-    fn accelerations(&self, _phase: Phase, now: &Now) -> [f64; 2] {
-        [full_contact::acceleration(self.structure(), now.state, now.load), 0.0]
+    fn accelerations(&self, _phase: Phase, now: &Now) -> Second<f64> {
+        [full_contact::acceleration(self.structure(), now.state, now.load), 0.0].into()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Dissipators, Load, Parameters, Ramp};
+    use crate::{Load, Parameters, Ramp};
     use proptest::prelude::*;
 
     /// Numbers between −1 and 1: a linear congruential generator.
@@ -333,7 +362,7 @@ mod tests {
                 for i in 0..=20 {
                     let sigma = f64::from(i) / 20.0;
                     let (state, load) = (&arc.at(sigma), Load::ground(a_g.at(sigma * interval)));
-                    let [u_ddot, theta_ddot] =
+                    let Second { u_ddot, theta_ddot } =
                         level.accelerations(phase, &Now { state, load, dissipators: &Dissipators::NEW });
                     let bounds = [most.u, most.u_dot, most.u_ddot, most.theta, most.theta_dot, most.theta_ddot];
                     let values = [state.u, state.u_dot, u_ddot, state.theta, state.theta_dot, theta_ddot];

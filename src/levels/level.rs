@@ -2,9 +2,12 @@
 
 use crate::levels::rules::{ChatterLimit, MAX_TRANSITIONS_PER_PERIOD};
 use crate::mechanics::impact;
+use crate::mechanics::instant::Second;
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::restraint::{Angles, Dissipators};
-use crate::mechanics::uplift::{self, TurningMoment};
+use crate::mechanics::uplift::TurningMoment;
+use crate::numbers::bend::Bend;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{Phase, Side, State, Structure};
@@ -12,16 +15,16 @@ use std::f64::consts::TAU;
 
 /// A structure at one instant.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Now<'a> {
-    pub state: &'a State,
-    pub load: Load,
+pub(crate) struct Now<'a, Q = f64> {
+    pub state: &'a State<Q>,
+    pub load: Load<Q>,
     pub dissipators: &'a Dissipators,
 }
 
 /// The structure that a level moves, and how it is moved.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Subject {
-    pub structure: Structure,
+pub(crate) struct Subject<Q: Coordinates = f64> {
+    pub structure: Q::Structure,
     /// Truncation error that a step may have.
     pub local_error: f64,
     /// Whether the structure is restrained or shaken vertically: its equations of rocking then have more terms.
@@ -30,16 +33,16 @@ pub(crate) struct Subject {
     pub angles: Angles,
 }
 
-impl Subject {
+impl<Q: Coordinates> Subject<Q> {
     /// The step of `interval` (s) from `state` under `load`.
     #[inline]
     pub(crate) fn start<'a>(
         &self,
-        state: State,
+        state: State<Q>,
         dissipators: &'a Dissipators,
-        load: LinearLoad,
+        load: LinearLoad<Q>,
         interval: f64,
-    ) -> Start<'a> {
+    ) -> Start<'a, Q> {
         let (a_g, a_top, a_v) = (load.on_foundation(), load.on_top(&self.structure), load.upwards());
         Start { state, a_g, a_top, a_v, dissipators, interval, local_error: self.local_error }
     }
@@ -47,69 +50,82 @@ impl Subject {
 
 /// The level of detail of a structure. The provided methods are those of an elastic strut. Without the methods about uplift the
 /// base stays on the ground.
-pub(crate) trait Level {
-    fn subject(&self) -> &Subject;
+#[allow(private_interfaces)] // the coordinates name the trait, and nobody else can use it
+pub trait Level<Q: Coordinates = f64> {
+    fn subject(&self) -> &Subject<Q>;
 
-    fn structure(&self) -> &Structure {
+    fn structure(&self) -> &Q::Structure {
         &self.subject().structure
     }
 
     /// The state at the end of `start`, if it is known exactly and no transition can happen until then.
-    fn leap(&self, phase: Phase, start: &Start) -> Option<State>;
+    fn leap(&self, phase: Phase, start: &Start<Q>) -> Option<State<Q>>;
 
     /// Bounds of the motion over such a leap from `start` to `end`.
-    fn rates(&self, phase: Phase, start: &Start, end: &State) -> Rates;
+    fn rates(&self, phase: Phase, start: &Start<Q>, end: &State<Q>) -> Rates;
+
+    /// Bounds of (ü, θ̈) and of their derivatives over such a leap while rocking.
+    fn second(&self, _rates: &Rates) -> Option<Second<Bend>> {
+        None
+    }
 
     /// Writes the motion from `start` in `phase` into `arc`.
-    fn series(&self, phase: Phase, start: &Start, arc: &mut Arc);
+    fn series(&self, phase: Phase, start: &Start<Q>, arc: &mut Arc<Q>);
 
     /// Whether the equations of rocking are about to have no solution.
-    fn is_singular(&self, _phase: Phase, _state: &State) -> bool {
+    fn is_singular(&self, _phase: Phase, _state: &State<Q>) -> bool {
         false
     }
 
     /// The first instant of `arc`, a motion in full contact from `start`, at which uplift is due, and about which side.
-    fn first_uplift(&self, _start: &Start, _arc: &Arc) -> (Crossing, Side) {
+    fn first_uplift(&self, _start: &Start<Q>, _arc: &Arc<Q>) -> (Crossing, Side) {
         (Crossing::None, Side::Right)
     }
 
-    /// The |u| (m) below which the base stays down over the interval of `start`, whatever pushes the top mass.
-    fn least_displacement(&self, _start: &Start) -> f64 {
-        f64::INFINITY
+    /// Whether the base certainly stays down for the interval of `start`, a tiny time, whatever accelerates the modes.
+    fn holds(&self, _start: &Start<Q>) -> bool {
+        true
     }
 
     /// Distance of a structure in full contact from uplift, as a fraction of the demand for uplift, and the side of that uplift.
     /// The distance is continuous, and uplift is due if it is not positive.
-    fn uplift_margin(&self, _now: &Now) -> (f64, Side) {
+    fn uplift_margin(&self, _now: &Now<Q>) -> (f64, Side) {
         (1.0, Side::Right)
     }
 
     /// Whether a structure in full contact in `state` stays there while nothing acts on it.
-    fn stays_down(&self, state: &State, dissipators: &Dissipators) -> bool {
-        let at_rest = Start { dissipators, ..Start::default() };
-        uplift::farthest(self.structure(), state) < self.least_displacement(&at_rest)
+    fn stays_down(&self, _state: &State<Q>, _dissipators: &Dissipators) -> bool {
+        true
     }
 
     /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
-    fn after_impact(&self, side: Side, before: &State) -> (Phase, State) {
-        impact::resolve(self.structure(), side, before)
+    fn after_impact(&self, side: Side, before: &State<Q>) -> (Phase, State<Q>) {
+        impact::resolve::<Q>(self.structure(), side, before)
     }
 
     /// The most transitions that may happen within a period.
     fn chatter_limit(&self) -> ChatterLimit {
-        ChatterLimit { period: TAU / self.structure().omega_u, transitions: MAX_TRANSITIONS_PER_PERIOD }
+        ChatterLimit {
+            period: TAU / Q::vibration(self.structure()).rocking[0],
+            transitions: MAX_TRANSITIONS_PER_PERIOD,
+        }
     }
 
     /// `state`, with 0 for all that cannot move in `phase`.
-    fn admissible(&self, phase: Phase, state: State) -> State {
+    fn admissible(&self, phase: Phase, state: State<Q>) -> State<Q> {
         match phase {
             Phase::FullContact => State { theta: 0.0, theta_dot: 0.0, ..state },
             Phase::Rocking(_) | Phase::Overturned(_) => state,
         }
     }
 
-    /// (ü, θ̈) in `phase`, m/s² and rad/s²; not a number where the equations have no solution.
-    fn accelerations(&self, phase: Phase, now: &Now) -> [f64; 2];
+    /// ü and θ̈ in `phase`, m/s² and rad/s²; not a number where the equations have no solution.
+    fn accelerations(&self, phase: Phase, now: &Now<Q>) -> Second<f64, Q>;
+}
+
+/// The most by which a quantity with this `rate` changes over `ahead` (s), whatever accelerates it.
+pub(crate) fn way(ahead: f64, rate: f64) -> f64 {
+    ahead * (rate.abs() + 1.0)
 }
 
 /// Equations of rocking with an elastic strut.
@@ -122,6 +138,10 @@ pub(crate) trait ElasticRocking {
 
     fn rates(&self, _side: Side, _start: &Start, _end: &State) -> Rates {
         Rates::NONE
+    }
+
+    fn second(&self, _rates: &Rates) -> Option<Second<Bend>> {
+        None
     }
 
     fn series(&self, side: Side, start: &Start, arc: &mut Arc);

@@ -18,8 +18,10 @@ use crate::levels::level::{ElasticRocking, Now, Pace, Rates, Subject};
 use crate::levels::linear_system::{LinearSystem, Row};
 use crate::levels::oscillator::Kept;
 use crate::levels::ties::TieSeries;
+use crate::mechanics::instant::Second;
 use crate::mechanics::restraint::{Angles, Restraint};
 use crate::mechanics::uplift::TurningMoment;
+use crate::numbers::bend::Bend;
 use crate::series::taylor::{Arc, Series, Start};
 use crate::{Side, State, Structure};
 use nalgebra::{SMatrix, SVector};
@@ -174,6 +176,10 @@ impl ElasticRocking for LinearRocking {
     fn rates(&self, side: Side, start: &Start, _end: &State) -> Rates {
         let swing = self.swing(side, start, amplification(self.feedback, start.interval));
         if swing.turning < f64::INFINITY { self.rates_of(start, &swing) } else { Rates::NONE }
+    }
+
+    fn second(&self, rates: &Rates) -> Option<Second<Bend>> {
+        Some(self.system.second(rates))
     }
 
     /// The series by Eqs 7 and 8. If the structure is restrained or shaken vertically, g is g + a_v, linear in time, and the ties

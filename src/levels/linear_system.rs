@@ -5,8 +5,10 @@
 //! θ̈ = T_u u + T_u̇ u̇ + T_θ θ + T_a (a_g − F_t/m) + s T_s
 //! ```
 
-use crate::levels::level::Pace;
+use crate::levels::level::{Pace, Rates};
+use crate::mechanics::instant::Second;
 use crate::mechanics::uplift::TurningMoment;
+use crate::numbers::bend::Bend;
 use crate::series::taylor::{Arc, Start};
 use crate::{Side, State};
 
@@ -42,6 +44,20 @@ impl LinearSystem {
         let &State { u, u_dot, theta, .. } = state;
         let rate = |row: &Row| row.u * u + row.u_dot * u_dot + row.theta * theta + row.forcing(a_top, side.sign());
         [rate(&self.u_ddot), rate(&self.theta_ddot)]
+    }
+
+    /// Bounds of (ü, θ̈) and of their derivatives, given bounds of the motion. The load has no second derivative.
+    pub(crate) fn second(&self, rates: &Rates) -> Second<Bend> {
+        let &Rates { u_dot, u_ddot, u_dddot, theta_dot, theta_ddot, .. } = rates;
+        let sum = |row: &Row, u: f64, u_dot: f64, theta: f64| {
+            row.u.abs() * u + row.u_dot.abs() * u_dot + row.theta.abs() * theta
+        };
+        let [u_bend, theta_bend] = [&self.u_ddot, &self.theta_ddot].map(|row| sum(row, u_ddot, u_dddot, theta_ddot));
+        let theta_rate = sum(&self.theta_ddot, u_dot, u_ddot, theta_dot);
+        Second {
+            u_ddot: Bend { value: u_ddot, rate: u_dddot, bend: u_bend },
+            theta_ddot: Bend { value: theta_ddot, rate: theta_rate, bend: theta_bend },
+        }
     }
 
     /// Writes the motion from `start` about `side` into `arc`.

@@ -12,7 +12,9 @@
 use crate::levels::level::{ElasticRocking, Now, Pace, Rates, Subject};
 use crate::levels::linear_system::{LinearSystem, Row};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
+use crate::mechanics::instant::Second;
 use crate::mechanics::uplift::TurningMoment;
+use crate::numbers::bend::Bend;
 use crate::series::taylor::{Arc, Start, reciprocal};
 use crate::{Side, State, Structure};
 use std::f64::consts::FRAC_PI_2;
@@ -152,6 +154,10 @@ impl ElasticRocking for ModalRocking {
             theta_dot: q_r_dot + shape * u_dot,
             theta_ddot: p_l * p_l * off + shape * u_ddot,
         }
+    }
+
+    fn second(&self, rates: &Rates) -> Option<Second<Bend>> {
+        Some(self.system.second(rates))
     }
 
     fn series(&self, side: Side, start: &Start, arc: &mut Arc) {

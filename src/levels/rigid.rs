@@ -21,6 +21,7 @@
 use crate::levels::level::{Level, Now, Rates, Subject};
 use crate::levels::rules::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
 use crate::levels::ties::TieSeries;
+use crate::mechanics::instant::Second;
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
 use crate::mechanics::uplift::least_push;
@@ -151,8 +152,8 @@ impl Level for Rigid {
     }
 
     /// Without u only the load decides.
-    fn least_displacement(&self, _start: &Start) -> f64 {
-        0.0
+    fn holds(&self, _start: &Start) -> bool {
+        false
     }
 
     fn stays_down(&self, state: &State, dissipators: &Dissipators) -> bool {
@@ -188,19 +189,21 @@ impl Level for Rigid {
     }
 
     /// Nothing moves relative to the ground in full contact.
-    fn accelerations(&self, phase: Phase, now: &Now) -> [f64; 2] {
+    fn accelerations(&self, phase: Phase, now: &Now) -> Second<f64> {
         let &Subject { ref structure, is_tied, .. } = &self.subject;
         let (&crate::Parameters { m, g, .. }, Structure { p_l, .. }) = (structure.parameters(), structure);
-        let (Phase::Rocking(side), &Now { state, load, dissipators }) = (phase, now) else { return [0.0; 2] };
+        let (Phase::Rocking(side), &Now { state, load, dissipators }) = (phase, now) else {
+            return [0.0; 2].into();
+        };
         let [p, q] = shape(structure, side, state.theta);
         let [of_p, of_q] = self.force_by_shape(side);
         let free = p_l.powi(2) * (p - load.a_g / g * q + load.F_t / (m * g) * (of_p * p + of_q * q));
         if !is_tied {
-            return [0.0, free];
+            return [0.0, free].into();
         }
         let chord = Angles::Any.chord(state.theta, state.theta_dot);
         let held = Restraint::about(structure, side, dissipators).moment(&chord);
-        [0.0, free - (held / structure.J_P - p_l.powi(2) * load.a_v / g * p)]
+        [0.0, free - (held / structure.J_P - p_l.powi(2) * load.a_v / g * p)].into()
     }
 }
 

@@ -5,9 +5,10 @@
 
 use crate::levels::detail::AnyLevel;
 use crate::levels::level::{Now, Rates};
-use crate::mechanics::instant::{Instant, Strut};
+use crate::mechanics::instant::{Instant, Second, Strut};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::{Measure, Outputs, composed, searched};
+use crate::mechanics::reactions::forces;
 use crate::numbers::bend::Bend;
 use crate::numbers::dual::Dual;
 use crate::numbers::linear::{Leaf, Linear};
@@ -30,7 +31,7 @@ impl AnyLevel {
     /// The outputs in `phase`.
     #[inline]
     pub(crate) fn outputs(&self, phase: Phase, now: &Now) -> Outputs {
-        let strut = self.strut(phase, || self.accelerations(phase, now)[1]);
+        let strut = self.strut(phase, || self.accelerations(phase, now).theta_ddot);
         Outputs::at(&Instant { strut, ..Instant::of(self.structure(), phase, now.state, now.load) })
     }
 
@@ -100,12 +101,33 @@ impl AnyLevel {
     /// Bounds of the searched outputs, their rates and second derivatives over a leap under `load` that lasts `duration` (s).
     #[inline]
     pub(crate) fn bends(&self, phase: Phase, load: LinearLoad, duration: f64, rates: &Rates) -> Searched<Bend> {
+        searched(&self.bending(phase, load, duration, rates))
+    }
+
+    /// Bounds of R_h and R_v likewise, given the accelerations.
+    #[inline]
+    pub(crate) fn bends_of_forces(
+        &self,
+        phase: Phase,
+        load: LinearLoad,
+        duration: f64,
+        rates: &Rates,
+        second: &Second<Bend>,
+    ) -> [Bend; 2] {
+        let x = self.bending(phase, load, duration, rates);
+        let theta_dot = Bend { bend: second.theta_ddot.rate, ..x.theta_dot };
+        forces(&Instant { theta_dot, ..x }, second)
+    }
+
+    /// Bounds of the motion over such a leap. The second derivative of θ̇ is not known.
+    #[inline]
+    fn bending(&self, phase: Phase, load: LinearLoad, duration: f64, rates: &Rates) -> Instant<'_, Bend> {
         let &Rates { u, u_dot, u_ddot, u_dddot, theta, theta_dot, theta_ddot } = rates;
         let last = load.at(duration);
         let bend = |value, rate, bend| Bend { value, rate, bend };
         let ramp = |from: f64, to: f64, slope: f64| bend(from.abs().max(to.abs()), slope.abs(), 0.0);
         let turning = bend(theta, theta_dot, theta_ddot);
-        let x = Instant {
+        Instant {
             structure: self.structure(),
             s: phase.side().sign(),
             strut: Strut::Elastic(self.structure().base.damping(phase)),
@@ -117,8 +139,7 @@ impl AnyLevel {
             a_g: ramp(load.value.a_g, last.a_g, load.slope.a_g),
             F_t: ramp(load.value.F_t, last.F_t, load.slope.F_t),
             a_v: ramp(load.value.a_v, last.a_v, load.slope.a_v),
-        };
-        searched(&x)
+        }
     }
 
     /// Rates of the searched outputs in `phase` and `state` under `load`, given (ü, θ̈), with an elastic strut.

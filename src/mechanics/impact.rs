@@ -28,11 +28,26 @@ pub fn angular_momentum<Q: Coordinates>(structure: &Q::Structure, before: &State
     along - (across + m0 * B * B - J0) * theta_dot
 }
 
+/// The coefficient of restitution at an impact that ends rocking about `side` in the state `before`. Without a given one, momentum
+/// with the shape frozen gives (M19)
+///
+/// ```text
+/// r = (J_P − 2 m_t B² + Σ μ u²)/(J_P + 2 sB Σ Γ u + Σ μ u²)
+/// ```
+pub fn restitution<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &State<Q>) -> f64 {
+    let &Base { m_t, B, J_P, r, .. } = Q::base(structure);
+    r.unwrap_or_else(|| {
+        let square = Q::sum(structure, |j, mode| mode.mass * before.u.of(j) * before.u.of(j));
+        let offset = Q::sum(structure, |j, mode| mode.gamma * before.u.of(j));
+        (J_P - 2.0 * m_t * B * B + square) / (J_P + 2.0 * side.sign() * B * offset + square)
+    })
+}
+
 /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
 pub fn resolve<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &State<Q>) -> (Phase, State<Q>) {
-    if angular_momentum(structure, before) * before.theta_dot > 0.0 {
-        let theta_dot = Q::base(structure).r * before.theta_dot;
-        (Phase::Rocking(side.opposite()), State { theta: 0.0, theta_dot, ..*before })
+    let r = restitution(structure, side, before);
+    if angular_momentum(structure, before) * before.theta_dot > 0.0 && r > 0.0 {
+        (Phase::Rocking(side.opposite()), State { theta: 0.0, theta_dot: r * before.theta_dot, ..*before })
     } else {
         (Phase::FullContact, land(structure, before))
     }
@@ -49,7 +64,8 @@ pub fn resolve<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &St
 /// new pivot is farther from the top mass, and keeping θ̇ adds energy even with r = 1. A landing always loses ½ J₋ θ̇² less
 /// ½ m H² θ̇². With many masses, each term with m is a sum over the modes.
 pub fn energy_gained<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &State<Q>) -> f64 {
-    let (&Base { B, r, J_P, .. }, s) = (Q::base(structure), side.sign());
+    let (&Base { B, J_P, .. }, s) = (Q::base(structure), side.sign());
+    let r = restitution(structure, side, before);
     let &State { u, u_dot, theta_dot, .. } = before;
     let sum = |term: &dyn Fn(usize, &Mode) -> f64| Q::sum(structure, term);
     let square = theta_dot * theta_dot;

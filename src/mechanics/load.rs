@@ -12,17 +12,18 @@
 //! The vertical ground acceleration a_v replaces g by g + a_v in every weight.
 
 use crate::Structure;
+use crate::mechanics::lateral::Coordinates;
 use crate::structure::quantity::{OutOfRange, Quantity, quantity};
 use serde::{Deserialize, Serialize};
 use std::ops::{Index, IndexMut};
 
 /// An acceleration over one interval, positive to the right: `value + slope·(t − start of the interval)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Ramp {
+pub struct Ramp<Q = f64> {
     /// Value at the start of the interval, m/s².
-    pub value: f64,
+    pub value: Q,
     /// Rate of the acceleration, m/s³.
-    pub slope: f64,
+    pub slope: Q,
 }
 
 impl Ramp {
@@ -31,24 +32,26 @@ impl Ramp {
     pub fn between(from: f64, to: f64, duration: f64) -> Ramp {
         Ramp { value: from, slope: (to - from) / duration }
     }
+}
 
+impl<Q: Coordinates> Ramp<Q> {
     /// Acceleration `tau` seconds after the start of the interval, m/s².
-    pub fn at(self, tau: f64) -> f64 {
-        self.value + self.slope * tau
+    pub fn at(self, tau: f64) -> Q {
+        self.value.plus(self.slope, tau)
     }
 
     /// The same acceleration with an interval that starts `tau` seconds later.
-    pub fn from(self, tau: f64) -> Ramp {
+    pub fn from(self, tau: f64) -> Ramp<Q> {
         Ramp { value: self.at(tau), slope: self.slope }
     }
 
     /// Coefficient `k` of the power series over a step of `span` s.
     #[inline]
-    pub(crate) fn coefficient(self, k: usize, span: f64) -> f64 {
+    pub(crate) fn coefficient(self, k: usize, span: f64) -> Q {
         match k {
             0 => self.value,
-            1 => self.slope * span,
-            _ => 0.0,
+            1 => self.slope.times(span),
+            _ => Q::ZERO,
         }
     }
 }
@@ -97,7 +100,15 @@ impl Load {
     /// a_g − F_t/m, the ground acceleration that the top mass feels, m/s².
     #[inline]
     pub fn on_top(self, structure: &Structure) -> f64 {
-        self.a_g - self.F_t / structure.parameters().m
+        self.on_modes(structure)
+    }
+}
+
+impl<Q: Coordinates> Load<Q> {
+    /// The ground acceleration that each mode feels, a_g Γ/μ − F_t/μ, m/s².
+    #[inline(always)]
+    pub(crate) fn on_modes(self, structure: &Q::Structure) -> Q {
+        Q::each(structure, |j, mode| mode.part(self.a_g) - self.F_t.of(j) / mode.mass)
     }
 }
 
@@ -129,46 +140,39 @@ impl IndexMut<usize> for Load {
 
 /// The loads over one interval: `value + slope·(t − start of the interval)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct LinearLoad {
+pub struct LinearLoad<Q = f64> {
     /// Loads at the start of the interval.
-    pub value: Load,
+    pub value: Load<Q>,
     /// Rates of the loads, per second.
-    pub slope: Load,
+    pub slope: Load<Q>,
 }
 
-impl LinearLoad {
+impl<Q: Coordinates> LinearLoad<Q> {
+    /// Constant loads.
+    pub(crate) fn held(value: Load<Q>) -> LinearLoad<Q> {
+        LinearLoad { value, slope: Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 } }
+    }
+
     /// Loads `tau` seconds after the start of the interval.
     #[inline]
-    pub fn at(self, tau: f64) -> Load {
+    pub fn at(self, tau: f64) -> Load<Q> {
         Load {
             a_g: self.value.a_g + self.slope.a_g * tau,
-            F_t: self.value.F_t + self.slope.F_t * tau,
+            F_t: self.value.F_t.plus(self.slope.F_t, tau),
             a_v: self.value.a_v + self.slope.a_v * tau,
         }
     }
 
     /// The same loads with an interval that starts `tau` seconds later.
-    pub fn from(self, tau: f64) -> LinearLoad {
+    pub fn from(self, tau: f64) -> LinearLoad<Q> {
         LinearLoad { value: self.at(tau), ..self }
-    }
-
-    /// These loads with the accelerations of `ground` added.
-    pub fn on_ground(self, ground: LinearLoad) -> LinearLoad {
-        let and = |own: Load, ground: Load| Load { a_g: own.a_g + ground.a_g, a_v: own.a_v + ground.a_v, ..own };
-        LinearLoad { value: and(self.value, ground.value), slope: and(self.slope, ground.slope) }
-    }
-
-    /// These loads with the vertical ground acceleration `a_v`.
-    #[cold]
-    pub(crate) fn and_upwards(self, a_v: Ramp) -> LinearLoad {
-        LinearLoad { value: Load { a_v: a_v.value, ..self.value }, slope: Load { a_v: a_v.slope, ..self.slope } }
     }
 
     /// Whether the sum of the loads at the end of an `interval` (s) is finite. Then every load is finite throughout.
     #[inline]
     pub(crate) fn is_finite_over(&self, interval: f64) -> bool {
         let Load { a_g, F_t, a_v } = self.at(interval);
-        (a_g + F_t + a_v).abs() <= f64::MAX
+        (a_g + F_t.total() + a_v).abs() <= f64::MAX
     }
 
     /// Whether the ground moves upwards or downwards.
@@ -187,26 +191,41 @@ impl LinearLoad {
         Ramp { value: self.value.a_g, slope: self.slope.a_g }
     }
 
-    /// The ground acceleration that the top mass feels.
+    /// The ground acceleration that each mode feels; of one mass, the acceleration that the top mass feels.
     #[inline]
-    pub(crate) fn on_top(self, structure: &Structure) -> Ramp {
-        if self.value.F_t.abs() + self.slope.F_t.abs() == 0.0 {
-            return self.on_foundation(); // the result of the division, at less cost
+    pub(crate) fn on_top(self, structure: &Q::Structure) -> Ramp<Q> {
+        if self.value.F_t.is_within(&Q::ZERO) && self.slope.F_t.is_within(&Q::ZERO) {
+            let Ramp { value, slope } = self.on_foundation(); // the result of the divisions, at less cost
+            return Ramp { value: Q::parts(structure, value), slope: Q::parts(structure, slope) };
         }
         self.on_pushed_top(structure)
     }
 
     /// [`LinearLoad::on_top`] with a force.
     #[cold]
-    fn on_pushed_top(self, structure: &Structure) -> Ramp {
-        Ramp { value: self.value.on_top(structure), slope: self.slope.on_top(structure) }
+    fn on_pushed_top(self, structure: &Q::Structure) -> Ramp<Q> {
+        Ramp { value: self.value.on_modes(structure), slope: self.slope.on_modes(structure) }
+    }
+}
+
+impl LinearLoad {
+    /// These loads with the accelerations of `ground` added.
+    pub fn on_ground(self, ground: LinearLoad) -> LinearLoad {
+        let and = |own: Load, ground: Load| Load { a_g: own.a_g + ground.a_g, a_v: own.a_v + ground.a_v, ..own };
+        LinearLoad { value: and(self.value, ground.value), slope: and(self.slope, ground.slope) }
+    }
+
+    /// These loads with the vertical ground acceleration `a_v`.
+    #[cold]
+    pub(crate) fn and_upwards(self, a_v: Ramp) -> LinearLoad {
+        LinearLoad { value: Load { a_v: a_v.value, ..self.value }, slope: Load { a_v: a_v.slope, ..self.slope } }
     }
 }
 
 /// Constant loads.
 impl From<Load> for LinearLoad {
     fn from(value: Load) -> LinearLoad {
-        LinearLoad { value, slope: Load::default() }
+        LinearLoad::held(value)
     }
 }
 

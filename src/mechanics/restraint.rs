@@ -17,6 +17,7 @@
 use crate::mechanics::uplift::Hold;
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
+use crate::structure::{Base, Ties};
 use crate::{Side, State, Structure};
 use serde::{Deserialize, Serialize};
 
@@ -102,12 +103,48 @@ impl Tie {
     pub(crate) fn force<N: Number>(&self, length: N, rate: N) -> N {
         N::constant(self.force) + (length * self.stiffness + rate * self.damping) * self.lever
     }
+
+    /// The moment by which the tie that stands for all ties turns the base back at this `chord`, N·m.
+    #[inline]
+    pub(crate) fn moment<N: Number>(&self, chord: &Chord<N>) -> N {
+        self.force(chord.length, chord.rate) * chord.half.cos
+    }
 }
 
 /// The levers of the dissipators while rocking about `side`, m.
-pub(crate) fn levers(structure: &Structure, side: Side) -> [f64; 2] {
-    let &crate::Parameters { B, xi_d, .. } = structure.parameters();
+pub(crate) fn levers(base: &Base, side: Side) -> [f64; 2] {
+    let &Base { B, ties: Ties { xi_d, .. }, .. } = base;
     [side.sign() * B - xi_d, side.sign() * B + xi_d]
+}
+
+/// The tendon and both dissipators of `base` about `side`, with the dissipators in this state.
+#[inline]
+pub(crate) fn ties(base: &Base, side: Side, dissipators: &Dissipators) -> [Tie; 3] {
+    let &Base { B, ties: Ties { P_0, k_t, c_d, k_d, F_y, .. }, .. } = base;
+    let levers = levers(base, side);
+    let dissipator = |j: usize| {
+        let (force, stiffness) = match dissipators.yields[j] {
+            0 => (-k_d * dissipators.plastic[j], k_d),
+            way => (f64::from(way) * F_y, 0.0),
+        };
+        Tie { lever: levers[j], force, stiffness, damping: c_d }
+    };
+    let tendon = Tie { lever: side.sign() * B, force: P_0, stiffness: k_t, damping: 0.0 };
+    [tendon, dissipator(0), dissipator(1)]
+}
+
+/// One tie with the lever 1 in place of all `ties`, each with this weight.
+#[inline]
+pub(crate) fn sum(ties: &[Tie; 3], weight: impl Fn(&Tie) -> f64) -> Tie {
+    ties.iter().fold(Tie { lever: 1.0, force: 0.0, stiffness: 0.0, damping: 0.0 }, |sum, tie| {
+        let of_elongation = weight(tie) * tie.lever;
+        Tie {
+            force: sum.force + weight(tie) * tie.force,
+            stiffness: sum.stiffness + of_elongation * tie.stiffness,
+            damping: sum.damping + of_elongation * tie.damping,
+            ..sum
+        }
+    })
 }
 
 /// Tendon and dissipators of a structure that rocks, or is about to lift off, about a side.
@@ -123,17 +160,7 @@ impl<'a> Restraint<'a> {
     /// The restraint about `side` with the dissipators in this state.
     #[inline]
     pub fn about(structure: &'a Structure, side: Side, dissipators: &Dissipators) -> Restraint<'a> {
-        let &crate::Parameters { B, P_0, k_t, c_d, k_d, F_y, .. } = structure.parameters();
-        let levers = levers(structure, side);
-        let dissipator = |j: usize| {
-            let (force, stiffness) = match dissipators.yields[j] {
-                0 => (-k_d * dissipators.plastic[j], k_d),
-                way => (f64::from(way) * F_y, 0.0),
-            };
-            Tie { lever: levers[j], force, stiffness, damping: c_d }
-        };
-        let tendon = Tie { lever: side.sign() * B, force: P_0, stiffness: k_t, damping: 0.0 };
-        Restraint { structure, side, ties: [tendon, dissipator(0), dissipator(1)] }
+        Restraint { structure, side, ties: ties(&structure.base, side, dissipators) }
     }
 
     /// The forces of the ties at this `chord`.
@@ -142,30 +169,16 @@ impl<'a> Restraint<'a> {
         Restraints { P_t, F_d1, F_d2 }
     }
 
-    /// One tie with the lever 1 in place of all ties, each with this weight.
-    #[inline]
-    fn sum(&self, weight: impl Fn(&Tie) -> f64) -> Tie {
-        self.ties.iter().fold(Tie { lever: 1.0, force: 0.0, stiffness: 0.0, damping: 0.0 }, |sum, tie| {
-            let of_elongation = weight(tie) * tie.lever;
-            Tie {
-                force: sum.force + weight(tie) * tie.force,
-                stiffness: sum.stiffness + of_elongation * tie.stiffness,
-                damping: sum.damping + of_elongation * tie.damping,
-                ..sum
-            }
-        })
-    }
-
     /// The tie that turns the base back about the pivot like all ties together: its force times cos(θ/2) is their moment, N·m.
     #[inline]
     pub(crate) fn moments(&self) -> Tie {
-        self.sum(|tie| tie.lever)
+        sum(&self.ties, |tie| tie.lever)
     }
 
     /// The moment Σ F l cos(θ/2) about the pivot by which the ties turn the base back, N·m.
     #[inline]
     pub(crate) fn moment<N: Number>(&self, chord: &Chord<N>) -> N {
-        self.moments().force(chord.length, chord.rate) * chord.half.cos
+        self.moments().moment(chord)
     }
 
     /// Pulls of the ties on the ground, up and to the right, N, and their moment about the place of the middle of the base in
@@ -173,7 +186,7 @@ impl<'a> Restraint<'a> {
     pub(crate) fn pulls<N: Number>(&self, chord: &Chord<N>) -> [N; 3] {
         let middle = self.side.sign() * self.structure.parameters().B;
         let force = |tie: Tie| tie.force(chord.length, chord.rate);
-        let (pull, moment) = (force(self.sum(|_| 1.0)), force(self.sum(|tie| middle - tie.lever)));
+        let (pull, moment) = (force(sum(&self.ties, |_| 1.0)), force(sum(&self.ties, |tie| middle - tie.lever)));
         [pull * chord.half.cos, pull * chord.half.sin, moment * chord.half.cos]
     }
 
@@ -246,7 +259,7 @@ impl Restraints {
 /// second is larger, the structure may come to rest turned.
 pub fn centring_moments(structure: &Structure) -> [f64; 2] {
     let &crate::Parameters { m, m0, B, g, P_0, F_y, .. } = structure.parameters();
-    [((m + m0) * g + P_0) * B, levers(structure, Side::Right).iter().map(|lever| F_y * lever.abs()).sum()]
+    [((m + m0) * g + P_0) * B, levers(&structure.base, Side::Right).iter().map(|lever| F_y * lever.abs()).sum()]
 }
 
 impl Dissipators {
@@ -255,9 +268,9 @@ impl Dissipators {
 
     /// The dissipators after a transition to rocking about a side at a rate θ̇ (rad/s), or to rest in contact (none). A dissipator
     /// that keeps moving the way it yielded keeps yielding.
-    pub(crate) fn after(mut self, structure: &Structure, rocking: Option<(Side, f64)>) -> Dissipators {
+    pub(crate) fn after(mut self, base: &Base, rocking: Option<(Side, f64)>) -> Dissipators {
         for j in 0..2 {
-            let on = |(side, theta_dot)| f64::from(self.yields[j]) * levers(structure, side)[j] * theta_dot > 0.0;
+            let on = |(side, theta_dot)| f64::from(self.yields[j]) * levers(base, side)[j] * theta_dot > 0.0;
             if !rocking.is_some_and(on) {
                 self.yields[j] = 0;
             }
@@ -274,7 +287,7 @@ impl Dissipators {
     pub(crate) fn moved_by(&self, structure: &Structure, side: Side, chord: Chord) -> Dissipators {
         let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
         let mut moved = Dissipators { yields: [0; 2], ..*self };
-        for (j, lever) in levers(structure, side).into_iter().enumerate() {
+        for (j, lever) in levers(&structure.base, side).into_iter().enumerate() {
             let force = k_d * (lever * chord.length - moved.plastic[j]);
             if force.abs() > F_y {
                 let plastic = lever * chord.length - F_y.copysign(force) / k_d;

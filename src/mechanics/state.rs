@@ -1,6 +1,7 @@
 //! State and phase of the structure.
 
 use crate::Structure;
+use crate::mechanics::lateral::Coordinates;
 use crate::structure::quantity::{OutOfRange, Quantity, quantity, with_unit};
 use serde::{Deserialize, Serialize};
 
@@ -123,6 +124,9 @@ pub enum InitialStateError {
          time and with what yields: choose linear, or set P_0, k_t, c_d, k_d and a_v to 0"
     )]
     RestrainedModal,
+    /// Structures of many masses have no such level.
+    #[error("detail = {0} moves structures of one mass alone: choose auto or nonlinear")]
+    OneMass(&'static str),
     /// The top mass is displaced although the strut is rigid.
     #[error("u_0 = {u:?} m, u_dot_0 = {u_dot:?} m/s contradict detail = rigid, where u is always 0: set both to 0")]
     DeformedRigid {
@@ -151,16 +155,24 @@ impl State {
         State { u, u_dot: structure.omega_fc * u, theta, theta_dot: structure.p_l * theta }
     }
 
-    /// Whether all components are finite numbers.
-    pub fn is_finite(&self) -> bool {
-        (self.u + self.u_dot + self.theta + self.theta_dot).abs() <= f64::MAX // one instruction where f64::is_finite takes a dozen
-    }
-
     /// The phase that this state starts in: full contact for θ = 0, otherwise rocking about the side of θ's sign.
     pub fn initial_phase(&self) -> Result<Phase, InitialStateError> {
         for quantity in &INITIAL_VALUES {
             quantity.check((quantity.get)(self))?;
         }
+        self.phase()
+    }
+}
+
+impl<Q: Coordinates> State<Q> {
+    /// Whether all components are finite numbers.
+    pub fn is_finite(&self) -> bool {
+        // one instruction where f64::is_finite takes a dozen
+        (self.u.total() + self.u_dot.total() + self.theta + self.theta_dot).abs() <= f64::MAX
+    }
+
+    /// The phase by θ and θ̇.
+    pub(crate) fn phase(&self) -> Result<Phase, InitialStateError> {
         if self.theta != 0.0 {
             Ok(Phase::Rocking(Side::of(self.theta)))
         } else if self.theta_dot == 0.0 {

@@ -41,10 +41,17 @@ impl Leaf {
         Leaf { start: *start, change: sum_of_magnitudes(changing), rate: weighed_sum(&ORDERS[1..], changing) }
     }
 
-    /// The same leaf without its rate, for bounds that do not ask whether a quantity turns round.
+    /// Leaves without their rates, for bounds that do not ask whether a quantity turns round; `row` gives their coefficients of each
+    /// order up to `order`.
     #[inline(always)]
-    pub(crate) fn changing(self) -> Leaf {
-        Leaf { rate: f64::INFINITY, ..self }
+    pub(crate) fn several<const N: usize>(order: usize, row: impl Fn(usize) -> [f64; N]) -> [Leaf; N] {
+        let mut leaves = row(0).map(|start| Leaf { start, change: 0.0, rate: f64::INFINITY });
+        for k in 1..ORDERS.len().min(order + 1) {
+            for (leaf, c) in leaves.iter_mut().zip(row(k)) {
+                leaf.change += c.abs();
+            }
+        }
+        leaves
     }
 
     /// The slope of such a leaf per unit of σ, without its rate.

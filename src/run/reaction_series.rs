@@ -7,12 +7,12 @@ use crate::levels::level::Subject;
 use crate::levels::shown::{linear_parts, over, turning};
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::load::LinearLoad;
-use crate::mechanics::reactions::forces;
+use crate::mechanics::reactions::{forces, forces_by_momentum};
 use crate::mechanics::restraint::Restraint;
 use crate::numbers::linear::{Leaf, Linear};
 use crate::numbers::{Number, Turn};
 use crate::series::extremes::Range;
-use crate::series::taylor::{Arc, Series};
+use crate::series::taylor::{Arc, ORDERS, ZERO};
 use crate::series::terms::Terms;
 use crate::{Dissipators, Phase, Reactions, Structure};
 
@@ -29,8 +29,7 @@ pub(crate) fn series(
         in_full_contact(level, load, arc)
     } else {
         let x = level.terms(phase, load, arc);
-        let second = Second { u_ddot: x.u_dot.slope(arc.span), theta_ddot: x.theta_dot.slope(arc.span) };
-        let [R_h, R_v] = forces(&x, &second);
+        let [R_h, R_v] = forces_by_momentum(&x, |momentum| momentum.slope(arc.span));
         Reactions { R_h, R_v, R_m: Terms::constant(0.0) }
     };
     let &Subject { ref structure, is_tied, .. } = level.subject();
@@ -64,12 +63,9 @@ fn in_full_contact(level: &AnyLevel, load: LinearLoad, arc: &Arc) -> Reactions<T
 #[inline(always)]
 fn linear_in_full_contact(structure: &Structure, load: LinearLoad, arc: &Arc) -> Reactions<Linear<3>> {
     let none = (Linear::constant(0.0), Turn::none());
-    let x = Instant {
-        u: Linear::leaf(0, 1.0, Leaf::of(arc.used(&arc.u)).changing()),
-        ..over(structure, Phase::FullContact, load, arc, none)
-    };
-    let u_ddot = Linear::leaf(1, 1.0 / arc.span, Leaf::of_slope(arc.used(&arc.u_dot)));
-    Reactions::at(&x, &Second { u_ddot, theta_ddot: Linear::constant(0.0) })
+    let [u, u_ddot] = Leaf::several(arc.order, |k| contact_leaves(arc, k));
+    let x = Instant { u: Linear::leaf(0, 1.0, u), ..over(structure, Phase::FullContact, load, arc, none) };
+    Reactions::at(&x, &Second { u_ddot: Linear::leaf(1, 1.0 / arc.span, u_ddot), theta_ddot: Linear::constant(0.0) })
 }
 
 /// Coefficient `k` of u and ü, the latter per unit of σ.
@@ -78,21 +74,43 @@ fn contact_leaves(arc: &Arc, k: usize) -> [f64; 2] {
     [arc.u[k], arc.slope(&arc.u_dot, k)]
 }
 
-/// Bounds of a reaction over a polynomial.
+/// Bounds of a reaction over a polynomial: it stays within `half` of `middle`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extent {
-    pub least: f64,
-    pub largest: f64,
+    pub middle: f64,
+    pub half: f64,
 }
 
 impl Extent {
     /// The extent of a reaction without bounds.
-    pub(crate) const ANY: Extent = Extent { least: f64::NEG_INFINITY, largest: f64::INFINITY };
+    pub(crate) const ANY: Extent = Extent { middle: 0.0, half: f64::INFINITY };
+
+    /// The extent of a reaction that leaves the chord between `first` and `last` by at most `off`.
+    #[inline(always)]
+    pub(crate) fn between(first: f64, last: f64, off: f64) -> Extent {
+        Extent { middle: 0.5 * (first + last), half: 0.5 * (last - first).abs() + off }
+    }
 
     /// The extent of a reaction, given the course of its linear part.
+    #[inline(always)]
     fn of<const L: usize>(course: &Range, reaction: &Linear<L>) -> Extent {
-        let off = course.off_chord + reaction.rest;
-        Extent { least: course.start.min(course.end) - off, largest: course.start.max(course.end) + off }
+        Extent::between(course.start, course.end, course.off_chord + reaction.rest)
+    }
+
+    #[inline(always)]
+    pub(crate) fn least(&self) -> f64 {
+        self.middle - self.half
+    }
+
+    #[inline(always)]
+    pub(crate) fn largest(&self) -> f64 {
+        self.middle + self.half
+    }
+
+    /// Bound of the magnitude.
+    #[inline(always)]
+    pub(crate) fn most(&self) -> f64 {
+        self.middle.abs() + self.half
     }
 }
 
@@ -107,22 +125,23 @@ pub(crate) fn extents(structure: &Structure, phase: Phase, load: LinearLoad, arc
         let [R_h, R_v, R_m] = std::array::from_fn(|i| Extent::of(&parts[i], &reactions[i]));
         return Reactions { R_h, R_v, R_m };
     }
-    let of = |series: &Series| Leaf::of(arc.used(series)).changing();
-    let slope = |series: &Series| Leaf::of_slope(arc.used(series));
-    let per_span = 1.0 / arc.span;
+    let [mut u_slope, mut theta_slope] = [ZERO; 2];
+    for k in 1..ORDERS.len().min(arc.order + 1) {
+        (u_slope[k - 1], theta_slope[k - 1]) = (ORDERS[k] * arc.u_dot[k], ORDERS[k] * arc.theta_dot[k]);
+    }
+    let coefficients = |k: usize| [arc.u[k], arc.u_dot[k], arc.theta_dot[k], arc.theta[k], u_slope[k], theta_slope[k]];
+    let [u, u_dot, theta_dot, theta, u_ddot, theta_ddot] = Leaf::several(arc.order, coefficients);
     let x = Instant {
-        u: Linear::loose(of(&arc.u)),
-        u_dot: Linear::loose(of(&arc.u_dot)),
-        theta_dot: Linear::loose(of(&arc.theta_dot)),
-        ..over::<4>(structure, phase, load, arc, turning(of(&arc.theta)))
+        u: Linear::loose(u),
+        u_dot: Linear::loose(u_dot),
+        theta_dot: Linear::loose(theta_dot),
+        ..over::<4>(structure, phase, load, arc, turning(theta))
     };
-    let second = Second {
-        u_ddot: Linear::leaf(1, per_span, slope(&arc.u_dot)),
-        theta_ddot: Linear::leaf(2, per_span, slope(&arc.theta_dot)),
-    };
+    let per_span = 1.0 / arc.span;
+    let second =
+        Second { u_ddot: Linear::leaf(1, per_span, u_ddot), theta_ddot: Linear::leaf(2, per_span, theta_ddot) };
     let reactions = forces(&x, &second);
-    let leaves = |k: usize| [arc.theta[k], arc.slope(&arc.u_dot, k), arc.slope(&arc.theta_dot, k)];
-    let parts = linear_parts(&reactions, leaves, arc);
+    let parts = linear_parts(&reactions, |k| [arc.theta[k], u_slope[k], theta_slope[k]], arc);
     let [R_h, R_v] = std::array::from_fn(|i| Extent::of(&parts[i], &reactions[i]));
     Reactions { R_h, R_v, R_m: Extent::ANY }
 }

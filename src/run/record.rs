@@ -1,6 +1,7 @@
 //! A ground motion record: its samples, between which the ground accelerations are linear.
 
 use crate::run::ground_motion::{Elapsed, GroundMotion, Segments};
+use std::sync::Arc;
 
 /// Most samples that a record has.
 pub const MAX_SAMPLES: usize = 10_000_000;
@@ -8,8 +9,9 @@ pub const MAX_SAMPLES: usize = 10_000_000;
 /// A ground motion: at least two samples, finite, at strictly increasing times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
-    title: String,
-    times: Vec<f64>,
+    /// Shared with the copies of the record that are scaled, as the times are.
+    title: Arc<str>,
+    times: Arc<[f64]>,
     acceleration: Vec<f64>,
     /// At the same times; none where the ground moves horizontally alone.
     vertical: Option<Vec<f64>>,
@@ -69,14 +71,14 @@ impl Record {
     ) -> Result<Record, SamplesError> {
         let title = title.into();
         match check_samples(&times, &acceleration) {
-            Ok(()) => Ok(Record { title, times, acceleration, vertical: None }),
+            Ok(()) => Ok(Record { title: title.into(), times: times.into(), acceleration, vertical: None }),
             Err(problem) => Err(SamplesError::BadSamples { title, problem }),
         }
     }
 
     /// Ground at rest for `duration` (s), greater than 0: free vibration.
     pub fn at_rest(duration: f64) -> Record {
-        let [times, acceleration] = [vec![0.0, duration], vec![0.0, 0.0]];
+        let (times, acceleration) = ([0.0, duration].into(), vec![0.0, 0.0]);
         Record { title: "free vibration".into(), times, acceleration, vertical: None }
     }
 
@@ -87,20 +89,21 @@ impl Record {
     pub fn with_vertical(self, vertical: &Record) -> Result<Record, SamplesError> {
         if self.start() != vertical.start() {
             let (start, begins) = (self.start(), vertical.start());
-            return Err(SamplesError::Apart { title: self.title, start, vertical: vertical.title.clone(), begins });
+            let [title, vertical] = [self.title, vertical.title.clone()].map(|title| title.to_string());
+            return Err(SamplesError::Apart { title, start, vertical, begins });
         }
         if vertical.acceleration.iter().all(|a_v| *a_v == 0.0) {
             return Ok(self);
         }
         let end = self.end().max(vertical.end());
         let [own, other] = [(&self.times, &self.acceleration), (&vertical.times, &vertical.acceleration)]
-            .map(|(times, acceleration)| until(end, times.clone(), acceleration.clone()));
+            .map(|(times, acceleration)| until(end, times.to_vec(), acceleration.clone()));
         let mut times = [&own.0[..], &other.0].concat();
         times.sort_by(f64::total_cmp);
         times.dedup();
         let [acceleration, vertical] =
             [own, other].map(|(samples, of)| times.iter().map(|time| at(&samples, &of, *time)).collect::<Vec<_>>());
-        Ok(Record { times, acceleration, vertical: Some(vertical), ..self })
+        Ok(Record { times: times.into(), acceleration, vertical: Some(vertical), ..self })
     }
 
     /// This ground motion without its vertical component, at the same times.
@@ -111,14 +114,14 @@ impl Record {
     /// This ground motion with every time multiplied by `time_scale`, greater than 0, and every acceleration by
     /// `scale`; an error where that leaves no motion whose accelerations and slopes are finite.
     pub fn scaled(mut self, time_scale: f64, scale: f64) -> Result<Record, SamplesError> {
-        self.times.iter_mut().for_each(|time| *time *= time_scale);
+        self.times = self.times.iter().map(|time| time * time_scale).collect();
         let record = self.multiplied(scale);
         let is_motion = |(t, a): (&[f64], &[f64])| t[1] > t[0] && ((a[1] - a[0]) / (t[1] - t[0])).is_finite();
         let is_record = |of: &Vec<f64>| record.times.windows(2).zip(of.windows(2)).all(is_motion);
         let is_whole = is_record(&record.acceleration) && record.vertical.iter().all(is_record);
         match is_whole && record.end().is_finite() {
             true => Ok(record),
-            false => Err(SamplesError::BadScales { title: record.title, time_scale, scale }),
+            false => Err(SamplesError::BadScales { title: record.title.to_string(), time_scale, scale }),
         }
     }
 
@@ -136,7 +139,7 @@ impl Record {
 
     /// This ground motion under another title.
     pub fn titled(self, title: impl Into<String>) -> Record {
-        Record { title: title.into(), ..self }
+        Record { title: title.into().into(), ..self }
     }
 
     /// Title of the record.

@@ -27,8 +27,10 @@ mod assumptions;
 use super::reaction_series::{self, Extent, extents};
 use super::{Finish, Run, RunError};
 use crate::engine::piece::{Expansion, Piece, Sample, Watch};
-use crate::levels::level::Rates;
+use crate::levels::level::{Now, Rates};
 use crate::mechanics::impact;
+use crate::mechanics::instant::Instant;
+use crate::mechanics::reactions::forces;
 use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::evaluate;
@@ -46,7 +48,7 @@ use serde::{Deserialize, Serialize};
 /// Something worse by no more than this part may be rounding.
 const ROUNDING: f64 = 1e-14;
 
-/// A force that is worse by no more than this part of the weight is not looked for, and what differs by no more is the same.
+/// A value that is worse by no more than this is not looked for, and what differs by no more than this part is the same.
 const MARGIN: f64 = 1e-12;
 
 /// A series of reactions that is off by less than this part of its terms at its end has converged.
@@ -120,7 +122,7 @@ pub struct Worst {
 
 /// The findings about a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Found {
+pub struct Findings {
     /// In the order of [`ASSUMPTIONS`].
     pub worst: [Worst; ASSUMPTIONS.len()],
     /// Impacts that raise the energy, however little.
@@ -135,12 +137,12 @@ pub struct Found {
     pub duration: f64,
 }
 
-impl Found {
+impl Findings {
     /// Findings before anything has been seen, from `time` (s) on.
-    pub fn since(time: f64) -> Found {
+    pub fn since(time: f64) -> Findings {
         let none = |value| Worst { value, time, first_beyond: None, beyond: 0.0 };
         let worst = ASSUMPTIONS.map(|assumption| none(assumption.start));
-        Found { worst, gains: 0, impacts: 0, settlings: 0, held: 0.0, duration: 0.0 }
+        Findings { worst, gains: 0, impacts: 0, settlings: 0, held: 0.0, duration: 0.0 }
     }
 
     /// Sees `value` of assumption `which` at `time` (s). The first of several values that differ by rounding counts.
@@ -194,17 +196,17 @@ impl Found {
 pub struct Validity {
     structure: Structure,
     limits: Limits,
-    found: Found,
+    found: Findings,
 }
 
 impl Validity {
     /// The watcher of `structure`, which continues from what has been `found`.
-    pub fn new(structure: &Structure, limits: Limits, found: Found) -> Validity {
+    pub fn new(structure: &Structure, limits: Limits, found: Findings) -> Validity {
         Validity { structure: *structure, limits, found }
     }
 
     /// The findings so far.
-    pub fn found(&self) -> &Found {
+    pub fn found(&self) -> &Findings {
         &self.found
     }
 
@@ -235,42 +237,52 @@ impl Validity {
 
     /// Whether reactions within these bounds may hold something worse than what has been seen, or go beyond a limit.
     fn may_matter(&self, phase: Phase, reactions: &Reactions<Extent>) -> bool {
-        let has_weight = reactions.R_v.least > 0.0; // otherwise no friction is enough
-        !has_weight
-            || self.may_break::<EdgeLoad>(phase, reactions)
-            || self.may_break::<Friction>(phase, reactions)
-            || self.may_break::<Tension>(phase, reactions)
+        let Reactions { R_h, R_v, R_m } = reactions;
+        let worst = Reactions { R_h: R_h.most(), R_v: R_v.least(), R_m: R_m.most() };
+        self.may_break::<EdgeLoad>(phase, &worst)
+            || self.may_break::<Friction>(phase, &worst)
+            || self.may_break::<Tension>(phase, &worst)
     }
 
-    fn may_break<A: OfReactions>(&self, phase: Phase, reactions: &Reactions<Extent>) -> bool {
+    /// The same of one assumption, given reactions that break it more than others do.
+    #[inline]
+    fn may_break<A: OfReactions>(&self, phase: Phase, reactions: &Reactions) -> bool {
         let Assumption { limit, passing, .. } = &ASSUMPTIONS[A::PLACE];
-        let (worst, limit) = (self.found.worst[A::PLACE].value, limit(&self.limits));
-        let first = if passing.is_worse(worst, limit) { limit } else { worst };
-        let slack = MARGIN * self.scale().W;
-        let is_closed = |combination: &Combination| combination.extent(reactions).largest < slack;
-        A::holds_in(phase) && !A::worse(self.scale(), first).iter().flatten().all(is_closed)
+        let (seen, limit) = (self.found.worst[A::PLACE].value, limit(&self.limits));
+        let first = if passing.is_worse(seen, limit) { limit } else { seen };
+        let value = A::value(self.scale(), reactions);
+        let is_better = if *passing == Passing::Above { value < first + MARGIN } else { value > first - MARGIN };
+        A::holds_in(phase) && !is_better
     }
 
-    /// Bounds of the reactions over a leap in full contact: a quantity whose second derivative is at most M over the time h
-    /// stays within M h²/8 of its chord.
-    fn extents_of_leap(&self, piece: &Piece) -> Reactions<Extent> {
+    /// Bounds of the reactions over a leap, if they are known: a quantity whose second derivative is at most M over the time h stays
+    /// within M h²/8 of its chord.
+    fn extents_of_leap(&self, piece: &Piece) -> Option<Reactions<Extent>> {
+        let &Piece { level, before: &Motion { phase, .. }, duration, load, .. } = piece;
+        let rates = level.rates(phase, &piece.whole().step(), &piece.end);
+        let states = [(0.0, &piece.before.state), (duration, &piece.end)];
+        let per_bend = duration * duration / 8.0;
+        if phase != Phase::FullContact {
+            let bends = level.bends_of_forces(phase, load, duration, &rates, &level.second(&rates)?);
+            let [first, last] = states.map(|(tau, state)| {
+                let now = Now { state, load: load.at(tau), dissipators: &piece.before.dissipators };
+                forces(&Instant::of(&self.structure, phase, state, now.load), &level.accelerations(phase, &now))
+            });
+            let [R_h, R_v] = std::array::from_fn(|i| Extent::between(first[i], last[i], bends[i].bend * per_bend));
+            return Some(Reactions { R_h, R_v, R_m: Extent::ANY });
+        }
         let &Parameters { m, m0, H, g, .. } = self.structure.parameters();
         let &Structure { k, c_fc, .. } = &self.structure;
-        let ends = [(0.0, &piece.before.state), (piece.duration, &piece.end)].map(|(tau, state)| {
+        let [first, last] = states.map(|(tau, state)| {
             let strut = c_fc * state.u_dot + k * state.u;
-            [strut - m0 * piece.load.at(tau).a_g, H * strut + m * g * state.u]
+            [strut - m0 * load.at(tau).a_g, H * strut + m * g * state.u]
         });
-        let step = piece.whole().step();
-        let Rates { u_ddot, u_dddot, .. } = piece.level.rates(piece.before.phase, &step, &piece.end);
-        let per_bend = piece.duration * piece.duration / 8.0;
+        let Rates { u_ddot, u_dddot, .. } = rates;
         let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
-        let extent = |i: usize, off: f64| {
-            let [from, to]: [f64; 2] = [ends[0][i], ends[1][i]];
-            Extent { least: from.min(to) - off, largest: from.max(to) + off }
-        };
+        let off = [strut, H * strut + per_bend * m * g * u_ddot];
         let W = self.scale().W;
-        let R_v = Extent { least: W, largest: W };
-        Reactions { R_h: extent(0, strut), R_v, R_m: extent(1, H * strut + per_bend * m * g * u_ddot) }
+        let [R_h, R_m] = std::array::from_fn(|i| Extent::between(first[i], last[i], off[i]));
+        Some(Reactions { R_h, R_v: Extent::between(W, W, 0.0), R_m })
     }
 
     /// Looks at the motion over a polynomial, which may be halved `halvings` times; `extents` are bounds of its reactions.
@@ -368,18 +380,20 @@ impl Watch for Validity {
             self.found.see(WEIGHT, 1.0, piece.before.time);
         }
         let (phase, is_restrained) = (piece.before.phase, piece.level.subject().is_tied);
-        // bounds over a whole leap are known in full contact under gravity only
-        let is_leap = piece.arc.is_none() && phase == Phase::FullContact && !piece.load.is_vertical();
-        if is_leap && !is_restrained && !self.may_matter(phase, &self.extents_of_leap(piece)) {
+        // bounds over a whole leap are known under gravity only
+        let is_leap = piece.arc.is_none() && !piece.load.is_vertical() && !is_restrained;
+        let of_leap = if is_leap { self.extents_of_leap(piece) } else { None };
+        if of_leap.is_some_and(|extents| !self.may_matter(phase, &extents)) {
             return;
         }
         let mut arcs = piece.arcs();
         let mut count = 0;
         while let Some(expansion) = arcs.next() {
             // of what the ties pull there are no bounds
-            let extents = match is_restrained {
-                true => Reactions { R_h: Extent::ANY, R_v: Extent::ANY, R_m: Extent::ANY },
-                false => extents(&self.structure, phase, piece.load.from(expansion.from), expansion.arc),
+            let extents = match of_leap {
+                Some(extents) if phase == Phase::FullContact => extents,
+                _ if is_restrained => Reactions { R_h: Extent::ANY, R_v: Extent::ANY, R_m: Extent::ANY },
+                _ => extents(&self.structure, phase, piece.load.from(expansion.from), expansion.arc),
             };
             if self.may_matter(phase, &extents) {
                 self.look(expansion, &extents, FINEST_PART);
@@ -437,9 +451,7 @@ impl<'a> Polynomial<'a> {
 
     /// The reactions at `sigma`, from the state there.
     fn reactions(&self, sigma: f64) -> Reactions {
-        let Expansion { piece: &Piece { level, before, load, .. }, from, arc } = self.of;
-        let motion = Motion { state: arc.at(sigma), ..*before };
-        Sample { motion, load: load.at(from + sigma * arc.span), level }.edges()
+        self.of.sample(sigma).edges()
     }
 
     /// Whether the series of R_h and R_v end in the reactions `last` of the state.
@@ -455,18 +467,18 @@ impl<'a> Polynomial<'a> {
 
     /// The series of a combination that may exceed `least`.
     fn combination(&self, combination: &Combination, least: f64) -> Option<Terms> {
-        (combination.extent(self.extents).largest > least).then(|| combination.series(&self.series))
+        (combination.extent(self.extents).largest() > least).then(|| combination.series(&self.series))
     }
 
     /// The intervals of σ on which one of `combinations` is positive, in their order.
     fn above(&self, combinations: [Option<Combination>; 2]) -> Vec<(f64, f64)> {
         let (mut found, reach): (Vec<(f64, f64)>, _) = (Vec::new(), self.of.arc.reach);
         for combination in combinations.iter().flatten() {
-            let Extent { least, largest } = combination.extent(self.extents);
-            if least > 0.0 {
+            let extent = combination.extent(self.extents);
+            if extent.least() > 0.0 {
                 return vec![(0.0, reach)];
             }
-            if largest > 0.0 {
+            if extent.largest() > 0.0 {
                 let series = combination.series(&self.series);
                 if highest(series.used(), reach) > 0.0 {
                     positive(series.used(), reach, &mut found);
@@ -510,8 +522,8 @@ fn positive(coefficients: &[f64], reach: f64, found: &mut Vec<(f64, f64)>) {
 
 impl Run<'_> {
     /// The assumptions that the run breaks, and its end.
-    pub fn validity(&self, limits: Limits) -> Result<(Found, Finish), RunError> {
-        let mut validity = Validity::new(&self.structure, limits, Found::since(self.ground.start()));
+    pub fn validity(&self, limits: Limits) -> Result<(Findings, Finish), RunError> {
+        let mut validity = Validity::new(&self.structure, limits, Findings::since(self.ground.start()));
         let finish = self.follow(&mut validity)?;
         Ok((validity.found, finish))
     }
@@ -522,10 +534,10 @@ pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
     let &Parameters { m, B, H, g, r, P_0, .. } = structure.parameters();
     let &Structure { gamma, omega_fc, u_cr, .. } = structure;
     let mut warnings = Vec::new();
-    if detail == Detail::FixedBase {
+    if !detail.has_uplift() {
         return warnings;
     }
-    if detail != Detail::Rigid && u_cr > B {
+    if detail.has_strut() && u_cr > B {
         let balanced = (gamma * g * B + P_0 * B / m) / (H * omega_fc * omega_fc + g);
         let held = if P_0 > 0.0 { "gamma g + P_0/m" } else { "gamma g" };
         warnings.push(format!(
@@ -541,7 +553,7 @@ pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
              one of the edges; raise r, or lower H/B"
         ));
     }
-    if detail != Detail::Rigid && impact::greatest_gain(structure, u_cr) > 0.0 {
+    if detail.has_strut() && impact::greatest_gain(structure, u_cr) > 0.0 {
         let range = match impact::lossless_restitution(structure, u_cr) {
             Some([least, most]) => format!("only r from {least} to {most} cannot"),
             None => "so can any other r".to_owned(),

@@ -1,7 +1,7 @@
 //! The largest magnitude of a polynomial: bounds over a step, and all of its stationary points.
 
 use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
-use crate::series::taylor::{MAX_ORDER, Series, ZERO, evaluate, weighed_sum};
+use crate::series::taylor::{MAX_ORDER, ORDERS, Series, ZERO, evaluate, weighed_sum};
 
 /// max (σ − σᵏ) over 0 ≤ σ ≤ 1 for each k, rounded up.
 const OFF_CHORD: Series = {
@@ -87,13 +87,13 @@ pub fn ranges<const N: usize>(row: impl Fn(usize) -> [f64; N], order: usize, rea
     let mut end: [f64; N] = std::array::from_fn(|i| start[i] + first[i]);
     let [mut off, mut turning] = [[0.0; N]; 2];
     let mut power = reach;
-    for (k, off_chord) in OFF_CHORD[..=order].iter().enumerate().skip(2) {
+    for k in 2..OFF_CHORD.len().min(order + 1) {
         power *= reach;
-        let (terms, order) = (row(k), k as f64);
+        let (terms, order) = (row(k), ORDERS[k]);
         for i in 0..N {
             let term = terms[i] * power;
             end[i] += term;
-            off[i] += off_chord * term.abs();
+            off[i] += OFF_CHORD[k] * term.abs();
             turning[i] += order * term.abs();
         }
     }

@@ -7,6 +7,7 @@
 //! are then the terms themselves at the end, which can be compared with the tolerance and summed as they are.
 
 use crate::State;
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Ramp;
 use crate::mechanics::restraint::Dissipators;
 use crate::series::extremes::off_chord;
@@ -18,7 +19,7 @@ pub const MAX_ORDER: usize = 28;
 pub const LONGEST_SPAN: f64 = 8.0;
 
 /// Coefficients c_k of Σ c_k σ^k.
-pub type Series = [f64; MAX_ORDER + 2];
+pub type Series<Q = f64> = [Q; MAX_ORDER + 2];
 
 /// A series of zeros.
 pub const ZERO: Series = [0.0; MAX_ORDER + 2];
@@ -96,11 +97,11 @@ pub fn stretch(coefficients: &mut [f64], from: f64, scale: f64) {
 
 /// The motion over one step: a polynomial in time for each component of the state.
 #[derive(Clone, Debug)]
-pub struct Arc {
-    /// Elastic displacement, m.
-    pub u: Series,
+pub struct Arc<Q = f64> {
+    /// Elastic displacement, m; of many masses, the coordinates of the modes.
+    pub u: Series<Q>,
     /// Its rate, m/s.
-    pub u_dot: Series,
+    pub u_dot: Series<Q>,
     /// Rotation, rad.
     pub theta: Series,
     /// Its rate, rad/s.
@@ -113,13 +114,14 @@ pub struct Arc {
     pub reach: f64,
 }
 
-impl Default for Arc {
-    fn default() -> Arc {
-        Arc { u: ZERO, u_dot: ZERO, theta: ZERO, theta_dot: ZERO, order: 0, span: 0.0, reach: 0.0 }
+impl<Q: Coordinates> Default for Arc<Q> {
+    fn default() -> Arc<Q> {
+        let none = [Q::ZERO; MAX_ORDER + 2];
+        Arc { u: none, u_dot: none, theta: ZERO, theta_dot: ZERO, order: 0, span: 0.0, reach: 0.0 }
     }
 }
 
-impl Arc {
+impl<Q: Coordinates> Arc<Q> {
     /// How long it lasts, s.
     pub fn duration(&self) -> f64 {
         self.reach * self.span
@@ -127,10 +129,38 @@ impl Arc {
 
     /// The coefficients of `series` up to the order in use.
     #[inline]
-    pub fn used<'a>(&self, series: &'a Series) -> &'a [f64] {
+    pub fn used<'a, T>(&self, series: &'a Series<T>) -> &'a [T] {
         &series[..=self.order]
     }
 
+    /// Whether the expansion consists of numbers: what is not one stays so from order to order.
+    pub fn is_finite(&self) -> bool {
+        let last = self.order;
+        (self.u_dot[last].total() + self.theta_dot[last] + self.reach).is_finite()
+    }
+
+    /// The state at the end of the step.
+    #[inline]
+    pub fn end(&self) -> State<Q> {
+        self.at(self.reach)
+    }
+
+    /// The state at `sigma`.
+    #[inline]
+    pub fn at(&self, sigma: f64) -> State<Q> {
+        if sigma == 0.0 {
+            return State { u: self.u[0], u_dot: self.u_dot[0], theta: self.theta[0], theta_dot: self.theta_dot[0] };
+        }
+        State {
+            u: Q::evaluate(self.used(&self.u), sigma),
+            u_dot: Q::evaluate(self.used(&self.u_dot), sigma),
+            theta: evaluate(self.used(&self.theta), sigma),
+            theta_dot: evaluate(self.used(&self.theta_dot), sigma),
+        }
+    }
+}
+
+impl Arc {
     /// A series of the same order, of these `coefficients`.
     pub(crate) fn series(&self, coefficients: impl Fn(usize) -> f64) -> Series {
         let mut series = ZERO;
@@ -150,12 +180,6 @@ impl Arc {
         series[0].abs().max(end.abs()) + off_chord(self.used(series), self.reach)
     }
 
-    /// Whether the expansion consists of numbers: what is not one stays so from order to order.
-    pub fn is_finite(&self) -> bool {
-        let last = self.order;
-        (self.u_dot[last] + self.theta_dot[last] + self.reach).is_finite()
-    }
-
     /// The motion from σ = `from` to σ = `to` alone.
     pub(crate) fn between(&self, from: f64, to: f64) -> Arc {
         let (mut part, scale) = (self.clone(), to - from);
@@ -164,37 +188,17 @@ impl Arc {
         }
         Arc { span: self.span * scale, reach: 1.0, ..part }
     }
-
-    /// The state at the end of the step.
-    #[inline]
-    pub fn end(&self) -> State {
-        self.at(self.reach)
-    }
-
-    /// The state at `sigma`.
-    #[inline]
-    pub fn at(&self, sigma: f64) -> State {
-        if sigma == 0.0 {
-            return State { u: self.u[0], u_dot: self.u_dot[0], theta: self.theta[0], theta_dot: self.theta_dot[0] };
-        }
-        State {
-            u: evaluate(self.used(&self.u), sigma),
-            u_dot: evaluate(self.used(&self.u_dot), sigma),
-            theta: evaluate(self.used(&self.theta), sigma),
-            theta_dot: evaluate(self.used(&self.theta_dot), sigma),
-        }
-    }
 }
 
 /// What a step starts from and what is asked of it.
 #[derive(Clone, Copy, Debug)]
-pub struct Start<'a> {
+pub struct Start<'a, Q = f64> {
     /// The state there.
-    pub state: State,
+    pub state: State<Q>,
     /// Ground acceleration from there on.
     pub a_g: Ramp,
-    /// The ground acceleration that the top mass feels from there on.
-    pub a_top: Ramp,
+    /// The ground acceleration that the top mass feels from there on; of many masses, the acceleration that each mode feels.
+    pub a_top: Ramp<Q>,
     /// Vertical ground acceleration from there on.
     pub a_v: Ramp,
     /// The dissipators there.
@@ -206,19 +210,20 @@ pub struct Start<'a> {
 }
 
 /// At rest on ground at rest, over no time.
-impl Default for Start<'_> {
+impl<Q: Coordinates> Default for Start<'_, Q> {
     fn default() -> Self {
-        let (state, rest) = (State::default(), Ramp::default());
+        let state = State { u: Q::ZERO, u_dot: Q::ZERO, theta: 0.0, theta_dot: 0.0 };
+        let (rest, a_top) = (Ramp::default(), Ramp { value: Q::ZERO, slope: Q::ZERO });
         let dissipators = &Dissipators::NEW;
-        Start { state, a_g: rest, a_top: rest, a_v: rest, dissipators, interval: 0.0, local_error: 0.0 }
+        Start { state, a_g: rest, a_top, a_v: rest, dissipators, interval: 0.0, local_error: 0.0 }
     }
 }
 
 /// The largest truncated terms that a step may have.
 #[derive(Clone, Copy, Debug)]
-pub struct Truncation {
+pub struct Truncation<Q = f64> {
     /// Of u̇, m/s.
-    pub u_dot: f64,
+    pub u_dot: Q,
     /// Of θ̇, rad/s.
     pub theta_dot: f64,
 }
@@ -241,7 +246,7 @@ pub(crate) fn reciprocal(k: usize) -> f64 {
     RECIPROCAL[k]
 }
 
-impl Arc {
+impl<Q: Coordinates> Arc<Q> {
     /// Expands the motion from `state` over `span` (s), order by order, until its last two terms are within
     /// `truncation`; coefficients of an earlier use are overwritten.
     ///
@@ -251,10 +256,26 @@ impl Arc {
     #[inline(always)]
     pub fn expand(
         &mut self,
-        state: &State,
+        state: &State<Q>,
         span: f64,
-        truncation: Truncation,
-        mut velocities: impl FnMut(&Arc, usize, f64) -> (f64, f64),
+        truncation: Truncation<Q>,
+        mut velocities: impl FnMut(&Arc<Q>, usize, f64) -> (Q, f64),
+    ) {
+        self.expand_in_place(state, span, &truncation, |arc, k, per| {
+            let theta_dot;
+            (arc.u_dot[k], theta_dot) = velocities(arc, k, per);
+            theta_dot
+        });
+    }
+
+    /// [`Arc::expand`] with `velocities` that write the coefficient of u̇ into the arc and give the coefficient of θ̇.
+    #[inline(always)]
+    pub(crate) fn expand_in_place(
+        &mut self,
+        state: &State<Q>,
+        span: f64,
+        truncation: &Truncation<Q>,
+        mut velocities: impl FnMut(&mut Arc<Q>, usize, f64) -> f64,
     ) {
         self.span = span;
         self.reach = 1.0;
@@ -263,13 +284,12 @@ impl Arc {
         let mut previous_is_small = false;
         for k in 1..MAX_ORDER + 1 {
             let per = span * reciprocal(k);
-            self.u[k] = self.u_dot[k - 1] * per;
+            self.u[k].be(&self.u_dot[k - 1], per);
             self.theta[k] = self.theta_dot[k - 1] * per;
-            let (u_dot, theta_dot) = velocities(self, k, per);
-            self.u_dot[k] = u_dot;
+            let theta_dot = velocities(self, k, per);
             self.theta_dot[k] = theta_dot;
             self.order = k;
-            let is_small = u_dot.abs() <= truncation.u_dot && theta_dot.abs() <= truncation.theta_dot;
+            let is_small = self.u_dot[k].is_within(&truncation.u_dot) && theta_dot.abs() <= truncation.theta_dot;
             if is_small && previous_is_small && k >= MIN_ORDER {
                 return;
             }
@@ -281,11 +301,11 @@ impl Arc {
 
 /// The σ up to which the last two terms of a full expansion stay within `truncation`.
 #[cold]
-fn reach(arc: &Arc, truncation: Truncation) -> f64 {
+fn reach<Q: Coordinates>(arc: &Arc<Q>, truncation: &Truncation<Q>) -> f64 {
     [MAX_ORDER - 1, MAX_ORDER]
         .into_iter()
         .map(|k| {
-            let ratios = [truncation.u_dot / arc.u_dot[k].abs(), truncation.theta_dot / arc.theta_dot[k].abs()];
+            let ratios = [arc.u_dot[k].room(&truncation.u_dot), truncation.theta_dot / arc.theta_dot[k].abs()];
             libm::pow(ratios[0].min(ratios[1]), 1.0 / k as f64)
         })
         .fold(f64::INFINITY, f64::min)

@@ -73,6 +73,9 @@ pub enum GivenError {
     /// A number is given twice.
     #[error("{0} is given twice")]
     Twice(&'static str),
+    /// A number that belongs to a structure of one mass.
+    #[error("{0} is a number of a structure of one mass: leave it out beside storeys, floors and modes")]
+    OfOneMass(&'static str),
     /// A natural quantity, or the parameter that it determines, is outside its range.
     #[error(transparent)]
     OutOfRange(OutOfRange),
@@ -181,6 +184,18 @@ impl Given {
     /// The parameters `base` changed by these numbers. α_cg changes H, or B if H is given.
     pub fn over(&self, base: &Parameters) -> Result<Parameters, GivenError> {
         self.solve(|name| PARAMETERS.iter().find(|parameter| parameter.name == name).map(|of| (of.get)(base)))
+    }
+
+    /// Parameters with the base that these numbers determine, and r if it is given. The numbers of the one mass mean nothing.
+    pub(crate) fn base(&self) -> Result<(Parameters, Option<f64>), GivenError> {
+        const OF_ONE_MASS: [&str; 8] = ["m", "weight", "H", "alpha_cg", "f_fc", "period_fc", "zeta_fc", "p_l"];
+        if let Some(name) = OF_ONE_MASS.into_iter().find(|name| self.get(name).is_some()) {
+            return Err(GivenError::OfOneMass(name));
+        }
+        let default = |name: &str| DEFAULTS.iter().find(|(default, _)| *default == name).map(|(_, value)| *value);
+        let of_mass = |name: &str| ["m", "H", "f_fc", "zeta_fc", "r"].contains(&name).then_some(1.0);
+        let parameters = self.solve(|name| default(name).or_else(|| of_mass(name)))?;
+        Ok((parameters, self.get("r")))
     }
 
     /// Whether no number is given.

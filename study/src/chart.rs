@@ -208,6 +208,7 @@ const TITLE_HEIGHT: u32 = 88;
 const MARGIN: u32 = 24;
 const NAMES: u32 = 300; // at the right of a panel, for names that begin within it
 const WORDS: u32 = 28; // size of names and notes
+const BESIDE: i32 = 24; // from a point to its name
 const FONT: &str = "sans-serif";
 
 type Drawing<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -321,7 +322,7 @@ fn draw_names(area: &Drawing, frame: Range<i32>, mut names: Vec<((i32, i32), &st
     for ((x, y), text, colour) in names {
         let lines: Vec<_> = text.split_inclusive(", ").collect();
         let longest = lines.iter().map(|line| line.chars().count()).max().unwrap_or(0);
-        let across = x + 14..x + 14 + longest as i32 * WORDS as i32 * 3 / 5;
+        let across = x + BESIDE..x + BESIDE + longest as i32 * WORDS as i32 * 3 / 5;
         let down = |y: i32| y - line_height / 2..y - line_height / 2 + lines.len() as i32 * line_height;
         let meet = |a: &Range<i32>, b: &Range<i32>| a.start < b.end && b.start < a.end;
         let is_free = |y: &i32| {

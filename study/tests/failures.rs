@@ -16,15 +16,15 @@ fn series<'a>(exhibit: &'a Exhibit, name: &str) -> &'a [(f64, f64)] {
 }
 
 #[test]
-fn a_dip_between_two_looks_is_missed_and_the_engine_sees_it() {
+fn a_dip_between_two_checks_is_missed_and_the_engine_sees_it() {
     let exhibit = double_crossing::show().unwrap();
     let lowest = |name| series(&exhibit, name).iter().map(|(_, theta)| *theta).fold(0.0, f64::min);
     assert!(
-        lowest("exact integration, sign looked at every 20 ms") < -1.0,
+        lowest("exact integration, sign checked every 20 ms") < -1.0,
         "it goes below the ground by more than 1 mrad"
     );
-    assert!(lowest("this project") >= -1e-9);
-    assert!(series(&exhibit, "where it looks").iter().all(|(_, theta)| *theta > 0.0));
+    assert!(lowest("this engine") >= -1e-9);
+    assert!(series(&exhibit, "checked here").iter().all(|(_, theta)| *theta > 0.0));
 }
 
 #[test]

@@ -56,6 +56,5 @@ fn the_command_writes_what_it_has_measured() {
     assert_eq!(row[6], format!("{:.3e}", errors.theta));
     assert_eq!(row[5], response.transitions.to_string());
     assert_eq!(row[4], format!("{:.3}", response.evaluations as f64 / scene.intervals() as f64));
-    let page = std::fs::read_to_string(docs.path().join("accuracy.md")).unwrap();
-    assert!(page.contains("falls through the ground"), "{page}");
+    assert!(rows.iter().any(|row| row[9].starts_with("falls through the ground")));
 }

@@ -3,7 +3,10 @@
 use crate::outcome::Outcome;
 use crate::{Refused, ensure};
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::estimates::intensity::{IntensityMeasure, peak_velocity};
+use rocking::estimates::intensity::{
+    IntensityMeasure, arias_intensity, average_spectral_acceleration, cumulative_absolute_velocity, peak_velocity,
+    significant_duration,
+};
 use rocking::estimates::response_spectrum::spectral_acceleration;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
@@ -57,10 +60,13 @@ pub struct NamedRecord {
     record: Record,
     /// Its own factor on the acceleration.
     scale: f64,
-    /// Peak ground acceleration of the record, m/s².
+    /// Measures of the record's intensity, in SI units.
     pga: f64,
-    /// Peak ground velocity of the record, m/s.
     pgv: f64,
+    cav: f64,
+    /// Times g, m²/s³.
+    arias: f64,
+    duration: f64,
 }
 
 /// Conditions of all runs of a plan.
@@ -94,8 +100,8 @@ pub struct Plan {
     motions: Vec<NamedRecord>,
     scales: Vec<f64>,
     conditions: Conditions,
-    /// Of every structure under every ground motion before it is scaled, m/s²: worked out when asked for.
-    spectral: Vec<OnceLock<f64>>,
+    /// S_a and S_a_avg of every structure under every ground motion before it is scaled, m/s²: worked out when asked for.
+    spectral: Vec<[OnceLock<f64>; 2]>,
 }
 
 /// One run of a plan.
@@ -116,7 +122,9 @@ pub struct Case<'a> {
     /// Runs of different groups do not depend on each other: the ground motion's number, or where there is one alone the
     /// structure's.
     pub group: usize,
-    spectral: &'a OnceLock<f64>,
+    /// Number of the ground motion in the plan, from 0.
+    pub motion_number: usize,
+    spectral: &'a [OnceLock<f64>; 2],
 }
 
 impl Population {
@@ -183,8 +191,9 @@ impl NamedRecord {
         let is_in_motion = pga != 0.0 && scale != 0.0;
         ensure(is_in_motion, || format!("the ground motion {name:?} is at rest throughout: leave it out"))?;
         ensure(scale.is_finite(), || format!("scale of {name:?} = {scale} is not a finite number"))?;
-        let pgv = peak_velocity(&record);
-        Ok(NamedRecord { name, record, scale, pga, pgv })
+        let (pgv, cav) = (peak_velocity(&record), cumulative_absolute_velocity(&record));
+        let (arias, [first, last]) = (arias_intensity(&record, 1.0), significant_duration(&record));
+        Ok(NamedRecord { name, record, scale, pga, pgv, cav, arias, duration: last - first })
     }
 
     /// Name of the ground motion.
@@ -242,7 +251,7 @@ impl Plan {
         for population in &plan.populations {
             (0..population.len()).try_for_each(|member| population.structure(member).map(|_| ()))?;
         }
-        plan.spectral = vec![OnceLock::new(); structures * motions];
+        plan.spectral = vec![[const { OnceLock::new() }; 2]; structures * motions];
         Ok(plan)
     }
 
@@ -277,7 +286,7 @@ impl Plan {
     /// Run `index` < [`Plan::len`]: scale factors change first, then ground motions, then structures.
     pub fn case(&self, index: usize) -> Case<'_> {
         let (rest, scale) = (index / self.scales.len(), self.scales[index % self.scales.len()]);
-        let (mut member, motion) = (rest / self.motions.len(), &self.motions[rest % self.motions.len()]);
+        let (mut member, motion_number) = (rest / self.motions.len(), rest % self.motions.len());
         let mut populations = self.populations.iter();
         let population = populations.find(|population| {
             let is_of_it = member < population.len();
@@ -286,9 +295,9 @@ impl Plan {
         });
         let population = population.expect("the plan has such a run");
         let structure = population.structure(member).expect("the plan has been checked");
-        let group = if self.motions.len() > 1 { rest % self.motions.len() } else { rest };
-        let (conditions, spectral) = (&self.conditions, &self.spectral[rest]);
-        Case { population, member, structure, motion, scale, conditions, group, spectral }
+        let group = if self.motions.len() > 1 { motion_number } else { rest };
+        let (motion, conditions, spectral) = (&self.motions[motion_number], &self.conditions, &self.spectral[rest]);
+        Case { population, member, structure, motion, scale, conditions, group, motion_number, spectral }
     }
 
     /// Every run, in this order.
@@ -312,13 +321,17 @@ impl Case<'_> {
     /// How strong the ground motion is, in the unit of `measure`.
     pub fn intensity(&self, measure: IntensityMeasure) -> f64 {
         let &Parameters { g, f_fc, zeta_fc, .. } = self.structure.parameters();
+        let (NamedRecord { record, .. }, [sa, average]) = (self.motion, self.spectral);
         let unscaled = match measure {
             IntensityMeasure::Pga => self.motion.pga / g,
             IntensityMeasure::Pgv => self.motion.pgv,
-            IntensityMeasure::Sa => {
-                let of_record = || spectral_acceleration(&self.motion.record, f_fc.recip(), zeta_fc);
-                self.spectral.get_or_init(of_record) / g
+            IntensityMeasure::Sa => sa.get_or_init(|| spectral_acceleration(record, f_fc.recip(), zeta_fc)) / g,
+            IntensityMeasure::AverageSa => {
+                average.get_or_init(|| average_spectral_acceleration(record, f_fc.recip(), zeta_fc)) / g
             }
+            IntensityMeasure::Cav => self.motion.cav,
+            IntensityMeasure::Arias => return self.motion.arias / g * self.factor().powi(2),
+            IntensityMeasure::Duration => return self.motion.duration,
         };
         unscaled * self.factor().abs()
     }
@@ -476,7 +489,12 @@ mod tests {
             assert_eq!(own.outcome(), multiplied.outcome());
             for measure in IntensityMeasure::ALL {
                 let [whole, own, multiplied] = [&whole, &own, &multiplied].map(|case| case.intensity(measure));
-                for expected in [multiplied, 0.5 * whole] {
+                let factor = match measure {
+                    IntensityMeasure::Duration => 1.0,
+                    IntensityMeasure::Arias => 0.25,
+                    _ => 0.5,
+                };
+                for expected in [multiplied, factor * whole] {
                     assert!((own - expected).abs() <= 1e-14 * own, "{measure:?}: {own} {expected}");
                 }
             }

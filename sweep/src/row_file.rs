@@ -33,6 +33,12 @@ pub struct Known<T> {
     by_key: HashMap<Uuid, T>,
 }
 
+impl<T> Default for Known<T> {
+    fn default() -> Known<T> {
+        Known { by_key: HashMap::new() }
+    }
+}
+
 /// The program that does the runs.
 #[derive(Clone, Debug)]
 pub struct Program {
@@ -87,7 +93,7 @@ impl RowFile {
             let mut content = Vec::new();
             file.read_to_end(&mut content)?;
             let first = line(&headings)?;
-            let mut known = Known { by_key: HashMap::new() };
+            let mut known = Known::default();
             if first.starts_with(&content) {
                 file.rewind()?;
                 file.write_all(&first)?;
@@ -113,6 +119,7 @@ impl RowFile {
         };
         let (file, length, known) = open().with_context(|| path.display().to_string())?;
         file.set_len(length as u64)?;
+        (&file).seek(SeekFrom::Start(length as u64))?;
         Ok((RowFile { path: path.into(), file: Mutex::new((file, length as u64)) }, known))
     }
 
@@ -134,12 +141,13 @@ impl RowFile {
     }
 
     /// Adds a row, or nothing.
-    fn append(&self, row: &[u8]) -> anyhow::Result<()> {
+    pub fn append(&self, row: &[u8]) -> anyhow::Result<()> {
         let mut guard = self.file.lock().expect("no thread panics with the file in hand");
         let (file, length) = &mut *guard;
-        let written = file.seek(SeekFrom::Start(*length)).and_then(|_| file.write_all(row));
+        let written = file.write_all(row);
         if written.is_err() {
             file.set_len(*length)?;
+            file.seek(SeekFrom::Start(*length))?;
         }
         written.with_context(|| format!("{} cannot be written", self.path.display()))?;
         *length += row.len() as u64;

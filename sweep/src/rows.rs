@@ -7,117 +7,271 @@ use crate::plan::{AXES, Case, Conditions, NamedRecord, Plan};
 use crate::row_file::{Known, Program, RowFile, digest, fixed, heading, line};
 use anyhow::ensure;
 use csv::StringRecord;
+use rayon::prelude::*;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::mechanics::state::INITIAL_VALUES;
-use rocking::run::validity::{ASSUMPTIONS, Found as Beyond, Limits, Validity};
-use std::collections::{HashMap, HashSet};
+use rocking::run::Ending;
+use rocking::run::validity::{ASSUMPTIONS, Findings, Limits, Validity};
+use serde::Serialize;
+use std::collections::HashSet;
 use std::path::Path;
-use std::ptr;
+use std::sync::OnceLock;
 use uuid::Uuid;
 
 /// The word for the ending of a run that has none.
-const FAILED: &str = "failed";
+pub const FAILED: &str = "failed";
 
-/// A plan with the rows of its runs, as far as they are done.
+/// How many numbers a row has of the check of validity.
+const BEYOND: usize = 2 * ASSUMPTIONS.len() + 2;
+
+/// A plan with its runs, as far as they are done.
 #[derive(Debug)]
 pub struct Sweep<'a> {
     plan: &'a Plan,
     program: &'a Program,
     validity: bool,
-    keys: Vec<Key>,
-    outcomes: Vec<Option<Outcome>>,
-    file: RowFile,
+    /// Of every run, what stands for all that the run depends on.
+    keys: Vec<Uuid>,
+    /// Digest of the samples of each ground motion, whatever its file is called.
+    digests: Vec<String>,
+    done: Vec<OnceLock<Done>>,
+    file: Option<RowFile>,
     /// Rows of the file that are not of this sweep.
-    pub others: Known<Outcome>,
+    pub others: Known<Done>,
+}
+
+/// A run that is done.
+#[derive(Debug)]
+pub struct Done {
+    outcome: Outcome,
+    /// Results of the check of validity, in the order of the headings; none if these were not asked for.
+    beyond: Box<[f64]>,
+}
+
+/// One value of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Cell<'a> {
+    /// A name or a sentence.
+    Text(&'a str),
+    /// An ending, by its name in files.
+    Ending(Ending),
+    /// A number.
+    Number(f64),
+    /// A count.
+    Count(u64),
+    /// Nothing.
+    Empty,
+}
+
+/// The values of one column, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Column {
+    /// Numbers; NaN where a row has nothing.
+    Numbers(Vec<f64>),
+    /// Counts, of which every row has one.
+    Counts(Vec<u64>),
+    /// Texts, each once, and of every row the position of its text; [`usize::MAX`] where a row has nothing.
+    Texts(Vec<String>, Vec<usize>),
 }
 
 impl<'a> Sweep<'a> {
-    /// Opens the file of rows at `path`, or begins it, and finds the runs of `plan` that are in it; with `validity` a
-    /// row says what its run goes beyond, too. Refuses runs that are the same, and rows that are not of a sweep.
-    pub fn open(plan: &'a Plan, validity: bool, program: &'a Program, path: &Path) -> anyhow::Result<Sweep<'a>> {
-        let keys = keys(plan, validity, program);
+    /// The sweep of `plan`, none of whose runs is done, or those whose rows are in the file at `path`, which is begun if there
+    /// is none. With `validity` a row says what its run goes beyond, too. Refuses runs that are the same, and a file whose rows
+    /// are not of a sweep.
+    pub fn open(
+        plan: &'a Plan,
+        validity: bool,
+        program: &'a Program,
+        path: Option<&Path>,
+    ) -> anyhow::Result<Sweep<'a>> {
+        let digests: Vec<_> = plan.motions().iter().map(digest_of).collect();
+        let keys = keys(plan, &digests, validity, program);
+        let digests = digests.iter().map(|digest| format!("{:016x}", digest.as_u64_pair().0)).collect();
         ensure!(
-            keys.iter().map(|key| key.run).collect::<HashSet<_>>().len() == keys.len(),
+            keys.iter().collect::<HashSet<_>>().len() == keys.len(),
             "two runs are the same: values that vary differ by less than a rounding error"
         );
-        let (file, mut known) = open(path)?;
-        let outcomes: Vec<_> = keys.iter().map(|key| known.take(&key.run)).collect();
-        Ok(Sweep { plan, program, validity, keys, outcomes, file, others: known })
+        let (file, mut others) = match path.map(open).transpose()? {
+            Some((file, known)) => (Some(file), known),
+            None => (None, Known::default()),
+        };
+        let known = |key| others.take(key).map_or_else(OnceLock::new, OnceLock::from);
+        let done = keys.iter().map(known).collect();
+        Ok(Sweep { plan, program, validity, keys, digests, done, file, others })
     }
 
     /// The runs that are not done.
     pub fn missing(&self) -> Vec<usize> {
-        (0..self.plan.len()).filter(|index| self.outcomes[*index].is_none()).collect()
+        (0..self.plan.len()).filter(|index| self.done[*index].get().is_none()).collect()
     }
 
-    /// Does the runs that are not done, on all threads, and adds their rows as they end; after each `goes_on` is asked.
-    /// The key of every run of the plan, which its row begins with, and what became of it.
-    pub fn finish(mut self, goes_on: impl Fn() -> bool + Sync) -> anyhow::Result<(Vec<Uuid>, Vec<Outcome>)> {
-        let run = |&index: &usize| {
-            let case = self.plan.case(index);
-            let found = Beyond::since(case.motion.record().start());
-            let mut validity = self.validity.then(|| Validity::new(&case.structure, Limits::default(), found));
-            let outcome = match &mut validity {
-                Some(validity) => case.outcome_watched(validity),
-                None => case.outcome(),
-            };
-            let beyond = validity.as_ref().map(Validity::found);
-            Ok((row(&self.keys[index], &case, &outcome, beyond, self.program)?, (index, outcome)))
+    /// Does the runs that are not done, on all threads, and adds their rows to the file as they end. After each run
+    /// `goes_on` is asked; once it says no, the rest is left undone and that is an error.
+    pub fn finish(&self, goes_on: impl Fn() -> bool + Sync) -> anyhow::Result<()> {
+        self.missing().par_iter().try_for_each(|&index| {
+            let done = self.run(index);
+            if let Some(file) = &self.file {
+                file.append(&line(&(self.keys[index].to_string(), self.row(index, &done)))?)?;
+            }
+            self.done[index].set(done).expect("each run is done once");
+            ensure!(goes_on(), "stopped: the runs that are finished are kept");
+            Ok(())
+        })
+    }
+
+    /// The key of every run of the plan, which its row begins with, and what became of it, once all are done.
+    pub fn outcomes(self) -> (Vec<Uuid>, Vec<Outcome>) {
+        let done = self.done.into_iter().map(|done| done.into_inner().expect("every run is done"));
+        (self.keys, done.map(|done| done.outcome).collect())
+    }
+
+    /// The rows of the runs that are done, in the order of the plan: their keys, and the columns with their headings. The
+    /// column of `measure` is among them.
+    pub fn table(&self, measure: IntensityMeasure) -> (Vec<Uuid>, Vec<(String, Column)>) {
+        let done = || self.done.iter().enumerate().filter_map(|(index, done)| Some((index, done.get()?)));
+        let rows = done().count();
+        let added = Some(measure).filter(|measure| !IntensityMeasure::COLUMNS.contains(measure));
+        let headings = headings().into_iter().skip(1).chain(added.map(|of| heading(of.name(), of.unit())));
+        let mut columns: Vec<_> = headings.map(|heading| (heading, Column::of(rows))).collect();
+        for (index, done) in done() {
+            let added = added.map(|measure| Cell::Number(self.plan.case(index).intensity(measure)));
+            let cells = self.row(index, done).into_iter().chain(added);
+            columns.iter_mut().zip(cells).for_each(|((_, column), cell)| column.push(cell));
+        }
+        (done().map(|(index, _)| self.keys[index]).collect(), columns)
+    }
+
+    fn run(&self, index: usize) -> Done {
+        let case = self.plan.case(index);
+        if !self.validity {
+            return Done { outcome: case.outcome(), beyond: Box::default() };
+        }
+        let found = Findings::since(case.motion.record().start());
+        let mut validity = Validity::new(&case.structure, Limits::default(), found);
+        let outcome = case.outcome_watched(&mut validity);
+        if let Outcome::Failed { .. } = outcome {
+            return Done { outcome, beyond: Box::default() };
+        }
+        let Findings { worst, gains, settlings, .. } = validity.found();
+        let beyond = worst.iter().flat_map(|worst| [worst.value, worst.time]);
+        Done { outcome, beyond: beyond.chain([*gains as f64, *settlings as f64]).collect() }
+    }
+
+    /// The row of a run that is done, without its key.
+    fn row<'b>(&'b self, index: usize, Done { outcome, beyond }: &'b Done) -> Vec<Cell<'b>> {
+        let case = self.plan.case(index);
+        let Conditions { initial, detail, tolerance, duration } = case.conditions;
+        let mut row = Vec::with_capacity(64);
+        row.extend([case.population.name(), &self.program.version].map(Cell::Text));
+        row.extend(AXES.map(|axis| Cell::Number(case.value(axis))));
+        row.extend([case.motion.name(), &self.digests[case.motion_number]].map(Cell::Text));
+        row.extend([case.motion.scale(), case.scale].map(Cell::Number));
+        row.extend(IntensityMeasure::COLUMNS.map(|measure| Cell::Number(case.intensity(measure))));
+        row.extend([Cell::Text(detail.name()), Cell::Number(*tolerance), duration.map_or(Cell::Empty, Cell::Number)]);
+        row.extend(INITIAL_VALUES.each_ref().map(|quantity| Cell::Number((quantity.get)(initial))));
+        let reason = match outcome {
+            Outcome::Ended(of) => {
+                row.extend([Cell::Ending(of.ending), Cell::Number(of.end)]);
+                row.extend(of.peaks.map(Cell::Number));
+                row.extend([of.transitions, of.steps, of.evaluations].map(Cell::Count));
+                Cell::Empty
+            }
+            Outcome::Failed { time, reason } => {
+                row.extend([Cell::Text(FAILED), Cell::Number(*time)]);
+                row.extend([Cell::Empty; MEASURES.len() + 3]);
+                Cell::Text(reason)
+            }
         };
-        let done = self.file.do_runs(&self.missing(), run, goes_on)?;
-        done.into_iter().for_each(|(index, outcome)| self.outcomes[index] = Some(outcome));
-        let outcomes = self.outcomes.into_iter().map(|outcome| outcome.expect("every run is done"));
-        Ok((self.keys.into_iter().map(|key| key.run).collect(), outcomes.collect()))
+        let with_beyond = row.len() + BEYOND;
+        row.extend(beyond.iter().copied().map(Cell::Number));
+        row.resize(with_beyond, Cell::Empty);
+        row.push(reason);
+        row
     }
 }
 
-/// Identities of a run and of its record.
-#[derive(Debug)]
-struct Key {
-    /// Stands for all that the run depends on.
-    run: Uuid,
-    /// Stands for the samples of its record, whatever its file is called.
-    record: Uuid,
+impl Column {
+    /// A column without rows, and with memory for `rows`.
+    fn of(rows: usize) -> Column {
+        Column::Counts(Vec::with_capacity(rows))
+    }
+
+    /// Adds the value of the next row. The values decide whether the column has counts, numbers or texts.
+    fn push(&mut self, cell: Cell) {
+        match (&mut *self, cell) {
+            (Column::Counts(of), Cell::Count(count)) => of.push(count),
+            (Column::Numbers(of), Cell::Count(count)) => of.push(count as f64),
+            (Column::Numbers(of), Cell::Number(number)) => of.push(number),
+            (Column::Numbers(of), Cell::Empty) => of.push(f64::NAN),
+            (Column::Texts(texts, of), Cell::Text(text)) => {
+                let last = of.last().copied().filter(|at| texts.get(*at).is_some_and(|last| last == text));
+                let known = last.or_else(|| texts.iter().position(|known| known == text));
+                of.push(known.unwrap_or(texts.len()));
+                if known.is_none() {
+                    texts.push(text.into());
+                }
+            }
+            (Column::Texts(_, of), Cell::Empty) => of.push(usize::MAX),
+            (_, Cell::Ending(ending)) => self.push(Cell::Text(&ending.to_string())),
+            (Column::Numbers(of), Cell::Text(_)) => {
+                // nothing so far
+                let mut positions = Vec::with_capacity(of.capacity());
+                positions.resize(of.len(), usize::MAX);
+                *self = Column::Texts(Vec::new(), positions);
+                self.push(cell);
+            }
+            (Column::Counts(of), cell) => {
+                let mut numbers = Vec::with_capacity(of.capacity());
+                numbers.extend(of.iter().map(|count| *count as f64));
+                *self = Column::Numbers(numbers);
+                self.push(cell);
+            }
+            (Column::Texts(..), cell) => unreachable!("a column of texts has {cell:?}"),
+        }
+    }
+}
+
+/// Stands for the samples of a record.
+fn digest_of(motion: &NamedRecord) -> Uuid {
+    let record = motion.record();
+    let samples = (record.times(), record.acceleration());
+    match record.vertical() {
+        None => digest(&Uuid::NAMESPACE_OID, &samples),
+        Some(vertical) => digest(&Uuid::NAMESPACE_OID, &(samples, vertical)),
+    }
 }
 
 /// The key of each run of `plan`, which is another one where it is asked what a run goes beyond.
-fn keys(plan: &Plan, validity: bool, program: &Program) -> Vec<Key> {
-    let of_motion = |of: &NamedRecord| {
-        let samples = (of.record().times(), of.record().acceleration());
-        let digest = match of.record().vertical() {
-            None => digest(&Uuid::NAMESPACE_OID, &samples),
-            Some(vertical) => digest(&Uuid::NAMESPACE_OID, &(samples, vertical)),
-        };
-        (ptr::from_ref(of), digest)
-    };
-    let digests: HashMap<_, _> = plan.motions().iter().map(of_motion).collect();
+fn keys(plan: &Plan, digests: &[Uuid], validity: bool, program: &Program) -> Vec<Uuid> {
     let of_case = |case: Case| {
         let names = (case.population.name(), case.motion.name());
-        let record = digests[&ptr::from_ref(case.motion)];
-        let motion = (record.into_bytes(), case.motion.scale(), case.scale);
-        Key { run: program.key(&(names, case.structure.parameters(), motion, case.conditions, validity)), record }
+        let motion = (digests[case.motion_number].into_bytes(), case.motion.scale(), case.scale);
+        program.key(&(names, case.structure.parameters(), motion, case.conditions, validity))
     };
     plan.cases().map(of_case).collect()
 }
 
 /// Opens the file at `path`, or begins it, and reads what its rows say.
-fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Outcome>)> {
+fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Done>)> {
     let headings = headings();
     let at = |heading: &str| headings.iter().position(|found| found == heading).expect("it is one of them");
     let (ending, after, reason) = (at("ending"), at("evaluations") + 1, at("reason"));
     RowFile::open(path, &headings, |row| {
         if &row[ending] == FAILED {
-            return Ok(Outcome::Failed { time: row[ending + 1].parse()?, reason: row[reason].into() });
+            let outcome = Outcome::Failed { time: row[ending + 1].parse()?, reason: row[reason].into() };
+            return Ok(Done { outcome, beyond: Box::default() });
         }
         let summary: StringRecord = row.iter().take(after).skip(ending).collect();
-        Ok(Outcome::Ended(summary.deserialize(None)?))
+        let beyond = row.iter().take(reason).skip(after).filter(|number| !number.is_empty()).map(str::parse);
+        Ok(Done { outcome: Outcome::Ended(summary.deserialize(None)?), beyond: beyond.collect::<Result<_, _>>()? })
     })
 }
 
 /// Headings of the rows.
 fn headings() -> Vec<String> {
     let quantities = AXES.map(|axis| heading(axis.name, axis.unit));
-    let intensities = IntensityMeasure::ALL.map(|measure| heading(measure.name(), measure.unit()));
+    let intensities = IntensityMeasure::COLUMNS.map(|measure| heading(measure.name(), measure.unit()));
     let initial = INITIAL_VALUES.each_ref().map(|quantity| heading(quantity.name, quantity.unit));
     let peaks = MEASURES.map(|(name, unit)| heading(&format!("peak_{name}"), unit));
     [
@@ -134,35 +288,4 @@ fn headings() -> Vec<String> {
         fixed(&["energy_gains", "settlings", "reason"]),
     ]
     .concat()
-}
-
-/// The row of a run.
-fn row(
-    key: &Key,
-    case: &Case,
-    outcome: &Outcome,
-    beyond: Option<&Beyond>,
-    program: &Program,
-) -> anyhow::Result<Vec<u8>> {
-    let values = AXES.map(|axis| case.value(axis));
-    let structure = (key.run.to_string(), case.population.name(), &program.version, values);
-    let intensities = IntensityMeasure::ALL.map(|measure| case.intensity(measure));
-    let record = (case.motion.name(), format!("{:016x}", key.record.as_u64_pair().0));
-    let motion = (record, case.motion.scale(), case.scale, intensities);
-    let Conditions { initial, detail, tolerance, duration } = case.conditions;
-    let initial = INITIAL_VALUES.each_ref().map(|quantity| (quantity.get)(initial));
-    let before = (structure, motion, (detail.name(), tolerance, duration, initial));
-    match outcome {
-        Outcome::Ended(summary) => line(&(before, summary, columns(beyond), "")),
-        Outcome::Failed { time, reason } => {
-            line(&(before, FAILED, time, ([""; MEASURES.len()], [""; 3]), columns(None), reason))
-        }
-    }
-}
-
-/// Results of the check of validity, in the order of the headings.
-fn columns(beyond: Option<&Beyond>) -> Vec<Option<f64>> {
-    let Some(beyond) = beyond else { return vec![None; 2 * ASSUMPTIONS.len() + 2] };
-    let worst = beyond.worst.iter().flat_map(|worst| [worst.value, worst.time]);
-    worst.chain([beyond.gains as f64, beyond.settlings as f64]).map(Some).collect()
 }

@@ -94,7 +94,7 @@ macro_rules! assumption {
     };
 }
 
-/// All assumptions, in the order of [`Found::worst`](super::Found::worst).
+/// All assumptions, in the order of [`Findings::worst`](super::Findings::worst).
 pub const ASSUMPTIONS: [Assumption; 7] = [
     assumption!(
         "tension_max" "largest (|R_m|/B - R_v)/W in full contact, W = (m + m0) g: above 0 tension holds the base down; -inf before full contact",
@@ -158,10 +158,10 @@ impl Combination {
 
     /// Bounds of the combination.
     pub fn extent(&self, reactions: &Reactions<Extent>) -> Extent {
-        let n = Extent { least: self.0[3], largest: self.0[3] };
-        self.weighed(reactions).fold(n, |sum, (weight, of)| {
-            let (low, high) = (weight * of.least, weight * of.largest);
-            Extent { least: sum.least + low.min(high), largest: sum.largest + low.max(high) }
+        let n = Extent { middle: self.0[3], half: 0.0 };
+        self.weighed(reactions).fold(n, |sum, (weight, of)| Extent {
+            middle: sum.middle + weight * of.middle,
+            half: sum.half + weight.abs() * of.half,
         })
     }
 }

@@ -36,13 +36,13 @@ pub fn show(scene: &Scene) -> Result<Exhibit> {
     let duration = scene.ground.end();
     let (x, y) = (Axis::linear("time, s", 0.0, duration), Axis::logarithmic("transitions so far", 1.0, 2000.0));
     let panel = Panel::new("Uplift by |u| ≥ u_cr alone never ends", x, y)
-        .with("this project: both conditions", count(&all), RIGHT)
+        .with("this engine: both conditions", count(&all), RIGHT)
         .named((0.3 * duration, 10.0))
         .with("|u| ≥ u_cr alone", count(&times), WRONG)
         .named((0.55 * stuck, 600.0));
     Ok(Exhibit {
         key: "chatter",
-        shows: "Transitions so far over time: by both conditions they go on, by one they pile up at an instant.",
+        shows: "Transitions so far over time: with both conditions the motion continues, with one condition they pile up at an instant.",
         values: context! {
             all => all.len(),
             before,

@@ -35,7 +35,7 @@ pub fn show() -> Result<Exhibit> {
     let (time, gain) = gains.find(|(_, gain)| *gain > 0.0).context("the example gains energy")?;
     let highest = path.iter().map(|(_, energy)| *energy).fold(0.0, f64::max);
     let x = Axis::linear("time, s", 0.0, DURATION);
-    let y = Axis::linear("energy over that at rest, J", 0.0, 1.25 * highest);
+    let y = Axis::linear("energy above the energy at rest, J", 0.0, 1.25 * highest);
     let panel = Panel::new(format!("An impact with r = 0.5 adds {gain:.1} J"), x, y)
         .with("McManus's geometry, 2 Hz, r = 0.5", path, WRONG)
         .named((0.2, highest))

@@ -39,14 +39,14 @@ pub fn show(scene: &Scene) -> Result<Exhibit> {
     let right = exact(scene, Detail::Nonlinear, every(CLOSE).map(|t| start - 4e-3 + t).take(600))?;
     let x = Axis::linear("time from the impact, ms", -4.0, 8.0);
     let panel = Panel::new("A return right after an impact is missed", x, Axis::linear("θ, mrad", -1.2, 0.4))
-        .with("this project", milli(&right.theta(), start), RIGHT)
+        .with("this engine", milli(&right.theta(), start), RIGHT)
         .named((1.0, 0.1))
         .with("diffsol ESDIRK34, its root finding", milli(&fall.collect::<Vec<_>>(), start), WRONG)
         .named((-1.5, -0.8))
         .with("", [(-4.0, 0.0), (8.0, 0.0)], GUIDE);
     Ok(Exhibit {
         key: "fall",
-        shows: "θ over time: the exact response lands, that of the library goes on below 0.",
+        shows: "θ over time: the exact response lands, the response of the library continues below 0.",
         values: context! {
             failure => failure.to_string(),
             length => format!("{:.0}", 1e6 * length(&hop)),

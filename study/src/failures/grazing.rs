@@ -86,10 +86,10 @@ impl Family {
 pub fn show() -> Result<Exhibit> {
     let changes: Vec<f64> = (3..=26).map(|k| 10f64.powf(-0.5 * f64::from(k))).collect();
     let (x, y) = (
-        Axis::logarithmic("relative change of the start", 1e-13, 0.1),
+        Axis::logarithmic("relative change of the initial state", 1e-13, 0.1),
         Axis::logarithmic("max|Δθ| / max|θ|", 1e-14, 1.0),
     );
-    let mut panel = Panel::new("At a graze 10⁻¹² in the start decides the answer", x, y);
+    let mut panel = Panel::new("At a graze a change of 10⁻¹² in the initial state decides the result", x, y);
     let at_1e_12 = FAMILIES.map(|family| {
         let points = family.sensitivity(&changes);
         let named = Some(family.named);
@@ -101,7 +101,7 @@ pub fn show() -> Result<Exhibit> {
     let impact = released(momentum.theta_dot, momentum.critical()).transitions[0];
     Ok(Exhibit {
         key: "grazing",
-        shows: "Change of the answer over change of the start: constant, as its root, and in proportion.",
+        shows: "Change of the result against change of the initial state: constant, as the square root, and in proportion.",
         values: context! {
             impact => format!("{:.2}", 1e3 * impact.time),
             jump => format!("{:.0}", 100.0 * jump),

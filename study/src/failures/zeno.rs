@@ -36,14 +36,15 @@ pub fn show() -> Result<Exhibit> {
     let (number, last) = (impacts.len(), impacts.last().map_or(0.0, |impact| impact.time));
     let x = Axis::linear("impact", 0.0, number as f64 + 10.0);
     let y = Axis::logarithmic("time to the next impact, s", 1e-12, 1.0);
-    let mut panel = Panel::new("The stiffer, the more impacts before landing", x, y);
+    let mut panel = Panel::new("A stiffer structure makes more impacts before it lands", x, y);
     let mut counts = Vec::new();
     for (f_fc, style) in FREQUENCIES {
         let gaps = intervals(&released(Parameters { f_fc, ..STRUCTURE }, Detail::Nonlinear)?);
         counts.push(format!("{} at {f_fc} Hz", gaps.len() + 1));
-        panel = panel.with(format!("{f_fc} Hz lands here"), gaps.last().copied(), style);
+        let last = gaps.last().copied();
+        panel = panel.with(format!("{f_fc} Hz lands here"), last, style).named(last.unwrap_or_default());
     }
-    let panel = panel.with("rigid: on and on", intervals(&rigid), Style::line(colour::BLACK, 2)).named((150.0, 3e-7));
+    let panel = panel.with("rigid: without end", intervals(&rigid), Style::line(colour::BLACK, 2)).named((150.0, 3e-7));
     Ok(Exhibit {
         key: "zeno",
         shows: "Time to the next impact over the number of impacts: it shrinks by r each time; flexible structures land.",

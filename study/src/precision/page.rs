@@ -10,9 +10,6 @@ use plotters::style::RGBColor;
 use rocking::Detail;
 use std::path::Path;
 
-/// Errors in θ at which costs are compared.
-const ERRORS: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
-
 /// Error in θ at which engine and peers are compared.
 const SIX_DIGITS: f64 = 1e-6;
 
@@ -80,13 +77,6 @@ impl Curve {
             _ => format!("{} ms", significant(1e3 * point.setting)),
         }
     }
-
-    /// At how many settings it fails, and why at the last of them.
-    fn failure(&self) -> Option<String> {
-        let failed: Vec<_> = self.points.iter().filter_map(|point| point.errors.as_ref().err()).collect();
-        let reason = failed.last()?;
-        Some(format!("{} ({} of {} settings): {reason}", self.name, failed.len(), self.points.len()))
-    }
 }
 
 /// A power of ten.
@@ -133,7 +123,7 @@ impl Diagram {
         let mut panel = Panel::new(title, x, y)
             .area((least, bottom), (most, conditioning))
             .area((least, MEANINGLESS), (most, TOP))
-            .note((least, FAILED), "fails", BLACK);
+            .note((most, FAILED), "fails", BLACK);
         for family in [&[Family::Ours], families].concat() {
             for (k, curve) in self.family(family).enumerate() {
                 let style = style(family, k);
@@ -147,23 +137,10 @@ impl Diagram {
         panel
     }
 
-    /// Findings of the picture.
+    /// Finding of the picture.
     fn finding(&self) -> Result<String> {
         let (name, _, ratio) = self.nearest(SIX_DIGITS)?;
-        Ok(format!("{}: to six digits the nearest method, {name}, takes {ratio:.1} times as long", self.title))
-    }
-
-    /// A row for each curve: what the errors cost.
-    fn rows(&self) -> Vec<Value> {
-        let cost = |curve: &Curve, error: f64| match curve.cheapest(error) {
-            Some(point) => format!("{} ({})", significant(1e6 * point.cost), curve.setting(point)),
-            None => "–".into(),
-        };
-        let row = |curve: &Curve| {
-            let costs: Vec<_> = ERRORS.iter().map(|error| cost(curve, *error)).collect();
-            context! { method => curve.name.clone(), costs, is_ours => curve.family == Family::Ours }
-        };
-        self.curves.iter().map(row).collect()
+        Ok(format!("{}: the cheapest other method with six digits, {name}, takes {ratio:.1} times as long", self.title))
     }
 
     /// The methods that are cheaper than `auto` at an error below 1, each with the smallest such error.
@@ -196,10 +173,8 @@ impl Diagram {
             dt => significant(1e3 * self.dt),
             transitions => self.transitions,
             conditioning => [theta, u, a_t].map(scientific).to_vec(),
-            rows => self.rows(),
             held => [held.first(), held.last()].map(|error| error.cloned()).to_vec(),
             undercut => undercut.into_iter().map(|(_, shown)| shown).collect::<Vec<_>>(),
-            failures => self.curves.iter().filter_map(Curve::failure).collect::<Vec<_>>(),
         };
         Ok((scene, least))
     }
@@ -246,7 +221,25 @@ fn range(values: impl Iterator<Item = f64>, show: impl Fn(f64) -> String) -> Str
     [least, most].into_iter().flatten().map(show).collect::<Vec<_>>().join(" to ")
 }
 
-/// Cost of six digits for the engine and the nearest method, scene by scene.
+/// Cost of six digits of the methods that reach them, scene by scene.
+fn rows(diagrams: &[Diagram]) -> Vec<Value> {
+    let cost = |curve: &Curve| {
+        let point = curve.cheapest(SIX_DIGITS)?;
+        Some(format!("{} ({})", significant(1e6 * point.cost), curve.setting(point)))
+    };
+    let curves = diagrams.first().map_or(&[][..], |diagram| &diagram.curves);
+    let row = |curve: &Curve| {
+        let of_method = |diagram: &Diagram| diagram.curves.iter().find(|other| other.name == curve.name).and_then(cost);
+        let costs: Vec<Option<String>> = diagrams.iter().map(of_method).collect();
+        let is_ours = curve.family == Family::Ours;
+        let is_shown = costs.iter().any(Option::is_some);
+        let costs: Vec<_> = costs.into_iter().map(|cost| cost.unwrap_or("–".into())).collect();
+        is_shown.then(|| context! { method => curve.name.clone(), costs, is_ours })
+    };
+    curves.iter().filter_map(row).collect()
+}
+
+/// Cost of six digits for the engine and the cheapest other method, scene by scene.
 fn speed(diagrams: &[Diagram]) -> Result<Value> {
     let microseconds = |time: f64| significant(1e6 * time);
     let rows = diagrams.iter().map(|diagram| {
@@ -282,7 +275,7 @@ pub fn write(diagrams: &[Diagram], docs: &Path) -> Result<()> {
     let values = context! {
         speed => speed.clone(),
         perturbation => decade(PERTURBATION),
-        errors => ERRORS.map(decade).to_vec(),
+        rows => rows(diagrams),
         undercut => least.is_finite().then(|| scientific(least)),
         scenes,
     };

@@ -1,0 +1,118 @@
+//! Structures of many masses from the keywords of Python.
+
+use crate::arguments::{matrix, number, numbers, refused};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rocking::Frame;
+use rocking::structure::description::{Damping, Described, FoundMode, Place, Storey, Total};
+use rocking::structure::natural_quantities::Given;
+
+/// Keywords that only a structure of many masses has.
+pub const OF_MANY: [&str; 3] = ["storeys", "K", "mass"];
+
+/// Keywords that have not been read yet.
+struct Keywords<'py>(Bound<'py, PyDict>);
+
+impl<'py> Keywords<'py> {
+    fn take(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let value = self.0.get_item(name)?;
+        if value.is_some() {
+            self.0.del_item(name)?;
+        }
+        Ok(value.filter(|value| !value.is_none()))
+    }
+
+    fn number(&self, name: &str) -> PyResult<Option<f64>> {
+        self.take(name)?.map(|value| number(name, &value)).transpose()
+    }
+
+    /// The column of this `name`: nothing, or a number for each of the `rows` called `of`.
+    fn column(&self, name: &str, rows: usize, of: &str) -> PyResult<Vec<Option<f64>>> {
+        let Some(value) = self.take(name)? else { return Ok(vec![None; rows]) };
+        let column = numbers(name, &value)?;
+        if column.len() != rows {
+            let needed = format!("{name} has {} numbers and must have {rows}, one for each {of}", column.len());
+            return Err(PyValueError::new_err(needed));
+        }
+        Ok(column.into_iter().map(Some).collect())
+    }
+}
+
+/// The structure of many masses that `keywords` describe.
+pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Frame> {
+    let keywords = Keywords(keywords);
+    let missing = |name: &str| PyValueError::new_err(format!("{name} is missing"));
+    let zeta = keywords.take("zeta")?.ok_or_else(|| missing("zeta (damping ratio in full contact)"))?;
+    let storeys = match keywords.take("storeys")? {
+        Some(rows) => rows.try_iter()?.enumerate().map(|(i, row)| storey(i + 1, &row?)).collect::<PyResult<_>>()?,
+        None => Vec::new(),
+    };
+    let masses = keywords.take("masses")?.map(|masses| numbers("masses", &masses)).transpose()?.unwrap_or_default();
+    let heights = keywords.column("heights", masses.len(), "mass")?;
+    let floor = |(m, h): (f64, Option<f64>)| Ok(Place { m, h: h.ok_or_else(|| missing("heights"))? });
+    let floors = masses.into_iter().zip(heights).map(floor).collect::<PyResult<Vec<_>>>()?;
+    let K = keywords.take("K")?.map(|K| matrix("K", &K)).transpose()?.unwrap_or_default();
+    let modes = modes(&keywords)?;
+    let [m_s, S_1, I_2, J_P] = ["m_s", "S_1", "I_2", "J_P"].map(|name| keywords.number(name));
+    let total = match (m_s?, S_1?, I_2?, J_P?) {
+        (None, None, None, None) => None,
+        (m_s, S_1, I_2, J_P) => Some(Total {
+            m_s: m_s.ok_or_else(|| missing("m_s (kg)"))?,
+            S_1: S_1.ok_or_else(|| missing("S_1 (kg.m)"))?,
+            I_2,
+            J_P,
+        }),
+    };
+    let described = Described { zeta: damping(&zeta)?, storeys, floors, K, modes, total, base: given(&keywords.0)? };
+    described.frame().map_err(refused)
+}
+
+/// The numbers of one mass, or of a base, by their names.
+pub fn given(keywords: &Bound<'_, PyDict>) -> PyResult<Given> {
+    let mut given = Given::default();
+    for (name, value) in keywords {
+        let name: String = name.extract()?;
+        given.give(&name, number(&name, &value)?).map_err(refused)?;
+    }
+    Ok(given)
+}
+
+fn storey(i: usize, row: &Bound<'_, PyAny>) -> PyResult<Storey> {
+    let wrong = || PyValueError::new_err(format!("storey {i} = {row:?}: dict(m=..., h=..., k=...) is needed"));
+    let row = row.cast::<PyDict>().map_err(|_| wrong())?;
+    let of = |name: &str| number(&format!("storey {i}: {name}"), &row.get_item(name)?.ok_or_else(wrong)?);
+    if row.len() == 3 { Ok(Storey { m: of("m")?, h: of("h")?, k: of("k")? }) } else { Err(wrong()) }
+}
+
+fn damping(zeta: &Bound<'_, PyAny>) -> PyResult<Damping> {
+    if let Ok(rayleigh) = zeta.cast::<PyDict>() {
+        let wrong = || PyValueError::new_err(format!("zeta = {zeta:?}: dict(f=(Hz, Hz), zeta=...) is needed"));
+        let of = |name: &str| rayleigh.get_item(name)?.ok_or_else(wrong);
+        let f = numbers("f", &of("f")?)?.try_into().map_err(|_| wrong())?;
+        return Ok(Damping::Rayleigh { f, zeta: number("zeta", &of("zeta")?)? });
+    }
+    match number("zeta", zeta) {
+        Ok(zeta) => Ok(Damping::All(zeta)),
+        Err(_) => Ok(Damping::Each(numbers("zeta", zeta)?)),
+    }
+}
+
+/// The modes by columns; the shapes by a column for each mode.
+fn modes(keywords: &Keywords) -> PyResult<Vec<FoundMode>> {
+    let Some(mass) = keywords.take("mass")? else { return Ok(Vec::new()) };
+    let mass = numbers("mass", &mass)?;
+    let [f, period, height, moment] =
+        ["f", "period", "height", "moment"].map(|name| keywords.column(name, mass.len(), "mode"));
+    let (f, period, height, moment) = (f?, period?, height?, moment?);
+    let shapes = keywords.take("shapes")?.map(|shapes| matrix("shapes", &shapes)).transpose()?.unwrap_or_default();
+    if let Some(row) = shapes.iter().find(|row| row.len() != mass.len()) {
+        let needed = format!("shapes has {} columns and must have {}, one for each mode", row.len(), mass.len());
+        return Err(PyValueError::new_err(needed));
+    }
+    let mode = |(j, mass)| {
+        let shape = shapes.iter().map(|floor| floor[j]).collect();
+        FoundMode { f: f[j], period: period[j], mass, height: height[j], moment: moment[j], shape }
+    };
+    Ok(mass.into_iter().enumerate().map(mode).collect())
+}

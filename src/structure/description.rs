@@ -1,0 +1,697 @@
+//! Structures of many masses from the numbers that engineers have: storeys, matrices, or the modes that another program found.
+//!
+//! Each way ends in a [`Frame`]. A mode with the shape φ, of the modal mass φᵀMφ = 1, has
+//!
+//! ```text
+//! ω² = φᵀKφ,   effective mass Γ² with Γ = φᵀM1,   effective height κ/Γ with κ = φᵀMh
+//! ```
+
+use crate::Parameters;
+use crate::mechanics::lateral::{MOST_MODES, Modes};
+use crate::structure::frame::{Body, Floor, Frame, FrameError};
+use crate::structure::natural_quantities::{Given, GivenError};
+use crate::structure::parameters::{MAX_SLENDERNESS, ParameterError};
+use crate::structure::quantity::{OutOfRange, Quantity};
+use crate::structure::{Mode, Ties};
+use nalgebra::{DMatrix, DVector};
+use serde::Deserialize;
+use std::f64::consts::TAU;
+
+/// The floor at `h` (m) with the mass `m` (kg), on a storey of the stiffness `k` (N/m).
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs)]
+pub struct Storey {
+    pub m: f64,
+    pub h: f64,
+    pub k: f64,
+}
+
+/// The floor at the height `h` (m) with the mass `m` (kg).
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs)]
+pub struct Place {
+    pub m: f64,
+    pub h: f64,
+}
+
+/// A mode in full contact as a finite element program prints it.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FoundMode {
+    /// Frequency, Hz; or else the period.
+    pub f: Option<f64>,
+    /// Period, s.
+    pub period: Option<f64>,
+    /// Effective mass, kg.
+    pub mass: f64,
+    /// Effective height, m; or else the moment.
+    pub height: Option<f64>,
+    /// Moment at the base for a unit of acceleration, effective mass × effective height, kg·m.
+    pub moment: Option<f64>,
+    /// Displacements of the floors in any scale; none if the floors are not known.
+    #[serde(default)]
+    pub shape: Vec<f64>,
+}
+
+/// All mass above the base, which the modes must not exceed.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Total {
+    /// Mass m_s, kg.
+    pub m_s: f64,
+    /// First moment S_1 = Σ m h, kg·m.
+    pub S_1: f64,
+    /// Second moment I_2 = Σ m h², kg·m²; or else J_P.
+    pub I_2: Option<f64>,
+    /// Inertia of the whole structure about a pivot, J_P = J0 + m_t B² + I_2, kg·m².
+    pub J_P: Option<f64>,
+}
+
+/// Damping in full contact.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "zeta is one number, a list with a number for each mode, or {f = [Hz, Hz], zeta = number} for Rayleigh damping"
+)]
+pub enum Damping {
+    /// The same ratio in all modes.
+    All(f64),
+    /// A ratio for each mode, lowest frequency first.
+    Each(Vec<f64>),
+    /// Rayleigh damping, which has the ratio `zeta` at both frequencies `f` (Hz).
+    #[allow(missing_docs)]
+    Rayleigh { f: [f64; 2], zeta: f64 },
+}
+
+/// A structure of many masses as a file has it, in one of three ways.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Described {
+    /// The base: m0, B, J0, r, g, c_ratio, the tendon and the dissipators.
+    pub base: Given,
+    /// Damping in full contact.
+    pub zeta: Damping,
+    /// The storeys from the base up.
+    #[serde(default)]
+    pub storeys: Vec<Storey>,
+    /// The floors from the base up, with the matrix K or with modes.
+    #[serde(default)]
+    pub floors: Vec<Place>,
+    /// Stiffness matrix by rows, N/m.
+    #[serde(default)]
+    pub K: Vec<Vec<f64>>,
+    /// The modes, lowest frequency first.
+    #[serde(default)]
+    pub modes: Vec<FoundMode>,
+    /// All mass above the base, with modes; without it the floors have all mass.
+    pub total: Option<Total>,
+}
+
+/// Why numbers make no structure of many masses.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // the messages have the names
+pub enum DescriptionError {
+    #[error("base: {0}")]
+    Base(#[from] GivenError),
+    #[error("base: {0}")]
+    Parameters(#[from] ParameterError),
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    #[error("{0} floors are given: a structure has 1 to {MOST_FLOORS}")]
+    Floors(usize),
+    #[error("the centre of the mass above the base is {0:.1} B high: it must not exceed {MAX_SLENDERNESS} B; raise B")]
+    Slender(f64),
+    #[error("{0}")]
+    OutOfRange(#[from] OutOfRange),
+    #[error("{what} {number}: {cause}")]
+    At { what: &'static str, number: usize, cause: OutOfRange },
+    #[error("give the structure in one way: storeys (m, h, k), floors (m, h) with the matrix K, or modes; not {0}")]
+    Ways(&'static str),
+    #[error("{what} has {count} numbers and must have {needed}, one for each {of}")]
+    Length { what: String, count: usize, needed: usize, of: &'static str },
+    #[error(
+        "floor {number} is at h = {h} m and the floor below it at {below} m: h is the height above the base, from the lowest \
+         floor up"
+    )]
+    Order { number: usize, h: f64, below: f64 },
+    #[error("K[{row}][{column}] = {value} N/m and K[{column}][{row}] = {mirrored} N/m: K must be symmetric")]
+    NotSymmetric { row: usize, column: usize, value: f64, mirrored: f64 },
+    #[error(
+        "K is not positive definite: a mode has omega^2 = {omega_2:.3e} 1/s2, in which floor {floor} moves most; K must hold \
+         each floor to a base that cannot move"
+    )]
+    NotDefinite { omega_2: f64, floor: usize },
+    #[error("mode {number} needs {one} or {other}, and not both")]
+    Either { number: usize, one: &'static str, other: &'static str },
+    #[error("I_2 (kg.m2) or J_P (kg.m2) is needed, and not both")]
+    EitherTotal,
+    #[error(
+        "modes need the total m_s (kg), S_1 (kg.m) and I_2 (kg.m2) of the mass above the base, or the floors that have it"
+    )]
+    NoTotal,
+    #[error("mode {number} has f = {f} Hz and the mode before it {before} Hz: give the lowest mode first")]
+    ModeOrder { number: usize, f: f64, before: f64 },
+    #[error(
+        "S_1 = {S_1} kg.m does not fit m_s and I_2: the mass that the modes leave over would have the first moment \
+         {rest:.3e} kg.m, beyond {limit:.3e} kg.m; check the units of h and the sum of m h"
+    )]
+    Moment { S_1: f64, rest: f64, limit: f64 },
+    #[error(
+        "the shape of mode {number} has the effective mass {found:.5e} kg with the masses of the floors, but mass = {given:.5e} \
+         kg: check the order of the floors and of the modes"
+    )]
+    Shape { number: usize, found: f64, given: f64 },
+}
+
+const fn limit(
+    name: &'static str,
+    unit: &'static str,
+    [min, max]: [f64; 2],
+    description: &'static str,
+) -> Quantity<f64> {
+    Quantity { name, unit, description, min, max, get: |of| *of, set: |of, value| *of = value }
+}
+
+const FLOOR_MASS: Quantity<f64> = limit("m", "kg", [1e-6, 1e12], "mass of the floor");
+const FLOOR_HEIGHT: Quantity<f64> = limit("h", "m", [1e-3, 1e4], "height of the floor above the base");
+const STOREY: Quantity<f64> = limit("k", "N/m", [1e-6, 1e18], "stiffness of the storey below the floor");
+const ENTRY: Quantity<f64> = limit("K", "N/m", [-1e18, 1e18], "stiffness");
+const ZETA: Quantity<f64> = limit("zeta", "1", [0.0, 10.0], "damping ratio in full contact");
+const F: Quantity<f64> = limit("f", "Hz", [1e-3, 1e4], "frequency in full contact");
+const PERIOD: Quantity<f64> = limit("period", "s", [1e-4, 1e3], "period in full contact");
+const MASS: Quantity<f64> = limit("mass", "kg", [1e-6, 1e12], "effective mass");
+const HEIGHT: Quantity<f64> = limit("height", "m", [-1e4, 1e4], "effective height");
+const MOMENT: Quantity<f64> = limit("moment", "kg.m", [-1e16, 1e16], "effective mass times effective height");
+const SHAPE: Quantity<f64> = limit("shape", "1", [-1e12, 1e12], "displacement of a floor");
+const M_S: Quantity<f64> = limit("m_s", "kg", [1e-6, 1e12], "mass above the base");
+const FIRST_MOMENT: Quantity<f64> = limit("S_1", "kg.m", [1e-9, 1e16], "first moment of the mass above the base");
+const SECOND_MOMENT: Quantity<f64> = limit("I_2", "kg.m2", [1e-12, 1e20], "second moment of the mass above the base");
+
+/// The most floors of a structure, whose modes take a time that grows with the cube of the number.
+const MOST_FLOORS: usize = 500;
+
+/// Part of a first moment by which the modes may miss what is possible, as their numbers are rounded.
+const ROUNDING: f64 = 1e-3;
+
+/// Part of a shape's effective mass that may differ from the mode's, because floors stand for distributed mass.
+const SHAPE_TOLERANCE: f64 = 0.1;
+
+/// Part of its diagonal by which K may differ from its transpose.
+const ASYMMETRY: f64 = 1e-6;
+
+/// Mass, first and second moment of the masses `m` (kg) at the heights `h` (m).
+fn moments(masses: impl Iterator<Item = (f64, f64)>) -> [f64; 3] {
+    masses.fold([0.0; 3], |[mass, first, second], (m, h)| [mass + m, first + m * h, second + m * h * h])
+}
+
+impl Described {
+    /// The structure that is described.
+    pub fn frame(&self) -> Result<Frame, DescriptionError> {
+        let Described { base, zeta, storeys, floors, K, modes, total } = self;
+        match [storeys.is_empty(), K.is_empty(), modes.is_empty()] {
+            [false, true, true] if floors.is_empty() && total.is_none() => Frame::from_storeys(base, zeta, storeys),
+            [true, false, true] if total.is_none() => Frame::from_matrices(base, zeta, floors, K),
+            [true, true, false] => Frame::from_modes(base, zeta, modes, *total, floors),
+            [true, true, true] => Err(DescriptionError::Ways("none of these")),
+            _ => Err(DescriptionError::Ways("more than one")),
+        }
+    }
+}
+
+impl Frame {
+    /// A shear building, whose storeys resist the drift between its floors.
+    pub fn from_storeys(base: &Given, damping: &Damping, storeys: &[Storey]) -> Result<Frame, DescriptionError> {
+        for (number, storey) in (1..).zip(storeys) {
+            STOREY.check(storey.k).map_err(|cause| DescriptionError::At { what: "storey", number, cause })?;
+        }
+        let floors: Vec<_> = storeys.iter().map(|&Storey { m, h, .. }| Place { m, h }).collect();
+        check_floors(&floors, 1)?;
+        if let Some(i) = (1..floors.len()).find(|&i| floors[i].h == floors[i - 1].h) {
+            let (h, below) = (floors[i].h, floors[i - 1].h);
+            return Err(DescriptionError::Order { number: i + 1, h, below });
+        }
+        let mut K = vec![vec![0.0; storeys.len()]; storeys.len()];
+        for (i, &Storey { k, .. }) in storeys.iter().enumerate() {
+            K[i][i] += k;
+            if let Some(below) = i.checked_sub(1) {
+                K[below][below] += k;
+                K[below][i] -= k;
+                K[i][below] -= k;
+            }
+        }
+        Frame::from_matrices(base, damping, &floors, &K)
+    }
+
+    /// Floors that the stiffness matrix `K` (N/m) of a fixed base connects.
+    pub fn from_matrices(
+        base: &Given,
+        damping: &Damping,
+        floors: &[Place],
+        K: &[Vec<f64>],
+    ) -> Result<Frame, DescriptionError> {
+        check_floors(floors, 1)?;
+        let n = floors.len();
+        length("K", K.len(), n, "floor")?;
+        for (i, row) in K.iter().enumerate() {
+            length(&format!("K[{}]", i + 1), row.len(), n, "floor")?;
+            let checked = row.iter().try_for_each(|entry| ENTRY.check(*entry));
+            checked.map_err(|cause| DescriptionError::At { what: "row", number: i + 1, cause })?;
+        }
+        for (i, j) in (0..n).flat_map(|i| (0..i).map(move |j| (i, j))) {
+            let (value, mirrored) = (K[i][j], K[j][i]);
+            if (value - mirrored).abs() > ASYMMETRY * (K[i][i] * K[j][j]).abs().sqrt() {
+                return Err(DescriptionError::NotSymmetric { row: i + 1, column: j + 1, value, mirrored });
+            }
+        }
+        let root = |i: usize| floors[i].m.sqrt();
+        let eigen = DMatrix::from_fn(n, n, |i, j| 0.5 * (K[i][j] + K[j][i]) / (root(i) * root(j))).symmetric_eigen();
+        let mut squares: Vec<_> = eigen.eigenvalues.iter().copied().enumerate().collect();
+        squares.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let shape = |column: usize| DVector::from_fn(n, |i, _| eigen.eigenvectors[(i, column)] / root(i));
+        let (lowest, omega_2) = squares[0];
+        if omega_2 <= n as f64 * f64::EPSILON * squares[n - 1].1 {
+            return Err(DescriptionError::NotDefinite { omega_2, floor: shape(lowest).icamax() + 1 });
+        }
+        squares.truncate(MOST_MODES);
+        let omegas: Vec<_> = squares.iter().map(|(_, square)| square.sqrt()).collect();
+        let shapes: Vec<_> = squares.iter().map(|(column, _)| shape(*column)).collect();
+        let part = |shape: &DVector<f64>, with: fn(&Place) -> f64| -> f64 {
+            shape.iter().zip(floors).map(|(phi, floor)| phi * with(floor)).sum()
+        };
+        let participation = |shape| (part(shape, |floor| floor.m), part(shape, |floor| floor.m * floor.h));
+        let modes = modes(&omegas, damping, &shapes.iter().map(participation).collect::<Vec<_>>())?;
+        let moments = moments(floors.iter().map(|&Place { m, h }| (m, h)));
+        checked(Frame::new(body(base, moments)?, &modes, &shown(floors, &shapes))?)
+    }
+
+    /// The modes of a fixed base that another program found. Without a `total`, the floors have all mass.
+    pub fn from_modes(
+        base: &Given,
+        damping: &Damping,
+        modes_found: &[FoundMode],
+        total: Option<Total>,
+        floors: &[Place],
+    ) -> Result<Frame, DescriptionError> {
+        check_floors(floors, 0)?;
+        let (mut omegas, mut participations) = (Vec::new(), Vec::new());
+        for (number, found) in (1..).zip(modes_found) {
+            let at = |cause| DescriptionError::At { what: "mode", number, cause };
+            MASS.check(found.mass).map_err(at)?;
+            let f = match (found.f, found.period) {
+                (Some(f), None) => Ok(f),
+                (None, Some(period)) => PERIOD.check(period).map(|()| period.recip()),
+                _ => return Err(DescriptionError::Either { number, one: "f (Hz)", other: "period (s)" }),
+            };
+            let height = match (found.height, found.moment) {
+                (Some(height), None) => HEIGHT.check(height).map(|()| height),
+                (None, Some(moment)) => MOMENT.check(moment).map(|()| moment / found.mass),
+                _ => return Err(DescriptionError::Either { number, one: "height (m)", other: "moment (kg.m)" }),
+            };
+            let (omega, root) = (TAU * f.map_err(at)?, found.mass.sqrt());
+            if let Some(before) = omegas.last().filter(|before| **before > omega) {
+                return Err(DescriptionError::ModeOrder { number, f: omega / TAU, before: before / TAU });
+            }
+            omegas.push(omega);
+            participations.push((root, root * height.map_err(at)?));
+        }
+        let modes = modes(&omegas, damping, &participations)?;
+        let body = body(base, whole(base, total, floors)?)?;
+        let floors = if modes_found.iter().all(|mode| mode.shape.is_empty()) { &[] } else { floors };
+        let shapes = (1..).zip(modes_found).map(|(number, found)| shape(number, found, floors));
+        let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
+        let frame = Frame::new(body, &modes, &shown(floors, &shapes))?;
+        // no mass has a first moment beyond the root of the product of its mass and its second moment
+        let [mass, rest, second] = frame.rest();
+        let limit = (mass * second).max(0.0).sqrt() + ROUNDING * (body.m_s * body.I_2).sqrt();
+        if rest.abs() > limit {
+            return Err(DescriptionError::Moment { S_1: body.S_1, rest, limit });
+        }
+        checked(frame)
+    }
+}
+
+/// The `frame` unless it is too slender.
+fn checked(frame: Frame) -> Result<Frame, DescriptionError> {
+    let &Body { m_s, S_1, B, .. } = frame.body();
+    let slenderness = S_1 / (m_s * B);
+    if slenderness > MAX_SLENDERNESS { Err(DescriptionError::Slender(slenderness)) } else { Ok(frame) }
+}
+
+/// The base of `given` under mass of these moments m_s, S_1 and I_2.
+fn body(given: &Given, [m_s, S_1, I_2]: [f64; 3]) -> Result<Body, DescriptionError> {
+    let (parameters, r) = given.base()?;
+    parameters.check()?;
+    let Parameters { m0, J0, B, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
+    Ok(Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y } })
+}
+
+/// The modes of the frequencies `omegas` (rad/s) with these Γ and κ.
+fn modes(omegas: &[f64], damping: &Damping, participations: &[(f64, f64)]) -> Result<Vec<Mode>, DescriptionError> {
+    if omegas.len() > MOST_MODES {
+        return Err(FrameError::Modes(omegas.len()).into());
+    }
+    for (number, omega) in (1..).zip(omegas) {
+        F.check(omega / TAU).map_err(|cause| DescriptionError::At { what: "mode", number, cause })?;
+    }
+    let modes = omegas.iter().zip(damping.ratios(omegas)?).zip(participations);
+    Ok(modes.map(|((omega, zeta), (gamma, kappa))| Mode::new(*omega, zeta, *gamma, *kappa)).collect())
+}
+
+/// The `floors` with a shape of each mode.
+fn shown(floors: &[Place], shapes: &[DVector<f64>]) -> Vec<Floor> {
+    let of_floor = |i: usize| Modes::new(&shapes.iter().map(|shape| shape[i]).collect::<Vec<_>>());
+    floors.iter().enumerate().map(|(i, &Place { m, h })| Floor { mass: m, height: h, shape: of_floor(i) }).collect()
+}
+
+/// Checks that there are `least` floors or more, their numbers and their order.
+fn check_floors(floors: &[Place], least: usize) -> Result<(), DescriptionError> {
+    if !(least..=MOST_FLOORS).contains(&floors.len()) {
+        return Err(DescriptionError::Floors(floors.len()));
+    }
+    let mut below = 0.0;
+    for (number, &Place { m, h }) in (1..).zip(floors) {
+        let fits = FLOOR_MASS.check(m).and_then(|()| FLOOR_HEIGHT.check(h));
+        fits.map_err(|cause| DescriptionError::At { what: "floor", number, cause })?;
+        if h < below {
+            return Err(DescriptionError::Order { number, h, below });
+        }
+        below = h;
+    }
+    Ok(())
+}
+
+fn length(what: &str, count: usize, needed: usize, of: &'static str) -> Result<(), DescriptionError> {
+    if count == needed { Ok(()) } else { Err(DescriptionError::Length { what: what.into(), count, needed, of }) }
+}
+
+impl Damping {
+    /// The ratio of each mode of the frequencies `omegas` (rad/s).
+    fn ratios(&self, omegas: &[f64]) -> Result<Vec<f64>, DescriptionError> {
+        let ratios = match self {
+            Damping::All(zeta) => vec![*zeta; omegas.len()],
+            Damping::Each(zetas) => {
+                length("zeta", zetas.len(), omegas.len(), "mode")?;
+                zetas.clone()
+            }
+            Damping::Rayleigh { f: [a, b], zeta } => {
+                [a, b].into_iter().try_for_each(|f| F.check(*f))?;
+                ZETA.check(*zeta)?;
+                let ratio = |omega: &f64| zeta * (TAU * a * b / omega + omega / TAU) / (a + b);
+                omegas.iter().map(ratio).collect()
+            }
+        };
+        ratios.iter().try_for_each(|zeta| ZETA.check(*zeta))?;
+        Ok(ratios)
+    }
+}
+
+/// The moments m_s, S_1 and I_2 of all mass above the base.
+fn whole(base: &Given, total: Option<Total>, floors: &[Place]) -> Result<[f64; 3], DescriptionError> {
+    let Some(Total { m_s, S_1, I_2, J_P }) = total else {
+        return match floors {
+            [] => Err(DescriptionError::NoTotal),
+            floors => Ok(moments(floors.iter().map(|&Place { m, h }| (m, h)))),
+        };
+    };
+    M_S.check(m_s)?;
+    FIRST_MOMENT.check(S_1)?;
+    let I_2 = match (I_2, J_P) {
+        (Some(I_2), None) => I_2,
+        (None, Some(J_P)) => {
+            let (Parameters { m0, J0, B, .. }, _) = base.base()?;
+            J_P - J0 - (m0 + m_s) * B * B
+        }
+        _ => return Err(DescriptionError::EitherTotal),
+    };
+    SECOND_MOMENT.check(I_2)?;
+    Ok([m_s, S_1, I_2])
+}
+
+/// The shape of a mode at the `floors`, for the modal mass 1.
+fn shape(number: usize, found: &FoundMode, floors: &[Place]) -> Result<DVector<f64>, DescriptionError> {
+    length(&format!("the shape of mode {number}"), found.shape.len(), floors.len(), "floor")?;
+    let checked = found.shape.iter().try_for_each(|phi| SHAPE.check(*phi));
+    checked.map_err(|cause| DescriptionError::At { what: "mode", number, cause })?;
+    let sum =
+        |term: fn(f64) -> f64| found.shape.iter().zip(floors).map(|(phi, floor)| floor.m * term(*phi)).sum::<f64>();
+    let (gamma, modal_mass) = (sum(|phi| phi), sum(|phi| phi * phi));
+    let effective = if modal_mass > 0.0 { gamma * gamma / modal_mass } else { 0.0 };
+    if !floors.is_empty() && (effective - found.mass).abs() > SHAPE_TOLERANCE * found.mass {
+        return Err(DescriptionError::Shape { number, found: effective, given: found.mass });
+    }
+    let scale = modal_mass.sqrt().copysign(gamma);
+    Ok(DVector::from_iterator(floors.len(), found.shape.iter().map(|phi| phi / scale)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Structure;
+    use crate::structure::Base;
+    use approx::assert_relative_eq;
+    use proptest::prelude::*;
+
+    fn base(numbers: &[(&str, f64)]) -> Given {
+        let mut given = Given::default();
+        numbers.iter().try_for_each(|(name, value)| given.give(name, *value)).unwrap();
+        given
+    }
+
+    fn usual() -> Given {
+        base(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("r", 0.93)])
+    }
+
+    const STOREYS: [Storey; 3] = [
+        Storey { m: 40e3, h: 3.5, k: 60e6 },
+        Storey { m: 40e3, h: 7.0, k: 50e6 },
+        Storey { m: 30e3, h: 10.5, k: 40e6 },
+    ];
+
+    fn frame() -> Frame {
+        Frame::from_storeys(&usual(), &Damping::All(0.02), &STOREYS).unwrap()
+    }
+
+    fn places() -> [Place; 3] {
+        STOREYS.map(|Storey { m, h, .. }| Place { m, h })
+    }
+
+    /// The modes as another program prints them, with shapes in its own scale.
+    fn found(frame: &Frame) -> Vec<FoundMode> {
+        let of = |(j, mode): (usize, &Mode)| FoundMode {
+            period: Some(TAU / mode.stiffness.sqrt()),
+            mass: mode.gamma * mode.gamma,
+            height: Some(mode.height / mode.gamma),
+            shape: frame.floors().iter().map(|floor| -3.0 * floor.shape.numbers()[j]).collect(),
+            ..FoundMode::default()
+        };
+        frame.modes().iter().enumerate().map(of).collect()
+    }
+
+    fn assert_same(one: &Frame, other: &Frame) {
+        // what no sign of the shapes changes
+        let numbers = |frame: &Frame| -> Vec<f64> {
+            let of_mode = |(j, mode): (usize, &Mode)| {
+                let &Mode { gamma, height, stiffness, damping, .. } = mode;
+                let floors = frame.floors().iter().map(move |floor| gamma * floor.shape.numbers()[j]);
+                [stiffness, damping, gamma * gamma, height / gamma].into_iter().chain(floors)
+            };
+            let &Base { m_t, J_P, p_l, tan_alpha_cg, .. } = frame.base();
+            let of_modes = frame.modes().iter().enumerate().flat_map(of_mode);
+            [m_t, J_P, p_l, tan_alpha_cg].into_iter().chain(of_modes).collect()
+        };
+        let (one, other) = (numbers(one), numbers(other));
+        assert_eq!(one.len(), other.len());
+        for (one, other) in one.into_iter().zip(other) {
+            assert_relative_eq!(one, other, max_relative = 1e-13);
+        }
+    }
+
+    /// Numbers of an independent calculation.
+    #[test]
+    fn the_storeys_have_the_known_modes() {
+        let frame = frame();
+        let base = frame.base();
+        let known = [
+            (2.79631878, 97782.91, 7.652647, 0.941852),
+            (7.16132844, 9645.66, -1.689684, 0.004529),
+            (10.06584242, 2571.43, 1.166667, 0.000576),
+        ];
+        for (mode, (f, mass, height, chi)) in frame.modes().iter().zip(known) {
+            assert_relative_eq!((mode.stiffness / mode.mass).sqrt() / TAU, f, max_relative = 1e-8);
+            assert_relative_eq!(mode.gamma * mode.share, mass, max_relative = 1e-6);
+            assert_relative_eq!(mode.height / mode.share, height, max_relative = 1e-6);
+            assert_relative_eq!(mode.mass * mode.height * mode.height / base.J_P, chi, epsilon = 1e-6);
+        }
+        assert_relative_eq!(base.J_P, 6.08e6, max_relative = 1e-13);
+        assert_relative_eq!(base.p_l, 1.0889962484, max_relative = 1e-10);
+        assert_relative_eq!(base.tan_alpha_cg, 0.2653061224, max_relative = 1e-9);
+        let rocking = frame.rocking_frequencies();
+        for (omega, f) in rocking.into_iter().zip([7.0282052, 9.9751802, 12.4839536]) {
+            assert_relative_eq!(omega / TAU, f, max_relative = 1e-7);
+        }
+    }
+
+    #[test]
+    fn storeys_matrices_and_modes_are_the_same_structure() {
+        let storeys = frame();
+        let K = [vec![110e6, -50e6, 0.0], vec![-50e6, 90e6, -40e6], vec![0.0, -40e6, 40e6]];
+        let damping = Damping::Each(vec![0.02; 3]);
+        assert_same(&storeys, &Frame::from_matrices(&usual(), &damping, &places(), &K).unwrap());
+        assert_same(&storeys, &Frame::from_modes(&usual(), &damping, &found(&storeys), None, &places()).unwrap());
+
+        let total = Total { m_s: 110e3, S_1: 735e3, I_2: None, J_P: Some(6.08e6) };
+        let mut modes = found(&storeys);
+        for mode in &mut modes {
+            let moment = mode.mass * mode.height.take().unwrap();
+            *mode = FoundMode { moment: Some(moment), shape: Vec::new(), ..mode.clone() };
+        }
+        let without_floors = Frame::from_modes(&usual(), &damping, &modes, Some(total), &[]).unwrap();
+        assert_same(&Frame::new(*storeys.body(), storeys.modes(), &[]).unwrap(), &without_floors);
+    }
+
+    #[test]
+    fn one_mass_is_one_storey_and_three_masses_at_one_height() {
+        let pier = Structure::new(Parameters::MCMANUS).unwrap();
+        let &Parameters { m, m0, H, B, J0, r, zeta_fc, .. } = pier.parameters();
+        let given = base(&[("m0", m0), ("J0", J0), ("width", 2.0 * B), ("r", r)]);
+        let damping = Damping::All(zeta_fc);
+        let storey = Storey { m, h: H, k: pier.k };
+        let one = Frame::from_storeys(&given, &damping, &[storey]).unwrap();
+        assert_relative_eq!(one.modes()[0].damping, pier.c_fc / m, max_relative = 1e-13);
+        let shares = [0.5, 0.3, 0.2];
+        let row = |i: usize| (0..3).map(|j| if i == j { shares[i] * pier.k } else { 0.0 }).collect();
+        let places = shares.map(|share| Place { m: share * m, h: H });
+        let three = Frame::from_matrices(&given, &damping, &places, &[row(0), row(1), row(2)]).unwrap();
+        for frame in [one, three] {
+            let Base { m_t, J_P, p_l, tan_alpha_cg, .. } = *frame.base();
+            let found = [m_t, J_P, p_l, tan_alpha_cg, frame.rocking_frequencies().pop().unwrap()];
+            let known = [m + m0, pier.J_P, pier.p_l, pier.tan_alpha_cg, pier.omega_u];
+            for (found, known) in found.into_iter().zip(known) {
+                assert_relative_eq!(found, known, max_relative = 1e-13);
+            }
+        }
+    }
+
+    /// C = α M + β K through the ratios of its modes.
+    #[test]
+    fn rayleigh_damping_has_its_ratio_at_both_frequencies() {
+        let f = [2.0, 9.0];
+        let ratios = Damping::Rayleigh { f, zeta: 0.05 }.ratios(&[TAU * 2.0, TAU * 4.0, TAU * 9.0]).unwrap();
+        assert_relative_eq!(ratios[0], 0.05, max_relative = 1e-14);
+        assert_relative_eq!(ratios[1], 0.05 * (2.0 * 9.0 / 4.0 + 4.0) / 11.0, max_relative = 1e-14);
+        assert_relative_eq!(ratios[2], 0.05, max_relative = 1e-14);
+    }
+
+    #[test]
+    fn a_refusal_names_the_number_the_limit_and_the_remedy() {
+        let all = Damping::All(0.02);
+        let storeys = |change: fn(&mut [Storey; 3])| {
+            let mut storeys = STOREYS;
+            change(&mut storeys);
+            Frame::from_storeys(&usual(), &Damping::All(0.02), &storeys).unwrap_err().to_string()
+        };
+        assert!(storeys(|of| of[1].k = 0.0).starts_with("storey 2: k = 0 N/m is out of range: it must lie between"));
+        assert!(storeys(|of| of[2].m = -30e3).starts_with("floor 3: m = -30000 kg is out of range"));
+        assert!(storeys(|of| of[2].m = f64::NAN).starts_with("floor 3: m = NaN kg is out of range"));
+        let drifts = storeys(|of| of[1].h = 3.5);
+        assert_eq!(
+            drifts,
+            "floor 2 is at h = 3.5 m and the floor below it at 3.5 m: h is the height above the base, from the lowest floor up"
+        );
+        let matrices = |change: fn(&mut Vec<Vec<f64>>)| {
+            let mut K = vec![vec![110e6, -50e6, 0.0], vec![-50e6, 90e6, -40e6], vec![0.0, -40e6, 40e6]];
+            change(&mut K);
+            Frame::from_matrices(&usual(), &Damping::All(0.02), &places(), &K).unwrap_err().to_string()
+        };
+        assert_eq!(matrices(|K| drop(K.pop())), "K has 2 numbers and must have 3, one for each floor");
+        assert_eq!(matrices(|K| K[1].push(0.0)), "K[2] has 4 numbers and must have 3, one for each floor");
+        assert_eq!(
+            matrices(|K| K[2][1] = -4e6),
+            "K[3][2] = -4000000 N/m and K[2][3] = -40000000 N/m: K must be symmetric"
+        );
+        let soft = matrices(|K| K[2][2] = 10e6);
+        assert!(soft.starts_with("K is not positive definite: a mode has omega^2 = -"), "{soft}");
+        assert!(soft.contains("in which floor 3 moves most"), "{soft}");
+        assert!(matrices(|K| K[0][0] = f64::NAN).starts_with("row 1: K = NaN N/m is out of range"));
+        let damped = |damping| Frame::from_storeys(&usual(), &damping, &STOREYS).unwrap_err().to_string();
+        assert_eq!(damped(Damping::Each(vec![0.02])), "zeta has 1 numbers and must have 3, one for each mode");
+        assert!(damped(Damping::All(-0.1)).starts_with("zeta = -0.1 is out of range"));
+        assert!(damped(Damping::Rayleigh { f: [0.0, 1.0], zeta: 0.1 }).starts_with("f = 0 Hz is out of range"));
+        let of_base = |base, storeys: &[Storey]| Frame::from_storeys(&base, &all, storeys).unwrap_err().to_string();
+        assert_eq!(of_base(usual(), &[]), "0 floors are given: a structure has 1 to 500");
+        assert!(of_base(usual(), &[STOREYS[0]; 501]).starts_with("501 floors are given"));
+        let without_width = of_base(base(&[("m0", 1.0)]), &STOREYS);
+        assert!(without_width.starts_with("base: B (half-width of the base) is missing: give B (m) or width (m)"));
+        let of_one = of_base(base(&[("m0", 1.0), ("B", 1.0), ("H", 1.0)]), &STOREYS);
+        assert!(of_one.starts_with("base: H is a number of a structure of one mass"));
+        assert!(of_base(base(&[("m0", 1.0), ("B", -1.0)]), &STOREYS).starts_with("base: B = -1 m is out of range"));
+        let thin = of_base(base(&[("m0", 1.0), ("B", 1e-3)]), &STOREYS);
+        assert!(thin.starts_with("the centre of the mass above the base is 6681.8"), "{thin}");
+    }
+
+    #[test]
+    fn modes_that_do_not_fit_the_mass_are_refused_with_the_excess() {
+        let refused = |change: fn(&mut Vec<FoundMode>, &mut Total)| {
+            let mut modes = found(&frame());
+            let mut total = Total { m_s: 110e3, S_1: 735e3, I_2: Some(40e3 * 61.25 + 30e3 * 110.25), J_P: None };
+            change(&mut modes, &mut total);
+            let built = Frame::from_modes(&usual(), &Damping::All(0.02), &modes, Some(total), &places());
+            built.unwrap_err().to_string()
+        };
+        assert_eq!(
+            refused(|modes, _| modes[0].shape = modes[1].shape.clone()),
+            "the shape of mode 1 has the effective mass 9.64566e3 kg with the masses of the floors, but mass = 9.77829e4 kg: \
+             check the order of the floors and of the modes"
+        );
+        let tonnes = refused(|_, total| total.m_s = 110.0);
+        assert!(tonnes.ends_with("kg of the m_s = 110.0 kg above the foundation: check masses, heights and units"));
+        assert!(
+            refused(|_, total| total.I_2 = Some(5e6)).contains("of the I_2 = 5000000.0 kg·m² above the foundation")
+        );
+        assert!(refused(|_, total| total.S_1 = 800e3).starts_with("S_1 = 800000 kg.m does not fit m_s and I_2"));
+        assert!(
+            refused(|modes, _| modes[1].f = Some(7.0)).starts_with("mode 2 needs f (Hz) or period (s), and not both")
+        );
+        assert!(refused(|modes, _| modes[1].height = None).starts_with("mode 2 needs height (m) or moment (kg.m)"));
+        assert!(refused(|modes, _| modes[2].period = Some(-1.0)).starts_with("mode 3: period = -1 s is out of range"));
+        assert!(refused(|modes, _| modes.swap(0, 1)).starts_with("mode 2 has f = 2.796318"));
+        assert!(
+            refused(|modes, _| modes[0].shape.truncate(2)).starts_with("the shape of mode 1 has 2 numbers and must")
+        );
+        assert!(
+            refused(|_, total| total.J_P = Some(1.0)).starts_with("I_2 (kg.m2) or J_P (kg.m2) is needed, and not both")
+        );
+        let many = vec![found(&frame())[0].clone(); 25];
+        let many = Frame::from_modes(&usual(), &Damping::All(0.0), &many, None, &places());
+        assert_eq!(many, Err(FrameError::Modes(25).into()));
+        let without_total = Frame::from_modes(&usual(), &Damping::All(0.0), &found(&frame())[..1], None, &[]);
+        assert_eq!(without_total, Err(DescriptionError::NoTotal));
+    }
+
+    proptest! {
+        /// Up to 24 storeys the modes carry all mass; of more, the rest is a possible mass.
+        #[test]
+        fn the_modes_and_the_rest_have_all_mass_of_the_storeys(
+            storeys in prop::collection::vec((1e3..1e6f64, 2.0..6.0f64, 1e6..1e9f64), 1..=30),
+        ) {
+            let mut h = 0.0;
+            let storey = |(m, rise, k)| {
+                h += rise;
+                Storey { m, h, k }
+            };
+            let storeys: Vec<_> = storeys.into_iter().map(storey).collect();
+            let frame = Frame::from_storeys(&usual(), &Damping::All(0.02), &storeys).unwrap();
+            prop_assert!(frame.modes().is_sorted_by(|a, b| a.stiffness <= b.stiffness));
+            let ([mass, first, second], Body { m_s, I_2, .. }) = (frame.rest(), frame.body());
+            if storeys.len() <= MOST_MODES {
+                prop_assert_eq!([mass, first, second], [0.0; 3]);
+            } else {
+                prop_assert!(mass >= 0.0 && second >= 0.0, "{mass}, {second}");
+                let limit = (mass * second).sqrt() + 1e-6 * (m_s * I_2).sqrt();
+                prop_assert!(first.abs() <= limit, "{mass} {first} {second} of {m_s} and {I_2}");
+            }
+        }
+    }
+}

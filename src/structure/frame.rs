@@ -1,0 +1,251 @@
+//! A structure of many masses: a rigid base and the modes of vibration in full contact.
+
+use crate::mechanics::gauge::Gauge;
+use crate::mechanics::lateral::{Coordinates, MOST_MODES, Modes};
+use crate::series::bisection::last_where;
+use crate::structure::{Base, Mode, Ties, Vibration};
+
+/// A rest beside the modes that counts as none, as a fraction of the whole.
+const ROUNDING: f64 = 1e-9;
+
+/// The most that rounded modes may carry beyond the whole, as a fraction of the whole.
+const EXCESS: f64 = 1e-4;
+
+/// A structure as a rigid body: its foundation, and the moments of all mass above the foundation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Mass of the foundation m0, at the height of the pivots, kg.
+    pub m0: f64,
+    /// Inertia of the foundation about the middle of the base J0, kg·m².
+    pub J0: f64,
+    /// Mass above the foundation m_s, kg.
+    pub m_s: f64,
+    /// First moment of this mass about the height of the pivots S_1, kg·m.
+    pub S_1: f64,
+    /// Second moment of this mass about the height of the pivots I_2, kg·m².
+    pub I_2: f64,
+    /// Half-width of the base B, m.
+    pub B: f64,
+    /// Coefficient of restitution; without one, momentum with the shape frozen gives a coefficient for each impact (M19).
+    pub r: Option<f64>,
+    /// Acceleration of gravity, m/s².
+    pub g: f64,
+    /// Viscous damping while rocking as a fraction of the damping in full contact.
+    pub c_ratio: f64,
+    /// The tendon and the dissipators between the base and the ground.
+    pub ties: Ties,
+}
+
+/// A floor, whose motion is shown and on which a force may act.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Floor {
+    /// Mass, kg.
+    pub mass: f64,
+    /// Height above the pivots, m.
+    pub height: f64,
+    /// Displacement of the floor per coordinate of each mode.
+    pub shape: Modes,
+}
+
+/// A rigid base that carries modes. What the modes do not carry of the mass above the foundation rides rigidly with the base.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    pub(crate) base: Base,
+    body: Body,
+    modes: Vec<Mode>,
+    floors: Vec<Floor>,
+    gauges: Box<Gauges>,
+    pub(crate) vibration: Vibration,
+}
+
+/// What is measured on a structure of many masses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gauges {
+    /// Acceleration of each floor along the turning e_x a_i, m/s².
+    pub a: Vec<Gauge>,
+    /// Shear of the storey below each floor V_k, from the given floors, N.
+    pub V: Vec<Gauge>,
+    /// Base shear V_t, N.
+    pub V_t: Gauge,
+    /// Overturning moment M_t, N·m.
+    pub M_t: Gauge,
+}
+
+impl Gauges {
+    fn new(&Body { m_s, S_1, I_2, .. }: &Body, modes: &[Mode], floors: &[Floor]) -> Gauges {
+        let shape = |of: fn(&Mode) -> f64| Modes::new(&Vec::from_iter(modes.iter().map(of)));
+        let storey = |floors: &[Floor]| {
+            let (mut weight, mut height, mut sum) = (0.0, 0.0, shape(|_| 0.0));
+            for floor in floors {
+                (weight, height) = (weight + floor.mass, height + floor.mass * floor.height);
+                sum = sum.plus(floor.shape, floor.mass);
+            }
+            Gauge::new(modes, weight, sum, height)
+        };
+        Gauges {
+            a: floors.iter().map(|floor| Gauge::new(modes, 1.0, floor.shape, floor.height)).collect(),
+            V: (0..floors.len()).map(|k| storey(&floors[k..])).collect(),
+            V_t: Gauge::new(modes, m_s, shape(|mode| mode.gamma), S_1),
+            M_t: Gauge::new(modes, S_1, shape(|mode| mode.mass * mode.height), I_2),
+        }
+    }
+}
+
+/// What a sum over the modes leaves of the `whole`.
+pub(crate) fn rest(whole: f64, of_modes: f64) -> f64 {
+    let rest = whole - of_modes;
+    if rest.abs() <= ROUNDING * whole.abs() { 0.0 } else { rest }
+}
+
+/// The reason why modes and floors are no structure.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FrameError {
+    /// More modes than a structure may have, or none.
+    #[error("{0} modes are given: a structure has 1 to {MOST_MODES}")]
+    Modes(usize),
+    /// The modes carry more than the structure has.
+    #[error(
+        "the modes carry {of_modes:?} {unit} of the {name} = {whole:?} {unit} above the foundation: check masses, heights and units"
+    )]
+    Beyond {
+        /// `m_s` or `I_2`.
+        name: &'static str,
+        /// Unit.
+        unit: &'static str,
+        /// Sum over the modes.
+        of_modes: f64,
+        /// The value of the structure.
+        whole: f64,
+    },
+    /// A floor whose shape has not one number for each mode.
+    #[error("floor {floor} has {numbers} numbers of its shape: give one for each of the {modes} modes")]
+    Shape {
+        /// The floor, from 1 on.
+        floor: usize,
+        /// Numbers that are given.
+        numbers: usize,
+        /// Number of modes.
+        modes: usize,
+    },
+}
+
+impl Mode {
+    /// The mode of circular frequency `omega` (rad/s) and damping ratio `zeta`, of modal mass 1: Γ² is its effective mass (kg), and
+    /// κ/Γ its effective height (m).
+    pub fn new(omega: f64, zeta: f64, gamma: f64, kappa: f64) -> Mode {
+        let damping = 2.0 * zeta * omega;
+        Mode { mass: 1.0, gamma, share: gamma, height: kappa, stiffness: omega * omega, damping }
+    }
+}
+
+impl Floor {
+    /// Elastic displacement of the floor at the coordinates `u`, m.
+    pub fn displacement(&self, u: &Modes) -> f64 {
+        self.shape.dot(u)
+    }
+}
+
+impl Frame {
+    /// The structure of this `body` with these `modes`, which shows these `floors`.
+    pub fn new(body: Body, modes: &[Mode], floors: &[Floor]) -> Result<Frame, FrameError> {
+        let count = modes.len();
+        if !(1..=MOST_MODES).contains(&count) {
+            return Err(FrameError::Modes(count));
+        }
+        for (i, Floor { shape, .. }) in floors.iter().enumerate() {
+            let numbers = shape.numbers().len();
+            if numbers != count {
+                return Err(FrameError::Shape { floor: i + 1, numbers, modes: count });
+            }
+        }
+        let Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties } = body;
+        let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum::<f64>();
+        let left = |name, unit, whole: f64, of_modes: f64| match rest(whole, of_modes) {
+            rest if rest < -EXCESS * whole => Err(FrameError::Beyond { name, unit, of_modes, whole }),
+            rest => Ok(rest),
+        };
+        let mass = left("m_s", "kg", m_s, of(|mode| mode.gamma * mode.share))?;
+        let inertia = left("I_2", "kg·m²", I_2, of(|mode| mode.mass * mode.height * mode.height))?;
+        let m_t = m0 + m_s;
+        let J_P = J0 + m_t * B * B + I_2;
+        let base = Base {
+            m_t,
+            m0: m0 + mass,
+            S_res: rest(S_1, of(|mode| mode.gamma * mode.height)),
+            B,
+            J0: J0 + inertia,
+            J_P,
+            r,
+            g,
+            c_ratio,
+            p_l: (g * S_1 / J_P).sqrt(),
+            tan_alpha_cg: m_t * B / S_1,
+            ties,
+        };
+        let (gauges, vibration) = (Box::new(Gauges::new(&body, modes, floors)), vibration(&base, modes));
+        Ok(Frame { base, body, modes: modes.to_vec(), floors: floors.to_vec(), gauges, vibration })
+    }
+
+    /// The structure as a rigid body.
+    pub fn body(&self) -> &Body {
+        &self.body
+    }
+
+    /// The rigid base.
+    pub fn base(&self) -> &Base {
+        &self.base
+    }
+
+    /// The modes of vibration in full contact.
+    #[inline(always)]
+    pub fn modes(&self) -> &[Mode] {
+        &self.modes
+    }
+
+    /// The gauges of the floors and of the base.
+    pub fn gauges(&self) -> &Gauges {
+        &self.gauges
+    }
+
+    /// The floors, from below.
+    pub fn floors(&self) -> &[Floor] {
+        &self.floors
+    }
+
+    /// Circular frequencies of vibration while the structure rocks, rad/s, lowest first.
+    pub fn rocking_frequencies(&self) -> Vec<f64> {
+        (1..=self.modes.len()).map(|n| rocking(&self.base, &self.modes, n)).collect()
+    }
+
+    /// Mass (kg), first (kg·m) and second moment (kg·m²) that no mode carries.
+    pub fn rest(&self) -> [f64; 3] {
+        [self.base.m0 - self.body.m0, self.base.S_res, self.base.J0 - self.body.J0]
+    }
+}
+
+/// The lowest and the highest frequency of vibration.
+fn vibration(base: &Base, modes: &[Mode]) -> Vibration {
+    let contact = modes.iter().map(|mode| mode.stiffness / mode.mass).fold(f64::INFINITY, f64::min).sqrt();
+    Vibration { contact, rocking: [rocking(base, modes, 1), rocking(base, modes, modes.len())] }
+}
+
+/// The circular frequency number `n` of vibration while the structure rocks, rad/s, from 1: a root λ = ω² of (M13):
+///
+/// ```text
+/// J_P = Σ μ h² λ/(λ − ω²)
+/// ```
+fn rocking(base: &Base, modes: &[Mode], n: usize) -> f64 {
+    let square = |mode: &Mode| mode.stiffness / mode.mass;
+    let inertia = |mode: &Mode| mode.mass * mode.height * mode.height;
+    let held = base.J_P - modes.iter().map(inertia).sum::<f64>();
+    let lowest = modes.iter().map(square).fold(f64::INFINITY, f64::min);
+    let highest = modes.iter().map(square).fold(0.0, f64::max);
+    // each root lies between two frequencies of full contact, or beyond the last
+    let roots_below = |lambda: f64| {
+        let passed = modes.iter().filter(|mode| square(mode) < lambda).count();
+        let secular = modes.iter().map(|mode| square(mode) * inertia(mode) / (square(mode) - lambda)).sum::<f64>();
+        passed - usize::from(passed > 0 && held + secular < 0.0)
+    };
+    let beyond = highest * (2.0 * base.J_P / held);
+    last_where(lowest, beyond, |lambda| roots_below(lambda) < n).sqrt()
+}

@@ -1,0 +1,206 @@
+//! Structures of many masses: the engine's modes against an independent integration of the masses, energy, and one mass as a mode.
+
+#![allow(non_snake_case)] // H, B, J0: the paper's own letters
+
+use nalgebra::{Matrix3, Vector3};
+use rocking::engine::Settings;
+use rocking::structure::{Mode, Ties};
+use rocking::{
+    Body, Detail, Engine, Frame, LinearLoad, Load, Modes, Parameters, Progress, Side, State, Structure, Transition,
+    TransitionKind,
+};
+use std::f64::consts::TAU;
+
+const G: f64 = 9.81;
+
+/// Three masses on a base: the structure, and the shapes of its modes at the masses.
+struct Masses {
+    frame: Frame,
+    shapes: Matrix3<f64>,
+}
+
+impl Masses {
+    /// Three storeys whose response is known.
+    fn new(zeta: f64, r: f64) -> Masses {
+        Masses::with(zeta, r, 3, 1.0)
+    }
+
+    /// The storeys with `kept` of their modes; the others `stiffer` in frequency by this factor.
+    fn with(zeta: f64, r: f64, kept: usize, stiffer: f64) -> Masses {
+        let (m, h) = (Vector3::new(40e3, 40e3, 30e3), Vector3::new(3.5, 7.0, 10.5));
+        let stiffness = Matrix3::new(110e6, -50e6, 0.0, -50e6, 90e6, -40e6, 0.0, -40e6, 40e6);
+        let (m0, J0, B) = (20e3, 3e4, 1.5);
+        let root = Matrix3::from_diagonal(&m.map(|m: f64| 1.0 / m.sqrt()));
+        let eigen = (root * stiffness * root).symmetric_eigen();
+        let shapes = root * eigen.eigenvectors;
+        let lowest = eigen.eigenvalues.imin();
+        let modes = if kept == 3 { vec![0, 1, 2] } else { vec![lowest] };
+        let mode = |j: usize| {
+            let of = |with: Vector3<f64>| shapes.column(j).dot(&m.component_mul(&with));
+            let factor = if j == lowest { 1.0 } else { stiffer };
+            Mode::new(factor * eigen.eigenvalues[j].sqrt(), zeta, of(Vector3::repeat(1.0)), of(h))
+        };
+        let body = body([m0, J0, B], [m.sum(), m.dot(&h), m.dot(&h.component_mul(&h))], r, G);
+        Masses { frame: Frame::new(body, &Vec::from_iter(modes.into_iter().map(mode)), &[]).unwrap(), shapes }
+    }
+
+    /// Displacements of the masses.
+    fn displacements(&self, state: &State<Modes>) -> Vector3<f64> {
+        self.shapes * Vector3::from_column_slice(state.u.numbers())
+    }
+}
+
+fn body([m0, J0, B]: [f64; 3], [m_s, S_1, I_2]: [f64; 3], r: f64, g: f64) -> Body {
+    Body { m0, J0, m_s, S_1, I_2, B, r: Some(r), g, c_ratio: 1.0, ties: Ties::default() }
+}
+
+fn at_rest(modes: usize) -> State<Modes> {
+    let none = Modes::new(&vec![0.0; modes]);
+    State { u: none, u_dot: none, theta: 0.0, theta_dot: 0.0 }
+}
+
+fn ground(modes: usize, from: f64, to: f64, dt: f64) -> LinearLoad<Modes> {
+    let F_t = Modes::new(&vec![0.0; modes]);
+    let [value, slope] = [from, (to - from) / dt].map(|a_g| Load { a_g, F_t, a_v: 0.0 });
+    LinearLoad { value, slope }
+}
+
+/// A full sine of 0.8 s at 0.3 g, in samples of 10 ms.
+fn pulse(i: usize) -> f64 {
+    let t = 0.01 * i as f64;
+    if t < 0.8 { 0.3 * G * (TAU * t / 0.8).sin() } else { 0.0 }
+}
+
+/// Transitions, displacements and rotations of an independent integration of the masses at a relative tolerance of 1e-13
+/// (tests/frames_reference.py). A change of 1e-12 in the ground motion changes them by 3e-12 s, 3e-12 m and 3e-13 rad.
+#[test]
+fn a_frame_moves_as_its_masses_do() {
+    use Side::{Left, Right};
+    let expected = [
+        (0.15176029227096208, TransitionKind::Uplift(Left)),
+        (0.527388342353265, TransitionKind::Impact(Right)),
+        (0.538795871341788, TransitionKind::Landing),
+        (0.5584325296700001, TransitionKind::Uplift(Right)),
+        (1.331766274707485, TransitionKind::Impact(Left)),
+        (1.9777817531118986, TransitionKind::Impact(Right)),
+        (1.9982025690737202, TransitionKind::Landing),
+        (2.001049158431125, TransitionKind::Uplift(Right)),
+    ];
+    let samples = [
+        (60, [0.005359903540655738, 0.00946666557681685, 0.009122297464538598], 0.0026158917000834916),
+        (120, [0.004207588532410615, 0.008390116147685539, 0.010084235606465807], 0.011546025101530605),
+        (180, [-0.00399338343756519, -0.008082336024652817, -0.00955705817401088], -0.011977258923083444),
+        (250, [0.004951557735366386, 0.008033055132644932, 0.0100741087837814], 0.0033804829577240144),
+    ];
+    let masses = Masses::new(0.02, 0.93);
+    for detail in [Detail::Nonlinear, Detail::Auto] {
+        let settings = Settings { detail, tolerance: 1e-10, ..Settings::default() };
+        let mut engine = Engine::of_modes(masses.frame.clone(), at_rest(3), 0.0, settings).unwrap();
+        let mut found: Vec<Transition<Modes>> = Vec::new();
+        let mut watch = |transition: &Transition<Modes>| found.push(*transition);
+        for i in 0..250 {
+            engine.advance(0.01, ground(3, pulse(i), pulse(i + 1), 0.01), &mut watch).unwrap();
+            let Some((_, u, theta)) = samples.iter().find(|(at, ..)| *at == i + 1) else { continue };
+            let state = &engine.motion().state;
+            let off = (masses.displacements(state) - Vector3::from(*u)).amax();
+            assert!(off < 1e-14, "{detail:?} {i}: u is off by {off:e}");
+            let off = (state.theta - theta).abs();
+            assert!(off < 1e-14, "{detail:?} {i}: theta is off by {off:e}");
+        }
+        assert_eq!(found.len(), expected.len());
+        for (found, (time, kind)) in found.iter().zip(expected) {
+            assert_eq!(found.kind, kind);
+            assert!((found.time - time).abs() < 1e-13, "{detail:?}: {kind:?} at {} and not at {time}", found.time);
+        }
+    }
+}
+
+/// Without damping, a frame that rocks freely keeps its energy between impacts.
+#[test]
+fn a_frame_keeps_its_energy_between_impacts() {
+    for kept in [3, 1] {
+        keeps_its_energy(&Masses::with(0.0, 0.95, kept, 1.0), kept);
+    }
+}
+
+fn keeps_its_energy(masses: &Masses, modes: usize) {
+    let mut state = at_rest(modes);
+    (state.u, state.theta) = (Modes::new(&[2.0, -1.0, 0.5][..modes]), 0.03);
+    let settings = Settings { detail: Detail::Nonlinear, ..Settings::default() };
+    let mut engine = Engine::of_modes(masses.frame.clone(), state, 0.0, settings).unwrap();
+    let (mut last, mut seen, mut impacts, mut pieces) = (engine.energy(), 0, 0, 0);
+    for _ in 0..600 {
+        engine.advance(0.01, ground(modes, 0.0, 0.0, 0.01), &mut ()).unwrap();
+        let now = engine.energy();
+        if engine.motion().transitions != seen {
+            seen = engine.motion().transitions;
+            impacts += 1;
+        } else {
+            pieces += 1;
+            assert!((now / last - 1.0).abs() <= 1e-12, "{}: {now} and not {last}", engine.motion().time);
+            continue;
+        }
+        last = now;
+    }
+    assert!(impacts > 3 && pieces > 300, "{impacts} {pieces}");
+}
+
+/// One mass is the same motion as one mode, with a shape of any scale.
+#[test]
+fn one_mode_is_one_mass() {
+    let parameters = Parameters { zeta_fc: 0.05, f_fc: 2.0, r: 0.9, ..Parameters::MCMANUS };
+    let structure = Structure::new(parameters).unwrap();
+    let Parameters { m, m0, H, B, J0, r, g, .. } = parameters;
+    let scale: f64 = 1.7;
+    let (mass, gamma) = (m * scale * scale, m * scale);
+    let mode = Mode {
+        mass,
+        gamma,
+        share: 1.0 / scale,
+        height: H / scale,
+        stiffness: mass * structure.omega_fc.powi(2),
+        damping: mass * structure.c_fc / m,
+    };
+    let frame = Frame::new(body([m0, J0, B], [m, m * H, m * H * H], r, g), &[mode], &[]).unwrap();
+    for detail in [Detail::Nonlinear, Detail::Auto, Detail::Linear, Detail::FixedBase] {
+        let settings = Settings { detail, tolerance: 1e-10, ..Settings::default() };
+        let mut many = Engine::of_modes(frame.clone(), at_rest(1), 0.0, settings).unwrap();
+        let mut one = Engine::with(structure, State::default(), 0.0, settings).unwrap();
+        let (mut u, mut theta, mut off) = (0.0_f64, 0.0_f64, [0.0_f64; 2]);
+        for i in 0..250 {
+            let load = ground(1, 0.9 * pulse(i), 0.9 * pulse(i + 1), 0.01);
+            many.advance(0.01, load, &mut ()).unwrap();
+            let [value, slope] = [load.value, load.slope].map(|load| Load { a_g: load.a_g, F_t: 0.0, a_v: 0.0 });
+            assert_eq!(one.advance(0.01, LinearLoad { value, slope }, &mut ()), Ok(Progress::Complete));
+            let (many, one) = (&many.motion().state, &one.motion().state);
+            (u, theta) = (u.max(one.u.abs()), theta.max(one.theta.abs()));
+            off[0] = off[0].max((scale * many.u.numbers()[0] - one.u).abs());
+            off[1] = off[1].max((many.theta - one.theta).abs());
+        }
+        assert_eq!(many.motion().transitions, one.motion().transitions);
+        assert!(one.motion().transitions >= 4 || detail == Detail::FixedBase, "{}", one.motion().transitions);
+        // the linear level of one mass has an exact flow, and the level of many masses a series
+        let limit = if detail == Detail::Linear { 1e-12 } else { 1e-13 };
+        assert!(off[0] <= limit * u && off[1] <= limit * theta, "{detail:?}: {:e} {:e}", off[0] / u, off[1] / theta);
+    }
+}
+
+/// Modes left out are the limit of stiff modes between landings: from θ̇ = 0.2 rad/s on, θ and the first mode.
+#[test]
+fn modes_left_out_are_the_limit_of_stiff_modes() {
+    let mut off = Vec::new();
+    for stiffer in [30.0, 300.0] {
+        let of = |masses: Masses| {
+            let modes = masses.frame.modes().len();
+            let start = State { theta: 1e-3, theta_dot: 0.2, ..at_rest(modes) };
+            let mut engine = Engine::of_modes(masses.frame, start, 0.0, Settings::default()).unwrap();
+            for i in 0..20 {
+                engine.advance(0.01, ground(modes, pulse(i), pulse(i + 1), 0.01), &mut ()).unwrap();
+            }
+            assert_eq!(engine.motion().transitions, 0);
+            engine.motion().state.theta
+        };
+        off.push((of(Masses::with(0.0, 0.93, 3, stiffer)) / of(Masses::with(0.0, 0.93, 1, 1.0)) - 1.0).abs());
+    }
+    assert!(off[1] < 0.15 * off[0] && off[1] < 1e-3, "{off:?}");
+}
