@@ -512,6 +512,7 @@ macro_rules! functions {
             #[doc = ""]
             $(#[$doc])*
             #[inline]
+            #[allow(clippy::too_many_arguments)] // the standard's
             pub unsafe fn $name<M: $crate::Model>(c: *mut c_void $(, $argument: $type)*) -> c_int {
                 unsafe {
                     $crate::c_abi::call::<Function, M>(
