@@ -413,7 +413,7 @@ function motionView() {
         element(svg, "text", { x: left - 6, y: line + 4, "text-anchor": "end" }, text);
       }
       element(svg, "line", { class: "axis", x1: left, x2: left, y1: top, y2: bottom });
-      element(svg, "text", { class: "title", x: left, y: top - 8 }, titleOf(panel));
+      element(svg, "text", { x: left, y: top - 8 }, titleOf(panel));
       if (panel.right) {
         const { factor } = panel.right;
         element(svg, "line", { class: "axis", x1: edge, x2: edge, y1: top, y2: bottom });
