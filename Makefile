@@ -134,14 +134,16 @@ browser: .venv/heavy module explore
 docs/img/explore.png: .venv/heavy explore
 	$(PYTHON) examples/explore_picture.py
 
-# The library of this machine rides in the page, for the FMU that it writes.
+# The page contains a record and shared libraries: those of `make dist` if its archive is of this build, else this machine's.
 WEB := wasm32-unknown-unknown
-explore: library
+LIBRARIES = $$($(TARGET)/release/fmu-export out/FlexibleRocking.fmu mcmanus 2 /dev/null 2>/dev/null && \
+	echo out/FlexibleRocking.fmu || echo $(TARGET)/release/deps/libFlexibleRocking.so)
+explore: library .venv/ready
 	rustup target add $(WEB)
 	cd web && cargo build --release --locked --package rocking-web --target $(WEB)
 	mkdir -p out
 	cargo run --release --locked --manifest-path web/Cargo.toml --package pack -- \
-		$(or $(CARGO_TARGET_DIR),web/target)/$(WEB)/release/rocking_web.wasm out/explore.html $(TARGET)/release/deps/libFlexibleRocking.so
+		$(or $(CARGO_TARGET_DIR),web/target)/$(WEB)/release/rocking_web.wasm $(RECORDS)/$(EL_CENTRO) $(LIBRARIES) out/explore.html
 
 evidence: module
 	$(PYTEST) -m heavy tests/test_pages.py

@@ -10,12 +10,11 @@ ROOT = Path(__file__).parents[1]
 
 with sync_playwright() as playwright:
     browser = playwright.chromium.launch(executable_path=shutil.which("chromium"))
-    page = browser.new_page(viewport={"width": 1300, "height": 720})
+    page = browser.new_page(viewport={"width": 1300, "height": 720}, reduced_motion="reduce")
     page.goto(f"{(ROOT / 'out' / 'explore.html').as_uri()}#scale={SCALE}&time_scale={TIME_SCALE}&tab=compare")
     page.locator("body[data-ready]").wait_for()
     page.locator("#file").set_input_files(RECORD)
     page.locator("#levels .advised").wait_for()
     page.wait_for_timeout(1000)
-    page.locator("#readings [data-name=theta] button").click()
-    page.mouse.move(0, 0)
+    page.locator("#readings [data-name=theta] button").evaluate("button => button.click()")
     page.screenshot(path=ROOT / "docs" / "img" / "explore.png")

@@ -175,7 +175,7 @@ def headline(path: Path) -> None:
     page = Path("docs/evidence/accuracy.md").read_text(encoding="utf-8")
     mantissa, power = re.search(r"el-centro\.svg.*?Conditioning: ([\d.]+)·10⁻(\S+) for θ", page, re.DOTALL).groups()
     axis.axhspan(1e-12, float(mantissa) * 10.0 ** -int(power.translate(SUPERSCRIPTS)), color="0.9", linewidth=0)
-    axis.text(0.06, 8e-11, "conditioning: lower errors mean nothing", color="0.35")
+    axis.text(0.06, 8e-11, "conditioning of the scene", color="0.35")
     ratios = [ratio_at_six_digits(of_scene) for of_scene in scenes.values()]
     axis.axhline(DIGITS, color="0.5", linewidth=0.6, linestyle=":")
     axis.set(title=f"To six digits the cheapest other method takes {min(ratios):.1f} to {max(ratios):.1f} times as long as this engine\n"

@@ -18,9 +18,9 @@ pub(crate) mod yielding;
 
 use crate::levels::detail::{AnyLevel, Detail, by_level};
 use crate::levels::level::{Level, Subject};
-use crate::levels::modes::Nonlinear;
+use crate::levels::modes::ManyModes;
 use crate::mechanics::energy::energy;
-use crate::mechanics::lateral::{Coordinates, Modes};
+use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
@@ -194,6 +194,17 @@ pub trait Moves: Coordinates {
     /// The levels of detail of these structures.
     type Level: Deref<Target = dyn Level<Self>> + Debug;
 
+    /// Starts `structure` at `time` (s) from `initial`.
+    fn engine(
+        structure: Self::Structure,
+        initial: State<Self>,
+        time: f64,
+        settings: Settings,
+    ) -> Result<Engine<Self>, InitialStateError>;
+
+    /// The loads of a ground motion alone.
+    fn loads(ground: LinearLoad) -> LinearLoad<Self>;
+
     /// Advances with a level by its type: each gets a loop of its own, so that nothing stands between the loop and the level's
     /// equations.
     #[doc(hidden)]
@@ -202,6 +213,20 @@ pub trait Moves: Coordinates {
 
 impl Moves for f64 {
     type Level = AnyLevel;
+
+    fn engine(
+        structure: Structure,
+        initial: State,
+        time: f64,
+        settings: Settings,
+    ) -> Result<Engine, InitialStateError> {
+        Engine::with(structure, initial, time, settings)
+    }
+
+    #[inline(always)]
+    fn loads(ground: LinearLoad) -> LinearLoad {
+        ground
+    }
 
     #[inline(always)]
     fn advance<W: Watch>(any: &AnyLevel, task: Task<'_, f64, W>) -> Result<Progress, AdvanceError> {
@@ -213,7 +238,7 @@ impl Moves for f64 {
 #[doc(hidden)]
 #[derive(Debug)]
 #[allow(private_interfaces)] // the coordinates name the type, and nobody else can use it
-pub struct LevelOfModes(Nonlinear);
+pub struct LevelOfModes(ManyModes);
 
 impl Deref for LevelOfModes {
     type Target = dyn Level<Modes>;
@@ -225,6 +250,20 @@ impl Deref for LevelOfModes {
 
 impl Moves for Modes {
     type Level = LevelOfModes;
+
+    fn engine(
+        structure: Frame,
+        initial: State<Modes>,
+        time: f64,
+        settings: Settings,
+    ) -> Result<Engine<Modes>, InitialStateError> {
+        Engine::of_modes(structure, initial, time, settings)
+    }
+
+    fn loads(LinearLoad { value, slope }: LinearLoad) -> LinearLoad<Modes> {
+        let [value, slope] = [value, slope].map(|Load { a_g, a_v, .. }| Load { a_g, F_t: Modes::ZERO, a_v });
+        LinearLoad { value, slope }
+    }
 
     fn advance<W: Watch<Modes>>(any: &LevelOfModes, task: Task<'_, Modes, W>) -> Result<Progress, AdvanceError> {
         task.with(any, &any.0)
@@ -280,27 +319,11 @@ impl Engine {
         Ok(Engine { level, settings, motion: self.motion, arc: Arc::default() })
     }
 
-    /// The structure.
-    pub fn structure(&self) -> &Structure {
-        self.level.structure()
-    }
-
     /// Whether certainly no transition comes within `ahead` (s), a tiny time, under `load`.
     pub fn goes_on_for(&self, ahead: f64, load: LinearLoad) -> bool {
         let now = self.sample(load.value);
         phases::of(self.structure(), &self.motion)
             .is_none_or(|watched| watched.guards.iter().all(|guard| guard.stays_open(&now, ahead)))
-    }
-
-    /// Whether the structure, in full contact now, stays there while nothing acts on it.
-    pub fn stays_down(&self) -> bool {
-        let Motion { phase, state, dissipators, .. } = &self.motion;
-        *phase == Phase::FullContact && self.level.stays_down(state, dissipators)
-    }
-
-    /// The motion now, under `load`.
-    pub fn sample(&self, load: Load) -> Sample<'_> {
-        Sample { motion: self.motion, load, level: &self.level }
     }
 
     /// The outputs now under `load`; once overturned, those of the instant before.
@@ -360,7 +383,7 @@ impl Engine {
 }
 
 impl Engine<Modes> {
-    /// Starts the structure `frame` of many masses at `time` (s) from `state`, at the level of detail `auto` or `nonlinear`.
+    /// Starts the structure `frame` of many masses at `time` (s) from `state`, at any level of detail but `modal` and `rigid`.
     pub fn of_modes(
         frame: Frame,
         state: State<Modes>,
@@ -368,26 +391,23 @@ impl Engine<Modes> {
         settings: Settings,
     ) -> Result<Engine<Modes>, InitialStateError> {
         let phase = state.phase()?;
+        let of_frame = |numbers: Modes| Modes::each(&frame, |j, _| numbers.of(j));
+        let state = State { u: of_frame(state.u), u_dot: of_frame(state.u_dot), ..state };
         let is_tied = frame.base.is_restrained() || settings.vertical;
         let angles = settings.detail.angles();
         let subject = Subject { structure: frame, local_error: settings.local_error()?, is_tied, angles };
-        let is_exact = match settings.detail {
-            Detail::Auto => true,
-            Detail::Nonlinear => false,
-            other => return Err(InitialStateError::OneMass(other.name())),
-        };
-        let level = Box::new(LevelOfModes(Nonlinear::new(subject, is_exact)));
+        match settings.detail {
+            Detail::FixedBase if state.theta != 0.0 => return Err(InitialStateError::TurnedFixedBase(state.theta)),
+            Detail::Modal | Detail::Rigid => return Err(InitialStateError::OneMass(settings.detail.name())),
+            _ => (),
+        }
+        let level = Box::new(LevelOfModes(ManyModes::new(subject, settings.detail)));
         Ok(Engine::start(level, settings, time, state, phase, Dissipators::NEW))
-    }
-
-    /// The structure.
-    pub fn frame(&self) -> &Frame {
-        self.level.structure()
     }
 
     /// Mechanical energy now, J.
     pub fn energy(&self) -> f64 {
-        energy(self.frame(), self.motion.phase, &self.motion.state)
+        energy(self.structure(), self.motion.phase, &self.motion.state)
     }
 }
 
@@ -413,6 +433,22 @@ impl<Q: Moves> Engine<Q> {
             due: None,
         };
         Engine { level, settings, motion, arc: Arc::default() }
+    }
+
+    /// The structure.
+    pub fn structure(&self) -> &Q::Structure {
+        self.level.structure()
+    }
+
+    /// Whether the structure, in full contact now, stays there while nothing acts on it.
+    pub fn stays_down(&self) -> bool {
+        let Motion { phase, state, dissipators, .. } = &self.motion;
+        *phase == Phase::FullContact && self.level.stays_down(state, dissipators)
+    }
+
+    /// The motion now, under `load`.
+    pub fn sample(&self, load: Load<Q>) -> Sample<'_, Q> {
+        Sample { motion: self.motion, load, level: &self.level }
     }
 
     /// The settings of the engine.

@@ -10,17 +10,19 @@ mod history;
 pub mod levels;
 pub mod outside_step;
 pub mod peaks;
+pub mod profile;
 mod reaction_series;
 pub mod record;
 mod samples;
 pub mod validity;
 
 use crate::engine::piece::Sample;
-use crate::engine::{AdvanceError, DEFAULT_TOLERANCE, Settings};
+use crate::engine::{AdvanceError, DEFAULT_TOLERANCE, Moves, Settings};
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::state::InitialStateError;
 use crate::run::ground_motion::Segment;
 use crate::run::record::Record;
-use crate::{Detail, Engine, Motion, Progress, Ramp, State, Structure, Watch};
+use crate::{Detail, Engine, Frame, LinearLoad, Modes, Motion, Progress, State, Structure, Watch};
 use peaks::Peaks;
 use samples::Samples;
 use serde::{Deserialize, Serialize};
@@ -32,13 +34,13 @@ pub const LONGEST_REST: f64 = 100.0;
 
 /// A structure under a ground motion, and how the engine follows it.
 #[derive(Clone, Debug)]
-pub struct Run<'a> {
+pub struct Run<'a, Q: Moves = f64> {
     /// The structure.
-    pub structure: Structure,
+    pub structure: Q::Structure,
     /// The ground motion.
     pub ground: &'a Record,
     /// State at the first sample.
-    pub initial: State,
+    pub initial: State<Q>,
     /// Level of detail.
     pub detail: Detail,
     /// Relative tolerance of the results.
@@ -90,11 +92,11 @@ impl fmt::Display for Ending {
 
 /// End of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Finish {
+pub struct Finish<Q = f64> {
     /// How it ended.
     pub ending: Ending,
     /// The motion then.
-    pub motion: Motion,
+    pub motion: Motion<Q>,
 }
 
 /// Why there is no result.
@@ -164,50 +166,69 @@ impl<'a> Run<'a> {
             end: End::AtRest,
         }
     }
+}
 
+impl<'a> Run<'a, Modes> {
+    /// Of the structure `frame` of many masses under `ground` from rest, like [`Run::new`].
+    pub fn of_modes(frame: Frame, ground: &'a Record) -> Run<'a, Modes> {
+        let none = Modes::parts(&frame, 0.0);
+        Run {
+            structure: frame,
+            ground,
+            initial: State { u: none, u_dot: none, theta: 0.0, theta_dot: 0.0 },
+            detail: Detail::Auto,
+            tolerance: DEFAULT_TOLERANCE,
+            end: End::AtRest,
+        }
+    }
+}
+
+impl<'a, Q: Moves> Run<'a, Q> {
     /// Follows the motion to the end.
-    pub fn follow<W: Watch>(&self, watch: &mut W) -> Result<Finish, RunError> {
+    pub fn follow<W: Watch<Q>>(&self, watch: &mut W) -> Result<Finish<Q>, RunError> {
         let (ending, engine) = self.course()?.finish(watch)?;
         Ok(Finish { ending, motion: *engine.motion() })
     }
 
     /// The run before its start.
-    fn course(&self) -> Result<Course<impl Iterator<Item = Segment> + use<'a>>, RunError> {
+    fn course(&self) -> Result<Follower<Q, impl Iterator<Item = Segment> + use<'a, Q>>, RunError> {
         let until = match self.end {
             End::AtRest => self.ground.end(),
             End::At(end) => end,
         };
         let segments = self.ground.segments(until - self.ground.start());
-        Ok(Course { engine: self.start()?, segments, end: self.end, rest: LONGEST_REST })
+        Ok(Follower { engine: self.start()?, segments, end: self.end, rest: LONGEST_REST })
     }
 
     /// The structure at the first sample.
-    fn start(&self) -> Result<Engine, RunError> {
+    fn start(&self) -> Result<Engine<Q>, RunError> {
         let start = self.ground.start();
         match self.end {
             End::At(end) if !(end > start && end.is_finite()) => Err(RunError::End { end, start }),
             _ => {
-                let &Run { structure, ground, initial, detail, tolerance, .. } = self;
+                let &Run { ref structure, ground, initial, detail, tolerance, .. } = self;
                 let settings = Settings { detail, tolerance, vertical: ground.vertical().is_some(), stops: false };
-                Ok(Engine::with(structure, initial, start, settings)?)
+                Ok(Q::engine(structure.clone(), initial, start, settings)?)
             }
         }
     }
 
     /// Follows the motion to the end and shows it at `times` (s), which rise; those before the start and after the end
     /// are left out, and the end itself is shown last. The samples are read from the pieces and change nothing.
-    pub fn sample<W: Watch>(
+    pub fn sample<W: Watch<Q>>(
         &self,
         times: impl IntoIterator<Item = f64>,
-        show: impl FnMut(&Sample),
+        show: impl FnMut(&Sample<Q>),
         watch: &mut W,
-    ) -> Result<Finish, RunError> {
+    ) -> Result<Finish<Q>, RunError> {
         let mut samples = Samples::new(times, show);
         let (ending, engine) = self.course()?.finish(&mut (&mut *watch, &mut samples))?;
         samples.end(&engine);
         Ok(Finish { ending, motion: *engine.motion() })
     }
+}
 
+impl Run<'_> {
     /// The exact peaks of all of the run, a fall too, and how it ended; those that are shown are [`Run::found`]'s.
     pub fn peaks(&self) -> Result<(Peaks, Finish), RunError> {
         let mut peaks = Peaks::since(self.ground.start(), &self.structure, self.detail);
@@ -218,8 +239,8 @@ impl<'a> Run<'a> {
 
 /// A run on its way, segment by segment: from sample to sample of its record, and then for 1/p_l each until nothing more can
 /// happen.
-struct Course<Segments> {
-    engine: Engine,
+struct Follower<Q: Moves, Segments> {
+    engine: Engine<Q>,
     /// The ground motion that is left.
     segments: Segments,
     end: End,
@@ -227,9 +248,9 @@ struct Course<Segments> {
     rest: f64,
 }
 
-impl<Segments: Iterator<Item = Segment>> Course<Segments> {
+impl<Q: Moves, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
     /// Follows the motion to the end.
-    fn finish<W: Watch>(mut self, watch: &mut W) -> Result<(Ending, Engine), RunError> {
+    fn finish<W: Watch<Q>>(mut self, watch: &mut W) -> Result<(Ending, Engine<Q>), RunError> {
         loop {
             if let Some(ending) = self.go_on(watch)? {
                 return Ok((ending, self.engine));
@@ -239,8 +260,8 @@ impl<Segments: Iterator<Item = Segment>> Course<Segments> {
 
     /// Follows the motion over the next segment. Returns the ending of the run if the run has ended.
     #[inline(always)]
-    fn go_on<W: Watch>(&mut self, watch: &mut W) -> Result<Option<Ending>, RunError> {
-        let Course { engine, segments, end, rest } = self;
+    fn go_on<W: Watch<Q>>(&mut self, watch: &mut W) -> Result<Option<Ending>, RunError> {
+        let Follower { engine, segments, end, rest } = self;
         let went_on = match segments.next() {
             Some(segment) => over(engine, segment, watch)
                 .map(|progress| (progress == Progress::Overturned).then_some(Ending::Overturned)),
@@ -252,7 +273,7 @@ impl<Segments: Iterator<Item = Segment>> Course<Segments> {
 
 /// Why a run of `engine` cannot go on.
 #[cold]
-fn error(engine: &Engine, cause: AdvanceError) -> RunError {
+fn error<Q: Moves>(engine: &Engine<Q>, cause: AdvanceError) -> RunError {
     match cause {
         AdvanceError::TooLong { time, until } => RunError::TooLong { time, until },
         cause => RunError::Advance { time: cause.time().unwrap_or(engine.motion().time), cause },
@@ -261,8 +282,12 @@ fn error(engine: &Engine, cause: AdvanceError) -> RunError {
 
 /// Follows a structure over `segment`.
 #[inline]
-fn over<W: Watch>(engine: &mut Engine, segment: Segment, watch: &mut W) -> Result<Progress, AdvanceError> {
-    let progress = engine.advance(segment.duration, segment.ground, watch)?;
+fn over<Q: Moves, W: Watch<Q>>(
+    engine: &mut Engine<Q>,
+    segment: Segment,
+    watch: &mut W,
+) -> Result<Progress, AdvanceError> {
+    let progress = engine.advance(segment.duration, Q::loads(segment.ground), watch)?;
     if progress != Progress::Overturned {
         engine.set_time(segment.until);
     }
@@ -271,25 +296,26 @@ fn over<W: Watch>(engine: &mut Engine, segment: Segment, watch: &mut W) -> Resul
 
 /// Follows a structure on ground at rest until the next decision about the `end` of the run. `rest` is the time for which the
 /// structure may still rock. Returns the ending of the run if the run has ended.
-fn come_to_rest<W: Watch>(
-    engine: &mut Engine,
+fn come_to_rest<Q: Moves, W: Watch<Q>>(
+    engine: &mut Engine<Q>,
     end: End,
     rest: &mut f64,
     watch: &mut W,
 ) -> Result<Option<Ending>, AdvanceError> {
-    let &Structure { p_l, omega_fc, .. } = engine.structure();
+    let (p_l, omega_fc) = (Q::base(engine.structure()).p_l, Q::vibration(engine.structure()).contact);
+    let still = LinearLoad::default();
     if let End::At(end) = end {
         engine.set_time(end);
         return Ok(Some(Ending::AtTime));
     }
     if engine.stays_down() {
-        engine.advance(TAU / omega_fc, Ramp::default(), watch)?;
+        engine.advance(TAU / omega_fc, Q::loads(still), watch)?;
         return Ok(Some(Ending::AtRest));
     }
     if *rest == 0.0 {
         return Ok(Some(Ending::StillRocking));
     }
     *rest -= 1.0;
-    let progress = engine.advance(1.0 / p_l, Ramp::default(), watch)?;
+    let progress = engine.advance(1.0 / p_l, Q::loads(still), watch)?;
     Ok((progress == Progress::Overturned).then_some(Ending::Overturned))
 }

@@ -3,8 +3,9 @@
 #![allow(non_snake_case)]
 
 use fastrand::Rng;
+use rocking::engine::Settings;
 use rocking::run::peaks::{PEAKS, Peaks};
-use rocking::run::validity::{Found, Limits, Validity};
+use rocking::run::validity::{Findings, Limits, Validity};
 use rocking::{
     Detail, Engine, LinearLoad, Load, Outputs, Parameters, Phase, Piece, Progress, Reactions, State, Structure, Watch,
 };
@@ -138,10 +139,12 @@ fn no_peak_is_missed() {
         let (structure, state, detail) = scene(rng);
         let parameters = *structure.parameters();
         let tolerance = [1e-12, 1e-9, 1e-6][rng.usize(0..3)];
-        let start = || Engine::with_detail(structure, state, 0.0, tolerance, detail).unwrap();
+        let vertical = detail != Detail::Modal && seed % 4 == 0;
+        let settings = Settings { detail, tolerance, vertical, stops: false };
+        let start = || Engine::with(structure, state, 0.0, settings).unwrap();
         let mut engine = start();
         let [mut peaks, mut alone] = [Peaks::since(0.0, &structure, detail); 2];
-        let mut validity = Validity::new(&structure, Limits::default(), Found::since(0.0));
+        let mut validity = Validity::new(&structure, Limits::default(), Findings::since(0.0));
         let mut dense = Dense {
             parameters,
             largest: [0.0; PEAKS.len()],
@@ -160,9 +163,12 @@ fn no_peak_is_missed() {
         }
         let mut advances = Vec::new();
         for _ in 0..=log_between(rng, 3.0, 60.0) as usize {
-            let target = Load { a_g: amplitude * either_way(rng), F_t: force * either_way(rng), a_v: 0.0 };
+            let a_v = if vertical { 4.0 * either_way(rng) } else { 0.0 };
+            let target = Load { a_g: amplitude * either_way(rng), F_t: force * either_way(rng), a_v };
             let h = longest * if rng.f64() < 0.2 { rng.f64() + 1e-3 } else { 1.0 };
-            let slope = Load { a_g: (target.a_g - load.a_g) / h, F_t: (target.F_t - load.F_t) / h, a_v: 0.0 };
+            let per_second = |of: fn(&Load) -> f64| (of(&target) - of(&load)) / h;
+            let slope =
+                Load { a_g: per_second(|of| of.a_g), F_t: per_second(|of| of.F_t), a_v: per_second(|of| of.a_v) };
             let (all, theta) = (&mut peaks.watch(), &mut alone.watch_theta());
             let watch = &mut (&mut dense, &mut (&mut (all, theta), &mut validity));
             advances.push((h, LinearLoad { value: load, slope }));

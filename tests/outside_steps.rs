@@ -2,7 +2,7 @@
 //! its steps. Bad integrators are in `test_model_exchange.py`.
 
 use rocking::run::ground_motion::Elapsed;
-use rocking::run::outside_step::{BAND, Checked, Known};
+use rocking::run::outside_step::{BAND, Checked, Checkpoint};
 use rocking::run::record::Record;
 use rocking::{Detail, Engine, GroundMotion, LinearLoad, Load, Parameters, Phase, State, Structure, Transition};
 
@@ -17,7 +17,7 @@ fn burst() -> Record {
 struct Outside<'a> {
     engine: Engine,
     ground: GroundMotion<'a>,
-    known: Known,
+    known: Checkpoint,
     transitions: Vec<Transition>,
 }
 
@@ -27,7 +27,7 @@ impl<'a> Outside<'a> {
         let (mut transitions, ground) = (Vec::new(), GroundMotion::from(record));
         let a_g = LinearLoad::default().on_ground(ground.at(Elapsed::default())).value;
         engine.lift_off_if_due(a_g, &mut |transition: &Transition| transitions.push(*transition));
-        let known = Known { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
+        let known = Checkpoint { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
         Outside { engine, ground, known, transitions }
     }
 
@@ -62,7 +62,7 @@ impl<'a> Outside<'a> {
         assert!(is_corrected || motion.state == self.engine.motion().state, "the integrator's own state is lost");
         self.engine.set_motion(motion);
         self.engine.lift_off_if_due(load, &mut watch);
-        self.known = Known { motion: *self.engine.motion(), elapsed, load: Load::default() };
+        self.known = Checkpoint { motion: *self.engine.motion(), elapsed, load: Load::default() };
         assert!(self.height() >= -BAND || self.has_overturned(), "below the floor at t = {}", t + h);
     }
 
@@ -138,7 +138,7 @@ fn a_hop_within_one_step_is_found() {
     let structure = Structure::new(Parameters::EVISON).unwrap();
     let initial = State { theta: 1e-5, theta_dot: 1e-4, ..State::default() };
     let mut engine = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
-    let known = Known { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
+    let known = Checkpoint { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
     let mut alone = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
     alone.advance(0.05, Load::default(), &mut ()).unwrap();
     assert!(alone.motion().transitions > 0);
@@ -162,7 +162,7 @@ fn a_step_that_ends_below_the_floor_without_reason_is_put_right() {
     let structure = Structure::new(Parameters::EVISON).unwrap();
     let initial = State { theta: 0.03, ..State::default() };
     let mut engine = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
-    let known = Known { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
+    let known = Checkpoint { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
     let mut alone = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
     alone.advance(1e-3, Load::default(), &mut ()).unwrap();
     for wrong in [-1e-3, 3.0, f64::NAN] {

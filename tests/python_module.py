@@ -25,6 +25,12 @@ def use_all(folder: Path) -> None:
     assert pier.H > pier.B and pier.derived["chi"] < 1 and wall.parameters["f_fc"] == 8.0
     assert wall.effective_frequency(0.04) > 0 and wall.pushover(points=3)["P"].shape == (6,)
 
+    base = {"m0": 2e4, "J0": 3e4, "B": 1.5}
+    shear = fr.Structure(storeys=[{"m": 4e4, "h": 3.5, "k": 6e7}], zeta={"f": (2.0, 9.0), "zeta": 0.02}, **base)
+    bent = fr.Structure.from_matrices([4e4], [3.5], [[6e7]], zeta=[0.02], r=0.9, **base)
+    found = fr.Structure.from_modes(mass=[4e4], f=[6.2], height=[3.5], zeta=0.02, masses=[4e4], heights=[3.5], **base)
+    assert shear.mode_table["f"].shape == (1,) and bent.r == 0.9 and found.derived["m_s"] == 4e4
+
     run = fr.simulate(wall, ground, detail="auto", tolerance=1e-9, theta_0=0.01)
     theta: fr.Peak = run.peaks["theta"]
     assert float(theta) == theta.value and theta.time > 0 and theta.unit == "rad" and not run.overturned

@@ -485,6 +485,11 @@ fn the_warning_of_a_base_held_down_beyond_its_edge_knows_the_tendon() {
     assert_eq!(tied.u_cr, Restraint::about(&tied, Side::Right, &Dissipators::NEW).uplift_displacement(0.0));
     let warnings = of_parameters(&tied, Detail::Auto);
     assert!(warnings[0].starts_with("u_cr = 0.6") && warnings[0].contains("exceeds B = 0.285 m"), "{warnings:?}");
+    // u k H = (W + P_0) B less the moment m g u of the weight, beyond which it topples
+    let &Parameters { m, m0, H, B, g, P_0, .. } = tied.parameters();
+    let balanced = ((m + m0) * g * B + P_0 * B) / (tied.k * H + m * g);
+    let shown = warnings[0].split("from u = ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+    assert_relative_eq!(shown.parse::<f64>().unwrap(), balanced, max_relative = 1e-12);
 }
 
 #[test]

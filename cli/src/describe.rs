@@ -11,7 +11,7 @@ use anyhow::{bail, ensure};
 use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::Quantity;
 use rocking::{
-    estimates::restoring::{Point, flag},
+    estimates::restoring::{FlagPoint, flag},
     structure::{DERIVED, Derived, any::AnyStructure},
 };
 use rocking_report::{describe, quantities::NamedValue};
@@ -66,7 +66,8 @@ pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
 }
 
 /// The moment that turns the base back on the way there and back, for people.
-fn text_of_loop(rows: &[Point]) -> String {
-    let line = |Point { theta, moment }: &Point| format!("{:>12} {:>14}\n", significant(*theta), significant(*moment));
+fn text_of_loop(rows: &[FlagPoint]) -> String {
+    let line =
+        |FlagPoint { theta, moment }: &FlagPoint| format!("{:>12} {:>14}\n", significant(*theta), significant(*moment));
     format!("{:>12} {:>14}\n{}", "theta (rad)", "moment (N.m)", rows.iter().map(line).collect::<String>())
 }

@@ -15,7 +15,7 @@ use rocking::run::record::Record;
 use rocking::{
     Run, Structure, Transition,
     mechanics::restraint::centring_moments,
-    run::validity::{Found as Beyond, Validity},
+    run::validity::{Findings, Validity},
 };
 use rocking_report::{
     output_files::{OutputFile, OutputFiles},
@@ -125,7 +125,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let response = output.map(|path| files.create(path)).transpose()?;
     let events = events.as_deref().map(|path| files.create(path)).transpose()?;
     let picture = picture.as_deref().map(|path| Picture::create(path, &mut files)).transpose()?;
-    let mut validity = Validity::new(&structure, limits, Beyond::since(ground.start()));
+    let mut validity = Validity::new(&structure, limits, Findings::since(ground.start()));
     let mut transitions = Vec::new();
     let mut see = |transition: &Transition| transitions.push(*transition);
     let found = run.found(&mut (&mut validity, &mut see))?;

@@ -3,13 +3,13 @@
 mod command_line;
 
 use command_line::{folder, succeed};
-use rocking::run::validity::{ASSUMPTIONS, Found, Limits};
+use rocking::run::validity::{ASSUMPTIONS, Findings, Limits};
 use rocking::{Parameters, Run, Structure};
 use rocking_records::Reading;
 use std::{fs, path::Path};
 
 /// The pulse under McManus's specimen with this restitution.
-fn found(folder: &Path, r: f64, scale: f64) -> Found {
+fn found(folder: &Path, r: f64, scale: f64) -> Findings {
     let ground = rocking_records::read(&folder.join("pulse.AT2"), &Reading::default(), 9.81)
         .unwrap()
         .0

@@ -50,7 +50,7 @@ def table(found, exact) -> str:
 
 
 def kinks(found) -> dict:
-    """By scene and tolerance: CVODE through the samples, CVODE anew at every sample, DOP853."""
+    """By scene and tolerance: CVODE through the samples, CVODE restarted at every sample, DOP853."""
     return {(scene, tolerance): [sundae_told(scene, tolerance, max(tolerance, 1e-6)),
                                  sundae_told(scene, tolerance, min(tolerance, SAMPLES_ARE_EVENTS)),
                                  dop853(scene, tolerance)]
@@ -62,8 +62,8 @@ def kinks_table(found, of_kinks) -> str:
     rows = [[scene.name, f"{tolerance:g}",
              *(f"{result.error(found[scene][1]):.1e}, {result.evaluations}" for result in results)]
             for (scene, tolerance), results in of_kinks.items()]
-    return report.table(["", "tolerance", "CVODE through the samples", "CVODE anew at every sample",
-                         "DOP853 anew at every sample"], rows)
+    return report.table(["", "tolerance", "CVODE through the samples", "CVODE restarted at every sample",
+                         "DOP853 restarted at every sample"], rows)
 
 
 def spread(values, form: str = ".0e") -> str:

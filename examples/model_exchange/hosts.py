@@ -171,7 +171,7 @@ def sundae_told(scene: Scene, tolerance: float, told: float) -> Result:
 
 
 def dop853(scene: Scene, tolerance: float) -> Result:
-    """scipy's DOP853, a Runge-Kutta method: to start anew costs it nothing, so it has all samples told. It leaves the roots to
+    """scipy's DOP853, a Runge-Kutta method. A restart costs it nothing, so every sample is an event. The roots are left to
     the FMU, which goes over the step."""
     model = Model(scene.fmu, min(tolerance, SAMPLES_ARE_EVENTS), scene.start_values)
     atol = tolerance * model.nominals()

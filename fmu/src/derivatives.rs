@@ -84,15 +84,15 @@ impl Unit {
             scene.set(|settings| settings.vertical = true)?;
         }
         let &Parameters { m, g, .. } = scene.engine.structure().parameters();
-        let before = Shown::new(scene, setup, Load::default());
+        let at_rest = scene.engine.outputs(Load::default());
+        let before = Shown::new(scene, setup, Load::default(), at_rest);
         let acceleration = direction.a_g.abs().max(direction.F_t.abs() / m).max(direction.a_v.abs());
-        let size = acceleration / (g + before.outputs.a_t.abs());
+        let size = acceleration / (g + at_rest.a_t.abs());
         let of_size_one = |part: f64| if size > 0.0 { part / size } else { 0.0 };
-        let after = Shown::new(
-            scene,
-            setup,
-            Load { a_g: of_size_one(direction.a_g), F_t: of_size_one(direction.F_t), a_v: of_size_one(direction.a_v) },
-        );
+        let Load { a_g, F_t, a_v } = direction;
+        let load = Load { a_g: of_size_one(a_g), F_t: of_size_one(F_t), a_v: of_size_one(a_v) };
+        let outputs = scene.engine.outputs(load);
+        let after = Shown::new(scene, setup, load, outputs);
         let change = |of: Source| after.value(of).zip(before.value(of)).map_or(0.0, |(a, b)| a - b);
         let found = unknowns.iter().zip(by_states);
         let found: Vec<_> = found.map(|(of, by)| by.map_or(f64::NAN, |by| size * change(*of) + by)).collect();
@@ -120,7 +120,8 @@ fn by_state(
         let mut components = components;
         components[which] = value;
         scene.engine.set_state(State::of(components));
-        let shown = Shown::new(scene, setup, load);
+        let outputs = scene.engine.outputs(load);
+        let shown = Shown::new(scene, setup, load, outputs);
         let values: Vec<_> = unknowns.iter().map(|source| shown.value(*source).unwrap_or_default()).collect();
         Some(values).filter(|values| values.iter().all(|value| value.is_finite()))
     });

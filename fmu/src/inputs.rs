@@ -16,15 +16,14 @@ pub(crate) enum Between {
     Extrapolated,
 }
 
-/// All of them held: nothing else is asked then.
-const HELD: [Between; LOADS.len()] = [Between::Held; LOADS.len()];
-
 /// The inputs. A slope is followed for one step, after which the value that it led to is held; a step that ended early
 /// goes on where it ended, along the same lines.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Inputs {
     /// How they act, in the order of [`LOADS`].
     between: [Between; LOADS.len()],
+    /// Whether some are not held, so that more than that is asked.
+    is_any_led: bool,
     /// The inputs that act now, and the slopes of the next step, except for late ones.
     next: LinearLoad,
     /// The values that the host has set, or that the last step led to.
@@ -77,33 +76,36 @@ impl Inputs {
 
     /// Makes the inputs act as `between` says. Until then, and where no steps are made, they act at once.
     pub(crate) fn start(&mut self, between: [Between; LOADS.len()]) {
-        self.between = between;
+        (self.between, self.is_any_led) = (between, between != [Between::Held; LOADS.len()]);
     }
 
     /// Sets the value of the input `which` of [`LOADS`].
     #[inline]
     pub(crate) fn set(&mut self, which: usize, value: f64) {
-        let Inputs { between, next, set, given, followed, before: (before, ago), ended_early, .. } = self;
-        let given = &mut given[which];
-        set[which] = value;
-        if *given == Given::Slope {
-            next.value[which] = value;
-            return;
+        self.set[which] = value;
+        let mut acts = value;
+        if self.given[which] != Given::Slope {
+            self.given[which] = Given::Value;
+            (acts, self.next.slope[which]) = match self.between[which] {
+                Between::Held => (value, 0.0),
+                Between::Late => return,
+                Between::Extrapolated => self.extrapolated(which, value),
+            };
         }
-        *given = Given::Value;
-        let (value, slope) = match between[which] {
-            Between::Late => return,
-            Between::Held => (value, 0.0),
-            Between::Extrapolated if *ended_early && value == before[which] => {
-                *given = Given::Nothing;
-                (followed.value[which], followed.slope[which])
-            }
-            Between::Extrapolated => {
-                let slope = (value - before[which]) / *ago;
-                (value, if slope.is_finite() { slope } else { 0.0 })
-            }
-        };
-        (next.value[which], next.slope[which]) = (value, slope);
+        self.next.value[which] = acts;
+    }
+
+    /// The value that acts and its slope where `value` alone is set of an input that goes on.
+    #[cold]
+    #[inline(never)]
+    fn extrapolated(&mut self, which: usize, value: f64) -> (f64, f64) {
+        let Inputs { given, followed, before: (before, ago), ended_early, .. } = self;
+        if *ended_early && value == before[which] {
+            given[which] = Given::Nothing;
+            return (followed.value[which], followed.slope[which]);
+        }
+        let slope = (value - before[which]) / *ago;
+        (value, if slope.is_finite() { slope } else { 0.0 })
     }
 
     /// Sets the slope of an input over the next step, from what has been set of it or else from what acts.
@@ -135,10 +137,13 @@ impl Inputs {
     /// if its line would lead out of its range.
     #[inline]
     pub(crate) fn over(&self, duration: f64) -> LinearLoad {
+        if self.is_any_led { self.lines(duration) } else { self.next }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn lines(&self, duration: f64) -> LinearLoad {
         let mut load = self.next;
-        if self.between == HELD {
-            return load;
-        }
         for (which, between) in self.between.into_iter().enumerate() {
             if between == Between::Held || self.given[which] == Given::Slope {
                 continue;
@@ -165,10 +170,10 @@ impl Inputs {
         load
     }
 
-    /// Goes on after `duration` (s) of a step that followed `load`, and that ended early or at the next communication
-    /// point.
+    /// Goes on after `duration` (s) of a step that followed `load` to `value`, and that ended early or at the next
+    /// communication point.
     #[inline]
-    pub(crate) fn pass(&mut self, load: LinearLoad, duration: f64, ended_early: bool) {
+    pub(crate) fn pass(&mut self, load: LinearLoad, duration: f64, value: Load, ended_early: bool) {
         if !self.ended_early {
             let is_stair = [0, VERTICAL].into_iter().any(|which| {
                 let is_held = self.given[which] == Given::Value && self.between[which] == Between::Held;
@@ -178,21 +183,28 @@ impl Inputs {
             self.before = (load.value, 0.0);
         }
         self.before.1 += duration;
-        let (value, set) = (load.at(duration), self.set);
         let slope = if ended_early { load.slope } else { Load::default() };
-        (self.next, self.set, self.ended_early) = (LinearLoad { value, slope }, value, ended_early);
-        if self.between != HELD {
-            for which in 0..LOADS.len() {
-                if self.acts_at_once(which) {
-                    continue;
-                }
-                self.set[which] = set[which];
-                if !ended_early {
-                    self.next.value[which] = set[which]; // whatever the rounding
-                }
+        (self.next, self.ended_early) = (LinearLoad { value, slope }, ended_early);
+        if self.is_any_led {
+            self.arrive();
+        } else {
+            self.set = value;
+        }
+        (self.followed.value, self.followed.slope) = (self.next.value, load.slope);
+        self.given = [Given::Nothing; LOADS.len()];
+    }
+
+    /// Sets the inputs that act at once to where the step has led. Late inputs go to their set values, whatever the rounding,
+    /// unless the step has ended early.
+    #[cold]
+    #[inline(never)]
+    fn arrive(&mut self) {
+        for which in 0..LOADS.len() {
+            if self.acts_at_once(which) {
+                self.set[which] = self.next.value[which];
+            } else if !self.ended_early {
+                self.next.value[which] = self.set[which];
             }
         }
-        self.followed = LinearLoad { value: self.next.value, slope: load.slope };
-        self.given = [Given::Nothing; LOADS.len()];
     }
 }

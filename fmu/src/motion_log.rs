@@ -1,11 +1,11 @@
 //! The messages to the host about the motion: its transitions, and the limits of the model that it passes.
 
 use fmi_unit::Logger;
-use rocking::run::validity::{ASSUMPTIONS, Found, Limits};
+use rocking::run::validity::{ASSUMPTIONS, Findings, Limits};
 use rocking::{Side, Transition, TransitionKind};
 
 /// Warns of the limits that `found` is beyond and `known`, found before, was not.
-pub(crate) fn warn(logger: &Logger, known: &Found, found: &Found) {
+pub(crate) fn warn(logger: &Logger, known: &Findings, found: &Findings) {
     let is_new = |which: &usize| known.worst[*which].first_beyond.is_none();
     (0..ASSUMPTIONS.len())
         .filter(is_new)

@@ -1,6 +1,6 @@
 //! The structure under a host that integrates: every complete step is checked, and transitions are applied.
 //!
-//! The engine stands at the time and state of the host; [`Known`] keeps the last motion that was right.
+//! The engine stands at the time and state of the host; [`Checkpoint`] keeps the last motion that was right.
 
 use crate::failure::Refusal;
 use crate::motion_log::log;
@@ -9,7 +9,7 @@ use crate::setup::Setup;
 use fmi_unit::{Completed, Failure, Logger, Update};
 use rocking::mechanics::state::COMPONENTS;
 use rocking::run::ground_motion::Elapsed;
-use rocking::run::outside_step::{Checked, Known};
+use rocking::run::outside_step::{Checked, Checkpoint};
 use rocking::{Load, State, Transition, Watch};
 
 /// The relative tolerance up to which samples of the record are events. A solver of high order that integrates over the
@@ -35,7 +35,13 @@ impl Scene {
     }
 
     /// Checks the step from where the motion was last known to where the host is, with the inputs `load` there.
-    fn check<W: Watch>(&mut self, setup: &Setup, known: &Known, load: Load, watch: &mut W) -> Result<Checked, Failure> {
+    fn check<W: Watch>(
+        &mut self,
+        setup: &Setup,
+        known: &Checkpoint,
+        load: Load,
+        watch: &mut W,
+    ) -> Result<Checked, Failure> {
         let (from, to) = (known.motion.time, self.engine.motion().time);
         if to < from && !self.has_overturned() {
             return Err(Failure::StepBack { from, to });
@@ -64,7 +70,7 @@ impl Scene {
     /// Leaves the motion to the host's integrator, with the inputs `load`.
     pub fn leave_to_host(&mut self, load: Load) {
         let (motion, elapsed) = (*self.engine.motion(), self.elapsed);
-        self.outside = Some(Outside { known: Known { motion, elapsed, load }, arrived: load, event: elapsed });
+        self.outside = Some(Outside { known: Checkpoint { motion, elapsed, load }, arrived: load, event: elapsed });
     }
 
     /// Goes to the host's `time` (s).
@@ -93,7 +99,7 @@ impl Scene {
         let Some(mut outside) = self.outside else { return Ok(Completed::default()) };
         let Checked { motion, is_corrected, .. } = self.check(setup, &outside.known, load, &mut ())?;
         if !is_corrected {
-            outside.known = Known { motion, elapsed: self.elapsed, load };
+            outside.known = Checkpoint { motion, elapsed: self.elapsed, load };
             self.outside = Some(outside);
             self.engine.set_motion(motion);
         }
@@ -129,7 +135,7 @@ impl Scene {
         let acting = self.acting(setup, load);
         self.engine.lift_off_if_due(acting, &mut |transition: &Transition| log(logger, transition));
         let motion = *self.engine.motion();
-        let known = Known { motion, elapsed: self.elapsed, load };
+        let known = Checkpoint { motion, elapsed: self.elapsed, load };
         self.outside = Some(Outside { known, arrived: load, event: outside.event });
         self.engine.set_time(host.time);
         Ok(Update {

@@ -8,9 +8,9 @@ use rocking::engine::Settings;
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::fall::FallingPeaks;
 use rocking::run::ground_motion::{Elapsed, Placement};
-use rocking::run::outside_step::Known;
+use rocking::run::outside_step::Checkpoint;
 use rocking::run::record::Record;
-use rocking::run::validity::{Found, Limits, Validity};
+use rocking::run::validity::{Findings, Limits, Validity};
 use rocking::{Engine, LinearLoad, Load, Phase, Structure, Watch};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -27,14 +27,14 @@ pub(crate) struct Scene {
     /// If the host integrates: the engine is then where the host is.
     pub outside: Option<Outside>,
     pub peaks: FallingPeaks,
-    pub validity: Found,
+    pub validity: Findings,
 }
 
 /// The knowledge of an instance beside the present of a motion that the host integrates.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Outside {
     /// The last motion that was known.
-    pub known: Known,
+    pub known: Checkpoint,
     /// The inputs when event mode was entered: what is set there has not acted before.
     pub arrived: Load,
     /// When event mode was entered last: where the record jumps later, it does so once event mode is entered there.
@@ -70,7 +70,7 @@ impl Scene {
         let ground = source.as_deref().map(|source| setup.scaled(source)).transpose()?;
         let engine = setup.engine(may_move_vertically(setup, ground.as_ref()))?;
         let peaks = FallingPeaks::since(setup.start_time, engine.structure(), setup.detail);
-        let validity = Found::since(setup.start_time);
+        let validity = Findings::since(setup.start_time);
         Ok(Scene { engine, source, ground, elapsed: Elapsed::default(), outside: None, peaks, validity })
     }
 
@@ -116,7 +116,7 @@ impl Scene {
     }
 
     /// The limits that the motion has passed since the start; before the first step by the reactions under `load`.
-    pub fn validity(&self, load: Load) -> Found {
+    pub fn validity(&self, load: Load) -> Findings {
         let mut validity = self.watch_validity();
         if self.is_at_start(load) {
             validity.see_instant(&self.engine.sample(load));

@@ -9,10 +9,10 @@ use std::cell::OnceCell;
 /// The values of a scene under a load.
 pub(crate) struct Shown<'a> {
     scene: &'a Scene,
-    setup: &'a Setup,
+    pub setup: &'a Setup,
     load: Load,
     /// The outputs.
-    pub outputs: Outputs,
+    outputs: Outputs,
     /// Computed when they are first asked for, as the next.
     reactions: OnceCell<Reactions>,
     /// Derivatives of the states.
@@ -20,11 +20,10 @@ pub(crate) struct Shown<'a> {
 }
 
 impl<'a> Shown<'a> {
-    /// The values of `scene`, which follows `setup`, under `load`.
-    #[inline]
-    pub fn new(scene: &'a Scene, setup: &'a Setup, load: Load) -> Shown<'a> {
+    /// The values of `scene`, which follows `setup` and has these `outputs`, under `load`.
+    pub fn new(scene: &'a Scene, setup: &'a Setup, load: Load, outputs: Outputs) -> Shown<'a> {
         let (reactions, rates) = Default::default();
-        Shown { scene, setup, load, outputs: scene.engine.outputs(load), reactions, rates }
+        Shown { scene, setup, load, outputs, reactions, rates }
     }
 
     /// The reactions.
@@ -33,20 +32,15 @@ impl<'a> Shown<'a> {
     }
 
     /// The last of the reactions, then of the rates, that are among `references` if the equations have no solution for them.
-    #[inline]
     pub fn unsolved(&self, references: &[u32], sources: &[Source]) -> Option<u32> {
-        let (reactions, rates) = (self.reactions.get(), self.rates.get());
-        if reactions.is_none() && rates.is_none() { None } else { self.last_unsolved(references, sources) }
-    }
-
-    #[cold]
-    fn last_unsolved(&self, references: &[u32], sources: &[Source]) -> Option<u32> {
         let last = |is_one: fn(Source) -> bool| {
             references.iter().copied().rfind(|reference| is_one(sources[*reference as usize]))
         };
-        let Reactions { R_h, R_v, R_m } = self.reactions();
-        let reaction = last(|source| matches!(source, Source::Reaction(_))).filter(|_| !(R_h + R_v + R_m).is_finite());
-        reaction.or(last(|source| matches!(source, Source::StateRate(_))).filter(|_| !self.state_rates().is_finite()))
+        let is_finite = |reactions: &Reactions| (reactions.R_h + reactions.R_v + reactions.R_m).is_finite();
+        let reactions = self.reactions.get().filter(|reactions| !is_finite(reactions));
+        let reaction = reactions.and_then(|_| last(|source| matches!(source, Source::Reaction(_))));
+        let rates = self.rates.get().filter(|rates| !rates.is_finite());
+        reaction.or_else(|| rates.and_then(|_| last(|source| matches!(source, Source::StateRate(_)))))
     }
 
     /// Derivatives of the states.
@@ -55,7 +49,6 @@ impl<'a> Shown<'a> {
     }
 
     /// The value of a Real from `source`, if it is one that is computed.
-    #[inline(never)]
     pub fn value(&self, source: Source) -> Option<f64> {
         let Shown { scene, setup, load, .. } = *self;
         Some(match source {

@@ -16,7 +16,7 @@ use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::load::VERTICAL;
 use rocking::run::fall::FallingPeaks;
 use rocking::run::ground_motion::Elapsed;
-use rocking::run::validity::{self, Found};
+use rocking::run::validity::{self, Findings};
 use rocking::{Motion, State, Transition};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -37,7 +37,7 @@ pub struct Unit {
     told_of_stairs: bool,
 }
 
-/// A few dozen numbers from which an instance goes on to the same bits: its part of an FMU state.
+/// All from which an instance goes on to the same bits: its part of an FMU state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Condition {
     /// The settings before the start.
@@ -60,7 +60,7 @@ pub struct Course {
     /// Peaks so far, if they are watched.
     pub peaks: FallingPeaks,
     /// Which limits of the model have been passed so far, if they are watched.
-    pub validity: Found,
+    pub validity: Findings,
     /// Names the record that the ground follows.
     pub record: Option<Digest>,
 }
@@ -115,6 +115,13 @@ impl Unit {
     }
 }
 
+/// The value of a real number that is no output: one that is `shown`, or set.
+#[cold]
+#[inline(never)]
+fn other(shown: &Shown, inputs: &Inputs, source: Source) -> f64 {
+    shown.value(source).unwrap_or_else(|| setting(shown.setup, inputs, source))
+}
+
 /// The value of a real number that the host sets.
 fn setting(setup: &Setup, inputs: &Inputs, source: Source) -> f64 {
     match source {
@@ -158,6 +165,7 @@ impl Model for Unit {
         })
     }
 
+    #[inline(always)]
     fn get_reals(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Failure> {
         if self.scene.is_none() {
             let is_set = |reference: &u32| self.table.sources[*reference as usize].is_set();
@@ -169,21 +177,21 @@ impl Model for Unit {
         let Unit { table: Table { sources, .. }, setup, inputs, scene: Some(scene), .. } = self else {
             unreachable!("it is built")
         };
-        let shown = Shown::new(scene, setup, scene.load(setup, inputs.values().into()).value);
-        let sources: &[Source] = sources;
+        let load = scene.load(setup, inputs.values().into()).value;
+        let outputs = scene.engine.outputs(load);
+        let (mut shown, sources): (_, &[Source]) = (None, sources);
         for (reference, value) in references.iter().zip(values) {
             *value = match sources[*reference as usize] {
-                Source::Output(of) => of(&shown.outputs),
-                source => shown.value(source).unwrap_or_else(|| setting(setup, inputs, source)),
+                Source::Output(of) => of(&outputs),
+                source => {
+                    let shown = shown.get_or_insert_with(|| Shown::new(scene, setup, load, outputs));
+                    other(shown, inputs, source)
+                }
             };
         }
-        match shown.unsolved(references, sources) {
-            Some(reference) => {
-                let time = scene.engine.motion().time;
-                Err(Refusal::NoReaction { name: self.name(reference), time }.into())
-            }
-            None => Ok(()),
-        }
+        let Some(shown) = shown else { return Ok(()) };
+        let Some(reference) = shown.unsolved(references, sources) else { return Ok(()) };
+        Err(Refusal::NoReaction { name: self.name(reference), time: self.time()? }.into())
     }
 
     fn set(&mut self, reference: u32, value: Value) {
@@ -194,7 +202,7 @@ impl Model for Unit {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn set_inputs(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
         if self.is_vertical(references, values) {
             self.admit_vertical()?;
@@ -203,7 +211,7 @@ impl Model for Unit {
         Ok(())
     }
 
-    #[inline]
+    #[inline(always)]
     fn set_slopes(&mut self, references: &[u32], slopes: &[f64]) -> Result<(), Failure> {
         if self.is_vertical(references, slopes) {
             self.admit_vertical()?;
@@ -255,18 +263,22 @@ impl Model for Unit {
 
     #[inline]
     fn time(&mut self) -> Result<f64, Failure> {
-        Ok(self.scene()?.engine.motion().time)
+        Ok(self.scene.as_ref().map_or(self.setup.start_time, |scene| scene.engine.motion().time))
     }
 
+    #[inline(always)]
     fn advance(&mut self, step: Step, logger: &Logger) -> Result<Progress, Failure> {
         let Step { start: point, duration: step, stops_at_events: stops } = step;
         let (scene, setup, inputs) = self.parts()?;
         let load = inputs.over(step);
-        load.at(step).check().map_err(Refusal::InputRunsOut)?;
+        let end = load.at(step);
+        end.check().map_err(Refusal::InputRunsOut)?;
 
         let time = scene.engine.motion().time;
         scene.engine.set_time(point);
-        scene.set(|settings| settings.stops = stops)?;
+        if scene.engine.settings().stops != stops {
+            scene.set(|settings| settings.stops = stops)?;
+        }
         let known = setup.validity.then_some(scene.validity);
         let mut watch = |transition: &Transition| log(logger, transition);
         let result = if stops {
@@ -279,9 +291,11 @@ impl Model for Unit {
             Refusal::from(error)
         })?;
         let reached = scene.engine.motion().time;
-        let passed = if reached == point + step { step } else { reached - point };
-        if passed > 0.0 {
-            inputs.pass(load, passed, reached < point + step);
+        let ended_early = reached < point + step;
+        if !ended_early {
+            inputs.pass(load, step, end, false);
+        } else if reached > point {
+            inputs.pass(load, reached - point, load.at(reached - point), true);
         }
         known.iter().for_each(|known| warn(logger, known, &scene.validity));
         if inputs.makes_stairs() && !self.told_of_stairs {

@@ -5,7 +5,8 @@ mod host;
 #[path = "../fmi/tests/hostile/mod.rs"]
 mod hostile;
 
-use FlexibleRocking::unit::Unit;
+use FlexibleRocking::unit::Unit as Model;
+use FlexibleRocking::{fmi2, fmi3};
 use fmi_unit::snapshot::Snapshot;
 use hostile::{Subject, hostile_calls};
 use rocking::engine::MAX_STEPS_PER_ADVANCE;
@@ -22,7 +23,7 @@ fn structure() -> Subject {
     // the top mass above the pivot of a foundation without inertia
     let sticks = [("m0", 0.0), ("J0", 0.0), ("B", 0.3), ("theta_0", 0.1), ("u_0", 0.3)];
     let sticks = sticks.map(|(name, value)| (host::reference(name), value)).into();
-    Subject { texts, sticks, may_be_infinite, check_step, ..Subject::of::<Unit>(resources, time) }
+    Subject { texts, sticks, may_be_infinite, check_step, ..Subject::of(resources, time) }
 }
 
 fn time(snapshot: &Snapshot) -> f64 {

@@ -1,6 +1,6 @@
 from collections.abc import Callable, Sequence
 from os import PathLike
-from typing import Any, Literal, TypedDict, final
+from typing import Any, Literal, TypedDict, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -41,6 +41,15 @@ class _Numbers(TypedDict, total=False):
     alpha_cg: float
     p_l: float
 
+class _Storey(TypedDict):
+    m: float
+    h: float
+    k: float
+
+class _Rayleigh(TypedDict):
+    f: tuple[float, float]
+    zeta: float
+
 class _InitialValues(TypedDict, total=False):
     theta_0: float
     theta_dot_0: float
@@ -49,12 +58,39 @@ class _InitialValues(TypedDict, total=False):
 
 @final
 class Structure:
+    @overload
     def __new__(cls, *, preset: Literal["mcmanus", "evison"] | None = None, **numbers: Unpack[_Numbers]) -> Structure: ...
+    @overload
+    def __new__(cls, *, storeys: Sequence[_Storey], zeta: ArrayLike | _Rayleigh, **base: float) -> Structure: ...
+    @staticmethod
+    def from_matrices(
+        masses: ArrayLike, heights: ArrayLike, K: ArrayLike, *, zeta: ArrayLike | _Rayleigh, **base: float
+    ) -> Structure: ...
+    @staticmethod
+    def from_modes(
+        *,
+        mass: ArrayLike,
+        zeta: ArrayLike | _Rayleigh,
+        f: ArrayLike | None = None,
+        period: ArrayLike | None = None,
+        height: ArrayLike | None = None,
+        moment: ArrayLike | None = None,
+        m_s: float | None = None,
+        S_1: float | None = None,
+        I_2: float | None = None,
+        J_P: float | None = None,
+        masses: ArrayLike | None = None,
+        heights: ArrayLike | None = None,
+        shapes: ArrayLike | None = None,
+        **base: float,
+    ) -> Structure: ...
     def replace(self, **numbers: Unpack[_Numbers]) -> Structure: ...
     @property
-    def parameters(self) -> dict[str, float]: ...
+    def parameters(self) -> dict[str, Any]: ...
     @property
     def derived(self) -> dict[str, float]: ...
+    @property
+    def mode_table(self) -> dict[str, _Array]: ...
     def effective_frequency(self, theta: float) -> float: ...
     def pushover(self, points: int = 100) -> dict[str, _Array]: ...
     def modes(self, response: Response) -> dict[str, _Array]: ...

@@ -81,7 +81,7 @@ pub fn given(keywords: &Bound<'_, PyDict>) -> PyResult<Given> {
 fn storey(i: usize, row: &Bound<'_, PyAny>) -> PyResult<Storey> {
     let wrong = || PyValueError::new_err(format!("storey {i} = {row:?}: dict(m=..., h=..., k=...) is needed"));
     let row = row.cast::<PyDict>().map_err(|_| wrong())?;
-    let of = |name: &str| number(name, &row.get_item(name)?.ok_or_else(wrong)?);
+    let of = |name: &str| number(&format!("storey {i}: {name}"), &row.get_item(name)?.ok_or_else(wrong)?);
     if row.len() == 3 { Ok(Storey { m: of("m")?, h: of("h")?, k: of("k")? }) } else { Err(wrong()) }
 }
 

@@ -31,12 +31,11 @@ use rocking_report::describe;
 /// Derived quantities are attributes, too: alpha_cg, p_l, chi, u_cr, f_u, ... `parameters` and `derived` have all of them,
 /// and print(structure) shows them with units and equation numbers. A structure cannot be changed; `replace` makes another.
 ///
-/// A structure of many masses is a base (m0, B, J0, r, g, c_ratio, tendon, dissipators as above; without r, momentum gives
-/// it for each impact) with the storeys of a shear building, each with the mass m (kg) and the height h (m) above the base of its
-/// floor and its stiffness k (N/m); or see from_matrices and from_modes. zeta: one damping ratio, one for each mode, or
-/// dict(f=(Hz, Hz), zeta=...) for Rayleigh damping.
-///
 /// Structure(storeys=[dict(m=4e4, h=3.5, k=6e7), dict(m=3e4, h=7, k=4e7)], zeta=0.02, m0=2e4, J0=3e4, B=1.5)
+///
+/// A shear building of many masses. Each storey has the stiffness k (N/m), and the mass m (kg) and height h (m) above the base
+/// of its floor. zeta: one damping ratio, one for each mode, or dict(f=(Hz, Hz), zeta=...) for Rayleigh damping. The numbers of
+/// the base are those above. Without r, momentum gives a coefficient for each impact. See also from_matrices and from_modes.
 ///
 /// Raises ValueError where a number is unknown, missing, given twice in different ways or out of its range.
 #[pyclass(frozen, eq, module = "flexible_rocking")]
@@ -101,10 +100,10 @@ impl Structure {
         Structure::of(parameters.map_err(refused)?)
     }
 
-    /// The structure of these masses (kg) at these heights (m) above the base, lowest first, and of the stiffness matrix K
-    /// (N/m) on a fixed base. zeta and the numbers of the base as in Structure.
+    /// The structure of these masses (kg) at these heights (m) above the base, lowest first. K (N/m) is the stiffness matrix on
+    /// a fixed base. zeta and the numbers of the base as in Structure.
     #[staticmethod]
-    #[pyo3(signature = (masses, heights, K, **numbers))]
+    #[pyo3(signature = (masses, heights, K, **numbers), text_signature = "(masses, heights, K, *, zeta, **base)")]
     fn from_matrices<'py>(
         masses: Bound<'py, PyAny>,
         heights: Bound<'py, PyAny>,
@@ -121,10 +120,14 @@ impl Structure {
     /// The structure of the modes of a fixed base that another program found, lowest first. Arrays with a number for each mode: f
     /// (Hz) or period (s), mass (effective, kg), height (effective, m) or moment (mass x height, kg.m). All mass above the
     /// base: m_s (kg), S_1 (the sum of m h, kg.m), and I_2 (the sum of m h^2, kg.m2) or J_P (inertia about a pivot, kg.m2).
-    /// Floors, if they are to be shown: masses, heights, and shapes (floors, modes) in any scale; without m_s, S_1 and I_2 the
+    /// Floors, if they are to be shown: masses, heights, and shapes (floors, modes) in any scale. Without m_s, S_1 and I_2 the
     /// floors have all mass. zeta and the numbers of the base as in Structure.
     #[staticmethod]
     #[pyo3(signature = (*, mass, **numbers))]
+    #[pyo3(
+        text_signature = "(*, mass, zeta, f=None, period=None, height=None, moment=None, m_s=None, S_1=None, I_2=None, \
+                             J_P=None, masses=None, heights=None, shapes=None, **base)"
+    )]
     fn from_modes<'py>(mass: Bound<'py, PyAny>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<Structure> {
         let keywords = numbers.map_or_else(|| Ok(PyDict::new(mass.py())), |numbers| numbers.copy())?;
         keywords.set_item("mass", mass)?;

@@ -2,7 +2,7 @@
 
 use crate::quantities::Number;
 use crate::significant::significant;
-use rocking::run::validity::{self, ASSUMPTIONS, Assumption, Found, Limits, WEIGHT, Worst};
+use rocking::run::validity::{self, ASSUMPTIONS, Assumption, Findings, Limits, WEIGHT, Worst};
 use rocking::{Detail, Structure};
 use serde::Serialize;
 
@@ -34,7 +34,7 @@ pub struct Beyond {
 }
 
 /// Results for all assumptions, in a run in which this was `found`.
-pub fn rows(found: &Found, limits: &Limits) -> Vec<Beyond> {
+pub fn rows(found: &Findings, limits: &Limits) -> Vec<Beyond> {
     let row = |(assumption, worst): (&Assumption, &Worst)| {
         let Worst { value, time, first_beyond, beyond } = *worst;
         Beyond {
@@ -50,7 +50,7 @@ pub fn rows(found: &Found, limits: &Limits) -> Vec<Beyond> {
 }
 
 /// The section on a run of `structure` at the level `detail` in which this was `found`, line by line.
-pub fn section(structure: &Structure, detail: Detail, found: &Found, limits: &Limits) -> Vec<String> {
+pub fn section(structure: &Structure, detail: Detail, found: &Findings, limits: &Limits) -> Vec<String> {
     let of_parameters = validity::of_parameters(structure, detail);
     let mut lines = vec!["what the model leaves out here".to_owned()];
     lines.extend(of_parameters.into_iter().map(|warning| format!("  {warning}")));
@@ -70,7 +70,7 @@ pub fn section(structure: &Structure, detail: Detail, found: &Found, limits: &Li
     lines
 }
 
-fn line(which: usize, found: &Found, limits: &Limits) -> String {
+fn line(which: usize, found: &Findings, limits: &Limits) -> String {
     let Worst { value, time, first_beyond, beyond } = found.worst[which];
     let &Assumption { is_of_impacts, passing, limit, start, .. } = &ASSUMPTIONS[which];
     let limit = limit(limits);

@@ -9,13 +9,15 @@ use crate::engine::phases::{self, Step};
 use crate::engine::transition::Transition;
 use crate::levels::level::{Now, Subject};
 use crate::levels::shown::Searched;
-use crate::mechanics::instant::Second;
+use crate::mechanics::gauge::{Gauge, Reading};
+use crate::mechanics::instant::{Instant, Place, Second};
+use crate::mechanics::lateral::Modes;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::Measure;
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
 use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Series, Start, evaluate};
-use crate::{Outputs, Phase, Reactions, State};
+use crate::{Floor, Outputs, Phase, Reactions, State};
 use std::f64::consts::TAU;
 
 /// Watches a motion go by.
@@ -121,6 +123,34 @@ impl Sample<'_> {
     }
 }
 
+impl Sample<'_, Modes> {
+    /// The value of `gauge`; once overturned, the value of the instant before.
+    pub fn value(&self, gauge: &Gauge) -> f64 {
+        let (frame, x) = (self.level.structure(), self.instant());
+        let damping = frame.base.damping(self.motion.phase);
+        let theta_ddot = if gauge.has_feedthrough() { self.second().theta_ddot } else { 0.0 };
+        let (elastic, push) = (gauge.elastic(frame, damping, &x.u, &x.u_dot), gauge.push(frame, &x.F_t));
+        let Instant { turn, theta_dot, a_g, a_v, .. } = x;
+        gauge.value(&frame.base, x.s, &Reading { elastic, push, turn, theta_dot, theta_ddot, a_g, a_v })
+    }
+
+    /// Displacement of `floor` relative to the ground δ, m (Eq 26).
+    pub fn displacement(&self, floor: &Floor) -> f64 {
+        let x = self.instant();
+        let place = Place { share: 1.0, height: floor.height, u: floor.displacement(&x.u) };
+        place.right(x.pivot(), &x.turn)
+    }
+
+    /// The reactions; once overturned, those of the instant before.
+    pub fn reactions(&self) -> Reactions {
+        Reactions::at(&self.instant(), &self.second())
+    }
+
+    fn instant(&self) -> Instant<'_, f64, Modes> {
+        Instant::of(self.level.structure(), self.motion.phase.in_motion(), &self.motion.state, self.load)
+    }
+}
+
 /// A series of an output that is off by less than this part of its terms at its end has converged.
 const CONVERGED: f64 = 1e-12;
 
@@ -143,26 +173,20 @@ pub struct Piece<'a, Q: Moves = f64> {
     pub(crate) arc: Option<&'a Arc<Q>>,
 }
 
-impl Piece<'_> {
+impl<Q: Moves> Piece<'_, Q> {
     /// The whole piece as a part.
     #[inline]
-    pub(crate) fn whole(&self) -> Part<'_> {
+    pub(crate) fn whole(&self) -> Part<'_, Q> {
         Part { piece: self, start: (0.0, self.before.state), end: (self.duration, self.end) }
     }
 
     /// The motion of the piece as polynomials, in order of time.
-    pub(crate) fn arcs(&self) -> Arcs<'_> {
+    pub(crate) fn arcs(&self) -> Arcs<'_, Q> {
         self.whole().arcs()
     }
 
-    /// The outputs in `state`, `tau` seconds after the start of the piece.
-    pub(crate) fn outputs(&self, tau: f64, state: &State) -> Outputs {
-        let now = Now { state, load: self.load.at(tau), dissipators: &self.before.dissipators };
-        self.level.outputs(self.before.phase, &now)
-    }
-
     /// The state `tau` seconds after the start of the piece.
-    pub(crate) fn state_at(&self, tau: f64) -> State {
+    pub(crate) fn state_at(&self, tau: f64) -> State<Q> {
         if tau <= 0.0 {
             return self.before.state;
         }
@@ -186,7 +210,7 @@ impl Piece<'_> {
 
     /// The dissipators `tau` seconds after the start of the piece.
     fn dissipators_at(&self, tau: f64) -> Dissipators {
-        let moved = phases::of(self.level.structure(), self.before).zip(self.arc).and_then(|(watched, arc)| {
+        let moved = phases::of::<Q>(self.level.structure(), self.before).zip(self.arc).and_then(|(watched, arc)| {
             let (level, side) = (&**self.level, self.before.phase.side());
             let step = Step { level, side, start: &self.whole().step(), arc, reach: tau / arc.span };
             watched.moved(level.subject(), &step)
@@ -195,7 +219,7 @@ impl Piece<'_> {
     }
 
     /// The motion at `time` (s), which lies within the piece.
-    pub fn sample(&self, time: f64) -> Sample<'_> {
+    pub fn sample(&self, time: f64) -> Sample<'_, Q> {
         let end = self.before.time + self.duration;
         // an instant that misses the end by the clock's rounding is the end
         let is_before = time < end - 2.0 * f64::EPSILON * end.abs();
@@ -205,24 +229,39 @@ impl Piece<'_> {
     }
 }
 
-/// A part of a piece.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Part<'a> {
-    pub piece: &'a Piece<'a>,
-    /// Seconds from the piece's start to its own, and the state there.
-    pub start: (f64, State),
-    /// Seconds from the piece's start to its end, and the state there.
-    pub end: (f64, State),
+impl Piece<'_> {
+    /// The outputs in `state`, `tau` seconds after the start of the piece.
+    pub(crate) fn outputs(&self, tau: f64, state: &State) -> Outputs {
+        let now = Now { state, load: self.load.at(tau), dissipators: &self.before.dissipators };
+        self.level.outputs(self.before.phase, &now)
+    }
 }
 
-impl<'a> Part<'a> {
+/// A part of a piece.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part<'a, Q: Moves = f64> {
+    pub piece: &'a Piece<'a, Q>,
+    /// Seconds from the piece's start to its own, and the state there.
+    pub start: (f64, State<Q>),
+    /// Seconds from the piece's start to its end, and the state there.
+    pub end: (f64, State<Q>),
+}
+
+impl<'a, Q: Moves> Part<'a, Q> {
     /// The part as a step.
     #[inline]
-    pub(crate) fn step(&self) -> Start<'a> {
+    pub(crate) fn step(&self) -> Start<'a, Q> {
         let Part { piece, start: (passed, state), end: (until, _) } = *self;
         piece.level.subject().start(state, &piece.before.dissipators, piece.load.from(passed), until - passed)
     }
 
+    /// The motion of the part as polynomials, in order of time.
+    pub(crate) fn arcs(&self) -> Arcs<'a, Q> {
+        Arcs { begin: self.start.0, left: Some(*self), arc: None, evaluations: 0 }
+    }
+}
+
+impl<'a> Part<'a> {
     /// The halves of the part, if the state between them is known without expanding the motion.
     pub(crate) fn halves(&self) -> Option<[Part<'a>; 2]> {
         let Part { piece, start, .. } = *self;
@@ -234,11 +273,6 @@ impl<'a> Part<'a> {
         let middle = piece.level.leap(piece.before.phase, &half)?;
         let middle = (start.0 + half.interval, middle);
         Some([Part { end: middle, ..*self }, Part { start: middle, ..*self }])
-    }
-
-    /// The motion of the part as polynomials, in order of time.
-    pub(crate) fn arcs(&self) -> Arcs<'a> {
-        Arcs { begin: self.start.0, left: Some(*self), arc: None, evaluations: 0 }
     }
 
     /// The outputs at both ends of the part, with seconds from the start of the piece.
@@ -309,19 +343,19 @@ impl<'a> Part<'a> {
 
 /// Goes through a part of a piece polynomial by polynomial.
 #[derive(Debug)]
-pub(crate) struct Arcs<'a> {
+pub(crate) struct Arcs<'a, Q: Moves = f64> {
     /// Start of the part, s after the start of the piece.
     begin: f64,
-    left: Option<Part<'a>>,
+    left: Option<Part<'a, Q>>,
     /// Of a leap: the polynomial in hand.
-    arc: Option<Arc>,
+    arc: Option<Arc<Q>>,
     /// Right-hand-side evaluations that the polynomials took.
     pub evaluations: u64,
 }
 
-impl Arcs<'_> {
+impl<Q: Moves> Arcs<'_, Q> {
     /// The motion from where the last one ends on, as far as one polynomial reaches.
-    pub(crate) fn next(&mut self) -> Option<Expansion<'_>> {
+    pub(crate) fn next(&mut self) -> Option<Expansion<'_, Q>> {
         let part = self.left.take()?;
         let Part { piece, start: (from, _), end: (until, _) } = part;
         if let Some(arc) = piece.arc {
@@ -336,7 +370,9 @@ impl Arcs<'_> {
         }
         Some(Expansion { piece, from, arc })
     }
+}
 
+impl Arcs<'_> {
     /// Leaves out the middle of what is left of a long leap.
     ///
     /// The motion in full contact is a line and a decaying vibration about the line. The magnitudes of the line and of the
@@ -362,19 +398,28 @@ impl Arcs<'_> {
 
 /// A polynomial of the motion of a piece.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Expansion<'a> {
-    pub piece: &'a Piece<'a>,
+pub(crate) struct Expansion<'a, Q: Moves = f64> {
+    pub piece: &'a Piece<'a, Q>,
     /// Start of the polynomial, s after the start of the piece.
     pub from: f64,
-    pub arc: &'a Arc,
+    pub arc: &'a Arc<Q>,
 }
 
-impl Expansion<'_> {
+impl<Q: Moves> Expansion<'_, Q> {
     /// The instant of `sigma`, s.
     pub(crate) fn time(&self, sigma: f64) -> f64 {
         self.piece.before.time + self.from + sigma * self.arc.span
     }
 
+    /// The motion at `sigma`, with the dissipators of the start of the piece.
+    pub(crate) fn sample(&self, sigma: f64) -> Sample<'_, Q> {
+        let &Piece { before, load, level, .. } = self.piece;
+        let motion = Motion { time: self.time(sigma), state: self.arc.at(sigma), ..*before };
+        Sample { motion, load: load.at(self.from + sigma * self.arc.span), level }
+    }
+}
+
+impl Expansion<'_> {
     /// The outputs at `sigma`.
     pub(crate) fn outputs(&self, sigma: f64) -> Outputs {
         self.piece.outputs(self.from + sigma * self.arc.span, &self.arc.at(sigma))

@@ -58,6 +58,13 @@ pub struct Transition<Q = f64> {
     pub after: State<Q>,
 }
 
+impl<Q> Transition<Q> {
+    /// The coefficient of restitution of an impact after which rocking continues: given, or by momentum with the shape frozen (M19).
+    pub fn restitution(&self) -> Option<f64> {
+        matches!(self.kind, TransitionKind::Impact(_)).then(|| self.after.theta_dot / self.before.theta_dot)
+    }
+}
+
 /// Takes `motion` into `phase` with the state `after`, and counts the transition.
 pub(crate) fn enter<Q: Coordinates>(level: &dyn Level<Q>, motion: &mut Motion<Q>, phase: Phase, after: State<Q>) {
     let structure = level.structure();

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 /// A point of the static loop.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Point {
+pub struct FlagPoint {
     /// Rotation θ, rad.
     pub theta: f64,
     /// Moment that turns the base back, N·m.
@@ -19,12 +19,12 @@ pub struct Point {
 
 /// The moments while the base of `structure` is turned slowly from rest to the rotation `theta` (rad, 0 to π/2) and back to 0, in
 /// this many equal `steps` each way.
-pub fn flag(structure: &Structure, theta: f64, steps: u32) -> Vec<Point> {
+pub fn flag(structure: &Structure, theta: f64, steps: u32) -> Vec<FlagPoint> {
     let there = (0..=steps).map(|i| theta * f64::from(i) / f64::from(steps));
     let mut dissipators = Dissipators::NEW;
     let at = |theta: f64| {
         dissipators = dissipators.moved(structure, Side::Right, theta);
-        Point { theta, moment: Restraint::about(structure, Side::Right, &dissipators).restoring_moment(theta) }
+        FlagPoint { theta, moment: Restraint::about(structure, Side::Right, &dissipators).restoring_moment(theta) }
     };
     there.clone().chain(there.rev().skip(1)).map(at).collect()
 }
@@ -50,11 +50,11 @@ mod tests {
             by_weight + P_0 * B * (theta / 2.0).cos() + k_t * B * B * theta.sin()
         };
         let yielding = |theta: f64| 2.0 * B * F_y * (theta / 2.0).cos(); // the levers B − ξ and B + ξ
-        for Point { theta, moment } in points[1..=10].iter().copied() {
+        for FlagPoint { theta, moment } in points[1..=10].iter().copied() {
             let expected = elastic(theta) + yielding(theta);
             assert!((moment - expected).abs() <= 1e-12 * expected, "{theta}: {moment}, {expected}");
         }
-        for Point { theta, moment } in &points[12..] {
+        for FlagPoint { theta, moment } in &points[12..] {
             let expected = elastic(*theta) - yielding(*theta);
             assert!((moment - expected).abs() <= 1e-12 * expected.abs(), "{theta}: {moment}, {expected}");
         }

@@ -68,6 +68,16 @@ impl Detail {
         }
     }
 
+    /// Whether the base can lift off at this level.
+    pub const fn has_uplift(self) -> bool {
+        !matches!(self, Detail::FixedBase)
+    }
+
+    /// Whether an elastic strut carries the top mass at this level.
+    pub const fn has_strut(self) -> bool {
+        !matches!(self, Detail::Rigid)
+    }
+
     /// The angles at which the ties elongate at this level.
     pub(crate) fn angles(self) -> Angles {
         if self == Detail::Linear { Angles::Small } else { Angles::Any }

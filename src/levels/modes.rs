@@ -1,4 +1,4 @@
-//! Structures of many masses: exact modes in full contact, nonlinear rocking on a base that carries the modes.
+//! Structures of many masses: exact modes in full contact, and a rocking base that carries the modes, nonlinear or linear.
 //!
 //! Each mode has μ, h and Γ, and takes the part S = Γ/μ in a translation. With w = sB S − u and e = (c u̇ + k u)/μ, (M8) and (M9) are
 //!
@@ -10,20 +10,23 @@
 //!
 //! The angular momentum D θ̇ has no Coriolis term. An order takes five products and one more for each mode. g is g + a_v.
 
+use crate::levels::detail::Detail;
 use crate::levels::level::{Level, Now, Rates, Subject, way};
+use crate::levels::nonlinear::{Factors, NO_ROW, products, row};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::instant::Second;
-use crate::mechanics::lateral::{Coordinates, Lateral, MOST_MODES, Modes};
+use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{self, Angles, Dissipators};
 use crate::mechanics::uplift::LEAST_EXCESS;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
-use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Series, Start, Truncation, ZERO, product};
+use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation, ZERO};
 use crate::structure::frame::Frame;
 use crate::structure::{Base, Mode};
 use crate::{Phase, Side, State};
 use std::cell::RefCell;
+use wide::f64x4;
 
 /// Part of its inertia at u = 0 that a structure must keep about its pivot.
 const LEAST_INERTIA: f64 = 1e-6;
@@ -31,17 +34,20 @@ const LEAST_INERTIA: f64 = 1e-6;
 /// Part of the acceleration of gravity by which a motion is as good as none.
 const NEGLIGIBLE: f64 = 1e-30;
 
-/// Nonlinear motion of a structure of many masses.
+/// Motion of a structure of many masses.
 #[derive(Clone, Debug)]
-pub(crate) struct Nonlinear {
+pub(crate) struct ManyModes {
     subject: Subject<Modes>,
+    detail: Detail,
     /// The oscillators of full contact, if their exact flow is used.
     contact: Option<Vec<(Oscillator, Kept<Flow>)>>,
     /// The mass of all modes, kg.
     mass: f64,
     /// Radius of their inertia about the base, m.
     height: f64,
-    /// J_P over the inertia about a pivot that the modes leave: how much faster the structure vibrates while rocking, squared.
+    /// Inertia about a pivot that the modes leave, kg·m².
+    left: f64,
+    /// J_P over this inertia: how much faster the structure vibrates while rocking, squared.
     quickening: f64,
     /// The longest span of a series while rocking, s.
     longest_span: f64,
@@ -51,22 +57,93 @@ pub(crate) struct Nonlinear {
 /// Room for the series of one step.
 #[derive(Clone, Debug)]
 struct Scratch {
-    /// w of each mode.
-    lever: Series<Modes>,
-    /// μ w of each mode.
-    moment: Series<Modes>,
-    /// D.
-    inertia: Series,
-    /// X.
-    offset: Series,
-    sin: Series,
-    cos: Series,
-    /// g cos θ + a_g sin θ.
-    weight: Series,
-    /// θ̇².
-    square: Series,
-    /// Σ φᵀF w.
-    push: Series,
+    fours: Vec<Four>,
+    /// Row i of the left factors, and of the right ones counted from their end, of six products of order i ("next": of order i + 1):
+    ///
+    /// ```text
+    /// left:   θ̇       θ̇       θ̇    D, next   X        Σ φᵀF w
+    /// right:  cos θ   sin θ   θ̇    θ̇         weight   sin θ
+    /// ```
+    factors: [Factors; 2],
+    /// θ̇² for the modes of a four, from the end.
+    square: FourSeries,
+}
+
+/// Coefficients for four modes.
+type FourSeries = [f64x4; MAX_ORDER + 1];
+
+/// Four modes side by side; modes that are none have no mass and stay at rest.
+#[derive(Clone, Debug, Default)]
+struct Four {
+    /// The number of the first mode.
+    first: usize,
+    mass: f64x4,
+    share: f64x4,
+    height: f64x4,
+    /// μ h.
+    arm: f64x4,
+    /// k/μ.
+    stiffness: f64x4,
+    /// c/μ in full contact.
+    damping: f64x4,
+    /// The newest coefficients of u and u̇.
+    motion: [f64x4; 2],
+    /// Force over mass, and its change over the span.
+    push: [f64x4; 2],
+    /// e + w θ̇² of the newest order.
+    held: f64x4,
+    /// w.
+    lever: FourSeries,
+    /// μ w, from the end.
+    heavy: FourSeries,
+}
+
+impl Four {
+    fn new((place, modes): (usize, &[Mode])) -> Four {
+        let both = |of: fn(&Mode) -> f64| f64x4::new([0, 1, 2, 3].map(|i| modes.get(i).map_or(0.0, of)));
+        Four {
+            first: 4 * place,
+            mass: both(|mode| mode.mass),
+            share: both(|mode| mode.share),
+            height: both(|mode| mode.height),
+            arm: both(|mode| mode.mass * mode.height),
+            stiffness: both(|mode| mode.stiffness / mode.mass),
+            damping: both(|mode| mode.damping / mode.mass),
+            ..Four::default()
+        }
+    }
+
+    /// Σ a_i b_{k−i} over the first terms of `a`, with b kept from its end.
+    #[inline(always)]
+    fn product(a: &[f64x4], b: &[f64x4]) -> f64x4 {
+        let mut sum = f64x4::ZERO;
+        a.iter().zip(b).for_each(|(a, b)| sum += a * b);
+        sum
+    }
+
+    /// Puts w in order 0.
+    #[inline(always)]
+    fn start(&mut self, lever: f64x4) -> f64x4 {
+        let heavy = self.mass * lever;
+        (self.lever[0], self.heavy[MAX_ORDER]) = (lever, heavy);
+        heavy
+    }
+
+    /// Puts −u in order `k` of w, and returns that order of μ w² and μ w.
+    #[inline(always)]
+    fn next(&mut self, k: usize, per: f64) -> [f64x4; 2] {
+        let Four { lever, heavy, .. } = self;
+        lever[k] = self.motion[1] * -per;
+        heavy[MAX_ORDER - k] = self.mass * lever[k];
+        // both halves of Σ w_i μ w_{k−i} are the same
+        let half = k.div_ceil(2);
+        let mut square = Four::product(&lever[..half], &heavy[MAX_ORDER - k..]);
+        square += square;
+        if k.is_multiple_of(2) {
+            square += lever[half] * heavy[MAX_ORDER - half];
+        }
+        [square, heavy[MAX_ORDER - k]]
+    }
 }
 
 /// Inertia D (kg·m²) about the pivot of `side`.
@@ -78,24 +155,25 @@ fn inertia(frame: &Frame, side: Side, u: &Modes) -> f64 {
 
 /// The moment that holds the base down about `side` under the vertical acceleration `a_v`, N·m: the right side of (M3).
 fn hold(base: &Base, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
-    let [tendon, pair @ ..] = restraint::ties(base, side, dissipators);
-    let residual: f64 = pair.iter().map(|tie| tie.lever * tie.force).sum();
+    let [tendon, four @ ..] = restraint::ties(base, side, dissipators);
+    let residual: f64 = four.iter().map(|tie| tie.lever * tie.force).sum();
     base.m_t * (base.g + a_v) * base.B + tendon.force * base.B + side.sign() * residual
 }
 
-/// The moments that lift the base, to the right, N·m: of the springs (M3), and of all that gives D θ̈ at θ = θ̇ = 0 (M2).
-fn lifting(frame: &Frame, u: &Modes, u_dot: &Modes, weight: f64) -> [f64; 2] {
-    let &Base { c_ratio, .. } = Modes::base(frame);
-    let springs = Modes::sum(frame, |j, mode| mode.height * mode.stiffness * u.of(j));
+/// The moments that lift the base, to the right, N·m: of the springs and of the mass that rides rigidly under the ground acceleration
+/// `a_g` (M3), and of all that gives D θ̈ at θ = θ̇ = 0 (M2).
+fn lifting(frame: &Frame, u: &Modes, u_dot: &Modes, [a_g, weight]: [f64; 2]) -> [f64; 2] {
+    let &Base { S_res, c_ratio, .. } = Modes::base(frame);
+    let springs = Modes::sum(frame, |j, mode| mode.height * mode.stiffness * u.of(j)) - S_res * a_g;
     let others = Modes::sum(frame, |j, mode| {
         mode.height * (c_ratio * mode.damping) * u_dot.of(j) + mode.gamma * weight * u.of(j)
     });
     [springs, springs + others]
 }
 
-impl Nonlinear {
-    /// The level of the structure of `subject`, in full contact by exact flow or by series.
-    pub(crate) fn new(subject: Subject<Modes>, is_exact: bool) -> Nonlinear {
+impl ManyModes {
+    /// The level of this `detail` of the structure of `subject`: `auto`, `nonlinear`, `linear` or `fixed_base`.
+    pub(crate) fn new(subject: Subject<Modes>, detail: Detail) -> ManyModes {
         let frame = &subject.structure;
         let base = Modes::base(frame);
         let mass = Modes::sum(frame, |_, mode| mode.gamma * mode.share);
@@ -108,23 +186,19 @@ impl Nonlinear {
         let ties = restraint::sum(&restraint::ties(base, Side::Right, &Dissipators::NEW), |tie| tie.lever);
         let [_, highest] = Modes::vibration(frame).rocking;
         let fastest = (highest * highest + ties.stiffness / left).sqrt().max(base.p_l).max(ties.damping / left);
-        Nonlinear {
-            contact: is_exact.then(|| frame.modes().iter().map(oscillator).collect()),
+        ManyModes {
+            contact: (detail != Detail::Nonlinear).then(|| frame.modes().iter().map(oscillator).collect()),
             mass,
             height: (of_modes / mass).sqrt(),
+            left,
             quickening: base.J_P / left,
             longest_span: LONGEST_SPAN / fastest,
             scratch: RefCell::new(Box::new(Scratch {
-                lever: [Modes::ZERO; MAX_ORDER + 2],
-                moment: [Modes::ZERO; MAX_ORDER + 2],
-                inertia: ZERO,
-                offset: ZERO,
-                sin: ZERO,
-                cos: ZERO,
-                weight: ZERO,
-                square: ZERO,
-                push: ZERO,
+                fours: frame.modes().chunks(4).enumerate().map(Four::new).collect(),
+                factors: [[NO_ROW; MAX_ORDER + 1]; 2],
+                square: [f64x4::ZERO; MAX_ORDER + 1],
             })),
+            detail,
             subject,
         }
     }
@@ -157,102 +231,167 @@ impl Nonlinear {
 
     /// Writes the motion in full contact into `arc` (M1).
     fn resting(&self, start: &Start<Modes>, arc: &mut Arc<Modes>) {
-        let &Start { state, a_top, interval, .. } = start;
-        let frame = &self.subject.structure;
-        let span = interval.min(LONGEST_SPAN / Modes::vibration(frame).rocking[1]);
-        arc.expand(&state, span, self.truncation(start, span, false), |arc, k, per| {
-            let (u, u_dot, load) = (&arc.u[k - 1], &arc.u_dot[k - 1], a_top.coefficient(k - 1, span));
-            let rate = Modes::each(frame, |j, mode| {
-                -load.of(j) - (mode.damping * u_dot.of(j) + mode.stiffness * u.of(j)) / mode.mass
-            });
-            (rate.times(per), 0.0)
+        let Start { state, a_top, interval, .. } = start;
+        let span = interval.min(LONGEST_SPAN / Modes::vibration(&self.subject.structure).rocking[1]);
+        let fours = &mut self.scratch.borrow_mut().fours;
+        for four in fours.iter_mut() {
+            let j = four.first;
+            four.motion = [state.u.four(j), state.u_dot.four(j)];
+            four.push = [a_top.value.four(j), a_top.slope.four(j) * span];
+        }
+        let truncation = self.truncation(start, span, false);
+        arc.expand_in_place(state, span, &truncation, |arc, k, per| {
+            arc.u_dot[k].count_as(&state.u_dot);
+            for four in fours.iter_mut() {
+                let j = four.first;
+                let [u, u_dot] = four.motion;
+                let mut rate = four.damping * u_dot + four.stiffness * u;
+                if let Some(load) = four.push.get(k - 1) {
+                    rate += *load;
+                }
+                four.motion = [u_dot * per, rate * -per];
+                arc.u_dot[k].set_four(j, four.motion[1]);
+            }
+            0.0
         });
     }
 
     /// Writes the motion while rocking about `side` into `arc` (M8, M9).
     fn rocking(&self, side: Side, start: &Start<Modes>, arc: &mut Arc<Modes>) {
-        let &Start { state, a_g, a_top, a_v, .. } = start;
-        let frame = &self.subject.structure;
-        let &Base { m0, J0, B, g, c_ratio, .. } = Modes::base(frame);
+        let Start { state, a_g, a_top, a_v, .. } = start;
+        let &Base { m0, J0, S_res, B, g, c_ratio, .. } = Modes::base(&self.subject.structure);
         let span = start.interval.min(self.longest_span);
         let mut ties = self.subject.is_tied.then(|| {
-            let ties = restraint::sum(&restraint::ties(Modes::base(frame), side, start.dissipators), |tie| tie.lever);
+            let base = Modes::base(&self.subject.structure);
+            let ties = restraint::sum(&restraint::ties(base, side, start.dissipators), |tie| tie.lever);
             TieSeries::new(ties, Angles::Any, state.theta)
         });
         let pivot = side.sign() * B;
         let (g, lift) = (g + a_v.value, a_v.slope * span);
         let (ground, ground_slope) = (a_g.value, a_g.slope * span);
-        // forces of the modes, over their masses
-        let force = |a: &Modes, a_g: f64| Modes::each(frame, |j, mode| mode.share * a_g - a.of(j));
-        let (pushed, push_slope) = (force(&a_top.value, a_g.value), force(&a_top.slope, a_g.slope).times(span));
-        let is_pushed = !(pushed.is_within(&Modes::ZERO) && push_slope.is_within(&Modes::ZERO));
-        let Scratch { lever, moment: heavy, inertia, offset, sin, cos, weight, square, push } =
-            &mut **self.scratch.borrow_mut();
-        lever[0] = Modes::each(frame, |j, mode| pivot * mode.share - state.u.of(j));
-        (sin[0], cos[0]) = libm::sincos(state.theta);
-        inertia[0] = J0 + m0 * B * B + Modes::sum(frame, |j, mode| mode.mass * lever[0].of(j) * lever[0].of(j));
-        offset[0] = pivot * m0 + Modes::sum(frame, |j, mode| mode.gamma * lever[0].of(j));
-        let (modes, mut elastic) = (frame.modes().len(), [[0.0; 2]; MOST_MODES]);
-        elastic.iter_mut().zip(frame.modes()).for_each(|(elastic, mode)| {
-            *elastic = [mode.stiffness / mode.mass, c_ratio * mode.damping / mode.mass];
-        });
-        heavy[0] = Modes::each(frame, |j, mode| mode.mass * lever[0].of(j));
-        let shares = Modes::each(frame, |_, mode| mode.share);
-        let arms = Modes::each(frame, |_, mode| mode.mass * mode.height);
-        let per_inertia = 1.0 / inertia[0];
-        arc.expand(&state, span, self.truncation(start, span, true), |arc, k, per| {
+        let Scratch { fours, factors: [left, right], square } = &mut **self.scratch.borrow_mut();
+        let (mut inertia, mut offset, mut is_pushed) = (f64x4::ZERO, f64x4::ZERO, false);
+        for four in fours.iter_mut() {
+            let j = four.first;
+            let lever = four.share * pivot - state.u.four(j);
+            let heavy = four.start(lever);
+            inertia += lever * heavy;
+            offset += four.share * heavy;
+            four.motion = [state.u.four(j), state.u_dot.four(j)];
+            let parts = [a_top.value.four(j), a_top.slope.four(j)];
+            four.push = [four.share * a_g.value - parts[0], (four.share * a_g.slope - parts[1]) * span];
+            is_pushed |= four.push != [f64x4::ZERO; 2];
+        }
+        let per_inertia = 1.0 / (J0 + m0 * B * B + inertia.reduce_add());
+        let (mut offset, mut theta_dot) = (pivot * m0 + offset.reduce_add(), state.theta_dot);
+        let ((mut sin, mut cos), [mut sin_before, mut cos_before]) = (libm::sincos(state.theta), [0.0; 2]);
+        let pushes = |fours: &[Four], k: usize| {
+            let mut sum = f64x4::ZERO;
+            for Four { mass, push, lever, .. } in fours {
+                sum += mass * (push[0] * lever[k] + if k > 0 { push[1] * lever[k - 1] } else { f64x4::ZERO });
+            }
+            sum.reduce_add()
+        };
+        let truncation = self.truncation(start, span, true);
+        arc.expand_in_place(state, span, &truncation, |arc, k, per| {
             let n = k - 1;
-            let before = |series: &Series| if n > 0 { series[n - 1] } else { 0.0 };
-            let (sin_before, cos_before) = (before(sin), before(cos));
-            // g sin θ, a_g cos θ and g cos θ + a_g sin θ of order n
-            let fall = g * sin[n] + lift * sin_before - (ground * cos[n] + ground_slope * cos_before);
-            weight[n] = g * cos[n] + lift * cos_before + ground * sin[n] + ground_slope * sin_before;
-            square[n] = product(&arc.theta_dot, &arc.theta_dot, n);
-            let mut turning = Modes::ZERO; // w θ̇²
-            for i in 0..=n {
-                turning.add(&lever[i], square[n - i]);
+            let [mut inertia, mut next_offset] = [f64x4::ZERO; 2];
+            for four in fours.iter_mut() {
+                let [square, heavy] = four.next(k, per);
+                inertia += square;
+                next_offset += four.share * heavy;
             }
-            let (u, u_dot) = (&arc.u[n], &arc.u_dot[n]);
-            // e + w θ̇²
-            let mut held = turning;
-            for (j, [stiffness, damping]) in elastic.iter().enumerate().take(modes) {
-                held.set(j, held.of(j) + (stiffness * u.of(j) + damping * u_dot.of(j)));
+            // g sin θ − a_g cos θ, and g cos θ + a_g sin θ
+            let fall = g * sin + lift * sin_before - (ground * cos + ground_slope * cos_before);
+            let weight = g * cos + lift * cos_before + ground * sin + ground_slope * sin_before;
+            let push = if is_pushed { pushes(fours, n) } else { 0.0 };
+            let newest_left = row([theta_dot, theta_dot, theta_dot, inertia.reduce_add(), offset, push]);
+            let newest_right = row([cos, sin, theta_dot, theta_dot, weight, sin]);
+            (left[n], right[MAX_ORDER - n]) = (newest_left, newest_right);
+            let [sin_rate, minus_cos_rate, turning, known, weight_moment, push_moment] =
+                products(left, right, &newest_left, &newest_right, n);
+            square[MAX_ORDER - n] = f64x4::splat(turning);
+            let mut moment = f64x4::ZERO;
+            for four in fours.iter_mut() {
+                let [u, u_dot] = four.motion;
+                let elastic = four.stiffness * u + four.damping * c_ratio * u_dot;
+                four.held = Four::product(&four.lever[..k], &square[MAX_ORDER - n..]) + elastic;
+                moment += four.arm * four.held;
             }
-            let mut moment = arms.dot(&held) - product(offset, weight, n);
-            if is_pushed {
-                let lever_before = if n > 0 { lever[n - 1] } else { Modes::ZERO };
-                push[n] = Modes::sum(frame, |j, mode| {
-                    mode.mass * (pushed.of(j) * lever[n].of(j) + push_slope.of(j) * lever_before.of(j))
-                });
-                moment += product(push, sin, n);
-            }
+            let mut moment = moment.reduce_add() - weight_moment + push_moment + S_res * fall;
             if let Some(ties) = &mut ties {
                 moment -= ties.next(&arc.theta_dot, n, per);
             }
-            // what the orders before leave of D θ̇
-            lever[k] = arc.u[k].times(-1.0);
-            heavy[k] = Modes::each(frame, |j, mode| mode.mass * lever[k].of(j));
-            let (mut of_inertia, half) = (0.0, k.div_ceil(2));
-            for i in 0..half {
-                of_inertia += 2.0 * lever[i].dot(&heavy[k - i]);
-            }
-            if k % 2 == 0 {
-                of_inertia += lever[half].dot(&heavy[half]);
-            }
-            inertia[k] = of_inertia;
-            offset[k] = shares.dot(&heavy[k]);
-            let known: f64 = (1..=k).map(|i| inertia[i] * arc.theta_dot[k - i]).sum();
-            let theta_dot = per_inertia * (moment * per - known);
-            let u_dot = Modes::each(frame, |j, mode| {
-                let mut along = mode.share * fall - held.of(j);
+            theta_dot = per_inertia * (moment * per - known);
+            arc.u_dot[k].count_as(&state.u_dot);
+            for four in fours.iter_mut() {
+                let j = four.first;
+                let mut along = four.share * fall - four.held;
                 if is_pushed {
-                    along += pushed.of(j) * cos[n] + push_slope.of(j) * cos_before;
+                    along += four.push[0] * cos + four.push[1] * cos_before;
                 }
-                along * per - mode.height * theta_dot
-            });
-            let [sin_next, cos_next] = [product(cos, &arc.theta_dot, n) * per, -product(sin, &arc.theta_dot, n) * per];
-            (sin[k], cos[k]) = (sin_next, cos_next);
-            (u_dot, theta_dot)
+                four.motion = [four.motion[1] * per, along * per - four.height * theta_dot];
+                arc.u_dot[k].set_four(j, four.motion[1]);
+            }
+            offset = next_offset.reduce_add();
+            (sin_before, cos_before) = (sin, cos);
+            (sin, cos) = (sin_rate * per, -minus_cos_rate * per);
+            theta_dot
+        });
+    }
+
+    /// Writes the motion while rocking about `side` by small angles into `arc`. From (M10) and (M11), with e = (c u̇ + k u)/μ,
+    ///
+    /// ```text
+    /// ü + h θ̈ = −e + S g θ − a,      (J_P − Σ μ h²) θ̈ = Σ (μ h e + Γ g u) − s m_t g B + S_res (g θ − a_g) − ties
+    /// ```
+    fn rocking_little(&self, side: Side, start: &Start<Modes>, arc: &mut Arc<Modes>) {
+        let Start { state, a_g, a_top, a_v, .. } = start;
+        let base = Modes::base(&self.subject.structure);
+        let &Base { m_t, S_res, B, g, c_ratio, .. } = base;
+        let span = start.interval.min(self.longest_span);
+        let mut ties = self.subject.is_tied.then(|| {
+            let ties = restraint::sum(&restraint::ties(base, side, start.dissipators), |tie| tie.lever);
+            TieSeries::new(ties, Angles::Small, state.theta)
+        });
+        let (g, lift, pivot) = (g + a_v.value, a_v.slope * span, side.sign() * B);
+        let fours = &mut self.scratch.borrow_mut().fours;
+        for four in fours.iter_mut() {
+            let j = four.first;
+            four.motion = [state.u.four(j), state.u_dot.four(j)];
+            four.push = [a_top.value.four(j), a_top.slope.four(j) * span];
+        }
+        let mut before = f64x4::ZERO; // Σ Γ u of the order before
+        let truncation = self.truncation(start, span, true);
+        arc.expand_in_place(state, span, &truncation, |arc, k, per| {
+            let n = k - 1;
+            let of_order = |values: [f64; 2]| values.get(n).copied().unwrap_or(0.0);
+            let weight = of_order([g, lift]);
+            let lean = g * arc.theta[n] + if n > 0 { lift * arc.theta[n - 1] } else { 0.0 };
+            let (mut moment, mut offset) = (f64x4::ZERO, f64x4::ZERO);
+            for four in fours.iter_mut() {
+                let [u, u_dot] = four.motion;
+                four.held = four.stiffness * u + four.damping * c_ratio * u_dot;
+                moment += four.arm * four.held;
+                offset += four.mass * four.share * u;
+            }
+            let mut moment = (moment + offset * g + before * lift).reduce_add() - pivot * m_t * weight;
+            moment += S_res * (lean - of_order([a_g.value, a_g.slope * span]));
+            before = offset;
+            if let Some(ties) = &mut ties {
+                moment -= ties.next(&arc.theta_dot, n, per);
+            }
+            let theta_dot = moment / self.left * per;
+            arc.u_dot[k].count_as(&state.u_dot);
+            for four in fours.iter_mut() {
+                let mut along = four.share * lean - four.held;
+                if let Some(load) = four.push.get(n) {
+                    along -= *load;
+                }
+                four.motion = [four.motion[1] * per, along * per - four.height * theta_dot];
+                arc.u_dot[k].set_four(four.first, four.motion[1]);
+            }
+            theta_dot
         });
     }
 
@@ -267,7 +406,8 @@ impl Nonlinear {
         let is_held = held.min(held + change) > 0.0;
         let [mut springs, mut all] = [ZERO; 2];
         for k in 0..=arc.order {
-            [springs[k], all[k]] = lifting(frame, &arc.u[k], &arc.u_dot[k], base.g + a_v);
+            [springs[k], all[k]] =
+                lifting(frame, &arc.u[k], &arc.u_dot[k], [start.a_g.coefficient(k, arc.span), base.g + a_v]);
             if k > 0 {
                 all[k] += a_v_change * Modes::sum(frame, |j, mode| mode.gamma * arc.u[k - 1].of(j));
             }
@@ -292,6 +432,9 @@ impl Nonlinear {
 
     /// The moment that the base's hold has at least over the interval of `start`, N·m.
     fn least_hold(&self, start: &Start<Modes>) -> f64 {
+        if self.detail == Detail::FixedBase {
+            return f64::INFINITY;
+        }
         let base = Modes::base(&self.subject.structure);
         let least = start.a_v.value.min(start.a_v.at(start.interval));
         [Side::Right, Side::Left]
@@ -301,7 +444,7 @@ impl Nonlinear {
     }
 }
 
-impl Level<Modes> for Nonlinear {
+impl Level<Modes> for ManyModes {
     #[inline(always)]
     fn subject(&self) -> &Subject<Modes> {
         &self.subject
@@ -326,7 +469,9 @@ impl Level<Modes> for Nonlinear {
             end.u.set(j, to[0]);
             end.u_dot.set(j, to[1]);
         }
-        let held = self.least_hold(start);
+        // what the mass that rides rigidly takes of the hold
+        let rigid = Modes::base(frame).S_res.abs() * start.a_g.value.abs().max(start.a_g.at(interval).abs());
+        let held = self.least_hold(start) - rigid;
         let near = springs[0].abs().max(springs[1].abs()) + bend * interval * interval / 8.0;
         (farthest < held || near < held).then_some(end)
     }
@@ -337,6 +482,7 @@ impl Level<Modes> for Nonlinear {
 
     fn series(&self, phase: Phase, start: &Start<Modes>, arc: &mut Arc<Modes>) {
         match phase {
+            Phase::Rocking(side) if self.detail == Detail::Linear => self.rocking_little(side, start, arc),
             Phase::Rocking(side) => self.rocking(side, start, arc),
             Phase::FullContact | Phase::Overturned(_) => self.resting(start, arc),
         }
@@ -345,10 +491,14 @@ impl Level<Modes> for Nonlinear {
     fn is_singular(&self, phase: Phase, state: &State<Modes>) -> bool {
         let frame = &self.subject.structure;
         let &Base { m_t, J0, B, .. } = Modes::base(frame);
-        matches!(phase, Phase::Rocking(side) if inertia(frame, side, &state.u) < LEAST_INERTIA * (J0 + m_t * B * B))
+        self.detail != Detail::Linear
+            && matches!(phase, Phase::Rocking(side) if inertia(frame, side, &state.u) < LEAST_INERTIA * (J0 + m_t * B * B))
     }
 
     fn first_uplift(&self, start: &Start<Modes>, arc: &Arc<Modes>) -> (Crossing, Side) {
+        if self.detail == Detail::FixedBase {
+            return (Crossing::None, Side::Right);
+        }
         let [right, left] = [Side::Right, Side::Left].map(|side| self.first_about(side, start, arc));
         if right.sigma() == left.sigma() && right.sigma() < f64::INFINITY {
             let at = right.sigma() * arc.span;
@@ -363,7 +513,8 @@ impl Level<Modes> for Nonlinear {
         let &Start { state, interval, .. } = start;
         let most = |j: usize| state.u.of(j).abs() + way(interval, state.u_dot.of(j));
         let springs = Modes::sum(&self.subject.structure, |j, mode| (mode.height * mode.stiffness).abs() * most(j));
-        springs < self.least_hold(start)
+        let &Base { S_res, .. } = Modes::base(&self.subject.structure);
+        springs + (S_res * start.a_g.value).abs() < self.least_hold(start)
     }
 
     fn stays_down(&self, state: &State<Modes>, dissipators: &Dissipators) -> bool {
@@ -375,10 +526,14 @@ impl Level<Modes> for Nonlinear {
     }
 
     fn uplift_margin(&self, &Now { state, load, dissipators }: &Now<Modes>) -> (f64, Side) {
+        if self.detail == Detail::FixedBase {
+            return (1.0, Side::Right);
+        }
         let frame = &self.subject.structure;
         let base = Modes::base(frame);
         let weight = (base.m_t * base.g + base.ties.P_0) * base.B;
-        let [springs, all] = lifting(frame, &state.u, &state.u_dot, base.g + load.a_v).map(|moment| moment / weight);
+        let [springs, all] =
+            lifting(frame, &state.u, &state.u_dot, [load.a_g, base.g + load.a_v]).map(|moment| moment / weight);
         let about = |side: Side| {
             let (s, held) = (side.sign(), hold(base, side, load.a_v, dissipators) / weight);
             let turns = held + LEAST_EXCESS - s * all;
@@ -389,13 +544,13 @@ impl Level<Modes> for Nonlinear {
         if is_right { (right.0, Side::Right) } else { (left.0, Side::Left) }
     }
 
-    /// (M1), or (M8) and (M9) as they stand.
+    /// (M1), or the equations of rocking as they stand.
     fn accelerations(&self, phase: Phase, now: &Now<Modes>) -> Second<f64, Modes> {
         let frame = &self.subject.structure;
         let &Now { state, load, dissipators } = now;
         let &State { u, u_dot, theta, theta_dot } = state;
         let base = Modes::base(frame);
-        let &Base { m0, B, .. } = base;
+        let &Base { m0, S_res, B, .. } = base;
         let a_top = load.on_modes(frame);
         let elastic = |j: usize, mode: &Mode, damping: f64| {
             (damping * mode.damping * u_dot.of(j) + mode.stiffness * u.of(j)) / mode.mass
@@ -404,16 +559,30 @@ impl Level<Modes> for Nonlinear {
             let u_ddot = Modes::each(frame, |j, mode| -a_top.of(j) - elastic(j, mode, 1.0));
             return Second { u_ddot, theta_ddot: 0.0 };
         };
-        let (g, pivot, (sin, cos)) = (base.g + load.a_v, side.sign() * B, libm::sincos(theta));
+        let (g, pivot) = (base.g + load.a_v, side.sign() * B);
+        let ties = restraint::sum(&restraint::ties(base, side, dissipators), |tie| tie.lever);
+        let back = ties.moment(&self.subject.angles.chord(theta, theta_dot));
+        if self.detail == Detail::Linear {
+            let moment = Modes::sum(frame, |j, mode| {
+                mode.mass * mode.height * elastic(j, mode, base.c_ratio) + mode.gamma * g * u.of(j)
+            });
+            let moment = moment - pivot * base.m_t * g + S_res * (g * theta - load.a_g) - back;
+            let theta_ddot = moment / self.left;
+            let along = |j: usize, mode: &Mode| mode.share * g * theta - a_top.of(j) - elastic(j, mode, base.c_ratio);
+            return Second {
+                u_ddot: Modes::each(frame, |j, mode| along(j, mode) - mode.height * theta_ddot),
+                theta_ddot,
+            };
+        }
+        let (sin, cos) = libm::sincos(theta);
         let lever = |j: usize, mode: &Mode| pivot * mode.share - u.of(j);
         let held = |j: usize, mode: &Mode| elastic(j, mode, base.c_ratio) + lever(j, mode) * theta_dot * theta_dot;
         let moment = Modes::sum(frame, |j, mode| {
             let weight = mode.share * g * cos + a_top.of(j) * sin;
             mode.mass * (mode.height * held(j, mode) + lever(j, mode) * (2.0 * theta_dot * u_dot.of(j) - weight))
         });
-        let back = restraint::sum(&restraint::ties(base, side, dissipators), |tie| tie.lever);
-        let back = back.moment(&Angles::Any.chord(theta, theta_dot));
-        let moment = moment - pivot * m0 * (g * cos + load.a_g * sin) - back;
+        let fall = g * sin - load.a_g * cos;
+        let moment = moment - pivot * m0 * (g * cos + load.a_g * sin) + S_res * fall - back;
         let theta_ddot = moment / inertia(frame, side, &u);
         let along = |j: usize, mode: &Mode| mode.share * g * sin - a_top.of(j) * cos - held(j, mode);
         Second { u_ddot: Modes::each(frame, |j, mode| along(j, mode) - mode.height * theta_ddot), theta_ddot }
@@ -424,13 +593,17 @@ impl Level<Modes> for Nonlinear {
 mod tests {
     use super::*;
     use crate::levels::nonlinear::accelerations;
+    use crate::mechanics::gauge::{Gauge, Reading};
+    use crate::mechanics::instant::Instant;
     use crate::mechanics::load::LinearLoad;
-    use crate::structure::frame::Body;
+    use crate::mechanics::reactions::Reactions;
+    use crate::structure::Ties;
+    use crate::structure::frame::{Body, Floor};
     use crate::{Parameters, Structure};
     use approx::assert_relative_eq;
 
-    /// A restrained structure whose modes have these shares.
-    fn frame(shares: &[f64]) -> (Structure, Frame) {
+    /// A restrained structure whose modes have these shares and carry the whole mass, or less of `more` mass.
+    fn frame(shares: &[f64], more: f64) -> (Structure, Frame) {
         let restrained =
             Parameters { P_0: 200.0, k_t: 3e4, xi_d: 0.1, c_d: 40.0, k_d: 1e5, F_y: 400.0, ..Parameters::MCMANUS };
         let structure = Structure::new(Parameters { zeta_fc: 0.1, c_ratio: 1.3, ..restrained }).unwrap();
@@ -448,25 +621,23 @@ mod tests {
         };
         let modes: Vec<_> = shares.iter().enumerate().map(mode).collect();
         let Parameters { m0, J0, B, r, g, c_ratio, .. } = *structure.parameters();
-        let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum();
+        let of = |part: fn(&Mode) -> f64| more * modes.iter().map(part).sum::<f64>();
         let (m_s, S_1) = (of(|mode| mode.gamma * mode.share), of(|mode| mode.gamma * mode.height));
         let (I_2, ties) = (of(|mode| mode.mass * mode.height * mode.height), structure.base.ties);
         let body = Body { m0, J0, m_s, S_1, I_2, B, r: Some(r), g, c_ratio, ties };
         (structure, Frame::new(body, &modes, &[]).unwrap())
     }
 
-    fn level(frame: &Frame) -> Nonlinear {
-        Nonlinear::new(
-            Subject { structure: frame.clone(), local_error: 1e-16, is_tied: true, angles: Angles::Any },
-            false,
-        )
+    fn level(frame: &Frame, detail: Detail) -> ManyModes {
+        let angles = detail.angles();
+        ManyModes::new(Subject { structure: frame.clone(), local_error: 1e-16, is_tied: true, angles }, detail)
     }
 
     /// One mode of any scale, under all loads and with all ties, against Eqs 5 and 6.
     #[test]
     fn one_mode_has_the_accelerations_of_equations_5_and_6() {
         let (scale, dissipators) = (1.7, Dissipators { plastic: [2e-3, -1e-3], yields: [0, 1], ..Dissipators::NEW });
-        let (structure, frame) = frame(&[1.0 / scale]);
+        let (structure, frame) = frame(&[1.0 / scale], 1.0);
         for side in [Side::Right, Side::Left] {
             let theta = 0.1 * side.sign();
             let one = State { u: 0.02, u_dot: -0.7, theta, theta_dot: 0.6 };
@@ -476,7 +647,7 @@ mod tests {
             let state = State { u: of(one.u / scale), u_dot: of(one.u_dot / scale), theta, theta_dot: one.theta_dot };
             let load = Load { a_g: load.a_g, F_t: of(load.F_t * scale), a_v: load.a_v };
             let now = Now { state: &state, load, dissipators: &dissipators };
-            let found = level(&frame).accelerations(Phase::Rocking(side), &now);
+            let found = level(&frame, Detail::Nonlinear).accelerations(Phase::Rocking(side), &now);
             assert_relative_eq!(scale * found.u_ddot.of(0), expected[0], max_relative = 1e-12);
             assert_relative_eq!(found.theta_ddot, expected[1], max_relative = 1e-12);
         }
@@ -485,8 +656,7 @@ mod tests {
     /// The derivatives of the series are the accelerations along it, under all loads and with all ties.
     #[test]
     fn the_series_satisfies_the_equations_of_many_masses() {
-        let (_, frame) = frame(&[1.3, -0.6, 0.4]);
-        let level = level(&frame);
+        let (_, frame) = frame(&[1.3, -0.6, 0.4], 1.25);
         let dissipators = Dissipators { plastic: [2e-3, -1e-3], ..Dissipators::NEW };
         let modes = |numbers: [f64; 3]| Modes::new(&numbers);
         let state =
@@ -495,7 +665,12 @@ mod tests {
             value: Load { a_g: 3.0, F_t: modes([100.0, -200.0, 50.0]), a_v: -1.5 },
             slope: Load { a_g: 200.0, F_t: modes([-3e3, 1e4, 2e4]), a_v: 80.0 },
         };
-        for phase in [Phase::Rocking(Side::Left), Phase::FullContact] {
+        for (detail, phase) in [
+            (Detail::Nonlinear, Phase::Rocking(Side::Left)),
+            (Detail::Linear, Phase::Rocking(Side::Left)),
+            (Detail::Nonlinear, Phase::FullContact),
+        ] {
+            let level = level(&frame, detail);
             let start = level.subject().start(level.admissible(phase, state), &dissipators, load, 3e-3);
             let mut arc = Arc::default();
             level.series(phase, &start, &mut arc);
@@ -511,6 +686,62 @@ mod tests {
                 for j in 0..3 {
                     assert_relative_eq!(slope(&|k| arc.u_dot[k].of(j)), u_ddot.of(j), epsilon = 1e-9);
                 }
+            }
+        }
+    }
+
+    /// Newton's law for a floor, for the moments about the pivot, and the shear of a storey as a sum, with mass that rides rigidly.
+    #[test]
+    fn gauges_and_reactions_follow_from_the_motion() {
+        let (structure, frame) = frame(&[1.3, -0.6, 0.4], 1.25);
+        let base = Base { ties: Ties::default(), ..structure.base };
+        let floor = |mass, height, shape: [f64; 3]| Floor { mass, height, shape: Modes::new(&shape) };
+        let floors = [floor(3.0, 1.1, [0.2, 0.5, -0.3]), floor(2.0, 2.3, [0.9, -0.4, 0.1])];
+        let frame = Frame::new(Body { ties: base.ties, ..*frame.body() }, frame.modes(), &floors).unwrap();
+        let level = level(&frame, Detail::Nonlinear);
+        let modes = |numbers: [f64; 3]| Modes::new(&numbers);
+        let (u, u_dot) = (modes([0.01, -0.02, 0.005]), modes([0.3, 0.1, -0.2]));
+        let load = Load { a_g: 3.0, F_t: Modes::ZERO, a_v: -1.5 };
+        let turned = State { u, u_dot, theta: -0.2, theta_dot: 0.5 };
+        for (phase, state) in
+            [(Phase::Rocking(Side::Left), turned), (Phase::FullContact, State { theta: 0.0, theta_dot: 0.0, ..turned })]
+        {
+            let now = Now { state: &state, load, dissipators: &Dissipators::NEW };
+            let second = level.accelerations(phase, &now);
+            let x = Instant::of(&frame, phase, &state, load);
+            let Instant { turn, theta_dot, a_g, a_v, s, .. } = x;
+            let value = |gauge: &Gauge| {
+                let elastic = gauge.elastic(&frame, frame.base.damping(phase), &u, &u_dot);
+                let theta_ddot = second.theta_ddot;
+                gauge.value(&frame.base, s, &Reading { elastic, push: 0.0, turn, theta_dot, theta_ddot, a_g, a_v })
+            };
+            let (mut storey, gauges) = (0.0, frame.gauges());
+            for (i, floor) in floors.iter().enumerate().rev() {
+                let lever = s * frame.base.B - floor.displacement(&u);
+                let along = floor.displacement(&second.u_ddot) + floor.height * second.theta_ddot;
+                let expected = along + theta_dot * theta_dot * lever + a_g * turn.cos - a_v * turn.sin;
+                assert_relative_eq!(value(&gauges.a[i]), expected, max_relative = 1e-12);
+                storey += floor.mass * expected;
+                assert_relative_eq!(value(&gauges.V[i]), storey, max_relative = 1e-12);
+            }
+            let reactions = Reactions::at(&x, &second);
+            if let Phase::Rocking(_) = phase {
+                assert_relative_eq!(reactions.R_m, x.pivot() * reactions.R_v, max_relative = 1e-11);
+            } else {
+                let weight = frame.base.g + a_v;
+                let [springs, others] = lifting(&frame, &u, &u_dot, [a_g, weight]);
+                let c_ratio = frame.base.c_ratio;
+                let damped = Modes::sum(&frame, |j, mode| mode.height * mode.damping * u_dot.of(j));
+                assert_relative_eq!(reactions.R_m, others - (c_ratio - 1.0) * damped, max_relative = 1e-12);
+                assert!(springs != others);
+                // the foundation carries its own a_g, and the masses carry the base shear
+                let carried = value(&gauges.V_t) + frame.body().m0 * a_g;
+                assert_relative_eq!(reactions.R_h, -carried, max_relative = 1e-12);
+                assert_relative_eq!(
+                    value(&gauges.M_t),
+                    -(reactions.R_m - weight * x.sum(|j, mode| mode.gamma * u.of(j))),
+                    max_relative = 1e-12
+                );
             }
         }
     }

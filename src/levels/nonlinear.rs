@@ -80,15 +80,15 @@ pub fn accelerations(
 const LEAST_INERTIA: f64 = 1e-6;
 
 /// One order of the factors of six products.
-type Row = [f64x2; 3];
+pub(super) type Row = [f64x2; 3];
 
-const NO_ROW: Row = [f64x2::ZERO; 3];
+pub(super) const NO_ROW: Row = [f64x2::ZERO; 3];
 
 /// Factors of six products, one row per order.
-type Factors = [Row; MAX_ORDER + 1];
+pub(super) type Factors = [Row; MAX_ORDER + 1];
 
 #[inline(always)]
-fn row(columns: [f64; 6]) -> Row {
+pub(super) fn row(columns: [f64; 6]) -> Row {
     [f64x2::new([columns[0], columns[1]]), f64x2::new([columns[2], columns[3]]), f64x2::new([columns[4], columns[5]])]
 }
 
@@ -103,7 +103,7 @@ fn add_product(sum: &mut Row, a: &Row, b: &Row) {
 /// one direction. The newest factors, a_n and b_n, come last and not from memory, so that the processor can sum the others
 /// before it knows them.
 #[inline(always)]
-fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row, n: usize) -> [f64; 6] {
+pub(super) fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row, n: usize) -> [f64; 6] {
     let mut sum = NO_ROW;
     if n > 0 {
         for (a, b) in a[1..n].iter().zip(&b[MAX_ORDER - n + 1..MAX_ORDER]) {

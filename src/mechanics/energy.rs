@@ -10,7 +10,7 @@ use crate::{Phase, State};
 /// Energy in J, zero at height zero:
 ///
 /// ```text
-/// E = Σ { ½ μ [(u̇ + hθ̇)² + w² θ̇²] + ½ k u² + Γ g [w sin θ + h cos θ] } + ½ (J0 + m0 B²) θ̇² + s m0 g B sin θ
+/// E = Σ { ½ μ [(u̇ + hθ̇)² + w² θ̇²] + ½ k u² + Γ g [w sin θ + h cos θ] } + ½ (J0 + m0 B²) θ̇² + s m0 g B sin θ + S_res g cos θ
 /// ```
 ///
 /// The sum is over the modes, w = sB Γ/μ − u. One mass has μ = Γ = m and h = H. s does not matter in full contact, where θ = θ̇ = 0.
@@ -37,7 +37,8 @@ pub(crate) fn kinetic<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>) -> N {
 
 /// Potential energy of the weights, J.
 fn potential<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>) -> N {
-    let &Base { m0, g, .. } = x.base();
+    let &Base { m0, S_res, g, .. } = x.base();
     let of_modes = x.sum(|j, mode| x.place(j, mode).up(x.pivot(), &x.turn) * (mode.gamma * g));
-    of_modes + x.turn.sin * (m0 * g * x.pivot())
+    let of_base = of_modes + x.turn.sin * (m0 * g * x.pivot());
+    if S_res == 0.0 { of_base } else { of_base + x.turn.cos * (S_res * g) }
 }

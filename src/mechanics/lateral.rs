@@ -10,6 +10,7 @@ use crate::structure::frame::Frame;
 use crate::structure::{Base, Mode, Vibration};
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
+use wide::f64x4;
 
 /// Lateral coordinates in numbers of the kind `N`.
 pub trait Lateral<N: Number>: Copy {
@@ -55,6 +56,9 @@ pub trait Coordinates: Lateral<f64> + Debug + PartialEq + 'static {
 
     /// These coordinates times `factor`.
     fn times(self, factor: f64) -> Self;
+
+    /// Writes `factor` times `other` here.
+    fn be(&mut self, other: &Self, factor: f64);
 
     /// The values at `sigma` of the polynomials with these coefficients.
     fn evaluate(coefficients: &[Self], sigma: f64) -> Self;
@@ -117,6 +121,11 @@ impl Coordinates for f64 {
     }
 
     #[inline(always)]
+    fn be(&mut self, other: &f64, factor: f64) {
+        *self = other * factor;
+    }
+
+    #[inline(always)]
     fn evaluate(coefficients: &[f64], sigma: f64) -> f64 {
         evaluate(coefficients, sigma)
     }
@@ -168,24 +177,40 @@ impl Modes {
         self.of[j] = number;
     }
 
-    /// Adds `factor` times `other`.
+    /// Takes the number of modes of `other`; of modes that are none, the numbers must be 0.
     #[inline(always)]
-    pub(crate) fn add(&mut self, other: &Modes, factor: f64) {
-        self.count = self.count.max(other.count);
-        let fours = self.of.as_chunks_mut::<4>().0.iter_mut().zip(other.of.as_chunks::<4>().0);
-        for (own, other) in fours.take(self.count.div_ceil(4)) {
-            for i in 0..4 {
-                own[i] += other[i] * factor;
-            }
-        }
+    pub(crate) fn count_as(&mut self, other: &Modes) {
+        self.count = other.count;
+    }
+
+    /// Writes the numbers of four modes from `j` on.
+    #[inline(always)]
+    pub(crate) fn set_four(&mut self, j: usize, four: f64x4) {
+        self.of[j..j + 4].copy_from_slice(&four.to_array());
+    }
+
+    /// The numbers of four modes from `j` on; 0 of a mode that is none.
+    #[inline(always)]
+    pub(crate) fn four(&self, j: usize) -> f64x4 {
+        f64x4::new([self.of[j], self.of[j + 1], self.of[j + 2], self.of[j + 3]])
+    }
+
+    /// The numbers in fours, with 0 for modes that are none.
+    #[inline(always)]
+    fn fours(&self) -> impl Iterator<Item = &[f64; 4]> {
+        self.of.as_chunks().0.iter().take(self.count.div_ceil(4))
+    }
+
+    #[inline(always)]
+    fn fours_mut(&mut self) -> impl Iterator<Item = &mut [f64; 4]> {
+        self.of.as_chunks_mut().0.iter_mut().take(self.count.div_ceil(4))
     }
 
     /// The sum of the products, in four sums side by side.
     #[inline(always)]
     pub(crate) fn dot(&self, other: &Modes) -> f64 {
-        let fours = self.of.as_chunks::<4>().0.iter().zip(other.of.as_chunks::<4>().0);
         let mut sums = [0.0; 4];
-        for (own, other) in fours.take(self.count.div_ceil(4)) {
+        for (own, other) in self.fours().zip(other.fours()) {
             for i in 0..4 {
                 sums[i] += own[i] * other[i];
             }
@@ -248,8 +273,23 @@ impl Coordinates for Modes {
         self.with(&Modes::ZERO, |own, _| own * factor)
     }
 
+    #[inline]
+    fn be(&mut self, other: &Modes, factor: f64) {
+        self.count = other.count;
+        for (own, other) in self.fours_mut().zip(other.fours()) {
+            *own = other.map(|other| other * factor);
+        }
+    }
+
     fn evaluate(coefficients: &[Modes], sigma: f64) -> Modes {
-        coefficients.iter().rev().fold(Modes::ZERO, |sum, c| sum.with(c, |sum, c| sum * sigma + c))
+        let mut value = Modes { count: coefficients[0].count, ..Modes::ZERO };
+        for (four, value) in value.fours_mut().enumerate() {
+            for c in coefficients.iter().rev() {
+                let c = &c.of.as_chunks::<4>().0[four];
+                *value = std::array::from_fn(|i| value[i] * sigma + c[i]);
+            }
+        }
+        value
     }
 
     #[inline]

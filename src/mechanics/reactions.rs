@@ -98,9 +98,13 @@ impl<N: Number> Acceleration<N> {
 /// R_h and R_v, N.
 #[inline(always)]
 pub(crate) fn forces<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> [N; 2] {
-    let &Base { m_t, m0, g, .. } = x.base();
+    let &Base { m_t, m0, S_res, g, .. } = x.base();
     let base = Acceleration::of_base(x, second);
     let (mut along, mut across, mut push) = (base.along * m0, base.across * m0, -(x.a_g * m_t));
+    if S_res != 0.0 {
+        along = along + second.theta_ddot * S_res;
+        across = across - x.theta_dot * x.theta_dot * S_res;
+    }
     for (j, mode) in Q::modes(x.structure).iter().enumerate() {
         let acceleration = Acceleration::of_mode(x, second, j, mode);
         along = along + acceleration.along * mode.gamma;
@@ -116,8 +120,11 @@ pub(crate) fn forces<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Secon
 /// R_h and R_v, N, given a rule for rates: the forces of the loads less the rate of the momentum. It takes fewer products than
 /// [`forces`], which has the rates of the motion.
 pub(crate) fn forces_by_momentum<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, rate: impl Fn(&N) -> N) -> [N; 2] {
-    let &Base { m_t, m0, g, .. } = x.base();
+    let &Base { m_t, m0, S_res, g, .. } = x.base();
     let (mut along, mut lever, mut push) = (N::constant(0.0), N::constant(m0 * x.pivot()), -(x.a_g * m_t));
+    if S_res != 0.0 {
+        along = x.theta_dot * S_res;
+    }
     for (j, mode) in Q::modes(x.structure).iter().enumerate() {
         along = along + (x.u_dot.of(j) + x.theta_dot * mode.height) * mode.gamma;
         lever = lever + x.place(j, mode).lever(x.pivot()) * mode.gamma;
@@ -131,10 +138,19 @@ pub(crate) fn forces_by_momentum<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, ra
 /// R_m, N·m.
 #[inline(always)]
 pub(crate) fn moment<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> N {
-    let &Base { m0, J0, g, .. } = x.base();
+    let &Base { m0, S_res, J0, g, .. } = x.base();
     let ground = [x.a_g, x.a_v + N::constant(g)];
-    let [right, down] = Acceleration::of_base(x, second).force(&x.turn, ground, m0);
+    let base = Acceleration::of_base(x, second);
+    let [right, down] = base.force(&x.turn, ground, m0);
     let mut moment = x.turn.sin * x.pivot() * right + x.turn.versine * x.pivot() * down;
+    if S_res != 0.0 {
+        // the forces of the base at the height of the rest, and the forces of the rest at the base
+        let [right, down] = base.force(&x.turn, ground, S_res);
+        let [along, across] = [second.theta_ddot * S_res, x.theta_dot * x.theta_dot * -S_res];
+        let [to_right, upwards] = [along * x.turn.cos + across * x.turn.sin, across * x.turn.cos - along * x.turn.sin];
+        moment = moment + x.turn.cos * right + x.turn.sin * down;
+        moment = moment - x.turn.sin * x.pivot() * to_right + x.turn.versine * x.pivot() * upwards;
+    }
     for (j, mode) in Q::modes(x.structure).iter().enumerate() {
         let ground = ground.map(|part| mode.part(part));
         let [right, down] = Acceleration::of_mode(x, second, j, mode).force(&x.turn, ground, mode.mass);
@@ -211,13 +227,18 @@ impl Impulse {
 /// Momentum of the structure relative to the ground: to the right, downwards and about the middle of the base. The velocities are
 /// the rates of the places.
 fn momentum<Q: Coordinates>(structure: &Q::Structure, phase: Phase, state: &State<Q>) -> Impulse {
-    let &Base { m0, B, J0, .. } = Q::base(structure);
+    let &Base { m0, S_res, B, J0, .. } = Q::base(structure);
     let (pivot, moves) = (phase.side().sign() * B, phase == phase.in_motion());
     let rate = |rate: f64| if moves { rate } else { 0.0 };
     let turn = state.theta.turn().at_rate(rate(state.theta_dot));
     let about = |right: Dual<f64>, up: Dual<f64>| up.value * right.rate - right.value * up.rate;
     let (right, up) = (turn.versine * pivot, turn.sin * pivot);
     let (mut to_right, mut upwards, mut turning) = (m0 * right.rate, m0 * up.rate, m0 * about(right, up));
+    if S_res != 0.0 {
+        to_right += S_res * turn.sin.rate;
+        upwards += S_res * turn.cos.rate;
+        turning += S_res * pivot * turn.sin.value * rate(state.theta_dot);
+    }
     for (j, mode) in Q::modes(structure).iter().enumerate() {
         let u = Dual { value: state.u.of(j), rate: rate(state.u_dot.of(j)) };
         let place = Place { share: mode.share, height: mode.height, u };

@@ -14,12 +14,12 @@ const SAME_LANDING: f64 = 1e-3;
 /// The part of a motion that is still to be compared.
 #[derive(Clone, Debug, Default)]
 pub struct History {
-    pub stretches: Vec<Stretch>,
+    pub sections: Vec<Section>,
 }
 
 /// The motion over one polynomial.
 #[derive(Clone, Debug)]
-pub struct Stretch {
+pub struct Section {
     start: f64,
     end: f64,
     /// Transitions before it.
@@ -45,8 +45,8 @@ impl Distance {
         Distance { omega_u, largest: [0.0; 3], apart: (0.0, [0.0; 3]) }
     }
 
-    /// Compares what follows of both motions, as far as both are known: how many stretches of each need not be kept.
-    pub fn go_on(&mut self, ours: &[Stretch], theirs: &[Stretch]) -> [usize; 2] {
+    /// Compares what follows of both motions, as far as both are known: how many sections of each need not be kept.
+    pub fn go_on(&mut self, ours: &[Section], theirs: &[Section]) -> [usize; 2] {
         let Distance { omega_u, largest, apart } = self;
         let mut done = [0; 2];
         while let (Some(a), Some(b)) = (ours.get(done[0]), theirs.get(done[1])) {
@@ -69,7 +69,7 @@ impl Distance {
 }
 
 /// The largest difference of series `i` from time `from` to time `to`, if it is more than `least`.
-fn difference(a: &Stretch, b: &Stretch, i: usize, from: f64, to: f64, least: f64) -> f64 {
+fn difference(a: &Section, b: &Section, i: usize, from: f64, to: f64, least: f64) -> f64 {
     let (mut difference, subtracted) = (a.over(i, from, to), b.over(i, from, to));
     difference.iter_mut().zip(subtracted).for_each(|(a, b)| *a -= b);
     if extremes::bound(&difference, 1.0) <= least {
@@ -78,7 +78,7 @@ fn difference(a: &Stretch, b: &Stretch, i: usize, from: f64, to: f64, least: f64
     extremes::largest(&difference, 1.0)
 }
 
-impl Stretch {
+impl Section {
     /// Series `i` with σ = 0 at time `from` and σ = 1 at time `to`.
     fn over(&self, i: usize, from: f64, to: f64) -> Series {
         let mut series = self.series[i];
@@ -99,13 +99,7 @@ impl Watch for History {
             expansion.series(Measure::a_t, &mut |from, arc, a_t| {
                 let start = start + from * span;
                 let series = [arc.series(|k| arc.theta[k]), arc.series(|k| arc.u[k]), *a_t];
-                self.stretches.push(Stretch {
-                    start,
-                    end: start + arc.duration(),
-                    transitions,
-                    span: arc.span,
-                    series,
-                });
+                self.sections.push(Section { start, end: start + arc.duration(), transitions, span: arc.span, series });
             });
         }
     }

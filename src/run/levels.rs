@@ -3,7 +3,7 @@
 use super::fall::{FallWatch, FallingPeaks};
 use super::history::{Distance, History};
 use super::peaks::Peaks;
-use super::{Course, Ending, Run, RunError};
+use super::{Ending, Follower, Run, RunError};
 use crate::Detail;
 use crate::engine::motion::Work;
 use crate::run::ground_motion::Segment;
@@ -132,9 +132,9 @@ pub fn compare(run: &Run) -> Result<Comparison, RunError> {
             false
         });
         trials.iter_mut().for_each(|trial| trial.compare(&reference));
-        let known = reference.history.stretches.len();
+        let known = reference.history.sections.len();
         let done = trials.iter().map(|trial| trial.compared).min().unwrap_or(known);
-        reference.history.stretches.drain(..done);
+        reference.history.sections.drain(..done);
         trials.iter_mut().for_each(|trial| trial.compared -= done);
     }
     let (reference, all, _) = reference.response();
@@ -158,13 +158,13 @@ struct Trial<'a, Segments> {
     run: Run<'a>,
     /// Whether its ground moves horizontally alone and the reference's does not.
     is_level: bool,
-    course: Course<Segments>,
+    course: Follower<f64, Segments>,
     peaks: FallWatch<'a>,
     /// The part of the motion that is still to be compared with the reference.
     history: History,
     /// From the reference.
     distance: Distance,
-    /// How many stretches of the reference it has been compared with.
+    /// How many sections of the reference it has been compared with.
     compared: usize,
     /// How it ended, once it has.
     ending: Option<Ending>,
@@ -176,12 +176,12 @@ fn start<'a>(
     peaks: &'a mut FallingPeaks,
 ) -> Result<Trial<'a, impl Iterator<Item = Segment> + use<'a>>, RunError> {
     let omega_u = run.structure.omega_u;
-    let Course { engine, segments, end, rest } = run.course()?;
+    let Follower { engine, segments, end, rest } = run.course()?;
     let segments = segments.flat_map(move |segment| cut(segment, LONGEST_STRETCH / omega_u));
     Ok(Trial {
         run: run.clone(),
         is_level: false,
-        course: Course { engine, segments, end, rest },
+        course: Follower { engine, segments, end, rest },
         peaks: peaks.watch(),
         history: History::default(),
         distance: Distance::new(omega_u),
@@ -212,7 +212,7 @@ impl<Segments: Iterator<Item = Segment>> Trial<'_, Segments> {
 
     /// Compares as much of it as is known with as much as is known of the `reference`.
     fn compare(&mut self, reference: &Self) {
-        let (ours, theirs) = (&mut self.history.stretches, &reference.history.stretches);
+        let (ours, theirs) = (&mut self.history.sections, &reference.history.sections);
         let [done, compared] = self.distance.go_on(ours, &theirs[self.compared..]);
         ours.drain(..done);
         self.compared += compared;

@@ -60,7 +60,7 @@ pub struct Checked {
 
 /// The last known instant of a motion that another integrator continues: the start, the end of a complete step, an event.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Known {
+pub struct Checkpoint {
     /// The motion.
     pub motion: Motion,
     /// Time since the start, on ground that follows a record.
@@ -69,7 +69,7 @@ pub struct Known {
     pub load: Load,
 }
 
-impl Known {
+impl Checkpoint {
     /// Checks the step from here to where `engine` is now, under `load`, which came about linearly, and on `ground`. The engine
     /// stays where it is; transitions on the way are shown to `watch`.
     pub fn check<W: Watch>(

@@ -25,7 +25,7 @@ const SAME: f64 = 1e-12;
 const HALVINGS: u32 = 2;
 
 /// How many pieces are kept at most.
-const KEPT: usize = 32;
+const MOST_CANDIDATES: usize = 32;
 
 /// The largest magnitude of a quantity, and its instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -37,7 +37,7 @@ pub struct Peak {
 }
 
 impl Peak {
-    fn see(&mut self, value: f64, time: f64) {
+    pub(super) fn see(&mut self, value: f64, time: f64) {
         let magnitude = value.abs();
         if !self.may_be_same(magnitude) {
             return;
@@ -54,7 +54,7 @@ impl Peak {
     }
 
     /// Whether a magnitude of at most `bound` at `time` (s) or later may be more than it, or the same and sooner.
-    fn may_change(&self, bound: f64, time: f64) -> bool {
+    pub(super) fn may_change(&self, bound: f64, time: f64) -> bool {
         bound > self.magnitude * if time < self.time { 1.0 - SAME } else { 1.0 + ROUNDING }
     }
 }
@@ -324,7 +324,7 @@ impl Peaks {
 pub struct PeakWatch<'a> {
     peaks: &'a mut Peaks,
     /// Pieces that may hold more than what has been seen.
-    kept: Vec<Kept>,
+    kept: Vec<Candidate>,
     /// The level of the kept pieces.
     level: Option<Box<AnyLevel>>,
     /// Whether the next piece may begin with other outputs than the last one ended with.
@@ -335,7 +335,7 @@ pub struct PeakWatch<'a> {
 
 /// A piece that is looked at after others have been shown.
 #[derive(Debug)]
-struct Kept {
+struct Candidate {
     /// Bounds of what it holds.
     bounds: Searched<f64>,
     before: Motion,
@@ -355,7 +355,7 @@ impl PeakWatch<'_> {
     /// Looks at what has been kept, the latest first, which is often the largest.
     fn look_back(&mut self) {
         let Some(level) = &self.level else { return };
-        while let Some(Kept { bounds, before, duration, load, end, arc }) = self.kept.pop() {
+        while let Some(Candidate { bounds, before, duration, load, end, arc }) = self.kept.pop() {
             if self.peaks.may_change_within(&Measure::SEARCHED, &bounds, before.time) {
                 let piece = Piece { before: &before, duration, load, end, level, arc: arc.as_ref() };
                 self.peaks.look(&Measure::SEARCHED, &piece.whole(), HALVINGS);
@@ -396,14 +396,14 @@ impl Watch for PeakWatch<'_> {
         if is_first {
             return self.peaks.look(&Measure::SEARCHED, &piece.whole(), HALVINGS);
         }
-        if self.kept.len() == KEPT {
+        if self.kept.len() == MOST_CANDIDATES {
             self.kept.retain(|kept| may_change(&kept.bounds, &kept.before));
         }
-        if self.kept.len() == KEPT {
+        if self.kept.len() == MOST_CANDIDATES {
             self.look_back();
         }
         self.level.get_or_insert_with(|| Box::new(level.clone()));
-        self.kept.push(Kept { bounds, before: *before, duration, load, end, arc: arc.cloned() });
+        self.kept.push(Candidate { bounds, before: *before, duration, load, end, arc: arc.cloned() });
     }
 
     fn transition(&mut self, _transition: &Transition) {

@@ -53,7 +53,7 @@ fn in_full_contact(level: &AnyLevel, load: LinearLoad, arc: &Arc) -> Reactions<T
     let Reactions { R_h, R_v, R_m } = linear_in_full_contact(level.structure(), load, arc);
     if R_m.rest == 0.0 {
         let of = |reaction: Linear<3>| Terms::from_fn(arc.order, |k| reaction.coefficient(k, &contact_leaves(arc, k)));
-        return Reactions { R_h: of(R_h), R_v: Terms::constant(R_v.coefficient(0, &[0.0; 2])), R_m: of(R_m) };
+        return Reactions { R_h: of(R_h), R_v: of(R_v), R_m: of(R_m) };
     }
     let x = level.terms(Phase::FullContact, load, arc);
     Reactions::at(&x, &Second { u_ddot: x.u_dot.slope(arc.span), theta_ddot: Terms::constant(0.0) })

@@ -48,7 +48,7 @@ use serde::{Deserialize, Serialize};
 /// Something worse by no more than this part may be rounding.
 const ROUNDING: f64 = 1e-14;
 
-/// A force that is worse by no more than this part of the weight is not looked for, and what differs by no more is the same.
+/// A value that is worse by no more than this is not looked for, and what differs by no more than this part is the same.
 const MARGIN: f64 = 1e-12;
 
 /// A series of reactions that is off by less than this part of its terms at its end has converged.
@@ -122,7 +122,7 @@ pub struct Worst {
 
 /// The findings about a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Found {
+pub struct Findings {
     /// In the order of [`ASSUMPTIONS`].
     pub worst: [Worst; ASSUMPTIONS.len()],
     /// Impacts that raise the energy, however little.
@@ -137,12 +137,12 @@ pub struct Found {
     pub duration: f64,
 }
 
-impl Found {
+impl Findings {
     /// Findings before anything has been seen, from `time` (s) on.
-    pub fn since(time: f64) -> Found {
+    pub fn since(time: f64) -> Findings {
         let none = |value| Worst { value, time, first_beyond: None, beyond: 0.0 };
         let worst = ASSUMPTIONS.map(|assumption| none(assumption.start));
-        Found { worst, gains: 0, impacts: 0, settlings: 0, held: 0.0, duration: 0.0 }
+        Findings { worst, gains: 0, impacts: 0, settlings: 0, held: 0.0, duration: 0.0 }
     }
 
     /// Sees `value` of assumption `which` at `time` (s). The first of several values that differ by rounding counts.
@@ -196,17 +196,17 @@ impl Found {
 pub struct Validity {
     structure: Structure,
     limits: Limits,
-    found: Found,
+    found: Findings,
 }
 
 impl Validity {
     /// The watcher of `structure`, which continues from what has been `found`.
-    pub fn new(structure: &Structure, limits: Limits, found: Found) -> Validity {
+    pub fn new(structure: &Structure, limits: Limits, found: Findings) -> Validity {
         Validity { structure: *structure, limits, found }
     }
 
     /// The findings so far.
-    pub fn found(&self) -> &Found {
+    pub fn found(&self) -> &Findings {
         &self.found
     }
 
@@ -451,9 +451,7 @@ impl<'a> Polynomial<'a> {
 
     /// The reactions at `sigma`, from the state there.
     fn reactions(&self, sigma: f64) -> Reactions {
-        let Expansion { piece: &Piece { level, before, load, .. }, from, arc } = self.of;
-        let motion = Motion { state: arc.at(sigma), ..*before };
-        Sample { motion, load: load.at(from + sigma * arc.span), level }.edges()
+        self.of.sample(sigma).edges()
     }
 
     /// Whether the series of R_h and R_v end in the reactions `last` of the state.
@@ -524,8 +522,8 @@ fn positive(coefficients: &[f64], reach: f64, found: &mut Vec<(f64, f64)>) {
 
 impl Run<'_> {
     /// The assumptions that the run breaks, and its end.
-    pub fn validity(&self, limits: Limits) -> Result<(Found, Finish), RunError> {
-        let mut validity = Validity::new(&self.structure, limits, Found::since(self.ground.start()));
+    pub fn validity(&self, limits: Limits) -> Result<(Findings, Finish), RunError> {
+        let mut validity = Validity::new(&self.structure, limits, Findings::since(self.ground.start()));
         let finish = self.follow(&mut validity)?;
         Ok((validity.found, finish))
     }
@@ -536,10 +534,10 @@ pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
     let &Parameters { m, B, H, g, r, P_0, .. } = structure.parameters();
     let &Structure { gamma, omega_fc, u_cr, .. } = structure;
     let mut warnings = Vec::new();
-    if detail == Detail::FixedBase {
+    if !detail.has_uplift() {
         return warnings;
     }
-    if detail != Detail::Rigid && u_cr > B {
+    if detail.has_strut() && u_cr > B {
         let balanced = (gamma * g * B + P_0 * B / m) / (H * omega_fc * omega_fc + g);
         let held = if P_0 > 0.0 { "gamma g + P_0/m" } else { "gamma g" };
         warnings.push(format!(
@@ -555,7 +553,7 @@ pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
              one of the edges; raise r, or lower H/B"
         ));
     }
-    if detail != Detail::Rigid && impact::greatest_gain(structure, u_cr) > 0.0 {
+    if detail.has_strut() && impact::greatest_gain(structure, u_cr) > 0.0 {
         let range = match impact::lossless_restitution(structure, u_cr) {
             Some([least, most]) => format!("only r from {least} to {most} cannot"),
             None => "so can any other r".to_owned(),

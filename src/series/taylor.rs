@@ -261,6 +261,22 @@ impl<Q: Coordinates> Arc<Q> {
         truncation: Truncation<Q>,
         mut velocities: impl FnMut(&Arc<Q>, usize, f64) -> (Q, f64),
     ) {
+        self.expand_in_place(state, span, &truncation, |arc, k, per| {
+            let theta_dot;
+            (arc.u_dot[k], theta_dot) = velocities(arc, k, per);
+            theta_dot
+        });
+    }
+
+    /// [`Arc::expand`] with `velocities` that write the coefficient of u̇ into the arc and give the coefficient of θ̇.
+    #[inline(always)]
+    pub(crate) fn expand_in_place(
+        &mut self,
+        state: &State<Q>,
+        span: f64,
+        truncation: &Truncation<Q>,
+        mut velocities: impl FnMut(&mut Arc<Q>, usize, f64) -> f64,
+    ) {
         self.span = span;
         self.reach = 1.0;
         (self.u[0], self.u_dot[0]) = (state.u, state.u_dot);
@@ -268,13 +284,12 @@ impl<Q: Coordinates> Arc<Q> {
         let mut previous_is_small = false;
         for k in 1..MAX_ORDER + 1 {
             let per = span * reciprocal(k);
-            self.u[k] = self.u_dot[k - 1].times(per);
+            self.u[k].be(&self.u_dot[k - 1], per);
             self.theta[k] = self.theta_dot[k - 1] * per;
-            let (u_dot, theta_dot) = velocities(self, k, per);
-            self.u_dot[k] = u_dot;
+            let theta_dot = velocities(self, k, per);
             self.theta_dot[k] = theta_dot;
             self.order = k;
-            let is_small = u_dot.is_within(&truncation.u_dot) && theta_dot.abs() <= truncation.theta_dot;
+            let is_small = self.u_dot[k].is_within(&truncation.u_dot) && theta_dot.abs() <= truncation.theta_dot;
             if is_small && previous_is_small && k >= MIN_ORDER {
                 return;
             }
@@ -286,7 +301,7 @@ impl<Q: Coordinates> Arc<Q> {
 
 /// The σ up to which the last two terms of a full expansion stay within `truncation`.
 #[cold]
-fn reach<Q: Coordinates>(arc: &Arc<Q>, truncation: Truncation<Q>) -> f64 {
+fn reach<Q: Coordinates>(arc: &Arc<Q>, truncation: &Truncation<Q>) -> f64 {
     [MAX_ORDER - 1, MAX_ORDER]
         .into_iter()
         .map(|k| {

@@ -121,7 +121,7 @@ pub enum DescriptionError {
     Frame(#[from] FrameError),
     #[error("{0} floors are given: a structure has 1 to {MOST_FLOORS}")]
     Floors(usize),
-    #[error("the centre of the mass above the base is {0} B high: it must not exceed {MAX_SLENDERNESS} B; raise B")]
+    #[error("the centre of the mass above the base is {0:.1} B high: it must not exceed {MAX_SLENDERNESS} B; raise B")]
     Slender(f64),
     #[error("{0}")]
     OutOfRange(#[from] OutOfRange),
@@ -223,10 +223,11 @@ impl Described {
 impl Frame {
     /// A shear building, whose storeys resist the drift between its floors.
     pub fn from_storeys(base: &Given, damping: &Damping, storeys: &[Storey]) -> Result<Frame, DescriptionError> {
-        for (i, storey) in storeys.iter().enumerate() {
-            STOREY.check(storey.k).map_err(|cause| DescriptionError::At { what: "storey", number: i + 1, cause })?;
+        for (number, storey) in (1..).zip(storeys) {
+            STOREY.check(storey.k).map_err(|cause| DescriptionError::At { what: "storey", number, cause })?;
         }
         let floors: Vec<_> = storeys.iter().map(|&Storey { m, h, .. }| Place { m, h }).collect();
+        check_floors(&floors, 1)?;
         if let Some(i) = (1..floors.len()).find(|&i| floors[i].h == floors[i - 1].h) {
             let (h, below) = (floors[i].h, floors[i - 1].h);
             return Err(DescriptionError::Order { number: i + 1, h, below });
@@ -250,11 +251,8 @@ impl Frame {
         floors: &[Place],
         K: &[Vec<f64>],
     ) -> Result<Frame, DescriptionError> {
-        check_floors(floors)?;
+        check_floors(floors, 1)?;
         let n = floors.len();
-        if !(1..=MOST_FLOORS).contains(&n) {
-            return Err(DescriptionError::Floors(n));
-        }
         length("K", K.len(), n, "floor")?;
         for (i, row) in K.iter().enumerate() {
             length(&format!("K[{}]", i + 1), row.len(), n, "floor")?;
@@ -285,7 +283,7 @@ impl Frame {
         let participation = |shape| (part(shape, |floor| floor.m), part(shape, |floor| floor.m * floor.h));
         let modes = modes(&omegas, damping, &shapes.iter().map(participation).collect::<Vec<_>>())?;
         let moments = moments(floors.iter().map(|&Place { m, h }| (m, h)));
-        Ok(Frame::new(body(base, moments)?, &modes, &shown(floors, &shapes))?)
+        checked(Frame::new(body(base, moments)?, &modes, &shown(floors, &shapes))?)
     }
 
     /// The modes of a fixed base that another program found. Without a `total`, the floors have all mass.
@@ -296,13 +294,13 @@ impl Frame {
         total: Option<Total>,
         floors: &[Place],
     ) -> Result<Frame, DescriptionError> {
-        check_floors(floors)?;
+        check_floors(floors, 0)?;
         let (mut omegas, mut participations) = (Vec::new(), Vec::new());
         for (number, found) in (1..).zip(modes_found) {
             let at = |cause| DescriptionError::At { what: "mode", number, cause };
             MASS.check(found.mass).map_err(at)?;
             let f = match (found.f, found.period) {
-                (Some(f), None) => F.check(f).map(|()| f),
+                (Some(f), None) => Ok(f),
                 (None, Some(period)) => PERIOD.check(period).map(|()| period.recip()),
                 _ => return Err(DescriptionError::Either { number, one: "f (Hz)", other: "period (s)" }),
             };
@@ -330,8 +328,15 @@ impl Frame {
         if rest.abs() > limit {
             return Err(DescriptionError::Moment { S_1: body.S_1, rest, limit });
         }
-        Ok(frame)
+        checked(frame)
     }
+}
+
+/// The `frame` unless it is too slender.
+fn checked(frame: Frame) -> Result<Frame, DescriptionError> {
+    let &Body { m_s, S_1, B, .. } = frame.body();
+    let slenderness = S_1 / (m_s * B);
+    if slenderness > MAX_SLENDERNESS { Err(DescriptionError::Slender(slenderness)) } else { Ok(frame) }
 }
 
 /// The base of `given` under mass of these moments m_s, S_1 and I_2.
@@ -339,14 +344,17 @@ fn body(given: &Given, [m_s, S_1, I_2]: [f64; 3]) -> Result<Body, DescriptionErr
     let (parameters, r) = given.base()?;
     parameters.check()?;
     let Parameters { m0, J0, B, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
-    if S_1 > MAX_SLENDERNESS * m_s * B {
-        return Err(DescriptionError::Slender(S_1 / (m_s * B)));
-    }
     Ok(Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y } })
 }
 
 /// The modes of the frequencies `omegas` (rad/s) with these Γ and κ.
 fn modes(omegas: &[f64], damping: &Damping, participations: &[(f64, f64)]) -> Result<Vec<Mode>, DescriptionError> {
+    if omegas.len() > MOST_MODES {
+        return Err(FrameError::Modes(omegas.len()).into());
+    }
+    for (number, omega) in (1..).zip(omegas) {
+        F.check(omega / TAU).map_err(|cause| DescriptionError::At { what: "mode", number, cause })?;
+    }
     let modes = omegas.iter().zip(damping.ratios(omegas)?).zip(participations);
     Ok(modes.map(|((omega, zeta), (gamma, kappa))| Mode::new(*omega, zeta, *gamma, *kappa)).collect())
 }
@@ -356,8 +364,12 @@ fn shown(floors: &[Place], shapes: &[DVector<f64>]) -> Vec<Floor> {
     let of_floor = |i: usize| Modes::new(&shapes.iter().map(|shape| shape[i]).collect::<Vec<_>>());
     floors.iter().enumerate().map(|(i, &Place { m, h })| Floor { mass: m, height: h, shape: of_floor(i) }).collect()
 }
-/// Checks the numbers of the `floors` and their order.
-fn check_floors(floors: &[Place]) -> Result<(), DescriptionError> {
+
+/// Checks that there are `least` floors or more, their numbers and their order.
+fn check_floors(floors: &[Place], least: usize) -> Result<(), DescriptionError> {
+    if !(least..=MOST_FLOORS).contains(&floors.len()) {
+        return Err(DescriptionError::Floors(floors.len()));
+    }
     let mut below = 0.0;
     for (number, &Place { m, h }) in (1..).zip(floors) {
         let fits = FLOOR_MASS.check(m).and_then(|()| FLOOR_HEIGHT.check(h));
@@ -609,6 +621,7 @@ mod tests {
         assert!(damped(Damping::Rayleigh { f: [0.0, 1.0], zeta: 0.1 }).starts_with("f = 0 Hz is out of range"));
         let of_base = |base, storeys: &[Storey]| Frame::from_storeys(&base, &all, storeys).unwrap_err().to_string();
         assert_eq!(of_base(usual(), &[]), "0 floors are given: a structure has 1 to 500");
+        assert!(of_base(usual(), &[STOREYS[0]; 501]).starts_with("501 floors are given"));
         let without_width = of_base(base(&[("m0", 1.0)]), &STOREYS);
         assert!(without_width.starts_with("base: B (half-width of the base) is missing: give B (m) or width (m)"));
         let of_one = of_base(base(&[("m0", 1.0), ("B", 1.0), ("H", 1.0)]), &STOREYS);
@@ -632,8 +645,8 @@ mod tests {
             "the shape of mode 1 has the effective mass 9.64566e3 kg with the masses of the floors, but mass = 9.77829e4 kg: \
              check the order of the floors and of the modes"
         );
-        let beyond = refused(|_, total| total.m_s = 100e3);
-        assert!(beyond.ends_with("kg of the m_s = 100000.0 kg above the foundation: check masses, heights and units"));
+        let tonnes = refused(|_, total| total.m_s = 110.0);
+        assert!(tonnes.ends_with("kg of the m_s = 110.0 kg above the foundation: check masses, heights and units"));
         assert!(
             refused(|_, total| total.I_2 = Some(5e6)).contains("of the I_2 = 5000000.0 kg·m² above the foundation")
         );
@@ -650,6 +663,9 @@ mod tests {
         assert!(
             refused(|_, total| total.J_P = Some(1.0)).starts_with("I_2 (kg.m2) or J_P (kg.m2) is needed, and not both")
         );
+        let many = vec![found(&frame())[0].clone(); 25];
+        let many = Frame::from_modes(&usual(), &Damping::All(0.0), &many, None, &places());
+        assert_eq!(many, Err(FrameError::Modes(25).into()));
         let without_total = Frame::from_modes(&usual(), &Damping::All(0.0), &found(&frame())[..1], None, &[]);
         assert_eq!(without_total, Err(DescriptionError::NoTotal));
     }

@@ -1,6 +1,7 @@
 //! A structure of many masses: a rigid base and the modes of vibration in full contact.
 
-use crate::mechanics::lateral::{MOST_MODES, Modes};
+use crate::mechanics::gauge::Gauge;
+use crate::mechanics::lateral::{Coordinates, MOST_MODES, Modes};
 use crate::series::bisection::last_where;
 use crate::structure::{Base, Mode, Ties, Vibration};
 
@@ -53,7 +54,47 @@ pub struct Frame {
     body: Body,
     modes: Vec<Mode>,
     floors: Vec<Floor>,
+    gauges: Box<Gauges>,
     pub(crate) vibration: Vibration,
+}
+
+/// What is measured on a structure of many masses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gauges {
+    /// Acceleration of each floor along the turning e_x a_i, m/s².
+    pub a: Vec<Gauge>,
+    /// Shear of the storey below each floor V_k, from the given floors, N.
+    pub V: Vec<Gauge>,
+    /// Base shear V_t, N.
+    pub V_t: Gauge,
+    /// Overturning moment M_t, N·m.
+    pub M_t: Gauge,
+}
+
+impl Gauges {
+    fn new(&Body { m_s, S_1, I_2, .. }: &Body, modes: &[Mode], floors: &[Floor]) -> Gauges {
+        let shape = |of: fn(&Mode) -> f64| Modes::new(&Vec::from_iter(modes.iter().map(of)));
+        let storey = |floors: &[Floor]| {
+            let (mut weight, mut height, mut sum) = (0.0, 0.0, shape(|_| 0.0));
+            for floor in floors {
+                (weight, height) = (weight + floor.mass, height + floor.mass * floor.height);
+                sum = sum.plus(floor.shape, floor.mass);
+            }
+            Gauge::new(modes, weight, sum, height)
+        };
+        Gauges {
+            a: floors.iter().map(|floor| Gauge::new(modes, 1.0, floor.shape, floor.height)).collect(),
+            V: (0..floors.len()).map(|k| storey(&floors[k..])).collect(),
+            V_t: Gauge::new(modes, m_s, shape(|mode| mode.gamma), S_1),
+            M_t: Gauge::new(modes, S_1, shape(|mode| mode.mass * mode.height), I_2),
+        }
+    }
+}
+
+/// What a sum over the modes leaves of the `whole`.
+pub(crate) fn rest(whole: f64, of_modes: f64) -> f64 {
+    let rest = whole - of_modes;
+    if rest.abs() <= ROUNDING * whole.abs() { 0.0 } else { rest }
 }
 
 /// The reason why modes and floors are no structure.
@@ -97,6 +138,13 @@ impl Mode {
     }
 }
 
+impl Floor {
+    /// Elastic displacement of the floor at the coordinates `u`, m.
+    pub fn displacement(&self, u: &Modes) -> f64 {
+        self.shape.dot(u)
+    }
+}
+
 impl Frame {
     /// The structure of this `body` with these `modes`, which shows these `floors`.
     pub fn new(body: Body, modes: &[Mode], floors: &[Floor]) -> Result<Frame, FrameError> {
@@ -112,10 +160,6 @@ impl Frame {
         }
         let Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties } = body;
         let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum::<f64>();
-        let rest = |whole: f64, of_modes: f64| {
-            let rest = whole - of_modes;
-            if rest.abs() <= ROUNDING * whole.abs() { 0.0 } else { rest }
-        };
         let left = |name, unit, whole: f64, of_modes: f64| match rest(whole, of_modes) {
             rest if rest < -EXCESS * whole => Err(FrameError::Beyond { name, unit, of_modes, whole }),
             rest => Ok(rest),
@@ -138,8 +182,8 @@ impl Frame {
             tan_alpha_cg: m_t * B / S_1,
             ties,
         };
-        let (modes, floors) = (modes.to_vec(), floors.to_vec());
-        Ok(Frame { vibration: vibration(&base, &modes), base, body, modes, floors })
+        let (gauges, vibration) = (Box::new(Gauges::new(&body, modes, floors)), vibration(&base, modes));
+        Ok(Frame { base, body, modes: modes.to_vec(), floors: floors.to_vec(), gauges, vibration })
     }
 
     /// The structure as a rigid body.
@@ -158,7 +202,12 @@ impl Frame {
         &self.modes
     }
 
-    /// The floors.
+    /// The gauges of the floors and of the base.
+    pub fn gauges(&self) -> &Gauges {
+        &self.gauges
+    }
+
+    /// The floors, from below.
     pub fn floors(&self) -> &[Floor] {
         &self.floors
     }

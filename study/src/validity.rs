@@ -11,7 +11,7 @@ use population::{Pair, both};
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::impact;
 use rocking::run::validity::{
-    ASSUMPTIONS, EDGE_LOAD, FRICTION, Found, IMPACT_FRICTION, IMPACT_TENSION, TENSION, WEIGHT,
+    ASSUMPTIONS, EDGE_LOAD, FRICTION, Findings, IMPACT_FRICTION, IMPACT_TENSION, TENSION, WEIGHT,
 };
 use rocking::{Detail, Parameters};
 use std::path::Path;
@@ -59,7 +59,7 @@ fn percent(part: f64) -> String {
 }
 
 /// The value, and for how much of the time it is beyond its limit.
-fn with_share(found: &Found, which: usize) -> String {
+fn with_share(found: &Findings, which: usize) -> String {
     let worst = &found.worst[which];
     match worst.first_beyond {
         None => number(worst.value),

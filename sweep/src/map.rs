@@ -248,7 +248,7 @@ impl Map {
         let pulse = self.pulse(place);
         let ground = pulse.record().expect("the map's corners have been checked");
         let (least, pga) = (least_push(&self.structure), ground.pga());
-        if self.detail == Detail::Rigid && pulse.amplitude < least && least < pga {
+        if !self.detail.has_strut() && pulse.amplitude < least && least < pga {
             return ground.multiplied(pulse.amplitude / pga);
         }
         ground

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::Ending;
-use rocking::run::validity::{ASSUMPTIONS, Found as Beyond, Limits, Validity};
+use rocking::run::validity::{ASSUMPTIONS, Findings, Limits, Validity};
 use serde::Serialize;
 use std::collections::HashSet;
 use std::path::Path;
@@ -147,13 +147,13 @@ impl<'a> Sweep<'a> {
         if !self.validity {
             return Done { outcome: case.outcome(), beyond: Box::default() };
         }
-        let found = Beyond::since(case.motion.record().start());
+        let found = Findings::since(case.motion.record().start());
         let mut validity = Validity::new(&case.structure, Limits::default(), found);
         let outcome = case.outcome_watched(&mut validity);
         if let Outcome::Failed { .. } = outcome {
             return Done { outcome, beyond: Box::default() };
         }
-        let Beyond { worst, gains, settlings, .. } = validity.found();
+        let Findings { worst, gains, settlings, .. } = validity.found();
         let beyond = worst.iter().flat_map(|worst| [worst.value, worst.time]);
         Done { outcome, beyond: beyond.chain([*gains as f64, *settlings as f64]).collect() }
     }

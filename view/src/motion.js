@@ -69,7 +69,17 @@ function motionView() {
     const text = value.toFixed(decimals);
     return minus(Number(text) === 0 ? text.replace("-", "") : text);
   };
-  const significant = (value) => minus(String(Number(value.toPrecision(3))));
+  /** 10 to the power of a whole `exponent`. */
+  const power = (exponent) => (exponent === 0 ? "1" : `10${[...`${exponent}`].map((digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit] ?? "⁻").join("")}`);
+  /** `value` with this `count` of significant digits, very large and very small ones with a power of ten. */
+  function significant(value, count = 3) {
+    if (!Number.isFinite(value)) return minus(String(value).replace("Infinity", "∞"));
+    const rounded = Number(value.toPrecision(count));
+    const isPlain = rounded === 0 || (Math.abs(rounded) >= 1e-4 && Math.abs(rounded) < 1e6);
+    const [digits, exponent] = String(isPlain ? rounded : rounded.toExponential()).split("e");
+    if (isPlain) return minus(digits);
+    return digits === "1" ? power(Number(exponent)) : minus(`${digits}·${power(Number(exponent))}`);
+  }
 
   /** How many decimals show `magnitude` with as many digits as the motion is exact to. */
   function decimalsFor(magnitude) {
@@ -214,15 +224,16 @@ function motionView() {
     set(at("pivot"), { r: 5 / scale });
     const dimensions = at("dimensions");
     dimensions.replaceChildren();
-    const [side, line] = [Math.max(20, x - scale * Math.max(B, reach) - 14), y + 26];
+    const lift = 90; // room for the words about the uplift
+    const [side, line] = [Math.max(20, x - Math.max(scale * B + lift, scale * reach + 14)), y + 26];
     const [roof, half] = [y - scale * H, scale * B];
     element(dimensions, "path", { d: `M${side - 4} ${y}h8m-4 0V${roof}m-4 0h8` });
     element(dimensions, "text", {
-      class: "muted", transform: `translate(${side - 6} ${(y + roof) / 2}) rotate(-90)`, "text-anchor": "middle",
+      class: "muted", transform: `translate(${side - 9} ${(y + roof) / 2}) rotate(-90)`, "text-anchor": "middle",
     }, `H = ${significant(H)} m`);
     element(dimensions, "path", { d: `M${x - half} ${line - 4}v8m0 -4H${x + half}m0 -4v8` });
     element(dimensions, "text", { class: "muted", x, y: line + 16, "text-anchor": "middle" }, `2B = ${significant(2 * B)} m`);
-    at("stated").textContent = exaggeration === 1 ? "true to scale" : "as large as it is; lengths true to scale";
+    at("stated").textContent = exaggeration === 1 ? "true to scale" : "as large; lengths true to scale";
   }
 
   function drawScene(state) {
@@ -239,7 +250,7 @@ function motionView() {
     set(at("gap"), { x1: edge.x, x2: edge.x, y1: 0, y2: edge.y, visibility: isSeen ? "visible" : "hidden" });
     const lift = at("lift");
     lift.textContent = isSeen ? `${inUnit("uplift", state.uplift)} mm` : "";
-    set(lift, { x: x + scale * edge.x - 8 * side, y: y + (scale * edge.y) / 2 + 4, "text-anchor": side > 0 ? "end" : "start" });
+    set(lift, { x: x + scale * edge.x - 8 * side, y: y + Math.min((scale * edge.y) / 2 + 4, -5), "text-anchor": side > 0 ? "end" : "start" });
     drawTies(state, side, theta);
     drawShaking(state.a_g, width);
     const fallen = at("fallen");
@@ -363,13 +374,14 @@ function motionView() {
     const svg = at("histories");
     const { width, height } = sizes.histories;
     set(svg, { viewBox: `0 0 ${width} ${height}` });
-    const isNarrow = width < 560;
-    const [left, right, gap] = [isNarrow ? 46 : 58, isNarrow ? 56 : 76, 26];
+    const isNarrow = width < 500;
+    const longest = Math.max(0, ...lanes.map(({ name }) => name.length)); // its letters are at most 7.5 pixels wide
+    const [left, right, gap] = [isNarrow ? 46 : 58, Math.max(isNarrow ? 56 : 76, 10 + 7.5 * longest), 26];
     const laneHeight = 15;
     const below = 40 + laneHeight * lanes.length;
     const high = (height - below) / panels.length;
     chart = { left, width: Math.max(50, width - left - right), top: gap, bottom: height - below };
-    svg.replaceChildren(svg.firstElementChild);
+    svg.replaceChildren();
     const defs = element(svg, "defs");
     const clip = element(defs, "clipPath", { id: "inside" });
     element(clip, "rect", { x: left, y: 0, width: chart.width, height });
@@ -386,12 +398,14 @@ function motionView() {
     });
 
     const edge = left + chart.width;
+    let cursor = "";
     panels.forEach((panel, k) => {
       const [top, bottom] = [k * high + gap, (k + 1) * high];
       const { magnitude, instant } = motion.peaks[panel.name];
       const most = (panel.largest > 0 ? panel.largest / panel.per : 1) * 1.12;
       const y = (value) => (top + bottom) / 2 - ((value / panel.per / most) * (bottom - top)) / 2;
       panel.y = y;
+      cursor += `M0 ${top}V${bottom}`;
       for (const { value } of times) element(svg, "line", { class: "grid", x1: across(value), x2: across(value), y1: top, y2: bottom });
       for (const { value, text } of ticks(-most, most, Math.max(3, (bottom - top) / 24))) {
         const line = y(value * panel.per);
@@ -418,7 +432,7 @@ function motionView() {
       if (magnitude > 0) {
         element(g, "circle", { class: "peak", cx: across(instant), cy: y(signed(panel.name, instant)), r: 3.5 });
       }
-      panel.dot = element(g, "circle", { r: 3.5, style: `fill:var(${panel.colour})` });
+      panel.dot = element(g, "circle", { class: "dot", r: 3.5, style: `fill:var(${panel.colour})` });
     });
 
     element(svg, "rect", { class: "rocking key", x: edge - 122, y: gap - 18, width: 14, height: 11 });
@@ -443,15 +457,14 @@ function motionView() {
       element(svg, "text", { x: across(value), y: axis + 15, "text-anchor": "middle" }, text);
     }
     element(svg, "text", { class: "muted", x: width - 4, y: axis + 15, "text-anchor": "end" }, isNarrow ? "s" : "time (s)");
-    chart.cursor = element(svg, "line", { class: "cursor", y1: gap - 6, y2: axis });
-    svg.append(...svg.querySelectorAll(".title")); // above the cursor
+    chart.cursor = element(svg, "path", { class: "cursor", d: `${cursor}M0 ${chart.bottom + 4}V${axis}` });
     drawCursor(stateAt(t));
   }
 
   function drawCursor(state) {
     const x = across(t);
     const isShown = t >= shown[0] && t <= shown[1];
-    set(chart.cursor, { x1: x, x2: x, visibility: isShown ? "visible" : "hidden" });
+    set(chart.cursor, { transform: `translate(${x})`, visibility: isShown ? "visible" : "hidden" });
     for (const panel of panels) set(panel.dot, { cx: x, cy: panel.y(state[panel.name]) });
   }
 
@@ -636,6 +649,11 @@ function motionView() {
     const mass = (kilograms) => (kilograms < 1e4 ? `${significant(kilograms)} kg` : `${significant(kilograms / 1e3)} t`);
     const count = transitions.length;
     document.title = `${title}: rocking structure`;
+    const peaks = panels.map(({ name, meaning }) => {
+      const { magnitude, instant } = motion.peaks[name];
+      return `${meaning}, peak ${inUnit(name, magnitude)} ${quantities[name].unit} at ${fixed(instant, 3)} s`;
+    });
+    set(at("histories"), { "aria-label": `Histories: ${peaks.join("; ")}` });
     at("title").textContent = title;
     at("about").textContent =
       `masses ${mass(m)} and ${mass(m0)}, H = ${significant(H)} m, 2B = ${significant(2 * B)} m, ` +
@@ -644,5 +662,5 @@ function motionView() {
   }
 
   play(false);
-  return { decode, show };
+  return { decode, show, play, isPlaying: () => isPlaying, significant, power };
 }

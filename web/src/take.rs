@@ -1,6 +1,6 @@
 //! The scene for use outside the page: commands for a shell, a script in Python, and values to set in its FMU.
 
-use crate::scene::{Fields, RUN};
+use crate::scene::{EL_CENTRO, Fields, RUN};
 use rocking::structure::natural_quantities::names;
 use rocking::structure::parameters::PRESETS;
 use rocking_records::Column;
@@ -37,7 +37,7 @@ pub fn taken_along(fields: &Fields, path: Option<&Path>) -> Result<[String; 3], 
             let motion = options(&mut ["duration"].into_iter())?;
             (simulate(("free", motion[0].1.clone()), &of_file)?, String::new(), arguments(&motion))
         }
-        "record" | "synthetic" => {
+        EL_CENTRO | "record" | "synthetic" => {
             let record = format!("record = fr.Record.read({}{})\n", Value::from(file.as_str()), arguments(&of_file));
             (simulate(("record", file.into()), &of_file)?, record, ", record".into())
         }

@@ -31,6 +31,7 @@ onmessage = async ({ data }) => {
   if (data.module) {
     wasm_bindgen.initSync({ module: data.module });
     explorer = new wasm_bindgen.Explorer();
+    explorer.take_el_centro(data.elCentro.name, data.elCentro.bytes);
   } else if (data.record) {
     explorer.take_record(data.record.name, data.record.bytes);
   } else {

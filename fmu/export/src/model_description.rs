@@ -114,6 +114,7 @@ mod tests {
             r#"exact: within steps, too; if the structure overturns, before its fall; NaN unless peaks is true" causality="local" variability="continuous" initial="calculated">
       <Real unit="rad" displayUnit="deg" nominal="0.351"/>"#,
             r#"<BaseUnit kg="1" m="1" s="-2"/>"#,
+            r#"<Category name="logEvents" description="uplift, impact, landing and overturning, as they happen"/>"#,
             r#"modelName="Pier" guid"#,
             r#"<CoSimulation modelIdentifier="Pier" "#,
             r#"<DefaultExperiment startTime="0.0" stopTime="4.0" tolerance="1e-9" stepSize="0.005"/>"#,

@@ -17,7 +17,7 @@
 
 use crate::failure::Failure;
 use crate::instance::Instance;
-use crate::logger::{Category, Status};
+use crate::logger::{Category, Logger, Status};
 use crate::model::{Completed, Model};
 use crate::state_machine::{Stage, Stages, Table, names};
 use crate::variables::DataType;
@@ -93,7 +93,7 @@ impl Words {
 
 /// The instance behind a component, for a host that speaks the version with the functions `F`.
 #[repr(C)] // the magic number first, whatever the version
-struct Component<F> {
+struct Component<F, M> {
     magic: Cell<u64>,
     /// [`READY`], [`BUSY`] or [`BROKEN`].
     availability: AtomicU8,
@@ -101,7 +101,7 @@ struct Component<F> {
     calls_back: AtomicBool,
     /// The interface's table.
     allowed_in: &'static Table,
-    instance: UnsafeCell<Instance>,
+    instance: UnsafeCell<Instance<M>>,
     version: PhantomData<F>,
 }
 
@@ -120,42 +120,44 @@ const MAX_TEXT: usize = 1 << 16;
 const MAX_LENGTH: usize = 1 << 24;
 
 /// A component of what `create` makes, with the interface's table of states; null if it makes none or panics.
-pub(crate) fn instantiate<F: Function>(create: impl FnOnce() -> Option<(Instance, &'static Table)>) -> *mut c_void {
+pub(crate) fn instantiate<F: Function, M: Model>(
+    create: impl FnOnce() -> Option<(Instance<M>, &'static Table)>,
+) -> *mut c_void {
     let created = catch_unwind(AssertUnwindSafe(create)).ok().flatten();
     let Some((instance, allowed_in)) = created else { return ptr::null_mut() };
     let (magic, availability, instance) = (Cell::new(F::MAGIC), AtomicU8::new(READY), UnsafeCell::new(instance));
     let (calls_back, version) = (AtomicBool::new(false), PhantomData);
-    let component = Component::<F> { magic, availability, calls_back, allowed_in, instance, version };
+    let component = Component::<F, M> { magic, availability, calls_back, allowed_in, instance, version };
     Box::into_raw(Box::new(component)).cast()
 }
 
 /// The model in the folder `resources`, whose token must be `given`, the argument `name`.
-pub(crate) fn open<M: Model>(name: &'static str, given: &str, resources: &Path) -> Result<Box<M>, Failure> {
+pub(crate) fn open<M: Model>(name: &'static str, given: &str, resources: &Path) -> Result<M, Failure> {
     let model = M::open(resources)?;
     let needed = model.token();
     if given != needed {
         return Err(Failure::WrongToken { name, given: given.to_owned(), needed });
     }
-    Ok(Box::new(model))
+    Ok(model)
 }
 
 /// Frees a component. Does nothing for null, and while a call is under way, as from within the logger or a callback.
-pub(crate) unsafe fn free<F: Function>(c: *mut c_void) {
-    let Some(component) = (unsafe { component::<F>(c) }) else { return };
+pub(crate) unsafe fn free<F: Function, M: Model>(c: *mut c_void) {
+    let Some(component) = (unsafe { component::<F, M>(c) }) else { return };
     if component.calls_back.load(Ordering::Relaxed) || component.availability.swap(BUSY, Ordering::Acquire) == BUSY {
         return;
     }
     // Volatile, so that a call with the freed component finds no magic number as long as the memory is not used anew.
     unsafe { component.magic.as_ptr().write_volatile(0) };
-    let free = || drop(unsafe { Box::from_raw(c.cast::<Component<F>>()) });
+    let free = || drop(unsafe { Box::from_raw(c.cast::<Component<F, M>>()) });
     // Freeing has no status to return: a panic is swallowed.
     let _ = catch_unwind(AssertUnwindSafe(free));
 }
 
 /// Follows `c` if it points to a component.
 #[inline]
-unsafe fn component<'a, F: Function>(c: *mut c_void) -> Option<&'a Component<F>> {
-    let c = c.cast::<Component<F>>();
+unsafe fn component<'a, F: Function, M>(c: *mut c_void) -> Option<&'a Component<F, M>> {
+    let c = c.cast::<Component<F, M>>();
     if c.is_null() || !c.is_aligned() {
         return None;
     }
@@ -166,39 +168,39 @@ unsafe fn component<'a, F: Function>(c: *mut c_void) -> Option<&'a Component<F>>
 
 /// Calls `body` with the instance that `c` points to, if `function` is allowed in its state. No panic gets out.
 #[inline]
-pub(crate) unsafe fn call<F: Function>(
+pub(crate) unsafe fn call<F: Function, M: Model>(
     c: *mut c_void,
     function: F,
-    body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
+    body: impl FnOnce(&mut Instance<M>) -> Result<(), Failure>,
 ) -> c_int {
     unsafe { call_in(c, function, |allowed_in| allowed_in[function.place()], body) }
 }
 
 /// Calls the host back within a step of the instance that `c` points to, which is not freed meanwhile.
-pub(crate) unsafe fn call_back<F: Function>(c: *mut c_void, host: impl FnOnce()) {
-    let Some(component) = (unsafe { component::<F>(c) }) else { return };
+pub(crate) unsafe fn call_back<F: Function, M: Model>(c: *mut c_void, host: impl FnOnce()) {
+    let Some(component) = (unsafe { component::<F, M>(c) }) else { return };
     component.calls_back.store(true, Ordering::Relaxed);
     host();
     component.calls_back.store(false, Ordering::Relaxed);
 }
 
 /// The rest of a call of `function`, after the host has been called back.
-pub(crate) unsafe fn call_on<F: Function>(
+pub(crate) unsafe fn call_on<F: Function, M: Model>(
     c: *mut c_void,
     function: F,
-    body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
+    body: impl FnOnce(&mut Instance<M>) -> Result<(), Failure>,
 ) -> c_int {
     unsafe { call_in(c, function, |_| Stage::WITHIN_STEP, body) }
 }
 
 #[inline]
-unsafe fn call_in<F: Function>(
+unsafe fn call_in<F: Function, M: Model>(
     c: *mut c_void,
     function: F,
     allowed: impl FnOnce(&Table) -> Stages,
-    body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
+    body: impl FnOnce(&mut Instance<M>) -> Result<(), Failure>,
 ) -> c_int {
-    let Some(component) = (unsafe { component::<F>(c) }) else { return Status::Error as c_int };
+    let Some(component) = (unsafe { component::<F, M>(c) }) else { return Status::Error as c_int };
     match component.availability.compare_exchange(READY, BUSY, Ordering::Acquire, Ordering::Relaxed) {
         Ok(_) => (),
         Err(BROKEN) => return Status::Fatal as c_int,
@@ -208,29 +210,43 @@ unsafe fn call_in<F: Function>(
     let instance = unsafe { &mut *component.instance.get() };
     let guarded = || {
         let (stage, stages) = (instance.stage(), allowed(component.allowed_in));
-        let refused = || Err(Failure::WrongStage { stage, allowed_in: names(stages) });
-        let result = if stage.bit() & stages != 0 { body(instance) } else { refused() };
-        result.map_or_else(|failure| report(instance, function, &failure), |()| Status::Ok)
+        let result = if stage.bit() & stages != 0 { body(instance) } else { Err(wrong_stage(stage, stages)) };
+        result.map_or_else(|failure| report(&instance.logger, function, failure), |()| Status::Ok)
     };
-    let (status, availability) = match catch_unwind(AssertUnwindSafe(guarded)) {
-        Ok(status) => (status, READY),
-        Err(panic) => {
-            let failure = Failure::Panicked(panic_message(&*panic).to_owned());
-            // The logger may panic, too; the status is known without it.
-            let _ = catch_unwind(AssertUnwindSafe(|| report(instance, function, &failure)));
-            (Status::Fatal, BROKEN)
+    match catch_unwind(AssertUnwindSafe(guarded)) {
+        Ok(status) => {
+            component.availability.store(READY, Ordering::Release);
+            status as c_int
         }
-    };
-    component.availability.store(availability, Ordering::Release);
-    status as c_int
+        Err(panic) => {
+            broken(&instance.logger, function, panic);
+            component.availability.store(BROKEN, Ordering::Release);
+            Status::Fatal as c_int
+        }
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn wrong_stage(stage: Stage, stages: Stages) -> Failure {
+    Failure::WrongStage { stage, allowed_in: names(stages) }
 }
 
 /// Logs why `function` is not done, and returns its status.
 #[cold]
 #[inline(never)]
-fn report<F: Function>(instance: &Instance, function: F, failure: &Failure) -> Status {
-    instance.logger.failure(failure.status(), &format!("{}: {failure}{}", function.name(), F::WORDS.remedy(failure)));
+fn report<F: Function>(logger: &Logger, function: F, failure: Failure) -> Status {
+    logger.failure(failure.status(), &format!("{}: {failure}{}", function.name(), F::WORDS.remedy(&failure)));
     failure.status()
+}
+
+/// Logs that `function` has panicked.
+#[cold]
+#[inline(never)]
+fn broken<F: Function>(logger: &Logger, function: F, panic: Box<dyn Any + Send>) {
+    let failure = Failure::Panicked(panic_message(&*panic).to_owned());
+    // The logger may panic, too; the status is known without it.
+    let _ = catch_unwind(AssertUnwindSafe(|| report(logger, function, failure)));
 }
 
 fn panic_message(panic: &(dyn Any + Send)) -> &str {
@@ -244,12 +260,7 @@ fn panic_message(panic: &(dyn Any + Send)) -> &str {
 /// The `length` values at `pointer`.
 #[inline]
 pub(crate) unsafe fn values<'a, T>(name: &'static str, pointer: *const T, length: size_t) -> Result<&'a [T], Failure> {
-    check_length(length)?;
-    if length == 0 {
-        return Ok(&[]);
-    }
-    check_pointer(name, pointer)?;
-    Ok(unsafe { slice::from_raw_parts(pointer, length) })
+    Ok(unsafe { slice::from_raw_parts(start(name, pointer.cast_mut(), length)?, length) })
 }
 
 /// Room for `length` values at `pointer`.
@@ -259,12 +270,16 @@ pub(crate) unsafe fn room<'a, T>(
     pointer: *mut T,
     length: size_t,
 ) -> Result<&'a mut [MaybeUninit<T>], Failure> {
-    check_length(length)?;
-    if length == 0 {
-        return Ok(&mut []);
+    Ok(unsafe { slice::from_raw_parts_mut(start(name, pointer, length)?.cast(), length) })
+}
+
+/// The start of `length` values at `pointer`; where there are none, the pointer may be anything.
+#[inline]
+fn start<T>(name: &'static str, pointer: *mut T, length: size_t) -> Result<*mut T, Failure> {
+    if length > MAX_LENGTH {
+        return Err(Failure::TooLong { length, limit: MAX_LENGTH });
     }
-    check_pointer(name, pointer)?;
-    Ok(unsafe { slice::from_raw_parts_mut(pointer.cast(), length) })
+    if length == 0 { Ok(ptr::dangling_mut()) } else { check_pointer(name, pointer).map(|()| pointer) }
 }
 
 /// The `needed` numbers at `pointer`, of which `count`, the argument `of`, has to say that they are as many.
@@ -286,9 +301,15 @@ pub(crate) unsafe fn write_all(
     numbers: Vec<f64>,
 ) -> Result<(), Failure> {
     check_count(of, count, numbers.len())?;
-    let places = unsafe { room(name, pointer, count) }?;
-    places.iter_mut().zip(numbers).for_each(|(place, number)| _ = place.write(number));
+    fill(unsafe { room(name, pointer, count) }?, &numbers);
     Ok(())
+}
+
+/// Writes `numbers` to `places`, of which there are as many.
+#[inline]
+pub(crate) fn fill(places: &mut [MaybeUninit<f64>], numbers: &[f64]) {
+    assert_eq!(places.len(), numbers.len());
+    unsafe { ptr::copy_nonoverlapping(numbers.as_ptr(), places.as_mut_ptr().cast(), numbers.len()) };
 }
 
 /// Refuses a number of values, given as `name`, that is not the right one.
@@ -307,11 +328,6 @@ pub(crate) unsafe fn write<T>(name: &'static str, pointer: *mut T, value: T) -> 
     check_pointer(name, pointer)?;
     unsafe { pointer.write(value) };
     Ok(())
-}
-
-#[inline]
-fn check_length(length: size_t) -> Result<(), Failure> {
-    if length > MAX_LENGTH { Err(Failure::TooLong { length, limit: MAX_LENGTH }) } else { Ok(()) }
 }
 
 #[inline]
@@ -342,8 +358,8 @@ pub(crate) unsafe fn names_events(length: size_t, pointer: *const *const c_char)
 }
 
 /// Keeps the FMU state: in the one that `pointer`, the argument `name`, points to, or in a new one for null.
-pub(crate) unsafe fn keep_state(
-    instance: &mut Instance,
+pub(crate) unsafe fn keep_state<M: Model>(
+    instance: &mut Instance<M>,
     name: &'static str,
     pointer: *mut *mut c_void,
 ) -> Result<(), Failure> {
@@ -354,8 +370,8 @@ pub(crate) unsafe fn keep_state(
 }
 
 /// Frees the FMU state that `pointer`, the argument `name`, points to. Ignored for null.
-pub(crate) unsafe fn free_state(
-    instance: &mut Instance,
+pub(crate) unsafe fn free_state<M: Model>(
+    instance: &mut Instance<M>,
     name: &'static str,
     pointer: *mut *mut c_void,
 ) -> Result<(), Failure> {
@@ -369,8 +385,8 @@ pub(crate) unsafe fn free_state(
 }
 
 /// Writes how many bytes the FMU state `state` is.
-pub(crate) unsafe fn write_state_size(
-    instance: &Instance,
+pub(crate) unsafe fn write_state_size<M: Model>(
+    instance: &Instance<M>,
     state: *mut c_void,
     size: *mut size_t,
 ) -> Result<(), Failure> {
@@ -379,8 +395,8 @@ pub(crate) unsafe fn write_state_size(
 }
 
 /// Writes the FMU state `state` as `size` bytes, which must be as many as it has.
-pub(crate) unsafe fn write_state(
-    instance: &Instance,
+pub(crate) unsafe fn write_state<M: Model>(
+    instance: &Instance<M>,
     state: *mut c_void,
     serialized: *mut u8,
     size: size_t,
@@ -395,8 +411,8 @@ pub(crate) unsafe fn write_state(
 }
 
 /// Keeps the FMU state that `size` bytes hold, as [`keep_state`] does that of the instance.
-pub(crate) unsafe fn read_state(
-    instance: &mut Instance,
+pub(crate) unsafe fn read_state<M: Model>(
+    instance: &mut Instance<M>,
     serialized: *const u8,
     size: size_t,
     name: &'static str,
@@ -410,8 +426,8 @@ pub(crate) unsafe fn read_state(
 }
 
 /// Completes a step of the host's integrator, and writes what came of it as the version's Booleans.
-pub(crate) unsafe fn complete_step<B: From<bool>>(
-    instance: &mut Instance,
+pub(crate) unsafe fn complete_step<M: Model, B: From<bool>>(
+    instance: &mut Instance<M>,
     enterEventMode: *mut B,
     terminateSimulation: *mut B,
 ) -> Result<(), Failure> {
@@ -436,11 +452,19 @@ pub(crate) fn escaped(message: &str, marks: &[char]) -> CString {
 
 /// The functions that take an instance, in the words of a version of the standard: of each the name, the item of the
 /// version's [`Function`] that it is, the arguments after the component, and what is asked of the instance: nothing of
-/// those that are never allowed. Those in brackets are written out elsewhere.
+/// those that are never allowed. Those in brackets call the instance themselves, those in braces make one, free it or take
+/// none. The macro `$export` exports all of them for a model, where the types of the arguments are in scope.
 macro_rules! functions {
     (@) => { |_| Ok(()) };
     (@ |$instance:ident| $body:block) => { |$instance| $body };
-    ($([$apart:ident = $apart_function:ident])* $(
+    ($export:ident
+    $({
+        $(#[$other_doc:meta])*
+        $other:ident($($other_argument:ident: $other_type:ty),* $(,)?) $(-> $returned:ty)? $other_body:block
+    })* $([
+        $(#[$apart_doc:meta])*
+        $apart:ident = $apart_function:ident($($apart_argument:ident: $apart_type:ty),* $(,)?) $apart_body:block
+    ])* $(
         $(#[$doc:meta])*
         $name:ident = $function:ident($($argument:ident: $type:ty),* $(,)?) $(|$instance:ident| $body:block)?
     )*) => {
@@ -470,17 +494,62 @@ macro_rules! functions {
         }
 
         $(
+            #[doc = concat!("`", stringify!($other), "`")]
+            #[doc = ""]
+            $(#[$other_doc])*
+            pub unsafe fn $other<M: $crate::Model>($($other_argument: $other_type),*) $(-> $returned)? $other_body
+        )*
+
+        $(
+            #[doc = concat!("`", stringify!($apart), "`")]
+            #[doc = ""]
+            $(#[$apart_doc])*
+            pub unsafe fn $apart<M: $crate::Model>($($apart_argument: $apart_type),*) -> c_int $apart_body
+        )*
+
+        $(
             #[doc = concat!("`", stringify!($name), "`")]
             #[doc = ""]
             $(#[$doc])*
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn $name(c: *mut c_void $(, $argument: $type)*) -> c_int {
-                unsafe { $crate::c_abi::call(c, Function::$function, $crate::c_abi::functions!(@ $(|$instance| $body)?)) }
+            #[inline]
+            #[allow(clippy::too_many_arguments)] // the standard's
+            pub unsafe fn $name<M: $crate::Model>(c: *mut c_void $(, $argument: $type)*) -> c_int {
+                unsafe {
+                    $crate::c_abi::call::<Function, M>(
+                        c, Function::$function, $crate::c_abi::functions!(@ $(|$instance| $body)?),
+                    )
+                }
             }
         )*
+
+        #[doc(hidden)]
+        #[macro_export]
+        macro_rules! $export {
+            ($model:ty, $version:ident) => {
+                $crate::exported! {
+                    $model, $version:
+                    $($other($($other_argument: $other_type),*) $(-> $returned)?;)*
+                    $($apart($($apart_argument: $apart_type),*) -> c_int;)*
+                    $($name(c: *mut c_void $(, $argument: $type)*) -> c_int;)*
+                }
+            };
+        }
     };
 }
 pub(crate) use functions;
+
+/// Exports functions of a version for a model.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! exported {
+    ($model:ty, $version:ident: $($name:ident($($argument:ident: $type:ty),*) $(-> $returned:ty)?;)*) => { $(
+        #[doc = concat!("`", stringify!($name), "`")]
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $name($($argument: $type),*) $(-> $returned)? {
+            unsafe { $crate::$version::$name::<$model>($($argument),*) }
+        }
+    )* };
+}
 
 #[cfg(test)]
 mod tests {

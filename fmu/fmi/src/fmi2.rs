@@ -5,14 +5,14 @@
 mod stages;
 
 use crate::c_abi::{
-    self, Words, check_pointer, complete_step, escaped, free_state, functions, keep_state, names_events, read_all,
-    read_state, room, text, values, write, write_all, write_state, write_state_size,
+    self, Words, check_pointer, complete_step, escaped, fill, free_state, functions, keep_state, names_events,
+    read_all, read_state, room, text, values, write, write_all, write_state, write_state_size,
 };
 use crate::failure::Failure;
 use crate::instance::Instance;
 use crate::interface::{Interface, Stepping};
 use crate::logger::{Logger, Sink};
-use crate::model::{Experiment, Model, Progress, Update};
+use crate::model::{Experiment, Progress, Update};
 use crate::state_machine::{Stage, Table};
 use crate::uri;
 use crate::variables::{DataType, Role};
@@ -60,65 +60,6 @@ pub struct EventInfo {
     pub next_event_time: c_double,
 }
 
-/// `fmi2GetTypesPlatform`
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2GetTypesPlatform() -> *const c_char {
-    c"default".as_ptr()
-}
-
-/// `fmi2GetVersion`
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2GetVersion() -> *const c_char {
-    c"2.0".as_ptr()
-}
-
-/// `fmi2Instantiate` of the model `M`
-pub unsafe fn instantiate<M: Model>(
-    instanceName: *const c_char,
-    fmuType: c_int,
-    fmuGUID: *const c_char,
-    fmuResourceLocation: *const c_char,
-    functions: *const CallbackFunctions,
-    loggingOn: c_int,
-) -> *mut c_void {
-    let create = || {
-        check_pointer("functions", functions).ok()?;
-        let name = unsafe { text("instanceName", instanceName) };
-        let logger = Logger::new(sink(unsafe { &*functions }, name.as_ref().unwrap_or(&"")));
-        let arguments = || {
-            let accepted = "0 (fmi2ModelExchange), 1 (fmi2CoSimulation)";
-            let interface = match fmuType {
-                MODEL_EXCHANGE => Interface::ModelExchange,
-                CO_SIMULATION => Interface::CoSimulation(Stepping::default()),
-                value => return Err(Failure::BadChoice { name: "fmuType".into(), value, accepted }),
-            };
-            let guid = unsafe { text("fmuGUID", fmuGUID) };
-            let location = unsafe { text("fmuResourceLocation", fmuResourceLocation) };
-            let events = boolean("loggingOn", loggingOn);
-            if name?.is_empty() {
-                return Err(Failure::NoName);
-            }
-            let location = location?;
-            let folder = uri::path(location).ok_or_else(|| Failure::NotAFileUri(location.to_owned()))?;
-            Ok((c_abi::open::<M>("fmuGUID", guid?, &folder)?, interface, events?))
-        };
-        match arguments() {
-            Ok((model, interface, events)) => {
-                let allowed_in: &Table = match interface {
-                    Interface::ModelExchange => &stages::MODEL_EXCHANGE,
-                    Interface::CoSimulation(_) => &stages::CO_SIMULATION,
-                };
-                Some((Instance::new(model, interface, events, logger, None), allowed_in))
-            }
-            Err(failure) => {
-                logger.failure(failure.status(), &format!("fmi2Instantiate: {failure}"));
-                None
-            }
-        }
-    };
-    c_abi::instantiate::<Function>(create)
-}
-
 fn sink(functions: &CallbackFunctions, instance_name: &str) -> Sink {
     let Some(logger) = functions.logger else { return Box::new(|_, _, _| ()) };
     let environment = functions.component_environment;
@@ -127,12 +68,6 @@ fn sink(functions: &CallbackFunctions, instance_name: &str) -> Sink {
     Box::new(move |status, category, message| unsafe {
         logger(environment, name.as_ptr(), status as c_int, category.as_ptr(), escaped(message, &['%', '#']).as_ptr());
     })
-}
-
-/// `fmi2FreeInstance`. Ignored for null, and while a call is under way, as from within the logger.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2FreeInstance(c: *mut c_void) {
-    unsafe { c_abi::free::<Function>(c) }
 }
 
 /// The truth that the `fmi2Boolean` `value`, given as `name`, stands for.
@@ -172,6 +107,59 @@ const WORDS: Words = Words {
 };
 
 functions! {
+    export_fmi2
+
+    { fmi2GetTypesPlatform() -> *const c_char { c"default".as_ptr() } }
+
+    { fmi2GetVersion() -> *const c_char { c"2.0".as_ptr() } }
+
+    { fmi2Instantiate(
+        instanceName: *const c_char, fmuType: c_int, fmuGUID: *const c_char, fmuResourceLocation: *const c_char,
+        functions: *const CallbackFunctions, _visible: c_int, loggingOn: c_int,
+    ) -> *mut c_void {
+        let create = || {
+            check_pointer("functions", functions).ok()?;
+            let name = unsafe { text("instanceName", instanceName) };
+            let logger = Logger::new(sink(unsafe { &*functions }, name.as_ref().unwrap_or(&"")));
+            let arguments = || {
+                let accepted = "0 (fmi2ModelExchange), 1 (fmi2CoSimulation)";
+                let interface = match fmuType {
+                    MODEL_EXCHANGE => Interface::ModelExchange,
+                    CO_SIMULATION => Interface::CoSimulation(Stepping::default()),
+                    value => return Err(Failure::BadChoice { name: "fmuType".into(), value, accepted }),
+                };
+                let guid = unsafe { text("fmuGUID", fmuGUID) };
+                let location = unsafe { text("fmuResourceLocation", fmuResourceLocation) };
+                let events = boolean("loggingOn", loggingOn);
+                if name?.is_empty() {
+                    return Err(Failure::NoName);
+                }
+                let location = location?;
+                let folder = uri::path(location).ok_or_else(|| Failure::NotAFileUri(location.to_owned()))?;
+                Ok((c_abi::open::<M>("fmuGUID", guid?, &folder)?, interface, events?))
+            };
+            match arguments() {
+                Ok((model, interface, events)) => {
+                    let allowed_in: &Table = match interface {
+                        Interface::ModelExchange => &stages::MODEL_EXCHANGE,
+                        Interface::CoSimulation(_) => &stages::CO_SIMULATION,
+                    };
+                    Some((Instance::new(model, interface, events, logger, None), allowed_in))
+                }
+                Err(failure) => {
+                    logger.failure(failure.status(), &format!("fmi2Instantiate: {failure}"));
+                    None
+                }
+            }
+        };
+        c_abi::instantiate::<Function, M>(create)
+    } }
+
+    {
+        /// Ignored for null, and while a call is under way, as from within the logger.
+        fmi2FreeInstance(c: *mut c_void) { unsafe { c_abi::free::<Function, M>(c) } }
+    }
+
     fmi2SetDebugLogging = SetDebugLogging(
         loggingOn: c_int, nCategories: size_t, categories: *const *const c_char,
     ) |instance| {
@@ -197,7 +185,9 @@ functions! {
     fmi2Reset = Reset() |instance| { instance.reset() }
 
     fmi2GetReal = GetReal(vr: *const c_uint, nvr: size_t, value: *mut c_double) |instance| {
-        instance.get_real(values("vr", vr, nvr)?, room("value", value, nvr)?)
+        let (references, places) = (values("vr", vr, nvr)?, room("value", value, nvr)?);
+        fill(places, instance.get_real(references)?);
+        Ok(())
     }
 
     fmi2GetInteger = GetInteger(vr: *const c_uint, nvr: size_t, value: *mut c_int) |instance| {
@@ -281,10 +271,8 @@ functions! {
     fmi2DoStep = DoStep(
         currentCommunicationPoint: c_double, communicationStepSize: c_double, _noSetFMUStatePriorToCurrentPoint: c_int,
     ) |instance| {
-        match instance.do_step(currentCommunicationPoint, communicationStepSize)? {
-            Progress::Ended => instance.ending()?.map_or(Ok(()), Err),
-            Progress::Complete | Progress::Event => Ok(()),
-        }
+        let progress = instance.do_step(currentCommunicationPoint, communicationStepSize)?;
+        if progress == Progress::Ended { instance.ending()?.map_or(Ok(()), Err) } else { Ok(()) }
     }
 
     /// Never allowed: no step is ever pending.
@@ -381,12 +369,13 @@ mod tests {
             component_environment: ptr::null_mut(),
         };
         unsafe {
-            let c = instantiate::<Touchy>(c"a".as_ptr(), 1, token().as_ptr(), c"file:///".as_ptr(), &functions, 0);
-            assert_eq!(fmi2EnterInitializationMode(c), Status::Ok as c_int);
-            assert_eq!(fmi2GetReal(c, &PANICS, 1, &mut 0.0), Status::Fatal as c_int);
-            assert_eq!(fmi2ExitInitializationMode(c), Status::Fatal as c_int);
-            assert_eq!(fmi2Reset(c), Status::Fatal as c_int);
-            fmi2FreeInstance(c);
+            let c =
+                fmi2Instantiate::<Touchy>(c"a".as_ptr(), 1, token().as_ptr(), c"file:///".as_ptr(), &functions, 0, 0);
+            assert_eq!(fmi2EnterInitializationMode::<Touchy>(c), Status::Ok as c_int);
+            assert_eq!(fmi2GetReal::<Touchy>(c, &PANICS, 1, &mut 0.0), Status::Fatal as c_int);
+            assert_eq!(fmi2ExitInitializationMode::<Touchy>(c), Status::Fatal as c_int);
+            assert_eq!(fmi2Reset::<Touchy>(c), Status::Fatal as c_int);
+            fmi2FreeInstance::<Touchy>(c);
         }
     }
 }

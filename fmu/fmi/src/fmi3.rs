@@ -10,8 +10,8 @@
 mod stages;
 
 use crate::c_abi::{
-    self, Words, call, call_back, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions,
-    keep_state, names_events, read_all, read_state, room, text, values, write, write_all, write_state,
+    self, Words, call, call_back, call_on, check_count, check_pointer, complete_step, escaped, fill, free_state,
+    functions, keep_state, names_events, read_all, read_state, room, text, values, write, write_all, write_state,
     write_state_size,
 };
 use crate::failure::Failure;
@@ -30,68 +30,14 @@ pub type LogMessageCallback = unsafe extern "C" fn(*mut c_void, c_int, *const c_
 
 const MAGIC: u64 = 0x466d_6955_6e69_7433;
 
-/// `fmi3GetVersion`
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3GetVersion() -> *const c_char {
-    c"3.0".as_ptr()
-}
-
-/// Name, token and folder of an instance.
-type Texts = [*const c_char; 3];
-
-/// The logger of an instance, and whether it takes events, too.
-type Log = (*mut c_void, Option<LogMessageCallback>, u8);
-
-/// `fmi3InstantiateCoSimulation` of the model `M`
-pub unsafe fn instantiate_co_simulation<M: Model>(
-    texts: Texts,
-    log: Log,
-    [eventModeUsed, earlyReturnAllowed]: [u8; 2],
-    required: (*const c_uint, size_t),
-    intermediateUpdate: Option<IntermediateUpdateCallback>,
-) -> *mut c_void {
-    let interface = |model: &M| {
-        let event_mode = boolean("eventModeUsed", eventModeUsed)?;
-        let early_return = boolean("earlyReturnAllowed", earlyReturnAllowed)?;
-        let required = unsafe { values("requiredIntermediateVariables", required.0, required.1) }?;
-        let variables = model.variables();
-        let (mut sets_inputs, mut gets_outputs) = (false, false);
-        for &reference in required {
-            let last = variables.len() - 1;
-            let variable = variables.get(reference as usize).ok_or(Failure::UnknownReference { reference, last })?;
-            let is_input = variable.causality == Causality::Input;
-            (sets_inputs, gets_outputs) = (sets_inputs || is_input, gets_outputs || !is_input);
-        }
-        let environment = log.0;
-        let host =
-            intermediateUpdate.map(|update| IntermediateUpdate { update, environment, sets_inputs, gets_outputs });
-        let allowed_in: &Table = &stages::CO_SIMULATION;
-        Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), allowed_in, host))
-    };
-    unsafe { create("fmi3InstantiateCoSimulation", texts, log, interface) }
-}
-
-/// `fmi3InstantiateModelExchange` of the model `M`
-pub unsafe fn instantiate_model_exchange<M: Model>(texts: Texts, log: Log) -> *mut c_void {
-    let allowed_in: &Table = &stages::MODEL_EXCHANGE;
-    let interface = |_: &M| Ok((Interface::ModelExchange, allowed_in, None));
-    unsafe { create("fmi3InstantiateModelExchange", texts, log, interface) }
-}
-
-/// `fmi3InstantiateScheduledExecution`: there is nothing to schedule.
-pub unsafe fn instantiate_scheduled_execution<M: Model>(texts: Texts, log: Log) -> *mut c_void {
-    let interface = |_: &M| Err(Failure::NotThisInterface);
-    unsafe { create("fmi3InstantiateScheduledExecution", texts, log, interface) }
-}
-
 /// An instance of the `interface` that `function` makes; null, with the reason in the log, if there is none.
 unsafe fn create<M: Model>(
     function: &str,
-    [name, token, folder]: Texts,
-    (environment, log, logging_on): Log,
+    [name, token, folder]: [*const c_char; 3],
+    (environment, log, logging_on): (*mut c_void, Option<LogMessageCallback>, u8),
     interface: impl FnOnce(&M) -> Result<(Interface, &'static Table, Option<IntermediateUpdate>), Failure>,
 ) -> *mut c_void {
-    c_abi::instantiate::<Function>(|| {
+    c_abi::instantiate::<Function, M>(|| {
         let logger = Logger::new(sink(log, environment));
         let found = || {
             let name = unsafe { text("instanceName", name) }?;
@@ -149,12 +95,6 @@ impl IntermediateUpdate {
     }
 }
 
-/// `fmi3FreeInstance`. Ignored for null, and while a call is under way, as from within a callback.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3FreeInstance(instance: *mut c_void) {
-    unsafe { c_abi::free::<Function>(instance) }
-}
-
 /// The truth that the `fmi3Boolean` `value`, given as `name`, stands for.
 fn boolean(name: &str, value: u8) -> Result<bool, Failure> {
     match value {
@@ -190,65 +130,117 @@ const WORDS: Words = Words {
     status: "", // none is ever asked for
 };
 
-/// `fmi3DoStep`
-///
-/// `noSetFMUStatePriorToCurrentPoint` is ignored: FMU states are kept until the host frees them. Between the parts of
-/// this function the host is called back, and may call the instance.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3DoStep(
-    c: *mut c_void,
-    currentCommunicationPoint: f64,
-    communicationStepSize: f64,
-    _noSetFMUStatePriorToCurrentPoint: u8,
-    eventHandlingNeeded: *mut u8,
-    terminateSimulation: *mut u8,
-    earlyReturn: *mut u8,
-    lastSuccessfulTime: *mut f64,
-) -> c_int {
-    let (point, step) = (currentCommunicationPoint, communicationStepSize);
-    let check = || {
-        check_pointer("eventHandlingNeeded", eventHandlingNeeded)?;
-        check_pointer("terminateSimulation", terminateSimulation)?;
-        check_pointer("earlyReturn", earlyReturn)?;
-        check_pointer("lastSuccessfulTime", lastSuccessfulTime)
-    };
-    let (mut asked, mut told) = (None, None);
-    let mut compute = |instance: &mut Instance| unsafe {
-        let progress = instance.do_step(point, step)?;
-        let (time, may_return_early) = (instance.model.time()?, instance.may_return_early());
-        if let (Progress::Ended, Some(ending)) = (progress, instance.ending()?) {
-            instance.logger.warning(&format!("fmi3DoStep: {ending}"));
-        }
-        write("eventHandlingNeeded", eventHandlingNeeded, u8::from(progress == Progress::Event))?;
-        write("terminateSimulation", terminateSimulation, u8::from(progress == Progress::Ended))?;
-        write("earlyReturn", earlyReturn, u8::from(may_return_early && time < point + step))?;
-        write("lastSuccessfulTime", lastSuccessfulTime, time)?;
-        told = instance.show_step().map(|host| (host, time));
-        Ok(())
-    };
-    let begin = |instance: &mut Instance| {
-        check()?;
-        asked = instance.begin_step(point, step)?;
-        if asked.is_none() { compute(instance) } else { Ok(()) }
-    };
-    let mut status = unsafe { call(c, Function::DoStep, begin) };
-    if let Some(host) = asked {
-        unsafe { call_back::<Function>(c, || host.ask_for_inputs(point + step)) };
-        status = unsafe { call_on(c, Function::DoStep, compute) };
+functions! {
+    export_fmi3
+
+    { fmi3GetVersion() -> *const c_char { c"3.0".as_ptr() } }
+
+    {
+        #[allow(clippy::too_many_arguments)] // the standard's
+        fmi3InstantiateCoSimulation(
+        instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, _visible: u8,
+        loggingOn: u8, eventModeUsed: u8, earlyReturnAllowed: u8, requiredIntermediateVariables: *const c_uint,
+        nRequiredIntermediateVariables: size_t, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
+        intermediateUpdate: Option<IntermediateUpdateCallback>,
+    ) -> *mut c_void {
+        let interface = |model: &M| {
+            let event_mode = boolean("eventModeUsed", eventModeUsed)?;
+            let early_return = boolean("earlyReturnAllowed", earlyReturnAllowed)?;
+            let (name, length) = ("requiredIntermediateVariables", nRequiredIntermediateVariables);
+            let required = unsafe { values(name, requiredIntermediateVariables, length) }?;
+            let variables = model.variables();
+            let (mut sets_inputs, mut gets_outputs) = (false, false);
+            for &reference in required {
+                let last = variables.len() - 1;
+                let variable = variables.get(reference as usize).ok_or(Failure::UnknownReference { reference, last })?;
+                let is_input = variable.causality == Causality::Input;
+                (sets_inputs, gets_outputs) = (sets_inputs || is_input, gets_outputs || !is_input);
+            }
+            let host =
+                intermediateUpdate.map(|update| IntermediateUpdate { update, environment, sets_inputs, gets_outputs });
+            let allowed_in: &Table = &stages::CO_SIMULATION;
+            Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), allowed_in, host))
+        };
+        let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
+        unsafe { create("fmi3InstantiateCoSimulation", texts, log, interface) }
+    } }
+
+    { fmi3InstantiateModelExchange(
+        instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, _visible: u8,
+        loggingOn: u8, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
+    ) -> *mut c_void {
+        let allowed_in: &Table = &stages::MODEL_EXCHANGE;
+        let interface = |_: &M| Ok((Interface::ModelExchange, allowed_in, None));
+        let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
+        unsafe { create("fmi3InstantiateModelExchange", texts, log, interface) }
+    } }
+
+    {
+        /// There is nothing to schedule. Three more arguments are not read, and not declared: the caller removes them.
+        fmi3InstantiateScheduledExecution(
+        instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, _visible: u8,
+        loggingOn: u8, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
+    ) -> *mut c_void {
+        let interface = |_: &M| Err(Failure::NotThisInterface);
+        let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
+        unsafe { create("fmi3InstantiateScheduledExecution", texts, log, interface) }
+    } }
+
+    {
+        /// Ignored for null, and while a call is under way, as from within a callback.
+        fmi3FreeInstance(instance: *mut c_void) { unsafe { c_abi::free::<Function, M>(instance) } }
     }
-    if let Some((host, time)) = told {
-        unsafe { call_back::<Function>(c, || host.show_outputs(time)) };
-        let end = |instance: &mut Instance| {
-            instance.end_step();
+
+    [
+        /// `noSetFMUStatePriorToCurrentPoint` is ignored: FMU states are kept until the host frees them. Between the parts of
+        /// this function the host is called back, and may call the instance.
+        #[allow(clippy::too_many_arguments)] // the standard's
+        fmi3DoStep = DoStep(
+        c: *mut c_void, currentCommunicationPoint: f64, communicationStepSize: f64,
+        _noSetFMUStatePriorToCurrentPoint: u8, eventHandlingNeeded: *mut u8, terminateSimulation: *mut u8,
+        earlyReturn: *mut u8, lastSuccessfulTime: *mut f64,
+    ) {
+        let (point, step) = (currentCommunicationPoint, communicationStepSize);
+        let check = || {
+            check_pointer("eventHandlingNeeded", eventHandlingNeeded)?;
+            check_pointer("terminateSimulation", terminateSimulation)?;
+            check_pointer("earlyReturn", earlyReturn)?;
+            check_pointer("lastSuccessfulTime", lastSuccessfulTime)
+        };
+        let (mut asked, mut told) = (None, None);
+        let mut compute = |instance: &mut Instance<M>| unsafe {
+            let progress = instance.do_step(point, step)?;
+            let (time, may_return_early) = (instance.model.time()?, instance.may_return_early());
+            if let (Progress::Ended, Some(ending)) = (progress, instance.ending()?) {
+                instance.logger.warning(&format!("fmi3DoStep: {ending}"));
+            }
+            write("eventHandlingNeeded", eventHandlingNeeded, u8::from(progress == Progress::Event))?;
+            write("terminateSimulation", terminateSimulation, u8::from(progress == Progress::Ended))?;
+            write("earlyReturn", earlyReturn, u8::from(may_return_early && time < point + step))?;
+            write("lastSuccessfulTime", lastSuccessfulTime, time)?;
+            told = instance.show_step().map(|host| (host, time));
             Ok(())
         };
-        status = unsafe { call_on(c, Function::DoStep, end) };
-    }
-    status
-}
-
-functions! {
-    [fmi3DoStep = DoStep]
+        let begin = |instance: &mut Instance<M>| {
+            check()?;
+            asked = instance.begin_step(point, step)?;
+            if asked.is_none() { compute(instance) } else { Ok(()) }
+        };
+        let mut status = unsafe { call(c, Function::DoStep, begin) };
+        if let Some(host) = asked {
+            unsafe { call_back::<Function, M>(c, || host.ask_for_inputs(point + step)) };
+            status = unsafe { call_on(c, Function::DoStep, compute) };
+        }
+        if let Some((host, time)) = told {
+            unsafe { call_back::<Function, M>(c, || host.show_outputs(time)) };
+            let end = |instance: &mut Instance<M>| {
+                instance.end_step();
+                Ok(())
+            };
+            status = unsafe { call_on(c, Function::DoStep, end) };
+        }
+        status
+    } ]
 
     fmi3SetDebugLogging = SetDebugLogging(
         loggingOn: u8, nCategories: size_t, categories: *const *const c_char,
@@ -282,7 +274,9 @@ functions! {
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut f64, nValues: size_t,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
-        instance.get_real(references, room("values", value, nValues)?)
+        let places = room("values", value, nValues)?;
+        fill(places, instance.get_real(references)?);
+        Ok(())
     }
 
     fmi3GetInt32 = GetInt32(
@@ -516,8 +510,8 @@ mod tests {
     unsafe extern "C" fn update(c: *mut c_void, _: f64, _: u8, _: u8, _: u8, _: u8, _: *mut u8, _: *mut f64) {
         unsafe {
             let c = *c.cast::<*mut c_void>();
-            assert_eq!(fmi3GetFloat64(c, &PANICS, 1, &mut 0.0, 1), Status::Fatal as c_int);
-            fmi3FreeInstance(c);
+            assert_eq!(fmi3GetFloat64::<Touchy>(c, &PANICS, 1, &mut 0.0, 1), Status::Fatal as c_int);
+            fmi3FreeInstance::<Touchy>(c);
             assert_eq!(DROPPED.get(), 0);
         }
     }
@@ -525,16 +519,23 @@ mod tests {
     #[test]
     fn an_instance_that_broke_within_a_step_is_freed_after_it() {
         let mut c: *mut c_void = ptr::null_mut();
-        let (token, log) = (token(), ((&raw mut c).cast(), None, 0));
+        let (token, environment) = (token(), (&raw mut c).cast());
         DROPPED.set(0);
         unsafe {
-            let texts = [c"a".as_ptr(), token.as_ptr(), c"/".as_ptr()];
-            c = instantiate_co_simulation::<Touchy>(texts, log, [0, 0], (&PANICS, 1), Some(update));
-            assert_eq!((fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), fmi3ExitInitializationMode(c)), (0, 0));
+            let [name, token, folder] = [c"a".as_ptr(), token.as_ptr(), c"/".as_ptr()];
+            let instantiate = fmi3InstantiateCoSimulation::<Touchy>;
+            c = instantiate(name, token, folder, 0, 0, 0, 0, &PANICS, 1, environment, None, Some(update));
+            assert_eq!(
+                (
+                    fmi3EnterInitializationMode::<Touchy>(c, 0, 0.0, 0.0, 0, 0.0),
+                    fmi3ExitInitializationMode::<Touchy>(c)
+                ),
+                (0, 0)
+            );
             let (mut flags, mut time) = ([0; 3], 0.0);
             let [event, end, early] = &mut flags;
-            assert_eq!(fmi3DoStep(c, 0.0, 0.1, 0, event, end, early, &mut time), Status::Fatal as c_int);
-            fmi3FreeInstance(c);
+            assert_eq!(fmi3DoStep::<Touchy>(c, 0.0, 0.1, 0, event, end, early, &mut time), Status::Fatal as c_int);
+            fmi3FreeInstance::<Touchy>(c);
         }
         assert_eq!(DROPPED.get(), 1);
     }

@@ -16,19 +16,15 @@ use std::sync::Arc;
 /// How close two times that mean the same are, in parts of the step, or in units in the last place if that is more.
 const SAME_TIME: (f64, f64) = (1e-4, 8.0);
 
-/// The variable is a real number.
-const REAL: u8 = 1;
-
-/// The variable is an input.
-const INPUT: u8 = 2;
-
 /// One instance.
-pub struct Instance {
+pub struct Instance<M> {
     /// The model, for what needs no check but that of the stage.
-    pub(crate) model: Box<dyn Model>,
+    pub(crate) model: M,
     variables: Arc<[Variable]>,
-    /// The variables' limits as inputs and their kinds, packed for the calls of every step.
+    /// The part of each variable that the calls of every step ask for.
     kinds: Vec<Kind>,
+    /// The range of each input; no number is in that of other variables.
+    ranges: Vec<(f64, f64)>,
     interface: Interface,
     stage: Stage,
     experiment: Experiment,
@@ -49,33 +45,44 @@ pub struct Instance {
     led_to: Option<Stage>,
 }
 
-#[derive(Clone, Copy)]
-struct Kind {
-    is: u8,
-    min: f64,
-    max: f64,
+/// What a variable is to the calls of every step.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    /// A real number that the host sets while time goes on.
+    Input,
+    /// Another real number.
+    Real,
+    Other,
 }
 
 impl From<&Variable> for Kind {
     fn from(variable: &Variable) -> Kind {
-        let Some((min, max)) = variable.data_type.limits() else { return Kind { is: 0, min: 0.0, max: 0.0 } };
-        let is = if variable.causality == Causality::Input { REAL | INPUT } else { REAL };
-        Kind { is, min, max }
+        match (variable.data_type, variable.causality) {
+            (DataType::Real { .. }, Causality::Input) => Kind::Input,
+            (DataType::Real { .. }, _) => Kind::Real,
+            _ => Kind::Other,
+        }
     }
 }
 
-impl Instance {
+fn range(variable: &Variable) -> (f64, f64) {
+    let of_input = variable.data_type.limits().filter(|_| variable.causality == Causality::Input);
+    of_input.unwrap_or((f64::INFINITY, f64::NEG_INFINITY))
+}
+
+impl<M: Model> Instance<M> {
     /// An instance of `model`, just instantiated; `events` says whether events are logged.
     pub(crate) fn new(
-        model: Box<dyn Model>,
+        model: M,
         interface: Interface,
         events: bool,
         mut logger: Logger,
         host: Option<IntermediateUpdate>,
-    ) -> Instance {
+    ) -> Instance<M> {
         logger.set_events(events);
         let variables = model.variables();
         let kinds = variables.iter().map(Kind::from).collect();
+        let ranges = variables.iter().map(range).collect();
         let (stage, events_at_start, mut at_start) = (Stage::Instantiated, events, Vec::new());
         model.state(&mut at_start);
         let (experiment, snapshots, reals, shown, asked, led_to) = Default::default();
@@ -83,6 +90,7 @@ impl Instance {
             model,
             variables,
             kinds,
+            ranges,
             interface,
             stage,
             experiment,
@@ -225,21 +233,25 @@ impl Instance {
 }
 
 /// How values are read and set: all of a call, or none if one is refused.
-impl Instance {
+impl<M: Model> Instance<M> {
     /// Reads real numbers.
     #[inline(always)]
-    pub(crate) fn get_real(&mut self, references: &[u32], values: &mut [MaybeUninit<f64>]) -> Result<(), Failure> {
-        let is_real = |reference: &u32| self.kinds.get(*reference as usize).is_some_and(|kind| kind.is & REAL != 0);
+    pub(crate) fn get_real(&mut self, references: &[u32]) -> Result<&[f64], Failure> {
+        let is_real = |reference: &u32| self.kinds.get(*reference as usize).is_some_and(|kind| *kind != Kind::Other);
         if let Some(wrong) = references.iter().find(|reference| !is_real(reference)) {
-            return Err(self.find(*wrong).map_or_else(|failure| failure, Failure::wrong_type));
+            return Err(self.not_real(*wrong));
         }
         if self.reals.len() < references.len() {
             self.reals.resize(references.len(), 0.0);
         }
         let reals = &mut self.reals[..references.len()];
         self.model.get_reals(references, reals)?;
-        values.iter_mut().zip(reals).for_each(|(place, value)| _ = place.write(*value));
-        Ok(())
+        Ok(reals)
+    }
+
+    #[cold]
+    fn not_real(&self, reference: u32) -> Failure {
+        self.find(reference).map_or_else(|failure| failure, Failure::wrong_type)
     }
 
     /// Reads what is no real number, of the types that are `of_type`.
@@ -295,8 +307,7 @@ impl Instance {
     #[inline(always)]
     pub(crate) fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
         let is_fit = |(reference, value): (&u32, &f64)| {
-            let kind = self.kinds.get(*reference as usize);
-            kind.is_some_and(|kind| kind.is & INPUT != 0 && *value >= kind.min && *value <= kind.max)
+            self.ranges.get(*reference as usize).is_some_and(|(min, max)| value >= min && value <= max)
         };
         if self.asked.is_none() && references.iter().zip(values).all(is_fit) {
             return self.model.set_inputs(references, values);
@@ -432,12 +443,12 @@ impl Instance {
         values: &[f64],
     ) -> Result<(), Failure> {
         for ((reference, &order), &value) in references.iter().zip(orders).zip(values) {
-            let is_input = self.kinds.get(*reference as usize).is_some_and(|kind| kind.is & INPUT != 0);
-            if !(is_input && order == 1 && value.is_finite()) {
+            let is_input = self.kinds.get(*reference as usize) == Some(&Kind::Input);
+            if !(is_input && order == 1 && value.abs() <= f64::MAX) {
                 return Err(self.no_slope(*reference, order, value));
             }
         }
-        if references.is_empty() { Ok(()) } else { self.model.set_slopes(references, values) }
+        self.model.set_slopes(references, values)
     }
 
     #[cold]
@@ -517,7 +528,7 @@ fn refused(variable: &Variable) -> Failure {
 }
 
 /// Steps of a co-simulation.
-impl Instance {
+impl<M: Model> Instance<M> {
     /// Begins a step over `step` (s) from `point` (s). If the host sets inputs within steps, returns how to call it back,
     /// which comes before [`Instance::do_step`].
     pub(crate) fn begin_step(&mut self, point: f64, step: f64) -> Result<Option<IntermediateUpdate>, Failure> {
@@ -534,19 +545,19 @@ impl Instance {
     /// handed over. The instance takes over the host's clock.
     #[inline(always)]
     pub(crate) fn do_step(&mut self, point: f64, step: f64) -> Result<Progress, Failure> {
-        if self.asked.take().is_some() {
+        if self.asked.is_some() {
+            self.asked = None;
             self.stage = Stage::StepComplete;
         }
         self.check_step(point, step)?;
         let stops_at_events = self.interface.stepping().hands_over();
         let step = Step { start: point, duration: step, stops_at_events };
-        match self.model.advance(step, &self.logger) {
-            Ok(Progress::Ended) => {
-                self.stage = Stage::StepFailed;
-                Ok(Progress::Ended)
-            }
-            result => self.stop_if_stuck(result),
+        let progress = self.model.advance(step, &self.logger);
+        let progress = self.stop_if_stuck(progress)?;
+        if progress == Progress::Ended {
+            self.stage = Stage::StepFailed;
         }
+        Ok(progress)
     }
 
     /// If the host reads outputs within steps, returns how to call it back, which comes before [`Instance::end_step`].
@@ -599,7 +610,7 @@ fn is_same_time(a: f64, b: f64, step: f64) -> bool {
 }
 
 /// The service of an instance to a host that integrates.
-impl Instance {
+impl<M: Model> Instance<M> {
     /// Goes to the host's `time` (s).
     pub(crate) fn set_time(&mut self, time: f64) -> Result<(), Failure> {
         if !(time.is_finite() && (time - self.experiment.start_time).is_finite()) {

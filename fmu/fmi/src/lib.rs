@@ -43,6 +43,9 @@ pub mod variables;
 
 pub use failure::Failure;
 pub use interface::Interface;
+#[cfg(not(target_family = "wasm"))]
+#[doc(hidden)]
+pub use libc;
 pub use logger::Logger;
 pub use model::{Completed, Experiment, Model, Progress, Step, Update};
 #[doc(hidden)]
@@ -65,80 +68,28 @@ macro_rules! state_by_serde {
     };
 }
 
-/// Exports the functions that make instances of a [`Model`]. All others are exported with this crate.
+/// Exports the functions of both versions for a [`Model`], in modules `fmi2` and `fmi3`.
 #[macro_export]
 macro_rules! export_fmu {
     ($model:ty) => {
-        const _: () = {
-            use ::std::ffi::{c_char, c_int, c_uint, c_void};
-            use $crate::fmi2::CallbackFunctions;
-            use $crate::fmi3::{IntermediateUpdateCallback, LogMessageCallback};
+        /// The functions of FMI 2.0.
+        #[allow(unsafe_code, non_snake_case, clippy::missing_safety_doc)] // as in `fmi_unit::c_abi`
+        pub mod fmi2 {
+            use super::*;
+            pub use $crate::fmi2::*;
+            use $crate::libc::{c_char, c_double, c_int, c_uint, c_void, size_t};
 
-            #[allow(unsafe_code)]
-            #[unsafe(no_mangle)]
-            unsafe extern "C" fn fmi2Instantiate(
-                name: *const c_char,
-                fmu_type: c_int,
-                guid: *const c_char,
-                resources: *const c_char,
-                functions: *const CallbackFunctions,
-                _visible: c_int,
-                logging_on: c_int,
-            ) -> *mut c_void {
-                unsafe { $crate::fmi2::instantiate::<$model>(name, fmu_type, guid, resources, functions, logging_on) }
-            }
+            $crate::export_fmi2!($model, fmi2);
+        }
 
-            #[allow(unsafe_code)]
-            #[unsafe(no_mangle)]
-            unsafe extern "C" fn fmi3InstantiateCoSimulation(
-                name: *const c_char,
-                token: *const c_char,
-                resources: *const c_char,
-                _visible: u8,
-                logging_on: u8,
-                event_mode: u8,
-                early_return: u8,
-                required: *const c_uint,
-                n_required: usize,
-                environment: *mut c_void,
-                log: Option<LogMessageCallback>,
-                update: Option<IntermediateUpdateCallback>,
-            ) -> *mut c_void {
-                let (texts, log) = ([name, token, resources], (environment, log, logging_on));
-                let (flags, required) = ([event_mode, early_return], (required, n_required));
-                unsafe { $crate::fmi3::instantiate_co_simulation::<$model>(texts, log, flags, required, update) }
-            }
+        /// The functions of FMI 3.0.
+        #[allow(unsafe_code, non_snake_case, clippy::missing_safety_doc, clippy::too_many_arguments)]
+        pub mod fmi3 {
+            use super::*;
+            pub use $crate::fmi3::*;
+            use $crate::libc::{c_char, c_int, c_uint, c_void, size_t};
 
-            #[allow(unsafe_code)]
-            #[unsafe(no_mangle)]
-            unsafe extern "C" fn fmi3InstantiateModelExchange(
-                name: *const c_char,
-                token: *const c_char,
-                resources: *const c_char,
-                _visible: u8,
-                logging_on: u8,
-                environment: *mut c_void,
-                log: Option<LogMessageCallback>,
-            ) -> *mut c_void {
-                let (texts, log) = ([name, token, resources], (environment, log, logging_on));
-                unsafe { $crate::fmi3::instantiate_model_exchange::<$model>(texts, log) }
-            }
-
-            // Three more arguments are not read, and not declared: the caller removes them.
-            #[allow(unsafe_code)]
-            #[unsafe(no_mangle)]
-            unsafe extern "C" fn fmi3InstantiateScheduledExecution(
-                name: *const c_char,
-                token: *const c_char,
-                resources: *const c_char,
-                _visible: u8,
-                logging_on: u8,
-                environment: *mut c_void,
-                log: Option<LogMessageCallback>,
-            ) -> *mut c_void {
-                let (texts, log) = ([name, token, resources], (environment, log, logging_on));
-                unsafe { $crate::fmi3::instantiate_scheduled_execution::<$model>(texts, log) }
-            }
-        };
+            $crate::export_fmi3!($model, fmi3);
+        }
     };
 }

@@ -13,11 +13,9 @@ use uuid::Uuid;
 ///
 /// The unit checks a call before the model sees it: stage, references, types, ranges, counts. A call that the model refuses
 /// must leave the model as it was.
-pub trait Model: 'static {
+pub trait Model: Sized + 'static {
     /// The model of the FMU whose folder `resources` is this one; the error is a message to the user.
-    fn open(resources: &Path) -> Result<Self, Failure>
-    where
-        Self: Sized;
+    fn open(resources: &Path) -> Result<Self, Failure>;
 
     /// The GUID of the FMU, FMI 3.0's instantiation token. FMUs that differ in anything must differ in it: here in the type of
     /// the model and its table of variables.
@@ -59,7 +57,8 @@ pub trait Model: 'static {
 
     /// Sets the slopes of inputs over the next step, finite numbers. Without it inputs are held.
     fn set_slopes(&mut self, references: &[u32], _slopes: &[f64]) -> Result<(), Failure> {
-        Err(Failure::NoInput { name: self.name(references[0]) })
+        let first = references.first().map(|reference| self.name(*reference));
+        first.map_or(Ok(()), |name| Err(Failure::NoInput { name }))
     }
 
     /// Sets the value that an input has at the end of the step that begins now and lasts `step` (s).
@@ -196,10 +195,10 @@ pub struct Step {
 pub enum Progress {
     /// At its end.
     Complete,
-    /// At an event.
-    Event,
     /// With the simulation: [`Model::ending`] says why.
     Ended,
+    /// At an event.
+    Event,
 }
 
 /// The result of an event.

@@ -57,7 +57,7 @@ fn limit(quotients: impl Iterator<Item = (f64, f64)>) -> Option<(f64, f64)> {
 }
 
 /// The derivatives of `of` along `direction` by inputs and, once the simulation `has_started`, by states.
-pub(crate) fn along<M: Model + ?Sized>(
+pub(crate) fn along<M: Model>(
     model: &mut M,
     of: &[u32],
     direction: &[(u32, f64)],
@@ -68,14 +68,6 @@ pub(crate) fn along<M: Model + ?Sized>(
     let mut sums = vec![0.0; of.len()];
     for (reference, change) in direction {
         let known = &variables[*reference as usize];
-        let values = |model: &mut M| {
-            let mut values = vec![0.0; of.len()];
-            model
-                .get_reals(of, &mut values)
-                .ok()
-                .filter(|()| values.iter().all(|value| value.is_finite()))
-                .map(|()| values)
-        };
         let found = if known.causality == Causality::Input {
             let mut x = [0.0];
             model.get_reals(&[*reference], &mut x)?;
@@ -83,7 +75,7 @@ pub(crate) fn along<M: Model + ?Sized>(
             let found = by_differences(x[0], scale, |value| {
                 known.data_type.accepts(value).then_some(())?;
                 model.set_inputs(&[*reference], &[value]).ok()?;
-                values(model)
+                model.values(of).ok()
             });
             model.set_inputs(&[*reference], &x)?;
             found
@@ -93,7 +85,7 @@ pub(crate) fn along<M: Model + ?Sized>(
                 let mut states = states.clone();
                 states[which] = value;
                 model.set_states(&states).ok()?;
-                values(model)
+                model.values(of).ok()
             });
             model.set_states(&states)?;
             found

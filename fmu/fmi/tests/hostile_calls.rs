@@ -6,8 +6,8 @@
 mod bouncing_ball;
 mod hostile;
 
-use bouncing_ball::Ball;
-use fmi_unit::Model;
+use bouncing_ball::{Ball as Model, fmi2, fmi3};
+use fmi_unit::Model as _;
 use fmi_unit::snapshot::Snapshot;
 use fmi_unit::state_machine::Stage;
 use hostile::{Subject, hostile_calls};
@@ -17,11 +17,11 @@ hostile_calls!(ball);
 
 fn ball() -> Subject {
     let never_in = &[Stage::StepFailed, Stage::Error];
-    Subject { never_in, ..Subject::of::<Ball>(tempfile::tempdir().unwrap(), time) }
+    Subject { never_in, ..Subject::of(tempfile::tempdir().unwrap(), time) }
 }
 
 fn time(snapshot: &Snapshot) -> f64 {
-    let mut ball = Ball::open(Path::new("")).unwrap();
+    let mut ball = Model::open(Path::new("")).unwrap();
     ball.restore(&snapshot.model).unwrap();
     ball.time().unwrap()
 }

@@ -1,12 +1,12 @@
 //! A host: loads nothing, calls the C functions directly, keeps what is logged.
 #![allow(unsafe_code, dead_code)] // the C interface; every test file uses a part of this
 
+use FlexibleRocking::fmi2::*;
 use FlexibleRocking::guid;
 use FlexibleRocking::resources::PARAMETERS_FILE;
-use FlexibleRocking::unit::{Condition, Course, Unit};
+use FlexibleRocking::unit::{Condition, Course};
 use FlexibleRocking::variables::Table;
 use fmi_unit::Variable;
-use fmi_unit::fmi2::{self, *};
 use fmi_unit::snapshot::Snapshot;
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
@@ -129,12 +129,13 @@ impl Host {
         let [name, guid, location] =
             [arguments.name, &arguments.guid, &location].map(|text| CString::new(text).unwrap());
         let component = unsafe {
-            fmi2::instantiate::<Unit>(
+            fmi2Instantiate(
                 name.as_ptr(),
                 arguments.fmu_type,
                 guid.as_ptr(),
                 location.as_ptr(),
                 &callbacks((&raw const *log).cast_mut().cast()),
+                0,
                 arguments.logging_on,
             )
         };

@@ -1,8 +1,8 @@
 //! Directional derivatives: of the outputs by the inputs, as a host asks for them.
 
 use crate::host::*;
+use FlexibleRocking::fmi2::fmi2GetDirectionalDerivative;
 use approx::assert_relative_eq;
-use fmi_unit::fmi2::fmi2GetDirectionalDerivative;
 
 /// The derivatives of `unknowns` where each of `knowns` changes by so much, or the status.
 pub fn derivatives(host: &Host, unknowns: &[&str], knowns: &[(&str, f64)]) -> Result<Vec<f64>, i32> {

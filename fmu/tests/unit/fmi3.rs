@@ -1,8 +1,7 @@
 //! FMI 3.0 where it is not FMI 2.0: events, messages, calls back within a step.
 
 use crate::host::{ERROR, OK, reference, resources};
-use FlexibleRocking::unit::Unit;
-use fmi_unit::fmi3::{self, *};
+use FlexibleRocking::fmi3::*;
 use fmi_unit::interface::Stepping;
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
@@ -31,14 +30,17 @@ impl Host {
         let (resources, log) = (resources(), Box::<Log>::default());
         let token = CString::new(FlexibleRocking::guid(&Parameters::EVISON.into())).unwrap();
         let folder = CString::new(format!("{}/", resources.path().display())).unwrap();
-        let texts = [c"wall".as_ptr(), token.as_ptr(), folder.as_ptr()];
-        let told = ((&raw const *log).cast_mut().cast(), Some(record as LogMessageCallback), 0);
+        let [name, token, folder] = [c"wall".as_ptr(), token.as_ptr(), folder.as_ptr()];
+        let (log_of, record) = ((&raw const *log).cast_mut().cast(), Some(record as LogMessageCallback));
         let c = match stepping {
             Some(Stepping { event_mode, early_return }) => unsafe {
-                let flags = [event_mode.into(), early_return.into()];
-                fmi3::instantiate_co_simulation::<Unit>(texts, told, flags, (null(), 0), None)
+                let [events, early] = [event_mode.into(), early_return.into()];
+                let (required, count, update) = (null(), 0, None);
+                fmi3InstantiateCoSimulation(
+                    name, token, folder, 0, 0, events, early, required, count, log_of, record, update,
+                )
             },
-            None => unsafe { fmi3::instantiate_model_exchange::<Unit>(texts, told) },
+            None => unsafe { fmi3InstantiateModelExchange(name, token, folder, 0, 0, log_of, record) },
         };
         assert!(!c.is_null(), "{log:?}");
         Host { c, log, _resources: resources }
@@ -130,7 +132,7 @@ fn a_transition_at_the_end_of_a_step_is_met_there() {
     assert_eq!((unsafe { fmi3GetFloat64(c, &a_g, 1, &mut value, 1) }, value), (OK, 0.5));
 }
 
-/// A host that handles events but no early return gets whole steps.
+/// A host that handles events but no early return gets whole steps, from the start time that it has set, whatever it read before.
 #[test]
 fn a_step_ends_early_for_hosts_that_take_it_alone() {
     let host = Host::new(Some(Stepping { event_mode: true, early_return: false }));
@@ -138,11 +140,12 @@ fn a_step_ends_early_for_hosts_that_take_it_alone() {
     let [event, end, early] = &mut flags;
     unsafe {
         assert_eq!(fmi3SetFloat64(c, &reference("theta_0"), 1, &0.02, 1), OK);
-        assert_eq!((fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), fmi3ExitInitializationMode(c)), (OK, OK));
+        assert_eq!(fmi3GetFloat64(c, &reference("theta"), 1, &mut time, 1), OK);
+        assert_eq!((fmi3EnterInitializationMode(c, 0, 0.0, 5.0, 0, 0.0), fmi3ExitInitializationMode(c)), (OK, OK));
         assert_eq!(fmi3EnterStepMode(c), OK);
-        assert_eq!(fmi3DoStep(c, 0.0, 1.0, 0, event, end, early, &mut time), OK);
+        assert_eq!(fmi3DoStep(c, 5.0, 1.0, 0, event, end, early, &mut time), OK);
     }
-    assert_eq!((flags, time), ([0; 3], 1.0));
+    assert_eq!((flags, time), ([0; 3], 6.0));
 }
 
 /// A host can go to a state that an instance of its own kind has kept, and to no other.
@@ -182,8 +185,9 @@ fn a_refusal_names_the_function_and_what_to_call() {
             step(1.0, 0.1),
             step(0.0, 3.0),
             fmi3SerializeFMUState(c, state, null_mut(), 0),
+            fmi3GetDirectionalDerivative(c, &2, 1, &0, 1, &1.0, 2, &mut 0.0, 1),
         ];
-        assert_eq!(refused, [ERROR; 9]);
+        assert_eq!(refused, [ERROR; 10]);
         assert_eq!((fmi3EnterContinuousTimeMode(model.c), fmi3SetTime(model.c, -1.0)), (OK, OK));
         assert_eq!(fmi3CompletedIntegratorStep(model.c, 1, &mut 0, &mut 0), ERROR);
     }
@@ -203,6 +207,7 @@ fn a_refusal_names_the_function_and_what_to_call() {
          fmi3SetFMUState",
         "fmi3DoStep: the step would end at t = 3 s, past stopTime = 2 s given to fmi3EnterInitializationMode: shorten it",
         &format!("fmi3SerializeFMUState: size = 0 does not fit: the serialized FMU state {bytes}"),
+        "fmi3GetDirectionalDerivative: nSeed = 2 is not 1",
     ];
     assert_eq!(host.log.take(), expected);
     let ends = "time must not fall below the last event or complete step; to go back, call fmi3SetFMUState";
@@ -215,8 +220,8 @@ fn the_other_versions_functions_refuse_an_instance() {
     let host = Host::started(None, 2.0);
     let before = host.bytes();
     unsafe {
-        assert_eq!(fmi_unit::fmi2::fmi2Reset(host.c), ERROR);
-        fmi_unit::fmi2::fmi2FreeInstance(host.c);
+        assert_eq!(FlexibleRocking::fmi2::fmi2Reset(host.c), ERROR);
+        FlexibleRocking::fmi2::fmi2FreeInstance(host.c);
     }
     assert_eq!(host.bytes(), before);
 }
@@ -268,11 +273,12 @@ fn a_host_that_is_called_back_sets_inputs_reads_and_does_no_harm() {
     let token = CString::new(FlexibleRocking::guid(&Parameters::EVISON.into())).unwrap();
     let folder = CString::new(resources.path().to_str().unwrap()).unwrap();
     let mut called = Called { c: null_mut(), end: 2.0, read: Vec::new() };
-    let texts = [c"wall".as_ptr(), token.as_ptr(), folder.as_ptr()];
+    let [name, token, folder] = [c"wall".as_ptr(), token.as_ptr(), folder.as_ptr()];
     let (a_g, theta, environment) = (reference("a_g"), reference("theta"), &raw mut called);
     let with = |required: &[c_uint], environment: *mut Called| unsafe {
-        let required = (required.as_ptr(), required.len());
-        fmi3::instantiate_co_simulation::<Unit>(texts, (environment.cast(), None, 0), [0, 0], required, Some(update))
+        let (required, count, environment) = (required.as_ptr(), required.len(), environment.cast());
+        let instantiate = fmi3InstantiateCoSimulation;
+        instantiate(name, token, folder, 0, 0, 0, 0, required, count, environment, None, Some(update))
     };
     assert!(with(&[a_g, c_uint::MAX], environment).is_null());
     for (required, sets, reads) in [(&[a_g][..], true, false), (&[theta], false, true), (&[a_g, theta], true, true)] {

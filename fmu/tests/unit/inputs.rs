@@ -1,8 +1,8 @@
 //! Inputs of which nothing but the value is set, for hosts that cannot send slopes: a_g one step late, F_t extrapolated.
 
 use crate::host::*;
+use FlexibleRocking::fmi2::fmi2GetDirectionalDerivative;
 use approx::assert_relative_eq;
-use fmi_unit::fmi2::fmi2GetDirectionalDerivative;
 
 const SHOWN: [&str; 6] = ["theta", "u", "a_t", "R_h", "a_g", "F_t"];
 

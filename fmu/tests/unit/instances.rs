@@ -1,9 +1,8 @@
 //! Instances come and go: what they say of themselves, calls at the same time, many at once.
 
 use crate::host::*;
-use FlexibleRocking::unit::Unit;
+use FlexibleRocking::fmi2::*;
 use FlexibleRocking::{BUILD, guid};
-use fmi_unit::fmi2::{self, *};
 use rocking::Parameters;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::hint::spin_loop;
@@ -13,7 +12,7 @@ use std::thread;
 
 #[test]
 fn the_library_says_what_it_is() {
-    let [platform, version] = [fmi2GetTypesPlatform(), fmi2GetVersion()].map(|text| unsafe { CStr::from_ptr(text) });
+    let [platform, version] = unsafe { [fmi2GetTypesPlatform(), fmi2GetVersion()].map(|text| CStr::from_ptr(text)) };
     assert_eq!((platform, version), (c"default", c"2.0"));
     let [evison, mcmanus] = [Parameters::EVISON, Parameters::MCMANUS].map(|parameters| guid(&parameters.into()));
     for guid in [BUILD, &evison, &mcmanus] {
@@ -49,8 +48,7 @@ fn a_call_while_another_thread_calls_is_refused() {
     let folder = resources();
     let location = CString::new(format!("file://{}", folder.path().display())).unwrap();
     let guid = CString::new(guid(&Parameters::EVISON.into())).unwrap();
-    let c =
-        unsafe { fmi2::instantiate::<Unit>(c"talkative".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0) };
+    let c = unsafe { fmi2Instantiate(c"talkative".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 0) };
     let c = c.expose_provenance();
     // each is refused, with a message if it is served
     let call = || (0..CALLS).for_each(|_| assert_eq!(unsafe { fmi2CancelStep(with_exposed_provenance_mut(c)) }, ERROR));

@@ -2,8 +2,8 @@
 
 use crate::directional_derivatives::derivatives;
 use crate::host::*;
+use FlexibleRocking::fmi2::*;
 use approx::assert_relative_eq;
-use fmi_unit::fmi2::*;
 
 const PHASE_IN_CONTACT: i32 = 1;
 
@@ -145,6 +145,27 @@ fn the_record_acts_at_every_instant_and_its_jumps_are_foreseen() {
         assert_eq!(host.get("a_ground"), a_g, "at {time}");
         assert_eq!(host.derivatives().unwrap()[1], -a_g);
     }
+}
+
+/// Contact that is held after too many impacts ends at an instant that is foreseen: no push lifts the structure before.
+#[test]
+fn the_end_of_held_contact_is_foreseen() {
+    const RIGID: f64 = 5.0;
+    let host = Host::going_model(&[("detail", RIGID), ("r", 0.9999), ("theta_0", 1e-11)]);
+    let period = 1.0 / host.get("p_l");
+    assert_eq!((host.set_time(0.9 * period), host.complete()), (OK, Ok((true, false))));
+    let update = |time: f64, a_g: f64| {
+        assert_eq!((host.set_time(time), host.enter_event_mode(), host.set(&[("a_g", a_g)])), (OK, OK, OK));
+        let EventInfo { next_event_time_defined, next_event_time, .. } = host.update().unwrap();
+        assert_eq!(host.go_on(), OK);
+        (host.integer("phase"), (next_event_time_defined == 1).then_some(next_event_time))
+    };
+    let end = update(0.9 * period, 0.0).1.unwrap();
+    let (phase, foreseen) = update(0.95 * period, 9.0);
+    assert_eq!(phase, PHASE_IN_CONTACT);
+    assert_relative_eq!(foreseen.unwrap(), end, max_relative = 1e-14);
+    assert_relative_eq!(end, period, max_relative = 1e-4);
+    assert_eq!(update(end, 9.0), (2, None));
 }
 
 /// The next event is the very sample's instant, wherever the host is between two samples, and in an instance that goes on

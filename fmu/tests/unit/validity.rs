@@ -6,7 +6,7 @@ use approx::assert_relative_eq;
 use fmi_unit::snapshot::Snapshot;
 use rocking::run::fall::FallingPeaks;
 use rocking::run::peaks::PEAKS;
-use rocking::run::validity::{ASSUMPTIONS, Found, Limits};
+use rocking::run::validity::{ASSUMPTIONS, Findings, Limits};
 use rocking::run::{End, Run};
 use rocking::{Detail, Parameters, Structure};
 use rocking_records::Reading;
@@ -44,7 +44,7 @@ fn step(host: &Host, mut time: f64, steps: &[f64]) {
 }
 
 /// The same run without the FMU.
-fn expected() -> Found {
+fn expected() -> Findings {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("quake.csv");
     fs::write(&path, quake()).unwrap();
@@ -128,7 +128,7 @@ fn what_nobody_asks_for_is_not_watched() {
     assert_eq!(with.motion, without.motion);
     let structure = Structure::new(Parameters { r: 1.0, f_fc: 4.0, ..Parameters::EVISON }).unwrap();
     let nothing = FallingPeaks::since(0.0, &structure, Detail::Auto);
-    assert_eq!((without.peaks, without.validity), (nothing, Found::since(0.0)));
+    assert_eq!((without.peaks, without.validity), (nothing, Findings::since(0.0)));
     assert!(with.peaks.all().theta().magnitude > 0.0);
     assert_relative_eq!(with.validity.duration, 5.0, max_relative = 1e-12);
     assert!(read(&silent).iter().all(|value| value.is_nan()) && silent.integer("energy_gains") == 0);

@@ -94,7 +94,7 @@ macro_rules! assumption {
     };
 }
 
-/// All assumptions, in the order of [`Found::worst`](super::Found::worst).
+/// All assumptions, in the order of [`Findings::worst`](super::Findings::worst).
 pub const ASSUMPTIONS: [Assumption; 7] = [
     assumption!(
         "tension_max" "largest (|R_m|/B - R_v)/W in full contact, W = (m + m0) g: above 0 tension holds the base down; -inf before full contact",

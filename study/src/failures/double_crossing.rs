@@ -41,14 +41,18 @@ pub fn show() -> Result<Exhibit> {
     let look = path.iter().find(|(t, _)| *t >= LOOK - 0.5 * CLOSE).map(|(t, theta)| (1e3 * t, 1e3 * theta));
     let looks = [Some((0.0, 1e3 * START.theta)), look].into_iter().flatten();
     let x = Axis::linear("time, ms", 0.0, 1.5e3 * LOOK);
-    let panel = Panel::new("A solver that checks θ only every 20 ms misses two crossings", x, Axis::linear("θ, mrad", -2.0, 6.0))
-        .with("checked here", looks, Style::marked(colour::VERMILLION, 0, Marker::Circle))
-        .named((1e3 * LOOK, 0.6))
-        .with("this engine", milli(&right.theta(), 0.0), RIGHT)
-        .named((9.0, 2.2))
-        .with("exact integration, sign checked every 20 ms", milli(&path, 0.0), WRONG)
-        .named((17.5, -1.0))
-        .with("", [(0.0, 0.0), (1.5e3 * LOOK, 0.0)], GUIDE);
+    let panel = Panel::new(
+        "A solver that checks θ only every 20 ms misses two crossings",
+        x,
+        Axis::linear("θ, mrad", -2.0, 6.0),
+    )
+    .with("checked here", looks, Style::marked(colour::VERMILLION, 0, Marker::Circle))
+    .named((1e3 * LOOK, 0.6))
+    .with("this engine", milli(&right.theta(), 0.0), RIGHT)
+    .named((9.0, 2.2))
+    .with("exact integration, sign checked every 20 ms", milli(&path, 0.0), WRONG)
+    .named((17.5, -1.0))
+    .with("", [(0.0, 0.0), (1.5e3 * LOOK, 0.0)], GUIDE);
     Ok(Exhibit {
         key: "double-crossing",
         shows: "θ over time: it dips below 0 and returns between two checks; the exact response has an impact instead.",

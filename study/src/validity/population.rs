@@ -9,7 +9,7 @@ use anyhow::Result;
 use rayon::prelude::*;
 use rocking::run::peaks::Peaks;
 use rocking::run::record::Record;
-use rocking::run::validity::{Found, Limits, Validity};
+use rocking::run::validity::{Findings, Limits, Validity};
 use rocking::run::{End, Ending, RunError};
 use rocking::{Parameters, Run, Structure};
 use std::path::Path;
@@ -41,7 +41,7 @@ const PART_ELASTIC: f64 = 0.25;
 #[derive(Clone, Debug)]
 pub struct Response {
     pub peaks: Peaks,
-    pub found: Found, // what it goes beyond
+    pub found: Findings, // what it goes beyond
     pub transitions: u64,
     pub overturns: bool,
 }
@@ -105,7 +105,7 @@ pub fn both(run: &Run) -> Result<Pair, RunError> {
 fn respond(run: &Run) -> Result<Response, RunError> {
     let start = run.ground.start();
     let mut peaks = Peaks::since(start, &run.structure, run.detail);
-    let mut validity = Validity::new(&run.structure, Limits::default(), Found::since(start));
+    let mut validity = Validity::new(&run.structure, Limits::default(), Findings::since(start));
     let finish = run.follow(&mut (&mut peaks.watch(), &mut validity))?;
     let overturns = finish.ending == Ending::Overturned;
     Ok(Response { peaks, found: *validity.found(), transitions: finish.motion.transitions, overturns })

@@ -1,18 +1,19 @@
-//! Writes the page: `pack ENGINE.wasm PAGE.html [LIBRARIES]`. The page contains the engine, compressed, and the shared libraries
-//! if their file is given.
+//! Writes the page: `pack ENGINE.wasm RECORD.AT2 LIBRARIES PAGE.html`. The page contains the engine, the record that the page
+//! shows when it opens, and the shared libraries of its FMUs, all compressed.
 
 use anyhow::Context;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use flate2::{Compression, write::GzEncoder};
 use std::io::Write;
+use std::path::Path;
 use std::{env, fs};
 use wasm_bindgen_cli_support::Bindgen;
 
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = env::args().skip(1).collect();
-    let [engine, page, libraries @ ..] = arguments.as_slice() else {
-        anyhow::bail!("usage: pack ENGINE.wasm PAGE.html [LIBRARIES]");
+    let [engine, record, libraries, page] = arguments.as_slice() else {
+        anyhow::bail!("usage: pack ENGINE.wasm RECORD.AT2 LIBRARIES PAGE.html");
     };
     let mut bound = Bindgen::new().input_path(engine).no_modules(true)?.typescript(false).generate_output()?;
     let glue = bound.js().to_owned();
@@ -21,7 +22,8 @@ fn main() -> anyhow::Result<()> {
         gzip.write_all(bytes)?;
         Ok(BASE64_STANDARD.encode(gzip.finish()?))
     };
-    let libraries = libraries.iter().map(fs::read).collect::<Result<Vec<_>, _>>().context("the shared libraries")?;
+    let file = |path: &String| packed(&fs::read(path).with_context(|| path.clone())?);
+    let name = Path::new(record).file_name().and_then(|name| name.to_str()).context("the record has no name")?;
     let html = include_str!("../../src/explore.html")
         .replacen("/*style*/", rocking_view::STYLE, 1)
         .replacen("/*explore.css*/", include_str!("../../src/explore.css"), 1)
@@ -29,8 +31,12 @@ fn main() -> anyhow::Result<()> {
         .replacen("/*engine.js*/", &glue, 1)
         .replacen("/*worker.js*/", include_str!("../../src/worker.js"), 1)
         .replacen("/*motion.js*/", rocking_view::SCRIPT, 1)
+        .replacen("/*picture.js*/", include_str!("../../src/picture.js"), 1)
         .replacen("/*explore.js*/", include_str!("../../src/explore.js"), 1)
-        .replacen("/*libraries*/", &libraries.first().map_or(Ok(String::new()), |bytes| packed(bytes))?, 1)
+        .replacen("/*measured*/", include_str!("../../../docs/evidence/accuracy-mcmanus-el-centro.csv"), 1)
+        .replacen("/*record name*/", name, 1)
+        .replacen("/*record*/", &file(record)?, 1)
+        .replacen("/*libraries*/", &file(libraries)?, 1)
         .replacen("/*engine*/", &packed(&bound.wasm_mut().emit_wasm())?, 1);
     fs::write(page, &html)?;
     println!("{page}: {} kB", html.len() / 1000);

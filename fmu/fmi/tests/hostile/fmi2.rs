@@ -3,10 +3,10 @@
 use super::arguments::{
     CATEGORIES, calls, is_any, is_boolean, is_number, is_number_to_set, is_output, is_switch, is_text,
 };
-use super::{C, ERROR, STAGES_OF_MODEL, Subject, Table, Told, Version};
+use super::{C, ERROR, STAGES_OF_MODEL, Table, Told, Version};
+use crate::fmi2::*;
 use fastrand::Rng;
 use fmi_unit::c_abi::Function as _;
-use fmi_unit::fmi2::*;
 use fmi_unit::interface::Interface;
 use fmi_unit::state_machine::Stage;
 use libc::{c_char, c_int, c_void};
@@ -115,13 +115,7 @@ const MODEL: Table = Table {
         - - - x - -  CompletedIntegratorStep SetContinuousStates",
 };
 
-fn instantiate(
-    subject: &Subject,
-    rng: &mut Rng,
-    interface: Interface,
-    [name, guid, location]: [*const c_char; 3],
-    told: &Told,
-) -> C {
+fn instantiate(rng: &mut Rng, interface: Interface, [name, guid, location]: [*const c_char; 3], told: &Told) -> C {
     // the logger has no further arguments to read, so that it may be declared without them
     let logger: unsafe extern "C" fn(_, _, _, _, _) = tell;
     let functions = CallbackFunctions {
@@ -132,7 +126,7 @@ fn instantiate(
         component_environment: (&raw const *told).cast_mut().cast(),
     };
     let kind = c_int::from(interface != Interface::ModelExchange);
-    unsafe { (subject.instantiate_2)(name, kind, guid, location, &functions, rng.i32(0..2)) }
+    unsafe { fmi2Instantiate(name, kind, guid, location, &functions, 0, rng.i32(0..2)) }
 }
 
 unsafe extern "C" fn tell(

@@ -3,10 +3,10 @@
 use super::arguments::{
     CATEGORIES, calls, is_any, is_boolean, is_integer, is_number, is_number_to_set, is_output, is_switch, is_text,
 };
-use super::{C, ERROR, STAGES_OF_MODEL, Subject, Table, Told, Version};
+use super::{C, ERROR, STAGES_OF_MODEL, Table, Told, Version};
+use crate::fmi3::*;
 use fastrand::Rng;
 use fmi_unit::c_abi::Function as _;
-use fmi_unit::fmi3::*;
 use fmi_unit::interface::{Interface, Stepping};
 use fmi_unit::state_machine::Stage;
 use libc::{c_char, c_int, c_void};
@@ -128,16 +128,18 @@ const MODEL: Table = Table {
         - - - x - -  EnterEventMode CompletedIntegratorStep SetContinuousStates",
 };
 
-fn instantiate(subject: &Subject, rng: &mut Rng, interface: Interface, texts: [*const c_char; 3], told: &Told) -> C {
-    let environment = (&raw const *told).cast_mut().cast();
-    let log = (environment, Some(tell as LogMessageCallback), rng.u8(0..2));
+fn instantiate(rng: &mut Rng, interface: Interface, [name, token, folder]: [*const c_char; 3], told: &Told) -> C {
+    let (told, tell) = ((&raw const *told).cast_mut().cast(), Some(tell as LogMessageCallback));
+    let (events, required, count, update) = (rng.u8(0..2), null(), 0, None);
     unsafe {
         match interface {
             Interface::CoSimulation(Stepping { event_mode, early_return }) => {
-                let flags = [event_mode.into(), early_return.into()];
-                (subject.instantiate_3)(texts, log, flags, (null(), 0), None)
+                let [event_mode, early] = [event_mode.into(), early_return.into()];
+                fmi3InstantiateCoSimulation(
+                    name, token, folder, 0, events, event_mode, early, required, count, told, tell, update,
+                )
             }
-            Interface::ModelExchange => (subject.instantiate_model_3)(texts, log),
+            Interface::ModelExchange => fmi3InstantiateModelExchange(name, token, folder, 0, events, told, tell),
         }
     }
 }

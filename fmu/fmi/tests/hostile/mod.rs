@@ -9,15 +9,14 @@ mod arguments;
 mod fmi2;
 mod fmi3;
 
+use crate::Model;
 use arguments::Drawn;
 use fastrand::Rng;
-use fmi_unit::fmi2::CallbackFunctions;
-use fmi_unit::fmi3::{IntermediateUpdateCallback, LogMessageCallback};
 use fmi_unit::interface::{Interface, Stepping};
 use fmi_unit::logger::Status;
 use fmi_unit::snapshot::Snapshot;
 use fmi_unit::state_machine::{Stage, Stages};
-use fmi_unit::{Model, Role, Variable, variables};
+use fmi_unit::{Model as _, Role, Variable, variables};
 use libc::{c_char, c_int, c_uint, c_void};
 use proptest::collection::vec;
 use proptest::prelude::any;
@@ -59,15 +58,6 @@ const LEADING_ON: &str = "SetupExperiment EnterInitializationMode ExitInitializa
 /// An instance.
 pub type C = *mut c_void;
 
-pub type Instantiate2 =
-    unsafe fn(*const c_char, c_int, *const c_char, *const c_char, *const CallbackFunctions, c_int) -> C;
-
-pub type Texts = [*const c_char; 3];
-
-pub type Log = (C, Option<LogMessageCallback>, u8);
-
-pub type Instantiate3 = unsafe fn(Texts, Log, [u8; 2], (*const c_uint, usize), Option<IntermediateUpdateCallback>) -> C;
-
 /// The model that is called.
 pub struct Subject {
     /// Its folder `resources`.
@@ -75,9 +65,6 @@ pub struct Subject {
     pub variables: Arc<[Variable]>,
     pub token: CString,
     pub build: String,
-    pub instantiate_2: Instantiate2,
-    pub instantiate_3: Instantiate3,
-    pub instantiate_model_3: unsafe fn(Texts, Log) -> C,
     /// The time of a state, s; of a motion that the host integrates, where it was last known.
     pub time: fn(&Snapshot) -> f64,
     /// Texts to set, the first two of them right.
@@ -94,15 +81,12 @@ pub struct Subject {
 
 impl Subject {
     /// A model that does nothing out of the ordinary, opened in the folder `resources`.
-    pub fn of<M: Model>(resources: TempDir, time: fn(&Snapshot) -> f64) -> Subject {
-        let model = M::open(resources.path()).unwrap();
+    pub fn of(resources: TempDir, time: fn(&Snapshot) -> f64) -> Subject {
+        let model = Model::open(resources.path()).unwrap();
         Subject {
             variables: model.variables(),
             token: CString::new(model.token()).unwrap(),
             build: model.build(),
-            instantiate_2: fmi_unit::fmi2::instantiate::<M>,
-            instantiate_3: fmi_unit::fmi3::instantiate_co_simulation::<M>,
-            instantiate_model_3: fmi_unit::fmi3::instantiate_model_exchange::<M>,
             resources,
             time,
             texts: vec![c"some".into(), c"text".into()],
@@ -140,7 +124,7 @@ struct Version {
     /// The folder `resources` as this version names it.
     location: fn(&Path) -> String,
     /// Makes an instance, which tells what it logs, of a name, a token and a location.
-    instantiate: fn(&Subject, &mut Rng, Interface, [*const c_char; 3], &Told) -> C,
+    instantiate: fn(&mut Rng, Interface, [*const c_char; 3], &Told) -> C,
     free: unsafe extern "C" fn(C),
     get_state: unsafe extern "C" fn(C, *mut C) -> c_int,
     free_state: unsafe extern "C" fn(C, *mut C) -> c_int,
@@ -368,7 +352,7 @@ impl<'a> Sequence<'a> {
             is_wrong = (at, by) != (2, 1); // a model may need no folder
         }
         let interface = (self.interface)(&mut self.rng);
-        self.c = (self.version.instantiate)(self.subject, &mut self.rng, interface, texts, &self.told);
+        self.c = (self.version.instantiate)(&mut self.rng, interface, texts, &self.told);
         let messages = self.told.messages.take();
         assert_eq!(messages.len(), usize::from(self.c.is_null()), "{messages:?}");
         assert!(self.c.is_null() || !is_wrong);
@@ -464,6 +448,11 @@ impl<'a> Sequence<'a> {
             "EnterStepMode" => Stage::StepComplete,
             "EnterContinuousTimeMode" => Stage::ContinuousTimeMode,
             "Terminate" => Stage::Terminated,
+            "GetNumberOfContinuousStates" | "GetNumberOfEventIndicators" => {
+                let counts = [self.subject.states().count(), self.subject.indicators()];
+                assert_eq!(self.drawn.rooms[0].words[0] as usize, counts[usize::from(name.ends_with("Indicators"))]);
+                before.stage
+            }
             "Reset" => {
                 assert!(after == self.new, "it is not what it was when it was made");
                 Stage::Instantiated

@@ -1,0 +1,108 @@
+//! Runs of structures of many masses: the exact peaks of each floor.
+
+#![allow(non_snake_case)] // H, B, J0: the paper's own letters
+
+use rocking::run::peaks::Peak;
+use rocking::run::record::Record;
+use rocking::run::{End, Run};
+use rocking::structure::description::{Damping, Storey};
+use rocking::structure::natural_quantities::Given;
+use rocking::{Detail, Floor, Frame, Modes, Parameters, Structure};
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+/// A wavelet of 3 s that rocks the specimens, in samples of 10 ms.
+fn ground() -> Record {
+    let times: Vec<f64> = (0..=300).map(|i| 0.01 * f64::from(i)).collect();
+    let a_g = times.iter().map(|t| 6.0 * (TAU * 1.1 * t).sin() * (TAU * t / 6.0).sin()).collect();
+    Record::from_samples("", times, a_g).unwrap()
+}
+
+/// The base of `parameters` without the top mass.
+fn base(parameters: &Parameters) -> Given {
+    let &Parameters { m0, B, J0, r, g, c_ratio, .. } = parameters;
+    let numbers = [("m0", m0), ("B", B), ("J0", J0), ("r", r), ("g", g), ("c_ratio", c_ratio)];
+    Given::try_from(BTreeMap::from(numbers.map(|(name, value)| (name.to_owned(), value)))).unwrap()
+}
+
+#[test]
+fn the_profile_of_one_mode_has_the_peaks_of_one_mass() {
+    let ground = ground();
+    for parameters in [Parameters::MCMANUS, Parameters { J0: 10.7, ..Parameters::MCMANUS }] {
+        let (tolerance, structure) = (1e-11, Structure::new(parameters).unwrap());
+        let Parameters { m, H, zeta_fc, .. } = parameters;
+        let storey = Storey { m, h: H, k: structure.k };
+        let frame = Frame::from_storeys(&base(&parameters), &Damping::All(zeta_fc), &[storey]).unwrap();
+        for detail in [Detail::Auto, Detail::Nonlinear] {
+            let one = Run { detail, tolerance, ..Run::new(structure, &ground) };
+            let many = Run { detail, tolerance, ..Run::of_modes(frame.clone(), &ground) };
+            let ((expected, _), (found, finish)) = (one.peaks().unwrap(), many.profile().unwrap());
+            assert!(finish.motion.transitions > 2, "{}", finish.motion.transitions);
+            let floor = &found.floors[0];
+            let pairs = [
+                ("a_g", found.a_g, expected.a_g()),
+                ("theta", found.theta, expected.theta()),
+                ("uplift", found.uplift(), expected.uplift()),
+                ("u", floor.u, expected.u()),
+                ("drift", floor.drift, expected.u()),
+                ("delta_t", floor.delta, expected.delta_t()),
+                ("a_t", floor.a, expected.a_t()),
+                ("V", floor.V, expected.V_t()),
+                ("V_t", found.V_t, expected.V_t()),
+                ("M_t", found.M_t, expected.M_t()),
+            ];
+            for (name, found, expected) in pairs {
+                let off = (found.magnitude / expected.magnitude - 1.0).abs();
+                assert!(off < 1e-13, "{detail:?} {name}: {found:?} and not {expected:?}, off by {off:e}");
+                assert!((found.time - expected.time).abs() < 1e-6, "{detail:?} {name}: {found:?}, {expected:?}");
+            }
+        }
+    }
+}
+
+/// Three storeys with as many modes as are `kept`: the rest rides rigidly, so that accelerations follow the ground directly.
+fn three_storeys(kept: usize) -> Frame {
+    let storeys = [(40e3, 3.5, 60e6), (40e3, 7.0, 50e6), (30e3, 10.5, 40e6)].map(|(m, h, k)| Storey { m, h, k });
+    let parameters = Parameters { m0: 20e3, B: 1.5, J0: 3e4, r: 0.93, g: 9.81, c_ratio: 1.0, ..Parameters::MCMANUS };
+    let frame = Frame::from_storeys(&base(&parameters), &Damping::All(0.02), &storeys).unwrap();
+    let shape = |floor: &Floor| Modes::new(&floor.shape.numbers()[..kept]);
+    let floors = Vec::from_iter(frame.floors().iter().map(|floor| Floor { shape: shape(floor), ..*floor }));
+    Frame::new(*frame.body(), &frame.modes()[..kept], &floors).unwrap()
+}
+
+/// The samples are 50 µs apart. They miss a peak just before a transition by the rate there.
+#[test]
+fn a_profile_holds_every_sample_and_no_more() {
+    let ground = ground();
+    for modes in 1..=3 {
+        let frame = three_storeys(modes);
+        let run = Run { end: End::At(4.0), ..Run::of_modes(frame.clone(), &ground) };
+        let (profile, finish) = run.profile().unwrap();
+        assert!(finish.motion.transitions > 2, "{}", finish.motion.transitions);
+        let mut largest = vec![0.0_f64; 17];
+        let times = (0..80_000).map(|i| f64::from(i) * 5e-5);
+        run.sample(
+            times,
+            |sample| {
+                let (gauges, u) = (frame.gauges(), &sample.motion.state.u);
+                let mut values = vec![sample.value(&gauges.V_t), sample.value(&gauges.M_t)];
+                let mut below = 0.0;
+                for (i, floor) in frame.floors().iter().enumerate() {
+                    let of = floor.displacement(u);
+                    let [a, V] = [&gauges.a[i], &gauges.V[i]].map(|gauge| sample.value(gauge));
+                    values.extend([of, of - below, sample.displacement(floor), a, V]);
+                    below = of;
+                }
+                largest.iter_mut().zip(values).for_each(|(largest, value)| *largest = largest.max(value.abs()));
+            },
+            &mut (),
+        )
+        .unwrap();
+        let of_floors = profile.floors.iter().flat_map(|of| [of.u, of.drift, of.delta, of.a, of.V]);
+        let peaks: Vec<Peak> = [profile.V_t, profile.M_t].into_iter().chain(of_floors).collect();
+        for (i, (peak, sampled)) in peaks.iter().zip(largest).enumerate() {
+            let (least, most) = (sampled * (1.0 - 1e-12), sampled * (1.0 + 1e-3));
+            assert!((least..most).contains(&peak.magnitude), "{modes} {i}: {peak:?}, sampled {sampled}");
+        }
+    }
+}
