@@ -111,7 +111,7 @@ study:
 	cargo test --release --manifest-path study/Cargo.toml
 
 python: .venv/heavy module
-	$(PYTEST) -m heavy tests/test_python.py tests/test_validation.py tests/test_literature.py \
+	$(PYTEST) -m heavy tests/test_python.py tests/test_many_masses.py tests/test_validation.py tests/test_literature.py \
 		tests/test_doors.py::test_python_has_the_command_lines_numbers
 
 # In .venv the module is that of this folder; the archive in its place has the libraries that are there.
