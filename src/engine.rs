@@ -309,7 +309,7 @@ impl Engine {
         let level = settings.level(structure)?;
         level.check_start(&initial)?;
         let chord = level.subject().angles.chord(initial.theta, 0.0);
-        let moved = Dissipators::NEW.moved_by(&structure, phase.side(), chord);
+        let moved = Dissipators::NEW.moved_by(&structure.base, phase.side(), chord);
         Ok(Engine::start(level, settings, time, initial, phase, Dissipators { hysteretic: 0.0, ..moved }))
     }
 
@@ -383,18 +383,23 @@ impl Engine {
 }
 
 impl Engine<Modes> {
-    /// Starts the structure `frame` of many masses at `time` (s) from `state`, at any level of detail but `modal` and `rigid`.
+    /// Starts the structure `frame` of many masses at `time` (s) from `state`, at any level of detail but `modal` and `rigid`. Of
+    /// dissipators see [`Engine::with`].
     pub fn of_modes(
         frame: Frame,
         state: State<Modes>,
         time: f64,
         settings: Settings,
     ) -> Result<Engine<Modes>, InitialStateError> {
-        let phase = state.phase()?;
+        // coordinates of modes have no limits, but are numbers
+        let [u, u_dot] = [&state.u, &state.u_dot].map(|numbers| 0.0 * numbers.total());
+        let phase = State { u, u_dot, theta: state.theta, theta_dot: state.theta_dot }.initial_phase()?;
         let of_frame = |numbers: Modes| Modes::each(&frame, |j, _| numbers.of(j));
         let state = State { u: of_frame(state.u), u_dot: of_frame(state.u_dot), ..state };
         let is_tied = frame.base.is_restrained() || settings.vertical;
         let angles = settings.detail.angles();
+        let chord = angles.chord(state.theta, 0.0);
+        let moved = Dissipators::NEW.moved_by(&frame.base, phase.side(), chord);
         let subject = Subject { structure: frame, local_error: settings.local_error()?, is_tied, angles };
         match settings.detail {
             Detail::FixedBase if state.theta != 0.0 => return Err(InitialStateError::TurnedFixedBase(state.theta)),
@@ -402,7 +407,7 @@ impl Engine<Modes> {
             _ => (),
         }
         let level = Box::new(LevelOfModes(ManyModes::new(subject, settings.detail)));
-        Ok(Engine::start(level, settings, time, state, phase, Dissipators::NEW))
+        Ok(Engine::start(level, settings, time, state, phase, Dissipators { hysteretic: 0.0, ..moved }))
     }
 
     /// Mechanical energy now, J.

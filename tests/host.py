@@ -100,7 +100,12 @@ def simulate(fmu: Fmu, messages: list | None = None, **arguments) -> tuple[np.nd
     def logger(_environment, _name, status, category, text):
         messages.append(Message(status, category.decode(), text.decode()))
 
-    result = fmpy.simulate_fmu(fmu.path, logger=logger, debug_logging=True, **arguments)
+    try:
+        result = fmpy.simulate_fmu(fmu.path, logger=logger, debug_logging=True, **arguments)
+    finally:
+        callbacks = fmi2CallbackFunctions()
+        callbacks.logger = _LOGGER  # `logger` will be gone when a run without one logs
+        addLoggerProxy(byref(callbacks))
     return result, events(messages)
 
 

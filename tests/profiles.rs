@@ -7,7 +7,7 @@ use rocking::run::record::Record;
 use rocking::run::{End, Run};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Given;
-use rocking::{Detail, Floor, Frame, Modes, Parameters, Structure};
+use rocking::{Detail, Floor, Frame, Modes, Parameters, State, Structure};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -20,22 +20,28 @@ fn ground() -> Record {
 
 /// The base of `parameters` without the top mass.
 fn base(parameters: &Parameters) -> Given {
-    let &Parameters { m0, B, J0, r, g, c_ratio, .. } = parameters;
-    let numbers = [("m0", m0), ("B", B), ("J0", J0), ("r", r), ("g", g), ("c_ratio", c_ratio)];
-    Given::try_from(BTreeMap::from(numbers.map(|(name, value)| (name.to_owned(), value)))).unwrap()
+    let &Parameters { m0, B, J0, r, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
+    let own = [("m0", m0), ("B", B), ("J0", J0), ("r", r), ("g", g), ("c_ratio", c_ratio)];
+    let ties = [("P_0", P_0), ("k_t", k_t), ("xi_d", xi_d), ("c_d", c_d), ("k_d", k_d), ("F_y", F_y)];
+    let numbers = [own, ties].concat();
+    Given::try_from(BTreeMap::from_iter(numbers.into_iter().map(|(name, value)| (name.to_owned(), value)))).unwrap()
 }
 
+/// At rest, and with dissipators from a start beyond their yield.
 #[test]
 fn the_profile_of_one_mode_has_the_peaks_of_one_mass() {
     let ground = ground();
-    for parameters in [Parameters::MCMANUS, Parameters { J0: 10.7, ..Parameters::MCMANUS }] {
+    let tied = Parameters { P_0: 400.0, k_t: 2e4, xi_d: 0.2, c_d: 150.0, k_d: 2e5, F_y: 120.0, ..Parameters::MCMANUS };
+    for (parameters, theta) in [(Parameters::MCMANUS, 0.0), (Parameters::EVISON, 0.0), (tied, 0.1)] {
         let (tolerance, structure) = (1e-11, Structure::new(parameters).unwrap());
         let Parameters { m, H, zeta_fc, .. } = parameters;
         let storey = Storey { m, h: H, k: structure.k };
         let frame = Frame::from_storeys(&base(&parameters), &Damping::All(zeta_fc), &[storey]).unwrap();
         for detail in [Detail::Auto, Detail::Nonlinear] {
             let one = Run { detail, tolerance, ..Run::new(structure, &ground) };
+            let one = Run { initial: State { theta, ..one.initial }, ..one };
             let many = Run { detail, tolerance, ..Run::of_modes(frame.clone(), &ground) };
+            let many = Run { initial: State { theta, ..many.initial }, ..many };
             let ((expected, _), (found, finish)) = (one.peaks().unwrap(), many.profile().unwrap());
             assert!(finish.motion.transitions > 2, "{}", finish.motion.transitions);
             let floor = &found.floors[0];

@@ -150,7 +150,7 @@ impl Structure {
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         if let Some(keywords) = &self.keywords {
-            return keywords.bind(py).copy();
+            return Ok(py.import("copy")?.call_method1("deepcopy", (keywords,))?.cast_into::<PyDict>()?);
         }
         let all = PyDict::new(py);
         self.named()[0].iter().try_for_each(|(name, value)| all.set_item(name, value))?;

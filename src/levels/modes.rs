@@ -4,11 +4,12 @@
 //!
 //! ```text
 //! ü + h θ̈ = −e − w θ̇² + S g sin θ − a cos θ                    a = S a_g − φᵀF/μ of each mode
-//! d/dt [D θ̇] = Σ μ h (e + w θ̇²) − X (g cos θ + a_g sin θ) + Σ φᵀF w sin θ − ties
+//! d/dt [D θ̇] = Σ μ h (e + w θ̇²) − X (g cos θ + a_g sin θ) + S_res (g sin θ − a_g cos θ) + Σ φᵀF w sin θ − ties
 //! D = J0 + m0 B² + Σ μ w²,      X = s m0 B + Σ Γ w
 //! ```
 //!
-//! The angular momentum D θ̇ has no Coriolis term. An order takes five products and one more for each mode. g is g + a_v.
+//! The angular momentum D θ̇ has no Coriolis term. An order takes five products and one more for each mode. g is g + a_v. m0 and J0
+//! include the mass that no mode carries, and S_res is the first moment of this mass.
 
 use crate::levels::detail::Detail;
 use crate::levels::level::{Level, Now, Rates, Subject, way};

@@ -7,7 +7,8 @@
 //! ```
 //!
 //! The top mass therefore feels the ground acceleration a_g − F_t/m, and the foundation feels a_g alone. With F_t = 0 no result
-//! changes in a bit. Uplift requires s u ≥ u_cr and s θ̈ > 0, and neither depends on a_g or F_t. Impacts are too short for both.
+//! changes in a bit. Uplift of one mass requires s u ≥ u_cr and s θ̈ > 0, and neither depends on a_g or F_t. A force on a mass that
+//! the modes leave out has no term here. Impacts are too short for both.
 //!
 //! The vertical ground acceleration a_v replaces g by g + a_v in every weight.
 

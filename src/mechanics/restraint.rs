@@ -280,14 +280,14 @@ impl Dissipators {
 
     /// The dissipators after a slow rotation of `structure` to `theta` (rad) about `side` that does not turn back on its way.
     pub fn moved(&self, structure: &Structure, side: Side, theta: f64) -> Dissipators {
-        self.moved_by(structure, side, Angles::Any.chord(theta, 0.0))
+        self.moved_by(&structure.base, side, Angles::Any.chord(theta, 0.0))
     }
 
     /// [`Dissipators::moved`] to a rotation of this `chord`.
-    pub(crate) fn moved_by(&self, structure: &Structure, side: Side, chord: Chord) -> Dissipators {
-        let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
+    pub(crate) fn moved_by(&self, base: &Base, side: Side, chord: Chord) -> Dissipators {
+        let Ties { k_d, F_y, .. } = base.ties;
         let mut moved = Dissipators { yields: [0; 2], ..*self };
-        for (j, lever) in levers(&structure.base, side).into_iter().enumerate() {
+        for (j, lever) in levers(base, side).into_iter().enumerate() {
             let force = k_d * (lever * chord.length - moved.plastic[j]);
             if force.abs() > F_y {
                 let plastic = lever * chord.length - F_y.copysign(force) / k_d;

@@ -125,7 +125,7 @@ pub enum InitialStateError {
     )]
     RestrainedModal,
     /// Structures of many masses have no such level.
-    #[error("detail = {0} moves structures of one mass alone: choose auto or nonlinear")]
+    #[error("detail = {0} moves structures of one mass alone: choose auto, nonlinear, linear or fixed_base")]
     OneMass(&'static str),
     /// The top mass is displaced although the strut is rigid.
     #[error("u_0 = {u:?} m, u_dot_0 = {u_dot:?} m/s contradict detail = rigid, where u is always 0: set both to 0")]

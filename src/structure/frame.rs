@@ -8,8 +8,8 @@ use crate::structure::{Base, Mode, Ties, Vibration};
 /// A rest beside the modes that counts as none, as a fraction of the whole.
 const ROUNDING: f64 = 1e-9;
 
-/// The most that rounded modes may carry beyond the whole, as a fraction of the whole.
-const EXCESS: f64 = 1e-4;
+/// The most that rounded modes may carry beyond the whole, as a fraction of the whole; the modes are then the whole.
+const EXCESS: f64 = 5e-3;
 
 /// A structure as a rigid body: its foundation, and the moments of all mass above the foundation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +36,7 @@ pub struct Body {
     pub ties: Ties,
 }
 
-/// A floor, whose motion is shown and on which a force may act.
+/// A floor, whose motion is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Floor {
     /// Mass, kg.
@@ -158,22 +158,24 @@ impl Frame {
                 return Err(FrameError::Shape { floor: i + 1, numbers, modes: count });
             }
         }
-        let Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties } = body;
         let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum::<f64>();
-        let left = |name, unit, whole: f64, of_modes: f64| match rest(whole, of_modes) {
+        let whole = |name, unit, whole: f64, of_modes: f64| match rest(whole, of_modes) {
             rest if rest < -EXCESS * whole => Err(FrameError::Beyond { name, unit, of_modes, whole }),
-            rest => Ok(rest),
+            rest => Ok(if rest < 0.0 { of_modes } else { whole }),
         };
-        let mass = left("m_s", "kg", m_s, of(|mode| mode.gamma * mode.share))?;
-        let inertia = left("I_2", "kg·m²", I_2, of(|mode| mode.mass * mode.height * mode.height))?;
+        let [mass, inertia] = [of(|mode| mode.gamma * mode.share), of(|mode| mode.mass * mode.height * mode.height)];
+        let m_s = whole("m_s", "kg", body.m_s, mass)?;
+        let I_2 = whole("I_2", "kg.m2", body.I_2, inertia)?;
+        let body = Body { m_s, I_2, ..body };
+        let Body { m0, J0, S_1, B, r, g, c_ratio, ties, .. } = body;
         let m_t = m0 + m_s;
         let J_P = J0 + m_t * B * B + I_2;
         let base = Base {
             m_t,
-            m0: m0 + mass,
+            m0: m0 + rest(m_s, mass),
             S_res: rest(S_1, of(|mode| mode.gamma * mode.height)),
             B,
-            J0: J0 + inertia,
+            J0: J0 + rest(I_2, inertia),
             J_P,
             r,
             g,

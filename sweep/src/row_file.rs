@@ -146,8 +146,8 @@ impl RowFile {
         let (file, length) = &mut *guard;
         let written = file.write_all(row);
         if written.is_err() {
-            file.set_len(*length)?;
             file.seek(SeekFrom::Start(*length))?;
+            file.set_len(*length)?;
         }
         written.with_context(|| format!("{} cannot be written", self.path.display()))?;
         *length += row.len() as u64;
