@@ -48,7 +48,7 @@ def compute(structures: list[fr.Structure]) -> pd.DataFrame:
     runs = fr.sweep(named, records)
     rows = []
     for run in runs.to_dict("records"):
-        structure, record = structures[run["structures"]], run["record"]
+        structure, record = structures[int(run["structures"])], run["record"]
         estimate = fr.estimate(structure, records[record])
         rows.append({"structure": structure, "record": record, "ending": run["ending"], "transitions": run["transitions"],
                      "peak": run["peak_a_t[m/s2]"] / G, "ground": estimate["(1-chi) S_a"] / G,

@@ -648,7 +648,7 @@ mod tests {
         let tonnes = refused(|_, total| total.m_s = 110.0);
         assert!(tonnes.ends_with("kg of the m_s = 110.0 kg above the foundation: check masses, heights and units"));
         assert!(
-            refused(|_, total| total.I_2 = Some(5e6)).contains("of the I_2 = 5000000.0 kg·m² above the foundation")
+            refused(|_, total| total.I_2 = Some(5e6)).contains("of the I_2 = 5000000.0 kg.m2 above the foundation")
         );
         assert!(refused(|_, total| total.S_1 = 800e3).starts_with("S_1 = 800000 kg.m does not fit m_s and I_2"));
         assert!(
