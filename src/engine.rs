@@ -308,9 +308,7 @@ impl Engine {
         let phase = initial.initial_phase()?;
         let level = settings.level(structure)?;
         level.check_start(&initial)?;
-        let chord = level.subject().angles.chord(initial.theta, 0.0);
-        let moved = Dissipators::NEW.moved_by(&structure.base, phase.side(), chord);
-        Ok(Engine::start(level, settings, time, initial, phase, Dissipators { hysteretic: 0.0, ..moved }))
+        Ok(Engine::start(level, settings, time, initial, phase))
     }
 
     /// The same structure in the same motion, with other `settings`.
@@ -398,8 +396,6 @@ impl Engine<Modes> {
         let state = State { u: of_frame(state.u), u_dot: of_frame(state.u_dot), ..state };
         let is_tied = frame.base.is_restrained() || settings.vertical;
         let angles = settings.detail.angles();
-        let chord = angles.chord(state.theta, 0.0);
-        let moved = Dissipators::NEW.moved_by(&frame.base, phase.side(), chord);
         let subject = Subject { structure: frame, local_error: settings.local_error()?, is_tied, angles };
         match settings.detail {
             Detail::FixedBase if state.theta != 0.0 => return Err(InitialStateError::TurnedFixedBase(state.theta)),
@@ -407,7 +403,7 @@ impl Engine<Modes> {
             _ => (),
         }
         let level = Box::new(LevelOfModes(ManyModes::new(subject, settings.detail)));
-        Ok(Engine::start(level, settings, time, state, phase, Dissipators { hysteretic: 0.0, ..moved }))
+        Ok(Engine::start(level, settings, time, state, phase))
     }
 
     /// Mechanical energy now, J.
@@ -417,15 +413,11 @@ impl Engine<Modes> {
 }
 
 impl<Q: Moves> Engine<Q> {
-    /// The engine of a structure that starts in `phase`.
-    fn start(
-        level: Box<Q::Level>,
-        settings: Settings,
-        time: f64,
-        state: State<Q>,
-        phase: Phase,
-        dissipators: Dissipators,
-    ) -> Engine<Q> {
+    /// The engine of a structure that starts in `phase`, its dissipators moved there slowly from rest.
+    fn start(level: Box<Q::Level>, settings: Settings, time: f64, state: State<Q>, phase: Phase) -> Engine<Q> {
+        let subject = level.subject();
+        let chord = subject.angles.chord(state.theta, 0.0);
+        let moved = Dissipators::NEW.moved_by(Q::base(&subject.structure), phase.side(), chord);
         let motion = Motion {
             time,
             state,
@@ -433,7 +425,7 @@ impl<Q: Moves> Engine<Q> {
             transitions: 0,
             work: Work::default(),
             impulse: Impulse::default(),
-            dissipators,
+            dissipators: Dissipators { hysteretic: 0.0, ..moved },
             chatter: Chatter::NONE,
             due: None,
         };

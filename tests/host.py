@@ -103,9 +103,7 @@ def simulate(fmu: Fmu, messages: list | None = None, **arguments) -> tuple[np.nd
     try:
         result = fmpy.simulate_fmu(fmu.path, logger=logger, debug_logging=True, **arguments)
     finally:
-        callbacks = fmi2CallbackFunctions()
-        callbacks.logger = _LOGGER  # `logger` will be gone when a run without one logs
-        addLoggerProxy(byref(callbacks))
+        _callbacks()  # `logger` will be gone when a run without one logs
     return result, events(messages)
 
 
@@ -118,6 +116,16 @@ _NUMBERS = itertools.count()
 @fmi2CallbackLoggerTYPE
 def _LOGGER(_environment, name, status, category, text):
     _LOGS.get(name, []).append(Message(status, category.decode(), text.decode()))
+
+
+def _callbacks() -> fmi2CallbackFunctions:
+    """Callbacks with this logger, which fmpy's proxy calls from now on."""
+    callbacks = fmi2CallbackFunctions()
+    callbacks.logger = _LOGGER
+    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+    addLoggerProxy(byref(callbacks))
+    return callbacks
 
 
 class Fmu:
@@ -149,12 +157,7 @@ class Instance:
         _LOGS[name.encode()] = messages
         identifier = fmu.description.coSimulation.modelIdentifier
         self.slave = FMU2Slave(guid=guid, unzipDirectory=fmu.folder, modelIdentifier=identifier, instanceName=name)
-        callbacks = fmi2CallbackFunctions()
-        callbacks.logger = _LOGGER
-        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
-        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
-        addLoggerProxy(byref(callbacks))
-        self.slave.instantiate(callbacks=callbacks, loggingOn=True)
+        self.slave.instantiate(callbacks=_callbacks(), loggingOn=True)
 
     def __enter__(self) -> Instance:
         return self

@@ -51,6 +51,11 @@ impl PartialEq for Structure {
     }
 }
 
+/// The keywords and all that they hold, so that nobody else can change them.
+fn copied<'py>(keywords: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
+    Ok(keywords.py().import("copy")?.call_method1("deepcopy", (keywords,))?.cast_into()?)
+}
+
 impl Structure {
     fn of(parameters: Parameters) -> PyResult<Structure> {
         let of = AnyStructure::One(rocking::Structure::new(parameters).map_err(refused)?);
@@ -58,7 +63,7 @@ impl Structure {
     }
 
     fn many(keywords: &Bound<'_, PyDict>) -> PyResult<Structure> {
-        let kept = keywords.py().import("copy")?.call_method1("deepcopy", (keywords,))?.cast_into::<PyDict>()?;
+        let kept = copied(keywords)?;
         let of = AnyStructure::Many(frame(kept.copy()?)?);
         Ok(Structure { of, keywords: Some(kept.unbind()) })
     }
@@ -150,7 +155,7 @@ impl Structure {
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         if let Some(keywords) = &self.keywords {
-            return Ok(py.import("copy")?.call_method1("deepcopy", (keywords,))?.cast_into::<PyDict>()?);
+            return copied(keywords.bind(py));
         }
         let all = PyDict::new(py);
         self.named()[0].iter().try_for_each(|(name, value)| all.set_item(name, value))?;

@@ -13,7 +13,7 @@
 
 use crate::levels::detail::Detail;
 use crate::levels::level::{Level, Now, Rates, Subject, way};
-use crate::levels::nonlinear::{Factors, NO_ROW, products, row};
+use crate::levels::nonlinear::{Factors, LEAST_INERTIA, NO_ROW, products, row};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::instant::Second;
@@ -28,9 +28,6 @@ use crate::structure::{Base, Mode};
 use crate::{Phase, Side, State};
 use std::cell::RefCell;
 use wide::f64x4;
-
-/// Part of its inertia at u = 0 that a structure must keep about its pivot.
-const LEAST_INERTIA: f64 = 1e-6;
 
 /// Part of the acceleration of gravity by which a motion is as good as none.
 const NEGLIGIBLE: f64 = 1e-30;

@@ -77,7 +77,7 @@ pub fn accelerations(
 
 /// The smallest inertia about the pivot, without the height, as a fraction of the inertia at u = 0. Below this limit the solution of
 /// (6) − H (5) would take ever shorter steps towards a singularity.
-const LEAST_INERTIA: f64 = 1e-6;
+pub(crate) const LEAST_INERTIA: f64 = 1e-6;
 
 /// One order of the factors of six products.
 pub(super) type Row = [f64x2; 3];
