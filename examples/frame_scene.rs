@@ -4,7 +4,7 @@
 
 use rocking::engine::Settings;
 use rocking::structure::{Mode, Ties};
-use rocking::{Body, Detail, Engine, Floor, Frame, LinearLoad, Load, Modes, State, Transition};
+use rocking::{Body, Detail, Engine, Floor, Frame, FrameOutput, LinearLoad, Load, Modes, State, Transition};
 use std::array::from_fn;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -38,10 +38,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let [value, end] = [pair[0], pair[1]].map(|[a_g, a_v]| Load { a_g, a_v, ..Load::default() });
         let slope = Load { a_g: (end.a_g - value.a_g) / dt, a_v: (end.a_v - value.a_v) / dt, ..value };
         engine.advance(dt, LinearLoad { value, slope }, &mut show)?;
-        let (State { theta, u, .. }, now) = (&engine.motion().state, engine.sample(end));
-        print!("S {theta:?}");
-        engine.structure().floors().iter().for_each(|floor| print!(" {:?}", floor.displacement(u)));
-        engine.structure().gauges().a.iter().for_each(|gauge| print!(" {:?}", now.value(gauge)));
+        let now = engine.sample(end);
+        print!("S {:?}", now.output(FrameOutput::theta));
+        for of in [FrameOutput::u, FrameOutput::a_t] {
+            (0..engine.structure().floors().len()).for_each(|floor| print!(" {:?}", now.output(of(floor))));
+        }
         println!();
     }
     Ok(())

@@ -39,6 +39,7 @@ pub use engine::piece::{Piece, Watch};
 pub use engine::transition::{Transition, TransitionKind};
 pub use engine::{Engine, Progress};
 pub use levels::detail::Detail;
+pub use mechanics::floors::FrameOutput;
 pub use mechanics::gauge::Gauge;
 pub use mechanics::lateral::Modes;
 pub use mechanics::load::{LinearLoad, Load, Ramp};

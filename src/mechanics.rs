@@ -1,6 +1,7 @@
 //! The paper's equations, without a solver: state, loads, outputs, reactions, energy, what starts and what follows an impact.
 
 pub mod energy;
+pub mod floors;
 pub mod gauge;
 pub mod impact;
 pub(crate) mod instant;

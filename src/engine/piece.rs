@@ -9,15 +9,17 @@ use crate::engine::phases::{self, Step};
 use crate::engine::transition::Transition;
 use crate::levels::level::{Now, Subject};
 use crate::levels::shown::Searched;
+use crate::mechanics::floors::{FrameOutput, MotionOfFloors};
 use crate::mechanics::gauge::{Gauge, Reading};
-use crate::mechanics::instant::{Instant, Place, Second};
+use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::Modes;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::Measure;
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
+use crate::numbers::Turn;
 use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Series, Start, evaluate};
-use crate::{Floor, Outputs, Phase, Reactions, State};
+use crate::{Floor, Frame, Outputs, Phase, Reactions, State};
 use std::f64::consts::TAU;
 
 /// Watches a motion go by.
@@ -124,21 +126,9 @@ impl Sample<'_> {
 }
 
 impl Sample<'_, Modes> {
-    /// The value of `gauge`; once overturned, the value of the instant before.
-    pub fn value(&self, gauge: &Gauge) -> f64 {
-        let (frame, x) = (self.level.structure(), self.instant());
-        let damping = frame.base.damping(self.motion.phase);
-        let theta_ddot = if gauge.has_feedthrough() { self.second().theta_ddot } else { 0.0 };
-        let (elastic, push) = (gauge.elastic(frame, damping, &x.u, &x.u_dot), gauge.push(frame, &x.F_t));
-        let Instant { turn, theta_dot, a_g, a_v, .. } = x;
-        gauge.value(&frame.base, x.s, &Reading { elastic, push, turn, theta_dot, theta_ddot, a_g, a_v })
-    }
-
-    /// Displacement of `floor` relative to the ground δ, m (Eq 26).
-    pub fn displacement(&self, floor: &Floor) -> f64 {
-        let x = self.instant();
-        let place = Place { share: 1.0, height: floor.height, u: floor.displacement(&x.u) };
-        place.right(x.pivot(), &x.turn)
+    /// The value of `output`; once overturned, the value of the instant before.
+    pub fn output(&self, output: FrameOutput) -> f64 {
+        output.of(self)
     }
 
     /// The reactions; once overturned, those of the instant before.
@@ -148,6 +138,45 @@ impl Sample<'_, Modes> {
 
     fn instant(&self) -> Instant<'_, f64, Modes> {
         Instant::of(self.level.structure(), self.motion.phase.in_motion(), &self.motion.state, self.load)
+    }
+}
+
+impl MotionOfFloors<f64> for Sample<'_, Modes> {
+    fn frame(&self) -> &Frame {
+        self.level.structure()
+    }
+
+    fn pivot(&self) -> f64 {
+        self.instant().pivot()
+    }
+
+    fn theta(&self) -> f64 {
+        self.motion.state.theta
+    }
+
+    fn theta_dot(&self) -> f64 {
+        self.motion.state.theta_dot
+    }
+
+    fn turn(&self) -> Turn<f64> {
+        self.instant().turn
+    }
+
+    fn u(&self, floor: &Floor) -> f64 {
+        floor.displacement(&self.motion.state.u)
+    }
+
+    fn u_dot(&self, floor: &Floor) -> f64 {
+        floor.displacement(&self.motion.state.u_dot)
+    }
+
+    fn gauge(&self, gauge: &Gauge) -> f64 {
+        let (frame, x) = (self.level.structure(), self.instant());
+        let damping = frame.base.damping(self.motion.phase);
+        let theta_ddot = if gauge.has_feedthrough() { self.second().theta_ddot } else { 0.0 };
+        let (elastic, push) = (gauge.elastic(frame, damping, &x.u, &x.u_dot), gauge.push(frame, &x.F_t));
+        let Instant { turn, theta_dot, a_g, a_v, .. } = x;
+        gauge.value(&frame.base, x.s, &Reading { elastic, push, turn, theta_dot, theta_ddot, a_g, a_v })
     }
 }
 

@@ -170,4 +170,16 @@ impl<N: Number> Place<N> {
     pub(crate) fn right(&self, pivot: f64, turn: &Turn<N>) -> N {
         turn.versine * (pivot * self.share) + self.u * turn.cos + turn.sin * self.height
     }
+
+    /// Velocity to the right, u̇ cos θ + [(sB − u) sin θ + h cos θ] θ̇, m/s.
+    #[inline(always)]
+    pub(crate) fn rate_of_right(&self, pivot: f64, turn: &Turn<N>, [u_dot, theta_dot]: [N; 2]) -> N {
+        u_dot * turn.cos + self.up(pivot, turn) * theta_dot
+    }
+}
+
+/// Uplift of the free edge of the base 2 B sin|θ|, m (Eq 25).
+#[inline(always)]
+pub(crate) fn uplift<N: Number>(pivot: f64, turn: &Turn<N>) -> N {
+    turn.sin * (2.0 * pivot)
 }

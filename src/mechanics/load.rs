@@ -209,13 +209,15 @@ impl<Q: Coordinates> LinearLoad<Q> {
     }
 }
 
-impl LinearLoad {
+impl<Q: Coordinates> LinearLoad<Q> {
     /// These loads with the accelerations of `ground` added.
-    pub fn on_ground(self, ground: LinearLoad) -> LinearLoad {
-        let and = |own: Load, ground: Load| Load { a_g: own.a_g + ground.a_g, a_v: own.a_v + ground.a_v, ..own };
+    pub fn on_ground(self, ground: LinearLoad) -> LinearLoad<Q> {
+        let and = |own: Load<Q>, ground: Load| Load { a_g: own.a_g + ground.a_g, a_v: own.a_v + ground.a_v, ..own };
         LinearLoad { value: and(self.value, ground.value), slope: and(self.slope, ground.slope) }
     }
+}
 
+impl LinearLoad {
     /// These loads with the vertical ground acceleration `a_v`.
     #[cold]
     pub(crate) fn and_upwards(self, a_v: Ramp) -> LinearLoad {

@@ -168,7 +168,7 @@ outputs! {
 /// The formula of each output, by its name.
 mod formulas {
     use crate::Parameters;
-    use crate::mechanics::instant::{Instant, Place, Strut};
+    use crate::mechanics::instant::{self, Instant, Place, Strut};
     use crate::numbers::Number;
 
     #[inline(always)]
@@ -216,7 +216,7 @@ mod formulas {
 
     #[inline(always)]
     pub fn uplift<N: Number>(x: &Instant<N>) -> N {
-        x.turn.sin * (2.0 * x.pivot())
+        instant::uplift(x.pivot(), &x.turn)
     }
 
     #[inline(always)]
@@ -226,7 +226,7 @@ mod formulas {
 
     #[inline(always)]
     pub fn v_t<N: Number>(x: &Instant<N>) -> N {
-        x.u_dot * x.turn.cos + top(x).up(x.pivot(), &x.turn) * x.theta_dot
+        top(x).rate_of_right(x.pivot(), &x.turn, [x.u_dot, x.theta_dot])
     }
 
     /// The place of the top mass.

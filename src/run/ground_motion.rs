@@ -4,7 +4,7 @@
 //! a clock, so that the same steps give the same bits at every start time. A host whose steps are those of the record meets
 //! the samples only up to rounding. A step that ends as close to a sample as that is not cut there.
 
-use crate::engine::{AdvanceError, MAX_STEPS_PER_ADVANCE};
+use crate::engine::{AdvanceError, MAX_STEPS_PER_ADVANCE, Moves};
 use crate::run::record::Record;
 use crate::structure::quantity::{Quantity, quantity};
 use crate::{Engine, LinearLoad, Progress, Ramp, Watch};
@@ -128,12 +128,12 @@ impl<'a> GroundMotion<'a> {
 
     /// Advances `engine` and `elapsed` by `interval` (s), or to a transition that ends the advance, under the record and `load`.
     /// One bound on the work holds for all samples together. If the advance fails, nothing has changed.
-    pub fn advance<W: Watch>(
+    pub fn advance<Q: Moves, W: Watch<Q>>(
         &self,
-        engine: &mut Engine,
+        engine: &mut Engine<Q>,
         elapsed: &mut Elapsed,
         interval: f64,
-        load: LinearLoad,
+        load: LinearLoad<Q>,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
         engine.check(interval, &load)?;

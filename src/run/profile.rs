@@ -6,28 +6,13 @@
 use super::peaks::Peak;
 use super::{Finish, Run, RunError};
 use crate::engine::piece::{Expansion, Piece, Sample, Watch};
+use crate::mechanics::floors::{FrameOutput, MotionOfFloors};
 use crate::mechanics::gauge::{Gauge, Reading};
-use crate::mechanics::instant::Place;
 use crate::numbers::{Angle, Number, Turn};
 use crate::series::extremes;
 use crate::series::terms::Terms;
 use crate::structure::frame::Frame;
 use crate::{Floor, Modes, Phase};
-
-/// Peaks of a floor and of the storey below it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FloorPeaks {
-    /// Elastic displacement |u_i|, m.
-    pub u: Peak,
-    /// Drift of the storey |u_i − u_{i−1}|, m.
-    pub drift: Peak,
-    /// Displacement relative to the ground |δ_i|, m (Eq 26).
-    pub delta: Peak,
-    /// Acceleration along the turning e_x |a_i|, m/s².
-    pub a: Peak,
-    /// Shear of the storey |V_i|, N.
-    pub V: Peak,
-}
 
 /// The peaks of a structure of many masses over the motion that has been watched, a fall too.
 #[derive(Clone, Debug)]
@@ -35,27 +20,11 @@ pub struct Profile {
     frame: Frame,
     /// Peak of the ground acceleration |a_g|, m/s².
     pub a_g: Peak,
-    /// Peak of |θ|, rad.
-    pub theta: Peak,
-    /// Peak of the base shear |V_t|, N.
-    pub V_t: Peak,
-    /// Peak of the overturning moment |M_t|, N·m.
-    pub M_t: Peak,
-    /// Peaks of the floors, from below.
-    pub floors: Vec<FloorPeaks>,
+    /// The peaks that are searched.
+    peaks: Vec<(FrameOutput, Peak)>,
 }
 
-/// A quantity that has a peak.
-#[derive(Clone, Copy)]
-enum Quantity<'a> {
-    Theta,
-    Gauge(&'a Gauge),
-    Elastic(&'a Floor),
-    Drift(&'a Floor, Option<&'a Floor>),
-    Delta(&'a Floor),
-}
-
-/// A polynomial of the motion in series, as far as several quantities read it.
+/// A polynomial of the motion in series, as far as several outputs read it.
 struct Over<'a> {
     of: Expansion<'a, Modes>,
     theta: Terms,
@@ -77,85 +46,85 @@ impl<'a> Over<'a> {
     }
 }
 
-/// Drift of the storey below `floor`, m, for the coordinates `u`.
-fn drift(floor: &Floor, below: Option<&Floor>, u: &Modes) -> f64 {
-    floor.displacement(u) - below.map_or(0.0, |below| below.displacement(u))
+impl MotionOfFloors<Terms> for Over<'_> {
+    fn frame(&self) -> &Frame {
+        self.of.piece.level.structure()
+    }
+
+    fn pivot(&self) -> f64 {
+        self.of.piece.before.phase.side().sign() * self.frame().base.B
+    }
+
+    fn theta(&self) -> Terms {
+        self.theta
+    }
+
+    fn theta_dot(&self) -> Terms {
+        self.theta_dot
+    }
+
+    fn turn(&self) -> Turn<Terms> {
+        self.turn
+    }
+
+    fn u(&self, floor: &Floor) -> Terms {
+        Terms::from_fn(self.of.arc.order, |k| floor.displacement(&self.of.arc.u[k]))
+    }
+
+    fn u_dot(&self, floor: &Floor) -> Terms {
+        Terms::from_fn(self.of.arc.order, |k| floor.displacement(&self.of.arc.u_dot[k]))
+    }
+
+    fn gauge(&self, gauge: &Gauge) -> Terms {
+        let Expansion { piece, from, arc } = self.of;
+        let (frame, phase) = (self.frame(), piece.before.phase);
+        let (damping, load) = (frame.base.damping(phase), piece.load.from(from));
+        let ramp = |value: f64, slope: f64| Terms::ramp(value, slope * arc.span);
+        let reading = Reading {
+            elastic: Terms::from_fn(arc.order, |k| gauge.elastic(frame, damping, &arc.u[k], &arc.u_dot[k])),
+            push: ramp(gauge.push(frame, &load.value.F_t), gauge.push(frame, &load.slope.F_t)),
+            turn: self.turn,
+            theta_dot: self.theta_dot,
+            theta_ddot: self.theta_dot.slope(arc.span),
+            a_g: ramp(load.value.a_g, load.slope.a_g),
+            a_v: ramp(load.value.a_v, load.slope.a_v),
+        };
+        gauge.value(&frame.base, phase.side().sign(), &reading)
+    }
 }
 
-impl Quantity<'_> {
-    /// The value at an instant.
-    fn value(self, sample: &Sample<Modes>) -> f64 {
-        let u = &sample.motion.state.u;
-        match self {
-            Quantity::Theta => sample.motion.state.theta,
-            Quantity::Gauge(gauge) => sample.value(gauge),
-            Quantity::Elastic(floor) => floor.displacement(u),
-            Quantity::Drift(floor, below) => drift(floor, below, u),
-            Quantity::Delta(floor) => sample.displacement(floor),
-        }
-    }
-
-    /// The quantity over a polynomial.
-    fn terms(self, over: &Over) -> Terms {
-        let Expansion { piece, from, arc } = over.of;
-        let (frame, phase) = (piece.level.structure(), piece.before.phase);
-        let s = phase.side().sign();
-        let elastic = |of: &dyn Fn(&Modes) -> f64| Terms::from_fn(arc.order, |k| of(&arc.u[k]));
-        match self {
-            Quantity::Theta => over.theta,
-            Quantity::Elastic(floor) => elastic(&|u| floor.displacement(u)),
-            Quantity::Drift(floor, below) => elastic(&|u| drift(floor, below, u)),
-            Quantity::Delta(floor) => {
-                let u = elastic(&|u| floor.displacement(u));
-                Place { share: 1.0, height: floor.height, u }.right(s * frame.base.B, &over.turn)
-            }
-            Quantity::Gauge(gauge) => {
-                let (damping, load) = (frame.base.damping(phase), piece.load.from(from));
-                let ramp = |value: f64, slope: f64| Terms::ramp(value, slope * arc.span);
-                let reading = Reading {
-                    elastic: Terms::from_fn(arc.order, |k| gauge.elastic(frame, damping, &arc.u[k], &arc.u_dot[k])),
-                    push: ramp(gauge.push(frame, &load.value.F_t), gauge.push(frame, &load.slope.F_t)),
-                    turn: over.turn,
-                    theta_dot: over.theta_dot,
-                    theta_ddot: over.theta_dot.slope(arc.span),
-                    a_g: ramp(load.value.a_g, load.slope.a_g),
-                    a_v: ramp(load.value.a_v, load.slope.a_v),
-                };
-                gauge.value(&frame.base, s, &reading)
-            }
-        }
-    }
+/// Whether the peak of `output` is searched.
+fn is_searched(output: &FrameOutput) -> bool {
+    use FrameOutput::{theta_dot, u_dot, uplift, v_t};
+    !matches!(output, theta_dot | uplift | u_dot(_) | v_t(_))
 }
 
 impl Profile {
     /// Peaks of `frame` from `time` (s) on, before any motion.
     pub fn since(time: f64, frame: &Frame) -> Profile {
         let none = Peak { magnitude: 0.0, time };
-        let floor = FloorPeaks { u: none, drift: none, delta: none, a: none, V: none };
-        let floors = vec![floor; frame.floors().len()];
-        Profile { frame: frame.clone(), a_g: none, theta: none, V_t: none, M_t: none, floors }
+        let peaks = FrameOutput::all(frame).filter(is_searched).map(|output| (output, none)).collect();
+        Profile { frame: frame.clone(), a_g: none, peaks }
     }
 
-    /// Peak of the uplift δ_u = 2 B sin|θ|, m (Eq 25).
-    pub fn uplift(&self) -> Peak {
-        Peak { magnitude: 2.0 * self.frame.base.B * libm::sin(self.theta.magnitude), ..self.theta }
+    /// The frame.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
     }
 
-    /// Looks at each quantity with its peak so far.
-    fn each(&mut self, mut look: impl FnMut(Quantity, &mut Peak)) {
-        let Profile { frame, theta, V_t, M_t, floors: peaks, .. } = self;
-        let (floors, gauges) = (frame.floors(), frame.gauges());
-        look(Quantity::Theta, theta);
-        look(Quantity::Gauge(&gauges.V_t), V_t);
-        look(Quantity::Gauge(&gauges.M_t), M_t);
-        for (i, FloorPeaks { u, drift, delta, a, V }) in peaks.iter_mut().enumerate() {
-            let (floor, below) = (&floors[i], i.checked_sub(1).map(|below| &floors[below]));
-            look(Quantity::Elastic(floor), u);
-            look(Quantity::Drift(floor, below), drift);
-            look(Quantity::Delta(floor), delta);
-            look(Quantity::Gauge(&gauges.a[i]), a);
-            look(Quantity::Gauge(&gauges.V[i]), V);
-        }
+    /// The outputs that have a peak, in the order of [`FrameOutput::all`], with their peaks.
+    pub fn peaks(&self) -> impl Iterator<Item = (FrameOutput, Peak)> {
+        let with_uplift = |&(output, peak): &(FrameOutput, Peak)| {
+            let uplift = 2.0 * self.frame.base.B * libm::sin(peak.magnitude);
+            let of_theta = (FrameOutput::uplift, Peak { magnitude: uplift, ..peak });
+            [Some((output, peak)), (output == FrameOutput::theta).then_some(of_theta)]
+        };
+        self.peaks.iter().flat_map(with_uplift).flatten()
+    }
+
+    /// The peak of `output`, if it has one.
+    pub fn of(&self, output: FrameOutput) -> Option<Peak> {
+        self.peaks().find(|(of, _)| *of == output).map(|(_, peak)| peak)
     }
 }
 
@@ -170,17 +139,17 @@ impl Watch<Modes> for Profile {
         while let Some(expansion) = arcs.next() {
             let (over, reach) = (Over::new(expansion), expansion.arc.reach);
             let ends = [0.0, reach].map(|sigma| expansion.sample(sigma));
-            self.each(|quantity, peak| {
-                let mut see = |sample: &Sample<Modes>| peak.see(quantity.value(sample), sample.motion.time);
+            for (output, peak) in &mut self.peaks {
+                let mut see = |sample: &Sample<Modes>| peak.see(sample.output(*output), sample.motion.time);
                 ends.iter().for_each(&mut see);
-                let series = quantity.terms(&over);
+                let series = output.of(&over);
                 if peak.may_change(extremes::bound(series.used(), reach), ends[0].motion.time) {
                     extremes::stationary_points(series.used(), reach, |sigma| {
                         let sample = expansion.sample(sigma);
-                        peak.see(quantity.value(&sample), sample.motion.time);
+                        peak.see(sample.output(*output), sample.motion.time);
                     });
                 }
-            });
+            }
         }
     }
 }
