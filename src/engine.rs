@@ -20,18 +20,21 @@ use crate::levels::detail::{AnyLevel, Detail, by_level};
 use crate::levels::level::{Level, Subject};
 use crate::levels::modes::ManyModes;
 use crate::mechanics::energy::energy;
+use crate::mechanics::floors::FrameOutput;
+use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
 use crate::mechanics::state::InitialStateError;
+use crate::numbers::dual::Dual;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, Start};
 use crate::structure::quantity::with_unit;
 use crate::{Frame, Outputs, Phase, State, Structure};
 use motion::{Chatter, Motion, Work};
 use phases::{Closed, Step, Watched};
-use piece::{Piece, Sample, Watch};
+use piece::{Piece, Sample, Turning, Watch};
 use std::fmt::Debug;
 use std::ops::Deref;
 use transition::Transition;
@@ -177,11 +180,6 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The level of detail of `structure`.
-    fn level(&self, structure: Structure) -> Result<Box<AnyLevel>, InitialStateError> {
-        self.detail.level(structure, self.local_error()?, self.vertical).map(Box::new)
-    }
-
     /// The truncation error that a step may have.
     fn local_error(&self) -> Result<f64, InitialStateError> {
         check_tolerance(self.tolerance)?;
@@ -202,6 +200,9 @@ pub trait Moves: Coordinates {
         settings: Settings,
     ) -> Result<Engine<Self>, InitialStateError>;
 
+    /// The level of detail at which `structure` moves with these `settings`.
+    fn level(structure: Self::Structure, settings: Settings) -> Result<Box<Self::Level>, InitialStateError>;
+
     /// The loads of a ground motion alone.
     fn loads(ground: LinearLoad) -> LinearLoad<Self>;
 
@@ -221,6 +222,10 @@ impl Moves for f64 {
         settings: Settings,
     ) -> Result<Engine, InitialStateError> {
         Engine::with(structure, initial, time, settings)
+    }
+
+    fn level(structure: Structure, settings: Settings) -> Result<Box<AnyLevel>, InitialStateError> {
+        settings.detail.level(structure, settings.local_error()?, settings.vertical).map(Box::new)
     }
 
     #[inline(always)]
@@ -258,6 +263,18 @@ impl Moves for Modes {
         settings: Settings,
     ) -> Result<Engine<Modes>, InitialStateError> {
         Engine::of_modes(structure, initial, time, settings)
+    }
+
+    fn level(structure: Frame, settings: Settings) -> Result<Box<LevelOfModes>, InitialStateError> {
+        let structure = match settings.detail {
+            Detail::Modal => return Err(InitialStateError::OneMass(settings.detail.name())),
+            Detail::Rigid => structure.without_modes(),
+            _ => structure,
+        };
+        let is_tied = structure.base.is_restrained() || settings.vertical;
+        let (local_error, angles) = (settings.local_error()?, settings.detail.angles());
+        let subject = Subject { structure, local_error, is_tied, angles };
+        Ok(Box::new(LevelOfModes(ManyModes::new(subject, settings.detail))))
     }
 
     fn loads(LinearLoad { value, slope }: LinearLoad) -> LinearLoad<Modes> {
@@ -306,53 +323,14 @@ impl Engine {
         settings: Settings,
     ) -> Result<Engine, InitialStateError> {
         let phase = initial.initial_phase()?;
-        let level = settings.level(structure)?;
+        let level = f64::level(structure, settings)?;
         level.check_start(&initial)?;
         Ok(Engine::start(level, settings, time, initial, phase))
-    }
-
-    /// The same structure in the same motion, with other `settings`.
-    pub fn remade(&self, settings: Settings) -> Result<Engine, InitialStateError> {
-        let level = settings.level(*self.structure())?;
-        Ok(Engine { level, settings, motion: self.motion, arc: Arc::default() })
-    }
-
-    /// Whether certainly no transition comes within `ahead` (s), a tiny time, under `load`.
-    pub fn goes_on_for(&self, ahead: f64, load: LinearLoad) -> bool {
-        let now = self.sample(load.value);
-        phases::of(self.structure(), &self.motion)
-            .is_none_or(|watched| watched.guards.iter().all(|guard| guard.stays_open(&now, ahead)))
     }
 
     /// The outputs now under `load`; once overturned, those of the instant before.
     pub fn outputs(&self, load: Load) -> Outputs {
         self.level.outputs(self.motion.phase.in_motion(), &self.motion.under(load)) // a sample would copy the motion
-    }
-
-    /// The reactions now under `load`; once overturned, those of the instant before.
-    pub fn reactions(&self, load: Load) -> Reactions {
-        self.sample(load).reactions()
-    }
-
-    /// The part of the reactions now under `load` that the edges of the base carry.
-    pub fn edges(&self, load: Load) -> Reactions {
-        self.sample(load).edges()
-    }
-
-    /// The forces of the restraints now.
-    pub fn restraints(&self) -> Restraints {
-        self.sample(Load::default()).restraints()
-    }
-
-    /// Rates of the forces of the restraints now under `load`, N/s; 0 once overturned.
-    pub fn restraint_rates(&self, load: Load) -> Restraints {
-        let Motion { phase, state, dissipators, .. } = &self.motion;
-        if let Phase::Overturned(_) = phase {
-            return Restraints::default();
-        }
-        let [_, theta_ddot] = self.sample(load).accelerations();
-        let restraint = Restraint::about(self.structure(), phase.side(), dissipators);
-        Restraints::rates(&restraint, self.level.subject().angles, state, theta_ddot)
     }
 
     /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned.
@@ -363,26 +341,11 @@ impl Engine {
         let outputs = self.level.output_rates(*phase, state, derivatives, load);
         (outputs, Reactions::rates(self.structure(), *phase, state, derivatives, load))
     }
-
-    /// (ü, θ̈) and (u⃛, θ⃛) now under `load`, from the first terms of the series; 0 once overturned.
-    fn derivatives(&self, load: LinearLoad) -> [[f64; 2]; 2] {
-        let Engine { level, motion: Motion { phase, state, dissipators, .. }, .. } = self;
-        if let Phase::Overturned(_) = phase {
-            return [[0.0; 2]; 2];
-        }
-        let mut arc = Arc::default();
-        let start = Start { local_error: 1.0, ..level.subject().start(*state, dissipators, load, 1.0) };
-        level.series(*phase, &start, &mut arc);
-        let derivative = |k: i32, factor: f64| {
-            [arc.u_dot[k as usize], arc.theta_dot[k as usize]].map(|c| factor * c / arc.span.powi(k))
-        };
-        [derivative(1, 1.0), derivative(2, 2.0)]
-    }
 }
 
 impl Engine<Modes> {
-    /// Starts the structure `frame` of many masses at `time` (s) from `state`, at any level of detail but `modal` and `rigid`. Of
-    /// dissipators see [`Engine::with`].
+    /// Starts the structure `frame` of many masses at `time` (s) from `state`, at any level of detail but `modal`. At the level `rigid`
+    /// the structure that moves has no modes. Of dissipators see [`Engine::with`].
     pub fn of_modes(
         frame: Frame,
         state: State<Modes>,
@@ -392,18 +355,26 @@ impl Engine<Modes> {
         // coordinates of modes have no limits, but are numbers
         let [u, u_dot] = [&state.u, &state.u_dot].map(|numbers| 0.0 * numbers.total());
         let phase = State { u, u_dot, theta: state.theta, theta_dot: state.theta_dot }.initial_phase()?;
-        let of_frame = |numbers: Modes| Modes::each(&frame, |j, _| numbers.of(j));
-        let state = State { u: of_frame(state.u), u_dot: of_frame(state.u_dot), ..state };
-        let is_tied = frame.base.is_restrained() || settings.vertical;
-        let angles = settings.detail.angles();
-        let subject = Subject { structure: frame, local_error: settings.local_error()?, is_tied, angles };
-        match settings.detail {
-            Detail::FixedBase if state.theta != 0.0 => return Err(InitialStateError::TurnedFixedBase(state.theta)),
-            Detail::Modal | Detail::Rigid => return Err(InitialStateError::OneMass(settings.detail.name())),
-            _ => (),
+        let level = Modes::level(frame, settings)?;
+        let (State { u, u_dot, theta, .. }, modes) = (state, level.structure().modes().len());
+        for numbers in [u, u_dot] {
+            let given = numbers.count();
+            if given != modes && !numbers.is_within(&Modes::ZERO) {
+                return Err(InitialStateError::Coordinates { given, modes });
+            }
         }
-        let level = Box::new(LevelOfModes(ManyModes::new(subject, settings.detail)));
+        if settings.detail == Detail::FixedBase && theta != 0.0 {
+            return Err(InitialStateError::TurnedFixedBase(theta));
+        }
+        let of_frame = |numbers: Modes| Modes::each(level.structure(), |j, _| numbers.of(j));
+        let state = State { u: of_frame(u), u_dot: of_frame(u_dot), ..state };
         Ok(Engine::start(level, settings, time, state, phase))
+    }
+
+    /// Time derivatives now under `load`, from the equations of motion; 0 once overturned. The derivatives at a transition are taken
+    /// just after the transition.
+    pub fn rates(&self, load: LinearLoad<Modes>) -> FrameRates<'_> {
+        FrameRates { engine: self, load, derivatives: self.derivatives(load) }
     }
 
     /// Mechanical energy now, J.
@@ -430,6 +401,61 @@ impl<Q: Moves> Engine<Q> {
             due: None,
         };
         Engine { level, settings, motion, arc: Arc::default() }
+    }
+
+    /// (ü, θ̈) and (u⃛, θ⃛) now under `load`, from the first terms of the series; 0 once overturned.
+    fn derivatives(&self, load: LinearLoad<Q>) -> [Second<f64, Q>; 2] {
+        let Engine { level, motion: Motion { phase, state, dissipators, .. }, .. } = self;
+        if let Phase::Overturned(_) = phase {
+            return [Second { u_ddot: Q::each(level.structure(), |_, _| 0.0), theta_ddot: 0.0 }; 2];
+        }
+        let mut arc = Arc::default();
+        let start = Start { local_error: 1.0, ..level.subject().start(*state, dissipators, load, 1.0) };
+        level.series(*phase, &start, &mut arc);
+        [(1, 1.0), (2, 2.0)].map(|(k, factor)| {
+            let derivative = |c: f64| factor * c / arc.span.powi(k as i32);
+            let u_ddot = Q::each(level.structure(), |j, _| derivative(arc.u_dot[k].of(j)));
+            Second { u_ddot, theta_ddot: derivative(arc.theta_dot[k]) }
+        })
+    }
+
+    /// The same structure in the same motion, with other `settings`.
+    pub fn remade(&self, settings: Settings) -> Result<Engine<Q>, InitialStateError> {
+        let level = Q::level(self.structure().clone(), settings)?;
+        Ok(Engine { level, settings, motion: self.motion, arc: Arc::default() })
+    }
+
+    /// Whether certainly no transition comes within `ahead` (s), a tiny time, under `load`.
+    pub fn goes_on_for(&self, ahead: f64, load: LinearLoad<Q>) -> bool {
+        let now = self.sample(load.value);
+        phases::of::<Q>(self.structure(), &self.motion)
+            .is_none_or(|watched| watched.guards.iter().all(|guard| guard.stays_open(&now, ahead)))
+    }
+
+    /// The reactions now under `load`; once overturned, those of the instant before.
+    pub fn reactions(&self, load: Load<Q>) -> Reactions {
+        self.sample(load).reactions()
+    }
+
+    /// The part of the reactions now under `load` that the edges of the base carry.
+    pub fn edges(&self, load: Load<Q>) -> Reactions {
+        self.sample(load).edges()
+    }
+
+    /// The forces of the restraints now.
+    pub fn restraints(&self) -> Restraints {
+        self.sample(Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 }).restraints()
+    }
+
+    /// Rates of the forces of the restraints now under `load`, N/s; 0 once overturned.
+    pub fn restraint_rates(&self, load: Load<Q>) -> Restraints {
+        let Motion { phase, state, dissipators, .. } = &self.motion;
+        if let Phase::Overturned(_) = phase {
+            return Restraints::default();
+        }
+        let theta_ddot = self.sample(load).second().theta_ddot;
+        let restraint = Restraint::about(self.structure(), phase.side(), dissipators);
+        Restraints::rates(&restraint, self.level.subject().angles, [state.theta, state.theta_dot, theta_ddot])
     }
 
     /// The structure.
@@ -537,6 +563,34 @@ impl<Q: Moves> Engine<Q> {
         let Some(bad) = LOADS.iter().find(|quantity| !(quantity.get)(&end).is_finite()) else { return Ok(()) };
         let [value, slope] = [&value, &slope].map(bad.get);
         Err(AdvanceError::Load { name: bad.name, unit: bad.unit, value, slope, interval })
+    }
+}
+
+/// Time derivatives of the outputs and reactions of a structure of many masses.
+#[derive(Debug)]
+pub struct FrameRates<'a> {
+    engine: &'a Engine<Modes>,
+    load: LinearLoad<Modes>,
+    derivatives: [Second<f64, Modes>; 2],
+}
+
+impl FrameRates<'_> {
+    /// The rate of `output`.
+    pub fn of(&self, output: FrameOutput) -> f64 {
+        let FrameRates { engine, load, derivatives: [accelerations, jerks] } = self;
+        let Motion { phase, state, .. } = &engine.motion;
+        if let Phase::Overturned(_) = phase {
+            return 0.0;
+        }
+        let x = Instant::moving(engine.structure(), *phase, state, accelerations, *load);
+        let theta_ddot = Dual { value: accelerations.theta_ddot, rate: jerks.theta_ddot };
+        output.of(&Turning { x, theta_ddot }).rate
+    }
+
+    /// The rates of the reactions.
+    pub fn reactions(&self) -> Reactions {
+        let Motion { phase, state, .. } = &self.engine.motion;
+        Reactions::rates(self.engine.structure(), *phase, state, self.derivatives, self.load)
     }
 }
 

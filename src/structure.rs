@@ -101,6 +101,13 @@ pub struct Ties {
     pub F_y: f64,
 }
 
+impl AsRef<Base> for Structure {
+    #[inline(always)]
+    fn as_ref(&self) -> &Base {
+        &self.base
+    }
+}
+
 impl Base {
     /// Whether a tendon or dissipators restrain the structure.
     #[inline]

@@ -4,19 +4,19 @@
 
 use nalgebra::{Matrix3, Vector3};
 use rocking::engine::Settings;
+use rocking::mechanics::floors::FrameOutput;
 use rocking::structure::{Mode, Ties};
 use rocking::{
-    Body, Detail, Engine, Frame, LinearLoad, Load, Modes, Parameters, Progress, Side, State, Structure, Transition,
-    TransitionKind,
+    Body, Detail, Engine, Floor, Frame, LinearLoad, Load, Modes, Parameters, Progress, Reactions, Side, State,
+    Structure, Transition, TransitionKind,
 };
 use std::f64::consts::TAU;
 
 const G: f64 = 9.81;
 
-/// Three masses on a base: the structure, and the shapes of its modes at the masses.
+/// Three masses on a base.
 struct Masses {
     frame: Frame,
-    shapes: Matrix3<f64>,
 }
 
 impl Masses {
@@ -25,7 +25,7 @@ impl Masses {
         Masses::with(zeta, r, 3, 1.0)
     }
 
-    /// The storeys with `kept` of their modes; the others `stiffer` in frequency by this factor.
+    /// The storeys with `kept` of their modes; all but the first `stiffer` in frequency by this factor.
     fn with(zeta: f64, r: f64, kept: usize, stiffer: f64) -> Masses {
         let (m, h) = (Vector3::new(40e3, 40e3, 30e3), Vector3::new(3.5, 7.0, 10.5));
         let stiffness = Matrix3::new(110e6, -50e6, 0.0, -50e6, 90e6, -40e6, 0.0, -40e6, 40e6);
@@ -34,19 +34,21 @@ impl Masses {
         let eigen = (root * stiffness * root).symmetric_eigen();
         let shapes = root * eigen.eigenvectors;
         let lowest = eigen.eigenvalues.imin();
-        let modes = if kept == 3 { vec![0, 1, 2] } else { vec![lowest] };
         let mode = |j: usize| {
             let of = |with: Vector3<f64>| shapes.column(j).dot(&m.component_mul(&with));
             let factor = if j == lowest { 1.0 } else { stiffer };
             Mode::new(factor * eigen.eigenvalues[j].sqrt(), zeta, of(Vector3::repeat(1.0)), of(h))
         };
         let body = body([m0, J0, B], [m.sum(), m.dot(&h), m.dot(&h.component_mul(&h))], r, G);
-        Masses { frame: Frame::new(body, &Vec::from_iter(modes.into_iter().map(mode)), &[]).unwrap(), shapes }
+        let shape = |i: usize| Modes::new(&[0, 1, 2].map(|j| shapes[(i, j)]));
+        let floors = [0, 1, 2].map(|i| Floor { mass: m[i], height: h[i], shape: shape(i) });
+        let frame = Frame::new(body, &[0, 1, 2].map(mode), &floors).unwrap();
+        Masses { frame: frame.keeping(kept).unwrap() }
     }
 
     /// Displacements of the masses.
     fn displacements(&self, state: &State<Modes>) -> Vector3<f64> {
-        self.shapes * Vector3::from_column_slice(state.u.numbers())
+        Vector3::from_iterator(self.frame.floors().iter().map(|floor| floor.displacement(&state.u)))
     }
 }
 
@@ -185,22 +187,129 @@ fn one_mode_is_one_mass() {
     }
 }
 
-/// Modes left out are the limit of stiff modes between landings: from θ̇ = 0.2 rad/s on, θ and the first mode.
+/// Modes left out are the limit of stiff modes between landings: while rocking from θ̇ = 0.2 rad/s on, and at the uplift of a base at
+/// rest, with forces on the floors.
 #[test]
 fn modes_left_out_are_the_limit_of_stiff_modes() {
-    let mut off = Vec::new();
-    for stiffer in [30.0, 300.0] {
+    let forces = |t: f64| [50e3 * t, -60e3 * t, 90e3 * t];
+    for (theta, theta_dot, duration, transitions) in [(1e-3, 0.2, 20, 0), (0.0, 0.0, 24, 1)] {
         let of = |masses: Masses| {
             let modes = masses.frame.modes().len();
-            let start = State { theta: 1e-3, theta_dot: 0.2, ..at_rest(modes) };
-            let mut engine = Engine::of_modes(masses.frame, start, 0.0, Settings::default()).unwrap();
-            for i in 0..20 {
-                engine.advance(0.01, ground(modes, pulse(i), pulse(i + 1), 0.01), &mut ()).unwrap();
+            let start = State { theta, theta_dot, ..at_rest(modes) };
+            let mut engine = Engine::of_modes(masses.frame.clone(), start, 0.0, Settings::default()).unwrap();
+            for i in 0..duration {
+                let at = |i| masses.frame.load(1.2 * pulse(i), 0.0, &forces(0.01 * i as f64)).unwrap();
+                let slope = |from: f64, to: f64| (to - from) / 0.01;
+                let [from, to] = [at(i), at(i + 1)];
+                let rate = forces(1.0).into_iter().zip(forces(0.0)).map(|(to, from)| to - from);
+                let rate = masses.frame.load(slope(from.a_g, to.a_g), 0.0, &Vec::from_iter(rate)).unwrap();
+                engine.advance(0.01, LinearLoad { value: from, slope: rate }, &mut ()).unwrap();
             }
-            assert_eq!(engine.motion().transitions, 0);
+            assert_eq!(engine.motion().transitions, transitions);
             engine.motion().state.theta
         };
-        off.push((of(Masses::with(0.0, 0.93, 3, stiffer)) / of(Masses::with(0.0, 0.93, 1, 1.0)) - 1.0).abs());
+        let mut off = Vec::new();
+        for stiffer in [30.0, 300.0] {
+            off.push((of(Masses::with(0.0, 0.93, 3, stiffer)) / of(Masses::with(0.0, 0.93, 1, 1.0)) - 1.0).abs());
+        }
+        assert!(off[1] < 0.15 * off[0] && off[1] < 1e-3, "{theta}: {off:?}");
     }
-    assert!(off[1] < 0.15 * off[0] && off[1] < 1e-3, "{off:?}");
+}
+
+/// Without modes a frame is the rigid limit of one mass: with all ties, a vertical acceleration and a force on the mass, to rest.
+#[test]
+fn a_frame_without_modes_is_the_rigid_limit() {
+    let tied = Parameters { P_0: 200.0, k_t: 3e4, xi_d: 0.1, c_d: 40.0, k_d: 1e5, F_y: 400.0, ..Parameters::MCMANUS };
+    for (parameters, strength, vertical) in [(Parameters::MCMANUS, 0.9, 0.0), (tied, 1.6, 2.0)] {
+        let structure = Structure::new(Parameters { zeta_fc: 0.05, ..parameters }).unwrap();
+        let Parameters { m, m0, H, B, J0, r, g, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
+        let mode = Mode::new(structure.omega_fc, 0.05, m.sqrt(), m.sqrt() * H);
+        let ties = Ties { P_0, k_t, xi_d, c_d, k_d, F_y };
+        let floor = Floor { mass: m, height: H, shape: Modes::new(&[1.0 / m.sqrt()]) };
+        let body = Body { ties, ..body([m0, J0, B], [m, m * H, m * H * H], r, g) };
+        let frame = Frame::new(body, &[mode], &[floor]).unwrap();
+        let settings =
+            Settings { detail: Detail::Rigid, tolerance: 1e-12, vertical: vertical > 0.0, ..Settings::default() };
+        let mut many = Engine::of_modes(frame.clone(), at_rest(0), 0.0, settings).unwrap();
+        let mut one = Engine::with(structure, State::default(), 0.0, settings).unwrap();
+        let (mut theta, mut a_t, mut off) = (0.0_f64, 0.0_f64, [0.0_f64; 2]);
+        for i in 0..1000 {
+            let at = |i| (strength * pulse(i), 0.05 * m * pulse(i / 2), vertical * pulse(2 * i) / G);
+            let [from, to] = [at(i), at(i + 1)].map(|(a_g, F_t, a_v)| Load { a_g, F_t, a_v });
+            let slope = |of: fn(&Load) -> f64| (of(&to) - of(&from)) / 0.01;
+            let slope = Load { a_g: slope(|it| it.a_g), F_t: slope(|it| it.F_t), a_v: slope(|it| it.a_v) };
+            let [value, rate] =
+                [from, slope].map(|Load { a_g, F_t, a_v }| many.structure().load(a_g, a_v, &[F_t]).unwrap());
+            many.advance(0.01, LinearLoad { value, slope: rate }, &mut ()).unwrap();
+            one.advance(0.01, LinearLoad { value: from, slope }, &mut ()).unwrap();
+            let load = many.structure().load(to.a_g, to.a_v, &[to.F_t]).unwrap();
+            let outputs = [one.outputs(to).a_t, many.sample(load).output(FrameOutput::a_t(0))];
+            let (many, one) = (&many.motion().state, &one.motion().state);
+            (theta, a_t) = (theta.max(one.theta.abs()), a_t.max(outputs[0].abs()));
+            off[0] = off[0].max((many.theta - one.theta).abs());
+            off[1] = off[1].max((outputs[1] - outputs[0]).abs());
+        }
+        let [many, one] = [many.motion().transitions, one.motion().transitions];
+        assert!(many == one && one > 6, "{many} {one}");
+        assert!(off[0] <= 1e-13 * theta && off[1] <= 1e-13 * a_t, "{:e} {:e}", off[0] / theta, off[1] / a_t);
+    }
+}
+
+/// The rates are the slopes along the motion, under all loads, with all modes and with one.
+#[test]
+fn rates_are_the_slopes_of_states_outputs_and_reactions() {
+    for (kept, theta) in [(3, -0.02), (1, -0.02), (3, 0.0), (1, 0.0)] {
+        let frame = Masses::with(0.02, 0.93, kept, 1.0).frame;
+        let of = |numbers: [f64; 3]| Modes::new(&numbers[..kept]);
+        let (u, u_dot) = (of([0.3, 0.1, -0.05]), of([5.0, -2.0, 1.0]));
+        let initial = State { u, u_dot, theta, theta_dot: if theta == 0.0 { 0.0 } else { -0.4 } };
+        let settings = Settings { tolerance: 1e-11, vertical: true, ..Settings::default() };
+        let mut engine = Engine::of_modes(frame.clone(), initial, 0.0, settings).unwrap();
+        let load = |a_g, a_v, forces: [f64; 3]| frame.load(a_g, a_v, &forces).unwrap();
+        let load = LinearLoad { value: load(1.0, -0.5, [9e3, -4e3, 6e3]), slope: load(40.0, 9.0, [5e5, 8e5, -7e5]) };
+        let outputs = Vec::from_iter(FrameOutput::all(&frame));
+        let h = 1e-5;
+        let mut show = |until: f64| {
+            let now = engine.motion().time;
+            engine.advance(until - now, load.from(now), &mut ()).unwrap();
+            let sample = engine.sample(load.at(until));
+            let (State { u, u_dot, theta, theta_dot }, Reactions { R_h, R_v, R_m }) =
+                (sample.motion.state, sample.reactions());
+            let mut values = Vec::from_iter(outputs.iter().map(|output| sample.output(*output)));
+            values.extend([R_h, R_v, R_m, theta, theta_dot].iter().chain(u.numbers()).chain(u_dot.numbers()));
+            let rates = engine.rates(load.from(until));
+            let Reactions { R_h, R_v, R_m } = rates.reactions();
+            let State { u, u_dot, theta, theta_dot } = sample.state_rates();
+            let mut slopes = Vec::from_iter(outputs.iter().map(|output| rates.of(*output)));
+            slopes.extend([R_h, R_v, R_m, theta, theta_dot].iter().chain(u.numbers()).chain(u_dot.numbers()));
+            (values, slopes)
+        };
+        let (before, (_, slopes), (after, _)) = (show(1e-3 - h).0, show(1e-3), show(1e-3 + h));
+        assert_eq!(engine.motion().transitions, 0);
+        for (i, slope) in slopes.into_iter().enumerate() {
+            let (found, size) = ((after[i] - before[i]) / (2.0 * h), after[i].abs() / h);
+            assert!(
+                (found - slope).abs() <= 1e-5 * slope.abs() + 1e-9 * size,
+                "{kept} {theta} {i}: {found} and not {slope}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_fits_no_frame_is_refused_with_the_remedy() {
+    let frame = Masses::new(0.02, 0.93).frame;
+    assert_eq!(frame.keeping(4).unwrap_err().to_string(), "4 modes cannot be kept of 3: keep 0 to 3");
+    let refused = frame.load(0.0, 0.0, &[1.0]).unwrap_err().to_string();
+    assert_eq!(refused, "1 forces are given on 3 floors: give one for each floor, or none");
+    let start = |state, detail| {
+        let settings = Settings { detail, ..Settings::default() };
+        Engine::of_modes(frame.clone(), state, 0.0, settings).map(|_| ()).map_err(|error| error.to_string())
+    };
+    assert_eq!(start(at_rest(2), Detail::Auto), Ok(()));
+    let given = State { u: Modes::new(&[1e-3; 30]), ..at_rest(3) };
+    let refused = "the initial state has 30 coordinates, and 3 modes move: give one coordinate for each, or 0 for all";
+    assert_eq!(start(given, Detail::Auto), Err(refused.into()));
+    let refused = "the initial state has 3 coordinates, and 0 modes move: give one coordinate for each, or 0 for all";
+    assert_eq!(start(State { u: Modes::new(&[1e-3; 3]), ..at_rest(3) }, Detail::Rigid), Err(refused.into()));
 }

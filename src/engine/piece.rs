@@ -11,12 +11,12 @@ use crate::levels::level::{Now, Subject};
 use crate::levels::shown::Searched;
 use crate::mechanics::floors::{FrameOutput, MotionOfFloors};
 use crate::mechanics::gauge::{Gauge, Reading};
-use crate::mechanics::instant::{Instant, Second};
-use crate::mechanics::lateral::Modes;
+use crate::mechanics::instant::{Instant, Second, Strut};
+use crate::mechanics::lateral::{Lateral, Modes};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::Measure;
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
-use crate::numbers::Turn;
+use crate::numbers::{Number, Turn};
 use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Series, Start, evaluate};
 use crate::{Floor, Frame, Outputs, Phase, Reactions, State};
@@ -86,18 +86,14 @@ impl<Q: Moves> Sample<'_, Q> {
         let Sample { motion, load, level } = self;
         level.accelerations(motion.phase.in_motion(), &motion.under(*load))
     }
-}
 
-impl Sample<'_> {
-    /// The outputs; once overturned, those of the instant before.
-    pub fn outputs(&self) -> Outputs {
-        self.level.outputs(self.motion.phase.in_motion(), &self.motion.under(self.load))
+    fn instant(&self) -> Instant<'_, f64, Q> {
+        Instant::of(self.level.structure(), self.motion.phase.in_motion(), &self.motion.state, self.load)
     }
 
     /// The reactions; once overturned, those of the instant before.
     pub fn reactions(&self) -> Reactions {
-        let phase = self.motion.phase.in_motion();
-        Reactions::of(self.level.structure(), phase, &self.motion.state, self.accelerations(), self.load)
+        Reactions::at(&self.instant(), &self.second())
     }
 
     /// The part of the reactions that the edges of the base carry: all of it, unless the structure is restrained.
@@ -118,65 +114,64 @@ impl Sample<'_> {
         let chord = self.level.subject().angles.chord(state.theta, state.theta_dot);
         Restraint::about(self.level.structure(), phase.side(), dissipators).forces(&chord)
     }
+}
 
-    /// (ü, θ̈), m/s² and rad/s²; once overturned, those of the instant before.
-    pub(crate) fn accelerations(&self) -> [f64; 2] {
-        self.second().into()
+impl Sample<'_> {
+    /// The outputs; once overturned, those of the instant before.
+    pub fn outputs(&self) -> Outputs {
+        self.level.outputs(self.motion.phase.in_motion(), &self.motion.under(self.load))
     }
 }
 
 impl Sample<'_, Modes> {
     /// The value of `output`; once overturned, the value of the instant before.
     pub fn output(&self, output: FrameOutput) -> f64 {
-        output.of(self)
-    }
-
-    /// The reactions; once overturned, those of the instant before.
-    pub fn reactions(&self) -> Reactions {
-        Reactions::at(&self.instant(), &self.second())
-    }
-
-    fn instant(&self) -> Instant<'_, f64, Modes> {
-        Instant::of(self.level.structure(), self.motion.phase.in_motion(), &self.motion.state, self.load)
+        let theta_ddot = if output.has_feedthrough(self.level.structure()) { self.second().theta_ddot } else { 0.0 };
+        output.of(&Turning { x: self.instant(), theta_ddot })
     }
 }
 
-impl MotionOfFloors<f64> for Sample<'_, Modes> {
+/// A structure of many masses at an instant, with θ̈.
+pub(crate) struct Turning<'a, N: Number, Q: Lateral<N>> {
+    pub x: Instant<'a, N, Q>,
+    pub theta_ddot: N,
+}
+
+impl<N: Number, Q: Lateral<N, Structure = Frame>> MotionOfFloors<N> for Turning<'_, N, Q> {
     fn frame(&self) -> &Frame {
-        self.level.structure()
+        self.x.structure
     }
 
     fn pivot(&self) -> f64 {
-        self.instant().pivot()
+        self.x.pivot()
     }
 
-    fn theta(&self) -> f64 {
-        self.motion.state.theta
+    fn theta(&self) -> N {
+        self.x.theta
     }
 
-    fn theta_dot(&self) -> f64 {
-        self.motion.state.theta_dot
+    fn theta_dot(&self) -> N {
+        self.x.theta_dot
     }
 
-    fn turn(&self) -> Turn<f64> {
-        self.instant().turn
+    fn turn(&self) -> Turn<N> {
+        self.x.turn
     }
 
-    fn u(&self, floor: &Floor) -> f64 {
-        floor.displacement(&self.motion.state.u)
+    fn u(&self, floor: &Floor) -> N {
+        self.x.sum(|j, _| self.x.u.of(j) * floor.shape.of(j))
     }
 
-    fn u_dot(&self, floor: &Floor) -> f64 {
-        floor.displacement(&self.motion.state.u_dot)
+    fn u_dot(&self, floor: &Floor) -> N {
+        self.x.sum(|j, _| self.x.u_dot.of(j) * floor.shape.of(j))
     }
 
-    fn gauge(&self, gauge: &Gauge) -> f64 {
-        let (frame, x) = (self.level.structure(), self.instant());
-        let damping = frame.base.damping(self.motion.phase);
-        let theta_ddot = if gauge.has_feedthrough() { self.second().theta_ddot } else { 0.0 };
-        let (elastic, push) = (gauge.elastic(frame, damping, &x.u, &x.u_dot), gauge.push(frame, &x.F_t));
-        let Instant { turn, theta_dot, a_g, a_v, .. } = x;
-        gauge.value(&frame.base, x.s, &Reading { elastic, push, turn, theta_dot, theta_ddot, a_g, a_v })
+    fn gauge(&self, gauge: &Gauge) -> N {
+        let &Turning { ref x, theta_ddot } = self;
+        let Strut::Elastic(damping) = x.strut else { unreachable!("the rigid limit has no mode") };
+        let (elastic, push) = (gauge.elastic(x.structure, damping, &x.u, &x.u_dot), gauge.push(x.structure, &x.F_t));
+        let &Instant { turn, theta_dot, a_g, a_v, .. } = x;
+        gauge.value(x.base(), x.s, &Reading { elastic, push, turn, theta_dot, theta_ddot, a_g, a_v })
     }
 }
 
@@ -357,8 +352,7 @@ impl<'a> Part<'a> {
         let bends = level.bends(phase, load, h, &level.rates(phase, &step, end));
         let [(_, first), (_, last)] = self.ends();
         let now = Now { state: &step.state, load: load.value, dissipators: step.dissipators };
-        let accelerations = level.accelerations(phase, &now).into();
-        let rates = level.searched_rates(phase, &step.state, accelerations, load);
+        let rates = level.searched_rates(phase, &step.state, &level.accelerations(phase, &now), load);
         std::array::from_fn(|i| {
             let of = |outputs: &Outputs| Measure::SEARCHED[i].of(outputs).abs();
             let ends = of(&first).max(of(&last));

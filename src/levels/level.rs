@@ -1,6 +1,6 @@
 //! A level of detail as the engine uses it: equations, uplift, impact, and exact leaps where there are any.
 
-use crate::levels::rules::{ChatterLimit, MAX_TRANSITIONS_PER_PERIOD};
+use crate::levels::rules::ChatterLimit;
 use crate::mechanics::impact;
 use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::Coordinates;
@@ -11,7 +11,6 @@ use crate::numbers::bend::Bend;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{Phase, Side, State, Structure};
-use std::f64::consts::TAU;
 
 /// A structure at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -105,10 +104,7 @@ pub trait Level<Q: Coordinates = f64> {
 
     /// The most transitions that may happen within a period.
     fn chatter_limit(&self) -> ChatterLimit {
-        ChatterLimit {
-            period: TAU / Q::vibration(self.structure()).rocking[0],
-            transitions: MAX_TRANSITIONS_PER_PERIOD,
-        }
+        ChatterLimit::of(Q::vibration(self.structure()))
     }
 
     /// `state`, with 0 for all that cannot move in `phase`.

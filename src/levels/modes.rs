@@ -4,18 +4,25 @@
 //!
 //! ```text
 //! ü + h θ̈ = −e − w θ̇² + S g sin θ − a cos θ                    a = S a_g − φᵀF/μ of each mode
-//! d/dt [D θ̇] = Σ μ h (e + w θ̇²) − X (g cos θ + a_g sin θ) + S_res (g sin θ − a_g cos θ) + Σ φᵀF w sin θ − ties
+//! d/dt [D θ̇] = Σ μ h (e + w θ̇²) − X (g cos θ + a_g sin θ) + S_res (g sin θ − a_g cos θ)
+//!              + (Σ φᵀF w + sB F_res) sin θ + N_res cos θ − ties
 //! D = J0 + m0 B² + Σ μ w²,      X = s m0 B + Σ Γ w
 //! ```
 //!
 //! The angular momentum D θ̇ has no Coriolis term. An order takes five products and one more for each mode. g is g + a_v. m0 and J0
-//! include the mass that no mode carries, and S_res is the first moment of this mass.
+//! include the mass that no mode carries, and S_res is the first moment of this mass. F_res and N_res are the force on it and the
+//! moment of this force ([`Frame::load`]). A structure without modes is a rigid block, with the end of bouncing of [`rigid`].
+//!
+//! [`rigid`]: crate::levels::rigid
 
 use crate::levels::detail::Detail;
 use crate::levels::level::{Level, Now, Rates, Subject, way};
 use crate::levels::nonlinear::{Factors, LEAST_INERTIA, NO_ROW, products, row};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
+use crate::levels::rigid as block;
+use crate::levels::rules::ChatterLimit;
 use crate::levels::ties::TieSeries;
+use crate::mechanics::impact;
 use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::load::Load;
@@ -39,10 +46,8 @@ pub(crate) struct ManyModes {
     detail: Detail,
     /// The oscillators of full contact, if their exact flow is used.
     contact: Option<Vec<(Oscillator, Kept<Flow>)>>,
-    /// The mass of all modes, kg.
-    mass: f64,
-    /// Radius of their inertia about the base, m.
-    height: f64,
+    /// Radius of gyration about a pivot √(J_P/m_t), m.
+    radius: f64,
     /// Inertia about a pivot that the modes leave, kg·m².
     left: f64,
     /// J_P over this inertia: how much faster the structure vibrates while rocking, squared.
@@ -158,11 +163,17 @@ fn hold(base: &Base, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
     base.m_t * (base.g + a_v) * base.B + tendon.force * base.B + side.sign() * residual
 }
 
-/// The moments that lift the base, to the right, N·m: of the springs and of the mass that rides rigidly under the ground acceleration
-/// `a_g` (M3), and of all that gives D θ̈ at θ = θ̇ = 0 (M2).
-fn lifting(frame: &Frame, u: &Modes, u_dot: &Modes, [a_g, weight]: [f64; 2]) -> [f64; 2] {
-    let &Base { S_res, c_ratio, .. } = Modes::base(frame);
-    let springs = Modes::sum(frame, |j, mode| mode.height * mode.stiffness * u.of(j)) - S_res * a_g;
+/// The moment by which the mass that rides rigidly lifts the base to the right, N·m, under the ground acceleration `a_g` and the forces
+/// that have this `rest`.
+fn rigid(base: &Base, a_g: f64, rest: Option<[f64; 2]>) -> f64 {
+    rest.map_or(0.0, |[_, moment]| moment) - base.S_res * a_g
+}
+
+/// The moments that lift the base, to the right, N·m: of the springs and of the mass that rides rigidly (M3), and of all that gives
+/// D θ̈ at θ = θ̇ = 0 (M2).
+fn lifting(frame: &Frame, u: &Modes, u_dot: &Modes, [rigid, weight]: [f64; 2]) -> [f64; 2] {
+    let c_ratio = frame.base.c_ratio;
+    let springs = Modes::sum(frame, |j, mode| mode.height * mode.stiffness * u.of(j)) + rigid;
     let others = Modes::sum(frame, |j, mode| {
         mode.height * (c_ratio * mode.damping) * u_dot.of(j) + mode.gamma * weight * u.of(j)
     });
@@ -174,7 +185,6 @@ impl ManyModes {
     pub(crate) fn new(subject: Subject<Modes>, detail: Detail) -> ManyModes {
         let frame = &subject.structure;
         let base = Modes::base(frame);
-        let mass = Modes::sum(frame, |_, mode| mode.gamma * mode.share);
         let of_modes = Modes::sum(frame, |_, mode| mode.mass * mode.height * mode.height);
         let oscillator = |mode: &Mode| {
             let omega = (mode.stiffness / mode.mass).sqrt();
@@ -186,8 +196,7 @@ impl ManyModes {
         let fastest = (highest * highest + ties.stiffness / left).sqrt().max(base.p_l).max(ties.damping / left);
         ManyModes {
             contact: (detail != Detail::Nonlinear).then(|| frame.modes().iter().map(oscillator).collect()),
-            mass,
-            height: (of_modes / mass).sqrt(),
+            radius: (base.J_P / base.m_t).sqrt(),
             left,
             quickening: base.J_P / left,
             longest_span: LONGEST_SPAN / fastest,
@@ -201,28 +210,31 @@ impl ManyModes {
         }
     }
 
-    /// The root of the mean square of a velocity or an acceleration over the masses, by `of` each mode.
+    /// The root of the mean square of a velocity or an acceleration over all mass, by `of` each mode.
     fn size(&self, of: impl Fn(usize, &Mode) -> f64) -> f64 {
-        let square = Modes::sum(&self.subject.structure, |j, mode| mode.mass * of(j, mode) * of(j, mode));
-        (square / self.mass).sqrt()
+        let frame = &self.subject.structure;
+        (Modes::sum(frame, |j, mode| mode.mass * of(j, mode) * of(j, mode)) / frame.base.m_t).sqrt()
     }
 
     /// The truncation that `start` requires over a step of `span` s, while rocking or not.
     fn truncation(&self, start: &Start<Modes>, span: f64, is_rocking: bool) -> Truncation<Modes> {
-        let &Start { state, a_top, local_error, .. } = start;
+        let &Start { state, a_g, a_top, local_error, .. } = start;
         let frame = &self.subject.structure;
-        let &Base { g, tan_alpha_cg, .. } = Modes::base(frame);
+        let &Base { m_t, g, tan_alpha_cg, .. } = Modes::base(frame);
         let vibration = Modes::vibration(frame);
         let elastic = self.size(|j, mode| mode.stiffness / mode.mass * state.u.of(j));
         let load = self.size(|j, _| a_top.value.of(j)) + span * self.size(|j, _| a_top.slope.of(j));
         let (time, elastic, load) = match is_rocking {
-            true => (1.0 / vibration.rocking[0], self.quickening * elastic, load + g * tan_alpha_cg),
+            true => {
+                let ground = a_g.value.abs() + span * a_g.slope.abs();
+                (1.0 / vibration.rocking[0], self.quickening * elastic, load.max(ground) + g * tan_alpha_cg)
+            }
             false => (1.0 / vibration.contact, elastic, load.max(NEGLIGIBLE * g)),
         };
         let velocity = self.size(|j, _| state.u_dot.of(j)) + span.min(time) * (elastic + load);
-        let theta_dot = state.theta_dot.abs() + velocity / self.height;
+        let theta_dot = state.theta_dot.abs() + velocity / self.radius;
         Truncation {
-            u_dot: Modes::each(frame, |_, mode| local_error * velocity * (self.mass / mode.mass).sqrt()),
+            u_dot: Modes::each(frame, |_, mode| local_error * velocity * (m_t / mode.mass).sqrt()),
             theta_dot: if is_rocking { local_error * theta_dot } else { 0.0 },
         }
     }
@@ -283,12 +295,15 @@ impl ManyModes {
         let per_inertia = 1.0 / (J0 + m0 * B * B + inertia.reduce_add());
         let (mut offset, mut theta_dot) = (pivot * m0 + offset.reduce_add(), state.theta_dot);
         let ((mut sin, mut cos), [mut sin_before, mut cos_before]) = (libm::sincos(state.theta), [0.0; 2]);
+        let [on_rest, rest_slope] = [a_top.value, a_top.slope].map(|forces| forces.rest().unwrap_or_default());
+        is_pushed |= [on_rest, rest_slope] != [[0.0; 2]; 2];
+        // Σ φᵀF w + sB F_res
         let pushes = |fours: &[Four], k: usize| {
             let mut sum = f64x4::ZERO;
             for Four { mass, push, lever, .. } in fours {
                 sum += mass * (push[0] * lever[k] + if k > 0 { push[1] * lever[k - 1] } else { f64x4::ZERO });
             }
-            sum.reduce_add()
+            sum.reduce_add() + pivot * [on_rest[0], rest_slope[0] * span].get(k).unwrap_or(&0.0)
         };
         let truncation = self.truncation(start, span, true);
         arc.expand_in_place(state, span, &truncation, |arc, k, per| {
@@ -317,6 +332,9 @@ impl ManyModes {
                 moment += four.arm * four.held;
             }
             let mut moment = moment.reduce_add() - weight_moment + push_moment + S_res * fall;
+            if is_pushed {
+                moment += on_rest[1] * cos + rest_slope[1] * span * cos_before;
+            }
             if let Some(ties) = &mut ties {
                 moment -= ties.next(&arc.theta_dot, n, per);
             }
@@ -374,7 +392,9 @@ impl ManyModes {
                 offset += four.mass * four.share * u;
             }
             let mut moment = (moment + offset * g + before * lift).reduce_add() - pivot * m_t * weight;
-            moment += S_res * (lean - of_order([a_g.value, a_g.slope * span]));
+            let [value, slope] =
+                [(a_g.value, a_top.value), (a_g.slope, a_top.slope)].map(|(a, on)| rigid(base, a, on.rest()));
+            moment += S_res * lean + of_order([value, slope * span]);
             before = offset;
             if let Some(ties) = &mut ties {
                 moment -= ties.next(&arc.theta_dot, n, per);
@@ -404,8 +424,8 @@ impl ManyModes {
         let is_held = held.min(held + change) > 0.0;
         let [mut springs, mut all] = [ZERO; 2];
         for k in 0..=arc.order {
-            [springs[k], all[k]] =
-                lifting(frame, &arc.u[k], &arc.u_dot[k], [start.a_g.coefficient(k, arc.span), base.g + a_v]);
+            let rigid = rigid(base, start.a_g.coefficient(k, arc.span), start.a_top.coefficient(k, arc.span).rest());
+            [springs[k], all[k]] = lifting(frame, &arc.u[k], &arc.u_dot[k], [rigid, base.g + a_v]);
             if k > 0 {
                 all[k] += a_v_change * Modes::sum(frame, |j, mode| mode.gamma * arc.u[k - 1].of(j));
             }
@@ -426,6 +446,11 @@ impl ManyModes {
         let limit = [held, change];
         let loose = first_time_all_closed([Gap::new(&limit, 1.0, 0.0), turns], arc.reach);
         if far.sigma() <= loose.sigma() { far } else { loose }
+    }
+
+    /// The moment by which the mass that rides rigidly lifts the base `tau` (s) after `start`.
+    fn rigid_at(&self, start: &Start<Modes>, tau: f64) -> f64 {
+        rigid(&self.subject.structure.base, start.a_g.at(tau), start.a_top.at(tau).rest())
     }
 
     /// The moment that the base's hold has at least over the interval of `start`, N·m.
@@ -468,8 +493,8 @@ impl Level<Modes> for ManyModes {
             end.u_dot.set(j, to[1]);
         }
         // what the mass that rides rigidly takes of the hold
-        let rigid = Modes::base(frame).S_res.abs() * start.a_g.value.abs().max(start.a_g.at(interval).abs());
-        let held = self.least_hold(start) - rigid;
+        let held = self.least_hold(start)
+            - [0.0, interval].map(|tau| self.rigid_at(start, tau).abs()).into_iter().fold(0.0, f64::max);
         let near = springs[0].abs().max(springs[1].abs()) + bend * interval * interval / 8.0;
         (farthest < held || near < held).then_some(end)
     }
@@ -500,7 +525,7 @@ impl Level<Modes> for ManyModes {
         let [right, left] = [Side::Right, Side::Left].map(|side| self.first_about(side, start, arc));
         if right.sigma() == left.sigma() && right.sigma() < f64::INFINITY {
             let at = right.sigma() * arc.span;
-            let load = Load { a_g: start.a_g.at(at), F_t: Modes::ZERO, a_v: start.a_v.at(at) };
+            let load = Load { a_g: start.a_g.at(at), F_t: start.a_top.at(at), a_v: start.a_v.at(at) };
             let now = Now { state: &arc.at(right.sigma()), load, dissipators: start.dissipators };
             return (right, self.uplift_margin(&now).1);
         }
@@ -511,8 +536,7 @@ impl Level<Modes> for ManyModes {
         let &Start { state, interval, .. } = start;
         let most = |j: usize| state.u.of(j).abs() + way(interval, state.u_dot.of(j));
         let springs = Modes::sum(&self.subject.structure, |j, mode| (mode.height * mode.stiffness).abs() * most(j));
-        let &Base { S_res, .. } = Modes::base(&self.subject.structure);
-        springs + (S_res * start.a_g.value).abs() < self.least_hold(start)
+        springs + self.rigid_at(start, 0.0).abs() < self.least_hold(start)
     }
 
     fn stays_down(&self, state: &State<Modes>, dissipators: &Dissipators) -> bool {
@@ -531,7 +555,8 @@ impl Level<Modes> for ManyModes {
         let base = Modes::base(frame);
         let weight = (base.m_t * base.g + base.ties.P_0) * base.B;
         let [springs, all] =
-            lifting(frame, &state.u, &state.u_dot, [load.a_g, base.g + load.a_v]).map(|moment| moment / weight);
+            lifting(frame, &state.u, &state.u_dot, [rigid(base, load.a_g, load.F_t.rest()), base.g + load.a_v])
+                .map(|moment| moment / weight);
         let about = |side: Side| {
             let (s, held) = (side.sign(), hold(base, side, load.a_v, dissipators) / weight);
             let turns = held + LEAST_EXCESS - s * all;
@@ -540,6 +565,21 @@ impl Level<Modes> for ManyModes {
         let (right, left) = (about(Side::Right), about(Side::Left));
         let is_right = if right.0 <= 0.0 && left.0 <= 0.0 { right.1 <= left.1 } else { right.0 <= left.0 };
         if is_right { (right.0, Side::Right) } else { (left.0, Side::Left) }
+    }
+
+    fn after_impact(&self, side: Side, before: &State<Modes>) -> (Phase, State<Modes>) {
+        let &Subject { ref structure, local_error, .. } = &self.subject;
+        match structure.modes() {
+            [] => block::after_impact::<Modes>(structure, local_error, side, before),
+            _ => impact::resolve::<Modes>(structure, side, before),
+        }
+    }
+
+    fn chatter_limit(&self) -> ChatterLimit {
+        match self.subject.structure.modes() {
+            [] => block::chatter_limit(&self.subject.structure.base),
+            _ => ChatterLimit::of(Modes::vibration(&self.subject.structure)),
+        }
     }
 
     /// (M1), or the equations of rocking as they stand.
@@ -564,7 +604,8 @@ impl Level<Modes> for ManyModes {
             let moment = Modes::sum(frame, |j, mode| {
                 mode.mass * mode.height * elastic(j, mode, base.c_ratio) + mode.gamma * g * u.of(j)
             });
-            let moment = moment - pivot * base.m_t * g + S_res * (g * theta - load.a_g) - back;
+            let rigid = rigid(base, load.a_g, load.F_t.rest());
+            let moment = moment - pivot * base.m_t * g + S_res * g * theta + rigid - back;
             let theta_ddot = moment / self.left;
             let along = |j: usize, mode: &Mode| mode.share * g * theta - a_top.of(j) - elastic(j, mode, base.c_ratio);
             return Second {
@@ -580,7 +621,9 @@ impl Level<Modes> for ManyModes {
             mode.mass * (mode.height * held(j, mode) + lever(j, mode) * (2.0 * theta_dot * u_dot.of(j) - weight))
         });
         let fall = g * sin - load.a_g * cos;
+        let [force, height] = load.F_t.rest().unwrap_or_default();
         let moment = moment - pivot * m0 * (g * cos + load.a_g * sin) + S_res * fall - back;
+        let moment = moment + force * pivot * sin + height * cos;
         let theta_ddot = moment / inertia(frame, side, &u);
         let along = |j: usize, mode: &Mode| mode.share * g * sin - a_top.of(j) * cos - held(j, mode);
         Second { u_ddot: Modes::each(frame, |j, mode| along(j, mode) - mode.height * theta_ddot), theta_ddot }
@@ -590,8 +633,10 @@ impl Level<Modes> for ManyModes {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::piece::Turning;
     use crate::levels::nonlinear::accelerations;
-    use crate::mechanics::gauge::{Gauge, Reading};
+    use crate::mechanics::floors::MotionOfFloors;
+    use crate::mechanics::gauge::Gauge;
     use crate::mechanics::instant::Instant;
     use crate::mechanics::load::LinearLoad;
     use crate::mechanics::reactions::Reactions;
@@ -660,8 +705,8 @@ mod tests {
         let state =
             State { u: modes([0.01, -0.02, 0.005]), u_dot: modes([0.3, 0.1, -0.2]), theta: -0.2, theta_dot: 0.5 };
         let load = LinearLoad {
-            value: Load { a_g: 3.0, F_t: modes([100.0, -200.0, 50.0]), a_v: -1.5 },
-            slope: Load { a_g: 200.0, F_t: modes([-3e3, 1e4, 2e4]), a_v: 80.0 },
+            value: Load { a_g: 3.0, F_t: modes([100.0, -200.0, 50.0]).and_rest([60.0, -90.0]), a_v: -1.5 },
+            slope: Load { a_g: 200.0, F_t: modes([-3e3, 1e4, 2e4]).and_rest([-1e3, 4e3]), a_v: 80.0 },
         };
         for (detail, phase) in [
             (Detail::Nonlinear, Phase::Rocking(Side::Left)),
@@ -699,20 +744,18 @@ mod tests {
         let level = level(&frame, Detail::Nonlinear);
         let modes = |numbers: [f64; 3]| Modes::new(&numbers);
         let (u, u_dot) = (modes([0.01, -0.02, 0.005]), modes([0.3, 0.1, -0.2]));
-        let load = Load { a_g: 3.0, F_t: Modes::ZERO, a_v: -1.5 };
+        let forces = [70.0, -40.0];
+        let load = frame.load(3.0, -1.5, &forces).unwrap();
         let turned = State { u, u_dot, theta: -0.2, theta_dot: 0.5 };
         for (phase, state) in
             [(Phase::Rocking(Side::Left), turned), (Phase::FullContact, State { theta: 0.0, theta_dot: 0.0, ..turned })]
         {
             let now = Now { state: &state, load, dissipators: &Dissipators::NEW };
             let second = level.accelerations(phase, &now);
-            let x = Instant::of(&frame, phase, &state, load);
+            let x = Instant::<f64, Modes>::of(&frame, phase, &state, load);
             let Instant { turn, theta_dot, a_g, a_v, s, .. } = x;
-            let value = |gauge: &Gauge| {
-                let elastic = gauge.elastic(&frame, frame.base.damping(phase), &u, &u_dot);
-                let theta_ddot = second.theta_ddot;
-                gauge.value(&frame.base, s, &Reading { elastic, push: 0.0, turn, theta_dot, theta_ddot, a_g, a_v })
-            };
+            let seen = Turning { x, theta_ddot: second.theta_ddot };
+            let value = |gauge: &Gauge| seen.gauge(gauge);
             let (mut storey, gauges) = (0.0, frame.gauges());
             for (i, floor) in floors.iter().enumerate().rev() {
                 let lever = s * frame.base.B - floor.displacement(&u);
@@ -722,22 +765,25 @@ mod tests {
                 storey += floor.mass * expected;
                 assert_relative_eq!(value(&gauges.V[i]), storey, max_relative = 1e-12);
             }
-            let reactions = Reactions::at(&x, &second);
+            let x = &seen.x;
+            let reactions = Reactions::at(x, &second);
             if let Phase::Rocking(_) = phase {
                 assert_relative_eq!(reactions.R_m, x.pivot() * reactions.R_v, max_relative = 1e-11);
             } else {
                 let weight = frame.base.g + a_v;
-                let [springs, others] = lifting(&frame, &u, &u_dot, [a_g, weight]);
+                let rigid = rigid(&frame.base, a_g, load.F_t.rest());
+                let [springs, others] = lifting(&frame, &u, &u_dot, [rigid, weight]);
                 let c_ratio = frame.base.c_ratio;
                 let damped = Modes::sum(&frame, |j, mode| mode.height * mode.damping * u_dot.of(j));
                 assert_relative_eq!(reactions.R_m, others - (c_ratio - 1.0) * damped, max_relative = 1e-12);
                 assert!(springs != others);
                 // the foundation carries its own a_g, and the masses carry the base shear
-                let carried = value(&gauges.V_t) + frame.body().m0 * a_g;
+                let carried = value(&gauges.V_t) + frame.body().m0 * a_g - forces[0] - forces[1];
                 assert_relative_eq!(reactions.R_h, -carried, max_relative = 1e-12);
+                let pushed: f64 = forces.iter().zip(&floors).map(|(force, floor)| force * floor.height).sum();
                 assert_relative_eq!(
                     value(&gauges.M_t),
-                    -(reactions.R_m - weight * x.sum(|j, mode| mode.gamma * u.of(j))),
+                    -(reactions.R_m - weight * x.sum(|j, mode| mode.gamma * u.of(j)) - pushed),
                     max_relative = 1e-12
                 );
             }

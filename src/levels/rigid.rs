@@ -21,12 +21,15 @@
 use crate::levels::level::{Level, Now, Rates, Subject};
 use crate::levels::rules::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
 use crate::levels::ties::TieSeries;
+use crate::mechanics::impact::restitution;
 use crate::mechanics::instant::Second;
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
 use crate::mechanics::uplift::least_push;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation, ZERO, product};
+use crate::structure::Base;
 use crate::{Phase, Side, State, Structure};
 
 /// P and Q at `theta`.
@@ -34,6 +37,27 @@ fn shape(structure: &Structure, side: Side, theta: f64) -> [f64; 2] {
     let (sin, cos) = libm::sincos(theta);
     let slenderness = side.sign() * structure.tan_alpha_cg;
     [sin - slenderness * cos, cos + slenderness * sin]
+}
+
+/// Phase and state just after an impact of a rigid structure that ends rocking about `side` in the state `before`, in steps of this
+/// `local_error`.
+pub(crate) fn after_impact<Q: Coordinates>(
+    structure: &Q::Structure,
+    local_error: f64,
+    side: Side,
+    before: &State<Q>,
+) -> (Phase, State<Q>) {
+    let &Base { p_l, tan_alpha_cg, .. } = Q::base(structure);
+    let r = restitution(structure, side, before);
+    if r * before.theta_dot.abs() <= local_error * p_l * tan_alpha_cg {
+        return (Phase::FullContact, State { theta: 0.0, theta_dot: 0.0, ..*before });
+    }
+    (Phase::Rocking(side.opposite()), State { theta: 0.0, theta_dot: r * before.theta_dot, ..*before })
+}
+
+/// The most transitions that may happen within a period.
+pub(crate) fn chatter_limit(base: &Base) -> ChatterLimit {
+    ChatterLimit { period: 1.0 / base.p_l, transitions: MAX_RIGID_TRANSITIONS_PER_PERIOD }
 }
 
 /// The rigid limit as a level of detail.
@@ -169,16 +193,11 @@ impl Level for Rigid {
     }
 
     fn after_impact(&self, side: Side, before: &State) -> (Phase, State) {
-        let &Subject { ref structure, local_error, .. } = &self.subject;
-        let theta_dot = structure.parameters().r * before.theta_dot;
-        if theta_dot.abs() <= local_error * structure.p_l * structure.tan_alpha_cg {
-            return (Phase::FullContact, State::default());
-        }
-        (Phase::Rocking(side.opposite()), State { theta_dot, ..State::default() })
+        after_impact(self.structure(), self.subject.local_error, side, before)
     }
 
     fn chatter_limit(&self) -> ChatterLimit {
-        ChatterLimit { period: 1.0 / self.structure().p_l, transitions: MAX_RIGID_TRANSITIONS_PER_PERIOD }
+        chatter_limit(&self.structure().base)
     }
 
     fn admissible(&self, phase: Phase, state: State) -> State {

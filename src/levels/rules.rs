@@ -6,6 +6,9 @@
 //! many in finite time, which end in contact; neither specimen comes near them. The rigid limit, which has no vibration
 //! and does come to rest by ever faster impacts, has [`MAX_RIGID_TRANSITIONS_PER_PERIOD`] for each 1/p_l instead.
 
+use crate::structure::Vibration;
+use std::f64::consts::TAU;
+
 /// Transitions within one period of the vibration mode (2π/ω_u) after which contact is held.
 pub const MAX_TRANSITIONS_PER_PERIOD: u32 = 1000;
 
@@ -18,4 +21,11 @@ pub const MAX_RIGID_TRANSITIONS_PER_PERIOD: u32 = 100_000;
 pub(crate) struct ChatterLimit {
     pub period: f64,
     pub transitions: u32,
+}
+
+impl ChatterLimit {
+    /// The limit of a structure that vibrates so.
+    pub(crate) fn of(vibration: Vibration) -> ChatterLimit {
+        ChatterLimit { period: TAU / vibration.rocking[0], transitions: MAX_TRANSITIONS_PER_PERIOD }
+    }
 }

@@ -40,11 +40,11 @@ impl AnyLevel {
         &self,
         phase: Phase,
         state: &State,
-        [accelerations, jerks]: [[f64; 2]; 2],
+        [accelerations, jerks]: [Second<f64>; 2],
         load: LinearLoad,
     ) -> Outputs {
-        let strut = self.strut(phase, || Dual { value: accelerations[1], rate: jerks[1] });
-        let x = Instant { strut, ..Instant::moving(self.structure(), phase, state, accelerations, load) };
+        let strut = self.strut(phase, || Dual { value: accelerations.theta_ddot, rate: jerks.theta_ddot });
+        let x = Instant { strut, ..Instant::moving(self.structure(), phase, state, &accelerations, load) };
         Outputs::at(&x).map(|output| output.rate)
     }
 
@@ -148,7 +148,7 @@ impl AnyLevel {
         &self,
         phase: Phase,
         state: &State,
-        accelerations: [f64; 2],
+        accelerations: &Second<f64>,
         load: LinearLoad,
     ) -> Searched<f64> {
         searched(&Instant::moving(self.structure(), phase, state, accelerations, load)).map(|output| output.rate)

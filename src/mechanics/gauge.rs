@@ -52,15 +52,25 @@ impl Gauge {
     }
 
     /// Σ φ (c u̇ + k u)/μ, with the part `damping` of the damping in full contact: linear in `u` and `u_dot`.
-    pub(crate) fn elastic(&self, frame: &Frame, damping: f64, u: &Modes, u_dot: &Modes) -> f64 {
-        Modes::sum(frame, |j, mode| {
-            self.shape.of(j) * (mode.damping * damping * u_dot.of(j) + mode.stiffness * u.of(j)) / mode.mass
+    pub(crate) fn elastic<N: Number, Q>(&self, frame: &Frame, damping: f64, u: &Q, u_dot: &Q) -> N
+    where
+        Q: Lateral<N, Structure = Frame>,
+    {
+        Q::sum(frame, |j, mode| {
+            let force = u_dot.of(j) * (mode.damping * damping) + u.of(j) * mode.stiffness;
+            force * self.shape.of(j) / mode.mass
         })
     }
 
     /// Σ φ φᵀF/μ: linear in the forces.
-    pub(crate) fn push(&self, frame: &Frame, F_t: &Modes) -> f64 {
-        Modes::sum(frame, |j, mode| self.shape.of(j) * F_t.of(j) / mode.mass)
+    pub(crate) fn push<N: Number, Q: Lateral<N, Structure = Frame>>(&self, frame: &Frame, F_t: &Q) -> N {
+        Q::sum(frame, |j, mode| F_t.of(j) * self.shape.of(j) / mode.mass)
+    }
+
+    /// The force and the moment on mass that no mode carries, of a `force` (N) on a floor whose acceleration this gauge reads.
+    pub(crate) fn on_rest(&self, force: f64) -> [f64; 2] {
+        let [height, share] = self.left;
+        [force * share, force * height]
     }
 
     /// The value on `base` while rocking about the pivot `s`, or at rest if s = 0.

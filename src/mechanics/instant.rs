@@ -5,7 +5,7 @@ use crate::mechanics::load::{LinearLoad, Load};
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
 use crate::structure::{Base, Mode};
-use crate::{Phase, State, Structure};
+use crate::{Phase, State};
 
 /// The structure at an instant, with lateral coordinates `Q`.
 #[derive(Clone, Copy, Debug)]
@@ -96,31 +96,36 @@ impl<'a, Q: Coordinates> Instant<'a, f64, Q> {
     }
 }
 
-impl<'a> Instant<'a, Dual<f64>> {
+impl<'a, Q: Coordinates> Instant<'a, Dual<f64>, Dual<Q>>
+where
+    Dual<Q>: Lateral<Dual<f64>, Structure = Q::Structure>,
+{
     /// The structure with its rates, given (ü, θ̈); once it has overturned, all rates are 0.
     #[inline]
     pub(crate) fn moving(
-        structure: &'a Structure,
+        structure: &'a Q::Structure,
         phase: Phase,
-        state: &State,
-        [u_ddot, theta_ddot]: [f64; 2],
-        load: LinearLoad,
+        state: &State<Q>,
+        &Second { u_ddot, theta_ddot }: &Second<f64, Q>,
+        load: LinearLoad<Q>,
     ) -> Self {
-        let Instant { s, u, u_dot, theta, theta_dot, turn, .. } = Instant::of(structure, phase, state, load.value);
+        let Instant { s, u, u_dot, theta, theta_dot, turn, .. } =
+            Instant::<f64, Q>::of(structure, phase, state, load.value);
         let moves = if let Phase::Overturned(_) = phase { 0.0 } else { 1.0 };
         let dual = |value, rate: f64| Dual { value, rate: moves * rate };
+        let lateral = |value: Q, rate: Q| Dual { value, rate: rate.times(moves) };
         let LinearLoad { value, slope } = load;
         Instant {
             structure,
             s,
-            strut: Strut::Elastic(structure.base.damping(phase)),
-            u: dual(u, u_dot),
-            u_dot: dual(u_dot, u_ddot),
+            strut: Strut::Elastic(Q::base(structure).damping(phase)),
+            u: lateral(u, u_dot),
+            u_dot: lateral(u_dot, u_ddot),
             theta: dual(theta, theta_dot),
             theta_dot: dual(theta_dot, theta_ddot),
             turn: turn.at_rate(moves * theta_dot),
             a_g: dual(value.a_g, slope.a_g),
-            F_t: dual(value.F_t, slope.F_t),
+            F_t: lateral(value.F_t, slope.F_t),
             a_v: dual(value.a_v, slope.a_v),
         }
     }

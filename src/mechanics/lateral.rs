@@ -5,6 +5,7 @@
 
 use crate::Structure;
 use crate::numbers::Number;
+use crate::numbers::dual::Dual;
 use crate::series::taylor::evaluate;
 use crate::structure::frame::Frame;
 use crate::structure::{Base, Mode, Vibration};
@@ -15,13 +16,22 @@ use wide::f64x4;
 /// Lateral coordinates in numbers of the kind `N`.
 pub trait Lateral<N: Number>: Copy {
     /// The structures with these coordinates.
-    type Structure: Clone + Debug;
+    type Structure: Clone + Debug + AsRef<Base>;
 
     /// The base of a structure.
-    fn base(structure: &Self::Structure) -> &Base;
+    #[inline(always)]
+    fn base(structure: &Self::Structure) -> &Base {
+        structure.as_ref()
+    }
 
     /// The coordinate of mode `j`.
     fn of(&self, j: usize) -> N;
+
+    /// Of forces, what acts on mass that no mode carries, if there is such: the force, and its moment about the height of the pivots.
+    #[inline(always)]
+    fn rest(&self) -> Option<[N; 2]> {
+        None
+    }
 
     /// The modes of a structure.
     fn modes(structure: &Self::Structure) -> &[Mode];
@@ -44,6 +54,12 @@ pub trait Coordinates: Lateral<f64> + Debug + PartialEq + 'static {
 
     /// Makes the coordinates of a structure, each from its number and its mode.
     fn each(structure: &Self::Structure, coordinate: impl Fn(usize, &Mode) -> f64) -> Self;
+
+    /// These coordinates beside what acts on mass that no mode carries among `forces`.
+    #[inline(always)]
+    fn beside(self, _forces: &Self) -> Self {
+        self
+    }
 
     /// The part that each mode takes in a `translation` of the base.
     #[inline]
@@ -75,11 +91,6 @@ pub trait Coordinates: Lateral<f64> + Debug + PartialEq + 'static {
 
 impl<N: Number> Lateral<N> for N {
     type Structure = Structure;
-
-    #[inline(always)]
-    fn base(structure: &Structure) -> &Base {
-        &structure.base
-    }
 
     #[inline(always)]
     fn of(&self, _: usize) -> N {
@@ -149,26 +160,39 @@ impl Coordinates for f64 {
 /// The most modes of a structure.
 pub const MOST_MODES: usize = 24;
 
-/// A coordinate for each mode of a structure of many masses.
+/// A coordinate for each mode of a structure of many masses; or a force on each mode, beside the force on mass that no mode carries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Modes {
+    /// Numbers that were given; a structure refuses another count than that of its modes.
     count: usize,
     of: [f64; MOST_MODES],
+    /// Of forces, the force on mass that no mode carries, and its moment; otherwise 0.
+    rest: [f64; 2],
 }
 
 impl Modes {
-    /// One number for each mode.
+    /// One number for each mode. Numbers beyond [`MOST_MODES`] fit no structure and are not kept.
     #[inline]
     pub fn new(numbers: &[f64]) -> Modes {
         let mut modes = Modes { count: numbers.len(), ..Modes::ZERO };
-        modes.of[..numbers.len()].copy_from_slice(numbers);
+        modes.of.iter_mut().zip(numbers).for_each(|(of, number)| *of = *number);
         modes
+    }
+
+    /// How many numbers were given.
+    pub(crate) fn count(&self) -> usize {
+        self.count
     }
 
     /// One number for each mode.
     #[inline]
     pub fn numbers(&self) -> &[f64] {
-        &self.of[..self.count]
+        &self.of[..self.count.min(MOST_MODES)]
+    }
+
+    /// These forces on the modes, and the force and the moment of what acts on mass that no mode carries.
+    pub(crate) fn and_rest(self, rest: [f64; 2]) -> Modes {
+        Modes { rest, ..self }
     }
 
     /// Writes the number of mode `j`.
@@ -222,9 +246,10 @@ impl Modes {
     #[inline(always)]
     fn with(mut self, other: &Modes, combine: impl Fn(f64, f64) -> f64) -> Modes {
         self.count = self.count.max(other.count);
-        for (own, other) in self.of[..self.count].iter_mut().zip(&other.of) {
+        for (own, other) in self.of.iter_mut().zip(&other.of).take(self.count) {
             *own = combine(*own, *other);
         }
+        self.rest = [0, 1].map(|i| combine(self.rest[i], other.rest[i]));
         self
     }
 }
@@ -233,16 +258,32 @@ impl Lateral<f64> for Modes {
     type Structure = Frame;
 
     #[inline(always)]
-    fn base(structure: &Frame) -> &Base {
-        &structure.base
-    }
-
-    #[inline(always)]
     fn of(&self, j: usize) -> f64 {
         self.of[j]
     }
 
     #[inline(always)]
+    fn rest(&self) -> Option<[f64; 2]> {
+        (self.rest != [0.0; 2]).then_some(self.rest)
+    }
+
+    #[inline(always)]
+    fn modes(structure: &Frame) -> &[Mode] {
+        structure.modes()
+    }
+}
+
+impl Lateral<Dual<f64>> for Dual<Modes> {
+    type Structure = Frame;
+
+    fn of(&self, j: usize) -> Dual<f64> {
+        Dual { value: self.value.of(j), rate: self.rate.of(j) }
+    }
+
+    fn rest(&self) -> Option<[Dual<f64>; 2]> {
+        Some([0, 1].map(|i| Dual { value: self.value.rest[i], rate: self.rate.rest[i] }))
+    }
+
     fn modes(structure: &Frame) -> &[Mode] {
         structure.modes()
     }
@@ -254,13 +295,18 @@ impl Coordinates for Modes {
         structure.vibration
     }
 
-    const ZERO: Modes = Modes { count: 0, of: [0.0; MOST_MODES] };
+    const ZERO: Modes = Modes { count: 0, of: [0.0; MOST_MODES], rest: [0.0; 2] };
 
     #[inline(always)]
     fn each(structure: &Frame, coordinate: impl Fn(usize, &Mode) -> f64) -> Modes {
         let mut modes = Modes { count: structure.modes().len(), ..Modes::ZERO };
         modes.of.iter_mut().zip(structure.modes()).enumerate().for_each(|(j, (of, mode))| *of = coordinate(j, mode));
         modes
+    }
+
+    #[inline]
+    fn beside(self, forces: &Modes) -> Modes {
+        self.and_rest(forces.rest)
     }
 
     #[inline]
@@ -294,7 +340,7 @@ impl Coordinates for Modes {
 
     #[inline]
     fn is_within(&self, limits: &Modes) -> bool {
-        self.numbers().iter().zip(&limits.of).all(|(own, limit)| own.abs() <= *limit)
+        self.numbers().iter().zip(&limits.of).all(|(own, limit)| own.abs() <= *limit) && self.rest == [0.0; 2]
     }
 
     fn room(&self, limits: &Modes) -> f64 {
@@ -303,7 +349,7 @@ impl Coordinates for Modes {
 
     #[inline]
     fn total(&self) -> f64 {
-        self.numbers().iter().sum()
+        self.numbers().iter().chain(&self.rest).sum()
     }
 }
 
@@ -562,7 +608,8 @@ mod tests {
         let second = Second { u_ddot: frame.modal(&Vector3::repeat(u_ddot)), theta_ddot };
         let of_three = Load { a_g: load.a_g, F_t: frame.no_force(), a_v: load.a_v };
         let found = Reactions::at(&Instant::of(&*frame, phase, &three, of_three), &second);
-        let expected = Reactions::of(&structure, phase, &one, [u_ddot, theta_ddot], load);
+        let expected =
+            Reactions::at(&Instant::<f64>::of(&structure, phase, &one, load), &Second { u_ddot, theta_ddot });
         for (found, expected) in [(found.R_h, expected.R_h), (found.R_v, expected.R_v), (found.R_m, expected.R_m)] {
             assert_relative_eq!(found, expected, max_relative = 1e-12);
         }

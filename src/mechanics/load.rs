@@ -7,8 +7,8 @@
 //! ```
 //!
 //! The top mass therefore feels the ground acceleration a_g − F_t/m, and the foundation feels a_g alone. With F_t = 0 no result
-//! changes in a bit. Uplift of one mass requires s u ≥ u_cr and s θ̈ > 0, and neither depends on a_g or F_t. A force on a mass that
-//! the modes leave out has no term here. Impacts are too short for both.
+//! changes in a bit. Uplift of one mass requires s u ≥ u_cr and s θ̈ > 0, and neither depends on a_g or F_t. Impacts are too short for
+//! both. [`Frame::load`](crate::Frame::load) tells what forces on floors add to a structure of many masses.
 //!
 //! The vertical ground acceleration a_v replaces g by g + a_v in every weight.
 
@@ -72,8 +72,8 @@ pub const VERTICAL: usize = 2;
 pub struct Load<Q = f64> {
     /// Ground acceleration, m/s², positive to the right.
     pub a_g: f64,
-    /// External force on the top mass, N, horizontal in the ground's frame, positive to the right; of many masses, the force φᵀF of
-    /// each mode.
+    /// External force on the top mass, N, horizontal in the ground's frame, positive to the right; of many masses, the force φᵀF on
+    /// each mode, from [`Frame::load`](crate::Frame::load).
     pub F_t: Q,
     /// Vertical ground acceleration, m/s², positive upwards.
     pub a_v: f64,
@@ -106,10 +106,10 @@ impl Load {
 }
 
 impl<Q: Coordinates> Load<Q> {
-    /// The ground acceleration that each mode feels, a_g Γ/μ − F_t/μ, m/s².
+    /// The ground acceleration that each mode feels, a_g Γ/μ − F_t/μ, m/s², beside the force on mass that no mode carries.
     #[inline(always)]
     pub(crate) fn on_modes(self, structure: &Q::Structure) -> Q {
-        Q::each(structure, |j, mode| mode.part(self.a_g) - self.F_t.of(j) / mode.mass)
+        Q::each(structure, |j, mode| mode.part(self.a_g) - self.F_t.of(j) / mode.mass).beside(&self.F_t)
     }
 }
 

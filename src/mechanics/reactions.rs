@@ -33,11 +33,11 @@
 
 use crate::mechanics::instant::{Instant, Place, Second};
 use crate::mechanics::lateral::{Coordinates, Lateral};
-use crate::mechanics::load::{LinearLoad, Load};
+use crate::mechanics::load::LinearLoad;
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
 use crate::structure::{Base, Mode};
-use crate::{Phase, State, Structure};
+use crate::{Phase, State};
 use serde::{Deserialize, Serialize};
 
 /// Forces on the ground; from [`crate::Engine::rates`], their time derivatives in the same fields.
@@ -111,6 +111,9 @@ pub(crate) fn forces<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Secon
         across = across + acceleration.across * mode.gamma;
         push = push + mode.part(x.F_t.of(j));
     }
+    if let Some([force, _]) = x.F_t.rest() {
+        push = push + force;
+    }
     [
         push - along * x.turn.cos - across * x.turn.sin,
         (x.a_v + N::constant(g)) * m_t + across * x.turn.cos - along * x.turn.sin,
@@ -129,6 +132,9 @@ pub(crate) fn forces_by_momentum<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, ra
         along = along + (x.u_dot.of(j) + x.theta_dot * mode.height) * mode.gamma;
         lever = lever + x.place(j, mode).lever(x.pivot()) * mode.gamma;
         push = push + mode.part(x.F_t.of(j));
+    }
+    if let Some([force, _]) = x.F_t.rest() {
+        push = push + force;
     }
     let across = lever * x.theta_dot;
     let [right, up] = [along * x.turn.cos + across * x.turn.sin, across * x.turn.cos - along * x.turn.sin];
@@ -158,6 +164,9 @@ pub(crate) fn moment<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Secon
         moment =
             moment + (place.up(x.pivot(), &x.turn) * (right + x.F_t.of(j)) + place.right(x.pivot(), &x.turn) * down);
     }
+    if let Some([force, height]) = x.F_t.rest() {
+        moment = moment + x.turn.sin * x.pivot() * force + x.turn.cos * height;
+    }
     moment - second.theta_ddot * J0
 }
 
@@ -178,30 +187,23 @@ impl<N: Number> Reactions<N> {
 }
 
 impl Reactions {
-    /// The reactions in `phase` and `state`, given (ü, θ̈) under `load`.
-    pub(crate) fn of(
-        structure: &Structure,
-        phase: Phase,
-        state: &State,
-        [u_ddot, theta_ddot]: [f64; 2],
-        load: Load,
-    ) -> Reactions {
-        Reactions::at(&Instant::of(structure, phase, state, load), &Second { u_ddot, theta_ddot })
-    }
-
     /// Time derivatives under `load`, given (ü, θ̈) and (u⃛, θ⃛); 0 once overturned.
-    pub(crate) fn rates(
-        structure: &Structure,
+    pub(crate) fn rates<Q: Coordinates>(
+        structure: &Q::Structure,
         phase: Phase,
-        state: &State,
-        [accelerations, jerks]: [[f64; 2]; 2],
-        load: LinearLoad,
-    ) -> Reactions {
+        state: &State<Q>,
+        [accelerations, jerks]: [Second<f64, Q>; 2],
+        load: LinearLoad<Q>,
+    ) -> Reactions
+    where
+        Dual<Q>: Lateral<Dual<f64>, Structure = Q::Structure>,
+    {
         if let Phase::Overturned(_) = phase {
             return Reactions { R_h: 0.0, R_v: 0.0, R_m: 0.0 };
         }
-        let x = Instant::moving(structure, phase, state, accelerations, load);
-        let [u_ddot, theta_ddot] = [0, 1].map(|i| Dual { value: accelerations[i], rate: jerks[i] });
+        let x = Instant::moving(structure, phase, state, &accelerations, load);
+        let u_ddot = Dual { value: accelerations.u_ddot, rate: jerks.u_ddot };
+        let theta_ddot = Dual { value: accelerations.theta_ddot, rate: jerks.theta_ddot };
         let Reactions { R_h, R_v, R_m } = Reactions::at(&x, &Second { u_ddot, theta_ddot });
         Reactions { R_h: R_h.rate, R_v: R_v.rate, R_m: R_m.rate }
     }
@@ -253,7 +255,7 @@ fn momentum<Q: Coordinates>(structure: &Q::Structure, phase: Phase, state: &Stat
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Parameters, Side};
+    use crate::{Load, Parameters, Side, Structure};
     use approx::assert_relative_eq;
 
     /// The accelerations in the formulas are second derivatives of the places: δ_t and the height, differentiated twice.

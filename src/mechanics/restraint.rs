@@ -18,7 +18,7 @@ use crate::mechanics::uplift::Hold;
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
 use crate::structure::{Base, Ties};
-use crate::{Side, State, Structure};
+use crate::{Side, Structure};
 use serde::{Deserialize, Serialize};
 
 /// The state of the dissipators and the energy they have taken. The first is at +ξ_d, the second at −ξ_d.
@@ -149,18 +149,18 @@ pub(crate) fn sum(ties: &[Tie; 3], weight: impl Fn(&Tie) -> f64) -> Tie {
 
 /// Tendon and dissipators of a structure that rocks, or is about to lift off, about a side.
 #[derive(Clone, Copy, Debug)]
-pub struct Restraint<'a> {
-    structure: &'a Structure,
+pub struct Restraint<'a, S = Structure> {
+    structure: &'a S,
     side: Side,
     /// The tendon and both dissipators.
     ties: [Tie; 3],
 }
 
-impl<'a> Restraint<'a> {
-    /// The restraint about `side` with the dissipators in this state.
+impl<'a, S: AsRef<Base>> Restraint<'a, S> {
+    /// The restraint of a structure of one mass or of many about `side`, with the dissipators in this state.
     #[inline]
-    pub fn about(structure: &'a Structure, side: Side, dissipators: &Dissipators) -> Restraint<'a> {
-        Restraint { structure, side, ties: ties(&structure.base, side, dissipators) }
+    pub fn about(structure: &'a S, side: Side, dissipators: &Dissipators) -> Restraint<'a, S> {
+        Restraint { structure, side, ties: ties(structure.as_ref(), side, dissipators) }
     }
 
     /// The forces of the ties at this `chord`.
@@ -184,7 +184,7 @@ impl<'a> Restraint<'a> {
     /// Pulls of the ties on the ground, up and to the right, N, and their moment about the place of the middle of the base in
     /// full contact, N·m. The moment holds in full contact.
     pub(crate) fn pulls<N: Number>(&self, chord: &Chord<N>) -> [N; 3] {
-        let middle = self.side.sign() * self.structure.parameters().B;
+        let middle = self.side.sign() * self.structure.as_ref().B;
         let force = |tie: Tie| tie.force(chord.length, chord.rate);
         let (pull, moment) = (force(sum(&self.ties, |_| 1.0)), force(sum(&self.ties, |tie| middle - tie.lever)));
         [pull * chord.half.cos, pull * chord.half.sin, moment * chord.half.cos]
@@ -197,7 +197,7 @@ impl<'a> Restraint<'a> {
 
     /// Stored energy P_0 e + ½ k_t e² + Σ F²/(2 k_d) at this `chord`, J, with F the force of an elastoplastic dissipator.
     fn stored<N: Number>(&self, chord: &Chord<N>) -> N {
-        let &crate::Parameters { P_0, k_t, k_d, F_y, .. } = self.structure.parameters();
+        let Ties { P_0, k_t, k_d, F_y, .. } = self.structure.as_ref().ties;
         let [tendon, pair @ ..] = &self.ties;
         let e = chord.length * tendon.lever;
         let of_tendon = e * (N::constant(P_0) + e * (0.5 * k_t));
@@ -209,7 +209,9 @@ impl<'a> Restraint<'a> {
             sum + force * force / (2.0 * k_d)
         })
     }
+}
 
+impl Restraint<'_> {
     /// The displacement u_cr,s (m) towards the side at which the base lifts off, if its turning moment suffices there:
     ///
     /// ```text
@@ -245,10 +247,13 @@ impl<'a> Restraint<'a> {
 }
 
 impl Restraints {
-    /// Rates of the forces, N/s, in `state` while θ̇ changes by `theta_ddot` (rad/s²).
-    pub(crate) fn rates(restraint: &Restraint, angles: Angles, state: &State, theta_ddot: f64) -> Restraints {
-        let theta_dot = Dual { value: state.theta_dot, rate: theta_ddot };
-        let theta = Dual { value: state.theta, rate: state.theta_dot };
+    /// Rates of the forces, N/s, from θ, θ̇ and θ̈.
+    pub(crate) fn rates<S: AsRef<Base>>(
+        restraint: &Restraint<S>,
+        angles: Angles,
+        [theta, theta_dot, theta_ddot]: [f64; 3],
+    ) -> Restraints {
+        let (theta, theta_dot) = (Dual { value: theta, rate: theta_dot }, Dual { value: theta_dot, rate: theta_ddot });
         let Restraints { P_t, F_d1, F_d2 } = restraint.forces(&angles.chord(theta, theta_dot));
         Restraints { P_t: P_t.rate, F_d1: F_d1.rate, F_d2: F_d2.rate }
     }

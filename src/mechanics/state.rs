@@ -125,8 +125,18 @@ pub enum InitialStateError {
     )]
     RestrainedModal,
     /// Structures of many masses have no such level.
-    #[error("detail = {0} moves structures of one mass alone: choose auto, nonlinear, linear or fixed_base")]
+    #[error("detail = {0} moves structures of one mass alone: choose auto, nonlinear, linear, rigid or fixed_base")]
     OneMass(&'static str),
+    /// Coordinates of modes that the structure does not have.
+    #[error(
+        "the initial state has {given} coordinates, and {modes} modes move: give one coordinate for each, or 0 for all"
+    )]
+    Coordinates {
+        /// Coordinates that are given.
+        given: usize,
+        /// Modes that move.
+        modes: usize,
+    },
     /// The top mass is displaced although the strut is rigid.
     #[error("u_0 = {u:?} m, u_dot_0 = {u_dot:?} m/s contradict detail = rigid, where u is always 0: set both to 0")]
     DeformedRigid {

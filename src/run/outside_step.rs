@@ -7,9 +7,10 @@
 //! passes nothing over. If the engine finds a transition on the way, or if the integrator ended beyond a guard without one,
 //! the engine's own motion from the start of the step counts.
 
-use crate::engine::AdvanceError;
 use crate::engine::phases::{self, Closed};
 use crate::engine::piece::{Sample, Watch};
+use crate::engine::{AdvanceError, Moves};
+use crate::mechanics::instant::Second;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::run::ground_motion::Elapsed;
 use crate::{Engine, GroundMotion, Motion, Phase, State};
@@ -20,13 +21,16 @@ pub const INDICATORS: usize = 2;
 
 pub use crate::engine::phases::BAND;
 
-impl Sample<'_> {
+impl<Q: Moves> Sample<'_, Q> {
     /// (u̇, ü, θ̇, θ̈) by the equations of the level and the phase; not numbers where these have no solution.
-    pub fn state_rates(&self) -> State {
+    pub fn state_rates(&self) -> State<Q> {
         let State { u_dot, theta_dot, .. } = self.level.admissible(self.motion.phase, self.motion.state);
-        let [u_ddot, theta_ddot] = self.accelerations();
+        let Second { u_ddot, theta_ddot } = self.second();
         match self.motion.phase {
-            Phase::Overturned(_) => State::default(),
+            Phase::Overturned(_) => {
+                let none = Q::each(self.level.structure(), |_, _| 0.0);
+                State { u: none, u_dot: none, theta: 0.0, theta_dot: 0.0 }
+            }
             Phase::FullContact | Phase::Rocking(_) => {
                 State { u: u_dot, u_dot: u_ddot, theta: theta_dot, theta_dot: theta_ddot }
             }
@@ -37,7 +41,7 @@ impl Sample<'_> {
     /// for impact while rocking. The second is for overturning and for dissipators that begin or cease to yield.
     pub fn event_indicators(&self) -> [f64; INDICATORS] {
         let mut indicators = [f64::INFINITY; INDICATORS];
-        for guard in phases::of(self.level.structure(), &self.motion).map_or(&[][..], |watched| watched.guards) {
+        for guard in phases::of::<Q>(self.level.structure(), &self.motion).map_or(&[][..], |watched| watched.guards) {
             let (place, value) = guard.indicator(self);
             if value < indicators[place] || value.is_nan() {
                 indicators[place] = value;
@@ -49,9 +53,9 @@ impl Sample<'_> {
 
 /// Result of the check of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Checked {
+pub struct Checked<Q = f64> {
     /// The motion at its end.
-    pub motion: Motion,
+    pub motion: Motion<Q>,
     /// Whether that is the engine's own and not where the integrator ended.
     pub is_corrected: bool,
     /// Whether the step's end shows nothing of the transitions on its way.
@@ -60,31 +64,31 @@ pub struct Checked {
 
 /// The last known instant of a motion that another integrator continues: the start, the end of a complete step, an event.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Checkpoint {
+pub struct Checkpoint<Q = f64> {
     /// The motion.
-    pub motion: Motion,
+    pub motion: Motion<Q>,
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     /// Load beside the record at this instant.
-    pub load: Load,
+    pub load: Load<Q>,
 }
 
-impl Checkpoint {
+impl<Q: Moves> Checkpoint<Q> {
     /// Checks the step from here to where `engine` is now, under `load`, which came about linearly, and on `ground`. The engine
     /// stays where it is; transitions on the way are shown to `watch`.
-    pub fn check<W: Watch>(
+    pub fn check<W: Watch<Q>>(
         &self,
-        engine: &mut Engine,
+        engine: &mut Engine<Q>,
         ground: Option<&GroundMotion>,
         elapsed: Elapsed,
-        load: Load,
+        load: Load<Q>,
         watch: &mut W,
-    ) -> Result<Checked, AdvanceError> {
+    ) -> Result<Checked<Q>, AdvanceError> {
         if let Phase::Overturned(_) = self.motion.phase {
             return Ok(Checked { motion: self.motion, is_corrected: false, was_hidden: false });
         }
         let end = *engine.motion();
-        let now: LinearLoad = load.into();
+        let now = LinearLoad::held(load);
         let now = ground.map_or(now, |ground| now.on_ground(ground.since(self.elapsed, elapsed)));
         let is_beyond = !engine.sample(now.value).event_indicators().iter().all(|indicator| *indicator > 0.0);
         engine.set_motion(self.motion);
@@ -100,12 +104,12 @@ impl Checkpoint {
     }
 
     /// The engine's own motion from here over `interval` (s).
-    fn go_on<W: Watch>(
+    fn go_on<W: Watch<Q>>(
         &self,
-        engine: &mut Engine,
+        engine: &mut Engine<Q>,
         ground: Option<&GroundMotion>,
         interval: f64,
-        load: Load,
+        load: Load<Q>,
         watch: &mut W,
     ) -> Result<(), AdvanceError> {
         if interval == 0.0 {
@@ -115,7 +119,8 @@ impl Checkpoint {
             |from: f64, to: f64| Some((to - from) / interval).filter(|slope| slope.is_finite()).unwrap_or_default();
         let slope = Load {
             a_g: slope(self.load.a_g, load.a_g),
-            F_t: slope(self.load.F_t, load.F_t),
+            F_t: Q::each(engine.structure(), |j, _| slope(self.load.F_t.of(j), load.F_t.of(j)))
+                .beside(&load.F_t.plus(self.load.F_t, -1.0).times(slope(0.0, 1.0))),
             a_v: slope(self.load.a_v, load.a_v),
         };
         let load = LinearLoad { value: self.load, slope };
@@ -127,16 +132,16 @@ impl Checkpoint {
     }
 }
 
-impl Engine {
+impl<Q: Moves> Engine<Q> {
     /// Takes `state` from another integrator; what does not move in the present phase stays at rest.
-    pub fn set_state(&mut self, state: State) {
-        let Sample { motion, level, .. } = self.sample(Load::default());
+    pub fn set_state(&mut self, state: State<Q>) {
+        let Sample { motion, level, .. } = self.sample(Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 });
         let state = level.admissible(motion.phase, state);
         self.set_motion(Motion { state, ..motion });
     }
 
     /// Lifts the base off if that is due at once under `load`: after a landing, at the start, or when a load jumps.
-    pub fn lift_off_if_due<W: Watch>(&mut self, load: Load, watch: &mut W) {
+    pub fn lift_off_if_due<W: Watch<Q>>(&mut self, load: Load<Q>, watch: &mut W) {
         if let Some(closed) = self.due_at_once(load) {
             self.set_motion(Motion { due: Some(closed), ..*self.motion() });
             self.transit(watch);
@@ -144,14 +149,14 @@ impl Engine {
     }
 
     /// Whether the base lifts off at once under `load`.
-    pub fn is_uplift_due(&self, load: Load) -> bool {
+    pub fn is_uplift_due(&self, load: Load<Q>) -> bool {
         self.due_at_once(load).is_some()
     }
 
     /// The guard that is closed from the start under `load`.
-    fn due_at_once(&self, load: Load) -> Option<Closed> {
+    fn due_at_once(&self, load: Load<Q>) -> Option<Closed> {
         let now = self.sample(load);
-        let mut guards = phases::of(self.structure(), &now.motion)?.guards.iter().enumerate();
+        let mut guards = phases::of::<Q>(self.structure(), &now.motion)?.guards.iter().enumerate();
         guards.find_map(|(guard, of)| Some(Closed { guard: guard as u8, way: of.closed(&now)? }))
     }
 }

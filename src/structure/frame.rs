@@ -1,7 +1,8 @@
 //! A structure of many masses: a rigid base and the modes of vibration in full contact.
 
+use crate::Load;
 use crate::mechanics::gauge::Gauge;
-use crate::mechanics::lateral::{Coordinates, MOST_MODES, Modes};
+use crate::mechanics::lateral::{Coordinates, Lateral, MOST_MODES, Modes};
 use crate::series::bisection::last_where;
 use crate::structure::{Base, Mode, Ties, Vibration};
 
@@ -127,6 +128,22 @@ pub enum FrameError {
         /// Number of modes.
         modes: usize,
     },
+    /// More modes are to be kept than there are.
+    #[error("{count} modes cannot be kept of {modes}: keep 0 to {modes}")]
+    Kept {
+        /// Modes to be kept.
+        count: usize,
+        /// Number of modes.
+        modes: usize,
+    },
+    /// Forces that do not match the floors.
+    #[error("{forces} forces are given on {floors} floors: give one for each floor, or none")]
+    Forces {
+        /// Forces that are given.
+        forces: usize,
+        /// Number of floors.
+        floors: usize,
+    },
 }
 
 impl Mode {
@@ -145,6 +162,13 @@ impl Floor {
     }
 }
 
+impl AsRef<Base> for Frame {
+    #[inline(always)]
+    fn as_ref(&self) -> &Base {
+        &self.base
+    }
+}
+
 impl Frame {
     /// The structure of this `body` with these `modes`, which shows these `floors`.
     pub fn new(body: Body, modes: &[Mode], floors: &[Floor]) -> Result<Frame, FrameError> {
@@ -153,7 +177,7 @@ impl Frame {
             return Err(FrameError::Modes(count));
         }
         for (i, Floor { shape, .. }) in floors.iter().enumerate() {
-            let numbers = shape.numbers().len();
+            let numbers = shape.count();
             if numbers != count {
                 return Err(FrameError::Shape { floor: i + 1, numbers, modes: count });
             }
@@ -166,8 +190,14 @@ impl Frame {
         let [mass, inertia] = [of(|mode| mode.gamma * mode.share), of(|mode| mode.mass * mode.height * mode.height)];
         let m_s = whole("m_s", "kg", body.m_s, mass)?;
         let I_2 = whole("I_2", "kg.m2", body.I_2, inertia)?;
-        let body = Body { m_s, I_2, ..body };
-        let Body { m0, J0, S_1, B, r, g, c_ratio, ties, .. } = body;
+        Ok(Frame::of(Body { m_s, I_2, ..body }, modes, floors))
+    }
+
+    /// The structure of checked numbers.
+    fn of(body: Body, modes: &[Mode], floors: &[Floor]) -> Frame {
+        let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum::<f64>();
+        let [mass, inertia] = [of(|mode| mode.gamma * mode.share), of(|mode| mode.mass * mode.height * mode.height)];
+        let Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties } = body;
         let m_t = m0 + m_s;
         let J_P = J0 + m_t * B * B + I_2;
         let base = Base {
@@ -185,7 +215,50 @@ impl Frame {
             ties,
         };
         let (gauges, vibration) = (Box::new(Gauges::new(&body, modes, floors)), vibration(&base, modes));
-        Ok(Frame { base, body, modes: modes.to_vec(), floors: floors.to_vec(), gauges, vibration })
+        Frame { base, body, modes: modes.to_vec(), floors: floors.to_vec(), gauges, vibration }
+    }
+
+    /// This structure with its `count` modes of the lowest frequencies, or none. The mass of the others rides rigidly with the base.
+    pub fn keeping(&self, count: usize) -> Result<Frame, FrameError> {
+        let modes = self.modes.len();
+        if count > modes { Err(FrameError::Kept { count, modes }) } else { Ok(self.with_lowest(count)) }
+    }
+
+    /// This structure without modes: all of its mass rides rigidly with the base.
+    pub fn without_modes(&self) -> Frame {
+        self.with_lowest(0)
+    }
+
+    fn with_lowest(&self, count: usize) -> Frame {
+        let square = |j: &usize| self.modes[*j].stiffness / self.modes[*j].mass;
+        let mut kept = Vec::from_iter(0..self.modes.len());
+        kept.sort_by(|a, b| square(a).total_cmp(&square(b)));
+        kept.truncate(count);
+        kept.sort_unstable();
+        let shape = |floor: &Floor| Modes::new(&Vec::from_iter(kept.iter().map(|j| floor.shape.of(*j))));
+        let floors = Vec::from_iter(self.floors.iter().map(|floor| Floor { shape: shape(floor), ..*floor }));
+        Frame::of(self.body, &Vec::from_iter(kept.iter().map(|j| self.modes[*j])), &floors)
+    }
+
+    /// The load of the ground accelerations `a_g` and `a_v` (m/s²) and of a horizontal force on each floor (N, to the right), or of
+    /// none. On the right, the forces F add to
+    ///
+    /// ```text
+    /// (M1, M8)  φᵀF cos θ       (M9)  Σ φᵀF w sin θ + F_res sB sin θ + N_res cos θ       (M2, M3)  N_res
+    /// ```
+    ///
+    /// F_res = Σ F (1 − Σ φ Γ/μ) and N_res = Σ F (h − Σ φ κ/μ) act on mass that no mode carries. With all modes both are 0.
+    pub fn load(&self, a_g: f64, a_v: f64, forces: &[f64]) -> Result<Load<Modes>, FrameError> {
+        if !forces.is_empty() && forces.len() != self.floors.len() {
+            return Err(FrameError::Forces { forces: forces.len(), floors: self.floors.len() });
+        }
+        let mut on_modes = Modes::parts(self, 0.0);
+        let mut rest = [0.0; 2];
+        for ((force, floor), gauge) in forces.iter().zip(&self.floors).zip(&self.gauges.a) {
+            on_modes = on_modes.plus(floor.shape, *force);
+            rest = std::array::from_fn(|i| rest[i] + gauge.on_rest(*force)[i]);
+        }
+        Ok(Load { a_g, F_t: on_modes.and_rest(rest), a_v })
     }
 
     /// The structure as a rigid body.
@@ -225,8 +298,11 @@ impl Frame {
     }
 }
 
-/// The lowest and the highest frequency of vibration.
+/// The lowest and the highest frequency of vibration; of a structure without modes, its frequency parameter.
 fn vibration(base: &Base, modes: &[Mode]) -> Vibration {
+    if modes.is_empty() {
+        return Vibration { contact: base.p_l, rocking: [base.p_l; 2] };
+    }
     let contact = modes.iter().map(|mode| mode.stiffness / mode.mass).fold(f64::INFINITY, f64::min).sqrt();
     Vibration { contact, rocking: [rocking(base, modes, 1), rocking(base, modes, modes.len())] }
 }
