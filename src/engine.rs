@@ -7,7 +7,8 @@
 //! The number of steps is bounded because the number of transitions is ([`crate::levels::rules`]). One advance takes at most one
 //! step, plus two steps per transition, plus one step per time 1/Ω. The rate Ω is the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc, p_l
 //! and the rates that restraints add. A violent motion takes up to four steps per 1/Ω, and Ω is then the largest of these rates and
-//! |θ̇|, |u̇|/ρ and √(|ü|/ρ), where ρ² = (J0 + m0 B²)/m + (sB − u)². One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. At levels
+//! |θ̇|, |u̇|/ρ and √(|ü|/ρ), where ρ² = (J0 + m0 B²)/m + (sB − u)². Of many masses, ω_u is the highest frequency while rocking, and
+//! 2 ζ_u ω_u is the largest 2 ζ ω of the modes times J_P/(J_P − Σ μ h²). One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. At levels
 //! with an exact flow of full contact, one step covers the rest of a long interval once the base stays down for good.
 
 pub mod motion;
@@ -133,7 +134,7 @@ pub enum AdvanceError {
     },
     /// The equations have no finite solution from here on.
     #[error(
-        "the motion cannot be continued beyond t = {} (u = {}, theta = {}): the top mass passes above the pivot of a \
+        "the motion cannot be continued beyond t = {} (u = {}, theta = {}): the mass passes above the pivot of a \
          foundation without inertia (m0, J0 too small), or the numbers overflow",
         with_unit(*time, "s"),
         with_unit(*u, "m"),
@@ -142,7 +143,7 @@ pub enum AdvanceError {
     Singular {
         /// s.
         time: f64,
-        /// m.
+        /// m; of many masses, the displacement of their centre.
         u: f64,
         /// rad.
         theta: f64,
@@ -741,7 +742,8 @@ impl<Q: Moves, L: Level<Q>, P: Fn(&Motion<Q>) -> Option<&'static Watched<Q>>> Lo
             let duration = self.arc.duration();
             if !self.arc.is_finite() || reach < 1.0 && self.is_at_its_end(motion, closed) {
                 let State { u, theta, .. } = motion.state;
-                return Err(AdvanceError::Singular { time: motion.time, u: u.total(), theta });
+                let u = u.middle(level.structure());
+                return Err(AdvanceError::Singular { time: motion.time, u, theta });
             }
             if motion.work.steps == self.last_step {
                 return Err(AdvanceError::TooLong { time: motion.time, until });

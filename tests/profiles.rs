@@ -3,10 +3,11 @@
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
 use rocking::run::record::Record;
+use rocking::run::validity::{ASSUMPTIONS, EDGE_LOAD, FRICTION, Findings, Limits, TENSION};
 use rocking::run::{End, Run};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Given;
-use rocking::{Detail, Floor, Frame, FrameOutput, Modes, Parameters, State, Structure};
+use rocking::{Detail, Frame, FrameOutput, Parameters, Phase, Reactions, State, Structure};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -42,6 +43,10 @@ fn the_profile_of_one_mode_has_the_peaks_of_one_mass() {
             let many = Run { detail, tolerance, ..Run::of_modes(frame.clone(), &ground) };
             let many = Run { initial: State { theta, ..many.initial }, ..many };
             let ((expected, _), (found, finish)) = (one.peaks().unwrap(), many.profile().unwrap());
+            assert_same_findings(
+                &one.validity(Limits::default()).unwrap().0,
+                &many.validity(Limits::default()).unwrap().0,
+            );
             assert!(finish.motion.transitions > 2, "{}", finish.motion.transitions);
             let pairs = [
                 (found.a_g, expected.a_g()),
@@ -64,27 +69,40 @@ fn the_profile_of_one_mode_has_the_peaks_of_one_mass() {
     }
 }
 
+fn assert_same_findings(expected: &Findings, found: &Findings) {
+    assert_eq!((found.impacts, found.gains, found.settlings), (expected.impacts, expected.gains, expected.settlings));
+    for ((assumption, expected), found) in ASSUMPTIONS.iter().zip(&expected.worst).zip(&found.worst) {
+        let is_near = |found: f64, expected: f64| {
+            found == expected || (found - expected).abs() <= 1e-9 * expected.abs().max(1e-3)
+        };
+        assert!(is_near(found.value, expected.value), "{}: {found:?} and not {expected:?}", assumption.name);
+        assert!(is_near(found.beyond, expected.beyond), "{}: {found:?} and not {expected:?}", assumption.name);
+    }
+}
+
 /// Three storeys with as many modes as are `kept`: the rest rides rigidly, so that accelerations follow the ground directly.
 fn three_storeys(kept: usize) -> Frame {
     let storeys = [(40e3, 3.5, 60e6), (40e3, 7.0, 50e6), (30e3, 10.5, 40e6)].map(|(m, h, k)| Storey { m, h, k });
     let parameters = Parameters { m0: 20e3, B: 1.5, J0: 3e4, r: 0.93, g: 9.81, c_ratio: 1.0, ..Parameters::MCMANUS };
     let frame = Frame::from_storeys(&base(&parameters), &Damping::All(0.02), &storeys).unwrap();
-    let shape = |floor: &Floor| Modes::new(&floor.shape.numbers()[..kept]);
-    let floors = Vec::from_iter(frame.floors().iter().map(|floor| Floor { shape: shape(floor), ..*floor }));
-    Frame::new(*frame.body(), &frame.modes()[..kept], &floors).unwrap()
+    frame.keeping(kept).unwrap()
 }
 
 /// The samples are 50 µs apart. They miss a peak just before a transition by the rate there.
 #[test]
 fn a_profile_holds_every_sample_and_no_more() {
     let ground = ground();
-    for modes in 1..=3 {
+    for modes in 0..=3 {
         let frame = three_storeys(modes);
         let run = Run { end: End::At(4.0), ..Run::of_modes(frame.clone(), &ground) };
         let (profile, finish) = run.profile().unwrap();
         assert!(finish.motion.transitions > 2, "{}", finish.motion.transitions);
         let peaks = Vec::from_iter(profile.peaks());
+        let limits = Limits { friction: 0.15, ..Limits::default() };
+        let worst = run.validity(limits).unwrap().0.worst;
         let mut largest = vec![0.0_f64; peaks.len()];
+        let ([mut tension, mut least, mut friction], mut beyond) = ([f64::NEG_INFINITY, f64::INFINITY, 0.0], 0.0);
+        let W = frame.base().m_t * frame.base().g;
         let times = (0..80_000).map(|i| f64::from(i) * 5e-5);
         run.sample(
             times,
@@ -92,13 +110,27 @@ fn a_profile_holds_every_sample_and_no_more() {
                 for (largest, (output, _)) in largest.iter_mut().zip(&peaks) {
                     *largest = largest.max(sample.output(*output).abs());
                 }
+                let Reactions { R_h, R_v, R_m } = sample.reactions();
+                if sample.motion.phase == Phase::FullContact {
+                    tension = tension.max((R_m.abs() / frame.base().B - R_v) / W);
+                }
+                (least, friction) = (least.min(R_v / W), friction.max(R_h.abs() / R_v.max(0.0)));
+                beyond += if R_h.abs() > limits.friction * R_v { 5e-5 } else { 0.0 };
             },
             &mut (),
         )
         .unwrap();
         for ((output, peak), sampled) in peaks.iter().zip(largest) {
             let (least, most) = (sampled * (1.0 - 1e-12), sampled * (1.0 + 1e-3));
-            assert!((least..most).contains(&peak.magnitude), "{modes} {output:?}: {peak:?}, sampled {sampled}");
+            assert!((least..=most).contains(&peak.magnitude), "{modes} {output:?}: {peak:?}, sampled {sampled}");
         }
+        // the friction by its reciprocal: R_v comes near 0
+        let [edge, slip] = [-worst[EDGE_LOAD].value, -1.0 / worst[FRICTION].value];
+        for (found, sampled) in [(worst[TENSION].value, tension), (edge, -least), (slip, -1.0 / friction)] {
+            let (least, most) = (sampled - 1e-9, sampled + 5e-3 * sampled.abs().max(1.0));
+            assert!((least..most).contains(&found), "{modes}: {found}, sampled {sampled}");
+        }
+        let found = worst[FRICTION].beyond;
+        assert!(found > 0.1 && (found - beyond).abs() < 1e-3, "{modes}: {found} s, sampled {beyond} s");
     }
 }

@@ -19,6 +19,7 @@ use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
 use crate::numbers::{Number, Turn};
 use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Series, Start, evaluate};
+use crate::series::terms::Terms;
 use crate::{Floor, Frame, Outputs, Phase, Reactions, State};
 use std::f64::consts::TAU;
 
@@ -176,10 +177,10 @@ impl<N: Number, Q: Lateral<N, Structure = Frame>> MotionOfFloors<N> for Turning<
 }
 
 /// A series of an output that is off by less than this part of its terms at its end has converged.
-const CONVERGED: f64 = 1e-12;
+pub(crate) const CONVERGED: f64 = 1e-12;
 
 /// How often an arc is halved before its outputs' series are taken as they are.
-const FINEST_PART: u32 = 5;
+pub(crate) const FINEST_PART: u32 = 5;
 
 /// A stretch of time without a transition.
 #[derive(Clone, Copy, Debug)]
@@ -439,6 +440,23 @@ impl<Q: Moves> Expansion<'_, Q> {
         let &Piece { before, load, level, .. } = self.piece;
         let motion = Motion { time: self.time(sigma), state: self.arc.at(sigma), ..*before };
         Sample { motion, load: load.at(self.from + sigma * self.arc.span), level }
+    }
+
+    /// Whether `series` ends in the value `last`, but for this `part` of its terms or the truncation of the motion.
+    pub(crate) fn has_converged(&self, series: &Terms, last: f64, part: f64) -> bool {
+        let terms = series.used().iter().rev().fold(0.0, |sum, c| sum * self.arc.reach + c.abs());
+        let off = evaluate(series.used(), self.arc.reach) - last;
+        // more terms do not turn NaN into a number
+        off.is_nan() || off.abs() <= part.max(1e3 * self.piece.level.subject().local_error) * terms
+    }
+
+    /// Shows both halves of the polynomial.
+    pub(crate) fn halves(&self, mut show: impl FnMut(&Expansion<Q>)) {
+        let &Expansion { piece, from, arc } = self;
+        let middle = 0.5 * arc.reach;
+        for [start, end] in [[0.0, middle], [middle, arc.reach]] {
+            show(&Expansion { piece, from: from + start * arc.span, arc: &arc.between(start, end) });
+        }
     }
 }
 

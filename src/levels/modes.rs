@@ -733,6 +733,35 @@ mod tests {
         }
     }
 
+    /// The distance from uplift is the larger of what (M3) misses and of −s D θ̈, by the equations of rocking, under all loads.
+    #[test]
+    fn the_uplift_margin_follows_from_the_equations_of_rocking() {
+        let (_, frame) = frame(&[1.3, -0.6, 0.4], 1.25);
+        let &Base { m_t, S_res, B, g, .. } = &frame.base;
+        let dissipators = Dissipators { plastic: [2e-3, -1e-3], ..Dissipators::NEW };
+        let level = level(&frame, Detail::Nonlinear);
+        let weight = (m_t * g + frame.base.ties.P_0) * B;
+        for (scale, a_v) in [(1.0, -1.5), (-1.0, 2.5), (0.2, 4.0)] {
+            let [u, u_dot] = [[0.004, -0.003, 0.002], [0.3, 0.1, -0.2]].map(|of| Modes::new(&of.map(|it| scale * it)));
+            let state = State { u, u_dot, theta: 0.0, theta_dot: 0.0 };
+            let load = Load { a_g: 0.7, F_t: Modes::new(&[9.0, 5.0, -7.0]).and_rest([60.0, -90.0]), a_v };
+            let now = Now { state: &state, load, dissipators: &dissipators };
+            let springs =
+                Modes::sum(&frame, |j, mode| mode.height * mode.stiffness * u.of(j)) - S_res * load.a_g - 90.0;
+            let expected = [Side::Right, Side::Left].map(|side| {
+                let [tendon, pair @ ..] = restraint::ties(&frame.base, side, &dissipators);
+                let residual: f64 = pair.iter().map(|tie| tie.lever * tie.force).sum();
+                let held = m_t * (g + a_v) * B + tendon.force * B + side.sign() * residual;
+                let turns = level.accelerations(Phase::Rocking(side), &now).theta_ddot * inertia(&frame, side, &u);
+                ((held - side.sign() * springs) / weight).max(-side.sign() * turns / weight)
+            });
+            let (found, side) = level.uplift_margin(&now);
+            let least = if side == Side::Right { expected[0] } else { expected[1] };
+            assert_relative_eq!(found, least, max_relative = 1e-9);
+            assert!(found <= expected[0].min(expected[1]) + 1e-9, "{found} {expected:?}");
+        }
+    }
+
     /// Newton's law for a floor, for the moments about the pivot, and the shear of a storey as a sum, with mass that rides rigidly.
     #[test]
     fn gauges_and_reactions_follow_from_the_motion() {

@@ -67,6 +67,11 @@ impl Gauge {
         Q::sum(frame, |j, mode| F_t.of(j) * self.shape.of(j) / mode.mass)
     }
 
+    /// Σ φ u.
+    pub(crate) fn displacement(&self, u: &Modes) -> f64 {
+        self.shape.dot(u)
+    }
+
     /// The force and the moment on mass that no mode carries, of a `force` (N) on a floor whose acceleration this gauge reads.
     pub(crate) fn on_rest(&self, force: f64) -> [f64; 2] {
         let [height, share] = self.left;

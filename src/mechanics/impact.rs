@@ -123,9 +123,9 @@ pub fn lossless_restitution(structure: &Structure, u: f64) -> Option<[f64; 2]> {
 /// ```
 ///
 /// The impulse at that edge is (I_v + s I_m/B)/2 = (|θ̇|/2B) [(1+r) F − (1−r) A + 2 r m B s u], A and F as above.
-pub fn pulling_restitution(structure: &Structure) -> f64 {
-    let [_, f] = inertias(structure, 0.0);
-    1.0 - 2.0 * f / structure.J_P
+pub fn pulling_restitution(structure: &impl AsRef<Base>) -> f64 {
+    let &Base { m_t, B, J_P, .. } = structure.as_ref();
+    1.0 - 2.0 * (m_t * B * B) / J_P
 }
 
 /// The state just after landing: both pivots down, horizontal momentum kept.

@@ -87,6 +87,9 @@ pub trait Coordinates: Lateral<f64> + Debug + PartialEq + 'static {
 
     /// The sum of the coordinates: finite if all of them are.
     fn total(&self) -> f64;
+
+    /// Displacement of the centre of the mass that moves, m.
+    fn middle(&self, structure: &Self::Structure) -> f64;
 }
 
 impl<N: Number> Lateral<N> for N {
@@ -153,6 +156,10 @@ impl Coordinates for f64 {
 
     #[inline(always)]
     fn total(&self) -> f64 {
+        *self
+    }
+
+    fn middle(&self, _: &Structure) -> f64 {
         *self
     }
 }
@@ -350,6 +357,10 @@ impl Coordinates for Modes {
     #[inline]
     fn total(&self) -> f64 {
         self.numbers().iter().chain(&self.rest).sum()
+    }
+
+    fn middle(&self, frame: &Frame) -> f64 {
+        Modes::sum(frame, |j, mode| mode.gamma * self.of(j)) / frame.body().m_s
     }
 }
 

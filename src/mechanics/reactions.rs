@@ -136,9 +136,19 @@ pub(crate) fn forces_by_momentum<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, ra
     if let Some([force, _]) = x.F_t.rest() {
         push = push + force;
     }
-    let across = lever * x.theta_dot;
-    let [right, up] = [along * x.turn.cos + across * x.turn.sin, across * x.turn.cos - along * x.turn.sin];
-    [push - rate(&right), (x.a_v + N::constant(g)) * m_t + rate(&up)]
+    less_momentum([push, (x.a_v + N::constant(g)) * m_t], [along, lever * x.theta_dot], &x.turn, rate)
+}
+
+/// The forces to the right and downwards less the `rate` of the momentum, given `along` u and across.
+#[inline(always)]
+pub(crate) fn less_momentum<N: Number>(
+    [push, weight]: [N; 2],
+    [along, across]: [N; 2],
+    turn: &Turn<N>,
+    rate: impl Fn(&N) -> N,
+) -> [N; 2] {
+    let [right, up] = [along * turn.cos + across * turn.sin, across * turn.cos - along * turn.sin];
+    [push - rate(&right), weight + rate(&up)]
 }
 
 /// R_m, N·m.

@@ -5,7 +5,7 @@
 
 use super::peaks::Peak;
 use super::{Finish, Run, RunError};
-use crate::engine::piece::{Expansion, Piece, Sample, Watch};
+use crate::engine::piece::{CONVERGED, Expansion, FINEST_PART, Piece, Watch};
 use crate::mechanics::floors::{FrameOutput, MotionOfFloors};
 use crate::mechanics::gauge::{Gauge, Reading};
 use crate::numbers::{Angle, Number, Turn};
@@ -25,7 +25,7 @@ pub struct Profile {
 }
 
 /// A polynomial of the motion in series, as far as several outputs read it.
-struct Over<'a> {
+pub(super) struct Over<'a> {
     of: Expansion<'a, Modes>,
     theta: Terms,
     theta_dot: Terms,
@@ -33,7 +33,7 @@ struct Over<'a> {
 }
 
 impl<'a> Over<'a> {
-    fn new(of: Expansion<'a, Modes>) -> Over<'a> {
+    pub(super) fn new(of: Expansion<'a, Modes>) -> Over<'a> {
         let none = Terms::constant(0.0);
         let (theta, theta_dot, turn) = match of.piece.before.phase {
             Phase::FullContact => (none, none, Turn::none()),
@@ -122,6 +122,27 @@ impl Profile {
         self.peaks.iter().flat_map(with_uplift).flatten()
     }
 
+    /// Looks at a polynomial, which may be halved `halvings` times.
+    fn look(&mut self, expansion: &Expansion<Modes>, halvings: u32) {
+        let (over, reach) = (Over::new(*expansion), expansion.arc.reach);
+        let [first, last] = [0.0, reach].map(|sigma| expansion.sample(sigma));
+        for i in 0..self.peaks.len() {
+            let (output, peak) = &mut self.peaks[i];
+            let (series, end) = (output.of(&over), last.output(*output));
+            if halvings > 0 && !expansion.has_converged(&series, end, CONVERGED) {
+                return expansion.halves(|half| self.look(half, halvings - 1));
+            }
+            peak.see(first.output(*output), first.motion.time);
+            peak.see(end, last.motion.time);
+            if peak.may_change(extremes::bound(series.used(), reach), first.motion.time) {
+                extremes::stationary_points(series.used(), reach, |sigma| {
+                    let sample = expansion.sample(sigma);
+                    peak.see(sample.output(*output), sample.motion.time);
+                });
+            }
+        }
+    }
+
     /// The peak of `output`, if it has one.
     pub fn of(&self, output: FrameOutput) -> Option<Peak> {
         self.peaks().find(|(of, _)| *of == output).map(|(_, peak)| peak)
@@ -137,19 +158,7 @@ impl Watch<Modes> for Profile {
         }
         let mut arcs = piece.arcs();
         while let Some(expansion) = arcs.next() {
-            let (over, reach) = (Over::new(expansion), expansion.arc.reach);
-            let ends = [0.0, reach].map(|sigma| expansion.sample(sigma));
-            for (output, peak) in &mut self.peaks {
-                let mut see = |sample: &Sample<Modes>| peak.see(sample.output(*output), sample.motion.time);
-                ends.iter().for_each(&mut see);
-                let series = output.of(&over);
-                if peak.may_change(extremes::bound(series.used(), reach), ends[0].motion.time) {
-                    extremes::stationary_points(series.used(), reach, |sigma| {
-                        let sample = expansion.sample(sigma);
-                        peak.see(sample.output(*output), sample.motion.time);
-                    });
-                }
-            }
+            self.look(&expansion, FINEST_PART);
         }
     }
 }
@@ -157,7 +166,7 @@ impl Watch<Modes> for Profile {
 impl Run<'_, Modes> {
     /// The exact peaks of all of the run, floor by floor, and how it ended.
     pub fn profile(&self) -> Result<(Profile, Finish<Modes>), RunError> {
-        let mut profile = Profile::since(self.ground.start(), &self.structure);
+        let mut profile = Profile::since(self.ground.start(), self.start()?.structure());
         let finish = self.follow(&mut profile)?;
         Ok((profile, finish))
     }

@@ -2,29 +2,29 @@
 //!
 //! The series tell the instant at which a reaction is largest; its value there comes from the state.
 
+use super::profile::Over;
+use crate::engine::piece::Expansion;
 use crate::levels::detail::AnyLevel;
 use crate::levels::level::Subject;
 use crate::levels::shown::{linear_parts, over, turning};
+use crate::mechanics::floors::MotionOfFloors;
 use crate::mechanics::instant::{Instant, Second};
-use crate::mechanics::load::LinearLoad;
-use crate::mechanics::reactions::{forces, forces_by_momentum};
+use crate::mechanics::lateral::Coordinates;
+use crate::mechanics::load::{LinearLoad, Load};
+use crate::mechanics::reactions::{forces, forces_by_momentum, less_momentum};
 use crate::mechanics::restraint::Restraint;
 use crate::numbers::linear::{Leaf, Linear};
 use crate::numbers::{Number, Turn};
-use crate::series::extremes::Range;
-use crate::series::taylor::{Arc, ORDERS, ZERO};
+use crate::series::extremes::{self, Range};
+use crate::series::taylor::{Arc, ORDERS, Series, ZERO, evaluate};
 use crate::series::terms::Terms;
-use crate::{Dissipators, Phase, Reactions, Structure};
+use crate::{Dissipators, Modes, Motion, Phase, Reactions, Structure};
 
 /// The reactions of the edges over `arc`, a motion in `phase` under `load`, which is given from its start on. The moment is given
 /// in full contact only; while rocking it is sB R_v.
-pub(crate) fn series(
-    level: &AnyLevel,
-    phase: Phase,
-    dissipators: &Dissipators,
-    load: LinearLoad,
-    arc: &Arc,
-) -> Reactions<Terms> {
+pub(crate) fn of_one(&Expansion { piece, from, arc }: &Expansion) -> Reactions<Terms> {
+    let (level, load) = (piece.level, piece.load.from(from));
+    let &Motion { phase, ref dissipators, .. } = piece.before;
     let reactions = if phase == Phase::FullContact {
         in_full_contact(level, load, arc)
     } else {
@@ -32,11 +32,21 @@ pub(crate) fn series(
         let [R_h, R_v] = forces_by_momentum(&x, |momentum| momentum.slope(arc.span));
         Reactions { R_h, R_v, R_m: Terms::constant(0.0) }
     };
-    let &Subject { ref structure, is_tied, .. } = level.subject();
+    of_edges(level.subject(), phase, dissipators, arc, reactions)
+}
+
+/// The part of `reactions` that the edges carry.
+fn of_edges<Q: Coordinates>(
+    &Subject { ref structure, is_tied, angles, .. }: &Subject<Q>,
+    phase: Phase,
+    dissipators: &Dissipators,
+    arc: &Arc<Q>,
+    reactions: Reactions<Terms>,
+) -> Reactions<Terms> {
     if !is_tied {
         return reactions;
     }
-    let (restraint, angles) = (Restraint::about(structure, phase.side(), dissipators), level.subject().angles);
+    let restraint = Restraint::about(structure, phase.side(), dissipators);
     let [up, right, moment] = match phase {
         Phase::FullContact => restraint.pulls(&angles.chord(0.0, 0.0)).map(Terms::constant),
         _ => {
@@ -45,6 +55,27 @@ pub(crate) fn series(
         }
     };
     reactions.of_edges(up, right, moment)
+}
+
+/// The reactions of the edges of a structure of many masses over a polynomial, like [`of_one`].
+pub(crate) fn of_modes(expansion: &Expansion<Modes>) -> Reactions<Terms> {
+    let &Expansion { piece, from, arc } = expansion;
+    let (frame, load, over) = (piece.level.structure(), piece.load.from(from), Over::new(*expansion));
+    let &Motion { phase, ref dissipators, .. } = piece.before;
+    let gauges = frame.gauges();
+    let ramp = |of: &dyn Fn(&Load<Modes>) -> f64| Terms::ramp(of(&load.value), of(&load.slope) * arc.span);
+    let sum = |of: &Series<Modes>| Terms::from_fn(arc.order, |k| gauges.V_t.displacement(&of[k]));
+    let (offset, weight) = (sum(&arc.u), ramp(&|load| load.a_v) + Terms::constant(frame.base.g));
+    let along = sum(&arc.u_dot) + over.theta_dot() * frame.body().S_1;
+    let across = (Terms::constant(over.pivot() * frame.base.m_t) - offset) * over.theta_dot();
+    let push = ramp(&|load| frame.pushes(load)[0] - frame.base.m_t * load.a_g);
+    let forces = [push, weight * frame.base.m_t];
+    let [R_h, R_v] = less_momentum(forces, [along, across], &over.turn(), |momentum| momentum.slope(arc.span));
+    let R_m = match phase {
+        Phase::FullContact => ramp(&|load| frame.pushes(load)[1]) - over.gauge(&gauges.M_t) + weight * offset,
+        _ => Terms::constant(0.0),
+    };
+    of_edges(piece.level.subject(), phase, dissipators, arc, Reactions { R_h, R_v, R_m })
 }
 
 /// The reactions in full contact. There they are linear in u, ü and time, so that their slopes give the series, unless the
@@ -95,6 +126,15 @@ impl Extent {
     #[inline(always)]
     fn of<const L: usize>(course: &Range, reaction: &Linear<L>) -> Extent {
         Extent::between(course.start, course.end, course.off_chord + reaction.rest)
+    }
+
+    /// The extents of `reactions` up to σ = `reach`.
+    pub(crate) fn of_all(&Reactions { R_h, R_v, R_m }: &Reactions<Terms>, reach: f64) -> Reactions<Extent> {
+        let [R_h, R_v, R_m] = [R_h, R_v, R_m].map(|terms| {
+            let used = terms.used();
+            Extent::between(used[0], evaluate(used, reach), extremes::off_chord(used, reach))
+        });
+        Reactions { R_h, R_v, R_m }
     }
 
     #[inline(always)]

@@ -26,7 +26,8 @@ mod assumptions;
 
 use super::reaction_series::{self, Extent, extents};
 use super::{Finish, Run, RunError};
-use crate::engine::piece::{Expansion, Piece, Sample, Watch};
+use crate::engine::Moves;
+use crate::engine::piece::{Expansion, FINEST_PART, Piece, Sample, Watch};
 use crate::levels::level::{Now, Rates};
 use crate::mechanics::impact;
 use crate::mechanics::instant::Instant;
@@ -35,7 +36,11 @@ use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
-use crate::{Detail, Impulse, Motion, Parameters, Phase, Ramp, Reactions, Side, Structure, Transition, TransitionKind};
+use crate::structure::Base;
+use crate::{
+    Detail, Frame, Impulse, Modes, Motion, Parameters, Phase, Ramp, Reactions, Side, Structure, Transition,
+    TransitionKind,
+};
 pub use assumptions::{
     ASSUMPTIONS, Assumption, EDGE_LOAD, ENERGY, FRICTION, IMPACT_FRICTION, IMPACT_TENSION, Passing, TENSION, WEIGHT,
 };
@@ -54,8 +59,8 @@ const MARGIN: f64 = 1e-12;
 /// A series of reactions that is off by less than this part of its terms at its end has converged.
 const CONVERGED: f64 = 1e-10;
 
-/// How often an arc is halved before its reactions' series are taken as they are.
-const FINEST_PART: u32 = 5;
+/// Reactions without bounds.
+const UNBOUNDED: Reactions<Extent> = Reactions { R_h: Extent::ANY, R_v: Extent::ANY, R_m: Extent::ANY };
 
 /// The largest number of arcs of a leap that are all looked at. Of a longer leap only the first arcs and the last period are: the
 /// rest is no worse, but its time beyond a limit is not counted.
@@ -193,16 +198,17 @@ impl Findings {
 
 /// Looks at a motion for what it goes beyond.
 #[derive(Clone, Debug)]
-pub struct Validity {
-    structure: Structure,
+pub struct Validity<Q: Moves = f64> {
+    structure: Q::Structure,
     limits: Limits,
     found: Findings,
 }
 
-impl Validity {
-    /// The watcher of `structure`, which continues from what has been `found`.
-    pub fn new(structure: &Structure, limits: Limits, found: Findings) -> Validity {
-        Validity { structure: *structure, limits, found }
+impl<Q: Moves> Validity<Q> {
+    /// The watcher of `structure`, which continues from what has been `found`. Of many masses, `structure` is the one that moves
+    /// ([`Engine::structure`](crate::Engine::structure)).
+    pub fn new(structure: &Q::Structure, limits: Limits, found: Findings) -> Validity<Q> {
+        Validity { structure: structure.clone(), limits, found }
     }
 
     /// The findings so far.
@@ -211,14 +217,14 @@ impl Validity {
     }
 
     fn scale(&self) -> Scale {
-        let &Parameters { m, m0, g, B, .. } = self.structure.parameters();
-        Scale { W: (m + m0) * g, B }
+        let &Base { m_t, g, B, .. } = Q::base(&self.structure);
+        Scale { W: m_t * g, B }
     }
 
     /// Sees an instant, which need not be in a piece.
-    pub fn see_instant(&mut self, at: &Sample) {
+    pub fn see_instant(&mut self, at: &Sample<Q>) {
         let &Sample { motion: Motion { time, phase, .. }, load, .. } = at;
-        self.found.see(WEIGHT, 1.0 + load.a_v / self.structure.parameters().g, time);
+        self.found.see(WEIGHT, 1.0 + load.a_v / Q::base(&self.structure).g, time);
         self.see_reactions(time, phase, &at.edges());
     }
 
@@ -255,48 +261,13 @@ impl Validity {
         A::holds_in(phase) && !is_better
     }
 
-    /// Bounds of the reactions over a leap, if they are known: a quantity whose second derivative is at most M over the time h stays
-    /// within M h²/8 of its chord.
-    fn extents_of_leap(&self, piece: &Piece) -> Option<Reactions<Extent>> {
-        let &Piece { level, before: &Motion { phase, .. }, duration, load, .. } = piece;
-        let rates = level.rates(phase, &piece.whole().step(), &piece.end);
-        let states = [(0.0, &piece.before.state), (duration, &piece.end)];
-        let per_bend = duration * duration / 8.0;
-        if phase != Phase::FullContact {
-            let bends = level.bends_of_forces(phase, load, duration, &rates, &level.second(&rates)?);
-            let [first, last] = states.map(|(tau, state)| {
-                let now = Now { state, load: load.at(tau), dissipators: &piece.before.dissipators };
-                forces(&Instant::of(&self.structure, phase, state, now.load), &level.accelerations(phase, &now))
-            });
-            let [R_h, R_v] = std::array::from_fn(|i| Extent::between(first[i], last[i], bends[i].bend * per_bend));
-            return Some(Reactions { R_h, R_v, R_m: Extent::ANY });
-        }
-        let &Parameters { m, m0, H, g, .. } = self.structure.parameters();
-        let &Structure { k, c_fc, .. } = &self.structure;
-        let [first, last] = states.map(|(tau, state)| {
-            let strut = c_fc * state.u_dot + k * state.u;
-            [strut - m0 * load.at(tau).a_g, H * strut + m * g * state.u]
-        });
-        let Rates { u_ddot, u_dddot, .. } = rates;
-        let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
-        let off = [strut, H * strut + per_bend * m * g * u_ddot];
-        let W = self.scale().W;
-        let [R_h, R_m] = std::array::from_fn(|i| Extent::between(first[i], last[i], off[i]));
-        Some(Reactions { R_h, R_v: Extent::between(W, W, 0.0), R_m })
-    }
-
     /// Looks at the motion over a polynomial, which may be halved `halvings` times; `extents` are bounds of its reactions.
-    fn look(&mut self, expansion: Expansion, extents: &Reactions<Extent>, halvings: u32) {
-        let polynomial = Polynomial::new(expansion, extents);
-        let Expansion { piece, from, arc } = expansion;
+    fn look(&mut self, expansion: Expansion<Q>, extents: &Reactions<Extent>, series: SeriesOf<Q>, halvings: u32) {
+        let polynomial = Polynomial { of: expansion, series: series(&expansion), extents };
+        let Expansion { piece, arc, .. } = expansion;
         let last = polynomial.reactions(arc.reach);
         if halvings > 0 && !polynomial.has_converged(&last) {
-            let middle = 0.5 * arc.reach;
-            for [start, end] in [[0.0, middle], [middle, arc.reach]] {
-                let half = &arc.between(start, end);
-                self.look(Expansion { piece, from: from + start * arc.span, arc: half }, extents, halvings - 1);
-            }
-            return;
+            return expansion.halves(|half| self.look(*half, extents, series, halvings - 1));
         }
         let phase = piece.before.phase;
         // no friction is enough from where R_v is 0, which may be sooner than either end
@@ -311,7 +282,7 @@ impl Validity {
     }
 
     /// Looks within `polynomial` for the worst value of an assumption, and for the time beyond its limit.
-    fn look_for<A: OfReactions>(&mut self, phase: Phase, polynomial: &Polynomial) {
+    fn look_for<A: OfReactions>(&mut self, phase: Phase, polynomial: &Polynomial<Q>) {
         if !A::holds_in(phase) {
             return;
         }
@@ -323,7 +294,7 @@ impl Validity {
     }
 
     /// Looks for the worst value of an assumption within `polynomial`.
-    fn search<A: OfReactions>(&mut self, polynomial: &Polynomial) {
+    fn search<A: OfReactions>(&mut self, polynomial: &Polynomial<Q>) {
         let (scale, reach) = (self.scale(), polynomial.of.arc.reach);
         loop {
             let worst = self.found.worst[A::PLACE].value;
@@ -365,20 +336,55 @@ impl Validity {
             self.found.see_beyond(A::PLACE, time, 1.0);
         }
     }
+
+    /// Sees that `piece` passes, whatever its reactions are.
+    fn see_passing(&mut self, piece: &Piece<Q>) {
+        self.found.duration += piece.duration;
+        self.found.held += piece.before.chatter.held.min(piece.duration);
+        if piece.load.is_vertical() {
+            let g = Q::base(&self.structure).g;
+            self.found.see_vertical(g, piece.load.upwards(), piece.before.time, piece.duration);
+        } else {
+            self.found.see(WEIGHT, 1.0, piece.before.time);
+        }
+    }
+
+    /// Sees a `transition`.
+    fn see_transition(&mut self, transition: &Transition<Q>) {
+        let &Transition { time, kind, before, after } = transition;
+        let structure = &self.structure;
+        let (side, phase) = match kind {
+            TransitionKind::Impact(side) => (side.opposite(), Phase::Rocking(side)),
+            // s θ falls to 0
+            TransitionKind::Landing | TransitionKind::Settling => (Side::of(-before.theta_dot), Phase::FullContact),
+            TransitionKind::Uplift(_)
+            | TransitionKind::Overturning(_)
+            | TransitionKind::Yielding(_)
+            | TransitionKind::Unloading(_) => return,
+        };
+        self.found.settlings += u64::from(kind == TransitionKind::Settling);
+        let is_landing = phase == Phase::FullContact;
+        if is_landing && (Q::modes(structure).is_empty() || after != impact::land::<Q>(structure, &before)) {
+            return; // the rigid limit has come to rest: what is left below the tolerance is no impact
+        }
+        let kinetic = impact::kinetic_energy::<Q>(structure, side, &before);
+        if kinetic == 0.0 {
+            return;
+        }
+        let gained = match phase {
+            Phase::Rocking(_) => impact::energy_gained::<Q>(structure, side, &before),
+            _ => 0.0, // a landing always loses
+        };
+        let impulse = Impulse::of::<Q>(structure, (Phase::Rocking(side), &before), (phase, &after));
+        self.see_impact(time, &Impact { impulse, gain: gained / kinetic });
+    }
 }
 
 impl Watch for Validity {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &Piece) {
-        self.found.duration += piece.duration;
-        self.found.held += piece.before.chatter.held.min(piece.duration);
-        if piece.load.is_vertical() {
-            let g = self.structure.parameters().g;
-            self.found.see_vertical(g, piece.load.upwards(), piece.before.time, piece.duration);
-        } else {
-            self.found.see(WEIGHT, 1.0, piece.before.time);
-        }
+        self.see_passing(piece);
         let (phase, is_restrained) = (piece.before.phase, piece.level.subject().is_tied);
         // bounds over a whole leap are known under gravity only
         let is_leap = piece.arc.is_none() && !piece.load.is_vertical() && !is_restrained;
@@ -392,11 +398,11 @@ impl Watch for Validity {
             // of what the ties pull there are no bounds
             let extents = match of_leap {
                 Some(extents) if phase == Phase::FullContact => extents,
-                _ if is_restrained => Reactions { R_h: Extent::ANY, R_v: Extent::ANY, R_m: Extent::ANY },
+                _ if is_restrained => UNBOUNDED,
                 _ => extents(&self.structure, phase, piece.load.from(expansion.from), expansion.arc),
             };
             if self.may_matter(phase, &extents) {
-                self.look(expansion, &extents, FINEST_PART);
+                self.look(expansion, &extents, reaction_series::of_one, FINEST_PART);
             }
             count += 1;
             if count >= MOST_ARCS {
@@ -406,49 +412,77 @@ impl Watch for Validity {
     }
 
     fn transition(&mut self, transition: &Transition) {
-        let &Transition { time, kind, before, after } = transition;
-        let structure = &self.structure;
-        let (side, phase) = match kind {
-            TransitionKind::Impact(side) => (side.opposite(), Phase::Rocking(side)),
-            // s θ falls to 0
-            TransitionKind::Landing | TransitionKind::Settling => (Side::of(-before.theta_dot), Phase::FullContact),
-            TransitionKind::Uplift(_)
-            | TransitionKind::Overturning(_)
-            | TransitionKind::Yielding(_)
-            | TransitionKind::Unloading(_) => return,
-        };
-        self.found.settlings += u64::from(kind == TransitionKind::Settling);
-        if phase == Phase::FullContact && after != impact::land(structure, &before) {
-            return; // the rigid limit has come to rest: what is left below the tolerance is no impact
-        }
-        let kinetic = impact::kinetic_energy(structure, side, &before);
-        if kinetic == 0.0 {
-            return;
-        }
-        let gained = match phase {
-            Phase::Rocking(_) => impact::energy_gained(structure, side, &before),
-            _ => 0.0, // a landing always loses
-        };
-        let impulse = Impulse::of(structure, (Phase::Rocking(side), &before), (phase, &after));
-        self.see_impact(time, &Impact { impulse, gain: gained / kinetic });
+        self.see_transition(transition);
     }
 }
 
+impl Watch<Modes> for Validity<Modes> {
+    const SEES_PIECES: bool = true;
+
+    fn piece(&mut self, piece: &Piece<Modes>) {
+        self.see_passing(piece);
+        let mut arcs = piece.arcs();
+        while let Some(expansion) = arcs.next() {
+            let (series, reach) = (reaction_series::of_modes(&expansion), expansion.arc.reach);
+            let polynomial = Polynomial { of: expansion, series, extents: &UNBOUNDED };
+            let extents = match polynomial.has_converged(&polynomial.reactions(reach)) {
+                true => Extent::of_all(&series, reach),
+                false => UNBOUNDED,
+            };
+            if self.may_matter(piece.before.phase, &extents) {
+                self.look(expansion, &extents, reaction_series::of_modes, FINEST_PART);
+            }
+        }
+    }
+
+    fn transition(&mut self, transition: &Transition<Modes>) {
+        self.see_transition(transition);
+    }
+}
+
+impl Validity {
+    /// Bounds of the reactions over a leap, if they are known: a quantity whose second derivative is at most M over the time h stays
+    /// within M h²/8 of its chord.
+    fn extents_of_leap(&self, piece: &Piece) -> Option<Reactions<Extent>> {
+        let &Piece { level, before: &Motion { phase, .. }, duration, load, .. } = piece;
+        let rates = level.rates(phase, &piece.whole().step(), &piece.end);
+        let states = [(0.0, &piece.before.state), (duration, &piece.end)];
+        let per_bend = duration * duration / 8.0;
+        if phase != Phase::FullContact {
+            let bends = level.bends_of_forces(phase, load, duration, &rates, &level.second(&rates)?);
+            let [first, last] = states.map(|(tau, state)| {
+                let now = Now { state, load: load.at(tau), dissipators: &piece.before.dissipators };
+                forces(&Instant::of(&self.structure, phase, state, now.load), &level.accelerations(phase, &now))
+            });
+            let [R_h, R_v] = std::array::from_fn(|i| Extent::between(first[i], last[i], bends[i].bend * per_bend));
+            return Some(Reactions { R_h, R_v, R_m: Extent::ANY });
+        }
+        let &Parameters { m, m0, H, g, .. } = self.structure.parameters();
+        let &Structure { k, c_fc, .. } = &self.structure;
+        let [first, last] = states.map(|(tau, state)| {
+            let strut = c_fc * state.u_dot + k * state.u;
+            [strut - m0 * load.at(tau).a_g, H * strut + m * g * state.u]
+        });
+        let Rates { u_ddot, u_dddot, .. } = rates;
+        let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
+        let off = [strut, H * strut + per_bend * m * g * u_ddot];
+        let W = self.scale().W;
+        let [R_h, R_m] = std::array::from_fn(|i| Extent::between(first[i], last[i], off[i]));
+        Some(Reactions { R_h, R_v: Extent::between(W, W, 0.0), R_m })
+    }
+}
+
+/// Gives the reactions of the edges over a polynomial.
+type SeriesOf<Q> = fn(&Expansion<Q>) -> Reactions<Terms>;
+
 /// A polynomial of a motion with its reactions.
-struct Polynomial<'a> {
-    of: Expansion<'a>,
+struct Polynomial<'a, Q: Moves> {
+    of: Expansion<'a, Q>,
     series: Reactions<Terms>,
     extents: &'a Reactions<Extent>,
 }
 
-impl<'a> Polynomial<'a> {
-    fn new(of: Expansion<'a>, extents: &'a Reactions<Extent>) -> Polynomial<'a> {
-        let Expansion { piece, from, arc } = of;
-        let Motion { phase, dissipators, .. } = piece.before;
-        let series = reaction_series::series(piece.level, *phase, dissipators, piece.load.from(from), arc);
-        Polynomial { of, series, extents }
-    }
-
+impl<Q: Moves> Polynomial<'_, Q> {
     /// The reactions at `sigma`, from the state there.
     fn reactions(&self, sigma: f64) -> Reactions {
         self.of.sample(sigma).edges()
@@ -456,13 +490,8 @@ impl<'a> Polynomial<'a> {
 
     /// Whether the series of R_h and R_v end in the reactions `last` of the state.
     fn has_converged(&self, last: &Reactions) -> bool {
-        [(&self.series.R_h, last.R_h), (&self.series.R_v, last.R_v)].into_iter().all(|(series, expected)| {
-            let used = series.used();
-            let terms = used.iter().rev().fold(0.0, |sum, c| sum * self.of.arc.reach + c.abs());
-            let off = evaluate(used, self.of.arc.reach) - expected;
-            // more terms do not turn NaN into a number
-            off.is_nan() || off.abs() <= CONVERGED.max(1e3 * self.of.piece.level.subject().local_error) * terms
-        })
+        let pairs = [(&self.series.R_h, last.R_h), (&self.series.R_v, last.R_v)];
+        pairs.into_iter().all(|(series, last)| self.of.has_converged(series, last, CONVERGED))
     }
 
     /// The series of a combination that may exceed `least`.
@@ -520,10 +549,14 @@ fn positive(coefficients: &[f64], reach: f64, found: &mut Vec<(f64, f64)>) {
     look(reach);
 }
 
-impl Run<'_> {
+impl<Q: Moves> Run<'_, Q>
+where
+    Validity<Q>: Watch<Q>,
+{
     /// The assumptions that the run breaks, and its end.
-    pub fn validity(&self, limits: Limits) -> Result<(Findings, Finish), RunError> {
-        let mut validity = Validity::new(&self.structure, limits, Findings::since(self.ground.start()));
+    pub fn validity(&self, limits: Limits) -> Result<(Findings, Finish<Q>), RunError> {
+        let since = Findings::since(self.ground.start());
+        let mut validity = Validity::<Q>::new(self.start()?.structure(), limits, since);
         let finish = self.follow(&mut validity)?;
         Ok((validity.found, finish))
     }
@@ -546,13 +579,7 @@ pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
              believe what follows"
         ));
     }
-    let pulling = impact::pulling_restitution(structure);
-    if r < pulling {
-        warnings.push(format!(
-            "r = {r} is below 1 - 2 (m + m0) B^2/J_P = {pulling}: an impact with u = 0 needs an impulse that pulls at \
-             one of the edges; raise r, or lower H/B"
-        ));
-    }
+    warnings.extend(pulling(r, impact::pulling_restitution(structure), "(m + m0)"));
     if detail.has_strut() && impact::greatest_gain(structure, u_cr) > 0.0 {
         let range = match impact::lossless_restitution(structure, u_cr) {
             Some([least, most]) => format!("only r from {least} to {most} cannot"),
@@ -563,4 +590,20 @@ pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
         ));
     }
     warnings
+}
+
+/// The warnings that follow from a structure of many masses at the level `detail`, before anything moves.
+pub fn of_frame(frame: &Frame, detail: Detail) -> Vec<String> {
+    let given = frame.base.r.filter(|_| detail.has_uplift());
+    given.and_then(|r| pulling(r, impact::pulling_restitution(frame), "m_t")).into_iter().collect()
+}
+
+/// The warning about a coefficient of restitution `r` that requires a pull.
+fn pulling(r: f64, limit: f64, mass: &str) -> Option<String> {
+    (r < limit).then(|| {
+        format!(
+            "r = {r} is below 1 - 2 {mass} B^2/J_P = {limit}: an impact with u = 0 needs an impulse that pulls at \
+             one of the edges; raise r, or lower H/B"
+        )
+    })
 }

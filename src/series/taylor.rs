@@ -77,20 +77,20 @@ pub(crate) const ORDERS: Series = {
 };
 
 /// Coefficients of the same polynomial about `by`.
-fn shift(coefficients: &mut [f64], by: f64) {
+fn shift<Q: Coordinates>(coefficients: &mut [Q], by: f64) {
     let last = coefficients.len().saturating_sub(1);
     for start in 0..last {
         for k in (start..last).rev() {
-            coefficients[k] += by * coefficients[k + 1];
+            coefficients[k] = coefficients[k].plus(coefficients[k + 1], by);
         }
     }
 }
 
 /// Coefficients of the same polynomial over `scale` from `from` on: 0 is then what `from` was, and 1 what lay `scale` beyond.
-pub fn stretch(coefficients: &mut [f64], from: f64, scale: f64) {
+pub fn stretch<Q: Coordinates>(coefficients: &mut [Q], from: f64, scale: f64) {
     shift(coefficients, from);
     coefficients.iter_mut().fold(1.0, |power, c| {
-        *c *= power;
+        *c = c.times(power);
         power * scale
     });
 }
@@ -139,6 +139,18 @@ impl<Q: Coordinates> Arc<Q> {
         (self.u_dot[last].total() + self.theta_dot[last] + self.reach).is_finite()
     }
 
+    /// The motion from σ = `from` to σ = `to` alone.
+    pub(crate) fn between(&self, from: f64, to: f64) -> Arc<Q> {
+        let (mut part, scale) = (self.clone(), to - from);
+        for series in [&mut part.u, &mut part.u_dot] {
+            stretch(&mut series[..=self.order], from, scale);
+        }
+        for series in [&mut part.theta, &mut part.theta_dot] {
+            stretch(&mut series[..=self.order], from, scale);
+        }
+        Arc { span: self.span * scale, reach: 1.0, ..part }
+    }
+
     /// The state at the end of the step.
     #[inline]
     pub fn end(&self) -> State<Q> {
@@ -178,15 +190,6 @@ impl Arc {
     #[inline(always)]
     pub(crate) fn most(&self, series: &Series, end: f64) -> f64 {
         series[0].abs().max(end.abs()) + off_chord(self.used(series), self.reach)
-    }
-
-    /// The motion from σ = `from` to σ = `to` alone.
-    pub(crate) fn between(&self, from: f64, to: f64) -> Arc {
-        let (mut part, scale) = (self.clone(), to - from);
-        for series in [&mut part.u, &mut part.u_dot, &mut part.theta, &mut part.theta_dot] {
-            stretch(&mut series[..=self.order], from, scale);
-        }
-        Arc { span: self.span * scale, reach: 1.0, ..part }
     }
 }
 

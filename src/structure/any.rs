@@ -2,7 +2,7 @@
 
 use crate::mechanics::impact::restitution;
 use crate::mechanics::lateral::Modes;
-use crate::structure::frame::Frame;
+use crate::structure::frame::{Frame, ROUNDING};
 use crate::structure::{Base, Derived, Mode, derived};
 use crate::{Side, State, Structure};
 use std::f64::consts::TAU;
@@ -45,7 +45,10 @@ pub const OF_MODE: [Derived<ModeOf>; 7] = [
     }),
     derived!("mass" ["kg"] "effective mass", "", |of| of.mode.gamma * of.mode.share),
     derived!("share" ["1"] "effective mass as a fraction of m_s", "", |of| of.mode.gamma * of.mode.share / of.m_s),
-    derived!("height" ["m"] "effective height", "", |of| of.mode.height / of.mode.share),
+    derived!("height" ["m"] "effective height; 0 of a mode without effective mass", "", |of| {
+        let is_of_none = of.mode.gamma * of.mode.share <= ROUNDING * of.m_s;
+        if is_of_none { 0.0 } else { of.mode.height / of.mode.share }
+    }),
     derived!("chi" ["1"] "participation in rocking", "", |of| of.mode.mass * of.mode.height * of.mode.height / of.J_P),
     derived!("f_u" ["Hz"] "frequency while rocking", "", |of| of.omega_u / TAU),
 ];

@@ -7,7 +7,7 @@ use crate::series::bisection::last_where;
 use crate::structure::{Base, Mode, Ties, Vibration};
 
 /// A rest beside the modes that counts as none, as a fraction of the whole.
-const ROUNDING: f64 = 1e-9;
+pub(crate) const ROUNDING: f64 = 1e-9;
 
 /// The most that rounded modes may carry beyond the whole, as a fraction of the whole; the modes are then the whole.
 const EXCESS: f64 = 5e-3;
@@ -264,6 +264,13 @@ impl Frame {
     /// The structure as a rigid body.
     pub fn body(&self) -> &Body {
         &self.body
+    }
+
+    /// The sum of the horizontal forces of `load` (N), and the sum of their moments in full contact (N·m).
+    pub(crate) fn pushes(&self, load: &Load<Modes>) -> [f64; 2] {
+        let [force, moment] = load.F_t.rest().unwrap_or_default();
+        let on_modes = |part: fn(&Mode) -> f64| Modes::sum(self, |j, mode| part(mode) * load.F_t.of(j));
+        [force + on_modes(|mode| mode.share), moment + on_modes(|mode| mode.height)]
     }
 
     /// The rigid base.
