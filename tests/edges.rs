@@ -92,7 +92,7 @@ fn a_step_may_end_right_before_a_return() {
         B: 10.0,
         J0: 9.999999999999999e-5,
         f_fc: 1e4,
-        zeta_fc: 1.0,
+        zeta_fc: 0.99,
         c_ratio: 1.0,
         r: 1.0,
         ..Parameters::EVISON
@@ -120,8 +120,8 @@ fn a_way_without_end_is_told_for_what_it_is() {
         B: 1e-3,
         J0: 0.0,
         f_fc: 1e-3,
-        zeta_fc: 1.2,
-        c_ratio: 2.3,
+        zeta_fc: 0.96,
+        c_ratio: 2.875,
         r: 1.0,
         ..Parameters::EVISON
     });
@@ -149,7 +149,7 @@ prop_compose! {
         mass_ratio in edge_or(&[0.0], 1e-4, 10.0),
         inertia in edge_or(&[0.0], 1e-3, 1e4),
         f_fc in edge_or(&[1e-3, 1e4], 1e-3, 1e4),
-        zeta_fc in edge_or(&[0.0, 1.0, 2.0, 10.0], 1e-4, 10.0),
+        zeta_fc in edge_or(&[0.0, 0.99], 1e-4, 0.99),
         c_ratio in edge_or(&[0.0, 1.0], 1e-3, 100.0),
         r in edge_or(&[1.0, 1e-3], 0.5, 1.0),
     ) -> Parameters {

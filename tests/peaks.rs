@@ -46,7 +46,7 @@ fn a_long_leap_is_read_to_its_end() {
 fn a_leap_without_end_is_looked_at_at_its_ends() {
     let undamped = Structure::new(Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS }).unwrap();
     let damped = Structure::new(Parameters::MCMANUS).unwrap();
-    let heavy = Structure::new(Parameters { zeta_fc: 3.0, ..Parameters::MCMANUS }).unwrap();
+    let heavy = Structure::new(Parameters { zeta_fc: 0.99, ..Parameters::MCMANUS }).unwrap();
     let initial = State { u: 1e-3, u_dot: 0.02, ..State::default() };
     for structure in [undamped, damped, heavy] {
         for duration in [20.0, 2e5, 1e12] {

@@ -134,7 +134,7 @@ CORNERS = {
     "J0 large": dict(J0=1e5),
     "r = 1": dict(r=1.0),
     "zeta = 0": dict(zeta_fc=0.0),
-    "zeta = 2": dict(zeta_fc=2.0),
+    "zeta = 0.99": dict(zeta_fc=0.99),
 }
 
 

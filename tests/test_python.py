@@ -205,6 +205,8 @@ def test_a_file_says_what_would_help(tmp_path):
     assumed, doubted = (str(warning.message) for warning in warned)
     assert "the file states no unit: m/s2 is assumed" in assumed and "a step of 0.5 s: is the time in another unit" in doubted
     assert {warning.filename for warning in warned} == {__file__}
+    with pytest.warns(UserWarning, match="a peak of 20 g: is the unit right"):
+        fr.Record.read(tmp_path / "column.txt", dt=0.01, unit="g", scale=100)
     (tmp_path / "table.txt").write_text("0 1\n0.01 2\n0.02 0\n")
     with pytest.warns(UserWarning, match="table.txt: .*m/s2 is assumed"):
         fr.export(tmp_path / "table.fmu", fr.Structure(preset="mcmanus"), record=tmp_path / "table.txt")

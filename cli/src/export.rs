@@ -1,7 +1,7 @@
 //! `export`: packs the shared libraries, with all that describes them, into an FMU.
 
 use crate::record_args::{RecordOptions, one_of, say_understood};
-use crate::structure_args::{StructureArgs, in_one_line};
+use crate::structure_args::{StructureArgs, in_one_line, on_command_line};
 use crate::talk::say;
 use FlexibleRocking::guid;
 use anyhow::{Context, bail};
@@ -88,12 +88,12 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
 
 /// The file to pack for the record at `path`, and its content: itself, or what is understood of it.
 fn record(options: &RecordOptions, path: &Path, g: f64) -> anyhow::Result<(PathBuf, Vec<u8>)> {
-    let understood = options.understand(path, g)?;
+    let understood = options.understand(path, g, on_command_line)?;
     say_understood("", &understood);
     if options.are_none() && !input::is_stream(path) {
         return Ok((path.into(), rocking_records::read_file(path)?));
     }
-    Ok(((input::stem(path) + ".csv").into(), understood.table().into_bytes()))
+    Ok(((input::stem(path) + ".csv").into(), understood.table()?.into_bytes()))
 }
 
 /// The shared libraries that were built with `program`, at most one for each platform.

@@ -1,6 +1,7 @@
 //! `record`: what is understood of a record, and the same as a table that is read without options.
 use crate::{
-    cause::Cause, record_args::RecordOptions, record_args::say_understood, results::FormatArgs, talk::write_as,
+    cause::Cause, record_args::RecordOptions, record_args::say_understood, results::FormatArgs,
+    structure_args::on_command_line, talk::write_as,
 };
 use rocking::Parameters;
 use rocking::estimates::intensity::{arias_intensity, peak_velocity, significant_duration};
@@ -29,11 +30,11 @@ pub struct RecordCommand {
 /// Prints what was understood, and writes it.
 pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
     args.results.check_beside(args.output.as_deref())?;
-    let understood = args.options.understand(&args.record, G)?;
+    let understood = args.options.understand(&args.record, G, on_command_line)?;
     say_understood("record         ", &understood);
     if let Some(output) = &args.output {
         let file = OutputFiles::of_inputs([args.record.as_path()]).create(output)?;
-        write_as(file, "written", understood.table().as_bytes())?;
+        write_as(file, "written", understood.table()?.as_bytes())?;
     }
     let (record, output) = (&understood.record, args.output.as_deref());
     let cause = Cause::of_record(&args.record, &args.options, &understood);

@@ -1,5 +1,5 @@
 //! Which ground motion record a command works on, how it is read, and how it is scaled.
-use crate::{significant::short, talk::say};
+use crate::{significant::short, structure_args::on_command_line, talk::say};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rocking::run::record::Record;
 use rocking_records::{Column, Reading, Unit};
@@ -66,7 +66,7 @@ impl RecordOptions {
     /// Reads and scales the record in the file at `path`, in m/s²; a record's g means `g` (m/s²). Reports findings and
     /// assumptions under the name `what`.
     fn load(&self, what: &str, path: &Path, g: f64) -> anyhow::Result<Record> {
-        let understood = self.understand(path, g)?;
+        let understood = self.understand(path, g, on_command_line)?;
         say_understood(&format!("{what:<14} "), &understood);
         let record = understood.record;
         if self.time_scale.is_some() || self.scale.is_some() {
@@ -75,11 +75,11 @@ impl RecordOptions {
         Ok(record)
     }
 
-    /// Reads the record at `path` without messages; `g` in m/s².
-    pub fn understand(&self, path: &Path, g: f64) -> anyhow::Result<Understood> {
+    /// Reads the record at `path`, whose options are `called` so in messages; `g` in m/s².
+    pub fn understand(&self, path: &Path, g: f64, called: fn(&str) -> String) -> anyhow::Result<Understood> {
         let &RecordOptions { unit, dt, ref column, ignore_npts: ignores_count, .. } = self;
         let how = Reading { unit, dt, column: column.clone(), ignores_count };
-        understand(path, &how, self.factors(), g)
+        understand(path, &how, self.factors(), g, called)
     }
 
     /// Factors on the record's times and on its accelerations.

@@ -87,11 +87,15 @@ fn of_file(text: &str) -> anyhow::Result<AnyStructure> {
 /// The error with the options that help.
 fn with_options(error: GivenError) -> anyhow::Error {
     let GivenError::Missing(missing) = &error else { return error.into() };
-    let advice = missing.iter().map(|missing| missing.advice(|name| format!("--{}", option_name(name))));
+    let advice = missing.iter().map(|missing| missing.advice(on_command_line));
     anyhow!(advice.collect::<Vec<_>>().join("; "))
 }
 
 /// The option of the number called `name`: `--f-fc` of f_fc.
+pub fn on_command_line(name: &str) -> String {
+    format!("--{}", option_name(name))
+}
+
 fn option_name(name: &str) -> String {
     name.replace('_', "-")
 }

@@ -21,7 +21,7 @@ pub struct GroundRecord {
     pub units: [Unit; 2],
     /// Names all of it.
     pub digest: Digest,
-    /// Sentences about each file: first the content and the assumptions, then the doubts.
+    /// Sentences about each file: first the content, then an assumption.
     pub sentences: Vec<Vec<String>>,
 }
 
@@ -55,11 +55,9 @@ impl GroundRecord {
         let (record, source) = rocking_records::from_bytes(path, bytes, &Reading::default())?;
         let unit = source.unit;
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        // No warning of an assumed unit, which the findings have: a log that is always on is for doubts.
-        let sentences = rocking_records::in_m_s2(record.clone(), source, g).map_or(Vec::new(), |(in_m_s2, source)| {
-            let doubts = source.doubts.iter().map(|doubt| format!("{name}: {doubt}"));
-            [source.findings(&name, &in_m_s2, g)].into_iter().chain(doubts).collect()
-        });
+        let found = rocking_records::in_m_s2(record.clone(), unit, g).map(|record| source.findings(&name, &record, g));
+        let assumed = source.assumption("head its column with the unit, such as a (g)");
+        let sentences = found.into_iter().chain(assumed.map(|assumed| format!("{name}: {assumed}"))).collect();
         let numbers = record.times().iter().chain(record.acceleration());
         let bytes: Vec<_> = numbers.flat_map(|number| number.to_le_bytes()).chain([unit as u8]).collect();
         let digest = Uuid::new_v5(&Uuid::NAMESPACE_OID, &bytes).into_bytes();

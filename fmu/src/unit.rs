@@ -237,9 +237,12 @@ impl Model for Unit {
     fn start(&mut self, interface: Interface, logger: &Logger) -> Result<(), Failure> {
         let (scene, setup, inputs) = self.parts()?;
         for of_file in scene.source.iter().flat_map(|source| &source.sentences) {
-            let (found, doubts) = of_file.split_at(1.min(of_file.len()));
+            let (found, assumed) = of_file.split_at(1.min(of_file.len()));
             found.iter().for_each(|found| logger.event(|| found.clone()));
-            doubts.iter().for_each(|doubt| logger.warning(doubt));
+            assumed.iter().for_each(|assumed| logger.warning(assumed));
+        }
+        for doubt in scene.ground.iter().flat_map(|ground| rocking_records::doubts(ground, setup.parameters.g)) {
+            logger.warning(&format!("the record: {doubt}"));
         }
         for warning in validity::of_parameters(scene.engine.structure(), setup.detail) {
             logger.warning(&warning);

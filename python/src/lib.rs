@@ -80,7 +80,7 @@ fn export(
             }
             Packed::File(path) => path,
         };
-        let understood = understand(path, &Reading::default(), [1.0; 2], structure.parameters().g);
+        let understood = understand(path, &Reading::default(), [1.0; 2], structure.parameters().g, str::to_owned);
         warn(py, understood.map_err(refused)?.sentences[1..].to_vec(), 2)?;
         Ok(vec![(path.clone(), rocking_records::read_file(path).map_err(refused)?)])
     };

@@ -221,7 +221,8 @@ impl Record {
         let how = Reading { unit, dt, column, ignores_count: ignore_npts };
         let read = |file: PathBuf| -> PyResult<(Samples, Unit)> {
             let how = how.clone();
-            let understood = interruptible(py, move |_| understand(&file, &how, [1.0; 2], G))?;
+            let understood =
+                interruptible(py, move |_| understand(&file, &how, [time_scale, scale], G, str::to_owned))?;
             warn(py, understood.sentences[1..].iter().cloned(), 1)?;
             Ok(fixed(understood.in_file_unit, understood.unit))
         };

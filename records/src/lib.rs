@@ -89,21 +89,37 @@ pub enum RecordError {
     },
 }
 
-/// The option of [`Reading`] that makes a file readable, under the name that every door has for it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+/// The option of [`Reading`] that makes a file readable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Remedy {
     /// Ignore the stated number of samples.
-    #[error("ignore_npts takes those")]
     IgnoreCount,
     /// The time between samples.
-    #[error("give it in seconds as dt")]
     Step,
+    /// The time between samples, or a heading of the column of times.
+    StepOrHeading,
     /// The column, the channel, or that every number is a sample.
-    #[error("choose one as column: its number, its heading, or all")]
     Column,
     /// The unit.
-    #[error("say as unit what they are")]
     Unit,
+}
+
+impl Remedy {
+    /// The remedy in words, with the name by which each option is `called` at the door.
+    pub fn advice(self, called: impl Fn(&str) -> String) -> String {
+        match self {
+            Remedy::IgnoreCount => format!("{} reads all samples", called("ignore_npts")),
+            Remedy::Step => format!("give it in seconds as {}", called("dt")),
+            Remedy::StepOrHeading => {
+                let step = called("dt");
+                format!("give the step in seconds as {step}, or head the column of times time (s) or time (ms)")
+            }
+            Remedy::Column => {
+                format!("choose one as {}: its number, its heading, or all", called("column"))
+            }
+            Remedy::Unit => format!("give the unit of the accelerations as {}", called("unit")),
+        }
+    }
 }
 
 /// A line that contradicts the format, before the file's name is known.
@@ -123,7 +139,7 @@ impl BadLine {
 /// Reads the record in the file at `path` as `how` says, with accelerations in m/s². A record's g means `g` (m/s²).
 pub fn read(path: &Path, how: &Reading, g: f64) -> Result<(Record, Source), RecordError> {
     let (record, source) = read_raw(path, how)?;
-    Ok(in_m_s2(record, source, g)?)
+    Ok((in_m_s2(record, source.unit, g)?, source))
 }
 
 /// Reads the record in the file at `path` with its accelerations as the file gives them; their unit is the source's.
@@ -147,13 +163,10 @@ pub fn from_bytes(path: &Path, bytes: &[u8], how: &Reading) -> Result<(Record, S
     }
 }
 
-/// Converts the accelerations of `record` from the unit of the `source` to m/s². A record's g means `g` (m/s²). Adds the
-/// doubts about the record to its `source`.
-pub fn in_m_s2(record: Record, mut source: Source, g: f64) -> Result<(Record, Source), OutOfRange> {
+/// Converts the accelerations of `record` from `unit` to m/s². A record's g means `g` (m/s²).
+pub fn in_m_s2(record: Record, unit: Unit, g: f64) -> Result<Record, OutOfRange> {
     PARAMETERS.iter().filter(|quantity| quantity.name == "g").try_for_each(|quantity| quantity.check(g))?;
-    let record = record.multiplied(source.unit.in_m_s2(g));
-    source.doubts.extend(doubts(&record, g));
-    Ok((record, source))
+    Ok(record.multiplied(unit.in_m_s2(g)))
 }
 
 /// A sentence for each property that no earthquake has but a wrongly read record often has; `record` and `g` in m/s².
@@ -163,7 +176,7 @@ pub fn doubts(record: &Record, g: f64) -> Vec<String> {
     let step = nine_digits(duration / (record.times().len() - 1) as f64);
     let longest = nine_digits(record.times().windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max));
     let velocity = last.unwrap_or_default()[0];
-    let (peak, mean) = (record.pga() / g, velocity / duration / g);
+    let (peak, mean) = (record.pga().max(record.vertical_peak()) / g, velocity / duration / g);
     let is_drift = mean.abs() > LARGEST_USUAL_MEAN && velocity.abs() > LARGEST_USUAL_VELOCITY;
     let is_usual = USUAL_STEPS.contains(&step);
     let doubts = [
@@ -272,7 +285,7 @@ mod tests {
         let read = |dt, g| {
             let how = Reading { dt, ..Reading::default() };
             let (record, source) = from_bytes(Path::new("a.csv"), b"a (g)\n1\n2\n", &how)?;
-            Ok::<_, RecordError>(in_m_s2(record, source, g)?.0)
+            Ok::<_, RecordError>(in_m_s2(record, source.unit, g)?)
         };
         for dt in [f64::NAN, -0.1, 0.0, f64::INFINITY] {
             let refused = read(Some(dt), 9.81).unwrap_err().to_string();
@@ -289,14 +302,14 @@ mod tests {
     fn what_was_found_and_assumed_is_said_in_sentences() {
         let said = |text: &[u8]| {
             let (record, source) = from_bytes(Path::new("a.csv"), text, &Reading::default())?;
-            let (record, source) = in_m_s2(record, source, 9.81)?;
-            Ok::<_, RecordError>(source.sentences("a.csv", &record, 9.81))
+            let record = in_m_s2(record, source.unit, 9.81)?;
+            Ok::<_, RecordError>(source.sentences("a.csv", [&record; 2], 9.81, "head the column a (g)"))
         };
         let found = "a.csv: table, separated by commas, column 2 \"a (g)\", 1 line(s) of text before the data; g as the file \
                      states; 2 samples, step 0.01 s, peak 2 g";
         assert_eq!(said(b"t,a (g)\n0,1\n.01,2\n").unwrap(), [found]);
         let found = "a.csv: table, separated by commas, column 2; m/s2 assumed; 3 samples, steps of 0.01 to 0.02 s, peak 6.21152 g";
-        let assumed = "a.csv: the file states no unit: m/s2 is assumed; say as unit what it is";
+        let assumed = "a.csv: the file states no unit: m/s2 is assumed; head the column a (g)";
         let peak = "a.csv: a peak of 6 g: is the unit right?";
         assert_eq!(said(b"0,1\n.01,60.935\n.03,-1\n").unwrap(), [found, assumed, peak]);
     }

@@ -46,7 +46,7 @@ impl Times {
 impl Parsed {
     /// Starts without samples.
     pub fn new(format: Format, title: impl Into<String>, unit: Unit, unit_from: UnitFrom, times: Times) -> Parsed {
-        let source = Source { format, unit, unit_from, remarks: Vec::new(), doubts: Vec::new() };
+        let source = Source { format, unit, unit_from, remarks: Vec::new() };
         Parsed { title: title.into(), times, values: Vec::new(), source, last_line: 1 }
     }
 

@@ -1,15 +1,15 @@
 //! Options for reading a record's file, and the findings and assumptions about the file.
 
 use super::text::{quote, six_digits};
-use super::unit::Stated;
-use super::{BadLine, Record, Remedy, Unit, bad};
+use super::unit::{Stated, mentions_unit};
+use super::{BadLine, Record, Remedy, Unit, bad, doubts};
 use serde::{Deserialize, Deserializer, de::Error};
 use std::fmt;
 
 /// Options of the user for facts that a file does not state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
-    /// Unit of the accelerations; must be the one that the file states, if it states one.
+    /// Unit of the accelerations; must be the unit that the file states, if the file clearly states one.
     pub unit: Option<Unit>,
     /// Time between two samples of a file without times, s.
     pub dt: Option<f64>,
@@ -60,8 +60,6 @@ pub struct Source {
     pub unit_from: UnitFrom,
     /// Other findings and assumptions, such as the column and the number of lines of headings.
     pub remarks: Vec<String>,
-    /// Likely errors in the file or in how it is read.
-    pub doubts: Vec<String>,
 }
 
 impl Source {
@@ -79,15 +77,17 @@ impl Source {
         format!("{name}: {format}{remarks}; {unit} {unit_from}; {samples} samples, {steps}, peak {peak} g")
     }
 
-    /// A warning of a unit that is assumed, and the doubts.
-    pub fn warnings(&self) -> impl Iterator<Item = String> {
-        let assumed = || format!("the file states no unit: {} is assumed; say as unit what it is", self.unit);
-        (self.unit_from == UnitFrom::Assumed).then(assumed).into_iter().chain(self.doubts.iter().cloned())
+    /// A warning of a unit that is assumed, with the `remedy`.
+    pub fn assumption(&self, remedy: &str) -> Option<String> {
+        let assumed = || format!("the file states no unit: {} is assumed; {remedy}", self.unit);
+        (self.unit_from == UnitFrom::Assumed).then(assumed)
     }
 
-    /// The [findings](Source::findings), and a sentence for each warning.
-    pub fn sentences(&self, name: &str, record: &Record, g: f64) -> Vec<String> {
-        let warnings = self.warnings().map(|warning| format!("{name}: {warning}"));
+    /// The [findings](Source::findings) about a record, then a sentence for an [assumption](Source::assumption) and for each
+    /// of the [`doubts`] about the `scaled` record.
+    pub fn sentences(&self, name: &str, [record, scaled]: [&Record; 2], g: f64, remedy: &str) -> Vec<String> {
+        let warnings = self.assumption(remedy).into_iter().chain(doubts(scaled, g));
+        let warnings = warnings.map(|warning| format!("{name}: {warning}"));
         [self.findings(name, record, g)].into_iter().chain(warnings).collect()
     }
 }
@@ -152,13 +152,18 @@ impl fmt::Display for Format {
     }
 }
 
-/// Decides the unit: the unit that the file states on `line`, else the unit of the user, else m/s². The user must not
-/// contradict the file.
+/// Decides the unit: the unit that the file clearly states on `line`, else the unit of the user, else m/s². The user must not
+/// contradict a clear statement, nor a unit of something else.
 pub(super) fn decide(stated: &Stated, asked: Option<Unit>, line: usize) -> Result<(Unit, UnitFrom), BadLine> {
     let contradicted = |stated: &dyn fmt::Display, asked: Unit| {
         Err(bad(line, format!("the file states accelerations in {stated}, and {asked} is asked for")))
     };
     match (stated, asked) {
+        (Stated::Other(text), None) if mentions_unit(text) => {
+            let problem = format!("{} does not say clearly in which unit the accelerations are", quote(text));
+            Err(bad(line, problem).remedied_by(Remedy::Unit))
+        }
+        (Stated::Other(text), Some(asked)) if mentions_unit(text) => Ok((asked, UnitFrom::User)),
         (Stated::Unit(unit), Some(asked)) if *unit != asked => contradicted(unit, asked),
         (Stated::Unit(unit), _) => Ok((*unit, UnitFrom::File)),
         (Stated::Other(other), Some(asked)) => contradicted(&quote(other), asked),

@@ -153,8 +153,8 @@ impl<'a> Table<'a> {
     fn check_first(&self) -> Result<(), BadLine> {
         match self.headings_of(0).next() {
             Some((line, name)) if !self.is_whole(0) => {
-                let problem = format!("column 1 is {}, which is no time in s or ms: ", quote(name));
-                Err(bad(line, problem + "give the step in seconds as dt, or head a column of seconds time (s)"))
+                let problem = format!("column 1 is {}, which is no time in s or ms", quote(name));
+                Err(bad(line, problem).remedied_by(Remedy::StepOrHeading))
             }
             _ => self.check_growth(0).map_err(|no_times| no_times.remedied_by(Remedy::Column)),
         }
@@ -237,9 +237,8 @@ impl<'a> Table<'a> {
         let step = self.stated.dt.or(how.dt).map(Times::Every);
         match time {
             Some((time, TimeUnit::Unstated)) if self.is_whole(time) => {
-                let problem = format!("column {} has whole numbers: are they counts or milliseconds? ", time + 1);
-                let remedy = "Give the step in seconds as dt, or head the column time (ms)";
-                let step = step.ok_or_else(|| bad(self.first, problem + remedy))?;
+                let problem = format!("column {} has whole numbers, which may be counts or milliseconds", time + 1);
+                let step = step.ok_or_else(|| bad(self.first, problem).remedied_by(Remedy::StepOrHeading))?;
                 let even = self.column(time).nth(1).unwrap_or_default() - self.numbers[time];
                 self.check_steps(time, "count the samples", |step| step > 0.0 && step == even)?;
                 Ok(step)
@@ -502,6 +501,20 @@ mod tests {
         assert_eq!(one("# peak 0.3 g").unwrap_err().remedy, Some(Remedy::Unit));
     }
 
+    /// A known unit stands before another word, after a number, or beside another unit.
+    #[test]
+    fn the_user_decides_where_a_heading_is_not_clear() {
+        for heading in ["Accel m/s^2 NS", "acceleration (9.81 m/s2)", "acc (gal, not g)"] {
+            let text = format!("t (s);{heading}\n0;1\n.5;2\n");
+            let unclear = read(&text, &AS_IT_IS).unwrap_err();
+            assert_eq!(unclear.remedy, Some(Remedy::Unit), "{heading}");
+            assert!(unclear.problem.contains(heading), "{unclear:?}");
+            let asked = Reading { unit: Some(Unit::G), ..AS_IT_IS };
+            let source = read(&text, &asked).unwrap().1;
+            assert_eq!((source.unit, source.unit_from), (Unit::G, UnitFrom::User), "{heading}");
+        }
+    }
+
     /// A factor may be in any heading of the column. The user says what the numbers are.
     #[test]
     fn a_factor_in_a_heading_is_not_passed_over() {
@@ -559,16 +572,8 @@ mod tests {
                 "3: DT states a sample every 0.02 s, and the times have 0.01 s: correct one of them",
             ),
             ("NPTS=4\nt,a\n0,1\n.5,2\n", "4: NPTS states 4 samples, and the file has 2"),
-            (
-                "t (min),a (g)\n0,1\n.5,2\n",
-                "1: column 1 is \"t (min)\", which is no time in s or ms: give the step in seconds as dt, or head a \
-                 column of seconds time (s)",
-            ),
-            (
-                "t,a\n0,1\n5,-2\n10,3\n",
-                "2: column 1 has whole numbers: are they counts or milliseconds? Give the step in seconds as dt, or head \
-                 the column time (ms)",
-            ),
+            ("t (min),a (g)\n0,1\n.5,2\n", "1: column 1 is \"t (min)\", which is no time in s or ms"),
+            ("t,a\n0,1\n5,-2\n10,3\n", "2: column 1 has whole numbers, which may be counts or milliseconds"),
         ] {
             assert_eq!(problem(text, &AS_IT_IS), expected, "{text}");
         }

@@ -221,7 +221,7 @@ fn has_second_unit(text: &str) -> bool {
 pub(super) enum Stated {
     Nothing,
     Unit(Unit),
-    /// A unit of something else, or one that is not known here.
+    /// A unit of something else or one that is not known here; or all of a heading with a known unit in an unclear place.
     Other(String),
     /// The accelerations are multiplied by a factor: this heading has one.
     Multiplied(String),
@@ -260,7 +260,8 @@ impl Stated {
         }
         let mut words = heading.rsplit([' ', '\t', ',', '(', '[', '{', ')', ']', '}']);
         let other = words.find(|word| is_like_a_unit(word));
-        other.map_or(Stated::Nothing, |other| Stated::Other(other.to_owned()))
+        let shown = |other| if mentions_unit(other) { heading } else { other };
+        other.map_or(Stated::Nothing, |other| Stated::Other(shown(other).to_owned()))
     }
 }
 

@@ -173,7 +173,7 @@ mod tests {
             a_g in prop::collection::vec(-10.0..10.0f64, 3..12),
             steps in prop::collection::vec(1e-3..0.3f64, 12),
             f_fc in 0.3..40.0f64,
-            zeta_fc in 0.0..3.0f64,
+            zeta_fc in 0.0..0.99f64,
         ) {
             const SEEN: usize = 400;
             let structure = Structure::new(Parameters { f_fc, zeta_fc, ..Parameters::EVISON }).unwrap();

@@ -129,7 +129,7 @@ mod tests {
         #[test]
         fn a_leap_agrees_with_the_series_and_never_passes_the_limit(
             u in -1e-3..1e-3f64, u_dot in -0.1..0.1f64, value in -3.0..3.0f64, slope in -300.0..300.0f64,
-            zeta_fc in prop_oneof![0.0..1.2f64, Just(1.0)], interval in 1e-4..0.02f64,
+            zeta_fc in 0.0..0.99f64, interval in 1e-4..0.02f64,
         ) {
             let structure = Structure::new(Parameters { zeta_fc, ..Parameters::EVISON }).unwrap();
             let state = State { u, u_dot, ..State::default() };

@@ -9,8 +9,8 @@
 use crate::Parameters;
 use crate::mechanics::lateral::{MOST_MODES, Modes};
 use crate::structure::frame::{Body, Floor, Frame, FrameError};
-use crate::structure::natural_quantities::{Given, GivenError};
-use crate::structure::parameters::{MAX_SLENDERNESS, ParameterError};
+use crate::structure::natural_quantities::{self, Given, GivenError};
+use crate::structure::parameters::{MAX_DAMPING, MAX_SLENDERNESS, ParameterError};
 use crate::structure::quantity::{OutOfRange, Quantity};
 use crate::structure::{Mode, Ties};
 use nalgebra::{DMatrix, DVector};
@@ -90,6 +90,7 @@ pub enum Damping {
 #[serde(deny_unknown_fields)]
 pub struct Described {
     /// The base: m0, B, J0, r, g, c_ratio, the tendon and the dissipators.
+    #[serde(deserialize_with = "natural_quantities::base")]
     pub base: Given,
     /// Damping in full contact.
     pub zeta: Damping,
@@ -163,6 +164,18 @@ pub enum DescriptionError {
          kg: check the order of the floors and of the modes"
     )]
     Shape { number: usize, found: f64, given: f64 },
+    #[error(
+        "the shape of mode {number} has the effective height {found:.5} m with the floors, but the mode has {given:.5} m: check \
+         the order of the floors in the shape"
+    )]
+    ShapeHeight { number: usize, found: f64, given: f64 },
+    #[error(
+        "the modes carry {part:.2} % of m_s = {m_s:?} kg above the foundation, and {least} % are needed: check the units of the \
+         masses, and that the modes vibrate along the record",
+        part = 1e2 * of_modes / m_s,
+        least = 1e2 * LEAST_SHARE
+    )]
+    Little { of_modes: f64, m_s: f64 },
 }
 
 const fn limit(
@@ -178,10 +191,12 @@ const FLOOR_MASS: Quantity<f64> = limit("m", "kg", [1e-6, 1e12], "mass of the fl
 const FLOOR_HEIGHT: Quantity<f64> = limit("h", "m", [1e-3, 1e4], "height of the floor above the base");
 const STOREY: Quantity<f64> = limit("k", "N/m", [1e-6, 1e18], "stiffness of the storey below the floor");
 const ENTRY: Quantity<f64> = limit("K", "N/m", [-1e18, 1e18], "stiffness");
-const ZETA: Quantity<f64> = limit("zeta", "1", [0.0, 10.0], "damping ratio in full contact");
+const ZETA: Quantity<f64> = limit("zeta", "1", [0.0, MAX_DAMPING], "damping ratio in full contact");
+const RAYLEIGH: Quantity<f64> = limit("zeta", "1", [0.0, 10.0], "damping ratio of a mode by Rayleigh damping");
 const F: Quantity<f64> = limit("f", "Hz", [1e-3, 1e4], "frequency in full contact");
 const PERIOD: Quantity<f64> = limit("period", "s", [1e-4, 1e3], "period in full contact");
-const MASS: Quantity<f64> = limit("mass", "kg", [1e-6, 1e12], "effective mass");
+const MASS: Quantity<f64> =
+    limit("mass", "kg", [1e-6, 1e12], "effective mass along the record; leave out a mode without such mass");
 const HEIGHT: Quantity<f64> = limit("height", "m", [-1e4, 1e4], "effective height");
 const MOMENT: Quantity<f64> = limit("moment", "kg.m", [-1e16, 1e16], "effective mass times effective height");
 const SHAPE: Quantity<f64> = limit("shape", "1", [-1e12, 1e12], "displacement of a floor");
@@ -197,6 +212,12 @@ const ROUNDING: f64 = 1e-3;
 
 /// Part of a shape's effective mass that may differ from the mode's, because floors stand for distributed mass.
 const SHAPE_TOLERANCE: f64 = 0.1;
+
+/// Part of its largest floor's height by which a shape's effective height may differ from the mode's.
+const HEIGHT_TOLERANCE: f64 = 0.1;
+
+/// Least part of m_s that modes must carry. A mast on a heavy block carries little; tonnes in the place of kg are less.
+const LEAST_SHARE: f64 = 0.01;
 
 /// Part of its diagonal by which K may differ from its transpose.
 const ASYMMETRY: f64 = 1e-6;
@@ -313,13 +334,20 @@ impl Frame {
             if let Some(before) = omegas.last().filter(|before| **before > omega) {
                 return Err(DescriptionError::ModeOrder { number, f: omega / TAU, before: before / TAU });
             }
+            let height = height.map_err(at)?;
             omegas.push(omega);
-            participations.push((root, root * height.map_err(at)?));
+            participations.push((root, root * height));
         }
         let modes = modes(&omegas, damping, &participations)?;
         let body = body(base, whole(base, total, floors)?)?;
+        let (of_modes, m_s) = (modes_found.iter().map(|mode| mode.mass).sum::<f64>(), body.m_s);
+        if of_modes < LEAST_SHARE * m_s {
+            return Err(DescriptionError::Little { of_modes, m_s });
+        }
         let floors = if modes_found.iter().all(|mode| mode.shape.is_empty()) { &[] } else { floors };
-        let shapes = (1..).zip(modes_found).map(|(number, found)| shape(number, found, floors));
+        let heights = participations.iter().map(|(gamma, kappa)| kappa / gamma);
+        let shapes = (1..).zip(modes_found.iter().zip(heights));
+        let shapes = shapes.map(|(number, (found, height))| shape(number, found, height, floors));
         let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
         let frame = Frame::new(body, &modes, &shown(floors, &shapes))?;
         // no mass has a first moment beyond the root of the product of its mass and its second moment
@@ -389,20 +417,20 @@ fn length(what: &str, count: usize, needed: usize, of: &'static str) -> Result<(
 impl Damping {
     /// The ratio of each mode of the frequencies `omegas` (rad/s).
     fn ratios(&self, omegas: &[f64]) -> Result<Vec<f64>, DescriptionError> {
-        let ratios = match self {
-            Damping::All(zeta) => vec![*zeta; omegas.len()],
+        let (ratios, limit) = match self {
+            Damping::All(zeta) => (vec![*zeta; omegas.len()], ZETA),
             Damping::Each(zetas) => {
                 length("zeta", zetas.len(), omegas.len(), "mode")?;
-                zetas.clone()
+                (zetas.clone(), ZETA)
             }
             Damping::Rayleigh { f: [a, b], zeta } => {
                 [a, b].into_iter().try_for_each(|f| F.check(*f))?;
                 ZETA.check(*zeta)?;
                 let ratio = |omega: &f64| zeta * (TAU * a * b / omega + omega / TAU) / (a + b);
-                omegas.iter().map(ratio).collect()
+                (omegas.iter().map(ratio).collect(), RAYLEIGH)
             }
         };
-        ratios.iter().try_for_each(|zeta| ZETA.check(*zeta))?;
+        ratios.iter().try_for_each(|zeta| limit.check(*zeta))?;
         Ok(ratios)
     }
 }
@@ -430,16 +458,21 @@ fn whole(base: &Given, total: Option<Total>, floors: &[Place]) -> Result<[f64; 3
 }
 
 /// The shape of a mode at the `floors`, for the modal mass 1.
-fn shape(number: usize, found: &FoundMode, floors: &[Place]) -> Result<DVector<f64>, DescriptionError> {
+fn shape(number: usize, found: &FoundMode, height: f64, floors: &[Place]) -> Result<DVector<f64>, DescriptionError> {
     length(&format!("the shape of mode {number}"), found.shape.len(), floors.len(), "floor")?;
     let checked = found.shape.iter().try_for_each(|phi| SHAPE.check(*phi));
     checked.map_err(|cause| DescriptionError::At { what: "mode", number, cause })?;
-    let sum =
-        |term: fn(f64) -> f64| found.shape.iter().zip(floors).map(|(phi, floor)| floor.m * term(*phi)).sum::<f64>();
-    let (gamma, modal_mass) = (sum(|phi| phi), sum(|phi| phi * phi));
+    let sum = |term: fn(f64, &Place) -> f64| {
+        found.shape.iter().zip(floors).map(|(phi, floor)| floor.m * term(*phi, floor)).sum::<f64>()
+    };
+    let (gamma, modal_mass) = (sum(|phi, _| phi), sum(|phi, _| phi * phi));
     let effective = if modal_mass > 0.0 { gamma * gamma / modal_mass } else { 0.0 };
     if !floors.is_empty() && (effective - found.mass).abs() > SHAPE_TOLERANCE * found.mass {
         return Err(DescriptionError::Shape { number, found: effective, given: found.mass });
+    }
+    let (of_shape, top) = (sum(|phi, floor| phi * floor.h) / gamma, floors.last().map_or(0.0, |floor| floor.h));
+    if (of_shape - height).abs() > HEIGHT_TOLERANCE * top {
+        return Err(DescriptionError::ShapeHeight { number, found: of_shape, given: height });
     }
     let scale = modal_mass.sqrt().copysign(gamma);
     Ok(DVector::from_iterator(floors.len(), found.shape.iter().map(|phi| phi / scale)))
@@ -617,7 +650,13 @@ mod tests {
         assert!(matrices(|K| K[0][0] = f64::NAN).starts_with("row 1: K = NaN N/m is out of range"));
         let damped = |damping| Frame::from_storeys(&usual(), &damping, &STOREYS).unwrap_err().to_string();
         assert_eq!(damped(Damping::Each(vec![0.02])), "zeta has 1 numbers and must have 3, one for each mode");
-        assert!(damped(Damping::All(-0.1)).starts_with("zeta = -0.1 is out of range"));
+        for zeta in [-0.1, 5.0] {
+            let expected = format!("zeta = {zeta} is out of range: it must lie between 0 and 0.99 (damping ratio");
+            for damping in [Damping::All(zeta), Damping::Each(vec![zeta; 3]), Damping::Rayleigh { f: [1.0, 2.0], zeta }]
+            {
+                assert!(damped(damping).starts_with(&expected), "{zeta}");
+            }
+        }
         assert!(damped(Damping::Rayleigh { f: [0.0, 1.0], zeta: 0.1 }).starts_with("f = 0 Hz is out of range"));
         let of_base = |base, storeys: &[Storey]| Frame::from_storeys(&base, &all, storeys).unwrap_err().to_string();
         assert_eq!(of_base(usual(), &[]), "0 floors are given: a structure has 1 to 500");
@@ -644,6 +683,15 @@ mod tests {
             refused(|modes, _| modes[0].shape = modes[1].shape.clone()),
             "the shape of mode 1 has the effective mass 9.64566e3 kg with the masses of the floors, but mass = 9.77829e4 kg: \
              check the order of the floors and of the modes"
+        );
+        let upside_down = refused(|modes, _| modes[0].shape.reverse());
+        assert!(upside_down.starts_with("the shape of mode 1 has the effective "), "{upside_down}");
+        let other_direction = refused(|modes, _| modes[1].mass = 0.0);
+        assert!(other_direction.ends_with("leave out a mode without such mass)"), "{other_direction}");
+        let in_tonnes = refused(|modes, _| modes.iter_mut().for_each(|mode| mode.mass /= 1e3));
+        assert!(
+            in_tonnes.starts_with("the modes carry 0.10 % of m_s = 110000.0 kg above the foundation"),
+            "{in_tonnes}"
         );
         let tonnes = refused(|_, total| total.m_s = 110.0);
         assert!(tonnes.ends_with("kg of the m_s = 110.0 kg above the foundation: check masses, heights and units"));

@@ -13,7 +13,7 @@
 use crate::structure::parameters::{PARAMETERS, Parameters};
 use crate::structure::quantity::{OutOfRange, Quantity, with_unit};
 use crate::structure::{DERIVED, Derived};
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer, de::Error};
 use std::collections::BTreeMap;
 
 /// A derived quantity that may be given in the place of a parameter.
@@ -67,6 +67,15 @@ pub enum GivenError {
     /// The name is unknown.
     #[error("{name:?} is unknown; these are known: {}", names().collect::<Vec<_>>().join(", "))]
     Unknown {
+        /// The refused name.
+        name: String,
+    },
+    /// The name is unknown beside `[base]`.
+    #[error(
+        "{name:?} is no number of the base; these are known: {}; other numbers of the structure stand above [base]",
+        names_of_base().collect::<Vec<_>>().join(", ")
+    )]
+    UnknownOfBase {
         /// The refused name.
         name: String,
     },
@@ -153,6 +162,22 @@ fn in_words(missing: &[Missing]) -> String {
     missing.iter().map(|missing| missing.advice(str::to_owned)).collect::<Vec<_>>().join("; ")
 }
 
+/// Numbers that a structure of many masses has not.
+const OF_ONE_MASS: [&str; 8] = ["m", "weight", "H", "alpha_cg", "f_fc", "period_fc", "zeta_fc", "p_l"];
+
+fn names_of_base() -> impl Iterator<Item = &'static str> {
+    names().filter(|name| !OF_ONE_MASS.contains(name))
+}
+
+/// Reads the base of a structure of many masses.
+pub(crate) fn base<'de, D: Deserializer<'de>>(file: D) -> Result<Given, D::Error> {
+    let numbers = BTreeMap::<String, f64>::deserialize(file)?;
+    if let Some(name) = numbers.keys().find(|name| !names().any(|known| known == *name)) {
+        return Err(D::Error::custom(GivenError::UnknownOfBase { name: name.clone() }));
+    }
+    Given::try_from(numbers).map_err(D::Error::custom)
+}
+
 /// Names of all numbers that may be given.
 pub fn names() -> impl Iterator<Item = &'static str> {
     PARAMETERS.iter().map(|parameter| parameter.name).chain(NATURAL.iter().map(|natural| natural.name))
@@ -188,12 +213,11 @@ impl Given {
 
     /// Parameters with the base that these numbers determine, and r if it is given. The numbers of the one mass mean nothing.
     pub(crate) fn base(&self) -> Result<(Parameters, Option<f64>), GivenError> {
-        const OF_ONE_MASS: [&str; 8] = ["m", "weight", "H", "alpha_cg", "f_fc", "period_fc", "zeta_fc", "p_l"];
         if let Some(name) = OF_ONE_MASS.into_iter().find(|name| self.get(name).is_some()) {
             return Err(GivenError::OfOneMass(name));
         }
         let default = |name: &str| DEFAULTS.iter().find(|(default, _)| *default == name).map(|(_, value)| *value);
-        let of_mass = |name: &str| ["m", "H", "f_fc", "zeta_fc", "r"].contains(&name).then_some(1.0);
+        let of_mass = |name: &str| ["m", "H", "f_fc", "zeta_fc", "r"].contains(&name).then_some(0.5);
         let parameters = self.solve(|name| default(name).or_else(|| of_mass(name)))?;
         Ok((parameters, self.get("r")))
     }

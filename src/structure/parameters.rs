@@ -54,7 +54,7 @@ pub const PARAMETERS: [Quantity<Parameters>; 16] = [
     quantity!(B ["m"] 1e-3, 1e4, "half-width of the base"),
     quantity!(J0 ["kg.m2"] 0.0, 1e20, "rotational inertia of the foundation about the middle of the base"),
     quantity!(f_fc ["Hz"] 1e-3, 1e4, "natural frequency in full contact (fixed base)"),
-    quantity!(zeta_fc ["1"] 0.0, 10.0, "damping ratio in full contact"),
+    quantity!(zeta_fc ["1"] 0.0, MAX_DAMPING, "damping ratio in full contact"),
     quantity!(c_ratio ["1"] 0.0, 100.0, "viscous damping while rocking over viscous damping in full contact, c_u/c_fc"),
     quantity!(r ["1"] 1e-3, 1.0, "coefficient of restitution on the angular velocity at impact"),
     quantity!(g ["m/s2"] 1e-3, 1e3, "acceleration of gravity"),
@@ -68,6 +68,9 @@ pub const PARAMETERS: [Quantity<Parameters>; 16] = [
 
 /// The specimens of the paper by name: a bridge pier (Table 2) and a shear wall (Table 1).
 pub const PRESETS: [(&str, Parameters); 2] = [("mcmanus", Parameters::MCMANUS), ("evison", Parameters::EVISON)];
+
+/// The largest damping ratio in full contact. A larger number is probably in per cent.
+pub const MAX_DAMPING: f64 = 0.99;
 
 /// A name that is none of [`PRESETS`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -169,6 +172,9 @@ mod tests {
         assert!(refused(|p| p.B = -0.3).starts_with("B = -0.3 m is out of range: it must lie between 0.001"));
         assert!(refused(|p| p.m = f64::NAN).starts_with("m = NaN kg"));
         assert!(refused(|p| p.H = f64::INFINITY).starts_with("H = inf m"));
+        assert!(
+            refused(|p| p.zeta_fc = 5.0).starts_with("zeta_fc = 5 is out of range: it must lie between 0 and 0.99 (")
+        );
         assert!(refused(|p| p.H = 300.0).starts_with("H/B = 1052.6"));
         assert!(refused(|p| p.k_d = 2e6).starts_with("k_d = 2000000.0 N/m and F_y = 0.0 N are no dissipator"));
     }

@@ -211,7 +211,12 @@ impl Fields {
         let ground = self.unscaled(files, g)?;
         let (time_scale, scale) = (self.number("time_scale")?, self.number("scale")?);
         let scaled = |record: Record| record.scaled(time_scale, scale).map_err(says);
-        Ok(Ground { record: scaled(ground.record)?, in_file_unit: scaled(ground.in_file_unit)?, ..ground })
+        let (record, in_file_unit, mut warnings) =
+            (scaled(ground.record)?, scaled(ground.in_file_unit)?, ground.warnings);
+        if matches!(self.kind(), EL_CENTRO | "record") {
+            warnings.extend(rocking_records::doubts(&record, g));
+        }
+        Ok(Ground { record, in_file_unit, warnings, ..ground })
     }
 
     /// The pulse of the scene; `g` in m/s².
@@ -262,16 +267,18 @@ impl File {
         if self.read.as_ref().is_none_or(|(before, ..)| *before != how) {
             let read = rocking_records::from_bytes(&self.path, &self.bytes, &how);
             let (record, source) = read.map_err(|error| match error {
-                RecordError::Malformed { remedy: Some(remedy), .. } => format!("{error}; {remedy}"),
+                RecordError::Malformed { remedy: Some(remedy), .. } => {
+                    format!("{error}; {}", remedy.advice(str::to_owned))
+                }
                 _ => says(error),
             })?;
             self.read = Some((how, record, source));
         }
         let (_, in_file_unit, source) = self.read.clone().expect("it has just been read");
-        let (record, source) = rocking_records::in_m_s2(in_file_unit.clone(), source, g).map_err(says)?;
+        let record = rocking_records::in_m_s2(in_file_unit.clone(), source.unit, g).map_err(says)?;
         let mut remarks = vec![format!("{}, {}", source.format, source.unit)];
         remarks.extend(source.remarks.iter().cloned());
-        let warnings = source.warnings().collect();
+        let warnings = source.assumption(&Remedy::Unit.advice(str::to_owned)).into_iter().collect();
         Ok(Ground { record, in_file_unit, unit: source.unit, remarks, warnings })
     }
 }

@@ -188,7 +188,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
             files.add_input(path);
             let (unit, time_scale) = (options.unit.or(unit), options.time_scale.or(time_scale));
             let options = RecordOptions { unit, time_scale, scale: None, ..options.clone() };
-            let understood = options.understand(path, g)?;
+            let understood = options.understand(path, g, str::to_owned)?;
             warnings.extend(understood.warnings());
             records.push(understood.sentences[0].clone());
             Ok::<_, anyhow::Error>(understood.record)

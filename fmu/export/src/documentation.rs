@@ -141,7 +141,7 @@ mod tests {
         };
         for row in [
             cells("m", "kg", "125.8", "1e-6 … 1e12", "top mass"),
-            cells("zeta_fc", "–", "0.015", "0 … 10", "damping ratio in full contact"),
+            cells("zeta_fc", "–", "0.015", "0 … 0.99", "damping ratio in full contact"),
             cells("u_cr", "m", "0.000752467", "", "critical displacement: uplift"),
             cells("overturned", "", "", "", "whether the structure has overturned (Boolean)"),
             cells(

@@ -102,7 +102,7 @@ mod tests {
             r#"description="natural frequency in full contact (fixed base)" causality="parameter" variability="fixed" initial="exact">
       <Real unit="Hz" min="0.001" max="10000.0" start="11.0"/>"#,
             r#"description="damping ratio in full contact" causality="parameter" variability="fixed" initial="exact">
-      <Real min="0.0" max="10.0" start="0.015"/>"#,
+      <Real min="0.0" max="0.99" start="0.015"/>"#,
             r#"description="modal participation of rocking" causality="calculatedParameter" variability="fixed" initial="calculated">
       <Real/>"#,
             r#"description="what holds of the base" causality="local" variability="discrete" initial="calculated">

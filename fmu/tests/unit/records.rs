@@ -365,13 +365,15 @@ fn the_ground_carries_the_weight_under_both_accelerations() {
 /// of what is doubtful in any case.
 #[test]
 fn what_was_found_and_assumed_of_a_record_is_logged_before_the_run() {
-    for (text, found, doubts) in [
-        ("t (s),a (g)\n0,0.1\n0.01,0.2\n", "table, ", 0),
-        ("t (s),a\n0,0.1\n0.01,0.2\n", "m/s2 assumed", 0),
-        ("t (s),a (g)\n0,90\n0.01,0\n", "table, ", 2),
+    for (text, found, scale, doubts) in [
+        ("t (s),a (g)\n0,0.1\n0.01,0.2\n", "table, ", 1.0, 0),
+        ("t (s),a\n0,0.1\n0.01,0.2\n", "m/s2 assumed", 1.0, 1),
+        ("t (s),a (g)\n0,90\n0.01,0\n", "table, ", 1.0, 2),
+        ("t (s),a (g)\n0,90\n0.01,0\n", "table, ", 1e-3, 0),
     ] {
         let host = Host::instantiate(Instantiate { logging_on: 1, ..Instantiate::default() }).unwrap();
         host.write("a.csv", text);
+        assert_eq!(host.set(&[("record_scale", scale)]), OK);
         assert_eq!(
             (host.set_record("a.csv"), host.setup(None, 0.0, None), host.enter(), host.exit()),
             (OK, OK, OK, OK)
