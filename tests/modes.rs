@@ -5,9 +5,13 @@
 use nalgebra::{Matrix3, Vector3};
 use rocking::engine::Settings;
 use rocking::mechanics::floors::FrameOutput;
+use rocking::mechanics::restraint::Restraint;
+use rocking::run::record::Record;
+use rocking::run::validity::Limits;
+use rocking::run::{End, Run};
 use rocking::structure::{Mode, Ties};
 use rocking::{
-    Body, Detail, Engine, Floor, Frame, LinearLoad, Load, Modes, Parameters, Progress, Reactions, Side, State,
+    Body, Detail, Engine, Floor, Frame, LinearLoad, Load, Modes, Motion, Parameters, Progress, Reactions, Side, State,
     Structure, Transition, TransitionKind,
 };
 use std::f64::consts::TAU;
@@ -312,4 +316,92 @@ fn what_fits_no_frame_is_refused_with_the_remedy() {
     assert_eq!(start(given, Detail::Auto), Err(refused.into()));
     let refused = "the initial state has 3 coordinates, and 0 modes move: give one coordinate for each, or 0 for all";
     assert_eq!(start(State { u: Modes::new(&[1e-3; 3]), ..at_rest(3) }, Detail::Rigid), Err(refused.into()));
+}
+
+/// Two masses with modes of `f` (Hz) and `zeta`, whose shapes are turned by `angle` from one mass to the other, on a wide base.
+fn two_masses(f: [f64; 2], zeta: [f64; 2], angle: f64, c_ratio: f64, ties: Ties) -> Frame {
+    let (m, h) = ([27e3_f64, 26e3], [2.0_f64, 8.3]);
+    let shapes = [[angle.cos(), angle.sin()], [-angle.sin(), angle.cos()]];
+    let mode = |j: usize| {
+        let of = |x: [f64; 2]| (0..2).map(|i| m[i].sqrt() * shapes[j][i] * x[i]).sum::<f64>();
+        Mode::new(TAU * f[j], zeta[j], of([1.0; 2]), of(h))
+    };
+    let of = |power: i32| m[0] * h[0].powi(power) + m[1] * h[1].powi(power);
+    let body = Body { c_ratio, ties, ..body([10.0, 10.0, 1.7], [of(0), of(1), of(2)], 0.95, G) };
+    Frame::new(body, &[mode(0), mode(1)], &[]).unwrap()
+}
+
+/// Modes of 60 Hz ring when the base comes down and lift it again. The bursts are bounded. If damping while rocking is far from damping
+/// in contact, contact opens and shuts without end, and is held to the end of a period, as the findings tell.
+#[test]
+fn stiff_modes_that_ring_end_in_bounded_bursts() {
+    let times = (0..=500).map(|i| 0.01 * f64::from(i)).collect();
+    let ground = Record::from_samples("", times, (0..=500).map(|i| 1.26 * pulse(i)).collect()).unwrap();
+    for (zeta, c_ratio, is_settled) in [([0.0, 0.0], 1.0, false), ([0.02, 0.0], 1.0, false), ([0.3, 0.5], 3.0, true)] {
+        let frame = two_masses([2.7, 60.0], zeta, 2.5, c_ratio, Ties::default());
+        let run = Run { end: End::At(5.0), ..Run::of_modes(frame.clone(), &ground) };
+        let mut seen = Vec::new();
+        run.follow(&mut |transition: &Transition<Modes>| seen.push(*transition)).unwrap();
+        let period = TAU / frame.rocking_frequencies()[0];
+        let burst = |from: &Transition<Modes>| {
+            seen.iter().filter(|it| it.time >= from.time && it.time < from.time + period).count()
+        };
+        let most = seen.iter().map(burst).max().unwrap();
+        let settled = seen.iter().filter(|it| it.kind == TransitionKind::Settling).count();
+        assert!(most > 15 && most <= 1003 && (settled > 0) == is_settled, "{zeta:?}: {most} {settled}");
+        let found = run.validity(Limits::default()).unwrap().0;
+        assert!(found.settlings == settled as u64 && (found.held > 0.0) == is_settled, "{found:?}");
+    }
+}
+
+/// Where the dampers hold the base down beyond the moment for uplift, the base lifts off once they give way: θ grows like t³.
+#[test]
+fn a_base_that_dampers_held_lifts_off_smoothly() {
+    let frame = two_masses([2.7, 9.0], [0.3, 0.1], 2.5, 1.0, Ties::default());
+    let of = |j: usize| frame.modes()[j].height * frame.modes()[j].stiffness;
+    let u = -1.2 * frame.base().m_t * G * frame.base().B / of(0);
+    let initial = State { u: Modes::new(&[u, 0.0]), u_dot: Modes::new(&[-30.0 * u, 0.0]), ..at_rest(2) };
+    let mut engine = Engine::of_modes(frame, initial, 0.0, Settings { stops: true, ..Settings::default() }).unwrap();
+    let load = ground(2, 12.0, 12.0, 1.0);
+    assert_eq!(engine.advance(0.2, load, &mut ()), Ok(Progress::Transition));
+    engine.transit(&mut ());
+    let (time, after) = (engine.motion().time, 1e-4);
+    let theta_ddot = |engine: &Engine<Modes>| engine.sample(load.value).state_rates().theta_dot;
+    let at_once = theta_ddot(&engine);
+    assert_eq!(engine.advance(after, load, &mut ()), Ok(Progress::Complete));
+    let (then, theta) = (theta_ddot(&engine), engine.motion().state.theta);
+    assert!(time > 1e-3 && at_once.abs() < 1e-9 * then.abs(), "{time} {at_once} {then}");
+    assert!((theta / (then * after * after / 6.0) - 1.0).abs() < 0.02, "{theta} {then}");
+}
+
+/// Two dissipators in the middle of the base yield and unload together, at impacts and landings too, and what they take is lost.
+#[test]
+fn dissipators_that_yield_together_keep_the_energy() {
+    let ties = Ties { k_d: 4e7, F_y: 3e4, ..Ties::default() };
+    let frame = two_masses([2.7, 9.0], [0.0, 0.0], 2.5, 1.0, ties);
+    let start = State { theta: 0.05, ..at_rest(2) };
+    let mut engine = Engine::of_modes(frame.clone(), start, 0.0, Settings::default()).unwrap();
+    let total = |engine: &Engine<Modes>| {
+        let Motion { phase, state, dissipators, .. } = engine.motion();
+        let stored = Restraint::about(&frame, phase.side(), dissipators).stored_energy(state.theta);
+        engine.energy() + stored + dissipators.hysteretic
+    };
+    let (mut yielded, mut last, mut kept) = ([Vec::new(), Vec::new()], total(&engine), 0);
+    for _ in 0..400 {
+        let mut impacts = 0;
+        let mut watch = |transition: &Transition<Modes>| match transition.kind {
+            TransitionKind::Yielding(j) | TransitionKind::Unloading(j) => yielded[j].push(transition.time),
+            _ => impacts += 1,
+        };
+        engine.advance(0.01, ground(2, 0.0, 0.0, 0.01), &mut watch).unwrap();
+        let now = total(&engine);
+        if impacts == 0 {
+            assert!((now / last - 1.0).abs() < 1e-11, "{}: {now} and not {last}", engine.motion().time);
+            kept += 1;
+        }
+        last = now;
+    }
+    assert!(yielded[0] == yielded[1] && yielded[0].len() > 3 && kept > 100, "{yielded:?} {kept}");
+    let [first, second] = engine.motion().dissipators.plastic;
+    assert_eq!(first, second);
 }
