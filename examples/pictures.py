@@ -238,12 +238,18 @@ def questions(path: Path) -> None:
          "Left: one line per record, without the runs that overturn. Right: fragility curves of two piers.")
 
 
+def profile(path: Path) -> None:
+    save(drawn_by("docs/howto/frames.md"), path, "Peaks over the height of a building of ten storeys",
+         "Solid: the building rocks. Dashed: its base is fixed.")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--folder", type=Path, default=Path("docs/img"), help="where to save them")
     folder = parser.parse_args().folder
     for draw_picture, name in ((schematic, "schematic.svg"), (motion, "motion.gif"), (headline, "headline.svg"),
-                               (levels, "levels.svg"), (tornado, "tornado.svg"), (questions, "questions.svg")):
+                               (levels, "levels.svg"), (tornado, "tornado.svg"), (questions, "questions.svg"),
+                               (profile, "profile.svg")):
         draw_picture(folder / name)
 
 

@@ -181,6 +181,14 @@ impl<'a> Run<'a, Modes> {
             end: End::AtRest,
         }
     }
+
+    /// This run from θ and θ̇ of `initial`, whose u and u̇ must be 0.
+    pub fn from(self, &State { u, u_dot, theta, theta_dot }: &State) -> Result<Run<'a, Modes>, InitialStateError> {
+        if (u, u_dot) != (0.0, 0.0) {
+            return Err(InitialStateError::DeformedModes { u, u_dot });
+        }
+        Ok(Run { initial: State { theta, theta_dot, ..self.initial }, ..self })
+    }
 }
 
 impl<'a, Q: Moves> Run<'a, Q> {

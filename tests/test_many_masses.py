@@ -7,6 +7,7 @@ import pickle
 import subprocess
 
 import numpy as np
+import pandas as pd
 import pytest
 from frames import FRAMES
 
@@ -16,6 +17,7 @@ pytestmark = pytest.mark.heavy
 
 FRAME = FRAMES["frame"]
 BASE = {"m0": FRAME.m0, "J0": FRAME.J0, "B": FRAME.B, "r": FRAME.r}
+TIGHT = 1e-13
 STOREYS = [{"m": m, "h": h, "k": k} for m, h, k in zip(FRAME.masses, FRAME.heights, FRAME.stiffness, strict=True)]
 
 
@@ -100,3 +102,167 @@ def test_what_is_refused_is_named(refused, text):
     with pytest.raises(ValueError) as error:
         refused()
     assert text in str(error.value)
+
+
+def wavelet(amplitude=6.0):
+    t = np.arange(301) * 0.01
+    return fr.Record(t, amplitude * np.sin(2 * np.pi * 1.1 * t) * np.sin(np.pi * t / 3), 0.2 * amplitude * np.sin(20 * t))
+
+
+def building():
+    """Ten storeys that rock under the wavelet."""
+    storeys = [{"m": 3e4, "h": 3.0 * (i + 1), "k": 9e7 - 5e6 * i} for i in range(10)]
+    return fr.Structure(storeys=storeys, zeta=0.03, m0=5e4, J0=2e5, B=4.0, r=0.92)
+
+
+@pytest.fixture(scope="module")
+def run():
+    return fr.simulate(building(), wavelet())
+
+
+@pytest.mark.parametrize("ties, initial, amplitude", [
+    ({}, {}, 4.0),
+    ({"P_0": 400.0, "k_t": 2e4, "xi_d": 0.2, "c_d": 150.0, "k_d": 2e5, "F_y": 120.0}, {"theta_0": 0.1}, 4.0),
+    ({}, {}, 6.0),  # overturns, as the next does beyond the angle of no return of its ties
+    ({"P_0": 500.0, "k_t": 1e4, "xi_d": 0.2, "k_d": 1e5, "F_y": 300.0}, {"theta_0": 1e-3, "theta_dot_0": 9.0}, 6.0),
+])
+def test_one_storey_is_one_mass_at_every_call(ties, initial, amplitude):
+    one = fr.Structure(preset="mcmanus", **ties)
+    base = {name: getattr(one, name) for name in ("m0", "J0", "B", "r", "g", "c_ratio", *ties)}
+    storey = fr.Structure(storeys=[{"m": one.m, "h": one.H, "k": one.k}], zeta=one.zeta_fc, **base)
+    runs = [fr.simulate(of, wavelet(amplitude), tolerance=1e-11, **initial) for of in (one, storey)]
+    expected, found = runs
+    named = lambda names: {name.replace("[1]", ""): name for name in names}
+    assert (found.ending, len(found.transitions)) == (expected.ending, len(expected.transitions))
+    assert (found.overturned is True) == (amplitude == 6) and found.fall == pytest.approx(expected.fall, abs=1e-12)
+    times = np.linspace(found.start, min(2, found.end - 1e-6), 2001)  # rounding grows to 3e-12 of the peaks over the 80 transitions that follow
+    responses = [of.at(times) for of in runs]
+    names = named(responses[1])
+    assert names.keys() == {*responses[0], "drift", "V", "M"}
+    for name, values in responses[0].items():
+        values = np.where(values == np.inf, 0, values) if values.dtype.kind == "f" else values
+        of = responses[1][names[name]]
+        if name in ("phase", "transitions"):
+            assert (of == values).all()
+        else:
+            np.testing.assert_allclose(of, values, rtol=0, atol=TIGHT * max(abs(values)), err_msg=name)
+            assert responses[1].units[names[name]] == responses[0].units[name]
+    for name, peak in expected.peaks.items():
+        if name != "P_t":
+            of = found.peaks[named(found.peaks)[name]]
+            assert (of, of.unit) == (pytest.approx(peak, rel=TIGHT), peak.unit), name
+    for name, values in expected.profile.items():
+        np.testing.assert_allclose(found.profile[name], values, rtol=TIGHT, err_msg=name)
+    for of, other in zip(expected.transitions, found.transitions):
+        assert other.kind == of.kind and other.time == pytest.approx(of.time, abs=1e-11)
+        assert named(other.before).keys() == of.before.keys()
+    for name, worst in expected.validity.items():
+        assert found.validity[name].value == pytest.approx(worst.value, rel=1e-9), name
+    spectra = [of.spectrum(1, [0.1, 0.5])["S_a"] for of in runs]
+    np.testing.assert_allclose(*spectra, rtol=1e-9)
+
+
+def test_the_floors_of_a_building_hang_together(run):
+    assert run.overturned is False and len(run.transitions) > 5 and run.peaks["uplift"] > 0.01
+    response = run.at(np.linspace(run.start, run.end, 5001))
+    floors = range(1, 11)
+    of = lambda name: np.array([response[f"{name}[{i}]"] for i in floors])
+    shear = 3e4 * np.cumsum(of("a_t")[::-1], axis=0)[::-1]
+    close = lambda one, other: np.testing.assert_allclose(one, other, rtol=0, atol=1e-9 * np.abs(other).max())
+    close(of("V"), shear)
+    close(of("M"), 3.0 * np.cumsum(shear[::-1], axis=0)[::-1])
+    close(of("drift"), np.diff(of("u"), axis=0, prepend=0))
+    close(response["V[1]"], response["V_t"])
+    close(response["M[1]"], response["M_t"])
+    profile = run.profile.to_pandas()
+    assert list(profile.index) == list(floors) and list(profile["h"]) == [3.0 * i for i in floors]
+    for name in ("u", "drift", "delta_t", "a_t", "V", "M"):
+        sampled, exact = np.abs(of(name)).max(axis=1), profile[name].to_numpy()
+        assert (sampled <= exact * (1 + 1e-12)).all() and (sampled > 0.98 * exact).all(), name
+        assert list(exact) == [run.peaks[f"{name}[{i}]"] for i in floors]
+    moved = run.transitions.to_pandas()
+    assert {"u[10]_before", "u_dot[10]_after", "theta_after"} < set(moved.columns) and len(moved) == len(run.transitions)
+
+
+def test_a_run_of_many_masses_is_a_value(run):
+    again = pickle.loads(pickle.dumps(run))
+    assert again == run and hash(again) == hash(run) and again.peaks == run.peaks
+    assert run != fr.simulate(building(), wavelet(), detail="linear")
+    transitions = copy.copy(run.transitions)
+    assert pickle.loads(pickle.dumps(transitions)).to_pandas().equals(transitions.to_pandas())
+    for line in ("peak |theta|", "floor        h (m)", "first uplift", "transitions"):
+        assert line in str(run)
+
+
+def test_the_spectrum_of_a_floor_is_that_of_its_acceleration(run):
+    periods = [0.03, 0.1, 0.3, 1.0]
+    times = np.linspace(run.start, run.end, 100_001)
+    with pytest.warns(UserWarning, match="is the time in another unit"):
+        fine = fr.Record(times, run.at(times)["a_t[10]"]).spectrum(periods, zeta=0.02)
+    np.testing.assert_allclose(run.spectrum(10, periods, zeta=0.02)["S_a"], fine, rtol=2e-3)
+    usual = run.spectrum(10)
+    assert usual["period"][[0, -1]] == pytest.approx([0.02, 4]) and len(usual["S_a"]) == 100
+
+
+def test_pictures_of_a_building_show_its_top_and_its_height(run, monkeypatch):
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    assert [axis.get_ylabel() for axis in run.plot().axes][2:] == ["$u$[10] (m)", "$a_t$[10] (m/s2)"]
+    axes = run.plot("profile").axes
+    assert [line.get_label() for line in axes[0].lines] == ["rocking", "fixed base"]
+    fixed = fr.simulate(building(), wavelet(), detail="fixed_base", duration=run.end - run.start)
+    np.testing.assert_array_equal(axes[0].lines[1].get_xdata()[1:], fixed.profile["a_t"])
+    assert all(axis.get_xlim()[1] > max(of.profile[name].max() for of in (run, fixed)) for axis, name in zip(axes, ("a_t", "drift", "V", "M")))
+    bare = of_modes(masses=None, heights=None, shapes=None, m_s=110e3, S_1=FRAME.S_1, I_2=FRAME.m @ FRAME.h**2)
+    bare = fr.simulate(bare, wavelet())
+    assert len(bare.profile["h"]) == 0 and len(bare.plot().axes) == 2
+    with pytest.raises(ValueError, match="no floors"):
+        bare.plot("profile")
+
+
+@pytest.mark.parametrize("refused, text", [
+    (lambda run: fr.simulate(run.structure, duration=1, u_0=0.1), "u_0 = 0.1 m, u_dot_0 = 0.0 m/s are of one mass"),
+    (lambda run: fr.simulate(run.structure, duration=1, detail="modal"), "detail = modal moves structures of one mass alone"),
+    (lambda run: fr.simulate(run.structure, duration=-1), "duration = -1 is out of range"),
+    (lambda run: run.page(), "page needs a structure of one mass"),
+    (lambda run: run.spectrum(11), "floor = 11 is out of range: the structure has 1 to 10"),
+    (lambda run: run.spectrum(1, [-1.0]), "period = -1 s is out of range"),
+    (lambda run: run.plot("heights"), "kind = 'heights' is unknown"),
+    (lambda run: fr.sweep(run.structure, run.record), "sweep needs a structure of one mass"),
+])
+def test_what_a_run_of_many_masses_has_not_is_named(run, refused, text):
+    with pytest.raises(ValueError) as error:
+        refused(run)
+    assert text in str(error.value)
+
+
+def test_the_command_line_shows_a_building_as_the_module_does(run, exporter, tmp_path):
+    numbers = run.structure.parameters
+    tables = [f"[[storeys]]\nm = {of['m']}\nh = {of['h']}\nk = {of['k']}\n" for of in numbers["storeys"]]
+    base = "".join(f"{name} = {numbers[name]}\n" for name in ("m0", "J0", "B", "r"))
+    (tmp_path / "building.toml").write_text(f"zeta = {numbers['zeta']}\n[base]\n{base}{''.join(tables)}")
+    run.record.write(tmp_path / "record.csv", vertical=tmp_path / "v.csv")
+    record = fr.Record.read(tmp_path / "record.csv", vertical=tmp_path / "v.csv")
+    run = fr.simulate(run.structure, record)
+    simulate = [exporter, "simulate", "--parameters", "building.toml", "--record", "record.csv", "--record-v", "v.csv"]
+
+    def printed(*options):
+        return subprocess.run([*simulate, *options], cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+
+    text = printed("-o", "response.csv", "--events", "events.csv", "--picture", "run.svg", "--profile", "profile.svg")
+    assert text.split("\n", 1)[1] == str(run).split("\n", 1)[1] + "\n"
+    response = pd.read_csv(tmp_path / "response.csv")
+    expected = run.at(response["time[s]"])
+    assert list(response) == [name if name in ("phase", "transitions") else f"{name}[{expected.units[name]}]" for name in expected]
+    for heading, (name, values) in zip(response, expected.items()):
+        assert name == "time" or (response[heading] == values).all(), name
+    events = pd.read_csv(tmp_path / "events.csv")
+    assert (events["u[10]_after[m]"].to_numpy() == run.transitions.to_pandas()["u[10]_after"].to_numpy()).all()
+    whole = json.loads(printed("--format", "json"))
+    assert {of["name"]: of["peak"] for of in whole["peaks"]} == run.peaks and whole["structure"]["f[10]"] > 1
+    assert "a_t[10]" in (tmp_path / "run.svg").read_text() and "storey moment" in (tmp_path / "profile.svg").read_text()
+
+
+def test_a_command_that_takes_one_mass_says_which_take_many(exporter, tmp_path):
+    (tmp_path / "one.toml").write_text("zeta = 0.02\n[base]\nm0 = 1\nJ0 = 1\nB = 1\n[[storeys]]\nm = 1\nh = 3\nk = 100\n")
+    done = subprocess.run([exporter, "pushover", "--parameters", "one.toml"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 1 and "describe and simulate take many masses" in done.stderr

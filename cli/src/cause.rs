@@ -1,11 +1,13 @@
 //! The origin of a result: program, structure, ground motion, and the conditions of the computation.
 use crate::record_args::{RecordArgs, RecordOptions};
 use rocking::run::record::Record;
+use rocking::structure::any::AnyStructure;
 use rocking::{Parameters, State, Structure};
 use rocking_records::Column;
-use rocking_report::{program::version, record::Understood};
+use rocking_report::{describe, program::version, record::Understood};
 use rocking_sweep::plan::Conditions;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The origin of a result; a part without influence on the result is left out.
@@ -13,7 +15,7 @@ use std::path::Path;
 pub struct Cause {
     version: String,
     #[serde(skip_serializing_if = "Option::is_none")]
-    structure: Option<Parameters>,
+    structure: Option<OfStructure>,
     #[serde(flatten)]
     ground: Option<Ground>,
     /// The level of detail of a run, and its relative tolerance.
@@ -23,6 +25,14 @@ pub struct Cause {
     tolerance: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     initial: Option<State>,
+}
+
+/// The numbers of a structure.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum OfStructure {
+    One(Parameters),
+    Many(BTreeMap<String, f64>),
 }
 
 /// A ground motion.
@@ -63,13 +73,24 @@ impl Ground {
 }
 
 impl Cause {
-    fn of(structure: Option<Parameters>, ground: Option<Ground>) -> Cause {
+    fn of(structure: Option<OfStructure>, ground: Option<Ground>) -> Cause {
         Cause { version: version(), structure, ground, detail: None, tolerance: None, initial: None }
     }
 
     /// Of what follows from `structure`.
     pub fn new(structure: &Structure) -> Cause {
-        Cause::of(Some(*structure.parameters()), None)
+        Cause::of(Some(OfStructure::One(*structure.parameters())), None)
+    }
+
+    /// Of what follows from a structure of one mass or of many.
+    pub fn of_any(structure: &AnyStructure) -> Cause {
+        match structure {
+            AnyStructure::One(structure) => Cause::new(structure),
+            AnyStructure::Many(frame) => {
+                let numbers = describe::numbers(frame).into_iter().map(|of| (of.name, of.value)).collect();
+                Cause::of(Some(OfStructure::Many(numbers)), None)
+            }
+        }
     }
 
     /// Of what follows from the record in the file at `path` alone, which is understood as `options` say.

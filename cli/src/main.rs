@@ -67,6 +67,7 @@ enum Command {
   rocking-fmu simulate --record array.csv --column E-W
   rocking-fmu pulse sine --amplitude 0.6 --period 0.5 -o - | rocking-fmu simulate --record -
   rocking-fmu simulate --preset evison --free 2 --theta-0 0.04 --events impacts.csv --picture wall.svg
+  rocking-fmu simulate --parameters building.toml --record RSN77_SFERN_PUL164.AT2 --profile building.svg
   rocking-fmu simulate --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45 --detail modal")]
     Simulate(simulate::SimulateArgs),
     /// Write a page that shows the structure in motion, with its histories below

@@ -6,7 +6,9 @@ use crate::{
 };
 use clap::ArgGroup;
 use rocking::run::record::Record;
-use rocking::{Detail, State, Structure, engine::DEFAULT_TOLERANCE};
+use rocking::structure::any::AnyStructure;
+use rocking::{Detail, Modes, State, engine::DEFAULT_TOLERANCE};
+use rocking_report::shown::Shown;
 use rocking_sweep::plan::Conditions;
 use std::path::Path;
 
@@ -25,13 +27,17 @@ pub struct MotionArgs {
 
 impl MotionArgs {
     /// The structure, the ground motion, and how the motion is computed.
-    pub fn load(&self) -> anyhow::Result<(Structure, Record, Conditions)> {
-        let structure = self.structure.load()?;
+    pub fn load(&self) -> anyhow::Result<(AnyStructure, Record, Conditions)> {
+        let structure = self.structure.load_any()?;
         let LevelArgs { tolerance, detail } = self.level;
         let (initial, duration) = (self.initial.state(), self.ground.duration());
         let conditions = Conditions { initial, detail, tolerance, duration };
-        conditions.check(&structure)?;
-        Ok((structure, self.ground.load(structure.parameters().g)?, conditions))
+        match &structure {
+            AnyStructure::One(one) => f64::check(one, &conditions)?,
+            AnyStructure::Many(frame) => Modes::check(frame, &conditions)?,
+        }
+        let ground = self.ground.load(structure.base().g)?;
+        Ok((structure, ground, conditions))
     }
 
     /// The files that are read.

@@ -1,6 +1,8 @@
 //! `simulate`: the response to a ground motion record, or free vibration, with the same engine as the FMU's.
 mod picture;
+mod profile;
 
+use self::picture::Pictured;
 use crate::{
     cause::Cause,
     limit_args::LimitArgs,
@@ -12,18 +14,18 @@ use crate::{
 };
 use anyhow::ensure;
 use rocking::run::record::Record;
-use rocking::{
-    Run, Structure, Transition,
-    mechanics::restraint::centring_moments,
-    run::validity::{Findings, Validity},
-};
+use rocking::run::validity::Validity;
+use rocking::structure::{Base, any::AnyStructure};
+use rocking::{Modes, Run, Transition, Watch, mechanics::restraint::centring_moments};
 use rocking_report::{
     output_files::{OutputFile, OutputFiles},
     quantities::in_readable_unit,
+    shown::Shown,
     summary::{Summary, instant},
-    tables::{EVENTS, RESPONSE, event_line, response_line},
+    tables::{event_headings, event_line, response_headings, response_line},
     validity,
 };
+use rocking_sweep::plan::Conditions;
 use std::path::PathBuf;
 
 /// Arguments of `simulate`.
@@ -51,9 +53,12 @@ struct ResultArgs {
     events: Option<PathBuf>,
     #[command(flatten)]
     format: FormatArgs,
-    /// Draw ground acceleration, rotation, displacements and acceleration over time, with marks at transitions
+    /// Draw ground acceleration, rotation, displacements and acceleration over time, with marks at transitions; of many masses those of the top floor
     #[arg(long, value_name = "FILE.svg|png")]
     picture: Option<PathBuf>,
+    /// Draw the largest acceleration, drift, shear and moment of each floor and storey over the height, and those on a fixed base
+    #[arg(long, value_name = "FILE.svg|png")]
+    profile: Option<PathBuf>,
 }
 
 impl SimulateArgs {
@@ -82,25 +87,25 @@ impl SimulateArgs {
     }
 
     /// Writes the response of `run` at the instants asked for.
-    fn write_response(&self, run: &Run, file: OutputFile) -> anyhow::Result<()> {
+    fn write_response<Q: Shown>(&self, run: &Run<Q>, file: OutputFile) -> anyhow::Result<()> {
         let (samples, interval) = self.samples_and_interval(run.ground);
         let (start, from) = (samples[0], samples[samples.len() - 1]);
         let times = samples.iter().copied().chain((1_u64..).map(|i| from + i as f64 * interval));
         let mut rows = Vec::new();
-        run.sample(times, |sample| rows.push((sample.motion.time, response_line(sample))), &mut ())?;
+        run.sample(times, |sample| rows.push((sample.motion.time, response_line(&run.structure, sample))), &mut ())?;
         // an instant that misses the end by rounding is the end
         if let [.., (before, _), (end, _)] = rows[..]
             && before >= end - 1e-6 * interval.min(end - start)
         {
             rows.remove(rows.len() - 2);
         }
-        write_as(file, "response", &csv(RESPONSE, rows.iter().map(|(_, line)| line))?)
+        write_as(file, "response", &csv(response_headings::<Q>(&run.structure), rows.iter().map(|(_, line)| line))?)
     }
 }
 
-/// Whether a `structure` with elastoplastic dissipators centres itself, in a line.
-fn centring(structure: &Structure) -> Option<String> {
-    let [restoring, residual] = centring_moments(structure);
+/// Whether a structure with elastoplastic dissipators on this `base` centres itself, in a line.
+fn centring(base: &Base) -> Option<String> {
+    let [restoring, residual] = centring_moments(base);
     let [turned_back, held] = [restoring, residual].map(|moment| in_readable_unit(moment, "N.m", significant));
     let verdict =
         if restoring > residual { "the structure centres itself" } else { "it may stay open: see theta at the end" };
@@ -111,42 +116,64 @@ fn centring(structure: &Structure) -> Option<String> {
 
 /// Prints the summary of the response, and writes what is asked for.
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
-    let limits = args.limits.limits()?;
+    args.limits.limits()?;
     args.results.format.check_beside(args.results.output.as_deref())?;
     let (structure, ground, conditions) = args.motion.load()?;
-    let run = conditions.run(structure, &ground);
-    if let Some(line) = centring(&structure) {
+    if let Some(line) = centring(structure.base()) {
         say!("centring       {line}");
     }
+    let cause = Cause::of_any(&structure).under(&args.motion.ground.record, &ground).computed(&conditions);
+    match &structure {
+        AnyStructure::One(one) => follow::<f64>(args, one, &ground, &conditions, &cause),
+        AnyStructure::Many(frame) => follow::<Modes>(args, frame, &ground, &conditions, &cause),
+    }
+}
 
+/// The same for a `structure` of one mass or of many.
+fn follow<Q: Pictured>(
+    args: &SimulateArgs,
+    structure: &Q::Structure,
+    ground: &Record,
+    conditions: &Conditions,
+    cause: &Cause,
+) -> anyhow::Result<()>
+where
+    Validity<Q>: Watch<Q>,
+{
+    let limits = args.limits.limits()?;
+    let run = Q::run(structure, ground, conditions)?;
     let output = args.results.output.as_deref();
-    let ResultArgs { picture, events, .. } = &args.results;
+    let ResultArgs { picture, profile, events, .. } = &args.results;
     let mut files = OutputFiles::of_inputs(args.motion.inputs());
     let response = output.map(|path| files.create(path)).transpose()?;
     let events = events.as_deref().map(|path| files.create(path)).transpose()?;
     let picture = picture.as_deref().map(|path| Picture::create(path, &mut files)).transpose()?;
-    let mut validity = Validity::new(&structure, limits, Findings::since(ground.start()));
+    let profile = profile.as_deref().map(|path| Picture::create(path, &mut files)).transpose()?;
+    let mut validity = run.validity_watch(limits)?;
     let mut transitions = Vec::new();
-    let mut see = |transition: &Transition| transitions.push(*transition);
+    let mut see = |transition: &Transition<Q>| transitions.push(*transition);
     let found = run.found(&mut (&mut validity, &mut see))?;
     if let Some(file) = events {
-        write_as(file, "transitions", &csv(EVENTS, transitions.iter().map(event_line))?)?;
+        write_as(
+            file,
+            "transitions",
+            &csv(event_headings::<Q>(structure), transitions.iter().map(|of| event_line(structure, of)))?,
+        )?;
     }
     if let Some(file) = response {
-        args.check_rows(&ground, found.finish.motion.time)?;
+        args.check_rows(ground, found.finish.motion.time)?;
         args.write_response(&run, file)?;
     }
-    let summary = Summary::new(&structure, &transitions);
+    let (summary, findings) = (Summary::new(structure, &transitions), validity.found());
     let text = || {
         let (start, end) = (instant(found.start), instant(found.finish.motion.time));
-        let section = validity::section(&structure, run.detail, validity.found(), &limits).join("\n");
+        let section = validity::section::<Q>(structure, run.detail, findings, &limits).join("\n");
         Ok(format!("{}, {start} to {end} s\n{}{section}\n", ground.title(), summary.text(&found)?))
     };
-    let cause = Cause::new(&structure).under(&args.motion.ground.record, &ground).computed(&conditions);
-    let whole = summary.whole(&cause, &found, validity::rows(validity.found(), &limits));
-    args.results.format.print_beside(output, text, &whole)?;
-    match picture {
-        Some(picture) => picture::draw(picture, &run),
-        None => Ok(()),
+    let rows = validity::rows(findings, &limits);
+    args.results.format.print_beside(output, text, &summary.whole(cause, &found, rows))?;
+    if let Some(picture) = picture {
+        Q::draw(picture, &run)?;
     }
+    profile.map_or(Ok(()), |picture| profile::draw(picture, &run, &found))
 }

@@ -17,7 +17,7 @@ pub struct ViewArgs {
 pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
     let (structure, ground, conditions) = args.motion.load()?;
     let file = OutputFiles::of_inputs(args.motion.inputs()).create(&args.output_path())?;
-    let page = rocking_view::page(&conditions.run(structure, &ground))?;
+    let page = rocking_view::page(&conditions.run(structure.one("view")?, &ground))?;
     write_as(file, "view", page.as_bytes())
 }
 

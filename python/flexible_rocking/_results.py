@@ -1,5 +1,6 @@
 """Results of runs as tables and pictures."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     from ._native import Run
 
 LABELS = {"a_g": ("m/s2", "$a_g$"), "theta": ("rad", r"$\theta$"), "u": ("m", "$u$"), "a_t": ("m/s2", "$a_t$")}
+OVER_HEIGHT = {"a_t": ("m/s2", "acceleration"), "drift": ("m", "drift"), "V": ("N", "storey shear"), "M": ("N.m", "storey moment")}
 
 
 class Peak(float):
@@ -43,7 +45,8 @@ class Peak(float):
 class Transition(NamedTuple):
     """A transition of a run. kind: "uplift left", "impact right", "landing", "settling", "overturning left", ...
 
-    before, after: u (m), u_dot (m/s), theta (rad), theta_dot (rad/s) just before and just after its time (s).
+    before, after: u (m), u_dot (m/s), theta (rad), theta_dot (rad/s) just before and just after its time (s). Many masses have
+    u[1], u_dot[1], ... of each floor.
     """
 
     time: float
@@ -56,13 +59,17 @@ class Transition(NamedTuple):
 
 
 class Transitions(list[Transition]):
-    """The transitions of a run in the order of time."""
+    """The transitions of a run in the order of time. components: names of the numbers of a state."""
+
+    def __init__(self, transitions: Iterable[Transition] = (), components: Iterable[str] = ("u", "u_dot", "theta", "theta_dot")):
+        super().__init__(transitions)
+        self.components = list(components)
 
     def to_pandas(self) -> "pd.DataFrame":
         """A DataFrame with the time as its index, the kind, and the state before and after: a row per transition."""
         import pandas
 
-        states = [f"{name}_{when}" for when in ("before", "after") for name in ("u", "u_dot", "theta", "theta_dot")]
+        states = [f"{name}_{when}" for when in ("before", "after") for name in self.components]
         rows = [(of.time, of.kind, *of.before.values(), *of.after.values()) for of in self]
         return pandas.DataFrame(rows, columns=["time", "kind", *states]).set_index("time")
 
@@ -113,13 +120,20 @@ class Response(dict[str, "NDArray[Any]"]):
         self.units = units
 
     def __reduce__(self) -> tuple[type["Response"], tuple[dict[str, Any], dict[str, str]]]:
-        return Response, (dict(self), self.units)
+        return type(self), (dict(self), self.units)
 
     def to_pandas(self) -> "pd.DataFrame":
-        """A DataFrame with the time as its index and a column a quantity."""
+        """A DataFrame with the first array, the time, as its index and a column a quantity."""
         import pandas
 
-        return pandas.DataFrame(dict(self)).set_index("time")
+        return pandas.DataFrame(dict(self)).set_index(next(iter(self)))
+
+
+class Profile(Response):
+    """The largest magnitudes of a run floor by floor: arrays by name, floors from below; `units` has theirs.
+
+    floor (from 1 on) is the index of to_pandas(). Of a storey, which is below its floor: drift, V, M (at its foot).
+    """
 
 
 class Estimate(dict[str, float]):
@@ -136,18 +150,60 @@ class Estimate(dict[str, float]):
         return self.text
 
 
-def plot_run(run: "Run") -> "Figure":
+def plot_run(run: "Run", kind: str) -> "Figure":
+    """The picture of a run that `kind` names."""
+    kinds = {"history": plot_history, "profile": plot_profile}
+    if kind not in kinds:
+        raise ValueError(f"kind = {kind!r} is unknown; these are known: {', '.join(kinds)}")
+    return kinds[kind](run)
+
+
+def plot_profile(run: "Run") -> "Figure":
+    """Peaks of floors and storeys over the height, and those of the structure on a fixed base, as far as the run goes."""
+    import numpy as np
+    from matplotlib import pyplot
+
+    from ._native import simulate
+
+    if not len(run.profile["h"]):
+        raise ValueError("the structure has no floors, and therefore no profile: give masses, heights and shapes")
+    fixed = simulate(run.structure, run.record, detail="fixed_base", tolerance=run.tolerance, duration=run.end - run.start)
+    figure, axes = pyplot.subplots(1, len(OVER_HEIGHT), sharey=True, figsize=(10, 5), layout="constrained")
+    for of, label, style in ((run, "rocking", "-o"), (fixed, "fixed base", "--o")):
+        h = np.concatenate([[0], of.profile["h"]])
+        for axis, (name, (unit, title)) in zip(axes, OVER_HEIGHT.items()):
+            values = of.profile[name]
+            if name == "a_t":
+                axis.plot(np.concatenate([[of.peaks["a_g"]], values]), h, style, markersize=3, label=label)
+            elif name == "M":  # linear over a storey
+                axis.plot(np.concatenate([values, [0]]), h, style, markersize=3, label=label)
+            else:
+                axis.stairs(values, h, orientation="horizontal", baseline=None, linestyle=style.rstrip("o"), label=label)
+            axis.set(xlabel=f"{title} ({unit})")
+    for axis in axes:
+        axis.set(xlim=(0, None), ylim=(0, None))
+    axes[0].set(ylabel="height (m)")
+    axes[0].legend()
+    figure.suptitle(run.record.title)
+    return figure
+
+
+def plot_history(run: "Run") -> "Figure":
     """The histories of a run, with marks at its transitions, and a dashed line from which the structure falls."""
     import numpy as np
     from matplotlib import pyplot
 
     response = run.at(np.linspace(run.start, run.end, 4001))
-    figure, axes = pyplot.subplots(len(LABELS), sharex=True, figsize=(8, 7), layout="constrained")
+    top = f"[{len(run.profile['h'])}]"
+    names = {name: name if name in response else name + top for name in LABELS}
+    shown = {name: of for name, of in names.items() if of in response}
+    figure, axes = pyplot.subplots(len(shown), sharex=True, figsize=(8, 7), layout="constrained")
     instants = [transition.time for transition in run.transitions]
-    for axis, (name, (unit, symbol)) in zip(axes, LABELS.items()):
+    for axis, (label, name) in zip(axes, shown.items()):
+        unit, symbol = LABELS[label]
         axis.plot(response["time"], response[name], linewidth=0.8)
         axis.plot(instants, run.at(instants)[name], ".", markersize=3)
-        axis.set(ylabel=f"{symbol} ({unit})", xlim=(run.start, run.end))
+        axis.set(ylabel=f"{symbol}{name.removeprefix(label)} ({unit})", xlim=(run.start, run.end))
         if run.fall is not None:
             axis.axvline(run.fall, color="tab:purple", linestyle="--", linewidth=0.8)
     axes[-1].set(xlabel="time (s)")

@@ -3,6 +3,7 @@
 use crate::arguments::refused;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use rocking::engine::Moves;
 use rocking::{Piece, Watch};
 use std::panic::resume_unwind;
 use std::sync::Arc;
@@ -30,10 +31,10 @@ impl Abandoned {
     }
 }
 
-impl Watch for Abandoned {
+impl<Q: Moves> Watch<Q> for Abandoned {
     const SEES_PIECES: bool = true;
 
-    fn piece(&mut self, _: &Piece) {
+    fn piece(&mut self, _: &Piece<Q>) {
         self.check();
     }
 }

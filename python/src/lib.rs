@@ -4,6 +4,7 @@
 
 mod advice;
 mod arguments;
+mod followed;
 mod interruptible;
 mod many_masses;
 mod record;

@@ -1,7 +1,8 @@
 //! `simulate` and `Run`: one structure under one ground motion.
 
 use crate::arguments::{argument, conditions, numbers, refused, result};
-use crate::interruptible::{Abandoned, interruptible};
+use crate::followed::{Followed, Following, Outcome, PHASES, Paged, Samples};
+use crate::interruptible::interruptible;
 use crate::record::{Ground, Record};
 use crate::structure::Structure;
 use numpy::PyArray1;
@@ -9,24 +10,13 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::engine::piece::Sample;
-use rocking::mechanics::state::{COMPONENTS, INITIAL_VALUES};
-use rocking::run::fall::Found;
-use rocking::run::peaks::{self, Peak};
-use rocking::run::validity::{ASSUMPTIONS, Limits, Worst};
-use rocking::run::{End, Ending, RunError};
-use rocking::{Detail, Phase, Side, State, Transition};
-use rocking_report::summary::Summary;
-use rocking_report::tables::{RESPONSE, response_numbers};
-use rocking_report::validity;
+use rocking::mechanics::state::INITIAL_VALUES;
+use rocking::run::peaks::Peak;
+use rocking::run::validity::{ASSUMPTIONS, Limits, Validity, Worst};
+use rocking::structure::any::AnyStructure;
+use rocking::{Detail, Modes, Phase, Watch};
+use rocking_report::shown::OF_FLOOR;
 use rocking_sweep::plan::Conditions;
-use std::sync::Arc;
-
-fn state<'py>(py: Python<'py>, of: &State) -> PyResult<Bound<'py, PyDict>> {
-    let state = PyDict::new(py);
-    COMPONENTS.iter().zip(of.components()).try_for_each(|(name, value)| state.set_item(name, value))?;
-    Ok(state)
-}
 
 /// A structure that has been followed through a ground motion: what `simulate` returns.
 ///
@@ -37,23 +27,9 @@ fn state<'py>(py: Python<'py>, of: &State) -> PyResult<Bound<'py, PyDict>> {
 pub struct Run {
     structure: Py<Structure>,
     record: Py<Record>,
-    /// The record as it shakes the structure.
-    ground: Arc<rocking::run::record::Record>,
     conditions: Conditions,
-    found: Found,
-    transitions: Vec<rocking::Transition>,
-}
-
-impl Run {
-    /// The structure that was followed.
-    fn followed(&self) -> rocking::Structure {
-        self.structure.get().one("a run").expect("simulate asks for one mass")
-    }
-
-    /// The run of the library.
-    fn run(&self) -> rocking::Run<'_> {
-        self.conditions.run(self.followed(), &self.ground)
-    }
+    outcome: Outcome,
+    of: Box<dyn Followed>,
 }
 
 #[pymethods]
@@ -84,14 +60,13 @@ impl Run {
 
     /// The exact largest magnitudes by name, each a Peak (a float with unit and time). Names: a_g (m/s2), theta (rad), u (m),
     /// delta_t (m, Eq 26), uplift (m, Eq 25), a_t (m/s2, Eq 27), V_t (N, Eqs 2, 23), M_t (N.m, Eqs 3, 24). A tendon adds P_t
-    /// (N). Of a structure that overturns those before it falls.
+    /// (N). Many masses: a_g, theta, uplift, V_t, M_t, and of each floor from 1 on u[1], drift[1], delta_t[1], a_t[1], V[1], M[1].
+    /// Of a structure that overturns those before it falls.
     #[getter]
     fn peaks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let named = PyDict::new(py);
-        let peak = |Peak { magnitude, time }, unit| result(py, "Peak", (magnitude, time, unit));
-        named.set_item("a_g", peak(self.found.ground, "m/s2")?)?;
-        for of in peaks::of(&self.followed()) {
-            named.set_item(of.name, peak(of.of(&self.found.peaks), of.unit)?)?;
+        for ((name, unit), Peak { magnitude, time }) in self.of.peaks() {
+            named.set_item(name, result(py, "Peak", (magnitude, time, unit))?)?;
         }
         Ok(named)
     }
@@ -100,53 +75,58 @@ impl Run {
     /// record.
     #[getter]
     fn overturned(&self) -> Option<bool> {
-        self.found.finish.ending.overturned()
+        self.outcome.ending.overturned()
     }
 
     /// How it ended: "at rest", "overturned", "at time", "still rocking".
     #[getter]
     fn ending(&self) -> String {
-        self.found.finish.ending.to_string()
+        self.outcome.ending.to_string()
     }
 
     /// When it began, s.
     #[getter]
     fn start(&self) -> f64 {
-        self.found.start
+        self.outcome.start
     }
 
     /// When it ended, s.
     #[getter]
     fn end(&self) -> f64 {
-        self.found.finish.motion.time
+        self.outcome.end
     }
 
     /// Since when it falls, s; None if it does not.
     #[getter]
     fn fall(&self) -> Option<f64> {
-        self.found.fall
+        self.outcome.fall
     }
 
     /// Every transition in the order of time, each a Transition: a list, with to_pandas().
     #[getter]
     fn transitions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let transition = |of: &Transition| {
-            let [before, after] = [&of.before, &of.after].map(|of| state(py, of));
-            result(py, "Transition", (of.time, of.kind.name(), before?, after?))
+        let (names, transitions) = self.of.transitions();
+        let transition = |(time, kind, states): (f64, &str, [Vec<f64>; 2])| {
+            let [before, after] = states.map(|values| {
+                let state = PyDict::new(py);
+                names.iter().zip(values).try_for_each(|(name, value)| state.set_item(name, value)).map(|()| state)
+            });
+            result(py, "Transition", (time, kind, before?, after?))
         };
-        result(py, "Transitions", (self.transitions.iter().map(transition).collect::<PyResult<Vec<_>>>()?,))
+        let transitions = transitions.into_iter().map(transition).collect::<PyResult<Vec<_>>>()?;
+        result(py, "Transitions", (transitions, &names))
     }
 
     /// Steps that it took.
     #[getter]
     fn steps(&self) -> u64 {
-        self.found.finish.motion.work.steps
+        self.outcome.work.steps
     }
 
     /// Right-hand-side evaluations that it took.
     #[getter]
     fn evaluations(&self) -> u64 {
-        self.found.finish.motion.work.evaluations
+        self.outcome.work.evaluations
     }
 
     /// How far the run exceeds the assumptions of the model, exact, each a Worst, within the usual limits. Names:
@@ -176,7 +156,7 @@ impl Run {
             energy_gain: energy_gain.unwrap_or(usual.energy_gain),
         };
         limits.check().map_err(refused)?;
-        let (found, _) = interruptible(py, move |_| slf.get().run().validity(limits))?;
+        let found = interruptible(py, move |abandoned| slf.get().of.validity(limits, abandoned))?;
         let named = PyDict::new(py);
         for (assumption, worst) in ASSUMPTIONS.iter().zip(&found.worst) {
             let Worst { value, time, first_beyond, beyond } = *worst;
@@ -187,25 +167,28 @@ impl Run {
     }
 
     /// The motion at `times` (s), a number or an array (n,) in any order: a Response. A Response is a dict of arrays (n,) by
-    /// the names of the FMU's outputs: time, a_g, theta, u, a_t, V_t, M_t, ..., phase, transitions. to_pandas() makes it a
-    /// table.
+    /// the names of the FMU's outputs: time, a_g, theta, u, a_t, V_t, M_t, ..., phase, transitions. Many masses have u[1], a_t[1],
+    /// ... of each floor. to_pandas() makes it a table.
     ///
     /// Exact: the engine's own polynomials and flows are evaluated, nothing is interpolated. The values at a transition are
     /// the values just after it. After the end of the run the motion goes on over ground at rest; once overturned there is
     /// none, and it is NaN. Raises ValueError for times before the start of the run, and NaN.
     fn at<'py>(slf: Py<Self>, py: Python<'py>, times: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let times = numbers("times", times)?;
-        let start = slf.get().found.start;
+        let start = slf.get().outcome.start;
         if let Some(i) = times.iter().position(|time| !(*time >= start && time.is_finite())) {
             let needed = format!("a finite time from the start of the run on, {start} s, is needed");
             return Err(PyValueError::new_err(format!("times[{i}] = {} s is out of range: {needed}", times[i])));
         }
-        let Samples { columns, phases, transitions } =
-            interruptible(py, move |abandoned| slf.get().sample(&times, abandoned))?;
+        let Samples { columns, phases, transitions } = {
+            let slf = slf.clone_ref(py);
+            interruptible(py, move |abandoned| slf.get().of.sample(&times, abandoned))?
+        };
         let response = PyDict::new(py);
         let units = PyDict::new(py);
-        let headings = RESPONSE.map(|heading| heading.trim_end_matches(']').split_once('[').unwrap_or((heading, "1")));
-        for ((name, unit), column) in headings.into_iter().zip(columns) {
+        let headings = slf.get().of.headings();
+        let named = headings.iter().map(|of| of.trim_end_matches(']').rsplit_once('[').unwrap_or((of, "1")));
+        for ((name, unit), column) in named.zip(columns) {
             response.set_item(name, PyArray1::from_vec(py, column))?;
             units.set_item(name, unit)?;
         }
@@ -215,35 +198,77 @@ impl Run {
         result(py, "Response", (response, units))
     }
 
-    /// Draws a_g, theta, u and a_t over time with matplotlib, with marks at transitions; returns the figure.
-    fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        slf.py().import("flexible_rocking._results")?.call_method1("plot_run", (&slf,))
+    /// The peaks of each floor, and of the storey below the floor: a Profile, which is a dict of arrays (floors,) from below. Names:
+    /// floor (from 1 on), h (m), u, drift, delta_t (m), a_t (m/s2), V (N), M (N.m, at the foot of the storey). One mass is a floor.
+    /// to_pandas() makes it a table.
+    #[getter]
+    fn profile<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let (rows, profile, units) = (self.of.floors(), PyDict::new(py), PyDict::new(py));
+        profile.set_item("floor", PyArray1::from_iter(py, 1..=rows.len() as u64))?;
+        units.set_item("floor", "1")?;
+        for (i, (name, unit)) in OF_FLOOR.into_iter().enumerate() {
+            profile.set_item(name, PyArray1::from_iter(py, rows.iter().map(|row| row[i])))?;
+            units.set_item(name, unit)?;
+        }
+        result(py, "Profile", (profile, units))
+    }
+
+    /// The response spectrum of the acceleration a_t of a floor (from 1 on; one mass is floor 1) until the run ends or the
+    /// structure falls. Returns a dict of arrays (n,): period (s) and S_a (m/s2), the largest absolute acceleration of an oscillator
+    /// of the damping ratio zeta on the floor. periods: numbers (s), by default 100 from 0.02 to 4 s.
+    ///
+    /// a_t is sampled at a step that is halved until no S_a changes by more than 0.1 % of itself. Raises ValueError for a floor that
+    /// the structure does not have, and for values that do not settle.
+    #[pyo3(signature = (floor, periods=None, zeta=0.05))]
+    fn spectrum<'py>(
+        slf: Py<Self>,
+        py: Python<'py>,
+        floor: usize,
+        periods: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = argument::zeta)] zeta: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let floors = slf.get().of.floors().len();
+        if !(1..=floors).contains(&floor) {
+            let has = if floors == 1 { "1".to_owned() } else { format!("1 to {floors}") };
+            return Err(PyValueError::new_err(format!("floor = {floor} is out of range: the structure has {has}")));
+        }
+        let usual = || (0..100).map(|i| 0.02 * 200.0_f64.powf(f64::from(i) / 99.0)).collect();
+        let periods = periods.map_or_else(|| Ok(usual()), |periods| numbers("periods", periods))?;
+        let named = PyDict::new(py);
+        named.set_item("period", PyArray1::from_slice(py, &periods))?;
+        let S_a = interruptible(py, move |abandoned| slf.get().of.spectrum(floor - 1, &periods, zeta, abandoned))?;
+        named.set_item("S_a", PyArray1::from_vec(py, S_a))?;
+        Ok(named)
+    }
+
+    /// Draws the run with matplotlib and returns the figure. "history": a_g, theta, u and a_t over time, with marks at
+    /// transitions; of many masses u and a_t of the top floor. "profile": the largest acceleration, drift, shear and moment of each
+    /// floor and storey over the height, and the same on a fixed base.
+    #[pyo3(signature = (kind="history"))]
+    fn plot<'py>(slf: Bound<'py, Self>, kind: &str) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("flexible_rocking._results")?.call_method1("plot_run", (&slf, kind))
     }
 
     /// The page that shows the structure in motion over its histories, HTML for any browser.
     fn page(slf: Py<Self>, py: Python<'_>) -> PyResult<String> {
-        interruptible(py, move |_| rocking_view::page(&slf.get().run()))
+        interruptible(py, move |_| slf.get().of.page())
     }
 
-    fn _repr_html_(slf: Py<Self>, py: Python<'_>) -> PyResult<String> {
+    fn _repr_html_(slf: Py<Self>, py: Python<'_>) -> PyResult<Option<String>> {
+        if let AnyStructure::Many(_) = &slf.get().structure.get().of {
+            return Ok(None);
+        }
         let page = Run::page(slf, py)?.replace('&', "&amp;").replace('"', "&quot;");
-        Ok(format!("<iframe srcdoc=\"{page}\" style=\"width: 100%; height: 640px; border: 0\"></iframe>"))
+        Ok(Some(format!("<iframe srcdoc=\"{page}\" style=\"width: 100%; height: 640px; border: 0\"></iframe>")))
     }
 
     fn __repr__(&self) -> String {
-        let (title, end, transitions) = (self.record.get().title(), self.end(), self.transitions.len());
+        let (title, end, transitions) = (self.record.get().title(), self.end(), self.outcome.transitions);
         format!("<Run under {title:?}: {} at {end} s, {transitions} transitions>", self.ending())
     }
 
     fn __str__(slf: Py<Self>, py: Python<'_>) -> PyResult<String> {
-        interruptible(py, move |_| -> anyhow::Result<_> {
-            let (of, limits) = (slf.get(), Limits::default());
-            let run = of.run();
-            let summary = Summary::new(&run.structure, &of.transitions);
-            let (beyond, _) = run.validity(limits)?;
-            let lines = validity::section(&run.structure, run.detail, &beyond, &limits);
-            Ok(format!("{}\n{}{}", run.ground.title(), summary.text(&of.found)?, lines.join("\n")))
-        })
+        interruptible(py, move |_| slf.get().of.text())
     }
 
     /// Whether both have the same inputs, and therefore the same results.
@@ -270,69 +295,14 @@ impl Run {
     }
 }
 
-/// The phases by their numbers among the [`Samples`].
-const PHASES: [Phase; 4] =
-    [Phase::Overturned(Side::Left), Phase::FullContact, Phase::Rocking(Side::Left), Phase::Rocking(Side::Right)];
-
-/// A motion at instants.
-struct Samples {
-    /// Of numbers.
-    columns: Vec<Vec<f64>>,
-    /// Positions in [`PHASES`].
-    phases: Vec<u8>,
-    /// How many there have been.
-    transitions: Vec<u64>,
-}
-
-impl Run {
-    /// The motion at `times` (s), none of which is before the start, unless it is `abandoned`.
-    fn sample(&self, times: &[f64], abandoned: &mut Abandoned) -> Result<Samples, RunError> {
-        let mut order: Vec<usize> = (0..times.len()).collect();
-        order.sort_by(|a, b| times[*a].total_cmp(&times[*b]));
-        let last = order.last().map_or(self.found.start, |last| times[*last]);
-        let run = match self.found.finish.ending {
-            Ending::Overturned => self.run(),
-            _ if last <= self.end() => self.run(),
-            _ => rocking::Run { end: End::At(last), ..self.run() },
-        };
-        let column = |_| {
-            abandoned.check();
-            vec![f64::NAN; times.len()]
-        };
-        let mut columns: Vec<_> = (2..RESPONSE.len()).map(column).collect();
-        let (mut phases, mut transitions) = (vec![0; times.len()], vec![0; times.len()]);
-        let mut next = 0;
-        let mut show = |at: usize, sample: &Sample| {
-            let numbers = response_numbers(sample);
-            columns.iter_mut().zip(numbers).for_each(|(column, number)| column[at] = number);
-            let phase = PHASES.iter().position(|phase| *phase == sample.motion.phase);
-            (phases[at], transitions[at]) = (phase.unwrap_or(0) as u8, sample.motion.transitions);
-        };
-        let watching = abandoned.clone();
-        let see = |sample: &Sample| {
-            // the last that is shown is the end, for which there may be several times, or none
-            while next < order.len() && times[order[next]] <= sample.motion.time {
-                watching.check();
-                show(order[next], sample);
-                next += 1;
-            }
-        };
-        run.sample(order.iter().map(|index| times[*index]), see, abandoned)?;
-        columns[0].copy_from_slice(times);
-        for index in &order[next..] {
-            transitions[*index] = self.transitions.len() as u64;
-        }
-        Ok(Samples { columns, phases, transitions })
-    }
-}
-
 /// Follows a structure through a ground motion, or in free vibration, exactly, and returns the Run.
 ///
 /// record: a Record; without one the ground is at rest for `duration`. The structure starts at rest in full contact unless
 /// initial values are given: theta_0 (rad), theta_dot_0 (rad/s), u_0 (m), u_dot_0 (m/s). duration (s): the length of the run.
 /// Without a duration, the run ends when the base is down for good or the structure overturns, at the latest 100/p_l after
 /// the record. detail: "auto", "nonlinear" (Eqs 1, 5, 6), "linear" (Eqs 1, 7, 8), "modal" (Eqs 1, 11, 18), "rigid" (Eq 6 with
-/// u = 0), "fixed_base" (Eq 1). tolerance: relative, of the results.
+/// u = 0), "fixed_base" (Eq 1). tolerance: relative, of the results. Many masses move at every level
+/// but "modal", and start without displacement.
 ///
 /// Overturning is a result, not an error. Raises ValueError where the run cannot begin, or not go on. Other threads of
 /// Python go on meanwhile; the same inputs give the same bits.
@@ -349,8 +319,24 @@ pub fn simulate(
     initial: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Run> {
     let conditions = conditions(detail, tolerance, duration, initial)?;
-    let followed = structure.get().one("simulate")?;
-    conditions.check(&followed).map_err(refused)?;
+    match &structure.get().of {
+        AnyStructure::One(one) => follow::<f64>(py, structure.clone_ref(py), *one, record, conditions),
+        AnyStructure::Many(frame) => follow::<Modes>(py, structure.clone_ref(py), frame.clone(), record, conditions),
+    }
+}
+
+/// Follows `followed`, which is the `structure`.
+fn follow<Q: Paged>(
+    py: Python<'_>,
+    structure: Py<Structure>,
+    followed: Q::Structure,
+    record: Option<Ground>,
+    conditions: Conditions,
+) -> PyResult<Run>
+where
+    Validity<Q>: Watch<Q>,
+{
+    Q::check(&followed, &conditions).map_err(refused)?;
     let record = match (record, conditions.duration) {
         (Some(Ground(record)), _) => record,
         (None, Some(duration)) => Py::new(py, Record::in_si(rocking::run::record::Record::at_rest(duration)))?,
@@ -358,13 +344,7 @@ pub fn simulate(
             return Err(PyValueError::new_err("record and duration are missing: free vibration needs a duration"));
         }
     };
-    let ground = record.get().under(followed.parameters().g);
-    let shaking = Arc::clone(&ground);
-    let (found, transitions) = interruptible(py, move |abandoned| {
-        let mut transitions = Vec::new();
-        let mut see = |transition: &Transition| transitions.push(*transition);
-        let found = conditions.run(followed, &shaking).found(&mut (abandoned, &mut see))?;
-        Ok::<_, RunError>((found, transitions))
-    })?;
-    Ok(Run { structure, record, ground, conditions, found, transitions })
+    let ground = record.get().under(Q::base(&followed).g);
+    let of = interruptible(py, move |abandoned| Following::<Q>::new(followed, ground, conditions, abandoned))?;
+    Ok(Run { structure, record, conditions, outcome: of.outcome(), of: Box::new(of) })
 }

@@ -48,7 +48,7 @@ pub fn text(
     }
     let (found, _) = run.validity(limits)?;
     writeln!(out)?;
-    for line in validity::section(structure, run.detail, &found, &limits) {
+    for line in validity::section::<f64>(structure, run.detail, &found, &limits) {
         writeln!(out, "{line}")?;
     }
     Ok(out)

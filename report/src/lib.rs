@@ -11,6 +11,7 @@ pub mod program;
 pub mod pushover;
 pub mod quantities;
 pub mod record;
+pub mod shown;
 pub mod summary;
 pub mod tables;
 pub mod validity;

@@ -1,20 +1,18 @@
 //! The summary of a run.
 use crate::quantities::readable;
+use crate::shown::{Named, OF_FLOOR, Shown};
 use crate::validity;
 use fmu_export::significant::significant;
 use rocking::mechanics::restraint::Dissipators;
-use rocking::run::{
-    Ending, Finish, LONGEST_REST,
-    fall::Found,
-    peaks::{self, Peak},
-};
-use rocking::{Motion, Parameters, Phase, Side, Structure, Transition, TransitionKind};
+use rocking::run::{Ending, Finish, LONGEST_REST, fall::Found, peaks::Peak};
+use rocking::structure::Ties;
+use rocking::{Motion, Phase, Side, Transition, TransitionKind};
 use serde::Serialize;
 use std::fmt::{self, Write};
 
 /// First transitions of a run.
-pub struct Summary {
-    structure: Structure,
+pub struct Summary<'a, Q: Shown> {
+    structure: &'a Q::Structure,
     first_uplift: Option<f64>,
     first_impact: Option<f64>,
 }
@@ -22,7 +20,7 @@ pub struct Summary {
 /// A peak, for programs.
 #[derive(Serialize)]
 struct NamedPeak {
-    name: &'static str,
+    name: String,
     peak: f64,
     unit: &'static str,
     /// Its instant, s.
@@ -64,9 +62,9 @@ struct Taken {
     theta_end: f64,
 }
 
-impl Summary {
+impl<'s, Q: Shown> Summary<'s, Q> {
     /// Of a run of `structure` with these `transitions`.
-    pub fn new(structure: &Structure, transitions: &[Transition]) -> Summary {
+    pub fn new(structure: &'s Q::Structure, transitions: &[Transition<Q>]) -> Summary<'s, Q> {
         let first = |is_meant: fn(&TransitionKind) -> bool| {
             transitions.iter().find(|transition| is_meant(&transition.kind)).map(|transition| transition.time)
         };
@@ -74,14 +72,13 @@ impl Summary {
         let first_impact = first(|kind| {
             matches!(kind, TransitionKind::Impact(_) | TransitionKind::Landing | TransitionKind::Settling)
         });
-        Summary { structure: *structure, first_uplift, first_impact }
+        Summary { structure, first_uplift, first_impact }
     }
 
     /// The summary for programs, with the `cause` of the run, the results `found`, and the validity.
-    pub fn whole<'a, C>(&self, cause: &'a C, found: &Found, validity: Vec<validity::Beyond>) -> Whole<'a, C> {
-        let &Found { ground, ref peaks, fall, start, finish: Finish { ending, motion } } = found;
-        let row = |name, unit, Peak { magnitude: peak, time }| NamedPeak { name, peak, unit, time };
-        let of_structure = peaks::of(&self.structure).map(|peak| row(peak.name, peak.unit, peak.of(peaks)));
+    pub fn whole<'a, C>(&self, cause: &'a C, found: &Found<Q>, validity: Vec<validity::Beyond>) -> Whole<'a, C> {
+        let &Found { fall, start, finish: Finish { ending, motion }, .. } = found;
+        let row = |((name, unit), Peak { magnitude: peak, time })| NamedPeak { name, peak, unit, time };
         Whole {
             cause,
             start,
@@ -89,8 +86,8 @@ impl Summary {
             ending,
             overturned: ending.overturned(),
             fall,
-            peaks: [row("a_g", "m/s2", ground)].into_iter().chain(of_structure).collect(),
-            taken: self.taken(motion),
+            peaks: self.peaks(found).into_iter().map(row).collect(),
+            taken: self.taken(&motion),
             first_uplift: self.first_uplift,
             first_impact: self.first_impact,
             transitions: motion.transitions,
@@ -100,33 +97,59 @@ impl Summary {
         }
     }
 
+    /// All peaks, the peak of the ground first.
+    pub fn peaks(&self, found: &Found<Q>) -> Vec<(Named, Peak)> {
+        let of_structure = Q::peaks(self.structure, &found.peaks);
+        [(("a_g".to_owned(), "m/s2"), found.ground)].into_iter().chain(of_structure).collect()
+    }
+
     /// Work of the dissipators until the end, in `motion`; None without dissipators.
-    fn taken(&self, motion: Motion) -> Option<Taken> {
-        let &Parameters { c_d, k_d, .. } = self.structure.parameters();
+    fn taken(&self, motion: &Motion<Q>) -> Option<Taken> {
+        let Ties { c_d, k_d, .. } = Q::base(self.structure).ties;
         let Dissipators { viscous: E_viscous, hysteretic: E_hysteretic, .. } = motion.dissipators;
         (c_d > 0.0 || k_d > 0.0).then_some(Taken { E_viscous, E_hysteretic, theta_end: motion.state.theta })
     }
 
     /// The summary in lines for people.
-    pub fn text(&self, found: &Found) -> Result<String, fmt::Error> {
-        let &Found { ground, ref peaks, fall, finish: Finish { ending, motion }, .. } = found;
+    pub fn text(&self, found: &Found<Q>) -> Result<String, fmt::Error> {
+        let &Found { ref peaks, fall, finish: Finish { ending, motion }, .. } = found;
         let mut out = String::new();
-        let &Parameters { g, .. } = self.structure.parameters();
-        let of_structure = peaks::of(&self.structure).map(|of| (of.name, of.of(peaks), of.unit));
-        for (name, peak, unit) in [("a_g", ground, "m/s2")].into_iter().chain(of_structure) {
-            let (per_unit, unit) = match unit {
-                "m" => (1e-3, "mm"),
-                "m/s2" => (g, "g"),
-                unit => readable(peak.magnitude, unit),
-            };
+        let base = Q::base(self.structure);
+        let read = |magnitude: f64, unit| match unit {
+            "m" => (1e-3, "mm"),
+            "m/s2" => (base.g, "g"),
+            unit => readable(magnitude, unit),
+        };
+        for ((name, unit), peak) in self.peaks(found).into_iter().filter(|((name, _), _)| !name.ends_with(']')) {
+            let (per_unit, unit) = read(peak.magnitude, unit);
             let (magnitude, time) = (significant(peak.magnitude / per_unit), instant(peak.time));
             writeln!(out, "{:<14} {magnitude:>12} {unit:<4} at {time} s", format!("peak |{name}|"))?;
         }
+        if Q::HAS_FLOORS {
+            let floors = Q::floors(self.structure, peaks);
+            let largest = |i: usize| floors.iter().fold(0.0_f64, |most, floor| most.max(floor[i]));
+            let columns = OF_FLOOR.iter().enumerate().map(|(i, (name, unit))| match i {
+                0 => (name, 1.0, *unit),
+                i => {
+                    let (per_unit, unit) = read(largest(i), unit);
+                    (name, per_unit, unit)
+                }
+            });
+            let columns = Vec::from_iter(columns);
+            write!(out, "floor")?;
+            columns.iter().try_for_each(|(name, _, unit)| write!(out, " {:>12}", format!("{name} ({unit})")))?;
+            for (number, floor) in (1..).zip(&floors) {
+                write!(out, "\n{number:<5}")?;
+                let row = columns.iter().zip(floor);
+                row.into_iter().try_for_each(|((_, per, _), peak)| write!(out, " {:>12}", significant(peak / per)))?;
+            }
+            writeln!(out)?;
+        }
         if let Some(fall) = fall {
-            let angle = if self.structure.is_restrained() { "its angle of no return" } else { "alpha_cg" };
+            let angle = if base.is_restrained() { "its angle of no return" } else { "alpha_cg" };
             writeln!(out, "fall           from {} s on, beyond {angle}: the peaks are those before", instant(fall))?;
         }
-        if let Some(Taken { E_viscous, E_hysteretic, theta_end }) = self.taken(motion) {
+        if let Some(Taken { E_viscous, E_hysteretic, theta_end }) = self.taken(&motion) {
             let [E_viscous, E_hysteretic, theta_end] = [E_viscous, E_hysteretic, theta_end].map(significant);
             writeln!(out, "dissipated     {E_viscous} J viscous, {E_hysteretic} J elastoplastic")?;
             writeln!(out, "left at end    theta = {theta_end} rad")?;
@@ -140,7 +163,7 @@ impl Summary {
             Phase::Overturned(Side::Right) => format!("to the right at {} s", instant(motion.time)),
             Phase::FullContact | Phase::Rocking(_) => match ending {
                 Ending::StillRocking => {
-                    let limit = significant(LONGEST_REST / self.structure.p_l);
+                    let limit = significant(LONGEST_REST / base.p_l);
                     format!("not known: it still rocks {limit} s after the record; see --duration")
                 }
                 Ending::AtTime => "not by then".into(),
@@ -148,12 +171,8 @@ impl Summary {
             },
         };
         writeln!(out, "overturned     {overturned}")?;
-        let (work, of_peaks) = (motion.work, peaks.evaluations());
-        writeln!(
-            out,
-            "work           {} steps, {} evaluations; {of_peaks} more for peaks",
-            work.steps, work.evaluations
-        )?;
+        let of_peaks = Q::evaluations(peaks).map_or(String::new(), |more| format!("; {more} more for peaks"));
+        writeln!(out, "work           {} steps, {} evaluations{of_peaks}", motion.work.steps, motion.work.evaluations)?;
         Ok(out)
     }
 }

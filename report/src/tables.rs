@@ -1,34 +1,15 @@
 //! The tables of a run: the response and its transitions.
+use crate::shown::{Named, Shown};
 use rocking::engine::piece::Sample;
-use rocking::mechanics::outputs::OUTPUTS;
 use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::{Impulse, Reactions, State, Transition};
 use serde::Serialize;
 
-/// Headings of the response: the ground accelerations, and the outputs of the FMU under their names and units.
-pub const RESPONSE: [&str; AROUND.len() + OUTPUTS.len()] = {
-    let mut headings = [""; AROUND.len() + OUTPUTS.len()];
-    let mut i = 0;
-    while i < headings.len() {
-        headings[i] = if i < BEFORE {
-            AROUND[i]
-        } else if i < BEFORE + OUTPUTS.len() {
-            OUTPUTS[i - BEFORE].heading
-        } else {
-            AROUND[i - OUTPUTS.len()]
-        };
-        i += 1;
-    }
-    headings
-};
+/// The columns before the outputs.
+const BEFORE: [&str; 2] = ["time[s]", "a_g[m/s2]"];
 
-/// The number of columns before the outputs.
-const BEFORE: usize = 2;
-
-/// The columns before and after the outputs.
-const AROUND: [&str; 18] = [
-    "time[s]",
-    "a_g[m/s2]",
+/// The columns after the outputs.
+const AFTER: [&str; 16] = [
     "R_h[N]",
     "R_v[N]",
     "R_m[N.m]",
@@ -47,42 +28,52 @@ const AROUND: [&str; 18] = [
     "transitions",
 ];
 
-/// The numbers of a line of the response, in the order of [`RESPONSE`]; phase and transitions follow.
-pub fn response_numbers(sample: &Sample) -> [f64; RESPONSE.len() - 2] {
-    let &Sample { motion, load, .. } = sample;
+/// Headings of the response: the ground accelerations, the outputs of the structure, reactions and restraints.
+pub fn response_headings<Q: Shown>(structure: &Q::Structure) -> Vec<String> {
+    let outputs = Q::outputs(structure).into_iter().map(|(name, unit)| format!("{name}[{unit}]"));
+    let [before, after] = [&BEFORE[..], &AFTER[..]].map(|names| names.iter().map(|name| name.to_string()));
+    before.chain(outputs).chain(after).collect()
+}
+
+/// The numbers of a line of the response, in the order of [`response_headings`]; phase and transitions follow.
+pub fn response_numbers<Q: Shown>(structure: &Q::Structure, sample: &Sample<Q>) -> Vec<f64> {
+    let Sample { motion, load, .. } = sample;
     let Reactions { R_h, R_v, R_m } = sample.reactions();
     let Impulse { I_h, I_v, I_m } = motion.impulse;
     let Restraints { P_t, F_d1, F_d2 } = sample.restraints();
     let Dissipators { plastic: [e_p1, e_p2], viscous, hysteretic, .. } = motion.dissipators;
-    let (before, outputs) = ([motion.time, load.a_g], sample.outputs().values());
-    let of_ground = [R_h, R_v, R_m, I_h, I_v, I_m];
-    let of_restraints = [load.a_v, P_t, F_d1, F_d2, e_p1, e_p2, viscous, hysteretic];
-    let mut numbers = [before.as_slice(), &outputs, &of_ground, &of_restraints].into_iter().flatten();
-    std::array::from_fn(|_| *numbers.next().expect("as many as there are headings"))
+    let mut numbers = vec![motion.time, load.a_g];
+    numbers.extend(Q::values(structure, sample));
+    numbers.extend([R_h, R_v, R_m, I_h, I_v, I_m]);
+    numbers.extend([load.a_v, P_t, F_d1, F_d2, e_p1, e_p2, viscous, hysteretic]);
+    numbers
 }
 
 /// A line of the response.
-pub fn response_line(sample: &Sample) -> impl Serialize + use<> {
-    (response_numbers(sample), sample.motion.phase.name(), sample.motion.transitions)
+pub fn response_line<Q: Shown>(structure: &Q::Structure, sample: &Sample<Q>) -> impl Serialize + use<Q> {
+    (response_numbers(structure, sample), sample.motion.phase.name(), sample.motion.transitions)
 }
 
-/// Headings of the transitions.
-pub const EVENTS: [&str; 10] = [
-    "time[s]",
-    "kind",
-    "u_before[m]",
-    "u_dot_before[m/s]",
-    "theta_before[rad]",
-    "theta_dot_before[rad/s]",
-    "u_after[m]",
-    "u_dot_after[m/s]",
-    "theta_after[rad]",
-    "theta_dot_after[rad/s]",
-];
+/// Names and units of the components of a state.
+pub fn components<Q: Shown>(structure: &Q::Structure) -> Vec<Named> {
+    let of_base = [("theta".to_owned(), "rad"), ("theta_dot".to_owned(), "rad/s")];
+    Q::displacements(structure).into_iter().chain(of_base).collect()
+}
+
+/// Values of the components of `state`.
+pub fn values<Q: Shown>(structure: &Q::Structure, state: &State<Q>) -> Vec<f64> {
+    Q::displaced(structure, state).into_iter().chain([state.theta, state.theta_dot]).collect()
+}
+
+/// Headings of the transitions: instant, kind, and the state before and after.
+pub fn event_headings<Q: Shown>(structure: &Q::Structure) -> Vec<String> {
+    let components = components::<Q>(structure);
+    let state = |when| components.iter().map(move |(name, unit)| format!("{name}_{when}[{unit}]"));
+    ["time[s]", "kind"].map(str::to_owned).into_iter().chain(state("before")).chain(state("after")).collect()
+}
 
 /// A line of the transitions.
-pub fn event_line(transition: &Transition) -> impl Serialize + use<> {
-    let &Transition { time, kind, before, after } = transition;
-    let values = |State { u, u_dot, theta, theta_dot }| (u, u_dot, theta, theta_dot);
-    (time, kind.name(), values(before), values(after))
+pub fn event_line<Q: Shown>(structure: &Q::Structure, transition: &Transition<Q>) -> impl Serialize + use<Q> {
+    let Transition { time, kind, before, after } = transition;
+    (*time, kind.name(), values(structure, before), values(structure, after))
 }

@@ -1,9 +1,10 @@
 //! Validity of a run: effects that the model leaves out, in words and for programs.
 
 use crate::quantities::Number;
+use crate::shown::Shown;
 use crate::significant::significant;
-use rocking::run::validity::{self, ASSUMPTIONS, Assumption, Findings, Limits, WEIGHT, Worst};
-use rocking::{Detail, Structure};
+use rocking::Detail;
+use rocking::run::validity::{ASSUMPTIONS, Assumption, Findings, Limits, WEIGHT, Worst};
 use serde::Serialize;
 
 /// Label of each of [`ASSUMPTIONS`].
@@ -50,8 +51,8 @@ pub fn rows(found: &Findings, limits: &Limits) -> Vec<Beyond> {
 }
 
 /// The section on a run of `structure` at the level `detail` in which this was `found`, line by line.
-pub fn section(structure: &Structure, detail: Detail, found: &Findings, limits: &Limits) -> Vec<String> {
-    let of_parameters = validity::of_parameters(structure, detail);
+pub fn section<Q: Shown>(structure: &Q::Structure, detail: Detail, found: &Findings, limits: &Limits) -> Vec<String> {
+    let of_parameters = Q::warnings(structure, detail);
     let mut lines = vec!["what the model leaves out here".to_owned()];
     lines.extend(of_parameters.into_iter().map(|warning| format!("  {warning}")));
     let is_level = found.worst[WEIGHT].value == 1.0;

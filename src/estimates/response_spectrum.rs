@@ -19,9 +19,12 @@
 //! peak between samples is exact, too. |ü + a_g| is largest at a sample or at a zero of its rate b + ẅ. The zeros of the slope of
 //! this rate have a closed form, and between two of them the rate passes 0 at most once.
 
+use crate::engine::Moves;
+use crate::engine::piece::{Sample, Watch};
 use crate::levels::oscillator::Oscillator;
 use crate::run::ground_motion::Segment;
-use crate::run::record::Record;
+use crate::run::record::{Record, SamplesError};
+use crate::run::{End, Run, RunError};
 use crate::series::bisection::last_where;
 use crate::structure::quantity::OutOfRange;
 use nalgebra::{Matrix2, Vector2};
@@ -31,6 +34,70 @@ use std::ops::RangeInclusive;
 /// Ranges of an oscillator: those of a structure's f_fc and zeta_fc.
 const PERIOD: RangeInclusive<f64> = 1e-4..=1e3;
 const ZETA: RangeInclusive<f64> = 0.0..=10.0;
+
+/// The largest change of a value of a floor spectrum, as a fraction of the value, when the step is halved for the last time.
+const SAME: f64 = 1e-3;
+
+/// The most samples of a floor spectrum.
+const MOST_SAMPLES: usize = 1 << 22;
+
+/// The reason why there is no spectrum of a floor.
+#[derive(Debug, thiserror::Error)]
+pub enum FloorSpectrumError {
+    /// A period or the damping ratio is out of range.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+    /// The run cannot be followed.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// The acceleration is no finite number.
+    #[error(transparent)]
+    Record(#[from] SamplesError),
+    /// The values do not settle.
+    #[error(
+        "the spectrum still changes at {MOST_SAMPLES} samples of the floor: give the run a shorter duration, or raise zeta"
+    )]
+    TooFine,
+}
+
+/// The spectrum of an `acceleration` on the structure of `run`, from the start of the run until `end` (s), as [`spectrum`] of a record.
+///
+/// The acceleration is sampled and linear between samples. The step is at first the mean step of the ground motion. It is halved until
+/// no S_a changes by more than 1e-3 of itself, which estimates the error and does not bound it.
+pub fn floor_spectrum<Q: Moves>(
+    run: &Run<Q>,
+    end: f64,
+    acceleration: impl Fn(&Sample<Q>) -> f64,
+    periods: &[f64],
+    zeta: f64,
+    watch: &mut impl Watch<Q>,
+) -> Result<Vec<f64>, FloorSpectrumError> {
+    let (start, ground) = (run.ground.start(), run.ground);
+    let run = Run { end: End::At(end), ..run.clone() };
+    let mut of = |count: usize| {
+        let (mut times, mut samples) = (Vec::with_capacity(count + 1), Vec::with_capacity(count + 1));
+        let show = |sample: &Sample<Q>| {
+            times.push(sample.motion.time);
+            samples.push(acceleration(sample));
+        };
+        let instants = (0..count).map(|i| start + (end - start) * (i as f64 / count as f64));
+        run.sample(instants, show, watch)?;
+        let record = Record::from_samples("", times, samples)?;
+        Ok::<_, FloorSpectrumError>(spectrum(&record, periods.iter().copied(), zeta)?)
+    };
+    let step = (ground.end() - start) / (ground.times().len() - 1) as f64;
+    let mut count = ((end - start) / step).ceil().min(MOST_SAMPLES as f64 / 4.0) as usize;
+    let mut before = of(count)?;
+    while count <= MOST_SAMPLES / 2 {
+        count *= 2;
+        let now = of(count)?;
+        if now.iter().zip(&before).all(|(now, before)| (now - before).abs() <= SAME * now) {
+            return Ok(now);
+        }
+        before = now;
+    }
+    Err(FloorSpectrumError::TooFine)
+}
 
 /// The spectrum of `record`: S_a at each of `periods` (s) and the damping ratio `zeta`, m/s².
 pub fn spectrum(record: &Record, periods: impl IntoIterator<Item = f64>, zeta: f64) -> Result<Vec<f64>, OutOfRange> {

@@ -60,7 +60,7 @@ mod tests {
         }
         assert_eq!(points[0].moment, elastic(0.0));
         // with the base down, the residual forces decide whether it stays down
-        let [restoring, residual] = centring_moments(&structure);
+        let [restoring, residual] = centring_moments(&structure.base);
         assert!((points[20].moment - (restoring - residual)).abs() < 1e-9 * restoring);
         assert!((residual - F_y * ((B - xi_d) + (B + xi_d))).abs() < 1e-12 * residual);
     }

@@ -36,6 +36,8 @@ pub enum FrameOutput {
     a_t(usize),
     /// Shear of a storey V_i, N.
     V(usize),
+    /// Overturning moment at the foot of a storey M_i, N·m.
+    M(usize),
 }
 
 /// A motion in numbers of the kind `N`, as formulas of outputs read it.
@@ -59,7 +61,7 @@ impl FrameOutput {
         [FrameOutput::theta, FrameOutput::theta_dot, FrameOutput::uplift, FrameOutput::V_t, FrameOutput::M_t];
 
     /// The outputs of a floor and of the storey below the floor.
-    const OF_FLOOR: [fn(usize) -> FrameOutput; 7] = [
+    const OF_FLOOR: [fn(usize) -> FrameOutput; 8] = [
         FrameOutput::u,
         FrameOutput::u_dot,
         FrameOutput::drift,
@@ -67,6 +69,7 @@ impl FrameOutput {
         FrameOutput::v_t,
         FrameOutput::a_t,
         FrameOutput::V,
+        FrameOutput::M,
     ];
 
     /// All outputs of `frame`: of its base, then each output of the floors from below.
@@ -91,6 +94,7 @@ impl FrameOutput {
             FrameOutput::v_t(i) => ("v_t", "m/s", "velocity relative to the ground of floor", Some(i)),
             FrameOutput::a_t(i) => ("a_t", "m/s2", "lateral acceleration of floor", Some(i)),
             FrameOutput::V(i) => ("V", "N", "shear of storey", Some(i)),
+            FrameOutput::M(i) => ("M", "N.m", "overturning moment at the foot of storey", Some(i)),
         }
     }
 
@@ -129,6 +133,7 @@ impl FrameOutput {
             FrameOutput::M_t => Some(&gauges.M_t),
             FrameOutput::a_t(i) => Some(&gauges.a[i]),
             FrameOutput::V(i) => Some(&gauges.V[i]),
+            FrameOutput::M(i) => Some(&gauges.M[i]),
             _ => None,
         }
     }
@@ -150,7 +155,7 @@ impl FrameOutput {
             FrameOutput::drift(i) => x.u(floor(i)) - x.u(floor(i - 1)),
             FrameOutput::delta_t(i) => place(i).right(x.pivot(), &x.turn()),
             FrameOutput::v_t(i) => place(i).rate_of_right(x.pivot(), &x.turn(), [x.u_dot(floor(i)), x.theta_dot()]),
-            FrameOutput::V_t | FrameOutput::M_t | FrameOutput::a_t(_) | FrameOutput::V(_) => {
+            FrameOutput::V_t | FrameOutput::M_t | FrameOutput::a_t(_) | FrameOutput::V(_) | FrameOutput::M(_) => {
                 unreachable!("a gauge measures it")
             }
         }

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! a_i = g sin θ − Σ φ_i e + (h_i − Σ φ_i h) θ̈ + (1 − Σ φ_i Γ/μ) b,      b = sB θ̇² + a_g cos θ − (g + a_v) sin θ
-//! V_k = Σ m_i a_i  of the floors from k on,      V_t = Σ m_i a_i,      M_t = Σ m_i h_i a_i
+//! V_k = Σ m_i a_i,   M_k = Σ m_i (h_i − h_{k−1}) a_i  of the floors from k on,      V_t = Σ m_i a_i,   M_t = Σ m_i h_i a_i
 //! ```
 //!
 //! The last two terms vanish if the modes carry the whole mass. Then no output depends on the ground acceleration directly.

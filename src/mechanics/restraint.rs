@@ -262,9 +262,9 @@ impl Restraints {
 /// The two moments that decide whether a structure centres itself after rocking, N·m. The first turns the base back at the ground,
 /// [(m + m0) g + P_0] B. The second is the largest that the residual forces of the dissipators hold against it, Σ F_y |sB − ξ|. If the
 /// second is larger, the structure may come to rest turned.
-pub fn centring_moments(structure: &Structure) -> [f64; 2] {
-    let &crate::Parameters { m, m0, B, g, P_0, F_y, .. } = structure.parameters();
-    [((m + m0) * g + P_0) * B, levers(&structure.base, Side::Right).iter().map(|lever| F_y * lever.abs()).sum()]
+pub fn centring_moments(base: &Base) -> [f64; 2] {
+    let &Base { m_t, B, g, ties: Ties { P_0, F_y, .. }, .. } = base;
+    [(m_t * g + P_0) * B, levers(base, Side::Right).iter().map(|lever| F_y * lever.abs()).sum()]
 }
 
 impl Dissipators {

@@ -124,6 +124,16 @@ pub enum InitialStateError {
          time and with what yields: choose linear, or set P_0, k_t, c_d, k_d and a_v to 0"
     )]
     RestrainedModal,
+    /// Masses are displaced although the structure has many.
+    #[error(
+        "u_0 = {u:?} m, u_dot_0 = {u_dot:?} m/s are of one mass: many masses start without displacement, set both to 0"
+    )]
+    DeformedModes {
+        /// u_0, m.
+        u: f64,
+        /// u_dot_0, m/s.
+        u_dot: f64,
+    },
     /// Structures of many masses have no such level.
     #[error("detail = {0} moves structures of one mass alone: choose auto, nonlinear, linear, rigid or fixed_base")]
     OneMass(&'static str),

@@ -2,30 +2,47 @@
 //! such a structure are those before the fall.
 
 use super::peaks::{Peak, PeakWatch, Peaks};
-use super::{Finish, Run, RunError};
+use super::profile::Profile;
+use super::{Ending, Finish, Run, RunError};
+use crate::engine::Moves;
 use crate::engine::piece::Expansion;
-use crate::mechanics::restraint::{Dissipators, Restraint};
+use crate::mechanics::restraint::{Angles, Dissipators, Restraint, sum, ties};
 use crate::run::ground_motion::GroundMotion;
 use crate::series::bisection::last_where;
 use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
 use crate::series::taylor;
-use crate::{Detail, Outputs, Piece, Side, Structure, Transition, TransitionKind, Watch};
+use crate::series::taylor::Arc;
+use crate::structure::Base;
+use crate::{Detail, Frame, Modes, Outputs, Piece, Side, Structure, Transition, TransitionKind, Watch};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
+/// Lateral coordinates of the structures whose peaks are found.
+pub trait Peaked: Moves {
+    /// Exact peaks of a motion.
+    type Peaks: Clone;
+
+    /// Follows `run` to the end, which `watch` sees, too. Returns the peaks before the fall and of all the motion, the start of the
+    /// fall, and the end.
+    #[doc(hidden)]
+    fn followed(run: &Run<Self>, watch: &mut impl Watch<Self>) -> Result<Followed<Self>, RunError>;
+}
+
+type Followed<Q> = ([<Q as Peaked>::Peaks; 2], Option<f64>, Finish<Q>);
+
 /// Result of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Found {
+pub struct Found<Q: Peaked = f64> {
     /// Peak of the ground acceleration until the run ended, m/s².
     pub ground: Peak,
     /// Peaks of the structure; if it overturns, those before it falls.
-    pub peaks: Peaks,
+    pub peaks: Q::Peaks,
     /// Start of the fall of a structure that overturns, s.
     pub fall: Option<f64>,
     /// Start of the run, s.
     pub start: f64,
     /// End of the run.
-    pub finish: Finish,
+    pub finish: Finish<Q>,
 }
 
 /// Exact peaks of a motion that may end in a fall: those of all the motion, and those before the fall.
@@ -53,14 +70,31 @@ struct Fall {
 ///
 /// The moment vanishes once: while an elastic tie makes it grow it is positive, and it falls from there on.
 pub fn angle_of_no_return(structure: &Structure) -> Option<f64> {
-    if !structure.is_restrained() {
-        return Some(libm::atan(structure.tan_alpha_cg));
+    no_return(&structure.base, |theta, dissipators| {
+        Restraint::about(structure, Side::Right, dissipators).restoring_moment(theta)
+    })
+}
+
+/// The angle of no return of `base`, given the moment that turns the structure back at an angle (rad).
+fn no_return(base: &Base, restoring_moment: impl Fn(f64, &Dissipators) -> f64) -> Option<f64> {
+    if !base.is_restrained() {
+        return Some(libm::atan(base.tan_alpha_cg));
     }
     let restores = |theta| {
-        let dissipators = Dissipators::NEW.moved(structure, Side::Right, theta);
-        Restraint::about(structure, Side::Right, &dissipators).restoring_moment(theta) > 0.0
+        let dissipators = Dissipators::NEW.moved_by(base, Side::Right, Angles::Any.chord(theta, 0.0));
+        restoring_moment(theta, &dissipators) > 0.0
     };
     (!restores(FRAC_PI_2)).then(|| last_where(0.0, FRAC_PI_2, restores))
+}
+
+/// The angle of no return of a structure of many masses, like [`angle_of_no_return`].
+fn no_return_of_many(frame: &Frame) -> Option<f64> {
+    let (base, body) = (&frame.base, frame.body());
+    no_return(base, |theta, dissipators| {
+        let of_ties = sum(&ties(base, Side::Right, dissipators), |tie| tie.lever);
+        let (sin, cos) = libm::sincos(theta);
+        base.g * (base.m_t * base.B * cos - body.S_1 * sin) + of_ties.moment(&Angles::Any.chord(theta, 0.0))
+    })
 }
 
 impl FallingPeaks {
@@ -141,14 +175,7 @@ impl FallWatch<'_> {
     /// Keeps the peaks up to the last passing of `angle` (rad) in a `piece` that ends beyond.
     #[cold]
     fn beyond(&mut self, piece: &Piece, angle: f64) {
-        let mut passing = None;
-        let mut arcs = piece.arcs();
-        while let Some(expansion) = arcs.next() {
-            passing = last_passing(angle, piece.end.theta.signum(), &expansion).or(passing);
-        }
-        // a motion that starts beyond falls from its start
-        let starts_beyond = || self.fall.is_none().then_some((piece.before.time, 0.0));
-        if let Some((instant, tau)) = passing.or_else(starts_beyond) {
+        if let Some((instant, tau)) = start_of_fall(piece, angle, self.fall.is_some()) {
             let mut before = *self.all.so_far();
             before.see_until(piece, tau);
             *self.fall = Some(Fall { instant, before });
@@ -156,9 +183,20 @@ impl FallWatch<'_> {
     }
 }
 
+/// The last passing of `angle` (rad) in a `piece` that ends beyond: the instant, and seconds from the start of the piece. A motion that
+/// starts beyond, and not `falls` already, falls from its start.
+fn start_of_fall<Q: Moves>(piece: &Piece<Q>, angle: f64, falls: bool) -> Option<(f64, f64)> {
+    let mut passing = None;
+    let mut arcs = piece.arcs();
+    while let Some(expansion) = arcs.next() {
+        passing = last_passing(angle, piece.end.theta.signum(), &expansion).or(passing);
+    }
+    passing.or((!falls).then_some((piece.before.time, 0.0)))
+}
+
 /// The last time at which |θ| passes `angle` (rad) on a polynomial that ends beyond on this `side`: the instant, and seconds from
 /// the start of the piece. The search goes back from the end of the polynomial.
-fn last_passing(angle: f64, side: f64, expansion: &Expansion) -> Option<(f64, f64)> {
+fn last_passing<Q: Moves>(angle: f64, side: f64, expansion: &Expansion<Q>) -> Option<(f64, f64)> {
     let arc = expansion.arc;
     let mut theta = arc.theta;
     let back = &mut theta[..=arc.order];
@@ -177,22 +215,75 @@ fn last_passing(angle: f64, side: f64, expansion: &Expansion) -> Option<(f64, f6
     }
 }
 
-impl Run<'_> {
+/// Exact peaks of a structure of many masses that may fall.
+struct FallingProfile {
+    all: Profile,
+    no_return: Option<f64>,
+    /// The last passing of the angle of no return while |θ| is beyond, s, and the peaks until then.
+    fall: Option<(f64, Profile)>,
+}
+
+impl Watch<Modes> for FallingProfile {
+    const SEES_PIECES: bool = true;
+
+    fn piece(&mut self, piece: &Piece<Modes>) {
+        match self.no_return {
+            Some(angle) if piece.end.theta.abs() >= angle => {
+                if let Some((instant, tau)) = start_of_fall(piece, angle, self.fall.is_some()) {
+                    let mut before = self.all.clone();
+                    let arc = piece.arc.map(|arc| Arc { reach: tau / arc.span, ..arc.clone() });
+                    before.piece(&Piece { duration: tau, end: piece.state_at(tau), arc: arc.as_ref(), ..*piece });
+                    self.fall = Some((instant, before));
+                }
+            }
+            _ => self.fall = None,
+        }
+        self.all.piece(piece);
+    }
+
+    fn transition(&mut self, transition: &Transition<Modes>) {
+        if let TransitionKind::Overturning(_) = transition.kind {
+            self.fall.get_or_insert_with(|| (transition.time, self.all.clone()));
+        }
+    }
+}
+
+impl Peaked for f64 {
+    type Peaks = Peaks;
+
+    fn followed(run: &Run, watch: &mut impl Watch) -> Result<Followed<f64>, RunError> {
+        let mut peaks = FallingPeaks::since(run.ground.start(), &run.structure, run.detail);
+        let finish = run.follow(&mut (&mut peaks.watch(), watch))?;
+        Ok(([*peaks.peaks(), *peaks.all()], peaks.fall(), finish))
+    }
+}
+
+impl Peaked for Modes {
+    type Peaks = Profile;
+
+    fn followed(run: &Run<Modes>, watch: &mut impl Watch<Modes>) -> Result<Followed<Modes>, RunError> {
+        let all = Profile::since(run.ground.start(), run.start()?.structure());
+        let mut peaks = FallingProfile { all, no_return: no_return_of_many(&run.structure), fall: None };
+        let finish = run.follow(&mut (&mut peaks, watch))?;
+        Ok(match peaks.fall.filter(|_| finish.ending == Ending::Overturned) {
+            Some((instant, before)) => ([before, peaks.all], Some(instant), finish),
+            None => ([peaks.all.clone(), peaks.all], None, finish),
+        })
+    }
+}
+
+impl<Q: Peaked> Run<'_, Q> {
     /// Follows the motion to the end, which `watch` sees, too, and finds its exact peaks.
-    pub fn found(&self, watch: &mut impl Watch) -> Result<Found, RunError> {
+    pub fn found(&self, watch: &mut impl Watch<Q>) -> Result<Found<Q>, RunError> {
         Ok(self.found_and_all(watch)?.0)
     }
 
     /// Result of the run, and the peaks of all its motion, including a fall.
-    pub(super) fn found_and_all(&self, watch: &mut impl Watch) -> Result<(Found, Peaks), RunError> {
-        let start = self.ground.start();
-        let mut peaks = FallingPeaks::since(start, &self.structure, self.detail);
-        let finish = self.follow(&mut (&mut peaks.watch(), watch))?;
+    pub(super) fn found_and_all(&self, watch: &mut impl Watch<Q>) -> Result<(Found<Q>, Q::Peaks), RunError> {
+        let ([peaks, all], fall, finish) = Q::followed(self, watch)?;
         let ground = self.peak_of_ground(finish.motion.time);
-        let found = Found { ground, peaks: *peaks.peaks(), fall: peaks.fall(), start, finish };
-        Ok((found, *peaks.all()))
+        Ok((Found { ground, peaks, fall, start: self.ground.start(), finish }, all))
     }
-
     /// Peak of the ground acceleration until the time `until` (s), m/s².
     fn peak_of_ground(&self, until: f64) -> Peak {
         let (times, acceleration) = (self.ground.times(), self.ground.acceleration());
@@ -213,9 +304,9 @@ impl Run<'_> {
 mod tests {
     use super::*;
     use crate::estimates::restoring;
+    use crate::run::End;
     use crate::run::peaks::PEAKS;
     use crate::run::record::Record;
-    use crate::run::{End, Ending};
     use crate::{Parameters, State};
     use std::f64::consts::TAU;
 

@@ -553,10 +553,14 @@ impl<Q: Moves> Run<'_, Q>
 where
     Validity<Q>: Watch<Q>,
 {
+    /// The watcher of the assumptions that the run breaks.
+    pub fn validity_watch(&self, limits: Limits) -> Result<Validity<Q>, RunError> {
+        Ok(Validity::new(self.start()?.structure(), limits, Findings::since(self.ground.start())))
+    }
+
     /// The assumptions that the run breaks, and its end.
     pub fn validity(&self, limits: Limits) -> Result<(Findings, Finish<Q>), RunError> {
-        let since = Findings::since(self.ground.start());
-        let mut validity = Validity::<Q>::new(self.start()?.structure(), limits, since);
+        let mut validity = self.validity_watch(limits)?;
         let finish = self.follow(&mut validity)?;
         Ok((validity.found, finish))
     }

@@ -66,6 +66,8 @@ pub struct Gauges {
     pub a: Vec<Gauge>,
     /// Shear of the storey below each floor V_k, from the given floors, N.
     pub V: Vec<Gauge>,
+    /// Overturning moment at the foot of each storey M_k, from the given floors, N·m.
+    pub M: Vec<Gauge>,
     /// Base shear V_t, N.
     pub V_t: Gauge,
     /// Overturning moment M_t, N·m.
@@ -75,17 +77,23 @@ pub struct Gauges {
 impl Gauges {
     fn new(&Body { m_s, S_1, I_2, .. }: &Body, modes: &[Mode], floors: &[Floor]) -> Gauges {
         let shape = |of: fn(&Mode) -> f64| Modes::new(&Vec::from_iter(modes.iter().map(of)));
-        let storey = |floors: &[Floor]| {
+        let sum = |floors: &[Floor], part: &dyn Fn(&Floor) -> f64| {
             let (mut weight, mut height, mut sum) = (0.0, 0.0, shape(|_| 0.0));
             for floor in floors {
-                (weight, height) = (weight + floor.mass, height + floor.mass * floor.height);
-                sum = sum.plus(floor.shape, floor.mass);
+                let part = part(floor);
+                (weight, height) = (weight + part, height + part * floor.height);
+                sum = sum.plus(floor.shape, part);
             }
             Gauge::new(modes, weight, sum, height)
         };
+        let moment = |k: usize| {
+            let foot = if k == 0 { 0.0 } else { floors[k - 1].height };
+            sum(&floors[k..], &|floor| floor.mass * (floor.height - foot))
+        };
         Gauges {
             a: floors.iter().map(|floor| Gauge::new(modes, 1.0, floor.shape, floor.height)).collect(),
-            V: (0..floors.len()).map(|k| storey(&floors[k..])).collect(),
+            V: (0..floors.len()).map(|k| sum(&floors[k..], &|floor| floor.mass)).collect(),
+            M: (0..floors.len()).map(moment).collect(),
             V_t: Gauge::new(modes, m_s, shape(|mode| mode.gamma), S_1),
             M_t: Gauge::new(modes, S_1, shape(|mode| mode.mass * mode.height), I_2),
         }

@@ -222,12 +222,17 @@ impl Conditions {
 
     /// Refuses, with the reason, what no run of `structure` can have.
     pub fn check(&self, structure: &Structure) -> Result<(), Refused> {
-        let Conditions { initial, detail, tolerance, duration } = *self;
-        let duration = duration.unwrap_or(1.0);
+        self.check_duration()?;
+        let Conditions { initial, detail, tolerance, .. } = *self;
+        Engine::with_detail(*structure, initial, 0.0, tolerance, detail).map(|_| ()).map_err(Refused::by)
+    }
+
+    /// Refuses a duration that no run can have.
+    pub fn check_duration(&self) -> Result<(), Refused> {
+        let duration = self.duration.unwrap_or(1.0);
         ensure(duration > 0.0 && duration.is_finite(), || {
             format!("duration = {} is out of range: a finite number greater than 0 is needed", with_unit(duration, "1"))
-        })?;
-        Engine::with_detail(*structure, initial, 0.0, tolerance, detail).map(|_| ()).map_err(Refused::by)
+        })
     }
 }
 

@@ -1,0 +1,77 @@
+//! The picture of a run over the height: the peaks of floors and storeys, and those of the structure on a fixed base.
+use crate::picture::{Picture, TITLE, axes, chart, colour, dashed, line, titled};
+use anyhow::ensure;
+use plotters::prelude::*;
+use rocking::run::fall::Found;
+use rocking::{Detail, Run, run::End};
+use rocking_report::quantities::readable;
+use rocking_report::shown::{OF_FLOOR, Shown};
+
+const WIDTH: u32 = 1000;
+const PLOT: u32 = 420;
+
+/// Places in [`OF_FLOOR`], names, and whether the value is of a floor, of all of a storey, or of the foot of a storey.
+const SHOWN: [(usize, &str, At); 4] = [
+    (4, "acceleration", At::Floor),
+    (2, "drift", At::Storey),
+    (5, "storey shear", At::Storey),
+    (6, "storey moment", At::Foot),
+];
+
+/// The place of a value over the height.
+#[derive(Clone, Copy, PartialEq)]
+enum At {
+    Floor,
+    Storey,
+    Foot,
+}
+
+/// Draws the peaks `found` in `run` over the height, and those of the same run on a fixed base.
+pub fn draw<Q: Shown>(picture: Picture, run: &Run<Q>, found: &Found<Q>) -> anyhow::Result<()> {
+    let floors = Q::floors(&run.structure, &found.peaks);
+    ensure!(!floors.is_empty(), "--profile: the structure has no floors; give masses, heights and shapes");
+    let still = Q::run(&run.structure, run.ground, &Default::default())?; // at rest at the start
+    let end = End::At(found.finish.motion.time);
+    let on_fixed_base = Run { detail: Detail::FixedBase, tolerance: run.tolerance, end, ..still }.found(&mut ())?;
+    let fixed = Q::floors(&run.structure, &on_fixed_base.peaks);
+    let (height, g) = (floors[floors.len() - 1][0], Q::base(&run.structure).g);
+    picture.draw((WIDTH, TITLE + PLOT), |area| {
+        let about = "peaks of floors and storeys; solid: rocking, dashed: the same structure on a fixed base";
+        let area = titled(area, run.ground.title(), about)?;
+        for ((i, name, at), area) in SHOWN.into_iter().zip(area.split_evenly((1, SHOWN.len()))) {
+            let most = floors.iter().chain(&fixed).map(|floor| floor[i]).fold(0.0, f64::max);
+            let (per_unit, unit) = match OF_FLOOR[i].1 {
+                "m" => (1e-3, "mm"),
+                "m/s2" => (g, "g"),
+                unit => readable(most, unit),
+            };
+            let ground = [found.ground, on_fixed_base.ground].map(|peak| peak.magnitude);
+            let largest = 1.1 * most.max(if at == At::Floor { ground[0] } else { 0.0 }) / per_unit;
+            let across = 0.0..if largest > 0.0 { largest } else { 1.0 };
+            let mut plot = chart(&area, 46.0).build_cartesian_2d(across, 0.0..1.02 * height)?;
+            axes(&mut plot, [&format!("{name} ({unit})"), if i == 4 { "height (m)" } else { " " }], [4, 8])?;
+            let over = |floors: &[[f64; OF_FLOOR.len()]], ground| {
+                points(floors, i, at, ground).into_iter().map(|(value, height)| (value / per_unit, height)).collect()
+            };
+            let [rocks, stands]: [Vec<_>; 2] = [over(&floors, ground[0]), over(&fixed, ground[1])];
+            dashed(&mut plot, &stands, colour::VERMILLION)?;
+            plot.draw_series([PathElement::new(rocks, line(colour::BLUE))])?;
+        }
+        Ok(())
+    })
+}
+
+/// The line of value `i` over the height from the base on.
+fn points(floors: &[[f64; OF_FLOOR.len()]], i: usize, at: At, ground: f64) -> Vec<(f64, f64)> {
+    let heights = || floors.iter().map(|floor| floor[0]);
+    let below = || [0.0].into_iter().chain(heights());
+    let values = floors.iter().map(|floor| floor[i]);
+    match at {
+        At::Floor => [ground].into_iter().chain(values).zip(below()).collect(),
+        At::Foot => values.chain([0.0]).zip(below()).collect(),
+        At::Storey => {
+            let ends = |((value, from), to)| [(value, from), (value, to)];
+            values.zip(below()).zip(heights()).flat_map(ends).collect()
+        }
+    }
+}
