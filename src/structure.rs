@@ -233,6 +233,11 @@ impl Structure {
         })
     }
 
+    /// The rigid base.
+    pub fn base(&self) -> &Base {
+        &self.base
+    }
+
     /// Whether a tendon or dissipators restrain the structure.
     pub fn is_restrained(&self) -> bool {
         self.is_restrained
