@@ -1,9 +1,12 @@
 //! Curves of runs from outside: what straight lines between their points say, beside the motion itself.
 
-use rocking::run::curve::Point;
+use rocking::engine::piece::Sample;
+use rocking::run::curve::{Point, drawn};
 use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError};
-use rocking::{Detail, Parameters, Phase, State, Structure, TransitionKind};
+use rocking::structure::description::{Damping, Storey};
+use rocking::structure::natural_quantities::Given;
+use rocking::{Detail, Frame, Modes, Parameters, Phase, State, Structure, TransitionKind};
 
 /// Lifts, bounces and lands the McManus specimen at every level: two sines that die away.
 fn ground() -> Record {
@@ -44,7 +47,7 @@ fn lines_stay_as_close_to_the_motion_as_was_asked_for() {
                 let found = on_the_line(&curve.points, time);
                 (0..4).for_each(|i| missed[i] = missed[i].max((found[i] - expected[i]).abs() / largest[i].max(1e-12)));
             };
-            let show = |sample: &rocking::engine::piece::Sample| {
+            let show = |sample: &Sample| {
                 let outputs = sample.outputs();
                 compare(sample.motion.time, [outputs.theta, outputs.u, outputs.a_t, sample.load.a_g]);
             };
@@ -89,4 +92,44 @@ fn a_curve_has_no_more_points_than_a_picture_needs() {
     let run = Run { initial, end: End::At(1e7), ..Run::new(structure, &ground) };
     let Err(RunError::TooManyPoints { most: 1_000_000, time }) = run.curve(1e-3) else { panic!("it is drawn") };
     assert!(time > 1.0 && time < 1e6, "{time}");
+}
+
+/// Three storeys whose lines and peaks are those of their samples, floor by floor.
+#[test]
+fn lines_of_many_masses_stay_as_close_to_each_floor() {
+    let mut base = Given::default();
+    for (name, value) in [("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("r", 0.93), ("P_0", 1e5), ("k_t", 1e6)] {
+        base.give(name, value).unwrap();
+    }
+    let storeys = [(40e3, 3.5, 60e6), (40e3, 7.0, 50e6), (30e3, 10.5, 40e6)].map(|(m, h, k)| Storey { m, h, k });
+    let frame = Frame::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap();
+    let ground = ground();
+    let run = Run { end: End::At(6.0), ..Run::of_modes(frame, &ground) };
+    let outputs: Vec<_> = drawn(&run.structure).collect();
+    let curve = run.curve(1e-3).unwrap();
+    let (profile, finish) = &curve.found;
+    assert!(finish.motion.transitions > 5 && curve.transitions.len() as u64 == finish.motion.transitions);
+    let largest: Vec<_> = outputs.iter().map(|of| profile.of(*of).unwrap().magnitude).collect();
+    for (i, largest) in largest.iter().enumerate() {
+        let most = curve.points.iter().map(|point| point.outputs[i].abs()).fold(0.0, f64::max);
+        assert!((most / largest - 1.0).abs() < 1e-9, "{:?}: {most} {largest}", outputs[i]);
+    }
+    let (mut missed, mut after) = (vec![0.0f64; outputs.len()], 1);
+    let show = |sample: &Sample<Modes>| {
+        let time = sample.motion.time;
+        while curve.points[after].time <= time && after + 1 < curve.points.len() {
+            after += 1;
+        }
+        let (from, to) = (&curve.points[after - 1], &curve.points[after]);
+        let part = if to.time > from.time { (time - from.time) / (to.time - from.time) } else { 1.0 };
+        let line = |i: usize| from.outputs[i] * (1.0 - part) + to.outputs[i] * part;
+        for (i, of) in outputs.iter().enumerate() {
+            missed[i] = missed[i].max((line(i) - sample.output(*of)).abs() / largest[i]);
+        }
+        let pull = from.restraints.P_t * (1.0 - part) + to.restraints.P_t * part;
+        let e = 2.0 * 1.5 * f64::sin(sample.motion.state.theta.abs() / 2.0);
+        assert!((pull - 1e5 - 1e6 * e).abs() <= 1.1e-3 * 1.5e6 * largest[0], "{time} {pull} {e}");
+    };
+    run.sample((0..60_000).map(|i| 1e-4 * f64::from(i)), show, &mut ()).unwrap();
+    assert!(missed.iter().all(|missed| *missed <= 1e-3), "{missed:?}");
 }

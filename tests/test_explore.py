@@ -469,7 +469,13 @@ def test_a_picture_and_a_film_show_the_page(opened, browser, tmp_path):
     player.set_content(f'<video muted src="data:video/webm;base64,{data}"></video>')
     wait(player, lambda: player.evaluate("document.querySelector('video').readyState") >= 2)
     film = player.locator("video").evaluate("video => [video.videoWidth, video.videoHeight]")
+    length = player.locator("video").evaluate("""video => new Promise(done => {
+        video.onseeked = () => done(video.currentTime);
+        video.currentTime = 1e6;
+    })""")
     player.close()
+    played = number(page.locator("#clock").text_content().split(" of ")[0]) / 2
+    assert 0.5 * played <= length <= 2 * played
     assert [2 * side for side in film] == pytest.approx([pixels.shape[1], pixels.shape[0]], abs=4)  # pixels in pairs
 
 
@@ -545,6 +551,16 @@ def test_axe_finds_no_violation(opened, scheme):
         wait(page, lambda: tab != "compare" or page.locator("#levels .advised").count())
         found = axe.run(page)
         assert found.violations_count == 0, (tab, found.generate_report())
+    page.locator("#tab-play").click()
+    page.select_option("#preset", "storeys")
+    page.locator("#heights details").evaluate("details => { details.open = true }")
+    settled(page)
+    found = axe.run(page)
+    assert found.violations_count == 0, found.generate_report()
+    assert page.evaluate("""() => {
+        const ids = [...document.querySelectorAll("[id]")].map(({ id }) => id);
+        return ids.filter((id, i) => ids.indexOf(id) !== i);
+    }""") == []
 
 
 def test_the_keyboard_reaches_every_view(opened):
@@ -556,3 +572,42 @@ def test_the_keyboard_reaches_every_view(opened):
         assert page.get_by_role("tabpanel").get_attribute("id") == f"panel-{tab}"
         assert page.get_by_role("tab", selected=True).count() == 1
     assert "rotation, peak 0.04941 rad" in page.get_by_role("img", name="Histories").get_attribute("aria-label")
+
+
+def test_a_frame_is_built_from_storeys(opened):
+    page = opened()
+    page.select_option("#preset", "storeys")
+    settled(page)
+    assert page.locator("#about").text_content().startswith("3 floors, 110 t on a base of 20 t, H = 10.5 m, 2B = 3 m, 2.8 Hz")
+    assert page.locator("#peaks tr").count() == page.locator("#body rect.mass").count() - 1 == 3
+    page.select_option("#floor", "1")
+    lowest = [number(cell) for cell in page.locator("#peaks tr").last.locator("td").all_text_contents()]
+    assert lowest[:2] == [3.5, pytest.approx(shown(page, "a_t", 1), rel=5e-3)]
+    page.locator("#add").click()
+    settled(page)
+    assert page.locator("#about").text_content().startswith("4 floors, 140 t on a base of 20 t, H = 14 m")
+    assert page.locator("#floor").input_value() == "1"
+    page.locator("#field-modes").fill("2")
+    settled(page)
+    assert page.locator("#kept").text_content().startswith("2 of 4 modes carry 96.")
+    kept, link = shown(page, "V_t", 1), page.url
+    page.get_by_label("Remove storey 1").click()
+    settled(page)
+    assert shown(page, "V_t", 1) != kept
+    page.goto(link)
+    settled(page)
+    assert shown(page, "V_t", 1) == kept
+    page.get_by_label("h (m) of floor 2").fill("3")
+    page.locator("#problem").wait_for()
+    assert page.locator("#problem").text_content().startswith("floor 2 is at h = 3 m and the floor below it at 3.5 m")
+    page.get_by_label("h (m) of floor 2").fill("7 m")
+    wait(page, lambda: page.locator("#problem").text_content() == 'storey 2: h = "7?m": invalid float literal')
+    page.get_by_label("h (m) of floor 2").fill("7")
+    page.locator("#problem").wait_for(state="hidden")
+    for tab in ("compare", "map", "speed"):
+        page.locator(f"#tab-{tab}").click()
+        settled(page)
+        assert "structures of one mass" in page.locator(f"#panel-{tab}").inner_text() and page.locator("#problem").is_hidden()
+    page.locator("#reset").click()
+    settled(page)
+    assert page.locator("#heights").is_hidden() and page.locator("#about").text_content().startswith("masses 130 kg")

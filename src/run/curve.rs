@@ -4,12 +4,18 @@
 //! straight lines as is allowed. Two points of the same instant have a transition, or the end of the record, between them.
 
 use super::fall::Found;
-use super::{Run, RunError};
-use crate::engine::piece::{Piece, Watch};
+use super::peaks::Peak;
+use super::profile::{Over, Profile};
+use super::{Finish, Run, RunError};
+use crate::engine::Moves;
+use crate::engine::piece::{Expansion, Piece, Sample, Watch};
 use crate::mechanics::outputs::Measure;
 use crate::mechanics::restraint::Restraints;
+use crate::series::taylor::Arc;
+use crate::series::terms::Terms;
 use crate::series::{extremes, taylor};
-use crate::{Outputs, Phase, Transition};
+use crate::{Frame, FrameOutput, Modes, Outputs, Phase, Transition};
+use std::fmt::Debug;
 
 /// The largest number of times that a polynomial is divided.
 const DIVISIONS: u32 = 30;
@@ -18,15 +24,93 @@ const DIVISIONS: u32 = 30;
 /// takes.
 const NEARLY: f64 = 16.0;
 
-/// More points are no picture: 100 MB.
+/// More points of one mass are no picture: 100 MB. Points of many masses are larger and fewer.
 const MOST_POINTS: usize = 1_000_000;
 
 /// Part of its peak by which a_g may differ between the end of a piece and the start of the next without a jump.
 const ROUNDING: f64 = 1e-9;
 
+/// A function that gets the series of all lines, the σ at which they start, and the arc that they belong to.
+#[doc(hidden)]
+pub type Show<'a, Q> = dyn FnMut(f64, &Arc<Q>, &[&[f64]]) + 'a;
+
+/// Lateral coordinates whose motion is drawn.
+pub trait Drawn: Moves {
+    /// The outputs at a point.
+    type Outputs: Clone + Debug;
+    /// The peaks, and how the run ended.
+    type Found: Clone + Debug;
+
+    /// Follows `run`. Returns the result, and the exact peaks of a_g and of each line that is drawn, also during a fall.
+    #[doc(hidden)]
+    fn found(run: &Run<Self>) -> Result<(Self::Found, Vec<Peak>), RunError>;
+
+    /// The outputs of `sample`.
+    #[doc(hidden)]
+    fn outputs(sample: &Sample<Self>) -> Self::Outputs;
+
+    /// Shows the series of all lines, in the order of their peaks. There is one set of series, or several over parts of the
+    /// polynomial, each with the σ at which the part starts.
+    #[doc(hidden)]
+    #[allow(private_interfaces)] // the coordinates name the type, and nobody else can use it
+    fn lines(of: &Expansion<Self>, show: &mut Show<Self>);
+}
+
+impl Drawn for f64 {
+    type Outputs = Outputs;
+    type Found = Found;
+
+    fn found(run: &Run) -> Result<(Found, Vec<Peak>), RunError> {
+        let (found, peaks) = run.found_and_all(&mut ())?;
+        Ok((found, vec![peaks.a_g(), peaks.theta(), peaks.u(), peaks.a_t()]))
+    }
+
+    fn outputs(sample: &Sample) -> Outputs {
+        sample.outputs()
+    }
+
+    #[allow(private_interfaces)]
+    fn lines(of: &Expansion, show: &mut Show<f64>) {
+        of.series(Measure::a_t, &mut |from, arc, a_t| {
+            show(from, arc, &[&arc.theta, &arc.u, a_t].map(|series| arc.used(series)));
+        });
+    }
+}
+
+/// The outputs of `frame` that are drawn: of its base, then u and a_t of each floor.
+pub fn drawn(frame: &Frame) -> impl Iterator<Item = FrameOutput> + use<> {
+    let floors = frame.floors().len();
+    let of_floors = (0..floors).flat_map(|i| [FrameOutput::u(i), FrameOutput::a_t(i)]);
+    [FrameOutput::theta, FrameOutput::V_t, FrameOutput::M_t].into_iter().chain(of_floors)
+}
+
+impl Drawn for Modes {
+    /// In the order of [`drawn`].
+    type Outputs = Vec<f64>;
+    type Found = (Profile, Finish<Modes>);
+
+    fn found(run: &Run<Modes>) -> Result<(Self::Found, Vec<Peak>), RunError> {
+        let (profile, finish) = run.profile()?;
+        let lines = drawn(&run.structure).map(|line| profile.of(line).expect("each line has a peak"));
+        let peaks = [profile.a_g].into_iter().chain(lines).collect();
+        Ok(((profile, finish), peaks))
+    }
+
+    fn outputs(sample: &Sample<Modes>) -> Vec<f64> {
+        drawn(sample.level.structure()).map(|line| sample.output(line)).collect()
+    }
+
+    #[allow(private_interfaces)]
+    fn lines(of: &Expansion<Modes>, show: &mut Show<Modes>) {
+        let over = Over::new(*of);
+        let series: Vec<_> = drawn(of.piece.level.structure()).map(|line| line.of(&over)).collect();
+        show(0.0, of.arc, &series.iter().map(Terms::used).collect::<Vec<_>>());
+    }
+}
+
 /// The motion at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct Point<O = Outputs> {
     /// Its time, s.
     pub time: f64,
     /// The phase that it belongs to; of two points at a transition the first is just before it.
@@ -34,114 +118,120 @@ pub struct Point {
     /// Ground acceleration, m/s².
     pub a_g: f64,
     /// Outputs of the structure.
-    pub outputs: Outputs,
+    pub outputs: O,
     /// Forces of its tendon and dissipators.
     pub restraints: Restraints,
 }
 
 /// A run as it is drawn.
 #[derive(Clone, Debug)]
-pub struct Curve {
-    /// In the order of time; straight lines join them. The largest a_g, θ, u and a_t of all of it are among them.
-    pub points: Vec<Point>,
+pub struct Curve<Q: Drawn = f64> {
+    /// In the order of time; straight lines join them. The largest a_g and the largest of each line are among them.
+    pub points: Vec<Point<Q::Outputs>>,
     /// In the order of time, too.
-    pub transitions: Vec<Transition>,
+    pub transitions: Vec<Transition<Q>>,
     /// Exact peaks, and how the run ended.
-    pub found: Found,
+    pub found: Q::Found,
 }
 
-impl Run<'_> {
-    /// The run as points between which θ, u and a_t leave straight lines by at most `part` of their peaks; the ground
-    /// acceleration does not leave them at all. Refuses a run that takes more than a million of them.
-    pub fn curve(&self, part: f64) -> Result<Curve, RunError> {
-        let (found, peaks) = self.found_and_all(&mut ())?;
-        let within = [peaks.theta(), peaks.u(), peaks.a_t()].map(|peak| part * peak.magnitude);
-        let exact = [peaks.a_g(), peaks.theta(), peaks.u(), peaks.a_t()].map(|peak| peak.time);
-        let pga = peaks.a_g().magnitude;
-        let (points, transitions, is_restrained) = (Vec::new(), Vec::new(), self.structure.is_restrained());
-        let mut tracer = Tracer { within, exact, pga, is_restrained, points, transitions, is_torn: true };
+impl<Q: Drawn> Run<'_, Q> {
+    /// The run as points between which θ, u and a_t of each floor leave straight lines by at most `part` of their peaks; the
+    /// ground acceleration does not leave them at all. Refuses a run that takes more points than fit in 100 MB.
+    pub fn curve(&self, part: f64) -> Result<Curve<Q>, RunError> {
+        let (found, peaks) = Q::found(self)?;
+        let mut tracer = Tracer {
+            within: peaks[1..].iter().map(|peak| part * peak.magnitude).collect(),
+            exact: peaks.iter().map(|peak| peak.time).collect(),
+            pga: peaks[0].magnitude,
+            most: 10 * MOST_POINTS / (6 + peaks.len()),
+            is_restrained: Q::base(&self.structure).is_restrained(),
+            points: Vec::new(),
+            transitions: Vec::new(),
+            is_torn: true,
+        };
         self.follow(&mut tracer)?;
-        let Tracer { points, transitions, .. } = tracer;
-        if points.len() > MOST_POINTS {
-            return Err(RunError::TooManyPoints { most: MOST_POINTS, time: points[MOST_POINTS - 1].time });
+        let Tracer { points, transitions, most, .. } = tracer;
+        if points.len() > most {
+            return Err(RunError::TooManyPoints { most, time: points[most - 1].time });
         }
         Ok(Curve { points, transitions, found })
     }
 }
 
 /// Gathers the points of a motion as it goes by.
-struct Tracer {
-    /// How far θ (rad), u (m) and a_t (m/s²) may leave the lines.
-    within: [f64; 3],
+struct Tracer<Q: Drawn> {
+    /// How far each line may be left, in its unit.
+    within: Vec<f64>,
     /// Instants (s) that are to be points.
-    exact: [f64; 4],
+    exact: Vec<f64>,
     /// Peak of |a_g|, m/s².
     pga: f64,
+    /// The largest number of points.
+    most: usize,
     is_restrained: bool,
-    points: Vec<Point>,
-    transitions: Vec<Transition>,
+    points: Vec<Point<Q::Outputs>>,
+    transitions: Vec<Transition<Q>>,
     /// Whether the next piece begins with a point of its own.
     is_torn: bool,
 }
 
-impl Tracer {
+impl<Q: Drawn> Tracer<Q> {
     fn is_full(&self) -> bool {
-        self.points.len() > MOST_POINTS
+        self.points.len() > self.most
     }
 
-    fn see(&mut self, piece: &Piece, tau: f64, outputs: Outputs) {
-        let (time, phase) = (piece.before.time + tau, piece.before.phase);
-        let restraints = if self.is_restrained { piece.sample(time).restraints() } else { Restraints::default() };
-        self.points.push(Point { time, phase, a_g: piece.load.at(tau).a_g, outputs, restraints });
+    fn see(&mut self, sample: &Sample<Q>) {
+        let restraints = if self.is_restrained { sample.restraints() } else { Restraints::default() };
+        let Sample { motion, load, .. } = sample;
+        let (outputs, a_g) = (Q::outputs(sample), load.a_g);
+        self.points.push(Point { time: motion.time, phase: motion.phase, a_g, outputs, restraints });
     }
 }
 
-impl Watch for Tracer {
+impl<Q: Drawn> Watch<Q> for Tracer<Q> {
     const SEES_PIECES: bool = true;
 
-    fn piece(&mut self, piece: &Piece) {
+    fn piece(&mut self, piece: &Piece<Q>) {
         if self.is_full() {
             return;
         }
-        let [(_, first), (duration, last)] = piece.whole().ends();
         // after its last sample the ground is at rest at once
-        let a_g = piece.load.at(0.0).a_g;
+        let (start, a_g) = (piece.before.time, piece.load.at(0.0).a_g);
         let is_jolted = self.points.last_mut().is_some_and(|last| {
-            last.time = piece.before.time; // by the engine's clock, which rounds otherwise
+            last.time = start; // by the engine's clock, which rounds otherwise
             (last.a_g - a_g).abs() > ROUNDING * self.pga
         });
         if self.is_torn || is_jolted {
-            self.see(piece, 0.0, first);
+            self.see(&piece.sample(start));
         }
         let mut arcs = piece.arcs();
         while let Some(expansion) = arcs.next() {
             let (passed, span) = (expansion.from, expansion.arc.span);
             let mut between = Vec::new();
-            expansion.series(Measure::a_t, &mut |from, arc, a_t| {
-                let [theta, u, a_t] = [&arc.theta, &arc.u, a_t].map(|series| arc.used(series));
+            Q::lines(&expansion, &mut |from, arc, lines| {
                 let part = arc.span / span;
-                divide([theta, u, a_t], self.within, [0.0, arc.reach], DIVISIONS, &mut |sigma| {
+                divide(lines, &self.within, [0.0, arc.reach], DIVISIONS, &mut |sigma| {
                     between.push(from + sigma * part);
                 });
                 between.push(from + arc.reach * part);
             });
-            let instants = self.exact.map(|time| (time - piece.before.time - passed) / span);
-            between.extend(instants.iter().filter(|sigma| **sigma > 0.0 && **sigma < expansion.arc.reach));
+            let instants = self.exact.iter().map(|time| (time - start - passed) / span);
+            between.extend(instants.filter(|sigma| *sigma > 0.0 && *sigma < expansion.arc.reach));
             between.sort_by(f64::total_cmp);
             // the last of them is at the end of the arc
             for sigma in between {
-                self.see(piece, passed + sigma * span, expansion.outputs(sigma));
+                self.see(&piece.sample(expansion.time(sigma)));
             }
             if self.is_full() {
                 break;
             }
         }
         self.points.pop();
-        self.see(piece, duration, last);
+        self.see(&piece.sample(start + piece.duration));
         self.is_torn = false;
     }
 
-    fn transition(&mut self, transition: &Transition) {
+    fn transition(&mut self, transition: &Transition<Q>) {
         if !self.is_full() {
             self.transitions.push(*transition);
         }
@@ -151,14 +241,8 @@ impl Watch for Tracer {
 
 /// Shows, in their order, the σ between `from` and `to` at which points are needed: between them the polynomials stay within
 /// `within` of straight lines. `divisions` are left.
-fn divide(
-    coefficients: [&[f64]; 3],
-    within: [f64; 3],
-    [from, to]: [f64; 2],
-    divisions: u32,
-    show: &mut impl FnMut(f64),
-) {
-    let excess = |(coefficients, within): (&[f64], f64)| {
+fn divide(lines: &[&[f64]], within: &[f64], [from, to]: [f64; 2], divisions: u32, show: &mut impl FnMut(f64)) {
+    let excess = |(coefficients, within): (&&[f64], &f64)| {
         let mut series = taylor::ZERO;
         let over = &mut series[..coefficients.len()];
         over.copy_from_slice(coefficients);
@@ -166,7 +250,7 @@ fn divide(
         let off = extremes::off_chord(over, 1.0);
         if off > 0.0 { off / within } else { 0.0 }
     };
-    let most = coefficients.into_iter().zip(within).map(excess).fold(0.0, f64::max);
+    let most = lines.iter().zip(within).map(excess).fold(0.0, f64::max);
     if most <= 1.0 || divisions == 0 {
         return;
     }
@@ -175,9 +259,9 @@ fn divide(
     let mut start = from;
     for i in 1..parts as u32 {
         let end = from + (to - from) * f64::from(i) / parts;
-        divide(coefficients, within, [start, end], divisions - 1, show);
+        divide(lines, within, [start, end], divisions - 1, show);
         show(end);
         start = end;
     }
-    divide(coefficients, within, [start, to], divisions - 1, show);
+    divide(lines, within, [start, to], divisions - 1, show);
 }

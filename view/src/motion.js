@@ -11,8 +11,8 @@ function motionView() {
     const column = ({ quantum, values }) => Float64Array.from(values, (value) => value * quantum);
     let sum = 0;
     const time = Float64Array.from(data.time.values, (difference) => data.start + (sum += difference) * data.time.quantum);
-    const values = { a_g: column(data.a_g), theta: column(data.theta), u: column(data.u), a_t: column(data.a_t) };
-    for (const name of ["P_t", "F_d1", "F_d2"]) if (name in data) values[name] = column(data[name]);
+    const values = Object.fromEntries(data.columns.map(([name, of]) => [name, column(of)]));
+    const peaks = (list) => Object.fromEntries(list.map(([name, magnitude, instant]) => [name, { magnitude, instant }]));
     const most = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
     return {
       ...data,
@@ -22,12 +22,18 @@ function motionView() {
       /** The largest magnitude of each history, that of a fall, too. */
       largest: Object.fromEntries(Object.entries(values).map(([name, values]) => [name, most(values)])),
       transitions: data.transitions.map(([sum, kind]) => ({ instant: data.start + sum * data.time.quantum, kind })),
-      peaks: Object.fromEntries(data.peaks.map(([name, magnitude, instant]) => [name, { magnitude, instant }])),
+      peaks: peaks(data.peaks),
+      fixed: peaks(data.fixed),
     };
   }
 
   let motion; // the one that is shown
   let beside = []; // those that are drawn beside it, each with its `colour`
+  let floor; // the one whose histories are shown, from 1
+  const floors = () => motion.parameters.floors;
+  /** The output `name`, of the floor that is shown if floors have it. */
+  const own = (name) => (`${name}[${floor}]` in motion.peaks ? `${name}[${floor}]` : name);
+  const peakOf = (name) => motion.peaks[own(name)];
 
   /** How many of the rising numbers are at most `value`. */
   function countUpTo(numbers, value, of = (number) => number) {
@@ -51,15 +57,17 @@ function motionView() {
     const overturned = ending === "overturned" && t >= end;
     const phase = overturned ? "overturned" : phases[countUpTo(phases, i, ([first]) => first) - 1][1];
     const { m, H, B } = parameters;
-    return { ...state, phase, uplift: 2 * B * Math.sin(Math.abs(state.theta)), V_t: m * state.a_t, M_t: m * H * state.a_t };
+    const uplift = 2 * B * Math.sin(Math.abs(state.theta));
+    if (floors()) return { ...state, phase, uplift, u: state[own("u")], a_t: state[own("a_t")] };
+    return { ...state, phase, uplift, V_t: m * state.a_t, M_t: m * H * state.a_t };
   }
 
   /** The peak of `name` with its sign, which the largest of the points about its `instant` has. */
   function signed(name, instant) {
     const i = countUpTo(motion.time, instant);
-    const about = [...motion.values[name].subarray(Math.max(0, i - 3), i + 2)];
+    const about = [...motion.values[own(name)].subarray(Math.max(0, i - 3), i + 2)];
     const largest = about.reduce((most, value) => (Math.abs(value) > Math.abs(most) ? value : most), 0);
-    return Math.sign(largest) * motion.peaks[name].magnitude;
+    return Math.sign(largest) * peakOf(name).magnitude;
   }
 
   // ---- Numbers
@@ -114,8 +122,12 @@ function motionView() {
   /** `value` of the quantity `name` in its unit, in as many digits as its peak has. */
   function inUnit(name, value) {
     const per = quantities[name].per ?? motion.parameters.g;
-    return fixed(value / per, decimalsFor(motion.peaks[name].magnitude / per));
+    return fixed(value / per, decimalsFor(peakOf(name).magnitude / per));
   }
+  const meaningOf = (name) => {
+    const { meaning } = quantities[name];
+    return own(name) === name ? meaning : `${meaning.replace(" of the top", "")} of floor ${floor}`;
+  };
 
   // ---- Drawing by elements
 
@@ -137,20 +149,33 @@ function motionView() {
   /** The strut bent as a cantilever is by a force at its end, which a cubic holds exactly, and the block at its end. */
   function structure(parent) {
     const { H, B } = motion.parameters;
-    const foundation = 0.11 * H;
+    const foundation = Math.min(0.11 * H, 0.4 * places()[0]);
     const { width, height } = block();
     parent.replaceChildren();
     const line = element(parent, "path", { class: "strut" });
     const tendon = ties().some(({ name }) => name === "P_t") ? element(parent, "path", { class: "tendon" }) : null;
     element(parent, "rect", { class: "mass", x: -B, y: -foundation, width: 2 * B, height: foundation });
-    const top = element(parent, "rect", { class: "mass", x: -width / 2, y: -height / 2, width, height });
-    return (u) => {
+    const masses = places().map(() => element(parent, "rect", { class: "mass", x: -width / 2, y: -height / 2, width, height }));
+    if (floors()) {
+      return (displacements) => {
+        const along = places().map((height, i) => [displacements[i], -height]);
+        for (const of of [line, tendon]) if (of) set(of, { d: `M0 0${along.map(([x, y]) => `L${x} ${y}`).join("")}` });
+        along.forEach(([x, y], i) => set(masses[i], { transform: `translate(${x} ${y})` }));
+      };
+    }
+    const [top] = masses;
+    return ([u]) => {
       const bent = `M0 0C0 ${-H / 3} ${u / 2} ${(-2 * H) / 3} ${u} ${-H}`;
       set(line, { d: bent });
       if (tendon) set(tendon, { d: bent });
       set(top, { transform: `translate(${u} ${-H}) rotate(${(Math.atan((1.5 * u) / H) * 180) / Math.PI})` });
     };
   }
+  /** Heights of the masses that are drawn; without floors the height of the one centre of mass. */
+  const places = () => (floors()?.length ? floors().map(([, height]) => height) : [motion.parameters.H]);
+  /** Displacements of these masses in a `state`, or any of its kind. */
+  const displacements = (state) => places().map((_, i) => (floors() ? (state[`u[${i + 1}]`] ?? 0) : state.u));
+  const largestDisplacement = () => Math.max(...displacements(motion.largest));
   /** What ties the base to the ground: the name of its force, and where along the base it is. */
   function ties() {
     const { P_0, k_t, xi_d, c_d, k_d } = motion.parameters;
@@ -179,15 +204,17 @@ function motionView() {
   }
 
   function block() {
-    const size = Math.min(2 * motion.parameters.B, motion.parameters.H);
+    const { B, H } = motion.parameters;
+    const size = Math.min(2 * B, H);
+    if (floors()?.length > 1) return { width: 0.8 * size, height: Math.min(0.28 * size, (0.3 * H) / floors().length) };
     return { width: 0.42 * size, height: 0.28 * size };
   }
   let bend; // draws the structure with its top displaced
 
   function layOutStructure() {
-    structure(at("rest"))(0);
+    structure(at("rest"))(places().map(() => 0));
     bend = structure(at("body"));
-    const largestMotion = Math.max(motion.largest.theta, motion.largest.u / motion.parameters.H);
+    const largestMotion = Math.max(motion.largest.theta, largestDisplacement() / motion.parameters.H);
     exaggerations = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].filter(
       (factor) => factor === 1 || (largestMotion > 0 && factor * largestMotion < 0.6),
     );
@@ -202,7 +229,7 @@ function motionView() {
   }
 
   let sizes; // of both drawings: to ask for them at each change would lay out the page twice
-  const measure = () => (sizes = { scene: at("scene").getBoundingClientRect(), histories: at("histories").getBoundingClientRect() });
+  const measure = () => (sizes = Object.fromEntries(["scene", "histories", "profile"].map((id) => [id, at(id).getBoundingClientRect()])));
   measure();
 
   let stage = {};
@@ -211,7 +238,7 @@ function motionView() {
     const { H, B } = motion.parameters;
     set(at("scene"), { viewBox: `0 0 ${width} ${height}` }); // on paper it takes the width of the page
     const theta = Math.min(Math.PI / 2, exaggeration * motion.largest.theta);
-    const u = exaggeration * motion.largest.u;
+    const u = exaggeration * largestDisplacement();
     const reach = B * (1 - Math.cos(theta)) + (H + block().height) * Math.sin(theta) + u + block().width / 2;
     const tall = Math.hypot(H + block().height, theta > 0.5 ? 2 * B : 0);
     const [left, right, top, below] = [64, 40, 64, ties().length > 0 ? 74 : 58];
@@ -220,7 +247,7 @@ function motionView() {
     const { x, y } = stage;
     at("world").setAttribute("transform", `translate(${x} ${y}) scale(${scale})`);
     set(at("surface"), { x1: 0, x2: width, y1: y, y2: y });
-    set(at("ground"), { x: 0, y, width, height: 12 });
+    set(at("earth"), { x: 0, y, width, height: 12 });
     set(at("pivot"), { r: 5 / scale });
     const dimensions = at("dimensions");
     dimensions.replaceChildren();
@@ -242,7 +269,7 @@ function motionView() {
     const side = state.theta < 0 ? -1 : 1;
     const theta = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, exaggeration * state.theta));
     at("body").setAttribute("transform", `rotate(${(theta * 180) / Math.PI} ${side * B} 0)`);
-    bend(exaggeration * state.u);
+    bend(displacements(state).map((u) => exaggeration * u));
     const lifts = state.theta !== 0;
     set(at("pivot"), { cx: side * B, visibility: lifts ? "visible" : "hidden" });
     const edge = { x: side * B - 2 * side * B * Math.cos(theta), y: -2 * B * Math.sin(Math.abs(theta)) };
@@ -254,7 +281,8 @@ function motionView() {
     drawTies(state, side, theta);
     drawShaking(state.a_g, width);
     const fallen = at("fallen");
-    fallen.textContent = state.phase === "overturned" ? `overturned at ${fixed(motion.end, 3)} s, peaks until ${fixed(motion.fall, 3)} s` : "";
+    const until = motion.fall === null ? "peaks with the fall" : `peaks until ${fixed(motion.fall, 3)} s`;
+    fallen.textContent = state.phase === "overturned" ? `overturned at ${fixed(motion.end, 3)} s, ${until}` : "";
     set(fallen, { x, y: 62, "text-anchor": "middle" });
   }
 
@@ -277,35 +305,104 @@ function motionView() {
     row.className = "phase";
     row.innerHTML = '<th scope="row">phase</th><td colspan="3"></td>';
     rows.phase = row;
-    for (const [name, { symbol, meaning, unit }] of Object.entries(quantities)) {
+    for (const [name, { symbol, unit }] of Object.entries(quantities)) {
       const row = at("readings").insertRow();
       row.innerHTML = '<th scope="row"></th><td></td><td></td><td><button type="button"></button></td>';
       row.cells[0].innerHTML = '<span class="meaning"></span><span></span>';
-      row.cells[0].firstChild.textContent = `${meaning} `;
       row.cells[0].lastChild.textContent = `${symbol} (${unit})`;
       row.dataset.name = name;
-      row.cells[3].firstChild.addEventListener("click", () => moveTo(motion.peaks[name].instant));
+      row.cells[3].firstChild.addEventListener("click", () => moveTo(peakOf(name).instant));
       rows[name] = row;
     }
   }
 
   function drawPeaks() {
-    for (const [name, { meaning }] of Object.entries(quantities)) {
-      const { magnitude, instant } = motion.peaks[name];
+    for (const name of Object.keys(quantities)) {
+      rows[name].hidden = !peakOf(name);
+      if (rows[name].hidden) continue;
+      const { magnitude, instant } = peakOf(name);
+      rows[name].cells[0].firstChild.textContent = `${meaningOf(name)} `;
       rows[name].cells[2].textContent = inUnit(name, magnitude);
       const button = rows[name].cells[3].firstChild;
       button.textContent = `${fixed(instant, 3)} s`;
-      button.setAttribute("aria-label", `To the peak of the ${meaning} at ${fixed(instant, 3)} seconds`);
+      button.setAttribute("aria-label", `To the peak of the ${meaningOf(name)} at ${fixed(instant, 3)} seconds`);
     }
   }
 
   function drawNumbers(state) {
     rows.phase.cells[1].textContent = state.phase;
-    for (const name of Object.keys(quantities)) rows[name].cells[1].textContent = inUnit(name, state[name]);
+    for (const name of Object.keys(quantities)) if (peakOf(name)) rows[name].cells[1].textContent = inUnit(name, state[name]);
     at("clock").textContent = `${fixed(t, 3)} of ${fixed(motion.end, 3)} s`;
     const slider = at("time");
     slider.value = t;
     slider.setAttribute("aria-valuetext", `${fixed(t, 3)} seconds, ${state.phase}`);
+  }
+
+  // ---- Peaks over the height
+
+  const overHeight = [
+    { name: "a_t", title: "acceleration (g)", line: (x, i, h) => `L${x} ${h[i + 1]}` },
+    { name: "drift", title: "drift (mm)", per: 1e-3, line: (x, i, h) => `L${x} ${h[i]}V${h[i + 1]}` },
+    { name: "V", title: "storey shear (kN)", per: 1e3, line: (x, i, h) => `L${x} ${h[i]}V${h[i + 1]}` },
+  ];
+
+  /** The choice of a floor, and the table of peaks, from the top down. */
+  function layOutFloors() {
+    const count = floors()?.length ?? 0;
+    at("choice").hidden = at("heights").hidden = count === 0;
+    if (!(floor >= 1 && floor <= count) || floor === at("floor").length) floor = count; // the top stays the top
+    if (at("floor").length !== count) {
+      at("floor").replaceChildren(...Array.from({ length: count }, (_, i) => new Option(i + 1 === count ? `${count}, the top` : i + 1, i + 1)).reverse());
+    }
+    at("floor").value = floor;
+    const cell = (content, of) => Object.assign(document.createElement(of), { textContent: content });
+    const hasFixed = "V_t" in motion.fixed;
+    at("peaks").replaceChildren(...Array.from({ length: count }, (_, k) => {
+      const [i, row] = [count - k, document.createElement("tr")];
+      const peaks = overHeight.flatMap(({ name, per = motion.parameters.g }) => {
+        const value = (of) => significant(of[`${name}[${i}]`].magnitude / per);
+        return [value(motion.peaks), hasFixed ? value(motion.fixed) : "–"];
+      });
+      row.append(Object.assign(cell(i, "th"), { scope: "row" }), ...[significant(floors()[i - 1][1]), ...peaks].map((of) => cell(of, "td")));
+      return row;
+    }));
+  }
+
+  /** The largest magnitudes over the height, and those on a fixed base. */
+  function drawProfile() {
+    if (at("heights").hidden) return;
+    const svg = at("profile");
+    const { width, height } = sizes.profile;
+    set(svg, { viewBox: `0 0 ${width} ${height}` });
+    svg.replaceChildren();
+    const [left, gap, top, bottom] = [44, 14, 24, height - 18];
+    const wide = (width - left - 3 * gap) / overHeight.length;
+    const y = (height) => bottom - (height / motion.parameters.H) * (bottom - top);
+    const heights = [0, ...floors().map(([, height]) => height)].map(y);
+    for (const { value, text } of ticks(0, motion.parameters.H, 4)) {
+      element(svg, "line", { class: "grid", x1: left, x2: width - gap, y1: y(value), y2: y(value) });
+      element(svg, "text", { x: left - 6, y: y(value) + 4, "text-anchor": "end" }, text);
+    }
+    element(svg, "text", { class: "muted", x: 2, y: 12 }, "h (m)");
+    overHeight.forEach(({ name, title, per = motion.parameters.g, line }, k) => {
+      const from = left + k * (wide + gap);
+      const of = (peaks) => floors().map((_, i) => (peaks[`${name}[${i + 1}]`]?.magnitude ?? 0) / per);
+      const most = Math.max(...of(motion.peaks), ...of(motion.fixed)) || 1;
+      const x = (value) => from + (value / (1.05 * most)) * wide;
+      for (const { value, text } of ticks(0, 1.05 * most, Math.max(2, wide / 60))) {
+        element(svg, "line", { class: "grid", x1: x(value), x2: x(value), y1: top, y2: bottom });
+        element(svg, "text", { x: x(value), y: bottom + 14, "text-anchor": "middle" }, text);
+      }
+      element(svg, "text", { x: from, y: top - 12 }, title);
+      const curves = [[motion.fixed, "--orange", "6 4"], [motion.peaks, "--blue", ""]];
+      for (const [peaks, colour, dashes] of curves) {
+        if (!("V_t" in peaks)) continue;
+        const lines = of(peaks).map((value, i) => line(x(value), i, heights));
+        element(svg, "path", { class: "curve", style: `stroke:var(${colour});stroke-dasharray:${dashes}`, d: `M${lines.join("").slice(1)}` });
+      }
+    });
+    const titles = overHeight.map(({ title }) => title).join(", ");
+    set(svg, { "aria-label": `Largest magnitudes over the height: ${titles}; the table has the numbers` });
   }
 
   // ---- Histories
@@ -315,17 +412,19 @@ function motionView() {
   function layOutPanels() {
     const { g, m } = motion.parameters;
     const all = [motion, ...beside];
-    const most = (name) => Math.max(...all.map(({ largest }) => largest[name]));
+    const most = (name) => Math.max(...all.map(({ largest }) => largest[own(name)]));
     const angle = most("theta") < 0.1 ? { unit: "mrad", per: 1e-3 } : { unit: "rad", per: 1 };
     panels = [
-      { name: "a_g", meaning: "ground acceleration", title: "a_g (g)", per: g, colour: "--grey" },
-      { name: "theta", meaning: "rotation", title: `θ (${angle.unit})`, per: angle.per, colour: "--blue" },
-      { name: "u", meaning: "elastic displacement", title: "u (mm)", per: 1e-3, colour: "--blue" },
+      { name: "a_g", title: "a_g (g)", per: g, colour: "--grey" },
+      { name: "theta", title: `θ (${angle.unit})`, per: angle.per, colour: "--blue" },
+      { name: "u", title: "u (mm)", per: 1e-3, colour: "--blue" },
       {
-        name: "a_t", meaning: "acceleration of the top", title: "a_t (g)", per: g, colour: "--blue",
-        right: { meaning: "base shear", title: "V_t (kN)", factor: (m * g) / 1e3 },
+        name: "a_t", title: "a_t (g)", per: g, colour: "--blue",
+        right: floors() ? undefined : { meaning: "base shear", title: "V_t (kN)", factor: (m * g) / 1e3 },
       },
-    ].map((panel) => ({ ...panel, largest: most(panel.name) }))
+      ...(floors() ? [{ name: "V_t", title: "V_t (kN)", per: 1e3, colour: "--blue" }] : []),
+    ].filter(({ name }) => peakOf(name))
+      .map((panel) => ({ ...panel, meaning: meaningOf(panel.name), largest: most(panel.name) }))
       .filter(({ name, largest }) => ["theta", "a_t"].includes(name) || largest > 0);
     lanes = kinds
       .map((kind) => ({ ...kind, times: motion.transitions.filter((each) => kind.is(each.kind)).map((each) => each.instant) }))
@@ -401,7 +500,7 @@ function motionView() {
     let cursor = "";
     panels.forEach((panel, k) => {
       const [top, bottom] = [k * high + gap, (k + 1) * high];
-      const { magnitude, instant } = motion.peaks[panel.name];
+      const { magnitude, instant } = peakOf(panel.name);
       const most = (panel.largest > 0 ? panel.largest / panel.per : 1) * 1.12;
       const y = (value) => (top + bottom) / 2 - ((value / panel.per / most) * (bottom - top)) / 2;
       panel.y = y;
@@ -426,7 +525,7 @@ function motionView() {
       }
       const g = element(svg, "g", { "clip-path": "url(#inside)" });
       const curve = ({ time, values }, colour) =>
-        element(g, "path", { class: "curve", "data-name": panel.name, style: `stroke:var(${colour})`, d: path(time, values[panel.name], y) });
+        element(g, "path", { class: "curve", "data-name": panel.name, style: `stroke:var(${colour})`, d: path(time, values[own(panel.name)], y) });
       for (const other of beside) curve(other, other.colour);
       curve(motion, panel.colour);
       if (magnitude > 0) {
@@ -559,6 +658,10 @@ function motionView() {
 
   for (const factor of speeds) at("speed").append(new Option(`${factor} ×`, factor));
   at("exaggeration").addEventListener("change", (event) => choose(Number(event.target.value)));
+  at("floor").addEventListener("change", (event) => {
+    floor = Number(event.target.value);
+    showMotion();
+  });
   at("speed").addEventListener("change", (event) => chooseSpeed(Number(event.target.value)));
   at("time").addEventListener("input", (event) => moveTo(Number(event.target.value)));
   at("play").addEventListener("click", () => play(!isPlaying));
@@ -616,6 +719,7 @@ function motionView() {
 
   const layOut = () => {
     layOutScene();
+    drawProfile();
     drawHistories();
     draw();
   };
@@ -625,7 +729,7 @@ function motionView() {
     measure();
     if (motion) layOut();
   });
-  for (const id of ["stage", "charts"]) observer.observe(at(id));
+  for (const id of ["stage", "charts", "heights"]) observer.observe(at(id));
 
   /** Shows the motion `data`, in place of the one before at the same instant, with the decoded motions `others` beside it. */
   function show(data, others = []) {
@@ -633,10 +737,15 @@ function motionView() {
     [motion, beside] = [data, others];
     const isWhole = !before || (shown[0] === before.start && shown[1] === before.end);
     const { start, end } = motion;
+    layOutFloors();
     if (isWhole || shown[1] > end || shown[0] < start) shown = [start, end];
     t = before ? Math.min(end, Math.max(start, t)) : start;
     set(at("time"), { min: start, max: end });
     layOutStructure();
+    showMotion();
+  }
+
+  function showMotion() {
     layOutPanels();
     describe();
     drawPeaks();
@@ -650,13 +759,14 @@ function motionView() {
     const count = transitions.length;
     document.title = `${title}: rocking structure`;
     const peaks = panels.map(({ name, meaning }) => {
-      const { magnitude, instant } = motion.peaks[name];
+      const { magnitude, instant } = peakOf(name);
       return `${meaning}, peak ${inUnit(name, magnitude)} ${quantities[name].unit} at ${fixed(instant, 3)} s`;
     });
     set(at("histories"), { "aria-label": `Histories: ${peaks.join("; ")}` });
     at("title").textContent = title;
+    const masses = floors() ? `${floors().length} floors, ${mass(m)} on a base of` : `masses ${mass(m)} and`;
     at("about").textContent =
-      `masses ${mass(m)} and ${mass(m0)}, H = ${significant(H)} m, 2B = ${significant(2 * B)} m, ` +
+      `${masses} ${mass(m0)}, H = ${significant(H)} m, 2B = ${significant(2 * B)} m, ` +
       `${significant(f_fc)} Hz in full contact; ${count} transition${count === 1 ? "" : "s"}` +
       { "at rest": ", at rest in the end", overturned: ", overturned", "still rocking": ", still rocking in the end", "at time": "" }[ending];
   }

@@ -55,6 +55,12 @@
 
   const text = () => JSON.stringify(fields);
   const ground = () => fields.ground ?? "el_centro";
+  /** The structure of storeys that is there first. */
+  const usualFrame = { storeys: "4e4,3.5,6e7 4e4,7,5e7 3e4,10.5,4e7", m0: "2e4", J0: "3e4", B: "1.5", r: "0.93" };
+  const usualBase = { m: 1.1e5, H: 10.5, m0: 2e4, J0: 3e4, B: 1.5, r: 0.93, g: 9.81, c_ratio: 1 };
+  const isFrame = () => "storeys" in fields;
+  const storeys = () => (fields.storeys ?? "").split(" ").filter(Boolean).map((row) => row.split(","));
+  const mostStoreys = 24;
   const preset = () => tables.presets.find(({ name }) => name === (fields.preset ?? "mcmanus")) ?? tables.presets[0];
   const value = (name) => fields[name] ?? String(tables.numbers.find((of) => of.name === name).usual);
 
@@ -92,14 +98,15 @@
 
   /** The range of a parameter's slider: about the value of the specimen, or about the unit made of its m, H and g. */
   function reach({ name, unit, min, max }) {
-    const { m, H, g } = preset().parameters;
-    const usual = preset().parameters[name] ?? 0;
+    const of = isFrame() ? usualBase : preset().parameters;
+    const { m, H, g } = of;
+    const usual = of[name] ?? 0;
     const own = { kg: m, m: H, s: Math.sqrt(H / g), N: m * g };
-    const of = (units) =>
+    const inUnits = (units) =>
       [...units.matchAll(/([A-Za-z]+)(\d*)/g)].reduce((all, [, one, power]) => all * (own[one] ?? 1) ** (power || 1), 1);
     const [above, below = ""] = unit.split("/");
     if (min > 0 && usual > 0) return usual * 2 > max ? [min, max] : [Math.max(min, usual / 8), Math.min(max, usual * 8)];
-    return [min, Math.min(max, Math.max(4 * usual, of(above) / of(below)))];
+    return [min, Math.min(max, Math.max(4 * usual, inUnits(above) / inUnits(below)))];
   }
 
   /** A unit as engineers write it: kg m². */
@@ -122,14 +129,14 @@
     small.textContent = unitOf(unit);
     range.addEventListener("input", () => {
       const value = scale(slider()).value(Number(range.value));
-      number.value = String(name === "seed" ? Math.round(value) : Number(value.toPrecision(3)));
+      number.value = String(["seed", "modes"].includes(name) ? Math.round(value) : Number(value.toPrecision(3)));
       given(number.value);
     });
     number.addEventListener("input", () => given(number.value.trim()));
     at(parent).append(made);
     rows[name] = (value, isGiven = true) => {
       const isFinite = Number.isFinite(value);
-      if (document.activeElement !== number) number.value = isFinite ? String(Number(value.toPrecision(6))) : fields[name];
+      if (document.activeElement !== number) number.value = isFinite ? String(Number(value.toPrecision(6))) : (fields[name] ?? "");
       if (document.activeElement !== range && isFinite) range.value = scale(slider()).part(value);
       made.classList.toggle("given", isGiven);
     };
@@ -151,14 +158,16 @@
     row("structure", { ...of, slider }, (value) => give(of.name, value));
   }
   for (const of of tables.numbers) {
-    row(of.name === "tolerance" ? "computed" : "motion", { ...of, slider: () => of.slider }, (value) => give(of.name, value));
+    const parent = { tolerance: "computed", zeta: "frame", modes: "frame" }[of.name] ?? "motion";
+    const slider = () => (of.name === "modes" ? [1, Math.max(2, storeys().length)] : of.slider);
+    row(parent, { ...of, slider }, (value) => give(of.name, value));
   }
   row("step", { name: "step", unit: "s", description: "step of RK4", slider: () => [1e-5, 0.02] }, (value) => {
     step = value;
     later();
   });
 
-  at("preset").append(...tables.presets.map(({ name }) => new Option(name === "mcmanus" ? "McManus's bridge pier" : "Evison's shear wall", name)));
+  at("preset").append(...tables.presets.map(({ name }) => new Option(name === "mcmanus" ? "McManus's bridge pier" : "Evison's shear wall", name)), new Option("storeys on a base", "storeys"));
   const grounds = { el_centro: "El Centro, 1940", record: "your record", free: "free vibration", synthetic: "synthetic record" };
   at("ground").append(
     ...tables.grounds.map(([name]) => new Option(grounds[name], name)),
@@ -174,16 +183,59 @@
 
   /** Takes another ground motion. Fields that only the ground motion before it has are dropped. */
   function shake(name) {
-    const kept = ["tolerance", ...numbersOf(name), ...(name === "record" ? tables.reading : [])];
+    const kept = ["tolerance", "zeta", "modes", ...numbersOf(name), ...(name === "record" ? tables.reading : [])];
     const numbers = [...tables.reading, ...tables.numbers.map((of) => of.name)];
     if (name !== ground()) for (const of of numbers) if (!kept.includes(of)) delete fields[of];
     give("ground", name);
   }
 
   at("preset").addEventListener("change", ({ target }) => {
-    for (const { name } of [...tables.parameters, ...tables.natural]) delete fields[name];
-    give("preset", target.value);
+    const ofStructure = [...tables.parameters, ...tables.natural].map(({ name }) => name);
+    for (const name of [...ofStructure, "preset", "storeys", "zeta", "modes", "u_0"]) delete fields[name];
+    if (target.value !== "storeys") return give("preset", target.value);
+    if (fields.detail === "modal") delete fields.detail;
+    Object.assign(fields, usualFrame);
+    change();
   });
+  /** Takes other storeys, rows of m, h and k from below. */
+  function build(rows) {
+    fields.storeys = rows.map((row) => row.map((text) => text.replace(/[\s,]/g, "?")).join(",")).join(" ");
+    if (Number(fields.modes) > rows.length) delete fields.modes;
+    change();
+  }
+  at("add").addEventListener("click", () => {
+    const [below, last] = [[0, 0, 0], ...storeys()].slice(-2);
+    const height = 2 * Number(last[1]) - Number(below[1]);
+    build([...storeys(), [last[0], String(Number(height.toPrecision(6))), last[2]]]);
+  });
+  /** Shows the storeys, the top first. */
+  function showStoreys() {
+    const rows = storeys();
+    const body = at("storeys").tBodies[0];
+    if (body.rows.length !== rows.length) {
+      body.replaceChildren(...rows.map((_, k) => {
+        const i = rows.length - 1 - k;
+        const input = (j) => {
+          const made = document.createElement("input");
+          made.setAttribute("aria-label", `${["m (kg) of floor", "h (m) of floor", "k (N/m) of storey"][j]} ${i + 1}`);
+          made.addEventListener("input", () => build(storeys().map((row, of) => (of === i ? row.with(j, made.value.trim()) : row))));
+          return made;
+        };
+        const remove = Object.assign(document.createElement("button"), { type: "button", textContent: "−" });
+        remove.setAttribute("aria-label", `Remove storey ${i + 1}`);
+        remove.addEventListener("click", () => build(storeys().toSpliced(i, 1)));
+        return line([String(i + 1), input(0), input(1), input(2), remove]);
+      }));
+    }
+    [...body.rows].forEach((row, k) => {
+      const texts = rows[rows.length - 1 - k];
+      row.querySelectorAll("input").forEach((input, j) => {
+        if (document.activeElement !== input) input.value = texts[j] ?? "";
+      });
+      row.querySelector("button").disabled = rows.length === 1;
+    });
+    at("add").disabled = rows.length >= mostStoreys;
+  }
   at("ground").addEventListener("change", ({ target }) => {
     if (target.value === "free") fields.theta_0 ??= "0.05";
     shake(target.value);
@@ -199,17 +251,23 @@
 
   /** Shows the given fields, even if the engine rejects them. */
   function showGiven() {
-    at("preset").value = preset().name;
+    document.body.dataset.structure = isFrame() ? "storeys" : "mass";
+    at("frame").hidden = !isFrame();
+    at("natural").parentElement.hidden = isFrame();
+    for (const option of at("detail").options) option.disabled = isFrame() && option.value === "modal";
+    showStoreys();
+    at("preset").value = isFrame() ? "storeys" : preset().name;
     at("ground").value = ground();
     at("detail").value = fields.detail ?? "auto";
     at("reading").hidden = ground() !== "record";
     at("restraints").open ||= restraints.some((name) => name in fields);
     at("ignore_npts").checked = "ignore_npts" in fields;
     for (const id of ["unit", "dt", "column"]) if (document.activeElement !== at(id)) at(id).value = fields[id] ?? "";
-    const own = [...numbersOf(ground()), "tolerance"];
+    const ofGround = numbersOf(ground()).filter((name) => !isFrame() || name !== "u_0");
+    const own = [...ofGround, "tolerance", ...(isFrame() ? ["zeta", "modes"] : [])];
     const cycles = tables.shapes.find(({ name }) => name === ground())?.cycles;
     for (const { name, usual } of tables.numbers) {
-      rows[name](Number(fields[name] ?? (name === "cycles" ? cycles : usual)), name in fields);
+      rows[name](Number(fields[name] ?? { cycles, modes: storeys().length }[name] ?? usual), name in fields);
       rows[name].element.hidden = !own.includes(name) && !(name in fields);
     }
     rows.step(Number(step), false);
@@ -226,12 +284,13 @@
 
   function showControls() {
     derived = Object.fromEntries(about.derived.map(({ name, value }) => [name, value]));
-    const isNatural = at("natural").checked;
+    const isNatural = at("natural").checked && !isFrame();
     const stand_in = (name) => tables.natural.some((of) => of.stands_for === name);
     for (const { name } of tables.parameters) {
-      rows[name](about.parameters[name], name in fields);
-      rows[name].element.hidden = isNatural && stand_in(name);
+      rows[name](about.parameters[name] ?? NaN, name in fields);
+      rows[name].element.hidden = (isNatural && stand_in(name)) || !(name in about.parameters);
     }
+    rows.r.element.querySelector("input").placeholder = isFrame() ? short(derived.r) : "";
     for (const { name } of tables.natural) {
       rows[name](derived[name], name in fields);
       rows[name].element.hidden = !isNatural;
@@ -243,7 +302,13 @@
     at("warnings").replaceChildren(...about.warnings.map(item));
     const derivedLine = ({ name, unit, description, value }) =>
       line([nameOf(description, name), `${short(value)} ${unitOf(unit)}`]);
-    at("derived").replaceChildren(...about.derived.map(derivedLine));
+    const modes = about.modes.map((of) => Object.fromEntries(of.map(({ name, value }) => [name, value])));
+    const ofMode = ({ f, share, height }, i) =>
+      line([`mode ${i + 1}`, `${short(f)} Hz, ${percent(share)} % of m_s at ${view.significant(height)} m`]);
+    at("derived").replaceChildren(...about.derived.map(derivedLine), ...modes.map(ofMode));
+    const share = modes.reduce((sum, of) => sum + of.share, 0);
+    const carried = `${modes.length} of ${storeys().length} modes carry ${view.significant(100 * share, 4)} % of m_s; `;
+    at("kept").textContent = isFrame() ? `${share < 1 - 1e-9 ? carried : ""}r is ${"r" in fields ? "given" : "by momentum with the shape frozen"}` : "";
   }
 
   /** A number that the engine writes as text, because JSON has no infinity. */
@@ -275,7 +340,7 @@
       about = JSON.parse(explorer.about(text()));
       motion = decode(JSON.parse(explorer.show(text(), part)));
       const others = [];
-      if (tab === "compare") {
+      if (tab === "compare" && !isFrame()) {
         for (const detail of beside) {
           if (detail === (fields.detail ?? "auto")) continue;
           others.push({ ...decode(JSON.parse(explorer.show(JSON.stringify({ ...fields, detail }), part))), colour: colours[detail] });
@@ -348,6 +413,8 @@
   // ---- Panels
 
   function drawValidity() {
+    at("validity").hidden = isFrame();
+    if (isFrame()) return;
     const rows = JSON.parse(explorer.validity(text()));
     const exceeded = rows.filter((of) => of.first_beyond !== null).length;
     at("validity").querySelector("summary").textContent =
@@ -600,6 +667,7 @@
 
   function drawExport() {
     const [command, script, toSet] = JSON.parse(explorer.taken_along(text()));
+    at("fmu").parentElement.hidden = isFrame();
     at("link").textContent = location.href;
     if (ground() !== "record") at("carries").textContent = "";
     else if (file.packed) at("carries").textContent = `The scene and its record ${file.name}.`;
@@ -639,11 +707,12 @@
     button.addEventListener("click", () => navigator.clipboard.writeText(at(button.dataset.copy).textContent));
   }
 
+  const ofOneMass = (draw) => () => isFrame() || draw();
   const panels = {
     play: drawValidity,
-    compare: () => ask("compare", fields, drawLevels),
-    map: drawMap,
-    speed: drawSpeed,
+    compare: ofOneMass(() => ask("compare", fields, drawLevels)),
+    map: ofOneMass(drawMap),
+    speed: ofOneMass(drawSpeed),
     export: drawExport,
   };
   const tabs = [...at("tabs").children];

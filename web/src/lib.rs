@@ -10,15 +10,17 @@ use fmu_export::{Library, ModelName, Version};
 use rocking::engine::piece::Sample;
 use rocking::levels::detail::Detail;
 use rocking::run::levels::{Criterion, REFERENCE_TOLERANCE, RULE, Verdict, compare, relative};
+use rocking::run::peaks::{self, Peak};
 use rocking::run::validity::{self, ASSUMPTIONS, Limits};
 use rocking::run::{End, RunError};
-use rocking::structure::DERIVED;
+use rocking::structure::any::{AnyStructure, OF_FRAME, OF_MODE};
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking::{Run, State, Structure};
+use rocking::structure::{DERIVED, Derived, Ties};
+use rocking::{Body, Frame, Motion, Run, State, Structure};
 use rocking_records::Unit;
 use rocking_sweep::{map::CLASSES, pulse::Shape};
-use rocking_view::Scene;
+use rocking_view::{Scene, Shown};
 use scene::{Fields, File, Files, GROUNDS, Ground, NUMBERS, READING, numbers_of};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -100,8 +102,15 @@ impl Explorer {
         Ok(self.libraries.iter().map(|library| library.platform.tuple()).collect::<Vec<_>>().join(", "))
     }
 
-    fn load(&mut self, fields: &Fields) -> Result<(Structure, Ground), String> {
+    fn load(&mut self, fields: &Fields) -> Result<(AnyStructure, Ground), String> {
         let structure = fields.structure()?;
+        let ground = fields.ground(&mut self.files, structure.base().g)?;
+        Ok((structure, ground))
+    }
+
+    /// The scene of one mass, which `task` needs.
+    fn load_one(&mut self, fields: &Fields, task: &'static str) -> Result<(Structure, Ground), String> {
+        let structure = fields.one_mass(task)?;
         let ground = fields.ground(&mut self.files, structure.parameters().g)?;
         Ok((structure, ground))
     }
@@ -109,43 +118,47 @@ impl Explorer {
     /// The run as the script of `view` shows it, exact to this `part` of each peak.
     pub fn show(&mut self, fields: &str, part: f64) -> Result<String, String> {
         let fields = Fields::read(fields)?;
-        let (structure, ground) = self.load(&fields)?;
-        let run = fields.run(structure, &ground.record)?;
-        let curve = run.curve(part).map_err(says)?;
-        Ok(Scene::new(&run, part, &curve).json())
+        match self.load(&fields)? {
+            (AnyStructure::One(structure), ground) => shown(&fields.run(structure, &ground.record)?, part),
+            (AnyStructure::Many(frame), ground) => shown(&fields.run_of_modes(frame, &ground.record)?, part),
+        }
     }
 
     /// The exact peaks by name, in SI units. They are the peaks of `show`, without its curve.
     pub fn peaks(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
-        let (structure, ground) = self.load(&fields)?;
-        let found = fields.run(structure, &ground.record)?.found(&mut ()).map_err(says)?;
-        let peaks = rocking::run::peaks::of(&structure).map(|peaking| (peaking.name, peaking.of(&found.peaks)));
-        let peaks = peaks.map(|(name, peak)| json!([name, peak.magnitude, peak.time]));
-        let motion = &found.finish.motion;
-        Ok(json!({
-            "peaks": peaks.collect::<Vec<_>>(), "transitions": motion.transitions, "end": motion.time,
-            "steps": motion.work.steps, "evaluations": motion.work.evaluations,
-        })
-        .to_string())
+        let row = |name: String, peak: Peak| json!([name, peak.magnitude, peak.time]);
+        match self.load(&fields)? {
+            (AnyStructure::One(structure), ground) => {
+                let found = fields.run(structure, &ground.record)?.found(&mut ()).map_err(says)?;
+                let rows = peaks::of(&structure).map(|peaking| row(peaking.name.into(), peaking.of(&found.peaks)));
+                Ok(summary(rows.collect(), &found.finish.motion))
+            }
+            (AnyStructure::Many(frame), ground) => {
+                let (profile, finish) = fields.run_of_modes(frame, &ground.record)?.profile().map_err(says)?;
+                let rows = profile.peaks().map(|(output, peak)| row(output.name(), peak));
+                Ok(summary(rows.collect(), &finish.motion))
+            }
+        }
     }
 
     /// Derived quantities of the structure, remarks on the record's file, and warnings about the parameters.
     pub fn about(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
         let (structure, Ground { record, remarks, mut warnings, .. }) = self.load(&fields)?;
-        let detail = fields.run(structure, &record)?.detail;
-        let derived = DERIVED.iter().map(|of| {
-            json!({ "name": of.name, "unit": of.unit, "description": of.description, "value": (of.value)(&structure) })
-        });
-        warnings.extend(validity::of_parameters(&structure, detail));
+        let (parameters, derived, modes) = match &structure {
+            AnyStructure::One(structure) => {
+                warnings.extend(validity::of_parameters(structure, fields.detail()?));
+                (json!(structure.parameters()), values(&DERIVED, structure), Vec::new())
+            }
+            AnyStructure::Many(frame) => {
+                let modes = frame.mode_table().map(|mode| values(&OF_MODE, &mode));
+                (of_base(frame), values(&OF_FRAME, frame), modes.collect())
+            }
+        };
         Ok(json!({
-            "parameters": structure.parameters(),
-            "derived": derived.collect::<Vec<_>>(),
-            "warnings": warnings,
-            "samples": record.times().len(),
-            "pga": record.pga() / structure.parameters().g,
-            "remarks": remarks,
+            "parameters": parameters, "derived": derived, "modes": modes, "warnings": warnings, "remarks": remarks,
+            "samples": record.times().len(), "pga": record.pga() / structure.base().g,
         })
         .to_string())
     }
@@ -153,7 +166,7 @@ impl Explorer {
     /// The assumptions of the model, each with its worst value in this run.
     pub fn validity(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
-        let (structure, ground) = self.load(&fields)?;
+        let (structure, ground) = self.load_one(&fields, "the list of assumptions")?;
         let limits = Limits::default();
         let (found, _) = fields.run(structure, &ground.record)?.validity(limits).map_err(says)?;
         let row = |(assumption, worst): (&validity::Assumption, &validity::Worst)| {
@@ -170,7 +183,7 @@ impl Explorer {
     /// The levels of detail, compared on this scene as `advise` compares them.
     pub fn compare(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
-        let (structure, ground) = self.load(&fields)?;
+        let (structure, ground) = self.load_one(&fields, "the comparison of levels")?;
         let compared = compare(&fields.run(structure, &ground.record)?).map_err(says)?;
         let advised = compared.recommended(WITHIN, &Criterion::ALL).map(|verdict| verdict.response.detail.name());
         let row = |Verdict { response, errors, .. }: &Verdict| {
@@ -193,7 +206,7 @@ impl Explorer {
     /// ground motion. The error is the largest of θ and u, as a fraction of the peak, against a run at the tolerance 1e-12.
     pub fn measure(&mut self, fields: &str, step: Option<f64>) -> Result<String, String> {
         let fields = Fields::read(fields)?;
-        let (structure, Ground { record, .. }) = self.load(&fields)?;
+        let (structure, Ground { record, .. }) = self.load_one(&fields, "the comparison of methods")?;
         let end = record.end() + 10.0 / structure.p_l;
         let after = (1..).map(|i| record.end() + 0.01 * f64::from(i)).take_while(|time| *time < end);
         let instants: Vec<f64> = record.times().iter().copied().chain(after).collect();
@@ -222,7 +235,7 @@ impl Explorer {
     /// The ground motion before it is scaled, as a CSV file that every command reads.
     pub fn record_file(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
-        let g = fields.structure()?.parameters().g;
+        let g = fields.structure()?.base().g;
         Ok(fields.unscaled(&mut self.files, g)?.table())
     }
 
@@ -238,7 +251,7 @@ impl Explorer {
     pub fn export(&mut self, fields: &str, fmi: u32) -> Result<Vec<u8>, String> {
         let fields = Fields::read(fields)?;
         let version = if fmi == 3 { Version::Fmi3 } else { Version::Fmi2 };
-        let (structure, ground) = self.load(&fields)?;
+        let (structure, ground) = self.load_one(&fields, "the FMU of this page")?;
         let is_as_read = fields.of_file().all(|key| fields.text(key).is_none());
         let record = match (fields.kind(), &self.files.own) {
             ("free", _) => Vec::new(),
@@ -249,6 +262,35 @@ impl Explorer {
         let exported = fmu_export::export(version, &ModelName::default(), &structure, record, None, &self.libraries);
         Ok(exported.map_err(says)?.1)
     }
+}
+
+/// `run` as the script of `view` shows it.
+fn shown<Q: Shown>(run: &Run<Q>, part: f64) -> Result<String, String> {
+    let curve = run.curve(part).map_err(says)?;
+    Ok(Scene::new(run, part, &curve).json())
+}
+
+/// The `peaks` and the `motion` at the end of a run.
+fn summary<Q>(peaks: Vec<Value>, motion: &Motion<Q>) -> String {
+    let (steps, evaluations) = (motion.work.steps, motion.work.evaluations);
+    let (transitions, end) = (motion.transitions, motion.time);
+    json!({ "peaks": peaks, "transitions": transitions, "end": end, "steps": steps, "evaluations": evaluations })
+        .to_string()
+}
+
+/// The numbers `derived` of a structure or a mode.
+fn values<T>(derived: &[Derived<T>], of: &T) -> Vec<Value> {
+    let row = |Derived { name, unit, description, value, .. }: &Derived<T>| json!({ "name": name, "unit": unit, "description": description, "value": value(of) });
+    derived.iter().map(row).collect()
+}
+
+/// The numbers of the base, by the names that one mass has, too.
+fn of_base(frame: &Frame) -> Value {
+    let &Body { m0, J0, B, r, g, c_ratio, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y }, .. } = frame.body();
+    json!({
+        "m0": m0, "J0": J0, "B": B, "r": r, "g": g, "c_ratio": c_ratio,
+        "P_0": P_0, "k_t": k_t, "xi_d": xi_d, "c_d": c_d, "k_d": k_d, "F_y": F_y,
+    })
 }
 
 /// The states of `run` at those `instants` (s) that it reaches, and the sum of its evaluations and steps.

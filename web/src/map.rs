@@ -29,7 +29,7 @@ impl Spectrum {
     #[wasm_bindgen(constructor)]
     pub fn new(fields: &str) -> Result<Spectrum, String> {
         let fields = Fields::read(fields)?;
-        let structure = fields.structure()?;
+        let structure = fields.one_mass("the map")?;
         let axis = |(from, to): (f64, f64)| {
             let at = |i| from * (to / from).powf(i as f64 / STEPS as f64);
             Axis { values: (0..=STEPS).map(at).collect(), is_log: true }

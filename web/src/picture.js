@@ -98,6 +98,7 @@ function motionPicture() {
   }
 
   const type = "video/webm";
+  const silence = 3000; // ms without a frame after which the encoder has written all
   const hasFilm = () => "MediaRecorder" in window && MediaRecorder.isTypeSupported(type);
 
   /** A film of the page, painted again and again while `isPlaying()`. */
@@ -106,13 +107,19 @@ function motionPicture() {
     await paint();
     const parts = [];
     const recorder = new MediaRecorder(canvas.captureStream(), { mimeType: type, videoBitsPerSecond: 4e6 });
-    recorder.addEventListener("dataavailable", ({ data }) => parts.push(data));
+    let written = performance.now();
+    recorder.addEventListener("dataavailable", ({ data }) => {
+      parts.push(data);
+      written = performance.now();
+    });
     const stopped = new Promise((done) => recorder.addEventListener("stop", done));
-    recorder.start();
+    recorder.start(200);
     do {
       await new Promise(requestAnimationFrame);
       await paint();
     } while (isPlaying());
+    // frames that a slow encoder has not written are lost when the recorder stops
+    while (performance.now() < written + silence) await new Promise((next) => setTimeout(next, 200));
     recorder.stop();
     await stopped;
     return new Blob(parts, { type });

@@ -1,17 +1,20 @@
 //! The scene of the page: fields of text, as in the link. Numbers are parsed as on a command line.
 
 use crate::says;
-use rocking::engine::{DEFAULT_TOLERANCE, check_tolerance};
+use rocking::engine::{DEFAULT_TOLERANCE, Moves, check_tolerance};
 use rocking::run::{End, record::Record};
+use rocking::structure::any::AnyStructure;
+use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::{Given, names};
 use rocking::structure::parameters::PRESETS;
-use rocking::{Detail, Parameters, Run, State, Structure};
+use rocking::{Detail, Frame, Modes, Parameters, Run, State, Structure};
 use rocking_records::{Column, Reading, RecordError, Source, Unit, csv_in};
 use rocking_sweep::pulse::{Pulse, Shape};
 use rocking_sweep::synthetic;
 use serde::Deserialize;
 use serde::de::value::{Error, StrDeserializer};
 use std::collections::BTreeMap;
+use std::num::ParseFloatError;
 use std::path::{Path, PathBuf};
 
 /// A number of the ground motion or of the run: name, unit, meaning, usual value, and the range of its slider. A field may
@@ -19,7 +22,7 @@ use std::path::{Path, PathBuf};
 pub type Number = (&'static str, &'static str, &'static str, f64, [f64; 2]);
 
 /// The numbers of ground motions and runs.
-pub const NUMBERS: [Number; 11] = [
+pub const NUMBERS: [Number; 13] = [
     ("amplitude", "g", "peak ground acceleration", 0.6, [0.02, 4.0]),
     ("frequency", "Hz", "frequency of the pulse", 2.0, [0.1, 20.0]),
     ("cycles", "1", "periods of the pulse", f64::NAN, [0.25, 10.0]),
@@ -31,7 +34,12 @@ pub const NUMBERS: [Number; 11] = [
     ("scale", "1", "factor on the accelerations", 1.0, [0.1, 10.0]),
     ("time_scale", "1", "factor on the times", 1.0, [0.1, 10.0]),
     ("tolerance", "1", "relative tolerance of the results", DEFAULT_TOLERANCE, [1e-12, 1e-3]),
+    ("zeta", "1", "damping ratio of each mode", 0.02, [0.0, 0.2]),
+    ("modes", "1", "modes kept; the mass of the others rides rigidly", f64::NAN, [1.0, 24.0]),
 ];
+
+/// Numbers of a structure of many masses, beside its storeys and its base.
+const OF_FRAME: [&str; 2] = ["zeta", "modes"];
 
 /// The ground motion that the page contains, which it shows when it opens.
 pub const EL_CENTRO: &str = "el_centro";
@@ -120,9 +128,10 @@ impl Fields {
             let known = Shape::ALL.map(Shape::name).into_iter().chain(GROUNDS.map(|(name, _)| name));
             format!("ground = {ground:?} is unknown; these are known: {}", known.collect::<Vec<_>>().join(", "))
         })?;
-        let of_structure = ["preset"].into_iter().chain(names());
-        let known =
-            of_structure.chain(["ground"]).chain(numbers).chain(fields.of_file()).chain(RUN).collect::<Vec<_>>();
+        let of_structure = if fields.is_frame() { [&["storeys"], &OF_FRAME[..]].concat() } else { vec!["preset"] };
+        let of_structure = of_structure.into_iter().chain(names());
+        let known = of_structure.chain(["ground"]).chain(numbers).chain(fields.of_file()).chain(RUN);
+        let known: Vec<_> = known.filter(|name| *name != "u_0" || !fields.is_frame()).collect();
         match fields.0.keys().find(|key| !known.contains(&key.as_str())) {
             Some(key) => {
                 let known = known.join(", ");
@@ -172,17 +181,41 @@ impl Fields {
         T::deserialize(StrDeserializer::<Error>::new(self.text(name).unwrap_or(default))).map_err(says)
     }
 
-    /// The structure: a specimen, with the given numbers in place of its own.
-    pub fn structure(&self) -> Result<Structure, String> {
-        let preset = self.text("preset").unwrap_or(PRESETS[0].0);
-        let base = Parameters::preset(preset).map_err(says)?;
+    /// Whether the structure has storeys.
+    pub fn is_frame(&self) -> bool {
+        self.text("storeys").is_some()
+    }
+
+    /// The structure: storeys on a base, or a specimen with the given numbers in place of its own.
+    pub fn structure(&self) -> Result<AnyStructure, String> {
         let mut given = Given::default();
         for name in names() {
             if let Some(value) = self.given(name) {
                 given.give(name, value?).map_err(says)?;
             }
         }
-        Structure::new(given.over(&base).map_err(says)?).map_err(says)
+        if let Some(storeys) = self.text("storeys") {
+            return self.frame(&given, storeys).map(AnyStructure::Many);
+        }
+        let preset = self.text("preset").unwrap_or(PRESETS[0].0);
+        let base = Parameters::preset(preset).map_err(says)?;
+        Structure::new(given.over(&base).map_err(says)?).map(AnyStructure::One).map_err(says)
+    }
+
+    /// The structure of one mass, which `task` needs.
+    pub fn one_mass(&self, task: &'static str) -> Result<Structure, String> {
+        self.structure()?.one(task).map_err(says)
+    }
+
+    fn frame(&self, base: &Given, storeys: &str) -> Result<Frame, String> {
+        let storeys = (1..).zip(storeys.split_whitespace()).map(|(number, row)| storey(number, row));
+        let storeys = storeys.collect::<Result<Vec<_>, _>>()?;
+        let frame = Frame::from_storeys(base, &Damping::All(self.number("zeta")?), &storeys).map_err(says)?;
+        match self.given("modes").transpose()? {
+            None => Ok(frame),
+            Some(count) if count >= 1.0 && count.fract() == 0.0 => frame.keeping(count as usize).map_err(says),
+            Some(count) => Err(format!("modes = {count} is out of range: a whole number of at least 1 is needed")),
+        }
     }
 
     /// The ground motion before it is scaled; `g` in m/s².
@@ -240,10 +273,20 @@ impl Fields {
 
     /// The run of `structure` under `ground`, with the scene's start and method.
     pub fn run<'a>(&self, structure: Structure, ground: &'a Record) -> Result<Run<'a>, String> {
-        let (detail, tolerance) = (self.detail()?, self.tolerance()?);
         let initial = State { theta: self.number("theta_0")?, u: self.number("u_0")?, ..State::default() };
-        let end = if self.kind() == "free" { End::At(ground.end()) } else { End::AtRest };
-        Ok(Run { detail, tolerance, initial, end, ..Run::new(structure, ground) })
+        self.solved(Run { initial, ..Run::new(structure, ground) })
+    }
+
+    /// The run of the structure `frame` of many masses likewise.
+    pub fn run_of_modes<'a>(&self, frame: Frame, ground: &'a Record) -> Result<Run<'a, Modes>, String> {
+        let run = Run::of_modes(frame, ground);
+        self.solved(Run { initial: State { theta: self.number("theta_0")?, ..run.initial }, ..run })
+    }
+
+    /// `run` by the scene's method until the scene's end.
+    fn solved<'a, Q: Moves>(&self, run: Run<'a, Q>) -> Result<Run<'a, Q>, String> {
+        let end = if self.kind() == "free" { End::At(run.ground.end()) } else { End::AtRest };
+        Ok(Run { detail: self.detail()?, tolerance: self.tolerance()?, end, ..run })
     }
 
     /// The level of detail.
@@ -255,6 +298,18 @@ impl Fields {
     pub fn tolerance(&self) -> Result<f64, String> {
         let tolerance = self.number("tolerance")?;
         check_tolerance(tolerance).map(|()| tolerance).map_err(|error| error.to_string())
+    }
+}
+
+/// The storey in `row`: m (kg), h (m) and k (N/m), with commas between them.
+fn storey(number: usize, row: &str) -> Result<Storey, String> {
+    let read = |(name, text): (&str, &str)| {
+        text.parse().map_err(|error: ParseFloatError| format!("storey {number}: {name} = {text:?}: {error}"))
+    };
+    let numbers = ["m", "h", "k"].into_iter().zip(row.split(',')).map(read).collect::<Result<Vec<f64>, _>>()?;
+    match numbers[..] {
+        [m, h, k] if row.split(',').count() == 3 => Ok(Storey { m, h, k }),
+        _ => Err(format!("storey {number} = {row:?}: m (kg), h (m) and k (N/m) are needed, with commas between them")),
     }
 }
 

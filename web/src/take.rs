@@ -10,6 +10,9 @@ use std::path::Path;
 /// Name of the file in which the page saves a ground motion.
 pub const GROUND: &str = "ground.csv";
 
+/// Name of the file of a structure of many masses.
+const BUILDING: &str = "building.toml";
+
 /// Options of one call, by the names that the command line and Python share.
 type Options = Vec<(&'static str, Value)>;
 
@@ -26,7 +29,9 @@ pub fn taken_along(fields: &Fields, path: Option<&Path>) -> Result<[String; 3], 
             names.filter_map(|name| Some((name, fields.text(name).map(str::to_owned).or_else(|| usual(name))?)));
         given.map(|(name, text)| Ok((name, literal(name, &text)?))).collect()
     };
-    let structure = options(&mut ["preset"].into_iter().chain(names()))?;
+    let numbers =
+        options(&mut ["preset"].into_iter().chain(names()).filter(|name| *name != "preset" || !fields.is_frame()))?;
+    let structure = if fields.is_frame() { vec![("parameters", BUILDING.into())] } else { numbers.clone() };
     let (of_file, run) = (options(&mut fields.of_file())?, options(&mut RUN.into_iter())?);
     let file = path.filter(|_| fields.kind() == "record").map_or(GROUND.into(), |path| path.display().to_string());
     let file = if file == "-" { "./-".into() } else { file }; // `-` alone is standard input
@@ -43,17 +48,44 @@ pub fn taken_along(fields: &Fields, path: Option<&Path>) -> Result<[String; 3], 
         }
         shape => {
             let pulse = options(&mut ["amplitude", "frequency", "cycles", "phase"].into_iter())?;
-            let written = command(&format!("pulse {shape}"), &[&pulse, &structure, &vec![("output", GROUND.into())]])?;
+            let preset = vec![("preset", PRESETS[0].0.into())]; // for its g
+            let of_g = numbers.iter().filter(|(name, _)| *name == "g").cloned();
+            let of_g = if fields.is_frame() { preset.into_iter().chain(of_g).collect() } else { structure.clone() };
+            let written = command(&format!("pulse {shape}"), &[&pulse, &of_g, &vec![("output", GROUND.into())]])?;
             let scaled = if of_file.is_empty() { "".into() } else { format!(".scaled({})", after_first(&of_file)) };
             let record = format!("record = fr.pulse(\"{shape}\"{}, g=structure.g){scaled}\n", arguments(&pulse));
             (format!("{written}\n{}", simulate(("record", file.into()), &of_file)?), record, ", record".into())
         }
     };
-    let (structure, run) = (after_first(&structure), arguments(&run));
+    let (building, structure) = match fields.text("storeys") {
+        Some(storeys) => building(fields, storeys, &numbers)?,
+        None => (String::new(), after_first(&numbers)),
+    };
+    let (command, run) = (format!("{building}{command}"), arguments(&run));
     let script = format!(
         "import flexible_rocking as fr\n\nstructure = fr.Structure({structure})\n{record}run = fr.simulate(structure{motion}{run})"
     );
     Ok([command, script, run.trim_start_matches(", ").to_owned()])
+}
+
+/// A command that writes the file of `storeys` on the base of these `numbers`, and the arguments of the same structure in Python.
+fn building(fields: &Fields, storeys: &str, numbers: &Options) -> Result<(String, String), String> {
+    let zeta = literal("zeta", &fields.number("zeta")?.to_string())?;
+    let mut file = format!("zeta = {zeta}\n\n[base]\n");
+    numbers.iter().for_each(|(name, value)| file += &format!("{name} = {value}\n"));
+    let mut rows = Vec::new();
+    for row in storeys.split_whitespace() {
+        let numbers = row.split(',').map(|text| literal("storeys", text)).collect::<Result<Vec<_>, _>>()?;
+        let named = || ["m", "h", "k"].iter().zip(&numbers);
+        file += &format!(
+            "\n[[storeys]]\n{}",
+            named().map(|(name, value)| format!("{name} = {value}\n")).collect::<String>()
+        );
+        rows.push(named().map(|(name, value)| format!("\"{name}\": {value}")).collect::<Vec<_>>().join(", "));
+    }
+    let rows: String = rows.iter().map(|row| format!("    {{{row}}},\n")).collect();
+    let arguments = format!("storeys=[\n{rows}], zeta={zeta}{}", arguments(numbers));
+    Ok((format!("cat >{BUILDING} <<'END'\n{file}END\n"), arguments))
 }
 
 /// The value of the key `name`, given as `text`.
