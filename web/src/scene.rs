@@ -8,7 +8,7 @@ use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::{Given, names};
 use rocking::structure::parameters::PRESETS;
 use rocking::{Detail, Frame, Modes, Parameters, Run, State, Structure};
-use rocking_records::{Column, Reading, RecordError, Source, Unit, csv_in};
+use rocking_records::{Column, Reading, RecordError, Remedy, Source, Unit, csv_in};
 use rocking_sweep::pulse::{Pulse, Shape};
 use rocking_sweep::synthetic;
 use serde::Deserialize;
