@@ -163,8 +163,8 @@ fn hold(base: &Base, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
     base.m_t * (base.g + a_v) * base.B + tendon.force * base.B + side.sign() * residual
 }
 
-/// The moment by which the mass that rides rigidly lifts the base to the right, N·m, under the ground acceleration `a_g` and the forces
-/// that have this `rest`.
+/// Moment on the base to the right, N·m, of the mass that rides rigidly. It feels the ground acceleration `a_g` and the forces with
+/// this `rest`.
 fn rigid(base: &Base, a_g: f64, rest: Option<[f64; 2]>) -> f64 {
     rest.map_or(0.0, |[_, moment]| moment) - base.S_res * a_g
 }
@@ -448,7 +448,7 @@ impl ManyModes {
         if far.sigma() <= loose.sigma() { far } else { loose }
     }
 
-    /// The moment by which the mass that rides rigidly lifts the base `tau` (s) after `start`.
+    /// The moment of the mass that rides rigidly, `tau` (s) after `start`.
     fn rigid_at(&self, start: &Start<Modes>, tau: f64) -> f64 {
         rigid(&self.subject.structure.base, start.a_g.at(tau), start.a_top.at(tau).rest())
     }

@@ -255,7 +255,7 @@ impl Frame {
     /// (M1, M8)  φᵀF cos θ       (M9)  Σ φᵀF w sin θ + F_res sB sin θ + N_res cos θ       (M2, M3)  N_res
     /// ```
     ///
-    /// F_res = Σ F (1 − Σ φ Γ/μ) and N_res = Σ F (h − Σ φ κ/μ) act on mass that no mode carries. With all modes both are 0.
+    /// F_res = Σ F (1 − Σ φ Γ/μ) and N_res = Σ F (h − Σ φ κ/μ) act on mass that no mode carries. Both are 0 with all modes.
     pub fn load(&self, a_g: f64, a_v: f64, forces: &[f64]) -> Result<Load<Modes>, FrameError> {
         if !forces.is_empty() && forces.len() != self.floors.len() {
             return Err(FrameError::Forces { forces: forces.len(), floors: self.floors.len() });
