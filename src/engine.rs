@@ -11,6 +11,8 @@
 //! 2 ζ_u ω_u is the largest 2 ζ ω of the modes times J_P/(J_P − Σ μ h²). One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. At levels
 //! with an exact flow of full contact, one step covers the rest of a long interval once the base stays down for good.
 
+#[cfg(feature = "lanes")]
+mod lanes;
 pub mod motion;
 pub(crate) mod phases;
 pub mod piece;
@@ -663,7 +665,8 @@ impl<Q: Moves, W: Watch<Q>> Task<'_, Q, W> {
             return Ok(Progress::Complete);
         }
         let phases = |motion: &Motion<Q>| phases::of::<Q>(level.structure(), motion);
-        Loop { any, level, phases, arc, last_step, stops }.go(motion, before, interval, load, watch)
+        let is_expanded = false;
+        Loop { any, level, phases, arc, is_expanded, last_step, stops }.go(motion, before, interval, load, watch)
     }
 }
 
@@ -676,6 +679,8 @@ struct Loop<'a, Q: Moves, L, P> {
     phases: P,
     /// The step.
     arc: &'a mut Arc<Q>,
+    /// Whether the arc has the first step already.
+    is_expanded: bool,
     /// Steps since the start after which the advance ends.
     last_step: u64,
     /// Whether the advance ends where a transition is due.
@@ -733,7 +738,9 @@ impl<Q: Moves, L: Level<Q>, P: Fn(&Motion<Q>) -> Option<&'static Watched<Q>>> Lo
                 interval: watched.lasts.map_or(left, |lasts| left.min(lasts(motion))),
                 local_error,
             };
-            level.series(motion.phase, &begin, self.arc);
+            if !std::mem::take(&mut self.is_expanded) {
+                level.series(motion.phase, &begin, self.arc);
+            }
             let mut step =
                 Step { level, side: motion.phase.side(), start: &begin, arc: self.arc, reach: self.arc.reach };
             let closed = first(watched, &mut step);
@@ -861,6 +868,7 @@ mod tests {
             level: of_its_type,
             phases: |_: &Motion| Some(&WALLED),
             arc,
+            is_expanded: false,
             last_step: u64::MAX,
             stops: false,
         }

@@ -14,6 +14,8 @@
 
 pub(crate) mod bend;
 pub(crate) mod dual;
+#[cfg(feature = "lanes")]
+pub(crate) mod lanes;
 pub(crate) mod linear;
 pub(crate) mod most;
 

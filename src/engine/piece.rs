@@ -330,16 +330,7 @@ impl<'a> Part<'a> {
             }
         } else {
             let start = self.step();
-            let rates = level.rates(before.phase, &start, end);
-            let off_chord = start.interval * start.interval / 8.0;
-            let bound =
-                |most: f64, from: f64, to: f64, bend: f64| most.min(from.abs().max(to.abs()) + bend * off_chord);
-            State {
-                u: bound(rates.u, start.state.u, end.u, rates.u_ddot),
-                u_dot: bound(rates.u_dot, start.state.u_dot, end.u_dot, rates.u_dddot),
-                theta: bound(rates.theta, start.state.theta, end.theta, rates.theta_ddot),
-                theta_dot: rates.theta_dot,
-            }
+            level.rates(before.phase, &start, end).most(&start, end)
         };
         level.most(before.phase, [self.start.0, self.end.0].map(|tau| load.at(tau)), &most)
     }

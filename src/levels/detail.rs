@@ -179,6 +179,19 @@ pub(crate) struct Elastic<Rocking> {
 }
 
 impl<Rocking: ElasticRocking> Elastic<Rocking> {
+    /// The leap over `start` in full contact with bounds of the motion, if an exact flow is known and the structure stays down.
+    #[cfg(feature = "lanes")]
+    #[inline(always)]
+    pub(crate) fn bounded_leap(&self, start: &Start) -> Option<(State, Rates)> {
+        self.contact.as_ref()?.bounded_leap(start, self.least_displacement(start))
+    }
+
+    /// The equations of rocking.
+    #[cfg(feature = "lanes")]
+    pub(crate) fn rocking(&self) -> &Rocking {
+        &self.rocking
+    }
+
     fn new(contact: Option<ExactContact>, rocking: Rocking) -> Elastic<Rocking> {
         Elastic { contact, turning: rocking.turning_moment(), rocking }
     }

@@ -55,20 +55,29 @@ impl ExactContact {
     /// at most the whole swing, and u leaves its chord by at most |ü| h²/8.
     #[inline]
     pub(crate) fn leap(&self, start: &Start, limit: f64) -> Option<State> {
+        if limit == f64::INFINITY { Some(self.end(start)) } else { Some(self.bounded_leap(start, limit)?.0) }
+    }
+
+    /// The same leap with bounds of what changes over it.
+    #[inline(always)]
+    pub(crate) fn bounded_leap(&self, start: &Start, limit: f64) -> Option<(State, Rates)> {
+        let (end, rates) = (self.end(start), self.rates(start));
+        let off_chord = rates.u_ddot * start.interval * start.interval / 8.0;
+        let is_low = rates.u < limit || start.state.u.abs().max(end.u.abs()) + off_chord < limit;
+        is_low.then_some((end, rates))
+    }
+
+    /// The state after the interval of `start`.
+    #[inline(always)]
+    fn end(&self, start: &Start) -> State {
         let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
         let flow = self.flows.over(interval, || self.oscillator.flow(interval));
-        let end = flow.driven([u, u_dot], a_top.value, a_top.slope);
-        let is_low = || {
-            let swing = self.oscillator.swing([u, u_dot], a_top.value, a_top.slope, interval);
-            let [_, u_ddot, _] = self.oscillator.rates(&swing, a_top.slope);
-            let off_chord = u_ddot * interval * interval / 8.0;
-            swing.farthest() < limit || u.abs().max(end[0].abs()) + off_chord < limit
-        };
-        let goes_on = limit == f64::INFINITY || is_low();
-        goes_on.then_some(State { u: end[0], u_dot: end[1], theta: 0.0, theta_dot: 0.0 })
+        let [u, u_dot] = flow.driven([u, u_dot], a_top.value, a_top.slope);
+        State { u, u_dot, theta: 0.0, theta_dot: 0.0 }
     }
 
     /// Bounds of what changes over the interval of `start`.
+    #[inline(always)]
     pub(crate) fn rates(&self, start: &Start) -> Rates {
         let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
         let swing = self.oscillator.swing([u, u_dot], a_top.value, a_top.slope, interval);

@@ -205,6 +205,19 @@ pub(crate) struct Rates {
 }
 
 impl Rates {
+    /// Bounds of the magnitudes of the state over the leap from `start` to `end`.
+    #[inline]
+    pub(crate) fn most(&self, start: &Start, end: &State) -> State {
+        let off_chord = start.interval * start.interval / 8.0;
+        let bound = |most: f64, from: f64, to: f64, bend: f64| most.min(from.abs().max(to.abs()) + bend * off_chord);
+        State {
+            u: bound(self.u, start.state.u, end.u, self.u_ddot),
+            u_dot: bound(self.u_dot, start.state.u_dot, end.u_dot, self.u_dddot),
+            theta: bound(self.theta, start.state.theta, end.theta, self.theta_ddot),
+            theta_dot: self.theta_dot,
+        }
+    }
+
     /// Bounds of a motion of which nothing is known.
     pub(crate) const NONE: Rates = {
         const ANY: f64 = f64::INFINITY;

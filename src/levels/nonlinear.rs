@@ -28,6 +28,9 @@
 //! Of a restrained structure, or one shaken vertically, g is g + a_v, linear in time, and the moment of the ties
 //! ([`restraint`](crate::mechanics::restraint)) over m is taken from L̇.
 
+#[cfg(feature = "lanes")]
+pub(crate) mod lanes;
+
 use crate::levels::level::{ElasticRocking, Now, Pace, Subject};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::load::Load;
@@ -36,6 +39,7 @@ use crate::series::taylor::{Arc, MAX_ORDER, Start};
 use crate::{Side, State, Structure};
 use nalgebra::{Matrix2, Vector2};
 use std::cell::RefCell;
+use std::ops::{Add, Div, Mul, Neg, Sub};
 use wide::f64x2;
 
 /// Accelerations (ü, θ̈) in m/s² and rad/s² under `load`, by Eqs 5 and 6 with the ties and these `dissipators`. None if the mass
@@ -116,8 +120,102 @@ pub(super) fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row,
     [first[0], first[1], second[0], second[1], third[0], third[1]]
 }
 
-/// Series of the motion by Eqs 5 and 6, with room for the factors of its products. Row i of `left`, and of `right` counted
-/// from its end, holds
+/// A number in which Eqs 5 and 6 are expanded: of one run, or of several side by side.
+pub(crate) trait Expanded:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// One order of the left factors of the six products.
+    type Left: Copy;
+    /// One order of their right factors.
+    type Right: Copy;
+
+    /// The number `value`, of as many runs as this one.
+    fn constant(self, value: f64) -> Self;
+
+    fn left(turning: Self, lever_turning: Self, lever: Self) -> Self::Left;
+
+    fn right(cos: Self, sin: Self, next_lever: Self, turning: Self, weight: Self) -> Self::Right;
+
+    /// Coefficient `n` of each product, as [`products`] sums it.
+    fn products(
+        left: &[Self::Left; MAX_ORDER + 1],
+        right: &[Self::Right; MAX_ORDER + 1],
+        newest: (&Self::Left, &Self::Right),
+        n: usize,
+    ) -> [Self; 6];
+}
+
+impl Expanded for f64 {
+    type Left = Row;
+    type Right = Row;
+
+    #[inline(always)]
+    fn constant(self, value: f64) -> f64 {
+        value
+    }
+
+    #[inline(always)]
+    fn left(turning: f64, lever_turning: f64, lever: f64) -> Row {
+        row([turning, turning, turning, lever_turning, lever_turning, lever])
+    }
+
+    #[inline(always)]
+    fn right(cos: f64, sin: f64, next_lever: f64, turning: f64, weight: f64) -> Row {
+        row([cos, sin, next_lever, next_lever, turning, weight])
+    }
+
+    #[inline(always)]
+    fn products(left: &Factors, right: &Factors, newest: (&Row, &Row), n: usize) -> [f64; 6] {
+        products(left, right, newest.0, newest.1, n)
+    }
+}
+
+/// The numbers in Eqs 5 and 6 over one step. A load is its value at the start and its gain over the span.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Equations<N> {
+    pub u: N,
+    pub u_dot: N,
+    pub theta_dot: N,
+    pub sin: N,
+    pub cos: N,
+    /// a.
+    pub push: [N; 2],
+    /// a_g.
+    pub ground: [N; 2],
+    /// g + a_v. The gain counts for tied structures alone.
+    pub gravity: [N; 2],
+    pub H: N,
+    /// s(γ−1)B.
+    pub weight_offset: N,
+    /// w at the start.
+    pub lever: N,
+    /// i.
+    pub foundation: N,
+    pub stiffness: N,
+    pub damping_u: N,
+}
+
+/// The coefficients of the last order, from which those of the next one follow.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Recurrence<N: Expanded> {
+    of: Equations<N>,
+    per_inertia: N,
+    /// H, s(γ−1)B and w over the inertia, so that few operations stand between one order of θ̇ and the next.
+    height: N,
+    offset: N,
+    lever_start: N,
+    sin: N,
+    cos: N,
+    /// G, G₀, F and κ.
+    weight: N,
+    weight_below: N,
+    along: N,
+    elastic: N,
+    theta_dot: N,
+    newest_left: N::Left,
+}
+
+/// The factors of the products. Row i of `left`, and of `right` counted from its end, holds
 ///
 /// ```text
 /// left:   θ̇       θ̇      θ̇         w θ̇       w θ̇     w
@@ -127,17 +225,102 @@ pub(super) fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row,
 /// of order i ("next": of order i + 1). The products of the columns are, in order: the rates of sin θ and −cos θ, the parts of w θ̇
 /// and w² θ̇ from the later coefficients of w, w θ̇², and the moment of the top mass's weight.
 #[derive(Clone, Debug)]
+pub(crate) struct Products<N: Expanded> {
+    left: [N::Left; MAX_ORDER + 1],
+    right: [N::Right; MAX_ORDER + 1],
+}
+
+impl<N: Expanded> Products<N> {
+    /// Room for the factors; `zero` is 0.
+    #[inline(always)]
+    pub(crate) fn new(zero: N) -> Products<N> {
+        let (left, right) = (N::left(zero, zero, zero), N::right(zero, zero, zero, zero, zero));
+        Products { left: [left; MAX_ORDER + 1], right: [right; MAX_ORDER + 1] }
+    }
+}
+
+impl<N: Expanded> Recurrence<N> {
+    /// The coefficients of order 0.
+    #[inline(always)]
+    pub(crate) fn new(of: Equations<N>) -> Recurrence<N> {
+        let Equations { u, u_dot, theta_dot, sin, cos, H, weight_offset, lever, foundation, .. } = of;
+        let ([g, _], [a, _], [a_ground, _]) = (of.gravity, of.push, of.ground);
+        let per_inertia = g.constant(1.0) / (foundation + lever * lever);
+        Recurrence {
+            of,
+            per_inertia,
+            height: H * per_inertia,
+            offset: weight_offset * per_inertia,
+            lever_start: lever * per_inertia,
+            sin,
+            cos,
+            weight: g * cos + a * sin,
+            weight_below: g * cos + a_ground * sin,
+            along: g * sin - a * cos,
+            elastic: of.damping_u * u_dot + of.stiffness * u,
+            theta_dot,
+            newest_left: N::left(theta_dot, lever * theta_dot, lever),
+        }
+    }
+
+    /// Coefficient `k` of (u̇, θ̇), from that of `u`; `per` is the span over k. Of a `TIED` structure `pull` gives the coefficient
+    /// before, times `per_inertia`, of the moment of the ties.
+    #[inline(always)]
+    pub(crate) fn next<const TIED: bool>(
+        &mut self,
+        Products { left, right }: &mut Products<N>,
+        k: usize,
+        u: N,
+        per: N,
+        pull: impl FnOnce(N) -> N,
+    ) -> (N, N) {
+        let &mut Recurrence { of, per_inertia, sin, cos, weight, weight_below, along, elastic, newest_left, .. } = self;
+        let Equations { H, lever, stiffness, damping_u, .. } = of;
+        let ([g, lift], [a, slope], [a_ground, slope_ground]) = (of.gravity, of.push, of.ground);
+        let before = k - 1;
+        let newest_right = N::right(cos, sin, -u, self.theta_dot, weight);
+        left[before] = newest_left;
+        right[MAX_ORDER - before] = newest_right;
+        let [sin_rate, minus_cos_rate, w_turning, w_w_turning, centrifugal, weight_moment] =
+            N::products(left, right, (&newest_left, &newest_right), before);
+        let y = (along - elastic - centrifugal) * per;
+        let mut moment = (self.height * elastic - self.offset * weight_below)
+            + (self.height * centrifugal - per_inertia * weight_moment);
+        if TIED {
+            moment = moment - pull(per_inertia);
+        }
+        let theta_dot = moment * per - (self.lever_start * w_turning + per_inertia * w_w_turning);
+        let u_dot = y - H * theta_dot;
+
+        (self.sin, self.cos) = (sin_rate * per, -minus_cos_rate * per);
+        let lever_turning = lever * theta_dot + w_turning;
+        self.weight = g * self.cos + a * self.sin + slope * sin;
+        self.weight_below = g * self.cos + a_ground * self.sin + slope_ground * sin;
+        self.along = g * self.sin - a * self.cos - slope * cos;
+        if TIED {
+            self.weight = self.weight + lift * cos;
+            self.weight_below = self.weight_below + lift * cos;
+            self.along = self.along + lift * sin;
+        }
+        self.elastic = damping_u * u_dot + stiffness * u;
+        self.theta_dot = theta_dot;
+        self.newest_left = N::left(theta_dot, lever_turning, -u);
+        (u_dot, theta_dot)
+    }
+}
+
+/// Series of the motion by Eqs 5 and 6.
+#[derive(Clone, Debug)]
 pub(crate) struct NonlinearRocking {
     subject: Subject,
     pace: Pace,
-    /// Left and right.
-    factors: RefCell<[Factors; 2]>,
+    products: RefCell<Products<f64>>,
 }
 
 impl NonlinearRocking {
     pub(crate) fn new(subject: Subject) -> NonlinearRocking {
-        let factors = RefCell::new([[NO_ROW; MAX_ORDER + 1]; 2]);
-        NonlinearRocking { subject, pace: Pace::new(&subject.structure), factors }
+        let products = RefCell::new(Products::new(0.0));
+        NonlinearRocking { subject, pace: Pace::new(&subject.structure), products }
     }
 }
 
@@ -170,68 +353,52 @@ impl ElasticRocking for NonlinearRocking {
 }
 
 impl NonlinearRocking {
-    /// Writes the motion into `arc`. The structure is `TIED` or not throughout a step, and most are not.
+    /// The numbers in the equations over a step of `span` s from `start`. The structure is `TIED` or not throughout a step, and most
+    /// are not.
+    #[inline(always)]
+    fn equations<const TIED: bool>(&self, side: Side, start: &Start, span: f64) -> Equations<f64> {
+        let &Start { state: State { u, u_dot, theta, theta_dot }, a_g, a_top, a_v, .. } = start;
+        let structure = &self.subject.structure;
+        let &crate::Parameters { H, B, g, .. } = structure.parameters();
+        let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
+        let (sin, cos) = libm::sincos(theta);
+        Equations {
+            u,
+            u_dot,
+            theta_dot,
+            sin,
+            cos,
+            push: [a_top.value, a_top.slope * span],
+            ground: [a_g.value, a_g.slope * span],
+            gravity: if TIED { [g + a_v.value, a_v.slope * span] } else { [g, 0.0] },
+            H,
+            weight_offset: side.sign() * (gamma - 1.0) * B,
+            lever: side.sign() * B - u,
+            foundation,
+            stiffness,
+            damping_u,
+        }
+    }
+
+    /// Writes the motion into `arc`.
     #[inline(always)]
     fn expand<const TIED: bool>(&self, side: Side, start: &Start, arc: &mut Arc) {
-        let &Start { state, a_g, a_top, .. } = start;
         let structure = &self.subject.structure;
-        let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
-        let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
         let span = self.pace.span(start);
-        // g + a_v now, and its gain over the span
-        let (g, lift) = if TIED { (g + start.a_v.value, start.a_v.slope * span) } else { (g, 0.0) };
         let mut ties = TIED.then(|| {
             let ties = Restraint::about(structure, side, start.dissipators).moments();
-            TieSeries::new(ties, Angles::Any, state.theta)
+            TieSeries::new(ties, Angles::Any, start.state.theta)
         });
-        let [(a, slope), (a_ground, slope_ground)] = [a_top, a_g].map(|a| (a.value, a.slope * span));
-        let weight_offset = side.sign() * (gamma - 1.0) * B; // s(γ−1)B
-        let lever = side.sign() * B - state.u; // w at the start
-        let per_inertia = 1.0 / (foundation + lever * lever);
-        // over the inertia, so that few operations stand between one order of θ̇ and the next
-        let [height, offset, lever_start] = [H, weight_offset, lever].map(|factor| factor * per_inertia);
-
-        let State { u, u_dot, theta, theta_dot } = state;
-        let (mut sin, mut cos) = libm::sincos(theta);
-        let mut weight = g * cos + a * sin; // G
-        let mut weight_below = g * cos + a_ground * sin; // G₀
-        let mut along = g * sin - a * cos; // F
-        let mut elastic = damping_u * u_dot + stiffness * u; // κ
-        let [left, right] = &mut *self.factors.borrow_mut();
-        let mut newest_left = row([theta_dot, theta_dot, theta_dot, lever * theta_dot, lever * theta_dot, lever]);
-        let mut theta_dot = theta_dot;
-
+        let m = structure.parameters().m;
+        let products = &mut *self.products.borrow_mut();
+        let mut recurrence = Recurrence::new(self.equations::<TIED>(side, start, span));
         let truncation = self.pace.truncation(start, span);
-        arc.expand(&state, span, truncation, |arc, k, per| {
-            let before = k - 1;
-            let newest_right = row([cos, sin, -arc.u[k], -arc.u[k], theta_dot, weight]);
-            left[before] = newest_left;
-            right[MAX_ORDER - before] = newest_right;
-            let [sin_rate, minus_cos_rate, w_turning, w_w_turning, centrifugal, weight_moment] =
-                products(left, right, &newest_left, &newest_right, before);
-            let y = (along - elastic - centrifugal) * per;
-            let mut moment =
-                (height * elastic - offset * weight_below) + (height * centrifugal - per_inertia * weight_moment);
-            if TIED && let Some(ties) = &mut ties {
-                moment -= per_inertia / m * ties.next(&arc.theta_dot, before, per);
-            }
-            theta_dot = moment * per - (lever_start * w_turning + per_inertia * w_w_turning);
-            let u_dot = y - H * theta_dot;
-
-            let (sin_before, cos_before) = (sin, cos);
-            (sin, cos) = (sin_rate * per, -minus_cos_rate * per);
-            let lever_turning = lever * theta_dot + w_turning;
-            weight = g * cos + a * sin + slope * sin_before;
-            weight_below = g * cos + a_ground * sin + slope_ground * sin_before;
-            along = g * sin - a * cos - slope * cos_before;
-            if TIED {
-                weight += lift * cos_before;
-                weight_below += lift * cos_before;
-                along += lift * sin_before;
-            }
-            elastic = damping_u * u_dot + stiffness * arc.u[k];
-            newest_left = row([theta_dot, theta_dot, theta_dot, lever_turning, lever_turning, -arc.u[k]]);
-            (u_dot, theta_dot)
+        arc.expand(&start.state, span, truncation, |arc, k, per| {
+            let ties = |per_inertia: f64| {
+                let ties = ties.as_mut().map_or(0.0, |ties| ties.next(&arc.theta_dot, k - 1, per));
+                per_inertia / m * ties
+            };
+            recurrence.next::<TIED>(products, k, arc.u[k], per, ties)
         });
     }
 }

@@ -6,12 +6,13 @@ use super::profile::Profile;
 use super::{Ending, Finish, Run, RunError};
 use crate::engine::Moves;
 use crate::engine::piece::Expansion;
+#[cfg(feature = "lanes")]
+use crate::levels::shown::Searched;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint, sum, ties};
 use crate::run::ground_motion::GroundMotion;
 use crate::series::bisection::last_where;
 use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
-use crate::series::taylor;
-use crate::series::taylor::Arc;
+use crate::series::taylor::{self, Arc, sum_of_magnitudes};
 use crate::structure::Base;
 use crate::{Detail, Frame, Modes, Outputs, Piece, Side, Structure, Transition, TransitionKind, Watch};
 use serde::{Deserialize, Serialize};
@@ -166,8 +167,21 @@ impl Watch for FallWatch<'_> {
 }
 
 impl FallWatch<'_> {
+    /// Passes a piece that ends at the rotation `theta` (rad) if magnitudes within `bounds` certainly change nothing. Instants (s)
+    /// and ground accelerations of its ends are `ends`. Otherwise the piece is to be shown.
+    #[cfg(feature = "lanes")]
+    #[inline]
+    pub(crate) fn passes(&mut self, theta: f64, bounds: &Searched<f64>, ends: [(f64, f64); 2]) -> bool {
+        let falls = self.no_return.is_some_and(|angle| theta.abs() >= angle);
+        let passes = !falls && self.all.passes(bounds, ends);
+        if passes {
+            *self.fall = None;
+        }
+        passes
+    }
+
     /// The peaks, once the motion has been watched.
-    pub(super) fn end(mut self) -> FallingPeaks {
+    pub(crate) fn end(mut self) -> FallingPeaks {
         let (fall, has_overturned) = (*self.fall, *self.has_overturned);
         FallingPeaks { all: *self.all.so_far(), no_return: self.no_return, fall, has_overturned }
     }
@@ -186,6 +200,13 @@ impl FallWatch<'_> {
 /// The last passing of `angle` (rad) in a `piece` that ends beyond: the instant, and seconds from the start of the piece. A motion that
 /// starts beyond, and not `falls` already, falls from its start.
 fn start_of_fall<Q: Moves>(piece: &Piece<Q>, angle: f64, falls: bool) -> Option<(f64, f64)> {
+    // most pieces of a fall stay beyond
+    if falls
+        && let Some(arc) = piece.arc
+        && sum_of_magnitudes(&arc.theta[1..=arc.order]) < arc.theta[0].abs() - angle
+    {
+        return None;
+    }
     let mut passing = None;
     let mut arcs = piece.arcs();
     while let Some(expansion) = arcs.next() {
@@ -281,8 +302,13 @@ impl<Q: Peaked> Run<'_, Q> {
     /// Result of the run, and the peaks of all its motion, including a fall.
     pub(super) fn found_and_all(&self, watch: &mut impl Watch<Q>) -> Result<(Found<Q>, Q::Peaks), RunError> {
         let ([peaks, all], fall, finish) = Q::followed(self, watch)?;
+        Ok((self.found_of(peaks, fall, finish), all))
+    }
+
+    /// Result of the run with these `peaks`, the start of the `fall` and the `finish`.
+    pub(super) fn found_of(&self, peaks: Q::Peaks, fall: Option<f64>, finish: Finish<Q>) -> Found<Q> {
         let ground = self.peak_of_ground(finish.motion.time);
-        Ok((Found { ground, peaks, fall, start: self.ground.start(), finish }, all))
+        Found { ground, peaks, fall, start: self.ground.start(), finish }
     }
     /// Peak of the ground acceleration until the time `until` (s), m/s².
     fn peak_of_ground(&self, until: f64) -> Peak {

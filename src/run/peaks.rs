@@ -352,6 +352,18 @@ impl PeakWatch<'_> {
         self.peaks
     }
 
+    /// Passes a piece with these `ends` if magnitudes within `bounds` certainly are no peaks. Otherwise the piece is to be shown.
+    #[cfg(feature = "lanes")]
+    #[inline]
+    pub(super) fn passes(&mut self, bounds: &Searched<f64>, ends: [(f64, f64); 2]) -> bool {
+        if Measure::SEARCHED.iter().any(|measure| self.peaks.may_be_same(*measure, bounds[measure.place()])) {
+            return false;
+        }
+        ends.into_iter().for_each(|(time, a_g)| self.peaks.ground.see(a_g, time));
+        (self.is_torn, self.goes_on) = (false, false);
+        true
+    }
+
     /// Looks at what has been kept, the latest first, which is often the largest.
     fn look_back(&mut self) {
         let Some(level) = &self.level else { return };

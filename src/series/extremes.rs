@@ -4,7 +4,7 @@ use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
 use crate::series::taylor::{MAX_ORDER, ORDERS, Series, ZERO, evaluate, weighed_sum};
 
 /// max (σ − σᵏ) over 0 ≤ σ ≤ 1 for each k, rounded up.
-const OFF_CHORD: Series = {
+pub(crate) const OFF_CHORD: Series = {
     let mut off = [1.0; MAX_ORDER + 2];
     let known =
         [0.0, 0.0, 0.25, 0.385, 0.473, 0.535, 0.583, 0.62, 0.651, 0.676, 0.697, 0.716, 0.732, 0.746, 0.758, 0.77];

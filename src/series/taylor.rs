@@ -232,7 +232,7 @@ pub struct Truncation<Q = f64> {
 }
 
 /// Fewest orders in an expansion, so that terms that vanish at rest cannot end it early.
-const MIN_ORDER: usize = 5;
+pub(crate) const MIN_ORDER: usize = 5;
 
 /// 1/k, looked up.
 #[inline]

@@ -4,7 +4,7 @@ use crate::{Refused, ensure, six_digits};
 use rocking::Watch;
 use rocking::run::fall::Found;
 use rocking::run::peaks::PEAKS;
-use rocking::run::{Ending, Run};
+use rocking::run::{Ending, Run, RunError};
 use rocking::structure::quantity::with_unit;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -84,7 +84,12 @@ pub enum Limit {
 impl Outcome {
     /// Follows `run` to its end, watched by `watch`.
     pub fn of(run: &Run, watch: &mut impl Watch) -> Outcome {
-        let Found { peaks, finish, .. } = match run.found(watch) {
+        Outcome::found(run, run.found(watch))
+    }
+
+    /// Outcome of a `run` with this result.
+    pub(crate) fn found(run: &Run, found: Result<Found, RunError>) -> Outcome {
+        let Found { peaks, finish, .. } = match found {
             Ok(found) => found,
             Err(error) => {
                 let time = error.time().unwrap_or(run.ground.start());

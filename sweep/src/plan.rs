@@ -8,6 +8,7 @@ use rocking::estimates::intensity::{
     significant_duration,
 };
 use rocking::estimates::response_spectrum::spectral_acceleration;
+use rocking::run::lanes::found_each;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
 use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
@@ -305,6 +306,16 @@ impl Plan {
         Case { population, member, structure, motion, scale, conditions, group, motion_number, spectral }
     }
 
+    /// Does the runs `indices`, several at a time on one thread, and tells `done` the outcome of each as it ends. Once `done` says
+    /// no, the rest is left undone.
+    pub fn each_outcome(&self, indices: &[usize], mut done: impl FnMut(usize, Outcome) -> bool) {
+        let cases: Vec<_> = indices.iter().map(|index| self.case(*index)).collect();
+        let grounds: Vec<_> = cases.iter().map(Case::ground).collect();
+        let run = |(case, ground): (&Case, _)| self.conditions.run(case.structure, ground);
+        let runs: Vec<_> = cases.iter().zip(&grounds).map(run).collect();
+        found_each(&runs, |at, found| done(indices[at], Outcome::found(&runs[at], found)));
+    }
+
     /// Every run, in this order.
     pub fn cases(&self) -> impl Iterator<Item = Case<'_>> {
         (0..self.len()).map(|index| self.case(index))
@@ -319,8 +330,12 @@ impl Case<'_> {
 
     /// Does it while `watch` sees it go by.
     pub fn outcome_watched(&self, watch: &mut impl Watch) -> Outcome {
-        let ground = self.motion.record.clone().multiplied(self.factor());
-        Outcome::of(&self.conditions.run(self.structure, &ground), watch)
+        Outcome::of(&self.conditions.run(self.structure, &self.ground()), watch)
+    }
+
+    /// The ground motion as it is scaled.
+    fn ground(&self) -> Record {
+        self.motion.record.clone().multiplied(self.factor())
     }
 
     /// How strong the ground motion is, in the unit of `measure`.

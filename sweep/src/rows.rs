@@ -5,7 +5,7 @@
 use crate::outcome::{MEASURES, Outcome};
 use crate::plan::{AXES, Case, Conditions, NamedRecord, Plan};
 use crate::row_file::{Known, Program, RowFile, digest, fixed, heading, line};
-use anyhow::ensure;
+use anyhow::{bail, ensure};
 use csv::StringRecord;
 use rayon::prelude::*;
 use rocking::estimates::intensity::IntensityMeasure;
@@ -13,7 +13,7 @@ use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::Ending;
 use rocking::run::validity::{ASSUMPTIONS, Findings, Limits, Validity};
 use serde::Serialize;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::OnceLock;
 use uuid::Uuid;
@@ -23,6 +23,13 @@ pub const FAILED: &str = "failed";
 
 /// How many numbers a row has of the check of validity.
 const BEYOND: usize = 2 * ASSUMPTIONS.len() + 2;
+
+/// Runs that a thread does together: enough for full lanes to the end, and few enough to share them out and to stop soon.
+const FEWEST_TOGETHER: usize = 16;
+const MOST_TOGETHER: usize = 64;
+
+/// How often each thread takes runs, if there are few.
+const SHARES: usize = 4;
 
 /// A plan with its runs, as far as they are done.
 #[derive(Debug)]
@@ -86,6 +93,7 @@ impl<'a> Sweep<'a> {
         path: Option<&Path>,
     ) -> anyhow::Result<Sweep<'a>> {
         let digests: Vec<_> = plan.motions().iter().map(digest_of).collect();
+        check_records(plan.motions(), &digests)?;
         let keys = keys(plan, &digests, validity, program);
         let digests = digests.iter().map(|digest| format!("{:016x}", digest.as_u64_pair().0)).collect();
         ensure!(
@@ -109,15 +117,32 @@ impl<'a> Sweep<'a> {
     /// Does the runs that are not done, on all threads, and adds their rows to the file as they end. After each run
     /// `goes_on` is asked; once it says no, the rest is left undone and that is an error.
     pub fn finish(&self, goes_on: impl Fn() -> bool + Sync) -> anyhow::Result<()> {
-        self.missing().par_iter().try_for_each(|&index| {
-            let done = self.run(index);
-            if let Some(file) = &self.file {
-                file.append(&line(&(self.keys[index].to_string(), self.row(index, &done)))?)?;
+        let missing = self.missing();
+        let share = missing.len() / (SHARES * rayon::current_num_threads());
+        missing.par_chunks(share.clamp(FEWEST_TOGETHER, MOST_TOGETHER)).try_for_each(|indices| {
+            let mut result = Ok(());
+            let mut keep = |index, done| {
+                result = self.keep(index, done, &goes_on);
+                result.is_ok()
+            };
+            if self.validity {
+                indices.iter().all(|index| keep(*index, self.run_with_validity(*index)));
+            } else {
+                let done = |outcome| Done { outcome, beyond: Box::default() };
+                self.plan.each_outcome(indices, |index, outcome| keep(index, done(outcome)));
             }
-            self.done[index].set(done).expect("each run is done once");
-            ensure!(goes_on(), "stopped: the runs that are finished are kept");
-            Ok(())
+            result
         })
+    }
+
+    /// Keeps the run that is `done`, and adds its row to the file. Fails if the sweep no longer `goes_on`.
+    fn keep(&self, index: usize, done: Done, goes_on: &impl Fn() -> bool) -> anyhow::Result<()> {
+        if let Some(file) = &self.file {
+            file.append(&line(&(self.keys[index].to_string(), self.row(index, &done)))?)?;
+        }
+        self.done[index].set(done).expect("each run is done once");
+        ensure!(goes_on(), "stopped: the runs that are finished are kept");
+        Ok(())
     }
 
     /// The key of every run of the plan, which its row begins with, and what became of it, once all are done.
@@ -134,19 +159,18 @@ impl<'a> Sweep<'a> {
         let added = Some(measure).filter(|measure| !IntensityMeasure::COLUMNS.contains(measure));
         let headings = headings().into_iter().skip(1).chain(added.map(|of| heading(of.name(), of.unit())));
         let mut columns: Vec<_> = headings.map(|heading| (heading, Column::of(rows))).collect();
+        let mut texts = vec![HashMap::new(); columns.len()];
         for (index, done) in done() {
             let added = added.map(|measure| Cell::Number(self.plan.case(index).intensity(measure)));
             let cells = self.row(index, done).into_iter().chain(added);
-            columns.iter_mut().zip(cells).for_each(|((_, column), cell)| column.push(cell));
+            let columns = columns.iter_mut().zip(&mut texts);
+            columns.zip(cells).for_each(|(((_, column), texts), cell)| column.push(cell, texts));
         }
         (done().map(|(index, _)| self.keys[index]).collect(), columns)
     }
 
-    fn run(&self, index: usize) -> Done {
+    fn run_with_validity(&self, index: usize) -> Done {
         let case = self.plan.case(index);
-        if !self.validity {
-            return Done { outcome: case.outcome(), beyond: Box::default() };
-        }
         let found = Findings::since(case.motion.record().start());
         let mut validity = Validity::new(&case.structure, Limits::default(), found);
         let outcome = case.outcome_watched(&mut validity);
@@ -197,35 +221,35 @@ impl Column {
         Column::Counts(Vec::with_capacity(rows))
     }
 
-    /// Adds the value of the next row. The values decide whether the column has counts, numbers or texts.
-    fn push(&mut self, cell: Cell) {
+    /// Adds the value of the next row. The values decide whether the column has counts, numbers or texts. The positions of its
+    /// texts are kept in `known`.
+    fn push(&mut self, cell: Cell, known: &mut HashMap<String, usize>) {
         match (&mut *self, cell) {
             (Column::Counts(of), Cell::Count(count)) => of.push(count),
             (Column::Numbers(of), Cell::Count(count)) => of.push(count as f64),
             (Column::Numbers(of), Cell::Number(number)) => of.push(number),
             (Column::Numbers(of), Cell::Empty) => of.push(f64::NAN),
             (Column::Texts(texts, of), Cell::Text(text)) => {
-                let last = of.last().copied().filter(|at| texts.get(*at).is_some_and(|last| last == text));
-                let known = last.or_else(|| texts.iter().position(|known| known == text));
-                of.push(known.unwrap_or(texts.len()));
-                if known.is_none() {
+                of.push(known.get(text).copied().unwrap_or(texts.len()));
+                if of.last() == Some(&texts.len()) {
+                    known.insert(text.into(), texts.len());
                     texts.push(text.into());
                 }
             }
             (Column::Texts(_, of), Cell::Empty) => of.push(usize::MAX),
-            (_, Cell::Ending(ending)) => self.push(Cell::Text(&ending.to_string())),
+            (_, Cell::Ending(ending)) => self.push(Cell::Text(&ending.to_string()), known),
             (Column::Numbers(of), Cell::Text(_)) => {
                 // nothing so far
                 let mut positions = Vec::with_capacity(of.capacity());
                 positions.resize(of.len(), usize::MAX);
                 *self = Column::Texts(Vec::new(), positions);
-                self.push(cell);
+                self.push(cell, known);
             }
             (Column::Counts(of), cell) => {
                 let mut numbers = Vec::with_capacity(of.capacity());
                 numbers.extend(of.iter().map(|count| *count as f64));
                 *self = Column::Numbers(numbers);
-                self.push(cell);
+                self.push(cell, known);
             }
             (Column::Texts(..), cell) => unreachable!("a column of texts has {cell:?}"),
         }
@@ -240,6 +264,18 @@ fn digest_of(motion: &NamedRecord) -> Uuid {
         None => digest(&Uuid::NAMESPACE_OID, &samples),
         Some(vertical) => digest(&Uuid::NAMESPACE_OID, &(samples, vertical)),
     }
+}
+
+/// Refuses two ground motions with the same samples and scale: each of their runs would count twice.
+fn check_records(motions: &[NamedRecord], digests: &[Uuid]) -> anyhow::Result<()> {
+    let mut seen = HashMap::new();
+    for (motion, digest) in motions.iter().zip(digests) {
+        if let Some(first) = seen.insert((digest, motion.scale().to_bits()), motion.name()) {
+            let second = motion.name();
+            bail!("the ground motions {first:?} and {second:?} are the same and would count twice: leave one out");
+        }
+    }
+    Ok(())
 }
 
 /// The key of each run of `plan`, which is another one where it is asked what a run goes beyond.
@@ -288,4 +324,35 @@ fn headings() -> Vec<String> {
         fixed(&["energy_gains", "settlings", "reason"]),
     ]
     .concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Population;
+    use rocking::Parameters;
+    use rocking::run::record::Record;
+
+    #[test]
+    fn a_record_and_its_copy_are_refused_and_a_record_at_two_scales_is_not() {
+        let program = Program { build: Uuid::nil(), version: "0".into() };
+        let opened = |scale: f64| {
+            let record = Record::from_samples("", vec![0.0, 1.0], vec![0.0, 1.0]).unwrap();
+            let copies = [("one", 1.0), ("two", scale)];
+            let motions = copies.map(|(name, scale)| NamedRecord::new(name, record.clone(), scale).unwrap());
+            let only = Population::new("only", Parameters::EVISON);
+            let plan = Plan::new(vec![only], motions.into(), vec![1.0]).unwrap();
+            Sweep::open(&plan, false, &program, None).map(|_| ()).map_err(|error| error.to_string())
+        };
+        let refused = "the ground motions \"one\" and \"two\" are the same and would count twice: leave one out";
+        assert_eq!((opened(1.0), opened(-1.0)), (Err(refused.into()), Ok(())));
+    }
+
+    #[test]
+    fn a_column_has_each_text_once() {
+        let (mut column, mut known) = (Column::of(5), HashMap::new());
+        let cells = [Cell::Empty, Cell::Text("a"), Cell::Text("b"), Cell::Text("a"), Cell::Empty];
+        cells.into_iter().for_each(|cell| column.push(cell, &mut known));
+        assert_eq!(column, Column::Texts(vec!["a".into(), "b".into()], vec![usize::MAX, 0, 1, 0, usize::MAX]));
+    }
 }
