@@ -1,8 +1,10 @@
 //! Runs from outside: levels compared on fine records, ends, start times.
 
+use rocking::run::levels::Criterion;
 use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError, levels};
-use rocking::{Detail, Engine, Parameters, Ramp, State, Structure};
+use rocking::structure::{Mode, Ties};
+use rocking::{Body, Detail, Engine, Floor, Frame, Modes, Parameters, Ramp, State, Structure};
 
 /// However finely a record is sampled, the histories of two levels are as far apart.
 #[test]
@@ -44,6 +46,89 @@ fn comparing_levels_takes_no_more_memory_for_more_of_them() {
         let long = most(dt, samples);
         assert!(long < 10_000_000.max(2 * short), "{dt} s, {samples} samples: {long} bytes beside {short}");
     }
+}
+
+/// A wave that grows to `amplitude` (m/s²) over 3 s.
+fn growing(amplitude: f64) -> Record {
+    let times: Vec<_> = (0..=300).map(|i| 0.01 * f64::from(i)).collect();
+    let wave = times.iter().map(|t| amplitude * t / 3.0 * (9.0 * t).sin()).collect();
+    Record::from_samples("growing", times, wave).unwrap()
+}
+
+/// One mass as the only mode of a structure of many masses: the errors of its levels are those of one mass.
+#[test]
+fn the_levels_of_one_mode_have_the_errors_of_one_mass() {
+    let parameters = Parameters { f_fc: 2.0, ..Parameters::MCMANUS };
+    let structure = Structure::new(parameters).unwrap();
+    let Parameters { m, m0, H, B, J0, r, g, c_ratio, f_fc, zeta_fc, .. } = parameters;
+    let body = Body { m0, J0, m_s: m, S_1: m * H, I_2: m * H * H, B, r: Some(r), g, c_ratio, ties: Ties::default() };
+    let root = m.sqrt();
+    let mode = Mode::new(std::f64::consts::TAU * f_fc, zeta_fc, root, root * H);
+    let floor = Floor { mass: m, height: H, shape: Modes::new(&[1.0 / root]) };
+    let frame = Frame::new(body, &[mode], &[floor]).unwrap();
+    let ground = growing(3.0);
+    let one = levels::compare(&Run { tolerance: 1e-9, ..Run::new(structure, &ground) }).unwrap();
+    let many = levels::compare(&Run { tolerance: 1e-9, ..Run::of_modes(frame, &ground) }).unwrap();
+    assert_eq!(one.reference.transitions, many.reference.transitions);
+    let mut compared = 0;
+    for verdict in &many.verdicts {
+        let is_same = |of: &&levels::Verdict| of.response.choice.detail == verdict.response.choice.detail;
+        let expected = one.verdicts.iter().find(is_same).unwrap();
+        for (error, expected) in verdict.errors.iter().zip(expected.errors) {
+            assert!(
+                (error - expected).abs() < 1e-6 * expected.max(1e-2),
+                "{:?}: {error} {expected}",
+                verdict.response.choice
+            );
+        }
+        compared += 1;
+    }
+    assert_eq!(compared, 5);
+    assert!(one.verdicts[0].errors[0] == 1.0 && one.verdicts[3].errors[1] > 1e-3);
+}
+
+/// Fewer modes cost less and err more. Advice names how many of them are enough.
+#[test]
+fn a_level_of_a_frame_is_also_how_many_modes_are_kept() {
+    let frame = Frame::new(
+        Body {
+            m0: 20e3,
+            J0: 3e4,
+            m_s: 110e3,
+            S_1: 735e3,
+            I_2: 5.7575e6,
+            B: 1.5,
+            r: Some(0.93),
+            g: 9.81,
+            c_ratio: 1.0,
+            ties: Ties::default(),
+        },
+        &[(2.79631878, 97782.91, 7.652647), (7.16132844, 9645.66, -1.689684), (10.06584242, 2571.43, 1.166667)].map(
+            |(f, mass, height): (f64, f64, f64)| {
+                Mode::new(std::f64::consts::TAU * f, 0.02, mass.sqrt(), mass.sqrt() * height)
+            },
+        ),
+        &[],
+    )
+    .unwrap();
+    let ground = growing(4.0);
+    let comparison = levels::compare(&Run::of_modes(frame, &ground)).unwrap();
+    let errors = |detail, kept| {
+        let is_it =
+            |of: &&levels::Verdict<Modes>| of.response.choice == levels::Choice { detail, modes: Some([kept, 3]) };
+        let verdict = comparison.verdicts.iter().find(is_it).unwrap();
+        (verdict.errors, verdict.response.cost())
+    };
+    let [one, two, all] = [1, 2, 3].map(|kept| errors(Detail::Auto, kept));
+    assert!(all.0.iter().all(|error| *error < 1e-12) && all.1 > two.1 && two.1 > one.1);
+    assert!(one.0.iter().zip(two.0).all(|(one, two)| *one > 1.3 * two || *one == 0.0), "{one:?} {two:?}");
+    assert_eq!(errors(Detail::FixedBase, 3).0[0], 1.0);
+    let advised = |within, criteria: &[Criterion]| {
+        comparison.recommended(within, criteria).map(|verdict| verdict.response.choice.to_string())
+    };
+    assert_eq!(advised(0.05, &[Criterion::Theta]).as_deref(), Some("linear, 1 of 3"));
+    assert_eq!(advised(0.05, &[Criterion::Theta, Criterion::At]).as_deref(), Some("linear, 3 of 3"));
+    assert_eq!(advised(0.001, &Criterion::ALL).as_deref(), Some("auto, 3 of 3"));
 }
 
 #[test]

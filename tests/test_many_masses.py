@@ -265,4 +265,30 @@ def test_the_command_line_shows_a_building_as_the_module_does(run, exporter, tmp
 def test_a_command_that_takes_one_mass_says_which_take_many(exporter, tmp_path):
     (tmp_path / "one.toml").write_text("zeta = 0.02\n[base]\nm0 = 1\nJ0 = 1\nB = 1\n[[storeys]]\nm = 1\nh = 3\nk = 100\n")
     done = subprocess.run([exporter, "pushover", "--parameters", "one.toml"], cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 1 and "describe and simulate take many masses" in done.stderr
+    assert done.returncode == 1 and "describe, simulate and advise take many masses" in done.stderr
+
+
+def test_advice_names_how_many_modes_are_enough(exporter, tmp_path):
+    """Its errors are those of runs with so many modes, and the command line has the same."""
+    frame, record = of_storeys(), fr.pulse("ricker", amplitude=0.4, frequency=1.5)
+    advice = fr.advise(frame, record, within=0.05, of=["theta", "u"])
+    level = {(of["level"], of["modes"]): of for of in advice.levels}
+    assert {modes for _, modes in level} == {0, 1, 2, 3} and 0 < advice.modes < 3
+    exact = fr.simulate(frame, record, detail="nonlinear", tolerance=1e-12).peaks
+    found = fr.simulate(frame.replace(keep=advice.modes), record, detail=advice.detail).peaks
+    error = {name: abs(found[name] / exact[name] - 1) for name in exact if name != "a_g"}
+    row = level[advice.detail, advice.modes]
+    assert row["theta"] == pytest.approx(error["theta"], rel=1e-6)
+    for name, more in (("u", []), ("a_t", ["V_t", "M_t"])):
+        assert row[name] == pytest.approx(max(error[of] for of in [f"{name}[1]", f"{name}[2]", f"{name}[3]", *more]), rel=1e-6)
+    assert row["u"] < 0.05 < level[advice.detail, advice.modes - 1]["u"]
+    assert f"use detail = {advice.detail} and keep = {advice.modes} of 3 modes" in str(advice)
+
+    record.write(tmp_path / "record.csv")
+    tables = [f"[[storeys]]\nm = {of['m']}\nh = {of['h']}\nk = {of['k']}\n" for of in STOREYS]
+    base = "".join(f"{name} = {value}\n" for name, value in BASE.items())
+    (tmp_path / "frame.toml").write_text("zeta = 0.02\n[base]\n" + base + "".join(tables))
+    command = [exporter, "--quiet", "advise", "--parameters", tmp_path / "frame.toml", "--record", tmp_path / "record.csv",
+               "--within", "5%", "--of", "theta,u", "--format", "json"]
+    rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
+    assert [(of["level"], of["modes"]) for of in rows if of["advised"]] == [(advice.detail, advice.modes)]

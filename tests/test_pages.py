@@ -66,7 +66,7 @@ def compare(written, page):
 @pytest.mark.heavy
 @pytest.mark.parametrize("page, module", [
     ("paper", "validation"), ("literature", "literature"), ("overturning", "overturning"), ("restrained", "restrained"),
-    ("coupling", "coupling"), ("model_exchange", "model_exchange")])
+    ("modes", "modes"), ("coupling", "coupling"), ("model_exchange", "model_exchange")])
 def test_a_page_of_evidence_is_what_its_command_writes(page, module, exporter, export, tmp_path):
     folder = pages.prepare(tmp_path / "page", exporter)
     for preset in ("mcmanus", "evison"):

@@ -657,7 +657,7 @@ def test_formats_read_back(tmp_path):
             assert numbers(state) == (of.probability(levels).tolist() if levels else counted)
 
 
-@pytest.mark.parametrize("name", ["python", "frames", "choose_numbers", "questions"])
+@pytest.mark.parametrize("name", ["python", "frames", "choose_numbers", "questions", "contents"])
 def test_a_page_of_the_module_prints_what_it_shows(name, tmp_path, monkeypatch):
     """WRITE_PAGE=1 writes what is printed into it."""
     page = ROOT / "docs" / "howto" / f"{name}.md"

@@ -10,7 +10,12 @@ use crate::{
 };
 use anyhow::Context;
 use rocking::run::levels::{self, Criterion};
-use rocking_report::advice::{rows, text};
+use rocking::run::record::Record;
+use rocking::run::validity::Validity;
+use rocking::structure::any::AnyStructure;
+use rocking::{Modes, Watch};
+use rocking_report::advice::{Advised, rows, text};
+use rocking_report::shown::Shown;
 use rocking_sweep::plan::Conditions;
 
 /// Arguments of `advise`.
@@ -37,7 +42,7 @@ struct AllowedArgs {
     #[arg(long, value_name = "ERROR", default_value = "5%", value_parser = relative_error)]
     within: f64,
     /// Results whose errors must not exceed --within. `theta`, `u` and `a_t` are the peaks of rotation, elastic displacement
-    /// and acceleration of the top mass; V_t and M_t have the error of a_t. The error of a history is the largest difference
+    /// and acceleration of the top mass, or of the floor where the error is largest; V_t and M_t count with a_t. The error of a history is the largest difference
     /// as a fraction of the largest value. Overturning must be predicted right in any case
     #[arg(long, value_name = "LIST", value_parser = one_of(Criterion::ALL.map(|of| (of.name(), of))), num_args = 1.., value_delimiter = ',', default_values = Criterion::ALL.map(Criterion::name))]
     of: Vec<Criterion>,
@@ -56,21 +61,40 @@ fn relative_error(text: &str) -> Result<f64, String> {
 
 /// Runs the levels and prints the table and the advice.
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
-    let limits = args.limits.limits()?;
-    let structure = args.structure.load()?;
+    args.limits.limits()?;
+    let structure = args.structure.load_any()?;
     let (initial, duration) = (args.initial.state(), args.ground.duration());
     let conditions = Conditions { initial, duration, ..Conditions::default() };
-    conditions.check(&structure)?;
-    let ground = args.ground.load(structure.parameters().g)?;
-    let run = conditions.run(structure, &ground);
-    let comparison = levels::compare(&run).context("detail = nonlinear")?;
+    match &structure {
+        AnyStructure::One(one) => f64::check(one, &conditions)?,
+        AnyStructure::Many(frame) => Modes::check(frame, &conditions)?,
+    }
+    let ground = args.ground.load(structure.base().g)?;
+    let cause = Cause::of_any(&structure).under(&args.ground.record, &ground).with_initial(initial);
+    match &structure {
+        AnyStructure::One(one) => advise::<f64>(args, one, &ground, &conditions, &cause),
+        AnyStructure::Many(frame) => advise::<Modes>(args, frame, &ground, &conditions, &cause),
+    }
+}
 
+/// The same for a `structure` of one mass or of many.
+fn advise<Q: Advised>(
+    args: &AdviseArgs,
+    structure: &Q::Structure,
+    ground: &Record,
+    conditions: &Conditions,
+    cause: &Cause,
+) -> anyhow::Result<()>
+where
+    Validity<Q>: Watch<Q>,
+{
+    let limits = args.limits.limits()?;
+    let run = Q::run(structure, ground, conditions)?;
+    let comparison = levels::compare(&run).context("detail = nonlinear")?;
     let (within, criteria) = (args.allowed.within, &args.allowed.of);
     let advised = comparison.recommended(within, criteria);
-    let title = args.ground.title(&ground);
-    let text = || text(&title, &run, &comparison, (within, criteria), limits);
-    let cause = &Cause::new(&structure).under(&args.ground.record, &ground).with_initial(initial);
-    args.results.print(text, &Traced { cause, rows: &rows(&comparison, advised) })
+    let text = || text(&args.ground.title(ground), &run, &comparison, (within, criteria), limits);
+    args.results.print(text, &Traced { cause, rows: &rows(structure, &comparison, advised) })
 }
 
 #[cfg(test)]

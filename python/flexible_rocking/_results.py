@@ -97,12 +97,13 @@ class Worst(NamedTuple):
 class Advice:
     """Every level of detail on one scene, and which is the cheapest that will do: what `advise` returns.
 
-    detail: the recommended level, or None if no level is good enough. text: the printed form.
-    levels: a dict each, with level, relative errors by criterion, overturned (None if it still rocks), steps, evaluations,
+    detail: the recommended level, or None if no level is good enough. modes: how many modes to keep, or None for one mass.
+    text: the printed form. levels: a dict each, with level, modes (only of many masses), relative errors by criterion, overturned (None if it still rocks), steps, evaluations,
     cost_of_auto (steps and evaluations as a multiple of those of auto).
     """
 
     detail: str | None
+    modes: int | None
     levels: list[dict[str, Any]]
     text: str
 

@@ -7,13 +7,17 @@ use crate::structure::Structure;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
-use rocking::Detail;
 use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::engine::motion::Work;
 use rocking::estimates::demand::INSTANT_TRANSITION;
-use rocking::run::levels::{Criterion, Verdict, compare};
-use rocking::run::validity::Limits;
+use rocking::run::levels::{Choice, Criterion, Response, Verdict, compare};
+use rocking::run::validity::{Limits, Validity};
+use rocking::structure::any::AnyStructure;
+use rocking::{Detail, Modes, Watch};
+use rocking_report::advice::Advised;
 use rocking_report::quantities::write_columns;
 use rocking_report::{advice, estimate as estimates};
+use rocking_sweep::plan::Conditions;
 
 /// The criteria that `value` names: one name, or several.
 fn criteria(value: &Bound<'_, PyAny>) -> PyResult<Vec<Criterion>> {
@@ -24,9 +28,10 @@ fn criteria(value: &Bound<'_, PyAny>) -> PyResult<Vec<Criterion>> {
 }
 
 /// Runs every level of detail and names the cheapest level whose errors stay `within` a part of the reference,
-/// `nonlinear` at the tolerance 1e-12, or the simplest of equally cheap levels.
+/// `nonlinear` at the tolerance 1e-12, or the simplest of equally cheap levels. A level of a structure of many masses is also how
+/// many of its modes are kept; the rest of its mass rides rigidly.
 ///
-/// of: what must stay within it, one or several of "theta", "u", "a_t" (peaks) and "theta_history", "u_history", "a_t_history";
+/// of: what must stay within it, one or several of "theta", "u", "a_t" (peaks, of many masses those of every floor) and "theta_history", "u_history", "a_t_history";
 /// without it all of them. duration and initial values as in `simulate`. Raises ValueError where the reference cannot
 /// be run.
 #[pyfunction]
@@ -46,32 +51,56 @@ pub fn advise<'py>(
     }
     let criteria = of.map_or(Ok(Criterion::ALL.into()), criteria)?;
     let conditions = conditions(Detail::Auto, DEFAULT_TOLERANCE, duration, initial)?;
-    let structure = structure.one("advise")?;
-    conditions.check(&structure).map_err(refused)?;
-    let record = record.0.get().under(structure.parameters().g);
-    let (text, detail, levels) = interruptible(py, move |_| -> anyhow::Result<_> {
-        let run = conditions.run(structure, &record);
+    match &structure.of {
+        AnyStructure::One(structure) => advised::<f64>(py, *structure, record, conditions, within, criteria),
+        AnyStructure::Many(frame) => advised::<Modes>(py, frame.clone(), record, conditions, within, criteria),
+    }
+}
+
+fn advised<Q: Advised>(
+    py: Python<'_>,
+    structure: Q::Structure,
+    record: Ground,
+    conditions: Conditions,
+    within: f64,
+    criteria: Vec<Criterion>,
+) -> PyResult<Bound<'_, PyAny>>
+where
+    Validity<Q>: Watch<Q>,
+{
+    Q::check(&structure, &conditions).map_err(refused)?;
+    let record = record.0.get().under(Q::base(&structure).g);
+    let (text, advised, levels) = interruptible(py, move |_| -> anyhow::Result<_> {
+        let run = Q::run(&structure, &record, &conditions)?;
         let comparison = compare(&run)?;
         let title = format!("{}, {} samples", record.title(), record.times().len());
         let text = advice::text(&title, &run, &comparison, (within, &criteria), Limits::default())?;
-        let detail = comparison.recommended(within, &criteria).map(|verdict| verdict.response.detail.name());
-        let cost = |verdict: &Verdict| comparison.cost_over_auto(&verdict.response);
-        let levels: Vec<_> = comparison.verdicts.iter().map(|verdict| (verdict.clone(), cost(verdict))).collect();
-        Ok((text, detail, levels))
+        let advised = comparison.recommended(within, &criteria).map(|verdict| verdict.response.choice);
+        let level = |Verdict { response, errors, .. }: &Verdict<Q>| {
+            let Response { choice, ending, work, .. } = response;
+            (*choice, *errors, ending.overturned(), *work, comparison.cost_over_auto(response))
+        };
+        Ok((text, advised, comparison.verdicts.iter().map(level).collect::<Vec<_>>()))
     })?;
-    let level = |(verdict, cost): &(Verdict, Option<f64>)| {
+    let level = |(choice, errors, overturned, work, cost): &(Choice, [f64; 6], Option<bool>, Work, Option<f64>)| {
         let level = PyDict::new(py);
-        level.set_item("level", verdict.response.detail.name())?;
-        for (criterion, error) in Criterion::ALL.iter().zip(verdict.errors) {
+        level.set_item("level", choice.detail.name())?;
+        if let Some([kept, _]) = choice.modes {
+            level.set_item("modes", kept)?;
+        }
+        for (criterion, error) in Criterion::ALL.iter().zip(errors) {
             level.set_item(criterion.name(), error)?;
         }
-        level.set_item("overturned", verdict.response.ending.overturned())?;
-        level.set_item("steps", verdict.response.work.steps)?;
-        level.set_item("evaluations", verdict.response.work.evaluations)?;
+        level.set_item("overturned", overturned)?;
+        level.set_item("steps", work.steps)?;
+        level.set_item("evaluations", work.evaluations)?;
         level.set_item("cost_of_auto", cost)?;
         Ok(level)
     };
-    result(py, "Advice", (detail, levels.iter().map(level).collect::<PyResult<Vec<_>>>()?, text))
+    let levels = levels.iter().map(level).collect::<PyResult<Vec<_>>>()?;
+    let detail = advised.map(|choice| choice.detail.name());
+    let modes = advised.and_then(|choice| choice.modes).map(|[kept, _]| kept);
+    result(py, "Advice", (detail, modes, levels, text))
 }
 
 /// The demands without a time history (Eqs 4, 21 to 24), a dict of numbers by name in SI units; printed, with units and

@@ -64,7 +64,9 @@ pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Frame> {
             J_P,
         }),
     };
-    let described = Described { zeta: damping(&zeta)?, storeys, floors, K, modes, total, base: given(&keywords.0)? };
+    let keep = keywords.take("keep")?.map(|keep| keep.extract()).transpose()?;
+    let described =
+        Described { zeta: damping(&zeta)?, storeys, floors, K, modes, total, keep, base: given(&keywords.0)? };
     described.frame().map_err(refused)
 }
 

@@ -2,43 +2,87 @@
 
 use crate::estimate::Estimate;
 use crate::quantities::{Number, in_readable_unit};
+use crate::shown::{Named, Shown};
 use crate::significant::{short, significant};
 use crate::validity;
 use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::estimates::effective_frequency::effective_frequency;
-use rocking::run::record::Record;
 use rocking::{
-    Detail, Structure,
+    Detail, Modes, Structure, Watch,
     engine::DEFAULT_TOLERANCE,
     run::{
         LONGEST_REST, Run,
-        levels::{self, Comparison, Criterion, REFERENCE_TOLERANCE, RULE, Response, Verdict},
-        peaks::PEAKS,
-        validity::Limits,
+        levels::{self, Choice, Compared, Comparison, Criterion, REFERENCE_TOLERANCE, RULE, Response, Verdict},
+        validity::{Limits, Validity},
     },
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 
+/// Structures whose levels of detail are shown.
+pub trait Advised: Shown + Compared {
+    /// The effective frequency of rocking at an angle (Eq 14), Hz.
+    fn effective_frequency(_: &Self::Structure, _theta: f64) -> Option<f64> {
+        None
+    }
+
+    /// Prints what is known without a time history as one more row.
+    fn print_estimate(_: &mut String, _: &Run<Self>, _: &Comparison<Self>) -> fmt::Result {
+        Ok(())
+    }
+}
+
+impl Advised for f64 {
+    fn effective_frequency(structure: &Structure, theta: f64) -> Option<f64> {
+        effective_frequency(structure, theta).ok()
+    }
+
+    /// The demand of the whole record (Eqs 21 to 24).
+    fn print_estimate(out: &mut String, run: &Run, comparison: &Comparison) -> fmt::Result {
+        let demand = match Estimate::new(&run.structure, Some(run.ground), INSTANT_TRANSITION) {
+            Ok(estimate) => estimate.demand,
+            Err(error) => return writeln!(out, "  {:<10} not possible here: {error}", "estimate"),
+        };
+        let a_t = comparison.reference.peaks.a_t().magnitude;
+        let error = percent(levels::relative(((demand.a_t - a_t).abs(), a_t)));
+        writeln!(out, "  {:<10} {:>8} {:>8} {error:>13}", "estimate", "-", "-")
+    }
+}
+
+impl Advised for Modes {}
+
+/// The peaks of the reference that people read, of several floors the largest.
+fn largest<Q: Advised>(run: &Run<Q>, peaks: &Q::Peaks) -> Vec<(Named, f64)> {
+    let all = Q::peaks(&run.structure, peaks);
+    let largest = |symbol: &&str| {
+        let of_symbol = all.iter().filter(|((name, _), _)| name.split('[').next() == Some(symbol));
+        let (named, peak) = of_symbol.max_by(|(_, a), (_, b)| a.magnitude.total_cmp(&b.magnitude))?;
+        Some((named.clone(), peak.magnitude))
+    };
+    ["theta", "u", "a_t", "V_t", "M_t"].iter().filter_map(largest).collect()
+}
+
 /// The table and the advice on `run` under the ground motion that `title` names, for people. `allowed` is an error and the
 /// criteria to which it applies.
-pub fn text(
+pub fn text<Q: Advised>(
     title: &str,
-    run: &Run,
-    comparison: &Comparison,
+    run: &Run<Q>,
+    comparison: &Comparison<Q>,
     allowed: (f64, &[Criterion]),
     limits: Limits,
-) -> anyhow::Result<String> {
-    let (structure, ground) = (&run.structure, run.ground);
+) -> anyhow::Result<String>
+where
+    Validity<Q>: Watch<Q>,
+{
     let advised = comparison.recommended(allowed.0, allowed.1);
     let mut out = String::new();
     writeln!(out, "Ground motion: {title}")?;
-    print_reference(&mut out, structure, comparison)?;
+    print_reference(&mut out, run, comparison)?;
     print_levels(&mut out, comparison, advised)?;
-    print_estimate(&mut out, structure, ground, comparison)?;
-    for (detail, error) in &comparison.refused {
-        writeln!(out, "  {:<10} not possible here: {error:#}", detail.name())?;
+    Q::print_estimate(&mut out, run, comparison)?;
+    for (choice, error) in &comparison.refused {
+        writeln!(out, "  {choice:<10} not possible here: {error:#}")?;
     }
     print_advice(&mut out, comparison, advised, allowed)?;
     match &comparison.without_vertical {
@@ -48,42 +92,54 @@ pub fn text(
     }
     let (found, _) = run.validity(limits)?;
     writeln!(out)?;
-    for line in validity::section::<f64>(structure, run.detail, &found, &limits) {
+    for line in validity::section::<Q>(&run.structure, run.detail, &found, &limits) {
         writeln!(out, "{line}")?;
     }
     Ok(out)
 }
 
-fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Comparison) -> fmt::Result {
-    let reference = &comparison.reference;
-    let (peaks, g) = (&reference.peaks, structure.parameters().g);
-    let theta = peaks.theta().magnitude;
-    let [u, a_t] = [1e3 * peaks.u().magnitude, peaks.a_t().magnitude / g].map(significant);
-    let [V_t, M_t] = [(peaks.V_t(), "N"), (peaks.M_t(), "N.m")]
-        .map(|(peak, unit)| in_readable_unit(peak.magnitude, unit, significant));
-    writeln!(out, "Reference: nonlinear, tolerance {REFERENCE_TOLERANCE:e}, {} transitions", reference.transitions)?;
+fn print_reference<Q: Advised>(out: &mut impl Write, run: &Run<Q>, comparison: &Comparison<Q>) -> fmt::Result {
+    let (reference, base) = (&comparison.reference, Q::base(&run.structure));
+    let peaks = largest(run, &reference.peaks);
+    let shown = |((name, unit), magnitude): &(Named, f64)| match *unit {
+        "m" => format!("{name} {} mm", significant(1e3 * magnitude)),
+        "m/s2" => format!("{name} {} g", significant(magnitude / base.g)),
+        unit => format!("{name} {}", in_readable_unit(*magnitude, unit, significant)),
+    };
+    let shown: Vec<_> = peaks.iter().map(shown).collect();
+    let level =
+        if reference.choice.modes.is_some() { reference.choice.to_string() + " modes" } else { "nonlinear".into() };
+    writeln!(out, "Reference: {level}, tolerance {REFERENCE_TOLERANCE:e}, {} transitions", reference.transitions)?;
     if reference.ending.overturned().is_none() {
-        let limit = significant(LONGEST_REST / structure.p_l);
+        let limit = significant(LONGEST_REST / base.p_l);
         writeln!(
             out,
             "  it still rocks {limit} s after the record: whether it overturns is not known; see --duration"
         )?;
     }
-    writeln!(out, "  peaks: theta {} rad, u {u} mm, a_t {a_t} g, V_t {V_t}, M_t {M_t}", significant(theta))?;
+    writeln!(out, "  peaks: {}", shown.join(", "))?;
     if reference.ending.overturned() == Some(true) {
         return writeln!(out, "  the structure overturns\n");
     }
+    let theta = peaks[0].1;
     if theta == 0.0 {
-        return writeln!(out, "  the base never lifts off; the estimate is that of a base that does\n");
+        let estimate = if reference.choice.modes.is_none() { "; the estimate is that of a base that does" } else { "" };
+        return writeln!(out, "  the base never lifts off{estimate}\n");
     }
-    let Ok(f_r) = effective_frequency(structure, theta).map(significant) else { return writeln!(out) };
-    writeln!(out, "  effective frequency of rocking at that theta: {f_r} Hz (Eq 14)\n")
+    let Some(f_r) = Q::effective_frequency(&run.structure, theta) else { return writeln!(out) };
+    writeln!(out, "  effective frequency of rocking at that theta: {} Hz (Eq 14)\n", significant(f_r))
 }
 
-fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&Verdict>) -> fmt::Result {
+fn print_levels<Q: Advised>(
+    out: &mut impl Write,
+    comparison: &Comparison<Q>,
+    advised: Option<&Verdict<Q>>,
+) -> fmt::Result {
     const WIDTHS: [usize; 10] = [8, 8, 13, 8, 8, 8, 10, 8, 11, 7];
+    let names = comparison.verdicts.iter().map(|verdict| verdict.response.choice.to_string().len());
+    let longest = names.max().unwrap_or(0).max("fixed_base".len());
     let mut row = |mark: char, level: &str, cells: &[String]| {
-        write!(out, "{mark} {level:<10}")?;
+        write!(out, "{mark} {level:<longest$}")?;
         cells.iter().zip(WIDTHS).try_for_each(|(cell, width)| write!(out, " {cell:>width$}"))?;
         writeln!(out)
     };
@@ -92,7 +148,7 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
     let headings = ["theta", "u", "a_t, V_t, M_t", "theta", "u", "a_t", "overturns", "steps", "evaluations", "of auto"];
     row(' ', "level", &headings.map(str::to_owned))?;
     for Verdict { response, errors, is_right_about_overturning } in &comparison.verdicts {
-        let mark = if advised.is_some_and(|advised| advised.response.detail == response.detail) { '>' } else { ' ' };
+        let mark = if advised.is_some_and(|advised| advised.response.choice == response.choice) { '>' } else { ' ' };
         let overturned = match response.ending.overturned() {
             Some(true) => "yes",
             Some(false) => "no",
@@ -105,7 +161,7 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
         };
         let counts = [response.work.steps, response.work.evaluations].map(|count| count.to_string());
         let ratio = comparison.cost_over_auto(response).map_or("-".into(), |cost| format!("{cost:.2}"));
-        row(mark, response.detail.name(), &[&errors.map(percent)[..], &[overturns], &counts, &[ratio]].concat())?;
+        row(mark, &response.choice.to_string(), &[&errors.map(percent)[..], &[overturns], &counts, &[ratio]].concat())?;
     }
     Ok(())
 }
@@ -114,6 +170,9 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
 #[derive(Serialize)]
 pub struct Level {
     level: &'static str,
+    /// Modes that are kept, of a structure of many masses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    modes: Option<usize>,
     #[serde(flatten)]
     errors: BTreeMap<String, Number>,
     /// None if the structure still rocks at the end.
@@ -125,15 +184,20 @@ pub struct Level {
     cost_of_auto: Option<Number>,
     advised: bool,
     #[serde(flatten)]
-    peaks: BTreeMap<&'static str, f64>,
+    peaks: BTreeMap<String, f64>,
 }
 
 /// The reference, then the levels.
-pub fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Level> {
-    let row = |level, response: &Response, errors: [f64; 6], is_right_about_overturning, advised| {
+pub fn rows<Q: Advised>(
+    structure: &Q::Structure,
+    comparison: &Comparison<Q>,
+    advised: Option<&Verdict<Q>>,
+) -> Vec<Level> {
+    let row = |level, response: &Response<Q>, errors: [f64; 6], is_right_about_overturning, advised| {
         let of_criterion = |(of, error): (&Criterion, f64)| (format!("error_{}", of.name()), Number(error));
         Level {
             level,
+            modes: response.choice.modes.map(|[kept, _]| kept),
             errors: Criterion::ALL.iter().zip(errors).map(of_criterion).collect(),
             overturned: response.ending.overturned(),
             is_right_about_overturning,
@@ -141,42 +205,31 @@ pub fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Level> {
             evaluations: response.work.evaluations,
             cost_of_auto: comparison.cost_over_auto(response).map(Number),
             advised,
-            peaks: PEAKS.iter().map(|of| (of.name, of.of(&response.peaks).magnitude)).collect(),
+            peaks: Q::peaks(structure, &response.peaks)
+                .into_iter()
+                .map(|((name, _), of)| (name, of.magnitude))
+                .collect(),
         }
     };
-    let of_verdict = |level, Verdict { response, errors, is_right_about_overturning }: &Verdict| {
-        let is_advised = advised.is_some_and(|advised| level == advised.response.detail.name());
+    let of_verdict = |level, Verdict { response, errors, is_right_about_overturning }: &Verdict<Q>, is_advised| {
         row(level, response, *errors, *is_right_about_overturning, is_advised)
     };
     let reference = &comparison.reference;
     let reference = row("reference", reference, [0.0; 6], reference.ending.overturned().map(|_| true), false);
-    let levels = comparison.verdicts.iter().map(|verdict| of_verdict(verdict.response.detail.name(), verdict));
-    let without_vertical =
-        comparison.without_vertical.iter().flatten().map(|verdict| of_verdict("auto without a_v", verdict));
+    let levels = comparison.verdicts.iter().map(|verdict| {
+        let choice = verdict.response.choice;
+        let is_advised = advised.is_some_and(|advised| advised.response.choice == choice);
+        of_verdict(choice.detail.name(), verdict, is_advised)
+    });
+    let without_vertical = comparison.without_vertical.iter().flatten();
+    let without_vertical = without_vertical.map(|verdict| of_verdict("auto without a_v", verdict, false));
     [reference].into_iter().chain(levels).chain(without_vertical).collect()
 }
 
-/// The demand of the whole record without a time history (Eqs 21 to 24) as one more row.
-fn print_estimate(
+fn print_advice<Q: Advised>(
     out: &mut impl Write,
-    structure: &Structure,
-    ground: &Record,
-    comparison: &Comparison,
-) -> anyhow::Result<()> {
-    let demand = match Estimate::new(structure, Some(ground), INSTANT_TRANSITION) {
-        Ok(estimate) => estimate.demand,
-        Err(error) => return Ok(writeln!(out, "  {:<10} not possible here: {error}", "estimate")?),
-    };
-    let a_t = comparison.reference.peaks.a_t().magnitude;
-    let error = percent(levels::relative(((demand.a_t - a_t).abs(), a_t)));
-    writeln!(out, "  {:<10} {:>8} {:>8} {error:>13}", "estimate", "-", "-")?;
-    Ok(())
-}
-
-fn print_advice(
-    out: &mut impl Write,
-    comparison: &Comparison,
-    advised: Option<&Verdict>,
+    comparison: &Comparison<Q>,
+    advised: Option<&Verdict<Q>>,
     (within, criteria): (f64, &[Criterion]),
 ) -> fmt::Result {
     let names: Vec<_> = criteria.iter().map(|of| of.name()).collect();
@@ -187,15 +240,26 @@ fn print_advice(
             "\nno level stays {limit}: use detail = nonlinear with a tolerance below {DEFAULT_TOLERANCE:e}"
         );
     };
-    write!(out, "\nuse detail = {}: {RULE} {limit}", response.detail.name())?;
+    let choice = response.choice;
+    let modes = match choice.modes {
+        Some([kept, all]) if kept < all => format!(" and keep = {kept} of {all} modes"),
+        Some([_, all]) => format!(" with all {all} modes"),
+        None => String::new(),
+    };
+    write!(out, "\nuse detail = {}{modes}: {RULE} {limit}", choice.detail.name())?;
+    let auto = Choice { detail: Detail::Auto, ..comparison.reference.choice };
     match comparison.cost_over_auto(response) {
-        Some(cost) if response.detail != Detail::Auto => writeln!(out, ", at {cost:.2} times the cost of auto"),
+        Some(cost) if choice != auto => writeln!(out, ", at {cost:.2} times the cost of auto"),
         _ => writeln!(out),
     }
 }
 
 /// Effect of the vertical component: the differences of the motion on `level` ground.
-fn print_vertical(out: &mut impl Write, level: &Verdict, (within, criteria): (f64, &[Criterion])) -> fmt::Result {
+fn print_vertical<Q: Advised>(
+    out: &mut impl Write,
+    level: &Verdict<Q>,
+    (within, criteria): (f64, &[Criterion]),
+) -> fmt::Result {
     let changes: Vec<_> =
         criteria.iter().map(|of| format!("{} by {} %", of.name(), percent(level.errors[*of as usize]))).collect();
     let overturning = match level.is_right_about_overturning {

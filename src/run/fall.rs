@@ -21,7 +21,7 @@ use std::f64::consts::FRAC_PI_2;
 /// Lateral coordinates of the structures whose peaks are found.
 pub trait Peaked: Moves {
     /// Exact peaks of a motion.
-    type Peaks: Clone;
+    type Peaks: Clone + std::fmt::Debug;
 
     /// Follows `run` to the end, which `watch` sees, too. Returns the peaks before the fall and of all the motion, the start of the
     /// fall, and the end.
@@ -237,11 +237,27 @@ fn last_passing<Q: Moves>(angle: f64, side: f64, expansion: &Expansion<Q>) -> Op
 }
 
 /// Exact peaks of a structure of many masses that may fall.
-struct FallingProfile {
+#[derive(Clone, Debug)]
+pub struct FallingProfile {
     all: Profile,
     no_return: Option<f64>,
     /// The last passing of the angle of no return while |θ| is beyond, s, and the peaks until then.
     fall: Option<(f64, Profile)>,
+}
+
+impl FallingProfile {
+    /// Peaks of `frame` from `time` (s) on, before any motion.
+    pub(super) fn since(time: f64, frame: &Frame) -> FallingProfile {
+        FallingProfile { all: Profile::since(time, frame), no_return: no_return_of_many(frame), fall: None }
+    }
+
+    /// The peaks before the fall and of all the motion, and the start of the fall, s, of a run with this `ending`.
+    pub(super) fn end(self, ending: Ending) -> ([Profile; 2], Option<f64>) {
+        match self.fall.filter(|_| ending == Ending::Overturned) {
+            Some((instant, before)) => ([before, self.all], Some(instant)),
+            None => ([self.all.clone(), self.all], None),
+        }
+    }
 }
 
 impl Watch<Modes> for FallingProfile {
@@ -283,13 +299,10 @@ impl Peaked for Modes {
     type Peaks = Profile;
 
     fn followed(run: &Run<Modes>, watch: &mut impl Watch<Modes>) -> Result<Followed<Modes>, RunError> {
-        let all = Profile::since(run.ground.start(), run.start()?.structure());
-        let mut peaks = FallingProfile { all, no_return: no_return_of_many(&run.structure), fall: None };
+        let mut peaks = FallingProfile::since(run.ground.start(), run.start()?.structure());
         let finish = run.follow(&mut (&mut peaks, watch))?;
-        Ok(match peaks.fall.filter(|_| finish.ending == Ending::Overturned) {
-            Some((instant, before)) => ([before, peaks.all], Some(instant), finish),
-            None => ([peaks.all.clone(), peaks.all], None, finish),
-        })
+        let (peaks, fall) = peaks.end(finish.ending);
+        Ok((peaks, fall, finish))
     }
 }
 
@@ -310,6 +323,7 @@ impl<Q: Peaked> Run<'_, Q> {
         let ground = self.peak_of_ground(finish.motion.time);
         Found { ground, peaks, fall, start: self.ground.start(), finish }
     }
+
     /// Peak of the ground acceleration until the time `until` (s), m/s².
     fn peak_of_ground(&self, until: f64) -> Peak {
         let (times, acceleration) = (self.ground.times(), self.ground.acceleration());

@@ -1,12 +1,22 @@
 //! Levels of detail compared on one run: the errors of each, what it costs, and the cheapest that will do.
+//!
+//! A level of a structure of many masses is also the number of modes that are kept ([`Frame::keeping`]).
 
-use super::fall::{FallWatch, FallingPeaks};
+use super::fall::{FallWatch, FallingPeaks, FallingProfile, Peaked};
 use super::history::{Distance, History};
 use super::peaks::Peaks;
+use super::profile::{Over, Profile};
 use super::{Ending, Follower, Run, RunError};
-use crate::Detail;
 use crate::engine::motion::Work;
+use crate::engine::piece::{CONVERGED, Expansion, FINEST_PART};
+use crate::mechanics::floors::MotionOfFloors;
+use crate::mechanics::lateral::{Coordinates, Lateral};
+use crate::mechanics::outputs::Measure;
 use crate::run::ground_motion::Segment;
+use crate::series::taylor::{Arc, Series};
+use crate::structure::Mode;
+use crate::{Detail, Frame, FrameOutput, Modes, State, Structure, Watch};
+use std::fmt;
 
 /// Tolerance of the run that all others are measured by.
 pub const REFERENCE_TOLERANCE: f64 = 1e-12;
@@ -18,7 +28,7 @@ pub const SIMPLEST_FIRST: [Detail; 6] =
 /// Rule by which [`Comparison::recommended`] chooses among the levels whose errors are small enough.
 pub const RULE: &str = "the cheapest level, or the simplest of equally cheap levels,";
 
-/// Levels go on together, from sample to sample, but no longer than this over ω_u at once: of what lies between nothing is kept.
+/// Levels go on together, from sample to sample, but no longer than this over the highest ω_u at once: of what lies between nothing is kept.
 const LONGEST_STRETCH: f64 = 2000.0;
 
 /// Measure of the error of a level.
@@ -26,9 +36,9 @@ const LONGEST_STRETCH: f64 = 2000.0;
 pub enum Criterion {
     /// Peak of |θ|.
     Theta,
-    /// Peak of |u|.
+    /// Peak of |u|, of each floor.
     U,
-    /// Peak of |a_t|, and with it of V_t and M_t.
+    /// Peak of |a_t|, of each floor, and of V_t and M_t.
     At,
     /// θ over time: largest difference over the largest |θ|, until one of the structures lies; a fall is in both.
     ThetaHistory,
@@ -62,13 +72,195 @@ impl Criterion {
     }
 }
 
-/// Result of a level on a run.
-#[derive(Clone, Debug)]
-pub struct Response {
+/// A level of detail, and for a structure of many masses how many of its modes are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choice {
     /// The level.
     pub detail: Detail,
+    /// Modes that are kept, of how many; None for one mass.
+    pub modes: Option<[usize; 2]>,
+}
+
+impl fmt::Display for Choice {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let name = self.detail.name();
+        match self.modes {
+            Some([kept, all]) => out.pad(&format!("{name}, {kept} of {all}")),
+            None => out.pad(name),
+        }
+    }
+}
+
+/// Is shown series in σ, with the instant at which they start (s) and the arc that they belong to.
+type Show<'a, Q> = dyn FnMut(f64, &Arc<Q>, <Q as Compared>::Histories) + 'a;
+
+/// Kinds of compared quantities: rotation, elastic displacements, accelerations and forces.
+const KINDS: usize = 3;
+
+/// Lateral coordinates of structures whose levels of detail are compared.
+#[allow(private_interfaces)] // an expansion and its series are the library's own
+pub trait Compared: Peaked {
+    /// Peaks of a motion that may end in a fall.
+    type Falling;
+    /// Looks for such peaks.
+    type Watcher<'a>: Watch<Self>;
+    /// A series for each compared quantity.
+    type Histories: AsRef<[Series]> + Clone + fmt::Debug;
+
+    /// The peaks before any motion.
+    fn since(time: f64, structure: &Self::Structure, detail: Detail) -> Self::Falling;
+
+    /// Looks for the peaks.
+    fn watcher(peaks: &mut Self::Falling) -> Self::Watcher<'_>;
+
+    /// The peaks before a fall and of all the motion, of a run with this `ending`.
+    fn seen(watcher: Self::Watcher<'_>, ending: Ending) -> [Self::Peaks; 2];
+
+    /// The kind of each compared quantity.
+    fn kinds(structure: &Self::Structure) -> Vec<usize>;
+
+    /// The largest magnitude of each compared quantity.
+    fn magnitudes(peaks: &Self::Peaks) -> Vec<f64>;
+
+    /// Shows the compared quantities as series in σ.
+    #[doc(hidden)]
+    fn histories(expansion: &Expansion<Self>, show: &mut Show<Self>);
+
+    /// The modes of a structure of many masses, all kept.
+    fn all_modes(structure: &Self::Structure) -> Option<[usize; 2]>;
+
+    /// The levels to compare on `run`, the one of the fewest equations first.
+    fn choices<'a>(run: &Run<'a, Self>) -> Vec<(Choice, Run<'a, Self>)>;
+}
+
+#[allow(private_interfaces)]
+impl Compared for f64 {
+    type Falling = FallingPeaks;
+    type Watcher<'a> = FallWatch<'a>;
+    type Histories = [Series; KINDS];
+
+    fn since(time: f64, structure: &Structure, detail: Detail) -> FallingPeaks {
+        FallingPeaks::since(time, structure, detail)
+    }
+
+    fn watcher(peaks: &mut FallingPeaks) -> FallWatch<'_> {
+        peaks.watch()
+    }
+
+    fn seen(watcher: FallWatch<'_>, _: Ending) -> [Peaks; 2] {
+        let peaks = watcher.end();
+        [*peaks.peaks(), *peaks.all()]
+    }
+
+    fn kinds(_: &Structure) -> Vec<usize> {
+        vec![0, 1, 2]
+    }
+
+    fn magnitudes(peaks: &Peaks) -> Vec<f64> {
+        [peaks.theta(), peaks.u(), peaks.a_t()].map(|peak| peak.magnitude).into()
+    }
+
+    fn histories(expansion: &Expansion, show: &mut Show<f64>) {
+        expansion.series(Measure::a_t, &mut |from, arc, a_t| {
+            show(expansion.time(from), arc, [arc.series(|k| arc.theta[k]), arc.series(|k| arc.u[k]), *a_t]);
+        });
+    }
+
+    fn all_modes(_: &Structure) -> Option<[usize; 2]> {
+        None
+    }
+
+    fn choices<'a>(run: &Run<'a>) -> Vec<(Choice, Run<'a>)> {
+        let of = |detail| (Choice { detail, modes: None }, Run { detail, ..run.clone() });
+        SIMPLEST_FIRST.map(of).into()
+    }
+}
+
+#[allow(private_interfaces)]
+impl Compared for Modes {
+    type Falling = FallingProfile;
+    type Watcher<'a> = FallingProfile;
+    type Histories = Vec<Series>;
+
+    fn since(time: f64, structure: &Frame, _: Detail) -> FallingProfile {
+        FallingProfile::since(time, structure)
+    }
+
+    fn watcher(peaks: &mut FallingProfile) -> FallingProfile {
+        peaks.clone()
+    }
+
+    fn seen(watcher: FallingProfile, ending: Ending) -> [Profile; 2] {
+        watcher.end(ending).0
+    }
+
+    fn kinds(structure: &Frame) -> Vec<usize> {
+        compared(structure).map(|(_, kind)| kind).collect()
+    }
+
+    fn magnitudes(peaks: &Profile) -> Vec<f64> {
+        let magnitude = |(output, _)| peaks.of(output).map_or(0.0, |peak| peak.magnitude);
+        compared(peaks.frame()).map(magnitude).collect()
+    }
+
+    fn histories(expansion: &Expansion<Modes>, show: &mut Show<Modes>) {
+        histories(expansion, FINEST_PART, show);
+    }
+
+    fn all_modes(structure: &Frame) -> Option<[usize; 2]> {
+        Some([structure.modes().len(); 2])
+    }
+
+    fn choices<'a>(run: &Run<'a, Modes>) -> Vec<(Choice, Run<'a, Modes>)> {
+        let modes = run.structure.modes();
+        let all = modes.len();
+        let of = |(detail, kept): (Detail, usize)| {
+            let structure = run.structure.keeping(kept).expect("not more modes than there are");
+            let of_mode =
+                |of: &Modes, kept: &Mode| modes.iter().position(|mode| mode == kept).map_or(0.0, |j| of.of(j));
+            let part = |of: &Modes| Modes::each(&structure, |_, mode| of_mode(of, mode));
+            let initial = State { u: part(&run.initial.u), u_dot: part(&run.initial.u_dot), ..run.initial };
+            (Choice { detail, modes: Some([kept, all]) }, Run { structure, initial, detail, ..run.clone() })
+        };
+        let fewer = |detail| (1..=all).map(move |kept| (detail, kept));
+        let fixed = fewer(Detail::FixedBase).chain([(Detail::Rigid, 0)]);
+        let moving = fewer(Detail::Linear).chain(fewer(Detail::Auto)).chain([(Detail::Nonlinear, all)]);
+        fixed.chain(moving).map(of).collect()
+    }
+}
+
+/// Shows the compared outputs over a polynomial, which may be halved `halvings` times.
+fn histories(expansion: &Expansion<Modes>, halvings: u32, show: &mut Show<Modes>) {
+    let (over, last) = (Over::new(*expansion), expansion.sample(expansion.arc.reach));
+    let mut all = Vec::new();
+    for (output, _) in compared(over.frame()) {
+        let series = output.of(&over);
+        if halvings > 0 && !expansion.has_converged(&series, last.output(output), CONVERGED) {
+            return expansion.halves(|half| histories(half, halvings - 1, show));
+        }
+        all.push(series.series());
+    }
+    show(expansion.time(0.0), expansion.arc, all);
+}
+
+/// The compared outputs of a structure of many masses, with the kind of each.
+fn compared(frame: &Frame) -> impl Iterator<Item = (FrameOutput, usize)> + use<> {
+    let kind = |output| match output {
+        FrameOutput::theta => Some(0),
+        FrameOutput::u(_) => Some(1),
+        FrameOutput::a_t(_) | FrameOutput::V_t | FrameOutput::M_t => Some(2),
+        _ => None,
+    };
+    FrameOutput::all(frame).filter_map(move |output| Some((output, kind(output)?)))
+}
+
+/// Result of a level on a run.
+#[derive(Clone, Debug)]
+pub struct Response<Q: Compared = f64> {
+    /// The level.
+    pub choice: Choice,
     /// Its peaks: of a structure that overturns, those before it falls.
-    pub peaks: Peaks,
+    pub peaks: Q::Peaks,
     /// How it ended.
     pub ending: Ending,
     /// Transitions.
@@ -79,10 +271,10 @@ pub struct Response {
 
 /// A level beside the reference.
 #[derive(Clone, Debug)]
-pub struct Verdict {
+pub struct Verdict<Q: Compared = f64> {
     /// Result of the level.
-    pub response: Response,
-    /// Relative errors, in the order of [`Criterion::ALL`].
+    pub response: Response<Q>,
+    /// Relative errors, in the order of [`Criterion::ALL`]: of several floors the largest.
     pub errors: [f64; 6],
     /// Whether it predicts overturning, or none, as the reference does; None if the reference leaves it open.
     pub is_right_about_overturning: Option<bool>,
@@ -90,35 +282,36 @@ pub struct Verdict {
 
 /// All levels on one run.
 #[derive(Clone, Debug)]
-pub struct Comparison {
+pub struct Comparison<Q: Compared = f64> {
     /// Eqs 1, 5, 6 to [`REFERENCE_TOLERANCE`].
-    pub reference: Response,
-    /// In the order of [`SIMPLEST_FIRST`], each to the tolerance of the run.
-    pub verdicts: Vec<Verdict>,
+    pub reference: Response<Q>,
+    /// The simplest first, each to the tolerance of the run.
+    pub verdicts: Vec<Verdict<Q>>,
     /// The level `auto` without the vertical ground acceleration, if the run has one.
-    pub without_vertical: Option<Result<Verdict, RunError>>,
+    pub without_vertical: Option<Result<Verdict<Q>, RunError>>,
     /// Levels that cannot do the run, and why.
-    pub refused: Vec<(Detail, RunError)>,
+    pub refused: Vec<(Choice, RunError)>,
 }
 
 /// Does `run` at every level.
-pub fn compare(run: &Run) -> Result<Comparison, RunError> {
-    let since = |detail| FallingPeaks::since(run.ground.start(), &run.structure, detail);
-    let (mut exact_peaks, mut peaks) = (since(Detail::Nonlinear), SIMPLEST_FIRST.map(since));
-    let mut level_peaks = since(Detail::Auto);
-    let level_ground = run.ground.clone().without_vertical();
+pub fn compare<Q: Compared>(run: &Run<Q>) -> Result<Comparison<Q>, RunError> {
+    let since = |run: &Run<Q>| Q::since(run.ground.start(), &run.structure, run.detail);
+    let of_all = |detail| Choice { detail, modes: Q::all_modes(&run.structure) };
     let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..run.clone() };
-    let mut reference = start(&exact, &mut exact_peaks)?;
+    let (choices, level_ground) = (Q::choices(run), run.ground.clone().without_vertical());
+    let level = Run { detail: Detail::Auto, ground: &level_ground, ..run.clone() };
+    let (mut exact_peaks, mut level_peaks) = (since(&exact), since(&level));
+    let mut peaks: Vec<_> = choices.iter().map(|(_, run)| since(run)).collect();
+    let mut reference = start(&exact, of_all(exact.detail), &mut exact_peaks)?;
     let (mut trials, mut refused, mut without_vertical) = (Vec::new(), Vec::new(), None);
-    for (detail, peaks) in SIMPLEST_FIRST.into_iter().zip(&mut peaks) {
-        match start(&Run { detail, ..run.clone() }, peaks) {
+    for ((choice, run), peaks) in choices.iter().zip(&mut peaks) {
+        match start(run, *choice, peaks) {
             Ok(trial) => trials.push(trial),
-            Err(error) => refused.push((detail, error)),
+            Err(error) => refused.push((*choice, error)),
         }
     }
     if run.ground.vertical().is_some() {
-        let run = Run { detail: Detail::Auto, ground: &level_ground, ..run.clone() };
-        trials.push(Trial { is_level: true, ..start(&run, &mut level_peaks)? });
+        trials.push(Trial { is_level: true, ..start(&level, of_all(level.detail), &mut level_peaks)? });
     }
     while reference.ending.is_none() || trials.iter().any(|trial| trial.ending.is_none()) {
         reference.go_on()?;
@@ -127,7 +320,7 @@ pub fn compare(run: &Run) -> Result<Comparison, RunError> {
             if trial.is_level {
                 without_vertical = Some(Err(error));
             } else {
-                refused.push((trial.run.detail, error));
+                refused.push((trial.choice, error));
             }
             false
         });
@@ -137,31 +330,32 @@ pub fn compare(run: &Run) -> Result<Comparison, RunError> {
         reference.history.sections.drain(..done);
         trials.iter_mut().for_each(|trial| trial.compared -= done);
     }
+    let kinds = Q::kinds(&run.structure);
     let (reference, all, _) = reference.response();
     let mut verdicts = Vec::new();
     for trial in trials {
         let is_level = trial.is_level;
         let (response, _, distance) = trial.response();
-        let verdict = Verdict::new(response, distance, &reference, &all);
+        let verdict = Verdict::new(&kinds, response, &distance, &reference, &all);
         if is_level {
             without_vertical = Some(Ok(verdict));
         } else {
             verdicts.push(verdict);
         }
     }
-    refused.sort_by_key(|(detail, _)| SIMPLEST_FIRST.iter().position(|of_all| of_all == detail));
+    refused.sort_by_key(|(refused, _)| choices.iter().position(|(choice, _)| choice == refused));
     Ok(Comparison { verdicts, reference, without_vertical, refused })
 }
 
 /// A level on its way.
-struct Trial<'a, Segments> {
-    run: Run<'a>,
+struct Trial<'a, Q: Compared, Segments> {
+    choice: Choice,
     /// Whether its ground moves horizontally alone and the reference's does not.
     is_level: bool,
-    course: Follower<f64, Segments>,
-    peaks: FallWatch<'a>,
+    course: Follower<Q, Segments>,
+    peaks: Q::Watcher<'a>,
     /// The part of the motion that is still to be compared with the reference.
-    history: History,
+    history: History<Q>,
     /// From the reference.
     distance: Distance,
     /// How many sections of the reference it has been compared with.
@@ -171,20 +365,21 @@ struct Trial<'a, Segments> {
 }
 
 /// Of `run`, whose `peaks` will be there.
-fn start<'a>(
-    run: &Run<'a>,
-    peaks: &'a mut FallingPeaks,
-) -> Result<Trial<'a, impl Iterator<Item = Segment> + use<'a>>, RunError> {
-    let omega_u = run.structure.omega_u;
+fn start<'a, Q: Compared>(
+    run: &Run<'a, Q>,
+    choice: Choice,
+    peaks: &'a mut Q::Falling,
+) -> Result<Trial<'a, Q, impl Iterator<Item = Segment> + use<'a, Q>>, RunError> {
+    let [slowest, fastest] = Q::vibration(&run.structure).rocking;
     let Follower { engine, segments, end, rest } = run.course()?;
-    let segments = segments.flat_map(move |segment| cut(segment, LONGEST_STRETCH / omega_u));
+    let segments = segments.flat_map(move |segment| cut(segment, LONGEST_STRETCH / fastest));
     Ok(Trial {
-        run: run.clone(),
+        choice,
         is_level: false,
         course: Follower { engine, segments, end, rest },
-        peaks: peaks.watch(),
-        history: History::default(),
-        distance: Distance::new(omega_u),
+        peaks: Q::watcher(peaks),
+        history: History { sections: Vec::new() },
+        distance: Distance::new(slowest, Q::kinds(&run.structure).len()),
         compared: 0,
         ending: None,
     })
@@ -201,7 +396,7 @@ fn cut(segment: Segment, longest: f64) -> impl Iterator<Item = Segment> {
     })
 }
 
-impl<Segments: Iterator<Item = Segment>> Trial<'_, Segments> {
+impl<Q: Compared, Segments: Iterator<Item = Segment>> Trial<'_, Q, Segments> {
     /// Follows the motion over the next segment unless the run has ended.
     fn go_on(&mut self) -> Result<(), RunError> {
         if self.ending.is_none() {
@@ -226,13 +421,12 @@ impl<Segments: Iterator<Item = Segment>> Trial<'_, Segments> {
     }
 
     /// The response, the peaks of all the motion, and the distance from the reference.
-    fn response(self) -> (Response, Peaks, Distance) {
+    fn response(self) -> (Response<Q>, Q::Peaks, Distance) {
         let motion = self.course.engine.motion();
         let ending = self.ending.expect("it has been followed to its end");
-        let peaks = self.peaks.end();
         let (transitions, work) = (motion.transitions, motion.work);
-        let response = Response { detail: self.run.detail, peaks: *peaks.peaks(), ending, transitions, work };
-        (response, *peaks.all(), self.distance)
+        let [peaks, all] = Q::seen(self.peaks, ending);
+        (Response { choice: self.choice, peaks, ending, transitions, work }, all, self.distance)
     }
 }
 
@@ -241,24 +435,36 @@ pub fn relative((difference, expected): (f64, f64)) -> f64 {
     if difference == 0.0 { 0.0 } else { difference / expected }
 }
 
-impl Response {
+impl<Q: Compared> Response<Q> {
     /// Steps and evaluations together: an exact leap costs about as much as an evaluation.
     pub fn cost(&self) -> u64 {
         self.work.steps + self.work.evaluations
     }
 }
 
-impl Verdict {
+/// For each kind of quantity the largest of the `differences` in proportion to what is `expected`.
+fn errors(kinds: &[usize], differences: &[f64], expected: &[f64]) -> [f64; KINDS] {
+    let mut errors = [0.0; KINDS];
+    for (kind, pair) in kinds.iter().zip(differences.iter().copied().zip(expected.iter().copied())) {
+        errors[*kind] = f64::max(errors[*kind], relative(pair));
+    }
+    errors
+}
+
+impl<Q: Compared> Verdict<Q> {
     /// Of a `response` that has been this far from the `reference`, whose peaks are these with a fall, `all` of it.
-    fn new(response: Response, distance: Distance, reference: &Response, all: &Peaks) -> Verdict {
-        let peaks = [Peaks::theta, Peaks::u, Peaks::a_t].map(|of| {
-            let [found, expected] = [&response.peaks, &reference.peaks].map(|peaks| of(peaks).magnitude);
-            ((found - expected).abs(), expected)
-        });
-        let expected = [all.theta(), all.u(), all.a_t()];
-        let histories = std::array::from_fn(|i| (distance.largest[i], expected[i].magnitude));
-        let [theta, u, a_t] = peaks.map(relative);
-        let [theta_history, u_history, a_t_history] = <[_; 3]>::map(histories, relative);
+    fn new(
+        kinds: &[usize],
+        response: Response<Q>,
+        distance: &Distance,
+        reference: &Response<Q>,
+        all: &Q::Peaks,
+    ) -> Verdict<Q> {
+        let [found, expected] = [&response.peaks, &reference.peaks].map(Q::magnitudes);
+        let differences: Vec<_> =
+            found.iter().zip(&expected).map(|(found, expected)| (found - expected).abs()).collect();
+        let [theta, u, a_t] = errors(kinds, &differences, &expected);
+        let [theta_history, u_history, a_t_history] = errors(kinds, &distance.largest, &Q::magnitudes(all));
         Verdict {
             is_right_about_overturning: reference
                 .ending
@@ -277,16 +483,17 @@ impl Verdict {
     }
 }
 
-impl Comparison {
-    /// Cost of `response` as a multiple of the cost of the level `auto`; None if `auto` cannot do the run.
-    pub fn cost_over_auto(&self, response: &Response) -> Option<f64> {
-        let auto = self.verdicts.iter().find(|verdict| verdict.response.detail == Detail::Auto);
+impl<Q: Compared> Comparison<Q> {
+    /// Cost of `response` as a multiple of the cost of the level `auto` with all modes; None if `auto` cannot do the run.
+    pub fn cost_over_auto(&self, response: &Response<Q>) -> Option<f64> {
+        let auto = Choice { detail: Detail::Auto, ..self.reference.choice };
+        let auto = self.verdicts.iter().find(|verdict| verdict.response.choice == auto);
         auto.map(|auto| response.cost() as f64 / auto.response.cost() as f64)
     }
 
     /// Returns the cheapest level whose errors by every one of `criteria` are at most `within`; the one of the fewest
     /// equations if several levels have the least cost.
-    pub fn recommended(&self, within: f64, criteria: &[Criterion]) -> Option<&Verdict> {
+    pub fn recommended(&self, within: f64, criteria: &[Criterion]) -> Option<&Verdict<Q>> {
         let admitted = self.verdicts.iter().filter(|verdict| verdict.is_within(within, criteria));
         admitted.min_by_key(|verdict| verdict.response.cost()) // the first of several
     }
@@ -295,14 +502,14 @@ impl Comparison {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Parameters;
     use crate::run::record::Record;
-    use crate::{Parameters, Structure};
 
     fn verdict(detail: Detail, errors: [f64; 6], cost: u64) -> Verdict {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         let work = Work { steps: 0, evaluations: cost };
         let response = Response {
-            detail,
+            choice: Choice { detail, modes: None },
             peaks: Peaks::since(0.0, &structure, detail),
             ending: Ending::AtRest,
             transitions: 0,
@@ -322,7 +529,7 @@ mod tests {
         let upwards = Record::from_samples("", times.clone(), a_v).unwrap();
         let ground = Record::from_samples("", times, a_g).unwrap().with_vertical(&upwards).unwrap();
         let comparison = compare(&Run::new(structure, &ground)).unwrap();
-        let refused: Vec<_> = comparison.refused.iter().map(|(detail, _)| *detail).collect();
+        let refused: Vec<_> = comparison.refused.iter().map(|(choice, _)| choice.detail).collect();
         assert_eq!((refused, comparison.reference.ending), (vec![Detail::Modal], Ending::Overturned));
         assert!(matches!(comparison.without_vertical, Some(Err(RunError::Advance { .. }))));
     }
@@ -343,7 +550,7 @@ mod tests {
         };
         let all = Criterion::ALL;
         let advice = |of: &Comparison, within: f64, criteria: &[Criterion]| {
-            of.recommended(within, criteria).map(|verdict| verdict.response.detail)
+            of.recommended(within, criteria).map(|verdict| verdict.response.choice.detail)
         };
         assert_eq!(advice(&comparison, 0.1, &all), Some(Detail::Linear), "linear beats modal in both cost and error");
         assert_eq!(advice(&comparison, 0.015, &[Criterion::Theta]), Some(Detail::Auto), "auto beats rigid in both");

@@ -108,6 +108,8 @@ pub struct Described {
     pub modes: Vec<FoundMode>,
     /// All mass above the base, with modes; without it the floors have all mass.
     pub total: Option<Total>,
+    /// Number of modes that are kept, lowest frequency first; without it all. The rest of the mass rides rigidly with the base.
+    pub keep: Option<usize>,
 }
 
 /// Why numbers make no structure of many masses.
@@ -120,6 +122,8 @@ pub enum DescriptionError {
     Parameters(#[from] ParameterError),
     #[error(transparent)]
     Frame(#[from] FrameError),
+    #[error("keep = 0 leaves no mode: keep 1 or more, or use detail = rigid")]
+    NoModes,
     #[error("{0} floors are given: a structure has 1 to {MOST_FLOORS}")]
     Floors(usize),
     #[error("the centre of the mass above the base is {0:.1} B high: it must not exceed {MAX_SLENDERNESS} B; raise B")]
@@ -230,13 +234,18 @@ fn moments(masses: impl Iterator<Item = (f64, f64)>) -> [f64; 3] {
 impl Described {
     /// The structure that is described.
     pub fn frame(&self) -> Result<Frame, DescriptionError> {
-        let Described { base, zeta, storeys, floors, K, modes, total } = self;
-        match [storeys.is_empty(), K.is_empty(), modes.is_empty()] {
+        let Described { base, zeta, storeys, floors, K, modes, total, keep } = self;
+        let whole = match [storeys.is_empty(), K.is_empty(), modes.is_empty()] {
             [false, true, true] if floors.is_empty() && total.is_none() => Frame::from_storeys(base, zeta, storeys),
             [true, false, true] if total.is_none() => Frame::from_matrices(base, zeta, floors, K),
             [true, true, false] => Frame::from_modes(base, zeta, modes, *total, floors),
             [true, true, true] => Err(DescriptionError::Ways("none of these")),
             _ => Err(DescriptionError::Ways("more than one")),
+        }?;
+        match *keep {
+            Some(0) => Err(DescriptionError::NoModes),
+            Some(count) => Ok(whole.keeping(count)?),
+            None => Ok(whole),
         }
     }
 }
@@ -564,6 +573,20 @@ mod tests {
         for (omega, f) in rocking.into_iter().zip([7.0282052, 9.9751802, 12.4839536]) {
             assert_relative_eq!(omega / TAU, f, max_relative = 1e-7);
         }
+    }
+
+    #[test]
+    fn a_structure_keeps_as_many_modes_as_it_says() {
+        let kept = |keep| {
+            let none = (Vec::new(), Vec::new(), Vec::new());
+            let (base, zeta, (floors, K, modes)) = (usual(), Damping::All(0.02), none);
+            Described { base, zeta, storeys: STOREYS.to_vec(), floors, K, modes, total: None, keep }.frame()
+        };
+        assert_eq!(kept(None).unwrap(), frame());
+        assert_eq!(kept(Some(2)).unwrap(), frame().keeping(2).unwrap());
+        let refused = |keep| kept(Some(keep)).unwrap_err().to_string();
+        assert_eq!(refused(0), "keep = 0 leaves no mode: keep 1 or more, or use detail = rigid");
+        assert_eq!(refused(4), "4 modes cannot be kept of 3: keep 0 to 3");
     }
 
     #[test]

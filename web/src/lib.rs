@@ -9,7 +9,7 @@ mod take;
 use fmu_export::{Library, ModelName, Version};
 use rocking::engine::piece::Sample;
 use rocking::levels::detail::Detail;
-use rocking::run::levels::{Criterion, REFERENCE_TOLERANCE, RULE, Verdict, compare, relative};
+use rocking::run::levels::{Choice, Criterion, REFERENCE_TOLERANCE, RULE, Verdict, compare, relative};
 use rocking::run::peaks::{self, Peak};
 use rocking::run::validity::{self, ASSUMPTIONS, Limits};
 use rocking::run::{End, RunError};
@@ -185,15 +185,15 @@ impl Explorer {
         let fields = Fields::read(fields)?;
         let (structure, ground) = self.load_one(&fields, "the comparison of levels")?;
         let compared = compare(&fields.run(structure, &ground.record)?).map_err(says)?;
-        let advised = compared.recommended(WITHIN, &Criterion::ALL).map(|verdict| verdict.response.detail.name());
+        let advised = compared.recommended(WITHIN, &Criterion::ALL).map(|verdict| verdict.response.choice.detail.name());
         let row = |Verdict { response, errors, .. }: &Verdict| {
             json!({
-                "detail": response.detail.name(), "errors": errors.map(|error| error.to_string()),
+                "detail": response.choice.detail.name(), "errors": errors.map(|error| error.to_string()),
                 "overturns": response.ending.overturned(), "transitions": response.transitions,
                 "cost": compared.cost_over_auto(response),
             })
         };
-        let refused = |(detail, error): &(Detail, RunError)| json!([detail.name(), error.to_string()]);
+        let refused = |(choice, error): &(Choice, RunError)| json!([choice.detail.name(), error.to_string()]);
         Ok(json!({
             "advised": advised, "rule": RULE,
             "levels": compared.verdicts.iter().map(row).collect::<Vec<_>>(),
