@@ -137,16 +137,15 @@ browser: .venv/heavy module explore
 docs/img/explore.png: .venv/heavy explore
 	$(PYTHON) examples/explore_picture.py
 
-# The page contains a record and shared libraries: those of `make dist` if its archive is of this build, else this machine's.
+# The page contains a record and this machine's library: the libraries of all platforms would make it 10 MB. It takes them from an FMU.
 WEB := wasm32-unknown-unknown
-LIBRARIES = $$($(TARGET)/release/fmu-export out/FlexibleRocking.fmu mcmanus 2 /dev/null 2>/dev/null && \
-	echo out/FlexibleRocking.fmu || echo $(TARGET)/release/deps/libFlexibleRocking.so)
 explore: library .venv/ready
 	rustup target add $(WEB)
 	cd web && cargo build --release --locked --package rocking-web --target $(WEB)
 	mkdir -p out
 	cargo run --release --locked --manifest-path web/Cargo.toml --package pack -- \
-		$(or $(CARGO_TARGET_DIR),web/target)/$(WEB)/release/rocking_web.wasm $(RECORDS)/$(EL_CENTRO) $(LIBRARIES) out/explore.html
+		$(or $(CARGO_TARGET_DIR),web/target)/$(WEB)/release/rocking_web.wasm $(RECORDS)/$(EL_CENTRO) \
+		$(TARGET)/release/deps/libFlexibleRocking.so out/explore.html
 
 evidence: module
 	$(PYTEST) -m heavy tests/test_pages.py

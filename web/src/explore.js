@@ -767,7 +767,7 @@
   function takeLibraries(name, bytes) {
     try {
       const platforms = explorer.take_libraries(name, bytes);
-      const others = platforms.includes(",") ? "" : ` only. For all five platforms run make dist, then make explore, or open the FMU of make dist here`;
+      const others = platforms.includes(",") ? "" : ` only. For all five platforms, open here the FlexibleRocking.fmu of a release or of make dist`;
       at("platforms").textContent = `With the shared library for ${platforms}${others}.`;
     } catch (problem) {
       at("platforms").textContent = problem;
