@@ -2,6 +2,7 @@
 
 use rocking::engine::piece::Sample;
 use rocking::run::curve::{Point, drawn};
+use rocking::run::fall::Found;
 use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError};
 use rocking::structure::description::{Damping, Storey};
@@ -107,7 +108,7 @@ fn lines_of_many_masses_stay_as_close_to_each_floor() {
     let run = Run { end: End::At(6.0), ..Run::of_modes(frame, &ground) };
     let outputs: Vec<_> = drawn(&run.structure).collect();
     let curve = run.curve(1e-3).unwrap();
-    let (profile, finish) = &curve.found;
+    let Found { peaks: profile, finish, .. } = &curve.found;
     assert!(finish.motion.transitions > 5 && curve.transitions.len() as u64 == finish.motion.transitions);
     let largest: Vec<_> = outputs.iter().map(|of| profile.of(*of).unwrap().magnitude).collect();
     for (i, largest) in largest.iter().enumerate() {

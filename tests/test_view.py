@@ -244,3 +244,35 @@ def test_a_hostile_title_is_text(opened, exporter, tmp_path):
     page = opened(tmp_path / "view.html")
     assert page.locator("#title").text_content().strip() == HOSTILE
     assert page.title().startswith("</script>")
+
+
+FRAME = """zeta = 0.02
+[base]
+m0 = 2e4
+J0 = 3e4
+B = 1.5
+r = 0.93
+""" + "".join(f"[[storeys]]\nm = {m}\nh = {h}\nk = {k}\n" for m, h, k in [(4e4, 3.5, 6e7), (4e4, 7, 5e7), (3e4, 10.5, 4e7)])
+
+
+def test_a_frame_moves_as_its_response_says(opened, exporter, pacoima_record, tmp_path):
+    (tmp_path / "frame.toml").write_text(FRAME)
+    scene = ["--parameters", "frame.toml", "--record", pacoima_record, "--duration", str(END)]
+    subprocess.run([exporter, "view", *scene, "-o", "view.html"], cwd=tmp_path, check=True)
+    subprocess.run([exporter, "simulate", *scene, "--interval", "1e-3", "-o", "response.csv"], cwd=tmp_path, check=True)
+    table = pd.read_csv(tmp_path / "response.csv")
+    largest = table.select_dtypes("number").abs().max()
+    page = opened(tmp_path / "view.html")
+    page.select_option("#exaggeration", "1")
+    for row in (0, 1234, 3000):
+        now = table.iloc[row]
+        go_to(page, now["time[s]"])
+        theta, _, _ = drawn(page)
+        assert abs(theta - now["theta[rad]"]) <= 1.1e-4 * largest["theta[rad]"]
+        for floor in (1, 2, 3):
+            page.select_option("#floor", str(floor))
+            u = float(re.match(r"translate\((\S+) ", page.locator("#body rect.mass").nth(floor).get_attribute("transform"))[1])
+            assert abs(u - now[f"u[{floor}][m]"]) <= 1.1e-4 * largest[f"u[{floor}][m]"]
+            a_t = f"a_t[{floor}][m/s2]"
+            assert abs(reading(page, "a_t") - now[a_t] / 9.81) <= 2e-3 * largest[a_t] / 9.81
+    assert page.locator("#heights").is_visible() and page.locator("#peaks tr").count() == 3

@@ -10,8 +10,7 @@ use rocking::run::peaks::Peak;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits, Validity};
 use rocking::run::{End, Ending, RunError};
-use rocking::structure::any::AnyStructure;
-use rocking::{Modes, Phase, Run, Side, Transition, Watch};
+use rocking::{Phase, Run, Side, Transition, Watch};
 use rocking_report::shown::{Named, OF_FLOOR, Shown};
 use rocking_report::summary::Summary;
 use rocking_report::tables::{components, response_headings, response_numbers, values};
@@ -77,23 +76,6 @@ pub trait Followed: Send + Sync {
     fn text(&self) -> anyhow::Result<String>;
 }
 
-/// Structures whose runs have a page.
-pub trait Paged: Shown {
-    fn page(run: &Run<Self>) -> anyhow::Result<String>;
-}
-
-impl Paged for f64 {
-    fn page(run: &Run) -> anyhow::Result<String> {
-        Ok(rocking_view::page(run)?)
-    }
-}
-
-impl Paged for Modes {
-    fn page(run: &Run<Modes>) -> anyhow::Result<String> {
-        Err(AnyStructure::Many(run.structure.clone()).one("page").expect_err("it has many masses").into())
-    }
-}
-
 /// A run with its results.
 pub struct Following<Q: Shown> {
     structure: Q::Structure,
@@ -124,7 +106,7 @@ impl<Q: Shown> Following<Q> {
     }
 }
 
-impl<Q: Paged> Followed for Following<Q>
+impl<Q: Shown + rocking_view::Shown> Followed for Following<Q>
 where
     Validity<Q>: Watch<Q>,
 {
@@ -212,7 +194,7 @@ where
     }
 
     fn page(&self) -> anyhow::Result<String> {
-        Q::page(&self.run()?)
+        Ok(rocking_view::page(&self.run()?)?)
     }
 
     fn text(&self) -> anyhow::Result<String> {

@@ -1,7 +1,7 @@
 //! `simulate` and `Run`: one structure under one ground motion.
 
 use crate::arguments::{argument, conditions, numbers, refused, result};
-use crate::followed::{Followed, Following, Outcome, PHASES, Paged, Samples};
+use crate::followed::{Followed, Following, Outcome, PHASES, Samples};
 use crate::interruptible::interruptible;
 use crate::record::{Ground, Record};
 use crate::structure::Structure;
@@ -254,12 +254,9 @@ impl Run {
         interruptible(py, move |_| slf.get().of.page())
     }
 
-    fn _repr_html_(slf: Py<Self>, py: Python<'_>) -> PyResult<Option<String>> {
-        if let AnyStructure::Many(_) = &slf.get().structure.get().of {
-            return Ok(None);
-        }
+    fn _repr_html_(slf: Py<Self>, py: Python<'_>) -> PyResult<String> {
         let page = Run::page(slf, py)?.replace('&', "&amp;").replace('"', "&quot;");
-        Ok(Some(format!("<iframe srcdoc=\"{page}\" style=\"width: 100%; height: 640px; border: 0\"></iframe>")))
+        Ok(format!("<iframe srcdoc=\"{page}\" style=\"width: 100%; height: 640px; border: 0\"></iframe>"))
     }
 
     fn __repr__(&self) -> String {
@@ -326,7 +323,7 @@ pub fn simulate(
 }
 
 /// Follows `followed`, which is the `structure`.
-fn follow<Q: Paged>(
+fn follow<Q: rocking_report::shown::Shown + rocking_view::Shown>(
     py: Python<'_>,
     structure: Py<Structure>,
     followed: Q::Structure,

@@ -3,18 +3,17 @@
 //! Nothing is sampled at an interval. Each polynomial is divided until a bound says that its series stay as close to the
 //! straight lines as is allowed. Two points of the same instant have a transition, or the end of the record, between them.
 
-use super::fall::Found;
-use super::peaks::Peak;
+use super::fall::{Found, Peaked};
+use super::peaks::{Peak, Peaks};
 use super::profile::{Over, Profile};
-use super::{Finish, Run, RunError};
-use crate::engine::Moves;
+use super::{Run, RunError};
 use crate::engine::piece::{Expansion, Piece, Sample, Watch};
 use crate::mechanics::outputs::Measure;
 use crate::mechanics::restraint::Restraints;
 use crate::series::taylor::Arc;
 use crate::series::terms::Terms;
 use crate::series::{extremes, taylor};
-use crate::{Frame, FrameOutput, Modes, Outputs, Phase, Transition};
+use crate::{Frame, FrameOutput, Modes, Outputs, Phase, Structure, Transition};
 use std::fmt::Debug;
 
 /// The largest number of times that a polynomial is divided.
@@ -35,15 +34,13 @@ const ROUNDING: f64 = 1e-9;
 pub type Show<'a, Q> = dyn FnMut(f64, &Arc<Q>, &[&[f64]]) + 'a;
 
 /// Lateral coordinates whose motion is drawn.
-pub trait Drawn: Moves {
+pub trait Drawn: Peaked<Peaks: Debug> {
     /// The outputs at a point.
     type Outputs: Clone + Debug;
-    /// The peaks, and how the run ended.
-    type Found: Clone + Debug;
 
-    /// Follows `run`. Returns the result, and the exact peaks of a_g and of each line that is drawn, also during a fall.
+    /// The peaks of a_g and of each line that is drawn, among `all` of a motion.
     #[doc(hidden)]
-    fn found(run: &Run<Self>) -> Result<(Self::Found, Vec<Peak>), RunError>;
+    fn exact(structure: &Self::Structure, all: &Self::Peaks) -> Vec<Peak>;
 
     /// The outputs of `sample`.
     #[doc(hidden)]
@@ -58,11 +55,9 @@ pub trait Drawn: Moves {
 
 impl Drawn for f64 {
     type Outputs = Outputs;
-    type Found = Found;
 
-    fn found(run: &Run) -> Result<(Found, Vec<Peak>), RunError> {
-        let (found, peaks) = run.found_and_all(&mut ())?;
-        Ok((found, vec![peaks.a_g(), peaks.theta(), peaks.u(), peaks.a_t()]))
+    fn exact(_: &Structure, all: &Peaks) -> Vec<Peak> {
+        vec![all.a_g(), all.theta(), all.u(), all.a_t()]
     }
 
     fn outputs(sample: &Sample) -> Outputs {
@@ -87,13 +82,10 @@ pub fn drawn(frame: &Frame) -> impl Iterator<Item = FrameOutput> + use<> {
 impl Drawn for Modes {
     /// In the order of [`drawn`].
     type Outputs = Vec<f64>;
-    type Found = (Profile, Finish<Modes>);
 
-    fn found(run: &Run<Modes>) -> Result<(Self::Found, Vec<Peak>), RunError> {
-        let (profile, finish) = run.profile()?;
-        let lines = drawn(&run.structure).map(|line| profile.of(line).expect("each line has a peak"));
-        let peaks = [profile.a_g].into_iter().chain(lines).collect();
-        Ok(((profile, finish), peaks))
+    fn exact(frame: &Frame, all: &Profile) -> Vec<Peak> {
+        let line = |line| all.of(line).expect("each line has a peak");
+        [all.a_g].into_iter().chain(drawn(frame).map(line)).collect()
     }
 
     fn outputs(sample: &Sample<Modes>) -> Vec<f64> {
@@ -131,14 +123,15 @@ pub struct Curve<Q: Drawn = f64> {
     /// In the order of time, too.
     pub transitions: Vec<Transition<Q>>,
     /// Exact peaks, and how the run ended.
-    pub found: Q::Found,
+    pub found: Found<Q>,
 }
 
 impl<Q: Drawn> Run<'_, Q> {
     /// The run as points between which θ, u and a_t of each floor leave straight lines by at most `part` of their peaks; the
     /// ground acceleration does not leave them at all. Refuses a run that takes more points than fit in 100 MB.
     pub fn curve(&self, part: f64) -> Result<Curve<Q>, RunError> {
-        let (found, peaks) = Q::found(self)?;
+        let (found, peaks) = self.found_and_all(&mut ())?;
+        let peaks = Q::exact(&self.structure, &peaks);
         let mut tracer = Tracer {
             within: peaks[1..].iter().map(|peak| part * peak.magnitude).collect(),
             exact: peaks.iter().map(|peak| peak.time).collect(),

@@ -65,8 +65,8 @@ pub trait Shown: Drawn {
     /// The histories of the structure, by name.
     fn columns(run: &Run<Self>, curve: &Curve<Self>) -> Vec<(String, Column)>;
 
-    /// The end of the run, the start of a fall (s), and each peak.
-    fn outcome(run: &Run<Self>, curve: &Curve<Self>) -> (Ending, Option<f64>, Vec<Peak>);
+    /// The peaks of the structure.
+    fn peaks(structure: &Self::Structure, peaks: &Self::Peaks) -> Vec<Peak>;
 
     /// The peaks of the same structure on a fixed base, of many masses.
     fn fixed(_run: &Run<Self>) -> Vec<Peak> {
@@ -110,13 +110,8 @@ impl Shown for f64 {
         vec![column("theta", |of| of.theta), column("u", |of| of.u), column("a_t", |of| of.a_t)]
     }
 
-    fn outcome(
-        run: &Run,
-        Curve { found: Found { ground, peaks, fall, finish, .. }, .. }: &Curve,
-    ) -> (Ending, Option<f64>, Vec<Peak>) {
-        let peak = |name: &str, peak: peaks::Peak| (name.into(), peak.magnitude, peak.time);
-        let of_outputs = peaks::of(&run.structure).map(|peaking| peak(peaking.name, peaking.of(peaks)));
-        (finish.ending, *fall, [peak("a_g", *ground)].into_iter().chain(of_outputs).collect())
+    fn peaks(structure: &rocking::Structure, all: &peaks::Peaks) -> Vec<Peak> {
+        peaks::of(structure).map(|peaking| named(peaking.name, peaking.of(all))).collect()
     }
 }
 
@@ -147,24 +142,20 @@ impl Shown for Modes {
         drawn(&run.structure).enumerate().map(column).collect()
     }
 
-    fn outcome(
-        _run: &Run<Modes>,
-        Curve { found: (profile, finish), .. }: &Curve<Modes>,
-    ) -> (Ending, Option<f64>, Vec<Peak>) {
-        let ground = ("a_g".into(), profile.a_g.magnitude, profile.a_g.time);
-        (finish.ending, None, [ground].into_iter().chain(peaks_of(profile)).collect())
+    fn peaks(_: &rocking::Frame, profile: &Profile) -> Vec<Peak> {
+        profile.peaks().map(|(output, peak)| named(&output.name(), peak)).collect()
     }
 
     fn fixed(run: &Run<Modes>) -> Vec<Peak> {
         let fixed = Run { detail: Detail::FixedBase, ..run.clone() };
         let is_other = run.detail != fixed.detail;
         let profile = is_other.then(|| fixed.profile().ok()).flatten();
-        profile.iter().flat_map(|(profile, _)| peaks_of(profile)).collect()
+        profile.map_or(Vec::new(), |(profile, _)| Modes::peaks(&run.structure, &profile))
     }
 }
 
-fn peaks_of(profile: &Profile) -> impl Iterator<Item = Peak> {
-    profile.peaks().map(|(of, peak)| (of.name(), peak.magnitude, peak.time))
+fn named(name: &str, peak: peaks::Peak) -> Peak {
+    (name.into(), peak.magnitude, peak.time)
 }
 
 /// What a page shows of a run.
@@ -220,8 +211,9 @@ fn quanta(duration: f64) -> i64 {
 impl<'a> Scene<'a> {
     /// Of a `run` whose `curve` leaves the motion by at most this `part` of its peaks.
     pub fn new<Q: Shown>(run: &'a Run<Q>, part: f64, curve: &Curve<Q>) -> Scene<'a> {
-        let (ending, fall, peaks) = Q::outcome(run, curve);
-        let (start, points) = (run.ground.start(), &curve.points);
+        let Found { ground, ref peaks, fall, start, ref finish } = curve.found;
+        let peaks = [named("a_g", ground)].into_iter().chain(Q::peaks(&run.structure, peaks)).collect();
+        let points = &curve.points;
         let mut phases: Vec<_> = points.iter().map(|at| at.phase.name()).enumerate().collect();
         phases.dedup_by_key(|(_, phase)| *phase);
         let mut columns = vec![("a_g".into(), Column::new(points, |at| at.a_g))];
@@ -238,7 +230,7 @@ impl<'a> Scene<'a> {
             title: run.ground.title(),
             parameters: Q::sizes(&run.structure),
             start,
-            ending,
+            ending: finish.ending,
             fall,
             part,
             time: Column::of_time(points, start),

@@ -281,8 +281,7 @@ function motionView() {
     drawTies(state, side, theta);
     drawShaking(state.a_g, width);
     const fallen = at("fallen");
-    const until = motion.fall === null ? "peaks with the fall" : `peaks until ${fixed(motion.fall, 3)} s`;
-    fallen.textContent = state.phase === "overturned" ? `overturned at ${fixed(motion.end, 3)} s, ${until}` : "";
+    fallen.textContent = state.phase === "overturned" ? `overturned at ${fixed(motion.end, 3)} s, peaks until ${fixed(motion.fall, 3)} s` : "";
     set(fallen, { x, y: 62, "text-anchor": "middle" });
   }
 
@@ -344,6 +343,7 @@ function motionView() {
     { name: "a_t", title: "acceleration (g)", line: (x, i, h) => `L${x} ${h[i + 1]}` },
     { name: "drift", title: "drift (mm)", per: 1e-3, line: (x, i, h) => `L${x} ${h[i]}V${h[i + 1]}` },
     { name: "V", title: "storey shear (kN)", per: 1e3, line: (x, i, h) => `L${x} ${h[i]}V${h[i + 1]}` },
+    { name: "M", title: "moment (kN m)", per: 1e3, line: (x, i, h) => `L${x} ${h[i]}` },
   ];
 
   /** The choice of a floor, and the table of peaks, from the top down. */
