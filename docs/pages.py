@@ -124,8 +124,20 @@ KINDS = {
 }
 
 
-def variables(fmu: Path) -> str:
-    """docs/reference/variables.md."""
+BUILDING = ("zeta = 0.02\n[base]\nm0 = 20e3\nJ0 = 3e4\nB = 1.5\n"
+            "[[storeys]]\nm = 40e3\nh = 3.5\nk = 60e6\n[[storeys]]\nm = 30e3\nh = 7.0\nk = 40e6\n")
+
+
+def building(exporter: Path, folder: Path) -> Path:
+    """The FMU of a building of two floors, written to `folder`."""
+    (folder / "building.toml").write_text(BUILDING)
+    fmu = folder / "building.fmu"
+    subprocess.run([exporter, "export", "--quiet", "--parameters", folder / "building.toml", "-o", fmu], check=True)
+    return fmu
+
+
+def variables(fmu: Path, building: Path) -> str:
+    """docs/reference/variables.md, from the FMU of one mass and that of a building."""
     page = ("# Variables\n\nWhich variables does the FMU have, in which units and ranges? This is the model description of "
             "McManus's pier,\n`rocking-fmu export --preset mcmanus`. The values are that structure's. Request local variables "
             "by name.\n[Runs](runs.md) has the rules that every run follows.\n")
@@ -144,6 +156,19 @@ def variables(fmu: Path) -> str:
             value = number(v.start) if v.type == "Real" else v.start or ""
             limits = f"{number(v.min)} to {number(v.max)}" if v.min and v.max else ""
             page += f"| `{v.name}` | {v.unit or ''} | {value} | {limits} | {meaning(v)} |\n"
+
+    page += ("\n## Buildings\n\nThe FMU of a structure of many masses, `rocking-fmu export --parameters building.toml`, has the variables above "
+             "that are of\nthe ground, the base and the run, and these. `i` is a floor or the storey below it, `j` a mode, both from 1 on. "
+             "The structure's own numbers are\nfixed: an importer can read them and not set them.\n\n| name | unit | kind | meaning |\n"
+             "|---|---|---|---|\n")
+    known = {v.name for v in read_model_description(fmu).modelVariables}
+    for v in read_model_description(building).modelVariables:
+        if v.name not in known and "[2]" not in v.name:
+            letter = "j" if "mode" in v.description else "i"
+            name = v.name.replace("[1]", f"[{letter}]")
+            told = re.sub(r"(floor|storey|mode) 1", rf"\1 {letter}", meaning(v)).replace("[1]", "[i]")
+            kind = {"calculatedParameter": "fixed"}.get(v.causality, v.causality)
+            page += f"| `{name}` | {v.unit or ''} | {kind} | {told} |\n"
     return page
 
 
@@ -154,7 +179,8 @@ def main() -> None:
             folder = prepare(Path(temporary) / str(number), exporter)
             page.write_text(rerun(page.read_text(encoding="utf-8"), exporter, folder), encoding="utf-8")
         (ROOT / "docs/reference/command_line.md").write_text(command_line(exporter), encoding="utf-8")
-        (ROOT / "docs/reference/variables.md").write_text(variables(folder / "out/mcmanus.fmu"), encoding="utf-8")
+        (ROOT / "docs/reference/variables.md").write_text(
+            variables(folder / "out/mcmanus.fmu", building(exporter, Path(temporary))), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -28,9 +28,9 @@ def test_the_command_line_is_described_by_its_own_help(exporter):
     assert pages.command_line(exporter) == page, "run `make pages`"
 
 
-def test_the_variables_are_those_of_the_model_description(mcmanus):
+def test_the_variables_are_those_of_the_model_description(mcmanus, exporter, tmp_path):
     page = (ROOT / "docs/reference/variables.md").read_text(encoding="utf-8")
-    assert pages.variables(mcmanus.path) == page, "run `make pages`"
+    assert pages.variables(mcmanus.path, pages.building(exporter, tmp_path)) == page, "run `make pages`"
 
 
 def test_readme_finds_what_the_page_of_findings_prints():

@@ -6,6 +6,7 @@ use crate::talk::say;
 use FlexibleRocking::guid;
 use anyhow::{Context, bail};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
+use rocking::structure::any::AnyStructure;
 use rocking_report::{input, output_files::OutputFiles};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
@@ -52,7 +53,7 @@ impl ExportArgs {
 
 /// Writes the FMU and reports its content; the libraries are beside `program`.
 pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
-    let structure = args.structure.load()?;
+    let structure = args.structure.load_any()?;
     let libraries = if args.library.is_empty() {
         libraries_of(program)?
     } else {
@@ -67,14 +68,18 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     let output = args.output.clone().unwrap_or_else(|| format!("{}.fmu", args.name.as_str()).into());
     let inputs = args.structure.input().into_iter().chain(args.records().chain(&args.library).map(PathBuf::as_path));
     let file = OutputFiles::of_inputs(inputs).create(&output)?;
-    let g = structure.parameters().g;
+    let g = structure.base().g;
     let mut records = args.records().map(|path| record(&args.options, path, g)).collect::<Result<Vec<_>, _>>()?;
     let vertical = args.record_v.as_ref().and_then(|_| records.pop());
     let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, records, vertical, &libraries)?;
     file.write(&archive)?;
     say!("{}: {} kB", output.display(), archive.len().div_ceil(1000));
     say!("  GUID       {}", guid(&contents));
-    say!("  structure  {}", in_one_line(&structure));
+    let said = match &structure {
+        AnyStructure::One(one) => in_one_line(one),
+        AnyStructure::Many(frame) => format!("{} floors, {} modes", frame.floors().len(), frame.modes().len()),
+    };
+    say!("  structure  {said}");
     let platforms: Vec<_> = libraries.iter().map(|library| library.platform.folder(args.fmi)).collect();
     say!("  platforms  {}", platforms.join(", "));
     for packed in &contents.records {

@@ -1,32 +1,59 @@
 //! How the structure on its ground is taken over one step of a co-simulation.
 
+use crate::masses::{Masses, PeaksOf};
 use crate::scene::Scene;
 use crate::setup::Setup;
 use rocking::engine::{AdvanceError, Progress};
-use rocking::{LinearLoad, Watch};
+use rocking::run::validity::Validity;
+use rocking::{LinearLoad, Piece, Transition, Watch};
 
 /// Part of the time, or of 1/p_l if that is more, that rounding can shift a transition by.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-impl Scene {
+/// Hears of transitions. One type for all listeners keeps the library small.
+pub type Told<'a, Q> = dyn FnMut(&Transition<Q>) + 'a;
+
+/// Watches peaks and limits, if they are asked for. One type for all cases keeps the library small.
+pub struct Watching<'a, 'b, Q: Masses> {
+    pub peaks: Option<<Q::Peaks as PeaksOf<Q>>::Watch<'a>>,
+    pub validity: Option<&'a mut Validity<Q>>,
+    pub told: &'a mut Told<'b, Q>,
+}
+
+impl<Q: Masses> Watch<Q> for Watching<'_, '_, Q> {
+    const SEES_PIECES: bool = true;
+
+    fn piece(&mut self, piece: &Piece<Q>) {
+        self.peaks.iter_mut().for_each(|peaks| peaks.piece(piece));
+        self.validity.iter_mut().for_each(|validity| Q::watcher(validity).piece(piece));
+    }
+
+    fn transition(&mut self, transition: &Transition<Q>) {
+        self.peaks.iter_mut().for_each(|peaks| peaks.transition(transition));
+        self.validity.iter_mut().for_each(|validity| Q::watcher(validity).transition(transition));
+        (self.told)(transition);
+    }
+}
+
+impl<Q: Masses> Scene<Q> {
     /// [`Scene::advance`] up to the first transition. One within rounding of the end of the step counts as at its end: a
     /// host that goes back and steps to the instant that it was told meets it again. One at the very start, where an
     /// input has just jumped, is applied at once: every step takes time.
     #[inline(never)]
-    pub fn advance_to_transition<W: Watch>(
+    pub fn advance_to_transition(
         &mut self,
         setup: &Setup,
         step: f64,
-        inputs: &LinearLoad,
-        watch: &mut W,
+        inputs: &LinearLoad<Q>,
+        told: &mut Told<Q>,
     ) -> Result<Progress, AdvanceError> {
         let (from, elapsed) = (self.engine.motion().time, self.elapsed);
         let until = from + step;
-        let mut progress = self.advance(setup, step, inputs, watch)?;
+        let mut progress = self.advance(setup, step, inputs, told)?;
         while progress == Progress::Transition && self.engine.motion().time <= from {
-            progress = self.advance(setup, step, inputs, watch)?;
+            progress = self.advance(setup, step, inputs, told)?;
         }
-        let rounding = ROUNDING * until.abs().max(self.engine.structure().p_l.recip());
+        let rounding = ROUNDING * until.abs().max(self.engine.structure().as_ref().p_l.recip());
         if progress == Progress::Complete {
             let later = inputs.from(step);
             let load = if self.may_move_vertically(setup) { self.load(setup, later) } else { later };
@@ -34,7 +61,7 @@ impl Scene {
                 return Ok(progress);
             }
             let motion = *self.engine.motion();
-            progress = self.follow(setup, rounding, &later, watch).unwrap_or(Progress::Complete);
+            progress = self.follow(setup, rounding, &later, &mut Q::listener(told)).unwrap_or(Progress::Complete);
             if progress == Progress::Complete {
                 self.engine.set_motion(motion);
             }
@@ -49,44 +76,43 @@ impl Scene {
     /// Advances by `step` (s) under `inputs` and the record, with peaks and validity watched as `setup` says. If it
     /// fails, nothing has changed.
     #[inline(always)]
-    pub fn advance<W: Watch>(
+    pub fn advance(
         &mut self,
         setup: &Setup,
         step: f64,
-        inputs: &LinearLoad,
-        watch: &mut W,
+        inputs: &LinearLoad<Q>,
+        told: &mut Told<Q>,
     ) -> Result<Progress, AdvanceError> {
         if setup.peaks || setup.validity {
-            self.advance_watched(setup, step, inputs, watch)
+            self.advance_watched(setup, step, inputs, told)
         } else {
-            self.follow(setup, step, inputs, watch)
+            self.follow(setup, step, inputs, &mut Q::listener(told))
         }
     }
 
     #[inline(never)]
-    fn advance_watched<W: Watch>(
+    fn advance_watched(
         &mut self,
         setup: &Setup,
         step: f64,
-        inputs: &LinearLoad,
-        watch: &mut W,
+        inputs: &LinearLoad<Q>,
+        told: &mut Told<Q>,
     ) -> Result<Progress, AdvanceError> {
-        let (mut peaks, mut validity) = (self.peaks, self.watch_validity());
-        let progress = match (setup.peaks, setup.validity) {
-            (_, false) => self.follow(setup, step, inputs, &mut (&mut peaks.watch(), watch)),
-            (false, true) => self.follow(setup, step, inputs, &mut (&mut validity, watch)),
-            (true, true) => self.follow(setup, step, inputs, &mut (&mut peaks.watch(), &mut (&mut validity, watch))),
-        }?;
+        let (mut peaks, mut validity) = (self.peaks.clone(), self.watch_validity());
+        let of_limits = setup.validity.then_some(&mut validity);
+        let mut watch = Watching { peaks: setup.peaks.then(|| peaks.watch()), validity: of_limits, told };
+        let progress = self.follow(setup, step, inputs, &mut watch)?;
+        drop(watch);
         (self.peaks, self.validity) = (peaks, *validity.found());
         Ok(progress)
     }
 
     #[inline(always)]
-    fn follow<W: Watch>(
+    fn follow<W: Watch<Q>>(
         &mut self,
         setup: &Setup,
         step: f64,
-        inputs: &LinearLoad,
+        inputs: &LinearLoad<Q>,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
         let Scene { engine, ground, elapsed, .. } = self;

@@ -1,5 +1,6 @@
 //! Derivatives of outputs: by time, and by what the host sets.
 
+use crate::inputs::InputsOf;
 use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::shown::Shown;
@@ -17,23 +18,24 @@ impl Unit {
     pub(crate) fn output_rates(&mut self, references: &[u32], rates: &mut [f64]) -> Result<(), Failure> {
         let sources = self.sources_of(references);
         let (scene, setup, inputs) = self.parts()?;
-        let load = scene.load(setup, inputs.now());
+        let load = scene.load(setup, inputs.with_slopes());
         let (outputs, reactions) = scene.engine.rates(load);
         for ((source, reference), rate) in sources.into_iter().zip(references).zip(rates) {
             *rate = match source {
                 Source::Output(of) => of(&outputs),
                 Source::Reaction(of) => of(&reactions),
                 Source::Restraint(of) => of(&scene.engine.restraint_rates(load.value)),
-                Source::Ground(which) => load.slope[which],
+                Source::Ground(is_vertical) => {
+                    if is_vertical {
+                        load.slope.a_v
+                    } else {
+                        load.slope.a_g
+                    }
+                }
                 _ => return Err(Failure::NoOutput { name: self.name(*reference) }),
             };
         }
         Ok(())
-    }
-
-    /// The sources of the values of `references`.
-    fn sources_of(&self, references: &[u32]) -> Vec<Source> {
-        references.iter().map(|reference| self.table.sources[*reference as usize]).collect()
     }
 
     /// Derivatives of outputs and of derivatives of states: by inputs; once the simulation has started by states, and by
@@ -68,7 +70,7 @@ impl Unit {
             return Err(Failure::NoOutput { name: self.name(of[at]) });
         }
         let (scene, setup, inputs) = self.parts()?;
-        let inputs = inputs.values().into();
+        let inputs = inputs.values(&scene.engine).into();
         let mut by_states = vec![Some(0.0); unknowns.len()];
         for (which, seed) in of_state.into_iter().enumerate().filter(|(_, seed)| *seed != 0.0) {
             let found = by_state(scene, setup, inputs, &unknowns, which);

@@ -50,7 +50,7 @@ pub enum Refusal {
     Advance(#[from] AdvanceError),
     /// A trial state that is far from any motion.
     #[error("{name} = {value} is out of range: at most 1e12 in SI units; take a shorter step")]
-    FarState { name: &'static str, value: f64 },
+    FarState { name: String, value: f64 },
     /// The equations of motion have no solution at a trial state.
     #[error(
         "the derivatives of the states do not exist at t = {time} s (u = {u} m, theta = {theta} rad): take a shorter step"

@@ -166,12 +166,14 @@ impl Archive {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::resources::{Contents, PackedRecord};
-    use rocking::Parameters;
+    use crate::resources::PackedRecord;
+    use rocking::structure::any::AnyStructure;
+    use rocking::{Parameters, Structure};
     use std::fs;
 
     fn archive(folder: &Path) -> Archive {
-        Archive { folder: folder.to_owned(), contents: Contents::from(Parameters::EVISON) }
+        let structure = AnyStructure::One(Structure::new(Parameters::EVISON).unwrap());
+        Archive { folder: folder.to_owned(), contents: structure.into() }
     }
 
     /// A file that is rewritten is another record, even with the same size and time.

@@ -5,14 +5,16 @@
 //!
 //! | file | does |
 //! |---|---|
+//! | [`any`] | the model: a unit of one mass or of many |
 //! | [`unit`] | what an instance is asked: values, start, steps, events, its state as bytes |
 //! | `derivatives`, `outside` | derivatives of outputs; the motion under the host's integrator |
+//! | [`masses`] | what one mass and many masses do each in their own way |
 //! | `shown` | the values of all computed real numbers at an instant |
 //! | `advance` | the structure on its ground over one step |
 //! | `scene` | the structure on its ground, from its start on |
 //! | `motion_log` | the messages about transitions and limits |
 //! | `failure` | every message about what is refused |
-//! | [`variables`] | the table of variables |
+//! | [`variables`], `floor_variables` | the table of variables |
 //! | `setup`, `inputs` | what is set before the start and during the simulation |
 //! | [`ground`], [`resources`] | records; what the archive carries |
 //!
@@ -21,10 +23,13 @@
 #![allow(non_snake_case)] // the shared library's name
 
 mod advance;
+pub mod any;
 mod derivatives;
 mod failure;
+mod floor_variables;
 pub mod ground;
 mod inputs;
+pub mod masses;
 mod motion_log;
 mod outside;
 pub mod resources;
@@ -34,11 +39,12 @@ mod shown;
 pub mod unit;
 pub mod variables;
 
-use resources::Contents;
+use resources::{Contents, FrameNumbers};
+use rocking::structure::any::AnyStructure;
 use uuid::Uuid;
 
 #[cfg(not(target_family = "wasm"))]
-fmi_unit::export_fmu!(unit::Unit);
+fmi_unit::export_fmu!(any::AnyUnit);
 
 /// Names the build: all that enters the library.
 pub const BUILD: &str = env!("FLEXIBLE_ROCKING_BUILD");
@@ -47,6 +53,11 @@ pub const BUILD: &str = env!("FLEXIBLE_ROCKING_BUILD");
 /// each other. Hosts take two FMUs of one GUID for the same, so that structures and records must differ in it.
 pub fn guid(contents: &Contents) -> String {
     let build = Uuid::try_parse(BUILD).expect("the build script wrote it");
-    let bytes = postcard::to_stdvec(contents).expect("numbers and text can always be written");
+    let Contents { structure, records, vertical } = contents;
+    let bytes = match structure {
+        AnyStructure::One(structure) => postcard::to_stdvec(&(structure.parameters(), records, vertical)),
+        AnyStructure::Many(frame) => postcard::to_stdvec(&(FrameNumbers::from(frame), records, vertical)),
+    };
+    let bytes = bytes.expect("numbers and text can always be written");
     Uuid::new_v5(&build, &bytes).braced().to_string()
 }

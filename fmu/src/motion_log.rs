@@ -1,5 +1,6 @@
 //! The messages to the host about the motion: its transitions, and the limits of the model that it passes.
 
+use crate::masses::Masses;
 use fmi_unit::Logger;
 use rocking::run::validity::{ASSUMPTIONS, Findings, Limits};
 use rocking::{Side, Transition, TransitionKind};
@@ -14,7 +15,7 @@ pub(crate) fn warn(logger: &Logger, known: &Findings, found: &Findings) {
 }
 
 /// An event; where contact is held by force, which is not the model's, a warning.
-pub(crate) fn log(logger: &Logger, transition: &Transition) {
+pub(crate) fn log<Q: Masses>(logger: &Logger, transition: &Transition<Q>) {
     match transition.kind {
         TransitionKind::Settling => logger.warning(&format!(
             "{}; too many transitions within one vibration period: contact is held for the rest of it",
@@ -35,8 +36,8 @@ pub(crate) fn warn_of_stairs(logger: &Logger, time: f64) {
     ));
 }
 
-fn describe(transition: &Transition) -> String {
-    let Transition { time, kind, before, after } = transition;
+fn describe<Q: Masses>(transition: &Transition<Q>) -> String {
+    let Transition { time, kind, .. } = transition;
     let side = |side| if side == Side::Left { "left" } else { "right" };
     let what = match *kind {
         TransitionKind::Uplift(pivot) => format!("uplift, rocking about the {} edge", side(pivot)),
@@ -45,10 +46,7 @@ fn describe(transition: &Transition) -> String {
         TransitionKind::Overturning(pivot) => format!("overturning about the {} edge", side(pivot)),
         kind @ (TransitionKind::Yielding(_) | TransitionKind::Unloading(_)) => kind.name().to_owned(),
     };
-    format!(
-        "t = {time} s: {what}; u = {} m, u_dot = {} m/s (before: {}), theta_dot = {} rad/s (before: {})",
-        after.u, after.u_dot, before.u_dot, after.theta_dot, before.theta_dot
-    )
+    format!("t = {time} s: {what}; {}", Q::told(transition))
 }
 
 #[cfg(test)]

@@ -2,15 +2,16 @@
 //!
 //! The engine stands at the time and state of the host; [`Checkpoint`] keeps the last motion that was right.
 
+use crate::advance::Told;
 use crate::failure::Refusal;
+use crate::masses::Masses;
 use crate::motion_log::log;
 use crate::scene::{Outside, Scene};
 use crate::setup::Setup;
 use fmi_unit::{Completed, Failure, Logger, Update};
-use rocking::mechanics::state::COMPONENTS;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::outside_step::{Checked, Checkpoint};
-use rocking::{Load, State, Transition, Watch};
+use rocking::{Load, Transition};
 
 /// The relative tolerance up to which samples of the record are events. A solver of high order that integrates over the
 /// kinks there is not as exact as it believes; below an error of some 1e-5 to start anew at each is the cheaper way
@@ -20,7 +21,7 @@ const KINKS_MATTER: f64 = 1e-8;
 /// The largest state (SI units) that is taken from a host.
 const FARTHEST: f64 = 1e12;
 
-impl Scene {
+impl<Q: Masses> Scene<Q> {
     /// The record's time at the host's `time` (s). Where the start is late the last digits of that are coarse: the instant
     /// that was announced for a sample is that sample's.
     fn elapsed_at(&self, setup: &Setup, time: f64) -> Elapsed {
@@ -30,24 +31,26 @@ impl Scene {
     }
 
     /// The load that acts now under the inputs `load`.
-    pub fn acting(&self, setup: &Setup, load: Load) -> Load {
+    pub fn acting(&self, setup: &Setup, load: Load<Q>) -> Load<Q> {
         self.load(setup, load.into()).value
     }
 
     /// Checks the step from where the motion was last known to where the host is, with the inputs `load` there.
-    fn check<W: Watch>(
+    fn check(
         &mut self,
         setup: &Setup,
-        known: &Checkpoint,
-        load: Load,
-        watch: &mut W,
-    ) -> Result<Checked, Failure> {
+        known: &Checkpoint<Q>,
+        load: Load<Q>,
+        told: &mut Told<Q>,
+    ) -> Result<Checked<Q>, Failure> {
         let (from, to) = (known.motion.time, self.engine.motion().time);
         if to < from && !self.has_overturned() {
             return Err(Failure::StepBack { from, to });
         }
         let ground = self.ground.as_ref().map(|ground| setup.ground_motion(ground));
-        Ok(known.check(&mut self.engine, ground.as_ref(), self.elapsed, load, watch).map_err(Refusal::from)?)
+        Ok(known
+            .check(&mut self.engine, ground.as_ref(), self.elapsed, load, &mut Q::listener(told))
+            .map_err(Refusal::from)?)
     }
 
     /// The next instant at which contact is released or the record jumps or, if that matters, has a kink, s.
@@ -68,7 +71,7 @@ impl Scene {
     }
 
     /// Leaves the motion to the host's integrator, with the inputs `load`.
-    pub fn leave_to_host(&mut self, load: Load) {
+    pub fn leave_to_host(&mut self, load: Load<Q>) {
         let (motion, elapsed) = (*self.engine.motion(), self.elapsed);
         self.outside = Some(Outside { known: Checkpoint { motion, elapsed, load }, arrived: load, event: elapsed });
     }
@@ -82,22 +85,20 @@ impl Scene {
         }
     }
 
-    /// Goes to the host's state u, u̇, θ, θ̇.
-    pub fn take_states(&mut self, states: &[f64]) -> Result<(), Failure> {
-        let is_near = |value: &f64| value.abs() <= FARTHEST;
-        let far = states.iter().zip(COMPONENTS).find(|(value, _)| !is_near(value));
-        if let Some((&value, name)) = far {
-            return Err(Refusal::FarState { name, value }.into());
+    /// Goes to the host's `states`, which the table calls `names`.
+    pub fn take_states(&mut self, states: &[f64], names: impl Fn(usize) -> String) -> Result<(), Failure> {
+        if let Some(far) = states.iter().position(|value| value.abs() > FARTHEST) {
+            return Err(Refusal::FarState { name: names(far), value: states[far] }.into());
         }
-        self.engine.set_state(State::of(std::array::from_fn(|at| states[at])));
+        self.engine.set_state(Q::state(states, self.engine.structure()));
         Ok(())
     }
 
     /// Checks the step that the host has made to where it is, with the inputs `load`. If it has passed over a transition,
     /// event mode puts it right.
-    pub fn complete_step(&mut self, setup: &Setup, load: Load) -> Result<Completed, Failure> {
+    pub fn complete_step(&mut self, setup: &Setup, load: Load<Q>) -> Result<Completed, Failure> {
         let Some(mut outside) = self.outside else { return Ok(Completed::default()) };
-        let Checked { motion, is_corrected, .. } = self.check(setup, &outside.known, load, &mut ())?;
+        let Checked { motion, is_corrected, .. } = self.check(setup, &outside.known, load, &mut |_| ())?;
         if !is_corrected {
             outside.known = Checkpoint { motion, elapsed: self.elapsed, load };
             self.outside = Some(outside);
@@ -107,19 +108,19 @@ impl Scene {
     }
 
     /// Remembers what acts, the inputs `load`, where the host goes to event mode.
-    pub fn arrive(&mut self, load: Load) {
+    pub fn arrive(&mut self, load: Load<Q>) {
         if let Some(outside) = &mut self.outside {
             (outside.arrived, outside.event) = (load, self.elapsed);
         }
     }
 
     /// Applies the transitions up to where the host is, and the uplift that is due there under the inputs `load`.
-    pub fn catch_up(&mut self, setup: &Setup, load: Load, logger: &Logger) -> Result<Update, Failure> {
+    pub fn catch_up(&mut self, setup: &Setup, load: Load<Q>, logger: &Logger) -> Result<Update, Failure> {
         let Some(outside) = self.outside else { return Ok(Update::default()) };
         let from = outside.known.motion.time;
-        let mut passed: Vec<Transition> = Vec::new();
-        let mut watch = |transition: &Transition| passed.push(*transition);
-        let Checked { motion, was_hidden, .. } = self.check(setup, &outside.known, outside.arrived, &mut watch)?;
+        let mut passed: Vec<Transition<Q>> = Vec::new();
+        let Checked { motion, was_hidden, .. } =
+            self.check(setup, &outside.known, outside.arrived, &mut |transition| passed.push(*transition))?;
         let host = *self.engine.motion();
         passed.iter().for_each(|transition| log(logger, transition));
         if was_hidden {
@@ -133,7 +134,8 @@ impl Scene {
         }
         self.engine.set_motion(motion);
         let acting = self.acting(setup, load);
-        self.engine.lift_off_if_due(acting, &mut |transition: &Transition| log(logger, transition));
+        let told: &mut Told<Q> = &mut |transition| log(logger, transition);
+        self.engine.lift_off_if_due(acting, &mut Q::listener(told));
         let motion = *self.engine.motion();
         let known = Checkpoint { motion, elapsed: self.elapsed, load };
         self.outside = Some(Outside { known, arrived: load, event: outside.event });

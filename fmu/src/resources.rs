@@ -1,15 +1,21 @@
-//! The content of the archive's folder `resources`, found through the URI that the host gives: the parameters, and
+//! The content of the archive's folder `resources`, found through the URI that the host gives: the numbers of the structure, and
 //! the list of the records that were packed.
 
-use rocking::Parameters;
+use rocking::structure::any::AnyStructure;
+use rocking::structure::frame::{Body, Floor, FrameError};
 use rocking::structure::parameters::ParameterError;
+use rocking::structure::{Mode, Structure, Ties};
+use rocking::{Frame, Modes};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-/// The file with the parameters, in the archive's folder `resources`.
+/// The file with the parameters of one mass, in the archive's folder `resources`.
 pub const PARAMETERS_FILE: &str = "parameters.toml";
+
+/// The file with the numbers of many masses, in the same folder in place of [`PARAMETERS_FILE`].
+pub const FRAME_FILE: &str = "frame.toml";
 
 /// The file with the names of the records, in the same folder; there is none without records.
 pub const RECORDS_FILE: &str = "records.toml";
@@ -24,14 +30,64 @@ pub struct Archive {
 }
 
 /// The content of an archive.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Contents {
-    /// Start values.
-    pub parameters: Parameters,
+    /// The structure; the parameters of one mass are start values.
+    pub structure: AnyStructure,
     /// The first is the one that the ground follows unless the host sets another.
     pub records: Vec<PackedRecord>,
     /// The one that it follows vertically unless the host sets another.
     pub vertical: Option<PackedRecord>,
+}
+
+/// The numbers from which a structure of many masses is made to the same bits. Lists alone are read with little code.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FrameNumbers {
+    /// m0, J0, m_s, S_1, I_2, B, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, and r if the structure has one.
+    body: Vec<f64>,
+    /// Of each mode mass, gamma, share, height, stiffness and damping.
+    modes: Vec<f64>,
+    /// Of each floor mass, height, and the displacement per coordinate of each mode.
+    floors: Vec<f64>,
+}
+
+impl From<&Frame> for FrameNumbers {
+    fn from(frame: &Frame) -> FrameNumbers {
+        let &Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties } = frame.body();
+        let Ties { P_0, k_t, xi_d, c_d, k_d, F_y } = ties;
+        let body = [m0, J0, m_s, S_1, I_2, B, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y].into_iter().chain(r);
+        let mode = |of: &Mode| [of.mass, of.gamma, of.share, of.height, of.stiffness, of.damping];
+        let floor = |of: &Floor| [&[of.mass, of.height], of.shape.numbers()].concat();
+        FrameNumbers {
+            body: body.collect(),
+            modes: frame.modes().iter().flat_map(mode).collect(),
+            floors: frame.floors().iter().flat_map(floor).collect(),
+        }
+    }
+}
+
+impl FrameNumbers {
+    /// The structure; numbers that are not all there make none.
+    pub fn frame(&self) -> Result<Frame, FrameError> {
+        let mut body = self.body.iter().copied();
+        let mut next = || body.next().unwrap_or(f64::NAN);
+        let [m0, J0, m_s, S_1, I_2, B, g, c_ratio] = std::array::from_fn(|_| next());
+        let [P_0, k_t, xi_d, c_d, k_d, F_y] = std::array::from_fn(|_| next());
+        let ties = Ties { P_0, k_t, xi_d, c_d, k_d, F_y };
+        let body = Body { m0, J0, m_s, S_1, I_2, B, r: body.next(), g, c_ratio, ties };
+        let mode = |&[mass, gamma, share, height, stiffness, damping]: &[f64; 6]| Mode {
+            mass,
+            gamma,
+            share,
+            height,
+            stiffness,
+            damping,
+        };
+        let modes: Vec<_> = self.modes.as_chunks().0.iter().map(mode).collect();
+        let floor = |of: &[f64]| Floor { mass: of[0], height: of[1], shape: Modes::new(&of[2..]) };
+        Frame::new(body, &modes, &self.floors.chunks_exact(2 + modes.len()).map(floor).collect::<Vec<_>>())
+    }
 }
 
 /// A record of an archive.
@@ -73,9 +129,9 @@ impl Contents {
 }
 
 /// Without records.
-impl From<Parameters> for Contents {
-    fn from(parameters: Parameters) -> Contents {
-        Contents { parameters, records: Vec::new(), vertical: None }
+impl From<AnyStructure> for Contents {
+    fn from(structure: AnyStructure) -> Contents {
+        Contents { structure, records: Vec::new(), vertical: None }
     }
 }
 
@@ -91,17 +147,24 @@ pub enum ResourceError {
     /// A parameter out of range.
     #[error("{file}: {1}", file = .0.display())]
     Refused(PathBuf, ParameterError),
+    /// Numbers that make no structure of many masses.
+    #[error("{file}: {1}", file = .0.display())]
+    NoFrame(PathBuf, FrameError),
 }
 
 impl Archive {
     /// The one whose folder `resources` is `folder`.
     pub fn open(folder: PathBuf) -> Result<Archive, ResourceError> {
-        let file = folder.join(PARAMETERS_FILE);
-        let parameters: Parameters = read(&file)?;
-        parameters.check().map_err(|error| ResourceError::Refused(file, error))?;
+        let (of_many, file) = (folder.join(FRAME_FILE), folder.join(PARAMETERS_FILE));
+        let structure = if of_many.exists() {
+            let numbers: FrameNumbers = read(&of_many)?;
+            AnyStructure::Many(numbers.frame().map_err(|error| ResourceError::NoFrame(of_many, error))?)
+        } else {
+            AnyStructure::One(Structure::new(read(&file)?).map_err(|error| ResourceError::Refused(file, error))?)
+        };
         let list = folder.join(RECORDS_FILE);
         let Records { record: records, vertical } = if list.exists() { read(&list)? } else { Records::default() };
-        Ok(Archive { folder, contents: Contents { parameters, records, vertical } })
+        Ok(Archive { folder, contents: Contents { structure, records, vertical } })
     }
 }
 
@@ -118,6 +181,7 @@ fn read<T: DeserializeOwned>(file: &Path) -> Result<T, ResourceError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rocking::Parameters;
 
     #[test]
     fn a_refusal_names_the_file_and_the_reason() {
@@ -129,7 +193,7 @@ mod tests {
         let evison = "m = 125.8\nm0 = 44.02\nH = 1.05\nB = 0.285\nf_fc = 11\nzeta_fc = 0.015\nr = 0.96\nJ0 = 0\nc_ratio = 1\ng = 9.81\n";
         fs::write(&file, evison).unwrap();
         let archive = Archive::open(folder.path().to_owned()).unwrap();
-        assert_eq!(archive.contents, Contents::from(Parameters::EVISON));
+        assert_eq!(archive.contents.structure, AnyStructure::One(Structure::new(Parameters::EVISON).unwrap()));
 
         fs::write(&file, evison.replace("r = 0.96", "r = 1.5")).unwrap();
         assert!(refusal().contains("r = 1.5 is out of range"), "{}", refusal());

@@ -1,8 +1,11 @@
 //! The structure on its ground: how a simulation starts from its setup, and what acts on the structure and has been
 //! found out about it since.
 
+use crate::advance::{Told, Watching};
 use crate::failure::Refusal;
 use crate::ground::{Digest, GroundRecord};
+use crate::masses::{Masses, PeaksOf};
+use crate::resources::Contents;
 use crate::setup::Setup;
 use rocking::engine::Settings;
 use rocking::mechanics::load::{LOADS, VERTICAL};
@@ -11,13 +14,13 @@ use rocking::run::ground_motion::{Elapsed, Placement};
 use rocking::run::outside_step::Checkpoint;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits, Validity};
-use rocking::{Engine, LinearLoad, Load, Phase, Structure, Watch};
+use rocking::{Engine, LinearLoad, Load, Phase};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The structure on its ground.
-pub(crate) struct Scene {
-    pub engine: Engine,
+pub struct Scene<Q: Masses = f64> {
+    pub engine: Engine<Q>,
     /// The record that the ground follows, as its files give it.
     pub source: Option<Arc<GroundRecord>>,
     /// The record in m/s² and as the setup scales it.
@@ -25,33 +28,35 @@ pub(crate) struct Scene {
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     /// If the host integrates: the engine is then where the host is.
-    pub outside: Option<Outside>,
-    pub peaks: FallingPeaks,
+    pub outside: Option<Outside<Q>>,
+    pub peaks: Q::Peaks,
     pub validity: Findings,
+    /// How many lateral coordinates the table has.
+    pub lateral: usize,
 }
 
 /// The knowledge of an instance beside the present of a motion that the host integrates.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub struct Outside {
+pub struct Outside<Q = f64> {
     /// The last motion that was known.
-    pub known: Checkpoint,
+    pub known: Checkpoint<Q>,
     /// The inputs when event mode was entered: what is set there has not acted before.
-    pub arrived: Load,
+    pub arrived: Load<Q>,
     /// When event mode was entered last: where the record jumps later, it does so once event mode is entered there.
     pub event: Elapsed,
 }
 
 impl Setup {
     /// The structure at the start time, on ground that may move vertically if `vertical`.
-    fn engine(&self, vertical: bool) -> Result<Engine, Refusal> {
-        let &Setup { detail, tolerance, initial, start_time, .. } = self;
+    fn engine<Q: Masses>(&self, contents: &Contents, vertical: bool) -> Result<Engine<Q>, Refusal> {
+        let &Setup { detail, tolerance, start_time, .. } = self;
         let settings = Settings { detail, tolerance, vertical, stops: false };
-        Ok(Engine::with(Structure::new(self.parameters)?, initial, start_time, settings)?)
+        Ok(Q::engine(Q::structure(self, contents)?, Q::initial(&self.initial), start_time, settings)?)
     }
 
     /// The record of `source` in m/s² and scaled. Refuses scales that leave no ground motion in the range of the inputs.
-    fn scaled(&self, source: &GroundRecord) -> Result<Record, Refusal> {
-        let (record, Placement { scale, time_scale, .. }) = (source.in_m_s2(self.parameters.g), self.placement);
+    fn scaled(&self, source: &GroundRecord, g: f64) -> Result<Record, Refusal> {
+        let (record, Placement { scale, time_scale, .. }) = (source.in_m_s2(g), self.placement);
         for (load, peak) in [(0, record.pga()), (VERTICAL, record.vertical_peak())] {
             LOADS[load].check(peak * scale.abs()).map_err(Refusal::StrongRecord)?;
         }
@@ -64,14 +69,15 @@ fn may_move_vertically(setup: &Setup, ground: Option<&Record>) -> bool {
     setup.vertical || ground.is_some_and(|record| record.vertical().is_some())
 }
 
-impl Scene {
-    /// At the start that `setup` describes, on ground that follows the record of `source`.
-    pub fn new(setup: &Setup, source: Option<Arc<GroundRecord>>) -> Result<Scene, Refusal> {
-        let ground = source.as_deref().map(|source| setup.scaled(source)).transpose()?;
-        let engine = setup.engine(may_move_vertically(setup, ground.as_ref()))?;
-        let peaks = FallingPeaks::since(setup.start_time, engine.structure(), setup.detail);
-        let validity = Findings::since(setup.start_time);
-        Ok(Scene { engine, source, ground, elapsed: Elapsed::default(), outside: None, peaks, validity })
+impl<Q: Masses> Scene<Q> {
+    /// At the start that `setup` describes, of an archive with these `contents`, on ground that follows the record of `source`.
+    pub fn new(setup: &Setup, contents: &Contents, source: Option<Arc<GroundRecord>>) -> Result<Scene<Q>, Refusal> {
+        let g = setup.g(contents);
+        let ground = source.as_deref().map(|source| setup.scaled(source, g)).transpose()?;
+        let engine = setup.engine::<Q>(contents, may_move_vertically(setup, ground.as_ref()))?;
+        let peaks = Q::Peaks::since(setup, engine.structure());
+        let (validity, lateral) = (Findings::since(setup.start_time), Q::lateral(contents));
+        Ok(Scene { engine, source, ground, elapsed: Elapsed::default(), outside: None, peaks, validity, lateral })
     }
 
     /// Lets the engine do what `change` makes of its settings.
@@ -91,7 +97,7 @@ impl Scene {
 
     /// The load that acts now: `inputs` and the record.
     #[inline]
-    pub fn load(&self, setup: &Setup, inputs: LinearLoad) -> LinearLoad {
+    pub fn load(&self, setup: &Setup, inputs: LinearLoad<Q>) -> LinearLoad<Q> {
         let Some(ground) = &self.ground else { return inputs };
         let (ground, elapsed) = (setup.ground_motion(ground), self.elapsed);
         inputs.on_ground(match &self.outside {
@@ -101,32 +107,8 @@ impl Scene {
     }
 
     /// Whether no step has been made, and the first phase lasts: under `load` the structure does not uplift at once.
-    fn is_at_start(&self, load: Load) -> bool {
+    pub fn is_at_start(&self, load: Load<Q>) -> bool {
         self.engine.motion().work.steps == 0 && !self.engine.is_uplift_due(load)
-    }
-
-    /// The peaks since the start, of a structure that has overturned those before it fell; before the first step, the
-    /// values under `load`.
-    pub fn peaks(&self, setup: &Setup, load: Load) -> FallingPeaks {
-        let mut peaks = self.peaks;
-        if self.is_at_start(load) {
-            peaks.see_instant(setup.start_time, &self.engine.outputs(load));
-        }
-        peaks
-    }
-
-    /// The limits that the motion has passed since the start; before the first step by the reactions under `load`.
-    pub fn validity(&self, load: Load) -> Findings {
-        let mut validity = self.watch_validity();
-        if self.is_at_start(load) {
-            validity.see_instant(&self.engine.sample(load));
-        }
-        *validity.found()
-    }
-
-    /// Goes on from what has been found so far.
-    pub fn watch_validity(&self) -> Validity {
-        Validity::new(self.engine.structure(), Limits::default(), self.validity)
     }
 
     /// From the first to the last sample of the record, s; 0 without one.
@@ -155,16 +137,41 @@ impl Scene {
         self.outside.is_some()
     }
 
+    /// The limits that the motion has passed since the start; before the first step by the reactions under `load`.
+    pub fn validity(&self, load: Load<Q>) -> Findings {
+        let mut validity = self.watch_validity();
+        if self.is_at_start(load) {
+            validity.see_instant(&self.engine.sample(load));
+        }
+        *validity.found()
+    }
+
+    /// Goes on from what has been found so far.
+    pub fn watch_validity(&self) -> Validity<Q> {
+        Validity::new(self.engine.structure(), Limits::default(), self.validity)
+    }
+
     /// Applies the transition that is due, if there is one, and the uplift that is due at once then, or since the
     /// inputs `load` have jumped.
-    pub fn transit<W: Watch>(&mut self, setup: &Setup, load: Load, watch: &mut W) {
-        let acting = self.load(setup, load.into()).value;
+    pub fn transit(&mut self, setup: &Setup, load: Load<Q>, told: &mut Told<Q>) {
+        let acting = self.acting(setup, load);
         let mut validity = self.watch_validity();
-        let watch = &mut (&mut validity, watch);
-        self.engine.transit(watch);
-        self.engine.lift_off_if_due(acting, watch);
-        if setup.validity {
-            self.validity = *validity.found();
+        let mut watch = Watching { peaks: None, validity: setup.validity.then_some(&mut validity), told };
+        self.engine.transit(&mut watch);
+        self.engine.lift_off_if_due(acting, &mut watch);
+        drop(watch);
+        self.validity = *validity.found();
+    }
+}
+
+impl Scene {
+    /// The peaks since the start, of a structure that has overturned those before it fell; before the first step, the
+    /// values under `load`.
+    pub fn peaks(&self, setup: &Setup, load: Load) -> FallingPeaks {
+        let mut peaks = self.peaks;
+        if self.is_at_start(load) {
+            peaks.see_instant(setup.start_time, &self.engine.outputs(load));
         }
+        peaks
     }
 }

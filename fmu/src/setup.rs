@@ -6,6 +6,7 @@ use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::load::LOADS;
 use rocking::run::ground_motion::Placement;
 use rocking::run::record::Record;
+use rocking::structure::any::AnyStructure;
 use rocking::{Detail, GroundMotion, Parameters, State};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -13,7 +14,9 @@ use std::sync::Arc;
 /// The settings before a simulation starts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Setup {
-    pub(crate) parameters: Parameters,
+    /// Those of one mass; a host cannot change the numbers of many masses.
+    pub(crate) parameters: Option<Parameters>,
+    /// Of many masses, the rotation and its rate alone.
     pub(crate) initial: State,
     pub(crate) detail: Detail,
     pub(crate) tolerance: f64,
@@ -39,7 +42,10 @@ impl Setup {
     /// The setup of an instance just instantiated from an archive with these contents.
     pub(crate) fn new(contents: &Contents) -> Setup {
         Setup {
-            parameters: contents.parameters,
+            parameters: match &contents.structure {
+                AnyStructure::One(structure) => Some(*structure.parameters()),
+                AnyStructure::Many(_) => None,
+            },
             initial: State::default(),
             detail: Detail::default(),
             tolerance: DEFAULT_TOLERANCE,
@@ -53,6 +59,11 @@ impl Setup {
             peaks: false,
             validity: false,
         }
+    }
+
+    /// The acceleration of gravity, m/s².
+    pub(crate) fn g(&self, contents: &Contents) -> f64 {
+        self.parameters.map_or_else(|| contents.structure.base().g, |parameters| parameters.g)
     }
 
     /// How the inputs act between communication points.

@@ -1,34 +1,42 @@
 //! The values of all Reals that are computed, at an instant.
 
+use crate::masses::Masses;
 use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::variables::Source;
-use rocking::{Load, Outputs, Reactions, State};
+use rocking::engine::piece::Sample;
+use rocking::{Load, Reactions, State};
 use std::cell::OnceCell;
 
 /// The values of a scene under a load.
-pub(crate) struct Shown<'a> {
-    scene: &'a Scene,
+pub struct Shown<'a, Q: Masses = f64> {
+    pub scene: &'a Scene<Q>,
     pub setup: &'a Setup,
-    load: Load,
+    pub load: Load<Q>,
     /// The outputs.
-    outputs: Outputs,
+    pub outputs: Q::Outputs,
     /// Computed when they are first asked for, as the next.
     reactions: OnceCell<Reactions>,
     /// Derivatives of the states.
-    rates: OnceCell<State>,
+    rates: OnceCell<State<Q>>,
+    sample: OnceCell<Sample<'a, Q>>,
 }
 
-impl<'a> Shown<'a> {
+impl<'a, Q: Masses> Shown<'a, Q> {
     /// The values of `scene`, which follows `setup` and has these `outputs`, under `load`.
-    pub fn new(scene: &'a Scene, setup: &'a Setup, load: Load, outputs: Outputs) -> Shown<'a> {
-        let (reactions, rates) = Default::default();
-        Shown { scene, setup, load, outputs, reactions, rates }
+    pub fn new(scene: &'a Scene<Q>, setup: &'a Setup, load: Load<Q>, outputs: Q::Outputs) -> Shown<'a, Q> {
+        let (reactions, rates, sample) = Default::default();
+        Shown { scene, setup, load, outputs, reactions, rates, sample }
+    }
+
+    /// The motion.
+    pub fn sample(&self) -> &Sample<'a, Q> {
+        self.sample.get_or_init(|| self.scene.engine.sample(self.load))
     }
 
     /// The reactions.
-    pub fn reactions(&self) -> &Reactions {
-        self.reactions.get_or_init(|| self.scene.engine.reactions(self.load))
+    fn reactions(&self) -> &Reactions {
+        self.reactions.get_or_init(|| self.sample().reactions())
     }
 
     /// The last of the reactions, then of the rates, that are among `references` if the equations have no solution for them.
@@ -44,32 +52,33 @@ impl<'a> Shown<'a> {
     }
 
     /// Derivatives of the states.
-    pub fn state_rates(&self) -> &State {
-        self.rates.get_or_init(|| self.scene.engine.sample(self.load).state_rates())
+    pub fn state_rates(&self) -> &State<Q> {
+        self.rates.get_or_init(|| self.sample().state_rates())
     }
 
     /// The value of a Real from `source`, if it is one that is computed.
     pub fn value(&self, source: Source) -> Option<f64> {
         let Shown { scene, setup, load, .. } = *self;
         Some(match source {
-            Source::Output(of) => of(&self.outputs),
             Source::Reaction(of) => of(self.reactions()),
-            Source::StateRate(which) => self.state_rates().components()[which],
-            Source::Indicator(which) => scene.engine.sample(load).event_indicators()[which],
-            Source::Peak(_) if !setup.peaks || scene.is_integrated_outside() => f64::NAN,
-            Source::Peak(of) => of(scene.peaks(setup, load).peaks()),
+            Source::Indicator(which) => self.sample().event_indicators()[which],
             Source::Worst(_) | Source::WorstInstant(_) if !setup.validity || scene.is_integrated_outside() => f64::NAN,
             Source::Worst(which) => scene.validity(load).worst[which].value,
             Source::WorstInstant(which) => scene.validity(load).worst[which].time,
             Source::Restraint(of) => of(&scene.engine.restraints()),
             Source::Dissipator(of) => of(&scene.engine.motion().dissipators),
             Source::Impulse(of) => of(&scene.engine.motion().impulse),
-            Source::Derived(derived) => (derived.value)(scene.engine.structure()),
-            Source::Ground(which) => load[which],
+            Source::Ground(is_vertical) => {
+                if is_vertical {
+                    load.a_v
+                } else {
+                    load.a_g
+                }
+            }
             Source::Overturning => scene.overturned_at().unwrap_or(setup.start_time),
             Source::Time => scene.engine.motion().time,
             Source::RecordDuration => scene.record_duration(),
-            _ => return None,
+            source => return Q::own(source, self),
         })
     }
 }

@@ -1,35 +1,37 @@
 //! The structure on its ground as a model for FMI: how values are read and set, and how a simulation goes.
 
+use crate::advance::Told;
 use crate::failure::Refusal;
 use crate::ground::{Digest, Kept};
-use crate::inputs::Inputs;
+use crate::inputs::InputsOf;
+use crate::masses::{Masses, PeaksOf};
 use crate::motion_log::{log, warn, warn_of_stairs};
-use crate::resources::Archive;
+use crate::resources::{Archive, Contents};
 use crate::scene::{Outside, Scene};
 use crate::setup::Setup;
 use crate::shown::Shown;
-use crate::variables::{Source, Table};
+use crate::variables::{Source, Table, phase_number};
 use crate::{BUILD, guid};
 use fmi_unit::snapshot::write_state;
+use fmi_unit::variables::state_references;
 use fmi_unit::{Completed, Experiment, Failure, Interface, Logger, Model, Progress, Step, Update, Value, Variable};
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::mechanics::load::VERTICAL;
-use rocking::run::fall::FallingPeaks;
 use rocking::run::ground_motion::Elapsed;
-use rocking::run::validity::{self, Findings};
-use rocking::{Motion, State, Transition};
+use rocking::run::validity::Findings;
+use rocking::structure::any::AnyStructure;
+use rocking::{Motion, State};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
 
-/// An instance between two calls.
-pub struct Unit {
+/// An instance between two calls, whose structure has the lateral coordinates `Q`.
+pub struct Unit<Q: Masses = f64> {
     pub(crate) table: Table,
     archive: Archive,
     pub(crate) setup: Setup,
-    pub(crate) inputs: Inputs,
+    pub(crate) inputs: Q::Inputs,
     /// Until the start it is built when an output is asked for, and dropped when what it was built from is set anew.
-    scene: Option<Scene>,
+    scene: Option<Scene<Q>>,
     has_started: bool,
     /// The record that was followed last, which is not parsed anew for another run.
     kept: Option<Kept>,
@@ -39,41 +41,50 @@ pub struct Unit {
 
 /// All from which an instance goes on to the same bits: its part of an FMU state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Condition {
+#[serde(bound = "")]
+pub struct Condition<Q: Masses = f64> {
     /// The settings before the start.
     pub setup: Setup,
     /// The inputs from the present time on.
-    pub inputs: Inputs,
+    pub inputs: Q::Inputs,
     /// How far the simulation has come, once it has started: until then all follows from the setup.
-    pub course: Option<Course>,
+    pub course: Option<Course<Q>>,
 }
 
 /// How far a simulation has come.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub struct Course {
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct Course<Q: Masses = f64> {
     /// The motion; the host's, if the host integrates.
-    pub motion: Motion,
+    pub motion: Motion<Q>,
     /// The knowledge beside the motion, if the host integrates.
-    pub outside: Option<Outside>,
+    pub outside: Option<Outside<Q>>,
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     /// Peaks so far, if they are watched.
-    pub peaks: FallingPeaks,
+    pub peaks: Q::Peaks,
     /// Which limits of the model have been passed so far, if they are watched.
     pub validity: Findings,
     /// Names the record that the ground follows.
     pub record: Option<Digest>,
 }
 
-impl Unit {
+impl<Q: Masses> Unit<Q> {
+    /// An instance just instantiated from `archive`.
+    pub fn new(archive: Archive) -> Unit<Q> {
+        let (table, setup) = (Table::new(&archive.contents), Setup::new(&archive.contents));
+        let (inputs, has_started, kept, told_of_stairs) = (Q::inputs(&archive.contents), false, None, false);
+        Unit { table, archive, setup, inputs, scene: None, has_started, kept, told_of_stairs }
+    }
+
     /// The structure in motion, or at its start with what has been set so far; its record is in the archive, or on disk.
-    pub(crate) fn scene(&mut self) -> Result<&mut Scene, Refusal> {
+    pub(crate) fn scene(&mut self) -> Result<&mut Scene<Q>, Refusal> {
         self.parts().map(|(scene, ..)| scene)
     }
 
     /// The structure with the setup and the inputs.
     #[inline]
-    pub(crate) fn parts(&mut self) -> Result<(&mut Scene, &Setup, &mut Inputs), Refusal> {
+    pub(crate) fn parts(&mut self) -> Result<(&mut Scene<Q>, &Setup, &mut Q::Inputs), Refusal> {
         if self.scene.is_none() {
             self.build()?;
         }
@@ -83,16 +94,21 @@ impl Unit {
 
     #[cold]
     fn build(&mut self) -> Result<(), Refusal> {
-        let ground =
-            self.archive.ground(&self.setup.record, &self.setup.record_v, self.setup.parameters.g, &mut self.kept)?;
-        self.scene = Some(Scene::new(&self.setup, ground)?);
+        let Unit { archive, setup, kept, .. } = self;
+        let ground = archive.ground(&setup.record, &setup.record_v, setup.g(&archive.contents), kept)?;
+        self.scene = Some(Scene::new(setup, &archive.contents, ground)?);
         Ok(())
+    }
+
+    /// The sources of the values of `references`.
+    pub(crate) fn sources_of(&self, references: &[u32]) -> Vec<Source> {
+        references.iter().map(|reference| self.table.sources[*reference as usize]).collect()
     }
 
     /// Reads real numbers that the host sets.
     fn settings(&self, references: &[u32], values: &mut [f64]) -> Result<(), Failure> {
         for (reference, value) in references.iter().zip(values) {
-            *value = setting(&self.setup, &self.inputs, self.table.sources[*reference as usize]);
+            *value = setting::<Q>(&self.setup, &self.inputs, self.table.sources[*reference as usize]);
         }
         Ok(())
     }
@@ -111,39 +127,48 @@ impl Unit {
     /// Whether one of `values` moves the ground vertically.
     #[inline]
     fn is_vertical(&self, references: &[u32], values: &[f64]) -> bool {
-        references.iter().zip(values).any(|(reference, value)| *reference == VERTICAL as u32 && *value != 0.0)
+        references
+            .iter()
+            .zip(values)
+            .any(|(reference, value)| *reference == Q::Inputs::VERTICAL as u32 && *value != 0.0)
     }
+}
+
+/// A count as FMI has it.
+fn integer(count: u64) -> Value {
+    Value::Integer(i32::try_from(count).unwrap_or(i32::MAX))
 }
 
 /// The value of a real number that is no output: one that is `shown`, or set.
 #[cold]
 #[inline(never)]
-fn other(shown: &Shown, inputs: &Inputs, source: Source) -> f64 {
-    shown.value(source).unwrap_or_else(|| setting(shown.setup, inputs, source))
+fn other<Q: Masses>(shown: &Shown<Q>, inputs: &Q::Inputs, source: Source) -> f64 {
+    shown.value(source).unwrap_or_else(|| setting::<Q>(shown.setup, inputs, source))
 }
 
 /// The value of a real number that the host sets.
-fn setting(setup: &Setup, inputs: &Inputs, source: Source) -> f64 {
+fn setting<Q: Masses>(setup: &Setup, inputs: &Q::Inputs, source: Source) -> f64 {
     match source {
-        Source::Input(which) => inputs.shown()[which],
+        Source::Input(which) => inputs.shown(which),
         source => source.setting(setup).expect("a real number that is not computed is set"),
     }
 }
 
-impl Model for Unit {
-    fn open(resources: &Path) -> Result<Unit, Failure> {
-        let archive = Archive::open(resources.to_owned()).map_err(Refusal::from)?;
-        let (table, setup) = (Table::new(&archive.contents), Setup::new(&archive.contents));
-        let (inputs, scene, has_started, kept, told_of_stairs) = Default::default();
-        Ok(Unit { table, archive, setup, inputs, scene, has_started, kept, told_of_stairs })
+impl<Q: Masses> Model for Unit<Q> {
+    fn open(resources: &Path) -> Result<Unit<Q>, Failure> {
+        Ok(Unit::new(Archive::open(resources.to_owned()).map_err(Refusal::from)?))
     }
 
     fn token(&self) -> String {
         guid(&self.archive.contents)
     }
 
+    /// States of one mass have all its parameters; those of many masses have not.
     fn build(&self) -> String {
-        BUILD.to_owned()
+        match &self.archive.contents.structure {
+            AnyStructure::One(_) => BUILD.to_owned(),
+            many => guid(&Contents::from(many.clone())),
+        }
     }
 
     fn variables(&self) -> Arc<[Variable]> {
@@ -153,9 +178,10 @@ impl Model for Unit {
     fn get(&mut self, reference: u32) -> Result<Value, Failure> {
         let source = self.table.sources[reference as usize];
         Ok(match source {
-            Source::Integer(of) => Value::Integer(of(self.scene()?.engine.motion())),
-            Source::Boolean(of) => Value::Boolean(of(self.scene()?.engine.motion()) != 0),
-            Source::Gains => Value::Integer(i32::try_from(self.scene()?.validity.gains).unwrap_or(i32::MAX)),
+            Source::Phase => Value::Integer(phase_number(self.scene()?.engine.motion().phase)),
+            Source::Transitions => integer(self.scene()?.engine.motion().transitions),
+            Source::Overturned => Value::Boolean(self.scene()?.has_overturned()),
+            Source::Gains => integer(self.scene()?.validity.gains),
             Source::Switch(_) | Source::Detail | Source::Text(_) => source.set_value(&self.setup).expect("it is set"),
             _ => {
                 let mut value = [0.0];
@@ -177,13 +203,14 @@ impl Model for Unit {
         let Unit { table: Table { sources, .. }, setup, inputs, scene: Some(scene), .. } = self else {
             unreachable!("it is built")
         };
-        let load = scene.load(setup, inputs.values().into()).value;
-        let outputs = scene.engine.outputs(load);
+        let load = scene.load(setup, inputs.values(&scene.engine).into()).value;
+        let outputs = Q::outputs(&scene.engine, load);
         let (mut shown, sources): (_, &[Source]) = (None, sources);
         for (reference, value) in references.iter().zip(values) {
-            *value = match sources[*reference as usize] {
-                Source::Output(of) => of(&outputs),
-                source => {
+            let source = sources[*reference as usize];
+            *value = match Q::output(source, &outputs) {
+                Some(output) => output,
+                None => {
                     let shown = shown.get_or_insert_with(|| Shown::new(scene, setup, load, outputs));
                     other(shown, inputs, source)
                 }
@@ -241,12 +268,11 @@ impl Model for Unit {
             found.iter().for_each(|found| logger.event(|| found.clone()));
             assumed.iter().for_each(|assumed| logger.warning(assumed));
         }
-        for doubt in scene.ground.iter().flat_map(|ground| rocking_records::doubts(ground, setup.parameters.g)) {
+        let g = scene.engine.structure().as_ref().g;
+        for doubt in scene.ground.iter().flat_map(|ground| rocking_records::doubts(ground, g)) {
             logger.warning(&format!("the record: {doubt}"));
         }
-        for warning in validity::of_parameters(scene.engine.structure(), setup.detail) {
-            logger.warning(&warning);
-        }
+        Q::doubts(scene.engine.structure(), setup.detail).iter().for_each(|doubt| logger.warning(doubt));
         match interface {
             Interface::CoSimulation(_) => inputs.start(setup.between()),
             Interface::ModelExchange => {
@@ -257,7 +283,7 @@ impl Model for Unit {
                          co-simulation"
                     ));
                 }
-                scene.leave_to_host(inputs.values());
+                scene.leave_to_host(inputs.values(&scene.engine));
             }
         }
         self.has_started = true;
@@ -273,9 +299,9 @@ impl Model for Unit {
     fn advance(&mut self, step: Step, logger: &Logger) -> Result<Progress, Failure> {
         let Step { start: point, duration: step, stops_at_events: stops } = step;
         let (scene, setup, inputs) = self.parts()?;
-        let load = inputs.over(step);
-        let end = load.at(step);
-        end.check().map_err(Refusal::InputRunsOut)?;
+        let lines = inputs.over(step, &scene.engine);
+        let (load, end) = (Q::Inputs::load(&lines), Q::Inputs::at(&lines, step));
+        Q::Inputs::check(&end).map_err(Refusal::InputRunsOut)?;
 
         let time = scene.engine.motion().time;
         scene.engine.set_time(point);
@@ -283,11 +309,11 @@ impl Model for Unit {
             scene.set(|settings| settings.stops = stops)?;
         }
         let known = setup.validity.then_some(scene.validity);
-        let mut watch = |transition: &Transition| log(logger, transition);
+        let told: &mut Told<Q> = &mut |transition| log(logger, transition);
         let result = if stops {
-            scene.advance_to_transition(setup, step, &load, &mut watch)
+            scene.advance_to_transition(setup, step, load, told)
         } else {
-            scene.advance(setup, step, &load, &mut watch)
+            scene.advance(setup, step, load, told)
         };
         let progress = result.map_err(|error| {
             scene.engine.set_time(time);
@@ -296,9 +322,10 @@ impl Model for Unit {
         let reached = scene.engine.motion().time;
         let ended_early = reached < point + step;
         if !ended_early {
-            inputs.pass(load, step, end, false);
+            inputs.pass(&lines, step, end, false);
         } else if reached > point {
-            inputs.pass(load, reached - point, load.at(reached - point), true);
+            let reached = reached - point;
+            inputs.pass(&lines, reached, Q::Inputs::at(&lines, reached), true);
         }
         known.iter().for_each(|known| warn(logger, known, &scene.validity));
         if inputs.makes_stairs() && !self.told_of_stairs {
@@ -315,13 +342,12 @@ impl Model for Unit {
     fn update(&mut self, logger: &Logger) -> Result<Update, Failure> {
         let (scene, setup, inputs) = self.parts()?;
         if scene.is_integrated_outside() {
-            return scene.catch_up(setup, inputs.values(), logger);
+            return scene.catch_up(setup, inputs.values(&scene.engine), logger);
         }
-        let known = scene.validity;
-        scene.transit(setup, inputs.values(), &mut |transition: &Transition| log(logger, transition));
-        if setup.validity {
-            warn(logger, &known, &scene.validity);
-        }
+        let known = setup.validity.then_some(scene.validity);
+        let load = inputs.values(&scene.engine);
+        scene.transit(setup, load, &mut |transition| log(logger, transition));
+        known.iter().for_each(|known| warn(logger, known, &scene.validity));
         Ok(Update::default())
     }
 
@@ -339,27 +365,28 @@ impl Model for Unit {
             motion: *scene.engine.motion(),
             outside: scene.outside,
             elapsed: scene.elapsed,
-            peaks: scene.peaks,
+            peaks: scene.peaks.clone(),
             validity: scene.validity,
             record: scene.digest(),
         });
-        let condition = Condition { setup: setup.clone(), inputs: *inputs, course };
+        let condition = Condition::<Q> { setup: setup.clone(), inputs: inputs.clone(), course };
         write_state(&condition, bytes);
     }
 
     /// The scene is built anew only for another setup.
     fn restore(&mut self, bytes: &[u8]) -> Result<(), Failure> {
         let read = postcard::from_bytes(bytes);
-        let Condition { setup, inputs, course } = read.map_err(|_| Failure::BadBytes("its content cannot be read"))?;
-        let mut scene = None;
+        let Condition::<Q> { setup, inputs, course } =
+            read.map_err(|_| Failure::BadBytes("its content cannot be read"))?;
+        let (mut scene, has_started) = (None, course.is_some());
         if let Some(course) = course {
-            let is_the_same = |scene: &mut Scene| self.setup == setup && scene.digest() == course.record;
+            let is_the_same = |scene: &mut Scene<Q>| self.setup == setup && scene.digest() == course.record;
             let mut found = match self.scene.take_if(is_the_same) {
                 Some(scene) => scene,
                 None => {
-                    let ground =
-                        self.archive.ground(&setup.record, &setup.record_v, setup.parameters.g, &mut self.kept);
-                    Scene::new(&setup, ground.map_err(Refusal::from)?)?
+                    let Unit { archive, kept, .. } = self;
+                    let ground = archive.ground(&setup.record, &setup.record_v, setup.g(&archive.contents), kept);
+                    Scene::new(&setup, &archive.contents, ground.map_err(Refusal::from)?)?
                 }
             };
             if found.digest() != course.record {
@@ -371,18 +398,18 @@ impl Model for Unit {
             (found.peaks, found.validity) = (course.peaks, course.validity);
             scene = Some(found);
         }
-        self.has_started = course.is_some();
+        self.has_started = has_started;
         self.told_of_stairs &= self.has_started;
         (self.setup, self.inputs, self.scene) = (setup, inputs, scene);
         Ok(())
     }
 
     fn rates(&mut self, references: &[u32], rates: &mut [f64]) -> Result<(), Failure> {
-        self.output_rates(references, rates)
+        Q::rates(self, references, rates)
     }
 
     fn derivatives(&mut self, of: &[u32], direction: &[(u32, f64)], has_started: bool) -> Result<Vec<f64>, Failure> {
-        self.directional_derivatives(of, direction, has_started)
+        Q::derivatives(self, of, direction, has_started)
     }
 
     fn set_time(&mut self, time: f64, is_at_event: bool) {
@@ -391,40 +418,46 @@ impl Model for Unit {
     }
 
     fn states(&mut self) -> Result<Vec<f64>, Failure> {
-        Ok(self.scene()?.engine.motion().state.components().into())
+        let scene = self.scene()?;
+        Ok(Q::components(&scene.engine.motion().state, scene.lateral))
     }
 
     fn set_states(&mut self, states: &[f64]) -> Result<(), Failure> {
-        self.scene()?.take_states(states)
+        let variables = self.variables();
+        let name = |which| {
+            variables[state_references(&variables).nth(which).expect("it is a state") as usize].name.to_string()
+        };
+        self.scene()?.take_states(states, name)
     }
 
     fn nominals(&mut self) -> Result<Vec<f64>, Failure> {
-        Ok(State::usual(self.scene()?.engine.structure()).components().into())
+        let scene = self.scene()?;
+        Ok(Q::components(&Q::usual(scene.engine.structure()), scene.lateral))
     }
 
     fn state_rates(&mut self) -> Result<Vec<f64>, Failure> {
         let (scene, setup, inputs) = self.parts()?;
-        let rates = scene.engine.sample(scene.acting(setup, inputs.values())).state_rates();
+        let rates = scene.engine.sample(scene.acting(setup, inputs.values(&scene.engine))).state_rates();
         if !rates.is_finite() {
             let &Motion { time, state: State { u, theta, .. }, .. } = scene.engine.motion();
-            return Err(Refusal::NoStateRates { time, u, theta }.into());
+            return Err(Refusal::NoStateRates { time, u: u.total(), theta }.into());
         }
-        Ok(rates.components().into())
+        Ok(Q::components(&rates, scene.lateral))
     }
 
     fn indicators(&mut self) -> Result<Vec<f64>, Failure> {
         let (scene, setup, inputs) = self.parts()?;
-        Ok(scene.engine.sample(scene.acting(setup, inputs.values())).event_indicators().into())
+        Ok(scene.engine.sample(scene.acting(setup, inputs.values(&scene.engine))).event_indicators().into())
     }
 
     fn complete_step(&mut self, _log: &Logger) -> Result<Completed, Failure> {
         let (scene, setup, inputs) = self.parts()?;
-        scene.complete_step(setup, inputs.values())
+        scene.complete_step(setup, inputs.values(&scene.engine))
     }
 
     fn arrive_at_event(&mut self) -> Result<(), Failure> {
         let (scene, _, inputs) = self.parts()?;
-        scene.arrive(inputs.values());
+        scene.arrive(inputs.values(&scene.engine));
         Ok(())
     }
 }

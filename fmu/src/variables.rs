@@ -1,49 +1,59 @@
 //! The one table of the FMU's variables. What a variable is called, what it may be, who sets it, where its value is and what
 //! it follows from stands here and nowhere else.
 
+use crate::floor_variables;
 use crate::resources::Contents;
 use crate::setup::Setup;
 use fmi_unit::{Causality, DataType, Enumeration, Value, Variable};
-use rocking::Motion;
-use rocking::mechanics::load::{LOADS, VERTICAL};
+use rocking::mechanics::load::LOADS;
 use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::mechanics::state::{COMPONENTS, INITIAL_VALUES};
 use rocking::run::ground_motion::{PLACEMENT, Placement};
 use rocking::run::outside_step::INDICATORS;
 use rocking::run::peaks::Peaks;
 use rocking::run::validity::{ASSUMPTIONS, Assumption};
+use rocking::structure::any::AnyStructure;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::Quantity;
 use rocking::structure::{DERIVED, Derived};
-use rocking::{Detail, Impulse, Load, Outputs, Parameters, Phase, Reactions, Side, State};
+use rocking::{Detail, Impulse, Outputs, Parameters, Phase, Reactions, Side, State, Structure};
 use std::sync::Arc;
-
-/// An integer, or a Boolean as 0 or 1.
-pub(crate) type OfMotion = fn(&Motion) -> i32;
 
 /// The source of the value of a variable.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Source {
-    /// By its place in [`LOADS`].
+#[allow(missing_docs)] // the types name what is not said
+pub enum Source {
+    /// By its place among the inputs.
     Input(usize),
     Output(fn(&Outputs) -> f64),
+    /// An output of many masses, by its place in [`FrameOutput::all`](rocking::FrameOutput::all).
+    Floor(usize),
     Reaction(fn(&Reactions) -> f64),
-    /// The derivative of one of [`COMPONENTS`], by its place.
+    /// A state of many masses, by its place.
+    Coordinate(usize),
+    /// The derivative of a state, by its place.
     StateRate(usize),
     /// An event indicator, by its place.
     Indicator(usize),
     Impulse(fn(&Impulse) -> f64),
     Restraint(fn(&Restraints) -> f64),
     Dissipator(fn(&Dissipators) -> f64),
-    Integer(OfMotion),
-    Boolean(OfMotion),
+    Phase,
+    /// Transitions so far.
+    Transitions,
+    Overturned,
     Parameter(&'static Quantity<Parameters>),
     InitialValue(&'static Quantity<State>),
-    Derived(&'static Derived),
+    Derived(&'static Derived<Structure>),
+    /// A number of many masses, which nothing changes.
+    Known(f64),
     Detail,
-    /// A ground acceleration, the input and the record, by its place in [`LOADS`].
-    Ground(usize),
+    /// A ground acceleration, the input and the record; whether it is the vertical one.
+    Ground(bool),
     Peak(fn(&Peaks) -> f64),
+    /// The peak of an output of many masses, by the place of the output.
+    FloorPeak(usize),
+    FloorPeakInstant(usize),
     /// The worst value of one of [`ASSUMPTIONS`].
     Worst(usize),
     /// The instant of the worst value of one of [`ASSUMPTIONS`].
@@ -61,16 +71,16 @@ pub(crate) enum Source {
 
 /// A parameter that is text: which record.
 #[derive(Debug)]
-pub(crate) struct Text {
-    pub get: fn(&Setup) -> &str,
-    pub set: fn(&mut Setup, &str),
+pub struct Text {
+    pub(crate) get: fn(&Setup) -> &str,
+    pub(crate) set: fn(&mut Setup, &str),
 }
 
 /// A Boolean parameter.
 #[derive(Debug)]
-pub(crate) struct Switch {
-    pub get: fn(&Setup) -> bool,
-    pub set: fn(&mut Setup, bool),
+pub struct Switch {
+    pub(crate) get: fn(&Setup) -> bool,
+    pub(crate) set: fn(&mut Setup, bool),
 }
 
 impl Source {
@@ -83,7 +93,7 @@ impl Source {
     /// The value of a Real parameter or an initial value.
     pub fn setting(&self, setup: &Setup) -> Option<f64> {
         match self {
-            Source::Parameter(quantity) => Some((quantity.get)(&setup.parameters)),
+            Source::Parameter(quantity) => Some((quantity.get)(setup.parameters.as_ref()?)),
             Source::InitialValue(quantity) => Some((quantity.get)(&setup.initial)),
             Source::Placement(quantity) => Some((quantity.get)(&setup.placement)),
             _ => None,
@@ -93,7 +103,7 @@ impl Source {
     /// The value of what is set: of a parameter or an input.
     pub fn set_value(&self, setup: &Setup) -> Option<Value> {
         match self {
-            Source::Input(which) => Some(Value::Real((LOADS[*which].get)(&Load::default()))),
+            Source::Input(_) => Some(Value::Real(0.0)),
             Source::Detail => Some(Value::Integer(detail_number(setup.detail))),
             Source::Text(text) => Some(Value::String((text.get)(setup).to_owned())),
             Source::Switch(switch) => Some(Value::Boolean((switch.get)(setup))),
@@ -115,7 +125,7 @@ impl Source {
     /// Sets a Real parameter or an initial value.
     pub fn set(&self, setup: &mut Setup, value: f64) {
         match self {
-            Source::Parameter(quantity) => (quantity.set)(&mut setup.parameters, value),
+            Source::Parameter(quantity) => setup.parameters.iter_mut().for_each(|of| (quantity.set)(of, value)),
             Source::InitialValue(quantity) => (quantity.set)(&mut setup.initial, value),
             Source::Placement(quantity) => (quantity.set)(&mut setup.placement, value),
             _ => (),
@@ -159,8 +169,8 @@ pub(crate) fn detail_number(detail: Detail) -> i32 {
     detail as i32 + 1
 }
 
-fn phase_number(motion: &Motion) -> i32 {
-    match motion.phase {
+pub(crate) fn phase_number(phase: Phase) -> i32 {
+    match phase {
         Phase::FullContact => 1,
         Phase::Rocking(Side::Left) => 2,
         Phase::Rocking(Side::Right) => 3,
@@ -168,16 +178,8 @@ fn phase_number(motion: &Motion) -> i32 {
     }
 }
 
-fn transitions(motion: &Motion) -> i32 {
-    i32::try_from(motion.transitions).unwrap_or(i32::MAX)
-}
-
-fn overturned(motion: &Motion) -> i32 {
-    i32::from(matches!(motion.phase, Phase::Overturned(_)))
-}
-
 /// A variable, and where its value is.
-type Row = (Variable, Source);
+pub(crate) type Row = (Variable, Source);
 
 /// All variables.
 #[derive(Clone, Debug)]
@@ -192,7 +194,7 @@ impl Table {
     /// The table of an FMU with these `contents`, which give start values.
     pub fn new(contents: &Contents) -> Table {
         let setup = Setup::new(contents);
-        let rows = (0..LOADS.len())
+        let one_mass = (0..LOADS.len())
             .map(input)
             .chain(outputs())
             .chain(locals())
@@ -208,9 +210,21 @@ impl Table {
             .chain(switches())
             .chain(calculated_parameters())
             .chain([(Variable::time(), Source::Time)]);
-        let started = rows.map(|(variable, source)| (Variable { start: source.set_value(&setup), ..variable }, source));
+        let rows = match &contents.structure {
+            AnyStructure::One(_) => one_mass.collect(),
+            AnyStructure::Many(frame) => floor_variables::rows(frame, one_mass),
+        };
+        let started = rows
+            .into_iter()
+            .map(|(variable, source)| (Variable { start: source.set_value(&setup), ..variable }, source));
         let (variables, sources): (Vec<_>, Vec<_>) = started.unzip();
         Table { variables: variables.into(), sources: sources.into() }
+    }
+
+    /// The value of the variable `name`, if nothing can change it.
+    pub fn known(&self, name: &str) -> Option<f64> {
+        let mut rows = self.variables.iter().zip(&*self.sources).filter(|(variable, _)| variable.name == name);
+        rows.find_map(|(_, source)| if let Source::Known(value) = source { Some(*value) } else { None })
     }
 }
 
@@ -235,7 +249,7 @@ fn input(which: usize) -> Row {
 
 /// The variables that accelerations follow from.
 #[rustfmt::skip]
-const ACCELERATION: &[&str] = &[
+pub(crate) const ACCELERATION: &[&str] = &[
     "a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "theta_dot", "m", "m0", "H", "B", "J0", "f_fc", "zeta_fc", "c_ratio",
     "g", "detail", "P_0", "k_t", "xi_d", "c_d", "k_d", "F_y",
 ];
@@ -323,17 +337,16 @@ fn locals() -> Vec<Row> {
     const PLASTIC: &[&str] = &["B", "theta_0", "xi_d", "k_d", "F_y"];
     let kept = |name, unit, description, of, from| local([name, unit, description], Source::Dissipator(of), from);
     let (turning, swaying) = (Source::Output(|o| o.theta_dot), Source::Output(|o| o.u_dot));
-    let ground = |name, description, which, input, record| {
+    let ground = |name, description, is_vertical, input, record| {
         let placed = ["record_scale", "record_time_scale", "record_start", "g", "time"];
-        local([name, "m/s2", description], Source::Ground(which), &[&[input, record][..], &placed].concat())
+        local([name, "m/s2", description], Source::Ground(is_vertical), &[&[input, record][..], &placed].concat())
     };
-    let (phase, source) =
-        counted("phase", PHASES.description, DataType::Enumeration(&PHASES), Source::Integer(phase_number));
+    let (phase, source) = counted("phase", PHASES.description, DataType::Enumeration(&PHASES), Source::Phase);
     vec![
         state(local(["theta_dot", "rad/s", "angular velocity of the base"], turning, &[]), "theta_dot_0"),
         state(local(["u_dot", "m/s", "elastic velocity of the top mass"], swaying, &[]), "u_dot_0"),
-        ground("a_ground", "ground acceleration: a_g and the record", 0, "a_g", "record"),
-        ground("a_v_ground", "vertical ground acceleration: a_v and record_v", VERTICAL, "a_v", "record_v"),
+        ground("a_ground", "ground acceleration: a_g and the record", false, "a_g", "record"),
+        ground("a_v_ground", "vertical ground acceleration: a_v and record_v", true, "a_v", "record_v"),
         kept("e_p1", "m", "plastic elongation of the elastoplastic dissipator at +xi_d", |d| d.plastic[0], PLASTIC),
         kept("e_p2", "m", "plastic elongation of the elastoplastic dissipator at -xi_d", |d| d.plastic[1], PLASTIC),
         kept("E_viscous", "J", "energy that the viscous dissipators have taken", |d| d.viscous, &[]),
@@ -343,9 +356,9 @@ fn locals() -> Vec<Row> {
             "transitions",
             "transitions so far: uplifts, impacts, landings (settling, too), overturning; dissipators that begin or cease to yield",
             DataType::Integer,
-            Source::Integer(transitions),
+            Source::Transitions,
         ),
-        counted("overturned", "whether the structure has overturned", DataType::Boolean, Source::Boolean(overturned)),
+        counted("overturned", "whether the structure has overturned", DataType::Boolean, Source::Overturned),
         counted(
             "t_overturned",
             "instant of overturning; startTime while the structure stands",

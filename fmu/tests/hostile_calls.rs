@@ -5,10 +5,13 @@ mod host;
 #[path = "../fmi/tests/hostile/mod.rs"]
 mod hostile;
 
-use FlexibleRocking::unit::Unit as Model;
+use FlexibleRocking::any::AnyUnit as Model;
+use FlexibleRocking::masses::Masses;
 use FlexibleRocking::{fmi2, fmi3};
 use fmi_unit::snapshot::Snapshot;
+use fmi_unit::state_machine::Stage;
 use hostile::{Subject, hostile_calls};
+use rocking::Modes;
 use rocking::engine::MAX_STEPS_PER_ADVANCE;
 use rocking::run::validity::ASSUMPTIONS;
 use std::ffi::CString;
@@ -17,28 +20,48 @@ use std::path::Path;
 
 hostile_calls!(structure);
 
+mod frame {
+    use super::*;
+
+    hostile_calls!(many_masses);
+}
+
 fn structure() -> Subject {
     let resources = host::resources();
     let texts = records(resources.path());
     // the top mass above the pivot of a foundation without inertia
     let sticks = [("m0", 0.0), ("J0", 0.0), ("B", 0.3), ("theta_0", 0.1), ("u_0", 0.3)];
     let sticks = sticks.map(|(name, value)| (host::reference(name), value)).into();
-    Subject { texts, sticks, may_be_infinite, check_step, ..Subject::of(resources, time) }
+    Subject { texts, sticks, may_be_infinite, check_step: check_step::<f64>, ..Subject::of(resources, time::<f64>) }
 }
 
-fn time(snapshot: &Snapshot) -> f64 {
-    let Some(course) = host::course(snapshot) else { return 0.0 };
+/// Two floors, with a mode left out, and dissipators.
+fn many_masses() -> Subject {
+    let resources = host::resources_of_many();
+    let texts = records(resources.path());
+    let never_in = &[Stage::Error]; // its foundation has inertia
+    Subject {
+        texts,
+        never_in,
+        may_be_infinite,
+        check_step: check_step::<Modes>,
+        ..Subject::of(resources, time::<Modes>)
+    }
+}
+
+fn time<Q: Masses>(snapshot: &Snapshot) -> f64 {
+    let Some(course) = host::course::<Q>(snapshot) else { return 0.0 };
     course.outside.map_or(course.motion.time, |outside| outside.known.motion.time)
 }
 
 /// Peaks and limits that nobody watches for are no numbers, and friction may be infinite.
 fn may_be_infinite(name: &str) -> bool {
-    name.ends_with("_max") || ASSUMPTIONS.iter().any(|of| [of.name, of.time_name].contains(&name))
+    name.contains("_max") || ASSUMPTIONS.iter().any(|of| [of.name, of.time_name].contains(&name))
 }
 
 /// The work is bounded.
-fn check_step(before: &Snapshot, after: &Snapshot) {
-    let [before, after] = [before, after].map(|of| host::course(of).unwrap().motion.work.steps);
+fn check_step<Q: Masses>(before: &Snapshot, after: &Snapshot) {
+    let [before, after] = [before, after].map(|of| host::course::<Q>(of).unwrap().motion.work.steps);
     assert!(after - before <= MAX_STEPS_PER_ADVANCE, "{} steps", after - before);
 }
 

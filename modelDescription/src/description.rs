@@ -40,6 +40,7 @@ impl Description<'_> {
             Version::Fmi2 => ("2.0", "guid", Some(self.unknowns(is_indicator, false).count())),
             Version::Fmi3 => ("3.0", "instantiationToken", None),
         };
+        let has_numbers = self.variables.iter().any(|variable| variable.name.contains('['));
         let units = self.all_units().into_iter().map(unit);
         let types = self.enumerations().into_iter().map(|of| enumeration(version, of));
         let variables = (0..).zip(self.variables);
@@ -61,7 +62,7 @@ impl Description<'_> {
             .with("version", self.version)
             .with("license", self.license)
             .with("generationTool", self.generation_tool)
-            .with("variableNamingConvention", "flat")
+            .with("variableNamingConvention", if has_numbers { "structured" } else { "flat" })
             .with_any("numberOfEventIndicators", indicators)
             .holding(self.interfaces(version))
             .holding(Element::new("UnitDefinitions").holding(units).unless_empty())

@@ -61,7 +61,7 @@ fn export(
     fmi: &Bound<'_, PyAny>,
     library: PathBuf,
 ) -> PyResult<()> {
-    let structure = structure.one("export")?;
+    let structure = structure.of.clone();
     let version = one_of("fmi", fmi, [("2", Version::Fmi2), ("3", Version::Fmi3)])?;
     let mut files = OutputFiles::of_inputs([library.as_path()]);
     for packed in &records {
@@ -81,7 +81,7 @@ fn export(
             }
             Packed::File(path) => path,
         };
-        let understood = understand(path, &Reading::default(), [1.0; 2], structure.parameters().g, str::to_owned);
+        let understood = understand(path, &Reading::default(), [1.0; 2], structure.base().g, str::to_owned);
         warn(py, understood.map_err(refused)?.sentences[1..].to_vec(), 2)?;
         Ok(vec![(path.clone(), rocking_records::read_file(path).map_err(refused)?)])
     };

@@ -7,9 +7,10 @@ use crate::mechanics::gauge::Gauge;
 use crate::mechanics::instant::{Place, uplift};
 use crate::numbers::{Number, Turn};
 use crate::structure::frame::Frame;
+use serde::{Deserialize, Serialize};
 
 /// An output of a structure of many masses. Floors and storeys count from 0, from below; storey i is below floor i.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[allow(non_camel_case_types)] // the names of the outputs
 pub enum FrameOutput {
     /// Rotation of the base θ, rad.

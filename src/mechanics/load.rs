@@ -226,8 +226,8 @@ impl LinearLoad {
 }
 
 /// Constant loads.
-impl From<Load> for LinearLoad {
-    fn from(value: Load) -> LinearLoad {
+impl<Q: Coordinates> From<Load<Q>> for LinearLoad<Q> {
+    fn from(value: Load<Q>) -> LinearLoad<Q> {
         LinearLoad::held(value)
     }
 }

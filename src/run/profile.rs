@@ -13,11 +13,13 @@ use crate::series::extremes;
 use crate::series::terms::Terms;
 use crate::structure::frame::Frame;
 use crate::{Floor, Modes, Phase};
+use serde::{Deserialize, Serialize};
 
 /// The peaks of a structure of many masses over the motion that has been watched, a fall too.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Profile {
-    frame: Frame,
+    /// Half-width of the base, m.
+    B: f64,
     /// Peak of the ground acceleration |a_g|, m/s².
     pub a_g: Peak,
     /// The peaks that are searched.
@@ -104,18 +106,13 @@ impl Profile {
     pub fn since(time: f64, frame: &Frame) -> Profile {
         let none = Peak { magnitude: 0.0, time };
         let peaks = FrameOutput::all(frame).filter(is_searched).map(|output| (output, none)).collect();
-        Profile { frame: frame.clone(), a_g: none, peaks }
-    }
-
-    /// The frame.
-    pub fn frame(&self) -> &Frame {
-        &self.frame
+        Profile { B: frame.base.B, a_g: none, peaks }
     }
 
     /// The outputs that have a peak, in the order of [`FrameOutput::all`], with their peaks.
     pub fn peaks(&self) -> impl Iterator<Item = (FrameOutput, Peak)> {
         let with_uplift = |&(output, peak): &(FrameOutput, Peak)| {
-            let uplift = 2.0 * self.frame.base.B * libm::sin(peak.magnitude);
+            let uplift = 2.0 * self.B * libm::sin(peak.magnitude);
             let of_theta = (FrameOutput::uplift, Peak { magnitude: uplift, ..peak });
             [Some((output, peak)), (output == FrameOutput::theta).then_some(of_theta)]
         };

@@ -1,10 +1,10 @@
 //! A structure of many masses: a rigid base and the modes of vibration in full contact.
 
-use crate::Load;
 use crate::mechanics::gauge::Gauge;
 use crate::mechanics::lateral::{Coordinates, Lateral, MOST_MODES, Modes};
 use crate::series::bisection::last_where;
 use crate::structure::{Base, Mode, Ties, Vibration};
+use crate::{Load, State};
 
 /// A rest beside the modes that counts as none, as a fraction of the whole.
 pub(crate) const ROUNDING: f64 = 1e-9;
@@ -305,6 +305,17 @@ impl Frame {
     /// Circular frequencies of vibration while the structure rocks, rad/s, lowest first.
     pub fn rocking_frequencies(&self) -> Vec<f64> {
         (1..=self.modes.len()).map(|n| rocking(&self.base, &self.modes, n)).collect()
+    }
+
+    /// Usual magnitudes in a motion: of each mode, as if the mode had all mass, where the base is about to lift off statically; the
+    /// angle at which the structure falls; and the rates that belong to them.
+    pub fn usual(&self) -> State<Modes> {
+        let reach = self.body.m_s.sqrt() * self.base.g * self.base.tan_alpha_cg;
+        let u = |mode: &Mode| reach * mode.mass.sqrt() / mode.stiffness;
+        let u_dot = |_: usize, mode: &Mode| u(mode) * (mode.stiffness / mode.mass).sqrt();
+        let theta = libm::atan(self.base.tan_alpha_cg);
+        let theta_dot = self.base.p_l * theta;
+        State { u: Modes::each(self, |_, mode| u(mode)), u_dot: Modes::each(self, u_dot), theta, theta_dot }
     }
 
     /// Mass (kg), first (kg·m) and second moment (kg·m²) that no mode carries.

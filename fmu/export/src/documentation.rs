@@ -9,22 +9,21 @@ use FlexibleRocking::variables::Table;
 use fmi_unit::logger::Category;
 use fmi_unit::{Causality, DataType, Value, Variable};
 use minijinja::{Environment, UndefinedBehavior, Value as Filling, context};
-use rocking::Structure;
 use rocking::engine::{DEFAULT_TOLERANCE, MAX_STEPS_PER_ADVANCE};
 use rocking::levels::rules::MAX_TRANSITIONS_PER_PERIOD;
 use rocking::run::record::MAX_SAMPLES;
 use rocking::structure::DERIVED;
+use rocking::structure::any::AnyStructure;
 use rocking::structure::parameters::MAX_SLENDERNESS;
 use rocking_records::MAX_FILE;
 
 const TEMPLATE: &str = include_str!("../resources/index.html");
 const ICON: &str = include_str!("../resources/model.svg");
 
-/// The page of the FMU `name` of `structure` with these `contents` and `libraries`.
+/// The page of the FMU `name` with these `contents` and `libraries`.
 pub fn documentation(
     version: Version,
     name: &str,
-    structure: &Structure,
     contents: &Contents,
     libraries: &[&Library],
 ) -> Result<String, minijinja::Error> {
@@ -35,13 +34,19 @@ pub fn documentation(
         ("Parameters and initial values", Causality::Parameter),
         ("Calculated parameters", Causality::CalculatedParameter),
     ];
-    let variables = Table::new(contents).variables;
+    let table = Table::new(contents);
     let group = |(title, causality)| {
-        let variables = variables.iter().filter(|variable| variable.causality == causality);
-        let rows = variables.map(|variable| row(variable, structure)).collect::<Vec<_>>();
+        let variables = table.variables.iter().filter(|variable| variable.causality == causality);
+        let rows = variables.map(|variable| row(variable, &table, &contents.structure)).collect::<Vec<_>>();
         context! { title, rows }
     };
+    let (floors, modes) = match &contents.structure {
+        AnyStructure::One(_) => (0, 0),
+        AnyStructure::Many(frame) => (frame.floors().len(), frame.modes().len()),
+    };
     let page = context! {
+        floors, // none of one mass
+        modes,
         model_name => name,
         platforms => libraries.iter().map(|library| platform(version, library.platform)).collect::<Vec<_>>(),
         fmi => if version == Version::Fmi2 { 2 } else { 3 }, // version of the standard
@@ -80,7 +85,7 @@ fn log_category(category: Category) -> Filling {
     context! { name => category.name().to_string_lossy().into_owned(), description => if category == Category::Events { EVENTS } else { category.description() } }
 }
 
-fn row(variable: &Variable, structure: &Structure) -> Filling {
+fn row(variable: &Variable, table: &Table, structure: &AnyStructure) -> Filling {
     let (unit, range) = match variable.data_type {
         DataType::Real { unit, range } => (if unit == "1" { "–" } else { unit }, range),
         _ => ("", None),
@@ -99,14 +104,14 @@ fn row(variable: &Variable, structure: &Structure) -> Filling {
     context! {
         name => &*variable.name,
         unit,
-        value => value(variable, structure),
+        value => value(variable, table, structure),
         range => range.map_or(String::new(), |(min, max)| format!("{} … {}", in_full(min), in_full(max))),
         meaning,
     }
 }
 
 /// The value of a variable before the simulation, as far as it is known: start value, or result of the parameters.
-fn value(variable: &Variable, structure: &Structure) -> String {
+fn value(variable: &Variable, table: &Table, structure: &AnyStructure) -> String {
     match variable.start.clone() {
         Some(Value::Real(start)) => return in_full(start),
         Some(Value::Integer(start)) => return start.to_string(),
@@ -114,23 +119,26 @@ fn value(variable: &Variable, structure: &Structure) -> String {
         Some(Value::String(start)) => return start,
         None => (),
     }
-    let derived = DERIVED.iter().find(|derived| derived.name == variable.name);
-    derived.map_or(String::new(), |derived| significant((derived.value)(structure)))
+    let value = match structure {
+        AnyStructure::One(one) => {
+            DERIVED.iter().find(|derived| derived.name == variable.name).map(|of| (of.value)(one))
+        }
+        AnyStructure::Many(_) => table.known(&variable.name),
+    };
+    value.map_or(String::new(), significant)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rocking::Parameters;
+    use rocking::{Parameters, Structure};
 
     #[test]
     fn the_page_has_a_row_for_every_variable() {
-        let structure = Structure::new(Parameters::EVISON).unwrap();
-        let page = documentation(Version::Fmi2, "Pier", &structure, &Parameters::EVISON.into(), &[]).unwrap();
-        for variable in Table::new(&Parameters::EVISON.into())
-            .variables
-            .iter()
-            .filter(|variable| variable.causality != Causality::Independent)
+        let contents = Contents::from(AnyStructure::One(Structure::new(Parameters::EVISON).unwrap()));
+        let page = documentation(Version::Fmi2, "Pier", &contents, &[]).unwrap();
+        for variable in
+            Table::new(&contents).variables.iter().filter(|variable| variable.causality != Causality::Independent)
         {
             let cell = format!("<tr><td class=\"n\"><code>{}</code></td><td class=\"n\">", variable.name);
             assert_eq!(page.matches(&cell).count(), 1, "{}", variable.name);

@@ -2,24 +2,35 @@
 
 use FlexibleRocking::ground::GroundRecord;
 use model_description::DefaultExperiment;
-use rocking::Structure;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::{LONGEST_REST, Run};
+use rocking::structure::any::AnyStructure;
 use std::f64::consts::TAU;
 
 /// With a record, the whole run of the `structure` on the `ground`, in steps of the record's samples: until the structure
 /// stands for good or overturns, as a run without a stated end. Without a record, as long as a free motion is worth looking
 /// at, 10/p_l, in steps that show the vibration mode, 1/(20 f_u), rounded to a 1, 2 or 5.
-pub fn default_experiment(structure: &Structure, ground: Option<&GroundRecord>) -> DefaultExperiment {
-    let (duration, step_size) = match ground.map(|ground| ground.in_m_s2(structure.parameters().g)) {
+pub fn default_experiment(structure: &AnyStructure, ground: Option<&GroundRecord>) -> DefaultExperiment {
+    let p_l = structure.base().p_l;
+    let (duration, step_size) = match ground.map(|ground| ground.in_m_s2(structure.base().g)) {
         Some(record) => {
             let of_record = record.end() - record.start();
-            let run = Run::new(*structure, &record).follow(&mut ());
-            let longest = of_record + LONGEST_REST / structure.p_l;
-            let duration = run.map_or(longest, |finish| finish.motion.time - record.start());
+            let end = match structure {
+                AnyStructure::One(one) => Run::new(*one, &record).follow(&mut ()).map(|finish| finish.motion.time),
+                AnyStructure::Many(frame) => {
+                    Run::of_modes(frame.clone(), &record).follow(&mut ()).map(|finish| finish.motion.time)
+                }
+            };
+            let duration = end.map_or(of_record + LONGEST_REST / p_l, |end| end - record.start());
             (duration, of_record / (record.times().len() - 1) as f64)
         }
-        None => (10.0 / structure.p_l, at_most(TAU / structure.omega_u / 20.0)),
+        None => {
+            let lowest = match structure {
+                AnyStructure::One(one) => one.omega_u,
+                AnyStructure::Many(frame) => frame.rocking_frequencies()[0],
+            };
+            (10.0 / p_l, at_most(TAU / lowest / 20.0))
+        }
     };
     DefaultExperiment {
         start_time: 0.0,
@@ -44,8 +55,8 @@ fn at_most(seconds: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rocking::Parameters;
     use rocking::run::Ending;
+    use rocking::{Parameters, Structure};
     use std::path::Path;
 
     /// Against the end of the run, of a structure that comes to rest after the record and of one that overturns on it.
@@ -60,7 +71,8 @@ mod tests {
             let text: String = (0..4000).map(line).collect();
             let ground =
                 GroundRecord::from_bytes(Path::new("a.csv"), format!("t (s),a (g)\n{text}").as_bytes(), 9.81).unwrap();
-            let DefaultExperiment { stop_time, step_size, .. } = default_experiment(&structure, Some(&ground));
+            let DefaultExperiment { stop_time, step_size, .. } =
+                default_experiment(&AnyStructure::One(structure), Some(&ground));
             let record = ground.in_m_s2(9.81);
             let finish = Run::new(structure, &record).follow(&mut ()).unwrap();
             assert_eq!(finish.ending, ending);

@@ -12,10 +12,13 @@ use ::model_description::DefaultExperiment;
 pub use ::model_description::Version;
 use ::model_description::archive::{Entry, archive};
 use FlexibleRocking::ground::GroundRecord;
-use FlexibleRocking::resources::{Contents, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records};
+use FlexibleRocking::resources::{
+    Contents, FRAME_FILE, FrameNumbers, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records,
+};
 pub use library::{Library, LibraryError, Platform};
-use rocking::Structure;
 use rocking::run::record::SamplesError;
+use rocking::structure::any::AnyStructure;
+use rocking::structure::frame::FrameError;
 use rocking_records::RecordError;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -65,6 +68,9 @@ pub enum ExportError {
     /// Two libraries for one platform.
     #[error("two shared libraries are for {}: leave one out", .0.tuple())]
     SamePlatform(Platform),
+    /// A structure of many masses without modes.
+    #[error("the FMU moves modes: {0}; for a rigid structure set detail = rigid")]
+    Frame(#[from] FrameError),
     /// The vertical component does not belong to the record.
     #[error(transparent)]
     NoPair(#[from] SamplesError),
@@ -97,7 +103,7 @@ pub type RecordFile = (PathBuf, Vec<u8>);
 pub fn export(
     version: Version,
     name: &ModelName,
-    structure: &Structure,
+    structure: &AnyStructure,
     records: Vec<RecordFile>,
     vertical: Option<RecordFile>,
     libraries: &[Library],
@@ -107,9 +113,12 @@ pub fn export(
     if let Some(two) = libraries.windows(2).find(|two| two[0].platform == two[1].platform) {
         return Err(ExportError::SamePlatform(two[0].platform));
     }
-    let (mut contents, mut files) = (Contents::from(*structure.parameters()), Vec::new());
+    if let AnyStructure::Many(frame) = structure {
+        FrameNumbers::from(frame).frame()?;
+    }
+    let (mut contents, mut files) = (Contents::from(structure.clone()), Vec::new());
     let mut pack = |contents: &Contents, (path, content): RecordFile| {
-        let record = GroundRecord::from_bytes(&path, &content, structure.parameters().g)?;
+        let record = GroundRecord::from_bytes(&path, &content, structure.base().g)?;
         let name = path.file_name().and_then(|name| name.to_str());
         let file = name.ok_or_else(|| ExportError::RecordName(path.clone()))?.to_owned();
         if contents.packed().any(|packed| packed.file.to_lowercase() == file.to_lowercase()) {
@@ -130,7 +139,7 @@ pub fn export(
         ground = Some(GroundRecord::with_vertical(ground, &record)?);
     }
     let experiment = experiment::default_experiment(structure, ground.as_ref());
-    let archive = archive(&entries(version, name.as_str(), structure, &contents, experiment, files, &libraries)?)?;
+    let archive = archive(&entries(version, name.as_str(), &contents, experiment, files, &libraries)?)?;
     Ok((contents, archive))
 }
 
@@ -138,21 +147,24 @@ pub fn export(
 fn entries(
     version: Version,
     name: &str,
-    structure: &Structure,
     contents: &Contents,
     experiment: DefaultExperiment,
     records: Vec<Vec<u8>>,
     libraries: &[&Library],
 ) -> Result<Vec<Entry>, ExportError> {
     let entry = |path: &str, content| Entry { path: path.to_owned(), content };
-    let page = documentation::documentation(version, name, structure, contents, libraries)?;
-    let description = model_description::xml(version, name, structure, contents, experiment);
+    let page = documentation::documentation(version, name, contents, libraries)?;
+    let description = model_description::xml(version, name, contents, experiment);
     let icon = if version == Version::Fmi2 { "model.png" } else { "terminalsAndIcons/icon.png" };
     let mut entries = vec![entry("modelDescription.xml", description.into()), entry(icon, ICON.to_vec())];
+    let (file, numbers) = match &contents.structure {
+        AnyStructure::One(one) => (PARAMETERS_FILE, toml::to_string(one.parameters())?),
+        AnyStructure::Many(frame) => (FRAME_FILE, toml::to_string(&FrameNumbers::from(frame))?),
+    };
     entries.extend([
         entry("documentation/index.html", page.into()),
         entry("documentation/licenses/license.txt", LICENSES.into()),
-        entry(&format!("resources/{PARAMETERS_FILE}"), toml::to_string(&contents.parameters)?.into()),
+        entry(&format!("resources/{file}"), numbers.into()),
     ]);
     if !records.is_empty() {
         let names = Records { record: contents.records.clone(), vertical: contents.vertical.clone() };
@@ -168,10 +180,10 @@ fn entries(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rocking::Parameters;
+    use rocking::{Parameters, Structure};
 
-    fn structure(parameters: Parameters) -> Structure {
-        Structure::new(parameters).unwrap()
+    fn structure(parameters: Parameters) -> AnyStructure {
+        AnyStructure::One(Structure::new(parameters).unwrap())
     }
 
     /// A library that passes for the one of this build for `platform`.
@@ -225,8 +237,8 @@ mod tests {
     fn the_archive_holds_what_the_standard_and_the_library_look_for() {
         let libraries = Platform::ALL.map(library);
         let libraries: Vec<_> = libraries.iter().collect();
-        let (structure, contents) = (structure(Parameters::EVISON), Contents::from(Parameters::EVISON));
-        let experiment = experiment::default_experiment(&structure, None);
+        let contents = Contents::from(structure(Parameters::EVISON));
+        let experiment = experiment::default_experiment(&contents.structure, None);
         let of_2 = (
             ["model.png"].as_slice(),
             ["linux64/Pier.so", "aarch64-linux/Pier.so", "win64/Pier.dll", "darwin64/Pier.dylib"],
@@ -236,7 +248,7 @@ mod tests {
             ["x86_64-linux/Pier.so", "aarch64-linux/Pier.so", "x86_64-windows/Pier.dll", "x86_64-darwin/Pier.dylib"],
         );
         for (version, (own, binaries)) in [(Version::Fmi2, of_2), (Version::Fmi3, of_3)] {
-            let entries = entries(version, "Pier", &structure, &contents, experiment, Vec::new(), &libraries).unwrap();
+            let entries = entries(version, "Pier", &contents, experiment, Vec::new(), &libraries).unwrap();
             let (binary, other): (Vec<_>, Vec<_>) =
                 entries.iter().partition(|entry| entry.path.starts_with("binaries/"));
             let paths = |entries: &[&Entry]| entries.iter().map(|entry| entry.path.clone()).collect::<Vec<_>>();

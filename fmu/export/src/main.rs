@@ -2,6 +2,7 @@
 //! It is built in half the time of `rocking-fmu`, whose `export` writes the same bytes.
 
 use fmu_export::{Library, ModelName, Version, export};
+use rocking::structure::any::AnyStructure;
 use rocking::{Parameters, Structure};
 use std::error::Error;
 use std::path::Path;
@@ -23,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         _ => return Err(format!("the version of FMI is 2 or 3, not {version}").into()),
     };
     let libraries = Library::read(Path::new(library))?;
-    let (_, archive) =
-        export(version, &ModelName::default(), &Structure::new(parameters)?, Vec::new(), None, &libraries)?;
+    let structure = AnyStructure::One(Structure::new(parameters)?);
+    let (_, archive) = export(version, &ModelName::default(), &structure, Vec::new(), None, &libraries)?;
     Ok(fs::write(output, archive)?)
 }

@@ -5,7 +5,6 @@ use FlexibleRocking::resources::Contents;
 use FlexibleRocking::variables::Table;
 use fmi_unit::Variable;
 use model_description::{DefaultExperiment, Description};
-use rocking::Structure;
 
 /// The model in one line.
 pub const DESCRIPTION: &str = "A flexible structure that rocks freely on rigid ground under earthquake ground motion";
@@ -13,15 +12,9 @@ pub const DESCRIPTION: &str = "A flexible structure that rocks freely on rigid g
 /// The content of the log category of events, in one line.
 pub const EVENTS: &str = "uplift, impact, landing and overturning, as they happen";
 
-/// The text of the description of the FMU `name` of `structure` with these `contents`.
-pub fn xml(
-    version: Version,
-    name: &str,
-    structure: &Structure,
-    contents: &Contents,
-    default_experiment: DefaultExperiment,
-) -> String {
-    let variables = Table::new(contents).variables;
+/// The text of the description of the FMU `name` with these `contents`.
+pub fn xml(version: Version, name: &str, contents: &Contents, default_experiment: DefaultExperiment) -> String {
+    let (structure, variables) = (&contents.structure, Table::new(contents).variables);
     let variables: Vec<_> = variables
         .iter()
         .map(|variable| Variable {
@@ -50,19 +43,23 @@ pub fn xml(
 mod tests {
     use super::*;
     use FlexibleRocking::resources::PackedRecord;
-    use rocking::Parameters;
+    use rocking::structure::any::AnyStructure;
+    use rocking::{Parameters, Structure};
+
+    fn one_mass(parameters: Parameters) -> Contents {
+        Contents::from(AnyStructure::One(Structure::new(parameters).unwrap()))
+    }
 
     fn described(version: Version, contents: &Contents) -> String {
-        let structure = Structure::new(contents.parameters).unwrap();
         let experiment = DefaultExperiment { start_time: 0.0, stop_time: 4.0, tolerance: 1e-9, step_size: 0.005 };
-        xml(version, "Pier", &structure, contents, experiment)
+        xml(version, "Pier", contents, experiment)
     }
 
     /// What the table says of a few variables is what the description points at: once the simulation goes on, at the states,
     /// at the start at what these start from, in FMI 3.0 at parameters and time, too.
     #[test]
     fn the_structure_points_at_what_the_table_names() {
-        let contents = Contents::from(Parameters::MCMANUS);
+        let contents = one_mass(Parameters::MCMANUS);
         let variables = Table::new(&contents).variables;
         let dependencies = |version, element: &str, of: &str| {
             let (attribute, first) = if version == Version::Fmi2 { ("index", 1) } else { ("valueReference", 0) };
@@ -94,7 +91,7 @@ mod tests {
     #[test]
     fn start_values_are_those_of_the_structure() {
         let record = PackedRecord { file: "pulse & rest.csv".into(), digest: "any".into() };
-        let contents = Contents { parameters: Parameters::EVISON, records: vec![record], vertical: None };
+        let contents = Contents { records: vec![record], ..one_mass(Parameters::EVISON) };
         let xml = described(Version::Fmi2, &contents);
         for element in [
             r#"name="a_g" valueReference="0" description="horizontal ground acceleration, positive to the right" causality="input" variability="continuous">

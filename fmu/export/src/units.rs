@@ -2,8 +2,10 @@
 
 use fmi_unit::{DataType, Variable};
 use model_description::Unit;
+use rocking::structure::Base;
+use rocking::structure::any::AnyStructure;
 use rocking::structure::parameters::PARAMETERS;
-use rocking::{State, Structure};
+use rocking::{Body, State};
 
 /// The units of the variables, as exponents of kg, m, s, rad.
 pub const UNITS: [(&str, [i32; 4]); 17] = [
@@ -27,19 +29,20 @@ pub const UNITS: [(&str, [i32; 4]); 17] = [
 ];
 
 /// Definitions of the units; the display unit g is that of `structure`.
-pub fn definitions(structure: &Structure) -> Vec<Unit> {
+pub fn definitions(structure: &AnyStructure) -> Vec<Unit> {
+    let of_many = matches!(structure, AnyStructure::Many(_)).then_some(("kg.m", [1, 1, 0, 0]));
     let definition = |(name, base)| Unit { name, base: Some(base), display: shown_in(name, structure) };
-    UNITS.map(definition).into()
+    UNITS.into_iter().chain(of_many).map(definition).collect()
 }
 
 /// The unit that hosts can show a unit in, and the factor of a value in that unit. The g of an acceleration is the structure's own,
 /// as in a record.
-fn shown_in(unit: &str, structure: &Structure) -> Option<(&'static str, f64)> {
+fn shown_in(unit: &str, structure: &AnyStructure) -> Option<(&'static str, f64)> {
     match unit {
         "rad" => Some(("deg", 1f64.to_degrees())),
         "m" => Some(("mm", 1e3)),
         "s" => Some(("ms", 1e3)),
-        "m/s2" => Some(("g", 1.0 / structure.parameters().g)),
+        "m/s2" => Some(("g", 1.0 / structure.base().g)),
         "N" => Some(("kN", 1e-3)),
         "N.m" => Some(("kN.m", 1e-3)),
         _ => None,
@@ -48,7 +51,7 @@ fn shown_in(unit: &str, structure: &Structure) -> Option<(&'static str, f64)> {
 
 /// The unit that `variable` is shown in, if that is another than its own. The structure's own parameters are in SI, as in its file, and
 /// instants in seconds: they are looked up in a record.
-pub fn display_unit(variable: &Variable, structure: &Structure) -> Option<&'static str> {
+pub fn display_unit(variable: &Variable, structure: &AnyStructure) -> Option<&'static str> {
     let DataType::Real { unit, .. } = variable.data_type else { return None };
     let is_parameter = PARAMETERS.iter().any(|parameter| parameter.name == variable.name);
     let shown = shown_in(unit, structure).map(|(name, _)| name);
@@ -58,26 +61,46 @@ pub fn display_unit(variable: &Variable, structure: &Structure) -> Option<&'stat
 /// The magnitude that is usual for `variable`, of what moves: at the rotation α_cg, at which the structure is about to fall,
 /// at u_cr, at which its base lifts off, and under the acceleration g tan α_cg, which lifts it statically (Eqs 2 to 4). To
 /// three digits.
-pub fn nominal(variable: &Variable, structure: &Structure) -> Option<f64> {
-    let parameters = structure.parameters();
-    let usual = State::usual(structure);
-    let (m, height, alpha) = (parameters.m, parameters.H, usual.theta);
-    let acceleration = parameters.g * structure.tan_alpha_cg;
-    let name = ["_max", "_0"].iter().find_map(|ending| variable.name.strip_suffix(ending)).unwrap_or(&variable.name);
+pub fn nominal(variable: &Variable, structure: &AnyStructure) -> Option<f64> {
+    let &Base { m_t, B, g, p_l, tan_alpha_cg, .. } = structure.base();
+    let acceleration = g * tan_alpha_cg;
+    let (m, height, u, u_dot) = match structure {
+        AnyStructure::One(of) => {
+            let State { u, u_dot, .. } = State::usual(of);
+            (of.parameters().m, of.parameters().H, u, u_dot)
+        }
+        AnyStructure::Many(frame) => {
+            let (&Body { m_s, S_1, .. }, lowest) = (frame.body(), frame.rocking_frequencies()[0]);
+            (m_s, S_1 / m_s, acceleration / (lowest * lowest), acceleration / lowest)
+        }
+    };
+    let (alpha, name) = (tan_alpha_cg.atan(), &*variable.name);
+    let (name, number) = symbol_and_number(name);
+    let coordinates = || number.zip(if let AnyStructure::Many(frame) = structure { Some(frame.usual()) } else { None });
+    let name = ["_max", "_0"].iter().find_map(|ending| name.strip_suffix(ending)).unwrap_or(&name);
     let magnitude = match name {
         "theta" => Some(alpha),
-        "theta_dot" | "der(theta)" => Some(usual.theta_dot),
-        "u" => Some(usual.u),
-        "u_dot" | "der(u)" => Some(usual.u_dot),
-        "uplift" => Some(2.0 * parameters.B * alpha.sin()),
+        "theta_dot" | "der(theta)" => Some(p_l * alpha),
+        "q" => coordinates().map(|(j, usual)| usual.u.numbers()[j]),
+        "q_dot" | "der(q)" => coordinates().map(|(j, usual)| usual.u_dot.numbers()[j]),
+        "u" | "drift" => Some(u),
+        "u_dot" | "der(u)" => Some(u_dot),
+        "uplift" => Some(2.0 * B * alpha.sin()),
         "delta_t" => Some(height * alpha.sin()),
-        "v_t" => Some(height * usual.theta_dot),
+        "v_t" => Some(height * p_l * alpha),
         "a_g" | "a_ground" | "a_v" | "a_v_ground" | "a_t" | "der(u_dot)" => Some(acceleration),
-        "der(theta_dot)" => Some(structure.p_l * usual.theta_dot),
-        "F_t" | "V_t" | "R_h" => Some(m * acceleration),
-        "M_t" | "R_m" => Some(m * height * acceleration),
-        "R_v" | "P_t" | "F_d1" | "F_d2" => Some((m + parameters.m0) * parameters.g),
+        "der(theta_dot)" => Some(p_l * p_l * alpha),
+        "F_t" | "V_t" | "V" | "R_h" => Some(m * acceleration),
+        "M_t" | "M" | "R_m" => Some(m * height * acceleration),
+        "R_v" | "P_t" | "F_d1" | "F_d2" => Some(m_t * g),
         _ => None, // impulses add up over a motion
     };
     magnitude.map(|magnitude| format!("{magnitude:.2e}").parse().expect("a number in Rust's own notation"))
+}
+
+/// A name without the number of a floor, storey or mode, and the number from 0.
+fn symbol_and_number(name: &str) -> (String, Option<usize>) {
+    let Some((symbol, rest)) = name.split_once('[') else { return (name.to_owned(), None) };
+    let Some((number, ending)) = rest.split_once(']') else { return (name.to_owned(), None) };
+    (format!("{symbol}{ending}"), number.parse::<usize>().ok().and_then(|number| number.checked_sub(1)))
 }

@@ -57,7 +57,7 @@ fn limit(quotients: impl Iterator<Item = (f64, f64)>) -> Option<(f64, f64)> {
 }
 
 /// The derivatives of `of` along `direction` by inputs and, once the simulation `has_started`, by states.
-pub(crate) fn along<M: Model>(
+pub fn along<M: Model>(
     model: &mut M,
     of: &[u32],
     direction: &[(u32, f64)],

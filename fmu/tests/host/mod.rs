@@ -3,13 +3,16 @@
 
 use FlexibleRocking::fmi2::*;
 use FlexibleRocking::guid;
-use FlexibleRocking::resources::PARAMETERS_FILE;
+use FlexibleRocking::masses::Masses;
+use FlexibleRocking::resources::{Contents, FRAME_FILE, FrameNumbers, PARAMETERS_FILE};
 use FlexibleRocking::unit::{Condition, Course};
 use FlexibleRocking::variables::Table;
 use fmi_unit::Variable;
 use fmi_unit::snapshot::Snapshot;
 use libc::{c_char, c_int, c_uint, c_void};
-use rocking::Parameters;
+use rocking::structure::any::AnyStructure;
+use rocking::structure::{Mode, Ties};
+use rocking::{Body, Floor, Frame, Modes, Parameters, Structure};
 use std::cell::RefCell;
 use std::ffi::{CStr, CString};
 use std::ptr;
@@ -27,8 +30,8 @@ pub const DISCARD: c_int = 2;
 pub const ERROR: c_int = 3;
 
 /// How far the simulation had come that `snapshot` is of, once it had started.
-pub fn course(snapshot: &Snapshot) -> Option<Course> {
-    postcard::from_bytes::<Condition>(&snapshot.model).unwrap().course
+pub fn course<Q: Masses>(snapshot: &Snapshot) -> Option<Course<Q>> {
+    postcard::from_bytes::<Condition<Q>>(&snapshot.model).unwrap().course
 }
 
 /// One message, as the host's logger got it.
@@ -64,17 +67,35 @@ impl Default for Instantiate {
         Instantiate {
             name: "wall",
             fmu_type: CO_SIMULATION,
-            guid: guid(&Parameters::EVISON.into()),
+            guid: guid(&contents(Parameters::EVISON)),
             location: None,
             logging_on: 0,
         }
     }
 }
 
+/// The contents of an archive of one mass without records.
+pub fn contents(parameters: Parameters) -> Contents {
+    AnyStructure::One(Structure::new(parameters).unwrap()).into()
+}
+
 /// A folder `resources` with the parameters of Evison's wall.
 pub fn resources() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join(PARAMETERS_FILE), toml::to_string(&Parameters::EVISON).unwrap()).unwrap();
+    folder
+}
+
+/// A folder `resources` with two floors of which one mode is kept, and dissipators.
+pub fn resources_of_many() -> TempDir {
+    let ties = Ties { xi_d: 1.0, c_d: 2e4, k_d: 2e7, F_y: 4e4, ..Ties::default() };
+    let r = Some(0.93);
+    let body = Body { m0: 2e4, J0: 3e4, m_s: 7e4, S_1: 3.5e5, I_2: 2e6, B: 1.5, r, g: 9.81, c_ratio: 1.0, ties };
+    let floor = |height, shape| Floor { mass: 3.5e4, height, shape: Modes::new(&[shape]) };
+    let frame =
+        Frame::new(body, &[Mode::new(20.0, 0.02, 250.0, 1.4e3)], &[floor(3.5, 2e-3), floor(7.0, 4e-3)]).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join(FRAME_FILE), toml::to_string(&FrameNumbers::from(&frame)).unwrap()).unwrap();
     folder
 }
 
@@ -105,7 +126,7 @@ pub fn callbacks(environment: *mut c_void) -> CallbackFunctions {
 }
 
 /// The variables, with the start values of Evison's wall.
-pub static VARIABLES: LazyLock<Arc<[Variable]>> = LazyLock::new(|| Table::new(&Parameters::EVISON.into()).variables);
+pub static VARIABLES: LazyLock<Arc<[Variable]>> = LazyLock::new(|| Table::new(&contents(Parameters::EVISON)).variables);
 
 pub fn reference(name: &str) -> c_uint {
     VARIABLES.iter().position(|variable| variable.name == name).unwrap_or_else(|| panic!("{name}")) as c_uint

@@ -28,7 +28,7 @@ impl Host {
     /// For co-simulation, or for model exchange.
     fn new(stepping: Option<Stepping>) -> Host {
         let (resources, log) = (resources(), Box::<Log>::default());
-        let token = CString::new(FlexibleRocking::guid(&Parameters::EVISON.into())).unwrap();
+        let token = CString::new(FlexibleRocking::guid(&crate::host::contents(Parameters::EVISON))).unwrap();
         let folder = CString::new(format!("{}/", resources.path().display())).unwrap();
         let [name, token, folder] = [c"wall".as_ptr(), token.as_ptr(), folder.as_ptr()];
         let (log_of, record) = ((&raw const *log).cast_mut().cast(), Some(record as LogMessageCallback));
@@ -270,7 +270,7 @@ unsafe extern "C" fn update(
 #[test]
 fn a_host_that_is_called_back_sets_inputs_reads_and_does_no_harm() {
     let resources = resources();
-    let token = CString::new(FlexibleRocking::guid(&Parameters::EVISON.into())).unwrap();
+    let token = CString::new(FlexibleRocking::guid(&crate::host::contents(Parameters::EVISON))).unwrap();
     let folder = CString::new(resources.path().to_str().unwrap()).unwrap();
     let mut called = Called { c: null_mut(), end: 2.0, read: Vec::new() };
     let [name, token, folder] = [c"wall".as_ptr(), token.as_ptr(), folder.as_ptr()];

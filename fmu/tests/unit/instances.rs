@@ -14,11 +14,11 @@ use std::thread;
 fn the_library_says_what_it_is() {
     let [platform, version] = unsafe { [fmi2GetTypesPlatform(), fmi2GetVersion()].map(|text| CStr::from_ptr(text)) };
     assert_eq!((platform, version), (c"default", c"2.0"));
-    let [evison, mcmanus] = [Parameters::EVISON, Parameters::MCMANUS].map(|parameters| guid(&parameters.into()));
+    let [evison, mcmanus] = [Parameters::EVISON, Parameters::MCMANUS].map(|parameters| guid(&contents(parameters)));
     for guid in [BUILD, &evison, &mcmanus] {
         assert_eq!((guid.len(), &guid[..1], &guid[15..16], &guid[37..]), (38, "{", "5", "}"));
     }
-    assert_eq!(evison, guid(&Parameters::EVISON.into()));
+    assert_eq!(evison, guid(&contents(Parameters::EVISON)));
     assert!(evison != mcmanus && evison != BUILD && mcmanus != BUILD);
 }
 
@@ -47,7 +47,7 @@ fn a_call_while_another_thread_calls_is_refused() {
     };
     let folder = resources();
     let location = CString::new(format!("file://{}", folder.path().display())).unwrap();
-    let guid = CString::new(guid(&Parameters::EVISON.into())).unwrap();
+    let guid = CString::new(guid(&contents(Parameters::EVISON))).unwrap();
     let c = unsafe { fmi2Instantiate(c"talkative".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 0) };
     let c = c.expose_provenance();
     // each is refused, with a message if it is served

@@ -137,7 +137,7 @@ fn contradictions_are_refused_when_initialization_ends_and_can_be_put_right() {
 #[test]
 fn an_instance_that_cannot_be_made_is_null_and_the_log_says_why() {
     let with = Instantiate::default;
-    let (other, location) = (guid(&Parameters::MCMANUS.into()), |text: &str| Some(text.to_owned()));
+    let (other, location) = (guid(&contents(Parameters::MCMANUS)), |text: &str| Some(text.to_owned()));
     let wrong = |guid: &str| format!("fmuGUID = \"{guid}\" is not {}: modelDescription.xml, the library ", with().guid);
     for (arguments, message) in [
         (Instantiate { guid: BUILD.to_owned(), ..with() }, wrong(BUILD).as_str()),
@@ -165,7 +165,7 @@ fn an_instance_that_cannot_be_made_is_null_and_the_log_says_why() {
 
 #[test]
 fn an_instance_of_bad_pointers_is_null() {
-    let guid = CString::new(guid(&Parameters::EVISON.into())).unwrap();
+    let guid = CString::new(guid(&contents(Parameters::EVISON))).unwrap();
     let log = RefCell::new(Vec::<Message>::new());
     let functions = callbacks((&raw const log).cast_mut().cast());
     for (name, functions) in [(c"a".as_ptr(), null()), (null(), &raw const functions), (c"\xff".as_ptr(), &functions)] {

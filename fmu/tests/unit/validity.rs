@@ -121,7 +121,7 @@ fn what_nobody_asks_for_is_not_watched() {
     let run = |validity| {
         let host = host(validity);
         step(&host, 0.0, &[5.0]);
-        let course = course(&Snapshot::deserialize(BUILD, &host.bytes()).unwrap()).unwrap();
+        let course = course::<f64>(&Snapshot::deserialize(BUILD, &host.bytes()).unwrap()).unwrap();
         (host, course)
     };
     let ((_, with), (silent, without)) = (run(1), run(0));

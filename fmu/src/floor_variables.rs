@@ -1,0 +1,151 @@
+//! The variables of many masses: of each floor, storey and mode; the others are those of one mass.
+
+use crate::variables::{ACCELERATION, Row, Source};
+use fmi_unit::variables::Text;
+use fmi_unit::{Causality, Variable};
+use rocking::mechanics::load::{LOADS, VERTICAL};
+use rocking::run::profile::Profile;
+use rocking::structure::any::{OF_FRAME, OF_MODE};
+use rocking::{Frame, FrameOutput};
+use std::collections::HashSet;
+
+/// The rows of `frame`, made with the rows of `one_mass`.
+pub(crate) fn rows(frame: &Frame, one_mass: impl Iterator<Item = Row>) -> Vec<Row> {
+    let (inputs, others): (Vec<_>, Vec<_>) = one_mass.partition(|(_, source)| matches!(source, Source::Input(_)));
+    let rows: Vec<_> = loads(frame, &inputs)
+        .into_iter()
+        .chain(FrameOutput::all(frame).enumerate().map(output))
+        .chain(states(frame))
+        .chain(peaks(frame))
+        .chain(numbers(frame))
+        .chain(others.into_iter().filter(is_of_many))
+        .collect();
+    // one mass has the names u, u_dot and F_t, and parameters where many masses have fixed numbers
+    let names: HashSet<Text> = rows.iter().map(|(variable, _)| variable.name.clone()).collect();
+    let (modes, floors) = (frame.modes().len(), frame.floors().len());
+    let known = |name: &Text| -> Vec<Text> {
+        let all = |of: &str, count| (1..=count).map(|at| format!("{of}[{at}]").into()).collect();
+        match &**name {
+            "u" => all("q", modes),
+            "u_dot" => all("q_dot", modes),
+            "F_t" => all("F_t", floors),
+            _ => names.get(name).cloned().into_iter().collect(),
+        }
+    };
+    let adapt = |(variable, source): Row| {
+        let depends_on = variable.depends_on.iter().flat_map(known).collect();
+        (Variable { depends_on, ..variable }, source)
+    };
+    rows.into_iter().map(adapt).collect()
+}
+
+/// Whether many masses have the row of one mass, too.
+fn is_of_many((variable, source): &Row) -> bool {
+    match source {
+        Source::InitialValue(_) => variable.name.starts_with("theta"),
+        Source::Output(_) | Source::StateRate(_) | Source::Parameter(_) | Source::Derived(_) | Source::Peak(_) => false,
+        _ => true,
+    }
+}
+
+/// a_g and a_v, and a force on each floor, from the `inputs` of one mass.
+fn loads(frame: &Frame, inputs: &[Row]) -> Vec<Row> {
+    let load = |which: usize| inputs[which].0.clone();
+    let force = |floor: usize| {
+        let description = format!("external horizontal force on floor {}, positive to the right", floor + 1);
+        let name = format!("{}[{}]", LOADS[1].name, floor + 1).into();
+        Variable { name, description: description.into(), ..load(1) }
+    };
+    let all = [load(0), load(VERTICAL)].into_iter().chain((0..frame.floors().len()).map(force));
+    all.enumerate().map(|(which, variable)| (variable, Source::Input(which))).collect()
+}
+
+fn output((place, of): (usize, FrameOutput)) -> Row {
+    let depends_on: &[&'static str] = match of {
+        FrameOutput::theta => &["theta_0"],
+        FrameOutput::theta_dot => &["theta_dot_0"],
+        FrameOutput::uplift => &["theta"],
+        FrameOutput::V_t | FrameOutput::M_t => ACCELERATION,
+        FrameOutput::a_t(_) | FrameOutput::V(_) | FrameOutput::M(_) => ACCELERATION,
+        FrameOutput::u(_) | FrameOutput::drift(_) => &["u"],
+        FrameOutput::u_dot(_) => &["u_dot"],
+        FrameOutput::delta_t(_) => &["u", "theta"],
+        FrameOutput::v_t(_) => &["u", "u_dot", "theta", "theta_dot"],
+    };
+    let is_local = matches!(of, FrameOutput::theta_dot | FrameOutput::u_dot(_));
+    let causality = if is_local { Causality::Local } else { Causality::Output };
+    let variable = Variable::real(causality, of.name(), of.unit(), of.description()).from(depends_on.iter().copied());
+    let is_state = matches!(of, FrameOutput::theta | FrameOutput::theta_dot);
+    (if is_state { variable.state() } else { variable }, Source::Floor(place))
+}
+
+/// The coordinates of the modes, and the derivatives of all states.
+fn states(frame: &Frame) -> Vec<Row> {
+    let n = frame.modes().len();
+    let name = |place: usize| match place {
+        place if place < n => format!("q[{}]", place + 1),
+        place if place < 2 * n => format!("q_dot[{}]", place - n + 1),
+        place => ["theta", "theta_dot"][place - 2 * n].to_owned(),
+    };
+    let coordinate = |place: usize| {
+        let (unit, description) = if place < n {
+            ("m", format!("coordinate of mode {}, of the modal mass 1 kg", place + 1))
+        } else {
+            ("m/s", format!("velocity of mode {}", place - n + 1))
+        };
+        (Variable::real(Causality::Local, name(place), unit, description).state(), Source::Coordinate(place))
+    };
+    let rate = |place: usize| {
+        let (unit, of): (_, &[&'static str]) = match place {
+            place if place < n => ("m/s", &[]),
+            place if place < 2 * n => ("m/s2", ACCELERATION),
+            place if place == 2 * n => ("rad/s", &["theta_dot"]),
+            _ => ("rad/s2", ACCELERATION),
+        };
+        let own = (place < n).then(|| name(place + n));
+        let name = name(place);
+        let description = format!("rate of {name}, by the equations of the level of detail");
+        let variable = Variable::real(Causality::Local, format!("der({name})"), unit, description);
+        (variable.from(of.iter().copied()).from(own).rate_of(name), Source::StateRate(place))
+    };
+    (0..2 * n).map(coordinate).chain((0..2 * n + 2).map(rate)).collect()
+}
+
+/// Largest magnitudes and their instants.
+fn peaks(frame: &Frame) -> Vec<Row> {
+    let profile = Profile::since(0.0, frame);
+    let rows =
+        FrameOutput::all(frame).enumerate().filter(|(_, of)| profile.of(*of).is_some()).flat_map(|(place, of)| {
+            let (symbol, name) = (of.symbol(), of.name());
+            let peak = name.replacen(symbol, &format!("{symbol}_max"), 1);
+            let magnitude = format!(
+                "largest |{name}| since startTime, a fall included, exact: within steps, too; NaN unless peaks is true"
+            );
+            let instant = format!("first instant of {peak}; NaN unless peaks is true");
+            [
+                (Variable::real(Causality::Local, peak.clone(), of.unit(), magnitude), Source::FloorPeak(place)),
+                (Variable::real(Causality::Local, format!("t_{peak}"), "s", instant), Source::FloorPeakInstant(place)),
+            ]
+        });
+    rows.collect()
+}
+
+/// Fixed numbers of the base, the modes and the floors.
+fn numbers(frame: &Frame) -> Vec<Row> {
+    let known = |name: String, unit, description: String, value| {
+        (Variable::real(Causality::CalculatedParameter, name, unit, description), Source::Known(value))
+    };
+    let of_base = OF_FRAME.iter().map(|of| known(of.name.into(), of.unit, of.description.into(), (of.value)(frame)));
+    let of_modes = OF_MODE.iter().flat_map(|of| {
+        (1..).zip(frame.mode_table()).map(move |(j, mode)| {
+            known(format!("{}[{j}]", of.name), of.unit, format!("{} of mode {j}", of.description), (of.value)(&mode))
+        })
+    });
+    let of_floors = (1..).zip(frame.floors()).flat_map(|(i, floor): (usize, _)| {
+        [
+            known(format!("m[{i}]"), "kg", format!("mass of floor {i}"), floor.mass),
+            known(format!("h[{i}]"), "m", format!("height of floor {i} above the base"), floor.height),
+        ]
+    });
+    of_base.chain(of_modes).chain(of_floors).collect()
+}

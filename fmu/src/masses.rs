@@ -1,0 +1,378 @@
+//! What a structure of one mass and a structure of many masses do each in their own way.
+
+use crate::advance::{Told, Watching};
+use crate::failure::Refusal;
+use crate::inputs::{FloorInputs, Inputs, InputsOf};
+use crate::resources::Contents;
+use crate::setup::Setup;
+use crate::shown::Shown;
+use crate::unit::Unit;
+use crate::variables::Source;
+use fmi_unit::sensitivity::along;
+use fmi_unit::{Failure, Model};
+use rocking::engine::Moves;
+use rocking::run::fall::{FallWatch, FallingPeaks};
+use rocking::run::peaks::Peak;
+use rocking::run::profile::Profile;
+use rocking::run::validity::{self, Validity};
+use rocking::structure::any::AnyStructure;
+use rocking::{Detail, Engine, Frame, FrameOutput, Load, Modes, Outputs, Piece, State, Structure, Transition, Watch};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::fmt::Debug;
+
+/// Lateral coordinates of the structures that a unit can move.
+pub trait Masses: Moves + Default + Serialize + DeserializeOwned {
+    /// The inputs.
+    type Inputs: InputsOf<Self>;
+
+    /// The outputs that are computed together.
+    type Outputs: Copy;
+
+    /// The peaks that are watched.
+    type Peaks: PeaksOf<Self>;
+
+    /// Inputs that are 0.
+    fn inputs(contents: &Contents) -> Self::Inputs;
+
+    /// The structure as it is set up, of an archive with these `contents`.
+    fn structure(setup: &Setup, contents: &Contents) -> Result<Self::Structure, Refusal>;
+
+    /// The state at the start.
+    fn initial(initial: &State) -> State<Self>;
+
+    /// The outputs now under `load`.
+    fn outputs(engine: &Engine<Self>, load: Load<Self>) -> Self::Outputs;
+
+    /// The value of `source` if it is one of the `outputs`.
+    fn output(source: Source, outputs: &Self::Outputs) -> Option<f64>;
+
+    /// The value of `source` if it is shown of these structures alone.
+    fn own(source: Source, shown: &Shown<Self>) -> Option<f64>;
+
+    /// How many lateral coordinates the table has.
+    fn lateral(contents: &Contents) -> usize;
+
+    /// The numbers of a state with so many lateral coordinates, in the order of the table.
+    fn components(state: &State<Self>, lateral: usize) -> Vec<f64>;
+
+    /// The state of `structure` with these `components`.
+    fn state(components: &[f64], structure: &Self::Structure) -> State<Self>;
+
+    /// Usual magnitudes of the numbers of a state.
+    fn usual(structure: &Self::Structure) -> State<Self>;
+
+    /// The motion of a `transition` in words.
+    fn told(transition: &Transition<Self>) -> String;
+
+    /// Sentences of warning about the structure at a level of detail.
+    fn doubts(structure: &Self::Structure, detail: Detail) -> Vec<String>;
+
+    /// The watcher of a motion of which nothing but transitions is `told`.
+    fn listener<'a>(told: &'a mut Told<'_, Self>) -> impl Watch<Self>;
+
+    /// The watcher of what the motion goes beyond.
+    fn watcher(validity: &mut Validity<Self>) -> &mut impl Watch<Self>;
+
+    /// Rates of variables by time.
+    fn rates(unit: &mut Unit<Self>, references: &[u32], rates: &mut [f64]) -> Result<(), Failure>;
+
+    /// Derivatives of variables along a direction.
+    fn derivatives(
+        unit: &mut Unit<Self>,
+        of: &[u32],
+        direction: &[(u32, f64)],
+        has_started: bool,
+    ) -> Result<Vec<f64>, Failure>;
+}
+
+/// The peaks of a motion.
+pub trait PeaksOf<Q: Moves>: Clone + Debug + Serialize + DeserializeOwned {
+    /// Looks for peaks.
+    type Watch<'a>: Watch<Q>
+    where
+        Self: 'a;
+
+    /// Peaks of `structure` before any motion.
+    fn since(setup: &Setup, structure: &Q::Structure) -> Self;
+
+    /// Looks for peaks. They are complete when the watch is dropped.
+    fn watch(&mut self) -> Self::Watch<'_>;
+
+    /// The start of the fall of a structure that has overturned, s, if the peaks end there.
+    fn fall(&self) -> Option<f64>;
+}
+
+impl PeaksOf<f64> for FallingPeaks {
+    type Watch<'a> = FallWatch<'a>;
+
+    fn since(setup: &Setup, structure: &Structure) -> FallingPeaks {
+        FallingPeaks::since(setup.start_time, structure, setup.detail)
+    }
+
+    fn watch(&mut self) -> FallWatch<'_> {
+        self.watch()
+    }
+
+    fn fall(&self) -> Option<f64> {
+        self.fall()
+    }
+}
+
+impl Masses for f64 {
+    type Inputs = Inputs;
+    type Outputs = Outputs;
+    type Peaks = FallingPeaks;
+
+    fn inputs(_: &Contents) -> Inputs {
+        Inputs::default()
+    }
+
+    fn structure(setup: &Setup, contents: &Contents) -> Result<Structure, Refusal> {
+        match (setup.parameters, &contents.structure) {
+            (Some(parameters), _) => Ok(Structure::new(parameters)?),
+            (None, AnyStructure::One(structure)) => Ok(*structure),
+            (None, AnyStructure::Many(_)) => unreachable!("one mass has parameters"),
+        }
+    }
+
+    fn initial(initial: &State) -> State {
+        *initial
+    }
+
+    #[inline(always)]
+    fn outputs(engine: &Engine, load: Load) -> Outputs {
+        engine.outputs(load)
+    }
+
+    #[inline(always)]
+    fn output(source: Source, outputs: &Outputs) -> Option<f64> {
+        if let Source::Output(of) = source { Some(of(outputs)) } else { None }
+    }
+
+    fn own(source: Source, shown: &Shown) -> Option<f64> {
+        let &Shown { scene, setup, load, .. } = shown;
+        Some(match source {
+            Source::Output(of) => of(&shown.outputs),
+            Source::StateRate(which) => shown.state_rates().components()[which],
+            Source::Peak(_) if !setup.peaks || scene.is_integrated_outside() => f64::NAN,
+            Source::Peak(of) => of(scene.peaks(setup, load).peaks()),
+            Source::Derived(derived) => (derived.value)(scene.engine.structure()),
+            _ => return None,
+        })
+    }
+
+    fn lateral(_: &Contents) -> usize {
+        1
+    }
+
+    fn components(state: &State, _: usize) -> Vec<f64> {
+        state.components().into()
+    }
+
+    fn state(components: &[f64], _: &Structure) -> State {
+        State::of(std::array::from_fn(|at| components[at]))
+    }
+
+    fn usual(structure: &Structure) -> State {
+        State::usual(structure)
+    }
+
+    fn told(Transition { before, after, .. }: &Transition) -> String {
+        format!(
+            "u = {} m, u_dot = {} m/s (before: {}), theta_dot = {} rad/s (before: {})",
+            after.u, after.u_dot, before.u_dot, after.theta_dot, before.theta_dot
+        )
+    }
+
+    fn doubts(structure: &Structure, detail: Detail) -> Vec<String> {
+        validity::of_parameters(structure, detail)
+    }
+
+    #[inline(always)]
+    fn listener<'a>(told: &'a mut Told<'_, f64>) -> impl Watch {
+        told
+    }
+
+    fn watcher(validity: &mut Validity) -> &mut impl Watch {
+        validity
+    }
+
+    fn rates(unit: &mut Unit, references: &[u32], rates: &mut [f64]) -> Result<(), Failure> {
+        unit.output_rates(references, rates)
+    }
+
+    fn derivatives(
+        unit: &mut Unit,
+        of: &[u32],
+        direction: &[(u32, f64)],
+        has_started: bool,
+    ) -> Result<Vec<f64>, Failure> {
+        unit.directional_derivatives(of, direction, has_started)
+    }
+}
+
+/// Looks for the peaks of floors.
+pub struct ProfileWatch<'a>(&'a mut Profile);
+
+impl Watch<Modes> for ProfileWatch<'_> {
+    const SEES_PIECES: bool = true;
+
+    fn piece(&mut self, piece: &Piece<Modes>) {
+        self.0.piece(piece);
+    }
+}
+
+impl PeaksOf<Modes> for Profile {
+    type Watch<'a> = ProfileWatch<'a>;
+
+    fn since(setup: &Setup, frame: &Frame) -> Profile {
+        Profile::since(setup.start_time, frame)
+    }
+
+    fn watch(&mut self) -> ProfileWatch<'_> {
+        ProfileWatch(self)
+    }
+
+    fn fall(&self) -> Option<f64> {
+        None
+    }
+}
+
+impl Masses for Modes {
+    type Inputs = FloorInputs;
+    type Outputs = ();
+    type Peaks = Profile;
+
+    fn inputs(contents: &Contents) -> FloorInputs {
+        FloorInputs::new(frame(contents).floors().len())
+    }
+
+    fn structure(_: &Setup, contents: &Contents) -> Result<Frame, Refusal> {
+        Ok(frame(contents).clone())
+    }
+
+    fn initial(&State { theta, theta_dot, .. }: &State) -> State<Modes> {
+        State { theta, theta_dot, ..State::default() }
+    }
+
+    fn outputs(_: &Engine<Modes>, _: Load<Modes>) {}
+
+    fn output(_: Source, (): &()) -> Option<f64> {
+        None
+    }
+
+    fn own(source: Source, shown: &Shown<Modes>) -> Option<f64> {
+        let &Shown { scene, setup, load, .. } = shown;
+        let output = |place| output(&scene.engine, place);
+        let peak = |place| {
+            let of = output(place);
+            if !setup.peaks || scene.is_integrated_outside() {
+                return None;
+            }
+            let now = || Peak { magnitude: shown.sample().output(of).abs(), time: setup.start_time };
+            if scene.is_at_start(load) { Some(now()) } else { scene.peaks.of(of) }
+        };
+        let component = |state, which: usize| Modes::components(state, scene.lateral)[which];
+        Some(match source {
+            Source::Floor(place) => shown.sample().output(output(place)),
+            Source::Coordinate(which) => component(&scene.engine.motion().state, which),
+            Source::StateRate(which) => component(shown.state_rates(), which),
+            Source::FloorPeak(place) => peak(place).map_or(f64::NAN, |peak| peak.magnitude),
+            Source::FloorPeakInstant(place) => peak(place).map_or(f64::NAN, |peak| peak.time),
+            Source::Known(value) => value,
+            _ => return None,
+        })
+    }
+
+    fn lateral(contents: &Contents) -> usize {
+        frame(contents).modes().len()
+    }
+
+    fn components(State { u, u_dot, theta, theta_dot }: &State<Modes>, lateral: usize) -> Vec<f64> {
+        let mut components = vec![0.0; 2 * lateral]; // the level rigid has none
+        components[..u.numbers().len()].copy_from_slice(u.numbers());
+        components[lateral..][..u_dot.numbers().len()].copy_from_slice(u_dot.numbers());
+        components.extend([*theta, *theta_dot]);
+        components
+    }
+
+    fn state(components: &[f64], frame: &Frame) -> State<Modes> {
+        let (lateral, turning) = components.split_at(components.len() - 2);
+        let (u, u_dot) = lateral.split_at(lateral.len() / 2);
+        let [u, u_dot] = [u, u_dot].map(|numbers| Modes::new(&numbers[..frame.modes().len()]));
+        State { u, u_dot, theta: turning[0], theta_dot: turning[1] }
+    }
+
+    fn usual(frame: &Frame) -> State<Modes> {
+        frame.usual()
+    }
+
+    fn told(Transition { before, after, .. }: &Transition<Modes>) -> String {
+        format!("theta_dot = {} rad/s (before: {})", after.theta_dot, before.theta_dot)
+    }
+
+    fn doubts(frame: &Frame, detail: Detail) -> Vec<String> {
+        validity::of_frame(frame, detail)
+    }
+
+    /// One type for all cases keeps the library small.
+    fn listener<'a>(told: &'a mut Told<'_, Modes>) -> impl Watch<Modes> {
+        Watching { peaks: None, validity: None, told }
+    }
+
+    fn watcher(validity: &mut Validity<Modes>) -> &mut impl Watch<Modes> {
+        validity
+    }
+
+    fn rates(unit: &mut Unit<Modes>, references: &[u32], rates: &mut [f64]) -> Result<(), Failure> {
+        let sources = unit.sources_of(references);
+        let (scene, setup, inputs) = unit.parts()?;
+        let load = scene.load(setup, inputs.now(&scene.engine));
+        let found = scene.engine.rates(load);
+        let output = |place| output(&scene.engine, place);
+        for ((source, reference), rate) in sources.into_iter().zip(references).zip(rates) {
+            *rate = match source {
+                Source::Floor(place) => found.of(output(place)),
+                Source::Reaction(of) => of(&found.reactions()),
+                Source::Restraint(of) => of(&scene.engine.restraint_rates(load.value)),
+                Source::Ground(is_vertical) => {
+                    if is_vertical {
+                        load.slope.a_v
+                    } else {
+                        load.slope.a_g
+                    }
+                }
+                _ => return Err(Failure::NoOutput { name: unit.name(*reference) }),
+            };
+        }
+        Ok(())
+    }
+
+    /// By differences.
+    fn derivatives(
+        unit: &mut Unit<Modes>,
+        of: &[u32],
+        direction: &[(u32, f64)],
+        has_started: bool,
+    ) -> Result<Vec<f64>, Failure> {
+        let mut before = Vec::new();
+        Model::state(unit, &mut before);
+        let found = along(unit, of, direction, has_started);
+        unit.restore(&before)?;
+        found
+    }
+}
+
+/// The structure of many masses of an archive with these `contents`.
+fn frame(contents: &Contents) -> &Frame {
+    match &contents.structure {
+        AnyStructure::Many(frame) => frame,
+        AnyStructure::One(_) => unreachable!("many masses have a frame"),
+    }
+}
+
+/// The output at a place of the table.
+fn output(engine: &Engine<Modes>, place: usize) -> FrameOutput {
+    FrameOutput::all(engine.structure()).nth(place).expect("the table is of this structure")
+}

@@ -1,0 +1,157 @@
+"""The FMU of a structure of many masses in fmpy, against independent integrations and against the FMU of one mass."""
+
+import subprocess
+
+import fmpy
+import frames_reference
+import numpy as np
+import pytest
+from fmpy.fmi1 import FMICallException
+from fmpy.validation import validate_fmu
+from frames import FRAMES, scene
+from host import Fmu
+from reference import MCMANUS
+from restrained_reference import Ties
+from scipy.integrate import solve_ivp
+
+FRAME, N = FRAMES["frame"], 3
+
+
+@pytest.fixture(scope="module")
+def export_frame(exporter, tmp_path_factory):
+    """The FMU of the shear frame `frame`, held down by `ties`, with records of time, a_g and a_v inside."""
+
+    def run(frame=FRAME, ties=Ties(), time=None, a_g=None, a_v=None, fmi=2) -> Fmu:
+        folder = tmp_path_factory.mktemp("frame")
+        base = {"m0": frame.m0, "J0": frame.J0, "B": frame.B, "r": frame.r, "g": frame.g, **vars(ties)}
+        lines = [f"zeta = {frame.zeta}", "[base]", *(f"{name} = {value}" for name, value in base.items())]
+        for m, h, k in zip(frame.masses, frame.heights, frame.stiffness, strict=True):
+            lines += ["[[storeys]]", f"m = {m}", f"h = {h}", f"k = {k}"]
+        (folder / "frame.toml").write_text("\n".join(lines))
+        command = [exporter, "export", "--parameters", folder / "frame.toml", "--fmi", str(fmi), "-o", folder / "frame.fmu"]
+        for option, values in (("--record", a_g), ("--record-v", a_v)):
+            if values is not None:
+                path = folder / f"{option[2:]}.csv"
+                path.write_text("t (s),a (m/s2)\n" + "".join(f"{t!r},{a!r}\n" for t, a in zip(time.tolist(), values.tolist())))
+                command += [option, path]
+        subprocess.run(command, check=True, capture_output=True)
+        return Fmu(folder / "frame.fmu", folder / "unzipped")
+
+    return run
+
+
+def floors(*names):
+    return [f"{name}[{i}]" for name in names for i in range(1, N + 1)]
+
+
+@pytest.mark.parametrize("tied", [False, True], ids=["free", "tied"])
+@pytest.mark.parametrize("fmi, kind", [(2, "CoSimulation"), (3, "CoSimulation"), (2, "ModelExchange"), (3, "ModelExchange")])
+def test_floors_move_as_the_physical_equations_say(export_frame, fmi, kind, tied):
+    """θ, and u and a of every floor at every sample, to 1e-9 of the peak; to 1e-5 with fmpy's integrator."""
+    frame, dt, a_g, a_v, ties = scene("frame", "El Centro", tied)
+    time = dt * np.arange(len(a_g))
+    fmu = export_frame(frame, ties, time, a_g, a_v if tied else None, fmi)
+    assert validate_fmu(fmu.path) == []
+    outputs = ["theta", "transitions", *floors("u", "a_t")]
+    found = fmpy.simulate_fmu(fmu.path, fmi_type=kind, stop_time=time[-1], output_interval=dt, output=outputs,
+                              relative_tolerance=1e-12 if kind == "CoSimulation" else 1e-9)
+    found = found[np.searchsorted(found["time"], time - 1e-9)]
+    exact = frames_reference.simulate(frame, dt, a_g, a_v, ties)
+    assert found["transitions"][-1] == len(exact.transitions) > 5
+    limit = 1e-9 if kind == "CoSimulation" else 1e-5
+    expected = np.column_stack([exact.theta, exact.u, exact.a]).T
+    for name, column in zip(["theta", *floors("u", "a_t")], expected, strict=True):
+        np.testing.assert_allclose(found[name], column, rtol=0, atol=limit * np.abs(column).max(), err_msg=name)
+
+
+def test_peaks_of_floors_are_exact(export_frame):
+    frame, dt, a_g, _, ties = scene("frame", "El Centro", False)
+    time = dt * np.arange(len(a_g))
+    names = [f"{name}_max{i}" for name in ("u", "a_t") for i in ("[1]", "[2]", "[3]")] + ["theta_max", "V_t_max", "M_t_max"]
+    values = fmpy.simulate_fmu(export_frame(frame, ties, time, a_g).path, stop_time=time[-1], output_interval=time[-1],
+                               start_values={"peaks": True}, output=names, relative_tolerance=1e-12)[-1]
+    exact = frames_reference.simulate(frame, dt, a_g).peaks
+    np.testing.assert_allclose([values[name] for name in names], exact, rtol=1e-8)
+
+
+def test_one_storey_is_the_fmu_of_one_mass(export_frame, mcmanus):
+    """At its instants to 1e-9 of the peak, under forces and vertical motion, with slopes."""
+    p = MCMANUS
+    frame = type(FRAME)((p.m,), (p.H,), (p.k,), m0=p.m0, J0=p.J0, B=p.B, r=p.r, zeta=p.zeta_fc, g=p.g)
+    time = np.linspace(0.0, 4.0, 801)
+    a_g, a_v, F_t = (size * np.sin(omega * time) for size, omega in ((6.0, 14.0), (2.0, 30.0), (300.0, 9.0)))
+    one, many = mcmanus, export_frame(frame)
+    names = {"theta": "theta", "u": "u[1]", "a_t": "a_t[1]", "v_t": "v_t[1]", "delta_t": "delta_t[1]", "V_t": "V[1]", "M_t": "M_t",
+             "R_h": "R_h", "R_v": "R_v", "R_m": "R_m", "I_v": "I_v", "uplift": "uplift"}
+    with one.start(tolerance=1e-12) as instance:
+        expected, transitions = instance.follow(time, a_g, names, a_v=a_v, F_t=F_t), instance.get("transitions")
+    with many.start(tolerance=1e-12) as instance:
+        found = instance.follow(time, a_g, names.values(), a_v=a_v, **{"F_t[1]": F_t})
+        assert instance.get("transitions") == transitions > 10
+    for name, of_floor in names.items():
+        np.testing.assert_allclose(found[of_floor], expected[name], rtol=0, atol=1e-9 * np.abs(expected[name]).max(), err_msg=name)
+
+
+def test_an_oscillator_on_a_floor_is_the_structure_integrated_as_one(export_frame):
+    """A mass on a spring at the second floor, until the first impact; the force over each step is a line."""
+    p, k, M, until, steps = FRAME, 2e6, 8e3, 0.15, 3000
+
+    def rates(_, y):
+        u, u_dot, (theta, theta_dot, x, v) = y[:N], y[N:2 * N], y[2 * N:]
+        sn, cs, d = np.sin(theta), np.cos(theta), p.B - u
+        F = np.zeros(N)
+        F[1] = k * (x - (p.B * (1 - cs) + u[1] * cs + p.h[1] * sn))
+        f = p.elastic @ y[:2 * N]
+        moment = (p.m * p.h @ f + theta_dot**2 * (p.B * p.S_1 - p.m * p.h @ u) + 2 * theta_dot * (p.m * d @ u_dot)
+                  - (p.m_t * p.B - p.m @ u) * p.g * cs + F @ d * sn)
+        theta_ddot = moment / (p.J0 + p.m0 * p.B**2 + p.m @ d**2)  # (M7)
+        u_ddot = -f - p.h * theta_ddot - theta_dot**2 * d + p.g * sn + F * cs / p.m
+        return [*u_dot, *u_ddot, theta_dot, theta_ddot, v, -F[1] / M]
+
+    start = [*np.zeros(2 * N), 0.02, 0.0, 0.1, 0.0]
+    exact = solve_ivp(rates, (0, until), start, method="DOP853", rtol=1e-12, atol=1e-14, dense_output=True).sol
+    time, x, v, rows = np.linspace(0, until, steps + 1), 0.1, 0.0, []
+    with export_frame().start(theta_0=0.02) as instance:
+        for t0, t1 in zip(time[:-1], time[1:]):
+            delta, floor_v = instance.reals(["delta_t[2]", "v_t[2]"])
+            F, slope, h = k * (x - delta), k * (v - floor_v), t1 - t0
+            instance.input("F_t[2]", F, slope)
+            instance.step(t1)
+            x, v = x + v * h - (F / 2 + slope * h / 6) * h**2 / M, v - (F + slope * h / 2) * h / M
+            rows.append([*instance.reals(["theta", *floors("u")]), x])
+        assert instance.get("transitions") == 0
+    expected = exact(time[1:])[[2 * N, *range(N), 2 * N + 2]].T
+    assert expected[:, 0].min() > 0
+    peaks = np.abs(expected).max(axis=0)
+    np.testing.assert_allclose(rows / peaks, expected / peaks, rtol=0, atol=1e-6)
+
+
+def test_states_of_another_structure_are_refused(export_frame, mcmanus):
+    def slave_and_bytes(fmu):
+        instance = fmu.start()
+        state = instance.slave.getFMUstate()
+        return instance, instance.slave.serializeFMUstate(state)
+
+    kept = [slave_and_bytes(fmu) for fmu in (export_frame(), export_frame(ties=Ties(P_0=1e5)), mcmanus)]
+    for instance, _ in kept:
+        for other, state in kept:
+            if other is not instance:
+                with pytest.raises(FMICallException):
+                    instance.slave.deSerializeFMUstate(state)
+                assert "it does not begin with the name of this build" in instance.errors[-1]
+    for instance, state in kept:
+        instance.slave.deSerializeFMUstate(state)
+        instance.slave.freeInstance()
+
+
+def test_modes_left_out_and_what_is_fixed_are_told(export_frame):
+    fmu = export_frame()
+    with fmu.start() as instance:
+        frequencies = instance.get(*floors("f"))
+        np.testing.assert_allclose(frequencies, FRAME.omega / (2 * np.pi), rtol=1e-12)
+        assert instance.get("m_t", "zeta[3]", "h[2]") == pytest.approx([FRAME.m_t, 0.02, 7.0], rel=1e-12)
+    with fmu.instance() as instance, pytest.raises(FMICallException):
+        instance.initialize(**{"f[1]": 3.0})
+    assert fmu.description.variableNamingConvention == "structured"
+    (of_a,) = [unknown for unknown in fmu.description.outputs if unknown.variable.name == "a_t[2]"]
+    assert {known.name for known in of_a.dependencies} >= {"a_g", *floors("F_t", "q", "q_dot"), "theta"}
