@@ -269,13 +269,15 @@ def test_the_command_line_shows_a_building_as_the_module_does(run, exporter, tmp
     assert (events["u[10]_after[m]"].to_numpy() == run.transitions.to_pandas()["u[10]_after"].to_numpy()).all()
     whole = json.loads(printed("--format", "json"))
     assert {of["name"]: of["peak"] for of in whole["peaks"]} == run.peaks and whole["structure"]["f[10]"] > 1
+    subprocess.run([exporter, "view", *simulate[2:], "-o", "view.html"], cwd=tmp_path, check=True)
+    assert (tmp_path / "view.html").read_text() == run.page() and "<iframe" in run._repr_html_()
     assert "a_t[10]" in (tmp_path / "run.svg").read_text() and "storey moment" in (tmp_path / "profile.svg").read_text()
 
 
 def test_a_command_that_takes_one_mass_says_which_take_many(exporter, tmp_path):
     (tmp_path / "one.toml").write_text("zeta = 0.02\n[base]\nm0 = 1\nJ0 = 1\nB = 1\n[[storeys]]\nm = 1\nh = 3\nk = 100\n")
     done = subprocess.run([exporter, "pushover", "--parameters", "one.toml"], cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 1 and "describe, simulate and advise take many masses" in done.stderr
+    assert done.returncode == 1 and "describe, simulate, view, advise and export take many masses" in done.stderr
 
 
 def test_advice_names_how_many_modes_are_enough(exporter, tmp_path):

@@ -15,7 +15,7 @@ use rocking::run::peaks::Peak;
 use rocking::run::validity::{ASSUMPTIONS, Limits, Validity, Worst};
 use rocking::structure::any::AnyStructure;
 use rocking::{Detail, Modes, Phase, Watch};
-use rocking_report::shown::OF_FLOOR;
+use rocking_report::shown::{OF_FLOOR, Shown};
 use rocking_sweep::plan::Conditions;
 
 /// A structure that has been followed through a ground motion: what `simulate` returns.
@@ -323,7 +323,7 @@ pub fn simulate(
 }
 
 /// Follows `followed`, which is the `structure`.
-fn follow<Q: rocking_report::shown::Shown + rocking_view::Shown>(
+fn follow<Q: Shown + rocking_view::Shown>(
     py: Python<'_>,
     structure: Py<Structure>,
     followed: Q::Structure,

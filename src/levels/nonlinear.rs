@@ -35,7 +35,7 @@ use crate::levels::level::{ElasticRocking, Now, Pace, Subject};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
-use crate::series::taylor::{Arc, MAX_ORDER, Start};
+use crate::series::taylor::{Arc, MAX_ORDER, Orders, Start};
 use crate::{Side, State, Structure};
 use nalgebra::{Matrix2, Vector2};
 use std::cell::RefCell;
@@ -393,13 +393,15 @@ impl NonlinearRocking {
         let products = &mut *self.products.borrow_mut();
         let mut recurrence = Recurrence::new(self.equations::<TIED>(side, start, span));
         let truncation = self.pace.truncation(start, span);
-        arc.expand(&start.state, span, truncation, |arc, k, per| {
+        // the recurrence stands in the loop itself, which a closure might not
+        let mut orders = Orders::of(arc, &start.state, span);
+        while let Some((k, per)) = orders.next(arc, &truncation) {
             let ties = |per_inertia: f64| {
                 let ties = ties.as_mut().map_or(0.0, |ties| ties.next(&arc.theta_dot, k - 1, per));
                 per_inertia / m * ties
             };
-            recurrence.next::<TIED>(products, k, arc.u[k], per, ties)
-        });
+            (arc.u_dot[k], arc.theta_dot[k]) = recurrence.next::<TIED>(products, k, arc.u[k], per, ties);
+        }
     }
 }
 

@@ -199,8 +199,7 @@ impl Compared for Modes {
     }
 
     fn magnitudes(peaks: &Profile) -> Vec<f64> {
-        let magnitude = |(output, _)| peaks.of(output).map_or(0.0, |peak| peak.magnitude);
-        compared(peaks.frame()).map(magnitude).collect()
+        peaks.peaks().filter(|(output, _)| kind(*output).is_some()).map(|(_, peak)| peak.magnitude).collect()
     }
 
     fn histories(expansion: &Expansion<Modes>, show: &mut Show<Modes>) {
@@ -243,14 +242,18 @@ fn histories(expansion: &Expansion<Modes>, halvings: u32, show: &mut Show<Modes>
     show(expansion.time(0.0), expansion.arc, all);
 }
 
-/// The compared outputs of a structure of many masses, with the kind of each.
-fn compared(frame: &Frame) -> impl Iterator<Item = (FrameOutput, usize)> + use<> {
-    let kind = |output| match output {
+/// The kind of `output`, if it is compared.
+fn kind(output: FrameOutput) -> Option<usize> {
+    match output {
         FrameOutput::theta => Some(0),
         FrameOutput::u(_) => Some(1),
         FrameOutput::a_t(_) | FrameOutput::V_t | FrameOutput::M_t => Some(2),
         _ => None,
-    };
+    }
+}
+
+/// The compared outputs of a structure of many masses, with the kind of each.
+fn compared(frame: &Frame) -> impl Iterator<Item = (FrameOutput, usize)> + use<> {
     FrameOutput::all(frame).filter_map(move |output| Some((output, kind(output)?)))
 }
 

@@ -19,7 +19,8 @@ pub enum AnyStructure {
 /// A structure of many masses where one mass is needed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "{task} needs a structure of one mass, and this structure has {modes} modes: so far describe, simulate and advise take many masses"
+    "{task} needs a structure of one mass, and this structure has {modes} modes: describe, simulate, view, advise and export take \
+     many masses"
 )]
 pub struct ManyMasses {
     /// Name of the task.
