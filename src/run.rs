@@ -271,16 +271,20 @@ impl<Q: Moves, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
     /// Follows the motion over the next segment. Returns the ending of the run if the run has ended.
     #[inline(always)]
     fn go_on<W: Watch<Q>>(&mut self, watch: &mut W) -> Result<Option<Ending>, RunError> {
-        let segment = self.segments.next();
-        self.go_over(segment, watch)
+        let Follower { engine, segments, end, rest } = self;
+        let went_on = match segments.next() {
+            Some(segment) => over(engine, segment, watch).map(ending),
+            None => come_to_rest(engine, *end, rest, watch),
+        };
+        went_on.map_err(|cause| error(engine, cause))
     }
 
     /// Follows the motion over `segment`, which is none after the last one.
-    #[inline(always)]
+    #[cfg(feature = "lanes")]
     fn go_over<W: Watch<Q>>(&mut self, segment: Option<Segment>, watch: &mut W) -> Result<Option<Ending>, RunError> {
         let Follower { engine, end, rest, .. } = self;
         let went_on = match segment {
-            Some(segment) => over(engine, segment, watch),
+            Some(segment) => over(engine, segment, watch).map(ending),
             None => come_to_rest(engine, *end, rest, watch),
         };
         went_on.map_err(|cause| error(engine, cause))
@@ -296,29 +300,24 @@ fn error<Q: Moves>(engine: &Engine<Q>, cause: AdvanceError) -> RunError {
     }
 }
 
-/// Follows a structure over `segment`. Returns the ending of the run if the run has ended.
+/// Follows a structure over `segment`.
 #[inline]
 fn over<Q: Moves, W: Watch<Q>>(
     engine: &mut Engine<Q>,
     segment: Segment,
     watch: &mut W,
-) -> Result<Option<Ending>, AdvanceError> {
-    let progress = engine.advance(segment.duration, Q::loads(segment.ground), watch);
-    ended(engine, segment.until, progress)
+) -> Result<Progress, AdvanceError> {
+    let progress = engine.advance(segment.duration, Q::loads(segment.ground), watch)?;
+    if progress != Progress::Overturned {
+        engine.set_time(segment.until);
+    }
+    Ok(progress)
 }
 
-/// The ending of a run whose engine made this `progress` over a segment that ends at `until` (s), if the run has ended.
-#[inline]
-fn ended<Q: Moves>(
-    engine: &mut Engine<Q>,
-    until: f64,
-    progress: Result<Progress, AdvanceError>,
-) -> Result<Option<Ending>, AdvanceError> {
-    if progress? == Progress::Overturned {
-        return Ok(Some(Ending::Overturned));
-    }
-    engine.set_time(until);
-    Ok(None)
+/// The ending of a run that made this `progress` over a segment of its record, if the run has ended.
+#[inline(always)]
+fn ending(progress: Progress) -> Option<Ending> {
+    (progress == Progress::Overturned).then_some(Ending::Overturned)
 }
 
 /// Follows a structure on ground at rest until the next decision about the `end` of the run. `rest` is the time for which the

@@ -57,10 +57,10 @@ impl Engine {
         self.level.most(self.motion.phase, [0.0, interval].map(|tau| load.at(tau)), most)
     }
 
-    /// Advances by such a step, or by several with transitions between. The first series is given by `write`.
+    /// Advances by such a step, or by several with transitions between, to `until` (s). The first series is given by `write`.
     pub(crate) fn advance_by<W: Watch>(
         &mut self,
-        interval: f64,
+        (interval, until): (f64, f64),
         load: LinearLoad,
         watch: &mut W,
         write: impl FnOnce(&mut Arc),
@@ -78,8 +78,10 @@ impl Engine {
             load,
             watch,
         );
-        if let (Err(_), Some(before)) = (&result, before) {
-            self.motion = before;
+        match (&result, before) {
+            (Err(_), Some(before)) => self.motion = before,
+            (Err(_) | Ok(Progress::Overturned), _) => {}
+            _ => self.set_time(until),
         }
         result
     }

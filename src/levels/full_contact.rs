@@ -5,7 +5,7 @@
 //! ```
 
 use crate::levels::level::Rates;
-use crate::levels::oscillator::{Flow, Kept, Oscillator};
+use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::mechanics::load::Load;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{State, Structure};
@@ -55,16 +55,17 @@ impl ExactContact {
     /// at most the whole swing, and u leaves its chord by at most |ü| h²/8.
     #[inline]
     pub(crate) fn leap(&self, start: &Start, limit: f64) -> Option<State> {
-        if limit == f64::INFINITY { Some(self.end(start)) } else { Some(self.bounded_leap(start, limit)?.0) }
+        let end = self.end(start);
+        let goes_on = limit == f64::INFINITY || self.is_low(start, &end, &self.swing(start), limit);
+        goes_on.then_some(end)
     }
 
     /// The same leap with bounds of what changes over it.
+    #[cfg(feature = "lanes")]
     #[inline(always)]
     pub(crate) fn bounded_leap(&self, start: &Start, limit: f64) -> Option<(State, Rates)> {
-        let (end, rates) = (self.end(start), self.rates(start));
-        let off_chord = rates.u_ddot * start.interval * start.interval / 8.0;
-        let is_low = rates.u < limit || start.state.u.abs().max(end.u.abs()) + off_chord < limit;
-        is_low.then_some((end, rates))
+        let (end, swing) = (self.end(start), self.swing(start));
+        self.is_low(start, &end, &swing, limit).then(|| (end, self.rates_of(start, &swing)))
     }
 
     /// The state after the interval of `start`.
@@ -76,12 +77,28 @@ impl ExactContact {
         State { u, u_dot, theta: 0.0, theta_dot: 0.0 }
     }
 
-    /// Bounds of what changes over the interval of `start`.
     #[inline(always)]
-    pub(crate) fn rates(&self, start: &Start) -> Rates {
+    fn swing(&self, start: &Start) -> Swing {
         let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
-        let swing = self.oscillator.swing([u, u_dot], a_top.value, a_top.slope, interval);
-        let [u_dot, u_ddot, u_dddot] = self.oscillator.rates(&swing, a_top.slope);
+        self.oscillator.swing([u, u_dot], a_top.value, a_top.slope, interval)
+    }
+
+    /// Whether |u| certainly stays below `limit` (m) from `start` to `end`.
+    #[inline(always)]
+    fn is_low(&self, start: &Start, end: &State, swing: &Swing, limit: f64) -> bool {
+        let [_, u_ddot, _] = self.oscillator.rates(swing, start.a_top.slope);
+        let off_chord = u_ddot * start.interval * start.interval / 8.0;
+        swing.farthest() < limit || start.state.u.abs().max(end.u.abs()) + off_chord < limit
+    }
+
+    /// Bounds of what changes over the interval of `start`.
+    pub(crate) fn rates(&self, start: &Start) -> Rates {
+        self.rates_of(start, &self.swing(start))
+    }
+
+    #[inline(always)]
+    fn rates_of(&self, start: &Start, swing: &Swing) -> Rates {
+        let [u_dot, u_ddot, u_dddot] = self.oscillator.rates(swing, start.a_top.slope);
         Rates { u: swing.farthest(), u_dot, u_ddot, u_dddot, ..Rates::default() }
     }
 }

@@ -35,7 +35,7 @@ use crate::levels::level::{ElasticRocking, Now, Pace, Subject};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
-use crate::series::taylor::{Arc, MAX_ORDER, Orders, Start};
+use crate::series::taylor::{Arc, MAX_ORDER, Start};
 use crate::{Side, State, Structure};
 use nalgebra::{Matrix2, Vector2};
 use std::cell::RefCell;
@@ -393,15 +393,21 @@ impl NonlinearRocking {
         let products = &mut *self.products.borrow_mut();
         let mut recurrence = Recurrence::new(self.equations::<TIED>(side, start, span));
         let truncation = self.pace.truncation(start, span);
-        // the recurrence stands in the loop itself, which a closure might not
-        let mut orders = Orders::of(arc, &start.state, span);
-        while let Some((k, per)) = orders.next(arc, &truncation) {
+        // not a closure of `Arc::expand`, which is called order by order
+        arc.begin(&start.state, span);
+        let mut previous_is_small = false;
+        for k in 1..MAX_ORDER + 1 {
+            let per = arc.integrate(k);
             let ties = |per_inertia: f64| {
                 let ties = ties.as_mut().map_or(0.0, |ties| ties.next(&arc.theta_dot, k - 1, per));
                 per_inertia / m * ties
             };
             (arc.u_dot[k], arc.theta_dot[k]) = recurrence.next::<TIED>(products, k, arc.u[k], per, ties);
+            if arc.ends_at(k, &truncation, &mut previous_is_small) {
+                return;
+            }
         }
+        arc.cut(&truncation);
     }
 }
 

@@ -8,7 +8,7 @@
 
 use super::fall::{FallWatch, FallingPeaks, Found};
 use super::ground_motion::Segment;
-use super::{Ending, Finish, Follower, Run, RunError, ended, error};
+use super::{Ending, Finish, Follower, Run, RunError, ending, error};
 use crate::levels::nonlinear::lanes::{RockingStep, Steps};
 use crate::numbers::lanes::MOST;
 use crate::series::taylor::Arc;
@@ -106,8 +106,8 @@ impl<Segments: Iterator<Item = Segment>> Lane<'_, Segments> {
         let (times, write) = ((duration, until), |arc: &mut Arc| steps.write(lane, stepped.order, duration, arc));
         if !stepped.stays {
             let engine = &mut self.follower.engine;
-            let progress = engine.advance_by(duration, ground, &mut self.watch, write);
-            return ended(engine, until, progress).map_err(|cause| error(engine, cause));
+            let progress = engine.advance_by(times, ground, &mut self.watch, write);
+            return progress.map(ending).map_err(|cause| error(engine, cause));
         }
         if self.passes(duration, ground, &stepped.end, &stepped.most) {
             self.follower.engine.step_to(&stepped, times, ground, &mut (), write);

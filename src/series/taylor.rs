@@ -280,57 +280,49 @@ impl<Q: Coordinates> Arc<Q> {
         truncation: &Truncation<Q>,
         mut velocities: impl FnMut(&mut Arc<Q>, usize, f64) -> f64,
     ) {
-        let mut orders = Orders::of(self, state, span);
-        while let Some((k, per)) = orders.next(self, truncation) {
-            let theta_dot = velocities(self, k, per);
-            self.theta_dot[k] = theta_dot;
+        self.begin(state, span);
+        let mut previous_is_small = false;
+        for k in 1..MAX_ORDER + 1 {
+            let per = self.integrate(k);
+            self.theta_dot[k] = velocities(self, k, per);
+            if self.ends_at(k, truncation, &mut previous_is_small) {
+                return;
+            }
         }
-    }
-}
-
-/// The orders of an expansion, one after the other. Whoever takes them writes the velocities of each order into the arc.
-#[derive(Debug)]
-pub(crate) struct Orders {
-    k: usize,
-    previous_is_small: bool,
-}
-
-impl Orders {
-    /// Begins the expansion of `arc` from `state` over `span` (s).
-    #[inline(always)]
-    pub(crate) fn of<Q: Coordinates>(arc: &mut Arc<Q>, state: &State<Q>, span: f64) -> Orders {
-        (arc.span, arc.reach) = (span, 1.0);
-        (arc.u[0], arc.u_dot[0]) = (state.u, state.u_dot);
-        (arc.theta[0], arc.theta_dot[0]) = (state.theta, state.theta_dot);
-        Orders { k: 0, previous_is_small: false }
+        self.cut(truncation);
     }
 
-    /// The next order k and span/k, with u and θ of this order in `arc`; None once `arc` is expanded.
+    /// Begins the expansion from `state` over `span` (s).
     #[inline(always)]
-    pub(crate) fn next<Q: Coordinates>(
-        &mut self,
-        arc: &mut Arc<Q>,
-        truncation: &Truncation<Q>,
-    ) -> Option<(usize, f64)> {
-        let k = self.k;
-        if k > 0 {
-            arc.order = k;
-            let is_small = arc.u_dot[k].is_within(&truncation.u_dot) && arc.theta_dot[k].abs() <= truncation.theta_dot;
-            if is_small && self.previous_is_small && k >= MIN_ORDER {
-                return None;
-            }
-            if k == MAX_ORDER {
-                arc.reach = reach(arc, truncation).min(1.0);
-                return None;
-            }
-            self.previous_is_small = is_small;
-        }
-        let k = k + 1;
-        let per = arc.span * reciprocal(k);
-        arc.u[k].be(&arc.u_dot[k - 1], per);
-        arc.theta[k] = arc.theta_dot[k - 1] * per;
-        self.k = k;
-        Some((k, per))
+    pub(crate) fn begin(&mut self, state: &State<Q>, span: f64) {
+        (self.span, self.reach) = (span, 1.0);
+        (self.u[0], self.u_dot[0]) = (state.u, state.u_dot);
+        (self.theta[0], self.theta_dot[0]) = (state.theta, state.theta_dot);
+    }
+
+    /// Writes u and θ of order `k`, and returns span/k.
+    #[inline(always)]
+    pub(crate) fn integrate(&mut self, k: usize) -> f64 {
+        let per = self.span * reciprocal(k);
+        self.u[k].be(&self.u_dot[k - 1], per);
+        self.theta[k] = self.theta_dot[k - 1] * per;
+        per
+    }
+
+    /// Whether the expansion ends with order `k`, whose velocities are written.
+    #[inline(always)]
+    pub(crate) fn ends_at(&mut self, k: usize, truncation: &Truncation<Q>, previous_is_small: &mut bool) -> bool {
+        self.order = k;
+        let is_small = self.u_dot[k].is_within(&truncation.u_dot) && self.theta_dot[k].abs() <= truncation.theta_dot;
+        let ends = is_small && *previous_is_small && k >= MIN_ORDER;
+        *previous_is_small = is_small;
+        ends
+    }
+
+    /// Cuts a full expansion to where its last two terms stay within `truncation`.
+    #[inline(always)]
+    pub(crate) fn cut(&mut self, truncation: &Truncation<Q>) {
+        self.reach = reach(self, truncation).min(1.0);
     }
 }
 
