@@ -164,9 +164,9 @@ def variables(fmu: Path, building: Path) -> str:
     known = {v.name for v in read_model_description(fmu).modelVariables}
     for v in read_model_description(building).modelVariables:
         if v.name not in known and "[2]" not in v.name:
-            letter = "j" if "mode" in v.description else "i"
+            letter = "j" if "mode" in v.description or v.name.startswith("der(") else "i"
             name = v.name.replace("[1]", f"[{letter}]")
-            told = re.sub(r"(floor|storey|mode) 1", rf"\1 {letter}", meaning(v)).replace("[1]", "[i]")
+            told = re.sub(r"(floor|storey|mode) 1", rf"\1 {letter}", meaning(v)).replace("[1]", f"[{letter}]")
             kind = {"calculatedParameter": "fixed"}.get(v.causality, v.causality)
             page += f"| `{name}` | {v.unit or ''} | {kind} | {told} |\n"
     return page

@@ -188,7 +188,7 @@ impl InputsOf<f64> for Inputs {
         values.check()
     }
 
-    #[inline]
+    #[inline(always)]
     fn pass(&mut self, load: &LinearLoad, duration: f64, value: Load, ended_early: bool) {
         if !self.ended_early {
             let is_stair = [0, VERTICAL].into_iter().any(|which| {

@@ -45,7 +45,7 @@ pub trait Masses: Moves + Default + Serialize + DeserializeOwned {
     fn outputs(engine: &Engine<Self>, load: Load<Self>) -> Self::Outputs;
 
     /// The value of `source` if it is one of the `outputs`.
-    fn output(source: Source, outputs: &Self::Outputs) -> Option<f64>;
+    fn output(source: &Source, outputs: &Self::Outputs) -> Option<f64>;
 
     /// The value of `source` if it is shown of these structures alone.
     fn own(source: Source, shown: &Shown<Self>) -> Option<f64>;
@@ -146,7 +146,7 @@ impl Masses for f64 {
     }
 
     #[inline(always)]
-    fn output(source: Source, outputs: &Outputs) -> Option<f64> {
+    fn output(source: &Source, outputs: &Outputs) -> Option<f64> {
         if let Source::Output(of) = source { Some(of(outputs)) } else { None }
     }
 
@@ -258,7 +258,7 @@ impl Masses for Modes {
 
     fn outputs(_: &Engine<Modes>, _: Load<Modes>) {}
 
-    fn output(_: Source, (): &()) -> Option<f64> {
+    fn output(_: &Source, (): &()) -> Option<f64> {
         None
     }
 

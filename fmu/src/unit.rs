@@ -207,12 +207,12 @@ impl<Q: Masses> Model for Unit<Q> {
         let outputs = Q::outputs(&scene.engine, load);
         let (mut shown, sources): (_, &[Source]) = (None, sources);
         for (reference, value) in references.iter().zip(values) {
-            let source = sources[*reference as usize];
+            let source = &sources[*reference as usize];
             *value = match Q::output(source, &outputs) {
                 Some(output) => output,
                 None => {
                     let shown = shown.get_or_insert_with(|| Shown::new(scene, setup, load, outputs));
-                    other(shown, inputs, source)
+                    other(shown, inputs, *source)
                 }
             };
         }
