@@ -56,7 +56,7 @@ pub fn guid(contents: &Contents) -> String {
     let Contents { structure, records, vertical } = contents;
     let bytes = match structure {
         AnyStructure::One(structure) => postcard::to_stdvec(&(structure.parameters(), records, vertical)),
-        AnyStructure::Many(frame) => postcard::to_stdvec(&(FrameNumbers::from(frame), records, vertical)),
+        AnyStructure::Many(frame) => postcard::to_stdvec(&(FrameNumbers::from(frame).to_string(), records, vertical)),
     };
     let bytes = bytes.expect("numbers and text can always be written");
     Uuid::new_v5(&build, &bytes).braced().to_string()

@@ -8,14 +8,17 @@ use rocking::structure::{Mode, Structure, Ties};
 use rocking::{Frame, Modes};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use std::fmt::{self, Display, Formatter};
+use std::num::ParseFloatError;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::{fs, io};
 
 /// The file with the parameters of one mass, in the archive's folder `resources`.
 pub const PARAMETERS_FILE: &str = "parameters.toml";
 
 /// The file with the numbers of many masses, in the same folder in place of [`PARAMETERS_FILE`].
-pub const FRAME_FILE: &str = "frame.toml";
+pub const FRAME_FILE: &str = "frame.txt";
 
 /// The file with the names of the records, in the same folder; there is none without records.
 pub const RECORDS_FILE: &str = "records.toml";
@@ -40,9 +43,9 @@ pub struct Contents {
     pub vertical: Option<PackedRecord>,
 }
 
-/// The numbers from which a structure of many masses is made to the same bits. Lists alone are read with little code.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// The numbers from which a structure of many masses is made to the same bits: as text, three lines of numbers. TOML would
+/// take 40 kB of the library.
+#[derive(Clone, Debug, PartialEq)]
 pub struct FrameNumbers {
     /// m0, J0, m_s, S_1, I_2, B, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, and r if the structure has one.
     body: Vec<f64>,
@@ -50,6 +53,27 @@ pub struct FrameNumbers {
     modes: Vec<f64>,
     /// Of each floor mass, height, and the displacement per coordinate of each mode.
     floors: Vec<f64>,
+}
+
+impl Display for FrameNumbers {
+    fn fmt(&self, text: &mut Formatter) -> fmt::Result {
+        for line in [&self.body, &self.modes, &self.floors] {
+            line.iter().try_for_each(|number| write!(text, "{number:?} "))?;
+            writeln!(text)?;
+        }
+        Ok(())
+    }
+}
+
+impl FromStr for FrameNumbers {
+    type Err = ParseFloatError;
+
+    fn from_str(text: &str) -> Result<FrameNumbers, ParseFloatError> {
+        let mut lines = text.lines();
+        let mut line =
+            || -> Result<Vec<f64>, _> { lines.next().unwrap_or_default().split_whitespace().map(str::parse).collect() };
+        Ok(FrameNumbers { body: line()?, modes: line()?, floors: line()? })
+    }
 }
 
 impl From<&Frame> for FrameNumbers {
@@ -147,6 +171,9 @@ pub enum ResourceError {
     /// A parameter out of range.
     #[error("{file}: {1}", file = .0.display())]
     Refused(PathBuf, ParameterError),
+    /// Not the numbers of many masses.
+    #[error("{file}: not the lines of numbers that were exported; export it again", file = .0.display())]
+    NoNumbers(PathBuf),
     /// Numbers that make no structure of many masses.
     #[error("{file}: {1}", file = .0.display())]
     NoFrame(PathBuf, FrameError),
@@ -157,7 +184,9 @@ impl Archive {
     pub fn open(folder: PathBuf) -> Result<Archive, ResourceError> {
         let (of_many, file) = (folder.join(FRAME_FILE), folder.join(PARAMETERS_FILE));
         let structure = if of_many.exists() {
-            let numbers: FrameNumbers = read(&of_many)?;
+            let text =
+                fs::read_to_string(&of_many).map_err(|error| ResourceError::Unreadable(of_many.clone(), error))?;
+            let numbers: FrameNumbers = text.parse().map_err(|_| ResourceError::NoNumbers(of_many.clone()))?;
             AnyStructure::Many(numbers.frame().map_err(|error| ResourceError::NoFrame(of_many, error))?)
         } else {
             AnyStructure::One(Structure::new(read(&file)?).map_err(|error| ResourceError::Refused(file, error))?)

@@ -46,7 +46,7 @@ impl Terms {
     }
 
     /// The slope per second of this series, σ = 1 being `span` seconds. The coefficient of the highest order is left at 0.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn slope(&self, span: f64) -> Terms {
         let mut slope = Terms { coefficients: [0.0; LENGTH], degree: self.degree.saturating_sub(1), order: self.order };
         for k in 1..=self.degree {
@@ -66,7 +66,7 @@ impl Terms {
         std::array::from_fn(|k| self.coefficients[k])
     }
 
-    #[inline]
+    #[inline(never)]
     fn plus(&self, other: &Terms) -> Terms {
         let (degree, order) = (self.degree.max(other.degree), self.order.min(other.order));
         Terms::by_fours(degree, order, |i| {

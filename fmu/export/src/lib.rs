@@ -159,7 +159,7 @@ fn entries(
     let mut entries = vec![entry("modelDescription.xml", description.into()), entry(icon, ICON.to_vec())];
     let (file, numbers) = match &contents.structure {
         AnyStructure::One(one) => (PARAMETERS_FILE, toml::to_string(one.parameters())?),
-        AnyStructure::Many(frame) => (FRAME_FILE, toml::to_string(&FrameNumbers::from(frame))?),
+        AnyStructure::Many(frame) => (FRAME_FILE, FrameNumbers::from(frame).to_string()),
     };
     entries.extend([
         entry("documentation/index.html", page.into()),

@@ -95,7 +95,7 @@ pub fn resources_of_many() -> TempDir {
     let frame =
         Frame::new(body, &[Mode::new(20.0, 0.02, 250.0, 1.4e3)], &[floor(3.5, 2e-3), floor(7.0, 4e-3)]).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join(FRAME_FILE), toml::to_string(&FrameNumbers::from(&frame)).unwrap()).unwrap();
+    std::fs::write(folder.path().join(FRAME_FILE), FrameNumbers::from(&frame).to_string()).unwrap();
     folder
 }
 
