@@ -10,6 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// An instance.
+#[allow(clippy::large_enum_variant)] // one mass is not behind a pointer
 pub enum AnyUnit {
     /// Of one mass.
     One(Unit),

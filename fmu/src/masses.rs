@@ -69,7 +69,7 @@ pub trait Masses: Moves + Default + Serialize + DeserializeOwned {
     fn doubts(structure: &Self::Structure, detail: Detail) -> Vec<String>;
 
     /// The watcher of a motion of which nothing but transitions is `told`.
-    fn listener<'a>(told: &'a mut Told<'_, Self>) -> impl Watch<Self>;
+    fn listener(told: &mut Told<'_, Self>) -> impl Watch<Self>;
 
     /// The watcher of what the motion goes beyond.
     fn watcher(validity: &mut Validity<Self>) -> &mut impl Watch<Self>;
@@ -190,7 +190,7 @@ impl Masses for f64 {
     }
 
     #[inline(always)]
-    fn listener<'a>(told: &'a mut Told<'_, f64>) -> impl Watch {
+    fn listener(told: &mut Told<'_, f64>) -> impl Watch {
         told
     }
 
@@ -317,7 +317,7 @@ impl Masses for Modes {
     }
 
     /// One type for all cases keeps the library small.
-    fn listener<'a>(told: &'a mut Told<'_, Modes>) -> impl Watch<Modes> {
+    fn listener(told: &mut Told<'_, Modes>) -> impl Watch<Modes> {
         Watching { peaks: None, validity: None, told }
     }
 
