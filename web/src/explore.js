@@ -5,16 +5,30 @@
 
   const through = async (bytes, stream) =>
     new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
+  /** The bytes of a gzip stream. */
+  const inflated = (bytes) => through(bytes, new DecompressionStream("gzip"));
   /** The bytes that `text` holds in compressed form, in the letters of base64. */
   const unpacked = (text) =>
-    through(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)), new DecompressionStream("gzip"));
+    inflated(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)));
+  /** The bytes that the element `id` holds in compressed form: a number of zeros at the end, which are none of the bytes, and
+   *  then four bytes in five letters from # to x, which stands for <. */
+  const packedIn = (id) => {
+    const [zeros, text] = [Number(at(id).textContent[0]), at(id).textContent.slice(1)];
+    const bytes = new DataView(new ArrayBuffer((text.length / 5) * 4));
+    for (let i = 0; i < text.length; i += 5) {
+      let number = 0;
+      for (let k = i; k < i + 5; k++) number = number * 85 + (text[k] === "x" ? 25 : text.charCodeAt(k) - 35);
+      bytes.setUint32((i / 5) * 4, number);
+    }
+    return inflated(bytes.buffer.slice(0, bytes.byteLength - zeros));
+  };
 
-  const module = await WebAssembly.compile(await unpacked(at("engine").textContent));
+  const module = await WebAssembly.compile(await packedIn("engine"));
   await wasm_bindgen({ module_or_path: module });
   const tables = JSON.parse(wasm_bindgen.tables());
   tables.numbers = tables.numbers.map(([name, unit, description, usual, slider]) => ({ name, unit, description, usual, slider }));
   const explorer = new wasm_bindgen.Explorer();
-  const elCentro = { name: at("el_centro").dataset.name, bytes: await unpacked(at("el_centro").textContent) };
+  const elCentro = { name: at("el_centro").dataset.name, bytes: await packedIn("el_centro") };
   explorer.take_el_centro(elCentro.name, elCentro.bytes);
 
   // ---- The scene: fields that differ from the defaults, as the text that was given
@@ -667,7 +681,6 @@
 
   function drawExport() {
     const [command, script, toSet] = JSON.parse(explorer.taken_along(text()));
-    at("fmu").parentElement.hidden = isFrame();
     at("link").textContent = location.href;
     if (ground() !== "record") at("carries").textContent = "";
     else if (file.packed) at("carries").textContent = `The scene and its record ${file.name}.`;
@@ -786,7 +799,7 @@
     take(event.dataTransfer.files[0]);
   });
 
-  takeLibraries("FlexibleRocking.fmu", await unpacked(at("packed").textContent));
+  takeLibraries("FlexibleRocking.fmu", await packedIn("packed"));
   update(1e-2); // lays out the page, which shows the scene of the link after it
   await follow();
   open(tab);

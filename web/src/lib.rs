@@ -185,7 +185,8 @@ impl Explorer {
         let fields = Fields::read(fields)?;
         let (structure, ground) = self.load_one(&fields, "the comparison of levels")?;
         let compared = compare(&fields.run(structure, &ground.record)?).map_err(says)?;
-        let advised = compared.recommended(WITHIN, &Criterion::ALL).map(|verdict| verdict.response.choice.detail.name());
+        let advised =
+            compared.recommended(WITHIN, &Criterion::ALL).map(|verdict| verdict.response.choice.detail.name());
         let row = |Verdict { response, errors, .. }: &Verdict| {
             json!({
                 "detail": response.choice.detail.name(), "errors": errors.map(|error| error.to_string()),
@@ -251,7 +252,7 @@ impl Explorer {
     pub fn export(&mut self, fields: &str, fmi: u32) -> Result<Vec<u8>, String> {
         let fields = Fields::read(fields)?;
         let version = if fmi == 3 { Version::Fmi3 } else { Version::Fmi2 };
-        let (structure, ground) = self.load_one(&fields, "the FMU of this page")?;
+        let (structure, ground) = self.load(&fields)?;
         let is_as_read = fields.of_file().all(|key| fields.text(key).is_none());
         let record = match (fields.kind(), &self.files.own) {
             ("free", _) => Vec::new(),
@@ -259,7 +260,6 @@ impl Explorer {
             ("record", Ok(file)) => vec![(file.path.with_extension("csv"), ground.table().into_bytes())],
             _ => vec![(GROUND.into(), ground.table().into_bytes())],
         };
-        let structure = AnyStructure::One(structure);
         let exported = fmu_export::export(version, &ModelName::default(), &structure, record, None, &self.libraries);
         Ok(exported.map_err(says)?.1)
     }

@@ -2,8 +2,6 @@
 //! shows when it opens, and the shared libraries of its FMUs, all compressed.
 
 use anyhow::Context;
-use base64::Engine;
-use base64::prelude::BASE64_STANDARD;
 use flate2::{Compression, write::GzEncoder};
 use std::io::Write;
 use std::path::Path;
@@ -20,7 +18,7 @@ fn main() -> anyhow::Result<()> {
     let packed = |bytes: &[u8]| -> anyhow::Result<String> {
         let mut gzip = GzEncoder::new(Vec::new(), Compression::best());
         gzip.write_all(bytes)?;
-        Ok(BASE64_STANDARD.encode(gzip.finish()?))
+        Ok(letters(&gzip.finish()?))
     };
     let file = |path: &String| packed(&fs::read(path).with_context(|| path.clone())?);
     let name = Path::new(record).file_name().and_then(|name| name.to_str()).context("the record has no name")?;
@@ -41,4 +39,16 @@ fn main() -> anyhow::Result<()> {
     fs::write(page, &html)?;
     println!("{page}: {} kB", html.len() / 1000);
     Ok(())
+}
+
+/// Five letters for each four `bytes`, after the number of zeros that make the last four whole. The 85 letters go from # to x,
+/// without <, which could end the element that holds them.
+fn letters(bytes: &[u8]) -> String {
+    let letter = |digit: u32| char::from(if digit == 25 { b'x' } else { b'#' + digit as u8 });
+    let five = |bytes: &[u8]| {
+        let number = (0..4).fold(0, |number, i| number << 8 | u32::from(bytes.get(i).copied().unwrap_or(0)));
+        (0..5).rev().map(move |power| letter(number / 85_u32.pow(power) % 85))
+    };
+    let zeros = bytes.len().next_multiple_of(4) - bytes.len();
+    zeros.to_string() + &bytes.chunks(4).flat_map(five).collect::<String>()
 }
