@@ -111,7 +111,7 @@ fn scene(rng: &mut Rng) -> (Structure, State, Detail) {
         m0: m * between(rng, 0.0, 1.5),
         J0: if rng.bool() { 0.0 } else { m * B * B * rng.f64() },
         f_fc: log_between(rng, 0.3, 60.0),
-        zeta_fc: [0.0, 0.02, 0.3, 1.0, 1.7, 0.05][rng.usize(0..6)],
+        zeta_fc: [0.0, 0.02, 0.3, 0.7, 0.99, 0.05][rng.usize(0..6)],
         c_ratio: [1.0, 1.0, 0.0, 4.0][rng.usize(0..4)],
         r: between(rng, 0.5, 1.0),
         ..Parameters::MCMANUS
