@@ -191,10 +191,11 @@ impl InputsOf<f64> for Inputs {
     #[inline(always)]
     fn pass(&mut self, load: &LinearLoad, duration: f64, value: Load, ended_early: bool) {
         if !self.ended_early {
-            let is_stair = [0, VERTICAL].into_iter().any(|which| {
+            let is_stair = |which: usize| {
                 let is_held = self.given[which] == Given::Value && self.between[which] == Between::Held;
                 is_held && load.value[which] != self.before.0[which]
-            });
+            };
+            let is_stair = is_stair(0) || is_stair(VERTICAL);
             self.stairs = if is_stair { (self.stairs + 1).min(STAIRS) } else { 0 };
             self.before = (load.value, 0.0);
         }
