@@ -96,15 +96,19 @@ def events(messages: list[Message]) -> list[Event]:
 def simulate(fmu: Fmu, messages: list | None = None, **arguments) -> tuple[np.ndarray, list[Event]]:
     """fmpy.simulate_fmu, with the events that the FMU logged on the way; `messages` takes everything that it logged."""
     messages = [] if messages is None else messages
+    result = simulate_file(fmu.path, messages, **arguments)
+    return result, events(messages)
 
+
+def simulate_file(fmu: str, messages: list, **arguments) -> np.ndarray:
+    """fmpy.simulate_fmu of the file `fmu`, for FMI 2.0; `messages` takes everything that it logged."""
     def logger(_environment, _name, status, category, text):
         messages.append(Message(status, category.decode(), text.decode()))
 
     try:
-        result = fmpy.simulate_fmu(fmu.path, logger=logger, debug_logging=True, **arguments)
+        return fmpy.simulate_fmu(fmu, logger=logger, debug_logging=True, **arguments)
     finally:
         _callbacks()  # `logger` will be gone when a run without one logs
-    return result, events(messages)
 
 
 # fmpy knows one logger per process, the last one given to it: one for all instances, which tells them apart by name. Runs of

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from first_run import RECORD
-from host import PHASES
+from host import PHASES, simulate_file
 from reference import EVISON, MCMANUS, Structure
 
 LEVELS = ("auto", "nonlinear", "linear", "modal", "rigid", "fixed_base")
@@ -175,10 +175,11 @@ def co_simulation(fmu: Path, scene: Scene) -> dict:
     values |= dict(peaks=True, validity=True, detail=1 + LEVELS.index(scene.how.get("detail", "auto")))
     names = {variable.name for variable in fmpy.read_model_description(str(fmu)).modelVariables}
     peaks = {name.removeprefix("t_") for name in names if re.fullmatch("t_.*_max|t_mu_.*|t_R_v_min|t_tension_impact|t_weight_min", name)}
-    asked, said = [*peaks, *(f"t_{name}" for name in peaks), "transitions", "phase", "t_overturned"], []
-    rows = fmpy.simulate_fmu(str(fmu), start_time=scene.start, stop_time=until, output_interval=until - scene.start, start_values=values,
-                             relative_tolerance=scene.how.get("tolerance", 1e-9), output=asked, record_events=False,
-                             fmi_type="CoSimulation", debug_logging=True, logger=lambda *message: said.append(message[-1].decode()))
+    asked, messages = [*peaks, *(f"t_{name}" for name in peaks), "transitions", "phase", "t_overturned"], []
+    rows = simulate_file(str(fmu), messages, start_time=scene.start, stop_time=until, output_interval=until - scene.start,
+                         start_values=values, relative_tolerance=scene.how.get("tolerance", 1e-9), output=asked, record_events=False,
+                         fmi_type="CoSimulation")
+    said = [message.text for message in messages]
     last = rows[-1]
     end = last["t_overturned"] if last["phase"] == PHASES["overturned"] else last["time"]
     found = {name if name in VALIDITY else name.removesuffix("_max"): (last[name], last[f"t_{name}"]) for name in peaks}
