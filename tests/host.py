@@ -101,8 +101,9 @@ def simulate(fmu: Fmu, messages: list | None = None, **arguments) -> tuple[np.nd
 
 
 def simulate_file(fmu: str, messages: list, **arguments) -> np.ndarray:
-    """fmpy.simulate_fmu of the file `fmu`, for FMI 2.0; `messages` takes everything that it logged."""
-    def logger(_environment, _name, status, category, text):
+    """fmpy.simulate_fmu of the file `fmu`; `messages` takes everything that it logged."""
+    def logger(*message):
+        status, category, text = message[-3:]  # FMI 2.0 gives the name of the instance before
         messages.append(Message(status, category.decode(), text.decode()))
 
     try:
