@@ -2,6 +2,8 @@
 
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
+use rocking::run::peaks::Peak;
+use rocking::run::profile::{Peaking, Profile};
 use rocking::run::record::Record;
 use rocking::run::validity::{ASSUMPTIONS, EDGE_LOAD, FRICTION, Findings, Limits, TENSION};
 use rocking::run::{End, Run};
@@ -60,13 +62,20 @@ fn the_profile_of_one_mode_has_the_peaks_of_one_mass() {
                 (found.of(FrameOutput::V_t).unwrap(), expected.V_t()),
                 (found.of(FrameOutput::M_t).unwrap(), expected.M_t()),
             ];
-            for (i, (found, expected)) in pairs.into_iter().enumerate() {
+            let of_tendon = tendon(&found).map(|found| (found, expected.P_t()));
+            assert_eq!(of_tendon.is_some(), parameters == tied);
+            for (i, (found, expected)) in pairs.into_iter().chain(of_tendon).enumerate() {
                 let off = (found.magnitude / expected.magnitude - 1.0).abs();
                 assert!(off < 1e-13, "{detail:?} {i}: {found:?} and not {expected:?}, off by {off:e}");
                 assert!((found.time - expected.time).abs() < 1e-6, "{detail:?} {i}: {found:?}, {expected:?}");
             }
         }
     }
+}
+
+/// Peak of the tendon's force.
+fn tendon(found: &Profile) -> Option<Peak> {
+    found.peaks().find(|(of, _)| *of == Peaking::Tendon).map(|(_, peak)| peak)
 }
 
 fn assert_same_findings(expected: &Findings, found: &Findings) {
@@ -80,24 +89,26 @@ fn assert_same_findings(expected: &Findings, found: &Findings) {
     }
 }
 
-/// Three storeys with as many modes as are `kept`: the rest rides rigidly, so that accelerations follow the ground directly.
-fn three_storeys(kept: usize) -> Frame {
+/// Three storeys, held down by a tendon of this prestress (N) and stiffness (N/m).
+fn three_storeys(P_0: f64, k_t: f64) -> Frame {
     let storeys = [(40e3, 3.5, 60e6), (40e3, 7.0, 50e6), (30e3, 10.5, 40e6)].map(|(m, h, k)| Storey { m, h, k });
-    let parameters = Parameters { m0: 20e3, B: 1.5, J0: 3e4, r: 0.93, g: 9.81, c_ratio: 1.0, ..Parameters::MCMANUS };
-    let frame = Frame::from_storeys(&base(&parameters), &Damping::All(0.02), &storeys).unwrap();
-    frame.keeping(kept).unwrap()
+    let parameters =
+        Parameters { m0: 20e3, B: 1.5, J0: 3e4, r: 0.93, g: 9.81, c_ratio: 1.0, P_0, k_t, ..Parameters::MCMANUS };
+    Frame::from_storeys(&base(&parameters), &Damping::All(0.02), &storeys).unwrap()
 }
 
-/// The samples are 50 µs apart. They miss a peak just before a transition by the rate there.
+/// The samples are 50 µs apart. They miss a peak just before a transition by the rate there. Modes that are left out ride rigidly, so
+/// that accelerations follow the ground directly.
 #[test]
 fn a_profile_holds_every_sample_and_no_more() {
     let ground = ground();
     for modes in 0..=3 {
-        let frame = three_storeys(modes);
+        let frame = three_storeys(0.0, 0.0).keeping(modes).unwrap();
         let run = Run { end: End::At(4.0), ..Run::of_modes(frame.clone(), &ground) };
         let (profile, finish) = run.profile().unwrap();
         assert!(finish.motion.transitions > 2, "{}", finish.motion.transitions);
-        let peaks = Vec::from_iter(profile.peaks());
+        let outputs = FrameOutput::all(&frame).filter_map(|output| Some((output, profile.of(output)?)));
+        let peaks = Vec::from_iter(outputs);
         let limits = Limits { friction: 0.15, ..Limits::default() };
         let worst = run.validity(limits).unwrap().0.worst;
         let mut largest = vec![0.0_f64; peaks.len()];
@@ -132,5 +143,33 @@ fn a_profile_holds_every_sample_and_no_more() {
         }
         let found = worst[FRICTION].beyond;
         assert!(found > 0.1 && (found - beyond).abs() < 1e-3, "{modes}: {found} s, sampled {beyond} s");
+    }
+}
+
+/// The samples are 50 µs apart. A constant force has its peak at the start.
+#[test]
+fn the_peak_of_the_tendon_holds_every_sample_and_no_more() {
+    let ground = ground();
+    for (k_t, detail) in [(2e6, Detail::Auto), (2e6, Detail::Linear), (2e6, Detail::Rigid), (0.0, Detail::Auto)] {
+        let run = Run { detail, end: End::At(4.0), ..Run::of_modes(three_storeys(1e5, k_t), &ground) };
+        let (peak, mut largest) = (tendon(&run.profile().unwrap().0).unwrap(), (0.0, 0.0));
+        let times = (0..80_000).map(|i| f64::from(i) * 5e-5);
+        run.sample(
+            times,
+            |sample| {
+                let P_t = sample.restraints().P_t;
+                if P_t > largest.0 {
+                    largest = (P_t, sample.motion.time);
+                }
+            },
+            &mut (),
+        )
+        .unwrap();
+        assert!(
+            peak.magnitude >= largest.0 && peak.magnitude < largest.0 * (1.0 + 1e-6),
+            "{peak:?}, sampled {largest:?}"
+        );
+        assert!((peak.time - largest.1).abs() <= 5e-5, "{peak:?}, sampled {largest:?}");
+        assert_eq!(peak.magnitude > 1.1e5, k_t > 0.0, "{peak:?}");
     }
 }

@@ -1,6 +1,8 @@
 """The FMU of a structure of many masses in fmpy, against independent integrations and against the FMU of one mass."""
 
+import json
 import subprocess
+from pathlib import Path
 
 import fmpy
 import frames_reference
@@ -62,6 +64,45 @@ def test_floors_move_as_the_physical_equations_say(export_frame, fmi, kind, tied
     expected = np.column_stack([exact.theta, exact.u, exact.a]).T
     for name, column in zip(["theta", *floors("u", "a_t")], expected, strict=True):
         np.testing.assert_allclose(found[name], column, rtol=0, atol=limit * np.abs(column).max(), err_msg=name)
+
+
+def simulated(exporter, fmu, *options):
+    """What the command line prints of the structure and the records of `fmu`; its files are in the same folder."""
+    folder = Path(fmu.path).parent
+    records = [f"--{path.stem}={path}" for path in folder.glob("record*.csv")]
+    command = [exporter, "--quiet", "simulate", "--parameters", folder / "frame.toml", *records, "--format", "json", *options]
+    return json.loads(subprocess.run(command, cwd=folder, check=True, capture_output=True).stdout)
+
+
+@pytest.mark.parametrize("ties", [Ties(), Ties(P_0=2e5, k_t=1e4, xi_d=1.2, c_d=1e4, k_d=1e6, F_y=1e4)], ids=["free", "tied"])
+def test_a_frame_that_overturns_has_the_peaks_of_the_librarys_run(exporter, export_frame, ties):
+    """To the bit, with their instants: the fall is left out."""
+    time = 0.01 * np.arange(301)
+    fmu = export_frame(ties=ties, time=time, a_g=np.where(time < 1.6, 7.0 * np.sin(2 * np.pi * time / 1.6), 0.0))
+    told = simulated(exporter, fmu)
+    assert told["overturned"] and told["fall"] < told["end"] - 1
+    peaks = {of["name"].replace("[", "_max[") if "[" in of["name"] else of["name"] + "_max": of for of in told["peaks"][1:]}
+    assert ("P_t_max" in peaks) == (ties.P_0 > 0) and len(peaks) > 20
+    found = fmpy.simulate_fmu(fmu.path, stop_time=20.0, output_interval=20.0, start_values={"peaks": True}, relative_tolerance=1e-9,
+                              output=[*peaks, *(f"t_{name}" for name in peaks)])[-1]
+    assert {name: (found[name], found[f"t_{name}"]) for name in peaks} == {name: (of["peak"], of["time"]) for name, of in peaks.items()}
+
+
+@pytest.mark.parametrize("tied", [False, True], ids=["free", "tied"])
+def test_outputs_at_the_samples_are_those_of_the_librarys_run(exporter, export_frame, tied):
+    """To 1e-12 of the peak of each, up to the last sample, at which the ground stops."""
+    frame, dt, a_g, a_v, ties = scene("frame", "El Centro", tied)
+    time = dt * np.arange(len(a_g))
+    fmu = export_frame(frame, ties, time, a_g, a_v if tied else None)
+    simulated(exporter, fmu, f"--duration={time[-1]}", "-o", "response.csv")
+    expected = np.genfromtxt(Path(fmu.path).parent / "response.csv", delimiter=",", names=True, deletechars="", replace_space=" ")
+    columns = {name.rpartition("[")[0]: name for name in expected.dtype.names}
+    columns = {of.variable.name: columns[of.variable.name] for of in fmu.description.outputs if not of.variable.name.startswith("I_")}
+    found = fmpy.simulate_fmu(fmu.path, stop_time=time[-1], output_interval=dt, output=list(columns), relative_tolerance=1e-9)
+    found = found[np.searchsorted(found["time"], time[:-1] - 1e-9)]
+    for name, column in columns.items():
+        values = expected[column][:-1]
+        np.testing.assert_allclose(found[name], values, rtol=0, atol=1e-12 * np.abs(values).max(), err_msg=name)
 
 
 def test_peaks_of_floors_are_exact(export_frame):

@@ -6,7 +6,7 @@ use fmi_unit::{Causality, Variable};
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::profile::Profile;
 use rocking::structure::any::{OF_FRAME, OF_MODE};
-use rocking::{Frame, FrameOutput};
+use rocking::{Detail, Frame, FrameOutput};
 use std::collections::HashSet;
 
 /// The rows of `frame`, made with the rows of `one_mass`.
@@ -113,20 +113,20 @@ fn states(frame: &Frame) -> Vec<Row> {
 
 /// Largest magnitudes and their instants.
 fn peaks(frame: &Frame) -> Vec<Row> {
-    let profile = Profile::since(0.0, frame);
-    let rows =
-        FrameOutput::all(frame).enumerate().filter(|(_, of)| profile.of(*of).is_some()).flat_map(|(place, of)| {
-            let (symbol, name) = (of.symbol(), of.name());
-            let peak = name.replacen(symbol, &format!("{symbol}_max"), 1);
-            let magnitude = format!(
-                "largest |{name}| since startTime, a fall included, exact: within steps, too; NaN unless peaks is true"
-            );
-            let instant = format!("first instant of {peak}; NaN unless peaks is true");
-            [
-                (Variable::real(Causality::Local, peak.clone(), of.unit(), magnitude), Source::FloorPeak(place)),
-                (Variable::real(Causality::Local, format!("t_{peak}"), "s", instant), Source::FloorPeakInstant(place)),
-            ]
-        });
+    let profile = Profile::since(0.0, frame, Detail::Auto);
+    let rows = profile.peaks().enumerate().flat_map(|(place, (of, _))| {
+        let (symbol, name) = (of.symbol(), of.name());
+        let peak = name.replacen(symbol, &format!("{symbol}_max"), 1);
+        let magnitude = format!(
+            "largest |{name}| since startTime, exact: within steps, too; if the structure overturns, before its fall; NaN unless \
+             peaks is true"
+        );
+        let instant = format!("first instant of {peak}; NaN unless peaks is true");
+        [
+            (Variable::real(Causality::Local, peak.clone(), of.unit(), magnitude), Source::FloorPeak(place)),
+            (Variable::real(Causality::Local, format!("t_{peak}"), "s", instant), Source::FloorPeakInstant(place)),
+        ]
+    });
     rows.collect()
 }
 

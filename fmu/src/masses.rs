@@ -10,27 +10,21 @@ use crate::unit::Unit;
 use crate::variables::Source;
 use fmi_unit::sensitivity::along;
 use fmi_unit::{Failure, Model};
-use rocking::engine::Moves;
-use rocking::run::fall::{FallWatch, FallingPeaks};
+use rocking::run::fall::{FallingProfile, Peaked};
 use rocking::run::peaks::Peak;
-use rocking::run::profile::Profile;
 use rocking::run::validity::{self, Validity};
 use rocking::structure::any::AnyStructure;
-use rocking::{Detail, Engine, Frame, FrameOutput, Load, Modes, Outputs, Piece, State, Structure, Transition, Watch};
+use rocking::{Detail, Engine, Frame, FrameOutput, Load, Modes, Outputs, State, Structure, Transition, Watch};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::fmt::Debug;
 
 /// Lateral coordinates of the structures that a unit can move.
-pub trait Masses: Moves + Default + Serialize + DeserializeOwned {
+pub trait Masses: Peaked<Peaks: Serialize + DeserializeOwned> + Default + Serialize + DeserializeOwned {
     /// The inputs.
     type Inputs: InputsOf<Self>;
 
     /// The outputs that are computed together.
     type Outputs: Copy;
-
-    /// The peaks that are watched.
-    type Peaks: PeaksOf<Self>;
 
     /// Inputs that are 0.
     fn inputs(contents: &Contents) -> Self::Inputs;
@@ -86,43 +80,9 @@ pub trait Masses: Moves + Default + Serialize + DeserializeOwned {
     ) -> Result<Vec<f64>, Failure>;
 }
 
-/// The peaks of a motion.
-pub trait PeaksOf<Q: Moves>: Clone + Debug + Serialize + DeserializeOwned {
-    /// Looks for peaks.
-    type Watch<'a>: Watch<Q>
-    where
-        Self: 'a;
-
-    /// Peaks of `structure` before any motion.
-    fn since(setup: &Setup, structure: &Q::Structure) -> Self;
-
-    /// Looks for peaks. They are complete when the watch is dropped.
-    fn watch(&mut self) -> Self::Watch<'_>;
-
-    /// The start of the fall of a structure that has overturned, s, if the peaks end there.
-    fn fall(&self) -> Option<f64>;
-}
-
-impl PeaksOf<f64> for FallingPeaks {
-    type Watch<'a> = FallWatch<'a>;
-
-    fn since(setup: &Setup, structure: &Structure) -> FallingPeaks {
-        FallingPeaks::since(setup.start_time, structure, setup.detail)
-    }
-
-    fn watch(&mut self) -> FallWatch<'_> {
-        self.watch()
-    }
-
-    fn fall(&self) -> Option<f64> {
-        self.fall()
-    }
-}
-
 impl Masses for f64 {
     type Inputs = Inputs;
     type Outputs = Outputs;
-    type Peaks = FallingPeaks;
 
     fn inputs(_: &Contents) -> Inputs {
         Inputs::default()
@@ -212,37 +172,9 @@ impl Masses for f64 {
     }
 }
 
-/// Looks for the peaks of floors.
-pub struct ProfileWatch<'a>(&'a mut Profile);
-
-impl Watch<Modes> for ProfileWatch<'_> {
-    const SEES_PIECES: bool = true;
-
-    fn piece(&mut self, piece: &Piece<Modes>) {
-        self.0.piece(piece);
-    }
-}
-
-impl PeaksOf<Modes> for Profile {
-    type Watch<'a> = ProfileWatch<'a>;
-
-    fn since(setup: &Setup, frame: &Frame) -> Profile {
-        Profile::since(setup.start_time, frame)
-    }
-
-    fn watch(&mut self) -> ProfileWatch<'_> {
-        ProfileWatch(self)
-    }
-
-    fn fall(&self) -> Option<f64> {
-        None
-    }
-}
-
 impl Masses for Modes {
     type Inputs = FloorInputs;
     type Outputs = ();
-    type Peaks = Profile;
 
     fn inputs(contents: &Contents) -> FloorInputs {
         FloorInputs::new(frame(contents).floors().len())
@@ -264,22 +196,26 @@ impl Masses for Modes {
 
     fn own(source: Source, shown: &Shown<Modes>) -> Option<f64> {
         let &Shown { scene, setup, load, .. } = shown;
-        let output = |place| output(&scene.engine, place);
         let peak = |place| {
-            let of = output(place);
             if !setup.peaks || scene.is_integrated_outside() {
-                return None;
+                return Peak { magnitude: f64::NAN, time: f64::NAN };
             }
-            let now = || Peak { magnitude: shown.sample().output(of).abs(), time: setup.start_time };
-            if scene.is_at_start(load) { Some(now()) } else { scene.peaks.of(of) }
+            let of =
+                |peaks: &FallingProfile| peaks.peaks().peaks().nth(place).expect("the table is of this structure").1;
+            if !scene.is_at_start(load) {
+                return of(&scene.peaks);
+            }
+            let mut peaks = scene.peaks.clone();
+            peaks.see_instant(shown.sample());
+            of(&peaks)
         };
         let component = |state, which: usize| Modes::components(state, scene.lateral)[which];
         Some(match source {
-            Source::Floor(place) => shown.sample().output(output(place)),
+            Source::Floor(place) => shown.sample().output(output(&scene.engine, place)),
             Source::Coordinate(which) => component(&scene.engine.motion().state, which),
             Source::StateRate(which) => component(shown.state_rates(), which),
-            Source::FloorPeak(place) => peak(place).map_or(f64::NAN, |peak| peak.magnitude),
-            Source::FloorPeakInstant(place) => peak(place).map_or(f64::NAN, |peak| peak.time),
+            Source::FloorPeak(place) => peak(place).magnitude,
+            Source::FloorPeakInstant(place) => peak(place).time,
             Source::Known(value) => value,
             _ => return None,
         })

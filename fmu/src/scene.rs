@@ -4,12 +4,12 @@
 use crate::advance::{Told, Watching};
 use crate::failure::Refusal;
 use crate::ground::{Digest, GroundRecord};
-use crate::masses::{Masses, PeaksOf};
+use crate::masses::Masses;
 use crate::resources::Contents;
 use crate::setup::Setup;
 use rocking::engine::Settings;
 use rocking::mechanics::load::{LOADS, VERTICAL};
-use rocking::run::fall::FallingPeaks;
+use rocking::run::fall::{Falling, FallingPeaks};
 use rocking::run::ground_motion::{Elapsed, Placement};
 use rocking::run::outside_step::Checkpoint;
 use rocking::run::record::Record;
@@ -29,7 +29,7 @@ pub struct Scene<Q: Masses = f64> {
     pub elapsed: Elapsed,
     /// If the host integrates: the engine is then where the host is.
     pub outside: Option<Outside<Q>>,
-    pub peaks: Q::Peaks,
+    pub peaks: Falling<Q::Peaks>,
     pub validity: Findings,
     /// How many lateral coordinates the table has.
     pub lateral: usize,
@@ -75,7 +75,7 @@ impl<Q: Masses> Scene<Q> {
         let g = setup.g(contents);
         let ground = source.as_deref().map(|source| setup.scaled(source, g)).transpose()?;
         let engine = setup.engine::<Q>(contents, may_move_vertically(setup, ground.as_ref()))?;
-        let peaks = Q::Peaks::since(setup, engine.structure());
+        let peaks = Q::since(setup.start_time, engine.structure(), setup.detail);
         let (validity, lateral) = (Findings::since(setup.start_time), Q::lateral(contents));
         Ok(Scene { engine, source, ground, elapsed: Elapsed::default(), outside: None, peaks, validity, lateral })
     }

@@ -4,7 +4,7 @@ use crate::advance::Told;
 use crate::failure::Refusal;
 use crate::ground::{Digest, Kept};
 use crate::inputs::InputsOf;
-use crate::masses::{Masses, PeaksOf};
+use crate::masses::Masses;
 use crate::motion_log::{log, warn, warn_of_stairs};
 use crate::resources::{Archive, Contents};
 use crate::scene::{Outside, Scene};
@@ -16,6 +16,7 @@ use fmi_unit::snapshot::write_state;
 use fmi_unit::variables::state_references;
 use fmi_unit::{Completed, Experiment, Failure, Interface, Logger, Model, Progress, Step, Update, Value, Variable};
 use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::run::fall::Falling;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::validity::Findings;
 use rocking::structure::any::AnyStructure;
@@ -62,7 +63,7 @@ pub struct Course<Q: Masses = f64> {
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     /// Peaks so far, if they are watched.
-    pub peaks: Q::Peaks,
+    pub peaks: Falling<Q::Peaks>,
     /// Which limits of the model have been passed so far, if they are watched.
     pub validity: Findings,
     /// Names the record that the ground follows.

@@ -51,7 +51,7 @@ pub enum Source {
     /// A ground acceleration, the input and the record; whether it is the vertical one.
     Ground(bool),
     Peak(fn(&Peaks) -> f64),
-    /// The peak of an output of many masses, by the place of the output.
+    /// A peak of many masses, by its place in [`Profile::peaks`](rocking::run::profile::Profile::peaks).
     FloorPeak(usize),
     FloorPeakInstant(usize),
     /// The worst value of one of [`ASSUMPTIONS`].

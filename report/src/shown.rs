@@ -148,7 +148,7 @@ impl Shown for Modes {
     }
 
     fn peaks(_: &Frame, peaks: &Profile) -> Vec<(Named, Peak)> {
-        peaks.peaks().map(|(output, peak)| ((output.name(), output.unit()), peak)).collect()
+        peaks.peaks().map(|(of, peak)| ((of.name(), of.unit()), peak)).collect()
     }
 
     fn evaluations(_: &Profile) -> Option<u64> {

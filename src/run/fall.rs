@@ -3,9 +3,9 @@
 
 use super::peaks::{Peak, PeakWatch, Peaks};
 use super::profile::Profile;
-use super::{Ending, Finish, Run, RunError};
+use super::{Finish, Run, RunError};
 use crate::engine::Moves;
-use crate::engine::piece::Expansion;
+use crate::engine::piece::{Expansion, Sample};
 #[cfg(feature = "lanes")]
 use crate::levels::shown::Searched;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint, sum, ties};
@@ -23,13 +23,15 @@ pub trait Peaked: Moves {
     /// Exact peaks of a motion.
     type Peaks: Clone + std::fmt::Debug;
 
-    /// Follows `run` to the end, which `watch` sees, too. Returns the peaks before the fall and of all the motion, the start of the
-    /// fall, and the end.
-    #[doc(hidden)]
-    fn followed(run: &Run<Self>, watch: &mut impl Watch<Self>) -> Result<Followed<Self>, RunError>;
-}
+    /// Looks for the peaks of a motion that may end in a fall.
+    type Watcher<'a>: Watch<Self>;
 
-type Followed<Q> = ([<Q as Peaked>::Peaks; 2], Option<f64>, Finish<Q>);
+    /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion.
+    fn since(time: f64, structure: &Self::Structure, detail: Detail) -> Falling<Self::Peaks>;
+
+    /// Looks for peaks in the pieces of a motion. The peaks are complete when the watcher is dropped.
+    fn watch(peaks: &mut Falling<Self::Peaks>) -> Self::Watcher<'_>;
+}
 
 /// Result of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,18 +50,24 @@ pub struct Found<Q: Peaked = f64> {
 
 /// Exact peaks of a motion that may end in a fall: those of all the motion, and those before the fall.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FallingPeaks {
+pub struct Falling<Peaks> {
     all: Peaks,
     /// Angle of no return, rad; none below π/2 if the tendon turns the structure back from everywhere.
     no_return: Option<f64>,
     /// The last passing of the angle of no return, while |θ| is beyond.
-    fall: Option<Fall>,
+    fall: Option<Fall<Peaks>>,
     has_overturned: bool,
 }
 
+/// Peaks of one mass.
+pub type FallingPeaks = Falling<Peaks>;
+
+/// Peaks of many masses.
+pub type FallingProfile = Falling<Profile>;
+
 /// A passing of the angle of no return.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Fall {
+struct Fall<Peaks> {
     /// Instant of the passing, s.
     instant: f64,
     /// Peaks until then.
@@ -98,11 +106,9 @@ fn no_return_of_many(frame: &Frame) -> Option<f64> {
     })
 }
 
-impl FallingPeaks {
-    /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion.
-    pub fn since(time: f64, structure: &Structure, detail: Detail) -> FallingPeaks {
-        let (all, no_return) = (Peaks::since(time, structure, detail), angle_of_no_return(structure));
-        FallingPeaks { all, no_return, fall: None, has_overturned: false }
+impl<Peaks> Falling<Peaks> {
+    fn new(all: Peaks, no_return: Option<f64>) -> Falling<Peaks> {
+        Falling { all, no_return, fall: None, has_overturned: false }
     }
 
     /// Peaks of all the motion, including a fall.
@@ -120,8 +126,15 @@ impl FallingPeaks {
         self.passing().map(|fall| fall.instant)
     }
 
-    fn passing(&self) -> Option<&Fall> {
+    fn passing(&self) -> Option<&Fall<Peaks>> {
         self.fall.as_ref().filter(|_| self.has_overturned)
+    }
+}
+
+impl FallingPeaks {
+    /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion.
+    pub fn since(time: f64, structure: &Structure, detail: Detail) -> FallingPeaks {
+        Falling::new(Peaks::since(time, structure, detail), angle_of_no_return(structure))
     }
 
     /// Adds the `outputs` at `time` (s), which need not be in a piece.
@@ -141,7 +154,7 @@ impl FallingPeaks {
 pub struct FallWatch<'a> {
     all: PeakWatch<'a>,
     no_return: Option<f64>,
-    fall: &'a mut Option<Fall>,
+    fall: &'a mut Option<Fall<Peaks>>,
     has_overturned: &'a mut bool,
 }
 
@@ -236,31 +249,14 @@ fn last_passing<Q: Moves>(angle: f64, side: f64, expansion: &Expansion<Q>) -> Op
     }
 }
 
-/// Exact peaks of a structure of many masses that may fall.
-#[derive(Clone, Debug)]
-pub struct FallingProfile {
-    all: Profile,
-    no_return: Option<f64>,
-    /// The last passing of the angle of no return while |θ| is beyond, s, and the peaks until then.
-    fall: Option<(f64, Profile)>,
-}
-
 impl FallingProfile {
-    /// Peaks of `frame` from `time` (s) on, before any motion.
-    pub(super) fn since(time: f64, frame: &Frame) -> FallingProfile {
-        FallingProfile { all: Profile::since(time, frame), no_return: no_return_of_many(frame), fall: None }
-    }
-
-    /// The peaks before the fall and of all the motion, and the start of the fall, s, of a run with this `ending`.
-    pub(super) fn end(self, ending: Ending) -> ([Profile; 2], Option<f64>) {
-        match self.fall.filter(|_| ending == Ending::Overturned) {
-            Some((instant, before)) => ([before, self.all], Some(instant)),
-            None => ([self.all.clone(), self.all], None),
-        }
+    /// Adds the values of `sample`, which need not be in a piece.
+    pub fn see_instant(&mut self, sample: &Sample<Modes>) {
+        self.all.see_instant(sample);
     }
 }
 
-impl Watch<Modes> for FallingProfile {
+impl Watch<Modes> for &mut FallingProfile {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &Piece<Modes>) {
@@ -270,7 +266,7 @@ impl Watch<Modes> for FallingProfile {
                     let mut before = self.all.clone();
                     let arc = piece.arc.map(|arc| Arc { reach: tau / arc.span, ..arc.clone() });
                     before.piece(&Piece { duration: tau, end: piece.state_at(tau), arc: arc.as_ref(), ..*piece });
-                    self.fall = Some((instant, before));
+                    self.fall = Some(Fall { instant, before });
                 }
             }
             _ => self.fall = None,
@@ -280,29 +276,36 @@ impl Watch<Modes> for FallingProfile {
 
     fn transition(&mut self, transition: &Transition<Modes>) {
         if let TransitionKind::Overturning(_) = transition.kind {
-            self.fall.get_or_insert_with(|| (transition.time, self.all.clone()));
+            self.has_overturned = true;
+            let FallingProfile { all, fall, .. } = &mut **self;
+            fall.get_or_insert_with(|| Fall { instant: transition.time, before: all.clone() });
         }
     }
 }
 
 impl Peaked for f64 {
     type Peaks = Peaks;
+    type Watcher<'a> = FallWatch<'a>;
 
-    fn followed(run: &Run, watch: &mut impl Watch) -> Result<Followed<f64>, RunError> {
-        let mut peaks = FallingPeaks::since(run.ground.start(), &run.structure, run.detail);
-        let finish = run.follow(&mut (&mut peaks.watch(), watch))?;
-        Ok(([*peaks.peaks(), *peaks.all()], peaks.fall(), finish))
+    fn since(time: f64, structure: &Structure, detail: Detail) -> FallingPeaks {
+        FallingPeaks::since(time, structure, detail)
+    }
+
+    fn watch(peaks: &mut FallingPeaks) -> FallWatch<'_> {
+        peaks.watch()
     }
 }
 
 impl Peaked for Modes {
     type Peaks = Profile;
+    type Watcher<'a> = &'a mut FallingProfile;
 
-    fn followed(run: &Run<Modes>, watch: &mut impl Watch<Modes>) -> Result<Followed<Modes>, RunError> {
-        let mut peaks = FallingProfile::since(run.ground.start(), run.start()?.structure());
-        let finish = run.follow(&mut (&mut peaks, watch))?;
-        let (peaks, fall) = peaks.end(finish.ending);
-        Ok((peaks, fall, finish))
+    fn since(time: f64, structure: &Frame, detail: Detail) -> FallingProfile {
+        Falling::new(Profile::since(time, structure, detail), no_return_of_many(structure))
+    }
+
+    fn watch(peaks: &mut FallingProfile) -> &mut FallingProfile {
+        peaks
     }
 }
 
@@ -314,8 +317,9 @@ impl<Q: Peaked> Run<'_, Q> {
 
     /// Result of the run, and the peaks of all its motion, including a fall.
     pub(super) fn found_and_all(&self, watch: &mut impl Watch<Q>) -> Result<(Found<Q>, Q::Peaks), RunError> {
-        let ([peaks, all], fall, finish) = Q::followed(self, watch)?;
-        Ok((self.found_of(peaks, fall, finish), all))
+        let mut peaks = Q::since(self.ground.start(), &self.structure, self.detail);
+        let finish = self.follow(&mut (&mut Q::watch(&mut peaks), watch))?;
+        Ok((self.found_of(peaks.peaks().clone(), peaks.fall(), finish), peaks.all))
     }
 
     /// Result of the run with these `peaks`, the start of the `fall` and the `finish`.
@@ -344,9 +348,9 @@ impl<Q: Peaked> Run<'_, Q> {
 mod tests {
     use super::*;
     use crate::estimates::restoring;
-    use crate::run::End;
     use crate::run::peaks::PEAKS;
     use crate::run::record::Record;
+    use crate::run::{End, Ending};
     use crate::{Parameters, State};
     use std::f64::consts::TAU;
 

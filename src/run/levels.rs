@@ -2,10 +2,10 @@
 //!
 //! A level of a structure of many masses is also the number of modes that are kept ([`Frame::keeping`]).
 
-use super::fall::{FallWatch, FallingPeaks, FallingProfile, Peaked};
+use super::fall::{FallWatch, Falling, Peaked};
 use super::history::{Distance, History};
 use super::peaks::Peaks;
-use super::profile::{Over, Profile};
+use super::profile::{Over, Peaking, Profile};
 use super::{Ending, Follower, Run, RunError};
 use crate::engine::motion::Work;
 use crate::engine::piece::{CONVERGED, Expansion, FINEST_PART};
@@ -15,7 +15,7 @@ use crate::mechanics::outputs::Measure;
 use crate::run::ground_motion::Segment;
 use crate::series::taylor::{Arc, Series};
 use crate::structure::Mode;
-use crate::{Detail, Frame, FrameOutput, Modes, State, Structure, Watch};
+use crate::{Detail, Frame, FrameOutput, Modes, State, Structure};
 use std::fmt;
 
 /// Tolerance of the run that all others are measured by.
@@ -100,21 +100,11 @@ const KINDS: usize = 3;
 /// Lateral coordinates of structures whose levels of detail are compared.
 #[allow(private_interfaces)] // an expansion and its series are the library's own
 pub trait Compared: Peaked {
-    /// Peaks of a motion that may end in a fall.
-    type Falling;
-    /// Looks for such peaks.
-    type Watcher<'a>: Watch<Self>;
     /// A series for each compared quantity.
     type Histories: AsRef<[Series]> + Clone + fmt::Debug;
 
-    /// The peaks before any motion.
-    fn since(time: f64, structure: &Self::Structure, detail: Detail) -> Self::Falling;
-
-    /// Looks for the peaks.
-    fn watcher(peaks: &mut Self::Falling) -> Self::Watcher<'_>;
-
-    /// The peaks before a fall and of all the motion, of a run with this `ending`.
-    fn seen(watcher: Self::Watcher<'_>, ending: Ending) -> [Self::Peaks; 2];
+    /// The peaks that `watcher` has found.
+    fn seen(watcher: Self::Watcher<'_>) -> Falling<Self::Peaks>;
 
     /// The kind of each compared quantity.
     fn kinds(structure: &Self::Structure) -> Vec<usize>;
@@ -135,21 +125,10 @@ pub trait Compared: Peaked {
 
 #[allow(private_interfaces)]
 impl Compared for f64 {
-    type Falling = FallingPeaks;
-    type Watcher<'a> = FallWatch<'a>;
     type Histories = [Series; KINDS];
 
-    fn since(time: f64, structure: &Structure, detail: Detail) -> FallingPeaks {
-        FallingPeaks::since(time, structure, detail)
-    }
-
-    fn watcher(peaks: &mut FallingPeaks) -> FallWatch<'_> {
-        peaks.watch()
-    }
-
-    fn seen(watcher: FallWatch<'_>, _: Ending) -> [Peaks; 2] {
-        let peaks = watcher.end();
-        [*peaks.peaks(), *peaks.all()]
+    fn seen(watcher: FallWatch<'_>) -> Falling<Peaks> {
+        watcher.end()
     }
 
     fn kinds(_: &Structure) -> Vec<usize> {
@@ -178,20 +157,10 @@ impl Compared for f64 {
 
 #[allow(private_interfaces)]
 impl Compared for Modes {
-    type Falling = FallingProfile;
-    type Watcher<'a> = FallingProfile;
     type Histories = Vec<Series>;
 
-    fn since(time: f64, structure: &Frame, _: Detail) -> FallingProfile {
-        FallingProfile::since(time, structure)
-    }
-
-    fn watcher(peaks: &mut FallingProfile) -> FallingProfile {
-        peaks.clone()
-    }
-
-    fn seen(watcher: FallingProfile, ending: Ending) -> [Profile; 2] {
-        watcher.end(ending).0
+    fn seen(watcher: &mut Falling<Profile>) -> Falling<Profile> {
+        watcher.clone()
     }
 
     fn kinds(structure: &Frame) -> Vec<usize> {
@@ -199,7 +168,8 @@ impl Compared for Modes {
     }
 
     fn magnitudes(peaks: &Profile) -> Vec<f64> {
-        peaks.peaks().filter(|(output, _)| kind(*output).is_some()).map(|(_, peak)| peak.magnitude).collect()
+        let is_compared = |of: &Peaking| matches!(of, Peaking::Output(output) if kind(*output).is_some());
+        peaks.peaks().filter(|(of, _)| is_compared(of)).map(|(_, peak)| peak.magnitude).collect()
     }
 
     fn histories(expansion: &Expansion<Modes>, show: &mut Show<Modes>) {
@@ -371,7 +341,7 @@ struct Trial<'a, Q: Compared, Segments> {
 fn start<'a, Q: Compared>(
     run: &Run<'a, Q>,
     choice: Choice,
-    peaks: &'a mut Q::Falling,
+    peaks: &'a mut Falling<Q::Peaks>,
 ) -> Result<Trial<'a, Q, impl Iterator<Item = Segment> + use<'a, Q>>, RunError> {
     let [slowest, fastest] = Q::vibration(&run.structure).rocking;
     let Follower { engine, segments, end, rest } = run.course()?;
@@ -380,7 +350,7 @@ fn start<'a, Q: Compared>(
         choice,
         is_level: false,
         course: Follower { engine, segments, end, rest },
-        peaks: Q::watcher(peaks),
+        peaks: Q::watch(peaks),
         history: History { sections: Vec::new() },
         distance: Distance::new(slowest, Q::kinds(&run.structure).len()),
         compared: 0,
@@ -428,7 +398,8 @@ impl<Q: Compared, Segments: Iterator<Item = Segment>> Trial<'_, Q, Segments> {
         let motion = self.course.engine.motion();
         let ending = self.ending.expect("it has been followed to its end");
         let (transitions, work) = (motion.transitions, motion.work);
-        let [peaks, all] = Q::seen(self.peaks, ending);
+        let seen = Q::seen(self.peaks);
+        let (peaks, all) = (seen.peaks().clone(), seen.all().clone());
         (Response { choice: self.choice, peaks, ending, transitions, work }, all, self.distance)
     }
 }

@@ -12,6 +12,7 @@ use crate::mechanics::outputs::{Measure, OUTPUTS, PeakRule, Sizes};
 use crate::mechanics::restraint::Angles;
 use crate::series::extremes::{self, Bound};
 use crate::series::taylor::Arc;
+use crate::structure::{Base, Ties};
 use crate::{Detail, LinearLoad, Motion, Outputs, Parameters, Phase, State, Structure, Transition};
 use serde::{Deserialize, Serialize};
 
@@ -67,15 +68,42 @@ pub struct Peaks {
     ground: Peak,
     /// Sizes of the structure, which give the peaks that come with others.
     sizes: Sizes,
-    /// Prestress and stiffness of the tendon.
+    tendon: Tendon,
+    /// Right-hand-side evaluations that the search took.
+    evaluations: u64,
+}
+
+/// The tendon of a base, as far as the peak of its force needs it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Tendon {
+    /// Prestress and stiffness.
     P_0: f64,
     k_t: f64,
-    /// Elongation of the tendon at this level of detail.
+    /// Elongation at this level of detail.
     angles: Angles,
     /// The start of the motion, s.
     start: f64,
-    /// Right-hand-side evaluations that the search took.
-    evaluations: u64,
+}
+
+impl Tendon {
+    /// The tendon of `base` at the level `detail` from `start` (s) on.
+    pub(super) fn new(base: &Base, detail: Detail, start: f64) -> Tendon {
+        let Ties { P_0, k_t, .. } = base.ties;
+        Tendon { P_0, k_t, angles: detail.angles(), start }
+    }
+
+    /// Peak of the force P_t = P_0 + k_t e, N, under a base of the half-width `B` (m). It comes with the peak of |θ|, unless the
+    /// force is constant.
+    pub(super) fn peak(&self, B: f64, theta: Peak) -> Peak {
+        let &Tendon { P_0, k_t, angles, start } = self;
+        let magnitude = P_0 + k_t * B * angles.chord(theta.magnitude, 0.0).length;
+        Peak { magnitude, time: if k_t > 0.0 { theta.time } else { start } }
+    }
+}
+
+/// Whether `base` has a tendon.
+pub(super) fn has_tendon(base: &Base) -> bool {
+    base.ties.P_0 > 0.0 || base.ties.k_t > 0.0
 }
 
 /// A row of the table of peaks.
@@ -130,22 +158,21 @@ pub const PEAKS: [Peaking; COUNT] = {
 };
 
 /// The force of the tendon.
-const TENDON: Peaking = Peaking { name: "P_t", unit: "N", quantity: Quantity::Tendon };
+pub(super) const TENDON: Peaking = Peaking { name: "P_t", unit: "N", quantity: Quantity::Tendon };
 
 /// The peaks that `structure` has: all of [`PEAKS`], and with a tendon the peak of its force.
 pub fn of(structure: &Structure) -> impl Iterator<Item = &'static Peaking> + use<> {
-    let &Parameters { P_0, k_t, .. } = structure.parameters();
-    let tendon = (P_0 > 0.0 || k_t > 0.0).then_some(const { &TENDON });
+    let tendon = has_tendon(&structure.base).then_some(const { &TENDON });
     const { &PEAKS }.iter().chain(tendon)
 }
 
 impl Peaks {
     /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion. A peak that stays 0 has this instant.
     pub fn since(time: f64, structure: &Structure, detail: Detail) -> Peaks {
-        let &Parameters { m, H, B, P_0, k_t, .. } = structure.parameters();
-        let (none, angles) = (Peak { magnitude: 0.0, time }, detail.angles());
+        let &Parameters { m, H, B, .. } = structure.parameters();
+        let (none, tendon) = (Peak { magnitude: 0.0, time }, Tendon::new(&structure.base, detail, time));
         let largest = [none; Measure::SEARCHED.len()];
-        Peaks { largest, ground: none, sizes: Sizes { m, H, B }, P_0, k_t, angles, start: time, evaluations: 0 }
+        Peaks { largest, ground: none, sizes: Sizes { m, H, B }, tendon, evaluations: 0 }
     }
 
     /// Sees the `outputs` at `time` (s), which need not be in a piece.
@@ -185,11 +212,9 @@ impl Peaks {
         self.of(Measure::uplift)
     }
 
-    /// Peak of the tendon's force P_t = P_0 + k_t e, N. It comes with the peak of |θ|, unless the force is constant.
+    /// Peak of the tendon's force P_t = P_0 + k_t e, N.
     pub fn P_t(&self) -> Peak {
-        let (theta, &Peaks { P_0, k_t, sizes, .. }) = (self.theta(), self);
-        let magnitude = P_0 + k_t * sizes.B * self.angles.chord(theta.magnitude, 0.0).length;
-        Peak { magnitude, time: if k_t > 0.0 { theta.time } else { self.start } }
+        self.tendon.peak(self.sizes.B, self.theta())
     }
 
     /// Peak of the acceleration of the top mass |a_t|, m/s² (Eq 27).

@@ -3,16 +3,16 @@
 //! Each quantity is expanded as a series in time over each polynomial of the motion. If a bound of the series exceeds the largest
 //! magnitude so far, the quantity is looked at where its series is stationary. Its values there come from the state.
 
-use super::peaks::Peak;
+use super::peaks::{Peak, TENDON, Tendon, has_tendon};
 use super::{Finish, Run, RunError};
-use crate::engine::piece::{CONVERGED, Expansion, FINEST_PART, Piece, Watch};
+use crate::engine::piece::{CONVERGED, Expansion, FINEST_PART, Piece, Sample, Watch};
 use crate::mechanics::floors::{FrameOutput, MotionOfFloors};
 use crate::mechanics::gauge::{Gauge, Reading};
 use crate::numbers::{Angle, Number, Turn};
 use crate::series::extremes;
 use crate::series::terms::Terms;
 use crate::structure::frame::Frame;
-use crate::{Floor, Modes, Phase};
+use crate::{Detail, Floor, Modes, Phase};
 use serde::{Deserialize, Serialize};
 
 /// The peaks of a structure of many masses over the motion that has been watched, a fall too.
@@ -24,6 +24,42 @@ pub struct Profile {
     pub a_g: Peak,
     /// The peaks that are searched.
     peaks: Vec<(FrameOutput, Peak)>,
+    tendon: Option<Tendon>,
+}
+
+/// A quantity of a structure of many masses that has a peak.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Peaking {
+    /// An output.
+    Output(FrameOutput),
+    /// The force of the tendon P_t, N.
+    Tendon,
+}
+
+impl Peaking {
+    /// The name, with the number of the floor or storey from 1.
+    pub fn name(self) -> String {
+        match self {
+            Peaking::Output(output) => output.name(),
+            Peaking::Tendon => TENDON.name.into(),
+        }
+    }
+
+    /// The symbol without a number.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Peaking::Output(output) => output.symbol(),
+            Peaking::Tendon => TENDON.name,
+        }
+    }
+
+    /// The unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Peaking::Output(output) => output.unit(),
+            Peaking::Tendon => TENDON.unit,
+        }
+    }
 }
 
 /// A polynomial of the motion in series, as far as several outputs read it.
@@ -102,21 +138,29 @@ fn is_searched(output: &FrameOutput) -> bool {
 }
 
 impl Profile {
-    /// Peaks of `frame` from `time` (s) on, before any motion.
-    pub fn since(time: f64, frame: &Frame) -> Profile {
+    /// Peaks of `frame` at the level `detail` from `time` (s) on, before any motion.
+    pub fn since(time: f64, frame: &Frame, detail: Detail) -> Profile {
         let none = Peak { magnitude: 0.0, time };
         let peaks = FrameOutput::all(frame).filter(is_searched).map(|output| (output, none)).collect();
-        Profile { B: frame.base.B, a_g: none, peaks }
+        let tendon = has_tendon(&frame.base).then(|| Tendon::new(&frame.base, detail, time));
+        Profile { B: frame.base.B, a_g: none, peaks, tendon }
     }
 
-    /// The outputs that have a peak, in the order of [`FrameOutput::all`], with their peaks.
-    pub fn peaks(&self) -> impl Iterator<Item = (FrameOutput, Peak)> {
+    /// The quantities that have a peak, with their peaks: the outputs in the order of [`FrameOutput::all`], and the force of a tendon.
+    pub fn peaks(&self) -> impl Iterator<Item = (Peaking, Peak)> {
         let with_uplift = |&(output, peak): &(FrameOutput, Peak)| {
             let uplift = 2.0 * self.B * libm::sin(peak.magnitude);
-            let of_theta = (FrameOutput::uplift, Peak { magnitude: uplift, ..peak });
-            [Some((output, peak)), (output == FrameOutput::theta).then_some(of_theta)]
+            let of_theta = (Peaking::Output(FrameOutput::uplift), Peak { magnitude: uplift, ..peak });
+            [Some((Peaking::Output(output), peak)), (output == FrameOutput::theta).then_some(of_theta)]
         };
-        self.peaks.iter().flat_map(with_uplift).flatten()
+        let [(_, theta), ..] = self.peaks[..] else { unreachable!("theta is the first output") };
+        let tendon = self.tendon.map(|tendon| (Peaking::Tendon, tendon.peak(self.B, theta)));
+        self.peaks.iter().flat_map(with_uplift).flatten().chain(tendon)
+    }
+
+    /// Adds the values of `sample`, which need not be in a piece.
+    pub(super) fn see_instant(&mut self, sample: &Sample<Modes>) {
+        self.peaks.iter_mut().for_each(|(output, peak)| peak.see(sample.output(*output), sample.motion.time));
     }
 
     /// Looks at a polynomial, which may be halved `halvings` times.
@@ -142,7 +186,7 @@ impl Profile {
 
     /// The peak of `output`, if it has one.
     pub fn of(&self, output: FrameOutput) -> Option<Peak> {
-        self.peaks().find(|(of, _)| *of == output).map(|(_, peak)| peak)
+        self.peaks().find(|(of, _)| *of == Peaking::Output(output)).map(|(_, peak)| peak)
     }
 }
 
@@ -163,7 +207,7 @@ impl Watch<Modes> for Profile {
 impl Run<'_, Modes> {
     /// The exact peaks of all of the run, floor by floor, and how it ended.
     pub fn profile(&self) -> Result<(Profile, Finish<Modes>), RunError> {
-        let mut profile = Profile::since(self.ground.start(), self.start()?.structure());
+        let mut profile = Profile::since(self.ground.start(), &self.structure, self.detail);
         let finish = self.follow(&mut profile)?;
         Ok((profile, finish))
     }

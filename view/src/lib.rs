@@ -143,7 +143,7 @@ impl Shown for Modes {
     }
 
     fn peaks(_: &rocking::Frame, profile: &Profile) -> Vec<Peak> {
-        profile.peaks().map(|(output, peak)| named(&output.name(), peak)).collect()
+        profile.peaks().map(|(of, peak)| named(&of.name(), peak)).collect()
     }
 
     fn fixed(run: &Run<Modes>) -> Vec<Peak> {
