@@ -5,7 +5,7 @@ use crate::{
     limit_args::LimitArgs,
     record_args::one_of,
     results::{FormatArgs, Traced},
-    scene_args::{GroundArgs, InitialArgs},
+    scene_args::{GroundArgs, InitialArgs, load},
     structure_args::StructureArgs,
 };
 use anyhow::Context;
@@ -15,7 +15,6 @@ use rocking::run::validity::Validity;
 use rocking::structure::any::AnyStructure;
 use rocking::{Modes, Watch};
 use rocking_report::advice::{Advised, rows, text};
-use rocking_report::shown::Shown;
 use rocking_sweep::plan::Conditions;
 
 /// Arguments of `advise`.
@@ -62,14 +61,9 @@ fn relative_error(text: &str) -> Result<f64, String> {
 /// Runs the levels and prints the table and the advice.
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     args.limits.limits()?;
-    let structure = args.structure.load_any()?;
     let (initial, duration) = (args.initial.state(), args.ground.duration());
     let conditions = Conditions { initial, duration, ..Conditions::default() };
-    match &structure {
-        AnyStructure::One(one) => f64::check(one, &conditions)?,
-        AnyStructure::Many(frame) => Modes::check(frame, &conditions)?,
-    }
-    let ground = args.ground.load(structure.base().g)?;
+    let (structure, ground) = load(&args.structure, &args.ground, &conditions)?;
     let cause = Cause::of_any(&structure).under(&args.ground.record, &ground).with_initial(initial);
     match &structure {
         AnyStructure::One(one) => advise::<f64>(args, one, &ground, &conditions, &cause),

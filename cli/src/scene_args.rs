@@ -25,18 +25,28 @@ pub struct MotionArgs {
     level: LevelArgs,
 }
 
+/// The structure and the ground motion. Conditions that no run of the structure can have are an error before the record is read.
+pub fn load(
+    structure: &StructureArgs,
+    ground: &GroundArgs,
+    conditions: &Conditions,
+) -> anyhow::Result<(AnyStructure, Record)> {
+    let structure = structure.load_any()?;
+    match &structure {
+        AnyStructure::One(one) => f64::check(one, conditions)?,
+        AnyStructure::Many(frame) => Modes::check(frame, conditions)?,
+    }
+    let ground = ground.load(structure.base().g)?;
+    Ok((structure, ground))
+}
+
 impl MotionArgs {
     /// The structure, the ground motion, and how the motion is computed.
     pub fn load(&self) -> anyhow::Result<(AnyStructure, Record, Conditions)> {
-        let structure = self.structure.load_any()?;
         let LevelArgs { tolerance, detail } = self.level;
         let (initial, duration) = (self.initial.state(), self.ground.duration());
         let conditions = Conditions { initial, detail, tolerance, duration };
-        match &structure {
-            AnyStructure::One(one) => f64::check(one, &conditions)?,
-            AnyStructure::Many(frame) => Modes::check(frame, &conditions)?,
-        }
-        let ground = self.ground.load(structure.base().g)?;
+        let (structure, ground) = load(&self.structure, &self.ground, &conditions)?;
         Ok((structure, ground, conditions))
     }
 

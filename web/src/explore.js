@@ -427,8 +427,6 @@
   // ---- Panels
 
   function drawValidity() {
-    at("validity").hidden = isFrame();
-    if (isFrame()) return;
     const rows = JSON.parse(explorer.validity(text()));
     const exceeded = rows.filter((of) => of.first_beyond !== null).length;
     at("validity").querySelector("summary").textContent =

@@ -7,17 +7,17 @@ mod scene;
 mod take;
 
 use fmu_export::{Library, ModelName, Version};
-use rocking::engine::piece::Sample;
+use rocking::engine::{Moves, piece::Sample};
 use rocking::levels::detail::Detail;
 use rocking::run::levels::{Choice, Criterion, REFERENCE_TOLERANCE, RULE, Verdict, compare, relative};
 use rocking::run::peaks::{self, Peak};
-use rocking::run::validity::{self, ASSUMPTIONS, Limits};
+use rocking::run::validity::{self, ASSUMPTIONS, Findings, Limits, Validity};
 use rocking::run::{End, RunError};
 use rocking::structure::any::{AnyStructure, OF_FRAME, OF_MODE};
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::{DERIVED, Derived, Ties};
-use rocking::{Body, Frame, Motion, Run, State, Structure};
+use rocking::{Body, Frame, Motion, Run, State, Structure, Watch};
 use rocking_records::Unit;
 use rocking_sweep::{map::CLASSES, pulse::Shape};
 use rocking_view::{Scene, Shown};
@@ -152,6 +152,7 @@ impl Explorer {
                 (json!(structure.parameters()), values(&DERIVED, structure), Vec::new())
             }
             AnyStructure::Many(frame) => {
+                warnings.extend(validity::of_frame(frame, fields.detail()?));
                 let modes = frame.mode_table().map(|mode| values(&OF_MODE, &mode));
                 (of_base(frame), values(&OF_FRAME, frame), modes.collect())
             }
@@ -166,9 +167,11 @@ impl Explorer {
     /// The assumptions of the model, each with its worst value in this run.
     pub fn validity(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
-        let (structure, ground) = self.load_one(&fields, "the list of assumptions")?;
         let limits = Limits::default();
-        let (found, _) = fields.run(structure, &ground.record)?.validity(limits).map_err(says)?;
+        let found = match self.load(&fields)? {
+            (AnyStructure::One(structure), ground) => found_in(&fields.run(structure, &ground.record)?, limits)?,
+            (AnyStructure::Many(frame), ground) => found_in(&fields.run_of_modes(frame, &ground.record)?, limits)?,
+        };
         let row = |(assumption, worst): (&validity::Assumption, &validity::Worst)| {
             let of = if assumption.is_of_impacts { found.impacts as f64 } else { found.duration };
             json!({
@@ -269,6 +272,14 @@ impl Explorer {
 fn shown<Q: Shown>(run: &Run<Q>, part: f64) -> Result<String, String> {
     let curve = run.curve(part).map_err(says)?;
     Ok(Scene::new(run, part, &curve).json())
+}
+
+/// The assumptions that `run` breaks.
+fn found_in<Q: Moves>(run: &Run<Q>, limits: Limits) -> Result<Findings, String>
+where
+    Validity<Q>: Watch<Q>,
+{
+    run.validity(limits).map(|(found, _)| found).map_err(says)
 }
 
 /// The `peaks` and the `motion` at the end of a run.

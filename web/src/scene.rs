@@ -211,9 +211,17 @@ impl Fields {
         let storeys = (1..).zip(storeys.split_whitespace()).map(|(number, row)| storey(number, row));
         let storeys = storeys.collect::<Result<Vec<_>, _>>()?;
         let frame = Frame::from_storeys(base, &Damping::All(self.number("zeta")?), &storeys).map_err(says)?;
-        match self.given("modes").transpose()? {
+        match self.modes()? {
             None => Ok(frame),
-            Some(count) if count >= 1.0 && count.fract() == 0.0 => frame.keeping(count as usize).map_err(says),
+            Some(count) => frame.keeping(count).map_err(says),
+        }
+    }
+
+    /// How many modes of a structure of many masses are kept, if not all.
+    pub fn modes(&self) -> Result<Option<usize>, String> {
+        match self.given("modes").transpose()? {
+            None => Ok(None),
+            Some(count) if count >= 1.0 && count.fract() == 0.0 => Ok(Some(count as usize)),
             Some(count) => Err(format!("modes = {count} is out of range: a whole number of at least 1 is needed")),
         }
     }

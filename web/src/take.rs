@@ -71,7 +71,9 @@ pub fn taken_along(fields: &Fields, path: Option<&Path>) -> Result<[String; 3], 
 /// A command that writes the file of `storeys` on the base of these `numbers`, and the arguments of the same structure in Python.
 fn building(fields: &Fields, storeys: &str, numbers: &Options) -> Result<(String, String), String> {
     let zeta = literal("zeta", &fields.number("zeta")?.to_string())?;
-    let mut file = format!("zeta = {zeta}\n\n[base]\n");
+    let keep = fields.modes()?;
+    let kept = keep.map_or(String::new(), |count| format!("keep = {count}\n"));
+    let mut file = format!("zeta = {zeta}\n{kept}\n[base]\n");
     numbers.iter().for_each(|(name, value)| file += &format!("{name} = {value}\n"));
     let mut rows = Vec::new();
     for row in storeys.split_whitespace() {
@@ -84,7 +86,8 @@ fn building(fields: &Fields, storeys: &str, numbers: &Options) -> Result<(String
         rows.push(named().map(|(name, value)| format!("\"{name}\": {value}")).collect::<Vec<_>>().join(", "));
     }
     let rows: String = rows.iter().map(|row| format!("    {{{row}}},\n")).collect();
-    let arguments = format!("storeys=[\n{rows}], zeta={zeta}{}", arguments(numbers));
+    let kept = keep.map_or(String::new(), |count| format!(", keep={count}"));
+    let arguments = format!("storeys=[\n{rows}], zeta={zeta}{kept}{}", arguments(numbers));
     Ok((format!("cat >{BUILDING} <<'END'\n{file}END\n"), arguments))
 }
 
