@@ -271,16 +271,12 @@ impl<Q: Moves, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
     /// Follows the motion over the next segment. Returns the ending of the run if the run has ended.
     #[inline(always)]
     fn go_on<W: Watch<Q>>(&mut self, watch: &mut W) -> Result<Option<Ending>, RunError> {
-        let Follower { engine, segments, end, rest } = self;
-        let went_on = match segments.next() {
-            Some(segment) => over(engine, segment, watch).map(ending),
-            None => come_to_rest(engine, *end, rest, watch),
-        };
-        went_on.map_err(|cause| error(engine, cause))
+        let segment = self.segments.next();
+        self.go_over(segment, watch)
     }
 
     /// Follows the motion over `segment`, which is none after the last one.
-    #[cfg(feature = "lanes")]
+    #[inline(always)]
     fn go_over<W: Watch<Q>>(&mut self, segment: Option<Segment>, watch: &mut W) -> Result<Option<Ending>, RunError> {
         let Follower { engine, end, rest, .. } = self;
         let went_on = match segment {

@@ -11,11 +11,31 @@ use crate::{Side, Structure};
 pub(crate) fn first(structure: &Structure, turning: &TurningMoment, start: &Start, arc: &Arc) -> (Crossing, Side) {
     let right = first_about(structure, turning, start, arc, Side::Right);
     let left = first_about(structure, turning, start, arc, Side::Left);
+    sooner(right, left, |sigma| {
+        let (state, a_v) = (arc.at(sigma), start.a_v.at(sigma * arc.span));
+        uplift::margin(structure, turning, &state, a_v, start.dissipators).1
+    })
+}
+
+/// The sooner of the uplifts about the `right` and the `left` side, and its side. If both come at the same σ, `both` gives the side.
+#[inline(always)]
+pub(crate) fn sooner(right: Crossing, left: Crossing, both: impl FnOnce(f64) -> Side) -> (Crossing, Side) {
     if right.sigma() == left.sigma() && right.sigma() < f64::INFINITY {
-        let (state, a_v) = (arc.at(right.sigma()), start.a_v.at(right.sigma() * arc.span));
-        return (right, uplift::margin(structure, turning, &state, a_v, start.dissipators).1);
+        return (right, both(right.sigma()));
     }
     if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
+}
+
+/// The first σ at which uplift is due: the gap of the `rule` and the gap of the moment that `turns` the base are closed. The right
+/// side of the rule has the coefficients `limit`. Where this side is not above 0, nothing holds the base, and the moment decides alone.
+#[inline(always)]
+pub(crate) fn first_due(rule: Gap, turns: Gap, is_held: bool, limit: [f64; 2], reach: f64) -> Crossing {
+    let far = first_time_all_closed([rule, turns], reach);
+    if is_held {
+        return far;
+    }
+    let loose = first_time_all_closed([Gap::new(&limit, 1.0, 0.0), turns], reach);
+    if far.sigma() <= loose.sigma() { far } else { loose }
 }
 
 fn first_about(structure: &Structure, turning: &TurningMoment, start: &Start, arc: &Arc, side: Side) -> Crossing {
@@ -46,14 +66,8 @@ fn first_about(structure: &Structure, turning: &TurningMoment, start: &Start, ar
         }
     }
     let moment = Gap::new(arc.used(&moment), -s, (1.0 + LEAST_EXCESS) * turning.weight + hold.moment);
-    let far = first_time_all_closed([displacement, moment], arc.reach);
-    if is_held {
-        return far;
-    }
-    // nothing holds the base while u_cr,s is not above 0
     let limit = [hold.displacement, if moving { rise } else { 0.0 }];
-    let loose = first_time_all_closed([Gap::new(&limit, 1.0, 0.0), moment], arc.reach);
-    if far.sigma() <= loose.sigma() { far } else { loose }
+    first_due(displacement, moment, is_held, limit, arc.reach)
 }
 
 #[cfg(test)]

@@ -16,6 +16,7 @@
 //! [`rigid`]: crate::levels::rigid
 
 use crate::levels::detail::Detail;
+use crate::levels::first_uplift::{first_due, sooner};
 use crate::levels::level::{Level, Now, Rates, Subject, way};
 use crate::levels::nonlinear::{Factors, LEAST_INERTIA, NO_ROW, products, row};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
@@ -27,8 +28,8 @@ use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{self, Angles, Dissipators};
-use crate::mechanics::uplift::LEAST_EXCESS;
-use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
+use crate::mechanics::uplift::{LEAST_EXCESS, nearer};
+use crate::series::first_crossing::{Crossing, Gap};
 use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation, ZERO};
 use crate::structure::frame::Frame;
 use crate::structure::{Base, Mode};
@@ -438,14 +439,7 @@ impl ManyModes {
         }
         let excess = LEAST_EXCESS * (base.m_t * base.g + base.ties.P_0) * base.B;
         let turns = Gap::new(arc.used(&all), -s, held + excess);
-        let far = first_time_all_closed([rule, turns], arc.reach);
-        if is_held {
-            return far;
-        }
-        // nothing holds the base while the right side of (M3) is not above 0
-        let limit = [held, change];
-        let loose = first_time_all_closed([Gap::new(&limit, 1.0, 0.0), turns], arc.reach);
-        if far.sigma() <= loose.sigma() { far } else { loose }
+        first_due(rule, turns, is_held, [held, change], arc.reach)
     }
 
     /// The moment of the mass that rides rigidly, `tau` (s) after `start`.
@@ -523,13 +517,11 @@ impl Level<Modes> for ManyModes {
             return (Crossing::None, Side::Right);
         }
         let [right, left] = [Side::Right, Side::Left].map(|side| self.first_about(side, start, arc));
-        if right.sigma() == left.sigma() && right.sigma() < f64::INFINITY {
-            let at = right.sigma() * arc.span;
+        sooner(right, left, |sigma| {
+            let at = sigma * arc.span;
             let load = Load { a_g: start.a_g.at(at), F_t: start.a_top.at(at), a_v: start.a_v.at(at) };
-            let now = Now { state: &arc.at(right.sigma()), load, dissipators: start.dissipators };
-            return (right, self.uplift_margin(&now).1);
-        }
-        if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
+            self.uplift_margin(&Now { state: &arc.at(sigma), load, dissipators: start.dissipators }).1
+        })
     }
 
     fn holds(&self, start: &Start<Modes>) -> bool {
@@ -562,9 +554,7 @@ impl Level<Modes> for ManyModes {
             let turns = held + LEAST_EXCESS - s * all;
             ((held - s * springs).min(held).max(turns), turns / inertia(frame, side, &state.u))
         };
-        let (right, left) = (about(Side::Right), about(Side::Left));
-        let is_right = if right.0 <= 0.0 && left.0 <= 0.0 { right.1 <= left.1 } else { right.0 <= left.0 };
-        if is_right { (right.0, Side::Right) } else { (left.0, Side::Left) }
+        nearer(about(Side::Right), about(Side::Left))
     }
 
     fn after_impact(&self, side: Side, before: &State<Modes>) -> (Phase, State<Modes>) {

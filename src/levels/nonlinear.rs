@@ -171,7 +171,7 @@ impl Expanded for f64 {
 }
 
 /// The numbers in Eqs 5 and 6 over one step. A load is its value at the start and its gain over the span.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Equations<N> {
     pub u: N,
     pub u_dot: N,

@@ -103,7 +103,13 @@ pub(crate) fn margin(
         let moment = 1.0 + LEAST_EXCESS + hold.moment / turning.weight - s * turns;
         ((limit - s * displacement).min(limit).max(moment), moment / turning.inertia(side, state.u))
     };
-    let (right, left) = (about(Side::Right), about(Side::Left));
+    nearer(about(Side::Right), about(Side::Left))
+}
+
+/// The smaller of the distances from uplift about the `right` and the `left` side, and its side. Each distance is given with −s θ̈. If
+/// uplift is due about both sides, the smaller −s θ̈ decides.
+#[inline(always)]
+pub(crate) fn nearer(right: (f64, f64), left: (f64, f64)) -> (f64, Side) {
     let is_right = if right.0 <= 0.0 && left.0 <= 0.0 { right.1 <= left.1 } else { right.0 <= left.0 };
     if is_right { (right.0, Side::Right) } else { (left.0, Side::Left) }
 }

@@ -223,7 +223,7 @@ impl<Q: Coordinates> Default for Start<'_, Q> {
 }
 
 /// The largest truncated terms that a step may have.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Truncation<Q = f64> {
     /// Of u̇, m/s.
     pub u_dot: Q,

@@ -13,7 +13,7 @@ use std::f64::consts::FRAC_PI_2;
 const ROUNDING: f64 = 1.0 + 1e-13;
 
 /// A step of one run.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct RockingStep {
     pub equations: Equations<f64>,
     pub theta: f64,
@@ -22,44 +22,6 @@ pub(crate) struct RockingStep {
     /// s.
     pub span: f64,
     pub truncation: Truncation,
-}
-
-impl RockingStep {
-    const NUMBERS: usize = 22;
-
-    #[inline(always)]
-    fn numbers(&self) -> [f64; Self::NUMBERS] {
-        let RockingStep { equations: of, theta, side, span, truncation } = *self;
-        let Equations {
-            u, u_dot, theta_dot, sin, cos, H, weight_offset, lever, foundation, stiffness, damping_u, ..
-        } = of;
-        let ([push, push_gain], [ground, ground_gain], [g, lift]) = (of.push, of.ground, of.gravity);
-        let Truncation { u_dot: truncation, theta_dot: truncation_turning } = truncation;
-        [
-            u,
-            u_dot,
-            theta,
-            theta_dot,
-            sin,
-            cos,
-            push,
-            push_gain,
-            ground,
-            ground_gain,
-            g,
-            lift,
-            H,
-            weight_offset,
-            lever,
-            foundation,
-            stiffness,
-            damping_u,
-            side,
-            span,
-            truncation,
-            truncation_turning,
-        ]
-    }
 }
 
 /// Result of a step of one run.
@@ -95,7 +57,7 @@ impl NonlinearRocking {
 #[derive(Debug)]
 pub(crate) struct Steps<S: Simd> {
     simd: S,
-    numbers: [[f64; MOST]; RockingStep::NUMBERS],
+    steps: [RockingStep; MOST],
     products: Products<Lanes<S>>,
     /// u, u̇, θ and θ̇, order by order.
     series: [[Lanes<S>; 4]; MAX_ORDER + 1],
@@ -111,7 +73,7 @@ impl<S: Simd> Steps<S> {
         let zero = Lanes::splat(simd, 0.0);
         Steps {
             simd,
-            numbers: [[0.0; MOST]; RockingStep::NUMBERS],
+            steps: [RockingStep::default(); MOST],
             products: Products::new(zero),
             series: [[zero; 4]; MAX_ORDER + 1],
             order: zero,
@@ -124,7 +86,7 @@ impl<S: Simd> Steps<S> {
     /// Puts the step of a run into `lane`.
     #[inline]
     pub(crate) fn put(&mut self, lane: usize, step: &RockingStep) {
-        self.numbers.iter_mut().zip(step.numbers()).for_each(|(numbers, number)| numbers[lane] = number);
+        self.steps[lane] = *step;
     }
 
     /// Takes the steps.
@@ -166,52 +128,28 @@ impl<S: Simd> WithSimd for Taken<'_, S> {
 
     #[inline(always)]
     fn with_simd<T: Simd>(self, _simd: T) {
-        let Steps { simd, numbers, products, series, .. } = self.0;
+        let Steps { simd, steps, products, series, .. } = self.0;
         let simd = *simd;
-        let mut loaded = [Lanes::splat(simd, 0.0); RockingStep::NUMBERS];
-        for (loaded, numbers) in loaded.iter_mut().zip(numbers.iter()) {
-            *loaded = Lanes::load(simd, numbers);
-        }
-        let [
-            u,
-            u_dot,
-            theta,
-            theta_dot,
-            sin,
-            cos,
-            push,
-            push_gain,
-            ground,
-            ground_gain,
-            g,
-            lift,
-            H,
-            weight_offset,
-            lever,
-            foundation,
-            stiffness,
-            damping_u,
-            side,
-            span,
-            truncation,
-            truncation_turning,
-        ] = loaded;
+        let of = |number: fn(&RockingStep) -> f64| Lanes::load(simd, &steps.each_ref().map(number));
         let equations = Equations {
-            u,
-            u_dot,
-            theta_dot,
-            sin,
-            cos,
-            push: [push, push_gain],
-            ground: [ground, ground_gain],
-            gravity: [g, lift],
-            H,
-            weight_offset,
-            lever,
-            foundation,
-            stiffness,
-            damping_u,
+            u: of(|step| step.equations.u),
+            u_dot: of(|step| step.equations.u_dot),
+            theta_dot: of(|step| step.equations.theta_dot),
+            sin: of(|step| step.equations.sin),
+            cos: of(|step| step.equations.cos),
+            push: [of(|step| step.equations.push[0]), of(|step| step.equations.push[1])],
+            ground: [of(|step| step.equations.ground[0]), of(|step| step.equations.ground[1])],
+            gravity: [of(|step| step.equations.gravity[0]), of(|step| step.equations.gravity[1])],
+            H: of(|step| step.equations.H),
+            weight_offset: of(|step| step.equations.weight_offset),
+            lever: of(|step| step.equations.lever),
+            foundation: of(|step| step.equations.foundation),
+            stiffness: of(|step| step.equations.stiffness),
+            damping_u: of(|step| step.equations.damping_u),
         };
+        let (theta, side, span) = (of(|step| step.theta), of(|step| step.side), of(|step| step.span));
+        let (truncation, truncation_turning) = (of(|step| step.truncation.u_dot), of(|step| step.truncation.theta_dot));
+        let (u, u_dot, theta_dot, g) = (equations.u, equations.u_dot, equations.theta_dot, equations.gravity[0]);
         let mut recurrence = Recurrence::new(equations);
         let (none, never) = (g.like(-0.0), g.like(1.0).is_less(g.like(0.0)));
         let (mut ended, mut was_small, mut order) = (never, never, g.like(0.0));
