@@ -167,6 +167,15 @@ def test_an_oscillator_on_a_floor_is_the_structure_integrated_as_one(export_fram
     np.testing.assert_allclose(rows / peaks, expected / peaks, rtol=0, atol=1e-6)
 
 
+def test_a_force_that_runs_out_of_range_is_named_with_its_floor(export_frame):
+    with export_frame().start() as instance:
+        instance.input("F_t[2]", 9e14, 1e17)
+        with pytest.raises(FMICallException):
+            instance.step(0.01)
+        assert "at the end of the step, F_t[2] = 1.9e15 N is out of range" in instance.errors[-1]
+        assert "between -1e15 and 1e15 N (external horizontal force on floor 2" in instance.errors[-1]
+
+
 def test_states_of_another_structure_are_refused(export_frame, mcmanus):
     def slave_and_bytes(fmu):
         instance = fmu.start()

@@ -1,6 +1,7 @@
 //! Derivatives of outputs: by time, and by what the host sets.
 
 use crate::inputs::InputsOf;
+use crate::masses::Masses;
 use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::shown::Shown;
@@ -12,32 +13,32 @@ use fmi_unit::{Failure, Model};
 use rocking::mechanics::state::COMPONENTS;
 use rocking::{LinearLoad, Load, Parameters, State};
 
-impl Unit {
+impl<Q: Masses> Unit<Q> {
     /// Rates of outputs by the equations of motion, under the present inputs and their slopes: those set for the next
     /// step, or else those that the last step followed.
     pub(crate) fn output_rates(&mut self, references: &[u32], rates: &mut [f64]) -> Result<(), Failure> {
         let sources = self.sources_of(references);
-        let (scene, setup, inputs) = self.parts()?;
-        let load = scene.load(setup, inputs.with_slopes());
-        let (outputs, reactions) = scene.engine.rates(load);
-        for ((source, reference), rate) in sources.into_iter().zip(references).zip(rates) {
-            *rate = match source {
-                Source::Output(of) => of(&outputs),
-                Source::Reaction(of) => of(&reactions),
-                Source::Restraint(of) => of(&scene.engine.restraint_rates(load.value)),
-                Source::Ground(is_vertical) => {
-                    if is_vertical {
-                        load.slope.a_v
-                    } else {
-                        load.slope.a_g
-                    }
-                }
-                _ => return Err(Failure::NoOutput { name: self.name(*reference) }),
+        let found: Vec<_> = {
+            let (scene, setup, inputs) = self.parts()?;
+            let load = scene.load(setup, inputs.now(&scene.engine));
+            let (output, reactions) = Q::rates(&scene.engine, load);
+            let rate = |source| match source {
+                Source::Reaction(of) => Some(of(&reactions)),
+                Source::Restraint(of) => Some(of(&scene.engine.restraint_rates(load.value))),
+                Source::Ground(true) => Some(load.slope.a_v),
+                Source::Ground(false) => Some(load.slope.a_g),
+                source => output(source),
             };
+            sources.into_iter().map(rate).collect()
+        };
+        for ((found, reference), rate) in found.into_iter().zip(references).zip(rates) {
+            *rate = found.ok_or_else(|| Failure::NoOutput { name: self.name(*reference) })?;
         }
         Ok(())
     }
+}
 
+impl Unit {
     /// Derivatives of outputs and of derivatives of states: by inputs; once the simulation has started by states, and by
     /// time, with which the record changes. The outputs are affine in the inputs: the derivative is a difference, taken over
     /// a change of the size of gravity and the strut's force, which keeps its digits.

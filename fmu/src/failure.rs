@@ -7,7 +7,6 @@ use rocking::engine::AdvanceError;
 use rocking::mechanics::state::InitialStateError;
 use rocking::run::record::SamplesError;
 use rocking::structure::parameters::ParameterError;
-use rocking::structure::quantity::OutOfRange;
 
 /// Why something is refused.
 #[derive(Debug, thiserror::Error)]
@@ -32,7 +31,7 @@ pub enum Refusal {
     OtherRecord { record: String, record_v: String },
     /// The input runs out of its range.
     #[error("at the end of the step, {0}")]
-    InputRunsOut(OutOfRange),
+    InputRunsOut(Failure),
     /// Parameters that contradict each other.
     #[error(transparent)]
     Parameters(#[from] ParameterError),

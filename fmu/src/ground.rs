@@ -100,9 +100,10 @@ struct Asked<'a> {
 }
 
 impl Archive {
-    /// The ground motion that the parameters `record` and `record_v` ask for: none if both are empty; files of the archive
-    /// by their names, or others by their paths or URIs; a g stands for `g` (m/s²) in what is said of them. It is parsed, and
-    /// kept, unless it is `kept` already.
+    /// The ground motion of the parameters `record` and `record_v`; none if both are empty.
+    ///
+    /// Files of the archive are called by their names, others by their paths or URIs. Messages about a record give accelerations in
+    /// the unit `g` (m/s²). The record is parsed, and kept, unless it is `kept` already.
     pub(crate) fn ground(
         &self,
         record: &str,

@@ -49,8 +49,8 @@ pub trait InputsOf<Q: Moves>: Clone + Debug + Serialize + DeserializeOwned {
     /// The values on `lines` after `tau` seconds.
     fn at(lines: &Self::Lines, tau: f64) -> Self::Values;
 
-    /// Checks that `values` are in range.
-    fn check(values: &Self::Values) -> Result<(), OutOfRange>;
+    /// Checks that `values` are in range. Returns the place of the input that is not.
+    fn check(values: &Self::Values) -> Result<(), (usize, OutOfRange)>;
 
     /// Goes on after `duration` (s) of a step along `lines` to `values`, which ended early or at the next communication
     /// point.
@@ -72,8 +72,8 @@ pub enum Between {
     Extrapolated,
 }
 
-/// The inputs. A slope is followed for one step, after which the value that it led to is held; a step that ended early
-/// goes on where it ended, along the same lines.
+/// The inputs. An input follows its slope for one step, and then holds the value that it has reached. After a step that ended
+/// early, the next step continues along the same lines.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Inputs {
     /// How they act, in the order of [`LOADS`].
@@ -97,8 +97,8 @@ pub struct Inputs {
     stairs: u8,
 }
 
-/// Steps in a row over which a ground acceleration is held, at another value each, before it is taken for samples of a
-/// motion: a push begins and ends with one such step.
+/// Steps in a row over which a ground acceleration is held, each at another value, before it counts as samples of a motion. A
+/// push begins and ends with one such step.
 const STAIRS: u8 = 3;
 
 /// The setting of an input.
@@ -184,8 +184,8 @@ impl InputsOf<f64> for Inputs {
     }
 
     #[inline]
-    fn check(values: &Load) -> Result<(), OutOfRange> {
-        values.check()
+    fn check(values: &Load) -> Result<(), (usize, OutOfRange)> {
+        values.check().map_err(place)
     }
 
     #[inline(always)]
@@ -315,6 +315,12 @@ impl FloorInputs {
     }
 }
 
+/// The place in [`LOADS`] of a load that is out of range.
+#[cold]
+fn place(of: OutOfRange) -> (usize, OutOfRange) {
+    (LOADS.iter().position(|load| load.name == of.name).expect("it is one of them"), of)
+}
+
 /// The load of these `parts` on the `frame`.
 fn together(frame: &Frame, parts: impl Iterator<Item = Load>) -> Load<Modes> {
     let parts: Vec<_> = parts.collect();
@@ -385,8 +391,14 @@ impl InputsOf<Modes> for FloorInputs {
         lines.parts.iter().map(|part| part.at(tau)).collect()
     }
 
-    fn check(values: &Vec<Load>) -> Result<(), OutOfRange> {
-        values.iter().try_for_each(Load::check)
+    fn check(values: &Vec<Load>) -> Result<(), (usize, OutOfRange)> {
+        values.iter().enumerate().try_for_each(|(item, values)| {
+            values.check().map_err(place).map_err(|(place, of)| match place {
+                FORCE => (item + 2, of),
+                VERTICAL => (Self::VERTICAL, of),
+                place => (place, of),
+            })
+        })
     }
 
     fn pass(&mut self, lines: &FloorLines, duration: f64, values: Vec<Load>, ended_early: bool) {

@@ -1,4 +1,4 @@
-//! What a structure of one mass and a structure of many masses do each in their own way.
+//! The differences between structures of one mass and structures of many masses.
 
 use crate::advance::{Told, Watching};
 use crate::failure::Refusal;
@@ -14,7 +14,10 @@ use rocking::run::fall::{FallingProfile, Peaked};
 use rocking::run::peaks::Peak;
 use rocking::run::validity::{self, Validity};
 use rocking::structure::any::AnyStructure;
-use rocking::{Detail, Engine, Frame, FrameOutput, Load, Modes, Outputs, State, Structure, Transition, Watch};
+use rocking::{
+    Detail, Engine, Frame, FrameOutput, LinearLoad, Load, Modes, Outputs, Reactions, State, Structure, Transition,
+    Watch,
+};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -68,8 +71,8 @@ pub trait Masses: Peaked<Peaks: Serialize + DeserializeOwned> + Default + Serial
     /// The watcher of what the motion goes beyond.
     fn watcher(validity: &mut Validity<Self>) -> &mut impl Watch<Self>;
 
-    /// Rates of variables by time.
-    fn rates(unit: &mut Unit<Self>, references: &[u32], rates: &mut [f64]) -> Result<(), Failure>;
+    /// The rates of outputs and of the reactions under `load`.
+    fn rates(engine: &Engine<Self>, load: LinearLoad<Self>) -> (impl Fn(Source) -> Option<f64>, Reactions);
 
     /// Derivatives of variables along a direction.
     fn derivatives(
@@ -158,8 +161,9 @@ impl Masses for f64 {
         validity
     }
 
-    fn rates(unit: &mut Unit, references: &[u32], rates: &mut [f64]) -> Result<(), Failure> {
-        unit.output_rates(references, rates)
+    fn rates(engine: &Engine, load: LinearLoad) -> (impl Fn(Source) -> Option<f64>, Reactions) {
+        let (outputs, reactions) = engine.rates(load);
+        (move |source| f64::output(&source, &outputs), reactions)
     }
 
     fn derivatives(
@@ -261,28 +265,14 @@ impl Masses for Modes {
         validity
     }
 
-    fn rates(unit: &mut Unit<Modes>, references: &[u32], rates: &mut [f64]) -> Result<(), Failure> {
-        let sources = unit.sources_of(references);
-        let (scene, setup, inputs) = unit.parts()?;
-        let load = scene.load(setup, inputs.now(&scene.engine));
-        let found = scene.engine.rates(load);
-        let output = |place| output(&scene.engine, place);
-        for ((source, reference), rate) in sources.into_iter().zip(references).zip(rates) {
-            *rate = match source {
-                Source::Floor(place) => found.of(output(place)),
-                Source::Reaction(of) => of(&found.reactions()),
-                Source::Restraint(of) => of(&scene.engine.restraint_rates(load.value)),
-                Source::Ground(is_vertical) => {
-                    if is_vertical {
-                        load.slope.a_v
-                    } else {
-                        load.slope.a_g
-                    }
-                }
-                _ => return Err(Failure::NoOutput { name: unit.name(*reference) }),
-            };
-        }
-        Ok(())
+    fn rates(engine: &Engine<Modes>, load: LinearLoad<Modes>) -> (impl Fn(Source) -> Option<f64>, Reactions) {
+        let found = engine.rates(load);
+        let reactions = found.reactions();
+        let rate = move |source| match source {
+            Source::Floor(place) => Some(found.of(output(engine, place))),
+            _ => None,
+        };
+        (rate, reactions)
     }
 
     /// By differences.

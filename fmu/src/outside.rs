@@ -13,17 +13,18 @@ use rocking::run::ground_motion::Elapsed;
 use rocking::run::outside_step::{Checked, Checkpoint};
 use rocking::{Load, Transition};
 
-/// The relative tolerance up to which samples of the record are events. A solver of high order that integrates over the
-/// kinks there is not as exact as it believes; below an error of some 1e-5 to start anew at each is the cheaper way
-/// (docs/evidence/model_exchange.md).
+/// The relative tolerance up to which samples of the record are events.
+///
+/// A solver of high order that integrates over the kinks at the samples is less exact than its own estimate. For errors below some
+/// 1e-5, a new start at each sample is cheaper (docs/evidence/model_exchange.md).
 const KINKS_MATTER: f64 = 1e-8;
 
 /// The largest state (SI units) that is taken from a host.
 const FARTHEST: f64 = 1e12;
 
 impl<Q: Masses> Scene<Q> {
-    /// The record's time at the host's `time` (s). Where the start is late the last digits of that are coarse: the instant
-    /// that was announced for a sample is that sample's.
+    /// The record's time at the host's `time` (s). After a late start the last digits of `time` are coarse. An instant that the
+    /// unit has announced for a sample therefore counts as the sample.
     fn elapsed_at(&self, setup: &Setup, time: f64) -> Elapsed {
         let elapsed = Elapsed::default().and(time - setup.start_time);
         let resolution = 2.0 * f64::EPSILON * time.abs().max(setup.start_time.abs());

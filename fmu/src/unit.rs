@@ -20,7 +20,7 @@ use rocking::run::fall::Falling;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::validity::Findings;
 use rocking::structure::any::AnyStructure;
-use rocking::{Motion, State};
+use rocking::{Motion, OutOfRange, State};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
@@ -123,6 +123,14 @@ impl<Q: Masses> Unit<Q> {
         }
         self.setup.vertical = true;
         Ok(())
+    }
+
+    /// The refusal of a step at whose end an input is out of its range.
+    #[cold]
+    fn runs_out(&self, which: usize, &OutOfRange { value, unit, min, max, .. }: &OutOfRange) -> Failure {
+        let Variable { name, description, .. } = &self.table.variables[which];
+        let (name, description) = (name.to_string(), description.to_string());
+        Refusal::InputRunsOut(Failure::OutOfRange { name, value, unit, min, max, description }).into()
     }
 
     /// Whether one of `values` moves the ground vertically.
@@ -302,7 +310,9 @@ impl<Q: Masses> Model for Unit<Q> {
         let (scene, setup, inputs) = self.parts()?;
         let lines = inputs.over(step, &scene.engine);
         let (load, end) = (Q::Inputs::load(&lines), Q::Inputs::at(&lines, step));
-        Q::Inputs::check(&end).map_err(Refusal::InputRunsOut)?;
+        if let Err((which, of)) = Q::Inputs::check(&end) {
+            return Err(self.runs_out(which, &of));
+        }
 
         let time = scene.engine.motion().time;
         scene.engine.set_time(point);
@@ -406,7 +416,7 @@ impl<Q: Masses> Model for Unit<Q> {
     }
 
     fn rates(&mut self, references: &[u32], rates: &mut [f64]) -> Result<(), Failure> {
-        Q::rates(self, references, rates)
+        self.output_rates(references, rates)
     }
 
     fn derivatives(&mut self, of: &[u32], direction: &[(u32, f64)], has_started: bool) -> Result<Vec<f64>, Failure> {

@@ -1,5 +1,5 @@
-//! The one table of the FMU's variables. What a variable is called, what it may be, who sets it, where its value is and what
-//! it follows from stands here and nowhere else.
+//! The one table of the FMU's variables. The name, the range, the setter, the source and the dependencies of a variable stand
+//! here and nowhere else.
 
 use crate::floor_variables;
 use crate::resources::Contents;

@@ -134,7 +134,7 @@ impl Shown for Modes {
     }
 
     fn values(frame: &Frame, sample: &Sample<Modes>) -> Vec<f64> {
-        FrameOutput::all(frame).map(|output| sample.output(output)).collect()
+        FrameOutput::all(frame).map(sample.outputs()).collect()
     }
 
     fn displacements(frame: &Frame) -> Vec<Named> {

@@ -20,6 +20,7 @@ use crate::numbers::{Number, Turn};
 use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Series, Start, evaluate};
 use crate::series::terms::Terms;
+use crate::structure::frame::Gauges;
 use crate::{Floor, Frame, Outputs, Phase, Reactions, State};
 use std::f64::consts::TAU;
 
@@ -127,8 +128,20 @@ impl Sample<'_> {
 impl Sample<'_, Modes> {
     /// The value of `output`; once overturned, the value of the instant before.
     pub fn output(&self, output: FrameOutput) -> f64 {
-        let theta_ddot = if output.has_feedthrough(self.level.structure()) { self.second().theta_ddot } else { 0.0 };
-        output.of(&Turning { x: self.instant(), theta_ddot })
+        output.of(&self.turning(output.has_feedthrough(self.level.structure())))
+    }
+
+    /// The values of outputs, of which each costs less than by [`Sample::output`].
+    pub fn outputs(&self) -> impl Fn(FrameOutput) -> f64 {
+        let Gauges { a, V, M, V_t, M_t } = self.level.structure().gauges();
+        let turning = self.turning([V_t, M_t].into_iter().chain(a).chain(V).chain(M).any(Gauge::has_feedthrough));
+        move |output| output.of(&turning)
+    }
+
+    /// The structure at the instant, with θ̈ if an output depends on θ̈.
+    fn turning(&self, needs_second: bool) -> Turning<'_, f64, Modes> {
+        let theta_ddot = if needs_second { self.second().theta_ddot } else { 0.0 };
+        Turning { x: self.instant(), theta_ddot }
     }
 }
 

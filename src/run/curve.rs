@@ -89,7 +89,7 @@ impl Drawn for Modes {
     }
 
     fn outputs(sample: &Sample<Modes>) -> Vec<f64> {
-        drawn(sample.level.structure()).map(|line| sample.output(line)).collect()
+        drawn(sample.level.structure()).map(sample.outputs()).collect()
     }
 
     #[allow(private_interfaces)]

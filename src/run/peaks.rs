@@ -50,7 +50,7 @@ impl Peak {
 
     /// Whether a magnitude of at most `bound` may be more than it, or the same.
     #[inline]
-    fn may_be_same(&self, bound: f64) -> bool {
+    pub(super) fn may_be_same(&self, bound: f64) -> bool {
         bound >= self.magnitude * (1.0 - SAME)
     }
 

@@ -1,16 +1,21 @@
 //! Exact peaks of a structure of many masses, floor by floor: between the ends of pieces, too.
 //!
-//! Each quantity is expanded as a series in time over each polynomial of the motion. If a bound of the series exceeds the largest
-//! magnitude so far, the quantity is looked at where its series is stationary. Its values there come from the state.
+//! A bound over a polynomial of the motion tells most of the time that a quantity has no larger magnitude there than so far.
+//! Otherwise the quantity is expanded as a series in time. If a bound of the series exceeds the largest magnitude so far, the
+//! quantity is looked at where its series is stationary. Its values there come from the state.
 
 use super::peaks::{Peak, TENDON, Tendon, has_tendon};
 use super::{Finish, Run, RunError};
-use crate::engine::piece::{CONVERGED, Expansion, FINEST_PART, Piece, Sample, Watch};
+use crate::engine::piece::{CONVERGED, Expansion, FINEST_PART, Piece, Sample, Turning, Watch};
 use crate::mechanics::floors::{FrameOutput, MotionOfFloors};
 use crate::mechanics::gauge::{Gauge, Reading};
+use crate::mechanics::instant::{Instant, Strut};
+use crate::mechanics::lateral::{Coordinates, Lateral};
+use crate::numbers::most::Most;
 use crate::numbers::{Angle, Number, Turn};
 use crate::series::extremes;
 use crate::series::terms::Terms;
+use crate::structure::Mode;
 use crate::structure::frame::Frame;
 use crate::{Detail, Floor, Modes, Phase};
 use serde::{Deserialize, Serialize};
@@ -131,6 +136,46 @@ impl MotionOfFloors<Terms> for Over<'_> {
     }
 }
 
+/// Bounds of the magnitudes of the coordinates of the modes, or of the forces on them.
+#[derive(Clone, Copy)]
+struct Mosts(Modes);
+
+impl Lateral<Most> for Mosts {
+    type Structure = Frame;
+
+    fn of(&self, j: usize) -> Most {
+        Most(self.0.of(j))
+    }
+
+    fn modes(frame: &Frame) -> &[Mode] {
+        frame.modes()
+    }
+}
+
+/// Bounds of the magnitudes over a polynomial of the motion. There is none of θ̈, which modes that are left out need.
+fn bounds<'a>(expansion: &Expansion<'a, Modes>) -> Turning<'a, Most, Mosts> {
+    let &Expansion { piece, from, arc } = expansion;
+    let (frame, phase, end) = (piece.level.structure(), piece.before.phase, arc.end());
+    let mosts = |most: &dyn Fn(usize) -> f64| Mosts(Modes::each(frame, |j, _| most(j)));
+    let loads = [from, from + arc.duration()].map(|tau| piece.load.at(tau));
+    let largest = |of: [f64; 2]| of[0].abs().max(of[1].abs());
+    let theta = Most(arc.most(&arc.theta, end.theta));
+    let x = Instant {
+        structure: frame,
+        s: phase.side().sign(),
+        strut: Strut::Elastic(frame.base.damping(phase)),
+        u: mosts(&|j| arc.most(&arc.series(|k| arc.u[k].of(j)), end.u.of(j))),
+        u_dot: mosts(&|j| arc.most(&arc.series(|k| arc.u_dot[k].of(j)), end.u_dot.of(j))),
+        theta,
+        theta_dot: Most(arc.most(&arc.theta_dot, end.theta_dot)),
+        turn: theta.turn(),
+        a_g: Most(largest(loads.map(|load| load.a_g))),
+        F_t: mosts(&|j| largest(loads.map(|load| load.F_t.of(j)))),
+        a_v: Most(largest(loads.map(|load| load.a_v))),
+    };
+    Turning { x, theta_ddot: Most(f64::MAX) }
+}
+
 /// Whether the peak of `output` is searched.
 fn is_searched(output: &FrameOutput) -> bool {
     use FrameOutput::{theta_dot, u_dot, uplift, v_t};
@@ -160,20 +205,32 @@ impl Profile {
 
     /// Adds the values of `sample`, which need not be in a piece.
     pub(super) fn see_instant(&mut self, sample: &Sample<Modes>) {
-        self.peaks.iter_mut().for_each(|(output, peak)| peak.see(sample.output(*output), sample.motion.time));
+        let value = sample.outputs();
+        self.peaks.iter_mut().for_each(|(output, peak)| peak.see(value(*output), sample.motion.time));
     }
 
     /// Looks at a polynomial, which may be halved `halvings` times.
     fn look(&mut self, expansion: &Expansion<Modes>, halvings: u32) {
+        let bounds = bounds(expansion);
+        let may_be_same = |i: &usize| {
+            let (output, peak) = self.peaks[*i];
+            let Most(bound) = output.of(&bounds);
+            bound > 0.0 && peak.may_be_same(bound)
+        };
+        let open: Vec<_> = (0..self.peaks.len()).filter(may_be_same).collect();
+        if open.is_empty() {
+            return;
+        }
         let (over, reach) = (Over::new(*expansion), expansion.arc.reach);
         let [first, last] = [0.0, reach].map(|sigma| expansion.sample(sigma));
-        for i in 0..self.peaks.len() {
+        let [at_first, at_last] = [&first, &last].map(Sample::<Modes>::outputs);
+        for i in open {
             let (output, peak) = &mut self.peaks[i];
-            let (series, end) = (output.of(&over), last.output(*output));
+            let (series, end) = (output.of(&over), at_last(*output));
             if halvings > 0 && !expansion.has_converged(&series, end, CONVERGED) {
                 return expansion.halves(|half| self.look(half, halvings - 1));
             }
-            peak.see(first.output(*output), first.motion.time);
+            peak.see(at_first(*output), first.motion.time);
             peak.see(end, last.motion.time);
             if peak.may_change(extremes::bound(series.used(), reach), first.motion.time) {
                 extremes::stationary_points(series.used(), reach, |sigma| {

@@ -170,9 +170,7 @@ impl<Q: Coordinates> Arc<Q> {
             theta_dot: evaluate(self.used(&self.theta_dot), sigma),
         }
     }
-}
 
-impl Arc {
     /// A series of the same order, of these `coefficients`.
     pub(crate) fn series(&self, coefficients: impl Fn(usize) -> f64) -> Series {
         let mut series = ZERO;
@@ -180,16 +178,18 @@ impl Arc {
         series
     }
 
-    /// Coefficient `k` of the slope of `series` per unit of σ; 0 of the highest order, because the next one is not known.
-    #[inline(always)]
-    pub(crate) fn slope(&self, series: &Series, k: usize) -> f64 {
-        if k < self.order { ORDERS[k + 1] * series[k + 1] } else { 0.0 }
-    }
-
     /// Bound of the magnitude of a `series` of this arc that ends in `end`.
     #[inline(always)]
     pub(crate) fn most(&self, series: &Series, end: f64) -> f64 {
         series[0].abs().max(end.abs()) + off_chord(self.used(series), self.reach)
+    }
+}
+
+impl Arc {
+    /// Coefficient `k` of the slope of `series` per unit of σ; 0 of the highest order, because the next one is not known.
+    #[inline(always)]
+    pub(crate) fn slope(&self, series: &Series, k: usize) -> f64 {
+        if k < self.order { ORDERS[k + 1] * series[k + 1] } else { 0.0 }
     }
 }
 

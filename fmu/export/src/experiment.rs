@@ -7,9 +7,11 @@ use rocking::run::{LONGEST_REST, Run};
 use rocking::structure::any::AnyStructure;
 use std::f64::consts::TAU;
 
-/// With a record, the whole run of the `structure` on the `ground`, in steps of the record's samples: until the structure
-/// stands for good or overturns, as a run without a stated end. Without a record, as long as a free motion is worth looking
-/// at, 10/p_l, in steps that show the vibration mode, 1/(20 f_u), rounded to a 1, 2 or 5.
+/// The experiment that a host is offered.
+///
+/// With a record on the `ground`, the steps are those of the record's samples. The experiment ends when the `structure` stands for
+/// good or overturns, like a run without a stated end. Without a record, the experiment lasts 10/p_l. Its steps of 1/(20 f_u),
+/// rounded to a 1, 2 or 5, show the vibration mode.
 pub fn default_experiment(structure: &AnyStructure, ground: Option<&GroundRecord>) -> DefaultExperiment {
     let p_l = structure.base().p_l;
     let (duration, step_size) = match ground.map(|ground| ground.in_m_s2(structure.base().g)) {

@@ -97,9 +97,10 @@ pub enum ExportError {
 /// The path of a file, and its content.
 pub type RecordFile = (PathBuf, Vec<u8>);
 
-/// The FMU of `structure` under `name` for hosts of `version`, with the shared `libraries` and the `records`, of which the
-/// first is what its ground follows, and the `vertical` component to that: what it carries, and the bytes of the archive. The
-/// same name, structure, libraries and records give the same bytes.
+/// The FMU of `structure` under `name` for hosts of `version`: its contents, and the bytes of the archive.
+///
+/// The archive has the shared `libraries` and the `records`. The ground follows the first record, and `vertical` is its vertical
+/// component. The same name, structure, libraries and records give the same bytes.
 pub fn export(
     version: Version,
     name: &ModelName,

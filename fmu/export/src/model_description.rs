@@ -55,8 +55,8 @@ mod tests {
         xml(version, "Pier", contents, experiment)
     }
 
-    /// What the table says of a few variables is what the description points at: once the simulation goes on, at the states,
-    /// at the start at what these start from, in FMI 3.0 at parameters and time, too.
+    /// The description repeats what the table says a variable depends on. Once the simulation goes on, these are the states. The
+    /// dependencies at the start are the variables that give the states; FMI 3.0 adds parameters and time.
     #[test]
     fn the_structure_points_at_what_the_table_names() {
         let contents = one_mass(Parameters::MCMANUS);

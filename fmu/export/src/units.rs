@@ -58,9 +58,10 @@ pub fn display_unit(variable: &Variable, structure: &AnyStructure) -> Option<&'s
     shown.filter(|_| unit != "s" && !is_parameter)
 }
 
-/// The magnitude that is usual for `variable`, of what moves: at the rotation α_cg, at which the structure is about to fall,
-/// at u_cr, at which its base lifts off, and under the acceleration g tan α_cg, which lifts it statically (Eqs 2 to 4). To
-/// three digits.
+/// The magnitude that is usual for `variable` in a motion, to three digits.
+///
+/// The structure is about to fall at the rotation α_cg. Its base lifts off at u_cr, and statically under the acceleration
+/// g tan α_cg (Eqs 2 to 4).
 pub fn nominal(variable: &Variable, structure: &AnyStructure) -> Option<f64> {
     let &Base { m_t, B, g, p_l, tan_alpha_cg, .. } = structure.base();
     let acceleration = g * tan_alpha_cg;
