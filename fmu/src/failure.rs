@@ -7,6 +7,7 @@ use rocking::engine::AdvanceError;
 use rocking::mechanics::state::InitialStateError;
 use rocking::run::record::SamplesError;
 use rocking::structure::parameters::ParameterError;
+use rocking::structure::quantity::OutOfRange;
 
 /// Why something is refused.
 #[derive(Debug, thiserror::Error)]
