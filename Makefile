@@ -23,6 +23,7 @@
 # make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
 # make coupling  regenerate docs/evidence/coupling.md and its figures (minutes)
 # make exchange  regenerate docs/evidence/model_exchange.md and its figure (minutes)
+# make precision  measure docs/evidence/accuracy.md and speed.md anew, with heyoka and scipy (minutes; nothing else may run)
 # make bench   criterion benchmark of a whole record, one step over it through fmpy, and the Python module
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
 # make fuzz    ten million hostile calls of each interface and as many damaged records, a core for each (CI: 100,000 of each and 40,000)
@@ -70,7 +71,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test check lint tools heavy evidence study python module hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu arm_python old_glibc docs pages pictures report restrained overturning modes coupling exchange bench licenses fuzz records library exporter mingw host_packages
+.PHONY: demo test check lint tools heavy evidence study python module hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu arm_python old_glibc docs pages pictures report restrained overturning modes coupling exchange bench licenses fuzz precision records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -277,6 +278,9 @@ coupling: .venv/test exporter out/mcmanus.fmu out/evison.fmu out/mcmanus3.fmu ou
 exchange: .venv/test out/mcmanus.fmu
 	PYTHONPATH=examples OMP_NUM_THREADS=1 $(PYTHON) -m model_exchange --fmu out/mcmanus.fmu
 
+precision: .venv/peers
+	cargo run --release --manifest-path study/Cargo.toml -- precision
+
 records: .venv/ready
 
 CRITERION := $(or $(CARGO_TARGET_DIR),study/target)/criterion
@@ -330,4 +334,4 @@ out/%.fmu: library
 	$(PIP) $<
 	touch $@
 
-.venv/heavy .venv/dist .venv/docs: .venv/test
+.venv/heavy .venv/dist .venv/docs .venv/peers: .venv/test

@@ -22,6 +22,7 @@ pub mod colour {
     pub const VERMILLION: RGBColor = RGBColor(213, 94, 0);
     pub const PURPLE: RGBColor = RGBColor(180, 80, 140);
     pub const GREY: RGBColor = RGBColor(100, 100, 100);
+    pub const BROWN: RGBColor = RGBColor(125, 60, 20);
     pub const PALE: RGBColor = RGBColor(228, 228, 228);
 }
 
@@ -308,17 +309,20 @@ impl Panel {
             names.extend(end.filter(|_| !name.is_empty()).map(|end| (end, name.as_str(), style.colour)));
         }
         names.extend(self.notes.iter().map(|(at, text, colour)| (pixel(place(at)), text.as_str(), *colour)));
+        names.sort_by_key(|((x, y), ..)| (*y, *x));
+        // a name of points without a line has nothing else that leads to them: it comes first
+        let is_lone = |name: &str| self.series.iter().any(|series| series.name == name && series.style.width == 0);
+        names.sort_by_key(|(_, name, _)| !is_lone(name));
         let (_, frame) = chart.plotting_area().get_pixel_range();
         draw_names(area, frame.start - top..frame.end - top, names)
     }
 }
 
-/// Words beside their points, lines parted by commas: each as near below its point as there is room within the frame, whose top
+/// Words beside their points in turn, lines parted by commas: each as near below its point as there is room within the frame, whose top
 /// and bottom are given, or else above it.
-fn draw_names(area: &Drawing, frame: Range<i32>, mut names: Vec<((i32, i32), &str, RGBColor)>) -> Result<()> {
+fn draw_names(area: &Drawing, frame: Range<i32>, names: Vec<((i32, i32), &str, RGBColor)>) -> Result<()> {
     let line_height = WORDS as i32 + 2;
     let mut drawn: Vec<(Range<i32>, Range<i32>)> = Vec::new(); // from left to right, from top to bottom
-    names.sort_by_key(|((x, y), ..)| (*y, *x));
     for ((x, y), text, colour) in names {
         let lines: Vec<_> = text.split_inclusive(", ").collect();
         let longest = lines.iter().map(|line| line.chars().count()).max().unwrap_or(0);

@@ -36,7 +36,10 @@ fn main() -> Result<()> {
     let style = ProgressStyle::with_template("{elapsed_precise} {bar:40} {pos}/{len} {msg}")?;
     let progress = ProgressBar::new(0).with_style(style);
     match command {
-        Command::Precision => precision::write(&Scene::all(&records()?)?, precision::FULL, evidence, &progress)?,
+        Command::Precision => {
+            let (scenes, python) = (Scene::all(&records()?)?, Path::new(".venv/bin/python"));
+            precision::write(&scenes, precision::FULL, Some(python), evidence, &progress)?;
+        }
         Command::Stability => stability::write(evidence)?,
         Command::Validity => validity::write(&records()?, explain, &progress)?,
         Command::Failures => {

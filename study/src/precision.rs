@@ -2,6 +2,7 @@
 
 mod curves;
 mod page;
+mod peers;
 
 use crate::engine;
 use crate::response::{Errors, Failure, Response};
@@ -67,8 +68,9 @@ pub struct Limits {
 /// Limits of the full study.
 pub const FULL: Limits = Limits { run: 0.25, points: 5 };
 
-/// Every curve on `scene`. Runs are timed: nothing else may run meanwhile.
-pub fn measure(scene: &Scene, limits: Limits, progress: &ProgressBar) -> Result<Diagram> {
+/// Every curve on `scene`, those of Python's libraries by the interpreter `python`. Runs are timed: nothing else may run
+/// meanwhile.
+pub fn measure(scene: &Scene, limits: Limits, python: Option<&Path>, progress: &ProgressBar) -> Result<Diagram> {
     let exact = engine::reference(scene);
     let moved = engine::reference(&scene.scaled(1.0 + PERTURBATION));
     let conditioning = Errors::of(&moved, &exact)?;
@@ -82,7 +84,9 @@ pub fn measure(scene: &Scene, limits: Limits, progress: &ProgressBar) -> Result<
             progress.inc(1);
             Curve { name: method.name, family: method.family, setting: method.setting, points }
         })
-        .collect();
+        .collect::<Vec<_>>();
+    let peers = python.map(|python| peers::curves(scene, &exact, conditioning.theta, limits, python));
+    let curves = curves.into_iter().chain(peers.transpose()?.unwrap_or_default()).collect();
     let (&Scene { key, title, .. }, dt) = (scene, scene.dt());
     Ok(Diagram { key, title, conditioning, transitions: exact.transitions, dt, curves })
 }
@@ -112,7 +116,13 @@ fn sweep(method: &Method, scene: &Scene, exact: &Response, conditioning: f64, li
 }
 
 /// Measures all `scenes` and writes `accuracy.md`, with its pictures and numbers, and `speed.md` into `docs`.
-pub fn write(scenes: &[Scene], limits: Limits, docs: &Path, progress: &ProgressBar) -> Result<()> {
-    let diagrams = scenes.iter().map(|scene| measure(scene, limits, progress)).collect::<Result<Vec<_>>>()?;
+pub fn write(
+    scenes: &[Scene],
+    limits: Limits,
+    python: Option<&Path>,
+    docs: &Path,
+    progress: &ProgressBar,
+) -> Result<()> {
+    let diagrams = scenes.iter().map(|scene| measure(scene, limits, python, progress)).collect::<Result<Vec<_>>>()?;
     page::write(&diagrams, docs)
 }

@@ -40,6 +40,9 @@ pub enum Failure {
     /// More transitions within one interval than can be.
     #[error("opens and shuts contact without end at t = {time:.3} s")]
     Chatter { time: f64 },
+    /// The reason in the words of `peers.py`.
+    #[error("{0}")]
+    OfPeer(String),
     #[error("gives up at t = {time:.3} s: {message}")]
     GaveUp { time: f64, message: String },
 }

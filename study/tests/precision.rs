@@ -16,7 +16,7 @@ fn errors(curve: &Curve) -> Vec<f64> {
 
 #[test]
 fn the_curves_are_what_the_methods_are_known_for() {
-    let diagram = measure(&synthetic::scene(), SMALL, &ProgressBar::hidden()).unwrap();
+    let diagram = measure(&synthetic::scene(), SMALL, None, &ProgressBar::hidden()).unwrap();
     let curve = |name| diagram.curves.iter().find(|curve| curve.name == name).unwrap();
     // 6 levels, 6 textbook methods twice, 6 solvers of libraries, this project with the input held
     assert_eq!(diagram.curves.len(), 25);
@@ -46,7 +46,7 @@ fn the_curves_are_what_the_methods_are_known_for() {
 fn the_command_writes_what_it_has_measured() {
     let docs = tempfile::tempdir().unwrap();
     let scene = synthetic::scene();
-    write(std::slice::from_ref(&scene), SMALL, docs.path(), &ProgressBar::hidden()).unwrap();
+    write(std::slice::from_ref(&scene), SMALL, None, docs.path(), &ProgressBar::hidden()).unwrap();
     let mut csv = csv::Reader::from_path(docs.path().join("accuracy-synthetic.csv")).unwrap();
     let rows: Vec<_> = csv.records().map(Result::unwrap).collect();
     assert_eq!(rows.len(), 25 * 5);

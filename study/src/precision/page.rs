@@ -1,7 +1,7 @@
 //! `docs/evidence/accuracy.md` and `speed.md`: the curves as pictures, as numbers, and in sentences made from these.
 
 use super::{Curve, Diagram, Family, PERTURBATION, Point};
-use crate::chart::colour::{BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION};
+use crate::chart::colour::{BLACK, BLUE, BROWN, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION};
 use crate::chart::{Axis, Figure, Marker, Panel, Style, power_of_ten, scientific};
 use crate::response::Errors;
 use anyhow::{Context, Result};
@@ -30,12 +30,12 @@ const PANELS: [(&str, &[Family]); 4] = [
 
 /// How the curve `k` of a family is drawn.
 fn style(family: Family, k: usize) -> Style {
-    const COLOURS: [RGBColor; 6] = [ORANGE, SKY, GREEN, BLUE, VERMILLION, PURPLE];
+    const COLOURS: [RGBColor; 8] = [ORANGE, SKY, GREEN, BLUE, VERMILLION, PURPLE, BROWN, GREY];
     const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Square, Marker::Triangle, Marker::Diamond];
     match family {
         Family::Ours => Style::marked(BLACK, 0, Marker::Circle),
         Family::Host => Style::marked(GREY, 2, Marker::Circle),
-        _ => Style::marked(COLOURS[k % 6], 2, MARKERS[k % 4]),
+        _ => Style::marked(COLOURS[k % 8], 2, MARKERS[k % 4]),
     }
 }
 
