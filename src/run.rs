@@ -194,6 +194,13 @@ impl<'a> Run<'a, Modes> {
 }
 
 impl<'a, Q: Moves> Run<'a, Q> {
+    /// The same structure on a fixed base, from rest under the same ground motion until `end` (s).
+    pub fn on_fixed_base(&self, end: f64) -> Run<'a, Q> {
+        let u = Q::parts(&self.structure, 0.0);
+        let initial = State { u, u_dot: u, theta: 0.0, theta_dot: 0.0 };
+        Run { initial, detail: Detail::FixedBase, end: End::At(end), ..self.clone() }
+    }
+
     /// Follows the motion to the end.
     pub fn follow<W: Watch<Q>>(&self, watch: &mut W) -> Result<Finish<Q>, RunError> {
         let (ending, engine) = self.course()?.finish(watch)?;

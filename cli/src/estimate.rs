@@ -14,7 +14,7 @@ pub struct EstimateArgs {
     #[command(flatten)]
     ground: RecordArgs,
     /// Dynamic amplification C at a transition between rocking phases, 0 to 2; 2 for an instant one
-    #[arg(long, value_name = "C", default_value_t = INSTANT_TRANSITION, allow_negative_numbers = true)]
+    #[arg(long, value_name = "C", default_value_t = INSTANT_TRANSITION, allow_hyphen_values = true)]
     amplification: f64,
     /// Amplitudes theta/tan(alpha_cg) at which to show the effective frequency
     #[arg(
@@ -22,7 +22,7 @@ pub struct EstimateArgs {
         value_name = "LIST",
         num_args = 1..,
         value_delimiter = ',',
-        allow_negative_numbers = true,
+        allow_hyphen_values = true,
         default_values_t = [0.1, 0.25, 0.5, 0.75, 0.9]
     )]
     amplitudes: Vec<f64>,

@@ -32,28 +32,28 @@ struct OfPulse {
     #[arg(value_name = "SHAPE", value_parser = one_of(Shape::ALL.map(|of| (PossibleValue::new(of.name()).help(of.definition()), of))))]
     shape: Shape,
     /// Amplitude a_p of the ground acceleration
-    #[arg(long, value_name = "G", allow_negative_numbers = true)]
+    #[arg(long, value_name = "G", allow_hyphen_values = true)]
     amplitude: Option<f64>,
     /// Amplitude in units of g tan(alpha_cg) of the structure
-    #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
+    #[arg(long, value_name = "RATIO", allow_hyphen_values = true)]
     amplitude_ratio: Option<f64>,
     /// Frequency
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ", allow_hyphen_values = true)]
     frequency: Option<f64>,
     /// Period, 1/frequency: of a half sine too, which lasts half of it
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     period: Option<f64>,
     /// Circular frequency in units of p_l of the structure
-    #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
+    #[arg(long, value_name = "RATIO", allow_hyphen_values = true)]
     frequency_ratio: Option<f64>,
     /// Periods of a sine or cosine [default: 1]; gamma of mavroeidis_papageorgiou [default: 2]
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
     cycles: Option<f64>,
     /// Phase of a sine or cosine; nu of mavroeidis_papageorgiou
-    #[arg(long, value_name = "RAD", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "RAD", default_value_t = 0.0, allow_hyphen_values = true)]
     phase: f64,
     /// How far the straight lines between samples may be off the curve, in parts of the amplitude
-    #[arg(long, value_name = "PART", default_value_t = DEFAULT_ERROR, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PART", default_value_t = DEFAULT_ERROR, allow_hyphen_values = true)]
     error: f64,
 }
 

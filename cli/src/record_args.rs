@@ -30,7 +30,7 @@ pub struct RecordOptions {
     #[arg(long, value_parser = one_of(Unit::NAMES), requires = "record")]
     pub unit: Option<Unit>,
     /// Time between the samples of a record without times; a record's own times must agree with it
-    #[arg(long, value_name = "SECONDS", requires = "record", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", requires = "record", allow_hyphen_values = true)]
     pub dt: Option<f64>,
     /// Column of the accelerations, by number or heading, or `all` if every number on every line is one; or channel of a
     /// COSMOS or CSMIP file, by number
@@ -40,10 +40,10 @@ pub struct RecordOptions {
     #[arg(long, requires = "record")]
     pub ignore_npts: bool,
     /// Multiplies the record's times [default: 1]
-    #[arg(long, value_name = "FACTOR", requires = "record", allow_negative_numbers = true)]
+    #[arg(long, value_name = "FACTOR", requires = "record", allow_hyphen_values = true)]
     pub time_scale: Option<f64>,
     /// Multiplies the record's accelerations [default: 1]
-    #[arg(long, value_name = "FACTOR", requires = "record", allow_negative_numbers = true)]
+    #[arg(long, value_name = "FACTOR", requires = "record", allow_hyphen_values = true)]
     pub scale: Option<f64>,
 }
 

@@ -43,7 +43,7 @@ pub struct SimulateArgs {
 #[command(next_help_heading = "Results")]
 struct ResultArgs {
     /// Interval of the response that -o writes [default: the record's samples; 0.001 in free vibration]
-    #[arg(long, value_name = "SECONDS", requires = "output", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", requires = "output", allow_hyphen_values = true)]
     interval: Option<f64>,
     /// Response as CSV, `-` for standard output
     #[arg(short, long, value_name = "FILE.csv")]
@@ -119,6 +119,10 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     args.limits.limits()?;
     args.results.format.check_beside(args.results.output.as_deref())?;
     let (structure, ground, conditions) = args.motion.load()?;
+    if let AnyStructure::Many(frame) = &structure {
+        let draws_floors = args.results.profile.is_some() && frame.floors().is_empty();
+        ensure!(!draws_floors, "--profile: the structure has no floors; give masses, heights and shapes");
+    }
     if let Some(line) = centring(structure.base()) {
         say!("centring       {line}");
     }

@@ -59,7 +59,11 @@ impl StructureArgs {
                 match read().with_context(|| format!("parameters in {}", input::name(path)))? {
                     AnyStructure::One(structure) => numbers.over(structure.parameters())?,
                     many if numbers.is_empty() => return Ok(many),
-                    _ => bail!("single numbers replace those of one mass only: change them in {}", input::name(path)),
+                    _ => bail!(
+                        "{} replaces a number of one mass, and {} describes many masses: change it in the file",
+                        numbers.names().map(on_command_line).collect::<Vec<_>>().join(", "),
+                        input::name(path)
+                    ),
                 }
             }
             (None, Some(preset)) => numbers.over(&preset)?,
@@ -112,7 +116,7 @@ fn option(name: &'static str, unit: &'static str, help: String) -> Arg {
         .help(help)
         .help_heading("Numbers that replace those of the preset or the file, or stand alone")
         .hide_short_help(true)
-        .allow_negative_numbers(true)
+        .allow_hyphen_values(true)
         .value_parser(number)
 }
 

@@ -9,7 +9,6 @@ use rocking::{Frame, Modes};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display, Formatter};
-use std::num::ParseFloatError;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::{fs, io};
@@ -55,6 +54,14 @@ pub struct FrameNumbers {
     floors: Vec<f64>,
 }
 
+/// Numbers of a structure without r, and of a mode.
+const OF_BODY: usize = 14;
+const OF_MODE: usize = 6;
+
+/// Lines of other numbers, or of another count of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Incomplete;
+
 impl Display for FrameNumbers {
     fn fmt(&self, text: &mut Formatter) -> fmt::Result {
         for line in [&self.body, &self.modes, &self.floors] {
@@ -66,13 +73,19 @@ impl Display for FrameNumbers {
 }
 
 impl FromStr for FrameNumbers {
-    type Err = ParseFloatError;
+    type Err = Incomplete;
 
-    fn from_str(text: &str) -> Result<FrameNumbers, ParseFloatError> {
+    fn from_str(text: &str) -> Result<FrameNumbers, Incomplete> {
         let mut lines = text.lines();
+        let number = |word: &str| word.parse().ok().filter(|number: &f64| number.is_finite());
         let mut line =
-            || -> Result<Vec<f64>, _> { lines.next().unwrap_or_default().split_whitespace().map(str::parse).collect() };
-        Ok(FrameNumbers { body: line()?, modes: line()?, floors: line()? })
+            || -> Option<Vec<f64>> { lines.next().unwrap_or_default().split_whitespace().map(number).collect() };
+        let (Some(body), Some(modes), Some(floors)) = (line(), line(), line()) else { return Err(Incomplete) };
+        let of_floor = 2 + modes.len() / OF_MODE;
+        let are_all = (OF_BODY..=OF_BODY + 1).contains(&body.len())
+            && modes.len().is_multiple_of(OF_MODE)
+            && floors.len().is_multiple_of(of_floor);
+        if are_all { Ok(FrameNumbers { body, modes, floors }) } else { Err(Incomplete) }
     }
 }
 
@@ -92,7 +105,7 @@ impl From<&Frame> for FrameNumbers {
 }
 
 impl FrameNumbers {
-    /// The structure; numbers that are not all there make none.
+    /// The structure.
     pub fn frame(&self) -> Result<Frame, FrameError> {
         let mut body = self.body.iter().copied();
         let mut next = || body.next().unwrap_or(f64::NAN);
@@ -100,7 +113,7 @@ impl FrameNumbers {
         let [P_0, k_t, xi_d, c_d, k_d, F_y] = std::array::from_fn(|_| next());
         let ties = Ties { P_0, k_t, xi_d, c_d, k_d, F_y };
         let body = Body { m0, J0, m_s, S_1, I_2, B, r: body.next(), g, c_ratio, ties };
-        let mode = |&[mass, gamma, share, height, stiffness, damping]: &[f64; 6]| Mode {
+        let mode = |&[mass, gamma, share, height, stiffness, damping]: &[f64; OF_MODE]| Mode {
             mass,
             gamma,
             share,
@@ -228,5 +241,38 @@ mod tests {
         assert!(refusal().contains("r = 1.5 is out of range"), "{}", refusal());
         fs::write(&file, evison.replace("r = 0.96", "e = 0.96")).unwrap();
         assert!(refusal().contains("missing field `r`"), "{}", refusal());
+    }
+
+    #[test]
+    fn a_structure_of_many_masses_needs_all_its_numbers() {
+        let body = Body {
+            m0: 1.0,
+            J0: 0.0,
+            m_s: 2.0,
+            S_1: 6.0,
+            I_2: 20.0,
+            B: 0.5,
+            r: None,
+            g: 9.81,
+            c_ratio: 1.0,
+            ties: Ties::default(),
+        };
+        let floor = Floor { mass: 2.0, height: 3.0, shape: Modes::new(&[1.0]) };
+        let frame = Frame::new(body, &[Mode::new(20.0, 0.02, 1.2, 4.0)], &[floor]).unwrap();
+        let whole = FrameNumbers::from(&frame).to_string();
+        let read = |text: &str| text.parse::<FrameNumbers>().map(|numbers| numbers.frame().unwrap());
+        assert_eq!(read(&whole), Ok(frame));
+        let lines: Vec<Vec<_>> = whole.lines().map(|line| line.split_whitespace().collect()).collect();
+        for (line, word) in (0..lines.len()).flat_map(|line| (0..lines[line].len()).map(move |word| (line, word))) {
+            let [mut less, mut none] = [lines.clone(), lines.clone()];
+            less[line].remove(word);
+            none[line][word] = "NaN";
+            for changed in [less, none] {
+                assert_eq!(
+                    read(&changed.iter().map(|line| line.join(" ") + "\n").collect::<String>()),
+                    Err(Incomplete)
+                );
+            }
+        }
     }
 }

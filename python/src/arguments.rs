@@ -27,9 +27,14 @@ pub fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
     numbers.map(|of| of[0]).ok_or_else(|| PyValueError::new_err(format!("{name} = {value:?}: it is no number")))
 }
 
+/// The integer `value`, which messages call `name`.
+pub fn integer(name: &str, value: &Bound<'_, PyAny>) -> PyResult<i64> {
+    value.extract().map_err(|_| PyValueError::new_err(format!("{name} = {value:?}: a whole number is needed")))
+}
+
 /// Readers of an argument of their name, whose messages have that name.
 pub mod argument {
-    use super::{Bound, Detail, PyAny, PyResult, number, one_of};
+    use super::{Bound, Detail, PyAny, PyResult, integer, number, one_of};
 
     macro_rules! numbers {
         ($($name:ident)*) => {$(
@@ -38,6 +43,10 @@ pub mod argument {
             }
         )*};
     }
+    pub fn floor(value: &Bound<'_, PyAny>) -> PyResult<i64> {
+        integer("floor", value)
+    }
+
     numbers!(amplification amplitude error frequency g phase scale time_scale tolerance within zeta);
 
     pub fn detail(value: &Bound<'_, PyAny>) -> PyResult<Detail> {

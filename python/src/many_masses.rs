@@ -1,6 +1,6 @@
 //! Structures of many masses from the keywords of Python.
 
-use crate::arguments::{matrix, number, numbers, refused};
+use crate::arguments::{integer, matrix, number, numbers, refused};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -45,6 +45,10 @@ pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Frame> {
     let missing = |name: &str| PyValueError::new_err(format!("{name} is missing"));
     let zeta = keywords.take("zeta")?.ok_or_else(|| missing("zeta (damping ratio in full contact)"))?;
     let storeys = match keywords.take("storeys")? {
+        Some(table) if table.hasattr("to_dict")? => {
+            let message = "storeys is a table: give its rows as dicts, storeys=table.to_dict(\"records\")";
+            return Err(PyValueError::new_err(message));
+        }
         Some(rows) => rows.try_iter()?.enumerate().map(|(i, row)| storey(i + 1, &row?)).collect::<PyResult<_>>()?,
         None => Vec::new(),
     };
@@ -64,7 +68,7 @@ pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Frame> {
             J_P,
         }),
     };
-    let keep = keywords.take("keep")?.map(|keep| keep.extract()).transpose()?;
+    let keep = keywords.take("keep")?.map(|keep| integer("keep", &keep)).transpose()?;
     let described =
         Described { zeta: damping(&zeta)?, storeys, floors, K, modes, total, keep, base: given(&keywords.0)? };
     described.frame().map_err(refused)

@@ -223,20 +223,24 @@ impl Run {
     fn spectrum<'py>(
         slf: Py<Self>,
         py: Python<'py>,
-        floor: usize,
+        #[pyo3(from_py_with = argument::floor)] floor: i64,
         periods: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = argument::zeta)] zeta: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
         let floors = slf.get().of.floors().len();
-        if !(1..=floors).contains(&floor) {
-            let has = if floors == 1 { "1".to_owned() } else { format!("1 to {floors}") };
+        let Some(below) = usize::try_from(floor - 1).ok().filter(|below| *below < floors) else {
+            let has = match floors {
+                0 => "no floors; give masses, heights and shapes".to_owned(),
+                1 => "floor 1 alone".to_owned(),
+                floors => format!("floors 1 to {floors}"),
+            };
             return Err(PyValueError::new_err(format!("floor = {floor} is out of range: the structure has {has}")));
-        }
+        };
         let usual = || (0..100).map(|i| 0.02 * 200.0_f64.powf(f64::from(i) / 99.0)).collect();
         let periods = periods.map_or_else(|| Ok(usual()), |periods| numbers("periods", periods))?;
         let named = PyDict::new(py);
         named.set_item("period", PyArray1::from_slice(py, &periods))?;
-        let S_a = interruptible(py, move |abandoned| slf.get().of.spectrum(floor - 1, &periods, zeta, abandoned))?;
+        let S_a = interruptible(py, move |abandoned| slf.get().of.spectrum(below, &periods, zeta, abandoned))?;
         named.set_item("S_a", PyArray1::from_vec(py, S_a))?;
         Ok(named)
     }

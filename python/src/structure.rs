@@ -96,11 +96,15 @@ impl Structure {
         numbers: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Structure> {
         let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
+        let of_many = OF_MANY.iter().find(|name| numbers.contains(name).unwrap_or(false));
         let parameters = match preset {
-            None if OF_MANY.iter().any(|name| numbers.contains(name).unwrap_or(false)) => {
-                return Structure::many(&numbers);
-            }
+            None if of_many.is_some() => return Structure::many(&numbers),
             None => given(&numbers)?.parameters(),
+            Some(_) if let Some(name) = of_many => {
+                let message =
+                    format!("preset is a structure of one mass, and {name} makes one of many: leave out one of them");
+                return Err(PyValueError::new_err(message));
+            }
             Some(preset) => given(&numbers)?.over(&one_of("preset", preset, PRESETS)?),
         };
         Structure::of(parameters.map_err(refused)?)

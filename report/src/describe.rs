@@ -2,12 +2,13 @@
 
 use crate::quantities::NamedValue;
 use crate::significant::{short, significant};
+use rocking::run::validity;
 use rocking::structure::any::{ModeOf, OF_FRAME, OF_MODE};
 use rocking::structure::frame::Body;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::Quantity;
 use rocking::structure::{DERIVED, Derived};
-use rocking::{Frame, Structure};
+use rocking::{Detail, Frame, Structure};
 use std::fmt::{self, Write};
 
 /// The parameters and the derived quantities, for people.
@@ -40,11 +41,18 @@ pub fn frame(frame: &Frame) -> Result<String, fmt::Error> {
     if frame.base().r.is_none() {
         writeln!(out, "  r is not given: momentum with the shape frozen gives it for each impact")?;
     }
+    for warning in validity::of_frame(frame, Detail::Auto) {
+        writeln!(out, "  {warning}")?;
+    }
     let &Body { m_s, S_1, I_2, .. } = frame.body();
     let [mass, first, second] = frame.rest();
     let part = |rest: f64, whole: f64| format!("{:.2} %", 100.0 * (1.0 - rest / whole));
     let [mass, first, second] = [part(mass, m_s), part(first, S_1), part(second, I_2)];
-    writeln!(out, "  the modes carry {mass} of m_s, {first} of S_1, {second} of I_2; the rest turns with the base")?;
+    let modes = match (frame.modes().len(), frame.floors().len()) {
+        (modes, floors) if floors > modes => format!("{modes} modes of {floors} floors"),
+        (modes, _) => format!("{modes} modes"),
+    };
+    writeln!(out, "  {modes} carry {mass} of m_s, {first} of S_1, {second} of I_2; the rest turns with the base")?;
     writeln!(out, "\nModes of vibration: f_u is the frequency while the structure rocks, share a part of m_s")?;
     write!(out, "  mode")?;
     for Derived { name, unit, .. } in &OF_MODE {

@@ -125,8 +125,8 @@ impl<'s, Q: Shown> Summary<'s, Q> {
             let (magnitude, time) = (significant(peak.magnitude / per_unit), instant(peak.time));
             writeln!(out, "{:<14} {magnitude:>12} {unit:<4} at {time} s", format!("peak |{name}|"))?;
         }
-        if Q::HAS_FLOORS {
-            let floors = Q::floors(self.structure, peaks);
+        let floors = if Q::HAS_FLOORS { Q::floors(self.structure, peaks) } else { Vec::new() };
+        if !floors.is_empty() {
             let largest = |i: usize| floors.iter().fold(0.0_f64, |most, floor| most.max(floor[i]));
             let columns = OF_FLOOR.iter().enumerate().map(|(i, (name, unit))| match i {
                 0 => (name, 1.0, *unit),

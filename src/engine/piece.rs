@@ -400,6 +400,26 @@ impl<Q: Moves> Arcs<'_, Q> {
     }
 }
 
+impl<'a> Arcs<'a, Modes> {
+    /// What is left of a leap in full contact, with bounds of |u|, |u̇| and |ü| of the vibration about the motion that follows the
+    /// load.
+    pub(crate) fn rest(&self) -> Option<(Part<'a, Modes>, [Modes; 3])> {
+        let part = self.left?;
+        Some((part, part.piece.level.vibration(part.piece.before.phase, &part.step())?))
+    }
+}
+
+impl Part<'_, Modes> {
+    /// The motion at both ends.
+    pub(crate) fn samples(&self) -> [Sample<'_, Modes>; 2] {
+        let &Piece { before, load, level, .. } = self.piece;
+        [self.start, self.end].map(|(tau, state)| {
+            let motion = Motion { time: before.time + tau, state, ..*before };
+            Sample { motion, load: load.at(tau), level }
+        })
+    }
+}
+
 impl Arcs<'_> {
     /// Leaves out the middle of what is left of a long leap.
     ///

@@ -68,6 +68,11 @@ pub trait Level<Q: Coordinates = f64> {
         None
     }
 
+    /// Bounds of |u|, |u̇| and |ü| of the vibration about the motion that follows the load, over an exact leap.
+    fn vibration(&self, _phase: Phase, _start: &Start<Q>) -> Option<[Q; 3]> {
+        None
+    }
+
     /// Writes the motion from `start` in `phase` into `arc`.
     fn series(&self, phase: Phase, start: &Start<Q>, arc: &mut Arc<Q>);
 

@@ -188,7 +188,7 @@ impl ManyModes {
         let base = Modes::base(frame);
         let of_modes = Modes::sum(frame, |_, mode| mode.mass * mode.height * mode.height);
         let oscillator = |mode: &Mode| {
-            let omega = (mode.stiffness / mode.mass).sqrt();
+            let omega = mode.omega();
             (Oscillator { omega, zeta: mode.damping / (2.0 * mode.mass * omega) }, Kept::new(Flow::NONE))
         };
         let left = base.J_P - of_modes;
@@ -497,6 +497,19 @@ impl Level<Modes> for ManyModes {
         Rates::NONE
     }
 
+    fn vibration(&self, phase: Phase, start: &Start<Modes>) -> Option<[Modes; 3]> {
+        let (Phase::FullContact, Some(contact)) = (phase, &self.contact) else { return None };
+        let &Start { state, a_top, interval, .. } = start;
+        let mut bounds = [Modes::parts(&self.subject.structure, 0.0); 3];
+        for (j, (oscillator, _)) in contact.iter().enumerate() {
+            let from = [state.u.of(j), state.u_dot.of(j)];
+            let swing = oscillator.swing(from, a_top.value.of(j), a_top.slope.of(j), interval);
+            let [velocity, acceleration, _] = oscillator.rates(&swing, 0.0);
+            bounds.iter_mut().zip([swing.amplitude, velocity, acceleration]).for_each(|(of, most)| of.set(j, most));
+        }
+        Some(bounds)
+    }
+
     fn series(&self, phase: Phase, start: &Start<Modes>, arc: &mut Arc<Modes>) {
         match phase {
             Phase::Rocking(side) if self.detail == Detail::Linear => self.rocking_little(side, start, arc),
@@ -533,7 +546,7 @@ impl Level<Modes> for ManyModes {
 
     fn stays_down(&self, state: &State<Modes>, dissipators: &Dissipators) -> bool {
         let springs = Modes::sum(&self.subject.structure, |j, mode| {
-            let omega = (mode.stiffness / mode.mass).sqrt();
+            let omega = mode.omega();
             (mode.height * mode.stiffness).abs() * libm::hypot(state.u.of(j), state.u_dot.of(j) / omega)
         });
         springs < self.least_hold(&Start { dissipators, ..Start::default() })

@@ -6,7 +6,7 @@
 
 use super::peaks::{Peak, TENDON, Tendon, has_tendon};
 use super::{Finish, Run, RunError};
-use crate::engine::piece::{CONVERGED, Expansion, FINEST_PART, Piece, Sample, Turning, Watch};
+use crate::engine::piece::{CONVERGED, Expansion, FINEST_PART, Part, Piece, Sample, Turning, Watch};
 use crate::mechanics::floors::{FrameOutput, MotionOfFloors};
 use crate::mechanics::gauge::{Gauge, Reading};
 use crate::mechanics::instant::{Instant, Strut};
@@ -17,7 +17,7 @@ use crate::series::extremes;
 use crate::series::terms::Terms;
 use crate::structure::Mode;
 use crate::structure::frame::Frame;
-use crate::{Detail, Floor, Modes, Phase};
+use crate::{Detail, Floor, Modes, Phase, State};
 use serde::{Deserialize, Serialize};
 
 /// The peaks of a structure of many masses over the motion that has been watched, a fall too.
@@ -138,7 +138,7 @@ impl MotionOfFloors<Terms> for Over<'_> {
 
 /// Bounds of the magnitudes of the coordinates of the modes, or of the forces on them.
 #[derive(Clone, Copy)]
-struct Mosts(Modes);
+pub(super) struct Mosts(pub Modes);
 
 impl Lateral<Most> for Mosts {
     type Structure = Frame;
@@ -152,28 +152,52 @@ impl Lateral<Most> for Mosts {
     }
 }
 
-/// Bounds of the magnitudes over a polynomial of the motion. There is none of θ̈, which modes that are left out need.
+/// Bounds of the magnitudes over a polynomial of the motion.
 fn bounds<'a>(expansion: &Expansion<'a, Modes>) -> Turning<'a, Most, Mosts> {
     let &Expansion { piece, from, arc } = expansion;
-    let (frame, phase, end) = (piece.level.structure(), piece.before.phase, arc.end());
-    let mosts = |most: &dyn Fn(usize) -> f64| Mosts(Modes::each(frame, |j, _| most(j)));
-    let loads = [from, from + arc.duration()].map(|tau| piece.load.at(tau));
+    let (frame, end) = (piece.level.structure(), arc.end());
+    let most = State {
+        u: Modes::each(frame, |j, _| arc.most(&arc.series(|k| arc.u[k].of(j)), end.u.of(j))),
+        u_dot: Modes::each(frame, |j, _| arc.most(&arc.series(|k| arc.u_dot[k].of(j)), end.u_dot.of(j))),
+        theta: arc.most(&arc.theta, end.theta),
+        theta_dot: arc.most(&arc.theta_dot, end.theta_dot),
+    };
+    bounds_of(piece, [from, from + arc.duration()], &most)
+}
+
+/// Bounds of the magnitudes over what is left of a leap: u and u̇ leave their chords by at most twice the vibration.
+fn bounds_of_rest<'a>(part: &Part<'a, Modes>, [u, u_dot, _]: &[Modes; 3]) -> Turning<'a, Most, Mosts> {
+    let ((from, first), (until, last)) = (part.start, part.end);
+    let frame = part.piece.level.structure();
+    let most = |first: Modes, last: Modes, vibration: &Modes| {
+        Modes::each(frame, |j, _| first.of(j).abs().max(last.of(j).abs()) + 2.0 * vibration.of(j))
+    };
+    let most =
+        State { u: most(first.u, last.u, u), u_dot: most(first.u_dot, last.u_dot, u_dot), theta: 0.0, theta_dot: 0.0 };
+    bounds_of(part.piece, [from, until], &most)
+}
+
+/// Bounds of the magnitudes between two times (s) of a `piece`, over which the state has the magnitudes `most`. While rocking there
+/// is none of θ̈, which modes that are left out need.
+fn bounds_of<'a>(piece: &'a Piece<'a, Modes>, times: [f64; 2], most: &State<Modes>) -> Turning<'a, Most, Mosts> {
+    let (frame, phase) = (piece.level.structure(), piece.before.phase);
+    let loads = times.map(|tau| piece.load.at(tau));
     let largest = |of: [f64; 2]| of[0].abs().max(of[1].abs());
-    let theta = Most(arc.most(&arc.theta, end.theta));
+    let theta = Most(most.theta);
     let x = Instant {
         structure: frame,
         s: phase.side().sign(),
         strut: Strut::Elastic(frame.base.damping(phase)),
-        u: mosts(&|j| arc.most(&arc.series(|k| arc.u[k].of(j)), end.u.of(j))),
-        u_dot: mosts(&|j| arc.most(&arc.series(|k| arc.u_dot[k].of(j)), end.u_dot.of(j))),
+        u: Mosts(most.u),
+        u_dot: Mosts(most.u_dot),
         theta,
-        theta_dot: Most(arc.most(&arc.theta_dot, end.theta_dot)),
+        theta_dot: Most(most.theta_dot),
         turn: theta.turn(),
         a_g: Most(largest(loads.map(|load| load.a_g))),
-        F_t: mosts(&|j| largest(loads.map(|load| load.F_t.of(j)))),
+        F_t: Mosts(Modes::each(frame, |j, _| largest(loads.map(|load| load.F_t.of(j))))),
         a_v: Most(largest(loads.map(|load| load.a_v))),
     };
-    Turning { x, theta_ddot: Most(f64::MAX) }
+    Turning { x, theta_ddot: Most(if phase == Phase::FullContact { 0.0 } else { f64::MAX }) }
 }
 
 /// Whether the peak of `output` is searched.
@@ -209,15 +233,19 @@ impl Profile {
         self.peaks.iter_mut().for_each(|(output, peak)| peak.see(value(*output), sample.motion.time));
     }
 
-    /// Looks at a polynomial, which may be halved `halvings` times.
-    fn look(&mut self, expansion: &Expansion<Modes>, halvings: u32) {
-        let bounds = bounds(expansion);
+    /// Places of the outputs whose peaks may be reached again within these `bounds`.
+    fn open(&self, bounds: &Turning<Most, Mosts>) -> Vec<usize> {
         let may_be_same = |i: &usize| {
             let (output, peak) = self.peaks[*i];
-            let Most(bound) = output.of(&bounds);
+            let Most(bound) = output.of(bounds);
             bound > 0.0 && peak.may_be_same(bound)
         };
-        let open: Vec<_> = (0..self.peaks.len()).filter(may_be_same).collect();
+        (0..self.peaks.len()).filter(may_be_same).collect()
+    }
+
+    /// Looks at a polynomial, which may be halved `halvings` times.
+    fn look(&mut self, expansion: &Expansion<Modes>, halvings: u32) {
+        let open = self.open(&bounds(expansion));
         if open.is_empty() {
             return;
         }
@@ -257,6 +285,9 @@ impl Watch<Modes> for Profile {
         let mut arcs = piece.arcs();
         while let Some(expansion) = arcs.next() {
             self.look(&expansion, FINEST_PART);
+            if arcs.rest().is_some_and(|(rest, vibration)| self.open(&bounds_of_rest(&rest, &vibration)).is_empty()) {
+                break;
+            }
         }
     }
 }

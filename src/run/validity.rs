@@ -24,19 +24,24 @@
 
 mod assumptions;
 
+use super::profile::Mosts;
 use super::reaction_series::{self, Extent, extents};
 use super::{Finish, Run, RunError};
 use crate::engine::Moves;
-use crate::engine::piece::{Expansion, FINEST_PART, Piece, Sample, Watch};
+use crate::engine::piece::{Expansion, FINEST_PART, Part, Piece, Sample, Watch};
 use crate::levels::level::{Now, Rates};
 use crate::mechanics::impact;
-use crate::mechanics::instant::Instant;
+use crate::mechanics::instant::{Instant, Second, Strut};
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::reactions::forces;
+use crate::mechanics::state::State;
+use crate::numbers::Angle;
+use crate::numbers::most::Most;
 use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
-use crate::structure::Base;
+use crate::structure::{Base, Mode};
 use crate::{
     Detail, Frame, Impulse, Modes, Motion, Parameters, Phase, Ramp, Reactions, Side, Structure, Transition,
     TransitionKind,
@@ -49,6 +54,7 @@ use assumptions::{
     Tension,
 };
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// Something worse by no more than this part may be rounding.
 const ROUNDING: f64 = 1e-14;
@@ -364,7 +370,8 @@ impl<Q: Moves> Validity<Q> {
         };
         self.found.settlings += u64::from(kind == TransitionKind::Settling);
         let is_landing = phase == Phase::FullContact;
-        if is_landing && (Q::modes(structure).is_empty() || after != impact::land::<Q>(structure, &before)) {
+        let bounces = Q::modes(structure).is_empty() && impact::restitution::<Q>(structure, side, &before) > 0.0;
+        if is_landing && (bounces || after != impact::land::<Q>(structure, &before)) {
             return; // the rigid limit has come to rest: what is left below the tolerance is no impact
         }
         let kinetic = impact::kinetic_energy::<Q>(structure, side, &before);
@@ -432,12 +439,47 @@ impl Watch<Modes> for Validity<Modes> {
             if self.may_matter(piece.before.phase, &extents) {
                 self.look(expansion, &extents, reaction_series::of_modes, FINEST_PART);
             }
+            let of_rest = arcs.rest().and_then(|(rest, vibration)| extents_of_rest(&rest, &vibration));
+            if of_rest.is_some_and(|extents| !self.may_matter(piece.before.phase, &extents)) {
+                break;
+            }
         }
     }
 
     fn transition(&mut self, transition: &Transition<Modes>) {
         self.see_transition(transition);
     }
+}
+
+/// Bounds of the reactions of the edges over what is left of a leap, if the ground does not move vertically. The reactions of the
+/// motion that follows the load are linear in time. Those of the vibration about that motion add at most `off`, at an instant
+/// and at the ends.
+fn extents_of_rest(part: &Part<Modes>, &[u, u_dot, u_ddot]: &[Modes; 3]) -> Option<Reactions<Extent>> {
+    let &Piece { level, before: &Motion { phase, .. }, load, .. } = part.piece;
+    if load.is_vertical() {
+        return None;
+    }
+    let (structure, none) = (level.structure(), Most(0.0));
+    let x = Instant {
+        structure,
+        s: phase.side().sign(),
+        strut: Strut::Elastic(structure.base.damping(phase)),
+        u: Mosts(u),
+        u_dot: Mosts(u_dot),
+        theta: none,
+        theta_dot: none,
+        turn: none.turn(),
+        a_g: none,
+        F_t: Mosts(Modes::parts(structure, 0.0)),
+        a_v: none,
+    };
+    let off = Reactions::at(&x, &Second { u_ddot: Mosts(u_ddot), theta_ddot: none });
+    let [first, last] = part.samples().map(|sample| sample.edges());
+    Some(Reactions {
+        R_h: Extent::between(first.R_h, last.R_h, 2.0 * off.R_h.0),
+        R_v: Extent::between(first.R_v, last.R_v, 0.0),
+        R_m: Extent::between(first.R_m, last.R_m, 2.0 * off.R_m.0),
+    })
 }
 
 impl Validity {
@@ -598,9 +640,36 @@ pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
 
 /// The warnings that follow from a structure of many masses at the level `detail`, before anything moves.
 pub fn of_frame(frame: &Frame, detail: Detail) -> Vec<String> {
-    let given = frame.base.r.filter(|_| detail.has_uplift());
-    given.and_then(|r| pulling(r, impact::pulling_restitution(frame), "m_t")).into_iter().collect()
+    let &Base { J_P, m_t, B, r, .. } = &frame.base;
+    let at_rest = impact::restitution(frame, Side::Right, &State::<Modes>::default());
+    let mut warnings = Vec::new();
+    if detail.has_uplift() {
+        warnings.extend(r.and_then(|r| pulling(r, impact::pulling_restitution(frame), "m_t")));
+        if r.is_none() && at_rest <= 0.0 {
+            warnings.push(format!(
+                "r = {at_rest} by momentum: J_P = {J_P} kg.m2 is not above 2 m_t B^2 = {} kg.m2, and an impact with u = 0 ends \
+                 rocking; are masses in kg, heights in m, and is B half of the base's width?",
+                2.0 * m_t * B * B
+            ));
+        }
+    }
+    let height = frame.floors().iter().map(|floor| floor.height).fold(0.0, f64::max);
+    let lowest = frame.modes().iter().map(Mode::omega).reduce(f64::min);
+    let [f, usual] = [lowest.unwrap_or(f64::NAN) / TAU, USUAL_SPEED / height];
+    if (f / usual).max(usual / f) > UNUSUAL && height > 0.0 {
+        warnings.push(format!(
+            "f = {f} Hz of the lowest mode is far from the usual frequency of a structure {height} m high, about {usual} Hz: \
+             are masses in kg, stiffnesses in N/m, and f in Hz?"
+        ));
+    }
+    warnings
 }
+
+/// Frequency times height of buildings, m/s: the mean of 163 (Ellis 1980, not read; as quoted by others).
+const USUAL_SPEED: f64 = 46.0;
+
+/// Ratio to that frequency from which a unit is in doubt. A unit of mass or stiffness wrong by 1000 makes 32.
+const UNUSUAL: f64 = 15.0;
 
 /// The warning about a coefficient of restitution `r` that requires a pull.
 fn pulling(r: f64, limit: f64, mass: &str) -> Option<String> {

@@ -4,8 +4,8 @@
 pub fn last_where(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     loop {
         let middle = low + 0.5 * (high - low);
-        if middle <= low || middle >= high {
-            return low;
+        if !(low < middle && middle < high) {
+            return low; // at rounding, or no number
         }
         *(if holds(middle) { &mut low } else { &mut high }) = middle;
     }

@@ -40,7 +40,7 @@ pub struct ModeOf {
 
 /// The numbers of a mode that are shown.
 pub const OF_MODE: [Derived<ModeOf>; 7] = [
-    derived!("f" ["Hz"] "frequency in full contact", "", |of| (of.mode.stiffness / of.mode.mass).sqrt() / TAU),
+    derived!("f" ["Hz"] "frequency in full contact", "", |of| of.mode.omega() / TAU),
     derived!("zeta" ["1"] "damping ratio in full contact", "", |of| {
         of.mode.damping / (2.0 * (of.mode.stiffness * of.mode.mass).sqrt())
     }),

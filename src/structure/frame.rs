@@ -3,6 +3,7 @@
 use crate::mechanics::gauge::Gauge;
 use crate::mechanics::lateral::{Coordinates, Lateral, MOST_MODES, Modes};
 use crate::series::bisection::last_where;
+use crate::structure::quantity::{OutOfRange, Quantity, quantity};
 use crate::structure::{Base, Mode, Ties, Vibration};
 use crate::{Load, State};
 
@@ -36,6 +37,13 @@ pub struct Body {
     /// The tendon and the dissipators between the base and the ground.
     pub ties: Ties,
 }
+
+/// Limits of the moments of the mass above the foundation.
+const MOMENTS: [Quantity<Body>; 3] = [
+    quantity!(m_s ["kg"] 1e-6, 1e12, "mass above the base"),
+    quantity!(S_1 ["kg.m"] 1e-9, 1e16, "first moment of the mass above the base"),
+    quantity!(I_2 ["kg.m2"] 1e-12, 1e20, "second moment of the mass above the base"),
+];
 
 /// A floor, whose motion is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,6 +120,9 @@ pub enum FrameError {
     /// More modes than a structure may have, or none.
     #[error("{0} modes are given: a structure has 1 to {MOST_MODES}")]
     Modes(usize),
+    /// A moment of the mass above the foundation out of its range.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
     /// The modes carry more than the structure has.
     #[error(
         "the modes carry {of_modes:?} {unit} of the {name} = {whole:?} {unit} above the foundation: check masses, heights and units"
@@ -161,6 +172,11 @@ impl Mode {
         let damping = 2.0 * zeta * omega;
         Mode { mass: 1.0, gamma, share: gamma, height: kappa, stiffness: omega * omega, damping }
     }
+
+    /// Circular frequency in full contact, rad/s.
+    pub fn omega(&self) -> f64 {
+        (self.stiffness / self.mass).sqrt()
+    }
 }
 
 impl Floor {
@@ -184,6 +200,7 @@ impl Frame {
         if !(1..=MOST_MODES).contains(&count) {
             return Err(FrameError::Modes(count));
         }
+        MOMENTS.iter().try_for_each(|moment| moment.check((moment.get)(&body)))?;
         for (i, Floor { shape, .. }) in floors.iter().enumerate() {
             let numbers = shape.count();
             if numbers != count {
@@ -312,7 +329,7 @@ impl Frame {
     pub fn usual(&self) -> State<Modes> {
         let reach = self.body.m_s.sqrt() * self.base.g * self.base.tan_alpha_cg;
         let u = |mode: &Mode| reach * mode.mass.sqrt() / mode.stiffness;
-        let u_dot = |_: usize, mode: &Mode| u(mode) * (mode.stiffness / mode.mass).sqrt();
+        let u_dot = |_: usize, mode: &Mode| u(mode) * mode.omega();
         let theta = libm::atan(self.base.tan_alpha_cg);
         let theta_dot = self.base.p_l * theta;
         State { u: Modes::each(self, |_, mode| u(mode)), u_dot: Modes::each(self, u_dot), theta, theta_dot }
@@ -329,7 +346,7 @@ fn vibration(base: &Base, modes: &[Mode]) -> Vibration {
     if modes.is_empty() {
         return Vibration { contact: base.p_l, rocking: [base.p_l; 2] };
     }
-    let contact = modes.iter().map(|mode| mode.stiffness / mode.mass).fold(f64::INFINITY, f64::min).sqrt();
+    let contact = modes.iter().map(Mode::omega).fold(f64::INFINITY, f64::min);
     Vibration { contact, rocking: [rocking(base, modes, 1), rocking(base, modes, modes.len())] }
 }
 

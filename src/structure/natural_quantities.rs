@@ -222,6 +222,11 @@ impl Given {
         Ok((parameters, self.get("r")))
     }
 
+    /// Names of the numbers that are given.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.0.iter().map(|(name, _)| *name)
+    }
+
     /// Whether no number is given.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()

@@ -68,8 +68,8 @@ pub trait Shown: Drawn {
     /// The peaks of the structure.
     fn peaks(structure: &Self::Structure, peaks: &Self::Peaks) -> Vec<Peak>;
 
-    /// The peaks of the same structure on a fixed base, of many masses.
-    fn fixed(_run: &Run<Self>) -> Vec<Peak> {
+    /// The peaks of the same structure of many masses on a fixed base until `end` (s).
+    fn fixed(_run: &Run<Self>, _end: f64) -> Vec<Peak> {
         Vec::new()
     }
 }
@@ -146,11 +146,10 @@ impl Shown for Modes {
         profile.peaks().map(|(of, peak)| named(&of.name(), peak)).collect()
     }
 
-    fn fixed(run: &Run<Modes>) -> Vec<Peak> {
-        let fixed = Run { detail: Detail::FixedBase, ..run.clone() };
-        let is_other = run.detail != fixed.detail;
-        let profile = is_other.then(|| fixed.profile().ok()).flatten();
-        profile.map_or(Vec::new(), |(profile, _)| Modes::peaks(&run.structure, &profile))
+    fn fixed(run: &Run<Modes>, end: f64) -> Vec<Peak> {
+        let is_other = run.detail != Detail::FixedBase;
+        let found = is_other.then(|| run.on_fixed_base(end).found(&mut ()).ok()).flatten();
+        found.map_or(Vec::new(), |found| Modes::peaks(&run.structure, &found.peaks))
     }
 }
 
@@ -238,7 +237,7 @@ impl<'a> Scene<'a> {
             phases,
             transitions: curve.transitions.iter().map(|at| (quanta(at.time - start), at.kind.name())).collect(),
             peaks,
-            fixed: Q::fixed(run),
+            fixed: Q::fixed(run, finish.motion.time),
         }
     }
 

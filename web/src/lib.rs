@@ -135,9 +135,9 @@ impl Explorer {
                 Ok(summary(rows.collect(), &found.finish.motion))
             }
             (AnyStructure::Many(frame), ground) => {
-                let (profile, finish) = fields.run_of_modes(frame, &ground.record)?.profile().map_err(says)?;
-                let rows = profile.peaks().map(|(output, peak)| row(output.name(), peak));
-                Ok(summary(rows.collect(), &finish.motion))
+                let found = fields.run_of_modes(frame, &ground.record)?.found(&mut ()).map_err(says)?;
+                let rows = found.peaks.peaks().map(|(output, peak)| row(output.name(), peak));
+                Ok(summary(rows.collect(), &found.finish.motion))
             }
         }
     }

@@ -1,9 +1,8 @@
 //! The picture of a run over the height: the peaks of floors and storeys, and those of the structure on a fixed base.
 use crate::picture::{Picture, TITLE, axes, chart, colour, dashed, line, titled};
-use anyhow::ensure;
 use plotters::prelude::*;
+use rocking::Run;
 use rocking::run::fall::Found;
-use rocking::{Detail, Run, run::End};
 use rocking_report::quantities::readable;
 use rocking_report::shown::{OF_FLOOR, Shown};
 
@@ -29,10 +28,7 @@ enum At {
 /// Draws the peaks `found` in `run` over the height, and those of the same run on a fixed base.
 pub fn draw<Q: Shown>(picture: Picture, run: &Run<Q>, found: &Found<Q>) -> anyhow::Result<()> {
     let floors = Q::floors(&run.structure, &found.peaks);
-    ensure!(!floors.is_empty(), "--profile: the structure has no floors; give masses, heights and shapes");
-    let still = Q::run(&run.structure, run.ground, &Default::default())?; // at rest at the start
-    let end = End::At(found.finish.motion.time);
-    let on_fixed_base = Run { detail: Detail::FixedBase, tolerance: run.tolerance, end, ..still }.found(&mut ())?;
+    let on_fixed_base = run.on_fixed_base(found.finish.motion.time).found(&mut ())?;
     let fixed = Q::floors(&run.structure, &on_fixed_base.peaks);
     let (height, g) = (floors[floors.len() - 1][0], Q::base(&run.structure).g);
     picture.draw((WIDTH, TITLE + PLOT), |area| {
