@@ -2,6 +2,7 @@
 
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
+use rocking::engine::piece::Sample;
 use rocking::run::peaks::Peak;
 use rocking::run::profile::{Peaking, Profile};
 use rocking::run::record::Record;
@@ -9,7 +10,7 @@ use rocking::run::validity::{ASSUMPTIONS, EDGE_LOAD, FRICTION, Findings, Limits,
 use rocking::run::{End, Run};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Given;
-use rocking::{Detail, Frame, FrameOutput, Parameters, Phase, Reactions, State, Structure};
+use rocking::{Detail, Frame, FrameOutput, Modes, Parameters, Phase, Reactions, State, Structure};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -172,4 +173,59 @@ fn the_peak_of_the_tendon_holds_every_sample_and_no_more() {
         assert!((peak.time - largest.1).abs() <= 5e-5, "{peak:?}, sampled {largest:?}");
         assert_eq!(peak.magnitude > 1.1e5, k_t > 0.0, "{peak:?}");
     }
+}
+
+/// The load of a leap is slow, and the motion follows it. The largest values are at a start with vibration, at a far end, or between.
+#[test]
+fn a_long_leap_in_full_contact_holds_every_sample() {
+    let (times, a_g) = (vec![0.0, 20.0, 60.0, 61.0], vec![0.3, -0.2, 0.9, 0.0]);
+    let ground = Record::from_samples("", times, a_g).unwrap();
+    for kept in [1, 3] {
+        let frame = three_storeys(1e4, 0.0).keeping(kept).unwrap();
+        let run = Run { end: End::At(70.0), ..Run::of_modes(frame.clone(), &ground) };
+        let (profile, finish) = run.profile().unwrap();
+        assert_eq!(finish.motion.transitions, 0);
+        let peaks = Vec::from_iter(FrameOutput::all(&frame).filter_map(|output| Some((output, profile.of(output)?))));
+        let (mut largest, mut friction) = (vec![0.0_f64; peaks.len()], 0.0_f64);
+        let see = |sample: &Sample<Modes>| {
+            for (largest, (output, _)) in largest.iter_mut().zip(&peaks) {
+                *largest = largest.max(sample.output(*output).abs());
+            }
+            let Reactions { R_h, R_v, .. } = sample.edges();
+            friction = friction.max(R_h.abs() / R_v);
+        };
+        run.sample((0..70_000).map(|i| 1e-3 * f64::from(i)), see, &mut ()).unwrap();
+        for ((output, peak), sampled) in peaks.iter().zip(largest) {
+            let (least, most) = (sampled * (1.0 - 1e-12), sampled * (1.0 + 1e-3));
+            assert!((least..=most).contains(&peak.magnitude), "{kept} {output:?}: {peak:?}, sampled {sampled}");
+        }
+        let found = run.validity(Limits::default()).unwrap().0.worst[FRICTION].value;
+        assert!(found >= friction && found < friction * (1.0 + 1e-3), "{kept}: {found}, sampled {friction}");
+    }
+}
+
+/// The vibration decays, and the rest of a leap can change neither a peak nor a finding.
+#[test]
+fn a_long_rest_is_seen_at_once() {
+    let ground = ground();
+    let [short, long] = [1e2, 1e9].map(|end| {
+        let run = Run { end: End::At(end), ..Run::of_modes(three_storeys(1e4, 2e6), &ground) };
+        let findings = run.validity(Limits::default()).unwrap().0;
+        (run.profile().unwrap().0.peaks().collect::<Vec<_>>(), findings.worst)
+    });
+    assert_eq!(short, long);
+}
+
+/// Momentum gives r < 0, so that the first impact stops the base at full speed.
+#[test]
+fn the_hard_landing_of_a_squat_structure_without_modes_is_an_impact() {
+    let storeys = [(40e3, 3.5, 60e6), (40e3, 7.0, 50e6)].map(|(m, h, k)| Storey { m, h, k });
+    let numbers = [("m0", 20e3), ("B", 7.5), ("J0", 3e4)].map(|(name, value)| (name.to_owned(), value));
+    let squat = Given::try_from(BTreeMap::from_iter(numbers)).unwrap();
+    let frame = Frame::from_storeys(&squat, &Damping::All(0.02), &storeys).unwrap();
+    let ground = Record::at_rest(2.0);
+    let run = Run { detail: Detail::Rigid, end: End::At(2.0), ..Run::of_modes(frame, &ground) };
+    let run = Run { initial: State { theta: 0.05, ..run.initial }, ..run };
+    let (findings, finish) = run.validity(Limits::default()).unwrap();
+    assert_eq!((findings.impacts, finish.motion.transitions), (1, 1));
 }

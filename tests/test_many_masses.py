@@ -4,6 +4,7 @@ import copy
 import json
 import math
 import pickle
+import re
 import subprocess
 
 import numpy as np
@@ -77,7 +78,7 @@ def test_an_fmu_is_the_one_of_the_command_line(exporter, tmp_path):
 
 
 def test_modes_left_out_are_told():
-    assert "modes carry 97.66 % of m_s, 99.59 % of S_1, 99.94 % of I_2; the rest turns with the base" in str(of_modes(2))
+    assert "2 modes of 3 floors carry 97.66 % of m_s, 99.59 % of S_1, 99.94 % of I_2; the rest turns with the base" in str(of_modes(2))
 
 
 def test_a_structure_of_many_masses_is_a_value():
@@ -105,6 +106,10 @@ def test_a_structure_of_many_masses_is_a_value():
     (lambda: of_modes(m_s=110e3), "S_1 (kg.m) is missing"),
     (lambda: of_modes(shapes=FRAME.phi[:, :2]), "shapes has 2 columns and must have 3, one for each mode"),
     (lambda: fr.Structure.from_matrices([1], [1], [1, 2], zeta=0), "K has the shape [2]: two dimensions are needed"),
+    (lambda: of_storeys(keep=-1), "keep = -1 is out of range: keep 1 to 3 modes"),
+    (lambda: of_storeys(keep=2.5), "keep = 2.5: a whole number is needed"),
+    (lambda: of_storeys(preset="mcmanus"), "preset is a structure of one mass, and storeys makes one of many"),
+    (lambda: of_storeys(storeys=pd.DataFrame(STOREYS)), 'storeys=table.to_dict("records")'),
     (lambda: of_storeys().pushover(), "pushover needs a structure of one mass, and this structure has 3 modes"),
     (lambda: fr.Structure(preset="mcmanus").mode_table, "mode_table needs a structure of many masses"),
 ])
@@ -228,13 +233,22 @@ def test_pictures_of_a_building_show_its_top_and_its_height(run, monkeypatch):
     assert "base shear" in bare.page()
     with pytest.raises(ValueError, match="no floors"):
         bare.plot("profile")
+    with pytest.raises(ValueError, match="floor = 1 is out of range: the structure has no floors; give masses, heights and shapes"):
+        bare.spectrum(1)
+    assert "floor " not in str(bare)
+    tipped = fr.simulate(building(), wavelet(), theta_0=0.02)
+    fixed = fr.simulate(building(), wavelet(), detail="fixed_base", duration=tipped.end - tipped.start)
+    drawn = json.loads(re.search(r'"fixed":(\[.*?\]\])', tipped.page())[1])
+    assert {name: (value, time) for name, value, time in drawn} == {name: (peak.value, peak.time) for name, peak in fixed.peaks.items() if name != "a_g"}
 
 
 @pytest.mark.parametrize("refused, text", [
     (lambda run: fr.simulate(run.structure, duration=1, u_0=0.1), "u_0 = 0.1 m, u_dot_0 = 0.0 m/s are of one mass"),
     (lambda run: fr.simulate(run.structure, duration=1, detail="modal"), "detail = modal moves structures of one mass alone"),
     (lambda run: fr.simulate(run.structure, duration=-1), "duration = -1 is out of range"),
-    (lambda run: run.spectrum(11), "floor = 11 is out of range: the structure has 1 to 10"),
+    (lambda run: run.spectrum(11), "floor = 11 is out of range: the structure has floors 1 to 10"),
+    (lambda run: run.spectrum(-1), "floor = -1 is out of range"),
+    (lambda run: run.spectrum("top"), "floor = 'top': a whole number is needed"),
     (lambda run: run.spectrum(1, [-1.0]), "period = -1 s is out of range"),
     (lambda run: run.plot("heights"), "kind = 'heights' is unknown"),
     (lambda run: fr.sweep(run.structure, run.record), "sweep needs a structure of one mass"),
@@ -272,6 +286,15 @@ def test_the_command_line_shows_a_building_as_the_module_does(run, exporter, tmp
     subprocess.run([exporter, "view", *simulate[2:], "-o", "view.html"], cwd=tmp_path, check=True)
     assert (tmp_path / "view.html").read_text() == run.page() and "<iframe" in run._repr_html_()
     assert "a_t[10]" in (tmp_path / "run.svg").read_text() and "storey moment" in (tmp_path / "profile.svg").read_text()
+
+
+def test_a_unit_that_is_far_off_is_doubted_before_a_run():
+    def is_doubted(name, factor):
+        return "far from the usual frequency" in str(of_storeys(storeys=[of | {name: factor * of[name]} for of in STOREYS]))
+
+    assert [is_doubted("k", 1), is_doubted("k", 1e-3), is_doubted("m", 1e-3)] == [False, True, True]
+    squat = {"m0": FRAME.m0, "J0": FRAME.J0, "B": 20}
+    assert "is B half of the base's width?" in str(fr.Structure(storeys=STOREYS, zeta=0.02, **squat))
 
 
 def test_a_command_that_takes_one_mass_says_which_take_many(exporter, tmp_path):
