@@ -8,7 +8,7 @@ use crate::validity;
 use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::{
-    Detail, Modes, Structure, Watch,
+    Detail, Frame, Modes, Structure, Watch,
     engine::DEFAULT_TOLERANCE,
     run::{
         LONGEST_REST, Run,
@@ -25,6 +25,11 @@ pub trait Advised: Shown + Compared {
     /// The effective frequency of rocking at an angle (Eq 14), Hz.
     fn effective_frequency(_: &Self::Structure, _theta: f64) -> Option<f64> {
         None
+    }
+
+    /// Part of the mass above the foundation that no mode of the reference carries.
+    fn rigid_share(_: &Self::Structure) -> f64 {
+        0.0
     }
 
     /// Prints what is known without a time history as one more row.
@@ -50,7 +55,11 @@ impl Advised for f64 {
     }
 }
 
-impl Advised for Modes {}
+impl Advised for Modes {
+    fn rigid_share(frame: &Frame) -> f64 {
+        frame.rest()[0] / frame.body().m_s
+    }
+}
 
 /// The peaks of the reference that people read, of several floors the largest.
 fn largest<Q: Advised>(run: &Run<Q>, peaks: &Q::Peaks) -> Vec<(Named, f64)> {
@@ -110,6 +119,10 @@ fn print_reference<Q: Advised>(out: &mut impl Write, run: &Run<Q>, comparison: &
     let level =
         if reference.choice.modes.is_some() { reference.choice.to_string() + " modes" } else { "nonlinear".into() };
     writeln!(out, "Reference: {level}, tolerance {REFERENCE_TOLERANCE:e}, {} transitions", reference.transitions)?;
+    let rigid = Q::rigid_share(&run.structure);
+    if rigid > 0.0 {
+        writeln!(out, "  {} % of m_s rides rigidly with the base, in the reference, too", percent(rigid))?;
+    }
     if reference.ending.overturned().is_none() {
         let limit = significant(LONGEST_REST / base.p_l);
         writeln!(
