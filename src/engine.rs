@@ -12,7 +12,7 @@
 //! with an exact flow of full contact, one step covers the rest of a long interval once the base stays down for good.
 
 #[cfg(feature = "lanes")]
-mod lanes;
+pub(crate) mod lanes;
 pub mod motion;
 pub(crate) mod phases;
 pub mod piece;
@@ -665,70 +665,121 @@ impl<Q: Moves, W: Watch<Q>> Task<'_, Q, W> {
             return Ok(Progress::Complete);
         }
         let phases = |motion: &Motion<Q>| phases::of::<Q>(level.structure(), motion);
-        let is_expanded = false;
-        Loop { any, level, phases, arc, is_expanded, last_step, stops }.go(motion, before, interval, load, watch)
+        let expand = |phase: Phase, start: &Start<Q>, arc: &mut Arc<Q>| {
+            level.series(phase, start, arc);
+            true
+        };
+        let mut advance = Advance::new(level.structure(), motion.time, interval, load, last_step);
+        let progress = Loop { any, level, phases, expand, arc, stops }.go(motion, before, &mut advance, watch)?;
+        Ok(progress.expect("every series is there"))
+    }
+}
+
+/// An advance on its way.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Advance<Q> {
+    /// Its start and its end, s.
+    start: f64,
+    until: f64,
+    interval: f64,
+    load: LinearLoad<Q>,
+    /// Steps since the start of the motion after which the advance ends.
+    last_step: u64,
+    /// Seconds since the start: time runs from there, so that transitions are as sharp at t = 1000 s as at 0.
+    elapsed: f64,
+    /// The end of the present part, s since the start, and the duration of the next part, s.
+    end: f64,
+    part: f64,
+}
+
+impl<Q: Moves> Advance<Q> {
+    #[inline(always)]
+    fn new(structure: &Q::Structure, start: f64, interval: f64, load: LinearLoad<Q>, last_step: u64) -> Advance<Q> {
+        let part = FAR / Q::vibration(structure).contact;
+        let end = if interval > part { 0.0 } else { interval };
+        Advance { start, until: start + interval, interval, load, last_step, elapsed: 0.0, end, part }
+    }
+
+    /// The step that is left of the present part of it, from `motion`.
+    #[cfg(feature = "lanes")]
+    #[inline]
+    fn start<'a>(&self, subject: &Subject<Q>, motion: &'a Motion<Q>) -> Start<'a, Q> {
+        let &Advance { load, elapsed, end, .. } = self;
+        let start = subject.start(motion.state, &motion.dissipators, load, end - elapsed);
+        let Start { a_g, a_top, a_v, .. } = start;
+        Start { a_g: a_g.from(elapsed), a_top: a_top.from(elapsed), a_v: a_v.from(elapsed), ..start }
+    }
+
+    /// Passes `duration` (s) and returns the time.
+    #[inline(always)]
+    fn pass(&mut self, duration: f64) -> f64 {
+        let is_all = duration == self.end - self.elapsed;
+        self.elapsed = if is_all { self.end } else { self.elapsed + duration };
+        if self.elapsed < self.interval { self.start + self.elapsed } else { self.until }
     }
 }
 
 /// The loop over the steps of one advance.
-struct Loop<'a, Q: Moves, L, P> {
+struct Loop<'a, Q: Moves, L, P, E> {
     any: &'a Q::Level,
     /// The same level by its type.
     level: &'a L,
     /// Gives the phase of a motion; none where the motion is over.
     phases: P,
+    /// Writes the series of a step, or says that the series is not there yet.
+    expand: E,
     /// The step.
     arc: &'a mut Arc<Q>,
-    /// Whether the arc has the first step already.
-    is_expanded: bool,
-    /// Steps since the start after which the advance ends.
-    last_step: u64,
     /// Whether the advance ends where a transition is due.
     stops: bool,
 }
 
-impl<Q: Moves, L: Level<Q>, P: Fn(&Motion<Q>) -> Option<&'static Watched<Q>>> Loop<'_, Q, L, P> {
-    /// Advances step by step: expands the motion, finds the first guard that closes, applies its transition. A long interval is
-    /// taken in parts, each twice as long as the one before, until the rest is one leap. The motion `before` the first change is
-    /// kept: an advance that fails changes nothing.
+impl<Q, L, P, E> Loop<'_, Q, L, P, E>
+where
+    Q: Moves,
+    L: Level<Q>,
+    P: Fn(&Motion<Q>) -> Option<&'static Watched<Q>>,
+    E: FnMut(Phase, &Start<Q>, &mut Arc<Q>) -> bool,
+{
+    /// Goes on with `advance` step by step: expands the motion, finds the first guard that closes, applies its transition. A long
+    /// interval is taken in parts, each twice as long as the one before, until the rest is one leap. The motion `before` the first
+    /// change is kept: an advance that fails changes nothing. Returns none where a series is not there yet.
     #[inline(never)]
     fn go<W: Watch<Q>>(
         &mut self,
         motion: &mut Motion<Q>,
         before: &mut Option<Motion<Q>>,
-        interval: f64,
-        load: LinearLoad<Q>,
+        on_the_way: &mut Advance<Q>,
         watch: &mut W,
-    ) -> Result<Progress, AdvanceError> {
+    ) -> Result<Option<Progress>, AdvanceError> {
         let level = self.level;
+        let mut advance = *on_the_way; // in registers
+        let Advance { until, interval, load, last_step, .. } = advance;
         let Start { a_g, a_top, a_v, local_error, .. } =
             level.subject().start(motion.state, &motion.dissipators, load, interval);
-        let (start, until) = (motion.time, motion.time + interval);
-        let mut part = FAR / Q::vibration(level.structure()).contact;
-        // Time runs from the start of the interval: transitions are then as sharp at t = 1000 s as at 0.
-        let (mut elapsed, mut end) = (0.0, if interval > part { 0.0 } else { interval });
         loop {
-            let Some(watched) = (self.phases)(motion) else { return Ok(Progress::Overturned) };
+            let Some(watched) = (self.phases)(motion) else { return Ok(Some(Progress::Overturned)) };
+            let Advance { elapsed, part, .. } = advance;
             if elapsed >= interval {
-                return Ok(Progress::Complete);
+                return Ok(Some(Progress::Complete));
             }
-            if elapsed >= end {
+            if elapsed >= advance.end {
                 before.get_or_insert(*motion);
-                end = if elapsed + part < interval { elapsed + part } else { interval };
-                part *= 2.0;
+                advance.end = if elapsed + part < interval { elapsed + part } else { interval };
+                advance.part *= 2.0;
                 let load = load.from(elapsed);
                 let leap = |to: f64| {
                     let start = level.subject().start(motion.state, &motion.dissipators, load, to - elapsed);
                     Some((to, leap(level, motion, &start)?))
                 };
-                if let Some((to, state)) = leap(interval).or_else(|| leap(end)) {
+                if let Some((to, state)) = leap(interval).or_else(|| leap(advance.end)) {
+                    advance.end = to;
                     leapt(self.any, motion, to - elapsed, load, state, watch);
-                    elapsed = to;
-                    motion.time = if elapsed < interval { start + elapsed } else { until };
+                    motion.time = advance.pass(to - elapsed);
                     continue;
                 }
             }
-            let left = end - elapsed;
+            let left = advance.end - elapsed;
             let begin = Start {
                 state: motion.state,
                 a_g: a_g.from(elapsed),
@@ -738,8 +789,9 @@ impl<Q: Moves, L: Level<Q>, P: Fn(&Motion<Q>) -> Option<&'static Watched<Q>>> Lo
                 interval: watched.lasts.map_or(left, |lasts| left.min(lasts(motion))),
                 local_error,
             };
-            if !std::mem::take(&mut self.is_expanded) {
-                level.series(motion.phase, &begin, self.arc);
+            if !(self.expand)(motion.phase, &begin, self.arc) {
+                *on_the_way = advance;
+                return Ok(None);
             }
             let mut step =
                 Step { level, side: motion.phase.side(), start: &begin, arc: self.arc, reach: self.arc.reach };
@@ -747,12 +799,12 @@ impl<Q: Moves, L: Level<Q>, P: Fn(&Motion<Q>) -> Option<&'static Watched<Q>>> Lo
             let (reach, moved) = (step.reach, watched.moved(level.subject(), &step));
             self.arc.reach = reach;
             let duration = self.arc.duration();
-            if !self.arc.is_finite() || reach < 1.0 && self.is_at_its_end(motion, closed) {
+            if !self.arc.is_finite() || reach < 1.0 && is_at_its_end(level, motion, duration, closed) {
                 let State { u, theta, .. } = motion.state;
                 let u = u.middle(level.structure());
                 return Err(AdvanceError::Singular { time: motion.time, u, theta });
             }
-            if motion.work.steps == self.last_step {
+            if motion.work.steps == last_step {
                 return Err(AdvanceError::TooLong { time: motion.time, until });
             }
             if duration < left {
@@ -771,23 +823,22 @@ impl<Q: Moves, L: Level<Q>, P: Fn(&Motion<Q>) -> Option<&'static Watched<Q>>> Lo
                 motion.dissipators = moved;
             }
             motion.chatter.pass(duration);
-            elapsed = if duration == left { end } else { elapsed + duration };
-            motion.time = if elapsed < interval { start + elapsed } else { until };
+            motion.time = advance.pass(duration);
             motion.due = closed;
             if let Some(Closed { guard, .. }) = closed {
                 if self.stops && watched.guards[usize::from(guard)].is_stop() {
-                    return Ok(Progress::Transition);
+                    return Ok(Some(Progress::Transition));
                 }
                 transit(level, Some(watched), motion).iter().for_each(|transition| watch.transition(transition));
             }
         }
     }
+}
 
-    /// Whether the step in hand, which goes from `motion` to less than the requested end, is the last that there can be.
-    fn is_at_its_end(&self, motion: &Motion<Q>, closed: Option<Closed>) -> bool {
-        let has_stalled = self.arc.duration() <= STALLED / Q::vibration(self.level.structure()).rocking[1];
-        has_stalled && closed.is_none() || self.level.is_singular(motion.phase, &motion.state)
-    }
+/// Whether a step of this `duration` (s), which goes from `motion` to less than the requested end, is the last that there can be.
+fn is_at_its_end<Q: Moves>(level: &impl Level<Q>, motion: &Motion<Q>, duration: f64, closed: Option<Closed>) -> bool {
+    let has_stalled = duration <= STALLED / Q::vibration(level.structure()).rocking[1];
+    has_stalled && closed.is_none() || level.is_singular(motion.phase, &motion.state)
 }
 
 /// The first guard of `watched` that closes on `step`, which is cut there.
@@ -863,17 +914,15 @@ mod tests {
         let mut bounces = Vec::new();
         let mut watch = |transition: &Transition| bounces.push(transition.time);
         let AnyLevel::Nonlinear(of_its_type) = &**level else { panic!("another level") };
-        Loop {
-            any: &**level,
-            level: of_its_type,
-            phases: |_: &Motion| Some(&WALLED),
-            arc,
-            is_expanded: false,
-            last_step: u64::MAX,
-            stops: false,
-        }
-        .go(motion, &mut None, 9.0 * PI / structure.omega_fc, LinearLoad::default(), &mut watch)
-        .unwrap();
+        let expand = |phase: Phase, start: &Start, arc: &mut Arc| {
+            of_its_type.series(phase, start, arc);
+            true
+        };
+        let interval = 9.0 * PI / structure.omega_fc;
+        let mut advance = Advance::new(&structure, 0.0, interval, LinearLoad::default(), u64::MAX);
+        Loop { any: &**level, level: of_its_type, phases: |_: &Motion| Some(&WALLED), expand, arc, stops: false }
+            .go(motion, &mut None, &mut advance, &mut watch)
+            .unwrap();
         assert_eq!(bounces.len(), 7);
         for (k, time) in bounces.into_iter().enumerate() {
             assert_relative_eq!(time * structure.omega_fc, (2 * k + 1) as f64 * 2.0 * PI / 3.0, max_relative = 1e-10);

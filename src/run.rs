@@ -278,19 +278,34 @@ impl<Q: Moves, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
     /// Follows the motion over the next segment. Returns the ending of the run if the run has ended.
     #[inline(always)]
     fn go_on<W: Watch<Q>>(&mut self, watch: &mut W) -> Result<Option<Ending>, RunError> {
-        let segment = self.segments.next();
-        self.go_over(segment, watch)
+        let (segment, ending) = match self.segments.next() {
+            Some(segment) => (segment, None),
+            None => match self.come_to_rest() {
+                Ok(next) => next,
+                Err(ending) => return Ok(Some(ending)),
+            },
+        };
+        let progress = over(&mut self.engine, segment, watch).map_err(|cause| error(&self.engine, cause))?;
+        Ok(if progress == Progress::Overturned { Some(Ending::Overturned) } else { ending })
     }
 
-    /// Follows the motion over `segment`, which is none after the last one.
-    #[inline(always)]
-    fn go_over<W: Watch<Q>>(&mut self, segment: Option<Segment>, watch: &mut W) -> Result<Option<Ending>, RunError> {
+    /// The next segment after the record, and the ending of the run after that segment if the run ends there. Fails with the ending if
+    /// the run ends here.
+    fn come_to_rest(&mut self) -> Result<(Segment, Option<Ending>), Ending> {
         let Follower { engine, end, rest, .. } = self;
-        let went_on = match segment {
-            Some(segment) => over(engine, segment, watch).map(ending),
-            None => come_to_rest(engine, *end, rest, watch),
-        };
-        went_on.map_err(|cause| error(engine, cause))
+        let (p_l, omega_fc) = (Q::base(engine.structure()).p_l, Q::vibration(engine.structure()).contact);
+        if let End::At(end) = *end {
+            engine.set_time(end);
+            return Err(Ending::AtTime);
+        }
+        let stays_down = engine.stays_down();
+        if *rest == 0.0 && !stays_down {
+            return Err(Ending::StillRocking);
+        }
+        *rest -= 1.0;
+        let (duration, ending) = if stays_down { (TAU / omega_fc, Some(Ending::AtRest)) } else { (1.0 / p_l, None) };
+        let until = engine.motion().time + duration;
+        Ok((Segment { since: 0.0, duration, until, ground: LinearLoad::default() }, ending))
     }
 }
 
@@ -315,36 +330,4 @@ fn over<Q: Moves, W: Watch<Q>>(
         engine.set_time(segment.until);
     }
     Ok(progress)
-}
-
-/// The ending of a run that made this `progress` over a segment of its record, if the run has ended.
-#[inline(always)]
-fn ending(progress: Progress) -> Option<Ending> {
-    (progress == Progress::Overturned).then_some(Ending::Overturned)
-}
-
-/// Follows a structure on ground at rest until the next decision about the `end` of the run. `rest` is the time for which the
-/// structure may still rock. Returns the ending of the run if the run has ended.
-fn come_to_rest<Q: Moves, W: Watch<Q>>(
-    engine: &mut Engine<Q>,
-    end: End,
-    rest: &mut f64,
-    watch: &mut W,
-) -> Result<Option<Ending>, AdvanceError> {
-    let (p_l, omega_fc) = (Q::base(engine.structure()).p_l, Q::vibration(engine.structure()).contact);
-    let still = LinearLoad::default();
-    if let End::At(end) = end {
-        engine.set_time(end);
-        return Ok(Some(Ending::AtTime));
-    }
-    if engine.stays_down() {
-        engine.advance(TAU / omega_fc, Q::loads(still), watch)?;
-        return Ok(Some(Ending::AtRest));
-    }
-    if *rest == 0.0 {
-        return Ok(Some(Ending::StillRocking));
-    }
-    *rest -= 1.0;
-    let progress = engine.advance(1.0 / p_l, Q::loads(still), watch)?;
-    Ok((progress == Progress::Overturned).then_some(Ending::Overturned))
 }

@@ -1,111 +1,156 @@
 //! An engine among others that step together.
 
-use super::{AdvanceError, Engine, FAR, Loop, MAX_STEPS_PER_ADVANCE, Progress, Settings};
+use super::{Advance, AdvanceError, Engine, Loop, MAX_STEPS_PER_ADVANCE, Progress, Settings, is_at_its_end, leapt};
 use crate::engine::motion::Motion;
 use crate::engine::phases;
 use crate::engine::piece::{Piece, Watch};
 use crate::levels::detail::AnyLevel;
-use crate::levels::level::Level;
+use crate::levels::level::{ElasticRocking, Level};
 use crate::levels::nonlinear::lanes::{RockingStep, Stepped};
 use crate::levels::shown::Searched;
-use crate::mechanics::lateral::Coordinates;
 use crate::series::taylor::{Arc, Start};
 use crate::{LinearLoad, Phase, State};
 
-impl Engine {
-    /// The step of `interval` (s) under `load`, if the structure rocks by Eqs 5 and 6 and its series may reach to the end.
+/// A step that an engine is about to take, of which only the end and bounds are known.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounded<'a> {
+    engine: &'a Engine,
+    /// s.
+    pub duration: f64,
+    pub load: LinearLoad,
+    pub end: State,
+    /// Bounds of the magnitudes of the state.
+    pub most: State,
+}
+
+impl Bounded<'_> {
+    /// Bounds of the magnitudes of the searched outputs.
     #[inline]
-    pub(crate) fn rocking_step(&self, interval: f64, load: LinearLoad) -> Option<RockingStep> {
-        let AnyLevel::Nonlinear(level) = &*self.level else { return None };
-        let Phase::Rocking(side) = self.motion.phase else { return None };
-        let is_one_part = interval <= FAR / f64::vibration(level.structure()).contact;
-        if !is_one_part || self.motion.due.is_some() || self.check(interval, &load).is_err() {
-            return None;
-        }
-        let begin = level.subject().start(self.motion.state, &self.motion.dissipators, load, interval);
-        let Start { a_g, a_top, a_v, .. } = begin;
-        level.rocking().step(side, &Start { a_g: a_g.from(0.0), a_top: a_top.from(0.0), a_v: a_v.from(0.0), ..begin })
+    pub(crate) fn outputs(&self) -> Searched<f64> {
+        let Engine { level, motion, .. } = self.engine;
+        level.most(motion.phase, [0.0, self.duration].map(|tau| self.load.at(tau)), &self.most)
     }
 
-    /// State at the end of `interval` (s) under `load`, and bounds of the state until then, if the structure stays in full contact
-    /// by an exact flow.
+    /// Instants (s) and ground accelerations of the ends.
+    #[inline]
+    pub(crate) fn ends(&self) -> [(f64, f64); 2] {
+        let start = self.engine.motion.time;
+        [0.0, self.duration].map(|tau| (start + tau, self.load.at(tau).a_g))
+    }
+}
+
+/// A watch of a motion whose steps are taken among others.
+pub(crate) trait Passes: Watch {
+    /// Passes `step` if the step certainly changes nothing that the watch looks for. Otherwise the piece is to be shown.
+    fn passes(&mut self, step: &Bounded) -> bool;
+}
+
+impl Engine {
+    /// Whether the structure rocks by Eqs 5 and 6 without ties, so that its steps of rocking can be taken among others.
+    pub(crate) fn is_for_lanes(&self) -> bool {
+        matches!(&*self.level, AnyLevel::Nonlinear(level) if !level.rocking().subject().is_tied)
+    }
+
+    /// Takes such a structure over `interval` (s) under `load`, all but the clock, if one leap in full contact is all of it.
     #[inline(always)]
-    pub(crate) fn contact_leap(&self, interval: f64, load: LinearLoad) -> Option<(State, State)> {
-        let AnyLevel::Nonlinear(level) = &*self.level else { return None };
+    pub(crate) fn leaps<W: Passes>(&mut self, interval: f64, load: LinearLoad, watch: &mut W) -> bool {
+        let AnyLevel::Nonlinear(level) = &*self.level else { return false };
         let motion = &self.motion;
-        let is_plain = motion.phase == Phase::FullContact && motion.held() <= 0.0 && motion.due.is_none();
-        if !is_plain || self.check(interval, &load).is_err() {
-            return None;
+        let is_free = motion.phase == Phase::FullContact && motion.held() <= 0.0;
+        if !is_free || self.check(interval, &load).is_err() {
+            return false;
         }
         let start = level.subject().start(motion.state, &motion.dissipators, load, interval);
-        let (end, rates) = level.bounded_leap(&start)?;
-        end.is_finite().then(|| (end, rates.most(&start, &end)))
+        let Some((end, rates)) = level.bounded_leap(&start) else { return false };
+        if !end.is_finite() {
+            return false;
+        }
+        let most = rates.most(&start, &end);
+        if watch.passes(&Bounded { engine: self, duration: interval, load, end, most }) {
+            leapt(&*self.level, &mut self.motion, interval, load, end, &mut ());
+        } else {
+            leapt(&*self.level, &mut self.motion, interval, load, end, watch);
+        }
+        true
     }
 
-    /// Takes such a leap, which ends at `until` (s).
+    /// Begins an advance by `interval` (s) under `load`, which is no such leap.
     #[inline(always)]
-    pub(crate) fn leap_to(&mut self, end: State, (interval, until): (f64, f64)) {
-        self.motion.state = end;
-        self.motion.work.steps += 1;
-        self.motion.chatter.pass(interval);
-        self.motion.time = until;
+    pub(crate) fn begin(&self, interval: f64, load: LinearLoad) -> Result<Advance<f64>, AdvanceError> {
+        self.check(interval, &load)?;
+        let last_step = self.motion.work.steps + MAX_STEPS_PER_ADVANCE;
+        Ok(Advance::new(self.structure(), self.motion.time, interval, load, last_step))
     }
 
-    /// Bounds of the magnitudes of the searched outputs over such a step, by bounds of the state.
-    #[inline]
-    pub(crate) fn bounds(&self, interval: f64, load: LinearLoad, most: &State) -> Searched<f64> {
-        self.level.most(self.motion.phase, [0.0, interval].map(|tau| load.at(tau)), most)
-    }
-
-    /// Advances by such a step, or by several with transitions between, to `until` (s). The first series is given by `write`.
-    pub(crate) fn advance_by<W: Watch>(
+    /// Goes on with `advance` to its end, or to a step of rocking, which `step` becomes; without a `step` to its end. The engine has
+    /// the next series already if the series `is_expanded`.
+    #[inline(always)]
+    pub(crate) fn go_on<W: Watch>(
         &mut self,
-        (interval, until): (f64, f64),
-        load: LinearLoad,
+        advance: &mut Advance<f64>,
+        mut is_expanded: bool,
+        mut step: Option<&mut RockingStep>,
         watch: &mut W,
-        write: impl FnOnce(&mut Arc),
-    ) -> Result<Progress, AdvanceError> {
+    ) -> Result<Option<Progress>, AdvanceError> {
         let Engine { level, motion, arc, settings: Settings { stops, .. } } = self;
         let any = &**level;
-        let AnyLevel::Nonlinear(level) = any else { unreachable!("another level has no such step") };
-        write(arc);
-        let (mut before, last_step) = (None, motion.work.steps + MAX_STEPS_PER_ADVANCE);
-        let phases = |motion: &Motion| phases::of::<f64>(level.structure(), motion);
-        let result = Loop { any, level, phases, arc, is_expanded: true, last_step, stops: *stops }.go(
-            motion,
-            &mut before,
-            interval,
-            load,
-            watch,
-        );
-        match (&result, before) {
-            (Err(_), Some(before)) => self.motion = before,
-            (Err(_) | Ok(Progress::Overturned), _) => {}
-            _ => self.set_time(until),
+        let AnyLevel::Nonlinear(level) = any else { unreachable!("another level steps alone") };
+        if let Phase::Rocking(side) = motion.phase
+            && !is_expanded
+            && let Some(step) = &mut step
+            && advance.elapsed < advance.end
+        {
+            **step = level.rocking().step(side, &advance.start(level.subject(), motion));
+            return Ok(None);
         }
-        result
+        let expand = |phase: Phase, start: &Start, arc: &mut Arc| {
+            match (phase, &mut step) {
+                _ if std::mem::take(&mut is_expanded) => {}
+                (Phase::Rocking(side), Some(step)) => {
+                    **step = level.rocking().step(side, start);
+                    return false;
+                }
+                _ => level.series(phase, start, arc),
+            }
+            true
+        };
+        let phases = |motion: &Motion| phases::of::<f64>(level.structure(), motion);
+        Loop { any, level, phases, expand, arc, stops: *stops }.go(motion, &mut None, advance, watch)
     }
 
-    /// Takes such a step, which ends at `until` (s). If `watch` sees pieces, `write` gives the series.
+    /// Takes the step of `advance` that was `stepped` among others, whose series `write` gives, and goes on like [`Engine::go_on`].
     #[inline]
-    pub(crate) fn step_to<W: Watch>(
+    pub(crate) fn take<W: Passes>(
         &mut self,
-        &Stepped { order, end, .. }: &Stepped,
-        (interval, until): (f64, f64),
-        load: LinearLoad,
-        watch: &mut W,
+        stepped: &Stepped,
         write: impl FnOnce(&mut Arc),
-    ) {
-        let Engine { level, motion, arc, .. } = self;
+        advance: &mut Advance<f64>,
+        step: &mut RockingStep,
+        watch: &mut W,
+    ) -> Result<Option<Progress>, AdvanceError> {
+        let AnyLevel::Nonlinear(level) = &*self.level else { unreachable!("another level steps alone") };
+        let &Stepped { order, duration, stays, end, most } = stepped;
+        let is_whole = duration == advance.end - advance.elapsed;
+        let is_last = !is_whole && is_at_its_end(level, &self.motion, duration, None);
+        if !stays || is_last || self.motion.work.steps == advance.last_step {
+            write(&mut self.arc);
+            return self.go_on(advance, true, Some(step), watch);
+        }
+        let load = advance.load.from(advance.elapsed);
+        if !watch.passes(&Bounded { engine: self, duration, load, end, most }) {
+            write(&mut self.arc);
+            let Engine { level, motion, arc, .. } = &*self;
+            watch.piece(&Piece { before: motion, duration, load, end, level, arc: Some(arc) });
+        }
+        let motion = &mut self.motion;
         motion.work.steps += 1;
         motion.work.evaluations += order as u64;
-        if W::SEES_PIECES {
-            write(arc);
-            let load = load.from(0.0);
-            watch.piece(&Piece { before: motion, duration: interval, load, end, level, arc: Some(arc) });
-        }
         motion.state = end;
-        motion.chatter.pass(interval);
-        motion.time = until;
+        motion.chatter.pass(duration);
+        motion.time = advance.pass(duration);
+        if advance.elapsed >= advance.interval {
+            return Ok(Some(Progress::Complete));
+        }
+        self.go_on(advance, false, Some(step), watch)
     }
 }

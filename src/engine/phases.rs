@@ -242,6 +242,11 @@ impl<Q: Moves> Guard<Q> for Impact {
 /// Whether the magnitudes of the terms of θ prove that s θ stays between 0 and π/2 on `arc`.
 fn stays_about<Q: Coordinates>(arc: &Arc<Q>, side: Side) -> bool {
     let start = side.sign() * arc.theta[0];
-    let excursion = sum_of_magnitudes(&arc.theta[1..=arc.order]);
+    let terms = &arc.theta[1..=arc.order];
+    let excursion = if arc.reach < 1.0 {
+        arc.reach * terms.iter().rev().fold(0.0, |sum, c| sum * arc.reach + c.abs())
+    } else {
+        sum_of_magnitudes(terms)
+    };
     excursion < start && excursion + start < FRAC_PI_2
 }

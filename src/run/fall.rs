@@ -5,9 +5,9 @@ use super::peaks::{Peak, PeakWatch, Peaks};
 use super::profile::Profile;
 use super::{Finish, Run, RunError};
 use crate::engine::Moves;
-use crate::engine::piece::{Expansion, Sample};
 #[cfg(feature = "lanes")]
-use crate::levels::shown::Searched;
+use crate::engine::lanes::{Bounded, Passes};
+use crate::engine::piece::{Expansion, Sample};
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint, sum, ties};
 use crate::run::ground_motion::GroundMotion;
 use crate::series::bisection::last_where;
@@ -179,20 +179,20 @@ impl Watch for FallWatch<'_> {
     }
 }
 
-impl FallWatch<'_> {
-    /// Passes a piece that ends at the rotation `theta` (rad) if magnitudes within `bounds` certainly change nothing. Instants (s)
-    /// and ground accelerations of its ends are `ends`. Otherwise the piece is to be shown.
-    #[cfg(feature = "lanes")]
-    #[inline]
-    pub(crate) fn passes(&mut self, theta: f64, bounds: &Searched<f64>, ends: [(f64, f64); 2]) -> bool {
-        let falls = self.no_return.is_some_and(|angle| theta.abs() >= angle);
-        let passes = !falls && self.all.passes(bounds, ends);
+#[cfg(feature = "lanes")]
+impl Passes for FallWatch<'_> {
+    #[inline(always)]
+    fn passes(&mut self, step: &Bounded) -> bool {
+        let falls = self.no_return.is_some_and(|angle| step.end.theta.abs() >= angle);
+        let passes = !falls && self.all.passes(&step.outputs(), step.ends());
         if passes {
             *self.fall = None;
         }
         passes
     }
+}
 
+impl FallWatch<'_> {
     /// The peaks, once the motion has been watched.
     pub(crate) fn end(mut self) -> FallingPeaks {
         let (fall, has_overturned) = (*self.fall, *self.has_overturned);

@@ -1,22 +1,24 @@
 //! Many runs, several of which step together: a register of the processor has one number of each.
 //!
-//! Runs that rock by Eqs 5 and 6 expand their motion order by order together, each as far as it would go by itself. If a series
-//! proves that no guard closes, it is the whole step. If its bounds prove that it passes no peak, no search looks at it. Contact,
+//! Runs that rock by Eqs 5 and 6 expand their motion order by order together, each as far as it would go by itself, in their records
+//! and after them. If a series proves that no guard closes, it is the whole step. If its bounds prove that it passes no peak, no search looks at it. Contact,
 //! transitions and the search for peaks go run by run. The operations on the numbers of a run are those of the run by itself, in
 //! the same order, so that all results have the same bits. The bounds are a little wider: what they prove, the run by itself
 //! proves too.
 
 use super::fall::{FallWatch, FallingPeaks, Found};
 use super::ground_motion::Segment;
-use super::{Ending, Finish, Follower, Run, RunError, ending, error};
+use super::peaks::{Peaks, ThetaWatch};
+use super::{Ending, Finish, Follower, LONGEST_REST, Run, RunError, error};
+use crate::Progress;
+use crate::engine::Advance;
+use crate::engine::lanes::Passes;
 use crate::levels::nonlinear::lanes::{RockingStep, Steps};
 use crate::numbers::lanes::MOST;
-use crate::series::taylor::Arc;
-use crate::{LinearLoad, State};
 use pulp::{Arch, Simd, WithSimd};
 use std::collections::VecDeque;
 
-/// Runs on their way at a time.
+/// Runs on their way at a time: so many that those in a record, or those after theirs, fill a register.
 const ON_THE_WAY: usize = 2 * MOST;
 
 /// Fewer runs than these are faster one by one.
@@ -24,164 +26,237 @@ const LEAST: usize = 3;
 
 /// Follows `runs` to their ends and finds the exact peaks of each, as [`Run::found`] does. Tells `done` each result, with the
 /// run's position, as the run ends; once `done` says no, the rest is left undone.
-pub fn found_each(runs: &[Run], done: impl FnMut(usize, Result<Found, RunError>) -> bool) {
-    Arch::new().dispatch(FoundEach { runs, done });
+pub fn found_each(runs: &[Run], mut done: impl FnMut(usize, Result<Found, RunError>) -> bool) {
+    let mut peaks = peaks_of(runs);
+    let watches = peaks.iter_mut().map(FallingPeaks::watch);
+    follow_each(runs, watches, |number, finish, watch| done(number, found(&runs[number], finish, watch)));
 }
 
-/// The runs of [`found_each`].
-struct FoundEach<'a, Done> {
+/// The rotation of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Rocked {
+    /// The largest |θ|, rad, that of a fall included.
+    pub theta: f64,
+    /// Number of impacts and landings.
+    pub impacts: u64,
+}
+
+/// Follows `runs` to their ends like [`found_each`], and tells `done` of each how it ended and how far it has rocked by then.
+pub fn rocked_each(runs: &[Run], mut done: impl FnMut(usize, Result<Finish, RunError>, Rocked) -> bool) {
+    let since = |run: &Run| Peaks::since(run.ground.start(), &run.structure, run.detail);
+    let mut peaks: Vec<_> = runs.iter().map(since).collect();
+    follow_each(runs, peaks.iter_mut().map(Peaks::watch_theta), |number, finish, watch| {
+        let ThetaWatch { peaks, impacts } = watch;
+        done(number, finish, Rocked { theta: peaks.theta().magnitude, impacts })
+    });
+}
+
+/// The peaks of `runs` before any motion.
+fn peaks_of(runs: &[Run]) -> Vec<FallingPeaks> {
+    runs.iter().map(|run| FallingPeaks::since(run.ground.start(), &run.structure, run.detail)).collect()
+}
+
+/// Result of a `run` with this `finish`, all of which `watch` has seen.
+fn found(run: &Run, finish: Result<Finish, RunError>, watch: FallWatch) -> Result<Found, RunError> {
+    let peaks = watch.end();
+    finish.map(|finish| run.found_of(*peaks.peaks(), peaks.fall(), finish))
+}
+
+/// Follows `runs` to their ends, each seen by one of `watches`. Tells `done` of each how it ended, as [`found_each`] does.
+fn follow_each<W: Passes>(
+    runs: &[Run],
+    watches: impl Iterator<Item = W>,
+    done: impl FnMut(usize, Result<Finish, RunError>, W) -> bool,
+) {
+    Arch::new().dispatch(FollowEach { runs, watches, done });
+}
+
+/// The runs of [`follow_each`].
+struct FollowEach<'a, Watches, Done> {
     runs: &'a [Run<'a>],
+    watches: Watches,
     done: Done,
 }
 
-impl<Done: FnMut(usize, Result<Found, RunError>) -> bool> WithSimd for FoundEach<'_, Done> {
+impl<W: Passes, Watches, Done> WithSimd for FollowEach<'_, Watches, Done>
+where
+    Watches: Iterator<Item = W>,
+    Done: FnMut(usize, Result<Finish, RunError>, W) -> bool,
+{
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let FoundEach { runs, mut done } = self;
-        if S::F64_LANES < LEAST {
-            runs.iter().enumerate().all(|(number, run)| done(number, run.found(&mut ())));
+        let FollowEach { runs, watches, mut done } = self;
+        if S::F64_LANES < LEAST || runs.len() < LEAST {
+            runs.iter().zip(watches).enumerate().all(|(number, (run, mut watch))| {
+                let finish = run.follow(&mut watch);
+                done(number, finish, watch)
+            });
         } else {
-            follow(simd, runs, done);
+            follow(simd, runs, watches, done);
         }
     }
 }
 
 /// A run on its way.
-struct Lane<'a, Segments> {
+struct Lane<Segments, W> {
     number: usize,
-    run: &'a Run<'a>,
     follower: Follower<f64, Segments>,
-    watch: FallWatch<'a>,
-    /// The next segment; none after the last one.
-    segment: Option<Segment>,
-    /// The step of rocking over the next segment.
-    step: Option<RockingStep>,
+    watch: W,
+    /// The end of the present segment, s, and the ending of the run there, if the run ends there.
+    until: f64,
+    ending: Option<Ending>,
+    /// The advance over the segment, and its next step of rocking.
+    advance: Option<Advance<f64>>,
+    step: RockingStep,
 }
 
-impl<Segments: Iterator<Item = Segment>> Lane<'_, Segments> {
-    /// Follows the run, by itself, to its next step of rocking. Returns the ending of the run if the run ends before.
-    fn go_on(&mut self) -> Result<Option<Ending>, RunError> {
-        loop {
-            let mut segment = None;
-            if let Some(Segment { since, duration, until, ground }) = self.follower.segments.next() {
-                if let Some((end, most)) = self.follower.engine.contact_leap(duration, ground) {
-                    if self.passes(duration, ground, &end, &most) {
-                        self.follower.engine.leap_to(end, (duration, until));
-                        continue;
-                    }
-                } else {
-                    self.step = self.follower.engine.rocking_step(duration, ground);
-                    if self.step.is_some() {
-                        self.segment = Some(Segment { since, duration, until, ground });
-                        return Ok(None);
-                    }
-                }
-                segment = Some(Segment { since, duration, until, ground });
-            }
-            if let Some(ending) = self.follower.go_over(segment, &mut self.watch)? {
-                return Ok(Some(ending));
-            }
-        }
-    }
-
-    /// Whether a step of `duration` (s) under `ground` to the state `end`, within the bounds `most`, certainly changes no peak.
-    #[inline(always)]
-    fn passes(&mut self, duration: f64, ground: LinearLoad, end: &State, most: &State) -> bool {
-        let engine = &self.follower.engine;
-        let bounds = engine.bounds(duration, ground, most);
-        let start = engine.motion().time;
-        let ends = [0.0, duration].map(|tau| (start + tau, ground.at(tau).a_g));
-        self.watch.passes(end.theta, &bounds, ends)
-    }
-
-    /// Takes the step in hand as `steps` have it in `lane`, or by itself.
+impl<Segments: Iterator<Item = Segment>, W: Passes> Lane<Segments, W> {
+    /// Takes the step in hand as `steps` have it in `lane`, and goes on.
     #[inline]
     fn take<S: Simd>(&mut self, steps: &Steps<S>, lane: usize) -> Result<Option<Ending>, RunError> {
-        let (Some(segment), Some(stepped)) = (self.segment, steps.of(lane)) else {
-            return self.follower.go_over(self.segment, &mut self.watch);
-        };
-        let Segment { duration, until, ground, .. } = segment;
-        let (times, write) = ((duration, until), |arc: &mut Arc| steps.write(lane, stepped.order, duration, arc));
-        if !stepped.stays {
-            let engine = &mut self.follower.engine;
-            let progress = engine.advance_by(times, ground, &mut self.watch, write);
-            return progress.map(ending).map_err(|cause| error(engine, cause));
+        let Lane { follower: Follower { engine, .. }, advance, step, watch, .. } = self;
+        let Some(advance) = advance else { return self.go_on() };
+        let taken = engine.take(&steps.of(lane), |arc| steps.write(lane, arc), advance, step, watch);
+        let Some(made) = taken.map_err(|cause| error(engine, cause))? else { return Ok(None) };
+        let ending = self.arrive(made);
+        if ending.is_some() { Ok(ending) } else { self.go_on() }
+    }
+
+    /// Follows the run, whose segment is over, by itself to its next step of rocking. Returns the ending of the run if the run ends
+    /// before.
+    fn go_on(&mut self) -> Result<Option<Ending>, RunError> {
+        loop {
+            let (Segment { duration, until, ground, .. }, ending) = match self.follower.segments.next() {
+                Some(segment) => (segment, None),
+                None => match self.follower.come_to_rest() {
+                    Ok(next) => next,
+                    Err(ending) => return Ok(Some(ending)),
+                },
+            };
+            (self.until, self.ending) = (until, ending);
+            let Lane { follower: Follower { engine, .. }, advance, step, watch, .. } = self;
+            let mut made = Progress::Complete;
+            if !engine.leaps(duration, ground, watch) {
+                let begun = engine.begin(duration, ground).map_err(|cause| error(engine, cause))?;
+                let went_on = engine.go_on(advance.insert(begun), false, Some(step), watch);
+                made = match went_on.map_err(|cause| error(engine, cause))? {
+                    Some(made) => made,
+                    None => return Ok(None),
+                };
+            }
+            let ending = self.arrive(made);
+            if ending.is_some() {
+                return Ok(ending);
+            }
         }
-        if self.passes(duration, ground, &stepped.end, &stepped.most) {
-            self.follower.engine.step_to(&stepped, times, ground, &mut (), write);
-        } else {
-            self.follower.engine.step_to(&stepped, times, ground, &mut self.watch, write);
+    }
+
+    /// Follows the run by itself to its end.
+    fn finish(&mut self) -> Result<Option<Ending>, RunError> {
+        let Lane { follower: Follower { engine, .. }, advance, watch, .. } = self;
+        let made = advance.as_mut().and_then(|advance| engine.go_on(advance, false, None, watch).transpose());
+        let made = made.transpose().map_err(|cause| error(engine, cause))?;
+        let mut ending = self.arrive(made.unwrap_or(Progress::Complete));
+        while ending.is_none() {
+            ending = self.follower.go_on(&mut self.watch)?;
         }
-        Ok(None)
+        Ok(ending)
+    }
+
+    /// The ending of the run, which has `made` this progress over its segment, if the run has ended.
+    #[inline(always)]
+    fn arrive(&mut self, made: Progress) -> Option<Ending> {
+        if made == Progress::Overturned {
+            return Some(Ending::Overturned);
+        }
+        self.follower.engine.set_time(self.until);
+        self.ending
     }
 }
 
-/// Follows the `runs` of [`found_each`].
+/// Follows the `runs` of [`follow_each`]. Returns how many steps have been taken together.
 #[inline(never)] // what is of one run alone needs no wide registers
-fn follow<S: Simd>(simd: S, runs: &[Run], mut done: impl FnMut(usize, Result<Found, RunError>) -> bool) {
-    let since = |run: &Run| FallingPeaks::since(run.ground.start(), &run.structure, run.detail);
-    let mut peaks: Vec<_> = runs.iter().map(since).collect();
-    let mut waiting = runs.iter().zip(&mut peaks).enumerate();
-    let mut rocking = VecDeque::with_capacity(ON_THE_WAY);
+fn follow<S: Simd, W: Passes>(
+    simd: S,
+    runs: &[Run],
+    watches: impl Iterator<Item = W>,
+    mut done: impl FnMut(usize, Result<Finish, RunError>, W) -> bool,
+) -> u64 {
+    let mut taken = 0;
+    let mut waiting = runs.iter().zip(watches).enumerate();
+    // in the record, and after it, where steps are longer
+    let mut rocking = [const { VecDeque::new() }; 2];
     let mut steps = Steps::new(simd);
     loop {
-        while rocking.len() < ON_THE_WAY
-            && let Some((number, (run, peaks))) = waiting.next()
+        while rocking.iter().map(VecDeque::len).sum::<usize>() < ON_THE_WAY
+            && let Some((number, (run, mut watch))) = waiting.next()
         {
             let is_wanted = match run.course() {
-                Ok(follower) => {
-                    let lane = Lane { number, run, follower, watch: peaks.watch(), segment: None, step: None };
-                    goes_on(Box::new(lane), Ok(None), &mut rocking, &mut done)
+                Ok(follower) if follower.engine.is_for_lanes() => {
+                    let (until, step) = (follower.engine.motion().time, RockingStep::default());
+                    let mut lane = Lane { number, follower, watch, until, ending: None, advance: None, step };
+                    let went_on = lane.go_on();
+                    goes_on(Box::new(lane), went_on, &mut rocking, &mut done)
                 }
-                Err(error) => done(number, Err(error)),
+                Ok(follower) => {
+                    let finish = follower.finish(&mut watch);
+                    let finish = finish.map(|(ending, engine)| Finish { ending, motion: *engine.motion() });
+                    done(number, finish, watch)
+                }
+                Err(error) => done(number, Err(error), watch),
             };
             if !is_wanted {
-                return;
+                return taken;
             }
         }
-        let group = rocking.len().min(S::F64_LANES);
+        if rocking.iter().map(VecDeque::len).sum::<usize>() < LEAST {
+            for mut lane in rocking.iter_mut().flat_map(std::mem::take) {
+                let ended = lane.finish();
+                if !goes_on(lane, ended, &mut Default::default(), &mut done) {
+                    return taken;
+                }
+            }
+            return taken;
+        }
+        let most = usize::from(rocking[1].len() > rocking[0].len());
+        let mut group: [Option<Box<Lane<_, W>>>; MOST] = [const { None }; MOST];
         for lane in 0..S::F64_LANES {
-            let of_lane: Option<&Box<Lane<_>>> = rocking.get(if lane < group { lane } else { 0 });
-            let Some(step) = of_lane.and_then(|lane| lane.step.as_ref()) else { return };
-            steps.put(lane, step);
+            group[lane] = rocking[most].pop_front().or_else(|| rocking[1 - most].pop_front());
+            let Some(of_lane) = group[lane].as_ref().or(group[0].as_ref()) else { return taken };
+            steps.put(lane, &of_lane.step);
         }
         steps.take();
-        for place in 0..group {
-            let Some(mut lane) = rocking.pop_front() else { return };
-            let taken = lane.take(&steps, place);
-            if !goes_on(lane, taken, &mut rocking, &mut done) {
-                return;
+        taken += group.iter().flatten().count() as u64;
+        for (place, lane) in group.into_iter().enumerate() {
+            let Some(mut lane) = lane else { break };
+            let went_on = lane.take(&steps, place);
+            if !goes_on(lane, went_on, &mut rocking, &mut done) {
+                return taken;
             }
         }
     }
 }
 
-/// Follows the run of `lane`, which has gone as far as `went_on` says, to its next step of `rocking` or to its end.
-fn goes_on<'a, Segments: Iterator<Item = Segment>>(
-    mut lane: Box<Lane<'a, Segments>>,
+/// Puts the run of `lane`, which went on to its next step of rocking, to the others; or tells `done` how the run ended.
+fn goes_on<Segments, W>(
+    lane: Box<Lane<Segments, W>>,
     went_on: Result<Option<Ending>, RunError>,
-    rocking: &mut VecDeque<Box<Lane<'a, Segments>>>,
-    done: &mut impl FnMut(usize, Result<Found, RunError>) -> bool,
+    rocking: &mut [VecDeque<Box<Lane<Segments, W>>>; 2],
+    done: &mut impl FnMut(usize, Result<Finish, RunError>, W) -> bool,
 ) -> bool {
-    let went_on = match went_on {
-        Ok(None) => lane.go_on(),
-        ended => ended,
-    };
-    let Lane { number, run, .. } = *lane;
-    match went_on {
+    let finish = match went_on {
         Ok(None) => {
-            rocking.push_back(lane);
-            true
+            let is_after_record = lane.follower.rest < LONGEST_REST;
+            rocking[usize::from(is_after_record)].push_back(lane);
+            return true;
         }
-        Ok(Some(ending)) => {
-            let finish = Finish { ending, motion: *lane.follower.engine.motion() };
-            let peaks = lane.watch.end();
-            done(number, Ok(run.found_of(*peaks.peaks(), peaks.fall(), finish)))
-        }
-        Err(error) => done(number, Err(error)),
-    }
+        Ok(Some(ending)) => Ok(Finish { ending, motion: *lane.follower.engine.motion() }),
+        Err(error) => Err(error),
+    };
+    let Lane { number, watch, .. } = *lane;
+    done(number, finish, watch)
 }
 
 #[cfg(test)]
@@ -189,7 +264,8 @@ mod tests {
     use super::*;
     use crate::run::End;
     use crate::run::record::Record;
-    use crate::{Detail, Parameters, Structure};
+    use crate::{Detail, Parameters, Phase, Piece, Structure, Watch};
+    use std::f64::consts::PI;
 
     /// A ground motion of filtered noise.
     fn ground(random: &mut fastrand::Rng) -> Record {
@@ -220,12 +296,13 @@ mod tests {
     }
 
     fn together<S: Simd>(simd: S, runs: &[Run]) -> Vec<String> {
-        let mut found = vec![String::new(); runs.len()];
-        follow(simd, runs, |number, result| {
-            found[number] = format!("{result:?}");
+        let mut results = vec![String::new(); runs.len()];
+        let mut peaks = peaks_of(runs);
+        follow(simd, runs, peaks.iter_mut().map(FallingPeaks::watch), |number, finish, watch| {
+            results[number] = format!("{:?}", found(&runs[number], finish, watch));
             true
         });
-        found
+        results
     }
 
     /// Structures of all kinds at all levels of detail, of every fate, each beside others, in as many lanes as this processor has
@@ -256,5 +333,37 @@ mod tests {
             assert!(V3::try_new().is_none_or(|simd| together(simd, &runs) == alone));
             assert!(V4::try_new().is_none_or(|simd| together(simd, &runs) == alone));
         }
+    }
+
+    /// Counts steps of rocking.
+    struct Rocking(u64);
+
+    impl Watch for Rocking {
+        const SEES_PIECES: bool = true;
+
+        fn piece(&mut self, piece: &Piece) {
+            self.0 += u64::from(matches!(piece.before.phase, Phase::Rocking(_)));
+        }
+    }
+
+    /// A half sine after which piers rock for long: in the record and after it, from sample to sample and from impact to impact.
+    #[test]
+    fn all_steps_of_rocking_are_taken_together_but_those_of_the_last_runs() {
+        let times: Vec<_> = (0..=100).map(|i| f64::from(i) * 0.005).collect();
+        let sine = times.iter().map(|time| 6.0 * f64::sin(time * PI / 0.5)).collect();
+        let ground = Record::from_samples("", times, sine).unwrap();
+        let pier = |i| Structure::new(Parameters { H: 1.2 + 0.01 * f64::from(i), ..Parameters::MCMANUS }).unwrap();
+        let runs: Vec<_> = (0..40).map(|i| Run::new(pier(i), &ground)).collect();
+        let count = |run: &Run| {
+            let mut rocking = Rocking(0);
+            run.follow(&mut rocking).unwrap();
+            rocking.0
+        };
+        let mut alone: Vec<_> = runs.iter().map(count).collect();
+        alone.sort_unstable();
+        let (all, of_last): (u64, u64) = (alone.iter().sum(), alone[runs.len() + 1 - LEAST..].iter().sum());
+        let mut peaks = peaks_of(&runs);
+        let taken = follow(pulp::Scalar256b, &runs, peaks.iter_mut().map(FallingPeaks::watch), |_, _, _| true);
+        assert!(all > 4000 && (all - of_last..=all).contains(&taken), "{taken} of {all}, {of_last}");
     }
 }

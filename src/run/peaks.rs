@@ -5,6 +5,8 @@
 //! rises or falls, so that the largest magnitude is at a stationary point or at an end. A piece that may hold more than
 //! what has been seen is first kept, since most are soon beaten by the end of another.
 
+#[cfg(feature = "lanes")]
+use crate::engine::lanes::{Bounded, Passes};
 use crate::engine::piece::{Expansion, Part, Piece, Watch};
 use crate::levels::detail::AnyLevel;
 use crate::levels::shown::Searched;
@@ -13,7 +15,7 @@ use crate::mechanics::restraint::Angles;
 use crate::series::extremes::{self, Bound};
 use crate::series::taylor::Arc;
 use crate::structure::{Base, Ties};
-use crate::{Detail, LinearLoad, Motion, Outputs, Parameters, Phase, State, Structure, Transition};
+use crate::{Detail, LinearLoad, Motion, Outputs, Parameters, Phase, State, Structure, Transition, TransitionKind};
 use serde::{Deserialize, Serialize};
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
@@ -250,7 +252,7 @@ impl Peaks {
 
     /// Looks for that of θ alone, and with it of the uplift: the others stay as they are.
     pub fn watch_theta(&mut self) -> ThetaWatch<'_> {
-        ThetaWatch { peaks: self }
+        ThetaWatch { peaks: self, impacts: 0 }
     }
 
     /// Looks for more of them in `piece` up to `tau` seconds after its start.
@@ -448,10 +450,20 @@ impl Watch for PeakWatch<'_> {
     }
 }
 
-/// Looks for the peak of θ alone in the pieces of a motion.
+#[cfg(feature = "lanes")]
+impl Passes for ThetaWatch<'_> {
+    #[inline(always)]
+    fn passes(&mut self, step: &Bounded) -> bool {
+        !self.peaks.may_be_same(Measure::theta, step.most.theta)
+    }
+}
+
+/// Looks for the peak of θ alone in the pieces of a motion, and counts impacts.
 #[derive(Debug)]
 pub struct ThetaWatch<'a> {
-    peaks: &'a mut Peaks,
+    pub(super) peaks: &'a mut Peaks,
+    /// Number of impacts and landings.
+    pub(super) impacts: u64,
 }
 
 impl Watch for ThetaWatch<'_> {
@@ -474,5 +486,10 @@ impl Watch for ThetaWatch<'_> {
         if peaks.is_open(Measure::theta, &range.and(0.0, 0.0), before.time) {
             peaks.search(Measure::theta, &Expansion { piece, from: 0.0, arc });
         }
+    }
+
+    fn transition(&mut self, transition: &Transition) {
+        use TransitionKind::{Impact, Landing, Settling};
+        self.impacts += u64::from(matches!(transition.kind, Impact(_) | Landing | Settling));
     }
 }

@@ -322,17 +322,18 @@ impl<Q: Coordinates> Arc<Q> {
     /// Cuts a full expansion to where its last two terms stay within `truncation`.
     #[inline(always)]
     pub(crate) fn cut(&mut self, truncation: &Truncation<Q>) {
-        self.reach = reach(self, truncation).min(1.0);
+        self.reach = reach(|k| (self.u_dot[k], self.theta_dot[k]), truncation).min(1.0);
     }
 }
 
 /// The σ up to which the last two terms of a full expansion stay within `truncation`.
 #[cold]
-fn reach<Q: Coordinates>(arc: &Arc<Q>, truncation: &Truncation<Q>) -> f64 {
+pub(crate) fn reach<Q: Coordinates>(velocities: impl Fn(usize) -> (Q, f64), truncation: &Truncation<Q>) -> f64 {
     [MAX_ORDER - 1, MAX_ORDER]
         .into_iter()
         .map(|k| {
-            let ratios = [arc.u_dot[k].room(&truncation.u_dot), truncation.theta_dot / arc.theta_dot[k].abs()];
+            let (u_dot, theta_dot) = velocities(k);
+            let ratios = [u_dot.room(&truncation.u_dot), truncation.theta_dot / theta_dot.abs()];
             libm::pow(ratios[0].min(ratios[1]), 1.0 / k as f64)
         })
         .fold(f64::INFINITY, f64::min)

@@ -9,9 +9,10 @@ use crate::pulse::{Pulse, units_of};
 use crate::{Refused, ensure};
 use rocking::engine::{DEFAULT_TOLERANCE, check_tolerance};
 use rocking::mechanics::uplift::least_push;
+use rocking::run::lanes::{Rocked, rocked_each};
 use rocking::run::record::Record;
-use rocking::run::{Ending, Run, peaks::Peaks};
-use rocking::{Detail, Structure, Transition, TransitionKind};
+use rocking::run::{Ending, Finish, Run, RunError};
+use rocking::{Detail, Structure};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
 
@@ -159,18 +160,8 @@ impl Point {
         (self.fate, if self.fate == Fate::Overturns { self.impacts.min(2) } else { 0 })
     }
 
-    fn of(run: &Run) -> Point {
-        let mut peaks = Peaks::since(run.ground.start(), &run.structure, run.detail);
-        let mut impacts = 0;
-        let mut count = |transition: &Transition| {
-            let comes_down = matches!(
-                transition.kind,
-                TransitionKind::Impact(_) | TransitionKind::Landing | TransitionKind::Settling
-            );
-            impacts += u64::from(comes_down);
-        };
-        let finish = run.follow(&mut (&mut peaks.watch_theta(), &mut count));
-        let theta = peaks.theta().magnitude / libm::atan(run.structure.tan_alpha_cg);
+    fn of(run: &Run, finish: Result<Finish, RunError>, Rocked { theta, impacts }: Rocked) -> Point {
+        let theta = theta / libm::atan(run.structure.tan_alpha_cg);
         let (fate, transitions, end, reason) = match finish {
             Ok(finish) => {
                 let fate = match finish.ending {
@@ -256,16 +247,38 @@ impl Map {
 
     /// Runs the structure under the pulse at `place`.
     pub fn run(&self, place: Place) -> Point {
-        let ground = self.ground(place);
-        let respond = |ground: &Record| {
-            Point::of(&Run { detail: self.detail, tolerance: self.tolerance, ..Run::new(self.structure, ground) })
-        };
-        let mut point = respond(&ground);
+        let mut run = None;
+        self.run_each(&[place], |_, point| {
+            run = Some(point);
+            true
+        });
+        run.expect("the place has been run")
+    }
+
+    /// Runs the structure under the pulses at `places`, several at a time on one thread, and tells `done` each point with the
+    /// place's position. Once `done` says no, the rest is left undone.
+    pub fn run_each(&self, places: &[Place], mut done: impl FnMut(usize, Point) -> bool) {
+        let mut grounds: Vec<_> = places.iter().map(|place| self.ground(*place)).collect();
         if self.finds_condition {
-            let other = respond(&ground.multiplied(1.0 + PERTURBATION));
-            point.condition = Some(point.condition(&other));
+            grounds.extend_from_within(..);
+            let changed = grounds.iter_mut().skip(places.len());
+            changed.for_each(|ground| *ground = ground.clone().multiplied(1.0 + PERTURBATION));
         }
-        point
+        let run = |ground| Run { detail: self.detail, tolerance: self.tolerance, ..Run::new(self.structure, ground) };
+        let runs: Vec<_> = grounds.iter().map(run).collect();
+        let mut first = vec![None; places.len()];
+        rocked_each(&runs, |number, finish, rocked| {
+            let (at, point) = (number % places.len(), Point::of(&runs[number], finish, rocked));
+            if !self.finds_condition {
+                return done(at, point);
+            }
+            let Some(other) = first[at].take() else {
+                first[at] = Some(point);
+                return true;
+            };
+            let (point, other) = if number == at { (point, other) } else { (other, point) };
+            done(at, Point { condition: Some(point.condition(&other)), ..point })
+        });
     }
 
     /// The points of the grid, amplitudes changing last.

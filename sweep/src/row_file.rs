@@ -19,6 +19,13 @@ use std::{
 };
 use uuid::Uuid;
 
+/// Runs that a thread does together: enough for full lanes to the end, and few enough to share them out and to stop soon.
+const FEWEST_TOGETHER: usize = 16;
+const MOST_TOGETHER: usize = 64;
+
+/// How often each thread takes runs, if there are few.
+const SHARES: usize = 4;
+
 /// An open file, to which rows can be added.
 #[derive(Debug)]
 pub struct RowFile {
@@ -123,21 +130,28 @@ impl RowFile {
         Ok((RowFile { path: path.into(), file: Mutex::new((file, length as u64)) }, known))
     }
 
-    /// Does `runs` on all threads, and adds their rows as they end: `run` returns one and what it is kept as. After
-    /// each, `goes_on` is asked; once it says no, the rest is left undone and that is an error.
+    /// Does `runs` on all threads, several together, and adds their rows as they end: `run` tells of each its row and what it is kept
+    /// as, until the answer is no. After each, `goes_on` is asked; once it says no, the rest is left undone and that is an error.
     pub fn do_runs<T: Sync, R: Send>(
         &self,
         runs: &[T],
-        run: impl Fn(&T) -> anyhow::Result<(Vec<u8>, R)> + Sync,
+        run: impl Fn(&[T], &mut dyn FnMut(anyhow::Result<(Vec<u8>, R)>) -> bool) + Sync,
         goes_on: impl Fn() -> bool + Sync,
     ) -> anyhow::Result<Vec<R>> {
-        let done = runs.par_iter().map(|one| {
-            let (row, result) = run(one)?;
-            self.append(&row)?;
-            ensure!(goes_on(), "stopped: finished runs are in {}", self.path.display());
-            Ok(result)
+        let done = runs.par_chunks(together(runs.len())).map(|runs| {
+            let (mut kept, mut result) = (Vec::with_capacity(runs.len()), Ok(()));
+            run(runs, &mut |done| {
+                result = done.and_then(|(row, one)| {
+                    self.append(&row)?;
+                    kept.push(one);
+                    ensure!(goes_on(), "stopped: finished runs are in {}", self.path.display());
+                    Ok(())
+                });
+                result.is_ok()
+            });
+            result.map(|()| kept)
         });
-        done.collect()
+        Ok(done.collect::<anyhow::Result<Vec<_>>>()?.into_iter().flatten().collect())
     }
 
     /// Adds a row, or nothing.
@@ -153,6 +167,11 @@ impl RowFile {
         *length += row.len() as u64;
         Ok(())
     }
+}
+
+/// How many of `runs` a thread does together.
+pub(crate) fn together(runs: usize) -> usize {
+    (runs / (SHARES * rayon::current_num_threads())).clamp(FEWEST_TOGETHER, MOST_TOGETHER)
 }
 
 /// The heading of a column of numbers.

@@ -4,7 +4,7 @@
 
 use crate::outcome::{MEASURES, Outcome};
 use crate::plan::{AXES, Case, Conditions, NamedRecord, Plan};
-use crate::row_file::{Known, Program, RowFile, digest, fixed, heading, line};
+use crate::row_file::{Known, Program, RowFile, digest, fixed, heading, line, together};
 use anyhow::{bail, ensure};
 use csv::StringRecord;
 use rayon::prelude::*;
@@ -23,13 +23,6 @@ pub const FAILED: &str = "failed";
 
 /// How many numbers a row has of the check of validity.
 const BEYOND: usize = 2 * ASSUMPTIONS.len() + 2;
-
-/// Runs that a thread does together: enough for full lanes to the end, and few enough to share them out and to stop soon.
-const FEWEST_TOGETHER: usize = 16;
-const MOST_TOGETHER: usize = 64;
-
-/// How often each thread takes runs, if there are few.
-const SHARES: usize = 4;
 
 /// A plan with its runs, as far as they are done.
 #[derive(Debug)]
@@ -118,8 +111,7 @@ impl<'a> Sweep<'a> {
     /// `goes_on` is asked; once it says no, the rest is left undone and that is an error.
     pub fn finish(&self, goes_on: impl Fn() -> bool + Sync) -> anyhow::Result<()> {
         let missing = self.missing();
-        let share = missing.len() / (SHARES * rayon::current_num_threads());
-        missing.par_chunks(share.clamp(FEWEST_TOGETHER, MOST_TOGETHER)).try_for_each(|indices| {
+        missing.par_chunks(together(missing.len())).try_for_each(|indices| {
             let mut result = Ok(());
             let mut keep = |index, done| {
                 result = self.keep(index, done, &goes_on);

@@ -91,9 +91,12 @@ fn do_points(
             None => lacking.push((place, key)),
         }
     }
-    let run = |(place, key): &(Place, Uuid)| {
-        let point = map.run(*place);
-        Ok((rows::row(key, name, map, (level, *place), &point)?, (*place, point)))
+    let run = |lacking: &[(Place, Uuid)], done: &mut dyn FnMut(_) -> bool| {
+        let places: Vec<_> = lacking.iter().map(|(place, _)| *place).collect();
+        map.run_each(&places, |at, point| {
+            let (place, key) = &lacking[at];
+            done(rows::row(key, name, map, (level, *place), &point).map(|row| (row, (*place, point))))
+        });
     };
     let (bar, goes_on) = progress(lacking.len(), "points")?;
     points.extend(file.do_runs(&lacking, run, goes_on)?);

@@ -1,10 +1,9 @@
 //! A step of rocking of several runs at once, each to the order that it would have by itself.
 
 use super::{Equations, Expanded, NonlinearRocking, Products, Recurrence};
-use crate::levels::level::ElasticRocking;
 use crate::numbers::lanes::{Lanes, MOST};
 use crate::series::extremes::OFF_CHORD;
-use crate::series::taylor::{Arc, MAX_ORDER, MIN_ORDER, Start, Truncation, reciprocal};
+use crate::series::taylor::{self, Arc, MAX_ORDER, MIN_ORDER, Start, Truncation, reciprocal};
 use crate::{Side, State};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::FRAC_PI_2;
@@ -29,6 +28,8 @@ pub(crate) struct RockingStep {
 pub(crate) struct Stepped {
     /// The order of its series.
     pub order: usize,
+    /// s.
+    pub duration: f64,
     /// Whether the series proves that no guard closes.
     pub stays: bool,
     /// State at its end.
@@ -38,18 +39,17 @@ pub(crate) struct Stepped {
 }
 
 impl NonlinearRocking {
-    /// The step from `start` as one of several, if the structure is not tied and the series may reach to the end.
+    /// The step from `start` of a structure that is not tied, as one of several.
     #[inline]
-    pub(crate) fn step(&self, side: Side, start: &Start) -> Option<RockingStep> {
+    pub(crate) fn step(&self, side: Side, start: &Start) -> RockingStep {
         let span = self.pace.span(start);
-        let may_be_one = !self.subject().is_tied && span == start.interval;
-        may_be_one.then(|| RockingStep {
+        RockingStep {
             equations: self.equations::<false>(side, start, span),
             theta: start.state.theta,
             side: side.sign(),
             span,
             truncation: self.pace.truncation(start, span),
-        })
+        }
     }
 }
 
@@ -62,10 +62,12 @@ pub(crate) struct Steps<S: Simd> {
     /// u, u̇, θ and θ̇, order by order.
     series: [[Lanes<S>; 4]; MAX_ORDER + 1],
     order: Lanes<S>,
+    /// The part of each series' span up to which the series holds.
+    reach: [f64; MOST],
     end: [Lanes<S>; 4],
     most: [Lanes<S>; 4],
-    /// 0 where the series does not hold to the end, 2 where it proves that no guard closes.
-    proven: Lanes<S>,
+    /// 1 where a series proves that no guard closes.
+    stays: Lanes<S>,
 }
 
 impl<S: Simd> Steps<S> {
@@ -77,9 +79,10 @@ impl<S: Simd> Steps<S> {
             products: Products::new(zero),
             series: [[zero; 4]; MAX_ORDER + 1],
             order: zero,
+            reach: [1.0; MOST],
             end: [zero; 4],
             most: [zero; 4],
-            proven: zero,
+            stays: zero,
         }
     }
 
@@ -94,29 +97,32 @@ impl<S: Simd> Steps<S> {
         self.simd.vectorize(Taken(self));
     }
 
-    /// The step of the run in `lane`, if its series holds to the end.
+    /// The step of the run in `lane`.
     #[inline]
-    pub(crate) fn of(&self, lane: usize) -> Option<Stepped> {
-        if self.proven.of(lane) == 0.0 {
-            return None;
-        }
+    pub(crate) fn of(&self, lane: usize) -> Stepped {
         let state = |[u, u_dot, theta, theta_dot]: &[Lanes<S>; 4]| State {
             u: u.of(lane),
             u_dot: u_dot.of(lane),
             theta: theta.of(lane),
             theta_dot: theta_dot.of(lane),
         };
-        let stays = self.proven.of(lane) == 2.0;
-        Some(Stepped { order: self.order.of(lane) as usize, stays, end: state(&self.end), most: state(&self.most) })
+        Stepped {
+            order: self.order.of(lane) as usize,
+            duration: self.reach[lane] * self.steps[lane].span,
+            stays: self.stays.of(lane) == 1.0,
+            end: state(&self.end),
+            most: state(&self.most),
+        }
     }
 
-    /// Writes the series of the run in `lane`, of this `order` over this `span` (s), into `arc`.
-    pub(crate) fn write(&self, lane: usize, order: usize, span: f64, arc: &mut Arc) {
+    /// Writes the series of the run in `lane` into `arc`.
+    pub(crate) fn write(&self, lane: usize, arc: &mut Arc) {
+        let order = self.order.of(lane) as usize;
         for (k, [u, u_dot, theta, theta_dot]) in self.series.iter().enumerate().take(order + 1) {
             (arc.u[k], arc.u_dot[k]) = (u.of(lane), u_dot.of(lane));
             (arc.theta[k], arc.theta_dot[k]) = (theta.of(lane), theta_dot.of(lane));
         }
-        (arc.order, arc.span, arc.reach) = (order, span, 1.0);
+        (arc.order, arc.span, arc.reach) = (order, self.steps[lane].span, self.reach[lane]);
     }
 }
 
@@ -128,7 +134,7 @@ impl<S: Simd> WithSimd for Taken<'_, S> {
 
     #[inline(always)]
     fn with_simd<T: Simd>(self, _simd: T) {
-        let Steps { simd, steps, products, series, .. } = self.0;
+        let Steps { simd, steps, products, series, reach, .. } = self.0;
         let simd = *simd;
         let of = |number: fn(&RockingStep) -> f64| Lanes::load(simd, &steps.each_ref().map(number));
         let equations = Equations {
@@ -176,27 +182,37 @@ impl<S: Simd> WithSimd for Taken<'_, S> {
             }
             was_small = is_small;
         }
-        let (mut end, mut off, mut excursion) = ([none; 4], [g.like(0.0); 4], g.like(0.0));
+        *reach = [1.0; MOST];
+        if !ended.all() {
+            let ended = ended.choose(g.like(1.0), g.like(0.0));
+            for lane in (0..S::F64_LANES).filter(|lane| ended.of(*lane) == 0.0) {
+                let velocities = |k: usize| (series[k][1].of(lane), series[k][3].of(lane));
+                reach[lane] = taylor::reach(velocities, &steps[lane].truncation).min(1.0);
+            }
+        }
+        let sigma = Lanes::load(simd, reach);
+        let sum = sigma.is_less(g.like(1.0)).choose(g.like(0.0), none);
+        let (mut end, mut off, mut excursion) = ([sum; 4], [g.like(0.0); 4], g.like(0.0));
         for k in (1..last + 1).rev() {
             let weight = g.like(OFF_CHORD[k]);
             for (i, number) in series[k].into_iter().enumerate() {
-                end[i] = end[i] + number;
-                off[i] = off[i] + weight * number.abs();
+                end[i] = end[i] * sigma + number;
+                off[i] = (off[i] + weight * number.abs()) * sigma;
             }
-            excursion = excursion + series[k][2].abs();
+            excursion = (excursion + series[k][2].abs()) * sigma;
         }
         let rounding = g.like(ROUNDING);
         for (i, number) in series[0].into_iter().enumerate() {
-            end[i] = end[i] + number;
+            end[i] = end[i] * sigma + number;
             self.0.most[i] = (number.abs().max(end[i].abs()) + off[i]) * rounding;
         }
         let start = side * theta;
         let stays =
             (excursion * rounding).is_less(start).and(((excursion + start) * rounding).is_less(g.like(FRAC_PI_2)));
         let size = end[0].abs() + end[1].abs() + end[2].abs() + end[3].abs();
-        let holds = ended.and(size.is_at_most(g.like(f64::MAX)));
+        let is_finite = size.is_at_most(g.like(f64::MAX));
         (self.0.end, self.0.order) = (end, order);
-        self.0.proven = holds.choose(stays.choose(g.like(2.0), g.like(1.0)), g.like(0.0));
+        self.0.stays = stays.and(is_finite).choose(g.like(1.0), g.like(0.0));
     }
 }
 
