@@ -228,7 +228,9 @@ impl Run {
         #[pyo3(from_py_with = argument::zeta)] zeta: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
         let floors = slf.get().of.floors().len();
-        let Some(below) = usize::try_from(floor - 1).ok().filter(|below| *below < floors) else {
+        let Some(below) =
+            floor.checked_sub(1).and_then(|floor| usize::try_from(floor).ok()).filter(|below| *below < floors)
+        else {
             let has = match floors {
                 0 => "no floors; give masses, heights and shapes".to_owned(),
                 1 => "floor 1 alone".to_owned(),

@@ -41,6 +41,7 @@ use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
+use crate::structure::frame::Body;
 use crate::structure::{Base, Mode};
 use crate::{
     Detail, Frame, Impulse, Modes, Motion, Parameters, Phase, Ramp, Reactions, Side, Structure, Transition,
@@ -653,10 +654,12 @@ pub fn of_frame(frame: &Frame, detail: Detail) -> Vec<String> {
             ));
         }
     }
-    let height = frame.floors().iter().map(|floor| floor.height).fold(0.0, f64::max);
+    let &Body { m_s, S_1, .. } = frame.body();
+    // of mass that is spread evenly over the height
+    let height = frame.floors().iter().map(|floor| floor.height).reduce(f64::max).unwrap_or(2.0 * S_1 / m_s);
     let lowest = frame.modes().iter().map(Mode::omega).reduce(f64::min);
     let [f, usual] = [lowest.unwrap_or(f64::NAN) / TAU, USUAL_SPEED / height];
-    if (f / usual).max(usual / f) > UNUSUAL && height > 0.0 {
+    if (f / usual).max(usual / f) > UNUSUAL {
         warnings.push(format!(
             "f = {f} Hz of the lowest mode is far from the usual frequency of a structure {height} m high, about {usual} Hz: \
              are masses in kg, stiffnesses in N/m, and f in Hz?"
@@ -669,7 +672,7 @@ pub fn of_frame(frame: &Frame, detail: Detail) -> Vec<String> {
 const USUAL_SPEED: f64 = 46.0;
 
 /// Ratio to that frequency from which a unit is in doubt. A unit of mass or stiffness wrong by 1000 makes 32.
-const UNUSUAL: f64 = 15.0;
+const UNUSUAL: f64 = 10.0;
 
 /// The warning about a coefficient of restitution `r` that requires a pull.
 fn pulling(r: f64, limit: f64, mass: &str) -> Option<String> {
