@@ -304,6 +304,11 @@ fn rates_are_the_slopes_of_states_outputs_and_reactions() {
 fn what_fits_no_frame_is_refused_with_the_remedy() {
     let frame = Masses::new(0.02, 0.93).frame;
     assert_eq!(frame.keeping(4).unwrap_err().to_string(), "4 modes cannot be kept of 3: keep 0 to 3");
+    let without_moment = Frame::new(Body { S_1: 0.0, ..*frame.body() }, frame.modes(), frame.floors());
+    assert_eq!(
+        without_moment.unwrap_err().to_string(),
+        "S_1 = 0 kg.m is out of range: it must lie between 1e-9 and 1e16 kg.m (first moment of the mass above the base)"
+    );
     let refused = frame.load(0.0, 0.0, &[1.0]).unwrap_err().to_string();
     assert_eq!(refused, "1 forces are given on 3 floors: give one for each floor, or none");
     let start = |state, detail| {

@@ -256,6 +256,7 @@ fn print_advice<Q: Advised>(
     let choice = response.choice;
     let modes = match choice.modes {
         Some([kept, all]) if kept < all => format!(" and keep = {kept} of {all} modes"),
+        Some([_, 1]) => " with its one mode".to_owned(),
         Some([_, all]) => format!(" with all {all} modes"),
         None => String::new(),
     };

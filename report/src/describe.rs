@@ -50,9 +50,13 @@ pub fn frame(frame: &Frame) -> Result<String, fmt::Error> {
     let [mass, first, second] = [part(mass, m_s), part(first, S_1), part(second, I_2)];
     let modes = match (frame.modes().len(), frame.floors().len()) {
         (modes, floors) if floors > modes => format!("{modes} modes of {floors} floors"),
+        (1, _) => "1 mode".to_owned(),
         (modes, _) => format!("{modes} modes"),
     };
-    writeln!(out, "  {modes} carry {mass} of m_s, {first} of S_1, {second} of I_2; the rest turns with the base")?;
+    writeln!(
+        out,
+        "  carried by {modes}: {mass} of m_s, {first} of S_1, {second} of I_2; the rest turns with the base"
+    )?;
     writeln!(out, "\nModes of vibration: f_u is the frequency while the structure rocks, share a part of m_s")?;
     write!(out, "  mode")?;
     for Derived { name, unit, .. } in &OF_MODE {

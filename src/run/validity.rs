@@ -661,7 +661,7 @@ pub fn of_frame(frame: &Frame, detail: Detail) -> Vec<String> {
     let [f, usual] = [lowest.unwrap_or(f64::NAN) / TAU, USUAL_SPEED / height];
     if (f / usual).max(usual / f) > UNUSUAL {
         warnings.push(format!(
-            "f = {f} Hz of the lowest mode is far from the usual frequency of a structure {height} m high, about {usual} Hz: \
+            "f = {f:.2} Hz of the lowest mode is far from the usual frequency of a structure {height:.1} m high, about {usual:.1} Hz: \
              are masses in kg, stiffnesses in N/m, and f in Hz?"
         ));
     }
