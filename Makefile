@@ -24,6 +24,7 @@
 # make coupling  regenerate docs/evidence/coupling.md and its figures (minutes)
 # make exchange  regenerate docs/evidence/model_exchange.md and its figure (minutes)
 # make precision  measure docs/evidence/accuracy.md and speed.md anew, with heyoka and scipy (minutes; nothing else may run)
+# make ensembles  measure 64 runs at once beside heyoka's batches: docs/evidence/ensembles.csv and its picture (minutes; nothing else may run)
 # make bench   criterion benchmark of a whole record, one step over it through fmpy, and the Python module
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
 # make fuzz    ten million hostile calls of each interface and as many damaged records, a core for each (CI: 100,000 of each and 40,000)
@@ -71,7 +72,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test check lint tools heavy evidence study python module hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu arm_python old_glibc docs pages pictures report restrained overturning modes coupling exchange bench licenses fuzz precision records library exporter mingw host_packages
+.PHONY: demo test check lint tools heavy evidence study python module hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu arm_python old_glibc docs pages pictures report restrained overturning modes coupling exchange bench licenses fuzz precision ensembles records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -280,6 +281,9 @@ exchange: .venv/test out/mcmanus.fmu
 
 precision: .venv/peers
 	cargo run --release --manifest-path study/Cargo.toml -- precision
+
+ensembles: .venv/peers module
+	OMP_NUM_THREADS=1 $(PYTHON) study/ensemble.py
 
 records: .venv/ready
 
