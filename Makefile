@@ -101,8 +101,8 @@ lint: tools
 	cargo fmt --all --check
 	for package in $(OUTSIDE); do cargo fmt --all --check --manifest-path $$package/Cargo.toml || exit; done
 	cargo clippy --workspace --all-targets -- -D warnings
-	cargo clippy --workspace --all-targets --manifest-path study/Cargo.toml -- -D warnings
-	cargo clippy --workspace --all-targets --manifest-path web/Cargo.toml -- -D warnings
+	for package in study web; do \
+		cargo clippy --workspace --all-targets --manifest-path $$package/Cargo.toml --target-dir $(TARGET) -- -D warnings || exit; done
 
 tools:
 	@cargo fmt --version >/dev/null 2>&1 || rustup component add rustfmt
@@ -116,7 +116,7 @@ study:
 # OpenSees needs the libraries of its wheel; where these cannot be had, its tests are skipped and say so.
 python: .venv/heavy module
 	-@{ $(HAS_LAPACK); } || { $(call install,libblas3 liblapack3 libgfortran5); }
-	$(PYTEST) -m heavy tests/test_python.py tests/test_many_masses.py tests/test_opensees.py tests/test_validation.py tests/test_literature.py \
+	$(PYTEST) -m heavy -n auto tests/test_python.py tests/test_many_masses.py tests/test_opensees.py tests/test_validation.py tests/test_literature.py \
 		tests/test_doors.py::test_python_has_the_command_lines_numbers
 
 # In .venv the module is that of this folder; the archive in its place has the libraries that are there.
@@ -134,7 +134,7 @@ hosts: .venv/heavy exporter windows host_packages
 browser: .venv/heavy module explore
 	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
 	-@$(HAS_FIREFOX) || { $(call install,firefox-esr); }
-	$(PYTEST) -m heavy tests/test_view.py tests/test_explore.py tests/test_doors.py::test_the_page_has_the_command_lines_numbers
+	$(PYTEST) -m heavy -n auto --dist loadfile tests/test_view.py tests/test_explore.py tests/test_doors.py::test_the_page_has_the_command_lines_numbers
 
 docs/img/explore.png: .venv/heavy explore
 	$(PYTHON) examples/explore_picture.py
@@ -145,7 +145,7 @@ explore: library .venv/ready
 	rustup target add $(WEB)
 	cd web && cargo build --release --locked --package rocking-web --target $(WEB)
 	mkdir -p out
-	cargo run --release --locked --manifest-path web/Cargo.toml --package pack -- \
+	cargo run --locked --manifest-path web/Cargo.toml --package pack -- \
 		$(or $(CARGO_TARGET_DIR),web/target)/$(WEB)/release/rocking_web.wasm $(RECORDS)/$(EL_CENTRO) \
 		$(TARGET)/release/deps/libFlexibleRocking.so out/explore.html
 
