@@ -150,9 +150,9 @@ outputs! {
     /// Acceleration of the top mass in the direction of u, a_t, m/s² (Eq 27).
     a_t["m/s2"] PeakRule::Searched(4);
     /// Base shear V_t = m a_t, N (Eqs 2, 23).
-    V_t["N"] PeakRule::With(5, Measure::a_t, |&Sizes { m, .. }, a_t| m * a_t);
+    V_t["N"] PeakRule::With(5, Measure::a_t, |&Sizes { m, .. }, a_t| base_shear(m, a_t));
     /// Overturning moment M_t = m H a_t, N·m (Eqs 3, 24).
-    M_t["N.m"] PeakRule::With(6, Measure::a_t, |&Sizes { m, H, .. }, a_t| m * H * a_t);
+    M_t["N.m"] PeakRule::With(6, Measure::a_t, |&Sizes { m, H, .. }, a_t| overturning_moment(m, H, a_t));
     /// Angular velocity θ̇, rad/s.
     theta_dot["rad/s"] PeakRule::None;
     /// Elastic velocity u̇, m/s.
@@ -205,13 +205,13 @@ mod formulas {
 
     #[inline(always)]
     pub fn V_t<N: Number>(x: &Instant<N>) -> N {
-        a_t(x) * x.structure.parameters().m
+        super::base_shear(x.structure.parameters().m, a_t(x))
     }
 
     #[inline(always)]
     pub fn M_t<N: Number>(x: &Instant<N>) -> N {
         let &Parameters { m, H, .. } = x.structure.parameters();
-        a_t(x) * (m * H)
+        super::overturning_moment(m, H, a_t(x))
     }
 
     #[inline(always)]
@@ -234,6 +234,18 @@ mod formulas {
     fn top<N: Number>(x: &Instant<N>) -> Place<N> {
         Place { share: 1.0, height: x.structure.parameters().H, u: x.u }
     }
+}
+
+/// Base shear m a_t (Eqs 2, 23), N, of the acceleration `a_t` (m/s²) of the mass `m` (kg).
+#[inline(always)]
+pub(crate) fn base_shear<N: Number>(m: f64, a_t: N) -> N {
+    a_t * m
+}
+
+/// Overturning moment m H a_t (Eqs 3, 24), N·m, of the acceleration `a_t` (m/s²) of the mass `m` (kg) at the height `H` (m).
+#[inline(always)]
+pub(crate) fn overturning_moment<N: Number>(m: f64, H: f64, a_t: N) -> N {
+    a_t * (m * H)
 }
 
 /// Acceleration of a mass by (5), g sin θ + Σ φ (F cos θ − c u̇ − k u)/μ, m/s². The function `at` weighs the part of a mode by its
