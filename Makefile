@@ -1,6 +1,6 @@
 # make demo    run the FMU on a real earthquake and draw docs/img/pacoima_mcmanus.png (1 to 2 minutes)
 # make test    every test but those of `heavy` (3 to 4 minutes more)
-# make check   format, clippy and the tests of what differs from the last commit: the loop of whoever changes a line
+# make check   format, clippy and the tests of what differs from the last commit: the loop of whoever changes a line (minutes)
 # make lint    format and clippy of everything, warnings denied
 # make heavy   what takes longer or needs more, of which each can be made alone:
 # make python    the Python module, installed into .venv, its types, its page, what is computed with it; pip install in a fresh clone
@@ -21,9 +21,10 @@
 # make report  regenerate docs/evidence/paper.md, docs/evidence/literature.md and their figures (minutes)
 # make restrained  regenerate docs/evidence/restrained.md and its pictures (minutes)
 # make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
+# make modes  regenerate docs/evidence/modes.md, its tables and its pictures (minutes)
 # make coupling  regenerate docs/evidence/coupling.md and its figures (minutes)
 # make exchange  regenerate docs/evidence/model_exchange.md and its figure (minutes)
-# make precision  measure docs/evidence/accuracy.md and speed.md anew, with heyoka and scipy (minutes; nothing else may run)
+# make precision  measure docs/evidence/accuracy.md anew, with heyoka and scipy (minutes; nothing else may run)
 # make ensembles  measure 64 runs at once beside heyoka's batches: docs/evidence/ensembles.csv and its picture (minutes; nothing else may run)
 # make bench   criterion benchmark of a whole record, one step over it through fmpy, and the Python module
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
@@ -93,7 +94,7 @@ check: tools
 	@packages=$$($(CHANGED) '*.rs' '*.toml' ':!study' ':!benches' ':!tests/hosts' | cut -c4- | while read -r file; do \
 		until test -e "$$file/Cargo.toml"; do file=$$(dirname "$$file"); done; \
 		echo --package "$$(cargo pkgid --manifest-path "$$file/Cargo.toml")"; done | sort -u); \
-	test -z "$$packages" || { echo cargo test $$packages && cargo test $$packages; }
+	test -z "$$packages" || { echo cargo test $$packages && FUZZ_CALLS=2000 FUZZ_RECORDS=2000 cargo test --no-fail-fast $$packages; }
 	@files=$$($(CHANGED) 'tests/test_*.py' | cut -c4-); \
 	test -z "$$files" || { $(MAKE) .venv/test exporter && $(PYTEST) $$files; }
 

@@ -160,11 +160,11 @@ def headline(path: Path) -> None:
         curve(method, "0.5", "", 0, linestyle="--", marker="")
     axis.text(400, 0.2, "six textbook methods,\ntransitions at ends of steps", color="0.4")
     curve("RK4", "#009e73", "RK4, transitions located", -1, (8, 0))
-    curve("Newmark average acceleration", "#b35900", "Newmark, HHT-α, central\ndifference, the same", -1,
+    curve("Newmark average acceleration", "#b35900", "Newmark, HHT-α, central\ndifference, located", -1,
           (8, -6))
     curve("HHT-α", "#b35900", "", 0)
     curve("central difference", "#b35900", "", 0)
-    curve("semi-implicit Euler", "#b35900", "Euler, the same", -1, (8, -4))
+    curve("semi-implicit Euler", "#b35900", "Euler, located", -1, (8, -4))
     curve("explicit Euler", "#b35900", "", 0)
     curve("ode_solvers Dop853", FIXED, "DOP853, two libraries", 5, (-118, 0))
     curve("differential-equations DOP853", FIXED, "", 0)

@@ -153,7 +153,7 @@ def main() -> None:
         print(f"{name}: uplift {1e3 * np.max(uplifts[:, i]):.2f} mm, bearing {np.max(np.abs(forces[:, i])):.1f} N, "
               f"{bridge.piers[i].transitions()} transitions")
     if isinstance(master, Iterated):
-        print(f"{master.sweeps / (len(time) - 1) / arguments.steps:.2f} sweeps per communication step")
+        print(f"{master.sweeps / (len(time) - 1) / arguments.steps:.2f} iterations per communication step")
     plot(arguments.figure, time, a_g, x, tops, uplifts, forces)
     print(f"figure: {arguments.figure}")
 

@@ -213,7 +213,7 @@ def study(update=lambda: None):
 
 
 def table(step, found) -> str:
-    head = ["", "step", "error", "transitions", "further steps for each transition", "sweeps for each step asked for"]
+    head = ["", "step", "error", "transitions", "further steps per transition", "sweeps per communication step"]
     rows = [[name, f"{1e3 * step / n:g} ms", f"{error:.1e}", transitions, f"{further:.1f}", f"{sweeps:.1f}"]
             for (name, n), (error, further, sweeps, transitions) in found.items()]
     return report.table(head, rows)

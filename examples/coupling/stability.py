@@ -197,7 +197,7 @@ def plot_weak(path: Path, found: dict[str, np.ndarray]) -> None:
                         label="limit in theory, " + ("rocking" if rocking else "bases down"))
         axis.set_title(name)
     finish(axes, [0.03, 0.1, 0.3, 1, 3, 10, 30])
-    figure.suptitle("Values that are held blow up at short steps, extrapolated ones near the limit in theory")
+    figure.suptitle("Held values become unstable at shorter steps than extrapolated values")
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     bar = figure.colorbar(colors, ax=axes, extend="both", shrink=0.8)
     bar.set_label("largest error of the deck's displacement, over its peak; grey: blown up")

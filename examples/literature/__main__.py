@@ -26,6 +26,7 @@ def main() -> None:
         progress.set_description("overturning")
         cases = overturning.compute(progress.update)
         overturning.draw(cases, figures / "overturning.svg")
+        overturning.save(cases, figures / "overturning.csv")
         trains, train_between = point_reyes.rows(progress.update)
         progress.set_description("flexible")
         flexibility = flexible.flexibility(progress.update)
@@ -33,12 +34,13 @@ def main() -> None:
         runs = ensemble.compute(progress.update)
         ensemble.draw(runs, figures / "ensemble.svg")
         found = ensemble.comparisons(runs)
+        ensemble.save(runs, found, figures / "ensemble.csv")
         rates = [case.limit.rate for case in cases]
+        peaks = [fr.Record.read(path).pga / G for path in horizontal_records().values()]
         page = PAGE.read_text(encoding="utf-8").format(
             restitution=overturning.R,
             impacts_agree=sum(case.impacts == case.boundary.impacts for case in cases),
             most=f"{overturning.MOST:g}",
-            boundaries=overturning.rows(cases),
             boundary_count=len(cases),
             boundary_error=f"{max(case.limit.error for case in cases):.0e}",
             boundary_rates=f"{min(rates):.3f} to {max(rates):.3f}",
@@ -56,13 +58,11 @@ def main() -> None:
             impacts=flexible.impacts(),
             flexibility=flexibility,
             base_shear=flexible.base_shear(),
-            records="\n".join(f"- {name}: {len(record)} samples, {record.time[1]:g} s, {record.pga / G:.3f} g"
-                              for name, path in horizontal_records().items() for record in [fr.Record.read(path)]),
+            record_peaks=f"{min(peaks):.2f} to {max(peaks):.2f} g",
             time_scales=", ".join(f"{scale:g}" for scale in ensemble.TIME_SCALES),
             pgas=f"{len(ensemble.PGAS)} peak accelerations from {ensemble.PGAS[0]:g} to {ensemble.PGAS[-1]:g} g",
             run_count=len(runs) // len(ensemble.STRUCTURES),
             draws=ensemble.DRAWS,
-            ensemble=ensemble.rows(runs, found),
             **ensemble.summary(runs, found),
         )
     write_page(arguments.output, "\n\n".join(map(filled, page.split("\n\n"))), "make report")

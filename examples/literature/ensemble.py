@@ -12,7 +12,6 @@ from first_run import G
 from scipy.stats import ks_2samp
 from validation import figures
 from validation.records import horizontal_records
-from validation.report import table
 from validation.specimens import EVISON, MCMANUS
 
 STRUCTURES = {
@@ -138,8 +137,8 @@ def comparisons(runs: pd.DataFrame) -> list[Comparison]:
     return [compare(runs, structure, variant) for structure in STRUCTURES for variant in VARIANTS if variant != "auto"]
 
 
-def rows(runs: pd.DataFrame, found: list[Comparison]) -> str:
-    """The one table."""
+def save(runs: pd.DataFrame, found: list[Comparison], path: Path) -> None:
+    """Writes the table of all comparisons."""
     lines = []
     for structure in STRUCTURES:
         for of in (comparison for comparison in found if comparison.structure == structure):
@@ -151,12 +150,12 @@ def rows(runs: pd.DataFrame, found: list[Comparison]) -> str:
                             for ratio, (least, most) in zip(of.quantiles, of.quantile_ranges)),
                           f"{of.distance:.3f} ({of.distance_most:.3f})"])
         halves = between_halves(runs, structure)
-        lines.append([structure, "*auto, half of the records against the others*", "", "", "",
-                      f"*±{100 * halves.overturned:.1f}*", *(f"*{ratio:.2f}*" for ratio in halves.ratios), f"*{halves.distance:.3f}*"])
-    return table(["structure", "level", "other fate", f"θ_max parts by {100 * PARTED:.0f} %",
-                  "overturned: level / auto", "difference, 95 %", *(f"{100 * q:g} % quantile of θ_max over auto's" for q in QUANTILES),
-                  "KS distance (95 % below)"],
-                 [[cell.replace("-", "−") for cell in line] for line in lines], texts=(0, 1))
+        lines.append([structure, "auto, half of the records against the others", "", "", "", f"±{100 * halves.overturned:.1f}",
+                      *(f"{ratio:.2f}" for ratio in halves.ratios), f"{halves.distance:.3f}"])
+    head = ["structure", "level", "other fate", f"theta_max differs by more than {100 * PARTED:.0f} %", "overturned: level / auto",
+            "difference in points, 95 %", *(f"{100 * q:g} % quantile of theta_max over that of auto" for q in QUANTILES),
+            "KS distance (95 % below)"]
+    pd.DataFrame(lines, columns=head).to_csv(path, index=False)
 
 
 def summary(runs: pd.DataFrame, found: list[Comparison]) -> dict[str, str]:
@@ -201,9 +200,9 @@ def draw(runs: pd.DataFrame, path: Path) -> None:
         above.set(title=structure, xscale="log", yscale="log", xlabel="auto: $\\theta_{max}/\\alpha$")
         below.set(xlim=(2e-3, 1.5), xscale="log", ylim=(0, 1), xlabel="$\\theta_{max}/\\alpha$")
     axes[0][0].set_ylabel("level: $\\theta_{max}/\\alpha$")
-    axes[1][0].set_ylabel("part of the runs below")
+    axes[1][0].set_ylabel("fraction of the runs below")
     axes[1][0].legend(loc="upper left")
-    title = "Single runs part; distributions agree, but for rigid blocks in place of soft structures"
+    title = "Single runs differ; distributions agree, except those of rigid blocks instead of soft structures"
     figure.suptitle(title)
     figures.save(figure, path, title,
                  "Above: the largest rotation of every run at each level against that of auto. Below: its distribution.")

@@ -53,7 +53,7 @@ def impacts() -> str:
     """The table of impacts: restitution that keeps the rigid body's angular momentum, and the energy that goes."""
     blocks = {f"homogeneous, α = {alpha:g}": homogeneous(np.tan(alpha), 1.0) for alpha in (0.1, 0.35)}
     lines = []
-    for name, of in (blocks | STRUCTURES).items():
+    for name, of in (blocks | {name: STRUCTURES[name] for name in ("McManus", "Evison", "massless base")}).items():
         kept = 1 - 2 * (of.m + of.m0) * of.B**2 / of.J_P
         housner = 1 - 1.5 * np.sin(of.alpha_cg) ** 2
         chosen = ["", ""] if name in blocks else [f"{of.r:g}", f"{100 * (1 - of.r**2):.1f}"]
@@ -62,7 +62,7 @@ def impacts() -> str:
                   "by r (%)"], lines)
 
 
-FREQUENCIES = [200, 100, 50, 20, 10, 5, 3, 2, 1]  # f_fc, Hz
+FREQUENCIES = [200, 50, 20, 10, 5, 2, 1]  # f_fc, Hz
 OMEGAS = [2, 4, 8]  # of the half sine, over p
 PARTS = np.arange(0.4, 1.6, 0.02)  # of the amplitude that overturns the rigid limit
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import flexible_rocking as fr
 import numpy as np
+import pandas as pd
 from validation import figures
 from validation.report import table
 
@@ -88,18 +89,16 @@ def any_shape(cases: list[Case]) -> float:
     return max(abs(block.boundary(top_heavy, case.pulse, case.omega, case.stocky) / case.stocky - 1) for case in chosen)
 
 
-def rows(cases: list[Case]) -> str:
-    """The table of all boundaries."""
-    lines = []
-    for case in cases:
-        differences = case.limit.differences
-        lines.append([case.pulse.name, f"{case.omega:g}", case.words, f"{case.boundary.amplitude:.10f}",
-                      f"{differences[0]:.1e}", f"{differences[-1]:.1e}", f"{case.limit.rate:.3f}",
-                      f"{case.limit.extrapolated:.10f}", f"{case.limit.error:.0e}",
-                      f"{case.stocky:.4f}".replace("nan", "–")])
-    return table(["pulse", "ω/p", "overturns", "closed form", f"tan α = {TANGENTS[0]:g}: difference",
-                  f"tan α = {TANGENTS[-1]:g}: difference", "rate", "extrapolated", "difference",
-                  f"tan α = {STOCKY:g}"], [[cell.replace("-", "−") for cell in line] for line in lines], texts=(0, 2))
+def save(cases: list[Case], path: Path) -> None:
+    """Writes the table of all boundaries."""
+    pd.DataFrame([{
+        "pulse": case.pulse.name, "omega/p": case.omega, "overturns": case.words,
+        "closed form": f"{case.boundary.amplitude:.10f}",
+        f"difference at tan alpha = {TANGENTS[0]:g}": f"{case.limit.differences[0]:.1e}",
+        f"difference at tan alpha = {TANGENTS[-1]:g}": f"{case.limit.differences[-1]:.1e}",
+        "rate": f"{case.limit.rate:.3f}", "extrapolated": f"{case.limit.extrapolated:.10f}",
+        "difference": f"{case.limit.error:.0e}", f"amplitude at tan alpha = {STOCKY:g}": f"{case.stocky:.4f}",
+    } for case in cases]).to_csv(path, index=False)
 
 
 def changes(cases: list[Case], upper: bool) -> str:

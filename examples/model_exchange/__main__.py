@@ -37,16 +37,22 @@ def scenes(fmu: str) -> list[Scene]:
     ]
 
 
-def cells(result, exact) -> list:
-    hidden = f"{result.transitions} ({result.hidden})"
+def cell(result, exact) -> str:
     ended = "" if len(result.rows) == len(exact.rows) else f", overturned at {result.rows['time'][-1]:.1f} s"
-    return [f"{result.error(exact):.1e}", hidden + ended, f"{result.depth:.1g}"]
+    return f"{result.error(exact):.1e}, {result.transitions} ({result.hidden}){ended}"
 
 
-def table(found, exact) -> str:
-    """Every run of a scene."""
-    rows = [[name, f"{setting:g}", *cells(result, exact)] for (name, setting), result in found.items()]
-    return report.table(["", "tolerance or step (s)", "error", "transitions (hidden)", "below the ground (rad)"], rows)
+def table(found) -> str:
+    """Every run of every scene."""
+    runs = next(iter(found.values()))[0]
+    rows = [[name, f"{setting:g}", *(cell(results[name, setting], exact) for results, exact, _ in found.values())]
+            for name, setting in runs]
+    return report.table(["", "tolerance or step (s)", *(scene.name for scene in found)], rows)
+
+
+def listed(values) -> str:
+    *values, last = values
+    return f"{', '.join(values)} and {last}"
 
 
 def kinks(found) -> dict:
@@ -92,7 +98,7 @@ def plot(path: Path, found) -> None:
             axis.loglog(TOLERANCES, [results[name, tolerance].error(exact) for tolerance in TOLERANCES], style, color=color,
                         markersize=3.5, label=name)
         axis.loglog(TOLERANCES, [tolerance * floor / 1e-12 for tolerance in TOLERANCES], ":", color=QUIET,
-                    label="change of the answer when the input changes by the tolerance")
+                    label="change of the result if the input changes by the tolerance")
         axis.set(title=f"{scene.name}\n{exact.transitions} transitions", xlabel="relative tolerance")
         axis.invert_xaxis()
     axes[0].set(ylabel="largest error over the peak", ylim=(1e-12, 10))
@@ -117,14 +123,15 @@ def main() -> None:
     plot(arguments.output.with_suffix("") / "tolerance.png", found)
 
     of_kinks = kinks(found)
-    tables = [f"### {scene.name}\n\nCo-simulation: {exact.transitions} transitions; its input times 1 + 1e-12 moves the answer by "
-              f"{floor:.1e}.\n\n{table(results, exact)}" for scene, (results, exact, floor) in found.items()]
+    deepest = max(result.depth for results, *_ in found.values() for result in results.values())
     page = (Path(__file__).parent / "page.md").read_text(encoding="utf-8").format(
-        deepest=max(result.depth for results, *_ in found.values() for result in results.values()),
+        depth=f"up to {deepest:g} rad" if deepest else "never",
         runs=sum(len(results) for results, *_ in found.values()),
         kinks=kinks_table(found, of_kinks),
         **findings(found, of_kinks),
-        tables="\n\n".join(tables),
+        table=table(found),
+        transitions=listed([str(exact.transitions) for _, exact, _ in found.values()]),
+        conditioning=listed([f"{floor:.1e}" for *_, floor in found.values()]),
     )
     report.write_page(arguments.output, page, "make exchange")
     print(arguments.output)

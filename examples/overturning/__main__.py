@@ -18,10 +18,10 @@ from validation.specimens import MCMANUS
 FOLDER = Path(__file__).parent
 SCENES = ["rigid", "specimens", "stiffness", "islands"]
 CLASSES = ["no uplift", "rocks and stands", "overturns without impact", "overturns after one impact",
-           "overturns after more", "still rocking"]
+           "overturns after more impacts", "still rocking"]
 RATIOS = [2, 4, 6, 8]  # ω/p_l at which the least amplitude that overturns is shown
 AMPLIFIED = ["10", "1e3", "1e6", "1e10"]
-CHECKED = 200  # points whose runs are asked what the model leaves out
+CHECKED = 200  # points whose runs are checked against the limits of the model
 X, Y = "omega/p_l", "a_p/(g tan alpha_cg)"
 
 

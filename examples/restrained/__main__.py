@@ -114,7 +114,7 @@ def vertical(structures, alone, both, picture: Path) -> dict:
     bands = [[f"{of.left:g} to {of.right:g}", *changed(rows), f"{rows['ratio'].median():.3f}",
               percent(rows["larger"] > CHANGED), percent(rows["a_t"] > CHANGED)]
              for of, rows in changes.groupby(pd.cut(changes["size"], BANDS), observed=True)]
-    of_records = [[name, *changed(rows)] for name, rows in changes.groupby("record")]
+    of_records = [100 * np.mean(rows["theta"] > CHANGED) for _, rows in changes.groupby("record")]
     fell, fell_shaken, fell_larger = ((rows["ending"] == "overturned")[rocks] for rows in (bare, shaken, larger))
     return dict(
         runs=len(bare), rocks=rocks.sum(), lifted=len(changes), ratio=f"{changes['ratio'].median():.3f}",
@@ -124,7 +124,7 @@ def vertical(structures, alone, both, picture: Path) -> dict:
         bands=table(["θ_max/α_cg", *CHANGES, "median of θ_max with over without",
                      "runs that change as much with the horizontal component 1 % larger",
                      "runs whose a_t,max changes by more than 5 %"], bands),
-        of_records=table(["record", *CHANGES], of_records),
+        of_records=f"{min(of_records):.0f} to {max(of_records):.0f} %",
         overturned=fell.sum(), overturned_too=fell_shaken.sum(), changed_fate=(fell != fell_shaken).sum(),
         changed_fate_by_larger=(fell != fell_larger).sum())
 
@@ -140,7 +140,7 @@ def draw_vertical(path: Path, changes: pd.DataFrame) -> None:
         axis.plot(np.sqrt(edges[1:] * edges[:-1]), of_bins[column].median(), color=color, linewidth=2, label=label)
     axis.axhline(CHANGED, color=QUIET, label=f"{100 * CHANGED:.0f} %")
     axis.set(xlabel="θ_max/α_cg under the horizontal component alone", ylabel="relative change of θ_max",
-             title="The vertical component changes single runs by a tenth")
+             title="The vertical component changes most runs by more than 5 %")
     axis.legend(loc="lower left")
     save(figure, path)
 
@@ -191,18 +191,14 @@ def time_to_impact(s: fr.Structure, theta: float) -> float:
     return inverse(1 / (1 + theta * stiffness / moment)) / math.sqrt(abs(stiffness) / s.J_P)
 
 
-def closed_forms() -> str:
-    """Free rocking of a rigid structure with a tendon beside the closed forms at small angles."""
-    lines = []
+def closed_forms(theta: float) -> str:
+    """Largest error of the time to the impact of a rigid structure with a tendon, beside the closed forms at small angles."""
+    errors = []
     for part in STIFFNESSES:
-        s, errors = MCMANUS.replace(k_t=part * critical_stiffness(MCMANUS)), []
-        for theta in ANGLES:
-            found = fr.simulate(s, duration=0.1, theta_0=theta, detail="rigid").transitions[0].time
-            expected = time_to_impact(s, theta)
-            errors.append(f"{abs(found / expected - 1):.0e}")
-        lines.append([f"{part:g}", "negative" if part < 1 else "positive", f"{expected:.6f}", f"{found:.6f}", *errors])
-    return table(["k_t/(m g H/B²)", "stiffness after uplift", "closed form at 1e-4 rad (s)", "engine (s)",
-                  "error at 1e-3 rad", "error at 1e-4 rad"], lines)
+        s = MCMANUS.replace(k_t=part * critical_stiffness(MCMANUS))
+        found = fr.simulate(s, duration=0.1, theta_0=theta, detail="rigid").transitions[0].time
+        errors.append(abs(found / time_to_impact(s, theta) - 1))
+    return f"{max(errors):.0e}"
 
 
 def main() -> None:
@@ -212,7 +208,8 @@ def main() -> None:
     figures, structures, (alone, both) = arguments.output.with_suffix(""), population(), records()
     page = (Path(__file__).parent / "page.md").read_text(encoding="utf-8").format(
         structures=STRUCTURES, scales=", ".join(f"{scale:g}" for scale in SCALES), components=len(both),
-        events=len({path.parent for path in RECORD.parents[1].glob("*/*-hor*.AT2")}), closed_forms=closed_forms(),
+        events=len({path.parent for path in RECORD.parents[1].glob("*/*-hor*.AT2")}), 
+        stiffest=f"{STIFFNESSES[-1]:g}", errors=" and ".join(map(closed_forms, ANGLES)),
         **vertical(structures, alone, both, figures / "vertical.png"),
         **restraints(structures, both, figures / "restraints.png"))
     write_page(arguments.output, page, "make restrained")

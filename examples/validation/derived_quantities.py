@@ -7,16 +7,15 @@ from .specimens import EVISON, MCMANUS
 
 SPECIMENS = {"Evison, Table 1": EVISON, "McManus, Table 2": MCMANUS}
 PRINTED = {
-    EVISON: {"J_P": "152.5", "p_l": "2.92", "alpha_cg": "0.35", "chi": "0.92", "f_u": "39", "u_cr": None},
-    MCMANUS: {"J_P": "467", "p_l": "2.24", "alpha_cg": "0.23", "chi": "0.94", "f_u": None, "u_cr": None},
+    EVISON: {"J_P": "152.5", "p_l": "2.92", "alpha_cg": "0.35", "chi": "0.92", "f_u": "39"},
+    MCMANUS: {"J_P": "467", "p_l": "2.24", "alpha_cg": "0.23", "chi": "0.94"},
 }
 SYMBOLS = {
-    "J_P": ("J_P = J0 + m (H² + B²) + m0 B² (after Eq 8)", 1, ".2f", "kg·m²"),
-    "p_l": ("p_l = √(m g H/J_P) (before Eq 11)", 1, ".4f", "rad/s"),
-    "alpha_cg": ("α_cg = atan(γ B/H) (before Eq 11)", 1, ".4f", "rad"),
-    "chi": ("χ = H p_l²/g (after Eq 13)", 1, ".4f", ""),
-    "f_u": ("f_u = f_fc/√(1−χ) (before Eq 18)", 1, ".2f", "Hz"),
-    "u_cr": ("u_cr = g tan α_cg/ω_fc² (after Eq 4)", 1e3, ".4f", "mm"),
+    "J_P": ("J_P = J0 + m (H² + B²) + m0 B² (after Eq 8)", ".2f", "kg·m²"),
+    "p_l": ("p_l = √(m g H/J_P) (before Eq 11)", ".4f", "rad/s"),
+    "alpha_cg": ("α_cg = atan(γ B/H) (before Eq 11)", ".4f", "rad"),
+    "chi": ("χ = H p_l²/g (after Eq 13)", ".4f", ""),
+    "f_u": ("f_u = f_fc/√(1−χ) (before Eq 18)", ".2f", "Hz"),
 }
 
 
@@ -29,9 +28,9 @@ def rows() -> list[Row]:
     }
     result = []
     for name, structure in SPECIMENS.items():
-        for symbol, (formula, factor, form, unit) in SYMBOLS.items():
-            result.append(Row(f"{name}: {formula}", PRINTED[structure][symbol], factor * structure.derived[symbol], form,
-                              unit, remarks.get((structure, symbol), "")))
+        for symbol, paper in PRINTED[structure].items():
+            formula, form, unit = SYMBOLS[symbol]
+            result.append(Row(f"{name}: {formula}", paper, structure.derived[symbol], form, unit, remarks.get((structure, symbol), "")))
     return result
 
 

@@ -10,7 +10,7 @@ from PyEMD import EMD
 from . import figures
 from .free_vibration import STEP, Release, release
 from .report import Row, Section
-from .specimens import EVISON, free_vibration
+from .specimens import EVISON
 
 SAMPLING = 20  # of the release's instants, one goes to the decomposition: 1 kHz
 SPECTRUM_LENGTH = 2**20  # the half cycle, padded with zeros
@@ -30,7 +30,6 @@ class Components:
     a_t: np.ndarray  # m/s2
     a_r: np.ndarray  # m/s2
     a_u: np.ndarray  # m/s2
-    f_full_contact: float  # of a swing in full contact, Hz
 
 
 def compute() -> Components:
@@ -45,7 +44,7 @@ def compute() -> Components:
     return Components(
         half_cycle["time"], half_cycle["uplift"], 2 * EVISON.B * np.sin(side * modes["q_r"]),
         2 * EVISON.B * np.sin(side * modes["q_u"]), sampled, smooth, oscillation, half_cycle["a_t"], modes["a_r"],
-        modes["a_u"], _swing_in_full_contact())
+        modes["a_u"])
 
 
 def decompose(time: np.ndarray, signal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -63,12 +62,6 @@ def dominant_frequency(time: np.ndarray, signal: np.ndarray) -> float:
     return np.fft.rfftfreq(SPECTRUM_LENGTH, time[1] - time[0])[np.argmax(spectrum)]
 
 
-def _swing_in_full_contact() -> float:
-    """The frequency at which Evison's specimen swings in full contact, Hz."""
-    response = free_vibration(EVISON, 1.0, 1e-4, u_0=0.9 * EVISON.u_cr)
-    return dominant_frequency(response["time"], response["u"])
-
-
 def rows(of: Release, c: Components) -> list[Row]:
     """Statements of the text about Fig 6."""
     second_cycle = of.peak("a_t", 0) / G
@@ -83,8 +76,6 @@ def rows(of: Release, c: Components) -> list[Row]:
             "measured; a half cycle of 0.32 s resolves 3 Hz"),
         Row("frequency of the uplift's oscillation, by empirical mode decomposition", "35",
             dominant_frequency(c.emd_time, c.emd_oscillation), ".1f", "Hz", "measured; the same"),
-        Row("vibration frequency in full contact", "11", c.f_full_contact, ".2f", "Hz", "measured; set in the model",
-            is_printed=False),
         Row("peak acceleration of the vibration after the first impact, a_t less the step", "0.48",
             second_cycle - STEP, ".3f", "g", "measured; the transition takes time in the test, none in the model"),
         Row("C from the first vibration cycle after the impact, a_t/(χ tan α_cg) − 1", "1.4",

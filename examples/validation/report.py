@@ -39,7 +39,7 @@ class Row:
         if self.paper is None:
             paper, difference = "–", "–"
         elif self.agrees:
-            paper, difference = f"{self.paper}{unit}", "to its digits"
+            paper, difference = f"{self.paper}{unit}", "agrees"
         elif self.unit == "%":
             paper, difference = f"{self.paper}{unit}", f"{self.difference:+.1f}{unit}"
         else:
@@ -125,4 +125,4 @@ Equation, figure and table numbers are the paper's. The paper prints its measure
 that its text states. [Another page](literature.md) compares with closed forms and other publications.
 [Architecture](../dev/architecture.md#where-the-equations-come-from) describes the paper, whose title and authors we do not know.
 
-"computed" is our number. "to its digits" means that our number rounds to the printed number."""
+"computed" is our number. "agrees" means that our number, rounded to the digits of the paper, equals the printed number."""

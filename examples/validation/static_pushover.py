@@ -77,10 +77,6 @@ def rows(pushovers: dict[str, Pushover]) -> list[Row]:
         of, tangent = p.structure, np.tan(p.structure.alpha_cg)
         slope = (p.moment[POINTS + 1] - p.moment[POINTS]) / (p.delta_t[POINTS + 1] - p.delta_t[POINTS])
         result += [
-            Row(f"{name}: displacement at uplift, u_cr = g tan α_cg/ω_fc² (after Eq 4)",
-                f"{1e3 * G * tangent / of.omega_fc**2:.4f}", 1e3 * p.delta_t[POINTS - 1], ".4f", "mm"),
-            Row(f"{name}: moment at uplift, (m + m0) g B", f"{p.weight_moment:.1f}", p.moment[POINTS - 1], ".1f",
-                "N·m"),
             Row(f"{name}: ground acceleration at uplift, g tan α_cg, under a slow ramp", f"{tangent:.4f}",
                 p.a_g_at_uplift / G, ".4f", "g"),
             Row(f"{name}: stiffness as rocking begins, −m g (gravity terms of Eq 8)", f"{-of.weight:.3f}",
@@ -122,7 +118,7 @@ def section(folder: Path) -> Section:
     return Section(
         title="Pushover of the static system (Fig 1)",
         introduction="""The paper claims that the system is elastic in full contact and lifts off at u_cr. Beyond u_cr the stiffness is
-negative, because the weight restores and not the strut. The restoring moment is zero at overturning. Our curve solves the
+negative, because the weight restores and not the strut. The restoring moment is zero at overturning. We solve the
 equilibrium of Eqs 5 and 6 without inertia exactly. Time histories check its two corners: a ramp of ground acceleration slow
 enough to be static, and releases at rest near overturning.""",
         rows=rows(pushovers),

@@ -38,7 +38,7 @@ impl Default for Placement {
 pub const PLACEMENT: [Quantity<Placement>; 3] = [
     quantity!("record_scale", scale["1"] - 1e6, 1e6, "multiplies the record's accelerations"),
     quantity!("record_time_scale", time_scale["1"] 1e-6, 1e6, "multiplies the record's times"),
-    quantity!("record_start", start["s"] - 1e9, 1e9, "when the record's first sample comes, counted from startTime"),
+    quantity!("record_start", start["s"] - 1e9, 1e9, "time of the record's first sample, counted from startTime"),
 ];
 
 /// Seconds since a start: the exact sum of the steps, except for the last digit of its rounding.
@@ -303,7 +303,8 @@ impl Segments<'_> {
         let &mut Segments { motion, elapsed, interval, next, .. } = self;
         let times = motion.record.times();
         let is_first = self.since == 0.0;
-        let since = if is_first { 0.0 } else { self.since.max(motion.ahead(next - 1, elapsed)) };
+        let reached = next.checked_sub(1).map_or(0.0, |last| motion.ahead(last, elapsed));
+        let since = if is_first { 0.0 } else { self.since.max(reached) };
         if since >= interval || interval.is_nan() {
             return None;
         }

@@ -50,7 +50,7 @@ impl Peak {
         *self = Peak { magnitude: magnitude.max(self.magnitude), time };
     }
 
-    /// Whether a magnitude of at most `bound` may be more than it, or the same.
+    /// Whether a magnitude of at most `bound` may equal or exceed the peak.
     #[inline]
     pub(super) fn may_be_same(&self, bound: f64) -> bool {
         bound >= self.magnitude * (1.0 - SAME)
@@ -244,18 +244,18 @@ impl Peaks {
         self.evaluations
     }
 
-    /// Looks for more of them in the pieces of a motion; they are known once the watch is dropped.
+    /// The watcher that searches the pieces of a motion for larger peaks. The peaks are complete once the watcher is dropped.
     pub fn watch(&mut self) -> PeakWatch<'_> {
         let goes_on = self.largest.iter().any(|peak| peak.magnitude > 0.0);
         PeakWatch { peaks: self, kept: Vec::new(), level: None, is_torn: true, goes_on }
     }
 
-    /// Looks for that of θ alone, and with it of the uplift: the others stay as they are.
+    /// The watcher that searches for the peaks of θ and of the uplift only.
     pub fn watch_theta(&mut self) -> ThetaWatch<'_> {
         ThetaWatch { peaks: self, impacts: 0 }
     }
 
-    /// Looks for more of them in `piece` up to `tau` seconds after its start.
+    /// Searches `piece` for larger peaks, up to `tau` seconds after its start.
     pub(super) fn see_until(&mut self, piece: &Piece, tau: f64) {
         let arc = piece.arc.map(|arc| Arc { reach: tau / arc.span, ..arc.clone() });
         let part = Piece { duration: tau, end: piece.state_at(tau), arc: arc.as_ref(), ..*piece };
@@ -310,18 +310,18 @@ impl Peaks {
         measures.iter().any(|measure| self.may_change(*measure, bounds[measure.place()], time))
     }
 
-    /// Whether a magnitude of at most `bound` from `time` (s) on may do so.
+    /// Whether a magnitude of at most `bound` from `time` (s) on may change the peak of `measure`.
     fn may_change(&self, measure: Measure, bound: f64, time: f64) -> bool {
         self.largest[measure.place()].may_change(bound, time)
     }
 
-    /// Whether a magnitude of at most `bound` may be more than what has been seen, or the same.
+    /// Whether a magnitude of at most `bound` may equal or exceed the peak of `measure`.
     #[inline]
     fn may_be_same(&self, measure: Measure, bound: f64) -> bool {
         bound > 0.0 && self.largest[measure.place()].may_be_same(bound)
     }
 
-    /// Whether it may do so between the ends.
+    /// Whether the peak of `measure` may change between the ends.
     fn is_open(&self, measure: Measure, bound: &Bound, time: f64) -> bool {
         bound.may_turn() && self.may_change(measure, bound.largest(), time)
     }

@@ -1,4 +1,4 @@
-//! Charts: panels with linear or logarithmic axes, names beside the curves, colours that the colour-blind can tell apart.
+//! Charts: panels with linear or logarithmic axes, names beside the curves or the panel, colours that the colour-blind can tell apart.
 
 use anyhow::{Context, Result};
 use plotters::coord::Shift;
@@ -66,9 +66,9 @@ impl Style {
 /// Points and how they are drawn.
 #[derive(Clone, Debug)]
 pub struct Series {
-    pub name: String,              // beside it, unless it is empty
+    pub name: String,              // none if empty
     pub points: Vec<(f64, f64)>,   // in data units
-    pub named: Option<(f64, f64)>, // where the name begins; None: at the last point that is on both axes
+    pub named: Option<(f64, f64)>, // where the name begins; None: at the right of the panel, at the height of the last point on both axes
     pub style: Style,
 }
 
@@ -176,7 +176,7 @@ impl Panel {
         self
     }
 
-    /// With the name of the newest points at a point, and not at their end.
+    /// With the name of the newest points at a point, and not at the right of the panel.
     pub fn named(mut self, at: (f64, f64)) -> Panel {
         self.series.last_mut().expect("there are points").named = Some(at);
         self
@@ -203,13 +203,14 @@ pub struct Figure {
     pub panels: Vec<Panel>,  // row by row
 }
 
-/// Size of one panel; all lengths here are in the picture's own units, half a pixel on the page.
-const PANEL: (u32, u32) = (1200, 840);
-const TITLE_HEIGHT: u32 = 88;
-const MARGIN: u32 = 24;
-const NAMES: u32 = 300; // at the right of a panel, for names that begin within it
-const WORDS: u32 = 28; // size of names and notes
-const BESIDE: i32 = 24; // from a point to its name
+/// Size of one panel; all lengths here are in the picture's own units, an eighth of a pixel on the page, so that curves are smooth.
+const PANEL: (u32, u32) = (4400, 3200);
+const TITLE_HEIGHT: u32 = 340;
+const TITLES: u32 = 136; // size of the title and of the panels' titles
+const MARGIN: u32 = 96;
+const NAMES: u32 = 1720; // at the right of a panel, for the names of its series
+const WORDS: u32 = 116; // size of names, notes and numbers
+const BESIDE: i32 = 100; // from a point to its name
 const FONT: &str = "sans-serif";
 
 type Drawing<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -221,10 +222,13 @@ impl Figure {
         self.draw(&mut svg).with_context(|| path.display().to_string())?;
         let escaped = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;");
         let (title, description) = (escaped(&self.title), escaped(&self.description));
-        let style = "text{paint-order:stroke;stroke:#fff;stroke-width:6px;stroke-linejoin:round}";
+        let style = "text{paint-order:stroke;stroke:#fff;stroke-width:24px;stroke-linejoin:round}";
         let head =
             format!(" role=\"img\">\n<title>{title}</title>\n<desc>{description}</desc>\n<style>{style}</style>");
-        Ok(std::fs::write(path, svg.replacen('>', &head, 1))?)
+        let (width, height) = self.size();
+        let in_units = format!("width=\"{width}\" height=\"{height}\"");
+        let in_pixels = format!("width=\"{}\" height=\"{}\"", width / 8, height / 8);
+        Ok(std::fs::write(path, svg.replacen(&in_units, &in_pixels, 1).replacen('>', &head, 1))?)
     }
 
     /// Writes the points of all its series as CSV.
@@ -241,15 +245,22 @@ impl Figure {
         Ok(csv.flush()?)
     }
 
+    fn rows(&self) -> usize {
+        self.panels.len().div_ceil(self.columns)
+    }
+
+    /// Width and height.
+    fn size(&self) -> (u32, u32) {
+        (PANEL.0 * self.columns as u32, TITLE_HEIGHT + PANEL.1 * self.rows() as u32)
+    }
+
     fn draw(&self, svg: &mut String) -> Result<()> {
-        let rows = self.panels.len().div_ceil(self.columns);
-        let (width, panels) = (PANEL.0 * self.columns as u32, PANEL.1 * rows as u32);
-        let root = SVGBackend::with_string(svg, (width, TITLE_HEIGHT + panels)).into_drawing_area();
+        let root = SVGBackend::with_string(svg, self.size()).into_drawing_area();
         root.fill(&WHITE)?;
-        let bold = TextStyle::from((FONT, 36, FontStyle::Bold)).pos(Pos::new(HPos::Center, VPos::Center));
-        root.draw(&Text::new(self.title.as_str(), (width as i32 / 2, TITLE_HEIGHT as i32 / 2), bold))?;
+        let bold = TextStyle::from((FONT, TITLES, FontStyle::Bold)).pos(Pos::new(HPos::Center, VPos::Center));
+        root.draw(&Text::new(self.title.as_str(), (self.size().0 as i32 / 2, TITLE_HEIGHT as i32 / 2), bold))?;
         let area = root.split_vertically(TITLE_HEIGHT).1;
-        for (panel, area) in self.panels.iter().zip(area.split_evenly((rows, self.columns))) {
+        for (panel, area) in self.panels.iter().zip(area.split_evenly((self.rows(), self.columns))) {
             panel.draw(&area)?;
         }
         Ok(root.present()?)
@@ -265,31 +276,34 @@ impl Panel {
             } else {
                 NAMES
             })
-            .caption(&self.title, (FONT, 32))
-            .x_label_area_size(96)
-            .y_label_area_size(140)
+            .caption(&self.title, (FONT, TITLES))
+            .x_label_area_size(400)
+            .y_label_area_size(580)
             .build_cartesian_2d(self.x.range(), self.y.range())?;
         let place = |point: &(f64, f64)| (self.x.place(point.0), self.y.place(point.1));
         for corners in &self.areas {
             let corners = [0, 1].map(|k| place(&corners[k]));
-            let rim = colour::GREY.stroke_width(2);
+            let rim = colour::GREY.stroke_width(8);
             chart.draw_series([colour::PALE.filled(), rim].map(|style| Rectangle::new(corners, style)))?;
         }
         chart
             .configure_mesh()
-            .bold_line_style(BLACK.mix(0.12).stroke_width(2))
+            .bold_line_style(BLACK.mix(0.12).stroke_width(8))
             .light_line_style(TRANSPARENT)
-            .axis_style(BLACK.mix(0.6).stroke_width(2))
+            .axis_style(BLACK.mix(0.6).stroke_width(8))
             .x_labels(self.x.numbers())
             .y_labels(self.y.numbers())
             .x_label_formatter(&|x| self.x.number(*x))
             .y_label_formatter(&|y| self.y.number(*y))
-            .label_style((FONT, 28))
-            .axis_desc_style((FONT, 30))
+            .label_style((FONT, WORDS))
+            .axis_desc_style((FONT, WORDS))
+            .set_all_tick_mark_size(20)
             .x_desc(&self.x.label)
             .y_desc(&self.y.label)
             .draw()?;
         let (left, top) = area.get_base_pixel();
+        let (across, down) = chart.plotting_area().get_pixel_range();
+        let aside = across.end - left + 2 * BESIDE; // of the names at the right
         let pixel = |point| {
             let (x, y) = chart.backend_coord(&point);
             (x - left, y - top)
@@ -305,28 +319,38 @@ impl Panel {
             for at in pixels.iter().flatten() {
                 draw_marker(area, *at, *style)?;
             }
-            let end = named.as_ref().map(|at| pixel(place(at))).or(pixels.into_iter().flatten().next_back());
-            names.extend(end.filter(|_| !name.is_empty()).map(|end| (end, name.as_str(), style.colour)));
+            let end = pixels.into_iter().flatten().next_back().filter(|_| !name.is_empty());
+            names.extend(end.map(|(_, y)| match named {
+                Some(at) => Name { at: pixel(place(at)), text: name, style: Style { marker: Marker::None, ..*style } },
+                None => Name { at: (aside, y), text: name, style: *style },
+            }));
         }
-        names.extend(self.notes.iter().map(|(at, text, colour)| (pixel(place(at)), text.as_str(), *colour)));
-        names.sort_by_key(|((x, y), ..)| (*y, *x));
-        // a name of points without a line has nothing else that leads to them: it comes first
-        let is_lone = |name: &str| self.series.iter().any(|series| series.name == name && series.style.width == 0);
-        names.sort_by_key(|(_, name, _)| !is_lone(name));
-        let (_, frame) = chart.plotting_area().get_pixel_range();
-        draw_names(area, frame.start - top..frame.end - top, names)
+        names.extend(self.notes.iter().map(|(at, text, colour)| Name {
+            at: pixel(place(at)),
+            text,
+            style: Style::line(*colour, 0),
+        }));
+        names.sort_by_key(|name| (name.at.1, name.at.0));
+        draw_names(area, down.start - top..down.end - top, names)
     }
 }
 
-/// Words beside their points in turn, lines parted by commas: each as near below its point as there is room within the frame, whose top
-/// and bottom are given, or else above it.
-fn draw_names(area: &Drawing, frame: Range<i32>, names: Vec<((i32, i32), &str, RGBColor)>) -> Result<()> {
-    let line_height = WORDS as i32 + 2;
+/// Words that begin right of a point, after the mark of their style.
+struct Name<'a> {
+    at: (i32, i32),
+    text: &'a str,
+    style: Style,
+}
+
+/// Names in turn: each as near below its point as there is room within the frame, whose top and bottom are
+/// given, or else above it.
+fn draw_names(area: &Drawing, frame: Range<i32>, names: Vec<Name>) -> Result<()> {
+    let line_height = WORDS as i32 + 8;
     let mut drawn: Vec<(Range<i32>, Range<i32>)> = Vec::new(); // from left to right, from top to bottom
-    for ((x, y), text, colour) in names {
-        let lines: Vec<_> = text.split_inclusive(", ").collect();
+    for Name { at: (x, y), text, style } in names {
+        let lines = broken(text);
         let longest = lines.iter().map(|line| line.chars().count()).max().unwrap_or(0);
-        let across = x + BESIDE..x + BESIDE + longest as i32 * WORDS as i32 * 3 / 5;
+        let across = x..x + BESIDE + longest as i32 * WORDS as i32 * 3 / 5;
         let down = |y: i32| y - line_height / 2..y - line_height / 2 + lines.len() as i32 * line_height;
         let meet = |a: &Range<i32>, b: &Range<i32>| a.start < b.end && b.start < a.end;
         let is_free = |y: &i32| {
@@ -336,40 +360,57 @@ fn draw_names(area: &Drawing, frame: Range<i32>, names: Vec<((i32, i32), &str, R
         };
         let mut places = (y..frame.end).chain((frame.start..y).rev());
         let y = places.find(is_free).with_context(|| format!("no room for {text:?}"))?;
+        draw_marker(area, (x, y), style)?;
         for (line, y) in lines.iter().zip((y..).step_by(line_height as usize)) {
-            let style = TextStyle { color: colour.to_backend_color(), ..TextStyle::from((FONT, WORDS)) };
-            area.draw(&Text::new(*line, (across.start, y), style.pos(Pos::new(HPos::Left, VPos::Center))))?;
+            let style = TextStyle { color: style.colour.to_backend_color(), ..TextStyle::from((FONT, WORDS)) };
+            area.draw(&Text::new(line.as_str(), (x + BESIDE, y), style.pos(Pos::new(HPos::Left, VPos::Center))))?;
         }
         drawn.push((across, down(y)));
     }
     Ok(())
 }
 
+/// The lines of a name: a line ends at a comma, and before it would be too long for [`NAMES`].
+fn broken(name: &str) -> Vec<String> {
+    const LONGEST: usize = 26; // letters
+    let mut lines: Vec<String> = Vec::new();
+    for word in name.split(' ') {
+        match lines
+            .last_mut()
+            .filter(|line| !line.ends_with(',') && line.chars().count() + word.chars().count() < LONGEST)
+        {
+            Some(line) => *line += &format!(" {word}"),
+            None => lines.push(word.into()),
+        }
+    }
+    lines
+}
+
 fn draw_line(area: &Drawing, points: &[(i32, i32)], style: Style) -> Result<()> {
-    let line = style.colour.stroke_width(2 * style.width);
+    let line = style.colour.stroke_width(8 * style.width);
     if style.width == 0 || points.len() < 2 {
         return Ok(());
     }
     match style.dashed {
-        true => area.draw(&DashedPathElement::new(points.iter().copied(), 14, 10, line))?,
+        true => area.draw(&DashedPathElement::new(points.iter().copied(), 56, 40, line))?,
         false => area.draw(&PathElement::new(points, line))?,
     }
     Ok(())
 }
 
 fn draw_marker(area: &Drawing, (x, y): (i32, i32), style: Style) -> Result<()> {
-    let line = style.colour.stroke_width(4);
+    let line = style.colour.stroke_width(14);
     let outline = |points: &[(i32, i32)]| {
         let corners = points.iter().cycle().take(points.len() + 1).map(|(dx, dy)| (x + dx, y + dy));
         area.draw(&PathElement::new(corners.collect::<Vec<_>>(), line))
     };
     match style.marker {
         Marker::None => (),
-        Marker::Circle => area.draw(&Circle::new((x, y), 9, style.colour.filled()))?,
-        Marker::Square => outline(&[(-9, -9), (9, -9), (9, 9), (-9, 9)])?,
-        Marker::Triangle => outline(&[(-11, 8), (0, -12), (11, 8)])?,
-        Marker::Diamond => outline(&[(-12, 0), (0, -12), (12, 0), (0, 12)])?,
-        Marker::Cross => area.draw(&Cross::new((x, y), 10, line))?,
+        Marker::Circle => area.draw(&Circle::new((x, y), 34, style.colour.filled()))?,
+        Marker::Square => outline(&[(-34, -34), (34, -34), (34, 34), (-34, 34)])?,
+        Marker::Triangle => outline(&[(-42, 30), (0, -46), (42, 30)])?,
+        Marker::Diamond => outline(&[(-46, 0), (0, -46), (46, 0), (0, 46)])?,
+        Marker::Cross => area.draw(&Cross::new((x, y), 38, line))?,
     }
     Ok(())
 }

@@ -19,13 +19,17 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Error against cost, method by method: docs/evidence/accuracy.md and docs/evidence/speed.md
-    Precision,
+    /// Error against cost, method by method: docs/evidence/accuracy.md
+    Precision {
+        /// Write the page and its pictures from the numbers that are there, and measure nothing
+        #[arg(long)]
+        again: bool,
+    },
     /// Largest stable steps of textbook methods: docs/evidence/stability.md
     Stability,
     /// Failures with their causes and remedies: docs/explain/failures.md
     Failures,
-    /// What the model leaves out, structure by structure: docs/explain/validity.md
+    /// Limits of the model, structure by structure: docs/explain/validity.md
     Validity,
 }
 
@@ -36,7 +40,8 @@ fn main() -> Result<()> {
     let style = ProgressStyle::with_template("{elapsed_precise} {bar:40} {pos}/{len} {msg}")?;
     let progress = ProgressBar::new(0).with_style(style);
     match command {
-        Command::Precision => {
+        Command::Precision { again: true } => precision::write_again(&Scene::all(&records()?)?, evidence)?,
+        Command::Precision { again: false } => {
             let (scenes, python) = (Scene::all(&records()?)?, Path::new(".venv/bin/python"));
             precision::write(&scenes, precision::FULL, Some(python), evidence, &progress)?;
         }

@@ -1,6 +1,7 @@
 //! Work-precision diagrams: error against cost, one curve per method.
 
 mod curves;
+mod numbers;
 mod page;
 mod peers;
 
@@ -8,10 +9,10 @@ use crate::engine;
 use crate::response::{Errors, Failure, Response};
 use crate::scene::Scene;
 use crate::timing;
-use anyhow::Result;
+use anyhow::{Context, Result};
 use curves::Method;
 use indicatif::ProgressBar;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The input is scaled by 1 + this to find how well the scene is conditioned.
 pub const PERTURBATION: f64 = 1e-12;
@@ -21,8 +22,8 @@ pub const PERTURBATION: f64 = 1e-12;
 pub struct Curve {
     pub name: String, // name on charts
     pub family: Family,
-    pub setting: &'static str, // what its setting is, with unit
-    pub points: Vec<Point>,    // from coarse to fine
+    pub setting: String,    // what its setting is, with unit
+    pub points: Vec<Point>, // from coarse to fine
 }
 
 /// Group of a curve on the charts.
@@ -58,6 +59,12 @@ pub struct Diagram {
     pub curves: Vec<Curve>,
 }
 
+impl Diagram {
+    fn new(scene: &Scene, conditioning: Errors, transitions: u64, curves: Vec<Curve>) -> Diagram {
+        Diagram { key: scene.key, title: scene.title, conditioning, transitions, dt: scene.dt(), curves }
+    }
+}
+
 /// How far a sweep goes.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
@@ -72,8 +79,7 @@ pub const FULL: Limits = Limits { run: 0.25, points: 5 };
 /// meanwhile.
 pub fn measure(scene: &Scene, limits: Limits, python: Option<&Path>, progress: &ProgressBar) -> Result<Diagram> {
     let exact = engine::reference(scene);
-    let moved = engine::reference(&scene.scaled(1.0 + PERTURBATION));
-    let conditioning = Errors::of(&moved, &exact)?;
+    let conditioning = conditioning(scene, &exact)?;
     let methods = curves::methods(scene);
     progress.inc_length(methods.len() as u64);
     let curves = methods
@@ -82,13 +88,17 @@ pub fn measure(scene: &Scene, limits: Limits, python: Option<&Path>, progress: &
             progress.set_message(format!("{}: {}", scene.title, method.name));
             let points = sweep(&method, scene, &exact, conditioning.theta, limits);
             progress.inc(1);
-            Curve { name: method.name, family: method.family, setting: method.setting, points }
+            Curve { name: method.name, family: method.family, setting: method.setting.into(), points }
         })
         .collect::<Vec<_>>();
     let peers = python.map(|python| peers::curves(scene, &exact, conditioning.theta, limits, python));
     let curves = curves.into_iter().chain(peers.transpose()?.unwrap_or_default()).collect();
-    let (&Scene { key, title, .. }, dt) = (scene, scene.dt());
-    Ok(Diagram { key, title, conditioning, transitions: exact.transitions, dt, curves })
+    Ok(Diagram::new(scene, conditioning, exact.transitions, curves))
+}
+
+/// How far the response of `scene`, which is `exact`, moves when the input is scaled by 1 + [`PERTURBATION`].
+fn conditioning(scene: &Scene, exact: &Response) -> Result<Errors, Failure> {
+    Errors::of(&engine::reference(&scene.scaled(1.0 + PERTURBATION)), exact)
 }
 
 /// One method from coarse to fine, until its error in θ is as small as the conditioning or a run takes too long.
@@ -115,7 +125,7 @@ fn sweep(method: &Method, scene: &Scene, exact: &Response, conditioning: f64, li
     points
 }
 
-/// Measures all `scenes` and writes `accuracy.md`, with its pictures and numbers, and `speed.md` into `docs`.
+/// Measures all `scenes` and writes `accuracy.md`, with its pictures and numbers, into `docs`.
 pub fn write(
     scenes: &[Scene],
     limits: Limits,
@@ -123,6 +133,28 @@ pub fn write(
     docs: &Path,
     progress: &ProgressBar,
 ) -> Result<()> {
-    let diagrams = scenes.iter().map(|scene| measure(scene, limits, python, progress)).collect::<Result<Vec<_>>>()?;
-    page::write(&diagrams, docs)
+    for scene in scenes {
+        numbers::save(&measure(scene, limits, python, progress)?.curves, &file(scene, docs))?;
+    }
+    report(scenes, docs, &crate::page::made("precision")?)
+}
+
+/// Writes the page as [`write`] does, from the numbers that are in `docs`; its last line stays.
+pub fn write_again(scenes: &[Scene], docs: &Path) -> Result<()> {
+    let page = std::fs::read_to_string(docs.join("accuracy.md"))?;
+    report(scenes, docs, page.lines().last().context("accuracy.md is empty")?)
+}
+
+fn report(scenes: &[Scene], docs: &Path, made: &str) -> Result<()> {
+    let diagram = |scene: &Scene| {
+        let exact = engine::reference(scene);
+        let curves = numbers::read(scene, &file(scene, docs))?;
+        Ok(Diagram::new(scene, conditioning(scene, &exact)?, exact.transitions, curves))
+    };
+    page::write(&scenes.iter().map(diagram).collect::<Result<Vec<_>>>()?, docs, made)
+}
+
+/// The numbers of `scene`.
+fn file(scene: &Scene, docs: &Path) -> PathBuf {
+    docs.join(format!("accuracy-{}.csv", scene.key))
 }

@@ -40,9 +40,9 @@ pub enum Failure {
     /// More transitions within one interval than can be.
     #[error("opens and shuts contact without end at t = {time:.3} s")]
     Chatter { time: f64 },
-    /// The reason in the words of `peers.py`.
+    /// The reason in the words of `peers.py`, or of the numbers of an earlier run.
     #[error("{0}")]
-    OfPeer(String),
+    AsWritten(String),
     #[error("gives up at t = {time:.3} s: {message}")]
     GaveUp { time: f64, message: String },
 }

@@ -1,4 +1,4 @@
-//! Stability of the textbook methods: measured limits of the step, with both pivots down and while rocking, and what
+//! Stability of the textbook methods: measured limits of the step, and what
 //! happens when a structure that was down lifts off.
 
 pub mod limits;
@@ -17,18 +17,14 @@ use vibration::Vibration;
 /// Damping ratios ζ_u of the table of limits.
 const DAMPING: [f64; 4] = [0.0, 0.05, 0.2, 1.0];
 
-/// The structures in the table of steps.
-const SPECIMENS: [(&str, Parameters); 3] = [
-    ("Evison", Parameters::EVISON),
-    ("McManus", Parameters::MCMANUS),
-    ("McManus, 30 Hz", Parameters { f_fc: 30.0, ..Parameters::MCMANUS }),
-];
+/// The structures whose frequencies the page has.
+const SPECIMENS: [(&str, Parameters); 2] = [("Evison", Parameters::EVISON), ("McManus", Parameters::MCMANUS)];
 
-/// `limit` times `unit`, with three digits behind the point.
-fn in_units(limit: Limit, unit: f64) -> String {
+/// `limit` with three digits behind the point.
+fn shown(limit: Limit) -> String {
     match limit {
         Limit::Never => "0".into(),
-        Limit::At(limit) => format!("{:.3}", limit * unit),
+        Limit::At(limit) => format!("{limit:.3}"),
         Limit::Unbounded => "any".into(),
     }
 }
@@ -44,18 +40,8 @@ pub fn write(docs: &Path) -> Result<()> {
         context! { name => *name, f_fc, f_u, ratio }
     });
     let rows = TEXTBOOK.iter().map(|textbook| {
-        let limit = |chi, zeta_fc| measure(textbook.method, &Vibration { chi, zeta_fc });
-        let steps = structures.iter().map(|structure| {
-            let zeta_fc = structure.parameters().zeta_fc;
-            let down = in_units(limit(0.0, zeta_fc), 1e3 / structure.omega_fc);
-            let up = in_units(limit(structure.chi, zeta_fc), 1e3 / structure.omega_u);
-            format!("{down} → {up}")
-        });
-        context! {
-            method => textbook.name,
-            limits => DAMPING.map(|zeta| in_units(limit(0.0, zeta), 1.0)).to_vec(),
-            steps => steps.collect::<Vec<_>>(),
-        }
+        let limit = |zeta| shown(measure(textbook.method, &Vibration { chi: 0.0, zeta_fc: zeta }));
+        context! { method => textbook.name, limits => DAMPING.map(limit).to_vec() }
     });
     let values = context! {
         damping => DAMPING.to_vec(),
@@ -63,5 +49,11 @@ pub fn write(docs: &Path) -> Result<()> {
         rows => rows.collect::<Vec<Value>>(),
         trap,
     };
-    crate::page::write(docs, "stability", include_str!("../pages/stability.md"), &values, "stability")
+    crate::page::write(
+        docs,
+        "stability",
+        include_str!("../pages/stability.md"),
+        &values,
+        &crate::page::made("stability")?,
+    )
 }

@@ -153,7 +153,7 @@ pub fn write(records: &Path, docs: &Path, progress: &ProgressBar) -> Result<()> 
         repair => repair(&population),
         scenes,
     };
-    crate::page::write(docs, "validity", include_str!("../pages/validity.md"), &values, "validity")
+    crate::page::write(docs, "validity", include_str!("../pages/validity.md"), &values, &crate::page::made("validity")?)
 }
 
 /// A row for every structure: what it is, what it goes beyond, what the repaired rule changes.
@@ -168,7 +168,7 @@ fn save_numbers(population: &[Pair], path: &Path) -> Result<()> {
         let peaks = [model, repaired].map(|of| [of.peaks.theta().magnitude, of.peaks.a_t().magnitude]);
         let numbers = [m, m0, H, B, J0, f_fc, zeta_fc, r].into_iter().chain(model.found.worst.map(|worst| worst.value));
         let numbers = numbers.chain([model.found.gains as f64]).chain(peaks.into_iter().flatten());
-        csv.write_record(numbers.map(|number| format!("{number:.5}")))?;
+        csv.write_record(numbers.map(|number| format!("{number:.6e}")))?;
     }
     Ok(csv.flush()?)
 }

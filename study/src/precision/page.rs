@@ -1,4 +1,4 @@
-//! `docs/evidence/accuracy.md` and `speed.md`: the curves as pictures, as numbers, and in sentences made from these.
+//! `docs/evidence/accuracy.md`: the curves as pictures, and in sentences made from their numbers.
 
 use super::{Curve, Diagram, Family, PERTURBATION, Point};
 use crate::chart::colour::{BLACK, BLUE, BROWN, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION};
@@ -22,7 +22,7 @@ const FAILED: f64 = 20.0;
 const TOP: f64 = 40.0;
 
 const PANELS: [(&str, &[Family]); 4] = [
-    ("textbook methods, transitions at the ends of steps", &[Family::AtStepEnds]),
+    ("textbook methods, transitions at step ends", &[Family::AtStepEnds]),
     ("textbook methods, transitions located", &[Family::Located]),
     ("solvers of other libraries", &[Family::Library]),
     ("this engine's other levels, and its input held", &[Family::Level, Family::Host]),
@@ -72,7 +72,7 @@ impl Curve {
     }
 
     fn setting(&self, point: &Point) -> String {
-        match self.setting {
+        match self.setting.as_str() {
             "tolerance" => decade(point.setting),
             _ => format!("{} ms", significant(1e3 * point.setting)),
         }
@@ -115,7 +115,7 @@ impl Diagram {
         let decade = |value: f64| 10f64.powf(value.log10().floor());
         let conditioning = self.conditioning.theta;
         let errors = points().filter_map(Point::theta).filter(|error| *error > 0.0);
-        let bottom = 0.1 * decade(errors.fold(conditioning, f64::min).max(conditioning / 100.0)); // a decade for names
+        let bottom = decade(errors.fold(conditioning, f64::min).max(conditioning / 100.0));
         let least = decade(1e6 * points().map(|point| point.cost).fold(f64::INFINITY, f64::min));
         let most = 10.0 * decade(1e6 * points().map(|point| point.cost).fold(0.0, f64::max));
         let x = Axis::logarithmic("computing time per sample of the record, µs", least, most);
@@ -123,15 +123,16 @@ impl Diagram {
         let mut panel = Panel::new(title, x, y)
             .area((least, bottom), (most, conditioning))
             .area((least, MEANINGLESS), (most, TOP))
-            .note((most, FAILED), "fails", BLACK);
+            .note((most, FAILED), "× fails", BLACK);
         for family in [&[Family::Ours], families].concat() {
             for (k, curve) in self.family(family).enumerate() {
                 let style = style(family, k);
                 let good = curve.distinct().into_iter().map(|(x, error)| (x, error.clamp(bottom, MEANINGLESS)));
-                panel = panel.with(curve.label(), good, style);
                 let failed =
                     curve.points.iter().filter(|point| point.errors.is_err()).map(|point| (1e6 * point.cost, FAILED));
-                panel = panel.with("", failed, Style::marked(style.colour, 0, Marker::Cross));
+                let always = if curve.points.iter().all(|point| point.errors.is_err()) { curve.label() } else { "" };
+                panel = panel.with(curve.label(), good, style);
+                panel = panel.with(always, failed, Style::marked(style.colour, 0, Marker::Cross));
             }
         }
         panel
@@ -143,74 +144,34 @@ impl Diagram {
         Ok(format!("{}: the cheapest other method with six digits, {name}, takes {ratio:.1} times as long", self.title))
     }
 
-    /// The methods that are cheaper than `auto` at an error below 1, each with the smallest such error.
-    fn undercut(&self) -> Result<Vec<(f64, Value)>> {
+    /// The smallest error below 1 at which another method is cheaper than `auto`; infinite if there is none.
+    fn undercut(&self) -> Result<f64> {
         let auto = self.family(Family::Ours).next().context("auto is measured")?;
-        let of_method = |curve: &Curve| {
-            let cheaper = curve.points.iter().filter_map(|point| {
-                let error = point.theta()?;
-                let ours = auto.cheapest(error)?.cost;
-                (error < 1.0 && point.cost < ours).then_some((error, point.cost, ours))
-            });
-            let (error, cost, ours) = cheaper.min_by(|a, b| a.0.total_cmp(&b.0))?;
-            let (shown, cost, ours) = (scientific(error), significant(1e6 * cost), significant(1e6 * ours));
-            Some((error, context! { method => curve.name.clone(), shown, cost, ours }))
-        };
-        Ok(self.curves.iter().filter(|curve| PEERS.contains(&curve.family)).filter_map(of_method).collect())
+        let of_peers = self.curves.iter().filter(|curve| PEERS.contains(&curve.family)).flat_map(|curve| &curve.points);
+        let cheaper = of_peers.filter_map(|point| {
+            let error = point.theta()?;
+            (error < 1.0 && point.cost < auto.cheapest(error)?.cost).then_some(error)
+        });
+        Ok(cheaper.fold(f64::INFINITY, f64::min))
     }
 
-    /// The scene's part of the page, and the smallest error at which another method is cheaper than `auto`.
-    fn scene(&self) -> Result<(Value, f64)> {
-        let held = self.family(Family::Host).flat_map(|curve| &curve.points).filter_map(Point::theta);
-        let held: Vec<_> = held.map(scientific).collect();
-        let undercut = self.undercut()?;
-        let least = undercut.iter().map(|(error, _)| *error).fold(f64::INFINITY, f64::min);
+    /// The error of `auto` if the record is held over one sample; None if that is no more than the conditioning: the ground is at rest.
+    fn held(&self) -> Option<f64> {
+        let error = self.family(Family::Host).next()?.points.first()?.theta()?;
+        Some(error).filter(|error| *error > self.conditioning.theta)
+    }
+
+    /// The scene's part of the page.
+    fn scene(&self) -> Result<Value> {
         let Errors { theta, u, a_t } = self.conditioning;
-        let scene = context! {
+        Ok(context! {
             key => self.key,
             title => self.title,
             finding => self.finding()?,
             dt => significant(1e3 * self.dt),
             transitions => self.transitions,
             conditioning => [theta, u, a_t].map(scientific).to_vec(),
-            held => [held.first(), held.last()].map(|error| error.cloned()).to_vec(),
-            undercut => undercut.into_iter().map(|(_, shown)| shown).collect::<Vec<_>>(),
-        };
-        Ok((scene, least))
-    }
-
-    fn save_numbers(&self, path: &Path) -> Result<()> {
-        let mut csv = csv::Writer::from_path(path)?;
-        csv.write_record([
-            "method",
-            "setting",
-            "value",
-            "microseconds_per_sample",
-            "evaluations_per_sample",
-            "transitions",
-            "error_theta",
-            "error_u",
-            "error_a_t",
-            "failure",
-        ])?;
-        for (curve, point) in self.curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)))
-        {
-            let error =
-                |get: fn(&Errors) -> f64| point.errors.as_ref().map_or(String::new(), |e| format!("{:.3e}", get(e)));
-            csv.write_record([
-                curve.name.clone(),
-                curve.setting.into(),
-                format!("{:.6e}", point.setting),
-                format!("{:.4}", 1e6 * point.cost),
-                format!("{:.3}", point.evaluations),
-                point.transitions.to_string(),
-                error(|e| e.theta),
-                error(|e| e.u),
-                error(|e| e.a_t),
-                point.errors.as_ref().err().map_or(String::new(), ToString::to_string),
-            ])?;
-        }
-        Ok(csv.flush()?)
+        })
     }
 }
 
@@ -236,49 +197,32 @@ fn rows(diagrams: &[Diagram]) -> Vec<Value> {
         let costs: Vec<_> = costs.into_iter().map(|cost| cost.unwrap_or("–".into())).collect();
         is_shown.then(|| context! { method => curve.name.clone(), costs, is_ours })
     };
-    curves.iter().filter_map(row).collect()
+    let linear = |diagram: &Diagram| diagram.ours(Detail::Linear, f64::INFINITY).map(|cost| significant(1e6 * cost));
+    let linear: Vec<_> = diagrams.iter().map(|diagram| linear(diagram).unwrap_or("overturns".into())).collect();
+    let linear = context! { method => "this project, linear, any error", costs => linear, is_ours => false };
+    curves.iter().filter_map(row).chain([linear]).collect()
 }
 
-/// Cost of six digits for the engine and the cheapest other method, scene by scene.
-fn speed(diagrams: &[Diagram]) -> Result<Value> {
-    let microseconds = |time: f64| significant(1e6 * time);
-    let rows = diagrams.iter().map(|diagram| {
-        let (name, cost, ratio) = diagram.nearest(SIX_DIGITS)?;
-        Ok((diagram, cost / ratio, (name, cost, ratio)))
-    });
-    let rows = rows.collect::<Result<Vec<_>>>()?;
-    let shown = rows.iter().map(|(diagram, auto, (name, cost, ratio))| {
-        let [auto, cost] = [auto, cost].map(|time| microseconds(*time));
-        let linear = diagram.ours(Detail::Linear, f64::INFINITY).map_or("overturns".into(), microseconds);
-        context! { title => diagram.title, name => *name, ratio => format!("{ratio:.1}"), auto, linear, cost }
-    });
-    Ok(context! {
-        rows => shown.collect::<Vec<_>>(),
-        ratios => range(rows.iter().map(|(.., (_, _, ratio))| *ratio), |ratio| format!("{ratio:.1}")),
-        times => range(rows.iter().map(|(_, auto, ..)| *auto), microseconds),
-    })
-}
-
-/// Writes the page with its pictures and numbers.
-pub fn write(diagrams: &[Diagram], docs: &Path) -> Result<()> {
+/// Writes the page with its pictures; `made` is their last line.
+pub fn write(diagrams: &[Diagram], docs: &Path, made: &str) -> Result<()> {
     for diagram in diagrams {
         let panels = PANELS.map(|(title, families)| diagram.panel(title, families)).into();
         let description = "Error of θ against computing time per sample, one curve a method, one mark a run.".into();
         let figure = Figure { title: diagram.finding()?, description, columns: 2, panels };
         figure.save(&docs.join(format!("accuracy-{}.svg", diagram.key)))?;
-        diagram.save_numbers(&docs.join(format!("accuracy-{}.csv", diagram.key)))?;
     }
-    let (scenes, least): (Vec<_>, Vec<_>) =
-        diagrams.iter().map(Diagram::scene).collect::<Result<Vec<_>>>()?.into_iter().unzip();
-    let least = least.into_iter().fold(f64::INFINITY, f64::min);
-    let speed = speed(diagrams)?;
+    let scenes = diagrams.iter().map(Diagram::scene).collect::<Result<Vec<_>>>()?;
+    let nearest = diagrams.iter().map(|diagram| diagram.nearest(SIX_DIGITS)).collect::<Result<Vec<_>>>()?;
+    let undercut = diagrams.iter().map(Diagram::undercut).collect::<Result<Vec<_>>>()?;
+    let undercut = undercut.into_iter().fold(f64::INFINITY, f64::min);
     let values = context! {
-        speed => speed.clone(),
+        ratios => range(nearest.iter().map(|(.., ratio)| *ratio), |ratio| format!("{ratio:.1}")),
+        times => range(nearest.iter().map(|(_, cost, ratio)| 1e6 * cost / ratio), significant),
+        held => range(diagrams.iter().filter_map(Diagram::held), scientific),
         perturbation => decade(PERTURBATION),
         rows => rows(diagrams),
-        undercut => least.is_finite().then(|| scientific(least)),
+        undercut => undercut.is_finite().then(|| scientific(undercut)),
         scenes,
     };
-    crate::page::write(docs, "speed", include_str!("../../pages/speed.md"), &speed, "precision")?;
-    crate::page::write(docs, "accuracy", include_str!("../../pages/accuracy.md"), &values, "precision")
+    crate::page::write(docs, "accuracy", include_str!("../../pages/accuracy.md"), &values, made)
 }

@@ -49,7 +49,7 @@ pub fn curves(scene: &Scene, exact: &Response, conditioning: f64, limits: Limits
         let mut points = Vec::new();
         for run in runs {
             let samples: Vec<_> = run.samples.chunks(3).map(sample).collect();
-            let failure = run.failure.clone().map(Failure::OfPeer);
+            let failure = run.failure.clone().map(Failure::AsWritten);
             let (count, transitions) = (scene.intervals() as f64, run.transitions);
             let response = Response { samples, evaluations: 0, transitions, failure };
             let errors = Errors::of(&response, exact);
@@ -60,7 +60,7 @@ pub fn curves(scene: &Scene, exact: &Response, conditioning: f64, limits: Limits
                 break;
             }
         }
-        Curve { name: runs[0].method.clone(), family: Family::Library, setting: "tolerance", points }
+        Curve { name: runs[0].method.clone(), family: Family::Library, setting: "tolerance".into(), points }
     };
     Ok(runs.chunk_by(|a, b| a.method == b.method).map(curve).collect())
 }

@@ -58,13 +58,13 @@ pub fn save(docs: &Path) -> Result<Value> {
     };
     let panel = Panel::new("", Axis::linear("time, s", 0.0, DURATION), Axis::linear("u, mm", -2.0, 2.0))
         .with("central difference, 12 ms", u(&unstable), Style::line(colour::VERMILLION, 2))
-        .named((1.5, -1.3))
+        .named((1.2, -1.3))
         .with("exact", u(&exact), Style::line(colour::BLACK, 3))
         .named((3.6, -1.2))
         .with("Newmark average acceleration, 12 ms", u(&response(&scene, NEWMARK)), Style::dashed(colour::BLUE, 2))
         .named((0.4, 1.2))
         .with("", [(uplift, -2.0), (uplift, 2.0)], Style::dashed(colour::GREY, 1))
-        .note((1.85, 1.75), "first uplift", colour::GREY);
+        .note((1.7, 1.75), "first uplift", colour::GREY);
     let title = "Stable with the base down, unstable from uplift on".into();
     let description = "u over time with steps of 12 ms: the central difference diverges after the first uplift.".into();
     let figure = Figure { title, description, columns: 1, panels: vec![panel] };
