@@ -136,6 +136,25 @@ def building(exporter: Path, folder: Path) -> Path:
     return fmu
 
 
+OF_PEAKS = " since startTime, exact, also between communication points, without the fall if the structure overturns; NaN unless peaks is true"
+
+
+def with_instants(described: list) -> list[tuple]:
+    """Each variable with its names, units and meaning; a largest or smallest value and its first instant are one row."""
+    instants = {v.name for v in described if v.description.startswith("first instant of")}
+
+    def paired(v) -> tuple:
+        choices = v.declaredType.items if v.declaredType else None
+        listed = ": " + ", ".join(f"{item.value} {item.name}" for item in choices) if choices else ""
+        meaning = v.description.removesuffix(OF_PEAKS).replace("|", "\\|") + listed
+        if f"t_{v.name}" not in instants:
+            return v, f"`{v.name}`", v.unit or "", meaning
+        value, separator, rest = meaning.partition(";")
+        return v, f"`{v.name}`, `t_{v.name}`", f"{v.unit or '–'}, s", f"{value}, and its first instant{separator}{rest}"
+
+    return [paired(v) for v in described if v.name not in instants]
+
+
 def variables(fmu: Path, building: Path) -> str:
     """docs/reference/variables.md, from the FMU of one mass and that of a building."""
     page = ("# Variables\n\nWhich variables does the FMU have, in which units and ranges? This is the model description of "
@@ -145,30 +164,29 @@ def variables(fmu: Path, building: Path) -> str:
     def number(value: str | None) -> str:
         return "" if value is None else re.sub(r"e([+-])0?", r"e\1", f"{float(value):g}").replace("e+", "e")
 
-    def meaning(variable) -> str:
-        choices = variable.declaredType.items if variable.declaredType else None
-        listed = ": " + ", ".join(f"{item.value} {item.name}" for item in choices) if choices else ""
-        return variable.description.replace("|", "\\|") + listed
-
+    described = read_model_description(fmu).modelVariables
     for title, is_one in KINDS.items():
-        page += f"\n## {title}\n\n| name | unit | value | range | meaning |\n|---|---|---|---|---|\n"
-        for v in filter(is_one, read_model_description(fmu).modelVariables):
+        page += f"\n## {title}\n\n"
+        if title == "Local variables":
+            page += ("The largest magnitudes, here and of buildings, are those since startTime, exact, also between communication points. If the\n"
+                     "structure overturns, they are those before its fall. They are NaN unless `peaks` is true.\n\n")
+        page += "| name | unit | value | range | meaning |\n|---|---|---|---|---|\n"
+        for v, names, units, meaning in with_instants([v for v in described if is_one(v)]):
             value = number(v.start) if v.type == "Real" else v.start or ""
             limits = f"{number(v.min)} to {number(v.max)}" if v.min and v.max else ""
-            page += f"| `{v.name}` | {v.unit or ''} | {value} | {limits} | {meaning(v)} |\n"
+            page += f"| {names} | {units} | {value} | {limits} | {meaning} |\n"
 
-    page += ("\n## Buildings\n\nThe FMU of a structure of many masses, `rocking-fmu export --parameters building.toml`, has the variables above "
-             "that are of\nthe ground, the base and the run, and these. `i` is a floor or the storey below it, `j` a mode, both from 1 on. "
-             "The structure's own numbers are\nfixed: an importer can read them and not set them.\n\n| name | unit | kind | meaning |\n"
-             "|---|---|---|---|\n")
-    known = {v.name for v in read_model_description(fmu).modelVariables}
-    for v in read_model_description(building).modelVariables:
-        if v.name not in known and "[2]" not in v.name:
-            letter = "j" if "mode" in v.description or v.name.startswith("der(") else "i"
-            name = v.name.replace("[1]", f"[{letter}]")
-            told = re.sub(r"(floor|storey|mode) 1", rf"\1 {letter}", meaning(v)).replace("[1]", f"[{letter}]")
-            kind = {"calculatedParameter": "fixed"}.get(v.causality, v.causality)
-            page += f"| `{name}` | {v.unit or ''} | {kind} | {told} |\n"
+    page += ("\n## Buildings\n\nThe FMU of a structure of many masses, `rocking-fmu export --parameters building.toml`, has those of the variables "
+             "above\nthat describe the ground, the base and the run, and the variables below. `i` is a floor or the storey below it, `j` a mode, "
+             "both\nfrom 1 on. The structure's own numbers are fixed: an importer can read them but not set them.\n\n"
+             "| name | unit | kind | meaning |\n|---|---|---|---|\n")
+    known = {v.name for v in described}
+    own = [v for v in read_model_description(building).modelVariables if v.name not in known and "[2]" not in v.name]
+    for v, names, units, meaning in with_instants(own):
+        letter = "j" if "mode" in v.description or v.name.startswith("der(") else "i"
+        meaning = re.sub(r"(floor|storey|mode) 1", rf"\1 {letter}", meaning)
+        kind = {"calculatedParameter": "fixed"}.get(v.causality, v.causality)
+        page += f"| {names} | {units} | {kind} | {meaning} |\n".replace("[1]", f"[{letter}]")
     return page
 
 

@@ -118,7 +118,7 @@ pub enum RunError {
         start: f64,
     },
     /// It takes more steps than one of its segments may.
-    #[error("the run needs too many steps: they ended at t = {time:?} s of {until:?} s; give it a shorter duration")]
+    #[error("the run used up its steps at t = {time:?} s of {until:?} s: give a shorter duration")]
     TooLong {
         /// Instant at which the steps ended, s.
         time: f64,

@@ -172,7 +172,7 @@ pub const DERIVED: [Derived; 16] = [
     derived!("omega_fc" ["rad/s"] "circular frequency in full contact", "Eq 1", |s| s.omega_fc),
     derived!("k" ["N/m"] "stiffness of the strut", "Eq 1", |s| s.k),
     derived!("c_fc" ["N.s/m"] "viscous damping in full contact", "after Eq 1", |s| s.c_fc),
-    derived!("u_cr" ["m"] "critical displacement: uplift", "after Eq 4", |s| s.u_cr),
+    derived!("u_cr" ["m"] "critical displacement at uplift", "after Eq 4", |s| s.u_cr),
     derived!("c_u" ["N.s/m"] "viscous damping while rocking", "after Eq 6", |s| s.c_u),
     derived!("J_P" ["kg.m2"] "inertia about a pivot", "after Eq 8", |s| s.J_P),
     derived!("p_l" ["rad/s"] "frequency parameter", "before Eq 11", |s| s.p_l),

@@ -188,7 +188,7 @@ def co_simulation(fmu: Path, scene: Scene) -> dict:
     kinds = "uplift|impact|landing|overturning|yielding|unloading"
     transitions = [(text, re.match(rf"t = (\S+) s: ({kinds})", text)) for text in said]
     transitions = [(float(of[1]), "settling" if "contact is held" in text else of[2]) for text, of in transitions if of]
-    fall = [float(of[1]) for text in said if (of := re.search(r"falling since t = (\S+) s", text))]
+    fall = [float(of[1]) for text in said if (of := re.search(r"its fall began at t = (\S+) s", text))]
     counted = dict(transitions=last["transitions"], end=end, fall=fall[0] if fall else None)
     return found | numbered(transitions) | at_end(end, counted)
 

@@ -78,7 +78,7 @@ def test_an_fmu_is_the_one_of_the_command_line(exporter, tmp_path):
 
 
 def test_modes_left_out_are_told():
-    assert "carried by 2 modes of 3 floors: 97.66 % of m_s, 99.59 % of S_1, 99.94 % of I_2; the rest turns with the base" in str(of_modes(2))
+    assert "carried by 2 modes of 3 floors: 97.66 % of m_s, 99.59 % of S_1, 99.94 % of I_2; the rest turns rigidly with the base" in str(of_modes(2))
 
 
 def test_a_structure_of_many_masses_is_a_value():

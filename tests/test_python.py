@@ -203,7 +203,7 @@ def test_a_file_says_what_would_help(tmp_path):
     with pytest.warns(UserWarning) as warned:
         fr.Record.read(tmp_path / "column.txt", dt=0.5)
     assumed, doubted = (str(warning.message) for warning in warned)
-    assert "the file states no unit: m/s2 is assumed" in assumed and "a step of 0.5 s: is the time in another unit" in doubted
+    assert "the file states no unit of acceleration: m/s2 is assumed" in assumed and "a step of 0.5 s: is the time in another unit" in doubted
     assert {warning.filename for warning in warned} == {__file__}
     with pytest.warns(UserWarning, match="a peak of 20 g: is the unit right"):
         fr.Record.read(tmp_path / "column.txt", dt=0.01, unit="g", scale=100)

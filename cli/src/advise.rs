@@ -41,8 +41,8 @@ struct AllowedArgs {
     #[arg(long, value_name = "ERROR", default_value = "5%", value_parser = relative_error)]
     within: f64,
     /// Results whose errors must not exceed --within. `theta`, `u` and `a_t` are the peaks of rotation, elastic displacement
-    /// and acceleration of the top mass, or of the floor where the error is largest; V_t and M_t count with a_t. The error of a history is the largest difference
-    /// as a fraction of the largest value. Overturning must be predicted right in any case
+    /// and acceleration of the top mass, or of the floor where the error is largest; a_t includes the peaks of V_t and M_t. The error of a history is
+    /// the largest difference as a fraction of the largest value. Overturning must be predicted right in any case
     #[arg(long, value_name = "LIST", value_parser = one_of(Criterion::ALL.map(|of| (of.name(), of))), num_args = 1.., value_delimiter = ',', default_values = Criterion::ALL.map(Criterion::name))]
     of: Vec<Criterion>,
 }

@@ -27,7 +27,7 @@ pub struct DescribeArgs {
     /// Print a commented file for --parameters instead: every parameter of this structure, with unit and range
     #[arg(long, conflicts_with = "format")]
     template: bool,
-    /// Print the moment that turns the base back instead, while it is turned slowly to this rotation and back
+    /// Print the restoring moment instead of the table, while the base is rotated slowly to this angle and back
     #[arg(long, value_name = "RAD", conflicts_with = "template")]
     restoring: Option<f64>,
 }

@@ -24,7 +24,7 @@ pub struct ExportArgs {
     /// packed as a CSV file
     #[arg(long, value_name = "FILE", num_args = 1.., help_heading = "Ground motion")]
     record: Vec<PathBuf>,
-    /// Vertical component to the first record, which the FMU follows beside it; packed likewise
+    /// Vertical component of the first record; the FMU contains both
     #[arg(long, value_name = "FILE", help_heading = "Ground motion")]
     record_v: Option<PathBuf>,
     #[command(flatten, next_help_heading = "Ground motion")]

@@ -1,10 +1,10 @@
-//! Arguments for the limits of validity; a value beyond its limit gives a warning.
+//! Arguments for the limits of the model; a value beyond its limit gives a warning.
 
 use rocking::run::validity::{LimitError, Limits};
 
 /// Limits beyond which a value gives a warning.
 #[derive(clap::Args)]
-#[command(next_help_heading = "What the model leaves out")]
+#[command(next_help_heading = "Limits of the model")]
 pub struct LimitArgs {
     /// Coefficient of friction of the ground, a limit of |R_h|/R_v and |I_h|/I_v [of concrete cast against smooth formwork:
     /// EN 1992-1-1, 6.2.5(2)]

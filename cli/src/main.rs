@@ -72,8 +72,8 @@ enum Command {
     Simulate(simulate::SimulateArgs),
     /// Write a page that shows the structure in motion, with its histories below
     ///
-    /// One HTML file for any browser, which needs no network. Lengths are true to scale; how far the motion is
-    /// exaggerated is chosen and shown on the page.
+    /// Writes one HTML file for any browser, without a network. Lengths are true to scale. The page shows the scale of the
+    /// motion, and you can change it there.
     #[command(after_help = "Examples:
   rocking-fmu view --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
   rocking-fmu view --preset evison --free 2 --theta-0 0.04 -o wall.html")]
@@ -133,8 +133,8 @@ A file of records, fragility.toml:
   vary.f_fc = [2, 4, 8]
 
 A file of pulses, spectrum.toml, a map of each structure:
-  refine = 1                  # halve the steps along the boundaries so many times
-  condition = false           # true: run each point again with 1e-12 more amplitude
+  refine = 1                  # number of times to halve the steps along the boundaries
+  condition = false           # true: run each point again at an amplitude larger by the factor 1 + 1e-12
   [pulses]
   shape = 'sine'              # see `pulse --help`; cycles = 1, phase = 0, error = 1e-4
   frequency = { from = 0.5, to = 10, count = 40, log = true }

@@ -49,15 +49,15 @@ fn amounts(record: &Record) -> Vec<NamedValue> {
     let line = |name, value, unit, description| NamedValue::new(name, value, unit, "", description);
     vec![
         line("samples", record.times().len() as f64, "1", "samples"),
-        line("step_min", steps().fold(f64::INFINITY, f64::min), "s", "least time between two samples"),
-        line("step_max", steps().fold(0.0, f64::max), "s", "most time between two samples"),
+        line("step_min", steps().fold(f64::INFINITY, f64::min), "s", "shortest time between two samples"),
+        line("step_max", steps().fold(0.0, f64::max), "s", "longest time between two samples"),
         line("t_start", record.start(), "s", "instant of the first sample"),
         line("t_end", record.end(), "s", "instant of the last sample"),
         line("PGA", record.pga(), "m/s2", "peak ground acceleration"),
         line("PGV", peak_velocity(record), "m/s", "peak ground velocity, at rest before the first sample"),
         line("I_A", arias_intensity(record, G), "m/s", "Arias intensity, pi/(2 g) times the integral of a_g^2"),
         line("D_5-95", until - from, "s", "significant duration: from 5 % to 95 % of the Arias intensity"),
-        line("t_5", from, "s", "its begin"),
+        line("t_5", from, "s", "start of the significant duration"),
         line("v_end", velocity, "m/s", "velocity at the end, a drift unless it is 0"),
         line("d_end", displacement, "m", "displacement at the end"),
     ]

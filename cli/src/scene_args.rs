@@ -63,7 +63,7 @@ impl MotionArgs {
 pub struct GroundArgs {
     #[command(flatten)]
     pub record: RecordArgs,
-    /// Simulated time; the ground is at rest after the record's end [default: until the base is down for good, at the latest 100/p_l after the record]
+    /// Simulated time; the ground is at rest after the record's end [default: until the base is down for good or the structure overturns, at the latest 100/p_l after the record]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     duration: Option<f64>,
     /// Free vibration over this time instead of a record
@@ -81,16 +81,16 @@ pub struct GroundArgs {
 #[serde(deny_unknown_fields, default)]
 #[command(next_help_heading = "Initial values")]
 pub struct InitialArgs {
-    /// Rotation of the base; 0 is full contact
+    /// Initial rotation of the base; 0 is full contact
     #[arg(long, value_name = "RAD", default_value_t = 0.0, allow_hyphen_values = true)]
     theta_0: f64,
-    /// Angular velocity of the base
+    /// Initial angular velocity of the base
     #[arg(long, value_name = "RAD/S", default_value_t = 0.0, allow_hyphen_values = true)]
     theta_dot_0: f64,
-    /// Elastic displacement of the top mass
+    /// Initial elastic displacement of the top mass
     #[arg(long, value_name = "M", default_value_t = 0.0, allow_hyphen_values = true)]
     u_0: f64,
-    /// Elastic velocity of the top mass
+    /// Initial elastic velocity of the top mass
     #[arg(long, value_name = "M/S", default_value_t = 0.0, allow_hyphen_values = true)]
     u_dot_0: f64,
 }

@@ -108,7 +108,7 @@ fn centring(base: &Base) -> Option<String> {
     let [restoring, residual] = centring_moments(base);
     let [turned_back, held] = [restoring, residual].map(|moment| in_readable_unit(moment, "N.m", significant));
     let verdict =
-        if restoring > residual { "the structure centres itself" } else { "it may stay open: see theta at the end" };
+        if restoring > residual { "the structure centres itself" } else { "it may stay rotated: see theta at end" };
     (residual > 0.0).then(|| {
         format!("weight and tendon turn the base back with {turned_back}, yielded dissipators hold it with up to {held}: {verdict}")
     })

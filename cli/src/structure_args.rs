@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 /// The structure asked for.
 #[derive(clap::Args, Debug)]
 pub struct StructureArgs {
-    /// Specimen of the paper: a bridge pier (Table 2) or a shear wall (Table 1) [default: mcmanus, where nothing of a
+    /// Specimen of the paper: a bridge pier (Table 2) or a shear wall (Table 1) [default: mcmanus, if no
     /// structure is given]
     #[arg(long, value_parser = one_of(PRESETS), conflicts_with = "parameters")]
     preset: Option<Parameters>,
@@ -68,7 +68,7 @@ impl StructureArgs {
             }
             (None, Some(preset)) => numbers.over(&preset)?,
             (None, None) if numbers.is_empty() => {
-                say!("structure      mcmanus, for none is given: see --preset, --parameters");
+                say!("structure      mcmanus, the default: choose another with --preset or --parameters");
                 Parameters::MCMANUS
             }
             (None, None) => numbers.parameters().map_err(with_options)?,

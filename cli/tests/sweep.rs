@@ -75,7 +75,7 @@ fn probabilities_and_curve_are_those_of_the_rows() {
         assert!((printed / expected - 1.0).abs() < 1e-5, "{printed} {expected}");
     }
     assert!(
-        summary.contains("\noverturned: no curve: runs overlap nowhere: those within it go up to 0.598816, "),
+        summary.contains("\noverturned: no curve: dispersion unknown: runs within the limit end at 0.598816, "),
         "{summary}"
     );
 

@@ -26,7 +26,7 @@ pub enum Refusal {
     BadScales(#[from] SamplesError),
     /// The record has changed since a state was kept.
     #[error(
-        "record = {record:?}{} has other samples now than when the FMU state was kept",
+        "the samples of record = {record:?}{} changed after the FMU state was saved",
         if record_v.is_empty() { String::new() } else { format!(" or record_v = {record_v:?}") }
     )]
     OtherRecord { record: String, record_v: String },

@@ -89,7 +89,7 @@ fn states(frame: &Frame) -> Vec<Row> {
     };
     let coordinate = |place: usize| {
         let (unit, description) = if place < n {
-            ("m", format!("coordinate of mode {}, of the modal mass 1 kg", place + 1))
+            ("m", format!("coordinate of mode {}, scaled to a modal mass of 1 kg", place + 1))
         } else {
             ("m/s", format!("velocity of mode {}", place - n + 1))
         };
@@ -118,8 +118,8 @@ fn peaks(frame: &Frame) -> Vec<Row> {
         let (symbol, name) = (of.symbol(), of.name());
         let peak = name.replacen(symbol, &format!("{symbol}_max"), 1);
         let magnitude = format!(
-            "largest |{name}| since startTime, exact: within steps, too; if the structure overturns, before its fall; NaN unless \
-             peaks is true"
+            "largest |{name}| since startTime, exact, also between communication points, without the fall if the structure \
+             overturns; NaN unless peaks is true"
         );
         let instant = format!("first instant of {peak}; NaN unless peaks is true");
         [
@@ -138,7 +138,7 @@ fn numbers(frame: &Frame) -> Vec<Row> {
     let of_base = OF_FRAME.iter().map(|of| known(of.name.into(), of.unit, of.description.into(), (of.value)(frame)));
     let of_modes = OF_MODE.iter().flat_map(|of| {
         (1..).zip(frame.mode_table()).map(move |(j, mode)| {
-            known(format!("{}[{j}]", of.name), of.unit, format!("{} of mode {j}", of.description), (of.value)(&mode))
+            known(format!("{}[{j}]", of.name), of.unit, format!("mode {j}: {}", of.description), (of.value)(&mode))
         })
     });
     let of_floors = (1..).zip(frame.floors()).flat_map(|(i, floor): (usize, _)| {

@@ -127,7 +127,7 @@ impl<Q: Masses> Scene<Q> {
         if was_hidden {
             logger.event(|| {
                 format!(
-                    "t = {} s: the integrator's step from t = {from} s shows nothing of {}: the states are put right",
+                    "t = {} s: the integrator's step from t = {from} s shows nothing of {}: the FMU corrects the states",
                     host.time,
                     passed.iter().map(|transition| transition.kind.name()).collect::<Vec<_>>().join(", ")
                 )

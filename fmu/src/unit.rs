@@ -366,7 +366,7 @@ impl<Q: Masses> Model for Unit<Q> {
         let scene = self.scene()?;
         let (time, fall) = (scene.engine.motion().time, scene.peaks.fall());
         let fall =
-            fall.map_or(String::new(), |fall| format!(", falling since t = {fall} s, before which its peaks are"));
+            fall.map_or(String::new(), |fall| format!("; its fall began at t = {fall} s; peaks are those before"));
         Ok(scene.has_overturned().then(|| format!("the structure overturned at t = {time} s{fall}")))
     }
 

@@ -136,7 +136,7 @@ impl Source {
 /// The phases, as [`phase_number`] numbers them.
 pub static PHASES: Enumeration = Enumeration {
     name: "Phase",
-    description: "what holds of the base",
+    description: "phase of the motion",
     items: &[
         Phase::FullContact.name(),
         Phase::Rocking(Side::Left).name(),
@@ -231,11 +231,11 @@ impl Table {
 fn records() -> [Row; 2] {
     static HORIZONTAL: Text = Text { get: |setup| &setup.record, set: |setup, text| setup.record = text.into() };
     static VERTICAL: Text = Text { get: |setup| &setup.record_v, set: |setup, text| setup.record_v = text.into() };
-    let horizontal = "ground motion record that the ground follows beside a_g: the name of a file in the archive's \
-                      resources, or the path or URI of one on disk; PEER .AT2, ESM, K-NET, COSMOS, CSMIP, or a table \
+    let horizontal = "ground motion record, which is added to a_g: the name of a file in the archive's \
+                      resources, or the path or URI of a file on disk; PEER .AT2, ESM, K-NET, COSMOS, CSMIP, or a table \
                       of text in s and m/s2 or the unit of the heading; none if empty";
-    let vertical = "record that the ground follows vertically beside a_v, as record, with the same start and scales; none if \
-                    empty";
+    let vertical = "vertical ground motion record, which is added to a_v: a file as for record, with the same start and \
+                    scales; none if empty";
     [
         parameter("record", horizontal, DataType::String, Source::Text(&HORIZONTAL)),
         parameter("record_v", vertical, DataType::String, Source::Text(&VERTICAL)),
@@ -296,9 +296,9 @@ fn outputs() -> Vec<Row> {
     const OF_DISSIPATOR: &[&str] = &["theta", "theta_dot", "B", "xi_d", "c_d", "k_d", "F_y"];
     let turned = "rotation of the base, positive about the right edge";
     let elastic = "elastic displacement of the top mass in the frame that turns with the base";
-    let shear = "m a_t, the base shear where no force acts on the top mass (Eqs 2, 23)";
-    let moment = "m H a_t, the overturning moment where no force acts on the top mass (Eqs 3, 24)";
-    let first = "force of the dissipators at +xi_d, viscous and elastoplastic together; pulled is positive";
+    let shear = "m a_t, the base shear if F_t is 0 (Eqs 2, 23)";
+    let moment = "m H a_t, the overturning moment if F_t is 0 (Eqs 3, 24)";
+    let first = "force of the dissipators at +xi_d, viscous plus elastoplastic; tension is positive";
     vec![
         state(of_state("theta", "rad", turned, |o| o.theta, &[]), "theta_0"),
         state(of_state("u", "m", elastic, |o| o.u, &[]), "u_0"),
@@ -322,13 +322,13 @@ fn outputs() -> Vec<Row> {
         ),
         reaction("R_h", "N", "horizontal force on the ground, positive to the right", |r| r.R_h),
         reaction("R_v", "N", "vertical force on the ground, positive downwards", |r| r.R_v),
-        reaction("R_m", "N.m", "moment on the ground about the middle of the base, positive as theta", |r| r.R_m),
+        reaction("R_m", "N.m", "moment on the ground about the middle of the base, signed like theta", |r| r.R_m),
         tie("P_t", "force of the tendon", |r| r.P_t, &["theta", "B", "P_0", "k_t"]),
         tie("F_d1", first, |r| r.F_d1, OF_DISSIPATOR),
-        tie("F_d2", "force of the dissipators at -xi_d, as F_d1", |r| r.F_d2, OF_DISSIPATOR),
+        tie("F_d2", "force of the dissipators at -xi_d; see F_d1", |r| r.F_d2, OF_DISSIPATOR),
         impulse("I_h", "N.s", "horizontal impulse of the impacts on the ground so far", |i| i.I_h),
         impulse("I_v", "N.s", "vertical impulse of the impacts on the ground so far, downwards", |i| i.I_v),
-        impulse("I_m", "N.m.s", "moment impulse of the impacts on the ground so far, positive as theta", |i| i.I_m),
+        impulse("I_m", "N.m.s", "moment impulse of the impacts on the ground so far, signed like theta", |i| i.I_m),
     ]
 }
 
@@ -349,19 +349,19 @@ fn locals() -> Vec<Row> {
         ground("a_v_ground", "vertical ground acceleration: a_v and record_v", true, "a_v", "record_v"),
         kept("e_p1", "m", "plastic elongation of the elastoplastic dissipator at +xi_d", |d| d.plastic[0], PLASTIC),
         kept("e_p2", "m", "plastic elongation of the elastoplastic dissipator at -xi_d", |d| d.plastic[1], PLASTIC),
-        kept("E_viscous", "J", "energy that the viscous dissipators have taken", |d| d.viscous, &[]),
-        kept("E_hysteretic", "J", "energy that the elastoplastic dissipators have taken", |d| d.hysteretic, &[]),
+        kept("E_viscous", "J", "energy dissipated by the viscous dissipators", |d| d.viscous, &[]),
+        kept("E_hysteretic", "J", "energy dissipated by the elastoplastic dissipators", |d| d.hysteretic, &[]),
         (phase.from(["theta_0"]), source),
         counted(
             "transitions",
-            "transitions so far: uplifts, impacts, landings (settling, too), overturning; dissipators that begin or cease to yield",
+            "number of transitions so far: uplift, impact, landing (also settling), overturning, start and end of yielding of a dissipator",
             DataType::Integer,
             Source::Transitions,
         ),
         counted("overturned", "whether the structure has overturned", DataType::Boolean, Source::Overturned),
         counted(
             "t_overturned",
-            "instant of overturning; startTime while the structure stands",
+            "instant of overturning; startTime until the structure overturns",
             number("s"),
             Source::Overturning,
         ),
@@ -398,9 +398,9 @@ fn event_indicators() -> [Row; INDICATORS] {
         let (variable, source) = local([name, "1", description], Source::Indicator(which), of);
         (variable.indicator(), source)
     };
-    let of_phase =
-        "event indicator, positive while the phase lasts: what u and its moment lack to uplift; theta over alpha_cg";
-    let of_end = "event indicator, positive until the structure has overturned, or a dissipator yields or ceases to";
+    let of_phase = "event indicator, positive while the phase lasts: in full contact the margin to uplift, while rocking \
+                    |theta|/alpha_cg";
+    let of_end = "event indicator, positive until the structure overturns or a dissipator starts or stops yielding";
     [
         indicator(0, "phase_indicator", of_phase, PHASE),
         indicator(1, "overturning_indicator", of_end, &["theta", "theta_dot", "B", "xi_d", "k_d", "F_y"]),
@@ -419,7 +419,7 @@ fn peaks() -> Vec<Row> {
                     concat!(
                         "largest |",
                         stringify!($name),
-                        "| since startTime, exact: within steps, too; if the structure overturns, before its fall; NaN unless peaks is true"
+                        "| since startTime, exact, also between communication points, without the fall if the structure overturns; NaN unless peaks is true"
                     ),
                     |peaks| peaks.$name().magnitude,
                 ),
@@ -448,8 +448,7 @@ fn validity() -> Vec<Row> {
             worst(time_name, "s", time_description, Source::WorstInstant(which)),
         ]
     };
-    let gains =
-        counted("energy_gains", "impacts since startTime that raise the energy", DataType::Integer, Source::Gains);
+    let gains = counted("energy_gains", "number of impacts that raise the energy", DataType::Integer, Source::Gains);
     const { &ASSUMPTIONS }.iter().enumerate().flat_map(of_assumption).chain([gains]).collect()
 }
 
@@ -459,21 +458,17 @@ fn switches() -> [Row; 4] {
         Switch { get: |setup| setup.F_t_extrapolated, set: |setup, on| setup.F_t_extrapolated = on };
     static PEAKS: Switch = Switch { get: |setup| setup.peaks, set: |setup, on| setup.peaks = on };
     static VALIDITY: Switch = Switch { get: |setup| setup.validity, set: |setup, on| setup.validity = on };
-    let validity =
-        "whether it is watched what the motion goes beyond: tension, edges that pull, friction, energy gained";
-    let late = "whether a_g and a_v, set without their derivatives, are followed one communication step late, in a straight \
-                line from each value to the next, and are not held";
-    let extrapolated = "whether F_t, set without its derivative, goes on with the slope of its values at the last two \
-                        communication points, and is not held; where it is not set before a step it is held over that";
+    let peaks = "true computes the largest magnitudes theta_max, u_max, ... and their instants";
+    let validity = "true checks the limits of the model (tension, load of the edge, friction, energy gain) and logs the first \
+                    time that the motion exceeds each";
+    let late = "if a_g and a_v are set without derivatives: true follows straight lines from value to value, one \
+                communication step late; false holds each value over its step";
+    let extrapolated = "if F_t is set without its derivative: true extrapolates F_t over the step from its values at the last \
+                        two communication points; false, or a step before which F_t is not set, holds F_t";
     [
         parameter("a_g_late", late, DataType::Boolean, Source::Switch(&LATE)),
         parameter("F_t_extrapolated", extrapolated, DataType::Boolean, Source::Switch(&EXTRAPOLATED)),
-        parameter(
-            "peaks",
-            "whether the largest magnitudes theta_max, u_max, ... are watched for",
-            DataType::Boolean,
-            Source::Switch(&PEAKS),
-        ),
+        parameter("peaks", peaks, DataType::Boolean, Source::Switch(&PEAKS)),
         parameter("validity", validity, DataType::Boolean, Source::Switch(&VALIDITY)),
     ]
 }
@@ -485,7 +480,7 @@ fn calculated_parameters() -> [Row; 6] {
         let derived = derived.unwrap_or_else(|| panic!("no derived quantity is called {name}"));
         real(causality, [name, derived.unit, derived.description], Source::Derived(derived), of)
     };
-    let duration = "from the first to the last sample of the record, of either component; 0 without a record";
+    let duration = "time from the first to the last sample of the record; 0 without a record";
     let of_record = ["record", "record_v", "record_time_scale"];
     [
         calculated("alpha_cg", &["m", "m0", "H", "B"]),

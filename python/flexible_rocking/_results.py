@@ -75,9 +75,9 @@ class Transitions(list[Transition]):
 
 
 class Worst(NamedTuple):
-    """How far a run goes beyond one of the things that the model takes for granted.
+    """The worst value of a run for one limit of the model.
 
-    value: the largest value, of R_v_min the least. time: the first instant of the value, s.
+    value: the largest value; for R_v_min and weight_min the smallest. time: the first instant of the value, s.
     limit: a value beyond the limit gives a warning. first_beyond: the first instant beyond the limit, s, or None.
     beyond: time beyond the limit, s, or number of impacts.
     """

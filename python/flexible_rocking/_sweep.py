@@ -127,8 +127,8 @@ def _tqdm() -> Any:
 class Fragility:
     """A lognormal fragility curve through the runs of a sweep: what `fragility` returns.
 
-    limit, intensity: of what, over what. curve: median, dispersion, median_range, probability(x), band(x). bins: a DataFrame
-    of runs of about the same intensity: lowest, mean, highest, runs, known, exceedances.
+    limit: the condition that is exceeded. intensity: the measure on the horizontal axis. curve: median, dispersion, median_range,
+    probability(x), band(x). bins: a DataFrame of runs of about the same intensity: lowest, mean, highest, runs, known, exceedances.
     """
 
     def __init__(self, limit: str, intensity: str, curve: "Curve", bins: "pd.DataFrame"):
@@ -189,8 +189,8 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, by: str | Non
     limit: "overturned", or a peak such as "theta/alpha_cg >= 0.5", "theta >= 3 deg", "uplift >= 1 cm", "a_t >= 0.3 g" (the
     structure's own g). A run that overturned has exceeded every limit. intensity: a measure of `sweep` or a column of the
     table; by default the measure of the sweep. by: a column, such as "structures" or "f_fc[Hz]". With by, the result is a dict
-    with the curve of each value of the column. Runs that failed are not counted. How sure the curve
-    is follows from the records, whose runs do not depend on each other; where there is one record, from the structures.
+    with the curve of each value of the column. Runs that failed are not counted. The uncertainty
+    of the curve treats records as independent of each other, or, if there is one record, structures.
     Several structures that `sweep` ran under one name are one population. Raises ValueError with the reason if there is no
     curve (never exceeded, always exceeded, no overlap). A table with several populations or conditions, with a run twice, with
     peaks that are NaN, or without the measure of its sweep raises ValueError, too.
@@ -235,7 +235,7 @@ def _exceeds(table: "pd.DataFrame", limit: str) -> list[bool | None]:
     peaks = table[_native.measure_of(limit) or "peak_theta[rad]"]
     if missing := int((peaks.isna() & ~table["ending"].isin(["overturned", "failed"])).sum()):
         raise ValueError(f"{peaks.name} is NaN in {missing} rows of runs that ended: run them again, or leave them out by "
-                         f"table.dropna(subset={[peaks.name]!r}), and with them what they would have counted")
+                         f"table.dropna(subset={[peaks.name]!r}); removed runs do not count")
     endings = [str(ending) for ending in table["ending"]]
     return _native.exceeds(endings, peaks.tolist(), table["g[m/s2]"].tolist(), limit, table["B[m]"].max())
 

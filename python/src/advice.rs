@@ -29,11 +29,11 @@ fn criteria(value: &Bound<'_, PyAny>) -> PyResult<Vec<Criterion>> {
 
 /// Runs every level of detail and names the cheapest level whose errors stay `within` a part of the reference,
 /// `nonlinear` at the tolerance 1e-12, or the simplest of equally cheap levels. A level of a structure of many masses is also how
-/// many of its modes are kept; the rest of its mass rides rigidly.
+/// many of its modes are kept; the rest of the mass turns rigidly with the base.
 ///
-/// of: what must stay within it, one or several of "theta", "u", "a_t" (peaks, of many masses those of every floor) and "theta_history", "u_history", "a_t_history";
-/// without it all of them. duration and initial values as in `simulate`. Raises ValueError where the reference cannot
-/// be run.
+/// of: the results whose errors must not exceed `within`, by default all. One or several of "theta", "u", "a_t" (peaks; for many
+/// masses the peaks of every floor), "theta_history", "u_history", "a_t_history". duration and initial values as in `simulate`.
+/// Raises ValueError if the reference cannot be run.
 #[pyfunction]
 #[pyo3(signature = (structure, record, *, within=0.05, of=None, duration=None, **initial))]
 pub fn advise<'py>(

@@ -141,7 +141,7 @@ pub fn conditions(
     let duration = duration.map(|duration| number("duration", duration)).transpose()?;
     let mut state = State::default();
     for (name, value) in initial.into_iter().flatten() {
-        let quantity = one_of("initial value", &name, INITIAL_VALUES.each_ref().map(|of| (of.name, of)))?;
+        let quantity = one_of("argument or initial value", &name, INITIAL_VALUES.each_ref().map(|of| (of.name, of)))?;
         (quantity.set)(&mut state, number(quantity.name, &value)?);
     }
     Ok(Conditions { initial: state, detail, tolerance, duration })

@@ -61,7 +61,7 @@ impl Run {
     /// The exact largest magnitudes by name, each a Peak (a float with unit and time). Names: a_g (m/s2), theta (rad), u (m),
     /// delta_t (m, Eq 26), uplift (m, Eq 25), a_t (m/s2, Eq 27), V_t (N, Eqs 2, 23), M_t (N.m, Eqs 3, 24). A tendon adds P_t
     /// (N). Many masses: a_g, theta, uplift, V_t, M_t, and of each floor from 1 on u[1], drift[1], delta_t[1], a_t[1], V[1], M[1].
-    /// Of a structure that overturns those before it falls.
+    /// If the structure overturns, the peaks are those before its fall.
     #[getter]
     fn peaks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let named = PyDict::new(py);
@@ -71,32 +71,31 @@ impl Run {
         Ok(named)
     }
 
-    /// Whether it overturned, |theta| = pi/2; None where that is not known, for it still rocks 100/p_l after the
-    /// record.
+    /// Whether the structure overturned (|theta| = pi/2). None if the structure still rocks 100/p_l after the record.
     #[getter]
     fn overturned(&self) -> Option<bool> {
         self.outcome.ending.overturned()
     }
 
-    /// How it ended: "at rest", "overturned", "at time", "still rocking".
+    /// Ending of the run: "at rest", "overturned", "at time", "still rocking".
     #[getter]
     fn ending(&self) -> String {
         self.outcome.ending.to_string()
     }
 
-    /// When it began, s.
+    /// Start of the run, s.
     #[getter]
     fn start(&self) -> f64 {
         self.outcome.start
     }
 
-    /// When it ended, s.
+    /// End of the run, s.
     #[getter]
     fn end(&self) -> f64 {
         self.outcome.end
     }
 
-    /// Since when it falls, s; None if it does not.
+    /// Start of the fall, s: |theta| passes the angle of no return for the last time. None if the structure does not fall.
     #[getter]
     fn fall(&self) -> Option<f64> {
         self.outcome.fall
@@ -117,13 +116,13 @@ impl Run {
         result(py, "Transitions", (transitions, &names))
     }
 
-    /// Steps that it took.
+    /// Number of steps of the run.
     #[getter]
     fn steps(&self) -> u64 {
         self.outcome.work.steps
     }
 
-    /// Right-hand-side evaluations that it took.
+    /// Number of right-hand-side evaluations of the run.
     #[getter]
     fn evaluations(&self) -> u64 {
         self.outcome.work.evaluations
@@ -171,8 +170,8 @@ impl Run {
     /// ... of each floor. to_pandas() makes it a table.
     ///
     /// Exact: the engine's own polynomials and flows are evaluated, nothing is interpolated. The values at a transition are
-    /// the values just after it. After the end of the run the motion goes on over ground at rest; once overturned there is
-    /// none, and it is NaN. Raises ValueError for times before the start of the run, and NaN.
+    /// the values just after it. After the end of the run the ground is at rest and the motion continues. After overturning
+    /// all values are NaN. Raises ValueError for times before the start of the run, and NaN.
     fn at<'py>(slf: Py<Self>, py: Python<'py>, times: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let times = numbers("times", times)?;
         let start = slf.get().outcome.start;

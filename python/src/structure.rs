@@ -36,7 +36,7 @@ use rocking_report::describe;
 /// A shear building of many masses. Each storey has the stiffness k (N/m), and the mass m (kg) and height h (m) above the base
 /// of its floor. zeta: one damping ratio, one for each mode, or dict(f=(Hz, Hz), zeta=...) for Rayleigh damping. The numbers of
 /// the base are those above. Without r, momentum gives a coefficient for each impact. keep: how many modes are kept; the rest of
-/// the mass rides rigidly with the base. See also from_matrices and from_modes.
+/// the mass turns rigidly with the base. See also from_matrices and from_modes.
 ///
 /// Raises ValueError where a number is unknown, missing, given twice in different ways or out of its range.
 #[pyclass(frozen, eq, module = "flexible_rocking")]

@@ -166,8 +166,8 @@ impl Curve {
         self.0.dispersion
     }
 
-    /// Between which intensities the median lies with a probability of 95 %; None where fewer than 5 records, or of one
-    /// record structures, tell nothing of that.
+    /// The 95 % confidence interval of the median, two intensities. None with fewer than 5 records, or, under one record, fewer
+    /// than 5 structures.
     #[getter]
     fn median_range(&self) -> Option<(f64, f64)> {
         self.0.median_range()
@@ -179,7 +179,7 @@ impl Curve {
         Ok(PyArray1::from_vec(intensities.py(), probabilities.collect()))
     }
 
-    /// Between which probabilities that lies with a probability of 95 %: an array (n, 2); None where median_range is.
+    /// The 95 % confidence interval of the probability at each of `intensities`: an array (n, 2). None if median_range is None.
     fn band<'py>(&self, intensities: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         let at = numbers("intensities", intensities)?;
         let band: Option<Vec<_>> = at.into_iter().map(|at| Some(<[f64; 2]>::from(self.0.band(at)?).to_vec())).collect();

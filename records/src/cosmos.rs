@@ -39,10 +39,10 @@ pub(super) fn parse(text: &str, format: Format, how: &Reading) -> Result<Parsed,
         (Some(Column::Number(number)), count) if (1..=count).contains(number) => number - 1,
         (asked, count) => {
             let asked = match asked {
-                None => "which to take is not known".into(),
-                Some(asked) => format!("{asked} is asked for; they have numbers"),
+                None => "and the file does not show which one to read".into(),
+                Some(asked) => format!("but the given column is {asked}: channels have numbers"),
             };
-            return Err(bad(channels[0].line, format!("{count} channel(s), and {asked}")).remedied_by(Remedy::Column));
+            return Err(bad(channels[0].line, format!("{count} channel(s), {asked}")).remedied_by(Remedy::Column));
         }
     };
     let &Announced { line: announced, count, unit, width, dt } = &channels[channel];

@@ -44,7 +44,7 @@ const USUAL_STEPS: std::ops::RangeInclusive<f64> = 1e-4..=0.1;
 /// Most steps, of their mean, between two samples.
 const LONGEST_GAP: f64 = 5.0;
 
-/// Why a file is refused.
+/// Why the reader rejects a file.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
     /// The file cannot be opened or read.
@@ -174,7 +174,8 @@ pub fn doubts(record: &Record, g: f64) -> Vec<String> {
     let duration = record.end() - record.start();
     let last = record.velocities_and_displacements().last();
     let step = nine_digits(duration / (record.times().len() - 1) as f64);
-    let longest = nine_digits(record.times().windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max));
+    let gaps = record.times().windows(2).map(|pair| (pair[1] - pair[0], pair[0]));
+    let (longest, gap) = gaps.fold((0.0, 0.0), |most: (f64, f64), gap| if gap.0 > most.0 { gap } else { most });
     let velocity = last.unwrap_or_default()[0];
     let (peak, mean) = (record.pga().max(record.vertical_peak()) / g, velocity / duration / g);
     let is_drift = mean.abs() > LARGEST_USUAL_MEAN && velocity.abs() > LARGEST_USUAL_VELOCITY;
@@ -182,8 +183,12 @@ pub fn doubts(record: &Record, g: f64) -> Vec<String> {
     let doubts = [
         (peak > LARGEST_USUAL_PEAK).then(|| format!("a peak of {peak:.0} g: is the unit right?")),
         (!is_usual).then(|| format!("a step of {step} s: is the time in another unit?")),
-        (longest > LONGEST_GAP * step)
-            .then(|| format!("a step of {longest} s, where their mean is {step} s: is something missing?")),
+        (longest > LONGEST_GAP * step).then(|| {
+            format!(
+                "no sample for {} s after t = {gap} s, on average one in {step} s: is something missing?",
+                nine_digits(longest)
+            )
+        }),
         is_drift.then(|| {
             format!(
                 "a mean acceleration of {mean:.2} g, after which the ground moves on at {velocity:.0} m/s: is it \
@@ -309,7 +314,7 @@ mod tests {
                      states; 2 samples, step 0.01 s, peak 2 g";
         assert_eq!(said(b"t,a (g)\n0,1\n.01,2\n").unwrap(), [found]);
         let found = "a.csv: table, separated by commas, column 2; m/s2 assumed; 3 samples, steps of 0.01 to 0.02 s, peak 6.21152 g";
-        let assumed = "a.csv: the file states no unit: m/s2 is assumed; head the column a (g)";
+        let assumed = "a.csv: the file states no unit of acceleration: m/s2 is assumed; head the column a (g)";
         let peak = "a.csv: a peak of 6 g: is the unit right?";
         assert_eq!(said(b"0,1\n.01,60.935\n.03,-1\n").unwrap(), [found, assumed, peak]);
     }
@@ -328,7 +333,7 @@ mod tests {
         assert_eq!(doubts(4000, 0.01, 0.0, 59.0), ["a peak of 6 g: is the unit right?"]);
         let times = (0..99).map(|i| 0.01 * f64::from(if i < 50 { i } else { i + 49 })).collect();
         let gap = Record::from_samples("", times, vec![0.0; 99]).map(|record| super::doubts(&record, 9.81)).unwrap();
-        assert_eq!(gap, ["a step of 0.5 s, where their mean is 0.015 s: is something missing?"]);
+        assert_eq!(gap, ["no sample for 0.5 s after t = 0.49 s, on average one in 0.015 s: is something missing?"]);
         let drift =
             "a mean acceleration of 0.29 g, after which the ground moves on at 114 m/s: is it the right column?";
         assert_eq!(doubts(4000, 0.01, 0.29 * 9.81, 3.0), [drift]);

@@ -99,12 +99,12 @@ impl Parsed {
     pub fn record(self, how: &Reading) -> Result<(Record, Source), BadLine> {
         let Parsed { title, times, values: acceleration, source, last_line } = self;
         if let (Some((stated, false)), Some(asked)) = (how.dt.and_then(|dt| times.have_step(dt)), how.dt) {
-            let problem = format!("the file states a sample every {stated:?} s, and {asked:?} s is asked for");
+            let problem = format!("the file states a sample every {stated:?} s, but the given step is {asked:?} s");
             return Err(bad(last_line, problem));
         }
         let has_columns = matches!(source.format, Format::Table | Format::Cosmos | Format::Csmip);
         if let (false, Some(asked)) = (has_columns, &how.column) {
-            return Err(bad(1, format!("column {asked} is asked for, and a file of {} has none", source.format)));
+            return Err(bad(1, format!("the given column is {asked}, but a file of {} has none", source.format)));
         }
         let count = acceleration.len();
         if count < 2 {

@@ -68,7 +68,7 @@ impl Source {
     pub fn findings(&self, name: &str, record: &Record, g: f64) -> String {
         let unit_from = match self.unit_from {
             UnitFrom::File => "as the file states",
-            UnitFrom::User => "as asked for",
+            UnitFrom::User => "as given",
             UnitFrom::Assumed => "assumed",
         };
         let remarks: String = self.remarks.iter().map(|remark| format!(", {remark}")).collect();
@@ -79,7 +79,7 @@ impl Source {
 
     /// A warning of a unit that is assumed, with the `remedy`.
     pub fn assumption(&self, remedy: &str) -> Option<String> {
-        let assumed = || format!("the file states no unit: {} is assumed; {remedy}", self.unit);
+        let assumed = || format!("the file states no unit of acceleration: {} is assumed; {remedy}", self.unit);
         (self.unit_from == UnitFrom::Assumed).then(assumed)
     }
 
@@ -156,7 +156,7 @@ impl fmt::Display for Format {
 /// contradict a clear statement, nor a unit of something else.
 pub(super) fn decide(stated: &Stated, asked: Option<Unit>, line: usize) -> Result<(Unit, UnitFrom), BadLine> {
     let contradicted = |stated: &dyn fmt::Display, asked: Unit| {
-        Err(bad(line, format!("the file states accelerations in {stated}, and {asked} is asked for")))
+        Err(bad(line, format!("the file states accelerations in {stated}, but the given unit is {asked}")))
     };
     match (stated, asked) {
         (Stated::Other(text), None) if mentions_unit(text) => {

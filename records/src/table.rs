@@ -107,7 +107,8 @@ impl<'a> Table<'a> {
             let fields = layout.fields(sample);
             table.last = line;
             if fields.len() != count {
-                let problem = format!("{} column(s) instead of {count} as on line {first}", fields.len());
+                let missing = if fields.len() < count { ": is a value missing?" } else { "" };
+                let problem = format!("{} column(s) instead of {count} as on line {first}{missing}", fields.len());
                 table.uneven.get_or_insert(bad(line, problem).remedied_by(Remedy::Column));
             }
             for (column, field) in fields.into_iter().enumerate() {
@@ -214,7 +215,7 @@ impl<'a> Table<'a> {
                 let (count, names) =
                     (self.count, self.headings.first().map(|(_, names)| format!(" ({})", listed(names))));
                 let names = names.unwrap_or_default();
-                let problem = format!("{count} columns{names}: which has the accelerations is not known");
+                let problem = format!("cannot tell which of {count} columns{names} has the accelerations");
                 return Err(bad(self.first, problem).remedied_by(Remedy::Column));
             }
         };
@@ -248,16 +249,16 @@ impl<'a> Table<'a> {
                 Ok(Times::At(self.column(time).map(|time| time * unit.in_seconds()).collect()))
             }
             None => {
-                let problem = "no column has times: the time between samples is not known";
+                let problem = "no column has times: the time between samples is unknown";
                 step.ok_or_else(|| bad(self.first, problem).remedied_by(Remedy::Step))
             }
         }
     }
 
-    /// The column that is asked for.
+    /// The given column.
     fn asked(&self, how: &Reading) -> Result<Option<usize>, BadLine> {
         let refused =
-            |asked: &Column, why: String| Err(bad(self.first, format!("column {asked} is asked for, and {why}")));
+            |asked: &Column, why: String| Err(bad(self.first, format!("the given column is {asked}, but {why}")));
         match &how.column {
             Some(Column::Number(number)) if (1..=self.count).contains(number) => Ok(Some(number - 1)),
             Some(asked @ Column::Number(_)) => refused(asked, format!("there are {}", self.count)),
@@ -406,7 +407,7 @@ mod tests {
         let expected =
             "1: the accelerations are in \"km/s2\", which is none of g, m/s2, cm/s2, gal, mm/s2, in/s2, ft/s2, mg, %g";
         assert_eq!(problem(unknown, &AS_IT_IS), expected);
-        assert!(problem(unknown, &asked).ends_with("\"km/s2\", and g is asked for"));
+        assert!(problem(unknown, &asked).ends_with("\"km/s2\", but the given unit is g"));
     }
 
     #[test]
@@ -425,7 +426,7 @@ mod tests {
         let three = "time (s),N-S (gal),E-W (g)\n0,1,5\n1,2,6\n";
         let unclear = read(three, &AS_IT_IS).unwrap_err();
         assert_eq!(unclear.remedy, Some(Remedy::Column));
-        assert!(unclear.problem.starts_with("3 columns (\"time (s)\", \"N-S (gal)\", \"E-W (g)\")"), "{unclear:?}");
+        assert!(unclear.problem.contains("3 columns (\"time (s)\", \"N-S (gal)\", \"E-W (g)\")"), "{unclear:?}");
         let chosen = |column, dt| read(three, &Reading { column: Some(column), dt, ..AS_IT_IS });
         let heading = |name: &str| Column::Heading(name.into());
         for column in [Column::Number(3), heading("e-w"), heading("E-W (g)")] {
@@ -435,11 +436,11 @@ mod tests {
         let (record, source) = chosen(Column::Number(2), Some(1.0)).unwrap();
         assert_eq!((record.times(), source.unit), (&[0.0, 1.0][..], Unit::CentimetrePerSecondSquared));
         for (column, expected) in [
-            (Column::Number(4), "column 4 is asked for, and there are 3"),
+            (Column::Number(4), "the given column is 4, but there are 3"),
             (Column::Number(1), "column 1 has the times, and cannot have the accelerations"),
             (
                 heading("U-D"),
-                "column \"U-D\" is asked for, and the headings are \"time (s)\", \"N-S (gal)\", \"E-W (g)\"",
+                "the given column is \"U-D\", but the headings are \"time (s)\", \"N-S (gal)\", \"E-W (g)\"",
             ),
         ] {
             assert_eq!(chosen(column, None).unwrap_err().problem, expected);
@@ -460,7 +461,7 @@ mod tests {
             assert_eq!(read(&stated, &AS_IT_IS).unwrap().0.acceleration(), expected, "{text}");
         }
         let cut = "NPTS=8 DT=.5\n3 2 1\n1 2 3\n";
-        assert_eq!(problem(cut, &AS_IT_IS), "2: 3 columns: which has the accelerations is not known");
+        assert_eq!(problem(cut, &AS_IT_IS), "2: cannot tell which of 3 columns has the accelerations");
         assert_eq!(read(cut, &all).unwrap_err().remedy, Some(Remedy::IgnoreCount));
     }
 
@@ -472,7 +473,7 @@ mod tests {
             let text = format!("{line}\n1\n2\n4\n");
             assert_eq!(read(&text, &AS_IT_IS).unwrap().0.times(), [0.0, 0.01, 0.02], "{line}");
             let refused = problem(&text, &Reading { dt: Some(0.02), ..AS_IT_IS });
-            assert!(refused.ends_with("the file states a sample every 0.01 s, and 0.02 s is asked for"), "{refused}");
+            assert!(refused.ends_with("a sample every 0.01 s, but the given step is 0.02 s"), "{refused}");
         }
     }
 
@@ -557,7 +558,7 @@ mod tests {
                 "1: 1 line(s) of text and no samples: lines of numbers alone are needed, without columns of text",
             ),
             ("0,1\n1,NaN\n", "2: the acceleration \"NaN\" is not a number"),
-            ("0,1\n1,\n", "2: 1 column(s) instead of 2 as on line 1"),
+            ("0,1\n1,\n", "2: 1 column(s) instead of 2 as on line 1: is a value missing?"),
             ("0,1,2\n1,,2\n", "2: in column 2, \"\" is not a number"),
             ("t,a\n0,1\n.5,2\n0.5,3\n", "4: column 1 cannot have the times: 0.5 comes after 0.5"),
             ("0,1\n.5,2\n0.4,3\n", "3: column 1 cannot have the times: 0.4 comes after 0.5"),
@@ -565,7 +566,7 @@ mod tests {
             ("0 1\n1 2 3\n", "2: 3 column(s) instead of 2 as on line 1"),
             ("0;1\n0,5;1.234,5\n", "2: the acceleration \"1.234,5\" is not a number"),
             ("0,O.1\n.5,1\n1,2\n", "1: \"0,O.1\" is neither numbers nor text: correct it, or write # before it"),
-            ("5,NPTS,DT\n1\n2\n", "2: no column has times: the time between samples is not known"),
+            ("5,NPTS,DT\n1\n2\n", "2: no column has times: the time between samples is unknown"),
             ("DT=0.005 min\n1\n2\n", "1: DT = \"0.005 MIN\" must be a number of seconds greater than 0"),
             (
                 "DT=0.02\nt,a\n0,1\n.01,2\n.02,3\n",
@@ -581,14 +582,14 @@ mod tests {
         for (text, expected) in [
             ("4\n1\n2\n3\n2\n", "1: 4 is the number of samples after it: write NPTS= 4, and a step as DT= 0.01"),
             ("5 .01\n1 2 3\n2 1\n", "1: 5 is the number of samples after it: write NPTS= 5, and a step as DT= 0.01"),
-            ("t,a\n0,1\n.5,2\n", "2: column all is asked for, and a heading says that one has times"),
+            ("t,a\n0,1\n.5,2\n", "2: the given column is all, but a heading says that one has times"),
         ] {
             assert_eq!(problem(text, &all), expected, "{text}");
         }
         let step = Reading { dt: Some(0.01), ..AS_IT_IS };
         for (text, expected) in [
             ("n,a\n1,.1\n2,.2\n4,.3\n", "4: column 1 cannot count the samples: 4.0 comes after 2.0"),
-            ("f (Hz),a\n.1,1\n.2,2\n", "2: 2 columns (\"f (Hz)\", \"a\"): which has the accelerations is not known"),
+            ("f (Hz),a\n.1,1\n.2,2\n", "2: cannot tell which of 2 columns (\"f (Hz)\", \"a\") has the accelerations"),
         ] {
             assert_eq!(problem(text, &step), expected, "{text}");
         }

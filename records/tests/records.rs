@@ -34,12 +34,12 @@ fn what_contradicts_a_file_is_refused() {
         let read = |how: &Reading| rocking_records::from_bytes(&path, &bytes, how);
         assert!(read(&Reading { unit: Some(unit), ..how.clone() }).is_ok());
         let refused = read(&Reading { unit: Some(Unit::MillimetrePerSecondSquared), ..how.clone() }).unwrap_err();
-        let expected = format!("the file states accelerations in {unit}, and mm/s2 is asked for");
+        let expected = format!("the file states accelerations in {unit}, but the given unit is mm/s2");
         assert!(refused.to_string().ends_with(&expected), "{refused}");
         if how.dt.is_none() {
             let refused = read(&Reading { dt: Some(2.0 * DT), ..how.clone() }).unwrap_err();
             assert!(
-                refused.to_string().ends_with(&format!("a sample every {DT} s, and {} s is asked for", 2.0 * DT)),
+                refused.to_string().ends_with(&format!("a sample every {DT} s, but the given step is {} s", 2.0 * DT)),
                 "{refused}"
             );
         }

@@ -121,7 +121,7 @@ fn print_reference<Q: Advised>(out: &mut impl Write, run: &Run<Q>, comparison: &
     writeln!(out, "Reference: {level}, tolerance {REFERENCE_TOLERANCE:e}, {} transitions", reference.transitions)?;
     let rigid = Q::rigid_share(&run.structure);
     if rigid > 0.0 {
-        writeln!(out, "  {} % of m_s rides rigidly with the base, in the reference, too", percent(rigid))?;
+        writeln!(out, "  {} % of m_s turns rigidly with the base, also in the reference", percent(rigid))?;
     }
     if reference.ending.overturned().is_none() {
         let limit = significant(LONGEST_REST / base.p_l);
@@ -136,7 +136,7 @@ fn print_reference<Q: Advised>(out: &mut impl Write, run: &Run<Q>, comparison: &
     }
     let theta = peaks[0].1;
     if theta == 0.0 {
-        let estimate = if reference.choice.modes.is_none() { "; the estimate is that of a base that does" } else { "" };
+        let estimate = if reference.choice.modes.is_none() { "; the estimate assumes that it does" } else { "" };
         return writeln!(out, "  the base never lifts off{estimate}\n");
     }
     let Some(f_r) = Q::effective_frequency(&run.structure, theta) else { return writeln!(out) };

@@ -55,7 +55,7 @@ pub fn frame(frame: &Frame) -> Result<String, fmt::Error> {
     };
     writeln!(
         out,
-        "  carried by {modes}: {mass} of m_s, {first} of S_1, {second} of I_2; the rest turns with the base"
+        "  carried by {modes}: {mass} of m_s, {first} of S_1, {second} of I_2; the rest turns rigidly with the base"
     )?;
     writeln!(out, "\nModes of vibration: f_u is the frequency while the structure rocks, share a part of m_s")?;
     write!(out, "  mode")?;

@@ -40,23 +40,18 @@ fn on_fixed_base(structure: &Structure, record: &Record) -> Vec<NamedValue> {
 /// The demand while rocking, term by term, and what it comes from.
 fn while_rocking(structure: &Structure, S_a: f64, C: f64, demand: &Demand) -> Vec<NamedValue> {
     let &Demand { u_ddot_gr, ground, rocking, impact, a_t, V_t, M_t } = demand;
+    let term = NamedValue::new;
     vec![
-        NamedValue::new(
-            "T_u",
-            TAU / structure.omega_u,
-            "s",
-            "before Eq 18",
-            "period of the vibration mode while rocking",
-        ),
-        NamedValue::new("zeta_u", structure.zeta_u, "1", "before Eq 18", "its damping ratio"),
-        NamedValue::new("S_a(T_u, zeta_u)", S_a, "m/s2", "after Eq 20", "its absolute spectral acceleration"),
-        NamedValue::new("C", C, "1", "Eq 21", "dynamic amplification at a transition between rocking phases"),
-        NamedValue::new("u_ddot_gr", u_ddot_gr, "m/s2", "Eq 21", "elastic acceleration as the weight changes sides"),
-        NamedValue::new("(1-chi) S_a", ground, "m/s2", "Eq 22", "vibration that the ground excites"),
-        NamedValue::new("chi g tan", rocking, "m/s2", "Eq 22", "rocking mode, chi g tan(alpha_cg)"),
-        NamedValue::new("C chi g tan", impact, "m/s2", "Eq 22", "vibration that the change of sides excites"),
-        NamedValue::new("a_t", a_t, "m/s2", "Eq 22", "lateral acceleration, the sum of these three"),
-        NamedValue::new("V_t", V_t, "N", "Eq 23", "base shear m a_t"),
-        NamedValue::new("M_t", M_t, "N.m", "Eq 24", "overturning moment m H a_t"),
+        term("T_u", TAU / structure.omega_u, "s", "before Eq 18", "period of the vibration mode while rocking"),
+        term("zeta_u", structure.zeta_u, "1", "before Eq 18", "damping ratio of the vibration mode while rocking"),
+        term("S_a(T_u, zeta_u)", S_a, "m/s2", "after Eq 20", "absolute spectral acceleration at T_u and zeta_u"),
+        term("C", C, "1", "Eq 21", "dynamic amplification at a transition between rocking phases"),
+        term("u_ddot_gr", u_ddot_gr, "m/s2", "Eq 21", "elastic acceleration at a transition between rocking phases"),
+        term("(1-chi) S_a", ground, "m/s2", "Eq 22", "vibration that the ground excites"),
+        term("chi g tan", rocking, "m/s2", "Eq 22", "rocking mode, chi g tan(alpha_cg)"),
+        term("C chi g tan", impact, "m/s2", "Eq 22", "vibration that the transition excites"),
+        term("a_t", a_t, "m/s2", "Eq 22", "lateral acceleration: (1-chi) S_a + (1+C) chi g tan"),
+        term("V_t", V_t, "N", "Eq 23", "base shear m a_t"),
+        term("M_t", M_t, "N.m", "Eq 24", "overturning moment m H a_t"),
     ]
 }

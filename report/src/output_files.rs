@@ -1,4 +1,4 @@
-//! The files that a command writes. A command cannot overwrite its inputs, or write one file twice.
+//! The files that a command writes. A command cannot overwrite its inputs nor another's, or write one file twice.
 
 use crate::input;
 use anyhow::{Context, bail, ensure};
@@ -22,6 +22,9 @@ pub struct OutputFile {
     target: PathBuf,
 }
 
+/// Endings of files that commands read and do not write.
+const READ: [&str; 2] = ["toml", "at2"];
+
 impl OutputFiles {
     /// The files of a command that reads `inputs`.
     pub fn of_inputs<'a>(inputs: impl IntoIterator<Item = &'a Path>) -> OutputFiles {
@@ -33,8 +36,8 @@ impl OutputFiles {
         self.inputs.push(path.into());
     }
 
-    /// The file at `path`, or standard output for `-`. The path cannot be an input, another output, a folder, or a file in
-    /// a folder that does not exist.
+    /// The file at `path`, or standard output for `-`. The path cannot be an input, another output, an existing file of [`READ`], a
+    /// folder, or a file in a folder that does not exist.
     pub fn create(&mut self, path: &Path) -> anyhow::Result<OutputFile> {
         let (shown, target) = (path.display(), place(path)?);
         let is_target = |input: &&PathBuf| input.canonicalize().is_ok_and(|input| input == target);
@@ -42,6 +45,10 @@ impl OutputFiles {
             bail!("{shown}: this would overwrite the input {}; name another file", input.display());
         }
         ensure!(!self.outputs.contains(&target), "{shown}: something else is written there as well; name another file");
+        let ending = target.extension().filter(|_| target.exists()).unwrap_or_default();
+        if let Some(kind) = READ.into_iter().find(|kind| ending.eq_ignore_ascii_case(kind)) {
+            bail!("{shown}: this would replace a file .{kind}, which no command writes; name another file");
+        }
         self.outputs.push(target.clone());
         Ok(OutputFile { path: path.into(), target })
     }
@@ -121,5 +128,13 @@ mod tests {
         assert_eq!((fs::read(&path).unwrap(), fs::read(before).unwrap()), (b"after".into(), b"before".into()));
         assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o640);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+        let structure = folder.path().join("other.TOML");
+        assert!(OutputFiles::default().create(&structure).is_ok());
+        fs::write(&structure, "m = 1").unwrap();
+        let refused = OutputFiles::default().create(&structure).err().unwrap().to_string();
+        assert!(
+            refused
+                .ends_with("other.TOML: this would replace a file .toml, which no command writes; name another file")
+        );
     }
 }

@@ -146,13 +146,14 @@ impl<'s, Q: Shown> Summary<'s, Q> {
             writeln!(out)?;
         }
         if let Some(fall) = fall {
-            let angle = if base.is_restrained() { "its angle of no return" } else { "alpha_cg" };
-            writeln!(out, "fall           from {} s on, beyond {angle}: the peaks are those before", instant(fall))?;
+            let angle = if base.is_restrained() { "the angle of no return" } else { "alpha_cg" };
+            let start = instant(fall);
+            writeln!(out, "fall           starts at {start} s, beyond {angle}; peaks are those before the fall")?;
         }
         if let Some(Taken { E_viscous, E_hysteretic, theta_end }) = self.taken(&motion) {
             let [E_viscous, E_hysteretic, theta_end] = [E_viscous, E_hysteretic, theta_end].map(significant);
             writeln!(out, "dissipated     {E_viscous} J viscous, {E_hysteretic} J elastoplastic")?;
-            writeln!(out, "left at end    theta = {theta_end} rad")?;
+            writeln!(out, "theta at end   {theta_end} rad")?;
         }
         let first = |time: Option<f64>| time.map_or("none".into(), |time| format!("at {} s", instant(time)));
         writeln!(out, "first uplift   {}", first(self.first_uplift))?;
@@ -166,7 +167,7 @@ impl<'s, Q: Shown> Summary<'s, Q> {
                     let limit = significant(LONGEST_REST / base.p_l);
                     format!("not known: it still rocks {limit} s after the record; see --duration")
                 }
-                Ending::AtTime => "not by then".into(),
+                Ending::AtTime => "not by the end of the run".into(),
                 Ending::AtRest | Ending::Overturned => "no".into(),
             },
         };

@@ -1,4 +1,4 @@
-//! Validity of a run: effects that the model leaves out, in words and for programs.
+//! Validity of a run: the limits of the model, in words and for programs.
 
 use crate::quantities::Number;
 use crate::shown::Shown;
@@ -9,12 +9,12 @@ use serde::Serialize;
 
 /// Label of each of [`ASSUMPTIONS`].
 const LABELS: [&str; ASSUMPTIONS.len()] = [
-    "tension under the base, over W",
+    "tension at base, fraction of W",
     "load of the edge, R_v/W",
     "friction, |R_h|/R_v",
     "friction of impacts, |I_h|/I_v",
-    "pull of impacts, over I_v",
-    "energy gained at an impact, over T",
+    "impact tension, fraction of I_v",
+    "energy gain, fraction of T",
     "weight, (g + a_v)/g",
 ];
 
@@ -53,7 +53,7 @@ pub fn rows(found: &Findings, limits: &Limits) -> Vec<Beyond> {
 /// The section on a run of `structure` at the level `detail` in which this was `found`, line by line.
 pub fn section<Q: Shown>(structure: &Q::Structure, detail: Detail, found: &Findings, limits: &Limits) -> Vec<String> {
     let of_parameters = Q::warnings(structure, detail);
-    let mut lines = vec!["what the model leaves out here".to_owned()];
+    let mut lines = vec!["limits of the model".to_owned()];
     lines.extend(of_parameters.into_iter().map(|warning| format!("  {warning}")));
     let is_level = found.worst[WEIGHT].value == 1.0;
     let shown = (0..ASSUMPTIONS.len()).filter(|which| *which != WEIGHT || !is_level);
@@ -62,12 +62,12 @@ pub fn section<Q: Shown>(structure: &Q::Structure, detail: Detail, found: &Findi
     let held = match found.settlings {
         0 => "0".to_owned(),
         bursts => format!(
-            "{bursts}, after which contact is held, for {} in all: between contact and rocking about an edge the model \
-             may slide without end (c_ratio other than 1 invites it), which is not its answer but an end put to it",
+            "{bursts}, for {} in all, after too many transitions within one vibration period. Otherwise the model could \
+             switch between full contact and rocking without end, mostly if c_ratio is not 1",
             share(found.held, found.duration)
         ),
     };
-    lines.push(format!("  {:<34} {held}", "settled bursts of transitions"));
+    lines.push(format!("  {:<34} {held}", "contact held by the engine, times"));
     lines
 }
 

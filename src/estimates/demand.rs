@@ -31,11 +31,11 @@ pub enum DemandError {
     Restrained(#[from] Restrained),
 }
 
-/// A structure with ties is asked for an estimate that knows none.
+/// An estimate for a structure with a tendon or dissipators, which the equations do not include.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "Eqs 10 to 24 are of a structure that its weight alone turns back, not with P_0 = {P_0:?} N, k_t = {k_t:?} N/m, \
-     c_d = {c_d:?} N.s/m, k_d = {k_d:?} N/m: follow the motion instead"
+    "Eqs 10 to 24 hold only without tendon and dissipators, but P_0 = {P_0:?} N, k_t = {k_t:?} N/m, \
+     c_d = {c_d:?} N.s/m, k_d = {k_d:?} N/m: simulate the motion instead"
 )]
 pub struct Restrained {
     /// Prestress of the tendon, N.

@@ -164,13 +164,13 @@ fn hold(base: &Base, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
     base.m_t * (base.g + a_v) * base.B + tendon.force * base.B + side.sign() * residual
 }
 
-/// Moment on the base to the right, N·m, of the mass that rides rigidly. It feels the ground acceleration `a_g` and the forces with
+/// Moment on the base to the right, N·m, of the mass that turns rigidly. It feels the ground acceleration `a_g` and the forces with
 /// this `rest`.
 fn rigid(base: &Base, a_g: f64, rest: Option<[f64; 2]>) -> f64 {
     rest.map_or(0.0, |[_, moment]| moment) - base.S_res * a_g
 }
 
-/// The moments that lift the base, to the right, N·m: of the springs and of the mass that rides rigidly (M3), and of all that gives
+/// The moments that lift the base, to the right, N·m: of the springs and of the mass that turns rigidly (M3), and of all that gives
 /// D θ̈ at θ = θ̇ = 0 (M2).
 fn lifting(frame: &Frame, u: &Modes, u_dot: &Modes, [rigid, weight]: [f64; 2]) -> [f64; 2] {
     let c_ratio = frame.base.c_ratio;
@@ -442,7 +442,7 @@ impl ManyModes {
         first_due(rule, turns, is_held, [held, change], arc.reach)
     }
 
-    /// The moment of the mass that rides rigidly, `tau` (s) after `start`.
+    /// The moment of the mass that turns rigidly, `tau` (s) after `start`.
     fn rigid_at(&self, start: &Start<Modes>, tau: f64) -> f64 {
         rigid(&self.subject.structure.base, start.a_g.at(tau), start.a_top.at(tau).rest())
     }
@@ -486,7 +486,7 @@ impl Level<Modes> for ManyModes {
             end.u.set(j, to[0]);
             end.u_dot.set(j, to[1]);
         }
-        // what the mass that rides rigidly takes of the hold
+        // what the mass that turns rigidly takes of the hold
         let held = self.least_hold(start)
             - [0.0, interval].map(|tau| self.rigid_at(start, tau).abs()).into_iter().fold(0.0, f64::max);
         let near = springs[0].abs().max(springs[1].abs()) + bend * interval * interval / 8.0;
@@ -765,7 +765,7 @@ mod tests {
         }
     }
 
-    /// Newton's law for a floor, for the moments about the pivot, and the shear of a storey as a sum, with mass that rides rigidly.
+    /// Newton's law for a floor, for the moments about the pivot, and the shear of a storey as a sum, with mass that turns rigidly.
     #[test]
     fn gauges_and_reactions_follow_from_the_motion() {
         let (structure, frame) = frame(&[1.3, -0.6, 0.4], 1.25);

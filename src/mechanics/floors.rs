@@ -80,7 +80,7 @@ impl FrameOutput {
         FrameOutput::OF_BASE.into_iter().chain(of_floors)
     }
 
-    /// The name, unit and description, and the floor if the output is of a floor.
+    /// The name, unit and description, and the floor if the output is of a floor, which takes the place of `#`.
     fn told(self) -> (&'static str, &'static str, &'static str, Option<usize>) {
         match self {
             FrameOutput::theta => ("theta", "rad", "rotation of the base", None),
@@ -88,14 +88,14 @@ impl FrameOutput {
             FrameOutput::uplift => ("uplift", "m", "uplift of the free edge of the base", None),
             FrameOutput::V_t => ("V_t", "N", "base shear", None),
             FrameOutput::M_t => ("M_t", "N.m", "overturning moment", None),
-            FrameOutput::u(i) => ("u", "m", "elastic displacement of floor", Some(i)),
-            FrameOutput::u_dot(i) => ("u_dot", "m/s", "elastic velocity of floor", Some(i)),
-            FrameOutput::drift(i) => ("drift", "m", "drift of storey", Some(i)),
-            FrameOutput::delta_t(i) => ("delta_t", "m", "displacement relative to the ground of floor", Some(i)),
-            FrameOutput::v_t(i) => ("v_t", "m/s", "velocity relative to the ground of floor", Some(i)),
-            FrameOutput::a_t(i) => ("a_t", "m/s2", "lateral acceleration of floor", Some(i)),
-            FrameOutput::V(i) => ("V", "N", "shear of storey", Some(i)),
-            FrameOutput::M(i) => ("M", "N.m", "overturning moment at the foot of storey", Some(i)),
+            FrameOutput::u(i) => ("u", "m", "elastic displacement of floor #", Some(i)),
+            FrameOutput::u_dot(i) => ("u_dot", "m/s", "elastic velocity of floor #", Some(i)),
+            FrameOutput::drift(i) => ("drift", "m", "drift of storey #", Some(i)),
+            FrameOutput::delta_t(i) => ("delta_t", "m", "displacement of floor # relative to the ground", Some(i)),
+            FrameOutput::v_t(i) => ("v_t", "m/s", "velocity of floor # relative to the ground", Some(i)),
+            FrameOutput::a_t(i) => ("a_t", "m/s2", "lateral acceleration of floor #", Some(i)),
+            FrameOutput::V(i) => ("V", "N", "shear of storey #", Some(i)),
+            FrameOutput::M(i) => ("M", "N.m", "overturning moment at the foot of storey #", Some(i)),
         }
     }
 
@@ -118,7 +118,7 @@ impl FrameOutput {
     /// The description.
     pub fn description(self) -> String {
         let (_, _, description, floor) = self.told();
-        floor.map_or(description.into(), |floor| format!("{description} {}", floor + 1))
+        floor.map_or(description.into(), |floor| description.replace('#', &(floor + 1).to_string()))
     }
 
     /// Whether the output depends on the ground acceleration directly.

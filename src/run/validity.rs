@@ -621,9 +621,9 @@ pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
         let balanced = (gamma * g * B + P_0 * B / m) / (H * omega_fc * omega_fc + g);
         let held = if P_0 > 0.0 { "gamma g + P_0/m" } else { "gamma g" };
         warnings.push(format!(
-            "u_cr = {u_cr} m exceeds B = {B} m (H w_fc^2 < {held}): the base is held down until the top mass is beyond \
-             its edge, although from u = {balanced} m on its weight does not keep it there; raise f_fc, or do not \
-             believe what follows"
+            "u_cr = {u_cr} m exceeds B = {B} m (H w_fc^2 < {held}): the model holds the base down until the top mass is \
+             beyond the edge of the base, but the weight holds it only up to u = {balanced} m; raise f_fc, or do not \
+             rely on the results"
         ));
     }
     warnings.extend(pulling(r, impact::pulling_restitution(structure), "(m + m0)"));

@@ -46,7 +46,7 @@ pub const OF_MODE: [Derived<ModeOf>; 7] = [
     }),
     derived!("mass" ["kg"] "effective mass", "", |of| of.mode.gamma * of.mode.share),
     derived!("share" ["1"] "effective mass as a fraction of m_s", "", |of| of.mode.gamma * of.mode.share / of.m_s),
-    derived!("height" ["m"] "effective height; 0 of a mode without effective mass", "", |of| {
+    derived!("height" ["m"] "effective height; 0 if the mode has no effective mass", "", |of| {
         let is_of_none = of.mode.gamma * of.mode.share <= ROUNDING * of.m_s;
         if is_of_none { 0.0 } else { of.mode.height / of.mode.share }
     }),

@@ -108,7 +108,7 @@ pub struct Described {
     pub modes: Vec<FoundMode>,
     /// All mass above the base, with modes; without it the floors have all mass.
     pub total: Option<Total>,
-    /// Number of modes that are kept, lowest frequency first; without it all. The rest of the mass rides rigidly with the base.
+    /// Number of modes that are kept, lowest frequency first; without it all. The rest of the mass turns rigidly with the base.
     pub keep: Option<i64>,
 }
 

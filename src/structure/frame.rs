@@ -56,7 +56,7 @@ pub struct Floor {
     pub shape: Modes,
 }
 
-/// A rigid base that carries modes. What the modes do not carry of the mass above the foundation rides rigidly with the base.
+/// A rigid base that carries modes. What the modes do not carry of the mass above the foundation turns rigidly with the base.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     pub(crate) base: Base,
@@ -243,13 +243,13 @@ impl Frame {
         Frame { base, body, modes: modes.to_vec(), floors: floors.to_vec(), gauges, vibration }
     }
 
-    /// This structure with its `count` modes of the lowest frequencies, or none. The mass of the others rides rigidly with the base.
+    /// This structure with its `count` modes of the lowest frequencies, or none. The mass of the others turns rigidly with the base.
     pub fn keeping(&self, count: usize) -> Result<Frame, FrameError> {
         let modes = self.modes.len();
         if count > modes { Err(FrameError::Kept { count, modes }) } else { Ok(self.with_lowest(count)) }
     }
 
-    /// This structure without modes: all of its mass rides rigidly with the base.
+    /// This structure without modes: all of its mass turns rigidly with the base.
     pub fn without_modes(&self) -> Frame {
         self.with_lowest(0)
     }

@@ -5,7 +5,7 @@
 //! | `period_fc` | f_fc | f_fc = 1/period_fc |
 //! | `weight`, `weight0` | m, m0 | m = weight/g, m0 = weight0/g |
 //! | `width` | B | B = width/2 |
-//! | `alpha_cg` | H, or B where H is given | tan α_cg = γ B/H, γ = (m + m0)/m (before Eq 11) |
+//! | `alpha_cg` | H, or B if H is given | tan α_cg = γ B/H, γ = (m + m0)/m (before Eq 11) |
 //! | `p_l` | J0 | J_P = m g H/p_l² = J0 + m (H² + B²) + m0 B² (before Eq 11, after Eq 8) |
 //!
 //! A natural quantity and the parameter that it stands for cannot be given together, because they may contradict each other.
@@ -37,7 +37,7 @@ pub const NATURAL: [Natural; 6] = [
     Natural { name: "weight", min: 1e-9, max: 1e12, stands_for: "m", in_place_of: "m" },
     Natural { name: "weight0", min: 0.0, max: 1e12, stands_for: "m0", in_place_of: "m0" },
     Natural { name: "width", min: 2e-3, max: 2e4, stands_for: "B", in_place_of: "B" },
-    Natural { name: "alpha_cg", min: 1e-3, max: 1.57, stands_for: "H", in_place_of: "H, or of B where H is given" },
+    Natural { name: "alpha_cg", min: 1e-3, max: 1.57, stands_for: "H", in_place_of: "H, or B if H is given" },
     Natural { name: "p_l", min: 1e-4, max: 1e3, stands_for: "J0", in_place_of: "J0" },
 ];
 

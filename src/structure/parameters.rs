@@ -20,7 +20,7 @@ pub struct Parameters {
     pub f_fc: f64,
     /// Damping ratio in full contact.
     pub zeta_fc: f64,
-    /// Viscous damping while rocking over viscous damping in full contact, c_u/c_fc.
+    /// Ratio c_u/c_fc of the viscous damping while rocking to the viscous damping in full contact.
     pub c_ratio: f64,
     /// Coefficient of restitution on the angular velocity at impact.
     pub r: f64,
@@ -41,7 +41,7 @@ pub struct Parameters {
     /// Elastic stiffness of each elastoplastic dissipator, N/m.
     #[serde(default)]
     pub k_d: f64,
-    /// Force at which it yields, N.
+    /// Force at which an elastoplastic dissipator yields, N.
     #[serde(default)]
     pub F_y: f64,
 }
@@ -55,7 +55,7 @@ pub const PARAMETERS: [Quantity<Parameters>; 16] = [
     quantity!(J0 ["kg.m2"] 0.0, 1e20, "rotational inertia of the foundation about the middle of the base"),
     quantity!(f_fc ["Hz"] 1e-3, 1e4, "natural frequency in full contact (fixed base)"),
     quantity!(zeta_fc ["1"] 0.0, MAX_DAMPING, "damping ratio in full contact"),
-    quantity!(c_ratio ["1"] 0.0, 100.0, "viscous damping while rocking over viscous damping in full contact, c_u/c_fc"),
+    quantity!(c_ratio ["1"] 0.0, 100.0, "ratio c_u/c_fc of the viscous damping while rocking to the viscous damping in full contact"),
     quantity!(r ["1"] 1e-3, 1.0, "coefficient of restitution on the angular velocity at impact"),
     quantity!(g ["m/s2"] 1e-3, 1e3, "acceleration of gravity"),
     quantity!(P_0 ["N"] 0.0, 1e15, "prestress of the tendon with the base down"),
@@ -80,7 +80,7 @@ pub struct UnknownPreset(String);
 /// The slenderest structure accepted: H/B beyond it leaves 1 − χ (after Eq 13) without significant digits.
 pub const MAX_SLENDERNESS: f64 = 1e3;
 
-/// Why a set of parameters is refused.
+/// Why a set of parameters is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ParameterError {
     /// One parameter is outside its own range.
@@ -92,9 +92,9 @@ pub enum ParameterError {
     /// An elastoplastic dissipator takes both a stiffness and a force at which it yields.
     #[error("k_d = {k_d:?} N/m and F_y = {F_y:?} N are no dissipator: set both above 0, or both to 0")]
     HalfDissipator {
-        /// Its stiffness, N/m.
+        /// Stiffness of the dissipator, N/m.
         k_d: f64,
-        /// Its yield force, N.
+        /// Yield force of the dissipator, N.
         F_y: f64,
     },
 }

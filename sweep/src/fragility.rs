@@ -112,7 +112,7 @@ impl FragilityCurve {
         }
     }
 
-    /// Between which probabilities P(x) at `intensity` > 0 lies with a probability of 95 %.
+    /// The 95 % confidence interval of P(x) at `intensity` > 0.
     pub fn band(&self, intensity: f64) -> Option<(f64, f64)> {
         let Certainty { covariance, half_width } = self.certainty?;
         let from_median = (intensity / self.median).ln();
@@ -122,7 +122,7 @@ impl FragilityCurve {
         Some((normal_distribution(z - deviation), normal_distribution(z + deviation)))
     }
 
-    /// Between which intensities the median lies with a probability of 95 %: x_m exp(± t β √V_aa).
+    /// The 95 % confidence interval of the median, two intensities: x_m exp(± t β √V_aa).
     pub fn median_range(&self) -> Option<(f64, f64)> {
         let Certainty { covariance, half_width } = self.certainty?;
         let factor = (half_width * self.dispersion * covariance.m11.sqrt()).exp();
@@ -174,8 +174,8 @@ fn check_overlap(trials: &[Trials]) -> Result<(), Refused> {
     ensure(without.1 > with.0, || {
         let [highest_without, lowest_with] = [without.1, with.0].map(six_digits);
         format!(
-            "runs overlap nowhere: those within it go up to {highest_without}, those that exceed it begin at {lowest_with}: \
-             for a dispersion, add intensities in between, records or structures"
+            "dispersion unknown: runs within the limit end at {highest_without}, runs beyond it start at {lowest_with}; \
+             add intensities in between, records or structures"
         )
     })?;
     ensure(with.1 > without.0, || NOT_GROWING.into())
@@ -276,7 +276,7 @@ mod tests {
             (&[][..], "no run is counted"),
             (&[(1.0, 5, 0), (2.0, 5, 0)], "never exceeded: raise the intensity"),
             (&[(1.0, 5, 5), (2.0, 5, 5)], "always exceeded: lower the intensity"),
-            (&[(1.0, 5, 0), (2.0, 5, 3), (3.0, 5, 5)], "runs overlap nowhere: those within it go up to 2, "),
+            (&[(1.0, 5, 0), (2.0, 5, 3), (3.0, 5, 5)], "dispersion unknown: runs within the limit end at 2, "),
             (&[(1.0, 5, 5), (2.0, 5, 3), (3.0, 5, 0)], NOT_GROWING),
             (&[(1.0, 5, 4), (2.0, 5, 3), (3.0, 5, 2)], NOT_GROWING),
             (&[(1.0, 5, 4), (0.0, 5, 3)], "the intensity 0 must be a finite number greater than 0"),

@@ -96,7 +96,7 @@ pub const CLASSES: [(Class, &str); 7] = [
     ((Fate::Stands, 0), "rocks and stands"),
     ((Fate::Overturns, 0), "overturns without impact"),
     ((Fate::Overturns, 1), "overturns after one impact"),
-    ((Fate::Overturns, 2), "overturns after more"),
+    ((Fate::Overturns, 2), "overturns after more impacts"),
     ((Fate::StillRocking, 0), "still rocking"),
     ((Fate::Failed, 0), "failed"),
 ];

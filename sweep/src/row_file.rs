@@ -110,9 +110,7 @@ impl RowFile {
             let mut rows = ReaderBuilder::new().from_reader(&content[..length]);
             ensure!(
                 rows.headers()? == headings,
-                "line 1 is not the headings of this sweep's rows, in this version of the program: name another file, or \
-                 remove this one. These are the headings:\n{}",
-                String::from_utf8_lossy(&first)
+                "line 1 is not the headings of this sweep's rows, in this version of the program: name another file"
             );
             for row in rows.records() {
                 let row = row?;

@@ -10,9 +10,9 @@ pub fn write(out: &mut impl Write, structure: &Structure) -> fmt::Result {
     writeln!(out, "# A structure, for rocking-fmu ... --parameters FILE.toml. SI units; # begins a comment.")?;
     writeln!(
         out,
-        "# A line that begins with # may take the place of the one above it. J0, c_ratio, g and what restrains may be left"
+        "# A line that begins with # may replace the line above it. You may leave out J0 (default 0), c_ratio (1), g (9.81 m/s2),"
     )?;
-    writeln!(out, "# out: they are 0, 1, 9.81 m/s2 and 0 then.")?;
+    writeln!(out, "# and the numbers of tendon and dissipators (0).")?;
     for &Quantity { name, unit, description, min, max, get, .. } in &PARAMETERS {
         let of = if unit == "1" { String::new() } else { format!(" {unit},") };
         writeln!(out, "\n# {description},{of} {} to {}", in_full(min), in_full(max))?;

@@ -73,10 +73,10 @@ impl Pictured for Modes {
         let mut panels = Vec::new();
         for (i, (points, peak)) in points.into_iter().zip([found.ground].into_iter().chain(peaks)).enumerate() {
             let (name, unit, colour) = match i {
-                0 => ("ground acceleration".to_owned(), (g, "g"), colour::GREY),
+                0 => ("ground a_g".to_owned(), (g, "g"), colour::GREY),
                 1 => ("rotation θ".to_owned(), (1.0, "rad"), colour::BLUE),
-                2 => (format!("displacement u[{floors}]"), (1e-3, "mm"), colour::BLUE),
-                _ => (format!("acceleration a_t[{floors}]"), (g, "g"), colour::BLUE),
+                2 => (format!("u[{floors}]"), (1e-3, "mm"), colour::BLUE),
+                _ => (format!("a_t[{floors}]"), (g, "g"), colour::BLUE),
             };
             panels.push(Panel::of(&name, unit, colour, points, peak));
         }

@@ -45,7 +45,7 @@ pub fn draw<Q: Shown>(picture: Picture, run: &Run<Q>, found: &Found<Q>) -> anyho
             let largest = 1.1 * most.max(if at == At::Floor { ground[0] } else { 0.0 }) / per_unit;
             let across = 0.0..if largest > 0.0 { largest } else { 1.0 };
             let mut plot = chart(&area, 46.0).build_cartesian_2d(across, 0.0..1.02 * height)?;
-            axes(&mut plot, [&format!("{name} ({unit})"), if i == 4 { "height (m)" } else { " " }], [4, 8])?;
+            axes(&mut plot, [&format!("{name} ({unit})"), if i == 4 { "height (m)" } else { " " }], [3, 8])?;
             let over = |floors: &[[f64; OF_FLOOR.len()]], ground| {
                 points(floors, i, at, ground).into_iter().map(|(value, height)| (value / per_unit, height)).collect()
             };

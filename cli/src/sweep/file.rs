@@ -224,7 +224,7 @@ impl MapFile {
     }
 
     fn map(&self, grid: &StructureGrid) -> anyhow::Result<Map> {
-        ensure!(grid.vary.is_empty(), "nothing can vary: a map is of one structure; name each");
+        ensure!(grid.vary.is_empty(), "vary is not possible with pulses: list each structure under [[structures]]");
         let structure = Structure::new(grid.base()?)?;
         let &PulseGrid { shape, cycles, phase, error, ref frequency, ref amplitude, dimensionless } = &self.pulses;
         let unit = if dimensionless { 1.0 } else { structure.parameters().g };

@@ -36,8 +36,7 @@ pub fn draw(picture: Picture, populations: &[Exceedances], measure: IntensityMea
     let legend = 2.0 * LEGEND_MARGIN + LEGEND_LINE * (all().count() + 3) as f64;
     let runs = || populations.iter().flat_map(|of| &of.bins).map(|bin| bin.runs);
     let (least, most) = (runs().min().unwrap_or(0), runs().max().unwrap_or(0));
-    let about =
-        "dots: part of the runs of about the same intensity; lines: lognormal curves through all runs, one by one";
+    let about = "dots: fraction of the runs of about the same intensity; lines: lognormal curves fitted to all runs";
     picture.draw((WIDTH, TITLE + PLOT + legend as u32), |area| {
         let area = titled(area, "Fragility", about)?;
         let (upper, lower) = area.split_vertically(px(f64::from(PLOT)));
@@ -46,7 +45,7 @@ pub fn draw(picture: Picture, populations: &[Exceedances], measure: IntensityMea
         let end = medians.filter(|median| *median < BEYOND * strongest).fold(strongest, f64::max);
         let mut plot = chart(&upper, 46.0).build_cartesian_2d(0.0..1.02 * end, 0.0..1.0)?;
         let x = format!("{} ({})", measure.description(), measure.unit());
-        axes(&mut plot, [&x, "part of the runs, probability"], [8, 6])?;
+        axes(&mut plot, [&x, "fraction of the runs, probability"], [8, 6])?;
         for (i, (_, fragility)) in all().enumerate() {
             if let Ok(curve) = &fragility.curve {
                 draw_curve(&mut plot, curve, strongest, 1.02 * end, colour_of(i))?;
@@ -150,8 +149,7 @@ fn draw_legend<'a>(
                 "A dot's area is the number of its runs, {least} to {most}; one that overturns exceeds every limit."
             )
         },
-        "Bands and ranges: 95 %, records taken as independent of each other (structures where there is one record)."
-            .into(),
+        "Bands and ranges: 95 %, with records as independent (under one record: structures).".into(),
     ];
     for (i, note) in notes.into_iter().enumerate() {
         area.draw(&Text::new(note, (swatch - px(14.0), height(lines + i)), words(SMALL, colour::GREY)))?;

@@ -62,8 +62,7 @@ pub fn write(out: &mut impl Write, of: &Exceedances, measure: IntensityMeasure) 
             Err(reason) => writeln!(out, "{limit}: no curve: {reason}")?,
             Ok(curve) if curve.certainty.is_none() => writeln!(
                 out,
-                "{limit}: no 95 % band: it takes {FEWEST_GROUPS} records that do not depend on each other, or structures \
-                 where there is one record"
+                "{limit}: no 95 % band: it needs {FEWEST_GROUPS} independent records, or structures if there is one record"
             )?,
             Ok(_) => {}
         }
@@ -77,8 +76,8 @@ pub fn write(out: &mut impl Write, of: &Exceedances, measure: IntensityMeasure) 
     if *still_rocking > 0 {
         writeln!(
             out,
-            "{still_rocking} still rocked {LONGEST_REST}/p_l after the record: counted where a limit was exceeded, and \
-             else not"
+            "{still_rocking} still rocked {LONGEST_REST}/p_l after the record: a limit counts them only if they have \
+             exceeded it"
         )?;
     }
     writeln!(out)

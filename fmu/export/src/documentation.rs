@@ -150,14 +150,14 @@ mod tests {
         for row in [
             cells("m", "kg", "125.8", "1e-6 … 1e12", "top mass"),
             cells("zeta_fc", "–", "0.015", "0 … 0.99", "damping ratio in full contact"),
-            cells("u_cr", "m", "0.000752467", "", "critical displacement: uplift"),
+            cells("u_cr", "m", "0.000752467", "", "critical displacement at uplift"),
             cells("overturned", "", "", "", "whether the structure has overturned (Boolean)"),
             cells(
                 "phase",
                 "",
                 "",
                 "",
-                "what holds of the base: 1 full contact, 2 rocking left, 3 rocking right, 4 overturned",
+                "phase of the motion: 1 full contact, 2 rocking left, 3 rocking right, 4 overturned",
             ),
         ] {
             assert!(page.contains(&row), "{row}\n{page}");

@@ -63,7 +63,7 @@ impl FromStr for ModelName {
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// A name that hosts and file systems do not take.
-    #[error("the name {0:?} must be of letters a to z, digits and _, and not begin with a digit")]
+    #[error("the name {0:?} must consist of the letters a to z and A to Z, digits and _, and not begin with a digit")]
     Name(String),
     /// Two libraries for one platform.
     #[error("two shared libraries are for {}: leave one out", .0.tuple())]
@@ -229,7 +229,7 @@ mod tests {
         }
         for name in ["", "1Pier", "Pier 1", "../Pier", "Pfahl_ä", "Pier.1"] {
             let refusal = name.parse::<ModelName>().unwrap_err().to_string();
-            let rule = "must be of letters a to z, digits and _, and not begin with a digit";
+            let rule = "must consist of the letters a to z and A to Z, digits and _, and not begin with a digit";
             assert_eq!(refusal, format!("the name {name:?} {rule}"));
         }
     }

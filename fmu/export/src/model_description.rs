@@ -102,13 +102,13 @@ mod tests {
       <Real min="0.0" max="0.99" start="0.015"/>"#,
             r#"description="modal participation of rocking" causality="calculatedParameter" variability="fixed" initial="calculated">
       <Real/>"#,
-            r#"description="what holds of the base" causality="local" variability="discrete" initial="calculated">
+            r#"description="phase of the motion" causality="local" variability="discrete" initial="calculated">
       <Enumeration declaredType="Phase"/>"#,
             r#"<Item name="rocking left" value="2"/>"#,
             r#"<String start="pulse &amp; rest.csv"/>"#,
-            r#"description="whether the largest magnitudes theta_max, u_max, ... are watched for" causality="parameter" variability="fixed" initial="exact">
+            r#"description="true computes the largest magnitudes theta_max, u_max, ... and their instants" causality="parameter" variability="fixed" initial="exact">
       <Boolean start="false"/>"#,
-            r#"exact: within steps, too; if the structure overturns, before its fall; NaN unless peaks is true" causality="local" variability="continuous" initial="calculated">
+            r#"also between communication points, without the fall if the structure overturns; NaN unless peaks is true" causality="local" variability="continuous" initial="calculated">
       <Real unit="rad" displayUnit="deg" nominal="0.351"/>"#,
             r#"<BaseUnit kg="1" m="1" s="-2"/>"#,
             r#"<Category name="logEvents" description="uplift, impact, landing and overturning, as they happen"/>"#,

@@ -36,7 +36,7 @@ pub enum Failure {
     #[error("{name} = {value} is not one of {accepted}")]
     BadChoice { name: String, value: i32, accepted: &'static str },
     /// An interface of the standard that this unit does not have.
-    #[error("this FMU is for model exchange and co-simulation: see modelDescription.xml")]
+    #[error("this FMU has no scheduled execution, only model exchange and co-simulation")]
     NotThisInterface,
     /// Event mode, which the host did not ask for at instantiation.
     #[error("there is no event mode: the instance was made with eventModeUsed = false")]
@@ -102,7 +102,7 @@ pub enum Failure {
     #[error("the derivative of {name} does not exist at t = {time} s")]
     NoRate { name: String, time: f64 },
     /// A step from the wrong time.
-    #[error("currentCommunicationPoint = {} is not where the FMU is, t = {time} s", with_unit(*given, "s"))]
+    #[error("currentCommunicationPoint = {} differs from the time of the FMU, t = {time} s", with_unit(*given, "s"))]
     WrongPoint { given: f64, time: f64 },
     /// A step of no length, of no number, or to no finite time.
     #[error(
@@ -137,9 +137,7 @@ pub enum Failure {
     #[error("{0} has no answer here")]
     NoAnswer(&'static str),
     /// Not one of the instance's FMU states.
-    #[error(
-        "FMUstate {0:#x} is not one that this instance has handed out and not freed; pass a pointer to NULL for a new one"
-    )]
+    #[error("FMUstate {0:#x} is not one that this instance has handed out and not freed")]
     UnknownSnapshot(usize),
     /// A buffer of the wrong size.
     #[error("size = {given} does not fit: the serialized FMU state takes {needed} bytes")]

@@ -53,10 +53,10 @@ impl Category {
     /// The topic in one line.
     pub const fn description(self) -> &'static str {
         match self {
-            Category::Events => "what happens at events",
-            Category::Warning => "what should be known of the results; always on",
-            Category::Discard => "steps that end early and why; always on",
-            Category::Error => "refused calls and why; always on",
+            Category::Events => "events, as they happen",
+            Category::Warning => "warnings about the results; always on",
+            Category::Discard => "steps that end early and the reasons; always on",
+            Category::Error => "rejected calls and the reasons; always on",
         }
     }
 }

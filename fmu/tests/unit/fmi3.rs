@@ -203,7 +203,7 @@ fn a_refusal_names_the_function_and_what_to_call() {
         "fmi3GetFloat64: nValues = 2 is not 1",
         "fmi3GetUInt8: not allowed in the state \"step complete\"; allowed in: none",
         "fmi3EnterEventMode: there is no event mode: the instance was made with eventModeUsed = false",
-        "fmi3DoStep: currentCommunicationPoint = 1 s is not where the FMU is, t = 0 s: step from there, or go back with \
+        "fmi3DoStep: currentCommunicationPoint = 1 s differs from the time of the FMU, t = 0 s: step from there, or go back with \
          fmi3SetFMUState",
         "fmi3DoStep: the step would end at t = 3 s, past stopTime = 2 s given to fmi3EnterInitializationMode: shorten it",
         &format!("fmi3SerializeFMUState: size = 0 does not fit: the serialized FMU state {bytes}"),

@@ -93,8 +93,7 @@ fn a_state_that_is_not_the_instances_own_is_refused_everywhere() {
     let local = 0_u64;
     for state in [freed, other.keep(), (&raw const local).cast_mut().cast::<c_void>(), without_provenance_mut(1)] {
         let message = format!(
-            "fmi2SetFMUstate: FMUstate {:#x} is not one that this instance has handed out and not freed; pass a pointer \
-             to NULL for a new one",
+            "fmi2SetFMUstate: FMUstate {:#x} is not one that this instance has handed out and not freed",
             state.addr()
         );
         host.assert_refused(|| host.go_back(state), ERROR, &message);

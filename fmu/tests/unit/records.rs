@@ -230,7 +230,7 @@ fn what_overturns_has_the_peaks_of_a_run_before_its_fall() {
             .last()
             .unwrap()
             .text
-            .split("falling since t = ")
+            .split("its fall began at t = ")
             .nth(1)
             .unwrap()
             .split(' ')
@@ -270,7 +270,7 @@ fn a_state_goes_on_in_the_midst_of_its_record() {
 
     let other = host(&at2(599));
     let state = other.deserialize(&bytes).unwrap();
-    let message = "fmi2SetFMUstate: record = \"quake.AT2\" has other samples now than when the FMU state was kept";
+    let message = "fmi2SetFMUstate: the samples of record = \"quake.AT2\" changed after the FMU state was saved";
     other.assert_refused(|| other.go_back(state), ERROR, message);
     let without = Host::new();
     let state = without.deserialize(&bytes).unwrap();

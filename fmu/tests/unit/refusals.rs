@@ -73,11 +73,11 @@ const STEPPING: &[Refused] = &[
     ("at the end of the step, a_g = 20001 m/s2 is out of range: it must lie between -10000 and 10000 m/s2 (", |h| {
         h.step(10.5, 0.2)
     }),
-    ("currentCommunicationPoint = 10 s is not where the FMU is, t = 10.5 s: step from there, or go back with ", |h| {
+    ("currentCommunicationPoint = 10 s differs from the time of the FMU, t = 10.5 s: step from there, or ", |h| {
         h.step(10.0, 0.5)
     }),
-    ("currentCommunicationPoint = 10.5001 s is not where the FMU is", |h| h.step(10.5001, 0.5)),
-    ("currentCommunicationPoint = NaN s is not where the FMU is", |h| h.step(f64::NAN, 0.5)),
+    ("currentCommunicationPoint = 10.5001 s differs from the time of the FMU", |h| h.step(10.5001, 0.5)),
+    ("currentCommunicationPoint = NaN s differs from the time of the FMU", |h| h.step(f64::NAN, 0.5)),
     (
         "communicationStepSize = 0 s is out of range: it must be positive, finite, large enough to move t = 10.5 s, and end",
         |h| h.step(10.5, 0.0),

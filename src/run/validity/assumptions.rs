@@ -97,38 +97,38 @@ macro_rules! assumption {
 /// All assumptions, in the order of [`Findings::worst`](super::Findings::worst).
 pub const ASSUMPTIONS: [Assumption; 7] = [
     assumption!(
-        "tension_max" "largest (|R_m|/B - R_v)/W in full contact, W = (m + m0) g: above 0 tension holds the base down; -inf before full contact",
-        "tension holds the base down in full contact; in truth it lifts off earlier than at u_cr",
+        "tension_max" "largest (|R_m|/B - R_v)/W in full contact, W = (m + m0) g; above 0 the model needs tension at the base; -inf before full contact",
+        "the model holds the base down by tension; a real base lifts off before |u| = u_cr",
         Above |limits| limits.tension, f64::NEG_INFINITY, false
     ),
     assumption!(
-        "R_v_min" "least R_v/W: below 0 a pull holds the edge of the base down",
-        "a pull holds down the edge that the structure rocks about; in truth it jumps",
+        "R_v_min" "smallest R_v/W; below 0 the model needs tension at the edge in contact",
+        "the model holds the edge in contact down by tension; a real edge jumps",
         Below |limits| limits.edge_load, f64::INFINITY, false
     ),
     assumption!(
-        "mu_required" "largest |R_h|/R_v, the friction that the ground must have; infinite once R_v is 0 or less",
-        "it takes that much friction to keep the base where it is; in truth it may slide",
+        "mu_required" "largest |R_h|/R_v, the coefficient of friction that the base needs; infinite once R_v is 0 or less",
+        "the base needs that coefficient of friction; a real base may slide",
         Above |limits| limits.friction, 0.0, false
     ),
     assumption!(
-        "mu_impact" "largest |I_h|/I_v of an impact, friction likewise; infinite where I_v is not above 0",
-        "it takes that much friction to keep the base where it is at an impact; in truth it may slide",
+        "mu_impact" "largest |I_h|/I_v of an impact, the coefficient of friction that it needs; infinite if I_v is 0 or less",
+        "the base needs that coefficient of friction at an impact; a real base may slide",
         Above |limits| limits.friction, 0.0, true
     ),
     assumption!(
-        "tension_impact" "largest (|I_m|/B - I_v)/I_v of an impact: above 0 one of the edges of the base pulls",
-        "one of the edges pulls at an impact; in truth r is larger, or the other edge lifts off",
+        "tension_impact" "largest (|I_m|/B - I_v)/I_v of an impact; above 0 the model needs tension at an edge",
+        "an impact needs tension at an edge; a real impact has a larger r, or the other edge lifts off",
         Above |limits| limits.tension, -1.0, true
     ),
     assumption!(
-        "energy_gain_max" "largest gain of an impact over the kinetic energy before it; 0 while none gains",
-        "an impact raises the energy; in truth it cannot",
+        "energy_gain_max" "largest energy gain at an impact, as a fraction of the kinetic energy before it; 0 without a gain",
+        "an impact raises the energy, which no real impact does",
         Above |limits| limits.energy_gain, 0.0, true
     ),
     assumption!(
-        "weight_min" "least (g + a_v)/g: at 0 or below nothing holds the base down; 1 without vertical motion",
-        "nothing holds the base down; in truth it flies",
+        "weight_min" "smallest (g + a_v)/g; at 0 or below no weight holds the base down; 1 without vertical motion",
+        "no weight holds the base down; a real base flies",
         AtOrBelow |_| 0.0, f64::INFINITY, false
     ),
 ];

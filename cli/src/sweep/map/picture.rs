@@ -8,7 +8,7 @@ use plotters::prelude::*;
 use rocking_sweep::map::{Axis, Fate, Map, Place, Point, finest_step, nearest};
 
 /// Sizes in pixels: of a panel with its axes, of a panel's name, of a line of the legend.
-const PANEL: (u32, u32) = (560, 440);
+const PANEL: (u32, u32) = (440, 400);
 const NAME: f64 = 20.0;
 const LEGEND_LINE: f64 = 19.0;
 
@@ -16,7 +16,7 @@ const LEGEND_LINE: f64 = 19.0;
 const LEFT: f64 = 78.0;
 
 /// Characters of a name that fit above a panel.
-const LONGEST_NAME: usize = 70;
+const LONGEST_NAME: usize = 50;
 
 /// Length by which a cell reaches below the cells that are drawn after it, pixels. The pixel at the edge is then covered
 /// whole, and nothing shines through between cells.
@@ -33,7 +33,7 @@ const CLASSES: [Swatch; 10] = [
     (RGBColor(70, 140, 196), "rocks and stands, more"),
     (colour::VERMILLION, "overturns without impact"),
     (colour::ORANGE, "overturns after one impact"),
-    (colour::PURPLE, "overturns after more"),
+    (colour::PURPLE, "overturns after more impacts"),
     (colour::GREEN, "still rocking: not decided"),
     (colour::INK, "failed: not decided"),
 ];
@@ -43,7 +43,7 @@ const CONDITIONS: [Swatch; 6] = [
     (RGBColor(214, 234, 248), "10 to 1e3 times"),
     (RGBColor(120, 178, 222), "1e3 to 1e6 times"),
     (colour::ORANGE, "1e6 to 1e10 times"),
-    (colour::VERMILLION, "more: 1e-12 moves the answer by more than 1 %"),
+    (colour::VERMILLION, "more than 1e10 times"),
     (colour::INK, "1e-12 changes the class"),
 ];
 
