@@ -40,7 +40,7 @@ def main() -> None:
     full = printed("simulate", "--preset", "mcmanus", "--f-fc", "30", "--record", EL_CENTRO)
 
     print(f"- **Speed.** To six digits of θ the cheapest other method takes {min(slower):.1f} to {max(slower):.1f} times as long as this engine.")
-    print("- **Accuracy.** Locating the transitions (uplift, impact, landing) matters most. The Runge-Kutta method RK4 then reaches six digits with steps of")
+    print("- **Accuracy.** Locating the transitions (uplift, impact, landing) matters most. With transitions located, the Runge-Kutta method RK4 reaches six digits with steps of")
     print(f"  {min(steps):.2f} to {max(steps):.2f} ms. With transitions at the ends of steps its smallest errors are {min(at_ends):.0e} to {max(at_ends):.0e} of the peak.")
     print(f"- **Stability.** A rocking structure vibrates {min(faster):.1f} to {max(faster):.1f} times as fast as in full contact (both specimens). A time step that is stable")
     print("  in full contact can become unstable at uplift.")

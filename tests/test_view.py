@@ -14,6 +14,14 @@ pytestmark = pytest.mark.heavy
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 END = 4.0  # s
+
+#: How many numbers each axis of the histories has, from above.
+SCALES = """() => {
+    const at = (of, name) => Number(of.getAttribute(name));
+    const texts = [...document.querySelectorAll("#histories text")].filter(of => /^−?[\\d.]+$/.test(of.textContent));
+    return [...document.querySelectorAll("#histories .axis")].filter(of => at(of, "x1") === at(of, "x2"))
+        .map(axis => texts.filter(of => Math.abs(at(of, "x") - at(axis, "x1")) < 8 && at(axis, "y1") - 5 < at(of, "y") && at(of, "y") < at(axis, "y2") + 9).length);
+}"""
 HOSTILE = "</script><script>throw 1</script><!-- <b> & \" \u2028 </title>"
 
 
@@ -115,7 +123,7 @@ def test_what_is_drawn_is_the_response(opened, view, exaggeration):
         assert page.locator("#pivot").is_visible() == (now["theta[rad]"] != 0)
         assert page.locator("tr.phase td").text_content() == now["phase"]
         for name, column, unit in [("a_g", "a_g[m/s2]", 9.81), ("theta", "theta[rad]", 1), ("u", "u[m]", 1e-3),
-                                   ("uplift", "uplift[m]", 1e-3), ("a_t", "a_t[m/s2]", 9.81), ("V_t", "V_t[N]", 1e3),
+                                   ("delta_t", "delta_t[m]", 1e-3), ("uplift", "uplift[m]", 1e-3), ("a_t", "a_t[m/s2]", 9.81), ("V_t", "V_t[N]", 1e3),
                                    ("M_t", "M_t[N.m]", 1e3)]:
             assert abs(reading(page, name) - now[column] / unit) <= 2e-3 * largest[column] / unit, (name, row)
 
@@ -275,4 +283,14 @@ def test_a_frame_moves_as_its_response_says(opened, exporter, pacoima_record, tm
             assert abs(u - now[f"u[{floor}][m]"]) <= 1.1e-4 * largest[f"u[{floor}][m]"]
             a_t = f"a_t[{floor}][m/s2]"
             assert abs(reading(page, "a_t") - now[a_t] / 9.81) <= 2e-3 * largest[a_t] / 9.81
+            delta_t = f"delta_t[{floor}][m]"
+            assert abs(reading(page, "delta_t") - now[delta_t] / 1e-3) <= 2e-3 * largest[delta_t] / 1e-3
     assert page.locator("#heights").is_visible() and page.locator("#peaks tr").count() == 3
+    for width, height in ((1366, 768), (390, 844)):
+        page.set_viewport_size({"width": width, "height": height})
+        page.wait_for_timeout(200)
+        scales = page.evaluate(SCALES)
+        assert len(scales) == 5 and min(scales) >= 2, (width, scales)
+        titles = page.locator("#profile text").evaluate_all("all => all.map(text => text.getBoundingClientRect().toJSON())")
+        meet = lambda a, b: a["left"] < b["right"] and b["left"] < a["right"] and a["top"] < b["bottom"] - 3 and b["top"] < a["bottom"] - 3
+        assert not any(meet(a, b) for i, a in enumerate(titles) for b in titles[:i]), width

@@ -72,7 +72,7 @@ enum Command {
     Simulate(simulate::SimulateArgs),
     /// Write a page that shows the structure in motion, with its histories below
     ///
-    /// Writes one HTML file for any browser, without a network. Lengths are true to scale. The page shows the scale of the
+    /// Writes one HTML file for any browser. The page needs no network. Lengths are true to scale. The page shows the scale of the
     /// motion, and you can change it there.
     #[command(after_help = "Examples:
   rocking-fmu view --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45

@@ -63,6 +63,7 @@ def main() -> None:
             pgas=f"{len(ensemble.PGAS)} peak accelerations from {ensemble.PGAS[0]:g} to {ensemble.PGAS[-1]:g} g",
             run_count=len(runs) // len(ensemble.STRUCTURES),
             draws=ensemble.DRAWS,
+            parted=f"{100 * ensemble.PARTED:.0f} %",
             **ensemble.summary(runs, found),
         )
     write_page(arguments.output, "\n\n".join(map(filled, page.split("\n\n"))), "make report")

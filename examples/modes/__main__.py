@@ -225,7 +225,7 @@ def draw_parts(parts: pd.DataFrame, path: Path) -> None:
     ends = np.array([1e-2, 1e2])
     axis.plot(ends, ends, color="0.7", zorder=0)
     axis.axhline(1, color="0.7", zorder=0)
-    axis.set(xscale="log", yscale="log", xlabel="larger of reversal and landing, over the fixed base", ylabel="part of the mode, rocking over fixed base")
+    axis.set(xscale="log", yscale="log", xlabel="larger of reversal and landing, over the fixed base", ylabel="contribution of the mode, rocking over fixed base")
     axis.legend(fontsize="small")
     figure.savefig(path, metadata={"Date": None})
 

@@ -208,7 +208,7 @@ def main() -> None:
     figures, structures, (alone, both) = arguments.output.with_suffix(""), population(), records()
     page = (Path(__file__).parent / "page.md").read_text(encoding="utf-8").format(
         structures=STRUCTURES, scales=", ".join(f"{scale:g}" for scale in SCALES), components=len(both),
-        events=len({path.parent for path in RECORD.parents[1].glob("*/*-hor*.AT2")}), 
+        events=len({path.parent for path in RECORD.parents[1].glob("*/*-hor*.AT2")}),
         stiffest=f"{STIFFNESSES[-1]:g}", errors=" and ".join(map(closed_forms, ANGLES)),
         **vertical(structures, alone, both, figures / "vertical.png"),
         **restraints(structures, both, figures / "restraints.png"))

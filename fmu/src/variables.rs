@@ -399,7 +399,7 @@ fn event_indicators() -> [Row; INDICATORS] {
         (variable.indicator(), source)
     };
     let of_phase = "event indicator, positive while the phase lasts: in full contact the margin to uplift, while rocking \
-                    |theta|/alpha_cg";
+                    s theta/alpha_cg, s = 1 about the right edge, -1 about the left";
     let of_end = "event indicator, positive until the structure overturns or a dissipator starts or stops yielding";
     [
         indicator(0, "phase_indicator", of_phase, PHASE),
@@ -480,7 +480,7 @@ fn calculated_parameters() -> [Row; 6] {
         let derived = derived.unwrap_or_else(|| panic!("no derived quantity is called {name}"));
         real(causality, [name, derived.unit, derived.description], Source::Derived(derived), of)
     };
-    let duration = "time from the first to the last sample of the record; 0 without a record";
+    let duration = "time from the first to the last sample of the record, of either component; 0 without a record";
     let of_record = ["record", "record_v", "record_time_scale"];
     [
         calculated("alpha_cg", &["m", "m0", "H", "B"]),

@@ -185,8 +185,9 @@ pub fn doubts(record: &Record, g: f64) -> Vec<String> {
         (!is_usual).then(|| format!("a step of {step} s: is the time in another unit?")),
         (longest > LONGEST_GAP * step).then(|| {
             format!(
-                "no sample for {} s after t = {gap} s, on average one in {step} s: is something missing?",
-                nine_digits(longest)
+                "no sample for {} s after t = {} s, on average one in {step} s: is something missing?",
+                nine_digits(longest),
+                nine_digits(gap)
             )
         }),
         is_drift.then(|| {

@@ -1,4 +1,4 @@
-//! The files that a command writes. A command cannot overwrite its inputs nor another's, or write one file twice.
+//! The files that a command writes. A command cannot overwrite its inputs, replace a file of parameters, or write one file twice.
 
 use crate::input;
 use anyhow::{Context, bail, ensure};
@@ -22,8 +22,8 @@ pub struct OutputFile {
     target: PathBuf,
 }
 
-/// Endings of files that commands read and do not write.
-const READ: [&str; 2] = ["toml", "at2"];
+/// Ending of files that commands read and do not write.
+const READ: &str = "toml";
 
 impl OutputFiles {
     /// The files of a command that reads `inputs`.
@@ -45,9 +45,9 @@ impl OutputFiles {
             bail!("{shown}: this would overwrite the input {}; name another file", input.display());
         }
         ensure!(!self.outputs.contains(&target), "{shown}: something else is written there as well; name another file");
-        let ending = target.extension().filter(|_| target.exists()).unwrap_or_default();
-        if let Some(kind) = READ.into_iter().find(|kind| ending.eq_ignore_ascii_case(kind)) {
-            bail!("{shown}: this would replace a file .{kind}, which no command writes; name another file");
+        let is_read = target.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(READ));
+        if is_read && target.exists() {
+            bail!("{shown}: this would replace a file of parameters; name another file");
         }
         self.outputs.push(target.clone());
         Ok(OutputFile { path: path.into(), target })
@@ -132,9 +132,6 @@ mod tests {
         assert!(OutputFiles::default().create(&structure).is_ok());
         fs::write(&structure, "m = 1").unwrap();
         let refused = OutputFiles::default().create(&structure).err().unwrap().to_string();
-        assert!(
-            refused
-                .ends_with("other.TOML: this would replace a file .toml, which no command writes; name another file")
-        );
+        assert!(refused.ends_with("other.TOML: this would replace a file of parameters; name another file"));
     }
 }

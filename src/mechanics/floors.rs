@@ -86,16 +86,16 @@ impl FrameOutput {
             FrameOutput::theta => ("theta", "rad", "rotation of the base", None),
             FrameOutput::theta_dot => ("theta_dot", "rad/s", "angular velocity of the base", None),
             FrameOutput::uplift => ("uplift", "m", "uplift of the free edge of the base", None),
-            FrameOutput::V_t => ("V_t", "N", "base shear", None),
-            FrameOutput::M_t => ("M_t", "N.m", "overturning moment", None),
+            FrameOutput::V_t => ("V_t", "N", "base shear if all F_t are 0: the sum of m a_t", None),
+            FrameOutput::M_t => ("M_t", "N.m", "overturning moment if all F_t are 0: the sum of m h a_t", None),
             FrameOutput::u(i) => ("u", "m", "elastic displacement of floor #", Some(i)),
             FrameOutput::u_dot(i) => ("u_dot", "m/s", "elastic velocity of floor #", Some(i)),
             FrameOutput::drift(i) => ("drift", "m", "drift of storey #", Some(i)),
             FrameOutput::delta_t(i) => ("delta_t", "m", "displacement of floor # relative to the ground", Some(i)),
             FrameOutput::v_t(i) => ("v_t", "m/s", "velocity of floor # relative to the ground", Some(i)),
             FrameOutput::a_t(i) => ("a_t", "m/s2", "lateral acceleration of floor #", Some(i)),
-            FrameOutput::V(i) => ("V", "N", "shear of storey #", Some(i)),
-            FrameOutput::M(i) => ("M", "N.m", "overturning moment at the foot of storey #", Some(i)),
+            FrameOutput::V(i) => ("V", "N", "shear of storey # if all F_t are 0: the sum of m a_t above it", Some(i)),
+            FrameOutput::M(i) => ("M", "N.m", "overturning moment at the foot of storey # if all F_t are 0", Some(i)),
         }
     }
 

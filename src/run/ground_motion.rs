@@ -364,6 +364,7 @@ mod tests {
         assert_eq!(segments(0.0, 0.25, 0.5), cut);
         assert_eq!(segments(0.0, 7.0, 1.0), [(0.0, 1.0, 9.0, rest)]);
         assert_eq!(segments(3.0, 1.0, 2.25), [(0.0, 2.0, 1.0, rest), (2.0, 0.25, 1.25, first)]);
+        assert_eq!(segments(3.0, 0.0, 1.0), [(0.0, 1.0, -1.0, rest)]); // its first sample comes later
         assert_eq!(segments(-1.0, 0.0, 0.25), [(0.0, 0.25, 2.25, ramp(0.0, -80.0))]);
         assert_eq!((segments(0.0, 0.0, f64::NAN), segments(0.0, 0.0, 0.0)), (vec![], vec![]));
     }

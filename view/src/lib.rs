@@ -149,7 +149,10 @@ impl Shown for Modes {
     fn fixed(run: &Run<Modes>, end: f64) -> Vec<Peak> {
         let is_other = run.detail != Detail::FixedBase;
         let found = is_other.then(|| run.on_fixed_base(end).found(&mut ()).ok()).flatten();
-        found.map_or(Vec::new(), |found| Modes::peaks(&run.structure, &found.peaks))
+        let peaks = |found: Found<Modes>| {
+            [named("a_g", found.ground)].into_iter().chain(Modes::peaks(&run.structure, &found.peaks)).collect()
+        };
+        found.map_or(Vec::new(), peaks)
     }
 }
 

@@ -57,9 +57,11 @@ function motionView() {
     const overturned = ending === "overturned" && t >= end;
     const phase = overturned ? "overturned" : phases[countUpTo(phases, i, ([first]) => first) - 1][1];
     const { m, H, B } = parameters;
-    const uplift = 2 * B * Math.sin(Math.abs(state.theta));
-    if (floors()) return { ...state, phase, uplift, u: state[own("u")], a_t: state[own("a_t")] };
-    return { ...state, phase, uplift, V_t: m * state.a_t, M_t: m * H * state.a_t };
+    const { theta } = state;
+    const [u, a_t, h] = floors() ? [state[own("u")], state[own("a_t")], floors()[floor - 1]?.[1] ?? H] : [state.u, state.a_t, H];
+    const uplift = 2 * B * Math.sin(Math.abs(theta));
+    const delta_t = Math.sign(theta) * B * (1 - Math.cos(theta)) + u * Math.cos(theta) + h * Math.sin(theta);
+    return { V_t: m * a_t, M_t: m * H * a_t, ...state, phase, uplift, u, a_t, delta_t };
   }
 
   /** The peak of `name` with its sign, which the largest of the points about its `instant` has. */
@@ -102,7 +104,11 @@ function motionView() {
   }
 
   function ticks(from, to, count) {
-    const step = nice((to - from) / count);
+    let step = nice((to - from) / count);
+    if (from <= 0 && step > to) {
+      const power = 10 ** Math.floor(Math.log10(to));
+      step = Math.floor(to / power) * power; // 0 alone is no scale
+    }
     const found = [];
     for (let k = Math.ceil(from / step - 1e-9); k * step <= to + 1e-9 * step; k++) found.push(k * step);
     const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
@@ -115,6 +121,7 @@ function motionView() {
     theta: { symbol: "θ", meaning: "rotation", unit: "rad", per: 1 },
     uplift: { symbol: "δ_u", meaning: "uplift", unit: "mm", per: 1e-3 },
     u: { symbol: "u", meaning: "elastic displacement", unit: "mm", per: 1e-3 },
+    delta_t: { symbol: "δ_t", meaning: "displacement of the top", unit: "mm", per: 1e-3 },
     a_t: { symbol: "a_t", meaning: "acceleration of the top", unit: "g" },
     V_t: { symbol: "V_t", meaning: "base shear", unit: "kN", per: 1e3 },
     M_t: { symbol: "M_t", meaning: "overturning moment", unit: "kN m", per: 1e3 },
@@ -339,11 +346,12 @@ function motionView() {
 
   // ---- Peaks over the height
 
+  /** Values of floors or storeys `v` and the peak of the ground as points over the heights `h` from the base on. */
   const overHeight = [
-    { name: "a_t", title: "acceleration (g)", line: (x, i, h) => `L${x} ${h[i + 1]}` },
-    { name: "drift", title: "drift (mm)", per: 1e-3, line: (x, i, h) => `L${x} ${h[i]}V${h[i + 1]}` },
-    { name: "V", title: "storey shear (kN)", per: 1e3, line: (x, i, h) => `L${x} ${h[i]}V${h[i + 1]}` },
-    { name: "M", title: "moment (kN m)", per: 1e3, line: (x, i, h) => `L${x} ${h[i]}` },
+    { name: "a_t", title: "acceleration (g)", points: (v, h, a_g) => [a_g, ...v].map((x, i) => [x, h[i]]) },
+    { name: "drift", title: "drift (mm)", per: 1e-3, points: (v, h) => v.flatMap((x, i) => [[x, h[i]], [x, h[i + 1]]]) },
+    { name: "V", title: "storey shear (kN)", per: 1e3, points: (v, h) => v.flatMap((x, i) => [[x, h[i]], [x, h[i + 1]]]) },
+    { name: "M", title: "moment (kN m)", per: 1e3, points: (v, h) => [...v, 0].map((x, i) => [x, h[i]]) },
   ];
 
   /** The choice of a floor, and the table of peaks, from the top down. */
@@ -375,30 +383,31 @@ function motionView() {
     const { width, height } = sizes.profile;
     set(svg, { viewBox: `0 0 ${width} ${height}` });
     svg.replaceChildren();
-    const [left, gap, top, bottom] = [44, 14, 24, height - 18];
-    const wide = (width - left - 3 * gap) / overHeight.length;
-    const y = (height) => bottom - (height / motion.parameters.H) * (bottom - top);
-    const heights = [0, ...floors().map(([, height]) => height)].map(y);
-    for (const { value, text } of ticks(0, motion.parameters.H, 4)) {
-      element(svg, "line", { class: "grid", x1: left, x2: width - gap, y1: y(value), y2: y(value) });
-      element(svg, "text", { x: left - 6, y: y(value) + 4, "text-anchor": "end" }, text);
-    }
-    element(svg, "text", { class: "muted", x: 2, y: 12 }, "h (m)");
-    overHeight.forEach(({ name, title, per = motion.parameters.g, line }, k) => {
-      const from = left + k * (wide + gap);
-      const of = (peaks) => floors().map((_, i) => (peaks[`${name}[${i + 1}]`]?.magnitude ?? 0) / per);
-      const most = Math.max(...of(motion.peaks), ...of(motion.fixed)) || 1;
+    const columns = width <= 540 ? 2 : 4; // as in the style
+    const [left, gap, high] = [44, 24, (height * columns) / 4];
+    const wide = (width - left - columns * gap) / columns;
+    overHeight.forEach(({ name, title, per = motion.parameters.g, points }, k) => {
+      const from = left + (k % columns) * (wide + gap);
+      const [top, bottom] = [24, high - 20].map((y) => y + Math.floor(k / columns) * high);
+      const y = (height) => bottom - (height / motion.parameters.H) * (bottom - top);
+      for (const { value, text } of ticks(0, motion.parameters.H, 4)) {
+        element(svg, "line", { class: "grid", x1: from, x2: from + wide, y1: y(value), y2: y(value) });
+        if (k % columns === 0) element(svg, "text", { x: left - 6, y: y(value) + 4, "text-anchor": "end" }, text);
+      }
+      if (k % columns === 0) element(svg, "text", { class: "muted", x: 2, y: top - 12 }, "h (m)");
+      const heights = [0, ...floors().map(([, height]) => height)].map(y);
+      const of = (peaks) => points(floors().map((_, i) => (peaks[`${name}[${i + 1}]`]?.magnitude ?? 0) / per), heights, peaks.a_g?.magnitude / per);
+      const curves = [[motion.fixed, "--orange", "6 4"], [motion.peaks, "--blue", ""]].filter(([peaks]) => "V_t" in peaks);
+      const most = Math.max(...curves.flatMap(([peaks]) => of(peaks).map(([value]) => value))) || 1;
       const x = (value) => from + (value / (1.05 * most)) * wide;
       for (const { value, text } of ticks(0, 1.05 * most, Math.max(2, wide / 60))) {
         element(svg, "line", { class: "grid", x1: x(value), x2: x(value), y1: top, y2: bottom });
-        element(svg, "text", { x: x(value), y: bottom + 14, "text-anchor": "middle" }, text);
+        element(svg, "text", { x: x(value), y: bottom + 16, "text-anchor": "middle" }, text);
       }
       element(svg, "text", { x: from, y: top - 12 }, title);
-      const curves = [[motion.fixed, "--orange", "6 4"], [motion.peaks, "--blue", ""]];
       for (const [peaks, colour, dashes] of curves) {
-        if (!("V_t" in peaks)) continue;
-        const lines = of(peaks).map((value, i) => line(x(value), i, heights));
-        element(svg, "path", { class: "curve", style: `stroke:var(${colour});stroke-dasharray:${dashes}`, d: `M${lines.join("").slice(1)}` });
+        const d = `M${of(peaks).map(([value, y]) => `${x(value)} ${y}`).join("L")}`;
+        element(svg, "path", { class: "curve", style: `stroke:var(${colour});stroke-dasharray:${dashes}`, d });
       }
     });
     const titles = overHeight.map(({ title }) => title).join(", ");
@@ -768,7 +777,7 @@ function motionView() {
     at("about").textContent =
       `${masses} ${mass(m0)}, H = ${significant(H)} m, 2B = ${significant(2 * B)} m, ` +
       `${significant(f_fc)} Hz in full contact; ${count} transition${count === 1 ? "" : "s"}` +
-      { "at rest": ", at rest in the end", overturned: ", overturned", "still rocking": ", still rocking in the end", "at time": "" }[ending];
+      { "at rest": ", base down for good", overturned: ", overturned", "still rocking": ", still rocking in the end", "at time": "" }[ending];
   }
 
   play(false);

@@ -41,12 +41,13 @@
   let isSeen; // whether the scene of this link has been shown
   const mostInLink = 30e3; // bytes of a record, compressed
 
-  /** Reads the scene, and its record, from the link. If a key is there twice, its texts are joined, and the engine rejects the
-   *  joined text. */
+  /** Reads the scene, and its record, from the link; without a link it is the first. If a key is there twice, its texts are joined,
+   *  and the engine rejects the joined text. */
   async function follow() {
     const link = new URLSearchParams(location.hash.slice(1));
     const texts = [...link.keys()].map((key) => [key, link.getAll(key).join(", ")]);
     ({ tab = "play", step = "0.001", ...fields } = Object.fromEntries(texts));
+    if (location.hash.length < 2) fields = first();
     [isLinked, isSeen] = [true, false];
     if (ground() !== "record" || !fields.record) return;
     const { record, packed } = fields;
@@ -69,10 +70,18 @@
 
   const text = () => JSON.stringify(fields);
   const ground = () => fields.ground ?? "el_centro";
-  /** The structure of storeys that is there first. */
-  const usualFrame = { storeys: "4e4,3.5,6e7 4e4,7,5e7 3e4,10.5,4e7", m0: "2e4", J0: "3e4", B: "1.5", r: "0.93" };
-  const usualBase = { m: 1.1e5, H: 10.5, m0: 2e4, J0: 3e4, B: 1.5, r: 0.93, g: 9.81, c_ratio: 1 };
+  /** Structures to start from: their names and their fields. */
+  const structures = {
+    pier: ["bridge pier of 22 m", { preset: "none", m: "1.2e6", m0: "4e5", H: "22", B: "3.5", f_fc: "0.8", zeta_fc: "0.03", r: "0.95" }],
+    mcmanus: ["McManus's bridge pier", { preset: "mcmanus" }],
+    evison: ["Evison's shear wall", { preset: "evison" }],
+    storeys: ["storeys on a base", { storeys: "4e4,3.5,6e7 4e4,7,5e7 3e4,10.5,4e7", m0: "2e4", J0: "3e4", B: "1.5", r: "0.93" }],
+  };
+  const first = () => ({ ...structures.pier[1] });
   const isFrame = () => "storeys" in fields;
+  /** The one of `structures` that the scene started from. */
+  const origin = () => (isFrame() ? "storeys" : fields.preset === "none" ? "pier" : preset().name);
+  const differs = (name) => fields[name] !== structures[origin()][1][name];
   const storeys = () => (fields.storeys ?? "").split(" ").filter(Boolean).map((row) => row.split(","));
   const mostStoreys = 24;
   const preset = () => tables.presets.find(({ name }) => name === (fields.preset ?? "mcmanus")) ?? tables.presets[0];
@@ -110,17 +119,25 @@
     return { value: (part) => from + (to - from) * part, part: (value) => (value - from) / (to - from) };
   }
 
-  /** The range of a parameter's slider: about the value of the specimen, or about the unit made of its m, H and g. */
+  /** The usual range of a parameter's slider: about the value of the structure at the start, or about the unit made of m, H and g. */
   function reach({ name, unit, min, max }) {
-    const of = isFrame() ? usualBase : preset().parameters;
-    const { m, H, g } = of;
-    const usual = of[name] ?? 0;
+    const usual = Number(structures[origin()][1][name] ?? preset().parameters[name] ?? 0);
+    const { m, H, g } = motion.parameters;
     const own = { kg: m, m: H, s: Math.sqrt(H / g), N: m * g };
     const inUnits = (units) =>
       [...units.matchAll(/([A-Za-z]+)(\d*)/g)].reduce((all, [, one, power]) => all * (own[one] ?? 1) ** (power || 1), 1);
     const [above, below = ""] = unit.split("/");
     if (min > 0 && usual > 0) return usual * 2 > max ? [min, max] : [Math.max(min, usual / 8), Math.min(max, usual * 8)];
     return [min, Math.min(max, Math.max(4 * usual, inUnits(above) / inUnits(below)))];
+  }
+
+  /** The usual range `from`, `to` of a slider, or one about a `value` that is outside it or at an end that is no limit. */
+  function around([from, to], value, min, max) {
+    const isAtEnd = (value === from && from > min) || (value === to && to < max);
+    if (!(value < from || value > to || isAtEnd)) return [from, to];
+    const [low, high, far] = [min ?? -Infinity, max ?? Infinity, 2 * Math.abs(value)];
+    if (value > 0 && from >= 0) return [Math.max(low, value / 8), Math.min(high, value * 8)];
+    return [Math.max(low, Math.min(from, -far)), Math.min(high, Math.max(to, far))];
   }
 
   /** A unit as engineers write it: kg m². */
@@ -130,28 +147,45 @@
   let motion;
   let derived; // derived quantities of the structure, by name
   const rows = {};
-  function row(parent, { name, unit, description, slider }, given) {
+  let emptied; // name of the field that was left without a number
+  function row(parent, { name, unit, description, slider, min, max }, given) {
     const made = document.createElement("div");
     made.className = "row";
     made.dataset.name = name;
     made.innerHTML =
-      '<label></label><input type="text" spellcheck="false"><small></small><input type="range" min="0" max="1" step="any">';
-    const [label, number, small, range] = made.children;
+      '<label></label><input type="text" spellcheck="false"><small></small><input type="range" min="0" max="1" step="any"><output></output>';
+    const [label, number, small, range, note] = made.children;
+    let limits; // of the slider; they stay the same while it is held
     label.append(`${description} `, symbol(name));
     label.htmlFor = number.id = `field-${name}`;
+    number.name = name;
     range.setAttribute("aria-label", `${description}, slider`);
     small.textContent = unitOf(unit);
     range.addEventListener("input", () => {
-      const value = scale(slider()).value(Number(range.value));
+      const value = scale(limits).value(Number(range.value));
       number.value = String(["seed", "modes"].includes(name) ? Math.round(value) : Number(value.toPrecision(3)));
       given(number.value);
     });
-    number.addEventListener("input", () => given(number.value.trim()));
+    number.addEventListener("input", () => {
+      emptied = undefined;
+      given(number.value.trim());
+    });
+    number.addEventListener("blur", () => {
+      if (number.value.trim()) return;
+      emptied = name;
+      change();
+    });
     at(parent).append(made);
     rows[name] = (value, isGiven = true) => {
       const isFinite = Number.isFinite(value);
-      if (document.activeElement !== number) number.value = isFinite ? String(Number(value.toPrecision(6))) : (fields[name] ?? "");
-      if (document.activeElement !== range && isFinite) range.value = scale(slider()).part(value);
+      const text = isFinite ? String(Number(value.toPrecision(6))) : "";
+      number.placeholder = name in structures[origin()][1] ? "" : text; // what holds while the field is empty
+      note.value = emptied === name && !isGiven && text ? `left empty: ${text} holds again` : "";
+      if (document.activeElement !== number) number.value = text || (fields[name] ?? "");
+      if (document.activeElement !== range && isFinite) {
+        limits = around(slider(), value, min, max);
+        range.value = scale(limits).part(value);
+      }
       made.classList.toggle("given", isGiven);
     };
     rows[name].element = made;
@@ -163,12 +197,7 @@
     row(parent, { ...of, slider: () => reach(of) }, (value) => give(of.name, value));
   }
   for (const of of tables.natural) {
-    let middle; // the range stays the same while the slider is held
-    const slider = () => {
-      const isHeld = document.activeElement === rows[of.name].element.lastElementChild;
-      if (!isHeld) middle = derived[of.name];
-      return [Math.max(of.min, middle / 8), Math.min(of.max, middle * 8)];
-    };
+    const slider = () => [Math.max(of.min, derived[of.name] / 8), Math.min(of.max, derived[of.name] * 8)];
     row("structure", { ...of, slider }, (value) => give(of.name, value));
   }
   for (const of of tables.numbers) {
@@ -177,11 +206,11 @@
     row(parent, { ...of, slider }, (value) => give(of.name, value));
   }
   row("step", { name: "step", unit: "s", description: "step of RK4", slider: () => [1e-5, 0.02] }, (value) => {
-    step = value;
+    step = value || "0.001";
     later();
   });
 
-  at("preset").append(...tables.presets.map(({ name }) => new Option(name === "mcmanus" ? "McManus's bridge pier" : "Evison's shear wall", name)), new Option("storeys on a base", "storeys"));
+  at("preset").append(...Object.keys(structures).map((name) => new Option("", name)));
   const grounds = { el_centro: "El Centro, 1940", record: "your record", free: "free vibration", synthetic: "synthetic record" };
   at("ground").append(
     ...tables.grounds.map(([name]) => new Option(grounds[name], name)),
@@ -203,12 +232,12 @@
     give("ground", name);
   }
 
+  const ofStructure = [...tables.parameters, ...tables.natural].map(({ name }) => name);
   at("preset").addEventListener("change", ({ target }) => {
-    const ofStructure = [...tables.parameters, ...tables.natural].map(({ name }) => name);
     for (const name of [...ofStructure, "preset", "storeys", "zeta", "modes", "u_0"]) delete fields[name];
-    if (target.value !== "storeys") return give("preset", target.value);
-    if (fields.detail === "modal") delete fields.detail;
-    Object.assign(fields, usualFrame);
+    if (target.value === "storeys" && fields.detail === "modal") delete fields.detail;
+    Object.assign(fields, structures[target.value][1]);
+    emptied = undefined;
     change();
   });
   /** Takes other storeys, rows of m, h and k from below. */
@@ -232,6 +261,7 @@
         const input = (j) => {
           const made = document.createElement("input");
           made.setAttribute("aria-label", `${["m (kg) of floor", "h (m) of floor", "k (N/m) of storey"][j]} ${i + 1}`);
+          made.name = `storey ${i + 1}: ${"mhk"[j]}`;
           made.addEventListener("input", () => build(storeys().map((row, of) => (of === i ? row.with(j, made.value.trim()) : row))));
           return made;
         };
@@ -259,7 +289,7 @@
   at("ignore_npts").addEventListener("change", ({ target }) => give("ignore_npts", target.checked ? "true" : ""));
   at("natural").addEventListener("change", change);
   at("reset").addEventListener("click", () => {
-    fields = {};
+    [fields, emptied] = [first(), undefined];
     change();
   });
 
@@ -270,7 +300,11 @@
     at("natural").parentElement.hidden = isFrame();
     for (const option of at("detail").options) option.disabled = isFrame() && option.value === "modal";
     showStoreys();
-    at("preset").value = isFrame() ? "storeys" : preset().name;
+    for (const option of at("preset").options) {
+      option.selected = option.value === origin();
+      const isChanged = option.selected && !isFrame() && ofStructure.some(differs);
+      option.textContent = structures[option.value][0] + (isChanged ? ", changed" : "");
+    }
     at("ground").value = ground();
     at("detail").value = fields.detail ?? "auto";
     at("reading").hidden = ground() !== "record";
@@ -301,10 +335,10 @@
     const isNatural = at("natural").checked && !isFrame();
     const stand_in = (name) => tables.natural.some((of) => of.stands_for === name);
     for (const { name } of tables.parameters) {
-      rows[name](about.parameters[name] ?? NaN, name in fields);
+      rows[name](about.parameters[name] ?? NaN, differs(name));
       rows[name].element.hidden = (isNatural && stand_in(name)) || !(name in about.parameters);
     }
-    rows.r.element.querySelector("input").placeholder = isFrame() ? short(derived.r) : "";
+    if (isFrame()) rows.r.element.querySelector("input").placeholder = short(derived.r);
     for (const { name } of tables.natural) {
       rows[name](derived[name], name in fields);
       rows[name].element.hidden = !isNatural;
@@ -328,7 +362,7 @@
   /** A number that the engine writes as text, because JSON has no infinity. */
   const unlimited = (text) => Number(text.replace("inf", "Infinity"));
   const short = (value) => view.significant(value, 5);
-  const percent = (part) => (part > 0 && part < 5e-5 ? "0.00" : view.significant(100 * part, 2));
+  const percent = (part) => (part < 5e-5 ? "0.00" : view.significant(100 * part, 2));
   /** A row of a table with these cells. */
   function line(cells, title = "") {
     const made = document.createElement("tr");
@@ -370,8 +404,17 @@
     }
   }
 
-  /** Shows the problem. The drawing is then of the scene before, if there was one. */
+  /** Shows the problem, and the fields that it names. The drawing is then of the scene before, if there was one. */
   function tell(problem) {
+    const names = String(problem ?? "").split("; ").map((clause) => {
+      const [, storey, ofStorey] = /^(?:storey|floor) (\d+)\W.*?\b([mhk]) = /.exec(clause) ?? [];
+      return storey ? `storey ${storey}: ${ofStorey}` : /^\w*/.exec(clause)[0];
+    });
+    for (const input of at("controls").querySelectorAll("input[name]")) {
+      const isFaulty = names.includes(input.name);
+      input.setAttribute("aria-invalid", isFaulty);
+      if (isFaulty && input.name in fields && document.activeElement !== input) input.value = fields[input.name];
+    }
     at("problem").hidden = problem === undefined;
     at("problem").textContent = problem ?? "";
     document.body.classList.toggle("stale", problem !== undefined && isSeen);
@@ -430,7 +473,7 @@
     const rows = JSON.parse(explorer.validity(text()));
     const exceeded = rows.filter((of) => of.first_beyond !== null).length;
     at("validity").querySelector("summary").textContent =
-      `what the model leaves out here: ${exceeded === 0 ? "no limit is" : `${exceeded} of ${rows.length} limits are`} exceeded`;
+      `limits of the model: ${exceeded === 0 ? "none is" : `${exceeded} of ${rows.length} are`} exceeded`;
     at("validity").querySelector("tbody").replaceChildren(
       ...rows.map(({ description, meaning, value, time, limit, part, first_beyond }) => {
         const beyond = first_beyond === null ? "never" : `${percent(part)} %`;
@@ -683,7 +726,8 @@
     if (ground() !== "record") at("carries").textContent = "";
     else if (file.packed) at("carries").textContent = `The scene and its record ${file.name}.`;
     else at("carries").textContent = `The scene without its record, which is too large for a link: send the file ${file.name} too.`;
-    at("command").textContent = command;
+    const word = (textContent) => Object.assign(document.createElement("span"), { textContent });
+    at("command").replaceChildren(...command.split(/([ \n]+)/).map((part) => (part.trim() ? word(part) : part)));
     at("python").textContent = script;
     at("to_set").textContent = toSet && `An FMU holds neither the start nor the method of a run. Set in the host: ${toSet}`;
     at("csv").parentElement.hidden = ground() === "free";

@@ -5,8 +5,8 @@ use rocking::engine::{DEFAULT_TOLERANCE, Moves, check_tolerance};
 use rocking::run::{End, record::Record};
 use rocking::structure::any::AnyStructure;
 use rocking::structure::description::{Damping, Storey};
-use rocking::structure::natural_quantities::{Given, names};
-use rocking::structure::parameters::PRESETS;
+use rocking::structure::natural_quantities::{Given, NATURAL, names};
+use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::{Detail, Frame, Modes, Parameters, Run, State, Structure};
 use rocking_records::{Column, Reading, RecordError, Remedy, Source, Unit, csv_in};
 use rocking_sweep::pulse::{Pulse, Shape};
@@ -14,7 +14,6 @@ use rocking_sweep::synthetic;
 use serde::Deserialize;
 use serde::de::value::{Error, StrDeserializer};
 use std::collections::BTreeMap;
-use std::num::ParseFloatError;
 use std::path::{Path, PathBuf};
 
 /// A number of the ground motion or of the run: name, unit, meaning, usual value, and the range of its slider. A field may
@@ -35,8 +34,11 @@ pub const NUMBERS: [Number; 13] = [
     ("time_scale", "1", "factor on the times", 1.0, [0.1, 10.0]),
     ("tolerance", "1", "relative tolerance of the results", DEFAULT_TOLERANCE, [1e-12, 1e-3]),
     ("zeta", "1", "damping ratio of each mode", 0.02, [0.0, 0.2]),
-    ("modes", "1", "modes kept; the mass of the others rides rigidly", f64::NAN, [1.0, 24.0]),
+    ("modes", "1", "modes kept; the mass of the others turns rigidly with the base", f64::NAN, [1.0, 24.0]),
 ];
+
+/// The preset of a structure whose numbers stand alone.
+const NO_PRESET: &str = "none";
 
 /// Numbers of a structure of many masses, beside its storeys and its base.
 const OF_FRAME: [&str; 2] = ["zeta", "modes"];
@@ -129,9 +131,10 @@ impl Fields {
             format!("ground = {ground:?} is unknown; these are known: {}", known.collect::<Vec<_>>().join(", "))
         })?;
         let of_structure = if fields.is_frame() { [&["storeys"], &OF_FRAME[..]].concat() } else { vec!["preset"] };
-        let of_structure = of_structure.into_iter().chain(names());
-        let known = of_structure.chain(["ground"]).chain(numbers).chain(fields.of_file()).chain(RUN);
-        let known: Vec<_> = known.filter(|name| *name != "u_0" || !fields.is_frame()).collect();
+        let mut known: Vec<_> = of_structure.into_iter().chain(names()).chain(["ground"]).chain(numbers).collect();
+        let others = fields.of_file().chain(RUN).filter(|name| !known.contains(name)).collect::<Vec<_>>();
+        known.extend(others);
+        known.retain(|name| *name != "u_0" || !fields.is_frame());
         match fields.0.keys().find(|key| !known.contains(&key.as_str())) {
             Some(key) => {
                 let known = known.join(", ");
@@ -167,7 +170,7 @@ impl Fields {
     }
 
     fn given(&self, name: &str) -> Option<Result<f64, String>> {
-        self.text(name).map(|text| text.parse().map_err(|error| format!("{name} = {text:?}: {error}")))
+        self.text(name).map(|text| number_of(name, unit_of(name), text))
     }
 
     /// The number called `name` of [`NUMBERS`], or its usual value.
@@ -186,7 +189,12 @@ impl Fields {
         self.text("storeys").is_some()
     }
 
-    /// The structure: storeys on a base, or a specimen with the given numbers in place of its own.
+    /// Whether the given numbers replace those of a specimen.
+    pub fn has_preset(&self) -> bool {
+        !self.is_frame() && self.text("preset") != Some(NO_PRESET)
+    }
+
+    /// The structure: storeys on a base, a specimen with the given numbers in place of its own, or these numbers alone.
     pub fn structure(&self) -> Result<AnyStructure, String> {
         let mut given = Given::default();
         for name in names() {
@@ -198,8 +206,9 @@ impl Fields {
             return self.frame(&given, storeys).map(AnyStructure::Many);
         }
         let preset = self.text("preset").unwrap_or(PRESETS[0].0);
-        let base = Parameters::preset(preset).map_err(says)?;
-        Structure::new(given.over(&base).map_err(says)?).map(AnyStructure::One).map_err(says)
+        let base = self.has_preset().then(|| Parameters::preset(preset)).transpose().map_err(says)?;
+        let parameters = base.map_or_else(|| given.parameters(), |base| given.over(&base)).map_err(says)?;
+        Structure::new(parameters).map(AnyStructure::One).map_err(says)
     }
 
     /// The structure of one mass, which `task` needs.
@@ -309,12 +318,31 @@ impl Fields {
     }
 }
 
+/// The unit of the number called `name`.
+fn unit_of(name: &str) -> &'static str {
+    let of_structure = PARAMETERS.iter().find(|of| of.name == name).map(|of| of.unit);
+    let of_natural = || NATURAL.iter().find(|of| of.name == name).map(|of| of.derived().unit);
+    let of_run = || NUMBERS.iter().find(|of| of.0 == name).map(|of| of.1);
+    of_structure.or_else(of_natural).or_else(of_run).unwrap_or("s") // dt
+}
+
+/// The number in `text`, which has the `name` and the `unit`.
+fn number_of(name: &str, unit: &str, text: &str) -> Result<f64, String> {
+    let needed = match unit {
+        "1" => "a number is needed, without a comma".to_owned(),
+        unit => format!("a number in {unit} is needed, without the unit or a comma"),
+    };
+    text.parse().map_err(|_| format!("{name} = {text:?}: {needed}"))
+}
+
 /// The storey in `row`: m (kg), h (m) and k (N/m), with commas between them.
 fn storey(number: usize, row: &str) -> Result<Storey, String> {
-    let read = |(name, text): (&str, &str)| {
-        text.parse().map_err(|error: ParseFloatError| format!("storey {number}: {name} = {text:?}: {error}"))
-    };
-    let numbers = ["m", "h", "k"].into_iter().zip(row.split(',')).map(read).collect::<Result<Vec<f64>, _>>()?;
+    let read = |((name, unit), text)| number_of(&format!("storey {number}: {name}"), unit, text);
+    let numbers = [("m", "kg"), ("h", "m"), ("k", "N/m")]
+        .into_iter()
+        .zip(row.split(','))
+        .map(read)
+        .collect::<Result<Vec<_>, _>>()?;
     match numbers[..] {
         [m, h, k] if row.split(',').count() == 3 => Ok(Storey { m, h, k }),
         _ => Err(format!("storey {number} = {row:?}: m (kg), h (m) and k (N/m) are needed, with commas between them")),

@@ -30,7 +30,7 @@ pub fn taken_along(fields: &Fields, path: Option<&Path>) -> Result<[String; 3], 
         given.map(|(name, text)| Ok((name, literal(name, &text)?))).collect()
     };
     let numbers =
-        options(&mut ["preset"].into_iter().chain(names()).filter(|name| *name != "preset" || !fields.is_frame()))?;
+        options(&mut ["preset"].into_iter().chain(names()).filter(|name| *name != "preset" || fields.has_preset()))?;
     let structure = if fields.is_frame() { vec![("parameters", BUILDING.into())] } else { numbers.clone() };
     let (of_file, run) = (options(&mut fields.of_file())?, options(&mut RUN.into_iter())?);
     let file = path.filter(|_| fields.kind() == "record").map_or(GROUND.into(), |path| path.display().to_string());

@@ -203,7 +203,7 @@ fn rows(diagrams: &[Diagram]) -> Vec<Value> {
     curves.iter().filter_map(row).chain([linear]).collect()
 }
 
-/// Writes the page with its pictures; `made` is their last line.
+/// Writes the page with its pictures; `made` is its last line.
 pub fn write(diagrams: &[Diagram], docs: &Path, made: &str) -> Result<()> {
     for diagram in diagrams {
         let panels = PANELS.map(|(title, families)| diagram.panel(title, families)).into();
