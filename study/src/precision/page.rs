@@ -193,7 +193,7 @@ fn rows(diagrams: &[Diagram]) -> Vec<Value> {
         let of_method = |diagram: &Diagram| diagram.curves.iter().find(|other| other.name == curve.name).and_then(cost);
         let costs: Vec<Option<String>> = diagrams.iter().map(of_method).collect();
         let is_ours = curve.family == Family::Ours;
-        let is_shown = costs.iter().any(Option::is_some);
+        let is_shown = curve.family != Family::Host && costs.iter().any(Option::is_some);
         let costs: Vec<_> = costs.into_iter().map(|cost| cost.unwrap_or("–".into())).collect();
         is_shown.then(|| context! { method => curve.name.clone(), costs, is_ours })
     };
