@@ -70,7 +70,7 @@ def test_an_own_structure_with_its_record(installed, exporter, tmp_path):
 
 @pytest.mark.parametrize("arguments, reason", [
     ("record='none.csv'", r"the record none\.csv cannot be read: No such file"),
-    ("name='a b'", 'the name "a b" must be of letters'),
+    ("name='a b'", 'the name "a b" must consist of the letters'),
     ("fmi=1", 'fmi = "1" is unknown; these are known: 2, 3'),
 ])
 def test_what_is_refused(installed, arguments, reason):
