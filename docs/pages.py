@@ -168,8 +168,8 @@ def variables(fmu: Path, building: Path) -> str:
     for title, is_one in KINDS.items():
         page += f"\n## {title}\n\n"
         if title == "Local variables":
-            page += ("The largest magnitudes, here and of buildings, are those since startTime, exact, also between communication points. If the\n"
-                     "structure overturns, they are those before its fall. They are NaN unless `peaks` is true.\n\n")
+            page += ("The magnitudes from `theta_max` to `P_t_max`, and those of buildings, are the largest since startTime, exact, also between\n"
+                     "communication points. If the structure overturns, they are those before its fall. They are NaN unless `peaks` is true.\n\n")
         page += "| name | unit | value | range | meaning |\n|---|---|---|---|---|\n"
         for v, names, units, meaning in with_instants([v for v in described if is_one(v)]):
             value = number(v.start) if v.type == "Real" else v.start or ""

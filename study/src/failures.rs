@@ -53,11 +53,5 @@ pub fn write(pacoima: &Scene, el_centro: &Scene, docs: &Path) -> Result<()> {
         Ok((key.replace('-', "_"), values))
     });
     let entries = entries.collect::<Result<Vec<_>>>()?;
-    crate::page::write(
-        docs,
-        "failures",
-        include_str!("../pages/failures.md"),
-        &Value::from_pairs(entries),
-        &crate::page::made("failures")?,
-    )
+    crate::page::write(docs, "failures", include_str!("../pages/failures.md"), &Value::from_pairs(entries), "failures")
 }

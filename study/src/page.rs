@@ -6,8 +6,14 @@ use minijinja::{Environment, UndefinedBehavior, Value};
 use std::path::Path;
 use std::process::Command;
 
-/// Writes the page `name`, its `template` filled in with `values`, into the folder `docs`; `made` is its last line.
-pub fn write(docs: &Path, name: &str, template: &str, values: &Value, made: &str) -> Result<()> {
+/// Writes the page `name`, its `template` filled in with `values`, into the folder `docs`; its last line says by which `command`
+/// it is [`made`].
+pub fn write(docs: &Path, name: &str, template: &str, values: &Value, command: &str) -> Result<()> {
+    write_as(docs, name, template, values, &made(command)?)
+}
+
+/// Writes the page as [`write`] does; `made` is its last line.
+pub fn write_as(docs: &Path, name: &str, template: &str, values: &Value, made: &str) -> Result<()> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     environment

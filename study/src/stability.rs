@@ -1,5 +1,5 @@
-//! Stability of the textbook methods: measured limits of the step, and what
-//! happens when a structure that was down lifts off.
+//! Stability of the textbook methods: measured limits of the step, and what happens when a structure that
+//! was down lifts off.
 
 pub mod limits;
 pub mod uplift_trap;
@@ -49,11 +49,5 @@ pub fn write(docs: &Path) -> Result<()> {
         rows => rows.collect::<Vec<Value>>(),
         trap,
     };
-    crate::page::write(
-        docs,
-        "stability",
-        include_str!("../pages/stability.md"),
-        &values,
-        &crate::page::made("stability")?,
-    )
+    crate::page::write(docs, "stability", include_str!("../pages/stability.md"), &values, "stability")
 }

@@ -153,7 +153,7 @@ pub fn write(records: &Path, docs: &Path, progress: &ProgressBar) -> Result<()> 
         repair => repair(&population),
         scenes,
     };
-    crate::page::write(docs, "validity", include_str!("../pages/validity.md"), &values, &crate::page::made("validity")?)
+    crate::page::write(docs, "validity", include_str!("../pages/validity.md"), &values, "validity")
 }
 
 /// A row for every structure: what it is, what it goes beyond, what the repaired rule changes.

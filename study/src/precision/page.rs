@@ -224,5 +224,5 @@ pub fn write(diagrams: &[Diagram], docs: &Path, made: &str) -> Result<()> {
         undercut => undercut.is_finite().then(|| scientific(undercut)),
         scenes,
     };
-    crate::page::write(docs, "accuracy", include_str!("../../pages/accuracy.md"), &values, made)
+    crate::page::write_as(docs, "accuracy", include_str!("../../pages/accuracy.md"), &values, made)
 }
