@@ -214,6 +214,10 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, by: str | Non
             except ValueError as refused:
                 raise ValueError(f"{by} = {value!r}: {refused}") from None
         return curves
+    peak = _native.measure_of(limit) or "peak_theta[rad]"
+    if lacking := [name for name in ("run", "record", "ending", peak, "g[m/s2]", "B[m]") if name not in table]:
+        raise ValueError(f"the table has no {', '.join(lacking)}: a table with the columns of `sweep` is needed, such as "
+                         f"pandas.read_csv of its file")
     conditions = ["structures", "detail", "tolerance", "duration[s]", *table.filter(regex=r"_0\[(rad|m)(/s)?]$")]
     for name in table.columns.intersection(conditions):
         if len(values := table[name].unique()) > 1:

@@ -1,9 +1,10 @@
 """Fragility curves in the formats of the field: pelicun's CSV, OpenQuake's NRML 0.5."""
 
 import csv
+import re
 from collections.abc import Iterable, Mapping
 from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 from xml.etree import ElementTree
 
 if TYPE_CHECKING:
@@ -11,42 +12,41 @@ if TYPE_CHECKING:
 
     from ._sweep import Fragility
 
+T = TypeVar("T")
 NRML = "http://openquake.org/xmlns/nrml/0.5"
-# What each calls a measure of intensity: type and unit of a demand, intensity measure type.
-PELICUN = {"PGA[g]": ("Peak Ground Acceleration", "g"), "PGV[m/s]": ("Peak Ground Velocity", "mps"),
-           "S_a[g]": ("Peak Spectral Acceleration", "g")}
-OPENQUAKE = {"PGA[g]": ("PGA", 1.0), "PGV[m/s]": ("PGV", 100.0)}  # of PGV in cm/s
+# What each calls a measure of intensity: its type, and its unit or the factor to its unit.
+PELICUN = {"PGA[g]": ("Peak Ground Acceleration", "g"), "PGV[m/s]": ("Peak Ground Velocity", "mps")}
+OPENQUAKE = {"PGA[g]": ("PGA", 1.0), "PGV[m/s]": ("PGV", 100.0), "CAV[m/s]": ("CAV", 1 / 9.80665), "I_A[m/s]": ("IA", 1.0),
+             "D_5_95[s]": ("RSD", 1.0)}  # of PGV in cm/s, of CAV in g.s
 
 
-def write_pelicun(file: str | PathLike[str], components: "Mapping[str, Fragility | Iterable[Fragility]]", *,
-                  period: float | None = None) -> None:
+def write_pelicun(file: str | PathLike[str], components: "Mapping[str, Fragility | Iterable[Fragility]]") -> None:
     """Writes the damage model parameters of pelicun 3, a row a component, whose limit states are lognormal curves.
 
-    components: by ID, one Fragility or several, the limit state that is exceeded first coming first. period: that of S_a, s, which
-    stands in its demand type. Raises ValueError where the curves of a component are over different measures.
+    components: by ID, one Fragility or several, the limit state that is exceeded first coming first. The curves of a component are over
+    one of PGA, PGV, and a column such as "SA(0.4)" with S_a (g) at this period (s) for the damping ratio 0.05. Raises ValueError for
+    other measures.
     """
     rows = {name: list(of) if isinstance(of, Iterable) else [of] for name, of in components.items()}
+    kinds = {name: _kind(name, curves, PELICUN, ("Peak Spectral Acceleration|{}", "g")) for name, curves in rows.items()}
     states = range(1, max(map(len, rows.values())) + 1)
     heads = ["ID", "Incomplete", "Demand-Type", "Demand-Unit", "Demand-Offset", "Demand-Directional"]
     with open(file, "w", newline="", encoding="utf-8") as lines:
         table = csv.writer(lines)
         table.writerow(heads + [f"LS{state}-{what}" for state in states for what in ("Family", "Theta_0", "Theta_1")])
         for name, curves in rows.items():
-            kind, unit = PELICUN[_measure(name, curves)]
-            kind += f"|{_period(period):.2f}" if unit == "g" and "Spectral" in kind else ""
-            row = [name, 0, kind, unit, 0, 0]
-            table.writerow(row + [cell for of in curves for cell in ("lognormal", of.median, of.dispersion)])
+            table.writerow([name, 0, *kinds[name], 0, 0] + [cell for of in curves for cell in ("lognormal", of.median, of.dispersion)])
 
 
 def write_openquake(file: str | PathLike[str], functions: "Mapping[str, Mapping[str, Fragility]]", *,
-                    levels: "ArrayLike | None" = None, period: float | None = None,
-                    description: str = "structures that rock") -> None:
+                    levels: "ArrayLike | None" = None, description: str = "structures that rock") -> None:
     """Writes a fragilityModel of NRML 0.5 with discrete functions: probabilities at intensity levels.
 
-    functions: by the taxonomy of their assets, each a Fragility by limit state, the same states in all. Without levels, the probabilities are the counted parts at the intensities of the bins, which need not be lognormal. With
-    levels (n,), increasing, in the unit of the curves, the probabilities are those of the curves.
-    period: the period of S_a, s, which the type SA(0.5) names. Raises ValueError where
-    the limit states of the functions differ, or the measures or the counted runs of one function.
+    functions: by the taxonomy of their assets, each a Fragility by limit state, the same states in all. Without levels, the probabilities
+    are the counted parts at the intensities of the bins, which need not be lognormal. With levels (n,), increasing, in the unit of the
+    curves, the probabilities are those of the curves. The curves of a function are over one of PGA, PGV, CAV, I_A, D_5_95, and a column
+    such as "SA(0.4)" with S_a (g) at this period (s) for the damping ratio 0.05; the file has them in OpenQuake's units. Raises
+    ValueError for other measures, and where the limit states of the functions or the counted runs of one function differ.
     """
     states = list(next(iter(functions.values())))
     root = ElementTree.Element("nrml", xmlns=NRML)
@@ -56,8 +56,7 @@ def write_openquake(file: str | PathLike[str], functions: "Mapping[str, Mapping[
     for name, curves in functions.items():
         if list(curves) != states:
             raise ValueError(f"{name!r} has the limit states {', '.join(curves)}; the first has {', '.join(states)}")
-        measure = _measure(name, list(curves.values()))
-        kind, factor = OPENQUAKE[measure] if measure in OPENQUAKE else (f"SA({_period(period)})", 1.0)
+        kind, factor = _kind(name, list(curves.values()), OPENQUAKE, ("SA({})", 1.0))
         at, poes = _counted(name, curves) if levels is None else _of_curves(curves, levels)
         function = ElementTree.SubElement(model, "fragilityFunction", id=name, format="discrete")
         ElementTree.SubElement(function, "imls", imt=kind).text = " ".join(repr(factor * level) for level in at)
@@ -84,15 +83,15 @@ def _counted(name: str, curves: "Mapping[str, Fragility]") -> tuple[list[float],
     return bins[0]["mean"][is_known].tolist(), parts
 
 
-def _period(period: float | None) -> float:
-    if period is None:
-        raise ValueError("period is missing: that of S_a, s")
-    return period
-
-
-def _measure(name: str, curves: "list[Fragility]") -> str:
-    """The measure that all of `curves` are over."""
+def _kind(name: str, curves: "list[Fragility]", known: dict[str, tuple[str, T]], spectral: tuple[str, T]) -> tuple[str, T]:
+    """Type of the measure that all of `curves` are over, and its unit or factor: one of `known`, or `spectral` at a period."""
     measures = {curve.intensity for curve in curves}
     if len(measures) != 1:
         raise ValueError(f"{name!r} has curves over {', '.join(sorted(measures))}: one measure is needed")
-    return measures.pop()
+    measure = measures.pop()
+    if measure in known:
+        return known[measure]
+    if period := re.fullmatch(r"SA\((\d+(?:\.\d+)?)\)", measure):
+        return spectral[0].format(period[1]), spectral[1]
+    raise ValueError(f"{name!r} has curves over {measure}, which the format does not have: give fr.fragility an intensity of "
+                     f"{', '.join(known)}, or a column named SA(0.4) with S_a (g) at the period 0.4 s and the damping ratio 0.05")

@@ -528,7 +528,9 @@ def test_curves_by_a_column_are_those_of_its_rows(two_populations):
         assert (curve.median, curve.dispersion) == (alone.median, alone.dispersion)
     low = two_populations["PGV[m/s]"] < two_populations["PGV[m/s]"].min() * 1.01
     for refused, options in [("structures = 'mcmanus': never exceeded: raise", {"table": two_populations[low], "by": "structures"}),
-                             ("by = 'period' is no column of the table: give one of run, ", {"table": two_populations, "by": "period"})]:
+                             ("by = 'period' is no column of the table: give one of run, ", {"table": two_populations, "by": "period"}),
+                             ("the table has no run, g[m/s2], B[m]: a table with the columns of `sweep`",
+                              {"table": two_populations.drop(columns=["run", "g[m/s2]", "B[m]"])})]:
         with pytest.raises(ValueError, match=re.escape(refused)):
             fr.fragility(limit=limit, **options)
 
@@ -638,23 +640,34 @@ def test_the_sweep_on_ray_comes_to_the_same(tmp_path):
 def test_formats_read_back(tmp_path):
     pulses = {f"{f} Hz": fr.pulse("sine", amplitude=0.5, frequency=f) for f in (1.0, 1.5, 2.0, 3.0)}
     runs = fr.sweep(fr.Structure(preset="mcmanus"), pulses, scale=np.linspace(0.2, 3, 15), intensity="S_a")
-    states = {"slight": fr.fragility(runs, "theta/alpha_cg >= 0.05"), "fallen": fr.fragility(runs)}
-    formats.write_pelicun(tmp_path / "piers.csv", {"pier": states.values()}, period=0.2)
+    runs["SA(0.20)"] = runs["record"].map({name: of.spectrum(0.2)[0] / 9.81 for name, of in pulses.items()}) * runs["scale"]
+    over = lambda measure: {name: fr.fragility(runs, limit, intensity=measure)
+                            for name, limit in (("slight", "theta/alpha_cg >= 0.05"), ("fallen", "overturned"))}
+    states = over("SA(0.20)")
+    formats.write_pelicun(tmp_path / "piers.csv", {"pier": states.values()})
     row = pd.read_csv(tmp_path / "piers.csv", index_col="ID").loc["pier"]
     assert [row["Demand-Type"], row["Demand-Unit"], row["LS2-Family"]] == ["Peak Spectral Acceleration|0.20", "g", "lognormal"]
     assert [row[f"LS{i}-Theta_{j}"] for i in (1, 2) for j in (0, 1)] == [
         number for of in states.values() for number in (of.median, of.dispersion)]
-    for levels in (None, [0.5, 1.0, 2.0]):
-        formats.write_openquake(tmp_path / "piers.xml", {"pier": states}, levels=levels, period=0.2)
-        name = {"": "http://openquake.org/xmlns/nrml/0.5"}
-        function = ElementTree.parse(tmp_path / "piers.xml").find("fragilityModel/fragilityFunction", name)
-        imls = function.find("imls", name)
-        numbers = lambda of: [float(number) for number in of.text.split()]
-        assert imls.get("imt") == "SA(0.2)"
-        for state, of in zip(function.findall("poes", name), states.values(), strict=True):
-            counted = (of.bins["exceedances"] / of.bins["known"]).tolist()
-            assert numbers(imls) == (levels or of.bins["mean"].tolist())
-            assert numbers(state) == (of.probability(levels).tolist() if levels else counted)
+    for measure, kind, factor in (("SA(0.20)", "SA(0.20)", 1), ("PGA", "PGA", 1), ("PGV", "PGV", 100), ("CAV", "CAV", 1 / 9.80665),
+                                  ("I_A", "IA", 1), ("D_5_95", "RSD", 1)):
+        states = {"slight": over(measure)["slight"]} if measure == "D_5_95" else over(measure)
+        for levels in (None, [0.5, 1.0, 2.0]):
+            formats.write_openquake(tmp_path / "piers.xml", {"pier": states}, levels=levels)
+            name = {"": "http://openquake.org/xmlns/nrml/0.5"}
+            function = ElementTree.parse(tmp_path / "piers.xml").find("fragilityModel/fragilityFunction", name)
+            imls = function.find("imls", name)
+            numbers = lambda of: [float(number) for number in of.text.split()]
+            assert imls.get("imt") == kind
+            for state, of in zip(function.findall("poes", name), states.values(), strict=True):
+                known = of.bins[of.bins["known"] > 0]
+                assert numbers(imls) == [factor * at for at in levels or known["mean"]]
+                assert numbers(state) == (of.probability(levels) if levels else known["exceedances"] / known["known"]).tolist()
+    for measure in ("S_a", "scale"):
+        for write in (formats.write_pelicun, formats.write_openquake):
+            with pytest.raises(ValueError, match=re.escape("which the format does not have: give fr.fragility an intensity of PGA[g]")):
+                write(tmp_path / "none", {"pier": over(measure)} if write is formats.write_openquake else {"pier": over(measure).values()})
+    assert not (tmp_path / "none").exists()
 
 
 @pytest.mark.parametrize("name", ["python", "frames", "choose_numbers", "questions", "contents"])
