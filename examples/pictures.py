@@ -5,7 +5,7 @@
     headline.svg   error against cost, of the numbers that the study has left in docs/evidence
     levels.svg     which level of detail is enough, over frequency and intensity
     tornado.svg    what a wrong number changes, by the script of docs/howto/choose_numbers.md
-    questions.svg  rotation and probabilities over PGV, by the script of docs/howto/questions.md
+    questions.svg  rotation and probabilities over PGV, by the script of docs/howto/sweeps.md
 """
 
 import argparse
@@ -235,7 +235,7 @@ def tornado(path: Path) -> None:
 
 
 def questions(path: Path) -> None:
-    save(drawn_by("docs/howto/questions.md"), path, "Rotation and probabilities over the peak ground velocity",
+    save(drawn_by("docs/howto/sweeps.md"), path, "Rotation and probabilities over the peak ground velocity",
          "Left: one line per record, without the runs that overturn. Right: fragility curves of two piers.")
 
 

@@ -1,4 +1,4 @@
-//! A ball that bounces. The page `docs/howto/write_an_fmu.md` walks through this example, which writes the FMU of the ball.
+//! A ball that bounces. The page `docs/dev/write_an_fmu.md` walks through this example, which writes the FMU of the ball.
 
 use fmi_unit::{Causality::*, *};
 use model_description::archive;

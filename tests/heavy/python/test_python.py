@@ -690,9 +690,9 @@ def test_a_page_of_the_module_prints_what_it_shows(name, tmp_path, monkeypatch):
     assert shown == text
 
 
-def test_statistics_of_the_page_of_questions_are_those_of_statsmodels(tmp_path, monkeypatch):
+def test_statistics_of_the_page_of_sweeps_are_those_of_statsmodels(tmp_path, monkeypatch):
     stats, api = pytest.importorskip("scipy.stats"), pytest.importorskip("statsmodels.api")
-    text = (ROOT / "docs" / "howto" / "questions.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "howto" / "sweeps.md").read_text(encoding="utf-8")
     monkeypatch.setenv("MPLBACKEND", "agg")
     monkeypatch.chdir(tmp_path)
     of = {}
