@@ -7,8 +7,22 @@ from dataclasses import dataclass
 
 import numpy as np
 from host import G, ground_motion
-from restrained_reference import Ties
 from scipy.linalg import eigh
+
+
+@dataclass(frozen=True)
+class Ties:
+    """A tendon and a pair of dissipators (SI)."""
+
+    P_0: float = 0.0
+    k_t: float = 0.0
+    xi_d: float = 0.0
+    c_d: float = 0.0
+    k_d: float = 0.0
+    F_y: float = 0.0
+
+    def levers(self, p, s: int) -> tuple[float, float]:
+        return s * p.B - self.xi_d, s * p.B + self.xi_d
 
 
 @dataclass(frozen=True)
@@ -41,6 +55,11 @@ class Frame:
         omega_r = np.sqrt(eigh(K, np.diag(m) - np.outer(m * h, m * h) / J_P, eigvals_only=True))  # (M13)
         vars(self).update(m=m, h=h, K=K, C=C, phi=phi, omega=omega, omega_r=omega_r, m_t=m_t, S_1=S_1, I_2=I_2, J_P=J_P,
                           elastic=np.hstack([K, C]) / m[:, None], period=2 * math.pi / omega_r[0])
+
+
+def of_one_mass(p) -> Frame:
+    """The structure `p` of reference.py as a frame."""
+    return Frame((p.m,), (p.H,), (p.k,), m0=p.m0, J0=p.J0, B=p.B, r=p.r, zeta=p.zeta_fc, g=p.g)
 
 
 def cantilever(heights, EI: float) -> tuple:

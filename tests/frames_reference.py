@@ -13,10 +13,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import reference
-from frames import Frame
+from frames import Frame, Ties
 from numpy.polynomial import polynomial
 from reference import FULL_CONTACT, Transition
-from restrained_reference import Ties
 from scipy.integrate import DOP853
 
 MAX_TRANSITIONS = 1000  # within one period of the lowest vibration mode while rocking; then contact is held to its end
@@ -29,11 +28,11 @@ class Motion:
     """The frame at one instant, and how its motion continues. The state is u, u_dot, theta, theta_dot in one row."""
 
     def __init__(self, frame: Frame, ties: Ties, y, rtol: float, atol: float):
-        assert ties.xi_d <= frame.B, "beyond the edge, what yields at an impact may go on yielding"
         self.frame, self.ties, self.y, self.n = frame, ties, np.array(y, dtype=float), len(frame.masses)
         self.tolerances, self.t, self.h, self.s = dict(rtol=rtol, atol=atol), 0.0, 1e-4, int(np.sign(y[-2]))
         self.zeros, self.plastic, self.yields, self.released = 0, [0.0, 0.0], [0, 0], [0, 0]  # zeros of theta(t) at this instant
         self.transitions, self.peaks = [], np.abs(self.outputs(self.y)[0])
+        self.viscous, self.hysteretic = 0.0, 0.0  # energies that the dissipators took
         self.burst, self.count, self.held_until, self.overturned = -math.inf, 0, -math.inf, False
 
     def outputs(self, y):
@@ -43,7 +42,12 @@ class Motion:
         return np.column_stack([y[:, : self.n], a, y[:, -2], a @ p.m, a @ (p.m * p.h)])
 
     def row(self):
-        return [self.t, *self.outputs(self.y)[0], *self.forces(self.y[-2], self.s)[0]]
+        ties, (theta, theta_dot) = self.ties, self.y[-2:]
+        forces, levers = self.forces(theta, self.s or 1)
+        F_d = [F + ties.c_d * lever * math.cos(theta / 2) * theta_dot for F, lever in zip(forces, levers)]
+        P_t = ties.P_0 + 2 * ties.k_t * self.frame.B * math.sin(abs(theta) / 2)
+        return [self.t, *self.outputs(self.y)[0], *self.y[self.n : -2], theta_dot, P_t, *F_d, *self.plastic, self.viscous,
+                self.hysteretic]
 
     def gravity(self, t):
         return self.frame.g + self.a_v[0] + self.a_v[1] * (t - self.start)
@@ -90,7 +94,9 @@ class Motion:
         self.transitions.append(Transition(self.t, kind, self.s or phase, tuple(self.y), tuple(y)))
         if self.t - self.burst >= self.frame.period:
             self.burst, self.count = self.t, 0
-        self.count, self.s, self.y, self.zeros, self.yields = self.count + 1, phase, y, zeros, [0, 0]
+        goes_on = [way * lever * y[-1] > 0 for way, lever in zip(self.yields, self.ties.levers(self.frame, phase))]
+        self.yields = [way if kind == "impact" and on else 0 for way, on in zip(self.yields, goes_on)]  # beyond the edge alone
+        self.count, self.s, self.y, self.zeros = self.count + 1, phase, y, zeros
         self.overturned = kind == "overturning"
 
     def impact(self):
@@ -149,7 +155,7 @@ class Motion:
                 guards.append((-1, 0.0, 0, partial(self.change_yielding, j, 0)))
             for to in () if way else (1, -1):  # |F_j| = F_y at this angle; if that is 0, the impact comes first
                 sine = (self.plastic[j] + to * ties.F_y / ties.k_d) / (2 * lever)
-                if TIE * ties.F_y / ties.k_d / lever * s < s * sine < 1:
+                if TIE * ties.F_y / ties.k_d / abs(lever) < s * sine < 1:
                     zeros = 2 * (self.released[j] == to)
                     guards.append((-2, 2 * math.asin(sine), zeros, partial(self.change_yielding, j, to)))
         for column, value, zeros, transition in guards:
@@ -162,10 +168,10 @@ class Motion:
         return found
 
     def change_yielding(self, which, to):
-        forces, _ = self.forces(self.y[-2], self.s)
-        for j, (F, way) in enumerate(zip(forces, self.yields)):  # elongations turn round together, and may yield again together
-            if j == which or (not way and to * F >= (1 - TIE) * self.ties.F_y if to else way):
-                self.released[j], self.yields[j] = way, to
+        for j, (F, lever, way) in enumerate(zip(*self.forces(self.y[-2], self.s), self.yields)):
+            outward = F * lever * self.y[-1] > 0  # elongations turn round together, and may yield again together
+            if j == which or (not way and outward and abs(F) >= (1 - TIE) * self.ties.F_y if to else way):
+                self.released[j], self.yields[j] = way, int(math.copysign(to, F))
                 kind = "yielding" if to else "unloading"
                 self.transitions.append(Transition(self.t, kind, self.s, tuple(self.y), tuple(self.y)))
 
@@ -184,11 +190,15 @@ class Motion:
         self.t, self.y, self.zeros, self.released = float(t), y.copy(), 0, [0, 0]
         for j, (lever, way) in enumerate(zip(self.ties.levers(self.frame, self.s), self.yields)):
             if way:
-                self.plastic[j] = 2 * lever * math.sin(y[-2] / 2) - way * self.ties.F_y / self.ties.k_d
+                before, self.plastic[j] = self.plastic[j], 2 * lever * math.sin(y[-2] / 2) - way * self.ties.F_y / self.ties.k_d
+                self.hysteretic += way * self.ties.F_y * (self.plastic[j] - before)
 
     def see(self, step, end):
-        """Takes the largest absolute values over the step up to x = end."""
-        values = self.outputs(np.vander(end * NODES, 8, increasing=True) @ step.powers)
+        """Takes the largest absolute values over the step up to x = end, and adds what the viscous dissipators take."""
+        y = np.vander(end * NODES, 8, increasing=True) @ step.powers
+        power = self.ties.c_d * (2 * self.frame.B**2 + 2 * self.ties.xi_d**2) * (np.cos(y[:, -2] / 2) * y[:, -1]) ** 2
+        self.viscous += step.h * end * np.sum(FIT @ power / np.arange(1, 9))
+        values = self.outputs(y)
         self.peaks = np.maximum(self.peaks, np.abs(values).max(axis=0))
         for i in np.flatnonzero(np.abs(values).max(axis=0) > 0.98 * self.peaks):
             c = FIT @ values[:, i]
@@ -197,7 +207,7 @@ class Motion:
 
 
 def simulate(frame: Frame, dt: float, a_g, a_v=None, ties: Ties = Ties(), *, initial=None, rtol=1e-13, atol=1e-16):
-    """The response to accelerations (m/s2) linear between samples every dt (s): u, a, theta, V_t, M_t and F_d at the samples.
+    """The response to accelerations (m/s2) linear between samples every dt (s), at the samples: motion, forces, energies.
     `transitions` have the states before and after; `peaks` has u, a, theta, V_t and M_t in one row."""
     n, time, a_v = len(frame.masses), dt * np.arange(len(a_g)), np.zeros(len(a_g)) if a_v is None else a_v
     motion = Motion(frame, ties, np.zeros(2 * n + 2) if initial is None else initial, rtol, atol)
@@ -208,6 +218,7 @@ def simulate(frame: Frame, dt: float, a_g, a_v=None, ties: Ties = Ties(), *, ini
         while motion.t < end and not motion.overturned:
             motion.advance(end)
         rows += [] if motion.overturned else [motion.row()]
-    names = dict(time=0, u=slice(1, n + 1), a=slice(n + 1, 2 * n + 1), theta=-5, V_t=-4, M_t=-3, F_d=slice(-2, None))
+    names = dict(time=0, u=slice(1, n + 1), a=slice(n + 1, 2 * n + 1), theta=2 * n + 1, V_t=2 * n + 2, M_t=2 * n + 3,
+                 u_dot=slice(2 * n + 4, -8), theta_dot=-8, P_t=-7, F_d1=-6, F_d2=-5, e_p1=-4, e_p2=-3, E_viscous=-2, E_hysteretic=-1)
     columns = {name: np.array(rows)[:, at] for name, at in names.items()}
     return SimpleNamespace(**columns, transitions=motion.transitions, peaks=motion.peaks)

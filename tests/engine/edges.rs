@@ -1,6 +1,5 @@
 //! The edges of what the engine accepts: parameters at the ends of their ranges, angles and steps next to nothing, at
 //! every level of detail.
-#![allow(non_snake_case)]
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use proptest::prelude::*;

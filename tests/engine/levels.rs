@@ -1,13 +1,10 @@
 //! The levels of detail from outside: the rigid one against its closed forms, rest, memory. What tolerances promise is in
 //! `tolerance.rs`.
-#![allow(non_snake_case)]
 
-mod shaking;
-
+use crate::shaking::shaking;
 use approx::assert_abs_diff_eq;
 use rocking::levels::rules::MAX_RIGID_TRANSITIONS_PER_PERIOD;
 use rocking::{Detail, Engine, Parameters, Phase, Progress, Ramp, Side, State, Structure, Transition, TransitionKind};
-use shaking::shaking;
 
 const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };
 

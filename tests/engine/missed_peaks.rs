@@ -1,6 +1,5 @@
 //! Peaks, and what motions go beyond, against dense sampling of the same pieces: random structures, states and loads at all
 //! levels.
-#![allow(non_snake_case)]
 
 use fastrand::Rng;
 use rocking::engine::Settings;

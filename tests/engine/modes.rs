@@ -1,7 +1,5 @@
 //! Structures of many masses: the engine's modes against an independent integration of the masses, energy, and one mass as a mode.
 
-#![allow(non_snake_case)] // H, B, J0: the paper's own letters
-
 use nalgebra::{Matrix3, Vector3};
 use rocking::engine::Settings;
 use rocking::mechanics::floors::FrameOutput;

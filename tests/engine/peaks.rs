@@ -1,14 +1,11 @@
 //! Peaks of leaps, of equal crests and of contact that lasts no time, and what finding peaks costs. That none is missed
 //! is in `missed_peaks.rs`.
-#![allow(non_snake_case)]
 
-mod shaking;
-
+use crate::shaking::shaking;
 use rocking::run::peaks::Peaks;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
 use rocking::{Detail, Engine, Parameters, Ramp, State, Structure};
-use shaking::shaking;
 
 /// A leap over many vibrations, which takes many polynomials: what is read of it is as if it had been cut.
 #[test]

@@ -1,7 +1,5 @@
 //! Runs of structures of many masses: the exact peaks of each floor.
 
-#![allow(non_snake_case)] // H, B, J0: the paper's own letters
-
 use rocking::engine::piece::Sample;
 use rocking::run::peaks::Peak;
 use rocking::run::profile::{Peaking, Profile};

@@ -1,5 +1,4 @@
 //! Reactions on the ground and impulses of impacts: the balance of momentum.
-#![allow(non_snake_case)]
 
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::{Detail, Engine, LinearLoad, Load, Parameters, Reactions, State, Structure, Transition};

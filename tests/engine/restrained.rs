@@ -1,8 +1,6 @@
 //! Vertical ground motion, tendon and dissipators: against structures that they make another, energy and statics by hand.
-#![allow(non_snake_case)]
 
-mod shaking;
-
+use crate::shaking::shaking;
 use approx::assert_relative_eq;
 use rocking::engine::Settings;
 use rocking::engine::piece::Sample;
@@ -16,7 +14,6 @@ use rocking::{
     Detail, Dissipators, Engine, GroundMotion, LinearLoad, Load, Motion, Parameters, Phase, Side, State, Structure,
     Transition, TransitionKind,
 };
-use shaking::shaking;
 use std::mem::discriminant;
 
 const LEVELS: [Detail; 4] = [Detail::Auto, Detail::Nonlinear, Detail::Linear, Detail::Rigid];

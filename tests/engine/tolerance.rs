@@ -1,5 +1,4 @@
 //! The promise of a tolerance: random structures, records and initial states at all levels that rock.
-#![allow(non_snake_case)]
 
 use fastrand::Rng;
 use rocking::{Detail, Engine, Parameters, Progress, Ramp, State, Structure};

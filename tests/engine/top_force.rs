@@ -1,5 +1,4 @@
 //! The force on the top mass, against ground motion that does the same and against its work.
-#![allow(non_snake_case)]
 
 use approx::assert_relative_eq;
 use rocking::engine::DEFAULT_TOLERANCE;

@@ -1,16 +1,13 @@
 //! Validity at impacts, against the momenta and the kinetic energy before and after. `missed_peaks.rs` compares the motion
 //! between impacts with dense sampling, and `reactions.rs` the reactions with the balance of momentum.
-#![allow(non_snake_case)]
 
-mod shaking;
-
+use crate::shaking::shaking;
 use rocking::run::record::Record;
 use rocking::run::validity::{
     ASSUMPTIONS, EDGE_LOAD, ENERGY, IMPACT_FRICTION, IMPACT_TENSION, Limits, TENSION, WEIGHT,
 };
 use rocking::run::{End, Run};
 use rocking::{Detail, Parameters, Phase, Side, State, Structure, Transition, TransitionKind};
-use shaking::shaking;
 
 /// Every level that has impacts, both specimens, stocky and slender, with little and full restitution.
 fn scenes() -> Vec<(Parameters, State, Detail, Record)> {

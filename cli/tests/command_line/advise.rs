@@ -1,9 +1,6 @@
 //! `advise` driven from outside, against runs that are looked at here.
-#![allow(non_snake_case)] // the paper's own letters
 
-mod command_line;
-
-use command_line::{DT, SAMPLES, folder, succeed};
+use crate::{DT, SAMPLES, folder, succeed};
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::estimates::demand::Demand;
 use rocking::estimates::effective_frequency::effective_frequency;

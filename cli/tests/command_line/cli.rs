@@ -1,10 +1,7 @@
 //! The command line driven from outside: what `simulate` writes.
-#![allow(non_snake_case)] // H, V_t, M_t: the paper's own letters
 
-mod command_line;
-
+use crate::{folder, succeed};
 use FlexibleRocking::{resources::Contents, variables::Table};
-use command_line::{folder, succeed};
 use fmi_unit::{Causality, DataType, Variable};
 use rocking::engine::piece::Sample;
 use rocking::structure::any::AnyStructure;

@@ -1,5 +1,12 @@
 //! The command line, run as a user would: a folder with a ground motion, commands, what they print.
-#![allow(dead_code)] // no file of tests uses all of it
+#![allow(non_snake_case)] // H, V_t, M_t: the paper's own letters
+
+mod advise;
+mod cli;
+mod maps;
+mod sweep;
+mod tour;
+mod validity;
 
 use std::{
     fs,

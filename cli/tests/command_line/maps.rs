@@ -1,8 +1,6 @@
 //! Pulses and their overturning spectra, driven from outside.
 
-mod command_line;
-
-use command_line::succeed;
+use crate::succeed;
 use rocking_sweep::pulse::DEFAULT_ERROR;
 use std::collections::HashMap;
 use std::fs;

@@ -1,8 +1,6 @@
 //! `sweep` driven from outside: its probabilities. The tour shows its rows.
 
-mod command_line;
-
-use command_line::{folder, succeed};
+use crate::{folder, succeed};
 use rocking_sweep::fragility::FragilityCurve;
 use rocking_sweep::fragility::Trials;
 use std::fs;

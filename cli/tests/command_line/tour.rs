@@ -2,9 +2,9 @@
 //! is compared with `tour.txt`.
 //!
 //! There, `$` begins a command, `!` a line on standard error; any other line is on standard output, and `[1]` is an exit
-//! code other than 0. `WRITE_TOUR=1 cargo test -p rocking-cli --test tour` writes it anew from its commands.
+//! code other than 0. `WRITE_TOUR=1 cargo test -p rocking-cli --test command_line` writes it anew from its commands.
 
-#[path = "../../records/tests/layouts/mod.rs"]
+#[path = "../../../records/tests/layouts/mod.rs"]
 #[allow(dead_code)] // what else is known of each file
 mod layouts;
 

@@ -1,8 +1,6 @@
 //! The columns of validity in the rows of a `sweep`, against the library's own runs.
 
-mod command_line;
-
-use command_line::{folder, succeed};
+use crate::{folder, succeed};
 use rocking::run::validity::{ASSUMPTIONS, Findings, Limits};
 use rocking::{Parameters, Run, Structure};
 use rocking_records::Reading;
