@@ -1,8 +1,8 @@
-"""What README and the pages print, made: `make pages` writes it, tests/test_pages.py compares it.
+"""What README and the pages print: `make pages` writes it, tests compare it.
 
-Commands of `console` blocks ("$ ...") and scripts of `python` blocks are run, page by page in a folder of its own with
-what `make demo` leaves in out/; what they print follows, that of a script in the `text` block after it. "..." stands for
-anything.
+Commands of `console` blocks ("$ ...") and scripts that a `text` block follows are run, page by page in a folder of its own
+with what `make demo` leaves in out/. The scripts of a page are one program. Those of `py` blocks need the Python module.
+"..." stands for anything.
 """
 
 import doctest
@@ -19,31 +19,44 @@ from fmpy import read_model_description
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*/*.md"))]
+LANGUAGES = ("console", "python", "py")
 COMMAND = re.compile(r"^\$ (?P<shell>.*)\n(?P<told>(?:(?!\$ |```).*\n)*)", re.MULTILINE)
-BLOCK = re.compile(r"^```console\n[^`]*?^```$|^```python\n(?P<python>.*?)^```\n(?:\n```text\n(?P<printed>.*?)^```$)?",
+BLOCK = re.compile(r"^```console\n[^`]*?^```$|^```(?P<language>python|py)\n(?P<script>(?:(?!```)[^\n]*\n)*)```\n\n```text\n(?P<printed>.*?)^```$",
                    re.MULTILINE | re.DOTALL)
 
 
-def rerun(text: str, exporter: Path, folder: Path) -> str:
-    """The page `text` with what its blocks print when they are run in `folder`."""
-    environment = os.environ | {"PATH": f"{exporter.parent}:{Path(sys.executable).parent}:{os.environ['PATH']}"}
+def scripts(text: str, language: str = "py") -> list[tuple[str, str]]:
+    """The scripts of the page `text`, each with what it prints."""
+    return [(of["script"], of["printed"]) for of in BLOCK.finditer(text) if of["language"] == language]
 
-    def output(command: list[str], told: str) -> str:
-        done = subprocess.run(command, cwd=folder, env=environment, text=True, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT)
+
+def rerun(text: str, exporter: Path, folder: Path, languages: tuple[str, ...] = LANGUAGES) -> str:
+    """The page `text` with what its blocks of these languages print when they are run in `folder`."""
+    environment = os.environ | {"PATH": f"{exporter.parent}:{Path(sys.executable).parent}:{os.environ['PATH']}", "MPLBACKEND": "agg"}
+
+    def output(*command: str) -> str:
+        done = subprocess.run(command, cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         assert done.returncode == 0, (command, done.stdout)
-        printed = "".join(f"{line.rstrip()}\n" for line in done.stdout.splitlines())
+        return "".join(f"{line.rstrip()}\n" for line in done.stdout.split("\n")[:-1])
+
+    def kept(told: str, printed: str) -> str:
         return told if doctest.OutputChecker().check_output(told, printed, doctest.ELLIPSIS) else printed
 
     def line(found: re.Match) -> str:
-        return f"$ {found['shell']}\n{output(['bash', '-c', found['shell']], found['told'])}"
+        return f"$ {found['shell']}\n{kept(found['told'], output('bash', '-c', found['shell']))}"
 
     def block(found: re.Match) -> str:
-        if found["python"] is None:
+        language = found["language"] or "console"
+        if language not in languages:
+            return found[0]
+        if language == "console":
             return COMMAND.sub(line, found[0])
-        printed = output([sys.executable, "-c", found["python"]], found["printed"] or "")
-        return f"```python\n{found['python']}```\n" + (printed if found["printed"] is None else f"\n```text\n{printed}```")
+        if language not in printed:  # the first script of the page runs with all that follow
+            program = "print('\\0')\n".join(script for script, _ in scripts(text, language))
+            printed[language] = iter(output(sys.executable, "-c", program).split("\0\n"))
+        return f"```{language}\n{found['script']}```\n\n```text\n{kept(found['printed'], next(printed[language]))}```"
 
+    printed = {}
     return BLOCK.sub(block, text)
 
 

@@ -6,10 +6,8 @@ import re
 import struct
 from pathlib import Path
 
-import pytest
+import lief
 from conftest import ROOT
-
-lief = pytest.importorskip("lief", reason="lief is missing: `make foreign` installs it")
 
 OLDEST_GLIBC = (2, 17)
 OLDEST_MACOS = [11, 0, 0]

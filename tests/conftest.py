@@ -5,6 +5,7 @@ import subprocess
 from pathlib import Path
 
 import pacoima
+import pages
 import pytest
 from host import Fmu
 
@@ -68,3 +69,15 @@ def exact(exporter, pacoima_record):
         return pacoima.engine(exporter, preset, pacoima_record)[:: round(step / min(pacoima.STEPS))]
 
     return outputs
+
+
+@pytest.fixture
+def check_page(exporter, tmp_path):
+    """Runs the blocks of a page, which must print what follows them."""
+
+    def check(name: str, languages=pages.LANGUAGES):
+        text = (ROOT / name).read_text(encoding="utf-8")
+        folder = pages.prepare(tmp_path / "page", exporter)
+        assert pages.rerun(text, exporter, folder, languages) == text, "run `make pages`"
+
+    return check

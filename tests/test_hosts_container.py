@@ -5,11 +5,8 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import pytest
 from fmpy import read_model_description, simulate_fmu
 from fmpy.util import read_csv
-
-pytest.importorskip("fmu_manipulation_toolbox", reason="the FMU Manipulation Toolbox is missing")
 
 FMUCONTAINER = Path(sys.executable).with_name("fmucontainer")
 PIERS = {"Pier1": "mcmanus", "Pier2": "evison"}

@@ -1,9 +1,7 @@
-"""The shared library itself: what it offers and what it needs on Linux, and the same numbers on Windows."""
+"""The shared library itself: what it offers, what it needs, and its numbers on Linux."""
 
-import functools
 import os
 import re
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -13,10 +11,7 @@ import pytest
 from conftest import ROOT
 from fmpy.fmi3 import FMU3Model, FMU3ScheduledExecution, FMU3Slave
 from pacoima import A_G, OUTPUTS, STEPS, TIME, distance, instants, linear, write_record
-from wine import MINGW
-from wine import environment as wine_environment
 
-WINDOWS = "x86_64-pc-windows-gnu"
 HOST = "tests/hosts/load_library/Cargo.toml"
 
 # FMI 2.0: the functions of both interfaces and those of each; FMI 3.0: all that fmpy knows how to call.
@@ -78,17 +73,6 @@ def on_linux(run, linux_host, linux_library):
     return run(linux_host, library=linux_library)
 
 
-@pytest.fixture(scope="module")
-def windows():
-    """The folder of the library for Windows."""
-    if shutil.which("rustup") is None or WINDOWS not in output("rustup", "target", "list", "--installed").split():
-        pytest.skip(f"Rust's target {WINDOWS} is missing")
-    if shutil.which(f"{MINGW}-gcc") is None:
-        pytest.skip(f"{MINGW}-gcc is missing")
-    target = cargo_build("--profile", "dist", "--target", WINDOWS, "--package", "flexible-rocking-fmu")
-    return target / WINDOWS / "dist"
-
-
 def test_linux_library(linux_library):
     assert {line.split()[-1] for line in output("nm", "-D", "--defined-only", linux_library).splitlines()} == FUNCTIONS
     needed = re.findall(r"NEEDED\s+(\S+)", output("objdump", "-p", linux_library))
@@ -103,25 +87,3 @@ def test_linux_host(on_linux, mcmanus):
 def test_linux_host_with_the_record_inside(run, linux_host, linux_library, shaken, exact, step):
     found = run(linux_host, library=linux_library, fmu=shaken["mcmanus"], step=step)
     assert distance(found, exact(step)) < 1e-9
-
-
-@pytest.fixture(scope="module")
-def wine(windows, run, tmp_path_factory):
-    """Runs the host under wine."""
-    folder = tmp_path_factory.mktemp("wine")
-    environment = wine_environment(folder)
-    host = cargo_build("--release", "--target", WINDOWS, "--manifest-path", HOST) / WINDOWS / "release"
-    for file in (windows / "FlexibleRocking.dll", host / "load-library.exe"):
-        shutil.copy(file, folder)
-    return functools.partial(run, "wine", "load-library.exe", library="FlexibleRocking.dll", cwd=folder, env=environment)
-
-
-@pytest.mark.heavy
-def test_windows_gives_the_numbers_of_linux(wine, on_linux):
-    assert distance(wine(), on_linux) < 1e-12
-
-
-@pytest.mark.heavy
-@pytest.mark.parametrize("step", STEPS)
-def test_windows_with_the_record_inside(wine, shaken, exact, step):
-    assert distance(wine(fmu=shaken["mcmanus"], step=step), exact(step)) < 1e-9

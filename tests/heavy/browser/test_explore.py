@@ -17,13 +17,12 @@ from urllib.parse import urlencode
 import numpy as np
 import pandas as pd
 import pytest
+from conftest import ROOT
 from first_run import RECORD, SCALE, TIME_SCALE
+from axe_playwright_python.sync_playwright import Axe
 from PIL import Image
 from test_view import SCALES, browser, new_page, number, wait  # noqa: F401
 
-pytestmark = pytest.mark.heavy
-
-ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "out" / "explore.html"
 EL_CENTRO = next(RECORD.parents[1].glob("*/*ELC180*.AT2"))
 PACOIMA = {"ground": "record", "scale": str(SCALE), "time_scale": str(TIME_SCALE)}
@@ -241,7 +240,7 @@ class Firefox:
 def firefox(tmp_path_factory):
     program = shutil.which("firefox-esr") or shutil.which("firefox")
     if not program:
-        pytest.skip("Firefox is not there: make browser")
+        pytest.skip("Firefox is not there and cannot be installed")
     firefox = Firefox(program, tmp_path_factory.mktemp("firefox"))
     yield firefox
     firefox.stream.close()
@@ -613,7 +612,7 @@ def test_every_view_has_room(opened, size):
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_axe_finds_no_violation(opened, scheme):
-    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="make browser").Axe()
+    axe = Axe()
     page = opened(PACOIMA, color_scheme=scheme)
     drop(page, RECORD.name, RECORD.read_bytes())
     for details in page.locator("details").all():

@@ -8,8 +8,7 @@ import subprocess
 import numpy as np
 import pandas as pd
 import pytest
-
-pytestmark = pytest.mark.heavy
+from playwright.sync_api import sync_playwright
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
@@ -27,10 +26,9 @@ HOSTILE = "</script><script>throw 1</script><!-- <b> & \" \u2028 </title>"
 
 @pytest.fixture(scope="module")
 def browser():
-    sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not there: make browser")
     if not CHROMIUM:
-        pytest.skip("Chromium is not there: make browser")
-    with sync_api.sync_playwright() as playwright:
+        pytest.skip("Chromium is not there and cannot be installed")
+    with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM)
         yield browser
         browser.close()

@@ -12,8 +12,6 @@ from host import Fmu
 from pacoima import distance
 from test_hosts_library import FUNCTIONS, HOST, cargo_build, linux_host, output, run  # noqa: F401
 
-pytestmark = pytest.mark.heavy
-
 X86 = "x86_64-unknown-linux-gnu"
 ARM = "aarch64-unknown-linux-gnu"
 # The loader of glibc 2.31, which `make foreign` takes out of Debian 11's package.

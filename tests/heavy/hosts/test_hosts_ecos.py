@@ -6,11 +6,7 @@ from host import need_libtbb
 from pacoima import A_G, OUTPUTS, STEP, STEPS, distance, held, instants
 
 need_libtbb()
-pytest.importorskip("ecospy", reason="ecospy is missing: `make hosts` installs it")
-
 from ecospy import EcosLib, EcosSimulation, EcosSimulationStructure
-
-pytestmark = pytest.mark.heavy
 
 EcosLib.set_log_level("off")
 

@@ -9,8 +9,6 @@ import pytest
 from conftest import ROOT
 from pacoima import A_G, OUTPUTS, STEPS, TIME, distance, held, instants, write_record
 
-pytestmark = pytest.mark.heavy
-
 
 @pytest.fixture(scope="module")
 def run(mcmanus, tmp_path_factory):

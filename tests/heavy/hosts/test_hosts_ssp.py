@@ -84,7 +84,6 @@ def test_libcosim_with_the_record_inside(ssp, shaken, exact, tmp_path, step):
         assert distance(np.array(samples[name]), exact(step, name)[1:]) < 1e-9
 
 
-@pytest.mark.heavy
 @pytest.mark.parametrize("step", STEPS)
 def test_ecos_with_the_record_inside(ssp, shaken, exact, step):
     need_libtbb()
@@ -120,7 +119,6 @@ def test_libcosim_knows_no_connection_from_the_system(ssp, tmp_path):
     assert get_last_error_message() == "No such node (<xmlattr>.startElement)"
 
 
-@pytest.mark.heavy
 def test_ecos_knows_no_connection_from_the_system(ssp):
     need_libtbb()
     from ecospy import EcosSimulation

@@ -8,13 +8,12 @@ import subprocess
 import sys
 
 import numpy as np
+import pages
 import pytest
 from conftest import ROOT
 from fmpy import read_model_description, simulate_fmu
 from packages import package
 from pacoima import write_record
-
-pytestmark = pytest.mark.heavy
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +39,7 @@ def installed(tmp_path_factory):
 
 def test_the_script_of_the_page_prints_what_the_page_says(installed):
     page = (ROOT / "docs/howto/install.md").read_text(encoding="utf-8")
-    script, printed = re.search(r"```py\n(.*?)```\n\n```text\n(.*?)```", page, re.DOTALL).groups()
+    [(script, printed)] = pages.scripts(page)
     assert installed("python", "-c", script) == printed
 
 

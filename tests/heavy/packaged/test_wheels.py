@@ -13,8 +13,6 @@ from conftest import ROOT
 from packages import package
 from pacoima import write_record
 
-pytestmark = pytest.mark.heavy
-
 TAGS = {
     "linux-x86": "cp310-abi3-manylinux2014_x86_64.manylinux_2_17_x86_64",
     "linux-arm": "cp310-abi3-manylinux2014_aarch64.manylinux_2_17_aarch64",

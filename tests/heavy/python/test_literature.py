@@ -5,11 +5,8 @@ import pandas as pd
 import pytest
 from scipy.integrate import solve_ivp
 
-pytest.importorskip("flexible_rocking", reason="flexible_rocking is not installed: `make python` does it")
-from literature import ensemble, overturning  # noqa: E402
-from literature.slender_block import HALF_SINE, ONE_COSINE, ONE_SINE, boundaries, follow, half_sine_boundary  # noqa: E402
-
-pytestmark = pytest.mark.heavy
+from literature import ensemble, overturning
+from literature.slender_block import HALF_SINE, ONE_COSINE, ONE_SINE, boundaries, follow, half_sine_boundary
 
 
 def integrated(pulse, omega, r, amplitude):

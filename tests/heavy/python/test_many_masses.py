@@ -12,9 +12,7 @@ import pandas as pd
 import pytest
 from frames import FRAMES
 
-fr = pytest.importorskip("flexible_rocking", reason="flexible_rocking is not installed: `make python` does it")
-
-pytestmark = pytest.mark.heavy
+import flexible_rocking as fr
 
 FRAME = FRAMES["frame"]
 BASE = {"m0": FRAME.m0, "J0": FRAME.J0, "B": FRAME.B, "r": FRAME.r}

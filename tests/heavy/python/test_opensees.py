@@ -6,15 +6,12 @@ import numpy as np
 import pytest
 from frames import FRAMES, cantilever
 from scipy.linalg import eigh
-from test_python import test_a_page_of_the_module_prints_what_it_shows as check_page
 
-fr = pytest.importorskip("flexible_rocking", reason="flexible_rocking is not installed: `make python` does it")
+import flexible_rocking as fr
 try:
     import openseespy.opensees as ops
 except (ImportError, RuntimeError) as error:
     pytest.skip(f"OpenSees does not run here: {error}", allow_module_level=True)
-
-pytestmark = pytest.mark.heavy
 
 FRAME = FRAMES["frame"]
 M, H, B, G = FRAME.m, FRAME.h, FRAME.B, 9.81
@@ -80,5 +77,5 @@ def test_corotational_beams_rock_as_the_model_does_but_for_its_p_delta(f_1, with
             assert 0.5 * limit < difference < 1.1 * limit
 
 
-def test_the_page_of_opensees_prints_what_it_shows(tmp_path, monkeypatch):
-    check_page("opensees", tmp_path, monkeypatch)
+def test_the_page_of_opensees_prints_what_it_shows(check_page):
+    check_page("docs/examples/opensees.md")

@@ -20,17 +20,18 @@ from concurrent.futures import ThreadPoolExecutor
 from xml.etree import ElementTree
 
 import numpy as np
+import pages
 import pandas as pd
 import pytest
+import statsmodels.api as api
 from conftest import ROOT
 from first_run import RECORD
 from fmpy import simulate_fmu
+from scipy import stats
 
-fr = pytest.importorskip("flexible_rocking", reason="flexible_rocking is not installed: `make python` does it")
-import python_module  # noqa: E402
-from flexible_rocking import formats  # noqa: E402
-
-pytestmark = pytest.mark.heavy
+import flexible_rocking as fr
+import python_module
+from flexible_rocking import formats
 
 PACOIMA = {"time_scale": 0.2, "scale": 1.45}
 OPTIONS = [part for name, value in PACOIMA.items() for part in (f"--{name.replace('_', '-')}", str(value))]
@@ -370,7 +371,7 @@ def test_pip_installs_a_fresh_clone(tmp_path):
     run("git", "clone", "--quiet", ROOT, clone)
     run(sys.executable, "-m", "venv", "venv")
     run(python, "-m", "pip", "install", "--quiet", clone)
-    script, printed = re.search(r"```py\n(.*?)```\n\n```text\n(.*?)```", (clone / "README.md").read_text(encoding="utf-8"), re.DOTALL).groups()
+    [(script, printed)] = pages.scripts((clone / "README.md").read_text(encoding="utf-8"))
     assert run(python, "-c", script) == printed
     run(python, "-c", "import flexible_rocking as fr; "
                       "fr.export('own.fmu', fr.Structure(preset='evison'), record=fr.pulse('sine', amplitude=0.5, frequency=2))")
@@ -537,7 +538,6 @@ def test_curves_by_a_column_are_those_of_its_rows(two_populations):
 
 def test_curve_and_band_are_those_of_statsmodels(two_populations):
     """A probit regression with a covariance that is robust against clusters; the band by Student's distribution."""
-    statistics, api = pytest.importorskip("scipy.stats"), pytest.importorskip("statsmodels.api")
     rows = two_populations[two_populations["structures"] == "mcmanus"]
     found = fr.fragility(rows, "theta/alpha_cg >= 0.3")
     x, over = np.log(rows["PGV[m/s]"]), (rows["peak_theta/alpha_cg"] >= 0.3) | (rows["ending"] == "overturned")
@@ -550,11 +550,11 @@ def test_curve_and_band_are_those_of_statsmodels(two_populations):
     covariance = groups / (groups - 1) * information @ scores.T @ scores @ information
     at = np.array([0.2, 0.4, 0.9])
     table = found.table(at)
-    assert table["probability"].to_numpy() == pytest.approx(statistics.norm.cdf(np.log(at / found.median) / found.dispersion), rel=1e-12)
+    assert table["probability"].to_numpy() == pytest.approx(stats.norm.cdf(np.log(at / found.median) / found.dispersion), rel=1e-12)
     row = np.column_stack([np.ones(3), np.log(at)])
-    half = statistics.t.ppf(0.975, groups - 1) * np.sqrt(np.sum(row @ covariance * row, axis=1))
+    half = stats.t.ppf(0.975, groups - 1) * np.sqrt(np.sum(row @ covariance * row, axis=1))
     for name, sign in (("low", -1), ("high", 1)):
-        assert table[name].to_numpy() == pytest.approx(statistics.norm.cdf(row @ params + sign * half), rel=5e-3)
+        assert table[name].to_numpy() == pytest.approx(stats.norm.cdf(row @ params + sign * half), rel=5e-3)
 
 
 def test_the_weakest_motion_that_reaches_a_limit_is_found():
@@ -586,7 +586,8 @@ def test_what_has_no_weakest_motion_is_said():
 
 
 def test_a_trace_of_obspy_is_a_record():
-    obspy = pytest.importorskip("obspy")
+    import obspy
+
     trace = obspy.Trace(np.array([0, 100, -50, 25], "int32"), {"delta": 0.02, "network": "NZ", "station": "CBGS", "channel": "HNE"})
     record = fr.Record(trace, unit="cm/s2")
     assert record == fr.Record(0.02, [0, 100, -50, 25], unit="cm/s2", title="NZ.CBGS..HNE") == fr.Record(obspy.Stream([trace]), unit="cm/s2")
@@ -629,7 +630,6 @@ def test_the_sweep_on_dask_comes_to_the_same(tmp_path):
 
 
 def test_the_sweep_on_ray_comes_to_the_same(tmp_path):
-    pytest.importorskip("ray")
     (tmp_path / "out").mkdir()
     shutil.copy(RECORD, tmp_path / "out")
     for name in ("dask", "ray"):
@@ -670,34 +670,13 @@ def test_formats_read_back(tmp_path):
     assert not (tmp_path / "none").exists()
 
 
-@pytest.mark.parametrize("name", ["python", "frames", "choose_numbers", "questions", "contents"])
-def test_a_page_of_the_module_prints_what_it_shows(name, tmp_path, monkeypatch):
-    """WRITE_PAGE=1 writes what is printed into it."""
-    page = ROOT / "docs" / "howto" / f"{name}.md"
-    text = page.read_text(encoding="utf-8")
-    monkeypatch.chdir(tmp_path)
-    names = {}
-
-    def with_output(block):
-        printed = io.StringIO()
-        with contextlib.redirect_stdout(printed):
-            exec(block[1], names)
-        return f"```py\n{block[1]}```\n\n```text\n{printed.getvalue().rstrip()}\n```\n"
-
-    shown = re.sub(r"```py\n(.*?)```\n\n```text\n.*?```\n", with_output, text, flags=re.DOTALL)
-    if os.environ.get("WRITE_PAGE"):
-        page.write_text(shown, encoding="utf-8")
-    assert shown == text
-
-
 def test_statistics_of_the_page_of_sweeps_are_those_of_statsmodels(tmp_path, monkeypatch):
-    stats, api = pytest.importorskip("scipy.stats"), pytest.importorskip("statsmodels.api")
     text = (ROOT / "docs" / "howto" / "sweeps.md").read_text(encoding="utf-8")
     monkeypatch.setenv("MPLBACKEND", "agg")
     monkeypatch.chdir(tmp_path)
     of = {}
     with contextlib.redirect_stdout(io.StringIO()):
-        exec("".join(re.findall(r"```py\n(.*?)```\n", text, re.DOTALL)), of)
+        exec("".join(script for script, _ in pages.scripts(text)), of)
     printed = re.search(r"\n +median    beta.*\n((?:.*\n)+?)```", text)[1].splitlines()
     for line, name in zip(printed, of["measures"], strict=True):
         values = of["target"][name]

@@ -7,13 +7,11 @@ import pytest
 import reference
 from host import G
 
-fr = pytest.importorskip("flexible_rocking", reason="flexible_rocking is not installed: `make python` does it")
-from validation import demand_bound, isolation, modal_components, rocking_frequency  # noqa: E402
-from validation.half_cycles import half_cycles  # noqa: E402
-from validation.records import horizontal_records  # noqa: E402
-from validation.report import Row  # noqa: E402
-
-pytestmark = pytest.mark.heavy
+import flexible_rocking as fr
+from validation import demand_bound, isolation, modal_components, rocking_frequency
+from validation.half_cycles import half_cycles
+from validation.records import horizontal_records
+from validation.report import Row
 
 
 def test_equation_14_is_within_a_percent_for_large_amplitudes():

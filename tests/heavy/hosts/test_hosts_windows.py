@@ -1,0 +1,43 @@
+"""The library for Windows under wine: the numbers of Linux."""
+
+import functools
+import shutil
+
+import pytest
+from pacoima import STEPS, distance
+from test_hosts_library import HOST, cargo_build, linux_host, linux_library, on_linux, output, run  # noqa: F401
+from wine import MINGW
+from wine import environment as wine_environment
+
+WINDOWS = "x86_64-pc-windows-gnu"
+
+
+@pytest.fixture(scope="module")
+def windows():
+    """The folder of the library for Windows."""
+    if shutil.which("rustup") is None or WINDOWS not in output("rustup", "target", "list", "--installed").split():
+        pytest.skip(f"Rust's target {WINDOWS} is missing")
+    if shutil.which(f"{MINGW}-gcc") is None:
+        pytest.skip(f"{MINGW}-gcc is missing")
+    target = cargo_build("--profile", "dist", "--target", WINDOWS, "--package", "flexible-rocking-fmu")
+    return target / WINDOWS / "dist"
+
+
+@pytest.fixture(scope="module")
+def wine(windows, run, tmp_path_factory):
+    """Runs the host under wine."""
+    folder = tmp_path_factory.mktemp("wine")
+    environment = wine_environment(folder)
+    host = cargo_build("--release", "--target", WINDOWS, "--manifest-path", HOST) / WINDOWS / "release"
+    for file in (windows / "FlexibleRocking.dll", host / "load-library.exe"):
+        shutil.copy(file, folder)
+    return functools.partial(run, "wine", "load-library.exe", library="FlexibleRocking.dll", cwd=folder, env=environment)
+
+
+def test_windows_gives_the_numbers_of_linux(wine, on_linux):
+    assert distance(wine(), on_linux) < 1e-12
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_windows_with_the_record_inside(wine, shaken, exact, step):
+    assert distance(wine(fmu=shaken["mcmanus"], step=step), exact(step)) < 1e-9
