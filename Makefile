@@ -15,7 +15,7 @@
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux, Windows and macOS with module, command line and archive, and one of the source
 # make release out/release: archive, packages, page, checksums and changes of a version that has no tag yet, tested
-# make docs    the site in out/site; fails at a link, an anchor or a picture that is not there (seconds)
+# make docs    the site in out/site; fails at a link, an anchor or a picture that is not there (seconds, beside the module)
 # make pages   write anew what README and the pages print (a minute)
 # make pictures  draw anew those of README, of the model and of how to choose numbers (minutes)
 # make report  regenerate docs/evidence/paper.md, docs/evidence/literature.md and their figures (minutes)
@@ -250,7 +250,8 @@ zig: .venv/dist
 	rustup target add $(ZIG_PARTS)
 	for target in $(ZIG); do $(ZIGBUILD) --package flexible-rocking-fmu --target $$target || exit; done
 
-docs: .venv/docs
+docs: .venv/docs module
+	PYTHONPATH=examples $(PYTHON) docs/pages.py --site $(TARGET)/release/rocking-fmu
 	$(PYTHON) -m sphinx -W --keep-going -q -b html -c docs -d out/doctrees . out/site
 
 pages: .venv/test exporter records

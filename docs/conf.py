@@ -1,6 +1,7 @@
 """The site, `make docs`. Its source is the repository: links of README and of the pages hold on it as in the files."""
 
 import re
+from importlib.util import find_spec
 
 import latex2mathml.converter
 
@@ -14,7 +15,7 @@ external_toc_path = "docs/toc.yml"
 html_theme = "furo"
 html_title = project
 html_copy_source = False
-html_static_path = ["static"]
+html_static_path = ["static", f"{find_spec('ziamath').submodule_search_locations[0]}/fonts"]  # STIX Two Math
 html_css_files = ["site.css"]
 html_math_renderer = "mathml"
 myst_enable_extensions = ["dollarmath"]

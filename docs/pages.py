@@ -1,11 +1,14 @@
-"""What README and the pages print: `make pages` writes it, tests compare it.
+"""What README and the pages print: `make pages` writes it, tests compare it. `make docs` writes the references of the command line
+and of Python to out/reference, from which the site takes them.
 
 Commands of `console` blocks ("$ ...") and scripts that a `text` block follows are run, page by page in a folder of its own
 with what `make demo` leaves in out/. The scripts of a page are one program. Those of `py` blocks need the Python module.
 "..." stands for anything.
 """
 
+import argparse
 import doctest
+import inspect
 import os
 import re
 import shutil
@@ -94,7 +97,7 @@ def row(name: str, meaning: str) -> list[str]:
 
 
 def command_line(exporter: Path) -> str:
-    """docs/reference/command_line.md: an option that several commands have stands once."""
+    """The commands and options of `rocking-fmu`, from its help: an option that several commands have stands once."""
     def printed(*arguments: str) -> str:
         text = subprocess.run([exporter, *arguments, "--help"], check=True, capture_output=True, text=True).stdout
         return "".join(f"{line.rstrip()}\n" for line in text.splitlines())
@@ -108,9 +111,7 @@ def command_line(exporter: Path) -> str:
         for option in options(text):
             commands.setdefault(option, []).append(command)
 
-    page = ("# Command line\n\nWhich commands and options does `rocking-fmu` have? `rocking-fmu COMMAND --help` prints the same text.\n"
-            "[Runs](runs.md) has the rules that every run follows.\n\n")
-    page += table(["command", "does"], [[f"[`{name}`](#{name})", what] for name, what in summaries.items()])
+    page = table(["command", "does"], [[f"[`{name}`](#{name})", what] for name, what in summaries.items()])
     page += f"\n{re.search(r'^A structure .*?(?=^Usage)', whole, re.MULTILINE | re.DOTALL)[0]}"
     page += "## Options of several commands\n\nEvery command has `--help` and `--quiet`, which prints only errors on standard error.\n"
     for group in dict.fromkeys(map(tuple, commands.values())):
@@ -123,6 +124,34 @@ def command_line(exporter: Path) -> str:
         own = [row(*option) for option in options(text) if len(commands[option]) == 1]
         page += f"\n{table(['option', 'meaning'], own)}" if own else ""
         page += f"\n```text\n{examples.rstrip()}\n```\n"
+    return page
+
+
+ARGUMENT = re.compile(r"^(\w+(?:, \w+)*): ", re.MULTILINE)
+
+
+def described(title: str, thing) -> str:
+    """A section with the signature and the docstring of a class, a function or an attribute; a line "name: ..." begins an item."""
+    try:
+        signature = f"```py\n{title}{inspect.signature(thing)}\n```\n\n"
+    except (TypeError, ValueError):
+        signature = ""
+    text = (inspect.getdoc(thing) or "").replace("<", "\\<").replace("*", "\\*")
+    paragraphs = [ARGUMENT.sub(r"\n- **\1**: ", paragraph).strip() for paragraph in text.split("\n\n")]
+    return f"{title}\n\n{signature}" + "\n\n".join(paragraphs) + "\n\n"
+
+
+def python() -> str:
+    """What the Python module offers, from its docstrings."""
+    import flexible_rocking as fr
+
+    page = ""
+    for name in sorted(set(fr.__all__) - {"__version__"}, key=lambda name: (name[0].isupper(), name.lower())):
+        thing = getattr(fr, name)
+        page += f"## {described(name, thing)}"
+        own = vars(thing) if inspect.isclass(thing) else {}
+        page += "".join(f"### {described(f'{name}.{part}', getattr(thing, part))}" for part in own
+                        if not part.startswith("_") and inspect.getdoc(getattr(thing, part)))
     return page
 
 
@@ -204,12 +233,21 @@ def variables(fmu: Path, building: Path) -> str:
 
 
 def main() -> None:
-    exporter = Path(sys.argv[1]).resolve()
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n\n")[0])
+    parser.add_argument("exporter", type=Path, help="rocking-fmu")
+    parser.add_argument("--site", action="store_true", help="write the references of the site instead")
+    arguments = parser.parse_args()
+    exporter = arguments.exporter.resolve()
+    if arguments.site:
+        folder = ROOT / "out/reference"
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "command_line.md").write_text(command_line(exporter), encoding="utf-8")
+        (folder / "python.md").write_text(python(), encoding="utf-8")
+        return
     with tempfile.TemporaryDirectory() as temporary:
         for number, page in enumerate(PAGES):
             folder = prepare(Path(temporary) / str(number), exporter)
             page.write_text(rerun(page.read_text(encoding="utf-8"), exporter, folder), encoding="utf-8")
-        (ROOT / "docs/reference/command_line.md").write_text(command_line(exporter), encoding="utf-8")
         (ROOT / "docs/reference/variables.md").write_text(
             variables(folder / "out/mcmanus.fmu", building(exporter, Path(temporary))), encoding="utf-8")
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -12,8 +13,19 @@ if TYPE_CHECKING:
 
     from ._native import Run
 
-LABELS = {"a_g": ("m/s2", "$a_g$"), "theta": ("rad", r"$\theta$"), "u": ("m", "$u$"), "a_t": ("m/s2", "$a_t$")}
-OVER_HEIGHT = {"a_t": ("m/s2", "acceleration"), "drift": ("m", "drift"), "V": ("N", "storey shear"), "M": ("N.m", "storey moment")}
+# Of each quantity in a picture: what it is called, the unit, and how much of its SI unit that is; accelerations are in g.
+LABELS = {"a_g": ("$a_g$", "g", 0.0), "theta": (r"$\theta$", "rad", 1.0), "u": ("$u$", "mm", 1e-3), "a_t": ("$a_t$", "g", 0.0)}
+OVER_HEIGHT = {"a_t": ("acceleration", "g", 0.0), "drift": ("drift", "mm", 1e-3), "V": ("storey shear", "kN", 1e3),
+               "M": ("storey moment", "kN m", 1e3)}
+
+
+def extra(name: str) -> Any:
+    """The module `name`, which the package's extra `all` installs. Raises ImportError with the remedy if it is missing."""
+    try:
+        return import_module(name)
+    except ImportError as missing:
+        raise ImportError(f"{missing.name} is missing: run pip install \"flexible-rocking[all]\", or in a clone of the source "
+                          "pip install \".[all]\"", name=missing.name) from missing
 
 
 class Peak(float):
@@ -67,7 +79,7 @@ class Transitions(list[Transition]):
 
     def to_pandas(self) -> "pd.DataFrame":
         """A DataFrame with the time as its index, the kind, and the state before and after: a row per transition."""
-        import pandas
+        pandas = extra("pandas")
 
         states = [f"{name}_{when}" for when in ("before", "after") for name in self.components]
         rows = [(of.time, of.kind, *of.before.values(), *of.after.values()) for of in self]
@@ -125,7 +137,7 @@ class Response(dict[str, "NDArray[Any]"]):
 
     def to_pandas(self) -> "pd.DataFrame":
         """A DataFrame with the first array, the time, as its index and a column a quantity."""
-        import pandas
+        pandas = extra("pandas")
 
         return pandas.DataFrame(dict(self)).set_index(next(iter(self)))
 
@@ -162,20 +174,19 @@ def plot_run(run: "Run", kind: str) -> "Figure":
 def plot_profile(run: "Run") -> "Figure":
     """Peaks of floors and storeys over the height, and those of the structure on a fixed base, as far as the run goes."""
     import numpy as np
-    from matplotlib import pyplot
 
     from ._native import simulate
 
     if not len(run.profile["h"]):
         raise ValueError("the structure has no floors, and therefore no profile: give masses, heights and shapes")
     fixed = simulate(run.structure, run.record, detail="fixed_base", tolerance=run.tolerance, duration=run.end - run.start)
-    figure, axes = pyplot.subplots(1, len(OVER_HEIGHT), sharey=True, figsize=(10, 5), layout="constrained")
+    figure, axes = extra("matplotlib.pyplot").subplots(1, len(OVER_HEIGHT), sharey=True, figsize=(10, 5), layout="constrained")
     for of, label, style in ((run, "rocking", "-o"), (fixed, "fixed base", "--o")):
         h = np.concatenate([[0], of.profile["h"]])
-        for axis, (name, (unit, title)) in zip(axes, OVER_HEIGHT.items()):
-            values = of.profile[name]
+        for axis, (name, (title, unit, size)) in zip(axes, OVER_HEIGHT.items()):
+            values = of.profile[name] / (size or run.structure.g)
             if name == "a_t":
-                axis.plot(np.concatenate([[of.peaks["a_g"]], values]), h, style, markersize=3, label=label)
+                axis.plot(np.concatenate([[of.peaks["a_g"] / run.structure.g], values]), h, style, markersize=3, label=label)
             elif name == "M":  # linear over a storey
                 axis.plot(np.concatenate([values, [0]]), h, style, markersize=3, label=label)
             else:
@@ -192,18 +203,18 @@ def plot_profile(run: "Run") -> "Figure":
 def plot_history(run: "Run") -> "Figure":
     """The histories of a run, with marks at its transitions, and a dashed line from which the structure falls."""
     import numpy as np
-    from matplotlib import pyplot
 
     response = run.at(np.linspace(run.start, run.end, 4001))
     top = f"[{len(run.profile['h'])}]"
     names = {name: name if name in response else name + top for name in LABELS}
     shown = {name: of for name, of in names.items() if of in response}
-    figure, axes = pyplot.subplots(len(shown), sharex=True, figsize=(8, 7), layout="constrained")
+    figure, axes = extra("matplotlib.pyplot").subplots(len(shown), sharex=True, figsize=(8, 7), layout="constrained")
     instants = [transition.time for transition in run.transitions]
     for axis, (label, name) in zip(axes, shown.items()):
-        unit, symbol = LABELS[label]
-        axis.plot(response["time"], response[name], linewidth=0.8)
-        axis.plot(instants, run.at(instants)[name], ".", markersize=3)
+        symbol, unit, size = LABELS[label]
+        size = size or run.structure.g
+        axis.plot(response["time"], response[name] / size, linewidth=0.8)
+        axis.plot(instants, run.at(instants)[name] / size, ".", markersize=3)
         axis.set(ylabel=f"{symbol}{name.removeprefix(label)} ({unit})", xlim=(run.start, run.end))
         if run.fall is not None:
             axis.axvline(run.fall, color="tab:purple", linestyle="--", linewidth=0.8)

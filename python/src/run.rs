@@ -248,7 +248,7 @@ impl Run {
 
     /// Draws the run with matplotlib and returns the figure. "history": a_g, theta, u and a_t over time, with marks at
     /// transitions; of many masses u and a_t of the top floor. "profile": the largest acceleration, drift, shear and moment of each
-    /// floor and storey over the height, and the same on a fixed base.
+    /// floor and storey over the height, and the same on a fixed base. Accelerations are in g, lengths in mm, forces in kN. Needs matplotlib.
     #[pyo3(signature = (kind="history"))]
     fn plot<'py>(slf: Bound<'py, Self>, kind: &str) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("flexible_rocking._results")?.call_method1("plot_run", (&slf, kind))
