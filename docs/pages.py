@@ -133,7 +133,9 @@ ARGUMENT = re.compile(r"^(\w+(?:, \w+)*): ", re.MULTILINE)
 def described(title: str, thing) -> str:
     """A section with the signature and the docstring of a class, a function or an attribute; a line "name: ..." begins an item."""
     try:
-        signature = f"```py\n{title}{inspect.signature(thing)}\n```\n\n"
+        of = inspect.signature(thing)
+        plain = [argument.replace(annotation=argument.empty) for argument in of.parameters.values()]
+        signature = f"```py\n{title}{of.replace(parameters=plain, return_annotation=of.empty)}\n```\n\n"
     except (TypeError, ValueError):
         signature = ""
     text = (inspect.getdoc(thing) or "").replace("<", "\\<").replace("*", "\\*")
