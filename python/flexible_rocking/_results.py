@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 # Of each quantity in a picture: what it is called, the unit, and how much of its SI unit that is; accelerations are in g.
 LABELS = {"a_g": ("$a_g$", "g", 0.0), "theta": (r"$\theta$", "rad", 1.0), "u": ("$u$", "mm", 1e-3), "a_t": ("$a_t$", "g", 0.0)}
 OVER_HEIGHT = {"a_t": ("acceleration", "g", 0.0), "drift": ("drift", "mm", 1e-3), "V": ("storey shear", "kN", 1e3),
-               "M": ("storey moment", "kN m", 1e3)}
+               "M": ("storey moment", "kN.m", 1e3)}
 
 
 def extra(name: str) -> Any:
@@ -194,6 +194,7 @@ def plot_profile(run: "Run") -> "Figure":
             axis.set(xlabel=f"{title} ({unit})")
     for axis in axes:
         axis.set(xlim=(0, None), ylim=(0, None))
+        axis.locator_params(axis="x", nbins=3)
     axes[0].set(ylabel="height (m)")
     axes[0].legend()
     figure.suptitle(run.record.title)

@@ -608,6 +608,12 @@ def test_every_view_has_room(opened, size):
             assert page.locator("#charts").bounding_box()["height"] >= 440, tab
     heights = page.locator("#heights")
     assert heights.evaluate("heights => heights.scrollHeight - heights.clientHeight") <= 0
+    for tab in ("compare", "map", "export"):
+        page.locator("#tab-play").click()
+        page.evaluate("scrollTo(0, 0)")
+        page.locator(f"#tab-{tab}").click()
+        stage, panel = (page.locator(id).bounding_box() for id in ("#stage", "#panel"))
+        assert width > 760 or stage["y"] + stage["height"] <= panel["y"] + 1 < height, tab
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

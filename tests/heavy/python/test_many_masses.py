@@ -224,7 +224,7 @@ def test_pictures_of_a_building_show_its_top_and_its_height(run, monkeypatch):
     assert [line.get_label() for line in axes[0].lines] == ["rocking", "fixed base"]
     fixed = fr.simulate(building(), wavelet(), detail="fixed_base", duration=run.end - run.start)
     np.testing.assert_allclose(axes[0].lines[1].get_xdata()[1:], fixed.profile["a_t"] / 9.81)
-    in_si = {"acceleration (g)": ("a_t", 9.81), "drift (mm)": ("drift", 1e-3), "storey shear (kN)": ("V", 1e3), "storey moment (kN m)": ("M", 1e3)}
+    in_si = {"acceleration (g)": ("a_t", 9.81), "drift (mm)": ("drift", 1e-3), "storey shear (kN)": ("V", 1e3), "storey moment (kN.m)": ("M", 1e3)}
     assert [axis.get_xlabel() for axis in axes] == list(in_si)
     for axis, (name, size) in zip(axes, in_si.values()):
         largest = max(of.profile[name].max() for of in (run, fixed)) / size
