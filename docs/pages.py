@@ -1,5 +1,5 @@
-"""What README and the pages print: `make pages` writes it, tests compare it. `make docs` writes the references of the command line
-and of Python to out/reference, from which the site takes them.
+"""What README and the pages print: `make pages` writes it, tests compare it. `make docs` writes the references of the command line,
+of Python and of the FMU's variables to out/reference, from which the site takes them.
 
 Commands of `console` blocks ("$ ...") and scripts that a `text` block follows are run, page by page in a folder of its own
 with what `make demo` leaves in out/. The scripts of a page are one program. Those of `py` blocks need the Python module.
@@ -200,10 +200,8 @@ def with_instants(described: list) -> list[tuple]:
 
 
 def variables(fmu: Path, building: Path) -> str:
-    """docs/reference/variables.md, from the FMU of one mass and that of a building."""
-    page = ("# Variables\n\nWhich variables does the FMU have, in which units and ranges? This is the model description of "
-            "McManus's pier,\n`rocking-fmu export --preset mcmanus`. The values are that structure's. Request local variables "
-            "by name.\n[Runs](runs.md) has the rules that every run follows.\n")
+    """The variables of the FMU, from that of one mass and that of a building."""
+    page = ""
 
     def number(value: str | None) -> str:
         return "" if value is None else re.sub(r"e([+-])0?", r"e\1", f"{float(value):g}").replace("e+", "e")
@@ -240,18 +238,18 @@ def main() -> None:
     parser.add_argument("--site", action="store_true", help="write the references of the site instead")
     arguments = parser.parse_args()
     exporter = arguments.exporter.resolve()
-    if arguments.site:
-        folder = ROOT / "out/reference"
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / "command_line.md").write_text(command_line(exporter), encoding="utf-8")
-        (folder / "python.md").write_text(python(), encoding="utf-8")
-        return
     with tempfile.TemporaryDirectory() as temporary:
-        for number, page in enumerate(PAGES):
-            folder = prepare(Path(temporary) / str(number), exporter)
-            page.write_text(rerun(page.read_text(encoding="utf-8"), exporter, folder), encoding="utf-8")
-        (ROOT / "docs/reference/variables.md").write_text(
-            variables(folder / "out/mcmanus.fmu", building(exporter, Path(temporary))), encoding="utf-8")
+        if not arguments.site:
+            for number, page in enumerate(PAGES):
+                folder = prepare(Path(temporary) / str(number), exporter)
+                page.write_text(rerun(page.read_text(encoding="utf-8"), exporter, folder), encoding="utf-8")
+            return
+        fmus = prepare(Path(temporary) / "fmus", exporter) / "out/mcmanus.fmu", building(exporter, Path(temporary))
+        references = {"command_line": command_line(exporter), "python": python(), "variables": variables(*fmus)}
+    folder = ROOT / "out/reference"
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, page in references.items():
+        (folder / f"{name}.md").write_text(page, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -15,11 +15,6 @@ def test_the_first_pages_print_what_their_commands_print(page, check_page):
     check_page(page, ("console", "python"))
 
 
-def test_the_variables_are_those_of_the_model_description(mcmanus, exporter, tmp_path):
-    page = (ROOT / "docs/reference/variables.md").read_text(encoding="utf-8")
-    assert pages.variables(mcmanus.path, pages.building(exporter, tmp_path)) == page, "run `make pages`"
-
-
 def test_readme_has_the_findings_of_their_script(exporter, tmp_path):
     folder = pages.prepare(tmp_path / "page", exporter)
     environment = os.environ | {"PATH": f"{exporter.parent}:{os.environ['PATH']}"}

@@ -687,6 +687,4 @@ def test_statistics_of_the_page_of_sweeps_are_those_of_statsmodels(tmp_path, mon
         p = [api.OLS(np.log(values).to_numpy(), api.add_constant(other.to_numpy())).fit().pvalues[1] for other in of["others"].values()]
         expected = [median, deviation * np.sqrt(len(values) / (len(values) - 1)), *p]
         assert [float(number) for number in line.split()[-4:]] == pytest.approx(expected, abs=6e-4)
-    rotation = of["rotation"]["pier"]
-    assert (np.exp(-of["a"] / of["b"]), 1 / of["b"]) == pytest.approx((rotation.median, rotation.dispersion), rel=1e-5)
     assert of["rate"] == pytest.approx(of["closed"], rel=1e-3)
