@@ -37,7 +37,7 @@ def main() -> None:
 
     print(f"- **Speed.** To six digits of θ the cheapest other method takes {min(slower):.1f} to {max(slower):.1f} times as long as this engine.")
     print("- **Accuracy.** Locating the transitions (uplift, impact, landing) matters most. With transitions located, the Runge-Kutta method RK4 reaches six digits with steps of")
-    print(f"  {min(steps):.2f} to {max(steps):.2f} ms. With transitions at the ends of steps its smallest errors are {min(at_ends):.0e} to {max(at_ends):.0e} of the peak.")
+    print(f"  {min(steps):.2f} to {max(steps):.2f} ms. The smallest errors of RK4 with transitions at the ends of steps are {min(at_ends):.0e} to {max(at_ends):.0e} of the peak.")
     print(f"- **Level of detail.** Two uncoupled modes (level `modal`) have errors of {right.min():.0%} to {right.max():.0%} of the peak in the history of θ in {len(right)} of {len(two_modes)} scenes. In")
     print(f"  the fourth, `modal` predicts overturning at {fallen:.0f} s. The full equations predict that the pier is {full['ending']} at {full['end']:.0f} s.")
 
