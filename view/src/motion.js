@@ -781,5 +781,5 @@ function motionView() {
   }
 
   play(false);
-  return { decode, show, play, isPlaying: () => isPlaying, significant, power };
+  return { decode, show, play, isPlaying: () => isPlaying, significant };
 }

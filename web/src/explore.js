@@ -35,7 +35,6 @@
 
   let fields = {};
   let tab = "play";
-  let step = "0.001"; // of RK4, s
   let file; // the user's record: its name, and as `packed` the bytes for a link, empty if they are too many
   let isLinked; // whether the link says how the next file is read
   let isSeen; // whether the scene of this link has been shown
@@ -46,7 +45,7 @@
   async function follow() {
     const link = new URLSearchParams(location.hash.slice(1));
     const texts = [...link.keys()].map((key) => [key, link.getAll(key).join(", ")]);
-    ({ tab = "play", step = "0.001", ...fields } = Object.fromEntries(texts));
+    ({ tab = "play", ...fields } = Object.fromEntries(texts));
     if (location.hash.length < 2) fields = first();
     [isLinked, isSeen] = [true, false];
     if (ground() !== "record" || !fields.record) return;
@@ -205,10 +204,6 @@
     const slider = () => (of.name === "modes" ? [1, Math.max(2, storeys().length)] : of.slider);
     row(parent, { ...of, slider }, (value) => give(of.name, value));
   }
-  row("step", { name: "step", unit: "s", description: "step of RK4", slider: () => [1e-5, 0.02] }, (value) => {
-    step = value || "0.001";
-    later();
-  });
 
   at("preset").append(...Object.keys(structures).map((name) => new Option("", name)));
   const grounds = { el_centro: "El Centro, 1940", record: "your record", free: "free vibration", synthetic: "synthetic record" };
@@ -318,7 +313,6 @@
       rows[name](Number(fields[name] ?? { cycles, modes: storeys().length }[name] ?? usual), name in fields);
       rows[name].element.hidden = !own.includes(name) && !(name in fields);
     }
-    rows.step(Number(step), false);
   }
 
   const elCentroFrom =
@@ -443,7 +437,7 @@
 
   function settle() {
     const { name: record, packed } = (ground() === "record" && file) || {};
-    const shown = { ...(tab === "play" ? {} : { tab }), ...(tab === "speed" ? { step } : {}) };
+    const shown = tab === "play" ? {} : { tab };
     const scene = new URLSearchParams({ ...fields, ...shown, ...(record && { record }), ...(packed && { packed }) });
     history.replaceState(null, "", `#${scene}`);
     update(1e-4);
@@ -457,9 +451,9 @@
   worker.postMessage({ module, elCentro });
   let job = 0;
   let onPart;
-  function ask(kind, scene, part, more = {}) {
+  function ask(kind, scene, part) {
     onPart = part;
-    worker.postMessage({ ...more, kind, fields: JSON.stringify(scene), job: ++job });
+    worker.postMessage({ kind, fields: JSON.stringify(scene), job: ++job });
   }
   worker.onmessage = ({ data }) => {
     if (data.job !== job) return;
@@ -611,115 +605,6 @@
     change();
   });
 
-  /** The methods that the study measured: of each the runs, and the least time to six digits of θ. */
-  const peers = (() => {
-    const [head, ...lines] = at("measured").textContent.trim().split("\n").map((line) =>
-      [...line.matchAll(/(?:^|,)(?:"([^"]*)"|([^,]*))/g)].map(([, quoted, bare]) => quoted ?? bare),
-    );
-    const methods = new Map();
-    for (const cells of lines) {
-      const of = Object.fromEntries(head.map((name, i) => [name, cells[i]]));
-      const error = Number(of.error_theta || Infinity);
-      const run = { evaluations: Number(of.evaluations_per_sample), error, time: Number(of.microseconds_per_sample) };
-      if (Number.isFinite(error)) methods.set(of.method, [...(methods.get(of.method) ?? []), run]);
-    }
-    const least = (runs) => Math.min(...runs.filter(({ error }) => error <= 1e-6).map(({ time }) => time));
-    return [...methods]
-      .filter(([name]) => !name.startsWith("this project") || name === "this project, auto")
-      .map(([name, runs]) => ({ name, runs, time: least(runs) }))
-      .sort((a, b) => a.time - b.time || a.name.localeCompare(b.name));
-  })();
-  const ours = peers.find(({ name }) => name === "this project, auto");
-  at("peers").tBodies[0].append(
-    ...peers.map(({ name, time }) => {
-      const isReached = Number.isFinite(time);
-      const cells = isReached ? [view.significant(time, 2), view.significant(time / ours.time, 2)] : ["not reached", "–"];
-      const made = line([name, ...cells]);
-      made.classList.toggle("own", name === ours.name);
-      return made;
-    }),
-  );
-
-  function drawSpeed() {
-    const tolerances = Array.from({ length: 10 }, (_, i) => `1e-${i + 3}`);
-    const steps = Array.from({ length: 10 }, (_, i) => 0.02 / 2 ** i);
-    const all = [...tolerances.map((tolerance) => ({ tolerance })), ...steps.map((step) => ({ step }))];
-    const own = [{ tolerance: value("tolerance") }, { step: Number(step) }];
-    const settings = [...own, ...all];
-    const found = [];
-    at("methods").tBodies[0].replaceChildren();
-    drawPrecision(found);
-    ask("speed", fields, (part) => {
-      const error = unlimited(part.error);
-      found.push({ ...part, error, evaluations: part.evaluations / part.samples, isOwn: found.length < own.length });
-      if (found.length <= own.length) {
-        const name = part.tolerance ? `engine, tolerance ${short(Number(part.tolerance))}` : `RK4, step ${short(Number(step))} s`;
-        const time = `${view.significant(part.time, 2)} ms`;
-        at("methods").tBodies[0].append(line([name, view.significant(error, 2), part.evaluations, time]));
-      }
-      drawPrecision(found);
-    }, { settings });
-  }
-
-  function drawPrecision(found) {
-    const chart = at("precision");
-    const { width, height } = chart.getBoundingClientRect();
-    chart.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    chart.replaceChildren();
-    const [left, right, top, bottom] = [46, width - 14, 22, height - 34];
-    const decades = 5;
-    const x = (evaluations) => left + (Math.log10(Math.min(10 ** decades, Math.max(1, evaluations))) / decades) * (right - left);
-    const y = (error) => top + ((-Math.log10(Math.min(10, Math.max(1e-14, error))) + 1) / 15) * (bottom - top);
-    for (let exponent = 0; exponent <= decades; exponent++) {
-      const at = x(10 ** exponent);
-      svg(chart, "line", { class: "grid", x1: at, x2: at, y1: top, y2: bottom });
-      svg(chart, "text", { x: at, y: bottom + 15, "text-anchor": "middle" }, view.power(exponent));
-    }
-    for (const exponent of [0, -3, -6, -9, -12]) {
-      const at = y(10 ** exponent);
-      svg(chart, "line", { class: "grid", x1: left, x2: right, y1: at, y2: at });
-      svg(chart, "text", { x: left - 6, y: at + 4, "text-anchor": "end" }, view.power(exponent));
-    }
-    svg(chart, "text", { x: left, y: 13 }, "error as a fraction of the peak");
-    svg(chart, "text", { class: "muted", x: right, y: bottom + 30, "text-anchor": "end" }, "evaluations a sample of the record");
-    /** Draws a curve over all `runs`. Returns them in order. */
-    const curve = (runs, style, width, dashes = "") => {
-      const points = runs.toSorted((a, b) => a.evaluations - b.evaluations);
-      const d = points.map(({ evaluations, error }, i) => `${i ? "L" : "M"}${x(evaluations)} ${y(error)}`).join("");
-      svg(chart, "path", { class: "curve", style: `stroke:${style};stroke-width:${width};stroke-dasharray:${dashes}`, d });
-      return points;
-    };
-    const taken = []; // places of names
-    /** Writes a name at the end of a curve, if there is room. */
-    const write = (name, points, style) => {
-      const last = points.at(-1);
-      if (!last) return;
-      const [long, lift] = [7 * name.length, last.error < 1e-12 ? -6 : 14];
-      const middle = Math.min(right - long / 2, Math.max(left + long / 2, x(last.evaluations)));
-      const place = { from: middle - long / 2, to: middle + long / 2, y: y(last.error) + lift };
-      const isFree = taken.every((of) => of.to < place.from || of.from > place.to || Math.abs(of.y - place.y) > 13);
-      if (!isFree) return;
-      taken.push(place);
-      svg(chart, "text", { x: middle, y: place.y, "text-anchor": "middle", style: `fill:${style}` }, name);
-    };
-    const isEngine = ({ tolerance }) => tolerance !== undefined;
-    const live = [["engine", "var(--blue)", found.filter(isEngine)], ["RK4", "var(--orange)", found.filter((run) => !isEngine(run))]];
-    const others = peers.filter((of) => of !== ours);
-    const drawn = others.map(({ name, runs }) => {
-      const [method, how] = name.split(", ");
-      const isAtEnds = how === "transitions at step ends";
-      return [isAtEnds ? how : method, curve(runs, "var(--grey)", 0.9, isAtEnds ? "4 3" : "")];
-    });
-    for (const [name, style, runs] of live) {
-      const points = curve(runs, style, 1.6);
-      for (const { evaluations, error, isOwn } of points) {
-        svg(chart, "circle", { class: isOwn ? "chosen" : "", cx: x(evaluations), cy: y(error), r: isOwn ? 6 : 3, style: `fill:${style}` });
-      }
-      write(name, points, style);
-    }
-    for (const [name, points] of new Map(drawn)) write(name, points, "var(--muted)");
-  }
-
   function drawExport() {
     const [command, script, toSet] = JSON.parse(explorer.taken_along(text()));
     at("link").textContent = location.href;
@@ -767,7 +652,6 @@
     play: drawValidity,
     compare: ofOneMass(() => ask("compare", fields, drawLevels)),
     map: ofOneMass(drawMap),
-    speed: ofOneMass(drawSpeed),
     export: drawExport,
   };
   const tabs = [...at("tabs").children];

@@ -2,22 +2,21 @@
 #![allow(non_snake_case)] // H, B: the paper's own letters
 
 mod map;
-mod runge_kutta;
 mod scene;
 mod take;
 
 use fmu_export::{Library, ModelName, Version};
-use rocking::engine::{Moves, piece::Sample};
+use rocking::engine::Moves;
 use rocking::levels::detail::Detail;
-use rocking::run::levels::{Choice, Criterion, REFERENCE_TOLERANCE, RULE, Verdict, compare, relative};
+use rocking::run::levels::{Choice, Criterion, RULE, Verdict, compare, relative};
 use rocking::run::peaks::{self, Peak};
 use rocking::run::validity::{self, ASSUMPTIONS, Findings, Limits, Validity};
-use rocking::run::{End, RunError};
+use rocking::run::RunError;
 use rocking::structure::any::{AnyStructure, OF_FRAME, OF_MODE};
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::{DERIVED, Derived, Ties};
-use rocking::{Body, Frame, Motion, Run, State, Structure, Watch};
+use rocking::{Body, Frame, Motion, Run, Structure, Watch};
 use rocking_records::Unit;
 use rocking_sweep::{map::CLASSES, pulse::Shape};
 use rocking_view::{Scene, Shown};
@@ -68,8 +67,6 @@ pub fn tables() -> String {
 pub struct Explorer {
     files: Files,
     libraries: Vec<Library>,
-    /// The motion that methods are compared with, and its scene.
-    reference: Option<(Fields, Vec<State>)>,
 }
 
 #[wasm_bindgen]
@@ -206,36 +203,6 @@ impl Explorer {
         .to_string())
     }
 
-    /// Error and evaluations of the engine at the scene's tolerance, or of RK4 if a `step` (s) is given, until 10/p_l after the
-    /// ground motion. The error is the largest of θ and u, as a fraction of the peak, against a run at the tolerance 1e-12.
-    pub fn measure(&mut self, fields: &str, step: Option<f64>) -> Result<String, String> {
-        let fields = Fields::read(fields)?;
-        let (structure, Ground { record, .. }) = self.load_one(&fields, "the comparison of methods")?;
-        let end = record.end() + 10.0 / structure.p_l;
-        let after = (1..).map(|i| record.end() + 0.01 * f64::from(i)).take_while(|time| *time < end);
-        let instants: Vec<f64> = record.times().iter().copied().chain(after).collect();
-        let own = Run { end: End::At(end), ..fields.run(structure, &record)? };
-        let scene = fields.without(&["tolerance", "detail"]);
-        if self.reference.as_ref().is_none_or(|(of, _)| *of != scene) {
-            let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..own.clone() };
-            self.reference = Some((scene, sampled(&exact, &instants)?.0));
-        }
-        let (_, exact) = self.reference.as_ref().expect("it is there");
-        let (states, evaluations) = match step {
-            Some(step) => runge_kutta::run(&structure, &record, &instants, own.initial, step)?,
-            None => sampled(&Run { detail: Detail::Auto, ..own }, &instants)?,
-        };
-        let error = |of: fn(&State) -> f64| {
-            let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
-            let difference = largest(&mut states.iter().zip(exact).map(|(a, b)| of(a) - of(b)));
-            // one motion ends in overturning and the other continues
-            let has_gone = states.len() != exact.len() || states.iter().any(|state| !of(state).is_finite());
-            if has_gone { f64::INFINITY } else { relative((difference, largest(&mut exact.iter().map(of)))) }
-        };
-        let error = error(|state| state.theta).max(error(|state| state.u));
-        Ok(json!({ "error": error.to_string(), "evaluations": evaluations, "samples": instants.len() }).to_string())
-    }
-
     /// The ground motion before it is scaled, as a CSV file that every command reads.
     pub fn record_file(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
@@ -303,13 +270,4 @@ fn of_base(frame: &Frame) -> Value {
         "m0": m0, "J0": J0, "B": B, "r": r, "g": g, "c_ratio": c_ratio,
         "P_0": P_0, "k_t": k_t, "xi_d": xi_d, "c_d": c_d, "k_d": k_d, "F_y": F_y,
     })
-}
-
-/// The states of `run` at those `instants` (s) that it reaches, and the sum of its evaluations and steps.
-fn sampled(run: &Run, instants: &[f64]) -> Result<(Vec<State>, u64), String> {
-    let mut states = Vec::new();
-    let show = |sample: &Sample| states.push(sample.motion.state);
-    let work = run.sample(instants.iter().copied(), show, &mut ()).map_err(says)?.motion.work;
-    states.pop(); // the end
-    Ok((states, work.steps + work.evaluations))
 }

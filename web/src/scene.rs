@@ -72,7 +72,7 @@ pub fn numbers_of(ground: &str) -> Option<Vec<&'static str>> {
 }
 
 /// The scene as key and text: parameters and natural quantities, the ground motion, how the motion is computed.
-#[derive(Clone, PartialEq, Deserialize)]
+#[derive(Deserialize)]
 #[serde(transparent)]
 pub struct Fields(BTreeMap<String, String>);
 
@@ -157,12 +157,6 @@ impl Fields {
             _ => (&[][..], SCALES.as_slice()),
         };
         reading.iter().chain(scales).copied()
-    }
-
-    /// The fields except those called `names`.
-    pub fn without(&self, names: &[&str]) -> Fields {
-        let kept = self.0.iter().filter(|(name, _)| !names.contains(&name.as_str()));
-        Fields(kept.map(|(name, text)| (name.clone(), text.clone())).collect())
     }
 
     pub fn text(&self, name: &str) -> Option<&str> {

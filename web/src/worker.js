@@ -5,17 +5,6 @@ let current = 0;
 const work = {
   compare: (fields, answer) => answer(JSON.parse(explorer.compare(fields))),
 
-  async speed(fields, answer, { settings }) {
-    for (const { tolerance, step } of settings) {
-      const scene = tolerance ? JSON.stringify({ ...JSON.parse(fields), tolerance }) : fields;
-      explorer.measure(scene, step); // finds the reference motion, which is not timed
-      const start = performance.now();
-      const measured = JSON.parse(explorer.measure(scene, step));
-      const going = await answer({ ...measured, tolerance, step, time: performance.now() - start });
-      if (!going) return;
-    }
-  },
-
   async map(fields, answer) {
     const spectrum = new wasm_bindgen.Spectrum(fields);
     let going = await answer({ axes: JSON.parse(spectrum.axes()) });
@@ -43,7 +32,7 @@ onmessage = async ({ data }) => {
       return current === data.job;
     };
     try {
-      await work[data.kind](data.fields, answer, data);
+      await work[data.kind](data.fields, answer);
     } catch (problem) {
       postMessage({ job: data.job, problem: String(problem) });
     }

@@ -15,7 +15,6 @@ from random import Random
 from urllib.parse import urlencode
 
 import numpy as np
-import pandas as pd
 import pytest
 from conftest import ROOT
 from first_run import RECORD, SCALE, TIME_SCALE
@@ -418,21 +417,6 @@ def test_the_map_fills_in_and_a_click_shows_the_run(opened):
         assert "theta_0" not in page.url
 
 
-def test_speed_is_shown_against_accuracy(opened):
-    page = opened({"tab": "speed", "step": "0.0005"})
-    chart = page.locator("#precision circle")
-    wait(page, lambda: chart.count() == 22)
-    rows = page.locator("#methods tbody tr")
-    power = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
-    engine, rk4 = (float(rows.nth(i).locator("td").first.text_content().translate(power).replace("·10", "e")) for i in (0, 1))
-    assert engine < 1e-9 < 1e-6 < rk4
-    times = dict(re.findall(r"^(.+)\t([\d.]+)\t", page.locator("#peers tbody").inner_text(), re.MULTILINE))
-    measured = pd.read_csv(ROOT / "docs" / "evidence" / "accuracy-mcmanus-el-centro.csv")
-    least = measured[measured["error_theta"] <= 1e-6].groupby("method")["microseconds_per_sample"].min()
-    for method in ("this project, auto", "ode_solvers Dop853", "RK4"):
-        assert float(times[method]) == pytest.approx(least[method], rel=0.05)
-
-
 def test_what_is_taken_along_is_what_the_command_line_makes(opened, exporter, tmp_path):
     page = opened({"tab": "export", "ground": "record", "m": "150", "theta_0": "0.01"})
     (tmp_path / "record.csv").write_text("time[s],a_g[g]\n0,0\n0.2,0.6\n0.4,-0.6\n0.6,0\n")
@@ -550,7 +534,7 @@ def test_a_warning_stands_above_the_scene(opened):
 
 
 #: Pairs of texts of the drawings that overlap, and texts that a line crosses or that leave the drawing.
-UNTIDY = """() => ["scene", "histories", "profile", "precision", "axes"].flatMap(id => {
+UNTIDY = """() => ["scene", "histories", "profile", "axes"].flatMap(id => {
     const drawing = document.getElementById(id), frame = drawing.getBoundingClientRect();
     if (frame.width === 0) return [];
     const box = element => element.getBoundingClientRect();
@@ -579,7 +563,7 @@ CLOSE = """() => {
 }"""
 
 SIZES = [(1920, 1080), (1366, 768), (390, 844)]
-TABS = ["play", "compare", "map", "speed", "export"]
+TABS = ["play", "compare", "map", "export"]
 
 
 @pytest.mark.parametrize("size", SIZES, ids=str)
@@ -690,7 +674,7 @@ def test_a_frame_is_built_from_storeys(opened):
     assert page.locator("#controls [aria-invalid=true]").evaluate_all("all => all.map(({ name }) => name)") == ["storey 2: h"]
     page.get_by_label("h (m) of floor 2").fill("7")
     page.locator("#problem").wait_for(state="hidden")
-    for tab in ("compare", "map", "speed"):
+    for tab in ("compare", "map"):
         page.locator(f"#tab-{tab}").click()
         settled(page)
         assert "structures of one mass" in page.locator(f"#panel-{tab}").inner_text() and page.locator("#problem").is_hidden()

@@ -31,7 +31,6 @@ fn main() -> anyhow::Result<()> {
         .replacen("/*motion.js*/", rocking_view::SCRIPT, 1)
         .replacen("/*picture.js*/", include_str!("../../src/picture.js"), 1)
         .replacen("/*explore.js*/", include_str!("../../src/explore.js"), 1)
-        .replacen("/*measured*/", include_str!("../../../docs/evidence/accuracy-mcmanus-el-centro.csv"), 1)
         .replacen("/*record name*/", name, 1)
         .replacen("/*record*/", &file(record)?, 1)
         .replacen("/*libraries*/", &file(libraries)?, 1)
