@@ -93,7 +93,7 @@ tools = @{ cargo fmt --version && cargo clippy --version; } >/dev/null 2>&1 || r
 PARTS := long study python hosts browser foreign packaged docs
 NEEDS_long := .venv/test exporter
 NEEDS_python := .venv/heavy module
-NEEDS_hosts := .venv/heavy exporter
+NEEDS_hosts := .venv/heavy out/cofmupy exporter
 NEEDS_browser := .venv/heavy module explore
 NEEDS_foreign := .venv/test dist out/debian11/lib
 NEEDS_packaged := .venv/test wheels
@@ -114,6 +114,10 @@ heavy: packages $(call of_parts,NEEDS)
 	$(if $(filter long,$(PARTS)),FUZZ_CALLS=100000 cargo test --release $(PACKAGES) --test hostile_calls)
 	$(if $(filter study,$(PARTS)),cargo test --release --manifest-path study/Cargo.toml)
 	$(if $(wildcard $(PARTS:%=tests/heavy/%)),$(PYTEST) $(wildcard $(PARTS:%=tests/heavy/%)))
+
+out/cofmupy: requirements.cofmupy.txt .venv/ready
+	$(PIP) $< --upgrade --target $@
+	touch $@
 
 # In .venv the module is that of this folder; the archive in its place has the libraries that are there.
 module: .venv/dist exporter

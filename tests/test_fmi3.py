@@ -2,6 +2,7 @@
 
 import itertools
 import re
+import subprocess
 import zipfile
 from xml.etree import ElementTree
 
@@ -182,6 +183,23 @@ def test_the_description_tells_of_both_interfaces(mcmanus, mcmanus3):
     assert three.numberOfEventIndicators == two.numberOfEventIndicators
     names = [unknown.variable.name for unknown in three.initialUnknowns]
     assert names == [unknown.variable.name for unknown in two.initialUnknowns]
+
+
+def test_value_references_count_from_1_in_the_order_of_the_variables(mcmanus3):
+    """OMSimulator reads `dependencies` as such places; fmpy up to 0.3.23 accepts no other attribute of an enumeration."""
+    with zipfile.ZipFile(mcmanus3) as archive:
+        described = ElementTree.fromstring(archive.read("modelDescription.xml"))
+    references = [int(variable.get("valueReference")) for variable in described.find("ModelVariables")]
+    assert references == list(range(1, len(references) + 1)) and len(references) > 100
+    assert [of.attrib for of in described.iter("EnumerationType")] == [{"name": "Phase"}, {"name": "Detail"}]
+
+
+def test_without_strings_the_fmu_follows_its_record(shaken, exporter, pacoima_record, tmp_path):
+    path = tmp_path / "pier.fmu"
+    subprocess.run([exporter, "export", "--fmi", "3", "--no-strings", "--record", pacoima_record, "-o", path], check=True)
+    assert "String" not in {variable.type for variable in read_model_description(path).modelVariables}
+    asked = dict(stop_time=1.99, output_interval=0.01, output=OUTPUTS)
+    assert_same_bits(simulate_fmu(path, **asked), simulate_fmu(shaken["mcmanus"].path, **asked))
 
 
 def test_both_versions_give_the_same_bits_under_a_held_input(mcmanus, mcmanus3):

@@ -3,7 +3,7 @@
 use crate::record_args::{RecordOptions, one_of, say_understood};
 use crate::structure_args::{StructureArgs, in_one_line, on_command_line};
 use crate::talk::say;
-use FlexibleRocking::guid;
+use FlexibleRocking::{guid, resources::Contents};
 use anyhow::{Context, bail};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
 use rocking::structure::any::AnyStructure;
@@ -32,6 +32,9 @@ pub struct ExportArgs {
     /// Version of FMI, for co-simulation and model exchange: 2 (2.0), 3 (3.0)
     #[arg(long, value_name = "VERSION", default_value = "2", value_parser = one_of([("2", Version::Fmi2), ("3", Version::Fmi3)]))]
     fmi: Version,
+    /// Leave out the parameters `record` and `record_v`, which are strings: CasADi loads no FMI 3.0 with strings
+    #[arg(long)]
+    no_strings: bool,
     /// Name of the model and of its libraries' files, for hosts that hold several exports
     #[arg(long, value_name = "NAME", default_value = "FlexibleRocking")]
     name: ModelName,
@@ -71,7 +74,8 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     let g = structure.base().g;
     let mut records = args.records().map(|path| record(&args.options, path, g)).collect::<Result<Vec<_>, _>>()?;
     let vertical = args.record_v.as_ref().and_then(|_| records.pop());
-    let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, records, vertical, &libraries)?;
+    let contents = Contents { fixed: args.no_strings, ..structure.clone().into() };
+    let (contents, archive) = fmu_export::export(args.fmi, &args.name, contents, records, vertical, &libraries)?;
     file.write(&archive)?;
     say!("{}: {} kB", output.display(), archive.len().div_ceil(1000));
     say!("  GUID       {}", guid(&contents));

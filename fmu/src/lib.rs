@@ -53,10 +53,12 @@ pub const BUILD: &str = env!("FLEXIBLE_ROCKING_BUILD");
 /// each other. Hosts take two FMUs of one GUID for the same, so that structures and records must differ in it.
 pub fn guid(contents: &Contents) -> String {
     let build = Uuid::try_parse(BUILD).expect("the build script wrote it");
-    let Contents { structure, records, vertical } = contents;
+    let Contents { structure, records, vertical, fixed } = contents;
     let bytes = match structure {
-        AnyStructure::One(structure) => postcard::to_stdvec(&(structure.parameters(), records, vertical)),
-        AnyStructure::Many(frame) => postcard::to_stdvec(&(FrameNumbers::from(frame).to_string(), records, vertical)),
+        AnyStructure::One(structure) => postcard::to_stdvec(&(structure.parameters(), records, vertical, fixed)),
+        AnyStructure::Many(frame) => {
+            postcard::to_stdvec(&(FrameNumbers::from(frame).to_string(), records, vertical, fixed))
+        }
     };
     let bytes = bytes.expect("numbers and text can always be written");
     Uuid::new_v5(&build, &bytes).braced().to_string()

@@ -19,7 +19,7 @@ pub const PARAMETERS_FILE: &str = "parameters.toml";
 /// The file with the numbers of many masses, in the same folder in place of [`PARAMETERS_FILE`].
 pub const FRAME_FILE: &str = "frame.txt";
 
-/// The file with the names of the records, in the same folder; there is none without records.
+/// The file with the names of the records, in the same folder; there is none without records that the host may set.
 pub const RECORDS_FILE: &str = "records.toml";
 
 /// An archive that a host has unpacked.
@@ -40,6 +40,8 @@ pub struct Contents {
     pub records: Vec<PackedRecord>,
     /// The one that it follows vertically unless the host sets another.
     pub vertical: Option<PackedRecord>,
+    /// Whether the FMU has no string parameters, so that the host can set no other record.
+    pub fixed: bool,
 }
 
 /// The numbers from which a structure of many masses is made to the same bits: as text, three lines of numbers. TOML would
@@ -146,6 +148,9 @@ pub struct Records {
     pub record: Vec<PackedRecord>,
     /// The default of the vertical component.
     pub vertical: Option<PackedRecord>,
+    /// Whether the host can set no other record.
+    #[serde(default)]
+    pub fixed: bool,
 }
 
 impl Contents {
@@ -168,7 +173,7 @@ impl Contents {
 /// Without records.
 impl From<AnyStructure> for Contents {
     fn from(structure: AnyStructure) -> Contents {
-        Contents { structure, records: Vec::new(), vertical: None }
+        Contents { structure, records: Vec::new(), vertical: None, fixed: false }
     }
 }
 
@@ -205,8 +210,9 @@ impl Archive {
             AnyStructure::One(Structure::new(read(&file)?).map_err(|error| ResourceError::Refused(file, error))?)
         };
         let list = folder.join(RECORDS_FILE);
-        let Records { record: records, vertical } = if list.exists() { read(&list)? } else { Records::default() };
-        Ok(Archive { folder, contents: Contents { structure, records, vertical } })
+        let Records { record: records, vertical, fixed } =
+            if list.exists() { read(&list)? } else { Records::default() };
+        Ok(Archive { folder, contents: Contents { structure, records, vertical, fixed } })
     }
 }
 

@@ -17,6 +17,7 @@ use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::Quantity;
 use rocking::structure::{DERIVED, Derived};
 use rocking::{Detail, Impulse, Outputs, Parameters, Phase, Reactions, Side, State, Structure};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The source of the value of a variable.
@@ -210,10 +211,15 @@ impl Table {
             .chain(switches())
             .chain(calculated_parameters())
             .chain([(Variable::time(), Source::Time)]);
-        let rows = match &contents.structure {
+        let mut rows: Vec<Row> = match &contents.structure {
             AnyStructure::One(_) => one_mass.collect(),
             AnyStructure::Many(frame) => floor_variables::rows(frame, one_mass),
         };
+        if contents.fixed {
+            rows.retain(|(variable, _)| variable.data_type != DataType::String);
+            let is_left = |name: &Cow<str>| !["record", "record_v"].contains(&&**name);
+            rows.iter_mut().for_each(|(variable, _)| variable.depends_on.retain(is_left));
+        }
         let started = rows
             .into_iter()
             .map(|(variable, source)| (Variable { start: source.set_value(&setup), ..variable }, source));

@@ -27,7 +27,7 @@ pub struct Description<'a> {
     pub has_slopes: bool,
     /// Units of the variables.
     pub units: Vec<Unit>,
-    /// The variables; a value reference is a position.
+    /// The variables; a value reference is a position, in FMI 3.0 counted from 1.
     pub variables: &'a [Variable],
     /// Settings of a simulation for which the user sets nothing else.
     pub default_experiment: DefaultExperiment,
@@ -150,7 +150,7 @@ impl Description<'_> {
 
     /// The variable at position `at` in FMI 2.0, whose type is an element of its own.
     fn scalar_variable(&self, at: usize, variable: &Variable) -> Element {
-        let of_type = self.of_type(typed(Version::Fmi2, variable), variable, index);
+        let of_type = self.of_type(typed(Version::Fmi2, variable), variable);
         let of_type = match variable.data_type {
             DataType::String => of_type.with_any("start", start(variable)),
             _ => of_type,
@@ -162,21 +162,21 @@ impl Description<'_> {
     fn typed_variable(&self, at: usize, variable: &Variable) -> Element {
         let is_given_within_steps =
             variability(variable) == "continuous" && variable.causality != Causality::Independent;
-        let element = common(typed(Version::Fmi3, variable), at, variable)
+        let element = common(typed(Version::Fmi3, variable), index(at), variable)
             .with_any("intermediateUpdate", is_given_within_steps.then_some(true));
-        let of_type = self.of_type(element, variable, |at| at);
+        let of_type = self.of_type(element, variable);
         match variable.data_type {
             DataType::String => of_type.holding(start(variable).map(|text| Element::new("Start").with("value", text))),
             _ => of_type,
         }
     }
 
-    /// `element` with the attributes that belong to the type of `variable`; `place` is how a version points at a state.
-    fn of_type(&self, element: Element, variable: &Variable, place: fn(usize) -> usize) -> Element {
+    /// `element` with the attributes that belong to the type of `variable`.
+    fn of_type(&self, element: Element, variable: &Variable) -> Element {
         match variable.data_type {
             DataType::Real { unit, range } => {
                 let derivative_of = match &variable.role {
-                    Role::RateOf(state) => Some(place(position(self.variables, state))),
+                    Role::RateOf(state) => Some(index(position(self.variables, state))),
                     _ => None,
                 };
                 element
@@ -211,7 +211,7 @@ impl Description<'_> {
         let list = |name, is_one: fn(&Variable) -> bool, at_start: bool| {
             let unknowns = self.unknowns(is_one, at_start).map(|(at, mut known)| {
                 known.retain(|known| at_start || is_input_or_state(known));
-                unknown(Element::new("Unknown").with("index", index(at)), known.into_iter().map(index))
+                unknown(Element::new("Unknown").with("index", index(at)), known)
             });
             Element::new(name).holding(unknowns)
         };
@@ -226,7 +226,7 @@ impl Description<'_> {
     fn structure_of_fmi3(&self) -> Element {
         let list = |name, is_one: fn(&Variable) -> bool, at_start: bool| {
             let unknowns = self.unknowns(is_one, at_start);
-            unknowns.map(move |(at, known)| unknown(Element::new(name).with("valueReference", at), known))
+            unknowns.map(move |(at, known)| unknown(Element::new(name).with("valueReference", index(at)), known))
         };
         Element::new("ModelStructure")
             .holding(list("Output", is_output, false))
@@ -236,7 +236,7 @@ impl Description<'_> {
     }
 }
 
-/// How FMI 2.0 points at the variable at a position.
+/// The index in FMI 2.0 and the value reference in FMI 3.0 of the variable at a position.
 fn index(at: usize) -> usize {
     at + 1
 }
@@ -266,12 +266,15 @@ fn unit(Unit { name, base, display }: Unit) -> Element {
 }
 
 fn enumeration(version: Version, of: &Enumeration) -> Element {
-    let named = |element: Element| element.with("name", of.name).with("description", of.description);
     let items = (1..).zip(of.items);
     let items = items.map(|(value, name): (u32, _)| Element::new("Item").with("name", name).with("value", value));
     match version {
-        Version::Fmi2 => named(Element::new("SimpleType")).holding([Element::new("Enumeration").holding(items)]),
-        Version::Fmi3 => named(Element::new("EnumerationType")).holding(items),
+        Version::Fmi2 => Element::new("SimpleType")
+            .with("name", of.name)
+            .with("description", of.description)
+            .holding([Element::new("Enumeration").holding(items)]),
+        // fmpy up to 0.3.23 rejects a description here
+        Version::Fmi3 => Element::new("EnumerationType").with("name", of.name).holding(items),
     }
 }
 
@@ -288,8 +291,8 @@ fn typed(version: Version, variable: &Variable) -> Element {
     })
 }
 
-/// `element` with the attributes that the variable at position `at` has whatever its type.
-fn common(element: Element, at: usize, variable: &Variable) -> Element {
+/// `element` with the attributes that `variable` has whatever its type.
+fn common(element: Element, reference: usize, variable: &Variable) -> Element {
     let causality = match variable.causality {
         Causality::Parameter => "parameter",
         Causality::CalculatedParameter => "calculatedParameter",
@@ -306,7 +309,7 @@ fn common(element: Element, at: usize, variable: &Variable) -> Element {
     };
     element
         .with("name", &variable.name)
-        .with("valueReference", at)
+        .with("valueReference", reference)
         .with("description", &variable.description)
         .with("causality", causality)
         .with("variability", variability(variable))
@@ -331,9 +334,9 @@ fn start(variable: &Variable) -> Option<String> {
     })
 }
 
-/// `element` with the places of what it depends on; an empty list says that there is nothing.
-fn unknown(element: Element, known: impl IntoIterator<Item = usize>) -> Element {
-    let places: Vec<_> = known.into_iter().map(|place| place.to_string()).collect();
+/// `element` with what it depends on, by position; an empty list says that there is nothing.
+fn unknown(element: Element, known: Vec<usize>) -> Element {
+    let places: Vec<_> = known.into_iter().map(|at| index(at).to_string()).collect();
     let kinds = vec!["dependent"; places.len()].join(" ");
     element.with("dependencies", places.join(" ")).with("dependenciesKind", kinds)
 }

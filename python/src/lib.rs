@@ -94,7 +94,7 @@ fn export(
     interruptible(py, move |_| -> anyhow::Result<()> {
         let (libraries, name) = (Library::read(&library)?, name.parse()?);
         let records = records.into_iter().flatten().collect();
-        let (_, archive) = fmu_export::export(version, &name, &structure, records, vertical, &libraries)?;
+        let (_, archive) = fmu_export::export(version, &name, structure.into(), records, vertical, &libraries)?;
         target.write(&archive)
     })
 }

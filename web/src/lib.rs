@@ -230,7 +230,7 @@ impl Explorer {
             ("record", Ok(file)) => vec![(file.path.with_extension("csv"), ground.table().into_bytes())],
             _ => vec![(GROUND.into(), ground.table().into_bytes())],
         };
-        let exported = fmu_export::export(version, &ModelName::default(), &structure, record, None, &self.libraries);
+        let exported = fmu_export::export(version, &ModelName::default(), structure.into(), record, None, &self.libraries);
         Ok(exported.map_err(says)?.1)
     }
 }

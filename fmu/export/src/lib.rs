@@ -97,14 +97,14 @@ pub enum ExportError {
 /// The path of a file, and its content.
 pub type RecordFile = (PathBuf, Vec<u8>);
 
-/// The FMU of `structure` under `name` for hosts of `version`: its contents, and the bytes of the archive.
+/// The FMU of `contents`, yet without records, under `name` for hosts of `version`: its contents, and the bytes of the archive.
 ///
 /// The archive has the shared `libraries` and the `records`. The ground follows the first record, and `vertical` is its vertical
-/// component. The same name, structure, libraries and records give the same bytes.
+/// component. The same name, contents, libraries and records give the same bytes.
 pub fn export(
     version: Version,
     name: &ModelName,
-    structure: &AnyStructure,
+    mut contents: Contents,
     records: Vec<RecordFile>,
     vertical: Option<RecordFile>,
     libraries: &[Library],
@@ -114,12 +114,12 @@ pub fn export(
     if let Some(two) = libraries.windows(2).find(|two| two[0].platform == two[1].platform) {
         return Err(ExportError::SamePlatform(two[0].platform));
     }
-    if let AnyStructure::Many(frame) = structure {
+    if let AnyStructure::Many(frame) = &contents.structure {
         FrameNumbers::from(frame).frame()?;
     }
-    let (mut contents, mut files) = (Contents::from(structure.clone()), Vec::new());
+    let mut files = Vec::new();
     let mut pack = |contents: &Contents, (path, content): RecordFile| {
-        let record = GroundRecord::from_bytes(&path, &content, structure.base().g)?;
+        let record = GroundRecord::from_bytes(&path, &content, contents.structure.base().g)?;
         let name = path.file_name().and_then(|name| name.to_str());
         let file = name.ok_or_else(|| ExportError::RecordName(path.clone()))?.to_owned();
         if contents.packed().any(|packed| packed.file.to_lowercase() == file.to_lowercase()) {
@@ -139,7 +139,7 @@ pub fn export(
         contents.vertical = Some(packed);
         ground = Some(GroundRecord::with_vertical(ground, &record)?);
     }
-    let experiment = experiment::default_experiment(structure, ground.as_ref());
+    let experiment = experiment::default_experiment(&contents.structure, ground.as_ref());
     let archive = archive(&entries(version, name.as_str(), &contents, experiment, files, &libraries)?)?;
     Ok((contents, archive))
 }
@@ -167,8 +167,9 @@ fn entries(
         entry("documentation/licenses/license.txt", LICENSES.into()),
         entry(&format!("resources/{file}"), numbers.into()),
     ]);
-    if !records.is_empty() {
-        let names = Records { record: contents.records.clone(), vertical: contents.vertical.clone() };
+    if !records.is_empty() || contents.fixed {
+        let Contents { records: record, vertical, fixed, .. } = contents.clone();
+        let names = Records { record, vertical, fixed };
         entries.push(entry(&format!("resources/{RECORDS_FILE}"), toml::to_string(&names)?.into()));
     }
     let packed = contents.packed().zip(records);
@@ -198,7 +199,7 @@ mod tests {
             export(
                 Version::Fmi2,
                 &ModelName::default(),
-                &structure(parameters),
+                structure(parameters).into(),
                 Vec::new(),
                 None,
                 &platforms.map(library),
@@ -216,7 +217,7 @@ mod tests {
     fn one_library_for_each_platform() {
         let two = [Platform::LinuxArm64; 2].map(library);
         let refusal =
-            export(Version::Fmi2, &ModelName::default(), &structure(Parameters::EVISON), Vec::new(), None, &two)
+            export(Version::Fmi2, &ModelName::default(), structure(Parameters::EVISON).into(), Vec::new(), None, &two)
                 .unwrap_err()
                 .to_string();
         assert_eq!(refusal, "two shared libraries are for aarch64-linux: leave one out");
@@ -276,7 +277,7 @@ mod tests {
             super::export(
                 Version::Fmi2,
                 &ModelName::default(),
-                &structure(Parameters::EVISON),
+                structure(Parameters::EVISON).into(),
                 records.iter().map(|packed| file(packed)).collect(),
                 vertical.map(file),
                 &[library(Platform::Linux64)],

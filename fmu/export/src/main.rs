@@ -25,6 +25,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let libraries = Library::read(Path::new(library))?;
     let structure = AnyStructure::One(Structure::new(parameters)?);
-    let (_, archive) = export(version, &ModelName::default(), &structure, Vec::new(), None, &libraries)?;
+    let (_, archive) = export(version, &ModelName::default(), structure.into(), Vec::new(), None, &libraries)?;
     Ok(fs::write(output, archive)?)
 }

@@ -62,13 +62,13 @@ mod tests {
         let contents = one_mass(Parameters::MCMANUS);
         let variables = Table::new(&contents).variables;
         let dependencies = |version, element: &str, of: &str| {
-            let (attribute, first) = if version == Version::Fmi2 { ("index", 1) } else { ("valueReference", 0) };
-            let at = fmi_unit::variables::position(&variables, of) + first;
+            let attribute = if version == Version::Fmi2 { "index" } else { "valueReference" };
+            let at = fmi_unit::variables::position(&variables, of) + 1;
             let xml = described(version, &contents);
             let list = xml.split(&format!("<{element}")).skip(1).find_map(|rest| {
                 rest.split(&format!("{attribute}=\"{at}\" dependencies=\"")).nth(1)?.split('"').next()
             });
-            let name = |place: &str| variables[place.parse::<usize>().unwrap() - first].name.clone();
+            let name = |place: &str| variables[place.parse::<usize>().unwrap() - 1].name.clone();
             list.unwrap().split_whitespace().map(name).collect::<Vec<_>>().join(" ")
         };
         let of_2 = |element, of| dependencies(Version::Fmi2, element, of);

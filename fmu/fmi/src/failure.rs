@@ -57,8 +57,8 @@ pub enum Failure {
     #[error("log category {0:?} does not exist; see LogCategories in modelDescription.xml")]
     UnknownCategory(String),
     /// A variable that does not exist.
-    #[error("value reference {reference} does not exist; they run from 0 to {last}")]
-    UnknownReference { reference: u32, last: usize },
+    #[error("value reference {reference} does not exist; they run from {first} to {last}")]
+    UnknownReference { reference: u32, first: u32, last: usize },
     /// A variable of another type.
     #[error("{name} is {}", type_name(*data_type))]
     WrongType { name: String, data_type: DataType },

@@ -21,7 +21,7 @@ use crate::interface::{Interface, IntermediateUpdate, Stepping};
 use crate::logger::{Logger, Sink};
 use crate::model::{Experiment, Model, Progress, Update};
 use crate::state_machine::{Stage, Table};
-use crate::variables::{Causality, DataType, Role};
+use crate::variables::{Causality, DataType, Role, positions};
 use libc::{c_char, c_int, c_uint, c_void, size_t};
 use std::path::Path;
 
@@ -106,14 +106,15 @@ fn boolean(name: &str, value: u8) -> Result<bool, Failure> {
     }
 }
 
-/// The variables, all of which are scalars, that as many values are for.
-unsafe fn references<'a>(
+/// The positions of the variables, all of which are scalars, that as many values are for.
+unsafe fn references<M: Model>(
+    instance: &Instance<M>,
     valueReferences: *const c_uint,
     nValueReferences: size_t,
     nValues: size_t,
-) -> Result<&'a [c_uint], Failure> {
+) -> Result<Vec<u32>, Failure> {
     check_count("nValues", nValues, nValueReferences)?;
-    unsafe { values("valueReferences", valueReferences, nValueReferences) }
+    positions(instance.variables(), unsafe { values("valueReferences", valueReferences, nValueReferences) }?)
 }
 
 const WORDS: Words = Words {
@@ -150,10 +151,8 @@ functions! {
             let required = unsafe { values(name, requiredIntermediateVariables, length) }?;
             let variables = model.variables();
             let (mut sets_inputs, mut gets_outputs) = (false, false);
-            for &reference in required {
-                let last = variables.len() - 1;
-                let variable = variables.get(reference as usize).ok_or(Failure::UnknownReference { reference, last })?;
-                let is_input = variable.causality == Causality::Input;
+            for position in positions(&variables, required)? {
+                let is_input = variables[position as usize].causality == Causality::Input;
                 (sets_inputs, gets_outputs) = (sets_inputs || is_input, gets_outputs || !is_input);
             }
             let host =
@@ -273,77 +272,77 @@ functions! {
     fmi3GetFloat64 = GetFloat64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut f64, nValues: size_t,
     ) |instance| {
-        let references = references(valueReferences, nValueReferences, nValues)?;
+        let references = references(instance, valueReferences, nValueReferences, nValues)?;
         let places = room("values", value, nValues)?;
-        fill(places, instance.get_real(references)?);
+        fill(places, instance.get_real(&references)?);
         Ok(())
     }
 
     fmi3GetInt32 = GetInt32(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i32, nValues: size_t,
     ) |instance| {
-        let references = references(valueReferences, nValueReferences, nValues)?;
+        let references = references(instance, valueReferences, nValueReferences, nValues)?;
         let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Integer);
-        instance.get_numbers(references, room("values", value, nValues)?, is_of_type)
+        instance.get_numbers(&references, room("values", value, nValues)?, is_of_type)
     }
 
     fmi3GetInt64 = GetInt64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i64, nValues: size_t,
     ) |instance| {
-        let references = references(valueReferences, nValueReferences, nValues)?;
+        let references = references(instance, valueReferences, nValueReferences, nValues)?;
         let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Enumeration(_));
-        instance.get_numbers(references, room("values", value, nValues)?, is_of_type)
+        instance.get_numbers(&references, room("values", value, nValues)?, is_of_type)
     }
 
     fmi3GetBoolean = GetBoolean(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut u8, nValues: size_t,
     ) |instance| {
-        let references = references(valueReferences, nValueReferences, nValues)?;
-        instance.get_boolean(references, room("values", value, nValues)?)
+        let references = references(instance, valueReferences, nValueReferences, nValues)?;
+        instance.get_boolean(&references, room("values", value, nValues)?)
     }
 
     fmi3GetString = GetString(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut *const c_char, nValues: size_t,
     ) |instance| {
-        let references = references(valueReferences, nValueReferences, nValues)?;
-        instance.get_string(references, room("values", value, nValues)?)
+        let references = references(instance, valueReferences, nValueReferences, nValues)?;
+        instance.get_string(&references, room("values", value, nValues)?)
     }
 
     fmi3SetFloat64 = SetFloat64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const f64, nValues: size_t,
     ) |instance| {
-        let references = references(valueReferences, nValueReferences, nValues)?;
-        instance.set_real(references, values("values", value, nValues)?)
+        let references = references(instance, valueReferences, nValueReferences, nValues)?;
+        instance.set_real(&references, values("values", value, nValues)?)
     }
 
     /// Refuses all, because a model has no integers to set.
     fmi3SetInt32 = SetInt32(
         valueReferences: *const c_uint, nValueReferences: size_t, _values: *const i32, nValues: size_t,
     ) |instance| {
-        instance.set_no_integer(references(valueReferences, nValueReferences, nValues)?)
+        instance.set_no_integer(&references(instance, valueReferences, nValueReferences, nValues)?)
     }
 
     fmi3SetInt64 = SetInt64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const i64, nValues: size_t,
     ) |instance| {
-        let references = references(valueReferences, nValueReferences, nValues)?;
-        instance.set_integer(references, values("values", value, nValues)?)
+        let references = references(instance, valueReferences, nValueReferences, nValues)?;
+        instance.set_integer(&references, values("values", value, nValues)?)
     }
 
     fmi3SetBoolean = SetBoolean(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const u8, nValues: size_t,
     ) |instance| {
-        let references = references(valueReferences, nValueReferences, nValues)?;
-        instance.set_boolean(references, values("values", value, nValues)?, boolean)
+        let references = references(instance, valueReferences, nValueReferences, nValues)?;
+        instance.set_boolean(&references, values("values", value, nValues)?, boolean)
     }
 
     fmi3SetString = SetString(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const *const c_char, nValues: size_t,
     ) |instance| {
-        let references = references(valueReferences, nValueReferences, nValues)?;
+        let references = references(instance, valueReferences, nValueReferences, nValues)?;
         let given = values("values", value, nValues)?;
         let texts = given.iter().map(|value| text("values", *value)).collect::<Result<Vec<_>, _>>()?;
-        instance.set_string(references, &texts)
+        instance.set_string(&references, &texts)
     }
 
     fmi3GetFMUState = GetFMUState(FMUState: *mut *mut c_void) |instance| { keep_state(instance, "FMUState", FMUState) }
@@ -375,9 +374,10 @@ functions! {
     ) |instance| {
         check_count("nSeed", nSeed, nKnowns)?;
         check_count("nSensitivity", nSensitivity, nUnknowns)?;
-        let (unknowns, knowns) = (values("unknowns", unknowns, nUnknowns)?, values("knowns", knowns, nKnowns)?);
+        let unknowns = positions(instance.variables(), values("unknowns", unknowns, nUnknowns)?)?;
+        let knowns = positions(instance.variables(), values("knowns", knowns, nKnowns)?)?;
         let (seed, sensitivity) = (values("seed", seed, nSeed)?, room("sensitivity", sensitivity, nSensitivity)?);
-        instance.get_directional_derivative(unknowns, knowns, seed, sensitivity)
+        instance.get_directional_derivative(&unknowns, &knowns, seed, sensitivity)
     }
 
     /// Does nothing: `fmi3UpdateDiscreteStates` evaluates.
@@ -412,9 +412,9 @@ functions! {
         valueReferences: *const c_uint, nValueReferences: size_t, orders: *const i32, value: *mut f64,
         nValues: size_t,
     ) |instance| {
-        let references = references(valueReferences, nValueReferences, nValues)?;
+        let references = references(instance, valueReferences, nValueReferences, nValues)?;
         let (orders, rates) = (values("orders", orders, nValueReferences)?, room("values", value, nValues)?);
-        instance.get_real_output_derivatives(references, orders, rates)
+        instance.get_real_output_derivatives(&references, orders, rates)
     }
 
     fmi3EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter(Stage::ContinuousTimeMode) }
@@ -510,7 +510,7 @@ mod tests {
     unsafe extern "C" fn update(c: *mut c_void, _: f64, _: u8, _: u8, _: u8, _: u8, _: *mut u8, _: *mut f64) {
         unsafe {
             let c = *c.cast::<*mut c_void>();
-            assert_eq!(fmi3GetFloat64::<Touchy>(c, &PANICS, 1, &mut 0.0, 1), Status::Fatal as c_int);
+            assert_eq!(fmi3GetFloat64::<Touchy>(c, &(PANICS + 1), 1, &mut 0.0, 1), Status::Fatal as c_int);
             fmi3FreeInstance::<Touchy>(c);
             assert_eq!(DROPPED.get(), 0);
         }
@@ -524,7 +524,7 @@ mod tests {
         unsafe {
             let [name, token, folder] = [c"a".as_ptr(), token.as_ptr(), c"/".as_ptr()];
             let instantiate = fmi3InstantiateCoSimulation::<Touchy>;
-            c = instantiate(name, token, folder, 0, 0, 0, 0, &PANICS, 1, environment, None, Some(update));
+            c = instantiate(name, token, folder, 0, 0, 0, 0, &(PANICS + 1), 1, environment, None, Some(update));
             assert_eq!(
                 (
                     fmi3EnterInitializationMode::<Touchy>(c, 0, 0.0, 0.0, 0, 0.0),

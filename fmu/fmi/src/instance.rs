@@ -112,11 +112,16 @@ impl<M: Model> Instance<M> {
         self.stage
     }
 
+    /// The table of variables.
+    pub(crate) fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
     /// The variable that `reference` stands for.
     #[inline]
     fn find(&self, reference: u32) -> Result<&Variable, Failure> {
-        let last = self.variables.len() - 1;
-        self.variables.get(reference as usize).ok_or(Failure::UnknownReference { reference, last })
+        let (first, last) = (0, self.variables.len() - 1);
+        self.variables.get(reference as usize).ok_or(Failure::UnknownReference { reference, first, last })
     }
 
     fn is_state(&self, reference: u32) -> bool {

@@ -1,6 +1,7 @@
 //! The table of variables of a model: names, types, who sets what, and what depends on what. A value reference is a position
-//! in the table, which is made at run time.
+//! in the table, which is made at run time; in FMI 3.0 the first position is 1.
 
+use crate::failure::Failure;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
@@ -199,6 +200,17 @@ impl Variable {
 pub fn position(variables: &[Variable], name: &str) -> usize {
     let found = variables.iter().position(|variable| variable.name == name);
     found.unwrap_or_else(|| panic!("no variable is called {name}"))
+}
+
+/// The positions in `variables` of the value `references` of FMI 3.0. These count from 1, because OMSimulator reads them in the
+/// lists of dependencies as FMI 2.0's indices; the value references of FMI 2.0 are the positions.
+pub fn positions(variables: &[Variable], references: &[u32]) -> Result<Vec<u32>, Failure> {
+    let (first, last) = (1, variables.len());
+    let position = |&reference: &u32| match reference.checked_sub(first) {
+        Some(position) if (position as usize) < last => Ok(position),
+        _ => Err(Failure::UnknownReference { reference, first, last }),
+    };
+    references.iter().map(position).collect()
 }
 
 /// The references of the variables whose role is one, in their order.

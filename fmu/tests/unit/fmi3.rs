@@ -1,6 +1,6 @@
 //! FMI 3.0 where it is not FMI 2.0: events, messages, calls back within a step.
 
-use crate::host::{ERROR, OK, reference, resources};
+use crate::host::{self, ERROR, OK, resources};
 use FlexibleRocking::fmi3::*;
 use fmi_unit::interface::Stepping;
 use libc::{c_char, c_int, c_uint, c_void};
@@ -9,6 +9,10 @@ use std::cell::RefCell;
 use std::ffi::{CStr, CString};
 use std::ptr::{null, null_mut};
 use tempfile::TempDir;
+
+fn reference(name: &str) -> c_uint {
+    host::reference(name) + 1
+}
 
 type Log = RefCell<Vec<String>>;
 
@@ -179,6 +183,7 @@ fn a_refusal_names_the_function_and_what_to_call() {
             ["transitions", "phase", "peaks", "record"].map(&mut get).into_iter().max().unwrap(),
             fmi3GetInt64(c, &reference("theta"), 1, &mut 0, 1),
             fmi3SetFloat64(c, &reference("m"), 1, &1.0, 1),
+            fmi3GetFloat64(c, &0, 1, &mut 0.0, 1),
             fmi3GetFloat64(c, &2, 1, &mut 0.0, 2),
             fmi3GetUInt8(c),
             fmi3EnterEventMode(c),
@@ -187,7 +192,7 @@ fn a_refusal_names_the_function_and_what_to_call() {
             fmi3SerializeFMUState(c, state, null_mut(), 0),
             fmi3GetDirectionalDerivative(c, &2, 1, &0, 1, &1.0, 2, &mut 0.0, 1),
         ];
-        assert_eq!(refused, [ERROR; 10]);
+        assert_eq!(refused, [ERROR; 11]);
         assert_eq!((fmi3EnterContinuousTimeMode(model.c), fmi3SetTime(model.c, -1.0)), (OK, OK));
         assert_eq!(fmi3CompletedIntegratorStep(model.c, 1, &mut 0, &mut 0), ERROR);
     }
@@ -200,6 +205,7 @@ fn a_refusal_names_the_function_and_what_to_call() {
         "fmi3GetInt64: theta is a real number: call fmi3GetFloat64 or fmi3SetFloat64 instead",
         "fmi3SetFloat64: m is fixed once the simulation has started: set it before fmi3ExitInitializationMode, or call \
          fmi3Reset",
+        &format!("fmi3GetFloat64: value reference 0 does not exist; they run from 1 to {}", host::VARIABLES.len()),
         "fmi3GetFloat64: nValues = 2 is not 1",
         "fmi3GetUInt8: not allowed in the state \"step complete\"; allowed in: none",
         "fmi3EnterEventMode: there is no event mode: the instance was made with eventModeUsed = false",
@@ -280,7 +286,7 @@ fn a_host_that_is_called_back_sets_inputs_reads_and_does_no_harm() {
         let instantiate = fmi3InstantiateCoSimulation;
         instantiate(name, token, folder, 0, 0, 0, 0, required, count, environment, None, Some(update))
     };
-    assert!(with(&[a_g, c_uint::MAX], environment).is_null());
+    assert!(with(&[a_g, c_uint::MAX], environment).is_null() && with(&[0], environment).is_null());
     for (required, sets, reads) in [(&[a_g][..], true, false), (&[theta], false, true), (&[a_g, theta], true, true)] {
         let c = with(required, environment);
         unsafe {

@@ -205,17 +205,22 @@ impl Sequence<'_> {
         {
             references = vec![meant];
         }
-        self.drawn.n = references.len();
-        self.drawn.references.clone_from(&references);
-        self.hold(references)
+        self.drawn.references = references;
+        self.hold_references()
+    }
+
+    /// Holds the references, which this version counts from its own first.
+    fn hold_references(&mut self) -> *const c_uint {
+        self.drawn.n = self.drawn.references.len();
+        let first = self.version.first_reference;
+        self.hold(self.drawn.references.iter().map(|reference| reference.wrapping_add(first)).collect())
     }
 
     /// References to variables that are to be set.
     pub fn references_to_set(&mut self) -> *const c_uint {
         if self.one_in(6) && !self.subject.sticks.is_empty() {
             (self.drawn.references, self.drawn.reals) = self.subject.sticks.iter().copied().unzip();
-            self.drawn.n = self.drawn.references.len();
-            return self.hold(self.drawn.references.clone());
+            return self.hold_references();
         }
         let is_continuous = self.before.as_ref().is_some_and(|of| of.stage == Stage::ContinuousTimeMode);
         if is_continuous && self.one_in(4) { self.references(is_state) } else { self.references(is_input) }

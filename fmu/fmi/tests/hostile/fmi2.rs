@@ -64,6 +64,7 @@ pub const VERSION: Version = Version {
     },
     slave: SLAVE,
     model: MODEL,
+    first_reference: 0,
     location: |folder| format!("file://{}", folder.display()),
     instantiate,
     free: fmi2FreeInstance,

@@ -68,6 +68,7 @@ pub const VERSION: Version = Version {
     },
     slave: SLAVE,
     model: MODEL,
+    first_reference: 1,
     location: |folder| format!("{}/", folder.display()),
     instantiate,
     free: fmi3FreeInstance,

@@ -124,6 +124,7 @@ struct Version {
     calls: &'static [(&'static str, Call)],
     slave: Table,
     model: Table,
+    first_reference: c_uint,
     /// The folder `resources` as this version names it.
     location: fn(&Path) -> String,
     /// Makes an instance, which tells what it logs, of a name, a token and a location.
