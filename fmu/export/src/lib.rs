@@ -83,9 +83,6 @@ pub enum ExportError {
     /// Two records of one name.
     #[error("two records are called {0}: rename one of them; capitals and small letters are the same here")]
     SameName(String),
-    /// The documentation cannot be written.
-    #[error("documentation/index.html: {0}")]
-    Documentation(#[from] minijinja::Error),
     /// The parameters, or the names of the records, cannot be written.
     #[error("resources: {0}")]
     Resources(#[from] toml::ser::Error),
@@ -154,7 +151,7 @@ fn entries(
     libraries: &[&Library],
 ) -> Result<Vec<Entry>, ExportError> {
     let entry = |path: &str, content| Entry { path: path.to_owned(), content };
-    let page = documentation::documentation(version, name, contents, libraries)?;
+    let page = documentation::documentation(version, name, contents, libraries);
     let description = model_description::xml(version, name, contents, experiment);
     let icon = if version == Version::Fmi2 { "model.png" } else { "terminalsAndIcons/icon.png" };
     let mut entries = vec![entry("modelDescription.xml", description.into()), entry(icon, ICON.to_vec())];
