@@ -120,7 +120,7 @@ enum Command {
     #[command(after_help = "Examples:
   rocking-fmu sweep fragility.toml
   rocking-fmu sweep fragility.toml -o runs.csv --threads 2
-  rocking-fmu sweep spectrum.toml --picture spectrum.png
+  rocking-fmu sweep spectrum.toml --picture spectrum.svg
 
 A file of records, fragility.toml:
   records = ['records/*.AT2', { file = 'array.csv', column = 'E-W', scale = 0.5 }]  # as the options of `record`

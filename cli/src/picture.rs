@@ -1,17 +1,15 @@
-//! The one style of all pictures, and the files that they go into: SVG as it is drawn, or PNG made of the same drawing
-//! with a font that the program carries, so that it looks the same on every machine.
+//! The one style of all pictures, and the SVG files that they go into.
 
 pub mod histories;
 
 use crate::talk::write_as;
-use anyhow::{Context, bail};
+use anyhow::bail;
 use plotters::coord::combinators::WithKeyPoints;
 use plotters::coord::{Shift, ranged1d::ValueFormatter, types::RangedCoordf64};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use resvg::{tiny_skia, usvg};
 use rocking_report::output_files::{OutputFile, OutputFiles};
-use std::{ffi::OsStr, ops::Range, path::Path, sync::Arc};
+use std::{ops::Range, path::Path};
 
 /// Colours that all eyes tell apart (Okabe and Ito, their purple darker), and those of what is no data.
 #[allow(missing_docs)] // they are called what they are
@@ -31,9 +29,6 @@ pub mod colour {
 
 /// Drawing units to a pixel: coordinates of plotters are whole numbers.
 const UNITS: i32 = 8;
-
-/// Pixels of a PNG to one of the drawing.
-const SHARPNESS: f32 = 2.0;
 
 const FONT: &str = "sans-serif";
 
@@ -61,27 +56,20 @@ pub fn px(pixels: f64) -> i32 {
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// A picture that is being made.
-pub struct Picture {
-    is_png: bool,
-    file: OutputFile,
-}
+pub struct Picture(OutputFile);
 
 impl Picture {
-    /// Begins the picture at `path`: SVG or PNG, as its extension says.
+    /// Begins the picture at `path`, whose extension is `svg`.
     pub fn create(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Picture> {
-        let is_png = match path.extension().and_then(OsStr::to_str) {
-            Some("svg") => false,
-            Some("png") => true,
-            _ => bail!("{}: a picture's name ends in .svg or .png", path.display()),
-        };
-        Ok(Picture { is_png, file: files.create(path)? })
+        match path.extension() {
+            Some(extension) if extension == "svg" => Ok(Picture(files.create(path)?)),
+            _ => bail!("{}: a picture's name ends in .svg; the Python package draws PNG, too", path.display()),
+        }
     }
 
     /// Writes what `draw` draws on an area of `size`, in pixels.
     pub fn draw(self, size: (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<()> {
-        let svg = svg(size, draw)?;
-        let content = if self.is_png { rasterized(&svg, size)? } else { svg.into_bytes() };
-        write_as(self.file, "picture", &content)
+        write_as(self.0, "picture", svg(size, draw)?.as_bytes())
     }
 }
 
@@ -100,20 +88,6 @@ fn svg((width, height): (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<(
     // the size to show it at; the view box stays in drawing units
     let [drawn, shown] = [(wide, high), (width, height)].map(|(x, y)| format!("width=\"{x}\" height=\"{y}\""));
     Ok(svg.replacen(&drawn, &shown, 1))
-}
-
-/// `svg` as PNG, with the program's own font for its words.
-fn rasterized(svg: &str, (width, height): (u32, u32)) -> anyhow::Result<Vec<u8>> {
-    let mut options = usvg::Options::default();
-    let fonts = Arc::make_mut(&mut options.fontdb);
-    fonts.load_font_data(notosans::REGULAR_TTF.to_vec());
-    fonts.load_font_data(notosans::BOLD_TTF.to_vec());
-    fonts.set_sans_serif_family("Noto Sans");
-    let tree = usvg::Tree::from_str(svg, &options)?;
-    let [width, height] = [width, height].map(|pixels| (pixels as f32 * SHARPNESS) as u32);
-    let mut pixels = tiny_skia::Pixmap::new(width, height).context("a picture has a size")?;
-    resvg::render(&tree, tiny_skia::Transform::from_scale(SHARPNESS, SHARPNESS), &mut pixels.as_mut());
-    Ok(pixels.encode_png()?)
 }
 
 /// A line that shows data.

@@ -54,10 +54,10 @@ struct ResultArgs {
     #[command(flatten)]
     format: FormatArgs,
     /// Draw ground acceleration, rotation, displacements and acceleration over time, with marks at transitions; of many masses those of the top floor
-    #[arg(long, value_name = "FILE.svg|png")]
+    #[arg(long, value_name = "FILE.svg")]
     picture: Option<PathBuf>,
     /// Draw the largest acceleration, drift, shear and moment of each floor and storey over the height, and those on a fixed base
-    #[arg(long, value_name = "FILE.svg|png")]
+    #[arg(long, value_name = "FILE.svg")]
     profile: Option<PathBuf>,
 }
 

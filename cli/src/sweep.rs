@@ -38,7 +38,7 @@ pub struct SweepArgs {
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
     /// Picture of the probabilities and fragility curves, or of the maps [default: beside the rows, as SVG]
-    #[arg(long, value_name = "FILE.svg|png")]
+    #[arg(long, value_name = "FILE.svg")]
     picture: Option<PathBuf>,
     /// Runs at a time; 0 is one per core
     #[arg(long, value_name = "N", default_value_t = 0)]
