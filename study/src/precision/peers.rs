@@ -34,7 +34,7 @@ pub fn curves(scene: &Scene, exact: &Response, conditioning: f64, limits: Limits
         "theta": scene.initial.theta
     });
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/peers.py");
-    let program = format!("{} {script}: `make precision` installs what it needs", python.display());
+    let program = format!("{} {script}: `make measure WHAT=precision` installs what it needs", python.display());
     let mut child = Command::new(python)
         .arg(script)
         .stdin(Stdio::piped())

@@ -14,7 +14,7 @@ from test_hosts_library import FUNCTIONS, HOST, cargo_build, linux_host, output,
 
 X86 = "x86_64-unknown-linux-gnu"
 ARM = "aarch64-unknown-linux-gnu"
-# The loader of glibc 2.31, which `make foreign` takes out of Debian 11's package.
+# The loader of glibc 2.31, which `make out/debian11/lib` takes out of Debian 11's package.
 OLD_LOADER = ROOT / "out/debian11/lib/x86_64-linux-gnu/ld-2.31.so"
 
 PLATFORMS = {"linux64": "so", "aarch64-linux": "so", "win64": "dll", "darwin64": "dylib", "aarch64-darwin": "dylib"}
@@ -82,7 +82,7 @@ def test_no_library_tells_where_it_was_built(library, folder):
 def test_an_old_system(run, shaken, library):  # noqa: F811
     """Linux's library and its host with the C library of Debian 11, glibc 2.31."""
     if not OLD_LOADER.exists():
-        pytest.skip(f"{OLD_LOADER} is missing: `make foreign` fetches it where apt-get can")
+        pytest.skip(f"{OLD_LOADER} is missing: `make out/debian11/lib` fetches it where apt-get can")
     old = cargo_build("--release", "--target", f"{X86}.2.17", "--manifest-path", HOST, tool="zigbuild") / X86 / "release" / "load-library"
     fmu = shaken["mcmanus"]
     found = run(OLD_LOADER, "--library-path", OLD_LOADER.parent, old, library=library("linux64"), fmu=fmu, step=2e-3)

@@ -80,7 +80,7 @@ def test_arm_gives_the_bits_of_this_machine(tmp_path):
     """The module for 64-bit ARM, in Debian's Python for it, under qemu."""
     pythons = sorted((ROOT / "out/arm_python/usr/bin").glob("python3.*"))
     if not pythons:
-        pytest.skip("out/arm_python is missing: `make arm_python` fetches it where apt-get can")
+        pytest.skip("out/arm_python is missing: `make out/arm_python/usr` fetches it where apt-get can")
     command = [sys.executable, "-m", "pip", "install", "--quiet", "--target", tmp_path / "arm", "--only-binary=:all:", "--python-version",
                pythons[0].name.removeprefix("python"), "--platform", "manylinux2014_aarch64"]
     subprocess.run([*command, package(f"{NAME}-{TAGS['linux-arm']}.whl")], check=True)

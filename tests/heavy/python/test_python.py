@@ -1,4 +1,4 @@
-"""The Python module: what it returns is what the command line prints, to the bit. `make python` installs it and runs these."""
+"""The Python module: what it returns is what the command line prints, to the bit. `make heavy PARTS=python` installs it and runs these."""
 
 import ast
 import contextlib
