@@ -238,7 +238,8 @@ impl<'a, Q: Moves> Run<'a, Q> {
         show: impl FnMut(&Sample<Q>),
         watch: &mut W,
     ) -> Result<Finish<Q>, RunError> {
-        let mut samples = Samples::new(times, show);
+        let start = self.ground.start();
+        let mut samples = Samples::new(times.into_iter().filter(|time| *time >= start), show);
         let (ending, engine) = self.course()?.finish(&mut (&mut *watch, &mut samples))?;
         samples.end(&engine);
         Ok(Finish { ending, motion: *engine.motion() })

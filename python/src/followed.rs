@@ -159,7 +159,7 @@ where
         let watching = abandoned.clone();
         let see = |sample: &Sample<Q>| {
             // the last that is shown is the end, for which there may be several times, or none
-            while next < order.len() && times[order[next]] <= sample.motion.time {
+            while next < order.len() && times[order[next]] == sample.motion.time {
                 watching.check();
                 show(order[next], sample);
                 next += 1;

@@ -1,26 +1,39 @@
 //! A motion at given instants, read from its pieces.
 
+use crate::Motion;
 use crate::engine::piece::{Piece, Sample, Watch};
 use crate::mechanics::load::Load;
 use crate::{Engine, engine::Moves};
 use std::iter::Peekable;
 
-/// Shows a motion at given instants.
+/// Shows a motion at given instants, none of which is before the start. A piece lasts until the next one begins: its own end, start
+/// plus duration, misses this instant by the rounding of the clock.
 pub(crate) struct Samples<Times: Iterator<Item = f64>, Show, Q> {
     times: Peekable<Times>,
     show: Show,
-    /// Load at the end of the last piece.
+    /// Motion and load at the end of the last piece.
+    last: Option<Motion<Q>>,
     load: Load<Q>,
 }
 
 impl<Q: Moves, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Samples<Times, Show, Q> {
-    pub(crate) fn new(times: impl IntoIterator<IntoIter = Times>, show: Show) -> Self {
-        Samples { times: times.into_iter().peekable(), show, load: Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 } }
+    pub(crate) fn new(times: Times, show: Show) -> Self {
+        Samples { times: times.peekable(), show, last: None, load: Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 } }
+    }
+
+    /// Shows the instants before `time` (s) that are left, at the end of the last piece.
+    fn until(&mut self, time: f64, level: &Q::Level) {
+        let Some(last) = self.last else { return };
+        while let Some(time) = self.times.next_if(|next| *next < time) {
+            (self.show)(&Sample { motion: Motion { time, ..last }, load: self.load, level });
+        }
     }
 
     /// Shows the end, where `engine` is.
     pub(crate) fn end(mut self, engine: &Engine<Q>) {
-        (self.show)(&engine.sample(self.load));
+        let end = engine.sample(self.load);
+        self.until(end.motion.time, end.level);
+        (self.show)(&end);
     }
 }
 
@@ -28,12 +41,13 @@ impl<Q: Moves, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Watch<Q> fo
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &Piece<Q>) {
-        let start = piece.before.time;
-        self.load = piece.load.at(piece.duration);
-        while let Some(time) = self.times.next_if(|time| *time < start + piece.duration) {
-            if time >= start {
-                (self.show)(&piece.sample(time));
-            }
+        self.until(piece.before.time, piece.level);
+        let end = piece.before.time + piece.duration;
+        let certain = end - 2.0 * f64::EPSILON * end.abs();
+        while let Some(time) = self.times.next_if(|time| *time < certain) {
+            (self.show)(&piece.sample(time));
         }
+        let Sample { motion, load, .. } = piece.sample(end);
+        (self.last, self.load) = (Some(motion), load);
     }
 }

@@ -1,10 +1,11 @@
 //! Runs from outside: levels compared on fine records, ends, start times.
 
+use rocking::engine::piece::Sample;
 use rocking::run::levels::Criterion;
 use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError, levels};
 use rocking::structure::{Mode, Ties};
-use rocking::{Body, Detail, Engine, Floor, Frame, Modes, Parameters, Ramp, State, Structure};
+use rocking::{Body, Detail, Engine, Floor, Frame, Modes, Parameters, Ramp, State, Structure, Transition};
 
 /// However finely a record is sampled, the histories of two levels are as far apart.
 #[test]
@@ -129,6 +130,35 @@ fn a_level_of_a_frame_is_also_how_many_modes_are_kept() {
     assert_eq!(advised(0.05, &[Criterion::Theta]).as_deref(), Some("linear, 1 of 3"));
     assert_eq!(advised(0.05, &[Criterion::Theta, Criterion::At]).as_deref(), Some("linear, 3 of 3"));
     assert_eq!(advised(0.001, &Criterion::ALL).as_deref(), Some("auto, 3 of 3"));
+}
+
+/// Instants an ulp before a transition, which often lie between the clocks of two pieces, are shown before the transition; each
+/// requested instant is shown once, alone or among others.
+#[test]
+fn every_instant_of_a_run_is_shown() {
+    let times = (0..600).map(|i| 0.02 * f64::from(i)).collect::<Vec<_>>();
+    let wave = |t: &f64| 3.0 * (std::f64::consts::TAU * 1.3 * t).sin() * (-((t - 2.0) / 1.5).powi(2)).exp();
+    let ground = Record::from_samples("wave", times.clone(), times.iter().map(wave).collect()).unwrap();
+    let run = Run::new(Structure::new(Parameters::MCMANUS).unwrap(), &ground);
+    let mut transitions = Vec::new();
+    run.follow(&mut |of: &Transition| transitions.push((of.time, of.before.u))).unwrap();
+    let mut instants = Vec::from_iter(transitions.iter().flat_map(|(time, _)| [time.next_down(), *time]));
+    instants.sort_by(f64::total_cmp);
+    let sampled = |instants: &[f64]| {
+        let mut shown = Vec::new();
+        let show = |at: &Sample| shown.push((at.motion.time, at.motion.transitions as usize, at.motion.state.u));
+        run.sample(instants.iter().copied(), show, &mut ()).unwrap();
+        shown.pop(); // the end
+        shown
+    };
+    let together = sampled(&instants);
+    assert_eq!(together.len(), instants.len());
+    for (instant, shown) in instants.iter().zip(together) {
+        let count = transitions.partition_point(|of| of.0 <= *instant);
+        assert_eq!((shown.0, shown.1), (*instant, count));
+        assert_eq!(sampled(&[*instant]), [shown]);
+        assert!(transitions.get(count).is_none_or(|of| of.0 > instant.next_up() || of.1 == shown.2), "{shown:?}");
+    }
 }
 
 #[test]
