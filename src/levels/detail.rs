@@ -100,9 +100,7 @@ impl Detail {
             Detail::Modal if is_tied => return Err(InitialStateError::RestrainedModal),
             Detail::Modal => AnyLevel::Modal(Elastic::new(Some(contact), ModalRocking::new(subject))),
             Detail::Rigid => AnyLevel::Rigid(Rigid::new(subject)),
-            Detail::FixedBase => {
-                AnyLevel::FixedBase(FixedBase { subject: Subject { is_tied: false, ..subject }, contact })
-            }
+            Detail::FixedBase => AnyLevel::FixedBase(FixedBase { subject, contact }),
         })
     }
 }
