@@ -55,7 +55,7 @@ pub struct Run<'a, Q: Moves = f64> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End {
     /// When the record is over, the structure stands in full contact with its energy too small to lift it, and has
-    /// vibrated there for a period: all that follows is smaller. It is given [`LONGEST_REST`] to come down.
+    /// vibrated there for a period (2π/p_l without vibration): all that follows is smaller. It is given [`LONGEST_REST`] to come down.
     AtRest,
     /// At this time, s. After the record the ground is at rest.
     At(f64),
@@ -294,7 +294,11 @@ impl<Q: Moves, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
     /// the run ends here.
     fn come_to_rest(&mut self) -> Result<(Segment, Option<Ending>), Ending> {
         let Follower { engine, end, rest, .. } = self;
-        let (p_l, omega_fc) = (Q::base(engine.structure()).p_l, Q::vibration(engine.structure()).contact);
+        let p_l = Q::base(engine.structure()).p_l;
+        let omega = match engine.settings().detail {
+            Detail::Rigid => p_l, // whatever modes it would have
+            _ => Q::vibration(engine.structure()).contact,
+        };
         if let End::At(end) = *end {
             engine.set_time(end);
             return Err(Ending::AtTime);
@@ -304,7 +308,7 @@ impl<Q: Moves, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
             return Err(Ending::StillRocking);
         }
         *rest -= 1.0;
-        let (duration, ending) = if stays_down { (TAU / omega_fc, Some(Ending::AtRest)) } else { (1.0 / p_l, None) };
+        let (duration, ending) = if stays_down { (TAU / omega, Some(Ending::AtRest)) } else { (1.0 / p_l, None) };
         let until = engine.motion().time + duration;
         Ok((Segment { since: 0.0, duration, until, ground: LinearLoad::default() }, ending))
     }

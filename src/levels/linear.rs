@@ -30,7 +30,11 @@ use std::f64::consts::FRAC_PI_2;
 /// The longest leap, as Ω h in rad: beyond, the exponential loses digits of its small entries.
 const LONGEST_LEAP: f64 = 10.0;
 
-/// Takes (u, u̇, θ, θ̇, a_g, ȧ_g, s) from the start of a step to the state at its end, by columns.
+/// The longest time, in 1/Ω, over which so many terms of the exponential are exact but for rounding.
+const SHORT: f64 = 0.25;
+const TERMS: u8 = 15;
+
+/// Takes (u, u̇, θ, θ̇, a_g, ȧ_g, s) from the start of a step to the change of the state over it, by columns.
 type Flow = SMatrix<f64, 4, 7>;
 
 /// Exact propagation by Eqs 7 and 8.
@@ -157,11 +161,13 @@ impl ElasticRocking for LinearRocking {
         if self.subject.is_tied || self.omega * h > LONGEST_LEAP {
             return None;
         }
-        let (system, omega, feedback) = (&self.system, self.omega, self.feedback);
-        let compute = || (flow(system, omega, h), amplification(feedback, h));
+        let (system, feedback) = (&self.system, self.feedback);
+        let rate = self.omega.max(-system.u_ddot.u_dot);
+        let compute = || (flow(system, rate, h), amplification(feedback, h));
         let &(ref flow, amplification) = &*self.flows.over(h, compute);
         let s = side.sign();
-        let end = flow * SVector::from([u, u_dot, theta, theta_dot, a_top.value, a_top.slope, s]);
+        let change = flow * SVector::from([u, u_dot, theta, theta_dot, a_top.value, a_top.slope, s]);
+        let end = SVector::from([u, u_dot, theta, theta_dot]) + change;
         let swing = self.swing(side, start, amplification);
         let off_chord = swing.turning * h * h / 8.0;
         let (first, last) = (s * theta, s * end[2]);
@@ -244,10 +250,13 @@ fn amplification(feedback: f64, duration: f64) -> f64 {
     if part < 0.5 { 1.0 / (1.0 - part) } else { f64::INFINITY }
 }
 
-/// The flow of `system` over `duration` (s): the exponential of the system augmented by its inputs. Derivatives are
-/// taken over powers of ω, or of 1/h over steps shorter than that, which keeps the entries of one size and with them the
-/// digits of small results.
-fn flow(system: &LinearSystem, omega: f64, duration: f64) -> Flow {
+/// The flow of `system`, which is not faster than `rate` (1/s), over `duration` (s): the exponential of the system augmented by its
+/// inputs, less the identity. A leap is one such flow many times over, so that no entry may lose digits:
+///
+/// ```text
+/// E(h) = A h (1 + A h/2 (1 + A h/3 (…))),      E(2 h) = 2 E(h) + E(h)²
+/// ```
+fn flow(system: &LinearSystem, rate: f64, duration: f64) -> Flow {
     let mut rates = SMatrix::<f64, 7, 7>::zeros();
     rates[(0, 1)] = 1.0;
     rates[(2, 3)] = 1.0;
@@ -259,16 +268,12 @@ fn flow(system: &LinearSystem, omega: f64, duration: f64) -> Flow {
         rates[(equation, 4)] = row.a_top;
         rates[(equation, 6)] = row.side;
     }
-    let rate = omega.max(1.0 / duration);
-    let turn = (system.theta_ddot.u / system.u_ddot.u).abs();
-    let (square, cube) = (rate * rate, rate * rate * rate);
-    let scale =
-        SVector::<f64, 7>::from([1.0, rate, turn, turn * rate, square, cube, square / system.u_ddot.side.abs()]);
-    let scaled = |matrix: &SMatrix<f64, 7, 7>, scale: &SVector<f64, 7>| {
-        SMatrix::<f64, 7, 7>::from_fn(|i, j| matrix[(i, j)] * scale[j] / scale[i])
-    };
-    let balanced = (scaled(&rates, &scale) * duration).exp();
-    scaled(&balanced, &scale.map(|factor| 1.0 / factor)).fixed_rows::<4>(0).into()
+    let doublings = (rate * duration / SHORT).log2().ceil().max(0.0) as i32;
+    let step = rates * (duration / 2.0_f64.powi(doublings));
+    let terms = (2..=TERMS).rev().map(f64::from);
+    let sum = terms.fold(SMatrix::identity(), |sum, k| SMatrix::identity() + step * sum / k);
+    let flow = (0..doublings).fold(step * sum, |flow, _| flow * 2.0 + flow * flow);
+    flow.fixed_rows::<4>(0).into()
 }
 
 #[cfg(test)]
