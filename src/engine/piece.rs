@@ -20,7 +20,6 @@ use crate::numbers::{Number, Turn};
 use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Series, Start, evaluate};
 use crate::series::terms::Terms;
-use crate::structure::frame::Gauges;
 use crate::{Floor, Frame, Outputs, Phase, Reactions, State};
 use std::f64::consts::TAU;
 
@@ -133,8 +132,7 @@ impl Sample<'_, Modes> {
 
     /// The values of outputs, of which each costs less than by [`Sample::output`].
     pub fn outputs(&self) -> impl Fn(FrameOutput) -> f64 {
-        let Gauges { a, V, M, V_t, M_t } = self.level.structure().gauges();
-        let turning = self.turning([V_t, M_t].into_iter().chain(a).chain(V).chain(M).any(Gauge::has_feedthrough));
+        let turning = self.turning(self.level.structure().gauges().have_feedthrough());
         move |output| output.of(&turning)
     }
 

@@ -40,10 +40,12 @@ pub(crate) struct Reading<N> {
 }
 
 impl Gauge {
-    /// The gauge of masses with this sum of weights, these sums of shapes and this sum of weighed heights, on a base with `modes`.
-    pub(crate) fn new(modes: &[Mode], weight: f64, shape: Modes, height: f64) -> Gauge {
+    /// The gauge of masses with this sum of weights, these sums of shapes and this sum of weighed heights, on a base with `modes`,
+    /// whose sums are off by this `rounding`.
+    pub(crate) fn new(modes: &[Mode], weight: f64, shape: Modes, height: f64, rounding: f64) -> Gauge {
         let of = |part: fn(&Mode) -> f64| modes.iter().enumerate().map(|(j, mode)| shape.of(j) * part(mode)).sum();
-        Gauge { weight, shape, left: [rest(height, of(|mode| mode.height)), rest(weight, of(|mode| mode.share))] }
+        let left = [rest(height, of(|mode| mode.height), rounding), rest(weight, of(|mode| mode.share), rounding)];
+        Gauge { weight, shape, left }
     }
 
     /// Whether the value depends on the ground acceleration directly.

@@ -292,6 +292,9 @@ impl Dissipators {
     pub(crate) fn moved_by(&self, base: &Base, side: Side, chord: Chord) -> Dissipators {
         let Ties { k_d, F_y, .. } = base.ties;
         let mut moved = Dissipators { yields: [0; 2], ..*self };
+        if k_d == 0.0 {
+            return moved; // not even on a path that a compiler takes beforehand is F_y divided by 0
+        }
         for (j, lever) in levers(base, side).into_iter().enumerate() {
             let force = k_d * (lever * chord.length - moved.plastic[j]);
             if force.abs() > F_y {

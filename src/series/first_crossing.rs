@@ -100,7 +100,11 @@ impl<'a> Gap<'a> {
             return 0.0;
         }
         let root = (slope * slope + 2.0 * curvature * value).sqrt();
-        if slope < 0.0 { 2.0 * value / (root - slope) } else { (slope + root) / curvature }
+        match slope {
+            ..0.0 => 2.0 * value / (root - slope),
+            _ if slope + root >= 2.0 * curvature => f64::INFINITY, // beyond σ = 1; the curvature may be 0
+            _ => (slope + root) / curvature,
+        }
     }
 }
 

@@ -3,12 +3,16 @@
 use crate::mechanics::gauge::Gauge;
 use crate::mechanics::lateral::{Coordinates, Lateral, MOST_MODES, Modes};
 use crate::series::bisection::last_where;
+use crate::structure::parameters::{ParameterError, Parameters};
 use crate::structure::quantity::{OutOfRange, Quantity, quantity};
 use crate::structure::{Base, Mode, Ties, Vibration};
 use crate::{Load, State};
 
 /// A rest beside the modes that counts as none, as a fraction of the whole.
 pub(crate) const ROUNDING: f64 = 1e-9;
+
+/// The most by which sums over exact modes miss the whole, as a fraction of the whole.
+const EXACT: f64 = 1e-13;
 
 /// The most that rounded modes may carry beyond the whole, as a fraction of the whole; the modes are then the whole.
 const EXCESS: f64 = 5e-3;
@@ -38,11 +42,36 @@ pub struct Body {
     pub ties: Ties,
 }
 
+impl Body {
+    /// Checks the base, its tendon and its dissipators against the limits of one mass.
+    fn check(&self) -> Result<(), ParameterError> {
+        let &Body { m0, J0, B, r, g, c_ratio, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y }, .. } = self;
+        let (H, r) = (1.0, r.unwrap_or(1.0));
+        Parameters { m0, J0, H, B, c_ratio, r, g, P_0, k_t, xi_d, c_d, k_d, F_y, ..Parameters::EVISON }.check()
+    }
+}
+
 /// Limits of the moments of the mass above the foundation.
 const MOMENTS: [Quantity<Body>; 3] = [
     quantity!(m_s ["kg"] 1e-6, 1e12, "mass above the base"),
     quantity!(S_1 ["kg.m"] 1e-9, 1e16, "first moment of the mass above the base"),
     quantity!(I_2 ["kg.m2"] 1e-12, 1e20, "second moment of the mass above the base"),
+];
+
+/// Limits of a mode, whose coordinate may have any scale.
+const OF_MODE: [Quantity<Mode>; 6] = [
+    quantity!(mass ["kg"] 1e-24, 1e36, "modal mass"),
+    quantity!(gamma["kg"] - 1e24, 1e24, "part of a mode in a translation"),
+    quantity!(share["1"] - 1e24, 1e24, "participation of a mode"),
+    quantity!(height["m"] - 1e24, 1e24, "height of a mode"),
+    quantity!(stiffness ["N/m"] 1e-36, 1e48, "modal stiffness"),
+    quantity!(damping ["N.s/m"] 0.0, 1e48, "modal damping"),
+];
+
+/// Limits of a floor.
+const OF_FLOOR: [Quantity<Floor>; 2] = [
+    quantity!(mass ["kg"] 1e-6, 1e12, "mass of the floor"),
+    quantity!(height ["m"] 1e-3, 1e4, "height of the floor above the base"),
 ];
 
 /// A floor, whose motion is shown.
@@ -83,7 +112,7 @@ pub struct Gauges {
 }
 
 impl Gauges {
-    fn new(&Body { m_s, S_1, I_2, .. }: &Body, modes: &[Mode], floors: &[Floor]) -> Gauges {
+    fn new(&Body { m_s, S_1, I_2, .. }: &Body, modes: &[Mode], floors: &[Floor], rounding: f64) -> Gauges {
         let shape = |of: fn(&Mode) -> f64| Modes::new(&Vec::from_iter(modes.iter().map(of)));
         let sum = |floors: &[Floor], part: &dyn Fn(&Floor) -> f64| {
             let (mut weight, mut height, mut sum) = (0.0, 0.0, shape(|_| 0.0));
@@ -92,26 +121,32 @@ impl Gauges {
                 (weight, height) = (weight + part, height + part * floor.height);
                 sum = sum.plus(floor.shape, part);
             }
-            Gauge::new(modes, weight, sum, height)
+            Gauge::new(modes, weight, sum, height, rounding)
         };
         let moment = |k: usize| {
             let foot = if k == 0 { 0.0 } else { floors[k - 1].height };
             sum(&floors[k..], &|floor| floor.mass * (floor.height - foot))
         };
         Gauges {
-            a: floors.iter().map(|floor| Gauge::new(modes, 1.0, floor.shape, floor.height)).collect(),
+            a: floors.iter().map(|floor| Gauge::new(modes, 1.0, floor.shape, floor.height, rounding)).collect(),
             V: (0..floors.len()).map(|k| sum(&floors[k..], &|floor| floor.mass)).collect(),
             M: (0..floors.len()).map(moment).collect(),
-            V_t: Gauge::new(modes, m_s, shape(|mode| mode.gamma), S_1),
-            M_t: Gauge::new(modes, S_1, shape(|mode| mode.mass * mode.height), I_2),
+            V_t: Gauge::new(modes, m_s, shape(|mode| mode.gamma), S_1, rounding),
+            M_t: Gauge::new(modes, S_1, shape(|mode| mode.mass * mode.height), I_2, rounding),
         }
+    }
+
+    /// Whether a value depends on the ground acceleration directly.
+    pub(crate) fn have_feedthrough(&self) -> bool {
+        let Gauges { a, V, M, V_t, M_t } = self;
+        [V_t, M_t].into_iter().chain(a).chain(V).chain(M).any(Gauge::has_feedthrough)
     }
 }
 
-/// What a sum over the modes leaves of the `whole`.
-pub(crate) fn rest(whole: f64, of_modes: f64) -> f64 {
+/// What a sum over the modes leaves of the `whole`, if more than this part `rounding` of the whole.
+pub(crate) fn rest(whole: f64, of_modes: f64, rounding: f64) -> f64 {
     let rest = whole - of_modes;
-    if rest.abs() <= ROUNDING * whole.abs() { 0.0 } else { rest }
+    if rest.abs() <= rounding * whole.abs() { 0.0 } else { rest }
 }
 
 /// The reason why modes and floors are no structure.
@@ -123,6 +158,19 @@ pub enum FrameError {
     /// A moment of the mass above the foundation out of its range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
+    /// A number of the base, its tendon or its dissipators out of its range.
+    #[error(transparent)]
+    Base(#[from] ParameterError),
+    /// A number of a mode or of a floor out of its range.
+    #[error("{what} {number}: {cause}")]
+    At {
+        /// `mode` or `floor`.
+        what: &'static str,
+        /// Its number, from 1 on.
+        number: usize,
+        /// The number that is refused.
+        cause: OutOfRange,
+    },
     /// The modes carry more than the structure has.
     #[error(
         "the modes carry {of_modes:?} {unit} of the {name} = {whole:?} {unit} above the foundation: check masses, heights and units"
@@ -201,14 +249,21 @@ impl Frame {
             return Err(FrameError::Modes(count));
         }
         MOMENTS.iter().try_for_each(|moment| moment.check((moment.get)(&body)))?;
-        for (i, Floor { shape, .. }) in floors.iter().enumerate() {
+        body.check()?;
+        for (number, mode) in (1..).zip(modes) {
+            let checked = OF_MODE.iter().try_for_each(|of| of.check((of.get)(mode)));
+            checked.map_err(|cause| FrameError::At { what: "mode", number, cause })?;
+        }
+        for (i, floor @ Floor { shape, .. }) in floors.iter().enumerate() {
+            let checked = OF_FLOOR.iter().try_for_each(|of| of.check((of.get)(floor)));
+            checked.map_err(|cause| FrameError::At { what: "floor", number: i + 1, cause })?;
             let numbers = shape.count();
             if numbers != count {
                 return Err(FrameError::Shape { floor: i + 1, numbers, modes: count });
             }
         }
         let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum::<f64>();
-        let whole = |name, unit, whole: f64, of_modes: f64| match rest(whole, of_modes) {
+        let whole = |name, unit, whole: f64, of_modes: f64| match rest(whole, of_modes, EXACT) {
             rest if rest < -EXCESS * whole => Err(FrameError::Beyond { name, unit, of_modes, whole }),
             rest => Ok(if rest < 0.0 { of_modes } else { whole }),
         };
@@ -218,19 +273,37 @@ impl Frame {
         Ok(Frame::of(Body { m_s, I_2, ..body }, modes, floors))
     }
 
-    /// The structure of checked numbers.
+    /// The structure of checked numbers. The modes are all of it if they leave no more of any of its sums than their rounding.
     fn of(body: Body, modes: &[Mode], floors: &[Floor]) -> Frame {
         let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum::<f64>();
-        let [mass, inertia] = [of(|mode| mode.gamma * mode.share), of(|mode| mode.mass * mode.height * mode.height)];
-        let Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties } = body;
+        let of_modes = [
+            of(|mode| mode.gamma * mode.share),
+            of(|mode| mode.gamma * mode.height),
+            of(|mode| mode.mass * mode.height * mode.height),
+        ];
+        let rests = |rounding| {
+            let wholes = [body.m_s, body.S_1, body.I_2];
+            let [mass, first, second] = std::array::from_fn(|i| rest(wholes[i], of_modes[i], rounding));
+            ([mass.max(0.0), first, second.max(0.0)], Gauges::new(&body, modes, floors, rounding))
+        };
+        let rounded = Some(rests(ROUNDING)).filter(|(rest, gauges)| *rest == [0.0; 3] && !gauges.have_feedthrough());
+        let is_whole = rounded.is_some();
+        let ([m_res, S_res, I_res], gauges) = rounded.unwrap_or_else(|| rests(0.0));
+        let sum = |whole: f64, of_modes: f64| {
+            if is_whole && rest(whole, of_modes, EXACT) != 0.0 { of_modes } else { whole }
+        };
+        let [mass, first, second] = of_modes;
+        let (m_s, S_1, I_2) = (sum(body.m_s, mass), sum(body.S_1, first), sum(body.I_2, second));
+        let body = Body { m_s, S_1, I_2, ..body };
+        let Body { m0, J0, B, r, g, c_ratio, ties, .. } = body;
         let m_t = m0 + m_s;
         let J_P = J0 + m_t * B * B + I_2;
         let base = Base {
             m_t,
-            m0: m0 + rest(m_s, mass),
-            S_res: rest(S_1, of(|mode| mode.gamma * mode.height)),
+            m0: m0 + m_res,
+            S_res,
             B,
-            J0: J0 + rest(I_2, inertia),
+            J0: J0 + I_res,
             J_P,
             r,
             g,
@@ -239,8 +312,8 @@ impl Frame {
             tan_alpha_cg: m_t * B / S_1,
             ties,
         };
-        let (gauges, vibration) = (Box::new(Gauges::new(&body, modes, floors)), vibration(&base, modes));
-        Frame { base, body, modes: modes.to_vec(), floors: floors.to_vec(), gauges, vibration }
+        let vibration = vibration(&base, modes);
+        Frame { base, body, modes: modes.to_vec(), floors: floors.to_vec(), gauges: Box::new(gauges), vibration }
     }
 
     /// This structure with its `count` modes of the lowest frequencies, or none. The mass of the others turns rigidly with the base.

@@ -303,6 +303,21 @@ fn rates_are_the_slopes_of_states_outputs_and_reactions() {
     }
 }
 
+/// A mode with next to no mass has a moment of inertia nevertheless. Left out, it leaves all of its moments to the rigid rest.
+#[test]
+fn modes_leave_all_their_moments_or_none() {
+    let (m_s, h) = (110e3, 7.0);
+    let [mass, arm] = [1e-10 * m_s, 200.0 * h];
+    let modes =
+        [(m_s, h), (mass, arm)].map(|(mass, arm): (f64, f64)| Mode::new(20.0, 0.02, mass.sqrt(), mass.sqrt() * arm));
+    let of = |power: i32| m_s * h.powi(power) + mass * arm.powi(power);
+    let frame = Frame::new(body([20e3, 3e4, 1.5], [of(0), of(1), of(2)], 0.93, G), &modes, &[]).unwrap();
+    assert_eq!(frame.rest(), [0.0; 3]);
+    for (found, expected) in frame.keeping(1).unwrap().rest().into_iter().zip([mass, mass * arm, mass * arm * arm]) {
+        assert!((found - expected).abs() < 1e-4 * expected, "{found} {expected}");
+    }
+}
+
 #[test]
 fn what_fits_no_frame_is_refused_with_the_remedy() {
     let frame = Masses::new(0.02, 0.93).frame;
@@ -312,6 +327,17 @@ fn what_fits_no_frame_is_refused_with_the_remedy() {
         without_moment.unwrap_err().to_string(),
         "S_1 = 0 kg.m is out of range: it must lie between 1e-9 and 1e16 kg.m (first moment of the mass above the base)"
     );
+    let [mode, floor] = ["mode 2: stiffness = -1 N/m is", "floor 3: mass = NaN kg is"];
+    let (mut modes, mut floors) = (frame.modes().to_vec(), frame.floors().to_vec());
+    (modes[1].stiffness, floors[2].mass) = (-1.0, f64::NAN);
+    for (body, modes, floors, refused) in [
+        (Body { B: -1.0, ..*frame.body() }, frame.modes(), frame.floors(), "B = -1 m is"),
+        (*frame.body(), &modes, frame.floors(), mode),
+        (*frame.body(), frame.modes(), &floors, floor),
+    ] {
+        let text = Frame::new(body, modes, floors).unwrap_err().to_string();
+        assert!(text.starts_with(&format!("{refused} out of range: it must lie between")), "{text}");
+    }
     let refused = frame.load(0.0, 0.0, &[1.0]).unwrap_err().to_string();
     assert_eq!(refused, "1 forces are given on 3 floors: give one for each floor, or none");
     let start = |state, detail| {
