@@ -64,7 +64,7 @@ demo:
 test:
 	$(MAKE) --no-print-directory .venv/test & cargo test --release $(PACKAGES) && wait $$!
 	cargo check --release --package flexible-rocking-python
-	cargo check --release --locked --manifest-path web/Cargo.toml --target-dir $(TARGET)
+	cargo check --release --locked --manifest-path web/Cargo.toml --package rocking-web --target-dir $(TARGET)
 	$(PYTEST)
 
 CHANGED := git status --porcelain --untracked-files=all --no-renames --

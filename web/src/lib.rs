@@ -85,7 +85,6 @@ impl Explorer {
     /// Takes the record's file, in the place of the one before.
     pub fn take_record(&mut self, name: &str, bytes: Vec<u8>) {
         self.files.own = Ok(File::new(name, bytes));
-        self.reference = None;
     }
 
     /// Takes the record away. A scene that needs it is then rejected with `why`.
