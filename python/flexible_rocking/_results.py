@@ -1,8 +1,8 @@
 """Results of runs as tables and pictures."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -19,10 +19,11 @@ OVER_HEIGHT = {"a_t": ("acceleration", "g", 0.0), "drift": ("drift", "mm", 1e-3)
                "M": ("storey moment", "kN.m", 1e3)}
 
 
-def extra(name: str) -> Any:
-    """The module `name`, which the package's extra `all` installs. Raises ImportError with the remedy if it is missing."""
+@contextmanager
+def extras() -> Iterator[None]:
+    """Imports modules that the package's extra `all` installs. Raises ImportError with the remedy if one is missing."""
     try:
-        return import_module(name)
+        yield
     except ImportError as missing:
         raise ImportError(f"{missing.name} is missing: run pip install \"flexible-rocking[all]\", or in a clone of the source "
                           "pip install \".[all]\"", name=missing.name) from missing
@@ -79,7 +80,8 @@ class Transitions(list[Transition]):
 
     def to_pandas(self) -> "pd.DataFrame":
         """A DataFrame with the time as its index, the kind, and the state before and after: a row per transition."""
-        pandas = extra("pandas")
+        with extras():
+            import pandas
 
         states = [f"{name}_{when}" for when in ("before", "after") for name in self.components]
         rows = [(of.time, of.kind, *of.before.values(), *of.after.values()) for of in self]
@@ -137,7 +139,8 @@ class Response(dict[str, "NDArray[Any]"]):
 
     def to_pandas(self) -> "pd.DataFrame":
         """A DataFrame with the first array, the time, as its index and a column a quantity."""
-        pandas = extra("pandas")
+        with extras():
+            import pandas
 
         return pandas.DataFrame(dict(self)).set_index(next(iter(self)))
 
@@ -177,10 +180,13 @@ def plot_profile(run: "Run") -> "Figure":
 
     from ._native import simulate
 
+    with extras():
+        from matplotlib import pyplot
+
     if not len(run.profile["h"]):
         raise ValueError("the structure has no floors, and therefore no profile: give masses, heights and shapes")
     fixed = simulate(run.structure, run.record, detail="fixed_base", tolerance=run.tolerance, duration=run.end - run.start)
-    figure, axes = extra("matplotlib.pyplot").subplots(1, len(OVER_HEIGHT), sharey=True, figsize=(10, 5), layout="constrained")
+    figure, axes = pyplot.subplots(1, len(OVER_HEIGHT), sharey=True, figsize=(10, 5), layout="constrained")
     for of, label, style in ((run, "rocking", "-o"), (fixed, "fixed base", "--o")):
         h = np.concatenate([[0], of.profile["h"]])
         for axis, (name, (title, unit, size)) in zip(axes, OVER_HEIGHT.items()):
@@ -205,11 +211,14 @@ def plot_history(run: "Run") -> "Figure":
     """The histories of a run, with marks at its transitions, and a dashed line from which the structure falls."""
     import numpy as np
 
+    with extras():
+        from matplotlib import pyplot
+
     response = run.at(np.linspace(run.start, run.end, 4001))
     top = f"[{len(run.profile['h'])}]"
     names = {name: name if name in response else name + top for name in LABELS}
     shown = {name: of for name, of in names.items() if of in response}
-    figure, axes = extra("matplotlib.pyplot").subplots(len(shown), sharex=True, figsize=(8, 7), layout="constrained")
+    figure, axes = pyplot.subplots(len(shown), sharex=True, figsize=(8, 7), layout="constrained")
     instants = [transition.time for transition in run.transitions]
     for axis, (label, name) in zip(axes, shown.items()):
         symbol, unit, size = LABELS[label]

@@ -10,7 +10,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any, overload
 
 from . import _native
-from ._results import extra
+from ._results import extras
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -55,7 +55,9 @@ def sweep(
     stopped sweep continues after them. Ctrl-C raises KeyboardInterrupt, whose attribute `table` has the runs that are done.
     Raises ValueError where a structure or record is there twice, has no name of its own, or cannot be run.
     """
-    pandas = extra("pandas")
+    with extras():
+        import pandas
+
     groups = structures if isinstance(structures, Mapping) else {"structures": structures}
     populations = [(name, [of] if isinstance(of, _native.Structure) else list(of)) for name, of in groups.items()]
     with _told(progress) as tell:
@@ -152,11 +154,12 @@ class Fragility:
         """The curve as numbers at `intensities` (n,): a DataFrame of intensity, probability, and low and high, between which the
         probability lies with a probability of 95 %, NaN where that is unknown."""
         import numpy as np
+        import pandas
 
         at = np.atleast_1d(np.asarray(intensities, float))
         band = self.curve.band(at)
         low, high = band.T if band is not None else np.full((2, len(at)), np.nan)
-        return extra("pandas").DataFrame({self.intensity: at, "probability": self.probability(at), "low": low, "high": high})
+        return pandas.DataFrame({self.intensity: at, "probability": self.probability(at), "low": low, "high": high})
 
     def __repr__(self) -> str:
         return f"<Fragility {self.limit!r} over {self.intensity}: median {self.median:.6g}, dispersion {self.dispersion:.6g}>"
@@ -165,7 +168,10 @@ class Fragility:
         """Draws the curve with its 95 % band and the counted parts, over `axes` or new ones, which are returned."""
         import numpy as np
 
-        axes = axes if axes is not None else extra("matplotlib.pyplot").subplots(layout="constrained")[1]
+        with extras():
+            from matplotlib import pyplot
+
+        axes = axes if axes is not None else pyplot.subplots(layout="constrained")[1]
         known = self.bins[self.bins["known"] > 0]
         intensities = np.geomspace(0.8 * known["lowest"].min(), 1.2 * known["highest"].max(), 200)
         (line,) = axes.plot(intensities, self.probability(intensities), label=self.limit)
