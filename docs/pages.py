@@ -113,7 +113,7 @@ def command_line(exporter: Path) -> str:
 
     page = table(["command", "does"], [[f"[`{name}`](#{name})", what] for name, what in summaries.items()])
     page += f"\n{re.search(r'^A structure .*?(?=^Usage)', whole, re.MULTILINE | re.DOTALL)[0]}"
-    page += "## Options of several commands\n\nEvery command has `--help` and `--quiet`, which prints only errors on standard error.\n"
+    page += "## Options of several commands\n\nEvery command has `--help` and `--quiet`, which prints only warnings and errors on standard error.\n"
     for group in dict.fromkeys(map(tuple, commands.values())):
         if len(group) > 1:
             shared = [row(*option) for option, names in commands.items() if tuple(names) == group]

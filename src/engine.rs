@@ -19,6 +19,7 @@ pub mod piece;
 pub mod transition;
 pub(crate) mod yielding;
 
+use crate::digits::with_unit;
 use crate::levels::detail::{AnyLevel, Detail, by_level};
 use crate::levels::level::{Level, Subject};
 use crate::levels::modes::ManyModes;
@@ -33,7 +34,6 @@ use crate::mechanics::state::InitialStateError;
 use crate::numbers::dual::Dual;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, Start};
-use crate::structure::quantity::with_unit;
 use crate::{Frame, Outputs, Phase, State, Structure};
 use motion::{Chatter, Motion, Work};
 use phases::{Closed, Step, Watched};

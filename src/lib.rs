@@ -7,6 +7,7 @@
 //! | room | what is in it |
 //! |---|---|
 //! | [`structure`] | the structure's numbers, their ranges, the two specimens; what follows from them (before Eq 11, after 13, before 18) |
+//! | [`digits`] | how numbers are rounded for tables and sentences |
 //! | numbers | value, rate, bounds and power series: the numbers in which each formula is evaluated |
 //! | [`mechanics`] | state, loads, uplift, impact, outputs (Eqs 2, 3, 23–27), reactions, energy |
 //! | [`series`] | Taylor series in time, first crossings, extremes |
@@ -25,6 +26,7 @@
 //! ```
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
+pub mod digits;
 pub mod engine;
 pub mod estimates;
 pub mod levels;

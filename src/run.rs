@@ -18,6 +18,7 @@ pub mod record;
 mod samples;
 pub mod validity;
 
+use crate::digits::with_unit;
 use crate::engine::piece::Sample;
 use crate::engine::{AdvanceError, DEFAULT_TOLERANCE, Moves, Settings};
 use crate::mechanics::lateral::Coordinates;
@@ -118,7 +119,7 @@ pub enum RunError {
         start: f64,
     },
     /// It takes more steps than one of its segments may.
-    #[error("the run used up its steps at t = {time:?} s of {until:?} s: give a shorter duration")]
+    #[error("the run used up its steps at t = {} of {}: give a shorter duration", with_unit(*time, "s"), with_unit(*until, "s"))]
     TooLong {
         /// Instant at which the steps ended, s.
         time: f64,
@@ -127,7 +128,8 @@ pub enum RunError {
     },
     /// It takes more points than a curve may have.
     #[error(
-        "a picture of the run needs more than {most} points, which end at t = {time:?} s; give it a shorter duration"
+        "a picture of the run needs more than {most} points, which end at t = {}; give it a shorter duration",
+        with_unit(*time, "s")
     )]
     TooManyPoints {
         /// How many a curve may have.

@@ -2,6 +2,7 @@
 
 pub mod any;
 pub mod description;
+pub mod doubts;
 pub mod frame;
 pub mod natural_quantities;
 pub mod parameters;
@@ -181,8 +182,8 @@ pub const DERIVED: [Derived; 16] = [
     derived!("f_u" ["Hz"] "frequency of the vibration mode while rocking", "before Eq 18", |s| s.omega_u / TAU),
     derived!("zeta_u" ["1"] "damping ratio of the vibration mode while rocking", "before Eq 18", |s| s.zeta_u),
     derived!("period_fc" ["s"] "natural period in full contact", "before Eq 4", |s| s.parameters.f_fc.recip()),
-    derived!("weight" ["kN"] "weight of the top mass, m g", "Eq 5", |s| 1e-3 * s.parameters.m * s.parameters.g),
-    derived!("weight0" ["kN"] "weight of the foundation, m0 g", "Eq 6", |s| 1e-3 * s.parameters.m0 * s.parameters.g),
+    derived!("weight" ["N"] "weight of the top mass, m g", "Eq 5", |s| s.parameters.m * s.parameters.g),
+    derived!("weight0" ["N"] "weight of the foundation, m0 g", "Eq 6", |s| s.parameters.m0 * s.parameters.g),
     derived!("width" ["m"] "width of the base, 2 B", "Eq 25", |s| 2.0 * s.parameters.B),
 ];
 
@@ -269,5 +270,14 @@ mod tests {
                 assert_relative_eq!((derived.value)(&structure), expected, max_relative = 2e-5);
             }
         }
+    }
+
+    #[test]
+    fn every_number_is_in_si_units() {
+        let known = ["1", "kg", "m", "s", "N", "rad", "Hz", "m2", "s2"];
+        let units = parameters::PARAMETERS.iter().map(|of| of.unit).chain(DERIVED.iter().map(|of| of.unit));
+        let units = units.chain(any::OF_FRAME.iter().map(|of| of.unit)).chain(any::OF_MODE.iter().map(|of| of.unit));
+        let strange: Vec<_> = units.filter(|unit| !unit.split(['/', '.']).all(|part| known.contains(&part))).collect();
+        assert!(strange.is_empty(), "{strange:?}");
     }
 }

@@ -20,7 +20,7 @@ def use_all(folder: Path) -> None:
     spectrum: np.ndarray = ground.spectrum([0.1, 0.2], zeta=0.02)
     assert spectrum.shape == (2,) and hash(ground)
 
-    pier = fr.Structure(weight=4000, m0=1e5, alpha_cg=0.2, B=1.5, period_fc=0.4, zeta_fc=0.03, r=0.95)
+    pier = fr.Structure(weight=4e6, m0=1e5, alpha_cg=0.2, B=1.5, period_fc=0.4, zeta_fc=0.03, r=0.95)
     wall = fr.Structure(preset="evison").replace(f_fc=8.0)
     assert pier.H > pier.B and pier.derived["chi"] < 1 and wall.parameters["f_fc"] == 8.0
     assert wall.effective_frequency(0.04) > 0 and wall.pushover(points=3)["P"].shape == (6,)

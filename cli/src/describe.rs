@@ -4,10 +4,10 @@ mod template;
 
 use crate::{
     results::{FormatArgs, print},
-    significant::significant,
     structure_args::StructureArgs,
 };
 use anyhow::{bail, ensure};
+use rocking::digits::significant;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::Quantity;
 use rocking::{

@@ -2,7 +2,7 @@
 
 use crate::record_args::{RecordOptions, one_of, say_understood};
 use crate::structure_args::{StructureArgs, in_one_line, on_command_line};
-use crate::talk::say;
+use crate::talk::{say, warning};
 use FlexibleRocking::{guid, resources::Contents};
 use anyhow::{Context, bail};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
@@ -129,7 +129,7 @@ fn libraries_of(program: &Path) -> anyhow::Result<Vec<Library>> {
         let path = folder.with_file_name(platform.target()).join("dist").join(platform.file());
         match Library::read(&path) {
             Ok(found) => libraries.extend(found),
-            Err(LibraryError::OtherBuild(_)) => say!("{} is left out: it is of another build", path.display()),
+            Err(LibraryError::OtherBuild(_)) => warning!("{} is left out: it is of another build", path.display()),
             Err(_) if !path.exists() => (),
             Err(error) => return Err(error.into()),
         }

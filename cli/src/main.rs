@@ -22,7 +22,7 @@ mod talk;
 mod view;
 
 use clap::{Parser, Subcommand};
-use fmu_export::{Platform, significant};
+use fmu_export::Platform;
 use std::env::consts::{ARCH, OS};
 use std::{env, io, process::ExitCode};
 
@@ -40,7 +40,7 @@ use std::{env, io, process::ExitCode};
 struct CommandLine {
     #[command(subcommand)]
     command: Command,
-    /// Print only errors on standard error
+    /// Print only warnings and errors on standard error
     #[arg(long, global = true, display_order = 1000)]
     quiet: bool,
 }
@@ -92,7 +92,7 @@ enum Command {
     #[command(after_help = "Examples:
   rocking-fmu describe
   rocking-fmu describe --preset evison --f-fc 8 --r 0.9
-  rocking-fmu describe --weight 500 --weight0 0 --width 3 --alpha-cg 0.25 --period-fc 0.4 --zeta-fc 0.02 --r 0.95
+  rocking-fmu describe --weight 5e5 --weight0 0 --width 3 --alpha-cg 0.25 --period-fc 0.4 --zeta-fc 0.02 --r 0.95
   rocking-fmu describe --template > pier.toml
   rocking-fmu describe --parameters pier.toml")]
     Describe(describe::DescribeArgs),

@@ -1,6 +1,10 @@
 //! Which ground motion record a command works on, how it is read, and how it is scaled.
-use crate::{significant::short, structure_args::on_command_line, talk::say};
+use crate::{
+    structure_args::on_command_line,
+    talk::{say, warning},
+};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use rocking::digits::short;
 use rocking::run::record::Record;
 use rocking_records::{Column, Reading, Unit};
 use rocking_report::record::{Understood, understand};
@@ -96,7 +100,7 @@ impl RecordOptions {
 /// Prints findings and assumptions about a record after `label`, and warnings.
 pub fn say_understood(label: &str, understood: &Understood) {
     say!("{label}{}", understood.sentences[0]);
-    understood.warnings().for_each(|warning| say!("{warning}"));
+    understood.warnings().iter().for_each(|warning| warning!("{warning}"));
 }
 
 /// Takes one of `all` by its name.

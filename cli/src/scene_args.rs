@@ -1,10 +1,10 @@
 //! The scene that a command simulates: a ground motion record or free vibration, and the initial values.
 use crate::{
     record_args::{RecordArgs, one_of},
-    significant::short,
     structure_args::StructureArgs,
 };
 use clap::ArgGroup;
+use rocking::digits::short;
 use rocking::run::record::Record;
 use rocking::structure::any::AnyStructure;
 use rocking::{Detail, Modes, State, engine::DEFAULT_TOLERANCE};

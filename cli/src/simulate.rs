@@ -9,10 +9,10 @@ use crate::{
     picture::Picture,
     results::{FormatArgs, csv},
     scene_args::MotionArgs,
-    significant::{short, significant},
     talk::{say, write_as},
 };
 use anyhow::ensure;
+use rocking::digits::{short, significant};
 use rocking::run::record::Record;
 use rocking::run::validity::Validity;
 use rocking::structure::{Base, any::AnyStructure};

@@ -1,14 +1,18 @@
 //! Which structure a command works on: one of the paper's specimens, or parameters from a file, with single numbers in
 //! the place of theirs, or numbers that are all of it.
-use crate::{record_args::one_of, significant::in_full, talk::say};
+use crate::{
+    record_args::one_of,
+    talk::{say, warning},
+};
 use anyhow::{Context, anyhow, bail};
 use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource};
+use rocking::digits::{short, with_unit};
 use rocking::structure::Derived;
 use rocking::structure::any::AnyStructure;
 use rocking::structure::description::Described;
 use rocking::structure::natural_quantities::{Given, GivenError, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking::structure::quantity::{Quantity, with_unit};
+use rocking::structure::quantity::Quantity;
 use rocking::{Parameters, Structure};
 use rocking_report::input;
 use std::path::{Path, PathBuf};
@@ -50,8 +54,14 @@ impl StructureArgs {
         Ok(self.load_any()?.one("this command")?)
     }
 
-    /// Reads the structure; a refusal names the file, the line and the key.
+    /// Reads the structure, and warns of doubtful numbers; a refusal names the file, the line and the key.
     pub fn load_any(&self) -> anyhow::Result<AnyStructure> {
+        let structure = self.read()?;
+        structure.doubts().iter().for_each(|doubt| warning!("{doubt}"));
+        Ok(structure)
+    }
+
+    fn read(&self) -> anyhow::Result<AnyStructure> {
         let numbers = &self.numbers.0;
         let parameters = match (&self.parameters, self.preset) {
             (Some(path), _) => {
@@ -123,7 +133,7 @@ fn option(name: &'static str, unit: &'static str, help: String) -> Arg {
 impl clap::Args for Numbers {
     fn augment_args(command: Command) -> Command {
         let parameters = PARAMETERS.iter().map(|&Quantity { name, unit, description, min, max, .. }| {
-            option(name, unit, format!("{description}, {} to {}", in_full(min), in_full(max)))
+            option(name, unit, format!("{description}, {} to {}", short(min), short(max)))
         });
         let natural = NATURAL.iter().map(|natural| {
             let &Derived { name, unit, description, .. } = natural.derived();

@@ -9,13 +9,13 @@ mod table;
 use crate::{
     picture::Picture,
     results::FormatArgs,
-    talk::{self, say, say_few},
+    talk::{self, few, say},
 };
 use anyhow::{bail, ensure};
 use file::{Asked, RecordSweep};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPool;
-use rocking::structure::quantity::with_unit;
+use rocking::digits::with_unit;
 use rocking_report::{input, output_files::OutputFiles, program::program};
 use rocking_sweep::{
     exceedances,
@@ -88,7 +88,7 @@ fn run_records(
         "{name}: {done} of {} runs done, structures: {members}, records: {motions}, scale factors: {scales}",
         plan.len()
     );
-    say_few(&records, "records");
+    few(records, "records").iter().for_each(|line| say!("{line}"));
     runs.others.others(output, "runs that are not in this sweep").iter().for_each(|line| say!("{line}"));
 
     let (bar, goes_on) = progress(missing.len(), "runs")?;

@@ -2,40 +2,51 @@
 
 use indicatif::ProgressBar;
 use rocking_report::{input, message, output_files::OutputFile};
+use std::fmt;
 use std::io::{Write, stderr};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Says a line on standard error, unless the user wants quiet. A closed standard error is no failure.
+/// Says a line on standard error, unless the user wants quiet.
 macro_rules! say {
     ($($text:tt)*) => {
         if !$crate::talk::is_quiet() {
-            use std::io::Write as _;
-            let _ = writeln!(std::io::stderr(), $($text)*);
+            $crate::talk::write_line(format_args!($($text)*));
         }
     };
 }
-pub(crate) use say;
+/// Writes a warning on standard error, quiet or not: what is assumed or doubtful is not talk.
+macro_rules! warning {
+    ($($text:tt)*) => {
+        $crate::talk::write_line(format_args!("warning: {}", format_args!($($text)*)))
+    };
+}
+pub(crate) use {say, warning};
+
+/// Writes a line on standard error. A closed standard error is no failure.
+pub fn write_line(line: fmt::Arguments) {
+    let _ = writeln!(stderr(), "{line}");
+}
 
 /// More lines of one kind than this are not read.
 const FEW: usize = 5;
 
-/// Says `lines` of one kind of things, which are called `what`: of many the first.
-pub fn say_few(lines: &[String], what: &str) {
-    let shown = if lines.len() > FEW + 1 { FEW } else { lines.len() };
-    lines[..shown].iter().for_each(|line| say!("{line}"));
-    if shown < lines.len() {
-        say!("... and {} more {what}", lines.len() - shown);
+/// The `lines` to show of one kind of things, which are called `what`: of many the first.
+pub fn few(mut lines: Vec<String>, what: &str) -> Vec<String> {
+    if lines.len() > FEW + 1 {
+        let more = format!("... and {} more {what}", lines.len() - FEW);
+        lines.splice(FEW.., [more]);
     }
+    lines
 }
 
 static QUIET: AtomicBool = AtomicBool::new(false);
 
-/// Suppresses all messages except errors.
+/// Suppresses all messages except warnings and errors.
 pub fn be_quiet() {
     QUIET.store(true, Ordering::Relaxed);
 }
 
-/// Whether nothing is to be said but errors.
+/// Whether nothing is to be said but warnings and errors.
 pub fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
@@ -57,5 +68,5 @@ pub fn progress(length: usize) -> ProgressBar {
 
 /// Says why a command failed, quiet or not.
 pub fn say_error(error: &anyhow::Error) {
-    let _ = writeln!(stderr(), "error: {}", message(error));
+    write_line(format_args!("error: {}", message(error)));
 }

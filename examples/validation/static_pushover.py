@@ -30,7 +30,7 @@ class Pushover:
     @property
     def weight_moment(self) -> float:
         """(m + m0) g B, N.m."""
-        return 1e3 * (self.structure.weight + self.structure.weight0) * self.structure.B
+        return (self.structure.weight + self.structure.weight0) * self.structure.B
 
     @property
     def drop(self) -> float:
@@ -79,7 +79,7 @@ def rows(pushovers: dict[str, Pushover]) -> list[Row]:
         result += [
             Row(f"{name}: ground acceleration at uplift, g tan α_cg, under a slow ramp", f"{tangent:.4f}",
                 p.a_g_at_uplift / G, ".4f", "g"),
-            Row(f"{name}: stiffness as rocking begins, −m g (gravity terms of Eq 8)", f"{-of.weight:.3f}",
+            Row(f"{name}: stiffness as rocking begins, −m g (gravity terms of Eq 8)", f"{-of.weight / 1e3:.3f}",
                 slope / 1e3, ".3f", "kN·m/m"),
             Row(f"{name}: rotation at overturning, α_cg of the rigid body", f"{of.alpha_cg:.4f}", p.theta[-1],
                 ".4f", "rad", "the strut's bend takes the top mass further out"),

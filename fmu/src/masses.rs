@@ -14,6 +14,7 @@ use rocking::run::fall::{FallingProfile, Peaked};
 use rocking::run::peaks::Peak;
 use rocking::run::validity::{self, Validity};
 use rocking::structure::any::AnyStructure;
+use rocking::structure::doubts;
 use rocking::{
     Detail, Engine, Frame, FrameOutput, LinearLoad, Load, Modes, Outputs, Reactions, State, Structure, Transition,
     Watch,
@@ -149,7 +150,7 @@ impl Masses for f64 {
     }
 
     fn doubts(structure: &Structure, detail: Detail) -> Vec<String> {
-        validity::of_parameters(structure, detail)
+        [doubts::of_base(structure.as_ref()), validity::of_parameters(structure, detail)].concat()
     }
 
     #[inline(always)]
@@ -253,7 +254,7 @@ impl Masses for Modes {
     }
 
     fn doubts(frame: &Frame, detail: Detail) -> Vec<String> {
-        validity::of_frame(frame, detail)
+        [doubts::of_frame(frame), validity::of_frame(frame, detail)].concat()
     }
 
     /// One type for all cases keeps the library small.

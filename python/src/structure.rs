@@ -1,6 +1,6 @@
 //! `Structure`: parameters and what follows from them, by the names in the library's tables.
 
-use crate::arguments::{numbers, one_of, refused};
+use crate::arguments::{numbers, one_of, refused, warn};
 use crate::interruptible::interruptible;
 use crate::many_masses::{OF_MANY, frame, given};
 use numpy::PyArray1;
@@ -23,7 +23,7 @@ use rocking_report::describe;
 ///
 /// Every number is a keyword and an attribute, in SI units. Parameters: m, m0 (kg), H, B (m), J0 (kg.m2, 0), f_fc (Hz),
 /// zeta_fc, c_ratio (1), r, g (m/s2, 9.81); the numbers in brackets are defaults. These replace parameters: period_fc (s) for
-/// f_fc, weight and weight0 (kN) for m and m0, width (m) for B. p_l (rad/s) replaces J0. alpha_cg (rad) replaces H, or B if H
+/// f_fc, weight and weight0 (N) for m and m0, width (m) for B. p_l (rad/s) replaces J0. alpha_cg (rad) replaces H, or B if H
 /// is given. Tendon: P_0 (N), k_t (N/m). Pair of dissipators: distance xi_d (m) from the middle, viscous c_d (N.s/m), or
 /// elastoplastic k_d (N/m) and F_y (N). With preset, "mcmanus" or "evison", the specimen of the paper with these numbers in
 /// the place of its own.
@@ -38,7 +38,8 @@ use rocking_report::describe;
 /// the base are those above. Without r, momentum gives a coefficient for each impact. keep: how many modes are kept; the rest of
 /// the mass turns rigidly with the base. See also from_matrices and from_modes.
 ///
-/// Raises ValueError where a number is unknown, missing, given twice in different ways or out of its range.
+/// A Python warning names a number that is usual in another unit. Raises ValueError where a number is unknown, missing, given twice in
+/// different ways or out of its range.
 #[pyclass(frozen, eq, module = "flexible_rocking")]
 pub struct Structure {
     pub of: AnyStructure,
@@ -58,15 +59,19 @@ fn copied<'py>(keywords: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
 }
 
 impl Structure {
-    fn of(parameters: Parameters) -> PyResult<Structure> {
-        let of = AnyStructure::One(rocking::Structure::new(parameters).map_err(refused)?);
-        Ok(Structure { of, keywords: None })
+    /// The structure, with a Python warning for each doubtful number.
+    fn of(py: Python<'_>, of: AnyStructure, keywords: Option<Py<PyDict>>) -> PyResult<Structure> {
+        warn(py, of.doubts(), 1)?;
+        Ok(Structure { of, keywords })
+    }
+
+    fn one_mass(py: Python<'_>, parameters: Parameters) -> PyResult<Structure> {
+        Structure::of(py, AnyStructure::One(rocking::Structure::new(parameters).map_err(refused)?), None)
     }
 
     fn many(keywords: &Bound<'_, PyDict>) -> PyResult<Structure> {
         let kept = copied(keywords)?;
-        let of = AnyStructure::Many(frame(kept.copy()?)?);
-        Ok(Structure { of, keywords: Some(kept.unbind()) })
+        Structure::of(keywords.py(), AnyStructure::Many(frame(kept.copy()?)?), Some(kept.unbind()))
     }
 
     /// The structure of one mass, which `task` needs.
@@ -107,7 +112,7 @@ impl Structure {
             }
             Some(preset) => given(&numbers)?.over(&one_of("preset", preset, PRESETS)?),
         };
-        Structure::of(parameters.map_err(refused)?)
+        Structure::one_mass(py, parameters.map_err(refused)?)
     }
 
     /// The structure of these masses (kg) at these heights (m) above the base, lowest first. K (N/m) is the stiffness matrix on
@@ -149,7 +154,7 @@ impl Structure {
     fn replace<'py>(&self, py: Python<'py>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<Structure> {
         let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
         if let AnyStructure::One(structure) = &self.of {
-            return Structure::of(given(&numbers)?.over(structure.parameters()).map_err(refused)?);
+            return Structure::one_mass(py, given(&numbers)?.over(structure.parameters()).map_err(refused)?);
         }
         let keywords = self.parameters(py)?;
         keywords.update(numbers.as_mapping())?;
@@ -168,7 +173,7 @@ impl Structure {
     }
 
     /// The derived quantities by name: gamma, omega_fc (rad/s), k (N/m), u_cr (m), J_P (kg.m2), p_l (rad/s), alpha_cg (rad),
-    /// chi, f_u (Hz), weight (kN), ... Of many masses: m_s, m_t (kg), S_1 (kg.m), J_P, p_l, alpha_cg, r, ...
+    /// chi, f_u (Hz), weight (N), ... Of many masses: m_s, m_t (kg), S_1 (kg.m), J_P, p_l, alpha_cg, r, ...
     #[getter]
     fn derived<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);

@@ -1,8 +1,9 @@
 //! Options for reading a record's file, and the findings and assumptions about the file.
 
-use super::text::{quote, six_digits};
+use super::text::quote;
 use super::unit::{Stated, mentions_unit};
 use super::{BadLine, Record, Remedy, Unit, bad, doubts};
+use rocking::digits::short;
 use serde::{Deserialize, Deserializer, de::Error};
 use std::fmt;
 
@@ -73,7 +74,7 @@ impl Source {
         };
         let remarks: String = self.remarks.iter().map(|remark| format!(", {remark}")).collect();
         let (format, unit, samples) = (self.format, self.unit, record.times().len());
-        let (steps, peak) = (steps(record), six_digits(record.pga() / g));
+        let (steps, peak) = (steps(record), short(record.pga() / g));
         format!("{name}: {format}{remarks}; {unit} {unit_from}; {samples} samples, {steps}, peak {peak} g")
     }
 
@@ -96,7 +97,7 @@ impl Source {
 pub fn steps(record: &Record) -> String {
     let steps = record.times().windows(2).map(|pair| pair[1] - pair[0]);
     let (least, most) = steps.fold((f64::INFINITY, 0.0_f64), |(least, most), step| (least.min(step), most.max(step)));
-    let [least, most] = [least, most].map(six_digits);
+    let [least, most] = [least, most].map(short);
     if least == most { format!("step {least} s") } else { format!("steps of {least} to {most} s") }
 }
 

@@ -1,7 +1,6 @@
 //! The text of a record's file: its encoding, its lines, the numbers in them.
 
 use super::{BadLine, bad};
-use rocking::structure::quantity::with_unit;
 use std::borrow::Cow;
 
 /// End mark of DOS, after the last line.
@@ -79,11 +78,6 @@ pub(super) fn is_number(word: &str) -> bool {
 /// `value` to nine digits, without the noise of a difference of rounded numbers.
 pub(super) fn nine_digits(value: f64) -> f64 {
     format!("{value:.8e}").parse().unwrap_or(value)
-}
-
-/// `value` to six digits.
-pub(super) fn six_digits(value: f64) -> String {
-    with_unit(format!("{value:.5e}").parse().unwrap_or(value), "1")
 }
 
 /// The words of lines of a fixed width: columns of `width` letters, where a number that fills its column leaves no blank

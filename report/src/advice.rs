@@ -3,8 +3,8 @@
 use crate::estimate::Estimate;
 use crate::quantities::{Number, in_readable_unit};
 use crate::shown::{Named, Shown};
-use crate::significant::{short, significant};
 use crate::validity;
+use rocking::digits::{short, significant};
 use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::{

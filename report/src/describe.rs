@@ -1,7 +1,7 @@
 //! A structure's parameters and what follows from them.
 
 use crate::quantities::NamedValue;
-use crate::significant::{short, significant};
+use rocking::digits::{short, significant};
 use rocking::run::validity;
 use rocking::structure::any::{ModeOf, OF_FRAME, OF_MODE};
 use rocking::structure::frame::Body;

@@ -16,8 +16,6 @@ pub mod summary;
 pub mod tables;
 pub mod validity;
 
-use fmu_export::significant;
-
 /// Message of `error`: each cause once, even if a cause repeats the next one.
 pub fn message(error: &anyhow::Error) -> String {
     let mut message = String::new();

@@ -1,6 +1,7 @@
 //! The pushover: lateral force and moment against displacement (Fig 1).
 
-use crate::{quantities::in_readable_unit, significant::significant};
+use crate::quantities::in_readable_unit;
+use rocking::digits::significant;
 use rocking::estimates::pushover::{Equilibrium, PushoverError, at_overturning, at_rotation, in_full_contact};
 use rocking::{Phase, Structure};
 use serde::Serialize;

@@ -1,5 +1,5 @@
 //! Named values for people and for programs.
-use crate::significant::significant;
+use rocking::digits::significant;
 use serde::{Serialize, Serializer};
 use std::fmt::{self, Write};
 

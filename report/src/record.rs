@@ -44,9 +44,9 @@ pub fn understand(
 }
 
 impl Understood {
-    /// Warnings of likely errors, a line each.
-    pub fn warnings(&self) -> impl Iterator<Item = String> {
-        self.sentences[1..].iter().map(|warning| format!("warning: {warning}"))
+    /// Sentences about assumptions and likely errors.
+    pub fn warnings(&self) -> &[String] {
+        &self.sentences[1..]
     }
 
     /// The scaled record as a table that needs no options, in s and the unit of the file: a record in g follows a g that is set later.

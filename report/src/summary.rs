@@ -2,7 +2,7 @@
 use crate::quantities::readable;
 use crate::shown::{Named, OF_FLOOR, Shown};
 use crate::validity;
-use fmu_export::significant::significant;
+use rocking::digits::significant;
 use rocking::mechanics::restraint::Dissipators;
 use rocking::run::{Ending, Finish, LONGEST_REST, fall::Found, peaks::Peak};
 use rocking::structure::Ties;

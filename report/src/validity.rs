@@ -2,8 +2,8 @@
 
 use crate::quantities::Number;
 use crate::shown::Shown;
-use crate::significant::significant;
 use rocking::Detail;
+use rocking::digits::significant;
 use rocking::run::validity::{ASSUMPTIONS, Assumption, Findings, Limits, WEIGHT, Worst};
 use serde::Serialize;
 

@@ -1,8 +1,9 @@
 //! State and phase of the structure.
 
 use crate::Structure;
+use crate::digits::with_unit;
 use crate::mechanics::lateral::Coordinates;
-use crate::structure::quantity::{OutOfRange, Quantity, quantity, with_unit};
+use crate::structure::quantity::{OutOfRange, Quantity, quantity};
 use serde::{Deserialize, Serialize};
 
 /// State of the structure.

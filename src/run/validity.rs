@@ -27,6 +27,7 @@ mod assumptions;
 use super::profile::Mosts;
 use super::reaction_series::{self, Extent, extents};
 use super::{Finish, Run, RunError};
+use crate::digits::short;
 use crate::engine::Moves;
 use crate::engine::piece::{Expansion, FINEST_PART, Part, Piece, Sample, Watch};
 use crate::levels::level::{Now, Rates};
@@ -41,8 +42,7 @@ use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
-use crate::structure::frame::Body;
-use crate::structure::{Base, Mode};
+use crate::structure::Base;
 use crate::{
     Detail, Frame, Impulse, Modes, Motion, Parameters, Phase, Ramp, Reactions, Side, Structure, Transition,
     TransitionKind,
@@ -55,7 +55,6 @@ use assumptions::{
     Tension,
 };
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 
 /// Something worse by no more than this part may be rounding.
 const ROUNDING: f64 = 1e-14;
@@ -199,6 +198,7 @@ impl Findings {
         let (Assumption { name, meaning, limit, passing, .. }, Worst { value, time, first_beyond, .. }) =
             (&ASSUMPTIONS[which], &self.worst[which]);
         let (first, limit) = ((*first_beyond)?, limit(limits));
+        let [first, limit, value, time] = [first, limit, *value, *time].map(short);
         Some(format!("t = {first} s: {name} is {passing} {limit}: {meaning}; so far {name} = {value} at t = {time} s"))
     }
 }
@@ -621,19 +621,26 @@ pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
         let balanced = (gamma * g * B + P_0 * B / m) / (H * omega_fc * omega_fc + g);
         let held = if P_0 > 0.0 { "gamma g + P_0/m" } else { "gamma g" };
         warnings.push(format!(
-            "u_cr = {u_cr} m exceeds B = {B} m (H w_fc^2 < {held}): the model holds the base down until the top mass is \
-             beyond the edge of the base, but the weight holds it only up to u = {balanced} m; raise f_fc, or do not \
-             rely on the results"
+            "u_cr = {} m exceeds B = {} m (H w_fc^2 < {held}): the model holds the base down until the top mass is \
+             beyond the edge of the base, but the weight holds it only up to u = {} m; raise f_fc, or do not \
+             rely on the results",
+            short(u_cr),
+            short(B),
+            short(balanced)
         ));
     }
     warnings.extend(pulling(r, impact::pulling_restitution(structure), "(m + m0)"));
     if detail.has_strut() && impact::greatest_gain(structure, u_cr) > 0.0 {
         let range = match impact::lossless_restitution(structure, u_cr) {
-            Some([least, most]) => format!("only r from {least} to {most} cannot"),
+            Some(range) => {
+                let [least, most] = range.map(short);
+                format!("only r from {least} to {most} cannot")
+            }
             None => "so can any other r".to_owned(),
         };
         warnings.push(format!(
-            "r = {r} can raise the energy at an impact with |u| = u_cr: {range}, see docs/explain/failures.md, section 7"
+            "r = {} can raise the energy at an impact with |u| = u_cr: {range}, see docs/explain/failures.md, section 7",
+            short(r)
         ));
     }
     warnings
@@ -647,36 +654,20 @@ pub fn of_frame(frame: &Frame, detail: Detail) -> Vec<String> {
     if detail.has_uplift() {
         warnings.extend(r.and_then(|r| pulling(r, impact::pulling_restitution(frame), "m_t")));
         if r.is_none() && at_rest <= 0.0 {
+            let [at_rest, J_P, least] = [at_rest, J_P, 2.0 * m_t * B * B].map(short);
             warnings.push(format!(
-                "r = {at_rest} by momentum: J_P = {J_P} kg.m2 is not above 2 m_t B^2 = {} kg.m2, and an impact with u = 0 ends \
-                 rocking; are masses in kg, heights in m, and is B half of the base's width?",
-                2.0 * m_t * B * B
+                "r = {at_rest} by momentum: J_P = {J_P} kg.m2 is not above 2 m_t B^2 = {least} kg.m2, and an impact with u = 0 ends \
+                 rocking; are masses in kg, heights in m, and is B half of the base's width?"
             ));
         }
-    }
-    let &Body { m_s, S_1, .. } = frame.body();
-    // of mass that is spread evenly over the height
-    let height = frame.floors().iter().map(|floor| floor.height).reduce(f64::max).unwrap_or(2.0 * S_1 / m_s);
-    let lowest = frame.modes().iter().map(Mode::omega).reduce(f64::min);
-    let [f, usual] = [lowest.unwrap_or(f64::NAN) / TAU, USUAL_SPEED / height];
-    if (f / usual).max(usual / f) > UNUSUAL {
-        warnings.push(format!(
-            "f = {f:.2} Hz of the lowest mode is far from the usual frequency of a structure {height:.1} m high, about {usual:.1} Hz: \
-             are masses in kg, stiffnesses in N/m, and f in Hz?"
-        ));
     }
     warnings
 }
 
-/// Frequency times height of buildings, m/s: the mean of 163 (Ellis 1980, not read; as quoted by others).
-const USUAL_SPEED: f64 = 46.0;
-
-/// Ratio to that frequency from which a unit is in doubt. A unit of mass or stiffness wrong by 1000 makes 32.
-const UNUSUAL: f64 = 10.0;
-
 /// The warning about a coefficient of restitution `r` that requires a pull.
 fn pulling(r: f64, limit: f64, mass: &str) -> Option<String> {
     (r < limit).then(|| {
+        let [r, limit] = [r, limit].map(short);
         format!(
             "r = {r} is below 1 - 2 {mass} B^2/J_P = {limit}: an impact with u = 0 needs an impulse that pulls at \
              one of the edges; raise r, or lower H/B"

@@ -7,6 +7,7 @@
 //! ```
 
 use crate::Parameters;
+use crate::digits::short;
 use crate::mechanics::lateral::{MOST_MODES, Modes};
 use crate::structure::frame::{Body, Floor, Frame, FrameError};
 use crate::structure::natural_quantities::{self, Given, GivenError};
@@ -156,7 +157,7 @@ pub enum DescriptionError {
         "modes need the total m_s (kg), S_1 (kg.m) and I_2 (kg.m2) of the mass above the base, or the floors that have it"
     )]
     NoTotal,
-    #[error("mode {number} has f = {f} Hz and the mode before it {before} Hz: give the lowest mode first")]
+    #[error("mode {number} has f = {} Hz and the mode before it {} Hz: give the lowest mode first", short(*f), short(*before))]
     ModeOrder { number: usize, f: f64, before: f64 },
     #[error(
         "S_1 = {S_1} kg.m does not fit m_s and I_2: the mass that the modes leave over would have the first moment \
@@ -174,8 +175,9 @@ pub enum DescriptionError {
     )]
     ShapeHeight { number: usize, found: f64, given: f64 },
     #[error(
-        "the modes carry {part:.2} % of m_s = {m_s:?} kg above the foundation, and {least} % are needed: check the units of the \
+        "the modes carry {part:.2} % of m_s = {} kg above the foundation, and {least} % are needed: check the units of the \
          masses, and that the modes vibrate along the record",
+        short(*m_s),
         part = 1e2 * of_modes / m_s,
         least = 1e2 * LEAST_SHARE
     )]

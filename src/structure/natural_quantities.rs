@@ -10,8 +10,9 @@
 //!
 //! A natural quantity and the parameter that it stands for cannot be given together, because they may contradict each other.
 
+use crate::digits::with_unit;
 use crate::structure::parameters::{PARAMETERS, Parameters};
-use crate::structure::quantity::{OutOfRange, Quantity, with_unit};
+use crate::structure::quantity::{OutOfRange, Quantity};
 use crate::structure::{DERIVED, Derived};
 use serde::{Deserialize, Deserializer, de::Error};
 use std::collections::BTreeMap;
@@ -34,8 +35,8 @@ pub struct Natural {
 /// All natural quantities. The parameter that follows from a value is checked as well.
 pub const NATURAL: [Natural; 6] = [
     Natural { name: "period_fc", min: 1e-4, max: 1e3, stands_for: "f_fc", in_place_of: "f_fc" },
-    Natural { name: "weight", min: 1e-9, max: 1e12, stands_for: "m", in_place_of: "m" },
-    Natural { name: "weight0", min: 0.0, max: 1e12, stands_for: "m0", in_place_of: "m0" },
+    Natural { name: "weight", min: 1e-6, max: 1e15, stands_for: "m", in_place_of: "m" },
+    Natural { name: "weight0", min: 0.0, max: 1e15, stands_for: "m0", in_place_of: "m0" },
     Natural { name: "width", min: 2e-3, max: 2e4, stands_for: "B", in_place_of: "B" },
     Natural { name: "alpha_cg", min: 1e-3, max: 1.57, stands_for: "H", in_place_of: "H, or B if H is given" },
     Natural { name: "p_l", min: 1e-4, max: 1e3, stands_for: "J0", in_place_of: "J0" },
@@ -260,8 +261,8 @@ impl Given {
             None => Ok(own(name)),
         };
         let g = own("g");
-        let m = or("m", "weight", &|weight| 1e3 * weight / g)?;
-        let m0 = or("m0", "weight0", &|weight0| 1e3 * weight0 / g)?;
+        let m = or("m", "weight", &|weight| weight / g)?;
+        let m0 = or("m0", "weight0", &|weight0| weight0 / g)?;
         let f_fc = or("f_fc", "period_fc", &|period_fc| period_fc.recip())?;
         let B = || or("B", "width", &|width| width / 2.0);
         let gamma = (m + m0) / m;
@@ -355,6 +356,7 @@ impl TryFrom<BTreeMap<String, f64>> for Given {
 mod tests {
     use super::*;
     use crate::Structure;
+    use crate::digits::short;
     use proptest::prelude::*;
 
     fn given(numbers: &[(&str, f64)]) -> Given {
@@ -388,7 +390,7 @@ mod tests {
         let over = |numbers: &[(&str, f64)]| given(numbers).over(&Parameters::EVISON).unwrap_err().to_string();
         assert_eq!(
             over(&[("weight", 2.0), ("m", 200.0)]),
-            "weight = 2 kN is given beside m: weight determines m, leave one of them out"
+            "weight = 2 N is given beside m: weight determines m, leave one of them out"
         );
         assert_eq!(
             over(&[("B", 0.3), ("alpha_cg", 0.3), ("H", 1.0)]),
@@ -398,7 +400,7 @@ mod tests {
         assert!(over(&[("p_l", 2.0), ("J0", 1.0)]).starts_with("p_l = 2 rad/s is given beside J0: p_l determines J0"));
         assert!(over(&[("period_fc", 0.1), ("f_fc", 9.0)]).starts_with("period_fc = 0.1 s is given beside f_fc"));
         assert!(over(&[("width", 1.0), ("B", 0.5)]).starts_with("width = 1 m is given beside B"));
-        assert!(over(&[("weight0", 1.0), ("m0", 0.5)]).starts_with("weight0 = 1 kN is given beside m0"));
+        assert!(over(&[("weight0", 1.0), ("m0", 0.5)]).starts_with("weight0 = 1 N is given beside m0"));
         assert!(
             over(&[("alpha_cg", 4.0)])
                 .starts_with("alpha_cg = 4 rad is out of range: it must lie between 0.001 and 1.57")
@@ -409,8 +411,8 @@ mod tests {
         assert_eq!(
             over(&[("p_l", 3.0)]),
             format!(
-                "p_l = 3 rad/s does not fit: it would take a negative J0; with these masses, H and B it is {largest} \
-                 rad/s at most"
+                "p_l = 3 rad/s does not fit: it would take a negative J0; with these masses, H and B it is {} rad/s at most",
+                short(largest)
             )
         );
         let alone = |numbers: &[(&str, f64)]| given(numbers).parameters().unwrap_err().to_string();
@@ -419,7 +421,7 @@ mod tests {
         assert_eq!(all, ["m", "m0", "H", "B", "f_fc", "zeta_fc", "r"]);
         assert_eq!(
             alone(&[("m0", 1.0), ("H", 1.0), ("alpha_cg", 0.2), ("f_fc", 1.0), ("r", 1.0)]),
-            "m (top mass) is missing: give m (kg) or weight (kN); zeta_fc (damping ratio in full contact) is missing: give \
+            "m (top mass) is missing: give m (kg) or weight (N); zeta_fc (damping ratio in full contact) is missing: give \
              zeta_fc"
         );
         let most = [("m", 1.0), ("m0", 1.0), ("f_fc", 1.0), ("zeta_fc", 0.0), ("r", 1.0)];

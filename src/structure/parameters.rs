@@ -1,5 +1,6 @@
 //! The numbers that a user gives: one structure's parameters, their ranges, and the paper's two specimens.
 
+use crate::digits::short;
 use crate::structure::quantity::{OutOfRange, Quantity, quantity};
 use serde::{Deserialize, Serialize};
 
@@ -87,7 +88,7 @@ pub enum ParameterError {
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
     /// Height and half-width do not fit together.
-    #[error("H/B = {0} is out of range: H must not exceed {MAX_SLENDERNESS} B; lower H or raise B")]
+    #[error("H/B = {} is out of range: H must not exceed {MAX_SLENDERNESS} B; lower H or raise B", short(*.0))]
     TooSlender(f64),
     /// An elastoplastic dissipator takes both a stiffness and a force at which it yields.
     #[error("k_d = {k_d:?} N/m and F_y = {F_y:?} N are no dissipator: set both above 0, or both to 0")]

@@ -1,5 +1,7 @@
 //! A named number with a unit and a range: the one table that checks, messages, files and the FMU read.
 
+use crate::digits::with_unit;
+
 /// A number of `T`, such as a parameter or an initial value, with its name, unit and range.
 #[derive(Debug)]
 pub struct Quantity<T> {
@@ -54,13 +56,6 @@ impl<T> Quantity<T> {
         let &Quantity { name, unit, description, min, max, .. } = self;
         OutOfRange { name, value, unit, min, max, description }
     }
-}
-
-/// `value` with its unit, in few digits; a ratio has no unit.
-pub fn with_unit(value: f64, unit: &str) -> String {
-    let digits = if value.abs() < 1e7 { format!("{value:?}") } else { format!("{value:e}") };
-    let digits = digits.strip_suffix(".0").unwrap_or(&digits);
-    if unit == "1" { digits.into() } else { format!("{digits} {unit}") }
 }
 
 /// A [`Quantity`] whose name is the name of the field that holds it.

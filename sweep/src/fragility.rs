@@ -20,9 +20,10 @@
 //!
 //! (K.-Y. Liang, S. L. Zeger, Longitudinal data analysis using generalized linear models, Biometrika 73, 1986.)
 
-use crate::{Refused, ensure, six_digits};
+use crate::{Refused, ensure};
 use libm::erfc;
 use nalgebra::{Matrix2, RowVector2, Vector2};
+use rocking::digits::short;
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 use std::iter;
@@ -172,7 +173,7 @@ fn check_overlap(trials: &[Trials]) -> Result<(), Refused> {
     let without =
         range(|at| at.exceedances < at.runs).ok_or_else(|| refused("always exceeded: lower the intensity"))?;
     ensure(without.1 > with.0, || {
-        let [highest_without, lowest_with] = [without.1, with.0].map(six_digits);
+        let [highest_without, lowest_with] = [without.1, with.0].map(short);
         format!(
             "dispersion unknown: runs within the limit end at {highest_without}, runs beyond it start at {lowest_with}; \
              add intensities in between, records or structures"

@@ -54,11 +54,6 @@ fn ensure(is_so: bool, why: impl FnOnce() -> String) -> Result<(), Refused> {
     if is_so { Ok(()) } else { Err(Refused(why())) }
 }
 
-/// `value` as messages and names show it.
-fn six_digits(value: f64) -> f64 {
-    format!("{value:.5e}").parse().expect("a number in Rust's own notation")
-}
-
 #[cfg(test)]
 mod tests {
     #[test]

@@ -1,11 +1,11 @@
 //! Outcome of a run in a few numbers, and whether the run exceeded a limit.
 
-use crate::{Refused, ensure, six_digits};
+use crate::{Refused, ensure};
 use rocking::Watch;
+use rocking::digits::{short, with_unit};
 use rocking::run::fall::Found;
 use rocking::run::peaks::PEAKS;
 use rocking::run::{Ending, Run, RunError};
-use rocking::structure::quantity::with_unit;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
@@ -143,7 +143,7 @@ impl Limit {
         let Limit::Peak { measure, value, unit } = *self else { return Ok(()) };
         let (most, shown) = match MEASURES[measure].0 {
             "theta" => (FRAC_PI_2, "pi/2 rad"),
-            "uplift" => (2.0 * half_width, &*format!("2 B = {} m", six_digits(2.0 * half_width))),
+            "uplift" => (2.0 * half_width, &*format!("2 B = {} m", short(2.0 * half_width))),
             _ => return Ok(()),
         };
         let is_reached = in_own_unit(value, unit, 1.0) < most;

@@ -2,6 +2,7 @@
 
 use crate::outcome::Outcome;
 use crate::{Refused, ensure};
+use rocking::digits::with_unit;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::estimates::intensity::{
     IntensityMeasure, arias_intensity, average_spectral_acceleration, cumulative_absolute_velocity, peak_velocity,
@@ -11,8 +12,8 @@ use rocking::estimates::response_spectrum::spectral_acceleration;
 use rocking::run::lanes::found_each;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
+use rocking::structure::doubts;
 use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
-use rocking::structure::quantity::with_unit;
 use rocking::{Detail, Engine, Parameters, Quantity, State, Structure, Watch};
 use serde::Serialize;
 use std::collections::HashSet;
@@ -281,6 +282,15 @@ impl Plan {
     /// The ground motions.
     pub fn motions(&self) -> &[NamedRecord] {
         &self.motions
+    }
+
+    /// A sentence for each number of a structure that is usual in another unit.
+    pub fn doubts(&self) -> Vec<String> {
+        let members = self.populations.iter().flat_map(|of| (0..Population::len(of)).map(move |member| (of, member)));
+        let structures = members.filter_map(|(of, member)| Some((&of.name, of.structure(member).ok()?)));
+        let doubts =
+            structures.flat_map(|(name, of)| doubts::of_base(of.as_ref()).into_iter().map(move |doubt| (name, doubt)));
+        doubts.map(|(name, doubt)| format!("{name}: {doubt}")).collect()
     }
 
     /// How many runs there are.

@@ -14,8 +14,9 @@
 //! divides the pulse evenly with h²/8 abs(a″) ≤ `error` a_p. The ends, where a sine has its kinks, are corners. A pulse that
 //! begins or ends off 0 gives a record that begins or ends off 0.
 
-use crate::{Refused, ensure, six_digits};
+use crate::{Refused, ensure};
 use rocking::Structure;
+use rocking::digits::short;
 use rocking::run::record::{MAX_SAMPLES, Record};
 use rocking::structure::quantity::{Quantity, quantity};
 use serde::{Deserialize, Serialize};
@@ -157,11 +158,11 @@ impl Pulse {
     /// Name of the pulse: its shape, with cycles and phase if the shape has them.
     pub fn name(&self) -> String {
         let &Pulse { shape, .. } = self;
-        let [cycles, phase] = [self.cycles, self.phase].map(six_digits);
+        let [cycles, phase] = [self.cycles, self.phase].map(short);
         let name = shape.name().replace('_', " ");
         match shape {
             Shape::MavroeidisPapageorgiou => format!("{name}, gamma {cycles}, nu {phase} rad"),
-            _ if cycles == shape.cycles() && phase == 0.0 => name,
+            _ if self.cycles == shape.cycles() && self.phase == 0.0 => name,
             _ => format!("{name}, {cycles} cycles, phase {phase} rad"),
         }
     }
@@ -212,7 +213,7 @@ impl Pulse {
             (time, if a_g.abs() < NOTHING * amplitude { 0.0 } else { a_g })
         };
         let (times, acceleration) = (0..=lines as usize).map(corner).unzip();
-        let [of, at] = [amplitude, frequency].map(six_digits);
+        let [of, at] = [amplitude, frequency].map(short);
         let title = format!("{}, {of} m/s2, {at} Hz", self.name());
         Record::from_samples(title, times, acceleration).map_err(Refused::by)
     }

@@ -142,6 +142,7 @@ impl Explorer {
     pub fn about(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
         let (structure, Ground { record, remarks, mut warnings, .. }) = self.load(&fields)?;
+        warnings.extend(structure.doubts());
         let (parameters, derived, modes) = match &structure {
             AnyStructure::One(structure) => {
                 warnings.extend(validity::of_parameters(structure, fields.detail()?));

@@ -1,5 +1,5 @@
 //! A structure as a commented file of parameters.
-use crate::significant::in_full;
+use rocking::digits::short;
 use rocking::structure::natural_quantities::{NATURAL, Natural};
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{Quantity, Structure, structure::Derived};
@@ -15,7 +15,7 @@ pub fn write(out: &mut impl Write, structure: &Structure) -> fmt::Result {
     writeln!(out, "# and the numbers of tendon and dissipators (0).")?;
     for &Quantity { name, unit, description, min, max, get, .. } in &PARAMETERS {
         let of = if unit == "1" { String::new() } else { format!(" {unit},") };
-        writeln!(out, "\n# {description},{of} {} to {}", in_full(min), in_full(max))?;
+        writeln!(out, "\n# {description},{of} {} to {}", short(min), short(max))?;
         writeln!(out, "{name} = {}", shortest(get(structure.parameters())))?;
         for natural in NATURAL.iter().filter(|natural| natural.stands_for == name) {
             let &Natural { min, max, in_place_of, .. } = natural;
@@ -24,8 +24,8 @@ pub fn write(out: &mut impl Write, structure: &Structure) -> fmt::Result {
             writeln!(
                 out,
                 "# {name} = {value} # {description}, {unit}, {} to {}: instead of {in_place_of}",
-                in_full(min),
-                in_full(max)
+                short(min),
+                short(max)
             )?;
         }
     }

@@ -4,8 +4,8 @@ use crate::picture::{
     histories::{Histories, Panel},
     rounded, titled,
 };
-use crate::significant::short;
 use anyhow::Context;
+use rocking::digits::short;
 use rocking::structure::any::OF_MODE;
 use rocking::{
     Frame, FrameOutput, Modes, Parameters, Run, Structure, Transition,

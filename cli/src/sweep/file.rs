@@ -1,6 +1,10 @@
 //! The TOML file of a sweep: every record at every scale factor on every structure, or pulses of every frequency
 //! and amplitude.
-use crate::{record_args::RecordOptions, scene_args::InitialArgs, talk::say_few};
+use crate::{
+    record_args::RecordOptions,
+    scene_args::InitialArgs,
+    talk::{few, warning},
+};
 use anyhow::{Context, anyhow, bail, ensure};
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::record::Record;
@@ -189,7 +193,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
             let (unit, time_scale) = (options.unit.or(unit), options.time_scale.or(time_scale));
             let options = RecordOptions { unit, time_scale, scale: None, ..options.clone() };
             let understood = options.understand(path, g, str::to_owned)?;
-            warnings.extend(understood.warnings());
+            warnings.extend_from_slice(understood.warnings());
             records.push(understood.sentences[0].clone());
             Ok::<_, anyhow::Error>(understood.record)
         };
@@ -199,8 +203,10 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
             Ok(record.with_vertical(&read_one(vertical, options)?)?)
         };
         let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read);
-        say_few(&warnings, "warnings");
+        let all_warn = |warnings| few(warnings, "warnings").iter().for_each(|warning| warning!("{warning}"));
+        all_warn(warnings);
         let plan = Plan::new(populations, motions?, scales)?.under(file.conditions())?;
+        all_warn(plan.doubts());
         let widest = plan.cases().map(|case| case.structure.parameters().B).fold(0.0, f64::max);
         limits.iter().try_for_each(|limit| limit.check(widest)).context("limits")?;
         Ok(Asked::Records(RecordSweep { plan, limits, measure, records }))

@@ -3,11 +3,16 @@ mod picture;
 mod rows;
 
 use super::{SweepArgs, file::MapSweep, progress};
-use crate::{picture::Picture, significant::short, talk::say};
+use crate::{
+    picture::Picture,
+    talk::{say, warning},
+};
 use anyhow::{bail, ensure};
 use picture::Shown;
 use rayon::{ThreadPool, prelude::*};
+use rocking::digits::short;
 use rocking::run::{LONGEST_REST, validity};
+use rocking::structure::doubts;
 use rocking_sweep::map::{CLASSES, Class, Fate, Map, Place, Point};
 use rocking_sweep::row_file::{Known, RowFile};
 use serde::Serialize;
@@ -44,8 +49,9 @@ pub fn run(
     ensure!(!args.validity, "--validity is for records: `simulate` a pulse that `pulse` writes");
     let (file, mut known) = rows::open(output)?;
     for (name, map) in &sweep.maps {
-        let warnings = validity::of_parameters(&map.structure, map.detail);
-        warnings.iter().for_each(|warning| say!("{name}: {warning}"));
+        let doubts = doubts::of_base(map.structure.as_ref());
+        let warnings = doubts.into_iter().chain(validity::of_parameters(&map.structure, map.detail));
+        warnings.for_each(|warning| warning!("{name}: {warning}"));
     }
     let mut spectra = Vec::new();
     for (name, map) in sweep.maps {

@@ -1,5 +1,5 @@
 //! The table of a population: how often its structures exceed a limit, by intensity, and the curves.
-use crate::significant::significant;
+use rocking::digits::significant;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::LONGEST_REST;
 use rocking_report::quantities::Number;

@@ -5,7 +5,6 @@ mod documentation;
 mod experiment;
 mod library;
 mod model_description;
-pub mod significant;
 mod units;
 
 use ::model_description::DefaultExperiment;
