@@ -710,7 +710,7 @@ mod tests {
         assert!(other_direction.ends_with("leave out a mode without such mass)"), "{other_direction}");
         let in_tonnes = refused(|modes, _| modes.iter_mut().for_each(|mode| mode.mass /= 1e3));
         assert!(
-            in_tonnes.starts_with("the modes carry 0.10 % of m_s = 110000.0 kg above the foundation"),
+            in_tonnes.starts_with("the modes carry 0.10 % of m_s = 110000 kg above the foundation"),
             "{in_tonnes}"
         );
         let tonnes = refused(|_, total| total.m_s = 110.0);
