@@ -8,6 +8,7 @@ use plotters::coord::combinators::WithKeyPoints;
 use plotters::coord::{Shift, ranged1d::ValueFormatter, types::RangedCoordf64};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use rocking::digits::short;
 use rocking_report::output_files::{OutputFile, OutputFiles};
 use std::{ops::Range, path::Path};
 
@@ -211,10 +212,7 @@ fn number(value: f64, range: &Range<f64>) -> String {
     if value.abs() < 1e-9 * (range.end - range.start).abs() {
         return "0".into();
     }
-    let value: f64 = format!("{value:.8e}").parse().expect("a number in Rust's own notation");
-    let size = value.abs();
-    let text = if (1e-4..1e6).contains(&size) { format!("{value}") } else { format!("{value:e}") };
-    text.replace('-', "−")
+    short(value).replace('-', "−")
 }
 
 /// A number in a picture: three digits.

@@ -22,9 +22,9 @@ macro_rules! warning {
 }
 pub(crate) use {say, warning};
 
-/// Writes a line on standard error. A closed standard error is no failure.
+/// Writes a line on standard error, whole: several programs may write there. A closed standard error is no failure.
 pub fn write_line(line: fmt::Arguments) {
-    let _ = writeln!(stderr(), "{line}");
+    let _ = stderr().write_all(format!("{line}\n").as_bytes());
 }
 
 /// More lines of one kind than this are not read.

@@ -709,10 +709,7 @@ mod tests {
         let other_direction = refused(|modes, _| modes[1].mass = 0.0);
         assert!(other_direction.ends_with("leave out a mode without such mass)"), "{other_direction}");
         let in_tonnes = refused(|modes, _| modes.iter_mut().for_each(|mode| mode.mass /= 1e3));
-        assert!(
-            in_tonnes.starts_with("the modes carry 0.10 % of m_s = 110000 kg above the foundation"),
-            "{in_tonnes}"
-        );
+        assert!(in_tonnes.starts_with("the modes carry 0.10 % of m_s = 110000 kg above the foundation"), "{in_tonnes}");
         let tonnes = refused(|_, total| total.m_s = 110.0);
         assert!(tonnes.ends_with("kg of the m_s = 110.0 kg above the foundation: check masses, heights and units"));
         assert!(

@@ -4,7 +4,6 @@
 mod advise;
 mod cli;
 mod maps;
-mod sweep;
 mod tour;
 mod validity;
 

@@ -1,7 +1,7 @@
 //! `documentation/index.html`: one screen about the FMU.
 
 use crate::Version;
-use crate::library::{Library, Platform};
+use crate::library::Library;
 use crate::model_description::DESCRIPTION;
 use FlexibleRocking::resources::Contents;
 use rocking::structure::any::AnyStructure;
