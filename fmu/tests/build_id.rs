@@ -18,13 +18,12 @@ fn sources_and_versions_change_it_and_ends_of_lines_do_not() {
         build_id(&package).unwrap_or_default()
     };
     let [lock, folders @ ..] = CONTENT;
-    folders.map(|folder| named_with(&format!("{folder}/lib.rs"), "one\ntwo\n"));
-    let before = named_with(lock, "1\n2\n");
-    for file in [lock.to_owned()].into_iter().chain(folders.map(|folder| format!("{folder}/lib.rs"))) {
-        let text = fs::read_to_string(package.join(&file)).unwrap();
-        assert_eq!(named_with(&file, &text.replace('\n', "\r\n")), before, "{file}, as git checks it out on Windows");
-        assert_ne!(named_with(&file, &format!("{text} ")), before, "{file}");
-        assert_eq!(named_with(&file, &text), before, "{file}");
+    let files: Vec<_> = folders.iter().map(|folder| format!("{folder}/lib.rs")).chain([lock.to_owned()]).collect();
+    let before = files.iter().map(|file| named_with(file, "one\ntwo\n")).last().unwrap();
+    for file in &files {
+        assert_eq!(named_with(file, "one\r\ntwo\r\n"), before, "{file}, as git checks it out on Windows");
+        assert_ne!(named_with(file, "one\ntwo\n "), before, "{file}");
+        assert_eq!(named_with(file, "one\ntwo\n"), before, "{file}");
     }
     assert_eq!(named_with("../cli/src/main.rs", "1"), before);
     assert_ne!(named_with("../src/of/a/new.rs", "1"), before);
