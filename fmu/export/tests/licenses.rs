@@ -18,7 +18,7 @@ const TARGETS: [&str; 5] = [
 /// Beginnings of the names of files with a licence.
 const LICENSE_FILES: [&str; 5] = ["LICENSE", "LICENCE", "UNLICENSE", "COPYING", "NOTICE"];
 
-/// `make licenses` sets the variable `WRITE_LICENSES`, which writes the file anew.
+/// With the variable `WRITE_LICENSES` the test writes the file anew.
 #[test]
 fn the_file_has_the_licenses_of_the_library() {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -31,7 +31,7 @@ fn the_file_has_the_licenses_of_the_library() {
     let (old, new) = (lines(&written), lines(&licenses));
     assert!(
         written == licenses,
-        "fmu/export/resources/licenses.txt is not what the shared library is made of: `make licenses` writes it anew. \
+        "fmu/export/resources/licenses.txt is not what the shared library is made of: `WRITE_LICENSES=1 cargo test --release --test licenses` writes it anew. \
          Missing: {:#?}. Too much: {:#?}",
         new.difference(&old).collect::<Vec<_>>(),
         old.difference(&new).collect::<Vec<_>>()

@@ -99,43 +99,6 @@ fn what_acts_at_an_event_is_what_lifts_off_there() {
     }
 }
 
-/// A transition within rounding of the end of a step is at its end; one that is well before ends the step early.
-#[test]
-fn a_transition_at_the_end_of_a_step_is_met_there() {
-    let host = Host::new(Some(Stepping { event_mode: true, early_return: true }));
-    let c = host.c;
-    let step = |until: f64| {
-        let (mut flags, mut time) = ([0; 3], f64::NAN);
-        let [event, end, early] = &mut flags;
-        assert_eq!(unsafe { fmi3DoStep(c, 0.0, until, 0, event, end, early, &mut time) }, OK);
-        (flags, time)
-    };
-    let mut start = null_mut();
-    unsafe {
-        assert_eq!(fmi3SetFloat64(c, &reference("theta_0"), 1, &0.02, 1), OK);
-        assert_eq!(fmi3SetBoolean(c, &reference("a_g_late"), 1, &1, 1), OK);
-        assert_eq!((fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), fmi3ExitInitializationMode(c)), (OK, OK));
-        assert_eq!((fmi3EnterStepMode(c), fmi3GetFMUState(c, &mut start)), (OK, OK));
-    }
-    let (flags, impact) = step(1.0);
-    assert_eq!((flags, impact < 0.9), ([1, 0, 1], true));
-    for (until, expected) in [
-        (impact + 4e-16, [1, 0, 0]),
-        (impact, [1, 0, 0]),
-        (impact - 4e-16, [1, 0, 0]),
-        (impact + 1e-12, [1, 0, 1]),
-        (impact - 1e-12, [0, 0, 0]),
-    ] {
-        assert_eq!(unsafe { fmi3SetFMUState(c, start) }, OK);
-        assert_eq!(step(until), (expected, if expected[2] == 1 { impact } else { until }), "{until}");
-    }
-    // an input that comes late is still to come
-    let (a_g, mut value) = (reference("a_g"), 0.0);
-    let set = unsafe { (fmi3SetFMUState(c, start), fmi3SetFloat64(c, &a_g, 1, &0.5, 1)) };
-    assert_eq!((set, step(1.0).0), ((OK, OK), [1, 0, 1]));
-    assert_eq!((unsafe { fmi3GetFloat64(c, &a_g, 1, &mut value, 1) }, value), (OK, 0.5));
-}
-
 /// A host that handles events but no early return gets whole steps, from the start time that it has set, whatever it read before.
 #[test]
 fn a_step_ends_early_for_hosts_that_take_it_alone() {

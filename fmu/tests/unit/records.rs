@@ -197,51 +197,6 @@ fn the_input_adds_to_the_record() {
     assert_relative_eq!(host.get("a_ground"), 1.125);
 }
 
-/// The peaks of a structure that overturns are those before its fall, whatever the steps, and the message names its instant.
-#[test]
-fn what_overturns_has_the_peaks_of_a_run_before_its_fall() {
-    let line = |i: u32| {
-        let time = f64::from(i) * 0.01;
-        format!("{time},{}\n", 1.5 * (std::f64::consts::TAU * time / 1.5).sin() * f64::from(i < 150))
-    };
-    let text: String = (0..400).map(line).collect();
-    let ground = rocking_records::from_bytes(
-        Path::new("a.csv"),
-        format!("t (s),a (m/s2)\n{text}").as_bytes(),
-        &Reading::default(),
-    );
-    let ground = ground.unwrap().0.multiplied(4.0);
-    let found = Run::new(Structure::new(Parameters::EVISON).unwrap(), &ground).found(&mut ()).unwrap();
-    let fall = found.fall.unwrap();
-    for steps in [1, 7, 100, 1000] {
-        let host = Host::initializing(&[("record_scale", 4.0)]);
-        host.write("a.csv", &format!("t (s),a (m/s2)\n{text}"));
-        assert_eq!((host.set_record("a.csv"), host.set_boolean("peaks", 1), host.exit()), (OK, OK, OK));
-        let step = 10.0 / f64::from(steps);
-        let last = (0..steps).map(|at| host.step(f64::from(at) * step, step)).find(|status| *status != OK);
-        assert_eq!((last, host.try_boolean("overturned")), (Some(DISCARD), Ok(1)));
-        for peaking in &PEAKS {
-            let (name, peak) = (peaking.name, peaking.of(&found.peaks));
-            assert_relative_eq!(host.get(&format!("{name}_max")), peak.magnitude, max_relative = 1e-8);
-            assert_relative_eq!(host.get(&format!("t_{name}_max")), peak.time, max_relative = 1e-6);
-        }
-        let log = host.log.take();
-        let told: f64 = log
-            .last()
-            .unwrap()
-            .text
-            .split("its fall began at t = ")
-            .nth(1)
-            .unwrap()
-            .split(' ')
-            .next()
-            .unwrap()
-            .parse()
-            .unwrap();
-        assert_relative_eq!(told, fall, max_relative = 1e-8);
-    }
-}
-
 /// Mid-record, in another instance whose archive has the record, too, a state goes on with the same bits; with another
 /// record it is refused.
 #[test]
@@ -314,22 +269,6 @@ fn a_record_is_kept_for_another_run() {
     assert_eq!(host.reset(), OK);
     let (again, samples) = (allocated(), 16 * 20_000);
     assert!(again < size + samples + size / 10 && 2 * again < parsed, "{again} bytes, at first {parsed}");
-}
-
-/// A jump at the start lifts a rigid structure off at once: the contact before it is no motion, and peaks never fall.
-#[test]
-fn contact_that_ends_at_once_has_no_peaks() {
-    let host = Host::initializing(&[("a_g", 20.0)]);
-    assert_eq!((host.set_integer("detail", Detail::Rigid as i32 + 1), host.set_boolean("peaks", 1)), (OK, OK));
-    let before = host.get("a_t_max");
-    assert_eq!((host.exit(), host.step(0.0, 1e-3)), (OK, OK));
-    let peak = host.get("a_t_max");
-    assert!(before <= peak && peak < 20.0, "{before}, {peak}");
-
-    let resting = Host::initializing(&[("a_g", 0.5)]);
-    assert_eq!((resting.set_integer("detail", Detail::Rigid as i32 + 1), resting.set_boolean("peaks", 1)), (OK, OK));
-    assert_eq!((resting.exit(), resting.step(0.0, 0.1), resting.set(&[("a_g", 1.0)])), (OK, OK, OK));
-    assert_eq!(resting.get("a_t_max"), 0.5, "what is set has not acted yet");
 }
 
 #[test]

@@ -135,13 +135,3 @@ fn what_nobody_asks_for_is_not_watched() {
     assert!(PEAKS.iter().all(|of| ["", "t_"].iter().all(|t| silent.get(&format!("{t}{}_max", of.name)).is_nan())));
     assert!(silent.log.take().is_empty());
 }
-
-/// One step without end is looked at at its ends, and ends.
-#[test]
-fn a_step_without_end_ends() {
-    let host = Host::initializing(&[("u_0", 5e-4), ("zeta_fc", 0.0)]);
-    assert_eq!((host.set_boolean("validity", 1), host.exit()), (OK, OK));
-    assert_eq!(host.set(&[("a_g", -0.9)]), OK);
-    step(&host, 0.0, &[1e12]);
-    assert!(host.get("tension_max") > -1.0 && host.get("mu_required") > 0.0);
-}

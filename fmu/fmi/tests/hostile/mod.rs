@@ -1,7 +1,7 @@
 //! Hostile calls: random functions in any order, with arguments from sensible to absurd, of every interface of either
 //! version. From 100,000 on they also meet every function in every stage, and check it against the standard's table.
 //!
-//! `FUZZ_CALLS` says how many calls of each interface to make (`make heavy`: 100,000, `make fuzz`: ten million). Calls come in sequences of a
+//! `FUZZ_CALLS` says how many calls of each interface to make (`make heavy`: 100,000). Calls come in sequences of a
 //! few hundred. What a call does follows from its number and from the calls before it; of a sequence that fails proptest
 //! leaves out all calls that need not be there.
 
