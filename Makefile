@@ -208,7 +208,7 @@ release:
 	awk '/^## /{is_meant = $$2 == "$(VERSION)"} is_meant' CHANGELOG.md >out/release/CHANGES.md
 	cd out/release && sha256sum * >SHA256SUMS && cat SHA256SUMS
 
-measure: .venv/peers module
+measure: $(if $(filter-out record,$(WHAT)),.venv/peers module,.venv/ready)
 	$(if $(filter record,$(WHAT)),RECORD="$$(realpath $(RECORDS)/$(EL_CENTRO))" cargo bench --profile dist --manifest-path benches/Cargo.toml)
 	$(if $(filter precision,$(WHAT)),cargo run --release --manifest-path study/Cargo.toml -- precision)
 	$(if $(filter ensembles,$(WHAT)),OMP_NUM_THREADS=1 $(PYTHON) study/ensemble.py)
