@@ -16,7 +16,7 @@ from fmpy.fmi2 import defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLogge
 from fmpy.logging import addLoggerProxy
 from fmpy.util import read_csv
 from host import simulate
-from pacoima import A_G, END, OUTPUTS, STEP, STEPS, TIME, distance, held, linear, rows, write_record
+from pacoima import A_G, END, OUTPUTS, STEP, STEPS, TIME, distance, held, linear, rows
 
 _SAID = []
 
@@ -64,15 +64,6 @@ def test_the_script_of_the_page_inside_runs(mcmanus):
     done = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
     peak, instant = map(float, re.fullmatch(r"(\S+) rad at (\S+) s\n", done.stdout).groups())
     assert peak == pytest.approx(0.01200009, abs=5e-9) and 0 < instant < 4
-
-
-def test_command_line_holds_inputs(mcmanus, tmp_path):
-    write_record(tmp_path / "in.csv")
-    command = [sys.executable, "-m", "fmpy", "simulate", mcmanus.path, "--input-file", "in.csv",
-               "--output-file", "out.csv", "--stop-time", str(TIME[-1]), "--output-interval", str(STEP),
-               "--output-variables", *OUTPUTS]
-    subprocess.run(command, cwd=tmp_path, check=True)
-    assert distance(rows(read_csv(tmp_path / "out.csv")), held(mcmanus)) < 1e-10
 
 
 def test_every_step_can_be_taken_back(mcmanus):

@@ -98,17 +98,6 @@ def test_the_motion_between_samples_is_the_command_lines(run, said, tmp_path):
         assert np.array_equal(response[name], table[heading].to_numpy()[order]), name
 
 
-def test_a_constant_vertical_acceleration_is_more_weight():
-    pier = fr.Structure(preset="mcmanus")
-    along = fr.pulse("sine", amplitude=0.6, frequency=2)
-    lifted = fr.Record(along.time, along.a_g, np.full(len(along), 0.25 * pier.g))
-    assert pickle.loads(pickle.dumps(lifted)) == lifted
-    found = fr.simulate(pier, lifted, duration=along.duration)
-    expected = fr.simulate(pier.replace(g=1.25 * pier.g), along, duration=along.duration)
-    assert len(found.transitions) == len(expected.transitions) > 0
-    assert found.peaks["theta"].value == pytest.approx(expected.peaks["theta"].value, rel=1e-9)
-
-
 def test_the_pushover_is_the_command_lines(run, said, tmp_path):
     said("pushover", "--points", 50, "-o", "curve.csv")
     table = pd.read_csv(tmp_path / "curve.csv").rename(columns=lambda heading: heading.partition("[")[0])
