@@ -6,7 +6,7 @@
 # make evidence  the pages of evidence made anew and compared; with PAGE="modes coupling" these are written (half an hour and more)
 # make docs      the site in out/site; fails at a link, an anchor or a picture that is not there
 # make pages     write anew what README and the pages print (minutes)
-# make pictures  draw anew those of README, of the model and of how to choose numbers (minutes); with PICTURE=explore that of the page
+# make pictures  draw anew those of README, of the model and of how to choose numbers (minutes); with PICTURE=explore that of the page, or another alone
 # make explore   out/explore.html: the engine in a browser, one file
 # make dist      out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels    out/wheels: Python packages for these machines with module, command line and archive, and one of the source
@@ -130,17 +130,17 @@ explore: library .venv/ready
 		$(TARGET)/release/deps/libFlexibleRocking.so out/explore.html
 
 evidence: .venv/heavy module
-	$(if $(PAGE),PYTHONPATH=examples:tests $(foreach page,$(PAGE),$(PYTHON) -m $(page) &&) true,$(PYTEST) tests/heavy/evidence)
+	$(if $(PAGE),$(PYTHON) -m evidence $(PAGE),$(PYTEST) tests/heavy/evidence)
 
 pages: PARTS := python
 pages: packages .venv/heavy module
-	PYTHONPATH=examples $(PYTHON) docs/pages.py $(TARGET)/release/rocking-fmu
+	PYTHONPATH=. $(PYTHON) docs/pages.py $(TARGET)/release/rocking-fmu
 
 pictures: .venv/heavy module $(filter explore,$(PICTURE))
-	PYTHONPATH=examples $(PYTHON) examples/$(if $(PICTURE),$(PICTURE)_picture,pictures).py
+	$(PYTHON) -m evidence.pictures $(PICTURE)
 
 docs: .venv/docs module
-	PYTHONPATH=examples $(PYTHON) docs/pages.py --site $(TARGET)/release/rocking-fmu
+	PYTHONPATH=. $(PYTHON) docs/pages.py --site $(TARGET)/release/rocking-fmu
 	$(PYTHON) -m sphinx -W --keep-going -q -b html -c docs -d out/doctrees . out/site
 
 # Debian's packages, from wherever this machine has its own, with lists and archives of their own: the C library of Debian 11, and
@@ -210,8 +210,8 @@ release:
 
 measure: $(if $(filter-out record,$(WHAT)),.venv/peers module,.venv/ready)
 	$(if $(filter record,$(WHAT)),RECORD="$$(realpath $(RECORDS)/$(EL_CENTRO))" cargo bench --profile dist --manifest-path benches/Cargo.toml)
-	$(if $(filter precision,$(WHAT)),cargo run --release --manifest-path study/Cargo.toml -- precision)
-	$(if $(filter ensembles,$(WHAT)),OMP_NUM_THREADS=1 $(PYTHON) study/ensemble.py)
+	$(if $(filter precision,$(WHAT)),cargo run --release --manifest-path study/Cargo.toml -- precision && $(PYTHON) -m evidence accuracy)
+	$(if $(filter ensembles,$(WHAT)),OMP_NUM_THREADS=1 $(PYTHON) study/ensemble.py && $(PYTHON) -m evidence.pictures ensembles)
 
 # What the demo takes: what packs the shared library, and that, in the folder `deps`, which it is linked to.
 library:

@@ -17,8 +17,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-from first_run import RECORD
 from fmpy import read_model_description
+
+from evidence.scenes import RECORD
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*/*.md"))]

@@ -10,7 +10,6 @@ import time
 from pathlib import Path
 
 import heyoka as hy
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from tqdm import tqdm
@@ -172,22 +171,7 @@ def measure():
     return table.sort_values(["way", "tolerance"], ascending=[True, False])
 
 
-def draw(table, path):
-    figure, axis = plt.subplots(figsize=(7.2, 4.2), layout="constrained")
-    colors = {ALONE: "0.4", LANES: "black"} | {"heyoka, one by one": "#cc79a7", "heyoka, batches of 4": "#8e44ad", "heyoka, batches of 8": "#1f5fa8"}
-    for way, rows in table[np.isfinite(table["tolerance"])].groupby("way"):
-        axis.loglog(rows["microseconds_per_run"], rows["error_theta"], "o-", markersize=3, color=colors[way])
-        last = rows.iloc[-1]
-        lower = 13 if way in (ALONE, "heyoka, batches of 4") else 0
-        axis.annotate(way, (last["microseconds_per_run"], last["error_theta"]), xytext=(0, -12 - lower), textcoords="offset points",
-                      color=colors[way], ha="center", va="center")
-    axis.set(xlabel="computing time per run (µs)", ylabel="largest error of θ over its peak", ylim=(1e-10, 10), xlim=(300, 6e4),
-             title=f"{len(SCALES)} runs of McManus's pier under El Centro at scales {SCALES[0]:g} to {SCALES[-1]:g}, one thread")
-    figure.savefig(path, metadata={"Date": None, "Creator": None})
-
-
 if __name__ == "__main__":
     table = measure()
     table.to_csv(ROOT / "docs/evidence/ensembles.csv", index=False, float_format="%.3e")
-    draw(table, ROOT / "docs/evidence/ensembles.svg")
     print(table.to_string())

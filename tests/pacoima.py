@@ -5,7 +5,8 @@ import subprocess
 
 import numpy as np
 from host import Fmu
-from validation.records import pacoima_dam
+
+from evidence.scenes import pacoima_dam
 
 OUTPUTS = ("theta", "u", "a_t")
 STEPS = (0.5e-3, 2e-3, 10e-3)  # s, communication steps of the hosts

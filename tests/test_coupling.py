@@ -1,18 +1,19 @@
-"""Coupled structures by the masters of examples/coupling, against the same systems integrated as one."""
+"""Coupled structures by the masters of evidence/coupling, against the same systems integrated as one."""
 
 import functools
 
 import monolithic
 import numpy as np
 import pytest
-from coupling import bridge_ssp, building_on_soil, convergence, stability
-from coupling.bridge import Bridge, deck, linear, pier, simulate
-from coupling.building_on_soil import OnSoil
-from coupling.masters import MASTERS, Diverged, Iterated, between_transitions
-from coupling.masters import extrapolate, gauss_seidel, hold, jacobi
-from coupling.swaying_mass import SwayingMass
 from reference import MCMANUS
-from validation.records import pacoima_dam
+
+from evidence.coupling import bridge_ssp, building_on_soil, convergence, stability
+from evidence.coupling.bridge import Bridge, deck, linear, pier, simulate
+from evidence.coupling.building_on_soil import OnSoil
+from evidence.coupling.masters import MASTERS, Diverged, Iterated, between_transitions
+from evidence.coupling.masters import extrapolate, gauss_seidel, hold, jacobi
+from evidence.coupling.swaying_mass import SwayingMass
+from evidence.scenes import pacoima_dam
 
 TIME, A_G = pacoima_dam()
 SHORT = slice(700)  # of the record: uplifts, impacts and landings of both piers

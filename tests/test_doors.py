@@ -14,7 +14,7 @@ from random import Random
 import fmpy
 import numpy as np
 import pytest
-from first_run import RECORD
+from evidence.scenes import RECORD
 from host import PHASES, simulate_file
 from reference import EVISON, MCMANUS, Structure
 

@@ -10,9 +10,9 @@ import fmpy
 import monolithic
 import numpy as np
 import pytest
-from coupling import bridge, convergence
-from coupling.early_return import EndedAtTransitions, EventBridge, Pier
-from coupling.masters import extrapolate
+from evidence.coupling import bridge, convergence
+from evidence.coupling.early_return import EndedAtTransitions, EventBridge, Pier
+from evidence.coupling.masters import extrapolate
 from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi2 import FMU2Model
 from fmpy.fmi3 import FMU3Model

@@ -10,7 +10,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
-from first_run import PACOIMA_DAM
+from evidence.scenes import PACOIMA_DAM
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.logging import addLoggerProxy

@@ -1,11 +1,7 @@
 """README and the pages print what the program prints today."""
 
-import os
 import re
-import subprocess
-import sys
 
-import pages
 import pytest
 from conftest import ROOT
 
@@ -13,14 +9,6 @@ from conftest import ROOT
 @pytest.mark.parametrize("page", ["README.md", "docs/tutorial/quickstart.md"])
 def test_the_first_pages_print_what_their_commands_print(page, check_page):
     check_page(page, ("console", "python"))
-
-
-def test_readme_has_the_findings_of_their_script(exporter, tmp_path):
-    folder = pages.prepare(tmp_path / "page", exporter)
-    environment = os.environ | {"PATH": f"{exporter.parent}:{os.environ['PATH']}"}
-    found = subprocess.run([sys.executable, ROOT / "examples/findings.py"], cwd=folder, env=environment, check=True,
-                           stdout=subprocess.PIPE, text=True, encoding="utf-8").stdout
-    assert found and found in (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 def test_both_readmes_have_the_first_run_of_the_page_of_python():

@@ -1,4 +1,4 @@
-//! The gallery of failures: each with a picture, its cause and the remedy that this project uses.
+//! The gallery of failures: of each the curves of its picture, and the numbers of its cause and its remedy.
 
 pub mod chatter;
 pub mod double_crossing;
@@ -9,32 +9,21 @@ pub mod history;
 pub mod overturning;
 pub mod zeno;
 
-use crate::chart::{Figure, Panel, Style, colour};
 use crate::scene::Scene;
+use crate::tables::{self, Series};
 use anyhow::Result;
-use minijinja::Value;
 use rayon::prelude::*;
 use std::path::Path;
 
-/// Style of correct responses.
-const RIGHT: Style = Style::line(colour::BLACK, 3);
-
-/// Style of wrong responses.
-const WRONG: Style = Style::line(colour::VERMILLION, 2);
-
-/// Style of guide lines.
-const GUIDE: Style = Style::dashed(colour::GREY, 1);
-
 /// One failure.
 pub struct Exhibit {
-    pub key: &'static str,   // name in file names
-    pub values: Value,       // of the page's words
-    pub shows: &'static str, // description of the picture
-    pub panel: Panel,
+    pub key: &'static str,                   // name in file names
+    pub values: Vec<(&'static str, String)>, // of the page's words
+    pub series: Vec<Series>,                 // of its picture
 }
 
-/// Writes `docs/explain/failures.md` with its pictures and numbers; some failures happen under Pacoima Dam and El Centro.
-pub fn write(pacoima: &Scene, el_centro: &Scene, docs: &Path) -> Result<()> {
+/// Writes the curves of each failure, and the values of all, into `folder`; some failures happen under Pacoima Dam and El Centro.
+pub fn write(pacoima: &Scene, el_centro: &Scene, folder: &Path) -> Result<()> {
     let exhibits: [&(dyn Fn() -> Result<Exhibit> + Sync); 7] = [
         &|| fall::show(pacoima),
         &double_crossing::show,
@@ -44,14 +33,12 @@ pub fn write(pacoima: &Scene, el_centro: &Scene, docs: &Path) -> Result<()> {
         &overturning::show,
         &energy_gain::show,
     ];
-    let entries = exhibits.into_par_iter().map(|show| {
-        let Exhibit { key, values, shows, mut panel } = show()?;
-        let title = std::mem::take(&mut panel.title);
-        let figure = Figure { title, description: shows.into(), columns: 1, panels: vec![panel] };
-        figure.save(&docs.join(format!("failure-{key}.svg")))?;
-        figure.save_numbers(&docs.join(format!("failure-{key}.csv")))?;
-        Ok((key.replace('-', "_"), values))
+    let exhibits = exhibits.into_par_iter().map(|show| show()).collect::<Result<Vec<_>>>()?;
+    for Exhibit { key, series, .. } in &exhibits {
+        tables::save_series(&folder.join(format!("failure-{key}.csv")), series)?;
+    }
+    let rows = exhibits.into_iter().flat_map(|Exhibit { key, values, .. }| {
+        values.into_iter().map(move |(name, value)| [key.replace('-', "_"), name.into(), value])
     });
-    let entries = entries.collect::<Result<Vec<_>>>()?;
-    crate::page::write(docs, "failures", include_str!("../pages/failures.md"), &Value::from_pairs(entries), "failures")
+    tables::save(&folder.join("failures.csv"), "failure,name,value", rows)
 }

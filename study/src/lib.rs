@@ -9,10 +9,9 @@
 //! | [`engine`] | this project's engine |
 //! | [`response`], [`timing`] | errors, failures, cost |
 //! | [`precision`], [`stability`], [`failures`], [`validity`] | the commands |
-//! | [`chart`] | pictures |
+//! | [`tables`] | the files that they write |
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
-pub mod chart;
 pub mod engine;
 pub mod equations;
 pub mod failures;
@@ -20,10 +19,10 @@ pub mod fixed_step;
 pub mod guards;
 pub mod hybrid;
 pub mod libraries;
-mod page;
 pub mod precision;
 pub mod response;
 pub mod scene;
 pub mod stability;
+pub mod tables;
 pub mod timing;
 pub mod validity;

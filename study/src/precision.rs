@@ -1,18 +1,16 @@
 //! Work-precision diagrams: error against cost, one curve per method.
 
 mod curves;
-mod numbers;
-mod page;
 mod peers;
 
 use crate::engine;
 use crate::response::{Errors, Failure, Response};
 use crate::scene::Scene;
-use crate::timing;
-use anyhow::{Context, Result};
+use crate::{tables, timing};
+use anyhow::Result;
 use curves::Method;
 use indicatif::ProgressBar;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The input is scaled by 1 + this to find how well the scene is conditioned.
 pub const PERTURBATION: f64 = 1e-12;
@@ -20,21 +18,9 @@ pub const PERTURBATION: f64 = 1e-12;
 /// One method over its settings.
 #[derive(Debug)]
 pub struct Curve {
-    pub name: String, // name on charts
-    pub family: Family,
+    pub name: String,       // name on charts
     pub setting: String,    // what its setting is, with unit
     pub points: Vec<Point>, // from coarse to fine
-}
-
-/// Group of a curve on the charts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Family {
-    Ours,
-    Level,      // one of its other levels of detail
-    Located,    // textbook method, transitions located
-    AtStepEnds, // textbook method, transitions at step ends
-    Library,
-    Host, // this project, with an input that its host holds
 }
 
 /// One run.
@@ -50,19 +36,9 @@ pub struct Point {
 /// All curves on one scene.
 #[derive(Debug)]
 pub struct Diagram {
-    pub key: &'static str,
-    pub title: &'static str,
     /// How far the response moves when the input is scaled by 1 + [`PERTURBATION`].
     pub conditioning: Errors,
-    pub transitions: u64, // transitions of the reference
-    pub dt: f64,          // time between samples, s
     pub curves: Vec<Curve>,
-}
-
-impl Diagram {
-    fn new(scene: &Scene, conditioning: Errors, transitions: u64, curves: Vec<Curve>) -> Diagram {
-        Diagram { key: scene.key, title: scene.title, conditioning, transitions, dt: scene.dt(), curves }
-    }
 }
 
 /// How far a sweep goes.
@@ -88,12 +64,12 @@ pub fn measure(scene: &Scene, limits: Limits, python: Option<&Path>, progress: &
             progress.set_message(format!("{}: {}", scene.title, method.name));
             let points = sweep(&method, scene, &exact, conditioning.theta, limits);
             progress.inc(1);
-            Curve { name: method.name, family: method.family, setting: method.setting.into(), points }
+            Curve { name: method.name, setting: method.setting.into(), points }
         })
         .collect::<Vec<_>>();
     let peers = python.map(|python| peers::curves(scene, &exact, conditioning.theta, limits, python));
     let curves = curves.into_iter().chain(peers.transpose()?.unwrap_or_default()).collect();
-    Ok(Diagram::new(scene, conditioning, exact.transitions, curves))
+    Ok(Diagram { conditioning, curves })
 }
 
 /// How far the response of `scene`, which is `exact`, moves when the input is scaled by 1 + [`PERTURBATION`].
@@ -125,36 +101,54 @@ fn sweep(method: &Method, scene: &Scene, exact: &Response, conditioning: f64, li
     points
 }
 
-/// Measures all `scenes` and writes `accuracy.md`, with its pictures and numbers, into `docs`.
+/// Measures all `scenes` and writes the runs of each into `folder`.
 pub fn write(
     scenes: &[Scene],
     limits: Limits,
     python: Option<&Path>,
-    docs: &Path,
+    folder: &Path,
     progress: &ProgressBar,
 ) -> Result<()> {
     for scene in scenes {
-        numbers::save(&measure(scene, limits, python, progress)?.curves, &file(scene, docs))?;
+        save(&measure(scene, limits, python, progress)?.curves, &folder.join(format!("accuracy-{}.csv", scene.key)))?;
     }
-    report(scenes, docs, &crate::page::made("precision")?)
+    Ok(())
 }
 
-/// Writes the page as [`write`] does, from the numbers that are in `docs`; its last line stays.
-pub fn write_again(scenes: &[Scene], docs: &Path) -> Result<()> {
-    let page = std::fs::read_to_string(docs.join("accuracy.md"))?;
-    report(scenes, docs, page.lines().last().context("accuracy.md is empty")?)
-}
-
-fn report(scenes: &[Scene], docs: &Path, made: &str) -> Result<()> {
-    let diagram = |scene: &Scene| {
+/// Writes what the scenes are, how many transitions they have, and how they are conditioned.
+pub fn write_scenes(scenes: &[Scene], folder: &Path) -> Result<()> {
+    let row = |scene: &Scene| {
         let exact = engine::reference(scene);
-        let curves = numbers::read(scene, &file(scene, docs))?;
-        Ok(Diagram::new(scene, conditioning(scene, &exact)?, exact.transitions, curves))
+        let Errors { theta, u, a_t } = conditioning(scene, &exact)?;
+        let numbers = [scene.dt(), exact.transitions as f64, theta, u, a_t].map(|number| number.to_string());
+        Ok([scene.key, scene.title].map(str::to_string).into_iter().chain(numbers))
     };
-    page::write(&scenes.iter().map(diagram).collect::<Result<Vec<_>>>()?, docs, made)
+    let columns = "key,title,dt,transitions,theta,u,a_t";
+    tables::save(&folder.join("accuracy.csv"), columns, scenes.iter().map(row).collect::<Result<Vec<_>>>()?)
 }
 
-/// The numbers of `scene`.
-fn file(scene: &Scene, docs: &Path) -> PathBuf {
-    docs.join(format!("accuracy-{}.csv", scene.key))
+fn save(curves: &[Curve], path: &Path) -> Result<()> {
+    let columns = "method,setting,value,microseconds_per_sample,evaluations_per_sample,transitions,\
+                   error_theta,error_u,error_a_t,failure";
+    let row = |(curve, point): (&Curve, &Point)| {
+        let error =
+            |get: fn(&Errors) -> f64| point.errors.as_ref().map_or(String::new(), |e| format!("{:.3e}", get(e)));
+        [
+            curve.name.clone(),
+            curve.setting.clone(),
+            format!("{:.6e}", point.setting),
+            format!("{:.4}", 1e6 * point.cost),
+            format!("{:.3}", point.evaluations),
+            point.transitions.to_string(),
+            error(|e| e.theta),
+            error(|e| e.u),
+            error(|e| e.a_t),
+            point.errors.as_ref().err().map_or(String::new(), ToString::to_string),
+        ]
+    };
+    tables::save(
+        path,
+        columns,
+        curves.iter().flat_map(|curve| curve.points.iter().map(move |point| row((curve, point)))),
+    )
 }

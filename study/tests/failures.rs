@@ -12,7 +12,7 @@ use study::hybrid::{Grid, Transitions, run};
 use study::response::Failure;
 
 fn series<'a>(exhibit: &'a Exhibit, name: &str) -> &'a [(f64, f64)] {
-    &exhibit.panel.series.iter().find(|series| series.name == name).unwrap().points
+    &exhibit.series.iter().find(|(of, _)| of == name).unwrap().1
 }
 
 #[test]

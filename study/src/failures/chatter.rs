@@ -1,14 +1,13 @@
 //! Chatter after a landing with |u| > u_cr.
 
+use super::Exhibit;
 use super::history::exact;
-use super::{Exhibit, RIGHT, WRONG};
-use crate::chart::{Axis, Panel};
 use crate::fixed_step::Method;
 use crate::guards::displacement_excess;
 use crate::hybrid::{self, Grid, Transitions};
 use crate::scene::Scene;
+use crate::tables::series;
 use anyhow::{Context, Result};
-use minijinja::context;
 use rocking::{Detail, TransitionKind};
 
 /// Steps of RK4 to a sample.
@@ -33,23 +32,15 @@ pub fn show(scene: &Scene) -> Result<Exhibit> {
 
     let count = |times: &[f64]| times.iter().enumerate().map(|(k, t)| (*t, (k + 1) as f64)).collect::<Vec<_>>();
     let all: Vec<_> = right.iter().map(|transition| transition.time).collect();
-    let duration = scene.ground.end();
-    let (x, y) = (Axis::linear("time, s", 0.0, duration), Axis::logarithmic("transitions so far", 1.0, 2000.0));
-    let panel = Panel::new("Uplift by |u| ≥ u_cr alone never ends", x, y)
-        .with("this engine: both conditions", count(&all), RIGHT)
-        .named((0.3 * duration, 10.0))
-        .with("|u| ≥ u_cr alone", count(&times), WRONG)
-        .named((0.55 * stuck, 600.0));
     Ok(Exhibit {
         key: "chatter",
-        shows: "Transitions so far over time: with both conditions the motion continues, with one condition they pile up at an instant.",
-        values: context! {
-            all => all.len(),
-            before,
-            duration => format!("{duration:.0}"),
-            held => format!("{held:.0}"),
-            stuck => format!("{stuck:.3}"),
-        },
-        panel,
+        values: vec![
+            ("all", all.len().to_string()),
+            ("before", before.to_string()),
+            ("duration", scene.ground.end().to_string()),
+            ("held", held.to_string()),
+            ("stuck", stuck.to_string()),
+        ],
+        series: vec![series("this engine: both conditions", count(&all)), series("|u| ≥ u_cr alone", count(&times))],
     })
 }

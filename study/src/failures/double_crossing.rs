@@ -1,12 +1,11 @@
 //! Two crossings within one step.
 
+use super::Exhibit;
 use super::history::{at_rest, every, exact, milli};
-use super::{Exhibit, GUIDE, RIGHT, WRONG};
-use crate::chart::{Axis, Marker, Panel, Style, colour};
 use crate::equations::PhaseEquations;
 use crate::fixed_step::{Method, Point};
+use crate::tables::series;
 use anyhow::{Context, Result};
-use minijinja::context;
 use rocking::{Detail, Parameters, Phase, Ramp, Side, State};
 use std::cell::Cell;
 
@@ -40,27 +39,13 @@ pub fn show() -> Result<Exhibit> {
     let (begins, ends) = begins.zip(ends).context("there is a dip")?;
     let look = path.iter().find(|(t, _)| *t >= LOOK - 0.5 * CLOSE).map(|(t, theta)| (1e3 * t, 1e3 * theta));
     let looks = [Some((0.0, 1e3 * START.theta)), look].into_iter().flatten();
-    let x = Axis::linear("time, ms", 0.0, 1.5e3 * LOOK);
-    let panel = Panel::new(
-        "A solver that checks θ only every 20 ms misses two crossings",
-        x,
-        Axis::linear("θ, mrad", -2.0, 6.0),
-    )
-    .with("checked here", looks, Style::marked(colour::VERMILLION, 0, Marker::Circle))
-    .named((1e3 * LOOK, 0.6))
-    .with("this engine", milli(&right.theta(), 0.0), RIGHT)
-    .named((9.0, 2.2))
-    .with("exact integration, sign checked every 20 ms", milli(&path, 0.0), WRONG)
-    .named((17.5, -1.0))
-    .with("", [(0.0, 0.0), (1.5e3 * LOOK, 0.0)], GUIDE);
     Ok(Exhibit {
         key: "double-crossing",
-        shows: "θ over time: it dips below 0 and returns between two checks; the exact response has an impact instead.",
-        values: context! {
-            first => format!("{:.1}", 1e3 * first),
-            begins => format!("{begins:.1}"),
-            ends => format!("{ends:.1}"),
-        },
-        panel,
+        values: vec![("first", (1e3 * first).to_string()), ("begins", begins.to_string()), ("ends", ends.to_string())],
+        series: vec![
+            series("checked here", looks),
+            series("this engine", milli(&right.theta(), 0.0)),
+            series("exact integration, sign checked every 20 ms", milli(&path, 0.0)),
+        ],
     })
 }

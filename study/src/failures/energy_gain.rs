@@ -1,11 +1,10 @@
 //! Energy gained at impact: [`impact::energy_gained`] tells how much, [`impact::lossless_restitution`] with which r none is.
 
+use super::Exhibit;
 use super::history::{at_rest, every, exact, is_impact};
-use super::{Exhibit, WRONG};
-use crate::chart::{Axis, Panel, colour};
 use crate::scene::structure;
+use crate::tables::series;
 use anyhow::{Context, Result};
-use minijinja::context;
 use rocking::mechanics::energy::energy;
 use rocking::mechanics::impact;
 use rocking::{Detail, Parameters, Phase, Side, State};
@@ -33,13 +32,6 @@ pub fn show() -> Result<Exhibit> {
     };
     let mut gains = history.transitions.iter().filter(|transition| is_impact(transition)).map(gained);
     let (time, gain) = gains.find(|(_, gain)| *gain > 0.0).context("the example gains energy")?;
-    let highest = path.iter().map(|(_, energy)| *energy).fold(0.0, f64::max);
-    let x = Axis::linear("time, s", 0.0, DURATION);
-    let y = Axis::linear("energy above the energy at rest, J", 0.0, 1.25 * highest);
-    let panel = Panel::new(format!("An impact with r = 0.5 adds {gain:.1} J"), x, y)
-        .with("McManus's geometry, 2 Hz, r = 0.5", path, WRONG)
-        .named((0.2, highest))
-        .note((time, 0.42 * highest), format!("this impact: +{gain:.2} J"), colour::VERMILLION);
     let lossless = |parameters, part: f64| {
         let structure = structure(parameters);
         impact::lossless_restitution(&structure, part * structure.u_cr)
@@ -47,16 +39,17 @@ pub fn show() -> Result<Exhibit> {
     let range = |parameters| {
         lossless(parameters, 1.0).map_or("no r".into(), |[least, most]| format!("{least:.3} ≤ r ≤ {most:.4}"))
     };
-    let limit = |parameters| format!("{:.3}", lossless(parameters, 0.0).map_or(0.0, |[least, _]| least));
+    let limit = |parameters| lossless(parameters, 0.0).map_or(0.0, |[least, _]| least).to_string();
     Ok(Exhibit {
         key: "energy-gain",
-        shows: "Energy over time: it falls at the first impact, rises at the second, and falls at the third.",
-        values: context! {
-            evison => limit(Parameters::EVISON),
-            mcmanus => limit(Parameters::MCMANUS),
-            evison_at_u_cr => range(Parameters::EVISON),
-            mcmanus_at_u_cr => range(Parameters::MCMANUS),
-        },
-        panel,
+        values: vec![
+            ("time", time.to_string()),
+            ("gain", gain.to_string()),
+            ("evison", limit(Parameters::EVISON)),
+            ("mcmanus", limit(Parameters::MCMANUS)),
+            ("evison_at_u_cr", range(Parameters::EVISON)),
+            ("mcmanus_at_u_cr", range(Parameters::MCMANUS)),
+        ],
+        series: vec![series("McManus's geometry, 2 Hz, r = 0.5", path)],
     })
 }

@@ -1,14 +1,13 @@
 //! Falling through the ground.
 
+use super::Exhibit;
 use super::history::{every, exact, milli};
-use super::{Exhibit, GUIDE, RIGHT, WRONG};
-use crate::chart::{Axis, Panel};
 use crate::guards::uplift_excess;
 use crate::hybrid::{self, Transitions};
 use crate::libraries::diffsol::{Diffsol, Method};
 use crate::scene::Scene;
+use crate::tables::series;
 use anyhow::{Context, Result};
-use minijinja::context;
 use rocking::{Detail, Transition, TransitionKind};
 
 /// Results between two samples of the record of the library's run, which starts anew at each.
@@ -37,21 +36,16 @@ pub fn show(scene: &Scene) -> Result<Exhibit> {
     let fall = wrong.samples.iter().enumerate().map(|(k, sample)| ((k + 1) as f64 * fine.dt(), sample.theta));
     let fall = fall.filter(|(t, _)| (t - start).abs() < 8e-3);
     let right = exact(scene, Detail::Nonlinear, every(CLOSE).map(|t| start - 4e-3 + t).take(600))?;
-    let x = Axis::linear("time from the impact, ms", -4.0, 8.0);
-    let panel = Panel::new("A return right after an impact is missed", x, Axis::linear("θ, mrad", -1.2, 0.4))
-        .with("this engine", milli(&right.theta(), start), RIGHT)
-        .named((1.0, 0.1))
-        .with("diffsol ESDIRK34, its root finding", milli(&fall.collect::<Vec<_>>(), start), WRONG)
-        .named((-1.5, -0.8))
-        .with("", [(-4.0, 0.0), (8.0, 0.0)], GUIDE);
     Ok(Exhibit {
         key: "fall",
-        shows: "θ over time: the exact response lands, the response of the library continues below 0.",
-        values: context! {
-            failure => failure.to_string(),
-            length => format!("{:.0}", 1e6 * length(&hop)),
-            start => format!("{start:.4}"),
-        },
-        panel,
+        values: vec![
+            ("failure", failure.to_string()),
+            ("length", (1e6 * length(&hop)).to_string()),
+            ("start", start.to_string()),
+        ],
+        series: vec![
+            series("this engine", milli(&right.theta(), start)),
+            series("diffsol ESDIRK34, its root finding", milli(&fall.collect::<Vec<_>>(), start)),
+        ],
     })
 }

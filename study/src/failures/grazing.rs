@@ -2,9 +2,8 @@
 
 use super::Exhibit;
 use super::history::{History, at_rest, every, exact};
-use crate::chart::{Axis, Marker, Panel, Series, Style, colour, scientific};
+use crate::tables::series;
 use anyhow::Result;
-use minijinja::context;
 use rocking::series::bisection::last_where;
 use rocking::{Detail, Parameters, State};
 
@@ -24,36 +23,13 @@ pub struct Family {
     theta_dot: f64,
     bracket: (f64, f64), // between these the first transition becomes another
     towards: f64,        // +1 or −1: to which side u̇ is changed
-    named: (f64, f64),   // where its name begins in the picture
-    style: Style,
 }
 
 /// L passes through 0 at an impact; θ touches 0 and turns; neither.
 pub const FAMILIES: [Family; 3] = [
-    Family {
-        name: "L passes through 0 at an impact",
-        theta_dot: -0.2,
-        bracket: (0.38, 0.40),
-        towards: 1.0,
-        named: (1e-11, 0.05),
-        style: Style::marked(colour::VERMILLION, 2, Marker::Circle),
-    },
-    Family {
-        name: "θ touches 0 and turns",
-        theta_dot: -0.1,
-        bracket: (0.24, 0.26),
-        towards: -1.0,
-        named: (2e-12, 1e-7),
-        style: Style::marked(colour::BLUE, 2, Marker::Square),
-    },
-    Family {
-        name: "neither",
-        theta_dot: -0.1,
-        bracket: (0.1, 0.1),
-        towards: 1.0,
-        named: (1e-8, 3e-10),
-        style: Style::marked(colour::GREEN, 2, Marker::Triangle),
-    },
+    Family { name: "L passes through 0 at an impact", theta_dot: -0.2, bracket: (0.38, 0.40), towards: 1.0 },
+    Family { name: "θ touches 0 and turns", theta_dot: -0.1, bracket: (0.24, 0.26), towards: -1.0 },
+    Family { name: "neither", theta_dot: -0.1, bracket: (0.1, 0.1), towards: 1.0 },
 ];
 
 impl Family {
@@ -85,29 +61,18 @@ impl Family {
 /// How the distance of two responses depends on that of their starts.
 pub fn show() -> Result<Exhibit> {
     let changes: Vec<f64> = (3..=26).map(|k| 10f64.powf(-0.5 * f64::from(k))).collect();
-    let (x, y) = (
-        Axis::logarithmic("relative change of the initial state", 1e-13, 0.1),
-        Axis::logarithmic("max|Δθ| / max|θ|", 1e-14, 1.0),
-    );
-    let mut panel = Panel::new("At a graze a change of 10⁻¹² in the initial state decides the result", x, y);
-    let at_1e_12 = FAMILIES.map(|family| {
-        let points = family.sensitivity(&changes);
-        let named = Some(family.named);
-        panel.series.push(Series { name: family.name.into(), points, named, style: family.style });
-        family.sensitivity(&[1e-12])[0].1
-    });
-    let [jump, touch, clear] = at_1e_12;
+    let curves = FAMILIES.map(|family| series(family.name, family.sensitivity(&changes)));
+    let [jump, touch, clear] = FAMILIES.map(|family| family.sensitivity(&[1e-12])[0].1);
     let [momentum, ..] = FAMILIES;
     let impact = released(momentum.theta_dot, momentum.critical()).transitions[0];
     Ok(Exhibit {
         key: "grazing",
-        shows: "Change of the result against change of the initial state: constant, as the square root, and in proportion.",
-        values: context! {
-            impact => format!("{:.2}", 1e3 * impact.time),
-            jump => format!("{:.0}", 100.0 * jump),
-            touch => scientific(touch),
-            clear => scientific(clear),
-        },
-        panel,
+        values: vec![
+            ("impact", (1e3 * impact.time).to_string()),
+            ("jump", (100.0 * jump).to_string()),
+            ("touch", touch.to_string()),
+            ("clear", clear.to_string()),
+        ],
+        series: curves.into(),
     })
 }

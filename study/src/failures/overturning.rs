@@ -1,11 +1,10 @@
 //! Near-overturning: errors grow like e^{p t}.
 
+use super::Exhibit;
 use super::history::{History, at_rest, every, exact};
-use super::{Exhibit, RIGHT};
-use crate::chart::{Axis, Panel, Style, colour};
 use crate::scene::structure;
+use crate::tables::series;
 use anyhow::Result;
-use minijinja::context;
 use rocking::series::bisection::last_where;
 use rocking::{Detail, Parameters, State, TransitionKind};
 
@@ -42,19 +41,10 @@ pub fn show() -> Result<Exhibit> {
     let difference: Vec<_> = inside.iter().zip(&outside).map(|((t, a), (_, b))| (*t, (a - b).abs())).collect();
     let rate = growth();
     let start = difference[(2.0 / SAMPLE) as usize];
-    let theory = difference.iter().map(|(t, _)| (*t, start.1 * (rate * (t - start.0)).exp()));
-    let x = Axis::linear("time, s", 0.0, DURATION);
-    let panel =
-        Panel::new("Near balance a difference grows as e^(p t)", x, Axis::logarithmic("|Δθ|, rad", 1e-13, 10.0))
-            .with("e^(p t)", theory, Style::dashed(colour::BLUE, 2))
-            .named((5.0, 3e-10))
-            .with("two releases, 2·10⁻¹² apart", difference, RIGHT)
-            .named((1.0, 1e-4));
-    let doubling = 1e3 * 2f64.ln() / rate;
+    let theory: Vec<_> = difference.iter().map(|(t, _)| (*t, start.1 * (rate * (t - start.0)).exp())).collect();
     Ok(Exhibit {
         key: "near-overturning",
-        shows: "Difference of two releases over time: it grows by twelve decades in as many seconds.",
-        values: context! { rate => format!("{rate:.3}"), doubling => format!("{doubling:.0}") },
-        panel,
+        values: vec![("rate", rate.to_string()), ("doubling", (1e3 * 2f64.ln() / rate).to_string())],
+        series: vec![series("e^(p t)", theory), series("two releases, 2·10⁻¹² apart", difference)],
     })
 }

@@ -1,6 +1,5 @@
 //! The methods that are compared, each with its settings from coarse to fine.
 
-use super::Family;
 use crate::engine;
 use crate::fixed_step::TEXTBOOK;
 use crate::guards::uplift_excess;
@@ -17,8 +16,7 @@ type Runs<'a> = Box<dyn Fn() -> Response + 'a>;
 
 /// One method.
 pub struct Method<'a> {
-    pub name: String, // name on charts
-    pub family: Family,
+    pub name: String,                   // name on charts
     pub setting: &'static str,          // what its setting is, with unit
     pub settings: Vec<(f64, Runs<'a>)>, // step in s or tolerance, from coarse to fine
 }
@@ -30,18 +28,14 @@ const HALVINGS: u32 = 14;
 pub fn methods(scene: &Scene) -> Vec<Method<'_>> {
     let ours = Detail::ALL.into_iter().map(|detail| Method {
         name: format!("this project, {}", detail.name()),
-        family: if detail == Detail::Auto { Family::Ours } else { Family::Level },
         setting: "tolerance",
         settings: tolerances(move |tolerance| Box::new(move || engine::run(scene, detail, tolerance, &mut ()))),
     });
     let mut methods: Vec<_> = ours.collect();
-    for (family, transitions, addition) in [
-        (Family::Located, Transitions::Located, ""),
-        (Family::AtStepEnds, Transitions::AtStepEnds, ", transitions at step ends"),
-    ] {
+    for (transitions, addition) in [(Transitions::Located, ""), (Transitions::AtStepEnds, ", transitions at step ends")]
+    {
         methods.extend(TEXTBOOK.iter().map(|textbook| Method {
             name: format!("{}{addition}", textbook.name),
-            family,
             setting: "step, s",
             settings: cuts(scene, |cuts| {
                 let h = scene.dt() / cuts as f64;
@@ -52,7 +46,6 @@ pub fn methods(scene: &Scene) -> Vec<Method<'_>> {
     methods.extend(libraries(scene));
     methods.push(Method {
         name: "this project, input held".into(),
-        family: Family::Host,
         setting: "communication step, s",
         settings: cuts(scene, |cuts| Box::new(move || engine::held(scene, cuts))),
     });
@@ -75,8 +68,7 @@ fn cuts<'a>(scene: &Scene, run: impl Fn(usize) -> Runs<'a>) -> Vec<(f64, Runs<'a
 
 fn libraries(scene: &Scene) -> [Method<'_>; 6] {
     use Transitions::{AtStepEnds, Located};
-    let method =
-        |name: &str, settings| Method { name: name.into(), family: Family::Library, setting: "tolerance", settings };
+    let method = |name: &str, settings| Method { name: name.into(), setting: "tolerance", settings };
     let pair = |pair| tolerances(move |tolerance| hybrid(scene, OdeSolvers { pair, tolerance }, Located));
     let diffsol = |method| tolerances(move |tolerance| hybrid(scene, Diffsol { method, tolerance }, AtStepEnds));
     let with_events = |own_events, transitions| {

@@ -1,6 +1,6 @@
 //! The peers of `peers.py`: heyoka and scipy, which Python drives.
 
-use super::{Curve, Family, Limits, Point};
+use super::{Curve, Limits, Point};
 use crate::response::{Errors, Failure, Response, Sample};
 use crate::scene::Scene;
 use anyhow::{Context, Result, ensure};
@@ -60,7 +60,7 @@ pub fn curves(scene: &Scene, exact: &Response, conditioning: f64, limits: Limits
                 break;
             }
         }
-        Curve { name: runs[0].method.clone(), family: Family::Library, setting: "tolerance".into(), points }
+        Curve { name: runs[0].method.clone(), setting: "tolerance".into(), points }
     };
     Ok(runs.chunk_by(|a, b| a.method == b.method).map(curve).collect())
 }

@@ -1,14 +1,13 @@
 //! A step that is stable while the base is down goes unstable at the instant of uplift.
 
-use crate::chart::{Axis, Figure, Panel, Style, colour};
 use crate::engine;
 use crate::fixed_step::TEXTBOOK;
 use crate::guards::uplift_excess;
 use crate::hybrid::{self, Grid, Transitions};
 use crate::response::Response;
 use crate::scene::{Scene, ground, structure};
+use crate::tables::{save_series, series};
 use anyhow::{Context, Result};
-use minijinja::{Value, context};
 use rocking::{Detail, Parameters, State, Transition};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -42,8 +41,8 @@ pub fn response(scene: &Scene, method: usize) -> Response {
     hybrid::run(scene, &grid, Transitions::Located, uplift_excess, &mut |_, _| ())
 }
 
-/// Writes picture and numbers, and tells the page what it shows.
-pub fn save(docs: &Path) -> Result<Value> {
+/// Writes the responses into `folder`, and returns the values of the page.
+pub fn save(folder: &Path) -> Result<Vec<(&'static str, String)>> {
     const CENTRAL_DIFFERENCE: usize = 2;
     const NEWMARK: usize = 4;
     let scene = scene();
@@ -56,25 +55,17 @@ pub fn save(docs: &Path) -> Result<Value> {
         let samples = response.samples.iter().enumerate();
         samples.map(|(k, sample)| ((k + 1) as f64 * STEP, 1e3 * sample.u)).collect()
     };
-    let panel = Panel::new("", Axis::linear("time, s", 0.0, DURATION), Axis::linear("u, mm", -2.0, 2.0))
-        .with("central difference, 12 ms", u(&unstable), Style::line(colour::VERMILLION, 2))
-        .named((1.2, -1.3))
-        .with("exact", u(&exact), Style::line(colour::BLACK, 3))
-        .named((3.6, -1.2))
-        .with("Newmark average acceleration, 12 ms", u(&response(&scene, NEWMARK)), Style::dashed(colour::BLUE, 2))
-        .named((0.4, 1.2))
-        .with("", [(uplift, -2.0), (uplift, 2.0)], Style::dashed(colour::GREY, 1))
-        .note((1.7, 1.75), "first uplift", colour::GREY);
-    let title = "Stable with the base down, unstable from uplift on".into();
-    let description = "u over time with steps of 12 ms: the central difference diverges after the first uplift.".into();
-    let figure = Figure { title, description, columns: 1, panels: vec![panel] };
-    figure.save(&docs.join("stability-uplift.svg"))?;
-    figure.save_numbers(&docs.join("stability-uplift.csv"))?;
-    Ok(context! {
-        step => format!("{:.0}", 1e3 * STEP),
-        down => format!("{:.2}", scene.structure.omega_fc * STEP),
-        up => format!("{:.2}", scene.structure.omega_u * STEP),
-        uplift => format!("{uplift:.2}"),
-        failure => failure.to_string(),
-    })
+    let curves = [
+        series("central difference, 12 ms", u(&unstable)),
+        series("exact", u(&exact)),
+        series("Newmark average acceleration, 12 ms", u(&response(&scene, NEWMARK))),
+    ];
+    save_series(&folder.join("stability-uplift.csv"), &curves)?;
+    Ok(vec![
+        ("step", (1e3 * STEP).to_string()),
+        ("down", (scene.structure.omega_fc * STEP).to_string()),
+        ("up", (scene.structure.omega_u * STEP).to_string()),
+        ("uplift", uplift.to_string()),
+        ("failure", failure.to_string()),
+    ])
 }

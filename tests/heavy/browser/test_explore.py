@@ -17,7 +17,7 @@ from urllib.parse import urlencode
 import numpy as np
 import pytest
 from conftest import ROOT
-from first_run import RECORD, SCALE, TIME_SCALE
+from evidence.scenes import RECORD, SCALE, TIME_SCALE
 from axe_playwright_python.sync_playwright import Axe
 from PIL import Image
 from test_view import SCALES, browser, new_page, number, wait  # noqa: F401

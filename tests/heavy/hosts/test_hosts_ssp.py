@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from coupling.bridge_ssp import SSC, SSD, component, connect, connectors
+from evidence.coupling.bridge_ssp import SSC, SSD, component, connect, connectors
 from fmpy.ssp.simulation import simulate_ssp
 from host import need_libtbb
 from libcosimpy._internal import get_last_error_message

@@ -4,9 +4,9 @@ import monolithic
 import numpy as np
 import pytest
 import reference
-from coupling import convergence, one_system, stability
-from coupling.bridge import Bridge, deck, linear, pier, simulate
-from coupling.masters import MASTERS, TOLERANCE, extrapolate
+from evidence.coupling import convergence, one_system, stability
+from evidence.coupling.bridge import Bridge, deck, linear, pier, simulate
+from evidence.coupling.masters import MASTERS, TOLERANCE, extrapolate
 from reference import EVISON, MCMANUS
 from test_coupling import A_G, SHORT, TIME, as_one, piers, strong_motion  # noqa: F401
 

@@ -1,12 +1,10 @@
 """The page of the literature: its closed forms against integration, the model against the closed forms."""
 
-import numpy as np
-import pandas as pd
 import pytest
 from scipy.integrate import solve_ivp
 
-from literature import ensemble, overturning
-from literature.slender_block import HALF_SINE, ONE_COSINE, ONE_SINE, boundaries, follow, half_sine_boundary
+from evidence.literature import overturning
+from evidence.literature.slender_block import HALF_SINE, ONE_COSINE, ONE_SINE, boundaries, follow, half_sine_boundary
 
 
 def integrated(pulse, omega, r, amplitude):
@@ -64,24 +62,3 @@ def test_the_extrapolated_boundaries_are_the_closed_forms():
         assert limit.error < 1e-6
         assert abs(limit.differences[-1]) > 1e-6, "the extrapolation has something to do"
         assert overturning.counted(ONE_SINE, 4, limit.values[-1] * (1 + 1e-9)) == of.impacts
-
-
-def some_runs(factor: float) -> pd.DataFrame:
-    """Four records of which every tenth run overturns, and a level whose theta is `factor` times that of auto."""
-    random = np.random.default_rng(1)
-    theta = random.uniform(0.1, 0.9, 400)
-    theta[::10] = np.inf
-    return pd.DataFrame({"structure": "pier", "record": np.repeat(list("abcd"), 100), "auto": theta,
-                         "level": factor * theta})
-
-
-def test_an_ensemble_compared_with_itself_and_with_a_scaled_one():
-    same, doubled = (ensemble.compare(some_runs(factor), "pier", "level") for factor in (1.0, 2.0))
-    assert (same.fates, same.parted, *same.quantiles, same.distance) == (0, 0, 1, 1, 0)
-    assert same.overturned == doubled.overturned == (0.1, 0.1)
-    assert (doubled.fates, doubled.parted) == (0, 1) and doubled.quantiles == pytest.approx([2, 2])
-    # of uniform numbers from 0.1 to 0.9 half are below 0.5, the smallest of twice them below 0.2
-    theta = np.sort(some_runs(1.0)["auto"])
-    expected = max(np.mean(theta <= x) - np.mean(2 * theta <= x) for x in theta)
-    assert doubled.distance == pytest.approx(expected, rel=1e-12)
-    assert np.all(doubled.difference == 0) and doubled.distance_most >= doubled.distance

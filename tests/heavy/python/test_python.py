@@ -25,7 +25,7 @@ import pandas as pd
 import pytest
 import statsmodels.api as api
 from conftest import ROOT
-from first_run import RECORD
+from evidence.scenes import RECORD
 from fmpy import simulate_fmu
 from scipy import stats
 
@@ -627,14 +627,6 @@ def test_the_sweep_on_dask_comes_to_the_same(tmp_path):
     expected = fr.sweep({"piers": piers}, {RECORD.name: fr.Record.read(RECORD, time_scale=0.2)}, scale=np.linspace(0.2, 2, 10))
     pd.testing.assert_frame_equal(found, expected, check_exact=True)
     assert printed.startswith(f"{sum(expected['ending'] == 'overturned')} of 80 overturned")
-
-
-def test_the_sweep_on_ray_comes_to_the_same(tmp_path):
-    (tmp_path / "out").mkdir()
-    shutil.copy(RECORD, tmp_path / "out")
-    for name in ("dask", "ray"):
-        subprocess.run([sys.executable, ROOT / "examples" / f"fragility_{name}.py"], cwd=tmp_path, check=True, capture_output=True)
-    assert (tmp_path / "fragility_ray.csv").read_text() == (tmp_path / "fragility_dask.csv").read_text()
 
 
 def test_formats_read_back(tmp_path):

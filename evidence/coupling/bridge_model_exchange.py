@@ -1,0 +1,116 @@
+"""The bridge as one system of equations: piers in model exchange, the deck's own equations, one solver for all of them.
+
+There is no communication step and no master. SUNDIALS' CVODE integrates ten states, x and x_dot of the deck and u, u_dot,
+theta, theta_dot of both piers, and finds the roots of their event indicators. At an event of one pier the forces on all of
+them may jump: all handle it together, and the solver starts anew.
+"""
+
+import numpy as np
+from sksundae.cvode import CVODE
+
+from ..model_exchange.hosts import SAME_TIME, Model
+from ..scenes import PACOIMA_DAM
+from .swaying_mass import SwayingMass
+
+DECK, STATES, INDICATORS = 2, 4, 2  # states of the deck; of every pier states and event indicators
+
+
+class Pier(Model):
+    """A pier with the ground motion inside, which feels a force on its top."""
+
+    def __init__(self, fmu: str, tolerance: float):
+        super().__init__(fmu, tolerance, PACOIMA_DAM)
+        self.force = [self.references["F_t"]]
+        self.top = [self.references[name] for name in ("delta_t", "v_t")]
+        self.a_ground = [self.references["a_ground"]]
+
+
+class OneSystem:
+    """Piers and deck as the equations that a solver asks for; the state is x, x_dot, then every pier's."""
+
+    def __init__(self, piers: list[Pier], deck: SwayingMass):
+        self.piers, self.deck = piers, deck
+        self.evaluations, self.steps = 0, 0
+
+    def parts(self, y):
+        """The piers' parts of the state, or of its rates."""
+        return [y[i:i + STATES] for i in range(DECK, len(y), STATES)]
+
+    def at(self, t: float, y) -> list[float]:
+        """Brings every pier there; the bearings' forces."""
+        for pier, part in zip(self.piers, self.parts(y)):
+            pier.at(t, part)
+        return self.push(y)
+
+    def push(self, y) -> list[float]:
+        """Gives every pier its bearing's force, where it stands."""
+        forces = []
+        for pier in self.piers:
+            delta_t, v_t = pier.fmu.getReal(pier.top)
+            forces.append((self.deck.k * (y[0] - delta_t) + self.deck.c * (y[1] - v_t)) / len(self.piers))
+            pier.fmu.setReal(pier.force, forces[-1:])
+        return forces
+
+    def rates(self, t: float, y, rates) -> None:
+        self.evaluations += 1
+        forces = self.at(t, y)
+        (a_ground,) = self.piers[0].fmu.getReal(self.piers[0].a_ground)
+        rates[:DECK] = y[1], -a_ground - sum(forces) / self.deck.M
+        for pier, part in zip(self.piers, self.parts(rates)):
+            pier.rates_here(part)
+
+    def indicators(self, t: float, y, indicators) -> None:
+        self.at(t, y)
+        for pier, part in zip(self.piers, np.split(indicators, len(self.piers))):
+            pier.indicators_here(part)
+
+    def nominals(self) -> np.ndarray:
+        """The magnitudes of the states; the deck's are like its piers'."""
+        of_piers = np.array([pier.nominals() for pier in self.piers])
+        return np.concatenate([of_piers[:, :DECK].max(axis=0), of_piers.ravel()])
+
+    def complete(self, t: float, y) -> bool:
+        """The solver's step to there is complete: whether a pier asks for event mode."""
+        self.steps += 1
+        self.at(t, y)
+        return any([pier.fmu.completedIntegratorStep()[0] for pier in self.piers])
+
+    def update(self, y) -> tuple[np.ndarray, float]:
+        """Handles an event: the state after it, and when the next one is."""
+        for pier in self.piers:
+            pier.fmu.newDiscreteStates()
+        self.push(y)  # where a velocity has jumped, so has a dashpot's force
+        updated = [pier.update() for pier in self.piers]
+        if any(has_overturned for has_overturned, _ in updated):
+            raise RuntimeError("a pier overturned")
+        return np.concatenate([y[:DECK], *(pier.states() for pier in self.piers)]), min(at for _, at in updated)
+
+    def transitions(self) -> int:
+        return sum(pier.fmu.getInteger([pier.references["transitions"]])[0] for pier in self.piers)
+
+
+def integrate(system: OneSystem, tolerance: float, time, longest_step: float = 0.0) -> np.ndarray:
+    """The state at every instant of `time`, from rest at the first of them; 0 leaves the steps (s) to the solver.
+
+    A pier takes its force to be a line over a step with a transition in it: an error of third order in the step.
+    """
+    y, next_event = system.update(np.zeros(DECK + STATES * len(system.piers)))
+    solver = CVODE(lambda t, y, rates: system.rates(t, y, rates), method="Adams", rtol=tolerance,
+                   atol=tolerance * system.nominals(), max_step=longest_step,
+                   eventsfn=lambda t, y, z: system.indicators(t, y, z), num_events=INDICATORS * len(system.piers))
+    rows, t = [y], float(time[0])
+    solver.init_step(t, y)
+    for point in time[1:]:
+        while t < point - SAME_TIME:
+            stop = next_event if next_event < point - SAME_TIME else point
+            found = solver.step(stop, method="onestep", tstop=stop)
+            if not found.success:
+                raise RuntimeError(f"CVODE at t = {t} s: {found.message}")
+            t, y, has_root = float(found.t), found.y.copy(), found.status == 2
+            if system.complete(t, y) or has_root or t > next_event - SAME_TIME:
+                for pier in system.piers:
+                    pier.fmu.enterEventMode()
+                y, next_event = system.update(y)
+                solver.init_step(t, y)
+        rows.append(y)
+    return np.array(rows)

@@ -1,0 +1,107 @@
+"""The bridge as an SSP archive, run by fmpy: two piers and the deck, an FMU each, with the ground motion inside them.
+
+fmpy passes every value on after the step. The piers (`F_t_extrapolated`) and the deck extrapolate their inputs with the slope of the last
+two values. The master is therefore a Jacobi master of second order. The deck's FMU is built by pythonfmu.
+"""
+
+import subprocess
+import tempfile
+import zipfile
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+from fmpy.ssp.simulation import simulate_ssp
+from fmpy.ssp.ssd import Parameter, ParameterSet
+from pythonfmu.builder import FmuBuilder
+
+from ..page import table
+from ..scenes import PROGRAM, pacoima_dam
+from .bridge import PIERS, Bridge, deck, iterated, linear, pier
+
+SSD, SSC = (f"http://ssp-standard.org/SSP1/SystemStructure{name}" for name in ("Description", "Common"))
+STEPS = (2e-3, 1e-3, 0.5e-3, 0.25e-3, 0.125e-3)  # s
+DECK = "deck"
+
+
+def write_archive(path: Path, time, a_g, exporter: Path = PROGRAM) -> None:
+    """The SSP archive of the bridge on the specimens of McManus and Evison under this ground motion."""
+    here, mass = Path(__file__).parent, deck()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        record = Path(folder, "record.csv")
+        np.savetxt(record, np.column_stack([time, a_g]), "%.17g", delimiter=",", header="time (s),a_g (m/s2)", comments="")
+        for name in PIERS:
+            fmu = Path(folder, f"{name}.fmu")
+            subprocess.run([exporter, "export", "--preset", name.lower(), "--record", record, "-o", fmu], check=True,
+                           capture_output=True)
+            archive.write(fmu, f"resources/{name}.fmu")
+        built = FmuBuilder.build_FMU(here / "deck_fmu.py", dest=folder, project_files=[here / "swaying_mass.py", record],
+                                     newargs=dict(M=mass.M, k=mass.k, c=mass.c))
+        archive.write(built, f"resources/{DECK}.fmu")
+        archive.writestr("SystemStructure.ssd", system_structure())
+
+
+def system_structure() -> bytes:
+    """SystemStructure.ssd: the piers' tops to the deck, its bearings' forces to the piers."""
+    root = ElementTree.Element(f"{{{SSD}}}SystemStructureDescription", name="bridge", version="1.0")
+    system = ElementTree.SubElement(root, f"{{{SSD}}}System", name="bridge")
+    elements = ElementTree.SubElement(system, f"{{{SSD}}}Elements")
+    connections = ElementTree.SubElement(system, f"{{{SSD}}}Connections")
+    of_deck = {"x": "output"}
+    for i, name in enumerate(PIERS):
+        component(elements, name, {"F_t": "input", "delta_t": "output", "v_t": "output"})
+        of_deck |= {f"delta_t_{i}": "input", f"v_t_{i}": "input", f"F_{i}": "output"}
+        connect(connections, (name, "delta_t"), (DECK, f"delta_t_{i}"))
+        connect(connections, (name, "v_t"), (DECK, f"v_t_{i}"))
+        connect(connections, (DECK, f"F_{i}"), (name, "F_t"))
+    component(elements, DECK, of_deck)
+    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+
+
+def component(elements, name: str, reals: dict[str, str]) -> None:
+    fmu = ElementTree.SubElement(elements, f"{{{SSD}}}Component", name=name, source=f"resources/{name}.fmu",
+                                 type="application/x-fmu-sharedlibrary")
+    connectors(fmu, reals)
+
+
+def connectors(parent, reals: dict[str, str]) -> None:
+    """The Real connectors of a system or component, by name and kind."""
+    found = ElementTree.SubElement(parent, f"{{{SSD}}}Connectors")
+    for name, kind in reals.items():
+        connector = ElementTree.SubElement(found, f"{{{SSD}}}Connector", name=name, kind=kind)
+        ElementTree.SubElement(connector, f"{{{SSC}}}Real")
+
+
+def connect(connections, start: tuple, end: tuple) -> None:
+    """From one (element, connector) to another; no element stands for the system itself."""
+    ends = dict(zip(("startElement", "startConnector", "endElement", "endConnector"), (*start, *end)))
+    ElementTree.SubElement(connections, f"{{{SSD}}}Connection", {key: name for key, name in ends.items() if name})
+
+
+def run(archive: Path, stop_time: float, h: float, extrapolated: bool = True) -> np.ndarray:
+    """fmpy's result; its rows are the outputs at the ends of the steps."""
+    parameters = ParameterSet()
+    switches = [*(f"{name}.F_t_extrapolated" for name in PIERS), f"{DECK}.extrapolated"]
+    parameters.parameters = [Parameter(name=name, value=extrapolated) for name in switches]
+    return simulate_ssp(str(archive), stop_time=stop_time - h / 2, step_size=h, parameter_set=parameters)
+
+
+def error(result: np.ndarray, h: float, time, reference) -> float:
+    """The largest of the deck's displacement at the samples of the record, over the peak."""
+    steps = round(time[1] / h)
+    x = result["deck.x"][steps - 1::steps]
+    return np.max(np.abs(x - reference[1:len(x) + 1])) / np.max(np.abs(reference))
+
+
+def errors(fmus) -> str:
+    """Errors of values held and extrapolated, by steps."""
+    time, a_g = pacoima_dam()
+    bridge = Bridge([pier(fmu) for fmu in fmus], deck(), linear(time, a_g))
+    reference = iterated(bridge, time, lambda: bridge.deck.x)
+    with tempfile.TemporaryDirectory() as folder:
+        archive = Path(folder, "bridge.ssp")
+        write_archive(archive, time, a_g)
+        rows = [[name, *(f"{error(run(archive, time[-1], h, extrapolated), h, time, reference):.1e}" for h in STEPS)]
+                for name, extrapolated in (("held", False), ("extrapolated", True))]
+    return table(["error of the deck's displacement, step", *(f"{1e3 * h:g} ms" for h in STEPS)], rows)

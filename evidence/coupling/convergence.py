@@ -1,0 +1,114 @@
+"""How fast each master's error falls with the communication step, against the bridge integrated as one system."""
+
+import functools
+from pathlib import Path
+
+import monolithic
+import numpy as np
+import reference
+
+from ..figures import FIXED, QUIET, ROCKING, SMOOTH, save, subplots
+from ..page import table
+from ..scenes import pacoima_dam
+from .bridge import Bridge, deck, linear, pier, simulate
+from .masters import MASTERS, between_transitions, extrapolate, hold
+
+STRUCTURES = (reference.MCMANUS, reference.EVISON)
+
+
+def halving():
+    return functools.partial(between_transitions, MASTERS["iqn-ils"]())
+
+
+# name: master, guess, whether lines have the moments of the true course, order without transitions
+VARIANTS = {
+    "Jacobi, held": (MASTERS["jacobi"], hold, False, 1),
+    "Gauss-Seidel, held": (MASTERS["gauss-seidel"], hold, False, 1),
+    "Jacobi, extrapolated": (MASTERS["jacobi"], extrapolate, False, 2),
+    "Gauss-Seidel, extrapolated": (MASTERS["gauss-seidel"], extrapolate, False, 2),
+    "iterated, lines between end values": (MASTERS["iqn-ils"], extrapolate, False, 2),
+    "iterated, lines of same moments": (MASTERS["iqn-ils"], extrapolate, True, 4),
+    "the same, steps with transitions halved": (halving, extrapolate, True, 4),
+}
+LOOKS = [(FIXED, "o:"), (ROCKING, "o:"), (FIXED, "s--"), (ROCKING, "s--"),
+         (SMOOTH, "^--"), (SMOOTH, "v-"), ("black", "D-")]
+
+
+def monolithic_bridge(of_deck, structures=STRUCTURES) -> monolithic.Bridge:
+    return monolithic.Bridge(structures, of_deck.M, of_deck.k / len(structures), of_deck.c / len(structures))
+
+
+def columns(response) -> np.ndarray:
+    """The deck's x, then theta and u of every pier, of a monolithic response."""
+    return response.y[:, [0, 4, 2, 8, 6]]
+
+
+def cosimulated(time, a_g, fmus, of_deck, variant: str, per_sample: int) -> np.ndarray:
+    """The same of a co-simulation."""
+    master, guess, moments, _ = VARIANTS[variant]
+    bridge = Bridge([pier(fmu) for fmu in fmus], of_deck, linear(time, a_g), moments)
+
+    def row():
+        return [of_deck.x, *(value for pier in bridge.piers for value in pier.read("theta", "u"))]
+
+    return simulate(bridge, master(), guess, time, per_sample, row)
+
+
+def error(found: np.ndarray, expected: np.ndarray) -> float:
+    """The largest error of the columns that move, each over its peak."""
+    peaks = np.max(np.abs(expected), axis=0)
+    moving = peaks > 0
+    return np.max(np.abs(found - expected)[:, moving] / peaks[moving])
+
+
+def smooth() -> tuple[np.ndarray, np.ndarray]:
+    """A pulse of 3 Hz that leaves both bases down, linear between samples of 4 ms."""
+    time = np.linspace(0, 1, 251)
+    phase = (np.pi * 3 * (time - 0.5)) ** 2
+    return time, 0.2 * (1 - 2 * phase) * np.exp(-phase)
+
+
+SCENES = {
+    "a pulse, bases down": (smooth, (1, 2, 4, 8, 16)),
+    "Pacoima Dam": (pacoima_dam, (1, 2, 4, 8, 16)),
+}
+
+
+def study(fmus, update=lambda: None):
+    """By scene: steps (s), errors of every variant at each, transitions, and the change under a_g times 1 + 1e-12."""
+    found = {}
+    for scene, (motion, per_sample) in SCENES.items():
+        time, a_g = motion()
+        system = monolithic_bridge(deck())
+        response, nudged = (monolithic.integrate(system, time, scale * a_g) for scale in (1, 1 + 1e-12))
+        expected = columns(response)
+        errors = {}
+        for variant in VARIANTS:
+            errors[variant] = [error(cosimulated(time, a_g, fmus, deck(), variant, n), expected) for n in per_sample]
+            update()
+        found[scene] = (time[1] / np.array(per_sample), errors, sum(map(len, response.transitions)),
+                        error(columns(nudged), expected))
+    return found
+
+
+def plot(path: Path, found) -> None:
+    figure, axes = subplots(1, 2, 4.6, sharey=True)
+    for axis, (scene, (steps, errors, transitions, floor)) in zip(axes, found.items()):
+        for (variant, values), (color, style) in zip(errors.items(), LOOKS):
+            axis.loglog(1e3 * steps, values, style, color=color, markersize=3.5, label=variant)
+        axis.axhline(floor, color=QUIET, linewidth=0.8)
+        axis.annotate("ground motion times 1 + 1e-12", (1e3 * steps[0], floor), xytext=(0, 2),
+                      textcoords="offset points", ha="right", color=QUIET, fontsize=8)
+        axis.set(title=f"{scene}: {transitions} transitions", xlabel="communication step (ms)")
+        axis.set_xticks(1e3 * steps, [f"{1e3 * h:g}" for h in steps])
+        axis.minorticks_off()
+    axes[0].set_ylabel("largest error over the peak")
+    figure.suptitle("Fourth order takes iteration, lines of same moments, and steps that end at transitions")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
+    save(figure, path)
+
+
+def errors_by_step(steps, errors) -> str:
+    """Errors of every variant at every step."""
+    rows = [[name, *(f"{value:.1e}" for value in values)] for name, values in errors.items()]
+    return table(["Pacoima Dam, step", *(f"{1e3 * h:g} ms" for h in steps)], rows)

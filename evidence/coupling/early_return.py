@@ -1,0 +1,207 @@
+"""The bridge of piers in FMI 3.0: a step ends at a transition by itself, where FMI 2.0 leaves a master to halve it.
+
+A pier comes back from a step early, at the instant of its transition, and applies it when it is told to. How long a step
+is thus depends on the forces in it, as the forces do: both are found by the same iteration.
+"""
+
+import contextlib
+
+import monolithic
+import numpy as np
+
+from ..page import table
+from ..scenes import exported, pacoima_dam
+from . import bridge, convergence, masters
+from .bridge import PIERS, Bridge, deck, linear, simulate
+from .masters import MOST_SWEEPS, TOLERANCE, Diverged, between_transitions, extrapolate
+from .structure import opened
+
+SLIVER = 1e-12  # s; what is left of a step that is not worth another
+STEPS = (1, 2, 4, 8)  # per sample of the record
+
+
+class Pier:
+    """A structure in FMI 3.0 that hands its transitions over, under inputs that are lines in time."""
+
+    def __init__(self, fmu: str):
+        line_end = self.line_end = [0.0, 0.0]
+
+        def at_the_end_of_the_step(_environment, _time, *_):
+            instance.setFloat64(inputs, line_end)
+
+        instance, self.references = opened(self, fmu, updated=("a_g", "F_t"), event_mode_used=True, early_return_allowed=True,
+                                           intermediate_update=at_the_end_of_the_step)
+        inputs, self.outputs = ([self.references[name] for name in names] for names in (("a_g", "F_t"), ("delta_t", "v_t")))
+        self.instance, self.inputs = instance, inputs
+        instance.enterInitializationMode()
+        instance.exitInitializationMode()
+        instance.enterStepMode()
+        self.time, self.is_transition_due = 0.0, False
+
+    def read(self, *names: str) -> list[float]:
+        return self.instance.getFloat64([self.references[name] for name in names])
+
+    def transitions(self) -> int:
+        return self.instance.getInt32([self.references["transitions"]])[0]
+
+    def step(self, t: float, h: float, line) -> list[float]:
+        """The outputs at the end of the step under `line`, the inputs at its start and at its end, or where it came to a
+        transition, just before it."""
+        start, self.line_end[:] = line
+        self.instance.setFloat64(self.inputs, start)
+        self.is_transition_due, _, _, self.time = self.instance.doStep(t, h)
+        return self.instance.getFloat64(self.outputs)
+
+    def transit(self) -> None:
+        """Applies the transition that is due."""
+        self.instance.enterEventMode()
+        self.instance.updateDiscreteStates()
+        self.instance.enterStepMode()
+        self.is_transition_due = False
+
+    @contextlib.contextmanager
+    def checkpoint(self):
+        state = self.instance.getFMUState()
+        try:
+            yield state
+        finally:
+            self.instance.freeFMUState(state)
+
+    def restore(self, state) -> None:
+        self.instance.setFMUState(state)
+
+
+class TransitionMet(Exception):
+    """A pier came back from a step before its end."""
+
+
+class EventBridge(Bridge):
+    """The bridge of such piers."""
+
+    def first(self, t, h, w):
+        y = super().first(t, h, w)
+        if any(pier.time < t + h - SLIVER for pier in self.piers):
+            raise TransitionMet
+        return y
+
+    def first_until_transition(self, t, h, reach, w, start):
+        """Advances the piers over at most `h` under forces that are linear from t to t + `reach` and beyond. If another pier comes to a
+    transition before, a pier starts again from `start`. Their lines, and how long the step became."""
+        a_g, ends = self.ground(t, h), w[0] + (w[1] - w[0]) * (h / reach)
+        tops = [pier.step(t, h, list(zip(a_g, forces))) for pier, forces in zip(self.piers, np.transpose([w[0], ends]))]
+        reached = min(min(pier.time for pier in self.piers) - t, h)
+        for i, (pier, state) in enumerate(zip(self.piers, start[0])):
+            if pier.time - t > reached and reached > 0:
+                part = w[0, i] + (w[1, i] - w[0, i]) * (reached / reach)
+                pier.restore(state)
+                tops[i] = pier.step(t, reached, list(zip(self.ground(t, reached), (w[0, i], part))))
+            elif reached == 0 and not pier.is_transition_due:
+                pier.restore(state)
+        return np.array([self.y[1], np.ravel(tops)]), reached
+
+    def transit(self):
+        for pier in self.piers:
+            if pier.is_transition_due:
+                pier.transit()
+        tops = [pier.read("delta_t", "v_t") for pier in self.piers]
+        self.y = np.array([self.y[0], np.ravel(tops)])
+
+
+class EndedAtTransitions:
+    """Iterated steps that end at transitions, where the iteration is for the forces and for the step's length at once."""
+
+    def __init__(self):
+        self.iterated, self.steps, self.sweeps_to_transitions = masters.MASTERS["iqn-ils"](), 0, 0
+
+    @property
+    def sweeps(self):
+        return self.iterated.sweeps + self.sweeps_to_transitions
+
+    def __call__(self, system, t, h, guess):
+        end = t + h
+        while h > SLIVER:
+            taken = self.part(system, t, h, guess)
+            t, h = t + taken, end - t - taken
+
+    def part(self, system, t, h, guess):
+        """A step over at most `h`; how long it became."""
+        self.steps += 1
+        with system.checkpoint() as start:
+            try:
+                self.iterated(system, t, h, guess)
+                taken = h
+            except TransitionMet:
+                system.restore(start)
+                taken = self.to_transition(system, t, h, guess(system.w), start)
+        if any(pier.is_transition_due for pier in system.piers):
+            system.transit()
+        return taken
+
+    def to_transition(self, system, t, h, w, start):
+        reach = h
+        for _ in range(MOST_SWEEPS):
+            self.sweeps_to_transitions += 1
+            y, reached = system.first_until_transition(t, h, reach, w, start)
+            if reached == 0:
+                return 0.0
+            value = system.second(t, reached, y)
+            residual = np.max(np.abs(value - w))
+            if abs(reached - reach) <= TOLERANCE * h and residual <= TOLERANCE * self.iterated.largest:
+                system.y, system.w = y, value
+                return reached
+            w, reach = value, reached
+            system.restore(start)
+        raise Diverged(f"{MOST_SWEEPS} sweeps over the step of {h} s from {t} s leave a residual of {residual:.1e}")
+
+
+class Halved:
+    """The master that halves steps with a transition, counted."""
+
+    def __init__(self):
+        self.iterated, self.steps = masters.MASTERS["iqn-ils"](), 0
+
+    @property
+    def sweeps(self):
+        return self.iterated.sweeps
+
+    def __call__(self, system, t, h, guess):
+        def step(*arguments):
+            self.steps += 1
+            self.iterated(*arguments)
+
+        between_transitions(step, system, t, h, guess)
+
+
+# name: master, pier, version of FMI, the bridge that they stand under
+MASTERS = {
+    "halved (FMI 2.0)": (Halved, bridge.pier, 2, Bridge),
+    "early return (FMI 3.0)": (EndedAtTransitions, Pier, 3, EventBridge),
+}
+
+
+def study(update=lambda: None):
+    """Of every master at each of STEPS per sample: the error, and for how many steps and sweeps."""
+    time, a_g = pacoima_dam()
+    response = monolithic.integrate(convergence.monolithic_bridge(deck()), time, a_g)
+    expected, found = convergence.columns(response), {}
+    for way, (new, new_pier, fmi, Of) in MASTERS.items():
+        for per_sample in STEPS:
+            of_deck, master = deck(), new()
+            system = Of([new_pier(exported(name.lower(), fmi)) for name in PIERS], of_deck, linear(time, a_g))
+
+            def row():
+                return [of_deck.x, *(value for pier in system.piers for value in pier.read("theta", "u"))]
+
+            rows = simulate(system, master, extrapolate, time, per_sample, row)
+            asked = (len(time) - 1) * per_sample
+            found[way, per_sample] = (convergence.error(rows, expected), (master.steps - asked) / system.transitions(),
+                                       master.sweeps / asked, system.transitions())
+            update()
+    return time[1], found
+
+
+def errors(step, found) -> str:
+    head = ["", "step", "error", "transitions", "further steps per transition", "sweeps per communication step"]
+    rows = [[name, f"{1e3 * step / n:g} ms", f"{error:.1e}", transitions, f"{further:.1f}", f"{sweeps:.1f}"]
+            for (name, n), (error, further, sweeps, transitions) in found.items()]
+    return table(head, rows)

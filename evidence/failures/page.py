@@ -1,0 +1,59 @@
+"""Where methods fail: a picture for each failure of the study."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from ..figures import COLOURS, save, subplots
+from ..study import GUIDE, RIGHT, WRONG, curves, named, scientific, tables
+
+MARKS = [{"color": color, "linestyle": "", "marker": mark, "markersize": 5} for color, mark in zip((*COLOURS[:1], *COLOURS[2:4], COLOURS[5]), "os^D")]
+CHECKED = {"color": COLOURS[4], "linestyle": "", "marker": "o"}
+EXHIBITS = {  # title, description, axes, looks of the curves
+    "fall": ("A return right after an impact is missed",
+             "θ over time: the exact response lands, the response of the library continues below 0.",
+             {"xlabel": "time from the impact, ms", "ylabel": "θ, mrad", "xlim": (-4, 8), "ylim": (-1.2, 0.4)}, [RIGHT, WRONG]),
+    "double-crossing": ("A solver that checks θ only every 20 ms misses two crossings",
+                        "θ over time: it dips below 0 and returns between two checks; the exact response has an impact instead.",
+                        {"xlabel": "time, ms", "ylabel": "θ, mrad", "xlim": (0, 30), "ylim": (-2, 6)}, [CHECKED, RIGHT, WRONG]),
+    "chatter": ("Uplift by |u| ≥ u_cr alone never ends",
+                "Transitions so far over time: with both conditions the motion continues, with one condition they pile up at an instant.",
+                {"xlabel": "time, s", "ylabel": "transitions so far", "xlim": (0, 15), "yscale": "log", "ylim": (1, 2000)}, [RIGHT, WRONG]),
+    "zeno": ("A stiffer structure makes more impacts before it lands",
+             "Time to the next impact over the number of impacts: it shrinks by r each time; flexible structures land.",
+             {"xlabel": "impact", "ylabel": "time to the next impact, s", "yscale": "log", "ylim": (1e-12, 1), "xlim": (0, None)},
+             [RIGHT, *MARKS]),
+    "grazing": ("At a graze a change of 10⁻¹² in the initial state decides the result",
+                "Change of the result against change of the initial state: constant, as the square root, and in proportion.",
+                {"xlabel": "relative change of the initial state", "ylabel": "max|Δθ| / max|θ|", "xscale": "log", "yscale": "log",
+                 "xlim": (1e-13, 0.1), "ylim": (1e-14, 1)},
+                [{"color": color, "marker": mark, "markersize": 4} for color, mark in zip((COLOURS[4], COLOURS[3], COLOURS[2]), "os^")]),
+    "near-overturning": ("Near balance a difference grows as e^(p t)",
+                         "Difference of two releases over time: it grows by twelve decades in as many seconds.",
+                         {"xlabel": "time, s", "ylabel": "|Δθ|, rad", "xlim": (0, 14), "yscale": "log", "ylim": (1e-13, 10)},
+                         [{"color": COLOURS[3], "linestyle": "--"}, RIGHT]),
+    "energy-gain": ("An impact with r = 0.5 adds {gain:.1f} J",
+                    "Energy over time: it falls at the first impact, rises at the second, and falls at the third.",
+                    {"xlabel": "time, s", "ylabel": "energy above the energy at rest, J", "xlim": (0, 0.5), "ylim": (0, None)}, [WRONG]),
+}
+
+
+def values(figures: Path) -> dict:
+    """Numbers of each failure."""
+    folder = figures.parent
+    tables("failures", folder)
+    found = {name: named(rows) for name, rows in pd.read_csv(folder / "failures.csv", dtype=str).groupby("failure")}
+    for key, (title, description, axes, looks) in EXHIBITS.items():
+        of = found[key.replace("-", "_")]
+        figure, axis = subplots(1, 1, 4.4)
+        curves(axis, folder / f"failure-{key}.csv", looks)
+        if axes["ylabel"] == "θ, mrad":
+            axis.axhline(0, **GUIDE)
+        if key == "energy-gain":
+            axis.axvline(of["time"], **GUIDE, label=f"this impact: +{of['gain']:.2f} J")
+        axis.set(title=title.format(**of), **axes)
+        figure.legend(loc="outside lower center", ncols=3)
+        save(figure, folder / f"failure-{key}.svg", axis.get_title(), description)
+    for name in ("touch", "clear"):
+        found["grazing"][name] = scientific(found["grazing"][name])
+    return found

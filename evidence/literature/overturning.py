@@ -1,0 +1,140 @@
+"""The amplitudes of pulses that overturn a rigid block, with and without impact."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from .. import figures
+from ..page import table
+from . import block
+from .block import homogeneous
+from .slender_block import HALF_SINE, ONE_COSINE, ONE_SINE, PULSES, Boundary, Pulse, boundaries, half_sine_boundary
+
+R = 0.9  # coefficient of restitution
+MOST = 10.0  # amplitude, g tan alpha
+CASES = [*((HALF_SINE, omega) for omega in (2, 4, 6, 8)), *((ONE_SINE, omega) for omega in (2, 3, 4, 5, 6)),
+         *((ONE_COSINE, omega) for omega in (2, 3, 4))]  # omega in p
+BESIDE = 1e-9  # relative distance from a boundary at which impacts are counted
+TANGENTS = [0.08, 0.04, 0.02, 0.01]  # tan alpha of blocks that become slender
+CURVES = np.linspace(1.5, 8, 66)  # omega/p of the curves in the figure
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A quantity at TANGENTS beside its closed form in the limit of a vanishing slenderness."""
+
+    closed_form: float
+    values: list[float]
+
+    @property
+    def differences(self) -> np.ndarray:
+        """From the closed form, over it."""
+        return np.array(self.values) / self.closed_form - 1
+
+    @property
+    def rate(self) -> float:
+        """The power of tan alpha by which the difference vanishes: a straight line through the logarithms."""
+        return np.polyfit(np.log(TANGENTS), np.log(np.abs(self.differences)), 1)[0]
+
+    @property
+    def extrapolated(self) -> float:
+        """At tan alpha = 0 by Richardson, for a series in powers of tan^2 alpha."""
+        column = list(self.values)
+        for order in range(1, len(TANGENTS)):
+            column = [(4**order * finer - coarser) / (4**order - 1) for coarser, finer in zip(column, column[1:])]
+        return column[0]
+
+    @property
+    def error(self) -> float:
+        """Of the extrapolated value, over the closed form."""
+        return abs(self.extrapolated / self.closed_form - 1)
+
+
+@dataclass(frozen=True)
+class Case:
+    """One boundary: its closed form, and the model's in the slender limit."""
+
+    pulse: Pulse
+    omega: float
+    boundary: Boundary
+    limit: Limit
+    impacts: int  # counted where the most slender block overturns
+
+
+def limit(pulse: Pulse, omega: float, of: Boundary) -> Limit:
+    """The boundary of the model's blocks that become slender."""
+    return Limit(of.amplitude, [block.boundary(homogeneous(tangent, R), pulse, omega, of.amplitude)
+                                for tangent in TANGENTS])
+
+
+def counted(pulse: Pulse, omega: float, amplitude: float) -> int:
+    """Impacts of the most slender block, which overturns: its transitions but for uplift and overturning."""
+    run = block.run(homogeneous(TANGENTS[-1], R), pulse, omega, amplitude)
+    assert run.overturned
+    return len(run.transitions) - 2
+
+
+def compute(advance: Callable[[], None]) -> list[Case]:
+    """All boundaries of CASES."""
+    cases = []
+    for pulse, omega in CASES:
+        for of in boundaries(pulse, omega, R, MOST):
+            slender = limit(pulse, omega, of)
+            impacts = counted(pulse, omega, slender.values[-1] * (1 - BESIDE if of.upper else 1 + BESIDE))
+            cases.append(Case(pulse, omega, of, slender, impacts))
+        advance()
+    return cases
+
+
+def save(cases: list[Case], path: Path) -> None:
+    """Writes the table of all boundaries."""
+    how = ["without impact", "after one impact", "after two impacts"]
+    pd.DataFrame([{
+        "pulse": case.pulse.name, "omega/p": case.omega,
+        "overturns": f"{how[case.boundary.impacts]}, {'below' if case.boundary.upper else 'above'}",
+        "closed form": f"{case.boundary.amplitude:.10f}",
+        f"difference at tan alpha = {TANGENTS[0]:g}": f"{case.limit.differences[0]:.1e}",
+        f"difference at tan alpha = {TANGENTS[-1]:g}": f"{case.limit.differences[-1]:.1e}",
+        "rate": f"{case.limit.rate:.3f}", "extrapolated": f"{case.limit.extrapolated:.10f}",
+        "difference": f"{case.limit.error:.0e}",
+    } for case in cases]).to_csv(path, index=False)
+
+
+def half_sines() -> str:
+    """The table of the half sine's closed form beside the formula that lets the sine go on."""
+    lines = []
+    for pulse, omega in CASES:
+        if pulse is HALF_SINE:
+            amplitude, endless = half_sine_boundary(omega), np.hypot(1, omega)
+            lines.append([f"{omega:g}", f"{amplitude:.6f}", f"{endless:.6f}", f"{endless / amplitude:.2f}"])
+    return table(["ω/p", "closed form", "√(1 + (ω/p)²)", "ratio"], lines)
+
+
+def draw(cases: list[Case], path: Path) -> None:
+    """The boundaries over the frequency: lines by the closed form, dots by the model."""
+    figure, axes = figures.subplots(1, 3, 3.4, sharey=True)
+    for axis, pulse in zip(axes, PULSES):
+        found = {}
+        for omega in CURVES:
+            for of in boundaries(pulse, omega, R, MOST, step=0.02):
+                found.setdefault((of.impacts, of.upper), {})[omega] = of.amplitude
+        for (impacts, _), of in sorted(found.items()):
+            if impacts <= 1:
+                color = [figures.FIXED, figures.ROCKING][impacts]
+                axis.plot(CURVES, [of.get(omega, np.nan) for omega in CURVES], color=color)
+        own = [case for case in cases if case.pulse is pulse]
+        omega = [case.omega for case in own]
+        axis.plot(omega, [case.limit.extrapolated for case in own], "o", color="black", markersize=3)
+        axis.set(title=pulse.name, xlabel="$\\omega/p$", xlim=(CURVES[0], CURVES[-1] + 0.2), ylim=(1, MOST + 0.5))
+    axes[0].set_ylabel("amplitude over $g\\,\\tan\\alpha$")
+    axes[0].plot([], [], color=figures.FIXED, label="no impact")
+    axes[0].plot([], [], color=figures.ROCKING, label="one impact")
+    axes[0].plot([], [], "o", color="black", markersize=3, label="model")
+    axes[0].legend(loc="upper left")
+    title = "The model of a slender block overturns where the closed form does"
+    figure.suptitle(title)
+    figures.save(figure, path, title,
+                 "Closed form for the slender block as lines, the model as dots, over the frequency of the pulse.")

