@@ -194,7 +194,7 @@ pub enum ResourceError {
     NoNumbers(PathBuf),
     /// Numbers that make no structure of many masses.
     #[error("{file}: {1}", file = .0.display())]
-    NoFrame(PathBuf, FrameError),
+    NoFrame(PathBuf, Box<FrameError>),
 }
 
 impl Archive {
@@ -205,7 +205,7 @@ impl Archive {
             let text =
                 fs::read_to_string(&of_many).map_err(|error| ResourceError::Unreadable(of_many.clone(), error))?;
             let numbers: FrameNumbers = text.parse().map_err(|_| ResourceError::NoNumbers(of_many.clone()))?;
-            AnyStructure::Many(numbers.frame().map_err(|error| ResourceError::NoFrame(of_many, error))?)
+            AnyStructure::Many(numbers.frame().map_err(|error| ResourceError::NoFrame(of_many, Box::new(error)))?)
         } else {
             AnyStructure::One(Structure::new(read(&file)?).map_err(|error| ResourceError::Refused(file, error))?)
         };
