@@ -2,9 +2,7 @@
 
 use approx::assert_abs_diff_eq;
 use rocking::engine::{DEFAULT_TOLERANCE, Settings};
-use rocking::{
-    Detail, Engine, Motion, Parameters, Phase, Progress, Ramp, Side, State, Structure, Transition, TransitionKind,
-};
+use rocking::{Engine, Motion, Parameters, Phase, Progress, Ramp, Side, State, Structure, Transition, TransitionKind};
 use std::f64::consts::FRAC_PI_2;
 
 const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };
