@@ -6,7 +6,7 @@
     tornado     what a wrong number changes, by the script of docs/howto/choose_numbers.md
     questions   rotation and probabilities over PGV, by the script of docs/howto/sweeps.md
     profile     peaks over the height of a building, by the script of docs/howto/frames.md
-    ensembles   many runs at once, of the numbers that `make ensembles` has left in docs/evidence
+    ensembles   many runs at once, of the numbers that `make measure WHAT=ensembles` has left in docs/evidence
     explore     the page of `make explore` on the record of Pacoima Dam; only if it is named
 """
 
@@ -143,7 +143,7 @@ WAYS = {"this engine, one by one": ("0.4", "o"), "this engine, lanes": ("black",
 
 
 def ensembles(path: Path) -> None:
-    """Many runs at once, of the numbers that `make ensembles` has left."""
+    """Many runs at once, of the numbers that `make measure WHAT=ensembles` has left."""
     rows = pd.read_csv(ROOT / "docs/evidence/ensembles.csv")
     figure, axis = subplots(1, 1, 4.4)
     for way, (color, mark) in WAYS.items():

@@ -1,4 +1,4 @@
-"""Speed against accuracy: error against cost of every method, from the runs that `make precision` has measured."""
+"""Speed against accuracy: error against cost of every method, from the runs that `make measure WHAT=precision` has measured."""
 
 import shutil
 from pathlib import Path

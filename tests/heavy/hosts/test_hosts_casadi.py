@@ -3,10 +3,9 @@
 import subprocess
 import zipfile
 
+import casadi
 import numpy as np
 import pytest
-
-casadi = pytest.importorskip("casadi", reason="casadi is missing: `make heavy PARTS=hosts` installs it")
 
 
 @pytest.fixture
