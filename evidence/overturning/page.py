@@ -60,7 +60,7 @@ def values(figures: Path) -> dict:
     """Maps of pulses, and the limits of the model at random points."""
     figures.mkdir(exist_ok=True)
     with TemporaryDirectory() as folder:
-        scenes = {name: maps(name, figures.resolve() / f"{name}.png", Path(folder)) for name in tqdm(SCENES)}
+        scenes = {name: maps(name, figures.resolve() / f"{name}.svg", Path(folder)) for name in tqdm(SCENES)}
     one_sine = {structure: (parts, points[points["structures"] == structure]) for name in list(SCENES)[:3]
                 for parts, points in [scenes[name]] for structure in parts.index.unique("structure")}
 

@@ -2,6 +2,7 @@
 
 import math
 import random
+import re
 from pathlib import Path
 
 import flexible_rocking as fr
@@ -177,7 +178,8 @@ def draw_restraints(path: Path, sizes: dict[str, np.ndarray]) -> None:
     figure, axis = subplots(1, 1, 4.2)
     for (name, of), color in zip(sizes.items(), COLORS):
         finite = np.sort(of[np.isfinite(of)])
-        axis.loglog(finite, 1 - np.arange(len(finite)) / len(of), color=color, label=name)
+        label = re.sub(r"([A-Za-z])_([A-Za-z0-9]+)", r"$\1_{\2}$", name)
+        axis.loglog(finite, 1 - np.arange(len(finite)) / len(of), color=color, label=label)
     axis.set(xlim=(1e-2, 3), ylim=(3e-4, 1.1), xlabel=r"$\theta_{max}/\alpha_{cg}$",
              ylabel="fraction of the runs that rotate farther or overturn",
              title="A tendon keeps structures upright; dissipators shorten the tail")
