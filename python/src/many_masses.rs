@@ -11,6 +11,10 @@ use rocking::structure::natural_quantities::Given;
 /// Keywords that only a structure of many masses has.
 pub const OF_MANY: [&str; 3] = ["storeys", "K", "mass"];
 
+/// Pairs of keywords of which one stands for the other.
+pub const INSTEAD: [[&str; 2]; 5] =
+    [["B", "width"], ["m0", "weight0"], ["f", "period"], ["height", "moment"], ["I_2", "J_P"]];
+
 /// Keywords that have not been read yet.
 struct Keywords<'py>(Bound<'py, PyDict>);
 

@@ -2,7 +2,7 @@
 
 use crate::arguments::{numbers, one_of, refused, warn};
 use crate::interruptible::interruptible;
-use crate::many_masses::{OF_MANY, frame, given};
+use crate::many_masses::{INSTEAD, OF_MANY, frame, given};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyAttributeError, PyValueError};
 use pyo3::prelude::*;
@@ -71,6 +71,9 @@ impl Structure {
 
     fn many(keywords: &Bound<'_, PyDict>) -> PyResult<Structure> {
         let kept = copied(keywords)?;
+        for (name, _) in keywords.iter().filter(|(_, value)| value.is_none()) {
+            kept.del_item(name)?;
+        }
         Structure::of(keywords.py(), AnyStructure::Many(frame(kept.copy()?)?), Some(kept.unbind()))
     }
 
@@ -149,7 +152,8 @@ impl Structure {
         Structure::many(&keywords)
     }
 
-    /// This structure with other numbers in the place of its own, by the same names as in Structure(...).
+    /// This structure with other numbers in the place of its own, by the same names as in Structure(...). Of many masses None takes
+    /// a number away: without r, momentum gives a coefficient again.
     #[pyo3(signature = (**numbers))]
     fn replace<'py>(&self, py: Python<'py>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<Structure> {
         let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
@@ -157,6 +161,13 @@ impl Structure {
             return Structure::one_mass(py, given(&numbers)?.over(structure.parameters()).map_err(refused)?);
         }
         let keywords = self.parameters(py)?;
+        for [one, other] in INSTEAD {
+            for [new, old] in [[one, other], [other, one]] {
+                if numbers.contains(new)? && keywords.contains(old)? {
+                    keywords.del_item(old)?;
+                }
+            }
+        }
         keywords.update(numbers.as_mapping())?;
         Structure::many(&keywords)
     }

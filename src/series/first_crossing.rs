@@ -232,6 +232,11 @@ mod tests {
     }
 
     #[test]
+    fn a_gap_without_a_slope_stays_open() {
+        assert_eq!(first_time_closed_from(Gap::new(&[1.0], 1.0, 0.0), 0.2, 1.0), Crossing::None);
+    }
+
+    #[test]
     fn a_gap_closed_from_the_start_closes_at_once() {
         assert_eq!(first(&[-1.0, 5.0], 1.0), Crossing::At(0.0));
     }

@@ -85,6 +85,9 @@ def test_a_structure_of_many_masses_is_a_value():
     assert hash(of_storeys()) == hash(of_storeys())
     wide = of_storeys().replace(B=2.0)
     assert wide.B == 2 and wide == of_storeys(B=2.0)
+    by_width = fr.Structure(**{name: value for name, value in wide.parameters.items() if name != "B"}, width=4)
+    assert by_width.replace(B=1.5) == of_storeys(B=1.5) == wide.replace(width=3)
+    assert of_storeys(r=0.9).replace(r=None) == of_storeys(r=None) != of_storeys(r=0.9)
     masses = np.array(FRAME.masses)
     kept = fr.Structure.from_matrices(masses, FRAME.heights, FRAME.K, zeta=0.02, **BASE)
     masses[0] = 1

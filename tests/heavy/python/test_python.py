@@ -322,6 +322,17 @@ def test_a_peak_is_a_float(run):
     assert json.dumps(peak) == str(peak.value) and np.sqrt([peak]).dtype == float and str(peak).endswith(" s")
 
 
+def test_every_instant_has_its_own_values(run):
+    """Alone and among others, just before a transition and at a peak."""
+    instants = np.nextafter([of.time for of in run.transitions], 0)
+    alone = [{name: values[0] for name, values in run.at(instant).items()} for instant in instants]
+    together = run.at(instants)
+    assert all(together[name].tolist() == [of[name] for of in alone] for name in together)
+    assert together["transitions"].tolist() == [sum(of.time <= instant for of in run.transitions) for instant in instants]
+    for name, peak in run.peaks.items():
+        assert max(abs(run.at([np.nextafter(peak.time, 0), peak.time])[name])) == pytest.approx(peak, rel=1e-9), name
+
+
 def test_transitions_are_a_table(run):
     table = run.transitions.to_pandas()
     assert list(table.index) == [of.time for of in run.transitions] and set(table["kind"]) == {of.kind for of in run.transitions}
