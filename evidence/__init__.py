@@ -17,7 +17,7 @@ sys.path.append(str(ROOT / "tests"))  # the independent integrations
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # hosts' solvers have the same last digits on any number of cores
 
 PAGES = {  # the folder in docs/ of each
-    "accuracy": "evidence", "stability": "evidence", "failures": "explain", "validity": "explain", "paper": "evidence",
+    "accuracy": "evidence", "failures": "explain", "validity": "explain", "paper": "evidence",
     "literature": "evidence", "overturning": "evidence", "restrained": "evidence", "modes": "evidence", "coupling": "evidence",
     "model_exchange": "evidence",
 }

@@ -1,4 +1,4 @@
-"""Where methods fail: a picture for each failure of the study."""
+"""Where methods fail: a picture for each failure of the study, and the stable steps of textbook methods."""
 
 from pathlib import Path
 
@@ -6,6 +6,7 @@ import pandas as pd
 
 from ..figures import COLOURS, save, subplots
 from ..study import GUIDE, RIGHT, WRONG, curves, named, scientific, tables
+from . import stability
 
 MARKS = [{"color": color, "linestyle": "", "marker": mark, "markersize": 5} for color, mark in zip((*COLOURS[:1], *COLOURS[2:4], COLOURS[5]), "os^D")]
 CHECKED = {"color": COLOURS[4], "linestyle": "", "marker": "o"}
@@ -56,4 +57,4 @@ def values(figures: Path) -> dict:
         save(figure, folder / f"failure-{key}.svg", axis.get_title(), description)
     for name in ("touch", "clear"):
         found["grazing"][name] = scientific(found["grazing"][name])
-    return found
+    return found | stability.values(folder)

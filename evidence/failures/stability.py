@@ -11,9 +11,8 @@ from ..page import table
 from ..paper.specimens import EVISON, MCMANUS
 
 
-def values(figures: Path) -> dict:
+def values(folder: Path) -> dict:
     """Largest stable steps, and what happens at uplift."""
-    folder = figures.parent
     study.tables("stability", folder)
     trap = study.named(pd.read_csv(folder / "stability.csv", dtype=str))
     draw(folder / "stability-uplift.csv", trap["uplift"], folder / "stability-uplift.svg")
