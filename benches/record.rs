@@ -14,7 +14,8 @@ use std::{env, hint::black_box, path::Path};
 const DURATION: f64 = 15.0;
 
 fn record() -> Record {
-    let file = env::var("RECORD").expect("RECORD must name an AT2 file; `make measure WHAT=record` takes El Centro 1940");
+    let file =
+        env::var("RECORD").expect("RECORD must name an AT2 file; `make measure WHAT=record` takes El Centro 1940");
     rocking_records::read(Path::new(&file), &Reading::default(), 9.81).expect("the record is readable").0
 }
 

@@ -16,9 +16,9 @@ use tempfile::TempDir;
 
 /// A full sine of 0.6 g and 0.5 s and rest after it, 401 samples: lifts and lands the McManus specimen.
 pub const SAMPLES: usize = 401;
-pub const DT: f64 = 0.01;
+pub(crate) const DT: f64 = 0.01;
 
-pub fn pulse(i: usize) -> f64 {
+pub(crate) fn pulse(i: usize) -> f64 {
     let time = i as f64 * DT;
     if time < 0.5 { 0.6 * (std::f64::consts::TAU * time / 0.5).sin() } else { 0.0 }
 }
