@@ -51,6 +51,9 @@ struct Ground {
     /// Column of the file, where it is asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     record_column: Option<String>,
+    /// Column of the vertical component, where it is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    record_column_v: Option<String>,
     /// Time between two samples, where it is asked for, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     record_dt: Option<f64>,
@@ -63,12 +66,9 @@ impl Ground {
         let [time_scale, scale] = options.factors();
         let [file, file_v] = [path, vertical].map(|path| path.map(|path| path.display().to_string()));
         let record_unit = options.unit.map(|unit| unit.to_string());
-        let record_column = options.column.as_ref().map(|column| match column {
-            Column::Heading(heading) => heading.clone(),
-            Column::All | Column::Number(_) => column.to_string(),
-        });
+        let record_column = options.column.as_ref().map(Column::as_asked);
         let (record, record_dt) = (record.title().into(), options.dt);
-        Ground { record, file, file_v, record_unit, record_column, record_dt, time_scale, scale }
+        Ground { record, file, file_v, record_unit, record_column, record_column_v: None, record_dt, time_scale, scale }
     }
 }
 
@@ -102,8 +102,9 @@ impl Cause {
 
     /// This cause under the `record` that `args` ask for.
     pub fn under(self, args: &RecordArgs, record: &Record) -> Cause {
-        let files = [&args.record, &args.record_v].map(Option::as_deref);
-        Cause { ground: Some(Ground::new(files, &args.options, record)), ..self }
+        let files = [&args.record, &args.vertical.record_v].map(Option::as_deref);
+        let record_column_v = args.vertical.column_v.as_ref().map(Column::as_asked);
+        Cause { ground: Some(Ground { record_column_v, ..Ground::new(files, &args.options, record) }), ..self }
     }
 
     /// This cause of a run under these `conditions`.

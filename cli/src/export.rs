@@ -1,12 +1,13 @@
 //! `export`: packs the shared libraries, with all that describes them, into an FMU.
 
-use crate::record_args::{RecordOptions, one_of, say_understood};
+use crate::record_args::{RecordOptions, VerticalArgs, one_of, say_understood};
 use crate::structure_args::{StructureArgs, in_one_line, on_command_line};
 use crate::talk::{say, warning};
 use FlexibleRocking::{guid, resources::Contents};
 use anyhow::{Context, bail};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
 use rocking::structure::any::AnyStructure;
+use rocking_records::LAYOUTS;
 use rocking_report::{input, output_files::OutputFiles};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
@@ -19,14 +20,14 @@ const INSTALLED: &str = "flexible-rocking/FlexibleRocking.fmu";
 pub struct ExportArgs {
     #[command(flatten)]
     structure: StructureArgs,
-    /// Ground motion records to pack: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or tables of text; the FMU
-    /// follows the first, and each other one by its name. A record read with options, or from standard input, `-`, is
-    /// packed as a CSV file
-    #[arg(long, value_name = "FILE", num_args = 1.., help_heading = "Ground motion")]
+    /// Ground motion records to pack
+    #[arg(long, value_name = "FILE", num_args = 1.., help_heading = "Ground motion", help = format!(
+        "Ground motion records to pack: {LAYOUTS}; the FMU follows the first, and each other one by its name. A record \
+         read with options, or from standard input, `-`, is packed as a CSV file"
+    ))]
     record: Vec<PathBuf>,
-    /// Vertical component of the first record; the FMU contains both
-    #[arg(long, value_name = "FILE", help_heading = "Ground motion")]
-    record_v: Option<PathBuf>,
+    #[command(flatten)]
+    vertical: VerticalArgs,
     #[command(flatten, next_help_heading = "Ground motion")]
     options: RecordOptions,
     /// Version of FMI, for co-simulation and model exchange: 2 (2.0), 3 (3.0)
@@ -50,7 +51,7 @@ pub struct ExportArgs {
 impl ExportArgs {
     /// The files of the records, the vertical component last.
     fn records(&self) -> impl Iterator<Item = &PathBuf> {
-        self.record.iter().chain(&self.record_v)
+        self.record.iter().chain(&self.vertical.record_v)
     }
 }
 
@@ -72,8 +73,9 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     let inputs = args.structure.input().into_iter().chain(args.records().chain(&args.library).map(PathBuf::as_path));
     let file = OutputFiles::of_inputs(inputs).create(&output)?;
     let g = structure.base().g;
-    let mut records = args.records().map(|path| record(&args.options, path, g)).collect::<Result<Vec<_>, _>>()?;
-    let vertical = args.record_v.as_ref().and_then(|_| records.pop());
+    let records = args.record.iter().map(|path| record(&args.options, path, g)).collect::<Result<Vec<_>, _>>()?;
+    let of_vertical = args.options.with_column(&args.vertical.column_v);
+    let vertical = args.vertical.record_v.as_ref().map(|path| record(&of_vertical, path, g)).transpose()?;
     let contents = Contents { fixed: args.no_strings, ..structure.clone().into() };
     let (contents, archive) = fmu_export::export(args.fmi, &args.name, contents, records, vertical, &libraries)?;
     file.write(&archive)?;

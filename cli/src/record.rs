@@ -1,7 +1,10 @@
 //! `record`: what is understood of a record, and the same as a table that is read without options.
 use crate::{
-    cause::Cause, record_args::RecordOptions, record_args::say_understood, results::FormatArgs,
-    structure_args::on_command_line, talk::write_as,
+    cause::Cause,
+    record_args::{RecordOptions, help_of_record, say_understood},
+    results::FormatArgs,
+    structure_args::on_command_line,
+    talk::write_as,
 };
 use rocking::Parameters;
 use rocking::estimates::intensity::{arias_intensity, peak_velocity, significant_duration};
@@ -15,8 +18,8 @@ const G: f64 = Parameters::MCMANUS.g;
 /// Which record, and what to make of it.
 #[derive(clap::Args)]
 pub struct RecordCommand {
-    /// Ground motion record, `-` for standard input: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or a table of text
-    #[arg(value_name = "FILE")]
+    /// Ground motion record
+    #[arg(value_name = "FILE", help = help_of_record())]
     record: PathBuf,
     #[command(flatten)]
     options: RecordOptions,

@@ -6,7 +6,7 @@ use crate::{
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rocking::digits::short;
 use rocking::run::record::Record;
-use rocking_records::{Column, Reading, Unit};
+use rocking_records::{Column, LAYOUTS, Reading, Unit};
 use rocking_report::record::{Understood, understand};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -15,29 +15,46 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(next_help_heading = "Ground motion")]
 pub struct RecordArgs {
-    /// Ground motion record, `-` for standard input: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or a table of text
-    #[arg(long, value_name = "FILE")]
+    /// Ground motion record
+    #[arg(long, value_name = "FILE", help = help_of_record())]
     pub record: Option<PathBuf>,
-    /// Vertical component of the record, positive upwards, in a file of its own: read and scaled by the same options
-    #[arg(long, value_name = "FILE", requires = "record")]
-    pub record_v: Option<PathBuf>,
+    /// Its vertical component.
+    #[command(flatten)]
+    pub vertical: VerticalArgs,
     /// How it is read and scaled.
     #[command(flatten)]
     pub options: RecordOptions,
+}
+
+/// Help on the option or argument of a record, with the layouts that are read.
+pub fn help_of_record() -> String {
+    format!("Ground motion record, `-` for standard input: {LAYOUTS}")
+}
+
+/// The vertical component of a record, if any.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Ground motion")]
+pub struct VerticalArgs {
+    /// Vertical component of the (first) record, positive upwards: read and scaled by the same options
+    #[arg(long, value_name = "FILE", requires = "record")]
+    pub record_v: Option<PathBuf>,
+    /// Column or channel of the vertical component [default: that of --column]
+    #[arg(long, value_name = "COLUMN", requires = "record_v")]
+    pub column_v: Option<Column>,
 }
 
 /// How a record is read and scaled: on the command line, and beside its file's name in the file of a sweep.
 #[derive(clap::Args, Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RecordOptions {
-    /// Unit of accelerations, if the file does not state it [default: m/s2]
+    /// Unit of accelerations, if the file does not state it, or its heading is wrong [default: m/s2]
     #[arg(long, value_parser = one_of(Unit::NAMES), requires = "record")]
     pub unit: Option<Unit>,
     /// Time between the samples of a record without times; a record's own times must agree with it
     #[arg(long, value_name = "SECONDS", requires = "record", allow_hyphen_values = true)]
     pub dt: Option<f64>,
-    /// Column of the accelerations, by number or heading, or `all` if every number on every line is one; or channel of a
-    /// COSMOS or CSMIP file, by number
+    /// Column of the accelerations, by number or heading, or `all` if every number on every line is one; or channel, by
+    /// number or direction
     #[arg(long, value_name = "COLUMN", requires = "record")]
     pub column: Option<Column>,
     /// Read all samples, even if the file states another number of them
@@ -56,13 +73,13 @@ impl RecordArgs {
     pub fn load(&self, g: f64) -> anyhow::Result<Option<Record>> {
         let Some(path) = &self.record else { return Ok(None) };
         let record = self.options.load("record", path, g)?;
-        let Some(vertical) = &self.record_v else { return Ok(Some(record)) };
-        Ok(Some(record.with_vertical(&self.options.load("record_v", vertical, g)?)?))
+        let VerticalArgs { record_v: Some(vertical), column_v } = &self.vertical else { return Ok(Some(record)) };
+        Ok(Some(record.with_vertical(&self.options.with_column(column_v).load("record_v", vertical, g)?)?))
     }
 
     /// The files that are read.
     pub fn inputs(&self) -> impl Iterator<Item = &Path> {
-        self.record.iter().chain(&self.record_v).map(PathBuf::as_path)
+        self.record.iter().chain(&self.vertical.record_v).map(PathBuf::as_path)
     }
 }
 
@@ -84,6 +101,11 @@ impl RecordOptions {
         let &RecordOptions { unit, dt, ref column, ignore_npts: ignores_count, .. } = self;
         let how = Reading { unit, dt, column: column.clone(), ignores_count };
         understand(path, &how, self.factors(), g, called)
+    }
+
+    /// The same options for a `column` of its own, if any.
+    pub fn with_column(&self, column: &Option<Column>) -> RecordOptions {
+        RecordOptions { column: column.clone().or(self.column.clone()), ..self.clone() }
     }
 
     /// Factors on the record's times and on its accelerations.

@@ -17,8 +17,9 @@ use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::Quantity;
 use rocking::structure::{DERIVED, Derived};
 use rocking::{Detail, Impulse, Outputs, Parameters, Phase, Reactions, Side, State, Structure};
+use rocking_records::LAYOUTS;
 use std::borrow::Cow;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 /// The source of the value of a variable.
 #[derive(Clone, Copy, Debug)]
@@ -237,13 +238,16 @@ impl Table {
 fn records() -> [Row; 2] {
     static HORIZONTAL: Text = Text { get: |setup| &setup.record, set: |setup, text| setup.record = text.into() };
     static VERTICAL: Text = Text { get: |setup| &setup.record_v, set: |setup, text| setup.record_v = text.into() };
-    let horizontal = "ground motion record, which is added to a_g: the name of a file in the archive's \
-                      resources, or the path or URI of a file on disk; PEER .AT2, ESM, K-NET, COSMOS, CSMIP, or a table \
-                      of text in s and m/s2 or the unit of the heading; none if empty";
+    static OF_HORIZONTAL: LazyLock<String> = LazyLock::new(|| {
+        format!(
+            "ground motion record, which is added to a_g: the name of a file in the archive's resources, or the path or \
+             URI of a file on disk; {LAYOUTS} in s and m/s2 or the unit of the heading; none if empty"
+        )
+    });
     let vertical = "vertical ground motion record, which is added to a_v: a file as for record, with the same start and \
                     scales; none if empty";
     [
-        parameter("record", horizontal, DataType::String, Source::Text(&HORIZONTAL)),
+        parameter("record", &OF_HORIZONTAL, DataType::String, Source::Text(&HORIZONTAL)),
         parameter("record_v", vertical, DataType::String, Source::Text(&VERTICAL)),
     ]
 }

@@ -100,6 +100,7 @@ class Structure:
 
 @final
 class Record:
+    LAYOUTS: str
     def __new__(
         cls,
         time: Any,  # numbers, or a Trace or Stream of ObsPy
@@ -119,6 +120,7 @@ class Record:
         unit: _Unit | None = None,
         dt: float | None = None,
         column: int | str | None = None,
+        vertical_column: int | str | None = None,
         ignore_npts: bool = False,
         time_scale: float = 1.0,
         scale: float = 1.0,

@@ -135,6 +135,10 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Ground {
 
 #[pymethods]
 impl Record {
+    /// The layouts of files that read() reads.
+    #[classattr]
+    const LAYOUTS: &str = rocking_records::LAYOUTS;
+
     #[new]
     #[pyo3(signature = (time, a_g=None, a_v=None, *, unit=None, time_scale=1.0, scale=1.0, title=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
@@ -194,15 +198,15 @@ impl Record {
         Ok((slf.getattr("_of")?, (times, a_g, of.given.vertical().map(array), unit, of.scale, title)))
     }
 
-    /// Reads the record in `file`: PEER .AT2, ESM and ITACA, K-NET, COSMOS, CSMIP, or a table of text, known by its
-    /// content.
+    /// Reads the record in `file`, in one of the layouts Record.LAYOUTS, known by its content.
     ///
     /// The options replace statements that the file lacks: unit (of the accelerations), dt (s between samples), column (a
-    /// number from 1, a heading, or "all"). ignore_npts reads all samples, even if the file states another number. vertical:
-    /// the file of the vertical component, read by the same options. time_scale and scale multiply. A Python warning names an
+    /// number from 1, a heading, or "all"). unit overrides a heading. ignore_npts reads all samples, even if the file states
+    /// another number. vertical: the file of the vertical component, read by the same options, vertical_column: its column, if
+    /// it is another. time_scale and scale multiply. A Python warning names an
     /// assumption about the file, or a likely fault. Raises ValueError with the line and what would help.
     #[staticmethod]
-    #[pyo3(signature = (file, *, vertical=None, unit=None, dt=None, column=None, ignore_npts=false, time_scale=1.0, scale=1.0))]
+    #[pyo3(signature = (file, *, vertical=None, unit=None, dt=None, column=None, vertical_column=None, ignore_npts=false, time_scale=1.0, scale=1.0))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn read(
         py: Python<'_>,
@@ -211,24 +215,29 @@ impl Record {
         unit: Option<&Bound<'_, PyAny>>,
         dt: Option<&Bound<'_, PyAny>>,
         column: Option<Bound<'_, PyAny>>,
+        vertical_column: Option<Bound<'_, PyAny>>,
         ignore_npts: bool,
         #[pyo3(from_py_with = argument::time_scale)] time_scale: f64,
         #[pyo3(from_py_with = argument::scale)] scale: f64,
     ) -> PyResult<Record> {
         let unit = unit.map(self::unit).transpose()?;
         let dt = dt.map(|dt| number("dt", dt)).transpose()?;
-        let column = column.map(|column| -> PyResult<_> { Ok(Column::from(column.str()?.to_str()?)) }).transpose()?;
-        let how = Reading { unit, dt, column, ignores_count: ignore_npts };
-        let read = |file: PathBuf| -> PyResult<(Samples, Unit)> {
-            let how = how.clone();
+        let named = |column: Bound<'_, PyAny>| -> PyResult<_> { Ok(Column::from(column.str()?.to_str()?)) };
+        let [column, column_v] = [column, vertical_column].map(|column| column.map(named).transpose());
+        let (column, column_v) = (column?, column_v?);
+        if vertical.is_none() && column_v.is_some() {
+            return Err(PyValueError::new_err("vertical_column is a column of the file vertical: give vertical"));
+        }
+        let read = |file: PathBuf, column: Option<Column>| -> PyResult<(Samples, Unit)> {
+            let how = Reading { unit, dt, column, ignores_count: ignore_npts };
             let understood =
                 interruptible(py, move |_| understand(&file, &how, [time_scale, scale], G, str::to_owned))?;
             warn(py, understood.sentences[1..].iter().cloned(), 1)?;
             Ok(fixed(understood.in_file_unit, understood.unit))
         };
-        let (mut given, unit) = read(file)?;
+        let (mut given, unit) = read(file, column.clone())?;
         if let Some(vertical) = vertical {
-            let (vertical, of_vertical) = read(vertical)?;
+            let (vertical, of_vertical) = read(vertical, column_v.or(column))?;
             if of_vertical != unit {
                 let needed = "one unit is needed; say unit, or scale one of the files";
                 return Err(PyValueError::new_err(format!(

@@ -1,49 +1,42 @@
-//! AT2, the acceleration records of PEER.
+//! AT2, the acceleration records of PEER: a title, `ACCELERATION TIME SERIES IN UNITS OF G`, NPTS and DT, then the samples.
 
 use super::parsed::{Parsed, Times};
 use super::sampling::Sampling;
-use super::text::{numbered, quote};
-use super::unit::Stated;
-use super::{BadLine, Format, Reading, Unit, bad, source::decide};
+use super::text::numbered;
+use super::{BadLine, Reading, bad, source::of_file};
 
 /// Whether `text` is one of these files.
 pub(super) fn is_its(text: &str) -> bool {
-    text.lines().nth(2).is_some_and(|line| check_unit(line).is_ok()) && text.lines().nth(3).is_some_and(is_counts)
+    header(text).is_some()
 }
 
-fn is_counts(line: &str) -> bool {
-    line.to_uppercase().contains("NPTS")
+/// The line of the counts, from 1, the counts, and the title, which is two lines before them.
+fn header(text: &str) -> Option<(usize, usize, f64, &str)> {
+    const MOST_LINES: usize = 20;
+    let lines: Vec<_> = numbered(text).take(MOST_LINES).collect();
+    lines.windows(3).find_map(|lines| {
+        let [(_, title), (_, unit), (line, counts)] = lines.try_into().ok()?;
+        let is_header = states_g(unit) && counts.to_uppercase().contains("NPTS");
+        let counts = is_header.then(|| Sampling::of(line, counts).ok())??;
+        Some((line, counts.npts?, counts.dt?, title))
+    })
 }
 
-/// A title on line 2, the unit on line 3, NPTS and DT on line 4, then NPTS accelerations.
+/// NPTS accelerations in g after the header.
 pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
-    const HEADER_LINES: usize = 4;
-    let header: Vec<_> = text.lines().take(HEADER_LINES).collect();
-    let &[_, title, unit, counts] = header.as_slice() else {
-        return Err(bad(header.len().max(1), "the file ends within the four header lines of an AT2 file"));
-    };
-    check_unit(unit).map_err(|problem| bad(3, problem))?;
-    let (unit, unit_from) = decide(&Stated::Unit(Unit::G), how.unit, 3)?;
-    let Sampling { npts: Some(npts), dt: Some(dt) } = Sampling::of(4, counts)? else {
-        let expected = "`NPTS= 4172, DT= .0100 SEC` or `4172 0.0100 NPTS, DT`";
-        return Err(bad(4, format!("found {} where an AT2 file states {expected}", quote(counts))));
-    };
-
-    let mut parsed = Parsed::new(Format::At2, title.trim(), unit, unit_from, Times::Every(dt));
-    parsed.read(numbered(text).skip(HEADER_LINES), None)?;
+    let (line, npts, dt, title) = header(text).ok_or_else(|| bad(1, "the file has no header of an AT2 file"))?;
+    let (unit, unit_from) = of_file("g", how.unit, line - 1)?;
+    let mut parsed = Parsed::new(title.trim(), unit, unit_from, Times::Every(dt));
+    parsed.read(numbered(text).skip(line), None)?;
     parsed.check_count("NPTS", npts, how)?;
     Ok(parsed)
 }
 
-/// `ACCELERATION TIME SERIES IN UNITS OF G` or `ACCELERATION TIME HISTORY IN UNITS OF G. FILTER ...`.
-fn check_unit(line: &str) -> Result<(), String> {
+/// Whether `line` says `ACCELERATION TIME SERIES IN UNITS OF G` or `ACCELERATION TIME HISTORY IN UNITS OF G. FILTER ...`.
+fn states_g(line: &str) -> bool {
     let upper = line.to_uppercase();
     let unit = upper.split_once("UNITS OF").and_then(|(_, rest)| rest.split_whitespace().next());
-    if upper.contains("ACCELERATION") && unit.is_some_and(|unit| unit.trim_end_matches(['.', ',', ';']) == "G") {
-        Ok(())
-    } else {
-        Err(format!("found {} where an AT2 file states ACCELERATION ... IN UNITS OF G", quote(line)))
-    }
+    upper.contains("ACCELERATION") && unit.is_some_and(|unit| unit.trim_end_matches(['.', ',', ';']) == "G")
 }
 
 #[cfg(test)]
@@ -69,7 +62,7 @@ mod tests {
     ];
 
     fn read(text: &str, how: &Reading) -> Result<Record, BadLine> {
-        Ok(parse(text, how)?.record(how)?.0)
+        Ok(crate::parse(text, how)?.0)
     }
 
     fn at2(counts: &str, values: &str) -> Result<Record, BadLine> {
@@ -91,24 +84,20 @@ mod tests {
         }
     }
 
-    #[test]
-    fn the_unit_line_must_state_acceleration_in_g() {
-        assert_eq!(check_unit("ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz LP=30.0 Hz"), Ok(()));
-        for refused in ["VELOCITY TIME SERIES IN UNITS OF CM/S", "ACCELERATION TIME SERIES IN UNITS OF GAL", ""] {
-            assert!(check_unit(refused).is_err(), "{refused}");
-        }
-    }
-
+    /// What is no whole header is a table, which says what is missing.
     #[test]
     fn a_refused_at2_file_says_what_was_found_on_which_line() {
         const THREE: &str = "NPTS= 3, DT= .01 SEC";
-        assert_eq!(read("", &Reading::default()).unwrap_err().line, 1);
-        let ends = "the file ends within the four header lines of an AT2 file";
-        assert_eq!(read(PACOIMA, &Reading::default()), Err(bad(3, ends)));
-        assert_eq!(at2_problem(THREE, ".1 .2\n\n"), "5: NPTS states 3 samples, and the file has 2");
-        assert_eq!(at2_problem(THREE, ""), "1: NPTS states 3 samples, and the file has 0");
-        assert_eq!(at2_problem(THREE, ".1\n.2\n.3 .4\n"), "7: NPTS states 3 samples, and the file has 4");
-        for not_a_number in ["x", "1.2.3", "********", "nan", "-inf", "1e999", ".1-.2", "1E-", "1e308", "ÿ"] {
+        for (values, expected) in [
+            (".1 .2\n\n", "5: NPTS states 3 samples, and the file has 2"),
+            ("", "1: NPTS states 3 samples, and the file has 0"),
+            (".1\n.2\n.3 .4\n", "7: NPTS states 3 samples, and the file has 4"),
+            (".1-.2\n.3 .4\n", "6: NPTS states 3 samples, and the file has 4"),
+            (".1\n.2-3 .4\n", "6: the acceleration \".2-3\" is not a number: write .2E-3 or .2 -3"),
+        ] {
+            assert_eq!(at2_problem(THREE, values), expected);
+        }
+        for not_a_number in ["x", "1.2.3", "********", "nan", "-inf", "1e999", "1E-", "1e308", "\u{ff}"] {
             assert_eq!(
                 at2_problem(THREE, &format!(".1\n {not_a_number}\n.3\n")),
                 format!("6: the acceleration {not_a_number:?} is not a number")
@@ -122,14 +111,18 @@ mod tests {
                 format!("4: DT = \"{dt} SEC\" must be a number of seconds greater than 0")
             );
         }
-        assert_eq!(
-            at2_problem("NPTS= 3, DT= X", ".1 .2 .3"),
-            "4: found \"NPTS= 3, DT= X\" where an AT2 file states \
-             `NPTS= 4172, DT= .0100 SEC` or `4172 0.0100 NPTS, DT`"
-        );
+        let no_step = at2("NPTS= 3, DT= X", ".1 .2 .3").unwrap_err();
+        assert_eq!(no_step.remedy, Some(crate::Remedy::Step), "{no_step:?}");
         assert_eq!(
             at2_problem(THREE, &"9".repeat(400)),
             format!("5: the acceleration \"{}\"... is not a number", "9".repeat(40))
         );
+    }
+
+    /// The content decides, not the name: any number of lines before the title.
+    #[test]
+    fn a_header_may_start_later() {
+        let late = read(&format!("a line more\n{PACOIMA}NPTS= 2, DT= .01 SEC\n1 2\n"), &Reading::default());
+        assert_eq!(late.unwrap().title(), "San Fernando, 2/9/1971, Pacoima Dam (upper left abut), 164");
     }
 }

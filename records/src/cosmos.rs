@@ -5,24 +5,23 @@
 
 use super::parsed::{Parsed, Times};
 use super::text::{columns, number, numbered, quote};
-use super::unit::Stated;
-use super::{BadLine, Column, Format, Reading, Remedy, Unit, bad, source::decide};
+use super::{BadLine, Column, Reading, Remedy, bad, source::of_file};
 
-/// Layout that the first line states, if the file is COSMOS or CSMIP.
-pub(super) fn format(text: &str) -> Option<Format> {
-    let first = text.lines().next()?.to_ascii_lowercase();
-    if first.contains("(format v") {
-        Some(Format::Cosmos)
-    } else if first.contains("corrected accelerogram") {
-        Some(Format::Csmip)
-    } else {
-        None
-    }
+/// Whether the first line of `text` is that of COSMOS.
+pub(super) fn is_its(text: &str) -> bool {
+    text.lines().next().is_some_and(|line| line.to_ascii_lowercase().contains("(format v"))
+}
+
+/// Whether the first line of `text` is that of CSMIP.
+pub(super) fn is_csmip(text: &str) -> bool {
+    text.lines().next().is_some_and(|line| line.to_ascii_lowercase().contains("corrected accelerogram"))
 }
 
 /// The line before a channel's accelerations.
 struct Announced<'a> {
     line: usize,
+    /// What the header calls the channel: its direction.
+    name: &'a str,
     count: usize,
     unit: &'a str,
     /// Letters in a column; none if blanks separate the columns.
@@ -30,27 +29,38 @@ struct Announced<'a> {
     dt: f64,
 }
 
-/// The accelerations of the one channel, or of that which `how` chooses.
-pub(super) fn parse(text: &str, format: Format, how: &Reading) -> Result<Parsed, BadLine> {
-    let channels = channels(text, format)?;
-    let channel = match (&how.column, channels.len()) {
-        (_, 0) => return Err(bad(1, format!("no line of the file announces accelerations, as {format} does"))),
-        (None, 1) => 0,
-        (Some(Column::Number(number)), count) if (1..=count).contains(number) => number - 1,
-        (asked, count) => {
-            let asked = match asked {
-                None => "and the file does not show which one to read".into(),
-                Some(asked) => format!("but the given column is {asked}: channels have numbers"),
-            };
-            return Err(bad(channels[0].line, format!("{count} channel(s), {asked}")).remedied_by(Remedy::Column));
-        }
+/// The accelerations of the one channel of COSMOS, or of that which `how` chooses.
+pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
+    read(channels(text, false)?, title(text, [1, 4]), text, how)
+}
+
+/// Likewise of CSMIP.
+pub(super) fn parse_csmip(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
+    read(channels(text, true)?, title(text, [2, 6]), text, how)
+}
+
+fn read(channels: Vec<Announced>, title: String, text: &str, how: &Reading) -> Result<Parsed, BadLine> {
+    let is_asked = |(index, channel): (usize, &Announced)| match &how.column {
+        None => channels.len() == 1,
+        Some(Column::Number(number)) => *number == index + 1,
+        Some(Column::Heading(name)) => channel.name.eq_ignore_ascii_case(name.trim()),
+        Some(Column::All) => false,
     };
-    let &Announced { line: announced, count, unit, width, dt } = &channels[channel];
-    let stated = Unit::named(unit).map_or(Stated::Other(unit.into()), Stated::Unit);
-    let (unit, unit_from) = decide(&stated, how.unit, announced)?;
-    let mut parsed = Parsed::new(format, title(text, format), unit, unit_from, Times::Every(dt));
+    let asked: Vec<_> = channels.iter().enumerate().filter(|channel| is_asked(*channel)).collect();
+    let [(index, &Announced { line: announced, count, unit, width, dt, .. })] = asked[..] else {
+        let Some(first) = channels.first() else {
+            return Err(bad(1, "no line of the file announces accelerations, as COSMOS and CSMIP do"));
+        };
+        let names: Vec<_> = channels.iter().map(|channel| quote(channel.name)).collect();
+        let asked =
+            how.column.as_ref().map_or("which one to read is not said".into(), |asked| format!("not one {asked}"));
+        let problem = format!("{} channel(s) ({}), {asked}", channels.len(), names.join(", "));
+        return Err(bad(first.line, problem).remedied_by(Remedy::Column));
+    };
+    let (unit, unit_from) = of_file(unit, how.unit, announced)?;
+    let mut parsed = Parsed::new(title, unit, unit_from, Times::Every(dt));
     if channels.len() > 1 {
-        parsed.remark(format!("channel {} of {}", channel + 1, channels.len()));
+        parsed.remark(format!("channel {} of {}, {}", index + 1, channels.len(), quote(channels[index].name)));
     }
     parsed.read(numbered(text).skip(announced).take_while(|(_, line)| !ends_data(line)), width)?;
     parsed.check_count("the line before the data", count, how)?;
@@ -63,25 +73,34 @@ fn ends_data(line: &str) -> bool {
     lower.contains("pts") || lower.contains("points of") || lower.contains("end") || lower.contains("/&")
 }
 
+/// Direction on a line such as `Sta Chan  1: 360 deg (Rcrdr Chan  1)`.
+fn direction(line: &str) -> Option<&str> {
+    let start = line.to_ascii_lowercase().find("chan")? + "chan".len();
+    let (number, name) = line.get(start..)?.split_once(':')?;
+    number.trim().parse::<u32>().ok()?;
+    name.trim_start().split(['(', ',']).next()?.split("  ").map(str::trim).find(|name| !name.is_empty())
+}
+
 /// Words that announce accelerations.
-fn channels(text: &str, format: Format) -> Result<Vec<Announced<'_>>, BadLine> {
+fn channels(text: &str, is_csmip: bool) -> Result<Vec<Announced<'_>>, BadLine> {
     let mut channels = Vec::new();
-    let mut reals = Reals::default();
+    let (mut reals, mut name) = (Reals::default(), "");
     for (line, content) in numbered(text) {
         let lower = content.to_ascii_lowercase();
-        match format {
-            Format::Csmip if lower.contains("points of accel data equally spaced") => {
-                channels.push(csmip(line, content)?);
+        name = direction(content).unwrap_or(name);
+        match is_csmip {
+            true if lower.contains("points of accel data equally spaced") => {
+                channels.push(Announced { name, ..csmip(line, content)? });
             }
-            Format::Cosmos if lower.contains("real-header values follow") => reals = Reals::announced(line, content)?,
-            Format::Cosmos if reals.missing > 0 => reals.read(line, content)?,
-            Format::Cosmos
+            false if lower.contains("real-header values follow") => reals = Reals::announced(line, content)?,
+            false if reals.missing > 0 => reals.read(line, content)?,
+            false
                 if !content.starts_with('|')
                     && lower.contains("pts")
                     && lower.contains("units=")
                     && lower.contains("acc") =>
             {
-                channels.push(cosmos(line, content, &reals)?);
+                channels.push(Announced { name, ..cosmos(line, content, &reals)? });
             }
             _ => {}
         }
@@ -99,7 +118,7 @@ fn csmip(line: usize, content: &str) -> Result<Announced<'_>, BadLine> {
     let start = [" in ", "units:"].into_iter().find_map(|before| Some(lower.find(before)? + before.len()));
     let unit = start.and_then(|start| content.get(start..)).and_then(|rest| rest.split_whitespace().next());
     let unit = unit.ok_or_else(unclear)?.trim_end_matches(['.', ',', ')']);
-    Ok(Announced { line, count, unit, width: width(content), dt: dt.ok_or_else(unclear)? })
+    Ok(Announced { line, name: "", count, unit, width: width(content), dt: dt.ok_or_else(unclear)? })
 }
 
 /// `12725 acceleration pts, approx 63 secs, units=cm/s^2,Format=(8F10.5)`
@@ -110,7 +129,14 @@ fn cosmos<'a>(line: usize, content: &'a str, reals: &Reals) -> Result<Announced<
     let unit = content.get(start..).and_then(|rest| rest.split([',', '(', ' ']).find(|word| !word.is_empty()));
     let dt =
         reals.step().ok_or_else(|| bad(line, "the real header states no interval of the samples: value 62, in ms"))?;
-    Ok(Announced { line, count, unit: unit.ok_or_else(unclear)?, width: Some(width(content).ok_or_else(unclear)?), dt })
+    Ok(Announced {
+        line,
+        name: "",
+        count,
+        unit: unit.ok_or_else(unclear)?,
+        width: Some(width(content).ok_or_else(unclear)?),
+        dt,
+    })
 }
 
 /// The letters of a column of `(8F10.3)`, the last format that `line` has.
@@ -164,10 +190,8 @@ impl Reals {
     }
 }
 
-/// The event and the station, as the header's lines 2 and 5 of COSMOS, or 3 and 7 of CSMIP, have them.
-fn title(text: &str, format: Format) -> String {
-    let [event, station] = if format == Format::Cosmos { [1, 4] } else { [2, 6] };
-    let line = |index| text.lines().nth(index).unwrap_or_default();
-    let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
-    format!("{}, {}", words(line(event)), words(line(station)))
+/// The event and the station, which are on these `lines` of the header, counted from 0.
+fn title(text: &str, lines: [usize; 2]) -> String {
+    let words = |index| text.lines().nth(index).unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
+    lines.map(words).join(", ")
 }

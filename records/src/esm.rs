@@ -3,8 +3,7 @@
 
 use super::parsed::{Parsed, Times};
 use super::text::{number, numbered, quote};
-use super::unit::Stated;
-use super::{BadLine, Format, Reading, Unit, bad, source::decide};
+use super::{BadLine, Reading, bad, source::of_file};
 
 const LONGEST_HEADER: usize = 200;
 
@@ -29,8 +28,7 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
         return Err(bad(line, format!("DATA_TYPE is {}, and accelerations are needed", quote(data_type))));
     }
     let (line, units) = needed("UNITS")?;
-    let stated = Unit::named(units).map_or(Stated::Other(units.into()), Stated::Unit);
-    let (unit, unit_from) = decide(&stated, how.unit, line)?;
+    let (unit, unit_from) = of_file(units, how.unit, line)?;
     let (line, step) = needed(STEP)?;
     let dt = number(step).filter(|dt| *dt > 0.0);
     let dt = dt.ok_or_else(|| bad(line, format!("{STEP} = {} must be a number greater than 0", quote(step))))?;
@@ -40,7 +38,7 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     let title = ["EVENT_NAME", "EVENT_DATE_YYYYMMDD", "STATION_CODE", "STREAM"].map(find);
     let title = title.into_iter().flatten().map(|(_, value)| value).filter(|value| !value.is_empty());
     let title = title.collect::<Vec<_>>().join(", ");
-    let mut parsed = Parsed::new(Format::Esm, title, unit, unit_from, Times::Every(dt));
+    let mut parsed = Parsed::new(title, unit, unit_from, Times::Every(dt));
     parsed.read(numbered(text).skip(header.len()), None)?;
     parsed.check_count("NDATA", count, how)?;
     Ok(parsed)

@@ -1,6 +1,6 @@
 //! How a line of text is cut into fields: what separates them, and what stands before decimals.
 
-use super::text::is_number;
+use super::text::{apart, is_number};
 use super::unit::TimeUnit;
 use std::borrow::Cow;
 
@@ -15,7 +15,7 @@ pub(super) struct Layout {
 /// The fields of `line`, however they are separated, without empty ones.
 pub(super) fn words(line: &str) -> Vec<&str> {
     let fields = split(line, |letter| letter.is_whitespace() || matches!(letter, ',' | ';'));
-    fields.into_iter().map(unquoted).filter(|field| !field.is_empty()).collect()
+    fields.into_iter().map(unquoted).flat_map(apart).filter(|field| !field.is_empty()).collect()
 }
 
 /// Whether `line` has numbers and nothing else.
@@ -68,20 +68,23 @@ fn not_blank<'a>(cells: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
 }
 
 impl Layout {
-    /// Layout of lines of numbers. A semicolon always separates. A comma separates unless blanks separate and each comma is
-    /// between digits.
+    /// Layout of lines of numbers. A semicolon always separates. A comma separates unless it is within quotes, or blanks
+    /// separate and each comma is between digits.
     pub fn of<'a, L: Iterator<Item = &'a str>>(lines: impl Fn() -> L) -> Layout {
-        let has = |letter: char| lines().any(|line| line.contains(letter));
+        let unquoted = || lines().flat_map(|line| line.split('"').step_by(2));
+        let is_quoted = lines().any(|line| line.split('"').skip(1).step_by(2).any(|quoted| quoted.contains(',')));
+        let has = |letter: char| unquoted().any(|part| part.contains(letter));
         let is_decimal = |line: &str| {
             let fields: Vec<_> = line.trim().split(',').collect();
             fields.windows(2).all(|pair| pair[0].ends_with(is_digit) && pair[1].starts_with(is_digit))
         };
         let has_blanks = lines().any(|line| line.trim().contains(char::is_whitespace));
-        match has(',') {
-            decimal_comma if has(';') => Layout { separator: Some(';'), decimal_comma },
-            true if !has_blanks || !lines().all(is_decimal) => Layout { separator: Some(','), decimal_comma: false },
-            decimal_comma => Layout { separator: None, decimal_comma },
-        }
+        let (separator, decimal_comma) = match has(',') {
+            has_comma if has(';') => (Some(';'), has_comma || is_quoted),
+            true if is_quoted || !has_blanks || !lines().all(is_decimal) => (Some(','), is_quoted),
+            has_comma => (None, has_comma || is_quoted),
+        };
+        Layout { separator, decimal_comma }
     }
 
     pub fn fields<'a>(&self, line: &'a str) -> Vec<&'a str> {
@@ -91,7 +94,7 @@ impl Layout {
             }
             None => split(line.trim(), char::is_whitespace).into_iter().filter(|field| !field.is_empty()).collect(),
         };
-        fields.into_iter().map(unquoted).collect()
+        fields.into_iter().map(unquoted).flat_map(apart).collect()
     }
 
     /// A number as Rust writes it.

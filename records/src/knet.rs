@@ -2,8 +2,7 @@
 
 use super::parsed::{Parsed, Times};
 use super::text::{number, numbered, quote};
-use super::unit::Stated;
-use super::{BadLine, Format, Reading, Unit, bad, source::decide};
+use super::{BadLine, Reading, bad, source::of_file};
 
 const HEADER_LINES: usize = 17;
 
@@ -31,13 +30,13 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
         bad(line, format!("found {} where the scale factor is stated, such as 3920(gal)/6182761", quote(factor)))
     })?;
     let factor = positive(line, "Scale Factor", gal)? / positive(line, "Scale Factor", counts)?;
-    let (unit, unit_from) = decide(&Stated::Unit(Unit::CentimetrePerSecondSquared), how.unit, line)?;
+    let (unit, unit_from) = of_file("gal", how.unit, line)?;
     let (line, duration) = find("Duration Time(s)")?;
     let duration = positive(line, "Duration Time(s)", duration)?;
 
     let parts = ["Origin Time", "Station Code", "Dir."].map(|key| find(key).map_or("", |(_, value)| value));
     let title = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ");
-    let mut parsed = Parsed::new(Format::KNet, title, unit, unit_from, Times::Every(1.0 / frequency));
+    let mut parsed = Parsed::new(title, unit, unit_from, Times::Every(1.0 / frequency));
     parsed.read(numbered(text).skip(HEADER_LINES), Some(WIDTH))?;
     parsed.check_count("Duration Time(s) x Sampling Freq(Hz)", (duration * frequency).round() as usize, how)?;
     parsed.values.iter_mut().for_each(|count| *count *= factor);

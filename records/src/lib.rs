@@ -1,7 +1,8 @@
 //! Files of ground motions as the world's archives publish them.
 //!
-//! The content of a file decides the layout: PEER AT2, ESM and ITACA, K-NET, COSMOS, CSMIP, or columns of text. [`read`]
-//! returns the samples in m/s², and the findings and assumptions about the file.
+//! The content of a file decides the layout, which is one of [`FORMATS`] or columns of text. [`read`] returns the samples in
+//! m/s², and the findings and assumptions about the file. Whoever adds a layout writes a file of this crate and a row of the
+//! table; help texts and pages list the layouts from the table.
 
 mod at2;
 mod cosmos;
@@ -21,12 +22,50 @@ use parsed::Parsed;
 use rocking::run::record::{MAX_SAMPLES, Record};
 use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::OutOfRange;
-pub use source::{Column, Format, Reading, Source, UnitFrom, steps};
+pub use source::{Column, Reading, Source, UnitFrom, steps};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use text::nine_digits;
 pub use unit::Unit;
+
+/// A layout of published files.
+pub struct Format {
+    /// Its name.
+    pub name: &'static str,
+    /// What states the unit.
+    pub unit: &'static str,
+    /// What states the step.
+    pub step: &'static str,
+    /// Whether a file may have several channels, of which one is chosen as if it were a column.
+    pub has_channels: bool,
+    is_its: fn(&str) -> bool,
+    parse: fn(&str, &Reading) -> Result<Parsed, BadLine>,
+}
+
+/// Makes [`FORMATS`] and [`LAYOUTS`].
+macro_rules! formats {
+    ($($name:literal, $unit:literal, $step:literal, $has_channels:literal, $is_its:path, $parse:path;)*) => {
+        /// The layouts that are recognised.
+        pub static FORMATS: &[Format] = &[$(Format {
+            name: $name, unit: $unit, step: $step, has_channels: $has_channels, is_its: $is_its, parse: $parse,
+        }),*];
+
+        /// The names of the layouts that are read, as help texts list them.
+        pub const LAYOUTS: &str = concat!($($name, ", ",)* "or a table of text");
+    };
+}
+
+formats! {
+    "PEER AT2", "g", "DT", false, at2::is_its, at2::parse;
+    "ESM and ITACA ASCII", "UNITS", "SAMPLING_INTERVAL_S", false, esm::is_its, esm::parse;
+    "K-NET and KiK-net ASCII", "gal, by the scale factor; the recorder's offset is taken off", "sampling frequency", false, knet::is_its, knet::parse;
+    "COSMOS V1 and V2", "the line before the data", "the real header", true, cosmos::is_its, cosmos::parse;
+    "CSMIP V2", "the line before the data", "the line before the data", true, cosmos::is_csmip, cosmos::parse_csmip;
+}
+
+/// Name of the layout of all other files.
+const TABLE: &str = "table";
 
 /// Largest file that is read, bytes: 256 MiB.
 pub const MAX_FILE: u64 = 1 << 28;
@@ -34,9 +73,12 @@ pub const MAX_FILE: u64 = 1 << 28;
 /// A peak above this, in g, is probably in another unit.
 const LARGEST_USUAL_PEAK: f64 = 5.0;
 
-/// No earthquake has a mean above this, in g, together with a velocity at the end above the next limit, in m/s.
-const LARGEST_USUAL_MEAN: f64 = 0.05;
+/// No ground moves faster after an earthquake, m/s.
 const LARGEST_USUAL_VELOCITY: f64 = 2.0;
+
+/// Rounded times have steps of two lengths, which differ by more than this part of their mean, and are this many or more.
+const LARGEST_USUAL_ROUNDING: f64 = 0.02;
+const FEWEST_ROUNDED: usize = 10;
 
 /// Steps of recorders, s.
 const USUAL_STEPS: std::ops::RangeInclusive<f64> = 1e-4..=0.1;
@@ -155,8 +197,7 @@ pub fn from_bytes(path: &Path, bytes: &[u8], how: &Reading) -> Result<(Record, S
         return Err(RecordError::BadStep(dt));
     }
     let text = text::decode(bytes).map_err(malformed)?;
-    let (record, source) =
-        parse(&text, format(path, &text), how).and_then(|parsed| parsed.record(how)).map_err(malformed)?;
+    let (record, source) = parse(&text, how).map_err(malformed)?;
     match record.title() {
         "" => Ok((record.titled(path.file_stem().unwrap_or_default().to_string_lossy()), source)),
         _ => Ok((record, source)),
@@ -177,8 +218,8 @@ pub fn doubts(record: &Record, g: f64) -> Vec<String> {
     let gaps = record.times().windows(2).map(|pair| (pair[1] - pair[0], pair[0]));
     let (longest, gap) = gaps.fold((0.0, 0.0), |most: (f64, f64), gap| if gap.0 > most.0 { gap } else { most });
     let velocity = last.unwrap_or_default()[0];
-    let (peak, mean) = (record.pga().max(record.vertical_peak()) / g, velocity / duration / g);
-    let is_drift = mean.abs() > LARGEST_USUAL_MEAN && velocity.abs() > LARGEST_USUAL_VELOCITY;
+    let peak = record.pga().max(record.vertical_peak()) / g;
+    let is_drift = velocity.abs() > LARGEST_USUAL_VELOCITY;
     let is_usual = USUAL_STEPS.contains(&step);
     let doubts = [
         (peak > LARGEST_USUAL_PEAK).then(|| format!("a peak of {peak:.0} g: is the unit right?")),
@@ -192,32 +233,38 @@ pub fn doubts(record: &Record, g: f64) -> Vec<String> {
         }),
         is_drift.then(|| {
             format!(
-                "a mean acceleration of {mean:.2} g, after which the ground moves on at {velocity:.0} m/s: is it \
-                 the right column?"
+                "the ground moves on at {velocity:.1} m/s after the record: is an offset left, or the column wrong?"
             )
+        }),
+        rounded(record.times()).map(|[least, most]| {
+            let [least, most] = [least, most].map(nine_digits);
+            format!("steps of {least} s and {most} s alternate: are the times rounded? Give the right step")
         }),
     ];
     doubts.into_iter().flatten().collect()
 }
 
-/// The layout of `text`, the content of the file at `path`. The extension identifies a damaged AT2 file.
-fn format(path: &Path, text: &str) -> Format {
-    let is_at2 = || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("at2"));
-    match () {
-        () if esm::is_its(text) => Format::Esm,
-        () if knet::is_its(text) => Format::KNet,
-        () => cosmos::format(text).unwrap_or(if is_at2() || at2::is_its(text) { Format::At2 } else { Format::Table }),
-    }
+/// The two lengths of the steps between `times`, if they are those of even times that were rounded.
+fn rounded(times: &[f64]) -> Option<[f64; 2]> {
+    let (start, mean) = (times[0], (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64);
+    let steps = || times.windows(2).map(|pair| pair[1] - pair[0]);
+    let [least, most] = [steps().fold(f64::INFINITY, f64::min), steps().fold(0.0, f64::max)];
+    let is_one = |step: f64| [least, most].iter().any(|of| (step - of).abs() < LARGEST_USUAL_ROUNDING / 10.0 * mean);
+    let is_even = |(i, time): (usize, &f64)| (time - start - i as f64 * mean).abs() < most - least;
+    let is_rounded =
+        times.len() >= FEWEST_ROUNDED && most - least > LARGEST_USUAL_ROUNDING * mean && most < 2.1 * least;
+    (is_rounded && steps().all(is_one) && times.iter().enumerate().all(is_even)).then_some([least, most])
 }
 
-fn parse(text: &str, format: Format, how: &Reading) -> Result<Parsed, BadLine> {
-    match format {
-        Format::At2 => at2::parse(text, how),
-        Format::Esm => esm::parse(text, how),
-        Format::KNet => knet::parse(text, how),
-        Format::Cosmos | Format::Csmip => cosmos::parse(text, format, how),
-        Format::Table => table::parse(text, how),
+/// The record in `text`, whose content decides its layout.
+fn parse(text: &str, how: &Reading) -> Result<(Record, Source), BadLine> {
+    let Some(format) = FORMATS.iter().find(|format| (format.is_its)(text)) else {
+        return table::parse(text, how)?.record(how, TABLE);
+    };
+    if let (false, Some(asked)) = (format.has_channels, &how.column) {
+        return Err(bad(1, format!("the given column is {asked}, but a file of {} has none", format.name)));
     }
+    (format.parse)(text, how)?.record(how, format.name)
 }
 
 /// The bytes of the file of a record. The function opens regular files only, because opening a pipe can block for ever.
@@ -331,12 +378,11 @@ mod tests {
         assert!(doubts(4000, 0.01, 0.0, 3.0).is_empty());
         assert_eq!(doubts(4000, 0.5, 0.0, 3.0), ["a step of 0.5 s: is the time in another unit?"]);
         assert_eq!(doubts(4000, 5e-5, 0.0, 3.0), ["a step of 0.00005 s: is the time in another unit?"]);
-        assert_eq!(doubts(4000, 0.01, 0.0, 59.0), ["a peak of 6 g: is the unit right?"]);
+        assert_eq!(doubts(3980, 0.01, 0.0, 59.0), ["a peak of 6 g: is the unit right?"]);
         let times = (0..99).map(|i| 0.01 * f64::from(if i < 50 { i } else { i + 49 })).collect();
         let gap = Record::from_samples("", times, vec![0.0; 99]).map(|record| super::doubts(&record, 9.81)).unwrap();
         assert_eq!(gap, ["no sample for 0.5 s after t = 0.49 s, on average one in 0.015 s: is something missing?"]);
-        let drift =
-            "a mean acceleration of 0.29 g, after which the ground moves on at 114 m/s: is it the right column?";
-        assert_eq!(doubts(4000, 0.01, 0.29 * 9.81, 3.0), [drift]);
+        let drift = "the ground moves on at 12.1 m/s after the record: is an offset left, or the column wrong?";
+        assert_eq!(doubts(3980, 0.01, 0.031 * 9.81, 3.0), [drift]);
     }
 }

@@ -1,13 +1,14 @@
 //! Result of the parsers of all layouts: samples as the file gives them.
 
-use super::text::{columns, nine_digits, number, quote, without_blanks};
-use super::{BadLine, Format, MAX_SAMPLES, Reading, Record, Remedy, Source, Unit, UnitFrom, bad};
+use super::text::{columns, nine_digits, no_number, number, without_blanks};
+use super::{BadLine, MAX_SAMPLES, Reading, Record, Remedy, Source, TABLE, Unit, UnitFrom, bad};
 
 /// Steps that differ by no more than this part are the same.
 const SAME_STEP: f64 = 1e-6;
 
-/// Part of a step that the last of rounded times may be off.
+/// Part of a step that rounded times may be off, or half a unit of the last of their decimals, of which there are fewer than these.
 const ROUNDING: f64 = 0.1;
+const MOST_DECIMALS: i32 = 7;
 
 /// The samples of a file, with the findings about them.
 #[derive(Debug)]
@@ -29,24 +30,36 @@ pub(super) enum Times {
 }
 
 impl Times {
-    /// The step (s), and whether it is `dt` (s): times as they are written may be rounded, and after the last step be off by
-    /// a tenth of one. A single time has no step.
-    pub fn have_step(&self, dt: f64) -> Option<(f64, bool)> {
-        match self {
-            Times::Every(step) => Some((*step, (step - dt).abs() <= SAME_STEP * dt)),
-            Times::At(times) if times.len() > 1 => {
-                let (steps, duration) = ((times.len() - 1) as f64, times[times.len() - 1] - times[0]);
-                Some((nine_digits(duration / steps), (duration - steps * dt).abs() < ROUNDING * dt))
+    /// These times, which must have the step `dt` (s), or the step that they have. Times of few digits are made even.
+    pub fn with_step(self, dt: f64) -> Result<Times, String> {
+        let (times, step) = match self {
+            Times::Every(step) if (step - dt).abs() <= SAME_STEP * dt => return Ok(self),
+            Times::Every(step) => return Err(format!("a sample every {step:?} s")),
+            Times::At(times) if times.len() < 2 => return Ok(Times::At(times)),
+            Times::At(times) => {
+                let step = nine_digits((times[times.len() - 1] - times[0]) / (times.len() - 1) as f64);
+                (times, step)
             }
-            Times::At(_) => None,
+        };
+        let even = |i: usize| times[0] + i as f64 * dt;
+        let off = (0..times.len()).map(|i| (times[i] - even(i)).abs()).fold(0.0, f64::max);
+        let is_whole = |unit: f64| times.iter().all(|time| (time / unit - (time / unit).round()).abs() < SAME_STEP);
+        let last_digit = (0..MOST_DECIMALS).map(|decimals| 0.1_f64.powi(decimals)).find(|unit| is_whole(*unit));
+        match off {
+            _ if off <= SAME_STEP * dt => Ok(Times::At(times)),
+            _ if off <= (0.5 + SAME_STEP) * last_digit.unwrap_or(0.0) || off < ROUNDING * dt => {
+                Ok(Times::At((0..times.len()).map(even).collect()))
+            }
+            _ if (step - dt).abs() > SAME_STEP * dt => Err(format!("a sample every {step:?} s")),
+            _ => Err(format!("a sample every {step:?} s on average, but up to {off:.3} s beside the even times")),
         }
     }
 }
 
 impl Parsed {
     /// Starts without samples.
-    pub fn new(format: Format, title: impl Into<String>, unit: Unit, unit_from: UnitFrom, times: Times) -> Parsed {
-        let source = Source { format, unit, unit_from, remarks: Vec::new() };
+    pub fn new(title: impl Into<String>, unit: Unit, unit_from: UnitFrom, times: Times) -> Parsed {
+        let source = Source { format: TABLE, unit, unit_from, remarks: Vec::new() };
         Parsed { title: title.into(), times, values: Vec::new(), source, last_line: 1 }
     }
 
@@ -59,7 +72,7 @@ impl Parsed {
         for line in without_blanks(lines) {
             let (line, values) = line?;
             for word in columns(values, width) {
-                let no_number = || bad(line, format!("the acceleration {} is not a number", quote(word)));
+                let no_number = || bad(line, format!("the acceleration {}", no_number(word)));
                 self.add(number(word).ok_or_else(no_number)?, line)?;
             }
         }
@@ -95,16 +108,13 @@ impl Parsed {
         Ok(())
     }
 
-    /// The record, once all of the file is read.
-    pub fn record(self, how: &Reading) -> Result<(Record, Source), BadLine> {
-        let Parsed { title, times, values: acceleration, source, last_line } = self;
-        if let (Some((stated, false)), Some(asked)) = (how.dt.and_then(|dt| times.have_step(dt)), how.dt) {
-            let problem = format!("the file states a sample every {stated:?} s, but the given step is {asked:?} s");
-            return Err(bad(last_line, problem));
-        }
-        let has_columns = matches!(source.format, Format::Table | Format::Cosmos | Format::Csmip);
-        if let (false, Some(asked)) = (has_columns, &how.column) {
-            return Err(bad(1, format!("the given column is {asked}, but a file of {} has none", source.format)));
+    /// The record, once all of the file in the layout `format` is read.
+    pub fn record(self, how: &Reading, format: &'static str) -> Result<(Record, Source), BadLine> {
+        let Parsed { title, mut times, values: acceleration, source, last_line } = self;
+        if let Some(asked) = how.dt {
+            let contradicted =
+                |found| bad(last_line, format!("the file states {found}, but the given step is {asked:?} s"));
+            times = times.with_step(asked).map_err(contradicted)?;
         }
         let count = acceleration.len();
         if count < 2 {
@@ -115,6 +125,6 @@ impl Parsed {
             Times::Every(dt) => (0..count).map(|i| i as f64 * dt).collect(),
         };
         let record = Record::from_samples(title, times, acceleration);
-        record.map(|record| (record, source)).map_err(|error| bad(last_line, error.to_string()))
+        record.map(|record| (record, Source { format, ..source })).map_err(|error| bad(last_line, error.to_string()))
     }
 }

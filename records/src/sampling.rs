@@ -13,27 +13,65 @@ pub(super) struct Sampling {
     pub dt: Option<f64>,
 }
 
+/// The words that state the step or, if they are words of a rate, its reciprocal.
+const STEPS: [(&str, bool); 12] = [
+    ("DT", false),
+    ("TIME STEP", false),
+    ("TIME INTERVAL", false),
+    ("SAMPLE INTERVAL", false),
+    ("SAMPLING INTERVAL", false),
+    ("SAMPLING PERIOD", false),
+    ("INTERVALO DE MUESTREO", false),
+    ("SAMPLERATE", true),
+    ("SAMPLE RATE", true),
+    ("SAMPLING RATE", true),
+    ("SAMPLING FREQ", true),
+    ("SAMPLING FREQUENCY", true),
+];
+
 impl Sampling {
-    /// Reads the line of this `number`: `NPTS=  4172, DT=   .0100 SEC, UNITS=G`, one of the two, or `4164    0.0100    NPTS,
-    /// DT`.
+    /// Reads the line of this `number`: `NPTS=  4172, DT=   .0100 SEC, UNITS=G`, one of the two, `4164    0.0100    NPTS, DT`,
+    /// `SAMPLING INTERVAL (sec) : 0.01` or `Sampling rate: 100 Hz`.
     pub fn of(number: usize, line: &str) -> Result<Sampling, BadLine> {
         let upper = line.to_ascii_uppercase().replace([',', ';'], " , ");
-        let words = upper.split(|letter: char| letter.is_whitespace() || "=:\"#%!".contains(letter));
+        let words = upper.split(|letter: char| letter.is_whitespace() || "=:\"#%!()[]".contains(letter));
         let words: Vec<_> = words.filter(|word| !word.is_empty()).collect();
         let after = |name: &str| {
-            let ([",", after @ ..] | after) = &words[words.iter().position(|word| *word == name)? + 1..];
+            let name: Vec<_> = name.split(' ').collect();
+            let start = words.windows(name.len()).position(|words| words == name)? + name.len();
+            let (unit, after) = match &words[start..] {
+                [unit, after @ ..] if is_unit(unit) => (*unit, after),
+                after => ("", after),
+            };
+            let ([",", after @ ..] | after) = after;
             let is_value = |letter: char| letter.is_ascii_digit() || "+-.".contains(letter);
-            after.first()?.starts_with(is_value).then_some(after)
+            after.first()?.starts_with(is_value).then_some((unit, after))
         };
         let without_commas: Vec<_> = words.iter().copied().filter(|word| *word != ",").collect();
         let (npts, dt) = match without_commas.as_slice() {
-            [npts, dt, "NPTS", "DT", ..] => (Some(*npts), Some(std::slice::from_ref(dt))),
-            _ => (after("NPTS").map(|words| words[0]), after("DT")),
+            [npts, dt, "NPTS", "DT", ..] => (Some(*npts), Some(step("DT", false, "", std::slice::from_ref(dt)))),
+            _ => {
+                let dt = STEPS.iter().find_map(|(name, is_rate)| Some((name, is_rate, after(name)?)));
+                let dt = dt.map(|(name, is_rate, (unit, words))| step(name, *is_rate, unit, words));
+                (after("NPTS").map(|(_, words)| words[0]), dt)
+            }
         };
-        let stated = npts.map(count).transpose().and_then(|npts| Ok((npts, dt.map(step).transpose()?)));
-        let (npts, dt) = stated.map_err(|problem| bad(number, problem))?;
-        Ok(Sampling { npts, dt })
+        let stated = npts.map(count).transpose().and_then(|npts| Ok(Sampling { npts, dt: dt.transpose()? }));
+        stated.map_err(|problem| bad(number, problem))
     }
+
+    /// What two lines state, which must not contradict each other.
+    pub fn and(self, other: Sampling, line: usize) -> Result<Sampling, BadLine> {
+        let is_same = |[a, b]: [Option<f64>; 2]| a.zip(b).is_none_or(|(a, b)| (a - b).abs() <= 1e-6 * a);
+        if is_same([self, other].map(|of| of.dt)) && is_same([self, other].map(|of| of.npts.map(|npts| npts as f64))) {
+            return Ok(Sampling { npts: self.npts.or(other.npts), dt: self.dt.or(other.dt) });
+        }
+        Err(bad(line, "another line before it states another step or number of samples: correct one of them"))
+    }
+}
+
+fn is_unit(word: &str) -> bool {
+    matches!(word, "HZ" | "SPS") || TimeUnit::named(&word.to_lowercase()).is_some()
 }
 
 fn count(word: &str) -> Result<usize, String> {
@@ -43,15 +81,20 @@ fn count(word: &str) -> Result<usize, String> {
     }
 }
 
-/// The step (s) that `words` begin with: `.0100`, `0.01s`, `10 MSEC`. A word after it is its unit, unless a comma is between.
-fn step(words: &[&str]) -> Result<f64, String> {
-    let (word, next) = (words[0], words.get(1).filter(|next| !matches!(**next, "," | "NPTS")));
+/// The step (s) that `words` after `name` begin with: `.0100`, `0.01s`, `10 MSEC`, `100 Hz`. A word after it is its unit, unless a
+/// comma is between; else its unit is the `unit` before it; else seconds, or Hz of a rate of 1 or more.
+fn step(name: &str, is_rate: bool, unit: &str, words: &[&str]) -> Result<f64, String> {
+    let is_own = |next: &&&str| !matches!(**next, "," | "NPTS") && (name == "DT" || is_unit(next));
+    let (word, next) = (words[0], words.get(1).filter(is_own));
     let stated = next.map_or(word.to_owned(), |next| format!("{word} {next}"));
     let digits = word.trim_end_matches(char::is_alphabetic);
-    let unit = match stated[digits.len()..].trim_matches(|letter: char| !letter.is_alphabetic()) {
-        "" => Some(TimeUnit::Second),
-        unit => TimeUnit::named(&unit.to_lowercase()),
-    };
-    let dt = number(digits).zip(unit).map(|(dt, unit)| dt * unit.in_seconds()).filter(|dt| *dt > 0.0);
-    dt.ok_or_else(|| format!("DT = {} must be a number of seconds greater than 0", quote(&stated)))
+    let own = stated[digits.len()..].trim_matches(|letter: char| !letter.is_alphabetic());
+    let dt = number(digits).and_then(|value| match if own.is_empty() { unit } else { own } {
+        "" if !is_rate => Some(value),
+        "HZ" | "SPS" => Some(1.0 / value),
+        "" if value >= 1.0 => Some(1.0 / value),
+        unit => TimeUnit::named(&unit.to_lowercase()).map(|unit| value * unit.in_seconds()),
+    });
+    let needed = if is_rate { "a rate in Hz" } else { "a number of seconds greater than 0" };
+    dt.filter(|dt| *dt > 0.0).ok_or_else(|| format!("{name} = {} must be {needed}", quote(&stated)))
 }

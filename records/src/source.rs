@@ -1,7 +1,7 @@
 //! Options for reading a record's file, and the findings and assumptions about the file.
 
 use super::text::quote;
-use super::unit::{Stated, mentions_unit};
+use super::unit::Stated;
 use super::{BadLine, Record, Remedy, Unit, bad, doubts};
 use rocking::digits::short;
 use serde::{Deserialize, Deserializer, de::Error};
@@ -10,7 +10,7 @@ use std::fmt;
 /// Options of the user for facts that a file does not state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
-    /// Unit of the accelerations; must be the unit that the file states, if the file clearly states one.
+    /// Unit of the accelerations; must be the unit that a published file states, and overrides the heading of a table.
     pub unit: Option<Unit>,
     /// Time between two samples of a file without times, s.
     pub dt: Option<f64>,
@@ -33,28 +33,11 @@ pub enum Column {
     Heading(String),
 }
 
-/// A layout of files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Acceleration records of PEER.
-    At2,
-    /// Columns of text.
-    Table,
-    /// ASCII of the Engineering Strong-Motion database and of ITACA.
-    Esm,
-    /// ASCII of K-NET and KiK-net.
-    KNet,
-    /// COSMOS strong-motion data, volumes 1 and 2.
-    Cosmos,
-    /// Corrected accelerograms of CSMIP, volume 2.
-    Csmip,
-}
-
 /// Origin of a record: statements of its file, and assumptions about missing statements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
-    /// Its layout.
-    pub format: Format,
+    /// Name of its layout: one of [`FORMATS`](crate::FORMATS), or `table`.
+    pub format: &'static str,
     /// Unit of the accelerations in the file.
     pub unit: Unit,
     /// Origin of the unit.
@@ -69,7 +52,7 @@ impl Source {
     pub fn findings(&self, name: &str, record: &Record, g: f64) -> String {
         let unit_from = match self.unit_from {
             UnitFrom::File => "as the file states",
-            UnitFrom::User => "as given",
+            UnitFrom::User | UnitFrom::Overridden(_) => "as given",
             UnitFrom::Assumed => "assumed",
         };
         let remarks: String = self.remarks.iter().map(|remark| format!(", {remark}")).collect();
@@ -78,10 +61,17 @@ impl Source {
         format!("{name}: {format}{remarks}; {unit} {unit_from}; {samples} samples, {steps}, peak {peak} g")
     }
 
-    /// A warning of a unit that is assumed, with the `remedy`.
+    /// A warning of a unit that is assumed, with the `remedy`, or that a heading contradicts.
     pub fn assumption(&self, remedy: &str) -> Option<String> {
-        let assumed = || format!("the file states no unit of acceleration: {} is assumed; {remedy}", self.unit);
-        (self.unit_from == UnitFrom::Assumed).then(assumed)
+        match self.unit_from {
+            UnitFrom::Assumed => {
+                Some(format!("the file states no unit of acceleration: {} is assumed; {remedy}", self.unit))
+            }
+            UnitFrom::Overridden(unit) => {
+                Some(format!("the heading states {unit}, and the given unit is {}", self.unit))
+            }
+            UnitFrom::File | UnitFrom::User => None,
+        }
     }
 
     /// The [findings](Source::findings) about a record, then a sentence for an [assumption](Source::assumption) and for each
@@ -108,6 +98,8 @@ pub enum UnitFrom {
     File,
     /// The user, if the file states no unit.
     User,
+    /// The user, although the heading of a table states this unit.
+    Overridden(Unit),
     /// An assumption, if neither states a unit.
     Assumed,
 }
@@ -130,6 +122,16 @@ impl From<&str> for Column {
     }
 }
 
+impl Column {
+    /// The text by which the column was asked for.
+    pub fn as_asked(&self) -> String {
+        match self {
+            Column::Heading(heading) => heading.clone(),
+            Column::All | Column::Number(_) => self.to_string(),
+        }
+    }
+}
+
 impl fmt::Display for Column {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         match self {
@@ -140,43 +142,31 @@ impl fmt::Display for Column {
     }
 }
 
-impl fmt::Display for Format {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        out.write_str(match self {
-            Format::At2 => "PEER AT2",
-            Format::Table => "table",
-            Format::Esm => "ESM ASCII",
-            Format::KNet => "K-NET ASCII",
-            Format::Cosmos => "COSMOS",
-            Format::Csmip => "CSMIP V2",
-        })
-    }
+/// The unit that a published file states on `line`; the user must not contradict it.
+pub(super) fn of_file(stated: &str, asked: Option<Unit>, line: usize) -> Result<(Unit, UnitFrom), BadLine> {
+    let problem = match (Unit::named(stated), asked) {
+        (Some(unit), Some(asked)) if unit != asked => {
+            format!("the file states accelerations in {unit}, but the given unit is {asked}")
+        }
+        (Some(unit), _) => return Ok((unit, UnitFrom::File)),
+        (None, _) => {
+            let known = Unit::NAMES.map(|(name, _)| name).join(", ");
+            format!("the accelerations are in {}, which is none of {known}", quote(stated))
+        }
+    };
+    Err(bad(line, problem))
 }
 
-/// Decides the unit: the unit that the file clearly states on `line`, else the unit of the user, else m/s². The user must not
-/// contradict a clear statement, nor a unit of something else.
-pub(super) fn decide(stated: &Stated, asked: Option<Unit>, line: usize) -> Result<(Unit, UnitFrom), BadLine> {
-    let contradicted = |stated: &dyn fmt::Display, asked: Unit| {
-        Err(bad(line, format!("the file states accelerations in {stated}, but the given unit is {asked}")))
-    };
+/// The unit of the user, else the one that the headings of a table state, the last on `line`, else m/s².
+pub(super) fn of_heading(stated: Stated, asked: Option<Unit>, line: usize) -> Result<(Unit, UnitFrom), BadLine> {
     match (stated, asked) {
-        (Stated::Other(text), None) if mentions_unit(text) => {
-            let problem = format!("{} does not say clearly in which unit the accelerations are", quote(text));
-            Err(bad(line, problem).remedied_by(Remedy::Unit))
-        }
-        (Stated::Other(text), Some(asked)) if mentions_unit(text) => Ok((asked, UnitFrom::User)),
-        (Stated::Unit(unit), Some(asked)) if *unit != asked => contradicted(unit, asked),
-        (Stated::Unit(unit), _) => Ok((*unit, UnitFrom::File)),
-        (Stated::Other(other), Some(asked)) => contradicted(&quote(other), asked),
-        (Stated::Nothing | Stated::Multiplied(_), Some(asked)) => Ok((asked, UnitFrom::User)),
-        (Stated::Multiplied(heading), None) => {
-            let problem = format!("{} has a factor: the unit of the accelerations is not clear", quote(heading));
-            Err(bad(line, problem).remedied_by(Remedy::Unit))
-        }
+        (Stated::Unit(unit), Some(asked)) if unit != asked => Ok((asked, UnitFrom::Overridden(unit))),
+        (Stated::Unit(unit), _) => Ok((unit, UnitFrom::File)),
+        (_, Some(asked)) => Ok((asked, UnitFrom::User)),
         (Stated::Nothing, None) => Ok((Unit::MetrePerSecondSquared, UnitFrom::Assumed)),
-        (Stated::Other(other), None) => {
-            let known = Unit::NAMES.map(|(name, _)| name).join(", ");
-            Err(bad(line, format!("the accelerations are in {}, which is none of {known}", quote(other))))
+        (Stated::Unclear(text), None) => {
+            let problem = format!("{} does not say clearly in which unit the accelerations are", quote(&text));
+            Err(bad(line, problem).remedied_by(Remedy::Unit))
         }
     }
 }

@@ -7,9 +7,9 @@
 use super::fields::{Layout, cells, is_numbers};
 use super::parsed::{Parsed, Times};
 use super::sampling::Sampling;
-use super::text::{is_number, number, numbered, quote, without_blanks};
-use super::unit::{Stated, TimeUnit, mentions_unit};
-use super::{BadLine, Column, Format, Reading, Remedy, bad, source::decide};
+use super::text::{is_comment, is_number, no_number, number, numbered, quote, without_blanks};
+use super::unit::{Stated, TimeUnit, is_prose, mentions_unit};
+use super::{BadLine, Column, Reading, Remedy, bad, source::of_heading};
 
 /// The numbers of a file, and the text before them.
 struct Table<'a> {
@@ -24,8 +24,10 @@ struct Table<'a> {
     first: usize,
     last: usize,
     layout: Layout,
-    /// Number of columns of the first line.
+    /// Number of columns of the first line; 2 if each line has several times, each with its sample.
     count: usize,
+    /// Times on the first line, if the lines have nothing but times, each with its sample.
+    pairs: Option<usize>,
     /// The numbers of all lines.
     numbers: Vec<f64>,
     /// The first line with another number of columns.
@@ -40,21 +42,28 @@ struct Samples {
     value: Option<usize>,
 }
 
-/// The samples of a table as `how` says; `#` begins a comment line.
+/// The samples of a table as `how` says; `#`, `%`, `!` or `/&` begins a comment line.
 pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     let table = Table::read(text)?;
     let Samples { time, value } = table.samples(how)?;
     let (stated, line) = table.stated_unit(value, how)?;
-    let (unit, unit_from) = decide(&stated, how.unit, line)?;
-    let times = table.times(time, how)?;
-    if let Some((stated, (step, false))) = table.stated.dt.and_then(|dt| Some((dt, times.have_step(dt)?))) {
-        let problem =
-            format!("DT states a sample every {stated:?} s, and the times have {step:?} s: correct one of them");
-        return Err(bad(table.first, problem));
+    let (unit, unit_from) = of_heading(stated, how.unit, line)?;
+    let mut times = table.times(time, how)?;
+    if let Some(dt) = table.stated.dt {
+        let contradicted = |found| {
+            bad(
+                table.first,
+                format!("DT states a sample every {dt:?} s, and the times have {found}: correct one of them"),
+            )
+        };
+        times = times.with_step(dt).map_err(contradicted)?;
     }
-    let mut parsed = Parsed::new(Format::Table, "", unit, unit_from, times);
+    let mut parsed = Parsed::new("", unit, unit_from, times);
     parsed.remark(table.layout.to_string());
     match value {
+        Some(_) if table.pairs > Some(1) => {
+            parsed.remark(format!("{} times a line, each with its sample", table.pairs.unwrap_or_default()));
+        }
         Some(value) => parsed.remark(format!("column {}{}", value + 1, table.name(value))),
         None if table.count > 1 => parsed.remark(format!("{} samples a line, one after the other", table.count)),
         None => {}
@@ -73,22 +82,38 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
 }
 
 impl<'a> Table<'a> {
+    /// The table in `text`, whose first line of numbers may state the number of samples and the step instead.
     fn read(text: &'a str) -> Result<Table<'a>, BadLine> {
-        let is_sample = |(_, line): &(usize, &str)| !is_comment(line) && is_numbers(line);
+        let mut table = Table::after(text, None)?;
+        if let Some(counts) = table.counts() {
+            table = Table::after(text, Some((table.first, counts)))?;
+        }
+        table.pairs = table.pairs();
+        if table.pairs.is_some() {
+            (table.count, table.uneven) = (2, None);
+        }
+        Ok(table)
+    }
+
+    /// The table after the line `counts`, if any, which is counted from 1.
+    fn after(text: &'a str, counts: Option<(usize, Sampling)>) -> Result<Table<'a>, BadLine> {
+        let start = counts.map_or(0, |(line, _)| line);
+        let is_sample = |(line, text): &(usize, &str)| *line > start && !is_comment(text) && is_numbers(text);
         let Some((first, sample)) = numbered(text).find(is_sample) else {
             return Err(without_samples(text));
         };
         let samples = || numbered(text).skip(first - 1).filter(|(_, line)| !is_comment(line));
         let layout = Layout::of(|| samples().map(|(_, line)| line));
         let count = layout.fields(sample).len();
-        let (mut before, mut headings, mut stated) = (Vec::new(), Vec::new(), Sampling::default());
+        let (mut before, mut headings) = (Vec::new(), Vec::new());
+        let mut stated = counts.map_or(Sampling::default(), |(_, counts)| counts);
         let is_damaged = |line: &str| {
             let fields = layout.fields(line);
             !is_comment(line) && fields.len() == count && is_number(fields[0])
         };
         for (line, text) in numbered(text).take(first - 1).filter(|(_, line)| !line.trim().is_empty()) {
             before.push((line, text));
-            match Sampling::of(line, text)? {
+            match if line == start { stated } else { Sampling::of(line, text)? } {
                 Sampling { npts: None, dt: None } if is_damaged(text) => {
                     let problem =
                         format!("{} is neither numbers nor text: correct it, or write # before it", quote(text));
@@ -97,11 +122,11 @@ impl<'a> Table<'a> {
                 Sampling { npts: None, dt: None } if count > 1 => {
                     headings.extend(cells(text, count).map(|cells| (line, cells)))
                 }
-                of_line => stated = Sampling { npts: stated.npts.or(of_line.npts), dt: stated.dt.or(of_line.dt) },
+                of_line => stated = stated.and(of_line, line)?,
             }
         }
-        let (last, numbers, uneven) = (first, Vec::new(), None);
-        let mut table = Table { text, before, headings, stated, first, last, layout, count, numbers, uneven };
+        let (last, numbers, pairs, uneven) = (first, Vec::new(), None, None);
+        let mut table = Table { text, before, headings, stated, first, last, layout, count, pairs, numbers, uneven };
         for line in without_blanks(samples()) {
             let (line, sample) = line?;
             let fields = layout.fields(sample);
@@ -113,10 +138,52 @@ impl<'a> Table<'a> {
             }
             for (column, field) in fields.into_iter().enumerate() {
                 let number = number(&layout.plain(field));
-                table.numbers.push(number.ok_or_else(|| bad(line, table.no_number(column, field)))?);
+                let remedy = if sample.contains(char::is_numeric) { "" } else { ": write # before a line of text" };
+                let no_number = || bad(line, table.no_number(column, field) + remedy);
+                table.numbers.push(number.ok_or_else(no_number)?);
             }
         }
         Ok(table)
+    }
+
+    /// Number of samples, step or both that the first line states: they agree with the lines after it, and are no sample.
+    fn counts(&self) -> Option<Sampling> {
+        let (first, after) = self.numbers.split_at(self.count);
+        let width = if self.uneven.is_some() { self.layout.fields(self.line(1)?.1).len() } else { self.count };
+        let is_count = |npts: f64| {
+            let is_all = |columns: usize| npts * columns as f64 == after.len() as f64;
+            npts > 1.0 && (is_all(1) || is_all(width))
+        };
+        let is_step = |dt: f64| width > 1 && after.get(width).is_some_and(|next| is_near(next - after[0], dt));
+        let is_rising = || self.uneven.is_none() && rises(self.column(0)) && !is_step(first[1]);
+        match *first {
+            [npts] if self.uneven.is_some() && is_count(npts) => Some(Sampling { npts: Some(npts as usize), dt: None }),
+            [dt] if self.uneven.is_some() && is_step(dt) => Some(Sampling { npts: None, dt: Some(dt) }),
+            [npts, dt] if dt > 0.0 && is_count(npts) && !is_rising() => {
+                Some(Sampling { npts: Some(npts as usize), dt: Some(dt) })
+            }
+            _ => None,
+        }
+    }
+
+    /// How many times the first line has, if every other number is a time: they rise, by even steps if they are few.
+    fn pairs(&self) -> Option<usize> {
+        const MANY: usize = 20;
+        let times = || self.numbers.iter().step_by(2).copied();
+        let is_short = |uneven: &BadLine| uneven.line == self.last && self.numbers.len() % 2 == 0;
+        let is_time = |column| self.headings_of(column).all(|(_, heading)| TimeUnit::of(heading).is_some());
+        let is_known = self.count.is_multiple_of(2)
+            && self.uneven.as_ref().is_none_or(is_short)
+            && (0..self.count).step_by(2).all(is_time)
+            && rises(times());
+        let (count, step) = (times().count(), self.numbers.get(2)? - self.numbers[0]);
+        let is_even = || times().zip(times().skip(1)).all(|(before, at)| is_near(at - before, step));
+        (is_known && count > 3 && (count > MANY || is_even())).then_some(self.count / 2)
+    }
+
+    /// The line of samples after so many others.
+    fn line(&self, after: usize) -> Option<(usize, &'a str)> {
+        numbered(self.text).skip(self.first - 1).filter(|(_, line)| !is_comment(line)).nth(after)
     }
 
     fn no_number(&self, column: usize, field: &str) -> String {
@@ -126,11 +193,11 @@ impl<'a> Table<'a> {
             1 | 2 => "the acceleration".to_owned(),
             _ => format!("in column {},", column + 1),
         };
-        format!("{what} {} is not a number", quote(field))
+        format!("{what} {}", no_number(field))
     }
 
     /// The numbers of the column, where all lines have as many.
-    fn column(&self, column: usize) -> impl Iterator<Item = f64> {
+    fn column(&self, column: usize) -> impl Iterator<Item = f64> + Clone {
         self.numbers.iter().skip(column).step_by(self.count).copied()
     }
 
@@ -144,8 +211,7 @@ impl<'a> Table<'a> {
         let mut steps = self.column(column).zip(self.column(column).skip(1));
         let Some(row) = steps.position(|(before, at)| !is_right(at - before)) else { return Ok(()) };
         let [before, at] = [row, row + 1].map(|row| self.numbers[row * self.count + column]);
-        let mut samples = numbered(self.text).skip(self.first - 1).filter(|(_, line)| !is_comment(line));
-        let line = samples.nth(row + 1).map_or(self.last, |(line, _)| line);
+        let line = self.line(row + 1).map_or(self.last, |(line, _)| line);
         Err(bad(line, format!("column {} cannot {what}: {at:?} comes after {before:?}", column + 1)))
     }
 
@@ -186,9 +252,9 @@ impl<'a> Table<'a> {
             Some(column) => *column == Column::All,
             None => self.stated.npts == Some(self.numbers.len()),
         };
-        let are_all = are_all && self.headed_time().is_none();
+        let are_all = are_all && self.headed_time().is_none() && self.pairs.is_none();
         if are_all || self.count == 1 && self.uneven.is_none() {
-            self.check_count()?;
+            self.check_count(how)?;
             return Ok(Samples { time: None, value: None });
         }
         if let Some(uneven) = &self.uneven {
@@ -222,15 +288,18 @@ impl<'a> Table<'a> {
         Ok(Samples { time, value: Some(value) })
     }
 
-    /// Refuses a bare count of the samples, with or without the step, before samples alone.
-    fn check_count(&self) -> Result<(), BadLine> {
-        let npts = self.numbers[0];
-        let is_count = npts > 1.0 && [npts + 1.0, npts + 2.0].contains(&(self.numbers.len() as f64));
-        if self.stated.npts.is_some() || !is_count {
-            return Ok(());
-        }
-        let problem = format!("{npts} is the number of samples after it: write NPTS= {npts}, and a step as DT= 0.01");
-        Err(bad(self.first, problem))
+    /// Refuses a bare count of the samples or a bare step before samples alone.
+    fn check_count(&self, how: &Reading) -> Result<(), BadLine> {
+        let (first, count) = (self.numbers[0], self.numbers.len());
+        let is_count = first > 1.0 && [first + 1.0, first + 2.0].contains(&(count as f64));
+        let (what, name) = match () {
+            () if self.stated.npts.is_some() => return Ok(()),
+            () if is_count => ("number of samples after it", "NPTS="),
+            () if self.count == 1 && how.dt == Some(first) => ("given step", "DT="),
+            () => return Ok(()),
+        };
+        let remedy = format!("in a line of its own, or NPTS= {count} before it if it is a sample");
+        Err(bad(self.first, format!("{first} is the {what}: write {name} {first} {remedy}")))
     }
 
     /// The instants of the samples, which are in the column `time`, if any.
@@ -267,7 +336,7 @@ impl<'a> Table<'a> {
                 (None, None) => refused(asked, "there are no headings".into()),
                 (None, Some((_, names))) => refused(asked, format!("the headings are {}", listed(names))),
             },
-            Some(asked @ Column::All) => refused(asked, "a heading says that one has times".into()),
+            Some(asked @ Column::All) => refused(asked, "one has times".into()),
             None => Ok(None),
         }
     }
@@ -284,17 +353,25 @@ impl<'a> Table<'a> {
     /// The unit that text before the data states for the column `value`, or for all numbers, and the number of its line. Refuses
     /// a unit in another place unless `how` has the unit: it may be the unit of a peak.
     fn stated_unit(&self, value: Option<usize>, how: &Reading) -> Result<(Stated, usize), BadLine> {
-        let texts = match value {
+        let texts: Vec<_> = match value {
             Some(value) => self.headings_of(value).collect(),
-            None => self.before.clone(),
+            None => self.before.iter().filter(|(_, text)| !is_numbers(text)).flat_map(statements).collect(),
         };
         if let Some((line, other)) = texts.iter().find(|(_, text)| is_no_acceleration(text)) {
             let place = value.map_or("a line before the data".into(), |value| format!("column {}", value + 1));
             return Err(bad(*line, format!("{place} is {}: accelerations are needed", quote(other))));
         }
-        let stated = texts.into_iter().map(|(line, text)| (Stated::of(text), line));
-        let stated = stated.filter(|(stated, _)| *stated != Stated::Nothing);
-        let stated = stated.min_by_key(|(stated, _)| !matches!(stated, Stated::Multiplied(_))); // else the first
+        // The lines that head columns have one for times; other lines may be titles.
+        let heads = |(_, cells): &&(usize, Vec<&str>)| cells.iter().any(|cell| TimeUnit::of(cell).is_some());
+        let heads: Vec<_> = self.headings.iter().filter(heads).map(|(line, _)| *line).collect();
+        let stated = |(line, text): (usize, &str)| match Stated::of(text) {
+            Stated::Unclear(_) if !heads.contains(&line) && is_prose(text) => None,
+            Stated::Nothing => None,
+            stated => Some((stated, line)),
+        };
+        let stated: Vec<_> = texts.into_iter().filter_map(stated).collect();
+        let other = stated.iter().position(|(unit, _)| *unit != stated[0].0 || matches!(unit, Stated::Unclear(_)));
+        let stated = stated.into_iter().nth(other.unwrap_or_default()); // an unclear one, or the first
         match (stated, self.before.iter().find(|(_, text)| mentions_unit(text))) {
             (None, Some((line, text))) if how.unit.is_none() => {
                 let text = quote(text);
@@ -305,6 +382,12 @@ impl<'a> Table<'a> {
             (stated, _) => Ok(stated.unwrap_or((Stated::Nothing, self.first))),
         }
     }
+}
+
+/// The statements of a line before samples alone: `NPTS= 3, DT= .01 SEC, UNITS=G` has three.
+fn statements<'a>(&(line, text): &(usize, &'a str)) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
+    let has_several = Sampling::of(line, text).is_ok_and(|stated| stated != Sampling::default());
+    text.split(move |letter| has_several && letter == ',').map(move |statement| (line, statement))
 }
 
 /// Why a file has no samples.
@@ -327,6 +410,16 @@ fn is_no_acceleration(text: &str) -> bool {
         && !lower.contains("acc")
 }
 
+fn rises(numbers: impl Iterator<Item = f64> + Clone) -> bool {
+    numbers.clone().zip(numbers.skip(1)).all(|(before, at)| at > before)
+}
+
+/// Whether a step of times, which may have few digits, is `step`.
+fn is_near(found: f64, step: f64) -> bool {
+    const ROUNDED: f64 = 0.1;
+    (found - step).abs() < ROUNDED * step
+}
+
 /// The first of `headings`, as many as a message can show.
 fn listed(headings: &[&str]) -> String {
     const SHOWN: usize = 8;
@@ -337,17 +430,13 @@ fn listed(headings: &[&str]) -> String {
     names
 }
 
-fn is_comment(line: &str) -> bool {
-    line.trim_start().starts_with('#')
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{Record, Source, Unit, UnitFrom};
 
     fn read(text: &str, how: &Reading) -> Result<(Record, Source), BadLine> {
-        parse(text, how)?.record(how)
+        parse(text, how)?.record(how, "table")
     }
 
     fn problem(text: &str, how: &Reading) -> String {
@@ -403,11 +492,13 @@ mod tests {
         }
         let asked = Reading { unit: Some(Unit::G), ..AS_IT_IS };
         assert_eq!(read("t,a (north)\n0,1\n.5,2\n", &asked).unwrap().1.unit, Unit::G);
-        let unknown = "t (s),a (km/s2)\n0,1\n1,2\n";
-        let expected =
-            "1: the accelerations are in \"km/s2\", which is none of g, m/s2, cm/s2, gal, mm/s2, in/s2, ft/s2, mg, %g";
-        assert_eq!(problem(unknown, &AS_IT_IS), expected);
-        assert!(problem(unknown, &asked).ends_with("\"km/s2\", but the given unit is g"));
+        for (heading, from) in
+            [("a (km/s2)", UnitFrom::User), ("acc (cm/seg2)", UnitFrom::User), ("a (gal)", UnitFrom::Overridden(cm))]
+        {
+            let source = read(&format!("t (s),{heading}\n0,1\n1,2\n"), &asked).unwrap().1;
+            assert_eq!((source.unit, source.unit_from), (Unit::G, from), "{heading}");
+            assert_eq!(source.assumption("").is_some(), from != UnitFrom::User, "{heading}");
+        }
     }
 
     #[test]
@@ -465,11 +556,92 @@ mod tests {
         assert_eq!(read(cut, &all).unwrap_err().remedy, Some(Remedy::IgnoreCount));
     }
 
+    /// Each heading states the step, and the number of samples or nothing.
+    #[test]
+    fn a_first_line_of_numbers_may_state_count_and_step() {
+        for (text, column) in [
+            ("4 .01\n0 .1\n.01 .2\n.02 .3\n.03 .4\n", Column::Number(2)),
+            (".01\n0 .1\n.01 .2\n.02 .3\n.03 .4\n", Column::Number(2)),
+            ("4\n0 .1\n.01 .2\n.02 .3\n.03 .4\n", Column::Number(2)),
+            ("4 .01\n5 .1\n6 .2\n2 .3\n1 .4\n", Column::Number(2)),
+            ("4 .01\n.1 .2 .3\n.4\n", Column::All),
+            ("4 .01\n.1\n.2\n.3\n.4\n", Column::All),
+            ("0 .1 .01 .2\n.02 .3 .03 .4\n", Column::Number(2)),
+            ("t a t a t a\n0 .1 .01 .2 .02 .3\n.03 .4\n", Column::Number(2)),
+        ] {
+            for how in [AS_IT_IS, Reading { column: Some(column), dt: Some(0.01), ..AS_IT_IS }] {
+                let Ok((record, _)) = read(text, &how) else {
+                    assert!(how.dt.is_none(), "{text}: {}", problem(text, &how));
+                    continue;
+                };
+                assert_eq!(
+                    (record.times(), record.acceleration()),
+                    (&[0.0, 0.01, 0.02, 0.03][..], &[0.1, 0.2, 0.3, 0.4][..]),
+                    "{text}"
+                );
+            }
+        }
+        // Four samples, of which the first is at 4 s.
+        assert_eq!(read("4 .01\n5 .1\n6 .2\n7 .3\n8.5 .4\n", &AS_IT_IS).unwrap().0.times().len(), 5);
+    }
+
+    /// 2.5 ms, printed to 1 ms.
+    #[test]
+    fn times_of_few_digits_are_made_even_by_a_given_step() {
+        let [time, a] = [|i: usize| (2.5 * i as f64).round() / 1e3, |i: usize| i as f64];
+        let rows: String = (0..40).map(|i| format!("{},{}\n", time(i), a(i))).collect();
+        let (rounded, _) = read(&rows, &AS_IT_IS).unwrap();
+        let doubt = "steps of 0.002 s and 0.003 s alternate: are the times rounded? Give the right step";
+        assert_eq!(crate::doubts(&rounded, 9.81), [doubt]);
+        for (text, dt) in [(rows.clone(), Some(0.0025)), ("DT=0.0025\n".to_owned() + &rows, None)] {
+            let (even, _) = read(&text, &Reading { dt, ..AS_IT_IS }).unwrap();
+            assert_eq!(even.times()[39], 39.0 * 0.0025);
+            assert!(crate::doubts(&even, 9.81).is_empty());
+        }
+        let refused = problem(&rows, &Reading { dt: Some(0.003), ..AS_IT_IS });
+        assert!(refused.ends_with("a sample every 0.00251282051 s, but the given step is 0.003 s"), "{refused}");
+    }
+
+    #[test]
+    fn numbers_and_lines_of_other_programs_are_read_or_refused_with_what_to_type() {
+        for text in [
+            "0 1.25E-06-5.5E-06\n.01 2.5E-06-1.5E-06\n! end\n",
+            "0 1.25E-06 \u{2212}5.5E-06\r\r\n.01 2.5E-06 -1.5E-06\r\r\n/&\r\r\n",
+            "\"0,0\",\"1,25E-06\",\"-5,5E-06\"\n\"0,01\",\"2,5E-06\",\"-1,5E-06\"\n",
+        ] {
+            let (record, _) = read(
+                &crate::text::decode(text.as_bytes()).unwrap(),
+                &Reading { column: Some(Column::Number(3)), ..AS_IT_IS },
+            )
+            .unwrap();
+            assert_eq!((record.times(), record.acceleration()), (&[0.0, 0.01][..], &[-5.5e-6, -1.5e-6][..]), "{text}");
+        }
+        assert_eq!(
+            problem("0 1.23-4\n1 2\n", &AS_IT_IS),
+            "1: \"0 1.23-4\" is neither numbers nor text: correct it, or write # before it"
+        );
+        assert_eq!(
+            problem("0 1\n1 1.23-4\n", &AS_IT_IS),
+            "2: the acceleration \"1.23-4\" is not a number: write 1.23E-4 or 1.23 -4"
+        );
+        assert_eq!(
+            problem("0 1\n1 2\nend data\n", &AS_IT_IS),
+            "3: the time \"end\" is not a number: write # before a line of text"
+        );
+    }
+
     #[test]
     fn a_stated_step_is_read_whatever_follows_it() {
-        for line in
-            ["DT=0.01 s", "NPTS= 3, DT= .01 SEC, UNITS=G", "dt = 0.01s, npts = 3 (of 3)", "NPTS= 3, DT= 10 MSEC."]
-        {
+        for line in [
+            "DT=0.01 s",
+            "NPTS= 3, DT= .01 SEC, UNITS=G",
+            "dt = 0.01s, npts = 3 (of 3)",
+            "NPTS= 3, DT= 10 MSEC.",
+            "SAMPLING INTERVAL (sec) : 0.01",
+            "Sampling rate: 100 Hz",
+            "#SampleRate(Hz): 100",
+            "Sampling interval 10 ms, raw",
+        ] {
             let text = format!("{line}\n1\n2\n4\n");
             assert_eq!(read(&text, &AS_IT_IS).unwrap().0.times(), [0.0, 0.01, 0.02], "{line}");
             let refused = problem(&text, &Reading { dt: Some(0.02), ..AS_IT_IS });
@@ -570,7 +742,7 @@ mod tests {
             ("DT=0.005 min\n1\n2\n", "1: DT = \"0.005 MIN\" must be a number of seconds greater than 0"),
             (
                 "DT=0.02\nt,a\n0,1\n.01,2\n.02,3\n",
-                "3: DT states a sample every 0.02 s, and the times have 0.01 s: correct one of them",
+                "3: DT states a sample every 0.02 s, and the times have a sample every 0.01 s: correct one of them",
             ),
             ("NPTS=4\nt,a\n0,1\n.5,2\n", "4: NPTS states 4 samples, and the file has 2"),
             ("t (min),a (g)\n0,1\n.5,2\n", "1: column 1 is \"t (min)\", which is no time in s or ms"),
@@ -580,9 +752,16 @@ mod tests {
         }
         let all = Reading { column: Some(Column::All), dt: Some(0.01), ..AS_IT_IS };
         for (text, expected) in [
-            ("4\n1\n2\n3\n2\n", "1: 4 is the number of samples after it: write NPTS= 4, and a step as DT= 0.01"),
-            ("5 .01\n1 2 3\n2 1\n", "1: 5 is the number of samples after it: write NPTS= 5, and a step as DT= 0.01"),
-            ("t,a\n0,1\n.5,2\n", "2: the given column is all, but a heading says that one has times"),
+            (
+                "4\n1\n2\n3\n2\n",
+                "1: 4 is the number of samples after it: write NPTS= 4 in a line of its own, or NPTS= 5 before it if it is a sample",
+            ),
+            (
+                ".01\n1\n2\n",
+                "1: 0.01 is the given step: write DT= 0.01 in a line of its own, or NPTS= 3 before it if it is a sample",
+            ),
+            ("t,a\n0,1\n.5,2\n", "2: the given column is all, but one has times"),
+            ("0 .1\n.01 .2\n.02 .3\n.03 .1\n", "1: the given column is all, but one has times"),
         ] {
             assert_eq!(problem(text, &all), expected, "{text}");
         }

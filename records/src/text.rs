@@ -6,7 +6,10 @@ use std::borrow::Cow;
 /// End mark of DOS, after the last line.
 const END_OF_DOS: char = '\x1a';
 
-/// The text of a file in UTF-8, UTF-16 or Latin-1, its lines ended by `\n` alone. UTF-16 without its mark begins with two
+/// The minus of typesetters.
+const MINUS: char = '\u{2212}';
+
+/// The text of a file in UTF-8, UTF-16 or Latin-1, its lines ended by `\n` alone, its minus that of the keyboard. UTF-16 without its mark begins with two
 /// letters of ASCII.
 pub(super) fn decode(bytes: &[u8]) -> Result<Cow<'_, str>, BadLine> {
     let utf_16 = |order: fn([u8; 2]) -> u16, bytes: &[u8]| {
@@ -34,7 +37,12 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Cow<'_, str>, BadLine> {
         let line = 1 + text[..index].matches('\n').count();
         return Err(bad(line, "a byte of 0, which no text has: save it as text in UTF-8"));
     }
-    Ok(if text.contains('\r') { Cow::Owned(text.replace("\r\n", "\n").replace('\r', "\n")) } else { text })
+    Ok(match text.contains(['\r', MINUS]) {
+        true => Cow::Owned(
+            ["\r\r\n", "\r\n", "\r"].iter().fold(text.replace(MINUS, "-"), |text, end| text.replace(end, "\n")),
+        ),
+        false => text,
+    })
 }
 
 /// The lines of `text` with their numbers.
@@ -42,12 +50,17 @@ pub(super) fn numbered(text: &str) -> impl Iterator<Item = (usize, &str)> {
     (1..).zip(text.lines())
 }
 
-/// The lines of data from `lines`, of which none is blank but at the end, where something may have been lost.
+/// Whether a mark says that `line` is a comment.
+pub(super) fn is_comment(line: &str) -> bool {
+    line.trim_start().starts_with(['#', '%', '!']) || line.trim_start().starts_with("/&")
+}
+
+/// The lines of data from `lines` without comments, of which none is blank but at the end, where something may have been lost.
 pub(super) fn without_blanks<'a>(
     lines: impl Iterator<Item = (usize, &'a str)>,
 ) -> impl Iterator<Item = Result<(usize, &'a str), BadLine>> {
     let mut blank = None;
-    lines.filter_map(move |(number, line)| {
+    lines.filter(|(_, line)| !is_comment(line)).filter_map(move |(number, line)| {
         if line.trim().is_empty() {
             blank.get_or_insert(number);
             return None;
@@ -70,6 +83,33 @@ pub(super) fn number(word: &str) -> Option<f64> {
     parsed.filter(|number: &f64| (number * LARGEST_UNIT).is_finite())
 }
 
+/// The parts of `word` from sign to sign, except for signs of exponents.
+fn signed(word: &str) -> Vec<&str> {
+    let bytes = word.as_bytes();
+    let is_start = |at: &usize| matches!(bytes[*at], b'+' | b'-') && !b"eEdD".contains(&bytes[*at - 1]);
+    let ends = (1..bytes.len()).filter(is_start).chain([bytes.len()]);
+    ends.scan(0, |start, end| Some(&word[std::mem::replace(start, end)..end])).collect()
+}
+
+/// The numbers that `word` has without blanks between them, as a minus fills a column of Fortran; else `word`. Each has a
+/// point, unlike an exponent.
+pub(super) fn apart(word: &str) -> Vec<&str> {
+    Some(signed(word))
+        .filter(|parts| parts.iter().all(|part| part.contains('.') && number(part).is_some()))
+        .unwrap_or(vec![word])
+}
+
+/// That `word` is not a number, and what to type if it may be one, or a line of text.
+pub(super) fn no_number(word: &str) -> String {
+    let problem = format!("{} is not a number", quote(word));
+    match signed(word)[..] {
+        [digits, power] if [digits, power].iter().all(|part| is_number(part)) => {
+            format!("{problem}: write {digits}E{power} or {digits} {power}")
+        }
+        _ => problem,
+    }
+}
+
 /// Whether `word` is a number, with a point or a comma before its decimals.
 pub(super) fn is_number(word: &str) -> bool {
     number(&word.replace(',', ".")).is_some()
@@ -83,7 +123,7 @@ pub(super) fn nine_digits(value: f64) -> f64 {
 /// The words of lines of a fixed width: columns of `width` letters, where a number that fills its column leaves no blank
 /// before it.
 pub(super) fn columns(line: &str, width: Option<usize>) -> Vec<&str> {
-    let words: Vec<_> = line.split_whitespace().collect();
+    let words: Vec<_> = line.split_whitespace().flat_map(apart).collect();
     match width {
         Some(width) if words.iter().any(|word| word.len() > width || number(word).is_none()) && line.is_ascii() => {
             let starts = (0..line.len()).step_by(width.max(1));

@@ -99,13 +99,14 @@ pub(super) enum TimeUnit {
 
 impl TimeUnit {
     /// The unit that the `heading` of a column of times states: of `time`, `t`, these with a unit, and of a heading that is a
-    /// unit or ends with one in brackets. None of any other heading, of a period, and of times with a factor.
+    /// unit or ends with one in brackets. None of any other heading, of a period, and of a heading with anything but letters.
     pub(super) fn of(heading: &str) -> Option<TimeUnit> {
         let heading = heading.to_lowercase();
-        let words = heading.split(|letter: char| !letter.is_alphanumeric());
+        let is_plain = |letter: char| letter.is_alphabetic() || letter.is_whitespace() || "()[],.:/_".contains(letter);
+        let words = heading.split(|letter: char| !letter.is_alphabetic());
         let words: Vec<_> = words.filter(|word| !word.is_empty() && *word != "in").collect();
         match words.as_slice() {
-            _ if heading.contains("period") || has_factor(&heading) => None,
+            _ if heading.contains("period") || !heading.chars().all(is_plain) => None,
             ["t" | "time" | "times" | "zeit"] => Some(TimeUnit::Unstated),
             [unit] | ["t" | "time" | "times" | "zeit", unit] => TimeUnit::named(unit),
             [.., unit] if heading.ends_with(&format!("({unit})")) || heading.ends_with(&format!("[{unit}]")) => {
@@ -141,65 +142,6 @@ fn plain(text: &str) -> String {
     plain.flat_map(char::to_lowercase).collect()
 }
 
-/// Whether `text`, which is no unit that is known here, is meant as one.
-fn is_like_a_unit(text: &str) -> bool {
-    let text = text.to_lowercase();
-    text.contains("/s")
-        || text.contains(['^', '%'])
-        || matches!(&*text, "counts" | "count" | "v" | "mv" | "volts" | "ug")
-}
-
-/// Whether `text`, a heading or the parts of one beside its unit, has a factor: `10^-3`, `*1000`, `x 0.1`, `/1000`.
-fn has_factor(text: &str) -> bool {
-    text.char_indices().any(|(start, sign)| {
-        let (before, after) = (&text[..start], &text[start + sign.len_utf8()..]);
-        let is_sign = match sign {
-            '*' | '\u{d7}' | '\u{b7}' | '\u{22c5}' => true,
-            '^' => before.ends_with(char::is_numeric),
-            'x' | 'X' if before.is_empty() => after.starts_with(' '), // unlike the name x1
-            'x' | 'X' => before.ends_with([' ', '\t', '(', '[', '{']),
-            '/' => !before.trim_end().ends_with(char::is_numeric), // unlike a date
-            _ => false,
-        };
-        is_sign && after.trim_start_matches([' ', '\t', '+', '-', '\u{2212}', '.']).starts_with(char::is_numeric)
-    })
-}
-
-/// Words of a heading by which the accelerations are multiplied or turned round.
-const FACTORS: [&str; 18] = [
-    "%",
-    "\u{2030}",
-    "percent",
-    "per",
-    "mille",
-    "permille",
-    "tenth",
-    "tenths",
-    "hundredth",
-    "hundredths",
-    "thousandth",
-    "thousandths",
-    "parts",
-    "scaled",
-    "times",
-    "multiplied",
-    "divided",
-    "minus",
-];
-
-/// Whether a word of `text` is one of [`FACTORS`].
-fn has_factor_in_words(text: &str) -> bool {
-    let text = text.to_lowercase();
-    text.split(|letter: char| !letter.is_alphabetic() && !"%\u{2030}".contains(letter))
-        .any(|word| FACTORS.contains(&word))
-}
-
-/// Whether `word` is a number, or a factor such as `10^-3`, `10-3`, `x0.1`.
-fn is_factor(word: &str) -> bool {
-    let begins = word.trim_start_matches(['x', 'X', '+', '-', '.']).starts_with(char::is_numeric);
-    begins && word.chars().all(|letter| !letter.is_alphabetic() || "eEdDxX".contains(letter))
-}
-
 /// Whether `line` has a unit of accelerations as a word anywhere.
 pub(super) fn mentions_unit(line: &str) -> bool {
     let words = line.split(|letter: char| letter.is_whitespace() || ",;:=()[]{}\"".contains(letter));
@@ -209,11 +151,44 @@ pub(super) fn mentions_unit(line: &str) -> bool {
     })
 }
 
-/// Whether `text`, one of the parts of a heading beside its unit, has a second unit that is not the unit of a number.
-fn has_second_unit(text: &str) -> bool {
-    let words: Vec<&str> = text.split_whitespace().collect();
-    let is_of_a_number = |index: usize| index > 0 && is_factor(words[index - 1]);
-    words.iter().enumerate().any(|(index, word)| mentions_unit(word) && !is_of_a_number(index))
+/// Words beside the unit in a heading: what has the unit, in which direction, and where.
+const WORDS: &str = " a ac acc accel acceleration accelerations accelerogram aceleracion aceleraci\u{f3}n accelerazione \
+    acc\u{e9}l\u{e9}ration beschleunigung ivme ag av ax ay az value values data series time times history record ground floor \
+    base motion horizontal vertical longitudinal transverse radial north south east west up down component comp channel \
+    chan ch no corrected uncorrected filtered scaled multiplied factor by unit units in of the deg n s e w u d z v h l t r x \
+    y ns ew ud sn we du ne nw se sw en hne hnn hnz hn1 hn2 ";
+
+/// The words of `text` in small letters.
+fn words(text: &str) -> Vec<String> {
+    let text = text.to_lowercase().replace("a_g", "ag");
+    text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_owned).collect()
+}
+
+/// Whether `word` is one of [`WORDS`], with a number or without, or a bearing such as n90e.
+fn is_known(word: &str) -> bool {
+    let is_digit = |letter: char| letter.is_ascii_digit();
+    let bearing = word.strip_prefix(['n', 's']).and_then(|rest| rest.strip_suffix(['e', 'w']));
+    let name = word.trim_end_matches(is_digit);
+    bearing.is_some_and(|angle| !angle.is_empty() && angle.len() <= 2 && angle.chars().all(is_digit))
+        || (name == word || !matches!(name, "" | "x" | "e" | "by")) && WORDS.contains(&format!(" {name} "))
+}
+
+/// Whether `text` has other words than [`WORDS`] and numbers, as titles have.
+pub(super) fn is_prose(text: &str) -> bool {
+    words(text).iter().any(|word| word.contains(char::is_alphabetic) && !is_known(word))
+}
+
+/// Whether `text` has no words but [`WORDS`], no numbers but those of channels and angles, and no sign of a product or before
+/// a word.
+fn is_understood(text: &str) -> bool {
+    let (words, is_sign) = (words(text), |(at, _): (usize, &str)| !text[..at].ends_with(char::is_alphanumeric));
+    let is_plain =
+        |letter: char| letter.is_alphanumeric() || letter.is_whitespace() || ",:;=()[]{}/_.-#\"'".contains(letter);
+    let is_word = |(index, word): (usize, &String)| match index.checked_sub(1).map(|before| words[before].as_str()) {
+        Some("ch" | "chan" | "channel" | "no") if word.len() <= 2 => true,
+        _ => is_known(word) || words.get(index + 1).is_some_and(|next| next == "deg"),
+    };
+    words.iter().enumerate().all(is_word) && text.chars().all(is_plain) && !text.match_indices('-').any(is_sign)
 }
 
 /// Unit of a column, as the heading states it.
@@ -221,47 +196,37 @@ fn has_second_unit(text: &str) -> bool {
 pub(super) enum Stated {
     Nothing,
     Unit(Unit),
-    /// A unit of something else or one that is not known here; or all of a heading with a known unit in an unclear place.
-    Other(String),
-    /// The accelerations are multiplied by a factor: this heading has one.
-    Multiplied(String),
+    /// The unit is not clear: all of this heading, or a unit that is not known here.
+    Unclear(String),
 }
 
 impl Stated {
-    /// The unit that `heading` states: the heading of a column of accelerations, or a line of text before samples alone. The
-    /// unit stands after a blank, a slash, an underscore or the like, up to the end or the next bracket. `a_g` is the ground acceleration, whatever its
-    /// unit. A unit after a number is the unit of that number.
+    /// The unit that `heading` states, the heading of a column of accelerations or a line before samples alone:
+    /// [words](is_understood), then the unit in brackets or after a blank, a slash, an underscore or the like, then words or a
+    /// filter. `a_g` is the ground acceleration, whatever its unit. Words alone state nothing; all else is unclear.
     pub(super) fn of(heading: &str) -> Stated {
-        const DIVIDERS: &[char] = &[' ', '\t', ',', ':', '=', '/', '_', '(', '[', '{'];
+        const DIVIDERS: &[char] = &[' ', '\t', ',', ':', '=', '/', '_', '(', '[', '{', '#'];
         const LONGEST: usize = 200;
         if heading.len() > LONGEST {
             return Stated::Nothing;
         }
-        let starts = || iter::once(0).chain(heading.match_indices(DIVIDERS).map(|(index, _)| index + 1));
-        let to_bracket = |start: usize| heading[start..].split([')', ']', '}']).next().unwrap_or_default();
-        let is_free = |start: &usize| {
-            let mut words = heading[..*start].rsplit(DIVIDERS);
-            !words.find(|word| !matches!(*word, "" | "x" | "X" | "*" | "\u{d7}")).is_some_and(is_factor)
+        let until = |start: usize, mark: &str| {
+            let found = heading[start..].find(|letter| mark.contains(letter));
+            (start, found.map_or(heading.len(), |length| start + length))
         };
-        let is_a_g = |start: usize| heading[..start].to_lowercase().ends_with("a_");
-        let named = |start| {
-            let unit = Unit::named(to_bracket(start)).filter(|unit| *unit != Unit::G || !is_a_g(start))?;
-            Some((unit, [&heading[..start], &heading[start + to_bracket(start).len()..]]))
+        let starts = iter::once(0).chain(heading.match_indices(DIVIDERS).map(|(index, _)| index + 1));
+        let named = |(start, end): (usize, usize)| {
+            let is_a_g = || heading[..start].to_lowercase().ends_with("a_");
+            let unit = Unit::named(&heading[start..end]).filter(|unit| *unit != Unit::G || !is_a_g())?;
+            let after = heading[end..].to_lowercase();
+            let after = after.split("filter").next().unwrap_or_default();
+            (is_understood(&heading[..start]) && is_understood(after)).then_some(unit)
         };
-        let found = starts().filter(is_free).find_map(named);
-        let (unit, beside) = found.map_or((None, [heading, ""]), |(unit, beside)| (Some(unit), beside));
-        match unit {
-            _ if beside.into_iter().any(|text| has_factor(text) || has_factor_in_words(text)) => {
-                return Stated::Multiplied(heading.to_owned());
-            }
-            Some(_) if beside.into_iter().any(has_second_unit) => return Stated::Other(heading.to_owned()),
-            Some(unit) => return Stated::Unit(unit),
-            None => {}
+        match starts.flat_map(|start| [until(start, ")]}"), until(start, ".")]).find_map(named) {
+            Some(unit) => Stated::Unit(unit),
+            None if is_understood(heading) => Stated::Nothing,
+            None => Stated::Unclear(heading.to_owned()),
         }
-        let mut words = heading.rsplit([' ', '\t', ',', '(', '[', '{', ')', ']', '}']);
-        let other = words.find(|word| is_like_a_unit(word));
-        let shown = |other| if mentions_unit(other) { heading } else { other };
-        other.map_or(Stated::Nothing, |other| Stated::Other(shown(other).to_owned()))
     }
 }
 
@@ -295,51 +260,24 @@ mod tests {
         ] {
             headings.iter().for_each(|heading| assert_eq!(Stated::of(heading), Stated::Unit(unit), "{heading}"));
         }
-        for nothing in
-            ["a_g", "acc", "acceleration", "ground motion", "", "a_G", "ag", "EW", "peak 0.3 g", "in g: 0.3", "# a_g"]
-        {
-            assert_eq!(Stated::of(nothing), Stated::Nothing, "{nothing}");
-        }
-        for multiplied in [
-            "acc (10^-3 g)",
-            "acc (10-3 g)",
-            "a [10\u{207b}\u{b3} g]",
-            "acc (x0.1 g)",
-            "acc (1000 x g)",
-            "acc*1000 (g)",
-            "acc x 1000 [m/s^2]",
-            "acc (g/1000)",
-            "acc (g\u{b7}10^-3)",
-            "acc (g) x 10",
-            "acc (g x10)",
-            "acc (1/1000 g)",
-            "acc (1e-3 g)",
-            "acc*1000",
-            "acc [% of g]",
-            "acc (percent of g)",
-            "acc per mille g",
-            "acc (thousandths of g)",
-            "acc (g) scaled by 1000",
-            "minus acc (g)",
+        for (heading, unit) in [
+            ("CH 2, 090 deg, acc (g)", g),
+            ("acc x [g]", g),
+            ("S90E m*s^-2", m),
+            ("ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz LP=30.0 Hz", g),
         ] {
-            let stated = Stated::of(multiplied);
-            let is_refused =
-                matches!(stated, Stated::Multiplied(_)) || stated == Stated::Nothing && mentions_unit(multiplied);
-            assert!(is_refused, "{multiplied}: {stated:?}");
-        }
-        for (heading, unit) in
-            [("CH 2, 090 deg, acc (g)", g), ("17/3/2005 north (g)", g), ("acc x [g]", g), ("S90E m*s^-2", m)]
-        {
             assert_eq!(Stated::of(heading), Stated::Unit(unit), "{heading}");
         }
-        let with_a_value = "ground acceleration (m/s2): a full sine of 0.5 s and 0.6 g";
-        assert_eq!(Stated::of(with_a_value), Stated::Unit(Unit::MetrePerSecondSquared));
-        for two in ["acc (gal, not g)", "acc (m/s^2)*g", "acc (cm/s/s) g"] {
-            assert_eq!(Stated::of(two), Stated::Other(two.into()));
+        for nothing in ["a_g", "acc", "acceleration", "ground motion", "", "a_G", "ag", "EW", "# a_g", "a (north)"] {
+            assert_eq!(Stated::of(nothing), Stated::Nothing, "{nothing}");
         }
-        for other in ["cm/s", "counts", "km/s2", "nm/s^2"] {
-            assert_eq!(Stated::of(&format!("acc ({other})")), Stated::Other(other.into()));
-            assert_eq!(Stated::of(&format!("acc {other}")), Stated::Other(other.into()));
+        let unclear = "acc (10^-3 g);acc (10-3 g);a [10\u{207b}\u{b3} g];acc (x0.1 g);acc (1000 x g);acc*1000 (g);acc x 1000 [m/s^2];\
+            acc (g/1000);acc (g\u{b7}10^-3);acc (g) x 10;acc (g x10);acc (1/1000 g);acc (1e-3 g);acc*1000;acc [% of g];\
+            acc (percent of g);acc per mille g;acc (thousandths of g);acc (g) scaled by 1000;minus acc (g);-acc (g);acc (-g);\
+            acc (gal, not g);acc (m/s^2)*g;acc (cm/s/s) g;acc (kN);acc (foo);acc (cm/seg2);acc (cm/s);acc cm/s;acc (counts);\
+            acc counts;acc (km/s2);acc (nm/s^2);peak 0.3 g;in g: 0.3;acc x10 (g);x 1000;acc 1000 (g);response";
+        for unclear in unclear.split(';') {
+            assert_eq!(Stated::of(unclear), Stated::Unclear(unclear.into()));
         }
     }
 

@@ -6,7 +6,7 @@ mod layouts;
 
 use layouts::{DT, Layout, all, cosmos, samples};
 use proptest::prelude::*;
-use rocking_records::{Column, Reading, RecordError, Remedy, Unit, UnitFrom};
+use rocking_records::{Column, FORMATS, Format, Reading, RecordError, Remedy, Unit, UnitFrom};
 use std::env;
 use std::path::Path;
 
@@ -27,15 +27,20 @@ fn every_layout_gives_its_samples_in_its_unit() {
     }
 }
 
-/// A unit or a step that contradicts the file is refused in every layout that states one.
+/// A unit or a step that contradicts the file is refused in every layout that states one; a unit overrides a heading.
 #[test]
 fn what_contradicts_a_file_is_refused() {
-    for Layout { path, bytes, how, unit, .. } in all(40).into_iter().filter(|layout| layout.how.unit.is_none()) {
+    for Layout { path, bytes, how, format, unit, .. } in all(40).into_iter().filter(|layout| layout.how.unit.is_none())
+    {
         let read = |how: &Reading| rocking_records::from_bytes(&path, &bytes, how);
         assert!(read(&Reading { unit: Some(unit), ..how.clone() }).is_ok());
-        let refused = read(&Reading { unit: Some(Unit::MillimetrePerSecondSquared), ..how.clone() }).unwrap_err();
-        let expected = format!("the file states accelerations in {unit}, but the given unit is mm/s2");
-        assert!(refused.to_string().ends_with(&expected), "{refused}");
+        match read(&Reading { unit: Some(Unit::MillimetrePerSecondSquared), ..how.clone() }) {
+            Ok((_, source)) => assert_eq!((source.format, source.unit_from), ("table", UnitFrom::Overridden(unit))),
+            Err(refused) => {
+                let expected = format!("the file states accelerations in {unit}, but the given unit is mm/s2");
+                assert!(format != "table" && refused.to_string().ends_with(&expected), "{refused}");
+            }
+        }
         if how.dt.is_none() {
             let refused = read(&Reading { dt: Some(2.0 * DT), ..how.clone() }).unwrap_err();
             assert!(
@@ -43,6 +48,15 @@ fn what_contradicts_a_file_is_refused() {
                 "{refused}"
             );
         }
+    }
+}
+
+/// The page shows every row of the table of layouts.
+#[test]
+fn the_page_lists_every_layout() {
+    let page = include_str!("../../docs/howto/records.md");
+    for Format { name, unit, step, .. } in FORMATS {
+        assert!(page.contains(&format!("\n| {name} | {unit} | {step} |\n")), "{name}");
     }
 }
 
@@ -69,7 +83,7 @@ fn what_is_missing_is_noticed() {
 
         let shorter = [&lines[..middle], &lines[middle + 1..]].concat();
         let missing = read(&shorter, &how);
-        if matches!(format, rocking_records::Format::Table) {
+        if format == "table" {
             continue;
         }
         let missing = missing.unwrap_err();
@@ -83,19 +97,26 @@ fn what_is_missing_is_noticed() {
 #[test]
 fn a_channel_of_several_is_chosen() {
     let [first, second] = [1.0, -2.0].map(|scale| samples(50).iter().map(|value| scale * value).collect::<Vec<_>>());
-    let text = [&first, &second].map(|values| cosmos("Corrected acceleration", values, true)).concat();
+    let [north, up] = [&first, &second].map(|values| cosmos("Corrected acceleration", values, true));
+    let text = north + &up.replace("Sta Chan  1: 360 deg", "Sta Chan  2: Up     ");
     let read = |column| {
         let how = Reading { column, ..Reading::default() };
         rocking_records::from_bytes(Path::new("two.V2c"), text.as_bytes(), &how)
     };
     assert_eq!(line_of(&read(None).unwrap_err()).1, Some(Remedy::Column));
-    for (number, expected) in [(1, &first), (2, &second)] {
-        let (record, source) = read(Some(Column::Number(number))).unwrap();
+    for (column, number, name, expected) in [
+        (Column::Number(1), 1, "360 deg", &first),
+        (Column::Number(2), 2, "Up", &second),
+        (Column::Heading("360 Deg".into()), 1, "360 deg", &first),
+        (Column::Heading("up".into()), 2, "Up", &second),
+    ] {
+        let (record, source) = read(Some(column)).unwrap();
         let errors = record.acceleration().iter().zip(expected).map(|(found, expected)| (found - expected).abs());
         assert!(errors.fold(0.0, f64::max) < 1e-5, "channel {number}");
-        assert_eq!(source.remarks, [format!("channel {number} of 2")]);
+        assert_eq!(source.remarks, [format!("channel {number} of 2, {name:?}")]);
     }
-    assert!(read(Some(Column::Number(3))).is_err());
+    let refused = read(Some(Column::Number(3))).unwrap_err().to_string();
+    assert!(refused.ends_with("2 channel(s) (\"360 deg\", \"Up\"), not one 3"), "{refused}");
 }
 
 #[test]

@@ -59,6 +59,15 @@ pub enum SamplesError {
         /// Its first sample, s.
         begins: f64,
     },
+    /// One component is given twice.
+    #[error(
+        "the vertical component of {title:?} has the samples of the horizontal one: choose another column \
+         (vertical_column, --column-v) or another file for it"
+    )]
+    Twice {
+        /// Title of the record.
+        title: String,
+    },
 }
 
 impl Record {
@@ -94,6 +103,9 @@ impl Record {
         }
         if vertical.acceleration.iter().all(|a_v| *a_v == 0.0) {
             return Ok(self);
+        }
+        if vertical.acceleration == self.acceleration {
+            return Err(SamplesError::Twice { title: self.title.to_string() });
         }
         let end = self.end().max(vertical.end());
         let [own, other] = [(&self.times, &self.acceleration), (&vertical.times, &vertical.acceleration)]

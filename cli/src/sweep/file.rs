@@ -18,7 +18,7 @@ use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population};
 use rocking_sweep::pulse::{Pulse, Shape};
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::path::{MAIN_SEPARATOR, Path};
+use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 
 /// Records on structures.
 pub struct RecordSweep {
@@ -126,8 +126,8 @@ enum RecordEntry {
 }
 
 impl RecordEntry {
-    /// The pattern of the files, the vertical component that goes with the one file, if any, and how they are read.
-    fn pattern_and_options(&self) -> anyhow::Result<(&str, Option<&str>, RecordOptions)> {
+    /// The pattern of the files, the vertical component that goes with the one file, if any, and how each is read.
+    fn pattern_and_options(&self) -> anyhow::Result<(&str, Option<(&str, RecordOptions)>, RecordOptions)> {
         match self {
             RecordEntry::AsTheyAre(pattern) => Ok((pattern, None, RecordOptions::default())),
             RecordEntry::As(table) => {
@@ -136,11 +136,17 @@ impl RecordEntry {
                 let mut options = table.clone();
                 options.remove("file");
                 options.remove("vertical");
+                let column_v = options.remove("vertical_column").map(Column::deserialize).transpose()?;
                 let vertical = table.get("vertical").map(|vertical| {
                     vertical.as_str().with_context(|| format!("records {pattern:?}: vertical is the path of one file"))
                 });
                 let options = RecordOptions::deserialize(options).with_context(|| format!("records {pattern:?}"))?;
-                Ok((pattern, vertical.transpose()?, options))
+                let vertical = vertical.transpose()?.map(|vertical| (vertical, options.with_column(&column_v)));
+                ensure!(
+                    column_v.is_none() || vertical.is_some(),
+                    "records {pattern:?}: vertical_column is a column of the file vertical, which is missing"
+                );
+                Ok((pattern, vertical, options))
             }
         }
     }
@@ -197,9 +203,9 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
             records.push(understood.sentences[0].clone());
             Ok::<_, anyhow::Error>(understood.record)
         };
-        let read = |path: &Path, vertical: Option<&Path>, options: &RecordOptions| {
+        let read = |path: &Path, vertical: Option<&(PathBuf, RecordOptions)>, options: &RecordOptions| {
             let record = read_one(path, options)?;
-            let Some(vertical) = vertical else { return Ok(record) };
+            let Some((vertical, options)) = vertical else { return Ok(record) };
             Ok(record.with_vertical(&read_one(vertical, options)?)?)
         };
         let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read);
@@ -337,19 +343,21 @@ impl StructureGrid {
 fn motions(
     sources: &[RecordEntry],
     folder: &Path,
-    mut read: impl FnMut(&Path, Option<&Path>, &RecordOptions) -> anyhow::Result<Record>,
+    mut read: impl FnMut(&Path, Option<&(PathBuf, RecordOptions)>, &RecordOptions) -> anyhow::Result<Record>,
 ) -> anyhow::Result<Vec<NamedRecord>> {
     let (mut motions, mut bad) = (Vec::new(), Vec::<anyhow::Error>::new());
     for source in sources {
         let (pattern, vertical, options) = source.pattern_and_options()?;
         let scale = options.scale.unwrap_or(1.0);
-        let column = match &options.column {
-            None => String::new(),
-            Some(Column::Heading(heading)) => format!(" column {heading}"),
-            Some(column) => format!(" column {column}"),
+        let column = |options: &RecordOptions| {
+            options.column.as_ref().map_or(String::new(), |column| format!(" column {}", column.as_asked()))
         };
-        let with = column + &vertical.map_or(String::new(), |vertical| format!(" with {vertical}"));
-        let vertical = vertical.map(|vertical| folder.join(vertical));
+        let up = vertical.as_ref().map(|(up, of_up)| match of_up.column == options.column {
+            true => format!(" with {up}"),
+            false => format!(" with {up}{}", column(of_up)),
+        });
+        let with = column(&options) + &up.unwrap_or_default();
+        let vertical = vertical.map(|(vertical, options)| (folder.join(vertical), options));
         let in_folder = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
         let paths = glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))?;
         let mut paths = paths.peekable();
@@ -364,7 +372,7 @@ fn motions(
             );
             // The same on every system, so that a sweep can go on on another.
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace(MAIN_SEPARATOR, "/");
-            let record = read(&path, vertical.as_deref(), &options);
+            let record = read(&path, vertical.as_ref(), &options);
             match record.and_then(|record| Ok(NamedRecord::new(name + &with, record, scale)?)) {
                 Ok(motion) => motions.push(motion),
                 Err(error) => bad.push(error),

@@ -1,6 +1,6 @@
 //! Files of every layout that is read, written here from known samples as their publishers lay them out.
 
-use rocking_records::{Column, Format, Reading, Unit};
+use rocking_records::{Column, Reading, Unit};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ pub struct Layout {
     pub bytes: Vec<u8>,
     /// Options for reading the file.
     pub how: Reading,
-    pub format: Format,
+    pub format: &'static str,
     pub unit: Unit,
     /// Accelerations in that unit, rounded as they are written.
     pub expected: Vec<f64>,
@@ -52,7 +52,7 @@ pub fn all(count: usize) -> Vec<Layout> {
         let header =
             format!("{title}\nImperial Valley 5/19/1940, El Centro, 180\nACCELERATION TIME SERIES IN UNITS OF G\n");
         let text = header + counts + "\n" + &lines(&cm, 5, |value| format!("{value:15.7E}"));
-        layout("record.AT2", Format::At2, Unit::G, text)
+        layout("record.AT2", "PEER AT2", Unit::G, text)
     };
     let mut all = vec![
         at2(
@@ -60,11 +60,11 @@ pub fn all(count: usize) -> Vec<Layout> {
             &format!("{count:5}    {DT:.4}    NPTS, DT"),
         ),
         at2("PEER NGA STRONG MOTION DATABASE RECORD", &format!("NPTS=  {count:4}, DT=   .0050 SEC,")),
-        layout("record.ASC", Format::Esm, gal, esm(&cm)),
+        layout("record.ASC", "ESM and ITACA ASCII", gal, esm(&cm)),
         knet(&cm),
-        layout("record.V1", Format::Cosmos, gal, cosmos("Uncorrected acceleration", &cm, false)),
-        layout("record.V2c", Format::Cosmos, gal, cosmos("Corrected acceleration", &cm, true)),
-        layout("record.V2", Format::Csmip, gal, csmip(&cm)),
+        layout("record.V1", "COSMOS V1 and V2", gal, cosmos("Uncorrected acceleration", &cm, false)),
+        layout("record.V2c", "COSMOS V1 and V2", gal, cosmos("Corrected acceleration", &cm, true)),
+        layout("record.V2", "CSMIP V2", gal, csmip(&cm)),
     ];
     for (separator, comma, heading) in [
         (",", ".", "time (s),acc (cm/s2)"),
@@ -79,25 +79,25 @@ pub fn all(count: usize) -> Vec<Layout> {
             let [time, value] = [i as f64 * DT, *value].map(|number| number.to_string().replace('.', comma));
             writeln!(text, "{time}{separator}{value}").unwrap();
         }
-        all.push(layout("table.dat", Format::Table, gal, text));
+        all.push(layout("table.dat", "table", gal, text));
     }
     let column = cm.iter().map(|value| format!("{value}\n")).collect::<String>();
     let with_step = |unit| Reading { dt: Some(DT), unit, ..Reading::default() };
     let read_as = |how: Reading, layout: Layout| Layout { how, ..layout };
-    all.push(read_as(with_step(Some(gal)), layout("column.txt", Format::Table, gal, column)));
+    all.push(read_as(with_step(Some(gal)), layout("column.txt", "table", gal, column)));
     let array = |(i, value): (usize, &f64)| format!("{},{},\"{value}\",{i}\r\n", i as f64 * DT, -2.0 * value);
     let array = "Time (s),N-S (gal),E-W (gal),n\r\n".to_owned() + &cm.iter().enumerate().map(array).collect::<String>();
-    let mut chosen = layout("array.csv", Format::Table, gal, array);
+    let mut chosen = layout("array.csv", "table", gal, array);
     chosen.how = Reading { column: Some(Column::Heading("E-W".into())), ..Reading::default() };
     all.push(chosen);
     let table = |heading: &str, time: fn(usize) -> String| {
         let line = |(i, value): (usize, &f64)| format!("{},{value}\n", time(i));
         let text = format!("{heading}\n") + &cm.iter().enumerate().map(line).collect::<String>();
-        layout("table.csv", Format::Table, gal, text)
+        layout("table.csv", "table", gal, text)
     };
     let several = |before: &str, columns| {
         let text = before.to_owned() + &lines(&cm, columns, |value| format!(" {value:11.5}"));
-        layout("values.out", Format::Table, gal, text)
+        layout("values.out", "table", gal, text)
     };
     all.extend([
         table("# peak in g: 0.3\nt/ms,a/gal", |i| (5 * i).to_string()),
@@ -141,7 +141,7 @@ fn knet(cm: &[f64]) -> Layout {
         path: "MYG0041103111446.NS".into(),
         bytes: text.into_bytes(),
         how: Reading::default(),
-        format: Format::KNet,
+        format: "K-NET and KiK-net ASCII",
         unit: Unit::CentimetrePerSecondSquared,
         expected,
     }
