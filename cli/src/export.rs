@@ -6,6 +6,7 @@ use crate::talk::{say, warning};
 use FlexibleRocking::{guid, resources::Contents};
 use anyhow::{Context, bail};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
+use rocking::run::record::SamplesError;
 use rocking::structure::any::AnyStructure;
 use rocking_records::LAYOUTS;
 use rocking_report::{input, output_files::OutputFiles};
@@ -76,6 +77,15 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     let records = args.record.iter().map(|path| record(&args.options, path, g)).collect::<Result<Vec<_>, _>>()?;
     let of_vertical = args.options.with_column(&args.vertical.column_v);
     let vertical = args.vertical.record_v.as_ref().map(|path| record(&of_vertical, path, g)).transpose()?;
+    let vertical = match (vertical, records.first()) {
+        (Some((_, bytes)), Some((name, along))) if bytes == *along => {
+            return Err(SamplesError::Twice { title: name.display().to_string() }.into());
+        }
+        (Some((name, bytes)), _) if records.iter().any(|(of_record, _)| *of_record == name) => {
+            Some(((input::stem(&name) + "_v.csv").into(), bytes))
+        }
+        (vertical, _) => vertical,
+    };
     let contents = Contents { fixed: args.no_strings, ..structure.clone().into() };
     let (contents, archive) = fmu_export::export(args.fmi, &args.name, contents, records, vertical, &libraries)?;
     file.write(&archive)?;

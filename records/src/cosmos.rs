@@ -29,17 +29,9 @@ struct Announced<'a> {
     dt: f64,
 }
 
-/// The accelerations of the one channel of COSMOS, or of that which `how` chooses.
+/// The accelerations of the one channel, or of that which `how` chooses.
 pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
-    read(channels(text, false)?, title(text, [1, 4]), text, how)
-}
-
-/// Likewise of CSMIP.
-pub(super) fn parse_csmip(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
-    read(channels(text, true)?, title(text, [2, 6]), text, how)
-}
-
-fn read(channels: Vec<Announced>, title: String, text: &str, how: &Reading) -> Result<Parsed, BadLine> {
+    let channels = channels(text)?;
     let is_asked = |(index, channel): (usize, &Announced)| match &how.column {
         None => channels.len() == 1,
         Some(Column::Number(number)) => *number == index + 1,
@@ -58,7 +50,7 @@ fn read(channels: Vec<Announced>, title: String, text: &str, how: &Reading) -> R
         return Err(bad(first.line, problem).remedied_by(Remedy::Column));
     };
     let (unit, unit_from) = of_file(unit, how.unit, announced)?;
-    let mut parsed = Parsed::new(title, unit, unit_from, Times::Every(dt));
+    let mut parsed = Parsed::new(title(text), unit, unit_from, Times::Every(dt));
     if channels.len() > 1 {
         parsed.remark(format!("channel {} of {}, {}", index + 1, channels.len(), quote(channels[index].name)));
     }
@@ -81,62 +73,34 @@ fn direction(line: &str) -> Option<&str> {
     name.trim_start().split(['(', ',']).next()?.split("  ").map(str::trim).find(|name| !name.is_empty())
 }
 
-/// Words that announce accelerations.
-fn channels(text: &str, is_csmip: bool) -> Result<Vec<Announced<'_>>, BadLine> {
+/// The lines that announce accelerations: `12725 acceleration pts, approx 63 secs, units=cm/s^2,Format=(8F10.5)`, or
+/// `7500 points of accel data equally spaced at  .010 sec, in cm/sec2. (8f10.6)`, which may end after the unit, or have
+/// `(units: cm/sec/sec)`.
+fn channels(text: &str) -> Result<Vec<Announced<'_>>, BadLine> {
     let mut channels = Vec::new();
     let (mut reals, mut name) = (Reals::default(), "");
     for (line, content) in numbered(text) {
         let lower = content.to_ascii_lowercase();
         name = direction(content).unwrap_or(name);
-        match is_csmip {
-            true if lower.contains("points of accel data equally spaced") => {
-                channels.push(Announced { name, ..csmip(line, content)? });
-            }
-            false if lower.contains("real-header values follow") => reals = Reals::announced(line, content)?,
-            false if reals.missing > 0 => reals.read(line, content)?,
-            false
-                if !content.starts_with('|')
-                    && lower.contains("pts")
-                    && lower.contains("units=")
-                    && lower.contains("acc") =>
-            {
-                channels.push(Announced { name, ..cosmos(line, content, &reals)? });
-            }
-            _ => {}
+        let is_channel = lower.contains("pts") && lower.contains("units=") && lower.contains("acc")
+            || lower.contains("points of accel data equally spaced");
+        if lower.contains("real-header values follow") {
+            reals = Reals::announced(line, content)?;
+        } else if reals.missing > 0 {
+            reals.read(line, content)?;
+        } else if is_channel && !content.starts_with('|') {
+            let unclear =
+                || bad(line, format!("found {} where number, unit and step or format are stated", quote(content)));
+            let count = content.split_whitespace().next().and_then(|count| count.parse().ok()).ok_or_else(unclear)?;
+            let start = ["units=", "units:", " in "].iter().find_map(|before| Some(lower.find(before)? + before.len()));
+            let unit = start.and_then(|start| content.get(start..)).map(|rest| rest.split([',', '(', ')', ' ']));
+            let unit = unit.and_then(|mut words| words.find(|word| !word.is_empty())).ok_or_else(unclear)?;
+            let own = lower.split_once("spaced at").and_then(|(_, rest)| step(rest.split_whitespace().next()?));
+            let dt = own.or(reals.step()).ok_or_else(|| bad(line, "no line states the interval of the samples"))?;
+            channels.push(Announced { line, name, count, unit: unit.trim_end_matches('.'), width: width(content), dt });
         }
     }
     Ok(channels)
-}
-
-/// `7500 points of accel data equally spaced at  .010 sec, in cm/sec2. (8f10.6)`, which may end after the unit, or have
-/// `(units: cm/sec/sec)`.
-fn csmip(line: usize, content: &str) -> Result<Announced<'_>, BadLine> {
-    let unclear = || bad(line, format!("found {} where number, interval and unit are stated", quote(content)));
-    let lower = content.to_ascii_lowercase();
-    let count = content.split_whitespace().next().and_then(|count| count.parse().ok()).ok_or_else(unclear)?;
-    let dt = lower.split_once("spaced at").and_then(|(_, rest)| step(rest.split_whitespace().next()?));
-    let start = [" in ", "units:"].into_iter().find_map(|before| Some(lower.find(before)? + before.len()));
-    let unit = start.and_then(|start| content.get(start..)).and_then(|rest| rest.split_whitespace().next());
-    let unit = unit.ok_or_else(unclear)?.trim_end_matches(['.', ',', ')']);
-    Ok(Announced { line, name: "", count, unit, width: width(content), dt: dt.ok_or_else(unclear)? })
-}
-
-/// `12725 acceleration pts, approx 63 secs, units=cm/s^2,Format=(8F10.5)`
-fn cosmos<'a>(line: usize, content: &'a str, reals: &Reals) -> Result<Announced<'a>, BadLine> {
-    let unclear = || bad(line, format!("found {} where number, unit and format are stated", quote(content)));
-    let count = content.split_whitespace().next().and_then(|count| count.parse().ok()).ok_or_else(unclear)?;
-    let start = content.to_ascii_lowercase().find("units=").ok_or_else(unclear)? + "units=".len();
-    let unit = content.get(start..).and_then(|rest| rest.split([',', '(', ' ']).find(|word| !word.is_empty()));
-    let dt =
-        reals.step().ok_or_else(|| bad(line, "the real header states no interval of the samples: value 62, in ms"))?;
-    Ok(Announced {
-        line,
-        name: "",
-        count,
-        unit: unit.ok_or_else(unclear)?,
-        width: Some(width(content).ok_or_else(unclear)?),
-        dt,
-    })
 }
 
 /// The letters of a column of `(8F10.3)`, the last format that `line` has.
@@ -190,8 +154,9 @@ impl Reals {
     }
 }
 
-/// The event and the station, which are on these `lines` of the header, counted from 0.
-fn title(text: &str, lines: [usize; 2]) -> String {
+/// The event and the station, as the header's lines 2 and 5 of COSMOS, or 3 and 7 of CSMIP, have them.
+fn title(text: &str) -> String {
+    let lines = if is_its(text) { [1, 4] } else { [2, 6] };
     let words = |index| text.lines().nth(index).unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
     lines.map(words).join(", ")
 }

@@ -2,6 +2,7 @@
 //! line.
 
 use super::parsed::{Parsed, Times};
+use super::sampling::Sampling;
 use super::text::{number, numbered, quote};
 use super::{BadLine, Reading, bad, source::of_file};
 
@@ -29,11 +30,10 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     }
     let (line, units) = needed("UNITS")?;
     let (unit, unit_from) = of_file(units, how.unit, line)?;
-    let (line, step) = needed(STEP)?;
-    let dt = number(step).filter(|dt| *dt > 0.0);
-    let dt = dt.ok_or_else(|| bad(line, format!("{STEP} = {} must be a number greater than 0", quote(step))))?;
-    let (line, count) = needed("NDATA")?;
-    let count = count.parse().map_err(|_| bad(line, format!("NDATA = {} must be a whole number", quote(count))))?;
+    let (line, _) = needed(STEP)?;
+    let dt = Sampling::of(line, header[line - 1].1)?.dt.ok_or_else(|| bad(line, format!("{STEP} is no number")))?;
+    let (line, _) = needed("NDATA")?;
+    let count = Sampling::of(line, header[line - 1].1)?.npts.ok_or_else(|| bad(line, "NDATA is no whole number"))?;
 
     let title = ["EVENT_NAME", "EVENT_DATE_YYYYMMDD", "STATION_CODE", "STREAM"].map(find);
     let title = title.into_iter().flatten().map(|(_, value)| value).filter(|value| !value.is_empty());

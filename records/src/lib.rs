@@ -61,8 +61,21 @@ formats! {
     "ESM and ITACA ASCII", "UNITS", "SAMPLING_INTERVAL_S", false, esm::is_its, esm::parse;
     "K-NET and KiK-net ASCII", "gal, by the scale factor; the recorder's offset is taken off", "sampling frequency", false, knet::is_its, knet::parse;
     "COSMOS V1 and V2", "the line before the data", "the real header", true, cosmos::is_its, cosmos::parse;
-    "CSMIP V2", "the line before the data", "the line before the data", true, cosmos::is_csmip, cosmos::parse_csmip;
+    "CSMIP V2", "the line before the data", "the line before the data", true, cosmos::is_csmip, cosmos::parse;
 }
+
+/// Layouts that a package for Python reads: their names, and what stands on which line, counted from 0.
+const OF_GMPROCESS: [(&str, usize, &str); 5] = [
+    ("GeoNet V1A or V2A", 0, "gns science"),
+    ("USGS SMC", 0, "1 uncorrected accelerogram"),
+    ("USGS SMC", 0, "2 corrected accelerogram"),
+    ("CSMIP V1", 0, "uncorrected accelerogram data"),
+    ("RENADIC", 7, "universidad de chile - renadic"),
+];
+
+const GMPROCESS: Remedy =
+    Remedy::Python("gmprocess.io.read", "gmprocess.io.read.read_data(FILE)[0][0], unit=\"cm/s2\"");
+const OBSPY: Remedy = Remedy::Python("obspy", "obspy.read(FILE)[0], unit=UNIT");
 
 /// Name of the layout of all other files.
 const TABLE: &str = "table";
@@ -76,7 +89,7 @@ const LARGEST_USUAL_PEAK: f64 = 5.0;
 /// No ground moves faster after an earthquake, m/s.
 const LARGEST_USUAL_VELOCITY: f64 = 2.0;
 
-/// Rounded times have steps of two lengths, which differ by more than this part of their mean, and are this many or more.
+/// Rounded times have steps that differ by more than this part of their mean, and are this many or more.
 const LARGEST_USUAL_ROUNDING: f64 = 0.02;
 const FEWEST_ROUNDED: usize = 10;
 
@@ -144,6 +157,8 @@ pub enum Remedy {
     Column,
     /// The unit.
     Unit,
+    /// This module for Python reads the file, by this call in the place of the arguments of a Record.
+    Python(&'static str, &'static str),
 }
 
 impl Remedy {
@@ -160,6 +175,12 @@ impl Remedy {
                 format!("choose one as {}: its number, its heading, or all", called("column"))
             }
             Remedy::Unit => format!("give the unit of the accelerations as {}", called("unit")),
+            Remedy::Python(module, call) => {
+                let package = module.split('.').next().unwrap_or_default();
+                let import = format!("import {module}; import flexible_rocking as fr");
+                let lines = [&*import, &format!("record = fr.Record({call})"), "record.write(\"record.csv\")"];
+                format!("{package} may read it, in Python:\n{}", lines.join("\n"))
+            }
         }
     }
 }
@@ -238,26 +259,31 @@ pub fn doubts(record: &Record, g: f64) -> Vec<String> {
         }),
         rounded(record.times()).map(|[least, most]| {
             let [least, most] = [least, most].map(nine_digits);
-            format!("steps of {least} s and {most} s alternate: are the times rounded? Give the right step")
+            format!("steps of {least} to {most} s beside even times: are the times rounded? Give the right step")
         }),
     ];
     doubts.into_iter().flatten().collect()
 }
 
-/// The two lengths of the steps between `times`, if they are those of even times that were rounded.
+/// The shortest and the longest step between `times`, if they are those of even times that were rounded.
 fn rounded(times: &[f64]) -> Option<[f64; 2]> {
     let (start, mean) = (times[0], (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64);
     let steps = || times.windows(2).map(|pair| pair[1] - pair[0]);
     let [least, most] = [steps().fold(f64::INFINITY, f64::min), steps().fold(0.0, f64::max)];
-    let is_one = |step: f64| [least, most].iter().any(|of| (step - of).abs() < LARGEST_USUAL_ROUNDING / 10.0 * mean);
     let is_even = |(i, time): (usize, &f64)| (time - start - i as f64 * mean).abs() < most - least;
     let is_rounded =
         times.len() >= FEWEST_ROUNDED && most - least > LARGEST_USUAL_ROUNDING * mean && most < 2.1 * least;
-    (is_rounded && steps().all(is_one) && times.iter().enumerate().all(is_even)).then_some([least, most])
+    (is_rounded && times.iter().enumerate().all(is_even)).then_some([least, most])
 }
 
 /// The record in `text`, whose content decides its layout.
 fn parse(text: &str, how: &Reading) -> Result<(Record, Source), BadLine> {
+    let states = |line: usize, mark| text.lines().nth(line).is_some_and(|line| line.to_lowercase().contains(mark));
+    let foreign = OF_GMPROCESS.iter().find(|(_, line, mark)| states(*line, mark));
+    if let Some((name, line, _)) = foreign.filter(|_| !text.to_lowercase().contains("accel data equally spaced")) {
+        let problem = format!("the file is one of {name}, which is not read here");
+        return Err(bad(line + 1, problem).remedied_by(GMPROCESS));
+    }
     let Some(format) = FORMATS.iter().find(|format| (format.is_its)(text)) else {
         return table::parse(text, how)?.record(how, TABLE);
     };

@@ -13,21 +13,9 @@ pub(super) struct Sampling {
     pub dt: Option<f64>,
 }
 
-/// The words that state the step or, if they are words of a rate, its reciprocal.
-const STEPS: [(&str, bool); 12] = [
-    ("DT", false),
-    ("TIME STEP", false),
-    ("TIME INTERVAL", false),
-    ("SAMPLE INTERVAL", false),
-    ("SAMPLING INTERVAL", false),
-    ("SAMPLING PERIOD", false),
-    ("INTERVALO DE MUESTREO", false),
-    ("SAMPLERATE", true),
-    ("SAMPLE RATE", true),
-    ("SAMPLING RATE", true),
-    ("SAMPLING FREQ", true),
-    ("SAMPLING FREQUENCY", true),
-];
+/// The words that state the step, or a rate, which is its reciprocal.
+const STEPS: &str = "DT|TIME STEP|TIME INTERVAL|SAMPLE INTERVAL|SAMPLING INTERVAL|SAMPLING PERIOD|INTERVALO DE MUESTREO|\
+    SAMPLING_INTERVAL_S|SAMPLERATE|SAMPLE RATE|SAMPLING RATE|SAMPLING FREQ|SAMPLING FREQUENCY";
 
 impl Sampling {
     /// Reads the line of this `number`: `NPTS=  4172, DT=   .0100 SEC, UNITS=G`, one of the two, `4164    0.0100    NPTS, DT`,
@@ -49,11 +37,11 @@ impl Sampling {
         };
         let without_commas: Vec<_> = words.iter().copied().filter(|word| *word != ",").collect();
         let (npts, dt) = match without_commas.as_slice() {
-            [npts, dt, "NPTS", "DT", ..] => (Some(*npts), Some(step("DT", false, "", std::slice::from_ref(dt)))),
+            [npts, dt, "NPTS", "DT", ..] => (Some(*npts), Some(step("DT", "", std::slice::from_ref(dt)))),
             _ => {
-                let dt = STEPS.iter().find_map(|(name, is_rate)| Some((name, is_rate, after(name)?)));
-                let dt = dt.map(|(name, is_rate, (unit, words))| step(name, *is_rate, unit, words));
-                (after("NPTS").map(|(_, words)| words[0]), dt)
+                let dt = STEPS.split('|').find_map(|name| Some((name, after(name)?)));
+                let dt = dt.map(|(name, (unit, words))| step(name, unit, words));
+                (after("NPTS").or(after("NDATA")).map(|(_, words)| words[0]), dt)
             }
         };
         let stated = npts.map(count).transpose().and_then(|npts| Ok(Sampling { npts, dt: dt.transpose()? }));
@@ -83,7 +71,8 @@ fn count(word: &str) -> Result<usize, String> {
 
 /// The step (s) that `words` after `name` begin with: `.0100`, `0.01s`, `10 MSEC`, `100 Hz`. A word after it is its unit, unless a
 /// comma is between; else its unit is the `unit` before it; else seconds, or Hz of a rate of 1 or more.
-fn step(name: &str, is_rate: bool, unit: &str, words: &[&str]) -> Result<f64, String> {
+fn step(name: &str, unit: &str, words: &[&str]) -> Result<f64, String> {
+    let is_rate = name.contains("RATE") || name.contains("FREQ");
     let is_own = |next: &&&str| !matches!(**next, "," | "NPTS") && (name == "DT" || is_unit(next));
     let (word, next) = (words[0], words.get(1).filter(is_own));
     let stated = next.map_or(word.to_owned(), |next| format!("{word} {next}"));

@@ -1,6 +1,6 @@
 //! The text of a record's file: its encoding, its lines, the numbers in them.
 
-use super::{BadLine, bad};
+use super::{BadLine, OBSPY, bad};
 use std::borrow::Cow;
 
 /// End mark of DOS, after the last line.
@@ -35,7 +35,8 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Cow<'_, str>, BadLine> {
     };
     if let Some(index) = text.find('\0') {
         let line = 1 + text[..index].matches('\n').count();
-        return Err(bad(line, "a byte of 0, which no text has: save it as text in UTF-8"));
+        let problem = "a byte of 0, which no text has: save it as text in UTF-8";
+        return Err(bad(line, problem).remedied_by(OBSPY));
     }
     Ok(match text.contains(['\r', MINUS]) {
         true => Cow::Owned(
@@ -169,7 +170,8 @@ mod tests {
         ] {
             assert_eq!(decode(&bytes).unwrap(), text, "{bytes:?}");
         }
-        assert_eq!(decode(b"0,1\n\0"), Err(bad(2, "a byte of 0, which no text has: save it as text in UTF-8")));
+        let binary = bad(2, "a byte of 0, which no text has: save it as text in UTF-8").remedied_by(OBSPY);
+        assert_eq!(decode(b"0,1\n\0"), Err(binary));
         for packed in [&b"PK\x03\x04\x14\0"[..], b"\x1f\x8b\x08\0"] {
             assert_eq!(decode(packed), Err(bad(1, "the file is packed: unpack it, or save the table as CSV")));
         }

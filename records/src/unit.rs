@@ -153,10 +153,10 @@ pub(super) fn mentions_unit(line: &str) -> bool {
 
 /// Words beside the unit in a heading: what has the unit, in which direction, and where.
 const WORDS: &str = " a ac acc accel acceleration accelerations accelerogram aceleracion aceleraci\u{f3}n accelerazione \
-    acc\u{e9}l\u{e9}ration beschleunigung ivme ag av ax ay az value values data series time times history record ground floor \
-    base motion horizontal vertical longitudinal transverse radial north south east west up down component comp channel \
-    chan ch no corrected uncorrected filtered scaled multiplied factor by unit units in of the deg n s e w u d z v h l t r x \
-    y ns ew ud sn we du ne nw se sw en hne hnn hnz hn1 hn2 ";
+    acc\u{e9}l\u{e9}ration beschleunigung ivme ag av ax ay az value values data series time times history record ground \
+    floor base motion horizontal vertical longitudinal transverse radial north south east west up down component comp \
+    channel chan ch no corrected uncorrected filtered scaled multiplied factor by unit units in of the deg along across n \
+    s e w u d z v h l t r x y ns ew ud sn we du ne nw se sw en hne hnn hnz hn1 hn2 ";
 
 /// The words of `text` in small letters.
 fn words(text: &str) -> Vec<String> {

@@ -268,6 +268,11 @@ def test_both_components_are_written(tmp_path):
     assert np.array_equal(read.a_g, both.a_g) and np.array_equal(read.a_v, both.a_v)
     with pytest.raises(ValueError, match="the record has no vertical component: leave vertical out"):
         fr.Record(0.01, [0, 2, 0]).write(tmp_path / "h.csv", vertical=tmp_path / "v.csv")
+    file = tmp_path / "array.csv"
+    file.write_text("t (s),north (g),up (g)\n0,0,1\n.01,2,0\n.02,0,3\n")
+    assert np.array_equal(fr.Record.read(file, column=2, vertical=file, vertical_column="up").a_v, both.a_v)
+    with pytest.raises(ValueError, match='the vertical component of "array" has the samples of the horizontal one'):
+        fr.Record.read(file, column=2, vertical=file)
 
 
 @pytest.fixture(scope="module")
@@ -610,6 +615,25 @@ def test_a_trace_of_obspy_is_a_record():
     for make, text in [*refused, (lambda: fr.Record(gap, unit="g"), "a_g: some of it is masked")]:
         with pytest.raises(ValueError, match=re.escape(text)):
             make()
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("package", ["obspy", "gmprocess"])
+def test_the_lines_of_a_refusal_hand_the_record_over(tmp_path, monkeypatch, package):
+    monkeypatch.chdir(tmp_path)
+    a = np.round(100 * np.sin(0.1 * np.arange(101)), 4)
+    lines = lambda numbers, columns, form: "".join("".join(form % of for of in numbers[i:i + columns]) + "\n" for i in range(0, len(numbers), columns))
+    if package == "obspy":
+        pytest.importorskip(package).Trace(a, {"delta": 0.005}).write("file", format="MSEED")
+    else:
+        pytest.importorskip(package)
+        counts = [-32768, 2001, 60, 12, 30, 0, 0] + 5 * [-32768] + [0, 90, -32768, 0, len(a), 0] + 30 * [-32768]
+        text = "2 CORRECTED ACCELEROGRAM\n*\n1234\n" + 8 * "*\n" + lines(counts, 8, "%10d") + lines([1.7e38, 200.0] + 48 * [1.0], 5, "%15.7E")
+        (tmp_path / "file").write_text(text + lines(a, 8, "%10.4f"))
+    with pytest.raises(ValueError, match=f"{package} may read it, in Python:\n") as refused:
+        fr.Record.read("file")
+    exec(str(refused.value).partition("\n")[2], {"FILE": "file", "UNIT": "cm/s2"})
+    assert np.allclose(fr.Record.read("record.csv").a_g, a / 100, atol=1e-6)
 
 
 def test_intensities_of_a_row_are_those_of_numpy():
