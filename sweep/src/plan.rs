@@ -452,7 +452,7 @@ mod tests {
         else {
             panic!()
         };
-        assert!(reason.contains(&format!("cannot be continued beyond t = {time} s")), "{reason}");
+        assert!(reason.contains(&format!("cannot be continued beyond t = {}", with_unit(time, "s"))), "{reason}");
         assert!((time - 0.51).abs() < 0.01, "{time}");
     }
 
