@@ -721,7 +721,7 @@ mod tests {
         );
         assert!(refused(|modes, _| modes[1].height = None).starts_with("mode 2 needs height (m) or moment (kg.m)"));
         assert!(refused(|modes, _| modes[2].period = Some(-1.0)).starts_with("mode 3: period = -1 s is out of range"));
-        assert!(refused(|modes, _| modes.swap(0, 1)).starts_with("mode 2 has f = 2.796318"));
+        assert!(refused(|modes, _| modes.swap(0, 1)).starts_with("mode 2 has f = 2.79632 Hz"));
         assert!(
             refused(|modes, _| modes[0].shape.truncate(2)).starts_with("the shape of mode 1 has 2 numbers and must")
         );
