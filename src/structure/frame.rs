@@ -61,9 +61,9 @@ const MOMENTS: [Quantity<Body>; 3] = [
 /// Limits of a mode, whose coordinate may have any scale.
 const OF_MODE: [Quantity<Mode>; 6] = [
     quantity!(mass ["kg"] 1e-24, 1e36, "modal mass"),
-    quantity!(gamma["kg"] - 1e24, 1e24, "part of a mode in a translation"),
-    quantity!(share["1"] - 1e24, 1e24, "participation of a mode"),
-    quantity!(height["m"] - 1e24, 1e24, "height of a mode"),
+    quantity!(gamma ["kg"] f64::MIN, f64::MAX, "part of a mode in a translation"),
+    quantity!(share ["1"] f64::MIN, f64::MAX, "participation of a mode"),
+    quantity!(height ["m"] f64::MIN, f64::MAX, "height of a mode"),
     quantity!(stiffness ["N/m"] 1e-36, 1e48, "modal stiffness"),
     quantity!(damping ["N.s/m"] 0.0, 1e48, "modal damping"),
 ];
@@ -276,26 +276,23 @@ impl Frame {
     /// The structure of checked numbers. The modes are all of it if they leave no more of any of its sums than their rounding.
     fn of(body: Body, modes: &[Mode], floors: &[Floor]) -> Frame {
         let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum::<f64>();
-        let of_modes = [
-            of(|mode| mode.gamma * mode.share),
-            of(|mode| mode.gamma * mode.height),
-            of(|mode| mode.mass * mode.height * mode.height),
-        ];
+        let (mass, first) = (of(|mode| mode.gamma * mode.share), of(|mode| mode.gamma * mode.height));
+        let second = of(|mode| mode.mass * mode.height * mode.height);
         let rests = |rounding| {
-            let wholes = [body.m_s, body.S_1, body.I_2];
-            let [mass, first, second] = std::array::from_fn(|i| rest(wholes[i], of_modes[i], rounding));
-            ([mass.max(0.0), first, second.max(0.0)], Gauges::new(&body, modes, floors, rounding))
+            let [m_res, I_res] = [rest(body.m_s, mass, rounding), rest(body.I_2, second, rounding)];
+            let rest = [m_res.max(0.0), rest(body.S_1, first, rounding), I_res.max(0.0)];
+            (rest, Gauges::new(&body, modes, floors, rounding))
         };
         let rounded = Some(rests(ROUNDING)).filter(|(rest, gauges)| *rest == [0.0; 3] && !gauges.have_feedthrough());
-        let is_whole = rounded.is_some();
-        let ([m_res, S_res, I_res], gauges) = rounded.unwrap_or_else(|| rests(0.0));
-        let sum = |whole: f64, of_modes: f64| {
-            if is_whole && rest(whole, of_modes, EXACT) != 0.0 { of_modes } else { whole }
+        let exact = |whole, of_modes| if rest(whole, of_modes, EXACT) == 0.0 { whole } else { of_modes };
+        let body = match rounded {
+            Some(_) => {
+                Body { m_s: exact(body.m_s, mass), S_1: exact(body.S_1, first), I_2: exact(body.I_2, second), ..body }
+            }
+            None => body,
         };
-        let [mass, first, second] = of_modes;
-        let (m_s, S_1, I_2) = (sum(body.m_s, mass), sum(body.S_1, first), sum(body.I_2, second));
-        let body = Body { m_s, S_1, I_2, ..body };
-        let Body { m0, J0, B, r, g, c_ratio, ties, .. } = body;
+        let ([m_res, S_res, I_res], gauges) = rounded.unwrap_or_else(|| rests(0.0));
+        let Body { m0, J0, m_s, I_2, S_1, B, r, g, c_ratio, ties } = body;
         let m_t = m0 + m_s;
         let J_P = J0 + m_t * B * B + I_2;
         let base = Base {
