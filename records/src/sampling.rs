@@ -85,5 +85,5 @@ fn step(name: &str, unit: &str, words: &[&str]) -> Result<f64, String> {
         unit => TimeUnit::named(&unit.to_lowercase()).map(|unit| value * unit.in_seconds()),
     });
     let needed = if is_rate { "a rate in Hz" } else { "a number of seconds greater than 0" };
-    dt.filter(|dt| *dt > 0.0).ok_or_else(|| format!("{name} = {} must be {needed}", quote(&stated)))
+    dt.filter(|dt| *dt > 0.0 && dt.is_finite()).ok_or_else(|| format!("{name} = {} must be {needed}", quote(&stated)))
 }

@@ -718,6 +718,7 @@ mod tests {
             ("0 1\n1 1.23-4\n", "2: the acceleration \"1.23-4\" is not a number: write 1.23E-4 or 1.23 -4"),
             ("0 1\n1 2\nend data\n", "3: the time \"end\" is not a number: write # before a line of text"),
             ("5,NPTS,DT\n1\n2\n", "2: no column has times: the time between samples is unknown"),
+            ("Sampling rate: 0 Hz\n1\n2\n", "1: SAMPLING RATE = \"0 HZ\" must be a rate in Hz"),
             ("DT=0.005 min\n1\n2\n", "1: DT = \"0.005 MIN\" must be a number of seconds greater than 0"),
             (
                 "DT=0.02\nt,a\n0,1\n.01,2\n.02,3\n",
