@@ -15,16 +15,16 @@ use std::{
 use tempfile::TempDir;
 
 /// A full sine of 0.6 g and 0.5 s and rest after it, 401 samples: lifts and lands the McManus specimen.
-pub const SAMPLES: usize = 401;
-pub(crate) const DT: f64 = 0.01;
+const SAMPLES: usize = 401;
+const DT: f64 = 0.01;
 
-pub(crate) fn pulse(i: usize) -> f64 {
+fn pulse(i: usize) -> f64 {
     let time = i as f64 * DT;
     if time < 0.5 { 0.6 * (std::f64::consts::TAU * time / 0.5).sin() } else { 0.0 }
 }
 
 /// An empty folder with the pulse in it as `pulse.AT2`.
-pub fn folder() -> TempDir {
+fn folder() -> TempDir {
     let folder = TempDir::new().unwrap();
     let values: Vec<_> = (0..SAMPLES).map(|i| format!("{:e}", pulse(i))).collect();
     let lines: Vec<_> = values.chunks(5).map(|line| line.join("  ")).collect();
@@ -34,7 +34,7 @@ pub fn folder() -> TempDir {
 }
 
 /// Runs a command that succeeds, and returns its standard output and standard error.
-pub fn succeed(folder: &Path, arguments: &str) -> (String, String) {
+fn succeed(folder: &Path, arguments: &str) -> (String, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_rocking-fmu"));
     let Output { status, stdout, stderr } =
         command.current_dir(folder).args(arguments.split_whitespace()).output().unwrap();
