@@ -144,12 +144,15 @@ impl Archive {
             PathBuf::from(text)
         } else {
             let path = self.folder.join(text);
-            if !path.exists() {
+            if !self.files.contains_key(text) && !path.exists() {
                 return Err(GroundError::NotInArchive(parameter, text.to_owned(), self.folder.clone()));
             }
             path
         };
-        let bytes = rocking_records::read_file(&path).map_err(|error| GroundError::NoRecord(parameter, error))?;
+        let bytes = match self.files.get(text) {
+            Some(bytes) => bytes.clone(),
+            None => rocking_records::read_file(&path).map_err(|error| GroundError::NoRecord(parameter, error))?,
+        };
         Ok(Some(Asked { parameter, text, path, bytes }))
     }
 
@@ -167,14 +170,15 @@ impl Archive {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::resources::PackedRecord;
+    use crate::resources::{PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records};
     use rocking::structure::any::AnyStructure;
     use rocking::{Parameters, Structure};
+    use std::collections::HashMap;
     use std::fs;
 
     fn archive(folder: &Path) -> Archive {
         let structure = AnyStructure::One(Structure::new(Parameters::EVISON).unwrap());
-        Archive { folder: folder.to_owned(), contents: structure.into() }
+        Archive { folder: folder.to_owned(), contents: structure.into(), files: HashMap::new() }
     }
 
     /// A file that is rewritten is another record, even with the same size and time.
@@ -199,6 +203,23 @@ mod tests {
         assert_eq!((first.record.acceleration(), second.record.acceleration()), (&[1.0, 2.0][..], &[1.0, 3.0][..]));
         let in_g = GroundRecord::from_bytes(&file, b"t/s,a (g)\n0,1\n1,3\n", 9.81).unwrap();
         assert!(second.digest != first.digest && second.digest != in_g.digest);
+    }
+
+    /// A host may delete the folder as soon as the instance is made.
+    #[test]
+    fn packed_records_are_read_when_the_archive_is_opened() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, text) = (folder.path().join("pulse.csv"), "t/s,a\n0,1\n1,2\n");
+        let digest = GroundRecord::from_bytes(&file, text.as_bytes(), 9.81).unwrap().name();
+        let packed =
+            Records { record: vec![PackedRecord { file: "pulse.csv".to_owned(), digest }], ..Records::default() };
+        fs::write(&file, text).unwrap();
+        fs::write(folder.path().join(RECORDS_FILE), toml::to_string(&packed).unwrap()).unwrap();
+        fs::write(folder.path().join(PARAMETERS_FILE), toml::to_string(&Parameters::EVISON).unwrap()).unwrap();
+        let archive = Archive::open(folder.path().to_owned()).unwrap();
+        folder.close().unwrap();
+        let ground = archive.ground("pulse.csv", "", 9.81, &mut None).unwrap().unwrap();
+        assert_eq!(ground.record.acceleration(), [1.0, 2.0]);
     }
 
     /// A record that was packed is the one whose samples the archive names.
@@ -231,7 +252,10 @@ mod tests {
         let archive = archive(folder.path());
         let refusal = |text: &str| archive.ground("", text, 9.81, &mut None).unwrap_err().to_string();
         for (text, message) in [
-            ("absent.csv", format!("record_v = \"absent.csv\" is not in {at}; a path on disk needs a separator: ./absent.csv")),
+            (
+                "absent.csv",
+                format!("record_v = \"absent.csv\" is not in {at}; a path on disk needs a separator: ./absent.csv"),
+            ),
             ("..", format!("record_v: {at}/.. is not a file")),
             ("folder.csv", format!("record_v: {at}/folder.csv is not a file")),
             (
@@ -239,8 +263,8 @@ mod tests {
                 format!("record_v: {at}/broken.csv, line 2: the time \"root:x:0:0:secret\" is not a number"),
             ),
             (
-                "file://elsewhere/a.csv",
-                "record_v = \"file://elsewhere/a.csv\" is not a file URI of this machine, such as file:///tmp/record.AT2"
+                "file:a.csv",
+                "record_v = \"file:a.csv\" is not a file URI of this machine, such as file:///tmp/record.AT2"
                     .to_owned(),
             ),
             (

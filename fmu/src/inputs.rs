@@ -21,6 +21,12 @@ pub trait InputsOf<Q: Moves>: Clone + Debug + Serialize + DeserializeOwned {
     /// Makes the inputs act as the setup says. Until then, and where no steps are made, they act at once.
     fn start(&mut self, between: [Between; LOADS.len()]);
 
+    /// As many inputs, all 0, that act at once.
+    fn at_rest(&self) -> Self;
+
+    /// Whether an input acts as soon as it is set.
+    fn acts_at_once(&self, which: usize) -> bool;
+
     /// The value that the host reads: what it has set, or what the last step led to.
     fn shown(&self, which: usize) -> f64;
 
@@ -121,6 +127,15 @@ impl InputsOf<f64> for Inputs {
 
     fn start(&mut self, between: [Between; LOADS.len()]) {
         (self.between, self.is_any_led) = (between, between != [Between::Held; LOADS.len()]);
+    }
+
+    fn at_rest(&self) -> Inputs {
+        Inputs::default()
+    }
+
+    #[inline]
+    fn acts_at_once(&self, which: usize) -> bool {
+        self.between[which] != Between::Late || self.given[which] == Given::Slope
     }
 
     fn shown(&self, which: usize) -> f64 {
@@ -238,14 +253,8 @@ impl Inputs {
             given[which] = Given::Nothing;
             return (followed.value[which], followed.slope[which]);
         }
-        let slope = (value - before[which]) / *ago;
+        let slope = if *ago > 0.0 { (value - before[which]) / *ago } else { 0.0 };
         (value, if slope.is_finite() { slope } else { 0.0 })
-    }
-
-    /// Whether an input acts as soon as it is set.
-    #[inline]
-    pub(crate) fn acts_at_once(&self, which: usize) -> bool {
-        self.between[which] != Between::Late || self.given[which] == Given::Slope
     }
 
     #[inline]
@@ -348,6 +357,15 @@ impl InputsOf<Modes> for FloorInputs {
 
     fn start(&mut self, between: [Between; LOADS.len()]) {
         self.0.iter_mut().for_each(|item| item.start(between));
+    }
+
+    fn at_rest(&self) -> FloorInputs {
+        FloorInputs::new(self.0.len())
+    }
+
+    fn acts_at_once(&self, which: usize) -> bool {
+        let (item, place) = FloorInputs::at(which);
+        self.0[item].acts_at_once(place)
     }
 
     fn shown(&self, which: usize) -> f64 {

@@ -6,10 +6,7 @@ use crate::inputs::{FloorInputs, Inputs, InputsOf};
 use crate::resources::Contents;
 use crate::setup::Setup;
 use crate::shown::Shown;
-use crate::unit::Unit;
 use crate::variables::Source;
-use fmi_unit::sensitivity::along;
-use fmi_unit::{Failure, Model};
 use rocking::run::fall::{FallingProfile, Peaked};
 use rocking::run::peaks::Peak;
 use rocking::run::validity::{self, Validity};
@@ -74,14 +71,6 @@ pub trait Masses: Peaked<Peaks: Serialize + DeserializeOwned> + Default + Serial
 
     /// The rates of outputs and of the reactions under `load`.
     fn rates(engine: &Engine<Self>, load: LinearLoad<Self>) -> (impl Fn(Source) -> Option<f64>, Reactions);
-
-    /// Derivatives of variables along a direction.
-    fn derivatives(
-        unit: &mut Unit<Self>,
-        of: &[u32],
-        direction: &[(u32, f64)],
-        has_started: bool,
-    ) -> Result<Vec<f64>, Failure>;
 }
 
 impl Masses for f64 {
@@ -165,15 +154,6 @@ impl Masses for f64 {
     fn rates(engine: &Engine, load: LinearLoad) -> (impl Fn(Source) -> Option<f64>, Reactions) {
         let (outputs, reactions) = engine.rates(load);
         (move |source| f64::output(&source, &outputs), reactions)
-    }
-
-    fn derivatives(
-        unit: &mut Unit,
-        of: &[u32],
-        direction: &[(u32, f64)],
-        has_started: bool,
-    ) -> Result<Vec<f64>, Failure> {
-        unit.directional_derivatives(of, direction, has_started)
     }
 }
 
@@ -274,20 +254,6 @@ impl Masses for Modes {
             _ => None,
         };
         (rate, reactions)
-    }
-
-    /// By differences.
-    fn derivatives(
-        unit: &mut Unit<Modes>,
-        of: &[u32],
-        direction: &[(u32, f64)],
-        has_started: bool,
-    ) -> Result<Vec<f64>, Failure> {
-        let mut before = Vec::new();
-        Model::state(unit, &mut before);
-        let found = along(unit, of, direction, has_started);
-        unit.restore(&before)?;
-        found
     }
 }
 

@@ -8,6 +8,7 @@ use rocking::structure::{Mode, Structure, Ties};
 use rocking::{Frame, Modes};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -29,6 +30,8 @@ pub struct Archive {
     pub folder: PathBuf,
     /// The content of the archive.
     pub contents: Contents,
+    /// The bytes of the packed records by their names: a host may delete or lock the folder once the instance is made.
+    pub files: HashMap<String, Vec<u8>>,
 }
 
 /// The content of an archive.
@@ -212,7 +215,12 @@ impl Archive {
         let list = folder.join(RECORDS_FILE);
         let Records { record: records, vertical, fixed } =
             if list.exists() { read(&list)? } else { Records::default() };
-        Ok(Archive { folder, contents: Contents { structure, records, vertical, fixed } })
+        let contents = Contents { structure, records, vertical, fixed };
+        let bytes = |packed: &PackedRecord| {
+            let bytes = rocking_records::read_file(&folder.join(&packed.file)).ok()?; // refused when it is followed
+            Some((packed.file.clone(), bytes))
+        };
+        Ok(Archive { files: contents.packed().filter_map(bytes).collect(), folder, contents })
     }
 }
 

@@ -420,7 +420,7 @@ impl<Q: Masses> Model for Unit<Q> {
     }
 
     fn derivatives(&mut self, of: &[u32], direction: &[(u32, f64)], has_started: bool) -> Result<Vec<f64>, Failure> {
-        Q::derivatives(self, of, direction, has_started)
+        self.directional_derivatives(of, direction, has_started)
     }
 
     fn set_time(&mut self, time: f64, is_at_event: bool) {

@@ -177,6 +177,9 @@ fn bounds_of_rest<'a>(part: &Part<'a, Modes>, [u, u_dot, _]: &[Modes; 3]) -> Tur
     bounds_of(part.piece, [from, until], &most)
 }
 
+/// Stands for any angular acceleration in a bound, rad/s²: no product with masses and heights overflows.
+const UNBOUNDED: f64 = 1e200;
+
 /// Bounds of the magnitudes between two times (s) of a `piece`, over which the state has the magnitudes `most`. While rocking there
 /// is none of θ̈, which modes that are left out need.
 fn bounds_of<'a>(piece: &'a Piece<'a, Modes>, times: [f64; 2], most: &State<Modes>) -> Turning<'a, Most, Mosts> {
@@ -197,7 +200,7 @@ fn bounds_of<'a>(piece: &'a Piece<'a, Modes>, times: [f64; 2], most: &State<Mode
         F_t: Mosts(Modes::each(frame, |j, _| largest(loads.map(|load| load.F_t.of(j))))),
         a_v: Most(largest(loads.map(|load| load.a_v))),
     };
-    Turning { x, theta_ddot: Most(if phase == Phase::FullContact { 0.0 } else { f64::MAX }) }
+    Turning { x, theta_ddot: Most(if phase == Phase::FullContact { 0.0 } else { UNBOUNDED }) }
 }
 
 /// Whether the peak of `output` is searched.

@@ -44,7 +44,8 @@ pub fn of_frame(frame: &Frame) -> Vec<String> {
     // of mass that is spread evenly over the height
     let height = frame.floors().iter().map(|floor| floor.height).reduce(f64::max).unwrap_or(2.0 * body.S_1 / body.m_s);
     let lowest = frame.modes().iter().map(Mode::omega).reduce(f64::min);
-    let [f, usual] = [lowest.unwrap_or(f64::NAN) / TAU, USUAL_SPEED / height];
+    let usual = USUAL_SPEED / height;
+    let f = lowest.map_or(usual, |omega| omega / TAU); // none of a rigid structure
     let mut doubts = of_base(&frame.base);
     if (f / usual).max(usual / f) > UNUSUAL {
         doubts.push(format!(

@@ -5,7 +5,8 @@
 //! Messages begin with the function that was called and end with the one to call instead: the instance knows neither.
 //!
 //! What C cannot promise is checked: null and misaligned pointers, lengths, numbers of an enumeration, a call from
-//! within the logger, and, as far as that can be told, whether a component is one. A panic becomes [`Status::Fatal`].
+//! within the logger, and, as far as that can be told, whether a component is one. A panic becomes [`Status::Fatal`]. A call
+//! computes with the floating point control that Rust assumes, whatever the host's is.
 //!
 //! # Safety
 //!
@@ -23,6 +24,8 @@ use crate::state_machine::{Stage, Stages, Table, names};
 use crate::variables::DataType;
 use libc::{c_char, c_int, c_void, size_t};
 use std::any::Any;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+use std::arch::asm;
 use std::cell::{Cell, UnsafeCell};
 use std::ffi::CString;
 use std::marker::PhantomData;
@@ -123,6 +126,7 @@ const MAX_LENGTH: usize = 1 << 24;
 pub(crate) fn instantiate<F: Function, M: Model>(
     create: impl FnOnce() -> Option<(Instance<M>, &'static Table)>,
 ) -> *mut c_void {
+    let _control = Control::usual();
     let created = catch_unwind(AssertUnwindSafe(create)).ok().flatten();
     let Some((instance, allowed_in)) = created else { return ptr::null_mut() };
     let (magic, availability, instance) = (Cell::new(F::MAGIC), AtomicU8::new(READY), UnsafeCell::new(instance));
@@ -201,6 +205,7 @@ unsafe fn call_in<F: Function, M: Model>(
     body: impl FnOnce(&mut Instance<M>) -> Result<(), Failure>,
 ) -> c_int {
     let Some(component) = (unsafe { component::<F, M>(c) }) else { return Status::Error as c_int };
+    let _control = Control::usual();
     match component.availability.compare_exchange(READY, BUSY, Ordering::Acquire, Ordering::Relaxed) {
         Ok(_) => (),
         Err(BROKEN) => return Status::Fatal as c_int,
@@ -223,6 +228,65 @@ unsafe fn call_in<F: Function, M: Model>(
             component.availability.store(BROKEN, Ordering::Release);
             Status::Fatal as c_int
         }
+    }
+}
+
+/// The host's floating point control, which comes back at the end of a call: rounding, traps, and whether tiny numbers count as 0.
+struct Control(usize);
+
+impl Control {
+    /// Rounding to nearest, no traps, tiny numbers as they are.
+    const USUAL: usize = if cfg!(target_arch = "x86_64") { 0x1f80 } else { 0 };
+
+    /// The sticky flags of the register, which are no control.
+    const FLAGS: usize = if cfg!(target_arch = "x86_64") { 0x3f } else { 0 };
+
+    /// Takes the usual control until the value is dropped.
+    #[inline]
+    fn usual() -> Control {
+        let control = Control(Control::read() & !Control::FLAGS);
+        control.exchange(Control::USUAL);
+        control
+    }
+
+    /// Sets the control to `to` and keeps the flags, if the control is another one.
+    #[inline]
+    fn exchange(&self, to: usize) {
+        if self.0 != Control::USUAL {
+            Control::write(to | Control::read() & Control::FLAGS);
+        }
+    }
+
+    #[inline]
+    fn read() -> usize {
+        let mut _register: usize = 0;
+        #[cfg(target_arch = "x86_64")]
+        unsafe {
+            asm!("stmxcsr [{}]", in(reg) &raw mut _register, options(nostack, preserves_flags))
+        };
+        #[cfg(target_arch = "aarch64")]
+        unsafe {
+            asm!("mrs {}, fpcr", out(reg) _register, options(nostack, preserves_flags))
+        };
+        _register
+    }
+
+    #[inline]
+    fn write(_register: usize) {
+        #[cfg(target_arch = "x86_64")]
+        unsafe {
+            asm!("ldmxcsr [{}]", in(reg) &raw const _register, options(nostack, preserves_flags))
+        };
+        #[cfg(target_arch = "aarch64")]
+        unsafe {
+            asm!("msr fpcr, {}", in(reg) _register, options(nostack, preserves_flags))
+        };
+    }
+}
+
+impl Drop for Control {
+    fn drop(&mut self) {
+        self.exchange(self.0);
     }
 }
 
@@ -346,15 +410,14 @@ pub(crate) unsafe fn text<'a>(name: &'static str, pointer: *const c_char) -> Res
     }
 }
 
-/// Whether events are among the `length` log categories named at `pointer`; without any, all are meant.
-pub(crate) unsafe fn names_events(length: size_t, pointer: *const *const c_char) -> Result<bool, Failure> {
-    let mut has_events = length == 0;
-    for name in unsafe { values("categories", pointer, length) }? {
+/// The `length` log categories named at `pointer`; without any, all are meant.
+pub(crate) unsafe fn named_categories(length: size_t, pointer: *const *const c_char) -> Result<Vec<Category>, Failure> {
+    let named = |name: &*const c_char| {
         let name = unsafe { text("category", *name) }?;
-        let category = Category::named(name).ok_or_else(|| Failure::UnknownCategory(name.to_owned()))?;
-        has_events |= category == Category::Events;
-    }
-    Ok(has_events)
+        Category::named(name).ok_or_else(|| Failure::UnknownCategory(name.to_owned()))
+    };
+    let names = unsafe { values("categories", pointer, length) }?;
+    if names.is_empty() { Ok(Category::ALL.into()) } else { names.iter().map(named).collect() }
 }
 
 /// Keeps the FMU state: in the one that `pointer`, the argument `name`, points to, or in a new one for null.

@@ -62,6 +62,9 @@ pub enum Failure {
     /// A variable of another type.
     #[error("{name} is {}", type_name(*data_type))]
     WrongType { name: String, data_type: DataType },
+    /// Variables of a type that no variable has.
+    #[error("this FMU has no variables of this type")]
+    NoneOfType,
     /// A variable that is not set by the host.
     #[error("{name} cannot be set: it is {}, computed by the FMU", causality_name(*causality))]
     NotSettable { name: String, causality: Causality },
@@ -88,8 +91,8 @@ pub enum Failure {
     NoInput { name: String },
     /// A variable that no directional derivative can be taken by.
     #[error(
-        "{name} cannot be a known of a directional derivative: only the inputs can and, once the simulation has started, \
-         {knowns} and time"
+        "{name} cannot be a known of a directional derivative: only the inputs can, before the simulation starts real parameters \
+         and, once it has started, {knowns} and time"
     )]
     NoKnown { name: String, knowns: String },
     /// A slope or a part of a direction that is not a number.

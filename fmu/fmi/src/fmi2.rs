@@ -5,13 +5,13 @@
 mod stages;
 
 use crate::c_abi::{
-    self, Words, check_pointer, complete_step, escaped, fill, free_state, functions, keep_state, names_events,
+    self, Words, check_pointer, complete_step, escaped, fill, free_state, functions, keep_state, named_categories,
     read_all, read_state, room, text, values, write, write_all, write_state, write_state_size,
 };
 use crate::failure::Failure;
 use crate::instance::Instance;
 use crate::interface::{Interface, Stepping};
-use crate::logger::{Logger, Sink};
+use crate::logger::{Category, Logger, Sink};
 use crate::model::{Experiment, Progress, Update};
 use crate::state_machine::{Stage, Table};
 use crate::uri;
@@ -120,7 +120,7 @@ functions! {
         let create = || {
             check_pointer("functions", functions).ok()?;
             let name = unsafe { text("instanceName", instanceName) };
-            let logger = Logger::new(sink(unsafe { &*functions }, name.as_ref().unwrap_or(&"")));
+            let mut logger = Logger::new(sink(unsafe { &*functions }, name.as_ref().unwrap_or(&"")));
             let arguments = || {
                 let accepted = "0 (fmi2ModelExchange), 1 (fmi2CoSimulation)";
                 let interface = match fmuType {
@@ -144,7 +144,8 @@ functions! {
                         Interface::ModelExchange => &stages::MODEL_EXCHANGE,
                         Interface::CoSimulation(_) => &stages::CO_SIMULATION,
                     };
-                    Some((Instance::new(model, interface, events, logger, None), allowed_in))
+                    logger.switch(&[Category::Events], events);
+                    Some((Instance::new(model, interface, logger, None), allowed_in))
                 }
                 Err(failure) => {
                     logger.failure(failure.status(), &format!("fmi2Instantiate: {failure}"));
@@ -163,8 +164,8 @@ functions! {
     fmi2SetDebugLogging = SetDebugLogging(
         loggingOn: c_int, nCategories: size_t, categories: *const *const c_char,
     ) |instance| {
-        let has_events = names_events(nCategories, categories)?;
-        instance.logger.set_events(boolean("loggingOn", loggingOn)? && has_events);
+        let has_events = named_categories(nCategories, categories)?.contains(&Category::Events);
+        instance.logger.switch(&[Category::Events], boolean("loggingOn", loggingOn)? && has_events);
         Ok(())
     }
 
@@ -180,7 +181,7 @@ functions! {
 
     fmi2ExitInitializationMode = ExitInitializationMode() |instance| { instance.exit_initialization_mode() }
 
-    fmi2Terminate = Terminate() |instance| { instance.enter(Stage::Terminated) }
+    fmi2Terminate = Terminate() |instance| { instance.terminate() }
 
     fmi2Reset = Reset() |instance| { instance.reset() }
 

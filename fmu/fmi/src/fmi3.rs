@@ -11,14 +11,14 @@ mod stages;
 
 use crate::c_abi::{
     self, Words, call, call_back, call_on, check_count, check_pointer, complete_step, escaped, fill, free_state,
-    functions, keep_state, names_events, read_all, read_state, room, text, values, write, write_all, write_state,
+    functions, keep_state, named_categories, read_all, read_state, room, text, values, write, write_all, write_state,
     write_state_size,
 };
 use crate::failure::Failure;
 use crate::instance::Instance;
 pub use crate::interface::IntermediateUpdateCallback;
 use crate::interface::{Interface, IntermediateUpdate, Stepping};
-use crate::logger::{Logger, Sink};
+use crate::logger::{Category, Logger, Sink};
 use crate::model::{Experiment, Model, Progress, Update};
 use crate::state_machine::{Stage, Table};
 use crate::variables::{Causality, DataType, Role, positions};
@@ -38,21 +38,22 @@ unsafe fn create<M: Model>(
     interface: impl FnOnce(&M) -> Result<(Interface, &'static Table, Option<IntermediateUpdate>), Failure>,
 ) -> *mut c_void {
     c_abi::instantiate::<Function, M>(|| {
-        let logger = Logger::new(sink(log, environment));
+        let mut logger = Logger::new(sink(log, environment));
         let found = || {
             let name = unsafe { text("instanceName", name) }?;
             let token = unsafe { text("instantiationToken", token) }?;
             let folder = unsafe { text("resourcePath", folder) }?;
-            let events = boolean("loggingOn", logging_on)?;
+            let on = boolean("loggingOn", logging_on)?;
             if name.trim().is_empty() {
                 return Err(Failure::NoName);
             }
             let model = c_abi::open::<M>("instantiationToken", token, Path::new(folder))?;
-            Ok((interface(&model)?, model, events))
+            Ok((interface(&model)?, model, on))
         };
         match found() {
-            Ok(((interface, allowed_in, called_back), model, events)) => {
-                Some((Instance::new(model, interface, events, logger, called_back), allowed_in))
+            Ok(((interface, allowed_in, called_back), model, on)) => {
+                logger.switch(&Category::ALL, on);
+                Some((Instance::new(model, interface, logger, called_back), allowed_in))
             }
             Err(failure) => {
                 logger.failure(failure.status(), &format!("{function}: {failure}"));
@@ -115,6 +116,11 @@ unsafe fn references<M: Model>(
 ) -> Result<Vec<u32>, Failure> {
     check_count("nValues", nValues, nValueReferences)?;
     positions(instance.variables(), unsafe { values("valueReferences", valueReferences, nValueReferences) }?)
+}
+
+/// Refuses all `count` variables of a type that no variable has.
+fn none_of_type(count: size_t) -> Result<(), Failure> {
+    if count == 0 { Ok(()) } else { Err(Failure::NoneOfType) }
 }
 
 const WORDS: Words = Words {
@@ -215,7 +221,8 @@ functions! {
             }
             write("eventHandlingNeeded", eventHandlingNeeded, u8::from(progress == Progress::Event))?;
             write("terminateSimulation", terminateSimulation, u8::from(progress == Progress::Ended))?;
-            write("earlyReturn", earlyReturn, u8::from(may_return_early && time < point + step))?;
+            let is_early = may_return_early && progress != Progress::Complete && time < point + step;
+            write("earlyReturn", earlyReturn, is_early.into())?;
             write("lastSuccessfulTime", lastSuccessfulTime, time)?;
             told = instance.show_step().map(|host| (host, time));
             Ok(())
@@ -244,11 +251,7 @@ functions! {
     fmi3SetDebugLogging = SetDebugLogging(
         loggingOn: u8, nCategories: size_t, categories: *const *const c_char,
     ) |instance| {
-        let has_events = names_events(nCategories, categories)?;
-        let on = boolean("loggingOn", loggingOn)?;
-        if has_events {
-            instance.logger.set_events(on);
-        }
+        instance.logger.switch(&named_categories(nCategories, categories)?, boolean("loggingOn", loggingOn)?);
         Ok(())
     }
 
@@ -265,7 +268,7 @@ functions! {
 
     fmi3EnterEventMode = EnterEventMode() |instance| { instance.enter_event_mode() }
 
-    fmi3Terminate = Terminate() |instance| { instance.enter(Stage::Terminated) }
+    fmi3Terminate = Terminate() |instance| { instance.terminate() }
 
     fmi3Reset = Reset() |instance| { instance.reset() }
 
@@ -463,26 +466,26 @@ functions! {
         write("nContinuousStates", nContinuousStates, instance.count(|role| *role == Role::State))
     }
 
-    // Functions that this unit does not have are never allowed. Arguments that are not read are not declared: on all platforms that
-    // there are libraries for, the caller removes them.
-    fmi3GetFloat32 = GetFloat32()
-    fmi3GetInt8 = GetInt8()
-    fmi3GetUInt8 = GetUInt8()
-    fmi3GetInt16 = GetInt16()
-    fmi3GetUInt16 = GetUInt16()
-    fmi3GetUInt32 = GetUInt32()
-    fmi3GetUInt64 = GetUInt64()
-    fmi3GetBinary = GetBinary()
-    fmi3GetClock = GetClock()
-    fmi3SetFloat32 = SetFloat32()
-    fmi3SetInt8 = SetInt8()
-    fmi3SetUInt8 = SetUInt8()
-    fmi3SetInt16 = SetInt16()
-    fmi3SetUInt16 = SetUInt16()
-    fmi3SetUInt32 = SetUInt32()
-    fmi3SetUInt64 = SetUInt64()
-    fmi3SetBinary = SetBinary()
-    fmi3SetClock = SetClock()
+    // Types that no variable has, and then functions that this unit does not have, which are never allowed. Arguments that are not read are
+    // not declared: on all platforms that there are libraries for, the caller removes them.
+    fmi3GetFloat32 = GetFloat32(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3GetInt8 = GetInt8(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3GetUInt8 = GetUInt8(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3GetInt16 = GetInt16(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3GetUInt16 = GetUInt16(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3GetUInt32 = GetUInt32(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3GetUInt64 = GetUInt64(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3GetBinary = GetBinary(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3GetClock = GetClock(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3SetFloat32 = SetFloat32(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3SetInt8 = SetInt8(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3SetUInt8 = SetUInt8(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3SetInt16 = SetInt16(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3SetUInt16 = SetUInt16(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3SetUInt32 = SetUInt32(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3SetUInt64 = SetUInt64(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3SetBinary = SetBinary(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
+    fmi3SetClock = SetClock(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
     fmi3GetNumberOfVariableDependencies = GetNumberOfVariableDependencies()
     fmi3GetVariableDependencies = GetVariableDependencies()
     fmi3GetAdjointDerivative = GetAdjointDerivative()

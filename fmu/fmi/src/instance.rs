@@ -13,8 +13,14 @@ use std::ffi::{CString, c_char};
 use std::mem::MaybeUninit;
 use std::sync::Arc;
 
-/// How close two times that mean the same are, in parts of the step, or in units in the last place if that is more.
-const SAME_TIME: (f64, f64) = (1e-4, 8.0);
+/// How far apart rounding leaves two times that are the same, as a part of the step, or in units in the last place.
+const ROUNDING: (f64, f64) = (1e-9, 8.0);
+
+/// How far the host's time may be from the FMU's, as a part of the step, or of the time, which many hosts keep as a float32.
+const SAME_TIME: (f64, f64) = (1e-3, 2.0 * f32::EPSILON as f64);
+
+/// Times that a host sets without completing a step, before it is warned. No solver tries as many within one step.
+const MANY_TRIALS: u32 = 1000;
 
 /// One instance.
 pub struct Instance<M> {
@@ -29,7 +35,9 @@ pub struct Instance<M> {
     stage: Stage,
     experiment: Experiment,
     pub(crate) logger: Logger,
-    events_at_start: bool,
+    /// The log categories that were on when the instance was made.
+    on_at_start: [bool; 2],
+    handling: EventHandling,
     /// The model's state, as it was made.
     at_start: Vec<u8>,
     snapshots: Snapshots,
@@ -43,6 +51,18 @@ pub struct Instance<M> {
     asked: Option<f64>,
     /// While the host reads outputs: the stage that the step has led to.
     led_to: Option<Stage>,
+}
+
+/// How a host that integrates has handled events since the start.
+#[derive(Default)]
+struct EventHandling {
+    /// Whether a completed step has requested event mode, which the host has not entered since.
+    awaits_event: bool,
+    /// How often the host has set time since the last completed step or event.
+    trials: u32,
+    /// Whether the host has completed a step or entered event mode.
+    has_begun: bool,
+    is_warned: bool,
 }
 
 /// What a variable is to the calls of every step.
@@ -71,21 +91,14 @@ fn range(variable: &Variable) -> (f64, f64) {
 }
 
 impl<M: Model> Instance<M> {
-    /// An instance of `model`, just instantiated; `events` says whether events are logged.
-    pub(crate) fn new(
-        model: M,
-        interface: Interface,
-        events: bool,
-        mut logger: Logger,
-        host: Option<IntermediateUpdate>,
-    ) -> Instance<M> {
-        logger.set_events(events);
+    /// An instance of `model`, just instantiated.
+    pub(crate) fn new(model: M, interface: Interface, logger: Logger, host: Option<IntermediateUpdate>) -> Instance<M> {
         let variables = model.variables();
         let kinds = variables.iter().map(Kind::from).collect();
         let ranges = variables.iter().map(range).collect();
-        let (stage, events_at_start, mut at_start) = (Stage::Instantiated, events, Vec::new());
+        let (stage, on_at_start, mut at_start) = (Stage::Instantiated, logger.on, Vec::new());
         model.state(&mut at_start);
-        let (experiment, snapshots, reals, shown, asked, led_to) = Default::default();
+        let (experiment, handling, snapshots, reals, shown, asked, led_to) = Default::default();
         Instance {
             model,
             variables,
@@ -95,7 +108,8 @@ impl<M: Model> Instance<M> {
             stage,
             experiment,
             logger,
-            events_at_start,
+            on_at_start,
+            handling,
             at_start,
             snapshots,
             reals,
@@ -170,7 +184,18 @@ impl<M: Model> Instance<M> {
             Interface::ModelExchange if self.stage == Stage::ContinuousTimeMode => self.model.arrive_at_event()?,
             _ => (),
         }
+        self.handling =
+            EventHandling { has_begun: true, is_warned: self.handling.is_warned, ..EventHandling::default() };
         self.enter(Stage::EventMode)
+    }
+
+    /// Ends the simulation.
+    pub(crate) fn terminate(&mut self) -> Result<(), Failure> {
+        let is_outside = self.stage == Stage::ContinuousTimeMode && !self.handling.has_begun;
+        if is_outside && self.model.time()? > self.experiment.start_time {
+            self.warn_of_trials()?;
+        }
+        self.enter(Stage::Terminated)
     }
 
     /// Applies what the event brings.
@@ -182,8 +207,8 @@ impl<M: Model> Instance<M> {
     /// Makes the instance as it was instantiated. FMU states stay the host's until it frees them.
     pub(crate) fn reset(&mut self) -> Result<(), Failure> {
         self.model.restore(&self.at_start)?;
-        self.experiment = Experiment::default();
-        self.logger.set_events(self.events_at_start);
+        (self.experiment, self.handling) = Default::default();
+        self.logger.on = self.on_at_start;
         self.enter(Stage::Instantiated)
     }
 
@@ -209,6 +234,7 @@ impl<M: Model> Instance<M> {
         }
         self.model.restore(model)?;
         (self.stage, self.experiment) = (*stage, *experiment);
+        (self.handling.awaits_event, self.handling.trials) = (false, 0);
         Ok(())
     }
 
@@ -325,6 +351,8 @@ impl<M: Model> Instance<M> {
     fn set_real_slowly(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
         let mut states: Option<Vec<f64>> = None;
         for (reference, &value) in references.iter().zip(values) {
+            let has = self.stage.has_started() && self.find(*reference)?.causality == Causality::Parameter;
+            let has = has && self.model.get(*reference)? == Value::Real(value);
             let variable = self.find(*reference)?;
             let data_type = variable.data_type;
             let (DataType::Real { unit, .. }, Some((min, max))) = (data_type, data_type.limits()) else {
@@ -340,7 +368,7 @@ impl<M: Model> Instance<M> {
             match variable.causality {
                 Causality::Input => (),
                 _ if variable.start.is_none() => return Err(refused(variable)),
-                _ if self.stage.has_started() => return Err(Failure::Fixed { name }),
+                _ if self.stage.has_started() && !has => return Err(Failure::Fixed { name }),
                 _ => (),
             }
             if !data_type.accepts(value) {
@@ -386,14 +414,17 @@ impl<M: Model> Instance<M> {
         values: &[T],
         value_of: impl Fn(&Variable, T) -> Result<Value, Failure>,
     ) -> Result<(), Failure> {
+        let variables = Arc::clone(&self.variables);
         let checked = references.iter().zip(values).map(|(reference, value)| {
-            let variable = self.find(*reference)?;
+            self.find(*reference)?;
+            let variable = &variables[*reference as usize];
             match variable.causality {
                 Causality::Input | Causality::Parameter => (),
                 _ => return Err(refused(variable)),
             }
             let value = value_of(variable, *value)?;
-            if variable.causality != Causality::Input && self.stage.has_started() {
+            let is_fixed = variable.causality != Causality::Input && self.stage.has_started();
+            if is_fixed && self.model.get(*reference)? != value {
                 return Err(Failure::Fixed { name: variable.name.to_string() });
             }
             Ok(value)
@@ -546,8 +577,8 @@ impl<M: Model> Instance<M> {
         Ok(asked)
     }
 
-    /// Steps from `point` (s), where the instance is but for rounding, over `step` (s), or to the first event if that is
-    /// handed over. The instance takes over the host's clock.
+    /// Steps to `point` + `step` (s), or to the first event if that is handed over. If `point` differs from the instance's time by
+    /// rounding alone, the instance takes over the host's clock, and `step` is the duration.
     #[inline(always)]
     pub(crate) fn do_step(&mut self, point: f64, step: f64) -> Result<Progress, Failure> {
         if self.asked.is_some() {
@@ -556,7 +587,10 @@ impl<M: Model> Instance<M> {
         }
         self.check_step(point, step)?;
         let stops_at_events = self.interface.stepping().hands_over();
-        let step = Step { start: point, duration: step, stops_at_events };
+        let time = self.model.time()?;
+        let (start, duration) =
+            if is_rounding(point, time, step) { (point, step) } else { (time, point + step - time) };
+        let step = Step { start, duration, stops_at_events };
         let progress = self.model.advance(step, &self.logger);
         let progress = self.stop_if_stuck(progress)?;
         if progress == Progress::Ended {
@@ -605,13 +639,20 @@ impl<M: Model> Instance<M> {
     }
 }
 
-/// Hosts add up steps or multiply them: their times (s) differ in the last digits, but never so far that a step could
-/// be missed.
+/// Whether a host that adds up steps or multiplies them may mean `b` (s) by `a`.
+#[inline]
+fn is_rounding(a: f64, b: f64, step: f64) -> bool {
+    let (of_step, places) = ROUNDING;
+    let apart = (a - b).abs();
+    apart <= of_step * step || apart <= places * (b.abs().next_up() - b.abs())
+}
+
+/// Whether a host may mean `b` (s) by `a`, by the clock that it keeps. The two are never so far apart that a step could be missed.
 #[inline]
 fn is_same_time(a: f64, b: f64, step: f64) -> bool {
-    let (part, places) = SAME_TIME;
+    let (of_step, of_time) = SAME_TIME;
     let apart = (a - b).abs();
-    apart <= part * step || apart <= 0.5 * step && apart <= places * (b.abs().next_up() - b.abs())
+    apart <= of_step * step || apart <= 0.5 * step && (apart <= of_time * b.abs() || is_rounding(a, b, step))
 }
 
 /// The service of an instance to a host that integrates.
@@ -623,7 +664,9 @@ impl<M: Model> Instance<M> {
         }
         self.model.time()?;
         self.model.set_time(time, self.stage == Stage::EventMode);
-        Ok(())
+        let is_trial = self.stage == Stage::ContinuousTimeMode;
+        self.handling.trials = self.handling.trials.saturating_add(is_trial.into());
+        if self.handling.trials >= MANY_TRIALS { self.warn_of_trials() } else { Ok(()) }
     }
 
     /// Goes to the host's states.
@@ -638,6 +681,34 @@ impl<M: Model> Instance<M> {
     /// Tells the model that the host has completed a step to where it is.
     pub(crate) fn completed_integrator_step(&mut self) -> Result<Completed, Failure> {
         let completed = self.model.complete_step(&self.logger);
-        self.stop_if_stuck(completed)
+        let completed = self.stop_if_stuck(completed)?;
+        if self.handling.awaits_event {
+            self.warn_of_events(
+                "the host completes steps but does not enter event mode, which a completed step requested: enter event mode \
+                 when enterEventMode is true",
+            )?;
+        }
+        (self.handling.awaits_event, self.handling.trials) = (completed.needs_event_mode, 0);
+        self.handling.has_begun = true;
+        Ok(completed)
+    }
+
+    #[cold]
+    fn warn_of_trials(&mut self) -> Result<(), Failure> {
+        self.warn_of_events(
+            "the host integrates without completing steps: call CompletedIntegratorStep after every step",
+        )
+    }
+
+    /// Warns once that the host keeps events from being applied.
+    #[cold]
+    fn warn_of_events(&mut self, how: &str) -> Result<(), Failure> {
+        if !std::mem::replace(&mut self.handling.is_warned, true) {
+            let time = self.model.time()?;
+            self.logger.warning(&format!(
+                "t = {time} s: {how}. Without it the FMU applies no event, and its results are wrong"
+            ));
+        }
+        Ok(())
     }
 }

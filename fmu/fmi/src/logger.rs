@@ -54,7 +54,7 @@ impl Category {
     pub const fn description(self) -> &'static str {
         match self {
             Category::Events => "events, as they happen",
-            Category::Warning => "warnings about the results; always on",
+            Category::Warning => "warnings about the results; always on in FMI 2.0",
             Category::Discard => "steps that end early and the reasons; always on",
             Category::Error => "rejected calls and the reasons; always on",
         }
@@ -64,26 +64,29 @@ impl Category {
 /// Takes the status, the category's name and the message.
 pub type Sink = Box<dyn Fn(Status, &CStr, &str)>;
 
-/// Sends messages. Warnings, discards and errors are always sent, events if the host asked for them.
+/// Sends messages. The reasons of discards and errors are always sent, events and warnings while their category is on.
 pub struct Logger {
     sink: Sink,
-    events: bool,
+    /// Whether the categories of events and of warnings are on.
+    pub(crate) on: [bool; 2],
 }
 
 impl Logger {
-    /// A logger into `sink`, without events.
+    /// A logger into `sink`, with warnings and without events.
     pub fn new(sink: Sink) -> Logger {
-        Logger { sink, events: false }
+        Logger { sink, on: [false, true] }
     }
 
-    /// Switches events on or off.
-    pub fn set_events(&mut self, events: bool) {
-        self.events = events;
+    /// Switches `categories` on or off; discards and errors stay on.
+    pub fn switch(&mut self, categories: &[Category], on: bool) {
+        for category in categories {
+            self.on.get_mut(*category as usize).into_iter().for_each(|is_on| *is_on = on);
+        }
     }
 
     /// Sends an event, which is put into words only if someone listens.
     pub fn event(&self, message: impl FnOnce() -> String) {
-        if self.events {
+        if self.on[Category::Events as usize] {
             self.send(Status::Ok, Category::Events, &message());
         }
     }
@@ -92,7 +95,9 @@ impl Logger {
     /// `fmi2Warning`, but OMSimulator (2940ef1) ends it there, after `fmi2ExitInitializationMode` as after
     /// `fmi2DoStep`.
     pub fn warning(&self, message: &str) {
-        self.send(Status::Warning, Category::Warning, message);
+        if self.on[Category::Warning as usize] {
+            self.send(Status::Warning, Category::Warning, message);
+        }
     }
 
     /// Sends why a call returns `status`.

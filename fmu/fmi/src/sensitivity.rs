@@ -5,7 +5,7 @@
 
 use crate::failure::Failure;
 use crate::model::Model;
-use crate::variables::{Causality, Role, Variable, state_references};
+use crate::variables::{Causality, Role, Value, Variable, state_references};
 
 /// The largest change that the scheme may last make, relative to the derivative, or to the value of the unknown over the
 /// magnitude of the known if that is more.
@@ -56,7 +56,8 @@ fn limit(quotients: impl Iterator<Item = (f64, f64)>) -> Option<(f64, f64)> {
     best
 }
 
-/// The derivatives of `of` along `direction` by inputs and, once the simulation `has_started`, by states.
+/// The derivatives of `of` along `direction` by inputs, before the simulation `has_started` by real parameters, and afterwards by
+/// states.
 pub fn along<M: Model>(
     model: &mut M,
     of: &[u32],
@@ -68,16 +69,24 @@ pub fn along<M: Model>(
     let mut sums = vec![0.0; of.len()];
     for (reference, change) in direction {
         let known = &variables[*reference as usize];
-        let found = if known.causality == Causality::Input {
-            let mut x = [0.0];
-            model.get_reals(&[*reference], &mut x)?;
-            let scale = known.nominal.unwrap_or(1.0).max(x[0].abs());
-            let found = by_differences(x[0], scale, |value| {
+        let is_parameter =
+            !has_started && matches!((&known.start, known.causality), (Some(Value::Real(_)), Causality::Parameter));
+        let found = if known.causality == Causality::Input || is_parameter {
+            let x = model.values(&[*reference])?[0];
+            let scale = if is_parameter && x != 0.0 { x.abs() } else { known.nominal.unwrap_or(1.0).max(x.abs()) };
+            let set = |model: &mut M, value: f64| {
+                if is_parameter {
+                    model.set(*reference, Value::Real(value));
+                    return Ok(());
+                }
+                model.set_inputs(&[*reference], &[value])
+            };
+            let found = by_differences(x, scale, |value| {
                 known.data_type.accepts(value).then_some(())?;
-                model.set_inputs(&[*reference], &[value]).ok()?;
+                set(model, value).ok()?;
                 model.values(of).ok()
             });
-            model.set_inputs(&[*reference], &x)?;
+            set(model, x)?;
             found
         } else if known.role == Role::State && has_started {
             let which = state_references(&variables).position(|state| state == *reference).expect("it is a state");
@@ -102,8 +111,8 @@ pub fn along<M: Model>(
     Ok(sums)
 }
 
-/// Refuses a directional derivative by a variable that is neither an input nor a state.
-pub fn no_known(variables: &[Variable], reference: u32) -> Failure {
+/// Refuses a directional derivative by a variable that is neither an input, a parameter nor a state.
+fn no_known(variables: &[Variable], reference: u32) -> Failure {
     let name = |reference: u32| variables[reference as usize].name.to_string();
     let knowns = state_references(variables).map(name).collect::<Vec<_>>().join(", ");
     Failure::NoKnown { name: name(reference), knowns }

@@ -93,12 +93,12 @@ pub(crate) fn names(stages: Stages) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
-/// The tables of a version's two interfaces: the stages, and a row for every function of the version's `Function` that may
+/// The tables of a version's two interfaces: the stages, and a row for the functions of the version's `Function` that may
 /// be called in one. x is for both interfaces, s for a slave in co-simulation, m for a model, - for neither. The others may
 /// be called nowhere.
 #[cfg(not(target_family = "wasm"))]
 macro_rules! tables {
-    ([$($of:tt $stage:ident),*] $($function:ident [$($mark:tt)+])*) => {
+    ([$($of:tt $stage:ident),*] $($($function:ident)+ [$($mark:tt)+])*) => {
         /// The stages that each function of a slave may be called in.
         pub(crate) static CO_SIMULATION: $crate::state_machine::Table = table("s");
 
@@ -114,7 +114,7 @@ macro_rules! tables {
                 let mut at = 0;
                 while at < stages.len() {
                     let (stage, is_known) = stages[at];
-                    table[Function::$function as usize] |= if is_known && marks[at] { stage.bit() } else { 0 };
+                    $(table[Function::$function as usize] |= if is_known && marks[at] { stage.bit() } else { 0 };)+
                     at += 1;
                 }
             })*

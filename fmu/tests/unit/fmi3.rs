@@ -22,8 +22,9 @@ struct Host {
     _resources: TempDir,
 }
 
-unsafe extern "C" fn record(log: *mut c_void, status: c_int, _: *const c_char, text: *const c_char) {
-    assert_eq!(status, ERROR);
+/// Of a refusal the text, of another message the category.
+unsafe extern "C" fn record(log: *mut c_void, status: c_int, category: *const c_char, text: *const c_char) {
+    let text = if status == ERROR { text } else { category };
     let text = unsafe { CStr::from_ptr(text) }.to_str().unwrap().to_owned();
     unsafe { &*log.cast::<Log>() }.borrow_mut().push(text);
 }
@@ -148,14 +149,16 @@ fn a_refusal_names_the_function_and_what_to_call() {
             fmi3SetFloat64(c, &reference("m"), 1, &1.0, 1),
             fmi3GetFloat64(c, &0, 1, &mut 0.0, 1),
             fmi3GetFloat64(c, &2, 1, &mut 0.0, 2),
-            fmi3GetUInt8(c),
+            fmi3GetUInt8(c, &0, 1),
+            fmi3GetAdjointDerivative(c),
             fmi3EnterEventMode(c),
             step(1.0, 0.1),
             step(0.0, 3.0),
             fmi3SerializeFMUState(c, state, null_mut(), 0),
             fmi3GetDirectionalDerivative(c, &2, 1, &0, 1, &1.0, 2, &mut 0.0, 1),
         ];
-        assert_eq!(refused, [ERROR; 11]);
+        assert_eq!(refused, [ERROR; 12]);
+        assert_eq!((fmi3GetUInt8(c, null(), 0), fmi3SetBinary(c, null(), 0)), (OK, OK));
         assert_eq!((fmi3EnterContinuousTimeMode(model.c), fmi3SetTime(model.c, -1.0)), (OK, OK));
         assert_eq!(fmi3CompletedIntegratorStep(model.c, 1, &mut 0, &mut 0), ERROR);
     }
@@ -170,7 +173,8 @@ fn a_refusal_names_the_function_and_what_to_call() {
          fmi3Reset",
         &format!("fmi3GetFloat64: value reference 0 does not exist; they run from 1 to {}", host::VARIABLES.len()),
         "fmi3GetFloat64: nValues = 2 is not 1",
-        "fmi3GetUInt8: not allowed in the state \"step complete\"; allowed in: none",
+        "fmi3GetUInt8: this FMU has no variables of this type",
+        "fmi3GetAdjointDerivative: not allowed in the state \"step complete\"; allowed in: none",
         "fmi3EnterEventMode: there is no event mode: the instance was made with eventModeUsed = false",
         "fmi3DoStep: currentCommunicationPoint = 1 s differs from the time of the FMU, t = 0 s: step from there, or go back with \
          fmi3SetFMUState",
@@ -181,6 +185,38 @@ fn a_refusal_names_the_function_and_what_to_call() {
     assert_eq!(host.log.take(), expected);
     let ends = "time must not fall below the last event or complete step; to go back, call fmi3SetFMUState";
     assert!(model.log.take()[0].ends_with(ends));
+}
+
+/// Each category is switched by itself; the reasons of refused calls are always logged.
+#[test]
+fn a_host_hears_the_categories_that_it_switches_on() {
+    let (all, warnings): (&[_], &[_]) = (&[], &[c"logStatusWarning".as_ptr()]);
+    for (switched, expected) in [
+        (vec![], vec![]),
+        (vec![(1, all)], vec!["logStatusWarning", "logEvents"]),
+        (vec![(1, all), (0, warnings)], vec!["logEvents"]),
+        (vec![(1, warnings)], vec!["logStatusWarning"]),
+        (vec![(1, all), (0, all)], vec![]),
+    ] {
+        let host = Host::new(Some(Stepping::default()));
+        unsafe {
+            for (on, names) in switched {
+                assert_eq!(fmi3SetDebugLogging(host.c, on, names.len(), names.as_ptr()), OK);
+            }
+            let starts = [reference("theta_0"), reference("r")];
+            assert_eq!(fmi3SetFloat64(host.c, starts.as_ptr(), 2, [0.01, 0.5].as_ptr(), 2), OK);
+            assert_eq!(
+                (fmi3EnterInitializationMode(host.c, 0, 0.0, 0.0, 0, 0.0), fmi3ExitInitializationMode(host.c)),
+                (OK, OK)
+            );
+            assert_eq!(fmi3DoStep(host.c, 0.0, 0.5, 0, &mut 0, &mut 0, &mut 0, &mut 0.0), OK);
+            assert_eq!(fmi3EnterStepMode(host.c), ERROR);
+        }
+        let mut log = host.log.take();
+        assert!(log.pop().is_some_and(|text| text.starts_with("fmi3EnterStepMode: not allowed")));
+        log.dedup();
+        assert_eq!(log, expected);
+    }
 }
 
 /// An instance is of one version: the other's functions find no component in it.

@@ -2,6 +2,7 @@
 #![allow(unsafe_code, non_snake_case)] // the C interface; F_t and names of the standard
 
 mod directional_derivatives;
+mod every_interface;
 mod fmi3;
 mod fmu_states;
 #[path = "../host/mod.rs"]

@@ -262,6 +262,38 @@ fn what_no_integrator_should_try_is_sent_back() {
     assert_eq!((host.set_states([0.0, 0.0, 0.1, 0.0]), host.derivatives().is_ok()), (OK, true));
 }
 
+/// A host that enters no event mode, or completes no step, holds a structure down that should rock: it is warned once.
+#[test]
+fn a_host_that_ignores_events_is_warned_once() {
+    let pushed = || {
+        let host = Host::going_model(&[]);
+        assert_eq!(host.set(&[("a_g", 9.0)]), OK);
+        host
+    };
+    let warnings = |host: &Host, expected: &[&str]| {
+        let log = host.log.take();
+        assert_eq!(log.len(), expected.len(), "{log:?}");
+        for (message, expected) in log.iter().zip(expected) {
+            assert!(message.status == WARNING && message.text.contains(expected), "{log:?}");
+        }
+    };
+    let go_on = |host: &Host, step: u32| assert_eq!(host.set_time(0.01 * f64::from(step)), OK);
+    let (obeys, ignores, never, briefly) = (pushed(), pushed(), pushed(), pushed());
+    for step in 1..20 {
+        obeys.integrate(0.01 * f64::from(step - 1), 0.01);
+        go_on(&ignores, 5 * step);
+        assert!(ignores.complete().is_ok());
+    }
+    assert_eq!((obeys.terminate(), obeys.get("theta") != 0.0, ignores.get("theta")), (OK, true, 0.0));
+    warnings(&obeys, &[]);
+    warnings(&ignores, &["t = 0.1 s: the host completes steps but does not enter event mode"]);
+    (1..3000).for_each(|step| go_on(&never, step));
+    warnings(&never, &["the host integrates without completing steps"]);
+    go_on(&briefly, 1);
+    assert_eq!(briefly.terminate(), OK);
+    warnings(&briefly, &["the host integrates without completing steps"]);
+}
+
 /// Peaks between the host's steps are not the FMU's to see.
 #[test]
 fn peaks_and_validity_are_not_watched() {
@@ -316,7 +348,8 @@ fn directional_derivatives_are_the_slopes_of_the_values() {
     }
     let host = Host::new_model();
     host.write("ramp.csv", "0,1\n0.5,-3\n");
-    assert_eq!((host.set_record("ramp.csv"), host.set_text("record_v", "ramp.csv")), (OK, OK));
+    host.write("up.csv", "0,2\n0.5,-2\n");
+    assert_eq!((host.set_record("ramp.csv"), host.set_text("record_v", "up.csv")), (OK, OK));
     let host = host.initialized(&[("theta_0", 0.03)]);
     assert_eq!((host.exit(), host.update().is_ok(), host.go_on()), (OK, true, OK));
     let [before, after] = [0.125, 0.25].map(|time| {

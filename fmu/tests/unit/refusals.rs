@@ -59,7 +59,7 @@ const STEPPING: &[Refused] = &[
         h.set(&[("a_g", 1.0), ("m", 0.5)])
     }),
     ("record is fixed once the simulation has started", |h| h.set_record("b.csv")),
-    ("peaks is fixed once the simulation has started", |h| h.set_boolean("peaks", 0)),
+    ("peaks is fixed once the simulation has started", |h| h.set_boolean("peaks", 1)),
     ("detail is fixed once the simulation has started", |h| h.set_integer("detail", 2)),
     ("order = 2 for a_g is out of range: only derivatives of order 1 exist", |h| h.set_slope("a_g", 2, 1.0)),
     ("order = 0 for a_g is out of range: only derivatives of order 1 exist", |h| h.set_slope("a_g", 0, 1.0)),
@@ -76,7 +76,7 @@ const STEPPING: &[Refused] = &[
     ("currentCommunicationPoint = 10 s differs from the time of the FMU, t = 10.5 s: step from there, or ", |h| {
         h.step(10.0, 0.5)
     }),
-    ("currentCommunicationPoint = 10.5001 s differs from the time of the FMU", |h| h.step(10.5001, 0.5)),
+    ("currentCommunicationPoint = 10.501 s differs from the time of the FMU", |h| h.step(10.501, 0.5)),
     ("currentCommunicationPoint = NaN s differs from the time of the FMU", |h| h.step(f64::NAN, 0.5)),
     (
         "communicationStepSize = 0 s is out of range: it must be positive, finite, large enough to move t = 10.5 s, and end",
@@ -107,6 +107,18 @@ fn a_refused_call_says_why_and_changes_nothing() {
     for (host, calls) in [(Host::new(), INSTANTIATED), (Host::initializing(&[]), INITIALIZING), (stepping, STEPPING)] {
         calls.iter().for_each(|(message, call)| host.assert_refused(|| call(&host), ERROR, message));
     }
+}
+
+/// Hosts set all start values again, also after the start.
+#[test]
+fn a_fixed_parameter_may_be_set_to_the_value_that_it_has() {
+    let host = Host::started(&[("theta_0", 0.02)]);
+    assert_eq!(host.step(0.0, 0.1), OK);
+    let before = host.bytes();
+    assert_eq!(host.set(&[("m", host.get("m")), ("theta_0", 0.02)]), OK);
+    let others = (host.set_record(""), host.set_boolean("peaks", 0), host.set_integer("detail", 1));
+    assert_eq!(others, (OK, OK, OK));
+    assert!(host.bytes() == before);
 }
 
 #[test]

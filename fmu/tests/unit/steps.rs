@@ -160,6 +160,30 @@ fn a_point_and_the_stop_time_are_met_but_for_rounding() {
     last.assert_refused(|| last.step(1.7e308, 1.7e308), ERROR, "communicationStepSize = 1.7e308 s is out of range");
 }
 
+/// A host may keep its clock as a float32, as game engines do: a step ends at its point plus its duration all the same.
+#[test]
+fn a_clock_of_single_precision_loses_no_time() {
+    let host = Host::started(&[("theta_0", 0.02)]);
+    assert_eq!((host.step(0.0, 0.01), host.step(0.01 + 2e-6, 0.01)), (OK, OK));
+    assert_eq!(host.last_successful_time(), 0.01 + 2e-6 + 0.01);
+    let clock = |frame: u32| 500.0 + f64::from(frame) / 60.0;
+    let single = |time: f64| f64::from(time as f32);
+    let from_start = || {
+        let host = Host::new();
+        assert_eq!((host.set(&[("theta_0", 0.02)]), host.setup(None, 500.0, None)), (OK, OK));
+        assert_eq!((host.enter(), host.exit()), (OK, OK));
+        host
+    };
+    let (host, once) = (from_start(), from_start());
+    for frame in 0..60 {
+        let (point, step) = (single(clock(frame)), single(clock(frame + 1) - clock(frame)));
+        assert_eq!((host.step(point, step), host.last_successful_time()), (OK, point + step));
+    }
+    assert_eq!(once.step(500.0, host.last_successful_time() - 500.0), OK);
+    assert!(once.integer("transitions") > 3);
+    assert_relative_eq!(host.get("theta"), once.get("theta"), max_relative = 1e-8);
+}
+
 /// The reaction follows the ramp to its end: the rate there is that of the ramp, until the input is set anew.
 #[test]
 fn rates_know_the_slope_just_followed() {

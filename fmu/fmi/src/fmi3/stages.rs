@@ -28,11 +28,15 @@ tables! {
     GetInt64                      [x x x - x x x x x x]
     GetBoolean                    [x x x - x x x x x x]
     GetString                     [x x x - x x x x x x]
+    GetFloat32 GetInt8 GetUInt8 GetInt16 GetUInt16 GetUInt32 GetUInt64 GetBinary GetClock
+                                  [x x x - x x x x x x]
     SetFloat64                    [x x x x - - x x - -]
     SetInt32                      [x x x - - - x - - -]
     SetInt64                      [x x x - - - x - - -]
     SetBoolean                    [x x x - - - x - - -]
     SetString                     [x x x - - - x - - -]
+    SetFloat32 SetInt8 SetUInt8 SetInt16 SetUInt16 SetUInt32 SetUInt64 SetBinary SetClock
+                                  [x x x - - - x - - -]
     GetFMUState                   [x x x - - x x x x x]
     SetFMUState                   [x x x - - x x x x x]
     FreeFMUState                  [x x x - - x x x x x]

@@ -120,7 +120,7 @@ type Call = fn(C, &mut Sequence) -> c_int;
 struct Version {
     /// All of its functions that take an instance, but for the one that frees it.
     functions: fn() -> Vec<&'static str>,
-    /// How each is called, but for those that are allowed nowhere and read no argument.
+    /// How each is called, but for those that are allowed nowhere, and those of types that no variable has.
     calls: &'static [(&'static str, Call)],
     slave: Table,
     model: Table,
