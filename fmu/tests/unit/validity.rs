@@ -83,7 +83,7 @@ fn what_is_gone_beyond_is_that_of_a_run_and_told_once() {
             let message = log.iter().find(has_its_name).unwrap();
             assert_eq!((message.status, message.category.as_str()), (WARNING, "logStatusWarning"));
             let said: f64 = message.text.split(' ').nth(2).unwrap().parse().unwrap();
-            assert_relative_eq!(said, first, max_relative = 1e-5);
+            assert_relative_eq!(said, first, max_relative = 5e-6);
             assert!(message.text.contains(assumption.meaning), "{}", message.text);
         }
     }
