@@ -301,7 +301,7 @@ fn peaks_and_validity_are_not_watched() {
     assert_eq!((host.set_boolean("peaks", 1), host.set_boolean("validity", 1)), (OK, OK));
     let host = host.initialized(&[("theta_0", 0.02)]);
     host.log.borrow_mut().clear();
-    assert_eq!((host.exit(), host.update().is_ok(), host.go_on()), (OK, true, OK));
+    assert_eq!((host.exit(), host.update().is_ok(), host.go_on()), (OK, true, OK), "{:?}", host.log);
     let warnings: Vec<_> = host.log.take().into_iter().map(|message| (message.status, message.text)).collect();
     let expected = ["peaks", "validity"].map(|name| {
         let text =
@@ -351,7 +351,7 @@ fn directional_derivatives_are_the_slopes_of_the_values() {
     host.write("up.csv", "0,2\n0.5,-2\n");
     assert_eq!((host.set_record("ramp.csv"), host.set_text("record_v", "up.csv")), (OK, OK));
     let host = host.initialized(&[("theta_0", 0.03)]);
-    assert_eq!((host.exit(), host.update().is_ok(), host.go_on()), (OK, true, OK));
+    assert_eq!((host.exit(), host.update().is_ok(), host.go_on()), (OK, true, OK), "{:?}", host.log);
     let [before, after] = [0.125, 0.25].map(|time| {
         assert_eq!(host.set_time(time), OK);
         host.try_get(&unknowns).unwrap()
