@@ -84,7 +84,8 @@ lint:
 		cargo clippy --workspace --all-targets --manifest-path $$package/Cargo.toml --target-dir $(TARGET) -- -D warnings || exit; done
 
 # The parts, what each needs, and Debian's packages for it: without these its tests are skipped and say so.
-PARTS := long study python hosts browser foreign packaged docs
+ALL_PARTS := long study python hosts browser foreign packaged docs
+PARTS := $(ALL_PARTS)
 NEEDS_python := module
 NEEDS_hosts := out/cofmupy
 NEEDS_browser := module explore
@@ -104,6 +105,7 @@ packages:
 
 heavy: WHEELS := $(firstword $(ZIG))
 heavy: packages .venv/heavy exporter $(call of_parts,NEEDS)
+	$(if $(filter-out $(ALL_PARTS),$(PARTS)),$(error no part $(filter-out $(ALL_PARTS),$(PARTS)); the parts are $(ALL_PARTS)))
 	$(if $(filter long,$(PARTS)),FUZZ_CALLS=$${FUZZ_CALLS:-100000} cargo test --release $(PACKAGES) --test hostile_calls --test records)
 	$(if $(filter study,$(PARTS)),cargo test --release --manifest-path study/Cargo.toml)
 	$(if $(wildcard $(PARTS:%=tests/heavy/%)),$(PYTEST) $(wildcard $(PARTS:%=tests/heavy/%)))

@@ -170,7 +170,7 @@ impl<'a> Table<'a> {
     fn pairs(&self) -> Option<usize> {
         const MANY: usize = 20;
         let times = || self.numbers.iter().step_by(2).copied();
-        let is_short = |uneven: &BadLine| uneven.line == self.last && self.numbers.len() % 2 == 0;
+        let is_short = |uneven: &BadLine| uneven.line == self.last && self.numbers.len().is_multiple_of(2);
         let is_time = |column| self.headings_of(column).all(|(_, heading)| TimeUnit::of(heading).is_some());
         let is_known = self.count.is_multiple_of(2)
             && self.uneven.as_ref().is_none_or(is_short)
@@ -489,6 +489,14 @@ mod tests {
             let text = format!("{before}0,1\n.5,2\n");
             let source = read(&text, &AS_IT_IS).unwrap().1;
             assert_eq!((source.unit, source.unit_from), (unit, UnitFrom::File), "{before}");
+        }
+        let alone = Reading { dt: Some(0.01), ..AS_IT_IS };
+        for heading in ["acc (cm/seg2)", "acc (kN)", "acceleration [counts]"] {
+            assert_eq!(
+                read(&format!("{heading}\n1\n2\n"), &alone).unwrap_err().remedy,
+                Some(Remedy::Unit),
+                "{heading}"
+            );
         }
         let asked = Reading { unit: Some(Unit::G), ..AS_IT_IS };
         assert_eq!(read("t,a (north)\n0,1\n.5,2\n", &asked).unwrap().1.unit, Unit::G);

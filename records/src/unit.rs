@@ -173,9 +173,12 @@ fn is_known(word: &str) -> bool {
         || (name == word || !matches!(name, "" | "x" | "e" | "by")) && WORDS.contains(&format!(" {name} "))
 }
 
-/// Whether `text` has other words than [`WORDS`] and numbers, as titles have.
+/// Whether `text` has other words than [`WORDS`] and numbers, as titles have. An acceleration with something in brackets is no
+/// title: the brackets state its unit.
 pub(super) fn is_prose(text: &str) -> bool {
-    words(text).iter().any(|word| word.contains(char::is_alphabetic) && !is_known(word))
+    let words = words(text);
+    let states_a_unit = text.contains(['(', '[']) && words.iter().any(|word| word.starts_with("acc"));
+    !states_a_unit && words.iter().any(|word| word.contains(char::is_alphabetic) && !is_known(word))
 }
 
 /// Whether `text` has no words but [`WORDS`], no numbers but those of channels and angles, and no sign of a product or before

@@ -125,9 +125,12 @@ enum RecordEntry {
     As(toml::Table),
 }
 
+/// A pattern of files, the vertical component of the one file, if any, and how each is read.
+type Pattern<'a> = (&'a str, Option<(&'a str, RecordOptions)>, RecordOptions);
+
 impl RecordEntry {
     /// The pattern of the files, the vertical component that goes with the one file, if any, and how each is read.
-    fn pattern_and_options(&self) -> anyhow::Result<(&str, Option<(&str, RecordOptions)>, RecordOptions)> {
+    fn pattern_and_options(&self) -> anyhow::Result<Pattern<'_>> {
         match self {
             RecordEntry::AsTheyAre(pattern) => Ok((pattern, None, RecordOptions::default())),
             RecordEntry::As(table) => {

@@ -39,7 +39,7 @@ SCENES = [
     PIER | {"scale": "2"},
     PACOIMA | {"scale": "2.2"},
     PACOIMA | {"r": "0.85", "f_fc": "9"},
-    PACOIMA | {"weight": "2500", "alpha_cg": "0.2"},
+    PACOIMA | {"weight": "2.5e6", "alpha_cg": "0.2"},
     PACOIMA | {"tolerance": "1e-6", "time_scale": "0.5"},
     {"ground": "ricker", "amplitude": "0.7", "frequency": "1.5"},
     {"ground": "mavroeidis_papageorgiou", "amplitude": "0.5", "cycles": "1.7", "phase": "0.4"},
@@ -119,7 +119,7 @@ def random_scenes(count: int):
     shapes = [{"ground": "half_sine"}, {"ground": "cosine", "cycles": "1.5", "phase": "-0.3"}, {"ground": "sine", "frequency": "1"},
               {"ground": "mavroeidis_papageorgiou", "phase": ".4"}, {"ground": "antisymmetric_ricker", "amplitude": "1e0"}]
     for number in range(count):
-        structure = some({"preset": ["evison"], "g": ["3.71", "9.8"], "H": ["3.", "+2.25"], "weight": ["2.5e3"], "r": ["0.85"],
+        structure = some({"preset": ["evison"], "g": ["3.71", "9.8"], "H": ["3.", "+2.25"], "weight": ["2.5e6"], "r": ["0.85"],
                           "zeta_fc": ["01e-2"], "P_0": ["300"], "k_t": ["4e4"]})
         run = some({"theta_0": ["-0.01", "0.02"], "u_0": ["1e-3"], "detail": ["nonlinear", "linear", "rigid"], "tolerance": ["1E-6"]})
         scales = some({"scale": ["1.7", "-1"], "time_scale": ["0.5"]})
