@@ -125,14 +125,14 @@ enum RecordEntry {
     As(toml::Table),
 }
 
-/// A pattern of files, the vertical component of the one file, if any, and how each is read.
-type Pattern<'a> = (&'a str, Option<(&'a str, RecordOptions)>, RecordOptions);
+/// A path or pattern, and how its files are read.
+type Described<'a> = (&'a str, RecordOptions);
 
 impl RecordEntry {
     /// The pattern of the files, the vertical component that goes with the one file, if any, and how each is read.
-    fn pattern_and_options(&self) -> anyhow::Result<Pattern<'_>> {
+    fn pattern_and_options(&self) -> anyhow::Result<(Described<'_>, Option<Described<'_>>)> {
         match self {
-            RecordEntry::AsTheyAre(pattern) => Ok((pattern, None, RecordOptions::default())),
+            RecordEntry::AsTheyAre(pattern) => Ok(((pattern, RecordOptions::default()), None)),
             RecordEntry::As(table) => {
                 let pattern = table.get("file").and_then(toml::Value::as_str);
                 let pattern = pattern.context("records: a table without file: expected { file = ..., scale = ... }")?;
@@ -149,7 +149,7 @@ impl RecordEntry {
                     column_v.is_none() || vertical.is_some(),
                     "records {pattern:?}: vertical_column is a column of the file vertical, which is missing"
                 );
-                Ok((pattern, vertical, options))
+                Ok(((pattern, options), vertical))
             }
         }
     }
@@ -350,7 +350,7 @@ fn motions(
 ) -> anyhow::Result<Vec<NamedRecord>> {
     let (mut motions, mut bad) = (Vec::new(), Vec::<anyhow::Error>::new());
     for source in sources {
-        let (pattern, vertical, options) = source.pattern_and_options()?;
+        let ((pattern, options), vertical) = source.pattern_and_options()?;
         let scale = options.scale.unwrap_or(1.0);
         let column = |options: &RecordOptions| {
             options.column.as_ref().map_or(String::new(), |column| format!(" column {}", column.as_asked()))
