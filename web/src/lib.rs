@@ -8,10 +8,10 @@ mod take;
 use fmu_export::{Library, ModelName, Version};
 use rocking::engine::Moves;
 use rocking::levels::detail::Detail;
+use rocking::run::RunError;
 use rocking::run::levels::{Choice, Criterion, RULE, Verdict, compare, relative};
 use rocking::run::peaks::{self, Peak};
 use rocking::run::validity::{self, ASSUMPTIONS, Findings, Limits, Validity};
-use rocking::run::RunError;
 use rocking::structure::any::{AnyStructure, OF_FRAME, OF_MODE};
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
@@ -230,7 +230,8 @@ impl Explorer {
             ("record", Ok(file)) => vec![(file.path.with_extension("csv"), ground.table().into_bytes())],
             _ => vec![(GROUND.into(), ground.table().into_bytes())],
         };
-        let exported = fmu_export::export(version, &ModelName::default(), structure.into(), record, None, &self.libraries);
+        let exported =
+            fmu_export::export(version, &ModelName::default(), structure.into(), record, None, &self.libraries);
         Ok(exported.map_err(says)?.1)
     }
 }
