@@ -184,7 +184,7 @@ def test_a_file_that_does_not_state_enough_brings_the_fields_that_do(opened):
     page = opened()
     problem = page.locator("#problem")
     for content, field, text, remedy in [
-        (b"time,a,b\n0,1,2\n0.1,2,1\n", "column", "b", "choose one as column: its number, its heading, or all"),
+        (b"time,acc x (g),acc y (g)\n0,1,2\n0.1,2,1\n", "column", "3", "choose one as column: its number, its heading, or all"),
         (b"0.1\n0.2\n0.1\n", "dt", "0.01", "give it in seconds as dt"),
         (b"# NPTS= 4, DT= 0.01\n0.1\n0.2\n0.1\n", "ignore_npts", None, "ignore_npts reads all samples"),
     ]:

@@ -601,6 +601,7 @@ def test_what_has_no_weakest_motion_is_said():
         fr.intensity_at(pier, pulse, scale=[2, 1])
 
 
+@pytest.mark.filterwarnings("ignore")
 def test_a_trace_of_obspy_is_a_record():
     import obspy
 
