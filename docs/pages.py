@@ -38,9 +38,9 @@ def rerun(text: str, exporter: Path, folder: Path, languages: tuple[str, ...] = 
     """The page `text` with what its blocks of these languages print when they are run in `folder`."""
     environment = os.environ | {"PATH": f"{exporter.parent}:{Path(sys.executable).parent}:{os.environ['PATH']}", "MPLBACKEND": "agg"}
 
-    def output(*command: str) -> str:
-        done = subprocess.run(command, cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-        assert done.returncode == 0, (command, done.stdout)
+    def output(*command: str, errors: int = subprocess.STDOUT) -> str:
+        done = subprocess.run(command, cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=errors)
+        assert done.returncode == 0, (command, done.stdout, done.stderr)
         return "".join(f"{line.rstrip()}\n" for line in done.stdout.split("\n")[:-1])
 
     def kept(told: str, printed: str) -> str:
@@ -57,7 +57,7 @@ def rerun(text: str, exporter: Path, folder: Path, languages: tuple[str, ...] = 
             return COMMAND.sub(line, found[0])
         if language not in printed:  # the first script of the page runs with all that follow
             program = "print('\\0')\n".join(script for script, _ in scripts(text, language))
-            printed[language] = iter(output(sys.executable, "-c", program).split("\0\n"))
+            printed[language] = iter(output(sys.executable, "-c", program, errors=subprocess.PIPE).split("\0\n"))
         return f"```{language}\n{found['script']}```\n\n```text\n{kept(found['printed'], next(printed[language]))}```"
 
     printed = {}
