@@ -38,6 +38,7 @@ use crate::{Frame, Outputs, Phase, State, Structure};
 use motion::{Chatter, Motion, Work};
 use phases::{Closed, Step, Watched};
 use piece::{Piece, Sample, Turning, Watch};
+use std::cell::Cell;
 use std::fmt::Debug;
 use std::ops::Deref;
 use transition::Transition;
@@ -58,6 +59,9 @@ const LARGEST_LOCAL_ERROR: f64 = 1e-11;
 /// Steps that one advance may take: a second or two of computing, or some ten seconds of a motion so violent that every step is
 /// searched for transitions throughout. A longer interval has to be cut.
 pub const MAX_STEPS_PER_ADVANCE: u64 = 2_000_000;
+
+/// Polynomials that watchers may ask for of one leap, whose number no step counts: seconds of computing, for buildings ten or more.
+pub const MOST_POLYNOMIALS: u64 = 200_000;
 
 /// An interval longer than FAR/ω_fc is advanced in parts, because the structure may come to rest long before its end.
 const FAR: f64 = 1000.0;
@@ -135,6 +139,19 @@ pub enum AdvanceError {
         /// End of the interval, s.
         until: f64,
     },
+    /// Watchers asked for too many polynomials of an interval that the engine leapt over.
+    #[error(
+        "exact peaks and validity of a vibration that does not decay need more than {MOST_POLYNOMIALS} polynomials from t = {} to {}: \
+         give a shorter time, or damping",
+        with_unit(*time, "s"),
+        with_unit(*until, "s")
+    )]
+    TooManyPolynomials {
+        /// Start of the leap, s.
+        time: f64,
+        /// End of the leap, s.
+        until: f64,
+    },
     /// The equations have no finite solution from here on.
     #[error(
         "the motion cannot be continued beyond t = {} (u = {}, theta = {}): the mass passes above the pivot of a \
@@ -157,7 +174,9 @@ impl AdvanceError {
     /// The instant beyond which the motion cannot continue, s, if the instant lies within the interval.
     pub fn time(&self) -> Option<f64> {
         match *self {
-            AdvanceError::TooLong { time, .. } | AdvanceError::Singular { time, .. } => Some(time),
+            AdvanceError::TooLong { time, .. }
+            | AdvanceError::TooManyPolynomials { time, .. }
+            | AdvanceError::Singular { time, .. } => Some(time),
             AdvanceError::NotAhead { .. } | AdvanceError::Load { .. } | AdvanceError::Vertical { .. } => None,
         }
     }
@@ -619,7 +638,7 @@ fn leap<Q: Moves>(level: &impl Level<Q>, motion: &Motion<Q>, start: &Start<Q>) -
     level.leap(motion.phase, start).filter(State::is_finite)
 }
 
-/// Takes `motion`, all but its time, over a leap to the state `end`.
+/// Takes `motion`, all but its time, over a leap to the state `end`. Fails if watchers need too many polynomials of the leap.
 #[inline(always)]
 fn leapt<Q: Moves, W: Watch<Q>>(
     level: &Q::Level,
@@ -628,13 +647,18 @@ fn leapt<Q: Moves, W: Watch<Q>>(
     load: LinearLoad<Q>,
     end: State<Q>,
     watch: &mut W,
-) {
+) -> Result<(), AdvanceError> {
     if W::SEES_PIECES {
-        watch.piece(&Piece { before: motion, duration, load, end, level, arc: None });
+        let left = Cell::new(MOST_POLYNOMIALS);
+        watch.piece(&Piece { before: motion, duration, load, end, level, arc: None, left: &left });
+        if left.get() == 0 {
+            return Err(AdvanceError::TooManyPolynomials { time: motion.time, until: motion.time + duration });
+        }
     }
     motion.state = end;
     motion.work.steps += 1;
     motion.chatter.pass(duration);
+    Ok(())
 }
 
 /// One advance.
@@ -661,7 +685,7 @@ impl<Q: Moves, W: Watch<Q>> Task<'_, Q, W> {
         if motion.work.steps != last_step
             && let Some(end) = leap(level, motion, &start)
         {
-            leapt(any, motion, interval, load, end, watch);
+            leapt(any, motion, interval, load, end, watch)?;
             motion.time += interval;
             return Ok(Progress::Complete);
         }
@@ -775,7 +799,7 @@ where
                 };
                 if let Some((to, state)) = leap(interval).or_else(|| leap(advance.end)) {
                     advance.end = to;
-                    leapt(self.any, motion, to - elapsed, load, state, watch);
+                    leapt(self.any, motion, to - elapsed, load, state, watch)?;
                     motion.time = advance.pass(to - elapsed);
                     continue;
                 }
@@ -817,7 +841,8 @@ where
             // a step without duration, as in contact if uplift is due at once, is no motion
             if W::SEES_PIECES && duration > 0.0 {
                 let (load, arc) = (load.from(elapsed), Some(&*self.arc));
-                watch.piece(&Piece { before: motion, duration, load, end: state, level: self.any, arc });
+                let left = &Cell::new(0);
+                watch.piece(&Piece { before: motion, duration, load, end: state, level: self.any, arc, left });
             }
             motion.state = state;
             if let Some(moved) = moved {

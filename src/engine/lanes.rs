@@ -10,6 +10,7 @@ use crate::levels::nonlinear::lanes::{RockingStep, Stepped};
 use crate::levels::shown::Searched;
 use crate::series::taylor::{Arc, Start};
 use crate::{LinearLoad, Phase, State};
+use std::cell::Cell;
 
 /// A step that an engine is about to take, of which only the end and bounds are known.
 #[derive(Clone, Copy, Debug)]
@@ -67,11 +68,10 @@ impl Engine {
         }
         let most = rates.most(&start, &end);
         if watch.passes(&Bounded { engine: self, duration: interval, load, end, most }) {
-            leapt(&*self.level, &mut self.motion, interval, load, end, &mut ());
+            leapt(&*self.level, &mut self.motion, interval, load, end, &mut ()).is_ok()
         } else {
-            leapt(&*self.level, &mut self.motion, interval, load, end, watch);
+            leapt(&*self.level, &mut self.motion, interval, load, end, watch).is_ok()
         }
-        true
     }
 
     /// Begins an advance by `interval` (s) under `load`, which is no such leap.
@@ -140,7 +140,7 @@ impl Engine {
         if !watch.passes(&Bounded { engine: self, duration, load, end, most }) {
             write(&mut self.arc);
             let Engine { level, motion, arc, .. } = &*self;
-            watch.piece(&Piece { before: motion, duration, load, end, level, arc: Some(arc) });
+            watch.piece(&Piece { before: motion, duration, load, end, level, arc: Some(arc), left: &Cell::new(0) });
         }
         let motion = &mut self.motion;
         motion.work.steps += 1;

@@ -21,6 +21,7 @@ use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Series, Start, evaluate};
 use crate::series::terms::Terms;
 use crate::{Floor, Frame, Outputs, Phase, Reactions, State};
+use std::cell::Cell;
 use std::f64::consts::TAU;
 
 /// Watches a motion go by.
@@ -207,6 +208,8 @@ pub struct Piece<'a, Q: Moves = f64> {
     pub(crate) level: &'a Q::Level,
     /// Polynomial of the piece; none if the engine leapt over the piece.
     pub(crate) arc: Option<&'a Arc<Q>>,
+    /// Polynomials that watchers may still ask for of a leap.
+    pub(crate) left: &'a Cell<u64>,
 }
 
 impl<Q: Moves> Piece<'_, Q> {
@@ -387,6 +390,7 @@ impl<Q: Moves> Arcs<'_, Q> {
         if let Some(arc) = piece.arc {
             return Some(Expansion { piece, from, arc });
         }
+        piece.left.set(piece.left.get().checked_sub(1)?);
         let arc = self.arc.get_or_insert_default();
         piece.level.series(piece.before.phase, &part.step(), arc);
         self.evaluations += arc.order as u64;

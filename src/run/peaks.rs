@@ -5,6 +5,7 @@
 //! rises or falls, so that the largest magnitude is at a stationary point or at an end. A piece that may hold more than
 //! what has been seen is first kept, since most are soon beaten by the end of another.
 
+use crate::engine::MOST_POLYNOMIALS;
 #[cfg(feature = "lanes")]
 use crate::engine::lanes::{Bounded, Passes};
 use crate::engine::piece::{Expansion, Part, Piece, Watch};
@@ -17,6 +18,7 @@ use crate::series::taylor::Arc;
 use crate::structure::{Base, Ties};
 use crate::{Detail, LinearLoad, Motion, Outputs, Parameters, Phase, State, Structure, Transition, TransitionKind};
 use serde::{Deserialize, Serialize};
+use std::cell::Cell;
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
 const ROUNDING: f64 = 1e-14;
@@ -396,7 +398,8 @@ impl PeakWatch<'_> {
         let Some(level) = &self.level else { return };
         while let Some(Candidate { bounds, before, duration, load, end, arc }) = self.kept.pop() {
             if self.peaks.may_change_within(&Measure::SEARCHED, &bounds, before.time) {
-                let piece = Piece { before: &before, duration, load, end, level, arc: arc.as_ref() };
+                let left = &Cell::new(MOST_POLYNOMIALS); // never used up: of a leap its first and last periods are enough
+                let piece = Piece { before: &before, duration, load, end, level, arc: arc.as_ref(), left };
                 self.peaks.look(&Measure::SEARCHED, &piece.whole(), HALVINGS);
             }
         }
@@ -413,7 +416,7 @@ impl Watch for PeakWatch<'_> {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &Piece) {
-        let &Piece { before, duration, load, end, level, arc } = piece;
+        let &Piece { before, duration, load, end, level, arc, .. } = piece;
         for tau in [0.0, duration] {
             self.peaks.ground.see(load.at(tau).a_g, before.time + tau);
         }

@@ -1,11 +1,12 @@
 //! Runs of structures of many masses: the exact peaks of each floor.
 
+use rocking::engine::AdvanceError;
 use rocking::engine::piece::Sample;
 use rocking::run::peaks::Peak;
 use rocking::run::profile::{Peaking, Profile};
 use rocking::run::record::Record;
 use rocking::run::validity::{ASSUMPTIONS, EDGE_LOAD, FRICTION, Findings, Limits, TENSION};
-use rocking::run::{End, Run};
+use rocking::run::{End, Run, RunError};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Given;
 use rocking::{Detail, Frame, FrameOutput, Modes, Parameters, Phase, Reactions, State, Structure};
@@ -90,10 +91,14 @@ fn assert_same_findings(expected: &Findings, found: &Findings) {
 
 /// Three storeys, held down by a tendon of this prestress (N) and stiffness (N/m).
 fn three_storeys(P_0: f64, k_t: f64) -> Frame {
+    damped_storeys(P_0, k_t, 0.02)
+}
+
+fn damped_storeys(P_0: f64, k_t: f64, zeta: f64) -> Frame {
     let storeys = [(40e3, 3.5, 60e6), (40e3, 7.0, 50e6), (30e3, 10.5, 40e6)].map(|(m, h, k)| Storey { m, h, k });
     let parameters =
         Parameters { m0: 20e3, B: 1.5, J0: 3e4, r: 0.93, g: 9.81, c_ratio: 1.0, P_0, k_t, ..Parameters::MCMANUS };
-    Frame::from_storeys(&base(&parameters), &Damping::All(0.02), &storeys).unwrap()
+    Frame::from_storeys(&base(&parameters), &Damping::All(zeta), &storeys).unwrap()
 }
 
 /// The samples are 50 µs apart. They miss a peak just before a transition by the rate there. Modes that are left out ride rigidly, so
@@ -212,6 +217,26 @@ fn a_long_rest_is_seen_at_once() {
         (run.profile().unwrap().0.peaks().collect::<Vec<_>>(), findings.worst)
     });
     assert_eq!(short, long);
+}
+
+/// Several modes that vibrate for ever have no largest value that is known without a look at every period: the run is refused
+/// before that takes long. The largest values of one mass come in its first period, and a run without a watcher is one leap.
+#[test]
+fn a_rest_without_damping_ends() {
+    let ground = ground();
+    let one = Structure::new(Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS }).unwrap();
+    let one = Run { end: End::At(1e9), ..Run::new(one, &ground) };
+    let short = Run { end: End::At(20.0), ..one.clone() }; // it rests from 12 s on
+    assert_eq!(one.peaks().unwrap().0.a_t(), short.peaks().unwrap().0.a_t());
+    let [worst, expected] =
+        [&one, &short].map(|run| run.validity(Limits::default()).unwrap().0.worst.map(|it| it.value));
+    assert_eq!(worst, expected);
+
+    let many = Run { end: End::At(1e9), ..Run::of_modes(damped_storeys(1e4, 2e6, 0.0), &ground) };
+    assert_eq!(many.follow(&mut ()).unwrap().motion.time, 1e9);
+    let is_refused =
+        |error: RunError| matches!(error, RunError::Advance { cause: AdvanceError::TooManyPolynomials { .. }, .. });
+    assert!(is_refused(many.profile().unwrap_err()) && is_refused(many.validity(Limits::default()).unwrap_err()));
 }
 
 /// Momentum gives r < 0, so that the first impact stops the base at full speed.
