@@ -141,8 +141,8 @@ pub enum AdvanceError {
     },
     /// Watchers asked for too many polynomials of an interval that the engine leapt over.
     #[error(
-        "exact peaks and validity of a vibration that does not decay need more than {MOST_POLYNOMIALS} polynomials from t = {} to {}: \
-         give a shorter time, or damping",
+        "peaks, validity or a picture need more than {MOST_POLYNOMIALS} polynomials of the vibration from t = {} to {}: give a shorter \
+         time, or more damping",
         with_unit(*time, "s"),
         with_unit(*until, "s")
     )]

@@ -18,7 +18,7 @@ use crate::mechanics::outputs::Measure;
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
 use crate::numbers::{Number, Turn};
 use crate::series::extremes::Bound;
-use crate::series::taylor::{Arc, Series, Start, evaluate};
+use crate::series::taylor::{Arc, Start, evaluate};
 use crate::series::terms::Terms;
 use crate::{Floor, Frame, Outputs, Phase, Reactions, State};
 use std::cell::Cell;
@@ -192,7 +192,7 @@ impl<N: Number, Q: Lateral<N, Structure = Frame>> MotionOfFloors<N> for Turning<
 pub(crate) const CONVERGED: f64 = 1e-12;
 
 /// How often an arc is halved before its outputs' series are taken as they are.
-pub(crate) const FINEST_PART: u32 = 5;
+const FINEST_PART: u32 = 5;
 
 /// A stretch of time without a transition.
 #[derive(Clone, Copy, Debug)]
@@ -476,12 +476,21 @@ impl<Q: Moves> Expansion<'_, Q> {
         off.is_nan() || off.abs() <= part.max(1e3 * self.piece.level.subject().local_error) * terms
     }
 
-    /// Shows both halves of the polynomial.
-    pub(crate) fn halves(&self, mut show: impl FnMut(&Expansion<Q>)) {
+    /// Looks at the polynomial. If `look` says that a series over it has not converged, it looks at both halves instead, and at their
+    /// halves. The finest parts, of which it is told, are taken as they are.
+    pub(crate) fn in_parts(&self, look: &mut dyn FnMut(&Expansion<Q>, bool) -> bool) {
+        self.in_parts_of(FINEST_PART, look);
+    }
+
+    fn in_parts_of(&self, halvings: u32, look: &mut dyn FnMut(&Expansion<Q>, bool) -> bool) {
+        if look(self, halvings == 0) || halvings == 0 {
+            return;
+        }
         let &Expansion { piece, from, arc } = self;
         let middle = 0.5 * arc.reach;
         for [start, end] in [[0.0, middle], [middle, arc.reach]] {
-            show(&Expansion { piece, from: from + start * arc.span, arc: &arc.between(start, end) });
+            let half = Expansion { piece, from: from + start * arc.span, arc: &arc.between(start, end) };
+            half.in_parts_of(halvings - 1, look);
         }
     }
 }
@@ -492,42 +501,24 @@ impl Expansion<'_> {
         self.piece.outputs(self.from + sigma * self.arc.span, &self.arc.at(sigma))
     }
 
-    /// Shows `measure` as series in σ, each with the σ at which it starts and the arc that it belongs to. There is one series, or
-    /// several over parts of the polynomial if sin θ and cos θ need more terms than the polynomial has.
-    pub(crate) fn series(&self, measure: Measure, show: &mut dyn FnMut(f64, &Arc, &Series)) {
-        self.series_over(self.arc, 0.0, measure, FINEST_PART, show);
-    }
-
-    /// Shows the series over `arc`, which starts at `from` on the polynomial and may be halved `halvings` times.
-    fn series_over(
-        &self,
-        arc: &Arc,
-        from: f64,
-        measure: Measure,
-        halvings: u32,
-        show: &mut dyn FnMut(f64, &Arc, &Series),
-    ) {
-        let &Piece { level, before: &Motion { phase, .. }, load, .. } = self.piece;
-        match measure {
-            Measure::theta => return show(from, arc, &arc.series(|k| arc.theta[k])),
-            Measure::u => return show(from, arc, &arc.series(|k| arc.u[k])),
-            _ => (),
-        }
-        let until = from + arc.duration() / self.arc.span;
-        let load = load.from(self.from + from * self.arc.span);
-        let series = measure.at(&level.terms(phase, load, arc)).series();
-        if halvings > 0 {
-            let off = evaluate(arc.used(&series), arc.reach) - measure.of(&self.outputs(until));
-            let terms = arc.used(&series).iter().rev().fold(0.0, |sum, c| sum * arc.reach + c.abs());
-            if off.abs() > (100.0 * level.subject().local_error).max(CONVERGED) * terms {
-                let middle = 0.5 * arc.reach;
-                for [start, end] in [[0.0, middle], [middle, arc.reach]] {
-                    let start_on_it = from + start * arc.span / self.arc.span;
-                    self.series_over(&arc.between(start, end), start_on_it, measure, halvings - 1, show);
+    /// Shows `measure` as series in σ, each with the polynomial that it belongs to: this one, or parts of it if sin θ and cos θ need
+    /// more terms than it has.
+    pub(crate) fn series(&self, measure: Measure, show: &mut dyn FnMut(&Expansion, &Terms)) {
+        self.in_parts(&mut |part, is_finest| {
+            let &Expansion { piece: &Piece { level, before, load, .. }, from, arc } = part;
+            let series = match measure {
+                Measure::theta => Terms::of(&arc.theta, arc.order),
+                Measure::u => Terms::of(&arc.u, arc.order),
+                _ => {
+                    let series = measure.at(&level.terms(before.phase, load.from(from), arc));
+                    if !is_finest && !part.has_converged(&series, measure.of(&part.outputs(arc.reach)), CONVERGED) {
+                        return false;
+                    }
+                    series
                 }
-                return;
-            }
-        }
-        show(from, arc, &series);
+            };
+            show(part, &series);
+            true
+        });
     }
 }

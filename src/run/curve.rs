@@ -7,10 +7,10 @@ use super::fall::{Found, Peaked};
 use super::peaks::{Peak, Peaks};
 use super::profile::{Over, Profile};
 use super::{Run, RunError};
-use crate::engine::piece::{Expansion, Piece, Sample, Watch};
+use crate::engine::piece::{CONVERGED, Expansion, Piece, Sample, Watch};
+use crate::mechanics::floors::MotionOfFloors;
 use crate::mechanics::outputs::Measure;
 use crate::mechanics::restraint::Restraints;
-use crate::series::taylor::Arc;
 use crate::series::terms::Terms;
 use crate::series::{extremes, taylor};
 use crate::{Frame, FrameOutput, Modes, Outputs, Phase, Structure, Transition};
@@ -29,9 +29,10 @@ const MOST_POINTS: usize = 1_000_000;
 /// Part of its peak by which a_g may differ between the end of a piece and the start of the next without a jump.
 const ROUNDING: f64 = 1e-9;
 
-/// A function that gets the series of all lines, the σ at which they start, and the arc that they belong to.
+/// A function that gets the series of all lines, and the polynomial that they belong to.
 #[doc(hidden)]
-pub type Show<'a, Q> = dyn FnMut(f64, &Arc<Q>, &[&[f64]]) + 'a;
+#[allow(private_interfaces)]
+pub type Show<'a, Q> = dyn FnMut(&Expansion<Q>, &[&[f64]]) + 'a;
 
 /// Lateral coordinates whose motion is drawn.
 pub trait Drawn: Peaked<Peaks: Debug> {
@@ -46,8 +47,7 @@ pub trait Drawn: Peaked<Peaks: Debug> {
     #[doc(hidden)]
     fn outputs(sample: &Sample<Self>) -> Self::Outputs;
 
-    /// Shows the series of all lines, in the order of their peaks. There is one set of series, or several over parts of the
-    /// polynomial, each with the σ at which the part starts.
+    /// Shows the series of all lines, in the order of their peaks, over the polynomial or over parts of it.
     #[doc(hidden)]
     #[allow(private_interfaces)] // the coordinates name the type, and nobody else can use it
     fn lines(of: &Expansion<Self>, show: &mut Show<Self>);
@@ -66,8 +66,9 @@ impl Drawn for f64 {
 
     #[allow(private_interfaces)]
     fn lines(of: &Expansion, show: &mut Show<f64>) {
-        of.series(Measure::a_t, &mut |from, arc, a_t| {
-            show(from, arc, &[&arc.theta, &arc.u, a_t].map(|series| arc.used(series)));
+        of.series(Measure::a_t, &mut |part, a_t| {
+            let arc = part.arc;
+            show(part, &[arc.used(&arc.theta), arc.used(&arc.u), a_t.used()]);
         });
     }
 }
@@ -94,9 +95,17 @@ impl Drawn for Modes {
 
     #[allow(private_interfaces)]
     fn lines(of: &Expansion<Modes>, show: &mut Show<Modes>) {
-        let over = Over::new(*of);
-        let series: Vec<_> = drawn(of.piece.level.structure()).map(|line| line.of(&over)).collect();
-        show(0.0, of.arc, &series.iter().map(Terms::used).collect::<Vec<_>>());
+        of.in_parts(&mut |part, is_finest| {
+            let (over, end) = (Over::new(*part), part.sample(part.arc.reach));
+            let last = end.outputs();
+            let series = |line: FrameOutput| {
+                let series = line.of(&over);
+                (is_finest || part.has_converged(&series, last(line), CONVERGED)).then_some(series)
+            };
+            let Some(series) = drawn(over.frame()).map(series).collect::<Option<Vec<_>>>() else { return false };
+            show(part, &series.iter().map(Terms::used).collect::<Vec<_>>());
+            true
+        });
     }
 }
 
@@ -201,12 +210,11 @@ impl<Q: Drawn> Watch<Q> for Tracer<Q> {
         while let Some(expansion) = arcs.next() {
             let (passed, span) = (expansion.from, expansion.arc.span);
             let mut between = Vec::new();
-            Q::lines(&expansion, &mut |from, arc, lines| {
-                let part = arc.span / span;
-                divide(lines, &self.within, [0.0, arc.reach], DIVISIONS, &mut |sigma| {
-                    between.push(from + sigma * part);
-                });
-                between.push(from + arc.reach * part);
+            Q::lines(&expansion, &mut |part, lines| {
+                let (from, arc) = ((part.from - passed) / span, part.arc);
+                let mut add = |sigma: f64| between.push(from + sigma * (arc.span / span));
+                divide(lines, &self.within, [0.0, arc.reach], DIVISIONS, &mut add);
+                add(arc.reach);
             });
             let instants = self.exact.iter().map(|time| (time - start - passed) / span);
             between.extend(instants.filter(|sigma| *sigma > 0.0 && *sigma < expansion.arc.reach));

@@ -8,7 +8,7 @@ use super::peaks::Peaks;
 use super::profile::{Over, Peaking, Profile};
 use super::{Ending, Follower, Run, RunError};
 use crate::engine::motion::Work;
-use crate::engine::piece::{CONVERGED, Expansion, FINEST_PART};
+use crate::engine::piece::{CONVERGED, Expansion};
 use crate::mechanics::floors::MotionOfFloors;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::outputs::Measure;
@@ -140,8 +140,9 @@ impl Compared for f64 {
     }
 
     fn histories(expansion: &Expansion, show: &mut Show<f64>) {
-        expansion.series(Measure::a_t, &mut |from, arc, a_t| {
-            show(expansion.time(from), arc, [arc.series(|k| arc.theta[k]), arc.series(|k| arc.u[k]), *a_t]);
+        expansion.series(Measure::a_t, &mut |part, a_t| {
+            let arc = part.arc;
+            show(part.time(0.0), arc, [arc.series(|k| arc.theta[k]), arc.series(|k| arc.u[k]), a_t.series()]);
         });
     }
 
@@ -173,7 +174,19 @@ impl Compared for Modes {
     }
 
     fn histories(expansion: &Expansion<Modes>, show: &mut Show<Modes>) {
-        histories(expansion, FINEST_PART, show);
+        expansion.in_parts(&mut |part, is_finest| {
+            let (over, last) = (Over::new(*part), part.sample(part.arc.reach));
+            let mut all = Vec::new();
+            for (output, _) in compared(over.frame()) {
+                let series = output.of(&over);
+                if !is_finest && !part.has_converged(&series, last.output(output), CONVERGED) {
+                    return false;
+                }
+                all.push(series.series());
+            }
+            show(part.time(0.0), part.arc, all);
+            true
+        });
     }
 
     fn all_modes(structure: &Frame) -> Option<[usize; 2]> {
@@ -196,20 +209,6 @@ impl Compared for Modes {
         let moving = fewer(Detail::Linear).chain(fewer(Detail::Auto)).chain([(Detail::Nonlinear, all)]);
         fixed.chain(moving).map(of).collect()
     }
-}
-
-/// Shows the compared outputs over a polynomial, which may be halved `halvings` times.
-fn histories(expansion: &Expansion<Modes>, halvings: u32, show: &mut Show<Modes>) {
-    let (over, last) = (Over::new(*expansion), expansion.sample(expansion.arc.reach));
-    let mut all = Vec::new();
-    for (output, _) in compared(over.frame()) {
-        let series = output.of(&over);
-        if halvings > 0 && !expansion.has_converged(&series, last.output(output), CONVERGED) {
-            return expansion.halves(|half| histories(half, halvings - 1, show));
-        }
-        all.push(series.series());
-    }
-    show(expansion.time(0.0), expansion.arc, all);
 }
 
 /// The kind of `output`, if it is compared.

@@ -330,15 +330,12 @@ impl Peaks {
 
     /// Looks at a polynomial wherever `measure` is stationary.
     fn search(&mut self, measure: Measure, expansion: &Expansion) {
-        let (start, span) = (expansion.time(0.0), expansion.arc.span);
-        expansion.series(measure, &mut |from, arc, series| {
-            let series = arc.used(series);
-            if !self.may_change(measure, extremes::bound_by_cubic(series, arc.reach), start + from * span) {
+        expansion.series(measure, &mut |part, series| {
+            if !self.may_change(measure, extremes::bound_by_cubic(series.used(), part.arc.reach), part.time(0.0)) {
                 return;
             }
-            extremes::stationary_points(series, arc.reach, |sigma| {
-                let sigma = from + sigma * arc.span / span;
-                self.see(measure, start + sigma * span, &expansion.outputs(sigma));
+            extremes::stationary_points(series.used(), part.arc.reach, |sigma| {
+                self.see(measure, part.time(sigma), &part.outputs(sigma));
             });
         });
     }

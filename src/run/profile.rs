@@ -6,7 +6,7 @@
 
 use super::peaks::{Peak, TENDON, Tendon, has_tendon};
 use super::{Finish, Run, RunError};
-use crate::engine::piece::{CONVERGED, Expansion, FINEST_PART, Part, Piece, Sample, Turning, Watch};
+use crate::engine::piece::{CONVERGED, Expansion, Part, Piece, Sample, Turning, Watch};
 use crate::mechanics::floors::{FrameOutput, MotionOfFloors};
 use crate::mechanics::gauge::{Gauge, Reading};
 use crate::mechanics::instant::{Instant, Strut};
@@ -246,30 +246,33 @@ impl Profile {
         (0..self.peaks.len()).filter(may_be_same).collect()
     }
 
-    /// Looks at a polynomial, which may be halved `halvings` times.
-    fn look(&mut self, expansion: &Expansion<Modes>, halvings: u32) {
-        let open = self.open(&bounds(expansion));
-        if open.is_empty() {
-            return;
-        }
-        let (over, reach) = (Over::new(*expansion), expansion.arc.reach);
-        let [first, last] = [0.0, reach].map(|sigma| expansion.sample(sigma));
-        let [at_first, at_last] = [&first, &last].map(Sample::<Modes>::outputs);
-        for i in open {
-            let (output, peak) = &mut self.peaks[i];
-            let (series, end) = (output.of(&over), at_last(*output));
-            if halvings > 0 && !expansion.has_converged(&series, end, CONVERGED) {
-                return expansion.halves(|half| self.look(half, halvings - 1));
+    /// Looks at a polynomial.
+    fn look(&mut self, expansion: &Expansion<Modes>) {
+        expansion.in_parts(&mut |part, is_finest| {
+            let open = self.open(&bounds(part));
+            if open.is_empty() {
+                return true;
             }
-            peak.see(at_first(*output), first.motion.time);
-            peak.see(end, last.motion.time);
-            if peak.may_change(extremes::bound(series.used(), reach), first.motion.time) {
-                extremes::stationary_points(series.used(), reach, |sigma| {
-                    let sample = expansion.sample(sigma);
-                    peak.see(sample.output(*output), sample.motion.time);
-                });
+            let (over, reach) = (Over::new(*part), part.arc.reach);
+            let [first, last] = [0.0, reach].map(|sigma| part.sample(sigma));
+            let [at_first, at_last] = [&first, &last].map(Sample::<Modes>::outputs);
+            for i in open {
+                let (output, peak) = &mut self.peaks[i];
+                let (series, end) = (output.of(&over), at_last(*output));
+                if !is_finest && !part.has_converged(&series, end, CONVERGED) {
+                    return false;
+                }
+                peak.see(at_first(*output), first.motion.time);
+                peak.see(end, last.motion.time);
+                if peak.may_change(extremes::bound(series.used(), reach), first.motion.time) {
+                    extremes::stationary_points(series.used(), reach, |sigma| {
+                        let sample = part.sample(sigma);
+                        peak.see(sample.output(*output), sample.motion.time);
+                    });
+                }
             }
-        }
+            true
+        });
     }
 
     /// The peak of `output`, if it has one.
@@ -287,7 +290,7 @@ impl Watch<Modes> for Profile {
         }
         let mut arcs = piece.arcs();
         while let Some(expansion) = arcs.next() {
-            self.look(&expansion, FINEST_PART);
+            self.look(&expansion);
             if arcs.rest().is_some_and(|(rest, vibration)| self.open(&bounds_of_rest(&rest, &vibration)).is_empty()) {
                 break;
             }

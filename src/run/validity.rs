@@ -29,7 +29,7 @@ use super::reaction_series::{self, Extent, extents};
 use super::{Finish, Run, RunError};
 use crate::digits::short;
 use crate::engine::Moves;
-use crate::engine::piece::{Expansion, FINEST_PART, Part, Piece, Sample, Watch};
+use crate::engine::piece::{Expansion, Part, Piece, Sample, Watch};
 use crate::levels::level::{Now, Rates};
 use crate::mechanics::impact;
 use crate::mechanics::instant::{Instant, Second, Strut};
@@ -268,24 +268,27 @@ impl<Q: Moves> Validity<Q> {
         A::holds_in(phase) && !is_better
     }
 
-    /// Looks at the motion over a polynomial, which may be halved `halvings` times; `extents` are bounds of its reactions.
-    fn look(&mut self, expansion: Expansion<Q>, extents: &Reactions<Extent>, series: SeriesOf<Q>, halvings: u32) {
-        let polynomial = Polynomial { of: expansion, series: series(&expansion), extents };
-        let Expansion { piece, arc, .. } = expansion;
-        let last = polynomial.reactions(arc.reach);
-        if halvings > 0 && !polynomial.has_converged(&last) {
-            return expansion.halves(|half| self.look(*half, extents, series, halvings - 1));
-        }
-        let phase = piece.before.phase;
-        // no friction is enough from where R_v is 0, which may be sooner than either end
-        if let Some((start, _)) = polynomial.above([Some(Combination([0.0, -1.0, 0.0, 0.0])), None]).first() {
-            self.found.see(FRICTION, f64::INFINITY, polynomial.of.time(*start));
-        }
-        self.see_reactions(polynomial.of.time(0.0), phase, &polynomial.reactions(0.0));
-        self.see_reactions(polynomial.of.time(arc.reach), phase, &last);
-        self.look_for::<Tension>(phase, &polynomial);
-        self.look_for::<EdgeLoad>(phase, &polynomial);
-        self.look_for::<Friction>(phase, &polynomial);
+    /// Looks at the motion over a polynomial; `extents` are bounds of its reactions.
+    fn look(&mut self, expansion: &Expansion<Q>, extents: &Reactions<Extent>, series: SeriesOf<Q>) {
+        expansion.in_parts(&mut |part, is_finest| {
+            let polynomial = Polynomial { of: *part, series: series(part), extents };
+            let &Expansion { piece, arc, .. } = part;
+            let last = polynomial.reactions(arc.reach);
+            if !is_finest && !polynomial.has_converged(&last) {
+                return false;
+            }
+            let phase = piece.before.phase;
+            // no friction is enough from where R_v is 0, which may be sooner than either end
+            if let Some((start, _)) = polynomial.above([Some(Combination([0.0, -1.0, 0.0, 0.0])), None]).first() {
+                self.found.see(FRICTION, f64::INFINITY, part.time(*start));
+            }
+            self.see_reactions(part.time(0.0), phase, &polynomial.reactions(0.0));
+            self.see_reactions(part.time(arc.reach), phase, &last);
+            self.look_for::<Tension>(phase, &polynomial);
+            self.look_for::<EdgeLoad>(phase, &polynomial);
+            self.look_for::<Friction>(phase, &polynomial);
+            true
+        });
     }
 
     /// Looks within `polynomial` for the worst value of an assumption, and for the time beyond its limit.
@@ -410,7 +413,7 @@ impl Watch for Validity {
                 _ => extents(&self.structure, phase, piece.load.from(expansion.from), expansion.arc),
             };
             if self.may_matter(phase, &extents) {
-                self.look(expansion, &extents, reaction_series::of_one, FINEST_PART);
+                self.look(&expansion, &extents, reaction_series::of_one);
             }
             count += 1;
             if count >= MOST_ARCS {
@@ -438,7 +441,7 @@ impl Watch<Modes> for Validity<Modes> {
                 false => UNBOUNDED,
             };
             if self.may_matter(piece.before.phase, &extents) {
-                self.look(expansion, &extents, reaction_series::of_modes, FINEST_PART);
+                self.look(&expansion, &extents, reaction_series::of_modes);
             }
             let of_rest = arcs.rest().and_then(|(rest, vibration)| extents_of_rest(&rest, &vibration));
             if of_rest.is_some_and(|extents| !self.may_matter(piece.before.phase, &extents)) {

@@ -88,7 +88,7 @@ fn peaks_and_transitions_are_points() {
 #[test]
 fn a_curve_has_no_more_points_than_a_picture_needs() {
     let ground = Record::at_rest(1.0);
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let structure = Structure::new(Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS }).unwrap();
     let initial = State { u: 1e-3, ..State::default() };
     let run = Run { initial, end: End::At(1e7), ..Run::new(structure, &ground) };
     let Err(RunError::TooManyPoints { most: 1_000_000, time }) = run.curve(1e-3) else { panic!("it is drawn") };
