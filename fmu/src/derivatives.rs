@@ -1,6 +1,5 @@
 //! Derivatives of outputs: by time, and by what the host sets.
 
-use crate::inputs::InputsOf;
 use crate::masses::Masses;
 use crate::shown::Shown;
 use crate::unit::Unit;
@@ -15,7 +14,7 @@ impl<Q: Masses> Unit<Q> {
         let sources = self.sources_of(references);
         let found: Vec<_> = {
             let (scene, setup, inputs) = self.parts()?;
-            let load = scene.load(setup, inputs.now(&scene.engine));
+            let load = scene.load(setup, inputs.now(scene.engine.structure()));
             let (output, reactions) = Q::rates(&scene.engine, load);
             let rate = |source| match source {
                 Source::Reaction(of) => Some(of(&reactions)),
@@ -74,13 +73,13 @@ impl<Q: Masses> Unit<Q> {
             self.restore(&before)?;
             found = by_others?;
         }
-        let mut unit_load = self.inputs.at_rest();
+        let (mut unit_load, vertical) = (self.inputs.at_rest(), self.inputs.vertical());
         let (scene, setup, _) = self.parts()?;
-        let at_rest: LinearLoad<Q> = unit_load.values(&scene.engine).into();
+        let at_rest: LinearLoad<Q> = unit_load.values(scene.engine.structure()).into();
         let Load { a_g, a_v, .. } = scene.load(setup, at_rest).slope;
-        direction.extend([(0, of_time * a_g), (Q::Inputs::VERTICAL, of_time * a_v)]);
+        direction.extend([(0, of_time * a_g), (vertical, of_time * a_v)]);
         direction.retain(|(_, change)| *change != 0.0);
-        let is_vertical = direction.iter().any(|(which, _)| *which == Q::Inputs::VERTICAL);
+        let is_vertical = direction.iter().any(|(which, _)| *which == vertical);
         let is_admitted_for_this = is_vertical && !scene.may_move_vertically(setup);
         if is_admitted_for_this {
             scene.set(|settings| settings.vertical = true)?;
@@ -89,15 +88,15 @@ impl<Q: Masses> Unit<Q> {
         let before = shown(at_rest.value);
         let (Reactions { R_h, R_v, .. }, base) =
             (scene.engine.reactions(at_rest.value), scene.engine.structure().as_ref());
-        let is_ground = |which: usize| which == 0 || which == Q::Inputs::VERTICAL;
-        let acceleration =
-            |(which, change): &(usize, f64)| change.abs() / if is_ground(*which) { 1.0 } else { base.m_t };
+        let acceleration = |(which, change): &(usize, f64)| {
+            change.abs() / if *which == 0 || *which == vertical { 1.0 } else { base.m_t }
+        };
         let size =
             direction.iter().map(acceleration).fold(0.0, f64::max) / base.g.max((R_h.abs() + R_v.abs()) / base.m_t);
         for (which, change) in direction {
             unit_load.set(which, unit_load.shown(which) + change / size);
         }
-        let after = shown(unit_load.values(&scene.engine));
+        let after = shown(unit_load.values(scene.engine.structure()));
         for (found, of) in found.iter_mut().zip(&unknowns) {
             let change = after.value(*of).zip(before.value(*of)).map_or(0.0, |(after, before)| after - before);
             *found += size * change;

@@ -1,70 +1,9 @@
 //! The inputs: what the host sets at communication points, and the line that each of them follows over a step.
 
-use rocking::engine::Moves;
+use crate::masses::Masses;
 use rocking::mechanics::load::{LOADS, VERTICAL};
-use rocking::{Engine, Frame, LinearLoad, Load, Modes, OutOfRange};
-use serde::de::DeserializeOwned;
+use rocking::{LinearLoad, Load, OutOfRange, Ramp};
 use serde::{Deserialize, Serialize};
-use std::fmt::Debug;
-
-/// The inputs of structures with the lateral coordinates `Q`, by their places.
-pub trait InputsOf<Q: Moves>: Clone + Debug + Serialize + DeserializeOwned {
-    /// The lines that the inputs follow over a step.
-    type Lines;
-
-    /// The values at an instant of a step.
-    type Values;
-
-    /// The place of a_v.
-    const VERTICAL: usize;
-
-    /// Makes the inputs act as the setup says. Until then, and where no steps are made, they act at once.
-    fn start(&mut self, between: [Between; LOADS.len()]);
-
-    /// As many inputs, all 0, that act at once.
-    fn at_rest(&self) -> Self;
-
-    /// Whether an input acts as soon as it is set.
-    fn acts_at_once(&self, which: usize) -> bool;
-
-    /// The value that the host reads: what it has set, or what the last step led to.
-    fn shown(&self, which: usize) -> f64;
-
-    /// Sets a value.
-    fn set(&mut self, which: usize, value: f64);
-
-    /// Sets a slope over the next step, from what has been set of the input or else from what acts.
-    fn set_slope(&mut self, which: usize, slope: f64);
-
-    /// Sets the value that an input leads to over the next step, which lasts `step` (s), in a straight line.
-    fn lead(&mut self, which: usize, value: f64, step: f64);
-
-    /// The loads that act now on the structure of `engine`.
-    fn values(&self, engine: &Engine<Q>) -> Load<Q>;
-
-    /// The loads that act now on the structure of `engine`, with the slopes of the next step, or of the last step if none are set.
-    fn now(&self, engine: &Engine<Q>) -> LinearLoad<Q>;
-
-    /// The lines that the inputs follow over a step of `duration` (s). An input of which only the value is set is held
-    /// if its line would lead out of its range.
-    fn over(&self, duration: f64, engine: &Engine<Q>) -> Self::Lines;
-
-    /// The loads along `lines`.
-    fn load(lines: &Self::Lines) -> &LinearLoad<Q>;
-
-    /// The values on `lines` after `tau` seconds.
-    fn at(lines: &Self::Lines, tau: f64) -> Self::Values;
-
-    /// Checks that `values` are in range. Returns the place of the input that is not.
-    fn check(values: &Self::Values) -> Result<(), (usize, OutOfRange)>;
-
-    /// Goes on after `duration` (s) of a step along `lines` to `values`, which ended early or at the next communication
-    /// point.
-    fn pass(&mut self, lines: &Self::Lines, duration: f64, values: Self::Values, ended_early: bool);
-
-    /// Whether the values of a ground acceleration come as samples of a motion and are held from step to step.
-    fn makes_stairs(&self) -> bool;
-}
 
 /// How an input acts between communication points if nothing but its value is set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -78,25 +17,13 @@ pub enum Between {
     Extrapolated,
 }
 
-/// The inputs. An input follows its slope for one step, and then holds the value that it has reached. After a step that ended
-/// early, the next step continues along the same lines.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+/// The inputs by their places. An input follows its slope for one step, and then holds the value that it has reached. After a step
+/// that ended early, the next step continues along the same lines.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Inputs {
-    /// How they act, in the order of [`LOADS`].
-    between: [Between; LOADS.len()],
-    /// Whether some are not held, so that more than that is asked.
-    is_any_led: bool,
-    /// The inputs that act now, and the slopes of the next step, except for late ones.
-    next: LinearLoad,
-    /// The values that the host has set, or that the last step led to.
-    set: Load,
-    /// The settings of each input since the last step, in the same order.
-    given: [Given; LOADS.len()],
-    /// The values at the end of the last step, and the slopes that the step followed.
-    followed: LinearLoad,
-    /// The inputs at the last communication point that a step began at, and the time since then, s; 0 before the
-    /// first.
-    before: (Load, f64),
+    each: Vec<Input>,
+    /// Time since the last communication point that a step began at, s; 0 before the first.
+    since: f64,
     /// Whether the last step ended before the next communication point.
     ended_early: bool,
     /// Over how many steps in a row, up to [`STAIRS`], a ground acceleration was held at another value each.
@@ -106,6 +33,26 @@ pub struct Inputs {
 /// Steps in a row over which a ground acceleration is held, each at another value, before it counts as samples of a motion. A
 /// push begins and ends with one such step.
 const STAIRS: u8 = 3;
+
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+struct Input {
+    /// Its place in [`LOADS`].
+    load: usize,
+    between: Between,
+    /// The value that acts now, and the slope of the next step, unless the input is late.
+    next: Ramp,
+    /// The value that the host has set, or that the last step led to.
+    set: f64,
+    /// What was set since the last step.
+    given: Given,
+    /// The value at the end of the last step, and the slope that the step followed.
+    followed: Ramp,
+    /// The value at the last communication point that a step began at.
+    before: f64,
+    /// The line over the present step.
+    #[serde(skip)]
+    line: Ramp,
+}
 
 /// The setting of an input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -119,312 +66,187 @@ enum Given {
     Slope,
 }
 
-impl InputsOf<f64> for Inputs {
-    type Lines = LinearLoad;
-    type Values = Load;
-
-    const VERTICAL: usize = VERTICAL;
-
-    fn start(&mut self, between: [Between; LOADS.len()]) {
-        (self.between, self.is_any_led) = (between, between != [Between::Held; LOADS.len()]);
-    }
-
-    fn at_rest(&self) -> Inputs {
-        Inputs::default()
+impl Input {
+    fn acts_at_once(&self) -> bool {
+        self.between != Between::Late || self.given == Given::Slope
     }
 
     #[inline]
-    fn acts_at_once(&self, which: usize) -> bool {
-        self.between[which] != Between::Late || self.given[which] == Given::Slope
-    }
-
-    fn shown(&self, which: usize) -> f64 {
-        self.set[which]
-    }
-
-    #[inline]
-    fn set(&mut self, which: usize, value: f64) {
-        self.set[which] = value;
+    fn set(&mut self, value: f64, since: f64, ended_early: bool) {
+        self.set = value;
         let mut acts = value;
-        if self.given[which] != Given::Slope {
-            self.given[which] = Given::Value;
-            (acts, self.next.slope[which]) = match self.between[which] {
+        if self.given != Given::Slope {
+            self.given = Given::Value;
+            (acts, self.next.slope) = match self.between {
                 Between::Held => (value, 0.0),
                 Between::Late => return,
-                Between::Extrapolated => self.extrapolated(which, value),
+                Between::Extrapolated => self.extrapolated(value, since, ended_early),
             };
         }
-        self.next.value[which] = acts;
-    }
-
-    #[inline]
-    fn set_slope(&mut self, which: usize, slope: f64) {
-        let Inputs { next, set, given, .. } = self;
-        if given[which] == Given::Nothing {
-            set[which] = next.value[which];
-        } else {
-            next.value[which] = set[which];
-        }
-        next.slope[which] = slope;
-        given[which] = Given::Slope;
-    }
-
-    fn lead(&mut self, which: usize, value: f64, step: f64) {
-        self.set_slope(which, 0.0);
-        self.set_slope(which, (value - self.set[which]) / step);
-    }
-
-    #[inline(always)]
-    fn values(&self, _: &Engine) -> Load {
-        self.next.value
-    }
-
-    fn now(&self, _: &Engine) -> LinearLoad {
-        self.with_slopes()
-    }
-
-    #[inline]
-    fn over(&self, duration: f64, _: &Engine) -> LinearLoad {
-        self.line(duration)
-    }
-
-    #[inline(always)]
-    fn load(lines: &LinearLoad) -> &LinearLoad {
-        lines
-    }
-
-    #[inline]
-    fn at(lines: &LinearLoad, tau: f64) -> Load {
-        lines.at(tau)
-    }
-
-    #[inline]
-    fn check(values: &Load) -> Result<(), (usize, OutOfRange)> {
-        values.check().map_err(place)
-    }
-
-    #[inline(always)]
-    fn pass(&mut self, load: &LinearLoad, duration: f64, value: Load, ended_early: bool) {
-        if !self.ended_early {
-            let is_stair = |which: usize| {
-                let is_held = self.given[which] == Given::Value && self.between[which] == Between::Held;
-                is_held && load.value[which] != self.before.0[which]
-            };
-            let is_stair = is_stair(0) || is_stair(VERTICAL);
-            self.stairs = if is_stair { (self.stairs + 1).min(STAIRS) } else { 0 };
-            self.before = (load.value, 0.0);
-        }
-        self.before.1 += duration;
-        let slope = if ended_early { load.slope } else { Load::default() };
-        (self.next, self.ended_early) = (LinearLoad { value, slope }, ended_early);
-        if self.is_any_led {
-            self.arrive();
-        } else {
-            self.set = value;
-        }
-        (self.followed.value, self.followed.slope) = (self.next.value, load.slope);
-        self.given = [Given::Nothing; LOADS.len()];
-    }
-
-    #[inline]
-    fn makes_stairs(&self) -> bool {
-        self.stairs == STAIRS
-    }
-}
-
-impl Inputs {
-    /// The inputs that act now, with the slopes of the next step, or of the last step if none are set.
-    pub(crate) fn with_slopes(&self) -> LinearLoad {
-        let mut load = self.next;
-        for which in 0..LOADS.len() {
-            if self.given[which] == Given::Nothing || !self.acts_at_once(which) {
-                load.slope[which] = self.followed.slope[which];
-            }
-        }
-        load
+        self.next.value = acts;
     }
 
     /// The value that acts and its slope where `value` alone is set of an input that goes on.
     #[cold]
-    #[inline(never)]
-    fn extrapolated(&mut self, which: usize, value: f64) -> (f64, f64) {
-        let Inputs { given, followed, before: (before, ago), ended_early, .. } = self;
-        if *ended_early && value == before[which] {
-            given[which] = Given::Nothing;
-            return (followed.value[which], followed.slope[which]);
+    fn extrapolated(&mut self, value: f64, since: f64, ended_early: bool) -> (f64, f64) {
+        if ended_early && value == self.before {
+            self.given = Given::Nothing;
+            return (self.followed.value, self.followed.slope);
         }
-        let slope = if *ago > 0.0 { (value - before[which]) / *ago } else { 0.0 };
+        let slope = if since > 0.0 { (value - self.before) / since } else { 0.0 };
         (value, if slope.is_finite() { slope } else { 0.0 })
     }
 
     #[inline]
-    fn line(&self, duration: f64) -> LinearLoad {
-        if self.is_any_led { self.lines(duration) } else { self.next }
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn lines(&self, duration: f64) -> LinearLoad {
-        let mut load = self.next;
-        for (which, between) in self.between.into_iter().enumerate() {
-            if between == Between::Held || self.given[which] == Given::Slope {
-                continue;
-            }
-            let value = load.value[which];
-            let slope = match between {
-                Between::Late => (self.set[which] - value) / duration,
-                _ => load.slope[which],
-            };
-            let leads_there = slope.is_finite() && LOADS[which].check(value + slope * duration).is_ok();
-            load.slope[which] = if leads_there { slope } else { 0.0 };
+    fn set_slope(&mut self, slope: f64) {
+        if self.given == Given::Nothing {
+            self.set = self.next.value;
+        } else {
+            self.next.value = self.set;
         }
-        load
+        (self.next.slope, self.given) = (slope, Given::Slope);
     }
 
-    /// Sets the inputs that act at once to where the step has led. Late inputs go to their set values, whatever the rounding,
-    /// unless the step has ended early.
-    #[cold]
-    #[inline(never)]
-    fn arrive(&mut self) {
-        for which in 0..LOADS.len() {
-            if self.acts_at_once(which) {
-                self.set[which] = self.next.value[which];
-            } else if !self.ended_early {
-                self.next.value[which] = self.set[which];
-            }
+    /// The line over a step of `duration` (s). An input of which only the value is set is held if its line would lead out of its
+    /// range.
+    #[inline]
+    fn over(&self, duration: f64) -> Ramp {
+        let Ramp { value, mut slope } = self.next;
+        if self.between == Between::Held || self.given == Given::Slope {
+            return self.next;
         }
-    }
-}
-
-/// The inputs of many masses: a_g, a_v, then a force on each floor. Each item has a force, the first also the ground.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct FloorInputs(Vec<Inputs>);
-
-/// The place of F_t in [`LOADS`].
-const FORCE: usize = 1;
-
-impl FloorInputs {
-    /// Inputs that are 0, for `floors` floors.
-    pub fn new(floors: usize) -> FloorInputs {
-        FloorInputs(vec![Inputs::default(); floors.max(1)])
-    }
-
-    /// The item that has an input, and the place of the input there.
-    fn at(which: usize) -> (usize, usize) {
-        match which {
-            0 => (0, 0),
-            <FloorInputs as InputsOf<Modes>>::VERTICAL => (0, VERTICAL),
-            _ => (which - 2, FORCE),
+        if self.between == Between::Late {
+            slope = (self.set - value) / duration;
         }
+        let leads_there = slope.is_finite() && LOADS[self.load].check(value + slope * duration).is_ok();
+        Ramp { value, slope: if leads_there { slope } else { 0.0 } }
     }
 
-    fn of(&mut self, which: usize) -> (&mut Inputs, usize) {
-        let (item, place) = FloorInputs::at(which);
-        (&mut self.0[item], place)
+    /// Goes on after `duration` (s) along the line. Inputs that act at once are now where the line has led. Late inputs go to their
+    /// set values, whatever the rounding, unless the step has ended early.
+    #[inline]
+    fn pass(&mut self, duration: f64, ended_early: bool) {
+        let Ramp { slope, .. } = self.line;
+        self.next = Ramp { value: self.line.at(duration), slope: if ended_early { slope } else { 0.0 } };
+        if self.acts_at_once() {
+            self.set = self.next.value;
+        } else if !ended_early {
+            self.next.value = self.set;
+        }
+        self.followed = Ramp { value: self.next.value, slope };
+        self.given = Given::Nothing;
     }
 }
 
-/// The place in [`LOADS`] of a load that is out of range.
-#[cold]
-fn place(of: OutOfRange) -> (usize, OutOfRange) {
-    (LOADS.iter().position(|load| load.name == of.name).expect("it is one of them"), of)
-}
-
-/// The load of these `parts` on the `frame`.
-fn together(frame: &Frame, parts: impl Iterator<Item = Load>) -> Load<Modes> {
-    let parts: Vec<_> = parts.collect();
-    let forces: Vec<_> = parts.iter().take(frame.floors().len()).map(|part| part.F_t).collect();
-    frame.load(parts[0].a_g, parts[0].a_v, &forces).expect("each floor has a force")
-}
-
-fn together_over(frame: &Frame, parts: &[LinearLoad]) -> LinearLoad<Modes> {
-    let [value, slope] = [|part: &LinearLoad| part.value, |part: &LinearLoad| part.slope]
-        .map(|of| together(frame, parts.iter().map(of)));
-    LinearLoad { value, slope }
-}
-
-/// The lines of [`FloorInputs`], and the loads along them.
-pub struct FloorLines {
-    parts: Vec<LinearLoad>,
-    load: LinearLoad<Modes>,
-}
-
-impl InputsOf<Modes> for FloorInputs {
-    type Lines = FloorLines;
-    type Values = Vec<Load>;
-
-    const VERTICAL: usize = 1;
-
-    fn start(&mut self, between: [Between; LOADS.len()]) {
-        self.0.iter_mut().for_each(|item| item.start(between));
+impl Inputs {
+    /// Inputs that are 0 and act at once, given the places of their `loads` in [`LOADS`].
+    pub fn new(loads: impl Iterator<Item = usize>) -> Inputs {
+        let each = loads.map(|load| Input { load, ..Input::default() }).collect();
+        Inputs { each, since: 0.0, ended_early: false, stairs: 0 }
     }
 
-    fn at_rest(&self) -> FloorInputs {
-        FloorInputs::new(self.0.len())
+    /// As many inputs, all 0, that act at once.
+    pub fn at_rest(&self) -> Inputs {
+        Inputs::new(self.each.iter().map(|input| input.load))
     }
 
-    fn acts_at_once(&self, which: usize) -> bool {
-        let (item, place) = FloorInputs::at(which);
-        self.0[item].acts_at_once(place)
+    /// Makes the inputs act as the setup says, in the order of [`LOADS`]. Until then, and where no steps are made, they act at once.
+    pub fn start(&mut self, between: [Between; LOADS.len()]) {
+        self.each.iter_mut().for_each(|input| input.between = between[input.load]);
     }
 
-    fn shown(&self, which: usize) -> f64 {
-        let (item, place) = FloorInputs::at(which);
-        self.0[item].shown(place)
+    /// Whether an input is a_v.
+    #[inline]
+    pub fn is_vertical(&self, which: usize) -> bool {
+        self.each[which].load == VERTICAL
     }
 
-    fn set(&mut self, which: usize, value: f64) {
-        let (item, place) = self.of(which);
-        item.set(place, value);
+    /// The place of a_v.
+    pub fn vertical(&self) -> usize {
+        (0..self.each.len()).find(|which| self.is_vertical(*which)).expect("every structure has this input")
     }
 
-    fn set_slope(&mut self, which: usize, slope: f64) {
-        let (item, place) = self.of(which);
-        item.set_slope(place, slope);
+    /// Whether an input acts as soon as it is set.
+    pub fn acts_at_once(&self, which: usize) -> bool {
+        self.each[which].acts_at_once()
     }
 
-    fn lead(&mut self, which: usize, value: f64, step: f64) {
-        let (item, place) = self.of(which);
-        item.lead(place, value, step);
+    /// The value that the host reads: what it has set, or what the last step led to.
+    pub fn shown(&self, which: usize) -> f64 {
+        self.each[which].set
     }
 
-    fn values(&self, engine: &Engine<Modes>) -> Load<Modes> {
-        together(engine.structure(), self.0.iter().map(|item| item.next.value))
+    /// Sets a value.
+    #[inline]
+    pub fn set(&mut self, which: usize, value: f64) {
+        self.each[which].set(value, self.since, self.ended_early);
     }
 
-    fn now(&self, engine: &Engine<Modes>) -> LinearLoad<Modes> {
-        together_over(engine.structure(), &self.0.iter().map(Inputs::with_slopes).collect::<Vec<_>>())
+    /// Sets a slope over the next step, from what has been set of the input or else from what acts.
+    #[inline]
+    pub fn set_slope(&mut self, which: usize, slope: f64) {
+        self.each[which].set_slope(slope);
     }
 
-    fn over(&self, duration: f64, engine: &Engine<Modes>) -> FloorLines {
-        let parts: Vec<_> = self.0.iter().map(|item| item.line(duration)).collect();
-        FloorLines { load: together_over(engine.structure(), &parts), parts }
+    /// Sets the value that an input leads to over the next step, which lasts `step` (s), in a straight line.
+    pub fn lead(&mut self, which: usize, value: f64, step: f64) {
+        let input = &mut self.each[which];
+        input.set_slope(0.0);
+        input.set_slope((value - input.set) / step);
     }
 
-    fn load(lines: &FloorLines) -> &LinearLoad<Modes> {
-        &lines.load
+    /// The loads that act now on `structure`.
+    #[inline]
+    pub fn values<Q: Masses>(&self, structure: &Q::Structure) -> Load<Q> {
+        Q::load(structure, |which| self.each[which].next.value)
     }
 
-    fn at(lines: &FloorLines, tau: f64) -> Vec<Load> {
-        lines.parts.iter().map(|part| part.at(tau)).collect()
+    /// The loads that act now on `structure`, with the slopes of the next step, or of the last step if none are set.
+    pub fn now<Q: Masses>(&self, structure: &Q::Structure) -> LinearLoad<Q> {
+        let slope = |which: usize| {
+            let input = &self.each[which];
+            let is_old = input.given == Given::Nothing || !input.acts_at_once();
+            if is_old { input.followed.slope } else { input.next.slope }
+        };
+        LinearLoad { value: self.values(structure), slope: Q::load(structure, slope) }
     }
 
-    fn check(values: &Vec<Load>) -> Result<(), (usize, OutOfRange)> {
-        values.iter().enumerate().try_for_each(|(item, values)| {
-            values.check().map_err(place).map_err(|(place, of)| match place {
-                FORCE => (item + 2, of),
-                VERTICAL => (Self::VERTICAL, of),
-                place => (place, of),
-            })
+    /// Puts every input on its line over a step of `duration` (s), and returns the loads on `structure` along the lines.
+    #[inline]
+    pub fn over<Q: Masses>(&mut self, duration: f64, structure: &Q::Structure) -> LinearLoad<Q> {
+        self.each.iter_mut().for_each(|input| input.line = input.over(duration));
+        let [value, slope] = [|line: &Ramp| line.value, |line: &Ramp| line.slope]
+            .map(|of| Q::load(structure, |which| of(&self.each[which].line)));
+        LinearLoad { value, slope }
+    }
+
+    /// Checks that the lines lead to values in range after `duration` (s). Returns the place of the input that does not.
+    #[inline]
+    pub fn check(&self, duration: f64) -> Result<(), (usize, OutOfRange)> {
+        self.each.iter().enumerate().try_for_each(|(which, input)| {
+            LOADS[input.load].check(input.line.at(duration)).map_err(|out_of_range| (which, out_of_range))
         })
     }
 
-    fn pass(&mut self, lines: &FloorLines, duration: f64, values: Vec<Load>, ended_early: bool) {
-        let parts = self.0.iter_mut().zip(&lines.parts).zip(values);
-        parts.for_each(|((item, line), value)| item.pass(line, duration, value, ended_early));
+    /// Goes on after `duration` (s) of a step along the lines, which ended early or at the next communication point.
+    #[inline]
+    pub fn pass(&mut self, duration: f64, ended_early: bool) {
+        if !self.ended_early {
+            let is_stair = |input: &Input| {
+                let is_held = input.given == Given::Value && input.between == Between::Held;
+                [0, VERTICAL].contains(&input.load) && is_held && input.line.value != input.before
+            };
+            self.stairs = if self.each.iter().any(is_stair) { (self.stairs + 1).min(STAIRS) } else { 0 };
+            self.since = 0.0;
+            self.each.iter_mut().for_each(|input| input.before = input.line.value);
+        }
+        self.since += duration;
+        self.ended_early = ended_early;
+        self.each.iter_mut().for_each(|input| input.pass(duration, ended_early));
     }
 
-    fn makes_stairs(&self) -> bool {
-        self.0[0].makes_stairs()
+    /// Whether the values of a ground acceleration come as samples of a motion and are held from step to step.
+    pub fn makes_stairs(&self) -> bool {
+        self.stairs == STAIRS
     }
 }

@@ -2,11 +2,12 @@
 
 use crate::advance::{Told, Watching};
 use crate::failure::Refusal;
-use crate::inputs::{FloorInputs, Inputs, InputsOf};
+use crate::inputs::Inputs;
 use crate::resources::Contents;
 use crate::setup::Setup;
 use crate::shown::Shown;
 use crate::variables::Source;
+use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::fall::{FallingProfile, Peaked};
 use rocking::run::peaks::Peak;
 use rocking::run::validity::{self, Validity};
@@ -19,16 +20,19 @@ use rocking::{
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+/// The place of F_t in [`LOADS`].
+const FORCE: usize = 1;
+
 /// Lateral coordinates of the structures that a unit can move.
 pub trait Masses: Peaked<Peaks: Serialize + DeserializeOwned> + Default + Serialize + DeserializeOwned {
-    /// The inputs.
-    type Inputs: InputsOf<Self>;
-
     /// The outputs that are computed together.
     type Outputs: Copy;
 
     /// Inputs that are 0.
-    fn inputs(contents: &Contents) -> Self::Inputs;
+    fn inputs(contents: &Contents) -> Inputs;
+
+    /// The load on `structure`, given the value of each input by its place.
+    fn load(structure: &Self::Structure, input: impl Fn(usize) -> f64) -> Load<Self>;
 
     /// The structure as it is set up, of an archive with these `contents`.
     fn structure(setup: &Setup, contents: &Contents) -> Result<Self::Structure, Refusal>;
@@ -74,11 +78,15 @@ pub trait Masses: Peaked<Peaks: Serialize + DeserializeOwned> + Default + Serial
 }
 
 impl Masses for f64 {
-    type Inputs = Inputs;
     type Outputs = Outputs;
 
     fn inputs(_: &Contents) -> Inputs {
-        Inputs::default()
+        Inputs::new(0..LOADS.len())
+    }
+
+    #[inline(always)]
+    fn load(_: &Structure, input: impl Fn(usize) -> f64) -> Load {
+        Load { a_g: input(0), F_t: input(1), a_v: input(VERTICAL) }
     }
 
     fn structure(setup: &Setup, contents: &Contents) -> Result<Structure, Refusal> {
@@ -158,11 +166,16 @@ impl Masses for f64 {
 }
 
 impl Masses for Modes {
-    type Inputs = FloorInputs;
     type Outputs = ();
 
-    fn inputs(contents: &Contents) -> FloorInputs {
-        FloorInputs::new(frame(contents).floors().len())
+    /// a_g and a_v, then a force on each floor.
+    fn inputs(contents: &Contents) -> Inputs {
+        Inputs::new([0, VERTICAL].into_iter().chain(frame(contents).floors().iter().map(|_| FORCE)))
+    }
+
+    fn load(frame: &Frame, input: impl Fn(usize) -> f64) -> Load<Modes> {
+        let forces: Vec<_> = (2..).map(&input).take(frame.floors().len()).collect();
+        frame.load(input(0), input(1), &forces).expect("each floor has a force")
     }
 
     fn structure(_: &Setup, contents: &Contents) -> Result<Frame, Refusal> {

@@ -3,7 +3,7 @@
 use crate::advance::Told;
 use crate::failure::Refusal;
 use crate::ground::{Digest, Kept};
-use crate::inputs::InputsOf;
+use crate::inputs::Inputs;
 use crate::masses::Masses;
 use crate::motion_log::{log, warn, warn_of_stairs};
 use crate::resources::{Archive, Contents};
@@ -30,7 +30,7 @@ pub struct Unit<Q: Masses = f64> {
     pub(crate) table: Table,
     archive: Archive,
     pub(crate) setup: Setup,
-    pub(crate) inputs: Q::Inputs,
+    pub(crate) inputs: Inputs,
     /// Until the start it is built when an output is asked for, and dropped when what it was built from is set anew.
     scene: Option<Scene<Q>>,
     has_started: bool,
@@ -40,17 +40,9 @@ pub struct Unit<Q: Masses = f64> {
     told_of_stairs: bool,
 }
 
-/// All from which an instance goes on to the same bits: its part of an FMU state.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub struct Condition<Q: Masses = f64> {
-    /// The settings before the start.
-    pub setup: Setup,
-    /// The inputs from the present time on.
-    pub inputs: Q::Inputs,
-    /// How far the simulation has come, once it has started: until then all follows from the setup.
-    pub course: Option<Course<Q>>,
-}
+/// All from which an instance goes on to the same bits, its part of an FMU state: the settings before the start, the inputs from
+/// the present time on, and how far the simulation has come once it has started. Until then all follows from the settings.
+pub type Condition<Q> = (Setup, Inputs, Option<Course<Q>>);
 
 /// How far a simulation has come.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -85,7 +77,7 @@ impl<Q: Masses> Unit<Q> {
 
     /// The structure with the setup and the inputs.
     #[inline]
-    pub(crate) fn parts(&mut self) -> Result<(&mut Scene<Q>, &Setup, &mut Q::Inputs), Refusal> {
+    pub(crate) fn parts(&mut self) -> Result<(&mut Scene<Q>, &Setup, &mut Inputs), Refusal> {
         if self.scene.is_none() {
             self.build()?;
         }
@@ -136,10 +128,8 @@ impl<Q: Masses> Unit<Q> {
     /// Whether one of `values` moves the ground vertically.
     #[inline]
     fn is_vertical(&self, references: &[u32], values: &[f64]) -> bool {
-        references
-            .iter()
-            .zip(values)
-            .any(|(reference, value)| *reference == Q::Inputs::VERTICAL as u32 && *value != 0.0)
+        let moves = |(reference, value): (&u32, &f64)| *value != 0.0 && self.inputs.is_vertical(*reference as usize);
+        references.iter().zip(values).any(moves)
     }
 }
 
@@ -151,12 +141,12 @@ fn integer(count: u64) -> Value {
 /// The value of a real number that is no output: one that is `shown`, or set.
 #[cold]
 #[inline(never)]
-fn other<Q: Masses>(shown: &Shown<Q>, inputs: &Q::Inputs, source: Source) -> f64 {
+fn other<Q: Masses>(shown: &Shown<Q>, inputs: &Inputs, source: Source) -> f64 {
     shown.value(source).unwrap_or_else(|| setting::<Q>(shown.setup, inputs, source))
 }
 
 /// The value of a real number that the host sets.
-fn setting<Q: Masses>(setup: &Setup, inputs: &Q::Inputs, source: Source) -> f64 {
+fn setting<Q: Masses>(setup: &Setup, inputs: &Inputs, source: Source) -> f64 {
     match source {
         Source::Input(which) => inputs.shown(which),
         source => source.setting(setup).expect("a real number that is not computed is set"),
@@ -212,7 +202,7 @@ impl<Q: Masses> Model for Unit<Q> {
         let Unit { table: Table { sources, .. }, setup, inputs, scene: Some(scene), .. } = self else {
             unreachable!("it is built")
         };
-        let load = scene.load(setup, inputs.values(&scene.engine).into()).value;
+        let load = scene.load(setup, inputs.values::<Q>(scene.engine.structure()).into()).value;
         let outputs = Q::outputs(&scene.engine, load);
         let (mut shown, sources): (_, &[Source]) = (None, sources);
         for (reference, value) in references.iter().zip(values) {
@@ -292,7 +282,7 @@ impl<Q: Masses> Model for Unit<Q> {
                          co-simulation"
                     ));
                 }
-                scene.leave_to_host(inputs.values(&scene.engine));
+                scene.leave_to_host(inputs.values(scene.engine.structure()));
             }
         }
         self.has_started = true;
@@ -308,9 +298,8 @@ impl<Q: Masses> Model for Unit<Q> {
     fn advance(&mut self, step: Step, logger: &Logger) -> Result<Progress, Failure> {
         let Step { start: point, duration: step, stops_at_events: stops } = step;
         let (scene, setup, inputs) = self.parts()?;
-        let lines = inputs.over(step, &scene.engine);
-        let (load, end) = (Q::Inputs::load(&lines), Q::Inputs::at(&lines, step));
-        if let Err((which, of)) = Q::Inputs::check(&end) {
+        let load = &inputs.over(step, scene.engine.structure());
+        if let Err((which, of)) = inputs.check(step) {
             return Err(self.runs_out(which, &of));
         }
 
@@ -333,10 +322,9 @@ impl<Q: Masses> Model for Unit<Q> {
         let reached = scene.engine.motion().time;
         let ended_early = reached < point + step;
         if !ended_early {
-            inputs.pass(&lines, step, end, false);
+            inputs.pass(step, false);
         } else if reached > point {
-            let reached = reached - point;
-            inputs.pass(&lines, reached, Q::Inputs::at(&lines, reached), true);
+            inputs.pass(reached - point, true);
         }
         known.iter().for_each(|known| warn(logger, known, &scene.validity));
         if inputs.makes_stairs() && !self.told_of_stairs {
@@ -353,10 +341,10 @@ impl<Q: Masses> Model for Unit<Q> {
     fn update(&mut self, logger: &Logger) -> Result<Update, Failure> {
         let (scene, setup, inputs) = self.parts()?;
         if scene.is_integrated_outside() {
-            return scene.catch_up(setup, inputs.values(&scene.engine), logger);
+            return scene.catch_up(setup, inputs.values(scene.engine.structure()), logger);
         }
         let known = setup.validity.then_some(scene.validity);
-        let load = inputs.values(&scene.engine);
+        let load = inputs.values(scene.engine.structure());
         scene.transit(setup, load, &mut |transition| log(logger, transition));
         known.iter().for_each(|known| warn(logger, known, &scene.validity));
         Ok(Update::default())
@@ -380,14 +368,13 @@ impl<Q: Masses> Model for Unit<Q> {
             validity: scene.validity,
             record: scene.digest(),
         });
-        let condition = Condition::<Q> { setup: setup.clone(), inputs: inputs.clone(), course };
-        write_state(&condition, bytes);
+        write_state(&(setup, inputs, course), bytes);
     }
 
     /// The scene is built anew only for another setup.
     fn restore(&mut self, bytes: &[u8]) -> Result<(), Failure> {
         let read = postcard::from_bytes(bytes);
-        let Condition::<Q> { setup, inputs, course } =
+        let (setup, inputs, course): Condition<Q> =
             read.map_err(|_| Failure::BadBytes("its content cannot be read"))?;
         let (mut scene, has_started) = (None, course.is_some());
         if let Some(course) = course {
@@ -448,7 +435,7 @@ impl<Q: Masses> Model for Unit<Q> {
 
     fn state_rates(&mut self) -> Result<Vec<f64>, Failure> {
         let (scene, setup, inputs) = self.parts()?;
-        let rates = scene.engine.sample(scene.acting(setup, inputs.values(&scene.engine))).state_rates();
+        let rates = scene.engine.sample(scene.acting(setup, inputs.values(scene.engine.structure()))).state_rates();
         if !rates.is_finite() {
             let &Motion { time, state: State { u, theta, .. }, .. } = scene.engine.motion();
             return Err(Refusal::NoStateRates { time, u: u.total(), theta }.into());
@@ -458,17 +445,17 @@ impl<Q: Masses> Model for Unit<Q> {
 
     fn indicators(&mut self) -> Result<Vec<f64>, Failure> {
         let (scene, setup, inputs) = self.parts()?;
-        Ok(scene.engine.sample(scene.acting(setup, inputs.values(&scene.engine))).event_indicators().into())
+        Ok(scene.engine.sample(scene.acting(setup, inputs.values(scene.engine.structure()))).event_indicators().into())
     }
 
     fn complete_step(&mut self, _log: &Logger) -> Result<Completed, Failure> {
         let (scene, setup, inputs) = self.parts()?;
-        scene.complete_step(setup, inputs.values(&scene.engine))
+        scene.complete_step(setup, inputs.values(scene.engine.structure()))
     }
 
     fn arrive_at_event(&mut self) -> Result<(), Failure> {
         let (scene, _, inputs) = self.parts()?;
-        scene.arrive(inputs.values(&scene.engine));
+        scene.arrive(inputs.values(scene.engine.structure()));
         Ok(())
     }
 }

@@ -31,7 +31,7 @@ pub const ERROR: c_int = 3;
 
 /// How far the simulation had come that `snapshot` is of, once it had started.
 pub fn course<Q: Masses>(snapshot: &Snapshot) -> Option<Course<Q>> {
-    postcard::from_bytes::<Condition<Q>>(&snapshot.model).unwrap().course
+    postcard::from_bytes::<Condition<Q>>(&snapshot.model).unwrap().2
 }
 
 /// One message, as the host's logger got it.
