@@ -4,6 +4,7 @@ use crate::masses::Masses;
 use crate::scene::Scene;
 use crate::setup::Setup;
 use rocking::engine::{AdvanceError, Progress};
+use rocking::run::fall::FallWatch;
 use rocking::run::validity::Validity;
 use rocking::{LinearLoad, Piece, Transition, Watch};
 
@@ -15,7 +16,7 @@ pub type Told<'a, Q> = dyn FnMut(&Transition<Q>) + 'a;
 
 /// Watches peaks and limits, if they are asked for. One type for all cases keeps the library small.
 pub struct Watching<'a, 'b, Q: Masses> {
-    pub peaks: Option<Q::Watcher<'a>>,
+    pub peaks: Option<FallWatch<'a, Q>>,
     pub validity: Option<&'a mut Validity<Q>>,
     pub told: &'a mut Told<'b, Q>,
 }
@@ -100,7 +101,7 @@ impl<Q: Masses> Scene<Q> {
     ) -> Result<Progress, AdvanceError> {
         let (mut peaks, mut validity) = (self.peaks.clone(), self.watch_validity());
         let of_limits = setup.validity.then_some(&mut validity);
-        let mut watch = Watching { peaks: setup.peaks.then(|| Q::watch(&mut peaks)), validity: of_limits, told };
+        let mut watch = Watching { peaks: setup.peaks.then(|| peaks.watch()), validity: of_limits, told };
         let progress = self.follow(setup, step, inputs, &mut watch)?;
         drop(watch);
         (self.peaks, self.validity) = (peaks, *validity.found());

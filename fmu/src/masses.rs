@@ -8,7 +8,7 @@ use crate::setup::Setup;
 use crate::shown::Shown;
 use crate::variables::Source;
 use rocking::mechanics::load::{LOADS, VERTICAL};
-use rocking::run::fall::{FallingProfile, Peaked};
+use rocking::run::fall::Peaked;
 use rocking::run::peaks::Peak;
 use rocking::run::validity::{self, Validity};
 use rocking::structure::any::AnyStructure;
@@ -117,7 +117,7 @@ impl Masses for f64 {
             Source::Output(of) => of(&shown.outputs),
             Source::StateRate(which) => shown.state_rates().components()[which],
             Source::Peak(_) if !setup.peaks || scene.is_integrated_outside() => f64::NAN,
-            Source::Peak(of) => of(scene.peaks(setup, load).peaks()),
+            Source::Peak(of) => of(scene.peaks(load).peaks()),
             Source::Derived(derived) => (derived.value)(scene.engine.structure()),
             _ => return None,
         })
@@ -198,14 +198,7 @@ impl Masses for Modes {
             if !setup.peaks || scene.is_integrated_outside() {
                 return Peak { magnitude: f64::NAN, time: f64::NAN };
             }
-            let of =
-                |peaks: &FallingProfile| peaks.peaks().peaks().nth(place).expect("the table is of this structure").1;
-            if !scene.is_at_start(load) {
-                return of(&scene.peaks);
-            }
-            let mut peaks = scene.peaks.clone();
-            peaks.see_instant(shown.sample());
-            of(&peaks)
+            scene.peaks(load).peaks().peaks().nth(place).expect("the table is of this structure").1
         };
         let component = |state, which: usize| Modes::components(state, scene.lateral)[which];
         Some(match source {

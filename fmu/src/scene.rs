@@ -9,13 +9,14 @@ use crate::resources::Contents;
 use crate::setup::Setup;
 use rocking::engine::Settings;
 use rocking::mechanics::load::{LOADS, VERTICAL};
-use rocking::run::fall::{Falling, FallingPeaks};
+use rocking::run::fall::Falling;
 use rocking::run::ground_motion::{Elapsed, Placement};
 use rocking::run::outside_step::Checkpoint;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits, Validity};
 use rocking::{Engine, LinearLoad, Load, Phase};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The structure on its ground.
@@ -29,7 +30,7 @@ pub struct Scene<Q: Masses = f64> {
     pub elapsed: Elapsed,
     /// If the host integrates: the engine is then where the host is.
     pub outside: Option<Outside<Q>>,
-    pub peaks: Falling<Q::Peaks>,
+    pub peaks: Falling<Q>,
     pub validity: Findings,
     /// How many lateral coordinates the table has.
     pub lateral: usize,
@@ -75,7 +76,7 @@ impl<Q: Masses> Scene<Q> {
         let g = setup.g(contents);
         let ground = source.as_deref().map(|source| setup.scaled(source, g)).transpose()?;
         let engine = setup.engine::<Q>(contents, may_move_vertically(setup, ground.as_ref()))?;
-        let peaks = Q::since(setup.start_time, engine.structure(), setup.detail);
+        let peaks = Falling::since(setup.start_time, engine.structure(), setup.detail);
         let (validity, lateral) = (Findings::since(setup.start_time), Q::lateral(contents));
         Ok(Scene { engine, source, ground, elapsed: Elapsed::default(), outside: None, peaks, validity, lateral })
     }
@@ -164,13 +165,13 @@ impl<Q: Masses> Scene<Q> {
     }
 }
 
-impl Scene {
+impl<Q: Masses> Scene<Q> {
     /// The peaks since the start, of a structure that has overturned those before it fell; before the first step, the
     /// values under `load`.
-    pub fn peaks(&self, setup: &Setup, load: Load) -> FallingPeaks {
-        let mut peaks = self.peaks;
+    pub fn peaks(&self, load: Load<Q>) -> Cow<'_, Falling<Q>> {
+        let mut peaks = Cow::Borrowed(&self.peaks);
         if self.is_at_start(load) {
-            peaks.see_instant(setup.start_time, &self.engine.outputs(load));
+            peaks.to_mut().see_instant(&self.engine.sample(load));
         }
         peaks
     }

@@ -55,7 +55,7 @@ pub struct Course<Q: Masses = f64> {
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     /// Peaks so far, if they are watched.
-    pub peaks: Falling<Q::Peaks>,
+    pub peaks: Falling<Q>,
     /// Which limits of the model have been passed so far, if they are watched.
     pub validity: Findings,
     /// Names the record that the ground follows.

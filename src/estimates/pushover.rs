@@ -124,7 +124,7 @@ pub fn at_displacement(structure: &Structure, delta_t: f64) -> Option<Equilibriu
 /// The unstable equilibrium without a force, beyond which the structure overturns (to the right); at π/2 of one that its
 /// tendon turns back from everywhere. `None` for a strut too soft to hold the structure on the way there.
 pub fn at_overturning(structure: &Structure) -> Option<Equilibrium> {
-    let farthest = angle_of_no_return(structure).unwrap_or(FRAC_PI_2); // an elastic strut overturns before
+    let farthest = angle_of_no_return(structure.base()).unwrap_or(FRAC_PI_2); // an elastic strut overturns before
     let restores = |theta| at_rotation(structure, theta).is_some_and(|there| there.force >= 0.0);
     at_rotation(structure, last_where(0.0, farthest, restores))
 }

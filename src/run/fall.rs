@@ -8,13 +8,14 @@ use crate::engine::Moves;
 #[cfg(feature = "lanes")]
 use crate::engine::lanes::{Bounded, Passes};
 use crate::engine::piece::{Expansion, Sample};
-use crate::mechanics::restraint::{Angles, Dissipators, Restraint, sum, ties};
+use crate::mechanics::restraint::{Angles, Dissipators, sum, ties};
 use crate::run::ground_motion::GroundMotion;
 use crate::series::bisection::last_where;
 use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
 use crate::series::taylor::{self, Arc, sum_of_magnitudes};
 use crate::structure::Base;
-use crate::{Detail, Frame, Modes, Outputs, Piece, Side, Structure, Transition, TransitionKind, Watch};
+use crate::{Detail, Frame, Modes, Piece, Side, Structure, Transition, TransitionKind, Watch};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
@@ -23,14 +24,20 @@ pub trait Peaked: Moves {
     /// Exact peaks of a motion.
     type Peaks: Clone + std::fmt::Debug;
 
-    /// Looks for the peaks of a motion that may end in a fall.
-    type Watcher<'a>: Watch<Self>;
+    /// Looks for the peaks of a motion, which are complete when it is dropped.
+    type Search<'a>: Watch<Self>;
 
     /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion.
-    fn since(time: f64, structure: &Self::Structure, detail: Detail) -> Falling<Self::Peaks>;
+    fn none(time: f64, structure: &Self::Structure, detail: Detail) -> Self::Peaks;
 
-    /// Looks for peaks in the pieces of a motion. The peaks are complete when the watcher is dropped.
-    fn watch(peaks: &mut Falling<Self::Peaks>) -> Self::Watcher<'_>;
+    /// Looks for larger `peaks`.
+    fn search(peaks: &mut Self::Peaks) -> Self::Search<'_>;
+
+    /// The peaks of the pieces so far.
+    fn so_far<'a>(search: &'a mut Self::Search<'_>) -> &'a Self::Peaks;
+
+    /// Adds the values of `sample`, which need not be in a piece, to `peaks`.
+    fn see_instant(peaks: &mut Self::Peaks, sample: &Sample<Self>);
 }
 
 /// Result of a run.
@@ -50,118 +57,86 @@ pub struct Found<Q: Peaked = f64> {
 
 /// Exact peaks of a motion that may end in a fall: those of all the motion, and those before the fall.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Falling<Peaks> {
-    all: Peaks,
+#[serde(bound = "Q::Peaks: Serialize + DeserializeOwned")]
+pub struct Falling<Q: Peaked = f64> {
+    all: Q::Peaks,
     /// Angle of no return, rad; none below π/2 if the tendon turns the structure back from everywhere.
     no_return: Option<f64>,
-    /// The last passing of the angle of no return, while |θ| is beyond.
-    fall: Option<Fall<Peaks>>,
+    /// The last passing of the angle of no return, while |θ| is beyond: its instant (s), and the peaks until then.
+    fall: Option<(f64, Q::Peaks)>,
     has_overturned: bool,
 }
 
-/// Peaks of one mass.
-pub type FallingPeaks = Falling<Peaks>;
-
-/// Peaks of many masses.
-pub type FallingProfile = Falling<Profile>;
-
-/// A passing of the angle of no return.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Fall<Peaks> {
-    /// Instant of the passing, s.
-    instant: f64,
-    /// Peaks until then.
-    before: Peaks,
-}
-
-/// Rotation beyond which nothing turns the structure back, rad: α_cg without ties. With ties [`Restraint::restoring_moment`]
-/// vanishes at this rotation, the dissipators moved there slowly from rest. None if the ties turn the structure back up to π/2.
+/// Rotation beyond which nothing turns the structure on `base` back, rad: α_cg without ties. With ties the static moment of weight,
+/// tendon and dissipators vanishes at this rotation, the dissipators moved there slowly from rest. None if the ties turn the
+/// structure back up to π/2.
 ///
 /// The moment vanishes once: while an elastic tie makes it grow it is positive, and it falls from there on.
-pub fn angle_of_no_return(structure: &Structure) -> Option<f64> {
-    no_return(&structure.base, |theta, dissipators| {
-        Restraint::about(structure, Side::Right, dissipators).restoring_moment(theta)
-    })
-}
-
-/// The angle of no return of `base`, given the moment that turns the structure back at an angle (rad).
-fn no_return(base: &Base, restoring_moment: impl Fn(f64, &Dissipators) -> f64) -> Option<f64> {
+pub fn angle_of_no_return(base: &Base) -> Option<f64> {
     if !base.is_restrained() {
         return Some(libm::atan(base.tan_alpha_cg));
     }
     let restores = |theta| {
-        let dissipators = Dissipators::NEW.moved_by(base, Side::Right, Angles::Any.chord(theta, 0.0));
-        restoring_moment(theta, &dissipators) > 0.0
+        let chord = Angles::Any.chord(theta, 0.0);
+        let dissipators = Dissipators::NEW.moved_by(base, Side::Right, chord);
+        let of_ties = sum(&ties(base, Side::Right, &dissipators), |tie| tie.lever).moment(&chord);
+        let (sin, cos) = libm::sincos(theta);
+        base.m_t * base.g * base.B * (cos - sin / base.tan_alpha_cg) + of_ties > 0.0
     };
     (!restores(FRAC_PI_2)).then(|| last_where(0.0, FRAC_PI_2, restores))
 }
 
-/// The angle of no return of a structure of many masses, like [`angle_of_no_return`].
-fn no_return_of_many(frame: &Frame) -> Option<f64> {
-    let (base, body) = (&frame.base, frame.body());
-    no_return(base, |theta, dissipators| {
-        let of_ties = sum(&ties(base, Side::Right, dissipators), |tie| tie.lever);
-        let (sin, cos) = libm::sincos(theta);
-        base.g * (base.m_t * base.B * cos - body.S_1 * sin) + of_ties.moment(&Angles::Any.chord(theta, 0.0))
-    })
-}
-
-impl<Peaks> Falling<Peaks> {
-    fn new(all: Peaks, no_return: Option<f64>) -> Falling<Peaks> {
+impl<Q: Peaked> Falling<Q> {
+    /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion.
+    pub fn since(time: f64, structure: &Q::Structure, detail: Detail) -> Falling<Q> {
+        let (all, no_return) = (Q::none(time, structure, detail), angle_of_no_return(Q::base(structure)));
         Falling { all, no_return, fall: None, has_overturned: false }
     }
 
     /// Peaks of all the motion, including a fall.
-    pub fn all(&self) -> &Peaks {
+    pub fn all(&self) -> &Q::Peaks {
         &self.all
     }
 
     /// Peaks before the fall, if the structure has overturned, otherwise of all the motion.
-    pub fn peaks(&self) -> &Peaks {
-        self.passing().map_or(&self.all, |fall| &fall.before)
+    pub fn peaks(&self) -> &Q::Peaks {
+        self.passing().map_or(&self.all, |(_, before)| before)
     }
 
     /// Start of the fall, s, if the structure has overturned.
     pub fn fall(&self) -> Option<f64> {
-        self.passing().map(|fall| fall.instant)
+        self.passing().map(|(instant, _)| *instant)
     }
 
-    fn passing(&self) -> Option<&Fall<Peaks>> {
+    fn passing(&self) -> Option<&(f64, Q::Peaks)> {
         self.fall.as_ref().filter(|_| self.has_overturned)
     }
-}
 
-impl FallingPeaks {
-    /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion.
-    pub fn since(time: f64, structure: &Structure, detail: Detail) -> FallingPeaks {
-        Falling::new(Peaks::since(time, structure, detail), angle_of_no_return(structure))
-    }
-
-    /// Adds the `outputs` at `time` (s), which need not be in a piece.
-    pub fn see_instant(&mut self, time: f64, outputs: &Outputs) {
-        self.all.see_instant(time, outputs);
+    /// Adds the values of `sample`, which need not be in a piece.
+    pub fn see_instant(&mut self, sample: &Sample<Q>) {
+        Q::see_instant(&mut self.all, sample);
     }
 
     /// Looks for peaks in the pieces of a motion. The peaks are complete when the watch is dropped.
-    pub fn watch(&mut self) -> FallWatch<'_> {
-        let FallingPeaks { all, no_return, fall, has_overturned } = self;
-        FallWatch { all: all.watch(), no_return: *no_return, fall, has_overturned }
+    pub fn watch(&mut self) -> FallWatch<'_, Q> {
+        let Falling { all, no_return, fall, has_overturned } = self;
+        FallWatch { all: Q::search(all), no_return: *no_return, fall, has_overturned }
     }
 }
 
 /// Looks for the peaks of a motion that may end in a fall.
 #[derive(Debug)]
-pub struct FallWatch<'a> {
-    all: PeakWatch<'a>,
+pub struct FallWatch<'a, Q: Peaked = f64> {
+    all: Q::Search<'a>,
     no_return: Option<f64>,
-    fall: &'a mut Option<Fall<Peaks>>,
+    fall: &'a mut Option<(f64, Q::Peaks)>,
     has_overturned: &'a mut bool,
 }
 
-impl Watch for FallWatch<'_> {
+impl<Q: Peaked> Watch<Q> for FallWatch<'_, Q> {
     const SEES_PIECES: bool = true;
 
-    fn piece(&mut self, piece: &Piece) {
+    fn piece(&mut self, piece: &Piece<Q>) {
         match self.no_return {
             Some(angle) if piece.end.theta.abs() >= angle => self.beyond(piece, angle),
             _ => *self.fall = None,
@@ -169,11 +144,11 @@ impl Watch for FallWatch<'_> {
         self.all.piece(piece);
     }
 
-    fn transition(&mut self, transition: &Transition) {
+    fn transition(&mut self, transition: &Transition<Q>) {
         if let TransitionKind::Overturning(_) = transition.kind {
             *self.has_overturned = true;
             let all = &mut self.all;
-            self.fall.get_or_insert_with(|| Fall { instant: transition.time, before: *all.so_far() });
+            self.fall.get_or_insert_with(|| (transition.time, Q::so_far(all).clone()));
         }
         self.all.transition(transition);
     }
@@ -192,21 +167,26 @@ impl Passes for FallWatch<'_> {
     }
 }
 
-impl FallWatch<'_> {
+impl<Q: Peaked> FallWatch<'_, Q> {
     /// The peaks, once the motion has been watched.
-    pub(crate) fn end(mut self) -> FallingPeaks {
-        let (fall, has_overturned) = (*self.fall, *self.has_overturned);
-        FallingPeaks { all: *self.all.so_far(), no_return: self.no_return, fall, has_overturned }
+    pub(crate) fn end(mut self) -> Falling<Q> {
+        let (all, no_return) = (Q::so_far(&mut self.all).clone(), self.no_return);
+        Falling { all, no_return, fall: self.fall.clone(), has_overturned: *self.has_overturned }
     }
 
     /// Keeps the peaks up to the last passing of `angle` (rad) in a `piece` that ends beyond.
     #[cold]
-    fn beyond(&mut self, piece: &Piece, angle: f64) {
-        if let Some((instant, tau)) = start_of_fall(piece, angle, self.fall.is_some()) {
-            let mut before = *self.all.so_far();
-            before.see_until(piece, tau);
-            *self.fall = Some(Fall { instant, before });
+    fn beyond(&mut self, piece: &Piece<Q>, angle: f64) {
+        let Some((instant, tau)) = start_of_fall(piece, angle, self.fall.is_some()) else { return };
+        let mut before = Q::so_far(&mut self.all).clone();
+        let arc = piece.arc.map(|arc| Arc { reach: tau / arc.span, ..arc.clone() });
+        let until = Piece { duration: tau, end: piece.state_at(tau), arc: arc.as_ref(), ..*piece };
+        if tau > 0.0 {
+            Q::search(&mut before).piece(&until);
+        } else {
+            Q::see_instant(&mut before, &until.sample(instant));
         }
+        *self.fall = Some((instant, before));
     }
 }
 
@@ -249,63 +229,45 @@ fn last_passing<Q: Moves>(angle: f64, side: f64, expansion: &Expansion<Q>) -> Op
     }
 }
 
-impl FallingProfile {
-    /// Adds the values of `sample`, which need not be in a piece.
-    pub fn see_instant(&mut self, sample: &Sample<Modes>) {
-        self.all.see_instant(sample);
-    }
-}
-
-impl Watch<Modes> for &mut FallingProfile {
-    const SEES_PIECES: bool = true;
-
-    fn piece(&mut self, piece: &Piece<Modes>) {
-        match self.no_return {
-            Some(angle) if piece.end.theta.abs() >= angle => {
-                if let Some((instant, tau)) = start_of_fall(piece, angle, self.fall.is_some()) {
-                    let mut before = self.all.clone();
-                    let arc = piece.arc.map(|arc| Arc { reach: tau / arc.span, ..arc.clone() });
-                    before.piece(&Piece { duration: tau, end: piece.state_at(tau), arc: arc.as_ref(), ..*piece });
-                    self.fall = Some(Fall { instant, before });
-                }
-            }
-            _ => self.fall = None,
-        }
-        self.all.piece(piece);
-    }
-
-    fn transition(&mut self, transition: &Transition<Modes>) {
-        if let TransitionKind::Overturning(_) = transition.kind {
-            self.has_overturned = true;
-            let FallingProfile { all, fall, .. } = &mut **self;
-            fall.get_or_insert_with(|| Fall { instant: transition.time, before: all.clone() });
-        }
-    }
-}
-
 impl Peaked for f64 {
     type Peaks = Peaks;
-    type Watcher<'a> = FallWatch<'a>;
+    type Search<'a> = PeakWatch<'a>;
 
-    fn since(time: f64, structure: &Structure, detail: Detail) -> FallingPeaks {
-        FallingPeaks::since(time, structure, detail)
+    fn none(time: f64, structure: &Structure, detail: Detail) -> Peaks {
+        Peaks::since(time, structure, detail)
     }
 
-    fn watch(peaks: &mut FallingPeaks) -> FallWatch<'_> {
+    fn search(peaks: &mut Peaks) -> PeakWatch<'_> {
         peaks.watch()
+    }
+
+    fn so_far<'a>(search: &'a mut PeakWatch<'_>) -> &'a Peaks {
+        search.so_far()
+    }
+
+    fn see_instant(peaks: &mut Peaks, sample: &Sample) {
+        peaks.see_instant(sample.motion.time, &sample.outputs());
     }
 }
 
 impl Peaked for Modes {
     type Peaks = Profile;
-    type Watcher<'a> = &'a mut FallingProfile;
+    type Search<'a> = &'a mut Profile;
 
-    fn since(time: f64, structure: &Frame, detail: Detail) -> FallingProfile {
-        Falling::new(Profile::since(time, structure, detail), no_return_of_many(structure))
+    fn none(time: f64, structure: &Frame, detail: Detail) -> Profile {
+        Profile::since(time, structure, detail)
     }
 
-    fn watch(peaks: &mut FallingProfile) -> &mut FallingProfile {
+    fn search(peaks: &mut Profile) -> &mut Profile {
         peaks
+    }
+
+    fn so_far<'a>(search: &'a mut &mut Profile) -> &'a Profile {
+        search
+    }
+
+    fn see_instant(peaks: &mut Profile, sample: &Sample<Modes>) {
+        peaks.see_instant(sample);
     }
 }
 
@@ -317,8 +279,8 @@ impl<Q: Peaked> Run<'_, Q> {
 
     /// Result of the run, and the peaks of all its motion, including a fall.
     pub(super) fn found_and_all(&self, watch: &mut impl Watch<Q>) -> Result<(Found<Q>, Q::Peaks), RunError> {
-        let mut peaks = Q::since(self.ground.start(), &self.structure, self.detail);
-        let finish = self.follow(&mut (&mut Q::watch(&mut peaks), watch))?;
+        let mut peaks = Falling::<Q>::since(self.ground.start(), &self.structure, self.detail);
+        let finish = self.follow(&mut (&mut peaks.watch(), watch))?;
         Ok((self.found_of(peaks.peaks().clone(), peaks.fall(), finish), peaks.all))
     }
 
@@ -351,12 +313,12 @@ mod tests {
     use crate::run::peaks::PEAKS;
     use crate::run::record::Record;
     use crate::run::{End, Ending};
-    use crate::{Parameters, State};
+    use crate::{Outputs, Parameters, State};
     use std::f64::consts::TAU;
 
     /// The peaks before the fall and its instant, of a run that overturns.
-    fn fall_of(run: &Run) -> FallingPeaks {
-        let mut peaks = FallingPeaks::since(run.ground.start(), &run.structure, run.detail);
+    fn fall_of(run: &Run) -> Falling {
+        let mut peaks = Falling::<f64>::since(run.ground.start(), &run.structure, run.detail);
         assert_eq!(run.follow(&mut peaks.watch()).unwrap().ending, Ending::Overturned);
         peaks
     }
@@ -373,7 +335,7 @@ mod tests {
             let run = Run { detail, ..Run::new(structure, &ground) };
             let mut seen: Vec<(f64, Outputs)> = Vec::new();
             let dense = (0..40_000).map(|i| f64::from(i) * 1e-4);
-            let mut watched = FallingPeaks::since(0.0, &structure, Detail::Auto);
+            let mut watched = Falling::<f64>::since(0.0, &structure, Detail::Auto);
             run.sample(dense, |at| seen.push((at.motion.time, at.outputs())), &mut watched.watch()).unwrap();
             let instant = watched.fall().unwrap();
             let last = seen.iter().rposition(|(_, outputs)| outputs.theta.abs() < alpha_cg).unwrap();
@@ -412,7 +374,7 @@ mod tests {
             for beyond in (0..40).map(|i| 1e-4 * f64::from(i)) {
                 let initial = State { theta: -alpha_cg * (1.0 + beyond), ..State::default() };
                 let run = Run { detail, initial, ..Run::new(structure, &ground) };
-                let (mut watched, mut seen) = (FallingPeaks::since(0.0, &structure, Detail::Auto), Vec::new());
+                let (mut watched, mut seen) = (Falling::<f64>::since(0.0, &structure, Detail::Auto), Vec::new());
                 let times = (0..100_000).map(|i| f64::from(i) * 2e-4);
                 let show = |at: &crate::engine::piece::Sample| seen.push((at.motion.time, at.motion.state.theta.abs()));
                 let ending = run.sample(times, show, &mut watched.watch()).unwrap().ending;
@@ -439,7 +401,7 @@ mod tests {
     fn a_tied_structure_falls_from_where_its_own_moment_vanishes() {
         let tied = Parameters { k_t: 2e4, xi_d: 0.2, k_d: 1e5, F_y: 300.0, ..Parameters::MCMANUS };
         let stiff = Structure::new(Parameters { k_t: 4e4, ..tied }).unwrap();
-        assert_eq!(angle_of_no_return(&stiff), None);
+        assert_eq!(angle_of_no_return(&stiff.base), None);
         let ground = Record::at_rest(60.0);
         let pushed = |structure: Structure, theta_dot: f64| {
             let initial = State { theta: 1e-3, theta_dot, ..State::default() };
@@ -447,13 +409,13 @@ mod tests {
         };
         for tied in [tied, Parameters { k_t: 1e4, P_0: 500.0, ..tied }] {
             let structure = Structure::new(tied).unwrap();
-            let no_return = angle_of_no_return(&structure).unwrap();
+            let no_return = angle_of_no_return(&structure.base).unwrap();
             let alpha_cg = structure.tan_alpha_cg.atan();
             assert!(no_return > 1.5 * alpha_cg, "{no_return}");
             let loop_there = restoring::flag(&structure, no_return, 1000)[1000];
             assert!(loop_there.moment.abs() < 1e-9 * restoring::flag(&structure, 0.0, 1)[0].moment);
             let falls = |theta_dot: f64| {
-                let mut peaks = FallingPeaks::since(0.0, &structure, Detail::Auto);
+                let mut peaks = Falling::<f64>::since(0.0, &structure, Detail::Auto);
                 let ending = pushed(structure, theta_dot).follow(&mut peaks.watch()).unwrap().ending;
                 (ending == Ending::Overturned, peaks)
             };

@@ -6,7 +6,7 @@
 //! the same order, so that all results have the same bits. The bounds are a little wider: what they prove, the run by itself
 //! proves too.
 
-use super::fall::{FallWatch, FallingPeaks, Found};
+use super::fall::{FallWatch, Falling, Found};
 use super::ground_motion::Segment;
 use super::peaks::{Peaks, ThetaWatch};
 use super::{Ending, Finish, Follower, LONGEST_REST, Run, RunError, error};
@@ -28,7 +28,7 @@ const LEAST: usize = 3;
 /// run's position, as the run ends; once `done` says no, the rest is left undone.
 pub fn found_each(runs: &[Run], mut done: impl FnMut(usize, Result<Found, RunError>) -> bool) {
     let mut peaks = peaks_of(runs);
-    let watches = peaks.iter_mut().map(FallingPeaks::watch);
+    let watches = peaks.iter_mut().map(Falling::watch);
     follow_each(runs, watches, |number, finish, watch| done(number, found(&runs[number], finish, watch)));
 }
 
@@ -52,8 +52,8 @@ pub fn rocked_each(runs: &[Run], mut done: impl FnMut(usize, Result<Finish, RunE
 }
 
 /// The peaks of `runs` before any motion.
-fn peaks_of(runs: &[Run]) -> Vec<FallingPeaks> {
-    runs.iter().map(|run| FallingPeaks::since(run.ground.start(), &run.structure, run.detail)).collect()
+fn peaks_of(runs: &[Run]) -> Vec<Falling> {
+    runs.iter().map(|run| Falling::since(run.ground.start(), &run.structure, run.detail)).collect()
 }
 
 /// Result of a `run` with this `finish`, all of which `watch` has seen.
@@ -298,7 +298,7 @@ mod tests {
     fn together<S: Simd>(simd: S, runs: &[Run]) -> Vec<String> {
         let mut results = vec![String::new(); runs.len()];
         let mut peaks = peaks_of(runs);
-        follow(simd, runs, peaks.iter_mut().map(FallingPeaks::watch), |number, finish, watch| {
+        follow(simd, runs, peaks.iter_mut().map(Falling::watch), |number, finish, watch| {
             results[number] = format!("{:?}", found(&runs[number], finish, watch));
             true
         });
@@ -363,7 +363,7 @@ mod tests {
         alone.sort_unstable();
         let (all, of_last): (u64, u64) = (alone.iter().sum(), alone[runs.len() + 1 - LEAST..].iter().sum());
         let mut peaks = peaks_of(&runs);
-        let taken = follow(pulp::Scalar256b, &runs, peaks.iter_mut().map(FallingPeaks::watch), |_, _, _| true);
+        let taken = follow(pulp::Scalar256b, &runs, peaks.iter_mut().map(Falling::watch), |_, _, _| true);
         assert!(all > 4000 && (all - of_last..=all).contains(&taken), "{taken} of {all}, {of_last}");
     }
 }

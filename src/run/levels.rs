@@ -103,9 +103,6 @@ pub trait Compared: Peaked {
     /// A series for each compared quantity.
     type Histories: AsRef<[Series]> + Clone + fmt::Debug;
 
-    /// The peaks that `watcher` has found.
-    fn seen(watcher: Self::Watcher<'_>) -> Falling<Self::Peaks>;
-
     /// The kind of each compared quantity.
     fn kinds(structure: &Self::Structure) -> Vec<usize>;
 
@@ -126,10 +123,6 @@ pub trait Compared: Peaked {
 #[allow(private_interfaces)]
 impl Compared for f64 {
     type Histories = [Series; KINDS];
-
-    fn seen(watcher: FallWatch<'_>) -> Falling<Peaks> {
-        watcher.end()
-    }
 
     fn kinds(_: &Structure) -> Vec<usize> {
         vec![0, 1, 2]
@@ -159,10 +152,6 @@ impl Compared for f64 {
 #[allow(private_interfaces)]
 impl Compared for Modes {
     type Histories = Vec<Series>;
-
-    fn seen(watcher: &mut Falling<Profile>) -> Falling<Profile> {
-        watcher.clone()
-    }
 
     fn kinds(structure: &Frame) -> Vec<usize> {
         compared(structure).map(|(_, kind)| kind).collect()
@@ -267,7 +256,7 @@ pub struct Comparison<Q: Compared = f64> {
 
 /// Does `run` at every level.
 pub fn compare<Q: Compared>(run: &Run<Q>) -> Result<Comparison<Q>, RunError> {
-    let since = |run: &Run<Q>| Q::since(run.ground.start(), &run.structure, run.detail);
+    let since = |run: &Run<Q>| Falling::<Q>::since(run.ground.start(), &run.structure, run.detail);
     let of_all = |detail| Choice { detail, modes: Q::all_modes(&run.structure) };
     let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..run.clone() };
     let (choices, level_ground) = (Q::choices(run), run.ground.clone().without_vertical());
@@ -325,7 +314,7 @@ struct Trial<'a, Q: Compared, Segments> {
     /// Whether its ground moves horizontally alone and the reference's does not.
     is_level: bool,
     course: Follower<Q, Segments>,
-    peaks: Q::Watcher<'a>,
+    peaks: FallWatch<'a, Q>,
     /// The part of the motion that is still to be compared with the reference.
     history: History<Q>,
     /// From the reference.
@@ -340,7 +329,7 @@ struct Trial<'a, Q: Compared, Segments> {
 fn start<'a, Q: Compared>(
     run: &Run<'a, Q>,
     choice: Choice,
-    peaks: &'a mut Falling<Q::Peaks>,
+    peaks: &'a mut Falling<Q>,
 ) -> Result<Trial<'a, Q, impl Iterator<Item = Segment> + use<'a, Q>>, RunError> {
     let [slowest, fastest] = Q::vibration(&run.structure).rocking;
     let Follower { engine, segments, end, rest } = run.course()?;
@@ -349,7 +338,7 @@ fn start<'a, Q: Compared>(
         choice,
         is_level: false,
         course: Follower { engine, segments, end, rest },
-        peaks: Q::watch(peaks),
+        peaks: peaks.watch(),
         history: History { sections: Vec::new() },
         distance: Distance::new(slowest, Q::kinds(&run.structure).len()),
         compared: 0,
@@ -397,7 +386,7 @@ impl<Q: Compared, Segments: Iterator<Item = Segment>> Trial<'_, Q, Segments> {
         let motion = self.course.engine.motion();
         let ending = self.ending.expect("it has been followed to its end");
         let (transitions, work) = (motion.transitions, motion.work);
-        let seen = Q::seen(self.peaks);
+        let seen = self.peaks.end();
         let (peaks, all) = (seen.peaks().clone(), seen.all().clone());
         (Response { choice: self.choice, peaks, ending, transitions, work }, all, self.distance)
     }

@@ -257,18 +257,6 @@ impl Peaks {
         ThetaWatch { peaks: self, impacts: 0 }
     }
 
-    /// Searches `piece` for larger peaks, up to `tau` seconds after its start.
-    pub(super) fn see_until(&mut self, piece: &Piece, tau: f64) {
-        let arc = piece.arc.map(|arc| Arc { reach: tau / arc.span, ..arc.clone() });
-        let part = Piece { duration: tau, end: piece.state_at(tau), arc: arc.as_ref(), ..*piece };
-        for (at, state) in [(0.0, part.before.state), (tau, part.end)] {
-            self.see_instant(piece.before.time + at, &part.outputs(at, &state));
-        }
-        if tau > 0.0 {
-            self.look(&Measure::SEARCHED, &part.whole(), HALVINGS);
-        }
-    }
-
     /// Looks for those of `measures` in `part`, where it may hold larger magnitudes; `halvings` are left.
     fn look(&mut self, measures: &[Measure], part: &Part, halvings: u32) {
         let start = part.piece.before.time + part.start.0;

@@ -281,7 +281,7 @@ impl Profile {
     }
 }
 
-impl Watch<Modes> for Profile {
+impl Watch<Modes> for &mut Profile {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &Piece<Modes>) {
@@ -302,7 +302,7 @@ impl Run<'_, Modes> {
     /// The exact peaks of all of the run, floor by floor, and how it ended.
     pub fn profile(&self) -> Result<(Profile, Finish<Modes>), RunError> {
         let mut profile = Profile::since(self.ground.start(), &self.structure, self.detail);
-        let finish = self.follow(&mut profile)?;
+        let finish = self.follow(&mut &mut profile)?;
         Ok((profile, finish))
     }
 }

@@ -4,7 +4,7 @@ use crate::host::*;
 use FlexibleRocking::BUILD;
 use approx::assert_relative_eq;
 use fmi_unit::snapshot::Snapshot;
-use rocking::run::fall::FallingPeaks;
+use rocking::run::fall::Falling;
 use rocking::run::peaks::PEAKS;
 use rocking::run::validity::{ASSUMPTIONS, Findings, Limits};
 use rocking::run::{End, Run};
@@ -127,7 +127,7 @@ fn what_nobody_asks_for_is_not_watched() {
     let ((_, with), (silent, without)) = (run(1), run(0));
     assert_eq!(with.motion, without.motion);
     let structure = Structure::new(Parameters { r: 1.0, f_fc: 4.0, ..Parameters::EVISON }).unwrap();
-    let nothing = FallingPeaks::since(0.0, &structure, Detail::Auto);
+    let nothing = Falling::<f64>::since(0.0, &structure, Detail::Auto);
     assert_eq!((without.peaks, without.validity), (nothing, Findings::since(0.0)));
     assert!(with.peaks.all().theta().magnitude > 0.0);
     assert_relative_eq!(with.validity.duration, 5.0, max_relative = 1e-12);
