@@ -37,8 +37,7 @@ use crate::series::taylor::{Arc, Start};
 use crate::{Frame, Outputs, Phase, State, Structure};
 use motion::{Chatter, Motion, Work};
 use phases::{Closed, Step, Watched};
-use piece::{Piece, Sample, Turning, Watch};
-use std::cell::Cell;
+use piece::{Piece, Room, Sample, Turning, Watch};
 use std::fmt::Debug;
 use std::ops::Deref;
 use transition::Transition;
@@ -318,6 +317,7 @@ pub struct Engine<Q: Moves = f64> {
     motion: Motion<Q>,
     /// The step in hand.
     arc: Arc<Q>,
+    room: Room<Q>,
 }
 
 impl Engine {
@@ -423,7 +423,7 @@ impl<Q: Moves> Engine<Q> {
             chatter: Chatter::NONE,
             due: None,
         };
-        Engine { level, settings, motion, arc: Arc::default() }
+        Engine { level, settings, motion, arc: Arc::default(), room: Room::default() }
     }
 
     /// (ü, θ̈) and (u⃛, θ⃛) now under `load`, from the first terms of the series; 0 once overturned.
@@ -445,7 +445,7 @@ impl<Q: Moves> Engine<Q> {
     /// The same structure in the same motion, with other `settings`.
     pub fn remade(&self, settings: Settings) -> Result<Engine<Q>, InitialStateError> {
         let level = Q::level(self.structure().clone(), settings)?;
-        Ok(Engine { level, settings, motion: self.motion, arc: Arc::default() })
+        Ok(Engine { level, settings, motion: self.motion, arc: Arc::default(), room: Room::default() })
     }
 
     /// Whether certainly no transition comes within `ahead` (s), a tiny time, under `load`.
@@ -551,8 +551,8 @@ impl<Q: Moves> Engine<Q> {
             before = Some(self.motion);
             self.transit(watch);
         }
-        let &mut Engine { ref level, settings: Settings { stops, .. }, ref mut motion, ref mut arc } = self;
-        let task = Task { motion, arc, before: &mut before, interval, load, watch, last_step, stops };
+        let &mut Engine { ref level, settings: Settings { stops, .. }, ref mut motion, ref mut arc, ref room } = self;
+        let task = Task { motion, arc, room, before: &mut before, interval, load, watch, last_step, stops };
         let result = Q::advance(level, task);
         if let (Err(_), Some(before)) = (&result, before) {
             self.motion = before;
@@ -641,7 +641,7 @@ fn leap<Q: Moves>(level: &impl Level<Q>, motion: &Motion<Q>, start: &Start<Q>) -
 /// Takes `motion`, all but its time, over a leap to the state `end`. Fails if watchers need too many polynomials of the leap.
 #[inline(always)]
 fn leapt<Q: Moves, W: Watch<Q>>(
-    level: &Q::Level,
+    (level, room): (&Q::Level, &Room<Q>),
     motion: &mut Motion<Q>,
     duration: f64,
     load: LinearLoad<Q>,
@@ -649,9 +649,9 @@ fn leapt<Q: Moves, W: Watch<Q>>(
     watch: &mut W,
 ) -> Result<(), AdvanceError> {
     if W::SEES_PIECES {
-        let left = Cell::new(MOST_POLYNOMIALS);
-        watch.piece(&Piece { before: motion, duration, load, end, level, arc: None, left: &left });
-        if left.get() == 0 {
+        room.left.set(MOST_POLYNOMIALS);
+        watch.piece(&Piece { before: motion, duration, load, end, level, arc: None, room });
+        if room.left.get() == 0 {
             return Err(AdvanceError::TooManyPolynomials { time: motion.time, until: motion.time + duration });
         }
     }
@@ -667,6 +667,7 @@ fn leapt<Q: Moves, W: Watch<Q>>(
 pub struct Task<'a, Q: Moves, W> {
     motion: &'a mut Motion<Q>,
     arc: &'a mut Arc<Q>,
+    room: &'a Room<Q>,
     before: &'a mut Option<Motion<Q>>,
     interval: f64,
     load: LinearLoad<Q>,
@@ -679,13 +680,13 @@ impl<Q: Moves, W: Watch<Q>> Task<'_, Q, W> {
     /// Advances with `level`, which is `any` by its type.
     #[inline(always)]
     fn with<L: Level<Q>>(self, any: &Q::Level, level: &L) -> Result<Progress, AdvanceError> {
-        let Task { motion, arc, before, interval, load, watch, last_step, stops } = self;
+        let Task { motion, arc, room, before, interval, load, watch, last_step, stops } = self;
         let start = level.subject().start(motion.state, &motion.dissipators, load, interval);
         // most advances are one leap
         if motion.work.steps != last_step
             && let Some(end) = leap(level, motion, &start)
         {
-            leapt(any, motion, interval, load, end, watch)?;
+            leapt((any, room), motion, interval, load, end, watch)?;
             motion.time += interval;
             return Ok(Progress::Complete);
         }
@@ -695,7 +696,7 @@ impl<Q: Moves, W: Watch<Q>> Task<'_, Q, W> {
             true
         };
         let mut advance = Advance::new(level.structure(), motion.time, interval, load, last_step);
-        let progress = Loop { any, level, phases, expand, arc, stops }.go(motion, before, &mut advance, watch)?;
+        let progress = Loop { any, level, phases, expand, arc, room, stops }.go(motion, before, &mut advance, watch)?;
         Ok(progress.expect("every series is there"))
     }
 }
@@ -755,6 +756,7 @@ struct Loop<'a, Q: Moves, L, P, E> {
     expand: E,
     /// The step.
     arc: &'a mut Arc<Q>,
+    room: &'a Room<Q>,
     /// Whether the advance ends where a transition is due.
     stops: bool,
 }
@@ -799,7 +801,7 @@ where
                 };
                 if let Some((to, state)) = leap(interval).or_else(|| leap(advance.end)) {
                     advance.end = to;
-                    leapt(self.any, motion, to - elapsed, load, state, watch)?;
+                    leapt((self.any, self.room), motion, to - elapsed, load, state, watch)?;
                     motion.time = advance.pass(to - elapsed);
                     continue;
                 }
@@ -841,8 +843,8 @@ where
             // a step without duration, as in contact if uplift is due at once, is no motion
             if W::SEES_PIECES && duration > 0.0 {
                 let (load, arc) = (load.from(elapsed), Some(&*self.arc));
-                let left = &Cell::new(0);
-                watch.piece(&Piece { before: motion, duration, load, end: state, level: self.any, arc, left });
+                let &mut Loop { any: level, room, .. } = self;
+                watch.piece(&Piece { before: motion, duration, load, end: state, level, arc, room });
             }
             motion.state = state;
             if let Some(moved) = moved {
@@ -936,7 +938,7 @@ mod tests {
         let structure = Structure::new(Parameters { zeta_fc: 0.0, ..Parameters::EVISON }).unwrap();
         let released = State { u: -AMPLITUDE, ..State::default() };
         let mut engine = Engine::with_detail(structure, released, 0.0, 1e-12, Detail::Nonlinear).unwrap();
-        let Engine { level, motion, arc, .. } = &mut engine;
+        let Engine { level, motion, arc, room, .. } = &mut engine;
         let mut bounces = Vec::new();
         let mut watch = |transition: &Transition| bounces.push(transition.time);
         let AnyLevel::Nonlinear(of_its_type) = &**level else { panic!("another level") };
@@ -946,7 +948,7 @@ mod tests {
         };
         let interval = 9.0 * PI / structure.omega_fc;
         let mut advance = Advance::new(&structure, 0.0, interval, LinearLoad::default(), u64::MAX);
-        Loop { any: &**level, level: of_its_type, phases: |_: &Motion| Some(&WALLED), expand, arc, stops: false }
+        Loop { any: &**level, level: of_its_type, phases: |_: &Motion| Some(&WALLED), expand, arc, room, stops: false }
             .go(motion, &mut None, &mut advance, &mut watch)
             .unwrap();
         assert_eq!(bounces.len(), 7);

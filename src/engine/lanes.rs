@@ -10,7 +10,6 @@ use crate::levels::nonlinear::lanes::{RockingStep, Stepped};
 use crate::levels::shown::Searched;
 use crate::series::taylor::{Arc, Start};
 use crate::{LinearLoad, Phase, State};
-use std::cell::Cell;
 
 /// A step that an engine is about to take, of which only the end and bounds are known.
 #[derive(Clone, Copy, Debug)]
@@ -68,9 +67,9 @@ impl Engine {
         }
         let most = rates.most(&start, &end);
         if watch.passes(&Bounded { engine: self, duration: interval, load, end, most }) {
-            leapt(&*self.level, &mut self.motion, interval, load, end, &mut ()).is_ok()
+            leapt((&*self.level, &self.room), &mut self.motion, interval, load, end, &mut ()).is_ok()
         } else {
-            leapt(&*self.level, &mut self.motion, interval, load, end, watch).is_ok()
+            leapt((&*self.level, &self.room), &mut self.motion, interval, load, end, watch).is_ok()
         }
     }
 
@@ -92,7 +91,7 @@ impl Engine {
         mut step: Option<&mut RockingStep>,
         watch: &mut W,
     ) -> Result<Option<Progress>, AdvanceError> {
-        let Engine { level, motion, arc, settings: Settings { stops, .. } } = self;
+        let Engine { level, motion, arc, room, settings: Settings { stops, .. } } = self;
         let any = &**level;
         let AnyLevel::Nonlinear(level) = any else { unreachable!("another level steps alone") };
         if let Phase::Rocking(side) = motion.phase
@@ -115,7 +114,7 @@ impl Engine {
             true
         };
         let phases = |motion: &Motion| phases::of::<f64>(level.structure(), motion);
-        Loop { any, level, phases, expand, arc, stops: *stops }.go(motion, &mut None, advance, watch)
+        Loop { any, level, phases, expand, arc, room, stops: *stops }.go(motion, &mut None, advance, watch)
     }
 
     /// Takes the step of `advance` that was `stepped` among others, whose series `write` gives, and goes on like [`Engine::go_on`].
@@ -139,8 +138,8 @@ impl Engine {
         let load = advance.load.from(advance.elapsed);
         if !watch.passes(&Bounded { engine: self, duration, load, end, most }) {
             write(&mut self.arc);
-            let Engine { level, motion, arc, .. } = &*self;
-            watch.piece(&Piece { before: motion, duration, load, end, level, arc: Some(arc), left: &Cell::new(0) });
+            let Engine { level, motion, arc, room, .. } = &*self;
+            watch.piece(&Piece { before: motion, duration, load, end, level, arc: Some(arc), room });
         }
         let motion = &mut self.motion;
         motion.work.steps += 1;

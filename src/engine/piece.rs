@@ -21,7 +21,7 @@ use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Start, evaluate};
 use crate::series::terms::Terms;
 use crate::{Floor, Frame, Outputs, Phase, Reactions, State};
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::f64::consts::TAU;
 
 /// Watches a motion go by.
@@ -208,8 +208,22 @@ pub struct Piece<'a, Q: Moves = f64> {
     pub(crate) level: &'a Q::Level,
     /// Polynomial of the piece; none if the engine leapt over the piece.
     pub(crate) arc: Option<&'a Arc<Q>>,
-    /// Polynomials that watchers may still ask for of a leap.
-    pub(crate) left: &'a Cell<u64>,
+    pub(crate) room: &'a Room<Q>,
+}
+
+/// What watchers use of an engine when they ask for the polynomials of a leap.
+#[derive(Debug)]
+pub(crate) struct Room<Q> {
+    /// Polynomials that they may still ask for.
+    pub left: Cell<u64>,
+    /// The polynomial that they asked for last.
+    arc: RefCell<Option<Box<Arc<Q>>>>,
+}
+
+impl<Q> Default for Room<Q> {
+    fn default() -> Room<Q> {
+        Room { left: Cell::new(0), arc: RefCell::new(None) }
+    }
 }
 
 impl<Q: Moves> Piece<'_, Q> {
@@ -296,7 +310,7 @@ impl<'a, Q: Moves> Part<'a, Q> {
 
     /// The motion of the part as polynomials, in order of time.
     pub(crate) fn arcs(&self) -> Arcs<'a, Q> {
-        Arcs { begin: self.start.0, left: Some(*self), arc: None, evaluations: 0 }
+        Arcs { begin: self.start.0, left: Some(*self), arc: None, room: self.piece.room, evaluations: 0 }
     }
 }
 
@@ -377,7 +391,8 @@ pub(crate) struct Arcs<'a, Q: Moves = f64> {
     begin: f64,
     left: Option<Part<'a, Q>>,
     /// Of a leap: the polynomial in hand.
-    arc: Option<Arc<Q>>,
+    arc: Option<Box<Arc<Q>>>,
+    room: &'a Room<Q>,
     /// Right-hand-side evaluations that the polynomials took.
     pub evaluations: u64,
 }
@@ -390,8 +405,9 @@ impl<Q: Moves> Arcs<'_, Q> {
         if let Some(arc) = piece.arc {
             return Some(Expansion { piece, from, arc });
         }
-        piece.left.set(piece.left.get().checked_sub(1)?);
-        let arc = self.arc.get_or_insert_default();
+        let Room { left, arc: spare } = piece.room;
+        left.set(left.get().checked_sub(1)?);
+        let arc = self.arc.get_or_insert_with(|| spare.take().unwrap_or_default());
         piece.level.series(piece.before.phase, &part.step(), arc);
         self.evaluations += arc.order as u64;
         let covered = arc.duration();
@@ -402,10 +418,18 @@ impl<Q: Moves> Arcs<'_, Q> {
     }
 }
 
+impl<Q: Moves> Drop for Arcs<'_, Q> {
+    fn drop(&mut self) {
+        if let Some(arc) = self.arc.take() {
+            self.room.arc.replace(Some(arc));
+        }
+    }
+}
+
 impl<'a> Arcs<'a, Modes> {
-    /// What is left of a leap in full contact, with bounds of |u|, |u̇| and |ü| of the vibration about the motion that follows the
-    /// load.
-    pub(crate) fn rest(&self) -> Option<(Part<'a, Modes>, [Modes; 3])> {
+    /// What is left of a leap in full contact, with bounds of |u|, |u̇|, |ü| and |u⃛| of the vibration about the motion that follows
+    /// the load.
+    pub(crate) fn rest(&self) -> Option<(Part<'a, Modes>, [Modes; 4])> {
         let part = self.left?;
         Some((part, part.piece.level.vibration(part.piece.before.phase, &part.step())?))
     }

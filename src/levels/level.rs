@@ -68,8 +68,8 @@ pub trait Level<Q: Coordinates = f64> {
         None
     }
 
-    /// Bounds of |u|, |u̇| and |ü| of the vibration about the motion that follows the load, over an exact leap.
-    fn vibration(&self, _phase: Phase, _start: &Start<Q>) -> Option<[Q; 3]> {
+    /// Bounds of |u|, |u̇|, |ü| and |u⃛| of the vibration about the motion that follows the load, over an exact leap.
+    fn vibration(&self, _phase: Phase, _start: &Start<Q>) -> Option<[Q; 4]> {
         None
     }
 

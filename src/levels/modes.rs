@@ -497,15 +497,16 @@ impl Level<Modes> for ManyModes {
         Rates::NONE
     }
 
-    fn vibration(&self, phase: Phase, start: &Start<Modes>) -> Option<[Modes; 3]> {
+    fn vibration(&self, phase: Phase, start: &Start<Modes>) -> Option<[Modes; 4]> {
         let (Phase::FullContact, Some(contact)) = (phase, &self.contact) else { return None };
         let &Start { state, a_top, interval, .. } = start;
-        let mut bounds = [Modes::parts(&self.subject.structure, 0.0); 3];
+        let mut bounds = [Modes::parts(&self.subject.structure, 0.0); 4];
         for (j, (oscillator, _)) in contact.iter().enumerate() {
             let from = [state.u.of(j), state.u_dot.of(j)];
             let swing = oscillator.swing(from, a_top.value.of(j), a_top.slope.of(j), interval);
-            let [velocity, acceleration, _] = oscillator.rates(&swing, 0.0);
-            bounds.iter_mut().zip([swing.amplitude, velocity, acceleration]).for_each(|(of, most)| of.set(j, most));
+            let [velocity, acceleration, jerk] = oscillator.rates(&swing, 0.0);
+            let most = [swing.amplitude, velocity, acceleration, jerk];
+            bounds.iter_mut().zip(most).for_each(|(of, most)| of.set(j, most));
         }
         Some(bounds)
     }

@@ -8,7 +8,7 @@
 use crate::engine::MOST_POLYNOMIALS;
 #[cfg(feature = "lanes")]
 use crate::engine::lanes::{Bounded, Passes};
-use crate::engine::piece::{Expansion, Part, Piece, Watch};
+use crate::engine::piece::{Expansion, Part, Piece, Room, Watch};
 use crate::levels::detail::AnyLevel;
 use crate::levels::shown::Searched;
 use crate::mechanics::outputs::{Measure, OUTPUTS, PeakRule, Sizes};
@@ -18,7 +18,6 @@ use crate::series::taylor::Arc;
 use crate::structure::{Base, Ties};
 use crate::{Detail, LinearLoad, Motion, Outputs, Parameters, Phase, State, Structure, Transition, TransitionKind};
 use serde::{Deserialize, Serialize};
-use std::cell::Cell;
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
 const ROUNDING: f64 = 1e-14;
@@ -383,8 +382,9 @@ impl PeakWatch<'_> {
         let Some(level) = &self.level else { return };
         while let Some(Candidate { bounds, before, duration, load, end, arc }) = self.kept.pop() {
             if self.peaks.may_change_within(&Measure::SEARCHED, &bounds, before.time) {
-                let left = &Cell::new(MOST_POLYNOMIALS); // never used up: of a leap its first and last periods are enough
-                let piece = Piece { before: &before, duration, load, end, level, arc: arc.as_ref(), left };
+                let room = &Room::default();
+                room.left.set(MOST_POLYNOMIALS); // never used up: of a leap its first and last periods are enough
+                let piece = Piece { before: &before, duration, load, end, level, arc: arc.as_ref(), room };
                 self.peaks.look(&Measure::SEARCHED, &piece.whole(), HALVINGS);
             }
         }

@@ -165,16 +165,18 @@ fn bounds<'a>(expansion: &Expansion<'a, Modes>) -> Turning<'a, Most, Mosts> {
     bounds_of(piece, [from, from + arc.duration()], &most)
 }
 
-/// Bounds of the magnitudes over what is left of a leap: u and u̇ leave their chords by at most twice the vibration.
-fn bounds_of_rest<'a>(part: &Part<'a, Modes>, [u, u_dot, _]: &[Modes; 3]) -> Turning<'a, Most, Mosts> {
+/// Bounds of the magnitudes over what is left of a leap: u and u̇ leave their chords by at most twice the vibration, and by at most
+/// M h²/8 over the time h if their second derivative is at most M.
+fn bounds_of_rest<'a>(part: &Part<'a, Modes>, [u, u_dot, u_ddot, jerk]: &[Modes; 4]) -> Turning<'a, Most, Mosts> {
     let ((from, first), (until, last)) = (part.start, part.end);
-    let frame = part.piece.level.structure();
-    let most = |first: Modes, last: Modes, vibration: &Modes| {
-        Modes::each(frame, |j, _| first.of(j).abs().max(last.of(j).abs()) + 2.0 * vibration.of(j))
+    let (frame, per_bend) = (part.piece.level.structure(), (until - from) * (until - from) / 8.0);
+    let most = |first: Modes, last: Modes, vibration: &Modes, bend: &Modes| {
+        Modes::each(frame, |j, _| {
+            first.of(j).abs().max(last.of(j).abs()) + (2.0 * vibration.of(j)).min(per_bend * bend.of(j))
+        })
     };
-    let most =
-        State { u: most(first.u, last.u, u), u_dot: most(first.u_dot, last.u_dot, u_dot), theta: 0.0, theta_dot: 0.0 };
-    bounds_of(part.piece, [from, until], &most)
+    let [u, u_dot] = [most(first.u, last.u, u, u_ddot), most(first.u_dot, last.u_dot, u_dot, jerk)];
+    bounds_of(part.piece, [from, until], &State { u, u_dot, theta: 0.0, theta_dot: 0.0 })
 }
 
 /// Stands for any angular acceleration in a bound, rad/s²: no product with masses and heights overflows.
@@ -289,11 +291,12 @@ impl Watch<Modes> for &mut Profile {
             self.a_g.see(piece.load.at(tau).a_g, piece.before.time + tau);
         }
         let mut arcs = piece.arcs();
-        while let Some(expansion) = arcs.next() {
-            self.look(&expansion);
+        loop {
             if arcs.rest().is_some_and(|(rest, vibration)| self.open(&bounds_of_rest(&rest, &vibration)).is_empty()) {
                 break;
             }
+            let Some(expansion) = arcs.next() else { break };
+            self.look(&expansion);
         }
     }
 }

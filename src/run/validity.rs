@@ -433,7 +433,12 @@ impl Watch<Modes> for Validity<Modes> {
     fn piece(&mut self, piece: &Piece<Modes>) {
         self.see_passing(piece);
         let mut arcs = piece.arcs();
-        while let Some(expansion) = arcs.next() {
+        loop {
+            let of_rest = arcs.rest().and_then(|(rest, vibration)| extents_of_rest(&rest, &vibration));
+            if of_rest.is_some_and(|extents| !self.may_matter(piece.before.phase, &extents)) {
+                break;
+            }
+            let Some(expansion) = arcs.next() else { break };
             let (series, reach) = (reaction_series::of_modes(&expansion), expansion.arc.reach);
             let polynomial = Polynomial { of: expansion, series, extents: &UNBOUNDED };
             let extents = match polynomial.has_converged(&polynomial.reactions(reach)) {
@@ -442,10 +447,6 @@ impl Watch<Modes> for Validity<Modes> {
             };
             if self.may_matter(piece.before.phase, &extents) {
                 self.look(&expansion, &extents, reaction_series::of_modes);
-            }
-            let of_rest = arcs.rest().and_then(|(rest, vibration)| extents_of_rest(&rest, &vibration));
-            if of_rest.is_some_and(|extents| !self.may_matter(piece.before.phase, &extents)) {
-                break;
             }
         }
     }
@@ -458,7 +459,7 @@ impl Watch<Modes> for Validity<Modes> {
 /// Bounds of the reactions of the edges over what is left of a leap, if the ground does not move vertically. The reactions of the
 /// motion that follows the load are linear in time. Those of the vibration about that motion add at most `off`, at an instant
 /// and at the ends.
-fn extents_of_rest(part: &Part<Modes>, &[u, u_dot, u_ddot]: &[Modes; 3]) -> Option<Reactions<Extent>> {
+fn extents_of_rest(part: &Part<Modes>, &[u, u_dot, u_ddot, _]: &[Modes; 4]) -> Option<Reactions<Extent>> {
     let &Piece { level, before: &Motion { phase, .. }, load, .. } = part.piece;
     if load.is_vertical() {
         return None;
