@@ -212,7 +212,7 @@ impl Settings {
 /// Lateral coordinates of the structures that an engine moves.
 pub trait Moves: Coordinates {
     /// The levels of detail of these structures.
-    type Level: Deref<Target = dyn Level<Self>> + Debug;
+    type Level: Deref<Target = dyn Level<Self>> + Clone + Debug;
 
     /// Starts `structure` at `time` (s) from `initial`.
     fn engine(
@@ -263,7 +263,7 @@ impl Moves for f64 {
 
 /// The levels of detail of structures of many masses.
 #[doc(hidden)]
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 #[allow(private_interfaces)] // the coordinates name the type, and nobody else can use it
 pub struct LevelOfModes(ManyModes);
 

@@ -11,6 +11,7 @@ mod history;
 pub mod lanes;
 pub mod levels;
 pub mod outside_step;
+pub mod peak_watch;
 pub mod peaks;
 pub mod profile;
 mod reaction_series;

@@ -3,7 +3,8 @@
 //! Nothing is sampled at an interval. Each polynomial is divided until a bound says that its series stay as close to the
 //! straight lines as is allowed. Two points of the same instant have a transition, or the end of the record, between them.
 
-use super::fall::{Found, Peaked};
+use super::fall::Found;
+use super::peak_watch::Peaked;
 use super::peaks::{Peak, Peaks};
 use super::profile::{Over, Profile};
 use super::{Run, RunError};

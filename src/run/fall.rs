@@ -1,8 +1,9 @@
 //! The fall of a structure that overturns: it begins when |θ| passes the angle of no return for the last time. The peaks of
 //! such a structure are those before the fall.
 
-use super::peaks::{Peak, PeakWatch, Peaks};
-use super::profile::Profile;
+use super::peak_watch::PeakWatch;
+pub use super::peak_watch::Peaked;
+use super::peaks::Peak;
 use super::{Finish, Run, RunError};
 use crate::engine::Moves;
 #[cfg(feature = "lanes")]
@@ -14,31 +15,10 @@ use crate::series::bisection::last_where;
 use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
 use crate::series::taylor::{self, Arc, sum_of_magnitudes};
 use crate::structure::Base;
-use crate::{Detail, Frame, Modes, Piece, Side, Structure, Transition, TransitionKind, Watch};
+use crate::{Detail, Piece, Side, Transition, TransitionKind, Watch};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
-
-/// Lateral coordinates of the structures whose peaks are found.
-pub trait Peaked: Moves {
-    /// Exact peaks of a motion.
-    type Peaks: Clone + std::fmt::Debug;
-
-    /// Looks for the peaks of a motion, which are complete when it is dropped.
-    type Search<'a>: Watch<Self>;
-
-    /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion.
-    fn none(time: f64, structure: &Self::Structure, detail: Detail) -> Self::Peaks;
-
-    /// Looks for larger `peaks`.
-    fn search(peaks: &mut Self::Peaks) -> Self::Search<'_>;
-
-    /// The peaks of the pieces so far.
-    fn so_far<'a>(search: &'a mut Self::Search<'_>) -> &'a Self::Peaks;
-
-    /// Adds the values of `sample`, which need not be in a piece, to `peaks`.
-    fn see_instant(peaks: &mut Self::Peaks, sample: &Sample<Self>);
-}
 
 /// Result of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,14 +100,14 @@ impl<Q: Peaked> Falling<Q> {
     /// Looks for peaks in the pieces of a motion. The peaks are complete when the watch is dropped.
     pub fn watch(&mut self) -> FallWatch<'_, Q> {
         let Falling { all, no_return, fall, has_overturned } = self;
-        FallWatch { all: Q::search(all), no_return: *no_return, fall, has_overturned }
+        FallWatch { all: PeakWatch::new(all), no_return: *no_return, fall, has_overturned }
     }
 }
 
 /// Looks for the peaks of a motion that may end in a fall.
 #[derive(Debug)]
 pub struct FallWatch<'a, Q: Peaked = f64> {
-    all: Q::Search<'a>,
+    all: PeakWatch<'a, Q>,
     no_return: Option<f64>,
     fall: &'a mut Option<(f64, Q::Peaks)>,
     has_overturned: &'a mut bool,
@@ -148,7 +128,7 @@ impl<Q: Peaked> Watch<Q> for FallWatch<'_, Q> {
         if let TransitionKind::Overturning(_) = transition.kind {
             *self.has_overturned = true;
             let all = &mut self.all;
-            self.fall.get_or_insert_with(|| (transition.time, Q::so_far(all).clone()));
+            self.fall.get_or_insert_with(|| (transition.time, all.so_far().clone()));
         }
         self.all.transition(transition);
     }
@@ -170,7 +150,7 @@ impl Passes for FallWatch<'_> {
 impl<Q: Peaked> FallWatch<'_, Q> {
     /// The peaks, once the motion has been watched.
     pub(crate) fn end(mut self) -> Falling<Q> {
-        let (all, no_return) = (Q::so_far(&mut self.all).clone(), self.no_return);
+        let (all, no_return) = (self.all.so_far().clone(), self.no_return);
         Falling { all, no_return, fall: self.fall.clone(), has_overturned: *self.has_overturned }
     }
 
@@ -178,11 +158,11 @@ impl<Q: Peaked> FallWatch<'_, Q> {
     #[cold]
     fn beyond(&mut self, piece: &Piece<Q>, angle: f64) {
         let Some((instant, tau)) = start_of_fall(piece, angle, self.fall.is_some()) else { return };
-        let mut before = Q::so_far(&mut self.all).clone();
+        let mut before = self.all.so_far().clone();
         let arc = piece.arc.map(|arc| Arc { reach: tau / arc.span, ..arc.clone() });
         let until = Piece { duration: tau, end: piece.state_at(tau), arc: arc.as_ref(), ..*piece };
         if tau > 0.0 {
-            Q::search(&mut before).piece(&until);
+            PeakWatch::new(&mut before).piece(&until);
         } else {
             Q::see_instant(&mut before, &until.sample(instant));
         }
@@ -229,48 +209,6 @@ fn last_passing<Q: Moves>(angle: f64, side: f64, expansion: &Expansion<Q>) -> Op
     }
 }
 
-impl Peaked for f64 {
-    type Peaks = Peaks;
-    type Search<'a> = PeakWatch<'a>;
-
-    fn none(time: f64, structure: &Structure, detail: Detail) -> Peaks {
-        Peaks::since(time, structure, detail)
-    }
-
-    fn search(peaks: &mut Peaks) -> PeakWatch<'_> {
-        peaks.watch()
-    }
-
-    fn so_far<'a>(search: &'a mut PeakWatch<'_>) -> &'a Peaks {
-        search.so_far()
-    }
-
-    fn see_instant(peaks: &mut Peaks, sample: &Sample) {
-        peaks.see_instant(sample.motion.time, &sample.outputs());
-    }
-}
-
-impl Peaked for Modes {
-    type Peaks = Profile;
-    type Search<'a> = &'a mut Profile;
-
-    fn none(time: f64, structure: &Frame, detail: Detail) -> Profile {
-        Profile::since(time, structure, detail)
-    }
-
-    fn search(peaks: &mut Profile) -> &mut Profile {
-        peaks
-    }
-
-    fn so_far<'a>(search: &'a mut &mut Profile) -> &'a Profile {
-        search
-    }
-
-    fn see_instant(peaks: &mut Profile, sample: &Sample<Modes>) {
-        peaks.see_instant(sample);
-    }
-}
-
 impl<Q: Peaked> Run<'_, Q> {
     /// Follows the motion to the end, which `watch` sees, too, and finds its exact peaks.
     pub fn found(&self, watch: &mut impl Watch<Q>) -> Result<Found<Q>, RunError> {
@@ -313,7 +251,7 @@ mod tests {
     use crate::run::peaks::PEAKS;
     use crate::run::record::Record;
     use crate::run::{End, Ending};
-    use crate::{Outputs, Parameters, State};
+    use crate::{Outputs, Parameters, State, Structure};
     use std::f64::consts::TAU;
 
     /// The peaks before the fall and its instant, of a run that overturns.

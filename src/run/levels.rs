@@ -2,8 +2,9 @@
 //!
 //! A level of a structure of many masses is also the number of modes that are kept ([`Frame::keeping`]).
 
-use super::fall::{FallWatch, Falling, Peaked};
+use super::fall::{FallWatch, Falling};
 use super::history::{Distance, History};
+use super::peak_watch::Peaked;
 use super::peaks::Peaks;
 use super::profile::{Over, Peaking, Profile};
 use super::{Ending, Follower, Run, RunError};

@@ -5,18 +5,16 @@
 //! rises or falls, so that the largest magnitude is at a stationary point or at an end. A piece that may hold more than
 //! what has been seen is first kept, since most are soon beaten by the end of another.
 
-use crate::engine::MOST_POLYNOMIALS;
+use super::peak_watch::{PeakWatch, Peaked};
 #[cfg(feature = "lanes")]
 use crate::engine::lanes::{Bounded, Passes};
-use crate::engine::piece::{Expansion, Part, Piece, Room, Watch};
-use crate::levels::detail::AnyLevel;
+use crate::engine::piece::{Expansion, Part, Piece, Sample, Watch};
 use crate::levels::shown::Searched;
 use crate::mechanics::outputs::{Measure, OUTPUTS, PeakRule, Sizes};
 use crate::mechanics::restraint::Angles;
 use crate::series::extremes::{self, Bound};
-use crate::series::taylor::Arc;
 use crate::structure::{Base, Ties};
-use crate::{Detail, LinearLoad, Motion, Outputs, Parameters, Phase, State, Structure, Transition, TransitionKind};
+use crate::{Detail, Outputs, Parameters, Phase, State, Structure, Transition, TransitionKind};
 use serde::{Deserialize, Serialize};
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
@@ -27,9 +25,6 @@ const SAME: f64 = 1e-12;
 
 /// How often an exact leap is halved before a polynomial is asked for: a bound on a half has a quarter of the slack.
 const HALVINGS: u32 = 2;
-
-/// How many pieces are kept at most.
-const MOST_CANDIDATES: usize = 32;
 
 /// The largest magnitude of a quantity, and its instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -247,8 +242,7 @@ impl Peaks {
 
     /// The watcher that searches the pieces of a motion for larger peaks. The peaks are complete once the watcher is dropped.
     pub fn watch(&mut self) -> PeakWatch<'_> {
-        let goes_on = self.largest.iter().any(|peak| peak.magnitude > 0.0);
-        PeakWatch { peaks: self, kept: Vec::new(), level: None, is_torn: true, goes_on }
+        PeakWatch::new(self)
     }
 
     /// The watcher that searches for the peaks of θ and of the uplift only.
@@ -332,109 +326,45 @@ impl Peaks {
     }
 }
 
-/// Looks for peaks in the pieces of a motion.
-#[derive(Debug)]
-pub struct PeakWatch<'a> {
-    peaks: &'a mut Peaks,
-    /// Pieces that may hold more than what has been seen.
-    kept: Vec<Candidate>,
-    /// The level of the kept pieces.
-    level: Option<Box<AnyLevel>>,
-    /// Whether the next piece may begin with other outputs than the last one ended with.
-    is_torn: bool,
-    /// Whether the next piece is the first since other peaks: the step of a host is often no more, and not put off.
-    goes_on: bool,
-}
+impl Peaked for f64 {
+    type Peaks = Peaks;
+    type Bounds = Searched<f64>;
 
-/// A piece that is looked at after others have been shown.
-#[derive(Debug)]
-struct Candidate {
-    /// Bounds of what it holds.
-    bounds: Searched<f64>,
-    before: Motion,
-    duration: f64,
-    load: LinearLoad,
-    end: State,
-    arc: Option<Arc>,
-}
-
-impl PeakWatch<'_> {
-    /// Peaks of the pieces so far.
-    pub(super) fn so_far(&mut self) -> &Peaks {
-        self.look_back();
-        self.peaks
+    fn none(time: f64, structure: &Structure, detail: Detail) -> Peaks {
+        Peaks::since(time, structure, detail)
     }
 
-    /// Passes a piece with these `ends` if magnitudes within `bounds` certainly are no peaks. Otherwise the piece is to be shown.
-    #[cfg(feature = "lanes")]
+    fn goes_on(peaks: &Peaks) -> bool {
+        peaks.largest.iter().any(|peak| peak.magnitude > 0.0)
+    }
+
+    fn see_ground(peaks: &mut Peaks, a_g: f64, time: f64) {
+        peaks.ground.see(a_g, time);
+    }
+
+    fn see_instant(peaks: &mut Peaks, sample: &Sample) {
+        peaks.see_instant(sample.motion.time, &sample.outputs());
+    }
+
+    fn see(peaks: &mut Peaks, piece: &Piece, tau: f64, state: &State) {
+        peaks.see_instant(piece.before.time + tau, &piece.outputs(tau, state));
+    }
+
+    fn bounds(_: &Peaks, piece: &Piece) -> Searched<f64> {
+        piece.whole().crude_bounds()
+    }
+
     #[inline]
-    pub(super) fn passes(&mut self, bounds: &Searched<f64>, ends: [(f64, f64); 2]) -> bool {
-        if Measure::SEARCHED.iter().any(|measure| self.peaks.may_be_same(*measure, bounds[measure.place()])) {
-            return false;
-        }
-        ends.into_iter().for_each(|(time, a_g)| self.peaks.ground.see(a_g, time));
-        (self.is_torn, self.goes_on) = (false, false);
-        true
+    fn may_be_same(peaks: &Peaks, bounds: &Searched<f64>) -> bool {
+        Measure::SEARCHED.iter().any(|measure| peaks.may_be_same(*measure, bounds[measure.place()]))
     }
 
-    /// Looks at what has been kept, the latest first, which is often the largest.
-    fn look_back(&mut self) {
-        let Some(level) = &self.level else { return };
-        while let Some(Candidate { bounds, before, duration, load, end, arc }) = self.kept.pop() {
-            if self.peaks.may_change_within(&Measure::SEARCHED, &bounds, before.time) {
-                let room = &Room::default();
-                room.left.set(MOST_POLYNOMIALS); // never used up: of a leap its first and last periods are enough
-                let piece = Piece { before: &before, duration, load, end, level, arc: arc.as_ref(), room };
-                self.peaks.look(&Measure::SEARCHED, &piece.whole(), HALVINGS);
-            }
-        }
-    }
-}
-
-impl Drop for PeakWatch<'_> {
-    fn drop(&mut self) {
-        self.look_back();
-    }
-}
-
-impl Watch for PeakWatch<'_> {
-    const SEES_PIECES: bool = true;
-
-    fn piece(&mut self, piece: &Piece) {
-        let &Piece { before, duration, load, end, level, arc, .. } = piece;
-        for tau in [0.0, duration] {
-            self.peaks.ground.see(load.at(tau).a_g, before.time + tau);
-        }
-        let bounds = piece.whole().crude_bounds();
-        let [is_torn, is_first] = [&mut self.is_torn, &mut self.goes_on].map(std::mem::take);
-        if !Measure::SEARCHED.iter().any(|measure| self.peaks.may_be_same(*measure, bounds[measure.place()])) {
-            return;
-        }
-        if is_torn {
-            self.peaks.see_instant(before.time, &piece.outputs(0.0, &before.state));
-        }
-        self.peaks.see_instant(before.time + duration, &piece.outputs(duration, &end));
-        let peaks = &*self.peaks;
-        let may_change =
-            |bounds: &Searched<f64>, motion: &Motion| peaks.may_change_within(&Measure::SEARCHED, bounds, motion.time);
-        if !may_change(&bounds, before) {
-            return;
-        }
-        if is_first {
-            return self.peaks.look(&Measure::SEARCHED, &piece.whole(), HALVINGS);
-        }
-        if self.kept.len() == MOST_CANDIDATES {
-            self.kept.retain(|kept| may_change(&kept.bounds, &kept.before));
-        }
-        if self.kept.len() == MOST_CANDIDATES {
-            self.look_back();
-        }
-        self.level.get_or_insert_with(|| Box::new(level.clone()));
-        self.kept.push(Candidate { bounds, before: *before, duration, load, end, arc: arc.cloned() });
+    fn may_change(peaks: &Peaks, bounds: &Searched<f64>, time: f64) -> bool {
+        peaks.may_change_within(&Measure::SEARCHED, bounds, time)
     }
 
-    fn transition(&mut self, _transition: &Transition) {
-        self.is_torn = true;
+    fn look(peaks: &mut Peaks, piece: &Piece) {
+        peaks.look(&Measure::SEARCHED, &piece.whole(), HALVINGS);
     }
 }
 

@@ -4,9 +4,10 @@
 //! Otherwise the quantity is expanded as a series in time. If a bound of the series exceeds the largest magnitude so far, the
 //! quantity is looked at where its series is stationary. Its values there come from the state.
 
+use super::peak_watch::{PeakWatch, Peaked};
 use super::peaks::{Peak, TENDON, Tendon, has_tendon};
 use super::{Finish, Run, RunError};
-use crate::engine::piece::{CONVERGED, Expansion, Part, Piece, Sample, Turning, Watch};
+use crate::engine::piece::{CONVERGED, Expansion, Part, Piece, Sample, Turning};
 use crate::mechanics::floors::{FrameOutput, MotionOfFloors};
 use crate::mechanics::gauge::{Gauge, Reading};
 use crate::mechanics::instant::{Instant, Strut};
@@ -17,7 +18,7 @@ use crate::series::extremes;
 use crate::series::terms::Terms;
 use crate::structure::Mode;
 use crate::structure::frame::Frame;
-use crate::{Detail, Floor, Modes, Phase, State};
+use crate::{Detail, Floor, Modes, Motion, Phase, State};
 use serde::{Deserialize, Serialize};
 
 /// The peaks of a structure of many masses over the motion that has been watched, a fall too.
@@ -232,41 +233,34 @@ impl Profile {
         self.peaks.iter().flat_map(with_uplift).flatten().chain(tendon)
     }
 
-    /// Adds the values of `sample`, which need not be in a piece.
-    pub(super) fn see_instant(&mut self, sample: &Sample<Modes>) {
-        let value = sample.outputs();
-        self.peaks.iter_mut().for_each(|(output, peak)| peak.see(value(*output), sample.motion.time));
-    }
-
-    /// Places of the outputs whose peaks may be reached again within these `bounds`.
-    fn open(&self, bounds: &Turning<Most, Mosts>) -> Vec<usize> {
-        let may_be_same = |i: &usize| {
-            let (output, peak) = self.peaks[*i];
-            let Most(bound) = output.of(bounds);
-            bound > 0.0 && peak.may_be_same(bound)
-        };
-        (0..self.peaks.len()).filter(may_be_same).collect()
+    /// The values of the outputs within `bounds`, in the order of the peaks.
+    fn bounds(&self, bounds: &Turning<Most, Mosts>) -> Vec<f64> {
+        self.peaks.iter().map(|(output, _)| output.of(bounds).0).collect()
     }
 
     /// Looks at a polynomial.
     fn look(&mut self, expansion: &Expansion<Modes>) {
         expansion.in_parts(&mut |part, is_finest| {
-            let open = self.open(&bounds(part));
-            if open.is_empty() {
-                return true;
-            }
-            let (over, reach) = (Over::new(*part), part.arc.reach);
-            let [first, last] = [0.0, reach].map(|sigma| part.sample(sigma));
-            let [at_first, at_last] = [&first, &last].map(Sample::<Modes>::outputs);
-            for i in open {
-                let (output, peak) = &mut self.peaks[i];
-                let (series, end) = (output.of(&over), at_last(*output));
-                if !is_finest && !part.has_converged(&series, end, CONVERGED) {
+            let (bounds, reach) = (self.bounds(&bounds(part)), part.arc.reach);
+            let ends = [0.0, reach].map(|sigma| part.sample(sigma));
+            let [first, last] = [&ends[0], &ends[1]].map(Sample::<Modes>::outputs);
+            let [start, end] = [&ends[0], &ends[1]].map(|sample| sample.motion.time);
+            let mut over = None;
+            for ((output, peak), bound) in self.peaks.iter_mut().zip(bounds) {
+                if !peak.may_change(bound, start) {
+                    continue;
+                }
+                let at_end = last(*output);
+                peak.see(first(*output), start);
+                peak.see(at_end, end);
+                if !peak.may_change(bound, start) {
+                    continue;
+                }
+                let series = output.of(over.get_or_insert_with(|| Over::new(*part)));
+                if !is_finest && !part.has_converged(&series, at_end, CONVERGED) {
                     return false;
                 }
-                peak.see(at_first(*output), first.motion.time);
-                peak.see(end, last.motion.time);
-                if peak.may_change(extremes::bound(series.used(), reach), first.motion.time) {
+                if peak.may_change(extremes::bound(series.used(), reach), start) {
                     extremes::stationary_points(series.used(), reach, |sigma| {
                         let sample = part.sample(sigma);
                         peak.see(sample.output(*output), sample.motion.time);
@@ -283,20 +277,61 @@ impl Profile {
     }
 }
 
-impl Watch<Modes> for &mut Profile {
-    const SEES_PIECES: bool = true;
+impl Peaked for Modes {
+    type Peaks = Profile;
+    type Bounds = Vec<f64>;
 
-    fn piece(&mut self, piece: &Piece<Modes>) {
-        for tau in [0.0, piece.duration] {
-            self.a_g.see(piece.load.at(tau).a_g, piece.before.time + tau);
+    fn none(time: f64, structure: &Frame, detail: Detail) -> Profile {
+        Profile::since(time, structure, detail)
+    }
+
+    fn goes_on(profile: &Profile) -> bool {
+        profile.peaks.iter().any(|(_, peak)| peak.magnitude > 0.0)
+    }
+
+    fn see_ground(profile: &mut Profile, a_g: f64, time: f64) {
+        profile.a_g.see(a_g, time);
+    }
+
+    fn see_instant(profile: &mut Profile, sample: &Sample<Modes>) {
+        let value = sample.outputs();
+        profile.peaks.iter_mut().for_each(|(output, peak)| peak.see(value(*output), sample.motion.time));
+    }
+
+    fn see(profile: &mut Profile, piece: &Piece<Modes>, tau: f64, state: &State<Modes>) {
+        let &Piece { before, load, level, .. } = piece;
+        let motion = Motion { time: before.time + tau, state: *state, ..*before };
+        Modes::see_instant(profile, &Sample { motion, load: load.at(tau), level });
+    }
+
+    fn bounds(profile: &Profile, piece: &Piece<Modes>) -> Vec<f64> {
+        let arcs = piece.arcs();
+        match (piece.arc, arcs.rest()) {
+            (Some(arc), _) => profile.bounds(&bounds(&Expansion { piece, from: 0.0, arc })),
+            (None, Some((rest, vibration))) => profile.bounds(&bounds_of_rest(&rest, &vibration)),
+            (None, None) => vec![f64::INFINITY; profile.peaks.len()],
         }
+    }
+
+    fn may_be_same(profile: &Profile, bounds: &Vec<f64>) -> bool {
+        profile.peaks.iter().zip(bounds).any(|((_, peak), bound)| *bound > 0.0 && peak.may_be_same(*bound))
+    }
+
+    fn may_change(profile: &Profile, bounds: &Vec<f64>, time: f64) -> bool {
+        profile.peaks.iter().zip(bounds).any(|((_, peak), bound)| peak.may_change(*bound, time))
+    }
+
+    fn look(profile: &mut Profile, piece: &Piece<Modes>) {
         let mut arcs = piece.arcs();
-        loop {
-            if arcs.rest().is_some_and(|(rest, vibration)| self.open(&bounds_of_rest(&rest, &vibration)).is_empty()) {
+        while let Some(expansion) = arcs.next() {
+            profile.look(&expansion);
+            let is_over = |(rest, vibration): (Part<Modes>, [Modes; 4])| {
+                let start = piece.before.time + rest.start.0;
+                !Modes::may_change(profile, &profile.bounds(&bounds_of_rest(&rest, &vibration)), start)
+            };
+            if arcs.rest().is_some_and(is_over) {
                 break;
             }
-            let Some(expansion) = arcs.next() else { break };
-            self.look(&expansion);
         }
     }
 }
@@ -305,7 +340,7 @@ impl Run<'_, Modes> {
     /// The exact peaks of all of the run, floor by floor, and how it ended.
     pub fn profile(&self) -> Result<(Profile, Finish<Modes>), RunError> {
         let mut profile = Profile::since(self.ground.start(), &self.structure, self.detail);
-        let finish = self.follow(&mut &mut profile)?;
+        let finish = self.follow(&mut PeakWatch::new(&mut profile))?;
         Ok((profile, finish))
     }
 }
