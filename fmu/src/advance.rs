@@ -26,12 +26,12 @@ impl<Q: Masses> Watch<Q> for Watching<'_, '_, Q> {
 
     fn piece(&mut self, piece: &Piece<Q>) {
         self.peaks.iter_mut().for_each(|peaks| peaks.piece(piece));
-        self.validity.iter_mut().for_each(|validity| Q::watcher(validity).piece(piece));
+        self.validity.iter_mut().for_each(|validity| validity.piece(piece));
     }
 
     fn transition(&mut self, transition: &Transition<Q>) {
         self.peaks.iter_mut().for_each(|peaks| peaks.transition(transition));
-        self.validity.iter_mut().for_each(|validity| Q::watcher(validity).transition(transition));
+        self.validity.iter_mut().for_each(|validity| validity.transition(transition));
         (self.told)(transition);
     }
 }

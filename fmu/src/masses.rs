@@ -10,7 +10,7 @@ use crate::variables::Source;
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::fall::Peaked;
 use rocking::run::peaks::Peak;
-use rocking::run::validity::{self, Validity};
+use rocking::run::validity;
 use rocking::structure::any::AnyStructure;
 use rocking::structure::doubts;
 use rocking::{
@@ -69,9 +69,6 @@ pub trait Masses: Peaked<Peaks: Serialize + DeserializeOwned> + Default + Serial
 
     /// The watcher of a motion of which nothing but transitions is `told`.
     fn listener(told: &mut Told<'_, Self>) -> impl Watch<Self>;
-
-    /// The watcher of what the motion goes beyond.
-    fn watcher(validity: &mut Validity<Self>) -> &mut impl Watch<Self>;
 
     /// The rates of outputs and of the reactions under `load`.
     fn rates(engine: &Engine<Self>, load: LinearLoad<Self>) -> (impl Fn(Source) -> Option<f64>, Reactions);
@@ -153,10 +150,6 @@ impl Masses for f64 {
     #[inline(always)]
     fn listener(told: &mut Told<'_, f64>) -> impl Watch {
         told
-    }
-
-    fn watcher(validity: &mut Validity) -> &mut impl Watch {
-        validity
     }
 
     fn rates(engine: &Engine, load: LinearLoad) -> (impl Fn(Source) -> Option<f64>, Reactions) {
@@ -246,10 +239,6 @@ impl Masses for Modes {
     /// One type for all cases keeps the library small.
     fn listener(told: &mut Told<'_, Modes>) -> impl Watch<Modes> {
         Watching { peaks: None, validity: None, told }
-    }
-
-    fn watcher(validity: &mut Validity<Modes>) -> &mut impl Watch<Modes> {
-        validity
     }
 
     fn rates(engine: &Engine<Modes>, load: LinearLoad<Modes>) -> (impl Fn(Source) -> Option<f64>, Reactions) {

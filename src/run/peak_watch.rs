@@ -3,8 +3,9 @@
 //! A bound of a piece tells most of the time that it holds nothing larger than what has been seen. A piece that may hold more is
 //! first kept, since most are soon beaten by the end of another.
 
+use super::validity::Judged;
+use crate::engine::MOST_POLYNOMIALS;
 use crate::engine::piece::{Piece, Room, Sample, Watch};
-use crate::engine::{MOST_POLYNOMIALS, Moves};
 use crate::series::taylor::{Arc, LONGEST_SPAN};
 use crate::{Detail, LinearLoad, Motion, State, Transition};
 use std::fmt::Debug;
@@ -13,7 +14,7 @@ use std::fmt::Debug;
 const MOST_CANDIDATES: usize = 32;
 
 /// Lateral coordinates of the structures whose peaks are found.
-pub trait Peaked: Moves {
+pub trait Peaked: Judged {
     /// Exact peaks of a motion.
     type Peaks: Clone + Debug;
 

@@ -29,8 +29,8 @@ use super::reaction_series::{self, Extent, extents};
 use super::{Finish, Run, RunError};
 use crate::digits::short;
 use crate::engine::Moves;
-use crate::engine::piece::{Expansion, Part, Piece, Sample, Watch};
-use crate::levels::level::{Now, Rates};
+use crate::engine::piece::{Arcs, Expansion, Piece, Sample, Watch};
+use crate::levels::level::{Now, Rates, Subject};
 use crate::mechanics::impact;
 use crate::mechanics::instant::{Instant, Second, Strut};
 use crate::mechanics::lateral::Coordinates;
@@ -205,13 +205,13 @@ impl Findings {
 
 /// Looks at a motion for what it goes beyond.
 #[derive(Clone, Debug)]
-pub struct Validity<Q: Moves = f64> {
+pub struct Validity<Q: Judged = f64> {
     structure: Q::Structure,
     limits: Limits,
     found: Findings,
 }
 
-impl<Q: Moves> Validity<Q> {
+impl<Q: Judged> Validity<Q> {
     /// The watcher of `structure`, which continues from what has been `found`. Of many masses, `structure` is the one that moves
     /// ([`Engine::structure`](crate::Engine::structure)).
     pub fn new(structure: &Q::Structure, limits: Limits, found: Findings) -> Validity<Q> {
@@ -269,9 +269,9 @@ impl<Q: Moves> Validity<Q> {
     }
 
     /// Looks at the motion over a polynomial; `extents` are bounds of its reactions.
-    fn look(&mut self, expansion: &Expansion<Q>, extents: &Reactions<Extent>, series: SeriesOf<Q>) {
+    fn look(&mut self, expansion: &Expansion<Q>, extents: &Reactions<Extent>) {
         expansion.in_parts(&mut |part, is_finest| {
-            let polynomial = Polynomial { of: *part, series: series(part), extents };
+            let polynomial = Polynomial { of: *part, series: Q::reactions(part), extents };
             let &Expansion { piece, arc, .. } = part;
             let last = polynomial.reactions(arc.reach);
             if !is_finest && !polynomial.has_converged(&last) {
@@ -391,107 +391,69 @@ impl<Q: Moves> Validity<Q> {
     }
 }
 
-impl Watch for Validity {
+/// Lateral coordinates of the structures whose reactions are watched.
+#[allow(private_interfaces)] // an expansion, its bounds and its series are the library's own
+pub trait Judged: Moves {
+    /// Bounds of the reactions of the edges over a leap, if they are known.
+    #[doc(hidden)]
+    fn extents_of_leap(piece: &Piece<Self>) -> Option<Reactions<Extent>>;
+
+    /// The same over a polynomial.
+    #[doc(hidden)]
+    fn extents(expansion: &Expansion<Self>) -> Reactions<Extent>;
+
+    /// The same over what is left of a leap whose first polynomials, of this `count`, have been seen. What can be no worse than these
+    /// is left out.
+    #[doc(hidden)]
+    fn extents_of_rest(arcs: &mut Arcs<Self>, count: u32) -> Option<Reactions<Extent>>;
+
+    /// The reactions of the edges over a polynomial.
+    #[doc(hidden)]
+    fn reactions(expansion: &Expansion<Self>) -> Reactions<Terms>;
+}
+
+impl<Q: Judged> Watch<Q> for Validity<Q> {
     const SEES_PIECES: bool = true;
 
-    fn piece(&mut self, piece: &Piece) {
+    fn piece(&mut self, piece: &Piece<Q>) {
         self.see_passing(piece);
-        let (phase, is_restrained) = (piece.before.phase, piece.level.subject().is_tied);
-        // bounds over a whole leap are known under gravity only
-        let is_leap = piece.arc.is_none() && !piece.load.is_vertical() && !is_restrained;
-        let of_leap = if is_leap { self.extents_of_leap(piece) } else { None };
+        let phase = piece.before.phase;
+        let of_leap = if piece.arc.is_none() { Q::extents_of_leap(piece) } else { None };
         if of_leap.is_some_and(|extents| !self.may_matter(phase, &extents)) {
             return;
         }
-        let mut arcs = piece.arcs();
-        let mut count = 0;
-        while let Some(expansion) = arcs.next() {
-            // of what the ties pull there are no bounds
-            let extents = match of_leap {
-                Some(extents) if phase == Phase::FullContact => extents,
-                _ if is_restrained => UNBOUNDED,
-                _ => extents(&self.structure, phase, piece.load.from(expansion.from), expansion.arc),
-            };
-            if self.may_matter(phase, &extents) {
-                self.look(&expansion, &extents, reaction_series::of_one);
-            }
-            count += 1;
-            if count >= MOST_ARCS {
-                arcs.skip_middle();
-            }
-        }
-    }
-
-    fn transition(&mut self, transition: &Transition) {
-        self.see_transition(transition);
-    }
-}
-
-impl Watch<Modes> for Validity<Modes> {
-    const SEES_PIECES: bool = true;
-
-    fn piece(&mut self, piece: &Piece<Modes>) {
-        self.see_passing(piece);
-        let mut arcs = piece.arcs();
+        let (mut arcs, mut count) = (piece.arcs(), 0);
         loop {
-            let of_rest = arcs.rest().and_then(|(rest, vibration)| extents_of_rest(&rest, &vibration));
-            if of_rest.is_some_and(|extents| !self.may_matter(piece.before.phase, &extents)) {
+            let of_rest = Q::extents_of_rest(&mut arcs, count);
+            if of_rest.is_some_and(|extents| !self.may_matter(phase, &extents)) {
                 break;
             }
             let Some(expansion) = arcs.next() else { break };
-            let (series, reach) = (reaction_series::of_modes(&expansion), expansion.arc.reach);
-            let polynomial = Polynomial { of: expansion, series, extents: &UNBOUNDED };
-            let extents = match polynomial.has_converged(&polynomial.reactions(reach)) {
-                true => Extent::of_all(&series, reach),
-                false => UNBOUNDED,
+            let extents = match of_leap {
+                Some(extents) if phase == Phase::FullContact => extents,
+                _ => Q::extents(&expansion),
             };
-            if self.may_matter(piece.before.phase, &extents) {
-                self.look(&expansion, &extents, reaction_series::of_modes);
+            if self.may_matter(phase, &extents) {
+                self.look(&expansion, &extents);
             }
+            count += 1;
         }
     }
 
-    fn transition(&mut self, transition: &Transition<Modes>) {
+    fn transition(&mut self, transition: &Transition<Q>) {
         self.see_transition(transition);
     }
 }
 
-/// Bounds of the reactions of the edges over what is left of a leap, if the ground does not move vertically. The reactions of the
-/// motion that follows the load are linear in time. Those of the vibration about that motion add at most `off`, at an instant
-/// and at the ends.
-fn extents_of_rest(part: &Part<Modes>, &[u, u_dot, u_ddot, _]: &[Modes; 4]) -> Option<Reactions<Extent>> {
-    let &Piece { level, before: &Motion { phase, .. }, load, .. } = part.piece;
-    if load.is_vertical() {
-        return None;
-    }
-    let (structure, none) = (level.structure(), Most(0.0));
-    let x = Instant {
-        structure,
-        s: phase.side().sign(),
-        strut: Strut::Elastic(structure.base.damping(phase)),
-        u: Mosts(u),
-        u_dot: Mosts(u_dot),
-        theta: none,
-        theta_dot: none,
-        turn: none.turn(),
-        a_g: none,
-        F_t: Mosts(Modes::parts(structure, 0.0)),
-        a_v: none,
-    };
-    let off = Reactions::at(&x, &Second { u_ddot: Mosts(u_ddot), theta_ddot: none });
-    let [first, last] = part.samples().map(|sample| sample.edges());
-    Some(Reactions {
-        R_h: Extent::between(first.R_h, last.R_h, 2.0 * off.R_h.0),
-        R_v: Extent::between(first.R_v, last.R_v, 0.0),
-        R_m: Extent::between(first.R_m, last.R_m, 2.0 * off.R_m.0),
-    })
-}
-
-impl Validity {
-    /// Bounds of the reactions over a leap, if they are known: a quantity whose second derivative is at most M over the time h stays
-    /// within M h²/8 of its chord.
-    fn extents_of_leap(&self, piece: &Piece) -> Option<Reactions<Extent>> {
+#[allow(private_interfaces)]
+impl Judged for f64 {
+    /// Known under gravity alone: a quantity whose second derivative is at most M over the time h stays within M h²/8 of its chord.
+    fn extents_of_leap(piece: &Piece) -> Option<Reactions<Extent>> {
         let &Piece { level, before: &Motion { phase, .. }, duration, load, .. } = piece;
+        if load.is_vertical() || level.subject().is_tied {
+            return None;
+        }
+        let structure = level.structure();
         let rates = level.rates(phase, &piece.whole().step(), &piece.end);
         let states = [(0.0, &piece.before.state), (duration, &piece.end)];
         let per_bend = duration * duration / 8.0;
@@ -499,13 +461,13 @@ impl Validity {
             let bends = level.bends_of_forces(phase, load, duration, &rates, &level.second(&rates)?);
             let [first, last] = states.map(|(tau, state)| {
                 let now = Now { state, load: load.at(tau), dissipators: &piece.before.dissipators };
-                forces(&Instant::of(&self.structure, phase, state, now.load), &level.accelerations(phase, &now))
+                forces(&Instant::of(structure, phase, state, now.load), &level.accelerations(phase, &now))
             });
             let [R_h, R_v] = std::array::from_fn(|i| Extent::between(first[i], last[i], bends[i].bend * per_bend));
             return Some(Reactions { R_h, R_v, R_m: Extent::ANY });
         }
-        let &Parameters { m, m0, H, g, .. } = self.structure.parameters();
-        let &Structure { k, c_fc, .. } = &self.structure;
+        let &Parameters { m, m0, H, g, .. } = structure.parameters();
+        let &Structure { k, c_fc, .. } = structure;
         let [first, last] = states.map(|(tau, state)| {
             let strut = c_fc * state.u_dot + k * state.u;
             [strut - m0 * load.at(tau).a_g, H * strut + m * g * state.u]
@@ -513,14 +475,79 @@ impl Validity {
         let Rates { u_ddot, u_dddot, .. } = rates;
         let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
         let off = [strut, H * strut + per_bend * m * g * u_ddot];
-        let W = self.scale().W;
+        let W = structure.base.m_t * g;
         let [R_h, R_m] = std::array::from_fn(|i| Extent::between(first[i], last[i], off[i]));
         Some(Reactions { R_h, R_v: Extent::between(W, W, 0.0), R_m })
     }
+
+    /// Of what the ties pull there are no bounds.
+    fn extents(&Expansion { piece, from, arc }: &Expansion) -> Reactions<Extent> {
+        let &Subject { ref structure, is_tied, .. } = piece.level.subject();
+        if is_tied { UNBOUNDED } else { extents(structure, piece.before.phase, piece.load.from(from), arc) }
+    }
+
+    fn extents_of_rest(arcs: &mut Arcs, count: u32) -> Option<Reactions<Extent>> {
+        if count >= MOST_ARCS {
+            arcs.skip_middle();
+        }
+        None
+    }
+
+    fn reactions(expansion: &Expansion) -> Reactions<Terms> {
+        reaction_series::of_one(expansion)
+    }
 }
 
-/// Gives the reactions of the edges over a polynomial.
-type SeriesOf<Q> = fn(&Expansion<Q>) -> Reactions<Terms>;
+#[allow(private_interfaces)]
+impl Judged for Modes {
+    fn extents_of_leap(_: &Piece<Modes>) -> Option<Reactions<Extent>> {
+        None
+    }
+
+    fn extents(expansion: &Expansion<Modes>) -> Reactions<Extent> {
+        let (series, reach) = (reaction_series::of_modes(expansion), expansion.arc.reach);
+        let polynomial = Polynomial { of: *expansion, series, extents: &UNBOUNDED };
+        match polynomial.has_converged(&polynomial.reactions(reach)) {
+            true => Extent::of_all(&series, reach),
+            false => UNBOUNDED,
+        }
+    }
+
+    /// Known if the ground does not move vertically. The reactions of the motion that follows the load are linear in time. Those of
+    /// the vibration about that motion add at most `off`, at an instant and at the ends.
+    fn extents_of_rest(arcs: &mut Arcs<Modes>, _: u32) -> Option<Reactions<Extent>> {
+        let (part, [u, u_dot, u_ddot, _]) = arcs.rest()?;
+        let &Piece { level, before: &Motion { phase, .. }, load, .. } = part.piece;
+        if load.is_vertical() {
+            return None;
+        }
+        let (structure, none) = (level.structure(), Most(0.0));
+        let x = Instant {
+            structure,
+            s: phase.side().sign(),
+            strut: Strut::Elastic(structure.base.damping(phase)),
+            u: Mosts(u),
+            u_dot: Mosts(u_dot),
+            theta: none,
+            theta_dot: none,
+            turn: none.turn(),
+            a_g: none,
+            F_t: Mosts(Modes::parts(structure, 0.0)),
+            a_v: none,
+        };
+        let off = Reactions::at(&x, &Second { u_ddot: Mosts(u_ddot), theta_ddot: none });
+        let [first, last] = part.samples().map(|sample| sample.edges());
+        Some(Reactions {
+            R_h: Extent::between(first.R_h, last.R_h, 2.0 * off.R_h.0),
+            R_v: Extent::between(first.R_v, last.R_v, 0.0),
+            R_m: Extent::between(first.R_m, last.R_m, 2.0 * off.R_m.0),
+        })
+    }
+
+    fn reactions(expansion: &Expansion<Modes>) -> Reactions<Terms> {
+        reaction_series::of_modes(expansion)
+    }
+}
 
 /// A polynomial of a motion with its reactions.
 struct Polynomial<'a, Q: Moves> {
@@ -596,10 +623,7 @@ fn positive(coefficients: &[f64], reach: f64, found: &mut Vec<(f64, f64)>) {
     look(reach);
 }
 
-impl<Q: Moves> Run<'_, Q>
-where
-    Validity<Q>: Watch<Q>,
-{
+impl<Q: Judged> Run<'_, Q> {
     /// The watcher of the assumptions that the run breaks.
     pub fn validity_watch(&self, limits: Limits) -> Result<Validity<Q>, RunError> {
         Ok(Validity::new(self.start()?.structure(), limits, Findings::since(self.ground.start())))
