@@ -145,7 +145,7 @@ functions! {
                         Interface::CoSimulation(_) => &stages::CO_SIMULATION,
                     };
                     logger.switch(&[Category::Events], events);
-                    Some((Instance::new(model, interface, logger, None), allowed_in))
+                    Some((Instance::new(model, 0, interface, logger, None), allowed_in))
                 }
                 Err(failure) => {
                     logger.failure(failure.status(), &format!("fmi2Instantiate: {failure}"));

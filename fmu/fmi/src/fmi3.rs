@@ -21,7 +21,7 @@ use crate::interface::{Interface, IntermediateUpdate, Stepping};
 use crate::logger::{Category, Logger, Sink};
 use crate::model::{Experiment, Model, Progress, Update};
 use crate::state_machine::{Stage, Table};
-use crate::variables::{Causality, DataType, Role, positions};
+use crate::variables::{Causality, DataType, Role, find};
 use libc::{c_char, c_int, c_uint, c_void, size_t};
 use std::path::Path;
 
@@ -53,7 +53,7 @@ unsafe fn create<M: Model>(
         match found() {
             Ok(((interface, allowed_in, called_back), model, on)) => {
                 logger.switch(&Category::ALL, on);
-                Some((Instance::new(model, interface, logger, called_back), allowed_in))
+                Some((Instance::new(model, FIRST, interface, logger, called_back), allowed_in))
             }
             Err(failure) => {
                 logger.failure(failure.status(), &format!("{function}: {failure}"));
@@ -107,15 +107,36 @@ fn boolean(name: &str, value: u8) -> Result<bool, Failure> {
     }
 }
 
-/// The positions of the variables, all of which are scalars, that as many values are for.
-unsafe fn references<M: Model>(
-    instance: &Instance<M>,
+/// The value reference of the first variable: OMSimulator reads value references in lists of dependencies as FMI 2.0's indices,
+/// which count from 1.
+const FIRST: u32 = 1;
+
+/// The positions of the variables that the host refers to; [`Instance`] refuses those that do not exist.
+unsafe fn positions<'a>(
+    name: &'static str,
+    references: *const c_uint,
+    count: size_t,
+) -> Result<impl Iterator<Item = u32> + use<'a>, Failure> {
+    let references: &'a [u32] = unsafe { values(name, references, count) }?;
+    Ok(references.iter().map(|reference| reference.wrapping_sub(FIRST)))
+}
+
+/// Has `call` done with the positions of the variables, all of which are scalars, that as many values are for. The instance
+/// keeps the room for them.
+unsafe fn with_positions<M: Model>(
+    instance: &mut Instance<M>,
     valueReferences: *const c_uint,
-    nValueReferences: size_t,
-    nValues: size_t,
-) -> Result<Vec<u32>, Failure> {
+    [nValueReferences, nValues]: [size_t; 2],
+    call: impl FnOnce(&mut Instance<M>, &[u32]) -> Result<(), Failure>,
+) -> Result<(), Failure> {
     check_count("nValues", nValues, nValueReferences)?;
-    positions(instance.variables(), unsafe { values("valueReferences", valueReferences, nValueReferences) }?)
+    let found = unsafe { positions("valueReferences", valueReferences, nValueReferences) }?;
+    let mut positions = std::mem::take(&mut instance.positions);
+    positions.clear();
+    positions.extend(found);
+    let result = call(instance, &positions);
+    instance.positions = positions;
+    result
 }
 
 /// Refuses all `count` variables of a type that no variable has.
@@ -154,11 +175,11 @@ functions! {
             let event_mode = boolean("eventModeUsed", eventModeUsed)?;
             let early_return = boolean("earlyReturnAllowed", earlyReturnAllowed)?;
             let (name, length) = ("requiredIntermediateVariables", nRequiredIntermediateVariables);
-            let required = unsafe { values(name, requiredIntermediateVariables, length) }?;
+            let required = unsafe { positions(name, requiredIntermediateVariables, length) }?;
             let variables = model.variables();
             let (mut sets_inputs, mut gets_outputs) = (false, false);
-            for position in positions(&variables, required)? {
-                let is_input = variables[position as usize].causality == Causality::Input;
+            for position in required {
+                let is_input = find(&variables, position, FIRST)?.causality == Causality::Input;
                 (sets_inputs, gets_outputs) = (sets_inputs || is_input, gets_outputs || !is_input);
             }
             let host =
@@ -275,77 +296,86 @@ functions! {
     fmi3GetFloat64 = GetFloat64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut f64, nValues: size_t,
     ) |instance| {
-        let references = references(instance, valueReferences, nValueReferences, nValues)?;
-        let places = room("values", value, nValues)?;
-        fill(places, instance.get_real(&references)?);
-        Ok(())
+        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
+            let places = room("values", value, nValues)?;
+            fill(places, instance.get_real(positions)?);
+            Ok(())
+        })
     }
 
     fmi3GetInt32 = GetInt32(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i32, nValues: size_t,
     ) |instance| {
-        let references = references(instance, valueReferences, nValueReferences, nValues)?;
-        let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Integer);
-        instance.get_numbers(&references, room("values", value, nValues)?, is_of_type)
+        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
+            let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Integer);
+            instance.get_numbers(positions, room("values", value, nValues)?, is_of_type)
+        })
     }
 
     fmi3GetInt64 = GetInt64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i64, nValues: size_t,
     ) |instance| {
-        let references = references(instance, valueReferences, nValueReferences, nValues)?;
-        let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Enumeration(_));
-        instance.get_numbers(&references, room("values", value, nValues)?, is_of_type)
+        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
+            let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Enumeration(_));
+            instance.get_numbers(positions, room("values", value, nValues)?, is_of_type)
+        })
     }
 
     fmi3GetBoolean = GetBoolean(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut u8, nValues: size_t,
     ) |instance| {
-        let references = references(instance, valueReferences, nValueReferences, nValues)?;
-        instance.get_boolean(&references, room("values", value, nValues)?)
+        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
+            instance.get_boolean(positions, room("values", value, nValues)?)
+        })
     }
 
     fmi3GetString = GetString(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut *const c_char, nValues: size_t,
     ) |instance| {
-        let references = references(instance, valueReferences, nValueReferences, nValues)?;
-        instance.get_string(&references, room("values", value, nValues)?)
+        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
+            instance.get_string(positions, room("values", value, nValues)?)
+        })
     }
 
     fmi3SetFloat64 = SetFloat64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const f64, nValues: size_t,
     ) |instance| {
-        let references = references(instance, valueReferences, nValueReferences, nValues)?;
-        instance.set_real(&references, values("values", value, nValues)?)
+        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
+            instance.set_real(positions, values("values", value, nValues)?)
+        })
     }
 
     /// Refuses all, because a model has no integers to set.
     fmi3SetInt32 = SetInt32(
         valueReferences: *const c_uint, nValueReferences: size_t, _values: *const i32, nValues: size_t,
     ) |instance| {
-        instance.set_no_integer(&references(instance, valueReferences, nValueReferences, nValues)?)
+        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| instance.set_no_integer(positions))
     }
 
     fmi3SetInt64 = SetInt64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const i64, nValues: size_t,
     ) |instance| {
-        let references = references(instance, valueReferences, nValueReferences, nValues)?;
-        instance.set_integer(&references, values("values", value, nValues)?)
+        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
+            instance.set_integer(positions, values("values", value, nValues)?)
+        })
     }
 
     fmi3SetBoolean = SetBoolean(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const u8, nValues: size_t,
     ) |instance| {
-        let references = references(instance, valueReferences, nValueReferences, nValues)?;
-        instance.set_boolean(&references, values("values", value, nValues)?, boolean)
+        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
+            instance.set_boolean(positions, values("values", value, nValues)?, boolean)
+        })
     }
 
     fmi3SetString = SetString(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const *const c_char, nValues: size_t,
     ) |instance| {
-        let references = references(instance, valueReferences, nValueReferences, nValues)?;
-        let given = values("values", value, nValues)?;
-        let texts = given.iter().map(|value| text("values", *value)).collect::<Result<Vec<_>, _>>()?;
-        instance.set_string(&references, &texts)
+        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
+            let given = values("values", value, nValues)?;
+            let texts = given.iter().map(|value| text("values", *value)).collect::<Result<Vec<_>, _>>()?;
+            instance.set_string(positions, &texts)
+        })
     }
 
     fmi3GetFMUState = GetFMUState(FMUState: *mut *mut c_void) |instance| { keep_state(instance, "FMUState", FMUState) }
@@ -377,8 +407,8 @@ functions! {
     ) |instance| {
         check_count("nSeed", nSeed, nKnowns)?;
         check_count("nSensitivity", nSensitivity, nUnknowns)?;
-        let unknowns = positions(instance.variables(), values("unknowns", unknowns, nUnknowns)?)?;
-        let knowns = positions(instance.variables(), values("knowns", knowns, nKnowns)?)?;
+        let unknowns = positions("unknowns", unknowns, nUnknowns)?.collect::<Vec<_>>();
+        let knowns = positions("knowns", knowns, nKnowns)?.collect::<Vec<_>>();
         let (seed, sensitivity) = (values("seed", seed, nSeed)?, room("sensitivity", sensitivity, nSensitivity)?);
         instance.get_directional_derivative(&unknowns, &knowns, seed, sensitivity)
     }
@@ -415,9 +445,10 @@ functions! {
         valueReferences: *const c_uint, nValueReferences: size_t, orders: *const i32, value: *mut f64,
         nValues: size_t,
     ) |instance| {
-        let references = references(instance, valueReferences, nValueReferences, nValues)?;
-        let (orders, rates) = (values("orders", orders, nValueReferences)?, room("values", value, nValues)?);
-        instance.get_real_output_derivatives(&references, orders, rates)
+        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
+            let (orders, rates) = (values("orders", orders, nValueReferences)?, room("values", value, nValues)?);
+            instance.get_real_output_derivatives(positions, orders, rates)
+        })
     }
 
     fmi3EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter(Stage::ContinuousTimeMode) }

@@ -7,8 +7,7 @@ use crate::logger::Logger;
 use crate::model::{Completed, Experiment, Model, Progress, Step, Update};
 use crate::snapshot::{Snapshot, Snapshots};
 use crate::state_machine::Stage;
-use crate::variables::state_references;
-use crate::variables::{Causality, DataType, Role, Value, Variable};
+use crate::variables::{Causality, DataType, Role, Value, Variable, find, state_references};
 use std::ffi::{CString, c_char};
 use std::mem::MaybeUninit;
 use std::sync::Arc;
@@ -27,6 +26,8 @@ pub struct Instance<M> {
     /// The model, for what needs no check but that of the stage.
     pub(crate) model: M,
     variables: Arc<[Variable]>,
+    /// The value reference that the host has for the variable at position 0.
+    first: u32,
     /// The part of each variable that the calls of every step ask for.
     kinds: Vec<Kind>,
     /// The range of each input; no number is in that of other variables.
@@ -43,6 +44,8 @@ pub struct Instance<M> {
     snapshots: Snapshots,
     /// Values on their way between the host and the model.
     reals: Vec<f64>,
+    /// The positions of variables whose value references the host gives.
+    pub(crate) positions: Vec<u32>,
     /// The texts that the host was given last, which it may read until the next call.
     shown: Vec<CString>,
     /// The host that is called back within steps, if there is one.
@@ -91,17 +94,24 @@ fn range(variable: &Variable) -> (f64, f64) {
 }
 
 impl<M: Model> Instance<M> {
-    /// An instance of `model`, just instantiated.
-    pub(crate) fn new(model: M, interface: Interface, logger: Logger, host: Option<IntermediateUpdate>) -> Instance<M> {
+    /// An instance of `model`, just instantiated, with the value references `first` and more.
+    pub(crate) fn new(
+        model: M,
+        first: u32,
+        interface: Interface,
+        logger: Logger,
+        host: Option<IntermediateUpdate>,
+    ) -> Instance<M> {
         let variables = model.variables();
         let kinds = variables.iter().map(Kind::from).collect();
         let ranges = variables.iter().map(range).collect();
         let (stage, on_at_start, mut at_start) = (Stage::Instantiated, logger.on, Vec::new());
         model.state(&mut at_start);
-        let (experiment, handling, snapshots, reals, shown, asked, led_to) = Default::default();
+        let (experiment, handling, snapshots, reals, positions, shown, asked, led_to) = Default::default();
         Instance {
             model,
             variables,
+            first,
             kinds,
             ranges,
             interface,
@@ -113,6 +123,7 @@ impl<M: Model> Instance<M> {
             at_start,
             snapshots,
             reals,
+            positions,
             shown,
             host,
             asked,
@@ -126,16 +137,10 @@ impl<M: Model> Instance<M> {
         self.stage
     }
 
-    /// The table of variables.
-    pub(crate) fn variables(&self) -> &[Variable] {
-        &self.variables
-    }
-
-    /// The variable that `reference` stands for.
+    /// The variable at the position `reference`.
     #[inline]
     fn find(&self, reference: u32) -> Result<&Variable, Failure> {
-        let (first, last) = (0, self.variables.len() - 1);
-        self.variables.get(reference as usize).ok_or(Failure::UnknownReference { reference, first, last })
+        find(&self.variables, reference, self.first)
     }
 
     fn is_state(&self, reference: u32) -> bool {

@@ -202,15 +202,12 @@ pub fn position(variables: &[Variable], name: &str) -> usize {
     found.unwrap_or_else(|| panic!("no variable is called {name}"))
 }
 
-/// The positions in `variables` of the value `references` of FMI 3.0. These count from 1, because OMSimulator reads them in the
-/// lists of dependencies as FMI 2.0's indices; the value references of FMI 2.0 are the positions.
-pub fn positions(variables: &[Variable], references: &[u32]) -> Result<Vec<u32>, Failure> {
-    let (first, last) = (1, variables.len());
-    let position = |&reference: &u32| match reference.checked_sub(first) {
-        Some(position) if (position as usize) < last => Ok(position),
-        _ => Err(Failure::UnknownReference { reference, first, last }),
-    };
-    references.iter().map(position).collect()
+/// The variable at the `position`, if the value reference of the variable at position 0 is `first`.
+#[inline]
+pub fn find(variables: &[Variable], position: u32, first: u32) -> Result<&Variable, Failure> {
+    let last = variables.len() - 1 + first as usize;
+    let reference = position.wrapping_add(first);
+    variables.get(position as usize).ok_or(Failure::UnknownReference { reference, first, last })
 }
 
 /// The references of the variables whose role is one, in their order.
