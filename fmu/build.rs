@@ -28,16 +28,18 @@ pub fn build_id(package: &Path) -> io::Result<String> {
     Ok(Uuid::new_v5(&Uuid::NAMESPACE_OID, content.as_bytes()).braced().to_string())
 }
 
-/// Appends the file `path` of `package`, or all files under it in the order of their names, to `content`.
+/// Appends the file `path` of `package`, or the `.rs` files under it in the order of their names, to `content`. Editors leave
+/// other files there, and links to nothing.
 fn add(package: &Path, path: &str, content: &mut String) -> io::Result<()> {
     let place = package.join(path);
     if place.is_file() {
         *content += &format!("{path}\n{}", fs::read_to_string(place)?.replace("\r\n", "\n"));
         return Ok(());
     }
-    let mut names = fs::read_dir(place)?
+    let mut names = fs::read_dir(&place)?
         .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))
         .collect::<io::Result<Vec<_>>>()?;
     names.sort();
+    names.retain(|name| name.ends_with(".rs") && !name.starts_with('.') || place.join(name).is_dir());
     names.iter().try_for_each(|name| add(package, &format!("{path}/{name}"), content))
 }

@@ -9,7 +9,7 @@ use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
 use rocking::run::record::SamplesError;
 use rocking::structure::any::AnyStructure;
 use rocking_records::LAYOUTS;
-use rocking_report::{input, output_files::OutputFiles};
+use rocking_report::{input, output_files::OutputFiles, record::no_pair};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 
@@ -79,7 +79,7 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     let vertical = args.vertical.record_v.as_ref().map(|path| record(&of_vertical, path, g)).transpose()?;
     let vertical = match (vertical, records.first()) {
         (Some((_, bytes)), Some((name, along))) if bytes == *along => {
-            return Err(SamplesError::Twice { title: name.display().to_string() }.into());
+            return Err(no_pair(SamplesError::Twice { title: name.display().to_string() }, "--column-v"));
         }
         (Some((name, bytes)), _) if records.iter().any(|(of_record, _)| *of_record == name) => {
             Some(((input::stem(&name) + "_v.csv").into(), bytes))

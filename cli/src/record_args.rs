@@ -7,7 +7,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rocking::digits::short;
 use rocking::run::record::Record;
 use rocking_records::{Column, LAYOUTS, Reading, Unit};
-use rocking_report::record::{Understood, understand};
+use rocking_report::record::{Understood, no_pair, understand};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -74,7 +74,8 @@ impl RecordArgs {
         let Some(path) = &self.record else { return Ok(None) };
         let record = self.options.load("record", path, g)?;
         let VerticalArgs { record_v: Some(vertical), column_v } = &self.vertical else { return Ok(Some(record)) };
-        Ok(Some(record.with_vertical(&self.options.with_column(column_v).load("record_v", vertical, g)?)?))
+        let vertical = self.options.with_column(column_v).load("record_v", vertical, g)?;
+        record.with_vertical(&vertical).map(Some).map_err(|error| no_pair(error, "--column-v"))
     }
 
     /// The files that are read.

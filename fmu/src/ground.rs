@@ -4,6 +4,7 @@ use crate::resources::Archive;
 use fmi_unit::uri;
 use rocking::run::record::{Record, SamplesError};
 use rocking_records::{Reading, RecordError, Unit};
+use std::borrow::Cow;
 use std::error::Error;
 use std::path::{MAIN_SEPARATOR, Path, PathBuf, is_separator};
 use std::sync::Arc;
@@ -96,7 +97,7 @@ struct Asked<'a> {
     parameter: &'static str,
     text: &'a str,
     path: PathBuf,
-    bytes: Vec<u8>,
+    bytes: Cow<'a, [u8]>,
 }
 
 impl Archive {
@@ -133,7 +134,7 @@ impl Archive {
     }
 
     /// The file that `text`, the value of `parameter`, asks for.
-    fn read<'a>(&self, parameter: &'static str, text: &'a str) -> Result<Option<Asked<'a>>, GroundError> {
+    fn read<'a>(&'a self, parameter: &'static str, text: &'a str) -> Result<Option<Asked<'a>>, GroundError> {
         if text.is_empty() {
             return Ok(None);
         }
@@ -150,8 +151,8 @@ impl Archive {
             path
         };
         let bytes = match self.files.get(text) {
-            Some(bytes) => bytes.clone(),
-            None => rocking_records::read_file(&path).map_err(|error| GroundError::NoRecord(parameter, error))?,
+            Some(bytes) => Cow::Borrowed(bytes.as_slice()),
+            None => rocking_records::read_file(&path).map_err(|error| GroundError::NoRecord(parameter, error))?.into(),
         };
         Ok(Some(Asked { parameter, text, path, bytes }))
     }

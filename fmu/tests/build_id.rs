@@ -25,6 +25,8 @@ fn sources_and_versions_change_it_and_ends_of_lines_do_not() {
         assert_ne!(named_with(file, "one\ntwo\n "), before, "{file}");
         assert_eq!(named_with(file, "one\ntwo\n"), before, "{file}");
     }
-    assert_eq!(named_with("../cli/src/main.rs", "1"), before);
+    for file in ["../cli/src/main.rs", "../src/.lib.rs.swp", "../src/.#lib.rs", "../src/lib.rs~"] {
+        assert_eq!(named_with(file, "1"), before, "{file}");
+    }
     assert_ne!(named_with("../src/of/a/new.rs", "1"), before);
 }

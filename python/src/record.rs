@@ -13,7 +13,7 @@ use rocking::estimates::response_spectrum;
 use rocking::run::record::Record as Samples;
 use rocking_records::{Column, Reading, Unit, csv_in, doubts, vertical_csv};
 use rocking_report::output_files::OutputFiles;
-use rocking_report::record::understand;
+use rocking_report::record::{no_pair, understand};
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
@@ -244,7 +244,7 @@ impl Record {
                     "vertical is in {of_vertical} and file in {unit}: {needed}"
                 )));
             }
-            given = given.with_vertical(&vertical).map_err(refused)?;
+            given = given.with_vertical(&vertical).map_err(|error| refused(no_pair(error, "vertical_column")))?;
         }
         Record::new(given, unit, 1.0).scaled(scale, time_scale)
     }

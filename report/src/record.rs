@@ -2,7 +2,7 @@
 
 use crate::input;
 use anyhow::anyhow;
-use rocking::run::record::Record;
+use rocking::run::record::{Record, SamplesError};
 use rocking_records::{Reading, RecordError, Remedy, Unit, csv_in};
 use std::path::Path;
 
@@ -41,6 +41,14 @@ pub fn understand(
     let remedy = Remedy::Unit.advice(called);
     let sentences = source.sentences(&input::name(path), [&of_file, &record], g, &remedy);
     Ok(Understood { record, in_file_unit, factors, unit: source.unit, sentences })
+}
+
+/// Why two components are no ground motion, with the `option` that chooses the column of the vertical one at the door.
+pub fn no_pair(error: SamplesError, option: &str) -> anyhow::Error {
+    match error {
+        SamplesError::Twice { .. } => anyhow!("{error}, or another column, {option}"),
+        _ => error.into(),
+    }
 }
 
 impl Understood {

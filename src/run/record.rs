@@ -60,10 +60,7 @@ pub enum SamplesError {
         begins: f64,
     },
     /// One component is given twice.
-    #[error(
-        "the vertical component of {title:?} has the samples of the horizontal one: choose another column \
-         (vertical_column, --column-v) or another file for it"
-    )]
+    #[error("the vertical component of {title:?} has the samples of the horizontal one: use another file for it")]
     Twice {
         /// Title of the record.
         title: String,

@@ -11,7 +11,7 @@ use rocking::run::record::Record;
 use rocking::structure::natural_quantities::Given;
 use rocking::{Detail, Parameters, Structure, engine::DEFAULT_TOLERANCE};
 use rocking_records::{Column, Unit};
-use rocking_report::{input, output_files::OutputFiles};
+use rocking_report::{input, output_files::OutputFiles, record::no_pair};
 use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map};
 use rocking_sweep::outcome::Limit;
 use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population};
@@ -209,7 +209,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let read = |path: &Path, vertical: Option<&(PathBuf, RecordOptions)>, options: &RecordOptions| {
             let record = read_one(path, options)?;
             let Some((vertical, options)) = vertical else { return Ok(record) };
-            Ok(record.with_vertical(&read_one(vertical, options)?)?)
+            record.with_vertical(&read_one(vertical, options)?).map_err(|error| no_pair(error, "vertical_column"))
         };
         let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read);
         let all_warn = |warnings| few(warnings, "warnings").iter().for_each(|warning| warning!("{warning}"));

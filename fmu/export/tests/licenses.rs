@@ -31,7 +31,7 @@ fn the_file_has_the_licenses_of_the_library() {
     let (old, new) = (lines(&written), lines(&licenses));
     assert!(
         written == licenses,
-        "fmu/export/resources/licenses.txt is not what the shared library is made of: `WRITE_LICENSES=1 cargo test --release --test licenses` writes it anew. \
+        "fmu/export/resources/licenses.txt is not what the shared library is made of: `WRITE_LICENSES=1 cargo test --release -p fmu-export --test licenses` writes it anew. \
          Missing: {:#?}. Too much: {:#?}",
         new.difference(&old).collect::<Vec<_>>(),
         old.difference(&new).collect::<Vec<_>>()
