@@ -1,50 +1,75 @@
-//! ASCII of the Engineering Strong-Motion database and of ITACA (DYNA): lines of `KEY: value`, then one acceleration a
-//! line.
+//! ASCII of the Engineering Strong-Motion database and of ITACA (DYNA), and of the European Strong-Motion Database before it
+//! (ESD): lines of `KEY: value`, then the accelerations.
 
 use super::parsed::{Parsed, Times};
-use super::sampling::Sampling;
-use super::text::{number, numbered, quote};
+use super::sampling::{count, step};
+use super::text::{number, numbered, quote, value_of};
 use super::{BadLine, Reading, bad, source::of_file};
 
 const LONGEST_HEADER: usize = 200;
 
-/// The key by which these files are known.
-const STEP: &str = "SAMPLING_INTERVAL_S";
+/// What an archive calls the step, by which its files are known, the number of samples, the unit, and the parts of a title.
+type Keys = [&'static str; 7];
+const ESM: Keys =
+    ["SAMPLING_INTERVAL_S", "NDATA", "UNITS", "EVENT_NAME", "EVENT_DATE_YYYYMMDD", "STATION_CODE", "STREAM"];
+const ESD: Keys = [
+    "sampling period",
+    "number of samples",
+    "units",
+    "earthquake code",
+    "station code",
+    "waveform code",
+    "orientation",
+];
 
-/// Whether `text` is one of these files.
+/// Begins the line before each series of ESD: `-> corrected acceleration time histories`.
+const SERIES: &str = "->";
+
+/// Whether `text` is one of ESM.
 pub(super) fn is_its(text: &str) -> bool {
-    text.lines().take(LONGEST_HEADER).any(|line| value_of(line, STEP).is_some())
+    value_of(numbered(text).take(LONGEST_HEADER).filter(|(_, line)| line.contains(':')), ESM[0]).is_some()
 }
 
-/// The step from SAMPLING_INTERVAL_S, the unit from UNITS, the number of samples from NDATA.
+/// Whether `text` is one of ESD.
+pub(super) fn is_esd(text: &str) -> bool {
+    numbered(text).take(LONGEST_HEADER).any(|(_, line)| is_series(line)) && value_of(numbered(text), ESD[0]).is_some()
+}
+
+fn is_series(line: &str) -> bool {
+    line.starts_with(SERIES) && line.contains("acceleration")
+}
+
+/// The samples of ESM after its header.
 pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     let is_key =
         |line: &str| line.split_once(':').is_some_and(|(key, _)| number(key).is_none()) || line.trim().is_empty();
-    let header: Vec<_> = numbered(text).take(LONGEST_HEADER).take_while(|(_, line)| is_key(line)).collect();
-    let find = |key: &str| header.iter().find_map(|(line, text)| Some((*line, value_of(text, key)?)));
-    let needed = |key: &str| find(key).ok_or_else(|| bad(header.len().max(1), format!("{key} is not in the header")));
-
-    let (line, data_type) = find("DATA_TYPE").unwrap_or((1, "ACCELERATION"));
+    let header = numbered(text).take(LONGEST_HEADER).take_while(|(_, line)| is_key(line)).count();
+    let (line, data_type) = value_of(numbered(text).take(header), "DATA_TYPE").unwrap_or((1, "ACCELERATION"));
     if !data_type.eq_ignore_ascii_case("ACCELERATION") {
         return Err(bad(line, format!("DATA_TYPE is {}, and accelerations are needed", quote(data_type))));
     }
-    let (line, units) = needed("UNITS")?;
-    let (unit, unit_from) = of_file(units, how.unit, line)?;
-    let (line, _) = needed(STEP)?;
-    let dt = Sampling::of(line, header[line - 1].1)?.dt.ok_or_else(|| bad(line, format!("{STEP} is no number")))?;
-    let (line, _) = needed("NDATA")?;
-    let count = Sampling::of(line, header[line - 1].1)?.npts.ok_or_else(|| bad(line, "NDATA is no whole number"))?;
-
-    let title = ["EVENT_NAME", "EVENT_DATE_YYYYMMDD", "STATION_CODE", "STREAM"].map(find);
-    let title = title.into_iter().flatten().map(|(_, value)| value).filter(|value| !value.is_empty());
-    let title = title.collect::<Vec<_>>().join(", ");
-    let mut parsed = Parsed::new(title, unit, unit_from, Times::Every(dt));
-    parsed.read(numbered(text).skip(header.len()), None)?;
-    parsed.check_count("NDATA", count, how)?;
-    Ok(parsed)
+    samples(text, how, ESM, header)
 }
 
-/// Value of `key` on `line`.
-fn value_of<'a>(line: &'a str, key: &str) -> Option<&'a str> {
-    line.trim_start().strip_prefix(key)?.trim_start().strip_prefix(':').map(str::trim)
+/// The first series of ESD.
+pub(super) fn esd(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
+    samples(text, how, ESD, numbered(text).take_while(|(_, line)| !is_series(line)).count() + 1)
+}
+
+/// The samples after so many lines of a header, which states step, number and unit.
+fn samples(text: &str, how: &Reading, keys: Keys, header: usize) -> Result<Parsed, BadLine> {
+    let find = |key: &str| value_of(numbered(text).take(header), key);
+    let needed = |key: &str| find(key).ok_or_else(|| bad(header.max(1), format!("{key} is not in the header")));
+    let [of_step, of_count, of_unit, title @ ..] = keys;
+    let (line, units) = needed(of_unit)?;
+    let (unit, unit_from) = of_file(units.split(',').next().unwrap_or_default(), how.unit, line)?;
+    let (line, dt) = needed(of_step)?;
+    let dt = step(of_step, "", &[&*dt.to_uppercase()]).map_err(|problem| bad(line, problem))?;
+    let (line, npts) = needed(of_count)?;
+    let npts = count(of_count, npts).map_err(|problem| bad(line, problem))?;
+    let title = title.into_iter().filter_map(find).map(|(_, value)| value).filter(|value| !value.is_empty());
+    let mut parsed = Parsed::new(title.collect::<Vec<_>>().join(", "), unit, unit_from, Times::Every(dt));
+    parsed.read(numbered(text).skip(header).take_while(|(_, line)| !line.starts_with(SERIES)), None)?;
+    parsed.check_count(of_count, npts, how)?;
+    Ok(parsed)
 }

@@ -1,7 +1,7 @@
 //! ASCII of K-NET and KiK-net: seventeen lines of header, then counts of the recorder, eight a line.
 
 use super::parsed::{Parsed, Times};
-use super::text::{number, numbered, quote};
+use super::text::{number, numbered, quote, value_of};
 use super::{BadLine, Reading, bad, source::of_file};
 
 const HEADER_LINES: usize = 17;
@@ -16,8 +16,8 @@ pub(super) fn is_its(text: &str) -> bool {
 pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     const WIDTH: usize = 9;
     let find = |key: &str| {
-        let found = numbered(text).take(HEADER_LINES).find_map(|(line, text)| Some((line, value_of(text, key)?)));
-        found.ok_or_else(|| bad(HEADER_LINES, format!("{key} is not in the header")))
+        value_of(numbered(text).take(HEADER_LINES), key)
+            .ok_or_else(|| bad(HEADER_LINES, format!("{key} is not in the header")))
     };
     let positive = |line, name: &str, word: &str| {
         let value = number(word.trim()).filter(|value| *value > 0.0);
@@ -44,9 +44,4 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     parsed.values.iter_mut().for_each(|value| *value -= offset);
     parsed.remark(format!("the recorder's offset, the mean of {offset:.3} gal, is taken off"));
     Ok(parsed)
-}
-
-/// Value of `key` on `line`.
-fn value_of<'a>(line: &'a str, key: &str) -> Option<&'a str> {
-    line.strip_prefix(key).map(str::trim)
 }

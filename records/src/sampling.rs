@@ -17,6 +17,9 @@ pub(super) struct Sampling {
 const STEPS: &str = "DT|TIME STEP|TIME INTERVAL|SAMPLE INTERVAL|SAMPLING INTERVAL|SAMPLING PERIOD|INTERVALO DE MUESTREO|\
     SAMPLING_INTERVAL_S|SAMPLERATE|SAMPLE RATE|SAMPLING RATE|SAMPLING FREQ|SAMPLING FREQUENCY";
 
+/// The words that state the number of samples.
+const COUNTS: [&str; 4] = ["NPTS", "NDATA", "NUMBER OF SAMPLES", "NUMBER OF DATA"];
+
 impl Sampling {
     /// Reads the line of this `number`: `NPTS=  4172, DT=   .0100 SEC, UNITS=G`, one of the two, `4164    0.0100    NPTS, DT`,
     /// `SAMPLING INTERVAL (sec) : 0.01` or `Sampling rate: 100 Hz`.
@@ -37,14 +40,17 @@ impl Sampling {
         };
         let without_commas: Vec<_> = words.iter().copied().filter(|word| *word != ",").collect();
         let (npts, dt) = match without_commas.as_slice() {
-            [npts, dt, "NPTS", "DT", ..] => (Some(*npts), Some(step("DT", "", std::slice::from_ref(dt)))),
+            [npts, dt, "NPTS", "DT", ..] => (Some(("NPTS", *npts)), Some(step("DT", "", std::slice::from_ref(dt)))),
             _ => {
                 let dt = STEPS.split('|').find_map(|name| Some((name, after(name)?)));
                 let dt = dt.map(|(name, (unit, words))| step(name, unit, words));
-                (after("NPTS").or(after("NDATA")).map(|(_, words)| words[0]), dt)
+                (COUNTS.iter().find_map(|name| Some((*name, after(name)?.1[0]))), dt)
             }
         };
-        let stated = npts.map(count).transpose().and_then(|npts| Ok(Sampling { npts, dt: dt.transpose()? }));
+        let stated = npts
+            .map(|(name, word)| count(name, word))
+            .transpose()
+            .and_then(|npts| Ok(Sampling { npts, dt: dt.transpose()? }));
         stated.map_err(|problem| bad(number, problem))
     }
 
@@ -62,16 +68,17 @@ fn is_unit(word: &str) -> bool {
     matches!(word, "HZ" | "SPS") || TimeUnit::named(&word.to_lowercase()).is_some()
 }
 
-fn count(word: &str) -> Result<usize, String> {
+/// The number of samples that `word` after `name` is.
+pub(super) fn count(name: &str, word: &str) -> Result<usize, String> {
     match word.parse() {
         Ok(npts) if (2..=MAX_SAMPLES).contains(&npts) => Ok(npts),
-        _ => Err(format!("NPTS = {} must be a whole number, 2 to {MAX_SAMPLES}", quote(word))),
+        _ => Err(format!("{name} = {} must be a whole number, 2 to {MAX_SAMPLES}", quote(word))),
     }
 }
 
 /// The step (s) that `words` after `name` begin with: `.0100`, `0.01s`, `10 MSEC`, `100 Hz`. A word after it is its unit, unless a
 /// comma is between; else its unit is the `unit` before it; else seconds, or Hz of a rate of 1 or more.
-fn step(name: &str, unit: &str, words: &[&str]) -> Result<f64, String> {
+pub(super) fn step(name: &str, unit: &str, words: &[&str]) -> Result<f64, String> {
     let is_rate = name.contains("RATE") || name.contains("FREQ");
     let is_own = |next: &&&str| !matches!(**next, "," | "NPTS") && (name == "DT" || is_unit(next));
     let (word, next) = (words[0], words.get(1).filter(is_own));

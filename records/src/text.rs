@@ -51,6 +51,12 @@ pub(super) fn numbered(text: &str) -> impl Iterator<Item = (usize, &str)> {
     (1..).zip(text.lines())
 }
 
+/// The value of the first of `lines` that begins with `key`, with a colon between or without, and the number of the line.
+pub(super) fn value_of<'a>(lines: impl Iterator<Item = (usize, &'a str)>, key: &str) -> Option<(usize, &'a str)> {
+    let mut values = lines.filter_map(|(line, text)| Some((line, text.trim_start().strip_prefix(key)?.trim_start())));
+    values.next().map(|(line, value)| (line, value.strip_prefix(':').unwrap_or(value).trim()))
+}
+
 /// Whether a mark says that `line` is a comment.
 pub(super) fn is_comment(line: &str) -> bool {
     line.trim_start().starts_with(['#', '%', '!']) || line.trim_start().starts_with("/&")
