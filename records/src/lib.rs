@@ -152,6 +152,8 @@ pub enum Remedy {
     Column,
     /// The unit.
     Unit,
+    /// The column or the channel, and the unit.
+    ColumnAndUnit,
     /// This module for Python reads the file, by this call in the place of the arguments of a Record.
     Python(&'static str, &'static str),
 }
@@ -170,6 +172,10 @@ impl Remedy {
                 format!("choose one as {}: its number, its heading, or all", called("column"))
             }
             Remedy::Unit => format!("give the unit of the accelerations as {}", called("unit")),
+            Remedy::ColumnAndUnit => {
+                let called: &dyn Fn(&str) -> String = &called;
+                format!("{}; {}", Remedy::Column.advice(called), Remedy::Unit.advice(called))
+            }
             Remedy::Python(module, call) => {
                 let package = module.split('.').next().unwrap_or_default();
                 let import = format!("import {module}; import flexible_rocking as fr");

@@ -14,7 +14,7 @@ pub(super) struct Sampling {
 }
 
 /// The words that state the step, or a rate, which is its reciprocal.
-const STEPS: &str = "DT|TIME STEP|TIME INTERVAL|SAMPLE INTERVAL|SAMPLING INTERVAL|SAMPLING PERIOD|INTERVALO DE MUESTREO|\
+const STEPS: &str = "DT|TIME STEP|TIME INTERVAL|SAMPLE INTERVAL|SAMPLING INTERVAL|SAMPLING PERIOD|INTERVALO DE MUESTREO|INTERVALO DE MUESTREO , C1-C6|\
     SAMPLING_INTERVAL_S|SAMPLERATE|SAMPLE RATE|SAMPLING RATE|SAMPLING FREQ|SAMPLING FREQUENCY";
 
 /// The words that state the number of samples.
@@ -25,7 +25,7 @@ impl Sampling {
     /// `SAMPLING INTERVAL (sec) : 0.01` or `Sampling rate: 100 Hz`.
     pub fn of(number: usize, line: &str) -> Result<Sampling, BadLine> {
         let upper = line.to_ascii_uppercase().replace([',', ';'], " , ");
-        let words = upper.split(|letter: char| letter.is_whitespace() || "=:\"#%!()[]".contains(letter));
+        let words = upper.split(|letter: char| letter.is_whitespace() || "=:\"#%!()[]/".contains(letter));
         let words: Vec<_> = words.filter(|word| !word.is_empty()).collect();
         let after = |name: &str| {
             let name: Vec<_> = name.split(' ').collect();

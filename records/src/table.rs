@@ -282,7 +282,10 @@ impl<'a> Table<'a> {
                     (self.count, self.headings.first().map(|(_, names)| format!(" ({})", listed(names))));
                 let names = names.unwrap_or_default();
                 let problem = format!("cannot tell which of {count} columns{names} has the accelerations");
-                return Err(bad(self.first, problem).remedied_by(Remedy::Column));
+                let unit =
+                    self.stated_unit(Some(left[0]), how).and_then(|(unit, line)| of_heading(unit, how.unit, line));
+                let remedy = if unit.is_err() { Remedy::ColumnAndUnit } else { Remedy::Column };
+                return Err(bad(self.first, problem).remedied_by(remedy));
             }
         };
         Ok(Samples { time, value: Some(value) })
@@ -291,11 +294,12 @@ impl<'a> Table<'a> {
     /// Refuses a bare count of the samples or a bare step before samples alone.
     fn check_count(&self, how: &Reading) -> Result<(), BadLine> {
         let (first, count) = (self.numbers[0], self.numbers.len());
+        let decimals = |after| self.line(after).map(|(_, line)| line.split('.').nth(1).map_or(0, |of| of.trim().len()));
         let is_count = first > 1.0 && [first + 1.0, first + 2.0].contains(&(count as f64));
         let (what, name) = match () {
             () if self.stated.npts.is_some() => return Ok(()),
             () if is_count => ("number of samples after it", "NPTS="),
-            () if self.count == 1 && how.dt == Some(first) => ("given step", "DT="),
+            () if self.count == 1 && how.dt == Some(first) && decimals(0) != decimals(1) => ("given step", "DT="),
             () => return Ok(()),
         };
         let remedy = format!("in a line of its own, or NPTS= {count} before it if it is a sample");
@@ -354,24 +358,38 @@ impl<'a> Table<'a> {
     /// a unit in another place unless `how` has the unit: it may be the unit of a peak.
     fn stated_unit(&self, value: Option<usize>, how: &Reading) -> Result<(Stated, usize), BadLine> {
         let texts: Vec<_> = match value {
-            Some(value) => self.headings_of(value).collect(),
+            Some(value) => {
+                // `#AmplitudeUnit: gal` holds for all columns.
+                let states_all = |(_, text): &(usize, &str)| text.to_lowercase().contains("uni") && is_unit(text);
+                self.headings_of(value).chain(self.before.iter().copied().filter(states_all)).collect()
+            }
             None => self.before.iter().filter(|(_, text)| !is_numbers(text)).flat_map(statements).collect(),
         };
         if let Some((line, other)) = texts.iter().find(|(_, text)| is_no_acceleration(text)) {
             let place = value.map_or("a line before the data".into(), |value| format!("column {}", value + 1));
             return Err(bad(*line, format!("{place} is {}: accelerations are needed", quote(other))));
         }
-        // The lines that head columns have one for times; other lines may be titles.
-        let heads = |(_, cells): &&(usize, Vec<&str>)| cells.iter().any(|cell| TimeUnit::of(cell).is_some());
-        let heads: Vec<_> = self.headings.iter().filter(heads).map(|(line, _)| *line).collect();
-        let stated = |(line, text): (usize, &str)| match Stated::of(text) {
-            Stated::Unclear(_) if !heads.contains(&line) && is_prose(text) => None,
-            Stated::Nothing => None,
-            stated => Some((stated, line)),
+        // A line with times heads columns, and so does an acceleration with something in brackets; other lines may be titles.
+        let has_times = |(_, cells): &&(usize, Vec<&str>)| cells.iter().any(|cell| TimeUnit::of(cell).is_some());
+        let with_times: Vec<_> = self.headings.iter().filter(has_times).map(|(line, _)| *line).collect();
+        let heads = |line: usize, text: &str| {
+            let mut words = text.split(|letter: char| !letter.is_alphabetic());
+            with_times.contains(&line)
+                || text.contains(['(', '[']) && words.any(|word| word.to_lowercase().starts_with("acc"))
         };
-        let stated: Vec<_> = texts.into_iter().filter_map(stated).collect();
-        let other = stated.iter().position(|(unit, _)| *unit != stated[0].0 || matches!(unit, Stated::Unclear(_)));
-        let stated = stated.into_iter().nth(other.unwrap_or_default()); // an unclear one, or the first
+        let stated = |(line, text): (usize, &'a str)| match Stated::of(text) {
+            Stated::Unclear(_) if !heads(line, text) && is_prose(text) => None,
+            Stated::Nothing => None,
+            stated => Some((stated, line, text)),
+        };
+        let mut stated: Vec<_> = texts.into_iter().filter_map(stated).collect();
+        // An unclear one, or one that contradicts the first, or the first.
+        let unclear = stated.iter().position(|(unit, ..)| matches!(unit, Stated::Unclear(_)));
+        let other = unclear.or(stated.iter().position(|(unit, ..)| *unit != stated[0].0));
+        if let Some((unit, _, text)) = other.map(|at| &mut stated[at]) {
+            *unit = Stated::Unclear((*text).to_owned());
+        }
+        let stated = stated.into_iter().nth(other.unwrap_or_default()).map(|(unit, line, _)| (unit, line));
         match (stated, self.before.iter().find(|(_, text)| mentions_unit(text))) {
             (None, Some((line, text))) if how.unit.is_none() => {
                 let text = quote(text);
@@ -388,6 +406,10 @@ impl<'a> Table<'a> {
 fn statements<'a>(&(line, text): &(usize, &'a str)) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
     let has_several = Sampling::of(line, text).is_ok_and(|stated| stated != Sampling::default());
     text.split(move |letter| has_several && letter == ',').map(move |statement| (line, statement))
+}
+
+fn is_unit(text: &str) -> bool {
+    matches!(Stated::of(text), Stated::Unit(_))
 }
 
 /// Why a file has no samples.
@@ -521,6 +543,7 @@ mod tests {
             );
         }
         assert_eq!(read("1\n2\n", &AS_IT_IS).unwrap_err().remedy, Some(Remedy::Step));
+        assert_eq!(read("0.5\n-0.1\n", &step).unwrap().0.acceleration(), [0.5, -0.1], "the first equals the step");
 
         let three = "time (s),N-S (gal),E-W (g)\n0,1,5\n1,2,6\n";
         let unclear = read(three, &AS_IT_IS).unwrap_err();
@@ -659,6 +682,24 @@ mod tests {
         assert_eq!(one("# peak 0.3 g").unwrap_err().remedy, Some(Remedy::Unit));
     }
 
+    /// Three components, as NSMN, UNAM and CWB write them: lines before them have the step, and may have a unit for all.
+    #[test]
+    fn a_refusal_names_every_option_that_is_needed() {
+        let gal = Unit::CentimetrePerSecondSquared;
+        let step = "SAMPLING INTERVAL (sec) : 0.005";
+        for (before, remedy) in [
+            (format!("NUMBER OF DATA : 2\n{step}\nPGA VALUES (gal) : (N-S) 314\nN-S  E-W  U-D"), Remedy::ColumnAndUnit),
+            ("INTERVALO DE MUESTREO, C1-C6 (s) : /.005/.005\nUNIDADES DE LOS DATOS : gal".into(), Remedy::Column),
+            ("#SampleRate(Hz): 200\n#AmplitudeUnit:  gal. DCoffset(corr)\n#MAX. U: 4.09~ -4.3".into(), Remedy::Column),
+        ] {
+            let text = before + "\n .02 .10 .03\n .01 -.2 .02\n";
+            assert_eq!(read(&text, &AS_IT_IS).unwrap_err().remedy, Some(remedy), "{text}");
+            let unit = (remedy == Remedy::ColumnAndUnit).then_some(gal);
+            let (record, source) = read(&text, &Reading { column: Some(Column::Number(2)), unit, ..AS_IT_IS }).unwrap();
+            assert_eq!((record.times()[1], record.acceleration()[1], source.unit), (0.005, -0.2, gal), "{text}");
+        }
+    }
+
     /// A known unit stands before another word, after a number, or beside another unit.
     #[test]
     fn the_user_decides_where_a_heading_is_not_clear() {
@@ -676,7 +717,9 @@ mod tests {
     /// A factor may be in any heading of the column. The user says what the numbers are.
     #[test]
     fn a_factor_in_a_heading_is_not_passed_over() {
-        for headings in ["t (s);a (10^-3 g)", "t (s);a*1000\ns;g", "t (s);g\n;x 1000", "t (s);a (g/1000)"] {
+        for headings in
+            ["t (s);a (10^-3 g)", "t (s);a*1000\ns;g", "t (s);a (gal)\ns;g", "t (s);g\n;x 1000", "t (s);a (g/1000)"]
+        {
             let text = format!("{headings}\n0;1\n.5;2\n");
             assert_eq!(read(&text, &AS_IT_IS).unwrap_err().remedy, Some(Remedy::Unit), "{headings}");
             let asked = Reading { unit: Some(Unit::MilliG), ..AS_IT_IS };

@@ -155,7 +155,7 @@ pub(super) fn mentions_unit(line: &str) -> bool {
 const WORDS: &str = " a ac acc accel acceleration accelerations accelerogram aceleracion aceleraci\u{f3}n accelerazione \
     acc\u{e9}l\u{e9}ration beschleunigung ivme ag av ax ay az value values data series time times history record ground \
     floor base motion horizontal vertical longitudinal transverse radial north south east west up down component comp \
-    channel chan ch no corrected uncorrected filtered scaled multiplied factor by unit units in of the deg along across n \
+    channel chan ch no corrected uncorrected filtered scaled multiplied factor by unit units amplitudeunit unidades in of de los datos the dcoffset corr deg along across n \
     s e w u d z v h l t r x y ns ew ud sn we du ne nw se sw en hne hnn hnz hn1 hn2 ";
 
 /// The words of `text` in small letters.
@@ -173,12 +173,9 @@ fn is_known(word: &str) -> bool {
         || (name == word || !matches!(name, "" | "x" | "e" | "by")) && WORDS.contains(&format!(" {name} "))
 }
 
-/// Whether `text` has other words than [`WORDS`] and numbers, as titles have. An acceleration with something in brackets is no
-/// title: the brackets state its unit.
+/// Whether `text` has other words than [`WORDS`] and numbers, as titles have.
 pub(super) fn is_prose(text: &str) -> bool {
-    let words = words(text);
-    let states_a_unit = text.contains(['(', '[']) && words.iter().any(|word| word.starts_with("acc"));
-    !states_a_unit && words.iter().any(|word| word.contains(char::is_alphabetic) && !is_known(word))
+    words(text).iter().any(|word| word.contains(char::is_alphabetic) && !is_known(word))
 }
 
 /// Whether `text` has no words but [`WORDS`], no numbers but those of channels and angles, and no sign of a product or before
