@@ -32,45 +32,31 @@ struct Announced<'a> {
 /// The accelerations of the one channel, or of that which `how` chooses.
 pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     let channels = channels(text)?;
-    let Some(first) = channels.first() else {
-        return Err(bad(1, "no line of the file announces accelerations, as COSMOS and CSMIP do"));
+    let is_asked = |(index, channel): (usize, &Announced)| match &how.column {
+        None => channels.len() == 1,
+        Some(Column::Number(number)) => *number == index + 1,
+        Some(Column::Heading(name)) => channel.name.eq_ignore_ascii_case(name.trim()),
+        Some(Column::All) => false,
     };
-    let names: Vec<_> = channels.iter().map(|channel| channel.name).collect();
-    let index = chosen(&names, how, first.line)?;
-    let Announced { line: announced, count, unit, width, dt, .. } = channels[index];
-    let (unit, factor) = tenths(unit);
+    let asked: Vec<_> = channels.iter().enumerate().filter(|channel| is_asked(*channel)).collect();
+    let [(index, &Announced { line: announced, count, unit, width, dt, .. })] = asked[..] else {
+        let Some(first) = channels.first() else {
+            return Err(bad(1, "no line of the file announces accelerations, as COSMOS and CSMIP do"));
+        };
+        let names: Vec<_> = channels.iter().map(|channel| quote(channel.name)).collect();
+        let asked =
+            how.column.as_ref().map_or("which one to read is not said".into(), |asked| format!("not one {asked}"));
+        let problem = format!("{} channel(s) ({}), {asked}", channels.len(), names.join(", "));
+        return Err(bad(first.line, problem).remedied_by(Remedy::Column));
+    };
     let (unit, unit_from) = of_file(unit, how.unit, announced)?;
     let mut parsed = Parsed::new(title(text), unit, unit_from, Times::Every(dt));
     if channels.len() > 1 {
         parsed.remark(format!("channel {} of {}, {}", index + 1, channels.len(), quote(channels[index].name)));
     }
     parsed.read(numbered(text).skip(announced).take_while(|(_, line)| !ends_data(line)), width)?;
-    parsed.values.iter_mut().for_each(|value| *value *= factor);
     parsed.check_count("the line before the data", count, how)?;
     Ok(parsed)
-}
-
-/// The one channel of those called `names`, or that which `how` chooses, by its index.
-pub(super) fn chosen(names: &[&str], how: &Reading, line: usize) -> Result<usize, BadLine> {
-    let is_asked = |index: &usize| match &how.column {
-        None => names.len() == 1,
-        Some(Column::Number(number)) => *number == index + 1,
-        Some(Column::Heading(name)) => names[*index].eq_ignore_ascii_case(name.trim()),
-        Some(Column::All) => false,
-    };
-    let asked: Vec<_> = (0..names.len()).filter(is_asked).collect();
-    if let [index] = asked[..] {
-        return Ok(index);
-    }
-    let asked = how.column.as_ref().map_or("which one to read is not said".into(), |asked| format!("not one {asked}"));
-    let quoted: Vec<_> = names.iter().map(|name| quote(name)).collect();
-    let problem = format!("{} channel(s) ({}), {asked}", names.len(), quoted.join(", "));
-    Err(bad(line, problem).remedied_by(Remedy::Column))
-}
-
-/// The `unit` and a factor: files of volume 1 have accelerations in g/10.
-pub(super) fn tenths(unit: &str) -> (&str, f64) {
-    if unit.eq_ignore_ascii_case("g/10") { ("g", 0.1) } else { (unit, 1.0) }
 }
 
 /// Whether `line` is one of text, which comes after the data: it announces velocities or the end.
@@ -80,7 +66,7 @@ fn ends_data(line: &str) -> bool {
 }
 
 /// Direction on a line such as `Sta Chan  1: 360 deg (Rcrdr Chan  1)`.
-pub(super) fn direction(line: &str) -> Option<&str> {
+fn direction(line: &str) -> Option<&str> {
     let start = line.to_ascii_lowercase().find("chan")? + "chan".len();
     let (number, name) = line.get(start..)?.split_once(':')?;
     number.trim().parse::<u32>().ok()?;

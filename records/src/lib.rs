@@ -9,10 +9,10 @@ mod cosmos;
 mod csv;
 mod esm;
 mod fields;
-mod fixed;
 mod knet;
 mod parsed;
 mod sampling;
+mod smc;
 mod source;
 mod table;
 mod text;
@@ -63,10 +63,16 @@ formats! {
     "ESD ASCII", "units", "sampling period", false, esm::is_esd, esm::esd;
     "K-NET and KiK-net ASCII", "gal, by the scale factor; the recorder's offset is taken off", "sampling frequency", false, knet::is_its, knet::parse;
     "COSMOS V1 and V2", "the line before the data", "the real header", true, cosmos::is_its, cosmos::parse;
-    "USGS SMC", "cm/s2", "the real header", false, fixed::is_smc, fixed::smc;
-    "CSMIP V1 and RENADIC", "the line UNITS", "times", true, fixed::is_volume_1, fixed::volume_1;
+    "USGS SMC", "cm/s2", "the real header", false, smc::is_its, smc::parse;
     "CSMIP V2", "the line before the data", "the line before the data", true, cosmos::is_csmip, cosmos::parse;
 }
+
+/// Layouts that a package for Python reads: their names, and what stands on which line, counted from 0.
+const OF_GMPROCESS: [(&str, usize, &str); 3] = [
+    ("GeoNet V1A or V2A", 0, "gns science"),
+    ("CSMIP V1", 0, "uncorrected accelerogram data"),
+    ("RENADIC", 7, "universidad de chile - renadic"),
+];
 
 const GMPROCESS: Remedy =
     Remedy::Python("gmprocess.io.read", "gmprocess.io.read.read_data(FILE)[0][0], unit=\"cm/s2\"");
@@ -279,9 +285,11 @@ fn rounded(times: &[f64]) -> Option<[f64; 2]> {
 
 /// The record in `text`, whose content decides its layout.
 fn parse(text: &str, how: &Reading) -> Result<(Record, Source), BadLine> {
-    if text.lines().next().is_some_and(|line| line.to_lowercase().contains("gns science")) {
-        let problem = "the file is one of GeoNet V1A or V2A, which is not read here";
-        return Err(bad(1, problem).remedied_by(GMPROCESS));
+    let states = |line: usize, mark| text.lines().nth(line).is_some_and(|line| line.to_lowercase().contains(mark));
+    let foreign = OF_GMPROCESS.iter().find(|(_, line, mark)| states(*line, mark));
+    if let Some((name, line, _)) = foreign.filter(|_| !text.to_lowercase().contains("accel data equally spaced")) {
+        let problem = format!("the file is one of {name}, which is not read here");
+        return Err(bad(line + 1, problem).remedied_by(GMPROCESS));
     }
     let Some(format) = FORMATS.iter().find(|format| (format.is_its)(text)) else {
         return table::parse(text, how)?.record(how, TABLE);

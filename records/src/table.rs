@@ -769,6 +769,7 @@ mod tests {
             ("0 1\n1 1.23-4\n", "2: the acceleration \"1.23-4\" is not a number: write 1.23E-4 or 1.23 -4"),
             ("0 1\n1 2\nend data\n", "3: the time \"end\" is not a number: write # before a line of text"),
             ("5,NPTS,DT\n1\n2\n", "2: no column has times: the time between samples is unknown"),
+            ("NPTS= 3.5\n1\n2\n", "1: NPTS = \"3.5\" must be a whole number, 2 to 10000000"),
             ("Sampling rate: 0 Hz\n1\n2\n", "1: SAMPLING RATE = \"0 HZ\" must be a rate in Hz"),
             ("DT=0.005 min\n1\n2\n", "1: DT = \"0.005 MIN\" must be a number of seconds greater than 0"),
             (

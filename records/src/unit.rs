@@ -240,17 +240,8 @@ mod tests {
             [Unit::G, Unit::MetrePerSecondSquared, Unit::CentimetrePerSecondSquared, Unit::MillimetrePerSecondSquared];
         for (headings, unit) in [
             (&["a_g[g]", "acc (G)", "acceleration g", "acc_g", "Acceleration, g", "a/g"][..], g),
-            (
-                &[
-                    "a_g[m/s2]",
-                    "ACC (m/s^2)",
-                    "a [m s\u{207b}\u{b2}]",
-                    "a (m/sec/sec)",
-                    "acc_m_s2",
-                    "Acc. / (m/s\u{b2})",
-                ],
-                m,
-            ),
+            (&["a_g[m/s2]", "ACC (m/s^2)", "a [m s\u{207b}\u{b2}]", "a (m/sec/sec)", "acc_m_s2"], m),
+            (&["Acc. / (m/s\u{b2})", "S90E m*s^-2"], m),
             (&["acc (cm/s2)", "gal", "N-S(gal)", "acc, cm/sec^2", "acc_cms2", "{cm/s\u{b2}}"], cm),
             (&["a (filtered) [mm/s2]", "a mm/s/s"], mm),
             (&["a [in/sec^2]"], Unit::InchPerSecondSquared),
@@ -263,7 +254,6 @@ mod tests {
         for (heading, unit) in [
             ("CH 2, 090 deg, acc (g)", g),
             ("acc x [g]", g),
-            ("S90E m*s^-2", m),
             ("ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz LP=30.0 Hz", g),
         ] {
             assert_eq!(Stated::of(heading), Stated::Unit(unit), "{heading}");
@@ -300,21 +290,9 @@ mod tests {
         ] {
             headings.iter().for_each(|heading| assert_eq!(TimeUnit::of(heading).as_ref(), Some(&unit), "{heading}"));
         }
-        for other in [
-            "time*1000 (s)",
-            "t (x10 s)",
-            "t/10 (s)",
-            "time history",
-            "trigger",
-            "theta",
-            "a (m/s2)",
-            "acc",
-            "",
-            "T1",
-            "Period (s)",
-            "t (min)",
-            "f (Hz)",
-        ] {
+        let others =
+            "time*1000 (s);t (x10 s);t/10 (s);time history;trigger;theta;a (m/s2);acc;;T1;Period (s);t (min);f (Hz)";
+        for other in others.split(';') {
             assert_eq!(TimeUnit::of(other), None, "{other}");
         }
     }

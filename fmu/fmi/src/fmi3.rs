@@ -111,14 +111,9 @@ fn boolean(name: &str, value: u8) -> Result<bool, Failure> {
 /// which count from 1.
 const FIRST: u32 = 1;
 
-/// The positions of the variables that the host refers to; [`Instance`] refuses those that do not exist.
-unsafe fn positions<'a>(
-    name: &'static str,
-    references: *const c_uint,
-    count: size_t,
-) -> Result<impl Iterator<Item = u32> + use<'a>, Failure> {
-    let references: &'a [u32] = unsafe { values(name, references, count) }?;
-    Ok(references.iter().map(|reference| reference.wrapping_sub(FIRST)))
+/// The position of the variable that the host refers to; [`Instance`] refuses those that do not exist.
+fn position(reference: &u32) -> u32 {
+    reference.wrapping_sub(FIRST)
 }
 
 /// Has `call` done with the positions of the variables, all of which are scalars, that as many values are for. The instance
@@ -130,10 +125,10 @@ unsafe fn with_positions<M: Model>(
     call: impl FnOnce(&mut Instance<M>, &[u32]) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     check_count("nValues", nValues, nValueReferences)?;
-    let found = unsafe { positions("valueReferences", valueReferences, nValueReferences) }?;
+    let references = unsafe { values("valueReferences", valueReferences, nValueReferences) }?;
     let mut positions = std::mem::take(&mut instance.positions);
     positions.clear();
-    positions.extend(found);
+    positions.extend(references.iter().map(position));
     let result = call(instance, &positions);
     instance.positions = positions;
     result
@@ -175,11 +170,11 @@ functions! {
             let event_mode = boolean("eventModeUsed", eventModeUsed)?;
             let early_return = boolean("earlyReturnAllowed", earlyReturnAllowed)?;
             let (name, length) = ("requiredIntermediateVariables", nRequiredIntermediateVariables);
-            let required = unsafe { positions(name, requiredIntermediateVariables, length) }?;
+            let required = unsafe { values(name, requiredIntermediateVariables, length) }?;
             let variables = model.variables();
             let (mut sets_inputs, mut gets_outputs) = (false, false);
-            for position in required {
-                let is_input = find(&variables, position, FIRST)?.causality == Causality::Input;
+            for reference in required {
+                let is_input = find(&variables, position(reference), FIRST)?.causality == Causality::Input;
                 (sets_inputs, gets_outputs) = (sets_inputs || is_input, gets_outputs || !is_input);
             }
             let host =
@@ -407,8 +402,8 @@ functions! {
     ) |instance| {
         check_count("nSeed", nSeed, nKnowns)?;
         check_count("nSensitivity", nSensitivity, nUnknowns)?;
-        let unknowns = positions("unknowns", unknowns, nUnknowns)?.collect::<Vec<_>>();
-        let knowns = positions("knowns", knowns, nKnowns)?.collect::<Vec<_>>();
+        let unknowns: Vec<_> = values("unknowns", unknowns, nUnknowns)?.iter().map(position).collect();
+        let knowns: Vec<_> = values("knowns", knowns, nKnowns)?.iter().map(position).collect();
         let (seed, sensitivity) = (values("seed", seed, nSeed)?, room("sensitivity", sensitivity, nSensitivity)?);
         instance.get_directional_derivative(&unknowns, &knowns, seed, sensitivity)
     }

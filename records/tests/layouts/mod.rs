@@ -102,7 +102,6 @@ pub fn all(count: usize) -> Vec<Layout> {
     all.extend([
         layout("record.cor", "ESD ASCII", gal, esd(&cm)),
         layout("record.smc", "USGS SMC", gal, smc(&cm)),
-        volume_1(&cm),
         table("# peak in g: 0.3\nt/ms,a/gal", |i| (5 * i).to_string()),
         table("Time,Acceleration\n(sec),(cm/sec^2)", |i| format!("{:.3}", i as f64 * DT)),
         read_as(with_step(None), table("n,acc (gal)", |i| (i + 1).to_string())),
@@ -140,25 +139,6 @@ fn smc(values: &[f64]) -> String {
     text += &lines(&integers, 8, |value| format!("{value:10}"));
     text += &lines(&reals, 5, |value| format!("{value:15.7E}"));
     text + "| one comment\n" + &lines(values, 8, |value| format!("{value:10.5}"))
-}
-
-/// In tenths of g, with three decimals.
-fn volume_1(cm: &[f64]) -> Layout {
-    let tenths: Vec<_> = cm.iter().map(|value| (10.0 * value).round() / 1e3).collect();
-    let mut text = "UNCORRECTED ACCELEROGRAM DATA   PROCESSED: 02/28/94\n".to_owned() + &"A LINE OF TEXT\n".repeat(9);
-    writeln!(text, "NO. OF POINTS = {}  DURATION = 2.0 SEC\nUNITS ARE SEC AND G/10.\n", cm.len()).unwrap();
-    text += &lines(&[100.0; 100], 16, |value| format!("{value:5}"));
-    text += &lines(&[-9.0; 50], 8, |value| format!("{value:10.3}"));
-    let pairs: Vec<_> = tenths.iter().enumerate().flat_map(|(i, value)| [i as f64 * DT, *value]).collect();
-    text += &(lines(&pairs, 10, |value| format!("{value:7.3}")) + "/& --- END OF DATA FOR CHANNEL  1 ---\n");
-    Layout {
-        path: "record.RAW".into(),
-        bytes: text.into_bytes(),
-        how: Reading::default(),
-        format: "CSMIP V1 and RENADIC",
-        unit: Unit::G,
-        expected: tenths.iter().map(|value| 0.1 * value).collect(),
-    }
 }
 
 /// Counts of a recorder that shows 8000 at rest.
