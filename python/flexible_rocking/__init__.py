@@ -46,14 +46,16 @@ def export(
     name: str = "FlexibleRocking",
     fmi: int = 2,
     library: str | PathLike[str] | None = None,
+    strings: bool = True,
 ) -> Path:
     """Writes the FMU of a structure to `target` and returns its path.
 
     record: a Record or a file, or several. The FMU follows the first and has the others inside, each Record under its title.
     name: the name of the model for hosts. fmi: the version of the standard, 2 (2.0) or 3 (3.0).
+    strings: False leaves out the parameters `record` and `record_v`, because CasADi loads no FMI 3.0 with strings.
     library: an FMU or a shared library with the code; by default `fmu()`. A Python warning names an assumption about a file, or a likely fault. Raises
     ValueError with the reason.
     """
     records = [record] if isinstance(record, (Record, str, PathLike)) else list(record)
-    _native.export(target, structure, records, name, fmi, fmu() if library is None else library)
+    _native.export(target, structure, records, name, fmi, fmu() if library is None else library, strings)
     return Path(target).absolute()

@@ -13,7 +13,7 @@ mod structure;
 mod sweep;
 
 use arguments::{one_of, refused, warn};
-use fmu_export::{Library, Version};
+use fmu_export::{Contents, Library, Version};
 use interruptible::interruptible;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -60,6 +60,7 @@ fn export(
     name: String,
     fmi: &Bound<'_, PyAny>,
     library: PathBuf,
+    strings: bool,
 ) -> PyResult<()> {
     let structure = structure.of.clone();
     let version = one_of("fmi", fmi, [("2", Version::Fmi2), ("3", Version::Fmi3)])?;
@@ -94,7 +95,8 @@ fn export(
     interruptible(py, move |_| -> anyhow::Result<()> {
         let (libraries, name) = (Library::read(&library)?, name.parse()?);
         let records = records.into_iter().flatten().collect();
-        let (_, archive) = fmu_export::export(version, &name, structure.into(), records, vertical, &libraries)?;
+        let contents = Contents { fixed: !strings, ..structure.into() };
+        let (_, archive) = fmu_export::export(version, &name, contents, records, vertical, &libraries)?;
         target.write(&archive)
     })
 }

@@ -159,7 +159,7 @@ impl<'a> Table<'a> {
         match *first {
             [npts] if self.uneven.is_some() && is_count(npts) => Some(Sampling { npts: Some(npts as usize), dt: None }),
             [dt] if self.uneven.is_some() && is_step(dt) => Some(Sampling { npts: None, dt: Some(dt) }),
-            [npts, dt] if dt > 0.0 && is_count(npts) && !is_rising() => {
+            [npts, dt, ..] if dt > 0.0 && is_count(npts) && !is_rising() => {
                 Some(Sampling { npts: Some(npts as usize), dt: Some(dt) })
             }
             _ => None,
@@ -597,6 +597,7 @@ mod tests {
             ("4 .01\n5 .1\n6 .2\n2 .3\n1 .4\n", Column::Number(2)),
             ("4 .01\n.1 .2 .3\n.4\n", Column::All),
             ("4 .01\n.1\n.2\n.3\n.4\n", Column::All),
+            ("4 .01 656\n.1 .2\n.3 .4\n", Column::All),
             ("0 .1 .01 .2\n.02 .3 .03 .4\n", Column::Number(2)),
             ("t a t a t a\n0 .1 .01 .2 .02 .3\n.03 .4\n", Column::Number(2)),
         ] {

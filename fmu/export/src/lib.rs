@@ -11,9 +11,8 @@ use ::model_description::DefaultExperiment;
 pub use ::model_description::Version;
 use ::model_description::archive::{Entry, archive};
 use FlexibleRocking::ground::GroundRecord;
-use FlexibleRocking::resources::{
-    Contents, FRAME_FILE, FrameNumbers, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records,
-};
+pub use FlexibleRocking::resources::Contents;
+use FlexibleRocking::resources::{FRAME_FILE, FrameNumbers, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records};
 pub use library::{Library, LibraryError, Platform};
 use rocking::run::record::SamplesError;
 use rocking::structure::any::AnyStructure;

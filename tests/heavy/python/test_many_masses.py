@@ -70,9 +70,10 @@ def test_three_ways_and_a_file_are_one_structure(exporter, tmp_path):
 
 def test_an_fmu_is_the_one_of_the_command_line(exporter, tmp_path):
     (tmp_path / "frame.toml").write_text(file_of_storeys())
-    subprocess.run([exporter, "export", "--parameters", tmp_path / "frame.toml", "-o", tmp_path / "a.fmu"], check=True)
-    fr.export(tmp_path / "b.fmu", of_storeys(), library=tmp_path / "a.fmu")
-    assert (tmp_path / "a.fmu").read_bytes() == (tmp_path / "b.fmu").read_bytes()
+    for strings, option in (True, []), (False, ["--no-strings"]):
+        subprocess.run([exporter, "export", "--parameters", tmp_path / "frame.toml", *option, "-o", tmp_path / "a.fmu"], check=True)
+        fr.export(tmp_path / "b.fmu", of_storeys(), library=tmp_path / "a.fmu", strings=strings)
+        assert (tmp_path / "a.fmu").read_bytes() == (tmp_path / "b.fmu").read_bytes()
 
 
 def test_modes_left_out_are_told():
