@@ -9,12 +9,7 @@ use crate::{
     structure_args::StructureArgs,
 };
 use anyhow::Context;
-use rocking::run::levels::{self, Criterion};
-use rocking::run::record::Record;
-use rocking::run::validity::Validity;
-use rocking::structure::any::AnyStructure;
-use rocking::{Modes, Watch};
-use rocking_report::advice::{Advised, rows, text};
+use rocking::run::levels::Criterion;
 use rocking_sweep::plan::Conditions;
 
 /// Arguments of `advise`.
@@ -60,35 +55,13 @@ fn relative_error(text: &str) -> Result<f64, String> {
 
 /// Runs the levels and prints the table and the advice.
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
-    args.limits.limits()?;
-    let (initial, duration) = (args.initial.state(), args.ground.duration());
-    let conditions = Conditions { initial, duration, ..Conditions::default() };
-    let (structure, ground) = load(&args.structure, &args.ground, &conditions)?;
-    let cause = Cause::of_any(&structure).under(&args.ground.record, &ground).with_initial(initial);
-    match &structure {
-        AnyStructure::One(one) => advise::<f64>(args, one, &ground, &conditions, &cause),
-        AnyStructure::Many(frame) => advise::<Modes>(args, frame, &ground, &conditions, &cause),
-    }
-}
-
-/// The same for a `structure` of one mass or of many.
-fn advise<Q: Advised>(
-    args: &AdviseArgs,
-    structure: &Q::Structure,
-    ground: &Record,
-    conditions: &Conditions,
-    cause: &Cause,
-) -> anyhow::Result<()>
-where
-    Validity<Q>: Watch<Q>,
-{
     let limits = args.limits.limits()?;
-    let run = Q::run(structure, ground, conditions)?;
-    let comparison = levels::compare(&run).context("detail = nonlinear")?;
-    let (within, criteria) = (args.allowed.within, &args.allowed.of);
-    let advised = comparison.recommended(within, criteria);
-    let text = || text(&args.ground.title(ground), &run, &comparison, (within, criteria), limits);
-    args.results.print(text, &Traced { cause, rows: &rows(structure, &comparison, advised) })
+    let (initial, duration) = (args.initial.state(), args.ground.duration());
+    let run = load(&args.structure, &args.ground, Conditions { initial, duration, ..Conditions::default() })?;
+    let cause = Cause::new(run.structure.clone()).under(&args.ground.record, &run.ground).with_initial(initial);
+    let advice = run.advice(args.allowed.within, &args.allowed.of).context("detail = nonlinear")?;
+    let text = || run.advice_text(&args.ground.title(&run.ground), &advice, &limits);
+    args.results.print(text, &Traced { cause: &cause, rows: &advice.rows() })
 }
 
 #[cfg(test)]

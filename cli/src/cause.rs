@@ -2,7 +2,7 @@
 use crate::record_args::{RecordArgs, RecordOptions};
 use rocking::run::record::Record;
 use rocking::structure::any::AnyStructure;
-use rocking::{Parameters, State, Structure};
+use rocking::{Parameters, State};
 use rocking_records::Column;
 use rocking_report::{describe, program::version, record::Understood};
 use rocking_sweep::plan::Conditions;
@@ -78,19 +78,12 @@ impl Cause {
     }
 
     /// Of what follows from `structure`.
-    pub fn new(structure: &Structure) -> Cause {
-        Cause::of(Some(OfStructure::One(*structure.parameters())), None)
-    }
-
-    /// Of what follows from a structure of one mass or of many.
-    pub fn of_any(structure: &AnyStructure) -> Cause {
-        match structure {
-            AnyStructure::One(structure) => Cause::new(structure),
-            AnyStructure::Many(frame) => {
-                let numbers = describe::numbers(frame).into_iter().map(|of| (of.name, of.value)).collect();
-                Cause::of(Some(OfStructure::Many(numbers)), None)
-            }
-        }
+    pub fn new(structure: impl Into<AnyStructure>) -> Cause {
+        let structure = match structure.into() {
+            AnyStructure::One(structure) => OfStructure::One(*structure.parameters()),
+            many => OfStructure::Many(describe::numbers(&many).into_iter().map(|of| (of.name, of.value)).collect()),
+        };
+        Cause::of(Some(structure), None)
     }
 
     /// Of what follows from the record in the file at `path` alone, which is understood as `options` say.

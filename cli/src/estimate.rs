@@ -47,7 +47,7 @@ pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
             description: format!("effective frequency of rocking at theta = {part} tan(alpha_cg)"),
         });
     }
-    let (cause, g) = (Cause::new(&structure), structure.parameters().g);
+    let (cause, g) = (Cause::new(structure), structure.parameters().g);
     match &record {
         Some(record) => args.results.print_table(None, (record.title(), g), &cause.under(&args.ground, record), &lines),
         None => args.results.print_table(None, ("ground at rest", g), &cause, &lines),

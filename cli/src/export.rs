@@ -1,15 +1,14 @@
 //! `export`: packs the shared libraries, with all that describes them, into an FMU.
 
 use crate::record_args::{RecordOptions, VerticalArgs, one_of, say_understood};
-use crate::structure_args::{StructureArgs, in_one_line, on_command_line};
+use crate::structure_args::{StructureArgs, on_command_line};
 use crate::talk::{say, warning};
 use FlexibleRocking::{guid, resources::Contents};
 use anyhow::{Context, bail};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
 use rocking::run::record::SamplesError;
-use rocking::structure::any::AnyStructure;
 use rocking_records::LAYOUTS;
-use rocking_report::{input, output_files::OutputFiles, record::no_pair};
+use rocking_report::{describe::in_one_line, input, output_files::OutputFiles, record::no_pair};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 
@@ -91,11 +90,7 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     file.write(&archive)?;
     say!("{}: {} kB", output.display(), archive.len().div_ceil(1000));
     say!("  GUID       {}", guid(&contents));
-    let said = match &structure {
-        AnyStructure::One(one) => in_one_line(one),
-        AnyStructure::Many(frame) => format!("{} floors, {} modes", frame.floors().len(), frame.modes().len()),
-    };
-    say!("  structure  {said}");
+    say!("  structure  {}", in_one_line(&structure));
     let platforms: Vec<_> = libraries.iter().map(|library| library.platform.folder(args.fmi)).collect();
     say!("  platforms  {}", platforms.join(", "));
     for packed in &contents.records {

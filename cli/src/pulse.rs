@@ -79,7 +79,7 @@ pub fn run(args: &PulseArgs) -> anyhow::Result<()> {
     let record = pulse.record()?;
     let file = OutputFiles::of_inputs(args.structure.input()).create(&args.output)?;
     write_as(file, "pulse", csv(&record).as_bytes())?;
-    let (title, cause) = ((record.title(), structure.parameters().g), Cause::new(&structure));
+    let (title, cause) = ((record.title(), structure.parameters().g), Cause::new(structure));
     args.results.print_table(Some(&args.output), title, &cause, &amounts(&pulse, &record, &structure))
 }
 

@@ -38,6 +38,6 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     }
     let rows = corners(&structure)?;
     let text = || Ok(rows.iter().map(Corner::line).collect());
-    let traced = Traced { cause: &Cause::new(&structure), rows: &rows };
+    let traced = Traced { cause: &Cause::new(structure), rows: &rows };
     args.results.print_beside(args.output.as_deref(), text, &traced)
 }

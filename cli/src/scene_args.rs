@@ -6,11 +6,11 @@ use crate::{
 use clap::ArgGroup;
 use rocking::digits::short;
 use rocking::run::record::Record;
-use rocking::structure::any::AnyStructure;
-use rocking::{Detail, Modes, State, engine::DEFAULT_TOLERANCE};
-use rocking_report::shown::Shown;
+use rocking::{Detail, State, engine::DEFAULT_TOLERANCE};
+use rocking_report::run::Run;
 use rocking_sweep::plan::Conditions;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A motion to follow: of which structure, under which ground motion, from where, and how it is computed.
 #[derive(clap::Args)]
@@ -25,29 +25,21 @@ pub struct MotionArgs {
     level: LevelArgs,
 }
 
-/// The structure and the ground motion. Conditions that no run of the structure can have are an error before the record is read.
-pub fn load(
-    structure: &StructureArgs,
-    ground: &GroundArgs,
-    conditions: &Conditions,
-) -> anyhow::Result<(AnyStructure, Record)> {
+/// The run of a structure under a ground motion. Conditions that no run of the structure can have are an error before the record is
+/// read.
+pub fn load(structure: &StructureArgs, ground: &GroundArgs, conditions: Conditions) -> anyhow::Result<Run> {
     let structure = structure.load_any()?;
-    match &structure {
-        AnyStructure::One(one) => f64::check(one, conditions)?,
-        AnyStructure::Many(frame) => Modes::check(frame, conditions)?,
-    }
-    let ground = ground.load(structure.base().g)?;
-    Ok((structure, ground))
+    conditions.check(&structure)?;
+    let ground = Arc::new(ground.load(structure.base().g)?);
+    Ok(Run { structure, ground, conditions })
 }
 
 impl MotionArgs {
-    /// The structure, the ground motion, and how the motion is computed.
-    pub fn load(&self) -> anyhow::Result<(AnyStructure, Record, Conditions)> {
+    /// The run.
+    pub fn load(&self) -> anyhow::Result<Run> {
         let LevelArgs { tolerance, detail } = self.level;
         let (initial, duration) = (self.initial.state(), self.ground.duration());
-        let conditions = Conditions { initial, detail, tolerance, duration };
-        let (structure, ground) = load(&self.structure, &self.ground, &conditions)?;
-        Ok((structure, ground, conditions))
+        load(&self.structure, &self.ground, Conditions { initial, detail, tolerance, duration })
     }
 
     /// The files that are read.

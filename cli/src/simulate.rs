@@ -2,7 +2,6 @@
 mod picture;
 mod profile;
 
-use self::picture::Pictured;
 use crate::{
     cause::Cause,
     limit_args::LimitArgs,
@@ -13,19 +12,16 @@ use crate::{
 };
 use anyhow::ensure;
 use rocking::digits::{short, significant};
+use rocking::mechanics::restraint::centring_moments;
 use rocking::run::record::Record;
-use rocking::run::validity::Validity;
-use rocking::structure::{Base, any::AnyStructure};
-use rocking::{Modes, Run, Transition, Watch, mechanics::restraint::centring_moments};
+use rocking::structure::Base;
 use rocking_report::{
     output_files::{OutputFile, OutputFiles},
     quantities::in_readable_unit,
-    shown::Shown,
-    summary::{Summary, instant},
-    tables::{event_headings, event_line, response_headings, response_line},
-    validity,
+    run::{Line, Run},
+    summary::instant,
+    tables::event_line,
 };
-use rocking_sweep::plan::Conditions;
 use std::path::PathBuf;
 
 /// Arguments of `simulate`.
@@ -87,19 +83,19 @@ impl SimulateArgs {
     }
 
     /// Writes the response of `run` at the instants asked for.
-    fn write_response<Q: Shown>(&self, run: &Run<Q>, file: OutputFile) -> anyhow::Result<()> {
-        let (samples, interval) = self.samples_and_interval(run.ground);
+    fn write_response(&self, run: &Run, file: OutputFile) -> anyhow::Result<()> {
+        let (samples, interval) = self.samples_and_interval(&run.ground);
         let (start, from) = (samples[0], samples[samples.len() - 1]);
         let times = samples.iter().copied().chain((1_u64..).map(|i| from + i as f64 * interval));
-        let mut rows = Vec::new();
-        run.sample(times, |sample| rows.push((sample.motion.time, response_line(&run.structure, sample))), &mut ())?;
+        let mut lines = Vec::new();
+        run.sample(times, None, |line| lines.push(line), &mut ())?;
         // an instant that misses the end by rounding is the end
-        if let [.., (before, _), (end, _)] = rows[..]
-            && before >= end - 1e-6 * interval.min(end - start)
+        if let [.., Line(before, ..), Line(end, ..)] = &lines[..]
+            && before[0] >= end[0] - 1e-6 * interval.min(end[0] - start)
         {
-            rows.remove(rows.len() - 2);
+            lines.remove(lines.len() - 2);
         }
-        write_as(file, "response", &csv(response_headings::<Q>(&run.structure), rows.iter().map(|(_, line)| line))?)
+        write_as(file, "response", &csv(run.headings(), lines.iter())?)
     }
 }
 
@@ -116,68 +112,38 @@ fn centring(base: &Base) -> Option<String> {
 
 /// Prints the summary of the response, and writes what is asked for.
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
-    args.limits.limits()?;
-    args.results.format.check_beside(args.results.output.as_deref())?;
-    let (structure, ground, conditions) = args.motion.load()?;
-    if let AnyStructure::Many(frame) = &structure {
-        let draws_floors = args.results.profile.is_some() && frame.floors().is_empty();
-        ensure!(!draws_floors, "--profile: the structure has no floors; give masses, heights and shapes");
-    }
-    if let Some(line) = centring(structure.base()) {
+    let limits = args.limits.limits()?;
+    let output = args.results.output.as_deref();
+    args.results.format.check_beside(output)?;
+    let run = args.motion.load()?;
+    let ResultArgs { picture, profile, events, .. } = &args.results;
+    let has_floors = run.structure.frame().is_none_or(|frame| !frame.floors().is_empty());
+    ensure!(profile.is_none() || has_floors, "--profile: the structure has no floors; give masses, heights and shapes");
+    if let Some(line) = centring(run.structure.base()) {
         say!("centring       {line}");
     }
-    let cause = Cause::of_any(&structure).under(&args.motion.ground.record, &ground).computed(&conditions);
-    match &structure {
-        AnyStructure::One(one) => follow::<f64>(args, one, &ground, &conditions, &cause),
-        AnyStructure::Many(frame) => follow::<Modes>(args, frame, &ground, &conditions, &cause),
-    }
-}
-
-/// The same for a `structure` of one mass or of many.
-fn follow<Q: Pictured>(
-    args: &SimulateArgs,
-    structure: &Q::Structure,
-    ground: &Record,
-    conditions: &Conditions,
-    cause: &Cause,
-) -> anyhow::Result<()>
-where
-    Validity<Q>: Watch<Q>,
-{
-    let limits = args.limits.limits()?;
-    let run = Q::run(structure, ground, conditions)?;
-    let output = args.results.output.as_deref();
-    let ResultArgs { picture, profile, events, .. } = &args.results;
+    let cause =
+        Cause::new(run.structure.clone()).under(&args.motion.ground.record, &run.ground).computed(&run.conditions);
     let mut files = OutputFiles::of_inputs(args.motion.inputs());
     let response = output.map(|path| files.create(path)).transpose()?;
     let events = events.as_deref().map(|path| files.create(path)).transpose()?;
     let picture = picture.as_deref().map(|path| Picture::create(path, &mut files)).transpose()?;
     let profile = profile.as_deref().map(|path| Picture::create(path, &mut files)).transpose()?;
-    let mut validity = run.validity_watch(limits)?;
-    let mut transitions = Vec::new();
-    let mut see = |transition: &Transition<Q>| transitions.push(*transition);
-    let found = run.found(&mut (&mut validity, &mut see))?;
+    let found = run.found(Some(limits), &mut ())?;
     if let Some(file) = events {
-        write_as(
-            file,
-            "transitions",
-            &csv(event_headings::<Q>(structure), transitions.iter().map(|of| event_line(structure, of)))?,
-        )?;
+        write_as(file, "transitions", &csv(run.event_headings(), found.events.iter().map(event_line))?)?;
     }
     if let Some(file) = response {
-        args.check_rows(ground, found.finish.motion.time)?;
+        args.check_rows(&run.ground, found.end)?;
         args.write_response(&run, file)?;
     }
-    let (summary, findings) = (Summary::new(structure, &transitions), validity.found());
     let text = || {
-        let (start, end) = (instant(found.start), instant(found.finish.motion.time));
-        let section = validity::section::<Q>(structure, run.detail, findings, &limits).join("\n");
-        Ok(format!("{}, {start} to {end} s\n{}{section}\n", ground.title(), summary.text(&found)?))
+        let (title, start, end) = (run.ground.title(), instant(found.start), instant(found.end));
+        Ok(format!("{title}, {start} to {end} s\n{}\n", run.text(&found, &limits)?))
     };
-    let rows = validity::rows(findings, &limits);
-    args.results.format.print_beside(output, text, &summary.whole(cause, &found, rows))?;
+    args.results.format.print_beside(output, text, &found.whole(&cause, &limits))?;
     if let Some(picture) = picture {
-        Q::draw(picture, &run)?;
+        picture::draw(picture, &run)?;
     }
     profile.map_or(Ok(()), |picture| profile::draw(picture, &run, &found))
 }

@@ -6,7 +6,7 @@ use crate::{
 };
 use anyhow::{Context, anyhow, bail};
 use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource};
-use rocking::digits::{short, with_unit};
+use rocking::digits::short;
 use rocking::structure::Derived;
 use rocking::structure::any::AnyStructure;
 use rocking::structure::description::Described;
@@ -34,14 +34,6 @@ pub struct StructureArgs {
 /// Numbers in the place of the specimen's or the file's, or alone: an option for every parameter and natural quantity.
 #[derive(Debug)]
 struct Numbers(Given);
-
-/// The structure's parameters in one line.
-pub fn in_one_line(structure: &Structure) -> String {
-    let value = |parameter: &Quantity<Parameters>| {
-        format!("{} = {}", parameter.name, with_unit((parameter.get)(structure.parameters()), parameter.unit))
-    };
-    PARAMETERS.iter().map(value).collect::<Vec<_>>().join(", ")
-}
 
 impl StructureArgs {
     /// The file that is read, if any.
@@ -83,7 +75,7 @@ impl StructureArgs {
             }
             (None, None) => numbers.parameters().map_err(with_options)?,
         };
-        Ok(AnyStructure::One(Structure::new(parameters)?))
+        Ok(Structure::new(parameters)?.into())
     }
 }
 
@@ -92,10 +84,10 @@ fn of_file(text: &str) -> anyhow::Result<AnyStructure> {
     let keys: toml::Table = toml::from_str(text)?;
     if ["base", "storeys", "floors", "modes"].iter().any(|key| keys.contains_key(*key)) {
         let described: Described = toml::from_str(text)?;
-        return Ok(AnyStructure::Many(described.frame()?));
+        return Ok(described.frame()?.into());
     }
     let given: Given = toml::from_str(text)?;
-    Ok(AnyStructure::One(Structure::new(given.parameters()?)?))
+    Ok(Structure::new(given.parameters()?)?.into())
 }
 
 /// The error with the options that help.

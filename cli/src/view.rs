@@ -1,7 +1,6 @@
 //! `view`: a page that shows the structure in motion, one file that needs nothing else.
 use crate::{scene_args::MotionArgs, talk::write_as};
-use rocking::{Modes, structure::any::AnyStructure};
-use rocking_report::{input, output_files::OutputFiles, shown::Shown};
+use rocking_report::{input, output_files::OutputFiles};
 use std::path::PathBuf;
 
 /// Arguments of `view`.
@@ -16,13 +15,9 @@ pub struct ViewArgs {
 
 /// Follows the motion and writes the page.
 pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
-    let (structure, ground, conditions) = args.motion.load()?;
+    let run = args.motion.load()?;
     let file = OutputFiles::of_inputs(args.motion.inputs()).create(&args.output_path())?;
-    let page = match &structure {
-        AnyStructure::One(one) => rocking_view::page(&f64::run(one, &ground, &conditions)?)?,
-        AnyStructure::Many(frame) => rocking_view::page(&Modes::run(frame, &ground, &conditions)?)?,
-    };
-    write_as(file, "view", page.as_bytes())
+    write_as(file, "view", run.page()?.as_bytes())
 }
 
 impl ViewArgs {

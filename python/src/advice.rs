@@ -7,17 +7,15 @@ use crate::structure::Structure;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
+use rocking::Detail;
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::engine::motion::Work;
 use rocking::estimates::demand::INSTANT_TRANSITION;
-use rocking::run::levels::{Choice, Criterion, Response, Verdict, compare};
-use rocking::run::validity::{Limits, Validity};
-use rocking::structure::any::AnyStructure;
-use rocking::{Detail, Modes, Watch};
-use rocking_report::advice::Advised;
+use rocking::run::levels::Criterion;
+use rocking::run::validity::Limits;
+use rocking_report::advice::Level;
+use rocking_report::estimate as estimates;
 use rocking_report::quantities::write_columns;
-use rocking_report::{advice, estimate as estimates};
-use rocking_sweep::plan::Conditions;
+use rocking_report::run::Run;
 
 /// The criteria that `value` names: one name, or several.
 fn criteria(value: &Bound<'_, PyAny>) -> PyResult<Vec<Criterion>> {
@@ -51,38 +49,15 @@ pub fn advise<'py>(
     }
     let criteria = of.map_or(Ok(Criterion::ALL.into()), criteria)?;
     let conditions = conditions(Detail::Auto, DEFAULT_TOLERANCE, duration, initial)?;
-    match &structure.of {
-        AnyStructure::One(structure) => advised::<f64>(py, *structure, record, conditions, within, criteria),
-        AnyStructure::Many(frame) => advised::<Modes>(py, frame.clone(), record, conditions, within, criteria),
-    }
-}
-
-fn advised<Q: Advised>(
-    py: Python<'_>,
-    structure: Q::Structure,
-    record: Ground,
-    conditions: Conditions,
-    within: f64,
-    criteria: Vec<Criterion>,
-) -> PyResult<Bound<'_, PyAny>>
-where
-    Validity<Q>: Watch<Q>,
-{
-    Q::check(&structure, &conditions).map_err(refused)?;
-    let record = record.0.get().under(Q::base(&structure).g);
-    let (text, advised, levels) = interruptible(py, move |_| -> anyhow::Result<_> {
-        let run = Q::run(&structure, &record, &conditions)?;
-        let comparison = compare(&run)?;
-        let title = format!("{}, {} samples", record.title(), record.times().len());
-        let text = advice::text(&title, &run, &comparison, (within, &criteria), Limits::default())?;
-        let advised = comparison.recommended(within, &criteria).map(|verdict| verdict.response.choice);
-        let level = |Verdict { response, errors, .. }: &Verdict<Q>| {
-            let Response { choice, ending, work, .. } = response;
-            (*choice, *errors, ending.overturned(), *work, comparison.cost_over_auto(response))
-        };
-        Ok((text, advised, comparison.verdicts.iter().map(level).collect::<Vec<_>>()))
+    conditions.check(&structure.of).map_err(refused)?;
+    let ground = record.0.get().under(structure.of.base().g);
+    let run = Run { structure: structure.of.clone(), ground, conditions };
+    let (text, advice) = interruptible(py, move |_| -> anyhow::Result<_> {
+        let advice = run.advice(within, &criteria)?;
+        let title = format!("{}, {} samples", run.ground.title(), run.ground.times().len());
+        Ok((run.advice_text(&title, &advice, &Limits::default())?, advice))
     })?;
-    let level = |(choice, errors, overturned, work, cost): &(Choice, [f64; 6], Option<bool>, Work, Option<f64>)| {
+    let level = |Level { choice, errors, overturned, work, cost, .. }: &Level| {
         let level = PyDict::new(py);
         level.set_item("level", choice.detail.name())?;
         if let Some([kept, _]) = choice.modes {
@@ -97,9 +72,9 @@ where
         level.set_item("cost_of_auto", cost)?;
         Ok(level)
     };
-    let levels = levels.iter().map(level).collect::<PyResult<Vec<_>>>()?;
-    let detail = advised.map(|choice| choice.detail.name());
-    let modes = advised.and_then(|choice| choice.modes).map(|[kept, _]| kept);
+    let levels = advice.levels.iter().map(level).collect::<PyResult<Vec<_>>>()?;
+    let detail = advice.advised.map(|choice| choice.detail.name());
+    let modes = advice.advised.and_then(|choice| choice.modes).map(|[kept, _]| kept);
     result(py, "Advice", (detail, modes, levels, text))
 }
 

@@ -5,6 +5,7 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rocking::engine::Moves;
 use rocking::{Piece, Watch};
+use rocking_report::run::Watcher;
 use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,9 +23,8 @@ pub const FAULT: &str = "a fault of flexible_rocking itself, which is printed ab
 #[derive(Clone, Default)]
 pub struct Abandoned(Arc<AtomicBool>);
 
-impl Abandoned {
-    /// Ends the thread of the work if nobody waits for it.
-    pub fn check(&self) {
+impl Watcher for Abandoned {
+    fn check(&self) {
         if self.0.load(Ordering::Relaxed) {
             resume_unwind(Box::new("abandoned")); // which prints nothing
         }

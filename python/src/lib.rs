@@ -4,7 +4,6 @@
 
 mod advice;
 mod arguments;
-mod followed;
 mod interruptible;
 mod many_masses;
 mod record;

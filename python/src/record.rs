@@ -14,6 +14,7 @@ use rocking::run::record::Record as Samples;
 use rocking_records::{Column, Reading, Unit, csv_in, doubts, vertical_csv};
 use rocking_report::output_files::OutputFiles;
 use rocking_report::record::{no_pair, understand};
+use rocking_report::run::Watcher;
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;

@@ -1,7 +1,6 @@
 //! `simulate` and `Run`: one structure under one ground motion.
 
 use crate::arguments::{argument, conditions, numbers, refused, result};
-use crate::followed::{Followed, Following, Outcome, PHASES, Samples};
 use crate::interruptible::interruptible;
 use crate::record::{Ground, Record};
 use crate::structure::Structure;
@@ -11,11 +10,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::state::INITIAL_VALUES;
-use rocking::run::peaks::Peak;
-use rocking::run::validity::{ASSUMPTIONS, Limits, Validity, Worst};
-use rocking::structure::any::AnyStructure;
-use rocking::{Detail, Modes, Phase, Watch};
-use rocking_report::shown::{OF_FLOOR, Shown};
+use rocking::run::validity::{ASSUMPTIONS, Limits, Worst};
+use rocking::{Detail, Phase};
+use rocking_report::run::{Event, Found, NamedPeak, OF_FLOOR, PHASES, Run as Followed, Samples};
 use rocking_sweep::plan::Conditions;
 
 /// A structure that has been followed through a ground motion: what `simulate` returns.
@@ -27,9 +24,8 @@ use rocking_sweep::plan::Conditions;
 pub struct Run {
     structure: Py<Structure>,
     record: Py<Record>,
-    conditions: Conditions,
-    outcome: Outcome,
-    of: Box<dyn Followed>,
+    of: Followed,
+    found: Found,
 }
 
 #[pymethods]
@@ -49,13 +45,13 @@ impl Run {
     /// The level of detail.
     #[getter]
     fn detail(&self) -> &'static str {
-        self.conditions.detail.name()
+        self.of.conditions.detail.name()
     }
 
     /// The relative tolerance.
     #[getter]
     fn tolerance(&self) -> f64 {
-        self.conditions.tolerance
+        self.of.conditions.tolerance
     }
 
     /// The exact largest magnitudes by name, each a Peak (a float with unit and time). Names: a_g (m/s2), theta (rad), u (m),
@@ -65,8 +61,8 @@ impl Run {
     #[getter]
     fn peaks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let named = PyDict::new(py);
-        for ((name, unit), Peak { magnitude, time }) in self.of.peaks() {
-            named.set_item(name, result(py, "Peak", (magnitude, time, unit))?)?;
+        for NamedPeak { name, magnitude, unit, time } in &self.found.peaks {
+            named.set_item(name, result(py, "Peak", (*magnitude, *time, *unit))?)?;
         }
         Ok(named)
     }
@@ -74,58 +70,58 @@ impl Run {
     /// Whether the structure overturned (|theta| = pi/2). None if the structure still rocks 100/p_l after the record.
     #[getter]
     fn overturned(&self) -> Option<bool> {
-        self.outcome.ending.overturned()
+        self.found.overturned
     }
 
     /// Ending of the run: "at rest", "overturned", "at time", "still rocking".
     #[getter]
     fn ending(&self) -> String {
-        self.outcome.ending.to_string()
+        self.found.ending.to_string()
     }
 
     /// Start of the run, s.
     #[getter]
     fn start(&self) -> f64 {
-        self.outcome.start
+        self.found.start
     }
 
     /// End of the run, s.
     #[getter]
     fn end(&self) -> f64 {
-        self.outcome.end
+        self.found.end
     }
 
     /// Start of the fall, s: |theta| passes the angle of no return for the last time. None if the structure does not fall.
     #[getter]
     fn fall(&self) -> Option<f64> {
-        self.outcome.fall
+        self.found.fall
     }
 
     /// Every transition in the order of time, each a Transition: a list, with to_pandas().
     #[getter]
     fn transitions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let (names, transitions) = self.of.transitions();
-        let transition = |(time, kind, states): (f64, &str, [Vec<f64>; 2])| {
-            let [before, after] = states.map(|values| {
+        let names: Vec<_> = self.of.components().into_iter().map(|(name, _)| name).collect();
+        let transition = |Event { time, kind, states }: &Event| {
+            let [before, after] = states.each_ref().map(|values| {
                 let state = PyDict::new(py);
                 names.iter().zip(values).try_for_each(|(name, value)| state.set_item(name, value)).map(|()| state)
             });
-            result(py, "Transition", (time, kind, before?, after?))
+            result(py, "Transition", (*time, kind.name(), before?, after?))
         };
-        let transitions = transitions.into_iter().map(transition).collect::<PyResult<Vec<_>>>()?;
+        let transitions = self.found.events.iter().map(transition).collect::<PyResult<Vec<_>>>()?;
         result(py, "Transitions", (transitions, &names))
     }
 
     /// Number of steps of the run.
     #[getter]
     fn steps(&self) -> u64 {
-        self.outcome.work.steps
+        self.found.work.steps
     }
 
     /// Number of right-hand-side evaluations of the run.
     #[getter]
     fn evaluations(&self) -> u64 {
-        self.outcome.work.evaluations
+        self.found.work.evaluations
     }
 
     /// How far the run exceeds the assumptions of the model, exact, each a Worst, within the usual limits. Names:
@@ -174,21 +170,19 @@ impl Run {
     /// all values are NaN. Raises ValueError for times before the start of the run, and NaN.
     fn at<'py>(slf: Py<Self>, py: Python<'py>, times: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let times = numbers("times", times)?;
-        let start = slf.get().outcome.start;
+        let start = slf.get().found.start;
         if let Some(i) = times.iter().position(|time| !(*time >= start && time.is_finite())) {
             let needed = format!("a finite time from the start of the run on, {start} s, is needed");
             return Err(PyValueError::new_err(format!("times[{i}] = {} s is out of range: {needed}", times[i])));
         }
         let Samples { columns, phases, transitions } = {
             let slf = slf.clone_ref(py);
-            interruptible(py, move |abandoned| slf.get().of.sample(&times, abandoned))?
+            interruptible(py, move |abandoned| slf.get().of.at(&slf.get().found, &times, abandoned))?
         };
         let response = PyDict::new(py);
         let units = PyDict::new(py);
-        let headings = slf.get().of.headings();
-        let named = headings.iter().map(|of| of.trim_end_matches(']').rsplit_once('[').unwrap_or((of, "1")));
-        for ((name, unit), column) in named.zip(columns) {
-            response.set_item(name, PyArray1::from_vec(py, column))?;
+        for ((name, unit), column) in slf.get().of.columns().into_iter().zip(columns) {
+            response.set_item(&name, PyArray1::from_vec(py, column))?;
             units.set_item(name, unit)?;
         }
         let names = py.import("numpy")?.call_method1("array", (PHASES.map(Phase::name).to_vec(),))?;
@@ -202,7 +196,7 @@ impl Run {
     /// to_pandas() makes it a table.
     #[getter]
     fn profile<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let (rows, profile, units) = (self.of.floors(), PyDict::new(py), PyDict::new(py));
+        let (rows, profile, units) = (self.of.floors(&self.found), PyDict::new(py), PyDict::new(py));
         profile.set_item("floor", PyArray1::from_iter(py, 1..=rows.len() as u64))?;
         units.set_item("floor", "1")?;
         for (i, (name, unit)) in OF_FLOOR.into_iter().enumerate() {
@@ -226,7 +220,7 @@ impl Run {
         periods: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = argument::zeta)] zeta: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let floors = slf.get().of.floors().len();
+        let floors = slf.get().of.floors(&slf.get().found).len();
         let Some(below) =
             floor.checked_sub(1).and_then(|floor| usize::try_from(floor).ok()).filter(|below| *below < floors)
         else {
@@ -241,7 +235,10 @@ impl Run {
         let periods = periods.map_or_else(|| Ok(usual()), |periods| numbers("periods", periods))?;
         let named = PyDict::new(py);
         named.set_item("period", PyArray1::from_slice(py, &periods))?;
-        let S_a = interruptible(py, move |abandoned| slf.get().of.spectrum(below, &periods, zeta, abandoned))?;
+        let S_a = interruptible(py, move |abandoned| {
+            let Run { of, found, .. } = slf.get();
+            of.spectrum(found, below, &periods, zeta, abandoned)
+        })?;
         named.set_item("S_a", PyArray1::from_vec(py, S_a))?;
         Ok(named)
     }
@@ -265,18 +262,23 @@ impl Run {
     }
 
     fn __repr__(&self) -> String {
-        let (title, end, transitions) = (self.record.get().title(), self.end(), self.outcome.transitions);
+        let (title, end, transitions) = (self.record.get().title(), self.end(), self.found.transitions);
         format!("<Run under {title:?}: {} at {end} s, {transitions} transitions>", self.ending())
     }
 
     fn __str__(slf: Py<Self>, py: Python<'_>) -> PyResult<String> {
-        interruptible(py, move |_| slf.get().of.text())
+        interruptible(py, move |abandoned| -> anyhow::Result<_> {
+            let (Run { of, found, .. }, limits) = (slf.get(), Limits::default());
+            let mut found = found.clone();
+            found.findings = Some(of.validity(limits, abandoned)?);
+            Ok(format!("{}\n{}", of.ground.title(), of.text(&found, &limits)?))
+        })
     }
 
     /// Whether both have the same inputs, and therefore the same results.
     fn __eq__(&self, other: &Run) -> bool {
         let are_same = self.structure.get() == other.structure.get() && self.record.get() == other.record.get();
-        are_same && self.conditions == other.conditions
+        are_same && self.of.conditions == other.of.conditions
     }
 
     fn __hash__(&self) -> u64 {
@@ -286,7 +288,7 @@ impl Run {
     /// A pickle is the call of `simulate`.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, ())> {
         let asked = PyDict::new(py);
-        let Conditions { initial, detail, tolerance, duration } = &self.conditions;
+        let Conditions { initial, detail, tolerance, duration } = &self.of.conditions;
         asked.set_item("duration", duration)?;
         asked.set_item("detail", detail.name())?;
         asked.set_item("tolerance", tolerance)?;
@@ -321,24 +323,7 @@ pub fn simulate(
     initial: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Run> {
     let conditions = conditions(detail, tolerance, duration, initial)?;
-    match &structure.get().of {
-        AnyStructure::One(one) => follow::<f64>(py, structure.clone_ref(py), *one, record, conditions),
-        AnyStructure::Many(frame) => follow::<Modes>(py, structure.clone_ref(py), frame.clone(), record, conditions),
-    }
-}
-
-/// Follows `followed`, which is the `structure`.
-fn follow<Q: Shown + rocking_view::Shown>(
-    py: Python<'_>,
-    structure: Py<Structure>,
-    followed: Q::Structure,
-    record: Option<Ground>,
-    conditions: Conditions,
-) -> PyResult<Run>
-where
-    Validity<Q>: Watch<Q>,
-{
-    Q::check(&followed, &conditions).map_err(refused)?;
+    conditions.check(&structure.get().of).map_err(refused)?;
     let record = match (record, conditions.duration) {
         (Some(Ground(record)), _) => record,
         (None, Some(duration)) => Py::new(py, Record::in_si(rocking::run::record::Record::at_rest(duration)))?,
@@ -346,7 +331,8 @@ where
             return Err(PyValueError::new_err("record and duration are missing: free vibration needs a duration"));
         }
     };
-    let ground = record.get().under(Q::base(&followed).g);
-    let of = interruptible(py, move |abandoned| Following::<Q>::new(followed, ground, conditions, abandoned))?;
-    Ok(Run { structure, record, conditions, outcome: of.outcome(), of: Box::new(of) })
+    let ground = record.get().under(structure.get().of.base().g);
+    let of = Followed { structure: structure.get().of.clone(), ground, conditions };
+    let (of, found) = interruptible(py, move |abandoned| of.found(None, abandoned).map(|found| (of, found)))?;
+    Ok(Run { structure, record, of, found })
 }

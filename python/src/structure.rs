@@ -66,7 +66,7 @@ impl Structure {
     }
 
     fn one_mass(py: Python<'_>, parameters: Parameters) -> PyResult<Structure> {
-        Structure::of(py, AnyStructure::One(rocking::Structure::new(parameters).map_err(refused)?), None)
+        Structure::of(py, rocking::Structure::new(parameters).map_err(refused)?.into(), None)
     }
 
     fn many(keywords: &Bound<'_, PyDict>) -> PyResult<Structure> {
@@ -74,7 +74,7 @@ impl Structure {
         for (name, _) in keywords.iter().filter(|(_, value)| value.is_none()) {
             kept.del_item(name)?;
         }
-        Structure::of(keywords.py(), AnyStructure::Many(frame(kept.copy()?)?), Some(kept.unbind()))
+        Structure::of(keywords.py(), frame(kept.copy()?)?.into(), Some(kept.unbind()))
     }
 
     /// The structure of one mass, which `task` needs.
@@ -198,7 +198,7 @@ impl Structure {
     /// Raises ValueError for a structure of one mass, whose attributes have these numbers.
     #[getter]
     fn mode_table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let AnyStructure::Many(frame) = &self.of else {
+        let Some(frame) = self.of.frame() else {
             return Err(PyValueError::new_err(
                 "mode_table needs a structure of many masses; see f_fc, zeta_fc, chi, f_u",
             ));
@@ -287,11 +287,7 @@ impl Structure {
     }
 
     fn __str__(&self) -> PyResult<String> {
-        match &self.of {
-            AnyStructure::One(structure) => describe::text(structure),
-            AnyStructure::Many(frame) => describe::frame(frame),
-        }
-        .map_err(refused)
+        describe::text(&self.of).map_err(refused)
     }
 
     pub fn __hash__(&self) -> u64 {

@@ -2,286 +2,277 @@
 
 use crate::estimate::Estimate;
 use crate::quantities::{Number, in_readable_unit};
-use crate::shown::{Named, Shown};
-use crate::validity;
+use crate::run::{NamedPeak, OneOrMany, Run, symbol, with};
+use rocking::Detail;
 use rocking::digits::{short, significant};
+use rocking::engine::{DEFAULT_TOLERANCE, motion::Work};
 use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::estimates::effective_frequency::effective_frequency;
-use rocking::{
-    Detail, Frame, Modes, Structure, Watch,
-    engine::DEFAULT_TOLERANCE,
-    run::{
-        LONGEST_REST, Run,
-        levels::{self, Choice, Compared, Comparison, Criterion, REFERENCE_TOLERANCE, RULE, Response, Verdict},
-        validity::{Limits, Validity},
-    },
-};
-use serde::Serialize;
+use rocking::run::levels::{self, Choice, Criterion, REFERENCE_TOLERANCE, RULE, Response, Verdict};
+use rocking::run::{LONGEST_REST, RunError, validity::Limits};
+use rocking::structure::any::AnyStructure;
+use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 
-/// Structures whose levels of detail are shown.
-pub trait Advised: Shown + Compared {
-    /// The effective frequency of rocking at an angle (Eq 14), Hz.
-    fn effective_frequency(_: &Self::Structure, _theta: f64) -> Option<f64> {
-        None
-    }
-
-    /// Part of the mass above the foundation that no mode of the reference carries.
-    fn rigid_share(_: &Self::Structure) -> f64 {
-        0.0
-    }
-
-    /// Prints what is known without a time history as one more row.
-    fn print_estimate(_: &mut String, _: &Run<Self>, _: &Comparison<Self>) -> fmt::Result {
-        Ok(())
-    }
+/// The levels of detail on one run, and the level that is advised.
+pub struct Advice {
+    /// The error that is allowed, and the criteria to which it applies.
+    allowed: (f64, Vec<Criterion>),
+    /// Eqs 1, 5, 6 to [`REFERENCE_TOLERANCE`].
+    reference: Level,
+    /// The simplest first.
+    pub levels: Vec<Level>,
+    /// The level `auto` without the vertical ground acceleration, if the run has one.
+    without_vertical: Option<Result<Level, RunError>>,
+    /// Levels that cannot do the run, and why.
+    pub refused: Vec<(Choice, RunError)>,
+    /// The cheapest level with errors that are allowed.
+    pub advised: Option<Choice>,
 }
 
-impl Advised for f64 {
-    fn effective_frequency(structure: &Structure, theta: f64) -> Option<f64> {
-        effective_frequency(structure, theta).ok()
-    }
-
-    /// The demand of the whole record (Eqs 21 to 24).
-    fn print_estimate(out: &mut String, run: &Run, comparison: &Comparison) -> fmt::Result {
-        let demand = match Estimate::new(&run.structure, Some(run.ground), INSTANT_TRANSITION) {
-            Ok(estimate) => estimate.demand,
-            Err(error) => return writeln!(out, "  {:<10} not possible here: {error}", "estimate"),
-        };
-        let a_t = comparison.reference.peaks.a_t().magnitude;
-        let error = percent(levels::relative(((demand.a_t - a_t).abs(), a_t)));
-        writeln!(out, "  {:<10} {:>8} {:>8} {error:>13}", "estimate", "-", "-")
-    }
-}
-
-impl Advised for Modes {
-    fn rigid_share(frame: &Frame) -> f64 {
-        frame.rest()[0] / frame.body().m_s
-    }
-}
-
-/// The peaks of the reference that people read, of several floors the largest.
-fn largest<Q: Advised>(run: &Run<Q>, peaks: &Q::Peaks) -> Vec<(Named, f64)> {
-    let all = Q::peaks(&run.structure, peaks);
-    let largest = |symbol: &&str| {
-        let of_symbol = all.iter().filter(|((name, _), _)| name.split('[').next() == Some(symbol));
-        let (named, peak) = of_symbol.max_by(|(_, a), (_, b)| a.magnitude.total_cmp(&b.magnitude))?;
-        Some((named.clone(), peak.magnitude))
-    };
-    ["theta", "u", "a_t", "V_t", "M_t"].iter().filter_map(largest).collect()
-}
-
-/// The table and the advice on `run` under the ground motion that `title` names, for people. `allowed` is an error and the
-/// criteria to which it applies.
-pub fn text<Q: Advised>(
-    title: &str,
-    run: &Run<Q>,
-    comparison: &Comparison<Q>,
-    allowed: (f64, &[Criterion]),
-    limits: Limits,
-) -> anyhow::Result<String>
-where
-    Validity<Q>: Watch<Q>,
-{
-    let advised = comparison.recommended(allowed.0, allowed.1);
-    let mut out = String::new();
-    writeln!(out, "Ground motion: {title}")?;
-    print_reference(&mut out, run, comparison)?;
-    print_levels(&mut out, comparison, advised)?;
-    Q::print_estimate(&mut out, run, comparison)?;
-    for (choice, error) in &comparison.refused {
-        writeln!(out, "  {choice:<10} not possible here: {error:#}")?;
-    }
-    print_advice(&mut out, comparison, advised, allowed)?;
-    match &comparison.without_vertical {
-        Some(Ok(level)) => print_vertical(&mut out, level, allowed)?,
-        Some(Err(error)) => writeln!(out, "without the vertical component the run is not possible: {error}")?,
-        None => (),
-    }
-    let (found, _) = run.validity(limits)?;
-    writeln!(out)?;
-    for line in validity::section::<Q>(&run.structure, run.detail, &found, &limits) {
-        writeln!(out, "{line}")?;
-    }
-    Ok(out)
-}
-
-fn print_reference<Q: Advised>(out: &mut impl Write, run: &Run<Q>, comparison: &Comparison<Q>) -> fmt::Result {
-    let (reference, base) = (&comparison.reference, Q::base(&run.structure));
-    let peaks = largest(run, &reference.peaks);
-    let shown = |((name, unit), magnitude): &(Named, f64)| match *unit {
-        "m" => format!("{name} {} mm", significant(1e3 * magnitude)),
-        "m/s2" => format!("{name} {} g", significant(magnitude / base.g)),
-        unit => format!("{name} {}", in_readable_unit(*magnitude, unit, significant)),
-    };
-    let shown: Vec<_> = peaks.iter().map(shown).collect();
-    let level =
-        if reference.choice.modes.is_some() { reference.choice.to_string() + " modes" } else { "nonlinear".into() };
-    writeln!(out, "Reference: {level}, tolerance {REFERENCE_TOLERANCE:e}, {} transitions", reference.transitions)?;
-    let rigid = Q::rigid_share(&run.structure);
-    if rigid > 0.0 {
-        writeln!(out, "  {} % of m_s turns rigidly with the base, also in the reference", percent(rigid))?;
-    }
-    if reference.ending.overturned().is_none() {
-        let limit = significant(LONGEST_REST / base.p_l);
-        writeln!(
-            out,
-            "  it still rocks {limit} s after the record: whether it overturns is not known; see --duration"
-        )?;
-    }
-    writeln!(out, "  peaks: {}", shown.join(", "))?;
-    if reference.ending.overturned() == Some(true) {
-        return writeln!(out, "  the structure overturns\n");
-    }
-    let theta = peaks[0].1;
-    if theta == 0.0 {
-        let estimate = if reference.choice.modes.is_none() { "; the estimate assumes that it does" } else { "" };
-        return writeln!(out, "  the base never lifts off{estimate}\n");
-    }
-    let Some(f_r) = Q::effective_frequency(&run.structure, theta) else { return writeln!(out) };
-    writeln!(out, "  effective frequency of rocking at that theta: {} Hz (Eq 14)\n", significant(f_r))
-}
-
-fn print_levels<Q: Advised>(
-    out: &mut impl Write,
-    comparison: &Comparison<Q>,
-    advised: Option<&Verdict<Q>>,
-) -> fmt::Result {
-    const WIDTHS: [usize; 10] = [8, 8, 13, 8, 8, 8, 10, 8, 11, 7];
-    let names = comparison.verdicts.iter().map(|verdict| verdict.response.choice.to_string().len());
-    let longest = names.max().unwrap_or(0).max("fixed_base".len());
-    let mut row = |mark: char, level: &str, cells: &[String]| {
-        write!(out, "{mark} {level:<longest$}")?;
-        cells.iter().zip(WIDTHS).try_for_each(|(cell, width)| write!(out, " {cell:>width$}"))?;
-        writeln!(out)
-    };
-    let over = ["error of peaks, %", "of histories, %", "", "cost"];
-    row(' ', "", &[format!("{:^31} {:^26} {:>10} {:^28}", over[0], over[1], over[2], over[3])])?;
-    let headings = ["theta", "u", "a_t, V_t, M_t", "theta", "u", "a_t", "overturns", "steps", "evaluations", "of auto"];
-    row(' ', "level", &headings.map(str::to_owned))?;
-    for Verdict { response, errors, is_right_about_overturning } in &comparison.verdicts {
-        let mark = if advised.is_some_and(|advised| advised.response.choice == response.choice) { '>' } else { ' ' };
-        let overturned = match response.ending.overturned() {
-            Some(true) => "yes",
-            Some(false) => "no",
-            None => "unknown",
-        };
-        let overturns = match (is_right_about_overturning, response.ending.overturned()) {
-            (Some(false), _) => format!("{overturned}, wrong"),
-            (None, Some(_)) => format!("{overturned} (?)"),
-            _ => overturned.into(),
-        };
-        let counts = [response.work.steps, response.work.evaluations].map(|count| count.to_string());
-        let ratio = comparison.cost_over_auto(response).map_or("-".into(), |cost| format!("{cost:.2}"));
-        row(mark, &response.choice.to_string(), &[&errors.map(percent)[..], &[overturns], &counts, &[ratio]].concat())?;
-    }
-    Ok(())
-}
-
-/// A level, or the reference, for programs: errors as ratios, peaks in SI units.
+/// A level of detail on a run, beside the reference; for programs, errors are ratios and peaks in SI units.
 #[derive(Serialize)]
 pub struct Level {
     level: &'static str,
     /// Modes that are kept, of a structure of many masses.
     #[serde(skip_serializing_if = "Option::is_none")]
-    modes: Option<usize>,
-    #[serde(flatten)]
-    errors: BTreeMap<String, Number>,
-    /// None if the structure still rocks at the end.
-    overturned: Option<bool>,
-    /// None if the structure still rocks at the end of the reference.
+    pub modes: Option<usize>,
+    /// Relative errors, in the order of [`Criterion::ALL`].
+    #[serde(flatten, serialize_with = "by_criterion")]
+    pub errors: [f64; Criterion::ALL.len()],
+    /// Whether the structure overturns; None if it still rocks at the end.
+    pub overturned: Option<bool>,
+    /// Whether it overturns, or not, as in the reference; None if the structure still rocks at the end of the reference.
     is_right_about_overturning: Option<bool>,
-    steps: u64,
-    evaluations: u64,
-    cost_of_auto: Option<Number>,
-    advised: bool,
+    /// Steps and right-hand-side evaluations.
     #[serde(flatten)]
-    peaks: BTreeMap<String, f64>,
+    pub work: Work,
+    /// The cost as a multiple of the cost of `auto`; None if `auto` cannot do the run.
+    #[serde(rename = "cost_of_auto")]
+    pub cost: Option<f64>,
+    /// Whether it is the advised level.
+    advised: bool,
+    #[serde(flatten, serialize_with = "by_name")]
+    peaks: Vec<NamedPeak>,
+    /// The level, and how many modes it keeps.
+    #[serde(skip)]
+    pub choice: Choice,
+    /// Number of transitions.
+    #[serde(skip)]
+    pub transitions: u64,
+    /// Whether the errors are allowed.
+    #[serde(skip)]
+    is_allowed: bool,
 }
 
-/// The reference, then the levels.
-pub fn rows<Q: Advised>(
-    structure: &Q::Structure,
-    comparison: &Comparison<Q>,
-    advised: Option<&Verdict<Q>>,
-) -> Vec<Level> {
-    let row = |level, response: &Response<Q>, errors: [f64; 6], is_right_about_overturning, advised| {
-        let of_criterion = |(of, error): (&Criterion, f64)| (format!("error_{}", of.name()), Number(error));
-        Level {
-            level,
-            modes: response.choice.modes.map(|[kept, _]| kept),
-            errors: Criterion::ALL.iter().zip(errors).map(of_criterion).collect(),
-            overturned: response.ending.overturned(),
-            is_right_about_overturning,
-            steps: response.work.steps,
-            evaluations: response.work.evaluations,
-            cost_of_auto: comparison.cost_over_auto(response).map(Number),
-            advised,
-            peaks: Q::peaks(structure, &response.peaks)
-                .into_iter()
-                .map(|((name, _), of)| (name, of.magnitude))
-                .collect(),
-        }
+/// All levels of detail on `run`, each beside the reference.
+fn compare<Q: OneOrMany>(run: &rocking::Run<Q>, (within, criteria): (f64, &[Criterion])) -> Result<Advice, RunError> {
+    let all = levels::compare(run)?;
+    let advised = all.recommended(within, criteria).map(|verdict| verdict.response.choice);
+    let level = |level, response: &Response<Q>, errors, is_right_about_overturning, is_allowed| Level {
+        level,
+        modes: response.choice.modes.map(|[kept, _]| kept),
+        errors,
+        overturned: response.ending.overturned(),
+        is_right_about_overturning,
+        work: response.work,
+        cost: all.cost_over_auto(response),
+        advised: false,
+        peaks: Q::peaks(&run.structure, &response.peaks),
+        choice: response.choice,
+        transitions: response.transitions,
+        is_allowed,
     };
-    let of_verdict = |level, Verdict { response, errors, is_right_about_overturning }: &Verdict<Q>, is_advised| {
-        row(level, response, *errors, *is_right_about_overturning, is_advised)
+    let beside = |name, of: &Verdict<Q>| {
+        level(name, &of.response, of.errors, of.is_right_about_overturning, of.is_within(within, criteria))
     };
-    let reference = &comparison.reference;
-    let reference = row("reference", reference, [0.0; 6], reference.ending.overturned().map(|_| true), false);
-    let levels = comparison.verdicts.iter().map(|verdict| {
+    let of = |verdict: &Verdict<Q>| {
         let choice = verdict.response.choice;
-        let is_advised = advised.is_some_and(|advised| advised.response.choice == choice);
-        of_verdict(choice.detail.name(), verdict, is_advised)
-    });
-    let without_vertical = comparison.without_vertical.iter().flatten();
-    let without_vertical = without_vertical.map(|verdict| of_verdict("auto without a_v", verdict, false));
-    [reference].into_iter().chain(levels).chain(without_vertical).collect()
+        Level { advised: advised == Some(choice), ..beside(choice.detail.name(), verdict) }
+    };
+    let is_right = all.reference.ending.overturned().map(|_| true);
+    let without_vertical = all.without_vertical.as_ref().map(Result::as_ref);
+    Ok(Advice {
+        allowed: (within, criteria.into()),
+        reference: level("reference", &all.reference, [0.0; Criterion::ALL.len()], is_right, true),
+        levels: all.verdicts.iter().map(of).collect(),
+        advised,
+        without_vertical: without_vertical
+            .map(|of| of.map(|of| beside("auto without a_v", of)).map_err(RunError::clone)),
+        refused: all.refused,
+    })
 }
 
-fn print_advice<Q: Advised>(
-    out: &mut impl Write,
-    comparison: &Comparison<Q>,
-    advised: Option<&Verdict<Q>>,
-    (within, criteria): (f64, &[Criterion]),
-) -> fmt::Result {
-    let names: Vec<_> = criteria.iter().map(|of| of.name()).collect();
-    let limit = format!("within {} % in {}", short(100.0 * within), names.join(", "));
-    let Some(Verdict { response, .. }) = advised else {
-        return writeln!(
-            out,
-            "\nno level stays {limit}: use detail = nonlinear with a tolerance below {DEFAULT_TOLERANCE:e}"
-        );
-    };
-    let choice = response.choice;
-    let modes = match choice.modes {
-        Some([kept, all]) if kept < all => format!(" and keep = {kept} of {all} modes"),
-        Some([_, 1]) => " with its one mode".to_owned(),
-        Some([_, all]) => format!(" with all {all} modes"),
-        None => String::new(),
-    };
-    write!(out, "\nuse detail = {}{modes}: {RULE} {limit}", choice.detail.name())?;
-    let auto = Choice { detail: Detail::Auto, ..comparison.reference.choice };
-    match comparison.cost_over_auto(response) {
-        Some(cost) if choice != auto => writeln!(out, ", at {cost:.2} times the cost of auto"),
-        _ => writeln!(out),
+impl Run {
+    /// Follows the motion at every level of detail, and advises the cheapest level whose errors of `criteria` stay `within` a part.
+    pub fn advice(&self, within: f64, criteria: &[Criterion]) -> Result<Advice, RunError> {
+        with!(self, run => compare(&run, (within, criteria)))
+    }
+
+    /// The table and the `advice` on this run under the ground motion that `title` names, for people.
+    pub fn advice_text(&self, title: &str, advice: &Advice, limits: &Limits) -> anyhow::Result<String> {
+        let mut out = String::new();
+        writeln!(out, "Ground motion: {title}")?;
+        self.print_reference(&mut out, &advice.reference)?;
+        advice.print_levels(&mut out)?;
+        if let AnyStructure::One(structure) = &self.structure {
+            write!(out, "  {:<10} ", "estimate")?;
+            match Estimate::new(structure, Some(&self.ground), INSTANT_TRANSITION) {
+                Ok(Estimate { demand, .. }) => {
+                    let a_t = largest(&advice.reference.peaks, "a_t").map_or(0.0, |peak| peak.magnitude);
+                    let error = percent(levels::relative(((demand.a_t - a_t).abs(), a_t)));
+                    writeln!(out, "{:>8} {:>8} {error:>13}", "-", "-")?;
+                }
+                Err(error) => writeln!(out, "not possible here: {error}")?,
+            }
+        }
+        for (choice, error) in &advice.refused {
+            writeln!(out, "  {choice:<10} not possible here: {error:#}")?;
+        }
+        advice.print_advice(&mut out)?;
+        writeln!(out)?;
+        for line in self.section(&self.validity(*limits, &mut ())?, limits) {
+            writeln!(out, "{line}")?;
+        }
+        Ok(out)
+    }
+
+    fn print_reference(&self, out: &mut impl Write, reference: &Level) -> fmt::Result {
+        let (base, of_many) = (self.structure.base(), reference.choice.modes.is_some());
+        let peaks = ["theta", "u", "a_t", "V_t", "M_t"].iter().filter_map(|symbol| largest(&reference.peaks, symbol));
+        let shown = |NamedPeak { name, magnitude, unit, .. }: &NamedPeak| match *unit {
+            "m" => format!("{name} {} mm", significant(1e3 * magnitude)),
+            "m/s2" => format!("{name} {} g", significant(magnitude / base.g)),
+            unit => format!("{name} {}", in_readable_unit(*magnitude, unit, significant)),
+        };
+        let shown: Vec<_> = peaks.map(shown).collect();
+        let level = if of_many { reference.choice.to_string() + " modes" } else { "nonlinear".into() };
+        let transitions = reference.transitions;
+        writeln!(out, "Reference: {level}, tolerance {REFERENCE_TOLERANCE:e}, {transitions} transitions")?;
+        if let AnyStructure::Many(frame) = &self.structure
+            && frame.rest()[0] > 0.0
+        {
+            let rigid = percent(frame.rest()[0] / frame.body().m_s);
+            writeln!(out, "  {rigid} % of m_s turns rigidly with the base, also in the reference")?;
+        }
+        if reference.overturned.is_none() {
+            let limit = significant(LONGEST_REST / base.p_l);
+            writeln!(
+                out,
+                "  it still rocks {limit} s after the record: whether it overturns is not known; see --duration"
+            )?;
+        }
+        writeln!(out, "  peaks: {}", shown.join(", "))?;
+        if reference.overturned == Some(true) {
+            return writeln!(out, "  the structure overturns\n");
+        }
+        let theta = largest(&reference.peaks, "theta").map_or(0.0, |peak| peak.magnitude);
+        if theta == 0.0 {
+            let estimate = if of_many { "" } else { "; the estimate assumes that it does" };
+            return writeln!(out, "  the base never lifts off{estimate}\n");
+        }
+        if let AnyStructure::One(structure) = &self.structure
+            && let Ok(f_r) = effective_frequency(structure, theta)
+        {
+            writeln!(out, "  effective frequency of rocking at that theta: {} Hz (Eq 14)", significant(f_r))?;
+        }
+        writeln!(out)
     }
 }
 
-/// Effect of the vertical component: the differences of the motion on `level` ground.
-fn print_vertical<Q: Advised>(
-    out: &mut impl Write,
-    level: &Verdict<Q>,
-    (within, criteria): (f64, &[Criterion]),
-) -> fmt::Result {
-    let changes: Vec<_> =
-        criteria.iter().map(|of| format!("{} by {} %", of.name(), percent(level.errors[*of as usize]))).collect();
-    let overturning = match level.is_right_about_overturning {
-        Some(false) => ", and whether it overturns",
-        _ => "",
-    };
-    let advice = if level.is_within(within, criteria) { "leave it out" } else { "keep it" };
-    writeln!(out, "the vertical component changes {}{overturning}: {advice}", changes.join(", "))
+/// The largest of the `peaks` of all floors of a quantity.
+fn largest<'a>(peaks: &'a [NamedPeak], of: &str) -> Option<&'a NamedPeak> {
+    let of_symbol = peaks.iter().filter(|peak| symbol(&peak.name) == of);
+    of_symbol.max_by(|a, b| a.magnitude.total_cmp(&b.magnitude))
+}
+
+fn by_criterion<S: Serializer>(errors: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
+    let named = Criterion::ALL.iter().zip(errors).map(|(of, error)| (format!("error_{}", of.name()), Number(*error)));
+    serializer.collect_map(BTreeMap::from_iter(named))
+}
+
+fn by_name<S: Serializer>(peaks: &[NamedPeak], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(BTreeMap::from_iter(peaks.iter().map(|peak| (&peak.name, peak.magnitude))))
+}
+
+impl Advice {
+    /// The reference, then the levels, for programs.
+    pub fn rows(&self) -> Vec<&Level> {
+        [&self.reference].into_iter().chain(&self.levels).chain(self.without_vertical.iter().flatten()).collect()
+    }
+
+    fn print_levels(&self, out: &mut impl Write) -> fmt::Result {
+        const WIDTHS: [usize; 10] = [8, 8, 13, 8, 8, 8, 10, 8, 11, 7];
+        let longest = self.levels.iter().map(|level| level.choice.to_string().len()).max();
+        let longest = longest.unwrap_or(0).max("fixed_base".len());
+        let mut row = |mark: char, level: &str, cells: &[String]| {
+            write!(out, "{mark} {level:<longest$}")?;
+            cells.iter().zip(WIDTHS).try_for_each(|(cell, width)| write!(out, " {cell:>width$}"))?;
+            writeln!(out)
+        };
+        let over = ["error of peaks, %", "of histories, %", "", "cost"];
+        row(' ', "", &[format!("{:^31} {:^26} {:>10} {:^28}", over[0], over[1], over[2], over[3])])?;
+        let headings =
+            ["theta", "u", "a_t, V_t, M_t", "theta", "u", "a_t", "overturns", "steps", "evaluations", "of auto"];
+        row(' ', "level", &headings.map(str::to_owned))?;
+        for Level { choice, errors, overturned, is_right_about_overturning, work, cost, .. } in &self.levels {
+            let mark = if self.advised == Some(*choice) { '>' } else { ' ' };
+            let name = match overturned {
+                Some(true) => "yes",
+                Some(false) => "no",
+                None => "unknown",
+            };
+            let overturns = match (is_right_about_overturning, overturned) {
+                (Some(false), _) => format!("{name}, wrong"),
+                (None, Some(_)) => format!("{name} (?)"),
+                _ => name.into(),
+            };
+            let counts = [work.steps, work.evaluations].map(|count| count.to_string());
+            let ratio = cost.map_or("-".into(), |cost| format!("{cost:.2}"));
+            row(mark, &choice.to_string(), &[&errors.map(percent)[..], &[overturns], &counts, &[ratio]].concat())?;
+        }
+        Ok(())
+    }
+
+    /// The advised level, and the effect of the vertical component: the differences of the motion on level ground.
+    fn print_advice(&self, out: &mut impl Write) -> fmt::Result {
+        let (within, criteria) = &self.allowed;
+        let names: Vec<_> = criteria.iter().map(|of| of.name()).collect();
+        let limit = format!("within {} % in {}", short(100.0 * within), names.join(", "));
+        match self.levels.iter().find(|level| self.advised == Some(level.choice)) {
+            None => writeln!(
+                out,
+                "\nno level stays {limit}: use detail = nonlinear with a tolerance below {DEFAULT_TOLERANCE:e}"
+            )?,
+            Some(&Level { choice, cost, .. }) => {
+                let modes = match choice.modes {
+                    Some([kept, all]) if kept < all => format!(" and keep = {kept} of {all} modes"),
+                    Some([_, 1]) => " with its one mode".to_owned(),
+                    Some([_, all]) => format!(" with all {all} modes"),
+                    None => String::new(),
+                };
+                write!(out, "\nuse detail = {}{modes}: {RULE} {limit}", choice.detail.name())?;
+                let auto = Choice { detail: Detail::Auto, ..self.reference.choice };
+                match cost.filter(|_| choice != auto) {
+                    Some(cost) => writeln!(out, ", at {cost:.2} times the cost of auto")?,
+                    None => writeln!(out)?,
+                }
+            }
+        }
+        match &self.without_vertical {
+            Some(Ok(level)) => {
+                let change = |of: &Criterion| format!("{} by {} %", of.name(), percent(level.errors[*of as usize]));
+                let changes: Vec<_> = criteria.iter().map(change).collect();
+                let is_wrong = level.is_right_about_overturning == Some(false);
+                let overturning = if is_wrong { ", and whether it overturns" } else { "" };
+                let advice = if level.is_allowed { "leave it out" } else { "keep it" };
+                writeln!(out, "the vertical component changes {}{overturning}: {advice}", changes.join(", "))
+            }
+            Some(Err(error)) => writeln!(out, "without the vertical component the run is not possible: {error}"),
+            None => Ok(()),
+        }
+    }
 }
 
 /// A ratio in percent, for a column.

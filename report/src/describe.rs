@@ -1,43 +1,84 @@
 //! A structure's parameters and what follows from them.
 
 use crate::quantities::NamedValue;
-use rocking::digits::{short, significant};
+use rocking::digits::{short, significant, with_unit};
 use rocking::run::validity;
-use rocking::structure::any::{ModeOf, OF_FRAME, OF_MODE};
+use rocking::structure::any::{AnyStructure, OF_FRAME, OF_MODE};
 use rocking::structure::frame::Body;
 use rocking::structure::parameters::PARAMETERS;
-use rocking::structure::quantity::Quantity;
 use rocking::structure::{DERIVED, Derived};
-use rocking::{Detail, Frame, Structure};
+use rocking::{Detail, Frame};
 use std::fmt::{self, Write};
 
-/// The parameters and the derived quantities, for people.
-pub fn text(structure: &Structure) -> Result<String, fmt::Error> {
+/// The parameters of one mass.
+fn given(structure: &AnyStructure) -> Vec<NamedValue> {
+    let AnyStructure::One(structure) = structure else { return Vec::new() };
+    let all = PARAMETERS.iter();
+    all.map(|of| NamedValue::new(of.name, (of.get)(structure.parameters()), of.unit, "", of.description)).collect()
+}
+
+/// The derived quantities of one mass; the numbers of a structure of many masses.
+pub fn derived(structure: &AnyStructure) -> Vec<NamedValue> {
+    match structure {
+        AnyStructure::One(structure) => named(&DERIVED, structure),
+        AnyStructure::Many(frame) => named(&OF_FRAME, frame),
+    }
+}
+
+/// The numbers of each mode of a structure of many masses, lowest frequency first.
+pub fn modes(structure: &AnyStructure) -> Vec<Vec<NamedValue>> {
+    let modes = structure.frame().into_iter().flat_map(Frame::mode_table);
+    modes.map(|mode| named(&OF_MODE, &mode)).collect()
+}
+
+fn named<T>(all: &[Derived<T>], of: &T) -> Vec<NamedValue> {
+    let all = all.iter();
+    all.map(|line| NamedValue::new(line.name, (line.value)(of), line.unit, line.equation, line.description)).collect()
+}
+
+/// All numbers of a structure, for programs; the numbers of each mode as `f[1]`.
+pub fn numbers(structure: &AnyStructure) -> Vec<NamedValue> {
+    let of_mode = |(number, mode): (usize, Vec<NamedValue>)| {
+        mode.into_iter().map(move |of| NamedValue { name: format!("{}[{number}]", of.name), ..of })
+    };
+    let modes = (1..).zip(modes(structure)).flat_map(of_mode);
+    given(structure).into_iter().chain(derived(structure)).chain(modes).collect()
+}
+
+/// The parameters of one mass in one line; how many floors and modes many masses have.
+pub fn in_one_line(structure: &AnyStructure) -> String {
+    if let Some(frame) = structure.frame() {
+        return format!("{} floors, {} modes", frame.floors().len(), frame.modes().len());
+    }
+    let value = |of: &NamedValue| format!("{} = {}", of.name, with_unit(of.value, of.unit));
+    given(structure).iter().map(value).collect::<Vec<_>>().join(", ")
+}
+
+/// The structure, for people: parameters and derived quantities of one mass; of many masses their numbers, and a row for each mode.
+pub fn text(structure: &AnyStructure) -> Result<String, fmt::Error> {
     let mut out = String::new();
     let unit = |unit| if unit == "1" { "-" } else { unit };
+    let derived = derived(structure);
+    if let Some(frame) = structure.frame() {
+        writeln!(out, "Structure of many masses")?;
+        for NamedValue { name, value, unit: of, description, .. } in derived.iter().filter(|of| of.value != 0.0) {
+            writeln!(out, "  {name:<10} {:>12} {:<6} {description}", significant(*value), unit(of))?;
+        }
+        print_modes(&mut out, frame, &modes(structure))?;
+        return Ok(out);
+    }
     writeln!(out, "Parameters")?;
-    for Quantity { name, unit: of, description, get, .. } in &PARAMETERS {
-        let value = short(get(structure.parameters()));
-        writeln!(out, "  {name:<10} {value:>12} {:<6} {description}", unit(of))?;
+    for NamedValue { name, value, unit: of, description, .. } in given(structure) {
+        writeln!(out, "  {name:<10} {:>12} {:<6} {description}", short(value), unit(of))?;
     }
     writeln!(out, "\nDerived quantities")?;
-    for Derived { name, unit: of, description, equation, value } in &DERIVED {
-        let value = significant(value(structure));
-        writeln!(out, "  {name:<10} {value:>12} {:<6} {equation:<13} {description}", unit(of))?;
+    for NamedValue { name, value, unit: of, equation, description } in derived {
+        writeln!(out, "  {name:<10} {:>12} {:<6} {equation:<13} {description}", significant(value), unit(of))?;
     }
     Ok(out)
 }
 
-/// A structure of many masses, for people: its numbers, and a row for each mode.
-pub fn frame(frame: &Frame) -> Result<String, fmt::Error> {
-    let mut out = String::from("Structure of many masses\n");
-    let unit = |unit| if unit == "1" { "-" } else { unit };
-    for Derived { name, unit: of, description, value, .. } in &OF_FRAME {
-        let value = value(frame);
-        if value != 0.0 {
-            writeln!(out, "  {name:<10} {:>12} {:<6} {description}", significant(value), unit(of))?;
-        }
-    }
+fn print_modes(out: &mut String, frame: &Frame, table: &[Vec<NamedValue>]) -> fmt::Result {
     if frame.base().r.is_none() {
         writeln!(out, "  r is not given: momentum with the shape frozen gives it for each impact")?;
     }
@@ -63,23 +104,9 @@ pub fn frame(frame: &Frame) -> Result<String, fmt::Error> {
         let heading = if *unit == "1" { (*name).to_owned() } else { format!("{name} ({unit})") };
         write!(out, " {heading:>12}")?;
     }
-    for (number, mode) in (1..).zip(frame.mode_table()) {
+    for (number, mode) in (1..).zip(table) {
         write!(out, "\n  {number:<4}")?;
-        OF_MODE.iter().try_for_each(|of| write!(out, " {:>12}", significant((of.value)(&mode))))?;
+        mode.iter().try_for_each(|of| write!(out, " {:>12}", significant(of.value)))?;
     }
-    writeln!(out)?;
-    Ok(out)
-}
-
-/// A structure of many masses, for programs: its numbers, and the numbers of each mode as `f[1]`.
-pub fn numbers(frame: &Frame) -> Vec<NamedValue> {
-    let own = OF_FRAME.iter().map(|&Derived { name, unit, description, value, .. }| {
-        NamedValue::new(name, value(frame), unit, "", description)
-    });
-    let of_mode = |(number, mode): (usize, ModeOf)| {
-        OF_MODE.iter().map(move |&Derived { name, unit, description, value, .. }| {
-            NamedValue::new(&format!("{name}[{number}]"), value(&mode), unit, "", description)
-        })
-    };
-    own.chain((1..).zip(frame.mode_table()).flat_map(of_mode)).collect()
+    writeln!(out)
 }

@@ -1,8 +1,7 @@
 //! Validity of a run: the limits of the model, in words and for programs.
 
 use crate::quantities::Number;
-use crate::shown::Shown;
-use rocking::Detail;
+use crate::run::Run;
 use rocking::digits::significant;
 use rocking::run::validity::{ASSUMPTIONS, Assumption, Findings, Limits, WEIGHT, Worst};
 use serde::Serialize;
@@ -50,25 +49,26 @@ pub fn rows(found: &Findings, limits: &Limits) -> Vec<Beyond> {
     ASSUMPTIONS.iter().zip(&found.worst).map(row).collect()
 }
 
-/// The section on a run of `structure` at the level `detail` in which this was `found`, line by line.
-pub fn section<Q: Shown>(structure: &Q::Structure, detail: Detail, found: &Findings, limits: &Limits) -> Vec<String> {
-    let of_parameters = Q::warnings(structure, detail);
-    let mut lines = vec!["limits of the model".to_owned()];
-    lines.extend(of_parameters.into_iter().map(|warning| format!("  {warning}")));
-    let is_level = found.worst[WEIGHT].value == 1.0;
-    let shown = (0..ASSUMPTIONS.len()).filter(|which| *which != WEIGHT || !is_level);
-    lines.extend(shown.map(|which| line(which, found, limits)));
-    lines.push(format!("  {:<34} {}", "energy gained at", of_impacts(found.gains, found.impacts)));
-    let held = match found.settlings {
-        0 => "0".to_owned(),
-        bursts => format!(
-            "{bursts}, for {} in all, after too many transitions within one vibration period. Otherwise the model could \
-             switch between full contact and rocking without end, mostly if c_ratio is not 1",
-            share(found.held, found.duration)
-        ),
-    };
-    lines.push(format!("  {:<34} {held}", "contact held by the engine, times"));
-    lines
+impl Run {
+    /// The limits of the model in this run, in which this was `found`, line by line.
+    pub fn section(&self, found: &Findings, limits: &Limits) -> Vec<String> {
+        let mut lines = vec!["limits of the model".to_owned()];
+        lines.extend(self.warnings().into_iter().map(|warning| format!("  {warning}")));
+        let is_level = found.worst[WEIGHT].value == 1.0;
+        let shown = (0..ASSUMPTIONS.len()).filter(|which| *which != WEIGHT || !is_level);
+        lines.extend(shown.map(|which| line(which, found, limits)));
+        lines.push(format!("  {:<34} {}", "energy gained at", of_impacts(found.gains, found.impacts)));
+        let held = match found.settlings {
+            0 => "0".to_owned(),
+            bursts => format!(
+                "{bursts}, for {} in all, after too many transitions within one vibration period. Otherwise the model could \
+                 switch between full contact and rocking without end, mostly if c_ratio is not 1",
+                share(found.held, found.duration)
+            ),
+        };
+        lines.push(format!("  {:<34} {held}", "contact held by the engine, times"));
+        lines
+    }
 }
 
 fn line(which: usize, found: &Findings, limits: &Limits) -> String {

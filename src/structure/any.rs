@@ -76,12 +76,32 @@ pub const OF_FRAME: [Derived<Frame>; 15] = [
     derived!("F_y" ["N"] "force at which an elastoplastic dissipator yields", "", |of| of.base.ties.F_y),
 ];
 
+impl From<Structure> for AnyStructure {
+    fn from(structure: Structure) -> AnyStructure {
+        AnyStructure::One(structure)
+    }
+}
+
+impl From<Frame> for AnyStructure {
+    fn from(frame: Frame) -> AnyStructure {
+        AnyStructure::Many(frame)
+    }
+}
+
 impl AnyStructure {
     /// The structure of one mass, which `task` needs.
     pub fn one(&self, task: &'static str) -> Result<Structure, ManyMasses> {
         match self {
             AnyStructure::One(structure) => Ok(*structure),
             AnyStructure::Many(frame) => Err(ManyMasses { task, modes: frame.modes().len() }),
+        }
+    }
+
+    /// The structure of many masses, if it is one.
+    pub fn frame(&self) -> Option<&Frame> {
+        match self {
+            AnyStructure::One(_) => None,
+            AnyStructure::Many(frame) => Some(frame),
         }
     }
 

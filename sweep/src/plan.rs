@@ -3,18 +3,20 @@
 use crate::outcome::Outcome;
 use crate::{Refused, ensure};
 use rocking::digits::with_unit;
-use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::engine::{DEFAULT_TOLERANCE, Moves, Settings};
 use rocking::estimates::intensity::{
     IntensityMeasure, arias_intensity, average_spectral_acceleration, cumulative_absolute_velocity, peak_velocity,
     significant_duration,
 };
 use rocking::estimates::response_spectrum::spectral_acceleration;
+use rocking::mechanics::state::InitialStateError;
 use rocking::run::lanes::found_each;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
+use rocking::structure::any::AnyStructure;
 use rocking::structure::doubts;
 use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
-use rocking::{Detail, Engine, Parameters, Quantity, State, Structure, Watch};
+use rocking::{Detail, Engine, Frame, Modes, Parameters, Quantity, State, Structure, Watch};
 use serde::Serialize;
 use std::collections::HashSet;
 use std::sync::OnceLock;
@@ -217,24 +219,34 @@ impl NamedRecord {
 impl Conditions {
     /// The run of `structure` under `ground`.
     pub fn run<'a>(&self, structure: Structure, ground: &'a Record) -> Run<'a> {
-        let &Conditions { initial, detail, tolerance, duration } = self;
-        let end = duration.map_or(End::AtRest, |duration| End::At(ground.start() + duration));
-        Run { initial, detail, tolerance, end, ..Run::new(structure, ground) }
+        Run { initial: self.initial, ..self.over(Run::new(structure, ground)) }
+    }
+
+    /// The run of the structure `frame` of many masses under `ground`. Refuses initial displacements.
+    pub fn run_of_modes<'a>(&self, frame: Frame, ground: &'a Record) -> Result<Run<'a, Modes>, InitialStateError> {
+        self.over(Run::of_modes(frame, ground)).from(&self.initial)
+    }
+
+    fn over<'a, Q: Moves>(&self, run: Run<'a, Q>) -> Run<'a, Q> {
+        let end = self.duration.map_or(End::AtRest, |duration| End::At(run.ground.start() + duration));
+        Run { detail: self.detail, tolerance: self.tolerance, end, ..run }
     }
 
     /// Refuses, with the reason, what no run of `structure` can have.
-    pub fn check(&self, structure: &Structure) -> Result<(), Refused> {
-        self.check_duration()?;
-        let Conditions { initial, detail, tolerance, .. } = *self;
-        Engine::with_detail(*structure, initial, 0.0, tolerance, detail).map(|_| ()).map_err(Refused::by)
-    }
-
-    /// Refuses a duration that no run can have.
-    pub fn check_duration(&self) -> Result<(), Refused> {
+    pub fn check(&self, structure: &AnyStructure) -> Result<(), Refused> {
         let duration = self.duration.unwrap_or(1.0);
         ensure(duration > 0.0 && duration.is_finite(), || {
             format!("duration = {} is out of range: a finite number greater than 0 is needed", with_unit(duration, "1"))
-        })
+        })?;
+        let settings = Settings { detail: self.detail, tolerance: self.tolerance, ..Settings::default() };
+        match structure {
+            AnyStructure::One(structure) => Engine::with(*structure, self.initial, 0.0, settings).map(|_| ()),
+            AnyStructure::Many(frame) => self
+                .run_of_modes(frame.clone(), &Record::at_rest(1.0))
+                .and_then(|Run { structure, initial, .. }| Engine::of_modes(structure, initial, 0.0, settings))
+                .map(|_| ()),
+        }
+        .map_err(Refused::by)
     }
 }
 
@@ -264,7 +276,7 @@ impl Plan {
 
     /// These runs under other `conditions`.
     pub fn under(self, conditions: Conditions) -> Result<Plan, Refused> {
-        conditions.check(&self.case(0).structure)?;
+        conditions.check(&AnyStructure::One(self.case(0).structure))?;
         Ok(Plan { conditions, ..self })
     }
 

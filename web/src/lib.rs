@@ -6,23 +6,22 @@ mod scene;
 mod take;
 
 use fmu_export::{Library, ModelName, Version};
-use rocking::engine::Moves;
 use rocking::levels::detail::Detail;
 use rocking::run::RunError;
-use rocking::run::levels::{Choice, Criterion, RULE, Verdict, compare, relative};
-use rocking::run::peaks::{self, Peak};
-use rocking::run::validity::{self, ASSUMPTIONS, Findings, Limits, Validity};
-use rocking::structure::any::{AnyStructure, OF_FRAME, OF_MODE};
+use rocking::run::levels::{Choice, Criterion, RULE, relative};
+use rocking::run::validity::{ASSUMPTIONS, Assumption, Limits, Worst};
+use rocking::structure::Ties;
+use rocking::structure::any::AnyStructure;
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking::structure::{DERIVED, Derived, Ties};
-use rocking::{Body, Frame, Motion, Run, Structure, Watch};
+use rocking::{Body, Frame};
 use rocking_records::Unit;
+use rocking_report::{advice::Level, describe, run::Run};
 use rocking_sweep::{map::CLASSES, pulse::Shape};
-use rocking_view::{Scene, Shown};
 use scene::{Fields, File, Files, GROUNDS, Ground, NUMBERS, READING, numbers_of};
 use serde_json::{Value, json};
 use std::path::Path;
+use std::sync::Arc;
 use take::{GROUND, taken_along};
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -98,78 +97,56 @@ impl Explorer {
         Ok(self.libraries.iter().map(|library| library.platform.tuple()).collect::<Vec<_>>().join(", "))
     }
 
-    fn load(&mut self, fields: &Fields) -> Result<(AnyStructure, Ground), String> {
+    /// The run of the scene, with remarks on its ground motion.
+    fn load(&mut self, fields: &str) -> Result<(Fields, Run, Ground), String> {
+        let fields = Fields::read(fields)?;
         let structure = fields.structure()?;
         let ground = fields.ground(&mut self.files, structure.base().g)?;
-        Ok((structure, ground))
-    }
-
-    /// The scene of one mass, which `task` needs.
-    fn load_one(&mut self, fields: &Fields, task: &'static str) -> Result<(Structure, Ground), String> {
-        let structure = fields.one_mass(task)?;
-        let ground = fields.ground(&mut self.files, structure.parameters().g)?;
-        Ok((structure, ground))
+        let run = Run { structure, ground: Arc::new(ground.record.clone()), conditions: fields.conditions()? };
+        Ok((fields, run, ground))
     }
 
     /// The run as the script of `view` shows it, exact to this `part` of each peak.
     pub fn show(&mut self, fields: &str, part: f64) -> Result<String, String> {
-        let fields = Fields::read(fields)?;
-        match self.load(&fields)? {
-            (AnyStructure::One(structure), ground) => shown(&fields.run(structure, &ground.record)?, part),
-            (AnyStructure::Many(frame), ground) => shown(&fields.run_of_modes(frame, &ground.record)?, part),
-        }
+        let (_, run, _) = self.load(fields)?;
+        Ok(run.scene(part).map_err(says)?.json())
     }
 
-    /// The exact peaks by name, in SI units. They are the peaks of `show`, without its curve.
+    /// The exact peaks of the structure by name, in SI units. They are the peaks of `show`, without its curve.
     pub fn peaks(&mut self, fields: &str) -> Result<String, String> {
-        let fields = Fields::read(fields)?;
-        let row = |name: String, peak: Peak| json!([name, peak.magnitude, peak.time]);
-        match self.load(&fields)? {
-            (AnyStructure::One(structure), ground) => {
-                let found = fields.run(structure, &ground.record)?.found(&mut ()).map_err(says)?;
-                let rows = peaks::of(&structure).map(|peaking| row(peaking.name.into(), peaking.of(&found.peaks)));
-                Ok(summary(rows.collect(), &found.finish.motion))
-            }
-            (AnyStructure::Many(frame), ground) => {
-                let found = fields.run_of_modes(frame, &ground.record)?.found(&mut ()).map_err(says)?;
-                let rows = found.peaks.peaks().map(|(output, peak)| row(output.name(), peak));
-                Ok(summary(rows.collect(), &found.finish.motion))
-            }
-        }
+        let (_, run, _) = self.load(fields)?;
+        let found = run.found(None, &mut ()).map_err(says)?;
+        let peaks = found.peaks[1..].iter().map(|peak| json!([peak.name, peak.magnitude, peak.time]));
+        Ok(json!({
+            "peaks": Value::from_iter(peaks), "transitions": found.transitions, "end": found.end,
+            "steps": found.work.steps, "evaluations": found.work.evaluations,
+        })
+        .to_string())
     }
 
     /// Derived quantities of the structure, remarks on the record's file, and warnings about the parameters.
     pub fn about(&mut self, fields: &str) -> Result<String, String> {
-        let fields = Fields::read(fields)?;
-        let (structure, Ground { record, remarks, mut warnings, .. }) = self.load(&fields)?;
-        warnings.extend(structure.doubts());
-        let (parameters, derived, modes) = match &structure {
-            AnyStructure::One(structure) => {
-                warnings.extend(validity::of_parameters(structure, fields.detail()?));
-                (json!(structure.parameters()), values(&DERIVED, structure), Vec::new())
-            }
-            AnyStructure::Many(frame) => {
-                warnings.extend(validity::of_frame(frame, fields.detail()?));
-                let modes = frame.mode_table().map(|mode| values(&OF_MODE, &mode));
-                (of_base(frame), values(&OF_FRAME, frame), modes.collect())
-            }
+        let (_, run, Ground { record, remarks, mut warnings, .. }) = self.load(fields)?;
+        warnings.extend(run.structure.doubts());
+        warnings.extend(run.warnings());
+        let parameters = match &run.structure {
+            AnyStructure::One(structure) => json!(structure.parameters()),
+            AnyStructure::Many(frame) => of_base(frame),
         };
         Ok(json!({
-            "parameters": parameters, "derived": derived, "modes": modes, "warnings": warnings, "remarks": remarks,
-            "samples": record.times().len(), "pga": record.pga() / structure.base().g,
+            "parameters": parameters, "derived": describe::derived(&run.structure),
+            "modes": describe::modes(&run.structure), "warnings": warnings, "remarks": remarks,
+            "samples": record.times().len(), "pga": record.pga() / run.structure.base().g,
         })
         .to_string())
     }
 
     /// The assumptions of the model, each with its worst value in this run.
     pub fn validity(&mut self, fields: &str) -> Result<String, String> {
-        let fields = Fields::read(fields)?;
+        let (_, run, _) = self.load(fields)?;
         let limits = Limits::default();
-        let found = match self.load(&fields)? {
-            (AnyStructure::One(structure), ground) => found_in(&fields.run(structure, &ground.record)?, limits)?,
-            (AnyStructure::Many(frame), ground) => found_in(&fields.run_of_modes(frame, &ground.record)?, limits)?,
-        };
-        let row = |(assumption, worst): (&validity::Assumption, &validity::Worst)| {
+        let found = run.validity(limits, &mut ()).map_err(says)?;
+        let row = |(assumption, worst): (&Assumption, &Worst)| {
             let of = if assumption.is_of_impacts { found.impacts as f64 } else { found.duration };
             json!({
                 "name": assumption.name, "description": assumption.description, "meaning": assumption.meaning,
@@ -182,23 +159,20 @@ impl Explorer {
 
     /// The levels of detail, compared on this scene as `advise` compares them.
     pub fn compare(&mut self, fields: &str) -> Result<String, String> {
-        let fields = Fields::read(fields)?;
-        let (structure, ground) = self.load_one(&fields, "the comparison of levels")?;
-        let compared = compare(&fields.run(structure, &ground.record)?).map_err(says)?;
-        let advised =
-            compared.recommended(WITHIN, &Criterion::ALL).map(|verdict| verdict.response.choice.detail.name());
-        let row = |Verdict { response, errors, .. }: &Verdict| {
+        let (_, run, _) = self.load(fields)?;
+        run.structure.one("the comparison of levels").map_err(says)?;
+        let advice = run.advice(WITHIN, &Criterion::ALL).map_err(says)?;
+        let row = |level: &Level| {
             json!({
-                "detail": response.choice.detail.name(), "errors": errors.map(|error| error.to_string()),
-                "overturns": response.ending.overturned(), "transitions": response.transitions,
-                "cost": compared.cost_over_auto(response),
+                "detail": level.choice.detail.name(), "errors": level.errors.map(|error| error.to_string()),
+                "overturns": level.overturned, "transitions": level.transitions, "cost": level.cost,
             })
         };
         let refused = |(choice, error): &(Choice, RunError)| json!([choice.detail.name(), error.to_string()]);
         Ok(json!({
-            "advised": advised, "rule": RULE,
-            "levels": compared.verdicts.iter().map(row).collect::<Vec<_>>(),
-            "refused": compared.refused.iter().map(refused).collect::<Vec<_>>(),
+            "advised": advice.advised.map(|choice| choice.detail.name()), "rule": RULE,
+            "levels": advice.levels.iter().map(row).collect::<Vec<_>>(),
+            "refused": advice.refused.iter().map(refused).collect::<Vec<_>>(),
         })
         .to_string())
     }
@@ -212,17 +186,15 @@ impl Explorer {
 
     /// The scene as commands, as a script in Python, and as values that a host must set in its FMU.
     pub fn taken_along(&mut self, fields: &str) -> Result<String, String> {
-        let fields = Fields::read(fields)?;
-        self.load(&fields)?;
+        let (fields, ..) = self.load(fields)?;
         let path = self.files.own.as_ref().ok().map(|file| file.path.as_path());
         Ok(json!(taken_along(&fields, path)?).to_string())
     }
 
     /// The FMU of this structure under this ground motion, for FMI 2.0, or 3.0 if `fmi` is 3.
     pub fn export(&mut self, fields: &str, fmi: u32) -> Result<Vec<u8>, String> {
-        let fields = Fields::read(fields)?;
+        let (fields, Run { structure, .. }, ground) = self.load(fields)?;
         let version = if fmi == 3 { Version::Fmi3 } else { Version::Fmi2 };
-        let (structure, ground) = self.load(&fields)?;
         let is_as_read = fields.of_file().all(|key| fields.text(key).is_none());
         let record = match (fields.kind(), &self.files.own) {
             ("free", _) => Vec::new(),
@@ -234,34 +206,6 @@ impl Explorer {
             fmu_export::export(version, &ModelName::default(), structure.into(), record, None, &self.libraries);
         Ok(exported.map_err(says)?.1)
     }
-}
-
-/// `run` as the script of `view` shows it.
-fn shown<Q: Shown>(run: &Run<Q>, part: f64) -> Result<String, String> {
-    let curve = run.curve(part).map_err(says)?;
-    Ok(Scene::new(run, part, &curve).json())
-}
-
-/// The assumptions that `run` breaks.
-fn found_in<Q: Moves>(run: &Run<Q>, limits: Limits) -> Result<Findings, String>
-where
-    Validity<Q>: Watch<Q>,
-{
-    run.validity(limits).map(|(found, _)| found).map_err(says)
-}
-
-/// The `peaks` and the `motion` at the end of a run.
-fn summary<Q>(peaks: Vec<Value>, motion: &Motion<Q>) -> String {
-    let (steps, evaluations) = (motion.work.steps, motion.work.evaluations);
-    let (transitions, end) = (motion.transitions, motion.time);
-    json!({ "peaks": peaks, "transitions": transitions, "end": end, "steps": steps, "evaluations": evaluations })
-        .to_string()
-}
-
-/// The numbers `derived` of a structure or a mode.
-fn values<T>(derived: &[Derived<T>], of: &T) -> Vec<Value> {
-    let row = |Derived { name, unit, description, value, .. }: &Derived<T>| json!({ "name": name, "unit": unit, "description": description, "value": value(of) });
-    derived.iter().map(row).collect()
 }
 
 /// The numbers of the base, by the names that one mass has, too.

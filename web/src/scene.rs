@@ -1,14 +1,15 @@
 //! The scene of the page: fields of text, as in the link. Numbers are parsed as on a command line.
 
 use crate::says;
-use rocking::engine::{DEFAULT_TOLERANCE, Moves, check_tolerance};
-use rocking::run::{End, record::Record};
+use rocking::engine::{DEFAULT_TOLERANCE, check_tolerance};
+use rocking::run::record::Record;
 use rocking::structure::any::AnyStructure;
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::{Given, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking::{Detail, Frame, Modes, Parameters, Run, State, Structure};
+use rocking::{Detail, Frame, Parameters, State, Structure};
 use rocking_records::{Column, Reading, RecordError, Remedy, Source, Unit, csv_in};
+use rocking_sweep::plan::Conditions;
 use rocking_sweep::pulse::{Pulse, Shape};
 use rocking_sweep::synthetic;
 use serde::Deserialize;
@@ -197,12 +198,12 @@ impl Fields {
             }
         }
         if let Some(storeys) = self.text("storeys") {
-            return self.frame(&given, storeys).map(AnyStructure::Many);
+            return self.frame(&given, storeys).map(AnyStructure::from);
         }
         let preset = self.text("preset").unwrap_or(PRESETS[0].0);
         let base = self.has_preset().then(|| Parameters::preset(preset)).transpose().map_err(says)?;
         let parameters = base.map_or_else(|| given.parameters(), |base| given.over(&base)).map_err(says)?;
-        Structure::new(parameters).map(AnyStructure::One).map_err(says)
+        Structure::new(parameters).map(AnyStructure::from).map_err(says)
     }
 
     /// The structure of one mass, which `task` needs.
@@ -282,22 +283,11 @@ impl Fields {
         Ok(Reading { unit, dt, column: self.text("column").map(Column::from), ignores_count })
     }
 
-    /// The run of `structure` under `ground`, with the scene's start and method.
-    pub fn run<'a>(&self, structure: Structure, ground: &'a Record) -> Result<Run<'a>, String> {
+    /// Start, method and end of the run.
+    pub fn conditions(&self) -> Result<Conditions, String> {
         let initial = State { theta: self.number("theta_0")?, u: self.number("u_0")?, ..State::default() };
-        self.solved(Run { initial, ..Run::new(structure, ground) })
-    }
-
-    /// The run of the structure `frame` of many masses likewise.
-    pub fn run_of_modes<'a>(&self, frame: Frame, ground: &'a Record) -> Result<Run<'a, Modes>, String> {
-        let run = Run::of_modes(frame, ground);
-        self.solved(Run { initial: State { theta: self.number("theta_0")?, ..run.initial }, ..run })
-    }
-
-    /// `run` by the scene's method until the scene's end.
-    fn solved<'a, Q: Moves>(&self, run: Run<'a, Q>) -> Result<Run<'a, Q>, String> {
-        let end = if self.kind() == "free" { End::At(run.ground.end()) } else { End::AtRest };
-        Ok(Run { detail: self.detail()?, tolerance: self.tolerance()?, end, ..run })
+        let duration = (self.kind() == "free").then(|| self.number("duration")).transpose()?;
+        Ok(Conditions { initial, detail: self.detail()?, tolerance: self.tolerance()?, duration })
     }
 
     /// The level of detail.

@@ -1,10 +1,8 @@
 //! The picture of a run over the height: the peaks of floors and storeys, and those of the structure on a fixed base.
 use crate::picture::{Picture, TITLE, axes, chart, colour, dashed, line, titled};
 use plotters::prelude::*;
-use rocking::Run;
-use rocking::run::fall::Found;
 use rocking_report::quantities::readable;
-use rocking_report::shown::{OF_FLOOR, Shown};
+use rocking_report::run::{Found, OF_FLOOR, Run};
 
 const WIDTH: u32 = 1000;
 const PLOT: u32 = 420;
@@ -26,11 +24,10 @@ enum At {
 }
 
 /// Draws the peaks `found` in `run` over the height, and those of the same run on a fixed base.
-pub fn draw<Q: Shown>(picture: Picture, run: &Run<Q>, found: &Found<Q>) -> anyhow::Result<()> {
-    let floors = Q::floors(&run.structure, &found.peaks);
-    let on_fixed_base = run.on_fixed_base(found.finish.motion.time).found(&mut ())?;
-    let fixed = Q::floors(&run.structure, &on_fixed_base.peaks);
-    let (height, g) = (floors[floors.len() - 1][0], Q::base(&run.structure).g);
+pub fn draw(picture: Picture, run: &Run, found: &Found) -> anyhow::Result<()> {
+    let on_fixed_base = run.on_fixed_base(found.end)?;
+    let [floors, fixed] = [found, &on_fixed_base].map(|found| run.floors(found));
+    let (height, g) = (floors[floors.len() - 1][0], run.structure.base().g);
     picture.draw((WIDTH, TITLE + PLOT), |area| {
         let about = "peaks of floors and storeys; solid: rocking, dashed: the same structure on a fixed base";
         let area = titled(area, run.ground.title(), about)?;
@@ -41,7 +38,7 @@ pub fn draw<Q: Shown>(picture: Picture, run: &Run<Q>, found: &Found<Q>) -> anyho
                 "m/s2" => (g, "g"),
                 unit => readable(most, unit),
             };
-            let ground = [found.ground, on_fixed_base.ground].map(|peak| peak.magnitude);
+            let ground = [found, &on_fixed_base].map(|found| found.peaks[0].magnitude);
             let largest = 1.1 * most.max(if at == At::Floor { ground[0] } else { 0.0 }) / per_unit;
             let across = 0.0..if largest > 0.0 { largest } else { 1.0 };
             let mut plot = chart(&area, 46.0).build_cartesian_2d(across, 0.0..1.02 * height)?;

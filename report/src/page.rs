@@ -1,0 +1,78 @@
+//! The page that shows a run, and what the page draws.
+
+use crate::run::{Curve, Found, Run};
+use rocking::run::RunError;
+use rocking::structure::{Ties, any::AnyStructure, any::OF_MODE};
+use rocking::{Detail, Parameters};
+pub use rocking_view::Sizes;
+use rocking_view::{Column, Peak, Scene, quanta};
+
+/// Parts of a peak by which what is shown may miss the motion: units of the last digit of its numbers. The first is taken
+/// that needs no more than [`MOST_VALUES`].
+const PARTS: [f64; 3] = [1e-4, 1e-3, 1e-2];
+
+/// The largest number of values: about 5 MB.
+const MOST_VALUES: usize = 1_000_000;
+
+impl Run {
+    /// The page that shows the run.
+    pub fn page(&self) -> Result<String, RunError> {
+        let [finest, coarser @ ..] = PARTS;
+        let mut scene = self.scene(finest);
+        for part in coarser {
+            let takes_too_many = match &scene {
+                Ok(scene) => scene.values() > MOST_VALUES,
+                Err(error) => matches!(error, RunError::TooManyPoints { .. }),
+            };
+            if takes_too_many {
+                scene = self.scene(part);
+            }
+        }
+        Ok(scene?.page())
+    }
+
+    /// What a page shows of the run, with lines that leave the motion by at most this `part` of its peaks.
+    pub fn scene(&self, part: f64) -> Result<Scene, RunError> {
+        let Curve { found, times, phases, columns } = self.curve(part)?;
+        let mut phases: Vec<_> = phases.iter().map(|phase| phase.name()).enumerate().collect();
+        phases.dedup_by_key(|(_, phase)| *phase);
+        let columns = columns.into_iter().filter(|(name, _)| name != "delta_t");
+        let peaks = |found: &Found| -> Vec<Peak> {
+            found.peaks.iter().map(|peak| (peak.name.clone(), peak.magnitude, peak.time)).collect()
+        };
+        let has_fixed = self.structure.frame().is_some() && self.conditions.detail != Detail::FixedBase;
+        let fixed = has_fixed.then(|| self.on_fixed_base(found.end).ok()).flatten();
+        Ok(Scene {
+            title: self.ground.title().into(),
+            parameters: sizes(&self.structure),
+            start: found.start,
+            ending: found.ending,
+            fall: found.fall,
+            part,
+            time: Column::of_time(&times, found.start),
+            columns: columns.map(|(name, values)| (name, Column::new(&values))).collect(),
+            phases,
+            transitions: found.events.iter().map(|at| (quanta(at.time - found.start), at.kind.name())).collect(),
+            peaks: peaks(&found),
+            fixed: fixed.as_ref().map_or(Vec::new(), peaks),
+        })
+    }
+}
+
+/// The structure as it is drawn.
+pub fn sizes(structure: &AnyStructure) -> Sizes {
+    let (base, &Ties { P_0, k_t, xi_d, c_d, k_d, .. }) = (structure.base(), &structure.base().ties);
+    let (m, m0, H, f_fc, floors) = match structure {
+        AnyStructure::One(structure) => {
+            let &Parameters { m, m0, H, f_fc, .. } = structure.parameters();
+            (m, m0, H, f_fc, None)
+        }
+        AnyStructure::Many(frame) => {
+            let (body, floors) = (frame.body(), frame.floors());
+            let H = floors.last().map_or(body.S_1 / body.m_s, |floor| floor.height);
+            let f_fc = frame.mode_table().next().map_or(0.0, |first| (OF_MODE[0].value)(&first));
+            (body.m_s, body.m0, H, f_fc, Some(floors.iter().map(|floor| [floor.mass, floor.height]).collect()))
+        }
+    };
+    Sizes { m, m0, H, B: base.B, f_fc, g: base.g, P_0, k_t, xi_d, c_d, k_d, floors }
+}

@@ -1,0 +1,465 @@
+//! A run of a structure of one mass or of many: what every door prints, writes and draws comes from here.
+
+use crate::tables::{TIES, line};
+use anyhow::ensure;
+use rocking::engine::motion::Work;
+use rocking::engine::piece::Sample;
+use rocking::estimates::response_spectrum::floor_spectrum;
+use rocking::mechanics::outputs::OUTPUTS;
+use rocking::mechanics::restraint::Dissipators;
+use rocking::run::curve::{self, Drawn};
+use rocking::run::levels::Compared;
+use rocking::run::peaks::{self, Peak, Peaks};
+use rocking::run::profile::Profile;
+use rocking::run::record::Record;
+use rocking::run::validity::{self, Findings, Limits, Validity};
+use rocking::run::{End, Ending, Finish, RunError, fall};
+use rocking::structure::{Ties, any::AnyStructure};
+use rocking::{
+    Frame, FrameOutput, Modes, Outputs, Phase, Run as Follow, Side, State, Structure, Transition, TransitionKind, Watch,
+};
+use rocking_sweep::plan::Conditions;
+use serde::Serialize;
+use std::sync::Arc;
+
+/// Name and unit of a quantity.
+pub type Named = (String, &'static str);
+
+/// Names and units of the peaks of a floor, and of the storey below the floor.
+pub const OF_FLOOR: [(&str, &str); 7] =
+    [("h", "m"), ("u", "m"), ("drift", "m"), ("delta_t", "m"), ("a_t", "m/s2"), ("V", "N"), ("M", "N.m")];
+
+/// A structure under a ground motion, and how the engine follows it.
+#[derive(Clone)]
+pub struct Run {
+    /// The structure.
+    pub structure: AnyStructure,
+    /// The record as it shakes the structure.
+    pub ground: Arc<Record>,
+    /// Initial state, level of detail, tolerance and duration.
+    pub conditions: Conditions,
+}
+
+/// The results of a run; for programs, instants are in s.
+#[derive(Clone, Serialize)]
+pub struct Found {
+    /// Start of the run, s.
+    pub start: f64,
+    /// End of the run, s.
+    pub end: f64,
+    /// How the run ended.
+    pub ending: Ending,
+    /// Whether the structure overturned; None if it still rocks at the end.
+    pub overturned: Option<bool>,
+    /// Start of the fall of a structure that overturns, s.
+    pub fall: Option<f64>,
+    /// All peaks, the peak of the ground first; if the structure overturns, those before it falls.
+    pub peaks: Vec<NamedPeak>,
+    /// Of a structure with dissipators.
+    #[serde(flatten)]
+    pub(crate) taken: Option<Taken>,
+    /// Instant of the first uplift, s.
+    pub(crate) first_uplift: Option<f64>,
+    /// Instant of the first impact, s.
+    pub(crate) first_impact: Option<f64>,
+    /// Number of transitions.
+    pub transitions: u64,
+    /// Steps and right-hand-side evaluations.
+    #[serde(flatten)]
+    pub work: Work,
+    /// Every transition in the order of time.
+    #[serde(skip)]
+    pub events: Vec<Event>,
+    /// Phase at the end.
+    #[serde(skip)]
+    pub(crate) phase: Phase,
+    /// Right-hand-side evaluations that the search for the peaks took, if it counts them.
+    #[serde(skip)]
+    pub(crate) for_peaks: Option<u64>,
+    /// The findings about the model, if limits were given.
+    #[serde(skip)]
+    pub findings: Option<Findings>,
+}
+
+/// A peak.
+#[derive(Clone, Serialize)]
+pub struct NamedPeak {
+    /// Symbol of the quantity.
+    pub name: String,
+    /// Largest magnitude.
+    #[serde(rename = "peak")]
+    pub magnitude: f64,
+    /// Unit of the quantity.
+    pub unit: &'static str,
+    /// The first instant that has it, s.
+    pub time: f64,
+}
+
+/// Work of the dissipators until the end of a run.
+#[derive(Clone, Copy, Serialize)]
+pub(crate) struct Taken {
+    /// Energy, J.
+    pub E_viscous: f64,
+    /// J.
+    pub E_hysteretic: f64,
+    /// Rotation that is left, rad.
+    pub theta_end: f64,
+}
+
+/// A transition.
+#[derive(Clone)]
+pub struct Event {
+    /// Instant, s.
+    pub time: f64,
+    /// Kind.
+    pub kind: TransitionKind,
+    /// The state before and after, in the order of [`Run::components`].
+    pub states: [Vec<f64>; 2],
+}
+
+/// A line of the response: the numbers in the order of [`Run::columns`], the phase, and the number of transitions so far.
+#[derive(Serialize)]
+pub struct Line(pub Vec<f64>, pub &'static str, pub u64);
+
+/// The phases by their numbers among the [`Samples`].
+pub const PHASES: [Phase; 4] =
+    [Phase::Overturned(Side::Left), Phase::FullContact, Phase::Rocking(Side::Left), Phase::Rocking(Side::Right)];
+
+/// A motion at instants.
+pub struct Samples {
+    /// The numbers, in the order of [`Run::columns`].
+    pub columns: Vec<Vec<f64>>,
+    /// Positions in [`PHASES`].
+    pub phases: Vec<u8>,
+    /// Numbers of transitions so far.
+    pub transitions: Vec<u64>,
+}
+
+/// A motion as points that straight lines join.
+pub struct Curve {
+    /// The results of the run.
+    pub found: Found,
+    /// Instants, s.
+    pub times: Vec<f64>,
+    /// The phase of each point.
+    pub phases: Vec<Phase>,
+    /// a_g and the drawn outputs by name; of a restrained structure also the forces of the tendon and of the dissipators.
+    pub columns: Vec<(String, Vec<f64>)>,
+}
+
+/// A watcher of any run.
+pub trait Watcher: Watch<f64> + Watch<Modes> + Clone {
+    /// Ends the work if nobody waits for it.
+    fn check(&self) {}
+}
+
+impl Watcher for () {}
+
+/// Lateral coordinates of one mass or of many: all that differs between their runs.
+pub(crate) trait OneOrMany: Drawn + Compared {
+    /// Values of the outputs, in the order of [`Run::outputs`].
+    fn values(structure: &Self::Structure, sample: &Sample<Self>) -> Vec<f64>;
+
+    /// Acceleration of a floor along the turning e_x, m/s². Floors count from 0.
+    fn acceleration(sample: &Sample<Self>, floor: usize) -> f64;
+
+    /// The elastic displacements and velocities of a state.
+    fn displaced(structure: &Self::Structure, state: &State<Self>) -> Vec<f64>;
+
+    /// The peaks of the structure.
+    fn peaks(structure: &Self::Structure, peaks: &Self::Peaks) -> Vec<NamedPeak>;
+
+    /// Right-hand-side evaluations that the search for the peaks took, if it counts them.
+    fn evaluations(peaks: &Self::Peaks) -> Option<u64>;
+
+    /// One of the outputs that are drawn, in the order of [`Run::drawn`].
+    fn drawn(outputs: &Self::Outputs, which: usize) -> f64;
+}
+
+impl OneOrMany for f64 {
+    fn values(_: &Structure, sample: &Sample) -> Vec<f64> {
+        sample.outputs().values().to_vec()
+    }
+
+    fn acceleration(sample: &Sample, _: usize) -> f64 {
+        sample.outputs().a_t
+    }
+
+    fn displaced(_: &Structure, state: &State) -> Vec<f64> {
+        vec![state.u, state.u_dot]
+    }
+
+    fn peaks(structure: &Structure, peaks: &Peaks) -> Vec<NamedPeak> {
+        peaks::of(structure).map(|of| NamedPeak::new(of.name, of.unit, of.of(peaks))).collect()
+    }
+
+    fn evaluations(peaks: &Peaks) -> Option<u64> {
+        Some(peaks.evaluations())
+    }
+
+    fn drawn(outputs: &Outputs, which: usize) -> f64 {
+        [outputs.theta, outputs.u, outputs.a_t, outputs.delta_t][which]
+    }
+}
+
+impl OneOrMany for Modes {
+    fn values(frame: &Frame, sample: &Sample<Modes>) -> Vec<f64> {
+        FrameOutput::all(frame).map(sample.outputs()).collect()
+    }
+
+    fn acceleration(sample: &Sample<Modes>, floor: usize) -> f64 {
+        sample.output(FrameOutput::a_t(floor))
+    }
+
+    fn displaced(frame: &Frame, state: &State<Modes>) -> Vec<f64> {
+        let of = |part| frame.floors().iter().map(move |floor| floor.displacement(part));
+        of(&state.u).chain(of(&state.u_dot)).collect()
+    }
+
+    fn peaks(_: &Frame, peaks: &Profile) -> Vec<NamedPeak> {
+        peaks.peaks().map(|(of, peak)| NamedPeak::new(of.name(), of.unit(), peak)).collect()
+    }
+
+    fn evaluations(_: &Profile) -> Option<u64> {
+        None
+    }
+
+    fn drawn(outputs: &Vec<f64>, which: usize) -> f64 {
+        outputs[which]
+    }
+}
+
+/// `$do` with `$follow`, the library's run of one mass or of many.
+macro_rules! with {
+    ($run:expr, $follow:ident => $do:expr) => {
+        match &$run.structure {
+            AnyStructure::One(structure) => {
+                let $follow = $run.conditions.run(*structure, &$run.ground);
+                $do
+            }
+            AnyStructure::Many(frame) => {
+                let $follow = $run.conditions.run_of_modes(frame.clone(), &$run.ground)?;
+                $do
+            }
+        }
+    };
+}
+pub(crate) use with;
+
+impl Run {
+    /// Follows the motion to its end, and finds its exact peaks; with `limits`, how far it breaks the assumptions of the model, too.
+    pub fn found(&self, limits: Option<Limits>, watch: &mut impl Watcher) -> Result<Found, RunError> {
+        with!(self, run => found(&run, limits, watch))
+    }
+
+    /// The results of the same structure on a fixed base, from rest under the same ground motion until `end` (s).
+    pub fn on_fixed_base(&self, end: f64) -> Result<Found, RunError> {
+        with!(self, run => found(&run.on_fixed_base(end), None, &mut ()))
+    }
+
+    /// The findings about the model within `limits`.
+    pub fn validity(&self, limits: Limits, watch: &mut impl Watcher) -> Result<Findings, RunError> {
+        with!(self, run => {
+            let mut validity = run.validity_watch(limits)?;
+            run.follow(&mut (watch, &mut validity))?;
+            Ok(*validity.found())
+        })
+    }
+
+    /// Shows the motion at `times` (s), which rise; those before the start and after the end are left out, and the end itself is
+    /// shown last. The motion goes on until `end` (s), if given.
+    pub fn sample(
+        &self,
+        times: impl IntoIterator<Item = f64>,
+        end: Option<f64>,
+        mut show: impl FnMut(Line),
+        watch: &mut impl Watcher,
+    ) -> Result<(), RunError> {
+        with!(self, run => {
+            let run = Follow { end: end.map_or(run.end, End::At), ..run };
+            run.sample(times, |sample| show(line(sample, OneOrMany::values(&run.structure, sample))), watch).map(|_| ())
+        })
+    }
+
+    /// The motion at `times` (s) in any order, none of which is before the start. After the end the ground is at rest and the motion
+    /// continues; after overturning all values are NaN.
+    pub fn at(&self, found: &Found, times: &[f64], watch: &mut impl Watcher) -> Result<Samples, RunError> {
+        let mut order: Vec<usize> = (0..times.len()).collect();
+        order.sort_by(|a, b| times[*a].total_cmp(&times[*b]));
+        let last = order.last().map_or(found.start, |last| times[*last]);
+        let end = (found.ending != Ending::Overturned && last > found.end).then_some(last);
+        let column = |_| {
+            watch.check();
+            vec![f64::NAN; times.len()]
+        };
+        let mut columns: Vec<_> = self.columns().iter().map(column).collect();
+        let (mut phases, mut transitions) = (vec![0; times.len()], vec![0; times.len()]);
+        let (mut next, waiting) = (0, watch.clone());
+        let see = |Line(numbers, phase, count): Line| {
+            // the last that is shown is the end, for which there may be several times, or none
+            while next < order.len() && times[order[next]] == numbers[0] {
+                waiting.check();
+                let at = order[next];
+                columns.iter_mut().zip(&numbers).for_each(|(column, number)| column[at] = *number);
+                phases[at] = PHASES.iter().position(|of| of.name() == phase).unwrap_or(0) as u8;
+                transitions[at] = count;
+                next += 1;
+            }
+        };
+        self.sample(order.iter().map(|index| times[*index]), end, see, watch)?;
+        columns[0].copy_from_slice(times);
+        order[next..].iter().for_each(|index| transitions[*index] = found.transitions);
+        Ok(Samples { columns, phases, transitions })
+    }
+
+    /// The spectrum of the acceleration of a `floor`, from 0 on, until the end of the run or the start of the fall.
+    pub fn spectrum(
+        &self,
+        found: &Found,
+        floor: usize,
+        periods: &[f64],
+        zeta: f64,
+        watch: &mut impl Watcher,
+    ) -> anyhow::Result<Vec<f64>> {
+        let end = found.fall.unwrap_or(found.end);
+        ensure!(end > found.start, "the structure falls from its start on: its floors have no spectrum");
+        with!(self, run => {
+            Ok(floor_spectrum(&run, end, |sample| OneOrMany::acceleration(sample, floor), periods, zeta, watch)?)
+        })
+    }
+
+    /// The run as points between which θ, u and a_t of each floor leave straight lines by at most `part` of their peaks.
+    pub fn curve(&self, part: f64) -> Result<Curve, RunError> {
+        with!(self, run => curve(self, &run, part))
+    }
+
+    /// The outputs.
+    pub fn outputs(&self) -> Vec<Named> {
+        match &self.structure {
+            AnyStructure::One(_) => OUTPUTS.iter().map(|output| (output.name.into(), output.unit)).collect(),
+            AnyStructure::Many(frame) => FrameOutput::all(frame).map(|of| (of.name(), of.unit())).collect(),
+        }
+    }
+
+    /// The components of a state: elastic displacements and velocities, then rotation and angular velocity.
+    pub fn components(&self) -> Vec<Named> {
+        let is_of_strut = |(name, _): &Named| matches!(symbol(name), "u" | "u_dot");
+        let of_base = [("theta".to_owned(), "rad"), ("theta_dot".to_owned(), "rad/s")];
+        self.outputs().into_iter().filter(is_of_strut).chain(of_base).collect()
+    }
+
+    /// The names of the outputs that are drawn.
+    fn drawn(&self) -> Vec<String> {
+        match &self.structure {
+            AnyStructure::One(_) => ["theta", "u", "a_t", "delta_t"].map(str::to_owned).into(),
+            AnyStructure::Many(frame) => curve::drawn(frame).map(FrameOutput::name).collect(),
+        }
+    }
+
+    /// The peaks of each floor from below, in the order of [`OF_FLOOR`]. One mass is a floor.
+    pub fn floors(&self, found: &Found) -> Vec<[f64; OF_FLOOR.len()]> {
+        let peak = |name: &str| found.peak(name).map_or(f64::NAN, |peak| peak.magnitude);
+        match &self.structure {
+            AnyStructure::One(structure) => {
+                let [u, delta_t, a_t, V, M] = ["u", "delta_t", "a_t", "V_t", "M_t"].map(peak);
+                vec![[structure.parameters().H, u, u, delta_t, a_t, V, M]]
+            }
+            AnyStructure::Many(frame) => {
+                let of = |(number, height): (usize, f64)| {
+                    OF_FLOOR.map(|(name, _)| if name == "h" { height } else { peak(&format!("{name}[{number}]")) })
+                };
+                (1..).zip(frame.floors().iter().map(|floor| floor.height)).map(of).collect()
+            }
+        }
+    }
+
+    /// The warnings that follow from the structure at the level of detail, before anything moves.
+    pub fn warnings(&self) -> Vec<String> {
+        let detail = self.conditions.detail;
+        match &self.structure {
+            AnyStructure::One(structure) => validity::of_parameters(structure, detail),
+            AnyStructure::Many(frame) => validity::of_frame(frame, detail),
+        }
+    }
+}
+
+impl Found {
+    /// The peak of the quantity called `name`.
+    pub fn peak(&self, name: &str) -> Option<Peak> {
+        let peak = self.peaks.iter().find(|peak| peak.name == name)?;
+        Some(Peak { magnitude: peak.magnitude, time: peak.time })
+    }
+}
+
+impl NamedPeak {
+    fn new(name: impl Into<String>, unit: &'static str, Peak { magnitude, time }: Peak) -> NamedPeak {
+        NamedPeak { name: name.into(), magnitude, unit, time }
+    }
+}
+
+/// The name of an output without the number of a floor.
+pub(crate) fn symbol(name: &str) -> &str {
+    name.split('[').next().unwrap_or(name)
+}
+
+/// The results of `run`.
+fn found<Q: OneOrMany>(run: &Follow<Q>, limits: Option<Limits>, watch: &mut impl Watch<Q>) -> Result<Found, RunError>
+where
+    Validity<Q>: Watch<Q>,
+{
+    let mut transitions = Vec::new();
+    let mut see = |transition: &Transition<Q>| transitions.push(*transition);
+    let mut validity = limits.map(|limits| run.validity_watch(limits)).transpose()?;
+    let found = match &mut validity {
+        Some(validity) => run.found(&mut (watch, &mut (validity, &mut see)))?,
+        None => run.found(&mut (watch, &mut see))?,
+    };
+    Ok(Found { findings: validity.map(|of| *of.found()), ..results(&run.structure, &found, &transitions) })
+}
+
+fn results<Q: OneOrMany>(structure: &Q::Structure, found: &fall::Found<Q>, transitions: &[Transition<Q>]) -> Found {
+    let &fall::Found { ground, ref peaks, fall, start, finish: Finish { ending, ref motion } } = found;
+    let state = |of: &State<Q>| [&Q::displaced(structure, of)[..], &[of.theta, of.theta_dot]].concat();
+    let event = |of: &Transition<Q>| Event { time: of.time, kind: of.kind, states: [&of.before, &of.after].map(state) };
+    let first = |is_meant: fn(&TransitionKind) -> bool| {
+        transitions.iter().find(|transition| is_meant(&transition.kind)).map(|transition| transition.time)
+    };
+    let &Ties { c_d, k_d, .. } = &Q::base(structure).ties;
+    let Dissipators { viscous: E_viscous, hysteretic: E_hysteretic, .. } = motion.dissipators;
+    let taken = Taken { E_viscous, E_hysteretic, theta_end: motion.state.theta };
+    Found {
+        start,
+        end: motion.time,
+        ending,
+        overturned: ending.overturned(),
+        fall,
+        peaks: [NamedPeak::new("a_g", "m/s2", ground)].into_iter().chain(Q::peaks(structure, peaks)).collect(),
+        taken: (c_d > 0.0 || k_d > 0.0).then_some(taken),
+        first_uplift: first(|kind| matches!(kind, TransitionKind::Uplift(_))),
+        first_impact: first(|kind| {
+            matches!(kind, TransitionKind::Impact(_) | TransitionKind::Landing | TransitionKind::Settling)
+        }),
+        transitions: motion.transitions,
+        work: motion.work,
+        events: transitions.iter().map(event).collect(),
+        phase: motion.phase,
+        for_peaks: Q::evaluations(peaks),
+        findings: None,
+    }
+}
+
+fn curve<Q: OneOrMany>(of: &Run, run: &Follow<Q>, part: f64) -> Result<Curve, RunError> {
+    let curve::Curve { points, transitions, found } = run.curve(part)?;
+    let mut columns = vec![("a_g".to_owned(), points.iter().map(|at| at.a_g).collect())];
+    for (i, name) in of.drawn().into_iter().enumerate() {
+        columns.push((name, points.iter().map(|at| Q::drawn(&at.outputs, i)).collect()));
+    }
+    if of.structure.base().is_restrained() {
+        let tie = |(name, force): &(&str, fn(&_) -> f64)| {
+            ((*name).to_owned(), points.iter().map(|at| force(&at.restraints)).collect())
+        };
+        columns.extend(TIES.iter().map(tie));
+    }
+    let (times, phases) = points.iter().map(|at| (at.time, at.phase)).unzip();
+    Ok(Curve { found: results(&run.structure, &found, &transitions), times, phases, columns })
+}
