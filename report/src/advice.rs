@@ -1,7 +1,7 @@
 //! The levels of detail on one scene, their errors and their cost, and the level that is advised.
 
 use crate::estimate::Estimate;
-use crate::quantities::{Number, in_readable_unit};
+use crate::quantities::{Number, of_motion};
 use crate::run::{NamedPeak, OneOrMany, Run, symbol, with};
 use rocking::Detail;
 use rocking::digits::{short, significant};
@@ -141,10 +141,9 @@ impl Run {
     fn print_reference(&self, out: &mut impl Write, reference: &Level) -> fmt::Result {
         let (base, of_many) = (self.structure.base(), reference.choice.modes.is_some());
         let peaks = ["theta", "u", "a_t", "V_t", "M_t"].iter().filter_map(|symbol| largest(&reference.peaks, symbol));
-        let shown = |NamedPeak { name, magnitude, unit, .. }: &NamedPeak| match *unit {
-            "m" => format!("{name} {} mm", significant(1e3 * magnitude)),
-            "m/s2" => format!("{name} {} g", significant(magnitude / base.g)),
-            unit => format!("{name} {}", in_readable_unit(*magnitude, unit, significant)),
+        let shown = |NamedPeak { name, magnitude, unit, .. }: &NamedPeak| {
+            let (per_unit, unit) = of_motion(*magnitude, unit, base.g);
+            format!("{name} {} {unit}", significant(magnitude / per_unit))
         };
         let shown: Vec<_> = peaks.map(shown).collect();
         let level = if of_many { reference.choice.to_string() + " modes" } else { "nonlinear".into() };

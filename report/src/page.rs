@@ -1,4 +1,4 @@
-//! The page that shows a run, and what the page draws.
+//! The page that shows a run, and its content.
 
 use crate::run::{Curve, Found, Run};
 use rocking::run::RunError;
@@ -31,7 +31,7 @@ impl Run {
         Ok(scene?.page())
     }
 
-    /// What a page shows of the run, with lines that leave the motion by at most this `part` of its peaks.
+    /// The content of a page about the run, with lines that leave the motion by at most this `part` of its peaks.
     pub fn scene(&self, part: f64) -> Result<Scene, RunError> {
         let Curve { found, times, phases, columns } = self.curve(part)?;
         let mut phases: Vec<_> = phases.iter().map(|phase| phase.name()).enumerate().collect();

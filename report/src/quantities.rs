@@ -35,6 +35,15 @@ pub fn readable(magnitude: f64, unit: &str) -> (f64, &str) {
     }
 }
 
+/// The unit in which people read the peak of a motion of this `magnitude`: mm, multiples of `g` (m/s²), or that of [`readable`].
+pub fn of_motion(magnitude: f64, unit: &str, g: f64) -> (f64, &str) {
+    match unit {
+        "m" => (1e-3, "mm"),
+        "m/s2" => (g, "g"),
+        unit => readable(magnitude, unit),
+    }
+}
+
 /// A force or a moment in the unit of [`readable`], written by `digits`.
 pub fn in_readable_unit(value: f64, unit: &str, digits: fn(f64) -> String) -> String {
     let (per_unit, unit) = readable(value, unit);

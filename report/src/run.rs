@@ -172,7 +172,7 @@ pub(crate) trait OneOrMany: Drawn + Compared {
     /// Right-hand-side evaluations that the search for the peaks took, if it counts them.
     fn evaluations(peaks: &Self::Peaks) -> Option<u64>;
 
-    /// One of the outputs that are drawn, in the order of [`Run::drawn`].
+    /// The drawn output at the place `which` of [`Run::drawn`].
     fn drawn(outputs: &Self::Outputs, which: usize) -> f64;
 }
 

@@ -1,5 +1,5 @@
 //! The summary of a run.
-use crate::quantities::readable;
+use crate::quantities::of_motion;
 use crate::run::{Found, NamedPeak, OF_FLOOR, Run, Taken};
 use crate::validity;
 use rocking::digits::significant;
@@ -32,13 +32,8 @@ impl Run {
     pub fn text(&self, found: &Found, limits: &Limits) -> Result<String, fmt::Error> {
         let mut out = String::new();
         let base = self.structure.base();
-        let read = |magnitude: f64, unit| match unit {
-            "m" => (1e-3, "mm"),
-            "m/s2" => (base.g, "g"),
-            unit => readable(magnitude, unit),
-        };
         for NamedPeak { name, magnitude, unit, time } in found.peaks.iter().filter(|peak| !peak.name.ends_with(']')) {
-            let (per_unit, unit) = read(*magnitude, unit);
+            let (per_unit, unit) = of_motion(*magnitude, unit, base.g);
             let (magnitude, time) = (significant(magnitude / per_unit), instant(*time));
             writeln!(out, "{:<14} {magnitude:>12} {unit:<4} at {time} s", format!("peak |{name}|"))?;
         }
@@ -48,7 +43,7 @@ impl Run {
             let columns = OF_FLOOR.iter().enumerate().map(|(i, (name, unit))| match i {
                 0 => (name, 1.0, *unit),
                 i => {
-                    let (per_unit, unit) = read(largest(i), unit);
+                    let (per_unit, unit) = of_motion(largest(i), unit, base.g);
                     (name, per_unit, unit)
                 }
             });

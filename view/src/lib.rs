@@ -4,7 +4,7 @@
 use rocking::run::Ending;
 use serde::Serialize;
 
-/// What a page with [`MOTION`] looks like.
+/// The style of a page with [`MOTION`].
 pub const STYLE: &str = include_str!("view.css");
 
 /// The elements of a page that show a motion: the last in its `main`, and those after it.
@@ -17,7 +17,7 @@ pub const SCRIPT: &str = include_str!("motion.js");
 const QUANTUM: f64 = 1e-5;
 const QUANTUM_OF_TIME: f64 = 1e-7;
 
-/// What a page shows of a run.
+/// The content of a page about a run.
 #[derive(Serialize)]
 pub struct Scene {
     /// Title of the ground motion.

@@ -1,7 +1,7 @@
 //! The picture of a run over the height: the peaks of floors and storeys, and those of the structure on a fixed base.
 use crate::picture::{Picture, TITLE, axes, chart, colour, dashed, line, titled};
 use plotters::prelude::*;
-use rocking_report::quantities::readable;
+use rocking_report::quantities::of_motion;
 use rocking_report::run::{Found, OF_FLOOR, Run};
 
 const WIDTH: u32 = 1000;
@@ -33,11 +33,7 @@ pub fn draw(picture: Picture, run: &Run, found: &Found) -> anyhow::Result<()> {
         let area = titled(area, run.ground.title(), about)?;
         for ((i, name, at), area) in SHOWN.into_iter().zip(area.split_evenly((1, SHOWN.len()))) {
             let most = floors.iter().chain(&fixed).map(|floor| floor[i]).fold(0.0, f64::max);
-            let (per_unit, unit) = match OF_FLOOR[i].1 {
-                "m" => (1e-3, "mm"),
-                "m/s2" => (g, "g"),
-                unit => readable(most, unit),
-            };
+            let (per_unit, unit) = of_motion(most, OF_FLOOR[i].1, g);
             let ground = [found, &on_fixed_base].map(|found| found.peaks[0].magnitude);
             let largest = 1.1 * most.max(if at == At::Floor { ground[0] } else { 0.0 }) / per_unit;
             let across = 0.0..if largest > 0.0 { largest } else { 1.0 };
