@@ -145,7 +145,7 @@ impl<Q: Moves> Guard<Q> for Uplift {
     fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {
         let Motion { state, dissipators, .. } = &now.motion;
         let start = now.level.subject().start(*state, dissipators, LinearLoad::held(now.load), ahead);
-        now.level.holds(&start)
+        now.level.stays_for(&start)
     }
 
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {

@@ -14,21 +14,20 @@
 //! If a structure is restrained or shaken vertically, the equations of rocking have more terms. They are then solved by series
 //! alone, and there are no modes.
 
-use crate::levels::first_uplift;
+use crate::levels::first_uplift::Liftable;
 use crate::levels::full_contact::{self, ExactContact};
-use crate::levels::level::{ElasticRocking, Level, Now, Rates, Subject, way};
+use crate::levels::level::{ElasticRocking, Level, Now, Rates, Subject};
 use crate::levels::linear::LinearRocking;
 use crate::levels::modal::ModalRocking;
 use crate::levels::nonlinear::NonlinearRocking;
 use crate::levels::rigid::Rigid;
 use crate::mechanics::instant::Second;
-use crate::mechanics::restraint::{Angles, Dissipators};
+use crate::mechanics::restraint::Angles;
 use crate::mechanics::state::InitialStateError;
-use crate::mechanics::uplift::{self, TurningMoment};
+use crate::mechanics::uplift::least_hold;
 use crate::numbers::bend::Bend;
-use crate::series::first_crossing::Crossing;
-use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
-use crate::{Phase, Side, State, Structure};
+use crate::series::taylor::{Arc, Start};
+use crate::{Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
@@ -171,8 +170,6 @@ impl AnyLevel {
 #[derive(Clone, Debug)]
 pub(crate) struct Elastic<Rocking> {
     contact: Option<ExactContact>,
-    /// The moment that turns the base at uplift.
-    turning: TurningMoment,
     rocking: Rocking,
 }
 
@@ -191,7 +188,7 @@ impl<Rocking: ElasticRocking> Elastic<Rocking> {
     }
 
     fn new(contact: Option<ExactContact>, rocking: Rocking) -> Elastic<Rocking> {
-        Elastic { contact, turning: rocking.turning_moment(), rocking }
+        Elastic { contact, rocking }
     }
 
     /// The |u| (m) below which the base stays down over the interval of `start`, whatever pushes the top mass.
@@ -200,7 +197,10 @@ impl<Rocking: ElasticRocking> Elastic<Rocking> {
         let &Subject { ref structure, is_tied, .. } = self.rocking.subject();
         match is_tied {
             false => structure.u_cr, // every leap asks
-            true => uplift::least_displacement(structure, start.a_v, start.interval, start.dissipators),
+            true => {
+                let hold = least_hold(&structure.base, start.a_v, start.interval, start.dissipators);
+                hold / (structure.parameters().H * structure.k)
+            }
         }
     }
 }
@@ -244,25 +244,16 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
         matches!(phase, Phase::Rocking(side) if self.rocking.is_singular(side, state))
     }
 
-    fn first_uplift(&self, start: &Start, arc: &Arc) -> (Crossing, Side) {
-        let farthest = arc.u[0].abs() + sum_of_magnitudes(&arc.u[1..=arc.order]) * arc.reach;
-        if farthest < self.least_displacement(start) {
-            return (Crossing::None, Side::Right);
-        }
-        first_uplift::first(self.structure(), &self.turning, start, arc)
-    }
-
-    fn holds(&self, start: &Start) -> bool {
-        start.state.u.abs() + way(start.interval, start.state.u_dot) < self.least_displacement(start)
-    }
-
-    fn stays_down(&self, state: &State, dissipators: &Dissipators) -> bool {
-        let at_rest = Start { dissipators, ..Start::default() };
-        uplift::farthest(self.structure(), state) < self.least_displacement(&at_rest)
-    }
-
-    fn uplift_margin(&self, now: &Now) -> (f64, Side) {
-        uplift::margin(self.structure(), &self.turning, now.state, now.load.a_v, now.dissipators)
+    #[inline(always)]
+    fn liftable(&self) -> Option<Liftable<'_>> {
+        let &Subject { ref structure, angles, .. } = self.subject();
+        Some(Liftable {
+            base: &structure.base,
+            modes: std::slice::from_ref(&structure.mode),
+            rigid: None,
+            lean: self.rocking.lean(),
+            has_constant_inertia: angles == Angles::Small,
+        })
     }
 
     fn accelerations(&self, phase: Phase, now: &Now) -> Second<f64> {
@@ -309,7 +300,8 @@ impl Level for FixedBase {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Load, Parameters, Ramp};
+    use crate::mechanics::restraint::Dissipators;
+    use crate::{Load, Parameters, Ramp, Side};
     use proptest::prelude::*;
 
     /// Numbers between −1 and 1: a linear congruential generator.

@@ -1,91 +1,148 @@
-//! The first instant of a motion in full contact at which [uplift](crate::mechanics::uplift) is due.
+//! [Uplift](crate::mechanics::uplift) of a structure in full contact: its first instant, and the distance from it.
 
-use crate::mechanics::restraint::Restraint;
-use crate::mechanics::uplift::{self, LEAST_EXCESS, TurningMoment};
+use crate::levels::level::way;
+use crate::mechanics::lateral::Coordinates;
+use crate::mechanics::restraint::Dissipators;
+use crate::mechanics::uplift::{self, Lift, hold, inertia, least_hold};
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
-use crate::series::taylor::{Arc, Series, Start};
-use crate::{Side, Structure};
+use crate::series::taylor::{Arc, Start};
+use crate::series::terms::Terms;
+use crate::structure::{Base, Mode};
+use crate::{Ramp, Side, State};
 
-/// The first instant of `arc`, a motion in full contact from `start`, at which uplift is due, and the side about which the
-/// structure rocks from there. `turning` is that of the equations by which it will.
-pub(crate) fn first(structure: &Structure, turning: &TurningMoment, start: &Start, arc: &Arc) -> (Crossing, Side) {
-    let right = first_about(structure, turning, start, arc, Side::Right);
-    let left = first_about(structure, turning, start, arc, Side::Left);
-    sooner(right, left, |sigma| {
-        let (state, a_v) = (arc.at(sigma), start.a_v.at(sigma * arc.span));
-        uplift::margin(structure, turning, &state, a_v, start.dissipators).1
-    })
+/// The structure whose base can lift off, as a level of detail sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Liftable<'a> {
+    pub base: &'a Base,
+    pub modes: &'a [Mode],
+    /// Mass (kg) and height (m) of a top mass that turns rigidly with the base.
+    pub rigid: Option<[f64; 2]>,
+    /// Factor of the moment that the displaced weights add.
+    pub lean: f64,
+    /// Whether the inertia about a pivot is the inertia of linear equations, which does not change with u.
+    pub has_constant_inertia: bool,
 }
 
-/// The sooner of the uplifts about the `right` and the `left` side, and its side. If both come at the same σ, `both` gives the side.
-#[inline(always)]
-pub(crate) fn sooner(right: Crossing, left: Crossing, both: impl FnOnce(f64) -> Side) -> (Crossing, Side) {
-    if right.sigma() == left.sigma() && right.sigma() < f64::INFINITY {
-        return (right, both(right.sigma()));
-    }
-    if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
-}
-
-/// The first σ at which uplift is due: the gap of the `rule` and the gap of the moment that `turns` the base are closed. The right
-/// side of the rule has the coefficients `limit`. Where this side is not above 0, nothing holds the base, and the moment decides alone.
-#[inline(always)]
-pub(crate) fn first_due(rule: Gap, turns: Gap, is_held: bool, limit: [f64; 2], reach: f64) -> Crossing {
-    let far = first_time_all_closed([rule, turns], reach);
-    if is_held {
-        return far;
-    }
-    let loose = first_time_all_closed([Gap::new(&limit, 1.0, 0.0), turns], reach);
-    if far.sigma() <= loose.sigma() { far } else { loose }
-}
-
-fn first_about(structure: &Structure, turning: &TurningMoment, start: &Start, arc: &Arc, side: Side) -> Crossing {
-    let s = side.sign();
-    let [a_v, a_v_change] = [0, 1].map(|k| start.a_v.coefficient(k, arc.span));
-    let restraint = Restraint::about(structure, side, start.dissipators);
-    let hold = restraint.hold(a_v);
-    let end = if a_v_change == 0.0 { hold } else { restraint.hold(a_v + a_v_change) };
-    let [rise, gain] = [end.displacement - hold.displacement, end.moment - hold.moment];
-    let moving = a_v_change != 0.0;
-    let mut risen;
-    let mut displacement = &arc.u;
-    if moving {
-        risen = arc.u;
-        risen[1] -= s * rise;
-        displacement = &risen;
-    }
-    let displacement = Gap::new(arc.used(displacement), -s, hold.displacement);
-    let is_held = hold.displacement.min(end.displacement) > 0.0;
-    if is_held && displacement.is_open_throughout(arc.reach) {
-        return Crossing::None;
-    }
-    let mut moment: Series = arc.u;
-    for (k, coefficient) in moment[..=arc.order].iter_mut().enumerate() {
-        *coefficient = turning.at(arc.u[k], arc.u_dot[k], a_v);
-        if moving && k > 0 {
-            *coefficient += a_v_change * arc.u[k - 1] - if k == 1 { s * gain } else { 0.0 };
+impl Liftable<'_> {
+    /// The force (N) on mass that no mode carries, and its moment about the height of the pivots (N·m). The base feels `a_g` (m/s²)
+    /// and the modes feel `a_top`.
+    #[inline(always)]
+    pub(crate) fn rest<Q: Coordinates>(&self, a_g: f64, a_top: &Q) -> [f64; 2] {
+        match self.rigid {
+            Some([mass, height]) => {
+                let force = mass * (a_g - a_top.of(0));
+                [force, height * force]
+            }
+            None => a_top.rest().unwrap_or_default(),
         }
     }
-    let moment = Gap::new(arc.used(&moment), -s, (1.0 + LEAST_EXCESS) * turning.weight + hold.moment);
-    let limit = [hold.displacement, if moving { rise } else { 0.0 }];
-    first_due(displacement, moment, is_held, limit, arc.reach)
+
+    /// Moment on the base to the right, N·m, of the mass that turns rigidly.
+    fn rigid<Q: Coordinates>(&self, a_g: f64, a_top: &Q) -> f64 {
+        self.rest(a_g, a_top)[1] - self.base.S_res * a_g
+    }
+
+    /// The moments that lift the base in `state`, given the moment of the mass that turns rigidly.
+    fn lift<Q: Coordinates>(&self, state: &State<Q>, rigid: f64, a_v: f64) -> Lift<f64> {
+        Lift::new(self.base, self.modes, self.lean, [rigid, a_v], |j| [state.u.of(j), state.u_dot.of(j)])
+    }
+
+    /// A bound of the moment of the springs, N·m, given a bound of each displacement.
+    fn most_springs(&self, most: impl Fn(usize, &Mode) -> f64) -> f64 {
+        let modes = self.modes.iter().enumerate();
+        modes.map(|(j, mode)| (mode.height * mode.stiffness).abs() * most(j, mode)).sum()
+    }
+
+    /// The least moment that holds the base down over the interval of `start`, less the most that mass that turns rigidly takes of it.
+    pub(crate) fn least_hold<Q: Coordinates>(&self, start: &Start<Q>) -> f64 {
+        let rigid = |tau: f64| self.rigid(start.a_g.at(tau), &start.a_top.at(tau)).abs();
+        let taken = rigid(0.0).max(rigid(start.interval));
+        least_hold(self.base, start.a_v, start.interval, start.dissipators) - taken
+    }
+
+    /// Distance of the structure from uplift, and its side, as in [`uplift::margin`].
+    pub(crate) fn margin<Q: Coordinates>(
+        &self,
+        state: &State<Q>,
+        [a_g, a_v]: [f64; 2],
+        a_top: &Q,
+        dissipators: &Dissipators,
+    ) -> (f64, Side) {
+        let lift = self.lift(state, self.rigid(a_g, a_top), a_v);
+        uplift::margin(self.base, &lift, a_v, dissipators, |side| match self.has_constant_inertia {
+            true => 1.0,
+            false => inertia(self.base, self.modes, side, |j| state.u.of(j)),
+        })
+    }
+
+    /// Whether a structure in full contact in `state` stays there while nothing acts on it.
+    pub(crate) fn stays_down<Q: Coordinates>(&self, state: &State<Q>, dissipators: &Dissipators) -> bool {
+        let farthest = |j: usize, mode: &Mode| libm::hypot(state.u.of(j), state.u_dot.of(j) / mode.omega());
+        self.most_springs(farthest) < least_hold(self.base, Ramp::default(), 0.0, dissipators)
+    }
+
+    /// Whether the base certainly stays down for the interval of `start`, a tiny time, whatever accelerates the modes. Mass that turns
+    /// rigidly may lift the base at once.
+    pub(crate) fn stays_for<Q: Coordinates>(&self, start: &Start<Q>) -> bool {
+        let Start { state, interval, .. } = start;
+        let most = |j: usize| state.u.of(j).abs() + way(*interval, state.u_dot.of(j));
+        self.base.S_res == 0.0 && self.most_springs(|j, _| most(j)) < self.least_hold(start)
+    }
+
+    /// The first instant of `arc`, a motion in full contact from `start`, at which uplift is due, and the side about which the
+    /// structure rocks from there.
+    pub(crate) fn first<Q: Coordinates>(&self, start: &Start<Q>, arc: &Arc<Q>) -> (Crossing, Side) {
+        let farthest = |j: usize| {
+            let terms: f64 = arc.u[1..=arc.order].iter().map(|u| u.of(j).abs()).sum();
+            arc.u[0].of(j).abs() + terms * arc.reach
+        };
+        if self.most_springs(|j, _| farthest(j)) < self.least_hold(start) {
+            return (Crossing::None, Side::Right);
+        }
+        let &Start { a_g, a_top, a_v, dissipators, .. } = start;
+        let a_v_terms = Terms::ramp(a_v.value, a_v.slope * arc.span);
+        let rigid = Terms::ramp(self.rigid(a_g.value, &a_top.value), self.rigid(a_g.slope, &a_top.slope) * arc.span);
+        let lift = Lift::new(self.base, self.modes, self.lean, [rigid, a_v_terms], |j| {
+            [&arc.u, &arc.u_dot].map(|series| Terms::from_fn(arc.order, |k| series[k].of(j)))
+        });
+        let about = |side: Side| {
+            let hold = hold(self.base, side, a_v_terms, dissipators);
+            let [rule, turns] = lift.missing(self.base, side, hold);
+            let [rule, turns, hold] = [&rule, &turns, &hold].map(|gap| Gap::new(gap.used(), 1.0, 0.0));
+            // where nothing holds the base, the moment that turns it decides alone
+            let far = first_time_all_closed([rule, turns], arc.reach);
+            let loose = first_time_all_closed([hold, turns], arc.reach);
+            if far.sigma() <= loose.sigma() { far } else { loose }
+        };
+        let (right, left) = (about(Side::Right), about(Side::Left));
+        let side = match right.sigma().partial_cmp(&left.sigma()) {
+            Some(std::cmp::Ordering::Equal) if right.sigma() < f64::INFINITY => {
+                let (sigma, at) = (right.sigma(), right.sigma() * arc.span);
+                self.margin(&arc.at(sigma), [a_g.at(at), a_v.at(at)], &a_top.at(at), dissipators).1
+            }
+            Some(std::cmp::Ordering::Greater) => Side::Left,
+            _ => Side::Right,
+        };
+        (if side == Side::Right { right } else { left }, side)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::levels::full_contact;
     use crate::levels::nonlinear::accelerations;
-    use crate::mechanics::load::{Load, Ramp};
-    use crate::mechanics::restraint::Dissipators;
-    use crate::{Parameters, State};
+    use crate::{Detail, Load, Parameters, Phase, Structure};
     use proptest::prelude::*;
 
-    fn first_from(structure: &Structure, state: State) -> (Crossing, Side) {
-        let mut arc = Arc::default();
-        let a_g = Ramp::default();
-        let start = Start { state, a_g, a_top: a_g, interval: 1e-9, local_error: 1e-13, ..Start::default() };
-        full_contact::series(structure, &start, &mut arc);
-        first(structure, &TurningMoment::new(structure), &start, &arc)
+    /// The first uplift of the motion in full contact that starts in `state`, its σ, and the state and time there.
+    fn first_from(parameters: Parameters, state: State, push: f64, interval: f64) -> (Crossing, Side, State, f64) {
+        let level = Detail::Nonlinear.level(Structure::new(parameters).unwrap(), 1e-15, false).unwrap();
+        let (mut arc, push) = (Arc::default(), Ramp { value: push, slope: 0.0 });
+        let start = Start { state, a_g: push, a_top: push, interval, local_error: 1e-15, ..Start::default() };
+        level.series(Phase::FullContact, &start, &mut arc);
+        let (crossing, side) = level.first_uplift(&start, &arc);
+        let sigma = crossing.sigma().min(1.0);
+        (crossing, side, arc.at(sigma), sigma * arc.span)
     }
 
     proptest! {
@@ -94,7 +151,8 @@ mod tests {
         fn the_moment_condition_is_that_of_equations_5_and_6(
             u in -0.02..0.02f64, u_dot in -3.0..3.0f64, a_g in -20.0..20.0f64, F_t in -3e3..3e3f64,
         ) {
-            let structure = Structure::new(Parameters { zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
+            let parameters = Parameters { zeta_fc: 0.1, ..Parameters::MCMANUS };
+            let structure = Structure::new(parameters).unwrap();
             let state = State { u, u_dot, ..State::default() };
             let side = Side::of(u);
             let load = Load { a_g, F_t, a_v: 0.0 };
@@ -102,37 +160,36 @@ mod tests {
             prop_assume!(theta_ddot.abs() > 1e-6 && (u.abs() - structure.u_cr).abs() > 1e-8);
             let both = u.abs() >= structure.u_cr && side.sign() * theta_ddot > 0.0;
             let expected = if both { (Crossing::At(0.0), side) } else { (Crossing::None, Side::Right) };
-            prop_assert_eq!(first_from(&structure, state), expected);
+            let (crossing, found, ..) = first_from(parameters, state, 0.0, 1e-9);
+            prop_assert_eq!((crossing, found), expected);
         }
     }
 
     #[test]
     fn a_displacement_that_reaches_u_cr_lifts_off() {
-        let structure = Structure::new(Parameters::EVISON).unwrap();
-        let at_rest = |factor: f64| State { u: factor * structure.u_cr, ..State::default() };
-        assert_eq!(first_from(&structure, at_rest(1.0)), (Crossing::At(0.0), Side::Right));
-        assert_eq!(first_from(&structure, at_rest(-1.0)), (Crossing::At(0.0), Side::Left));
-        assert_eq!(first_from(&structure, at_rest(1.0 - 1e-12)).0, Crossing::None);
+        let u_cr = Structure::new(Parameters::EVISON).unwrap().u_cr;
+        let first = |u: f64| {
+            let (crossing, side, ..) = first_from(Parameters::EVISON, State { u, ..State::default() }, 0.0, 1e-9);
+            (crossing, side)
+        };
+        assert_eq!(first((1.0 + 1e-15) * u_cr), (Crossing::At(0.0), Side::Right));
+        assert_eq!(first(-(1.0 + 1e-15) * u_cr), (Crossing::At(0.0), Side::Left));
+        assert_eq!(first((1.0 - 1e-12) * u_cr).0, Crossing::None);
     }
 
     /// After a landing with u > u_cr and a velocity whose damping force holds the base down, contact lasts until the
     /// moment of the weight is overcome.
     #[test]
     fn a_landing_beyond_u_cr_waits_for_the_moment() {
-        let structure = Structure::new(Parameters { zeta_fc: 0.2, ..Parameters::EVISON }).unwrap();
+        let parameters = Parameters { zeta_fc: 0.2, ..Parameters::EVISON };
+        let structure = Structure::new(parameters).unwrap();
         let state = State { u: 1.05 * structure.u_cr, u_dot: -0.02, ..State::default() };
-        let push = Ramp { value: -40.0, slope: 0.0 }; // turns the velocity round
-        let mut arc = Arc::default();
-        let start = Start { state, a_g: push, a_top: push, interval: 2e-3, local_error: 1e-15, ..Start::default() };
-        full_contact::series(&structure, &start, &mut arc);
-        let (Crossing::At(sigma), Side::Right) = first(&structure, &TurningMoment::new(&structure), &start, &arc)
-        else {
-            panic!("no uplift")
-        };
-        let there = arc.at(sigma);
-        let load = Load::ground(push.value);
+        let push = -40.0; // turns the velocity round
+        let (crossing, side, there, time) = first_from(parameters, state, push, 2e-3);
+        assert!(matches!((crossing, side), (Crossing::At(_), Side::Right)), "no uplift");
+        let load = Load::ground(push);
         let theta_ddot = accelerations(&structure, Side::Right, &there, load, &Dissipators::NEW).unwrap()[1];
-        assert!(sigma * arc.span > 1e-5 && there.u > structure.u_cr);
+        assert!(time > 1e-5 && there.u > structure.u_cr);
         assert!((0.0..1e-9).contains(&theta_ddot), "{theta_ddot}");
     }
 }

@@ -1,12 +1,12 @@
 //! A level of detail as the engine uses it: equations, uplift, impact, and exact leaps where there are any.
 
+use crate::levels::first_uplift::Liftable;
 use crate::levels::rules::ChatterLimit;
 use crate::mechanics::impact;
 use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::restraint::{Angles, Dissipators};
-use crate::mechanics::uplift::TurningMoment;
 use crate::numbers::bend::Bend;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
@@ -47,8 +47,8 @@ impl<Q: Coordinates> Subject<Q> {
     }
 }
 
-/// The level of detail of a structure. The provided methods are those of an elastic strut. Without the methods about uplift the
-/// base stays on the ground.
+/// The level of detail of a structure. The provided methods are those of an elastic strut. A level without a
+/// [liftable](Level::liftable) structure has a fixed base.
 #[allow(private_interfaces)] // the coordinates name the trait, and nobody else can use it
 pub trait Level<Q: Coordinates = f64> {
     fn subject(&self) -> &Subject<Q>;
@@ -81,25 +81,31 @@ pub trait Level<Q: Coordinates = f64> {
         false
     }
 
+    /// The structure whose base can lift off; none if the base is fixed.
+    fn liftable(&self) -> Option<Liftable<'_>> {
+        None
+    }
+
     /// The first instant of `arc`, a motion in full contact from `start`, at which uplift is due, and about which side.
-    fn first_uplift(&self, _start: &Start<Q>, _arc: &Arc<Q>) -> (Crossing, Side) {
-        (Crossing::None, Side::Right)
+    fn first_uplift(&self, start: &Start<Q>, arc: &Arc<Q>) -> (Crossing, Side) {
+        self.liftable().map_or((Crossing::None, Side::Right), |liftable| liftable.first(start, arc))
     }
 
     /// Whether the base certainly stays down for the interval of `start`, a tiny time, whatever accelerates the modes.
-    fn holds(&self, _start: &Start<Q>) -> bool {
-        true
+    fn stays_for(&self, start: &Start<Q>) -> bool {
+        self.liftable().is_none_or(|liftable| liftable.stays_for(start))
     }
 
     /// Distance of a structure in full contact from uplift, as a fraction of the demand for uplift, and the side of that uplift.
     /// The distance is continuous, and uplift is due if it is not positive.
-    fn uplift_margin(&self, _now: &Now<Q>) -> (f64, Side) {
-        (1.0, Side::Right)
+    fn uplift_margin(&self, &Now { state, load, dissipators }: &Now<Q>) -> (f64, Side) {
+        let a_top = load.on_modes(self.structure());
+        self.liftable().map_or((1.0, Side::Right), |of| of.margin(state, [load.a_g, load.a_v], &a_top, dissipators))
     }
 
     /// Whether a structure in full contact in `state` stays there while nothing acts on it.
-    fn stays_down(&self, _state: &State<Q>, _dissipators: &Dissipators) -> bool {
-        true
+    fn stays_down(&self, state: &State<Q>, dissipators: &Dissipators) -> bool {
+        self.liftable().is_none_or(|liftable| liftable.stays_down(state, dissipators))
     }
 
     /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
@@ -151,9 +157,9 @@ pub(crate) trait ElasticRocking {
         false
     }
 
-    /// The moment that gives the sign of θ̈ at the start of rocking.
-    fn turning_moment(&self) -> TurningMoment {
-        TurningMoment::new(&self.subject().structure)
+    /// Factor of the moment that the displaced weight adds at the start of rocking.
+    fn lean(&self) -> f64 {
+        1.0
     }
 
     fn accelerations(&self, side: Side, now: &Now) -> [f64; 2];

@@ -20,7 +20,6 @@ use crate::levels::oscillator::Kept;
 use crate::levels::ties::TieSeries;
 use crate::mechanics::instant::Second;
 use crate::mechanics::restraint::{Angles, Restraint};
-use crate::mechanics::uplift::TurningMoment;
 use crate::numbers::bend::Bend;
 use crate::series::taylor::{Arc, Series, Start};
 use crate::{Side, State, Structure};
@@ -217,13 +216,6 @@ impl ElasticRocking for LinearRocking {
             let u_ddot = weighted(&arc.theta) - a_top.coefficient(n, span) - elastic - H * theta_ddot;
             (u_ddot * per, theta_ddot * per)
         });
-    }
-
-    fn turning_moment(&self) -> TurningMoment {
-        match self.subject.is_tied {
-            true => TurningMoment { inertia: TurningMoment::CONSTANT, ..TurningMoment::new(&self.subject.structure) },
-            false => self.system.turning_moment(),
-        }
     }
 
     fn accelerations(&self, side: Side, now: &Now) -> [f64; 2] {

@@ -7,7 +7,6 @@
 
 use crate::levels::level::{Pace, Rates};
 use crate::mechanics::instant::Second;
-use crate::mechanics::uplift::TurningMoment;
 use crate::numbers::bend::Bend;
 use crate::series::taylor::{Arc, Start};
 use crate::{Side, State};
@@ -79,11 +78,5 @@ impl LinearSystem {
             u_dot = u_rate;
             (u_rate, theta_rate)
         });
-    }
-
-    /// s θ̈ at θ = θ̇ = 0.
-    pub(crate) fn turning_moment(&self) -> TurningMoment {
-        let Row { u, u_dot, side, .. } = self.theta_ddot;
-        TurningMoment { u, u_dot, weight: -side, inertia: TurningMoment::CONSTANT }
     }
 }

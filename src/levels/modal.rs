@@ -13,7 +13,6 @@ use crate::levels::level::{ElasticRocking, Now, Pace, Rates, Subject};
 use crate::levels::linear_system::{LinearSystem, Row};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::mechanics::instant::Second;
-use crate::mechanics::uplift::TurningMoment;
 use crate::numbers::bend::Bend;
 use crate::series::taylor::{Arc, Start, reciprocal};
 use crate::{Side, State, Structure};
@@ -164,8 +163,10 @@ impl ElasticRocking for ModalRocking {
         self.system.series(&self.pace, side, start, arc);
     }
 
-    fn turning_moment(&self) -> TurningMoment {
-        self.system.turning_moment()
+    /// χ (1−χ): what the two modes leave of g u.
+    fn lean(&self) -> f64 {
+        let &Structure { chi, one_minus_chi, .. } = &self.subject.structure;
+        chi * one_minus_chi
     }
 
     fn accelerations(&self, side: Side, now: &Now) -> [f64; 2] {

@@ -16,8 +16,8 @@
 //! [`rigid`]: crate::levels::rigid
 
 use crate::levels::detail::Detail;
-use crate::levels::first_uplift::{first_due, sooner};
-use crate::levels::level::{Level, Now, Rates, Subject, way};
+use crate::levels::first_uplift::Liftable;
+use crate::levels::level::{Level, Now, Rates, Subject};
 use crate::levels::nonlinear::{Factors, LEAST_INERTIA, NO_ROW, products, row};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::levels::rigid as block;
@@ -26,12 +26,9 @@ use crate::levels::ties::TieSeries;
 use crate::mechanics::impact;
 use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
-use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{self, Angles, Dissipators};
-use crate::mechanics::uplift::{LEAST_EXCESS, nearer};
-use crate::series::first_crossing::{Crossing, Gap};
-use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation, ZERO};
-use crate::structure::frame::Frame;
+use crate::mechanics::uplift::inertia;
+use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
 use crate::structure::{Base, Mode};
 use crate::{Phase, Side, State};
 use std::cell::RefCell;
@@ -148,37 +145,6 @@ impl Four {
         }
         [square, heavy[MAX_ORDER - k]]
     }
-}
-
-/// Inertia D (kg·m²) about the pivot of `side`.
-fn inertia(frame: &Frame, side: Side, u: &Modes) -> f64 {
-    let &Base { m0, J0, B, .. } = Modes::base(frame);
-    let lever = |j: usize, mode: &Mode| side.sign() * B * mode.share - u.of(j);
-    J0 + m0 * B * B + Modes::sum(frame, |j, mode| mode.mass * lever(j, mode) * lever(j, mode))
-}
-
-/// The moment that holds the base down about `side` under the vertical acceleration `a_v`, N·m: the right side of (M3).
-fn hold(base: &Base, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
-    let [tendon, four @ ..] = restraint::ties(base, side, dissipators);
-    let residual: f64 = four.iter().map(|tie| tie.lever * tie.force).sum();
-    base.m_t * (base.g + a_v) * base.B + tendon.force * base.B + side.sign() * residual
-}
-
-/// Moment on the base to the right, N·m, of the mass that turns rigidly. It feels the ground acceleration `a_g` and the forces with
-/// this `rest`.
-fn rigid(base: &Base, a_g: f64, rest: Option<[f64; 2]>) -> f64 {
-    rest.map_or(0.0, |[_, moment]| moment) - base.S_res * a_g
-}
-
-/// The moments that lift the base, to the right, N·m: of the springs and of the mass that turns rigidly (M3), and of all that gives
-/// D θ̈ at θ = θ̇ = 0 (M2).
-fn lifting(frame: &Frame, u: &Modes, u_dot: &Modes, [rigid, weight]: [f64; 2]) -> [f64; 2] {
-    let c_ratio = frame.base.c_ratio;
-    let springs = Modes::sum(frame, |j, mode| mode.height * mode.stiffness * u.of(j)) + rigid;
-    let others = Modes::sum(frame, |j, mode| {
-        mode.height * (c_ratio * mode.damping) * u_dot.of(j) + mode.gamma * weight * u.of(j)
-    });
-    [springs, springs + others]
 }
 
 impl ManyModes {
@@ -393,8 +359,8 @@ impl ManyModes {
                 offset += four.mass * four.share * u;
             }
             let mut moment = (moment + offset * g + before * lift).reduce_add() - pivot * m_t * weight;
-            let [value, slope] =
-                [(a_g.value, a_top.value), (a_g.slope, a_top.slope)].map(|(a, on)| rigid(base, a, on.rest()));
+            let [value, slope] = [(a_g.value, a_top.value), (a_g.slope, a_top.slope)]
+                .map(|(a, on)| on.rest().map_or(0.0, |[_, moment]| moment) - S_res * a);
             moment += S_res * lean + of_order([value, slope * span]);
             before = offset;
             if let Some(ties) = &mut ties {
@@ -412,52 +378,6 @@ impl ManyModes {
             }
             theta_dot
         });
-    }
-
-    /// The first instant of `arc`, a motion in full contact, at which both conditions of uplift about `side` hold.
-    fn first_about(&self, side: Side, start: &Start<Modes>, arc: &Arc<Modes>) -> Crossing {
-        let frame = &self.subject.structure;
-        let base = Modes::base(frame);
-        let s = side.sign();
-        let [a_v, a_v_change] = [0, 1].map(|k| start.a_v.coefficient(k, arc.span));
-        let held = hold(base, side, a_v, start.dissipators);
-        let change = hold(base, side, a_v + a_v_change, start.dissipators) - held;
-        let is_held = held.min(held + change) > 0.0;
-        let [mut springs, mut all] = [ZERO; 2];
-        for k in 0..=arc.order {
-            let rigid = rigid(base, start.a_g.coefficient(k, arc.span), start.a_top.coefficient(k, arc.span).rest());
-            [springs[k], all[k]] = lifting(frame, &arc.u[k], &arc.u_dot[k], [rigid, base.g + a_v]);
-            if k > 0 {
-                all[k] += a_v_change * Modes::sum(frame, |j, mode| mode.gamma * arc.u[k - 1].of(j));
-            }
-        }
-        springs[1] -= s * change;
-        all[1] -= s * change;
-        let rule = Gap::new(arc.used(&springs), -s, held);
-        if is_held && rule.is_open_throughout(arc.reach) {
-            return Crossing::None;
-        }
-        let excess = LEAST_EXCESS * (base.m_t * base.g + base.ties.P_0) * base.B;
-        let turns = Gap::new(arc.used(&all), -s, held + excess);
-        first_due(rule, turns, is_held, [held, change], arc.reach)
-    }
-
-    /// The moment of the mass that turns rigidly, `tau` (s) after `start`.
-    fn rigid_at(&self, start: &Start<Modes>, tau: f64) -> f64 {
-        rigid(&self.subject.structure.base, start.a_g.at(tau), start.a_top.at(tau).rest())
-    }
-
-    /// The moment that the base's hold has at least over the interval of `start`, N·m.
-    fn least_hold(&self, start: &Start<Modes>) -> f64 {
-        if self.detail == Detail::FixedBase {
-            return f64::INFINITY;
-        }
-        let base = Modes::base(&self.subject.structure);
-        let least = start.a_v.value.min(start.a_v.at(start.interval));
-        [Side::Right, Side::Left]
-            .map(|side| hold(base, side, least, start.dissipators))
-            .into_iter()
-            .fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -486,9 +406,7 @@ impl Level<Modes> for ManyModes {
             end.u.set(j, to[0]);
             end.u_dot.set(j, to[1]);
         }
-        // what the mass that turns rigidly takes of the hold
-        let held = self.least_hold(start)
-            - [0.0, interval].map(|tau| self.rigid_at(start, tau).abs()).into_iter().fold(0.0, f64::max);
+        let held = self.liftable().map_or(f64::INFINITY, |liftable| liftable.least_hold(start));
         let near = springs[0].abs().max(springs[1].abs()) + bend * interval * interval / 8.0;
         (farthest < held || near < held).then_some(end)
     }
@@ -523,52 +441,18 @@ impl Level<Modes> for ManyModes {
         let frame = &self.subject.structure;
         let &Base { m_t, J0, B, .. } = Modes::base(frame);
         self.detail != Detail::Linear
-            && matches!(phase, Phase::Rocking(side) if inertia(frame, side, &state.u) < LEAST_INERTIA * (J0 + m_t * B * B))
+            && matches!(phase, Phase::Rocking(side) if inertia(&frame.base, frame.modes(), side, |j| state.u.of(j)) < LEAST_INERTIA * (J0 + m_t * B * B))
     }
 
-    fn first_uplift(&self, start: &Start<Modes>, arc: &Arc<Modes>) -> (Crossing, Side) {
-        if self.detail == Detail::FixedBase {
-            return (Crossing::None, Side::Right);
-        }
-        let [right, left] = [Side::Right, Side::Left].map(|side| self.first_about(side, start, arc));
-        sooner(right, left, |sigma| {
-            let at = sigma * arc.span;
-            let load = Load { a_g: start.a_g.at(at), F_t: start.a_top.at(at), a_v: start.a_v.at(at) };
-            self.uplift_margin(&Now { state: &arc.at(sigma), load, dissipators: start.dissipators }).1
+    fn liftable(&self) -> Option<Liftable<'_>> {
+        let Subject { structure, angles, .. } = &self.subject;
+        (self.detail != Detail::FixedBase).then(|| Liftable {
+            base: &structure.base,
+            modes: structure.modes(),
+            rigid: None,
+            lean: 1.0,
+            has_constant_inertia: *angles == Angles::Small,
         })
-    }
-
-    fn holds(&self, start: &Start<Modes>) -> bool {
-        let &Start { state, interval, .. } = start;
-        let most = |j: usize| state.u.of(j).abs() + way(interval, state.u_dot.of(j));
-        let springs = Modes::sum(&self.subject.structure, |j, mode| (mode.height * mode.stiffness).abs() * most(j));
-        springs + self.rigid_at(start, 0.0).abs() < self.least_hold(start)
-    }
-
-    fn stays_down(&self, state: &State<Modes>, dissipators: &Dissipators) -> bool {
-        let springs = Modes::sum(&self.subject.structure, |j, mode| {
-            let omega = mode.omega();
-            (mode.height * mode.stiffness).abs() * libm::hypot(state.u.of(j), state.u_dot.of(j) / omega)
-        });
-        springs < self.least_hold(&Start { dissipators, ..Start::default() })
-    }
-
-    fn uplift_margin(&self, &Now { state, load, dissipators }: &Now<Modes>) -> (f64, Side) {
-        if self.detail == Detail::FixedBase {
-            return (1.0, Side::Right);
-        }
-        let frame = &self.subject.structure;
-        let base = Modes::base(frame);
-        let weight = (base.m_t * base.g + base.ties.P_0) * base.B;
-        let [springs, all] =
-            lifting(frame, &state.u, &state.u_dot, [rigid(base, load.a_g, load.F_t.rest()), base.g + load.a_v])
-                .map(|moment| moment / weight);
-        let about = |side: Side| {
-            let (s, held) = (side.sign(), hold(base, side, load.a_v, dissipators) / weight);
-            let turns = held + LEAST_EXCESS - s * all;
-            ((held - s * springs).min(held).max(turns), turns / inertia(frame, side, &state.u))
-        };
-        nearer(about(Side::Right), about(Side::Left))
     }
 
     fn after_impact(&self, side: Side, before: &State<Modes>) -> (Phase, State<Modes>) {
@@ -608,7 +492,7 @@ impl Level<Modes> for ManyModes {
             let moment = Modes::sum(frame, |j, mode| {
                 mode.mass * mode.height * elastic(j, mode, base.c_ratio) + mode.gamma * g * u.of(j)
             });
-            let rigid = rigid(base, load.a_g, load.F_t.rest());
+            let rigid = load.F_t.rest().map_or(0.0, |[_, moment]| moment) - S_res * load.a_g;
             let moment = moment - pivot * base.m_t * g + S_res * g * theta + rigid - back;
             let theta_ddot = moment / self.left;
             let along = |j: usize, mode: &Mode| mode.share * g * theta - a_top.of(j) - elastic(j, mode, base.c_ratio);
@@ -628,7 +512,7 @@ impl Level<Modes> for ManyModes {
         let [force, height] = load.F_t.rest().unwrap_or_default();
         let moment = moment - pivot * m0 * (g * cos + load.a_g * sin) + S_res * fall - back;
         let moment = moment + force * pivot * sin + height * cos;
-        let theta_ddot = moment / inertia(frame, side, &u);
+        let theta_ddot = moment / inertia(base, frame.modes(), side, |j| u.of(j));
         let along = |j: usize, mode: &Mode| mode.share * g * sin - a_top.of(j) * cos - held(j, mode);
         Second { u_ddot: Modes::each(frame, |j, mode| along(j, mode) - mode.height * theta_ddot), theta_ddot }
     }
@@ -642,10 +526,10 @@ mod tests {
     use crate::mechanics::floors::MotionOfFloors;
     use crate::mechanics::gauge::Gauge;
     use crate::mechanics::instant::Instant;
-    use crate::mechanics::load::LinearLoad;
+    use crate::mechanics::load::{LinearLoad, Load};
     use crate::mechanics::reactions::Reactions;
     use crate::structure::Ties;
-    use crate::structure::frame::{Body, Floor};
+    use crate::structure::frame::{Body, Floor, Frame};
     use crate::{Parameters, Structure};
     use approx::assert_relative_eq;
 
@@ -756,7 +640,8 @@ mod tests {
                 let [tendon, pair @ ..] = restraint::ties(&frame.base, side, &dissipators);
                 let residual: f64 = pair.iter().map(|tie| tie.lever * tie.force).sum();
                 let held = m_t * (g + a_v) * B + tendon.force * B + side.sign() * residual;
-                let turns = level.accelerations(Phase::Rocking(side), &now).theta_ddot * inertia(&frame, side, &u);
+                let inertia = inertia(&frame.base, frame.modes(), side, |j| u.of(j));
+                let turns = level.accelerations(Phase::Rocking(side), &now).theta_ddot * inertia;
                 ((held - side.sign() * springs) / weight).max(-side.sign() * turns / weight)
             });
             let (found, side) = level.uplift_margin(&now);
@@ -809,12 +694,12 @@ mod tests {
                 assert_relative_eq!(reactions.R_m, x.pivot() * reactions.R_v, max_relative = 1e-11);
             } else {
                 let weight = frame.base.g + a_v;
-                let rigid = rigid(&frame.base, a_g, load.F_t.rest());
-                let [springs, others] = lifting(&frame, &u, &u_dot, [rigid, weight]);
-                let c_ratio = frame.base.c_ratio;
-                let damped = Modes::sum(&frame, |j, mode| mode.height * mode.damping * u_dot.of(j));
-                assert_relative_eq!(reactions.R_m, others - (c_ratio - 1.0) * damped, max_relative = 1e-12);
-                assert!(springs != others);
+                let rigid = load.F_t.rest().unwrap_or_default()[1] - frame.base.S_res * a_g;
+                let turns = Modes::sum(&frame, |j, mode| {
+                    let elastic = mode.stiffness * u.of(j) + mode.damping * u_dot.of(j);
+                    mode.height * elastic + mode.gamma * weight * u.of(j)
+                });
+                assert_relative_eq!(reactions.R_m, turns + rigid, max_relative = 1e-12);
                 // the foundation carries its own a_g, and the masses carry the base shear
                 let carried = value(&gauges.V_t) + frame.body().m0 * a_g - forces[0] - forces[1];
                 assert_relative_eq!(reactions.R_h, -carried, max_relative = 1e-12);

@@ -18,16 +18,14 @@
 //! like the error of a step. The kinetic energy that is left out, ½ J_P θ̇², is at most the part ε² of ½ m g H tan² α_cg, the energy
 //! for overturning at small angles.
 
+use crate::levels::first_uplift::Liftable;
 use crate::levels::level::{Level, Now, Rates, Subject};
 use crate::levels::rules::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::impact::restitution;
 use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::load::Load;
-use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
-use crate::mechanics::uplift::least_push;
-use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
+use crate::mechanics::restraint::{Angles, Restraint};
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation, ZERO, product};
 use crate::structure::Base;
 use crate::{Phase, Side, State, Structure};
@@ -64,6 +62,7 @@ pub(crate) fn chatter_limit(base: &Base) -> ChatterLimit {
 #[derive(Clone, Debug)]
 pub(crate) struct Rigid {
     subject: Subject,
+    base: Base,
     /// The coefficients of P and Q in T about the right pivot.
     force_by_shape: [f64; 2],
 }
@@ -73,7 +72,8 @@ impl Rigid {
         let &crate::Parameters { H, B, .. } = subject.structure.parameters();
         let (slenderness, aspect) = (subject.structure.tan_alpha_cg, B / H);
         let parts = [aspect - slenderness, 1.0 + aspect * slenderness];
-        Rigid { subject, force_by_shape: parts.map(|part| part / (1.0 + slenderness * slenderness)) }
+        let base = Base { S_res: subject.structure.parameters().m * H, ..subject.structure.base };
+        Rigid { subject, base, force_by_shape: parts.map(|part| part / (1.0 + slenderness * slenderness)) }
     }
 
     /// The coefficients of P and Q in T.
@@ -119,12 +119,6 @@ impl Rigid {
             (0.0, theta_dot)
         });
     }
-
-    /// The push (m/s²) for uplift about `side`, beyond the push against the weight alone.
-    fn more_push(&self, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
-        let structure = &self.subject.structure;
-        Restraint::about(structure, side, dissipators).hold(a_v).moment / structure.parameters().H
-    }
 }
 
 impl Level for Rigid {
@@ -153,43 +147,9 @@ impl Level for Rigid {
         }
     }
 
-    /// The first instant at which −s a_top, a_top = a_g − F_t/m, exceeds the push for uplift about side s.
-    fn first_uplift(&self, start: &Start, arc: &Arc) -> (Crossing, Side) {
-        let limit = least_push(self.structure());
-        let first = |side: Side| {
-            let mut push = [start.a_top.value, start.a_top.slope * arc.span];
-            if self.subject.is_tied {
-                let more = |a_v| side.sign() * self.more_push(side, a_v, start.dissipators);
-                let held = more(start.a_v.value);
-                push = [push[0] + held, push[1] + (more(start.a_v.at(arc.span)) - held)];
-            }
-            first_time_all_closed([Gap::new(&push, side.sign(), limit)], 1.0)
-        };
-        let (right, left) = (first(Side::Right), first(Side::Left));
-        if right.sigma() == left.sigma() && right.sigma() < f64::INFINITY {
-            let at = right.sigma() * arc.span;
-            let load = Load { a_g: start.a_top.at(at), F_t: 0.0, a_v: start.a_v.at(at) };
-            let now = Now { state: &start.state, load, dissipators: start.dissipators };
-            return (right, self.uplift_margin(&now).1);
-        }
-        if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
-    }
-
-    /// Without u only the load decides.
-    fn holds(&self, _start: &Start) -> bool {
-        false
-    }
-
-    fn stays_down(&self, state: &State, dissipators: &Dissipators) -> bool {
-        self.uplift_margin(&Now { state, load: Load::default(), dissipators }).0 > 0.0
-    }
-
-    fn uplift_margin(&self, &Now { load, dissipators, .. }: &Now) -> (f64, Side) {
-        let structure = self.structure();
-        let push = load.on_top(structure) / least_push(structure);
-        let more = |side| self.more_push(side, load.a_v, dissipators) / least_push(structure);
-        let (right, left) = (1.0 + push + more(Side::Right), 1.0 - push + more(Side::Left));
-        if right <= left { (right, Side::Right) } else { (left, Side::Left) }
+    fn liftable(&self) -> Option<Liftable<'_>> {
+        let &crate::Parameters { m, H, .. } = self.subject.structure.parameters();
+        Some(Liftable { base: &self.base, modes: &[], rigid: Some([m, H]), lean: 1.0, has_constant_inertia: true })
     }
 
     fn after_impact(&self, side: Side, before: &State) -> (Phase, State) {

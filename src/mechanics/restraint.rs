@@ -14,7 +14,7 @@
 //! at the end. The equations for small angles have e = l θ instead. All elongations are 0 at θ = 0. An elastoplastic dissipator
 //! then pulls with its residual force − k_d e_p. Impacts leave e_p unchanged.
 
-use crate::mechanics::uplift::Hold;
+use crate::mechanics::uplift::hold;
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
 use crate::structure::{Base, Ties};
@@ -152,6 +152,7 @@ pub(crate) fn sum(ties: &[Tie; 3], weight: impl Fn(&Tie) -> f64) -> Tie {
 pub struct Restraint<'a, S = Structure> {
     structure: &'a S,
     side: Side,
+    dissipators: &'a Dissipators,
     /// The tendon and both dissipators.
     ties: [Tie; 3],
 }
@@ -159,8 +160,8 @@ pub struct Restraint<'a, S = Structure> {
 impl<'a, S: AsRef<Base>> Restraint<'a, S> {
     /// The restraint of a structure of one mass or of many about `side`, with the dissipators in this state.
     #[inline]
-    pub fn about(structure: &'a S, side: Side, dissipators: &Dissipators) -> Restraint<'a, S> {
-        Restraint { structure, side, ties: ties(structure.as_ref(), side, dissipators) }
+    pub fn about(structure: &'a S, side: Side, dissipators: &'a Dissipators) -> Restraint<'a, S> {
+        Restraint { structure, side, dissipators, ties: ties(structure.as_ref(), side, dissipators) }
     }
 
     /// The forces of the ties at this `chord`.
@@ -220,17 +221,9 @@ impl Restraint<'_> {
     ///
     /// If u_cr,s is not above 0, the weight no longer holds the base. `a_v` in m/s².
     pub fn uplift_displacement(&self, a_v: f64) -> f64 {
-        self.hold(a_v).displacement
-    }
-
-    /// The condition of uplift under the vertical acceleration `a_v` (m/s²).
-    #[inline]
-    pub(crate) fn hold(&self, a_v: f64) -> Hold {
-        let &crate::Parameters { m, H, B, .. } = self.structure.parameters();
-        let [_, pair @ ..] = &self.ties;
-        let residual: f64 = pair.iter().map(|tie| tie.lever * tie.force).sum();
-        let moment = self.structure.gamma * a_v * B + self.side.sign() * residual / m;
-        Hold { displacement: self.structure.u_cr + moment / (H * self.structure.stiffness), moment }
+        let &Restraint { structure, side, dissipators, .. } = self;
+        let more = hold(&structure.base, side, a_v, dissipators) - structure.base.hold_at_rest();
+        structure.u_cr + more / (structure.parameters().H * structure.k)
     }
 
     /// Moment that turns the base back about the pivot at the rotation `theta` (rad), at rest and with u = 0, N·m:

@@ -12,104 +12,115 @@
 //! [(J0 + m0 B²)/m + (sB − u)²] θ̈ = H (c_u u̇ + k u)/m + g u − sγ g B
 //! ```
 //!
-//! The second condition is that the moment about the pivot exceeds the moment of the weight. It always holds while |u| grows
-//! through u_cr. After a landing with |u| > u_cr it may not hold. Without this condition contact would open and shut without end.
+//! Of a structure with modes both conditions are conditions of moments. The first has the moment of the springs (M3), the second
+//! the moment of all that turns the base (M2), and both compare it with the moment that holds the base down:
 //!
-//! A structure that is restrained or shaken vertically has another u_cr on each side ([`Restraint::uplift_displacement`]). If
-//! that is not above 0, the second condition decides alone. If both conditions hold on both sides, the structure lifts off about
-//! the side with the larger s θ̈. "> 0" means more than 1e-12 of the weight's moment, which is far above rounding.
+//! ```text
+//! springs = Σ h k u + R,      turning = springs + Σ [h c_u u̇ + Γ (g + a_v) u],      hold = [m_t (g + a_v) + P_0] B + s Σ F l
+//! s springs ≥ hold      and      s turning > hold
+//! ```
+//!
+//! R is the moment of mass that turns rigidly with the base, and F are the residual forces of the dissipators. For one mass the first
+//! condition is s u ≥ u_cr. Each moment is a function over a number: a value gives the [`margin`], a power series the first instant.
+//!
+//! The second condition always holds while |u| of one mass grows through u_cr. After a landing with |u| > u_cr it may not hold.
+//! Without this condition contact would open and shut without end.
+//!
+//! If hold is not above 0, the second condition decides alone. If both conditions hold on both sides, the structure lifts off about
+//! the side with the larger s θ̈. "> hold" means more than 1e-12 of the weight's moment, which is far above rounding.
 
-use crate::mechanics::restraint::{Dissipators, Restraint};
+use crate::mechanics::restraint::{Dissipators, ties};
 use crate::numbers::Number;
+use crate::structure::{Base, Mode};
 use crate::{Ramp, Side, State, Structure};
 
-/// Smallest excess of the turning moment over the weight's, as a fraction of the latter. It is far above rounding. After uplift
+/// Smallest excess of the turning moment over the hold, as a fraction of the hold at rest. It is far above rounding. After uplift
 /// the base therefore moves away from the ground.
-pub(crate) const LEAST_EXCESS: f64 = 1e-12;
+const LEAST_EXCESS: f64 = 1e-12;
 
-/// The equation of θ̈ at θ = θ̇ = 0: inertia · s θ̈ = s (u·`u` + u̇·`u_dot`) − `weight`.
+impl Base {
+    /// The moment of the weight and of the tendon that holds the base at rest down, N·m.
+    pub(crate) fn hold_at_rest(&self) -> f64 {
+        (self.m_t * self.g + self.ties.P_0) * self.B
+    }
+}
+
+/// The moment that holds the base down about `side` under the vertical acceleration `a_v`, N·m.
+pub(crate) fn hold<N: Number>(base: &Base, side: Side, a_v: N, dissipators: &Dissipators) -> N {
+    let [_, pair @ ..] = ties(base, side, dissipators);
+    let residual: f64 = pair.iter().map(|tie| tie.lever * tie.force).sum();
+    a_v * (base.m_t * base.B) + N::constant(base.hold_at_rest() + side.sign() * residual)
+}
+
+/// The smaller hold of both sides over `interval` (s) of a vertical acceleration `a_v`, N·m.
+pub(crate) fn least_hold(base: &Base, a_v: Ramp, interval: f64, dissipators: &Dissipators) -> f64 {
+    let least = a_v.value.min(a_v.at(interval));
+    hold(base, Side::Right, least, dissipators).min(hold(base, Side::Left, least, dissipators))
+}
+
+/// Inertia D = J0 + m0 B² + Σ μ w² (kg·m²) about the pivot of `side`, w = sB Γ/μ − u, given u of each mode.
+pub(crate) fn inertia(base: &Base, modes: &[Mode], side: Side, u: impl Fn(usize) -> f64) -> f64 {
+    let square = |(j, mode): (usize, &Mode)| {
+        let lever = side.sign() * base.B * mode.share - u(j);
+        mode.mass * lever * lever
+    };
+    base.J0 + base.m0 * base.B * base.B + modes.iter().enumerate().map(square).sum::<f64>()
+}
+
+/// The moments that lift the base of a structure in full contact, to the right, N·m.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct TurningMoment {
-    /// Moment per displacement.
-    pub u: f64,
-    /// Moment per velocity.
-    pub u_dot: f64,
-    /// Moment of the weight, and of the tendon at rest.
-    pub weight: f64,
-    /// Inertia about the pivot: this, less s u times the second, plus u² times the third.
-    pub inertia: [f64; 3],
+pub(crate) struct Lift<N> {
+    /// Of the springs and of the mass that turns rigidly.
+    springs: N,
+    /// Of all that gives θ̈ at θ = θ̇ = 0, but for what holds the base down.
+    turning: N,
 }
 
-impl TurningMoment {
-    /// The inertia of linear equations, which does not change with u and is contained in the moments.
-    pub(crate) const CONSTANT: [f64; 3] = [1.0, 0.0, 0.0];
-
-    /// Moments of Eqs 5 and 6 over m: H (c_u u̇ + k u)/m + g u against γ g B + P_0 B/m.
-    pub fn new(structure: &Structure) -> TurningMoment {
-        let &crate::Parameters { m, H, B, g, P_0, .. } = structure.parameters();
-        let &Structure { stiffness, damping_u, gamma, foundation, .. } = structure;
-        let weight = gamma * g * B + P_0 * B / m;
-        TurningMoment {
-            u: H * stiffness + g,
-            u_dot: H * damping_u,
-            weight,
-            inertia: [foundation + B * B, 2.0 * B, 1.0],
+impl<N: Number> Lift<N> {
+    /// The moments, given (u, u̇) of each mode, the moment of the mass that turns `rigid`ly and the vertical acceleration. The moment of
+    /// the displaced weights counts by the factor `lean`, which is 1 in the equations of rocking.
+    #[inline(always)]
+    pub(crate) fn new(
+        base: &Base,
+        modes: &[Mode],
+        lean: f64,
+        [rigid, a_v]: [N; 2],
+        motion: impl Fn(usize) -> [N; 2],
+    ) -> Lift<N> {
+        let weight = a_v + N::constant(base.g);
+        let (mut springs, mut others) = (rigid, N::constant(0.0));
+        for (j, mode) in modes.iter().enumerate() {
+            let [u, u_dot] = motion(j);
+            springs = springs + u * (mode.height * mode.stiffness);
+            others = others + weight * u * (mode.gamma * lean) + u_dot * (mode.height * (base.c_ratio * mode.damping));
         }
+        Lift { springs, turning: springs + others }
     }
 
-    /// The moment that turns the base to the right, at the displacement `u` (m), its rate and the vertical acceleration `a_v`.
-    #[inline]
-    pub(crate) fn at<N: Number>(&self, u: N, u_dot: N, a_v: N) -> N {
-        (N::constant(self.u) + a_v) * u + u_dot * self.u_dot
-    }
-
-    /// Inertia about the pivot of `side` at the displacement `u` (m).
-    fn inertia(&self, side: Side, u: f64) -> f64 {
-        let [at_rest, by_u, by_square] = self.inertia;
-        at_rest - side.sign() * u * by_u + u * u * by_square
+    /// The moments that miss of both conditions of uplift about `side` with this `hold`; not above 0 once there.
+    #[inline(always)]
+    pub(crate) fn missing(&self, base: &Base, side: Side, hold: N) -> [N; 2] {
+        let (s, excess) = (side.sign(), N::constant(LEAST_EXCESS * base.hold_at_rest()));
+        [hold - self.springs * s, hold + excess - self.turning * s]
     }
 }
 
-/// The |a_top| (m/s²) from which on the base of a rigid structure lifts off: g tan α_cg + P_0 B/(m H).
-pub fn least_push(structure: &Structure) -> f64 {
-    let &crate::Parameters { m, H, B, g, P_0, .. } = structure.parameters();
-    (1.0 + LEAST_EXCESS) * g * structure.tan_alpha_cg + (1.0 + LEAST_EXCESS) * P_0 * B / (m * H)
-}
-
-/// The condition of uplift about a side: the displacement, and the moment beside those of the weight and of the tendon at rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Hold {
-    /// u_cr,s, m.
-    pub displacement: f64,
-    /// Moment over m, m²/s².
-    pub moment: f64,
-}
-
-/// Distance of a structure in full contact in `state` from uplift, and the side of the smaller distance. The distance is the larger
-/// of two missing parts: of the displacement, as a fraction of u_cr, and of the moment, as a fraction of the weight's. Uplift is due
-/// if the distance is not positive. If uplift is due about both sides, the side is the one with the larger s θ̈.
+/// Distance of a structure in full contact from uplift, and the side of the smaller distance. The distance is the larger of what both
+/// conditions miss, as a fraction of the hold at rest. Uplift is due if the distance is not positive. If uplift is due about both sides,
+/// the side is the one with the larger s θ̈, by the `inertia` about each side.
 pub(crate) fn margin(
-    structure: &Structure,
-    turning: &TurningMoment,
-    state: &State,
+    base: &Base,
+    lift: &Lift<f64>,
     a_v: f64,
     dissipators: &Dissipators,
+    inertia: impl Fn(Side) -> f64,
 ) -> (f64, Side) {
-    let displacement = state.u / structure.u_cr;
-    let turns = turning.at(state.u, state.u_dot, a_v) / turning.weight;
     let about = |side: Side| {
-        let hold = Restraint::about(structure, side, dissipators).hold(a_v);
-        let (s, limit) = (side.sign(), hold.displacement / structure.u_cr);
-        let moment = 1.0 + LEAST_EXCESS + hold.moment / turning.weight - s * turns;
-        ((limit - s * displacement).min(limit).max(moment), moment / turning.inertia(side, state.u))
+        let hold = hold(base, side, a_v, dissipators);
+        let [rule, turns] = lift.missing(base, side, hold);
+        (rule.min(hold).max(turns) / base.hold_at_rest(), turns / inertia(side))
     };
-    nearer(about(Side::Right), about(Side::Left))
-}
-
-/// The smaller of the distances from uplift about the `right` and the `left` side, and its side. Each distance is given with −s θ̈. If
-/// uplift is due about both sides, the smaller −s θ̈ decides.
-#[inline(always)]
-pub(crate) fn nearer(right: (f64, f64), left: (f64, f64)) -> (f64, Side) {
+    let (right, left) = (about(Side::Right), about(Side::Left));
     let is_right = if right.0 <= 0.0 && left.0 <= 0.0 { right.1 <= left.1 } else { right.0 <= left.0 };
     if is_right { (right.0, Side::Right) } else { (left.0, Side::Left) }
 }
@@ -117,19 +128,15 @@ pub(crate) fn nearer(right: (f64, f64), left: (f64, f64)) -> (f64, Side) {
 /// Distance from uplift of a structure in full contact in `state`, without restraints and vertical motion: positive until uplift
 /// is due. For integrators that have no engine.
 pub fn distance(structure: &Structure, state: &State) -> f64 {
-    margin(structure, &TurningMoment::new(structure), state, 0.0, &Dissipators::NEW).0
+    let modes = std::slice::from_ref(&structure.mode);
+    let lift = Lift::new(&structure.base, modes, 1.0, [0.0; 2], |_| [state.u, state.u_dot]);
+    margin(&structure.base, &lift, 0.0, &Dissipators::NEW, |_| 1.0).0
 }
 
-/// The largest |u| (m) that free vibration in full contact can reach.
-pub(crate) fn farthest(structure: &Structure, state: &State) -> f64 {
-    libm::hypot(state.u, state.u_dot / structure.omega_fc)
-}
-
-/// The smaller displacement (m) of both sides at which the base lifts off, over `interval` (s) of a vertical acceleration `a_v`.
-pub(crate) fn least_displacement(structure: &Structure, a_v: Ramp, interval: f64, dissipators: &Dissipators) -> f64 {
-    let least = a_v.value.min(a_v.at(interval));
-    let about = |side| Restraint::about(structure, side, dissipators).uplift_displacement(least);
-    about(Side::Right).min(about(Side::Left))
+/// The |a_top| (m/s²) from which on the base of a rigid structure lifts off: g tan α_cg + P_0 B/(m H).
+pub fn least_push(structure: &Structure) -> f64 {
+    let &crate::Parameters { m, H, .. } = structure.parameters();
+    (1.0 + LEAST_EXCESS) * structure.base.hold_at_rest() / (m * H)
 }
 
 #[cfg(test)]
@@ -137,6 +144,12 @@ mod tests {
     use super::*;
     use crate::levels::nonlinear::accelerations;
     use crate::{Load, Parameters};
+
+    fn margin_of(structure: &Structure, state: &State, a_v: f64, dissipators: &Dissipators) -> (f64, Side) {
+        let modes = std::slice::from_ref(&structure.mode);
+        let lift = Lift::new(&structure.base, modes, 1.0, [0.0, a_v], |_| [state.u, state.u_dot]);
+        margin(&structure.base, &lift, a_v, dissipators, |side| inertia(&structure.base, modes, side, |_| state.u))
+    }
     use approx::assert_relative_eq;
 
     /// The displacement that is missing, then the moment, with residual forces of the dissipators and a vertical acceleration.
@@ -145,7 +158,6 @@ mod tests {
         let parameters = Parameters { P_0: 200.0, xi_d: 0.1, k_d: 1e5, F_y: 400.0, ..Parameters::MCMANUS };
         let structure = Structure::new(parameters).unwrap();
         let Parameters { m, m0, H, B, g, P_0, xi_d, k_d, .. } = parameters;
-        let turning = TurningMoment::new(&structure);
         let dissipators = Dissipators { plastic: [2e-3, -1e-3], ..Dissipators::NEW };
         let a_v = -1.5;
         let residual = -k_d * 2e-3 * (B - xi_d) + k_d * 1e-3 * (B + xi_d);
@@ -156,7 +168,7 @@ mod tests {
             let elastic = structure.k * state.u;
             let turns = H * (elastic + structure.c_u * u_dot) + m * (g + a_v) * state.u;
             let expected = ((held - H * elastic) / weight).max((held - turns) / weight);
-            let (found, side) = margin(&structure, &turning, &state, a_v, &dissipators);
+            let (found, side) = margin_of(&structure, &state, a_v, &dissipators);
             assert_eq!(side, Side::Right);
             assert_relative_eq!(found, expected, max_relative = 1e-10);
         }
@@ -167,20 +179,21 @@ mod tests {
     #[test]
     fn the_structure_lifts_off_about_the_side_that_turns_faster() {
         let structure = Structure::new(Parameters { zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
-        let turning = TurningMoment::new(&structure);
+        let Parameters { m, H, g, .. } = *structure.parameters();
+        let [by_u, by_rate] = [H * structure.k + m * (g - 60.0), H * structure.c_u];
         let load = Load { a_v: -60.0, ..Load::default() };
         for side in [Side::Right, Side::Left] {
             let s = side.sign();
             let u = s * 2e-3;
-            let u_dot = -(turning.u + load.a_v) * u / turning.u_dot - s * 0.005;
+            let u_dot = -by_u * u / by_rate - s * 0.005;
             let state = State { u, u_dot, ..State::default() };
             let faster = |side: Side| {
                 let theta_ddot = accelerations(&structure, side, &state, load, &Dissipators::NEW).unwrap()[1];
                 side.sign() * theta_ddot
             };
             assert!(faster(side) > faster(side.opposite()) && faster(side.opposite()) > 0.0);
-            assert!(s * turning.at(u, u_dot, load.a_v) < 0.0);
-            let (distance, found) = margin(&structure, &turning, &state, load.a_v, &Dissipators::NEW);
+            assert!(s * (by_u * u + by_rate * u_dot) < 0.0);
+            let (distance, found) = margin_of(&structure, &state, load.a_v, &Dissipators::NEW);
             assert!(distance <= 0.0 && found == side, "{distance} {found:?}");
         }
     }
