@@ -265,7 +265,7 @@ impl Moves for f64 {
 #[doc(hidden)]
 #[derive(Clone, Debug)]
 #[allow(private_interfaces)] // the coordinates name the type, and nobody else can use it
-pub struct LevelOfModes(ManyModes);
+pub struct LevelOfModes(ManyModes<Modes>);
 
 impl Deref for LevelOfModes {
     type Target = dyn Level<Modes>;

@@ -7,7 +7,7 @@
 //! | `auto` | 1, 5, 6 | exact flow in full contact, series while rocking |
 //! | `nonlinear` | 1, 5, 6 | series throughout, each to the tolerance |
 //! | `linear` | 1, 7, 8 | exact flow, series on steps that may hold a transition |
-//! | `modal` | 1, 11, 18 | closed forms of two modes, likewise |
+//! | `modal` | 1, 11, 18 | likewise |
 //! | `rigid` | 6 with u = 0 | series |
 //! | `fixed_base` | 1, no uplift | exact flow |
 //!
@@ -16,11 +16,10 @@
 
 use crate::levels::first_uplift::Liftable;
 use crate::levels::full_contact::{self, ExactContact};
-use crate::levels::level::{ElasticRocking, Level, Now, Rates, Subject};
+use crate::levels::level::{ElasticRocking, Level, Rates, Subject};
 use crate::levels::linear::LinearRocking;
-use crate::levels::modal::ModalRocking;
+use crate::levels::modes::ManyModes;
 use crate::levels::nonlinear::NonlinearRocking;
-use crate::levels::rigid::Rigid;
 use crate::mechanics::instant::Second;
 use crate::mechanics::restraint::Angles;
 use crate::mechanics::state::InitialStateError;
@@ -95,10 +94,11 @@ impl Detail {
         Ok(match self {
             Detail::Auto => AnyLevel::Nonlinear(Elastic::new(Some(contact), NonlinearRocking::new(subject))),
             Detail::Nonlinear => AnyLevel::Nonlinear(Elastic::new(None, NonlinearRocking::new(subject))),
+            Detail::Linear if is_tied => AnyLevel::Modes(ManyModes::new(subject, self)),
             Detail::Linear => AnyLevel::Linear(Elastic::new(Some(contact), LinearRocking::new(subject))),
             Detail::Modal if is_tied => return Err(InitialStateError::RestrainedModal),
-            Detail::Modal => AnyLevel::Modal(Elastic::new(Some(contact), ModalRocking::new(subject))),
-            Detail::Rigid => AnyLevel::Rigid(Rigid::new(subject)),
+            Detail::Modal => AnyLevel::Linear(Elastic::new(Some(contact), LinearRocking::modal(subject))),
+            Detail::Rigid => AnyLevel::Modes(ManyModes::rigid(subject)),
             Detail::FixedBase => AnyLevel::FixedBase(FixedBase { subject, contact }),
         })
     }
@@ -112,9 +112,8 @@ impl Detail {
 pub enum AnyLevel {
     Nonlinear(Elastic<NonlinearRocking>),
     Linear(Elastic<LinearRocking>),
-    Modal(Elastic<ModalRocking>),
     FixedBase(FixedBase),
-    Rigid(Rigid),
+    Modes(ManyModes<f64>),
 }
 
 /// Does the same with a level of every type.
@@ -123,9 +122,8 @@ macro_rules! by_level {
         match $any {
             AnyLevel::Nonlinear($level) => $do,
             AnyLevel::Linear($level) => $do,
-            AnyLevel::Modal($level) => $do,
             AnyLevel::FixedBase($level) => $do,
-            AnyLevel::Rigid($level) => $do,
+            AnyLevel::Modes($level) => $do,
         }
     };
 }
@@ -153,13 +151,13 @@ impl AnyLevel {
     /// Whether an elastic strut carries the top mass. If not, its force follows from θ̈ alone.
     #[inline]
     pub(crate) fn has_strut(&self) -> bool {
-        !matches!(self, AnyLevel::Rigid(_))
+        !matches!(self, AnyLevel::Modes(level) if level.is_rigid())
     }
 
     /// Whether a motion may start from `initial` at this level.
     pub(crate) fn check_start(&self, &State { u, u_dot, theta, .. }: &State) -> Result<(), InitialStateError> {
         match self {
-            AnyLevel::Rigid(_) if (u, u_dot) != (0.0, 0.0) => Err(InitialStateError::DeformedRigid { u, u_dot }),
+            _ if !self.has_strut() && (u, u_dot) != (0.0, 0.0) => Err(InitialStateError::DeformedRigid { u, u_dot }),
             AnyLevel::FixedBase(_) if theta != 0.0 => Err(InitialStateError::TurnedFixedBase(theta)),
             _ => Ok(()),
         }
@@ -255,15 +253,6 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
             has_constant_inertia: angles == Angles::Small,
         })
     }
-
-    fn accelerations(&self, phase: Phase, now: &Now) -> Second<f64> {
-        match phase {
-            Phase::FullContact => [full_contact::acceleration(self.structure(), now.state, now.load), 0.0],
-            Phase::Rocking(side) => self.rocking.accelerations(side, now),
-            Phase::Overturned(_) => [0.0; 2],
-        }
-        .into()
-    }
 }
 
 /// Full contact throughout.
@@ -291,15 +280,13 @@ impl Level for FixedBase {
     fn series(&self, _phase: Phase, start: &Start, arc: &mut Arc) {
         full_contact::series(self.structure(), start, arc);
     }
-
-    fn accelerations(&self, _phase: Phase, now: &Now) -> Second<f64> {
-        [full_contact::acceleration(self.structure(), now.state, now.load), 0.0].into()
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::levels::level::Now;
+    use crate::mechanics::instant::Second;
     use crate::mechanics::restraint::Dissipators;
     use crate::{Load, Parameters, Ramp, Side};
     use proptest::prelude::*;

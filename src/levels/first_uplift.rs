@@ -38,7 +38,7 @@ impl Liftable<'_> {
     }
 
     /// Moment on the base to the right, N·m, of the mass that turns rigidly.
-    fn rigid<Q: Coordinates>(&self, a_g: f64, a_top: &Q) -> f64 {
+    pub(crate) fn moment_of_rest<Q: Coordinates>(&self, a_g: f64, a_top: &Q) -> f64 {
         self.rest(a_g, a_top)[1] - self.base.S_res * a_g
     }
 
@@ -55,7 +55,7 @@ impl Liftable<'_> {
 
     /// The least moment that holds the base down over the interval of `start`, less the most that mass that turns rigidly takes of it.
     pub(crate) fn least_hold<Q: Coordinates>(&self, start: &Start<Q>) -> f64 {
-        let rigid = |tau: f64| self.rigid(start.a_g.at(tau), &start.a_top.at(tau)).abs();
+        let rigid = |tau: f64| self.moment_of_rest(start.a_g.at(tau), &start.a_top.at(tau)).abs();
         let taken = rigid(0.0).max(rigid(start.interval));
         least_hold(self.base, start.a_v, start.interval, start.dissipators) - taken
     }
@@ -68,7 +68,7 @@ impl Liftable<'_> {
         a_top: &Q,
         dissipators: &Dissipators,
     ) -> (f64, Side) {
-        let lift = self.lift(state, self.rigid(a_g, a_top), a_v);
+        let lift = self.lift(state, self.moment_of_rest(a_g, a_top), a_v);
         uplift::margin(self.base, &lift, a_v, dissipators, |side| match self.has_constant_inertia {
             true => 1.0,
             false => inertia(self.base, self.modes, side, |j| state.u.of(j)),
@@ -101,7 +101,10 @@ impl Liftable<'_> {
         }
         let &Start { a_g, a_top, a_v, dissipators, .. } = start;
         let a_v_terms = Terms::ramp(a_v.value, a_v.slope * arc.span);
-        let rigid = Terms::ramp(self.rigid(a_g.value, &a_top.value), self.rigid(a_g.slope, &a_top.slope) * arc.span);
+        let rigid = Terms::ramp(
+            self.moment_of_rest(a_g.value, &a_top.value),
+            self.moment_of_rest(a_g.slope, &a_top.slope) * arc.span,
+        );
         let lift = Lift::new(self.base, self.modes, self.lean, [rigid, a_v_terms], |j| {
             [&arc.u, &arc.u_dot].map(|series| Terms::from_fn(arc.order, |k| series[k].of(j)))
         });

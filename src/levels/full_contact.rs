@@ -98,9 +98,15 @@ impl ExactContact {
 
     #[inline(always)]
     fn rates_of(&self, start: &Start, swing: &Swing) -> Rates {
-        let [u_dot, u_ddot, u_dddot] = self.oscillator.rates(swing, start.a_top.slope);
-        Rates { u: swing.farthest(), u_dot, u_ddot, u_dddot, ..Rates::default() }
+        rates(&self.oscillator, swing, start.a_top.slope)
     }
+}
+
+/// Bounds of what changes while `oscillator` swings under a load of this `slope`.
+#[inline(always)]
+pub(crate) fn rates(oscillator: &Oscillator, swing: &Swing, slope: f64) -> Rates {
+    let [u_dot, u_ddot, u_dddot] = oscillator.rates(swing, slope);
+    Rates { u: swing.farthest(), u_dot, u_ddot, u_dddot, ..Rates::default() }
 }
 
 #[cfg(test)]

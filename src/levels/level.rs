@@ -126,8 +126,23 @@ pub trait Level<Q: Coordinates = f64> {
         }
     }
 
-    /// ü and θ̈ in `phase`, m/s² and rad/s²; not a number where the equations have no solution.
-    fn accelerations(&self, phase: Phase, now: &Now<Q>) -> Second<f64, Q>;
+    /// ü and θ̈ in `phase`, m/s² and rad/s²; not finite where the equations have no solution.
+    fn accelerations(&self, phase: Phase, now: &Now<Q>) -> Second<f64, Q> {
+        first_terms(self, phase, now, &mut Arc::default())
+    }
+}
+
+/// ü and θ̈ in `phase` from the first terms of the series of `level`, which it writes into `arc`.
+pub(crate) fn first_terms<Q: Coordinates>(
+    level: &(impl Level<Q> + ?Sized),
+    phase: Phase,
+    &Now { state, load, dissipators }: &Now<Q>,
+    arc: &mut Arc<Q>,
+) -> Second<f64, Q> {
+    let start = level.subject().start(*state, dissipators, LinearLoad::held(load), 1.0);
+    level.series(phase, &Start { local_error: f64::MAX, ..start }, arc);
+    let u_ddot = Q::each(level.structure(), |j, _| arc.u_dot[1].of(j) / arc.span);
+    Second { u_ddot, theta_ddot: arc.theta_dot[1] / arc.span }
 }
 
 /// The most by which a quantity with this `rate` changes over `ahead` (s), whatever accelerates it.
@@ -161,8 +176,6 @@ pub(crate) trait ElasticRocking {
     fn lean(&self) -> f64 {
         1.0
     }
-
-    fn accelerations(&self, side: Side, now: &Now) -> [f64; 2];
 }
 
 /// The length and the accuracy of steps while a structure with an elastic strut rocks.

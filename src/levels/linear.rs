@@ -1,4 +1,6 @@
-//! Rocking about side s = ±1, linearised about θ = u = 0 (Eqs 7–9).
+//! Rocking about side s = ±1 by equations that are linear in u and θ: of one mass without ties on ground that moves horizontally.
+//!
+//! The level `linear` has Eqs 5 and 6 linearised about θ = u = 0:
 //!
 //! ```text
 //! ü + H θ̈ + (c_u/m) u̇ + ω_fc² u − g θ = −a_g                                                              (7)
@@ -11,17 +13,23 @@
 //! θ̈ = [H κ + g u − s γ g B]/i,      ü = −a_g + g θ − κ − H θ̈
 //! ```
 //!
+//! The level `modal` has two uncoupled modes:
+//!
+//! ```text
+//! q̈_r − p_l² q_r = −p_l² a_g/g − s p_l² tan α_cg                                                           (11)
+//! ü + 2 ζ_u ω_u u̇ + ω_u² u = −a_g + s (χ/(1−χ)) g tan α_cg                                                 (18)
+//! θ = q_r + q_u,      q_u = −(p_l²/g) u                                                                    (16)
+//! ```
+//!
 //! A force F_t on the top mass makes a_g − F_t/m of a_g. Under loads that are linear in time the exact solution is a
 //! matrix exponential, kept for the step lengths used last; series serve the steps on which a transition may happen.
 
-use crate::levels::level::{ElasticRocking, Now, Pace, Rates, Subject};
+use crate::levels::level::{ElasticRocking, Pace, Rates, Subject};
 use crate::levels::linear_system::{LinearSystem, Row};
 use crate::levels::oscillator::Kept;
-use crate::levels::ties::TieSeries;
 use crate::mechanics::instant::Second;
-use crate::mechanics::restraint::{Angles, Restraint};
 use crate::numbers::bend::Bend;
-use crate::series::taylor::{Arc, Series, Start};
+use crate::series::taylor::{Arc, Start};
 use crate::{Side, State, Structure};
 use nalgebra::{SMatrix, SVector};
 use std::f64::consts::FRAC_PI_2;
@@ -36,13 +44,13 @@ const TERMS: u8 = 15;
 /// Takes (u, u̇, θ, θ̇, a_g, ȧ_g, s) from the start of a step to the change of the state over it, by columns.
 type Flow = SMatrix<f64, 4, 7>;
 
-/// Exact propagation by Eqs 7 and 8.
+/// Exact propagation by a linear system.
 #[derive(Clone, Debug)]
 pub(crate) struct LinearRocking {
     subject: Subject,
     pace: Pace,
     pub(crate) system: LinearSystem,
-    /// Flows, and the [`amplification`] over the same time.
+    /// Flows, and the amplification of |θ̈| over the same time.
     flows: Kept<(Flow, f64)>,
     /// Circular frequency Ω of u for θ held, rad/s.
     omega: f64,
@@ -50,12 +58,12 @@ pub(crate) struct LinearRocking {
     compliance: f64,
     /// Bound of what θ̈ has of the speed of the vibration, rad/s² for m/s.
     turning_per_speed: f64,
-    /// Part of |θ̈| that comes back on it after a time, over the cube of that time, 1/s³.
-    feedback: f64,
-    g: f64,
+    /// Factor of the moment that the displaced weight adds at uplift.
+    lean: f64,
 }
 
 impl LinearRocking {
+    /// Eqs 7 and 8.
     pub(crate) fn new(subject: Subject) -> LinearRocking {
         let structure = &subject.structure;
         let &crate::Parameters { H, B, g, .. } = structure.parameters();
@@ -75,45 +83,73 @@ impl LinearRocking {
             a_top: -1.0,
             side: -H * theta_ddot.side,
         };
-        let omega = (-u_ddot.u).sqrt();
-        let turning_per_speed = theta_ddot.u / omega + theta_ddot.u_dot;
+        LinearRocking::of(subject, LinearSystem { u_ddot, theta_ddot }, 1.0)
+    }
+
+    /// Eqs 11, 16 and 18. The two modes leave χ (1−χ) of the moment g u.
+    pub(crate) fn modal(subject: Subject) -> LinearRocking {
+        let &Structure { p_l, omega_u, zeta_u, tan_alpha_cg, chi, one_minus_chi, .. } = &subject.structure;
+        let g = subject.structure.parameters().g;
+        let (side, rocking) = (chi / one_minus_chi * g * tan_alpha_cg, p_l * p_l);
+        let [u, u_dot] = [-omega_u * omega_u, -2.0 * zeta_u * omega_u];
+        let u_ddot = Row { u, u_dot, theta: 0.0, a_top: -1.0, side };
+        let shape = rocking / g; // −q_u/u
+        let theta_ddot = Row {
+            u: shape * (rocking - u),
+            u_dot: -shape * u_dot,
+            theta: rocking,
+            a_top: 0.0,
+            side: -rocking * tan_alpha_cg - shape * side,
+        };
+        LinearRocking::of(subject, LinearSystem { u_ddot, theta_ddot }, chi * one_minus_chi)
+    }
+
+    fn of(subject: Subject, system: LinearSystem, lean: f64) -> LinearRocking {
+        let omega = (-system.u_ddot.u).sqrt();
         LinearRocking {
+            pace: Pace::new(&subject.structure),
             subject,
-            pace: Pace::new(structure),
-            system: LinearSystem { u_ddot, theta_ddot },
             flows: Kept::new((Flow::zeros(), 1.0)),
             omega,
             compliance: 1.0 / (omega * omega),
-            turning_per_speed,
-            feedback: turning_per_speed * g / 2.0,
-            g,
+            turning_per_speed: system.theta_ddot.u / omega + system.theta_ddot.u_dot,
+            system,
+            lean,
         }
     }
 
+    /// By how much |θ̈|, which comes back on itself through θ and through the vibration, may exceed what it would be without that over
+    /// `duration` (s); infinite where no bound is known.
+    fn amplification(&self, duration: f64) -> f64 {
+        let LinearSystem { u_ddot, theta_ddot } = &self.system;
+        let part = (self.turning_per_speed * u_ddot.theta * duration + theta_ddot.theta) / 2.0 * duration * duration;
+        if part < 0.5 { 1.0 / (1.0 - part) } else { f64::INFINITY }
+    }
+
     /// Bounds of the speed of the vibration and of |θ̈| over the interval of `start` about `side`, and the displacement that the
-    /// vibration is about. The [`amplification`] over the interval is given. If θ acts too strongly back on u, the bounds
+    /// vibration is about. The `amplification` over the interval is given. If θ acts too strongly back on u, the bounds
     /// are infinite.
     ///
-    /// With f = g θ − a_top + s U_s, the energy of the vibration about f/Ω² grows only by the change of f. The energy bounds the
+    /// With f = U_θ θ − a_top + s U_s, the energy of the vibration about f/Ω² grows only by the change of f. The energy bounds the
     /// speed v, and v bounds |θ̈|. The change of f depends in turn on θ̈.
     #[inline(always)]
     fn swing(&self, side: Side, start: &Start, amplification: f64) -> Swing {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
         let LinearSystem { u_ddot, theta_ddot } = &self.system;
         let s = side.sign();
-        let following = (self.g * theta - a_top.value + s * u_ddot.side) * self.compliance;
+        let following = (u_ddot.theta * theta - a_top.value + s * u_ddot.side) * self.compliance;
         let swing = self.omega * (u - following);
-        let speed = (u_dot * u_dot + swing * swing).sqrt() + h * h * (a_top.slope.abs() + self.g * theta_dot.abs());
-        let steady = (theta_ddot.u * following + s * theta_ddot.side).abs();
+        let speed =
+            (u_dot * u_dot + swing * swing).sqrt() + h * h * (a_top.slope.abs() + u_ddot.theta * theta_dot.abs());
+        let steady = (theta_ddot.u * following + theta_ddot.theta * theta + s * theta_ddot.side).abs()
+            + theta_ddot.theta * h * theta_dot.abs();
         Swing { following, speed, turning: (steady + self.turning_per_speed * speed) * amplification }
     }
 
     /// How far θ can leave the cubic with its values and slopes at both ends of a leap from `start` that swings so: |θ⁗| h⁴/384.
     #[inline(never)] // few leaps ask
     fn off_cubic(&self, start: &Start, swing: &Swing) -> f64 {
-        let Rates { u_ddot, u_dddot, .. } = self.rates_of(start, swing);
-        let per = &self.system.theta_ddot;
-        (per.u.abs() * u_ddot + per.u_dot.abs() * u_dddot) * start.interval.powi(4) / 384.0
+        self.system.second(&self.rates_of(start, swing)).theta_ddot.bend * start.interval.powi(4) / 384.0
     }
 
     /// Bounds of what changes on a leap from `start` that swings so.
@@ -121,9 +157,9 @@ impl LinearRocking {
         let &Start { state: State { theta, theta_dot, .. }, a_top, interval: h, .. } = start;
         let &Swing { following, speed, turning } = swing;
         let u_ddot = &self.system.u_ddot;
-        let speed = speed + self.g * h * h * h / 2.0 * turning;
+        let speed = speed + u_ddot.theta * h * h * h / 2.0 * turning;
         let theta_dot = theta_dot.abs() + turning * h;
-        let force_rate = a_top.slope.abs() + self.g * theta_dot;
+        let force_rate = a_top.slope.abs() + u_ddot.theta * theta_dot;
         let elastic = (self.omega - u_ddot.u_dot) * speed + h * force_rate;
         Rates {
             u: following.abs() + speed / self.omega,
@@ -157,12 +193,12 @@ impl ElasticRocking for LinearRocking {
     #[inline(always)]
     fn leap(&self, side: Side, start: &Start) -> Option<State> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
-        if self.subject.is_tied || self.omega * h > LONGEST_LEAP {
+        if self.omega * h > LONGEST_LEAP {
             return None;
         }
-        let (system, feedback) = (&self.system, self.feedback);
+        let system = &self.system;
         let rate = self.omega.max(-system.u_ddot.u_dot);
-        let compute = || (flow(system, rate, h), amplification(feedback, h));
+        let compute = || (flow(system, rate, h), self.amplification(h));
         let &(ref flow, amplification) = &*self.flows.over(h, compute);
         let s = side.sign();
         let change = flow * SVector::from([u, u_dot, theta, theta_dot, a_top.value, a_top.slope, s]);
@@ -179,7 +215,7 @@ impl ElasticRocking for LinearRocking {
     }
 
     fn rates(&self, side: Side, start: &Start, _end: &State) -> Rates {
-        let swing = self.swing(side, start, amplification(self.feedback, start.interval));
+        let swing = self.swing(side, start, self.amplification(start.interval));
         if swing.turning < f64::INFINITY { self.rates_of(start, &swing) } else { Rates::NONE }
     }
 
@@ -187,59 +223,13 @@ impl ElasticRocking for LinearRocking {
         Some(self.system.second(rates))
     }
 
-    /// The series by Eqs 7 and 8. If the structure is restrained or shaken vertically, g is g + a_v, linear in time, and the ties
-    /// take their moment from Eq 8:
-    ///
-    /// ```text
-    /// θ̈ = [H κ + (g + a_v) u − s γ (g + a_v) B − Σ F l/m]/i,      ü = −a_g + (g + a_v) θ − κ − H θ̈
-    /// ```
     fn series(&self, side: Side, start: &Start, arc: &mut Arc) {
-        let &Subject { ref structure, is_tied, .. } = &self.subject;
-        if !is_tied {
-            return self.system.series(&self.pace, side, start, arc);
-        }
-        let &Start { state, a_top, a_v, dissipators, .. } = start;
-        let span = self.pace.span(start);
-        let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
-        let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
-        let (inertia, offset) = (foundation + B * B, side.sign() * gamma * B);
-        let gravity = [g + a_v.value, a_v.slope * span];
-        let ties = Restraint::about(structure, side, dissipators).moments();
-        let mut ties = TieSeries::new(ties, Angles::Small, state.theta);
-        arc.expand(&state, span, self.pace.truncation(start, span), |arc, k, per| {
-            let n = k - 1;
-            let weighted = |of: &Series| gravity[0] * of[n] + if n > 0 { gravity[1] * of[n - 1] } else { 0.0 };
-            let elastic = damping_u * arc.u_dot[n] + stiffness * arc.u[n];
-            let down = gravity.get(n).map_or(0.0, |weight| offset * weight);
-            let back = ties.next(&arc.theta_dot, n, per) / m;
-            let theta_ddot = (H * elastic + weighted(&arc.u) - down - back) / inertia;
-            let u_ddot = weighted(&arc.theta) - a_top.coefficient(n, span) - elastic - H * theta_ddot;
-            (u_ddot * per, theta_ddot * per)
-        });
+        self.system.series(&self.pace, side, start, arc);
     }
 
-    fn accelerations(&self, side: Side, now: &Now) -> [f64; 2] {
-        let &Now { state, load, dissipators } = now;
-        let &Subject { ref structure, is_tied, .. } = &self.subject;
-        if !is_tied {
-            return self.system.accelerations(side, state, load.on_top(structure));
-        }
-        let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
-        let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
-        let &State { u, u_dot, theta, theta_dot } = state;
-        let (g, elastic) = (g + load.a_v, damping_u * u_dot + stiffness * u);
-        let chord = Angles::Small.chord(theta, theta_dot);
-        let back = Restraint::about(structure, side, dissipators).moment(&chord) / m;
-        let theta_ddot = (H * elastic + g * (u - side.sign() * gamma * B) - back) / (foundation + B * B);
-        [g * theta - load.on_top(structure) - elastic - H * theta_ddot, theta_ddot]
+    fn lean(&self) -> f64 {
+        self.lean
     }
-}
-
-/// By how much |θ̈|, which comes back on itself through the vibration, may exceed what it would be without that over `duration` (s);
-/// infinite where no bound is known.
-fn amplification(feedback: f64, duration: f64) -> f64 {
-    let part = feedback * duration * duration * duration;
-    if part < 0.5 { 1.0 / (1.0 - part) } else { f64::INFINITY }
 }
 
 /// The flow of `system`, which is not faster than `rate` (1/s), over `duration` (s): the exponential of the system augmented by its
@@ -271,23 +261,26 @@ fn flow(system: &LinearSystem, rate: f64, duration: f64) -> Flow {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Parameters;
+    use crate::levels::level::Now;
     use crate::levels::nonlinear::accelerations;
-    use crate::mechanics::load::Load;
     use crate::mechanics::restraint::Dissipators;
+    use crate::{Detail, Load, Parameters, Phase};
     use approx::assert_relative_eq;
+
+    fn accelerations_of(detail: Detail, structure: Structure, side: Side, state: &State, a_g: f64) -> [f64; 2] {
+        let now = Now { state, load: Load::ground(a_g), dissipators: &Dissipators::NEW };
+        detail.level(structure, 1e-9, false).unwrap().accelerations(Phase::Rocking(side), &now).into()
+    }
 
     /// Eqs 7 and 8 as they stand, and their distance from Eqs 5 and 6, which is of second order.
     #[test]
     fn the_accelerations_satisfy_equations_7_and_8() {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         let &Parameters { m, H, B, g, .. } = structure.parameters();
-        let system =
-            LinearRocking::new(Subject { structure, local_error: 1e-9, is_tied: false, angles: Angles::Small }).system;
         let (side, a_g) = (Side::Left, 0.8);
         let distance = |scale: f64| {
             let state = State { u: 1e-3 * scale, u_dot: 0.1 * scale, theta: -0.01 * scale, theta_dot: 0.05 * scale };
-            let [u_ddot, theta_ddot] = system.accelerations(side, &state, a_g * scale);
+            let [u_ddot, theta_ddot] = accelerations_of(Detail::Linear, structure, side, &state, a_g * scale);
             let State { u, u_dot, theta, .. } = state;
             let elastic = structure.c_u / m * u_dot + structure.omega_fc.powi(2) * u;
             assert_relative_eq!(u_ddot + H * theta_ddot + elastic - g * theta, -a_g * scale, epsilon = 1e-12);
@@ -298,5 +291,22 @@ mod tests {
         };
         // The weight's moment stays as the rest shrinks: it leaves an error of first order in u/B.
         assert_relative_eq!(distance(1e-3) / distance(1e-4), 10.0, max_relative = 0.01);
+    }
+
+    /// Eqs 11, 16 and 18 as they stand.
+    #[test]
+    fn the_accelerations_satisfy_equations_11_and_18() {
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let &Structure { p_l, omega_u, zeta_u, tan_alpha_cg, chi, .. } = &structure;
+        let g = structure.parameters().g;
+        let state = State { u: 8e-4, u_dot: -0.03, theta: 0.02, theta_dot: 0.3 };
+        let (s, a_g) = (1.0, -2.5);
+        let [u_ddot, theta_ddot] = accelerations_of(Detail::Modal, structure, Side::Right, &state, a_g);
+        let forcing = -a_g + s * chi / (1.0 - chi) * g * tan_alpha_cg;
+        let left = u_ddot + 2.0 * zeta_u * omega_u * state.u_dot + omega_u * omega_u * state.u;
+        assert_relative_eq!(left, forcing, max_relative = 1e-12);
+        let (q_r, q_r_ddot) = (state.theta + p_l * p_l / g * state.u, theta_ddot + p_l * p_l / g * u_ddot);
+        let forcing = -p_l * p_l * a_g / g - s * p_l * p_l * tan_alpha_cg;
+        assert_relative_eq!(q_r_ddot - p_l * p_l * q_r, forcing, max_relative = 1e-10);
     }
 }

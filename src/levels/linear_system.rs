@@ -5,11 +5,11 @@
 //! θ̈ = T_u u + T_u̇ u̇ + T_θ θ + T_a (a_g − F_t/m) + s T_s
 //! ```
 
+use crate::Side;
 use crate::levels::level::{Pace, Rates};
 use crate::mechanics::instant::Second;
 use crate::numbers::bend::Bend;
 use crate::series::taylor::{Arc, Start};
-use crate::{Side, State};
 
 /// Coefficients of u, u̇, θ, a_g − F_t/m and s in one equation.
 #[derive(Clone, Copy, Debug)]
@@ -37,14 +37,6 @@ impl Row {
 }
 
 impl LinearSystem {
-    /// (ü, θ̈) in m/s² and rad/s² in `state` about `side` under the ground acceleration `a_top`
-    /// (m/s²) that the top mass feels.
-    pub(crate) fn accelerations(&self, side: Side, state: &State, a_top: f64) -> [f64; 2] {
-        let &State { u, u_dot, theta, .. } = state;
-        let rate = |row: &Row| row.u * u + row.u_dot * u_dot + row.theta * theta + row.forcing(a_top, side.sign());
-        [rate(&self.u_ddot), rate(&self.theta_ddot)]
-    }
-
     /// Bounds of (ü, θ̈) and of their derivatives, given bounds of the motion. The load has no second derivative.
     pub(crate) fn second(&self, rates: &Rates) -> Second<Bend> {
         let &Rates { u_dot, u_ddot, u_dddot, theta_dot, theta_ddot, .. } = rates;

@@ -1,4 +1,5 @@
-//! Structures of many masses: exact modes in full contact, and a rocking base that carries the modes, nonlinear or linear.
+//! A rocking base that carries modes, nonlinear or linear: structures of many masses, a rigid structure, and one mass by linear
+//! equations with ties. Full contact has exact modes.
 //!
 //! Each mode has μ, h and Γ, and takes the part S = Γ/μ in a translation. With w = sB S − u and e = (c u̇ + k u)/μ, (M8) and (M9) are
 //!
@@ -11,37 +12,41 @@
 //!
 //! The angular momentum D θ̇ has no Coriolis term. An order takes five products and one more for each mode. g is g + a_v. m0 and J0
 //! include the mass that no mode carries, and S_res is the first moment of this mass. F_res and N_res are the force on it and the
-//! moment of this force ([`Frame::load`]). A structure without modes is a rigid block, with the end of bouncing of [`rigid`].
-//!
-//! [`rigid`]: crate::levels::rigid
+//! moment of this force ([`Frame::load`](crate::Frame::load)). A structure without modes is rigid: Housner's block with the paper's
+//! impact rule, which comes to rest by a rule of its own ([`rules`](crate::levels::rules)).
 
 use crate::levels::detail::Detail;
 use crate::levels::first_uplift::Liftable;
-use crate::levels::level::{Level, Now, Rates, Subject};
+use crate::levels::full_contact;
+use crate::levels::level::{Level, Now, Rates, Subject, first_terms};
 use crate::levels::nonlinear::{Factors, LEAST_INERTIA, NO_ROW, products, row};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
-use crate::levels::rigid as block;
-use crate::levels::rules::ChatterLimit;
+use crate::levels::rules::{ChatterLimit, after_rigid_impact};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::impact;
 use crate::mechanics::instant::Second;
-use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::{self, Angles, Dissipators};
 use crate::mechanics::uplift::inertia;
 use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
-use crate::structure::{Base, Mode};
-use crate::{Phase, Side, State};
+use crate::structure::{Base, Mode, Vibration};
+use crate::{Parameters, Phase, Side, State};
 use std::cell::RefCell;
 use wide::f64x4;
 
 /// Part of the acceleration of gravity by which a motion is as good as none.
 const NEGLIGIBLE: f64 = 1e-30;
 
-/// Motion of a structure of many masses.
+/// Motion of a base with modes.
 #[derive(Clone, Debug)]
-pub(crate) struct ManyModes {
-    subject: Subject<Modes>,
+pub(crate) struct ManyModes<Q: Coordinates> {
+    subject: Subject<Q>,
     detail: Detail,
+    base: Base,
+    modes: Vec<Mode>,
+    /// Mass (kg) and height (m) of a top mass that turns rigidly with the base.
+    rigid: Option<[f64; 2]>,
+    vibration: Vibration,
     /// The oscillators of full contact, if their exact flow is used.
     contact: Option<Vec<(Oscillator, Kept<Flow>)>>,
     /// Radius of gyration about a pivot √(J_P/m_t), m.
@@ -53,6 +58,8 @@ pub(crate) struct ManyModes {
     /// The longest span of a series while rocking, s.
     longest_span: f64,
     scratch: RefCell<Box<Scratch>>,
+    /// Room for the series of which only the first terms count.
+    first: RefCell<Box<Arc<Q>>>,
 }
 
 /// Room for the series of one step.
@@ -147,48 +154,85 @@ impl Four {
     }
 }
 
-impl ManyModes {
-    /// The level of this `detail` of the structure of `subject`: `auto`, `nonlinear`, `linear` or `fixed_base`.
-    pub(crate) fn new(subject: Subject<Modes>, detail: Detail) -> ManyModes {
-        let frame = &subject.structure;
-        let base = Modes::base(frame);
-        let of_modes = Modes::sum(frame, |_, mode| mode.mass * mode.height * mode.height);
+impl ManyModes<f64> {
+    /// One mass without modes: the level `rigid`.
+    pub(crate) fn rigid(subject: Subject) -> ManyModes<f64> {
+        let &Parameters { m, m0, H, J0, .. } = subject.structure.parameters();
+        let base = Base { m0: m + m0, S_res: m * H, J0: J0 + m * H * H, ..subject.structure.base };
+        let vibration = Vibration { contact: base.p_l, rocking: [base.p_l; 2] };
+        ManyModes::of(subject, Detail::Rigid, base, &[], Some([m, H]), vibration)
+    }
+}
+
+impl<Q: Coordinates> ManyModes<Q> {
+    /// The structure of `subject` with all its modes, at a level of this `detail`.
+    pub(crate) fn new(subject: Subject<Q>, detail: Detail) -> ManyModes<Q> {
+        let (structure, base) = (subject.structure.clone(), *Q::base(&subject.structure));
+        let vibration = Q::vibration(&structure);
+        ManyModes::of(subject, detail, base, Q::modes(&structure), None, vibration)
+    }
+
+    fn of(
+        subject: Subject<Q>,
+        detail: Detail,
+        base: Base,
+        modes: &[Mode],
+        rigid: Option<[f64; 2]>,
+        vibration: Vibration,
+    ) -> ManyModes<Q> {
         let oscillator = |mode: &Mode| {
             let omega = mode.omega();
             (Oscillator { omega, zeta: mode.damping / (2.0 * mode.mass * omega) }, Kept::new(Flow::NONE))
         };
-        let left = base.J_P - of_modes;
-        let ties = restraint::sum(&restraint::ties(base, Side::Right, &Dissipators::NEW), |tie| tie.lever);
-        let [_, highest] = Modes::vibration(frame).rocking;
+        let left = inertia(&base, modes, Side::Right, |_| 0.0);
+        let ties = restraint::sum(&restraint::ties(&base, Side::Right, &Dissipators::NEW), |tie| tie.lever);
+        let [_, highest] = vibration.rocking;
         let fastest = (highest * highest + ties.stiffness / left).sqrt().max(base.p_l).max(ties.damping / left);
+        let has_flow = detail != Detail::Nonlinear && rigid.is_none();
         ManyModes {
-            contact: (detail != Detail::Nonlinear).then(|| frame.modes().iter().map(oscillator).collect()),
+            contact: has_flow.then(|| modes.iter().map(oscillator).collect()),
             radius: (base.J_P / base.m_t).sqrt(),
             left,
             quickening: base.J_P / left,
             longest_span: LONGEST_SPAN / fastest,
             scratch: RefCell::new(Box::new(Scratch {
-                fours: frame.modes().chunks(4).enumerate().map(Four::new).collect(),
+                fours: modes.chunks(4).enumerate().map(Four::new).collect(),
                 factors: [[NO_ROW; MAX_ORDER + 1]; 2],
                 square: [f64x4::ZERO; MAX_ORDER + 1],
             })),
-            detail,
+            first: RefCell::default(),
+            modes: modes.to_vec(),
             subject,
+            detail,
+            base,
+            rigid,
+            vibration,
         }
+    }
+
+    /// Whether the structure has no modes.
+    pub(crate) fn is_rigid(&self) -> bool {
+        self.modes.is_empty()
+    }
+
+    /// The structure as far as uplift depends on it.
+    fn standing(&self) -> Liftable<'_> {
+        let ManyModes { base, modes, rigid, .. } = self;
+        let has_constant_inertia = self.subject.angles == Angles::Small;
+        Liftable { base, modes, rigid: *rigid, lean: 1.0, has_constant_inertia }
     }
 
     /// The root of the mean square of a velocity or an acceleration over all mass, by `of` each mode.
     fn size(&self, of: impl Fn(usize, &Mode) -> f64) -> f64 {
-        let frame = &self.subject.structure;
-        (Modes::sum(frame, |j, mode| mode.mass * of(j, mode) * of(j, mode)) / frame.base.m_t).sqrt()
+        let square = |(j, mode): (usize, &Mode)| mode.mass * of(j, mode) * of(j, mode);
+        (self.modes.iter().enumerate().map(square).sum::<f64>() / self.base.m_t).sqrt()
     }
 
     /// The truncation that `start` requires over a step of `span` s, while rocking or not.
-    fn truncation(&self, start: &Start<Modes>, span: f64, is_rocking: bool) -> Truncation<Modes> {
+    #[inline]
+    fn truncation(&self, start: &Start<Q>, span: f64, is_rocking: bool) -> Truncation<Q> {
         let &Start { state, a_g, a_top, local_error, .. } = start;
-        let frame = &self.subject.structure;
-        let &Base { m_t, g, tan_alpha_cg, .. } = Modes::base(frame);
-        let vibration = Modes::vibration(frame);
+        let (&Base { m_t, g, tan_alpha_cg, .. }, vibration) = (&self.base, self.vibration);
         let elastic = self.size(|j, mode| mode.stiffness / mode.mass * state.u.of(j));
         let load = self.size(|j, _| a_top.value.of(j)) + span * self.size(|j, _| a_top.slope.of(j));
         let (time, elastic, load) = match is_rocking {
@@ -201,15 +245,15 @@ impl ManyModes {
         let velocity = self.size(|j, _| state.u_dot.of(j)) + span.min(time) * (elastic + load);
         let theta_dot = state.theta_dot.abs() + velocity / self.radius;
         Truncation {
-            u_dot: Modes::each(frame, |_, mode| local_error * velocity * (m_t / mode.mass).sqrt()),
+            u_dot: Q::each(&self.subject.structure, |_, mode| local_error * velocity * (m_t / mode.mass).sqrt()),
             theta_dot: if is_rocking { local_error * theta_dot } else { 0.0 },
         }
     }
 
     /// Writes the motion in full contact into `arc` (M1).
-    fn resting(&self, start: &Start<Modes>, arc: &mut Arc<Modes>) {
+    fn resting(&self, start: &Start<Q>, arc: &mut Arc<Q>) {
         let Start { state, a_top, interval, .. } = start;
-        let span = interval.min(LONGEST_SPAN / Modes::vibration(&self.subject.structure).rocking[1]);
+        let span = interval.min(LONGEST_SPAN / self.vibration.rocking[1]);
         let fours = &mut self.scratch.borrow_mut().fours;
         for four in fours.iter_mut() {
             let j = four.first;
@@ -234,15 +278,11 @@ impl ManyModes {
     }
 
     /// Writes the motion while rocking about `side` into `arc` (M8, M9).
-    fn rocking(&self, side: Side, start: &Start<Modes>, arc: &mut Arc<Modes>) {
+    fn rocking(&self, side: Side, start: &Start<Q>, arc: &mut Arc<Q>) {
         let Start { state, a_g, a_top, a_v, .. } = start;
-        let &Base { m0, J0, S_res, B, g, c_ratio, .. } = Modes::base(&self.subject.structure);
+        let &Base { m0, J0, S_res, B, g, c_ratio, .. } = &self.base;
         let span = start.interval.min(self.longest_span);
-        let mut ties = self.subject.is_tied.then(|| {
-            let base = Modes::base(&self.subject.structure);
-            let ties = restraint::sum(&restraint::ties(base, side, start.dissipators), |tie| tie.lever);
-            TieSeries::new(ties, Angles::Any, state.theta)
-        });
+        let mut ties = self.ties(side, start);
         let pivot = side.sign() * B;
         let (g, lift) = (g + a_v.value, a_v.slope * span);
         let (ground, ground_slope) = (a_g.value, a_g.slope * span);
@@ -262,7 +302,8 @@ impl ManyModes {
         let per_inertia = 1.0 / (J0 + m0 * B * B + inertia.reduce_add());
         let (mut offset, mut theta_dot) = (pivot * m0 + offset.reduce_add(), state.theta_dot);
         let ((mut sin, mut cos), [mut sin_before, mut cos_before]) = (libm::sincos(state.theta), [0.0; 2]);
-        let [on_rest, rest_slope] = [a_top.value, a_top.slope].map(|forces| forces.rest().unwrap_or_default());
+        let [on_rest, rest_slope] =
+            [(a_g.value, a_top.value), (a_g.slope, a_top.slope)].map(|(a_g, a_top)| self.standing().rest(a_g, &a_top));
         is_pushed |= [on_rest, rest_slope] != [[0.0; 2]; 2];
         // Σ φᵀF w + sB F_res
         let pushes = |fours: &[Four], k: usize| {
@@ -289,7 +330,7 @@ impl ManyModes {
             let newest_right = row([cos, sin, theta_dot, theta_dot, weight, sin]);
             (left[n], right[MAX_ORDER - n]) = (newest_left, newest_right);
             let [sin_rate, minus_cos_rate, turning, known, weight_moment, push_moment] =
-                products(left, right, &newest_left, &newest_right, n);
+                products::<3>(left, right, &newest_left, &newest_right, n);
             square[MAX_ORDER - n] = f64x4::splat(turning);
             let mut moment = f64x4::ZERO;
             for four in fours.iter_mut() {
@@ -323,20 +364,59 @@ impl ManyModes {
         });
     }
 
+    /// Writes the motion of a structure without modes while rocking about `side` into `arc` (M9). D and X do not change, and two products
+    /// are left. This takes half the instructions of [`ManyModes::rocking`] without modes.
+    fn rocking_rigidly(&self, side: Side, start: &Start<Q>, arc: &mut Arc<Q>) {
+        let Start { state, a_g, a_top, a_v, .. } = start;
+        let &Base { m_t, S_res, B, g, .. } = &self.base;
+        let span = start.interval.min(self.longest_span);
+        let mut ties = self.ties(side, start);
+        let (pivot, per_inertia) = (side.sign() * B, 1.0 / self.left);
+        // the moment by sin θ and cos θ, and their slopes
+        let moment = |g: f64, a_g: f64, a_top: &Q| {
+            let [force, height] = self.standing().rest(a_g, a_top);
+            [S_res * g + pivot * (force - m_t * a_g), height - S_res * a_g - pivot * m_t * g].map(|of| of * per_inertia)
+        };
+        let by = moment(g + a_v.value, a_g.value, &a_top.value);
+        let slopes = moment(a_v.slope, a_g.slope, &a_top.slope).map(|of| of * span);
+        let Scratch { factors: [left, right], .. } = &mut **self.scratch.borrow_mut();
+        let (mut theta_dot, mut before) = (state.theta_dot, [0.0; 2]);
+        let mut turn = <[f64; 2]>::from(libm::sincos(state.theta));
+        let truncation = self.truncation(start, span, true);
+        arc.expand_in_place(state, span, &truncation, |arc, k, per| {
+            let [sin, cos] = turn;
+            let (newest_left, newest_right) = (row([theta_dot; 6]), row([cos, sin, 0.0, 0.0, 0.0, 0.0]));
+            (left[k - 1][0], right[MAX_ORDER + 1 - k][0]) = (newest_left[0], newest_right[0]);
+            let [sin_rate, minus_cos_rate, ..] = products::<1>(left, right, &newest_left, &newest_right, k - 1);
+            let mut theta_ddot = by[0] * sin + by[1] * cos + slopes[0] * before[0] + slopes[1] * before[1];
+            if let Some(ties) = &mut ties {
+                theta_ddot -= per_inertia * ties.next(&arc.theta_dot, k - 1, per);
+            }
+            (theta_dot, before, turn) = (theta_ddot * per, turn, [sin_rate * per, -minus_cos_rate * per]);
+            arc.u_dot[k].count_as(&state.u_dot);
+            theta_dot
+        });
+    }
+
+    /// The moment of the ties about `side` as a series, if there are ties.
+    fn ties(&self, side: Side, start: &Start<Q>) -> Option<TieSeries> {
+        let &Subject { is_tied, angles, .. } = &self.subject;
+        is_tied.then(|| {
+            let ties = restraint::sum(&restraint::ties(&self.base, side, start.dissipators), |tie| tie.lever);
+            TieSeries::new(ties, angles, start.state.theta)
+        })
+    }
+
     /// Writes the motion while rocking about `side` by small angles into `arc`. From (M10) and (M11), with e = (c u̇ + k u)/μ,
     ///
     /// ```text
     /// ü + h θ̈ = −e + S g θ − a,      (J_P − Σ μ h²) θ̈ = Σ (μ h e + Γ g u) − s m_t g B + S_res (g θ − a_g) − ties
     /// ```
-    fn rocking_little(&self, side: Side, start: &Start<Modes>, arc: &mut Arc<Modes>) {
+    fn rocking_little(&self, side: Side, start: &Start<Q>, arc: &mut Arc<Q>) {
         let Start { state, a_g, a_top, a_v, .. } = start;
-        let base = Modes::base(&self.subject.structure);
-        let &Base { m_t, S_res, B, g, c_ratio, .. } = base;
+        let &Base { m_t, S_res, B, g, c_ratio, .. } = &self.base;
         let span = start.interval.min(self.longest_span);
-        let mut ties = self.subject.is_tied.then(|| {
-            let ties = restraint::sum(&restraint::ties(base, side, start.dissipators), |tie| tie.lever);
-            TieSeries::new(ties, Angles::Small, state.theta)
-        });
+        let mut ties = self.ties(side, start);
         let (g, lift, pivot) = (g + a_v.value, a_v.slope * span, side.sign() * B);
         let fours = &mut self.scratch.borrow_mut().fours;
         for four in fours.iter_mut() {
@@ -344,6 +424,9 @@ impl ManyModes {
             four.motion = [state.u.four(j), state.u_dot.four(j)];
             four.push = [a_top.value.four(j), a_top.slope.four(j) * span];
         }
+        let [value, slope] = [(a_g.value, a_top.value), (a_g.slope, a_top.slope)]
+            .map(|(a_g, a_top)| self.standing().moment_of_rest(a_g, &a_top));
+        let rigid = [value, slope * span];
         let mut before = f64x4::ZERO; // Σ Γ u of the order before
         let truncation = self.truncation(start, span, true);
         arc.expand_in_place(state, span, &truncation, |arc, k, per| {
@@ -359,9 +442,7 @@ impl ManyModes {
                 offset += four.mass * four.share * u;
             }
             let mut moment = (moment + offset * g + before * lift).reduce_add() - pivot * m_t * weight;
-            let [value, slope] = [(a_g.value, a_top.value), (a_g.slope, a_top.slope)]
-                .map(|(a, on)| on.rest().map_or(0.0, |[_, moment]| moment) - S_res * a);
-            moment += S_res * lean + of_order([value, slope * span]);
+            moment += S_res * lean + of_order(rigid);
             before = offset;
             if let Some(ties) = &mut ties {
                 moment -= ties.next(&arc.theta_dot, n, per);
@@ -381,20 +462,19 @@ impl ManyModes {
     }
 }
 
-impl Level<Modes> for ManyModes {
+impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
     #[inline(always)]
-    fn subject(&self) -> &Subject<Modes> {
+    fn subject(&self) -> &Subject<Q> {
         &self.subject
     }
 
     /// The exact flow of every mode, if the moment of the springs certainly stays below what holds the base.
-    fn leap(&self, phase: Phase, start: &Start<Modes>) -> Option<State<Modes>> {
+    fn leap(&self, phase: Phase, start: &Start<Q>) -> Option<State<Q>> {
         let (Phase::FullContact, Some(contact)) = (phase, &self.contact) else { return None };
         let &Start { state, a_top, interval, .. } = start;
-        let frame = &self.subject.structure;
         let (mut end, mut farthest, mut bend) = (State { theta: 0.0, theta_dot: 0.0, ..state }, 0.0, 0.0);
         let mut springs = [0.0; 2];
-        for (j, (mode, (oscillator, flows))) in frame.modes().iter().zip(contact).enumerate() {
+        for (j, (mode, (oscillator, flows))) in self.modes.iter().zip(contact).enumerate() {
             let (from, value, slope) = ([state.u.of(j), state.u_dot.of(j)], a_top.value.of(j), a_top.slope.of(j));
             let to = flows.over(interval, || oscillator.flow(interval)).driven(from, value, slope);
             let swing: Swing = oscillator.swing(from, value, slope, interval);
@@ -411,14 +491,21 @@ impl Level<Modes> for ManyModes {
         (farthest < held || near < held).then_some(end)
     }
 
-    fn rates(&self, _phase: Phase, _start: &Start<Modes>, _end: &State<Modes>) -> Rates {
-        Rates::NONE
+    fn rates(&self, phase: Phase, start: &Start<Q>, _end: &State<Q>) -> Rates {
+        match (phase, self.contact.as_deref()) {
+            (Phase::FullContact, Some([(oscillator, _)])) => {
+                let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
+                let swing = oscillator.swing([u.of(0), u_dot.of(0)], a_top.value.of(0), a_top.slope.of(0), interval);
+                full_contact::rates(oscillator, &swing, a_top.slope.of(0))
+            }
+            _ => Rates::NONE,
+        }
     }
 
-    fn vibration(&self, phase: Phase, start: &Start<Modes>) -> Option<[Modes; 4]> {
+    fn vibration(&self, phase: Phase, start: &Start<Q>) -> Option<[Q; 4]> {
         let (Phase::FullContact, Some(contact)) = (phase, &self.contact) else { return None };
         let &Start { state, a_top, interval, .. } = start;
-        let mut bounds = [Modes::parts(&self.subject.structure, 0.0); 4];
+        let mut bounds = [Q::parts(&self.subject.structure, 0.0); 4];
         for (j, (oscillator, _)) in contact.iter().enumerate() {
             let from = [state.u.of(j), state.u_dot.of(j)];
             let swing = oscillator.swing(from, a_top.value.of(j), a_top.slope.of(j), interval);
@@ -429,108 +516,67 @@ impl Level<Modes> for ManyModes {
         Some(bounds)
     }
 
-    fn series(&self, phase: Phase, start: &Start<Modes>, arc: &mut Arc<Modes>) {
+    fn series(&self, phase: Phase, start: &Start<Q>, arc: &mut Arc<Q>) {
         match phase {
             Phase::Rocking(side) if self.detail == Detail::Linear => self.rocking_little(side, start, arc),
+            Phase::Rocking(side) if self.is_rigid() => self.rocking_rigidly(side, start, arc),
             Phase::Rocking(side) => self.rocking(side, start, arc),
+            Phase::FullContact | Phase::Overturned(_) if self.is_rigid() => {
+                let nothing = Truncation { u_dot: Q::ZERO, theta_dot: 0.0 };
+                arc.expand(&self.admissible(Phase::FullContact, start.state), start.interval, nothing, |_, _, _| {
+                    (Q::ZERO, 0.0)
+                });
+            }
             Phase::FullContact | Phase::Overturned(_) => self.resting(start, arc),
         }
     }
 
-    fn is_singular(&self, phase: Phase, state: &State<Modes>) -> bool {
-        let frame = &self.subject.structure;
-        let &Base { m_t, J0, B, .. } = Modes::base(frame);
-        self.detail != Detail::Linear
-            && matches!(phase, Phase::Rocking(side) if inertia(&frame.base, frame.modes(), side, |j| state.u.of(j)) < LEAST_INERTIA * (J0 + m_t * B * B))
+    fn accelerations(&self, phase: Phase, now: &Now<Q>) -> Second<f64, Q> {
+        first_terms(self, phase, now, &mut self.first.borrow_mut())
+    }
+
+    fn is_singular(&self, phase: Phase, state: &State<Q>) -> bool {
+        let (&Base { m_t, J0, B, .. }, Phase::Rocking(side)) = (&self.base, phase) else { return false };
+        let inertia = || inertia(&self.base, &self.modes, side, |j| state.u.of(j));
+        self.detail != Detail::Linear && inertia() < LEAST_INERTIA * (J0 + m_t * B * B)
     }
 
     fn liftable(&self) -> Option<Liftable<'_>> {
-        let Subject { structure, angles, .. } = &self.subject;
-        (self.detail != Detail::FixedBase).then(|| Liftable {
-            base: &structure.base,
-            modes: structure.modes(),
-            rigid: None,
-            lean: 1.0,
-            has_constant_inertia: *angles == Angles::Small,
-        })
+        (self.detail != Detail::FixedBase).then(|| self.standing())
     }
 
-    fn after_impact(&self, side: Side, before: &State<Modes>) -> (Phase, State<Modes>) {
+    fn after_impact(&self, side: Side, before: &State<Q>) -> (Phase, State<Q>) {
         let &Subject { ref structure, local_error, .. } = &self.subject;
-        match structure.modes() {
-            [] => block::after_impact::<Modes>(structure, local_error, side, before),
-            _ => impact::resolve::<Modes>(structure, side, before),
+        match self.modes[..] {
+            [] => after_rigid_impact::<Q>(structure, local_error, side, before),
+            _ => impact::resolve::<Q>(structure, side, before),
         }
     }
 
     fn chatter_limit(&self) -> ChatterLimit {
-        match self.subject.structure.modes() {
-            [] => block::chatter_limit(&self.subject.structure.base),
-            _ => ChatterLimit::of(Modes::vibration(&self.subject.structure)),
-        }
+        if self.is_rigid() { ChatterLimit::of_rigid(&self.base) } else { ChatterLimit::of(self.vibration) }
     }
 
-    /// (M1), or the equations of rocking as they stand.
-    fn accelerations(&self, phase: Phase, now: &Now<Modes>) -> Second<f64, Modes> {
-        let frame = &self.subject.structure;
-        let &Now { state, load, dissipators } = now;
-        let &State { u, u_dot, theta, theta_dot } = state;
-        let base = Modes::base(frame);
-        let &Base { m0, S_res, B, .. } = base;
-        let a_top = load.on_modes(frame);
-        let elastic = |j: usize, mode: &Mode, damping: f64| {
-            (damping * mode.damping * u_dot.of(j) + mode.stiffness * u.of(j)) / mode.mass
-        };
-        let Phase::Rocking(side) = phase else {
-            let u_ddot = Modes::each(frame, |j, mode| -a_top.of(j) - elastic(j, mode, 1.0));
-            return Second { u_ddot, theta_ddot: 0.0 };
-        };
-        let (g, pivot) = (base.g + load.a_v, side.sign() * B);
-        let ties = restraint::sum(&restraint::ties(base, side, dissipators), |tie| tie.lever);
-        let back = ties.moment(&self.subject.angles.chord(theta, theta_dot));
-        if self.detail == Detail::Linear {
-            let moment = Modes::sum(frame, |j, mode| {
-                mode.mass * mode.height * elastic(j, mode, base.c_ratio) + mode.gamma * g * u.of(j)
-            });
-            let rigid = load.F_t.rest().map_or(0.0, |[_, moment]| moment) - S_res * load.a_g;
-            let moment = moment - pivot * base.m_t * g + S_res * g * theta + rigid - back;
-            let theta_ddot = moment / self.left;
-            let along = |j: usize, mode: &Mode| mode.share * g * theta - a_top.of(j) - elastic(j, mode, base.c_ratio);
-            return Second {
-                u_ddot: Modes::each(frame, |j, mode| along(j, mode) - mode.height * theta_ddot),
-                theta_ddot,
-            };
-        }
-        let (sin, cos) = libm::sincos(theta);
-        let lever = |j: usize, mode: &Mode| pivot * mode.share - u.of(j);
-        let held = |j: usize, mode: &Mode| elastic(j, mode, base.c_ratio) + lever(j, mode) * theta_dot * theta_dot;
-        let moment = Modes::sum(frame, |j, mode| {
-            let weight = mode.share * g * cos + a_top.of(j) * sin;
-            mode.mass * (mode.height * held(j, mode) + lever(j, mode) * (2.0 * theta_dot * u_dot.of(j) - weight))
-        });
-        let fall = g * sin - load.a_g * cos;
-        let [force, height] = load.F_t.rest().unwrap_or_default();
-        let moment = moment - pivot * m0 * (g * cos + load.a_g * sin) + S_res * fall - back;
-        let moment = moment + force * pivot * sin + height * cos;
-        let theta_ddot = moment / inertia(base, frame.modes(), side, |j| u.of(j));
-        let along = |j: usize, mode: &Mode| mode.share * g * sin - a_top.of(j) * cos - held(j, mode);
-        Second { u_ddot: Modes::each(frame, |j, mode| along(j, mode) - mode.height * theta_ddot), theta_ddot }
+    fn admissible(&self, phase: Phase, state: State<Q>) -> State<Q> {
+        let state = if phase == Phase::FullContact { State { theta: 0.0, theta_dot: 0.0, ..state } } else { state };
+        if self.is_rigid() { State { u: Q::ZERO, u_dot: Q::ZERO, ..state } } else { state }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Structure;
     use crate::engine::piece::Turning;
     use crate::levels::nonlinear::accelerations;
     use crate::mechanics::floors::MotionOfFloors;
     use crate::mechanics::gauge::Gauge;
     use crate::mechanics::instant::Instant;
+    use crate::mechanics::lateral::{Lateral, Modes};
     use crate::mechanics::load::{LinearLoad, Load};
     use crate::mechanics::reactions::Reactions;
     use crate::structure::Ties;
     use crate::structure::frame::{Body, Floor, Frame};
-    use crate::{Parameters, Structure};
     use approx::assert_relative_eq;
 
     /// A restrained structure whose modes have these shares and carry the whole mass, or less of `more` mass.
@@ -559,7 +605,7 @@ mod tests {
         (structure, Frame::new(body, &modes, &[]).unwrap())
     }
 
-    fn level(frame: &Frame, detail: Detail) -> ManyModes {
+    fn level(frame: &Frame, detail: Detail) -> ManyModes<Modes> {
         let angles = detail.angles();
         ManyModes::new(Subject { structure: frame.clone(), local_error: 1e-16, is_tied: true, angles }, detail)
     }
@@ -710,6 +756,23 @@ mod tests {
                     max_relative = 1e-12
                 );
             }
+        }
+    }
+
+    /// The orders of a step follow the velocity that the loads bring within 1/p_l.
+    #[test]
+    fn the_order_follows_the_forcing() {
+        let structure =
+            Structure::new(Parameters { m0: 0.0, J0: 0.0, H: 0.02, B: 0.005, ..Parameters::EVISON }).unwrap();
+        let rigid = ManyModes::rigid(Subject { structure, local_error: 1e-9, is_tied: false, angles: Angles::Any });
+        let (state, mut arc) = (State { theta: 0.01, ..State::default() }, Arc::default());
+        for tenths in 10..25 {
+            let interval = 0.1 * f64::from(tenths) / structure.p_l;
+            let start = Start { state, interval, local_error: 1e-4, ..Start::default() };
+            rigid.series(Phase::Rocking(Side::Right), &start, &mut arc);
+            let most = 1e-4 * structure.p_l * (structure.tan_alpha_cg + 0.01) * (1.0 + 1e-12);
+            let [last, before] = [arc.order, arc.order - 1].map(|k| arc.theta_dot[k].abs());
+            assert!(arc.reach == 1.0 && last <= most && before <= most, "{tenths}: {last:e} {before:e} {most:e}");
         }
     }
 }

@@ -31,7 +31,7 @@
 #[cfg(feature = "lanes")]
 pub(crate) mod lanes;
 
-use crate::levels::level::{ElasticRocking, Now, Pace, Subject};
+use crate::levels::level::{ElasticRocking, Pace, Subject};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
@@ -97,25 +97,31 @@ pub(super) fn row(columns: [f64; 6]) -> Row {
 }
 
 #[inline(always)]
-fn add_product(sum: &mut Row, a: &Row, b: &Row) {
-    for lanes in 0..3 {
+fn add_product<const PAIRS: usize>(sum: &mut Row, a: &Row, b: &Row) {
+    for lanes in 0..PAIRS {
         sum[lanes] += a[lanes] * b[lanes];
     }
 }
 
-/// Σ a_i b_{n−i} over i = 0 … n in each column: six Cauchy products at once. b is kept backwards, so that both are read in
+/// Σ a_i b_{n−i} over i = 0 … n in each column of the first `PAIRS` pairs: six Cauchy products at once. b is kept backwards, so that both are read in
 /// one direction. The newest factors, a_n and b_n, come last and not from memory, so that the processor can sum the others
 /// before it knows them.
 #[inline(always)]
-pub(super) fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row, n: usize) -> [f64; 6] {
+pub(super) fn products<const PAIRS: usize>(
+    a: &Factors,
+    b: &Factors,
+    newest_a: &Row,
+    newest_b: &Row,
+    n: usize,
+) -> [f64; 6] {
     let mut sum = NO_ROW;
     if n > 0 {
         for (a, b) in a[1..n].iter().zip(&b[MAX_ORDER - n + 1..MAX_ORDER]) {
-            add_product(&mut sum, a, b);
+            add_product::<PAIRS>(&mut sum, a, b);
         }
-        add_product(&mut sum, newest_a, &b[MAX_ORDER]);
+        add_product::<PAIRS>(&mut sum, newest_a, &b[MAX_ORDER]);
     }
-    add_product(&mut sum, &a[0], newest_b);
+    add_product::<PAIRS>(&mut sum, &a[0], newest_b);
     let [first, second, third] = sum.map(f64x2::to_array);
     [first[0], first[1], second[0], second[1], third[0], third[1]]
 }
@@ -166,7 +172,7 @@ impl Expanded for f64 {
 
     #[inline(always)]
     fn products(left: &Factors, right: &Factors, newest: (&Row, &Row), n: usize) -> [f64; 6] {
-        products(left, right, newest.0, newest.1, n)
+        products::<3>(left, right, newest.0, newest.1, n)
     }
 }
 
@@ -335,11 +341,6 @@ impl ElasticRocking for NonlinearRocking {
         let (foundation, B) = (structure.foundation, structure.parameters().B);
         let lever = side.sign() * B - state.u;
         foundation + lever * lever < LEAST_INERTIA * (foundation + B * B)
-    }
-
-    fn accelerations(&self, side: Side, now: &Now) -> [f64; 2] {
-        let &Now { state, load, dissipators } = now;
-        accelerations(&self.subject.structure, side, state, load, dissipators).map_or([f64::NAN; 2], Into::into)
     }
 
     #[inline(always)]

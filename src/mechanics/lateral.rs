@@ -73,6 +73,18 @@ pub trait Coordinates: Lateral<f64> + Debug + PartialEq + 'static {
     /// These coordinates times `factor`.
     fn times(self, factor: f64) -> Self;
 
+    /// Writes the coordinate of mode `j`.
+    fn set(&mut self, j: usize, number: f64);
+
+    /// The coordinates of four modes from `j` on; 0 of a mode that is none.
+    fn four(&self, j: usize) -> f64x4;
+
+    /// Writes the coordinates of four modes from `j` on.
+    fn set_four(&mut self, j: usize, four: f64x4);
+
+    /// Takes the number of modes of `other`; the coordinates of modes that are none must be 0.
+    fn count_as(&mut self, other: &Self);
+
     /// Writes `factor` times `other` here.
     fn be(&mut self, other: &Self, factor: f64);
 
@@ -132,6 +144,26 @@ impl Coordinates for f64 {
     #[inline(always)]
     fn times(self, factor: f64) -> f64 {
         self * factor
+    }
+
+    #[inline(always)]
+    fn set(&mut self, _: usize, number: f64) {
+        *self = number;
+    }
+
+    #[inline(always)]
+    fn four(&self, _: usize) -> f64x4 {
+        f64x4::new([*self, 0.0, 0.0, 0.0])
+    }
+
+    #[inline(always)]
+    fn set_four(&mut self, _: usize, four: f64x4) {
+        *self = four.to_array()[0];
+    }
+
+    #[inline(always)]
+    fn count_as(&mut self, _: &f64) {
+        *self = 0.0;
     }
 
     #[inline(always)]
@@ -200,30 +232,6 @@ impl Modes {
     /// These forces on the modes, and the force and the moment of what acts on mass that no mode carries.
     pub(crate) fn and_rest(self, rest: [f64; 2]) -> Modes {
         Modes { rest, ..self }
-    }
-
-    /// Writes the number of mode `j`.
-    #[inline]
-    pub(crate) fn set(&mut self, j: usize, number: f64) {
-        self.of[j] = number;
-    }
-
-    /// Takes the number of modes of `other`; of modes that are none, the numbers must be 0.
-    #[inline(always)]
-    pub(crate) fn count_as(&mut self, other: &Modes) {
-        self.count = other.count;
-    }
-
-    /// Writes the numbers of four modes from `j` on.
-    #[inline(always)]
-    pub(crate) fn set_four(&mut self, j: usize, four: f64x4) {
-        self.of[j..j + 4].copy_from_slice(&four.to_array());
-    }
-
-    /// The numbers of four modes from `j` on; 0 of a mode that is none.
-    #[inline(always)]
-    pub(crate) fn four(&self, j: usize) -> f64x4 {
-        f64x4::new([self.of[j], self.of[j + 1], self.of[j + 2], self.of[j + 3]])
     }
 
     /// The numbers in fours, with 0 for modes that are none.
@@ -324,6 +332,26 @@ impl Coordinates for Modes {
     #[inline]
     fn times(self, factor: f64) -> Modes {
         self.with(&Modes::ZERO, |own, _| own * factor)
+    }
+
+    #[inline]
+    fn set(&mut self, j: usize, number: f64) {
+        self.of[j] = number;
+    }
+
+    #[inline(always)]
+    fn four(&self, j: usize) -> f64x4 {
+        f64x4::new([self.of[j], self.of[j + 1], self.of[j + 2], self.of[j + 3]])
+    }
+
+    #[inline(always)]
+    fn set_four(&mut self, j: usize, four: f64x4) {
+        self.of[j..j + 4].copy_from_slice(&four.to_array());
+    }
+
+    #[inline(always)]
+    fn count_as(&mut self, other: &Modes) {
+        self.count = other.count;
     }
 
     #[inline]
