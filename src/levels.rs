@@ -5,7 +5,6 @@ pub(crate) mod first_uplift;
 pub mod full_contact;
 pub(crate) mod level;
 mod linear;
-mod linear_system;
 pub(crate) mod modes;
 pub mod nonlinear;
 pub(crate) mod oscillator;

@@ -358,7 +358,7 @@ impl<'a> Part<'a> {
             }
         } else {
             let start = self.step();
-            level.rates(before.phase, &start, end).most(&start, end)
+            level.leap_bounds(before.phase, &start, end).most(&start, end)
         };
         level.most(before.phase, [self.start.0, self.end.0].map(|tau| load.at(tau)), &most)
     }
@@ -369,7 +369,7 @@ impl<'a> Part<'a> {
         let &Piece { level, before: &Motion { phase, .. }, load, .. } = self.piece;
         let (step, end, load) = (self.step(), &self.end.1, load.from(self.start.0));
         let h = step.interval;
-        let bends = level.bends(phase, load, h, &level.rates(phase, &step, end));
+        let bends = level.bends(phase, load, h, &level.leap_bounds(phase, &step, end));
         let [(_, first), (_, last)] = self.ends();
         let now = Now { state: &step.state, load: load.value, dissipators: step.dissipators };
         let rates = level.searched_rates(phase, &step.state, &level.accelerations(phase, &now), load);
@@ -431,7 +431,7 @@ impl<'a> Arcs<'a, Modes> {
     /// the load.
     pub(crate) fn rest(&self) -> Option<(Part<'a, Modes>, [Modes; 4])> {
         let part = self.left?;
-        Some((part, part.piece.level.vibration(part.piece.before.phase, &part.step())?))
+        Some((part, part.piece.level.swings(part.piece.before.phase, &part.step())?))
     }
 }
 

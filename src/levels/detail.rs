@@ -1,6 +1,6 @@
-//! Levels of detail: the equations by which a structure moves. The same code finds and applies transitions at all levels. Each
-//! level is a type that contains all differences from other levels. The rigid limit has its own condition of uplift and its own
-//! end of bouncing. A fixed base has no uplift.
+//! Levels of detail: the equations by which a structure moves. The same code finds and applies transitions at all levels, with the
+//! same condition of uplift. A rigid structure, which is a base without modes, comes to rest by a rule of its own. A fixed base has no
+//! uplift.
 //!
 //! | level | equations | solved by |
 //! |---|---|---|
@@ -12,11 +12,11 @@
 //! | `fixed_base` | 1, no uplift | exact flow |
 //!
 //! If a structure is restrained or shaken vertically, the equations of rocking have more terms. They are then solved by series
-//! alone, and there are no modes.
+//! alone, `linear` by those of a base with one mode, and there is no level `modal`.
 
 use crate::levels::first_uplift::Liftable;
 use crate::levels::full_contact::{self, ExactContact};
-use crate::levels::level::{ElasticRocking, Level, Rates, Subject};
+use crate::levels::level::{Bounds, ElasticRocking, Level, Subject};
 use crate::levels::linear::LinearRocking;
 use crate::levels::modes::ManyModes;
 use crate::levels::nonlinear::NonlinearRocking;
@@ -175,7 +175,7 @@ impl<Rocking: ElasticRocking> Elastic<Rocking> {
     /// The leap over `start` in full contact with bounds of the motion, if an exact flow is known and the structure stays down.
     #[cfg(feature = "lanes")]
     #[inline(always)]
-    pub(crate) fn bounded_leap(&self, start: &Start) -> Option<(State, Rates)> {
+    pub(crate) fn bounded_leap(&self, start: &Start) -> Option<(State, Bounds)> {
         self.contact.as_ref()?.bounded_leap(start, self.least_displacement(start))
     }
 
@@ -218,16 +218,16 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
         }
     }
 
-    fn rates(&self, phase: Phase, start: &Start, end: &State) -> Rates {
+    fn leap_bounds(&self, phase: Phase, start: &Start, end: &State) -> Bounds {
         match (phase, &self.contact) {
-            (Phase::Rocking(side), _) => self.rocking.rates(side, start, end),
-            (_, Some(contact)) => contact.rates(start),
-            (_, None) => Rates::NONE,
+            (Phase::Rocking(side), _) => self.rocking.leap_bounds(side, start, end),
+            (_, Some(contact)) => contact.bounds(start),
+            (_, None) => Bounds::NONE,
         }
     }
 
-    fn second(&self, rates: &Rates) -> Option<Second<Bend>> {
-        self.rocking.second(rates)
+    fn second(&self, bounds: &Bounds) -> Option<Second<Bend>> {
+        self.rocking.second(bounds)
     }
 
     #[inline(always)]
@@ -273,8 +273,8 @@ impl Level for FixedBase {
         self.contact.leap(start, f64::INFINITY)
     }
 
-    fn rates(&self, _phase: Phase, start: &Start, _end: &State) -> Rates {
-        self.contact.rates(start)
+    fn leap_bounds(&self, _phase: Phase, start: &Start, _end: &State) -> Bounds {
+        self.contact.bounds(start)
     }
 
     fn series(&self, _phase: Phase, start: &Start, arc: &mut Arc) {
@@ -348,7 +348,7 @@ mod tests {
             let lowest = (0..=1000).map(|i| s * arc.at(f64::from(i) / 1000.0).theta).fold(1.0, f64::min);
             if let Some(end) = level.leap(phase, &start) {
                 prop_assert!(lowest > 0.0);
-                let most = level.rates(phase, &start, &end);
+                let most = level.leap_bounds(phase, &start, &end);
                 for i in 0..=20 {
                     let sigma = f64::from(i) / 20.0;
                     let (state, load) = (&arc.at(sigma), Load::ground(a_g.at(sigma * interval)));

@@ -4,7 +4,7 @@
 //! ü + 2 ζ_fc ω_fc u̇ + ω_fc² u = −a_g + F_t/m,      θ = θ̇ = 0                                    (1)
 //! ```
 
-use crate::levels::level::Rates;
+use crate::levels::level::Bounds;
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::mechanics::load::Load;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
@@ -63,9 +63,9 @@ impl ExactContact {
     /// The same leap with bounds of what changes over it.
     #[cfg(feature = "lanes")]
     #[inline(always)]
-    pub(crate) fn bounded_leap(&self, start: &Start, limit: f64) -> Option<(State, Rates)> {
+    pub(crate) fn bounded_leap(&self, start: &Start, limit: f64) -> Option<(State, Bounds)> {
         let (end, swing) = (self.end(start), self.swing(start));
-        self.is_low(start, &end, &swing, limit).then(|| (end, self.rates_of(start, &swing)))
+        self.is_low(start, &end, &swing, limit).then(|| (end, self.bounds_of(start, &swing)))
     }
 
     /// The state after the interval of `start`.
@@ -86,27 +86,27 @@ impl ExactContact {
     /// Whether |u| certainly stays below `limit` (m) from `start` to `end`.
     #[inline(always)]
     fn is_low(&self, start: &Start, end: &State, swing: &Swing, limit: f64) -> bool {
-        let [_, u_ddot, _] = self.oscillator.rates(swing, start.a_top.slope);
+        let [_, u_ddot, _] = self.oscillator.bounds(swing, start.a_top.slope);
         let off_chord = u_ddot * start.interval * start.interval / 8.0;
         swing.farthest() < limit || start.state.u.abs().max(end.u.abs()) + off_chord < limit
     }
 
     /// Bounds of what changes over the interval of `start`.
-    pub(crate) fn rates(&self, start: &Start) -> Rates {
-        self.rates_of(start, &self.swing(start))
+    pub(crate) fn bounds(&self, start: &Start) -> Bounds {
+        self.bounds_of(start, &self.swing(start))
     }
 
     #[inline(always)]
-    fn rates_of(&self, start: &Start, swing: &Swing) -> Rates {
-        rates(&self.oscillator, swing, start.a_top.slope)
+    fn bounds_of(&self, start: &Start, swing: &Swing) -> Bounds {
+        bounds(&self.oscillator, swing, start.a_top.slope)
     }
 }
 
 /// Bounds of what changes while `oscillator` swings under a load of this `slope`.
 #[inline(always)]
-pub(crate) fn rates(oscillator: &Oscillator, swing: &Swing, slope: f64) -> Rates {
-    let [u_dot, u_ddot, u_dddot] = oscillator.rates(swing, slope);
-    Rates { u: swing.farthest(), u_dot, u_ddot, u_dddot, ..Rates::default() }
+pub(crate) fn bounds(oscillator: &Oscillator, swing: &Swing, slope: f64) -> Bounds {
+    let [u_dot, u_ddot, u_dddot] = oscillator.bounds(swing, slope);
+    Bounds { u: swing.farthest(), u_dot, u_ddot, u_dddot, ..Bounds::default() }
 }
 
 #[cfg(test)]

@@ -61,15 +61,15 @@ pub trait Level<Q: Coordinates = f64> {
     fn leap(&self, phase: Phase, start: &Start<Q>) -> Option<State<Q>>;
 
     /// Bounds of the motion over such a leap from `start` to `end`.
-    fn rates(&self, phase: Phase, start: &Start<Q>, end: &State<Q>) -> Rates;
+    fn leap_bounds(&self, phase: Phase, start: &Start<Q>, end: &State<Q>) -> Bounds;
 
     /// Bounds of (ü, θ̈) and of their derivatives over such a leap while rocking.
-    fn second(&self, _rates: &Rates) -> Option<Second<Bend>> {
+    fn second(&self, _bounds: &Bounds) -> Option<Second<Bend>> {
         None
     }
 
     /// Bounds of |u|, |u̇|, |ü| and |u⃛| of the vibration about the motion that follows the load, over an exact leap.
-    fn vibration(&self, _phase: Phase, _start: &Start<Q>) -> Option<[Q; 4]> {
+    fn swings(&self, _phase: Phase, _start: &Start<Q>) -> Option<[Q; 4]> {
         None
     }
 
@@ -158,11 +158,11 @@ pub(crate) trait ElasticRocking {
         None
     }
 
-    fn rates(&self, _side: Side, _start: &Start, _end: &State) -> Rates {
-        Rates::NONE
+    fn leap_bounds(&self, _side: Side, _start: &Start, _end: &State) -> Bounds {
+        Bounds::NONE
     }
 
-    fn second(&self, _rates: &Rates) -> Option<Second<Bend>> {
+    fn second(&self, _bounds: &Bounds) -> Option<Second<Bend>> {
         None
     }
 
@@ -218,7 +218,7 @@ impl Pace {
 
 /// Bounds of |u|, |θ| and their derivatives over an exact leap.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Rates {
+pub(crate) struct Bounds {
     pub u: f64,
     pub u_dot: f64,
     pub u_ddot: f64,
@@ -228,7 +228,7 @@ pub(crate) struct Rates {
     pub theta_ddot: f64,
 }
 
-impl Rates {
+impl Bounds {
     /// Bounds of the magnitudes of the state over the leap from `start` to `end`.
     #[inline]
     pub(crate) fn most(&self, start: &Start, end: &State) -> State {
@@ -243,8 +243,8 @@ impl Rates {
     }
 
     /// Bounds of a motion of which nothing is known.
-    pub(crate) const NONE: Rates = {
+    pub(crate) const NONE: Bounds = {
         const ANY: f64 = f64::INFINITY;
-        Rates { u: ANY, u_dot: ANY, u_ddot: ANY, u_dddot: ANY, theta: ANY, theta_dot: ANY, theta_ddot: ANY }
+        Bounds { u: ANY, u_dot: ANY, u_ddot: ANY, u_dddot: ANY, theta: ANY, theta_dot: ANY, theta_ddot: ANY }
     };
 }

@@ -24,8 +24,7 @@
 //! A force F_t on the top mass makes a_g − F_t/m of a_g. Under loads that are linear in time the exact solution is a
 //! matrix exponential, kept for the step lengths used last; series serve the steps on which a transition may happen.
 
-use crate::levels::level::{ElasticRocking, Pace, Rates, Subject};
-use crate::levels::linear_system::{LinearSystem, Row};
+use crate::levels::level::{Bounds, ElasticRocking, Pace, Subject};
 use crate::levels::oscillator::Kept;
 use crate::mechanics::instant::Second;
 use crate::numbers::bend::Bend;
@@ -44,15 +43,82 @@ const TERMS: u8 = 15;
 /// Takes (u, u̇, θ, θ̇, a_g, ȧ_g, s) from the start of a step to the change of the state over it, by columns.
 type Flow = SMatrix<f64, 4, 7>;
 
+/// Coefficients of u, u̇, θ, a_g − F_t/m and s in one equation.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    u: f64,
+    u_dot: f64,
+    theta: f64,
+    a_top: f64,
+    side: f64,
+}
+
+/// Both equations about side s:
+///
+/// ```text
+/// ü = U_u u + U_u̇ u̇ + U_θ θ + U_a (a_g − F_t/m) + s U_s
+/// θ̈ = T_u u + T_u̇ u̇ + T_θ θ + T_a (a_g − F_t/m) + s T_s
+/// ```
+#[derive(Clone, Copy, Debug)]
+struct LinearSystem {
+    u_ddot: Row,
+    theta_ddot: Row,
+}
+
+impl Row {
+    /// The terms of the loads.
+    #[inline]
+    fn forcing(&self, a_top: f64, side: f64) -> f64 {
+        self.a_top * a_top + self.side * side
+    }
+}
+
+impl LinearSystem {
+    /// Bounds of (ü, θ̈) and of their derivatives, given bounds of the motion. The load has no second derivative.
+    fn second(&self, bounds: &Bounds) -> Second<Bend> {
+        let &Bounds { u_dot, u_ddot, u_dddot, theta_dot, theta_ddot, .. } = bounds;
+        let sum = |row: &Row, u: f64, u_dot: f64, theta: f64| {
+            row.u.abs() * u + row.u_dot.abs() * u_dot + row.theta.abs() * theta
+        };
+        let [u_bend, theta_bend] = [&self.u_ddot, &self.theta_ddot].map(|row| sum(row, u_ddot, u_dddot, theta_ddot));
+        let theta_rate = sum(&self.theta_ddot, u_dot, u_ddot, theta_dot);
+        Second {
+            u_ddot: Bend { value: u_ddot, rate: u_dddot, bend: u_bend },
+            theta_ddot: Bend { value: theta_ddot, rate: theta_rate, bend: theta_bend },
+        }
+    }
+
+    /// Writes the motion from `start` about `side` into `arc`.
+    fn series(&self, pace: &Pace, side: Side, start: &Start, arc: &mut Arc) {
+        let &Start { state, a_top, .. } = start;
+        let span = pace.span(start);
+        let rows = [&self.u_ddot, &self.theta_ddot];
+        let mut forcing = rows.map(|row| row.forcing(a_top.value, side.sign()));
+        let mut next_forcing = rows.map(|row| row.forcing(a_top.slope * span, 0.0));
+        let mut u_dot = state.u_dot;
+        arc.expand(&state, span, pace.truncation(start, span), |arc, k, per| {
+            let (u, theta) = (arc.u[k - 1], arc.theta[k - 1]);
+            // what the last order of u̇ adds comes last: only that has to be waited for
+            let [u_rate, theta_rate] = [0, 1].map(|i| {
+                let row = rows[i];
+                (row.u * u + row.theta * theta + forcing[i]) * per + row.u_dot * per * u_dot
+            });
+            (forcing, next_forcing) = (next_forcing, [0.0; 2]);
+            u_dot = u_rate;
+            (u_rate, theta_rate)
+        });
+    }
+}
+
 /// Exact propagation by a linear system.
 #[derive(Clone, Debug)]
 pub(crate) struct LinearRocking {
     subject: Subject,
     pace: Pace,
-    pub(crate) system: LinearSystem,
+    system: LinearSystem,
     /// Flows, and the amplification of |θ̈| over the same time.
     flows: Kept<(Flow, f64)>,
-    /// Circular frequency Ω of u for θ held, rad/s.
+    /// Circular frequency Ω of u at a constant θ, rad/s.
     omega: f64,
     /// 1/Ω², s².
     compliance: f64,
@@ -149,11 +215,11 @@ impl LinearRocking {
     /// How far θ can leave the cubic with its values and slopes at both ends of a leap from `start` that swings so: |θ⁗| h⁴/384.
     #[inline(never)] // few leaps ask
     fn off_cubic(&self, start: &Start, swing: &Swing) -> f64 {
-        self.system.second(&self.rates_of(start, swing)).theta_ddot.bend * start.interval.powi(4) / 384.0
+        self.system.second(&self.bounds_of(start, swing)).theta_ddot.bend * start.interval.powi(4) / 384.0
     }
 
     /// Bounds of what changes on a leap from `start` that swings so.
-    fn rates_of(&self, start: &Start, swing: &Swing) -> Rates {
+    fn bounds_of(&self, start: &Start, swing: &Swing) -> Bounds {
         let &Start { state: State { theta, theta_dot, .. }, a_top, interval: h, .. } = start;
         let &Swing { following, speed, turning } = swing;
         let u_ddot = &self.system.u_ddot;
@@ -161,7 +227,7 @@ impl LinearRocking {
         let theta_dot = theta_dot.abs() + turning * h;
         let force_rate = a_top.slope.abs() + u_ddot.theta * theta_dot;
         let elastic = (self.omega - u_ddot.u_dot) * speed + h * force_rate;
-        Rates {
+        Bounds {
             u: following.abs() + speed / self.omega,
             u_dot: speed,
             u_ddot: elastic,
@@ -214,13 +280,13 @@ impl ElasticRocking for LinearRocking {
         goes_on.then(|| State { u: end[0], u_dot: end[1], theta: end[2], theta_dot: end[3] })
     }
 
-    fn rates(&self, side: Side, start: &Start, _end: &State) -> Rates {
+    fn leap_bounds(&self, side: Side, start: &Start, _end: &State) -> Bounds {
         let swing = self.swing(side, start, self.amplification(start.interval));
-        if swing.turning < f64::INFINITY { self.rates_of(start, &swing) } else { Rates::NONE }
+        if swing.turning < f64::INFINITY { self.bounds_of(start, &swing) } else { Bounds::NONE }
     }
 
-    fn second(&self, rates: &Rates) -> Option<Second<Bend>> {
-        Some(self.system.second(rates))
+    fn second(&self, bounds: &Bounds) -> Option<Second<Bend>> {
+        Some(self.system.second(bounds))
     }
 
     fn series(&self, side: Side, start: &Start, arc: &mut Arc) {

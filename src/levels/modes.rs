@@ -18,7 +18,7 @@
 use crate::levels::detail::Detail;
 use crate::levels::first_uplift::Liftable;
 use crate::levels::full_contact;
-use crate::levels::level::{Level, Now, Rates, Subject, first_terms};
+use crate::levels::level::{Bounds, Level, Now, Subject, first_terms};
 use crate::levels::nonlinear::{Factors, LEAST_INERTIA, NO_ROW, products, row};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::levels::rules::{ChatterLimit, after_rigid_impact};
@@ -99,7 +99,7 @@ struct Four {
     /// Force over mass, and its change over the span.
     push: [f64x4; 2],
     /// e + w θ̇² of the newest order.
-    held: f64x4,
+    resistance: f64x4,
     /// w.
     lever: FourSeries,
     /// μ w, from the end.
@@ -336,8 +336,8 @@ impl<Q: Coordinates> ManyModes<Q> {
             for four in fours.iter_mut() {
                 let [u, u_dot] = four.motion;
                 let elastic = four.stiffness * u + four.damping * c_ratio * u_dot;
-                four.held = Four::product(&four.lever[..k], &square[MAX_ORDER - n..]) + elastic;
-                moment += four.arm * four.held;
+                four.resistance = Four::product(&four.lever[..k], &square[MAX_ORDER - n..]) + elastic;
+                moment += four.arm * four.resistance;
             }
             let mut moment = moment.reduce_add() - weight_moment + push_moment + S_res * fall;
             if is_pushed {
@@ -350,7 +350,7 @@ impl<Q: Coordinates> ManyModes<Q> {
             arc.u_dot[k].count_as(&state.u_dot);
             for four in fours.iter_mut() {
                 let j = four.first;
-                let mut along = four.share * fall - four.held;
+                let mut along = four.share * fall - four.resistance;
                 if is_pushed {
                     along += four.push[0] * cos + four.push[1] * cos_before;
                 }
@@ -437,8 +437,8 @@ impl<Q: Coordinates> ManyModes<Q> {
             let (mut moment, mut offset) = (f64x4::ZERO, f64x4::ZERO);
             for four in fours.iter_mut() {
                 let [u, u_dot] = four.motion;
-                four.held = four.stiffness * u + four.damping * c_ratio * u_dot;
-                moment += four.arm * four.held;
+                four.resistance = four.stiffness * u + four.damping * c_ratio * u_dot;
+                moment += four.arm * four.resistance;
                 offset += four.mass * four.share * u;
             }
             let mut moment = (moment + offset * g + before * lift).reduce_add() - pivot * m_t * weight;
@@ -450,7 +450,7 @@ impl<Q: Coordinates> ManyModes<Q> {
             let theta_dot = moment / self.left * per;
             arc.u_dot[k].count_as(&state.u_dot);
             for four in fours.iter_mut() {
-                let mut along = four.share * lean - four.held;
+                let mut along = four.share * lean - four.resistance;
                 if let Some(load) = four.push.get(n) {
                     along -= *load;
                 }
@@ -480,36 +480,36 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
             let swing: Swing = oscillator.swing(from, value, slope, interval);
             let moment = (mode.height * mode.stiffness).abs();
             farthest += moment * swing.farthest();
-            bend += moment * oscillator.rates(&swing, slope)[1];
+            bend += moment * oscillator.bounds(&swing, slope)[1];
             springs[0] += mode.height * mode.stiffness * from[0];
             springs[1] += mode.height * mode.stiffness * to[0];
             end.u.set(j, to[0]);
             end.u_dot.set(j, to[1]);
         }
-        let held = self.liftable().map_or(f64::INFINITY, |liftable| liftable.least_hold(start));
+        let hold = self.liftable().map_or(f64::INFINITY, |liftable| liftable.least_hold(start));
         let near = springs[0].abs().max(springs[1].abs()) + bend * interval * interval / 8.0;
-        (farthest < held || near < held).then_some(end)
+        (farthest < hold || near < hold).then_some(end)
     }
 
-    fn rates(&self, phase: Phase, start: &Start<Q>, _end: &State<Q>) -> Rates {
+    fn leap_bounds(&self, phase: Phase, start: &Start<Q>, _end: &State<Q>) -> Bounds {
         match (phase, self.contact.as_deref()) {
             (Phase::FullContact, Some([(oscillator, _)])) => {
                 let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
                 let swing = oscillator.swing([u.of(0), u_dot.of(0)], a_top.value.of(0), a_top.slope.of(0), interval);
-                full_contact::rates(oscillator, &swing, a_top.slope.of(0))
+                full_contact::bounds(oscillator, &swing, a_top.slope.of(0))
             }
-            _ => Rates::NONE,
+            _ => Bounds::NONE,
         }
     }
 
-    fn vibration(&self, phase: Phase, start: &Start<Q>) -> Option<[Q; 4]> {
+    fn swings(&self, phase: Phase, start: &Start<Q>) -> Option<[Q; 4]> {
         let (Phase::FullContact, Some(contact)) = (phase, &self.contact) else { return None };
         let &Start { state, a_top, interval, .. } = start;
         let mut bounds = [Q::parts(&self.subject.structure, 0.0); 4];
         for (j, (oscillator, _)) in contact.iter().enumerate() {
             let from = [state.u.of(j), state.u_dot.of(j)];
             let swing = oscillator.swing(from, a_top.value.of(j), a_top.slope.of(j), interval);
-            let [velocity, acceleration, jerk] = oscillator.rates(&swing, 0.0);
+            let [velocity, acceleration, jerk] = oscillator.bounds(&swing, 0.0);
             let most = [swing.amplitude, velocity, acceleration, jerk];
             bounds.iter_mut().zip(most).for_each(|(of, most)| of.set(j, most));
         }

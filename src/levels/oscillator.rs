@@ -88,19 +88,19 @@ impl Oscillator {
     fn slow_response(&self, tau: f64) -> [f64; 2] {
         let d = self.d();
         let fast = self.zeta * self.omega + d;
-        let held = |x: f64| -libm::expm1(-x) / x;
+        let settled = |x: f64| -libm::expm1(-x) / x;
         // (x − 1 + e^{−x})/x² = 1/2! − x/3! + x²/4! − …
         let ramped = |x: f64| {
             if x < 1.0 {
                 let next = |sum: f64, k: usize| (1.0 - x * sum) * reciprocal(k);
                 0.5 * (3..19).rev().fold(0.0, next).mul_add(-x, 1.0)
             } else {
-                (1.0 - held(x)) / x
+                (1.0 - settled(x)) / x
             }
         };
         let [slow, fast] = [self.omega * self.omega / fast, fast].map(|rate| rate * tau);
         let per = tau / (2.0 * d);
-        [per * (held(slow) - held(fast)), per * tau * (ramped(slow) - ramped(fast))]
+        [per * (settled(slow) - settled(fast)), per * tau * (ramped(slow) - ramped(fast))]
     }
 
     /// W and R over a short time, whose differences would be lost to rounding, by their series in τ.
@@ -130,7 +130,7 @@ impl Oscillator {
     }
 
     /// Bounds of |ẇ|, |ẅ| and |w⃛| of a `swing` of this oscillator under a load of this `slope`.
-    pub(crate) fn rates(&self, swing: &Swing, slope: f64) -> [f64; 3] {
+    pub(crate) fn bounds(&self, swing: &Swing, slope: f64) -> [f64; 3] {
         let &Oscillator { omega, zeta } = self;
         let velocity = omega * swing.amplitude;
         let acceleration = omega * velocity * (1.0 + 2.0 * zeta);

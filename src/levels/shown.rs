@@ -4,7 +4,7 @@
 //! follows from θ̈ (Eq 27).
 
 use crate::levels::detail::AnyLevel;
-use crate::levels::level::{Now, Rates};
+use crate::levels::level::{Bounds, Now};
 use crate::mechanics::instant::{Instant, Second, Strut};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::{Measure, Outputs, composed, searched};
@@ -100,8 +100,8 @@ impl AnyLevel {
 
     /// Bounds of the searched outputs, their rates and second derivatives over a leap under `load` that lasts `duration` (s).
     #[inline]
-    pub(crate) fn bends(&self, phase: Phase, load: LinearLoad, duration: f64, rates: &Rates) -> Searched<Bend> {
-        searched(&self.bending(phase, load, duration, rates))
+    pub(crate) fn bends(&self, phase: Phase, load: LinearLoad, duration: f64, bounds: &Bounds) -> Searched<Bend> {
+        searched(&self.bending(phase, load, duration, bounds))
     }
 
     /// Bounds of R_h and R_v likewise, given the accelerations.
@@ -111,18 +111,18 @@ impl AnyLevel {
         phase: Phase,
         load: LinearLoad,
         duration: f64,
-        rates: &Rates,
+        bounds: &Bounds,
         second: &Second<Bend>,
     ) -> [Bend; 2] {
-        let x = self.bending(phase, load, duration, rates);
+        let x = self.bending(phase, load, duration, bounds);
         let theta_dot = Bend { bend: second.theta_ddot.rate, ..x.theta_dot };
         forces(&Instant { theta_dot, ..x }, second)
     }
 
     /// Bounds of the motion over such a leap. The second derivative of θ̇ is not known.
     #[inline]
-    fn bending(&self, phase: Phase, load: LinearLoad, duration: f64, rates: &Rates) -> Instant<'_, Bend> {
-        let &Rates { u, u_dot, u_ddot, u_dddot, theta, theta_dot, theta_ddot } = rates;
+    fn bending(&self, phase: Phase, load: LinearLoad, duration: f64, bounds: &Bounds) -> Instant<'_, Bend> {
+        let &Bounds { u, u_dot, u_ddot, u_dddot, theta, theta_dot, theta_ddot } = bounds;
         let last = load.at(duration);
         let bend = |value, rate, bend| Bend { value, rate, bend };
         let ramp = |from: f64, to: f64, slope: f64| bend(from.abs().max(to.abs()), slope.abs(), 0.0);

@@ -30,7 +30,7 @@ use super::{Finish, Run, RunError};
 use crate::digits::short;
 use crate::engine::Moves;
 use crate::engine::piece::{Arcs, Expansion, Piece, Sample, Watch};
-use crate::levels::level::{Now, Rates, Subject};
+use crate::levels::level::{Bounds, Now, Subject};
 use crate::mechanics::impact;
 use crate::mechanics::instant::{Instant, Second, Strut};
 use crate::mechanics::lateral::Coordinates;
@@ -454,11 +454,11 @@ impl Judged for f64 {
             return None;
         }
         let structure = level.structure();
-        let rates = level.rates(phase, &piece.whole().step(), &piece.end);
+        let bounds = level.leap_bounds(phase, &piece.whole().step(), &piece.end);
         let states = [(0.0, &piece.before.state), (duration, &piece.end)];
         let per_bend = duration * duration / 8.0;
         if phase != Phase::FullContact {
-            let bends = level.bends_of_forces(phase, load, duration, &rates, &level.second(&rates)?);
+            let bends = level.bends_of_forces(phase, load, duration, &bounds, &level.second(&bounds)?);
             let [first, last] = states.map(|(tau, state)| {
                 let now = Now { state, load: load.at(tau), dissipators: &piece.before.dissipators };
                 forces(&Instant::of(structure, phase, state, now.load), &level.accelerations(phase, &now))
@@ -472,7 +472,7 @@ impl Judged for f64 {
             let strut = c_fc * state.u_dot + k * state.u;
             [strut - m0 * load.at(tau).a_g, H * strut + m * g * state.u]
         });
-        let Rates { u_ddot, u_dddot, .. } = rates;
+        let Bounds { u_ddot, u_dddot, .. } = bounds;
         let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
         let off = [strut, H * strut + per_bend * m * g * u_ddot];
         let W = structure.base.m_t * g;
