@@ -28,6 +28,8 @@ PACOIMA := sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2
 WINDOWS := x86_64-pc-windows-gnu
 # One library for both architectures of macOS; for Linux with the oldest glibc.
 ZIG := x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu universal2-apple-darwin
+WEB := wasm32-unknown-unknown
+TARGETS := $(WINDOWS) $(WEB) $(subst universal2,x86_64,$(ZIG)) aarch64-apple-darwin
 with_glibc = $(1)$(if $(findstring linux,$(1)),.2.17)
 export MACOSX_DEPLOYMENT_TARGET := 11.0
 ZIGBUILD = $(NATIVE_UNTRACED) PATH="$(CURDIR)/.venv/bin:$$PATH" cargo zigbuild --profile dist --locked
@@ -48,7 +50,7 @@ install = test -z "$(strip $(1))" || dpkg --status $(1) >/dev/null 2>&1 || { $(s
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $$package; done; }
 
 .PHONY: demo test check lint heavy evidence docs pages pictures explore dist wheels release measure \
-	packages module library exporter libraries
+	packages targets module library exporter libraries
 
 # pip while cargo compiles.
 demo:
@@ -98,14 +100,20 @@ DEBIAN_browser := chromium firefox-esr
 DEBIAN_foreign := gcc-mingw-w64-x86-64-win32 qemu-user libc6-arm64-cross
 DEBIAN_packaged := $(DEBIAN_foreign)
 of_parts = $(foreach part,$(PARTS),$($(1)_$(part)))
+# Stops before anything is built if the goal is asked for and its variable is empty or has other words.
+known = $(if $(filter $(1),$(MAKECMDGOALS)),$(if $(filter-out $(3),$(or $($(2)),nothing)),$(error $(2) = "$($(2))": give one or more of $(3))))
+$(call known,heavy,PARTS,$(ALL_PARTS))
+$(call known,measure,WHAT,record precision ensembles)
 
-packages:
+packages: targets
 	-@$(call install,$(call of_parts,DEBIAN))
-	-rustup target add $(WINDOWS)
+
+# All at once: two makes side by side then find them there.
+targets:
+	-rustup target add $(TARGETS)
 
 heavy: WHEELS := $(firstword $(ZIG))
 heavy: packages .venv/heavy exporter $(call of_parts,NEEDS)
-	$(if $(filter-out $(ALL_PARTS),$(PARTS)),$(error no part $(filter-out $(ALL_PARTS),$(PARTS)); the parts are $(ALL_PARTS)))
 	$(if $(filter long,$(PARTS)),FUZZ_CALLS=$${FUZZ_CALLS:-100000} cargo test --release $(PACKAGES) --test hostile_calls --test records)
 	$(if $(filter study,$(PARTS)),cargo test --release --manifest-path study/Cargo.toml)
 	$(if $(wildcard $(PARTS:%=tests/heavy/%)),$(PYTEST) $(wildcard $(PARTS:%=tests/heavy/%)))
@@ -122,9 +130,7 @@ module: .venv/dist exporter
 	VIRTUAL_ENV=.venv $(MATURIN) develop --release --locked
 
 # The page contains a record and this machine's library: the libraries of all platforms would make it 10 MB. It takes them from an FMU.
-WEB := wasm32-unknown-unknown
-explore: library .venv/ready
-	rustup target add $(WEB)
+explore: targets library .venv/ready
 	cd web && cargo build --release --locked --package rocking-web --target $(WEB)
 	mkdir -p out
 	cargo run --locked --manifest-path web/Cargo.toml --package pack -- \
@@ -173,7 +179,6 @@ libraries: packages .venv/dist
 	else \
 		echo "No library for Windows: x86_64-w64-mingw32-gcc or Rust's target $(WINDOWS) is missing"; \
 	fi
-	rustup target add $(subst universal2,x86_64,$(ZIG)) aarch64-apple-darwin
 	for target in $(foreach target,$(ZIG),$(call with_glibc,$(target))); do \
 		$(ZIGBUILD) --package flexible-rocking-fmu --target $$target || exit; done
 

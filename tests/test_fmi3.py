@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from evidence.coupling import bridge, convergence
 from evidence.coupling.early_return import EndedAtTransitions, EventBridge, Pier
-from evidence.coupling.masters import extrapolate
+from evidence.coupling.masters import MASTERS, extrapolate
+from evidence.coupling.structure import opened
 from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi2 import FMU2Model
 from fmpy.fmi3 import FMU3Model
-from fmpy.simulation import instantiate_fmu
 from fmpy.validation import validate_fmu
-from host import OUTPUTS, PHASES, Message, events, simulate
+from host import OUTPUTS, PHASES, Message, events, simulate, simulate_file
 from pacoima import A_G, END, STEP, TIME, linear, rows
 from pacoima import OUTPUTS as COMPARED
 
@@ -39,35 +39,26 @@ def shaken3(export, pacoima_record):
 def simulate3(path, **arguments):
     """fmpy.simulate_fmu, with what the FMU logged."""
     messages = []
-
-    def logger(_environment, status, category, text):
-        messages.append(Message(status, category.decode(), text.decode()))
-
-    return simulate_fmu(path, logger=logger, debug_logging=True, **arguments), messages
+    return simulate_file(path, messages, **arguments), messages
 
 
 class Slave:
     """An instance that fmpy drives step by step."""
 
-    def __init__(self, path, folder, handles_events=False, lines=False, switches=(), **start_values):
-        fmpy.extract(path, unzipdir=str(folder))
-        description = read_model_description(str(folder))
-        self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
+    def __init__(self, path, handles_events=False, lines=False, switches=(), **start_values):
         self.end, self.asked_at, self.messages = 0.0, [], []
-        a_g = [self.references["a_g"]]
 
         def update(_environment, time, set_requested, get_allowed, step_finished, can_return_early, *_):
             assert (set_requested, get_allowed, step_finished, can_return_early) == (True, False, False, False)
             self.asked_at.append(time)
-            self.instance.setFloat64(a_g, [self.end])
+            self.set(a_g=self.end)
 
         def logger(_environment, status, category, text):
             self.messages.append(Message(status, category.decode(), text.decode()))
 
-        self.instance = instantiate_fmu(str(folder), description, "CoSimulation", logger=logger, debug_logging=True,
-                                        event_mode_used=handles_events, early_return_allowed=handles_events,
-                                        intermediate_update=update if lines else None,
-                                        required_intermediate_variables=a_g if lines else None)
+        self.instance, self.references = opened(self, path, updated=["a_g"] if lines else (), logger=logger, debug_logging=True,
+                                                event_mode_used=handles_events, early_return_allowed=handles_events,
+                                                intermediate_update=update if lines else None)
         self.set(**start_values)
         self.instance.setBoolean([self.references[name] for name in switches], [True] * len(switches))
         self.instance.enterInitializationMode()
@@ -86,19 +77,6 @@ class Slave:
         self.instance.enterEventMode()
         self.instance.updateDiscreteStates()
         self.instance.enterStepMode()
-
-
-@pytest.fixture
-def slave(tmp_path, tmp_path_factory):
-    made = []
-
-    def start(path, **arguments):
-        made.append(Slave(path, tmp_path_factory.mktemp("slave"), **arguments))
-        return made[-1]
-
-    yield start
-    for one in made:
-        one.instance.freeInstance()
 
 
 def assert_same_bits(found, expected):
@@ -216,9 +194,9 @@ def test_both_versions_give_the_same_bits_under_a_held_input(mcmanus, mcmanus3):
         assert_same_bits(found, expected)
 
 
-def test_a_host_that_is_called_back_gives_lines(mcmanus, mcmanus3, slave):
+def test_a_host_that_is_called_back_gives_lines(mcmanus, mcmanus3):
     """The same bits as with FMI 2.0's derivatives of inputs."""
-    one, found = slave(mcmanus3, lines=True), []
+    one, found = Slave(mcmanus3, lines=True), []
     found.append(one.get(*COMPARED))
     for t, until, start, end in zip(TIME[:-1], TIME[1:], A_G[:-1], A_G[1:]):
         one.set(a_g=start)
@@ -229,12 +207,12 @@ def test_a_host_that_is_called_back_gives_lines(mcmanus, mcmanus3, slave):
     assert np.array_equal(found, linear(mcmanus))
 
 
-def test_a_step_ends_at_every_transition(shaken3, slave):
+def test_a_step_ends_at_every_transition(shaken3):
     """The instants, states and jumps are those of transitions within steps, and so is all that is in between."""
     asked = dict(stop_time=END, output_interval=2e-3, output=COMPARED)
     expected, messages = simulate3(shaken3["mcmanus"], **asked)
     transitions = events(messages)
-    one = slave(shaken3["mcmanus"], handles_events=True)
+    one = Slave(shaken3["mcmanus"], handles_events=True)
     met, found, t = [], [one.get(*COMPARED)], 0.0
     for until in expected["time"][1:]:
         while t < until:
@@ -260,13 +238,13 @@ def test_a_step_ends_at_every_transition(shaken3, slave):
     assert np.max(np.abs(np.array(found) - rows(expected)) / peaks) < 1e-9
 
 
-def test_a_transition_belongs_to_the_step_that_ends_there(shaken3, slave):
+def test_a_transition_belongs_to_the_step_that_ends_there(shaken3):
     """A master that goes back and steps to the instant that it was told, or a few units in the last place beside it, meets
     the transition at the end of that step, and no step has no length: an uplift that follows a landing at once is applied
     with it."""
     asked = dict(stop_time=END, output_interval=2e-3, output=COMPARED)
     expected, messages = simulate3(shaken3["mcmanus"], **asked)
-    one = slave(shaken3["mcmanus"], handles_events=True)
+    one = Slave(shaken3["mcmanus"], handles_events=True)
     found, t, met = [one.get(*COMPARED)], 0.0, 0
     for until in expected["time"][1:]:
         while t < until:
@@ -290,8 +268,8 @@ def test_a_transition_belongs_to_the_step_that_ends_there(shaken3, slave):
     assert np.max(np.abs(np.array(found) - rows(expected)) / peaks) < 1e-9
 
 
-def test_overturning_belongs_to_the_step_that_ends_there(mcmanus3, slave):
-    one = slave(mcmanus3, handles_events=True, theta_0=0.3)
+def test_overturning_belongs_to_the_step_that_ends_there(mcmanus3):
+    one = Slave(mcmanus3, handles_events=True, theta_0=0.3)
     start = one.instance.getFMUState()
     instant = one.instance.doStep(0.0, 10.0)[3]
     for beside in range(-4, 5):
@@ -302,12 +280,12 @@ def test_overturning_belongs_to_the_step_that_ends_there(mcmanus3, slave):
 
 
 @pytest.mark.parametrize("sets_again", [False, True])
-def test_the_rest_of_a_step_follows_the_same_line(mcmanus3, slave, sets_again):
+def test_the_rest_of_a_step_follows_the_same_line(mcmanus3, sets_again):
     """Steps of 20 ms that end at transitions and are then completed give what whole ones give, with a force beside a_g."""
     step, late = 20e-3, ["a_g_late", "F_t_extrapolated"]
     time = np.arange(round(END / step)) * step
     a_g, F_t = np.interp(time, TIME, A_G), 100 * np.sin(8 * time)
-    plain, master = slave(mcmanus3, switches=late), slave(mcmanus3, handles_events=True, switches=late)
+    plain, master = Slave(mcmanus3, switches=late), Slave(mcmanus3, handles_events=True, switches=late)
     theta = []
     for t, values in zip(time, zip(a_g, F_t)):
         values = dict(zip(("a_g", "F_t"), values))
@@ -327,9 +305,9 @@ def test_the_rest_of_a_step_follows_the_same_line(mcmanus3, slave, sets_again):
     assert np.max(np.abs(found - expected)) < 1e-12 * np.max(np.abs(expected))
 
 
-def test_a_transition_that_the_host_does_not_deal_with_happens(mcmanus3, slave):
+def test_a_transition_that_the_host_does_not_deal_with_happens(mcmanus3):
     """A host may go on, or back to where a transition was due, by its own state or by bytes."""
-    one = slave(mcmanus3, handles_events=True, theta_0=0.01)
+    one = Slave(mcmanus3, handles_events=True, theta_0=0.01)
     is_due, _, _, impact = one.instance.doStep(0.0, 1.0)
     assert is_due and abs(one.get("theta")[0]) < 1e-15
     state = one.instance.getFMUState()
@@ -349,8 +327,8 @@ def test_a_transition_that_the_host_does_not_deal_with_happens(mcmanus3, slave):
 
 
 @pytest.mark.parametrize("handles_events", [False, True])
-def test_overturning_ends_the_simulation(mcmanus3, slave, handles_events):
-    one = slave(mcmanus3, handles_events=handles_events, theta_0=0.3)
+def test_overturning_ends_the_simulation(mcmanus3, handles_events):
+    one = Slave(mcmanus3, handles_events=handles_events, theta_0=0.3)
     is_due, terminate, is_early, instant = one.instance.doStep(0.0, 10.0)
     assert (is_due, terminate, is_early) == (False, True, handles_events)
     assert one.get("t_overturned", "time") == [instant, instant] and 0 < instant < 10
@@ -367,15 +345,11 @@ def test_overturning_ends_the_simulation(mcmanus3, slave, handles_events):
 def test_a_master_needs_one_further_step_for_a_transition(export):
     """Two piers under a deck, against the three integrated as one system."""
     time, a_g = TIME[:700], A_G[:700]
-    deck, master = bridge.deck(), EndedAtTransitions()
-    system = EventBridge([Pier(str(export(preset, fmi=3))) for preset in ("mcmanus", "evison")], deck, bridge.linear(time, a_g))
-
-    def row():
-        return [deck.x, *(value for pier in system.piers for value in pier.read("theta", "u"))]
-
-    found = bridge.simulate(system, master, extrapolate, time, 2, row)
+    system = EventBridge([Pier(str(export(preset, fmi=3))) for preset in ("mcmanus", "evison")], bridge.deck(), bridge.linear(time, a_g))
+    iterated = MASTERS["iqn-ils"]()
+    found = convergence.course(system, EndedAtTransitions(iterated), extrapolate, time, 2)
     response = monolithic.integrate(convergence.monolithic_bridge(bridge.deck()), time, a_g)
     transitions = sum(map(len, response.transitions))
     assert system.transitions() == transitions > 20
-    assert master.steps - 2 * (len(time) - 1) <= transitions
+    assert iterated.steps - 2 * (len(time) - 1) <= transitions
     assert convergence.error(found, convergence.columns(response)) < 2e-6

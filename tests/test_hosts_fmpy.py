@@ -3,7 +3,6 @@
 import re
 import subprocess
 import sys
-from ctypes import byref
 from html import unescape
 from pathlib import Path
 
@@ -12,19 +11,9 @@ import numpy as np
 import pytest
 from evidence.scenes import PACOIMA_DAM
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
-from fmpy.logging import addLoggerProxy
 from fmpy.util import read_csv
 from host import simulate
 from pacoima import A_G, END, OUTPUTS, STEP, STEPS, TIME, distance, held, linear, rows
-
-_SAID = []
-
-
-@fmi2CallbackLoggerTYPE
-def _listen(_environment, _name, _status, _category, text):
-    _SAID.append(text.decode())
-
 
 def table(time, a_g):
     return np.array(list(zip(time, a_g)), dtype=[("time", float), ("a_g", float)])
@@ -95,19 +84,6 @@ def test_a_run_goes_on_from_bytes(shaken, exact):
         instance.slave.freeFMUstate(state)
     second, _ = simulate(fmu, start_time=middle, stop_time=END, fmu_state=middle_state, **arguments)
     assert distance(np.vstack([rows(first), rows(second)[1:]]), exact(step)) < 1e-9
-
-
-def test_fmpy_has_one_logger_per_process():
-    """A run without a logger of its own logs into that of the run before, which may be gone by then: keep it alive.
-
-    No FMU is needed to see it: the default callbacks call whatever logger was given to fmpy last.
-    """
-    callbacks = fmi2CallbackFunctions()
-    callbacks.logger = _listen
-    addLoggerProxy(byref(callbacks))
-    _SAID.clear()
-    defaultCallbacks.logger(None, b"", 0, b"", b"for someone else")
-    assert _SAID == ["for someone else"]
 
 
 def test_a_refused_start_value_ends_the_run_with_the_reason_in_the_log(mcmanus):

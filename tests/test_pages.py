@@ -1,6 +1,7 @@
-"""README and the pages print what the program prints today."""
+"""README and the pages print what the program prints today, and the examples run."""
 
 import re
+import subprocess
 
 import pytest
 from conftest import ROOT
@@ -24,3 +25,18 @@ def test_every_page_is_in_readme_and_in_the_list_of_the_site():
     for page in sorted((ROOT / "docs").glob("*/*.md")):
         name = str(page.relative_to(ROOT))
         assert f"]({name})" in readme and f"file: {name.removesuffix('.md')}\n" in site, name
+
+
+@pytest.mark.parametrize("file", sorted((ROOT / "examples").glob("*.toml")), ids=lambda file: file.name)
+def test_sweeps_of_the_examples_run(file, exporter, tmp_path):
+    text = file.read_text(encoding="utf-8").replace('"../', f'"{ROOT}/')
+    (tmp_path / "few.toml").write_text(re.sub(r"count = \d+", "count = 2", text), encoding="utf-8")
+    subprocess.run([exporter, "--quiet", "sweep", "few.toml", "-o", "rows.csv"], cwd=tmp_path, check=True)
+    assert len((tmp_path / "rows.csv").read_text(encoding="utf-8").splitlines()) > 4
+
+
+@pytest.mark.parametrize("folder", ["evidence", "explain"])
+def test_every_table_and_picture_of_a_page_is_in_a_page(folder):
+    words = "".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs").glob("*/*.md"))
+    found = [path for path in (ROOT / "docs" / folder).rglob("*.*") if path.suffix != ".md"]
+    assert [path.name for path in found if f"{path.relative_to(ROOT / 'docs' / folder)})" not in words] == []

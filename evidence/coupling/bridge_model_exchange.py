@@ -6,9 +6,8 @@ them may jump: all handle it together, and the solver starts anew.
 """
 
 import numpy as np
-from sksundae.cvode import CVODE
 
-from ..model_exchange.hosts import SAME_TIME, Model
+from ..model_exchange.hosts import Model, cvode, follow
 from ..scenes import PACOIMA_DAM
 from .swaying_mass import SwayingMass
 
@@ -56,34 +55,36 @@ class OneSystem:
         forces = self.at(t, y)
         (a_ground,) = self.piers[0].fmu.getReal(self.piers[0].a_ground)
         rates[:DECK] = y[1], -a_ground - sum(forces) / self.deck.M
-        for pier, part in zip(self.piers, self.parts(rates)):
-            pier.rates_here(part)
+        for pier, part, of_pier in zip(self.piers, self.parts(y), self.parts(rates)):
+            pier.rates(t, part, of_pier)
 
     def indicators(self, t: float, y, indicators) -> None:
         self.at(t, y)
-        for pier, part in zip(self.piers, np.split(indicators, len(self.piers))):
-            pier.indicators_here(part)
+        for pier, part, of_pier in zip(self.piers, self.parts(y), np.split(indicators, len(self.piers))):
+            pier.indicators(t, part, of_pier)
 
     def nominals(self) -> np.ndarray:
         """The magnitudes of the states; the deck's are like its piers'."""
         of_piers = np.array([pier.nominals() for pier in self.piers])
         return np.concatenate([of_piers[:, :DECK].max(axis=0), of_piers.ravel()])
 
-    def complete(self, t: float, y) -> bool:
+    def completed(self, t: float, y) -> bool:
         """The solver's step to there is complete: whether a pier asks for event mode."""
         self.steps += 1
         self.at(t, y)
         return any([pier.fmu.completedIntegratorStep()[0] for pier in self.piers])
 
-    def update(self, y) -> tuple[np.ndarray, float]:
-        """Handles an event: the state after it, and when the next one is."""
+    def enter_event_mode(self) -> None:
+        for pier in self.piers:
+            pier.enter_event_mode()
+
+    def update(self, y) -> tuple[np.ndarray, bool, float]:
+        """Handles an event: the state after it, whether a pier has overturned, and when the next event is."""
         for pier in self.piers:
             pier.fmu.newDiscreteStates()
         self.push(y)  # where a velocity has jumped, so has a dashpot's force
-        updated = [pier.update() for pier in self.piers]
-        if any(has_overturned for has_overturned, _ in updated):
-            raise RuntimeError("a pier overturned")
-        return np.concatenate([y[:DECK], *(pier.states() for pier in self.piers)]), min(at for _, at in updated)
+        states, have_ended, next_events = zip(*(pier.update(y) for pier in self.piers))
+        return np.concatenate([y[:DECK], *states]), any(have_ended), min(next_events)
 
     def transitions(self) -> int:
         return sum(pier.fmu.getInteger([pier.references["transitions"]])[0] for pier in self.piers)
@@ -94,23 +95,8 @@ def integrate(system: OneSystem, tolerance: float, time, longest_step: float = 0
 
     A pier takes its force to be a line over a step with a transition in it: an error of third order in the step.
     """
-    y, next_event = system.update(np.zeros(DECK + STATES * len(system.piers)))
-    solver = CVODE(lambda t, y, rates: system.rates(t, y, rates), method="Adams", rtol=tolerance,
-                   atol=tolerance * system.nominals(), max_step=longest_step,
-                   eventsfn=lambda t, y, z: system.indicators(t, y, z), num_events=INDICATORS * len(system.piers))
-    rows, t = [y], float(time[0])
-    solver.init_step(t, y)
-    for point in time[1:]:
-        while t < point - SAME_TIME:
-            stop = next_event if next_event < point - SAME_TIME else point
-            found = solver.step(stop, method="onestep", tstop=stop)
-            if not found.success:
-                raise RuntimeError(f"CVODE at t = {t} s: {found.message}")
-            t, y, has_root = float(found.t), found.y.copy(), found.status == 2
-            if system.complete(t, y) or has_root or t > next_event - SAME_TIME:
-                for pier in system.piers:
-                    pier.fmu.enterEventMode()
-                y, next_event = system.update(y)
-                solver.init_step(t, y)
-        rows.append(y)
+    solver = cvode(system, tolerance, INDICATORS * len(system.piers), longest_step)
+    rows = [y for _, y in follow(system, np.zeros(DECK + STATES * len(system.piers)), *solver, time)]
+    if len(rows) < len(time):
+        raise RuntimeError("a pier overturned")
     return np.array(rows)

@@ -16,8 +16,8 @@ from .masters import MASTERS, between_transitions, extrapolate, hold
 STRUCTURES = (reference.MCMANUS, reference.EVISON)
 
 
-def halving():
-    return functools.partial(between_transitions, MASTERS["iqn-ils"]())
+def halving(iterated=None):
+    return functools.partial(between_transitions, iterated or MASTERS["iqn-ils"]())
 
 
 # name: master, guess, whether lines have the moments of the true course, order without transitions
@@ -46,12 +46,15 @@ def columns(response) -> np.ndarray:
 def cosimulated(time, a_g, fmus, of_deck, variant: str, per_sample: int) -> np.ndarray:
     """The same of a co-simulation."""
     master, guess, moments, _ = VARIANTS[variant]
-    bridge = Bridge([pier(fmu) for fmu in fmus], of_deck, linear(time, a_g), moments)
+    return course(Bridge([pier(fmu) for fmu in fmus], of_deck, linear(time, a_g), moments), master(), guess, time, per_sample)
 
+
+def course(bridge: Bridge, master, guess, time, per_sample: int) -> np.ndarray:
+    """The same of a bridge under a master."""
     def row():
-        return [of_deck.x, *(value for pier in bridge.piers for value in pier.read("theta", "u"))]
+        return [bridge.deck.x, *(value for pier in bridge.piers for value in pier.read("theta", "u"))]
 
-    return simulate(bridge, master(), guess, time, per_sample, row)
+    return simulate(bridge, master, guess, time, per_sample, row)
 
 
 def error(found: np.ndarray, expected: np.ndarray) -> float:

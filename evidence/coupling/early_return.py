@@ -4,50 +4,40 @@ A pier comes back from a step early, at the instant of its transition, and appli
 is thus depends on the forces in it, as the forces do: both are found by the same iteration.
 """
 
-import contextlib
+import weakref
 
 import monolithic
 import numpy as np
 
 from ..page import table
 from ..scenes import exported, pacoima_dam
-from . import bridge, convergence, masters
-from .bridge import PIERS, Bridge, deck, linear, simulate
-from .masters import MOST_SWEEPS, TOLERANCE, Diverged, between_transitions, extrapolate
-from .structure import opened
+from . import convergence, masters
+from .bridge import PIERS, Bridge, deck, linear, pier
+from .masters import MOST_SWEEPS, TOLERANCE, Diverged, Iterated, extrapolate
+from .structure import Structure
 
 SLIVER = 1e-12  # s; what is left of a step that is not worth another
 STEPS = (1, 2, 4, 8)  # per sample of the record
 
 
-class Pier:
-    """A structure in FMI 3.0 that hands its transitions over, under inputs that are lines in time."""
+class Pier(Structure):
+    """A structure in FMI 3.0 that hands its transitions over."""
 
     def __init__(self, fmu: str):
-        line_end = self.line_end = [0.0, 0.0]
+        self.line_end, self.time, self.is_transition_due = [0.0, 0.0], 0.0, False
+        owner = weakref.proxy(self)  # the instance must not keep its owner
 
         def at_the_end_of_the_step(_environment, _time, *_):
-            instance.setFloat64(inputs, line_end)
+            owner.instance.setFloat64(owner.inputs, owner.line_end)
 
-        instance, self.references = opened(self, fmu, updated=("a_g", "F_t"), event_mode_used=True, early_return_allowed=True,
-                                           intermediate_update=at_the_end_of_the_step)
-        inputs, self.outputs = ([self.references[name] for name in names] for names in (("a_g", "F_t"), ("delta_t", "v_t")))
-        self.instance, self.inputs = instance, inputs
-        instance.enterInitializationMode()
-        instance.exitInitializationMode()
-        instance.enterStepMode()
-        self.time, self.is_transition_due = 0.0, False
-
-    def read(self, *names: str) -> list[float]:
-        return self.instance.getFloat64([self.references[name] for name in names])
-
-    def transitions(self) -> int:
-        return self.instance.getInt32([self.references["transitions"]])[0]
+        super().__init__(fmu, ["a_g", "F_t"], ["delta_t", "v_t"], updated=("a_g", "F_t"), event_mode_used=True, early_return_allowed=True,
+                         intermediate_update=at_the_end_of_the_step)
+        self.instance.enterStepMode()
 
     def step(self, t: float, h: float, line) -> list[float]:
         """The outputs at the end of the step under `line`, the inputs at its start and at its end, or where it came to a
         transition, just before it."""
-        start, self.line_end[:] = line
+        start, self.line_end = line
         self.instance.setFloat64(self.inputs, start)
         self.is_transition_due, _, _, self.time = self.instance.doStep(t, h)
         return self.instance.getFloat64(self.outputs)
@@ -58,17 +48,6 @@ class Pier:
         self.instance.updateDiscreteStates()
         self.instance.enterStepMode()
         self.is_transition_due = False
-
-    @contextlib.contextmanager
-    def checkpoint(self):
-        state = self.instance.getFMUState()
-        try:
-            yield state
-        finally:
-            self.instance.freeFMUState(state)
-
-    def restore(self, state) -> None:
-        self.instance.setFMUState(state)
 
 
 class TransitionMet(Exception):
@@ -110,12 +89,8 @@ class EventBridge(Bridge):
 class EndedAtTransitions:
     """Iterated steps that end at transitions, where the iteration is for the forces and for the step's length at once."""
 
-    def __init__(self):
-        self.iterated, self.steps, self.sweeps_to_transitions = masters.MASTERS["iqn-ils"](), 0, 0
-
-    @property
-    def sweeps(self):
-        return self.iterated.sweeps + self.sweeps_to_transitions
+    def __init__(self, iterated: Iterated):
+        self.iterated = iterated
 
     def __call__(self, system, t, h, guess):
         end = t + h
@@ -125,7 +100,6 @@ class EndedAtTransitions:
 
     def part(self, system, t, h, guess):
         """A step over at most `h`; how long it became."""
-        self.steps += 1
         with system.checkpoint() as start:
             try:
                 self.iterated(system, t, h, guess)
@@ -140,7 +114,7 @@ class EndedAtTransitions:
     def to_transition(self, system, t, h, w, start):
         reach = h
         for _ in range(MOST_SWEEPS):
-            self.sweeps_to_transitions += 1
+            self.iterated.sweeps += 1
             y, reached = system.first_until_transition(t, h, reach, w, start)
             if reached == 0:
                 return 0.0
@@ -154,27 +128,9 @@ class EndedAtTransitions:
         raise Diverged(f"{MOST_SWEEPS} sweeps over the step of {h} s from {t} s leave a residual of {residual:.1e}")
 
 
-class Halved:
-    """The master that halves steps with a transition, counted."""
-
-    def __init__(self):
-        self.iterated, self.steps = masters.MASTERS["iqn-ils"](), 0
-
-    @property
-    def sweeps(self):
-        return self.iterated.sweeps
-
-    def __call__(self, system, t, h, guess):
-        def step(*arguments):
-            self.steps += 1
-            self.iterated(*arguments)
-
-        between_transitions(step, system, t, h, guess)
-
-
-# name: master, pier, version of FMI, the bridge that they stand under
+# name: master over an iterated one, pier, version of FMI, the bridge that they stand under
 MASTERS = {
-    "halved (FMI 2.0)": (Halved, bridge.pier, 2, Bridge),
+    "halved (FMI 2.0)": (convergence.halving, pier, 2, Bridge),
     "early return (FMI 3.0)": (EndedAtTransitions, Pier, 3, EventBridge),
 }
 
@@ -186,16 +142,12 @@ def study(update=lambda: None):
     expected, found = convergence.columns(response), {}
     for way, (new, new_pier, fmi, Of) in MASTERS.items():
         for per_sample in STEPS:
-            of_deck, master = deck(), new()
-            system = Of([new_pier(exported(name.lower(), fmi)) for name in PIERS], of_deck, linear(time, a_g))
-
-            def row():
-                return [of_deck.x, *(value for pier in system.piers for value in pier.read("theta", "u"))]
-
-            rows = simulate(system, master, extrapolate, time, per_sample, row)
+            iterated = masters.MASTERS["iqn-ils"]()
+            system = Of([new_pier(exported(name.lower(), fmi)) for name in PIERS], deck(), linear(time, a_g))
+            rows = convergence.course(system, new(iterated), extrapolate, time, per_sample)
             asked = (len(time) - 1) * per_sample
-            found[way, per_sample] = (convergence.error(rows, expected), (master.steps - asked) / system.transitions(),
-                                       master.sweeps / asked, system.transitions())
+            found[way, per_sample] = (convergence.error(rows, expected), (iterated.steps - asked) / system.transitions(),
+                                       iterated.sweeps / asked, system.transitions())
             update()
     return time[1], found
 

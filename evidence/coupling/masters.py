@@ -53,12 +53,13 @@ class Iterated:
 
     def __init__(self, columns: int = 0, keep: bool = False):
         self.residuals, self.values = deque(maxlen=columns), deque(maxlen=columns)
-        self.keep, self.largest, self.h, self.sweeps = keep, 1.0, 0.0, 0
+        self.keep, self.largest, self.h, self.steps, self.sweeps = keep, 1.0, 0.0, 0, 0
 
     def __call__(self, system, t, h, guess):
         if not self.keep or h != self.h:
             self.residuals.clear(), self.values.clear()
         self.h = h
+        self.steps += 1
         w, before = guess(system.w), None
         with system.checkpoint() as start:
             for _ in range(MOST_SWEEPS):

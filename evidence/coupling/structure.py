@@ -10,8 +10,15 @@ from fmpy.fmi2 import fmi2False
 from fmpy.simulation import instantiate_fmu
 
 
+FMI_3 = {"getReal": "getFloat64", "setReal": "setFloat64", "getInteger": "getInt32", "newDiscreteStates": "updateDiscreteStates",
+         "getFMUstate": "getFMUState", "setFMUstate": "setFMUState", "freeFMUstate": "freeFMUState"}
+
+
 def opened(owner, fmu: str, fmi_type: str = "CoSimulation", updated=(), **options):
-    """An instance of the FMU that lasts as long as `owner`, and its value references by name; `updated` are set within a step."""
+    """An instance of the FMU that lasts as long as `owner`, and its value references by name; `updated` are set within a step.
+
+    An instance of FMI 3.0 also has the names of FMI 2.0.
+    """
     folder = tempfile.TemporaryDirectory()
     fmpy.extract(fmu, unzipdir=folder.name)
     description = fmpy.read_model_description(folder.name)
@@ -19,6 +26,8 @@ def opened(owner, fmu: str, fmi_type: str = "CoSimulation", updated=(), **option
     instance = instantiate_fmu(folder.name, description, fmi_type, **options,
                                required_intermediate_variables=[references[name] for name in updated])
     weakref.finalize(owner, free, instance, folder)
+    if description.fmiVersion.startswith("3"):
+        vars(instance).update({name: getattr(instance, of_3) for name, of_3 in FMI_3.items()})
     return instance, references
 
 
@@ -30,9 +39,10 @@ def free(instance, folder):
 class Structure:
     """Steps under inputs that are lines in time, and goes back to a state when asked."""
 
-    def __init__(self, fmu: str, inputs: list[str], outputs: list[str]):
-        self.instance, self.references = opened(self, fmu)
-        self.instance.setupExperiment()
+    def __init__(self, fmu: str, inputs: list[str], outputs: list[str], **options):
+        self.instance, self.references = opened(self, fmu, **options)
+        if hasattr(self.instance, "setupExperiment"):
+            self.instance.setupExperiment()
         self.instance.enterInitializationMode()
         self.instance.exitInitializationMode()
         self.inputs = [self.references[name] for name in inputs]

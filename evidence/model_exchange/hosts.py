@@ -112,17 +112,11 @@ class Model:
     def rates(self, time: float, states: np.ndarray, rates: np.ndarray) -> None:
         self.evaluations += 1
         self.at(time, states)
-        self.rates_here(rates)
-
-    def rates_here(self, rates: np.ndarray) -> None:
         self.fmu.getDerivatives(self._pointer, 4)
         rates[:] = self._numbers
 
     def indicators(self, time: float, states: np.ndarray, indicators: np.ndarray) -> None:
         self.at(time, states)
-        self.indicators_here(indicators)
-
-    def indicators_here(self, indicators: np.ndarray) -> None:
         self.fmu.getEventIndicators(self._pointer, 2)
         indicators[:] = self._numbers[:2]
 
@@ -130,11 +124,19 @@ class Model:
         self.fmu.getNominalsOfContinuousStates(self._pointer, 4)
         return self._numbers.copy()
 
-    def update(self) -> tuple[bool, float]:
-        """Deals with an event: whether the structure has overturned, and when the next event is."""
+    def completed(self, time: float, states: np.ndarray) -> bool:
+        """The solver's step to there is complete: whether the FMU asks for event mode."""
+        self.at(time, states)
+        return self.fmu.completedIntegratorStep()[0]
+
+    def enter_event_mode(self) -> None:
+        self.fmu.enterEventMode()
+
+    def update(self, _states) -> tuple[np.ndarray, bool, float]:
+        """Handles an event: the states after it, whether the structure has overturned, and when the next event is."""
         _, has_ended, _, _, is_foreseen, next_event = self.fmu.newDiscreteStates()
         self.fmu.enterContinuousTimeMode()
-        return has_ended, next_event if is_foreseen else np.inf
+        return self.states(), has_ended, next_event if is_foreseen else np.inf
 
     def row(self, time: float) -> tuple:
         reals = self.fmu.getReal([self.references[name] for name in ("theta", "u")])
@@ -150,16 +152,21 @@ def sundae(scene: Scene, tolerance: float) -> Result:
 def sundae_told(scene: Scene, tolerance: float, told: float) -> Result:
     """The same where the FMU is told of another tolerance."""
     model = Model(scene.fmu, told, scene.start_values)
-    solver = CVODE(lambda t, x, rates: model.rates(t, x, rates), method="Adams", rtol=tolerance,
-                   atol=tolerance * model.nominals(), eventsfn=lambda t, x, z: model.indicators(t, x, z), num_events=2)
+    return _result(scene, model, *cvode(model, tolerance, 2))
+
+
+def cvode(system, tolerance: float, indicators: int, longest_step: float = 0.0) -> tuple:
+    """SUNDIALS' CVODE (Adams) over the equations of a system, as `start` and `step` of `follow`; 0 leaves the steps (s) to it."""
+    solver = CVODE(system.rates, method="Adams", rtol=tolerance, atol=tolerance * system.nominals(), max_step=longest_step,
+                   eventsfn=lambda t, y, z: system.indicators(t, y, z), num_events=indicators)
 
     def step(stop):
         found = solver.step(stop, method="onestep", tstop=stop)
         if not found.success:
             raise RuntimeError(f"CVODE towards t = {stop} s: {found.message}")
-        return float(found.t), found.y, found.status == 2
+        return float(found.t), found.y.copy(), found.status == 2
 
-    return _follow(scene, model, solver.init_step, step)
+    return solver.init_step, step
 
 
 def dop853(scene: Scene, tolerance: float) -> Result:
@@ -189,25 +196,30 @@ def dop853(scene: Scene, tolerance: float) -> Result:
         solver = None if is_cut else solver
         return *at, False
 
-    return _follow(scene, model, start, step)
+    return _result(scene, model, start, step)
 
 
-def _follow(scene: Scene, model: Model, start, step) -> Result:
-    """By a solver that goes on from where it is to start, step by step up to where it is told to stop: time, states, and
-    whether it found a root."""
-    has_ended, next_event = model.update()
-    rows, time, hidden = [model.row(0.0)], 0.0, 0
-    start(time, model.states())
-    while time < scene.end - SAME_TIME and not has_ended:
-        point = len(rows) * scene.interval
-        time, states, has_root = step(next_event if next_event < point - SAME_TIME else point)
-        model.at(time, states)
-        has_event, _ = model.fmu.completedIntegratorStep()
-        if has_event or has_root or time > next_event - SAME_TIME:
-            hidden += has_event and not has_root
-            model.fmu.enterEventMode()
-            has_ended, next_event = model.update()
-            start(time, model.states())
+def follow(system, states, start, step, points):
+    """Yields time and states at `points`, up to where the system ends. The solver goes on from where it is to `start`, one `step`
+    up to where it is told to stop: time, states, and whether it found a root. `system.hidden` counts other events."""
+    system.hidden, time = 0, float(points[0])
+    states, has_ended, next_event = system.update(states)
+    start(time, states)
+    yield time, states
+    for point in points[1:]:
+        while time < point - SAME_TIME and not has_ended:
+            time, states, has_root = step(next_event if next_event < point - SAME_TIME else point)
+            has_event = system.completed(time, states)
+            if has_event or has_root or time > next_event - SAME_TIME:
+                system.hidden += has_event and not has_root
+                system.enter_event_mode()
+                states, has_ended, next_event = system.update(states)
+                start(time, states)
         if time > point - SAME_TIME:
-            rows.append(model.row(time))
-    return Result(np.array(rows, dtype=[(name, float) for name in ("time", *OUTPUTS)]), hidden, model.evaluations)
+            yield time, states
+
+
+def _result(scene: Scene, model: Model, start, step) -> Result:
+    points = scene.interval * np.arange(round(scene.end / scene.interval) + 1)
+    rows = [model.row(time) for time, _ in follow(model, None, start, step, points)]
+    return Result(np.array(rows, dtype=[(name, float) for name in ("time", *OUTPUTS)]), model.hidden, model.evaluations)

@@ -5,6 +5,7 @@ from pathlib import Path
 import flexible_rocking as fr
 import numpy as np
 import pandas as pd
+from frames import Frame, cantilever
 from matplotlib.ticker import MaxNLocator
 from scipy.linalg import expm
 from tqdm import tqdm
@@ -13,7 +14,6 @@ from ..figures import COLOURS, FIXED, save, subplots
 from ..page import table
 from ..scenes import RECORDS as DATA
 from ..scenes import G
-from .structures import BUILDINGS, Building
 
 RECORDS = sorted(map(str, DATA.glob("[!n]*/*hor*.AT2")))
 SHOWN = "RSN77_SFERN_PUL164"  # whose floors are drawn
@@ -24,6 +24,19 @@ OLD = "the old rule"
 MODES = (("mode 1", 1, 1), ("mode 2", 2, 2), ("mode 3", 3, 3), ("mode 4", 4, 4), ("modes 5 to 12", 5, 12))
 
 
+WALL, PIER = (3.0, 6.0, 9.0, 12.0), (4.0, 8.0, 12.0, 16.0, 20.0, 24.0)  # heights of the masses
+BUILDINGS = {
+    "stiff: a wall of 4 storeys": Frame((90e3,) * 4, WALL, cantilever(WALL, 2.5e10), m0=60e3, J0=2e5, B=2.0, zeta=0.03),
+    "slender: a pier of 24 m": Frame((*(50e3,) * 5, 6e5), PIER, cantilever(PIER, 1.2e11), m0=3e5, J0=2e6, B=3.0, zeta=0.03),
+    "tall: a frame of 12 storeys": Frame((60e3,) * 12, tuple(3.2 * i for i in range(1, 13)), tuple(1.2e8 * (1.05 - 0.05 * i) for i in range(1, 13)),
+                                         m0=1.5e5, J0=2e6, B=3.5, zeta=0.03),
+}
+
+
+def structure(of: Frame) -> fr.Structure:
+    return fr.Structure.from_matrices(of.m, of.h, of.K, zeta=of.zeta, m0=of.m0, J0=of.J0, B=of.B)
+
+
 def columns(response: fr.Response, name: str, count: int) -> np.ndarray:
     """A column for each floor."""
     return np.column_stack([response[f"{name}[{i + 1}]"] for i in range(count)])
@@ -32,12 +45,12 @@ def columns(response: fr.Response, name: str, count: int) -> np.ndarray:
 class Motion:
     """A run at instants: u and u_dot of the floors, theta, and the force of each mode on its unit mass."""
 
-    def __init__(self, building: Building, record: fr.Record, keep: int | None = None, detail: str = "auto"):
-        self.run = fr.simulate(building.structure.replace(keep=keep), record, detail=detail, duration=min(record.duration, DURATION))
-        response = self.run.at(np.arange(self.run.start, self.run.end, np.pi / 10 / building.modes[0][-1]))  # 20 in a period
+    def __init__(self, building: Frame, record: fr.Record, keep: int | None = None, detail: str = "auto"):
+        self.run = fr.simulate(structure(building).replace(keep=keep), record, detail=detail, duration=min(record.duration, DURATION))
+        response = self.run.at(np.arange(self.run.start, self.run.end, np.pi / 10 / building.omega[-1]))  # 20 in a period
         count = len(building.m)
         self.u, u_dot = (columns(response, name, count) for name in ("u", "u_dot"))
-        omega, phi = building.modes
+        omega, phi = building.omega, building.phi
         q, q_dot = (of @ (building.m[:, None] * phi) for of in (self.u, u_dot))
         self.theta, self.q, self.force = response["theta"], q, 2 * building.zeta * omega * q_dot + omega**2 * q
 
@@ -49,9 +62,9 @@ def peaks(run: fr.Run) -> dict[str, np.ndarray]:
     return {"theta": np.array([run.peaks["theta"]]), **of_floors}
 
 
-def old_rule(building: Building, rocking: Motion, fixed: Motion) -> dict[str, np.ndarray]:
+def old_rule(building: Frame, rocking: Motion, fixed: Motion) -> dict[str, np.ndarray]:
     """Peaks if the first mode alone rocks and the others vibrate as on a fixed base."""
-    _, phi = building.modes
+    phi = building.phi
     until = min(len(rocking.theta), len(fixed.theta))
     force = fixed.force[:until].copy()
     force[:, 0] = rocking.force[:until, 0]
@@ -68,16 +81,15 @@ def errors(found: dict[str, np.ndarray], exact: dict[str, np.ndarray]) -> dict[s
     return {name: float(np.abs(found[name] / exact[name] - 1).max()) for name in exact}
 
 
-def reversal(building: Building) -> np.ndarray:
+def reversal(building: Frame) -> np.ndarray:
     """The acceleration of each mode, m/s2, over 2 s after the weight has changed sides."""
-    m, h, (omega, phi) = building.m, building.h, building.modes
-    derived, M_phi = building.structure.derived, m[:, None] * phi
-    static = np.linalg.solve(building.K, m * h * G * derived["m_t"] * derived["B"] / derived["J_P"])
-    M_r = np.diag(m) - np.outer(m * h, m * h) / derived["J_P"]
-    C = M_phi * (2 * building.zeta * omega) @ M_phi.T
+    m, h, omega, phi, J_P = building.m, building.h, building.omega, building.phi, building.J_P
+    M_phi = m[:, None] * phi
+    static = np.linalg.solve(building.K, m * h * G * building.m_t * building.B / J_P)
+    M_r = np.diag(m) - np.outer(m * h, m * h) / J_P
     zero, one = np.zeros_like(M_r), np.eye(len(m))
     step = np.pi / 50 / omega[-1]
-    onward = expm(step * np.block([[zero, one], [-np.linalg.solve(M_r, building.K), -np.linalg.solve(M_r, C)]]))
+    onward = expm(step * np.block([[zero, one], [-np.linalg.solve(M_r, building.K), -np.linalg.solve(M_r, building.C)]]))
     state, largest = np.concatenate([-2 * static, 0 * static]), np.zeros(len(m))
     for _ in range(int(2 / step)):
         q, q_dot = (state[: len(m)] + static) @ M_phi, state[len(m) :] @ M_phi
@@ -86,9 +98,9 @@ def reversal(building: Building) -> np.ndarray:
     return largest / np.abs(m @ phi)
 
 
-def landing(building: Building, run: fr.Run) -> np.ndarray:
+def landing(building: Frame, run: fr.Run) -> np.ndarray:
     """The acceleration of each mode, m/s2, that the hardest landing of a run gives it."""
-    omega, phi = building.modes
+    omega, phi = building.omega, building.phi
     velocity = max((abs(of.before["theta_dot"]) for of in run.transitions if of.kind == "landing"), default=0.0)
     return omega * np.abs((building.m * building.h) @ phi / (building.m @ phi)) * velocity
 
@@ -99,11 +111,11 @@ def scene(name: str, path: str) -> tuple[list[dict[str, object]], list[dict[str,
     exact, fixed, one = Motion(building, record), Motion(building, record, detail="fixed_base"), Motion(building, record, 1)
     count, profiles = len(building.m), {"all modes": peaks(exact.run), "fixed base": peaks(fixed.run), OLD: old_rule(building, one, fixed)}
     for kept in range(1, count):
-        profiles[f"{kept}"] = peaks(fr.simulate(building.structure.replace(keep=kept), record, duration=min(record.duration, DURATION)))
+        profiles[f"{kept}"] = peaks(fr.simulate(structure(building).replace(keep=kept), record, duration=min(record.duration, DURATION)))
     place = {"building": name, "record": Path(path).stem}
     wrong = [{**place, "modes": kept, **errors(of, profiles["all modes"])} for kept, of in profiles.items()
              if kept not in ("all modes", "fixed base")]
-    gamma = np.abs(building.m @ building.modes[1])
+    gamma = np.abs(building.m @ building.phi)
     rocks, stands = (np.abs(of.force).max(axis=0) / gamma for of in (exact, fixed))
     parts = pd.DataFrame({**place, "mode": np.arange(1, count + 1), "rocking": rocks, "fixed": stands, "reversal": reversal(building),
                           "landing": landing(building, exact.run), "theta": float(exact.run.peaks["theta"])})
@@ -133,8 +145,8 @@ def values(figures: Path) -> dict:
 
 def building(name: str, parts: pd.DataFrame) -> list[object]:
     of, theta = BUILDINGS[name], 1e3 * parts[parts["building"] == name].groupby("record")["theta"].first()
-    frequencies = ", ".join(f"{f:.3g}" for f in of.modes[0][:4] / (2 * np.pi))
-    return [name, frequencies + (", …" if len(of.m) > 4 else ""), f"{of.structure.derived['alpha_cg']:.3f}", f"{theta.min():.2g} to {theta.max():.2g}"]
+    frequencies = ", ".join(f"{f:.3g}" for f in of.omega[:4] / (2 * np.pi))
+    return [name, frequencies + (", …" if len(of.m) > 4 else ""), f"{structure(of).derived['alpha_cg']:.3f}", f"{theta.min():.2g} to {theta.max():.2g}"]
 
 
 def needed(name: str, wrong: pd.DataFrame) -> list[object]:
@@ -157,8 +169,8 @@ def old_errors(name: str, wrong: pd.DataFrame) -> list[list[object]]:
 
 
 def isolation(name: str, parts: pd.DataFrame) -> list[list[object]]:
-    omega, phi = BUILDINGS[name].modes
-    share = (BUILDINGS[name].m @ phi) ** 2 / BUILDINGS[name].m.sum()
+    of_name = BUILDINGS[name]
+    omega, share = of_name.omega, (of_name.m @ of_name.phi) ** 2 / of_name.m.sum()
     rows = []
     for mode, of in parts[parts["building"] == name].groupby("mode"):
         if mode <= 4:
