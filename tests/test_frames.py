@@ -12,7 +12,7 @@ from frames import SCENES, Frame, Ties, scene
 @pytest.fixture(scope="module")
 def program(exporter):
     """The example that moves a frame by its modes, chosen with the packages of `make test`: no other features, no second build."""
-    packages = ["--workspace", "--exclude", "flexible-rocking-python"]
+    packages = ["--workspace", "--exclude", "flexible-rocking-python", "--exclude", "rocking-web"]
     subprocess.run(["cargo", "build", "--quiet", "--release", *packages, "--example", "frame_scene"], cwd=ROOT, check=True)
     return exporter.parent / "examples/frame_scene"
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
-from frames import FRAMES, Ties, of_one_mass, scene
+from frames import FRAMES, Ties, of_one_mass, scene, toml
 from host import Fmu
 from reference import MCMANUS
 from scipy.integrate import solve_ivp
@@ -25,11 +25,7 @@ def export_frame(exporter, tmp_path_factory):
 
     def run(frame=FRAME, ties=Ties(), time=None, a_g=None, a_v=None, fmi=2) -> Fmu:
         folder = tmp_path_factory.mktemp("frame")
-        base = {"m0": frame.m0, "J0": frame.J0, "B": frame.B, "r": frame.r, "g": frame.g, **vars(ties)}
-        lines = [f"zeta = {frame.zeta}", "[base]", *(f"{name} = {value}" for name, value in base.items())]
-        for m, h, k in zip(frame.masses, frame.heights, frame.stiffness, strict=True):
-            lines += ["[[storeys]]", f"m = {m}", f"h = {h}", f"k = {k}"]
-        (folder / "frame.toml").write_text("\n".join(lines))
+        (folder / "frame.toml").write_text(toml(frame, ties))
         command = [exporter, "export", "--parameters", folder / "frame.toml", "--fmi", str(fmi), "-o", folder / "frame.fmu"]
         for option, values in (("--record", a_g), ("--record-v", a_v)):
             if values is not None:

@@ -8,7 +8,6 @@ import subprocess
 import tempfile
 import zipfile
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
 from fmpy.ssp.simulation import simulate_ssp
@@ -19,7 +18,7 @@ from ..page import table
 from ..scenes import PROGRAM, pacoima_dam
 from .bridge import PIERS, Bridge, deck, iterated, linear, pier
 
-SSD, SSC = (f"http://ssp-standard.org/SSP1/SystemStructure{name}" for name in ("Description", "Common"))
+SSP = "http://ssp-standard.org/SSP1/SystemStructure"
 STEPS = (2e-3, 1e-3, 0.5e-3, 0.25e-3, 0.125e-3)  # s
 DECK = "deck"
 
@@ -39,44 +38,38 @@ def write_archive(path: Path, time, a_g, exporter: Path = PROGRAM) -> None:
         built = FmuBuilder.build_FMU(here / "deck_fmu.py", dest=folder, project_files=[here / "swaying_mass.py", record],
                                      newargs=dict(M=mass.M, k=mass.k, c=mass.c))
         archive.write(built, f"resources/{DECK}.fmu")
-        archive.writestr("SystemStructure.ssd", system_structure())
+        archive.writestr("SystemStructure.ssd", bridge())
 
 
-def system_structure() -> bytes:
-    """SystemStructure.ssd: the piers' tops to the deck, its bearings' forces to the piers."""
-    root = ElementTree.Element(f"{{{SSD}}}SystemStructureDescription", name="bridge", version="1.0")
-    system = ElementTree.SubElement(root, f"{{{SSD}}}System", name="bridge")
-    elements = ElementTree.SubElement(system, f"{{{SSD}}}Elements")
-    connections = ElementTree.SubElement(system, f"{{{SSD}}}Connections")
-    of_deck = {"x": "output"}
+def bridge() -> str:
+    """The piers' tops to the deck, its bearings' forces to the piers."""
+    reals, ends = {DECK: {"x": "output"}}, []
     for i, name in enumerate(PIERS):
-        component(elements, name, {"F_t": "input", "delta_t": "output", "v_t": "output"})
-        of_deck |= {f"delta_t_{i}": "input", f"v_t_{i}": "input", f"F_{i}": "output"}
-        connect(connections, (name, "delta_t"), (DECK, f"delta_t_{i}"))
-        connect(connections, (name, "v_t"), (DECK, f"v_t_{i}"))
-        connect(connections, (DECK, f"F_{i}"), (name, "F_t"))
-    component(elements, DECK, of_deck)
-    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+        reals[name] = {"F_t": "input", "delta_t": "output", "v_t": "output"}
+        reals[DECK] |= {f"delta_t_{i}": "input", f"v_t_{i}": "input", f"F_{i}": "output"}
+        ends += [(name, "delta_t", DECK, f"delta_t_{i}"), (name, "v_t", DECK, f"v_t_{i}"), (DECK, f"F_{i}", name, "F_t")]
+    return system_structure(reals, ends)
 
 
-def component(elements, name: str, reals: dict[str, str]) -> None:
-    fmu = ElementTree.SubElement(elements, f"{{{SSD}}}Component", name=name, source=f"resources/{name}.fmu",
-                                 type="application/x-fmu-sharedlibrary")
-    connectors(fmu, reals)
+def system_structure(reals: dict, ends: list, inputs: dict | None = None) -> str:
+    """SystemStructure.ssd: FMUs with the kinds of their reals by name, and connections from an element's connector to another's.
+    The element "" is the system itself, with its `inputs`."""
+    def listed(name: str, items) -> str:
+        found = "".join(items)
+        return f"<ssd:{name}>{found}</ssd:{name}>" if found else ""
 
+    def connectors(of) -> str:
+        return listed("Connectors", (f'<ssd:Connector name="{name}" kind="{kind}"><ssc:Real/></ssd:Connector>' for name, kind in of.items()))
 
-def connectors(parent, reals: dict[str, str]) -> None:
-    """The Real connectors of a system or component, by name and kind."""
-    found = ElementTree.SubElement(parent, f"{{{SSD}}}Connectors")
-    for name, kind in reals.items():
-        connector = ElementTree.SubElement(found, f"{{{SSD}}}Connector", name=name, kind=kind)
-        ElementTree.SubElement(connector, f"{{{SSC}}}Real")
+    def connection(*ends) -> str:
+        names = zip(("startElement", "startConnector", "endElement", "endConnector"), ends)
+        return "<ssd:Connection " + " ".join(f'{key}="{name}"' for key, name in names if name) + "/>"
 
-
-def connect(connections, start: tuple, end: tuple) -> None:
-    """From one (element, connector) to another; no element stands for the system itself."""
-    ends = dict(zip(("startElement", "startConnector", "endElement", "endConnector"), (*start, *end)))
-    ElementTree.SubElement(connections, f"{{{SSD}}}Connection", {key: name for key, name in ends.items() if name})
+    components = (f'<ssd:Component name="{name}" source="resources/{name}.fmu" type="application/x-fmu-sharedlibrary">'
+                  f"{connectors(of)}</ssd:Component>" for name, of in reals.items())
+    return (f'<ssd:SystemStructureDescription xmlns:ssd="{SSP}Description" xmlns:ssc="{SSP}Common" name="system" version="1.0">'
+            f'<ssd:System name="system">{connectors(inputs or {})}{listed("Elements", components)}'
+            f'{listed("Connections", (connection(*of) for of in ends))}</ssd:System></ssd:SystemStructureDescription>')
 
 
 def run(archive: Path, stop_time: float, h: float, extrapolated: bool = True) -> np.ndarray:
@@ -97,8 +90,8 @@ def error(result: np.ndarray, h: float, time, reference) -> float:
 def errors(fmus) -> str:
     """Errors of values held and extrapolated, by steps."""
     time, a_g = pacoima_dam()
-    bridge = Bridge([pier(fmu) for fmu in fmus], deck(), linear(time, a_g))
-    reference = iterated(bridge, time, lambda: bridge.deck.x)
+    system = Bridge([pier(fmu) for fmu in fmus], deck(), linear(time, a_g))
+    reference = iterated(system, time, lambda: system.deck.x)
     with tempfile.TemporaryDirectory() as folder:
         archive = Path(folder, "bridge.ssp")
         write_archive(archive, time, a_g)

@@ -12,6 +12,7 @@ from functools import cache
 
 import flexible_rocking as fr
 import numpy as np
+from scipy.optimize import bisect
 
 from ..scenes import G
 from .slender_block import Pulse
@@ -58,8 +59,4 @@ def boundary(block: fr.Structure, pulse: Pulse, omega: float, near: float) -> fl
         return run(block, pulse, omega, amplitude).overturned
 
     low, high = next(pair for pair in (near * (1 + width * SIDES) for width in WIDTHS) if falls(pair[0]) != falls(pair[1]))
-    fate = falls(low)
-    while high - low > CLOSE * high:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if falls(middle) == fate else (low, middle)
-    return 0.5 * (low + high)
+    return bisect(lambda amplitude: bool(falls(amplitude)) - 0.5, low, high, xtol=CLOSE * low)

@@ -1,11 +1,12 @@
 """The amplitudes of pulses that overturn a rigid block, with and without impact."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from tqdm import tqdm
 
 from .. import figures
 from ..page import table
@@ -23,16 +24,21 @@ CURVES = np.linspace(1.5, 8, 66)  # omega/p of the curves in the figure
 
 
 @dataclass(frozen=True)
-class Limit:
-    """A quantity at TANGENTS beside its closed form in the limit of a vanishing slenderness."""
+class Case:
+    """One boundary: its closed form in the slender limit, and the amplitudes of the model's blocks with TANGENTS."""
 
-    closed_form: float
-    values: list[float]
+    pulse: Pulse
+    omega: float
+    boundary: Boundary
+
+    @cached_property
+    def amplitudes(self) -> list[float]:
+        return [block.boundary(homogeneous(tangent, R), self.pulse, self.omega, self.boundary.amplitude) for tangent in TANGENTS]
 
     @property
     def differences(self) -> np.ndarray:
         """From the closed form, over it."""
-        return np.array(self.values) / self.closed_form - 1
+        return np.array(self.amplitudes) / self.boundary.amplitude - 1
 
     @property
     def rate(self) -> float:
@@ -42,51 +48,28 @@ class Limit:
     @property
     def extrapolated(self) -> float:
         """At tan alpha = 0 by Richardson, for a series in powers of tan^2 alpha."""
-        column = list(self.values)
+        column = list(self.amplitudes)
         for order in range(1, len(TANGENTS)):
             column = [(4**order * finer - coarser) / (4**order - 1) for coarser, finer in zip(column, column[1:])]
         return column[0]
 
     @property
     def error(self) -> float:
-        """Of the extrapolated value, over the closed form."""
-        return abs(self.extrapolated / self.closed_form - 1)
+        """Of the extrapolated amplitude, over the closed form."""
+        return abs(self.extrapolated / self.boundary.amplitude - 1)
+
+    @cached_property
+    def impacts(self) -> int:
+        """Impacts of the most slender block where it overturns: its transitions but for uplift and overturning."""
+        beside = self.amplitudes[-1] * (1 - BESIDE if self.boundary.upper else 1 + BESIDE)
+        run = block.run(homogeneous(TANGENTS[-1], R), self.pulse, self.omega, beside)
+        assert run.overturned
+        return len(run.transitions) - 2
 
 
-@dataclass(frozen=True)
-class Case:
-    """One boundary: its closed form, and the model's in the slender limit."""
-
-    pulse: Pulse
-    omega: float
-    boundary: Boundary
-    limit: Limit
-    impacts: int  # counted where the most slender block overturns
-
-
-def limit(pulse: Pulse, omega: float, of: Boundary) -> Limit:
-    """The boundary of the model's blocks that become slender."""
-    return Limit(of.amplitude, [block.boundary(homogeneous(tangent, R), pulse, omega, of.amplitude)
-                                for tangent in TANGENTS])
-
-
-def counted(pulse: Pulse, omega: float, amplitude: float) -> int:
-    """Impacts of the most slender block, which overturns: its transitions but for uplift and overturning."""
-    run = block.run(homogeneous(TANGENTS[-1], R), pulse, omega, amplitude)
-    assert run.overturned
-    return len(run.transitions) - 2
-
-
-def compute(advance: Callable[[], None]) -> list[Case]:
+def compute() -> list[Case]:
     """All boundaries of CASES."""
-    cases = []
-    for pulse, omega in CASES:
-        for of in boundaries(pulse, omega, R, MOST):
-            slender = limit(pulse, omega, of)
-            impacts = counted(pulse, omega, slender.values[-1] * (1 - BESIDE if of.upper else 1 + BESIDE))
-            cases.append(Case(pulse, omega, of, slender, impacts))
-        advance()
-    return cases
+    return [Case(pulse, omega, of) for pulse, omega in tqdm(CASES) for of in boundaries(pulse, omega, R, MOST)]
 
 
 def save(cases: list[Case], path: Path) -> None:
@@ -96,10 +79,10 @@ def save(cases: list[Case], path: Path) -> None:
         "pulse": case.pulse.name, "omega/p": case.omega,
         "overturns": f"{how[case.boundary.impacts]}, {'below' if case.boundary.upper else 'above'}",
         "closed form": f"{case.boundary.amplitude:.10f}",
-        f"difference at tan alpha = {TANGENTS[0]:g}": f"{case.limit.differences[0]:.1e}",
-        f"difference at tan alpha = {TANGENTS[-1]:g}": f"{case.limit.differences[-1]:.1e}",
-        "rate": f"{case.limit.rate:.3f}", "extrapolated": f"{case.limit.extrapolated:.10f}",
-        "difference": f"{case.limit.error:.0e}",
+        f"difference at tan alpha = {TANGENTS[0]:g}": f"{case.differences[0]:.1e}",
+        f"difference at tan alpha = {TANGENTS[-1]:g}": f"{case.differences[-1]:.1e}",
+        "rate": f"{case.rate:.3f}", "extrapolated": f"{case.extrapolated:.10f}",
+        "difference": f"{case.error:.0e}",
     } for case in cases]).to_csv(path, index=False)
 
 
@@ -127,7 +110,7 @@ def draw(cases: list[Case], path: Path) -> None:
                 axis.plot(CURVES, [of.get(omega, np.nan) for omega in CURVES], color=color)
         own = [case for case in cases if case.pulse is pulse]
         omega = [case.omega for case in own]
-        axis.plot(omega, [case.limit.extrapolated for case in own], "o", color="black", markersize=3)
+        axis.plot(omega, [case.extrapolated for case in own], "o", color="black", markersize=3)
         axis.set(title=pulse.name, xlabel="$\\omega/p$", xlim=(CURVES[0], CURVES[-1] + 0.2), ylim=(1, MOST + 0.5))
     axes[0].set_ylabel("amplitude over $g\\,\\tan\\alpha$")
     axes[0].plot([], [], color=figures.FIXED, label="no impact")

@@ -2,20 +2,17 @@
 
 from pathlib import Path
 
-from tqdm import tqdm
-
 from ..page import spread
 from . import block, overturning
 
 
 def values(figures: Path) -> dict:
     """Pulses that overturn a rigid block."""
-    with tqdm(total=len(overturning.CASES), unit="") as progress:
-        cases = overturning.compute(progress.update)
+    cases = overturning.compute()
     overturning.draw(cases, figures / "overturning.svg")
     overturning.save(cases, figures / "overturning.csv")
     return dict(
         restitution=overturning.R, impacts_agree=sum(case.impacts == case.boundary.impacts for case in cases),
-        most=overturning.MOST, boundary_count=len(cases), boundary_error=max(case.limit.error for case in cases),
-        boundary_rates=spread([case.limit.rate for case in cases], ".3f"), samples=block.SAMPLES, half_sines=overturning.half_sines(),
+        most=overturning.MOST, boundary_count=len(cases), boundary_error=max(case.error for case in cases),
+        boundary_rates=spread([case.rate for case in cases], ".3f"), samples=block.SAMPLES, half_sines=overturning.half_sines(),
         tangents=", ".join(f"{tangent:g}" for tangent in overturning.TANGENTS))

@@ -52,71 +52,35 @@ class Bounces(Exception):
     """Impacts follow each other faster than they are looked for: the block bounces to rest while the pulse lasts."""
 
 
-@dataclass(frozen=True)
-class Piece:
-    """The motion on side `s` from the instant t0 on, while the pulse lasts."""
+def motion(pulse: Pulse, omega: float, amplitude: float, s: int, t0: float, v0: float):
+    """A function of time that gives y and y' on side `s` while the pulse lasts, from y = 0 and y' = v0 at t0 on."""
+    part, (f0, slope0) = amplitude / (1 + omega**2), pulse.shape(omega, t0)
+    z, w = part * f0 - s, v0 + part * slope0
 
-    pulse: Pulse
-    omega: float
-    amplitude: float
-    s: int
-    t0: float
-    z: float
-    w: float
+    def state(t):
+        (f, slope), cosh, sinh = pulse.shape(omega, t), np.cosh(t - t0), np.sinh(t - t0)
+        return s - part * f + z * cosh + w * sinh, -part * slope + z * sinh + w * cosh
 
-    @classmethod
-    def start(cls, pulse: Pulse, omega: float, amplitude: float, s: int, t0: float, y: float, v: float) -> "Piece":
-        """With the rotation y and the velocity v at t0."""
-        f, slope = pulse.shape(omega, t0)
-        part = amplitude / (1 + omega**2)
-        return cls(pulse, omega, amplitude, s, t0, y - s + part * f, v + part * slope)
-
-    def state(self, t):
-        """y and y' at `t`."""
-        f, slope = self.pulse.shape(self.omega, t)
-        part = self.amplitude / (1 + self.omega**2)
-        cosh, sinh = np.cosh(t - self.t0), np.sinh(t - self.t0)
-        return self.s - part * f + self.z * cosh + self.w * sinh, -part * slope + self.z * sinh + self.w * cosh
-
-    def impact(self, end: float) -> float | None:
-        """The first return to y = 0 until `end`, if there is one."""
-        t = np.linspace(self.t0, end, GRID + 1)
-        below = np.flatnonzero(self.s * self.state(t)[0][1:] <= 0)
-        if not len(below):
-            return None
-        first = below[0]
-        if first == 0:
-            raise Bounces(f"an impact within {t[1] - self.t0:g}/p of the last one at A = {self.amplitude}")
-        return brentq(lambda t: self.state(t)[0], t[first], t[first + 1], xtol=1e-15, rtol=1e-15)
+    return state
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """Margin of the fate of the block: positive if it overturns after `impacts`."""
-
-    impacts: int
-    margin: float
-
-    @property
-    def overturns(self) -> bool:
-        """Whether the margin is positive."""
-        return bool(self.margin > 0)
-
-
-def follow(pulse: Pulse, omega: float, r: float, amplitude: float, impacts: int | None = None) -> Outcome:
-    """The fate of a block at rest, or with `impacts` given whether it overturns after so many and not more."""
-    end = pulse.duration(omega)
-    piece = Piece.start(pulse, omega, amplitude, 1, pulse.lift_off(omega, amplitude), 0.0, 0.0)
-    count = 0
-    while count != impacts and (t := piece.impact(end)) is not None:
-        count += 1
-        piece = Piece.start(pulse, omega, amplitude, -piece.s, t, 0.0, r * piece.state(t)[1])
-    y, v = piece.state(end)
-    growing = piece.s * (y + v) - 1  # of y - s, over exp(t)
+def follow(pulse: Pulse, omega: float, r: float, amplitude: float, impacts: int | None = None) -> tuple[int, float]:
+    """Impacts of a block at rest, and a margin that is positive if it overturns after them; with `impacts` given after so many."""
+    s, t, v, count, end = 1, pulse.lift_off(omega, amplitude), 0.0, 0, pulse.duration(omega)
+    while True:
+        state, grid = motion(pulse, omega, amplitude, s, t, v), np.linspace(t, end, GRID + 1)
+        below = np.flatnonzero(s * state(grid)[0][1:] <= 0)
+        if count == impacts or not len(below):
+            break
+        if below[0] == 0:
+            raise Bounces(f"an impact within {grid[1] - t:g}/p of the last one at A = {amplitude}")
+        t = brentq(lambda t: state(t)[0], grid[below[0]], grid[below[0] + 1], xtol=1e-15, rtol=1e-15)
+        s, v, count = -s, r * state(t)[1], count + 1
+    y, v = state(end)
+    growing = s * (y + v) - 1  # of y - s, over exp(t)
     if growing > 0 or count == impacts:
-        return Outcome(count, growing)
-    landing = np.sqrt(v**2 - (y - piece.s) ** 2 + 1)  # the energy is kept until the next impact
-    return Outcome(count + 1, r * landing - 1)
+        return count, growing
+    return count + 1, r * np.sqrt(v**2 - (y - s) ** 2 + 1) - 1  # the energy is kept until the next impact
 
 
 @dataclass(frozen=True)
@@ -136,18 +100,14 @@ def boundaries(pulse: Pulse, omega: float, r: float, most: float, step: float = 
     last = None
     for amplitude in np.linspace(1, most, int(np.ceil((most - 1) / step)) + 1)[1:]:
         try:
-            outcome = follow(pulse, omega, r, amplitude)
+            impacts, margin = follow(pulse, omega, r, amplitude)
         except Bounces:
             continue
-        if last is not None and outcome.overturns != last[1].overturns:
-            toppling = outcome if outcome.overturns else last[1]
-
-            def margin(x, impacts=toppling.impacts):
-                return follow(pulse, omega, r, x, impacts).margin
-
-            root = brentq(margin, last[0], amplitude, xtol=1e-15, rtol=1e-15)
-            yield Boundary(root, toppling.impacts, last[1].overturns)
-        last = (amplitude, outcome)
+        if last and (margin > 0) != last[2]:
+            toppling = impacts if margin > 0 else last[1]
+            root = brentq(lambda x: follow(pulse, omega, r, x, toppling)[1], last[0], amplitude, xtol=1e-15, rtol=1e-15)
+            yield Boundary(root, toppling, last[2])
+        last = amplitude, impacts, margin > 0
 
 
 def half_sine_boundary(omega: float) -> float:

@@ -1,7 +1,7 @@
 """Section 6: McManus's shake table tests of Fig 9 and the isolation they show."""
 
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import flexible_rocking as fr
 import numpy as np
@@ -19,28 +19,13 @@ FIRST_TERM_BUCHAREST = 0.02  # g
 FIXED_BASE_BUCHAREST = 1.1  # g
 
 
-@dataclass(frozen=True)
-class Test:
+class Test(NamedTuple):
     """One ground motion with the runs under it, and the estimates without a history."""
 
     ground: fr.Record
     rocking: fr.Run
     fixed: fr.Run
     estimate: fr.Estimate
-
-    def peak(self, name: str) -> float:
-        """Largest magnitude of an output while rocking."""
-        return self.rocking.peaks[name].value
-
-    @property
-    def fixed_peak(self) -> float:
-        """Largest acceleration on a fixed base, g."""
-        return self.fixed.peaks["a_t"].value / G
-
-    @property
-    def pga(self) -> float:
-        """Largest ground acceleration, g."""
-        return self.ground.pga / G
 
 
 def single_pulse(T_p: float, peak: float) -> fr.Record:
@@ -78,19 +63,19 @@ def rows(dam: Test, pulse: Test) -> list[Row]:
     chi_of_ground = e["(1-chi) S_a"] / e["S_a(T_u, zeta_u)"]
     second = (e["chi g tan"] + e["C chi g tan"]) / G
     return [
-        Row("Pacoima Dam: peak a_t on a fixed base", "2.1", dam.fixed_peak, ".3f", "g", "Eq 1"),
-        Row("Pacoima Dam: peak a_t, rocking", "0.5", dam.peak("a_t") / G, ".3f", "g", "“limited to 0.5 g”"),
-        Row("Pacoima Dam: peak a_t, rocking, measured", "0.55", dam.peak("a_t") / G, ".3f", "g", "“around 0.55 g”"),
-        Row("Pacoima Dam: peak uplift", None, 1e3 * dam.peak("uplift"), ".2f", "mm"),
+        Row("Pacoima Dam: peak a_t on a fixed base", "2.1", dam.fixed.peaks["a_t"] / G, ".3f", "g", "Eq 1"),
+        Row("Pacoima Dam: peak a_t, rocking", "0.5", dam.rocking.peaks["a_t"] / G, ".3f", "g", "“limited to 0.5 g”"),
+        Row("Pacoima Dam: peak a_t, rocking, measured", "0.55", dam.rocking.peaks["a_t"] / G, ".3f", "g", "“around 0.55 g”"),
+        Row("Pacoima Dam: peak uplift", None, 1e3 * dam.rocking.peaks["uplift"], ".2f", "mm"),
         Row("Pacoima Dam: Eq 22, first term (1−χ) S_a(T_u, ζ_u)", "0.10", e["(1-chi) S_a"] / G, ".3f", "g",
             f"the printed value is (1−χ) PGA; S_a(T_u, ζ_u) is {e['S_a(T_u, zeta_u)'] / G:.2f} g"),
-        Row("Pacoima Dam: (1−χ) PGA", "0.10", chi_of_ground * dam.pga, ".3f", "g", "what the printed value is"),
+        Row("Pacoima Dam: (1−χ) PGA", "0.10", chi_of_ground * dam.ground.pga / G, ".3f", "g", "what the printed value is"),
         Row("Eq 22, second term, C = 2", "0.66", second, ".4f", "g"),
         Row("Pacoima Dam: Eq 22, C = 2", "0.76", e["a_t"] / G, ".3f", "g",
-            f"{chi_of_ground * dam.pga + second:.2f} g with the printed first term"),
-        Row("Bucharest stand-in: peak a_t, rocking", "0.5", pulse.peak("a_t") / G, ".3f", "g", "stand-in",
+            f"{chi_of_ground * dam.ground.pga / G + second:.2f} g with the printed first term"),
+        Row("Bucharest stand-in: peak a_t, rocking", "0.5", pulse.rocking.peaks["a_t"] / G, ".3f", "g", "stand-in",
             is_printed=False),
-        Row("Bucharest stand-in: peak a_t, rocking, measured", "0.55", pulse.peak("a_t") / G, ".3f", "g", "stand-in",
+        Row("Bucharest stand-in: peak a_t, rocking, measured", "0.55", pulse.rocking.peaks["a_t"] / G, ".3f", "g", "stand-in",
             is_printed=False),
         Row("Bucharest stand-in: Eq 22, first term (1−χ) S_a(T_u, ζ_u)", "0.02", p["(1-chi) S_a"] / G, ".3f", "g",
             "stand-in; (1−χ) PGA is 0.02 g by its definition", is_printed=False),
@@ -115,8 +100,8 @@ def draw(dam: Test, pulse: Test, path: Path) -> None:
             rocking.axhline(level, color=figures.SMOOTH, linestyle="--", linewidth=0.9)
         rocking.text(time[-1], demand, f"Eq 22: {demand:.2f} g", color=figures.SMOOTH, ha="right", va="bottom",
                      fontsize=8)
-        for axis, peak in ((ground, test.pga), (rocking, test.peak("a_t") / G), (fixed, test.fixed_peak)):
-            axis.text(0.98, 0.05, f"peak {peak:.2f} g", transform=axis.transAxes, ha="right", fontsize=8)
+        for axis, peak in ((ground, test.ground.pga), (rocking, test.rocking.peaks["a_t"]), (fixed, test.fixed.peaks["a_t"])):
+            axis.text(0.98, 0.05, f"peak {peak / G:.2f} g", transform=axis.transAxes, ha="right", fontsize=8)
         ground.set(title=title)
         fixed.set(xlabel="time (s)", xlim=(0, time[-1]))
     axes[0, 0].set_ylabel("ground\nacceleration (g)")
@@ -136,8 +121,9 @@ def section(folder: Path) -> tuple[list[Row], dict]:
     bucharest, T_p = stand_in()
     pulse = _test(bucharest, FREE)
     draw(dam, pulse, folder / "isolation.png")
-    of, a_t = dam.estimate, dam.peak("a_t") / G
+    of, a_t = dam.estimate, dam.rocking.peaks["a_t"] / G
     return rows(dam, pulse), dict(
-        first_term=FIRST_TERM_BUCHAREST, fixed_base=FIXED_BASE_BUCHAREST, pulse=pulse, T_p=T_p, dam=dam, a_t=a_t,
+        first_term=FIRST_TERM_BUCHAREST, fixed_base=FIXED_BASE_BUCHAREST, pulse_pga=bucharest.pga / G, T_p=T_p, a_t=a_t,
+        dam_pga=dam.ground.pga / G, dam_fixed=dam.fixed.peaks["a_t"] / G,
         second_terms=STEP / (of["chi g tan"] / G), peaks=release().first_peak / a_t, T_u=of["T_u"], dam_zeta_u=100 * of["zeta_u"],
         S_a=of["S_a(T_u, zeta_u)"] / G, dam_first_term=of["(1-chi) S_a"] / G)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import flexible_rocking as fr
 import numpy as np
+from scipy.optimize import bisect
 
 from .. import figures
 from ..scenes import G
@@ -24,14 +25,10 @@ def ramp_to_uplift(structure: fr.Structure) -> float:
 
 def release_to_overturning(structure: fr.Structure, theta: float, u: float) -> float:
     """The rotation (rad) near `theta` from which it overturns when it is released at rest with the displacement `u`."""
-    comes_down, overturns = 0.99 * theta, 1.01 * theta
-    while overturns - comes_down > 1e-6 * theta:
-        middle = (comes_down + overturns) / 2
-        if fr.simulate(structure, duration=20.0, tolerance=TOLERANCE, theta_0=middle, u_0=u).overturned:
-            overturns = middle
-        else:
-            comes_down = middle
-    return (comes_down + overturns) / 2
+    def excess(theta_0: float) -> float:
+        return bool(fr.simulate(structure, duration=20.0, tolerance=TOLERANCE, theta_0=theta_0, u_0=u).overturned) - 0.5
+
+    return bisect(excess, 0.99 * theta, 1.01 * theta, xtol=1e-6 * theta)
 
 
 def rows(name: str, of: fr.Structure, curve: dict[str, np.ndarray]) -> list[Row]:

@@ -1,11 +1,8 @@
 """Many runs, and the fragility curves through them."""
 
 import math
-import sys
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from importlib import import_module
 from os import PathLike
 from typing import TYPE_CHECKING, Any, overload
 
@@ -45,8 +42,8 @@ def sweep(
     (m/s), "I_A" (m/s, Arias), "D_5_95" (s, significant duration) or "S_a_avg". S_a_avg (g) is the geometric mean of S_a at ten
     periods, evenly spaced from 0.2/f_fc to 3/f_fc. The table has S_a_avg only if that is the measure, and always the others.
 
-    progress: True shows the runs, their rate and the time left: by tqdm, or without tqdm on one line. A function is called
-    with the numbers of runs done and to do, 20 times per second.
+    progress: True shows the runs, their rate and the time left by tqdm. A function is called with the numbers of runs done and
+    to do, 20 times per second.
 
     The columns are those of `rocking-fmu sweep`: structures, parameters, record, scale, intensities, ending, peaks
     ("peak_theta[rad]", ...), transitions, ... A run that cannot go on is a row with the ending "failed" and a reason.
@@ -98,32 +95,16 @@ def _told(progress: "bool | Callable[[int, int], object]") -> "Iterator[Callable
         yield progress
     elif not progress:
         yield None
-    elif tqdm := _tqdm():
+    else:
+        with extras():
+            from tqdm.auto import tqdm  # type: ignore[import-untyped]
+
         with tqdm(unit=" runs") as bar:
             def move(done: int, of: int) -> None:
                 bar.total = of
                 bar.update(done - bar.n)
 
             yield move
-    else:
-        start = time.monotonic()
-
-        def say(done: int, of: int) -> None:
-            left = f"{(time.monotonic() - start) * (of / done - 1):.0f}" if done else "?"
-            print(f"\r{done} of {of} runs, {left} s left ", end="", file=sys.stderr, flush=True)
-
-        try:
-            yield say
-        finally:
-            print(file=sys.stderr)
-
-
-def _tqdm() -> Any:
-    """The bar of tqdm, if it is installed."""
-    try:
-        return import_module("tqdm.auto").tqdm
-    except ImportError:
-        return None
 
 
 class Fragility:

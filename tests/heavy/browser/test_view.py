@@ -8,6 +8,7 @@ import subprocess
 import numpy as np
 import pandas as pd
 import pytest
+from frames import FRAMES, toml
 from playwright.sync_api import sync_playwright
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -252,17 +253,8 @@ def test_a_hostile_title_is_text(opened, exporter, tmp_path):
     assert page.title().startswith("</script>")
 
 
-FRAME = """zeta = 0.02
-[base]
-m0 = 2e4
-J0 = 3e4
-B = 1.5
-r = 0.93
-""" + "".join(f"[[storeys]]\nm = {m}\nh = {h}\nk = {k}\n" for m, h, k in [(4e4, 3.5, 6e7), (4e4, 7, 5e7), (3e4, 10.5, 4e7)])
-
-
 def test_a_frame_moves_as_its_response_says(opened, exporter, pacoima_record, tmp_path):
-    (tmp_path / "frame.toml").write_text(FRAME)
+    (tmp_path / "frame.toml").write_text(toml(FRAMES["frame"]))
     scene = ["--parameters", "frame.toml", "--record", pacoima_record, "--duration", str(END)]
     subprocess.run([exporter, "view", *scene, "-o", "view.html"], cwd=tmp_path, check=True)
     subprocess.run([exporter, "simulate", *scene, "--interval", "1e-3", "-o", "response.csv"], cwd=tmp_path, check=True)

@@ -5,11 +5,10 @@ libcosim and Ecos know no connection from the system's own input.
 """
 
 import zipfile
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from evidence.coupling.bridge_ssp import SSC, SSD, component, connect, connectors
+from evidence.coupling.bridge_ssp import system_structure
 from fmpy.ssp.simulation import simulate_ssp
 from host import need_libtbb
 from libcosimpy._internal import get_last_error_message
@@ -18,24 +17,6 @@ from libcosimpy.CosimObserver import CosimObserver
 from pacoima import A_G, END, OUTPUTS, STEP, STEPS, TIME, distance, held, instants
 
 SPECIMENS = ("mcmanus", "evison")
-ElementTree.register_namespace("ssd", SSD)  # Ecos knows the elements by these prefixes
-ElementTree.register_namespace("ssc", SSC)
-
-
-def system_structure(connected: bool) -> bytes:
-    """SystemStructure.ssd, where a_g is connected: to every specimen's."""
-    root = ElementTree.Element(f"{{{SSD}}}SystemStructureDescription", name="shake table", version="1.0")
-    system = ElementTree.SubElement(root, f"{{{SSD}}}System", name="table")
-    if connected:
-        connectors(system, {"a_g": "input"})
-    elements = ElementTree.SubElement(system, f"{{{SSD}}}Elements")
-    for name in SPECIMENS:
-        component(elements, name, ({"a_g": "input"} if connected else {}) | dict.fromkeys(OUTPUTS, "output"))
-    if connected:
-        connections = ElementTree.SubElement(system, f"{{{SSD}}}Connections")
-        for name in SPECIMENS:
-            connect(connections, (None, "a_g"), (name, "a_g"))
-    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
 
 
 @pytest.fixture(scope="module")
@@ -45,12 +26,15 @@ def fmus(mcmanus, evison):
 
 @pytest.fixture(scope="module")
 def ssp(fmus, tmp_path_factory):
-    """Writes the archive and returns its path."""
+    """Writes the archive, in which a_g may be connected to every specimen's, and returns its path."""
 
     def write(connected: bool, fmus=fmus):
+        inputs = {"a_g": "input"} if connected else {}
+        reals = {name: inputs | dict.fromkeys(OUTPUTS, "output") for name in fmus}
+        ends = [("", "a_g", name, "a_g") for name in fmus if connected]
         path = tmp_path_factory.mktemp("ssp") / "shake_table.ssp"
         with zipfile.ZipFile(path, "w") as archive:
-            archive.writestr("SystemStructure.ssd", system_structure(connected))
+            archive.writestr("SystemStructure.ssd", system_structure(reals, ends, inputs))
             for name, fmu in fmus.items():
                 archive.write(fmu.path, f"resources/{name}.fmu")
         return path

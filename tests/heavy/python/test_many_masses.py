@@ -10,7 +10,7 @@ import subprocess
 import numpy as np
 import pandas as pd
 import pytest
-from frames import FRAMES
+from frames import FRAMES, Frame, toml
 
 import flexible_rocking as fr
 
@@ -18,16 +18,11 @@ FRAME = FRAMES["frame"]
 BASE = {"m0": FRAME.m0, "J0": FRAME.J0, "B": FRAME.B, "r": FRAME.r}
 TIGHT = 1e-13
 STOREYS = [{"m": m, "h": h, "k": k} for m, h, k in zip(FRAME.masses, FRAME.heights, FRAME.stiffness, strict=True)]
+TALL = Frame((3e4,) * 10, tuple(3.0 * (i + 1) for i in range(10)), tuple(9e7 - 5e6 * i for i in range(10)), m0=5e4, J0=2e5, B=4.0, r=0.92, zeta=0.03)
 
 
 def of_storeys(**changes):
     return fr.Structure(**{"storeys": STOREYS, "zeta": 0.02, **BASE, **changes})
-
-
-def file_of_storeys():
-    tables = [f"[[storeys]]\nm = {of['m']}\nh = {of['h']}\nk = {of['k']}\n" for of in STOREYS]
-    base = "".join(f"{name} = {value}\n" for name, value in BASE.items())
-    return "zeta = 0.02\n[base]\n" + base + "".join(tables)
 
 
 def of_modes(kept=3, **changes):
@@ -61,7 +56,7 @@ def test_three_ways_and_a_file_are_one_structure(exporter, tmp_path):
         for column, values in storeys.mode_table.items():
             np.testing.assert_allclose(other.mode_table[column], values, rtol=1e-10, err_msg=column)
         assert other.derived == pytest.approx(storeys.derived, rel=1e-13)
-    (tmp_path / "frame.toml").write_text(file_of_storeys())
+    (tmp_path / "frame.toml").write_text(toml(FRAME))
     describe = [exporter, "describe", "--parameters", tmp_path / "frame.toml"]
     assert subprocess.check_output(describe, text=True) == str(storeys)
     listed = {of["name"]: of["value"] for of in json.loads(subprocess.check_output([*describe, "--format", "json"]))}
@@ -69,7 +64,7 @@ def test_three_ways_and_a_file_are_one_structure(exporter, tmp_path):
 
 
 def test_an_fmu_is_the_one_of_the_command_line(exporter, tmp_path):
-    (tmp_path / "frame.toml").write_text(file_of_storeys())
+    (tmp_path / "frame.toml").write_text(toml(FRAME))
     for strings, option in (True, []), (False, ["--no-strings"]):
         subprocess.run([exporter, "export", "--parameters", tmp_path / "frame.toml", *option, "-o", tmp_path / "a.fmu"], check=True)
         fr.export(tmp_path / "b.fmu", of_storeys(), library=tmp_path / "a.fmu", strings=strings)
@@ -128,8 +123,8 @@ def wavelet(amplitude=6.0):
 
 def building():
     """Ten storeys that rock under the wavelet."""
-    storeys = [{"m": 3e4, "h": 3.0 * (i + 1), "k": 9e7 - 5e6 * i} for i in range(10)]
-    return fr.Structure(storeys=storeys, zeta=0.03, m0=5e4, J0=2e5, B=4.0, r=0.92)
+    storeys = [{"m": m, "h": h, "k": k} for m, h, k in zip(TALL.masses, TALL.heights, TALL.stiffness)]
+    return fr.Structure(storeys=storeys, zeta=TALL.zeta, m0=TALL.m0, J0=TALL.J0, B=TALL.B, r=TALL.r)
 
 
 @pytest.fixture(scope="module")
@@ -266,10 +261,7 @@ def test_what_a_run_of_many_masses_has_not_is_named(run, refused, text):
 
 
 def test_the_command_line_shows_a_building_as_the_module_does(run, exporter, tmp_path):
-    numbers = run.structure.parameters
-    tables = [f"[[storeys]]\nm = {of['m']}\nh = {of['h']}\nk = {of['k']}\n" for of in numbers["storeys"]]
-    base = "".join(f"{name} = {numbers[name]}\n" for name in ("m0", "J0", "B", "r"))
-    (tmp_path / "building.toml").write_text(f"zeta = {numbers['zeta']}\n[base]\n{base}{''.join(tables)}")
+    (tmp_path / "building.toml").write_text(toml(TALL))
     run.record.write(tmp_path / "record.csv", vertical=tmp_path / "v.csv")
     record = fr.Record.read(tmp_path / "record.csv", vertical=tmp_path / "v.csv")
     run = fr.simulate(run.structure, record)
@@ -325,9 +317,7 @@ def test_advice_names_how_many_modes_are_enough(exporter, tmp_path):
     assert f"use detail = {advice.detail} and keep = {advice.modes} of 3 modes" in str(advice)
 
     record.write(tmp_path / "record.csv")
-    tables = [f"[[storeys]]\nm = {of['m']}\nh = {of['h']}\nk = {of['k']}\n" for of in STOREYS]
-    base = "".join(f"{name} = {value}\n" for name, value in BASE.items())
-    (tmp_path / "frame.toml").write_text("zeta = 0.02\n[base]\n" + base + "".join(tables))
+    (tmp_path / "frame.toml").write_text(toml(FRAME))
     command = [exporter, "--quiet", "advise", "--parameters", tmp_path / "frame.toml", "--record", tmp_path / "record.csv",
                "--within", "5%", "--of", "theta,u", "--format", "json"]
     rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
