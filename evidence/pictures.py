@@ -190,27 +190,15 @@ def levels(path: Path) -> None:
          "The cheapest level that is good enough, over f_fc and PGA over g tan α_cg.")
 
 
-def drawn_by(page: str):
-    """The figure that the script of a page draws."""
-    blocks = re.findall(r"^```py\n(.*?)^```$", (ROOT / page).read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
-    drawn = {}
-    exec(re.sub(r"^figure\.savefig.*", "", "".join(blocks), flags=re.MULTILINE), drawn)
-    return drawn["figure"]
+def drawn_by(page: str, title: str, description: str):
+    """A function that writes the figure which the script of a page draws."""
+    def draw(path: Path) -> None:
+        blocks = re.findall(r"^```py\n(.*?)^```$", (ROOT / page).read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+        drawn = {}
+        exec(re.sub(r"^figure\.savefig.*", "", "".join(blocks), flags=re.MULTILINE), drawn)
+        save(drawn["figure"], path, title, description)
 
-
-def tornado(path: Path) -> None:
-    save(drawn_by("docs/howto/choose_numbers.md"), path, "Change of the peaks for each wrong number",
-         "Bars: medians of six components of ground motion. Strokes: single components.")
-
-
-def questions(path: Path) -> None:
-    save(drawn_by("docs/howto/sweeps.md"), path, "Rotation and probabilities over the peak ground velocity",
-         "Left: one line per record, without the runs that overturn. Right: fragility curves of two piers.")
-
-
-def profile(path: Path) -> None:
-    save(drawn_by("docs/howto/frames.md"), path, "Peaks over the height of a building of ten storeys",
-         "Solid: the building rocks. Dashed: its base is fixed.")
+    return draw
 
 
 def explore(path: Path) -> None:
@@ -229,11 +217,19 @@ def explore(path: Path) -> None:
         page.screenshot(path=path)
 
 
-PICTURES = {"img/schematic.svg": schematic, "img/motion.gif": motion, "img/levels.svg": levels,
-            "img/tornado.svg": tornado, "img/questions.svg": questions, "img/profile.svg": profile,
-            "evidence/ensembles.svg": ensembles, "img/explore.png": explore}
+PICTURES = {
+    "img/schematic.svg": schematic, "img/motion.gif": motion, "img/levels.svg": levels,
+    "img/tornado.svg": drawn_by("docs/howto/choose_numbers.md", "Change of the peaks for each wrong number",
+                                "Bars: medians of six components of ground motion. Strokes: single components."),
+    "img/questions.svg": drawn_by("docs/howto/sweeps.md", "Rotation and probabilities over the peak ground velocity",
+                                  "Left: one line per record, without the runs that overturn. Right: fragility curves of two piers."),
+    "img/profile.svg": drawn_by("docs/howto/frames.md", "Peaks over the height of a building of ten storeys",
+                                "Solid: the building rocks. Dashed: its base is fixed."),
+    "evidence/ensembles.svg": ensembles, "img/explore.png": explore}
 
 if __name__ == "__main__":
-    for name, picture in PICTURES.items():
-        if Path(name).stem in sys.argv[1:] or len(sys.argv) == 1 and picture is not explore:
-            picture(ROOT / "docs" / name)
+    named = {Path(name).stem: name for name in PICTURES}
+    if unknown := set(sys.argv[1:]) - set(named):
+        sys.exit(f"no picture is called {', '.join(unknown)}; there are {', '.join(named)}")
+    for name in sys.argv[1:] or set(named) - {"explore"}:
+        PICTURES[named[name]](ROOT / "docs" / named[name])

@@ -32,14 +32,35 @@ def pier(fmu: str) -> Structure:
     return Structure(fmu, ["a_g", "F_t"], ["delta_t", "v_t"])
 
 
-class Bridge:
+class Coupled:
+    """Structures and a mass that move each other."""
+
+    def __init__(self, structures: list, mass: SwayingMass, w, y):
+        self.structures, self.swaying, self.w, self.y = structures, mass, w, y
+
+    def transitions(self):
+        return sum(structure.transitions() for structure in self.structures)
+
+    @contextlib.contextmanager
+    def checkpoint(self):
+        with contextlib.ExitStack() as stack:
+            of_structures = [stack.enter_context(structure.checkpoint()) for structure in self.structures]
+            yield of_structures, (self.swaying.x, self.swaying.v), self.w, self.y
+
+    def restore(self, state):
+        of_structures, (self.swaying.x, self.swaying.v), self.w, self.y = state
+        for structure, of_structure in zip(self.structures, of_structures):
+            structure.restore(of_structure)
+
+
+class Bridge(Coupled):
     """The first side is the piers: bearing forces in, delta_t and v_t of every pier out. The second is the deck."""
 
     def __init__(self, piers: list, deck: SwayingMass, ground, moments: bool = True):
         """`ground` gives a_g at the start and the end of a step. Lines have the moments of the true course, or else its
         values at both ends."""
+        super().__init__(piers, deck, np.zeros((2, len(piers))), np.zeros((2, 2 * len(piers))))
         self.piers, self.deck, self.ground, self.moments = piers, deck, ground, moments
-        self.w, self.y = np.zeros((2, len(piers))), np.zeros((2, 2 * len(piers)))
 
     def first(self, t, h, w):
         a_g = self.ground(t, h)
@@ -59,20 +80,6 @@ class Bridge:
         if self.moments:
             d, v = lines_of_same_moments(h, d, v)
         return (self.deck.k * d + self.deck.c * v) / len(self.piers)
-
-    def transitions(self):
-        return sum(pier.transitions() for pier in self.piers)
-
-    @contextlib.contextmanager
-    def checkpoint(self):
-        with contextlib.ExitStack() as stack:
-            of_piers = [stack.enter_context(pier.checkpoint()) for pier in self.piers]
-            yield of_piers, (self.deck.x, self.deck.v), self.w, self.y
-
-    def restore(self, state):
-        of_piers, (self.deck.x, self.deck.v), self.w, self.y = state
-        for pier, of_pier in zip(self.piers, of_piers):
-            pier.restore(of_pier)
 
 
 def lines_of_same_moments(h, d, v):

@@ -7,14 +7,13 @@ the directional derivative of the FMU tells, is taken over to the foundation as 
 One sweep per step is then stable, and needs no rollback.
 """
 
-import contextlib
 from pathlib import Path
 
 import numpy as np
 
 from ..figures import FIXED, QUIET, ROCKING
 from ..scenes import G, pacoima_dam
-from .bridge import histories, linear, simulate
+from .bridge import Coupled, histories, linear, simulate
 from .masters import extrapolate, gauss_seidel
 from .structure import Structure
 from .swaying_mass import SwayingMass
@@ -26,16 +25,16 @@ def structure(fmu: str) -> Structure:
     return Structure(fmu, ["a_g"], ["R_h", "I_h"])
 
 
-class OnSoil:
+class OnSoil(Coupled):
     """The first side is the structure: a_g in, R_h and I_h out. The second side is the foundation."""
 
     def __init__(self, structure: Structure, foundation: SwayingMass, ground, solve_loop: bool = True):
         """`ground` gives the acceleration of the ground far away at the start and the end of a step."""
+        super().__init__([structure], foundation, np.zeros((2, 1)), np.zeros((2, 2)))
         self.structure, self.foundation, self.ground, self.solve_loop = structure, foundation, ground, solve_loop
         m, m0 = structure.read("m", "m0")
         self.mass = foundation.M + m + m0
         self.added = 0.0
-        self.w, self.y = np.zeros((2, 1)), np.zeros((2, 2))
 
     def first(self, t, h, w):
         R_h, I_h = self.structure.step(t, h, w.tolist())
@@ -49,18 +48,6 @@ class OnSoil:
         foundation.v += (I_h[1] - I_h[0]) / self.mass  # the law of impact keeps velocities relative to the foundation
         felt = (R_h[1] - foundation.k * foundation.x - foundation.c * foundation.v) / M
         return np.array([self.w[1], [felt]])
-
-    def transitions(self):
-        return self.structure.transitions()
-
-    @contextlib.contextmanager
-    def checkpoint(self):
-        with self.structure.checkpoint() as of_structure:
-            yield of_structure, (self.foundation.x, self.foundation.v), self.w, self.y
-
-    def restore(self, state):
-        of_structure, (self.foundation.x, self.foundation.v), self.w, self.y = state
-        self.structure.restore(of_structure)
 
 
 def draw(fmu: str, path: Path) -> None:
