@@ -140,7 +140,7 @@ pub(crate) fn first_terms<Q: Coordinates>(
     arc: &mut Arc<Q>,
 ) -> Second<f64, Q> {
     let start = level.subject().start(*state, dissipators, LinearLoad::held(load), 1.0);
-    level.series(phase, &Start { local_error: f64::MAX, ..start }, arc);
+    level.series(phase, &Start { local_error: 1e100, ..start }, arc);
     let u_ddot = Q::each(level.structure(), |j, _| arc.u_dot[1].of(j) / arc.span);
     Second { u_ddot, theta_ddot: arc.theta_dot[1] / arc.span }
 }
