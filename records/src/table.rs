@@ -159,7 +159,9 @@ impl<'a> Table<'a> {
         match *first {
             [npts] if self.uneven.is_some() && is_count(npts) => Some(Sampling { npts: Some(npts as usize), dt: None }),
             [dt] if self.uneven.is_some() && is_step(dt) => Some(Sampling { npts: None, dt: Some(dt) }),
-            [npts, dt, ..] if dt > 0.0 && is_count(npts) && !is_rising() => {
+            [npts, dt, ref more @ ..]
+                if dt > 0.0 && is_count(npts) && !is_rising() && (more.is_empty() || self.uneven.is_some()) =>
+            {
                 Some(Sampling { npts: Some(npts as usize), dt: Some(dt) })
             }
             _ => None,
