@@ -101,7 +101,7 @@ impl<Q: Masses> Unit<Q> {
     /// Reads real numbers that the host sets.
     fn settings(&self, references: &[u32], values: &mut [f64]) -> Result<(), Failure> {
         for (reference, value) in references.iter().zip(values) {
-            *value = setting::<Q>(&self.setup, &self.inputs, self.table.sources[*reference as usize]);
+            *value = setting(&self.setup, &self.inputs, self.table.sources[*reference as usize]);
         }
         Ok(())
     }
@@ -142,11 +142,11 @@ fn integer(count: u64) -> Value {
 #[cold]
 #[inline(never)]
 fn other<Q: Masses>(shown: &Shown<Q>, inputs: &Inputs, source: Source) -> f64 {
-    shown.value(source).unwrap_or_else(|| setting::<Q>(shown.setup, inputs, source))
+    shown.value(source).unwrap_or_else(|| setting(shown.setup, inputs, source))
 }
 
 /// The value of a real number that the host sets.
-fn setting<Q: Masses>(setup: &Setup, inputs: &Inputs, source: Source) -> f64 {
+fn setting(setup: &Setup, inputs: &Inputs, source: Source) -> f64 {
     match source {
         Source::Input(which) => inputs.shown(which),
         source => source.setting(setup).expect("a real number that is not computed is set"),
