@@ -245,9 +245,8 @@ impl<Q: Drawn> Watch<Q> for Tracer<Q> {
 /// `within` of straight lines. `divisions` are left.
 fn divide(lines: &[&[f64]], within: &[f64], [from, to]: [f64; 2], divisions: u32, show: &mut impl FnMut(f64)) {
     let excess = |(coefficients, within): (&&[f64], &f64)| {
-        let mut series = taylor::ZERO;
+        let mut series = taylor::series(coefficients);
         let over = &mut series[..coefficients.len()];
-        over.copy_from_slice(coefficients);
         taylor::stretch(over, from, to - from);
         let off = extremes::off_chord(over, 1.0);
         if off > 0.0 { off / within } else { 0.0 }

@@ -2,7 +2,7 @@
 //!
 //! The time that both motions have covered is compared and dropped, so that neither motion is kept whole.
 
-use super::levels::Compared;
+use super::curve::Drawn;
 use crate::engine::piece::{Piece, Watch};
 use crate::series::extremes;
 use crate::series::taylor::{self, Series};
@@ -13,20 +13,20 @@ const SAME_LANDING: f64 = 1e-3;
 
 /// The part of a motion that is still to be compared.
 #[derive(Clone, Debug)]
-pub struct History<Q: Compared> {
-    pub sections: Vec<Section<Q>>,
+pub struct History {
+    pub sections: Vec<Section>,
 }
 
 /// The motion over one polynomial.
 #[derive(Clone, Debug)]
-pub struct Section<Q: Compared> {
+pub struct Section {
     start: f64,
     end: f64,
     /// Transitions before it.
     transitions: u64,
     /// Duration of σ = 1, s.
     span: f64,
-    series: Q::Histories,
+    series: Vec<Series>,
 }
 
 /// How far two motions of a structure have been apart.
@@ -47,7 +47,7 @@ impl Distance {
     }
 
     /// Compares what follows of both motions, as far as both are known: how many sections of each need not be kept.
-    pub fn go_on<Q: Compared>(&mut self, ours: &[Section<Q>], theirs: &[Section<Q>]) -> [usize; 2] {
+    pub fn go_on(&mut self, ours: &[Section], theirs: &[Section]) -> [usize; 2] {
         let Distance { omega, largest, apart } = self;
         let mut done = [0; 2];
         while let (Some(a), Some(b)) = (ours.get(done[0]), theirs.get(done[1])) {
@@ -75,7 +75,7 @@ impl Distance {
 }
 
 /// The largest difference of series `i` from time `from` to time `to`, if it is more than `least`.
-fn difference<Q: Compared>(a: &Section<Q>, b: &Section<Q>, i: usize, from: f64, to: f64, least: f64) -> f64 {
+fn difference(a: &Section, b: &Section, i: usize, from: f64, to: f64, least: f64) -> f64 {
     let (mut difference, subtracted) = (a.over(i, from, to), b.over(i, from, to));
     difference.iter_mut().zip(subtracted).for_each(|(a, b)| *a -= b);
     if extremes::bound(&difference, 1.0) <= least {
@@ -84,24 +84,26 @@ fn difference<Q: Compared>(a: &Section<Q>, b: &Section<Q>, i: usize, from: f64, 
     extremes::largest(&difference, 1.0)
 }
 
-impl<Q: Compared> Section<Q> {
+impl Section {
     /// Series `i` with σ = 0 at time `from` and σ = 1 at time `to`.
     fn over(&self, i: usize, from: f64, to: f64) -> Series {
-        let mut series = self.series.as_ref()[i];
+        let mut series = self.series[i];
         let order = series.iter().rposition(|c| *c != 0.0).unwrap_or(0);
         taylor::stretch(&mut series[..=order], (from - self.start) / self.span, (to - from) / self.span);
         series
     }
 }
 
-impl<Q: Compared> Watch<Q> for History<Q> {
+impl<Q: Drawn> Watch<Q> for History {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &Piece<Q>) {
         let transitions = piece.before.transitions;
         let mut arcs = piece.arcs();
         while let Some(expansion) = arcs.next() {
-            Q::histories(&expansion, &mut |start, arc, series| {
+            Q::lines(&expansion, &mut |part, lines| {
+                let (start, arc) = (part.time(0.0), part.arc);
+                let series = lines.iter().map(|line| taylor::series(line)).collect();
                 self.sections.push(Section { start, end: start + arc.duration(), transitions, span: arc.span, series });
             });
         }

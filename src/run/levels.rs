@@ -2,19 +2,13 @@
 //!
 //! A level of a structure of many masses is also the number of modes that are kept ([`Frame::keeping`]).
 
+use super::curve::{Drawn, drawn};
 use super::fall::{FallWatch, Falling};
 use super::history::{Distance, History};
-use super::peak_watch::Peaked;
-use super::peaks::Peaks;
-use super::profile::{Over, Peaking, Profile};
 use super::{Ending, Follower, Run, RunError};
 use crate::engine::motion::Work;
-use crate::engine::piece::{CONVERGED, Expansion};
-use crate::mechanics::floors::MotionOfFloors;
 use crate::mechanics::lateral::{Coordinates, Lateral};
-use crate::mechanics::outputs::Measure;
 use crate::run::ground_motion::Segment;
-use crate::series::taylor::{Arc, Series};
 use crate::structure::Mode;
 use crate::{Detail, Frame, FrameOutput, Modes, State, Structure};
 use std::fmt;
@@ -92,27 +86,13 @@ impl fmt::Display for Choice {
     }
 }
 
-/// Is shown series in σ, with the instant at which they start (s) and the arc that they belong to.
-type Show<'a, Q> = dyn FnMut(f64, &Arc<Q>, <Q as Compared>::Histories) + 'a;
-
 /// Kinds of compared quantities: rotation, elastic displacements, accelerations and forces.
 const KINDS: usize = 3;
 
-/// Lateral coordinates of structures whose levels of detail are compared.
-#[allow(private_interfaces)] // an expansion and its series are the library's own
-pub trait Compared: Peaked {
-    /// A series for each compared quantity.
-    type Histories: AsRef<[Series]> + Clone + fmt::Debug;
-
-    /// The kind of each compared quantity.
+/// Lateral coordinates of structures whose levels of detail are compared: by the lines of their pictures.
+pub trait Compared: Drawn {
+    /// The kind of each line.
     fn kinds(structure: &Self::Structure) -> Vec<usize>;
-
-    /// The largest magnitude of each compared quantity.
-    fn magnitudes(peaks: &Self::Peaks) -> Vec<f64>;
-
-    /// Shows the compared quantities as series in σ.
-    #[doc(hidden)]
-    fn histories(expansion: &Expansion<Self>, show: &mut Show<Self>);
 
     /// The modes of a structure of many masses, all kept.
     fn all_modes(structure: &Self::Structure) -> Option<[usize; 2]>;
@@ -121,23 +101,9 @@ pub trait Compared: Peaked {
     fn choices<'a>(run: &Run<'a, Self>) -> Vec<(Choice, Run<'a, Self>)>;
 }
 
-#[allow(private_interfaces)]
 impl Compared for f64 {
-    type Histories = [Series; KINDS];
-
     fn kinds(_: &Structure) -> Vec<usize> {
         vec![0, 1, 2]
-    }
-
-    fn magnitudes(peaks: &Peaks) -> Vec<f64> {
-        [peaks.theta(), peaks.u(), peaks.a_t()].map(|peak| peak.magnitude).into()
-    }
-
-    fn histories(expansion: &Expansion, show: &mut Show<f64>) {
-        expansion.series(Measure::a_t, &mut |part, a_t| {
-            let arc = part.arc;
-            show(part.time(0.0), arc, [arc.series(|k| arc.theta[k]), arc.series(|k| arc.u[k]), a_t.series()]);
-        });
     }
 
     fn all_modes(_: &Structure) -> Option<[usize; 2]> {
@@ -150,33 +116,14 @@ impl Compared for f64 {
     }
 }
 
-#[allow(private_interfaces)]
 impl Compared for Modes {
-    type Histories = Vec<Series>;
-
     fn kinds(structure: &Frame) -> Vec<usize> {
-        compared(structure).map(|(_, kind)| kind).collect()
-    }
-
-    fn magnitudes(peaks: &Profile) -> Vec<f64> {
-        let is_compared = |of: &Peaking| matches!(of, Peaking::Output(output) if kind(*output).is_some());
-        peaks.peaks().filter(|(of, _)| is_compared(of)).map(|(_, peak)| peak.magnitude).collect()
-    }
-
-    fn histories(expansion: &Expansion<Modes>, show: &mut Show<Modes>) {
-        expansion.in_parts(&mut |part, is_finest| {
-            let (over, last) = (Over::new(*part), part.sample(part.arc.reach));
-            let mut all = Vec::new();
-            for (output, _) in compared(over.frame()) {
-                let series = output.of(&over);
-                if !is_finest && !part.has_converged(&series, last.output(output), CONVERGED) {
-                    return false;
-                }
-                all.push(series.series());
-            }
-            show(part.time(0.0), part.arc, all);
-            true
-        });
+        let kind = |line| match line {
+            FrameOutput::theta => 0,
+            FrameOutput::u(_) => 1,
+            _ => 2,
+        };
+        drawn(structure).map(kind).collect()
     }
 
     fn all_modes(structure: &Frame) -> Option<[usize; 2]> {
@@ -199,21 +146,6 @@ impl Compared for Modes {
         let moving = fewer(Detail::Linear).chain(fewer(Detail::Auto)).chain([(Detail::Nonlinear, all)]);
         fixed.chain(moving).map(of).collect()
     }
-}
-
-/// The kind of `output`, if it is compared.
-fn kind(output: FrameOutput) -> Option<usize> {
-    match output {
-        FrameOutput::theta => Some(0),
-        FrameOutput::u(_) => Some(1),
-        FrameOutput::a_t(_) | FrameOutput::V_t | FrameOutput::M_t => Some(2),
-        _ => None,
-    }
-}
-
-/// The compared outputs of a structure of many masses, with the kind of each.
-fn compared(frame: &Frame) -> impl Iterator<Item = (FrameOutput, usize)> + use<> {
-    FrameOutput::all(frame).filter_map(move |output| Some((output, kind(output)?)))
 }
 
 /// Result of a level on a run.
@@ -292,13 +224,12 @@ pub fn compare<Q: Compared>(run: &Run<Q>) -> Result<Comparison<Q>, RunError> {
         reference.history.sections.drain(..done);
         trials.iter_mut().for_each(|trial| trial.compared -= done);
     }
-    let kinds = Q::kinds(&run.structure);
     let (reference, all, _) = reference.response();
     let mut verdicts = Vec::new();
     for trial in trials {
         let is_level = trial.is_level;
         let (response, _, distance) = trial.response();
-        let verdict = Verdict::new(&kinds, response, &distance, &reference, &all);
+        let verdict = Verdict::new(&run.structure, response, &distance, &reference, &all);
         if is_level {
             without_vertical = Some(Ok(verdict));
         } else {
@@ -317,7 +248,7 @@ struct Trial<'a, Q: Compared, Segments> {
     course: Follower<Q, Segments>,
     peaks: FallWatch<'a, Q>,
     /// The part of the motion that is still to be compared with the reference.
-    history: History<Q>,
+    history: History,
     /// From the reference.
     distance: Distance,
     /// How many sections of the reference it has been compared with.
@@ -417,17 +348,21 @@ fn errors(kinds: &[usize], differences: &[f64], expected: &[f64]) -> [f64; KINDS
 impl<Q: Compared> Verdict<Q> {
     /// Of a `response` that has been this far from the `reference`, whose peaks are these with a fall, `all` of it.
     fn new(
-        kinds: &[usize],
+        structure: &Q::Structure,
         response: Response<Q>,
         distance: &Distance,
         reference: &Response<Q>,
         all: &Q::Peaks,
     ) -> Verdict<Q> {
-        let [found, expected] = [&response.peaks, &reference.peaks].map(Q::magnitudes);
+        let kinds = &Q::kinds(structure);
+        let magnitudes = |peaks: &Q::Peaks| -> Vec<f64> {
+            Q::exact(structure, peaks)[1..].iter().map(|peak| peak.magnitude).collect()
+        };
+        let [found, expected] = [&response.peaks, &reference.peaks].map(magnitudes);
         let differences: Vec<_> =
             found.iter().zip(&expected).map(|(found, expected)| (found - expected).abs()).collect();
         let [theta, u, a_t] = errors(kinds, &differences, &expected);
-        let [theta_history, u_history, a_t_history] = errors(kinds, &distance.largest, &Q::magnitudes(all));
+        let [theta_history, u_history, a_t_history] = errors(kinds, &distance.largest, &magnitudes(all));
         Verdict {
             is_right_about_overturning: reference
                 .ending
@@ -466,6 +401,7 @@ impl<Q: Compared> Comparison<Q> {
 mod tests {
     use super::*;
     use crate::Parameters;
+    use crate::run::peaks::Peaks;
     use crate::run::record::Record;
 
     fn verdict(detail: Detail, errors: [f64; 6], cost: u64) -> Verdict {

@@ -24,6 +24,13 @@ pub type Series<Q = f64> = [Q; MAX_ORDER + 2];
 /// A series of zeros.
 pub const ZERO: Series = [0.0; MAX_ORDER + 2];
 
+/// The series with these `coefficients`, and zeros after them.
+pub(crate) fn series(coefficients: &[f64]) -> Series {
+    let mut series = ZERO;
+    series[..coefficients.len()].copy_from_slice(coefficients);
+    series
+}
+
 /// Coefficient `n` of the product of two series.
 pub(crate) fn product(a: &Series, b: &Series, n: usize) -> f64 {
     a[..=n].iter().zip(b[..=n].iter().rev()).map(|(a, b)| a * b).sum()

@@ -61,11 +61,6 @@ impl Terms {
         &self.coefficients[..=self.degree]
     }
 
-    /// The coefficients as a series of the motion.
-    pub(crate) fn series(&self) -> Series {
-        std::array::from_fn(|k| self.coefficients[k])
-    }
-
     #[inline(never)]
     fn plus(&self, other: &Terms) -> Terms {
         let (degree, order) = (self.degree.max(other.degree), self.order.min(other.order));
