@@ -365,7 +365,7 @@ impl<Q: Coordinates> ManyModes<Q> {
     }
 
     /// Writes the motion of a structure without modes while rocking about `side` into `arc` (M9). D and X do not change, and two products
-    /// are left. This takes half the instructions of [`ManyModes::rocking`] without modes.
+    /// are left. This takes two thirds of the instructions of [`ManyModes::rocking`] without modes.
     fn rocking_rigidly(&self, side: Side, start: &Start<Q>, arc: &mut Arc<Q>) {
         let Start { state, a_g, a_top, a_v, .. } = start;
         let &Base { m_t, S_res, B, g, .. } = &self.base;

@@ -12,16 +12,16 @@
 //! [(J0 + m0 B²)/m + (sB − u)²] θ̈ = H (c_u u̇ + k u)/m + g u − sγ g B
 //! ```
 //!
-//! Of a structure with modes both conditions are conditions of moments. The first has the moment of the springs (M3), the second
-//! the moment of all that turns the base (M2), and both compare it with the moment that holds the base down:
+//! With modes, both conditions compare moments. The first has the moment of the springs (M3), the second
+//! the moment of all that turns the base (M2). Both have the moment that holds the base down on the right side:
 //!
 //! ```text
 //! springs = Σ h k u + R,      turning = springs + Σ [h c_u u̇ + Γ (g + a_v) u],      hold = [m_t (g + a_v) + P_0] B + s Σ F l
 //! s springs ≥ hold      and      s turning > hold
 //! ```
 //!
-//! R is the moment of mass that turns rigidly with the base, and F are the residual forces of the dissipators. For one mass the first
-//! condition is s u ≥ u_cr. Each moment is a function over a number: a value gives the [`margin`], a power series the first instant.
+//! R is the moment of mass that turns rigidly with the base, and F are the residual forces of the dissipators. The first condition is
+//! s u ≥ u_cr for one mass. Each moment is a function over a number: a value gives the [`margin`], a power series the first instant.
 //!
 //! The second condition always holds while |u| of one mass grows through u_cr. After a landing with |u| > u_cr it may not hold.
 //! Without this condition contact would open and shut without end.
@@ -126,7 +126,7 @@ pub(crate) fn margin(
 }
 
 /// Distance from uplift of a structure in full contact in `state`, without restraints and vertical motion: positive until uplift
-/// is due. For integrators that have no engine.
+/// is due. Integrators without an engine use it.
 pub fn distance(structure: &Structure, state: &State) -> f64 {
     let modes = std::slice::from_ref(&structure.mode);
     let lift = Lift::new(&structure.base, modes, 1.0, [0.0; 2], |_| [state.u, state.u_dot]);
