@@ -51,6 +51,7 @@ enum Packed {
 
 /// Writes the FMU to `target`: of `structure`, with `records` inside, of which it follows the first, with its vertical component.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 fn export(
     py: Python<'_>,
     target: PathBuf,

@@ -5,9 +5,11 @@ use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::{Impulse, Reactions};
 use serde::Serialize;
 
-/// Names of the forces of the tendon and of the dissipators, N, and the forces.
-pub(crate) const TIES: [(&str, fn(&Restraints) -> f64); 3] =
-    [("P_t", |of| of.P_t), ("F_d1", |of| of.F_d1), ("F_d2", |of| of.F_d2)];
+/// The name of a force of the tendon or of a dissipator, N, and the force.
+type Tie = (&'static str, fn(&Restraints) -> f64);
+
+/// The forces of the tendon and of the dissipators.
+pub(crate) const TIES: [Tie; 3] = [("P_t", |of| of.P_t), ("F_d1", |of| of.F_d1), ("F_d2", |of| of.F_d2)];
 
 /// Names and units of the columns after the outputs: reactions, impulses, vertical ground acceleration, ties and dissipators.
 const AFTER: [(&str, &str); 14] = [
