@@ -215,7 +215,7 @@ def test_numbers_are_the_command_lines_in_firefox(scene_of, tmp_path):
         command = [program, "--headless", "--profile", tmp_path, f"http://127.0.0.1:{server.server_port}"]
         with subprocess.Popen(command, env=os.environ | {"HOME": str(tmp_path)}, stderr=subprocess.DEVNULL) as firefox:
             server.timeout = 60
-            for _ in range(5):
+            for _ in range(20):
                 server.handle_request()
                 if received:
                     break
