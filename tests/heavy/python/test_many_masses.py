@@ -165,7 +165,9 @@ def test_one_storey_is_one_mass_at_every_call(ties, initial, amplitude):
             assert (of, of.unit) == (pytest.approx(peak, rel=TIGHT), peak.unit), name
     for name, values in expected.profile.items():
         np.testing.assert_allclose(found.profile[name], values, rtol=TIGHT, err_msg=name)
-    for of, other in zip(expected.transitions, found.transitions):
+    # dissipators that yield at one instant may do so in either order
+    in_order = lambda run: sorted(run.transitions, key=lambda of: (round(of.time, 9), of.kind))
+    for of, other in zip(*map(in_order, (expected, found))):
         assert other.kind == of.kind and other.time == pytest.approx(of.time, abs=1e-11)
         assert named(other.before).keys() == of.before.keys()
     for name, worst in expected.validity.items():
