@@ -251,6 +251,7 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
             rigid: None,
             lean: self.rocking.lean(),
             has_constant_inertia: angles == Angles::Small,
+            turning_decides: structure.u_cr == f64::NEG_INFINITY,
         })
     }
 }
