@@ -27,9 +27,12 @@ impl Sampling {
         let upper = line.to_ascii_uppercase().replace([',', ';'], " , ");
         let words = upper.split(|letter: char| letter.is_whitespace() || "=:\"#%!()[]/".contains(letter));
         let words: Vec<_> = words.filter(|word| !word.is_empty()).collect();
-        let after = |name: &str| {
+        let after = |name: &str, place: usize| {
             let name: Vec<_> = name.split(' ').collect();
-            let start = words.windows(name.len()).position(|words| words == name)? + name.len();
+            let start = place + name.len();
+            if words.get(place..start)? != name {
+                return None;
+            }
             let (unit, after) = match &words[start..] {
                 [unit, after @ ..] if is_unit(unit) => (*unit, after),
                 after => ("", after),
@@ -39,29 +42,41 @@ impl Sampling {
             after.first()?.starts_with(is_value).then_some((unit, after))
         };
         let without_commas: Vec<_> = words.iter().copied().filter(|word| *word != ",").collect();
-        let (npts, dt) = match without_commas.as_slice() {
-            [npts, dt, "NPTS", "DT", ..] => (Some(("NPTS", *npts)), Some(step("DT", "", std::slice::from_ref(dt)))),
+        let (npts, steps): (_, Result<Vec<_>, _>) = match without_commas.as_slice() {
+            [npts, dt, "NPTS", "DT", ..] => {
+                (Some(("NPTS", *npts)), step("DT", "", std::slice::from_ref(dt)).map(|dt| vec![dt]))
+            }
             _ => {
-                let dt = STEPS.split('|').find_map(|name| Some((name, after(name)?)));
-                let dt = dt.map(|(name, (unit, words))| step(name, unit, words));
-                (COUNTS.iter().find_map(|name| Some((*name, after(name)?.1[0]))), dt)
+                let places = || 0..words.len();
+                let of_name = |name| places().filter_map(move |place| Some((name, after(name, place)?)));
+                let steps = STEPS.split('|').flat_map(of_name).map(|(name, (unit, words))| step(name, unit, words));
+                let count = |name: &&'static str| Some((*name, places().find_map(|place| after(name, place))?.1[0]));
+                (COUNTS.iter().find_map(count), steps.collect())
             }
         };
-        let stated = npts
-            .map(|(name, word)| count(name, word))
-            .transpose()
-            .and_then(|npts| Ok(Sampling { npts, dt: dt.transpose()? }));
-        stated.map_err(|problem| bad(number, problem))
+        let stated = || {
+            let (npts, steps) = (npts.map(|(name, word)| count(name, word)).transpose()?, steps?);
+            let dt = steps.first().copied();
+            match steps.iter().find(|step| !is_same([Some(**step), dt])) {
+                Some(other) => Err(format!("two steps are stated, {} s and {other} s: correct one of them", steps[0])),
+                None => Ok(Sampling { npts, dt }),
+            }
+        };
+        stated().map_err(|problem| bad(number, problem))
     }
 
     /// What two lines state, which must not contradict each other.
     pub fn and(self, other: Sampling, line: usize) -> Result<Sampling, BadLine> {
-        let is_same = |[a, b]: [Option<f64>; 2]| a.zip(b).is_none_or(|(a, b)| (a - b).abs() <= 1e-6 * a);
         if is_same([self, other].map(|of| of.dt)) && is_same([self, other].map(|of| of.npts.map(|npts| npts as f64))) {
             return Ok(Sampling { npts: self.npts.or(other.npts), dt: self.dt.or(other.dt) });
         }
         Err(bad(line, "another line before it states another step or number of samples: correct one of them"))
     }
+}
+
+/// Whether two numbers, if there are two, are the same but for a few digits.
+fn is_same([a, b]: [Option<f64>; 2]) -> bool {
+    a.zip(b).is_none_or(|(a, b)| (a - b).abs() <= 1e-6 * a)
 }
 
 fn is_unit(word: &str) -> bool {

@@ -773,6 +773,10 @@ mod tests {
             ("0 1\n1 2\nend data\n", "3: the time \"end\" is not a number: write # before a line of text"),
             ("5,NPTS,DT\n1\n2\n", "2: no column has times: the time between samples is unknown"),
             ("NPTS= 3.5\n1\n2\n", "1: NPTS = \"3.5\" must be a whole number, 2 to 10000000"),
+            (
+                "NPTS=2, DT=.01 SEC, DT=.02 SEC\n1\n2\n",
+                "1: two steps are stated, 0.01 s and 0.02 s: correct one of them",
+            ),
             ("Sampling rate: 0 Hz\n1\n2\n", "1: SAMPLING RATE = \"0 HZ\" must be a rate in Hz"),
             ("DT=0.005 min\n1\n2\n", "1: DT = \"0.005 MIN\" must be a number of seconds greater than 0"),
             (
