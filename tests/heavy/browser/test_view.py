@@ -85,7 +85,7 @@ def reading(page, name: str) -> float:
 
 
 def wait(page, until) -> None:
-    for _ in range(500):
+    for _ in range(3000):  # a film takes long on a busy machine
         if until():
             return
         page.wait_for_timeout(20)
