@@ -140,8 +140,8 @@ pub enum AdvanceError {
     },
     /// Watchers asked for too many polynomials of an interval that the engine leapt over.
     #[error(
-        "the vibration from t = {} to {} does not die away, and to find its peaks takes more than {MOST_POLYNOMIALS} series: give a \
-         shorter time or damping",
+        "the vibration from t = {} to {} does not die away, and its peaks, validity or picture take more than {MOST_POLYNOMIALS} \
+         series: give a shorter time or damping",
         with_unit(*time, "s"),
         with_unit(*until, "s")
     )]

@@ -25,7 +25,10 @@ impl Sampling {
     /// `SAMPLING INTERVAL (sec) : 0.01` or `Sampling rate: 100 Hz`.
     pub fn of(number: usize, line: &str) -> Result<Sampling, BadLine> {
         let upper = line.to_ascii_uppercase().replace([',', ';'], " , ");
-        let words = upper.split(|letter: char| letter.is_whitespace() || "=:\"#%!()[]/".contains(letter));
+        let words = upper.split(|letter: char| letter.is_whitespace() || "=:\"#%!()[]".contains(letter));
+        // `/.005/.005/.005` has a step for each channel
+        let words =
+            words.map(|word| word.strip_prefix('/').map_or(word, |word| word.split('/').next().unwrap_or(word)));
         let words: Vec<_> = words.filter(|word| !word.is_empty()).collect();
         let after = |name: &str, place: usize| {
             let name: Vec<_> = name.split(' ').collect();

@@ -12,7 +12,7 @@ use rocking::run::levels::Compared;
 use rocking::run::peaks::{self, Peak, Peaks};
 use rocking::run::profile::Profile;
 use rocking::run::record::Record;
-use rocking::run::validity::{self, Findings, Limits, Validity};
+use rocking::run::validity::{self, Findings, Limits};
 use rocking::run::{End, Ending, Finish, RunError, fall};
 use rocking::structure::{Ties, any::AnyStructure};
 use rocking::{
@@ -403,10 +403,7 @@ pub(crate) fn symbol(name: &str) -> &str {
 }
 
 /// The results of `run`.
-fn found<Q: OneOrMany>(run: &Follow<Q>, limits: Option<Limits>, watch: &mut impl Watch<Q>) -> Result<Found, RunError>
-where
-    Validity<Q>: Watch<Q>,
-{
+fn found<Q: OneOrMany>(run: &Follow<Q>, limits: Option<Limits>, watch: &mut impl Watch<Q>) -> Result<Found, RunError> {
     let mut transitions = Vec::new();
     let mut see = |transition: &Transition<Q>| transitions.push(*transition);
     let mut validity = limits.map(|limits| run.validity_watch(limits)).transpose()?;

@@ -27,7 +27,7 @@
 //! Without this condition contact would open and shut without end.
 //!
 //! If hold is not above 0, the second condition decides alone. If both conditions hold on both sides, the structure lifts off about
-//! the side with the larger s θ̈. "> hold" means more than 1e-12 of the weight's moment, which is far above rounding.
+//! the side with the larger s θ̈. "> hold" means more than 1e-12 of the hold at rest, which is far above rounding.
 
 use crate::mechanics::restraint::{Dissipators, ties};
 use crate::numbers::Number;

@@ -164,7 +164,9 @@ impl<Q: Peaked> FallWatch<'_, Q> {
         if tau > 0.0 {
             PeakWatch::new(&mut before).piece(&until);
         } else {
-            Q::see_instant(&mut before, &until.sample(instant));
+            let sample = until.sample(instant);
+            Q::see_ground(&mut before, sample.load.a_g, instant);
+            Q::see_instant(&mut before, &sample);
         }
         *self.fall = Some((instant, before));
     }

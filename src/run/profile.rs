@@ -305,11 +305,12 @@ impl Peaked for Modes {
     }
 
     fn bounds(profile: &Profile, piece: &Piece<Modes>) -> Vec<f64> {
-        let arcs = piece.arcs();
-        match (piece.arc, arcs.rest()) {
-            (Some(arc), _) => profile.bounds(&bounds(&Expansion { piece, from: 0.0, arc })),
-            (None, Some((rest, vibration))) => profile.bounds(&bounds_of_rest(&rest, &vibration)),
-            (None, None) => vec![f64::INFINITY; profile.peaks.len()],
+        if let Some(arc) = piece.arc {
+            return profile.bounds(&bounds(&Expansion { piece, from: 0.0, arc }));
+        }
+        match piece.arcs().rest() {
+            Some((rest, swings)) => profile.bounds(&bounds_of_rest(&rest, &swings)),
+            None => vec![f64::INFINITY; profile.peaks.len()],
         }
     }
 
