@@ -21,7 +21,7 @@ pub(crate) mod yielding;
 
 use crate::digits::with_unit;
 use crate::levels::detail::{AnyLevel, Detail, by_level};
-use crate::levels::level::{Level, Subject};
+use crate::levels::level::{Level, Subject, derivatives};
 use crate::levels::modes::ManyModes;
 use crate::mechanics::energy::energy;
 use crate::mechanics::floors::FrameOutput;
@@ -432,14 +432,7 @@ impl<Q: Moves> Engine<Q> {
         if let Phase::Overturned(_) = phase {
             return [Second { u_ddot: Q::each(level.structure(), |_, _| 0.0), theta_ddot: 0.0 }; 2];
         }
-        let mut arc = Arc::default();
-        let start = Start { local_error: 1.0, ..level.subject().start(*state, dissipators, load, 1.0) };
-        level.series(*phase, &start, &mut arc);
-        [(1, 1.0), (2, 2.0)].map(|(k, factor)| {
-            let derivative = |c: f64| factor * c / arc.span.powi(k as i32);
-            let u_ddot = Q::each(level.structure(), |j, _| derivative(arc.u_dot[k].of(j)));
-            Second { u_ddot, theta_ddot: derivative(arc.theta_dot[k]) }
-        })
+        derivatives(&***level, *phase, (state, dissipators, load), &mut Arc::default())
     }
 
     /// The same structure in the same motion, with other `settings`.

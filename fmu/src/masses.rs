@@ -8,9 +8,9 @@ use crate::setup::Setup;
 use crate::shown::Shown;
 use crate::variables::Source;
 use rocking::mechanics::load::{LOADS, VERTICAL};
-use rocking::run::fall::Peaked;
+use rocking::run::peak_watch::Peaked;
 use rocking::run::peaks::Peak;
-use rocking::run::validity;
+use rocking::run::validity::{self, Judged};
 use rocking::structure::any::AnyStructure;
 use rocking::structure::doubts;
 use rocking::{
@@ -24,7 +24,9 @@ use serde::de::DeserializeOwned;
 const FORCE: usize = 1;
 
 /// Lateral coordinates of the structures that a unit can move.
-pub trait Masses: Peaked<Peaks: Serialize + DeserializeOwned> + Default + Serialize + DeserializeOwned {
+pub trait Masses:
+    Judged + Peaked<Peaks: Serialize + DeserializeOwned> + Default + Serialize + DeserializeOwned
+{
     /// The outputs that are computed together.
     type Outputs: Copy;
 

@@ -7,12 +7,12 @@ use rocking::engine::piece::Sample;
 use rocking::estimates::response_spectrum::floor_spectrum;
 use rocking::mechanics::outputs::OUTPUTS;
 use rocking::mechanics::restraint::Dissipators;
-use rocking::run::curve::{self, Drawn};
+use rocking::run::curve;
 use rocking::run::levels::Compared;
 use rocking::run::peaks::{self, Peak, Peaks};
 use rocking::run::profile::Profile;
 use rocking::run::record::Record;
-use rocking::run::validity::{self, Findings, Limits};
+use rocking::run::validity::{self, Findings, Judged, Limits};
 use rocking::run::{End, Ending, Finish, RunError, fall};
 use rocking::structure::{Ties, any::AnyStructure};
 use rocking::{
@@ -156,7 +156,7 @@ pub trait Watcher: Watch<f64> + Watch<Modes> + Clone {
 impl Watcher for () {}
 
 /// Lateral coordinates of one mass or of many: all that differs between their runs.
-pub(crate) trait OneOrMany: Drawn + Compared {
+pub(crate) trait OneOrMany: Judged + Compared {
     /// Values of the outputs, in the order of [`Run::outputs`].
     fn values(structure: &Self::Structure, sample: &Sample<Self>) -> Vec<f64>;
 

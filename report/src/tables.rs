@@ -34,7 +34,8 @@ pub(crate) fn line<Q: OneOrMany>(sample: &Sample<Q>, outputs: Vec<f64>) -> Line 
     let Sample { motion, load, .. } = sample;
     let Reactions { R_h, R_v, R_m } = sample.reactions();
     let Impulse { I_h, I_v, I_m } = motion.impulse;
-    let [P_t, F_d1, F_d2] = TIES.map(|(_, force)| force(&sample.restraints()));
+    let restraints = sample.restraints();
+    let [P_t, F_d1, F_d2] = TIES.map(|(_, force)| force(&restraints));
     let Dissipators { plastic: [e_p1, e_p2], viscous, hysteretic, .. } = motion.dissipators;
     let after = [R_h, R_v, R_m, I_h, I_v, I_m, load.a_v, P_t, F_d1, F_d2, e_p1, e_p2, viscous, hysteretic];
     Line([&[motion.time, load.a_g], &outputs[..], &after].concat(), motion.phase.name(), motion.transitions)

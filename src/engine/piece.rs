@@ -238,6 +238,12 @@ impl<Q: Moves> Piece<'_, Q> {
         self.whole().arcs()
     }
 
+    /// The motion in `state`, `tau` seconds after the start of the piece, with the dissipators of the start.
+    pub(crate) fn in_state(&self, tau: f64, state: State<Q>) -> Sample<'_, Q> {
+        let &Piece { before, load, level, .. } = self;
+        Sample { motion: Motion { time: before.time + tau, state, ..*before }, load: load.at(tau), level }
+    }
+
     /// The state `tau` seconds after the start of the piece.
     pub(crate) fn state_at(&self, tau: f64) -> State<Q> {
         if tau <= 0.0 {
@@ -438,11 +444,7 @@ impl<'a> Arcs<'a, Modes> {
 impl Part<'_, Modes> {
     /// The motion at both ends.
     pub(crate) fn samples(&self) -> [Sample<'_, Modes>; 2] {
-        let &Piece { before, load, level, .. } = self.piece;
-        [self.start, self.end].map(|(tau, state)| {
-            let motion = Motion { time: before.time + tau, state, ..*before };
-            Sample { motion, load: load.at(tau), level }
-        })
+        [self.start, self.end].map(|(tau, state)| self.piece.in_state(tau, state))
     }
 }
 

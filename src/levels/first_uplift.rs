@@ -1,8 +1,8 @@
 //! [Uplift](crate::mechanics::uplift) of a structure in full contact: its first instant, and the distance from it.
 
-use crate::levels::level::way;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::Dissipators;
+use crate::mechanics::state::way;
 use crate::mechanics::uplift::{self, Lift, hold, inertia, least_hold};
 use crate::numbers::Number;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};

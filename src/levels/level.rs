@@ -127,27 +127,27 @@ pub trait Level<Q: Coordinates = f64> {
     }
 
     /// ü and θ̈ in `phase`, m/s² and rad/s²; not finite where the equations have no solution.
-    fn accelerations(&self, phase: Phase, now: &Now<Q>) -> Second<f64, Q> {
-        first_terms(self, phase, now, &mut Arc::default())
+    fn accelerations(&self, phase: Phase, &Now { state, load, dissipators }: &Now<Q>) -> Second<f64, Q> {
+        let [second] = derivatives(self, phase, (state, dissipators, LinearLoad::held(load)), &mut Arc::default());
+        second
     }
 }
 
-/// ü and θ̈ in `phase` from the first terms of the series of `level`, which it writes into `arc`.
-pub(crate) fn first_terms<Q: Coordinates>(
+/// (ü, θ̈) in `phase` and, if two are asked for, (u⃛, θ⃛) from the first terms of the series of `level`, which it writes into `arc`.
+pub(crate) fn derivatives<Q: Coordinates, const K: usize>(
     level: &(impl Level<Q> + ?Sized),
     phase: Phase,
-    &Now { state, load, dissipators }: &Now<Q>,
+    (state, dissipators, load): (&State<Q>, &Dissipators, LinearLoad<Q>),
     arc: &mut Arc<Q>,
-) -> Second<f64, Q> {
-    let start = level.subject().start(*state, dissipators, LinearLoad::held(load), 1.0);
+) -> [Second<f64, Q>; K] {
+    let start = level.subject().start(*state, dissipators, load, 1.0);
     level.series(phase, &Start { local_error: 1e100, ..start }, arc);
-    let u_ddot = Q::each(level.structure(), |j, _| arc.u_dot[1].of(j) / arc.span);
-    Second { u_ddot, theta_ddot: arc.theta_dot[1] / arc.span }
-}
-
-/// The most by which a quantity with this `rate` changes over `ahead` (s), whatever accelerates it.
-pub(crate) fn way(ahead: f64, rate: f64) -> f64 {
-    ahead * (rate.abs() + 1.0)
+    std::array::from_fn(|i| {
+        let (k, factorial) = (i + 1, [1.0, 2.0][i]);
+        let derivative = |c: f64| factorial * c / arc.span.powi(k as i32);
+        let u_ddot = Q::each(level.structure(), |j, _| derivative(arc.u_dot[k].of(j)));
+        Second { u_ddot, theta_ddot: derivative(arc.theta_dot[k]) }
+    })
 }
 
 /// Equations of rocking with an elastic strut.

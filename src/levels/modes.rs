@@ -18,7 +18,7 @@
 use crate::levels::detail::Detail;
 use crate::levels::first_uplift::Liftable;
 use crate::levels::full_contact;
-use crate::levels::level::{Bounds, Level, Now, Subject, first_terms};
+use crate::levels::level::{Bounds, Level, Now, Subject, derivatives};
 use crate::levels::nonlinear::{Factors, LEAST_INERTIA, NO_ROW, products, row};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::levels::rules::{ChatterLimit, after_rigid_impact};
@@ -30,7 +30,7 @@ use crate::mechanics::restraint::{self, Angles, Dissipators};
 use crate::mechanics::uplift::inertia;
 use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
 use crate::structure::{Base, Mode, Vibration};
-use crate::{Parameters, Phase, Side, State};
+use crate::{LinearLoad, Parameters, Phase, Side, State};
 use std::cell::RefCell;
 use wide::f64x4;
 
@@ -531,8 +531,10 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
         }
     }
 
-    fn accelerations(&self, phase: Phase, now: &Now<Q>) -> Second<f64, Q> {
-        first_terms(self, phase, now, &mut self.first.borrow_mut())
+    fn accelerations(&self, phase: Phase, &Now { state, load, dissipators }: &Now<Q>) -> Second<f64, Q> {
+        let given = (state, dissipators, LinearLoad::held(load));
+        let [second] = derivatives(self, phase, given, &mut self.first.borrow_mut());
+        second
     }
 
     fn is_singular(&self, phase: Phase, state: &State<Q>) -> bool {

@@ -158,6 +158,11 @@ pub enum InitialStateError {
     },
 }
 
+/// The most by which a quantity with this `rate` changes over `ahead` (s), whatever accelerates it.
+pub(crate) fn way(ahead: f64, rate: f64) -> f64 {
+    ahead * (rate.abs() + 1.0)
+}
+
 impl State {
     /// u, u̇, θ, θ̇ in m, m/s, rad, rad/s.
     pub fn components(&self) -> [f64; 4] {

@@ -2,7 +2,7 @@
 //! such a structure are those before the fall.
 
 use super::peak_watch::PeakWatch;
-pub use super::peak_watch::Peaked;
+use super::peak_watch::Peaked;
 use super::peaks::Peak;
 use super::{Finish, Run, RunError};
 use crate::engine::Moves;
@@ -164,9 +164,8 @@ impl<Q: Peaked> FallWatch<'_, Q> {
         if tau > 0.0 {
             PeakWatch::new(&mut before).piece(&until);
         } else {
-            let sample = until.sample(instant);
-            Q::see_ground(&mut before, sample.load.a_g, instant);
-            Q::see_instant(&mut before, &sample);
+            Q::see_ground(&mut before, piece.load.value.a_g, instant);
+            Q::see(&mut before, piece, 0.0, &piece.before.state);
         }
         *self.fall = Some((instant, before));
     }

@@ -3,9 +3,8 @@
 //! A bound of a piece tells most of the time that it holds nothing larger than what has been seen. A piece that may hold more is
 //! first kept, since most are soon beaten by the end of another.
 
-use super::validity::Judged;
-use crate::engine::MOST_POLYNOMIALS;
 use crate::engine::piece::{Piece, Room, Sample, Watch};
+use crate::engine::{MOST_POLYNOMIALS, Moves};
 use crate::series::taylor::{Arc, LONGEST_SPAN};
 use crate::{Detail, LinearLoad, Motion, State, Transition};
 use std::fmt::Debug;
@@ -14,7 +13,7 @@ use std::fmt::Debug;
 const MOST_CANDIDATES: usize = 32;
 
 /// Lateral coordinates of the structures whose peaks are found.
-pub trait Peaked: Judged {
+pub trait Peaked: Moves {
     /// Exact peaks of a motion.
     type Peaks: Clone + Debug;
 
@@ -61,7 +60,7 @@ pub struct PeakWatch<'a, Q: Peaked = f64> {
     /// Whether the next piece may begin with other outputs than the last one ended with.
     is_torn: bool,
     /// Whether the next piece is the first since other peaks: the step of a host is often no more, and not put off.
-    goes_on: bool,
+    is_first: bool,
 }
 
 /// A piece that is looked at after others have been shown.
@@ -78,8 +77,8 @@ struct Candidate<Q: Peaked> {
 impl<'a, Q: Peaked> PeakWatch<'a, Q> {
     /// The watcher that searches for larger `peaks`.
     pub(super) fn new(peaks: &'a mut Q::Peaks) -> PeakWatch<'a, Q> {
-        let goes_on = Q::goes_on(peaks);
-        PeakWatch { peaks, kept: Vec::new(), level: None, room: Room::default(), is_torn: true, goes_on }
+        let is_first = Q::goes_on(peaks);
+        PeakWatch { peaks, kept: Vec::new(), level: None, room: Room::default(), is_torn: true, is_first }
     }
 
     /// Peaks of the pieces so far.
@@ -96,7 +95,7 @@ impl<'a, Q: Peaked> PeakWatch<'a, Q> {
             return false;
         }
         ends.into_iter().for_each(|(time, a_g)| Q::see_ground(self.peaks, a_g, time));
-        (self.is_torn, self.goes_on) = (false, false);
+        (self.is_torn, self.is_first) = (false, false);
         true
     }
 
@@ -128,7 +127,7 @@ impl<Q: Peaked> Watch<Q> for PeakWatch<'_, Q> {
             Q::see_ground(self.peaks, load.at(tau).a_g, before.time + tau);
         }
         let bounds = Q::bounds(self.peaks, piece);
-        let [is_torn, is_first] = [&mut self.is_torn, &mut self.goes_on].map(std::mem::take);
+        let [is_torn, is_first] = [&mut self.is_torn, &mut self.is_first].map(std::mem::take);
         if !Q::may_be_same(self.peaks, &bounds) {
             return;
         }

@@ -1,9 +1,8 @@
 //! The largest magnitudes of a motion and their instants, exact: between the ends of its pieces too.
 //!
-//! A bound on a piece tells most of the time that it holds nothing larger than what has been seen. Otherwise
-//! each output is expanded as a series in time (`levels::shown`). Between its stationary points (`extremes`) a series only
-//! rises or falls, so that the largest magnitude is at a stationary point or at an end. A piece that may hold more than
-//! what has been seen is first kept, since most are soon beaten by the end of another.
+//! In a piece that may hold a larger magnitude ([`peak_watch`](super::peak_watch)) each output is expanded as a series in time
+//! (`levels::shown`). Between its stationary points (`extremes`) a series only rises or falls, so that the largest magnitude is at
+//! a stationary point or at an end.
 
 use super::peak_watch::{PeakWatch, Peaked};
 #[cfg(feature = "lanes")]

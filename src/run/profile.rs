@@ -18,7 +18,7 @@ use crate::series::extremes;
 use crate::series::terms::Terms;
 use crate::structure::Mode;
 use crate::structure::frame::Frame;
-use crate::{Detail, Floor, Modes, Motion, Phase, State};
+use crate::{Detail, Floor, Modes, Phase, State};
 use serde::{Deserialize, Serialize};
 
 /// The peaks of a structure of many masses over the motion that has been watched, a fall too.
@@ -299,9 +299,7 @@ impl Peaked for Modes {
     }
 
     fn see(profile: &mut Profile, piece: &Piece<Modes>, tau: f64, state: &State<Modes>) {
-        let &Piece { before, load, level, .. } = piece;
-        let motion = Motion { time: before.time + tau, state: *state, ..*before };
-        Modes::see_instant(profile, &Sample { motion, load: load.at(tau), level });
+        Modes::see_instant(profile, &piece.in_state(tau, *state));
     }
 
     fn bounds(profile: &Profile, piece: &Piece<Modes>) -> Vec<f64> {
