@@ -1,8 +1,8 @@
-"""What README and the pages print: `make pages` writes it, tests compare it. `make docs` writes the references of the command line,
+"""Runs the blocks of README and of the pages: `make pages` writes their output, tests compare it. `make docs` writes the references of the command line,
 of Python and of the FMU's variables to out/reference, from which the site takes them.
 
 Commands of `console` blocks ("$ ...") and scripts that a `text` block follows are run, page by page in a folder of its own
-with what `make demo` leaves in out/. The scripts of a page are one program. Those of `py` blocks need the Python module.
+with what `make demo` leaves in out/. The scripts of a page are one program. Scripts of `py` blocks need the Python module.
 "..." stands for anything.
 """
 
@@ -145,7 +145,7 @@ def described(title: str, thing) -> str:
 
 
 def python() -> str:
-    """What the Python module offers, from its docstrings."""
+    """The reference of the Python module, from its docstrings."""
     import flexible_rocking as fr
 
     page = ""

@@ -110,7 +110,7 @@ def simulate(system, step, guess, time, per_sample, row) -> np.ndarray:
 
 
 def iterated(bridge: Bridge, time, row) -> np.ndarray:
-    """What `row` gives at every sample of `time` by the iterated master, steps with transitions halved."""
+    """The values of `row` at every sample of `time`. The master iterates, and halves steps with transitions."""
     return simulate(bridge, functools.partial(between_transitions, MASTERS["iqn-ils"]()), extrapolate, time, 1, row)
 
 
