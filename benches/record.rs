@@ -6,7 +6,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::End;
 use rocking::run::record::Record;
-use rocking::{Detail, Motion, Parameters, Run, Structure};
+use rocking::{Detail, Motion, OneMass, Parameters, Run};
 use rocking_records::Reading;
 use std::{env, hint::black_box, path::Path};
 
@@ -20,7 +20,7 @@ fn record() -> Record {
 }
 
 fn run(ground: &Record, detail: Detail, tolerance: f64) -> Run<'_> {
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     Run { detail, tolerance, end: End::At(DURATION), ..Run::new(structure, ground) }
 }
 

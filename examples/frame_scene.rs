@@ -3,8 +3,8 @@
 #![allow(non_snake_case)] // the letters of the equations
 
 use rocking::engine::Settings;
-use rocking::structure::{Mode, Ties};
-use rocking::{Body, Detail, Engine, Floor, Frame, FrameOutput, LinearLoad, Load, Modes, State, Transition};
+use rocking::{Body, Detail, Engine, Floor, FrameOutput, LinearLoad, Load, Modes, State, Structure, Transition};
+use rocking::{Mode, Ties};
 use std::array::from_fn;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             shape: Modes::new(&Vec::from_iter(modes.iter().map(|_| next()))),
         })
         .collect();
-    let frame = Frame::new(body, &modes, &floors)?;
+    let frame = Structure::of_body(body, &modes, &floors)?;
     let [dt, samples] = from_fn(|_| next());
     let ground: Vec<[f64; 2]> = (0..samples as usize).map(|_| from_fn(|_| next())).collect();
 

@@ -34,7 +34,7 @@ use crate::mechanics::state::InitialStateError;
 use crate::numbers::dual::Dual;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, Start};
-use crate::{Frame, Outputs, Phase, State, Structure};
+use crate::{Outputs, Phase, State, Structure};
 use motion::{Chatter, Motion, Work};
 use phases::{Closed, Step, Watched};
 use piece::{Piece, Room, Sample, Turning, Watch};
@@ -216,14 +216,14 @@ pub trait Moves: Coordinates {
 
     /// Starts `structure` at `time` (s) from `initial`.
     fn engine(
-        structure: Self::Structure,
+        structure: Structure,
         initial: State<Self>,
         time: f64,
         settings: Settings,
     ) -> Result<Engine<Self>, InitialStateError>;
 
     /// The level of detail at which `structure` moves with these `settings`.
-    fn level(structure: Self::Structure, settings: Settings) -> Result<Box<Self::Level>, InitialStateError>;
+    fn level(structure: Structure, settings: Settings) -> Result<Box<Self::Level>, InitialStateError>;
 
     /// The loads of a ground motion alone.
     fn loads(ground: LinearLoad) -> LinearLoad<Self>;
@@ -279,7 +279,7 @@ impl Moves for Modes {
     type Level = LevelOfModes;
 
     fn engine(
-        structure: Frame,
+        structure: Structure,
         initial: State<Modes>,
         time: f64,
         settings: Settings,
@@ -287,13 +287,13 @@ impl Moves for Modes {
         Engine::of_modes(structure, initial, time, settings)
     }
 
-    fn level(structure: Frame, settings: Settings) -> Result<Box<LevelOfModes>, InitialStateError> {
+    fn level(structure: Structure, settings: Settings) -> Result<Box<LevelOfModes>, InitialStateError> {
         let structure = match settings.detail {
             Detail::Modal => return Err(InitialStateError::OneMass(settings.detail.name())),
             Detail::Rigid => structure.without_modes(),
             _ => structure,
         };
-        let is_tied = structure.base.is_restrained() || settings.vertical;
+        let is_tied = structure.base().is_restrained() || settings.vertical;
         let (local_error, angles) = (settings.local_error()?, settings.detail.angles());
         let subject = Subject { structure, local_error, is_tied, angles };
         Ok(Box::new(LevelOfModes(ManyModes::new(subject, settings.detail))))
@@ -322,13 +322,18 @@ pub struct Engine<Q: Moves = f64> {
 
 impl Engine {
     /// Starts at `time` (s) from `initial`, to a relative `tolerance` of the results, at the level of detail `auto`.
-    pub fn new(structure: Structure, initial: State, time: f64, tolerance: f64) -> Result<Engine, InitialStateError> {
+    pub fn new(
+        structure: impl Into<Structure>,
+        initial: State,
+        time: f64,
+        tolerance: f64,
+    ) -> Result<Engine, InitialStateError> {
         Engine::with(structure, initial, time, Settings { tolerance, ..Settings::default() })
     }
 
     /// Starts at `time` (s) from `initial`, to a relative `tolerance` of the results, at the level of detail `detail`.
     pub fn with_detail(
-        structure: Structure,
+        structure: impl Into<Structure>,
         initial: State,
         time: f64,
         tolerance: f64,
@@ -340,13 +345,13 @@ impl Engine {
     /// Starts at `time` (s) from `initial`. The dissipators of a structure that starts turned have been moved there slowly from
     /// rest; the energy that they took on the way is not counted.
     pub fn with(
-        structure: Structure,
+        structure: impl Into<Structure>,
         initial: State,
         time: f64,
         settings: Settings,
     ) -> Result<Engine, InitialStateError> {
         let phase = initial.initial_phase()?;
-        let level = f64::level(structure, settings)?;
+        let level = f64::level(structure.into(), settings)?;
         level.check_start(&initial)?;
         Ok(Engine::start(level, settings, time, initial, phase))
     }
@@ -370,7 +375,7 @@ impl Engine<Modes> {
     /// Starts the structure `frame` of many masses at `time` (s) from `state`, at any level of detail but `modal`. At the level `rigid`
     /// the structure that moves has no modes. Of dissipators see [`Engine::with`].
     pub fn of_modes(
-        frame: Frame,
+        frame: Structure,
         state: State<Modes>,
         time: f64,
         settings: Settings,
@@ -411,7 +416,7 @@ impl<Q: Moves> Engine<Q> {
     fn start(level: Box<Q::Level>, settings: Settings, time: f64, state: State<Q>, phase: Phase) -> Engine<Q> {
         let subject = level.subject();
         let chord = subject.angles.chord(state.theta, 0.0);
-        let moved = Dissipators::NEW.moved_by(Q::base(&subject.structure), phase.side(), chord);
+        let moved = Dissipators::NEW.moved_by(subject.structure.base(), phase.side(), chord);
         let motion = Motion {
             time,
             state,
@@ -470,12 +475,12 @@ impl<Q: Moves> Engine<Q> {
             return Restraints::default();
         }
         let theta_ddot = self.sample(load).second().theta_ddot;
-        let restraint = Restraint::about(self.structure(), phase.side(), dissipators);
+        let restraint = Restraint::about(self.structure().base(), phase.side(), dissipators);
         Restraints::rates(&restraint, self.level.subject().angles, [state.theta, state.theta_dot, theta_ddot])
     }
 
     /// The structure.
-    pub fn structure(&self) -> &Q::Structure {
+    pub fn structure(&self) -> &Structure {
         self.level.structure()
     }
 
@@ -713,8 +718,8 @@ pub(crate) struct Advance<Q> {
 
 impl<Q: Moves> Advance<Q> {
     #[inline(always)]
-    fn new(structure: &Q::Structure, start: f64, interval: f64, load: LinearLoad<Q>, last_step: u64) -> Advance<Q> {
-        let part = FAR / Q::vibration(structure).contact;
+    fn new(structure: &Structure, start: f64, interval: f64, load: LinearLoad<Q>, last_step: u64) -> Advance<Q> {
+        let part = FAR / structure.vibration().contact;
         let end = if interval > part { 0.0 } else { interval };
         Advance { start, until: start + interval, interval, load, last_step, elapsed: 0.0, end, part }
     }
@@ -722,7 +727,7 @@ impl<Q: Moves> Advance<Q> {
     /// The step that is left of the present part of it, from `motion`.
     #[cfg(feature = "lanes")]
     #[inline]
-    fn start<'a>(&self, subject: &Subject<Q>, motion: &'a Motion<Q>) -> Start<'a, Q> {
+    fn start<'a>(&self, subject: &Subject, motion: &'a Motion<Q>) -> Start<'a, Q> {
         let &Advance { load, elapsed, end, .. } = self;
         let start = subject.start(motion.state, &motion.dissipators, load, end - elapsed);
         let Start { a_g, a_top, a_v, .. } = start;
@@ -858,7 +863,7 @@ where
 
 /// Whether a step of this `duration` (s), which goes from `motion` to less than the requested end, is the last that there can be.
 fn is_at_its_end<Q: Moves>(level: &impl Level<Q>, motion: &Motion<Q>, duration: f64, closed: Option<Closed>) -> bool {
-    let has_stalled = duration <= STALLED / Q::vibration(level.structure()).rocking[1];
+    let has_stalled = duration <= STALLED / level.structure().vibration().rocking[1];
     has_stalled && closed.is_none() || level.is_singular(motion.phase, &motion.state)
 }
 
@@ -882,6 +887,7 @@ fn first<Q: Moves>(watched: &Watched<Q>, step: &mut Step<Q>) -> Option<Closed> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::OneMass;
     use crate::series::first_crossing::{Gap, first_time_all_closed};
     use crate::{Parameters, TransitionKind};
     use approx::assert_relative_eq;
@@ -918,7 +924,7 @@ mod tests {
     /// Truncation below rounding would be work without an effect.
     #[test]
     fn a_step_is_no_more_exact_than_rounding() {
-        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let structure = OneMass::new(Parameters::EVISON).unwrap();
         let of =
             |tolerance| Engine::new(structure, State::default(), 0.0, tolerance).unwrap().level.subject().local_error;
         assert_eq!([1e-15, 1e-9, 0.1].map(of), [0.5 * f64::EPSILON, LOCAL_SHARE * 1e-9, LARGEST_LOCAL_ERROR]);
@@ -928,7 +934,7 @@ mod tests {
     #[test]
     fn a_new_phase_is_one_more_list_of_guards() {
         static WALLED: Watched = Watched { guards: &[&Wall], ..Watched::RESTING };
-        let structure = Structure::new(Parameters { zeta_fc: 0.0, ..Parameters::EVISON }).unwrap();
+        let structure = OneMass::new(Parameters { zeta_fc: 0.0, ..Parameters::EVISON }).unwrap();
         let released = State { u: -AMPLITUDE, ..State::default() };
         let mut engine = Engine::with_detail(structure, released, 0.0, 1e-12, Detail::Nonlinear).unwrap();
         let Engine { level, motion, arc, room, .. } = &mut engine;
@@ -940,7 +946,7 @@ mod tests {
             true
         };
         let interval = 9.0 * PI / structure.omega_fc;
-        let mut advance = Advance::new(&structure, 0.0, interval, LinearLoad::default(), u64::MAX);
+        let mut advance = Advance::new(&structure.into(), 0.0, interval, LinearLoad::default(), u64::MAX);
         Loop { any: &**level, level: of_its_type, phases: |_: &Motion| Some(&WALLED), expand, arc, room, stops: false }
             .go(motion, &mut None, &mut advance, &mut watch)
             .unwrap();

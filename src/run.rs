@@ -26,7 +26,7 @@ use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::state::InitialStateError;
 use crate::run::ground_motion::Segment;
 use crate::run::record::Record;
-use crate::{Detail, Engine, Frame, LinearLoad, Modes, Motion, Progress, State, Structure, Watch};
+use crate::{Detail, Engine, LinearLoad, Modes, Motion, Progress, State, Structure, Watch};
 use peaks::Peaks;
 use samples::Samples;
 use serde::{Deserialize, Serialize};
@@ -40,7 +40,7 @@ pub const LONGEST_REST: f64 = 100.0;
 #[derive(Clone, Debug)]
 pub struct Run<'a, Q: Moves = f64> {
     /// The structure.
-    pub structure: Q::Structure,
+    pub structure: Structure,
     /// The ground motion.
     pub ground: &'a Record,
     /// State at the first sample.
@@ -161,9 +161,9 @@ impl RunError {
 impl<'a> Run<'a> {
     /// Of `structure` under `ground` from rest, at the level of detail `auto` to the default tolerance, until nothing
     /// more can happen.
-    pub fn new(structure: Structure, ground: &'a Record) -> Run<'a> {
+    pub fn new(structure: impl Into<Structure>, ground: &'a Record) -> Run<'a> {
         Run {
-            structure,
+            structure: structure.into(),
             ground,
             initial: State::default(),
             detail: Detail::Auto,
@@ -175,7 +175,7 @@ impl<'a> Run<'a> {
 
 impl<'a> Run<'a, Modes> {
     /// Of the structure `frame` of many masses under `ground` from rest, like [`Run::new`].
-    pub fn of_modes(frame: Frame, ground: &'a Record) -> Run<'a, Modes> {
+    pub fn of_modes(frame: Structure, ground: &'a Record) -> Run<'a, Modes> {
         let none = Modes::parts(&frame, 0.0);
         Run {
             structure: frame,
@@ -297,10 +297,10 @@ impl<Q: Moves, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
     /// the run ends here.
     fn come_to_rest(&mut self) -> Result<(Segment, Option<Ending>), Ending> {
         let Follower { engine, end, rest, .. } = self;
-        let p_l = Q::base(engine.structure()).p_l;
+        let p_l = engine.structure().base().p_l;
         let omega = match engine.settings().detail {
             Detail::Rigid => p_l, // whatever modes it would have
-            _ => Q::vibration(engine.structure()).contact,
+            _ => engine.structure().vibration().contact,
         };
         if let End::At(end) = *end {
             engine.set_time(end);

@@ -1,284 +1,474 @@
-//! The structure: its parameters and the constants that follow from them (before Eq 11, after 4, 8 and 13, before 18).
+//! A structure: a rigid base, the modes of vibration in full contact that the base carries, and the floors.
+//!
+//! One mass is one mode with the shape 1 and one floor; a rigid structure has no mode.
 
-pub mod any;
+pub mod base;
+pub mod derived;
 pub mod description;
 pub mod doubts;
-pub mod frame;
+pub mod mode;
 pub mod natural_quantities;
+pub mod one_mass;
 pub mod parameters;
 pub mod quantity;
 
+use crate::mechanics::gauge::Gauge;
+use crate::mechanics::lateral::{Coordinates, Lateral, MOST_MODES, Modes};
+use crate::series::bisection::last_where;
+use crate::{Load, State};
+use base::{Base, Ties};
+use mode::{Floor, Mode, Vibration};
+use one_mass::OneMass;
 use parameters::{ParameterError, Parameters};
-use std::f64::consts::TAU;
+use quantity::{OutOfRange, Quantity, quantity};
+use std::sync::Arc;
 
-/// A structure: checked parameters and the constants that the equations use.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Structure {
-    parameters: Parameters,
-    /// Mass ratio γ = (m + m0)/m (text before Eq 1).
-    pub gamma: f64,
-    /// Circular frequency in full contact ω_fc = 2π f_fc, rad/s.
-    pub omega_fc: f64,
-    /// Stiffness of the strut k = m ω_fc², N/m.
-    pub k: f64,
-    /// Viscous damping in full contact c_fc = 2 ζ_fc √(k m), N·s/m.
-    pub c_fc: f64,
-    /// Viscous damping while rocking c_u, N·s/m.
-    pub c_u: f64,
-    /// Inertia about a pivot J_P = J0 + m (H² + B²) + m0 B², kg·m² (after Eq 8).
-    pub J_P: f64,
-    /// Frequency parameter p_l = √(m g H/J_P), rad/s (before Eq 11).
-    pub p_l: f64,
-    /// Slenderness of the centre of gravity: tan α_cg = γ B/H (before Eq 11).
-    pub tan_alpha_cg: f64,
-    /// Modal participation χ = H p_l²/g (after Eq 13).
-    pub chi: f64,
-    /// 1 − χ = (J_P − m H²)/J_P, free of cancellation.
-    pub one_minus_chi: f64,
-    /// Critical displacement u_cr = (g tan α_cg + P_0 B/(m H))/ω_fc², m (after Eq 4): uplift of a base at rest. With −∞ the
-    /// moment that turns the base (s θ̈ > 0) decides alone, of a structure without ties in a run to a given end.
-    pub u_cr: f64,
-    /// Circular frequency of the vibration mode while rocking ω_u = ω_fc/√(1−χ), rad/s (before Eq 18).
-    pub omega_u: f64,
-    /// Bound of the rates of rocking, 1/s: ω_u and p_l, with the stiffness and the damping that the ties add to them.
-    pub(crate) rocking_rate: f64,
-    is_restrained: bool,
-    pub(crate) base: Base,
-    pub(crate) mode: Mode,
-    /// ω_fc² = k/m, 1/s².
-    pub(crate) stiffness: f64,
-    /// c_fc/m, 1/s.
-    pub(crate) damping_fc: f64,
-    /// c_u/m, 1/s.
-    pub(crate) damping_u: f64,
-    /// (J0 + m0 B²)/m, m².
-    pub(crate) foundation: f64,
-    /// Damping ratio of the vibration mode ζ_u = c_u/(2√(k m (1−χ))) (before Eq 18).
-    pub zeta_u: f64,
-}
+/// A rest beside the modes that counts as none, as a fraction of the whole.
+pub(crate) const ROUNDING: f64 = 1e-9;
 
-/// The rigid base of a structure, with all mass that no mode carries.
+/// The most by which sums over exact modes miss the whole, as a fraction of the whole.
+const EXACT: f64 = 1e-13;
+
+/// The most that rounded modes may carry beyond the whole, as a fraction of the whole; the modes are then the whole.
+const EXCESS: f64 = 5e-3;
+
+/// A structure as a rigid body: its foundation, and the moments of all mass above the foundation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Base {
-    /// Mass of the whole structure m_t, kg.
-    pub m_t: f64,
-    /// Mass that no mode carries, m_t − Σ Γ²/μ, kg; of one mass, the mass of the foundation.
+pub struct Body {
+    /// Mass of the foundation m0, at the height of the pivots, kg.
     pub m0: f64,
-    /// First moment of this mass about the height of the pivots, kg·m; of one mass, 0.
-    pub S_res: f64,
-    /// Half-width B, m.
-    pub B: f64,
-    /// Inertia of the mass that no mode carries, about the middle of the base, kg·m².
+    /// Inertia of the foundation about the middle of the base J0, kg·m².
     pub J0: f64,
-    /// Inertia of the whole structure about a pivot J_P, kg·m².
-    pub J_P: f64,
-    /// Coefficient of restitution; without one, momentum with the shape frozen gives a coefficient for each impact.
+    /// Mass above the foundation m_s, kg.
+    pub m_s: f64,
+    /// First moment of this mass about the height of the pivots S_1, kg·m.
+    pub S_1: f64,
+    /// Second moment of this mass about the height of the pivots I_2, kg·m².
+    pub I_2: f64,
+    /// Half-width of the base B, m.
+    pub B: f64,
+    /// Coefficient of restitution; without one, momentum with the shape frozen gives a coefficient for each impact (M19).
     pub r: Option<f64>,
     /// Acceleration of gravity, m/s².
     pub g: f64,
     /// Viscous damping while rocking as a fraction of the damping in full contact.
     pub c_ratio: f64,
-    /// Frequency parameter √(g S_1/J_P), rad/s.
-    pub p_l: f64,
-    /// Slenderness of the centre of gravity m_t B/S_1.
-    pub tan_alpha_cg: f64,
-    /// What restrains the base.
+    /// The tendon and the dissipators between the base and the ground.
     pub ties: Ties,
 }
 
-/// The tendon and the dissipators between the base and the ground, by their parameters.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Ties {
-    /// Prestress of the tendon with the base down, N.
-    pub P_0: f64,
-    /// Stiffness of the tendon, N/m.
-    pub k_t: f64,
-    /// Distance of both dissipators from the middle of the base, m.
-    pub xi_d: f64,
-    /// Damping of each viscous dissipator, N·s/m.
-    pub c_d: f64,
-    /// Elastic stiffness of each elastoplastic dissipator, N/m.
-    pub k_d: f64,
-    /// Force at which it yields, N.
-    pub F_y: f64,
-}
-
-impl AsRef<Base> for Structure {
-    #[inline(always)]
-    fn as_ref(&self) -> &Base {
-        &self.base
+impl Body {
+    /// Checks the base, its tendon and its dissipators against the limits of one mass.
+    fn check(&self) -> Result<(), ParameterError> {
+        let &Body { m0, J0, B, r, g, c_ratio, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y }, .. } = self;
+        let (H, r) = (1.0, r.unwrap_or(1.0));
+        Parameters { m0, J0, H, B, c_ratio, r, g, P_0, k_t, xi_d, c_d, k_d, F_y, ..Parameters::EVISON }.check()
     }
 }
 
-impl Base {
-    /// Whether a tendon or dissipators restrain the structure.
-    #[inline]
-    pub fn is_restrained(&self) -> bool {
-        let &Ties { P_0, k_t, c_d, k_d, .. } = &self.ties;
-        [P_0, k_t, c_d, k_d].iter().any(|restraint| *restraint > 0.0)
-    }
-}
-
-/// A mode of vibration in full contact: an oscillator on the base. One mass is one mode with the shape 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mode {
-    /// Modal mass μ = φᵀMφ, kg.
-    pub mass: f64,
-    /// Γ = φᵀM1, kg.
-    pub gamma: f64,
-    /// Γ/μ: part that the mode takes in a translation of the base.
-    pub share: f64,
-    /// κ/μ, m, with κ = φᵀMh: part that the mode takes in a rotation of the base.
-    pub height: f64,
-    /// Modal stiffness μ ω², N/m.
-    pub stiffness: f64,
-    /// Modal damping in full contact 2 ζ ω μ, N·s/m.
-    pub damping: f64,
-}
-
-/// Circular frequencies of vibration, rad/s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Vibration {
-    /// The lowest in full contact.
-    pub contact: f64,
-    /// The lowest and the highest while rocking.
-    pub rocking: [f64; 2],
-}
-
-/// A derived quantity of a `T`, for `describe` and the FMU.
-#[derive(Debug)]
-pub struct Derived<T = Structure> {
-    /// Symbol.
-    pub name: &'static str,
-    /// Unit.
-    pub unit: &'static str,
-    /// Description.
-    pub description: &'static str,
-    /// Equation of the paper that defines the quantity.
-    pub equation: &'static str,
-    /// Value for a structure.
-    pub value: fn(&T) -> f64,
-}
-
-macro_rules! derived {
-    ($name:literal [$unit:literal] $description:literal, $equation:literal, $value:expr) => {
-        Derived { name: $name, unit: $unit, description: $description, equation: $equation, value: $value }
-    };
-}
-
-use derived;
-
-/// The derived quantities that are shown, in the order of the paper.
-pub const DERIVED: [Derived; 16] = [
-    derived!("gamma" ["1"] "mass ratio (m + m0)/m", "before Eq 1", |s| s.gamma),
-    derived!("omega_fc" ["rad/s"] "circular frequency in full contact", "Eq 1", |s| s.omega_fc),
-    derived!("k" ["N/m"] "stiffness of the strut", "Eq 1", |s| s.k),
-    derived!("c_fc" ["N.s/m"] "viscous damping in full contact", "after Eq 1", |s| s.c_fc),
-    derived!("u_cr" ["m"] "critical displacement at uplift", "after Eq 4", |s| s.u_cr),
-    derived!("c_u" ["N.s/m"] "viscous damping while rocking", "after Eq 6", |s| s.c_u),
-    derived!("J_P" ["kg.m2"] "inertia about a pivot", "after Eq 8", |s| s.J_P),
-    derived!("p_l" ["rad/s"] "frequency parameter", "before Eq 11", |s| s.p_l),
-    derived!("alpha_cg" ["rad"] "slenderness of the centre of gravity", "before Eq 11", |s| libm::atan(s.tan_alpha_cg)),
-    derived!("chi" ["1"] "modal participation of rocking", "after Eq 13", |s| s.chi),
-    derived!("f_u" ["Hz"] "frequency of the vibration mode while rocking", "before Eq 18", |s| s.omega_u / TAU),
-    derived!("zeta_u" ["1"] "damping ratio of the vibration mode while rocking", "before Eq 18", |s| s.zeta_u),
-    derived!("period_fc" ["s"] "natural period in full contact", "before Eq 4", |s| s.parameters.f_fc.recip()),
-    derived!("weight" ["N"] "weight of the top mass, m g", "Eq 5", |s| s.parameters.m * s.parameters.g),
-    derived!("weight0" ["N"] "weight of the foundation, m0 g", "Eq 6", |s| s.parameters.m0 * s.parameters.g),
-    derived!("width" ["m"] "width of the base, 2 B", "Eq 25", |s| 2.0 * s.parameters.B),
+/// Limits of the moments of the mass above the foundation.
+const MOMENTS: [Quantity<Body>; 3] = [
+    quantity!(m_s ["kg"] 1e-6, 1e12, "mass above the base"),
+    quantity!(S_1 ["kg.m"] 1e-9, 1e16, "first moment of the mass above the base"),
+    quantity!(I_2 ["kg.m2"] 1e-12, 1e20, "second moment of the mass above the base"),
 ];
 
-impl Structure {
-    /// Derives a structure from its parameters, or returns the first parameter that is out of range.
-    pub fn new(parameters: Parameters) -> Result<Structure, ParameterError> {
-        parameters.check()?;
-        let Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, r, g, P_0, k_t, xi_d, c_d, k_d, F_y } = parameters;
-        let gamma = (m + m0) / m;
-        let omega_fc = TAU * f_fc;
-        let k = m * omega_fc * omega_fc;
-        let c_fc = 2.0 * zeta_fc * m * omega_fc;
-        let c_u = c_ratio * c_fc;
-        let foundation_and_offset = J0 + (m + m0) * B * B;
-        let J_P = foundation_and_offset + m * H * H;
-        let chi = m * H * H / J_P;
-        let one_minus_chi = foundation_and_offset / J_P;
-        let tan_alpha_cg = gamma * B / H;
-        let (p_l, omega_u) = ((m * g * H / J_P).sqrt(), omega_fc / one_minus_chi.sqrt());
-        let foundation = (J0 + m0 * B * B) / m;
-        let (inertia, pair) = (m * (foundation + B * B), 2.0 * (B * B + xi_d * xi_d));
-        let held = k_t * B * B + k_d * pair;
-        let ties = Ties { P_0, k_t, xi_d, c_d, k_d, F_y };
-        let rocking_rate = (omega_u * omega_u + held / inertia).sqrt().max(p_l).max(c_d * pair / inertia);
-        Ok(Structure {
-            parameters,
-            is_restrained: [P_0, k_t, c_d, k_d].iter().any(|restraint| *restraint > 0.0),
-            base: Base { m_t: m + m0, m0, S_res: 0.0, B, J0, J_P, r: Some(r), g, c_ratio, p_l, tan_alpha_cg, ties },
-            mode: Mode { mass: m, gamma: m, share: 1.0, height: H, stiffness: k, damping: c_fc },
-            gamma,
-            omega_fc,
-            k,
-            c_fc,
-            c_u,
-            J_P,
-            p_l,
-            tan_alpha_cg,
-            chi,
-            one_minus_chi,
-            u_cr: (g * tan_alpha_cg + P_0 * B / (m * H)) / (omega_fc * omega_fc),
-            omega_u,
-            rocking_rate,
-            stiffness: omega_fc * omega_fc,
-            damping_fc: c_fc / m,
-            damping_u: c_u / m,
-            foundation,
-            zeta_u: c_u / (2.0 * (k * m * one_minus_chi).sqrt()),
-        })
-    }
+/// Limits of a mode, whose coordinate may have any scale.
+const OF_MODE: [Quantity<Mode>; 6] = [
+    quantity!(mass ["kg"] 1e-24, 1e36, "modal mass"),
+    quantity!(gamma ["kg"] f64::MIN, f64::MAX, "part of a mode in a translation"),
+    quantity!(share ["1"] f64::MIN, f64::MAX, "participation of a mode"),
+    quantity!(height ["m"] f64::MIN, f64::MAX, "height of a mode"),
+    quantity!(stiffness ["N/m"] 1e-36, 1e48, "modal stiffness"),
+    quantity!(damping ["N.s/m"] 0.0, 1e48, "modal damping"),
+];
 
-    /// The rigid base.
-    pub fn base(&self) -> &Base {
-        &self.base
-    }
+/// Limits of a floor.
+const OF_FLOOR: [Quantity<Floor>; 2] = [
+    quantity!(mass ["kg"] 1e-6, 1e12, "mass of the floor"),
+    quantity!(height ["m"] 1e-3, 1e4, "height of the floor above the base"),
+];
 
-    /// Whether a tendon or dissipators restrain the structure.
-    pub fn is_restrained(&self) -> bool {
-        self.is_restrained
-    }
+/// A rigid base that carries modes. The mass above the foundation that the modes do not carry turns rigidly with the base. Copies share
+/// their numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Structure(Arc<Whole>);
 
-    /// The parameters that this structure was derived from.
-    pub fn parameters(&self) -> &Parameters {
-        &self.parameters
-    }
+/// The numbers of a structure.
+#[derive(Debug, PartialEq)]
+struct Whole {
+    base: Base,
+    body: Body,
+    modes: Vec<Mode>,
+    floors: Vec<Floor>,
+    gauges: Gauges,
+    vibration: Vibration,
+    /// Of one mass, its parameters and what follows from them.
+    one: Option<OneMass>,
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use approx::assert_relative_eq;
+/// A structure of many masses where one mass is needed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "{task} needs a structure of one mass, and this structure has {modes} modes: describe, simulate, view, advise and export take \
+     many masses"
+)]
+pub struct NotOneMass {
+    /// Name of the task.
+    pub task: &'static str,
+    /// Number of modes.
+    pub modes: usize,
+}
 
-    /// Tables 1 and 2, in the digits to which their own values determine them.
-    #[test]
-    fn the_specimens_have_the_papers_derived_quantities() {
-        // J_P, p_l, alpha_cg, chi, f_u, u_cr
-        let tables = [
-            (Parameters::EVISON, [152.488, 2.9151, 0.35122, 0.90954, 36.574, 0.752467e-3]),
-            (Parameters::MCMANUS, [467.046, 2.24234, 0.22868, 0.94309, 20.959, 2.313480e-3]),
-        ];
-        for (parameters, expected) in tables {
-            let structure = Structure::new(parameters).unwrap();
-            for (name, expected) in ["J_P", "p_l", "alpha_cg", "chi", "f_u", "u_cr"].into_iter().zip(expected) {
-                let derived = DERIVED.iter().find(|derived| derived.name == name).unwrap();
-                assert_relative_eq!((derived.value)(&structure), expected, max_relative = 2e-5);
+/// What is measured on a structure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gauges {
+    /// Acceleration of each floor along the turning e_x a_i, m/s².
+    pub a: Vec<Gauge>,
+    /// Shear of the storey below each floor V_k, from the given floors, N.
+    pub V: Vec<Gauge>,
+    /// Overturning moment at the foot of each storey M_k, from the given floors, N·m.
+    pub M: Vec<Gauge>,
+    /// Base shear V_t, N.
+    pub V_t: Gauge,
+    /// Overturning moment M_t, N·m.
+    pub M_t: Gauge,
+}
+
+impl Gauges {
+    fn new(&Body { m_s, S_1, I_2, .. }: &Body, modes: &[Mode], floors: &[Floor], rounding: f64) -> Gauges {
+        let shape = |of: fn(&Mode) -> f64| Modes::new(&Vec::from_iter(modes.iter().map(of)));
+        let sum = |floors: &[Floor], part: &dyn Fn(&Floor) -> f64| {
+            let (mut weight, mut height, mut sum) = (0.0, 0.0, shape(|_| 0.0));
+            for floor in floors {
+                let part = part(floor);
+                (weight, height) = (weight + part, height + part * floor.height);
+                sum = sum.plus(floor.shape, part);
             }
+            Gauge::new(modes, weight, sum, height, rounding)
+        };
+        let moment = |k: usize| {
+            let foot = if k == 0 { 0.0 } else { floors[k - 1].height };
+            sum(&floors[k..], &|floor| floor.mass * (floor.height - foot))
+        };
+        Gauges {
+            a: floors.iter().map(|floor| Gauge::new(modes, 1.0, floor.shape, floor.height, rounding)).collect(),
+            V: (0..floors.len()).map(|k| sum(&floors[k..], &|floor| floor.mass)).collect(),
+            M: (0..floors.len()).map(moment).collect(),
+            V_t: Gauge::new(modes, m_s, shape(|mode| mode.gamma), S_1, rounding),
+            M_t: Gauge::new(modes, S_1, shape(|mode| mode.mass * mode.height), I_2, rounding),
         }
     }
 
-    #[test]
-    fn every_number_is_in_si_units() {
-        let known = ["1", "kg", "m", "s", "N", "rad", "Hz", "m2", "s2"];
-        let units = parameters::PARAMETERS.iter().map(|of| of.unit).chain(DERIVED.iter().map(|of| of.unit));
-        let units = units.chain(any::OF_FRAME.iter().map(|of| of.unit)).chain(any::OF_MODE.iter().map(|of| of.unit));
-        let strange: Vec<_> = units.filter(|unit| !unit.split(['/', '.']).all(|part| known.contains(&part))).collect();
-        assert!(strange.is_empty(), "{strange:?}");
+    /// Whether a value depends on the ground acceleration directly.
+    pub(crate) fn have_feedthrough(&self) -> bool {
+        let Gauges { a, V, M, V_t, M_t } = self;
+        [V_t, M_t].into_iter().chain(a).chain(V).chain(M).any(Gauge::has_feedthrough)
     }
+}
+
+/// What a sum over the modes leaves of the `whole`, if more than this part `rounding` of the whole.
+pub(crate) fn rest(whole: f64, of_modes: f64, rounding: f64) -> f64 {
+    let rest = whole - of_modes;
+    if rest.abs() <= rounding * whole.abs() { 0.0 } else { rest }
+}
+
+/// The reason why modes and floors are no structure.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StructureError {
+    /// More modes than a structure may have, or none.
+    #[error("{0} modes are given: a structure has 1 to {MOST_MODES}")]
+    Modes(usize),
+    /// A moment of the mass above the foundation out of its range.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+    /// A number of the base, its tendon or its dissipators out of its range.
+    #[error(transparent)]
+    Base(#[from] ParameterError),
+    /// A number of a mode or of a floor out of its range.
+    #[error("{what} {number}: {cause}")]
+    At {
+        /// `mode` or `floor`.
+        what: &'static str,
+        /// Its number, from 1 on.
+        number: usize,
+        /// The number that is refused.
+        cause: OutOfRange,
+    },
+    /// The modes carry more than the structure has.
+    #[error(
+        "the modes carry {of_modes:?} {unit} of the {name} = {whole:?} {unit} above the foundation: check masses, heights and units"
+    )]
+    Beyond {
+        /// `m_s` or `I_2`.
+        name: &'static str,
+        /// Unit.
+        unit: &'static str,
+        /// Sum over the modes.
+        of_modes: f64,
+        /// The value of the structure.
+        whole: f64,
+    },
+    /// A floor whose shape has not one number for each mode.
+    #[error("floor {floor} has {numbers} numbers of its shape: give one for each of the {modes} modes")]
+    Shape {
+        /// The floor, from 1 on.
+        floor: usize,
+        /// Numbers that are given.
+        numbers: usize,
+        /// Number of modes.
+        modes: usize,
+    },
+    /// More modes are to be kept than there are.
+    #[error("{count} modes cannot be kept of {modes}: keep 0 to {modes}")]
+    Kept {
+        /// Modes to be kept.
+        count: usize,
+        /// Number of modes.
+        modes: usize,
+    },
+    /// Forces that do not match the floors.
+    #[error("{forces} forces are given on {floors} floors: give one for each floor, or none")]
+    Forces {
+        /// Forces that are given.
+        forces: usize,
+        /// Number of floors.
+        floors: usize,
+    },
+}
+
+impl Structure {
+    /// The structure of one mass with these `parameters`, or the first parameter that is out of range.
+    pub fn new(parameters: Parameters) -> Result<Structure, ParameterError> {
+        OneMass::new(parameters).map(Structure::from)
+    }
+
+    /// The structure of this `body` with these `modes`, which shows these `floors`.
+    pub fn of_body(body: Body, modes: &[Mode], floors: &[Floor]) -> Result<Structure, StructureError> {
+        let count = modes.len();
+        if !(1..=MOST_MODES).contains(&count) {
+            return Err(StructureError::Modes(count));
+        }
+        MOMENTS.iter().try_for_each(|moment| moment.check((moment.get)(&body)))?;
+        body.check()?;
+        for (number, mode) in (1..).zip(modes) {
+            let checked = OF_MODE.iter().try_for_each(|of| of.check((of.get)(mode)));
+            checked.map_err(|cause| StructureError::At { what: "mode", number, cause })?;
+        }
+        for (i, floor @ Floor { shape, .. }) in floors.iter().enumerate() {
+            let checked = OF_FLOOR.iter().try_for_each(|of| of.check((of.get)(floor)));
+            checked.map_err(|cause| StructureError::At { what: "floor", number: i + 1, cause })?;
+            let numbers = shape.count();
+            if numbers != count {
+                return Err(StructureError::Shape { floor: i + 1, numbers, modes: count });
+            }
+        }
+        let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum::<f64>();
+        let whole = |name, unit, whole: f64, of_modes: f64| match rest(whole, of_modes, EXACT) {
+            rest if rest < -EXCESS * whole => Err(StructureError::Beyond { name, unit, of_modes, whole }),
+            rest => Ok(if rest < 0.0 { of_modes } else { whole }),
+        };
+        let [mass, inertia] = [of(|mode| mode.gamma * mode.share), of(|mode| mode.mass * mode.height * mode.height)];
+        let m_s = whole("m_s", "kg", body.m_s, mass)?;
+        let I_2 = whole("I_2", "kg.m2", body.I_2, inertia)?;
+        Ok(Structure::of(Body { m_s, I_2, ..body }, modes, floors))
+    }
+
+    /// The structure of checked numbers. The modes are all of it if they leave no more of any of its sums than their rounding.
+    fn of(body: Body, modes: &[Mode], floors: &[Floor]) -> Structure {
+        let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum::<f64>();
+        let (mass, first) = (of(|mode| mode.gamma * mode.share), of(|mode| mode.gamma * mode.height));
+        let second = of(|mode| mode.mass * mode.height * mode.height);
+        let rests = |rounding| {
+            let [m_res, I_res] = [rest(body.m_s, mass, rounding), rest(body.I_2, second, rounding)];
+            let rest = [m_res.max(0.0), rest(body.S_1, first, rounding), I_res.max(0.0)];
+            (rest, Gauges::new(&body, modes, floors, rounding))
+        };
+        let rounded = Some(rests(ROUNDING)).filter(|(rest, gauges)| *rest == [0.0; 3] && !gauges.have_feedthrough());
+        let exact = |whole, of_modes| if rest(whole, of_modes, EXACT) == 0.0 { whole } else { of_modes };
+        let body = match rounded {
+            Some(_) => {
+                Body { m_s: exact(body.m_s, mass), S_1: exact(body.S_1, first), I_2: exact(body.I_2, second), ..body }
+            }
+            None => body,
+        };
+        let ([m_res, S_res, I_res], gauges) = rounded.unwrap_or_else(|| rests(0.0));
+        let Body { m0, J0, m_s, I_2, S_1, B, r, g, c_ratio, ties } = body;
+        let m_t = m0 + m_s;
+        let J_P = J0 + m_t * B * B + I_2;
+        let base = Base {
+            m_t,
+            m0: m0 + m_res,
+            S_res,
+            B,
+            J0: J0 + I_res,
+            J_P,
+            r,
+            g,
+            c_ratio,
+            p_l: (g * S_1 / J_P).sqrt(),
+            tan_alpha_cg: m_t * B / S_1,
+            ties,
+        };
+        let vibration = vibration(&base, modes);
+        let (modes, floors) = (modes.to_vec(), floors.to_vec());
+        Structure(Arc::new(Whole { base, body, modes, floors, gauges, vibration, one: None }))
+    }
+
+    /// This structure with its `count` modes of the lowest frequencies, or none. The mass of the others turns rigidly with the base.
+    pub fn keeping(&self, count: usize) -> Result<Structure, StructureError> {
+        let modes = self.0.modes.len();
+        if count > modes { Err(StructureError::Kept { count, modes }) } else { Ok(self.with_lowest(count)) }
+    }
+
+    /// This structure without modes: all of its mass turns rigidly with the base.
+    pub fn without_modes(&self) -> Structure {
+        self.with_lowest(0)
+    }
+
+    fn with_lowest(&self, count: usize) -> Structure {
+        let square = |j: &usize| self.0.modes[*j].stiffness / self.0.modes[*j].mass;
+        let mut kept = Vec::from_iter(0..self.0.modes.len());
+        kept.sort_by(|a, b| square(a).total_cmp(&square(b)));
+        kept.truncate(count);
+        kept.sort_unstable();
+        let shape = |floor: &Floor| Modes::new(&Vec::from_iter(kept.iter().map(|j| floor.shape.of(*j))));
+        let floors = Vec::from_iter(self.0.floors.iter().map(|floor| Floor { shape: shape(floor), ..*floor }));
+        Structure::of(self.0.body, &Vec::from_iter(kept.iter().map(|j| self.0.modes[*j])), &floors)
+    }
+
+    /// The load of the ground accelerations `a_g` and `a_v` (m/s²) and of a horizontal force on each floor (N, to the right), or of
+    /// none. On the right, the forces F add to
+    ///
+    /// ```text
+    /// (M1, M8)  φᵀF cos θ       (M9)  Σ φᵀF w sin θ + F_res sB sin θ + N_res cos θ       (M2, M3)  N_res
+    /// ```
+    ///
+    /// F_res = Σ F (1 − Σ φ Γ/μ) and N_res = Σ F (h − Σ φ κ/μ) act on mass that no mode carries. Both are 0 with all modes.
+    pub fn load(&self, a_g: f64, a_v: f64, forces: &[f64]) -> Result<Load<Modes>, StructureError> {
+        if !forces.is_empty() && forces.len() != self.0.floors.len() {
+            return Err(StructureError::Forces { forces: forces.len(), floors: self.0.floors.len() });
+        }
+        let mut on_modes = Modes::parts(self, 0.0);
+        let mut rest = [0.0; 2];
+        for ((force, floor), gauge) in forces.iter().zip(&self.0.floors).zip(&self.0.gauges.a) {
+            on_modes = on_modes.plus(floor.shape, *force);
+            rest = std::array::from_fn(|i| rest[i] + gauge.on_rest(*force)[i]);
+        }
+        Ok(Load { a_g, F_t: on_modes.and_rest(rest), a_v })
+    }
+
+    /// The structure as a rigid body.
+    pub fn body(&self) -> &Body {
+        &self.0.body
+    }
+
+    /// The sum of the horizontal forces of `load` (N), and the sum of their moments in full contact (N·m).
+    pub(crate) fn pushes(&self, load: &Load<Modes>) -> [f64; 2] {
+        let [force, moment] = load.F_t.rest().unwrap_or_default();
+        let on_modes = |part: fn(&Mode) -> f64| Modes::sum(self, |j, mode| part(mode) * load.F_t.of(j));
+        [force + on_modes(|mode| mode.share), moment + on_modes(|mode| mode.height)]
+    }
+
+    /// The numbers of one mass, if the structure was made of them.
+    #[inline]
+    pub fn one(&self) -> Option<&OneMass> {
+        self.0.one.as_ref()
+    }
+
+    /// The numbers of one mass, which `task` needs.
+    pub fn one_mass(&self, task: &'static str) -> Result<&OneMass, NotOneMass> {
+        self.one().ok_or_else(|| NotOneMass { task, modes: self.modes().len() })
+    }
+
+    /// Circular frequencies of vibration, rad/s.
+    #[inline(always)]
+    pub fn vibration(&self) -> Vibration {
+        self.0.vibration
+    }
+
+    /// The rigid base.
+    #[inline(always)]
+    pub fn base(&self) -> &Base {
+        &self.0.base
+    }
+
+    /// The modes of vibration in full contact.
+    #[inline(always)]
+    pub fn modes(&self) -> &[Mode] {
+        &self.0.modes
+    }
+
+    /// The gauges of the floors and of the base.
+    pub fn gauges(&self) -> &Gauges {
+        &self.0.gauges
+    }
+
+    /// The floors, from below.
+    pub fn floors(&self) -> &[Floor] {
+        &self.0.floors
+    }
+
+    /// Circular frequencies of vibration while the structure rocks, rad/s, lowest first.
+    pub fn rocking_frequencies(&self) -> Vec<f64> {
+        (1..=self.0.modes.len()).map(|n| rocking(&self.0.base, &self.0.modes, n)).collect()
+    }
+
+    /// Usual magnitudes in a motion: of each mode, as if the mode had all mass, where the base is about to lift off statically; the
+    /// angle at which the structure falls; and the rates that belong to them.
+    pub fn usual(&self) -> State<Modes> {
+        let reach = self.0.body.m_s.sqrt() * self.0.base.g * self.0.base.tan_alpha_cg;
+        let u = |mode: &Mode| reach * mode.mass.sqrt() / mode.stiffness;
+        let u_dot = |_: usize, mode: &Mode| u(mode) * mode.omega();
+        let theta = libm::atan(self.0.base.tan_alpha_cg);
+        let theta_dot = self.0.base.p_l * theta;
+        State { u: Modes::each(self, |_, mode| u(mode)), u_dot: Modes::each(self, u_dot), theta, theta_dot }
+    }
+
+    /// Mass (kg), first (kg·m) and second moment (kg·m²) that no mode carries.
+    pub fn rest(&self) -> [f64; 3] {
+        [self.0.base.m0 - self.0.body.m0, self.0.base.S_res, self.0.base.J0 - self.0.body.J0]
+    }
+}
+
+impl From<OneMass> for Structure {
+    fn from(one: OneMass) -> Structure {
+        let (base, mode) = (*one.base(), *one.mode());
+        let &Parameters { m, m0, H, B, J0, r, g, c_ratio, .. } = one.parameters();
+        let body = Body { m0, J0, m_s: m, S_1: m * H, I_2: m * H * H, B, r: Some(r), g, c_ratio, ties: base.ties };
+        let (modes, floors) = (vec![mode], vec![Floor { mass: m, height: H, shape: Modes::new(&[1.0]) }]);
+        let gauges = Gauges::new(&body, &modes, &floors, ROUNDING);
+        let vibration = Vibration { contact: one.omega_fc, rocking: [one.omega_u; 2] };
+        Structure(Arc::new(Whole { base, body, modes, floors, gauges, vibration, one: Some(one) }))
+    }
+}
+
+/// The lowest and the highest frequency of vibration; of a structure without modes, its frequency parameter.
+fn vibration(base: &Base, modes: &[Mode]) -> Vibration {
+    if modes.is_empty() {
+        return Vibration { contact: base.p_l, rocking: [base.p_l; 2] };
+    }
+    let contact = modes.iter().map(Mode::omega).fold(f64::INFINITY, f64::min);
+    Vibration { contact, rocking: [rocking(base, modes, 1), rocking(base, modes, modes.len())] }
+}
+
+/// The circular frequency number `n` of vibration while the structure rocks, rad/s, from 1: a root λ = ω² of (M13):
+///
+/// ```text
+/// J_P = Σ μ h² λ/(λ − ω²)
+/// ```
+fn rocking(base: &Base, modes: &[Mode], n: usize) -> f64 {
+    let square = |mode: &Mode| mode.stiffness / mode.mass;
+    let inertia = |mode: &Mode| mode.mass * mode.height * mode.height;
+    let held = base.J_P - modes.iter().map(inertia).sum::<f64>();
+    let lowest = modes.iter().map(square).fold(f64::INFINITY, f64::min);
+    let highest = modes.iter().map(square).fold(0.0, f64::max);
+    // each root lies between two frequencies of full contact, or beyond the last
+    let roots_below = |lambda: f64| {
+        let passed = modes.iter().filter(|mode| square(mode) < lambda).count();
+        let secular = modes.iter().map(|mode| square(mode) * inertia(mode) / (square(mode) - lambda)).sum::<f64>();
+        passed - usize::from(passed > 0 && held + secular < 0.0)
+    };
+    let beyond = highest * (2.0 * base.J_P / held);
+    last_where(lowest, beyond, |lambda| roots_below(lambda) < n).sqrt()
 }

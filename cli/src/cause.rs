@@ -1,8 +1,7 @@
 //! The origin of a result: program, structure, ground motion, and the conditions of the computation.
 use crate::record_args::{RecordArgs, RecordOptions};
 use rocking::run::record::Record;
-use rocking::structure::any::AnyStructure;
-use rocking::{Parameters, State};
+use rocking::{Parameters, State, Structure};
 use rocking_records::Column;
 use rocking_report::{describe, program::version, record::Understood};
 use rocking_sweep::plan::Conditions;
@@ -78,11 +77,11 @@ impl Cause {
     }
 
     /// Of what follows from `structure`.
-    pub fn new(structure: impl Into<AnyStructure>) -> Cause {
-        let structure = match structure.into() {
-            AnyStructure::One(structure) => OfStructure::One(*structure.parameters()),
-            many => OfStructure::Many(describe::numbers(&many).into_iter().map(|of| (of.name, of.value)).collect()),
-        };
+    pub fn new(structure: impl Into<Structure>) -> Cause {
+        let structure = structure.into();
+        let many = || describe::numbers(&structure).into_iter().map(|of| (of.name, of.value)).collect();
+        let structure =
+            structure.one().map_or_else(|| OfStructure::Many(many()), |one| OfStructure::One(*one.parameters()));
         Cause::of(Some(structure), None)
     }
 

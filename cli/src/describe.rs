@@ -35,14 +35,13 @@ pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     let structure = args.structure.load_any()?;
     if args.template {
         let mut out = String::new();
-        template::write(&mut out, &structure.one("--template")?)?;
+        template::write(&mut out, structure.one_mass("--template")?)?;
         return print(&out);
     }
     if let Some(theta) = args.restoring {
-        let structure = structure.one("--restoring")?;
         let is_in_range = theta > 0.0 && theta < FRAC_PI_2;
         ensure!(is_in_range, "restoring = {theta} rad is out of range: a rotation above 0 and below pi/2 is needed");
-        let rows = flag(&structure, theta, STEPS);
+        let rows = flag(structure.base(), theta, STEPS);
         return args.results.print(|| Ok(text_of_loop(&rows)), &rows);
     }
     args.results.print(|| Ok(describe::text(&structure)?), &describe::numbers(&structure))

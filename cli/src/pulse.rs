@@ -1,7 +1,7 @@
 //! `pulse`: one of the field's standard ground motions as a CSV file that every other command reads.
 use crate::{cause::Cause, record_args::one_of, results::FormatArgs, structure_args::StructureArgs, talk::write_as};
 use clap::{ArgGroup, builder::PossibleValue};
-use rocking::Structure;
+use rocking::Base;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::run::record::Record;
 use rocking_records::csv;
@@ -59,11 +59,11 @@ struct OfPulse {
 
 impl OfPulse {
     /// The pulse, in the units of `structure` where it is asked for in these.
-    fn pulse(&self, structure: &Structure) -> Pulse {
+    fn pulse(&self, base: &Base) -> Pulse {
         let &OfPulse { shape, phase, error, .. } = self;
-        let (of_amplitude, of_frequency) = units_of(structure);
+        let (of_amplitude, of_frequency) = units_of(base);
         let ratio = |ratio: Option<f64>, unit| ratio.map(|ratio| ratio * unit);
-        let amplitude = ratio(self.amplitude, structure.parameters().g).or(ratio(self.amplitude_ratio, of_amplitude));
+        let amplitude = ratio(self.amplitude, base.g).or(ratio(self.amplitude_ratio, of_amplitude));
         let frequency = self.frequency.or(self.period.map(f64::recip)).or(ratio(self.frequency_ratio, of_frequency));
         let asked = "clap asks for one of them";
         let pulse = Pulse::new(shape, amplitude.expect(asked), frequency.expect(asked));
@@ -74,18 +74,18 @@ impl OfPulse {
 /// Writes the pulse and prints what it amounts to.
 pub fn run(args: &PulseArgs) -> anyhow::Result<()> {
     args.results.check_beside(Some(&args.output))?;
-    let structure = args.structure.load()?;
-    let pulse = args.of.pulse(&structure);
+    let structure = args.structure.load_any()?;
+    let pulse = args.of.pulse(structure.base());
     let record = pulse.record()?;
     let file = OutputFiles::of_inputs(args.structure.input()).create(&args.output)?;
     write_as(file, "pulse", csv(&record).as_bytes())?;
-    let (title, cause) = ((record.title(), structure.parameters().g), Cause::new(structure));
-    args.results.print_table(Some(&args.output), title, &cause, &amounts(&pulse, &record, &structure))
+    let (title, cause) = ((record.title(), structure.base().g), Cause::new(structure.clone()));
+    args.results.print_table(Some(&args.output), title, &cause, &amounts(&pulse, &record, structure.base()))
 }
 
 /// Measures of the pulse, alone and for `structure`.
-fn amounts(pulse: &Pulse, record: &Record, structure: &Structure) -> Vec<NamedValue> {
-    let (of_amplitude, of_frequency) = units_of(structure);
+fn amounts(pulse: &Pulse, record: &Record, base: &Base) -> Vec<NamedValue> {
+    let (of_amplitude, of_frequency) = units_of(base);
     let [velocity, displacement] = record.velocities_and_displacements().last().expect("a record has samples");
     let line = |name, value, unit, description| NamedValue::new(name, value, unit, "", description);
     vec![

@@ -11,10 +11,10 @@ use crate::{
     talk::{say, write_as},
 };
 use anyhow::ensure;
+use rocking::Base;
 use rocking::digits::{short, significant};
 use rocking::mechanics::restraint::centring_moments;
 use rocking::run::record::Record;
-use rocking::structure::Base;
 use rocking_report::{
     output_files::{OutputFile, OutputFiles},
     quantities::in_readable_unit,
@@ -117,7 +117,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     args.results.format.check_beside(output)?;
     let run = args.motion.load()?;
     let ResultArgs { picture, profile, events, .. } = &args.results;
-    let has_floors = run.structure.frame().is_none_or(|frame| !frame.floors().is_empty());
+    let has_floors = !run.structure.floors().is_empty();
     ensure!(profile.is_none() || has_floors, "--profile: the structure has no floors; give masses, heights and shapes");
     if let Some(line) = centring(run.structure.base()) {
         say!("centring       {line}");

@@ -7,13 +7,12 @@ use crate::{
 use anyhow::{Context, anyhow, bail};
 use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource};
 use rocking::digits::short;
-use rocking::structure::Derived;
-use rocking::structure::any::AnyStructure;
+use rocking::structure::derived::Derived;
 use rocking::structure::description::Described;
 use rocking::structure::natural_quantities::{Given, GivenError, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::quantity::Quantity;
-use rocking::{Parameters, Structure};
+use rocking::{OneMass, Parameters, Structure};
 use rocking_report::input;
 use std::path::{Path, PathBuf};
 
@@ -42,26 +41,27 @@ impl StructureArgs {
     }
 
     /// Reads a structure of one mass.
-    pub fn load(&self) -> anyhow::Result<Structure> {
-        Ok(self.load_any()?.one("this command")?)
+    pub fn load(&self) -> anyhow::Result<OneMass> {
+        Ok(*self.load_any()?.one_mass("this command")?)
     }
 
     /// Reads the structure, and warns of doubtful numbers; a refusal names the file, the line and the key.
-    pub fn load_any(&self) -> anyhow::Result<AnyStructure> {
+    pub fn load_any(&self) -> anyhow::Result<Structure> {
         let structure = self.read()?;
         structure.doubts().iter().for_each(|doubt| warning!("{doubt}"));
         Ok(structure)
     }
 
-    fn read(&self) -> anyhow::Result<AnyStructure> {
+    fn read(&self) -> anyhow::Result<Structure> {
         let numbers = &self.numbers.0;
         let parameters = match (&self.parameters, self.preset) {
             (Some(path), _) => {
                 let read = || of_file(&input::text(path)?);
-                match read().with_context(|| format!("parameters in {}", input::name(path)))? {
-                    AnyStructure::One(structure) => numbers.over(structure.parameters())?,
-                    many if numbers.is_empty() => return Ok(many),
-                    _ => bail!(
+                let structure = read().with_context(|| format!("parameters in {}", input::name(path)))?;
+                match structure.one() {
+                    Some(one) => numbers.over(one.parameters())?,
+                    None if numbers.is_empty() => return Ok(structure),
+                    None => bail!(
                         "{} replaces a number of one mass, and {} describes many masses: change it in the file",
                         numbers.names().map(on_command_line).collect::<Vec<_>>().join(", "),
                         input::name(path)
@@ -75,19 +75,19 @@ impl StructureArgs {
             }
             (None, None) => numbers.parameters().map_err(with_options)?,
         };
-        Ok(Structure::new(parameters)?.into())
+        Ok(Structure::new(parameters)?)
     }
 }
 
 /// The structure that the TOML `text` describes: of many masses if there are tables of them.
-fn of_file(text: &str) -> anyhow::Result<AnyStructure> {
+fn of_file(text: &str) -> anyhow::Result<Structure> {
     let keys: toml::Table = toml::from_str(text)?;
     if ["base", "storeys", "floors", "modes"].iter().any(|key| keys.contains_key(*key)) {
         let described: Described = toml::from_str(text)?;
-        return Ok(described.frame()?.into());
+        return Ok(described.structure()?);
     }
     let given: Given = toml::from_str(text)?;
-    Ok(Structure::new(given.parameters()?)?.into())
+    Ok(Structure::new(given.parameters()?)?)
 }
 
 /// The error with the options that help.

@@ -17,7 +17,7 @@ pub type Told<'a, Q> = dyn FnMut(&Transition<Q>) + 'a;
 /// Watches peaks and limits, if they are asked for. One type for all cases keeps the library small.
 pub struct Watching<'a, 'b, Q: Masses> {
     pub peaks: Option<FallWatch<'a, Q>>,
-    pub validity: Option<&'a mut Validity<Q>>,
+    pub validity: Option<&'a mut Validity>,
     pub told: &'a mut Told<'b, Q>,
 }
 
@@ -54,7 +54,7 @@ impl<Q: Masses> Scene<Q> {
         while progress == Progress::Transition && self.engine.motion().time <= from {
             progress = self.advance(setup, step, inputs, told)?;
         }
-        let rounding = ROUNDING * until.abs().max(self.engine.structure().as_ref().p_l.recip());
+        let rounding = ROUNDING * until.abs().max(self.engine.structure().base().p_l.recip());
         if progress == Progress::Complete {
             let later = inputs.from(step);
             let load = if self.may_move_vertically(setup) { self.load(setup, later) } else { later };

@@ -5,7 +5,6 @@ use crate::resources::Archive;
 use crate::unit::Unit;
 use fmi_unit::{Completed, Experiment, Failure, Interface, Logger, Model, Progress, Step, Update, Value, Variable};
 use rocking::Modes;
-use rocking::structure::any::AnyStructure;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -36,9 +35,9 @@ macro_rules! hand_on {
 impl Model for AnyUnit {
     fn open(resources: &Path) -> Result<AnyUnit, Failure> {
         let archive = Archive::open(resources.to_owned()).map_err(Refusal::from)?;
-        Ok(match archive.contents.structure {
-            AnyStructure::One(_) => AnyUnit::One(Unit::new(archive)),
-            AnyStructure::Many(_) => AnyUnit::Many(Box::new(Unit::new(archive))),
+        Ok(match archive.contents.structure.one() {
+            Some(_) => AnyUnit::One(Unit::new(archive)),
+            None => AnyUnit::Many(Box::new(Unit::new(archive))),
         })
     }
 

@@ -5,12 +5,12 @@ use fmi_unit::variables::Text;
 use fmi_unit::{Causality, Variable};
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::profile::Profile;
-use rocking::structure::any::{OF_FRAME, OF_MODE};
-use rocking::{Detail, Frame, FrameOutput};
+use rocking::structure::derived::{OF_MODE, OF_STRUCTURE};
+use rocking::{Detail, FrameOutput, Structure};
 use std::collections::HashSet;
 
 /// The rows of `frame`, made with the rows of `one_mass`.
-pub(crate) fn rows(frame: &Frame, one_mass: impl Iterator<Item = Row>) -> Vec<Row> {
+pub(crate) fn rows(frame: &Structure, one_mass: impl Iterator<Item = Row>) -> Vec<Row> {
     let (inputs, others): (Vec<_>, Vec<_>) = one_mass.partition(|(_, source)| matches!(source, Source::Input(_)));
     let rows: Vec<_> = loads(frame, &inputs)
         .into_iter()
@@ -49,7 +49,7 @@ fn is_of_many((variable, source): &Row) -> bool {
 }
 
 /// a_g and a_v, and a force on each floor, from the `inputs` of one mass.
-fn loads(frame: &Frame, inputs: &[Row]) -> Vec<Row> {
+fn loads(frame: &Structure, inputs: &[Row]) -> Vec<Row> {
     let load = |which: usize| inputs[which].0.clone();
     let force = |floor: usize| {
         let description = format!("external horizontal force on floor {}, positive to the right", floor + 1);
@@ -80,7 +80,7 @@ fn output((place, of): (usize, FrameOutput)) -> Row {
 }
 
 /// The coordinates of the modes, and the derivatives of all states.
-fn states(frame: &Frame) -> Vec<Row> {
+fn states(frame: &Structure) -> Vec<Row> {
     let n = frame.modes().len();
     let name = |place: usize| match place {
         place if place < n => format!("q[{}]", place + 1),
@@ -112,7 +112,7 @@ fn states(frame: &Frame) -> Vec<Row> {
 }
 
 /// Largest magnitudes and their instants.
-fn peaks(frame: &Frame) -> Vec<Row> {
+fn peaks(frame: &Structure) -> Vec<Row> {
     let profile = Profile::since(0.0, frame, Detail::Auto);
     let rows = profile.peaks().enumerate().flat_map(|(place, (of, _))| {
         let (symbol, name) = (of.symbol(), of.name());
@@ -131,11 +131,12 @@ fn peaks(frame: &Frame) -> Vec<Row> {
 }
 
 /// Fixed numbers of the base, the modes and the floors.
-fn numbers(frame: &Frame) -> Vec<Row> {
+fn numbers(frame: &Structure) -> Vec<Row> {
     let known = |name: String, unit, description: String, value| {
         (Variable::real(Causality::CalculatedParameter, name, unit, description), Source::Known(value))
     };
-    let of_base = OF_FRAME.iter().map(|of| known(of.name.into(), of.unit, of.description.into(), (of.value)(frame)));
+    let of_base =
+        OF_STRUCTURE.iter().map(|of| known(of.name.into(), of.unit, of.description.into(), (of.value)(frame)));
     let of_modes = OF_MODE.iter().flat_map(|of| {
         (1..).zip(frame.mode_table()).map(move |(j, mode)| {
             known(format!("{}[{j}]", of.name), of.unit, format!("mode {j}: {}", of.description), (of.value)(&mode))

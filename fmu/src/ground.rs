@@ -172,13 +172,12 @@ impl Archive {
 mod tests {
     use super::*;
     use crate::resources::{PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records};
-    use rocking::structure::any::AnyStructure;
     use rocking::{Parameters, Structure};
     use std::collections::HashMap;
     use std::fs;
 
     fn archive(folder: &Path) -> Archive {
-        let structure = AnyStructure::One(Structure::new(Parameters::EVISON).unwrap());
+        let structure = Structure::new(Parameters::EVISON).unwrap();
         Archive { folder: folder.to_owned(), contents: structure.into(), files: HashMap::new() }
     }
 

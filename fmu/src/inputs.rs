@@ -2,7 +2,7 @@
 
 use crate::masses::Masses;
 use rocking::mechanics::load::{LOADS, VERTICAL};
-use rocking::{LinearLoad, Load, OutOfRange, Ramp};
+use rocking::{LinearLoad, Load, OutOfRange, Ramp, Structure};
 use serde::{Deserialize, Serialize};
 
 /// How an input acts between communication points if nothing but its value is set.
@@ -197,12 +197,12 @@ impl Inputs {
 
     /// The loads that act now on `structure`.
     #[inline]
-    pub fn values<Q: Masses>(&self, structure: &Q::Structure) -> Load<Q> {
+    pub fn values<Q: Masses>(&self, structure: &Structure) -> Load<Q> {
         Q::load(structure, |which| self.each[which].next.value)
     }
 
     /// The loads that act now on `structure`, with the slopes of the next step, or of the last step if none are set.
-    pub fn now<Q: Masses>(&self, structure: &Q::Structure) -> LinearLoad<Q> {
+    pub fn now<Q: Masses>(&self, structure: &Structure) -> LinearLoad<Q> {
         let slope = |which: usize| {
             let input = &self.each[which];
             let is_old = input.given == Given::Nothing || !input.acts_at_once();
@@ -213,7 +213,7 @@ impl Inputs {
 
     /// Puts every input on its line over a step of `duration` (s), and returns the loads on `structure` along the lines.
     #[inline]
-    pub fn over<Q: Masses>(&mut self, duration: f64, structure: &Q::Structure) -> LinearLoad<Q> {
+    pub fn over<Q: Masses>(&mut self, duration: f64, structure: &Structure) -> LinearLoad<Q> {
         self.each.iter_mut().for_each(|input| input.line = input.over(duration));
         let [value, slope] = [|line: &Ramp| line.value, |line: &Ramp| line.slope]
             .map(|of| Q::load(structure, |which| of(&self.each[which].line)));

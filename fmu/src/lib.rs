@@ -40,7 +40,6 @@ pub mod unit;
 pub mod variables;
 
 use resources::{Contents, FrameNumbers};
-use rocking::structure::any::AnyStructure;
 use uuid::Uuid;
 
 #[cfg(not(target_family = "wasm"))]
@@ -54,11 +53,9 @@ pub const BUILD: &str = env!("FLEXIBLE_ROCKING_BUILD");
 pub fn guid(contents: &Contents) -> String {
     let build = Uuid::try_parse(BUILD).expect("the build script wrote it");
     let Contents { structure, records, vertical, fixed } = contents;
-    let bytes = match structure {
-        AnyStructure::One(structure) => postcard::to_stdvec(&(structure.parameters(), records, vertical, fixed)),
-        AnyStructure::Many(frame) => {
-            postcard::to_stdvec(&(FrameNumbers::from(frame).to_string(), records, vertical, fixed))
-        }
+    let bytes = match structure.one() {
+        Some(one) => postcard::to_stdvec(&(one.parameters(), records, vertical, fixed)),
+        None => postcard::to_stdvec(&(FrameNumbers::from(structure).to_string(), records, vertical, fixed)),
     };
     let bytes = bytes.expect("numbers and text can always be written");
     Uuid::new_v5(&build, &bytes).braced().to_string()

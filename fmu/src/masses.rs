@@ -11,11 +11,8 @@ use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::peak_watch::Peaked;
 use rocking::run::peaks::Peak;
 use rocking::run::validity::{self, Judged};
-use rocking::structure::any::AnyStructure;
-use rocking::structure::doubts;
 use rocking::{
-    Detail, Engine, Frame, FrameOutput, LinearLoad, Load, Modes, Outputs, Reactions, State, Structure, Transition,
-    Watch,
+    Detail, Engine, FrameOutput, LinearLoad, Load, Modes, Outputs, Reactions, State, Structure, Transition, Watch,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -34,10 +31,10 @@ pub trait Masses:
     fn inputs(contents: &Contents) -> Inputs;
 
     /// The load on `structure`, given the value of each input by its place.
-    fn load(structure: &Self::Structure, input: impl Fn(usize) -> f64) -> Load<Self>;
+    fn load(structure: &Structure, input: impl Fn(usize) -> f64) -> Load<Self>;
 
     /// The structure as it is set up, of an archive with these `contents`.
-    fn structure(setup: &Setup, contents: &Contents) -> Result<Self::Structure, Refusal>;
+    fn structure(setup: &Setup, contents: &Contents) -> Result<Structure, Refusal>;
 
     /// The state at the start.
     fn initial(initial: &State) -> State<Self>;
@@ -58,16 +55,16 @@ pub trait Masses:
     fn components(state: &State<Self>, lateral: usize) -> Vec<f64>;
 
     /// The state of `structure` with these `components`.
-    fn state(components: &[f64], structure: &Self::Structure) -> State<Self>;
+    fn state(components: &[f64], structure: &Structure) -> State<Self>;
 
     /// Usual magnitudes of the numbers of a state.
-    fn usual(structure: &Self::Structure) -> State<Self>;
+    fn usual(structure: &Structure) -> State<Self>;
 
     /// The motion of a `transition` in words.
     fn told(transition: &Transition<Self>) -> String;
 
     /// Sentences of warning about the structure at a level of detail.
-    fn doubts(structure: &Self::Structure, detail: Detail) -> Vec<String>;
+    fn doubts(structure: &Structure, detail: Detail) -> Vec<String>;
 
     /// The watcher of a motion of which nothing but transitions is `told`.
     fn listener(told: &mut Told<'_, Self>) -> impl Watch<Self>;
@@ -89,11 +86,10 @@ impl Masses for f64 {
     }
 
     fn structure(setup: &Setup, contents: &Contents) -> Result<Structure, Refusal> {
-        match (setup.parameters, &contents.structure) {
-            (Some(parameters), _) => Ok(Structure::new(parameters)?),
-            (None, AnyStructure::One(structure)) => Ok(*structure),
-            (None, AnyStructure::Many(_)) => unreachable!("one mass has parameters"),
-        }
+        Ok(match setup.parameters {
+            Some(parameters) => Structure::new(parameters)?,
+            None => contents.structure.clone(),
+        })
     }
 
     fn initial(initial: &State) -> State {
@@ -117,7 +113,7 @@ impl Masses for f64 {
             Source::StateRate(which) => shown.state_rates().components()[which],
             Source::Peak(_) if !setup.peaks || scene.is_integrated_outside() => f64::NAN,
             Source::Peak(of) => of(scene.peaks(load).peaks()),
-            Source::Derived(derived) => (derived.value)(scene.engine.structure()),
+            Source::Derived(derived) => (derived.value)(scene.engine.structure().one()?),
             _ => return None,
         })
     }
@@ -135,7 +131,7 @@ impl Masses for f64 {
     }
 
     fn usual(structure: &Structure) -> State {
-        State::usual(structure)
+        structure.one().map_or(State::default(), State::usual)
     }
 
     fn told(Transition { before, after, .. }: &Transition) -> String {
@@ -146,7 +142,7 @@ impl Masses for f64 {
     }
 
     fn doubts(structure: &Structure, detail: Detail) -> Vec<String> {
-        [doubts::of_base(structure.as_ref()), validity::of_parameters(structure, detail)].concat()
+        [structure.doubts(), validity::of_structure(structure, detail)].concat()
     }
 
     #[inline(always)]
@@ -168,12 +164,12 @@ impl Masses for Modes {
         Inputs::new([0, VERTICAL].into_iter().chain(frame(contents).floors().iter().map(|_| FORCE)))
     }
 
-    fn load(frame: &Frame, input: impl Fn(usize) -> f64) -> Load<Modes> {
+    fn load(frame: &Structure, input: impl Fn(usize) -> f64) -> Load<Modes> {
         let forces: Vec<_> = (2..).map(&input).take(frame.floors().len()).collect();
         frame.load(input(0), input(1), &forces).expect("each floor has a force")
     }
 
-    fn structure(_: &Setup, contents: &Contents) -> Result<Frame, Refusal> {
+    fn structure(_: &Setup, contents: &Contents) -> Result<Structure, Refusal> {
         Ok(frame(contents).clone())
     }
 
@@ -219,14 +215,14 @@ impl Masses for Modes {
         components
     }
 
-    fn state(components: &[f64], frame: &Frame) -> State<Modes> {
+    fn state(components: &[f64], frame: &Structure) -> State<Modes> {
         let (lateral, turning) = components.split_at(components.len() - 2);
         let (u, u_dot) = lateral.split_at(lateral.len() / 2);
         let [u, u_dot] = [u, u_dot].map(|numbers| Modes::new(&numbers[..frame.modes().len()]));
         State { u, u_dot, theta: turning[0], theta_dot: turning[1] }
     }
 
-    fn usual(frame: &Frame) -> State<Modes> {
+    fn usual(frame: &Structure) -> State<Modes> {
         frame.usual()
     }
 
@@ -234,8 +230,8 @@ impl Masses for Modes {
         format!("theta_dot = {} rad/s (before: {})", after.theta_dot, before.theta_dot)
     }
 
-    fn doubts(frame: &Frame, detail: Detail) -> Vec<String> {
-        [doubts::of_frame(frame), validity::of_frame(frame, detail)].concat()
+    fn doubts(frame: &Structure, detail: Detail) -> Vec<String> {
+        [frame.doubts(), validity::of_structure(frame, detail)].concat()
     }
 
     /// One type for all cases keeps the library small.
@@ -255,11 +251,8 @@ impl Masses for Modes {
 }
 
 /// The structure of many masses of an archive with these `contents`.
-fn frame(contents: &Contents) -> &Frame {
-    match &contents.structure {
-        AnyStructure::Many(frame) => frame,
-        AnyStructure::One(_) => unreachable!("many masses have a frame"),
-    }
+fn frame(contents: &Contents) -> &Structure {
+    &contents.structure
 }
 
 /// The output at a place of the table.

@@ -1,11 +1,8 @@
 //! The content of the archive's folder `resources`, found through the URI that the host gives: the numbers of the structure, and
 //! the list of the records that were packed.
 
-use rocking::structure::any::AnyStructure;
-use rocking::structure::frame::{Body, Floor, FrameError};
 use rocking::structure::parameters::ParameterError;
-use rocking::structure::{Mode, Structure, Ties};
-use rocking::{Frame, Modes};
+use rocking::{Body, Floor, Mode, Modes, Structure, StructureError, Ties};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -38,7 +35,7 @@ pub struct Archive {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contents {
     /// The structure; the parameters of one mass are start values.
-    pub structure: AnyStructure,
+    pub structure: Structure,
     /// The first is the one that the ground follows unless the host sets another.
     pub records: Vec<PackedRecord>,
     /// The one that it follows vertically unless the host sets another.
@@ -94,8 +91,8 @@ impl FromStr for FrameNumbers {
     }
 }
 
-impl From<&Frame> for FrameNumbers {
-    fn from(frame: &Frame) -> FrameNumbers {
+impl From<&Structure> for FrameNumbers {
+    fn from(frame: &Structure) -> FrameNumbers {
         let &Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties } = frame.body();
         let Ties { P_0, k_t, xi_d, c_d, k_d, F_y } = ties;
         let body = [m0, J0, m_s, S_1, I_2, B, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y].into_iter().chain(r);
@@ -111,7 +108,7 @@ impl From<&Frame> for FrameNumbers {
 
 impl FrameNumbers {
     /// The structure.
-    pub fn frame(&self) -> Result<Frame, FrameError> {
+    pub fn frame(&self) -> Result<Structure, StructureError> {
         let mut body = self.body.iter().copied();
         let mut next = || body.next().unwrap_or(f64::NAN);
         let [m0, J0, m_s, S_1, I_2, B, g, c_ratio] = std::array::from_fn(|_| next());
@@ -128,7 +125,7 @@ impl FrameNumbers {
         };
         let modes: Vec<_> = self.modes.as_chunks().0.iter().map(mode).collect();
         let floor = |of: &[f64]| Floor { mass: of[0], height: of[1], shape: Modes::new(&of[2..]) };
-        Frame::new(body, &modes, &self.floors.chunks_exact(2 + modes.len()).map(floor).collect::<Vec<_>>())
+        Structure::of_body(body, &modes, &self.floors.chunks_exact(2 + modes.len()).map(floor).collect::<Vec<_>>())
     }
 }
 
@@ -174,8 +171,8 @@ impl Contents {
 }
 
 /// Without records.
-impl From<AnyStructure> for Contents {
-    fn from(structure: AnyStructure) -> Contents {
+impl From<Structure> for Contents {
+    fn from(structure: Structure) -> Contents {
         Contents { structure, records: Vec::new(), vertical: None, fixed: false }
     }
 }
@@ -197,7 +194,7 @@ pub enum ResourceError {
     NoNumbers(PathBuf),
     /// Numbers that make no structure of many masses.
     #[error("{file}: {1}", file = .0.display())]
-    NoFrame(PathBuf, Box<FrameError>),
+    NoFrame(PathBuf, Box<StructureError>),
 }
 
 impl Archive {
@@ -208,9 +205,9 @@ impl Archive {
             let text =
                 fs::read_to_string(&of_many).map_err(|error| ResourceError::Unreadable(of_many.clone(), error))?;
             let numbers: FrameNumbers = text.parse().map_err(|_| ResourceError::NoNumbers(of_many.clone()))?;
-            AnyStructure::Many(numbers.frame().map_err(|error| ResourceError::NoFrame(of_many, Box::new(error)))?)
+            numbers.frame().map_err(|error| ResourceError::NoFrame(of_many, Box::new(error)))?
         } else {
-            AnyStructure::One(Structure::new(read(&file)?).map_err(|error| ResourceError::Refused(file, error))?)
+            Structure::new(read(&file)?).map_err(|error| ResourceError::Refused(file, error))?
         };
         let list = folder.join(RECORDS_FILE);
         let Records { record: records, vertical, fixed } =
@@ -249,7 +246,7 @@ mod tests {
         let evison = "m = 125.8\nm0 = 44.02\nH = 1.05\nB = 0.285\nf_fc = 11\nzeta_fc = 0.015\nr = 0.96\nJ0 = 0\nc_ratio = 1\ng = 9.81\n";
         fs::write(&file, evison).unwrap();
         let archive = Archive::open(folder.path().to_owned()).unwrap();
-        assert_eq!(archive.contents.structure, AnyStructure::One(Structure::new(Parameters::EVISON).unwrap()));
+        assert_eq!(archive.contents.structure, Structure::new(Parameters::EVISON).unwrap());
 
         fs::write(&file, evison.replace("r = 0.96", "r = 1.5")).unwrap();
         assert!(refusal().contains("r = 1.5 is out of range"), "{}", refusal());
@@ -272,7 +269,7 @@ mod tests {
             ties: Ties::default(),
         };
         let floor = Floor { mass: 2.0, height: 3.0, shape: Modes::new(&[1.0]) };
-        let frame = Frame::new(body, &[Mode::new(20.0, 0.02, 1.2, 4.0)], &[floor]).unwrap();
+        let frame = Structure::of_body(body, &[Mode::new(20.0, 0.02, 1.2, 4.0)], &[floor]).unwrap();
         let whole = FrameNumbers::from(&frame).to_string();
         let read = |text: &str| text.parse::<FrameNumbers>().map(|numbers| numbers.frame().unwrap());
         assert_eq!(read(&whole), Ok(frame));

@@ -148,7 +148,7 @@ impl<Q: Masses> Scene<Q> {
     }
 
     /// Goes on from what has been found so far.
-    pub fn watch_validity(&self) -> Validity<Q> {
+    pub fn watch_validity(&self) -> Validity {
         Validity::new(self.engine.structure(), Limits::default(), self.validity)
     }
 

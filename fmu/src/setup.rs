@@ -6,7 +6,6 @@ use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::load::LOADS;
 use rocking::run::ground_motion::Placement;
 use rocking::run::record::Record;
-use rocking::structure::any::AnyStructure;
 use rocking::{Detail, GroundMotion, Parameters, State};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -42,10 +41,7 @@ impl Setup {
     /// The setup of an instance just instantiated from an archive with these contents.
     pub(crate) fn new(contents: &Contents) -> Setup {
         Setup {
-            parameters: match &contents.structure {
-                AnyStructure::One(structure) => Some(*structure.parameters()),
-                AnyStructure::Many(_) => None,
-            },
+            parameters: contents.structure.one().map(|one| *one.parameters()),
             initial: State::default(),
             detail: Detail::default(),
             tolerance: DEFAULT_TOLERANCE,

@@ -19,7 +19,6 @@ use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::fall::Falling;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::validity::Findings;
-use rocking::structure::any::AnyStructure;
 use rocking::{Motion, OutOfRange, State};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -164,10 +163,8 @@ impl<Q: Masses> Model for Unit<Q> {
 
     /// States of one mass have all its parameters; those of many masses have not.
     fn build(&self) -> String {
-        match &self.archive.contents.structure {
-            AnyStructure::One(_) => BUILD.to_owned(),
-            many => guid(&Contents::from(many.clone())),
-        }
+        let structure = &self.archive.contents.structure;
+        if structure.one().is_some() { BUILD.to_owned() } else { guid(&Contents::from(structure.clone())) }
     }
 
     fn variables(&self) -> Arc<[Variable]> {
@@ -267,7 +264,7 @@ impl<Q: Masses> Model for Unit<Q> {
             found.iter().for_each(|found| logger.event(|| found.clone()));
             assumed.iter().for_each(|assumed| logger.warning(assumed));
         }
-        let g = scene.engine.structure().as_ref().g;
+        let g = scene.engine.structure().base().g;
         for doubt in scene.ground.iter().flat_map(|ground| rocking_records::doubts(ground, g)) {
             logger.warning(&format!("the record: {doubt}"));
         }

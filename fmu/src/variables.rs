@@ -12,11 +12,10 @@ use rocking::run::ground_motion::{PLACEMENT, Placement};
 use rocking::run::outside_step::INDICATORS;
 use rocking::run::peaks::Peaks;
 use rocking::run::validity::{ASSUMPTIONS, Assumption};
-use rocking::structure::any::AnyStructure;
+use rocking::structure::derived::{DERIVED, Derived};
 use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::Quantity;
-use rocking::structure::{DERIVED, Derived};
-use rocking::{Detail, Impulse, Outputs, Parameters, Phase, Reactions, Side, State, Structure};
+use rocking::{Detail, Impulse, Outputs, Parameters, Phase, Reactions, Side, State};
 use rocking_records::LAYOUTS;
 use std::borrow::Cow;
 use std::sync::{Arc, LazyLock};
@@ -46,7 +45,7 @@ pub enum Source {
     Overturned,
     Parameter(&'static Quantity<Parameters>),
     InitialValue(&'static Quantity<State>),
-    Derived(&'static Derived<Structure>),
+    Derived(&'static Derived),
     /// A number of many masses, which nothing changes.
     Known(f64),
     Detail,
@@ -212,9 +211,9 @@ impl Table {
             .chain(switches())
             .chain(calculated_parameters())
             .chain([(Variable::time(), Source::Time)]);
-        let mut rows: Vec<Row> = match &contents.structure {
-            AnyStructure::One(_) => one_mass.collect(),
-            AnyStructure::Many(frame) => floor_variables::rows(frame, one_mass),
+        let mut rows: Vec<Row> = match contents.structure.one() {
+            Some(_) => one_mass.collect(),
+            None => floor_variables::rows(&contents.structure, one_mass),
         };
         if contents.fixed {
             rows.retain(|(variable, _)| variable.data_type != DataType::String);

@@ -4,7 +4,7 @@ use crate::arguments::{integer, matrix, number, numbers, refused};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rocking::Frame;
+use rocking::Structure;
 use rocking::structure::description::{Damping, Described, FoundMode, Place, Storey, Total};
 use rocking::structure::natural_quantities::Given;
 
@@ -44,7 +44,7 @@ impl<'py> Keywords<'py> {
 }
 
 /// The structure of many masses that `keywords` describe.
-pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Frame> {
+pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Structure> {
     let keywords = Keywords(keywords);
     let missing = |name: &str| PyValueError::new_err(format!("{name} is missing"));
     let zeta = keywords.take("zeta")?.ok_or_else(|| missing("zeta (damping ratio in full contact)"))?;
@@ -75,7 +75,7 @@ pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Frame> {
     let keep = keywords.take("keep")?.map(|keep| integer("keep", &keep)).transpose()?;
     let described =
         Described { zeta: damping(&zeta)?, storeys, floors, K, modes, total, keep, base: given(&keywords.0)? };
-    described.frame().map_err(refused)
+    described.structure().map_err(refused)
 }
 
 /// The numbers of one mass, or of a base, by their names.

@@ -383,7 +383,7 @@ pub fn pulse(
 ) -> PyResult<Record> {
     let shape = one_of("shape", shape, Shape::ALL.map(|of| (of.name(), of)))?;
     let (of_amplitude, of_frequency) = match structure {
-        Some(structure) => units_of(&structure.one("pulse")?),
+        Some(structure) => units_of(structure.of.base()),
         None => (g, 1.0),
     };
     let pulse = Pulse::new(shape, amplitude * of_amplitude, frequency * of_frequency);

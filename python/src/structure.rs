@@ -10,10 +10,10 @@ use pyo3::types::PyDict;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::estimates::modal_split::{ModalAccelerations, Modes};
 use rocking::estimates::pushover::{self, Equilibrium};
-use rocking::structure::any::{AnyStructure, OF_FRAME, OF_MODE};
+use rocking::structure::derived::{DERIVED, Derived};
+use rocking::structure::derived::{OF_MODE, OF_STRUCTURE};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking::structure::{DERIVED, Derived};
-use rocking::{Parameters, Side, State};
+use rocking::{OneMass, Parameters, Side, State};
 use rocking_report::describe;
 
 /// A flexible structure on a base that may lift off (Fig 2 of the paper).
@@ -42,7 +42,7 @@ use rocking_report::describe;
 /// different ways or out of its range.
 #[pyclass(frozen, eq, module = "flexible_rocking")]
 pub struct Structure {
-    pub of: AnyStructure,
+    pub of: rocking::Structure,
     /// The keywords that make a structure of many masses.
     keywords: Option<Py<PyDict>>,
 }
@@ -60,13 +60,13 @@ fn copied<'py>(keywords: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
 
 impl Structure {
     /// The structure, with a Python warning for each doubtful number.
-    fn of(py: Python<'_>, of: AnyStructure, keywords: Option<Py<PyDict>>) -> PyResult<Structure> {
+    fn of(py: Python<'_>, of: rocking::Structure, keywords: Option<Py<PyDict>>) -> PyResult<Structure> {
         warn(py, of.doubts(), 1)?;
         Ok(Structure { of, keywords })
     }
 
     fn one_mass(py: Python<'_>, parameters: Parameters) -> PyResult<Structure> {
-        Structure::of(py, rocking::Structure::new(parameters).map_err(refused)?.into(), None)
+        Structure::of(py, rocking::Structure::new(parameters).map_err(refused)?, None)
     }
 
     fn many(keywords: &Bound<'_, PyDict>) -> PyResult<Structure> {
@@ -74,22 +74,22 @@ impl Structure {
         for (name, _) in keywords.iter().filter(|(_, value)| value.is_none()) {
             kept.del_item(name)?;
         }
-        Structure::of(keywords.py(), frame(kept.copy()?)?.into(), Some(kept.unbind()))
+        Structure::of(keywords.py(), frame(kept.copy()?)?, Some(kept.unbind()))
     }
 
     /// The structure of one mass, which `task` needs.
-    pub fn one(&self, task: &'static str) -> PyResult<rocking::Structure> {
-        self.of.one(task).map_err(refused)
+    pub fn one(&self, task: &'static str) -> PyResult<OneMass> {
+        self.of.one_mass(task).copied().map_err(refused)
     }
 
     /// Its numbers by name: first the parameters of one mass, then what follows from them.
     fn named(&self) -> [Vec<(&'static str, f64)>; 2] {
-        match &self.of {
-            AnyStructure::One(structure) => [
-                PARAMETERS.iter().map(|of| (of.name, (of.get)(structure.parameters()))).collect(),
-                DERIVED.iter().map(|of| (of.name, (of.value)(structure))).collect(),
+        match self.of.one() {
+            Some(one) => [
+                PARAMETERS.iter().map(|of| (of.name, (of.get)(one.parameters()))).collect(),
+                DERIVED.iter().map(|of| (of.name, (of.value)(one))).collect(),
             ],
-            AnyStructure::Many(frame) => [Vec::new(), OF_FRAME.iter().map(|of| (of.name, (of.value)(frame))).collect()],
+            None => [Vec::new(), OF_STRUCTURE.iter().map(|of| (of.name, (of.value)(&self.of))).collect()],
         }
     }
 }
@@ -157,7 +157,7 @@ impl Structure {
     #[pyo3(signature = (**numbers))]
     fn replace<'py>(&self, py: Python<'py>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<Structure> {
         let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
-        if let AnyStructure::One(structure) = &self.of {
+        if let Some(structure) = self.of.one() {
             return Structure::one_mass(py, given(&numbers)?.over(structure.parameters()).map_err(refused)?);
         }
         let keywords = self.parameters(py)?;
@@ -198,11 +198,12 @@ impl Structure {
     /// Raises ValueError for a structure of one mass, whose attributes have these numbers.
     #[getter]
     fn mode_table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let Some(frame) = self.of.frame() else {
+        let frame = &self.of;
+        if frame.one().is_some() {
             return Err(PyValueError::new_err(
                 "mode_table needs a structure of many masses; see f_fc, zeta_fc, chi, f_u",
             ));
-        };
+        }
         let all = PyDict::new(py);
         for Derived { name, value, .. } in &OF_MODE {
             all.set_item(name, PyArray1::from_iter(py, frame.mode_table().map(|mode| value(&mode))))?;

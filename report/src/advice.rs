@@ -10,7 +10,6 @@ use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::run::levels::{self, Choice, Criterion, REFERENCE_TOLERANCE, RULE, Response, Verdict};
 use rocking::run::{LONGEST_REST, RunError, validity::Limits};
-use rocking::structure::any::AnyStructure;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};
@@ -116,7 +115,7 @@ impl Run {
         writeln!(out, "Ground motion: {title}")?;
         self.print_reference(&mut out, &advice.reference)?;
         advice.print_levels(&mut out)?;
-        if let AnyStructure::One(structure) = &self.structure {
+        if let Some(structure) = self.structure.one() {
             write!(out, "  {:<10} ", "estimate")?;
             match Estimate::new(structure, Some(&self.ground), INSTANT_TRANSITION) {
                 Ok(Estimate { demand, .. }) => {
@@ -149,10 +148,9 @@ impl Run {
         let level = if of_many { reference.choice.to_string() + " modes" } else { "nonlinear".into() };
         let transitions = reference.transitions;
         writeln!(out, "Reference: {level}, tolerance {REFERENCE_TOLERANCE:e}, {transitions} transitions")?;
-        if let AnyStructure::Many(frame) = &self.structure
-            && frame.rest()[0] > 0.0
-        {
-            let rigid = percent(frame.rest()[0] / frame.body().m_s);
+        let [rest, ..] = self.structure.rest();
+        if rest > 0.0 {
+            let rigid = percent(rest / self.structure.body().m_s);
             writeln!(out, "  {rigid} % of m_s turns rigidly with the base, also in the reference")?;
         }
         if reference.overturned.is_none() {
@@ -171,7 +169,7 @@ impl Run {
             let estimate = if of_many { "" } else { "; the estimate assumes that it does" };
             return writeln!(out, "  the base never lifts off{estimate}\n");
         }
-        if let AnyStructure::One(structure) = &self.structure
+        if let Some(structure) = self.structure.one()
             && let Ok(f_r) = effective_frequency(structure, theta)
         {
             writeln!(out, "  effective frequency of rocking at that theta: {} Hz (Eq 14)", significant(f_r))?;

@@ -1,33 +1,30 @@
 //! A structure's parameters and what follows from them.
 
 use crate::quantities::NamedValue;
+use rocking::Body;
 use rocking::digits::{short, significant, with_unit};
 use rocking::run::validity;
-use rocking::structure::any::{AnyStructure, OF_FRAME, OF_MODE};
-use rocking::structure::frame::Body;
+use rocking::structure::derived::{DERIVED, Derived};
+use rocking::structure::derived::{OF_MODE, OF_STRUCTURE};
 use rocking::structure::parameters::PARAMETERS;
-use rocking::structure::{DERIVED, Derived};
-use rocking::{Detail, Frame};
+use rocking::{Detail, Structure};
 use std::fmt::{self, Write};
 
 /// The parameters of one mass.
-fn given(structure: &AnyStructure) -> Vec<NamedValue> {
-    let AnyStructure::One(structure) = structure else { return Vec::new() };
+fn given(structure: &Structure) -> Vec<NamedValue> {
+    let Some(one) = structure.one() else { return Vec::new() };
     let all = PARAMETERS.iter();
-    all.map(|of| NamedValue::new(of.name, (of.get)(structure.parameters()), of.unit, "", of.description)).collect()
+    all.map(|of| NamedValue::new(of.name, (of.get)(one.parameters()), of.unit, "", of.description)).collect()
 }
 
 /// The derived quantities of one mass; the numbers of a structure of many masses.
-pub fn derived(structure: &AnyStructure) -> Vec<NamedValue> {
-    match structure {
-        AnyStructure::One(structure) => named(&DERIVED, structure),
-        AnyStructure::Many(frame) => named(&OF_FRAME, frame),
-    }
+pub fn derived(structure: &Structure) -> Vec<NamedValue> {
+    structure.one().map_or_else(|| named(&OF_STRUCTURE, structure), |one| named(&DERIVED, one))
 }
 
 /// The numbers of each mode of a structure of many masses, lowest frequency first.
-pub fn modes(structure: &AnyStructure) -> Vec<Vec<NamedValue>> {
-    let modes = structure.frame().into_iter().flat_map(Frame::mode_table);
+pub fn modes(structure: &Structure) -> Vec<Vec<NamedValue>> {
+    let modes = [structure].into_iter().filter(|of| of.one().is_none()).flat_map(Structure::mode_table);
     modes.map(|mode| named(&OF_MODE, &mode)).collect()
 }
 
@@ -37,7 +34,7 @@ fn named<T>(all: &[Derived<T>], of: &T) -> Vec<NamedValue> {
 }
 
 /// All numbers of a structure, for programs; the numbers of each mode as `f[1]`.
-pub fn numbers(structure: &AnyStructure) -> Vec<NamedValue> {
+pub fn numbers(structure: &Structure) -> Vec<NamedValue> {
     let of_mode = |(number, mode): (usize, Vec<NamedValue>)| {
         mode.into_iter().map(move |of| NamedValue { name: format!("{}[{number}]", of.name), ..of })
     };
@@ -46,25 +43,25 @@ pub fn numbers(structure: &AnyStructure) -> Vec<NamedValue> {
 }
 
 /// The parameters of one mass in one line; how many floors and modes many masses have.
-pub fn in_one_line(structure: &AnyStructure) -> String {
-    if let Some(frame) = structure.frame() {
-        return format!("{} floors, {} modes", frame.floors().len(), frame.modes().len());
+pub fn in_one_line(structure: &Structure) -> String {
+    if structure.one().is_none() {
+        return format!("{} floors, {} modes", structure.floors().len(), structure.modes().len());
     }
     let value = |of: &NamedValue| format!("{} = {}", of.name, with_unit(of.value, of.unit));
     given(structure).iter().map(value).collect::<Vec<_>>().join(", ")
 }
 
 /// The structure, for people: parameters and derived quantities of one mass; of many masses their numbers, and a row for each mode.
-pub fn text(structure: &AnyStructure) -> Result<String, fmt::Error> {
+pub fn text(structure: &Structure) -> Result<String, fmt::Error> {
     let mut out = String::new();
     let unit = |unit| if unit == "1" { "-" } else { unit };
     let derived = derived(structure);
-    if let Some(frame) = structure.frame() {
+    if structure.one().is_none() {
         writeln!(out, "Structure of many masses")?;
         for NamedValue { name, value, unit: of, description, .. } in derived.iter().filter(|of| of.value != 0.0) {
             writeln!(out, "  {name:<10} {:>12} {:<6} {description}", significant(*value), unit(of))?;
         }
-        print_modes(&mut out, frame, &modes(structure))?;
+        print_modes(&mut out, structure, &modes(structure))?;
         return Ok(out);
     }
     writeln!(out, "Parameters")?;
@@ -78,11 +75,11 @@ pub fn text(structure: &AnyStructure) -> Result<String, fmt::Error> {
     Ok(out)
 }
 
-fn print_modes(out: &mut String, frame: &Frame, table: &[Vec<NamedValue>]) -> fmt::Result {
+fn print_modes(out: &mut String, frame: &Structure, table: &[Vec<NamedValue>]) -> fmt::Result {
     if frame.base().r.is_none() {
         writeln!(out, "  r is not given: momentum with the shape frozen gives it for each impact")?;
     }
-    for warning in validity::of_frame(frame, Detail::Auto) {
+    for warning in validity::of_structure(frame, Detail::Auto) {
         writeln!(out, "  {warning}")?;
     }
     let &Body { m_s, S_1, I_2, .. } = frame.body();

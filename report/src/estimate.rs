@@ -1,7 +1,7 @@
 //! Demands without a time history, term by term (Eqs 4, 21 to 24).
 
 use crate::quantities::NamedValue;
-use rocking::Structure;
+use rocking::OneMass;
 use rocking::estimates::demand::Demand;
 use rocking::estimates::response_spectrum::spectral_acceleration;
 use rocking::run::record::Record;
@@ -17,7 +17,7 @@ pub struct Estimate {
 
 impl Estimate {
     /// Of `structure` under `record`, or on ground at rest, with the dynamic amplification `C`, 0 to 2.
-    pub fn new(structure: &Structure, record: Option<&Record>, C: f64) -> anyhow::Result<Estimate> {
+    pub fn new(structure: &OneMass, record: Option<&Record>, C: f64) -> anyhow::Result<Estimate> {
         let spectral = |record| spectral_acceleration(record, TAU / structure.omega_u, structure.zeta_u);
         let S_a = record.map_or(0.0, spectral);
         let demand = Demand::new(structure, S_a, C)?;
@@ -28,7 +28,7 @@ impl Estimate {
 }
 
 /// The ground motion, and what it asks of the structure on a fixed base.
-fn on_fixed_base(structure: &Structure, record: &Record) -> Vec<NamedValue> {
+fn on_fixed_base(structure: &OneMass, record: &Record) -> Vec<NamedValue> {
     let S_a = spectral_acceleration(record, TAU / structure.omega_fc, structure.parameters().zeta_fc);
     vec![
         NamedValue::new("PGA", record.pga(), "m/s2", "", "peak ground acceleration"),
@@ -38,7 +38,7 @@ fn on_fixed_base(structure: &Structure, record: &Record) -> Vec<NamedValue> {
 }
 
 /// The demand while rocking, term by term, and what it comes from.
-fn while_rocking(structure: &Structure, S_a: f64, C: f64, demand: &Demand) -> Vec<NamedValue> {
+fn while_rocking(structure: &OneMass, S_a: f64, C: f64, demand: &Demand) -> Vec<NamedValue> {
     let &Demand { u_ddot_gr, ground, rocking, impact, a_t, V_t, M_t } = demand;
     let term = NamedValue::new;
     vec![

@@ -2,8 +2,8 @@
 
 use crate::run::{Curve, Found, Run};
 use rocking::run::RunError;
-use rocking::structure::{Ties, any::AnyStructure, any::OF_MODE};
-use rocking::{Detail, Parameters};
+use rocking::structure::derived::OF_MODE;
+use rocking::{Body, Detail, Structure, Ties};
 pub use rocking_view::Sizes;
 use rocking_view::{Column, Peak, Scene, quanta};
 
@@ -40,7 +40,7 @@ impl Run {
         let peaks = |found: &Found| -> Vec<Peak> {
             found.peaks.iter().map(|peak| (peak.name.clone(), peak.magnitude, peak.time)).collect()
         };
-        let has_fixed = self.structure.frame().is_some() && self.conditions.detail != Detail::FixedBase;
+        let has_fixed = self.structure.one().is_none() && self.conditions.detail != Detail::FixedBase;
         let fixed = has_fixed.then(|| self.on_fixed_base(found.end).ok()).flatten();
         Ok(Scene {
             title: self.ground.title().into(),
@@ -60,19 +60,11 @@ impl Run {
 }
 
 /// The structure as it is drawn.
-pub fn sizes(structure: &AnyStructure) -> Sizes {
+pub fn sizes(structure: &Structure) -> Sizes {
     let (base, &Ties { P_0, k_t, xi_d, c_d, k_d, .. }) = (structure.base(), &structure.base().ties);
-    let (m, m0, H, f_fc, floors) = match structure {
-        AnyStructure::One(structure) => {
-            let &Parameters { m, m0, H, f_fc, .. } = structure.parameters();
-            (m, m0, H, f_fc, None)
-        }
-        AnyStructure::Many(frame) => {
-            let (body, floors) = (frame.body(), frame.floors());
-            let H = floors.last().map_or(body.S_1 / body.m_s, |floor| floor.height);
-            let f_fc = frame.mode_table().next().map_or(0.0, |first| (OF_MODE[0].value)(&first));
-            (body.m_s, body.m0, H, f_fc, Some(floors.iter().map(|floor| [floor.mass, floor.height]).collect()))
-        }
-    };
+    let (&Body { m_s: m, m0, S_1, .. }, floors) = (structure.body(), structure.floors());
+    let H = floors.last().map_or(S_1 / m, |floor| floor.height);
+    let f_fc = structure.mode_table().next().map_or(0.0, |first| (OF_MODE[0].value)(&first));
+    let floors = structure.one().is_none().then(|| floors.iter().map(|floor| [floor.mass, floor.height]).collect());
     Sizes { m, m0, H, B: base.B, f_fc, g: base.g, P_0, k_t, xi_d, c_d, k_d, floors }
 }

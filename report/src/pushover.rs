@@ -3,7 +3,7 @@
 use crate::quantities::in_readable_unit;
 use rocking::digits::significant;
 use rocking::estimates::pushover::{Equilibrium, PushoverError, at_overturning, at_rotation, in_full_contact};
-use rocking::{Phase, Structure};
+use rocking::{OneMass, Phase};
 use serde::Serialize;
 
 /// Headings of the curve.
@@ -20,7 +20,7 @@ pub struct Corner {
 }
 
 /// The corners of the curve, in its order. Refuses a strut that is too soft.
-pub fn corners(structure: &Structure) -> Result<[Corner; 3], PushoverError> {
+pub fn corners(structure: &OneMass) -> Result<[Corner; 3], PushoverError> {
     let corner = |(name, corner)| {
         let Equilibrium { theta, delta_t, force: P, moment: M, .. } = corner;
         Corner { name, delta_t, theta, P, M }

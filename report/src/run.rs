@@ -14,9 +14,8 @@ use rocking::run::profile::Profile;
 use rocking::run::record::Record;
 use rocking::run::validity::{self, Findings, Judged, Limits};
 use rocking::run::{End, Ending, Finish, RunError, fall};
-use rocking::structure::{Ties, any::AnyStructure};
 use rocking::{
-    Frame, FrameOutput, Modes, Outputs, Phase, Run as Follow, Side, State, Structure, Transition, TransitionKind, Watch,
+    FrameOutput, Modes, Outputs, Phase, Run as Follow, Side, State, Structure, Ties, Transition, TransitionKind, Watch,
 };
 use rocking_sweep::plan::Conditions;
 use serde::Serialize;
@@ -33,7 +32,7 @@ pub const OF_FLOOR: [(&str, &str); 7] =
 #[derive(Clone)]
 pub struct Run {
     /// The structure.
-    pub structure: AnyStructure,
+    pub structure: Structure,
     /// The record as it shakes the structure.
     pub ground: Arc<Record>,
     /// Initial state, level of detail, tolerance and duration.
@@ -158,16 +157,16 @@ impl Watcher for () {}
 /// Lateral coordinates of one mass or of many: all that differs between their runs.
 pub(crate) trait OneOrMany: Judged + Compared {
     /// Values of the outputs, in the order of [`Run::outputs`].
-    fn values(structure: &Self::Structure, sample: &Sample<Self>) -> Vec<f64>;
+    fn values(structure: &Structure, sample: &Sample<Self>) -> Vec<f64>;
 
     /// Acceleration of a floor along the turning e_x, m/s². Floors count from 0.
     fn acceleration(sample: &Sample<Self>, floor: usize) -> f64;
 
     /// The elastic displacements and velocities of a state.
-    fn displaced(structure: &Self::Structure, state: &State<Self>) -> Vec<f64>;
+    fn displaced(structure: &Structure, state: &State<Self>) -> Vec<f64>;
 
     /// The peaks of the structure.
-    fn peaks(structure: &Self::Structure, peaks: &Self::Peaks) -> Vec<NamedPeak>;
+    fn peaks(structure: &Structure, peaks: &Self::Peaks) -> Vec<NamedPeak>;
 
     /// Right-hand-side evaluations that the search for the peaks took, if it counts them.
     fn evaluations(peaks: &Self::Peaks) -> Option<u64>;
@@ -203,7 +202,7 @@ impl OneOrMany for f64 {
 }
 
 impl OneOrMany for Modes {
-    fn values(frame: &Frame, sample: &Sample<Modes>) -> Vec<f64> {
+    fn values(frame: &Structure, sample: &Sample<Modes>) -> Vec<f64> {
         FrameOutput::all(frame).map(sample.outputs()).collect()
     }
 
@@ -211,12 +210,12 @@ impl OneOrMany for Modes {
         sample.output(FrameOutput::a_t(floor))
     }
 
-    fn displaced(frame: &Frame, state: &State<Modes>) -> Vec<f64> {
+    fn displaced(frame: &Structure, state: &State<Modes>) -> Vec<f64> {
         let of = |part| frame.floors().iter().map(move |floor| floor.displacement(part));
         of(&state.u).chain(of(&state.u_dot)).collect()
     }
 
-    fn peaks(_: &Frame, peaks: &Profile) -> Vec<NamedPeak> {
+    fn peaks(_: &Structure, peaks: &Profile) -> Vec<NamedPeak> {
         peaks.peaks().map(|(of, peak)| NamedPeak::new(of.name(), of.unit(), peak)).collect()
     }
 
@@ -233,12 +232,12 @@ impl OneOrMany for Modes {
 macro_rules! with {
     ($run:expr, $follow:ident => $do:expr) => {
         match &$run.structure {
-            AnyStructure::One(structure) => {
-                let $follow = $run.conditions.run(*structure, &$run.ground);
+            structure if structure.one().is_some() => {
+                let $follow = $run.conditions.run(structure.clone(), &$run.ground);
                 $do
             }
-            AnyStructure::Many(frame) => {
-                let $follow = $run.conditions.run_of_modes(frame.clone(), &$run.ground)?;
+            structure => {
+                let $follow = $run.conditions.run_of_modes(structure.clone(), &$run.ground)?;
                 $do
             }
         }
@@ -335,9 +334,9 @@ impl Run {
 
     /// The outputs.
     pub fn outputs(&self) -> Vec<Named> {
-        match &self.structure {
-            AnyStructure::One(_) => OUTPUTS.iter().map(|output| (output.name.into(), output.unit)).collect(),
-            AnyStructure::Many(frame) => FrameOutput::all(frame).map(|of| (of.name(), of.unit())).collect(),
+        match self.structure.one() {
+            Some(_) => OUTPUTS.iter().map(|output| (output.name.into(), output.unit)).collect(),
+            None => FrameOutput::all(&self.structure).map(|of| (of.name(), of.unit())).collect(),
         }
     }
 
@@ -350,36 +349,32 @@ impl Run {
 
     /// The names of the outputs that are drawn.
     fn drawn(&self) -> Vec<String> {
-        match &self.structure {
-            AnyStructure::One(_) => ["theta", "u", "a_t", "delta_t"].map(str::to_owned).into(),
-            AnyStructure::Many(frame) => curve::drawn(frame).map(FrameOutput::name).collect(),
+        match self.structure.one() {
+            Some(_) => ["theta", "u", "a_t", "delta_t"].map(str::to_owned).into(),
+            None => curve::drawn(&self.structure).map(FrameOutput::name).collect(),
         }
     }
 
     /// The peaks of each floor from below, in the order of [`OF_FLOOR`]. One mass is a floor.
     pub fn floors(&self, found: &Found) -> Vec<[f64; OF_FLOOR.len()]> {
         let peak = |name: &str| found.peak(name).map_or(f64::NAN, |peak| peak.magnitude);
-        match &self.structure {
-            AnyStructure::One(structure) => {
+        match self.structure.one() {
+            Some(one) => {
                 let [u, delta_t, a_t, V, M] = ["u", "delta_t", "a_t", "V_t", "M_t"].map(peak);
-                vec![[structure.parameters().H, u, u, delta_t, a_t, V, M]]
+                vec![[one.parameters().H, u, u, delta_t, a_t, V, M]]
             }
-            AnyStructure::Many(frame) => {
+            None => {
                 let of = |(number, height): (usize, f64)| {
                     OF_FLOOR.map(|(name, _)| if name == "h" { height } else { peak(&format!("{name}[{number}]")) })
                 };
-                (1..).zip(frame.floors().iter().map(|floor| floor.height)).map(of).collect()
+                (1..).zip(self.structure.floors().iter().map(|floor| floor.height)).map(of).collect()
             }
         }
     }
 
     /// The warnings that follow from the structure at the level of detail, before anything moves.
     pub fn warnings(&self) -> Vec<String> {
-        let detail = self.conditions.detail;
-        match &self.structure {
-            AnyStructure::One(structure) => validity::of_parameters(structure, detail),
-            AnyStructure::Many(frame) => validity::of_frame(frame, detail),
-        }
+        validity::of_structure(&self.structure, self.conditions.detail)
     }
 }
 
@@ -414,14 +409,14 @@ fn found<Q: OneOrMany>(run: &Follow<Q>, limits: Option<Limits>, watch: &mut impl
     Ok(Found { findings: validity.map(|of| *of.found()), ..results(&run.structure, &found, &transitions) })
 }
 
-fn results<Q: OneOrMany>(structure: &Q::Structure, found: &fall::Found<Q>, transitions: &[Transition<Q>]) -> Found {
+fn results<Q: OneOrMany>(structure: &Structure, found: &fall::Found<Q>, transitions: &[Transition<Q>]) -> Found {
     let &fall::Found { ground, ref peaks, fall, start, finish: Finish { ending, ref motion } } = found;
     let state = |of: &State<Q>| [&Q::displaced(structure, of)[..], &[of.theta, of.theta_dot]].concat();
     let event = |of: &Transition<Q>| Event { time: of.time, kind: of.kind, states: [&of.before, &of.after].map(state) };
     let first = |is_meant: fn(&TransitionKind) -> bool| {
         transitions.iter().find(|transition| is_meant(&transition.kind)).map(|transition| transition.time)
     };
-    let &Ties { c_d, k_d, .. } = &Q::base(structure).ties;
+    let &Ties { c_d, k_d, .. } = &structure.base().ties;
     let Dissipators { viscous: E_viscous, hysteretic: E_hysteretic, .. } = motion.dissipators;
     let taken = Taken { E_viscous, E_hysteretic, theta_end: motion.state.theta };
     Found {

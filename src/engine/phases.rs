@@ -16,7 +16,7 @@ use crate::mechanics::restraint::Dissipators;
 use crate::mechanics::state::way;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
-use crate::{Phase, Side};
+use crate::{Phase, Side, Structure};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
@@ -110,19 +110,19 @@ impl<Q: Moves> Watched<Q> {
 
     /// The dissipators at the reach of `step`, if it moves them.
     #[inline]
-    pub(crate) fn moved(&self, subject: &Subject<Q>, step: &Step<Q>) -> Option<Dissipators> {
-        let is_restrained = || subject.is_tied && Q::base(&subject.structure).is_restrained();
+    pub(crate) fn moved(&self, subject: &Subject, step: &Step<Q>) -> Option<Dissipators> {
+        let is_restrained = || subject.is_tied && subject.structure.base().is_restrained();
         self.moved.filter(|_| is_restrained()).map(|moved| moved(step))
     }
 }
 
 /// The phase of `motion` of `structure`; none once the structure has overturned.
 #[inline]
-pub(crate) fn of<Q: Moves>(structure: &Q::Structure, motion: &Motion<Q>) -> Option<&'static Watched<Q>> {
+pub(crate) fn of<Q: Moves>(structure: &Structure, motion: &Motion<Q>) -> Option<&'static Watched<Q>> {
     match motion.phase {
         Phase::FullContact if motion.held() > 0.0 => Some(Watched::HELD),
         Phase::FullContact => Some(Watched::CONTACT),
-        Phase::Rocking(_) if Q::base(structure).ties.F_y > 0.0 => Some(Watched::ROCKING_YIELDING),
+        Phase::Rocking(_) if structure.base().ties.F_y > 0.0 => Some(Watched::ROCKING_YIELDING),
         Phase::Rocking(_) => Some(Watched::ROCKING),
         Phase::Overturned(_) => None,
     }
@@ -235,7 +235,7 @@ impl<Q: Moves> Guard<Q> for Impact {
 
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
         let Motion { phase, state, .. } = &now.motion;
-        let alpha_cg = libm::atan(Q::base(now.level.structure()).tan_alpha_cg);
+        let alpha_cg = libm::atan(now.level.structure().base().tan_alpha_cg);
         (0, phase.side().sign() * state.theta / alpha_cg + BAND)
     }
 }

@@ -20,7 +20,7 @@ use crate::numbers::{Number, Turn};
 use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Start, evaluate};
 use crate::series::terms::Terms;
-use crate::{Floor, Frame, Outputs, Phase, Reactions, State};
+use crate::{Floor, Outputs, Phase, Reactions, State, Structure};
 use std::cell::{Cell, RefCell};
 use std::f64::consts::TAU;
 
@@ -105,7 +105,7 @@ impl<Q: Moves> Sample<'_, Q> {
         if !is_tied {
             return reactions;
         }
-        let restraint = Restraint::about(structure, phase.side(), dissipators);
+        let restraint = Restraint::about(structure.base(), phase.side(), dissipators);
         let [up, right, moment] = restraint.pulls(&level.subject().angles.chord(state.theta, state.theta_dot));
         reactions.of_edges(up, right, moment)
     }
@@ -114,7 +114,7 @@ impl<Q: Moves> Sample<'_, Q> {
     pub fn restraints(&self) -> Restraints {
         let Motion { phase, state, dissipators, .. } = &self.motion;
         let chord = self.level.subject().angles.chord(state.theta, state.theta_dot);
-        Restraint::about(self.level.structure(), phase.side(), dissipators).forces(&chord)
+        Restraint::about(self.level.structure().base(), phase.side(), dissipators).forces(&chord)
     }
 }
 
@@ -150,8 +150,8 @@ pub(crate) struct Turning<'a, N: Number, Q: Lateral<N>> {
     pub theta_ddot: N,
 }
 
-impl<N: Number, Q: Lateral<N, Structure = Frame>> MotionOfFloors<N> for Turning<'_, N, Q> {
-    fn frame(&self) -> &Frame {
+impl<N: Number, Q: Lateral<N>> MotionOfFloors<N> for Turning<'_, N, Q> {
+    fn frame(&self) -> &Structure {
         self.x.structure
     }
 
@@ -453,14 +453,12 @@ impl Arcs<'_> {
     ///
     /// The motion in full contact is a line and a decaying vibration about the line. The magnitudes of the line and of the
     /// vibration are convex. Their sum is convex too, and the motion touches the sum once a period. The largest magnitude is therefore
-    /// within a period of an end. Without vibration (ζ ≥ 1) only the line is left in the middle.
+    /// within a period of an end.
     pub(crate) fn skip_middle(&mut self) {
         let Some(part) = &mut self.left else { return };
         let &Piece { level, before: &Motion { phase, .. }, .. } = part.piece;
-        let structure = level.structure();
-        let zeta = structure.parameters().zeta_fc;
-        let decay = if zeta < 1.0 { 0.0 } else { 80.0 * zeta };
-        let (periods, passed, until) = ((2.0 * TAU + decay) / structure.omega_fc, part.start.0, part.end.0);
+        let periods = 2.0 * TAU / level.structure().vibration().contact;
+        let (passed, until) = (part.start.0, part.end.0);
         if phase != Phase::FullContact || passed - self.begin < periods || until - passed <= 2.0 * periods {
             return;
         }

@@ -71,6 +71,6 @@ pub(crate) fn enter<Q: Coordinates>(level: &dyn Level<Q>, motion: &mut Motion<Q>
     motion.chatter.count(level.chatter_limit());
     motion.impulse = motion.impulse.and(Impulse::of::<Q>(structure, (motion.phase, &motion.state), (phase, &after)));
     let rocking = if let Phase::Rocking(side) = phase { Some((side, after.theta_dot)) } else { None };
-    motion.dissipators = motion.dissipators.after(Q::base(structure), rocking);
+    motion.dissipators = motion.dissipators.after(structure.base(), rocking);
     (motion.phase, motion.state) = (phase, after);
 }

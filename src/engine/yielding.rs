@@ -16,7 +16,7 @@ use crate::mechanics::state::way;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{ZERO, evaluate};
 use crate::series::terms::Terms;
-use crate::structure::{Base, Ties};
+use crate::{Base, Ties};
 
 /// The smallest rotation at which a dissipator begins to yield as the base comes down, as a fraction of the rotation from 0 to F_y.
 /// Below this rotation the impact comes first. A dissipator that has yielded up to an impact returns to F_y exactly at the next
@@ -28,7 +28,7 @@ pub(crate) struct Yielding;
 
 impl<Q: Moves> Guard<Q> for Yielding {
     fn first(&self, &Step { level, side, start, arc, reach }: &Step<Q>) -> (Crossing, Way) {
-        let (base, dissipators) = (Q::base(level.structure()), start.dissipators);
+        let (base, dissipators) = (level.structure().base(), start.dissipators);
         let Ties { k_d, F_y, .. } = base.ties;
         let mut found = (Crossing::None, Way::default());
         let theta_dot = arc.used(&arc.theta_dot);
@@ -91,7 +91,7 @@ fn moving(base: &Base, side: Side) -> impl Iterator<Item = (usize, f64)> {
 /// The smallest distance of the dissipators from beginning or ceasing to yield, less the most by which `changes` of θ and θ̇ (rad,
 /// rad/s) can reduce the distance. The distance from yielding is a fraction of F_y, and from ceasing a fraction of p_l α_cg.
 fn least_margin<Q: Moves>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
-    let (base, Motion { phase, state, dissipators, .. }) = (Q::base(now.level.structure()), &now.motion);
+    let (base, Motion { phase, state, dissipators, .. }) = (now.level.structure().base(), &now.motion);
     let (side, angles) = (phase.side(), now.level.subject().angles);
     let Ties { k_d, F_y, .. } = base.ties;
     let chord = angles.chord(state.theta, 0.0).length;
@@ -107,7 +107,7 @@ fn least_margin<Q: Moves>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
 
 /// The dissipators at the reach of a step.
 pub(crate) fn moved<Q: Moves>(&Step { level, side, start, arc, reach }: &Step<Q>) -> Dissipators {
-    let (base, angles, dissipators) = (Q::base(level.structure()), level.subject().angles, start.dissipators);
+    let (base, angles, dissipators) = (level.structure().base(), level.subject().angles, start.dissipators);
     let &Base { B, ties: Ties { xi_d, c_d, k_d, F_y, .. }, .. } = base;
     let (mut moved, theta) = (*dissipators, evaluate(arc.used(&arc.theta), reach));
     for (j, lever) in levers(base, side).into_iter().enumerate() {

@@ -13,7 +13,7 @@
 //!
 //! The equations are for a structure that its weight alone turns back. A structure with a tendon or dissipators is an error.
 
-use crate::Structure;
+use crate::OneMass;
 use crate::mechanics::outputs::{base_shear, overturning_moment};
 use crate::structure::quantity::OutOfRange;
 
@@ -50,7 +50,7 @@ pub struct Restrained {
 
 impl Restrained {
     /// Refuses a `structure` with a tendon or dissipators.
-    pub(crate) fn check(structure: &Structure) -> Result<(), Restrained> {
+    pub(crate) fn check(structure: &OneMass) -> Result<(), Restrained> {
         let &crate::Parameters { P_0, k_t, c_d, k_d, .. } = structure.parameters();
         if structure.is_restrained() { Err(Restrained { P_0, k_t, c_d, k_d }) } else { Ok(()) }
     }
@@ -77,7 +77,7 @@ pub struct Demand {
 
 impl Demand {
     /// The demand from the spectral acceleration `S_a` = S_a(T_u, ζ_u) (m/s²) and the amplification `C`, 0 to 2.
-    pub fn new(structure: &Structure, S_a: f64, C: f64) -> Result<Demand, DemandError> {
+    pub fn new(structure: &OneMass, S_a: f64, C: f64) -> Result<Demand, DemandError> {
         if !(0.0..=INSTANT_TRANSITION).contains(&C) {
             let description = "dynamic amplification at a transition between rocking phases; 2 for an instant one";
             let max = INSTANT_TRANSITION;
@@ -114,18 +114,18 @@ mod tests {
     #[test]
     fn the_specimens_have_the_numbers_of_the_paper() {
         let in_g = |parameters, C| {
-            let demand = Demand::new(&Structure::new(parameters).unwrap(), 0.0, C).unwrap();
+            let demand = Demand::new(&OneMass::new(parameters).unwrap(), 0.0, C).unwrap();
             format!("{:.4}", demand.a_t / parameters.g)
         };
         assert_eq!(in_g(Parameters::MCMANUS, 2.0), "0.6585");
         assert_eq!(in_g(Parameters::EVISON, 0.0), "0.3333");
-        let tan_alpha_cg = Structure::new(Parameters::EVISON).unwrap().tan_alpha_cg;
+        let tan_alpha_cg = OneMass::new(Parameters::EVISON).unwrap().tan_alpha_cg;
         assert_eq!(format!("{:.2}", 0.92 * tan_alpha_cg), "0.34");
     }
 
     #[test]
     fn the_terms_add_up() {
-        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let structure = OneMass::new(Parameters::EVISON).unwrap();
         let &Parameters { m, H, g, .. } = structure.parameters();
         let demand = Demand::new(&structure, 30.0, 1.4).unwrap();
         let expected = (1.0 - structure.chi) * 30.0 + 2.4 * structure.chi * g * structure.tan_alpha_cg;
@@ -138,7 +138,7 @@ mod tests {
     /// mass by ü_gr,max for C = 2, up to terms in g/(ω_u² H) that Eq 18 neglects.
     #[test]
     fn an_instant_change_of_sides_accelerates_as_equation_21_says() {
-        let structure = Structure::new(Parameters { f_fc: 1e3, ..Parameters::MCMANUS }).unwrap();
+        let structure = OneMass::new(Parameters { f_fc: 1e3, ..Parameters::MCMANUS }).unwrap();
         let demand = Demand::new(&structure, 0.0, INSTANT_TRANSITION).unwrap();
         let quiet = State { u: structure.chi * structure.u_cr, ..State::default() };
         let u_ddot = accelerations(&structure, Side::Left, &quiet, Load::default(), &Dissipators::NEW).unwrap()[0];
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn an_amplification_out_of_range_is_refused() {
-        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let structure = OneMass::new(Parameters::EVISON).unwrap();
         let refused = |C| Demand::new(&structure, 1.0, C).unwrap_err().to_string();
         assert!(refused(2.5).starts_with("C = 2.5 is out of range: it must lie between 0 and 2 (dynamic"));
         assert!(refused(-0.1).starts_with("C = -0.1"));

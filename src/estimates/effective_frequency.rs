@@ -9,11 +9,11 @@
 //! f_r falls from ∞ at θ_i → 0 to 0 at θ_i = tan α_cg, the unstable equilibrium, from which the structure never comes
 //! down. A real structure does not exceed f_fc: rocking that small is vibration in full contact.
 
-use crate::Structure;
+use crate::OneMass;
 use crate::estimates::demand::Restrained;
 
 /// Time from release at rest at the rotation `theta` (rad) to impact, s; ∞ from tan α_cg on.
-pub fn time_to_impact(structure: &Structure, theta: f64) -> Result<f64, Restrained> {
+pub fn time_to_impact(structure: &OneMass, theta: f64) -> Result<f64, Restrained> {
     Restrained::check(structure)?;
     let part = theta.abs() / structure.tan_alpha_cg;
     if part >= 1.0 {
@@ -24,7 +24,7 @@ pub fn time_to_impact(structure: &Structure, theta: f64) -> Result<f64, Restrain
 }
 
 /// Effective rocking frequency f_r of the amplitude `theta` (rad), Hz (Eq 14), of a structure without ties.
-pub fn effective_frequency(structure: &Structure, theta: f64) -> Result<f64, Restrained> {
+pub fn effective_frequency(structure: &OneMass, theta: f64) -> Result<f64, Restrained> {
     Ok(0.25 / time_to_impact(structure, theta)?)
 }
 
@@ -35,8 +35,8 @@ mod tests {
     use crate::{Parameters, State};
     use approx::assert_relative_eq;
 
-    fn evison() -> Structure {
-        Structure::new(Parameters::EVISON).unwrap()
+    fn evison() -> OneMass {
+        OneMass::new(Parameters::EVISON).unwrap()
     }
 
     /// Eq 11 with a_g = 0: q_r = tan α_cg − (tan α_cg − θ_i) cosh(p_l t) is 0 at the time found.
@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn a_tied_structure_has_no_effective_frequency_and_no_modes() {
-        let tied = Structure::new(Parameters { k_t: 1e4, ..Parameters::EVISON }).unwrap();
+        let tied = OneMass::new(Parameters { k_t: 1e4, ..Parameters::EVISON }).unwrap();
         let refused = Restrained { P_0: 0.0, k_t: 1e4, c_d: 0.0, k_d: 0.0 };
         assert_eq!(effective_frequency(&tied, 0.01), Err(refused.clone()));
         assert_eq!(Modes::of(&tied, &State::default()), Err(refused));

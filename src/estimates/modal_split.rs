@@ -21,7 +21,7 @@
 //! of the full equations by g (θ − χ q_r) to first order.
 
 use crate::estimates::demand::Restrained;
-use crate::{Side, State, Structure};
+use crate::{OneMass, Side, State};
 
 /// The rotation of the base, split into the two modes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +38,7 @@ pub struct Modes {
 
 impl Modes {
     /// Splits the rotation of `state` (Eq 16) of a structure without ties.
-    pub fn of(structure: &Structure, state: &State) -> Result<Modes, Restrained> {
+    pub fn of(structure: &OneMass, state: &State) -> Result<Modes, Restrained> {
         Restrained::check(structure)?;
         let &State { u, u_dot, theta, theta_dot } = state;
         let ratio = -structure.p_l * structure.p_l / structure.parameters().g;
@@ -58,8 +58,8 @@ pub struct ModalAccelerations {
 
 impl ModalAccelerations {
     /// The modes' accelerations while rocking about `side` under the ground acceleration `a_g` (m/s²).
-    pub fn of(structure: &Structure, side: Side, state: &State, a_g: f64) -> Result<ModalAccelerations, Restrained> {
-        let &Structure { chi, one_minus_chi, omega_u, zeta_u, tan_alpha_cg, .. } = structure;
+    pub fn of(structure: &OneMass, side: Side, state: &State, a_g: f64) -> Result<ModalAccelerations, Restrained> {
+        let &OneMass { chi, one_minus_chi, omega_u, zeta_u, tan_alpha_cg, .. } = structure;
         let g = structure.parameters().g;
         let step = side.sign() * g * tan_alpha_cg;
         let a_r = chi * (g * Modes::of(structure, state)?.q_r - a_g - step);
@@ -87,7 +87,7 @@ mod tests {
     /// (7). Both have the same moment about the node of the vibration mode.
     #[test]
     fn the_modes_solve_the_linearised_equations() {
-        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let structure = OneMass::new(Parameters::EVISON).unwrap();
         let &Parameters { m, H, B, g, .. } = structure.parameters();
         for (side, a_g) in [(Side::Right, 2.0), (Side::Left, -15.0)] {
             let q_r = Modes::of(&structure, &STATE).unwrap().q_r;
@@ -107,7 +107,7 @@ mod tests {
     /// Eq 13: the step of the rocking mode, 0.34 g in the paper with χ = 0.92, and its sign.
     #[test]
     fn a_small_rotation_leaves_the_step_of_equation_13() {
-        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let structure = OneMass::new(Parameters::EVISON).unwrap();
         let g = structure.parameters().g;
         let step = |side, a_g| ModalAccelerations::of(&structure, side, &State::default(), a_g).unwrap().a_r / g;
         assert_relative_eq!(step(Side::Left, 0.0), 0.33326, max_relative = 1e-4);

@@ -21,11 +21,12 @@
 //! gives u_cr/(1 + g/(ω_fc² H)), because u_cr leaves out the moment m g u of the top mass. The force drops by this fraction as the
 //! base lifts off (2e-3 for Evison, 5e-3 for McManus).
 
-use crate::mechanics::outputs::Outputs;
+use crate::mechanics::instant::Place;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
+use crate::numbers::Angle;
 use crate::run::fall::angle_of_no_return;
 use crate::series::bisection::last_where;
-use crate::{Phase, Side, State, Structure};
+use crate::{OneMass, Phase, Side};
 use std::f64::consts::FRAC_PI_2;
 
 /// The structure at rest under a horizontal force on the top mass.
@@ -61,7 +62,7 @@ pub enum PushoverError {
 
 /// The pushover from rest to overturning, to the right: `points` evenly over the displacements in full contact, then as many
 /// while rocking.
-pub fn curve(structure: &Structure, points: u32) -> Result<Vec<Equilibrium>, PushoverError> {
+pub fn curve(structure: &OneMass, points: u32) -> Result<Vec<Equilibrium>, PushoverError> {
     if !(2..=MOST_POINTS).contains(&points) {
         return Err(PushoverError::BadPoints(points));
     }
@@ -76,7 +77,7 @@ pub fn curve(structure: &Structure, points: u32) -> Result<Vec<Equilibrium>, Pus
 }
 
 /// Full contact at the elastic displacement `u` (m), |u| ≤ u_cr.
-pub fn in_full_contact(structure: &Structure, u: f64) -> Equilibrium {
+pub fn in_full_contact(structure: &OneMass, u: f64) -> Equilibrium {
     let force = structure.k * u;
     let moment = structure.parameters().H * force;
     Equilibrium { phase: Phase::FullContact, theta: 0.0, u, delta_t: u, force, moment }
@@ -84,15 +85,15 @@ pub fn in_full_contact(structure: &Structure, u: f64) -> Equilibrium {
 
 /// Rocking at the rotation `theta` (rad), |θ| < π/2; 0 is the start of rocking to the right. `None` for a strut too
 /// soft to hold the structure there. The dissipators have been moved there from rest.
-pub fn at_rotation(structure: &Structure, theta: f64) -> Option<Equilibrium> {
+pub fn at_rotation(structure: &OneMass, theta: f64) -> Option<Equilibrium> {
     let &crate::Parameters { m, m0, H, B, g, .. } = structure.parameters();
     let k = structure.k;
     let side = Side::of(theta);
     let s = side.sign();
     let (sin, cos) = libm::sincos(theta.abs());
     let (quadratic, linear) = (k * sin, k * (H * cos + B * sin) + m * g);
-    let dissipators = Dissipators::NEW.moved(structure, side, theta);
-    let held = s * Restraint::about(structure, side, &dissipators).moment(&Angles::Any.chord(theta, 0.0));
+    let dissipators = Dissipators::NEW.moved(structure.base(), side, theta);
+    let held = s * Restraint::about(structure.base(), side, &dissipators).moment(&Angles::Any.chord(theta, 0.0));
     let constant = g * B * (m + m0 * cos * cos) + held * cos;
     let discriminant = linear * linear - 4.0 * quadratic * constant;
     if discriminant < 0.0 {
@@ -102,14 +103,13 @@ pub fn at_rotation(structure: &Structure, theta: f64) -> Option<Equilibrium> {
     let force = (k * u - m * g * sin) / cos;
     let moment = force * (H * cos + (B - u) * sin);
     let phase = Phase::Rocking(side);
-    let state = State { u: s * u, theta, ..State::default() };
-    let delta_t = Outputs::of(structure, phase, &state, 0.0).delta_t;
-    Some(Equilibrium { phase, theta, u: state.u, delta_t, force: s * force, moment: s * moment })
+    let delta_t = Place { share: 1.0, height: H, u: s * u }.right(s * B, &theta.turn());
+    Some(Equilibrium { phase, theta, u: s * u, delta_t, force: s * force, moment: s * moment })
 }
 
 /// The pushover at the lateral displacement `delta_t` (m) of the top mass: full contact up to u_cr, rocking beyond.
 /// `None` where rocking does not reach, B + H at most.
-pub fn at_displacement(structure: &Structure, delta_t: f64) -> Option<Equilibrium> {
+pub fn at_displacement(structure: &OneMass, delta_t: f64) -> Option<Equilibrium> {
     if delta_t.abs() <= structure.u_cr {
         return Some(in_full_contact(structure, delta_t));
     }
@@ -123,7 +123,7 @@ pub fn at_displacement(structure: &Structure, delta_t: f64) -> Option<Equilibriu
 
 /// The unstable equilibrium without a force, beyond which the structure overturns (to the right); at π/2 of one that its
 /// tendon turns back from everywhere. `None` for a strut too soft to hold the structure on the way there.
-pub fn at_overturning(structure: &Structure) -> Option<Equilibrium> {
+pub fn at_overturning(structure: &OneMass) -> Option<Equilibrium> {
     let farthest = angle_of_no_return(structure.base()).unwrap_or(FRAC_PI_2); // an elastic strut overturns before
     let restores = |theta| at_rotation(structure, theta).is_some_and(|there| there.force >= 0.0);
     at_rotation(structure, last_where(0.0, farthest, restores))
@@ -133,14 +133,15 @@ pub fn at_overturning(structure: &Structure) -> Option<Equilibrium> {
 mod tests {
     use super::*;
     use crate::Parameters;
+    use crate::State;
     use crate::levels::nonlinear::accelerations;
     use crate::mechanics::load::Load;
     use approx::assert_relative_eq;
     use nalgebra::{Matrix2, Vector2};
     use proptest::prelude::*;
 
-    fn specimens() -> [Structure; 2] {
-        [Parameters::EVISON, Parameters::MCMANUS].map(|parameters| Structure::new(parameters).unwrap())
+    fn specimens() -> [OneMass; 2] {
+        [Parameters::EVISON, Parameters::MCMANUS].map(|parameters| OneMass::new(parameters).unwrap())
     }
 
     #[test]
@@ -169,13 +170,13 @@ mod tests {
         fn the_force_balances_equations_5_and_6(theta in -1.4..1.4f64, preset in 0..3usize) {
             let tied = Parameters { P_0: 300.0, k_t: 2e4, k_d: 1e5, F_y: 200.0, ..Parameters::MCMANUS };
             let [evison, mcmanus] = specimens();
-            let structure = [evison, mcmanus, Structure::new(tied).unwrap()][preset];
+            let structure = [evison, mcmanus, OneMass::new(tied).unwrap()][preset];
             let &Parameters { m, m0, H, B, J0, .. } = structure.parameters();
             let Equilibrium { u, force, .. } = at_rotation(&structure, theta).unwrap();
             let side = Side::of(theta);
             let lever = side.sign() * B - u;
             let state = State { u, theta, ..State::default() };
-            let moved = Dissipators::NEW.moved(&structure, side, theta);
+            let moved = Dissipators::NEW.moved(structure.base(), side, theta);
             let released = accelerations(&structure, side, &state, Load::default(), &moved).unwrap();
             let mass = Matrix2::new(m, m * H, m * H, J0 + m * H * H + m * lever * lever + m0 * B * B);
             let direction = Vector2::new(theta.cos(), H * theta.cos() + lever * theta.sin());
@@ -228,7 +229,7 @@ mod tests {
 
     #[test]
     fn too_soft_a_strut_and_too_far_a_displacement_have_no_equilibrium() {
-        let soft = Structure::new(Parameters { f_fc: 0.05, m0: 5e4, ..Parameters::EVISON }).unwrap();
+        let soft = OneMass::new(Parameters { f_fc: 0.05, m0: 5e4, ..Parameters::EVISON }).unwrap();
         assert_eq!(at_rotation(&soft, 0.5), None);
         assert_eq!(at_displacement(&specimens()[0], 1.4), None);
     }

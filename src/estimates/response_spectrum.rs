@@ -181,7 +181,7 @@ mod tests {
     use crate::levels::full_contact;
     use crate::mechanics::load::Load;
     use crate::series::taylor::{Arc, Start};
-    use crate::{Parameters, Ramp, State, Structure};
+    use crate::{OneMass, Parameters, Ramp, State};
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
@@ -243,7 +243,7 @@ mod tests {
             zeta_fc in 0.0..0.99f64,
         ) {
             const SEEN: usize = 400;
-            let structure = Structure::new(Parameters { f_fc, zeta_fc, ..Parameters::EVISON }).unwrap();
+            let structure = OneMass::new(Parameters { f_fc, zeta_fc, ..Parameters::EVISON }).unwrap();
             let times: Vec<f64> = (0..a_g.len()).map(|i| steps[..i].iter().sum()).collect();
             let load = segments(&times, &a_g);
             let peak = oscillator(1.0 / f_fc, zeta_fc).peak(load.iter().copied());

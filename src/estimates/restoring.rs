@@ -5,7 +5,7 @@
 //! dissipators change sign on the way back, so that the loop is a flag of the height Σ_j 2 F_y |sB − ξ_j| cos(θ/2).
 
 use crate::mechanics::restraint::{Dissipators, Restraint};
-use crate::{Side, Structure};
+use crate::{Base, Side};
 use serde::Serialize;
 
 /// A point of the static loop.
@@ -17,14 +17,14 @@ pub struct FlagPoint {
     pub moment: f64,
 }
 
-/// The moments while the base of `structure` is turned slowly from rest to the rotation `theta` (rad, 0 to π/2) and back to 0, in
+/// The moments while the `base` is turned slowly from rest to the rotation `theta` (rad, 0 to π/2) and back to 0, in
 /// this many equal `steps` each way.
-pub fn flag(structure: &Structure, theta: f64, steps: u32) -> Vec<FlagPoint> {
+pub fn flag(base: &Base, theta: f64, steps: u32) -> Vec<FlagPoint> {
     let there = (0..=steps).map(|i| theta * f64::from(i) / f64::from(steps));
     let mut dissipators = Dissipators::NEW;
     let at = |theta: f64| {
-        dissipators = dissipators.moved(structure, Side::Right, theta);
-        FlagPoint { theta, moment: Restraint::about(structure, Side::Right, &dissipators).restoring_moment(theta) }
+        dissipators = dissipators.moved(base, Side::Right, theta);
+        FlagPoint { theta, moment: Restraint::about(base, Side::Right, &dissipators).restoring_moment(theta) }
     };
     there.clone().chain(there.rev().skip(1)).map(at).collect()
 }
@@ -32,6 +32,7 @@ pub fn flag(structure: &Structure, theta: f64, steps: u32) -> Vec<FlagPoint> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::OneMass;
     use crate::Parameters;
     use crate::mechanics::restraint::centring_moments;
 
@@ -41,9 +42,9 @@ mod tests {
     /// Both dissipators yield on the way there and on the way back: of a flag by hand every corner.
     #[test]
     fn the_flag_is_that_of_the_calculation_by_hand() {
-        let structure = Structure::new(RESTRAINED).unwrap();
+        let structure = OneMass::new(RESTRAINED).unwrap();
         let Parameters { m, m0, H, B, g, P_0, k_t, xi_d, F_y, .. } = RESTRAINED;
-        let points = flag(&structure, 0.05, 10);
+        let points = flag(structure.base(), 0.05, 10);
         assert_eq!(points.len(), 21);
         let elastic = |theta: f64| {
             let by_weight = (m + m0) * g * B * theta.cos() - m * g * H * theta.sin();
@@ -60,7 +61,7 @@ mod tests {
         }
         assert_eq!(points[0].moment, elastic(0.0));
         // with the base down, the residual forces decide whether it stays down
-        let [restoring, residual] = centring_moments(&structure.base);
+        let [restoring, residual] = centring_moments(structure.base());
         assert!((points[20].moment - (restoring - residual)).abs() < 1e-9 * restoring);
         assert!((residual - F_y * ((B - xi_d) + (B + xi_d))).abs() < 1e-12 * residual);
     }

@@ -26,7 +26,7 @@ use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift::least_hold;
 use crate::numbers::bend::Bend;
 use crate::series::taylor::{Arc, Start};
-use crate::{Phase, State, Structure};
+use crate::{OneMass, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
@@ -88,18 +88,19 @@ impl Detail {
         local_error: f64,
         is_vertical: bool,
     ) -> Result<AnyLevel, InitialStateError> {
-        let is_tied = structure.is_restrained() || is_vertical;
+        let one = *structure.one_mass("an engine of one coordinate")?;
+        let is_tied = structure.base().is_restrained() || is_vertical;
         let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
-        let contact = ExactContact::new(&structure);
+        let contact = ExactContact::new(&one);
         Ok(match self {
-            Detail::Auto => AnyLevel::Nonlinear(Elastic::new(Some(contact), NonlinearRocking::new(subject))),
-            Detail::Nonlinear => AnyLevel::Nonlinear(Elastic::new(None, NonlinearRocking::new(subject))),
+            Detail::Auto => AnyLevel::Nonlinear(Elastic::new(Some(contact), NonlinearRocking::new(subject, one))),
+            Detail::Nonlinear => AnyLevel::Nonlinear(Elastic::new(None, NonlinearRocking::new(subject, one))),
             Detail::Linear if is_tied => AnyLevel::Modes(ManyModes::new(subject, self)),
-            Detail::Linear => AnyLevel::Linear(Elastic::new(Some(contact), LinearRocking::new(subject))),
+            Detail::Linear => AnyLevel::Linear(Elastic::new(Some(contact), LinearRocking::new(subject, one))),
             Detail::Modal if is_tied => return Err(InitialStateError::RestrainedModal),
-            Detail::Modal => AnyLevel::Linear(Elastic::new(Some(contact), LinearRocking::modal(subject))),
-            Detail::Rigid => AnyLevel::Modes(ManyModes::rigid(subject)),
-            Detail::FixedBase => AnyLevel::FixedBase(FixedBase { subject, contact }),
+            Detail::Modal => AnyLevel::Linear(Elastic::new(Some(contact), LinearRocking::modal(subject, one))),
+            Detail::Rigid => AnyLevel::Modes(ManyModes::rigid(subject, &one)),
+            Detail::FixedBase => AnyLevel::FixedBase(FixedBase { subject, one, contact }),
         })
     }
 }
@@ -192,12 +193,12 @@ impl<Rocking: ElasticRocking> Elastic<Rocking> {
     /// The |u| (m) below which the base stays down over the interval of `start`, whatever pushes the top mass.
     #[inline(always)]
     fn least_displacement(&self, start: &Start) -> f64 {
-        let &Subject { ref structure, is_tied, .. } = self.rocking.subject();
-        match is_tied {
-            false => structure.u_cr, // every leap asks
+        let one = self.rocking.one();
+        match self.rocking.subject().is_tied {
+            false => one.u_cr, // every leap asks
             true => {
-                let hold = least_hold(&structure.base, start.a_v, start.interval, start.dissipators);
-                hold / (structure.parameters().H * structure.k)
+                let hold = least_hold(one.base(), start.a_v, start.interval, start.dissipators);
+                hold / (one.parameters().H * one.k)
             }
         }
     }
@@ -234,7 +235,7 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
     fn series(&self, phase: Phase, start: &Start, arc: &mut Arc) {
         match phase {
             Phase::Rocking(side) => self.rocking.series(side, start, arc),
-            Phase::FullContact | Phase::Overturned(_) => full_contact::series(self.structure(), start, arc),
+            Phase::FullContact | Phase::Overturned(_) => full_contact::series(self.rocking.one(), start, arc),
         }
     }
 
@@ -244,14 +245,14 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
 
     #[inline(always)]
     fn liftable(&self) -> Option<Liftable<'_>> {
-        let &Subject { ref structure, angles, .. } = self.subject();
+        let one = self.rocking.one();
         Some(Liftable {
-            base: &structure.base,
-            modes: std::slice::from_ref(&structure.mode),
+            base: one.base(),
+            modes: std::slice::from_ref(one.mode()),
             rigid: None,
             lean: self.rocking.lean(),
-            has_constant_inertia: angles == Angles::Small,
-            turning_decides: structure.u_cr == f64::NEG_INFINITY,
+            has_constant_inertia: self.subject().angles == Angles::Small,
+            turning_decides: one.u_cr == f64::NEG_INFINITY,
         })
     }
 }
@@ -260,6 +261,7 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
 #[derive(Clone, Debug)]
 pub(crate) struct FixedBase {
     subject: Subject,
+    one: OneMass,
     contact: ExactContact,
 }
 
@@ -279,7 +281,7 @@ impl Level for FixedBase {
     }
 
     fn series(&self, _phase: Phase, start: &Start, arc: &mut Arc) {
-        full_contact::series(self.structure(), start, arc);
+        full_contact::series(&self.one, start, arc);
     }
 }
 
@@ -303,7 +305,7 @@ mod tests {
     #[test]
     fn exact_flows_keep_their_digits_under_steep_loads() {
         let parameters = Parameters { H: 30.3, B: 5.11, f_fc: 48.2, ..Parameters::MCMANUS };
-        let structure = Structure::new(parameters).unwrap();
+        let structure = OneMass::new(parameters).unwrap();
         let rocking = State { u: 1e-5, u_dot: 0.01, theta: 0.1, theta_dot: 0.02 };
         let down = State { theta: 0.0, theta_dot: 0.0, ..rocking };
         for (detail, phase, mut state) in [
@@ -311,7 +313,7 @@ mod tests {
             (Detail::Linear, Phase::Rocking(Side::Right), rocking),
             (Detail::FixedBase, Phase::FullContact, down),
         ] {
-            let level = detail.level(structure, 1e-9, false).unwrap();
+            let level = detail.level(structure.into(), 1e-9, false).unwrap();
             let (mut expected, mut arc) = (state, Arc::default());
             let (mut u_dot, mut theta_dot) = (0.0_f64, 0.0_f64);
             for (k, pair) in noise().map(|x| 20.0 * x).take(1001).collect::<Vec<_>>().windows(2).enumerate() {
@@ -338,8 +340,8 @@ mod tests {
             u in -4e-3..4e-3f64, u_dot in -0.4..0.4f64, theta in 1e-4..0.05f64, theta_dot in -1.0..1.0f64,
             value in -5.0..5.0f64, slope in -300.0..300.0f64, interval in 1e-4..0.02f64, zeta_fc in 0.0..0.2f64,
         ) {
-            let structure = Structure::new(Parameters { zeta_fc, ..Parameters::MCMANUS }).unwrap();
-            let (level, phase) = (detail.level(structure, 1e-15, false).unwrap(), Phase::Rocking(Side::of(s)));
+            let structure = OneMass::new(Parameters { zeta_fc, ..Parameters::MCMANUS }).unwrap();
+            let (level, phase) = (detail.level(structure.into(), 1e-15, false).unwrap(), Phase::Rocking(Side::of(s)));
             let a_g = Ramp { value, slope };
             let state = State { u, u_dot, theta: s * theta, theta_dot };
             let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15, ..Start::default() };

@@ -8,7 +8,7 @@ use crate::numbers::Number;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Arc, Start};
 use crate::series::terms::Terms;
-use crate::structure::{Base, Mode};
+use crate::{Base, Mode};
 use crate::{Ramp, Side, State};
 
 /// The structure whose base can lift off, as a level of detail sees it.
@@ -144,12 +144,12 @@ impl Liftable<'_> {
 mod tests {
     use super::*;
     use crate::levels::nonlinear::accelerations;
-    use crate::{Detail, Load, Parameters, Phase, Structure};
+    use crate::{Detail, Load, OneMass, Parameters, Phase};
     use proptest::prelude::*;
 
     /// The first uplift of the motion in full contact that starts in `state`, its σ, and the state and time there.
     fn first_from(parameters: Parameters, state: State, push: f64, interval: f64) -> (Crossing, Side, State, f64) {
-        let level = Detail::Nonlinear.level(Structure::new(parameters).unwrap(), 1e-15, false).unwrap();
+        let level = Detail::Nonlinear.level(OneMass::new(parameters).unwrap().into(), 1e-15, false).unwrap();
         let (mut arc, push) = (Arc::default(), Ramp { value: push, slope: 0.0 });
         let start = Start { state, a_g: push, a_top: push, interval, local_error: 1e-15, ..Start::default() };
         level.series(Phase::FullContact, &start, &mut arc);
@@ -165,7 +165,7 @@ mod tests {
             u in -0.02..0.02f64, u_dot in -3.0..3.0f64, a_g in -20.0..20.0f64, F_t in -3e3..3e3f64,
         ) {
             let parameters = Parameters { zeta_fc: 0.1, ..Parameters::MCMANUS };
-            let structure = Structure::new(parameters).unwrap();
+            let structure = OneMass::new(parameters).unwrap();
             let state = State { u, u_dot, ..State::default() };
             let side = Side::of(u);
             let load = Load { a_g, F_t, a_v: 0.0 };
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn a_displacement_that_reaches_u_cr_lifts_off() {
-        let u_cr = Structure::new(Parameters::EVISON).unwrap().u_cr;
+        let u_cr = OneMass::new(Parameters::EVISON).unwrap().u_cr;
         let first = |u: f64| {
             let (crossing, side, ..) = first_from(Parameters::EVISON, State { u, ..State::default() }, 0.0, 1e-9);
             (crossing, side)
@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn a_landing_beyond_u_cr_waits_for_the_moment() {
         let parameters = Parameters { zeta_fc: 0.2, ..Parameters::EVISON };
-        let structure = Structure::new(parameters).unwrap();
+        let structure = OneMass::new(parameters).unwrap();
         let state = State { u: 1.05 * structure.u_cr, u_dot: -0.02, ..State::default() };
         let push = -40.0; // turns the velocity round
         let (crossing, side, there, time) = first_from(parameters, state, push, 2e-3);

@@ -8,20 +8,22 @@ use crate::levels::level::Bounds;
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::mechanics::load::Load;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
-use crate::{State, Structure};
+use crate::{OneMass, State};
 
 /// Elastic acceleration ü (m/s²) under the `load` by Eq 1.
-pub fn acceleration(structure: &Structure, state: &State, load: Load) -> f64 {
-    -load.on_top(structure) - structure.damping_fc * state.u_dot - structure.stiffness * state.u
+pub fn acceleration(structure: &OneMass, state: &State, load: Load) -> f64 {
+    -(load.a_g - load.F_t / structure.parameters().m)
+        - structure.damping_fc * state.u_dot
+        - structure.stiffness * state.u
 }
 
 /// Part of the velocity at uplift, ω_fc u_cr, below which motion is as good as none.
 const NEGLIGIBLE: f64 = 1e-30;
 
 /// Writes the motion from `start` into `arc`.
-pub(crate) fn series(structure: &Structure, start: &Start, arc: &mut Arc) {
+pub(crate) fn series(structure: &OneMass, start: &Start, arc: &mut Arc) {
     let &Start { state, a_top, interval, local_error, .. } = start;
-    let &Structure { stiffness, damping_fc, omega_fc, .. } = structure;
+    let &OneMass { stiffness, damping_fc, omega_fc, .. } = structure;
     let span = interval.min(LONGEST_SPAN / omega_fc);
     let forcing = a_top.value.abs() + a_top.slope.abs() * span;
     let response_time = span.min(1.0 / omega_fc);
@@ -46,7 +48,7 @@ pub(crate) struct ExactContact {
 
 impl ExactContact {
     /// For `structure`.
-    pub(crate) fn new(structure: &Structure) -> ExactContact {
+    pub(crate) fn new(structure: &OneMass) -> ExactContact {
         let oscillator = Oscillator { omega: structure.omega_fc, zeta: structure.parameters().zeta_fc };
         ExactContact { oscillator, flows: Kept::new(Flow::NONE) }
     }
@@ -118,7 +120,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// Closed form from rest: free decay plus the particular solution of a linear ramp.
-    fn ramp_from_rest(structure: &Structure, a_g: Ramp, t: f64) -> f64 {
+    fn ramp_from_rest(structure: &OneMass, a_g: Ramp, t: f64) -> f64 {
         let (w, z) = (structure.omega_fc, structure.parameters().zeta_fc);
         let wd = w * (1.0 - z * z).sqrt();
         let offset = -a_g.value / (w * w) + 2.0 * z * a_g.slope / w.powi(3);
@@ -135,7 +137,7 @@ mod tests {
 
     #[test]
     fn the_series_follows_the_closed_form() {
-        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let structure = OneMass::new(Parameters::EVISON).unwrap();
         let mut state = State::default();
         let mut time = 0.0;
         let mut arc = Arc::default();
@@ -150,7 +152,7 @@ mod tests {
 
     #[test]
     fn the_exact_flow_follows_the_closed_form() {
-        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let structure = OneMass::new(Parameters::EVISON).unwrap();
         let contact = ExactContact::new(&structure);
         let end = contact.leap(&from(State::default(), RAMP, 0.3), f64::INFINITY).unwrap();
         assert_relative_eq!(end.u, ramp_from_rest(&structure, RAMP, 0.3), max_relative = 1e-13);
@@ -163,7 +165,7 @@ mod tests {
             u in -1e-3..1e-3f64, u_dot in -0.1..0.1f64, value in -3.0..3.0f64, slope in -300.0..300.0f64,
             zeta_fc in 0.0..0.99f64, interval in 1e-4..0.02f64,
         ) {
-            let structure = Structure::new(Parameters { zeta_fc, ..Parameters::EVISON }).unwrap();
+            let structure = OneMass::new(Parameters { zeta_fc, ..Parameters::EVISON }).unwrap();
             let state = State { u, u_dot, ..State::default() };
             let a_g = Ramp { value, slope };
             let mut arc = Arc::default();

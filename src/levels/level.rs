@@ -10,7 +10,7 @@ use crate::mechanics::restraint::{Angles, Dissipators};
 use crate::numbers::bend::Bend;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
-use crate::{Phase, Side, State, Structure};
+use crate::{OneMass, Phase, Side, State, Structure};
 
 /// A structure at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -21,9 +21,9 @@ pub(crate) struct Now<'a, Q = f64> {
 }
 
 /// The structure that a level moves, and how it is moved.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Subject<Q: Coordinates = f64> {
-    pub structure: Q::Structure,
+#[derive(Clone, Debug)]
+pub(crate) struct Subject {
+    pub structure: Structure,
     /// Truncation error that a step may have.
     pub local_error: f64,
     /// Whether the structure is restrained or shaken vertically: its equations of rocking then have more terms.
@@ -32,10 +32,10 @@ pub(crate) struct Subject<Q: Coordinates = f64> {
     pub angles: Angles,
 }
 
-impl<Q: Coordinates> Subject<Q> {
+impl Subject {
     /// The step of `interval` (s) from `state` under `load`.
     #[inline]
-    pub(crate) fn start<'a>(
+    pub(crate) fn start<'a, Q: Coordinates>(
         &self,
         state: State<Q>,
         dissipators: &'a Dissipators,
@@ -51,9 +51,9 @@ impl<Q: Coordinates> Subject<Q> {
 /// [liftable](Level::liftable) structure has a fixed base.
 #[allow(private_interfaces)] // the coordinates name the trait, and nobody else can use it
 pub trait Level<Q: Coordinates = f64> {
-    fn subject(&self) -> &Subject<Q>;
+    fn subject(&self) -> &Subject;
 
-    fn structure(&self) -> &Q::Structure {
+    fn structure(&self) -> &Structure {
         &self.subject().structure
     }
 
@@ -115,7 +115,7 @@ pub trait Level<Q: Coordinates = f64> {
 
     /// The most transitions that may happen within a period.
     fn chatter_limit(&self) -> ChatterLimit {
-        ChatterLimit::of(Q::vibration(self.structure()))
+        ChatterLimit::of(self.structure().vibration())
     }
 
     /// `state`, with 0 for all that cannot move in `phase`.
@@ -153,6 +153,9 @@ pub(crate) fn derivatives<Q: Coordinates, const K: usize>(
 /// Equations of rocking with an elastic strut.
 pub(crate) trait ElasticRocking {
     fn subject(&self) -> &Subject;
+
+    /// The numbers of the one mass.
+    fn one(&self) -> &OneMass;
 
     fn leap(&self, _side: Side, _start: &Start) -> Option<State> {
         None
@@ -192,9 +195,9 @@ pub(crate) struct Pace {
 
 impl Pace {
     /// The pace of `structure`.
-    pub(crate) fn new(structure: &Structure) -> Pace {
+    pub(crate) fn new(structure: &OneMass) -> Pace {
         let &crate::Parameters { H, g, .. } = structure.parameters();
-        let &Structure { rocking_rate, omega_u, tan_alpha_cg, .. } = structure;
+        let &OneMass { rocking_rate, omega_u, tan_alpha_cg, .. } = structure;
         Pace { longest_span: LONGEST_SPAN / rocking_rate, omega: omega_u, gravity: g * tan_alpha_cg, height: H }
     }
 

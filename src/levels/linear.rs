@@ -29,7 +29,7 @@ use crate::levels::oscillator::Kept;
 use crate::mechanics::instant::Second;
 use crate::numbers::bend::Bend;
 use crate::series::taylor::{Arc, Start};
-use crate::{Side, State, Structure};
+use crate::{OneMass, Side, State};
 use nalgebra::{SMatrix, SVector};
 use std::f64::consts::FRAC_PI_2;
 
@@ -114,6 +114,7 @@ impl LinearSystem {
 #[derive(Clone, Debug)]
 pub(crate) struct LinearRocking {
     subject: Subject,
+    one: OneMass,
     pace: Pace,
     system: LinearSystem,
     /// Flows, and the amplification of |θ̈| over the same time.
@@ -130,10 +131,9 @@ pub(crate) struct LinearRocking {
 
 impl LinearRocking {
     /// Eqs 7 and 8.
-    pub(crate) fn new(subject: Subject) -> LinearRocking {
-        let structure = &subject.structure;
-        let &crate::Parameters { H, B, g, .. } = structure.parameters();
-        let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
+    pub(crate) fn new(subject: Subject, one: OneMass) -> LinearRocking {
+        let &crate::Parameters { H, B, g, .. } = one.parameters();
+        let OneMass { stiffness, damping_u, foundation, gamma, .. } = one;
         let inertia = foundation + B * B;
         let theta_ddot = Row {
             u: (H * stiffness + g) / inertia,
@@ -149,13 +149,13 @@ impl LinearRocking {
             a_top: -1.0,
             side: -H * theta_ddot.side,
         };
-        LinearRocking::of(subject, LinearSystem { u_ddot, theta_ddot }, 1.0)
+        LinearRocking::of(subject, one, LinearSystem { u_ddot, theta_ddot }, 1.0)
     }
 
     /// Eqs 11, 16 and 18. The two modes leave χ (1−χ) of the moment g u.
-    pub(crate) fn modal(subject: Subject) -> LinearRocking {
-        let &Structure { p_l, omega_u, zeta_u, tan_alpha_cg, chi, one_minus_chi, .. } = &subject.structure;
-        let g = subject.structure.parameters().g;
+    pub(crate) fn modal(subject: Subject, one: OneMass) -> LinearRocking {
+        let OneMass { p_l, omega_u, zeta_u, tan_alpha_cg, chi, one_minus_chi, .. } = one;
+        let g = one.parameters().g;
         let (side, rocking) = (chi / one_minus_chi * g * tan_alpha_cg, p_l * p_l);
         let [u, u_dot] = [-omega_u * omega_u, -2.0 * zeta_u * omega_u];
         let u_ddot = Row { u, u_dot, theta: 0.0, a_top: -1.0, side };
@@ -167,14 +167,15 @@ impl LinearRocking {
             a_top: 0.0,
             side: -rocking * tan_alpha_cg - shape * side,
         };
-        LinearRocking::of(subject, LinearSystem { u_ddot, theta_ddot }, chi * one_minus_chi)
+        LinearRocking::of(subject, one, LinearSystem { u_ddot, theta_ddot }, chi * one_minus_chi)
     }
 
-    fn of(subject: Subject, system: LinearSystem, lean: f64) -> LinearRocking {
+    fn of(subject: Subject, one: OneMass, system: LinearSystem, lean: f64) -> LinearRocking {
         let omega = (-system.u_ddot.u).sqrt();
         LinearRocking {
-            pace: Pace::new(&subject.structure),
+            pace: Pace::new(&one),
             subject,
+            one,
             flows: Kept::new((Flow::zeros(), 1.0)),
             omega,
             compliance: 1.0 / (omega * omega),
@@ -251,6 +252,11 @@ impl ElasticRocking for LinearRocking {
     #[inline(always)]
     fn subject(&self) -> &Subject {
         &self.subject
+    }
+
+    #[inline(always)]
+    fn one(&self) -> &OneMass {
+        &self.one
     }
 
     /// The state after the interval of `start` if rocking about `side` certainly continues until then. Two bounds can prove it: θ
@@ -333,15 +339,15 @@ mod tests {
     use crate::{Detail, Load, Parameters, Phase};
     use approx::assert_relative_eq;
 
-    fn accelerations_of(detail: Detail, structure: Structure, side: Side, state: &State, a_g: f64) -> [f64; 2] {
+    fn accelerations_of(detail: Detail, structure: OneMass, side: Side, state: &State, a_g: f64) -> [f64; 2] {
         let now = Now { state, load: Load::ground(a_g), dissipators: &Dissipators::NEW };
-        detail.level(structure, 1e-9, false).unwrap().accelerations(Phase::Rocking(side), &now).into()
+        detail.level(structure.into(), 1e-9, false).unwrap().accelerations(Phase::Rocking(side), &now).into()
     }
 
     /// Eqs 7 and 8 as they stand, and their distance from Eqs 5 and 6, which is of second order.
     #[test]
     fn the_accelerations_satisfy_equations_7_and_8() {
-        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let structure = OneMass::new(Parameters::MCMANUS).unwrap();
         let &Parameters { m, H, B, g, .. } = structure.parameters();
         let (side, a_g) = (Side::Left, 0.8);
         let distance = |scale: f64| {
@@ -362,8 +368,8 @@ mod tests {
     /// Eqs 11, 16 and 18 as they stand.
     #[test]
     fn the_accelerations_satisfy_equations_11_and_18() {
-        let structure = Structure::new(Parameters::EVISON).unwrap();
-        let &Structure { p_l, omega_u, zeta_u, tan_alpha_cg, chi, .. } = &structure;
+        let structure = OneMass::new(Parameters::EVISON).unwrap();
+        let &OneMass { p_l, omega_u, zeta_u, tan_alpha_cg, chi, .. } = &structure;
         let g = structure.parameters().g;
         let state = State { u: 8e-4, u_dot: -0.03, theta: 0.02, theta_dot: 0.3 };
         let (s, a_g) = (1.0, -2.5);

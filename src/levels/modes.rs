@@ -12,7 +12,7 @@
 //!
 //! The angular momentum D θ̇ has no Coriolis term. An order takes five products and one more for each mode. g is g + a_v. m0 and J0
 //! include the mass that no mode carries, and S_res is the first moment of this mass. F_res and N_res are the force on it and the
-//! moment of this force ([`Frame::load`](crate::Frame::load)). A structure without modes is rigid: Housner's block with the paper's
+//! moment of this force ([`Structure::load`](crate::Structure::load)). A structure without modes is rigid: Housner's block with the paper's
 //! impact rule, which comes to rest by a rule of its own ([`rules`](crate::levels::rules)).
 
 use crate::levels::detail::Detail;
@@ -29,8 +29,9 @@ use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::{self, Angles, Dissipators};
 use crate::mechanics::uplift::inertia;
 use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
-use crate::structure::{Base, Mode, Vibration};
-use crate::{LinearLoad, Parameters, Phase, Side, State};
+use crate::structure::mode::Vibration;
+use crate::{Base, Mode};
+use crate::{LinearLoad, OneMass, Parameters, Phase, Side, State};
 use std::cell::RefCell;
 use wide::f64x4;
 
@@ -40,7 +41,7 @@ const NEGLIGIBLE: f64 = 1e-30;
 /// Motion of a base with modes.
 #[derive(Clone, Debug)]
 pub(crate) struct ManyModes<Q: Coordinates> {
-    subject: Subject<Q>,
+    subject: Subject,
     detail: Detail,
     base: Base,
     modes: Vec<Mode>,
@@ -156,9 +157,9 @@ impl Four {
 
 impl ManyModes<f64> {
     /// One mass without modes: the level `rigid`.
-    pub(crate) fn rigid(subject: Subject) -> ManyModes<f64> {
-        let &Parameters { m, m0, H, J0, .. } = subject.structure.parameters();
-        let base = Base { m0: m + m0, S_res: m * H, J0: J0 + m * H * H, ..subject.structure.base };
+    pub(crate) fn rigid(subject: Subject, one: &OneMass) -> ManyModes<f64> {
+        let &Parameters { m, m0, H, J0, .. } = one.parameters();
+        let base = Base { m0: m + m0, S_res: m * H, J0: J0 + m * H * H, ..*one.base() };
         let vibration = Vibration { contact: base.p_l, rocking: [base.p_l; 2] };
         ManyModes::of(subject, Detail::Rigid, base, &[], Some([m, H]), vibration)
     }
@@ -166,14 +167,14 @@ impl ManyModes<f64> {
 
 impl<Q: Coordinates> ManyModes<Q> {
     /// The structure of `subject` with all its modes, at a level of this `detail`.
-    pub(crate) fn new(subject: Subject<Q>, detail: Detail) -> ManyModes<Q> {
-        let (structure, base) = (subject.structure.clone(), *Q::base(&subject.structure));
-        let vibration = Q::vibration(&structure);
+    pub(crate) fn new(subject: Subject, detail: Detail) -> ManyModes<Q> {
+        let (structure, base) = (subject.structure.clone(), *subject.structure.base());
+        let vibration = structure.vibration();
         ManyModes::of(subject, detail, base, Q::modes(&structure), None, vibration)
     }
 
     fn of(
-        subject: Subject<Q>,
+        subject: Subject,
         detail: Detail,
         base: Base,
         modes: &[Mode],
@@ -464,7 +465,7 @@ impl<Q: Coordinates> ManyModes<Q> {
 
 impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
     #[inline(always)]
-    fn subject(&self) -> &Subject<Q> {
+    fn subject(&self) -> &Subject {
         &self.subject
     }
 
@@ -568,7 +569,8 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Structure;
+    use crate::OneMass;
+    use crate::Ties;
     use crate::engine::piece::Turning;
     use crate::levels::nonlinear::accelerations;
     use crate::mechanics::floors::MotionOfFloors;
@@ -577,15 +579,14 @@ mod tests {
     use crate::mechanics::lateral::{Lateral, Modes};
     use crate::mechanics::load::{LinearLoad, Load};
     use crate::mechanics::reactions::Reactions;
-    use crate::structure::Ties;
-    use crate::structure::frame::{Body, Floor, Frame};
+    use crate::{Body, Floor, Structure};
     use approx::assert_relative_eq;
 
     /// A restrained structure whose modes have these shares and carry the whole mass, or less of `more` mass.
-    fn frame(shares: &[f64], more: f64) -> (Structure, Frame) {
+    fn frame(shares: &[f64], more: f64) -> (OneMass, Structure) {
         let restrained =
             Parameters { P_0: 200.0, k_t: 3e4, xi_d: 0.1, c_d: 40.0, k_d: 1e5, F_y: 400.0, ..Parameters::MCMANUS };
-        let structure = Structure::new(Parameters { zeta_fc: 0.1, c_ratio: 1.3, ..restrained }).unwrap();
+        let structure = OneMass::new(Parameters { zeta_fc: 0.1, c_ratio: 1.3, ..restrained }).unwrap();
         let mode = |(j, share): (usize, &f64)| {
             let Mode { mass, height, stiffness, damping, .. } = structure.mode;
             let (mass, stiffer) = (mass / shares.len() as f64 / (share * share), (1 + j) as f64);
@@ -602,12 +603,12 @@ mod tests {
         let Parameters { m0, J0, B, r, g, c_ratio, .. } = *structure.parameters();
         let of = |part: fn(&Mode) -> f64| more * modes.iter().map(part).sum::<f64>();
         let (m_s, S_1) = (of(|mode| mode.gamma * mode.share), of(|mode| mode.gamma * mode.height));
-        let (I_2, ties) = (of(|mode| mode.mass * mode.height * mode.height), structure.base.ties);
+        let (I_2, ties) = (of(|mode| mode.mass * mode.height * mode.height), structure.base().ties);
         let body = Body { m0, J0, m_s, S_1, I_2, B, r: Some(r), g, c_ratio, ties };
-        (structure, Frame::new(body, &modes, &[]).unwrap())
+        (structure, Structure::of_body(body, &modes, &[]).unwrap())
     }
 
-    fn level(frame: &Frame, detail: Detail) -> ManyModes<Modes> {
+    fn level(frame: &Structure, detail: Detail) -> ManyModes<Modes> {
         let angles = detail.angles();
         ManyModes::new(Subject { structure: frame.clone(), local_error: 1e-16, is_tied: true, angles }, detail)
     }
@@ -673,10 +674,10 @@ mod tests {
     #[test]
     fn the_uplift_margin_follows_from_the_equations_of_rocking() {
         let (_, frame) = frame(&[1.3, -0.6, 0.4], 1.25);
-        let &Base { m_t, S_res, B, g, .. } = &frame.base;
+        let &Base { m_t, S_res, B, g, .. } = frame.base();
         let dissipators = Dissipators { plastic: [2e-3, -1e-3], ..Dissipators::NEW };
         let level = level(&frame, Detail::Nonlinear);
-        let weight = (m_t * g + frame.base.ties.P_0) * B;
+        let weight = (m_t * g + frame.base().ties.P_0) * B;
         for (scale, a_v) in [(1.0, -1.5), (-1.0, 2.5), (0.2, 4.0)] {
             let [u, u_dot] = [[0.004, -0.003, 0.002], [0.3, 0.1, -0.2]].map(|of| Modes::new(&of.map(|it| scale * it)));
             let state = State { u, u_dot, theta: 0.0, theta_dot: 0.0 };
@@ -685,10 +686,10 @@ mod tests {
             let springs =
                 Modes::sum(&frame, |j, mode| mode.height * mode.stiffness * u.of(j)) - S_res * load.a_g - 90.0;
             let expected = [Side::Right, Side::Left].map(|side| {
-                let [tendon, pair @ ..] = restraint::ties(&frame.base, side, &dissipators);
+                let [tendon, pair @ ..] = restraint::ties(frame.base(), side, &dissipators);
                 let residual: f64 = pair.iter().map(|tie| tie.lever * tie.force).sum();
                 let held = m_t * (g + a_v) * B + tendon.force * B + side.sign() * residual;
-                let inertia = inertia(&frame.base, frame.modes(), side, |j| u.of(j));
+                let inertia = inertia(frame.base(), frame.modes(), side, |j| u.of(j));
                 let turns = level.accelerations(Phase::Rocking(side), &now).theta_ddot * inertia;
                 ((held - side.sign() * springs) / weight).max(-side.sign() * turns / weight)
             });
@@ -708,10 +709,10 @@ mod tests {
 
     fn gauges_and_reactions_follow(more: f64) {
         let (structure, frame) = frame(&[1.3, -0.6, 0.4], more);
-        let base = Base { ties: Ties::default(), ..structure.base };
+        let base = Base { ties: Ties::default(), ..*structure.base() };
         let floor = |mass, height, shape: [f64; 3]| Floor { mass, height, shape: Modes::new(&shape) };
         let floors = [floor(3.0, 1.1, [0.2, 0.5, -0.3]), floor(2.0, 2.3, [0.9, -0.4, 0.1])];
-        let frame = Frame::new(Body { ties: base.ties, ..*frame.body() }, frame.modes(), &floors).unwrap();
+        let frame = Structure::of_body(Body { ties: base.ties, ..*frame.body() }, frame.modes(), &floors).unwrap();
         let level = level(&frame, Detail::Nonlinear);
         let modes = |numbers: [f64; 3]| Modes::new(&numbers);
         let (u, u_dot) = (modes([0.01, -0.02, 0.005]), modes([0.3, 0.1, -0.2]));
@@ -729,7 +730,7 @@ mod tests {
             let value = |gauge: &Gauge| seen.gauge(gauge);
             let (mut storey, gauges) = (0.0, frame.gauges());
             for (i, floor) in floors.iter().enumerate().rev() {
-                let lever = s * frame.base.B - floor.displacement(&u);
+                let lever = s * frame.base().B - floor.displacement(&u);
                 let along = floor.displacement(&second.u_ddot) + floor.height * second.theta_ddot;
                 let expected = along + theta_dot * theta_dot * lever + a_g * turn.cos - a_v * turn.sin;
                 assert_relative_eq!(value(&gauges.a[i]), expected, max_relative = 1e-12);
@@ -741,8 +742,8 @@ mod tests {
             if let Phase::Rocking(_) = phase {
                 assert_relative_eq!(reactions.R_m, x.pivot() * reactions.R_v, max_relative = 1e-11);
             } else {
-                let weight = frame.base.g + a_v;
-                let rigid = load.F_t.rest().unwrap_or_default()[1] - frame.base.S_res * a_g;
+                let weight = frame.base().g + a_v;
+                let rigid = load.F_t.rest().unwrap_or_default()[1] - frame.base().S_res * a_g;
                 let turns = Modes::sum(&frame, |j, mode| {
                     let elastic = mode.stiffness * u.of(j) + mode.damping * u_dot.of(j);
                     mode.height * elastic + mode.gamma * weight * u.of(j)
@@ -764,9 +765,11 @@ mod tests {
     /// The orders of a step follow the velocity that the loads bring within 1/p_l.
     #[test]
     fn the_order_follows_the_forcing() {
-        let structure =
-            Structure::new(Parameters { m0: 0.0, J0: 0.0, H: 0.02, B: 0.005, ..Parameters::EVISON }).unwrap();
-        let rigid = ManyModes::rigid(Subject { structure, local_error: 1e-9, is_tied: false, angles: Angles::Any });
+        let structure = OneMass::new(Parameters { m0: 0.0, J0: 0.0, H: 0.02, B: 0.005, ..Parameters::EVISON }).unwrap();
+        let rigid = ManyModes::rigid(
+            Subject { structure: structure.into(), local_error: 1e-9, is_tied: false, angles: Angles::Any },
+            &structure,
+        );
         let (state, mut arc) = (State { theta: 0.01, ..State::default() }, Arc::default());
         for tenths in 10..25 {
             let interval = 0.1 * f64::from(tenths) / structure.p_l;

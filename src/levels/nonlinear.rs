@@ -36,7 +36,7 @@ use crate::levels::ties::TieSeries;
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
 use crate::series::taylor::{Arc, MAX_ORDER, Start};
-use crate::{Side, State, Structure};
+use crate::{OneMass, Side, State};
 use nalgebra::{Matrix2, Vector2};
 use std::cell::RefCell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -45,7 +45,7 @@ use wide::f64x2;
 /// Accelerations (ü, θ̈) in m/s² and rad/s² under `load`, by Eqs 5 and 6 with the ties and these `dissipators`. None if the mass
 /// matrix is singular: m0 = J0 = 0 and u = sB, the top mass above the pivot.
 pub fn accelerations(
-    structure: &Structure,
+    structure: &OneMass,
     side: Side,
     state: &State,
     load: Load,
@@ -54,7 +54,7 @@ pub fn accelerations(
     let back = match structure.is_restrained() {
         true => {
             let chord = Angles::Any.chord(state.theta, state.theta_dot);
-            Restraint::about(structure, side, dissipators).moment(&chord)
+            Restraint::about(structure.base(), side, dissipators).moment(&chord)
         }
         false => 0.0,
     };
@@ -319,14 +319,14 @@ impl<N: Expanded> Recurrence<N> {
 #[derive(Clone, Debug)]
 pub(crate) struct NonlinearRocking {
     subject: Subject,
+    one: OneMass,
     pace: Pace,
     products: RefCell<Products<f64>>,
 }
 
 impl NonlinearRocking {
-    pub(crate) fn new(subject: Subject) -> NonlinearRocking {
-        let products = RefCell::new(Products::new(0.0));
-        NonlinearRocking { subject, pace: Pace::new(&subject.structure), products }
+    pub(crate) fn new(subject: Subject, one: OneMass) -> NonlinearRocking {
+        NonlinearRocking { subject, one, pace: Pace::new(&one), products: RefCell::new(Products::new(0.0)) }
     }
 }
 
@@ -336,8 +336,13 @@ impl ElasticRocking for NonlinearRocking {
         &self.subject
     }
 
+    #[inline(always)]
+    fn one(&self) -> &OneMass {
+        &self.one
+    }
+
     fn is_singular(&self, side: Side, state: &State) -> bool {
-        let structure = &self.subject.structure;
+        let structure = &self.one;
         let (foundation, B) = (structure.foundation, structure.parameters().B);
         let lever = side.sign() * B - state.u;
         foundation + lever * lever < LEAST_INERTIA * (foundation + B * B)
@@ -359,9 +364,9 @@ impl NonlinearRocking {
     #[inline(always)]
     fn equations<const TIED: bool>(&self, side: Side, start: &Start, span: f64) -> Equations<f64> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_g, a_top, a_v, .. } = start;
-        let structure = &self.subject.structure;
+        let structure = &self.one;
         let &crate::Parameters { H, B, g, .. } = structure.parameters();
-        let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
+        let &OneMass { stiffness, damping_u, foundation, gamma, .. } = structure;
         let (sin, cos) = libm::sincos(theta);
         Equations {
             u,
@@ -384,10 +389,10 @@ impl NonlinearRocking {
     /// Writes the motion into `arc`.
     #[inline(always)]
     fn expand<const TIED: bool>(&self, side: Side, start: &Start, arc: &mut Arc) {
-        let structure = &self.subject.structure;
+        let structure = &self.one;
         let span = self.pace.span(start);
         let mut ties = TIED.then(|| {
-            let ties = Restraint::about(structure, side, start.dissipators).moments();
+            let ties = Restraint::about(structure.base(), side, start.dissipators).moments();
             TieSeries::new(ties, Angles::Any, start.state.theta)
         });
         let m = structure.parameters().m;
@@ -428,16 +433,16 @@ mod tests {
             u in -0.05..0.05f64, u_dot in -2.0..2.0f64, theta in -1.2..1.2f64, theta_dot in -3.0..3.0f64,
             value in -20.0..20.0f64, slope in -500.0..500.0f64, force in -3e3..3e3f64, force_slope in -1e5..1e5f64,
         ) {
-            let structure = Structure::new(Parameters::MCMANUS).unwrap();
+            let structure = OneMass::new(Parameters::MCMANUS).unwrap();
             let side = Side::of(theta);
             let state = State { u, u_dot, theta, theta_dot };
             let mut arc = Arc::default();
             let value = Load { a_g: value, F_t: force, a_v: 0.0 };
             let load = LinearLoad { value, slope: Load { a_g: slope, F_t: force_slope, a_v: 0.0 } };
-            let (a_g, a_top) = (load.on_foundation(), load.on_top(&structure));
+            let (a_g, a_top) = (load.on_foundation(), load.on_top(&structure.into()));
             let start = Start { state, a_g, a_top, interval: 2e-3, local_error: 1e-16, ..Start::default() };
-            let subject = Subject { structure, local_error: 1e-16, is_tied: false, angles: Angles::Any };
-            NonlinearRocking::new(subject).series(side, &start, &mut arc);
+            let subject = Subject { structure: structure.into(), local_error: 1e-16, is_tied: false, angles: Angles::Any };
+            NonlinearRocking::new(subject, structure).series(side, &start, &mut arc);
             for sigma in [0.0, 0.2, 0.55, 1.0] {
                 let load = load.at(sigma * arc.span);
                 let expected = accelerations(&structure, side, &arc.at(sigma), load, &Dissipators::NEW).unwrap();
@@ -453,7 +458,7 @@ mod tests {
 
     #[test]
     fn the_mass_matrix_is_singular_with_the_top_mass_above_the_pivot_of_a_massless_foundation() {
-        let structure = Structure::new(Parameters { m0: 0.0, J0: 0.0, B: 0.25, ..Parameters::EVISON }).unwrap();
+        let structure = OneMass::new(Parameters { m0: 0.0, J0: 0.0, B: 0.25, ..Parameters::EVISON }).unwrap();
         let above_the_pivot = State { u: 0.25, theta: 0.01, ..State::default() };
         let nothing = (Load::default(), &Dissipators::NEW);
         assert_eq!(accelerations(&structure, Side::Right, &above_the_pivot, nothing.0, nothing.1), None);

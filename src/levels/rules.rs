@@ -12,10 +12,11 @@
 //! for overturning at small angles. Any other impact leaves r θ̇ about the other pivot, however squat the structure is. The momentum
 //! rule of elastic structures would depend on the shape alone.
 
+use crate::Base;
 use crate::mechanics::impact::restitution;
 use crate::mechanics::lateral::Coordinates;
-use crate::structure::{Base, Vibration};
-use crate::{Phase, Side, State};
+use crate::structure::mode::Vibration;
+use crate::{Phase, Side, State, Structure};
 use std::f64::consts::TAU;
 
 /// Transitions within one period of the vibration mode (2π/ω_u) after which contact is held.
@@ -47,12 +48,12 @@ impl ChatterLimit {
 /// Phase and state just after an impact of a rigid structure that ends rocking about `side` in the state `before`, in steps of this
 /// `local_error`.
 pub(crate) fn after_rigid_impact<Q: Coordinates>(
-    structure: &Q::Structure,
+    structure: &Structure,
     local_error: f64,
     side: Side,
     before: &State<Q>,
 ) -> (Phase, State<Q>) {
-    let &Base { p_l, tan_alpha_cg, .. } = Q::base(structure);
+    let &Base { p_l, tan_alpha_cg, .. } = structure.base();
     let r = restitution(structure, side, before);
     if r * before.theta_dot.abs() <= local_error * p_l * tan_alpha_cg {
         return (Phase::FullContact, State { theta: 0.0, theta_dot: 0.0, ..*before });

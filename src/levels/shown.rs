@@ -25,7 +25,11 @@ pub(crate) type Searched<T> = [T; Measure::SEARCHED.len()];
 impl AnyLevel {
     /// The strut in `phase`, given θ̈.
     fn strut<N>(&self, phase: Phase, theta_ddot: impl FnOnce() -> N) -> Strut<N> {
-        if self.has_strut() { Strut::Elastic(self.structure().base.damping(phase)) } else { Strut::Rigid(theta_ddot()) }
+        if self.has_strut() {
+            Strut::Elastic(self.structure().base().damping(phase))
+        } else {
+            Strut::Rigid(theta_ddot())
+        }
     }
 
     /// The outputs in `phase`.
@@ -85,7 +89,7 @@ impl AnyLevel {
         let x = Instant {
             structure: self.structure(),
             s: phase.side().sign(),
-            strut: Strut::Elastic(self.structure().base.damping(phase)),
+            strut: Strut::Elastic(self.structure().base().damping(phase)),
             u: Most(state.u),
             u_dot: Most(state.u_dot),
             theta,
@@ -130,7 +134,7 @@ impl AnyLevel {
         Instant {
             structure: self.structure(),
             s: phase.side().sign(),
-            strut: Strut::Elastic(self.structure().base.damping(phase)),
+            strut: Strut::Elastic(self.structure().base().damping(phase)),
             u: bend(u, u_dot, u_ddot),
             u_dot: bend(u_dot, u_ddot, u_dddot),
             theta: turning,
@@ -211,7 +215,7 @@ pub(crate) fn over<'a, const L: usize>(
     Instant {
         structure,
         s: phase.side().sign(),
-        strut: Strut::Elastic(structure.base.damping(phase)),
+        strut: Strut::Elastic(structure.base().damping(phase)),
         u: none,
         u_dot: none,
         theta,

@@ -1,11 +1,11 @@
 //! Mechanical energy: constant between impacts when c_u = 0 and a_g = 0.
 
+use crate::Base;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::Load;
 use crate::numbers::Number;
-use crate::structure::Base;
-use crate::{Phase, State};
+use crate::{Phase, State, Structure};
 
 /// Energy in J, zero at height zero:
 ///
@@ -14,7 +14,7 @@ use crate::{Phase, State};
 /// ```
 ///
 /// The sum is over the modes, w = sB Γ/μ − u. One mass has μ = Γ = m and h = H. s does not matter in full contact, where θ = θ̇ = 0.
-pub fn energy<Q: Coordinates>(structure: &Q::Structure, phase: Phase, state: &State<Q>) -> f64 {
+pub fn energy<Q: Coordinates>(structure: &Structure, phase: Phase, state: &State<Q>) -> f64 {
     let load = Load { a_g: 0.0, F_t: Q::each(structure, |_, _| 0.0), a_v: 0.0 };
     mechanical(&Instant::of(structure, phase, state, load))
 }

@@ -3,10 +3,10 @@
 //! A formula reads the motion in numbers of any kind: at an instant, or as series in time over a polynomial of the motion.
 
 use crate::Floor;
+use crate::Structure;
 use crate::mechanics::gauge::Gauge;
 use crate::mechanics::instant::{Place, uplift};
 use crate::numbers::{Number, Turn};
-use crate::structure::frame::Frame;
 use serde::{Deserialize, Serialize};
 
 /// An output of a structure of many masses. Floors and storeys count from 0, from below; storey i is below floor i.
@@ -43,7 +43,7 @@ pub enum FrameOutput {
 
 /// A motion in numbers of the kind `N`, as formulas of outputs read it.
 pub(crate) trait MotionOfFloors<N> {
-    fn frame(&self) -> &Frame;
+    fn frame(&self) -> &Structure;
     /// Place of the pivot, sB, m.
     fn pivot(&self) -> f64;
     fn theta(&self) -> N;
@@ -74,7 +74,7 @@ impl FrameOutput {
     ];
 
     /// All outputs of `frame`: of its base, then each output of the floors from below.
-    pub fn all(frame: &Frame) -> impl Iterator<Item = FrameOutput> + use<> {
+    pub fn all(frame: &Structure) -> impl Iterator<Item = FrameOutput> + use<> {
         let floors = frame.floors().len();
         let of_floors = FrameOutput::OF_FLOOR.iter().flat_map(move |of| (0..floors).map(of));
         FrameOutput::OF_BASE.into_iter().chain(of_floors)
@@ -122,12 +122,12 @@ impl FrameOutput {
     }
 
     /// Whether the output depends on the ground acceleration directly.
-    pub fn has_feedthrough(self, frame: &Frame) -> bool {
+    pub fn has_feedthrough(self, frame: &Structure) -> bool {
         self.gauge(frame).is_some_and(Gauge::has_feedthrough)
     }
 
     /// The gauge that measures the output.
-    fn gauge(self, frame: &Frame) -> Option<&Gauge> {
+    fn gauge(self, frame: &Structure) -> Option<&Gauge> {
         let gauges = frame.gauges();
         match self {
             FrameOutput::V_t => Some(&gauges.V_t),

@@ -11,8 +11,8 @@
 
 use crate::mechanics::lateral::{Lateral, Modes};
 use crate::numbers::{Number, Turn};
-use crate::structure::frame::{Frame, rest};
-use crate::structure::{Base, Mode};
+use crate::structure::rest;
+use crate::{Base, Mode, Structure};
 
 /// A weighed sum of the accelerations of masses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,9 +54,9 @@ impl Gauge {
     }
 
     /// Σ φ (c u̇ + k u)/μ, with the part `damping` of the damping in full contact: linear in `u` and `u_dot`.
-    pub(crate) fn elastic<N: Number, Q>(&self, frame: &Frame, damping: f64, u: &Q, u_dot: &Q) -> N
+    pub(crate) fn elastic<N: Number, Q>(&self, frame: &Structure, damping: f64, u: &Q, u_dot: &Q) -> N
     where
-        Q: Lateral<N, Structure = Frame>,
+        Q: Lateral<N>,
     {
         Q::sum(frame, |j, mode| {
             let force = u_dot.of(j) * (mode.damping * damping) + u.of(j) * mode.stiffness;
@@ -65,7 +65,7 @@ impl Gauge {
     }
 
     /// Σ φ φᵀF/μ: linear in the forces.
-    pub(crate) fn push<N: Number, Q: Lateral<N, Structure = Frame>>(&self, frame: &Frame, F_t: &Q) -> N {
+    pub(crate) fn push<N: Number, Q: Lateral<N>>(&self, frame: &Structure, F_t: &Q) -> N {
         Q::sum(frame, |j, mode| F_t.of(j) * self.shape.of(j) / mode.mass)
     }
 

@@ -13,12 +13,11 @@ use crate::mechanics::energy::kinetic;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
-use crate::structure::{Base, Mode};
-use crate::{Phase, Side, State, Structure};
+use crate::{Base, Mode, OneMass, Phase, Side, State, Structure};
 
 /// Angular momentum L about the pivot that comes down, kg·m²/s, of a structure that touches the ground (θ = 0).
-pub fn angular_momentum<Q: Coordinates>(structure: &Q::Structure, before: &State<Q>) -> f64 {
-    let &Base { m0, B, J0, .. } = Q::base(structure);
+pub fn angular_momentum<Q: Coordinates>(structure: &Structure, before: &State<Q>) -> f64 {
+    let &Base { m0, B, J0, .. } = structure.base();
     let &State { u, u_dot, theta_dot, .. } = before;
     let along = Q::sum(structure, |j, mode| mode.mass * mode.height * (u_dot.of(j) + mode.height * theta_dot));
     let across = Q::sum(structure, |j, mode| {
@@ -34,8 +33,8 @@ pub fn angular_momentum<Q: Coordinates>(structure: &Q::Structure, before: &State
 /// ```text
 /// r = (J_P − 2 m_t B² + Σ μ u²)/(J_P + 2 sB Σ Γ u + Σ μ u²)
 /// ```
-pub fn restitution<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &State<Q>) -> f64 {
-    let &Base { m_t, B, J_P, r, .. } = Q::base(structure);
+pub fn restitution<Q: Coordinates>(structure: &Structure, side: Side, before: &State<Q>) -> f64 {
+    let &Base { m_t, B, J_P, r, .. } = structure.base();
     r.unwrap_or_else(|| {
         let square = Q::sum(structure, |j, mode| mode.mass * before.u.of(j) * before.u.of(j));
         let offset = Q::sum(structure, |j, mode| mode.gamma * before.u.of(j));
@@ -44,7 +43,7 @@ pub fn restitution<Q: Coordinates>(structure: &Q::Structure, side: Side, before:
 }
 
 /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
-pub fn resolve<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &State<Q>) -> (Phase, State<Q>) {
+pub fn resolve<Q: Coordinates>(structure: &Structure, side: Side, before: &State<Q>) -> (Phase, State<Q>) {
     let r = restitution(structure, side, before);
     if angular_momentum(structure, before) * before.theta_dot > 0.0 && r > 0.0 {
         (Phase::Rocking(side.opposite()), State { theta: 0.0, theta_dot: r * before.theta_dot, ..*before })
@@ -63,8 +62,8 @@ pub fn resolve<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &St
 /// The rule takes momentum from the base and not from the top mass, which adds energy if u̇ and θ̇ differ in sign. If s u > 0, the
 /// new pivot is farther from the top mass, and keeping θ̇ adds energy even with r = 1. A landing always loses ½ J₋ θ̇² less
 /// ½ m H² θ̇². With many masses, each term with m is a sum over the modes.
-pub fn energy_gained<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &State<Q>) -> f64 {
-    let (&Base { B, J_P, .. }, s) = (Q::base(structure), side.sign());
+pub fn energy_gained<Q: Coordinates>(structure: &Structure, side: Side, before: &State<Q>) -> f64 {
+    let (&Base { B, J_P, .. }, s) = (structure.base(), side.sign());
     let r = restitution(structure, side, before);
     let &State { u, u_dot, theta_dot, .. } = before;
     let sum = |term: &dyn Fn(usize, &Mode) -> f64| Q::sum(structure, term);
@@ -76,13 +75,13 @@ pub fn energy_gained<Q: Coordinates>(structure: &Q::Structure, side: Side, befor
 }
 
 /// Kinetic energy T₋ in the state `before`, which ends rocking about `side`, J.
-pub(crate) fn kinetic_energy<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &State<Q>) -> f64 {
+pub(crate) fn kinetic_energy<Q: Coordinates>(structure: &Structure, side: Side, before: &State<Q>) -> f64 {
     let load = Load { a_g: 0.0, F_t: Q::each(structure, |_, _| 0.0), a_v: 0.0 };
     kinetic(&Instant::of(structure, Phase::Rocking(side), before, load))
 }
 
 /// A = J0 + m (H² + u²) and F = (m + m0) B², kg·m²: J₋ is A + F − 2 m B s u.
-fn inertias(structure: &Structure, u: f64) -> [f64; 2] {
+fn inertias(structure: &OneMass, u: f64) -> [f64; 2] {
     let &crate::Parameters { m, m0, H, B, J0, .. } = structure.parameters();
     [J0 + m * (H * H + u * u), (m + m0) * B * B]
 }
@@ -96,7 +95,7 @@ fn inertias(structure: &Structure, u: f64) -> [f64; 2] {
 /// ```text
 /// ½ (1−r) [(1−r) A − (3+r) F] + (1+r²) m B s u
 /// ```
-pub fn greatest_gain(structure: &Structure, u: f64) -> f64 {
+pub fn greatest_gain(structure: &OneMass, u: f64) -> f64 {
     let &crate::Parameters { m, B, r, .. } = structure.parameters();
     let [a, f] = inertias(structure, u);
     0.5 * (1.0 - r) * ((1.0 - r) * a - (3.0 + r) * f) + (1.0 + r * r) * m * B * u
@@ -108,7 +107,7 @@ pub fn greatest_gain(structure: &Structure, u: f64) -> f64 {
 /// ```text
 /// r = [A − F ± √(4 F² − 2 U (A − F) − U²)]/(A + F + U),      at u = 0: 1 − 4 (m + m0) B²/J_P and 1
 /// ```
-pub fn lossless_restitution(structure: &Structure, u: f64) -> Option<[f64; 2]> {
+pub fn lossless_restitution(structure: &OneMass, u: f64) -> Option<[f64; 2]> {
     let &crate::Parameters { m, B, .. } = structure.parameters();
     let [a, f] = inertias(structure, u);
     let lift = 2.0 * m * B * u;
@@ -123,13 +122,12 @@ pub fn lossless_restitution(structure: &Structure, u: f64) -> Option<[f64; 2]> {
 /// ```
 ///
 /// The impulse at that edge is (I_v + s I_m/B)/2 = (|θ̇|/2B) [(1+r) F − (1−r) A + 2 r m B s u], A and F as above.
-pub fn pulling_restitution(structure: &impl AsRef<Base>) -> f64 {
-    let &Base { m_t, B, J_P, .. } = structure.as_ref();
+pub fn pulling_restitution(&Base { m_t, B, J_P, .. }: &Base) -> f64 {
     1.0 - 2.0 * (m_t * B * B) / J_P
 }
 
 /// The state just after landing: both pivots down, horizontal momentum kept.
-pub fn land<Q: Coordinates>(structure: &Q::Structure, before: &State<Q>) -> State<Q> {
+pub fn land<Q: Coordinates>(structure: &Structure, before: &State<Q>) -> State<Q> {
     let u_dot = Q::each(structure, |j, mode| before.u_dot.of(j) + mode.height * before.theta_dot);
     State { u: before.u, u_dot, theta: 0.0, theta_dot: 0.0 }
 }
@@ -146,7 +144,7 @@ mod tests {
     /// L written out from its definition: Σ r × m v about the pivot that comes down, plus the foundation's own spin.
     #[test]
     fn angular_momentum_is_that_of_the_masses_about_the_other_pivot() {
-        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let structure = OneMass::new(Parameters::MCMANUS).unwrap();
         let &Parameters { m, m0, H, B, J0, .. } = structure.parameters();
         for side in [Side::Right, Side::Left] {
             let s = side.sign();
@@ -165,7 +163,7 @@ mod tests {
             let expected = m * clockwise(top, velocity(top) + Vector2::new(state.u_dot, 0.0))
                 + m0 * clockwise(middle, velocity(middle))
                 + J0 * state.theta_dot;
-            assert_relative_eq!(angular_momentum(&structure, &state), expected, max_relative = 1e-13);
+            assert_relative_eq!(angular_momentum(&structure.into(), &state), expected, max_relative = 1e-13);
         }
     }
 
@@ -173,7 +171,7 @@ mod tests {
     #[test]
     fn energy_can_grow_outside_the_lossless_restitutions() {
         for (parameters, part) in [(Parameters::EVISON, 0.0), (Parameters::EVISON, 1.0), (Parameters::MCMANUS, 1.0)] {
-            let structure = Structure::new(parameters).unwrap();
+            let structure = OneMass::new(parameters).unwrap();
             let u = part * structure.u_cr;
             let [least, most] = lossless_restitution(&structure, u).unwrap();
             assert!(part > 0.0 || (least - (1.0 - 4.0 * structure.one_minus_chi)).abs() < 1e-14);
@@ -183,15 +181,16 @@ mod tests {
                 if r >= 1.0 {
                     continue;
                 }
-                let structure = Structure::new(Parameters { r, ..parameters }).unwrap();
+                let structure = OneMass::new(Parameters { r, ..parameters }).unwrap();
                 assert_eq!(greatest_gain(&structure, u) > 0.0, can_gain);
                 let &Parameters { m, m0, H, B, J0, .. } = structure.parameters();
                 let bound = ((m + m0) * B * B - J0 - m * H * H - m * u * u) / (m * H);
                 let theta_dot = -0.3;
                 let before = State { u, u_dot: theta_dot * (bound + 1e-9), theta: 0.0, theta_dot };
-                let (phase, after) = resolve(&structure, Side::Right, &before);
+                let (phase, after) = resolve(&structure.into(), Side::Right, &before);
                 assert_eq!(phase, Phase::Rocking(Side::Left));
-                let gain = energy(&structure, phase, &after) - energy(&structure, Phase::Rocking(Side::Right), &before);
+                let gain = energy(&structure.into(), phase, &after)
+                    - energy(&structure.into(), Phase::Rocking(Side::Right), &before);
                 assert_eq!(gain > 0.0, can_gain, "r = {r}: {gain} J");
             }
         }
@@ -200,16 +199,22 @@ mod tests {
     /// The energy gained and the kinetic energy are those of the states before and after.
     #[test]
     fn the_energy_gained_is_that_of_the_states() {
-        let structure = Structure::new(Parameters { r: 0.7, ..Parameters::MCMANUS }).unwrap();
+        let structure = OneMass::new(Parameters { r: 0.7, ..Parameters::MCMANUS }).unwrap();
         for (side, u) in [(Side::Right, 6e-3), (Side::Left, 6e-3), (Side::Right, 0.0)] {
             let before = State { u, u_dot: 0.1, theta: 0.0, theta_dot: -0.4 * side.sign() };
-            let (phase, after) = resolve(&structure, side, &before);
+            let (phase, after) = resolve(&structure.into(), side, &before);
             assert_eq!(phase, Phase::Rocking(side.opposite()));
             let at_rest = State { u, ..State::default() };
-            let of = |phase, state: &State| energy(&structure, phase, state) - energy(&structure, phase, &at_rest);
+            let of = |phase, state: &State| {
+                energy(&structure.into(), phase, state) - energy(&structure.into(), phase, &at_rest)
+            };
             let [before_it, after_it] = [of(Phase::Rocking(side), &before), of(phase, &after)];
-            assert_relative_eq!(energy_gained(&structure, side, &before), after_it - before_it, max_relative = 1e-11);
-            assert_relative_eq!(kinetic_energy(&structure, side, &before), before_it, max_relative = 1e-12);
+            assert_relative_eq!(
+                energy_gained(&structure.into(), side, &before),
+                after_it - before_it,
+                max_relative = 1e-11
+            );
+            assert_relative_eq!(kinetic_energy(&structure.into(), side, &before), before_it, max_relative = 1e-12);
         }
     }
 
@@ -217,14 +222,14 @@ mod tests {
     #[test]
     fn the_edge_that_lifts_off_pulls_below_the_pulling_restitution() {
         for parameters in [Parameters::EVISON, Parameters::MCMANUS] {
-            let limit = pulling_restitution(&Structure::new(parameters).unwrap());
+            let limit = pulling_restitution(OneMass::new(parameters).unwrap().base());
             for (r, pulls) in [(limit - 1e-6, true), (limit + 1e-6, false)] {
-                let structure = Structure::new(Parameters { r, ..parameters }).unwrap();
+                let structure = OneMass::new(Parameters { r, ..parameters }).unwrap();
                 let before = State { u: 0.0, u_dot: 0.0, theta: 0.0, theta_dot: -0.3 };
-                let (phase, after) = resolve(&structure, Side::Right, &before);
+                let (phase, after) = resolve(&structure.into(), Side::Right, &before);
                 // about the right edge, which lifts off, only the impulse at the left one has a moment, 2B I_left
                 let Impulse { I_v, I_m, .. } =
-                    Impulse::of(&structure, (Phase::Rocking(Side::Right), &before), (phase, &after));
+                    Impulse::of(&structure.into(), (Phase::Rocking(Side::Right), &before), (phase, &after));
                 let right = 0.5 * (I_v + I_m / parameters.B);
                 assert_eq!(right < 0.0, pulls, "r = {r}: {right}");
             }
@@ -233,14 +238,14 @@ mod tests {
 
     #[test]
     fn rocking_goes_on_or_ends_by_the_sign_of_the_momentum() {
-        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let structure = OneMass::new(Parameters::EVISON).unwrap();
         let turning = State { u: 1e-4, u_dot: 0.0, theta: 0.0, theta_dot: -0.1 };
-        let (phase, after) = resolve(&structure, Side::Right, &turning);
+        let (phase, after) = resolve(&structure.into(), Side::Right, &turning);
         assert_eq!(phase, Phase::Rocking(Side::Left));
         assert_eq!(after, State { theta_dot: -0.1 * 0.96, ..turning });
 
         let vibrating = State { u_dot: 0.5, ..turning };
-        let (phase, after) = resolve(&structure, Side::Right, &vibrating);
+        let (phase, after) = resolve(&structure.into(), Side::Right, &vibrating);
         assert_eq!(phase, Phase::FullContact);
         assert_eq!(after, State { u: 1e-4, u_dot: 0.5 - 1.05 * 0.1, theta: 0.0, theta_dot: 0.0 });
     }

@@ -4,13 +4,13 @@ use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
-use crate::structure::{Base, Mode};
+use crate::{Base, Mode, Structure};
 use crate::{Phase, State};
 
 /// The structure at an instant, with lateral coordinates `Q`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Instant<'a, N: Number, Q: Lateral<N> = N> {
-    pub structure: &'a Q::Structure,
+    pub structure: &'a Structure,
     /// s: +1 about the right pivot, −1 about the left one.
     pub s: f64,
     pub strut: Strut<N>,
@@ -88,22 +88,22 @@ impl Base {
 impl<'a, Q: Coordinates> Instant<'a, f64, Q> {
     /// The structure in `phase` and `state` under `load`, with an elastic strut.
     #[inline]
-    pub(crate) fn of(structure: &'a Q::Structure, phase: Phase, state: &State<Q>, load: Load<Q>) -> Self {
+    pub(crate) fn of(structure: &'a Structure, phase: Phase, state: &State<Q>, load: Load<Q>) -> Self {
         let &State { u, u_dot, theta, theta_dot } = state;
         let Load { a_g, F_t, a_v } = load;
-        let (s, strut) = (phase.side().sign(), Strut::Elastic(Q::base(structure).damping(phase)));
+        let (s, strut) = (phase.side().sign(), Strut::Elastic(structure.base().damping(phase)));
         Instant { structure, s, strut, u, u_dot, theta, theta_dot, turn: theta.turn(), a_g, F_t, a_v }
     }
 }
 
 impl<'a, Q: Coordinates> Instant<'a, Dual<f64>, Dual<Q>>
 where
-    Dual<Q>: Lateral<Dual<f64>, Structure = Q::Structure>,
+    Dual<Q>: Lateral<Dual<f64>>,
 {
     /// The structure with its rates, given (ü, θ̈); once it has overturned, all rates are 0.
     #[inline]
     pub(crate) fn moving(
-        structure: &'a Q::Structure,
+        structure: &'a Structure,
         phase: Phase,
         state: &State<Q>,
         &Second { u_ddot, theta_ddot }: &Second<f64, Q>,
@@ -118,7 +118,7 @@ where
         Instant {
             structure,
             s,
-            strut: Strut::Elastic(Q::base(structure).damping(phase)),
+            strut: Strut::Elastic(structure.base().damping(phase)),
             u: lateral(u, u_dot),
             u_dot: lateral(u_dot, u_ddot),
             theta: dual(theta, theta_dot),
@@ -135,7 +135,7 @@ impl<N: Number, Q: Lateral<N>> Instant<'_, N, Q> {
     /// The base.
     #[inline(always)]
     pub(crate) fn base(&self) -> &Base {
-        Q::base(self.structure)
+        self.structure.base()
     }
 
     /// Place of the pivot, sB, m.

@@ -7,23 +7,13 @@ use crate::Structure;
 use crate::numbers::Number;
 use crate::numbers::dual::Dual;
 use crate::series::taylor::evaluate;
-use crate::structure::frame::Frame;
-use crate::structure::{Base, Mode, Vibration};
+use crate::structure::mode::Mode;
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 use wide::f64x4;
 
 /// Lateral coordinates in numbers of the kind `N`.
 pub trait Lateral<N: Number>: Copy {
-    /// The structures with these coordinates.
-    type Structure: Clone + Debug + AsRef<Base>;
-
-    /// The base of a structure.
-    #[inline(always)]
-    fn base(structure: &Self::Structure) -> &Base {
-        structure.as_ref()
-    }
-
     /// The coordinate of mode `j`.
     fn of(&self, j: usize) -> N;
 
@@ -33,12 +23,15 @@ pub trait Lateral<N: Number>: Copy {
         None
     }
 
-    /// The modes of a structure.
-    fn modes(structure: &Self::Structure) -> &[Mode];
+    /// The modes of a structure, which has no more than there are coordinates.
+    #[inline(always)]
+    fn modes(structure: &Structure) -> &[Mode] {
+        structure.modes()
+    }
 
     /// A sum over the modes of a structure.
     #[inline(always)]
-    fn sum(structure: &Self::Structure, term: impl Fn(usize, &Mode) -> N) -> N {
+    fn sum(structure: &Structure, term: impl Fn(usize, &Mode) -> N) -> N {
         let terms = Self::modes(structure).iter().enumerate().map(|(j, mode)| term(j, mode));
         terms.reduce(|sum, term| sum + term).unwrap_or(N::constant(0.0))
     }
@@ -46,14 +39,11 @@ pub trait Lateral<N: Number>: Copy {
 
 /// Lateral coordinates of a state, or anything else that has a value for each mode.
 pub trait Coordinates: Lateral<f64> + Debug + PartialEq + 'static {
-    /// The frequencies of vibration of a structure.
-    fn vibration(structure: &Self::Structure) -> Vibration;
-
     /// All coordinates are 0.
     const ZERO: Self;
 
     /// Makes the coordinates of a structure, each from its number and its mode.
-    fn each(structure: &Self::Structure, coordinate: impl Fn(usize, &Mode) -> f64) -> Self;
+    fn each(structure: &Structure, coordinate: impl Fn(usize, &Mode) -> f64) -> Self;
 
     /// These coordinates beside what acts on mass that no mode carries among `forces`.
     #[inline(always)]
@@ -63,7 +53,7 @@ pub trait Coordinates: Lateral<f64> + Debug + PartialEq + 'static {
 
     /// The part that each mode takes in a `translation` of the base.
     #[inline]
-    fn parts(structure: &Self::Structure, translation: f64) -> Self {
+    fn parts(structure: &Structure, translation: f64) -> Self {
         Self::each(structure, |_, mode| mode.part(translation))
     }
 
@@ -101,12 +91,10 @@ pub trait Coordinates: Lateral<f64> + Debug + PartialEq + 'static {
     fn total(&self) -> f64;
 
     /// Displacement of the centre of the mass that moves, m.
-    fn middle(&self, structure: &Self::Structure) -> f64;
+    fn middle(&self, structure: &Structure) -> f64;
 }
 
 impl<N: Number> Lateral<N> for N {
-    type Structure = Structure;
-
     #[inline(always)]
     fn of(&self, _: usize) -> N {
         *self
@@ -114,21 +102,16 @@ impl<N: Number> Lateral<N> for N {
 
     #[inline(always)]
     fn modes(structure: &Structure) -> &[Mode] {
-        std::slice::from_ref(&structure.mode)
+        std::slice::from_ref(&structure.modes()[0])
     }
 }
 
 impl Coordinates for f64 {
-    #[inline(always)]
-    fn vibration(structure: &Structure) -> Vibration {
-        Vibration { contact: structure.omega_fc, rocking: [structure.omega_u; 2] }
-    }
-
     const ZERO: f64 = 0.0;
 
     #[inline(always)]
     fn each(structure: &Structure, coordinate: impl Fn(usize, &Mode) -> f64) -> f64 {
-        coordinate(0, &structure.mode)
+        coordinate(0, &structure.modes()[0])
     }
 
     #[inline(always)]
@@ -270,8 +253,6 @@ impl Modes {
 }
 
 impl Lateral<f64> for Modes {
-    type Structure = Frame;
-
     #[inline(always)]
     fn of(&self, j: usize) -> f64 {
         self.of[j]
@@ -281,16 +262,9 @@ impl Lateral<f64> for Modes {
     fn rest(&self) -> Option<[f64; 2]> {
         (self.rest != [0.0; 2]).then_some(self.rest)
     }
-
-    #[inline(always)]
-    fn modes(structure: &Frame) -> &[Mode] {
-        structure.modes()
-    }
 }
 
 impl Lateral<Dual<f64>> for Dual<Modes> {
-    type Structure = Frame;
-
     fn of(&self, j: usize) -> Dual<f64> {
         Dual { value: self.value.of(j), rate: self.rate.of(j) }
     }
@@ -298,22 +272,13 @@ impl Lateral<Dual<f64>> for Dual<Modes> {
     fn rest(&self) -> Option<[Dual<f64>; 2]> {
         Some([0, 1].map(|i| Dual { value: self.value.rest[i], rate: self.rate.rest[i] }))
     }
-
-    fn modes(structure: &Frame) -> &[Mode] {
-        structure.modes()
-    }
 }
 
 impl Coordinates for Modes {
-    #[inline(always)]
-    fn vibration(structure: &Frame) -> Vibration {
-        structure.vibration
-    }
-
     const ZERO: Modes = Modes { count: 0, of: [0.0; MOST_MODES], rest: [0.0; 2] };
 
     #[inline(always)]
-    fn each(structure: &Frame, coordinate: impl Fn(usize, &Mode) -> f64) -> Modes {
+    fn each(structure: &Structure, coordinate: impl Fn(usize, &Mode) -> f64) -> Modes {
         let mut modes = Modes { count: structure.modes().len(), ..Modes::ZERO };
         modes.of.iter_mut().zip(structure.modes()).enumerate().for_each(|(j, (of, mode))| *of = coordinate(j, mode));
         modes
@@ -387,8 +352,8 @@ impl Coordinates for Modes {
         self.numbers().iter().chain(&self.rest).sum()
     }
 
-    fn middle(&self, frame: &Frame) -> f64 {
-        Modes::sum(frame, |j, mode| mode.gamma * self.of(j)) / frame.body().m_s
+    fn middle(&self, structure: &Structure) -> f64 {
+        Modes::sum(structure, |j, mode| mode.gamma * self.of(j)) / structure.body().m_s
     }
 }
 
@@ -403,13 +368,15 @@ impl Mode {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Base;
+    use crate::Body;
+    use crate::OneMass;
+    use crate::Ties;
     use crate::mechanics::energy::energy;
     use crate::mechanics::impact::{angular_momentum, energy_gained, land, resolve, restitution};
     use crate::mechanics::instant::{Instant, Second};
     use crate::mechanics::outputs::acceleration;
     use crate::mechanics::reactions::{Impulse, Reactions};
-    use crate::structure::Ties;
-    use crate::structure::frame::Body;
     use crate::{Load, Parameters, Phase, Side, State};
     use approx::assert_relative_eq;
     use nalgebra::{Matrix3, Vector3};
@@ -417,7 +384,7 @@ mod tests {
 
     /// Three masses on a base, with their modes.
     struct Masses {
-        frame: Frame,
+        frame: Structure,
         m: Vector3<f64>,
         h: Vector3<f64>,
         stiffness: Matrix3<f64>,
@@ -427,9 +394,9 @@ mod tests {
     }
 
     impl Deref for Masses {
-        type Target = Frame;
+        type Target = Structure;
 
-        fn deref(&self) -> &Frame {
+        fn deref(&self) -> &Structure {
             &self.frame
         }
     }
@@ -464,7 +431,7 @@ mod tests {
             let (S_1, I_2) = (m.dot(&h), m.dot(&h.component_mul(&h)));
             let ties = Ties::default();
             let body = Body { m0, J0, m_s: m.sum(), S_1, I_2, B, r: Some(r), g, c_ratio, ties };
-            let frame = Frame::new(body, &modes, &[]).unwrap();
+            let frame = Structure::of_body(body, &modes, &[]).unwrap();
             Masses { frame, m, h, stiffness, damping, shapes }
         }
 
@@ -517,14 +484,14 @@ mod tests {
             assert_relative_eq!(mode.gamma * mode.share, mass, max_relative = 1e-6);
             assert_relative_eq!(mode.height / mode.share, height, max_relative = 1e-6);
         }
-        assert_relative_eq!(frame.base.J_P, 6.08e6, max_relative = 1e-12);
+        assert_relative_eq!(frame.base().J_P, 6.08e6, max_relative = 1e-12);
     }
 
     /// Energy and angular momentum of the masses themselves, and the gains of energy at an impact and at a landing.
     #[test]
     fn energy_and_impact_are_those_of_the_masses() {
         let frame = Masses::three_storeys();
-        let &Base { m0, B, J0, r, g, .. } = &frame.base;
+        let &Base { m0, B, J0, r, g, .. } = frame.base();
         let [u, u_dot] = displacements();
         for side in [Side::Right, Side::Left] {
             let (s, theta, theta_dot) = (side.sign(), side.sign() * 0.1, -0.3 * side.sign());
@@ -539,25 +506,25 @@ mod tests {
                 expected += 0.5 * m * (along * along + across * across) + m * g * ((s * B - u[i]) * sin + h * cos);
                 momentum += m * h * along - m * (B * B - u[i] * u[i]) * theta_dot;
             }
-            assert_relative_eq!(energy(&*frame, Phase::Rocking(side), &state), expected, max_relative = 1e-13);
+            assert_relative_eq!(energy(&frame, Phase::Rocking(side), &state), expected, max_relative = 1e-13);
 
             let before = State { theta: 0.0, ..state };
-            assert_relative_eq!(angular_momentum(&*frame, &before), momentum, max_relative = 1e-13);
-            let of = |phase, state: &State<Modes>| energy(&*frame, phase, state);
+            assert_relative_eq!(angular_momentum(&frame, &before), momentum, max_relative = 1e-13);
+            let of = |phase, state: &State<Modes>| energy(&frame, phase, state);
             let energy_before = of(Phase::Rocking(side), &before);
             // (M17): a landing loses ½ D θ̇²
-            let landed = land(&*frame, &before);
+            let landed = land(&frame, &before);
             let D = J0 + m0 * B * B + (0..3).map(|i| frame.m[i] * (s * B - u[i]).powi(2)).sum::<f64>();
             let lost = energy_before - of(Phase::FullContact, &landed);
             assert_relative_eq!(lost, 0.5 * D * theta_dot * theta_dot, max_relative = 1e-9);
             // each mass keeps its horizontal momentum
             let Impulse { I_h, I_v, .. } =
-                Impulse::of(&*frame, (Phase::Rocking(side), &before), (Phase::FullContact, &landed));
+                Impulse::of(&frame, (Phase::Rocking(side), &before), (Phase::FullContact, &landed));
             let mu = frame.m.dot(&u);
             assert_relative_eq!(I_h, 0.0, epsilon = 1e-9);
-            assert_relative_eq!(I_v, -(s * frame.base.m_t * B - mu) * theta_dot, max_relative = 1e-12);
+            assert_relative_eq!(I_v, -(s * frame.base().m_t * B - mu) * theta_dot, max_relative = 1e-12);
             // (M19)
-            let momentum = Frame::new(Body { r: None, ..*frame.body() }, frame.modes(), &[]).unwrap();
+            let momentum = Structure::of_body(Body { r: None, ..*frame.body() }, frame.modes(), &[]).unwrap();
             let of_masses = |with: &dyn Fn(usize) -> f64| (0..3).map(|i| frame.m[i] * with(i)).sum::<f64>();
             let rest = of_masses(&|i| B * B - u[i] * u[i]) + m0 * B * B - J0;
             let height = of_masses(&|i| frame.h[i] * frame.h[i]);
@@ -565,10 +532,10 @@ mod tests {
             assert_relative_eq!(restitution(&momentum, side, &before), (height - rest) / after, max_relative = 1e-12);
             // (M16)
             let going = State { u_dot: frame.modal(&(-s * u_dot)), ..before };
-            let (phase, after) = resolve(&*frame, side, &going);
+            let (phase, after) = resolve(&frame, side, &going);
             assert_eq!((phase, after.theta_dot), (Phase::Rocking(side.opposite()), r.unwrap() * theta_dot));
             let gained = of(phase, &after) - of(Phase::Rocking(side), &going);
-            assert_relative_eq!(energy_gained(&*frame, side, &going), gained, max_relative = 1e-9);
+            assert_relative_eq!(energy_gained(&frame, side, &going), gained, max_relative = 1e-9);
         }
     }
 
@@ -577,7 +544,7 @@ mod tests {
     #[test]
     fn the_reactions_are_those_of_the_masses() {
         let frame = Masses::three_storeys();
-        let &Base { m_t, B, J0, m0, g, .. } = &frame.base;
+        let &Base { m_t, B, J0, m0, g, .. } = frame.base();
         let [u, u_dot] = displacements();
         let Masses { m, h, .. } = &frame;
         let load = Load { a_g: 3.0, F_t: frame.no_force(), a_v: -1.5 };
@@ -587,7 +554,7 @@ mod tests {
         let state = frame.state(&u, &u_dot, 0.0, 0.0);
         let u_ddot = -elastic.component_div(m) - Vector3::repeat(load.a_g);
         let second = Second { u_ddot: frame.modal(&u_ddot), theta_ddot: 0.0 };
-        let x = Instant::of(&*frame, Phase::FullContact, &state, load);
+        let x = Instant::of(&frame, Phase::FullContact, &state, load);
         let Reactions { R_h, R_v, R_m } = Reactions::at(&x, &second);
         assert_relative_eq!(R_h, elastic.sum() - m0 * load.a_g, max_relative = 1e-12);
         assert_relative_eq!(R_v, m_t * weight, max_relative = 1e-12);
@@ -604,7 +571,7 @@ mod tests {
             / D;
         let u_ddot = -elastic.component_div(m) - h * theta_ddot - d * theta_dot * theta_dot
             + Vector3::repeat(weight * sin - load.a_g * cos);
-        let x = Instant::of(&*frame, Phase::Rocking(Side::Left), &state, load);
+        let x = Instant::of(&frame, Phase::Rocking(Side::Left), &state, load);
         let second = Second { u_ddot: frame.modal(&u_ddot), theta_ddot };
         let Reactions { R_h, R_v, R_m } = Reactions::at(&x, &second);
         let across = s * m_t * B - mu;
@@ -624,7 +591,7 @@ mod tests {
     #[test]
     fn three_masses_at_one_height_are_one_mass() {
         let parameters = Parameters { J0: 10.7, ..Parameters::MCMANUS };
-        let (structure, Parameters { m, H, zeta_fc, .. }) = (Structure::new(parameters).unwrap(), parameters);
+        let (structure, Parameters { m, H, zeta_fc, .. }) = (OneMass::new(parameters).unwrap(), parameters);
         let parts = [0.2, 0.3, 0.5];
         let stiffness = Matrix3::from_diagonal(&Vector3::from(parts.map(|part| part * structure.k)));
         let frame = Masses::new(parts.map(|part| part * m), [H; 3], stiffness, zeta_fc, &parameters);
@@ -632,23 +599,27 @@ mod tests {
         let one = State { u: 4e-3, u_dot: 0.3, theta: 0.0, theta_dot: -0.2 };
         let three = frame.state(&Vector3::repeat(one.u), &Vector3::repeat(one.u_dot), one.theta, one.theta_dot);
         let phase = Phase::Rocking(side);
-        assert_relative_eq!(energy(&*frame, phase, &three), energy(&structure, phase, &one), max_relative = 1e-13);
         assert_relative_eq!(
-            angular_momentum(&*frame, &three),
-            angular_momentum(&structure, &one),
+            energy(&frame, phase, &three),
+            energy(&structure.into(), phase, &one),
+            max_relative = 1e-13
+        );
+        assert_relative_eq!(
+            angular_momentum(&frame, &three),
+            angular_momentum(&structure.into(), &one),
             max_relative = 1e-12
         );
         assert_relative_eq!(
-            energy_gained(&*frame, side, &three),
-            energy_gained(&structure, side, &one),
+            energy_gained(&frame, side, &three),
+            energy_gained(&structure.into(), side, &one),
             max_relative = 1e-11
         );
         let (u_ddot, theta_ddot) = (-5.0, 2.0);
         let second = Second { u_ddot: frame.modal(&Vector3::repeat(u_ddot)), theta_ddot };
         let of_three = Load { a_g: load.a_g, F_t: frame.no_force(), a_v: load.a_v };
-        let found = Reactions::at(&Instant::of(&*frame, phase, &three, of_three), &second);
+        let found = Reactions::at(&Instant::of(&frame, phase, &three, of_three), &second);
         let expected =
-            Reactions::at(&Instant::<f64>::of(&structure, phase, &one, load), &Second { u_ddot, theta_ddot });
+            Reactions::at(&Instant::<f64>::of(&structure.into(), phase, &one, load), &Second { u_ddot, theta_ddot });
         for (found, expected) in [(found.R_h, expected.R_h), (found.R_v, expected.R_v), (found.R_m, expected.R_m)] {
             assert_relative_eq!(found, expected, max_relative = 1e-12);
         }

@@ -8,7 +8,7 @@
 //!
 //! The top mass therefore feels the ground acceleration a_g − F_t/m, and the foundation feels a_g alone. With F_t = 0 no result
 //! changes in a bit. Uplift of one mass requires s u ≥ u_cr and s θ̈ > 0, and neither depends on a_g or F_t. Impacts are too short for
-//! both. [`Frame::load`](crate::Frame::load) tells what forces on floors add to a structure of many masses.
+//! both. [`Structure::load`](crate::Structure::load) tells what forces on floors add to a structure of many masses.
 //!
 //! The vertical ground acceleration a_v replaces g by g + a_v in every weight.
 
@@ -73,7 +73,7 @@ pub struct Load<Q = f64> {
     /// Ground acceleration, m/s², positive to the right.
     pub a_g: f64,
     /// External force on the top mass, N, horizontal in the ground's frame, positive to the right; of many masses, the force φᵀF on
-    /// each mode, from [`Frame::load`](crate::Frame::load).
+    /// each mode, from [`Structure::load`](crate::Structure::load).
     pub F_t: Q,
     /// Vertical ground acceleration, m/s², positive upwards.
     pub a_v: f64,
@@ -97,18 +97,12 @@ impl Load {
         LOADS[1].check(self.F_t)?;
         LOADS[2].check(self.a_v)
     }
-
-    /// a_g − F_t/m, the ground acceleration that the top mass feels, m/s².
-    #[inline]
-    pub fn on_top(self, structure: &Structure) -> f64 {
-        self.on_modes(structure)
-    }
 }
 
 impl<Q: Coordinates> Load<Q> {
     /// The ground acceleration that each mode feels, a_g Γ/μ − F_t/μ, m/s², beside the force on mass that no mode carries.
     #[inline(always)]
-    pub(crate) fn on_modes(self, structure: &Q::Structure) -> Q {
+    pub(crate) fn on_modes(self, structure: &Structure) -> Q {
         Q::each(structure, |j, mode| mode.part(self.a_g) - self.F_t.of(j) / mode.mass).beside(&self.F_t)
     }
 }
@@ -194,7 +188,7 @@ impl<Q: Coordinates> LinearLoad<Q> {
 
     /// The ground acceleration that each mode feels; of one mass, the acceleration that the top mass feels.
     #[inline]
-    pub(crate) fn on_top(self, structure: &Q::Structure) -> Ramp<Q> {
+    pub(crate) fn on_top(self, structure: &Structure) -> Ramp<Q> {
         if self.value.F_t.is_within(&Q::ZERO) && self.slope.F_t.is_within(&Q::ZERO) {
             let Ramp { value, slope } = self.on_foundation(); // the result of the divisions, at less cost
             return Ramp { value: Q::parts(structure, value), slope: Q::parts(structure, slope) };
@@ -204,7 +198,7 @@ impl<Q: Coordinates> LinearLoad<Q> {
 
     /// [`LinearLoad::on_top`] with a force.
     #[cold]
-    fn on_pushed_top(self, structure: &Q::Structure) -> Ramp<Q> {
+    fn on_pushed_top(self, structure: &Structure) -> Ramp<Q> {
         Ramp { value: self.value.on_modes(structure), slope: self.slope.on_modes(structure) }
     }
 }

@@ -167,7 +167,7 @@ outputs! {
 
 /// The formula of each output, by its name.
 mod formulas {
-    use crate::Parameters;
+    use crate::Floor;
     use crate::mechanics::instant::{self, Instant, Place, Strut};
     use crate::numbers::Number;
 
@@ -197,7 +197,7 @@ mod formulas {
         match x.strut {
             Strut::Elastic(damping) => super::acceleration(x, damping, |_, part| part),
             Strut::Rigid(theta_ddot) => {
-                theta_ddot * x.structure.parameters().H + x.theta_dot * x.theta_dot * x.pivot() + x.a_g * x.turn.cos
+                theta_ddot * x.structure.floors()[0].height + x.theta_dot * x.theta_dot * x.pivot() + x.a_g * x.turn.cos
                     - x.a_v * x.turn.sin
             }
         }
@@ -205,13 +205,13 @@ mod formulas {
 
     #[inline(always)]
     pub fn V_t<N: Number>(x: &Instant<N>) -> N {
-        super::base_shear(x.structure.parameters().m, a_t(x))
+        super::base_shear(x.structure.floors()[0].mass, a_t(x))
     }
 
     #[inline(always)]
     pub fn M_t<N: Number>(x: &Instant<N>) -> N {
-        let &Parameters { m, H, .. } = x.structure.parameters();
-        super::overturning_moment(m, H, a_t(x))
+        let &Floor { mass, height, .. } = &x.structure.floors()[0];
+        super::overturning_moment(mass, height, a_t(x))
     }
 
     #[inline(always)]
@@ -232,7 +232,7 @@ mod formulas {
     /// The place of the top mass.
     #[inline(always)]
     fn top<N: Number>(x: &Instant<N>) -> Place<N> {
-        Place { share: 1.0, height: x.structure.parameters().H, u: x.u }
+        Place { share: 1.0, height: x.structure.floors()[0].height, u: x.u }
     }
 }
 
@@ -328,6 +328,7 @@ impl Measure {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::OneMass;
     use crate::levels::detail::Detail;
     use crate::levels::full_contact;
     use crate::levels::nonlinear;
@@ -339,7 +340,7 @@ mod tests {
     /// Eq 27 with ü and θ̈ from Eqs 5 and 6, or from Eq 1 in full contact, agrees with a_t from the state.
     #[test]
     fn the_acceleration_is_that_of_equation_27() {
-        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let structure = OneMass::new(Parameters::MCMANUS).unwrap();
         let &Parameters { H, B, .. } = structure.parameters();
         let state = State { u: 3e-3, u_dot: -0.2, theta: -0.08, theta_dot: 0.6 };
         let load = Load { a_g: 7.0, F_t: 300.0, a_v: -3.0 };
@@ -349,11 +350,11 @@ mod tests {
             + state.theta_dot.powi(2) * (-B - state.u)
             + load.a_g * libm::cos(state.theta)
             - load.a_v * libm::sin(state.theta);
-        let outputs = Outputs::of(&structure, Phase::Rocking(Side::Left), &state, load.F_t);
+        let outputs = Outputs::of(&structure.into(), Phase::Rocking(Side::Left), &state, load.F_t);
         assert_relative_eq!(outputs.a_t, expected, max_relative = 1e-12);
 
         let down = State { theta: 0.0, theta_dot: 0.0, ..state };
-        let outputs = Outputs::of(&structure, Phase::FullContact, &down, load.F_t);
+        let outputs = Outputs::of(&structure.into(), Phase::FullContact, &down, load.F_t);
         assert_relative_eq!(
             outputs.a_t,
             full_contact::acceleration(&structure, &down, load) + load.a_g,
@@ -364,7 +365,7 @@ mod tests {
     /// The rates are the slopes of the outputs along the motion, at every level.
     #[test]
     fn the_rates_are_the_slopes_of_the_outputs() {
-        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let structure = OneMass::new(Parameters::EVISON).unwrap();
         let down = State { u: 2e-4, u_dot: 0.01, ..State::default() };
         let rocking = State { u: 1e-3, u_dot: -0.1, theta: 0.05, theta_dot: 0.4 };
         let rigid = State { u: 0.0, u_dot: 0.0, ..rocking };

@@ -36,7 +36,7 @@ use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::LinearLoad;
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
-use crate::structure::{Base, Mode};
+use crate::{Base, Mode, Structure};
 use crate::{Phase, State};
 use serde::{Deserialize, Serialize};
 
@@ -199,14 +199,14 @@ impl<N: Number> Reactions<N> {
 impl Reactions {
     /// Time derivatives under `load`, given (ü, θ̈) and (u⃛, θ⃛); 0 once overturned.
     pub(crate) fn rates<Q: Coordinates>(
-        structure: &Q::Structure,
+        structure: &Structure,
         phase: Phase,
         state: &State<Q>,
         [accelerations, jerks]: [Second<f64, Q>; 2],
         load: LinearLoad<Q>,
     ) -> Reactions
     where
-        Dual<Q>: Lateral<Dual<f64>, Structure = Q::Structure>,
+        Dual<Q>: Lateral<Dual<f64>>,
     {
         if let Phase::Overturned(_) = phase {
             return Reactions { R_h: 0.0, R_v: 0.0, R_m: 0.0 };
@@ -222,7 +222,7 @@ impl Reactions {
 impl Impulse {
     /// The impulse of a transition that changes the motion from `before` to `after`.
     pub(crate) fn of<Q: Coordinates>(
-        structure: &Q::Structure,
+        structure: &Structure,
         before: (Phase, &State<Q>),
         after: (Phase, &State<Q>),
     ) -> Impulse {
@@ -238,8 +238,8 @@ impl Impulse {
 
 /// Momentum of the structure relative to the ground: to the right, downwards and about the middle of the base. The velocities are
 /// the rates of the places.
-fn momentum<Q: Coordinates>(structure: &Q::Structure, phase: Phase, state: &State<Q>) -> Impulse {
-    let &Base { m0, S_res, B, J0, .. } = Q::base(structure);
+fn momentum<Q: Coordinates>(structure: &Structure, phase: Phase, state: &State<Q>) -> Impulse {
+    let &Base { m0, S_res, B, J0, .. } = structure.base();
     let (pivot, moves) = (phase.side().sign() * B, phase == phase.in_motion());
     let rate = |rate: f64| if moves { rate } else { 0.0 };
     let turn = state.theta.turn().at_rate(rate(state.theta_dot));
@@ -265,14 +265,14 @@ fn momentum<Q: Coordinates>(structure: &Q::Structure, phase: Phase, state: &Stat
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Load, Parameters, Side, Structure};
+    use crate::{Load, Parameters, Side};
     use approx::assert_relative_eq;
 
     /// The accelerations in the formulas are second derivatives of the places: δ_t and the height, differentiated twice.
     #[test]
     fn the_reactions_are_the_loads_less_the_second_derivatives_of_the_places() {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
-        let &Parameters { m, m0, J0, g, .. } = structure.parameters();
+        let Parameters { m, m0, J0, g, .. } = Parameters::MCMANUS;
         let state = State { u: 3e-3, u_dot: 0.2, theta: -0.3, theta_dot: 0.8 };
         let (u_ddot, theta_ddot, load) = (-5.0, 2.0, Load { a_g: 3.0, F_t: 250.0, a_v: -1.5 });
         let phase = Phase::Rocking(Side::Left);
@@ -294,7 +294,7 @@ mod tests {
             F_t: none(),
             a_v: none(),
         };
-        let top = x.place(0, &structure.mode);
+        let top = x.place(0, &structure.modes()[0]);
         let places = [
             (top.right(x.pivot(), &x.turn), top.up(x.pivot(), &x.turn)),
             (x.turn.versine * x.pivot(), x.turn.sin * x.pivot()),

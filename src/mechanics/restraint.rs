@@ -17,8 +17,8 @@
 use crate::mechanics::uplift::hold;
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
-use crate::structure::{Base, Ties};
-use crate::{Side, Structure};
+use crate::{Base, Ties};
+use crate::{OneMass, Side};
 use serde::{Deserialize, Serialize};
 
 /// The state of the dissipators and the energy they have taken. The first is at +ξ_d, the second at −ξ_d.
@@ -149,19 +149,19 @@ pub(crate) fn sum(ties: &[Tie; 3], weight: impl Fn(&Tie) -> f64) -> Tie {
 
 /// Tendon and dissipators of a structure that rocks, or is about to lift off, about a side.
 #[derive(Clone, Copy, Debug)]
-pub struct Restraint<'a, S = Structure> {
-    structure: &'a S,
+pub struct Restraint<'a> {
+    base: &'a Base,
     side: Side,
     dissipators: &'a Dissipators,
     /// The tendon and both dissipators.
     ties: [Tie; 3],
 }
 
-impl<'a, S: AsRef<Base>> Restraint<'a, S> {
-    /// The restraint of a structure of one mass or of many about `side`, with the dissipators in this state.
+impl<'a> Restraint<'a> {
+    /// The restraint of `base` about `side`, with the dissipators in this state.
     #[inline]
-    pub fn about(structure: &'a S, side: Side, dissipators: &'a Dissipators) -> Restraint<'a, S> {
-        Restraint { structure, side, dissipators, ties: ties(structure.as_ref(), side, dissipators) }
+    pub fn about(base: &'a Base, side: Side, dissipators: &'a Dissipators) -> Restraint<'a> {
+        Restraint { base, side, dissipators, ties: ties(base, side, dissipators) }
     }
 
     /// The forces of the ties at this `chord`.
@@ -185,7 +185,7 @@ impl<'a, S: AsRef<Base>> Restraint<'a, S> {
     /// Pulls of the ties on the ground, up and to the right, N, and their moment about the place of the middle of the base in
     /// full contact, N·m. The moment holds in full contact.
     pub(crate) fn pulls<N: Number>(&self, chord: &Chord<N>) -> [N; 3] {
-        let middle = self.side.sign() * self.structure.as_ref().B;
+        let middle = self.side.sign() * self.base.B;
         let force = |tie: Tie| tie.force(chord.length, chord.rate);
         let (pull, moment) = (force(sum(&self.ties, |_| 1.0)), force(sum(&self.ties, |tie| middle - tie.lever)));
         [pull * chord.half.cos, pull * chord.half.sin, moment * chord.half.cos]
@@ -198,7 +198,7 @@ impl<'a, S: AsRef<Base>> Restraint<'a, S> {
 
     /// Stored energy P_0 e + ½ k_t e² + Σ F²/(2 k_d) at this `chord`, J, with F the force of an elastoplastic dissipator.
     fn stored<N: Number>(&self, chord: &Chord<N>) -> N {
-        let Ties { P_0, k_t, k_d, F_y, .. } = self.structure.as_ref().ties;
+        let Ties { P_0, k_t, k_d, F_y, .. } = self.base.ties;
         let [tendon, pair @ ..] = &self.ties;
         let e = chord.length * tendon.lever;
         let of_tendon = e * (N::constant(P_0) + e * (0.5 * k_t));
@@ -210,9 +210,7 @@ impl<'a, S: AsRef<Base>> Restraint<'a, S> {
             sum + force * force / (2.0 * k_d)
         })
     }
-}
 
-impl Restraint<'_> {
     /// The displacement u_cr,s (m) towards the side at which the base lifts off, if its turning moment suffices there:
     ///
     /// ```text
@@ -220,32 +218,28 @@ impl Restraint<'_> {
     /// ```
     ///
     /// If u_cr,s is not above 0, the weight no longer holds the base. `a_v` in m/s².
-    pub fn uplift_displacement(&self, a_v: f64) -> f64 {
-        let &Restraint { structure, side, dissipators, .. } = self;
-        let more = hold(&structure.base, side, a_v, dissipators) - structure.base.hold_at_rest();
-        structure.u_cr + more / (structure.parameters().H * structure.k)
+    pub fn uplift_displacement(&self, one: &OneMass, a_v: f64) -> f64 {
+        let &Restraint { base, side, dissipators, .. } = self;
+        let more = hold(base, side, a_v, dissipators) - base.hold_at_rest();
+        one.u_cr + more / (one.parameters().H * one.k)
     }
 
     /// Moment that turns the base back about the pivot at the rotation `theta` (rad), at rest and with u = 0, N·m:
     ///
     /// ```text
-    /// M(θ) = s (m + m0) g B cos θ − m g H sin θ + s P_0 B cos(θ/2) + k_t B² sin θ + Σ_j F_j (sB − ξ_j) cos(θ/2)
+    /// M(θ) = m_t g B (s cos θ − sin θ/tan α_cg) + s P_0 B cos(θ/2) + k_t B² sin θ + Σ_j F_j (sB − ξ_j) cos(θ/2)
     /// ```
     pub fn restoring_moment(&self, theta: f64) -> f64 {
-        let &crate::Parameters { m, m0, H, B, g, .. } = self.structure.parameters();
+        let &Base { m_t, g, B, tan_alpha_cg, .. } = self.base;
         let of_ties = self.moment(&Angles::Any.chord(theta, 0.0));
         let (sin, cos) = libm::sincos(theta);
-        self.side.sign() * (m + m0) * g * B * cos - m * g * H * sin + of_ties
+        m_t * g * B * (self.side.sign() * cos - sin / tan_alpha_cg) + of_ties
     }
 }
 
 impl Restraints {
     /// Rates of the forces, N/s, from θ, θ̇ and θ̈.
-    pub(crate) fn rates<S: AsRef<Base>>(
-        restraint: &Restraint<S>,
-        angles: Angles,
-        [theta, theta_dot, theta_ddot]: [f64; 3],
-    ) -> Restraints {
+    pub(crate) fn rates(restraint: &Restraint, angles: Angles, [theta, theta_dot, theta_ddot]: [f64; 3]) -> Restraints {
         let (theta, theta_dot) = (Dual { value: theta, rate: theta_dot }, Dual { value: theta_dot, rate: theta_ddot });
         let Restraints { P_t, F_d1, F_d2 } = restraint.forces(&angles.chord(theta, theta_dot));
         Restraints { P_t: P_t.rate, F_d1: F_d1.rate, F_d2: F_d2.rate }
@@ -276,9 +270,9 @@ impl Dissipators {
         self
     }
 
-    /// The dissipators after a slow rotation of `structure` to `theta` (rad) about `side` that does not turn back on its way.
-    pub fn moved(&self, structure: &Structure, side: Side, theta: f64) -> Dissipators {
-        self.moved_by(&structure.base, side, Angles::Any.chord(theta, 0.0))
+    /// The dissipators of `base` after a slow rotation to `theta` (rad) about `side` that does not turn back on its way.
+    pub fn moved(&self, base: &Base, side: Side, theta: f64) -> Dissipators {
+        self.moved_by(base, side, Angles::Any.chord(theta, 0.0))
     }
 
     /// [`Dissipators::moved`] to a rotation of this `chord`.

@@ -1,8 +1,9 @@
 //! State and phase of the structure.
 
-use crate::Structure;
+use crate::OneMass;
 use crate::digits::with_unit;
 use crate::mechanics::lateral::Coordinates;
+use crate::structure::NotOneMass;
 use crate::structure::quantity::{OutOfRange, Quantity, quantity};
 use serde::{Deserialize, Serialize};
 
@@ -135,6 +136,9 @@ pub enum InitialStateError {
         /// u_dot_0, m/s.
         u_dot: f64,
     },
+    /// The structure has more than one mass.
+    #[error(transparent)]
+    NotOneMass(#[from] NotOneMass),
     /// Structures of many masses have no such level.
     #[error("detail = {0} moves structures of one mass alone: choose auto, nonlinear, linear, rigid or fixed_base")]
     OneMass(&'static str),
@@ -174,11 +178,11 @@ impl State {
         State { u, u_dot, theta, theta_dot }
     }
 
-    /// Usual magnitudes in a motion of `structure`: u_cr, at which the base lifts off, α_cg, at which the structure falls, and the
+    /// Usual magnitudes in a motion of `one` mass: u_cr, at which the base lifts off, α_cg, at which the structure falls, and the
     /// rates that belong to them.
-    pub fn usual(structure: &Structure) -> State {
-        let (u, theta) = (structure.u_cr, libm::atan(structure.tan_alpha_cg));
-        State { u, u_dot: structure.omega_fc * u, theta, theta_dot: structure.p_l * theta }
+    pub fn usual(one: &OneMass) -> State {
+        let (u, theta) = (one.u_cr, libm::atan(one.tan_alpha_cg));
+        State { u, u_dot: one.omega_fc * u, theta, theta_dot: one.p_l * theta }
     }
 
     /// The phase that this state starts in: full contact for θ = 0, otherwise rocking about the side of θ's sign.

@@ -31,8 +31,7 @@
 
 use crate::mechanics::restraint::{Dissipators, ties};
 use crate::numbers::Number;
-use crate::structure::{Base, Mode};
-use crate::{Ramp, Side, State, Structure};
+use crate::{Base, Mode, OneMass, Ramp, Side, State};
 
 /// Smallest excess of the turning moment over the hold, as a fraction of the hold at rest. It is far above rounding. After uplift
 /// the base therefore moves away from the ground.
@@ -132,28 +131,28 @@ pub(crate) fn margin(
 
 /// Distance from uplift of a structure in full contact in `state`, without restraints and vertical motion: positive until uplift
 /// is due. Integrators without an engine use it.
-pub fn distance(structure: &Structure, state: &State) -> f64 {
-    let modes = std::slice::from_ref(&structure.mode);
-    let lift = Lift::new(&structure.base, modes, 1.0, [0.0; 2], |_| [state.u, state.u_dot]);
-    margin(&structure.base, &lift, 0.0, &Dissipators::NEW, |_| 1.0).0
+pub fn distance(one: &OneMass, state: &State) -> f64 {
+    let modes = std::slice::from_ref(one.mode());
+    let lift = Lift::new(one.base(), modes, 1.0, [0.0; 2], |_| [state.u, state.u_dot]);
+    margin(one.base(), &lift, 0.0, &Dissipators::NEW, |_| 1.0).0
 }
 
-/// The |a_top| (m/s²) from which on the base of a rigid structure lifts off: g tan α_cg + P_0 B/(m H).
-pub fn least_push(structure: &Structure) -> f64 {
-    let &crate::Parameters { m, H, .. } = structure.parameters();
-    (1.0 + LEAST_EXCESS) * structure.base.hold_at_rest() / (m * H)
+/// The |a_top| (m/s²) from which on the base of a rigid structure lifts off: g tan α_cg + P_0 B/S_1, where S_1 = m_t B/tan α_cg.
+pub fn least_push(base: &Base) -> f64 {
+    (1.0 + LEAST_EXCESS) * base.hold_at_rest() * base.tan_alpha_cg / (base.m_t * base.B)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::OneMass;
     use crate::levels::nonlinear::accelerations;
     use crate::{Load, Parameters};
 
-    fn margin_of(structure: &Structure, state: &State, a_v: f64, dissipators: &Dissipators) -> (f64, Side) {
+    fn margin_of(structure: &OneMass, state: &State, a_v: f64, dissipators: &Dissipators) -> (f64, Side) {
         let modes = std::slice::from_ref(&structure.mode);
-        let lift = Lift::new(&structure.base, modes, 1.0, [0.0, a_v], |_| [state.u, state.u_dot]);
-        margin(&structure.base, &lift, a_v, dissipators, |side| inertia(&structure.base, modes, side, |_| state.u))
+        let lift = Lift::new(structure.base(), modes, 1.0, [0.0, a_v], |_| [state.u, state.u_dot]);
+        margin(structure.base(), &lift, a_v, dissipators, |side| inertia(structure.base(), modes, side, |_| state.u))
     }
     use approx::assert_relative_eq;
 
@@ -161,7 +160,7 @@ mod tests {
     #[test]
     fn the_margin_is_the_larger_of_the_missing_displacement_and_moment() {
         let parameters = Parameters { P_0: 200.0, xi_d: 0.1, k_d: 1e5, F_y: 400.0, ..Parameters::MCMANUS };
-        let structure = Structure::new(parameters).unwrap();
+        let structure = OneMass::new(parameters).unwrap();
         let Parameters { m, m0, H, B, g, P_0, xi_d, k_d, .. } = parameters;
         let dissipators = Dissipators { plastic: [2e-3, -1e-3], ..Dissipators::NEW };
         let a_v = -1.5;
@@ -183,7 +182,7 @@ mod tests {
     /// moment. The base lifts off about the former.
     #[test]
     fn the_structure_lifts_off_about_the_side_that_turns_faster() {
-        let structure = Structure::new(Parameters { zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
+        let structure = OneMass::new(Parameters { zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
         let Parameters { m, H, g, .. } = *structure.parameters();
         let [by_u, by_rate] = [H * structure.k + m * (g - 60.0), H * structure.c_u];
         let load = Load { a_v: -60.0, ..Load::default() };

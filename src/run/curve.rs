@@ -14,7 +14,7 @@ use crate::mechanics::outputs::Measure;
 use crate::mechanics::restraint::Restraints;
 use crate::series::terms::Terms;
 use crate::series::{extremes, taylor};
-use crate::{Frame, FrameOutput, Modes, Outputs, Phase, Structure, Transition};
+use crate::{FrameOutput, Modes, Outputs, Phase, Structure, Transition};
 use std::fmt::Debug;
 
 /// The largest number of times that a polynomial is divided.
@@ -42,7 +42,7 @@ pub trait Drawn: Peaked<Peaks: Debug> {
 
     /// The peaks of a_g and of each line that is drawn, among `all` of a motion.
     #[doc(hidden)]
-    fn exact(structure: &Self::Structure, all: &Self::Peaks) -> Vec<Peak>;
+    fn exact(structure: &Structure, all: &Self::Peaks) -> Vec<Peak>;
 
     /// The outputs of `sample`.
     #[doc(hidden)]
@@ -75,7 +75,7 @@ impl Drawn for f64 {
 }
 
 /// The outputs of `frame` that are drawn: of its base, then u and a_t of each floor.
-pub fn drawn(frame: &Frame) -> impl Iterator<Item = FrameOutput> + use<> {
+pub fn drawn(frame: &Structure) -> impl Iterator<Item = FrameOutput> + use<> {
     let floors = frame.floors().len();
     let of_floors = (0..floors).flat_map(|i| [FrameOutput::u(i), FrameOutput::a_t(i)]);
     [FrameOutput::theta, FrameOutput::V_t, FrameOutput::M_t].into_iter().chain(of_floors)
@@ -85,7 +85,7 @@ impl Drawn for Modes {
     /// In the order of [`drawn`].
     type Outputs = Vec<f64>;
 
-    fn exact(frame: &Frame, all: &Profile) -> Vec<Peak> {
+    fn exact(frame: &Structure, all: &Profile) -> Vec<Peak> {
         let line = |line| all.of(line).expect("each line has a peak");
         [all.a_g].into_iter().chain(drawn(frame).map(line)).collect()
     }
@@ -147,7 +147,7 @@ impl<Q: Drawn> Run<'_, Q> {
             exact: peaks.iter().map(|peak| peak.time).collect(),
             pga: peaks[0].magnitude,
             most: 10 * MOST_POINTS / (6 + peaks.len()),
-            is_restrained: Q::base(&self.structure).is_restrained(),
+            is_restrained: self.structure.base().is_restrained(),
             points: Vec::new(),
             transitions: Vec::new(),
             is_torn: true,

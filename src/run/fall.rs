@@ -5,17 +5,17 @@ use super::peak_watch::PeakWatch;
 use super::peak_watch::Peaked;
 use super::peaks::Peak;
 use super::{Finish, Run, RunError};
+use crate::Base;
 use crate::engine::Moves;
 #[cfg(feature = "lanes")]
 use crate::engine::lanes::{Bounded, Passes};
 use crate::engine::piece::{Expansion, Sample};
-use crate::mechanics::restraint::{Angles, Dissipators, sum, ties};
+use crate::mechanics::restraint::{Dissipators, Restraint};
 use crate::run::ground_motion::GroundMotion;
 use crate::series::bisection::last_where;
 use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
 use crate::series::taylor::{self, Arc, sum_of_magnitudes};
-use crate::structure::Base;
-use crate::{Detail, Piece, Side, Transition, TransitionKind, Watch};
+use crate::{Detail, Piece, Side, Structure, Transition, TransitionKind, Watch};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
@@ -57,19 +57,16 @@ pub fn angle_of_no_return(base: &Base) -> Option<f64> {
         return Some(libm::atan(base.tan_alpha_cg));
     }
     let restores = |theta| {
-        let chord = Angles::Any.chord(theta, 0.0);
-        let dissipators = Dissipators::NEW.moved_by(base, Side::Right, chord);
-        let of_ties = sum(&ties(base, Side::Right, &dissipators), |tie| tie.lever).moment(&chord);
-        let (sin, cos) = libm::sincos(theta);
-        base.m_t * base.g * base.B * (cos - sin / base.tan_alpha_cg) + of_ties > 0.0
+        let dissipators = Dissipators::NEW.moved(base, Side::Right, theta);
+        Restraint::about(base, Side::Right, &dissipators).restoring_moment(theta) > 0.0
     };
     (!restores(FRAC_PI_2)).then(|| last_where(0.0, FRAC_PI_2, restores))
 }
 
 impl<Q: Peaked> Falling<Q> {
     /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion.
-    pub fn since(time: f64, structure: &Q::Structure, detail: Detail) -> Falling<Q> {
-        let (all, no_return) = (Q::none(time, structure, detail), angle_of_no_return(Q::base(structure)));
+    pub fn since(time: f64, structure: &Structure, detail: Detail) -> Falling<Q> {
+        let (all, no_return) = (Q::none(time, structure, detail), angle_of_no_return(structure.base()));
         Falling { all, no_return, fall: None, has_overturned: false }
     }
 
@@ -252,7 +249,7 @@ mod tests {
     use crate::run::peaks::PEAKS;
     use crate::run::record::Record;
     use crate::run::{End, Ending};
-    use crate::{Outputs, Parameters, State, Structure};
+    use crate::{OneMass, Outputs, Parameters, State};
     use std::f64::consts::TAU;
 
     /// The peaks before the fall and its instant, of a run that overturns.
@@ -265,7 +262,7 @@ mod tests {
     /// Against dense samples: below α_cg before it, beyond from then on, and no peak is of later.
     #[test]
     fn the_fall_begins_where_the_rotation_passes_alpha_cg_for_the_last_time() {
-        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let structure = OneMass::new(Parameters::MCMANUS).unwrap();
         let alpha_cg = structure.tan_alpha_cg.atan();
         let times: Vec<_> = (0..=50).map(|i| f64::from(i) * 0.01).collect();
         let acceleration = times.iter().map(|time| 0.9 * 9.81 * (TAU * time / 0.5).sin()).collect();
@@ -274,7 +271,7 @@ mod tests {
             let run = Run { detail, ..Run::new(structure, &ground) };
             let mut seen: Vec<(f64, Outputs)> = Vec::new();
             let dense = (0..40_000).map(|i| f64::from(i) * 1e-4);
-            let mut watched = Falling::<f64>::since(0.0, &structure, Detail::Auto);
+            let mut watched = Falling::<f64>::since(0.0, &structure.into(), Detail::Auto);
             run.sample(dense, |at| seen.push((at.motion.time, at.outputs())), &mut watched.watch()).unwrap();
             let instant = watched.fall().unwrap();
             let last = seen.iter().rposition(|(_, outputs)| outputs.theta.abs() < alpha_cg).unwrap();
@@ -306,14 +303,14 @@ mod tests {
     /// samples of its way.
     #[test]
     fn a_fall_after_a_return_is_found_exactly() {
-        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let structure = OneMass::new(Parameters::MCMANUS).unwrap();
         let alpha_cg = structure.tan_alpha_cg.atan();
         let (ground, mut returned) = (Record::at_rest(60.0), 0);
         for detail in [Detail::Auto, Detail::Linear, Detail::Modal, Detail::Rigid] {
             for beyond in (0..40).map(|i| 1e-4 * f64::from(i)) {
                 let initial = State { theta: -alpha_cg * (1.0 + beyond), ..State::default() };
                 let run = Run { detail, initial, ..Run::new(structure, &ground) };
-                let (mut watched, mut seen) = (Falling::<f64>::since(0.0, &structure, Detail::Auto), Vec::new());
+                let (mut watched, mut seen) = (Falling::<f64>::since(0.0, &structure.into(), Detail::Auto), Vec::new());
                 let times = (0..100_000).map(|i| f64::from(i) * 2e-4);
                 let show = |at: &crate::engine::piece::Sample| seen.push((at.motion.time, at.motion.state.theta.abs()));
                 let ending = run.sample(times, show, &mut watched.watch()).unwrap().ending;
@@ -339,22 +336,22 @@ mod tests {
     #[test]
     fn a_tied_structure_falls_from_where_its_own_moment_vanishes() {
         let tied = Parameters { k_t: 2e4, xi_d: 0.2, k_d: 1e5, F_y: 300.0, ..Parameters::MCMANUS };
-        let stiff = Structure::new(Parameters { k_t: 4e4, ..tied }).unwrap();
+        let stiff = OneMass::new(Parameters { k_t: 4e4, ..tied }).unwrap();
         assert_eq!(angle_of_no_return(&stiff.base), None);
         let ground = Record::at_rest(60.0);
-        let pushed = |structure: Structure, theta_dot: f64| {
+        let pushed = |structure: OneMass, theta_dot: f64| {
             let initial = State { theta: 1e-3, theta_dot, ..State::default() };
             Run { initial, ..Run::new(structure, &ground) }
         };
         for tied in [tied, Parameters { k_t: 1e4, P_0: 500.0, ..tied }] {
-            let structure = Structure::new(tied).unwrap();
-            let no_return = angle_of_no_return(&structure.base).unwrap();
+            let structure = OneMass::new(tied).unwrap();
+            let no_return = angle_of_no_return(structure.base()).unwrap();
             let alpha_cg = structure.tan_alpha_cg.atan();
             assert!(no_return > 1.5 * alpha_cg, "{no_return}");
-            let loop_there = restoring::flag(&structure, no_return, 1000)[1000];
-            assert!(loop_there.moment.abs() < 1e-9 * restoring::flag(&structure, 0.0, 1)[0].moment);
+            let loop_there = restoring::flag(structure.base(), no_return, 1000)[1000];
+            assert!(loop_there.moment.abs() < 1e-9 * restoring::flag(structure.base(), 0.0, 1)[0].moment);
             let falls = |theta_dot: f64| {
-                let mut peaks = Falling::<f64>::since(0.0, &structure, Detail::Auto);
+                let mut peaks = Falling::<f64>::since(0.0, &structure.into(), Detail::Auto);
                 let ending = pushed(structure, theta_dot).follow(&mut peaks.watch()).unwrap().ending;
                 (ending == Ending::Overturned, peaks)
             };
@@ -373,7 +370,7 @@ mod tests {
     /// Overturning ends a run, and with it what its ground has done.
     #[test]
     fn the_peak_of_the_ground_is_that_until_the_run_ended() {
-        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let structure = OneMass::new(Parameters::MCMANUS).unwrap();
         let times: Vec<f64> = (0..=100).map(f64::from).collect();
         let acceleration = times.iter().map(|time| 9.0 * (time / 100.0)).collect();
         let ground = Record::from_samples("", times, acceleration).unwrap();

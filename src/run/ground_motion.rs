@@ -328,7 +328,7 @@ impl Segments<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Detail, Parameters, State, Structure};
+    use crate::{Detail, OneMass, Parameters, State};
 
     fn after(steps: impl IntoIterator<Item = f64>) -> Elapsed {
         steps.into_iter().fold(Elapsed::default(), Elapsed::and)
@@ -402,7 +402,7 @@ mod tests {
     /// The motion is the same as with steps that end at the samples.
     #[test]
     fn steps_that_miss_the_samples_by_little_shift_nothing() {
-        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let structure = OneMass::new(Parameters::MCMANUS).unwrap();
         let shaken: Vec<_> = (0..=200).map(|i| 3.0 * f64::from(i * i % 17) - 20.0).collect();
         let even: Vec<_> = (0..=200).map(|i| f64::from(i) * 0.01).collect();
         let steep = [vec![0.0; 100], vec![5.0; 101]].concat();
@@ -435,7 +435,7 @@ mod tests {
         let times: Vec<_> = (0..samples).map(|i| i as f64 * 1e-3).collect();
         let record = Record::from_samples("", times, vec![1e-3; samples]).unwrap();
         let ground = GroundMotion::from(&record);
-        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let structure = OneMass::new(Parameters::EVISON).unwrap();
         let mut engine = Engine::new(structure, State::default(), 5.0, 1e-9).unwrap();
         let before = *engine.motion();
         let mut advance = |interval| {

@@ -264,7 +264,7 @@ mod tests {
     use super::*;
     use crate::run::End;
     use crate::run::record::Record;
-    use crate::{Detail, Parameters, Phase, Piece, Structure, Watch};
+    use crate::{Detail, OneMass, Parameters, Phase, Piece, Watch};
     use std::f64::consts::PI;
 
     /// A ground motion of filtered noise.
@@ -282,12 +282,12 @@ mod tests {
     }
 
     /// A structure about as slender as a specimen, now and then with a tendon or without a foundation's inertia.
-    fn structure(random: &mut fastrand::Rng) -> Structure {
+    fn structure(random: &mut fastrand::Rng) -> OneMass {
         let usual = [Parameters::MCMANUS, Parameters::EVISON][random.usize(..2)];
         let mut vary = |number: f64| number * (0.5 + random.f64());
         let [H, B, f_fc, zeta_fc] = [usual.H, usual.B, usual.f_fc, usual.zeta_fc].map(&mut vary);
         let varied = Parameters { H, B, f_fc, zeta_fc, ..usual };
-        Structure::new(match random.u8(..) {
+        OneMass::new(match random.u8(..) {
             0..16 => Parameters { k_t: 1e4, P_0: 300.0, ..varied },
             16..32 => Parameters { m0: 0.0, J0: 0.0, f_fc: 0.2, ..varied },
             _ => varied,
@@ -352,7 +352,7 @@ mod tests {
         let times: Vec<_> = (0..=100).map(|i| f64::from(i) * 0.005).collect();
         let sine = times.iter().map(|time| 6.0 * f64::sin(time * PI / 0.5)).collect();
         let ground = Record::from_samples("", times, sine).unwrap();
-        let pier = |i| Structure::new(Parameters { H: 1.2 + 0.01 * f64::from(i), ..Parameters::MCMANUS }).unwrap();
+        let pier = |i| OneMass::new(Parameters { H: 1.2 + 0.01 * f64::from(i), ..Parameters::MCMANUS }).unwrap();
         let runs: Vec<_> = (0..40).map(|i| Run::new(pier(i), &ground)).collect();
         let count = |run: &Run| {
             let mut rocking = Rocking(0);

@@ -1,16 +1,16 @@
 //! Levels of detail compared on one run: the errors of each, what it costs, and the cheapest that will do.
 //!
-//! A level of a structure of many masses is also the number of modes that are kept ([`Frame::keeping`]).
+//! A level of a structure of many masses is also the number of modes that are kept ([`Structure::keeping`]).
 
 use super::curve::{Drawn, drawn};
 use super::fall::{FallWatch, Falling};
 use super::history::{Distance, History};
 use super::{Ending, Follower, Run, RunError};
+use crate::Mode;
 use crate::engine::motion::Work;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::run::ground_motion::Segment;
-use crate::structure::Mode;
-use crate::{Detail, Frame, FrameOutput, Modes, State, Structure};
+use crate::{Detail, FrameOutput, Modes, State, Structure};
 use std::fmt;
 
 /// Tolerance of the run that all others are measured by.
@@ -92,10 +92,10 @@ const KINDS: usize = 3;
 /// Lateral coordinates of structures whose levels of detail are compared: by the lines of their pictures.
 pub trait Compared: Drawn {
     /// The kind of each line.
-    fn kinds(structure: &Self::Structure) -> Vec<usize>;
+    fn kinds(structure: &Structure) -> Vec<usize>;
 
     /// The modes of a structure of many masses, all kept.
-    fn all_modes(structure: &Self::Structure) -> Option<[usize; 2]>;
+    fn all_modes(structure: &Structure) -> Option<[usize; 2]>;
 
     /// The levels to compare on `run`, the one of the fewest equations first.
     fn choices<'a>(run: &Run<'a, Self>) -> Vec<(Choice, Run<'a, Self>)>;
@@ -117,7 +117,7 @@ impl Compared for f64 {
 }
 
 impl Compared for Modes {
-    fn kinds(structure: &Frame) -> Vec<usize> {
+    fn kinds(structure: &Structure) -> Vec<usize> {
         let kind = |line| match line {
             FrameOutput::theta => 0,
             FrameOutput::u(_) => 1,
@@ -126,7 +126,7 @@ impl Compared for Modes {
         drawn(structure).map(kind).collect()
     }
 
-    fn all_modes(structure: &Frame) -> Option<[usize; 2]> {
+    fn all_modes(structure: &Structure) -> Option<[usize; 2]> {
         Some([structure.modes().len(); 2])
     }
 
@@ -263,7 +263,7 @@ fn start<'a, Q: Compared>(
     choice: Choice,
     peaks: &'a mut Falling<Q>,
 ) -> Result<Trial<'a, Q, impl Iterator<Item = Segment> + use<'a, Q>>, RunError> {
-    let [slowest, fastest] = Q::vibration(&run.structure).rocking;
+    let [slowest, fastest] = run.structure.vibration().rocking;
     let Follower { engine, segments, end, rest } = run.course()?;
     let segments = segments.flat_map(move |segment| cut(segment, LONGEST_STRETCH / fastest));
     Ok(Trial {
@@ -348,7 +348,7 @@ fn errors(kinds: &[usize], differences: &[f64], expected: &[f64]) -> [f64; KINDS
 impl<Q: Compared> Verdict<Q> {
     /// Of a `response` that has been this far from the `reference`, whose peaks are these with a fall, `all` of it.
     fn new(
-        structure: &Q::Structure,
+        structure: &Structure,
         response: Response<Q>,
         distance: &Distance,
         reference: &Response<Q>,
@@ -400,16 +400,17 @@ impl<Q: Compared> Comparison<Q> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::OneMass;
     use crate::Parameters;
     use crate::run::peaks::Peaks;
     use crate::run::record::Record;
 
     fn verdict(detail: Detail, errors: [f64; 6], cost: u64) -> Verdict {
-        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let structure = OneMass::new(Parameters::MCMANUS).unwrap();
         let work = Work { steps: 0, evaluations: cost };
         let response = Response {
             choice: Choice { detail, modes: None },
-            peaks: Peaks::since(0.0, &structure, detail),
+            peaks: Peaks::since(0.0, &structure.into(), detail),
             ending: Ending::AtRest,
             transitions: 0,
             work,
@@ -421,7 +422,7 @@ mod tests {
     /// without inertia.
     #[test]
     fn a_failure_without_the_vertical_component_is_no_failure_of_the_level() {
-        let structure = Structure::new(Parameters { m0: 0.0, J0: 0.0, f_fc: 0.2, ..Parameters::MCMANUS }).unwrap();
+        let structure = OneMass::new(Parameters { m0: 0.0, J0: 0.0, f_fc: 0.2, ..Parameters::MCMANUS }).unwrap();
         let times: Vec<_> = (0..=400).map(|i| f64::from(i) * 0.02).collect();
         let a_g = times.iter().map(|t| (std::f64::consts::TAU * t / 4.0).sin()).collect();
         let a_v = times.iter().map(|t| if *t > 0.01 { -15.0 } else { 0.0 }).collect();

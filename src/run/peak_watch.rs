@@ -6,7 +6,7 @@
 use crate::engine::piece::{Piece, Room, Sample, Watch};
 use crate::engine::{MOST_POLYNOMIALS, Moves};
 use crate::series::taylor::{Arc, LONGEST_SPAN};
-use crate::{Detail, LinearLoad, Motion, State, Transition};
+use crate::{Detail, LinearLoad, Motion, State, Structure, Transition};
 use std::fmt::Debug;
 
 /// How many pieces are kept at most.
@@ -21,7 +21,7 @@ pub trait Peaked: Moves {
     type Bounds: Debug;
 
     /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion.
-    fn none(time: f64, structure: &Self::Structure, detail: Detail) -> Self::Peaks;
+    fn none(time: f64, structure: &Structure, detail: Detail) -> Self::Peaks;
 
     /// Whether `peaks` are of a motion that has begun.
     fn goes_on(peaks: &Self::Peaks) -> bool;
@@ -138,7 +138,7 @@ impl<Q: Peaked> Watch<Q> for PeakWatch<'_, Q> {
         if !Q::may_change(self.peaks, &bounds, before.time) {
             return;
         }
-        let is_long = arc.is_none() && duration * Q::vibration(level.structure()).rocking[1] > LONGEST_SPAN;
+        let is_long = arc.is_none() && duration * level.structure().vibration().rocking[1] > LONGEST_SPAN;
         if is_first || is_long {
             return Q::look(self.peaks, piece);
         }

@@ -12,8 +12,8 @@ use crate::levels::shown::Searched;
 use crate::mechanics::outputs::{Measure, OUTPUTS, PeakRule, Sizes};
 use crate::mechanics::restraint::Angles;
 use crate::series::extremes::{self, Bound};
-use crate::structure::{Base, Ties};
-use crate::{Detail, Outputs, Parameters, Phase, State, Structure, Transition, TransitionKind};
+use crate::{Base, Ties};
+use crate::{Detail, Floor, Outputs, Phase, State, Structure, Transition, TransitionKind};
 use serde::{Deserialize, Serialize};
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
@@ -159,15 +159,15 @@ pub(super) const TENDON: Peaking = Peaking { name: "P_t", unit: "N", quantity: Q
 
 /// The peaks that `structure` has: all of [`PEAKS`], and with a tendon the peak of its force.
 pub fn of(structure: &Structure) -> impl Iterator<Item = &'static Peaking> + use<> {
-    let tendon = has_tendon(&structure.base).then_some(const { &TENDON });
+    let tendon = has_tendon(structure.base()).then_some(const { &TENDON });
     const { &PEAKS }.iter().chain(tendon)
 }
 
 impl Peaks {
     /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion. A peak that stays 0 has this instant.
     pub fn since(time: f64, structure: &Structure, detail: Detail) -> Peaks {
-        let &Parameters { m, H, B, .. } = structure.parameters();
-        let (none, tendon) = (Peak { magnitude: 0.0, time }, Tendon::new(&structure.base, detail, time));
+        let (Floor { mass: m, height: H, .. }, B) = (structure.floors()[0], structure.base().B);
+        let (none, tendon) = (Peak { magnitude: 0.0, time }, Tendon::new(structure.base(), detail, time));
         let largest = [none; Measure::SEARCHED.len()];
         Peaks { largest, ground: none, sizes: Sizes { m, H, B }, tendon, evaluations: 0 }
     }

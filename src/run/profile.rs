@@ -7,6 +7,7 @@
 use super::peak_watch::{PeakWatch, Peaked};
 use super::peaks::{Peak, TENDON, Tendon, has_tendon};
 use super::{Finish, Run, RunError};
+use crate::Structure;
 use crate::engine::piece::{CONVERGED, Expansion, Part, Piece, Sample, Turning};
 use crate::mechanics::floors::{FrameOutput, MotionOfFloors};
 use crate::mechanics::gauge::{Gauge, Reading};
@@ -16,8 +17,6 @@ use crate::numbers::most::Most;
 use crate::numbers::{Angle, Number, Turn};
 use crate::series::extremes;
 use crate::series::terms::Terms;
-use crate::structure::Mode;
-use crate::structure::frame::Frame;
 use crate::{Detail, Floor, Modes, Phase, State};
 use serde::{Deserialize, Serialize};
 
@@ -91,12 +90,12 @@ impl<'a> Over<'a> {
 }
 
 impl MotionOfFloors<Terms> for Over<'_> {
-    fn frame(&self) -> &Frame {
+    fn frame(&self) -> &Structure {
         self.of.piece.level.structure()
     }
 
     fn pivot(&self) -> f64 {
-        self.of.piece.before.phase.side().sign() * self.frame().base.B
+        self.of.piece.before.phase.side().sign() * self.frame().base().B
     }
 
     fn theta(&self) -> Terms {
@@ -122,7 +121,7 @@ impl MotionOfFloors<Terms> for Over<'_> {
     fn gauge(&self, gauge: &Gauge) -> Terms {
         let Expansion { piece, from, arc } = self.of;
         let (frame, phase) = (self.frame(), piece.before.phase);
-        let (damping, load) = (frame.base.damping(phase), piece.load.from(from));
+        let (damping, load) = (frame.base().damping(phase), piece.load.from(from));
         let ramp = |value: f64, slope: f64| Terms::ramp(value, slope * arc.span);
         let reading = Reading {
             elastic: Terms::from_fn(arc.order, |k| gauge.elastic(frame, damping, &arc.u[k], &arc.u_dot[k])),
@@ -133,7 +132,7 @@ impl MotionOfFloors<Terms> for Over<'_> {
             a_g: ramp(load.value.a_g, load.slope.a_g),
             a_v: ramp(load.value.a_v, load.slope.a_v),
         };
-        gauge.value(&frame.base, phase.side().sign(), &reading)
+        gauge.value(frame.base(), phase.side().sign(), &reading)
     }
 }
 
@@ -142,14 +141,8 @@ impl MotionOfFloors<Terms> for Over<'_> {
 pub(super) struct Mosts(pub Modes);
 
 impl Lateral<Most> for Mosts {
-    type Structure = Frame;
-
     fn of(&self, j: usize) -> Most {
         Most(self.0.of(j))
-    }
-
-    fn modes(frame: &Frame) -> &[Mode] {
-        frame.modes()
     }
 }
 
@@ -193,7 +186,7 @@ fn bounds_of<'a>(piece: &'a Piece<'a, Modes>, times: [f64; 2], most: &State<Mode
     let x = Instant {
         structure: frame,
         s: phase.side().sign(),
-        strut: Strut::Elastic(frame.base.damping(phase)),
+        strut: Strut::Elastic(frame.base().damping(phase)),
         u: Mosts(most.u),
         u_dot: Mosts(most.u_dot),
         theta,
@@ -214,11 +207,11 @@ fn is_searched(output: &FrameOutput) -> bool {
 
 impl Profile {
     /// Peaks of `frame` at the level `detail` from `time` (s) on, before any motion.
-    pub fn since(time: f64, frame: &Frame, detail: Detail) -> Profile {
+    pub fn since(time: f64, frame: &Structure, detail: Detail) -> Profile {
         let none = Peak { magnitude: 0.0, time };
         let peaks = FrameOutput::all(frame).filter(is_searched).map(|output| (output, none)).collect();
-        let tendon = has_tendon(&frame.base).then(|| Tendon::new(&frame.base, detail, time));
-        Profile { B: frame.base.B, a_g: none, peaks, tendon }
+        let tendon = has_tendon(frame.base()).then(|| Tendon::new(frame.base(), detail, time));
+        Profile { B: frame.base().B, a_g: none, peaks, tendon }
     }
 
     /// The quantities that have a peak, with their peaks: the outputs in the order of [`FrameOutput::all`], and the force of a tendon.
@@ -281,7 +274,7 @@ impl Peaked for Modes {
     type Peaks = Profile;
     type Bounds = Vec<f64>;
 
-    fn none(time: f64, structure: &Frame, detail: Detail) -> Profile {
+    fn none(time: f64, structure: &Structure, detail: Detail) -> Profile {
         Profile::since(time, structure, detail)
     }
 

@@ -37,7 +37,7 @@ pub(crate) fn of_one(&Expansion { piece, from, arc }: &Expansion) -> Reactions<T
 
 /// The part of `reactions` that the edges carry.
 fn of_edges<Q: Coordinates>(
-    &Subject { ref structure, is_tied, angles, .. }: &Subject<Q>,
+    &Subject { ref structure, is_tied, angles, .. }: &Subject,
     phase: Phase,
     dissipators: &Dissipators,
     arc: &Arc<Q>,
@@ -46,7 +46,7 @@ fn of_edges<Q: Coordinates>(
     if !is_tied {
         return reactions;
     }
-    let restraint = Restraint::about(structure, phase.side(), dissipators);
+    let restraint = Restraint::about(structure.base(), phase.side(), dissipators);
     let [up, right, moment] = match phase {
         Phase::FullContact => restraint.pulls(&angles.chord(0.0, 0.0)).map(Terms::constant),
         _ => {
@@ -65,11 +65,11 @@ pub(crate) fn of_modes(expansion: &Expansion<Modes>) -> Reactions<Terms> {
     let gauges = frame.gauges();
     let ramp = |of: &dyn Fn(&Load<Modes>) -> f64| Terms::ramp(of(&load.value), of(&load.slope) * arc.span);
     let sum = |of: &Series<Modes>| Terms::from_fn(arc.order, |k| gauges.V_t.displacement(&of[k]));
-    let (offset, weight) = (sum(&arc.u), ramp(&|load| load.a_v) + Terms::constant(frame.base.g));
+    let (offset, weight) = (sum(&arc.u), ramp(&|load| load.a_v) + Terms::constant(frame.base().g));
     let along = sum(&arc.u_dot) + over.theta_dot() * frame.body().S_1;
-    let across = (Terms::constant(over.pivot() * frame.base.m_t) - offset) * over.theta_dot();
-    let push = ramp(&|load| frame.pushes(load)[0] - frame.base.m_t * load.a_g);
-    let forces = [push, weight * frame.base.m_t];
+    let across = (Terms::constant(over.pivot() * frame.base().m_t) - offset) * over.theta_dot();
+    let push = ramp(&|load| frame.pushes(load)[0] - frame.base().m_t * load.a_g);
+    let forces = [push, weight * frame.base().m_t];
     let [R_h, R_v] = less_momentum(forces, [along, across], &over.turn(), |momentum| momentum.slope(arc.span));
     let R_m = match phase {
         Phase::FullContact => ramp(&|load| frame.pushes(load)[1]) - over.gauge(&gauges.M_t) + weight * offset,

@@ -42,10 +42,9 @@ use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
-use crate::structure::Base;
 use crate::{
-    Detail, Frame, Impulse, Modes, Motion, Parameters, Phase, Ramp, Reactions, Side, Structure, Transition,
-    TransitionKind,
+    Base, Detail, Impulse, Mode, Modes, Motion, OneMass, Parameters, Phase, Ramp, Reactions, Side, Structure,
+    Transition, TransitionKind,
 };
 pub use assumptions::{
     ASSUMPTIONS, Assumption, EDGE_LOAD, ENERGY, FRICTION, IMPACT_FRICTION, IMPACT_TENSION, Passing, TENSION, WEIGHT,
@@ -205,16 +204,16 @@ impl Findings {
 
 /// Looks at a motion for what it goes beyond.
 #[derive(Clone, Debug)]
-pub struct Validity<Q: Judged = f64> {
-    structure: Q::Structure,
+pub struct Validity {
+    structure: Structure,
     limits: Limits,
     found: Findings,
 }
 
-impl<Q: Judged> Validity<Q> {
+impl Validity {
     /// The watcher of `structure`, which continues from what has been `found`. Of many masses, `structure` is the one that moves
     /// ([`Engine::structure`](crate::Engine::structure)).
-    pub fn new(structure: &Q::Structure, limits: Limits, found: Findings) -> Validity<Q> {
+    pub fn new(structure: &Structure, limits: Limits, found: Findings) -> Validity {
         Validity { structure: structure.clone(), limits, found }
     }
 
@@ -224,14 +223,14 @@ impl<Q: Judged> Validity<Q> {
     }
 
     fn scale(&self) -> Scale {
-        let &Base { m_t, g, B, .. } = Q::base(&self.structure);
+        let &Base { m_t, g, B, .. } = self.structure.base();
         Scale { W: m_t * g, B }
     }
 
     /// Sees an instant, which need not be in a piece.
-    pub fn see_instant(&mut self, at: &Sample<Q>) {
+    pub fn see_instant<Q: Judged>(&mut self, at: &Sample<Q>) {
         let &Sample { motion: Motion { time, phase, .. }, load, .. } = at;
-        self.found.see(WEIGHT, 1.0 + load.a_v / Q::base(&self.structure).g, time);
+        self.found.see(WEIGHT, 1.0 + load.a_v / self.structure.base().g, time);
         self.see_reactions(time, phase, &at.edges());
     }
 
@@ -269,7 +268,7 @@ impl<Q: Judged> Validity<Q> {
     }
 
     /// Looks at the motion over a polynomial; `extents` are bounds of its reactions.
-    fn look(&mut self, expansion: &Expansion<Q>, extents: &Reactions<Extent>) {
+    fn look<Q: Judged>(&mut self, expansion: &Expansion<Q>, extents: &Reactions<Extent>) {
         expansion.in_parts(&mut |part, is_finest| {
             let polynomial = Polynomial { of: *part, series: Q::reactions(part), extents };
             let &Expansion { piece, arc, .. } = part;
@@ -284,19 +283,19 @@ impl<Q: Judged> Validity<Q> {
             }
             self.see_reactions(part.time(0.0), phase, &polynomial.reactions(0.0));
             self.see_reactions(part.time(arc.reach), phase, &last);
-            self.look_for::<Tension>(phase, &polynomial);
-            self.look_for::<EdgeLoad>(phase, &polynomial);
-            self.look_for::<Friction>(phase, &polynomial);
+            self.look_for::<Tension, Q>(phase, &polynomial);
+            self.look_for::<EdgeLoad, Q>(phase, &polynomial);
+            self.look_for::<Friction, Q>(phase, &polynomial);
             true
         });
     }
 
     /// Looks within `polynomial` for the worst value of an assumption, and for the time beyond its limit.
-    fn look_for<A: OfReactions>(&mut self, phase: Phase, polynomial: &Polynomial<Q>) {
+    fn look_for<A: OfReactions, Q: Judged>(&mut self, phase: Phase, polynomial: &Polynomial<Q>) {
         if !A::holds_in(phase) {
             return;
         }
-        self.search::<A>(polynomial);
+        self.search::<A, Q>(polynomial);
         let beyond = A::worse(self.scale(), (ASSUMPTIONS[A::PLACE].limit)(&self.limits));
         for (start, end) in polynomial.above(beyond) {
             self.found.see_beyond(A::PLACE, polynomial.of.time(start), (end - start) * polynomial.of.arc.span);
@@ -304,7 +303,7 @@ impl<Q: Judged> Validity<Q> {
     }
 
     /// Looks for the worst value of an assumption within `polynomial`.
-    fn search<A: OfReactions>(&mut self, polynomial: &Polynomial<Q>) {
+    fn search<A: OfReactions, Q: Judged>(&mut self, polynomial: &Polynomial<Q>) {
         let (scale, reach) = (self.scale(), polynomial.of.arc.reach);
         loop {
             let worst = self.found.worst[A::PLACE].value;
@@ -348,11 +347,11 @@ impl<Q: Judged> Validity<Q> {
     }
 
     /// Sees that `piece` passes, whatever its reactions are.
-    fn see_passing(&mut self, piece: &Piece<Q>) {
+    fn see_passing<Q: Judged>(&mut self, piece: &Piece<Q>) {
         self.found.duration += piece.duration;
         self.found.held += piece.before.chatter.held.min(piece.duration);
         if piece.load.is_vertical() {
-            let g = Q::base(&self.structure).g;
+            let g = self.structure.base().g;
             self.found.see_vertical(g, piece.load.upwards(), piece.before.time, piece.duration);
         } else {
             self.found.see(WEIGHT, 1.0, piece.before.time);
@@ -360,7 +359,7 @@ impl<Q: Judged> Validity<Q> {
     }
 
     /// Sees a `transition`.
-    fn see_transition(&mut self, transition: &Transition<Q>) {
+    fn see_transition<Q: Judged>(&mut self, transition: &Transition<Q>) {
         let &Transition { time, kind, before, after } = transition;
         let structure = &self.structure;
         let (side, phase) = match kind {
@@ -412,7 +411,7 @@ pub trait Judged: Moves {
     fn reactions(expansion: &Expansion<Self>) -> Reactions<Terms>;
 }
 
-impl<Q: Judged> Watch<Q> for Validity<Q> {
+impl<Q: Judged> Watch<Q> for Validity {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &Piece<Q>) {
@@ -466,8 +465,8 @@ impl Judged for f64 {
             let [R_h, R_v] = std::array::from_fn(|i| Extent::between(first[i], last[i], bends[i].bend * per_bend));
             return Some(Reactions { R_h, R_v, R_m: Extent::ANY });
         }
-        let &Parameters { m, m0, H, g, .. } = structure.parameters();
-        let &Structure { k, c_fc, .. } = structure;
+        let &Base { m_t, m0, g, .. } = structure.base();
+        let Mode { mass: m, height: H, stiffness: k, damping: c_fc, .. } = structure.modes()[0];
         let [first, last] = states.map(|(tau, state)| {
             let strut = c_fc * state.u_dot + k * state.u;
             [strut - m0 * load.at(tau).a_g, H * strut + m * g * state.u]
@@ -475,7 +474,7 @@ impl Judged for f64 {
         let Bounds { u_ddot, u_dddot, .. } = bounds;
         let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
         let off = [strut, H * strut + per_bend * m * g * u_ddot];
-        let W = structure.base.m_t * g;
+        let W = m_t * g;
         let [R_h, R_m] = std::array::from_fn(|i| Extent::between(first[i], last[i], off[i]));
         Some(Reactions { R_h, R_v: Extent::between(W, W, 0.0), R_m })
     }
@@ -525,7 +524,7 @@ impl Judged for Modes {
         let x = Instant {
             structure,
             s: phase.side().sign(),
-            strut: Strut::Elastic(structure.base.damping(phase)),
+            strut: Strut::Elastic(structure.base().damping(phase)),
             u: Mosts(u),
             u_dot: Mosts(u_dot),
             theta: none,
@@ -625,7 +624,7 @@ fn positive(coefficients: &[f64], reach: f64, found: &mut Vec<(f64, f64)>) {
 
 impl<Q: Judged> Run<'_, Q> {
     /// The watcher of the assumptions that the run breaks.
-    pub fn validity_watch(&self, limits: Limits) -> Result<Validity<Q>, RunError> {
+    pub fn validity_watch(&self, limits: Limits) -> Result<Validity, RunError> {
         Ok(Validity::new(self.start()?.structure(), limits, Findings::since(self.ground.start())))
     }
 
@@ -637,10 +636,14 @@ impl<Q: Judged> Run<'_, Q> {
     }
 }
 
-/// The warnings that follow from the parameters at the level `detail`, before anything moves.
-pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
+/// The warnings that follow from a structure at the level `detail`, before anything moves.
+pub fn of_structure(structure: &Structure, detail: Detail) -> Vec<String> {
+    structure.one().map_or_else(|| of_many(structure, detail), |one| of_one(one, detail))
+}
+
+fn of_one(structure: &OneMass, detail: Detail) -> Vec<String> {
     let &Parameters { m, B, H, g, r, P_0, .. } = structure.parameters();
-    let &Structure { gamma, omega_fc, u_cr, .. } = structure;
+    let &OneMass { gamma, omega_fc, u_cr, .. } = structure;
     let mut warnings = Vec::new();
     if !detail.has_uplift() {
         return warnings;
@@ -657,7 +660,7 @@ pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
             short(balanced)
         ));
     }
-    warnings.extend(pulling(r, impact::pulling_restitution(structure), "(m + m0)"));
+    warnings.extend(pulling(r, impact::pulling_restitution(structure.base()), "(m + m0)"));
     if detail.has_strut() && impact::greatest_gain(structure, u_cr) > 0.0 {
         let range = match impact::lossless_restitution(structure, u_cr) {
             Some(range) => {
@@ -674,13 +677,12 @@ pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
     warnings
 }
 
-/// The warnings that follow from a structure of many masses at the level `detail`, before anything moves.
-pub fn of_frame(frame: &Frame, detail: Detail) -> Vec<String> {
-    let &Base { J_P, m_t, B, r, .. } = &frame.base;
+fn of_many(frame: &Structure, detail: Detail) -> Vec<String> {
+    let base @ &Base { J_P, m_t, B, r, .. } = frame.base();
     let at_rest = impact::restitution(frame, Side::Right, &State::<Modes>::default());
     let mut warnings = Vec::new();
     if detail.has_uplift() {
-        warnings.extend(r.and_then(|r| pulling(r, impact::pulling_restitution(frame), "m_t")));
+        warnings.extend(r.and_then(|r| pulling(r, impact::pulling_restitution(base), "m_t")));
         if r.is_none() && at_rest <= 0.0 {
             let [at_rest, J_P, least] = [at_rest, J_P, 2.0 * m_t * B * B].map(short);
             warnings.push(format!(

@@ -1,6 +1,6 @@
 //! Structures of many masses from the numbers that engineers have: storeys, matrices, or the modes that another program found.
 //!
-//! Each way ends in a [`Frame`]. A mode with the shape φ, of the modal mass φᵀMφ = 1, has
+//! Each way ends in a [`Structure`]. A mode with the shape φ, of the modal mass φᵀMφ = 1, has
 //!
 //! ```text
 //! ω² = φᵀKφ,   effective mass Γ² with Γ = φᵀM1,   effective height κ/Γ with κ = φᵀMh
@@ -9,11 +9,11 @@
 use crate::Parameters;
 use crate::digits::short;
 use crate::mechanics::lateral::{MOST_MODES, Modes};
-use crate::structure::frame::{Body, Floor, Frame, FrameError};
 use crate::structure::natural_quantities::{self, Given, GivenError};
 use crate::structure::parameters::{MAX_DAMPING, MAX_SLENDERNESS, ParameterError};
 use crate::structure::quantity::{OutOfRange, Quantity};
-use crate::structure::{Mode, Ties};
+use crate::{Body, Floor, Structure, StructureError};
+use crate::{Mode, Ties};
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 use std::f64::consts::TAU;
@@ -122,7 +122,7 @@ pub enum DescriptionError {
     #[error("base: {0}")]
     Parameters(#[from] ParameterError),
     #[error(transparent)]
-    Frame(#[from] FrameError),
+    Structure(#[from] StructureError),
     #[error("keep = {count} is out of range: keep 1 to {modes} modes{}", if *count == 0 { ", or use detail = rigid" } else { "" })]
     Keep { count: i64, modes: usize },
     #[error("{0} floors are given: a structure has 1 to {MOST_FLOORS}")]
@@ -232,12 +232,12 @@ fn moments(masses: impl Iterator<Item = (f64, f64)>) -> [f64; 3] {
 
 impl Described {
     /// The structure that is described.
-    pub fn frame(&self) -> Result<Frame, DescriptionError> {
+    pub fn structure(&self) -> Result<Structure, DescriptionError> {
         let Described { base, zeta, storeys, floors, K, modes, total, keep } = self;
         let whole = match [storeys.is_empty(), K.is_empty(), modes.is_empty()] {
-            [false, true, true] if floors.is_empty() && total.is_none() => Frame::from_storeys(base, zeta, storeys),
-            [true, false, true] if total.is_none() => Frame::from_matrices(base, zeta, floors, K),
-            [true, true, false] => Frame::from_modes(base, zeta, modes, *total, floors),
+            [false, true, true] if floors.is_empty() && total.is_none() => Structure::from_storeys(base, zeta, storeys),
+            [true, false, true] if total.is_none() => Structure::from_matrices(base, zeta, floors, K),
+            [true, true, false] => Structure::from_modes(base, zeta, modes, *total, floors),
             [true, true, true] => Err(DescriptionError::Ways("none of these")),
             _ => Err(DescriptionError::Ways("more than one")),
         }?;
@@ -249,9 +249,9 @@ impl Described {
     }
 }
 
-impl Frame {
+impl Structure {
     /// A shear building, whose storeys resist the drift between its floors.
-    pub fn from_storeys(base: &Given, damping: &Damping, storeys: &[Storey]) -> Result<Frame, DescriptionError> {
+    pub fn from_storeys(base: &Given, damping: &Damping, storeys: &[Storey]) -> Result<Structure, DescriptionError> {
         for (number, storey) in (1..).zip(storeys) {
             STOREY.check(storey.k).map_err(|cause| DescriptionError::At { what: "storey", number, cause })?;
         }
@@ -270,7 +270,7 @@ impl Frame {
                 K[i][below] -= k;
             }
         }
-        Frame::from_matrices(base, damping, &floors, &K)
+        Structure::from_matrices(base, damping, &floors, &K)
     }
 
     /// Floors that the stiffness matrix `K` (N/m) of a fixed base connects.
@@ -279,7 +279,7 @@ impl Frame {
         damping: &Damping,
         floors: &[Place],
         K: &[Vec<f64>],
-    ) -> Result<Frame, DescriptionError> {
+    ) -> Result<Structure, DescriptionError> {
         check_floors(floors, 1)?;
         let n = floors.len();
         length("K", K.len(), n, "floor")?;
@@ -312,7 +312,7 @@ impl Frame {
         let participation = |shape| (part(shape, |floor| floor.m), part(shape, |floor| floor.m * floor.h));
         let modes = modes(&omegas, damping, &shapes.iter().map(participation).collect::<Vec<_>>())?;
         let moments = moments(floors.iter().map(|&Place { m, h }| (m, h)));
-        checked(Frame::new(body(base, moments)?, &modes, &shown(floors, &shapes))?)
+        checked(Structure::of_body(body(base, moments)?, &modes, &shown(floors, &shapes))?)
     }
 
     /// The modes of a fixed base that another program found. Without a `total`, the floors have all mass.
@@ -322,7 +322,7 @@ impl Frame {
         modes_found: &[FoundMode],
         total: Option<Total>,
         floors: &[Place],
-    ) -> Result<Frame, DescriptionError> {
+    ) -> Result<Structure, DescriptionError> {
         check_floors(floors, 0)?;
         let (mut omegas, mut participations) = (Vec::new(), Vec::new());
         for (number, found) in (1..).zip(modes_found) {
@@ -357,7 +357,7 @@ impl Frame {
         let shapes = (1..).zip(modes_found.iter().zip(heights));
         let shapes = shapes.map(|(number, (found, height))| shape(number, found, height, floors));
         let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
-        let frame = Frame::new(body, &modes, &shown(floors, &shapes))?;
+        let frame = Structure::of_body(body, &modes, &shown(floors, &shapes))?;
         // no mass has a first moment beyond the root of the product of its mass and its second moment
         let [mass, rest, second] = frame.rest();
         let limit = (mass * second).max(0.0).sqrt() + ROUNDING * (body.m_s * body.I_2).sqrt();
@@ -369,7 +369,7 @@ impl Frame {
 }
 
 /// The `frame` unless it is too slender.
-fn checked(frame: Frame) -> Result<Frame, DescriptionError> {
+fn checked(frame: Structure) -> Result<Structure, DescriptionError> {
     let &Body { m_s, S_1, B, .. } = frame.body();
     let slenderness = S_1 / (m_s * B);
     if slenderness > MAX_SLENDERNESS { Err(DescriptionError::Slender(slenderness)) } else { Ok(frame) }
@@ -386,7 +386,7 @@ fn body(given: &Given, [m_s, S_1, I_2]: [f64; 3]) -> Result<Body, DescriptionErr
 /// The modes of the frequencies `omegas` (rad/s) with these Γ and κ.
 fn modes(omegas: &[f64], damping: &Damping, participations: &[(f64, f64)]) -> Result<Vec<Mode>, DescriptionError> {
     if omegas.len() > MOST_MODES {
-        return Err(FrameError::Modes(omegas.len()).into());
+        return Err(StructureError::Modes(omegas.len()).into());
     }
     for (number, omega) in (1..).zip(omegas) {
         F.check(omega / TAU).map_err(|cause| DescriptionError::At { what: "mode", number, cause })?;
@@ -486,7 +486,7 @@ fn shape(number: usize, found: &FoundMode, height: f64, floors: &[Place]) -> Res
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Structure;
+    use crate::OneMass;
     use crate::structure::Base;
     use approx::assert_relative_eq;
     use proptest::prelude::*;
@@ -507,8 +507,8 @@ mod tests {
         Storey { m: 30e3, h: 10.5, k: 40e6 },
     ];
 
-    fn frame() -> Frame {
-        Frame::from_storeys(&usual(), &Damping::All(0.02), &STOREYS).unwrap()
+    fn frame() -> Structure {
+        Structure::from_storeys(&usual(), &Damping::All(0.02), &STOREYS).unwrap()
     }
 
     fn places() -> [Place; 3] {
@@ -516,7 +516,7 @@ mod tests {
     }
 
     /// The modes as another program prints them, with shapes in its own scale.
-    fn found(frame: &Frame) -> Vec<FoundMode> {
+    fn found(frame: &Structure) -> Vec<FoundMode> {
         let of = |(j, mode): (usize, &Mode)| FoundMode {
             period: Some(TAU / mode.stiffness.sqrt()),
             mass: mode.gamma * mode.gamma,
@@ -527,9 +527,9 @@ mod tests {
         frame.modes().iter().enumerate().map(of).collect()
     }
 
-    fn assert_same(one: &Frame, other: &Frame) {
+    fn assert_same(one: &Structure, other: &Structure) {
         // what no sign of the shapes changes
-        let numbers = |frame: &Frame| -> Vec<f64> {
+        let numbers = |frame: &Structure| -> Vec<f64> {
             let of_mode = |(j, mode): (usize, &Mode)| {
                 let &Mode { gamma, height, stiffness, damping, .. } = mode;
                 let floors = frame.floors().iter().map(move |floor| gamma * floor.shape.numbers()[j]);
@@ -576,7 +576,7 @@ mod tests {
         let kept = |keep| {
             let none = (Vec::new(), Vec::new(), Vec::new());
             let (base, zeta, (floors, K, modes)) = (usual(), Damping::All(0.02), none);
-            Described { base, zeta, storeys: STOREYS.to_vec(), floors, K, modes, total: None, keep }.frame()
+            Described { base, zeta, storeys: STOREYS.to_vec(), floors, K, modes, total: None, keep }.structure()
         };
         assert_eq!(kept(None).unwrap(), frame());
         assert_eq!(kept(Some(2)).unwrap(), frame().keeping(2).unwrap());
@@ -591,8 +591,8 @@ mod tests {
         let storeys = frame();
         let K = [vec![110e6, -50e6, 0.0], vec![-50e6, 90e6, -40e6], vec![0.0, -40e6, 40e6]];
         let damping = Damping::Each(vec![0.02; 3]);
-        assert_same(&storeys, &Frame::from_matrices(&usual(), &damping, &places(), &K).unwrap());
-        assert_same(&storeys, &Frame::from_modes(&usual(), &damping, &found(&storeys), None, &places()).unwrap());
+        assert_same(&storeys, &Structure::from_matrices(&usual(), &damping, &places(), &K).unwrap());
+        assert_same(&storeys, &Structure::from_modes(&usual(), &damping, &found(&storeys), None, &places()).unwrap());
 
         let total = Total { m_s: 110e3, S_1: 735e3, I_2: None, J_P: Some(6.08e6) };
         let mut modes = found(&storeys);
@@ -600,23 +600,23 @@ mod tests {
             let moment = mode.mass * mode.height.take().unwrap();
             *mode = FoundMode { moment: Some(moment), shape: Vec::new(), ..mode.clone() };
         }
-        let without_floors = Frame::from_modes(&usual(), &damping, &modes, Some(total), &[]).unwrap();
-        assert_same(&Frame::new(*storeys.body(), storeys.modes(), &[]).unwrap(), &without_floors);
+        let without_floors = Structure::from_modes(&usual(), &damping, &modes, Some(total), &[]).unwrap();
+        assert_same(&Structure::of_body(*storeys.body(), storeys.modes(), &[]).unwrap(), &without_floors);
     }
 
     #[test]
     fn one_mass_is_one_storey_and_three_masses_at_one_height() {
-        let pier = Structure::new(Parameters::MCMANUS).unwrap();
+        let pier = OneMass::new(Parameters::MCMANUS).unwrap();
         let &Parameters { m, m0, H, B, J0, r, zeta_fc, .. } = pier.parameters();
         let given = base(&[("m0", m0), ("J0", J0), ("width", 2.0 * B), ("r", r)]);
         let damping = Damping::All(zeta_fc);
         let storey = Storey { m, h: H, k: pier.k };
-        let one = Frame::from_storeys(&given, &damping, &[storey]).unwrap();
+        let one = Structure::from_storeys(&given, &damping, &[storey]).unwrap();
         assert_relative_eq!(one.modes()[0].damping, pier.c_fc / m, max_relative = 1e-13);
         let shares = [0.5, 0.3, 0.2];
         let row = |i: usize| (0..3).map(|j| if i == j { shares[i] * pier.k } else { 0.0 }).collect();
         let places = shares.map(|share| Place { m: share * m, h: H });
-        let three = Frame::from_matrices(&given, &damping, &places, &[row(0), row(1), row(2)]).unwrap();
+        let three = Structure::from_matrices(&given, &damping, &places, &[row(0), row(1), row(2)]).unwrap();
         for frame in [one, three] {
             let Base { m_t, J_P, p_l, tan_alpha_cg, .. } = *frame.base();
             let found = [m_t, J_P, p_l, tan_alpha_cg, frame.rocking_frequencies().pop().unwrap()];
@@ -643,7 +643,7 @@ mod tests {
         let storeys = |change: fn(&mut [Storey; 3])| {
             let mut storeys = STOREYS;
             change(&mut storeys);
-            Frame::from_storeys(&usual(), &Damping::All(0.02), &storeys).unwrap_err().to_string()
+            Structure::from_storeys(&usual(), &Damping::All(0.02), &storeys).unwrap_err().to_string()
         };
         assert!(storeys(|of| of[1].k = 0.0).starts_with("storey 2: k = 0 N/m is out of range: it must lie between"));
         assert!(storeys(|of| of[2].m = -30e3).starts_with("floor 3: m = -30000 kg is out of range"));
@@ -656,7 +656,7 @@ mod tests {
         let matrices = |change: fn(&mut Vec<Vec<f64>>)| {
             let mut K = vec![vec![110e6, -50e6, 0.0], vec![-50e6, 90e6, -40e6], vec![0.0, -40e6, 40e6]];
             change(&mut K);
-            Frame::from_matrices(&usual(), &Damping::All(0.02), &places(), &K).unwrap_err().to_string()
+            Structure::from_matrices(&usual(), &Damping::All(0.02), &places(), &K).unwrap_err().to_string()
         };
         assert_eq!(matrices(|K| drop(K.pop())), "K has 2 numbers and must have 3, one for each floor");
         assert_eq!(matrices(|K| K[1].push(0.0)), "K[2] has 4 numbers and must have 3, one for each floor");
@@ -668,7 +668,7 @@ mod tests {
         assert!(soft.starts_with("K is not positive definite: a mode has omega^2 = -"), "{soft}");
         assert!(soft.contains("in which floor 3 moves most"), "{soft}");
         assert!(matrices(|K| K[0][0] = f64::NAN).starts_with("row 1: K = NaN N/m is out of range"));
-        let damped = |damping| Frame::from_storeys(&usual(), &damping, &STOREYS).unwrap_err().to_string();
+        let damped = |damping| Structure::from_storeys(&usual(), &damping, &STOREYS).unwrap_err().to_string();
         assert_eq!(damped(Damping::Each(vec![0.02])), "zeta has 1 numbers and must have 3, one for each mode");
         for zeta in [-0.1, 5.0] {
             let expected = format!("zeta = {zeta} is out of range: it must lie between 0 and 0.99 (damping ratio");
@@ -678,7 +678,7 @@ mod tests {
             }
         }
         assert!(damped(Damping::Rayleigh { f: [0.0, 1.0], zeta: 0.1 }).starts_with("f = 0 Hz is out of range"));
-        let of_base = |base, storeys: &[Storey]| Frame::from_storeys(&base, &all, storeys).unwrap_err().to_string();
+        let of_base = |base, storeys: &[Storey]| Structure::from_storeys(&base, &all, storeys).unwrap_err().to_string();
         assert_eq!(of_base(usual(), &[]), "0 floors are given: a structure has 1 to 500");
         assert!(of_base(usual(), &[STOREYS[0]; 501]).starts_with("501 floors are given"));
         let without_width = of_base(base(&[("m0", 1.0)]), &STOREYS);
@@ -696,7 +696,7 @@ mod tests {
             let mut modes = found(&frame());
             let mut total = Total { m_s: 110e3, S_1: 735e3, I_2: Some(40e3 * 61.25 + 30e3 * 110.25), J_P: None };
             change(&mut modes, &mut total);
-            let built = Frame::from_modes(&usual(), &Damping::All(0.02), &modes, Some(total), &places());
+            let built = Structure::from_modes(&usual(), &Damping::All(0.02), &modes, Some(total), &places());
             built.unwrap_err().to_string()
         };
         assert_eq!(
@@ -729,9 +729,9 @@ mod tests {
             refused(|_, total| total.J_P = Some(1.0)).starts_with("I_2 (kg.m2) or J_P (kg.m2) is needed, and not both")
         );
         let many = vec![found(&frame())[0].clone(); 25];
-        let many = Frame::from_modes(&usual(), &Damping::All(0.0), &many, None, &places());
-        assert_eq!(many, Err(FrameError::Modes(25).into()));
-        let without_total = Frame::from_modes(&usual(), &Damping::All(0.0), &found(&frame())[..1], None, &[]);
+        let many = Structure::from_modes(&usual(), &Damping::All(0.0), &many, None, &places());
+        assert_eq!(many, Err(StructureError::Modes(25).into()));
+        let without_total = Structure::from_modes(&usual(), &Damping::All(0.0), &found(&frame())[..1], None, &[]);
         assert_eq!(without_total, Err(DescriptionError::NoTotal));
     }
 
@@ -747,7 +747,7 @@ mod tests {
                 Storey { m, h, k }
             };
             let storeys: Vec<_> = storeys.into_iter().map(storey).collect();
-            let frame = Frame::from_storeys(&usual(), &Damping::All(0.02), &storeys).unwrap();
+            let frame = Structure::from_storeys(&usual(), &Damping::All(0.02), &storeys).unwrap();
             prop_assert!(frame.modes().is_sorted_by(|a, b| a.stiffness <= b.stiffness));
             let ([mass, first, second], Body { m_s, I_2, .. }) = (frame.rest(), frame.body());
             if storeys.len() <= MOST_MODES {

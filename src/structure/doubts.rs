@@ -1,9 +1,7 @@
 //! Numbers that a structure may have, but that are usual in another unit.
 
-use crate::Frame;
 use crate::digits::{short, with_unit};
-use crate::structure::any::AnyStructure;
-use crate::structure::{Base, Mode, Ties};
+use crate::{Base, Mode, Structure, Ties};
 use std::f64::consts::TAU;
 
 /// Frequency times height of buildings, m/s: the mean of 163 (Ellis 1980, not read; as quoted by others).
@@ -15,18 +13,15 @@ const UNUSUAL: f64 = 10.0;
 /// A force below this fraction of the weight changes next to nothing. Forces in kN are below it.
 const NEXT_TO_NOTHING: f64 = 1e-3;
 
-impl AnyStructure {
+impl Structure {
     /// A sentence for each number that is usual in another unit, before anything moves.
     pub fn doubts(&self) -> Vec<String> {
-        match self {
-            AnyStructure::One(structure) => of_base(&structure.base),
-            AnyStructure::Many(frame) => of_frame(frame),
-        }
+        if self.one().is_some() { of_base(self.base()) } else { of_many(self) }
     }
 }
 
 /// The doubts about the forces of tendon and dissipators.
-pub fn of_base(&Base { m_t, g, ties: Ties { P_0, F_y, .. }, .. }: &Base) -> Vec<String> {
+fn of_base(&Base { m_t, g, ties: Ties { P_0, F_y, .. }, .. }: &Base) -> Vec<String> {
     let weight = m_t * g;
     let is_small = |(_, force): &(&str, f64)| (0.0..NEXT_TO_NOTHING * weight).contains(force) && *force > 0.0;
     let doubt = |(name, force)| {
@@ -39,14 +34,14 @@ pub fn of_base(&Base { m_t, g, ties: Ties { P_0, F_y, .. }, .. }: &Base) -> Vec<
 }
 
 /// The doubts about a structure of many masses.
-pub fn of_frame(frame: &Frame) -> Vec<String> {
+fn of_many(frame: &Structure) -> Vec<String> {
     let body = frame.body();
     // of mass that is spread evenly over the height
     let height = frame.floors().iter().map(|floor| floor.height).reduce(f64::max).unwrap_or(2.0 * body.S_1 / body.m_s);
     let lowest = frame.modes().iter().map(Mode::omega).reduce(f64::min);
     let usual = USUAL_SPEED / height;
     let f = lowest.map_or(usual, |omega| omega / TAU); // none of a rigid structure
-    let mut doubts = of_base(&frame.base);
+    let mut doubts = of_base(frame.base());
     if (f / usual).max(usual / f) > UNUSUAL {
         doubts.push(format!(
             "f = {f:.2} Hz of the lowest mode is far from the usual frequency of a structure {} m high, about {usual:.2} Hz: \
@@ -62,15 +57,15 @@ mod tests {
     use super::*;
     use crate::structure::description::{Damping, Storey};
     use crate::structure::natural_quantities::Given;
-    use crate::{Parameters, Structure};
+    use crate::{OneMass, Parameters};
 
     #[test]
     fn a_force_in_kilonewtons_is_doubted() {
         let Parameters { m, m0, g, .. } = Parameters::MCMANUS;
         let weight = (m + m0) * g;
         let doubts = |[P_0, F_y]: [f64; 2]| {
-            let structure = Structure::new(Parameters { P_0, F_y, k_d: 1e3 * F_y, ..Parameters::MCMANUS }).unwrap();
-            AnyStructure::One(structure).doubts()
+            let structure = OneMass::new(Parameters { P_0, F_y, k_d: 1e3 * F_y, ..Parameters::MCMANUS }).unwrap();
+            Structure::from(structure).doubts()
         };
         assert!(doubts([0.0; 2]).is_empty() && doubts([0.5 * weight, 0.01 * weight]).is_empty());
         let doubts = doubts([0.5e-3 * weight, 0.01e-3 * weight]);
@@ -90,7 +85,7 @@ mod tests {
             }
             let storey = |m, h, k| Storey { m: of_m * m, h: of_h * h, k: of_k * k };
             let storeys = [storey(4e4, 3.5, 6e7), storey(3e4, 7.0, 4e7)];
-            of_frame(&Frame::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap()).len()
+            Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap().doubts().len()
         };
         let [usual, tonnes, centimetres, per_mm] =
             [[1.0; 3], [1e-3, 1.0, 1.0], [1.0, 100.0, 1.0], [1.0, 1.0, 1e-3]].map(doubts);

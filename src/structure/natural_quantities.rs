@@ -11,9 +11,9 @@
 //! A natural quantity and the parameter that it stands for cannot be given together, because they may contradict each other.
 
 use crate::digits::with_unit;
+use crate::structure::derived::{DERIVED, Derived};
 use crate::structure::parameters::{PARAMETERS, Parameters};
 use crate::structure::quantity::{OutOfRange, Quantity};
-use crate::structure::{DERIVED, Derived};
 use serde::{Deserialize, Deserializer, de::Error};
 use std::collections::BTreeMap;
 
@@ -355,7 +355,7 @@ impl TryFrom<BTreeMap<String, f64>> for Given {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Structure;
+    use crate::OneMass;
     use crate::digits::short;
     use proptest::prelude::*;
 
@@ -367,7 +367,7 @@ mod tests {
 
     fn derived(parameters: Parameters, name: &str) -> f64 {
         let derived = DERIVED.iter().find(|derived| derived.name == name).unwrap();
-        (derived.value)(&Structure::new(parameters).unwrap())
+        (derived.value)(&OneMass::new(parameters).unwrap())
     }
 
     #[test]

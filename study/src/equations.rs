@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use rocking::levels::full_contact;
 use rocking::levels::nonlinear;
-use rocking::{Dissipators, Load, Phase, Ramp, State, Structure};
+use rocking::{Dissipators, Load, OneMass, Phase, Ramp, State};
 use std::cell::Cell;
 
 /// Two second-order equations for the positions (u, θ).
@@ -14,7 +14,7 @@ pub trait Equations {
 
 /// The equations of one phase over one interval: Eq 1 in full contact, Eqs 5 and 6 while rocking.
 pub struct PhaseEquations<'a> {
-    pub structure: &'a Structure,
+    pub structure: &'a OneMass,
     pub phase: Phase,
     pub a_g: Ramp, // ground acceleration from the start of the interval on
     pub evaluations: &'a Cell<u64>,

@@ -2,25 +2,25 @@
 //! and impact are the engine's own.
 
 use rocking::mechanics::{impact, uplift};
-use rocking::{Phase, Side, State, Structure};
+use rocking::{OneMass, Phase, Side, State};
 use std::f64::consts::FRAC_PI_2;
 
 /// Excess over the model's condition of uplift: negative before uplift is due.
-pub fn uplift_excess(structure: &Structure, state: &State) -> f64 {
+pub fn uplift_excess(structure: &OneMass, state: &State) -> f64 {
     -uplift::distance(structure, state)
 }
 
 /// Excess over an incomplete condition that is often coded: |u|/u_cr − 1.
-pub fn displacement_excess(structure: &Structure, state: &State) -> f64 {
+pub fn displacement_excess(structure: &OneMass, state: &State) -> f64 {
     state.u.abs() / structure.u_cr - 1.0
 }
 
 /// A rule for uplift: negative before it is due.
-pub type UpliftRule = fn(&Structure, &State) -> f64;
+pub type UpliftRule = fn(&OneMass, &State) -> f64;
 
 /// The end of a phase.
 pub struct PhaseEnd<'a> {
-    pub structure: &'a Structure,
+    pub structure: &'a OneMass,
     pub uplift: UpliftRule,
     pub phase: Phase,
 }
@@ -51,7 +51,7 @@ impl PhaseEnd<'_> {
         match self.phase {
             Phase::FullContact => (Phase::Rocking(Side::of(before.u)), before),
             Phase::Rocking(side) if side.sign() * before.theta >= FRAC_PI_2 => (Phase::Overturned(side), before),
-            Phase::Rocking(side) => impact::resolve(self.structure, side, &before),
+            Phase::Rocking(side) => impact::resolve(&(*self.structure).into(), side, &before),
             Phase::Overturned(_) => (self.phase, before),
         }
     }

@@ -93,7 +93,7 @@ pub fn run(
             failure = Some(reason);
             break;
         }
-        samples.push(Sample::of(&Outputs::of(&scene.structure, motion.phase, &motion.point.state(), 0.0)));
+        samples.push(Sample::of(&Outputs::of(&scene.structure.into(), motion.phase, &motion.point.state(), 0.0)));
     }
     Response { samples, evaluations: motion.evaluations.get(), transitions: motion.transitions, failure }
 }

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, bail};
 use rocking::run::End;
 use rocking::run::record::Record;
-use rocking::{Detail, Parameters, Ramp, Run, State, Structure};
+use rocking::{Detail, OneMass, Parameters, Ramp, Run, State};
 use rocking_records::Reading;
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 pub struct Scene {
     pub key: &'static str,   // name in file names
     pub title: &'static str, // name on charts
-    pub structure: Structure,
+    pub structure: OneMass,
     pub initial: State, // its state at t = 0
     pub ground: Record,
 }
@@ -122,8 +122,8 @@ pub fn ground(dt: f64, a_g: Vec<f64>) -> Record {
 }
 
 /// A structure of parameters that are known to be in range.
-pub fn structure(parameters: Parameters) -> Structure {
-    Structure::new(parameters).expect("the study's own parameters are in range")
+pub fn structure(parameters: Parameters) -> OneMass {
+    OneMass::new(parameters).expect("the study's own parameters are in range")
 }
 
 fn from_rest(

@@ -41,7 +41,7 @@ pub fn write(records: &Path, folder: &Path) -> Result<()> {
     let columns: Vec<_> = std::iter::once(columns.to_string()).chain(found).chain(rules).collect();
     let row = |(scene, Pair { structure, model, repaired }): (&str, Pair)| {
         let &Parameters { m, m0, H, B, J0, f_fc, zeta_fc, r, .. } = structure.parameters();
-        let of = [m, m0, H, B, J0, f_fc, zeta_fc, r, structure.u_cr, impact::pulling_restitution(&structure)];
+        let of = [m, m0, H, B, J0, f_fc, zeta_fc, r, structure.u_cr, impact::pulling_restitution(structure.base())];
         let counts = [model.found.impacts, model.found.gains, model.found.settlings].map(|count| count as f64);
         let worst = model.found.worst.iter().take(WEIGHT).flat_map(|worst| {
             let share = worst.first_beyond.map_or(f64::NAN, |_| worst.beyond / model.found.duration);

@@ -12,7 +12,7 @@ use rocking::mechanics::uplift::least_push;
 use rocking::run::lanes::{Rocked, rocked_each};
 use rocking::run::record::Record;
 use rocking::run::{Ending, Finish, Run, RunError};
-use rocking::{Detail, Structure};
+use rocking::{Detail, OneMass};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
 
@@ -41,7 +41,7 @@ pub struct Axis {
 #[derive(Clone, Debug)]
 pub struct Map {
     /// The structure.
-    pub structure: Structure,
+    pub structure: OneMass,
     /// But for its frequency and its amplitude.
     pulse: Pulse,
     /// Frequencies: in Hz, or, where the map is dimensionless, ω/p_l.
@@ -161,7 +161,7 @@ impl Point {
     }
 
     fn of(run: &Run, finish: Result<Finish, RunError>, Rocked { theta, impacts }: Rocked) -> Point {
-        let theta = theta / libm::atan(run.structure.tan_alpha_cg);
+        let theta = theta / libm::atan(run.structure.base().tan_alpha_cg);
         let (fate, transitions, end, reason) = match finish {
             Ok(finish) => {
                 let fate = match finish.ending {
@@ -193,7 +193,7 @@ impl Map {
     /// Map of `structure` under `pulse` at each of the frequencies (Hz) and amplitudes (m/s²). A map that `is_dimensionless`
     /// has ω/p_l and a_p/(g tan α_cg) instead. The level of detail is `auto`, and the tolerance the default.
     pub fn new(
-        structure: Structure,
+        structure: OneMass,
         pulse: Pulse,
         [frequency, amplitude]: [Axis; 2],
         is_dimensionless: bool,
@@ -229,7 +229,8 @@ impl Map {
     pub fn pulse(&self, place: Place) -> Pulse {
         let [frequency, amplitude] = place.steps();
         let (frequency, amplitude) = (self.frequency.at(frequency), self.amplitude.at(amplitude));
-        let (of_amplitude, of_frequency) = if self.is_dimensionless { units_of(&self.structure) } else { (1.0, 1.0) };
+        let (of_amplitude, of_frequency) =
+            if self.is_dimensionless { units_of(self.structure.base()) } else { (1.0, 1.0) };
         Pulse { frequency: frequency * of_frequency, amplitude: amplitude * of_amplitude, ..self.pulse }
     }
 
@@ -238,7 +239,7 @@ impl Map {
     fn ground(&self, place: Place) -> Record {
         let pulse = self.pulse(place);
         let ground = pulse.record().expect("the map's corners have been checked");
-        let (least, pga) = (least_push(&self.structure), ground.pga());
+        let (least, pga) = (least_push(self.structure.base()), ground.pga());
         if !self.detail.has_strut() && pulse.amplitude < least && least < pga {
             return ground.multiplied(pulse.amplitude / pga);
         }

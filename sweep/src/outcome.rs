@@ -96,7 +96,7 @@ impl Outcome {
                 return Outcome::Failed { time, reason: error.to_string() };
             }
         };
-        let mut magnitudes = [peaks.theta().magnitude / libm::atan(run.structure.tan_alpha_cg); MEASURES.len()];
+        let mut magnitudes = [peaks.theta().magnitude / libm::atan(run.structure.base().tan_alpha_cg); MEASURES.len()];
         for (magnitude, peaking) in magnitudes.iter_mut().zip(&PEAKS) {
             *magnitude = peaking.of(&peaks).magnitude;
         }

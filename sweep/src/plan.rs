@@ -13,10 +13,8 @@ use rocking::mechanics::state::InitialStateError;
 use rocking::run::lanes::found_each;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
-use rocking::structure::any::AnyStructure;
-use rocking::structure::doubts;
 use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
-use rocking::{Detail, Engine, Frame, Modes, Parameters, Quantity, State, Structure, Watch};
+use rocking::{Detail, Engine, Modes, OneMass, Parameters, Quantity, State, Structure, Watch};
 use serde::Serialize;
 use std::collections::HashSet;
 use std::sync::OnceLock;
@@ -116,7 +114,7 @@ pub struct Case<'a> {
     /// Number of the structure in its population, from 0.
     member: usize,
     /// The structure.
-    pub structure: Structure,
+    pub structure: OneMass,
     /// The ground motion before it is scaled.
     pub motion: &'a NamedRecord,
     /// Factor on its acceleration, beside its own.
@@ -181,10 +179,10 @@ impl Population {
         })
     }
 
-    fn structure(&self, member: usize) -> Result<Structure, Refused> {
+    fn structure(&self, member: usize) -> Result<OneMass, Refused> {
         let mut parameters = self.bases[member / (self.len() / self.bases.len())];
         self.values(member).for_each(|(axis, value)| (axis.set)(&mut parameters, value));
-        Structure::new(parameters).map_err(|problem| Refused(format!("structures {:?}: {problem}", self.name)))
+        OneMass::new(parameters).map_err(|problem| Refused(format!("structures {:?}: {problem}", self.name)))
     }
 }
 
@@ -218,13 +216,17 @@ impl NamedRecord {
 
 impl Conditions {
     /// The run of `structure` under `ground`.
-    pub fn run<'a>(&self, structure: Structure, ground: &'a Record) -> Run<'a> {
+    pub fn run<'a>(&self, structure: impl Into<Structure>, ground: &'a Record) -> Run<'a> {
         Run { initial: self.initial, ..self.over(Run::new(structure, ground)) }
     }
 
-    /// The run of the structure `frame` of many masses under `ground`. Refuses initial displacements.
-    pub fn run_of_modes<'a>(&self, frame: Frame, ground: &'a Record) -> Result<Run<'a, Modes>, InitialStateError> {
-        self.over(Run::of_modes(frame, ground)).from(&self.initial)
+    /// The run of the `structure` of many masses under `ground`. Refuses initial displacements.
+    pub fn run_of_modes<'a>(
+        &self,
+        structure: Structure,
+        ground: &'a Record,
+    ) -> Result<Run<'a, Modes>, InitialStateError> {
+        self.over(Run::of_modes(structure, ground)).from(&self.initial)
     }
 
     fn over<'a, Q: Moves>(&self, run: Run<'a, Q>) -> Run<'a, Q> {
@@ -233,20 +235,20 @@ impl Conditions {
     }
 
     /// Refuses, with the reason, what no run of `structure` can have.
-    pub fn check(&self, structure: &AnyStructure) -> Result<(), Refused> {
+    pub fn check(&self, structure: &Structure) -> Result<(), Refused> {
         let duration = self.duration.unwrap_or(1.0);
         ensure(duration > 0.0 && duration.is_finite(), || {
             format!("duration = {} is out of range: a finite number greater than 0 is needed", with_unit(duration, "1"))
         })?;
         let settings = Settings { detail: self.detail, tolerance: self.tolerance, ..Settings::default() };
-        match structure {
-            AnyStructure::One(structure) => Engine::with(*structure, self.initial, 0.0, settings).map(|_| ()),
-            AnyStructure::Many(frame) => self
-                .run_of_modes(frame.clone(), &Record::at_rest(1.0))
-                .and_then(|Run { structure, initial, .. }| Engine::of_modes(structure, initial, 0.0, settings))
-                .map(|_| ()),
+        if structure.one().is_some() {
+            return Engine::with(structure.clone(), self.initial, 0.0, settings).map(|_| ()).map_err(Refused::by);
         }
-        .map_err(Refused::by)
+        let ground = Record::at_rest(1.0);
+        let run = self.run_of_modes(structure.clone(), &ground);
+        run.and_then(|Run { structure, initial, .. }| Engine::of_modes(structure, initial, 0.0, settings))
+            .map(|_| ())
+            .map_err(Refused::by)
     }
 }
 
@@ -276,7 +278,7 @@ impl Plan {
 
     /// These runs under other `conditions`.
     pub fn under(self, conditions: Conditions) -> Result<Plan, Refused> {
-        conditions.check(&AnyStructure::One(self.case(0).structure))?;
+        conditions.check(&self.case(0).structure.into())?;
         Ok(Plan { conditions, ..self })
     }
 
@@ -299,9 +301,9 @@ impl Plan {
     /// A sentence for each number of a structure that is usual in another unit.
     pub fn doubts(&self) -> Vec<String> {
         let members = self.populations.iter().flat_map(|of| (0..Population::len(of)).map(move |member| (of, member)));
-        let structures = members.filter_map(|(of, member)| Some((&of.name, of.structure(member).ok()?)));
-        let doubts =
-            structures.flat_map(|(name, of)| doubts::of_base(of.as_ref()).into_iter().map(move |doubt| (name, doubt)));
+        let structures =
+            members.filter_map(|(of, member)| Some((&of.name, Structure::from(of.structure(member).ok()?))));
+        let doubts = structures.flat_map(|(name, of)| of.doubts().into_iter().map(move |doubt| (name, doubt)));
         doubts.map(|(name, doubt)| format!("{name}: {doubt}")).collect()
     }
 
@@ -445,7 +447,7 @@ mod tests {
     #[test]
     fn a_structure_has_until_it_is_at_rest_to_overturn() {
         let Outcome::Ended(Summary { ending, end, peaks, .. }) = only(Parameters::MCMANUS, 1.5) else { panic!() };
-        let alpha_cg = Structure::new(Parameters::MCMANUS).unwrap().tan_alpha_cg.atan();
+        let alpha_cg = OneMass::new(Parameters::MCMANUS).unwrap().tan_alpha_cg.atan();
         assert_eq!(ending, Ending::Overturned);
         assert!((peaks[0] - alpha_cg).abs() < 1e-12, "before it falls: {peaks:?}");
         assert!((end - 2.96).abs() < 0.005, "{end}");
@@ -510,7 +512,7 @@ mod tests {
         let plan = Plan::new(vec![pier], vec![pulse()], vec![0.5]).unwrap().under(conditions).unwrap();
         let ground = pulse().record.multiplied(0.5);
         let Conditions { detail, tolerance, .. } = conditions;
-        let usual = Run::new(Structure::new(Parameters::MCMANUS).unwrap(), &ground);
+        let usual = Run::new(OneMass::new(Parameters::MCMANUS).unwrap(), &ground);
         let run = Run { initial, detail, tolerance, end: End::At(0.7), ..usual.clone() };
         assert_eq!(plan.case(0).outcome(), Outcome::of(&run, &mut ()));
         let Outcome::Ended(Summary { ending, end, .. }) = plan.case(0).outcome() else { panic!() };

@@ -15,7 +15,7 @@
 //! begins or ends off 0 gives a record that begins or ends off 0.
 
 use crate::{Refused, ensure};
-use rocking::Structure;
+use rocking::Base;
 use rocking::digits::short;
 use rocking::run::record::{MAX_SAMPLES, Record};
 use rocking::structure::quantity::{Quantity, quantity};
@@ -144,8 +144,8 @@ impl Shape {
 }
 
 /// Units of pulses for a structure: g tan α_cg (m/s²), below which a rigid structure does not lift off, and p_l/2π (Hz).
-pub fn units_of(structure: &Structure) -> (f64, f64) {
-    (structure.parameters().g * structure.tan_alpha_cg, structure.p_l / TAU)
+pub fn units_of(&Base { g, tan_alpha_cg, p_l, .. }: &Base) -> (f64, f64) {
+    (g * tan_alpha_cg, p_l / TAU)
 }
 
 impl Pulse {

@@ -164,7 +164,7 @@ impl<'a> Sweep<'a> {
     fn run_with_validity(&self, index: usize) -> Done {
         let case = self.plan.case(index);
         let found = Findings::since(case.motion.record().start());
-        let mut validity = Validity::new(&case.structure, Limits::default(), found);
+        let mut validity = Validity::new(&case.structure.into(), Limits::default(), found);
         let outcome = case.outcome_watched(&mut validity);
         if let Outcome::Failed { .. } = outcome {
             return Done { outcome, beyond: Box::default() };

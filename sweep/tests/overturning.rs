@@ -1,19 +1,19 @@
 //! Overturning under pulses: the rigid block's boundary against its closed form, maps that refine, conditions.
 #![allow(non_snake_case)] // B, H: the paper's own letters
 
-use rocking::{Detail, Parameters, Structure};
+use rocking::{Detail, OneMass, Parameters};
 use rocking_sweep::map::{Axis, Fate, Map, Place, Point, nearest};
 use rocking_sweep::pulse::{Pulse, Shape, units_of};
 use std::collections::HashMap;
 
 /// A rigid block of this `slenderness` H/B, all of its mass at the top.
-fn block(slenderness: f64) -> Structure {
+fn block(slenderness: f64) -> OneMass {
     let parameters = Parameters { m0: 1e-3, J0: 0.0, H: 1.0, B: 1.0 / slenderness, ..Parameters::MCMANUS };
-    Structure::new(parameters).unwrap()
+    OneMass::new(parameters).unwrap()
 }
 
 /// Fate of `structure` at the level `rigid` under one pulse, with both numbers in units of the structure.
-fn fate(structure: &Structure, shape: Shape, frequency: f64, amplitude: f64) -> Point {
+fn fate(structure: &OneMass, shape: Shape, frequency: f64, amplitude: f64) -> Point {
     let axis = |value: f64| Axis { values: vec![value, 2.0 * value], is_log: false };
     let pulse = Pulse { error: 1e-6, ..Pulse::new(shape, 1.0, 1.0) };
     let map = Map::new(*structure, pulse, [axis(frequency), axis(amplitude)], true).unwrap();
@@ -74,7 +74,7 @@ fn map(count: usize, finds_condition: bool) -> Map {
         let last = (count - 1) as f64;
         Axis { values: (0..count).map(|i| from + (to - from) * i as f64 / last).collect(), is_log: false }
     };
-    let structure = Structure::new(Parameters { r: 0.9, ..Parameters::MCMANUS }).unwrap();
+    let structure = OneMass::new(Parameters { r: 0.9, ..Parameters::MCMANUS }).unwrap();
     let pulse = Pulse { error: 1e-3, ..Pulse::new(Shape::Sine, 1.0, 1.0) };
     let map = Map::new(structure, pulse, [axis(1.0, 9.0), axis(0.5, 8.5)], true).unwrap();
     map.computed_by(Detail::Modal, 1e-9, finds_condition).unwrap()
@@ -140,9 +140,9 @@ fn places_are_values_of_the_axes() {
     for (steps, value) in [(0.0, 1.0), (0.5, 2.0), (1.5, 8.0), (2.0, 16.0)] {
         assert!((log.at(steps) / value - 1.0_f64).abs() < 1e-15);
     }
-    let structure = Structure::new(Parameters::EVISON).unwrap();
+    let structure = OneMass::new(Parameters::EVISON).unwrap();
     let map = Map::new(structure, Pulse::new(Shape::Cosine, 1.0, 1.0), [lin, log], true).unwrap();
     let pulse = map.pulse(Place::of_grid(1, 2));
-    let (amplitude, frequency) = units_of(&structure);
+    let (amplitude, frequency) = units_of(structure.base());
     assert_eq!((pulse.amplitude, pulse.frequency), (16.0 * amplitude, 3.0 * frequency));
 }

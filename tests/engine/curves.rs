@@ -7,7 +7,7 @@ use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Given;
-use rocking::{Detail, Frame, Modes, Parameters, Phase, State, Structure, TransitionKind};
+use rocking::{Detail, Modes, OneMass, Parameters, Phase, State, Structure, TransitionKind};
 
 /// Lifts, bounces and lands the McManus specimen at every level: two sines that die away.
 fn ground() -> Record {
@@ -33,7 +33,7 @@ fn on_the_line(points: &[Point], time: f64) -> [f64; 4] {
 #[test]
 fn lines_stay_as_close_to_the_motion_as_was_asked_for() {
     let ground = ground();
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     for detail in Detail::ALL {
         let run = Run { detail, end: End::At(8.0), ..Run::new(structure, &ground) };
         let found = run.found(&mut ()).unwrap();
@@ -63,7 +63,7 @@ fn lines_stay_as_close_to_the_motion_as_was_asked_for() {
 #[test]
 fn peaks_and_transitions_are_points() {
     let ground = ground();
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     let curve = Run::new(structure, &ground).curve(1e-2).unwrap();
     let peaks = curve.found.peaks;
     let peaks = [peaks.theta(), peaks.u(), peaks.a_t(), peaks.a_g()];
@@ -88,7 +88,7 @@ fn peaks_and_transitions_are_points() {
 #[test]
 fn a_curve_has_no_more_points_than_a_picture_needs() {
     let ground = Record::at_rest(1.0);
-    let structure = Structure::new(Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS }).unwrap();
+    let structure = OneMass::new(Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS }).unwrap();
     let initial = State { u: 1e-3, ..State::default() };
     let run = Run { initial, end: End::At(1e7), ..Run::new(structure, &ground) };
     let Err(RunError::TooManyPoints { most: 1_000_000, time }) = run.curve(1e-3) else { panic!("it is drawn") };
@@ -103,7 +103,7 @@ fn lines_of_many_masses_stay_as_close_to_each_floor() {
         base.give(name, value).unwrap();
     }
     let storeys = [(40e3, 3.5, 60e6), (40e3, 7.0, 50e6), (30e3, 10.5, 40e6)].map(|(m, h, k)| Storey { m, h, k });
-    let frame = Frame::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap();
+    let frame = Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap();
     let ground = ground();
     let run = Run { end: End::At(6.0), ..Run::of_modes(frame, &ground) };
     let outputs: Vec<_> = drawn(&run.structure).collect();

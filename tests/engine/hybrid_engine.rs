@@ -2,7 +2,7 @@
 
 use approx::assert_abs_diff_eq;
 use rocking::engine::{DEFAULT_TOLERANCE, Settings};
-use rocking::{Engine, Motion, Parameters, Phase, Progress, Ramp, Side, State, Structure, Transition, TransitionKind};
+use rocking::{Engine, Motion, OneMass, Parameters, Phase, Progress, Ramp, Side, State, Transition, TransitionKind};
 use std::f64::consts::FRAC_PI_2;
 
 const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };
@@ -20,7 +20,7 @@ fn advance(engine: &mut Engine, until: f64, a_g: Ramp) -> Vec<Transition> {
 /// rocking is on the ground, and the last state of full contact at the limit of uplift.
 #[test]
 fn an_advance_can_end_at_every_transition() {
-    let structure = Structure::new(Parameters { r: 0.85, ..Parameters::EVISON }).unwrap();
+    let structure = OneMass::new(Parameters { r: 0.85, ..Parameters::EVISON }).unwrap();
     let released = State { theta: 0.01, ..State::default() };
     let new = |stops| Engine::with(structure, released, 0.0, Settings { stops, ..Settings::default() }).unwrap();
     let (mut through, mut to_each) = (new(false), new(true));
@@ -54,7 +54,7 @@ fn an_advance_can_end_at_every_transition() {
 
 #[test]
 fn a_tall_push_overturns_at_a_right_angle_and_stays_there() {
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     let mut engine = Engine::new(structure, State::default(), 10.0, DEFAULT_TOLERANCE).unwrap();
     let push = Ramp { value: -6.0, slope: 0.0 };
     let mut last = None;

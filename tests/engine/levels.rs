@@ -4,12 +4,12 @@
 use crate::shaking::shaking;
 use approx::assert_abs_diff_eq;
 use rocking::levels::rules::MAX_RIGID_TRANSITIONS_PER_PERIOD;
-use rocking::{Detail, Engine, Parameters, Phase, Progress, Ramp, Side, State, Structure, Transition, TransitionKind};
+use rocking::{Detail, Engine, OneMass, Parameters, Phase, Progress, Ramp, Side, State, Transition, TransitionKind};
 
 const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };
 
-fn mcmanus() -> Structure {
-    Structure::new(Parameters::MCMANUS).unwrap()
+fn mcmanus() -> OneMass {
+    OneMass::new(Parameters::MCMANUS).unwrap()
 }
 
 /// A rigid body that falls back under a steady push strikes with the energy that weight and push gave it: Eq 6 with u = 0
@@ -37,7 +37,7 @@ fn rigid_rocks_as_its_equation_says() {
 /// Zeno: the rigid structure comes to rest through finitely many impacts, with no more energy left than a step's error has.
 #[test]
 fn rigid_comes_to_rest_with_less_energy_than_the_tolerance() {
-    let structure = Structure::new(Parameters { r: 0.9, ..Parameters::MCMANUS }).unwrap();
+    let structure = OneMass::new(Parameters { r: 0.9, ..Parameters::MCMANUS }).unwrap();
     let &Parameters { m, H, g, .. } = structure.parameters();
     for tolerance in [1e-4, 1e-9] {
         let released = State { theta: 0.1, ..State::default() };
@@ -61,7 +61,7 @@ fn rigid_comes_to_rest_with_less_energy_than_the_tolerance() {
 /// More impacts than a period may see end in contact, which is held to the end of the period whatever pushes.
 #[test]
 fn too_many_impacts_end_in_contact() {
-    let structure = Structure::new(Parameters { r: 0.9999, ..Parameters::MCMANUS }).unwrap();
+    let structure = OneMass::new(Parameters { r: 0.9999, ..Parameters::MCMANUS }).unwrap();
     let period = 1.0 / structure.p_l;
     let released = State { theta: 1e-11, ..State::default() };
     let mut engine = Engine::with_detail(structure, released, 0.0, 1e-9, Detail::Rigid).unwrap();
@@ -97,7 +97,7 @@ fn rigid_lifts_off_when_the_push_exceeds_its_slenderness() {
 fn rest_lasts_at_every_level() {
     for detail in Detail::ALL {
         for f_fc in [5.0, 400.0] {
-            let structure = Structure::new(Parameters { f_fc, zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
+            let structure = OneMass::new(Parameters { f_fc, zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
             let theta = if detail == Detail::FixedBase { 0.0 } else { 1e-3 };
             let u = if detail == Detail::Rigid { 0.0 } else { 0.9 * structure.u_cr };
             let initial = State { theta, u, ..State::default() };
@@ -122,7 +122,7 @@ fn rest_lasts_at_every_level() {
 fn what_is_down_for_good_takes_no_more_steps() {
     for detail in [Detail::Auto, Detail::Linear, Detail::Modal, Detail::Rigid] {
         for (zeta_fc, a_g) in [(0.02, 0.0), (0.0, 0.0), (0.0, 0.4), (1e-6, -0.4)] {
-            let structure = Structure::new(Parameters { zeta_fc, r: 0.9, ..Parameters::MCMANUS }).unwrap();
+            let structure = OneMass::new(Parameters { zeta_fc, r: 0.9, ..Parameters::MCMANUS }).unwrap();
             let initial = State { theta: 0.05, ..State::default() };
             let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-9, detail).unwrap();
             let mut landed = State::default();

@@ -6,7 +6,7 @@ use rocking::engine::Settings;
 use rocking::run::peaks::{PEAKS, Peaks};
 use rocking::run::validity::{Findings, Limits, Validity};
 use rocking::{
-    Detail, Engine, LinearLoad, Load, Outputs, Parameters, Phase, Piece, Progress, Reactions, State, Structure, Watch,
+    Detail, Engine, LinearLoad, Load, OneMass, Outputs, Parameters, Phase, Piece, Progress, Reactions, State, Watch,
 };
 
 fn between(rng: &mut Rng, low: f64, high: f64) -> f64 {
@@ -100,10 +100,10 @@ impl Watch for There {
     }
 }
 
-fn scene(rng: &mut Rng) -> (Structure, State, Detail) {
+fn scene(rng: &mut Rng) -> (OneMass, State, Detail) {
     let detail = Detail::ALL[rng.usize(0..6)];
     let (m, B) = (log_between(rng, 1.0, 1e5), log_between(rng, 0.05, 5.0));
-    let structure = Structure::new(Parameters {
+    let structure = OneMass::new(Parameters {
         m,
         B,
         H: B * log_between(rng, 0.5, 12.0),
@@ -142,8 +142,8 @@ fn no_peak_is_missed() {
         let settings = Settings { detail, tolerance, vertical, stops: false };
         let start = || Engine::with(structure, state, 0.0, settings).unwrap();
         let mut engine = start();
-        let [mut peaks, mut alone] = [Peaks::since(0.0, &structure, detail); 2];
-        let mut validity = Validity::new(&structure, Limits::default(), Findings::since(0.0));
+        let [mut peaks, mut alone] = [Peaks::since(0.0, &structure.into(), detail); 2];
+        let mut validity = Validity::new(&structure.into(), Limits::default(), Findings::since(0.0));
         let mut dense = Dense {
             parameters,
             largest: [0.0; PEAKS.len()],

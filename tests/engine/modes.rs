@@ -7,10 +7,9 @@ use rocking::mechanics::restraint::Restraint;
 use rocking::run::record::Record;
 use rocking::run::validity::Limits;
 use rocking::run::{End, Run};
-use rocking::structure::{Mode, Ties};
 use rocking::{
-    Body, Detail, Engine, Floor, Frame, LinearLoad, Load, Modes, Motion, Parameters, Progress, Reactions, State,
-    Structure, Transition, TransitionKind,
+    Body, Detail, Engine, Floor, LinearLoad, Load, Mode, Modes, Motion, OneMass, Parameters, Progress, Reactions,
+    State, Structure, Ties, Transition, TransitionKind,
 };
 use std::f64::consts::TAU;
 
@@ -18,7 +17,7 @@ const G: f64 = 9.81;
 
 /// Three masses on a base.
 struct Masses {
-    frame: Frame,
+    frame: Structure,
 }
 
 impl Masses {
@@ -44,7 +43,7 @@ impl Masses {
         let body = body([m0, J0, B], [m.sum(), m.dot(&h), m.dot(&h.component_mul(&h))], r, G);
         let shape = |i: usize| Modes::new(&[0, 1, 2].map(|j| shapes[(i, j)]));
         let floors = [0, 1, 2].map(|i| Floor { mass: m[i], height: h[i], shape: shape(i) });
-        let frame = Frame::new(body, &[0, 1, 2].map(mode), &floors).unwrap();
+        let frame = Structure::of_body(body, &[0, 1, 2].map(mode), &floors).unwrap();
         Masses { frame: frame.keeping(kept).unwrap() }
     }
 }
@@ -104,7 +103,7 @@ fn keeps_its_energy(masses: &Masses, modes: usize) {
 #[test]
 fn one_mode_is_one_mass() {
     let parameters = Parameters { zeta_fc: 0.05, f_fc: 2.0, r: 0.9, ..Parameters::MCMANUS };
-    let structure = Structure::new(parameters).unwrap();
+    let structure = OneMass::new(parameters).unwrap();
     let Parameters { m, m0, H, B, J0, r, g, .. } = parameters;
     let scale: f64 = 1.7;
     let (mass, gamma) = (m * scale * scale, m * scale);
@@ -116,7 +115,7 @@ fn one_mode_is_one_mass() {
         stiffness: mass * structure.omega_fc.powi(2),
         damping: mass * structure.c_fc / m,
     };
-    let frame = Frame::new(body([m0, J0, B], [m, m * H, m * H * H], r, g), &[mode], &[]).unwrap();
+    let frame = Structure::of_body(body([m0, J0, B], [m, m * H, m * H * H], r, g), &[mode], &[]).unwrap();
     for detail in [Detail::Nonlinear, Detail::Auto, Detail::Linear, Detail::FixedBase] {
         let settings = Settings { detail, tolerance: 1e-10, ..Settings::default() };
         let mut many = Engine::of_modes(frame.clone(), at_rest(1), 0.0, settings).unwrap();
@@ -172,13 +171,13 @@ fn modes_left_out_are_the_limit_of_stiff_modes() {
 fn a_frame_without_modes_is_the_rigid_limit() {
     let tied = Parameters { P_0: 200.0, k_t: 3e4, xi_d: 0.1, c_d: 40.0, k_d: 1e5, F_y: 400.0, ..Parameters::MCMANUS };
     for (parameters, strength, vertical) in [(Parameters::MCMANUS, 0.9, 0.0), (tied, 1.6, 2.0)] {
-        let structure = Structure::new(Parameters { zeta_fc: 0.05, ..parameters }).unwrap();
+        let structure = OneMass::new(Parameters { zeta_fc: 0.05, ..parameters }).unwrap();
         let Parameters { m, m0, H, B, J0, r, g, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
         let mode = Mode::new(structure.omega_fc, 0.05, m.sqrt(), m.sqrt() * H);
         let ties = Ties { P_0, k_t, xi_d, c_d, k_d, F_y };
         let floor = Floor { mass: m, height: H, shape: Modes::new(&[1.0 / m.sqrt()]) };
         let body = Body { ties, ..body([m0, J0, B], [m, m * H, m * H * H], r, g) };
-        let frame = Frame::new(body, &[mode], &[floor]).unwrap();
+        let frame = Structure::of_body(body, &[mode], &[floor]).unwrap();
         let settings =
             Settings { detail: Detail::Rigid, tolerance: 1e-12, vertical: vertical > 0.0, ..Settings::default() };
         let mut many = Engine::of_modes(frame.clone(), at_rest(0), 0.0, settings).unwrap();
@@ -262,7 +261,7 @@ fn modes_leave_all_their_moments_or_none() {
     let modes =
         [(m_s, h), (mass, arm)].map(|(mass, arm): (f64, f64)| Mode::new(20.0, 0.02, mass.sqrt(), mass.sqrt() * arm));
     let of = |power: i32| m_s * h.powi(power) + mass * arm.powi(power);
-    let frame = Frame::new(body([20e3, 3e4, 1.5], [of(0), of(1), of(2)], 0.93, G), &modes, &[]).unwrap();
+    let frame = Structure::of_body(body([20e3, 3e4, 1.5], [of(0), of(1), of(2)], 0.93, G), &modes, &[]).unwrap();
     assert_eq!(frame.rest(), [0.0; 3]);
     for (found, expected) in frame.keeping(1).unwrap().rest().into_iter().zip([mass, mass * arm, mass * arm * arm]) {
         assert!((found - expected).abs() < 1e-4 * expected, "{found} {expected}");
@@ -273,7 +272,7 @@ fn modes_leave_all_their_moments_or_none() {
 fn what_fits_no_frame_is_refused_with_the_remedy() {
     let frame = Masses::new(0.02, 0.93).frame;
     assert_eq!(frame.keeping(4).unwrap_err().to_string(), "4 modes cannot be kept of 3: keep 0 to 3");
-    let without_moment = Frame::new(Body { S_1: 0.0, ..*frame.body() }, frame.modes(), frame.floors());
+    let without_moment = Structure::of_body(Body { S_1: 0.0, ..*frame.body() }, frame.modes(), frame.floors());
     assert_eq!(
         without_moment.unwrap_err().to_string(),
         "S_1 = 0 kg.m is out of range: it must lie between 1e-9 and 1e16 kg.m (first moment of the mass above the base)"
@@ -286,7 +285,7 @@ fn what_fits_no_frame_is_refused_with_the_remedy() {
         (*frame.body(), &modes, frame.floors(), mode),
         (*frame.body(), frame.modes(), &floors, floor),
     ] {
-        let text = Frame::new(body, modes, floors).unwrap_err().to_string();
+        let text = Structure::of_body(body, modes, floors).unwrap_err().to_string();
         assert!(text.starts_with(&format!("{refused} out of range: it must lie between")), "{text}");
     }
     let refused = frame.load(0.0, 0.0, &[1.0]).unwrap_err().to_string();
@@ -304,7 +303,7 @@ fn what_fits_no_frame_is_refused_with_the_remedy() {
 }
 
 /// Two masses with modes of `f` (Hz) and `zeta`, whose shapes are turned by `angle` from one mass to the other, on a wide base.
-fn two_masses(f: [f64; 2], zeta: [f64; 2], angle: f64, c_ratio: f64, ties: Ties) -> Frame {
+fn two_masses(f: [f64; 2], zeta: [f64; 2], angle: f64, c_ratio: f64, ties: Ties) -> Structure {
     let (m, h) = ([27e3_f64, 26e3], [2.0_f64, 8.3]);
     let shapes = [[angle.cos(), angle.sin()], [-angle.sin(), angle.cos()]];
     let mode = |j: usize| {
@@ -313,7 +312,7 @@ fn two_masses(f: [f64; 2], zeta: [f64; 2], angle: f64, c_ratio: f64, ties: Ties)
     };
     let of = |power: i32| m[0] * h[0].powi(power) + m[1] * h[1].powi(power);
     let body = Body { c_ratio, ties, ..body([10.0, 10.0, 1.7], [of(0), of(1), of(2)], 0.95, G) };
-    Frame::new(body, &[mode(0), mode(1)], &[]).unwrap()
+    Structure::of_body(body, &[mode(0), mode(1)], &[]).unwrap()
 }
 
 /// Modes of 60 Hz ring when the base comes down and lift it again. The bursts are bounded. If damping while rocking is far from damping
@@ -368,7 +367,7 @@ fn dissipators_that_yield_together_keep_the_energy() {
     let mut engine = Engine::of_modes(frame.clone(), start, 0.0, Settings::default()).unwrap();
     let total = |engine: &Engine<Modes>| {
         let Motion { phase, state, dissipators, .. } = engine.motion();
-        let stored = Restraint::about(&frame, phase.side(), dissipators).stored_energy(state.theta);
+        let stored = Restraint::about(frame.base(), phase.side(), dissipators).stored_energy(state.theta);
         engine.energy() + stored + dissipators.hysteretic
     };
     let (mut yielded, mut last, mut kept) = ([Vec::new(), Vec::new()], total(&engine), 0);

@@ -4,7 +4,7 @@
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::outside_step::{BAND, Checked, Checkpoint};
 use rocking::run::record::Record;
-use rocking::{Detail, Engine, GroundMotion, LinearLoad, Load, Parameters, Phase, State, Structure, Transition};
+use rocking::{Detail, Engine, GroundMotion, LinearLoad, Load, OneMass, Parameters, Phase, State, Transition};
 
 /// A burst that lifts McManus's pier some twenty times.
 fn burst() -> Record {
@@ -22,7 +22,7 @@ struct Outside<'a> {
 }
 
 impl<'a> Outside<'a> {
-    fn new(structure: Structure, initial: State, detail: Detail, record: &'a Record) -> Outside<'a> {
+    fn new(structure: OneMass, initial: State, detail: Detail, record: &'a Record) -> Outside<'a> {
         let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-12, detail).unwrap();
         let (mut transitions, ground) = (Vec::new(), GroundMotion::from(record));
         let a_g = LinearLoad::default().on_ground(ground.at(Elapsed::default())).value;
@@ -68,7 +68,7 @@ impl<'a> Outside<'a> {
 
     /// s θ/α_cg while rocking.
     fn height(&self) -> f64 {
-        let alpha = self.engine.structure().tan_alpha_cg.atan();
+        let alpha = self.engine.structure().base().tan_alpha_cg.atan();
         match self.engine.motion().phase {
             Phase::Rocking(side) => side.sign() * self.engine.motion().state.theta / alpha,
             _ => self.engine.motion().state.theta.abs(),
@@ -82,7 +82,7 @@ impl<'a> Outside<'a> {
 
 /// The sway u + H θ at every hundredth of a second, by steps of `h`.
 fn outside(detail: Detail, record: &Record, h: f64) -> (Vec<f64>, Outside<'_>) {
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     let mut outside = Outside::new(structure, State::default(), detail, record);
     let steps = (0.01 / h).round() as usize;
     let row = |_| {
@@ -94,7 +94,7 @@ fn outside(detail: Detail, record: &Record, h: f64) -> (Vec<f64>, Outside<'_>) {
 
 /// The same by the engine, and its transitions.
 fn own(detail: Detail, record: &Record) -> (Vec<f64>, Vec<Transition>) {
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     let mut engine = Engine::with_detail(structure, State::default(), 0.0, 1e-12, detail).unwrap();
     let (mut transitions, mut elapsed, ground) = (Vec::new(), Elapsed::default(), GroundMotion::from(record));
     let row = |_| {
@@ -107,7 +107,7 @@ fn own(detail: Detail, record: &Record) -> (Vec<f64>, Vec<Transition>) {
 
 fn sway(engine: &Engine) -> f64 {
     let State { u, theta, .. } = engine.motion().state;
-    u + engine.structure().parameters().H * theta
+    u + engine.structure().floors()[0].height * theta
 }
 
 fn distance(a: &[f64], b: &[f64]) -> f64 {
@@ -135,7 +135,7 @@ fn the_smaller_the_steps_the_nearer_to_the_engine() {
 /// A hop that starts and ends within one step leaves no trace at the step's end but the engine's.
 #[test]
 fn a_hop_within_one_step_is_found() {
-    let structure = Structure::new(Parameters::EVISON).unwrap();
+    let structure = OneMass::new(Parameters::EVISON).unwrap();
     let initial = State { theta: 1e-5, theta_dot: 1e-4, ..State::default() };
     let mut engine = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
     let known = Checkpoint { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
@@ -159,7 +159,7 @@ fn a_hop_within_one_step_is_found() {
 /// A step's end that is beyond a guard which the engine does not reach is put back to where the engine is.
 #[test]
 fn a_step_that_ends_below_the_floor_without_reason_is_put_right() {
-    let structure = Structure::new(Parameters::EVISON).unwrap();
+    let structure = OneMass::new(Parameters::EVISON).unwrap();
     let initial = State { theta: 0.03, ..State::default() };
     let mut engine = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
     let known = Checkpoint { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
@@ -176,7 +176,7 @@ fn a_step_that_ends_below_the_floor_without_reason_is_put_right() {
 #[test]
 fn indicators_vanish_where_the_engine_sees_transitions() {
     let record = burst();
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     for detail in [Detail::Auto, Detail::Linear, Detail::Modal, Detail::Rigid] {
         let (_, transitions) = own(detail, &record);
         let ground = GroundMotion::from(&record);

@@ -5,13 +5,13 @@ use crate::shaking::shaking;
 use rocking::run::peaks::Peaks;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
-use rocking::{Detail, Engine, Parameters, Ramp, State, Structure};
+use rocking::{Detail, Engine, OneMass, Parameters, Ramp, State};
 
 /// A leap over many vibrations, which takes many polynomials: what is read of it is as if it had been cut.
 #[test]
 fn a_long_leap_is_read_to_its_end() {
     let stiff = Parameters { m: 100.0, m0: 50.0, H: 2.0, B: 0.3, J0: 0.0, f_fc: 80.0, r: 0.97, ..Parameters::MCMANUS };
-    let structure = Structure::new(stiff).unwrap();
+    let structure = OneMass::new(stiff).unwrap();
     let initial = State { theta: 0.1, theta_dot: 0.15, u: 1e-5, u_dot: 0.02 };
     for detail in [Detail::Modal, Detail::Linear, Detail::FixedBase] {
         let initial =
@@ -41,9 +41,9 @@ fn a_long_leap_is_read_to_its_end() {
 /// A leap of a million vibrations: its peaks are within a period of an end, and looking for them takes no time.
 #[test]
 fn a_leap_without_end_is_looked_at_at_its_ends() {
-    let undamped = Structure::new(Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS }).unwrap();
-    let damped = Structure::new(Parameters::MCMANUS).unwrap();
-    let heavy = Structure::new(Parameters { zeta_fc: 0.99, ..Parameters::MCMANUS }).unwrap();
+    let undamped = OneMass::new(Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS }).unwrap();
+    let damped = OneMass::new(Parameters::MCMANUS).unwrap();
+    let heavy = OneMass::new(Parameters { zeta_fc: 0.99, ..Parameters::MCMANUS }).unwrap();
     let initial = State { u: 1e-3, u_dot: 0.02, ..State::default() };
     for structure in [undamped, damped, heavy] {
         for duration in [20.0, 2e5, 1e12] {
@@ -61,12 +61,12 @@ fn a_leap_without_end_is_looked_at_at_its_ends() {
 /// Where the ground jumps hard enough to lift the base off, contact lasts no time: no motion shows its a_t.
 #[test]
 fn contact_of_no_duration_is_no_motion() {
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     let times: Vec<f64> = (0..=200).map(|i| f64::from(i) * 1e-3).collect();
     let cosine = times.iter().map(|t| 6.85 * (40.0 * t).cos()).collect();
     let ground = Record::from_samples("cosine", times, cosine).unwrap();
     for (detail, c_ratio) in [(Detail::Rigid, 1.0), (Detail::Auto, 3.0), (Detail::Linear, 0.2)] {
-        let structure = Structure::new(Parameters { c_ratio, ..*structure.parameters() }).unwrap();
+        let structure = OneMass::new(Parameters { c_ratio, ..*structure.parameters() }).unwrap();
         // beyond uplift from the start
         let u = if detail == Detail::Rigid { 0.0 } else { 1.5 * structure.u_cr };
         let initial = State { u, u_dot: 20.0 * u, ..State::default() };
@@ -82,13 +82,13 @@ fn contact_of_no_duration_is_no_motion() {
 /// Undamped, each crest is as high as the first but for rounding: the first counts, and no crest that was seen is higher.
 #[test]
 fn the_first_of_equal_peaks_counts() {
-    let structure = Structure::new(Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS }).unwrap();
+    let structure = OneMass::new(Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS }).unwrap();
     let omega = structure.omega_fc;
     for (u, u_dot) in [(1e-3, 0.0), (-1e-3, 0.0), (6e-4, 0.02), (-6e-4, 0.02)] {
         let crest = f64::atan2(u_dot, omega * u).rem_euclid(std::f64::consts::PI) / omega;
         for step in [1000.0, 333.3, 0.01, 7e-3] {
             let mut engine = Engine::new(structure, State { u, u_dot, ..State::default() }, 0.0, 1e-9).unwrap();
-            let (mut peaks, mut highest) = (Peaks::since(0.0, &structure, Detail::Auto), u.abs());
+            let (mut peaks, mut highest) = (Peaks::since(0.0, &structure.into(), Detail::Auto), u.abs());
             for _ in 0..f64::ceil(100.0 / step).max(2.0) as u32 {
                 engine.advance(step, Ramp::default(), &mut peaks.watch()).unwrap();
                 highest = highest.max(engine.motion().state.u.abs());
@@ -103,7 +103,7 @@ fn the_first_of_equal_peaks_counts() {
 /// Watching changes no bit of the motion, and of what is rocked by series it asks for next to nothing.
 #[test]
 fn watching_costs_little_and_changes_nothing() {
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     let ground = shaking(2, 0.01, 1500, 2.0);
     for detail in Detail::ALL {
         let run = Run { detail, ..Run::new(structure, &ground) };

@@ -9,7 +9,7 @@ use rocking::run::validity::{ASSUMPTIONS, EDGE_LOAD, FRICTION, Findings, Limits,
 use rocking::run::{End, Run, RunError};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Given;
-use rocking::{Detail, Frame, FrameOutput, Modes, Parameters, Phase, Reactions, State, Structure};
+use rocking::{Detail, FrameOutput, Modes, OneMass, Parameters, Phase, Reactions, State, Structure};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -35,10 +35,10 @@ fn the_profile_of_one_mode_has_the_peaks_of_one_mass() {
     let ground = ground();
     let tied = Parameters { P_0: 400.0, k_t: 2e4, xi_d: 0.2, c_d: 150.0, k_d: 2e5, F_y: 120.0, ..Parameters::MCMANUS };
     for (parameters, theta) in [(Parameters::MCMANUS, 0.0), (Parameters::EVISON, 0.0), (tied, 0.1)] {
-        let (tolerance, structure) = (1e-11, Structure::new(parameters).unwrap());
+        let (tolerance, structure) = (1e-11, OneMass::new(parameters).unwrap());
         let Parameters { m, H, zeta_fc, .. } = parameters;
         let storey = Storey { m, h: H, k: structure.k };
-        let frame = Frame::from_storeys(&base(&parameters), &Damping::All(zeta_fc), &[storey]).unwrap();
+        let frame = Structure::from_storeys(&base(&parameters), &Damping::All(zeta_fc), &[storey]).unwrap();
         for detail in [Detail::Auto, Detail::Nonlinear] {
             let one = Run { detail, tolerance, ..Run::new(structure, &ground) };
             let one = Run { initial: State { theta, ..one.initial }, ..one };
@@ -90,15 +90,15 @@ fn assert_same_findings(expected: &Findings, found: &Findings) {
 }
 
 /// Three storeys, held down by a tendon of this prestress (N) and stiffness (N/m).
-fn three_storeys(P_0: f64, k_t: f64) -> Frame {
+fn three_storeys(P_0: f64, k_t: f64) -> Structure {
     damped_storeys(P_0, k_t, 0.02)
 }
 
-fn damped_storeys(P_0: f64, k_t: f64, zeta: f64) -> Frame {
+fn damped_storeys(P_0: f64, k_t: f64, zeta: f64) -> Structure {
     let storeys = [(40e3, 3.5, 60e6), (40e3, 7.0, 50e6), (30e3, 10.5, 40e6)].map(|(m, h, k)| Storey { m, h, k });
     let parameters =
         Parameters { m0: 20e3, B: 1.5, J0: 3e4, r: 0.93, g: 9.81, c_ratio: 1.0, P_0, k_t, ..Parameters::MCMANUS };
-    Frame::from_storeys(&base(&parameters), &Damping::All(zeta), &storeys).unwrap()
+    Structure::from_storeys(&base(&parameters), &Damping::All(zeta), &storeys).unwrap()
 }
 
 /// The samples are 50 µs apart. They miss a peak just before a transition by the rate there. Modes that are left out ride rigidly, so
@@ -224,7 +224,7 @@ fn a_long_rest_is_seen_at_once() {
 #[test]
 fn a_rest_without_damping_ends() {
     let ground = ground();
-    let one = Structure::new(Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS }).unwrap();
+    let one = OneMass::new(Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS }).unwrap();
     let one = Run { end: End::At(1e9), ..Run::new(one, &ground) };
     let short = Run { end: End::At(20.0), ..one.clone() }; // it rests from 12 s on
     assert_eq!(one.peaks().unwrap().0.a_t(), short.peaks().unwrap().0.a_t());
@@ -245,7 +245,7 @@ fn the_hard_landing_of_a_squat_structure_without_modes_is_an_impact() {
     let storeys = [(40e3, 3.5, 60e6), (40e3, 7.0, 50e6)].map(|(m, h, k)| Storey { m, h, k });
     let numbers = [("m0", 20e3), ("B", 7.5), ("J0", 3e4)].map(|(name, value)| (name.to_owned(), value));
     let squat = Given::try_from(BTreeMap::from_iter(numbers)).unwrap();
-    let frame = Frame::from_storeys(&squat, &Damping::All(0.02), &storeys).unwrap();
+    let frame = Structure::from_storeys(&squat, &Damping::All(0.02), &storeys).unwrap();
     let ground = Record::at_rest(2.0);
     let run = Run { detail: Detail::Rigid, end: End::At(2.0), ..Run::of_modes(frame, &ground) };
     let run = Run { initial: State { theta: 0.05, ..run.initial }, ..run };

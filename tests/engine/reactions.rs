@@ -1,10 +1,10 @@
 //! Reactions on the ground and impulses of impacts: the balance of momentum.
 
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::{Detail, Engine, LinearLoad, Load, Parameters, Reactions, State, Structure, Transition};
+use rocking::{Detail, Engine, LinearLoad, Load, OneMass, Parameters, Reactions, State, Transition};
 
 fn start(parameters: Parameters, initial: State, detail: Detail) -> Engine {
-    Engine::with_detail(Structure::new(parameters).unwrap(), initial, 0.0, DEFAULT_TOLERANCE, detail).unwrap()
+    Engine::with_detail(OneMass::new(parameters).unwrap(), initial, 0.0, DEFAULT_TOLERANCE, detail).unwrap()
 }
 
 /// Position of the top mass and of the middle of the base, their momenta to the right and upwards, and the angular
@@ -18,7 +18,7 @@ struct Balance {
 }
 
 fn balance(engine: &Engine) -> Balance {
-    let &Parameters { m, m0, H, B, J0, .. } = engine.structure().parameters();
+    let &Parameters { m, m0, H, B, J0, .. } = engine.structure().one().unwrap().parameters();
     let motion = engine.motion();
     let State { u, u_dot, theta, theta_dot } = motion.state;
     let s = motion.phase.side().sign();

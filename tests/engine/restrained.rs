@@ -8,18 +8,18 @@ use rocking::mechanics::energy::energy;
 use rocking::mechanics::restraint::{Restraint, centring_moments};
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::record::Record;
-use rocking::run::validity::{Limits, WEIGHT, of_parameters};
+use rocking::run::validity::{Limits, WEIGHT, of_structure};
 use rocking::run::{End, Run};
 use rocking::{
-    Detail, Dissipators, Engine, GroundMotion, LinearLoad, Load, Motion, Parameters, Phase, Side, State, Structure,
+    Detail, Dissipators, Engine, GroundMotion, LinearLoad, Load, Motion, OneMass, Parameters, Phase, Side, State,
     Transition, TransitionKind,
 };
 use std::mem::discriminant;
 
 const LEVELS: [Detail; 4] = [Detail::Auto, Detail::Nonlinear, Detail::Linear, Detail::Rigid];
 
-fn structure(parameters: Parameters) -> Structure {
-    Structure::new(parameters).unwrap()
+fn structure(parameters: Parameters) -> OneMass {
+    OneMass::new(parameters).unwrap()
 }
 
 /// McManus's specimen with a tendon and dissipators: some tenths of its weight of 1.9 kN, its stiffness a few times that
@@ -63,7 +63,7 @@ fn a_constant_vertical_acceleration_is_another_gravity() {
             let run = Run::new(structure(Parameters::MCMANUS), &vertical);
             let shaken = Run { detail, end: End::At(ground.end()), ..run };
             let heavier = structure(Parameters { g: 9.81 * (1.0 + c), ..Parameters::MCMANUS });
-            let (expected, transitions) = course(&Run { structure: heavier, ground: &ground, ..shaken.clone() });
+            let (expected, transitions) = course(&Run { structure: heavier.into(), ground: &ground, ..shaken.clone() });
             let (found, its) = course(&shaken);
             let off = apart(&found, &expected);
             // a rigid one comes to rest by impacts without end, which rounding cuts short
@@ -105,12 +105,12 @@ fn energy_goes_where_the_dissipators_take_it() {
             let initial = State { theta, theta_dot, u: 1e-3, u_dot: 0.0 };
             let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-11, Detail::Nonlinear).unwrap();
             let total = |&Motion { phase, state, dissipators, .. }: &Motion| {
-                let stored = Restraint::about(&structure, phase.side(), &dissipators).stored_energy(state.theta);
+                let stored = Restraint::about(structure.base(), phase.side(), &dissipators).stored_energy(state.theta);
                 let taken = dissipators.viscous + dissipators.hysteretic;
-                (energy(&structure, phase, &state) + stored + taken, taken)
+                (energy(&structure.into(), phase, &state) + stored + taken, taken)
             };
             let (before, _) = total(engine.motion());
-            let scale = before - energy(&structure, Phase::FullContact, &<State>::default());
+            let scale = before - energy(&structure.into(), Phase::FullContact, &<State>::default());
             let mut last = (0.0, 0.0);
             for _ in 0..400 {
                 engine.advance(2e-3, Load::default(), &mut ()).unwrap();
@@ -139,7 +139,7 @@ fn forces_within_a_piece_are_the_forces_of_a_motion_that_ends_there() {
     let show = |at: &Sample| samples.push((at.motion.time, at.restraints(), at.motion.dissipators.hysteretic));
     run.sample((1..20).map(|i| 5e-3 * f64::from(i)), show, &mut ()).unwrap();
     for (time, found, taken) in &samples {
-        let mut engine = Engine::new(run.structure, initial, 0.0, 1e-12).unwrap();
+        let mut engine = Engine::new(run.structure.clone(), initial, 0.0, 1e-12).unwrap();
         engine.advance(*time, Load::default(), &mut ()).unwrap();
         let expected = engine.restraints();
         assert_relative_eq!(found.F_d1, expected.F_d1, max_relative = 1e-9);
@@ -168,7 +168,8 @@ fn uplift_is_due_where_the_vertical_acceleration_and_the_prestress_put_it() {
         engine.advance(0.1, load, &mut |at: &Transition| _ = seen.get_or_insert(*at)).unwrap();
         let Transition { time, kind, before, .. } = seen.unwrap();
         assert!(kind == TransitionKind::Uplift(side) && (time - meets).abs() < 2e-6, "{kind:?} {time} {meets}");
-        let limit = Restraint::about(&structure, side, &Dissipators::NEW).uplift_displacement(-40.0 * time);
+        let limit =
+            Restraint::about(structure.base(), side, &Dissipators::NEW).uplift_displacement(&structure, -40.0 * time);
         assert_relative_eq!(side.sign() * before.u, limit, max_relative = 1e-12);
     }
     // a rigid one: m H |a_g| against the moment of what is left of the weight and of the tendon, both linear in time
@@ -191,7 +192,7 @@ fn uplift_waits_for_the_moment() {
     let parameters = Parameters { zeta_fc: 0.5, P_0: 200.0, ..Parameters::MCMANUS };
     let structure = structure(parameters);
     let Parameters { m, m0, H, B, g, P_0, .. } = parameters;
-    let u_cr = Restraint::about(&structure, Side::Right, &Dissipators::NEW).uplift_displacement(0.0);
+    let u_cr = Restraint::about(structure.base(), Side::Right, &Dissipators::NEW).uplift_displacement(&structure, 0.0);
     let initial = State { u: 1.2 * u_cr, u_dot: -0.1, ..State::default() };
     let slope = Load { a_v: -2000.0, ..Load::default() };
     let load = LinearLoad { value: Load { a_g: -60.0, F_t: 0.0, a_v: 2.0 }, slope };
@@ -445,7 +446,7 @@ fn a_transition_is_foreseen_whatever_brings_it() {
                     vertical: ground.vertical().is_some(),
                     ..Settings::default()
                 };
-                let mut engine = Engine::with(run.structure, run.initial, 0.0, settings).unwrap();
+                let mut engine = Engine::with(run.structure.clone(), run.initial, 0.0, settings).unwrap();
                 motion.advance(&mut engine, &mut Elapsed::default(), time, LinearLoad::default(), &mut ()).unwrap();
                 !engine.goes_on_for(ahead, motion.at(Elapsed::default().and(time)))
             };
@@ -464,8 +465,11 @@ fn a_transition_is_foreseen_whatever_brings_it() {
 #[test]
 fn the_warning_of_a_base_held_down_beyond_its_edge_knows_the_tendon() {
     let tied = structure(Parameters { P_0: 5e5, ..Parameters::MCMANUS });
-    assert_eq!(tied.u_cr, Restraint::about(&tied, Side::Right, &Dissipators::NEW).uplift_displacement(0.0));
-    let warnings = of_parameters(&tied, Detail::Auto);
+    assert_eq!(
+        tied.u_cr,
+        Restraint::about(tied.base(), Side::Right, &Dissipators::NEW).uplift_displacement(&tied, 0.0)
+    );
+    let warnings = of_structure(&tied.into(), Detail::Auto);
     assert!(warnings[0].starts_with("u_cr = 0.6") && warnings[0].contains("exceeds B = 0.285 m"), "{warnings:?}");
     // u k H = (W + P_0) B less the moment m g u of the weight, beyond which it topples
     let &Parameters { m, m0, H, B, g, P_0, .. } = tied.parameters();

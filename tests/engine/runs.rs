@@ -4,13 +4,12 @@ use rocking::engine::piece::Sample;
 use rocking::run::levels::Criterion;
 use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError, levels};
-use rocking::structure::{Mode, Ties};
-use rocking::{Body, Detail, Frame, Modes, Parameters, Structure, Transition};
+use rocking::{Body, Detail, Mode, Modes, OneMass, Parameters, Structure, Ties, Transition};
 
 /// However finely a record is sampled, the histories of two levels are as far apart.
 #[test]
 fn histories_do_not_depend_on_how_finely_a_record_is_sampled() {
-    let structure = Structure::new(Parameters { f_fc: 1.0, ..Parameters::MCMANUS }).unwrap();
+    let structure = OneMass::new(Parameters { f_fc: 1.0, ..Parameters::MCMANUS }).unwrap();
     let coarse = |i: usize| if i > 150 { 0.0 } else { 4.0 * (0.09 * i as f64).sin() };
     let errors = [1, 100].map(|parts| {
         let times = (0..=300 * parts).map(|i| i as f64 * 0.01 / parts as f64).collect();
@@ -34,7 +33,7 @@ fn histories_do_not_depend_on_how_finely_a_record_is_sampled() {
 /// a short one.
 #[test]
 fn comparing_levels_takes_no_more_memory_for_more_of_them() {
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     let most = |dt: f64, samples: usize| {
         let times = (0..samples).map(|i| i as f64 * dt).collect();
         let waves = (0..samples).map(|i| 2.0 * (0.09 * i as f64).sin()).collect();
@@ -59,7 +58,7 @@ fn growing(amplitude: f64) -> Record {
 /// Fewer modes cost less and err more. Advice names how many of them are enough.
 #[test]
 fn a_level_of_a_frame_is_also_how_many_modes_are_kept() {
-    let frame = Frame::new(
+    let frame = Structure::of_body(
         Body {
             m0: 20e3,
             J0: 3e4,
@@ -107,7 +106,7 @@ fn every_instant_of_a_run_is_shown() {
     let times = (0..600).map(|i| 0.02 * f64::from(i)).collect::<Vec<_>>();
     let wave = |t: &f64| 3.0 * (std::f64::consts::TAU * 1.3 * t).sin() * (-((t - 2.0) / 1.5).powi(2)).exp();
     let ground = Record::from_samples("wave", times.clone(), times.iter().map(wave).collect()).unwrap();
-    let run = Run::new(Structure::new(Parameters::MCMANUS).unwrap(), &ground);
+    let run = Run::new(OneMass::new(Parameters::MCMANUS).unwrap(), &ground);
     let mut transitions = Vec::new();
     run.follow(&mut |of: &Transition| transitions.push((of.time, of.before.u))).unwrap();
     let mut instants = Vec::from_iter(transitions.iter().flat_map(|(time, _)| [time.next_down(), *time]));
@@ -132,7 +131,7 @@ fn every_instant_of_a_run_is_shown() {
 #[test]
 fn an_end_that_is_none_is_refused() {
     let ground = Record::from_samples("x", vec![2.0, 3.0], vec![5.0, -3.0]).unwrap();
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     for end in [1.0, 2.0, f64::NAN, f64::INFINITY] {
         let refused = Run { end: End::At(end), ..Run::new(structure, &ground) }.peaks();
         assert!(matches!(refused, Err(RunError::End { start: 2.0, .. })), "{refused:?}");

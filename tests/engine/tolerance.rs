@@ -1,13 +1,13 @@
 //! The promise of a tolerance: random structures, records and initial states at all levels that rock.
 
 use fastrand::Rng;
-use rocking::{Detail, Engine, Parameters, Progress, Ramp, State, Structure};
+use rocking::{Detail, Engine, OneMass, Parameters, Progress, Ramp, State};
 use std::f64::consts::TAU;
 
 /// A structure that starts from `initial` under ground accelerations, m/s², `dt` seconds apart and linear in between.
 #[derive(Clone)]
 struct Scene {
-    structure: Structure,
+    structure: OneMass,
     initial: State,
     dt: f64,
     ground: Vec<f64>,
@@ -28,7 +28,7 @@ impl Scene {
         let rng = &mut Rng::with_seed(seed);
         let B = log_between(rng, 0.1, 3.0);
         let m = 1000.0;
-        let structure = Structure::new(Parameters {
+        let structure = OneMass::new(Parameters {
             m,
             B,
             H: B * log_between(rng, 1.5, 10.0),

@@ -3,10 +3,10 @@
 use approx::assert_relative_eq;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::energy::energy;
-use rocking::{Detail, Engine, LinearLoad, Load, Parameters, State, Structure, Transition, TransitionKind};
+use rocking::{Detail, Engine, LinearLoad, Load, OneMass, Parameters, State, Transition, TransitionKind};
 
 fn start(parameters: Parameters, initial: State, detail: Detail) -> Engine {
-    Engine::with_detail(Structure::new(parameters).unwrap(), initial, 0.0, DEFAULT_TOLERANCE, detail).unwrap()
+    Engine::with_detail(OneMass::new(parameters).unwrap(), initial, 0.0, DEFAULT_TOLERANCE, detail).unwrap()
 }
 
 /// Linear between samples of `load` every 10 ms; `each` sees the engine after every one of `steps`.

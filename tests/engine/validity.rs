@@ -7,7 +7,7 @@ use rocking::run::validity::{
     ASSUMPTIONS, EDGE_LOAD, ENERGY, IMPACT_FRICTION, IMPACT_TENSION, Limits, TENSION, WEIGHT,
 };
 use rocking::run::{End, Run};
-use rocking::{Detail, Parameters, Phase, Side, State, Structure, Transition, TransitionKind};
+use rocking::{Detail, OneMass, Parameters, Phase, Side, State, Transition, TransitionKind};
 
 /// Every level that has impacts, both specimens, stocky and slender, with little and full restitution.
 fn scenes() -> Vec<(Parameters, State, Detail, Record)> {
@@ -28,7 +28,7 @@ fn scenes() -> Vec<(Parameters, State, Detail, Record)> {
 
 /// Momentum to the right, downwards and about the middle of the base, and kinetic energy, of a structure that touches the
 /// ground.
-fn at_the_ground(structure: &Structure, phase: Phase, state: &State) -> [f64; 4] {
+fn at_the_ground(structure: &OneMass, phase: Phase, state: &State) -> [f64; 4] {
     let &Parameters { m, m0, H, B, J0, .. } = structure.parameters();
     let &State { u, u_dot, theta_dot, .. } = state;
     let pivot = phase.side().sign() * B;
@@ -45,7 +45,7 @@ fn at_the_ground(structure: &Structure, phase: Phase, state: &State) -> [f64; 4]
 fn impacts_go_beyond_what_momenta_say() {
     let mut tried = [0; ASSUMPTIONS.len()];
     for (i, (parameters, initial, detail, ground)) in scenes().into_iter().enumerate() {
-        let structure = Structure::new(parameters).unwrap();
+        let structure = OneMass::new(parameters).unwrap();
         let run = Run { initial, detail, end: End::At(ground.end()), ..Run::new(structure, &ground) };
         let (found, _) = run.validity(Limits::default()).unwrap();
         let mut transitions = Vec::new();
@@ -91,7 +91,7 @@ fn impacts_go_beyond_what_momenta_say() {
 /// A fixed base carries (m + m0) (g + a_v), also over leaps that nothing but a_v makes worth a look.
 #[test]
 fn a_fixed_base_carries_least_when_the_ground_falls_fastest() {
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     let (gentle, vertical) = (shaking(2, 0.01, 200, 0.1), shaking(3, 0.01, 200, 4.0));
     let least = vertical.acceleration().iter().fold(0.0, |least: f64, a_v| least.min(*a_v));
     let ground = gentle.with_vertical(&vertical).unwrap();
@@ -105,7 +105,7 @@ fn a_fixed_base_carries_least_when_the_ground_falls_fastest() {
 /// tension.
 #[test]
 fn the_worst_value_is_one_that_has_been() {
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     let [level, upwards] = [0.0, 2.0].map(|a| Record::from_samples("", vec![0.0, 1.0], vec![a, a]).unwrap());
     let ground = level.with_vertical(&upwards).unwrap();
     let worst = |initial, until| {

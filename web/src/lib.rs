@@ -6,15 +6,14 @@ mod scene;
 mod take;
 
 use fmu_export::{Library, ModelName, Version};
+use rocking::Ties;
 use rocking::levels::detail::Detail;
 use rocking::run::RunError;
 use rocking::run::levels::{Choice, Criterion, RULE, relative};
 use rocking::run::validity::{ASSUMPTIONS, Assumption, Limits, Worst};
-use rocking::structure::Ties;
-use rocking::structure::any::AnyStructure;
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking::{Body, Frame};
+use rocking::{Body, Structure};
 use rocking_records::Unit;
 use rocking_report::{advice::Level, describe, run::Run};
 use rocking_sweep::{map::CLASSES, pulse::Shape};
@@ -129,10 +128,8 @@ impl Explorer {
         let (_, run, Ground { record, remarks, mut warnings, .. }) = self.load(fields)?;
         warnings.extend(run.structure.doubts());
         warnings.extend(run.warnings());
-        let parameters = match &run.structure {
-            AnyStructure::One(structure) => json!(structure.parameters()),
-            AnyStructure::Many(frame) => of_base(frame),
-        };
+        let structure = &run.structure;
+        let parameters = structure.one().map_or_else(|| of_base(structure), |one| json!(one.parameters()));
         Ok(json!({
             "parameters": parameters, "derived": describe::derived(&run.structure),
             "modes": describe::modes(&run.structure), "warnings": warnings, "remarks": remarks,
@@ -160,7 +157,7 @@ impl Explorer {
     /// The levels of detail, compared on this scene as `advise` compares them.
     pub fn compare(&mut self, fields: &str) -> Result<String, String> {
         let (_, run, _) = self.load(fields)?;
-        run.structure.one("the comparison of levels").map_err(says)?;
+        run.structure.one_mass("the comparison of levels").map_err(says)?;
         let advice = run.advice(WITHIN, &Criterion::ALL).map_err(says)?;
         let row = |level: &Level| {
             json!({
@@ -209,7 +206,7 @@ impl Explorer {
 }
 
 /// The numbers of the base, by the names that one mass has, too.
-fn of_base(frame: &Frame) -> Value {
+fn of_base(frame: &Structure) -> Value {
     let &Body { m0, J0, B, r, g, c_ratio, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y }, .. } = frame.body();
     json!({
         "m0": m0, "J0": J0, "B": B, "r": r, "g": g, "c_ratio": c_ratio,

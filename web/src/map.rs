@@ -47,7 +47,7 @@ impl Spectrum {
     /// The ranges of the axes in units of the structure, and these units in Hz and m/s².
     pub fn axes(&self) -> String {
         let [frequency, amplitude] = RANGES.map(|(from, to)| [from, to]);
-        let (of_amplitude, of_frequency) = units_of(&self.map.structure);
+        let (of_amplitude, of_frequency) = units_of(self.map.structure.base());
         json!({ "frequency": frequency, "amplitude": amplitude, "of_frequency": of_frequency, "of_amplitude": of_amplitude })
             .to_string()
     }

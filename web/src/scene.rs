@@ -3,11 +3,10 @@
 use crate::says;
 use rocking::engine::{DEFAULT_TOLERANCE, check_tolerance};
 use rocking::run::record::Record;
-use rocking::structure::any::AnyStructure;
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::{Given, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking::{Detail, Frame, Parameters, State, Structure};
+use rocking::{Detail, OneMass, Parameters, State, Structure};
 use rocking_records::{Column, Reading, RecordError, Remedy, Source, Unit, csv_in};
 use rocking_sweep::plan::Conditions;
 use rocking_sweep::pulse::{Pulse, Shape};
@@ -42,7 +41,7 @@ pub const NUMBERS: [Number; 13] = [
 const NO_PRESET: &str = "none";
 
 /// Numbers of a structure of many masses, beside its storeys and its base.
-const OF_FRAME: [&str; 2] = ["zeta", "modes"];
+const OF_STRUCTURE: [&str; 2] = ["zeta", "modes"];
 
 /// The ground motion that the page contains, which it shows when it opens.
 pub const EL_CENTRO: &str = "el_centro";
@@ -131,7 +130,7 @@ impl Fields {
             let known = Shape::ALL.map(Shape::name).into_iter().chain(GROUNDS.map(|(name, _)| name));
             format!("ground = {ground:?} is unknown; these are known: {}", known.collect::<Vec<_>>().join(", "))
         })?;
-        let of_structure = if fields.is_frame() { [&["storeys"], &OF_FRAME[..]].concat() } else { vec!["preset"] };
+        let of_structure = if fields.is_frame() { [&["storeys"], &OF_STRUCTURE[..]].concat() } else { vec!["preset"] };
         let mut known: Vec<_> = of_structure.into_iter().chain(names()).chain(["ground"]).chain(numbers).collect();
         let others = fields.of_file().chain(RUN).filter(|name| !known.contains(name)).collect::<Vec<_>>();
         known.extend(others);
@@ -190,7 +189,7 @@ impl Fields {
     }
 
     /// The structure: storeys on a base, a specimen with the given numbers in place of its own, or these numbers alone.
-    pub fn structure(&self) -> Result<AnyStructure, String> {
+    pub fn structure(&self) -> Result<Structure, String> {
         let mut given = Given::default();
         for name in names() {
             if let Some(value) = self.given(name) {
@@ -198,23 +197,23 @@ impl Fields {
             }
         }
         if let Some(storeys) = self.text("storeys") {
-            return self.frame(&given, storeys).map(AnyStructure::from);
+            return self.frame(&given, storeys);
         }
         let preset = self.text("preset").unwrap_or(PRESETS[0].0);
         let base = self.has_preset().then(|| Parameters::preset(preset)).transpose().map_err(says)?;
         let parameters = base.map_or_else(|| given.parameters(), |base| given.over(&base)).map_err(says)?;
-        Structure::new(parameters).map(AnyStructure::from).map_err(says)
+        Structure::new(parameters).map_err(says)
     }
 
     /// The structure of one mass, which `task` needs.
-    pub fn one_mass(&self, task: &'static str) -> Result<Structure, String> {
-        self.structure()?.one(task).map_err(says)
+    pub fn one_mass(&self, task: &'static str) -> Result<OneMass, String> {
+        self.structure()?.one_mass(task).copied().map_err(says)
     }
 
-    fn frame(&self, base: &Given, storeys: &str) -> Result<Frame, String> {
+    fn frame(&self, base: &Given, storeys: &str) -> Result<Structure, String> {
         let storeys = (1..).zip(storeys.split_whitespace()).map(|(number, row)| storey(number, row));
         let storeys = storeys.collect::<Result<Vec<_>, _>>()?;
-        let frame = Frame::from_storeys(base, &Damping::All(self.number("zeta")?), &storeys).map_err(says)?;
+        let frame = Structure::from_storeys(base, &Damping::All(self.number("zeta")?), &storeys).map_err(says)?;
         match self.modes()? {
             None => Ok(frame),
             Some(count) => frame.keeping(count).map_err(says),

@@ -1,12 +1,13 @@
 //! A structure as a commented file of parameters.
 use rocking::digits::short;
+use rocking::structure::derived::Derived;
 use rocking::structure::natural_quantities::{NATURAL, Natural};
 use rocking::structure::parameters::PARAMETERS;
-use rocking::{Quantity, Structure, structure::Derived};
+use rocking::{OneMass, Quantity};
 use std::fmt::{self, Write};
 
 /// Writes `structure` as a TOML file: every parameter with its unit and range, and what may be given in its place.
-pub fn write(out: &mut impl Write, structure: &Structure) -> fmt::Result {
+pub fn write(out: &mut impl Write, structure: &OneMass) -> fmt::Result {
     writeln!(out, "# A structure, for rocking-fmu ... --parameters FILE.toml. SI units; # begins a comment.")?;
     writeln!(
         out,

@@ -4,9 +4,9 @@ use crate::picture::{
     histories::{Histories, Panel},
     rounded, titled,
 };
+use rocking::Structure;
 use rocking::digits::short;
 use rocking::run::{Ending, RunError};
-use rocking::structure::any::AnyStructure;
 use rocking_report::page::{Sizes, sizes};
 use rocking_report::quantities::in_readable_unit;
 use rocking_report::run::{Curve, Found, Run};
@@ -48,8 +48,8 @@ fn panels(run: &Run, curve: &Curve) -> Vec<Panel> {
         Some(more.into_iter().fold(panel, Panel::with))
     };
     let (mm, rad, in_g) = ((1e-3, "mm"), (1.0, "rad"), (g, "g"));
-    if let Some(frame) = run.structure.frame() {
-        let [u, a_t] = ["u", "a_t"].map(|of| format!("{of}[{}]", frame.floors().len()));
+    if run.structure.one().is_none() {
+        let [u, a_t] = ["u", "a_t"].map(|of| format!("{of}[{}]", run.structure.floors().len()));
         let base = [("ground a_g", in_g, "a_g", None), ("rotation θ", rad, "theta", None)];
         return base.into_iter().chain([(&*u, mm, &*u, None), (&*a_t, in_g, &*a_t, None)]).filter_map(panel).collect();
     }
@@ -66,7 +66,7 @@ fn panels(run: &Run, curve: &Curve) -> Vec<Panel> {
 }
 
 /// The structure and what became of it, in a line.
-fn about(structure: &AnyStructure, found: &Found) -> String {
+fn about(structure: &Structure, found: &Found) -> String {
     let Sizes { m, H, B, f_fc, floors, .. } = sizes(structure);
     let [kg, t, H, base, f_fc] = [m, 1e-3 * m, H, 2.0 * B, f_fc].map(short);
     let masses = match floors {

@@ -9,7 +9,7 @@ use anyhow::{Context, anyhow, bail, ensure};
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::record::Record;
 use rocking::structure::natural_quantities::Given;
-use rocking::{Detail, Parameters, Structure, engine::DEFAULT_TOLERANCE};
+use rocking::{Detail, OneMass, Parameters, engine::DEFAULT_TOLERANCE};
 use rocking_records::{Column, Unit};
 use rocking_report::{input, output_files::OutputFiles, record::no_pair};
 use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map};
@@ -240,7 +240,7 @@ impl MapFile {
 
     fn map(&self, grid: &StructureGrid) -> anyhow::Result<Map> {
         ensure!(grid.vary.is_empty(), "vary is not possible with pulses: list each structure under [[structures]]");
-        let structure = Structure::new(grid.base()?)?;
+        let structure = OneMass::new(grid.base()?)?;
         let &PulseGrid { shape, cycles, phase, error, ref frequency, ref amplitude, dimensionless } = &self.pulses;
         let unit = if dimensionless { 1.0 } else { structure.parameters().g };
         let frequency = frequency.axis(1.0).context("frequency")?;

@@ -10,9 +10,9 @@ use crate::{
 use anyhow::{bail, ensure};
 use picture::Shown;
 use rayon::{ThreadPool, prelude::*};
+use rocking::Structure;
 use rocking::digits::short;
 use rocking::run::{LONGEST_REST, validity};
-use rocking::structure::doubts;
 use rocking_sweep::map::{CLASSES, Class, Fate, Map, Place, Point};
 use rocking_sweep::row_file::{Known, RowFile};
 use serde::Serialize;
@@ -49,8 +49,8 @@ pub fn run(
     ensure!(!args.validity, "--validity is for records: `simulate` a pulse that `pulse` writes");
     let (file, mut known) = rows::open(output)?;
     for (name, map) in &sweep.maps {
-        let doubts = doubts::of_base(map.structure.as_ref());
-        let warnings = doubts.into_iter().chain(validity::of_parameters(&map.structure, map.detail));
+        let structure = Structure::from(map.structure);
+        let warnings = structure.doubts().into_iter().chain(validity::of_structure(&structure, map.detail));
         warnings.for_each(|warning| warning!("{name}: {warning}"));
     }
     let mut spectra = Vec::new();

@@ -5,7 +5,7 @@ use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::estimates::demand::Demand;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::estimates::response_spectrum::spectral_acceleration;
-use rocking::{Detail, Parameters, Run, Structure, run::End};
+use rocking::{Detail, OneMass, Parameters, Run, run::End};
 use rocking_records::Reading;
 use std::f64::consts::TAU;
 
@@ -19,7 +19,7 @@ fn row<'a>(table: &'a str, level: &str) -> Vec<&'a str> {
 fn the_errors_are_those_of_the_runs() {
     let folder = folder();
     let (table, _) = succeed(folder.path(), "advise --record pulse.AT2 --duration 4");
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     let (record, _) = rocking_records::read(&folder.path().join("pulse.AT2"), &Reading::default(), 9.81).unwrap();
     // theta, u, a_t at 100 instants of every sample, their peaks, and the work that it took
     let seen = |detail, tolerance| {

@@ -4,7 +4,6 @@ use crate::{folder, succeed};
 use FlexibleRocking::{resources::Contents, variables::Table};
 use fmi_unit::{Causality, DataType, Variable};
 use rocking::engine::piece::Sample;
-use rocking::structure::any::AnyStructure;
 use rocking::{Detail, Parameters, Run, Structure, run::End};
 use rocking_records::Reading;
 use std::{collections::BTreeSet, fs, path::Path};
@@ -25,7 +24,7 @@ fn the_response_has_every_output_of_the_fmu_under_its_name_and_unit() {
     let mut expected = BTreeSet::from(["time[s]".to_owned(), "a_g[m/s2]".to_owned()]);
     expected.insert("a_v[m/s2]".to_owned());
     let locals = ["theta_dot", "u_dot", "phase", "transitions", "e_p1", "e_p2", "E_viscous", "E_hysteretic"];
-    let contents = Contents::from(AnyStructure::One(Structure::new(Parameters::MCMANUS).unwrap()));
+    let contents = Contents::from(Structure::new(Parameters::MCMANUS).unwrap());
     let is_shown = |v: &&Variable| v.causality == Causality::Output || locals.contains(&&*v.name);
     expected.extend(Table::new(&contents).variables.iter().filter(is_shown).map(|variable| match variable.data_type {
         DataType::Real { unit, .. } => format!("{}[{unit}]", variable.name),

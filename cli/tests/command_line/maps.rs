@@ -38,7 +38,7 @@ fn a_point_is_a_simulation_of_its_pulse() {
     for (heading, value) in [("m[kg]", parameters.m), ("r", parameters.r), ("error", DEFAULT_ERROR)] {
         assert_eq!(cell(heading).parse(), Ok(value), "{heading}");
     }
-    let alpha = rocking::Structure::new(parameters).unwrap().tan_alpha_cg.atan();
+    let alpha = rocking::OneMass::new(parameters).unwrap().tan_alpha_cg.atan();
     let peaks = printed["peaks"].as_array().unwrap();
     let theta = peaks.iter().find(|peak| peak["name"] == "theta").unwrap()["peak"].as_f64().unwrap();
     let ratio: f64 = cell("theta_max/alpha_cg").parse().unwrap();

@@ -4,18 +4,16 @@ use crate::Version;
 use crate::library::Library;
 use crate::model_description::DESCRIPTION;
 use FlexibleRocking::resources::Contents;
-use rocking::structure::any::AnyStructure;
 
 const TEMPLATE: &str = include_str!("../resources/index.html");
 const ICON: &str = include_str!("../resources/model.svg");
 
 /// The page of the FMU `name` with these `contents` and `libraries`.
 pub fn documentation(version: Version, name: &str, contents: &Contents, libraries: &[&Library]) -> String {
-    let structure = match &contents.structure {
-        AnyStructure::One(_) => "A top mass stands on an elastic strut".to_owned(),
-        AnyStructure::Many(frame) => {
-            format!("A building of {} floors vibrates in {} modes", frame.floors().len(), frame.modes().len())
-        }
+    let of = &contents.structure;
+    let structure = match of.one() {
+        Some(_) => "A top mass stands on an elastic strut".to_owned(),
+        None => format!("A building of {} floors vibrates in {} modes", of.floors().len(), of.modes().len()),
     };
     let record = escaped(contents.default_record());
     let (record, start_values) = if record.is_empty() {
@@ -55,7 +53,7 @@ mod tests {
 
     #[test]
     fn the_page_names_the_record_and_leaves_no_place_open() {
-        let mut contents = Contents::from(AnyStructure::One(Structure::new(Parameters::EVISON).unwrap()));
+        let mut contents = Contents::from(Structure::new(Parameters::EVISON).unwrap());
         let page = documentation(Version::Fmi2, "Pier", &contents, &[]);
         assert!(page.contains("<h1>Pier</h1>") && page.contains("No record is inside."), "{page}");
         contents.records.push(PackedRecord { file: "a<b & {name}.csv".into(), digest: String::new() });

@@ -2,9 +2,9 @@
 
 use FlexibleRocking::ground::GroundRecord;
 use model_description::DefaultExperiment;
+use rocking::Structure;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::{LONGEST_REST, Run};
-use rocking::structure::any::AnyStructure;
 use std::f64::consts::TAU;
 
 /// The experiment that a host is offered.
@@ -12,27 +12,20 @@ use std::f64::consts::TAU;
 /// With a record on the `ground`, the steps are those of the record's samples. The experiment ends when the `structure` stands for
 /// good or overturns, like a run without a stated end. Without a record, the experiment lasts 10/p_l. Its steps of 1/(20 f_u),
 /// rounded to a 1, 2 or 5, show the vibration mode.
-pub fn default_experiment(structure: &AnyStructure, ground: Option<&GroundRecord>) -> DefaultExperiment {
+pub fn default_experiment(structure: &Structure, ground: Option<&GroundRecord>) -> DefaultExperiment {
     let p_l = structure.base().p_l;
     let (duration, step_size) = match ground.map(|ground| ground.in_m_s2(structure.base().g)) {
         Some(record) => {
             let of_record = record.end() - record.start();
-            let end = match structure {
-                AnyStructure::One(one) => Run::new(*one, &record).follow(&mut ()).map(|finish| finish.motion.time),
-                AnyStructure::Many(frame) => {
-                    Run::of_modes(frame.clone(), &record).follow(&mut ()).map(|finish| finish.motion.time)
-                }
+            let structure = structure.clone();
+            let end = match structure.one() {
+                Some(_) => Run::new(structure, &record).follow(&mut ()).map(|finish| finish.motion.time),
+                None => Run::of_modes(structure, &record).follow(&mut ()).map(|finish| finish.motion.time),
             };
             let duration = end.map_or(of_record + LONGEST_REST / p_l, |end| end - record.start());
             (duration, of_record / (record.times().len() - 1) as f64)
         }
-        None => {
-            let lowest = match structure {
-                AnyStructure::One(one) => one.omega_u,
-                AnyStructure::Many(frame) => frame.rocking_frequencies()[0],
-            };
-            (10.0 / p_l, at_most(TAU / lowest / 20.0))
-        }
+        None => (10.0 / p_l, at_most(TAU / structure.vibration().rocking[0] / 20.0)),
     };
     DefaultExperiment {
         start_time: 0.0,
@@ -73,10 +66,9 @@ mod tests {
             let text: String = (0..4000).map(line).collect();
             let ground =
                 GroundRecord::from_bytes(Path::new("a.csv"), format!("t (s),a (g)\n{text}").as_bytes(), 9.81).unwrap();
-            let DefaultExperiment { stop_time, step_size, .. } =
-                default_experiment(&AnyStructure::One(structure), Some(&ground));
+            let DefaultExperiment { stop_time, step_size, .. } = default_experiment(&structure, Some(&ground));
             let record = ground.in_m_s2(9.81);
-            let finish = Run::new(structure, &record).follow(&mut ()).unwrap();
+            let finish = Run::new(structure.clone(), &record).follow(&mut ()).unwrap();
             assert_eq!(finish.ending, ending);
             assert!((step_size - interval).abs() < 1e-8 * interval, "{step_size}");
             let steps = stop_time / step_size;

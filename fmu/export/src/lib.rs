@@ -14,9 +14,8 @@ use FlexibleRocking::ground::GroundRecord;
 pub use FlexibleRocking::resources::Contents;
 use FlexibleRocking::resources::{FRAME_FILE, FrameNumbers, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records};
 pub use library::{Library, LibraryError, Platform};
+use rocking::StructureError;
 use rocking::run::record::SamplesError;
-use rocking::structure::any::AnyStructure;
-use rocking::structure::frame::FrameError;
 use rocking_records::RecordError;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -68,7 +67,7 @@ pub enum ExportError {
     SamePlatform(Platform),
     /// A structure of many masses without modes.
     #[error("the FMU moves modes: {0}; for a rigid structure set detail = rigid")]
-    Frame(#[from] FrameError),
+    Structure(#[from] StructureError),
     /// The vertical component does not belong to the record.
     #[error(transparent)]
     NoPair(#[from] SamplesError),
@@ -109,9 +108,7 @@ pub fn export(
     if let Some(two) = libraries.windows(2).find(|two| two[0].platform == two[1].platform) {
         return Err(ExportError::SamePlatform(two[0].platform));
     }
-    if let AnyStructure::Many(frame) = &contents.structure {
-        FrameNumbers::from(frame).frame()?;
-    }
+    FrameNumbers::from(&contents.structure).frame()?;
     let mut files = Vec::new();
     let mut pack = |contents: &Contents, (path, content): RecordFile| {
         let record = GroundRecord::from_bytes(&path, &content, contents.structure.base().g)?;
@@ -153,9 +150,9 @@ fn entries(
     let description = model_description::xml(version, name, contents, experiment);
     let icon = if version == Version::Fmi2 { "model.png" } else { "terminalsAndIcons/icon.png" };
     let mut entries = vec![entry("modelDescription.xml", description.into()), entry(icon, ICON.to_vec())];
-    let (file, numbers) = match &contents.structure {
-        AnyStructure::One(one) => (PARAMETERS_FILE, toml::to_string(one.parameters())?),
-        AnyStructure::Many(frame) => (FRAME_FILE, FrameNumbers::from(frame).to_string()),
+    let (file, numbers) = match contents.structure.one() {
+        Some(one) => (PARAMETERS_FILE, toml::to_string(one.parameters())?),
+        None => (FRAME_FILE, FrameNumbers::from(&contents.structure).to_string()),
     };
     entries.extend([
         entry("documentation/index.html", page.into()),
@@ -179,8 +176,8 @@ mod tests {
     use super::*;
     use rocking::{Parameters, Structure};
 
-    fn structure(parameters: Parameters) -> AnyStructure {
-        AnyStructure::One(Structure::new(parameters).unwrap())
+    fn structure(parameters: Parameters) -> Structure {
+        Structure::new(parameters).unwrap()
     }
 
     /// A library that passes for the one of this build for `platform`.

@@ -2,7 +2,6 @@
 //! It is built in half the time of `rocking-fmu`, whose `export` writes the same bytes.
 
 use fmu_export::{Library, ModelName, Version, export};
-use rocking::structure::any::AnyStructure;
 use rocking::{Parameters, Structure};
 use std::error::Error;
 use std::path::Path;
@@ -24,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         _ => return Err(format!("the version of FMI is 2 or 3, not {version}").into()),
     };
     let libraries = Library::read(Path::new(library))?;
-    let structure = AnyStructure::One(Structure::new(parameters)?);
+    let structure = Structure::new(parameters)?;
     let (_, archive) = export(version, &ModelName::default(), structure.into(), Vec::new(), None, &libraries)?;
     Ok(fs::write(output, archive)?)
 }

@@ -43,11 +43,10 @@ pub fn xml(version: Version, name: &str, contents: &Contents, default_experiment
 mod tests {
     use super::*;
     use FlexibleRocking::resources::PackedRecord;
-    use rocking::structure::any::AnyStructure;
     use rocking::{Parameters, Structure};
 
     fn one_mass(parameters: Parameters) -> Contents {
-        Contents::from(AnyStructure::One(Structure::new(parameters).unwrap()))
+        Contents::from(Structure::new(parameters).unwrap())
     }
 
     fn described(version: Version, contents: &Contents) -> String {

@@ -2,10 +2,8 @@
 
 use fmi_unit::{DataType, Variable};
 use model_description::Unit;
-use rocking::structure::Base;
-use rocking::structure::any::AnyStructure;
 use rocking::structure::parameters::PARAMETERS;
-use rocking::{Body, State};
+use rocking::{Base, Body, State, Structure};
 
 /// The units of the variables, as exponents of kg, m, s, rad.
 pub const UNITS: [(&str, [i32; 4]); 17] = [
@@ -29,15 +27,15 @@ pub const UNITS: [(&str, [i32; 4]); 17] = [
 ];
 
 /// Definitions of the units; the display unit g is that of `structure`.
-pub fn definitions(structure: &AnyStructure) -> Vec<Unit> {
-    let of_many = matches!(structure, AnyStructure::Many(_)).then_some(("kg.m", [1, 1, 0, 0]));
+pub fn definitions(structure: &Structure) -> Vec<Unit> {
+    let of_many = structure.one().is_none().then_some(("kg.m", [1, 1, 0, 0]));
     let definition = |(name, base)| Unit { name, base: Some(base), display: shown_in(name, structure) };
     UNITS.into_iter().chain(of_many).map(definition).collect()
 }
 
 /// The unit that hosts can show a unit in, and the factor of a value in that unit. The g of an acceleration is the structure's own,
 /// as in a record.
-fn shown_in(unit: &str, structure: &AnyStructure) -> Option<(&'static str, f64)> {
+fn shown_in(unit: &str, structure: &Structure) -> Option<(&'static str, f64)> {
     match unit {
         "rad" => Some(("deg", 1f64.to_degrees())),
         "m" => Some(("mm", 1e3)),
@@ -51,7 +49,7 @@ fn shown_in(unit: &str, structure: &AnyStructure) -> Option<(&'static str, f64)>
 
 /// The unit that `variable` is shown in, if that is another than its own. The structure's own parameters are in SI, as in its file, and
 /// instants in seconds: they are looked up in a record.
-pub fn display_unit(variable: &Variable, structure: &AnyStructure) -> Option<&'static str> {
+pub fn display_unit(variable: &Variable, structure: &Structure) -> Option<&'static str> {
     let DataType::Real { unit, .. } = variable.data_type else { return None };
     let is_parameter = PARAMETERS.iter().any(|parameter| parameter.name == variable.name);
     let shown = shown_in(unit, structure).map(|(name, _)| name);
@@ -62,22 +60,16 @@ pub fn display_unit(variable: &Variable, structure: &AnyStructure) -> Option<&'s
 ///
 /// The structure is about to fall at the rotation α_cg. Its base lifts off at u_cr, and statically under the acceleration
 /// g tan α_cg (Eqs 2 to 4).
-pub fn nominal(variable: &Variable, structure: &AnyStructure) -> Option<f64> {
+pub fn nominal(variable: &Variable, structure: &Structure) -> Option<f64> {
     let &Base { m_t, B, g, p_l, tan_alpha_cg, .. } = structure.base();
     let acceleration = g * tan_alpha_cg;
-    let (m, height, u, u_dot) = match structure {
-        AnyStructure::One(of) => {
-            let State { u, u_dot, .. } = State::usual(of);
-            (of.parameters().m, of.parameters().H, u, u_dot)
-        }
-        AnyStructure::Many(frame) => {
-            let (&Body { m_s, S_1, .. }, lowest) = (frame.body(), frame.rocking_frequencies()[0]);
-            (m_s, S_1 / m_s, acceleration / (lowest * lowest), acceleration / lowest)
-        }
-    };
+    let &Body { m_s: m, S_1, .. } = structure.body();
+    let (height, lowest) = (S_1 / m, structure.vibration().rocking[0]);
+    let usual = structure.one().map(State::usual);
+    let (u, u_dot) = usual.map_or((acceleration / (lowest * lowest), acceleration / lowest), |of| (of.u, of.u_dot));
     let (alpha, name) = (tan_alpha_cg.atan(), &*variable.name);
     let (name, number) = symbol_and_number(name);
-    let coordinates = || number.zip(if let AnyStructure::Many(frame) = structure { Some(frame.usual()) } else { None });
+    let coordinates = || number.map(|number| (number, structure.usual()));
     let name = ["_max", "_0"].iter().find_map(|ending| name.strip_suffix(ending)).unwrap_or(&name);
     let magnitude = match name {
         "theta" => Some(alpha),

@@ -10,9 +10,7 @@ use FlexibleRocking::variables::Table;
 use fmi_unit::Variable;
 use fmi_unit::snapshot::Snapshot;
 use libc::{c_char, c_int, c_uint, c_void};
-use rocking::structure::any::AnyStructure;
-use rocking::structure::{Mode, Ties};
-use rocking::{Body, Floor, Frame, Modes, Parameters, Structure};
+use rocking::{Body, Floor, Mode, Modes, Parameters, Structure, Ties};
 use std::cell::RefCell;
 use std::ffi::{CStr, CString};
 use std::ptr;
@@ -76,7 +74,7 @@ impl Default for Instantiate {
 
 /// The contents of an archive of one mass without records.
 pub fn contents(parameters: Parameters) -> Contents {
-    AnyStructure::One(Structure::new(parameters).unwrap()).into()
+    Structure::new(parameters).unwrap().into()
 }
 
 /// A folder `resources` with the parameters of Evison's wall.
@@ -92,8 +90,8 @@ pub fn resources_of_many() -> TempDir {
     let r = Some(0.93);
     let body = Body { m0: 2e4, J0: 3e4, m_s: 7e4, S_1: 3.5e5, I_2: 2e6, B: 1.5, r, g: 9.81, c_ratio: 1.0, ties };
     let floor = |height, shape| Floor { mass: 3.5e4, height, shape: Modes::new(&[shape]) };
-    let frame =
-        Frame::new(body, &[Mode::new(20.0, 0.02, 250.0, 1.4e3)], &[floor(3.5, 2e-3), floor(7.0, 4e-3)]).unwrap();
+    let frame = Structure::of_body(body, &[Mode::new(20.0, 0.02, 250.0, 1.4e3)], &[floor(3.5, 2e-3), floor(7.0, 4e-3)])
+        .unwrap();
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join(FRAME_FILE), FrameNumbers::from(&frame).to_string()).unwrap();
     folder

@@ -107,7 +107,12 @@ fn any_step_meets_every_sample() {
         let structure = Structure::new(Parameters::EVISON).unwrap();
         let duration = record.end() - record.start();
         for detail in Detail::ALL {
-            let run = Run { detail, tolerance: TOLERANCE, end: End::At(record.end()), ..Run::new(structure, &record) };
+            let run = Run {
+                detail,
+                tolerance: TOLERANCE,
+                end: End::At(record.end()),
+                ..Run::new(structure.clone(), &record)
+            };
             let (expected, _) = run.peaks().unwrap();
             let of_samples = following(path, detail);
             let samples = record.times().windows(2).map(|pair| pair[1] - pair[0]);

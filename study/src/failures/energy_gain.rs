@@ -21,14 +21,14 @@ const DURATION: f64 = 0.5;
 /// The energy of an example over time, on ground at rest.
 pub fn show() -> Result<Exhibit> {
     let scene = at_rest(GAINER, State { theta: RELEASE, ..State::default() }, DURATION);
-    let rest = energy(&scene.structure, Phase::FullContact, &<State>::default());
+    let whole = scene.structure.into();
+    let rest = energy(&whole, Phase::FullContact, &<State>::default());
     let history = exact(&scene, Detail::Auto, every(1e-3 * DURATION))?;
-    let over_rest =
-        |motion: &rocking::Motion| (motion.time, energy(&scene.structure, motion.phase, &motion.state) - rest);
+    let over_rest = |motion: &rocking::Motion| (motion.time, energy(&whole, motion.phase, &motion.state) - rest);
     let path: Vec<_> = history.motions.iter().map(over_rest).collect();
     let gained = |impact: &rocking::Transition| {
         let side = Side::of(-impact.before.theta_dot); // s θ falls to 0
-        (impact.time, impact::energy_gained(&scene.structure, side, &impact.before))
+        (impact.time, impact::energy_gained(&whole, side, &impact.before))
     };
     let mut gains = history.transitions.iter().filter(|transition| is_impact(transition)).map(gained);
     let (time, gain) = gains.find(|(_, gain)| *gain > 0.0).context("the example gains energy")?;

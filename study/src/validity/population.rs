@@ -11,7 +11,7 @@ use rocking::run::peaks::Peaks;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits, Validity};
 use rocking::run::{End, Ending, RunError};
-use rocking::{Parameters, Run, Structure};
+use rocking::{OneMass, Parameters, Run};
 use std::path::Path;
 
 /// How many structures there are.
@@ -49,7 +49,7 @@ pub struct Response {
 /// Responses with both rules.
 #[derive(Clone, Debug)]
 pub struct Pair {
-    pub structure: Structure,
+    pub structure: OneMass,
     pub model: Response,
     pub repaired: Response,
 }
@@ -60,8 +60,8 @@ fn even<const D: usize>(k: usize) -> [f64; D] {
     std::array::from_fn(|i| (0.5 + k as f64 * root.powi(-(i as i32 + 1))).fract())
 }
 
-/// Structure `k`, and its ground among `records`.
-fn case(k: usize, records: &[Record]) -> (Structure, Record) {
+/// OneMass `k`, and its ground among `records`.
+fn case(k: usize, records: &[Record]) -> (OneMass, Record) {
     let [slenderness, f_fc, m0, J0, zeta_fc, r, B, strength, record] = even(k);
     let linear = |part: f64, (low, high): (f64, f64)| low + part * (high - low);
     let logarithmic = |part: f64, (low, high): (f64, f64)| low * (high / low).powf(part);
@@ -98,8 +98,11 @@ pub fn all(folder: &Path) -> Result<Vec<Pair>> {
 pub fn both(run: &Run) -> Result<Pair, RunError> {
     let model = respond(run)?;
     let mut repaired = run.clone();
-    repaired.structure.u_cr = f64::NEG_INFINITY;
-    Ok(Pair { structure: run.structure, model, repaired: respond(&repaired)? })
+    let structure = *run.structure.one().expect("the population is of one mass");
+    let mut without_rule = structure;
+    without_rule.u_cr = f64::NEG_INFINITY;
+    repaired.structure = without_rule.into();
+    Ok(Pair { structure, model, repaired: respond(&repaired)? })
 }
 
 fn respond(run: &Run) -> Result<Response, RunError> {

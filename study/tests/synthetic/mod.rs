@@ -1,6 +1,6 @@
 //! A ground motion made for the tests.
 
-use rocking::{Parameters, State, Structure};
+use rocking::{OneMass, Parameters, State};
 use study::scene::{Scene, ground};
 
 /// McManus's specimen under four sines that swell and fade, sampled every 0.01 s for 4 s.
@@ -16,7 +16,7 @@ pub fn scene() -> Scene {
     Scene {
         key: "synthetic",
         title: "McManus's specimen, four sines",
-        structure: Structure::new(Parameters::MCMANUS).unwrap(),
+        structure: OneMass::new(Parameters::MCMANUS).unwrap(),
         initial: State::default(),
         ground: ground(dt, a_g.collect()),
     }

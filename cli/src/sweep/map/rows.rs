@@ -39,7 +39,7 @@ fn headings() -> Vec<String> {
 /// The row of a point, which the refinement of this level has asked for; 0 is the grid.
 pub fn row(key: &Uuid, name: &str, map: &Map, (level, place): (u32, Place), point: &Point) -> anyhow::Result<Vec<u8>> {
     let pulse = map.pulse(place);
-    let (of_amplitude, of_frequency) = units_of(&map.structure);
+    let (of_amplitude, of_frequency) = units_of(map.structure.base());
     let of_structure = AXES.map(|axis| (axis.get)(map.structure.parameters()));
     let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail.name(), map.tolerance);
     let ratios = (pulse.frequency / of_frequency, pulse.amplitude / of_amplitude);

@@ -1,0 +1,56 @@
+//! The rigid base of a structure and the ties between the base and the ground, by their numbers.
+
+/// The rigid base of a structure, with all mass that no mode carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Base {
+    /// Mass of the whole structure m_t, kg.
+    pub m_t: f64,
+    /// Mass that no mode carries, m_t − Σ Γ²/μ, kg; of one mass, the mass of the foundation.
+    pub m0: f64,
+    /// First moment of this mass about the height of the pivots, kg·m; of one mass, 0.
+    pub S_res: f64,
+    /// Half-width B, m.
+    pub B: f64,
+    /// Inertia of the mass that no mode carries, about the middle of the base, kg·m².
+    pub J0: f64,
+    /// Inertia of the whole structure about a pivot J_P, kg·m².
+    pub J_P: f64,
+    /// Coefficient of restitution; without one, momentum with the shape frozen gives a coefficient for each impact.
+    pub r: Option<f64>,
+    /// Acceleration of gravity, m/s².
+    pub g: f64,
+    /// Viscous damping while rocking as a fraction of the damping in full contact.
+    pub c_ratio: f64,
+    /// Frequency parameter √(g S_1/J_P), rad/s.
+    pub p_l: f64,
+    /// Slenderness of the centre of gravity m_t B/S_1.
+    pub tan_alpha_cg: f64,
+    /// What restrains the base.
+    pub ties: Ties,
+}
+
+/// The tendon and the dissipators between the base and the ground, by their parameters.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ties {
+    /// Prestress of the tendon with the base down, N.
+    pub P_0: f64,
+    /// Stiffness of the tendon, N/m.
+    pub k_t: f64,
+    /// Distance of both dissipators from the middle of the base, m.
+    pub xi_d: f64,
+    /// Damping of each viscous dissipator, N·s/m.
+    pub c_d: f64,
+    /// Elastic stiffness of each elastoplastic dissipator, N/m.
+    pub k_d: f64,
+    /// Force at which it yields, N.
+    pub F_y: f64,
+}
+
+impl Base {
+    /// Whether a tendon or dissipators restrain the structure.
+    #[inline]
+    pub fn is_restrained(&self) -> bool {
+        let &Ties { P_0, k_t, c_d, k_d, .. } = &self.ties;
+        [P_0, k_t, c_d, k_d].iter().any(|restraint| *restraint > 0.0)
+    }
+}

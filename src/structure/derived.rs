@@ -1,0 +1,138 @@
+//! The numbers that follow from a structure and are shown: of one mass (before Eq 11, after 4, 8 and 13, before 18), of any
+//! structure, and of each mode.
+
+use crate::mechanics::impact::restitution;
+use crate::structure::ROUNDING;
+use crate::{Mode, Modes, OneMass, Side, State, Structure};
+use std::f64::consts::TAU;
+
+/// A derived quantity of a `T`, for `describe` and the FMU.
+#[derive(Debug)]
+pub struct Derived<T = OneMass> {
+    /// Symbol.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Description.
+    pub description: &'static str,
+    /// Equation of the paper that defines the quantity.
+    pub equation: &'static str,
+    /// Value for a structure.
+    pub value: fn(&T) -> f64,
+}
+
+macro_rules! derived {
+    ($name:literal [$unit:literal] $description:literal, $equation:literal, $value:expr) => {
+        Derived { name: $name, unit: $unit, description: $description, equation: $equation, value: $value }
+    };
+}
+
+/// The derived quantities of one mass that are shown, in the order of the paper.
+pub const DERIVED: [Derived; 16] = [
+    derived!("gamma" ["1"] "mass ratio (m + m0)/m", "before Eq 1", |s| s.gamma),
+    derived!("omega_fc" ["rad/s"] "circular frequency in full contact", "Eq 1", |s| s.omega_fc),
+    derived!("k" ["N/m"] "stiffness of the strut", "Eq 1", |s| s.k),
+    derived!("c_fc" ["N.s/m"] "viscous damping in full contact", "after Eq 1", |s| s.c_fc),
+    derived!("u_cr" ["m"] "critical displacement at uplift", "after Eq 4", |s| s.u_cr),
+    derived!("c_u" ["N.s/m"] "viscous damping while rocking", "after Eq 6", |s| s.c_u),
+    derived!("J_P" ["kg.m2"] "inertia about a pivot", "after Eq 8", |s| s.J_P),
+    derived!("p_l" ["rad/s"] "frequency parameter", "before Eq 11", |s| s.p_l),
+    derived!("alpha_cg" ["rad"] "slenderness of the centre of gravity", "before Eq 11", |s| libm::atan(s.tan_alpha_cg)),
+    derived!("chi" ["1"] "modal participation of rocking", "after Eq 13", |s| s.chi),
+    derived!("f_u" ["Hz"] "frequency of the vibration mode while rocking", "before Eq 18", |s| s.omega_u / TAU),
+    derived!("zeta_u" ["1"] "damping ratio of the vibration mode while rocking", "before Eq 18", |s| s.zeta_u),
+    derived!("period_fc" ["s"] "natural period in full contact", "before Eq 4", |s| s.parameters().f_fc.recip()),
+    derived!("weight" ["N"] "weight of the top mass, m g", "Eq 5", |s| s.parameters().m * s.parameters().g),
+    derived!("weight0" ["N"] "weight of the foundation, m0 g", "Eq 6", |s| s.parameters().m0 * s.parameters().g),
+    derived!("width" ["m"] "width of the base, 2 B", "Eq 25", |s| 2.0 * s.parameters().B),
+];
+
+/// A mode in full contact and what becomes of it while the structure rocks.
+#[derive(Clone, Copy, Debug)]
+pub struct ModeOf {
+    mode: Mode,
+    J_P: f64,
+    m_s: f64,
+    omega_u: f64,
+}
+
+/// The numbers of a mode that are shown.
+pub const OF_MODE: [Derived<ModeOf>; 7] = [
+    derived!("f" ["Hz"] "frequency in full contact", "", |of| of.mode.omega() / TAU),
+    derived!("zeta" ["1"] "damping ratio in full contact", "", |of| {
+        of.mode.damping / (2.0 * (of.mode.stiffness * of.mode.mass).sqrt())
+    }),
+    derived!("mass" ["kg"] "effective mass", "", |of| of.mode.gamma * of.mode.share),
+    derived!("share" ["1"] "effective mass as a fraction of m_s", "", |of| of.mode.gamma * of.mode.share / of.m_s),
+    derived!("height" ["m"] "effective height; 0 if the mode has no effective mass", "", |of| {
+        let is_of_none = of.mode.gamma * of.mode.share <= ROUNDING * of.m_s;
+        if is_of_none { 0.0 } else { of.mode.height / of.mode.share }
+    }),
+    derived!("chi" ["1"] "participation in rocking", "", |of| of.mode.mass * of.mode.height * of.mode.height / of.J_P),
+    derived!("f_u" ["Hz"] "frequency while rocking", "", |of| of.omega_u / TAU),
+];
+
+/// The numbers of a structure that are shown, apart from the numbers of its modes.
+pub const OF_STRUCTURE: [Derived<Structure>; 15] = [
+    derived!("m_s" ["kg"] "mass above the base", "", |of| of.body().m_s),
+    derived!("m_t" ["kg"] "mass of the whole structure", "", |of| of.base().m_t),
+    derived!("S_1" ["kg.m"] "first moment of the mass above the base", "", |of| of.body().S_1),
+    derived!("B" ["m"] "half-width of the base", "", |of| of.base().B),
+    derived!("J_P" ["kg.m2"] "inertia about a pivot", "", |of| of.base().J_P),
+    derived!("p_l" ["rad/s"] "frequency parameter", "", |of| of.base().p_l),
+    derived!("alpha_cg" ["rad"] "slenderness of the centre of gravity", "", |of| libm::atan(of.base().tan_alpha_cg)),
+    derived!("r" ["1"] "coefficient of restitution without displacement", "", |of| {
+        let undeformed = State { u: Modes::default(), u_dot: Modes::default(), theta: 0.0, theta_dot: 0.0 };
+        restitution(of, Side::Right, &undeformed)
+    }),
+    derived!("g" ["m/s2"] "acceleration of gravity", "", |of| of.base().g),
+    derived!("P_0" ["N"] "prestress of the tendon with the base down", "", |of| of.base().ties.P_0),
+    derived!("k_t" ["N/m"] "stiffness of the tendon", "", |of| of.base().ties.k_t),
+    derived!("xi_d" ["m"] "distance of each dissipator from the middle of the base", "", |of| of.base().ties.xi_d),
+    derived!("c_d" ["N.s/m"] "damping of each viscous dissipator", "", |of| of.base().ties.c_d),
+    derived!("k_d" ["N/m"] "elastic stiffness of each elastoplastic dissipator", "", |of| of.base().ties.k_d),
+    derived!("F_y" ["N"] "force at which an elastoplastic dissipator yields", "", |of| of.base().ties.F_y),
+];
+
+impl Structure {
+    /// The numbers of each mode, lowest frequency first.
+    pub fn mode_table(&self) -> impl Iterator<Item = ModeOf> {
+        let (J_P, m_s) = (self.base().J_P, self.body().m_s);
+        let modes = self.modes().iter().zip(self.rocking_frequencies());
+        modes.map(move |(&mode, omega_u)| ModeOf { mode, J_P, m_s, omega_u })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Parameters;
+    use approx::assert_relative_eq;
+
+    /// Tables 1 and 2, in the digits to which their own values determine them.
+    #[test]
+    fn the_specimens_have_the_papers_derived_quantities() {
+        // J_P, p_l, alpha_cg, chi, f_u, u_cr
+        let tables = [
+            (Parameters::EVISON, [152.488, 2.9151, 0.35122, 0.90954, 36.574, 0.752467e-3]),
+            (Parameters::MCMANUS, [467.046, 2.24234, 0.22868, 0.94309, 20.959, 2.313480e-3]),
+        ];
+        for (parameters, expected) in tables {
+            let structure = OneMass::new(parameters).unwrap();
+            for (name, expected) in ["J_P", "p_l", "alpha_cg", "chi", "f_u", "u_cr"].into_iter().zip(expected) {
+                let derived = DERIVED.iter().find(|derived| derived.name == name).unwrap();
+                assert_relative_eq!((derived.value)(&structure), expected, max_relative = 2e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn every_number_is_in_si_units() {
+        let known = ["1", "kg", "m", "s", "N", "rad", "Hz", "m2", "s2"];
+        let units =
+            crate::structure::parameters::PARAMETERS.iter().map(|of| of.unit).chain(DERIVED.iter().map(|of| of.unit));
+        let units = units.chain(OF_STRUCTURE.iter().map(|of| of.unit)).chain(OF_MODE.iter().map(|of| of.unit));
+        let strange: Vec<_> = units.filter(|unit| !unit.split(['/', '.']).all(|part| known.contains(&part))).collect();
+        assert!(strange.is_empty(), "{strange:?}");
+    }
+}
