@@ -18,8 +18,9 @@
 
 use crate::failure::Failure;
 use crate::instance::Instance;
-use crate::logger::{Category, Logger, Status};
-use crate::model::{Completed, Model};
+use crate::interface::{Interface, IntermediateUpdate};
+use crate::logger::{Category, Logger, Sink, Status};
+use crate::model::Model;
 use crate::state_machine::{Stage, Stages, Table, names};
 use crate::variables::DataType;
 use libc::{c_char, c_int, c_void, size_t};
@@ -40,8 +41,8 @@ pub trait Function: Copy + Sized + 'static {
     /// All of them.
     const ALL: &'static [Self];
 
-    /// The first number in a component of this version.
-    const MAGIC: u64;
+    /// The words of this version.
+    const WORDS: Words;
 
     /// Its place among all of them.
     fn place(self) -> usize;
@@ -49,46 +50,46 @@ pub trait Function: Copy + Sized + 'static {
     /// Its name in the C interface.
     fn name(self) -> &'static str;
 
-    /// The functions that messages name.
-    const WORDS: Words;
+    /// The stages in which an instance for `interface` accepts each function.
+    fn table(interface: Interface) -> &'static Table;
 }
 
-/// The functions of a version that messages name as a remedy.
+/// What a version calls things in its functions' names, and how it counts variables.
 pub struct Words {
+    pub(crate) version: &'static str,
+    /// The first number in a component of this version.
+    pub(crate) magic: u64,
+    /// The value reference of the variable at position 0.
+    pub(crate) first: u32,
     pub(crate) real: &'static str,
     pub(crate) integer: &'static str,
     pub(crate) enumeration: &'static str,
-    pub(crate) boolean: &'static str,
-    pub(crate) string: &'static str,
-    pub(crate) fixing: &'static str,
-    pub(crate) reset: &'static str,
-    pub(crate) set_state: &'static str,
+    pub(crate) state: &'static str,
     pub(crate) set_up: &'static str,
-    pub(crate) state_size: &'static str,
-    pub(crate) status: &'static str,
 }
 
 impl Words {
     /// The function to call instead of one that met `failure`, as the end of a message.
     fn remedy(&self, failure: &Failure) -> String {
-        let Words { fixing, reset, set_state, set_up, state_size, status, .. } = self;
+        let Words { version, integer, state, set_up, .. } = self;
         match failure {
             Failure::WrongType { data_type, .. } => {
-                let function = match data_type {
+                let of = match data_type {
+                    DataType::Integer => return format!(": call {version}Get{integer} instead"),
                     DataType::Real { .. } => self.real,
-                    DataType::Integer => self.integer,
                     DataType::Enumeration(_) => self.enumeration,
-                    DataType::Boolean => self.boolean,
-                    DataType::String => self.string,
+                    DataType::Boolean => "Boolean",
+                    DataType::String => "String",
                 };
-                format!(": call {function} instead")
+                format!(": call {version}Get{of} or {version}Set{of} instead")
             }
-            Failure::Fixed { .. } => format!(": set it before {fixing}, or call {reset}"),
-            Failure::WrongPoint { .. } => format!(": step from there, or go back with {set_state}"),
-            Failure::StepBack { .. } => format!("; to go back, call {set_state}"),
-            Failure::PastStop { .. } => format!(" given to {set_up}: shorten it"),
-            Failure::WrongSize { .. } => format!(" ({state_size})"),
-            Failure::NoAnswer(_) => format!(": {status}"),
+            Failure::Fixed { .. } => {
+                format!(": set it before {version}ExitInitializationMode, or call {version}Reset")
+            }
+            Failure::WrongPoint { .. } => format!(": step from there, or go back with {version}Set{state}"),
+            Failure::StepBack { .. } => format!("; to go back, call {version}Set{state}"),
+            Failure::PastStop { .. } => format!(" given to {version}{set_up}: shorten it"),
+            Failure::WrongSize { .. } => format!(" ({version}Serialized{state}Size)"),
             _ => String::new(),
         }
     }
@@ -102,7 +103,7 @@ struct Component<F, M> {
     availability: AtomicU8,
     /// Whether a step is under way in which the host is called back, and which goes on with the instance.
     calls_back: AtomicBool,
-    /// The interface's table.
+    /// The stages in which the instance accepts each function.
     allowed_in: &'static Table,
     instance: UnsafeCell<Instance<M>>,
     version: PhantomData<F>,
@@ -122,16 +123,39 @@ const MAX_TEXT: usize = 1 << 16;
 /// Most values or bytes that a host may pass in one call.
 const MAX_LENGTH: usize = 1 << 24;
 
-/// A component of what `create` makes, with the interface's table of states; null if it makes none or panics.
+/// What an instance is made of: model, interface, the host that is called back, and whether the log categories are on.
+pub(crate) type Parts<M> = (M, Interface, Option<IntermediateUpdate>, bool);
+
+/// A component with the instance of the `parts`, which switches the log `categories`. If `function` finds no parts, the result
+/// is null and the log has the reason; if it panics, null.
 pub(crate) fn instantiate<F: Function, M: Model>(
-    create: impl FnOnce() -> Option<(Instance<M>, &'static Table)>,
+    function: &str,
+    categories: &[Category],
+    sink: Sink,
+    parts: impl FnOnce() -> Result<Parts<M>, Failure>,
 ) -> *mut c_void {
     let _control = Control::usual();
+    let mut logger = Logger::new(sink);
+    let create = || match parts() {
+        Ok((model, interface, host, on)) => {
+            logger.switch(categories, on);
+            Some((Instance::new(model, F::WORDS.first, interface, logger, host), F::table(interface)))
+        }
+        Err(failure) => {
+            logger.failure(failure.status(), &format!("{}{function}: {failure}", F::WORDS.version));
+            None
+        }
+    };
     let created = catch_unwind(AssertUnwindSafe(create)).ok().flatten();
     let Some((instance, allowed_in)) = created else { return ptr::null_mut() };
-    let (magic, availability, instance) = (Cell::new(F::MAGIC), AtomicU8::new(READY), UnsafeCell::new(instance));
-    let (calls_back, version) = (AtomicBool::new(false), PhantomData);
-    let component = Component::<F, M> { magic, availability, calls_back, allowed_in, instance, version };
+    let component = Component::<F, M> {
+        magic: Cell::new(F::WORDS.magic),
+        availability: AtomicU8::new(READY),
+        calls_back: AtomicBool::new(false),
+        allowed_in,
+        instance: UnsafeCell::new(instance),
+        version: PhantomData,
+    };
     Box::into_raw(Box::new(component)).cast()
 }
 
@@ -167,7 +191,7 @@ unsafe fn component<'a, F: Function, M>(c: *mut c_void) -> Option<&'a Component<
     }
     // The magic number is read alone first: if it is wrong, the rest is no component.
     let magic = unsafe { (&raw const (*c).magic).cast::<u64>().read() };
-    if magic == F::MAGIC { Some(unsafe { &*c }) } else { None }
+    if magic == F::WORDS.magic { Some(unsafe { &*c }) } else { None }
 }
 
 /// Calls `body` with the instance that `c` points to, if `function` is allowed in its state. No panic gets out.
@@ -346,32 +370,22 @@ fn start<T>(name: &'static str, pointer: *mut T, length: size_t) -> Result<*mut 
     if length == 0 { Ok(ptr::dangling_mut()) } else { check_pointer(name, pointer).map(|()| pointer) }
 }
 
-/// The `needed` numbers at `pointer`, of which `count`, the argument `of`, has to say that they are as many.
-pub(crate) unsafe fn read_all<'a>(
-    name: &'static str,
-    pointer: *const f64,
-    (of, count): (&'static str, size_t),
-    needed: usize,
-) -> Result<&'a [f64], Failure> {
-    check_count(of, count, needed)?;
-    unsafe { values(name, pointer, count) }
-}
-
 /// Writes `numbers` to `pointer`, if `count`, the argument `of`, says that there is room for as many.
-pub(crate) unsafe fn write_all(
+pub(crate) unsafe fn write_all<T: From<V>, V>(
     name: &'static str,
-    pointer: *mut f64,
+    pointer: *mut T,
     (of, count): (&'static str, size_t),
-    numbers: Vec<f64>,
+    numbers: Vec<V>,
 ) -> Result<(), Failure> {
     check_count(of, count, numbers.len())?;
-    fill(unsafe { room(name, pointer, count) }?, &numbers);
+    let places = unsafe { room(name, pointer, count) }?;
+    places.iter_mut().zip(numbers).for_each(|(place, number)| _ = place.write(number.into()));
     Ok(())
 }
 
 /// Writes `numbers` to `places`, of which there are as many.
 #[inline]
-pub(crate) fn fill(places: &mut [MaybeUninit<f64>], numbers: &[f64]) {
+pub(crate) fn fill<T: Copy>(places: &mut [MaybeUninit<T>], numbers: &[T]) {
     assert_eq!(places.len(), numbers.len());
     unsafe { ptr::copy_nonoverlapping(numbers.as_ptr(), places.as_mut_ptr().cast(), numbers.len()) };
 }
@@ -420,89 +434,6 @@ pub(crate) unsafe fn named_categories(length: size_t, pointer: *const *const c_c
     if names.is_empty() { Ok(Category::ALL.into()) } else { names.iter().map(named).collect() }
 }
 
-/// Keeps the FMU state: in the one that `pointer`, the argument `name`, points to, or in a new one for null.
-pub(crate) unsafe fn keep_state<M: Model>(
-    instance: &mut Instance<M>,
-    name: &'static str,
-    pointer: *mut *mut c_void,
-) -> Result<(), Failure> {
-    unsafe {
-        let handle = instance.get_fmu_state(read(name, pointer)?.addr())?;
-        write(name, pointer, ptr::without_provenance_mut(handle))
-    }
-}
-
-/// Frees the FMU state that `pointer`, the argument `name`, points to. Ignored for null.
-pub(crate) unsafe fn free_state<M: Model>(
-    instance: &mut Instance<M>,
-    name: &'static str,
-    pointer: *mut *mut c_void,
-) -> Result<(), Failure> {
-    unsafe {
-        if pointer.is_null() || read(name, pointer)?.is_null() {
-            return Ok(());
-        }
-        instance.free_fmu_state(read(name, pointer)?.addr())?;
-        write(name, pointer, ptr::null_mut())
-    }
-}
-
-/// Writes how many bytes the FMU state `state` is.
-pub(crate) unsafe fn write_state_size<M: Model>(
-    instance: &Instance<M>,
-    state: *mut c_void,
-    size: *mut size_t,
-) -> Result<(), Failure> {
-    let bytes = instance.serialize_fmu_state(state.addr())?;
-    unsafe { write("size", size, bytes.len()) }
-}
-
-/// Writes the FMU state `state` as `size` bytes, which must be as many as it has.
-pub(crate) unsafe fn write_state<M: Model>(
-    instance: &Instance<M>,
-    state: *mut c_void,
-    serialized: *mut u8,
-    size: size_t,
-) -> Result<(), Failure> {
-    let bytes = instance.serialize_fmu_state(state.addr())?;
-    if size != bytes.len() {
-        return Err(Failure::WrongSize { given: size, needed: bytes.len() });
-    }
-    check_pointer("serializedState", serialized)?;
-    unsafe { ptr::copy_nonoverlapping(bytes.as_ptr(), serialized, size) };
-    Ok(())
-}
-
-/// Keeps the FMU state that `size` bytes hold, as [`keep_state`] does that of the instance.
-pub(crate) unsafe fn read_state<M: Model>(
-    instance: &mut Instance<M>,
-    serialized: *const u8,
-    size: size_t,
-    name: &'static str,
-    pointer: *mut *mut c_void,
-) -> Result<(), Failure> {
-    unsafe {
-        let bytes = values("serializedState", serialized, size)?;
-        let handle = instance.deserialize_fmu_state(bytes, read(name, pointer)?.addr())?;
-        write(name, pointer, ptr::without_provenance_mut(handle))
-    }
-}
-
-/// Completes a step of the host's integrator, and writes what came of it as the version's Booleans.
-pub(crate) unsafe fn complete_step<M: Model, B: From<bool>>(
-    instance: &mut Instance<M>,
-    enterEventMode: *mut B,
-    terminateSimulation: *mut B,
-) -> Result<(), Failure> {
-    check_pointer("enterEventMode", enterEventMode)?;
-    check_pointer("terminateSimulation", terminateSimulation)?;
-    let Completed { needs_event_mode, has_ended } = instance.completed_integrator_step()?;
-    unsafe {
-        write("enterEventMode", enterEventMode, needs_event_mode.into())?;
-        write("terminateSimulation", terminateSimulation, has_ended.into())
-    }
-}
-
 /// `message` for the host, with every one of `marks`, which mean something to it, doubled. A NUL would end it.
 pub(crate) fn escaped(message: &str, marks: &[char]) -> CString {
     let mut escaped = String::with_capacity(message.len());
@@ -513,35 +444,34 @@ pub(crate) fn escaped(message: &str, marks: &[char]) -> CString {
     CString::new(escaped).expect("every NUL is replaced")
 }
 
-/// The functions that take an instance, in the words of a version of the standard: of each the name, the item of the
-/// version's [`Function`] that it is, the arguments after the component, and what is asked of the instance: nothing of
-/// those that are never allowed. Those in brackets call the instance themselves, those in braces make one, free it or take
-/// none. The macro `$export` exports all of them for a model, where the types of the arguments are in scope.
+/// The functions that take an instance, without the version in front of their names: the arguments after the component,
+/// and what is asked of the instance, nothing of those that are never allowed. Those in brackets call the instance
+/// themselves; those in braces make one, free it or take none. The macro `$export` exports all of them for a model, where
+/// the types of the arguments are in scope.
 macro_rules! functions {
     (@) => { |_| Ok(()) };
     (@ |$instance:ident| $body:block) => { |$instance| $body };
-    ($export:ident
+    ($version:literal $export:ident
     $({
         $(#[$other_doc:meta])*
         $other:ident($($other_argument:ident: $other_type:ty),* $(,)?) $(-> $returned:ty)? $other_body:block
     })* $([
         $(#[$apart_doc:meta])*
-        $apart:ident = $apart_function:ident($($apart_argument:ident: $apart_type:ty),* $(,)?) $apart_body:block
+        $apart:ident($($apart_argument:ident: $apart_type:ty),* $(,)?) $apart_body:block
     ])* $(
         $(#[$doc:meta])*
-        $name:ident = $function:ident($($argument:ident: $type:ty),* $(,)?) $(|$instance:ident| $body:block)?
+        $name:ident($($argument:ident: $type:ty),* $(,)?) $(|$instance:ident| $body:block)?
     )*) => {
-        /// The functions of this version that take an instance, but for the one that frees it, which may always be
+        /// The functions of this version that take an instance, except for the one that frees it, which may always be
         /// called.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Function {
-            $(#[doc = concat!("`", stringify!($apart), "`")] $apart_function,)*
-            $(#[doc = concat!("`", stringify!($name), "`")] $function,)*
+            $(#[doc = concat!("`", $version, stringify!($apart), "`")] $apart,)*
+            $(#[doc = concat!("`", $version, stringify!($name), "`")] $name,)*
         }
 
         impl $crate::c_abi::Function for Function {
-            const ALL: &'static [Function] = &[$(Function::$apart_function,)* $(Function::$function),*];
-            const MAGIC: u64 = MAGIC;
+            const ALL: &'static [Function] = &[$(Function::$apart,)* $(Function::$name),*];
             const WORDS: $crate::c_abi::Words = WORDS;
 
             fn place(self) -> usize {
@@ -550,28 +480,32 @@ macro_rules! functions {
 
             fn name(self) -> &'static str {
                 match self {
-                    $(Function::$apart_function => stringify!($apart),)*
-                    $(Function::$function => stringify!($name),)*
+                    $(Function::$apart => concat!($version, stringify!($apart)),)*
+                    $(Function::$name => concat!($version, stringify!($name)),)*
                 }
+            }
+
+            fn table(interface: Interface) -> &'static $crate::state_machine::Table {
+                stages::table(interface)
             }
         }
 
         $(
-            #[doc = concat!("`", stringify!($other), "`")]
+            #[doc = concat!("`", $version, stringify!($other), "`")]
             #[doc = ""]
             $(#[$other_doc])*
             pub unsafe fn $other<M: $crate::Model>($($other_argument: $other_type),*) $(-> $returned)? $other_body
         )*
 
         $(
-            #[doc = concat!("`", stringify!($apart), "`")]
+            #[doc = concat!("`", $version, stringify!($apart), "`")]
             #[doc = ""]
             $(#[$apart_doc])*
             pub unsafe fn $apart<M: $crate::Model>($($apart_argument: $apart_type),*) -> c_int $apart_body
         )*
 
         $(
-            #[doc = concat!("`", stringify!($name), "`")]
+            #[doc = concat!("`", $version, stringify!($name), "`")]
             #[doc = ""]
             $(#[$doc])*
             #[inline]
@@ -579,7 +513,7 @@ macro_rules! functions {
             pub unsafe fn $name<M: $crate::Model>(c: *mut c_void $(, $argument: $type)*) -> c_int {
                 unsafe {
                     $crate::c_abi::call::<Function, M>(
-                        c, Function::$function, $crate::c_abi::functions!(@ $(|$instance| $body)?),
+                        c, Function::$name, $crate::c_abi::functions!(@ $(|$instance| $body)?),
                     )
                 }
             }
@@ -588,9 +522,9 @@ macro_rules! functions {
         #[doc(hidden)]
         #[macro_export]
         macro_rules! $export {
-            ($model:ty, $version:ident) => {
+            ($model:ty, $module:ident) => {
                 $crate::exported! {
-                    $model, $version:
+                    $model, $module, $version:
                     $($other($($other_argument: $other_type),*) $(-> $returned)?;)*
                     $($apart($($apart_argument: $apart_type),*) -> c_int;)*
                     $($name(c: *mut c_void $(, $argument: $type)*) -> c_int;)*
@@ -601,15 +535,114 @@ macro_rules! functions {
 }
 pub(crate) use functions;
 
+/// [`functions!`], with those that differ between the versions in nothing but their words and the type of a Boolean.
+macro_rules! shared_functions {
+    (
+        $version:literal $export:ident $boolean:ty,
+        $state:ident: [$get:ident $set:ident $free:ident $size_of:ident $serialize:ident $deserialize:ident],
+        $x:ident $nx:ident $nominals:ident $ni:ident: [$get_rates:ident],
+        $($own:tt)*
+    ) => {
+        $crate::c_abi::functions! {
+            $version $export
+            $($own)*
+
+            ExitInitializationMode() |instance| { instance.exit_initialization_mode() }
+
+            EnterEventMode() |instance| { instance.enter_event_mode() }
+
+            EnterContinuousTimeMode() |instance| { instance.enter(Stage::ContinuousTimeMode) }
+
+            Terminate() |instance| { instance.terminate() }
+
+            Reset() |instance| { instance.reset() }
+
+            /// Keeps the state of the instance in the FMU state that is pointed to, or in a new one for null.
+            $get($state: *mut *mut c_void) |instance| {
+                let handle = instance.get_fmu_state(read(stringify!($state), $state)?.addr())?;
+                write(stringify!($state), $state, ptr::without_provenance_mut(handle))
+            }
+
+            $set($state: *mut c_void) |instance| { instance.set_fmu_state($state.addr()) }
+
+            /// Ignored for null.
+            $free($state: *mut *mut c_void) |instance| {
+                if $state.is_null() || read(stringify!($state), $state)?.is_null() {
+                    return Ok(());
+                }
+                instance.free_fmu_state(read(stringify!($state), $state)?.addr())?;
+                write(stringify!($state), $state, ptr::null_mut())
+            }
+
+            $size_of($state: *mut c_void, size: *mut size_t) |instance| {
+                write("size", size, instance.serialize_fmu_state($state.addr())?.len())
+            }
+
+            $serialize($state: *mut c_void, serializedState: *mut u8, size: size_t) |instance| {
+                let bytes = instance.serialize_fmu_state($state.addr())?;
+                if size != bytes.len() {
+                    return Err(Failure::WrongSize { given: size, needed: bytes.len() });
+                }
+                fill(room("serializedState", serializedState, size)?, &bytes);
+                Ok(())
+            }
+
+            /// Keeps the state that the bytes hold, as that of the instance is kept.
+            $deserialize(serializedState: *const u8, size: size_t, $state: *mut *mut c_void) |instance| {
+                let bytes = values("serializedState", serializedState, size)?;
+                let handle = instance.deserialize_fmu_state(bytes, read(stringify!($state), $state)?.addr())?;
+                write(stringify!($state), $state, ptr::without_provenance_mut(handle))
+            }
+
+            /// `noSetFMUStatePriorToCurrentPoint` is ignored: FMU states are kept until the host frees them.
+            CompletedIntegratorStep(
+                _noSetFMUStatePriorToCurrentPoint: $boolean, enterEventMode: *mut $boolean,
+                terminateSimulation: *mut $boolean,
+            ) |instance| {
+                check_pointer("enterEventMode", enterEventMode)?;
+                check_pointer("terminateSimulation", terminateSimulation)?;
+                let Completed { needs_event_mode, has_ended } = instance.completed_integrator_step()?;
+                write("enterEventMode", enterEventMode, needs_event_mode.into())?;
+                write("terminateSimulation", terminateSimulation, has_ended.into())
+            }
+
+            SetTime(time: f64) |instance| { instance.set_time(time) }
+
+            SetContinuousStates($x: *const f64, $nx: size_t) |instance| {
+                check_count(stringify!($nx), $nx, instance.count(|role| *role == Role::State))?;
+                instance.set_continuous_states(values(stringify!($x), $x, $nx)?)
+            }
+
+            $get_rates(derivatives: *mut f64, $nx: size_t) |instance| {
+                write_all("derivatives", derivatives, (stringify!($nx), $nx), instance.model.state_rates()?)
+            }
+
+            GetEventIndicators(eventIndicators: *mut f64, $ni: size_t) |instance| {
+                write_all("eventIndicators", eventIndicators, (stringify!($ni), $ni), instance.model.indicators()?)
+            }
+
+            GetContinuousStates($x: *mut f64, $nx: size_t) |instance| {
+                write_all(stringify!($x), $x, (stringify!($nx), $nx), instance.model.states()?)
+            }
+
+            GetNominalsOfContinuousStates($nominals: *mut f64, $nx: size_t) |instance| {
+                write_all(stringify!($nominals), $nominals, (stringify!($nx), $nx), instance.model.nominals()?)
+            }
+        }
+    };
+}
+pub(crate) use shared_functions;
+
 /// Exports functions of a version for a model.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! exported {
-    ($model:ty, $version:ident: $($name:ident($($argument:ident: $type:ty),*) $(-> $returned:ty)?;)*) => { $(
-        #[doc = concat!("`", stringify!($name), "`")]
-        #[unsafe(no_mangle)]
+    ($model:ty, $module:ident, $version:literal:
+    $($name:ident($($argument:ident: $type:ty),*) $(-> $returned:ty)?;)*) => { $(
+        #[doc = concat!("`", $version, stringify!($name), "`")]
+        #[unsafe(export_name = concat!($version, stringify!($name)))]
         pub unsafe extern "C" fn $name($($argument: $type),*) $(-> $returned)? {
-            unsafe { $crate::$version::$name::<$model>($($argument),*) }
+            unsafe { $crate::$module::$name::<$model>($($argument),*) }
         }
     )* };
 }

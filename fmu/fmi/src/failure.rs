@@ -137,7 +137,10 @@ pub enum Failure {
     )]
     OtherInterface,
     /// A status that this FMU does not have.
-    #[error("{0} has no answer here")]
+    #[error(
+        "{0} has no answer here: fmi2DoStep never returns fmi2Pending, fmi2GetRealStatus knows fmi2LastSuccessfulTime, \
+         fmi2GetBooleanStatus knows fmi2Terminated"
+    )]
     NoAnswer(&'static str),
     /// Not one of the instance's FMU states.
     #[error("FMUstate {0:#x} is not one that this instance has handed out and not freed")]

@@ -9,57 +9,40 @@
 
 mod stages;
 
-use crate::c_abi::{
-    self, Words, call, call_back, call_on, check_count, check_pointer, complete_step, escaped, fill, free_state,
-    functions, keep_state, named_categories, read_all, read_state, room, text, values, write, write_all, write_state,
-    write_state_size,
-};
+use crate::c_abi::{self, *};
 use crate::failure::Failure;
 use crate::instance::Instance;
 pub use crate::interface::IntermediateUpdateCallback;
 use crate::interface::{Interface, IntermediateUpdate, Stepping};
-use crate::logger::{Category, Logger, Sink};
-use crate::model::{Experiment, Model, Progress, Update};
-use crate::state_machine::{Stage, Table};
+use crate::logger::{Category, Sink};
+use crate::model::{Completed, Experiment, Model, Progress, Update};
+use crate::state_machine::Stage;
 use crate::variables::{Causality, DataType, Role, find};
 use libc::{c_char, c_int, c_uint, c_void, size_t};
 use std::path::Path;
+use std::ptr;
 
 /// `fmi3LogMessageCallback`
 pub type LogMessageCallback = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
-
-const MAGIC: u64 = 0x466d_6955_6e69_7433;
 
 /// An instance of the `interface` that `function` makes; null, with the reason in the log, if there is none.
 unsafe fn create<M: Model>(
     function: &str,
     [name, token, folder]: [*const c_char; 3],
     (environment, log, logging_on): (*mut c_void, Option<LogMessageCallback>, u8),
-    interface: impl FnOnce(&M) -> Result<(Interface, &'static Table, Option<IntermediateUpdate>), Failure>,
+    interface: impl FnOnce(&M) -> Result<(Interface, Option<IntermediateUpdate>), Failure>,
 ) -> *mut c_void {
-    c_abi::instantiate::<Function, M>(|| {
-        let mut logger = Logger::new(sink(log, environment));
-        let found = || {
-            let name = unsafe { text("instanceName", name) }?;
-            let token = unsafe { text("instantiationToken", token) }?;
-            let folder = unsafe { text("resourcePath", folder) }?;
-            let on = boolean("loggingOn", logging_on)?;
-            if name.trim().is_empty() {
-                return Err(Failure::NoName);
-            }
-            let model = c_abi::open::<M>("instantiationToken", token, Path::new(folder))?;
-            Ok((interface(&model)?, model, on))
-        };
-        match found() {
-            Ok(((interface, allowed_in, called_back), model, on)) => {
-                logger.switch(&Category::ALL, on);
-                Some((Instance::new(model, FIRST, interface, logger, called_back), allowed_in))
-            }
-            Err(failure) => {
-                logger.failure(failure.status(), &format!("{function}: {failure}"));
-                None
-            }
+    c_abi::instantiate::<Function, M>(function, &Category::ALL, sink(log, environment), || {
+        let name = unsafe { text("instanceName", name) }?;
+        let token = unsafe { text("instantiationToken", token) }?;
+        let folder = unsafe { text("resourcePath", folder) }?;
+        let on = boolean("loggingOn", logging_on)?;
+        if name.trim().is_empty() {
+            return Err(Failure::NoName);
         }
+        let model = c_abi::open::<M>("instantiationToken", token, Path::new(folder))?;
+        let (interface, host) = interface(&model)?;
+        Ok((model, interface, host, on))
     })
 }
 
@@ -107,13 +90,9 @@ fn boolean(name: &str, value: u8) -> Result<bool, Failure> {
     }
 }
 
-/// The value reference of the first variable: OMSimulator reads value references in lists of dependencies as FMI 2.0's indices,
-/// which count from 1.
-const FIRST: u32 = 1;
-
 /// The position of the variable that the host refers to; [`Instance`] refuses those that do not exist.
 fn position(reference: &u32) -> u32 {
-    reference.wrapping_sub(FIRST)
+    reference.wrapping_sub(WORDS.first)
 }
 
 /// Has `call` done with the positions of the variables, all of which are scalars, that as many values are for. The instance
@@ -134,33 +113,123 @@ unsafe fn with_positions<M: Model>(
     result
 }
 
-/// Refuses all `count` variables of a type that no variable has.
-fn none_of_type(count: size_t) -> Result<(), Failure> {
-    if count == 0 { Ok(()) } else { Err(Failure::NoneOfType) }
-}
-
 const WORDS: Words = Words {
-    real: "fmi3GetFloat64 or fmi3SetFloat64",
-    integer: "fmi3GetInt32",
-    enumeration: "fmi3GetInt64 or fmi3SetInt64",
-    boolean: "fmi3GetBoolean or fmi3SetBoolean",
-    string: "fmi3GetString or fmi3SetString",
-    fixing: "fmi3ExitInitializationMode",
-    reset: "fmi3Reset",
-    set_state: "fmi3SetFMUState",
-    set_up: "fmi3EnterInitializationMode",
-    state_size: "fmi3SerializedFMUStateSize",
-    status: "", // none is ever asked for
+    version: "fmi3",
+    magic: 0x466d_6955_6e69_7433,
+    first: 1, // OMSimulator reads value references in lists of dependencies as the indices of FMI 2.0
+    real: "Float64",
+    integer: "Int32",
+    enumeration: "Int64",
+    state: "FMUState",
+    set_up: "EnterInitializationMode",
 };
 
-functions! {
-    export_fmi3
+/// Adds to the functions of this version those that take value references with values, those of types that no variable has,
+/// and those that are never allowed. Arguments that are not read are not declared: on all platforms that there are
+/// libraries for, the caller removes them.
+macro_rules! with_lists {
+    (
+        values: {$(
+            $(#[$doc:meta])*
+            $name:ident($type:ty) |$instance:ident, $positions:ident, $values:ident, $count:ident| $body:block
+        )*}
+        no_variables: [$($none:ident)*]
+        never: [$($never:ident)*]
+        $($own:tt)*
+    ) => {
+        shared_functions! {
+            $($own)*
 
-    { fmi3GetVersion() -> *const c_char { c"3.0".as_ptr() } }
+            $(
+                $(#[$doc])*
+                $name(
+                    valueReferences: *const c_uint, nValueReferences: size_t, $values: $type, nValues: size_t,
+                ) |instance| {
+                    let counts = [nValueReferences, nValues];
+                    let $count = ("nValues", nValues);
+                    with_positions(instance, valueReferences, counts, |$instance, $positions| $body)
+                }
+            )*
+
+            $($none(_of: *const c_uint, count: size_t) |_instance| {
+                if count == 0 { Ok(()) } else { Err(Failure::NoneOfType) }
+            })*
+
+            $($never())*
+        }
+    };
+}
+
+with_lists! {
+    values: {
+        GetFloat64(*mut f64) |instance, positions, value, count| {
+            let places = room("values", value, count.1)?;
+            fill(places, instance.get_real(positions)?);
+            Ok(())
+        }
+
+        GetInt32(*mut i32) |instance, positions, value, count| {
+            let is_integer = |data_type: &DataType| matches!(data_type, DataType::Integer);
+            write_all("values", value, count, instance.get_numbers(positions, is_integer)?)
+        }
+
+        GetInt64(*mut i64) |instance, positions, value, count| {
+            let is_item = |data_type: &DataType| matches!(data_type, DataType::Enumeration(_));
+            write_all("values", value, count, instance.get_numbers(positions, is_item)?)
+        }
+
+        GetBoolean(*mut u8) |instance, positions, value, count| {
+            write_all("values", value, count, instance.get_booleans(positions)?)
+        }
+
+        GetString(*mut *const c_char) |instance, positions, value, count| {
+            write_all("values", value, count, instance.get_texts(positions)?)
+        }
+
+        SetFloat64(*const f64) |instance, positions, value, count| {
+            instance.set_real(positions, values("values", value, count.1)?)
+        }
+
+        /// Refuses all, because a model has no integers to set.
+        SetInt32(*const i32) |instance, positions, _values, _count| { instance.set_no_integer(positions) }
+
+        SetInt64(*const i64) |instance, positions, value, count| {
+            instance.set_integer(positions, values("values", value, count.1)?)
+        }
+
+        SetBoolean(*const u8) |instance, positions, value, count| {
+            instance.set_boolean(positions, values("values", value, count.1)?, boolean)
+        }
+
+        SetString(*const *const c_char) |instance, positions, value, count| {
+            let given = values("values", value, count.1)?;
+            let texts = given.iter().map(|value| text("values", *value)).collect::<Result<Vec<_>, _>>()?;
+            instance.set_string(positions, &texts)
+        }
+    }
+
+    no_variables: [
+        GetFloat32 GetInt8 GetUInt8 GetInt16 GetUInt16 GetUInt32 GetUInt64 GetBinary GetClock
+        SetFloat32 SetInt8 SetUInt8 SetInt16 SetUInt16 SetUInt32 SetUInt64 SetBinary SetClock
+    ]
+
+    never: [
+        GetNumberOfVariableDependencies GetVariableDependencies GetAdjointDerivative
+        EnterConfigurationMode ExitConfigurationMode
+        GetIntervalDecimal GetIntervalFraction GetShiftDecimal GetShiftFraction
+        SetIntervalDecimal SetIntervalFraction SetShiftDecimal SetShiftFraction
+        ActivateModelPartition
+    ]
+
+    "fmi3" export_fmi3 u8,
+    FMUState: [GetFMUState SetFMUState FreeFMUState SerializedFMUStateSize SerializeFMUState DeserializeFMUState],
+    continuousStates nContinuousStates nominals nEventIndicators: [GetContinuousStateDerivatives],
+
+    { GetVersion() -> *const c_char { c"3.0".as_ptr() } }
 
     {
         #[allow(clippy::too_many_arguments)] // the standard's
-        fmi3InstantiateCoSimulation(
+        InstantiateCoSimulation(
         instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, _visible: u8,
         loggingOn: u8, eventModeUsed: u8, earlyReturnAllowed: u8, requiredIntermediateVariables: *const c_uint,
         nRequiredIntermediateVariables: size_t, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
@@ -174,49 +243,47 @@ functions! {
             let variables = model.variables();
             let (mut sets_inputs, mut gets_outputs) = (false, false);
             for reference in required {
-                let is_input = find(&variables, position(reference), FIRST)?.causality == Causality::Input;
+                let is_input = find(&variables, position(reference), WORDS.first)?.causality == Causality::Input;
                 (sets_inputs, gets_outputs) = (sets_inputs || is_input, gets_outputs || !is_input);
             }
             let host =
                 intermediateUpdate.map(|update| IntermediateUpdate { update, environment, sets_inputs, gets_outputs });
-            let allowed_in: &Table = &stages::CO_SIMULATION;
-            Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), allowed_in, host))
+            Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), host))
         };
         let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
-        unsafe { create("fmi3InstantiateCoSimulation", texts, log, interface) }
+        unsafe { create("InstantiateCoSimulation", texts, log, interface) }
     } }
 
-    { fmi3InstantiateModelExchange(
+    { InstantiateModelExchange(
         instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, _visible: u8,
         loggingOn: u8, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
     ) -> *mut c_void {
-        let allowed_in: &Table = &stages::MODEL_EXCHANGE;
-        let interface = |_: &M| Ok((Interface::ModelExchange, allowed_in, None));
+        let interface = |_: &M| Ok((Interface::ModelExchange, None));
         let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
-        unsafe { create("fmi3InstantiateModelExchange", texts, log, interface) }
+        unsafe { create("InstantiateModelExchange", texts, log, interface) }
     } }
 
     {
         /// There is nothing to schedule. Three more arguments are not read, and not declared: the caller removes them.
-        fmi3InstantiateScheduledExecution(
+        InstantiateScheduledExecution(
         instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, _visible: u8,
         loggingOn: u8, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
     ) -> *mut c_void {
         let interface = |_: &M| Err(Failure::NotThisInterface);
         let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
-        unsafe { create("fmi3InstantiateScheduledExecution", texts, log, interface) }
+        unsafe { create("InstantiateScheduledExecution", texts, log, interface) }
     } }
 
     {
         /// Ignored for null, and while a call is under way, as from within a callback.
-        fmi3FreeInstance(instance: *mut c_void) { unsafe { c_abi::free::<Function, M>(instance) } }
+        FreeInstance(instance: *mut c_void) { unsafe { c_abi::free::<Function, M>(instance) } }
     }
 
     [
         /// `noSetFMUStatePriorToCurrentPoint` is ignored: FMU states are kept until the host frees them. Between the parts of
         /// this function the host is called back, and may call the instance.
         #[allow(clippy::too_many_arguments)] // the standard's
-        fmi3DoStep = DoStep(
+        DoStep(
         c: *mut c_void, currentCommunicationPoint: f64, communicationStepSize: f64,
         _noSetFMUStatePriorToCurrentPoint: u8, eventHandlingNeeded: *mut u8, terminateSimulation: *mut u8,
         earlyReturn: *mut u8, lastSuccessfulTime: *mut f64,
@@ -264,14 +331,14 @@ functions! {
         status
     } ]
 
-    fmi3SetDebugLogging = SetDebugLogging(
+    SetDebugLogging(
         loggingOn: u8, nCategories: size_t, categories: *const *const c_char,
     ) |instance| {
         instance.logger.switch(&named_categories(nCategories, categories)?, boolean("loggingOn", loggingOn)?);
         Ok(())
     }
 
-    fmi3EnterInitializationMode = EnterInitializationMode(
+    EnterInitializationMode(
         toleranceDefined: u8, tolerance: f64, startTime: f64, stopTimeDefined: u8, stopTime: f64,
     ) |instance| {
         let tolerance = boolean("toleranceDefined", toleranceDefined)?.then_some(tolerance);
@@ -280,123 +347,7 @@ functions! {
         instance.enter(Stage::InitializationMode)
     }
 
-    fmi3ExitInitializationMode = ExitInitializationMode() |instance| { instance.exit_initialization_mode() }
-
-    fmi3EnterEventMode = EnterEventMode() |instance| { instance.enter_event_mode() }
-
-    fmi3Terminate = Terminate() |instance| { instance.terminate() }
-
-    fmi3Reset = Reset() |instance| { instance.reset() }
-
-    fmi3GetFloat64 = GetFloat64(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut f64, nValues: size_t,
-    ) |instance| {
-        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
-            let places = room("values", value, nValues)?;
-            fill(places, instance.get_real(positions)?);
-            Ok(())
-        })
-    }
-
-    fmi3GetInt32 = GetInt32(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i32, nValues: size_t,
-    ) |instance| {
-        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
-            let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Integer);
-            instance.get_numbers(positions, room("values", value, nValues)?, is_of_type)
-        })
-    }
-
-    fmi3GetInt64 = GetInt64(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i64, nValues: size_t,
-    ) |instance| {
-        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
-            let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Enumeration(_));
-            instance.get_numbers(positions, room("values", value, nValues)?, is_of_type)
-        })
-    }
-
-    fmi3GetBoolean = GetBoolean(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut u8, nValues: size_t,
-    ) |instance| {
-        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
-            instance.get_boolean(positions, room("values", value, nValues)?)
-        })
-    }
-
-    fmi3GetString = GetString(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut *const c_char, nValues: size_t,
-    ) |instance| {
-        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
-            instance.get_string(positions, room("values", value, nValues)?)
-        })
-    }
-
-    fmi3SetFloat64 = SetFloat64(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *const f64, nValues: size_t,
-    ) |instance| {
-        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
-            instance.set_real(positions, values("values", value, nValues)?)
-        })
-    }
-
-    /// Refuses all, because a model has no integers to set.
-    fmi3SetInt32 = SetInt32(
-        valueReferences: *const c_uint, nValueReferences: size_t, _values: *const i32, nValues: size_t,
-    ) |instance| {
-        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| instance.set_no_integer(positions))
-    }
-
-    fmi3SetInt64 = SetInt64(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *const i64, nValues: size_t,
-    ) |instance| {
-        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
-            instance.set_integer(positions, values("values", value, nValues)?)
-        })
-    }
-
-    fmi3SetBoolean = SetBoolean(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *const u8, nValues: size_t,
-    ) |instance| {
-        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
-            instance.set_boolean(positions, values("values", value, nValues)?, boolean)
-        })
-    }
-
-    fmi3SetString = SetString(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *const *const c_char, nValues: size_t,
-    ) |instance| {
-        with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
-            let given = values("values", value, nValues)?;
-            let texts = given.iter().map(|value| text("values", *value)).collect::<Result<Vec<_>, _>>()?;
-            instance.set_string(positions, &texts)
-        })
-    }
-
-    fmi3GetFMUState = GetFMUState(FMUState: *mut *mut c_void) |instance| { keep_state(instance, "FMUState", FMUState) }
-
-    fmi3SetFMUState = SetFMUState(FMUState: *mut c_void) |instance| { instance.set_fmu_state(FMUState.addr()) }
-
-    /// Ignored for null.
-    fmi3FreeFMUState = FreeFMUState(FMUState: *mut *mut c_void) |instance| { free_state(instance, "FMUState", FMUState) }
-
-    fmi3SerializedFMUStateSize = SerializedFMUStateSize(FMUState: *mut c_void, size: *mut size_t) |instance| {
-        write_state_size(instance, FMUState, size)
-    }
-
-    fmi3SerializeFMUState = SerializeFMUState(
-        FMUState: *mut c_void, serializedState: *mut u8, size: size_t,
-    ) |instance| {
-        write_state(instance, FMUState, serializedState, size)
-    }
-
-    fmi3DeserializeFMUState = DeserializeFMUState(
-        serializedState: *const u8, size: size_t, FMUState: *mut *mut c_void,
-    ) |instance| {
-        read_state(instance, serializedState, size, "FMUState", FMUState)
-    }
-
-    fmi3GetDirectionalDerivative = GetDirectionalDerivative(
+    GetDirectionalDerivative(
         unknowns: *const c_uint, nUnknowns: size_t, knowns: *const c_uint, nKnowns: size_t, seed: *const f64,
         nSeed: size_t, sensitivity: *mut f64, nSensitivity: size_t,
     ) |instance| {
@@ -404,14 +355,14 @@ functions! {
         check_count("nSensitivity", nSensitivity, nUnknowns)?;
         let unknowns: Vec<_> = values("unknowns", unknowns, nUnknowns)?.iter().map(position).collect();
         let knowns: Vec<_> = values("knowns", knowns, nKnowns)?.iter().map(position).collect();
-        let (seed, sensitivity) = (values("seed", seed, nSeed)?, room("sensitivity", sensitivity, nSensitivity)?);
-        instance.get_directional_derivative(&unknowns, &knowns, seed, sensitivity)
+        let found = instance.get_directional_derivative(&unknowns, &knowns, values("seed", seed, nSeed)?)?;
+        write_all("sensitivity", sensitivity, ("nSensitivity", nSensitivity), found)
     }
 
     /// Does nothing: `fmi3UpdateDiscreteStates` evaluates.
-    fmi3EvaluateDiscreteStates = EvaluateDiscreteStates() |_instance| { Ok(()) }
+    EvaluateDiscreteStates() |_instance| { Ok(()) }
 
-    fmi3UpdateDiscreteStates = UpdateDiscreteStates(
+    UpdateDiscreteStates(
         discreteStatesNeedUpdate: *mut u8, terminateSimulation: *mut u8, nominalsOfContinuousStatesChanged: *mut u8,
         valuesOfContinuousStatesChanged: *mut u8, nextEventTimeDefined: *mut u8, nextEventTime: *mut f64,
     ) |instance| {
@@ -434,98 +385,25 @@ functions! {
         write("nextEventTime", nextEventTime, next_event.unwrap_or_default())
     }
 
-    fmi3EnterStepMode = EnterStepMode() |instance| { instance.enter(Stage::StepComplete) }
+    EnterStepMode() |instance| { instance.enter(Stage::StepComplete) }
 
-    fmi3GetOutputDerivatives = GetOutputDerivatives(
+    GetOutputDerivatives(
         valueReferences: *const c_uint, nValueReferences: size_t, orders: *const i32, value: *mut f64,
         nValues: size_t,
     ) |instance| {
         with_positions(instance, valueReferences, [nValueReferences, nValues], |instance, positions| {
-            let (orders, rates) = (values("orders", orders, nValueReferences)?, room("values", value, nValues)?);
-            instance.get_real_output_derivatives(positions, orders, rates)
+            let rates = instance.get_real_output_derivatives(positions, values("orders", orders, nValueReferences)?)?;
+            write_all("values", value, ("nValues", nValues), rates)
         })
     }
 
-    fmi3EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter(Stage::ContinuousTimeMode) }
-
-    /// `noSetFMUStatePriorToCurrentPoint` is ignored: FMU states are kept until the host frees them.
-    fmi3CompletedIntegratorStep = CompletedIntegratorStep(
-        _noSetFMUStatePriorToCurrentPoint: u8, enterEventMode: *mut u8, terminateSimulation: *mut u8,
-    ) |instance| {
-        complete_step(instance, enterEventMode, terminateSimulation)
-    }
-
-    fmi3SetTime = SetTime(time: f64) |instance| { instance.set_time(time) }
-
-    fmi3SetContinuousStates = SetContinuousStates(continuousStates: *const f64, nContinuousStates: size_t) |instance| {
-        let count = ("nContinuousStates", nContinuousStates);
-        let needed = instance.count(|role| *role == Role::State);
-        instance.set_continuous_states(read_all("continuousStates", continuousStates, count, needed)?)
-    }
-
-    fmi3GetContinuousStateDerivatives = GetContinuousStateDerivatives(
-        derivatives: *mut f64, nContinuousStates: size_t,
-    ) |instance| {
-        write_all("derivatives", derivatives, ("nContinuousStates", nContinuousStates), instance.model.state_rates()?)
-    }
-
-    fmi3GetEventIndicators = GetEventIndicators(eventIndicators: *mut f64, nEventIndicators: size_t) |instance| {
-        write_all("eventIndicators", eventIndicators, ("nEventIndicators", nEventIndicators), instance.model.indicators()?)
-    }
-
-    fmi3GetContinuousStates = GetContinuousStates(continuousStates: *mut f64, nContinuousStates: size_t) |instance| {
-        let count = ("nContinuousStates", nContinuousStates);
-        write_all("continuousStates", continuousStates, count, instance.model.states()?)
-    }
-
-    fmi3GetNominalsOfContinuousStates = GetNominalsOfContinuousStates(
-        nominals: *mut f64, nContinuousStates: size_t,
-    ) |instance| {
-        write_all("nominals", nominals, ("nContinuousStates", nContinuousStates), instance.model.nominals()?)
-    }
-
-    fmi3GetNumberOfEventIndicators = GetNumberOfEventIndicators(nEventIndicators: *mut size_t) |instance| {
+    GetNumberOfEventIndicators(nEventIndicators: *mut size_t) |instance| {
         write("nEventIndicators", nEventIndicators, instance.count(|role| *role == Role::Indicator))
     }
 
-    fmi3GetNumberOfContinuousStates = GetNumberOfContinuousStates(nContinuousStates: *mut size_t) |instance| {
+    GetNumberOfContinuousStates(nContinuousStates: *mut size_t) |instance| {
         write("nContinuousStates", nContinuousStates, instance.count(|role| *role == Role::State))
     }
-
-    // Types that no variable has, and then functions that this unit does not have, which are never allowed. Arguments that are not read are
-    // not declared: on all platforms that there are libraries for, the caller removes them.
-    fmi3GetFloat32 = GetFloat32(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3GetInt8 = GetInt8(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3GetUInt8 = GetUInt8(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3GetInt16 = GetInt16(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3GetUInt16 = GetUInt16(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3GetUInt32 = GetUInt32(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3GetUInt64 = GetUInt64(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3GetBinary = GetBinary(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3GetClock = GetClock(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3SetFloat32 = SetFloat32(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3SetInt8 = SetInt8(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3SetUInt8 = SetUInt8(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3SetInt16 = SetInt16(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3SetUInt16 = SetUInt16(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3SetUInt32 = SetUInt32(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3SetUInt64 = SetUInt64(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3SetBinary = SetBinary(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3SetClock = SetClock(_of: *const c_uint, count: size_t) |_instance| { none_of_type(count) }
-    fmi3GetNumberOfVariableDependencies = GetNumberOfVariableDependencies()
-    fmi3GetVariableDependencies = GetVariableDependencies()
-    fmi3GetAdjointDerivative = GetAdjointDerivative()
-    fmi3EnterConfigurationMode = EnterConfigurationMode()
-    fmi3ExitConfigurationMode = ExitConfigurationMode()
-    fmi3GetIntervalDecimal = GetIntervalDecimal()
-    fmi3GetIntervalFraction = GetIntervalFraction()
-    fmi3GetShiftDecimal = GetShiftDecimal()
-    fmi3GetShiftFraction = GetShiftFraction()
-    fmi3SetIntervalDecimal = SetIntervalDecimal()
-    fmi3SetIntervalFraction = SetIntervalFraction()
-    fmi3SetShiftDecimal = SetShiftDecimal()
-    fmi3SetShiftFraction = SetShiftFraction()
-    fmi3ActivateModelPartition = ActivateModelPartition()
 }
 
 #[cfg(test)]
@@ -533,14 +411,13 @@ mod tests {
     use super::*;
     use crate::logger::Status;
     use crate::touchy::{DROPPED, PANICS, Touchy, token};
-    use std::ptr;
 
     /// The callback reads a variable whose value panics, and tries to free the instance.
     unsafe extern "C" fn update(c: *mut c_void, _: f64, _: u8, _: u8, _: u8, _: u8, _: *mut u8, _: *mut f64) {
         unsafe {
             let c = *c.cast::<*mut c_void>();
-            assert_eq!(fmi3GetFloat64::<Touchy>(c, &(PANICS + 1), 1, &mut 0.0, 1), Status::Fatal as c_int);
-            fmi3FreeInstance::<Touchy>(c);
+            assert_eq!(GetFloat64::<Touchy>(c, &(PANICS + 1), 1, &mut 0.0, 1), Status::Fatal as c_int);
+            FreeInstance::<Touchy>(c);
             assert_eq!(DROPPED.get(), 0);
         }
     }
@@ -552,19 +429,16 @@ mod tests {
         DROPPED.set(0);
         unsafe {
             let [name, token, folder] = [c"a".as_ptr(), token.as_ptr(), c"/".as_ptr()];
-            let instantiate = fmi3InstantiateCoSimulation::<Touchy>;
+            let instantiate = InstantiateCoSimulation::<Touchy>;
             c = instantiate(name, token, folder, 0, 0, 0, 0, &(PANICS + 1), 1, environment, None, Some(update));
             assert_eq!(
-                (
-                    fmi3EnterInitializationMode::<Touchy>(c, 0, 0.0, 0.0, 0, 0.0),
-                    fmi3ExitInitializationMode::<Touchy>(c)
-                ),
+                (EnterInitializationMode::<Touchy>(c, 0, 0.0, 0.0, 0, 0.0), ExitInitializationMode::<Touchy>(c)),
                 (0, 0)
             );
             let (mut flags, mut time) = ([0; 3], 0.0);
             let [event, end, early] = &mut flags;
-            assert_eq!(fmi3DoStep::<Touchy>(c, 0.0, 0.1, 0, event, end, early, &mut time), Status::Fatal as c_int);
-            fmi3FreeInstance::<Touchy>(c);
+            assert_eq!(DoStep::<Touchy>(c, 0.0, 0.1, 0, event, end, early, &mut time), Status::Fatal as c_int);
+            FreeInstance::<Touchy>(c);
         }
         assert_eq!(DROPPED.get(), 1);
     }

@@ -9,7 +9,6 @@ use crate::snapshot::{Snapshot, Snapshots};
 use crate::state_machine::Stage;
 use crate::variables::{Causality, DataType, Role, Value, Variable, find, state_references};
 use std::ffi::{CString, c_char};
-use std::mem::MaybeUninit;
 use std::sync::Arc;
 
 /// How far apart rounding leaves two times that are the same, as a part of the step, or in units in the last place.
@@ -103,31 +102,28 @@ impl<M: Model> Instance<M> {
         host: Option<IntermediateUpdate>,
     ) -> Instance<M> {
         let variables = model.variables();
-        let kinds = variables.iter().map(Kind::from).collect();
-        let ranges = variables.iter().map(range).collect();
-        let (stage, on_at_start, mut at_start) = (Stage::Instantiated, logger.on, Vec::new());
+        let mut at_start = Vec::new();
         model.state(&mut at_start);
-        let (experiment, handling, snapshots, reals, positions, shown, asked, led_to) = Default::default();
         Instance {
             model,
-            variables,
             first,
-            kinds,
-            ranges,
+            kinds: variables.iter().map(Kind::from).collect(),
+            ranges: variables.iter().map(range).collect(),
+            variables,
             interface,
-            stage,
-            experiment,
+            stage: Stage::Instantiated,
+            experiment: Experiment::default(),
+            on_at_start: logger.on,
             logger,
-            on_at_start,
-            handling,
+            handling: EventHandling::default(),
             at_start,
-            snapshots,
-            reals,
-            positions,
-            shown,
+            snapshots: Snapshots::default(),
+            reals: Vec::new(),
+            positions: Vec::new(),
+            shown: Vec::new(),
             host,
-            asked,
-            led_to,
+            asked: None,
+            led_to: None,
         }
     }
 
@@ -291,52 +287,39 @@ impl<M: Model> Instance<M> {
     }
 
     /// Reads what is no real number, of the types that are `of_type`.
-    fn get_others(&mut self, references: &[u32], of_type: fn(&DataType) -> bool) -> Result<Vec<Value>, Failure> {
+    fn get_others<T>(
+        &mut self,
+        references: &[u32],
+        of_type: fn(&DataType) -> bool,
+        read: fn(Value) -> T,
+    ) -> Result<Vec<T>, Failure> {
         for reference in references {
             let variable = self.find(*reference)?;
             if !of_type(&variable.data_type) {
                 return Err(Failure::wrong_type(variable));
             }
         }
-        references.iter().map(|reference| self.model.get(*reference)).collect()
+        references.iter().map(|reference| self.model.get(*reference).map(read)).collect()
     }
 
     /// Reads integers, numbers of enumerations, or both: what `of_type` says.
-    pub(crate) fn get_numbers<T: From<i32>>(
-        &mut self,
-        references: &[u32],
-        values: &mut [MaybeUninit<T>],
-        of_type: fn(&DataType) -> bool,
-    ) -> Result<(), Failure> {
-        let number = |value| if let Value::Integer(number) = value { number } else { 0 };
-        let found = self.get_others(references, of_type)?.into_iter().map(number);
-        values.iter_mut().zip(found).for_each(|(place, value)| _ = place.write(value.into()));
-        Ok(())
+    pub(crate) fn get_numbers(&mut self, of: &[u32], of_type: fn(&DataType) -> bool) -> Result<Vec<i32>, Failure> {
+        self.get_others(of, of_type, |value| if let Value::Integer(number) = value { number } else { 0 })
     }
 
     /// Reads Booleans.
-    pub(crate) fn get_boolean<T: From<bool>>(
-        &mut self,
-        references: &[u32],
-        values: &mut [MaybeUninit<T>],
-    ) -> Result<(), Failure> {
-        let found = self.get_others(references, |data_type| *data_type == DataType::Boolean)?;
-        values.iter_mut().zip(found).for_each(|(place, value)| _ = place.write((value == Value::Boolean(true)).into()));
-        Ok(())
+    pub(crate) fn get_booleans(&mut self, of: &[u32]) -> Result<Vec<bool>, Failure> {
+        self.get_others(of, |data_type| *data_type == DataType::Boolean, |value| value == Value::Boolean(true))
     }
 
     /// Reads texts, which the host may use until the next call.
-    pub(crate) fn get_string(
-        &mut self,
-        references: &[u32],
-        values: &mut [MaybeUninit<*const c_char>],
-    ) -> Result<(), Failure> {
-        let found = self.get_others(references, |data_type| *data_type == DataType::String)?;
-        let text =
-            |value| if let Value::String(text) = value { CString::new(text).unwrap_or_default() } else { c"".into() };
-        self.shown = found.into_iter().map(text).collect();
-        values.iter_mut().zip(&self.shown).for_each(|(place, text)| _ = place.write(text.as_ptr()));
-        Ok(())
+    pub(crate) fn get_texts(&mut self, of: &[u32]) -> Result<Vec<*const c_char>, Failure> {
+        self.shown = self.get_others(
+            of,
+            |data_type| *data_type == DataType::String,
+            |value| if let Value::String(text) = value { CString::new(text).unwrap_or_default() } else { c"".into() },
+        )?;
+        Ok(self.shown.iter().map(|text| text.as_ptr()).collect())
     }
 
     /// Sets real numbers. While the host integrates, it can set the states, too.
@@ -511,8 +494,7 @@ impl<M: Model> Instance<M> {
         &mut self,
         references: &[u32],
         orders: &[i32],
-        values: &mut [MaybeUninit<f64>],
-    ) -> Result<(), Failure> {
+    ) -> Result<Vec<f64>, Failure> {
         for (reference, &order) in references.iter().zip(orders) {
             let variable = self.find(*reference)?;
             if order != 1 {
@@ -523,11 +505,15 @@ impl<M: Model> Instance<M> {
         if !references.is_empty() {
             self.model.rates(references, &mut rates)?;
         }
-        if let Some(at) = rates.iter().position(|rate| !rate.is_finite()) {
-            return Err(Failure::NoRate { name: self.model.name(references[at]), time: self.model.time()? });
+        self.all_finite(references, rates)
+    }
+
+    /// The derivatives `found` of the variables, if all are finite.
+    fn all_finite(&mut self, of: &[u32], found: Vec<f64>) -> Result<Vec<f64>, Failure> {
+        match found.iter().position(|derivative| !derivative.is_finite()) {
+            Some(at) => Err(Failure::NoRate { name: self.model.name(of[at]), time: self.model.time()? }),
+            None => Ok(found),
         }
-        values.iter_mut().zip(rates).for_each(|(place, rate)| _ = place.write(rate));
-        Ok(())
     }
 
     /// Derivatives of `unknowns` where each of `knowns` changes by its part of the `seed`.
@@ -536,8 +522,7 @@ impl<M: Model> Instance<M> {
         unknowns: &[u32],
         knowns: &[u32],
         seed: &[f64],
-        values: &mut [MaybeUninit<f64>],
-    ) -> Result<(), Failure> {
+    ) -> Result<Vec<f64>, Failure> {
         for (reference, &value) in knowns.iter().zip(seed) {
             let variable = self.find(*reference)?;
             if !value.is_finite() {
@@ -552,11 +537,7 @@ impl<M: Model> Instance<M> {
         }
         let direction: Vec<_> = knowns.iter().copied().zip(seed.iter().copied()).collect();
         let found = self.model.derivatives(unknowns, &direction, self.stage.has_started())?;
-        if let Some(at) = found.iter().position(|derivative| !derivative.is_finite()) {
-            return Err(Failure::NoRate { name: self.model.name(unknowns[at]), time: self.model.time()? });
-        }
-        values.iter_mut().zip(found).for_each(|(place, derivative)| _ = place.write(derivative));
-        Ok(())
+        self.all_finite(unknowns, found)
     }
 }
 

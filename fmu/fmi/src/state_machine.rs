@@ -4,46 +4,52 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A state of FMI's state machine, called stage here: a state is the model's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Stage {
+/// The stages, each with its meaning and its name in messages.
+macro_rules! stages {
+    ($(#[doc = $meaning:literal] $stage:ident: $name:literal)*) => {
+        /// A state of FMI's state machine, called stage here: a state is the model's.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+        pub enum Stage {
+            $(#[doc = $meaning] $stage,)*
+        }
+
+        impl Stage {
+            /// All of them.
+            pub const ALL: &[Stage] = &[$(Stage::$stage),*];
+        }
+
+        impl fmt::Display for Stage {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(match self { $(Stage::$stage => $name,)* })
+            }
+        }
+    };
+}
+
+stages! {
     /// Created or reset.
-    Instantiated,
+    Instantiated: "instantiated"
     /// Between entering and leaving initialization.
-    InitializationMode,
+    InitializationMode: "initialization mode"
     /// Ready for a step.
-    StepComplete,
+    StepComplete: "step complete"
     /// Within a step, while the host is asked for the inputs at its end.
-    IntermediateUpdateMode,
-    /// At the end of a step, while the host reads what it has led to.
-    IntermediateOutputs,
-    /// A step has ended the simulation; there is nothing left to step to.
-    StepFailed,
+    IntermediateUpdateMode: "intermediate update mode, for inputs"
+    /// At the end of a step, while the host reads its outputs.
+    IntermediateOutputs: "intermediate update mode, for outputs"
+    /// A step has ended the simulation; no further step is possible.
+    StepFailed: "step failed"
     /// At an event.
-    EventMode,
+    EventMode: "event mode"
     /// Between events.
-    ContinuousTimeMode,
+    ContinuousTimeMode: "continuous-time mode"
     /// The simulation is over.
-    Terminated,
-    /// The model could not go on; values are for debugging only.
-    Error,
+    Terminated: "terminated"
+    /// The model could not continue; values are for debugging only.
+    Error: "error"
 }
 
 impl Stage {
-    /// All of them.
-    pub const ALL: [Stage; 10] = [
-        Stage::Instantiated,
-        Stage::InitializationMode,
-        Stage::StepComplete,
-        Stage::IntermediateUpdateMode,
-        Stage::IntermediateOutputs,
-        Stage::StepFailed,
-        Stage::EventMode,
-        Stage::ContinuousTimeMode,
-        Stage::Terminated,
-        Stage::Error,
-    ];
-
     /// The stages within a step, in which the host is called back.
     pub(crate) const WITHIN_STEP: Stages = Stage::IntermediateUpdateMode.bit() | Stage::IntermediateOutputs.bit();
 
@@ -63,23 +69,6 @@ impl Stage {
     }
 }
 
-impl fmt::Display for Stage {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Stage::Instantiated => "instantiated",
-            Stage::InitializationMode => "initialization mode",
-            Stage::StepComplete => "step complete",
-            Stage::IntermediateUpdateMode => "intermediate update mode, for inputs",
-            Stage::IntermediateOutputs => "intermediate update mode, for outputs",
-            Stage::StepFailed => "step failed",
-            Stage::EventMode => "event mode",
-            Stage::ContinuousTimeMode => "continuous-time mode",
-            Stage::Terminated => "terminated",
-            Stage::Error => "error",
-        })
-    }
-}
-
 /// A set of stages: of each the bit [`Stage::bit`].
 pub type Stages = u16;
 
@@ -88,7 +77,7 @@ pub type Table = [Stages; 128];
 
 /// The names of `stages`, for a message.
 pub(crate) fn names(stages: Stages) -> String {
-    let listed = Stage::ALL.into_iter().filter(|stage| stage.bit() & stages != 0);
+    let listed = Stage::ALL.iter().filter(|stage| stage.bit() & stages != 0);
     let names: Vec<_> = listed.map(|stage| stage.to_string()).collect();
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
@@ -99,14 +88,17 @@ pub(crate) fn names(stages: Stages) -> String {
 #[cfg(not(target_family = "wasm"))]
 macro_rules! tables {
     ([$($of:tt $stage:ident),*] $($($function:ident)+ [$($mark:tt)+])*) => {
-        /// The stages that each function of a slave may be called in.
-        pub(crate) static CO_SIMULATION: $crate::state_machine::Table = table("s");
+        use $crate::interface::Interface;
+        use $crate::state_machine::{Stage, Table, is_for};
 
-        /// The stages that each function of a model may be called in.
-        pub(crate) static MODEL_EXCHANGE: $crate::state_machine::Table = table("m");
+        /// The stages in which an instance for `interface` accepts each function.
+        pub(crate) fn table(interface: Interface) -> &'static Table {
+            static CO_SIMULATION: Table = of("s");
+            static MODEL_EXCHANGE: Table = of("m");
+            if interface == Interface::ModelExchange { &MODEL_EXCHANGE } else { &CO_SIMULATION }
+        }
 
-        const fn table(interface: &str) -> $crate::state_machine::Table {
-            use $crate::state_machine::{Stage, Table, is_for};
+        const fn of(interface: &str) -> Table {
             let stages = [$((Stage::$stage, is_for(stringify!($of), interface))),*];
             let mut table: Table = [0; 128];
             $({

@@ -1,17 +1,20 @@
-//! A host: loads nothing, calls the C functions directly, keeps what is logged.
-#![allow(unsafe_code, dead_code)] // the C interface; every test file uses a part of this
+//! A host: loads nothing, calls the C functions of either version directly, keeps what is logged.
+#![allow(unsafe_code, dead_code, unused_imports)] // the C interface; every test file uses a part of this
 
-use FlexibleRocking::fmi2::*;
-use FlexibleRocking::guid;
+use FlexibleRocking::any::AnyUnit;
+use FlexibleRocking::fmi2::{self, CallbackFunctions, CallbackLogger, EventInfo};
+use FlexibleRocking::fmi3::{self, LogMessageCallback};
 use FlexibleRocking::masses::Masses;
 use FlexibleRocking::resources::{Contents, FRAME_FILE, FrameNumbers, PARAMETERS_FILE};
 use FlexibleRocking::unit::{Condition, Course};
 use FlexibleRocking::variables::Table;
-use fmi_unit::Variable;
+use fmi_unit::interface::Stepping;
 use fmi_unit::snapshot::Snapshot;
+use fmi_unit::variables::{position, state_references};
+use fmi_unit::{DataType, Experiment, Model, Update, Variable};
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::{Body, Floor, Mode, Modes, Parameters, Structure, Ties};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
 use std::ptr;
 use std::sync::{Arc, LazyLock};
@@ -46,28 +49,44 @@ type Log = RefCell<Vec<Message>>;
 /// An instance, and the folder and log that it needs.
 pub struct Host {
     pub component: *mut c_void,
+    pub is_fmi_3: bool,
+    pub is_model: bool,
     pub log: Box<Log>,
-    /// Its folder `resources`.
+    /// The folder `resources` of the FMU.
     pub resources: TempDir,
+    pub variables: Arc<[Variable]>,
+    /// For FMI 3.0, which has it when initialization begins.
+    experiment: Cell<Experiment>,
+    pub around: fn(bool),
 }
 
-/// The arguments of `fmi2Instantiate` that tests vary.
+/// The arguments of a function that makes an instance.
 pub struct Instantiate {
+    pub is_fmi_3: bool,
     pub name: &'static str,
     pub fmu_type: c_int,
-    pub guid: String,
+    /// For FMI 3.0.
+    pub stepping: Stepping,
+    pub guid: Option<String>,
     pub location: Option<String>,
     pub logging_on: c_int,
+    pub resources: TempDir,
+    /// Called before and after each call; whether it is before.
+    pub around: fn(bool),
 }
 
 impl Default for Instantiate {
     fn default() -> Instantiate {
         Instantiate {
+            is_fmi_3: false,
             name: "wall",
             fmu_type: CO_SIMULATION,
-            guid: guid(&contents(Parameters::EVISON)),
+            stepping: Stepping::default(),
+            guid: None,
             location: None,
             logging_on: 0,
+            resources: resources(),
+            around: |_| (),
         }
     }
 }
@@ -97,23 +116,30 @@ pub fn resources_of_many() -> TempDir {
     folder
 }
 
-unsafe extern "C" fn record(
+unsafe fn record(environment: *mut c_void, instance: &str, status: c_int, [category, text]: [*const c_char; 2]) {
+    let [category, text] = [category, text].map(|text| unsafe { CStr::from_ptr(text) }.to_str().unwrap().to_owned());
+    let log = unsafe { &*environment.cast::<Log>() };
+    log.borrow_mut().push(Message { instance: instance.to_owned(), status, category, text });
+}
+
+unsafe extern "C" fn record_2(
     environment: *mut c_void,
     instance: *const c_char,
     status: c_int,
     category: *const c_char,
-    message: *const c_char,
+    text: *const c_char,
 ) {
-    let [instance, category, text] =
-        [instance, category, message].map(|text| unsafe { CStr::from_ptr(text) }.to_str().unwrap().to_owned());
-    let log = unsafe { &*environment.cast::<Log>() };
-    log.borrow_mut().push(Message { instance, status, category, text });
+    unsafe { record(environment, CStr::from_ptr(instance).to_str().unwrap(), status, [category, text]) }
+}
+
+unsafe extern "C" fn record_3(log: *mut c_void, status: c_int, category: *const c_char, text: *const c_char) {
+    unsafe { record(log, "", status, [category, text]) }
 }
 
 /// Callbacks that log into `environment`. The logger has no further arguments to read, so that it may be declared
 /// without them.
 pub fn callbacks(environment: *mut c_void) -> CallbackFunctions {
-    let logger: unsafe extern "C" fn(_, _, _, _, _) = record;
+    let logger: unsafe extern "C" fn(_, _, _, _, _) = record_2;
     CallbackFunctions {
         logger: Some(unsafe { std::mem::transmute::<*const (), CallbackLogger>(logger as *const ()) }),
         allocate_memory: ptr::null(),
@@ -126,13 +152,24 @@ pub fn callbacks(environment: *mut c_void) -> CallbackFunctions {
 /// The variables, with the start values of Evison's wall.
 pub static VARIABLES: LazyLock<Arc<[Variable]>> = LazyLock::new(|| Table::new(&contents(Parameters::EVISON)).variables);
 
+/// The value reference of a variable in FMI 2.0.
 pub fn reference(name: &str) -> c_uint {
-    VARIABLES.iter().position(|variable| variable.name == name).unwrap_or_else(|| panic!("{name}")) as c_uint
+    position(&VARIABLES, name) as c_uint
 }
 
-fn references(names: &[&str]) -> Vec<c_uint> {
-    names.iter().map(|name| reference(name)).collect()
+/// Calls the function of the instance's version. The versions have names and arguments of their own, or the same.
+macro_rules! call {
+    ($of:ident, $both:ident($($argument:expr),*)) => { call!($of, $both($($argument),*), $both($($argument),*)) };
+    ($of:ident, $two:ident($($a:expr),*), $three:ident($($b:expr),*)) => {{
+        ($of.around)(true);
+        let c = $of.component;
+        let status = unsafe { if $of.is_fmi_3 { fmi3::$three(c, $($b),*) } else { fmi2::$two(c, $($a),*) } };
+        ($of.around)(false);
+        status
+    }};
 }
+
+pub(crate) use call;
 
 /// `value` if a call was done, else its status.
 fn done<T>(status: c_int, value: T) -> Result<T, c_int> {
@@ -142,27 +179,53 @@ fn done<T>(status: c_int, value: T) -> Result<T, c_int> {
 impl Host {
     /// Just instantiated, or the log.
     pub fn instantiate(arguments: Instantiate) -> Result<Host, Vec<Message>> {
-        let resources = resources();
-        let log = Box::<Log>::default();
-        let location = arguments.location.unwrap_or_else(|| format!("file://{}", resources.path().display()));
-        let [name, guid, location] =
-            [arguments.name, &arguments.guid, &location].map(|text| CString::new(text).unwrap());
+        let Instantiate { is_fmi_3, name, fmu_type, stepping, logging_on, resources, around, .. } = arguments;
+        let (model, log) = (AnyUnit::open(resources.path()).unwrap(), Box::<Log>::default());
+        let start = if is_fmi_3 { "" } else { "file://" };
+        let location = arguments.location.unwrap_or_else(|| format!("{start}{}", resources.path().display()));
+        let guid = arguments.guid.unwrap_or_else(|| model.token());
+        let texts = [name, &guid, &location].map(|text| CString::new(text).unwrap());
+        let [name, guid, location] = texts.each_ref().map(|text| text.as_ptr());
+        let (environment, required, count, update) = ((&raw const *log).cast_mut().cast(), ptr::null(), 0, None);
+        let (functions, log_3) = (callbacks(environment), Some(record_3 as LogMessageCallback));
+        let [on, event_mode, early] = [logging_on == 1, stepping.event_mode, stepping.early_return].map(u8::from);
+        around(true);
         let component = unsafe {
-            fmi2Instantiate(
-                name.as_ptr(),
-                arguments.fmu_type,
-                guid.as_ptr(),
-                location.as_ptr(),
-                &callbacks((&raw const *log).cast_mut().cast()),
-                0,
-                arguments.logging_on,
-            )
+            match (is_fmi_3, fmu_type) {
+                (false, _) => fmi2::Instantiate(name, fmu_type, guid, location, &functions, 0, logging_on),
+                (_, MODEL_EXCHANGE) => fmi3::InstantiateModelExchange(name, guid, location, 0, on, environment, log_3),
+                _ => fmi3::InstantiateCoSimulation(
+                    name,
+                    guid,
+                    location,
+                    0,
+                    on,
+                    event_mode,
+                    early,
+                    required,
+                    count,
+                    environment,
+                    log_3,
+                    update,
+                ),
+            }
         };
-        if component.is_null() { Err(log.take()) } else { Ok(Host { component, log, resources }) }
+        around(false);
+        if component.is_null() {
+            return Err(log.take());
+        }
+        let (is_model, variables, experiment) = (fmu_type == MODEL_EXCHANGE, model.variables(), Cell::default());
+        Ok(Host { component, is_fmi_3, is_model, log, resources, variables, experiment, around })
     }
 
     pub fn new() -> Host {
         Host::instantiate(Instantiate::default()).unwrap()
+    }
+
+    /// Of FMI 3.0; without a stepping for model exchange.
+    pub fn new_of_3(stepping: Option<Stepping>) -> Host {
+        let (fmu_type, stepping) = (stepping.is_some().into(), stepping.unwrap_or_default());
+        Host::instantiate(Instantiate { is_fmi_3: true, fmu_type, stepping, ..Instantiate::default() }).unwrap()
     }
 
     /// In initialization mode.
@@ -178,7 +241,7 @@ impl Host {
     /// For model exchange, in continuous-time mode, at t = 0.
     pub fn going_model(start_values: &[(&str, f64)]) -> Host {
         let host = Host::new_model().initialized(start_values);
-        assert_eq!((host.exit(), host.update().is_ok(), host.go_on()), (OK, true, OK), "{:?}", host.log);
+        host.start();
         host
     }
 
@@ -190,63 +253,89 @@ impl Host {
         for (name, number) in details {
             assert_eq!(host.set_integer(name, number as c_int), OK, "{:?}", host.log);
         }
-        assert_eq!(host.setup(None, 0.0, None), OK);
-        assert_eq!(host.enter(), OK);
+        assert_eq!((host.setup(None, 0.0, None), host.enter()), (OK, OK));
         host
     }
 
     /// Ready to step, at t = 0.
     pub fn started(start_values: &[(&str, f64)]) -> Host {
         let host = Host::initializing(start_values);
-        assert_eq!(host.exit(), OK, "{:?}", host.log);
+        host.start();
         host
     }
 
-    pub fn setup(&self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> c_int {
-        let (defined, tolerance) = (tolerance.is_some().into(), tolerance.unwrap_or_default());
-        unsafe {
-            fmi2SetupExperiment(
-                self.component,
-                defined,
-                tolerance,
-                start,
-                stop.is_some().into(),
-                stop.unwrap_or_default(),
-            )
+    /// Ends initialization, and for a model goes on to continuous-time mode.
+    pub fn start(&self) {
+        assert_eq!(self.exit(), OK, "{:?}", self.log);
+        if self.is_model {
+            assert_eq!((self.update().is_ok(), self.go_on()), (true, OK), "{:?}", self.log);
+        }
+    }
+
+    /// Passes tolerance and times, and initializes.
+    pub fn begin(&self, tolerance: Option<f64>, start: f64, stop: Option<f64>) {
+        let called = (self.setup(tolerance, start, stop), self.enter(), self.exit());
+        assert_eq!(called, (OK, OK, OK), "{:?}", self.log);
+    }
+
+    pub fn setup(&self, tolerance: Option<f64>, start_time: f64, stop_time: Option<f64>) -> c_int {
+        self.experiment.set(Experiment { tolerance, start_time, stop_time });
+        let [(defined, tolerance), (stops, stop)] =
+            [tolerance, stop_time].map(|number| (number.is_some().into(), number.unwrap_or_default()));
+        let c = self.component;
+        if self.is_fmi_3 {
+            OK
+        } else {
+            unsafe { fmi2::SetupExperiment(c, defined, tolerance, start_time, stops, stop) }
         }
     }
 
     pub fn enter(&self) -> c_int {
-        unsafe { fmi2EnterInitializationMode(self.component) }
+        let Experiment { tolerance, start_time, stop_time } = self.experiment.get();
+        let [(defined, tolerance), (stops, stop)] =
+            [tolerance, stop_time].map(|number| (number.is_some().into(), number.unwrap_or_default()));
+        call!(self, EnterInitializationMode(), EnterInitializationMode(defined, tolerance, start_time, stops, stop))
     }
 
     pub fn exit(&self) -> c_int {
-        unsafe { fmi2ExitInitializationMode(self.component) }
+        call!(self, ExitInitializationMode())
     }
 
     pub fn terminate(&self) -> c_int {
-        unsafe { fmi2Terminate(self.component) }
+        call!(self, Terminate())
     }
 
     pub fn reset(&self) -> c_int {
-        unsafe { fmi2Reset(self.component) }
+        call!(self, Reset())
+    }
+
+    /// The value reference of the variable `name`.
+    pub fn at(&self, name: &str) -> c_uint {
+        position(&self.variables, name) as c_uint + c_uint::from(self.is_fmi_3)
+    }
+
+    fn all_at(&self, names: &[&str]) -> Vec<c_uint> {
+        names.iter().map(|name| self.at(name)).collect()
     }
 
     pub fn set(&self, values: &[(&str, f64)]) -> c_int {
         let (names, values): (Vec<_>, Vec<_>) = values.iter().copied().unzip();
-        self.set_by_reference(&references(&names), &values)
+        self.set_by_reference(&self.all_at(&names), &values)
     }
 
     pub fn set_by_reference(&self, references: &[c_uint], values: &[f64]) -> c_int {
-        unsafe { fmi2SetReal(self.component, references.as_ptr(), references.len(), values.as_ptr()) }
+        let (at, n, values) = (references.as_ptr(), references.len(), values.as_ptr());
+        call!(self, SetReal(at, n, values), SetFloat64(at, n, values, n))
     }
 
     pub fn set_integer(&self, name: &str, value: c_int) -> c_int {
-        unsafe { fmi2SetInteger(self.component, &reference(name), 1, &value) }
+        let at = self.at(name);
+        call!(self, SetInteger(&at, 1, &value), SetInt64(&at, 1, &value.into(), 1))
     }
 
     pub fn set_boolean(&self, name: &str, value: c_int) -> c_int {
-        unsafe { fmi2SetBoolean(self.component, &reference(name), 1, &value) }
+        let at = self.at(name);
+        call!(self, SetBoolean(&at, 1, &value), SetBoolean(&at, 1, &(value as u8), 1))
     }
 
     /// Sets the record.
@@ -256,14 +345,14 @@ impl Host {
 
     /// Sets the text `name`.
     pub fn set_text(&self, name: &str, value: &str) -> c_int {
-        let value = CString::new(value).unwrap();
-        unsafe { fmi2SetString(self.component, &reference(name), 1, &value.as_ptr()) }
+        let (at, value) = (self.at(name), CString::new(value).unwrap());
+        call!(self, SetString(&at, 1, &value.as_ptr()), SetString(&at, 1, &value.as_ptr(), 1))
     }
 
     /// The record.
     pub fn record(&self) -> String {
-        let mut text = ptr::null();
-        assert_eq!(unsafe { fmi2GetString(self.component, &reference("record"), 1, &mut text) }, OK);
+        let (at, mut text) = (self.at("record"), ptr::null());
+        assert_eq!(call!(self, GetString(&at, 1, &mut text), GetString(&at, 1, &mut text, 1)), OK);
         unsafe { CStr::from_ptr(text) }.to_str().unwrap().to_owned()
     }
 
@@ -272,14 +361,16 @@ impl Host {
         std::fs::write(self.resources.path().join(name), text).unwrap();
     }
 
+    /// Sets the slope of an input, in FMI 2.0.
     pub fn set_slope(&self, name: &str, order: c_int, slope: f64) -> c_int {
-        unsafe { fmi2SetRealInputDerivatives(self.component, &reference(name), 1, &order, &slope) }
+        unsafe { fmi2::SetRealInputDerivatives(self.component, &self.at(name), 1, &order, &slope) }
     }
 
     /// Values, or the status.
     pub fn try_get(&self, names: &[&str]) -> Result<Vec<f64>, c_int> {
-        let (references, mut values) = (references(names), vec![f64::MAX; names.len()]);
-        let status = unsafe { fmi2GetReal(self.component, references.as_ptr(), names.len(), values.as_mut_ptr()) };
+        let (references, n, mut values) = (self.all_at(names), names.len(), vec![f64::MAX; names.len()]);
+        let (at, to) = (references.as_ptr(), values.as_mut_ptr());
+        let status = call!(self, GetReal(at, n, to), GetFloat64(at, n, to, n));
         assert!(status == OK || values.iter().all(|value| *value == f64::MAX), "a refused call wrote {values:?}");
         done(status, values)
     }
@@ -289,107 +380,161 @@ impl Host {
     }
 
     pub fn integer(&self, name: &str) -> c_int {
-        let mut value = c_int::MAX;
-        assert_eq!(unsafe { fmi2GetInteger(self.component, &reference(name), 1, &mut value) }, OK, "{:?}", self.log);
-        value
+        let (at, mut value, mut wide) = (self.at(name), c_int::MAX, i64::MAX);
+        let of = self.variables[position(&self.variables, name)].data_type;
+        let status = if of == DataType::Integer {
+            call!(self, GetInteger(&at, 1, &mut value), GetInt32(&at, 1, &mut value, 1))
+        } else {
+            call!(self, GetInteger(&at, 1, &mut value), GetInt64(&at, 1, &mut wide, 1))
+        };
+        assert_eq!(status, OK, "{:?}", self.log);
+        if wide == i64::MAX { value } else { wide as c_int }
     }
 
     pub fn try_boolean(&self, name: &str) -> Result<c_int, c_int> {
-        let mut value = c_int::MAX;
-        done(unsafe { fmi2GetBoolean(self.component, &reference(name), 1, &mut value) }, value)
+        let (at, mut value, mut short) = (self.at(name), 0, 0);
+        let status = call!(self, GetBoolean(&at, 1, &mut value), GetBoolean(&at, 1, &mut short, 1));
+        done(status, value + c_int::from(short))
     }
 
     pub fn rate(&self, name: &str, order: c_int) -> Result<f64, c_int> {
-        let mut value = f64::MAX;
-        done(unsafe { fmi2GetRealOutputDerivatives(self.component, &reference(name), 1, &order, &mut value) }, value)
+        let (at, mut rate) = (self.at(name), f64::MAX);
+        let status = call!(
+            self,
+            GetRealOutputDerivatives(&at, 1, &order, &mut rate),
+            GetOutputDerivatives(&at, 1, &order, &mut rate, 1)
+        );
+        done(status, rate)
+    }
+
+    /// The derivatives of `unknowns` where each of `knowns` changes by so much, or the status.
+    pub fn derive(&self, unknowns: &[&str], knowns: &[(&str, f64)]) -> Result<Vec<f64>, c_int> {
+        let (names, seed): (Vec<_>, Vec<_>) = knowns.iter().copied().unzip();
+        let (of, by, mut found) = (self.all_at(unknowns), self.all_at(&names), vec![f64::MAX; unknowns.len()]);
+        let ((of, n), (by, m), seed, to) =
+            ((of.as_ptr(), of.len()), (by.as_ptr(), by.len()), seed.as_ptr(), found.as_mut_ptr());
+        let status = call!(
+            self,
+            GetDirectionalDerivative(of, n, by, m, seed, to),
+            GetDirectionalDerivative(of, n, by, m, seed, m, to, n)
+        );
+        done(status, found)
+    }
+
+    /// The derivative of `of` by `by`.
+    pub fn derivative(&self, of: &str, by: &str) -> f64 {
+        self.derive(&[of], &[(by, 1.0)]).unwrap_or_else(|_| panic!("{:?}", self.log))[0]
     }
 
     pub fn step(&self, time: f64, step: f64) -> c_int {
-        unsafe { fmi2DoStep(self.component, time, step, 0) }
+        self.step_to(time, step).0
+    }
+
+    /// The status of a step, and in FMI 3.0 whether there is an event, the end, an early return, and when.
+    pub fn step_to(&self, time: f64, step: f64) -> (c_int, [u8; 3], f64) {
+        let (mut flags, mut reached) = ([0; 3], f64::NAN);
+        let [event, end, early] = &mut flags;
+        let status = call!(self, DoStep(time, step, 0), DoStep(time, step, 0, event, end, early, &mut reached));
+        (status, flags, reached)
     }
 
     pub fn set_time(&self, time: f64) -> c_int {
-        unsafe { fmi2SetTime(self.component, time) }
+        call!(self, SetTime(time))
     }
 
-    pub fn set_states(&self, states: [f64; 4]) -> c_int {
-        unsafe { fmi2SetContinuousStates(self.component, states.as_ptr(), 4) }
+    pub fn set_states(&self, states: &[f64]) -> c_int {
+        call!(self, SetContinuousStates(states.as_ptr(), states.len()))
     }
 
-    /// Four values or two, by a function that writes them.
-    fn written<const N: usize>(
-        &self,
-        get: unsafe extern "C" fn(*mut c_void, *mut f64, usize) -> c_int,
-    ) -> Result<[f64; N], c_int> {
-        let mut values = [f64::MAX; N];
-        done(unsafe { get(self.component, values.as_mut_ptr(), N) }, values)
+    pub fn states(&self) -> Result<Vec<f64>, c_int> {
+        let mut states = vec![f64::MAX; state_references(&self.variables).count()];
+        done(call!(self, GetContinuousStates(states.as_mut_ptr(), states.len())), states)
     }
 
-    pub fn states(&self) -> Result<[f64; 4], c_int> {
-        self.written(fmi2GetContinuousStates)
-    }
-
-    pub fn derivatives(&self) -> Result<[f64; 4], c_int> {
-        self.written(fmi2GetDerivatives)
+    pub fn derivatives(&self) -> Result<Vec<f64>, c_int> {
+        let mut rates = vec![f64::MAX; state_references(&self.variables).count()];
+        let (to, n) = (rates.as_mut_ptr(), rates.len());
+        done(call!(self, GetDerivatives(to, n), GetContinuousStateDerivatives(to, n)), rates)
     }
 
     pub fn indicators(&self) -> Result<[f64; 2], c_int> {
-        self.written(fmi2GetEventIndicators)
+        let mut indicators = [f64::MAX; 2];
+        done(call!(self, GetEventIndicators(indicators.as_mut_ptr(), 2)), indicators)
     }
 
     /// Whether the complete step asks for event mode, and for the end.
     pub fn complete(&self) -> Result<(bool, bool), c_int> {
-        let (mut event, mut end) = (c_int::MAX, c_int::MAX);
-        let status = unsafe { fmi2CompletedIntegratorStep(self.component, 1, &mut event, &mut end) };
-        done(status, (event == 1, end == 1))
+        let (mut event, mut end, mut event_3, mut end_3) = (0, 0, 0, 0);
+        let status = call!(
+            self,
+            CompletedIntegratorStep(1, &mut event, &mut end),
+            CompletedIntegratorStep(1, &mut event_3, &mut end_3)
+        );
+        done(status, (event == 1 || event_3 == 1, end == 1 || end_3 == 1))
     }
 
     pub fn enter_event_mode(&self) -> c_int {
-        unsafe { fmi2EnterEventMode(self.component) }
+        call!(self, EnterEventMode())
     }
 
-    pub fn update(&self) -> Result<EventInfo, c_int> {
-        let mut info: EventInfo = unsafe { std::mem::zeroed() };
-        let status = unsafe { fmi2NewDiscreteStates(self.component, &mut info) };
+    pub fn update(&self) -> Result<Update, c_int> {
+        let (mut info, mut flags, mut time): (EventInfo, _, _) = (unsafe { std::mem::zeroed() }, [0; 5], 0.0);
+        let [needed, end, nominals, values, is_foreseen] = &mut flags;
+        let status = call!(
+            self,
+            NewDiscreteStates(&mut info),
+            UpdateDiscreteStates(needed, end, nominals, values, is_foreseen, &mut time)
+        );
         assert_eq!((info.new_discrete_states_needed, info.nominals_of_continuous_states_changed), (0, 0));
-        done(status, info)
+        assert_eq!((flags[0], flags[2]), (0, 0));
+        let update = Update {
+            has_ended: info.terminate_simulation == 1 || flags[1] == 1,
+            has_new_states: info.values_of_continuous_states_changed == 1 || flags[3] == 1,
+            next_event: (info.next_event_time_defined == 1 || flags[4] == 1).then_some(info.next_event_time + time),
+        };
+        done(status, update)
     }
 
     /// On to continuous-time mode.
     pub fn go_on(&self) -> c_int {
-        unsafe { fmi2EnterContinuousTimeMode(self.component) }
+        call!(self, EnterContinuousTimeMode())
+    }
+
+    /// Goes to the host's states at `time` (s), and through the event if the completed step asks for one.
+    pub fn go_to(&self, time: f64, states: &[f64]) {
+        assert_eq!((self.set_time(time), self.set_states(states)), (OK, OK));
+        if self.complete().unwrap().0 {
+            assert_eq!((self.enter_event_mode(), self.update().is_ok(), self.go_on()), (OK, true, OK));
+        }
     }
 
     /// One step of the semi-implicit Euler method from `time` (s), with the event that it asks for.
     pub fn integrate(&self, time: f64, step: f64) {
         assert_eq!(self.set_time(time), OK);
-        let ([u, u_dot, theta, theta_dot], [_, u_ddot, _, theta_ddot]) =
-            (self.states().unwrap(), self.derivatives().unwrap());
-        let (u_dot, theta_dot) = (u_dot + step * u_ddot, theta_dot + step * theta_ddot);
-        let end = [u + step * u_dot, u_dot, theta + step * theta_dot, theta_dot];
-        assert_eq!((self.set_time(time + step), self.set_states(end)), (OK, OK));
-        if self.complete().unwrap().0 {
-            assert_eq!(self.enter_event_mode(), OK);
-            assert!(self.update().is_ok());
-            assert_eq!(self.go_on(), OK);
+        let (mut states, rates) = (self.states().unwrap(), self.derivatives().unwrap());
+        for at in [1, 0, 3, 2] {
+            states[at] += step * if at % 2 == 1 { rates[at] } else { states[at + 1] };
         }
+        self.go_to(time + step, &states);
     }
 
+    /// In FMI 2.0.
     pub fn last_successful_time(&self) -> f64 {
         let mut time = f64::MAX;
-        assert_eq!(unsafe { fmi2GetRealStatus(self.component, 2, &mut time) }, OK);
+        assert_eq!(unsafe { fmi2::GetRealStatus(self.component, 2, &mut time) }, OK);
         time
     }
 
+    /// In FMI 2.0.
     pub fn is_terminated(&self) -> bool {
         let mut terminated = c_int::MAX;
-        assert_eq!(unsafe { fmi2GetBooleanStatus(self.component, 3, &mut terminated) }, OK);
+        assert_eq!(unsafe { fmi2::GetBooleanStatus(self.component, 3, &mut terminated) }, OK);
         terminated == 1
     }
 
     /// Keeps the present state: into `state`, or a new one for null.
     pub fn try_keep(&self, mut state: *mut c_void) -> Result<*mut c_void, c_int> {
-        done(unsafe { fmi2GetFMUstate(self.component, &mut state) }, state)
+        done(call!(self, GetFMUstate(&mut state), GetFMUState(&mut state)), state)
     }
 
     pub fn keep(&self) -> *mut c_void {
@@ -397,28 +542,31 @@ impl Host {
     }
 
     pub fn go_back(&self, state: *mut c_void) -> c_int {
-        unsafe { fmi2SetFMUstate(self.component, state) }
+        call!(self, SetFMUstate(state), SetFMUState(state))
     }
 
     pub fn free_state(&self, mut state: *mut c_void) -> c_int {
-        let status = unsafe { fmi2FreeFMUstate(self.component, &mut state) };
+        let status = call!(self, FreeFMUstate(&mut state), FreeFMUState(&mut state));
         assert_eq!(state.is_null(), status == OK);
         status
     }
 
     pub fn size(&self, state: *mut c_void) -> Result<usize, c_int> {
         let mut size = usize::MAX;
-        done(unsafe { fmi2SerializedFMUstateSize(self.component, state, &mut size) }, size)
+        let status = call!(self, SerializedFMUstateSize(state, &mut size), SerializedFMUStateSize(state, &mut size));
+        done(status, size)
     }
 
     pub fn serialize(&self, state: *mut c_void, size: usize) -> Result<Vec<u8>, c_int> {
         let mut bytes = vec![0; size];
-        done(unsafe { fmi2SerializeFMUstate(self.component, state, bytes.as_mut_ptr(), size) }, bytes)
+        let to = bytes.as_mut_ptr();
+        done(call!(self, SerializeFMUstate(state, to, size), SerializeFMUState(state, to, size)), bytes)
     }
 
     pub fn deserialize(&self, bytes: &[u8]) -> Result<*mut c_void, c_int> {
-        let mut state = ptr::null_mut();
-        done(unsafe { fmi2DeSerializeFMUstate(self.component, bytes.as_ptr(), bytes.len(), &mut state) }, state)
+        let (from, n, mut state) = (bytes.as_ptr(), bytes.len(), ptr::null_mut());
+        let status = call!(self, DeSerializeFMUstate(from, n, &mut state), DeserializeFMUState(from, n, &mut state));
+        done(status, state)
     }
 
     /// All that the instance's future depends on, as bytes.
@@ -432,7 +580,8 @@ impl Host {
     pub fn set_debug_logging(&self, on: bool, categories: &[&str]) -> c_int {
         let categories: Vec<_> = categories.iter().map(|name| CString::new(*name).unwrap()).collect();
         let pointers: Vec<_> = categories.iter().map(|name| name.as_ptr()).collect();
-        unsafe { fmi2SetDebugLogging(self.component, on.into(), pointers.len(), pointers.as_ptr()) }
+        let (n, names) = (pointers.len(), pointers.as_ptr());
+        call!(self, SetDebugLogging(on.into(), n, names), SetDebugLogging(on.into(), n, names))
     }
 
     /// Asserts that `call` is refused with a message that has `message` in it, and changes nothing.
@@ -449,6 +598,6 @@ impl Host {
 
 impl Drop for Host {
     fn drop(&mut self) {
-        unsafe { fmi2FreeInstance(self.component) }
+        call!(self, FreeInstance());
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::host::*;
 use FlexibleRocking::BUILD;
-use FlexibleRocking::fmi2::*;
+use FlexibleRocking::fmi2;
 use std::ffi::c_void;
 use std::ptr::{null_mut, without_provenance_mut};
 
@@ -78,7 +78,7 @@ fn a_state_can_be_overwritten_and_outlives_a_reset() {
     assert_eq!((host.reset(), host.go_back(state)), (OK, OK));
     assert_eq!(host.bytes(), later);
     let limited = Host::new();
-    assert_eq!((limited.setup(None, 0.0, Some(1.0)), limited.enter(), limited.exit()), (OK, OK, OK));
+    limited.begin(None, 0.0, Some(1.0));
     assert_eq!(host.go_back(host.deserialize(&limited.bytes()).unwrap()), OK);
     host.assert_refused(|| host.step(0.0, 2.0), ERROR, "the step would end at t = 2 s, past stopTime = 1 s");
 }
@@ -101,7 +101,7 @@ fn a_state_that_is_not_the_instances_own_is_refused_everywhere() {
         assert_eq!((refused, host.free_state(state)), ([true; 3], ERROR));
     }
     assert_eq!(host.free_state(null_mut()), OK);
-    assert_eq!(unsafe { fmi2FreeFMUstate(host.component, null_mut()) }, OK);
+    assert_eq!(unsafe { fmi2::FreeFMUstate(host.component, null_mut()) }, OK);
     assert_eq!(host.go_back(null_mut()), ERROR);
 }
 

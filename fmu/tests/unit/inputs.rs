@@ -1,7 +1,6 @@
 //! Inputs of which nothing but the value is set, for hosts that cannot send slopes: a_g one step late, F_t extrapolated.
 
 use crate::host::*;
-use FlexibleRocking::fmi2::fmi2GetDirectionalDerivative;
 use approx::assert_relative_eq;
 
 const SHOWN: [&str; 6] = ["theta", "u", "a_t", "R_h", "a_g", "F_t"];
@@ -56,12 +55,7 @@ fn a_g_is_followed_one_step_late() {
 #[test]
 fn what_is_late_does_not_act_at_once() {
     let host = started(&["a_g_late"], &[("theta_0", 0.02)]);
-    let by_a_g = |host: &Host| {
-        let (R_h, a_g, seed, mut value) = (reference("R_h"), reference("a_g"), 1.0, f64::NAN);
-        let status = unsafe { fmi2GetDirectionalDerivative(host.component, &R_h, 1, &a_g, 1, &seed, &mut value) };
-        assert_eq!(status, OK);
-        value
-    };
+    let by_a_g = |host: &Host| host.derivative("R_h", "a_g");
     assert_eq!((host.set(&[("a_g", 1.0)]), host.step(0.0, 0.01)), (OK, OK));
     let before = host.try_get(&["R_h", "a_t", "a_ground"]).unwrap();
     assert_eq!((host.set(&[("a_g", 5.0)]), host.try_get(&["R_h", "a_t", "a_ground"]).unwrap()), (OK, before));

@@ -1,7 +1,7 @@
 //! Instances come and go: what they say of themselves, calls at the same time, many at once.
 
 use crate::host::*;
-use FlexibleRocking::fmi2::*;
+use FlexibleRocking::fmi2::{self, CallbackFunctions, CallbackLogger};
 use FlexibleRocking::{BUILD, guid};
 use rocking::Parameters;
 use std::ffi::{CStr, CString, c_char, c_void};
@@ -12,7 +12,8 @@ use std::thread;
 
 #[test]
 fn the_library_says_what_it_is() {
-    let [platform, version] = unsafe { [fmi2GetTypesPlatform(), fmi2GetVersion()].map(|text| CStr::from_ptr(text)) };
+    let [platform, version] =
+        unsafe { [fmi2::GetTypesPlatform(), fmi2::GetVersion()].map(|text| CStr::from_ptr(text)) };
     assert_eq!((platform, version), (c"default", c"2.0"));
     let [evison, mcmanus] = [Parameters::EVISON, Parameters::MCMANUS].map(|parameters| guid(&contents(parameters)));
     for guid in [BUILD, &evison, &mcmanus] {
@@ -48,15 +49,16 @@ fn a_call_while_another_thread_calls_is_refused() {
     let folder = resources();
     let location = CString::new(format!("file://{}", folder.path().display())).unwrap();
     let guid = CString::new(guid(&contents(Parameters::EVISON))).unwrap();
-    let c = unsafe { fmi2Instantiate(c"talkative".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 0) };
+    let c = unsafe { fmi2::Instantiate(c"talkative".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 0) };
     let c = c.expose_provenance();
     // each is refused, with a message if it is served
-    let call = || (0..CALLS).for_each(|_| assert_eq!(unsafe { fmi2CancelStep(with_exposed_provenance_mut(c)) }, ERROR));
+    let call =
+        || (0..CALLS).for_each(|_| assert_eq!(unsafe { fmi2::CancelStep(with_exposed_provenance_mut(c)) }, ERROR));
     thread::scope(|scope| [(); 2].map(|()| scope.spawn(call)).map(|thread| thread.join().unwrap()));
     assert_eq!(inside.most.into_inner(), 1);
     let served = inside.calls.into_inner();
     assert!((1..2 * CALLS).contains(&served), "{served} calls were served");
-    unsafe { fmi2FreeInstance(with_exposed_provenance_mut(c)) };
+    unsafe { fmi2::FreeInstance(with_exposed_provenance_mut(c)) };
 }
 
 /// Sixty steps of 20 ms of an instance that is a little different from all others, one after the other by `turn`.

@@ -6,8 +6,8 @@ use rocking::{Engine, Parameters, Ramp, State, Structure, Transition, Transition
 /// Released at an angle: impacts, landings, uplifts.
 fn released(logging_on: i32) -> Host {
     let host = Host::instantiate(Instantiate { logging_on, ..Instantiate::default() }).unwrap();
-    assert_eq!(host.set(&[("theta_0", 0.01), ("r", 0.85)]), OK);
-    assert_eq!((host.setup(None, 0.0, None), host.enter(), host.exit()), (OK, OK, OK));
+    let host = host.initialized(&[("theta_0", 0.01), ("r", 0.85)]);
+    assert_eq!(host.exit(), OK);
     host
 }
 
@@ -44,24 +44,32 @@ fn every_transition_is_told_as_the_engine_shows_it() {
     assert!(log.iter().all(|m| (m.status, m.category.as_str(), m.instance.as_str()) == (OK, "logEvents", "wall")));
 }
 
+/// In FMI 2.0 events alone are switched, in FMI 3.0 each category by itself; the reasons of refused calls are always logged.
 #[test]
-fn events_are_told_if_asked_for_and_errors_always() {
-    for (logging_on, debug_logging, expected) in [
-        (0, None, vec!["logStatusError"]),
-        (1, None, vec!["logEvents", "logStatusError"]),
-        (0, Some((true, vec![])), vec!["logEvents", "logStatusError"]),
-        (1, Some((false, vec![])), vec!["logStatusError"]),
-        (1, Some((false, vec!["logEvents"])), vec!["logStatusError"]),
-        (0, Some((true, vec!["logStatusError", "logEvents"])), vec!["logEvents", "logStatusError"]),
-        (1, Some((true, vec!["logStatusWarning", "logStatusDiscard"])), vec!["logStatusError"]),
+fn a_host_gets_the_categories_that_it_switches_on() {
+    let (all, events, warnings) = (&[][..], &["logStatusError", "logEvents"][..], &["logStatusWarning"][..]);
+    for (is_fmi_3, logging_on, switched, expected) in [
+        (false, 0, vec![], "Warning Error"),
+        (false, 1, vec![], "Warning Events Error"),
+        (false, 0, vec![(true, all)], "Warning Events Error"),
+        (false, 1, vec![(false, all)], "Warning Error"),
+        (false, 1, vec![(false, events)], "Warning Error"),
+        (false, 0, vec![(true, events)], "Warning Events Error"),
+        (false, 1, vec![(true, warnings)], "Warning Error"),
+        (true, 0, vec![], "Error"),
+        (true, 1, vec![], "Warning Events Error"),
+        (true, 0, vec![(true, all)], "Warning Events Error"),
+        (true, 0, vec![(true, all), (false, warnings)], "Events Error"),
+        (true, 0, vec![(true, warnings)], "Warning Error"),
+        (true, 0, vec![(true, all), (false, all)], "Error"),
     ] {
-        let host = released(logging_on);
-        if let Some((on, names)) = &debug_logging {
-            assert_eq!(host.set_debug_logging(*on, names), OK);
-        }
-        assert_eq!(host.step(0.0, 0.5), OK);
-        assert_eq!(host.step(0.0, 0.5), ERROR);
-        assert_eq!(categories(&host), expected, "{logging_on} {debug_logging:?}");
+        let host = Host::instantiate(Instantiate { is_fmi_3, logging_on, ..Instantiate::default() }).unwrap();
+        switched.iter().for_each(|(on, names)| assert_eq!(host.set_debug_logging(*on, names), OK));
+        let host = host.initialized(&[("theta_0", 0.01), ("r", 0.5)]);
+        assert_eq!((host.exit(), host.step(0.0, 0.5), host.step(0.0, 0.5)), (OK, OK, ERROR));
+        let expected = expected.replace("Warning", "StatusWarning").replace("Error", "StatusError");
+        let expected: Vec<_> = expected.split(' ').map(|name| format!("log{name}")).collect();
+        assert_eq!(categories(&host), expected, "{is_fmi_3} {logging_on} {switched:?}");
     }
 }
 
@@ -106,7 +114,7 @@ fn an_unknown_category_is_refused_and_the_others_with_it() {
 #[test]
 fn a_reset_instance_logs_as_it_was_instantiated_and_has_no_stop_time() {
     let host = Host::new();
-    assert_eq!((host.setup(None, 0.0, Some(0.1)), host.enter(), host.exit()), (OK, OK, OK));
+    host.begin(None, 0.0, Some(0.1));
     assert_eq!((host.set_debug_logging(true, &[]), host.reset()), (OK, OK));
     assert_eq!((host.set(&[("theta_0", 0.01)]), host.enter(), host.exit()), (OK, OK, OK));
     assert_eq!(host.step(0.0, 0.5), OK);

@@ -74,7 +74,7 @@ fn following(path: &Path, detail: Detail) -> Host {
         (OK, OK, OK)
     );
     assert_eq!(host.set_record(path.to_str().unwrap()), OK);
-    assert_eq!((host.setup(Some(TOLERANCE), 0.0, None), host.enter(), host.exit()), (OK, OK, OK), "{:?}", host.log);
+    host.begin(Some(TOLERANCE), 0.0, None);
     host
 }
 

@@ -1,28 +1,27 @@
 //! Refused calls: each says why and changes nothing.
 
 use crate::host::*;
-use FlexibleRocking::fmi2::*;
-use FlexibleRocking::{BUILD, guid};
+use FlexibleRocking::fmi2::{self, CallbackFunctions};
+use FlexibleRocking::{BUILD, fmi3, guid};
+use fmi_unit::interface::Stepping;
 use libc::{c_int, c_void};
 use rocking::Parameters;
-use std::cell::RefCell;
-use std::ffi::CString;
 use std::ptr::{null, null_mut, without_provenance_mut};
 
-/// The message in the log, and the call.
+/// The message in the log, in the words of FMI 2.0, and the call.
 type Refused = (&'static str, fn(&Host) -> c_int);
 
 const INSTANTIATED: &[Refused] = &[
-    ("tolerance = 1 is out of range: it must be between 0 and 1, such as 1e-9", |h| h.setup(Some(1.0), 0.0, None)),
-    ("tolerance = NaN is out of range", |h| h.setup(Some(f64::NAN), 0.0, None)),
-    ("startTime = NaN is out of range: it must be finite", |h| h.setup(None, f64::NAN, None)),
+    ("tolerance = 1 is out of range: it must be between 0 and 1, such as 1e-9", |h| {
+        initialize(h, Some(1.0), 0.0, None)
+    }),
+    ("tolerance = NaN is out of range", |h| initialize(h, Some(f64::NAN), 0.0, None)),
+    ("startTime = NaN is out of range: it must be finite", |h| initialize(h, None, f64::NAN, None)),
     ("stopTime = 1.9 is out of range: it must be finite and not before startTime = 2 s", |h| {
-        h.setup(None, 2.0, Some(1.9))
+        initialize(h, None, 2.0, Some(1.9))
     }),
-    ("loggingOn = -1 is not one of 0 (fmi2False), 1 (fmi2True)", |h| unsafe {
-        fmi2SetDebugLogging(h.component, -1, 0, null())
-    }),
-    ("category must be a valid pointer", |h| unsafe { fmi2SetDebugLogging(h.component, 1, 1, &null()) }),
+    ("loggingOn = 2 is not one of 0 (fmi2False), 1 (fmi2True)", |h| call!(h, SetDebugLogging(2, 0, null()))),
+    ("category must be a valid pointer", |h| call!(h, SetDebugLogging(1, 1, &null()))),
 ];
 
 /// None of the values of a call is taken over; the first that is wrong is told.
@@ -40,20 +39,22 @@ const INITIALIZING: &[Refused] = &[
     ("m is a real number: call fmi2GetReal or fmi2SetReal instead", |h| h.set_integer("m", 1)),
     ("transitions is an integer: call fmi2GetInteger instead", |h| h.try_boolean("transitions").unwrap_err()),
     ("value reference 4000000000 does not exist; they run from 0 to ", |h| {
-        h.set_by_reference(&[4_000_000_000, reference("phase")], &[1.0; 2])
+        h.set_by_reference(&[4_000_000_000, h.at("phase")], &[1.0; 2])
     }),
-    ("value must be a valid pointer; it is null or misaligned", |h| unsafe {
-        fmi2SetString(h.component, &reference("record"), 1, &null())
+    ("value must be a valid pointer; it is null or misaligned", |h| {
+        let at = h.at("record");
+        call!(h, SetString(&at, 1, &null()), SetString(&at, 1, &null(), 1))
     }),
-    ("value must be a valid pointer; it is null or misaligned", |h| unsafe {
-        fmi2GetReal(h.component, &1, 1, without_provenance_mut(9))
+    ("value must be a valid pointer; it is null or misaligned", |h| {
+        let bad = without_provenance_mut(9);
+        call!(h, GetReal(&1, 1, bad), GetFloat64(&1, 1, bad, 1))
     }),
-    ("18446744073709551615 values are too many for one call: at most 16777216", |h| unsafe {
-        fmi2GetReal(h.component, &1, usize::MAX, &mut 0.0)
+    ("18446744073709551615 values are too many for one call: at most 16777216", |h| {
+        call!(h, GetReal(&1, usize::MAX, &mut 0.0), GetFloat64(&1, usize::MAX, &mut 0.0, usize::MAX))
     }),
 ];
 
-/// Under a = 1 m/s² that grows by 1e5 m/s³, from 10 s to 12 s, at 10.5 s.
+/// From 10 s to 12 s, at 10.5 s.
 const STEPPING: &[Refused] = &[
     ("m is fixed once the simulation has started: set it before fmi2ExitInitializationMode, or call fmi2Reset", |h| {
         h.set(&[("a_g", 1.0), ("m", 0.5)])
@@ -61,21 +62,16 @@ const STEPPING: &[Refused] = &[
     ("record is fixed once the simulation has started", |h| h.set_record("b.csv")),
     ("peaks is fixed once the simulation has started", |h| h.set_boolean("peaks", 1)),
     ("detail is fixed once the simulation has started", |h| h.set_integer("detail", 2)),
-    ("order = 2 for a_g is out of range: only derivatives of order 1 exist", |h| h.set_slope("a_g", 2, 1.0)),
-    ("order = 0 for a_g is out of range: only derivatives of order 1 exist", |h| h.set_slope("a_g", 0, 1.0)),
-    ("the derivative of a_g, NaN, is out of range: it must be finite", |h| h.set_slope("a_g", 1, f64::NAN)),
-    ("theta has no derivative that can be set: only the inputs have", |h| h.set_slope("theta", 1, 1.0)),
     ("order = 2 for theta is out of range: only derivatives of order 1 exist", |h| h.rate("theta", 2).unwrap_err()),
     ("phase has no derivative: only continuous real outputs have", |h| h.rate("phase", 1).unwrap_err()),
     ("a_g has no derivative: only continuous real outputs have", |h| h.rate("a_g", 1).unwrap_err()),
     ("chi has no derivative: only continuous real outputs have", |h| h.rate("chi", 1).unwrap_err()),
     ("I_v has no derivative: only continuous real outputs have", |h| h.rate("I_v", 1).unwrap_err()),
-    ("at the end of the step, a_g = 20001 m/s2 is out of range: it must lie between -10000 and 10000 m/s2 (", |h| {
-        h.step(10.5, 0.2)
-    }),
-    ("currentCommunicationPoint = 10 s differs from the time of the FMU, t = 10.5 s: step from there, or ", |h| {
-        h.step(10.0, 0.5)
-    }),
+    (
+        "currentCommunicationPoint = 10 s differs from the time of the FMU, t = 10.5 s: step from there, or go back with \
+         fmi2SetFMUstate",
+        |h| h.step(10.0, 0.5),
+    ),
     ("currentCommunicationPoint = 10.501 s differs from the time of the FMU", |h| h.step(10.501, 0.5)),
     ("currentCommunicationPoint = NaN s differs from the time of the FMU", |h| h.step(f64::NAN, 0.5)),
     (
@@ -89,10 +85,56 @@ const STEPPING: &[Refused] = &[
     ("the step would end at t = 12.1 s, past stopTime = 12 s given to fmi2SetupExperiment: shorten it", |h| {
         h.step(10.5, 1.6)
     }),
+];
+
+/// Under a = 1 m/s² that grows by 1e5 m/s³.
+const OF_FMI_2: &[Refused] = &[
+    ("order = 2 for a_g is out of range: only derivatives of order 1 exist", |h| h.set_slope("a_g", 2, 1.0)),
+    ("order = 0 for a_g is out of range: only derivatives of order 1 exist", |h| h.set_slope("a_g", 0, 1.0)),
+    ("the derivative of a_g, NaN, is out of range: it must be finite", |h| h.set_slope("a_g", 1, f64::NAN)),
+    ("theta has no derivative that can be set: only the inputs have", |h| h.set_slope("theta", 1, 1.0)),
+    ("at the end of the step, a_g = 20001 m/s2 is out of range: it must lie between -10000 and 10000 m/s2 (", |h| {
+        h.step(10.5, 0.2)
+    }),
     ("fmi2StatusKind = 4 is not one of 0 (fmi2DoStepStatus), 1 (fmi2PendingStatus), 2 (fmi2Last", |h| unsafe {
-        fmi2GetStatus(h.component, 4, null_mut())
+        fmi2::GetStatus(h.component, 4, null_mut())
     }),
 ];
+
+const OF_FMI_3: &[Refused] = &[
+    ("fmi3GetFloat64: nValues = 2 is not 1", |h| unsafe { fmi3::GetFloat64(h.component, &2, 1, &mut 0.0, 2) }),
+    ("fmi3GetDirectionalDerivative: nSeed = 2 is not 1", |h| unsafe {
+        fmi3::GetDirectionalDerivative(h.component, &2, 1, &0, 1, &1.0, 2, &mut 0.0, 1)
+    }),
+    ("fmi3GetUInt8: this FMU has no variables of this type", |h| unsafe { fmi3::GetUInt8(h.component, &0, 1) }),
+    ("fmi3GetAdjointDerivative: not allowed in the state \"step complete\"; allowed in: none", |h| unsafe {
+        fmi3::GetAdjointDerivative(h.component)
+    }),
+    ("fmi3EnterEventMode: there is no event mode: the instance was made with eventModeUsed = false", |h| {
+        h.enter_event_mode()
+    }),
+];
+
+/// The message of FMI 3.0 that says the same as one of FMI 2.0.
+fn of_fmi_3(message: &str) -> String {
+    let words = [
+        ("value must", "values must"),
+        ("from 0 to", "from 1 to"),
+        ("GetInteger instead", "GetInt32 instead"),
+        ("Integer", "Int64"),
+        ("Real", "Float64"),
+        ("FMUstate", "FMUState"),
+        ("SetupExperiment", "EnterInitializationMode"),
+        ("fmi2", "fmi3"),
+    ];
+    words.iter().fold(message.to_owned(), |message, (of_2, of_3)| message.replace(of_2, of_3))
+}
+
+/// The status of the call that passes tolerance and times.
+fn initialize(host: &Host, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> c_int {
+    let status = host.setup(tolerance, start, stop);
+    if status == OK { host.enter() } else { status }
+}
 
 fn get(host: &Host, names: &[&str]) -> c_int {
     host.try_get(names).unwrap_err()
@@ -100,13 +142,31 @@ fn get(host: &Host, names: &[&str]) -> c_int {
 
 #[test]
 fn a_refused_call_says_why_and_changes_nothing() {
-    let stepping = Host::new();
-    assert_eq!((stepping.setup(None, 10.0, Some(12.0)), stepping.enter(), stepping.exit()), (OK, OK, OK));
-    assert_eq!(stepping.step(10.0, 0.5), OK);
-    assert_eq!((stepping.set(&[("a_g", 1.0)]), stepping.set_slope("a_g", 1, 1e5)), (OK, OK));
-    for (host, calls) in [(Host::new(), INSTANTIATED), (Host::initializing(&[]), INITIALIZING), (stepping, STEPPING)] {
-        calls.iter().for_each(|(message, call)| host.assert_refused(|| call(&host), ERROR, message));
+    for is_fmi_3 in [false, true] {
+        let [new, initializing, stepping] =
+            [(); 3].map(|()| Host::instantiate(Instantiate { is_fmi_3, ..Instantiate::default() }).unwrap());
+        stepping.begin(None, 10.0, Some(12.0));
+        assert_eq!((initializing.enter(), stepping.step(10.0, 0.5)), (OK, OK));
+        for (host, calls) in [(new, INSTANTIATED), (initializing, INITIALIZING), (stepping, STEPPING)] {
+            for (message, call) in calls {
+                let message = if is_fmi_3 { of_fmi_3(message) } else { (*message).to_owned() };
+                host.assert_refused(|| call(&host), ERROR, &message);
+            }
+        }
     }
+    let [of_2, of_3] = [Host::new(), Host::new_of_3(Some(Stepping::default()))];
+    of_2.begin(None, 10.5, None);
+    of_3.begin(None, 0.0, None);
+    assert_eq!((of_2.set(&[("a_g", 1.0)]), of_2.set_slope("a_g", 1, 1e5)), (OK, OK));
+    for (host, calls) in [(&of_2, OF_FMI_2), (&of_3, OF_FMI_3)] {
+        calls.iter().for_each(|(message, call)| host.assert_refused(|| call(host), ERROR, message));
+    }
+    assert_eq!(
+        unsafe { (fmi3::GetUInt8(of_3.component, null(), 0), fmi3::SetBinary(of_3.component, null(), 0)) },
+        (OK, OK)
+    );
+    let state = of_3.keep();
+    of_3.assert_refused(|| of_3.serialize(state, 0), Err(ERROR), " bytes (fmi3SerializedFMUStateSize)");
 }
 
 /// Hosts set all start values again, also after the start.
@@ -124,7 +184,7 @@ fn a_fixed_parameter_may_be_set_to_the_value_that_it_has() {
 #[test]
 fn a_status_that_is_never_there_is_discarded() {
     let host = Host::started(&[]);
-    assert_eq!(unsafe { fmi2GetStringStatus(host.component, 1, &mut null()) }, DISCARD);
+    assert_eq!(unsafe { fmi2::GetStringStatus(host.component, 1, &mut null()) }, DISCARD);
     let text = "fmi2GetStringStatus: fmi2PendingStatus has no answer here: fmi2DoStep never returns fmi2Pending, \
                 fmi2GetRealStatus knows fmi2LastSuccessfulTime, fmi2GetBooleanStatus knows fmi2Terminated";
     assert_eq!(host.log.take()[0].text, text);
@@ -149,11 +209,12 @@ fn contradictions_are_refused_when_initialization_ends_and_can_be_put_right() {
 #[test]
 fn an_instance_that_cannot_be_made_is_null_and_the_log_says_why() {
     let with = Instantiate::default;
-    let (other, location) = (guid(&contents(Parameters::MCMANUS)), |text: &str| Some(text.to_owned()));
-    let wrong = |guid: &str| format!("fmuGUID = \"{guid}\" is not {}: modelDescription.xml, the library ", with().guid);
+    let [own, other] = [Parameters::EVISON, Parameters::MCMANUS].map(|parameters| guid(&contents(parameters)));
+    let location = |text: &str| Some(text.to_owned());
+    let wrong = |guid: &str| format!("fmuGUID = \"{guid}\" is not {own}: modelDescription.xml, the library ");
     for (arguments, message) in [
-        (Instantiate { guid: BUILD.to_owned(), ..with() }, wrong(BUILD).as_str()),
-        (Instantiate { guid: other.clone(), ..with() }, &wrong(&other)),
+        (Instantiate { guid: Some(BUILD.to_owned()), ..with() }, wrong(BUILD).as_str()),
+        (Instantiate { guid: Some(other.clone()), ..with() }, &wrong(&other)),
         (Instantiate { name: "", ..with() }, "instanceName must not be empty"),
         (
             Instantiate { fmu_type: 2, ..with() },
@@ -175,28 +236,23 @@ fn an_instance_that_cannot_be_made_is_null_and_the_log_says_why() {
     }
 }
 
-#[test]
-fn an_instance_of_bad_pointers_is_null() {
-    let guid = CString::new(guid(&contents(Parameters::EVISON))).unwrap();
-    let log = RefCell::new(Vec::<Message>::new());
-    let functions = callbacks((&raw const log).cast_mut().cast());
-    for (name, functions) in [(c"a".as_ptr(), null()), (null(), &raw const functions), (c"\xff".as_ptr(), &functions)] {
-        let (guid, location) = (guid.as_ptr(), c"".as_ptr());
-        assert!(unsafe { fmi2Instantiate(name, CO_SIMULATION, guid, location, functions, 0, 0) }.is_null());
-    }
-    let texts: Vec<_> = log.take().into_iter().map(|message| message.text).collect();
-    let expected = ["must be a valid pointer; it is null or misaligned", "is not UTF-8 text of at most 65536 bytes"];
-    assert_eq!(texts, expected.map(|text| format!("fmi2Instantiate: instanceName {text}")));
-}
-
+/// What is null, no component, misaligned, or an instance of the other version.
 #[test]
 fn what_is_no_component_is_an_error_and_freeing_it_does_nothing() {
-    let memory = [0_u64; 64];
+    let (memory, of_2, of_3) = ([0_u64; 64], Host::new(), Host::new_of_3(None));
     let other = (&raw const memory).cast_mut().cast::<c_void>();
-    for c in [null_mut(), other, other.wrapping_byte_add(4)] {
+    let before = [of_2.bytes(), of_3.bytes()];
+    for c in [null_mut(), other, other.wrapping_byte_add(4), of_3.component] {
         unsafe {
-            assert_eq!((fmi2DoStep(c, 0.0, 1.0, 0), fmi2GetReal(c, &1, 1, &mut 0.0)), (ERROR, ERROR));
-            fmi2FreeInstance(c);
+            assert_eq!((fmi2::DoStep(c, 0.0, 1.0, 0), fmi2::GetReal(c, &1, 1, &mut 0.0)), (ERROR, ERROR));
+            fmi2::FreeInstance(c);
         }
     }
+    unsafe {
+        assert_eq!(fmi3::Reset(of_2.component), ERROR);
+        fmi3::FreeInstance(of_2.component);
+    }
+    assert_eq!([of_2.bytes(), of_3.bytes()], before);
+    let functions: *const CallbackFunctions = null();
+    assert!(unsafe { fmi2::Instantiate(c"a".as_ptr(), 1, null(), null(), functions, 0, 0) }.is_null());
 }

@@ -122,7 +122,7 @@ fn the_results_are_the_same_at_every_start_time() {
         let host = Host::new();
         assert_eq!(host.set(&[("theta_0", 0.02), ("r", 0.9)]), OK);
         let last = start + 0.01 * f64::from(STEPS);
-        assert_eq!((host.setup(None, start, Some(last)), host.enter(), host.exit()), (OK, OK, OK));
+        host.begin(None, start, Some(last));
         let mut shown = Vec::new();
         for i in 0..STEPS {
             let a_g = 6.0 * (0.2 * f64::from(i)).sin();
@@ -148,15 +148,15 @@ fn the_results_are_the_same_at_every_start_time() {
 #[test]
 fn a_point_and_the_stop_time_are_met_but_for_rounding() {
     let host = Host::new();
-    assert_eq!((host.setup(None, 10.0, Some(12.0)), host.enter(), host.exit()), (OK, OK, OK));
+    host.begin(None, 10.0, Some(12.0));
     assert_eq!((host.step(10.0 + 1e-9, 0.5), host.last_successful_time()), (OK, 10.0 + 1e-9 + 0.5));
     assert_eq!(host.step(10.5, 1.5 + 1e-9), OK);
     let (late, start) = (Host::new(), 1e12_f64);
-    assert_eq!((late.setup(None, start, None), late.enter(), late.exit()), (OK, OK, OK));
+    late.begin(None, start, None);
     let rounding = start.next_up() - start;
     assert_eq!(late.step(start + 2.0 * rounding, 2.0 * rounding), ERROR, "a step would be missed");
     let last = Host::new();
-    assert_eq!((last.setup(None, 1.7e308, None), last.enter(), last.exit()), (OK, OK, OK));
+    last.begin(None, 1.7e308, None);
     last.assert_refused(|| last.step(1.7e308, 1.7e308), ERROR, "communicationStepSize = 1.7e308 s is out of range");
 }
 

@@ -10,10 +10,35 @@ use std::ffi::CStr;
 use std::ops::Range;
 use std::ptr::{null, null_mut, without_provenance_mut};
 
-/// Makes the table of functions by name, each with its arguments.
+/// Makes the table of functions by name, each with its arguments: those of both versions, with the names that differ, and
+/// those of one version.
 macro_rules! calls {
-    ($call:ident: $($name:ident($($argument:expr),*))*) => {
+    (@ $call:ident $($name:ident($($argument:expr),*))*) => {
         &[$((stringify!($name), |c, #[allow(unused_variables)] $call| unsafe { $name(c $(, $argument)*) })),*]
+    };
+    ($call:ident: [$get:ident $set:ident $free:ident $size:ident $save:ident $load:ident] $rates:ident $($own:tt)*) => {
+        calls! { @ $call
+            SetDebugLogging($call.integer(0..2), $call.few(), $call.texts(&CATEGORIES))
+            ExitInitializationMode()
+            Terminate()
+            Reset()
+            $get($call.place_of_state())
+            $set($call.state())
+            $free($call.place_of_state())
+            $size($call.state(), $call.room(1))
+            $save($call.state(), $call.buffer(), $call.count())
+            $load($call.serialized(), $call.count(), $call.place_of_state())
+            EnterEventMode()
+            EnterContinuousTimeMode()
+            CompletedIntegratorStep($call.integer(0..2), $call.room(1), $call.room(1))
+            SetTime($call.time())
+            SetContinuousStates($call.states(), $call.count())
+            $rates($call.reals($call.subject.states().count()), $call.count())
+            GetEventIndicators($call.reals($call.subject.indicators()), $call.count())
+            GetContinuousStates($call.reals($call.subject.states().count()), $call.count())
+            GetNominalsOfContinuousStates($call.reals($call.subject.states().count()), $call.count())
+            $($own)*
+        }
     };
 }
 pub(crate) use calls;

@@ -13,65 +13,47 @@ use libc::{c_char, c_int, c_void};
 use std::ptr::null;
 
 pub const VERSION: Version = Version {
-    functions: || Function::ALL.iter().map(|function| function.name()).collect(),
-    calls: calls! { call:
-        fmi2SetDebugLogging(call.integer(0..2), call.few(), call.texts(&CATEGORIES))
-        fmi2SetupExperiment(
+    name: "fmi2",
+    functions: || Function::ALL.iter().map(|function| &function.name()[4..]).collect(),
+    calls: calls! { call: [GetFMUstate SetFMUstate FreeFMUstate SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate] GetDerivatives
+        SetupExperiment(
             call.integer(0..2), call.within(1e-14, 0.1), call.within(1e-3, 1.0), call.integer(0..2), call.within(1.0, 1e6)
         )
-        fmi2EnterInitializationMode()
-        fmi2ExitInitializationMode()
-        fmi2Terminate()
-        fmi2Reset()
-        fmi2GetReal(call.references(is_any), call.count(), call.reals_of_references())
-        fmi2GetInteger(call.references(is_number), call.count(), call.values())
-        fmi2GetBoolean(call.references(is_boolean), call.count(), call.values())
-        fmi2GetString(call.references(is_text), call.count(), call.values())
-        fmi2SetReal(call.references_to_set(), call.count(), call.reals_to_set())
-        fmi2SetInteger(call.references(is_number_to_set), call.count(), call.integers(0..8))
-        fmi2SetBoolean(call.references(is_switch), call.count(), call.integers(0..2))
-        fmi2SetString(call.references(is_text), call.count(), call.texts(&call.subject.texts))
-        fmi2GetFMUstate(call.place_of_state())
-        fmi2SetFMUstate(call.state())
-        fmi2FreeFMUstate(call.place_of_state())
-        fmi2SerializedFMUstateSize(call.state(), call.room(1))
-        fmi2SerializeFMUstate(call.state(), call.buffer(), call.count())
-        fmi2DeSerializeFMUstate(call.serialized(), call.count(), call.place_of_state())
-        fmi2GetDirectionalDerivative(
+        EnterInitializationMode()
+        GetReal(call.references(is_any), call.count(), call.reals_of_references())
+        GetInteger(call.references(is_number), call.count(), call.values())
+        GetBoolean(call.references(is_boolean), call.count(), call.values())
+        GetString(call.references(is_text), call.count(), call.values())
+        SetReal(call.references_to_set(), call.count(), call.reals_to_set())
+        SetInteger(call.references(is_number_to_set), call.count(), call.integers(0..8))
+        SetBoolean(call.references(is_switch), call.count(), call.integers(0..2))
+        SetString(call.references(is_text), call.count(), call.texts(&call.subject.texts))
+        GetDirectionalDerivative(
             call.unknowns(), call.count(), call.knowns(), call.count(), call.seed(), call.derivatives()
         )
-        fmi2SetRealInputDerivatives(call.references_to_set(), call.count(), call.integers(1..2), call.reals_to_set())
-        fmi2GetRealOutputDerivatives(
+        SetRealInputDerivatives(call.references_to_set(), call.count(), call.integers(1..2), call.reals_to_set())
+        GetRealOutputDerivatives(
             call.references(is_output), call.count(), call.integers(1..2), call.reals_of_references()
         )
-        fmi2DoStep(call.point(), call.step(), call.integer(0..2))
-        fmi2CancelStep()
-        fmi2GetStatus(call.integer(0..4), call.room(1))
-        fmi2GetRealStatus(call.integer(0..4), call.finite(1))
-        fmi2GetIntegerStatus(call.integer(0..4), call.room(1))
-        fmi2GetBooleanStatus(call.integer(0..4), call.room(1))
-        fmi2GetStringStatus(call.integer(0..4), call.room(1))
-        fmi2EnterEventMode()
-        fmi2NewDiscreteStates(call.room(1))
-        fmi2EnterContinuousTimeMode()
-        fmi2CompletedIntegratorStep(call.integer(0..2), call.room(1), call.room(1))
-        fmi2SetTime(call.time())
-        fmi2SetContinuousStates(call.states(), call.count())
-        fmi2GetDerivatives(call.reals(call.subject.states().count()), call.count())
-        fmi2GetEventIndicators(call.reals(call.subject.indicators()), call.count())
-        fmi2GetContinuousStates(call.reals(call.subject.states().count()), call.count())
-        fmi2GetNominalsOfContinuousStates(call.reals(call.subject.states().count()), call.count())
+        DoStep(call.point(), call.step(), call.integer(0..2))
+        CancelStep()
+        GetStatus(call.integer(0..4), call.room(1))
+        GetRealStatus(call.integer(0..4), call.finite(1))
+        GetIntegerStatus(call.integer(0..4), call.room(1))
+        GetBooleanStatus(call.integer(0..4), call.room(1))
+        GetStringStatus(call.integer(0..4), call.room(1))
+        NewDiscreteStates(call.room(1))
     },
     slave: SLAVE,
     model: MODEL,
     first_reference: 0,
     location: |folder| format!("file://{}", folder.display()),
     instantiate,
-    free: fmi2FreeInstance,
-    get_state: fmi2GetFMUstate,
-    free_state: fmi2FreeFMUstate,
-    size: fmi2SerializedFMUstateSize,
-    serialize: fmi2SerializeFMUstate,
+    free: FreeInstance,
+    get_state: GetFMUstate,
+    free_state: FreeFMUstate,
+    size: SerializedFMUstateSize,
+    serialize: SerializeFMUstate,
 };
 
 /// The table of FMI 2.0.4, section 4.2.4, without the columns of a step in progress or canceled, which a slave with
@@ -127,7 +109,7 @@ fn instantiate(rng: &mut Rng, interface: Interface, [name, guid, location]: [*co
         component_environment: (&raw const *told).cast_mut().cast(),
     };
     let kind = c_int::from(interface != Interface::ModelExchange);
-    unsafe { fmi2Instantiate(name, kind, guid, location, &functions, 0, rng.i32(0..2)) }
+    unsafe { Instantiate(name, kind, guid, location, &functions, 0, rng.i32(0..2)) }
 }
 
 unsafe extern "C" fn tell(
@@ -139,8 +121,8 @@ unsafe extern "C" fn tell(
 ) {
     unsafe {
         (*environment.cast::<Told>()).tell(status, text, |c| {
-            fmi2FreeInstance(c);
-            assert_eq!((fmi2DoStep(c, 0.0, 1.0, 0), fmi2Reset(c)), (ERROR, ERROR));
+            FreeInstance(c);
+            assert_eq!((DoStep(c, 0.0, 1.0, 0), Reset(c)), (ERROR, ERROR));
         });
     }
 }

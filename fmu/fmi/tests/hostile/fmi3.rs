@@ -13,69 +13,52 @@ use libc::{c_char, c_int, c_void};
 use std::ptr::null;
 
 pub const VERSION: Version = Version {
-    functions: || Function::ALL.iter().map(|function| function.name()).collect(),
-    calls: calls! { call:
-        fmi3SetDebugLogging(call.integer(0..2), call.few(), call.texts(&CATEGORIES))
-        fmi3EnterInitializationMode(
+    name: "fmi3",
+    functions: || Function::ALL.iter().map(|function| &function.name()[4..]).collect(),
+    calls: calls! { call: [GetFMUState SetFMUState FreeFMUState SerializedFMUStateSize SerializeFMUState DeserializeFMUState]
+        GetContinuousStateDerivatives
+        EnterInitializationMode(
             call.integer(0..2), call.within(1e-14, 0.1), call.within(1e-3, 1.0), call.integer(0..2), call.within(1.0, 1e6)
         )
-        fmi3ExitInitializationMode()
-        fmi3EnterEventMode()
-        fmi3Terminate()
-        fmi3Reset()
-        fmi3GetFloat64(call.references(is_any), call.count(), call.reals_of_references(), call.count_of_values())
-        fmi3GetInt32(call.references(is_integer), call.count(), call.values(), call.count_of_values())
-        fmi3GetInt64(call.references(is_number), call.count(), call.values(), call.count_of_values())
-        fmi3GetBoolean(call.references(is_boolean), call.count(), call.values(), call.count_of_values())
-        fmi3GetString(call.references(is_text), call.count(), call.values(), call.count_of_values())
-        fmi3SetFloat64(call.references_to_set(), call.count(), call.reals_to_set(), call.count_of_values())
-        fmi3SetInt32(call.references(is_integer), call.count(), call.integers(0..8), call.count_of_values())
-        fmi3SetInt64(call.references(is_number_to_set), call.count(), call.integers(0..8), call.count_of_values())
-        fmi3SetBoolean(call.references(is_switch), call.count(), call.integers(0..2), call.count_of_values())
-        fmi3SetString(call.references(is_text), call.count(), call.texts(&call.subject.texts), call.count_of_values())
-        fmi3GetFMUState(call.place_of_state())
-        fmi3SetFMUState(call.state())
-        fmi3FreeFMUState(call.place_of_state())
-        fmi3SerializedFMUStateSize(call.state(), call.room(1))
-        fmi3SerializeFMUState(call.state(), call.buffer(), call.count())
-        fmi3DeserializeFMUState(call.serialized(), call.count(), call.place_of_state())
-        fmi3GetDirectionalDerivative(
+        GetFloat64(call.references(is_any), call.count(), call.reals_of_references(), call.count_of_values())
+        GetInt32(call.references(is_integer), call.count(), call.values(), call.count_of_values())
+        GetInt64(call.references(is_number), call.count(), call.values(), call.count_of_values())
+        GetBoolean(call.references(is_boolean), call.count(), call.values(), call.count_of_values())
+        GetString(call.references(is_text), call.count(), call.values(), call.count_of_values())
+        SetFloat64(call.references_to_set(), call.count(), call.reals_to_set(), call.count_of_values())
+        SetInt32(call.references(is_integer), call.count(), call.integers(0..8), call.count_of_values())
+        SetInt64(call.references(is_number_to_set), call.count(), call.integers(0..8), call.count_of_values())
+        SetBoolean(call.references(is_switch), call.count(), call.integers(0..2), call.count_of_values())
+        SetString(call.references(is_text), call.count(), call.texts(&call.subject.texts), call.count_of_values())
+        GetDirectionalDerivative(
             call.unknowns(), call.count(), call.knowns(), call.count(), call.seed(), call.count_of_values(),
             call.derivatives(), call.count_of_values()
         )
-        fmi3EvaluateDiscreteStates()
-        fmi3UpdateDiscreteStates(
+        EvaluateDiscreteStates()
+        UpdateDiscreteStates(
             call.room(1), call.room(1), call.room(1), call.room(1), call.room(1), call.finite(1)
         )
-        fmi3EnterStepMode()
-        fmi3GetOutputDerivatives(
+        EnterStepMode()
+        GetOutputDerivatives(
             call.references(is_output), call.count(), call.integers(1..2), call.reals_of_references(), call.count_of_values()
         )
-        fmi3DoStep(
+        DoStep(
             call.point(), call.step(), call.integer(0..2), call.room(1), call.room(1), call.room(1), call.finite(1)
         )
-        fmi3EnterContinuousTimeMode()
-        fmi3CompletedIntegratorStep(call.integer(0..2), call.room(1), call.room(1))
-        fmi3SetTime(call.time())
-        fmi3SetContinuousStates(call.states(), call.count())
-        fmi3GetContinuousStateDerivatives(call.reals(call.subject.states().count()), call.count())
-        fmi3GetEventIndicators(call.reals(call.subject.indicators()), call.count())
-        fmi3GetContinuousStates(call.reals(call.subject.states().count()), call.count())
-        fmi3GetNominalsOfContinuousStates(call.reals(call.subject.states().count()), call.count())
-        fmi3GetNumberOfEventIndicators(call.room(1))
-        fmi3GetNumberOfContinuousStates(call.room(1))
-        fmi3EnterConfigurationMode()
+        GetNumberOfEventIndicators(call.room(1))
+        GetNumberOfContinuousStates(call.room(1))
+        EnterConfigurationMode()
     },
     slave: SLAVE,
     model: MODEL,
     first_reference: 1,
     location: |folder| format!("{}/", folder.display()),
     instantiate,
-    free: fmi3FreeInstance,
-    get_state: fmi3GetFMUState,
-    free_state: fmi3FreeFMUState,
-    size: fmi3SerializedFMUStateSize,
-    serialize: fmi3SerializeFMUState,
+    free: FreeInstance,
+    get_state: GetFMUState,
+    free_state: FreeFMUState,
+    size: SerializedFMUStateSize,
+    serialize: SerializeFMUState,
 };
 
 /// The standard's sections 2.3 and 4.2.1, by the functions that each state names. Step failed, terminated and error are
@@ -136,11 +119,11 @@ fn instantiate(rng: &mut Rng, interface: Interface, [name, token, folder]: [*con
         match interface {
             Interface::CoSimulation(Stepping { event_mode, early_return }) => {
                 let [event_mode, early] = [event_mode.into(), early_return.into()];
-                fmi3InstantiateCoSimulation(
+                InstantiateCoSimulation(
                     name, token, folder, 0, events, event_mode, early, required, count, told, tell, update,
                 )
             }
-            Interface::ModelExchange => fmi3InstantiateModelExchange(name, token, folder, 0, events, told, tell),
+            Interface::ModelExchange => InstantiateModelExchange(name, token, folder, 0, events, told, tell),
         }
     }
 }
@@ -148,8 +131,8 @@ fn instantiate(rng: &mut Rng, interface: Interface, [name, token, folder]: [*con
 unsafe extern "C" fn tell(environment: *mut c_void, status: c_int, _: *const c_char, text: *const c_char) {
     unsafe {
         (*environment.cast::<Told>()).tell(status, text, |c| {
-            fmi3FreeInstance(c);
-            assert_eq!((fmi3Terminate(c), fmi3Reset(c)), (ERROR, ERROR));
+            FreeInstance(c);
+            assert_eq!((Terminate(c), Reset(c)), (ERROR, ERROR));
         });
     }
 }

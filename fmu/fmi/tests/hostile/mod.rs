@@ -118,6 +118,8 @@ type Call = fn(C, &mut Sequence) -> c_int;
 
 /// A version of the standard.
 struct Version {
+    /// The start of the functions' names in C.
+    name: &'static str,
     /// All of its functions that take an instance, but for the one that frees it.
     functions: fn() -> Vec<&'static str>,
     /// How each is called, but for those that are allowed nowhere, and those of types that no variable has.
@@ -145,7 +147,7 @@ struct Table {
 impl Table {
     /// The stages that `function` may be called in.
     fn allowed(&self, function: &str) -> Vec<Stage> {
-        let row = self.rows.lines().find(|row| row.split_whitespace().any(|word| word == &function[4..]));
+        let row = self.rows.lines().find(|row| row.split_whitespace().any(|word| word == function));
         let marks = row.unwrap_or_default().split_whitespace();
         self.stages.iter().zip(marks).filter(|(_, mark)| *mark == "x").map(|(stage, _)| *stage).collect()
     }
@@ -382,9 +384,8 @@ impl<'a> Sequence<'a> {
         // few come to an error
         if self.one_in(if stage == Stage::Error { 8 } else { 2 }) {
             let table = self.version.table(before.interface);
-            let is_leading_on = |name: &str| {
-                LEADING_ON.split(' ').any(|word| word == &name[4..]) && table.allowed(name).contains(&stage)
-            };
+            let is_leading_on =
+                |name: &str| LEADING_ON.split(' ').any(|word| word == name) && table.allowed(name).contains(&stage);
             let leading_on = (0..calls.len()).filter(|at| is_leading_on(calls[*at].0)).collect::<Vec<_>>();
             number = self.rng.choice(leading_on).unwrap_or(number);
         }
@@ -402,7 +403,10 @@ impl<'a> Sequence<'a> {
         let failures: Vec<_> = messages.into_iter().filter(|(status, _)| *status > WARNING).collect();
         assert_eq!(failures.len(), usize::from(status != OK), "{name}: {status}, {failures:?}");
         let failure = failures.into_iter().next().map(|(told, text)| {
-            assert!(told == status && text.starts_with(&format!("{name}: ")), "{status}, {told}: {text}");
+            assert!(
+                told == status && text.starts_with(&format!("{}{name}: ", self.version.name)),
+                "{status}, {told}: {text}"
+            );
             text
         });
         self.check(name, status, failure, &bytes);
@@ -423,7 +427,8 @@ impl<'a> Sequence<'a> {
         if !allowed.contains(&before.stage) {
             let allowed: Vec<_> = allowed.iter().map(Stage::to_string).collect();
             let allowed = if allowed.is_empty() { "none".to_owned() } else { allowed.join(", ") };
-            let text = format!("{name}: not allowed in the state \"{}\"; allowed in: {allowed}", before.stage);
+            let (version, stage) = (self.version.name, before.stage);
+            let text = format!("{version}{name}: not allowed in the state \"{stage}\"; allowed in: {allowed}");
             assert_eq!((status, failure), (ERROR, Some(text)));
             assert!(after == bytes, "the refused {name} changed something");
             return;
@@ -431,7 +436,7 @@ impl<'a> Sequence<'a> {
         let condition = self.subject.read(&after);
         let is_said = |text: &str| failure.as_ref().is_some_and(|failure| failure.contains(text));
         assert!(!is_said("not allowed in the state"), "{failure:?}");
-        let stage = match &name[4..] {
+        let stage = match name {
             _ if status == ERROR => {
                 let is_stuck = condition.stage == Stage::Error && before.stage != Stage::Error;
                 assert!(is_stuck || after == bytes, "the refused {name} changed something: {failure:?}");
