@@ -44,16 +44,11 @@ impl Description<'_> {
         let units = self.all_units().into_iter().map(unit);
         let types = self.enumerations().into_iter().map(|of| enumeration(version, of));
         let variables = (0..).zip(self.variables);
-        let (variables, structure): (Vec<_>, _) = match version {
-            Version::Fmi2 => {
-                let has_no_row = |variable: &Variable| variable.causality == Causality::Independent;
-                let rows = variables.filter(|(_, variable)| !has_no_row(variable));
-                (rows.map(|(at, variable)| self.scalar_variable(at, variable)).collect(), self.structure_of_fmi2())
-            }
-            Version::Fmi3 => {
-                (variables.map(|(at, variable)| self.typed_variable(at, variable)).collect(), self.structure_of_fmi3())
-            }
-        };
+        let is_row = |variable: &Variable| version == Version::Fmi3 || variable.causality != Causality::Independent;
+        let rows = variables.filter(|(_, variable)| is_row(variable)).map(|(at, variable)| match version {
+            Version::Fmi2 => self.scalar_variable(at, variable),
+            Version::Fmi3 => self.typed_variable(at, variable),
+        });
         Element::new("fmiModelDescription")
             .with("fmiVersion", number)
             .with("modelName", self.name)
@@ -68,7 +63,7 @@ impl Description<'_> {
             .holding(Element::new("UnitDefinitions").holding(units).unless_empty())
             .holding(Element::new("TypeDefinitions").holding(types).unless_empty())
             .holding([self.log_categories(), self.default_experiment()])
-            .holding([Element::new("ModelVariables").holding(variables), structure])
+            .holding([Element::new("ModelVariables").holding(rows), self.structure(version)])
             .document()
     }
 
@@ -202,37 +197,35 @@ impl Description<'_> {
         found.map(move |at| (at, dependencies(self.variables, at, at_start)))
     }
 
-    /// The dependencies in FMI 2.0: after the start on inputs and states alone.
-    fn structure_of_fmi2(&self) -> Element {
+    /// The dependencies: in FMI 2.0 after the start on inputs and states alone, in FMI 3.0 on parameters and time, too.
+    fn structure(&self, version: Version) -> Element {
+        let lists: [(_, _, fn(&Variable) -> bool, _); 4] = [
+            ("Outputs", "Output", is_output, false),
+            ("Derivatives", "ContinuousStateDerivative", is_rate, false),
+            ("InitialUnknowns", "InitialUnknown", Variable::is_initial_unknown, true),
+            ("", "EventIndicator", is_indicator, false),
+        ];
         let is_input_or_state = |at: &usize| {
             let variable = &self.variables[*at];
             variable.causality == Causality::Input || variable.role == Role::State
         };
-        let list = |name, is_one: fn(&Variable) -> bool, at_start: bool| {
-            let unknowns = self.unknowns(is_one, at_start).map(|(at, mut known)| {
-                known.retain(|known| at_start || is_input_or_state(known));
-                unknown(Element::new("Unknown").with("index", index(at)), known)
-            });
-            Element::new(name).holding(unknowns)
-        };
-        Element::new("ModelStructure").holding([
-            list("Outputs", is_output, false),
-            list("Derivatives", is_rate, false),
-            list("InitialUnknowns", Variable::is_initial_unknown, true),
-        ])
-    }
-
-    /// The dependencies in FMI 3.0, on parameters and time, too.
-    fn structure_of_fmi3(&self) -> Element {
-        let list = |name, is_one: fn(&Variable) -> bool, at_start: bool| {
+        let listed = lists.into_iter().flat_map(|(list, of_3, is_one, at_start)| {
             let unknowns = self.unknowns(is_one, at_start);
-            unknowns.map(move |(at, known)| unknown(Element::new(name).with("valueReference", index(at)), known))
-        };
-        Element::new("ModelStructure")
-            .holding(list("Output", is_output, false))
-            .holding(list("ContinuousStateDerivative", is_rate, false))
-            .holding(list("InitialUnknown", Variable::is_initial_unknown, true))
-            .holding(list("EventIndicator", is_indicator, false))
+            match version {
+                Version::Fmi2 if list.is_empty() => Vec::new(),
+                Version::Fmi2 => {
+                    let unknowns = unknowns.map(|(at, mut known)| {
+                        known.retain(|known| at_start || is_input_or_state(known));
+                        unknown(Element::new("Unknown").with("index", index(at)), known)
+                    });
+                    vec![Element::new(list).holding(unknowns)]
+                }
+                Version::Fmi3 => unknowns
+                    .map(|(at, known)| unknown(Element::new(of_3).with("valueReference", index(at)), known))
+                    .collect(),
+            }
+        });
+        Element::new("ModelStructure").holding(listed)
     }
 }
 

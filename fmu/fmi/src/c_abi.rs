@@ -238,7 +238,7 @@ unsafe fn call_in<F: Function, M: Model>(
     // This is the only reference to the instance: no other call gets here while the component is busy.
     let instance = unsafe { &mut *component.instance.get() };
     let guarded = || {
-        let (stage, stages) = (instance.stage(), allowed(component.allowed_in));
+        let (stage, stages) = (instance.stage, allowed(component.allowed_in));
         let result = if stage.bit() & stages != 0 { body(instance) } else { Err(wrong_stage(stage, stages)) };
         result.map_or_else(|failure| report(&instance.logger, function, failure), |()| Status::Ok)
     };
@@ -570,7 +570,7 @@ macro_rules! shared_functions {
                 if $state.is_null() || read(stringify!($state), $state)?.is_null() {
                     return Ok(());
                 }
-                instance.free_fmu_state(read(stringify!($state), $state)?.addr())?;
+                instance.snapshots.free(read(stringify!($state), $state)?.addr())?;
                 write(stringify!($state), $state, ptr::null_mut())
             }
 

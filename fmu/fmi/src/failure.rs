@@ -6,7 +6,7 @@ use crate::variables::{Causality, DataType, Variable};
 
 /// Why a call is not done. Nothing has changed, unless the simulation has ended or is stuck.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // of fields, which are in the messages
+#[allow(missing_docs)] // the messages say it
 pub enum Failure {
     /// The model's own reason: the call returns an error.
     #[error("{0}")]
@@ -20,138 +20,100 @@ pub enum Failure {
     /// The simulation has ended.
     #[error("{0}; the simulation ends there")]
     Ended(String),
-    /// The function may not be called in this stage.
     #[error("not allowed in the state \"{stage}\"; allowed in: {allowed_in}")]
     WrongStage { stage: Stage, allowed_in: String },
-    /// A pointer that is null or not aligned.
     #[error("{0} must be a valid pointer; it is null or misaligned")]
     BadPointer(&'static str),
-    /// More values than one call may pass.
     #[error("{length} values are too many for one call: at most {limit}")]
     TooLong { length: usize, limit: usize },
-    /// A string without an end, or not in UTF-8.
     #[error("{name} is not UTF-8 text of at most {limit} bytes")]
     BadText { name: &'static str, limit: usize },
-    /// A number that stands for none of the choices.
     #[error("{name} = {value} is not one of {accepted}")]
     BadChoice { name: String, value: i32, accepted: &'static str },
-    /// An interface of the standard that this unit does not have.
     #[error("this FMU has no scheduled execution, only model exchange and co-simulation")]
     NotThisInterface,
-    /// Event mode, which the host did not ask for at instantiation.
     #[error("there is no event mode: the instance was made with eventModeUsed = false")]
     NoEventMode,
-    /// An empty name.
     #[error("instanceName must not be empty")]
     NoName,
-    /// Not the URI of a folder.
     #[error("fmuResourceLocation = {0:?} is not a file URI of this machine, such as file:///tmp/fmu/resources")]
     NotAFileUri(String),
-    /// A model description of another FMU.
     #[error(
         "{name} = {given:?} is not {needed}: modelDescription.xml, the library and the folder resources are not of one FMU; \
          export it again, and unpack every FMU into a folder of its own"
     )]
     WrongToken { name: &'static str, given: String, needed: String },
-    /// A log category that does not exist.
     #[error("log category {0:?} does not exist; see LogCategories in modelDescription.xml")]
     UnknownCategory(String),
-    /// A variable that does not exist.
     #[error("value reference {reference} does not exist; they run from {first} to {last}")]
     UnknownReference { reference: u32, first: u32, last: usize },
-    /// A variable of another type.
     #[error("{name} is {}", type_name(*data_type))]
     WrongType { name: String, data_type: DataType },
-    /// Variables of a type that no variable has.
     #[error("this FMU has no variables of this type")]
     NoneOfType,
-    /// A variable that is not set by the host.
     #[error("{name} cannot be set: it is {}, computed by the FMU", causality_name(*causality))]
     NotSettable { name: String, causality: Causality },
-    /// A number that stands for no item of an enumeration.
     #[error("{name} = {value} is out of range: {}", items(*data_type))]
     NoSuchItem { name: String, value: i64, data_type: DataType },
-    /// A parameter, too late.
     #[error("{name} is fixed once the simulation has started")]
     Fixed { name: String },
-    /// A value out of range.
     #[error(
         "{name} = {} is out of range: it must lie between {} and {} ({description})",
         with_unit(*value, unit), with_unit(*min, "1"), with_unit(*max, unit)
     )]
     OutOfRange { name: String, value: f64, unit: &'static str, min: f64, max: f64, description: String },
-    /// A tolerance, a start or a stop time out of range.
     #[error("{name} = {} is out of range: it must be {limit}", with_unit(*value, "1"))]
     Experiment { name: &'static str, value: f64, limit: String },
-    /// A derivative of another order than the first.
     #[error("order = {order} for {name} is out of range: only derivatives of order 1 exist")]
     WrongOrder { name: String, order: i32 },
-    /// A slope of what is no input.
     #[error("{name} has no derivative that can be set: only the inputs have")]
     NoInput { name: String },
-    /// A variable that no directional derivative can be taken by.
     #[error(
         "{name} cannot be a known of a directional derivative: only the inputs can, before the simulation starts real parameters \
          and, once it has started, {knowns} and time"
     )]
     NoKnown { name: String, knowns: String },
-    /// A slope or a part of a direction that is not a number.
     #[error("the derivative of {name}, {value}, is out of range: it must be finite")]
     BadSlope { name: String, value: f64 },
-    /// A derivative of what is no continuous output.
     #[error("{name} has no derivative: only continuous real outputs have")]
     NoOutput { name: String },
-    /// A derivative that has no value.
     #[error("the derivative of {name} does not exist at t = {time} s")]
     NoRate { name: String, time: f64 },
-    /// A step from the wrong time.
     #[error("currentCommunicationPoint = {} differs from the time of the FMU, t = {time} s", with_unit(*given, "s"))]
     WrongPoint { given: f64, time: f64 },
-    /// A step of no length, of no number, or to no finite time.
     #[error(
         "communicationStepSize = {} is out of range: it must be positive, finite, large enough to move t = {}, and end at a \
          finite time",
         with_unit(*step, "s"), with_unit(*time, "s")
     )]
     BadStep { step: f64, time: f64 },
-    /// A step past the end.
     #[error("the step would end at t = {until} s, past stopTime = {stop} s")]
     PastStop { until: f64, stop: f64 },
-    /// A time that is not finite.
     #[error("time = {} is out of range: time and time - startTime must be finite", with_unit(*.0, "s"))]
     BadTime(f64),
-    /// A state that is not finite, at a trial of the host's integrator that may be repeated elsewhere.
     #[error("{name} = {value} is out of range: a state must be finite; take a shorter step")]
     BadState { name: String, value: f64 },
-    /// A step of the host's integrator that ends before it starts.
     #[error(
         "the integrator's step from t = {from} s ends at t = {to} s: time must not fall below the last event or complete step"
     )]
     StepBack { from: f64, to: f64 },
-    /// Another number of values, states or indicators.
     #[error("{name} = {given} is not {needed}")]
     WrongCount { name: &'static str, given: usize, needed: usize },
-    /// A state kept by an instance of another interface.
     #[error(
         "the FMU state was kept by an instance for the other interface, or with another eventModeUsed or earlyReturnAllowed"
     )]
     OtherInterface,
-    /// A status that this FMU does not have.
     #[error(
         "{0} has no answer here: fmi2DoStep never returns fmi2Pending, fmi2GetRealStatus knows fmi2LastSuccessfulTime, \
          fmi2GetBooleanStatus knows fmi2Terminated"
     )]
     NoAnswer(&'static str),
-    /// Not one of the instance's FMU states.
     #[error("FMUstate {0:#x} is not one that this instance has handed out and not freed")]
     UnknownSnapshot(usize),
-    /// A buffer of the wrong size.
     #[error("size = {given} does not fit: the serialized FMU state takes {needed} bytes")]
     WrongSize { given: usize, needed: usize },
-    /// Bytes that are no FMU state of this library.
     #[error("serializedState is not a serialized state of this FMU: {0}")]
     BadBytes(&'static str),
-    /// A caught panic.
     #[error("internal failure, please report it: {0}; the instance can only be freed")]
     Panicked(String),
 }

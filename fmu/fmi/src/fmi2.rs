@@ -74,15 +74,11 @@ fn boolean(name: &str, value: c_int) -> Result<bool, Failure> {
     }
 }
 
-/// The items of `fmi2StatusKind`, by number.
-const STATUS_KINDS: [&str; 4] = ["fmi2DoStepStatus", "fmi2PendingStatus", LAST_SUCCESSFUL_TIME, TERMINATED];
-const LAST_SUCCESSFUL_TIME: &str = "fmi2LastSuccessfulTime";
-const TERMINATED: &str = "fmi2Terminated";
-
 /// The item of `fmi2StatusKind` that a host asks for.
 fn status_kind(value: c_int) -> Result<&'static str, Failure> {
+    let kinds = ["fmi2DoStepStatus", "fmi2PendingStatus", "fmi2LastSuccessfulTime", "fmi2Terminated"];
     let accepted = "0 (fmi2DoStepStatus), 1 (fmi2PendingStatus), 2 (fmi2LastSuccessfulTime), 3 (fmi2Terminated)";
-    let kind = usize::try_from(value).ok().and_then(|at| STATUS_KINDS.get(at));
+    let kind = usize::try_from(value).ok().and_then(|at| kinds.get(at));
     kind.copied().ok_or(Failure::BadChoice { name: "fmi2StatusKind".into(), value, accepted })
 }
 
@@ -230,7 +226,7 @@ shared_functions! {
 
     GetRealStatus(s: c_int, value: *mut c_double) |instance| {
         match status_kind(s)? {
-            LAST_SUCCESSFUL_TIME => write("value", value, instance.model.time()?),
+            "fmi2LastSuccessfulTime" => write("value", value, instance.model.time()?),
             other => Err(Failure::NoAnswer(other)),
         }
     }
@@ -239,7 +235,7 @@ shared_functions! {
 
     GetBooleanStatus(s: c_int, value: *mut c_int) |instance| {
         match status_kind(s)? {
-            TERMINATED => write("value", value, c_int::from(instance.ending()?.is_some())),
+            "fmi2Terminated" => write("value", value, c_int::from(instance.ending()?.is_some())),
             other => Err(Failure::NoAnswer(other)),
         }
     }
@@ -257,31 +253,5 @@ shared_functions! {
             next_event_time_defined: next_event.is_some().into(),
             next_event_time: next_event.unwrap_or_default(),
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::logger::Status;
-    use crate::touchy::{PANICS, Touchy, token};
-
-    #[test]
-    fn a_panic_is_fatal_and_the_instance_can_only_be_freed() {
-        let functions = CallbackFunctions {
-            logger: None,
-            allocate_memory: ptr::null(),
-            free_memory: ptr::null(),
-            step_finished: ptr::null(),
-            component_environment: ptr::null_mut(),
-        };
-        unsafe {
-            let c = Instantiate::<Touchy>(c"a".as_ptr(), 1, token().as_ptr(), c"file:///".as_ptr(), &functions, 0, 0);
-            assert_eq!(EnterInitializationMode::<Touchy>(c), Status::Ok as c_int);
-            assert_eq!(GetReal::<Touchy>(c, &PANICS, 1, &mut 0.0), Status::Fatal as c_int);
-            assert_eq!(ExitInitializationMode::<Touchy>(c), Status::Fatal as c_int);
-            assert_eq!(Reset::<Touchy>(c), Status::Fatal as c_int);
-            FreeInstance::<Touchy>(c);
-        }
     }
 }

@@ -55,23 +55,12 @@ fn sink(log: Option<LogMessageCallback>, environment: *mut c_void) -> Sink {
 }
 
 impl IntermediateUpdate {
-    /// Asks for the inputs at `time` (s), the end of a step: what the step leads to there is not known yet, which is
-    /// what a tentative update says.
-    fn ask_for_inputs(self, time: f64) {
-        let (set_requested, get_allowed, step_finished) = (1, 0, 0);
-        self.call(time, set_requested, get_allowed, step_finished);
-    }
-
-    /// Has the host read what a step has led to at `time` (s).
-    fn show_outputs(self, time: f64) {
-        let (set_requested, get_allowed, step_finished) = (0, 1, 1);
-        self.call(time, set_requested, get_allowed, step_finished);
-    }
-
-    /// A request to return early is ignored.
-    fn call(self, time: f64, set_requested: u8, get_allowed: u8, step_finished: u8) {
+    /// Calls the host at `time` (s), the end of a step: for the inputs there, before the step is computed, or for reading
+    /// its outputs. A request to return early is ignored.
+    fn call(self, time: f64, asks_for_inputs: bool) {
         let IntermediateUpdate { update, environment, .. } = self;
-        let (mut requested, mut at, can_return_early) = (0, 0.0, 0);
+        let (set_requested, get_allowed) = (asks_for_inputs.into(), (!asks_for_inputs).into());
+        let (step_finished, can_return_early, mut requested, mut at) = (get_allowed, 0, 0, 0.0);
         let (requested, at) = (&raw mut requested, &raw mut at);
         unsafe {
             update(environment, time, set_requested, get_allowed, step_finished, can_return_early, requested, at)
@@ -298,7 +287,7 @@ with_lists! {
         let (mut asked, mut told) = (None, None);
         let mut compute = |instance: &mut Instance<M>| unsafe {
             let progress = instance.do_step(point, step)?;
-            let (time, may_return_early) = (instance.model.time()?, instance.may_return_early());
+            let (time, may_return_early) = (instance.model.time()?, instance.interface.stepping().early_return);
             if let (Progress::Ended, Some(ending)) = (progress, instance.ending()?) {
                 instance.logger.warning(&format!("fmi3DoStep: {ending}"));
             }
@@ -317,11 +306,11 @@ with_lists! {
         };
         let mut status = unsafe { call(c, Function::DoStep, begin) };
         if let Some(host) = asked {
-            unsafe { call_back::<Function, M>(c, || host.ask_for_inputs(point + step)) };
+            unsafe { call_back::<Function, M>(c, || host.call(point + step, true)) };
             status = unsafe { call_on(c, Function::DoStep, compute) };
         }
         if let Some((host, time)) = told {
-            unsafe { call_back::<Function, M>(c, || host.show_outputs(time)) };
+            unsafe { call_back::<Function, M>(c, || host.call(time, false)) };
             let end = |instance: &mut Instance<M>| {
                 instance.end_step();
                 Ok(())
@@ -423,7 +412,7 @@ mod tests {
     }
 
     #[test]
-    fn an_instance_that_broke_within_a_step_is_freed_after_it() {
+    fn an_instance_that_panics_can_only_be_freed_and_not_within_a_step() {
         let mut c: *mut c_void = ptr::null_mut();
         let (token, environment) = (token(), (&raw mut c).cast());
         DROPPED.set(0);
@@ -438,6 +427,7 @@ mod tests {
             let (mut flags, mut time) = ([0; 3], 0.0);
             let [event, end, early] = &mut flags;
             assert_eq!(DoStep::<Touchy>(c, 0.0, 0.1, 0, event, end, early, &mut time), Status::Fatal as c_int);
+            assert_eq!(Reset::<Touchy>(c), Status::Fatal as c_int);
             FreeInstance::<Touchy>(c);
         }
         assert_eq!(DROPPED.get(), 1);

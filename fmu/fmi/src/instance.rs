@@ -31,8 +31,8 @@ pub struct Instance<M> {
     kinds: Vec<Kind>,
     /// The range of each input; no number is in that of other variables.
     ranges: Vec<(f64, f64)>,
-    interface: Interface,
-    stage: Stage,
+    pub(crate) interface: Interface,
+    pub(crate) stage: Stage,
     experiment: Experiment,
     pub(crate) logger: Logger,
     /// The log categories that were on when the instance was made.
@@ -40,7 +40,7 @@ pub struct Instance<M> {
     handling: EventHandling,
     /// The model's state, as it was made.
     at_start: Vec<u8>,
-    snapshots: Snapshots,
+    pub(crate) snapshots: Snapshots,
     /// Values on their way between the host and the model.
     reals: Vec<f64>,
     /// The positions of variables whose value references the host gives.
@@ -127,20 +127,10 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// State of FMI's state machine.
-    #[inline]
-    pub(crate) fn stage(&self) -> Stage {
-        self.stage
-    }
-
     /// The variable at the position `reference`.
     #[inline]
     fn find(&self, reference: u32) -> Result<&Variable, Failure> {
         find(&self.variables, reference, self.first)
-    }
-
-    fn is_state(&self, reference: u32) -> bool {
-        self.variables[reference as usize].role == Role::State
     }
 
     /// How many variables play a role.
@@ -237,11 +227,6 @@ impl<M: Model> Instance<M> {
         (self.stage, self.experiment) = (*stage, *experiment);
         (self.handling.awaits_event, self.handling.trials) = (false, 0);
         Ok(())
-    }
-
-    /// Forgets the FMU state `handle`.
-    pub(crate) fn free_fmu_state(&mut self, handle: usize) -> Result<(), Failure> {
-        self.snapshots.free(handle)
     }
 
     /// The FMU state `handle` as bytes.
@@ -388,7 +373,9 @@ impl<M: Model> Instance<M> {
                     inputs.push(*reference);
                     of_inputs.push(value);
                 }
-                _ if states.is_none() || !self.is_state(*reference) => self.model.set(*reference, Value::Real(value)),
+                _ if states.is_none() || self.variables[*reference as usize].role != Role::State => {
+                    self.model.set(*reference, Value::Real(value))
+                }
                 _ => (), // set with all states
             }
         }
@@ -597,11 +584,6 @@ impl<M: Model> Instance<M> {
     /// Ends the step, once the host has read.
     pub(crate) fn end_step(&mut self) {
         self.stage = self.led_to.take().unwrap_or(self.stage);
-    }
-
-    /// Whether the host takes a step that ends early.
-    pub(crate) fn may_return_early(&self) -> bool {
-        self.interface.stepping().early_return
     }
 
     /// Refuses a step that cannot be made from `point` (s) over `step` (s).

@@ -35,14 +35,19 @@ impl Category {
     /// All of them.
     pub const ALL: [Category; 4] = [Category::Events, Category::Warning, Category::Discard, Category::Error];
 
-    /// Name, as the standard recommends it.
-    pub const fn name(self) -> &'static CStr {
+    /// Name, as the standard recommends it, and the topic in one line.
+    const fn words(self) -> (&'static CStr, &'static str) {
         match self {
-            Category::Events => c"logEvents",
-            Category::Warning => c"logStatusWarning",
-            Category::Discard => c"logStatusDiscard",
-            Category::Error => c"logStatusError",
+            Category::Events => (c"logEvents", "events, as they happen"),
+            Category::Warning => (c"logStatusWarning", "warnings about the results; always on in FMI 2.0"),
+            Category::Discard => (c"logStatusDiscard", "steps that end early and the reasons; always on"),
+            Category::Error => (c"logStatusError", "rejected calls and the reasons; always on"),
         }
+    }
+
+    /// Name.
+    pub const fn name(self) -> &'static CStr {
+        self.words().0
     }
 
     /// The one called `name`, if there is one.
@@ -52,12 +57,7 @@ impl Category {
 
     /// The topic in one line.
     pub const fn description(self) -> &'static str {
-        match self {
-            Category::Events => "events, as they happen",
-            Category::Warning => "warnings about the results; always on in FMI 2.0",
-            Category::Discard => "steps that end early and the reasons; always on",
-            Category::Error => "rejected calls and the reasons; always on",
-        }
+        self.words().1
     }
 }
 

@@ -5,7 +5,7 @@
 
 use crate::failure::Failure;
 use crate::model::Model;
-use crate::variables::{Causality, Role, Value, Variable, state_references};
+use crate::variables::{Causality, Role, Value, state_references};
 
 /// The largest change that the scheme may last make, relative to the derivative, or to the value of the unknown over the
 /// magnitude of the known if that is more.
@@ -99,7 +99,8 @@ pub fn along<M: Model>(
             model.set_states(&states)?;
             found
         } else {
-            return Err(no_known(&variables, *reference));
+            let knowns = state_references(&variables).map(|state| model.name(state)).collect::<Vec<_>>().join(", ");
+            return Err(Failure::NoKnown { name: model.name(*reference), knowns });
         };
         for (at, sum) in sums.iter_mut().enumerate() {
             let Some(by) = found.as_ref().and_then(|found| found[at]) else {
@@ -109,13 +110,6 @@ pub fn along<M: Model>(
         }
     }
     Ok(sums)
-}
-
-/// Refuses a directional derivative by a variable that is neither an input, a parameter nor a state.
-fn no_known(variables: &[Variable], reference: u32) -> Failure {
-    let name = |reference: u32| variables[reference as usize].name.to_string();
-    let knowns = state_references(variables).map(name).collect::<Vec<_>>().join(", ");
-    Failure::NoKnown { name: name(reference), knowns }
 }
 
 #[cfg(test)]

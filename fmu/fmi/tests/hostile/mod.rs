@@ -227,7 +227,22 @@ pub fn no_call_does_harm(subject: &Subject, version: u8, is_model: bool) {
     };
     let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
     let checked = runner.run(&vec(any::<u64>(), 1..2 * CALLS_PER_SEQUENCE), |numbers| {
-        Sequence::new(subject, version, interface, &location).run(&numbers, &mut tally.borrow_mut());
+        let sequence = Sequence {
+            rng: Rng::with_seed(0),
+            subject,
+            version,
+            interface,
+            location: &location,
+            c: null_mut(),
+            told: Told::default(),
+            states: Vec::new(),
+            freed: null_mut(),
+            new: Vec::new(),
+            before: None,
+            bytes: Vec::new(),
+            drawn: Drawn::default(),
+        };
+        sequence.run(&numbers, &mut tally.borrow_mut());
         Ok(())
     });
     checked.unwrap_or_else(|failure| panic!("{failure}"));
@@ -304,30 +319,7 @@ struct Sequence<'a> {
     drawn: Drawn,
 }
 
-impl<'a> Sequence<'a> {
-    fn new(
-        subject: &'a Subject,
-        version: &'static Version,
-        interface: fn(&mut Rng) -> Interface,
-        location: &'a CStr,
-    ) -> Self {
-        Sequence {
-            rng: Rng::with_seed(0),
-            subject,
-            version,
-            interface,
-            location,
-            c: null_mut(),
-            told: Told::default(),
-            states: Vec::new(),
-            freed: null_mut(),
-            new: Vec::new(),
-            before: None,
-            bytes: Vec::new(),
-            drawn: Drawn::default(),
-        }
-    }
-
+impl Sequence<'_> {
     fn run(mut self, numbers: &[u64], tally: &mut Tally) {
         for number in numbers {
             self.rng.seed(*number);
