@@ -11,7 +11,7 @@ use FlexibleRocking::variables::Table;
 use fmi_unit::interface::Stepping;
 use fmi_unit::snapshot::Snapshot;
 use fmi_unit::variables::{position, state_references};
-use fmi_unit::{DataType, Experiment, Model, Update, Variable};
+use fmi_unit::{DataType, Model, Update, Variable};
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::{Body, Floor, Mode, Modes, Parameters, Structure, Ties};
 use std::cell::{Cell, RefCell};
@@ -56,7 +56,7 @@ pub struct Host {
     pub resources: TempDir,
     pub variables: Arc<[Variable]>,
     /// For FMI 3.0, which has it when initialization begins.
-    experiment: Cell<Experiment>,
+    experiment: Cell<(bool, f64, f64, bool, f64)>,
     pub around: fn(bool),
 }
 
@@ -176,6 +176,25 @@ fn done<T>(status: c_int, value: T) -> Result<T, c_int> {
     if status == OK { Ok(value) } else { Err(status) }
 }
 
+/// Methods for functions without arguments.
+macro_rules! without_arguments {
+    ($($method:ident: $function:ident)*) => {
+        impl Host {
+            $(pub fn $method(&self) -> c_int {
+                call!(self, $function())
+            })*
+        }
+    };
+}
+
+without_arguments! {
+    exit: ExitInitializationMode
+    terminate: Terminate
+    reset: Reset
+    enter_event_mode: EnterEventMode
+    go_on: EnterContinuousTimeMode
+}
+
 impl Host {
     /// Just instantiated, or the log.
     pub fn instantiate(arguments: Instantiate) -> Result<Host, Vec<Message>> {
@@ -278,35 +297,21 @@ impl Host {
         assert_eq!(called, (OK, OK, OK), "{:?}", self.log);
     }
 
-    pub fn setup(&self, tolerance: Option<f64>, start_time: f64, stop_time: Option<f64>) -> c_int {
-        self.experiment.set(Experiment { tolerance, start_time, stop_time });
-        let [(defined, tolerance), (stops, stop)] =
-            [tolerance, stop_time].map(|number| (number.is_some().into(), number.unwrap_or_default()));
-        let c = self.component;
+    /// Passes tolerance and times, in FMI 3.0 when initialization begins.
+    pub fn setup(&self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> c_int {
+        let number = |given: Option<f64>| (given.is_some(), given.unwrap_or_default());
+        let ((is_defined, tolerance), (stops, stop)) = (number(tolerance), number(stop));
+        self.experiment.set((is_defined, tolerance, start, stops, stop));
         if self.is_fmi_3 {
-            OK
-        } else {
-            unsafe { fmi2::SetupExperiment(c, defined, tolerance, start_time, stops, stop) }
+            return OK;
         }
+        unsafe { fmi2::SetupExperiment(self.component, is_defined.into(), tolerance, start, stops.into(), stop) }
     }
 
     pub fn enter(&self) -> c_int {
-        let Experiment { tolerance, start_time, stop_time } = self.experiment.get();
-        let [(defined, tolerance), (stops, stop)] =
-            [tolerance, stop_time].map(|number| (number.is_some().into(), number.unwrap_or_default()));
-        call!(self, EnterInitializationMode(), EnterInitializationMode(defined, tolerance, start_time, stops, stop))
-    }
-
-    pub fn exit(&self) -> c_int {
-        call!(self, ExitInitializationMode())
-    }
-
-    pub fn terminate(&self) -> c_int {
-        call!(self, Terminate())
-    }
-
-    pub fn reset(&self) -> c_int {
-        call!(self, Reset())
+        let (is_defined, tolerance, start, stops, stop) = self.experiment.get();
+        let (is_defined, stops) = (is_defined.into(), stops.into());
+        call!(self, EnterInitializationMode(), EnterInitializationMode(is_defined, tolerance, start, stops, stop))
     }
 
     /// The value reference of the variable `name`.
@@ -473,10 +478,6 @@ impl Host {
         done(status, (event == 1 || event_3 == 1, end == 1 || end_3 == 1))
     }
 
-    pub fn enter_event_mode(&self) -> c_int {
-        call!(self, EnterEventMode())
-    }
-
     pub fn update(&self) -> Result<Update, c_int> {
         let (mut info, mut flags, mut time): (EventInfo, _, _) = (unsafe { std::mem::zeroed() }, [0; 5], 0.0);
         let [needed, end, nominals, values, is_foreseen] = &mut flags;
@@ -493,11 +494,6 @@ impl Host {
             next_event: (info.next_event_time_defined == 1 || flags[4] == 1).then_some(info.next_event_time + time),
         };
         done(status, update)
-    }
-
-    /// On to continuous-time mode.
-    pub fn go_on(&self) -> c_int {
-        call!(self, EnterContinuousTimeMode())
     }
 
     /// Goes to the host's states at `time` (s), and through the event if the completed step asks for one.

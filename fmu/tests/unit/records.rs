@@ -202,42 +202,6 @@ fn the_input_adds_to_the_record() {
     assert_relative_eq!(host.get("a_ground"), 1.125);
 }
 
-/// Mid-record, in another instance whose archive has the record, too, a state goes on with the same bits; with another
-/// record it is refused.
-#[test]
-fn a_state_goes_on_in_the_midst_of_its_record() {
-    let host = |text: &str| {
-        let host = Host::initializing(&[]);
-        host.write("quake.AT2", text);
-        assert_eq!(
-            (host.set_record("quake.AT2"), host.set_boolean("peaks", 1), host.exit()),
-            (OK, OK, OK),
-            "{:?}",
-            host.log
-        );
-        host
-    };
-    let first = host(&at2(600));
-    step_through(&first, [4.0, 0.013]);
-    let (bytes, going_on) = (first.bytes(), step_through(&first, [0.1, 5.0]));
-    let peaks = |host: &Host| PEAKS.map(|peaking| host.get(&format!("{}_max", peaking.name)));
-    let second = Host::new();
-    second.write("quake.AT2", &at2(600));
-    assert_eq!(second.go_back(second.deserialize(&bytes).unwrap()), OK, "{:?}", second.log);
-    assert_eq!((second.bytes(), second.record()), (bytes.clone(), "quake.AT2".to_owned()));
-    assert_eq!(step_through(&second, [0.1, 5.0]), going_on);
-    assert_eq!((peaks(&second), second.bytes()), (peaks(&first), first.bytes()));
-
-    let other = host(&at2(599));
-    let state = other.deserialize(&bytes).unwrap();
-    let message = "fmi2SetFMUstate: the samples of record = \"quake.AT2\" changed after the FMU state was saved";
-    other.assert_refused(|| other.go_back(state), ERROR, message);
-    let without = Host::new();
-    let state = without.deserialize(&bytes).unwrap();
-    assert_eq!(without.go_back(state), ERROR);
-    assert!(without.log.take()[0].text.contains("record = \"quake.AT2\" is not in "));
-}
-
 /// A record that cannot be followed is told when initialization ends, or before if its values are asked for; nothing changes.
 #[test]
 fn a_record_that_cannot_be_followed_is_refused() {

@@ -91,28 +91,14 @@ fn what_is_gone_beyond_is_that_of_a_run_and_told_once() {
     assert!(expected.gains > 0 && passed == [true, true, true, false, false, true, false], "{expected:?}");
 }
 
-/// Of the start itself before any step, and back with a state: what was told before it is not told again.
+/// Of the start itself, before any step.
 #[test]
-fn what_is_gone_beyond_goes_back_with_a_state() {
+fn limits_are_known_at_the_start() {
     let turned = Host::initializing(&[("theta_0", 0.02)]);
     assert_eq!((turned.set_boolean("validity", 1), turned.exit()), (OK, OK));
     assert_eq!(turned.get("R_v_min"), turned.get("R_v") / ((125.8 + 44.02) * 9.81));
-    assert_eq!(
-        (turned.get("tension_max"), turned.get("energy_gain_max")),
-        (f64::NEG_INFINITY, 0.0),
-        "the base has not been down"
-    );
-    let host = host(1);
-    step(&host, 0.0, &[1.5]);
-    assert!(!host.log.take().is_empty());
-    let (state, before) = (host.keep(), (read(&host), host.integer("energy_gains")));
-    step(&host, 1.5, &[3.5]);
-    let after = (read(&host), host.bytes());
-    let told = host.log.take();
-    assert_ne!(after.0, before.0);
-    assert_eq!((host.go_back(state), (read(&host), host.integer("energy_gains"))), (OK, before));
-    step(&host, 1.5, &[3.5]);
-    assert_eq!(((read(&host), host.bytes()), host.log.take()), (after, told));
+    let not_down = (turned.get("tension_max"), turned.get("energy_gain_max"));
+    assert_eq!(not_down, (f64::NEG_INFINITY, 0.0), "the base has not been down");
 }
 
 /// Without `validity` and `peaks` nothing is watched, and the work is the same to the last step.

@@ -3,12 +3,12 @@
 use super::arguments::{
     CATEGORIES, calls, is_any, is_boolean, is_number, is_number_to_set, is_output, is_switch, is_text,
 };
-use super::{C, ERROR, STAGES_OF_MODEL, Table, Told, Version};
+use super::{C, ERROR, Table, Told, Version};
 use crate::fmi2::*;
 use fastrand::Rng;
 use fmi_unit::c_abi::Function as _;
 use fmi_unit::interface::Interface;
-use fmi_unit::state_machine::Stage;
+use fmi_unit::state_machine::Stage::*;
 use libc::{c_char, c_int, c_void};
 use std::ptr::null;
 
@@ -44,8 +44,7 @@ pub const VERSION: Version = Version {
         GetStringStatus(call.integer(0..4), call.room(1))
         NewDiscreteStates(call.room(1))
     },
-    slave: SLAVE,
-    model: MODEL,
+    table: TABLE,
     first_reference: 0,
     location: |folder| format!("file://{}", folder.display()),
     instantiate,
@@ -56,46 +55,38 @@ pub const VERSION: Version = Version {
     serialize: SerializeFMUstate,
 };
 
-/// The table of FMI 2.0.4, section 4.2.4, without the columns of a step in progress or canceled, which a slave with
-/// synchronous steps never sees. Some functions are for some variables only, or their values good for debugging only.
-const SLAVE: Table = Table {
+/// The tables of FMI 2.0.4: section 4.2.4 for a slave, whose steps are synchronous, so that it is never in a step in progress
+/// or canceled, and section 3.2.3 for a model. Some functions are for some variables only, or their values good for
+/// debugging only. Since 2.0.1 time is set at an event of models without continuous states alone, before of all.
+const TABLE: Table = Table {
     stages: &[
-        Stage::Instantiated,
-        Stage::InitializationMode,
-        Stage::StepComplete,
-        Stage::StepFailed,
-        Stage::Terminated,
-        Stage::Error,
+        ("x", Instantiated),
+        ("x", InitializationMode),
+        ("s", StepComplete),
+        ("s", StepFailed),
+        ("m", EventMode),
+        ("m", ContinuousTimeMode),
+        ("x", Terminated),
+        ("x", Error),
     ],
     rows: "\
-        x x x x x x  SetDebugLogging Reset GetFMUstate SetFMUstate FreeFMUstate
-        x x x x x x  SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate
-        x - - - - -  SetupExperiment EnterInitializationMode
-        - x - - - -  ExitInitializationMode
-        x x x - - -  SetReal SetInteger SetBoolean SetString SetRealInputDerivatives
-        - x x x x x  GetReal GetInteger GetBoolean GetString GetDirectionalDerivative
-        - - x x x x  GetRealOutputDerivatives
-        - - x - - -  DoStep
-        - - x x x -  GetStatus GetRealStatus GetIntegerStatus GetBooleanStatus GetStringStatus
-        - - x x - -  Terminate",
-};
-
-/// The table of FMI 2.0.4, section 3.2.3. Since 2.0.1 time is set at an event of models without continuous states alone,
-/// before of all.
-const MODEL: Table = Table {
-    stages: &STAGES_OF_MODEL,
-    rows: "\
-        x x x x x x  SetDebugLogging Reset GetFMUstate SetFMUstate FreeFMUstate GetNominalsOfContinuousStates
-        x x x x x x  SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate
-        x - - - - -  SetupExperiment EnterInitializationMode
-        - x - - - -  ExitInitializationMode
-        x x x x - -  SetReal
-        x x x - - -  SetInteger SetBoolean SetString
-        - x x x x x  GetReal GetInteger GetBoolean GetString GetDirectionalDerivative
-        - x x x x x  GetDerivatives GetEventIndicators GetContinuousStates
-        - - x - - -  NewDiscreteStates EnterContinuousTimeMode
-        - - x x - -  SetTime EnterEventMode Terminate
-        - - - x - -  CompletedIntegratorStep SetContinuousStates",
+        x x x x x x x x  SetDebugLogging Reset GetFMUstate SetFMUstate FreeFMUstate
+        x x x x x x x x  SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate
+        x - - - - - - -  SetupExperiment EnterInitializationMode
+        - x - - - - - -  ExitInitializationMode
+        x x x - x x - -  SetReal
+        x x x - x - - -  SetInteger SetBoolean SetString
+        s s s - - - - -  SetRealInputDerivatives
+        - x x x x x x x  GetReal GetInteger GetBoolean GetString GetDirectionalDerivative
+        - - s s - - s s  GetRealOutputDerivatives
+        - - s - - - - -  DoStep
+        - - s s - - s -  GetStatus GetRealStatus GetIntegerStatus GetBooleanStatus GetStringStatus
+        - - x x x x - -  Terminate
+        m m - - m m m m  GetNominalsOfContinuousStates
+        - m - - m m m m  GetDerivatives GetEventIndicators GetContinuousStates
+        - - - - m - - -  NewDiscreteStates EnterContinuousTimeMode
+        - - - - m m - -  SetTime EnterEventMode
+        - - - - - m - -  CompletedIntegratorStep SetContinuousStates",
 };
 
 fn instantiate(rng: &mut Rng, interface: Interface, [name, guid, location]: [*const c_char; 3], told: &Told) -> C {

@@ -3,12 +3,12 @@
 use super::arguments::{
     CATEGORIES, calls, is_any, is_boolean, is_integer, is_number, is_number_to_set, is_output, is_switch, is_text,
 };
-use super::{C, ERROR, STAGES_OF_MODEL, Table, Told, Version};
+use super::{C, ERROR, Table, Told, Version};
 use crate::fmi3::*;
 use fastrand::Rng;
 use fmi_unit::c_abi::Function as _;
 use fmi_unit::interface::{Interface, Stepping};
-use fmi_unit::state_machine::Stage;
+use fmi_unit::state_machine::Stage::*;
 use libc::{c_char, c_int, c_void};
 use std::ptr::null;
 
@@ -49,8 +49,7 @@ pub const VERSION: Version = Version {
         GetNumberOfContinuousStates(call.room(1))
         EnterConfigurationMode()
     },
-    slave: SLAVE,
-    model: MODEL,
+    table: TABLE,
     first_reference: 1,
     location: |folder| format!("{}/", folder.display()),
     instantiate,
@@ -61,55 +60,44 @@ pub const VERSION: Version = Version {
     serialize: SerializeFMUState,
 };
 
-/// The standard's sections 2.3 and 4.2.1, by the functions that each state names. Step failed, terminated and error are
-/// its "terminated"; after the first of them a simulation has still to be terminated. Within an intermediate update the
-/// inputs can be set, or all values be had: it is said which, and a step is no state to keep or to leave. The numbers of
-/// states and of event indicators can be had at any time, as of the Reference FMUs.
-const SLAVE: Table = Table {
+/// The standard's sections 2.3, 4.2.1 for a slave and 3.2.1 for a model, by the functions that each state names. Step failed,
+/// terminated and error are its "terminated"; after a failed step a simulation has still to be terminated. Within an
+/// intermediate update the host can either set inputs or get all values; a step is no state to keep or to leave. As in the
+/// Reference FMUs, the numbers of states and of event indicators can be had at any time, and time can be set at an event.
+const TABLE: Table = Table {
     stages: &[
-        Stage::Instantiated,
-        Stage::InitializationMode,
-        Stage::StepComplete,
-        Stage::IntermediateUpdateMode,
-        Stage::IntermediateOutputs,
-        Stage::StepFailed,
-        Stage::EventMode,
-        Stage::Terminated,
-        Stage::Error,
+        ("x", Instantiated),
+        ("x", InitializationMode),
+        ("s", StepComplete),
+        ("s", IntermediateUpdateMode),
+        ("s", IntermediateOutputs),
+        ("s", StepFailed),
+        ("x", EventMode),
+        ("m", ContinuousTimeMode),
+        ("x", Terminated),
+        ("x", Error),
     ],
     rows: "\
-        x x x x x x x x x  SetDebugLogging GetNumberOfEventIndicators GetNumberOfContinuousStates
-        x x x - - x x x x  Reset GetFMUState SetFMUState FreeFMUState
-        x x x - - x x x x  SerializedFMUStateSize SerializeFMUState DeserializeFMUState
-        x - - - - - - - -  EnterInitializationMode
-        - x - - - - - - -  ExitInitializationMode
-        x x x x - - x - -  SetFloat64
-        x x x - - - x - -  SetInt32 SetInt64 SetBoolean SetString
-        x x x - x x x x x  GetFloat64 GetInt32 GetInt64 GetBoolean GetString
-        - x x - - x x x x  GetDirectionalDerivative
-        - - x - x x - x x  GetOutputDerivatives
-        - - x - - - - - -  DoStep EnterEventMode
-        - - x - - x x - -  Terminate
-        - - - - - - x - -  EvaluateDiscreteStates UpdateDiscreteStates EnterStepMode",
-};
-
-/// The standard's sections 2.3 and 3.2.1 for a model; error is its "terminated" after an error. Beyond them the Reference
-/// FMUs let time be set at an event, and the numbers be had at any time.
-const MODEL: Table = Table {
-    stages: &STAGES_OF_MODEL,
-    rows: "\
-        x x x x x x  SetDebugLogging GetNumberOfEventIndicators GetNumberOfContinuousStates Reset
-        x x x x x x  GetFMUState SetFMUState FreeFMUState SerializedFMUStateSize SerializeFMUState DeserializeFMUState
-        x x x x x x  GetFloat64 GetInt32 GetInt64 GetBoolean GetString
-        x - - - - -  EnterInitializationMode
-        - x - - - -  ExitInitializationMode
-        x x x x - -  SetFloat64
-        x x x - - -  SetInt32 SetInt64 SetBoolean SetString
-        - x x x x x  GetDirectionalDerivative GetContinuousStateDerivatives
-        - x x x x x  GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates
-        - - x - - -  EvaluateDiscreteStates UpdateDiscreteStates EnterContinuousTimeMode
-        - - x x - -  SetTime Terminate
-        - - - x - -  EnterEventMode CompletedIntegratorStep SetContinuousStates",
+        x x x x x x x x x x  SetDebugLogging GetNumberOfEventIndicators GetNumberOfContinuousStates
+        x x x - - x x x x x  Reset GetFMUState SetFMUState FreeFMUState
+        x x x - - x x x x x  SerializedFMUStateSize SerializeFMUState DeserializeFMUState
+        x - - - - - - - - -  EnterInitializationMode
+        - x - - - - - - - -  ExitInitializationMode
+        x x x x - - x x - -  SetFloat64
+        x x x - - - x - - -  SetInt32 SetInt64 SetBoolean SetString
+        x x x - x x x x x x  GetFloat64 GetInt32 GetInt64 GetBoolean GetString
+        - x x - - x x x x x  GetDirectionalDerivative
+        - - s - s s - - s s  GetOutputDerivatives
+        - - s - - - - - - -  DoStep
+        - - s - - - - m - -  EnterEventMode
+        - - x - - x x x - -  Terminate
+        - - - - - - x - - -  EvaluateDiscreteStates UpdateDiscreteStates
+        - - - - - - s - - -  EnterStepMode
+        - m - - - - m m m m  GetContinuousStateDerivatives GetNominalsOfContinuousStates
+        - m - - - - m m m m  GetEventIndicators GetContinuousStates
+        - - - - - - m - - -  EnterContinuousTimeMode
+        - - - - - - m m - -  SetTime
+        - - - - - - - m - -  CompletedIntegratorStep SetContinuousStates",
 };
 
 fn instantiate(rng: &mut Rng, interface: Interface, [name, token, folder]: [*const c_char; 3], told: &Told) -> C {

@@ -34,16 +34,6 @@ const WARNING: c_int = Status::Warning as c_int;
 const DISCARD: c_int = Status::Discard as c_int;
 const ERROR: c_int = Status::Error as c_int;
 
-/// The stages of a model, whatever the version.
-const STAGES_OF_MODEL: [Stage; 6] = [
-    Stage::Instantiated,
-    Stage::InitializationMode,
-    Stage::EventMode,
-    Stage::ContinuousTimeMode,
-    Stage::Terminated,
-    Stage::Error,
-];
-
 /// Calls of each interface without `FUZZ_CALLS`.
 const CALLS: u64 = 20_000;
 
@@ -124,8 +114,7 @@ struct Version {
     functions: fn() -> Vec<&'static str>,
     /// How each is called, but for those that are allowed nowhere, and those of types that no variable has.
     calls: &'static [(&'static str, Call)],
-    slave: Table,
-    model: Table,
+    table: Table,
     first_reference: c_uint,
     /// The folder `resources` as this version names it.
     location: fn(&Path) -> String,
@@ -138,26 +127,31 @@ struct Version {
     serialize: unsafe extern "C" fn(C, C, *mut u8, usize) -> c_int,
 }
 
-/// The stages of an interface, and in which of them functions may be called: x or -, then their names without the prefix.
+/// The stages of a version, and in which of them functions may be called: x is for both interfaces, s for a slave, m for a
+/// model, - for neither.
 struct Table {
-    stages: &'static [Stage],
+    stages: &'static [(&'static str, Stage)],
+    /// A mark for each stage, then the names of functions.
     rows: &'static str,
 }
 
 impl Table {
-    /// The stages that `function` may be called in.
-    fn allowed(&self, function: &str) -> Vec<Stage> {
+    /// The stages of `interface` in which a function with these `marks` may be called.
+    fn marked<'a>(&self, marks: impl Iterator<Item = &'a str>, interface: Interface) -> Vec<Stage> {
+        let own = if interface == Interface::ModelExchange { "m" } else { "s" };
+        let is_one = |mark: &str| mark == "x" || mark == own;
+        let marked = self.stages.iter().zip(marks).filter(|((of, _), mark)| is_one(of) && is_one(mark));
+        marked.map(|((_, stage), _)| *stage).collect()
+    }
+
+    /// The stages of `interface` that `function` may be called in.
+    fn allowed(&self, function: &str, interface: Interface) -> Vec<Stage> {
         let row = self.rows.lines().find(|row| row.split_whitespace().any(|word| word == function));
-        let marks = row.unwrap_or_default().split_whitespace();
-        self.stages.iter().zip(marks).filter(|(_, mark)| *mark == "x").map(|(stage, _)| *stage).collect()
+        self.marked(row.unwrap_or_default().split_whitespace(), interface)
     }
 }
 
 impl Version {
-    fn table(&self, interface: Interface) -> &Table {
-        if interface == Interface::ModelExchange { &self.model } else { &self.slave }
-    }
-
     /// All that the future of the instance `c` depends on.
     fn bytes(&self, c: C) -> Vec<u8> {
         let mut state = null_mut();
@@ -247,7 +241,7 @@ pub fn no_call_does_harm(subject: &Subject, version: u8, is_model: bool) {
     });
     checked.unwrap_or_else(|failure| panic!("{failure}"));
     if calls >= CALLS_OF_ALL_STAGES {
-        tally.into_inner().check(subject, version, version.table(interface(&mut Rng::with_seed(0))));
+        tally.into_inner().check(subject, version, interface(&mut Rng::with_seed(0)));
     }
 }
 
@@ -261,16 +255,18 @@ struct Tally {
 
 impl Tally {
     /// Every function was called in every stage in which an instance stays, and every one that may be was done.
-    fn check(&self, subject: &Subject, version: &Version, table: &Table) {
-        let stays = table.stages.iter().filter(|stage| !stage.is_within_step() && !subject.never_in.contains(stage));
+    fn check(&self, subject: &Subject, version: &Version, interface: Interface) {
+        let allowed = |name: &str| version.table.allowed(name, interface);
+        let stages = version.table.marked(version.table.stages.iter().map(|(mark, _)| *mark), interface);
+        let stays = stages.iter().filter(|stage| !stage.is_within_step() && !subject.never_in.contains(stage));
         let all = stays.fold(0, |all, stage| all | 1 << *stage as u8);
         for (at, (name, _)) in version.calls.iter().enumerate() {
             assert_eq!(self.tried[at], all, "{name} was not called in every stage");
-            assert_ne!(self.done[at], table.allowed(name).is_empty(), "{name}");
+            assert_ne!(self.done[at], allowed(name).is_empty(), "{name}");
         }
         let is_called = |name: &&str| version.calls.iter().any(|(called, _)| called == name);
         let others = (version.functions)().into_iter().filter(|name| !is_called(name));
-        others.for_each(|name| assert!(table.allowed(name).is_empty(), "{name} is not called"));
+        others.for_each(|name| assert!(allowed(name).is_empty(), "{name} is not called"));
     }
 }
 
@@ -375,9 +371,9 @@ impl Sequence<'_> {
         let mut number = self.rng.usize(..calls.len());
         // few come to an error
         if self.one_in(if stage == Stage::Error { 8 } else { 2 }) {
-            let table = self.version.table(before.interface);
+            let allowed = |name: &str| self.version.table.allowed(name, before.interface);
             let is_leading_on =
-                |name: &str| LEADING_ON.split(' ').any(|word| word == name) && table.allowed(name).contains(&stage);
+                |name: &str| LEADING_ON.split(' ').any(|word| word == name) && allowed(name).contains(&stage);
             let leading_on = (0..calls.len()).filter(|at| is_leading_on(calls[*at].0)).collect::<Vec<_>>();
             number = self.rng.choice(leading_on).unwrap_or(number);
         }
@@ -415,7 +411,7 @@ impl Sequence<'_> {
     fn check(&self, name: &str, status: c_int, failure: Option<String>, bytes: &[u8]) {
         let before = self.before.as_ref().unwrap();
         let after = self.version.bytes(self.c);
-        let allowed = self.version.table(before.interface).allowed(name);
+        let allowed = self.version.table.allowed(name, before.interface);
         if !allowed.contains(&before.stage) {
             let allowed: Vec<_> = allowed.iter().map(Stage::to_string).collect();
             let allowed = if allowed.is_empty() { "none".to_owned() } else { allowed.join(", ") };
