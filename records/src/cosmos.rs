@@ -3,9 +3,9 @@
 //! Channels follow one another, each with a header of text, integers, real numbers and comments. A line then states how
 //! many accelerations follow, their unit and their columns; in volume 2 velocities and displacements come after them.
 
-use super::parsed::{Parsed, Times};
+use super::parsed::{Parsed, published};
 use super::text::{columns, number, numbered, quote};
-use super::{BadLine, Column, Reading, Remedy, bad, source::of_file};
+use super::{BadLine, Column, Reading, Remedy, bad};
 
 /// Whether the first line of `text` is that of COSMOS.
 pub(super) fn is_its(text: &str) -> bool {
@@ -49,13 +49,13 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
         let problem = format!("{} channel(s) ({}), {asked}", channels.len(), names.join(", "));
         return Err(bad(first.line, problem).remedied_by(Remedy::Column));
     };
-    let (unit, unit_from) = of_file(unit, how.unit, announced)?;
-    let mut parsed = Parsed::new(title(text), unit, unit_from, Times::Every(dt));
+    let lines = numbered(text).skip(announced).take_while(|(_, line)| !ends_data(line));
+    let count = ("the line before the data", count);
+    let mut parsed = published(title(text), (unit, announced), dt, count, (lines, width), how)?;
     if channels.len() > 1 {
-        parsed.remark(format!("channel {} of {}, {}", index + 1, channels.len(), quote(channels[index].name)));
+        let chosen = format!("channel {} of {}, {}", index + 1, channels.len(), quote(channels[index].name));
+        parsed.source.remarks.insert(0, chosen);
     }
-    parsed.read(numbered(text).skip(announced).take_while(|(_, line)| !ends_data(line)), width)?;
-    parsed.check_count("the line before the data", count, how)?;
     Ok(parsed)
 }
 

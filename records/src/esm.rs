@@ -1,10 +1,10 @@
 //! ASCII of the Engineering Strong-Motion database and of ITACA (DYNA), and of the European Strong-Motion Database before it
 //! (ESD): lines of `KEY: value`, then the accelerations.
 
-use super::parsed::{Parsed, Times};
+use super::parsed::{Parsed, published};
 use super::sampling::{count, step};
 use super::text::{number, numbered, quote, value_of};
-use super::{BadLine, Reading, bad, source::of_file};
+use super::{BadLine, Reading, bad};
 
 const LONGEST_HEADER: usize = 200;
 
@@ -61,15 +61,13 @@ fn samples(text: &str, how: &Reading, keys: Keys, header: usize) -> Result<Parse
     let find = |key: &str| value_of(numbered(text).take(header), key);
     let needed = |key: &str| find(key).ok_or_else(|| bad(header.max(1), format!("{key} is not in the header")));
     let [of_step, of_count, of_unit, title @ ..] = keys;
-    let (line, units) = needed(of_unit)?;
-    let (unit, unit_from) = of_file(units.split(',').next().unwrap_or_default(), how.unit, line)?;
+    let (of_units, units) = needed(of_unit)?;
+    let unit = (units.split(',').next().unwrap_or_default(), of_units);
     let (line, dt) = needed(of_step)?;
     let dt = step(of_step, "", &[&*dt.to_uppercase()]).map_err(|problem| bad(line, problem))?;
     let (line, npts) = needed(of_count)?;
     let npts = count(of_count, npts).map_err(|problem| bad(line, problem))?;
     let title = title.into_iter().filter_map(find).map(|(_, value)| value).filter(|value| !value.is_empty());
-    let mut parsed = Parsed::new(title.collect::<Vec<_>>().join(", "), unit, unit_from, Times::Every(dt));
-    parsed.read(numbered(text).skip(header).take_while(|(_, line)| !line.starts_with(SERIES)), None)?;
-    parsed.check_count(of_count, npts, how)?;
-    Ok(parsed)
+    let lines = numbered(text).skip(header).take_while(|(_, line)| !line.starts_with(SERIES));
+    published(title.collect::<Vec<_>>().join(", "), unit, dt, (of_count, npts), (lines, None), how)
 }

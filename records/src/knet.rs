@@ -1,8 +1,8 @@
 //! ASCII of K-NET and KiK-net: seventeen lines of header, then counts of the recorder, eight a line.
 
-use super::parsed::{Parsed, Times};
+use super::parsed::{Parsed, published};
 use super::text::{number, numbered, quote, value_of};
-use super::{BadLine, Reading, bad, source::of_file};
+use super::{BadLine, Reading, bad};
 
 const HEADER_LINES: usize = 17;
 
@@ -25,20 +25,19 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     };
     let (line, frequency) = find("Sampling Freq(Hz)")?;
     let frequency = positive(line, "Sampling Freq(Hz)", frequency.trim_end_matches("Hz"))?;
-    let (line, factor) = find("Scale Factor")?;
+    let (of_factor, factor) = find("Scale Factor")?;
     let (gal, counts) = factor.split_once("(gal)/").ok_or_else(|| {
-        bad(line, format!("found {} where the scale factor is stated, such as 3920(gal)/6182761", quote(factor)))
+        bad(of_factor, format!("found {} where the scale factor is stated, such as 3920(gal)/6182761", quote(factor)))
     })?;
-    let factor = positive(line, "Scale Factor", gal)? / positive(line, "Scale Factor", counts)?;
-    let (unit, unit_from) = of_file("gal", how.unit, line)?;
+    let factor = positive(of_factor, "Scale Factor", gal)? / positive(of_factor, "Scale Factor", counts)?;
     let (line, duration) = find("Duration Time(s)")?;
     let duration = positive(line, "Duration Time(s)", duration)?;
 
     let parts = ["Origin Time", "Station Code", "Dir."].map(|key| find(key).map_or("", |(_, value)| value));
     let title = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ");
-    let mut parsed = Parsed::new(title, unit, unit_from, Times::Every(1.0 / frequency));
-    parsed.read(numbered(text).skip(HEADER_LINES), Some(WIDTH))?;
-    parsed.check_count("Duration Time(s) x Sampling Freq(Hz)", (duration * frequency).round() as usize, how)?;
+    let count = ("Duration Time(s) x Sampling Freq(Hz)", (duration * frequency).round() as usize);
+    let lines = (numbered(text).skip(HEADER_LINES), Some(WIDTH));
+    let mut parsed = published(title, ("gal", of_factor), 1.0 / frequency, count, lines, how)?;
     parsed.values.iter_mut().for_each(|count| *count *= factor);
     let offset = parsed.values.iter().sum::<f64>() / parsed.values.len().max(1) as f64;
     parsed.values.iter_mut().for_each(|value| *value -= offset);

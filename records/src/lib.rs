@@ -103,34 +103,12 @@ const LONGEST_GAP: f64 = 5.0;
 /// Why the reader rejects a file.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
-    /// The file cannot be opened or read.
-    #[error("the record {} cannot be read", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// The error of the system.
-        source: io::Error,
-    },
-    /// A folder, a device or a pipe, which is not read.
-    #[error("{} is not a file", path.display())]
-    NotAFile {
-        /// The folder, device or pipe.
-        path: PathBuf,
-    },
-    /// The file is larger than any record.
-    #[error("{} has {size} bytes; a record may have {MAX_FILE}", path.display())]
-    TooLarge {
-        /// The file.
-        path: PathBuf,
-        /// Its size.
-        size: u64,
-    },
-    /// [`Reading::dt`] is not a step.
-    #[error("dt = {0} is out of range: a finite number greater than 0 is needed")]
-    BadStep(f64),
-    /// The acceleration of gravity is out of range.
-    #[error(transparent)]
-    BadGravity(#[from] OutOfRange),
+    /// The system cannot open or read the file at this path.
+    #[error("the record {} cannot be read", .0.display())]
+    Unreadable(PathBuf, #[source] io::Error),
+    /// The path is not that of a file that a record may have, or an option is out of range: why.
+    #[error("{0}")]
+    Refused(String),
     /// A line contradicts the format.
     #[error("{}, line {line}: {problem}", path.display())]
     Malformed {
@@ -156,6 +134,8 @@ pub enum Remedy {
     StepOrHeading,
     /// The column, the channel, or that every number is a sample.
     Column,
+    /// That every number is a sample, unless the line is wrong.
+    All,
     /// The unit.
     Unit,
     /// The column or the channel, and the unit.
@@ -174,9 +154,8 @@ impl Remedy {
                 let step = called("dt");
                 format!("give the step in seconds as {step}, or head the column of times time (s) or time (ms)")
             }
-            Remedy::Column => {
-                format!("choose one as {}: its number, its heading, or all", called("column"))
-            }
+            Remedy::Column => format!("choose one as {}: its number, its heading, or all", called("column")),
+            Remedy::All => format!("correct the line, or choose all as {} if every number is a sample", called("column")),
             Remedy::Unit => format!("give the unit of the accelerations as {}", called("unit")),
             Remedy::ColumnAndUnit => {
                 let called: &dyn Fn(&str) -> String = &called;
@@ -209,7 +188,8 @@ impl BadLine {
 /// Reads the record in the file at `path` as `how` says, with accelerations in m/s². A record's g means `g` (m/s²).
 pub fn read(path: &Path, how: &Reading, g: f64) -> Result<(Record, Source), RecordError> {
     let (record, source) = read_raw(path, how)?;
-    Ok((in_m_s2(record, source.unit, g)?, source))
+    let record = in_m_s2(record, source.unit, g).map_err(|error| RecordError::Refused(error.to_string()))?;
+    Ok((record, source))
 }
 
 /// Reads the record in the file at `path` with its accelerations as the file gives them; their unit is the source's.
@@ -222,7 +202,8 @@ pub fn from_bytes(path: &Path, bytes: &[u8], how: &Reading) -> Result<(Record, S
     let malformed =
         |BadLine { line, problem, remedy }| RecordError::Malformed { path: path.into(), line, problem, remedy };
     if let Some(dt) = how.dt.filter(|dt| !(*dt > 0.0 && dt.is_finite())) {
-        return Err(RecordError::BadStep(dt));
+        let problem = format!("dt = {dt} is out of range: a finite number greater than 0 is needed");
+        return Err(RecordError::Refused(problem));
     }
     let text = text::decode(bytes).map_err(malformed)?;
     let (record, source) = parse(&text, how).map_err(malformed)?;
@@ -302,13 +283,14 @@ fn parse(text: &str, how: &Reading) -> Result<(Record, Source), BadLine> {
 
 /// The bytes of the file of a record. The function opens regular files only, because opening a pipe can block for ever.
 pub fn read_file(path: &Path) -> Result<Vec<u8>, RecordError> {
-    let unreadable = |source| RecordError::Unreadable { path: path.into(), source };
+    let unreadable = |error| RecordError::Unreadable(path.into(), error);
     let told = fs::metadata(path).map_err(unreadable)?;
     if !told.is_file() {
-        return Err(RecordError::NotAFile { path: path.into() });
+        return Err(RecordError::Refused(format!("{} is not a file", path.display())));
     }
     if told.len() > MAX_FILE {
-        return Err(RecordError::TooLarge { path: path.into(), size: told.len() });
+        let problem = format!("{} has {} bytes; a record may have {MAX_FILE}", path.display(), told.len());
+        return Err(RecordError::Refused(problem));
     }
     let mut bytes = Vec::with_capacity(told.len() as usize);
     File::open(path).and_then(|file| file.take(MAX_FILE).read_to_end(&mut bytes)).map_err(unreadable)?;
@@ -346,7 +328,7 @@ mod tests {
         let peer = b"PEER\nNu\nVELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 2, DT= .01 SEC\n1 2\n";
         let refused = read(&write("a.VT2", peer)).unwrap_err().to_string();
         assert!(refused.ends_with("SERIES IN UNITS OF CM/S\": accelerations are needed"), "{refused}");
-        assert!(matches!(read(&folder.path().join("absent.at2")), Err(RecordError::Unreadable { .. })));
+        assert!(matches!(read(&folder.path().join("absent.at2")), Err(RecordError::Unreadable(..))));
     }
 
     /// Nothing is read of what is no file, or too large for a record: neither hangs.
@@ -370,15 +352,14 @@ mod tests {
     fn a_step_and_a_g_that_cannot_be_are_refused_by_name_and_value() {
         let read = |dt, g| {
             let how = Reading { dt, ..Reading::default() };
-            let (record, source) = from_bytes(Path::new("a.csv"), b"a (g)\n1\n2\n", &how)?;
-            Ok::<_, RecordError>(in_m_s2(record, source.unit, g)?)
+            let (record, source) = from_bytes(Path::new("a.csv"), b"a (g)\n1\n2\n", &how).map_err(|error| error.to_string())?;
+            in_m_s2(record, source.unit, g).map_err(|error| error.to_string())
         };
         for dt in [f64::NAN, -0.1, 0.0, f64::INFINITY] {
-            let refused = read(Some(dt), 9.81).unwrap_err().to_string();
-            assert_eq!(refused, format!("dt = {dt} is out of range: a finite number greater than 0 is needed"));
+            assert_eq!(read(Some(dt), 9.81).unwrap_err(), format!("dt = {dt} is out of range: a finite number greater than 0 is needed"));
         }
         for g in [f64::NAN, -9.81, 0.0, 1e300] {
-            assert!(read(Some(0.1), g).unwrap_err().to_string().starts_with("g = "), "{g}");
+            assert!(read(Some(0.1), g).unwrap_err().starts_with("g = "), "{g}");
         }
         assert_eq!(read(Some(0.1), 1.62).unwrap().acceleration(), [1.62, 3.24]);
     }
@@ -388,7 +369,7 @@ mod tests {
     fn what_was_found_and_assumed_is_said_in_sentences() {
         let said = |text: &[u8]| {
             let (record, source) = from_bytes(Path::new("a.csv"), text, &Reading::default())?;
-            let record = in_m_s2(record, source.unit, 9.81)?;
+            let record = in_m_s2(record, source.unit, 9.81).unwrap();
             Ok::<_, RecordError>(source.sentences("a.csv", [&record; 2], 9.81, "head the column a (g)"))
         };
         let found = "a.csv: table, separated by commas, column 2 \"a (g)\", 1 line(s) of text before the data; g as the file \

@@ -1,7 +1,7 @@
 //! Result of the parsers of all layouts: samples as the file gives them.
 
 use super::text::{columns, nine_digits, no_number, number, without_blanks};
-use super::{BadLine, MAX_SAMPLES, Reading, Record, Remedy, Source, TABLE, Unit, UnitFrom, bad};
+use super::{BadLine, MAX_SAMPLES, Reading, Record, Remedy, Source, TABLE, Unit, UnitFrom, bad, source::of_file};
 
 /// Steps that differ by no more than this part are the same.
 const SAME_STEP: f64 = 1e-6;
@@ -56,27 +56,34 @@ impl Times {
     }
 }
 
+/// The samples on `lines` of a published file, one every `step` (s), in columns of `width` letters or with blanks between them. The
+/// header states the `unit`, on a line, and the `count`, under a name.
+pub(super) fn published<'a>(
+    title: impl Into<String>,
+    unit: (&str, usize),
+    step: f64,
+    count: (&str, usize),
+    (lines, width): (impl Iterator<Item = (usize, &'a str)>, Option<usize>),
+    how: &Reading,
+) -> Result<Parsed, BadLine> {
+    let (unit, unit_from) = of_file(unit.0, how.unit, unit.1)?;
+    let mut parsed = Parsed::new(title, unit, unit_from, Times::Every(step));
+    for line in without_blanks(lines) {
+        let (line, values) = line?;
+        for word in columns(values, width) {
+            let no_number = || bad(line, format!("the acceleration {}", no_number(word)));
+            parsed.add(number(word).ok_or_else(no_number)?, line)?;
+        }
+    }
+    parsed.check_count(count.0, count.1, how)?;
+    Ok(parsed)
+}
+
 impl Parsed {
     /// Starts without samples.
     pub fn new(title: impl Into<String>, unit: Unit, unit_from: UnitFrom, times: Times) -> Parsed {
         let source = Source { format: TABLE, unit, unit_from, remarks: Vec::new() };
         Parsed { title: title.into(), times, values: Vec::new(), source, last_line: 1 }
-    }
-
-    /// Adds the accelerations on `lines`, in columns of `width` letters, or with blanks between them.
-    pub fn read<'a>(
-        &mut self,
-        lines: impl Iterator<Item = (usize, &'a str)>,
-        width: Option<usize>,
-    ) -> Result<(), BadLine> {
-        for line in without_blanks(lines) {
-            let (line, values) = line?;
-            for word in columns(values, width) {
-                let no_number = || bad(line, format!("the acceleration {}", no_number(word)));
-                self.add(number(word).ok_or_else(no_number)?, line)?;
-            }
-        }
-        Ok(())
     }
 
     /// Adds the acceleration that stands on `line`.

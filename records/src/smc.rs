@@ -1,8 +1,8 @@
 //! USGS SMC: 11 lines of text, 48 integers (8I10), 50 reals (5E15.7), comments, then accelerations in cm/s² (8F10).
 
-use super::parsed::{Parsed, Times};
+use super::parsed::{Parsed, published};
 use super::text::{columns, no_number, number, numbered};
-use super::{BadLine, GMPROCESS, Reading, bad, source::of_file};
+use super::{BadLine, GMPROCESS, Reading, bad};
 
 /// Whether `text` is one of these files.
 pub(super) fn is_its(text: &str) -> bool {
@@ -24,10 +24,7 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
         let problem = format!("the header states a sampling rate of {rate:e} Hz; 1 to 100000 Hz are needed");
         return Err(bad(integers + 1, problem).remedied_by(GMPROCESS));
     }
-    let (unit, unit_from) = of_file("cm/s2", how.unit, 1)?;
     let title = text.lines().nth(5).unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
-    let mut parsed = Parsed::new(title, unit, unit_from, Times::Every(1.0 / rate));
-    parsed.read(numbered(text).skip(reals).skip_while(|(_, line)| line.starts_with('|')), Some(10))?;
-    parsed.check_count("integer 17 of the header", count as usize, how)?;
-    Ok(parsed)
+    let lines = numbered(text).skip(reals).skip_while(|(_, line)| line.starts_with('|'));
+    published(title, ("cm/s2", 1), 1.0 / rate, ("integer 17 of the header", count as usize), (lines, Some(10)), how)
 }

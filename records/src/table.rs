@@ -132,9 +132,8 @@ impl<'a> Table<'a> {
             let fields = layout.fields(sample);
             table.last = line;
             if fields.len() != count {
-                let missing = if fields.len() < count { ": is a value missing?" } else { "" };
-                let problem = format!("{} column(s) instead of {count} as on line {first}{missing}", fields.len());
-                table.uneven.get_or_insert(bad(line, problem).remedied_by(Remedy::Column));
+                let problem = format!("{} column(s) instead of {count} as on line {first}", fields.len());
+                table.uneven.get_or_insert(bad(line, problem).remedied_by(Remedy::All));
             }
             for (column, field) in fields.into_iter().enumerate() {
                 let number = number(&layout.plain(field));
@@ -576,7 +575,8 @@ mod tests {
         let all = Reading { column: Some(Column::All), ..step.clone() };
         for text in ["1 -2 3\n", "3 2 1\n1 2 3\n", "1 -1\n-1 1\n1 -1\n", "0.1 1 2\n1.1 3 2\n2.1 1 0\n", "1 2\n3 4 5\n"]
         {
-            assert_eq!(read(text, &step).unwrap_err().remedy, Some(Remedy::Column), "{text}");
+            let remedy = if text == "1 2\n3 4 5\n" { Remedy::All } else { Remedy::Column };
+            assert_eq!(read(text, &step).unwrap_err().remedy, Some(remedy), "{text}");
             let expected: Vec<f64> = text.split_whitespace().map(|word| word.parse().unwrap()).collect();
             assert_eq!(read(text, &all).unwrap().0.acceleration(), expected, "{text}");
             let stated = format!("NPTS={} DT=0.5\n{text}", expected.len());
@@ -759,7 +759,8 @@ mod tests {
                 "1: 1 line(s) of text and no samples: lines of numbers alone are needed, without columns of text",
             ),
             ("0,1\n1,NaN\n", "2: the acceleration \"NaN\" is not a number"),
-            ("0,1\n1,\n", "2: 1 column(s) instead of 2 as on line 1: is a value missing?"),
+            ("0,1\n1,\n", "2: 1 column(s) instead of 2 as on line 1"),
+            ("1D-3 2D-3\n3D-3 4D-\n", "2: the acceleration \"4D-\" is not a number: its exponent is cut off"),
             ("0,1,2\n1,,2\n", "2: in column 2, \"\" is not a number"),
             ("t,a\n0,1\n.5,2\n0.5,3\n", "4: column 1 cannot have the times: 0.5 comes after 0.5"),
             ("0,1\n.5,2\n0.4,3\n", "3: column 1 cannot have the times: 0.4 comes after 0.5"),

@@ -106,10 +106,12 @@ pub(super) fn apart(word: &str) -> Vec<&str> {
         .unwrap_or(vec![word])
 }
 
-/// That `word` is not a number, and what to type if it may be one, or a line of text.
+/// That `word` is not a number, and what is wrong or what to type if it may be one.
 pub(super) fn no_number(word: &str) -> String {
     let problem = format!("{} is not a number", quote(word));
+    let digits = word.trim_end_matches(['+', '-']).strip_suffix(['e', 'E', 'd', 'D']);
     match signed(word)[..] {
+        _ if digits.is_some_and(is_number) => format!("{problem}: its exponent is cut off"),
         [digits, power] if [digits, power].iter().all(|part| is_number(part)) => {
             format!("{problem}: write {digits}E{power} or {digits} {power}")
         }
