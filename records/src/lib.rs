@@ -155,7 +155,9 @@ impl Remedy {
                 format!("give the step in seconds as {step}, or head the column of times time (s) or time (ms)")
             }
             Remedy::Column => format!("choose one as {}: its number, its heading, or all", called("column")),
-            Remedy::All => format!("correct the line, or choose all as {} if every number is a sample", called("column")),
+            Remedy::All => {
+                format!("correct the line, or choose all as {} if every number is a sample", called("column"))
+            }
             Remedy::Unit => format!("give the unit of the accelerations as {}", called("unit")),
             Remedy::ColumnAndUnit => {
                 let called: &dyn Fn(&str) -> String = &called;
@@ -352,11 +354,15 @@ mod tests {
     fn a_step_and_a_g_that_cannot_be_are_refused_by_name_and_value() {
         let read = |dt, g| {
             let how = Reading { dt, ..Reading::default() };
-            let (record, source) = from_bytes(Path::new("a.csv"), b"a (g)\n1\n2\n", &how).map_err(|error| error.to_string())?;
+            let (record, source) =
+                from_bytes(Path::new("a.csv"), b"a (g)\n1\n2\n", &how).map_err(|error| error.to_string())?;
             in_m_s2(record, source.unit, g).map_err(|error| error.to_string())
         };
         for dt in [f64::NAN, -0.1, 0.0, f64::INFINITY] {
-            assert_eq!(read(Some(dt), 9.81).unwrap_err(), format!("dt = {dt} is out of range: a finite number greater than 0 is needed"));
+            assert_eq!(
+                read(Some(dt), 9.81).unwrap_err(),
+                format!("dt = {dt} is out of range: a finite number greater than 0 is needed")
+            );
         }
         for g in [f64::NAN, -9.81, 0.0, 1e300] {
             assert!(read(Some(0.1), g).unwrap_err().starts_with("g = "), "{g}");

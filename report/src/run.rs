@@ -7,8 +7,7 @@ use rocking::engine::piece::Sample;
 use rocking::estimates::response_spectrum::floor_spectrum;
 use rocking::mechanics::outputs::OUTPUTS;
 use rocking::mechanics::restraint::Dissipators;
-use rocking::run::curve;
-use rocking::run::levels::Compared;
+use rocking::run::curve::{self, Drawn};
 use rocking::run::peaks::{self, Peak, Peaks};
 use rocking::run::profile::Profile;
 use rocking::run::record::Record;
@@ -155,7 +154,7 @@ pub trait Watcher: Watch<f64> + Watch<Modes> + Clone {
 impl Watcher for () {}
 
 /// Lateral coordinates of one mass or of many: all that differs between their runs.
-pub(crate) trait OneOrMany: Judged + Compared {
+pub(crate) trait OneOrMany: Judged + Drawn {
     /// Values of the outputs, in the order of [`Run::outputs`].
     fn values(structure: &Structure, sample: &Sample<Self>) -> Vec<f64>;
 

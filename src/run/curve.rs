@@ -44,6 +44,10 @@ pub trait Drawn: Peaked<Peaks: Debug> {
     #[doc(hidden)]
     fn exact(structure: &Structure, all: &Self::Peaks) -> Vec<Peak>;
 
+    /// The kind of each line: rotation (0), elastic displacement (1), acceleration or force (2).
+    #[doc(hidden)]
+    fn kinds(structure: &Structure) -> Vec<usize>;
+
     /// The outputs of `sample`.
     #[doc(hidden)]
     fn outputs(sample: &Sample<Self>) -> Self::Outputs;
@@ -59,6 +63,10 @@ impl Drawn for f64 {
 
     fn exact(_: &Structure, all: &Peaks) -> Vec<Peak> {
         vec![all.a_g(), all.theta(), all.u(), all.a_t()]
+    }
+
+    fn kinds(_: &Structure) -> Vec<usize> {
+        vec![0, 1, 2]
     }
 
     fn outputs(sample: &Sample) -> Outputs {
@@ -88,6 +96,15 @@ impl Drawn for Modes {
     fn exact(frame: &Structure, all: &Profile) -> Vec<Peak> {
         let line = |line| all.of(line).expect("each line has a peak");
         [all.a_g].into_iter().chain(drawn(frame).map(line)).collect()
+    }
+
+    fn kinds(structure: &Structure) -> Vec<usize> {
+        let kind = |line| match line {
+            FrameOutput::theta => 0,
+            FrameOutput::u(_) => 1,
+            _ => 2,
+        };
+        drawn(structure).map(kind).collect()
     }
 
     fn outputs(sample: &Sample<Modes>) -> Vec<f64> {

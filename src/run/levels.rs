@@ -2,15 +2,13 @@
 //!
 //! A level of a structure of many masses is also the number of modes that are kept ([`Structure::keeping`]).
 
-use super::curve::{Drawn, drawn};
+use super::curve::Drawn;
 use super::fall::{FallWatch, Falling};
 use super::history::{Distance, History};
 use super::{Ending, Follower, Run, RunError};
-use crate::Mode;
 use crate::engine::motion::Work;
-use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::run::ground_motion::Segment;
-use crate::{Detail, FrameOutput, Modes, State, Structure};
+use crate::{Detail, Mode, State, Structure};
 use std::fmt;
 
 /// Tolerance of the run that all others are measured by.
@@ -86,71 +84,34 @@ impl fmt::Display for Choice {
     }
 }
 
-/// Kinds of compared quantities: rotation, elastic displacements, accelerations and forces.
-const KINDS: usize = 3;
-
-/// Lateral coordinates of structures whose levels of detail are compared: by the lines of their pictures.
-pub trait Compared: Drawn {
-    /// The kind of each line.
-    fn kinds(structure: &Structure) -> Vec<usize>;
-
-    /// The modes of a structure of many masses, all kept.
-    fn all_modes(structure: &Structure) -> Option<[usize; 2]>;
-
-    /// The levels to compare on `run`, the one of the fewest equations first.
-    fn choices<'a>(run: &Run<'a, Self>) -> Vec<(Choice, Run<'a, Self>)>;
+/// The modes of a structure of many masses, all kept.
+fn all_modes(structure: &Structure) -> Option<[usize; 2]> {
+    structure.one().is_none().then_some([structure.modes().len(); 2])
 }
 
-impl Compared for f64 {
-    fn kinds(_: &Structure) -> Vec<usize> {
-        vec![0, 1, 2]
-    }
-
-    fn all_modes(_: &Structure) -> Option<[usize; 2]> {
-        None
-    }
-
-    fn choices<'a>(run: &Run<'a>) -> Vec<(Choice, Run<'a>)> {
+/// The levels to compare on `run`, the one of the fewest equations first.
+fn choices<'a, Q: Drawn>(run: &Run<'a, Q>) -> Vec<(Choice, Run<'a, Q>)> {
+    let Some([all, _]) = all_modes(&run.structure) else {
         let of = |detail| (Choice { detail, modes: None }, Run { detail, ..run.clone() });
-        SIMPLEST_FIRST.map(of).into()
-    }
-}
-
-impl Compared for Modes {
-    fn kinds(structure: &Structure) -> Vec<usize> {
-        let kind = |line| match line {
-            FrameOutput::theta => 0,
-            FrameOutput::u(_) => 1,
-            _ => 2,
-        };
-        drawn(structure).map(kind).collect()
-    }
-
-    fn all_modes(structure: &Structure) -> Option<[usize; 2]> {
-        Some([structure.modes().len(); 2])
-    }
-
-    fn choices<'a>(run: &Run<'a, Modes>) -> Vec<(Choice, Run<'a, Modes>)> {
-        let modes = run.structure.modes();
-        let all = modes.len();
-        let of = |(detail, kept): (Detail, usize)| {
-            let structure = run.structure.keeping(kept).expect("not more modes than there are");
-            let of_mode =
-                |of: &Modes, kept: &Mode| modes.iter().position(|mode| mode == kept).map_or(0.0, |j| of.of(j));
-            let part = |of: &Modes| Modes::each(&structure, |_, mode| of_mode(of, mode));
-            let initial = State { u: part(&run.initial.u), u_dot: part(&run.initial.u_dot), ..run.initial };
-            (Choice { detail, modes: Some([kept, all]) }, Run { structure, initial, detail, ..run.clone() })
-        };
-        let fewer = |detail| (1..=all).map(move |kept| (detail, kept));
-        let fixed = fewer(Detail::FixedBase).chain([(Detail::Rigid, 0)]);
-        let moving = fewer(Detail::Linear).chain(fewer(Detail::Auto)).chain([(Detail::Nonlinear, all)]);
-        fixed.chain(moving).map(of).collect()
-    }
+        return SIMPLEST_FIRST.map(of).into();
+    };
+    let of = |(detail, kept): (Detail, usize)| {
+        let (structure, modes) =
+            (run.structure.keeping(kept).expect("not more modes than there are"), run.structure.modes());
+        let of_mode = |of: &Q, kept: &Mode| modes.iter().position(|mode| mode == kept).map_or(0.0, |j| of.of(j));
+        let part = |of: &Q| Q::each(&structure, |_, mode| of_mode(of, mode));
+        let initial = State { u: part(&run.initial.u), u_dot: part(&run.initial.u_dot), ..run.initial };
+        (Choice { detail, modes: Some([kept, all]) }, Run { structure, initial, detail, ..run.clone() })
+    };
+    let fewer = |detail| (1..=all).map(move |kept| (detail, kept));
+    let fixed = fewer(Detail::FixedBase).chain([(Detail::Rigid, 0)]);
+    let moving = fewer(Detail::Linear).chain(fewer(Detail::Auto)).chain([(Detail::Nonlinear, all)]);
+    fixed.chain(moving).map(of).collect()
 }
 
 /// Result of a level on a run.
 #[derive(Clone, Debug)]
-pub struct Response<Q: Compared = f64> {
+pub struct Response<Q: Drawn = f64> {
     /// The level.
     pub choice: Choice,
     /// Its peaks: of a structure that overturns, those before it falls.
@@ -165,7 +126,7 @@ pub struct Response<Q: Compared = f64> {
 
 /// A level beside the reference.
 #[derive(Clone, Debug)]
-pub struct Verdict<Q: Compared = f64> {
+pub struct Verdict<Q: Drawn = f64> {
     /// Result of the level.
     pub response: Response<Q>,
     /// Relative errors, in the order of [`Criterion::ALL`]: of several floors the largest.
@@ -176,7 +137,7 @@ pub struct Verdict<Q: Compared = f64> {
 
 /// All levels on one run.
 #[derive(Clone, Debug)]
-pub struct Comparison<Q: Compared = f64> {
+pub struct Comparison<Q: Drawn = f64> {
     /// Eqs 1, 5, 6 to [`REFERENCE_TOLERANCE`].
     pub reference: Response<Q>,
     /// The simplest first, each to the tolerance of the run.
@@ -188,11 +149,11 @@ pub struct Comparison<Q: Compared = f64> {
 }
 
 /// Does `run` at every level.
-pub fn compare<Q: Compared>(run: &Run<Q>) -> Result<Comparison<Q>, RunError> {
+pub fn compare<Q: Drawn>(run: &Run<Q>) -> Result<Comparison<Q>, RunError> {
     let since = |run: &Run<Q>| Falling::<Q>::since(run.ground.start(), &run.structure, run.detail);
-    let of_all = |detail| Choice { detail, modes: Q::all_modes(&run.structure) };
+    let of_all = |detail| Choice { detail, modes: all_modes(&run.structure) };
     let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..run.clone() };
-    let (choices, level_ground) = (Q::choices(run), run.ground.clone().without_vertical());
+    let (choices, level_ground) = (choices(run), run.ground.clone().without_vertical());
     let level = Run { detail: Detail::Auto, ground: &level_ground, ..run.clone() };
     let (mut exact_peaks, mut level_peaks) = (since(&exact), since(&level));
     let mut peaks: Vec<_> = choices.iter().map(|(_, run)| since(run)).collect();
@@ -241,7 +202,7 @@ pub fn compare<Q: Compared>(run: &Run<Q>) -> Result<Comparison<Q>, RunError> {
 }
 
 /// A level on its way.
-struct Trial<'a, Q: Compared, Segments> {
+struct Trial<'a, Q: Drawn, Segments> {
     choice: Choice,
     /// Whether its ground moves horizontally alone and the reference's does not.
     is_level: bool,
@@ -258,7 +219,7 @@ struct Trial<'a, Q: Compared, Segments> {
 }
 
 /// Of `run`, whose `peaks` will be there.
-fn start<'a, Q: Compared>(
+fn start<'a, Q: Drawn>(
     run: &Run<'a, Q>,
     choice: Choice,
     peaks: &'a mut Falling<Q>,
@@ -289,7 +250,7 @@ fn cut(segment: Segment, longest: f64) -> impl Iterator<Item = Segment> {
     })
 }
 
-impl<Q: Compared, Segments: Iterator<Item = Segment>> Trial<'_, Q, Segments> {
+impl<Q: Drawn, Segments: Iterator<Item = Segment>> Trial<'_, Q, Segments> {
     /// Follows the motion over the next segment unless the run has ended.
     fn go_on(&mut self) -> Result<(), RunError> {
         if self.ending.is_none() {
@@ -329,23 +290,23 @@ pub fn relative((difference, expected): (f64, f64)) -> f64 {
     if difference == 0.0 { 0.0 } else { difference / expected }
 }
 
-impl<Q: Compared> Response<Q> {
+impl<Q: Drawn> Response<Q> {
     /// Steps and evaluations together: an exact leap costs about as much as an evaluation.
     pub fn cost(&self) -> u64 {
         self.work.steps + self.work.evaluations
     }
 }
 
-/// For each kind of quantity the largest of the `differences` in proportion to what is `expected`.
-fn errors(kinds: &[usize], differences: &[f64], expected: &[f64]) -> [f64; KINDS] {
-    let mut errors = [0.0; KINDS];
+/// For each kind of line, as [`Drawn::kinds`] numbers them, the largest of the `differences` in proportion to what is `expected`.
+fn errors(kinds: &[usize], differences: &[f64], expected: &[f64]) -> [f64; 3] {
+    let mut errors = [0.0; 3];
     for (kind, pair) in kinds.iter().zip(differences.iter().copied().zip(expected.iter().copied())) {
         errors[*kind] = f64::max(errors[*kind], relative(pair));
     }
     errors
 }
 
-impl<Q: Compared> Verdict<Q> {
+impl<Q: Drawn> Verdict<Q> {
     /// Of a `response` that has been this far from the `reference`, whose peaks are these with a fall, `all` of it.
     fn new(
         structure: &Structure,
@@ -381,7 +342,7 @@ impl<Q: Compared> Verdict<Q> {
     }
 }
 
-impl<Q: Compared> Comparison<Q> {
+impl<Q: Drawn> Comparison<Q> {
     /// Cost of `response` as a multiple of the cost of the level `auto` with all modes; None if `auto` cannot do the run.
     pub fn cost_over_auto(&self, response: &Response<Q>) -> Option<f64> {
         let auto = Choice { detail: Detail::Auto, ..self.reference.choice };

@@ -1,7 +1,7 @@
 //! Numbers that a structure may have, but that are usual in another unit.
 
 use crate::digits::{short, with_unit};
-use crate::{Base, Mode, Structure, Ties};
+use crate::{Base, Structure, Ties};
 use std::f64::consts::TAU;
 
 /// Frequency times height of buildings, m/s: the mean of 163 (Ellis 1980, not read; as quoted by others).
@@ -13,43 +13,57 @@ const UNUSUAL: f64 = 10.0;
 /// A force below this fraction of the weight changes next to nothing. Forces in kN are below it.
 const NEXT_TO_NOTHING: f64 = 1e-3;
 
+/// Mass over width and height from which on kg are no tonnes, kg/m². The paper's bridge pier, a light model, has 186.
+const LIGHT: f64 = 10.0;
+
+/// Damping ratio of the lowest mode that no structure exceeds without dampers.
+const MOST_DAMPING: f64 = 0.2;
+
 impl Structure {
     /// A sentence for each number that is usual in another unit, before anything moves.
     pub fn doubts(&self) -> Vec<String> {
-        if self.one().is_some() { of_base(self.base()) } else { of_many(self) }
+        let (&Base { m_t, g, B, tan_alpha_cg, ties: Ties { P_0, F_y, .. }, .. }, body) = (self.base(), self.body());
+        let weight = m_t * g;
+        let is_small = |(_, force): &(&str, f64)| (0.0..NEXT_TO_NOTHING * weight).contains(force) && *force > 0.0;
+        let doubt = |(name, force)| {
+            let [force, weight] = [force, weight].map(|force| with_unit(force, "N"));
+            format!(
+                "{name} = {force} changes next to nothing under the weight of the structure, {weight}: is {name} in N, not in kN?"
+            )
+        };
+        let mut doubts: Vec<_> = [("P_0", P_0), ("F_y", F_y)].into_iter().filter(is_small).map(doubt).collect();
+        // of mass that is spread evenly over the height
+        let of_floors = self.floors().iter().map(|floor| floor.height).reduce(f64::max);
+        let height = of_floors.unwrap_or(2.0 * body.S_1 / body.m_s);
+        let lowest = self.modes().iter().min_by(|a, b| a.omega().total_cmp(&b.omega()));
+        let Some((mode, f)) = lowest.map(|mode| (mode, mode.omega() / TAU)) else { return doubts };
+        let usual = USUAL_SPEED / height;
+        let (height, area) = (short(height), 2.0 * B * height);
+        if (f / usual).max(usual / f) > UNUSUAL {
+            doubts.push(format!(
+                "f = {f:.2} Hz of the lowest mode is far from the usual frequency of a structure {height} m high, about {usual:.2} Hz: \
+                 are masses in kg, heights in m, stiffnesses in N/m, and f in Hz?"
+            ));
+        }
+        if m_t < LIGHT * area {
+            doubts.push(format!(
+                "m_t = {} kg is little for a structure {} m wide and {height} m high: are masses in kg, not in t?",
+                short(m_t),
+                short(2.0 * B)
+            ));
+        }
+        let zeta = mode.damping / (2.0 * mode.mass * mode.omega());
+        if zeta > MOST_DAMPING {
+            doubts.push(format!("zeta = {} of the lowest mode is large: is it a fraction, not per cent?", short(zeta)));
+        }
+        if tan_alpha_cg > 1.0 {
+            doubts.push(format!(
+                "B = {} m is more than the height of the centre of gravity: is B half of the base's width, and are B and heights in m?",
+                short(B)
+            ));
+        }
+        doubts
     }
-}
-
-/// The doubts about the forces of tendon and dissipators.
-fn of_base(&Base { m_t, g, ties: Ties { P_0, F_y, .. }, .. }: &Base) -> Vec<String> {
-    let weight = m_t * g;
-    let is_small = |(_, force): &(&str, f64)| (0.0..NEXT_TO_NOTHING * weight).contains(force) && *force > 0.0;
-    let doubt = |(name, force)| {
-        let [force, weight] = [force, weight].map(|force| with_unit(force, "N"));
-        format!(
-            "{name} = {force} changes next to nothing under the weight of the structure, {weight}: is {name} in N, not in kN?"
-        )
-    };
-    [("P_0", P_0), ("F_y", F_y)].into_iter().filter(is_small).map(doubt).collect()
-}
-
-/// The doubts about a structure of many masses.
-fn of_many(frame: &Structure) -> Vec<String> {
-    let body = frame.body();
-    // of mass that is spread evenly over the height
-    let height = frame.floors().iter().map(|floor| floor.height).reduce(f64::max).unwrap_or(2.0 * body.S_1 / body.m_s);
-    let lowest = frame.modes().iter().map(Mode::omega).reduce(f64::min);
-    let usual = USUAL_SPEED / height;
-    let f = lowest.map_or(usual, |omega| omega / TAU); // none of a rigid structure
-    let mut doubts = of_base(frame.base());
-    if (f / usual).max(usual / f) > UNUSUAL {
-        doubts.push(format!(
-            "f = {f:.2} Hz of the lowest mode is far from the usual frequency of a structure {} m high, about {usual:.2} Hz: \
-             are masses in kg, heights in m, stiffnesses in N/m, and f in Hz?",
-            short(height)
-        ));
-    }
-    doubts
 }
 
 #[cfg(test)]
@@ -87,8 +101,27 @@ mod tests {
             let storeys = [storey(4e4, 3.5, 6e7), storey(3e4, 7.0, 4e7)];
             Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap().doubts().len()
         };
-        let [usual, tonnes, centimetres, per_mm] =
-            [[1.0; 3], [1e-3, 1.0, 1.0], [1.0, 100.0, 1.0], [1.0, 1.0, 1e-3]].map(doubts);
-        assert_eq!([usual, tonnes, centimetres, per_mm], [0, 1, 1, 1]);
+        let units = [[1.0; 3], [1e-3, 1.0, 1.0], [1e-3, 1.0, 1e-3], [1.0, 100.0, 1.0], [1.0, 1.0, 1e-3]];
+        assert_eq!(units.map(doubts), [0, 2, 1, 2, 1]);
+    }
+
+    #[test]
+    fn one_mass_in_another_unit_is_doubted() {
+        let doubts = |change: fn(&mut Parameters)| {
+            let mut parameters = Parameters { m: 1e5, m0: 5e4, H: 8.0, B: 1.5, f_fc: 2.0, ..Parameters::MCMANUS };
+            change(&mut parameters);
+            Structure::new(parameters).unwrap().doubts()
+        };
+        assert!(doubts(|_| ()).is_empty());
+        let changes: [(fn(&mut Parameters), &str); 5] = [
+            (|of| (of.m, of.m0) = (100.0, 50.0), "m_t = 150 kg is little"),
+            (|of| of.f_fc = 400_f64.recip(), "f = 0.00 Hz of the lowest mode is far"),
+            (|of| (of.H, of.B) = (8e3, 1.5e3), "f = 2.00 Hz of the lowest mode is far"),
+            (|of| of.zeta_fc = 0.5, "zeta = 0.5 of the lowest mode is large"),
+            (|of| of.B = 15.0, "B = 15 m is more than the height"),
+        ];
+        for (change, expected) in changes {
+            assert!(doubts(change)[0].starts_with(expected), "{:?}", doubts(change));
+        }
     }
 }

@@ -79,6 +79,7 @@ fn a_host_gets_the_categories_that_it_switches_on() {
 #[test]
 fn what_the_parameters_alone_say_is_warned_of() {
     let (pull, gain, slow) = ("pulls at one of the edges", "can raise the energy", "u_cr = ");
+    let far = "far from the usual frequency";
     for (values, expected) in [
         (vec![("r", 0.639)], vec![pull, gain]),
         (vec![("r", 0.641)], vec![pull]),
@@ -86,10 +87,10 @@ fn what_the_parameters_alone_say_is_warned_of() {
         (vec![("r", 0.820)], vec![]),
         (vec![("r", 0.998)], vec![]),
         (vec![("r", 0.9981)], vec![gain]),
-        (vec![("f_fc", 0.565)], vec![slow, gain]),
-        (vec![("f_fc", 0.566)], vec![gain]),
-        (vec![("f_fc", 0.565), ("r", 0.5), ("detail", 5.0)], vec![pull]),
-        (vec![("f_fc", 0.565), ("r", 0.5), ("detail", 6.0)], vec![]),
+        (vec![("f_fc", 0.565)], vec![far, slow, gain]),
+        (vec![("f_fc", 0.566)], vec![far, gain]),
+        (vec![("f_fc", 0.565), ("r", 0.5), ("detail", 5.0)], vec![far, pull]),
+        (vec![("f_fc", 0.565), ("r", 0.5), ("detail", 6.0)], vec![far]),
     ] {
         let host = Host::started(&values);
         let log = host.log.take();
