@@ -45,10 +45,8 @@ impl Description<'_> {
         let types = self.enumerations().into_iter().map(|of| enumeration(version, of));
         let variables = (0..).zip(self.variables);
         let is_row = |variable: &Variable| version == Version::Fmi3 || variable.causality != Causality::Independent;
-        let rows = variables.filter(|(_, variable)| is_row(variable)).map(|(at, variable)| match version {
-            Version::Fmi2 => self.scalar_variable(at, variable),
-            Version::Fmi3 => self.typed_variable(at, variable),
-        });
+        let rows = variables.filter(|(_, variable)| is_row(variable));
+        let rows = rows.map(|(at, variable)| self.variable(version, at, variable));
         Element::new("fmiModelDescription")
             .with("fmiVersion", number)
             .with("modelName", self.name)
@@ -143,27 +141,19 @@ impl Description<'_> {
             .with("stepSize", digits(step_size))
     }
 
-    /// The variable at position `at` in FMI 2.0, whose type is an element of its own.
-    fn scalar_variable(&self, at: usize, variable: &Variable) -> Element {
-        let of_type = self.of_type(typed(Version::Fmi2, variable), variable);
-        let of_type = match variable.data_type {
-            DataType::String => of_type.with_any("start", start(variable)),
-            _ => of_type,
-        };
-        common(Element::new("ScalarVariable"), at, variable).holding([of_type])
-    }
-
-    /// The variable at position `at` in FMI 3.0.
-    fn typed_variable(&self, at: usize, variable: &Variable) -> Element {
+    /// The variable at position `at`. Its type is an element of its own in FMI 2.0, and a text to start from in FMI 3.0.
+    fn variable(&self, version: Version, at: usize, variable: &Variable) -> Element {
+        let text = if variable.data_type == DataType::String { start(variable) } else { None };
+        let typed = typed(version, variable);
+        if version == Version::Fmi2 {
+            let of_type = self.of_type(typed, variable).with_any("start", text);
+            return common(Element::new("ScalarVariable"), at, variable).holding([of_type]);
+        }
         let is_given_within_steps =
             variability(variable) == "continuous" && variable.causality != Causality::Independent;
-        let element = common(typed(Version::Fmi3, variable), index(at), variable)
-            .with_any("intermediateUpdate", is_given_within_steps.then_some(true));
-        let of_type = self.of_type(element, variable);
-        match variable.data_type {
-            DataType::String => of_type.holding(start(variable).map(|text| Element::new("Start").with("value", text))),
-            _ => of_type,
-        }
+        let element =
+            common(typed, index(at), variable).with_any("intermediateUpdate", is_given_within_steps.then_some(true));
+        self.of_type(element, variable).holding(text.map(|text| Element::new("Start").with("value", text)))
     }
 
     /// `element` with the attributes that belong to the type of `variable`.

@@ -399,7 +399,8 @@ with_lists! {
 mod tests {
     use super::*;
     use crate::logger::Status;
-    use crate::touchy::{DROPPED, PANICS, Touchy, token};
+    use crate::touchy::{DROPPED, PANICS, Touchy};
+    use std::ffi::CString;
 
     /// The callback reads a variable whose value panics, and tries to free the instance.
     unsafe extern "C" fn update(c: *mut c_void, _: f64, _: u8, _: u8, _: u8, _: u8, _: *mut u8, _: *mut f64) {
@@ -414,7 +415,8 @@ mod tests {
     #[test]
     fn an_instance_that_panics_can_only_be_freed_and_not_within_a_step() {
         let mut c: *mut c_void = ptr::null_mut();
-        let (token, environment) = (token(), (&raw mut c).cast());
+        let token = CString::new(Touchy { x: 0.0 }.token()).unwrap();
+        let environment = (&raw mut c).cast();
         DROPPED.set(0);
         unsafe {
             let [name, token, folder] = [c"a".as_ptr(), token.as_ptr(), c"/".as_ptr()];

@@ -71,37 +71,35 @@ pub fn along<M: Model>(
         let known = &variables[*reference as usize];
         let is_parameter =
             !has_started && matches!((&known.start, known.causality), (Some(Value::Real(_)), Causality::Parameter));
-        let found = if known.causality == Causality::Input || is_parameter {
-            let x = model.values(&[*reference])?[0];
-            let scale = if is_parameter && x != 0.0 { x.abs() } else { known.nominal.unwrap_or(1.0).max(x.abs()) };
-            let set = |model: &mut M, value: f64| {
-                if is_parameter {
-                    model.set(*reference, Value::Real(value));
-                    return Ok(());
-                }
-                model.set_inputs(&[*reference], &[value])
-            };
-            let found = by_differences(x, scale, |value| {
-                known.data_type.accepts(value).then_some(())?;
-                set(model, value).ok()?;
-                model.values(of).ok()
-            });
-            set(model, x)?;
-            found
-        } else if known.role == Role::State && has_started {
-            let which = state_references(&variables).position(|state| state == *reference).expect("it is a state");
-            let found = by_differences(states[which], nominals[which].max(states[which].abs()), |value| {
-                let mut states = states.clone();
-                states[which] = value;
-                model.set_states(&states).ok()?;
-                model.values(of).ok()
-            });
-            model.set_states(&states)?;
-            found
-        } else {
+        let is_state = has_started && known.role == Role::State;
+        if !(is_parameter || is_state || known.causality == Causality::Input) {
             let knowns = state_references(&variables).map(|state| model.name(state)).collect::<Vec<_>>().join(", ");
             return Err(Failure::NoKnown { name: model.name(*reference), knowns });
+        }
+        let which = state_references(&variables).position(|state| is_state && state == *reference);
+        let (x, nominal) = match which {
+            Some(which) => (states[which], nominals[which]),
+            None => (model.values(&[*reference])?[0], known.nominal.unwrap_or(1.0)),
         };
+        let scale = if is_parameter && x != 0.0 { x.abs() } else { nominal.max(x.abs()) };
+        let set = |model: &mut M, value: f64| match which {
+            Some(which) => {
+                let mut states = states.clone();
+                states[which] = value;
+                model.set_states(&states)
+            }
+            None if is_parameter => {
+                model.set(*reference, Value::Real(value));
+                Ok(())
+            }
+            None => model.set_inputs(&[*reference], &[value]),
+        };
+        let found = by_differences(x, scale, |value| {
+            (is_state || known.data_type.accepts(value)).then_some(())?;
+            set(model, value).ok()?;
+            model.values(of).ok()
+        });
+        set(model, x)?;
         for (at, sum) in sums.iter_mut().enumerate() {
             let Some(by) = found.as_ref().and_then(|found| found[at]) else {
                 return Err(Failure::NoRate { name: model.name(of[at]), time: model.time()? });

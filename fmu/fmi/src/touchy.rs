@@ -2,7 +2,6 @@
 
 use crate::{Causality, Failure, Logger, Model, Progress, Step, Update, Value, Variable};
 use std::cell::Cell;
-use std::ffi::CString;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -16,11 +15,6 @@ thread_local! {
 #[derive(serde::Serialize, serde::Deserialize)]
 pub struct Touchy {
     pub x: f64,
-}
-
-/// The token of the model, for C.
-pub fn token() -> CString {
-    CString::new(Touchy { x: 0.0 }.token()).unwrap()
 }
 
 impl Drop for Touchy {

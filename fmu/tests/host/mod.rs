@@ -205,28 +205,16 @@ impl Host {
         let guid = arguments.guid.unwrap_or_else(|| model.token());
         let texts = [name, &guid, &location].map(|text| CString::new(text).unwrap());
         let [name, guid, location] = texts.each_ref().map(|text| text.as_ptr());
-        let (environment, required, count, update) = ((&raw const *log).cast_mut().cast(), ptr::null(), 0, None);
-        let (functions, log_3) = (callbacks(environment), Some(record_3 as LogMessageCallback));
-        let [on, event_mode, early] = [logging_on == 1, stepping.event_mode, stepping.early_return].map(u8::from);
+        let (to, log_3) = ((&raw const *log).cast_mut().cast(), Some(record_3 as LogMessageCallback));
+        let (functions, model_of_3, slave_of_3) =
+            (callbacks(to), fmi3::InstantiateModelExchange, fmi3::InstantiateCoSimulation);
+        let [on, events, early] = [logging_on == 1, stepping.event_mode, stepping.early_return].map(u8::from);
         around(true);
         let component = unsafe {
             match (is_fmi_3, fmu_type) {
                 (false, _) => fmi2::Instantiate(name, fmu_type, guid, location, &functions, 0, logging_on),
-                (_, MODEL_EXCHANGE) => fmi3::InstantiateModelExchange(name, guid, location, 0, on, environment, log_3),
-                _ => fmi3::InstantiateCoSimulation(
-                    name,
-                    guid,
-                    location,
-                    0,
-                    on,
-                    event_mode,
-                    early,
-                    required,
-                    count,
-                    environment,
-                    log_3,
-                    update,
-                ),
+                (_, MODEL_EXCHANGE) => model_of_3(name, guid, location, 0, on, to, log_3),
+                _ => slave_of_3(name, guid, location, 0, on, events, early, ptr::null(), 0, to, log_3, None),
             }
         };
         around(false);

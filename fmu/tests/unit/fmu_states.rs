@@ -1,6 +1,7 @@
 //! FMU states: kept, restored, serialized.
 
 use crate::host::*;
+use crate::records::at2;
 use FlexibleRocking::BUILD;
 use FlexibleRocking::fmi2;
 use std::ffi::c_void;
@@ -20,12 +21,6 @@ const OUTPUTS: [&str; 12] = [
     "R_v_min",
     "energy_gain_max",
 ];
-
-/// In g, at every 20 ms, `more` than usual.
-fn quake(more: f64) -> String {
-    let lines: String = (0..600).map(|i| format!("{}\n", 0.4 * (0.6 * f64::from(i)).cos() + more)).collect();
-    format!("PEER\nmade up\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 600, DT= .0200 SEC\n{lines}")
-}
 
 /// A hundred steps of 10 ms from `time` on; the outputs after each.
 fn run(host: &Host, time: f64) -> Vec<Vec<f64>> {
@@ -47,7 +42,7 @@ fn run(host: &Host, time: f64) -> Vec<Vec<f64>> {
 fn rocking() -> Host {
     let dissipators = [("xi_d", 0.2), ("c_d", 5.0), ("k_d", 1e6), ("F_y", 30.0)];
     let host = Host::initializing(&[&[("theta_0", 0.02), ("r", 0.9)], &dissipators[..]].concat());
-    host.write("quake.AT2", &quake(0.0));
+    host.write("quake.AT2", &at2(600));
     let switches = ["F_t_extrapolated", "peaks", "validity"].map(|name| host.set_boolean(name, 1));
     assert_eq!((switches, host.set_record("quake.AT2"), host.exit()), ([OK; 3], OK, OK), "{:?}", host.log);
     run(&host, 0.0);
@@ -60,7 +55,7 @@ fn rocking() -> Host {
 #[test]
 fn going_back_repeats_the_same_bits() {
     let [host, other] = [rocking(), Host::new()];
-    [&host, &other].map(|host| assert_eq!(host.set_debug_logging(true, &[]), OK));
+    assert_eq!([&host, &other].map(|host| host.set_debug_logging(true, &[])), [OK; 2]);
     assert!(host.log.take().iter().any(|message| message.text.contains("R_v_min")));
     let (state, bytes) = (host.keep(), host.bytes());
     let go_on = |host: &Host| {
@@ -74,7 +69,7 @@ fn going_back_repeats_the_same_bits() {
         assert!((host.go_back(state), go_on(&host)) == (OK, first.clone()));
     }
     assert!((host.terminate(), host.go_back(state), go_on(&host)) == (OK, OK, first.clone()));
-    other.write("quake.AT2", &quake(0.0));
+    other.write("quake.AT2", &at2(600));
     let state = other.deserialize(&bytes).unwrap();
     assert_eq!(other.bytes(), Host::new().bytes(), "deserializing alone changes nothing");
     assert_eq!((other.go_back(state), other.bytes(), other.record().as_str()), (OK, bytes, "quake.AT2"));
@@ -86,7 +81,7 @@ fn going_back_repeats_the_same_bits() {
 fn a_state_is_refused_without_the_samples_of_its_record() {
     let bytes = rocking().bytes();
     let [other, without] = [Host::new(), Host::new()];
-    other.write("quake.AT2", &quake(1e-3));
+    other.write("quake.AT2", &at2(599));
     let message = "fmi2SetFMUstate: the samples of record = \"quake.AT2\" changed after the FMU state was saved";
     for (host, message) in [(other, message), (without, "record = \"quake.AT2\" is not in ")] {
         let state = host.deserialize(&bytes).unwrap();

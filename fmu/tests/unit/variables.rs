@@ -69,45 +69,35 @@ fn the_stated_dependencies_are_the_true_ones() {
     for base in bases {
         let host = Host::initializing(base);
         let has_record = base.iter().any(|(name, _)| *name == "record_start");
+        let is_rigid = f64::from(host.integer("detail")) == rigid;
         // either may be the longer one
-        let records = match (has_record, f64::from(host.integer("detail")) == rigid) {
+        let records = match (has_record, is_rigid) {
             (true, true) => ["up.AT2", "pulse.AT2"],
             (true, false) => ["pulse.AT2", "up.AT2"],
             (false, _) => [""; 2],
         };
         let before = show(base, records);
         for known in VARIABLES.iter().filter(|variable| variable.causality == Causality::Parameter) {
-            // In full contact the base does not turn, and what is rigid is not deformed.
-            let is_rigid = f64::from(host.integer("detail")) == rigid;
-            if known.name == "theta_dot_0" && host.get("theta_0") == 0.0 || is_rigid && known.name.starts_with("u_") {
-                continue;
-            }
-            if let DataType::Boolean = known.data_type {
-                continue;
-            }
-            // the one goes with the other
-            if ["k_d", "F_y"].contains(&&*known.name) && host.get(&known.name) == 0.0 {
+            let name = &*known.name;
+            // In full contact the base does not turn, and what is rigid is not deformed; of two numbers each needs the other.
+            if name == "theta_dot_0" && host.get("theta_0") == 0.0
+                || is_rigid && name.starts_with("u_")
+                || ["k_d", "F_y"].contains(&name) && host.get(name) == 0.0
+            {
                 continue;
             }
             let [record, record_v] = records;
-            let other_records = match &*known.name {
+            let other_records = match name {
                 "record" => ["", record_v],
                 "record_v" => [record, ""],
                 _ => records,
             };
-            let value = match known.data_type {
-                DataType::Enumeration(_) | DataType::String => rigid,
-                _ => host.get(&known.name),
-            };
-            if known.name == "detail" && !is_rigid {
-                continue;
-            }
-            let changed = if known.name == "detail" {
-                1.0
-            } else if value == 0.0 {
-                1e-3
-            } else {
-                value * (1.0 - 1e-3)
+            let changed = match known.data_type {
+                DataType::Boolean => continue,
+                DataType::Enumeration(_) if !is_rigid => continue,
+                DataType::Enumeration(_) | DataType::String => 1.0,
+                _ if host.get(name) == 0.0 => 1e-3,
+                _ => host.get(name) * (1.0 - 1e-3),
             };
             let mut values = base.to_vec();
             values.retain(|(name, _)| *name != known.name);

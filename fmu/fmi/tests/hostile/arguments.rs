@@ -46,46 +46,20 @@ pub(crate) use calls;
 /// Log categories, the first two of which exist.
 pub const CATEGORIES: [&CStr; 4] = [c"logEvents", c"logStatusError", c"nonsense", c"\xff%n"];
 
+/// Which variables a call is meant for.
+type Meant = fn(&Variable) -> bool;
+
 /// Any variable, none of them more often than others.
-pub fn is_any(_: &Variable) -> bool {
-    false
-}
-
-pub fn is_integer(variable: &Variable) -> bool {
-    variable.data_type == DataType::Integer
-}
-
-pub fn is_number(variable: &Variable) -> bool {
-    matches!(variable.data_type, DataType::Enumeration(_))
-}
-
-pub fn is_boolean(variable: &Variable) -> bool {
-    variable.data_type == DataType::Boolean
-}
-
-pub fn is_text(variable: &Variable) -> bool {
-    variable.data_type == DataType::String
-}
-
-pub fn is_number_to_set(variable: &Variable) -> bool {
-    is_number(variable) && variable.causality == Causality::Parameter
-}
-
-pub fn is_switch(variable: &Variable) -> bool {
-    is_boolean(variable) && variable.causality == Causality::Parameter
-}
-
-pub fn is_output(variable: &Variable) -> bool {
-    variable.causality == Causality::Output && variable.is_continuous
-}
-
-fn is_input(variable: &Variable) -> bool {
-    variable.causality == Causality::Input
-}
-
-fn is_state(variable: &Variable) -> bool {
-    variable.role == Role::State
-}
+pub const ANY: Meant = |_| false;
+pub const INTEGER: Meant = |variable| variable.data_type == DataType::Integer;
+pub const NUMBER: Meant = |variable| matches!(variable.data_type, DataType::Enumeration(_));
+pub const BOOLEAN: Meant = |variable| variable.data_type == DataType::Boolean;
+pub const TEXT: Meant = |variable| variable.data_type == DataType::String;
+pub const NUMBER_TO_SET: Meant = |variable| NUMBER(variable) && variable.causality == Causality::Parameter;
+pub const SWITCH: Meant = |variable| BOOLEAN(variable) && variable.causality == Causality::Parameter;
+pub const OUTPUT: Meant = |variable| variable.causality == Causality::Output && variable.is_continuous;
+const INPUT: Meant = |variable| variable.causality == Causality::Input;
+const STATE: Meant = |variable| variable.role == Role::State;
 
 /// The arguments of one call.
 #[derive(Default)]
@@ -218,7 +192,7 @@ impl Sequence<'_> {
     }
 
     /// References to variables, to one that `is_meant` more often than not.
-    pub fn references(&mut self, is_meant: fn(&Variable) -> bool) -> *const c_uint {
+    pub fn references(&mut self, is_meant: Meant) -> *const c_uint {
         let n = if self.one_in(50) { 1000 } else { self.rng.usize(..5) };
         let last = self.subject.variables.len() as c_uint;
         let mut references: Vec<_> =
@@ -248,7 +222,7 @@ impl Sequence<'_> {
             return self.hold_references();
         }
         let is_continuous = self.before.as_ref().is_some_and(|of| of.stage == Stage::ContinuousTimeMode);
-        if is_continuous && self.one_in(4) { self.references(is_state) } else { self.references(is_input) }
+        if is_continuous && self.one_in(4) { self.references(STATE) } else { self.references(INPUT) }
     }
 
     /// Values for them.
@@ -398,13 +372,13 @@ impl Sequence<'_> {
 
     /// The variables that derivatives are asked of.
     pub fn unknowns(&mut self) -> *const c_uint {
-        let unknowns = self.references(|variable| is_output(variable) || matches!(variable.role, Role::RateOf(_)));
+        let unknowns = self.references(|variable| OUTPUT(variable) || matches!(variable.role, Role::RateOf(_)));
         self.drawn.unknowns = self.drawn.n;
         unknowns
     }
 
     pub fn knowns(&mut self) -> *const c_uint {
-        self.references(is_input)
+        self.references(INPUT)
     }
 
     /// Changes of the knowns.

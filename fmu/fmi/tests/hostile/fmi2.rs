@@ -1,8 +1,6 @@
 //! FMI 2.0: how its functions are called, when they may be, how instances are made.
 
-use super::arguments::{
-    CATEGORIES, calls, is_any, is_boolean, is_number, is_number_to_set, is_output, is_switch, is_text,
-};
+use super::arguments::*;
 use super::{C, ERROR, Table, Told, Version};
 use crate::fmi2::*;
 use fastrand::Rng;
@@ -20,20 +18,20 @@ pub const VERSION: Version = Version {
             call.integer(0..2), call.within(1e-14, 0.1), call.within(1e-3, 1.0), call.integer(0..2), call.within(1.0, 1e6)
         )
         EnterInitializationMode()
-        GetReal(call.references(is_any), call.count(), call.reals_of_references())
-        GetInteger(call.references(is_number), call.count(), call.values())
-        GetBoolean(call.references(is_boolean), call.count(), call.values())
-        GetString(call.references(is_text), call.count(), call.values())
+        GetReal(call.references(ANY), call.count(), call.reals_of_references())
+        GetInteger(call.references(NUMBER), call.count(), call.values())
+        GetBoolean(call.references(BOOLEAN), call.count(), call.values())
+        GetString(call.references(TEXT), call.count(), call.values())
         SetReal(call.references_to_set(), call.count(), call.reals_to_set())
-        SetInteger(call.references(is_number_to_set), call.count(), call.integers(0..8))
-        SetBoolean(call.references(is_switch), call.count(), call.integers(0..2))
-        SetString(call.references(is_text), call.count(), call.texts(&call.subject.texts))
+        SetInteger(call.references(NUMBER_TO_SET), call.count(), call.integers(0..8))
+        SetBoolean(call.references(SWITCH), call.count(), call.integers(0..2))
+        SetString(call.references(TEXT), call.count(), call.texts(&call.subject.texts))
         GetDirectionalDerivative(
             call.unknowns(), call.count(), call.knowns(), call.count(), call.seed(), call.derivatives()
         )
         SetRealInputDerivatives(call.references_to_set(), call.count(), call.integers(1..2), call.reals_to_set())
         GetRealOutputDerivatives(
-            call.references(is_output), call.count(), call.integers(1..2), call.reals_of_references()
+            call.references(OUTPUT), call.count(), call.integers(1..2), call.reals_of_references()
         )
         DoStep(call.point(), call.step(), call.integer(0..2))
         CancelStep()

@@ -1,8 +1,6 @@
 //! FMI 3.0: how its functions are called, when they may be, how instances are made.
 
-use super::arguments::{
-    CATEGORIES, calls, is_any, is_boolean, is_integer, is_number, is_number_to_set, is_output, is_switch, is_text,
-};
+use super::arguments::*;
 use super::{C, ERROR, Table, Told, Version};
 use crate::fmi3::*;
 use fastrand::Rng;
@@ -20,16 +18,16 @@ pub const VERSION: Version = Version {
         EnterInitializationMode(
             call.integer(0..2), call.within(1e-14, 0.1), call.within(1e-3, 1.0), call.integer(0..2), call.within(1.0, 1e6)
         )
-        GetFloat64(call.references(is_any), call.count(), call.reals_of_references(), call.count_of_values())
-        GetInt32(call.references(is_integer), call.count(), call.values(), call.count_of_values())
-        GetInt64(call.references(is_number), call.count(), call.values(), call.count_of_values())
-        GetBoolean(call.references(is_boolean), call.count(), call.values(), call.count_of_values())
-        GetString(call.references(is_text), call.count(), call.values(), call.count_of_values())
+        GetFloat64(call.references(ANY), call.count(), call.reals_of_references(), call.count_of_values())
+        GetInt32(call.references(INTEGER), call.count(), call.values(), call.count_of_values())
+        GetInt64(call.references(NUMBER), call.count(), call.values(), call.count_of_values())
+        GetBoolean(call.references(BOOLEAN), call.count(), call.values(), call.count_of_values())
+        GetString(call.references(TEXT), call.count(), call.values(), call.count_of_values())
         SetFloat64(call.references_to_set(), call.count(), call.reals_to_set(), call.count_of_values())
-        SetInt32(call.references(is_integer), call.count(), call.integers(0..8), call.count_of_values())
-        SetInt64(call.references(is_number_to_set), call.count(), call.integers(0..8), call.count_of_values())
-        SetBoolean(call.references(is_switch), call.count(), call.integers(0..2), call.count_of_values())
-        SetString(call.references(is_text), call.count(), call.texts(&call.subject.texts), call.count_of_values())
+        SetInt32(call.references(INTEGER), call.count(), call.integers(0..8), call.count_of_values())
+        SetInt64(call.references(NUMBER_TO_SET), call.count(), call.integers(0..8), call.count_of_values())
+        SetBoolean(call.references(SWITCH), call.count(), call.integers(0..2), call.count_of_values())
+        SetString(call.references(TEXT), call.count(), call.texts(&call.subject.texts), call.count_of_values())
         GetDirectionalDerivative(
             call.unknowns(), call.count(), call.knowns(), call.count(), call.seed(), call.count_of_values(),
             call.derivatives(), call.count_of_values()
@@ -40,7 +38,7 @@ pub const VERSION: Version = Version {
         )
         EnterStepMode()
         GetOutputDerivatives(
-            call.references(is_output), call.count(), call.integers(1..2), call.reals_of_references(), call.count_of_values()
+            call.references(OUTPUT), call.count(), call.integers(1..2), call.reals_of_references(), call.count_of_values()
         )
         DoStep(
             call.point(), call.step(), call.integer(0..2), call.room(1), call.room(1), call.room(1), call.finite(1)
