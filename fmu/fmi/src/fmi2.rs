@@ -34,9 +34,6 @@ pub struct CallbackFunctions {
     pub component_environment: *mut c_void,
 }
 
-const MODEL_EXCHANGE: c_int = 0;
-const CO_SIMULATION: c_int = 1;
-
 /// `fmi2EventInfo`
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
@@ -114,8 +111,8 @@ shared_functions! {
         c_abi::instantiate::<Function, M>("Instantiate", &[Category::Events], sink, || {
             let accepted = "0 (fmi2ModelExchange), 1 (fmi2CoSimulation)";
             let interface = match fmuType {
-                MODEL_EXCHANGE => Interface::ModelExchange,
-                CO_SIMULATION => Interface::CoSimulation(Stepping::default()),
+                0 => Interface::ModelExchange,
+                1 => Interface::CoSimulation(Stepping::default()),
                 value => return Err(Failure::BadChoice { name: "fmuType".into(), value, accepted }),
             };
             let guid = unsafe { text("fmuGUID", fmuGUID) };

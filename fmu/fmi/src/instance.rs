@@ -323,16 +323,15 @@ impl<M: Model> Instance<M> {
     #[inline(never)]
     fn set_real_slowly(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
         let mut states: Option<Vec<f64>> = None;
+        let variables = Arc::clone(&self.variables);
         for (reference, &value) in references.iter().zip(values) {
-            let has = self.stage.has_started() && self.find(*reference)?.causality == Causality::Parameter;
-            let has = has && self.model.get(*reference)? == Value::Real(value);
-            let variable = self.find(*reference)?;
+            let variable = find(&variables, *reference, self.first)?;
             let data_type = variable.data_type;
             let (DataType::Real { unit, .. }, Some((min, max))) = (data_type, data_type.limits()) else {
                 return Err(refused(variable));
             };
             if variable.role == Role::State && self.stage == Stage::ContinuousTimeMode {
-                let which = state_references(&self.variables).position(|state| state == *reference);
+                let which = state_references(&variables).position(|state| state == *reference);
                 let states = states.get_or_insert(self.model.states()?);
                 states[which.expect("it is a state")] = value;
                 continue;
@@ -341,8 +340,9 @@ impl<M: Model> Instance<M> {
             match variable.causality {
                 Causality::Input => (),
                 _ if variable.start.is_none() => return Err(refused(variable)),
-                _ if self.stage.has_started() && !has => return Err(Failure::Fixed { name }),
-                _ => (),
+                _ if !self.stage.has_started() => (),
+                Causality::Parameter if self.model.get(*reference)? == Value::Real(value) => (),
+                _ => return Err(Failure::Fixed { name }),
             }
             if !data_type.accepts(value) {
                 return Err(Failure::OutOfRange { name, value, unit, min, max, description });
@@ -391,8 +391,7 @@ impl<M: Model> Instance<M> {
     ) -> Result<(), Failure> {
         let variables = Arc::clone(&self.variables);
         let checked = references.iter().zip(values).map(|(reference, value)| {
-            self.find(*reference)?;
-            let variable = &variables[*reference as usize];
+            let variable = find(&variables, *reference, self.first)?;
             match variable.causality {
                 Causality::Input | Causality::Parameter => (),
                 _ => return Err(refused(variable)),

@@ -234,13 +234,8 @@ pub fn dependencies(variables: &[Variable], of: usize, at_start: bool) -> Vec<us
         let is_known = match variable.causality {
             Causality::Parameter | Causality::Input => true,
             Causality::Independent => !at_start,
-            _ => {
-                if at_start {
-                    variable.start.is_some()
-                } else {
-                    variable.role == Role::State
-                }
-            }
+            _ if at_start => variable.start.is_some(),
+            _ => variable.role == Role::State,
         };
         if is_known {
             known.insert(at);

@@ -3,7 +3,7 @@
 
 use FlexibleRocking::any::AnyUnit;
 use FlexibleRocking::fmi2::{self, CallbackFunctions, CallbackLogger, EventInfo};
-use FlexibleRocking::fmi3::{self, LogMessageCallback};
+use FlexibleRocking::fmi3::{self, IntermediateUpdateCallback, LogMessageCallback};
 use FlexibleRocking::masses::Masses;
 use FlexibleRocking::resources::{Contents, FRAME_FILE, FrameNumbers, PARAMETERS_FILE};
 use FlexibleRocking::unit::{Condition, Course};
@@ -67,6 +67,8 @@ pub struct Instantiate {
     pub fmu_type: c_int,
     /// For FMI 3.0.
     pub stepping: Stepping,
+    pub required: Vec<c_uint>,
+    pub update: Option<IntermediateUpdateCallback>,
     pub guid: Option<String>,
     pub location: Option<String>,
     pub logging_on: c_int,
@@ -82,6 +84,8 @@ impl Default for Instantiate {
             name: "wall",
             fmu_type: CO_SIMULATION,
             stepping: Stepping::default(),
+            required: Vec::new(),
+            update: None,
             guid: None,
             location: None,
             logging_on: 0,
@@ -198,7 +202,7 @@ without_arguments! {
 impl Host {
     /// Just instantiated, or the log.
     pub fn instantiate(arguments: Instantiate) -> Result<Host, Vec<Message>> {
-        let Instantiate { is_fmi_3, name, fmu_type, stepping, logging_on, resources, around, .. } = arguments;
+        let Instantiate { is_fmi_3, name, fmu_type, stepping, update, logging_on, resources, around, .. } = arguments;
         let (model, log) = (AnyUnit::open(resources.path()).unwrap(), Box::<Log>::default());
         let start = if is_fmi_3 { "" } else { "file://" };
         let location = arguments.location.unwrap_or_else(|| format!("{start}{}", resources.path().display()));
@@ -209,12 +213,13 @@ impl Host {
         let (functions, model_of_3, slave_of_3) =
             (callbacks(to), fmi3::InstantiateModelExchange, fmi3::InstantiateCoSimulation);
         let [on, events, early] = [logging_on == 1, stepping.event_mode, stepping.early_return].map(u8::from);
+        let (of, n) = (arguments.required.as_ptr(), arguments.required.len());
         around(true);
         let component = unsafe {
             match (is_fmi_3, fmu_type) {
                 (false, _) => fmi2::Instantiate(name, fmu_type, guid, location, &functions, 0, logging_on),
                 (_, MODEL_EXCHANGE) => model_of_3(name, guid, location, 0, on, to, log_3),
-                _ => slave_of_3(name, guid, location, 0, on, events, early, ptr::null(), 0, to, log_3, None),
+                _ => slave_of_3(name, guid, location, 0, on, events, early, of, n, to, log_3, update),
             }
         };
         around(false);

@@ -1,16 +1,11 @@
 //! FMI 3.0 where it is not FMI 2.0: events, calls back within a step.
 
-use crate::host::{self, ERROR, Host, OK, resources};
+use crate::host::*;
 use FlexibleRocking::fmi3;
 use fmi_unit::interface::Stepping;
 use libc::{c_uint, c_void};
-use rocking::Parameters;
-use std::ffi::CString;
+use std::cell::{Cell, RefCell};
 use std::ptr::{null, null_mut};
-
-fn reference(name: &str) -> c_uint {
-    host::reference(name) + 1
-}
 
 /// An acceleration that a host sets at an event lifts a rigid structure off there and then, unless it is to come one
 /// step late.
@@ -50,90 +45,64 @@ fn a_state_is_taken_by_an_instance_of_its_kind_alone() {
 
 /// A host that is called back: it sets inputs before a step is computed, and reads afterwards.
 struct Called {
-    c: *mut c_void,
+    host: Host,
     /// The input at the end of the next step.
-    end: f64,
+    end: Cell<f64>,
     /// When it read theta and its rate, and what these were.
-    read: Vec<[f64; 3]>,
+    read: RefCell<Vec<[f64; 3]>>,
 }
 
-unsafe extern "C" fn update(
-    environment: *mut c_void,
-    time: f64,
-    set: u8,
-    get: u8,
-    finished: u8,
-    _: u8,
-    _: *mut u8,
-    _: *mut f64,
-) {
-    let Called { c, end, read } = unsafe { &mut *environment.cast::<Called>() };
-    let (c, theta, a_g, m) = (*c, reference("theta"), reference("a_g"), reference("m"));
-    unsafe {
-        let (mut value, mut rate) = (0.0, 0.0);
-        assert_eq!(fmi3::SetDebugLogging(c, 0, 0, null()), OK);
-        fmi3::FreeInstance(c);
-        assert_eq!((fmi3::Terminate(c), fmi3::Reset(c), fmi3::GetFMUState(c, &mut null_mut())), (ERROR, ERROR, ERROR));
-        let got = fmi3::GetFloat64(c, &theta, 1, &mut value, 1);
-        let got = (got, fmi3::GetOutputDerivatives(c, &theta, 1, &1, &mut rate, 1));
-        assert_eq!((fmi3::SetFloat64(c, &m, 1, end, 1), fmi3::SetFloat64(c, &a_g, 1, &f64::NAN, 1)), (ERROR, ERROR));
-        let was_set = fmi3::SetFloat64(c, &a_g, 1, end, 1);
-        match (set, get, finished) {
-            (1, 0, 0) => assert_eq!((was_set, got), (OK, (ERROR, ERROR))),
-            (0, 1, 1) => {
-                assert_eq!((was_set, got), (ERROR, (OK, OK)));
-                read.push([time, value, rate]);
-            }
-            other => panic!("{other:?}"),
+thread_local! {
+    static CALLED: Cell<*const Called> = const { Cell::new(null()) };
+}
+
+unsafe extern "C" fn update(_: *mut c_void, time: f64, set: u8, get: u8, done: u8, _: u8, _: *mut u8, _: *mut f64) {
+    let Called { host, end, read } = unsafe { &*CALLED.get() };
+    unsafe { fmi3::FreeInstance(host.component) };
+    assert_eq!(host.set_debug_logging(false, &[]), OK);
+    assert_eq!((host.terminate(), host.reset(), host.try_keep(null_mut())), (ERROR, ERROR, Err(ERROR)));
+    let got = (host.try_get(&["theta"]), host.rate("theta", 1));
+    assert_eq!((host.set(&[("m", end.get())]), host.set(&[("a_g", f64::NAN)])), (ERROR, ERROR));
+    let was_set = host.set(&[("a_g", end.get())]);
+    match (set, get, done) {
+        (1, 0, 0) => assert_eq!((was_set, got), (OK, (Err(ERROR), Err(ERROR)))),
+        (0, 1, 1) => {
+            assert_eq!(was_set, ERROR);
+            read.borrow_mut().push([time, got.0.unwrap()[0], got.1.unwrap()]);
         }
+        other => panic!("{other:?}"),
     }
 }
 
 #[test]
 fn a_host_that_is_called_back_sets_inputs_reads_and_does_no_harm() {
-    let resources = resources();
-    let token = CString::new(FlexibleRocking::guid(&host::contents(Parameters::EVISON))).unwrap();
-    let folder = CString::new(resources.path().to_str().unwrap()).unwrap();
-    let mut called = Called { c: null_mut(), end: 2.0, read: Vec::new() };
-    let [name, token, folder] = [c"wall".as_ptr(), token.as_ptr(), folder.as_ptr()];
-    let (a_g, theta, environment) = (reference("a_g"), reference("theta"), &raw mut called);
-    let with = |required: &[c_uint], environment: *mut Called| unsafe {
-        let (required, count, environment) = (required.as_ptr(), required.len(), environment.cast());
-        let instantiate = fmi3::InstantiateCoSimulation;
-        instantiate(name, token, folder, 0, 0, 0, 0, required, count, environment, None, Some(update))
+    let with = |required: &[c_uint]| {
+        let (required, update) = (required.into(), Some(update as fmi3::IntermediateUpdateCallback));
+        Host::instantiate(Instantiate { is_fmi_3: true, required, update, ..Instantiate::default() })
     };
-    assert!(with(&[a_g, c_uint::MAX], environment).is_null() && with(&[0], environment).is_null());
+    let [a_g, theta] = ["a_g", "theta"].map(|name| reference(name) + 1);
+    assert!(with(&[a_g, c_uint::MAX]).is_err() && with(&[0]).is_err());
     for (required, sets, reads) in [(&[a_g][..], true, false), (&[theta], false, true), (&[a_g, theta], true, true)] {
-        let c = with(required, environment);
-        unsafe {
-            (*environment).c = c;
-            assert_eq!(fmi3::SetFloat64(c, &reference("theta_0"), 1, &0.3, 1), OK);
-            assert_eq!(
-                (fmi3::EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), fmi3::ExitInitializationMode(c)),
-                (OK, OK)
-            );
-            let (mut flags, mut reached, mut value, mut rate) = ([0u8; 3], 0.0, 0.0, 0.0);
-            let [event, terminate, early] = &mut flags;
-            for (time, end) in [(0.0, 2.0), (0.25, -1.0)] {
-                (*environment).end = end;
-                assert_eq!(fmi3::DoStep(c, time, 0.25, 0, event, terminate, early, &mut reached), OK);
-                assert_eq!((fmi3::GetFloat64(c, &a_g, 1, &mut value, 1), value), (OK, if sets { end } else { 0.0 }));
-                assert_eq!(fmi3::GetFloat64(c, &theta, 1, &mut value, 1), OK);
-                assert_eq!(fmi3::GetOutputDerivatives(c, &theta, 1, &1, &mut rate, 1), OK);
-                let read = std::mem::take(&mut (*environment).read);
-                assert_eq!(read, if reads { vec![[time + 0.25, value, rate]] } else { vec![] });
-            }
-            // a step that is refused asks for nothing
-            (*environment).end = 1e4;
-            assert_eq!(fmi3::SetFloat64(c, &a_g, 1, &3.0, 1), OK);
-            assert_eq!(fmi3::DoStep(c, 0.5, 0.25, 0, event, terminate, early, null_mut()), ERROR);
-            assert_eq!((fmi3::GetFloat64(c, &a_g, 1, &mut value, 1), value), (OK, 3.0));
-            // the host reads last at the instant of overturning
-            (*environment).end = 0.0;
-            assert_eq!(fmi3::DoStep(c, 0.5, 100.0, 0, event, terminate, early, &mut reached), OK);
-            let ends: Vec<_> = std::mem::take(&mut (*environment).read).iter().map(|read| read[0]).collect();
-            assert_eq!((*terminate, *early, ends), (1, 0, if reads { vec![reached] } else { vec![] }));
-            fmi3::FreeInstance(c);
+        let called = Called { host: with(required).unwrap(), end: Cell::default(), read: RefCell::default() };
+        let Called { host, end, read } = &called;
+        CALLED.set(&raw const called);
+        assert_eq!(host.set(&[("theta_0", 0.3)]), OK);
+        host.begin(None, 0.0, None);
+        for (time, a_g) in [(0.0, 2.0), (0.25, -1.0)] {
+            end.set(a_g);
+            assert_eq!((host.step(time, 0.25), host.get("a_g")), (OK, if sets { a_g } else { 0.0 }));
+            let shown = [time + 0.25, host.get("theta"), host.rate("theta", 1).unwrap()];
+            assert_eq!(read.take(), if reads { vec![shown] } else { vec![] });
         }
+        // a step that is refused asks for nothing
+        end.set(1e4);
+        assert_eq!(host.set(&[("a_g", 3.0)]), OK);
+        let refused = unsafe { fmi3::DoStep(host.component, 0.5, 0.25, 0, &mut 0, &mut 0, &mut 0, null_mut()) };
+        assert_eq!((refused, host.get("a_g")), (ERROR, 3.0));
+        // the host reads last at the instant of overturning
+        end.set(0.0);
+        let (status, [_, terminate, early], reached) = host.step_to(0.5, 100.0);
+        let ends: Vec<_> = read.take().iter().map(|read| read[0]).collect();
+        assert_eq!((status, terminate, early, ends), (OK, 1, 0, if reads { vec![reached] } else { vec![] }));
     }
 }

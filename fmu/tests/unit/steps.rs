@@ -62,11 +62,8 @@ fn initial_values_tolerance_and_start_time_reach_the_engine() {
     let host = Host::new();
     let initial = State { u: 1e-4, u_dot: -0.02, theta: -0.03, theta_dot: 0.1 };
     let start_values = [("u_0", initial.u), ("u_dot_0", initial.u_dot), ("theta_0", initial.theta)];
-    assert_eq!(host.set(&start_values), OK);
-    assert_eq!(host.setup(Some(1e-4), 5.0, Some(7.0)), OK);
-    assert_eq!(host.enter(), OK);
-    assert_eq!(host.set(&[("theta_dot_0", initial.theta_dot)]), OK);
-    assert_eq!(host.exit(), OK);
+    assert_eq!((host.set(&start_values), host.setup(Some(1e-4), 5.0, Some(7.0)), host.enter()), (OK, OK, OK));
+    assert_eq!((host.set(&[("theta_dot_0", initial.theta_dot)]), host.exit()), (OK, OK));
     let mut loose = engine(initial, 5.0, 1e-4);
     assert_same(&host, &loose);
     assert_eq!(host.step(5.0, 2.0), OK);
