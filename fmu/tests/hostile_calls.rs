@@ -17,6 +17,7 @@ use rocking::run::validity::ASSUMPTIONS;
 use std::ffi::CString;
 use std::fs;
 use std::path::Path;
+use tempfile::TempDir;
 
 hostile_calls!(structure);
 
@@ -27,26 +28,20 @@ mod frame {
 }
 
 fn structure() -> Subject {
-    let resources = host::resources();
-    let texts = records(resources.path());
     // the top mass above the pivot of a foundation without inertia
     let sticks = [("m0", 0.0), ("J0", 0.0), ("B", 0.3), ("theta_0", 0.1), ("u_0", 0.3)];
     let sticks = sticks.map(|(name, value)| (host::reference(name), value)).into();
-    Subject { texts, sticks, may_be_infinite, check_step: check_step::<f64>, ..Subject::of(resources, time::<f64>) }
+    Subject { sticks, ..subject::<f64>(host::resources()) }
 }
 
-/// Two floors, with a mode left out, and dissipators.
+/// Two floors, with a mode left out, and dissipators; the foundation has inertia.
 fn many_masses() -> Subject {
-    let resources = host::resources_of_many();
+    Subject { never_in: &[Stage::Error], ..subject::<Modes>(host::resources_of_many()) }
+}
+
+fn subject<Q: Masses>(resources: TempDir) -> Subject {
     let texts = records(resources.path());
-    let never_in = &[Stage::Error]; // its foundation has inertia
-    Subject {
-        texts,
-        never_in,
-        may_be_infinite,
-        check_step: check_step::<Modes>,
-        ..Subject::of(resources, time::<Modes>)
-    }
+    Subject { texts, may_be_infinite, check_step: check_step::<Q>, ..Subject::of(resources, time::<Q>) }
 }
 
 fn time<Q: Masses>(snapshot: &Snapshot) -> f64 {

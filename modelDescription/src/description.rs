@@ -6,6 +6,9 @@ use fmi_unit::logger::Category;
 use fmi_unit::variables::{dependencies, position};
 use fmi_unit::{Causality, DataType, Enumeration, Role, Value, Variable};
 
+/// Whether a variable is of a kind.
+type IsOne = fn(&Variable) -> bool;
+
 /// The content of a model description.
 #[derive(Clone, Debug, Default)]
 pub struct Description<'a> {
@@ -182,14 +185,14 @@ impl Description<'_> {
     }
 
     /// The positions of the variables that are one, with the positions of what they depend on.
-    fn unknowns(&self, is_one: fn(&Variable) -> bool, at_start: bool) -> impl Iterator<Item = (usize, Vec<usize>)> {
+    fn unknowns(&self, is_one: IsOne, at_start: bool) -> impl Iterator<Item = (usize, Vec<usize>)> {
         let found = (0..self.variables.len()).filter(move |at| is_one(&self.variables[*at]));
         found.map(move |at| (at, dependencies(self.variables, at, at_start)))
     }
 
     /// The dependencies: in FMI 2.0 after the start on inputs and states alone, in FMI 3.0 on parameters and time, too.
     fn structure(&self, version: Version) -> Element {
-        let lists: [(_, _, fn(&Variable) -> bool, _); 4] = [
+        let lists: [(_, _, IsOne, _); 4] = [
             ("Outputs", "Output", is_output, false),
             ("Derivatives", "ContinuousStateDerivative", is_rate, false),
             ("InitialUnknowns", "InitialUnknown", Variable::is_initial_unknown, true),

@@ -54,7 +54,7 @@ pub trait Function: Copy + Sized + 'static {
     fn table(interface: Interface) -> &'static Table;
 }
 
-/// What a version calls things in its functions' names, and how it counts variables.
+/// The words of a version in the names of its functions, and its first value reference.
 pub struct Words {
     pub(crate) version: &'static str,
     /// The first number in a component of this version.
@@ -123,7 +123,7 @@ const MAX_TEXT: usize = 1 << 16;
 /// Most values or bytes that a host may pass in one call.
 const MAX_LENGTH: usize = 1 << 24;
 
-/// What an instance is made of: model, interface, the host that is called back, and whether the log categories are on.
+/// The parts of an instance: model, interface, the host that is called back, and whether the log categories are on.
 pub(crate) type Parts<M> = (M, Interface, Option<IntermediateUpdate>, bool);
 
 /// A component with the instance of the `parts`, which switches the log `categories`. If `function` finds no parts, the result

@@ -67,7 +67,7 @@ struct EventHandling {
     is_warned: bool,
 }
 
-/// What a variable is to the calls of every step.
+/// The kind of a variable for the calls of every step.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     /// A real number that the host sets while time goes on.

@@ -10,7 +10,7 @@ fn rocking() -> Host {
     Host::started(&[("theta_0", 0.3), ("theta_dot_0", -0.4), ("u_0", 2e-3), ("u_dot_0", 0.3), ("J0", 2.0)])
 }
 
-/// Whatever the size of the direction, and along two at once.
+/// For directions of any size, and along two at once.
 #[test]
 fn they_are_linear_in_the_direction() {
     let host = rocking();

@@ -1,4 +1,4 @@
-//! What holds of all interfaces of both versions, of one mass and of many.
+//! Tests of all interfaces of both versions, with one mass and with many.
 
 use crate::host::*;
 use approx::assert_relative_eq;
@@ -28,7 +28,7 @@ fn is_real(variable: &Variable) -> bool {
     matches!(variable.data_type, DataType::Real { .. })
 }
 
-/// Whatever the model description lists as depending on a real number has a derivative by it.
+/// A variable that the model description lists as depending on a real number has a derivative by it.
 #[test]
 fn what_is_listed_has_a_derivative() {
     let ties = [("P_0", 200.0), ("k_t", 1e5), ("xi_d", 0.2), ("c_d", 50.0), ("k_d", 1e6), ("F_y", 1e3)];

@@ -18,7 +18,7 @@ fn inputs_act_as_they_are_set() {
     assert_eq!((host.set_time(0.02), host.complete()), (OK, Ok((false, false))));
     assert_eq!((host.set_time(0.04), host.enter_event_mode()), (OK, OK));
     assert_eq!(host.set(&[("a_g", 50.0)]), OK);
-    assert_eq!(host.update().unwrap().has_new_states, false);
+    assert!(!host.update().unwrap().has_new_states);
     assert_eq!((host.states(), host.integer("phase")), (Ok(vec![0.0; 4]), PHASE_IN_CONTACT));
 }
 
@@ -105,7 +105,7 @@ fn overturning_ends_the_simulation() {
     assert_eq!(host.set_time(1.0), OK);
     assert_eq!(host.complete(), Ok((true, false)));
     assert_eq!(host.enter_event_mode(), OK);
-    assert_eq!(host.update().unwrap().has_ended, true);
+    assert!(host.update().unwrap().has_ended);
     let slave = Host::started(&[("theta_0", 1.5), ("theta_dot_0", 1.0)]);
     assert_eq!(slave.step(0.0, 1.0), DISCARD);
     assert_eq!(host.try_boolean("overturned"), Ok(1));

@@ -234,7 +234,7 @@ fn an_instance_that_cannot_be_made_is_null_and_the_log_says_why() {
     }
 }
 
-/// What is null, no component, misaligned, or an instance of the other version.
+/// Null, other memory, a misaligned pointer, and an instance of the other version.
 #[test]
 fn what_is_no_component_is_an_error_and_freeing_it_does_nothing() {
     let (memory, of_2, of_3) = ([0_u64; 64], Host::new(), Host::new_of_3(None));
