@@ -370,7 +370,6 @@ mod tests {
     use super::*;
     use crate::Base;
     use crate::Body;
-    use crate::OneMass;
     use crate::Ties;
     use crate::mechanics::energy::energy;
     use crate::mechanics::impact::{angular_momentum, energy_gained, land, resolve, restitution};
@@ -585,43 +584,5 @@ mod tests {
         let expected = g * sin - elastic[2] / m[2];
         let at_the_top = acceleration(&x, 1.0, |j, part| part * frame.shapes[(2, j)]);
         assert_relative_eq!(at_the_top, expected, max_relative = 1e-12);
-    }
-
-    /// One mass, split in three at its height with stiffness and damping split alike.
-    #[test]
-    fn three_masses_at_one_height_are_one_mass() {
-        let parameters = Parameters { J0: 10.7, ..Parameters::MCMANUS };
-        let (structure, Parameters { m, H, zeta_fc, .. }) = (OneMass::new(parameters).unwrap(), parameters);
-        let parts = [0.2, 0.3, 0.5];
-        let stiffness = Matrix3::from_diagonal(&Vector3::from(parts.map(|part| part * structure.k)));
-        let frame = Masses::new(parts.map(|part| part * m), [H; 3], stiffness, zeta_fc, &parameters);
-        let (side, load) = (Side::Right, Load { a_g: 3.0, F_t: 0.0, a_v: -1.5 });
-        let one = State { u: 4e-3, u_dot: 0.3, theta: 0.0, theta_dot: -0.2 };
-        let three = frame.state(&Vector3::repeat(one.u), &Vector3::repeat(one.u_dot), one.theta, one.theta_dot);
-        let phase = Phase::Rocking(side);
-        assert_relative_eq!(
-            energy(&frame, phase, &three),
-            energy(&structure.into(), phase, &one),
-            max_relative = 1e-13
-        );
-        assert_relative_eq!(
-            angular_momentum(&frame, &three),
-            angular_momentum(&structure.into(), &one),
-            max_relative = 1e-12
-        );
-        assert_relative_eq!(
-            energy_gained(&frame, side, &three),
-            energy_gained(&structure.into(), side, &one),
-            max_relative = 1e-11
-        );
-        let (u_ddot, theta_ddot) = (-5.0, 2.0);
-        let second = Second { u_ddot: frame.modal(&Vector3::repeat(u_ddot)), theta_ddot };
-        let of_three = Load { a_g: load.a_g, F_t: frame.no_force(), a_v: load.a_v };
-        let found = Reactions::at(&Instant::of(&frame, phase, &three, of_three), &second);
-        let expected =
-            Reactions::at(&Instant::<f64>::of(&structure.into(), phase, &one, load), &Second { u_ddot, theta_ddot });
-        for (found, expected) in [(found.R_h, expected.R_h), (found.R_v, expected.R_v), (found.R_m, expected.R_m)] {
-            assert_relative_eq!(found, expected, max_relative = 1e-12);
-        }
     }
 }

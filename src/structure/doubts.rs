@@ -7,8 +7,9 @@ use std::f64::consts::TAU;
 /// Frequency times height of buildings, m/s: the mean of 163 (Ellis 1980, not read; as quoted by others).
 const USUAL_SPEED: f64 = 46.0;
 
-/// Ratio to that frequency from which a unit is in doubt. A unit of mass or stiffness wrong by 1000 makes 32, heights in cm make 100.
-const UNUSUAL: f64 = 10.0;
+/// Ratio to that frequency from which a unit is in doubt: of buildings, and of one mass, which many a soft pier or model carries. A unit
+/// of mass or stiffness wrong by 1000 makes 32, heights in cm make 100, a period in ms makes 1000.
+const UNUSUAL: [f64; 2] = [10.0, 30.0];
 
 /// A force below this fraction of the weight changes next to nothing. Forces in kN are below it.
 const NEXT_TO_NOTHING: f64 = 1e-3;
@@ -39,7 +40,7 @@ impl Structure {
         let Some((mode, f)) = lowest.map(|mode| (mode, mode.omega() / TAU)) else { return doubts };
         let usual = USUAL_SPEED / height;
         let (height, area) = (short(height), 2.0 * B * height);
-        if (f / usual).max(usual / f) > UNUSUAL {
+        if (f / usual).max(usual / f) > UNUSUAL[usize::from(self.one().is_some())] {
             doubts.push(format!(
                 "f = {f:.2} Hz of the lowest mode is far from the usual frequency of a structure {height} m high, about {usual:.2} Hz: \
                  are masses in kg, heights in m, stiffnesses in N/m, and f in Hz?"

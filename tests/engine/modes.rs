@@ -99,44 +99,6 @@ fn keeps_its_energy(masses: &Masses, modes: usize) {
     assert!(impacts > 3 && pieces > 300, "{impacts} {pieces}");
 }
 
-/// One mass is the same motion as one mode, with a shape of any scale.
-#[test]
-fn one_mode_is_one_mass() {
-    let parameters = Parameters { zeta_fc: 0.05, f_fc: 2.0, r: 0.9, ..Parameters::MCMANUS };
-    let structure = OneMass::new(parameters).unwrap();
-    let Parameters { m, m0, H, B, J0, r, g, .. } = parameters;
-    let scale: f64 = 1.7;
-    let (mass, gamma) = (m * scale * scale, m * scale);
-    let mode = Mode {
-        mass,
-        gamma,
-        share: 1.0 / scale,
-        height: H / scale,
-        stiffness: mass * structure.omega_fc.powi(2),
-        damping: mass * structure.c_fc / m,
-    };
-    let frame = Structure::of_body(body([m0, J0, B], [m, m * H, m * H * H], r, g), &[mode], &[]).unwrap();
-    for detail in [Detail::Nonlinear, Detail::Auto, Detail::Linear, Detail::FixedBase] {
-        let settings = Settings { detail, tolerance: 1e-10, ..Settings::default() };
-        let mut many = Engine::of_modes(frame.clone(), at_rest(1), 0.0, settings).unwrap();
-        let mut one = Engine::with(structure, State::default(), 0.0, settings).unwrap();
-        let (mut u, mut theta, mut off) = (0.0_f64, 0.0_f64, [0.0_f64; 2]);
-        for i in 0..250 {
-            let load = ground(1, 0.9 * pulse(i), 0.9 * pulse(i + 1), 0.01);
-            many.advance(0.01, load, &mut ()).unwrap();
-            let [value, slope] = [load.value, load.slope].map(|load| Load { a_g: load.a_g, F_t: 0.0, a_v: 0.0 });
-            assert_eq!(one.advance(0.01, LinearLoad { value, slope }, &mut ()), Ok(Progress::Complete));
-            let (many, one) = (&many.motion().state, &one.motion().state);
-            (u, theta) = (u.max(one.u.abs()), theta.max(one.theta.abs()));
-            off[0] = off[0].max((scale * many.u.numbers()[0] - one.u).abs());
-            off[1] = off[1].max((many.theta - one.theta).abs());
-        }
-        assert_eq!(many.motion().transitions, one.motion().transitions);
-        assert!(one.motion().transitions >= 4 || detail == Detail::FixedBase, "{}", one.motion().transitions);
-        assert!(off[0] <= 5e-13 * u && off[1] <= 1e-13 * theta, "{detail:?}: {:e} {:e}", off[0] / u, off[1] / theta);
-    }
-}
-
 /// Modes left out are the limit of stiff modes between landings: while rocking from θ̇ = 0.2 rad/s on, and at the uplift of a base at
 /// rest, with forces on the floors.
 #[test]

@@ -290,10 +290,14 @@ def test_the_command_line_shows_a_building_as_the_module_does(run, exporter, tmp
 
 def test_a_unit_that_is_far_off_is_doubted_before_a_run():
     for name, factor in (("k", 1e-3), ("m", 1e-3), ("h", 100)):
-        with pytest.warns(UserWarning, match="far from the usual frequency"):
+        with warnings.catch_warnings(record=True) as found:
+            warnings.simplefilter("always")
             of_storeys(storeys=[of | {name: factor * of[name]} for of in STOREYS])
+        assert "far from the usual frequency" in str(found[0].message)
     squat = {"m0": FRAME.m0, "J0": FRAME.J0, "B": 20}
-    assert "is B half of the base's width?" in str(fr.Structure(storeys=STOREYS, zeta=0.02, **squat))
+    with pytest.warns(UserWarning, match="B = 20 m is more than the height of the centre of gravity"):
+        wide = fr.Structure(storeys=STOREYS, zeta=0.02, **squat)
+    assert "is B half of the base's width?" in str(wide)
 
 
 def test_a_command_that_takes_one_mass_says_which_take_many(exporter, tmp_path):
