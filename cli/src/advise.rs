@@ -1,13 +1,11 @@
 //! `advise`: errors and cost of each level of detail on the user's own scene, and the cheapest level that is good enough.
 
-use crate::{
-    cause::Cause,
-    limit_args::LimitArgs,
-    record_args::one_of,
-    results::{FormatArgs, Traced},
-    scene_args::{GroundArgs, InitialArgs, load},
-    structure_args::StructureArgs,
-};
+use crate::cause::Cause;
+use crate::limit_args::LimitArgs;
+use crate::record_args::one_of;
+use crate::results::{FormatArgs, Traced};
+use crate::scene_args::{GroundArgs, InitialArgs, load};
+use crate::structure_args::StructureArgs;
 use anyhow::Context;
 use rocking::run::levels::Criterion;
 use rocking_sweep::plan::Conditions;

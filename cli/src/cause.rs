@@ -2,111 +2,90 @@
 use crate::record_args::{RecordArgs, RecordOptions};
 use rocking::run::record::Record;
 use rocking::{Parameters, State, Structure};
-use rocking_records::Column;
+use rocking_records::{Column, Unit};
 use rocking_report::{describe, program::version, record::Understood};
 use rocking_sweep::plan::Conditions;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The origin of a result; a part without influence on the result is left out.
-#[derive(Serialize)]
-pub struct Cause {
-    version: String,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    structure: Option<OfStructure>,
-    #[serde(flatten)]
-    ground: Option<Ground>,
-    /// The level of detail of a run, and its relative tolerance.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    detail: Option<&'static str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    tolerance: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    initial: Option<State>,
-}
+/// The origin of a result, part by part under its name; a part without influence on the result is left out.
+pub struct Cause(Vec<(&'static str, Part)>);
 
-/// The numbers of a structure.
 #[derive(Serialize)]
 #[serde(untagged)]
-enum OfStructure {
-    One(Parameters),
-    Many(BTreeMap<String, f64>),
+enum Part {
+    Text(Option<String>),
+    Number(f64),
+    OneMass(Parameters),
+    ManyMasses(BTreeMap<String, f64>),
+    State(State),
 }
 
-/// A ground motion.
-#[derive(Serialize)]
-struct Ground {
-    /// Title of the record.
-    record: String,
-    /// Name of the file, as far as the name is text.
-    file: Option<String>,
-    /// Name of the file of the vertical component, if there is one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    file_v: Option<String>,
-    /// Unit of the accelerations in the file, where it is asked for or they are looked at alone.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    record_unit: Option<String>,
-    /// Column of the file, where it is asked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    record_column: Option<String>,
-    /// Column of the vertical component, where it is asked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    record_column_v: Option<String>,
-    /// Time between two samples, where it is asked for, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    record_dt: Option<f64>,
-    time_scale: f64,
-    scale: f64,
-}
-
-impl Ground {
-    fn new([path, vertical]: [Option<&Path>; 2], options: &RecordOptions, record: &Record) -> Ground {
-        let [time_scale, scale] = options.factors();
-        let [file, file_v] = [path, vertical].map(|path| path.map(|path| path.display().to_string()));
-        let record_unit = options.unit.map(|unit| unit.to_string());
-        let record_column = options.column.as_ref().map(Column::as_asked);
-        let (record, record_dt) = (record.title().into(), options.dt);
-        Ground { record, file, file_v, record_unit, record_column, record_column_v: None, record_dt, time_scale, scale }
+impl Serialize for Cause {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, part)| (name, part)))
     }
 }
 
 impl Cause {
-    fn of(structure: Option<OfStructure>, ground: Option<Ground>) -> Cause {
-        Cause { version: version(), structure, ground, detail: None, tolerance: None, initial: None }
+    fn of(structure: Option<Part>) -> Cause {
+        let version = ("version", Part::Text(Some(version())));
+        Cause([version].into_iter().chain(structure.map(|part| ("structure", part))).collect())
     }
 
-    /// Of what follows from `structure`.
+    /// The cause of results of `structure`.
     pub fn new(structure: impl Into<Structure>) -> Cause {
         let structure = structure.into();
-        let many = || describe::numbers(&structure).into_iter().map(|of| (of.name, of.value)).collect();
-        let structure =
-            structure.one().map_or_else(|| OfStructure::Many(many()), |one| OfStructure::One(*one.parameters()));
-        Cause::of(Some(structure), None)
+        let numbers = || describe::numbers(&structure).into_iter().map(|of| (of.name, of.value)).collect();
+        let one = structure.one().map(|one| Part::OneMass(*one.parameters()));
+        Cause::of(Some(one.unwrap_or_else(|| Part::ManyMasses(numbers()))))
     }
 
-    /// Of what follows from the record in the file at `path` alone, which is understood as `options` say.
+    /// The cause of results of the record in the file at `path` only, which is understood as `options` say.
     pub fn of_record(path: &Path, options: &RecordOptions, understood: &Understood) -> Cause {
-        let record_unit = Some(understood.unit.to_string());
-        let ground = Ground { record_unit, ..Ground::new([Some(path), None], options, &understood.record) };
-        Cause::of(None, Some(ground))
+        Cause::of(None).on([Some(path), None], &understood.record, Some(understood.unit), options, None)
     }
 
     /// This cause under the `record` that `args` ask for.
     pub fn under(self, args: &RecordArgs, record: &Record) -> Cause {
         let files = [&args.record, &args.vertical.record_v].map(Option::as_deref);
-        let record_column_v = args.vertical.column_v.as_ref().map(Column::as_asked);
-        Cause { ground: Some(Ground { record_column_v, ..Ground::new(files, &args.options, record) }), ..self }
+        self.on(files, record, args.options.unit, &args.options, args.vertical.column_v.as_ref())
+    }
+
+    /// This cause under the `record` from `files`, its accelerations in `unit`; the second file is the vertical component from `column_v`.
+    fn on(
+        mut self,
+        files: [Option<&Path>; 2],
+        record: &Record,
+        unit: Option<Unit>,
+        options: &RecordOptions,
+        column_v: Option<&Column>,
+    ) -> Cause {
+        let [file, file_v] = files.map(|path| path.map(|path| path.display().to_string()));
+        self.0.extend([("record", Part::Text(Some(record.title().into()))), ("file", Part::Text(file))]);
+        let [column, column_v] = [options.column.as_ref(), column_v].map(|column| column.map(Column::as_asked));
+        let unit = unit.map(|unit| unit.to_string());
+        let asked =
+            [("file_v", file_v), ("record_unit", unit), ("record_column", column), ("record_column_v", column_v)];
+        self.0
+            .extend(asked.into_iter().filter(|(_, text)| text.is_some()).map(|(name, text)| (name, Part::Text(text))));
+        self.0.extend(options.dt.map(|dt| ("record_dt", Part::Number(dt))));
+        let [time_scale, scale] = options.factors().map(Part::Number);
+        self.0.extend([("time_scale", time_scale), ("scale", scale)]);
+        self
     }
 
     /// This cause of a run under these `conditions`.
-    pub fn computed(self, conditions: &Conditions) -> Cause {
+    pub fn computed(mut self, conditions: &Conditions) -> Cause {
         let &Conditions { detail, tolerance, initial, .. } = conditions;
-        Cause { detail: Some(detail.name()), tolerance: Some(tolerance), initial: Some(initial), ..self }
+        self.0.extend([("detail", Part::Text(Some(detail.name().into()))), ("tolerance", Part::Number(tolerance))]);
+        self.with_initial(initial)
     }
 
-    /// This cause of runs from `initial` at every level.
-    pub fn with_initial(self, initial: State) -> Cause {
-        Cause { initial: Some(initial), ..self }
+    /// This cause of runs from `initial`.
+    pub fn with_initial(mut self, initial: State) -> Cause {
+        self.0.push(("initial", Part::State(initial)));
+        self
     }
 }

@@ -1,16 +1,17 @@
 //! `describe`: a structure's parameters and what follows from them.
 
-mod template;
-
-use crate::{
-    results::{FormatArgs, print},
-    structure_args::StructureArgs,
-};
+use crate::results::{FormatArgs, print};
+use crate::structure_args::StructureArgs;
 use anyhow::ensure;
-use rocking::digits::significant;
+use rocking::digits::{short, significant};
 use rocking::estimates::restoring::{FlagPoint, flag};
+use rocking::structure::derived::Derived;
+use rocking::structure::natural_quantities::{NATURAL, Natural};
+use rocking::structure::parameters::PARAMETERS;
+use rocking::{OneMass, Quantity};
 use rocking_report::describe;
 use std::f64::consts::FRAC_PI_2;
+use std::fmt::{self, Write};
 
 /// Arguments of `describe`.
 #[derive(clap::Args)]
@@ -34,9 +35,7 @@ const STEPS: u32 = 20;
 pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     let structure = args.structure.load_any()?;
     if args.template {
-        let mut out = String::new();
-        template::write(&mut out, structure.one_mass("--template")?)?;
-        return print(&out);
+        return print(&template(structure.one_mass("--template")?)?);
     }
     if let Some(theta) = args.restoring {
         let is_in_range = theta > 0.0 && theta < FRAC_PI_2;
@@ -52,4 +51,29 @@ fn text_of_loop(rows: &[FlagPoint]) -> String {
     let line =
         |FlagPoint { theta, moment }: &FlagPoint| format!("{:>12} {:>14}\n", significant(*theta), significant(*moment));
     format!("{:>12} {:>14}\n{}", "theta (rad)", "moment (N.m)", rows.iter().map(line).collect::<String>())
+}
+
+/// `structure` as a TOML file: every parameter with its unit and range, and what may be given in its place.
+fn template(structure: &OneMass) -> Result<String, fmt::Error> {
+    let mut out = String::new();
+    out += "# A structure, for rocking-fmu ... --parameters FILE.toml. SI units; # begins a comment.\n\
+            # A line that begins with # may replace the line above it. You may leave out J0 (default 0), c_ratio (1), g (9.81 m/s2),\n\
+            # and the numbers of tendon and dissipators (0).\n";
+    for &Quantity { name, unit, description, min, max, get, .. } in &PARAMETERS {
+        let of = if unit == "1" { String::new() } else { format!(" {unit},") };
+        writeln!(out, "\n# {description},{of} {} to {}", short(min), short(max))?;
+        writeln!(out, "{name} = {}", shortest(get(structure.parameters())))?;
+        for natural in NATURAL.iter().filter(|natural| natural.stands_for == name) {
+            let &Natural { min, max, in_place_of, .. } = natural;
+            let &Derived { name, unit, description, value, .. } = natural.derived();
+            let (value, [min, max]) = (shortest(value(structure)), [min, max].map(short));
+            writeln!(out, "# {name} = {value} # {description}, {unit}, {min} to {max}: instead of {in_place_of}")?;
+        }
+    }
+    Ok(out)
+}
+
+/// `value` without the last rounding of what it was computed from, in as many digits as every decimal number keeps.
+fn shortest(value: f64) -> f64 {
+    format!("{value:.*e}", f64::DIGITS as usize - 1).parse().expect("a number in Rust's own notation")
 }

@@ -58,17 +58,10 @@ impl ExportArgs {
 /// Writes the FMU and reports its content; the libraries are beside `program`.
 pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     let structure = args.structure.load_any()?;
-    let libraries = if args.library.is_empty() {
-        libraries_of(program)?
-    } else {
-        args.library
-            .iter()
-            .map(|path| Library::read(path))
-            .collect::<Result<Vec<_>, _>>()?
-            .into_iter()
-            .flatten()
-            .collect()
-    };
+    let mut libraries = if args.library.is_empty() { libraries_of(program)? } else { Vec::new() };
+    for path in &args.library {
+        libraries.extend(Library::read(path)?);
+    }
     let output = args.output.clone().unwrap_or_else(|| format!("{}.fmu", args.name.as_str()).into());
     let inputs = args.structure.input().into_iter().chain(args.records().chain(&args.library).map(PathBuf::as_path));
     let file = OutputFiles::of_inputs(inputs).create(&output)?;

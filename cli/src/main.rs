@@ -14,15 +14,16 @@ mod record;
 mod record_args;
 mod results;
 mod scene_args;
-mod shell;
 mod simulate;
 mod structure_args;
 mod sweep;
 mod talk;
 mod view;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
+use clap_complete::Shell;
 use fmu_export::Platform;
+use rocking_report::message;
 use std::env::consts::{ARCH, OS};
 use std::{env, io, process::ExitCode};
 
@@ -168,7 +169,11 @@ A file of pulses, spectrum.toml, a map of each structure:
     #[command(after_help = "Examples:
   rocking-fmu completions bash > ~/.local/share/bash-completion/completions/rocking-fmu
   rocking-fmu completions zsh > ~/.zfunc/_rocking-fmu")]
-    Completions(shell::CompletionsArgs),
+    Completions {
+        /// The shell
+        #[arg(value_enum)]
+        shell: Shell,
+    },
 }
 
 /// Version, build, and the platforms that an FMU can be for.
@@ -194,15 +199,23 @@ fn main() -> ExitCode {
         Command::Sweep(args) => sweep::run(&args),
         Command::Pulse(args) => pulse::run(&args),
         Command::Record(args) => record::run(&args),
-        Command::Completions(args) => shell::completions(&args),
+        Command::Completions { shell } => completions(shell),
     };
     match result {
         Err(error) if !is_closed_pipe(&error) => {
-            talk::say_error(&error);
+            talk::write_line(format_args!("error: {}", message(&error)));
             ExitCode::FAILURE
         }
         _ => ExitCode::SUCCESS,
     }
+}
+
+/// Prints the completions for a shell.
+fn completions(shell: Shell) -> anyhow::Result<()> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut CommandLine::command(), "rocking-fmu", &mut script);
+    // clap_complete's script for bash looks for the commands of a program with a dash under another name than it gives them
+    results::print(&String::from_utf8(script)?.replace("rocking__subcmd__fmu", "rocking__fmu"))
 }
 
 /// Whether the reader of the output has seen enough, as `head` has.

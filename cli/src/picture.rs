@@ -1,7 +1,5 @@
 //! The one style of all pictures, and the SVG files that they go into.
 
-pub mod histories;
-
 use crate::talk::write_as;
 use anyhow::bail;
 use plotters::coord::combinators::WithKeyPoints;
@@ -70,25 +68,19 @@ impl Picture {
 
     /// Writes what `draw` draws on an area of `size`, in pixels.
     pub fn draw(self, size: (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<()> {
-        write_as(self.0, "picture", svg(size, draw)?.as_bytes())
+        let (mut svg, drawn) = (String::new(), (size.0 * UNITS as u32, size.1 * UNITS as u32));
+        {
+            let area = SVGBackend::with_string(&mut svg, drawn).into_drawing_area();
+            area.fill(&WHITE)?;
+            draw(&area)?;
+            area.present()?;
+        }
+        // characters that XML cannot hold, from the name of a record
+        svg.retain(|c| !(c < ' ' && c != '\n' || matches!(c, '\u{fffe}' | '\u{ffff}')));
+        // the size to show it at; the view box stays in drawing units
+        let [drawn, shown] = [drawn, size].map(|(x, y)| format!("width=\"{x}\" height=\"{y}\""));
+        write_as(self.0, "picture", svg.replacen(&drawn, &shown, 1).as_bytes())
     }
-}
-
-/// The drawing by `draw` on an area of this size, in pixels, as SVG.
-fn svg((width, height): (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<String> {
-    let (wide, high) = (width * UNITS as u32, height * UNITS as u32);
-    let mut svg = String::new();
-    {
-        let area = SVGBackend::with_string(&mut svg, (wide, high)).into_drawing_area();
-        area.fill(&WHITE)?;
-        draw(&area)?;
-        area.present()?;
-    }
-    // characters that XML cannot hold, from the name of a record
-    svg.retain(|c| !(c < ' ' && c != '\n' || matches!(c, '\u{fffe}' | '\u{ffff}')));
-    // the size to show it at; the view box stays in drawing units
-    let [drawn, shown] = [(wide, high), (width, height)].map(|(x, y)| format!("width=\"{x}\" height=\"{y}\""));
-    Ok(svg.replacen(&drawn, &shown, 1))
 }
 
 /// A line that shows data.

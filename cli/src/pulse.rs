@@ -4,7 +4,7 @@ use clap::{ArgGroup, builder::PossibleValue};
 use rocking::Base;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::run::record::Record;
-use rocking_records::csv;
+use rocking_records::{Unit, csv_in};
 use rocking_report::{output_files::OutputFiles, quantities::NamedValue};
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::path::PathBuf;
@@ -78,7 +78,7 @@ pub fn run(args: &PulseArgs) -> anyhow::Result<()> {
     let pulse = args.of.pulse(structure.base());
     let record = pulse.record()?;
     let file = OutputFiles::of_inputs(args.structure.input()).create(&args.output)?;
-    write_as(file, "pulse", csv(&record).as_bytes())?;
+    write_as(file, "pulse", csv_in(&record, Unit::MetrePerSecondSquared).as_bytes())?;
     let (title, cause) = ((record.title(), structure.base().g), Cause::new(structure.clone()));
     args.results.print_table(Some(&args.output), title, &cause, &amounts(&pulse, &record, structure.base()))
 }

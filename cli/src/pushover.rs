@@ -1,11 +1,9 @@
 //! `pushover`: lateral force and moment against displacement (Fig 1).
 
-use crate::{
-    cause::Cause,
-    results::{FormatArgs, Traced, csv},
-    structure_args::StructureArgs,
-    talk::write_as,
-};
+use crate::cause::Cause;
+use crate::results::{FormatArgs, Traced, csv};
+use crate::structure_args::StructureArgs;
+use crate::talk::write_as;
 use rocking::estimates::pushover::curve;
 use rocking_report::output_files::OutputFiles;
 use rocking_report::pushover::{Corner, HEADINGS, corners, line};

@@ -1,8 +1,6 @@
 //! Which ground motion record a command works on, how it is read, and how it is scaled.
-use crate::{
-    structure_args::on_command_line,
-    talk::{say, warning},
-};
+use crate::structure_args::on_command_line;
+use crate::talk::{say, warning};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rocking::digits::short;
 use rocking::run::record::Record;

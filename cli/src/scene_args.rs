@@ -1,8 +1,6 @@
 //! The scene that a command simulates: a ground motion record or free vibration, and the initial values.
-use crate::{
-    record_args::{RecordArgs, one_of},
-    structure_args::StructureArgs,
-};
+use crate::record_args::{RecordArgs, one_of};
+use crate::structure_args::StructureArgs;
 use clap::ArgGroup;
 use rocking::digits::short;
 use rocking::run::record::Record;
@@ -65,7 +63,7 @@ pub struct GroundArgs {
         allow_hyphen_values = true,
         conflicts_with_all = ["record_v", "unit", "dt", "column", "ignore_npts", "time_scale", "scale", "duration"]
     )]
-    free: Option<f64>,
+    pub free: Option<f64>,
 }
 
 /// The state at the start.
@@ -117,11 +115,6 @@ impl GroundArgs {
             Some(duration) => format!("none, free vibration over {} s", short(duration)),
             None => format!("{}, {} samples", ground.title(), ground.times().len()),
         }
-    }
-
-    /// Interval of the output in free vibration, which has no samples, s.
-    pub fn free_vibration_interval(&self) -> Option<f64> {
-        self.free.map(|_| 1e-3)
     }
 }
 

@@ -2,26 +2,22 @@
 mod picture;
 mod profile;
 
-use crate::{
-    cause::Cause,
-    limit_args::LimitArgs,
-    picture::Picture,
-    results::{FormatArgs, csv},
-    scene_args::MotionArgs,
-    talk::{say, write_as},
-};
+use crate::cause::Cause;
+use crate::limit_args::LimitArgs;
+use crate::picture::Picture;
+use crate::results::{FormatArgs, csv};
+use crate::scene_args::MotionArgs;
+use crate::talk::{say, write_as};
 use anyhow::ensure;
 use rocking::Base;
 use rocking::digits::{short, significant};
 use rocking::mechanics::restraint::centring_moments;
 use rocking::run::record::Record;
-use rocking_report::{
-    output_files::{OutputFile, OutputFiles},
-    quantities::in_readable_unit,
-    run::{Line, Run},
-    summary::instant,
-    tables::event_line,
-};
+use rocking_report::output_files::{OutputFile, OutputFiles};
+use rocking_report::quantities::in_readable_unit;
+use rocking_report::run::{Line, Run};
+use rocking_report::summary::instant;
+use rocking_report::tables::event_line;
 use std::path::PathBuf;
 
 /// Arguments of `simulate`.
@@ -62,24 +58,10 @@ impl SimulateArgs {
     fn samples_and_interval<'a>(&self, ground: &'a Record) -> (&'a [f64], f64) {
         let samples = ground.times();
         let last = samples.len() - 1;
-        match self.results.interval.or(self.motion.ground.free_vibration_interval()) {
+        match self.results.interval.or(self.motion.ground.free.map(|_| 1e-3)) {
             Some(interval) => (&samples[..1], interval),
             None => (samples, samples[last] - samples[last - 1]),
         }
-    }
-
-    /// Refuses an interval at which the table of a run until `end` (s) would have no end.
-    fn check_rows(&self, ground: &Record, end: f64) -> anyhow::Result<()> {
-        const MOST_ROWS: f64 = 1e6; // 200 MB
-        let (samples, interval) = self.samples_and_interval(ground);
-        let rows = samples.len() as f64 + (end - samples[samples.len() - 1]) / interval;
-        ensure!(
-            interval > 0.0 && rows <= MOST_ROWS,
-            "interval = {} s over {} s: it must be above 0 and make at most {MOST_ROWS:.0e} rows",
-            short(interval),
-            short(end - ground.start())
-        );
-        Ok(())
     }
 
     /// Writes the response of `run` at the instants asked for.
@@ -97,6 +79,19 @@ impl SimulateArgs {
         }
         write_as(file, "response", &csv(run.headings(), lines.iter())?)
     }
+}
+
+/// Refuses an `interval` (s) at which the table of a run until `end` (s) would have no end. The table has the `samples` (s) first.
+fn check_rows(samples: &[f64], interval: f64, end: f64) -> anyhow::Result<()> {
+    const MOST_ROWS: f64 = 1e6; // 200 MB
+    let (duration, after) = (end - samples[0], end - samples[samples.len() - 1]);
+    let rows = (samples.len() - 1) as f64 + after / interval;
+    let digit = 10.0_f64.powf((duration / MOST_ROWS).log10().floor() - 1.0);
+    let least = digit * (duration / MOST_ROWS / digit - 1e-6).ceil();
+    let [shown, over, least] = [interval, duration, least].map(short);
+    let is_possible = interval > 0.0 && rows <= (1.0 + 1e-9) * MOST_ROWS;
+    ensure!(is_possible, "interval = {shown} s over {over} s: give {least} s or more, for at most {MOST_ROWS:e} rows");
+    Ok(())
 }
 
 /// Whether a structure with elastoplastic dissipators on this `base` centres itself, in a line.
@@ -134,7 +129,8 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
         write_as(file, "transitions", &csv(run.event_headings(), found.events.iter().map(event_line))?)?;
     }
     if let Some(file) = response {
-        args.check_rows(&run.ground, found.end)?;
+        let (samples, interval) = args.samples_and_interval(&run.ground);
+        check_rows(samples, interval, found.end)?;
         args.write_response(&run, file)?;
     }
     let text = || {
@@ -146,4 +142,17 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
         picture::draw(picture, &run)?;
     }
     profile.map_or(Ok(()), |picture| profile::draw(picture, &run, &found))
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn an_interval_that_is_refused_names_one_that_is_not() {
+        let check = |interval: f64, end| super::check_rows(&[0.0], interval, end).map_err(|error| error.to_string());
+        let refused = |given: &str, over: &str, least: &str| {
+            Err(format!("interval = {given} s over {over} s: give {least} s or more, for at most 1e6 rows"))
+        };
+        assert_eq!((check(1e-6, 1.0), check(9e-7, 1.0)), (Ok(()), refused("9e-7", "1", "1e-6")));
+        assert_eq!((check(4.9e-6, 4.87077), check(-1.0, 4.87077)), (Ok(()), refused("-1", "4.87077", "4.9e-6")));
+    }
 }

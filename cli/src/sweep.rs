@@ -6,24 +6,21 @@ mod map;
 mod picture;
 mod table;
 
-use crate::{
-    picture::Picture,
-    results::FormatArgs,
-    talk::{self, few, say},
-};
+use crate::picture::Picture;
+use crate::results::FormatArgs;
+use crate::talk::{few, is_quiet, say};
 use anyhow::{bail, ensure};
 use file::{Asked, RecordSweep};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPool;
 use rocking::digits::with_unit;
 use rocking_report::{input, output_files::OutputFiles, program::program};
-use rocking_sweep::{
-    exceedances,
-    outcome::Outcome,
-    plan::{Case, Plan},
-    rows::Sweep,
-    thread_pool,
-};
+use rocking_sweep::exceedances;
+use rocking_sweep::outcome::Outcome;
+use rocking_sweep::plan::{Case, Plan};
+use rocking_sweep::row_file;
+use rocking_sweep::rows::Sweep;
+use rocking_sweep::thread_pool;
 use std::path::{Path, PathBuf};
 use uuid::Uuid;
 
@@ -89,10 +86,14 @@ fn run_records(
         plan.len()
     );
     few(records, "records").iter().for_each(|line| say!("{line}"));
-    runs.others.others(output, "runs that are not in this sweep").iter().for_each(|line| say!("{line}"));
+    row_file::others(runs.others, output, "runs that are not in this sweep").iter().for_each(|line| say!("{line}"));
 
-    let (bar, goes_on) = progress(missing.len(), "runs")?;
-    pool.install(|| runs.finish(goes_on))?;
+    let bar = progress(missing.len(), "runs")?;
+    let count = || {
+        bar.inc(1);
+        true
+    };
+    pool.install(|| runs.finish(count))?;
     bar.finish_and_clear();
     let (keys, outcomes) = runs.outcomes();
 
@@ -108,15 +109,11 @@ fn run_records(
     report_failures(&plan, &keys, &outcomes)
 }
 
-/// A bar for the progress of many runs, which are called `what`, and what moves it after each.
-fn progress(runs: usize, what: &str) -> anyhow::Result<(ProgressBar, impl Fn() -> bool + Sync)> {
+/// A bar for the progress of many runs, which are called `what`; none where standard error is no terminal.
+fn progress(runs: usize, what: &str) -> anyhow::Result<ProgressBar> {
     let template = format!("{{elapsed_precise}} {{bar:40}} {{pos}}/{{len}} {what}, {{per_sec}}, {{eta}} left");
-    let bar = talk::progress(runs).with_style(ProgressStyle::with_template(&template)?);
-    let moved = bar.clone();
-    Ok((bar, move || {
-        moved.inc(1);
-        true
-    }))
+    let bar = if is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(runs as u64) };
+    Ok(bar.with_style(ProgressStyle::with_template(&template)?))
 }
 
 /// Says how many runs failed, and which the first is.
@@ -124,6 +121,6 @@ fn report_failures(plan: &Plan, keys: &[Uuid], outcomes: &[Outcome]) -> anyhow::
     let failed = || (0..plan.len()).filter(|index| matches!(outcomes[*index], Outcome::Failed { .. }));
     let Some(first) = failed().next() else { return Ok(()) };
     let (count, Case { population, motion, scale, .. }) = (failed().count(), plan.case(first));
-    let (name, motion, scale, key) = (population.name(), motion.name(), with_unit(scale, "1"), keys[first]);
+    let (name, motion, scale, key) = (&population.name, &motion.name, with_unit(scale, "1"), keys[first]);
     bail!("{count} of {} runs failed; the first: {name}, {motion}, scale {scale}, see row {key}", plan.len())
 }

@@ -1,7 +1,6 @@
 //! Messages of a command, on standard error: a program that reads the results does not see them.
 
-use indicatif::ProgressBar;
-use rocking_report::{input, message, output_files::OutputFile};
+use rocking_report::{input, output_files::OutputFile};
 use std::fmt;
 use std::io::{Write, stderr};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -59,14 +58,4 @@ pub fn write_as(file: OutputFile, what: &str, content: &[u8]) -> anyhow::Result<
         say!("{what:<14} {}", path.display());
     }
     Ok(())
-}
-
-/// A bar that shows how many of `length` steps are done; none where standard error is no terminal.
-pub fn progress(length: usize) -> ProgressBar {
-    if is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(length as u64) }
-}
-
-/// Says why a command failed, quiet or not.
-pub fn say_error(error: &anyhow::Error) {
-    write_line(format_args!("error: {}", message(error)));
 }

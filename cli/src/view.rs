@@ -1,5 +1,6 @@
 //! `view`: a page that shows the structure in motion, one file that needs nothing else.
 use crate::{scene_args::MotionArgs, talk::write_as};
+use anyhow::ensure;
 use rocking_report::{input, output_files::OutputFiles};
 use std::path::PathBuf;
 
@@ -15,17 +16,14 @@ pub struct ViewArgs {
 
 /// Follows the motion and writes the page.
 pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
+    let output = match (&args.output, &args.motion.ground.record.record) {
+        (Some(path), _) => path.clone(),
+        (None, Some(record)) => format!("{}_view.html", input::stem(record)).into(),
+        (None, None) => "free_vibration_view.html".into(),
+    };
+    let is_page = output.extension().is_none_or(|ending| ending.eq_ignore_ascii_case("html"));
+    ensure!(is_page, "{}: a page's name ends in .html; `simulate --picture` draws .svg", output.display());
     let run = args.motion.load()?;
-    let file = OutputFiles::of_inputs(args.motion.inputs()).create(&args.output_path())?;
+    let file = OutputFiles::of_inputs(args.motion.inputs()).create(&output)?;
     write_as(file, "view", run.page()?.as_bytes())
-}
-
-impl ViewArgs {
-    fn output_path(&self) -> PathBuf {
-        match (&self.output, &self.motion.ground.record.record) {
-            (Some(path), _) => path.clone(),
-            (None, Some(record)) => format!("{}_view.html", input::stem(record)).into(),
-            (None, None) => "free_vibration_view.html".into(),
-        }
-    }
 }

@@ -44,45 +44,40 @@ mod tests {
         San Fernando, 2/9/1971, Pacoima Dam (upper left abut), 164\n\
         ACCELERATION TIME SERIES IN UNITS OF G\n";
 
-    /// The counts of every header variant, and what they say.
-    const COUNTS: [(&str, usize, f64); 9] = [
-        ("NPTS=   3, DT=   .0100 SEC,                    ", 3, 0.01),
-        ("NPTS=     3  DT=  0.0050 SEC,", 3, 0.005),
-        ("NPTS= 3 DT= 0.0050000", 3, 0.005),
-        ("NPTS=3,DT=.02SEC", 3, 0.02),
-        ("  3    0.0100    NPTS, DT", 3, 0.01),
-        ("3, .5 NPTS, DT", 3, 0.5),
-        ("npts=   3, dt=   5.0e-3 sec", 3, 0.005),
-        ("\tNPTS =\t3 ,\tDT =\t1D-2\tSEC", 3, 0.01),
-        ("NPTS= 3, DT= .01 SEC, UNITS=G", 3, 0.01),
+    /// The step of 3 samples, as each header variant states it.
+    const COUNTS: [(&str, f64); 9] = [
+        ("NPTS=   3, DT=   .0100 SEC,                    ", 0.01),
+        ("NPTS=     3  DT=  0.0050 SEC,", 0.005),
+        ("NPTS= 3 DT= 0.0050000", 0.005),
+        ("NPTS=3,DT=.02SEC", 0.02),
+        ("  3    0.0100    NPTS, DT", 0.01),
+        ("3, .5 NPTS, DT", 0.5),
+        ("npts=   3, dt=   5.0e-3 sec", 0.005),
+        ("\tNPTS =\t3 ,\tDT =\t1D-2\tSEC", 0.01),
+        ("NPTS= 3, DT= .01 SEC, UNITS=G", 0.01),
     ];
 
-    fn read(text: &str, how: &Reading) -> Result<Record, BadLine> {
-        Ok(crate::parse(text, how)?.0)
-    }
-
     fn at2(counts: &str, values: &str) -> Result<Record, BadLine> {
-        read(&format!("{PACOIMA}{counts}\n{values}"), &Reading::default())
-    }
-
-    fn at2_problem(values: &str) -> String {
-        let BadLine { line, problem, .. } = at2("NPTS= 3, DT= .01 SEC", values).unwrap_err();
-        format!("{line}: {problem}")
+        Ok(crate::parse(&format!("{PACOIMA}{counts}\n{values}"), &Reading::default())?.0)
     }
 
     #[test]
     fn every_header_variant_gives_the_same_samples() {
-        for (counts, npts, dt) in COUNTS {
+        for (counts, dt) in COUNTS {
             let record = at2(counts, " .1297983E-02\t-.4E-03\n1.2d-03  \n\n \n").unwrap();
             assert_eq!(record.title(), "San Fernando, 2/9/1971, Pacoima Dam (upper left abut), 164");
-            assert_eq!(record.times(), (0..npts).map(|i| i as f64 * dt).collect::<Vec<_>>(), "{counts}");
+            assert_eq!(record.times(), [0.0, dt, 2.0 * dt], "{counts}");
             assert_eq!(record.acceleration(), [0.1297983e-2, -0.4e-3, 1.2e-3], "{counts}");
         }
     }
 
-    /// What is no whole header is a table, which says what is missing.
+    /// A file without a whole header is read as a table, whose message names the missing part.
     #[test]
     fn a_refused_at2_file_says_what_was_found_on_which_line() {
+        let problem = |values: &str| {
+            let BadLine { line, problem, .. } = at2("NPTS= 3, DT= .01 SEC", values).unwrap_err();
+            format!("{line}: {problem}")
+        };
         for (values, expected) in [
             (".1 .2\n\n", "5: NPTS states 3 samples, and the file has 2"),
             ("", "1: NPTS states 3 samples, and the file has 0"),
@@ -90,18 +85,21 @@ mod tests {
             (".1-.2\n.3 .4\n", "6: NPTS states 3 samples, and the file has 4"),
             (".1\n.2-3 .4\n", "6: the acceleration \".2-3\" is not a number: write .2E-3 or .2 -3"),
         ] {
-            assert_eq!(at2_problem(values), expected);
+            assert_eq!(problem(values), expected);
         }
         for not_a_number in ["x", "1.2.3", "********", "nan", "-inf", "1e999", "1e308", "\u{ff}"] {
             let expected = format!("6: the acceleration {not_a_number:?} is not a number");
-            assert_eq!(at2_problem(&format!(".1\n {not_a_number}\n.3\n")), expected);
+            assert_eq!(problem(&format!(".1\n {not_a_number}\n.3\n")), expected);
         }
     }
 
     /// The content decides, not the name: any number of lines before the title.
     #[test]
     fn a_header_may_start_later() {
-        let late = read(&format!("a line more\n{PACOIMA}NPTS= 2, DT= .01 SEC\n1 2\n"), &Reading::default());
-        assert_eq!(late.unwrap().title(), "San Fernando, 2/9/1971, Pacoima Dam (upper left abut), 164");
+        let late = format!("a line more\n{PACOIMA}NPTS= 2, DT= .01 SEC\n1 2\n");
+        assert_eq!(
+            crate::parse(&late, &Reading::default()).unwrap().0.title(),
+            "San Fernando, 2/9/1971, Pacoima Dam (upper left abut), 164"
+        );
     }
 }

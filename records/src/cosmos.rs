@@ -20,7 +20,7 @@ pub(super) fn is_csmip(text: &str) -> bool {
 /// The line before a channel's accelerations.
 struct Announced<'a> {
     line: usize,
-    /// What the header calls the channel: its direction.
+    /// Direction, the name of the channel in the header.
     name: &'a str,
     count: usize,
     unit: &'a str,
@@ -118,13 +118,9 @@ fn step(word: &str) -> Option<f64> {
 /// The real numbers of a channel's header, of which two are needed.
 #[derive(Default)]
 struct Reals {
-    values: usize,
+    values: Vec<f64>,
     missing: usize,
     width: Option<usize>,
-    /// Value 34: interval of the samples as recorded, s.
-    recorded: Option<f64>,
-    /// Value 62: interval of the samples of this series, ms.
-    of_series: Option<f64>,
 }
 
 impl Reals {
@@ -136,21 +132,16 @@ impl Reals {
 
     fn read(&mut self, line: usize, content: &str) -> Result<(), BadLine> {
         for word in columns(content, self.width) {
-            let value = number(word).ok_or_else(|| bad(line, format!("{} is not a number", quote(word))))?;
-            self.values += 1;
+            self.values.push(number(word).ok_or_else(|| bad(line, format!("{} is not a number", quote(word))))?);
             self.missing = self.missing.saturating_sub(1);
-            match self.values {
-                34 => self.recorded = Some(value),
-                62 => self.of_series = Some(value),
-                _ => {}
-            }
         }
         Ok(())
     }
 
+    /// Value 62 is the interval of the samples of this series, ms, and value 34 their interval as recorded, s.
     fn step(&self) -> Option<f64> {
-        let positive = |value: Option<f64>| value.filter(|value| *value > 0.0);
-        positive(self.of_series).map(|milliseconds| milliseconds / 1e3).or(positive(self.recorded))
+        let positive = |value: usize| self.values.get(value - 1).copied().filter(|value| *value > 0.0);
+        positive(62).map(|milliseconds| milliseconds / 1e3).or(positive(34))
     }
 }
 

@@ -3,12 +3,7 @@
 use super::Unit;
 use rocking::run::record::Record;
 
-/// The horizontal component of `record` as CSV, in s and m/s².
-pub fn csv(record: &Record) -> String {
-    csv_in(record, Unit::MetrePerSecondSquared)
-}
-
-/// The horizontal component of `record`, whose accelerations are in `unit`, which the heading states.
+/// The horizontal component of `record` as CSV; the accelerations are in `unit`, which the heading states.
 pub fn csv_in(record: &Record, unit: Unit) -> String {
     table(record, &format!("a_g[{unit}]"), record.acceleration())
 }

@@ -8,7 +8,7 @@ use super::{BadLine, Reading, bad};
 
 const LONGEST_HEADER: usize = 200;
 
-/// What an archive calls the step, by which its files are known, the number of samples, the unit, and the parts of a title.
+/// Names in a header: of the step, by which files are recognised, the number of samples, the unit, and the parts of a title.
 type Keys = [&'static str; 7];
 const ESM: Keys =
     ["SAMPLING_INTERVAL_S", "NDATA", "UNITS", "EVENT_NAME", "EVENT_DATE_YYYYMMDD", "STATION_CODE", "STREAM"];

@@ -1,8 +1,8 @@
 //! Files of ground motions as the world's archives publish them.
 //!
 //! The content of a file decides the layout, which is one of [`FORMATS`] or columns of text. [`read`] returns the samples in
-//! m/s², and the findings and assumptions about the file. Whoever adds a layout writes a file of this crate and a row of the
-//! table; help texts and pages list the layouts from the table.
+//! m/s², and the findings and assumptions about the file. A new layout is a file of this crate and a row of the
+//! table, from which help texts and pages list the layouts.
 
 mod at2;
 mod cosmos;
@@ -18,7 +18,7 @@ mod table;
 mod text;
 mod unit;
 
-pub use csv::{csv, csv_in, vertical_csv};
+pub use csv::{csv_in, vertical_csv};
 use parsed::Parsed;
 use rocking::run::record::{MAX_SAMPLES, Record};
 use rocking::structure::parameters::PARAMETERS;
@@ -34,9 +34,9 @@ pub use unit::Unit;
 pub struct Format {
     /// Its name.
     pub name: &'static str,
-    /// What states the unit.
+    /// The statement of the unit.
     pub unit: &'static str,
-    /// What states the step.
+    /// The statement of the step.
     pub step: &'static str,
     /// Whether a file may have several channels, of which one is chosen as if it were a column.
     pub has_channels: bool,
@@ -106,7 +106,7 @@ pub enum RecordError {
     /// The system cannot open or read the file at this path.
     #[error("the record {} cannot be read", .0.display())]
     Unreadable(PathBuf, #[source] io::Error),
-    /// The path is not that of a file that a record may have, or an option is out of range: why.
+    /// The reason: the path is no file, the file is too large, or an option is out of range.
     #[error("{0}")]
     Refused(String),
     /// A line contradicts the format.
@@ -368,41 +368,5 @@ mod tests {
             assert!(read(Some(0.1), g).unwrap_err().starts_with("g = "), "{g}");
         }
         assert_eq!(read(Some(0.1), 1.62).unwrap().acceleration(), [1.62, 3.24]);
-    }
-
-    /// The first sentence describes the findings, each other one warns.
-    #[test]
-    fn what_was_found_and_assumed_is_said_in_sentences() {
-        let said = |text: &[u8]| {
-            let (record, source) = from_bytes(Path::new("a.csv"), text, &Reading::default())?;
-            let record = in_m_s2(record, source.unit, 9.81).unwrap();
-            Ok::<_, RecordError>(source.sentences("a.csv", [&record; 2], 9.81, "head the column a (g)"))
-        };
-        let found = "a.csv: table, separated by commas, column 2 \"a (g)\", 1 line(s) of text before the data; g as the file \
-                     states; 2 samples, step 0.01 s, peak 2 g";
-        assert_eq!(said(b"t,a (g)\n0,1\n.01,2\n").unwrap(), [found]);
-        let found = "a.csv: table, separated by commas, column 2; m/s2 assumed; 3 samples, steps of 0.01 to 0.02 s, peak 6.21152 g";
-        let assumed = "a.csv: the file states no unit of acceleration: m/s2 is assumed; head the column a (g)";
-        let peak = "a.csv: a peak of 6 g: is the unit right?";
-        assert_eq!(said(b"0,1\n.01,60.935\n.03,-1\n").unwrap(), [found, assumed, peak]);
-    }
-
-    /// Each has one fault, and is right otherwise.
-    #[test]
-    fn what_no_earthquake_has_is_told() {
-        let doubts = |count: usize, step: f64, offset: f64, amplitude: f64| {
-            let times: Vec<f64> = (0..count).map(|i| i as f64 * step).collect();
-            let a = times.iter().map(|t| offset + amplitude * (6.0 * t).sin()).collect();
-            Record::from_samples("", times, a).map(|record| super::doubts(&record, 9.81)).unwrap()
-        };
-        assert!(doubts(4000, 0.01, 0.0, 3.0).is_empty());
-        assert_eq!(doubts(4000, 0.5, 0.0, 3.0), ["a step of 0.5 s: is the time in another unit?"]);
-        assert_eq!(doubts(4000, 5e-5, 0.0, 3.0), ["a step of 0.00005 s: is the time in another unit?"]);
-        assert_eq!(doubts(3980, 0.01, 0.0, 59.0), ["a peak of 6 g: is the unit right?"]);
-        let times = (0..99).map(|i| 0.01 * f64::from(if i < 50 { i } else { i + 49 })).collect();
-        let gap = Record::from_samples("", times, vec![0.0; 99]).map(|record| super::doubts(&record, 9.81)).unwrap();
-        assert_eq!(gap, ["no sample for 0.5 s after t = 0.49 s, on average one in 0.015 s: is something missing?"]);
-        let drift = "the ground moves on at 12.1 m/s after the record: is an offset left, or the column wrong?";
-        assert_eq!(doubts(3980, 0.01, 0.031 * 9.81, 3.0), [drift]);
     }
 }

@@ -68,7 +68,7 @@ impl Sampling {
         stated().map_err(|problem| bad(number, problem))
     }
 
-    /// What two lines state, which must not contradict each other.
+    /// The statements of two lines, which must not contradict each other.
     pub fn and(self, other: Sampling, line: usize) -> Result<Sampling, BadLine> {
         if is_same([self, other].map(|of| of.dt)) && is_same([self, other].map(|of| of.npts.map(|npts| npts as f64))) {
             return Ok(Sampling { npts: self.npts.or(other.npts), dt: self.dt.or(other.dt) });

@@ -369,7 +369,7 @@ impl<'a> Table<'a> {
             let place = value.map_or("a line before the data".into(), |value| format!("column {}", value + 1));
             return Err(bad(*line, format!("{place} is {}: accelerations are needed", quote(other))));
         }
-        // A line with times heads columns, and so does an acceleration with something in brackets; other lines may be titles.
+        // A line with times or with an acceleration and brackets heads columns. Other lines may be titles.
         let has_times = |(_, cells): &&(usize, Vec<&str>)| cells.iter().any(|cell| TimeUnit::of(cell).is_some());
         let with_times: Vec<_> = self.headings.iter().filter(has_times).map(|(line, _)| *line).collect();
         let heads = |line: usize, text: &str| {
@@ -466,7 +466,7 @@ mod tests {
         format!("{line}: {problem}")
     }
 
-    /// No options.
+    /// Reading without options.
     const AS_IT_IS: Reading = Reading { unit: None, dt: None, column: None, ignores_count: false };
 
     #[test]
@@ -511,14 +511,6 @@ mod tests {
             let text = format!("{before}0,1\n.5,2\n");
             let source = read(&text, &AS_IT_IS).unwrap().1;
             assert_eq!((source.unit, source.unit_from), (unit, UnitFrom::File), "{before}");
-        }
-        let alone = Reading { dt: Some(0.01), ..AS_IT_IS };
-        for heading in ["acc (cm/seg2)", "acc (kN)", "acceleration [counts]"] {
-            assert_eq!(
-                read(&format!("{heading}\n1\n2\n"), &alone).unwrap_err().remedy,
-                Some(Remedy::Unit),
-                "{heading}"
-            );
         }
         let asked = Reading { unit: Some(Unit::G), ..AS_IT_IS };
         assert_eq!(read("t,a (north)\n0,1\n.5,2\n", &asked).unwrap().1.unit, Unit::G);
@@ -666,21 +658,37 @@ mod tests {
         }
     }
 
-    /// The unit can be of a peak or of the accelerations: the user decides.
+    /// The unit can be of a peak; a factor can be in any heading of the column; a unit can stand before another word, after a number,
+    /// or beside another unit.
     #[test]
-    fn a_unit_in_no_heading_is_not_taken_and_not_passed_over() {
-        for line in ["time acc cm/s2", "Acceleration in cm/s2", "# peak in g: 0.3", "peak 0.3 g", "PGA=0.3g"] {
-            let text = format!("{line}\n0,1\n.5,2\n");
-            let refused = read(&text, &AS_IT_IS).unwrap_err();
-            assert_eq!(refused.remedy, Some(Remedy::Unit), "{line}");
-            let asked = Reading { unit: Some(Unit::MilliG), ..AS_IT_IS };
-            assert_eq!(read(&text, &asked).unwrap().1.unit, Unit::MilliG, "{line}");
+    fn the_user_decides_where_a_unit_is_not_clear() {
+        for before in [
+            "time acc cm/s2",
+            "Acceleration in cm/s2",
+            "# peak in g: 0.3",
+            "peak 0.3 g",
+            "PGA=0.3g",
+            "t (s);Accel m/s^2 NS",
+            "t (s);acceleration (9.81 m/s2)",
+            "t (s);acc (gal, not g)",
+            "t (s);a (10^-3 g)",
+            "t (s);a*1000\ns;g",
+            "t (s);a (gal)\ns;g",
+            "t (s);g\n;x 1000",
+            "t (s);a (g/1000)",
+        ] {
+            let text = format!("{before}\n0;1\n.5;2\n");
+            assert_eq!(read(&text, &AS_IT_IS).unwrap_err().remedy, Some(Remedy::Unit), "{before}");
+            let source = read(&text, &Reading { unit: Some(Unit::MilliG), ..AS_IT_IS }).unwrap().1;
+            assert_eq!((source.unit, source.unit_from), (Unit::MilliG, UnitFrom::User), "{before}");
         }
         let one = |line: &str| read(&format!("{line}\n1\n2\n"), &Reading { dt: Some(0.1), ..AS_IT_IS });
         for line in ["Acceleration in cm/s2", "# Accelerations in units of cm/sec^2.", "unit: gal"] {
             assert_eq!(one(line).unwrap().1.unit, Unit::CentimetrePerSecondSquared, "{line}");
         }
-        assert_eq!(one("# peak 0.3 g").unwrap_err().remedy, Some(Remedy::Unit));
+        for line in ["# peak 0.3 g", "acc (cm/seg2)", "acc (kN)", "acceleration [counts]"] {
+            assert_eq!(one(line).unwrap_err().remedy, Some(Remedy::Unit), "{line}");
+        }
     }
 
     /// Three components, as NSMN, UNAM and CWB write them: lines before them have the step, and may have a unit for all.
@@ -698,33 +706,6 @@ mod tests {
             let unit = (remedy == Remedy::ColumnAndUnit).then_some(gal);
             let (record, source) = read(&text, &Reading { column: Some(Column::Number(2)), unit, ..AS_IT_IS }).unwrap();
             assert_eq!((record.times()[1], record.acceleration()[1], source.unit), (0.005, -0.2, gal), "{text}");
-        }
-    }
-
-    /// A known unit stands before another word, after a number, or beside another unit.
-    #[test]
-    fn the_user_decides_where_a_heading_is_not_clear() {
-        for heading in ["Accel m/s^2 NS", "acceleration (9.81 m/s2)", "acc (gal, not g)"] {
-            let text = format!("t (s);{heading}\n0;1\n.5;2\n");
-            let unclear = read(&text, &AS_IT_IS).unwrap_err();
-            assert_eq!(unclear.remedy, Some(Remedy::Unit), "{heading}");
-            assert!(unclear.problem.contains(heading), "{unclear:?}");
-            let asked = Reading { unit: Some(Unit::G), ..AS_IT_IS };
-            let source = read(&text, &asked).unwrap().1;
-            assert_eq!((source.unit, source.unit_from), (Unit::G, UnitFrom::User), "{heading}");
-        }
-    }
-
-    /// A factor may be in any heading of the column. The user says what the numbers are.
-    #[test]
-    fn a_factor_in_a_heading_is_not_passed_over() {
-        for headings in
-            ["t (s);a (10^-3 g)", "t (s);a*1000\ns;g", "t (s);a (gal)\ns;g", "t (s);g\n;x 1000", "t (s);a (g/1000)"]
-        {
-            let text = format!("{headings}\n0;1\n.5;2\n");
-            assert_eq!(read(&text, &AS_IT_IS).unwrap_err().remedy, Some(Remedy::Unit), "{headings}");
-            let asked = Reading { unit: Some(Unit::MilliG), ..AS_IT_IS };
-            assert_eq!(read(&text, &asked).unwrap().1.unit, Unit::MilliG, "{headings}");
         }
     }
 

@@ -9,10 +9,19 @@ pub mod history;
 pub mod overturning;
 pub mod zeno;
 
-use crate::scene::Scene;
-use crate::tables::{self, Series};
-use anyhow::Result;
+// The modules of the failures share these names.
+use crate::equations::PhaseEquations;
+use crate::fixed_step::{Method, Point};
+use crate::guards::{displacement_excess, uplift_excess};
+use crate::hybrid::{self, Grid, Transitions};
+use crate::scene::{Scene, structure};
+use crate::tables::{self, Series, series};
+use anyhow::{Context, Result};
+use history::{History, at_rest, every, exact, is_impact, milli};
 use rayon::prelude::*;
+use rocking::series::bisection::last_where;
+use rocking::{Detail, Motion, Parameters, Phase, Ramp, Side, State, Transition, TransitionKind};
+use std::cell::Cell;
 use std::path::Path;
 
 /// One failure.

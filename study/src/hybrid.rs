@@ -85,7 +85,14 @@ pub fn run(
     uplift: UpliftRule,
     observe: &mut dyn FnMut(f64, Phase),
 ) -> Response {
-    let mut motion = Motion::start(scene, uplift);
+    let mut motion = Motion {
+        scene,
+        uplift,
+        phase: scene.initial.initial_phase().expect("the study's own initial states are in range"),
+        point: Point::start(&scene.initial),
+        transitions: 0,
+        evaluations: Cell::new(0),
+    };
     let mut samples = Vec::with_capacity(scene.intervals());
     let mut failure = None;
     for k in 0..scene.intervals() {
@@ -108,18 +115,7 @@ struct Motion<'a> {
     evaluations: Cell<u64>,
 }
 
-impl<'a> Motion<'a> {
-    fn start(scene: &'a Scene, uplift: UpliftRule) -> Motion<'a> {
-        Motion {
-            scene,
-            uplift,
-            phase: scene.initial.initial_phase().expect("the study's own initial states are in range"),
-            point: Point::start(&scene.initial),
-            transitions: 0,
-            evaluations: Cell::new(0),
-        }
-    }
-
+impl Motion<'_> {
     /// Over the interval `k` between samples.
     fn advance(
         &mut self,

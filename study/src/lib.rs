@@ -7,7 +7,7 @@
 //! | [`fixed_step`] | textbook methods |
 //! | [`libraries`] | other crates' solvers |
 //! | [`engine`] | this project's engine |
-//! | [`response`], [`timing`] | errors, failures, cost |
+//! | [`response`] | errors, failures |
 //! | [`precision`], [`stability`], [`failures`], [`validity`] | the commands |
 //! | [`tables`] | the files that they write |
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
@@ -24,5 +24,4 @@ pub mod response;
 pub mod scene;
 pub mod stability;
 pub mod tables;
-pub mod timing;
 pub mod validity;

@@ -48,8 +48,7 @@ fn main() -> Result<()> {
         Command::Stability => stability::write(&output)?,
         Command::Validity => validity::write(&records()?, &output)?,
         Command::Failures => {
-            let records = records()?;
-            let (pacoima, el_centro) = (Scene::mcmanus_pacoima(&records)?, Scene::mcmanus_el_centro(&records)?);
+            let [_, pacoima, el_centro, _] = Scene::all(&records()?)?;
             failures::write(&pacoima, &el_centro, &output)?;
         }
     }

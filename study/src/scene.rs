@@ -41,34 +41,17 @@ impl Scene {
         }
     }
 
-    /// McManus's specimen under Pacoima Dam 1971, component 164, as on the shaking table: 4 s.
-    pub fn mcmanus_pacoima(records: &Path) -> Result<Scene> {
-        let key = "mcmanus-pacoima";
-        let title = "McManus's specimen, Pacoima Dam 1971 (164)";
-        let record = read_record(records, PACOIMA)?.scaled(PACOIMA_TIME_SCALE, PACOIMA_SCALE)?;
-        from_rest(key, title, Parameters::MCMANUS, &record, 2000)
-    }
-
-    /// McManus's specimen under El Centro 1940, component 180: 15 s.
-    pub fn mcmanus_el_centro(records: &Path) -> Result<Scene> {
+    /// All four, those with a record from rest. Pacoima Dam is shaken as on the table, for 4 s; El Centro lasts 15 s.
+    pub fn all(records: &Path) -> Result<[Scene; 4]> {
+        let pacoima = read_record(records, PACOIMA)?.scaled(PACOIMA_TIME_SCALE, PACOIMA_SCALE)?;
+        let el_centro = read_record(records, EL_CENTRO)?;
+        let (mcmanus, stiff) = (Parameters::MCMANUS, Parameters { f_fc: 30.0, ..Parameters::MCMANUS });
         let title = "McManus's specimen, El Centro 1940 (180)";
-        from_rest("mcmanus-el-centro", title, Parameters::MCMANUS, &read_record(records, EL_CENTRO)?, 1500)
-    }
-
-    /// McManus's specimen with f_fc = 30 Hz under El Centro 1940, component 180: 15 s.
-    pub fn stiff_el_centro(records: &Path) -> Result<Scene> {
-        let title = "Stiff structure (30 Hz), El Centro 1940 (180)";
-        let stiff = Parameters { f_fc: 30.0, ..Parameters::MCMANUS };
-        from_rest("stiff-el-centro", title, stiff, &read_record(records, EL_CENTRO)?, 1500)
-    }
-
-    /// All four.
-    pub fn all(records: &Path) -> Result<Vec<Scene>> {
-        Ok(vec![
+        Ok([
             Scene::evison_free_vibration(),
-            Scene::mcmanus_pacoima(records)?,
-            Scene::mcmanus_el_centro(records)?,
-            Scene::stiff_el_centro(records)?,
+            from_rest("mcmanus-pacoima", "McManus's specimen, Pacoima Dam 1971 (164)", mcmanus, &pacoima, 2000)?,
+            from_rest("mcmanus-el-centro", title, mcmanus, &el_centro, 1500)?,
+            from_rest("stiff-el-centro", "Stiff structure (30 Hz), El Centro 1940 (180)", stiff, &el_centro, 1500)?,
         ])
     }
 

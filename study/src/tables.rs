@@ -1,4 +1,4 @@
-//! What the study finds, as tables (CSV). `python -m evidence` draws them and fills the pages with their numbers.
+//! The results of the study as tables (CSV). `python -m evidence` draws them and fills the pages with their numbers.
 
 use anyhow::Result;
 use std::path::Path;

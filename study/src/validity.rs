@@ -1,5 +1,4 @@
-//! Where the model itself ends: how often and how far structures go beyond what it takes for granted, which of the
-//! paper's scenes do, and what changes when uplift is repaired.
+//! Limits of the model: how often and how far structures exceed its assumptions, and what a repaired rule of uplift changes.
 
 pub mod population;
 
@@ -13,21 +12,20 @@ use rocking::run::validity::{ASSUMPTIONS, Limits, TENSION, WEIGHT};
 use rocking::{Detail, Parameters};
 use std::path::Path;
 
-/// The paper's scenes, and two more of its specimens.
-fn scenes(records: &Path) -> Result<[(&'static str, Scene); 4]> {
-    Ok([
-        ("Evison, free vibration (Fig 5)", Scene::evison_free_vibration()),
-        ("McManus, Pacoima Dam (Fig 9)", Scene::mcmanus_pacoima(records)?),
-        ("McManus, El Centro 1940", Scene::mcmanus_el_centro(records)?),
-        ("McManus at 30 Hz, El Centro 1940", Scene::stiff_el_centro(records)?),
-    ])
-}
+/// Names of the scenes of [`Scene::all`] on the page.
+const SCENES: [&str; 4] = [
+    "Evison, free vibration (Fig 5)",
+    "McManus, Pacoima Dam (Fig 9)",
+    "McManus, El Centro 1940",
+    "McManus at 30 Hz, El Centro 1940",
+];
 
 /// Writes `validity.csv` into `folder`: a row for each of the paper's scenes, and one for each structure.
 pub fn write(records: &Path, folder: &Path) -> Result<()> {
-    let scenes = scenes(records)?.map(|(name, scene)| Ok((name, both(&scene.run(Detail::Auto, DEFAULT_TOLERANCE))?)));
-    let scenes = scenes.into_iter().collect::<Result<Vec<_>>>()?;
-    let pairs = scenes.into_iter().chain(population::all(records)?.into_iter().map(|pair| ("", pair)));
+    let both_of = |scene: &Scene| Ok(both(&scene.run(Detail::Auto, DEFAULT_TOLERANCE))?);
+    let scenes = Scene::all(records)?.iter().map(both_of).collect::<Result<Vec<_>>>()?;
+    let scenes = SCENES.into_iter().zip(scenes);
+    let pairs = scenes.chain(population::all(records)?.into_iter().map(|pair| ("", pair)));
     let assumptions = || ASSUMPTIONS.iter().take(WEIGHT); // the ground moves horizontally alone
     let limits = Limits::default();
     let limits =

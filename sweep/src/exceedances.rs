@@ -4,7 +4,7 @@
 use crate::Refused;
 use crate::fragility::{FragilityCurve, Trials};
 use crate::outcome::{Limit, Outcome};
-use crate::plan::{Case, Plan};
+use crate::plan::{Case, Plan, Population};
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::Ending;
 use serde::Serialize;
@@ -80,14 +80,14 @@ type Of<'a> = (&'a Outcome, f64);
 /// `measure`, how many overturn and how many exceed each of `limits`.
 pub fn count(plan: &Plan, measure: IntensityMeasure, limits: &[Limit], outcomes: &[Outcome]) -> Vec<Exceedances> {
     let mut runs = plan.cases().zip(outcomes).peekable();
-    let mut next_of = |name: &str| runs.next_if(|(case, _)| case.population.name() == name);
+    let mut next_of = |name: &str| runs.next_if(|(case, _)| case.population.name == name);
     let counted =
         |(case, outcome): (Case, _)| (case.group, case.intensity(measure), (outcome, case.structure.parameters().g));
-    let of = |population: &crate::plan::Population| {
-        let runs: Vec<_> = std::iter::from_fn(|| next_of(population.name()).map(counted)).collect();
-        of_population(population.name(), limits, &runs)
+    let of = |population: &Population| {
+        let runs: Vec<_> = std::iter::from_fn(|| next_of(&population.name).map(counted)).collect();
+        of_population(&population.name, limits, &runs)
     };
-    plan.populations().iter().map(of).collect()
+    plan.populations.iter().map(of).collect()
 }
 
 fn of_population(name: &str, limits: &[Limit], runs: &[Counted<Of>]) -> Exceedances {
@@ -164,17 +164,12 @@ impl Bin {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::{MEASURES, Summary};
     use proptest::prelude::*;
-
-    fn ended(ending: Ending) -> Outcome {
-        let peaks = [0.5; MEASURES.len()];
-        Outcome::Ended(Summary { ending, end: 1.0, peaks, transitions: 0, steps: 0, evaluations: 0 })
-    }
 
     /// Two scale factors as they come from two records of different strength.
     #[test]
     fn dots_stand_at_the_intensity_of_their_own_runs() {
+        let ended = |ending| Outcome::ended(ending, 0.5);
         let [stands, falls, rocks] = [Ending::AtRest, Ending::Overturned, Ending::StillRocking].map(ended);
         let failed = Outcome::Failed { time: 1.0, reason: "chatter".into() };
         let runs = [
@@ -213,8 +208,7 @@ mod tests {
         /// Every run is in one bin, bins do not overlap, and hold about as many runs each.
         #[test]
         fn bins_share_out_the_runs(intensities in prop::collection::vec(1..1000_u32, 1..2000)) {
-            let stands = ended(Ending::AtRest);
-            let bins = bins(intensities.iter().map(|x| (0, f64::from(*x), &stands)).collect());
+            let bins = bins(intensities.iter().map(|x| (0, f64::from(*x), ())).collect());
             let mut sorted = intensities.clone();
             sorted.sort_unstable();
             let found: Vec<_> = bins.iter().flatten().map(|(_, intensity, _)| *intensity as u32).collect();

@@ -91,26 +91,18 @@ impl FragilityCurve {
 
     /// The curve of greatest likelihood L; refused where the trials have none.
     pub fn fit(trials: &[Trials]) -> Result<FragilityCurve, Refused> {
-        if let Some(Trials { intensity, .. }) =
-            trials.iter().find(|at| !(at.intensity > 0.0 && at.intensity.is_finite()))
-        {
-            return Err(Refused(format!("the intensity {intensity} must be a finite number greater than 0")));
-        }
         ensure(!trials.is_empty(), || "no run is counted".into())?;
+        trials.iter().map(|at| at.intensity).try_for_each(|at| {
+            ensure(at > 0.0 && at.is_finite(), || format!("the intensity {at} must be a finite number greater than 0"))
+        })?;
         check_overlap(trials)?;
         // Logarithms from their mean, so that a and b stay apart whatever the unit.
         let origin = trials.iter().map(|at| at.intensity.ln()).sum::<f64>() / trials.len() as f64;
         let [a, b] = most_likely(trials, origin).into();
-        if b > 0.0 {
-            let center = origin - a / b;
-            Ok(FragilityCurve {
-                median: center.exp(),
-                dispersion: b.recip(),
-                certainty: Certainty::of(trials, center, Vector2::new(0.0, b)),
-            })
-        } else {
-            Err(Refused(NOT_GROWING.into()))
-        }
+        ensure(b > 0.0, || NOT_GROWING.into())?;
+        let center = origin - a / b;
+        let certainty = Certainty::of(trials, center, Vector2::new(0.0, b));
+        Ok(FragilityCurve { median: center.exp(), dispersion: b.recip(), certainty })
     }
 
     /// The 95 % confidence interval of P(x) at `intensity` > 0.
@@ -168,10 +160,8 @@ fn check_overlap(trials: &[Trials]) -> Result<(), Refused> {
         let intensities = || trials.iter().filter(|at| has(at)).map(|at| at.intensity);
         intensities().reduce(f64::min).zip(intensities().reduce(f64::max))
     };
-    let refused = |why: &str| Refused(why.into());
-    let with = range(|at| at.exceedances > 0).ok_or_else(|| refused("never exceeded: raise the intensity"))?;
-    let without =
-        range(|at| at.exceedances < at.runs).ok_or_else(|| refused("always exceeded: lower the intensity"))?;
+    let with = range(|at| at.exceedances > 0).ok_or(Refused("never exceeded: raise the intensity".into()))?;
+    let without = range(|at| at.exceedances < at.runs).ok_or(Refused("always exceeded: lower the intensity".into()))?;
     ensure(without.1 > with.0, || {
         let [highest_without, lowest_with] = [without.1, with.0].map(short);
         format!(
@@ -189,7 +179,8 @@ fn most_likely(trials: &[Trials], origin: f64) -> Vector2<f64> {
     const ACCURACY: f64 = 1e-12;
     let mut at = Vector2::zeros();
     for _ in 0..MAX_ITERATIONS {
-        let Some(full) = newton_step(trials, origin, at) else { break };
+        let (gradient, information) = derivatives(trials, origin, at);
+        let Some(full) = information.lu().solve(&gradient) else { break };
         if full.norm() <= ACCURACY * (1.0 + at.norm()) {
             break;
         }
@@ -210,12 +201,6 @@ fn log_likelihood(trials: &[Trials], origin: f64, at: Vector2<f64>) -> f64 {
         log(of.exceedances, normal_distribution(z)) + log(of.runs - of.exceedances, normal_distribution(-z))
     };
     trials.iter().map(term).sum()
-}
-
-/// The gradient of ln L over its expected second derivatives.
-fn newton_step(trials: &[Trials], origin: f64, at: Vector2<f64>) -> Option<Vector2<f64>> {
-    let (gradient, information) = derivatives(trials, origin, at);
-    information.lu().solve(&gradient)
 }
 
 /// The gradient of ln L and the information I, its expected second derivatives with the sign changed.

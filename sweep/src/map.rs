@@ -69,21 +69,19 @@ pub struct Place {
 
 /// Fate of a structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Fate {
     /// Its base stays down.
     #[serde(rename = "no uplift")]
     NoUplift,
     /// It rocks, and stands in the end.
-    #[serde(rename = "stands")]
     Stands,
     /// |θ| reaches π/2.
-    #[serde(rename = "overturns")]
     Overturns,
     /// It still rocks [`LONGEST_REST`](rocking::run::LONGEST_REST) after the pulse: not decided.
     #[serde(rename = "still rocking")]
     StillRocking,
     /// The motion cannot be continued: not decided.
-    #[serde(rename = "failed")]
     Failed,
 }
 

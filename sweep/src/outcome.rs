@@ -82,6 +82,13 @@ pub enum Limit {
 }
 
 impl Outcome {
+    /// The outcome of a run in which every measure had this `peak`.
+    #[cfg(test)]
+    pub(crate) fn ended(ending: Ending, peak: f64) -> Outcome {
+        let peaks = [peak; MEASURES.len()];
+        Outcome::Ended(Summary { ending, end: 1.0, peaks, transitions: 0, steps: 0, evaluations: 0 })
+    }
+
     /// Follows `run` to its end, watched by `watch`.
     pub fn of(run: &Run, watch: &mut impl Watch) -> Outcome {
         Outcome::found(run, run.found(watch))
@@ -160,9 +167,13 @@ impl Limit {
     }
 }
 
+/// The names of [`MEASURES`].
+fn known() -> String {
+    MEASURES.map(|(name, _)| name).join(", ")
+}
+
 /// The position of the measure called `name` among [`MEASURES`], and its unit.
 fn measure(name: &str) -> Result<(usize, &'static str), Refused> {
-    let known = || MEASURES.map(|(name, _)| name).join(", ");
     let found = MEASURES.iter().position(|(measure, _)| *measure == name).map(|at| (at, MEASURES[at].1));
     found.ok_or_else(|| Refused(format!("{name:?} is unknown; these are known: {}", known())))
 }
@@ -177,8 +188,7 @@ impl FromStr for Limit {
         }
         let (name, given) = text.split_once(">=").map_or((text, ""), |(name, given)| (name.trim(), given.trim()));
         if given.is_empty() {
-            let known = MEASURES.map(|(name, _)| name).join(", ");
-            let needed = format!("overturned or MEASURE >= VALUE is needed, with a measure of {known}");
+            let needed = format!("overturned or MEASURE >= VALUE is needed, with a measure of {}", known());
             return Err(Refused(format!("limit = {text:?}: {needed}")));
         }
         let (measure, own) = measure(name)?;
@@ -249,17 +259,6 @@ mod tests {
     /// 0.3 g are 2.943 m/s² on the earth, and 0.486 m/s² on the moon.
     #[test]
     fn a_limit_in_a_usual_unit_is_the_same_in_the_measures_own() {
-        let exceeds = |limit: &str, peak: f64, g: f64| {
-            let summary = Summary {
-                ending: Ending::AtRest,
-                end: 1.0,
-                peaks: [peak; MEASURES.len()],
-                transitions: 0,
-                steps: 0,
-                evaluations: 0,
-            };
-            Outcome::Ended(summary).exceeds(&limit.parse().unwrap(), g)
-        };
         for (limit, value, g) in [
             ("theta >= 3 deg", 0.052_359_877_559_829_89, 9.81),
             ("uplift >= 1 cm", 0.01, 9.81),
@@ -267,18 +266,14 @@ mod tests {
             ("a_t >= 0.3 g", 0.486, 1.62),
             ("V_t >= 2 kN", 2e3, 9.81),
         ] {
-            let found = [0.999, 1.001, f64::NAN].map(|of| exceeds(limit, of * value, g));
-            assert_eq!(found, [Some(false), Some(true), None], "{limit}");
+            let exceeds = |of| Outcome::ended(Ending::AtRest, of * value).exceeds(&limit.parse().unwrap(), g);
+            assert_eq!([0.999, 1.001, f64::NAN].map(exceeds), [Some(false), Some(true), None], "{limit}");
         }
     }
 
     #[test]
     fn what_is_not_known_is_neither_exceeded_nor_not() {
-        let ended = |ending, theta| {
-            let peaks = MEASURES.map(|(name, _)| if name == "theta" { theta } else { 0.0 });
-            Outcome::Ended(Summary { ending, end: 1.0, peaks, transitions: 0, steps: 0, evaluations: 0 })
-        };
-        let limit = Limit::peak("theta", 0.1).unwrap();
+        let (limit, ended) = (Limit::peak("theta", 0.1).unwrap(), Outcome::ended);
         for (outcome, overturned, exceeded) in [
             (ended(Ending::AtRest, 0.2), Some(false), Some(true)),
             (ended(Ending::AtRest, 0.05), Some(false), Some(false)),

@@ -48,7 +48,8 @@ pub const AXES: [&Quantity<Parameters>; PARAMETERS.len() + 1] = {
 /// Structures that count together: one in which some numbers vary, in every combination, or several.
 #[derive(Clone, Debug)]
 pub struct Population {
-    name: String,
+    /// Name of the population.
+    pub name: String,
     /// One or more.
     bases: Vec<Parameters>,
     /// Positions in [`AXES`], increasing, and the values there.
@@ -58,10 +59,12 @@ pub struct Population {
 /// A ground motion record under a name.
 #[derive(Clone, Debug)]
 pub struct NamedRecord {
-    name: String,
-    record: Record,
-    /// Its own factor on the acceleration.
-    scale: f64,
+    /// Name of the ground motion.
+    pub name: String,
+    /// Samples before they are scaled.
+    pub record: Record,
+    /// Factor on the acceleration of this ground motion only.
+    pub scale: f64,
     /// Measures of the record's intensity, in SI units.
     pga: f64,
     pgv: f64,
@@ -98,8 +101,10 @@ impl Default for Conditions {
 /// Populations × ground motions × scale factors.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    populations: Vec<Population>,
-    motions: Vec<NamedRecord>,
+    /// The populations.
+    pub populations: Vec<Population>,
+    /// The ground motions.
+    pub motions: Vec<NamedRecord>,
     scales: Vec<f64>,
     conditions: Conditions,
     /// S_a and S_a_avg of every structure under every ground motion before it is scaled, m/s²: worked out when asked for.
@@ -160,11 +165,6 @@ impl Population {
         Ok(self)
     }
 
-    /// Name of the population.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
     /// How many structures there are, or [`usize::MAX`] if there are more.
     fn len(&self) -> usize {
         self.varying.iter().fold(self.bases.len(), |len, (_, values)| len.saturating_mul(values.len()))
@@ -198,19 +198,19 @@ impl NamedRecord {
         Ok(NamedRecord { name, record, scale, pga, pgv, cav, arias, duration: last - first })
     }
 
-    /// Name of the ground motion.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// Its samples before they are scaled.
-    pub fn record(&self) -> &Record {
-        &self.record
-    }
-
-    /// Its own factor on the acceleration.
-    pub fn scale(&self) -> f64 {
-        self.scale
+    /// Whether the `other` ground motion is this one, except for digits that a file rounds: no value differs by more than 1e-4 of
+    /// the largest.
+    pub(crate) fn is_same(&self, other: &NamedRecord) -> bool {
+        const ROUNDING: f64 = 1e-4;
+        fn parts(of: &NamedRecord) -> [(&[f64], f64, f64); 3] {
+            let [a_g, a_v] = [of.record.acceleration(), of.record.vertical().unwrap_or_default()];
+            let (scale, largest) = (of.scale, of.scale * of.pga);
+            [(of.record.times(), 1.0, of.record.end()), (a_g, scale, largest), (a_v, scale, largest)]
+        }
+        parts(self).into_iter().zip(parts(other)).all(|((these, factor, most), (others, of_others, _))| {
+            let is_near = |(a, b): (&f64, &f64)| (factor * a - of_others * b).abs() <= ROUNDING * most.abs();
+            these.len() == others.len() && these.iter().zip(others).all(is_near)
+        })
     }
 }
 
@@ -259,8 +259,8 @@ impl Plan {
         ensure(!scales.contains(&0.0), || "scale = 0 leaves no ground motion: leave it out".into())?;
         ensure(!populations.is_empty(), || is_empty("structures"))?;
         ensure(!motions.is_empty(), || is_empty("records"))?;
-        check_names("populations", populations.iter().map(Population::name))?;
-        check_names("ground motions", motions.iter().map(NamedRecord::name))?;
+        check_names("populations", populations.iter().map(|of| &of.name))?;
+        check_names("ground motions", motions.iter().map(|of| &of.name))?;
         let (conditions, spectral) = (Conditions::default(), Vec::new());
         let mut plan = Plan { populations, motions, scales, conditions, spectral };
         let [structures, motions, scales] = plan.size();
@@ -286,16 +286,6 @@ impl Plan {
     pub fn size(&self) -> [usize; 3] {
         let structures = self.populations.iter().fold(0, |sum: usize, population| sum.saturating_add(population.len()));
         [structures, self.motions.len(), self.scales.len()]
-    }
-
-    /// The populations.
-    pub fn populations(&self) -> &[Population] {
-        &self.populations
-    }
-
-    /// The ground motions.
-    pub fn motions(&self) -> &[NamedRecord] {
-        &self.motions
     }
 
     /// A sentence for each number of a structure that is usual in another unit.
@@ -401,11 +391,11 @@ fn is_there_twice(what: &str) -> String {
 }
 
 /// Each name once.
-fn check_names<'a>(kind: &str, names: impl Iterator<Item = &'a str>) -> Result<(), Refused> {
+fn check_names<'a>(kind: &str, names: impl Iterator<Item = &'a String>) -> Result<(), Refused> {
     let mut seen = HashSet::new();
     let repeated = { names }.find(|name| !seen.insert(*name));
     ensure(repeated.is_none(), || {
-        format!("two {kind} have the name {:?}: rename one or leave one out", repeated.unwrap_or_default())
+        format!("two {kind} have the name {:?}: rename one or leave one out", repeated.map_or("", String::as_str))
     })
 }
 
@@ -499,8 +489,8 @@ mod tests {
         {
             assert!((intensity - expected).abs() < 1e-15);
         }
-        assert_eq!(cases[26..].iter().map(|case| case.motion.name()).collect::<Vec<_>>(), ["half"; 2]);
-        assert_eq!(cases[27].population.name(), "wall");
+        assert_eq!(cases[26..].iter().map(|case| &case.motion.name).collect::<Vec<_>>(), ["half"; 2]);
+        assert_eq!(cases[27].population.name, "wall");
     }
 
     /// Against the run itself: the same conditions, the same bits.

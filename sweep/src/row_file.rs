@@ -34,17 +34,8 @@ pub struct RowFile {
     file: Mutex<(File, u64)>,
 }
 
-/// Contents of the rows in the file, each a `T`, until they are taken.
-#[derive(Debug)]
-pub struct Known<T> {
-    by_key: HashMap<Uuid, T>,
-}
-
-impl<T> Default for Known<T> {
-    fn default() -> Known<T> {
-        Known { by_key: HashMap::new() }
-    }
-}
+/// Contents of the rows in the file, each a `T` by its key, until they are taken.
+pub type Known<T> = HashMap<Uuid, T>;
 
 /// The program that does the runs.
 #[derive(Clone, Debug)]
@@ -67,19 +58,10 @@ pub fn digest(namespace: &Uuid, of: &impl Serialize) -> Uuid {
     Uuid::new_v5(namespace, &postcard::to_allocvec(of).expect("numbers and slices can be serialized"))
 }
 
-impl<T> Known<T> {
-    /// Takes the content of the row with `key`, if there is one.
-    pub fn take(&mut self, key: &Uuid) -> Option<T> {
-        self.by_key.remove(key)
-    }
-
-    /// A sentence about the rows in the file at `path` that were not taken: rows of other runs or points, `what`.
-    pub fn others(&self, path: &Path, what: &str) -> Option<String> {
-        let (path, count) = (path.display(), self.by_key.len());
-        let others =
-            format!("{path}: {count} row(s) are of {what} (other inputs, or another build of the program): kept");
-        (count > 0).then_some(others)
-    }
+/// A sentence about the `count` rows in the file at `path` that were not taken: rows of other runs or points, `what`.
+pub fn others(count: usize, path: &Path, what: &str) -> Option<String> {
+    let others = format!("row(s) are of {what} (other inputs, or another build of the program): kept");
+    (count > 0).then(|| format!("{}: {count} {others}", path.display()))
 }
 
 impl RowFile {
@@ -118,7 +100,7 @@ impl RowFile {
                 let at = row.position().map_or(0, csv::Position::line);
                 let (key, value) =
                     read().with_context(|| format!("line {at} cannot be read: remove it, to do its run again"))?;
-                known.by_key.insert(key, value);
+                known.insert(key, value);
             }
             Ok((file, length, known))
         };
@@ -126,30 +108,6 @@ impl RowFile {
         file.set_len(length as u64)?;
         (&file).seek(SeekFrom::Start(length as u64))?;
         Ok((RowFile { path: path.into(), file: Mutex::new((file, length as u64)) }, known))
-    }
-
-    /// Does `runs` on all threads, several together, and adds their rows as they end: `run` tells of each its row and what it is kept
-    /// as, until the answer is no. After each, `goes_on` is asked; once it says no, the rest is left undone and that is an error.
-    pub fn do_runs<T: Sync, R: Send>(
-        &self,
-        runs: &[T],
-        run: impl Fn(&[T], &mut dyn FnMut(anyhow::Result<(Vec<u8>, R)>) -> bool) + Sync,
-        goes_on: impl Fn() -> bool + Sync,
-    ) -> anyhow::Result<Vec<R>> {
-        let done = runs.par_chunks(together(runs.len())).map(|runs| {
-            let (mut kept, mut result) = (Vec::with_capacity(runs.len()), Ok(()));
-            run(runs, &mut |done| {
-                result = done.and_then(|(row, one)| {
-                    self.append(&row)?;
-                    kept.push(one);
-                    ensure!(goes_on(), "stopped: finished runs are in {}", self.path.display());
-                    Ok(())
-                });
-                result.is_ok()
-            });
-            result.map(|()| kept)
-        });
-        Ok(done.collect::<anyhow::Result<Vec<_>>>()?.into_iter().flatten().collect())
     }
 
     /// Adds a row, or nothing.
@@ -167,9 +125,21 @@ impl RowFile {
     }
 }
 
-/// How many of `runs` a thread does together.
-pub(crate) fn together(runs: usize) -> usize {
-    (runs / (SHARES * rayon::current_num_threads())).clamp(FEWEST_TOGETHER, MOST_TOGETHER)
+/// Does `runs` on all threads, several together: `run` hands each result to `keep`, until `keep` fails.
+pub fn do_runs<T: Sync, R>(
+    runs: &[T],
+    run: impl Fn(&[T], &mut dyn FnMut(R) -> bool) + Sync,
+    keep: impl Fn(R) -> anyhow::Result<()> + Sync,
+) -> anyhow::Result<()> {
+    let together = (runs.len() / (SHARES * rayon::current_num_threads())).clamp(FEWEST_TOGETHER, MOST_TOGETHER);
+    runs.par_chunks(together).try_for_each(|runs| {
+        let mut result = Ok(());
+        run(runs, &mut |done| {
+            result = keep(done);
+            result.is_ok()
+        });
+        result
+    })
 }
 
 /// The heading of a column of numbers.

@@ -4,13 +4,13 @@
 
 use crate::outcome::{MEASURES, Outcome};
 use crate::plan::{AXES, Case, Conditions, NamedRecord, Plan};
-use crate::row_file::{Known, Program, RowFile, digest, fixed, heading, line, together};
+use crate::row_file::{Known, Program, RowFile, digest, do_runs, fixed, heading, line};
 use anyhow::{bail, ensure};
 use csv::StringRecord;
-use rayon::prelude::*;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::Ending;
+use rocking::run::record::Record;
 use rocking::run::validity::{ASSUMPTIONS, Findings, Limits, Validity};
 use serde::Serialize;
 use std::collections::{HashMap, HashSet};
@@ -36,13 +36,13 @@ pub struct Sweep<'a> {
     digests: Vec<String>,
     done: Vec<OnceLock<Done>>,
     file: Option<RowFile>,
-    /// Rows of the file that are not of this sweep.
-    pub others: Known<Done>,
+    /// Number of rows of the file that are not of this sweep.
+    pub others: usize,
 }
 
 /// A run that is done.
 #[derive(Debug)]
-pub struct Done {
+struct Done {
     outcome: Outcome,
     /// Results of the check of validity, in the order of the headings; none if these were not asked for.
     beyond: Box<[f64]>,
@@ -51,16 +51,11 @@ pub struct Done {
 /// One value of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum Cell<'a> {
-    /// A name or a sentence.
+enum Cell<'a> {
     Text(&'a str),
-    /// An ending, by its name in files.
     Ending(Ending),
-    /// A number.
     Number(f64),
-    /// A count.
     Count(u64),
-    /// Nothing.
     Empty,
 }
 
@@ -85,8 +80,8 @@ impl<'a> Sweep<'a> {
         program: &'a Program,
         path: Option<&Path>,
     ) -> anyhow::Result<Sweep<'a>> {
-        let digests: Vec<_> = plan.motions().iter().map(digest_of).collect();
-        check_records(plan.motions(), &digests)?;
+        let digests: Vec<_> = plan.motions.iter().map(|motion| digest_of(&motion.record)).collect();
+        check_records(&plan.motions)?;
         let keys = keys(plan, &digests, validity, program);
         let digests = digests.iter().map(|digest| format!("{:016x}", digest.as_u64_pair().0)).collect();
         ensure!(
@@ -97,9 +92,9 @@ impl<'a> Sweep<'a> {
             Some((file, known)) => (Some(file), known),
             None => (None, Known::default()),
         };
-        let known = |key| others.take(key).map_or_else(OnceLock::new, OnceLock::from);
+        let known = |key| others.remove(key).map_or_else(OnceLock::new, OnceLock::from);
         let done = keys.iter().map(known).collect();
-        Ok(Sweep { plan, program, validity, keys, digests, done, file, others })
+        Ok(Sweep { plan, program, validity, keys, digests, done, file, others: others.len() })
     }
 
     /// The runs that are not done.
@@ -110,21 +105,15 @@ impl<'a> Sweep<'a> {
     /// Does the runs that are not done, on all threads, and adds their rows to the file as they end. After each run
     /// `goes_on` is asked; once it says no, the rest is left undone and that is an error.
     pub fn finish(&self, goes_on: impl Fn() -> bool + Sync) -> anyhow::Result<()> {
-        let missing = self.missing();
-        missing.par_chunks(together(missing.len())).try_for_each(|indices| {
-            let mut result = Ok(());
-            let mut keep = |index, done| {
-                result = self.keep(index, done, &goes_on);
-                result.is_ok()
-            };
+        let run = |indices: &[usize], done: &mut dyn FnMut((usize, Done)) -> bool| {
             if self.validity {
-                indices.iter().all(|index| keep(*index, self.run_with_validity(*index)));
+                indices.iter().all(|index| done((*index, self.run_with_validity(*index))));
             } else {
-                let done = |outcome| Done { outcome, beyond: Box::default() };
-                self.plan.each_outcome(indices, |index, outcome| keep(index, done(outcome)));
+                let unchecked = |outcome| Done { outcome, beyond: Box::default() };
+                self.plan.each_outcome(indices, |index, outcome| done((index, unchecked(outcome))));
             }
-            result
-        })
+        };
+        do_runs(&self.missing(), run, |(index, done)| self.keep(index, done, &goes_on))
     }
 
     /// Keeps the run that is `done`, and adds its row to the file. Fails if the sweep no longer `goes_on`.
@@ -163,7 +152,7 @@ impl<'a> Sweep<'a> {
 
     fn run_with_validity(&self, index: usize) -> Done {
         let case = self.plan.case(index);
-        let found = Findings::since(case.motion.record().start());
+        let found = Findings::since(case.motion.record.start());
         let mut validity = Validity::new(&case.structure.into(), Limits::default(), found);
         let outcome = case.outcome_watched(&mut validity);
         if let Outcome::Failed { .. } = outcome {
@@ -179,10 +168,10 @@ impl<'a> Sweep<'a> {
         let case = self.plan.case(index);
         let Conditions { initial, detail, tolerance, duration } = case.conditions;
         let mut row = Vec::with_capacity(64);
-        row.extend([case.population.name(), &self.program.version].map(Cell::Text));
+        row.extend([&case.population.name, &self.program.version].map(|text| Cell::Text(text)));
         row.extend(AXES.map(|axis| Cell::Number(case.value(axis))));
-        row.extend([case.motion.name(), &self.digests[case.motion_number]].map(Cell::Text));
-        row.extend([case.motion.scale(), case.scale].map(Cell::Number));
+        row.extend([&case.motion.name, &self.digests[case.motion_number]].map(|text| Cell::Text(text)));
+        row.extend([case.motion.scale, case.scale].map(Cell::Number));
         row.extend(IntensityMeasure::COLUMNS.map(|measure| Cell::Number(case.intensity(measure))));
         row.extend([Cell::Text(detail.name()), Cell::Number(*tolerance), duration.map_or(Cell::Empty, Cell::Number)]);
         row.extend(INITIAL_VALUES.each_ref().map(|quantity| Cell::Number((quantity.get)(initial))));
@@ -249,8 +238,7 @@ impl Column {
 }
 
 /// Stands for the samples of a record.
-fn digest_of(motion: &NamedRecord) -> Uuid {
-    let record = motion.record();
+fn digest_of(record: &Record) -> Uuid {
     let samples = (record.times(), record.acceleration());
     match record.vertical() {
         None => digest(&Uuid::NAMESPACE_OID, &samples),
@@ -258,13 +246,12 @@ fn digest_of(motion: &NamedRecord) -> Uuid {
     }
 }
 
-/// Refuses two ground motions with the same samples and scale: each of their runs would count twice.
-fn check_records(motions: &[NamedRecord], digests: &[Uuid]) -> anyhow::Result<()> {
-    let mut seen = HashMap::new();
-    for (motion, digest) in motions.iter().zip(digests) {
-        if let Some(first) = seen.insert((digest, motion.scale().to_bits()), motion.name()) {
-            let second = motion.name();
-            bail!("the ground motions {first:?} and {second:?} are the same and would count twice: leave one out");
+/// Refuses two ground motions that are the same: each of their runs would count twice.
+fn check_records(motions: &[NamedRecord]) -> anyhow::Result<()> {
+    for (i, motion) in motions.iter().enumerate() {
+        if let Some(NamedRecord { name, .. }) = motions[..i].iter().find(|first| first.is_same(motion)) {
+            let second = &motion.name;
+            bail!("the ground motions {name:?} and {second:?} are the same and would count twice: leave one out");
         }
     }
     Ok(())
@@ -273,8 +260,8 @@ fn check_records(motions: &[NamedRecord], digests: &[Uuid]) -> anyhow::Result<()
 /// The key of each run of `plan`, which is another one where it is asked what a run goes beyond.
 fn keys(plan: &Plan, digests: &[Uuid], validity: bool, program: &Program) -> Vec<Uuid> {
     let of_case = |case: Case| {
-        let names = (case.population.name(), case.motion.name());
-        let motion = (digests[case.motion_number].into_bytes(), case.motion.scale(), case.scale);
+        let names = (&case.population.name, &case.motion.name);
+        let motion = (digests[case.motion_number].into_bytes(), case.motion.scale, case.scale);
         program.key(&(names, case.structure.parameters(), motion, case.conditions, validity))
     };
     plan.cases().map(of_case).collect()
@@ -323,21 +310,25 @@ mod tests {
     use super::*;
     use crate::plan::Population;
     use rocking::Parameters;
-    use rocking::run::record::Record;
 
+    /// Two files of one ground motion, in g and in m/s², differ in the last digits.
     #[test]
     fn a_record_and_its_copy_are_refused_and_a_record_at_two_scales_is_not() {
         let program = Program { build: Uuid::nil(), version: "0".into() };
-        let opened = |scale: f64| {
-            let record = Record::from_samples("", vec![0.0, 1.0], vec![0.0, 1.0]).unwrap();
-            let copies = [("one", 1.0), ("two", scale)];
-            let motions = copies.map(|(name, scale)| NamedRecord::new(name, record.clone(), scale).unwrap());
+        let opened = |scale: f64, factor: f64| {
+            let record = Record::from_samples("", vec![0.0, 1.0, 2.0], vec![0.0, 1.0, 1e-9]).unwrap();
+            let copies = [("one", 1.0, 1.0), ("two", scale, factor)];
+            let motion = |(name, scale, factor)| NamedRecord::new(name, record.clone().multiplied(factor), scale);
+            let motions = copies.map(|copy| motion(copy).unwrap());
             let only = Population::new("only", Parameters::EVISON);
             let plan = Plan::new(vec![only], motions.into(), vec![1.0]).unwrap();
             Sweep::open(&plan, false, &program, None).map(|_| ()).map_err(|error| error.to_string())
         };
         let refused = "the ground motions \"one\" and \"two\" are the same and would count twice: leave one out";
-        assert_eq!((opened(1.0), opened(-1.0)), (Err(refused.into()), Ok(())));
+        for (scale, factor) in [(1.0, 1.0), (1.0, 1.00001), (0.5, 2.0)] {
+            assert_eq!(opened(scale, factor), Err(refused.into()), "{scale} {factor}");
+        }
+        assert_eq!((opened(-1.0, 1.0), opened(1.0, 1.01)), (Ok(()), Ok(())));
     }
 
     #[test]

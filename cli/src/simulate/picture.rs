@@ -1,12 +1,13 @@
 //! The picture of a run: ground, rotation, displacements and acceleration over time, marks at the transitions.
 use crate::picture::{
-    Picture, TITLE, colour,
-    histories::{Histories, Panel},
-    rounded, titled,
+    Area, Picture, SMALL, TITLE, axes, chart, colour, dashed, dot, line, px, rounded, stroke, titled, words,
+    words_before,
 };
+use plotters::prelude::*;
 use rocking::Structure;
 use rocking::digits::short;
 use rocking::run::{Ending, RunError};
+use rocking::{TransitionKind, run::peaks::Peak};
 use rocking_report::page::{Sizes, sizes};
 use rocking_report::quantities::in_readable_unit;
 use rocking_report::run::{Curve, Found, Run};
@@ -18,21 +19,52 @@ const PARTS: [f64; 2] = [1e-3, 1e-2];
 
 const WIDTH: u32 = 860;
 
+/// Height of a panel, of the marks of one kind, and of the numbers and the name of the axis of time, pixels.
+const PANEL: u32 = 148;
+const LANE: u32 = 17;
+const BELOW: u32 = 46;
+
+/// Height of the axis of a panel, which leaves its numbers to that of the marks.
+const NO_NUMBERS: f64 = 6.0;
+
+/// Name of a mark, its colour, and the test for the transitions that it marks.
+type Mark = (&'static str, RGBColor, fn(&TransitionKind) -> bool);
+
+/// The marks below the panels, a kind to a lane.
+const MARKS: [Mark; 4] = [
+    ("uplift", colour::GREEN, |kind| matches!(kind, TransitionKind::Uplift(_))),
+    ("impact", colour::VERMILLION, |kind| matches!(kind, TransitionKind::Impact(_))),
+    ("landing", colour::INK, |kind| matches!(kind, TransitionKind::Landing | TransitionKind::Settling)),
+    ("overturning", colour::PURPLE, |kind| matches!(kind, TransitionKind::Overturning(_))),
+];
+
+/// One history.
+struct Panel {
+    /// Name and unit of the history.
+    name: String,
+    colour: RGBColor,
+    /// Time (s) and value.
+    points: Vec<(f64, f64)>,
+    /// Instant and value to be marked by a dot, and the words beside it.
+    peak: Option<(f64, f64, String)>,
+}
+
 /// Runs `run` once more and draws it with its peaks.
 pub fn draw(picture: Picture, run: &Run) -> anyhow::Result<()> {
     let curve = match run.curve(PARTS[0]) {
         Err(RunError::TooManyPoints { .. }) => run.curve(PARTS[1])?,
         curve => curve?,
     };
-    let found = &curve.found;
-    let histories = Histories {
-        panels: panels(run, &curve),
-        transitions: found.events.iter().map(|at| (at.time, at.kind)).collect(),
-        time: found.start..found.end,
-        fall: found.fall,
-    };
-    picture.draw((WIDTH, TITLE + histories.height()), |area| {
-        histories.draw(&titled(area, run.ground.title(), &about(&run.structure, found))?)
+    let (found, panels) = (&curve.found, panels(run, &curve));
+    let height = TITLE + PANEL * panels.len() as u32 + LANE * MARKS.len() as u32 + BELOW;
+    picture.draw((WIDTH, height), |area| {
+        let mut rest = titled(area, run.ground.title(), &about(&run.structure, found))?;
+        for panel in &panels {
+            let (upper, lower) = rest.split_vertically(px(f64::from(PANEL)));
+            panel.draw(&upper, found)?;
+            rest = lower;
+        }
+        draw_marks(&rest, found)
     })
 }
 
@@ -42,10 +74,12 @@ fn panels(run: &Run, curve: &Curve) -> Vec<Panel> {
     let peak = |name: &str| curve.found.peak(name).unwrap_or_default();
     let panel = |(label, unit, name, more): (&str, _, &str, Option<String>)| {
         let (_, values) = curve.columns.iter().find(|(of, _)| of == name)?;
-        let points = curve.times.iter().copied().zip(values.iter().copied()).collect();
         let colour = if name == "a_g" { colour::GREY } else { colour::BLUE };
-        let panel = Panel::of(label, unit, colour, points, peak(name));
-        Some(more.into_iter().fold(panel, Panel::with))
+        let mut panel = Panel::of(label, unit, colour, (&curve.times, values), peak(name));
+        if let (Some((_, _, words)), Some(more)) = (&mut panel.peak, more) {
+            *words += &format!(", {more}");
+        }
+        Some(panel)
     };
     let (mm, rad, in_g) = ((1e-3, "mm"), (1.0, "rad"), (g, "g"));
     if run.structure.one().is_none() {
@@ -80,4 +114,65 @@ fn about(structure: &Structure, found: &Found) -> String {
         (Ending::AtRest | Ending::AtTime, None) => String::new(),
     };
     format!("{masses} on a base {base} m wide, {f_fc} Hz in full contact; {} transitions{end}", found.transitions)
+}
+
+impl Panel {
+    /// A panel with its peak marked if there is one; `unit` is how many SI units its own has, and what it is called.
+    fn of(
+        name: &str,
+        (per_unit, unit): (f64, &str),
+        colour: RGBColor,
+        (times, values): (&[f64], &[f64]),
+        peak: Peak,
+    ) -> Panel {
+        let points: Vec<_> = times.iter().zip(values).map(|(time, value)| (*time, value / per_unit)).collect();
+        let magnitude = peak.magnitude / per_unit;
+        let after = times.partition_point(|time| *time < peak.time);
+        let beside = points[after.saturating_sub(1)..points.len().min(after + 2)].iter();
+        // of the points beside the peak the largest has its sign
+        let sign = beside.map(|point| point.1).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(1.0).signum();
+        let words = format!("{} {unit}", rounded(magnitude));
+        let peak = (magnitude > 0.0).then_some((peak.time, sign * magnitude, words));
+        Panel { name: format!("{name} ({unit})"), colour, points, peak }
+    }
+
+    /// Draws the history on `area`, its peak, and a dashed line at the instant from which the structure falls.
+    fn draw(&self, area: &Area, &Found { start, end, fall, .. }: &Found) -> anyhow::Result<()> {
+        let Panel { name, colour, points, peak } = self;
+        let values = points.iter().map(|point| point.1).chain(peak.iter().map(|(_, value, _)| *value));
+        let largest = values.map(f64::abs).fold(0.0, f64::max);
+        let up = if largest > 0.0 { 1.3 * largest } else { 1.0 };
+        let mut chart = chart(area, NO_NUMBERS).build_cartesian_2d(start..end, -up..up)?;
+        axes(&mut chart, ["", name], [10, 5])?;
+        chart.draw_series([PathElement::new(points.clone(), line(*colour))])?;
+        if let Some(fall) = fall {
+            dashed(&mut chart, &[(fall, -up), (fall, up)], colour::PURPLE)?;
+        }
+        if let Some((time, value, peak)) = peak {
+            chart.draw_series([dot((*time, *value), 3.0, colour::INK)])?;
+            let is_late = *time > start + 0.85 * (end - start);
+            let (style, aside) =
+                if is_late { (words_before(SMALL, colour::INK), -7.0) } else { (words(SMALL, colour::INK), 7.0) };
+            let above = if *value < 0.0 { 7.5 } else { -8.0 };
+            let label = EmptyElement::at((*time, *value)) + Text::new(peak.clone(), (px(aside), px(above)), style);
+            chart.draw_series([label])?;
+        }
+        Ok(())
+    }
+}
+
+/// A lane of ticks for each kind of mark, its name before it.
+fn draw_marks(area: &Area, Found { start, end, events, .. }: &Found) -> anyhow::Result<()> {
+    let lanes = MARKS.len() as f64;
+    let mut chart = chart(area, f64::from(BELOW)).margin_top(0).build_cartesian_2d(*start..*end, lanes..0.0)?;
+    axes(&mut chart, ["time (s)", ""], [10, 0])?;
+    for (i, (name, colour, is_meant)) in MARKS.iter().enumerate() {
+        let lane = i as f64;
+        let marked = events.iter().filter(|event| is_meant(&event.kind)).map(|event| event.time);
+        let tick = |time| PathElement::new([(time, lane + 0.18), (time, lane + 0.82)], stroke(*colour, 1.2));
+        chart.draw_series(marked.map(tick))?;
+        let before = Text::new(*name, (px(-8.0), 0), words_before(SMALL, *colour));
+        chart.draw_series([EmptyElement::at((*start, lane + 0.5)) + before])?;
+    }
+    Ok(())
 }

@@ -1,10 +1,8 @@
 //! The TOML file of a sweep: every record at every scale factor on every structure, or pulses of every frequency
 //! and amplitude.
-use crate::{
-    record_args::RecordOptions,
-    scene_args::InitialArgs,
-    talk::{few, warning},
-};
+use crate::record_args::RecordOptions;
+use crate::scene_args::InitialArgs;
+use crate::talk::{few, warning};
 use anyhow::{Context, anyhow, bail, ensure};
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::record::Record;
@@ -32,13 +30,8 @@ pub struct RecordSweep {
     pub records: Vec<String>,
 }
 
-/// Maps of pulses.
-pub struct MapSweep {
-    /// By the names of their structures.
-    pub maps: Vec<(String, Map)>,
-    /// How often their grids are refined along boundaries.
-    pub refinements: u32,
-}
+/// Maps by the names of their structures, and how often their grids are refined along boundaries.
+pub type MapSweep = (Vec<(String, Map)>, u32);
 
 /// Content of a file.
 pub enum Asked {
@@ -214,7 +207,9 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read);
         let all_warn = |warnings| few(warnings, "warnings").iter().for_each(|warning| warning!("{warning}"));
         all_warn(warnings);
-        let plan = Plan::new(populations, motions?, scales)?.under(file.conditions())?;
+        let (tolerance, duration) = (file.tolerance.unwrap_or(DEFAULT_TOLERANCE), file.duration);
+        let conditions = Conditions { initial: file.initial.state(), detail: file.detail, tolerance, duration };
+        let plan = Plan::new(populations, motions?, scales)?.under(conditions)?;
         all_warn(plan.doubts());
         let widest = plan.cases().map(|case| case.structure.parameters().B).fold(0.0, f64::max);
         limits.iter().try_for_each(|limit| limit.check(widest)).context("limits")?;
@@ -235,7 +230,7 @@ impl MapFile {
             let map = self.map(grid).with_context(|| format!("structures {name:?}"))?;
             maps.push((name.into(), map));
         }
-        Ok(MapSweep { maps, refinements: refine })
+        Ok((maps, refine))
     }
 
     fn map(&self, grid: &StructureGrid) -> anyhow::Result<Map> {
@@ -254,11 +249,6 @@ impl MapFile {
 }
 
 impl SweepFile {
-    fn conditions(&self) -> Conditions {
-        let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
-        Conditions { initial: self.initial.state(), detail: self.detail, tolerance, duration: self.duration }
-    }
-
     fn measure(&self) -> anyhow::Result<IntensityMeasure> {
         let Some(name) = &self.intensity else { return Ok(IntensityMeasure::default()) };
         let known = IntensityMeasure::ALL.map(IntensityMeasure::name).join(", ");

@@ -1,22 +1,26 @@
 //! A sweep of pulses: an overturning spectrum of every structure.
+//!
+//! The key of a point stands for the structure and its name, the pulse, the level of detail and the tolerance. The key
+//! also stands for the build of the program, and for whether the condition is found. The place in the grid is no part of
+//! the key, so another grid through the same point has the same key.
 mod picture;
-mod rows;
 
 use super::{SweepArgs, file::MapSweep, progress};
-use crate::{
-    picture::Picture,
-    talk::{say, warning},
-};
+use crate::picture::Picture;
+use crate::talk::{say, warning};
 use anyhow::{bail, ensure};
-use picture::Shown;
+use csv::StringRecord;
 use rayon::{ThreadPool, prelude::*};
 use rocking::Structure;
 use rocking::digits::short;
 use rocking::run::{LONGEST_REST, validity};
+use rocking_report::program::{program, version};
 use rocking_sweep::map::{CLASSES, Class, Fate, Map, Place, Point};
-use rocking_sweep::row_file::{Known, RowFile};
+use rocking_sweep::plan::AXES;
+use rocking_sweep::pulse::units_of;
+use rocking_sweep::row_file::{self, Known, RowFile, fixed, heading, line};
 use serde::Serialize;
-use std::{collections::HashMap, fmt::Write, path::Path};
+use std::{collections::HashMap, fmt::Write, path::Path, sync::Mutex};
 use uuid::Uuid;
 
 /// A map, and what is known of it.
@@ -41,22 +45,22 @@ struct Count<'a> {
 /// Does the runs that are not in the file at `output` yet, then prints and draws the maps.
 pub fn run(
     args: &SweepArgs,
-    sweep: MapSweep,
+    (maps, refinements): MapSweep,
     pool: &ThreadPool,
     output: &Path,
     picture: Picture,
 ) -> anyhow::Result<()> {
     ensure!(!args.validity, "--validity is for records: `simulate` a pulse that `pulse` writes");
-    let (file, mut known) = rows::open(output)?;
-    for (name, map) in &sweep.maps {
+    let (file, mut known) = open(output)?;
+    for (name, map) in &maps {
         let structure = Structure::from(map.structure);
         let warnings = structure.doubts().into_iter().chain(validity::of_structure(&structure, map.detail));
         warnings.for_each(|warning| warning!("{name}: {warning}"));
     }
     let mut spectra = Vec::new();
-    for (name, map) in sweep.maps {
+    for (name, map) in maps {
         let mut spectrum = Spectrum { name, map, points: HashMap::new() };
-        for level in 0..=sweep.refinements {
+        for level in 0..=refinements {
             loop {
                 let Spectrum { map, points, .. } = &spectrum;
                 let lacking = match level {
@@ -72,11 +76,11 @@ pub fn run(
         }
         spectra.push(spectrum);
     }
-    known.others(output, "points that are not in these maps").iter().for_each(|line| say!("{line}"));
+    row_file::others(known.len(), output, "points that are not in these maps").iter().for_each(|line| say!("{line}"));
     let counts: Vec<_> = spectra.iter().flat_map(count).collect();
     args.results.print(|| text(&spectra, &counts), &counts)?;
     say!("rows           {}", output.display());
-    picture::draw(picture, &spectra, sweep.refinements)?;
+    picture::draw(picture, &spectra, refinements)?;
     report_failures(&spectra)
 }
 
@@ -89,25 +93,62 @@ fn do_points(
     file: &RowFile,
 ) -> anyhow::Result<()> {
     let Spectrum { name, map, points } = spectrum;
-    let keys: Vec<_> = places.par_iter().map(|place| rows::key_at(name, map, *place)).collect();
+    let keys: Vec<_> = places.par_iter().map(|place| key_at(name, map, *place)).collect();
     let mut lacking = Vec::new();
     for (place, key) in places.into_iter().zip(keys) {
-        match known.take(&key) {
+        match known.remove(&key) {
             Some(point) => drop(points.insert(place, point)),
             None => lacking.push((place, key)),
         }
     }
     let run = |lacking: &[(Place, Uuid)], done: &mut dyn FnMut(_) -> bool| {
         let places: Vec<_> = lacking.iter().map(|(place, _)| *place).collect();
-        map.run_each(&places, |at, point| {
-            let (place, key) = &lacking[at];
-            done(rows::row(key, name, map, (level, *place), &point).map(|row| (row, (*place, point))))
-        });
+        map.run_each(&places, |at, point| done((lacking[at], point)));
     };
-    let (bar, goes_on) = progress(lacking.len(), "points")?;
-    points.extend(file.do_runs(&lacking, run, goes_on)?);
+    let (bar, points) = (progress(lacking.len(), "points")?, Mutex::new(points));
+    row_file::do_runs(&lacking, run, |((place, key), point)| {
+        file.append(&row(&key, name, map, (level, place), &point)?)?;
+        points.lock().expect("no thread panics with the points in hand").insert(place, point);
+        bar.inc(1);
+        Ok(())
+    })?;
     bar.finish_and_clear();
     Ok(())
+}
+
+/// Opens the file at `path`, or begins it, and reads the points of its rows.
+fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Point>)> {
+    let headings = headings();
+    let fate = headings.iter().position(|heading| heading == "fate").expect("it is one of them");
+    RowFile::open(path, &headings, |row| Ok(row.iter().skip(fate).collect::<StringRecord>().deserialize(None)?))
+}
+
+/// The key of a point of the map of the structure called `name`.
+fn key_at(name: &str, map: &Map, place: Place) -> Uuid {
+    let of_map = (map.detail, map.tolerance, map.finds_condition);
+    program().key(&(name, map.structure.parameters(), map.pulse(place), of_map.0, of_map.1, of_map.2))
+}
+
+fn headings() -> Vec<String> {
+    [
+        fixed(&["run", "structures", "version"]),
+        AXES.map(|axis| heading(axis.name, axis.unit)).into(),
+        fixed(&["shape", "cycles", "phase[rad]", "error", "detail", "tolerance"]),
+        fixed(&["refinement", "frequency[Hz]", "amplitude[m/s2]", "omega/p_l", "a_p/(g tan alpha_cg)"]),
+        fixed(&["fate", "impacts", "theta_max/alpha_cg", "transitions", "end[s]", "condition", "reason"]),
+    ]
+    .concat()
+}
+
+/// The row of a point, which the refinement of this level has asked for; 0 is the grid.
+fn row(key: &Uuid, name: &str, map: &Map, (level, place): (u32, Place), point: &Point) -> anyhow::Result<Vec<u8>> {
+    let pulse = map.pulse(place);
+    let (of_amplitude, of_frequency) = units_of(map.structure.base());
+    let of_structure = AXES.map(|axis| (axis.get)(map.structure.parameters()));
+    let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail.name(), map.tolerance);
+    let ratios = (pulse.frequency / of_frequency, pulse.amplitude / of_amplitude);
+    let of_program = (key.to_string(), name, version());
+    line(&(of_program, of_structure, of_map, level, pulse.frequency, pulse.amplitude, ratios, point))
 }
 
 /// How many points of the grid there are of each class that there are any of.
@@ -125,9 +166,9 @@ fn count(spectrum: &Spectrum) -> Vec<Count<'_>> {
 fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
     let mut out = String::new();
     for Spectrum { name, map, points } in spectra {
-        let [frequency, amplitude] = Shown::axes(map).map(|axis| {
-            let range = axis.range();
-            format!("{} from {} to {}", axis.steps() + 1, short(range.start), short(range.end))
+        let [frequency, amplitude] = picture::shown(map).map(|axis| {
+            let range = picture::range(&axis);
+            format!("{} from {} to {}", axis.values.len(), short(range.start), short(range.end))
         });
         let [x, y] = picture::axis_names(map);
         let refined = points.len() - map.grid().count();

@@ -52,7 +52,11 @@ pub fn draw(picture: Picture, populations: &[Exceedances], measure: IntensityMea
             }
         }
         for (i, (of, fragility)) in all().enumerate() {
-            draw_dots(&mut plot, of, fragility, most, colour_of(i))?;
+            let dots = of.bins.iter().zip(&fragility.tallies).filter_map(|(bin, tally)| {
+                let radius = LARGEST_DOT * (tally.known as f64 / most as f64).sqrt();
+                Some(Circle::new((bin.mean, tally.part()?), px(radius.max(1.5)), colour_of(i).mix(0.85).filled()))
+            });
+            plot.draw_series(dots)?;
         }
         draw_legend(&lower, all(), measure, (least, most))
     })
@@ -72,15 +76,13 @@ fn draw_curve(
 ) -> anyhow::Result<()> {
     let at = |j: u32| end * f64::from(j) / f64::from(POINTS_OF_A_CURVE);
     let intensities = || (1..=POINTS_OF_A_CURVE).map(at);
-    let band: Vec<_> = intensities().filter_map(|x| Some((x, curve.band(x)?))).collect();
-    if !band.is_empty() {
-        let lower: Vec<_> = band.iter().map(|(x, (low, _))| (*x, *low)).collect();
-        let upper: Vec<_> = band.iter().map(|(x, (_, high))| (*x, *high)).collect();
+    let edges = intensities().filter_map(|x| curve.band(x).map(|(low, high)| ((x, low), (x, high))));
+    let (lower, upper): (Vec<_>, Vec<_>) = edges.unzip();
+    if !lower.is_empty() {
         let around = lower.iter().chain(upper.iter().rev()).copied().collect::<Vec<_>>();
         plot.draw_series([Polygon::new(around, colour.mix(0.1))])?;
-        plot.draw_series(
-            [lower, upper].map(|edge| PathElement::new(edge, colour.mix(0.5).stroke_width(px(0.6) as u32))),
-        )?;
+        let edge = colour.mix(0.5).stroke_width(px(0.6) as u32);
+        plot.draw_series([lower, upper].map(|points| PathElement::new(points, edge)))?;
     }
     let points =
         || [0.0].into_iter().chain(intensities()).map(|x| (x, if x > 0.0 { curve.probability(x) } else { 0.0 }));
@@ -88,21 +90,6 @@ fn draw_curve(
     let joint = seen.last().copied();
     plot.draw_series([PathElement::new(seen, line(colour))])?;
     dashed(plot, &joint.into_iter().chain(beyond).collect::<Vec<_>>(), colour)
-}
-
-fn draw_dots(
-    plot: &mut Plot,
-    of: &Exceedances,
-    fragility: &Fragility,
-    most: usize,
-    colour: RGBColor,
-) -> anyhow::Result<()> {
-    let dots = of.bins.iter().zip(&fragility.tallies).filter_map(|(bin, tally)| {
-        let radius = LARGEST_DOT * (tally.known as f64 / most as f64).sqrt();
-        Some(Circle::new((bin.mean, tally.part()?), px(radius.max(1.5)), colour.mix(0.85).filled()))
-    });
-    plot.draw_series(dots)?;
-    Ok(())
 }
 
 /// A line for each curve below the plot: what it is of, median and dispersion.
@@ -121,7 +108,7 @@ fn draw_legend<'a>(
     {
         cell(x, height(0), heading, colour::GREY)?;
     }
-    let mut lines = 1;
+    let mut lines = 1; // the headings
     for (i, (of, fragility)) in all.enumerate() {
         let (Exceedances { population, .. }, Fragility { limit, curve, .. }) = (of, fragility);
         let (y, colour) = (height(lines), colour_of(i));
@@ -141,14 +128,12 @@ fn draw_legend<'a>(
         }
         lines += 1;
     }
+    let dots = match least == most {
+        true => format!("A dot stands for {most} runs"),
+        false => format!("A dot's area is the number of its runs, {least} to {most}"),
+    };
     let notes = [
-        if least == most {
-            format!("A dot stands for {most} runs; one that overturns exceeds every limit.")
-        } else {
-            format!(
-                "A dot's area is the number of its runs, {least} to {most}; one that overturns exceeds every limit."
-            )
-        },
+        format!("{dots}; one that overturns exceeds every limit."),
         "Bands and ranges: 95 %, with records as independent (under one record: structures).".into(),
     ];
     for (i, note) in notes.into_iter().enumerate() {

@@ -47,11 +47,8 @@ fn every_command_prints_what_it_printed() {
 
 /// Comments, and commands with what they print, each up to the next.
 fn blocks(text: &str) -> Vec<&str> {
-    let starts: Vec<_> = (text.match_indices("\n$ ").map(|(index, _)| index + 1))
-        .chain(text.match_indices("\n# ").map(|(index, _)| index + 1))
-        .chain([0, text.len()])
-        .collect();
-    let mut starts = starts;
+    let starts = ["\n$ ", "\n# "].into_iter().flat_map(|start| text.match_indices(start)).map(|(index, _)| index + 1);
+    let mut starts: Vec<_> = starts.chain([0, text.len()]).collect();
     starts.sort_unstable();
     starts.windows(2).map(|pair| &text[pair[0]..pair[1]]).collect()
 }

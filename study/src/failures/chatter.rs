@@ -1,14 +1,6 @@
 //! Chatter after a landing with |u| > u_cr.
 
-use super::Exhibit;
-use super::history::exact;
-use crate::fixed_step::Method;
-use crate::guards::displacement_excess;
-use crate::hybrid::{self, Grid, Transitions};
-use crate::scene::Scene;
-use crate::tables::series;
-use anyhow::{Context, Result};
-use rocking::{Detail, TransitionKind};
+use super::*;
 
 /// Steps of RK4 to a sample.
 const STEPS: f64 = 64.0;

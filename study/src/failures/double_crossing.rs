@@ -1,13 +1,6 @@
 //! Two crossings within one step.
 
-use super::Exhibit;
-use super::history::{at_rest, every, exact, milli};
-use crate::equations::PhaseEquations;
-use crate::fixed_step::{Method, Point};
-use crate::tables::series;
-use anyhow::{Context, Result};
-use rocking::{Detail, Parameters, Phase, Ramp, Side, State};
-use std::cell::Cell;
+use super::*;
 
 /// A state from which θ dips below 0 for some milliseconds.
 const START: State = State { theta: 0.6e-3, theta_dot: -0.043, u: -6.5e-3, u_dot: 0.98 };

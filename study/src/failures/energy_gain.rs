@@ -1,13 +1,8 @@
 //! Energy gained at impact: [`impact::energy_gained`] tells how much, [`impact::lossless_restitution`] with which r none is.
 
-use super::Exhibit;
-use super::history::{at_rest, every, exact, is_impact};
-use crate::scene::structure;
-use crate::tables::series;
-use anyhow::{Context, Result};
+use super::*;
 use rocking::mechanics::energy::energy;
 use rocking::mechanics::impact;
-use rocking::{Detail, Parameters, Phase, Side, State};
 
 /// A structure that gains: McManus's specimen, softer, with little restitution.
 const GAINER: Parameters = Parameters { r: 0.5, f_fc: 2.0, ..Parameters::MCMANUS };

@@ -1,14 +1,7 @@
 //! Falling through the ground.
 
-use super::Exhibit;
-use super::history::{every, exact, milli};
-use crate::guards::uplift_excess;
-use crate::hybrid::{self, Transitions};
+use super::*;
 use crate::libraries::diffsol::{Diffsol, Method};
-use crate::scene::Scene;
-use crate::tables::series;
-use anyhow::{Context, Result};
-use rocking::{Detail, Transition, TransitionKind};
 
 /// Results between two samples of the record of the library's run, which starts anew at each.
 const CUTS: usize = 20;

@@ -1,11 +1,6 @@
 //! Grazes that decide differently under a change of 1e-12.
 
-use super::Exhibit;
-use super::history::{History, at_rest, every, exact};
-use crate::tables::series;
-use anyhow::Result;
-use rocking::series::bisection::last_where;
-use rocking::{Detail, Parameters, State};
+use super::*;
 
 /// How long the structure is followed, s.
 const DURATION: f64 = 1.0;

@@ -1,10 +1,9 @@
 //! Exact histories for the pictures.
 
+use super::*;
 use crate::engine::REFERENCE_TOLERANCE;
-use crate::scene::{Scene, structure};
 use rocking::run::RunError;
 use rocking::run::record::Record;
-use rocking::{Detail, Motion, Parameters, State, Transition, TransitionKind};
 
 /// A response over time, and its transitions.
 pub struct History {

@@ -1,12 +1,6 @@
 //! Near-overturning: errors grow like e^{p t}.
 
-use super::Exhibit;
-use super::history::{History, at_rest, every, exact};
-use crate::scene::structure;
-use crate::tables::series;
-use anyhow::Result;
-use rocking::series::bisection::last_where;
-use rocking::{Detail, Parameters, State, TransitionKind};
+use super::*;
 
 /// How long the structure is followed, s.
 const DURATION: f64 = 14.0;

@@ -1,11 +1,6 @@
 //! Zeno at rest in the rigid limit.
 
-use super::Exhibit;
-use super::history::{at_rest, exact, is_impact};
-use crate::scene::structure;
-use crate::tables::series;
-use anyhow::Result;
-use rocking::{Detail, Parameters, State, Transition};
+use super::*;
 
 /// Evison's specimen with a coefficient of restitution low enough to come to rest soon.
 pub const STRUCTURE: Parameters = Parameters { r: 0.9, ..Parameters::EVISON };

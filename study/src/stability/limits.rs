@@ -6,8 +6,7 @@ use crate::fixed_step::Method;
 /// Steps of one trial.
 const STEPS: usize = 8192;
 
-/// Growth of the energy from one quarter of a trial to the next but one that counts as such; a stable method's energy
-/// swings, but its maximum over a quarter of the trial stays.
+/// The energy grows if its maximum over the last quarter of a trial exceeds the maximum over the second by this part.
 const GROWTH: f64 = 1e-3;
 
 /// Steps tried, as ω_u h: a method stable at the largest is taken to be so at all; one unstable at the smallest, never.
@@ -15,14 +14,6 @@ const RANGE: (f64, f64) = (3e-3, 1e3);
 
 /// Relative width at which the bisection ends.
 const RESOLUTION: f64 = 1e-4;
-
-/// Result of the measurement of a method.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Limit {
-    Never,
-    At(f64), // the largest stable ω_u h
-    Unbounded,
-}
 
 /// Whether the energy grows over a trial with the step `h`, in units of 1/ω_u.
 fn grows(method: Method, vibration: &Vibration, h: f64) -> bool {
@@ -41,18 +32,18 @@ fn grows(method: Method, vibration: &Vibration, h: f64) -> bool {
     largest[3] > (1.0 + GROWTH) * largest[1] && largest[1] > f64::MIN_POSITIVE
 }
 
-/// The largest stable ω_u h, by bisection.
-pub fn measure(method: Method, vibration: &Vibration) -> Limit {
+/// The largest stable ω_u h, by bisection: 0 if none is stable, infinite if all are.
+pub fn measure(method: Method, vibration: &Vibration) -> f64 {
     let (mut low, mut high) = RANGE;
     if !grows(method, vibration, high) {
-        return Limit::Unbounded;
+        return f64::INFINITY;
     }
     if grows(method, vibration, low) {
-        return Limit::Never;
+        return 0.0;
     }
     while high > (1.0 + RESOLUTION) * low {
         let middle = (low * high).sqrt();
         *(if grows(method, vibration, middle) { &mut high } else { &mut low }) = middle;
     }
-    Limit::At(low)
+    low
 }

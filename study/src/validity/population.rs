@@ -1,8 +1,8 @@
 //! Structures of every kind under records, and what becomes of them by the model's rule of uplift and by the repaired one.
 //!
-//! The model lifts the base off at |u| = u_cr. The simplest rule that is consistent lifts it off where the weight cannot
-//! carry the moment any more, |R_m| = B R_v; with c_u = c_fc that is s θ̈ = 0, the second condition of the model's own
-//! rule, which is all that is left of it where no |u| is too small: u_cr = −∞.
+//! The model lifts the base off at |u| = u_cr. The simplest consistent rule lifts it off when the weight can no longer carry
+//! the moment, |R_m| = B R_v. With c_u = c_fc this is s θ̈ = 0, the second condition of the model. Only this condition remains
+//! with u_cr = −∞.
 
 use crate::scene::{read_record, structure};
 use anyhow::Result;
@@ -60,7 +60,7 @@ fn even<const D: usize>(k: usize) -> [f64; D] {
     std::array::from_fn(|i| (0.5 + k as f64 * root.powi(-(i as i32 + 1))).fract())
 }
 
-/// OneMass `k`, and its ground among `records`.
+/// Structure `k`, and its ground among `records`.
 fn case(k: usize, records: &[Record]) -> (OneMass, Record) {
     let [slenderness, f_fc, m0, J0, zeta_fc, r, B, strength, record] = even(k);
     let linear = |part: f64, (low, high): (f64, f64)| low + part * (high - low);

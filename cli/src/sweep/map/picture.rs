@@ -3,9 +3,9 @@ use super::Spectrum;
 use crate::picture::{
     Area, Picture, SMALL, TEXT, TITLE, axes, chart, colour, log_axis, px, shortened, stroke, titled, words,
 };
-use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
 use rocking_sweep::map::{Axis, Fate, Map, Place, Point, finest_step, nearest};
+use std::ops::Range;
 
 /// Sizes in pixels: of a panel with its axes, of a panel's name, of a line of the legend.
 const PANEL: (u32, u32) = (440, 400);
@@ -138,72 +138,51 @@ fn draw_legend(area: &Area, x: f64, swatches: &[&Swatch]) -> anyhow::Result<()> 
     Ok(())
 }
 
-/// An axis as it is shown: amplitudes in g.
-pub struct Shown<'a> {
-    axis: &'a Axis,
-    unit: f64,
+/// Frequency and amplitude of `map` as they are shown: amplitudes in g.
+pub fn shown(map: &Map) -> [Axis; 2] {
+    let g = if map.is_dimensionless { 1.0 } else { map.structure.parameters().g };
+    let in_unit = |axis: &Axis, unit: f64| Axis { values: axis.values.iter().map(|at| at / unit).collect(), ..*axis };
+    [in_unit(&map.frequency, 1.0), in_unit(&map.amplitude, g)]
 }
 
-impl Shown<'_> {
-    /// Frequency and amplitude of `map`.
-    pub fn axes(map: &Map) -> [Shown<'_>; 2] {
-        let g = if map.is_dimensionless { 1.0 } else { map.structure.parameters().g };
-        [Shown { axis: &map.frequency, unit: 1.0 }, Shown { axis: &map.amplitude, unit: g }]
-    }
-
-    /// The value at `steps` of the grid from its first.
-    pub fn at(&self, steps: f64) -> f64 {
-        self.axis.at(steps) / self.unit
-    }
-
-    /// How many steps its grid has.
-    pub fn steps(&self) -> usize {
-        self.axis.values.len() - 1
-    }
-
-    /// From its first to its last value.
-    pub fn range(&self) -> std::ops::Range<f64> {
-        self.at(0.0)..self.at(self.steps() as f64)
-    }
+/// From the first to the last value of `axis`.
+pub fn range(axis: &Axis) -> Range<f64> {
+    axis.values[0]..axis.values[axis.values.len() - 1]
 }
 
 /// A map in the colours of `key` on an area of the whole picture.
 fn panel((whole, area): (&Area, &Area), spectrum: &Spectrum, refinements: u32, key: Key) -> anyhow::Result<()> {
     let map = &spectrum.map;
-    let [x, y] = Shown::axes(map);
+    let [x, y] = shown(map);
     let mut builder = chart(area, 46.0);
     macro_rules! paint {
         ($x:expr, $y:expr) => {{
             let mut chart = builder.build_cartesian_2d($x, $y)?;
             let names = axis_names(map).map(|name| name.replace("omega", "ω").replace("alpha", "α"));
             axes(&mut chart, names.each_ref().map(String::as_str), [8, 8])?;
-            cells(whole, &chart, [&x, &y], spectrum, refinements, key)?;
+            cells(whole, &|at| chart.backend_coord(&at), [&x, &y], spectrum, refinements, key)?;
         }};
     }
-    match (x.axis.is_log, y.axis.is_log) {
-        (false, false) => paint!(x.range(), y.range()),
-        (true, false) => paint!(log_axis(x.range()), y.range()),
-        (false, true) => paint!(x.range(), log_axis(y.range())),
-        (true, true) => paint!(log_axis(x.range()), log_axis(y.range())),
+    match (x.is_log, y.is_log) {
+        (false, false) => paint!(range(&x), range(&y)),
+        (true, false) => paint!(log_axis(range(&x)), range(&y)),
+        (false, true) => paint!(range(&x), log_axis(range(&y))),
+        (true, true) => paint!(log_axis(range(&x)), log_axis(range(&y))),
     }
     Ok(())
 }
 
-/// A cell about each point of the finest grid, neighbours of one colour drawn as one.
-fn cells<X, Y>(
+/// A cell about each point of the finest grid, neighbours of one colour drawn as one; `at` maps values of the axes to the picture.
+fn cells(
     whole: &Area,
-    chart: &ChartContext<SVGBackend, Cartesian2d<X, Y>>,
-    [x, y]: [&Shown; 2],
+    at: &dyn Fn((f64, f64)) -> (i32, i32),
+    [x, y]: [&Axis; 2],
     spectrum: &Spectrum,
     refinements: u32,
     key: Key,
-) -> anyhow::Result<()>
-where
-    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
-    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
-{
+) -> anyhow::Result<()> {
     let (step, parts) = (finest_step(refinements), 1 << refinements);
-    let [columns, rows] = [x.steps() * parts + 1, y.steps() * parts + 1];
+    let [columns, rows] = [x, y].map(|axis| (axis.values.len() - 1) * parts + 1);
     // the edge before cell i, in steps of the grid
     let edge = |i: usize| (i as f64 - 0.5) / parts as f64;
     let swatch = |column: usize, row: usize| {
@@ -221,12 +200,12 @@ where
         colours.chunk_by(|a, b| a == b).map(run).collect::<Vec<_>>()
     };
     let overlap = px(OVERLAP);
-    let draw = |(from, to, swatch): (usize, usize, Option<usize>), rows: std::ops::Range<usize>| {
+    let draw = |(from, to, swatch): (usize, usize, Option<usize>), below: usize, above: usize| {
         let Some(swatch) = swatch else { return Ok(()) };
-        let (left, bottom) = chart.backend_coord(&(x.at(edge(from)), y.at(edge(rows.start))));
-        let (right, top) = chart.backend_coord(&(x.at(edge(to)), y.at(edge(rows.end))));
+        let (left, bottom) = at((x.at(edge(from)), y.at(edge(below))));
+        let (right, top) = at((x.at(edge(to)), y.at(edge(above))));
         let right = if to == columns { right } else { right + overlap };
-        let top = if rows.end == y.steps() * parts + 1 { top } else { top - overlap };
+        let top = if above == rows { top } else { top - overlap };
         whole.draw(&Rectangle::new([(left, bottom), (right, top)], key.swatches[swatch].0.filled()))
     };
     // a row that is the same as the one below is drawn with it
@@ -234,7 +213,7 @@ where
     for row in 1..=rows {
         let next = if row < rows { runs(row) } else { Vec::new() };
         if next != last {
-            last.iter().try_for_each(|run| draw(*run, start..row))?;
+            last.iter().try_for_each(|run| draw(*run, start, row))?;
             (start, last) = (row, next);
         }
     }
