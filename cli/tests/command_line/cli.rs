@@ -8,10 +8,10 @@ use rocking_records::Reading;
 use std::{collections::BTreeSet, fs, path::Path, process::Command};
 use tempfile::TempDir;
 
-/// An empty folder with a full sine of 0.6 g and 0.5 s, which lifts and lands the McManus specimen.
+/// An empty folder with sines of 0.6 g and 0.5 s, which lift and land the McManus specimen.
 fn folder() -> TempDir {
     let folder = TempDir::new().unwrap();
-    succeed(folder.path(), "pulse sine --amplitude 0.6 --period 0.5");
+    succeed(folder.path(), "pulse sine --amplitude 0.6 --period 0.5 --cycles 10");
     folder
 }
 

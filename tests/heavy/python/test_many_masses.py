@@ -6,6 +6,7 @@ import math
 import pickle
 import re
 import subprocess
+import warnings
 
 import numpy as np
 import pandas as pd
