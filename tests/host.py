@@ -85,20 +85,15 @@ def events(messages: list[Message]) -> list[Event]:
     return found
 
 
-def simulate(fmu: Fmu, messages: list | None = None, **arguments) -> tuple[np.ndarray, list[Event]]:
-    """fmpy.simulate_fmu, with the events that the FMU logged on the way; `messages` takes everything that it logged."""
+def simulate(fmu: Fmu | str, messages: list | None = None, **arguments) -> tuple[np.ndarray, list[Message]]:
+    """fmpy.simulate_fmu, with everything that the FMU logged, which `messages` takes, too."""
     messages = [] if messages is None else messages
-    result = simulate_file(fmu.path, messages, **arguments)
-    return result, events(messages)
 
-
-def simulate_file(fmu: str, messages: list, **arguments) -> np.ndarray:
-    """fmpy.simulate_fmu of the file `fmu`; `messages` takes everything that it logged."""
     def logger(*message):
         status, category, text = message[-3:]  # FMI 2.0 gives the name of the instance before
         messages.append(Message(status, category.decode(), text.decode()))
 
-    return fmpy.simulate_fmu(fmu, logger=logger, debug_logging=True, **arguments)
+    return fmpy.simulate_fmu(getattr(fmu, "path", fmu), logger=logger, debug_logging=True, **arguments), messages
 
 
 # fmpy knows one logger per process, the last one given to it, and calls it in runs without a logger, too: each is kept alive.
@@ -142,26 +137,24 @@ class Fmu:
         self.description = fmpy.read_model_description(str(path))
         self.variables = {variable.name: variable for variable in self.description.modelVariables}
 
-    def instance(self, guid: str | None = None, messages: list | None = None) -> Instance:
+    def instance(self) -> Instance:
         """A new instance, not yet initialized."""
-        return Instance(self, guid or self.description.guid, [] if messages is None else messages)
+        return Instance(self)
 
-    def start(self, *, tolerance=None, stop_time=None, start_time=0.0, **start_values) -> Instance:
+    def start(self, *, tolerance=None, **start_values) -> Instance:
         """A new instance, initialized and ready to step."""
-        return self.instance().initialize(tolerance, start_time, stop_time, **start_values)
+        return self.instance().initialize(tolerance, **start_values)
 
 
 class Instance:
     """One instance of the FMU. A call that the FMU refuses raises fmpy's FMICallException."""
 
-    def __init__(self, fmu: Fmu, guid: str, messages: list):
-        self.fmu = fmu
-        self.time = None
-        self.messages: list[Message] = messages
+    def __init__(self, fmu: Fmu):
+        self.fmu, self.time = fmu, 0.0
         name = f"instance {next(_NUMBERS)}"
-        _LOGS[name.encode()] = messages
+        self.messages = _LOGS[name.encode()] = []
         identifier = fmu.description.coSimulation.modelIdentifier
-        self.slave = FMU2Slave(guid=guid, unzipDirectory=fmu.folder, modelIdentifier=identifier, instanceName=name)
+        self.slave = FMU2Slave(guid=fmu.description.guid, unzipDirectory=fmu.folder, modelIdentifier=identifier, instanceName=name)
         self.slave.instantiate(callbacks=_callbacks(), loggingOn=True)
 
     def __enter__(self) -> Instance:
@@ -173,23 +166,25 @@ class Instance:
     def _reference(self, name: str) -> int:
         return self.fmu.variables[name].valueReference
 
-    def initialize(self, tolerance=None, start_time=0.0, stop_time=None, **start_values) -> Instance:
-        self.slave.setupExperiment(tolerance, start_time, stop_time)
+    def initialize(self, tolerance=None, **start_values) -> Instance:
+        self.slave.setupExperiment(tolerance)
         self.set(**start_values)
         self.slave.enterInitializationMode()
         self.slave.exitInitializationMode()
-        self.time = start_time
         return self
 
+    def _call(self, what: str, name: str, *values):
+        """fmi2Get or fmi2Set of the type of a variable."""
+        of_type = self.fmu.variables[name].type.replace("Enumeration", "Integer")
+        return getattr(self.slave, what + of_type)([self._reference(name)], *values)
+
     def set(self, **values):
-        if values:
-            self.slave.setReal([self._reference(name) for name in values], list(values.values()))
+        for name, value in values.items():
+            self._call("set", name, [value])
 
     def get(self, *names: str):
         """The value of one variable, or the values of several."""
-        getters = {"Real": self.slave.getReal, "Integer": self.slave.getInteger, "Enumeration": self.slave.getInteger,
-                   "Boolean": self.slave.getBoolean}
-        values = [getters[self.fmu.variables[name].type]([self._reference(name)])[0] for name in names]
+        values = [self._call("get", name)[0] for name in names]
         return values[0] if len(values) == 1 else values
 
     def reals(self, names=REALS) -> tuple[float, ...]:
@@ -201,7 +196,7 @@ class Instance:
 
     def input(self, name: str, value: float, slope: float = 0.0):
         """An input over the next step: its value at the start and its rate."""
-        self.slave.setReal([self._reference(name)], [value])
+        self.set(**{name: value})
         self.slave.setRealInputDerivatives([self._reference(name)], [1], [slope])
 
     def step(self, until: float):

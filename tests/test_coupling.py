@@ -114,10 +114,10 @@ def test_passed_around_as_it_is_the_soils_loop_blows_up_at_any_step(mcmanus):
 
 
 @pytest.mark.parametrize("variant", ["Jacobi, held", "Jacobi, extrapolated"])
-def test_ssp_archive_of_the_bridge(piers, exporter, tmp_path, variant):
+def test_ssp_archive_of_the_bridge(piers, shaken, pacoima_record, tmp_path, variant):
     """fmpy runs it as what it is: every value handed on after the step."""
     archive, (time, a_g) = tmp_path / "bridge.ssp", strong_motion()
-    bridge_ssp.write_archive(archive, time, a_g, exporter)
+    bridge_ssp.write_archive(archive, [fmu.path for fmu in shaken.values()], pacoima_record)
     result = bridge_ssp.run(archive, time[-1], time[1] / 2, variant == "Jacobi, extrapolated")
     x = convergence.cosimulated(time, a_g, piers, deck(), variant, 2)[1:, 0]
     assert result["deck.x"][1::2] == pytest.approx(x, abs=1e-9 * np.max(np.abs(x)))

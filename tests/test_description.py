@@ -1,16 +1,13 @@
 """What the FMU says of itself."""
 
-import contextlib
 import json
 import subprocess
-import zipfile
-from pathlib import PurePosixPath
 
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
-from host import OUTPUTS, Fmu
+from host import OUTPUTS
 from pacoima import TIME
 
 PEAKS = ("theta", "u", "delta_t", "uplift", "a_t", "V_t", "M_t")
@@ -48,31 +45,6 @@ def test_simulating_without_a_word_follows_the_record(shaken, mcmanus, exporter,
     assert (np.diff(np.sign(released["theta"])) != 0).sum() > 5, "fewer than five impacts are seen"
     u = released["u"][:200]
     assert (np.diff(np.sign(np.diff(u))) != 0).sum() > 2, "the vibration mode is not resolved"
-
-
-def test_two_exports_in_one_process(export, pacoima_record, tmp_path):
-    """Under names of their own two structures are held at the same time, and each moves as it does alone."""
-    fmus = [Fmu(export(preset, pacoima_record, name), tmp_path / name)
-            for preset, name in (("mcmanus", "Pier1"), ("evison", "Pier2"))]
-    for fmu, name in zip(fmus, ("Pier1", "Pier2")):
-        assert fmu.description.modelName == fmu.description.coSimulation.modelIdentifier == name
-        with zipfile.ZipFile(fmu.path) as archive:
-            libraries = [PurePosixPath(path) for path in archive.namelist() if path.startswith("binaries/")]
-        assert libraries and {library.stem for library in libraries} == {name}
-        assert validate_fmu(fmu.path) == []
-
-    def histories(*fmus):
-        with contextlib.ExitStack() as stack:
-            instances = [stack.enter_context(fmu.start()) for fmu in fmus]
-            rows = []
-            for until in np.arange(1, 200) * 0.02:
-                for instance in instances:
-                    instance.step(until)
-                rows.append([instance.reals(("theta", "u", "a_t")) for instance in instances])
-            return np.array(rows).swapaxes(0, 1)
-
-    together, alone = histories(*fmus), [histories(fmu)[0] for fmu in fmus]
-    assert (together == alone).all() and np.abs(together[:, :, 0]).max(axis=1).min() > 1e-3
 
 
 @pytest.mark.parametrize("preset, version", [("mcmanus", "2"), ("evison", "3")])

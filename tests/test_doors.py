@@ -15,7 +15,7 @@ import fmpy
 import numpy as np
 import pytest
 from evidence.scenes import RECORD
-from host import PHASES, simulate_file
+from host import PHASES, simulate
 from reference import EVISON, MCMANUS, Structure
 
 LEVELS = ("auto", "nonlinear", "linear", "modal", "rigid", "fixed_base")
@@ -168,10 +168,10 @@ def co_simulation(fmu: Path, scene: Scene) -> dict:
     values |= dict(peaks=True, validity=True, detail=1 + LEVELS.index(scene.how.get("detail", "auto")))
     names = {variable.name for variable in fmpy.read_model_description(str(fmu)).modelVariables}
     peaks = {name.removeprefix("t_") for name in names if re.fullmatch("t_.*_max|t_mu_.*|t_R_v_min|t_tension_impact|t_weight_min", name)}
-    asked, messages = [*peaks, *(f"t_{name}" for name in peaks), "transitions", "phase", "t_overturned"], []
-    rows = simulate_file(str(fmu), messages, start_time=scene.start, stop_time=until, output_interval=until - scene.start,
-                         start_values=values, relative_tolerance=scene.how.get("tolerance", 1e-9), output=asked, record_events=False,
-                         fmi_type="CoSimulation")
+    asked = [*peaks, *(f"t_{name}" for name in peaks), "transitions", "phase", "t_overturned"]
+    rows, messages = simulate(str(fmu), start_time=scene.start, stop_time=until, output_interval=until - scene.start,
+                              start_values=values, relative_tolerance=scene.how.get("tolerance", 1e-9), output=asked, record_events=False,
+                              fmi_type="CoSimulation")
     said = [message.text for message in messages]
     last = rows[-1]
     end = last["t_overturned"] if last["phase"] == PHASES["overturned"] else last["time"]

@@ -7,16 +7,10 @@ import numpy as np
 import pytest
 import reference
 from fmpy.fmi1 import FMICallException
-from host import G, Instance
+from host import G
 from reference import EVISON
 
 LEVELS = {"auto": 1, "nonlinear": 2, "linear": 3, "modal": 4, "rigid": 5, "fixed_base": 6}
-
-
-def start(fmu, level, *, tolerance=1e-11, **start_values) -> Instance:
-    instance = fmu.instance()
-    instance.slave.setInteger([fmu.variables["detail"].valueReference], [LEVELS[level]])
-    return instance.initialize(tolerance, **start_values)
 
 
 def ground(load, t):
@@ -105,7 +99,7 @@ def compare(fmu, level, p, time, a_g, initial, limit):
     exact = reference.integrate(p, time, a_g, initial)
     values = {name: getattr(p, name) for name in ("m", "m0", "H", "B", "J0", "f_fc", "zeta_fc", "r", "c_ratio")}
     values |= dict(zip(("u_0", "u_dot_0", "theta_0", "theta_dot_0"), initial))
-    with start(fmu, level, **values) as instance:
+    with fmu.start(tolerance=1e-11, detail=LEVELS[level], **values) as instance:
         overturns = bool(exact.transitions) and exact.transitions[-1].kind == "overturned"
         count = len(exact.t) - 1 if overturns else len(exact.t)
         rows = instance.follow(time[:count], a_g[:count])

@@ -6,7 +6,6 @@ import subprocess
 import zipfile
 from xml.etree import ElementTree
 
-import fmpy
 import monolithic
 import numpy as np
 import pytest
@@ -15,15 +14,10 @@ from evidence.coupling.early_return import EndedAtTransitions, EventBridge, Pier
 from evidence.coupling.masters import MASTERS, extrapolate
 from evidence.coupling.structure import opened
 from fmpy import read_model_description, simulate_fmu
-from fmpy.fmi2 import FMU2Model
-from fmpy.fmi3 import FMU3Model
 from fmpy.validation import validate_fmu
-from host import OUTPUTS, PHASES, Message, events, simulate, simulate_file
+from host import OUTPUTS, PHASES, Message, events, simulate
 from pacoima import A_G, END, STEP, TIME, linear, rows
 from pacoima import OUTPUTS as COMPARED
-
-STATES = ["u", "u_dot", "theta", "theta_dot"]
-RATES = [f"der({name})" for name in STATES]
 
 
 @pytest.fixture(scope="module")
@@ -34,12 +28,6 @@ def mcmanus3(export):
 @pytest.fixture(scope="module")
 def shaken3(export, pacoima_record):
     return {preset: str(export(preset, pacoima_record, fmi=3)) for preset in ("mcmanus", "evison")}
-
-
-def simulate3(path, **arguments):
-    """fmpy.simulate_fmu, with what the FMU logged."""
-    messages = []
-    return simulate_file(path, messages, **arguments), messages
 
 
 class Slave:
@@ -114,60 +102,6 @@ def test_both_versions_give_the_same_bits_with_restraints(shaken, shaken3, pacoi
     assert all(np.ptp(found[name]) > 0 for name in ("P_t", "F_d1", "F_d2", "e_p1", "e_p2", "E_viscous", "a_v_ground"))
 
 
-def test_derivatives_of_a_model_are_those_of_fmi_2(mcmanus, mcmanus3, tmp_path):
-    """Of derivatives of states and of outputs by states and inputs, while the host integrates."""
-    fmpy.extract(mcmanus3, unzipdir=str(tmp_path))
-    description = read_model_description(str(tmp_path))
-    assert [rate.variable.name for rate in description.derivatives] == RATES
-    arguments = dict(guid=description.guid, modelIdentifier=description.modelExchange.modelIdentifier, instanceName="model")
-    three, two = FMU3Model(unzipDirectory=str(tmp_path), **arguments), FMU2Model(unzipDirectory=mcmanus.folder, **arguments)
-    three.instantiate()
-    two.instantiate()
-    assert (three.getNumberOfContinuousStates(), three.getNumberOfEventIndicators()) == (4, 2)
-    found = {variable.name: variable.valueReference for variable in description.modelVariables}
-    of, by, starts = ([found[name] for name in names]
-                      for names in ([*RATES, "R_v"], [*STATES, "a_g", "F_t"], ["theta_0", "u_0"]))
-    of_2 = lambda references: [reference - 1 for reference in references]
-    try:
-        two.setupExperiment()
-        for model, set_numbers, places in ((two, two.setReal, of_2(starts)), (three, three.setFloat64, starts)):
-            set_numbers(places, [0.02, 1e-3])
-            model.enterInitializationMode()
-            model.exitInitializationMode()
-        two.newDiscreteStates()
-        three.updateDiscreteStates()
-        for model, set_numbers, places in ((two, two.setReal, of_2(by)), (three, three.setFloat64, by)):
-            model.enterContinuousTimeMode()
-            model.setTime(0.25)
-            set_numbers(places, [2e-3, -0.1, 0.015, -0.3, 2.5, 40.0])
-        jacobian = np.array([three.getDirectionalDerivative(of, [known], [1.0]) for known in by]).T
-        assert (jacobian == np.array([two.getDirectionalDerivative(of_2(of), [known], [1.0]) for known in of_2(by)]).T).all()
-        assert jacobian.all(axis=1)[1] and jacobian[0].tolist() == pytest.approx([0, 1, 0, 0, 0, 0])
-        kept = three.getFMUState()
-        rates = three.getFloat64(of)
-        set_numbers([found["theta"]], [0.1])
-        assert three.getFloat64(of) != rates
-        three.setFMUState(three.deserializeFMUState(three.serializeFMUState(kept)))
-        assert three.getFloat64(of) == rates == two.getReal(of_2(of))
-    finally:
-        two.freeInstance()
-        three.freeInstance()
-
-
-def test_the_description_tells_of_both_interfaces(mcmanus, mcmanus3):
-    two, three = mcmanus.description, read_model_description(mcmanus3)
-    with zipfile.ZipFile(mcmanus3) as archive:
-        exchange = dict(ElementTree.fromstring(archive.read("modelDescription.xml")).find("ModelExchange").attrib)
-    assert exchange.pop("modelIdentifier") == three.coSimulation.modelIdentifier
-    can = ["canGetAndSetFMUState", "canSerializeFMUState", "providesDirectionalDerivatives"]
-    assert exchange == dict.fromkeys([*can, "needsCompletedIntegratorStep"], "true")
-    assert [(rate.variable.name, rate.variable.derivative.name) for rate in three.derivatives] == list(zip(RATES, STATES))
-    assert [indicator.variable.name for indicator in three.eventIndicators] == ["phase_indicator", "overturning_indicator"]
-    assert three.numberOfEventIndicators == two.numberOfEventIndicators
-    names = [unknown.variable.name for unknown in three.initialUnknowns]
-    assert names == [unknown.variable.name for unknown in two.initialUnknowns]
-
-
 def test_value_references_count_from_1_in_the_order_of_the_variables(mcmanus3):
     """OMSimulator reads `dependencies` as such places; fmpy up to 0.3.23 accepts no other attribute of an enumeration."""
     with zipfile.ZipFile(mcmanus3) as archive:
@@ -190,7 +124,7 @@ def test_both_versions_give_the_same_bits_under_a_held_input(mcmanus, mcmanus3):
     asked = dict(stop_time=TIME[-1], output_interval=STEP, input=table, output=OUTPUTS, fmi_type="CoSimulation")
     for starts in ({}, {"a_g_late": True}):
         expected, _ = simulate(mcmanus, start_values=starts, **asked)
-        found, _ = simulate3(mcmanus3, start_values=starts, **asked)
+        found, _ = simulate(mcmanus3, start_values=starts, **asked)
         assert_same_bits(found, expected)
 
 
@@ -207,18 +141,27 @@ def test_a_host_that_is_called_back_gives_lines(mcmanus, mcmanus3):
     assert np.array_equal(found, linear(mcmanus))
 
 
-def test_a_step_ends_at_every_transition(shaken3):
-    """The instants, states and jumps are those of transitions within steps, and so is all that is in between."""
+@pytest.mark.parametrize("goes_back", [False, True])
+def test_a_step_ends_at_every_transition(shaken3, goes_back):
+    """The instants, states and jumps are those of transitions within steps, and so is all that is in between. A master that
+    goes back and steps to the instant that it was told, or a few units in the last place beside it, meets the transition at
+    the end of that step, and no step has no length: an uplift that follows a landing at once is applied with it."""
     asked = dict(stop_time=END, output_interval=2e-3, output=COMPARED)
-    expected, messages = simulate3(shaken3["mcmanus"], **asked)
+    expected, messages = simulate(shaken3["mcmanus"], **asked)
     transitions = events(messages)
     one = Slave(shaken3["mcmanus"], handles_events=True)
     met, found, t = [], [one.get(*COMPARED)], 0.0
     for until in expected["time"][1:]:
         while t < until:
+            start = one.instance.getFMUState()
             is_due, terminate, is_early, reached = one.instance.doStep(t, until - t)
             assert (terminate, is_early) == (False, reached < until)
             assert (is_due or reached == until) and reached > t
+            for end in reached + np.spacing(reached) * np.array([*range(-4, 5), 0]) if is_due and goes_back else []:
+                one.instance.setFMUState(start)
+                reached = t + (end - t)
+                assert one.instance.doStep(t, end - t) == (True, False, False, reached), len(met)
+            one.instance.freeFMUState(start)
             t = reached
             if is_due:
                 phase, before = one.instance.getInt64([one.references["phase"]]), one.get("u", "u_dot", "theta_dot")
@@ -233,50 +176,9 @@ def test_a_step_ends_at_every_transition(shaken3):
                    for a, b in ((group[0], group[-1]) for group in at_once)]
     assert len(met) == len(at_once) == 30 and len(transitions) == 31
     assert np.array(met) == pytest.approx(np.array(expected_at), rel=1e-8, abs=1e-10)
-    assert [e.kind for e in events(one.messages)] == [e.kind for e in transitions]
+    assert goes_back or [e.kind for e in events(one.messages)] == [e.kind for e in transitions]
     peaks = np.max(np.abs(rows(expected)), axis=0)
     assert np.max(np.abs(np.array(found) - rows(expected)) / peaks) < 1e-9
-
-
-def test_a_transition_belongs_to_the_step_that_ends_there(shaken3):
-    """A master that goes back and steps to the instant that it was told, or a few units in the last place beside it, meets
-    the transition at the end of that step, and no step has no length: an uplift that follows a landing at once is applied
-    with it."""
-    asked = dict(stop_time=END, output_interval=2e-3, output=COMPARED)
-    expected, messages = simulate3(shaken3["mcmanus"], **asked)
-    one = Slave(shaken3["mcmanus"], handles_events=True)
-    found, t, met = [one.get(*COMPARED)], 0.0, 0
-    for until in expected["time"][1:]:
-        while t < until:
-            before = one.instance.getFMUState()
-            is_due, _, is_early, reached = one.instance.doStep(t, until - t)
-            for beside in range(-4, 5) if is_due else []:
-                instant = reached + beside * np.spacing(reached)
-                one.instance.setFMUState(before)
-                assert one.instance.doStep(t, instant - t) == (True, False, False, t + (instant - t)), (met, beside)
-            if is_due:
-                one.instance.setFMUState(before)
-                assert one.instance.doStep(t, reached - t)[:3] == (True, False, False)
-                one.transit()
-                met += 1
-            one.instance.freeFMUState(before)
-            assert reached > t
-            t = reached
-        found.append(one.get(*COMPARED))
-    assert met == len({event.time for event in events(messages)}) == 30
-    peaks = np.max(np.abs(rows(expected)), axis=0)
-    assert np.max(np.abs(np.array(found) - rows(expected)) / peaks) < 1e-9
-
-
-def test_overturning_belongs_to_the_step_that_ends_there(mcmanus3):
-    one = Slave(mcmanus3, handles_events=True, theta_0=0.3)
-    start = one.instance.getFMUState()
-    instant = one.instance.doStep(0.0, 10.0)[3]
-    for beside in range(-4, 5):
-        one.instance.setFMUState(start)
-        end = instant + beside * np.spacing(instant)
-        assert one.instance.doStep(0.0, end) == (False, True, False, end), beside
-        assert one.get("t_overturned") == [end]
 
 
 @pytest.mark.parametrize("sets_again", [False, True])
@@ -329,14 +231,19 @@ def test_a_transition_that_the_host_does_not_deal_with_happens(mcmanus3):
 @pytest.mark.parametrize("handles_events", [False, True])
 def test_overturning_ends_the_simulation(mcmanus3, handles_events):
     one = Slave(mcmanus3, handles_events=handles_events, theta_0=0.3)
+    start = one.instance.getFMUState()
     is_due, terminate, is_early, instant = one.instance.doStep(0.0, 10.0)
     assert (is_due, terminate, is_early) == (False, True, handles_events)
     assert one.get("t_overturned", "time") == [instant, instant] and 0 < instant < 10
     assert one.get("theta")[0] == pytest.approx(np.pi / 2, rel=1e-12)
     assert re.fullmatch(rf"fmi3DoStep: the structure overturned at t = {instant!r} s; the simulation ends there",
                         one.messages[-1].text)
+    for end in instant + np.spacing(instant) * np.arange(-4, 5) if handles_events else []:  # it belongs to the step that ends there
+        one.instance.setFMUState(start)
+        assert one.instance.doStep(0.0, end) == (False, True, False, end)
+        assert one.get("t_overturned") == [end]
     for may_return_early, end in ((True, instant), (False, np.ceil(instant / 0.1) * 0.1)):
-        result, _ = simulate3(mcmanus3, start_values={"theta_0": 0.3}, stop_time=10, output_interval=0.1, output=["t_overturned"],
+        result, _ = simulate(mcmanus3, start_values={"theta_0": 0.3}, stop_time=10, output_interval=0.1, output=["t_overturned"],
                               early_return_allowed=may_return_early, use_event_mode=handles_events)
         assert result["time"][-1] == pytest.approx(end, rel=1e-14)
         assert result["t_overturned"][-1] == pytest.approx(instant, rel=1e-14)

@@ -5,13 +5,20 @@ theta, theta_dot of both piers, and finds the roots of their event indicators. A
 them may jump: all handle it together, and the solver starts anew.
 """
 
+import monolithic
 import numpy as np
 
 from ..model_exchange.hosts import Model, cvode, follow
-from ..scenes import PACOIMA_DAM
+from ..page import table
+from ..scenes import PACOIMA_DAM, pacoima_dam
+from . import convergence, stability
+from .bridge import deck
 from .swaying_mass import SwayingMass
 
 DECK, STATES, INDICATORS = 2, 4, 2  # states of the deck; of every pier states and event indicators
+TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
+SETTINGS = [*((tolerance, 0.0) for tolerance in TOLERANCES), (1e-10, 0.2e-3)]  # the latter the longest step, s; 0: any
+RATIOS = (0.03, 0.3, 3.0, 30.0)  # mass of the deck over the top masses of both piers
 
 
 class Pier(Model):
@@ -90,13 +97,43 @@ class OneSystem:
         return sum(pier.fmu.getInteger([pier.references["transitions"]])[0] for pier in self.piers)
 
 
-def integrate(system: OneSystem, tolerance: float, time, longest_step: float = 0.0) -> np.ndarray:
-    """The state at every instant of `time`, from rest at the first of them; 0 leaves the steps (s) to the solver.
+def response(fmus, of_deck, tolerance: float, time, longest_step: float = 0.0) -> tuple[np.ndarray, OneSystem]:
+    """From rest, the deck's x, then theta and u of every pier at `time`; and the system, which has counted. 0 leaves the steps (s) to the solver.
 
     A pier takes its force to be a line over a step with a transition in it: an error of third order in the step.
     """
-    solver = cvode(system, tolerance, INDICATORS * len(system.piers), longest_step)
-    rows = [y for _, y in follow(system, np.zeros(DECK + STATES * len(system.piers)), *solver, time)]
+    system = OneSystem([Pier(fmu, tolerance) for fmu in fmus], of_deck)
+    solver = cvode(system, tolerance, INDICATORS * len(fmus), longest_step)
+    rows = np.array([y for _, y in follow(system, np.zeros(DECK + STATES * len(fmus)), *solver, time)])
     if len(rows) < len(time):
         raise RuntimeError("a pier overturned")
-    return np.array(rows)
+    return rows[:, [0, 4, 2, 8, 6]], system
+
+
+def errors(fmus, step: float, masters) -> str:
+    """Errors and work of each pier, beside the masters that go from transition to transition."""
+    time, a_g = pacoima_dam()
+    expected = convergence.columns(monolithic.integrate(convergence.monolithic_bridge(deck()), time, a_g))
+    rows = []
+    for tolerance, longest_step in SETTINGS:
+        found, system = response(fmus, deck(), tolerance, time, longest_step)
+        limit = f", steps of at most {1e3 * longest_step:g} ms" if longest_step else ""
+        rows.append([f"one system, tolerance {tolerance:g}{limit}", f"{convergence.error(found, expected):.1e}",
+                     f"{system.evaluations} evaluations, {system.steps} steps of the solver"])
+    for (name, per_sample), (error, _, sweeps, _) in masters.items():
+        rows.append([f"{name}, {1e3 * step / per_sample:g} ms", f"{error:.1e}",
+                     f"{sweeps * per_sample * (len(time) - 1):.0f} steps"])
+    return table(["", "error", "work of each pier"], rows)
+
+
+def stability_errors(fmus) -> str:
+    """The scene of the stability maps: errors by tolerances and masses of the deck."""
+    rows = []
+    for tolerance in TOLERANCES[:-1]:
+        errors = []
+        for ratio in RATIOS:
+            time, expected = stability.reference_deck(ratio)
+            found, _ = response(fmus, deck(stability.mass(ratio), stability.FREQUENCY), tolerance, time)
+            errors.append(f"{np.max(np.abs(found[:, 0] - expected)) / np.max(np.abs(expected)):.1e}")
+        rows.append([f"one system, tolerance {tolerance:g}", *errors])
+    return table(["deck / top masses", *(f"{ratio:g}" for ratio in RATIOS)], rows)

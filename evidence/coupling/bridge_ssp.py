@@ -4,7 +4,6 @@ fmpy passes every value on after the step. The piers (`F_t_extrapolated`) and th
 two values. The master is therefore a Jacobi master of second order. The deck's FMU is built by pythonfmu.
 """
 
-import subprocess
 import tempfile
 import zipfile
 from pathlib import Path
@@ -15,7 +14,7 @@ from fmpy.ssp.ssd import Parameter, ParameterSet
 from pythonfmu.builder import FmuBuilder
 
 from ..page import table
-from ..scenes import PROGRAM, pacoima_dam
+from ..scenes import exported, pacoima_dam
 from .bridge import PIERS, Bridge, deck, iterated, linear, pier
 
 SSP = "http://ssp-standard.org/SSP1/SystemStructure"
@@ -23,17 +22,11 @@ STEPS = (2e-3, 1e-3, 0.5e-3, 0.25e-3, 0.125e-3)  # s
 DECK = "deck"
 
 
-def write_archive(path: Path, time, a_g, exporter: Path = PROGRAM) -> None:
-    """The SSP archive of the bridge on the specimens of McManus and Evison under this ground motion."""
+def write_archive(path: Path, piers: list, record: Path) -> None:
+    """The SSP archive of the bridge. `piers` are the FMUs of the specimens of McManus and Evison with `record` inside."""
     here, mass = Path(__file__).parent, deck()
-    path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        record = Path(folder, "record.csv")
-        np.savetxt(record, np.column_stack([time, a_g]), "%.17g", delimiter=",", header="time (s),a_g (m/s2)", comments="")
-        for name in PIERS:
-            fmu = Path(folder, f"{name}.fmu")
-            subprocess.run([exporter, "export", "--preset", name.lower(), "--record", record, "-o", fmu], check=True,
-                           capture_output=True)
+        for name, fmu in zip(PIERS, piers):
             archive.write(fmu, f"resources/{name}.fmu")
         built = FmuBuilder.build_FMU(here / "deck_fmu.py", dest=folder, project_files=[here / "swaying_mass.py", record],
                                      newargs=dict(M=mass.M, k=mass.k, c=mass.c))
@@ -93,8 +86,9 @@ def errors(fmus) -> str:
     system = Bridge([pier(fmu) for fmu in fmus], deck(), linear(time, a_g))
     reference = iterated(system, time, lambda: system.deck.x)
     with tempfile.TemporaryDirectory() as folder:
-        archive = Path(folder, "bridge.ssp")
-        write_archive(archive, time, a_g)
+        archive, record = Path(folder, "bridge.ssp"), Path(folder, "record.csv")
+        np.savetxt(record, np.column_stack([time, a_g]), "%.17g", delimiter=",", header="time (s),a_g (m/s2)", comments="")
+        write_archive(archive, [exported(name.lower(), record=record) for name in PIERS], record)
         rows = [[name, *(f"{error(run(archive, time[-1], h, extrapolated), h, time, reference):.1e}" for h in STEPS)]
                 for name, extrapolated in (("held", False), ("extrapolated", True))]
     return table(["error of the deck's displacement, step", *(f"{1e3 * h:g} ms" for h in STEPS)], rows)

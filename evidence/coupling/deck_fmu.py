@@ -31,7 +31,7 @@ class Deck(Fmi2Slave):
 
     def exit_initialization_mode(self):
         self.mass = SwayingMass(self.M, self.k, self.c)
-        self.record = np.loadtxt(Path(self.resources, "record.csv"), delimiter=",", skiprows=1).T
+        self.record = np.loadtxt(next(Path(self.resources).glob("*.csv")), delimiter=",", skiprows=1).T
         self.before = np.zeros((PIERS, 2))
 
     def do_step(self, current_time, step_size):

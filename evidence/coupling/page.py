@@ -5,7 +5,7 @@ from pathlib import Path
 from tqdm import tqdm
 
 from ..scenes import exported
-from . import bridge, bridge_ssp, building_on_soil, convergence, early_return, no_slopes, one_system, stability
+from . import bridge, bridge_model_exchange, bridge_ssp, building_on_soil, convergence, early_return, no_slopes, stability
 
 
 def values(figures: Path) -> dict:
@@ -25,8 +25,8 @@ def values(figures: Path) -> dict:
     steps, of_variants, transitions, _ = errors["Pacoima Dam"]
     return dict(
         convergence=convergence.errors_by_step(steps, of_variants), early_return=early_return.errors(*to_transitions),
-        frequency=stability.FREQUENCY, one_system=one_system.errors(fmus, *to_transitions),
-        one_system_stability=one_system.stability_errors(fmus), ssp=bridge_ssp.errors(fmus), transitions=transitions,
+        frequency=stability.FREQUENCY, one_system=bridge_model_exchange.errors(fmus, *to_transitions),
+        one_system_stability=bridge_model_exchange.stability_errors(fmus), ssp=bridge_ssp.errors(fmus), transitions=transitions,
         ms=1e3 * steps, halved=of_variants["the same, steps with transitions halved"],
         slow=of_variants["Gauss-Seidel, extrapolated"], held_jacobi=of_variants["Jacobi, held"][-1],
         held_gauss_seidel=of_variants["Gauss-Seidel, held"][-1], **stability.findings(measured), **no_slopes.tables(fmus))

@@ -143,15 +143,11 @@ class Model:
         return time, *reals, *self.fmu.getInteger([self.references[name] for name in ("phase", "transitions")])
 
 
-def sundae(scene: Scene, tolerance: float) -> Result:
-    """SUNDIALS' CVODE of scikit-sundae: Adams, roots of the indicators, and every step of the solver is completed."""
-    return sundae_told(scene, tolerance, tolerance)
-
-
 @cache
-def sundae_told(scene: Scene, tolerance: float, told: float) -> Result:
-    """The same where the FMU is told of another tolerance."""
-    model = Model(scene.fmu, told, scene.start_values)
+def sundae(scene: Scene, tolerance: float, told: float | None = None) -> Result:
+    """SUNDIALS' CVODE of scikit-sundae: Adams, roots of the indicators, and every step of the solver is completed. The FMU may be told of
+    another tolerance."""
+    model = Model(scene.fmu, told or tolerance, scene.start_values)
     return _result(scene, model, *cvode(model, tolerance, 2))
 
 

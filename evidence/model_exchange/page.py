@@ -7,7 +7,7 @@ from tqdm import tqdm
 from ..figures import FIXED, QUIET, ROCKING, SMOOTH, save, subplots
 from ..page import spread, table
 from ..scenes import PACOIMA_DAM, RECORDS, exported
-from .hosts import SAMPLES_ARE_EVENTS, Scene, co_simulation, dop853, fmpy_cvode, fmpy_euler, sundae, sundae_told
+from .hosts import SAMPLES_ARE_EVENTS, Scene, co_simulation, dop853, fmpy_cvode, fmpy_euler, sundae
 
 TOLERANCES = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)
 KINKS_TOLERANCES = (1e-6, 1e-8, 1e-10)
@@ -53,8 +53,8 @@ def listed(values) -> str:
 
 def kinks(found) -> dict:
     """By scene and tolerance: CVODE through the samples, CVODE restarted at every sample, DOP853."""
-    return {(scene, tolerance): [sundae_told(scene, tolerance, max(tolerance, 1e-6)),
-                                 sundae_told(scene, tolerance, min(tolerance, SAMPLES_ARE_EVENTS)),
+    return {(scene, tolerance): [sundae(scene, tolerance, max(tolerance, 1e-6)),
+                                 sundae(scene, tolerance, min(tolerance, SAMPLES_ARE_EVENTS)),
                                  dop853(scene, tolerance)]
             for scene in found for tolerance in KINKS_TOLERANCES}
 

@@ -1,24 +1,12 @@
 """The bridge of test_coupling.py through uplifts and impacts, and masters that iterate less."""
 
-import monolithic
 import numpy as np
 import pytest
-import reference
-from evidence.coupling import convergence, one_system, stability
+from evidence.coupling import bridge_model_exchange, convergence, stability
 from evidence.coupling.bridge import Bridge, deck, linear, pier, simulate
 from evidence.coupling.masters import MASTERS, TOLERANCE, extrapolate
 from reference import EVISON, MCMANUS
-from test_coupling import A_G, SHORT, TIME, as_one, piers, strong_motion  # noqa: F401
-
-
-def test_without_a_deck_the_monolithic_piers_are_the_single_ones():
-    alone = monolithic.Bridge((MCMANUS, EVISON), M=1.0, k=0.0, c=0.0)
-    together = monolithic.integrate(alone, TIME[SHORT], A_G[SHORT])
-    for i, p in enumerate((MCMANUS, EVISON)):
-        single = reference.integrate(p, TIME[SHORT], A_G[SHORT])
-        assert len(together.transitions[i]) == len(single.transitions) >= 10
-        for column, expected in zip(together.y[:, 2 + 4 * i:].T, (single.u, single.u_dot, single.theta)):
-            assert column == pytest.approx(expected, abs=1e-11 * np.max(np.abs(expected)))
+from test_coupling import A_G, TIME, as_one, piers, strong_motion  # noqa: F401
 
 
 def test_iterated_master_follows_uplifts_impacts_and_landings(piers):
@@ -59,7 +47,7 @@ def test_one_solver_over_bridge_and_piers_in_model_exchange(piers):
     time, _, expected = as_one(strong_motion)
     errors = []
     for tolerance, longest_step in ((1e-4, 0.0), (1e-8, 0.0), (1e-10, 0.2e-3)):
-        found, system = one_system.response(piers, deck(), tolerance, time, longest_step)
+        found, system = bridge_model_exchange.response(piers, deck(), tolerance, time, longest_step)
         errors.append(convergence.error(found, convergence.columns(expected)))
     assert system.transitions() == sum(map(len, expected.transitions)) > 20
     loose, tight, tightest = errors

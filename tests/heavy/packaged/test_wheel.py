@@ -67,19 +67,6 @@ def test_an_own_structure_with_its_record(installed, exporter, tmp_path):
     assert read_model_description(installed.folder / "pier.fmu").fmiVersion == "3.0"
 
 
-@pytest.mark.parametrize("arguments, reason", [
-    ("record='none.csv'", r"the record none\.csv cannot be read: No such file"),
-    ("name='a b'", 'the name "a b" must consist of the letters'),
-    ("fmi=1", 'fmi = "1" is unknown; these are known: 2, 3'),
-])
-def test_what_is_refused(installed, arguments, reason):
-    with pytest.raises(subprocess.CalledProcessError) as failed:
-        installed("python", "-c", "import flexible_rocking as fr; "
-                                  f"fr.export('refused.fmu', fr.Structure(preset='mcmanus'), {arguments})")
-    assert re.search(rf"^ValueError: {reason}", failed.value.stderr, re.MULTILINE), failed.value.stderr
-    assert not (installed.folder / "refused.fmu").exists()
-
-
 def test_a_run_needs_numpy_alone_and_is_the_command_lines(installed):
     write_record(installed.folder / "pacoima.csv")
     script = ("import flexible_rocking as fr; run = fr.simulate(fr.Structure(preset='evison'), fr.Record.read('pacoima.csv'))\n"

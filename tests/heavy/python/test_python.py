@@ -641,22 +641,6 @@ def test_the_lines_of_a_refusal_hand_the_record_over(tmp_path, monkeypatch, pack
     assert np.allclose(fr.Record.read("record.csv").a_g, a / 100, atol=1e-5)
 
 
-def test_intensities_of_a_row_are_those_of_numpy():
-    """On samples so close that sums are integrals."""
-    pier, time = fr.Structure(preset="mcmanus"), np.linspace(0, 8, 80_001)
-    a_g = 2 * np.exp(-((time - 4) ** 2)) * np.sin(7 * time)
-    record = fr.Record(time, a_g)
-    row = fr.sweep(pier, record, scale=-1.5, duration=0.1, intensity="S_a_avg").iloc[0]
-    dt, squares = time[1], np.cumsum(a_g**2)
-    instants = [time[np.searchsorted(squares, part * squares[-1])] for part in (0.05, 0.95)]
-    periods = np.linspace(0.2, 3, 10) / pier.f_fc
-    expected = {"CAV[m/s]": 1.5 * np.abs(a_g).sum() * dt, "I_A[m/s]": 1.5**2 * np.pi / 2 / 9.81 * squares[-1] * dt,
-                "D_5_95[s]": instants[1] - instants[0], "PGA[g]": 1.5 * np.abs(a_g).max() / 9.81,
-                "PGV[m/s]": 1.5 * np.abs(np.cumsum(a_g)).max() * dt,
-                "S_a_avg[g]": 1.5 * np.exp(np.log(record.spectrum(periods, pier.zeta_fc)).mean()) / 9.81}
-    assert {name: row[name] for name in expected} == pytest.approx(expected, rel=1e-3)
-
-
 def test_the_sweep_on_dask_comes_to_the_same(tmp_path):
     (tmp_path / "out").mkdir()
     shutil.copy(RECORD, tmp_path / "out")
