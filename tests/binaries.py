@@ -1,4 +1,4 @@
-"""What programs and libraries for other machines are for, and need: read from their headers."""
+"""Headers of programs and libraries for other machines: their system, and the libraries that they need."""
 
 import hashlib
 import os

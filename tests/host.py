@@ -46,7 +46,7 @@ def pacoima(component: str):
 
 @dataclass(frozen=True)
 class Message:
-    """What the FMU told the host's logger."""
+    """A message of the FMU to the host's logger."""
 
     status: int
     category: str

@@ -1,4 +1,4 @@
-"""Uses all of the module, for mypy --strict: what is written here is what users write."""
+"""Uses all of the module as users do, for mypy --strict."""
 
 import pickle
 from pathlib import Path

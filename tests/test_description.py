@@ -1,4 +1,4 @@
-"""What the FMU says of itself."""
+"""The model description of the FMU."""
 
 import json
 import subprocess
@@ -19,7 +19,7 @@ def test_fmpy_finds_no_problem(preset, request):
 
 
 def test_nominal_values_are_of_the_magnitude_that_is_met(shaken):
-    """What peaks in an earthquake is within a factor of 100 of its nominal value."""
+    """Peaks in an earthquake are within a factor of 100 of the nominal values."""
     fmu = shaken["mcmanus"]
     result = simulate_fmu(fmu.path, start_values={"peaks": True}, output=[*OUTPUTS, *(f"{name}_max" for name in PEAKS)])
     of_restraints = {"P_t", "F_d1", "F_d2", "P_t_max"}  # 0 here

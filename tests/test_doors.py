@@ -26,7 +26,7 @@ SCENES = range(40)  # the last 15 in tests/heavy
 
 @dataclass
 class Scene:
-    """What to simulate; `answer` is the command line's."""
+    """A simulation; `answer` is the command line's."""
 
     structure: dict  # numbers by name, and the preset
     ground: str

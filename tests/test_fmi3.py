@@ -143,9 +143,9 @@ def test_a_host_that_is_called_back_gives_lines(mcmanus, mcmanus3):
 
 @pytest.mark.parametrize("goes_back", [False, True])
 def test_a_step_ends_at_every_transition(shaken3, goes_back):
-    """The instants, states and jumps are those of transitions within steps, and so is all that is in between. A master that
-    goes back and steps to the instant that it was told, or a few units in the last place beside it, meets the transition at
-    the end of that step, and no step has no length: an uplift that follows a landing at once is applied with it."""
+    """The motion and its jumps are those of transitions within steps. A master that goes back and steps to the instant that it
+    was told, or a few units in the last place beside it, meets the transition at the end of that step. No step has no length:
+    an uplift that follows a landing at once is applied with it."""
     asked = dict(stop_time=END, output_interval=2e-3, output=COMPARED)
     expected, messages = simulate(shaken3["mcmanus"], **asked)
     transitions = events(messages)

@@ -1,4 +1,4 @@
-"""Where methods fail: a picture for each failure of the study, and the stable steps of textbook methods."""
+"""A picture for each failure of a method in the study, and the stable steps of textbook methods."""
 
 from pathlib import Path
 

@@ -205,7 +205,7 @@ def closed_forms(theta: float) -> str:
 
 
 def values(figures: Path) -> dict:
-    """What the vertical component, a tendon and dissipators change."""
+    """Effects of the vertical component, a tendon and dissipators."""
     structures, (alone, both) = population(), records()
     return dict(
         structures=STRUCTURES, scales=", ".join(f"{scale:g}" for scale in SCALES), components=len(both),

@@ -126,8 +126,7 @@ def random_scenes(count: int):
 
 
 def test_a_scene_is_the_same_by_its_command_and_by_its_script(opened, exporter, tmp_path):
-    """Whatever is in the link, and whatever its record and the column in it are called: a shell and Python find the page's peaks,
-    and run nothing else."""
+    """For any link and any name of a record or column, a shell and Python find the page's peaks and run nothing else."""
     page = opened()
     frame, pier = FRAME | {"modes": "2.0", "zeta": "0.03", "ground": "ricker"}, PIER | {"ground": "ricker"}
     for number, (fields, name, record) in enumerate([(frame, "-", ""), (pier, "-", ""), *random_scenes(40)]):

@@ -1,4 +1,4 @@
-"""The pages of evidence are what their commands write."""
+"""The commands of evidence write the pages that are in docs/."""
 
 import subprocess
 import sys

@@ -1,5 +1,5 @@
-"""The wheel for this machine, which `make wheels` builds, as somebody has it who has no Rust; or the package that the pattern
-PACKAGE names, that of the source, which takes minutes and needs Rust to be installed."""
+"""The wheel of `make wheels` for this machine, installed without Rust. The pattern PACKAGE may name another package. The package
+of the source takes minutes and needs Rust."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""The Python module: what it returns is what the command line prints, to the bit. `make heavy PARTS=python` installs it and runs these."""
+"""The Python module returns the numbers that the command line prints, to the bit. `make heavy PARTS=python` installs it and runs these."""
 
 import ast
 import contextlib
@@ -49,7 +49,7 @@ def run(ground):
 
 @pytest.fixture
 def said(exporter, tmp_path):
-    """What a command says."""
+    """Runs a command and returns its output or its error."""
     def run(*arguments):
         done = subprocess.run([exporter, *map(str, arguments)], cwd=tmp_path, capture_output=True, text=True)
         return done.stdout if done.returncode == 0 else done.stderr.removeprefix("error: ").strip()

@@ -1,4 +1,4 @@
-"""What the report on the paper is made of. `make evidence` compares the page."""
+"""The parts of the page on the paper. `make evidence` compares the page."""
 
 import numpy as np
 import pytest
