@@ -416,13 +416,13 @@ impl Structure {
 
     /// Usual magnitudes in a motion: of each mode, as if the mode had all mass, where the base is about to lift off statically; the
     /// angle at which the structure falls; and the rates that belong to them.
-    pub fn usual(&self) -> State<Modes> {
-        let reach = self.0.body.m_s.sqrt() * self.0.base.g * self.0.base.tan_alpha_cg;
+    pub fn usual<Q: Coordinates>(&self) -> State<Q> {
+        let reach = self.0.body.m_s.sqrt() * self.0.base.hold_at_rest() / self.0.body.S_1;
         let u = |mode: &Mode| reach * mode.mass.sqrt() / mode.stiffness;
         let u_dot = |_: usize, mode: &Mode| u(mode) * mode.omega();
         let theta = libm::atan(self.0.base.tan_alpha_cg);
         let theta_dot = self.0.base.p_l * theta;
-        State { u: Modes::each(self, |_, mode| u(mode)), u_dot: Modes::each(self, u_dot), theta, theta_dot }
+        State { u: Q::each(self, |_, mode| u(mode)), u_dot: Q::each(self, u_dot), theta, theta_dot }
     }
 
     /// Mass (kg), first (kg·m) and second moment (kg·m²) that no mode carries.

@@ -1,19 +1,15 @@
 //! The differences between structures of one mass and structures of many masses.
 
 use crate::advance::{Told, Watching};
-use crate::failure::Refusal;
 use crate::inputs::Inputs;
 use crate::resources::Contents;
-use crate::setup::Setup;
 use crate::shown::Shown;
 use crate::variables::Source;
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::peak_watch::Peaked;
 use rocking::run::peaks::Peak;
-use rocking::run::validity::{self, Judged};
-use rocking::{
-    Detail, Engine, FrameOutput, LinearLoad, Load, Modes, Outputs, Reactions, State, Structure, Transition, Watch,
-};
+use rocking::run::validity::Judged;
+use rocking::{Engine, FrameOutput, LinearLoad, Load, Modes, Outputs, Reactions, State, Structure, Transition, Watch};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -33,9 +29,6 @@ pub trait Masses:
     /// The load on `structure`, given the value of each input by its place.
     fn load(structure: &Structure, input: impl Fn(usize) -> f64) -> Load<Self>;
 
-    /// The structure as it is set up, of an archive with these `contents`.
-    fn structure(setup: &Setup, contents: &Contents) -> Result<Structure, Refusal>;
-
     /// The state at the start.
     fn initial(initial: &State) -> State<Self>;
 
@@ -48,23 +41,14 @@ pub trait Masses:
     /// The value of `source` if it is shown of these structures alone.
     fn own(source: Source, shown: &Shown<Self>) -> Option<f64>;
 
-    /// How many lateral coordinates the table has.
-    fn lateral(contents: &Contents) -> usize;
-
     /// The numbers of a state with so many lateral coordinates, in the order of the table.
     fn components(state: &State<Self>, lateral: usize) -> Vec<f64>;
 
     /// The state of `structure` with these `components`.
     fn state(components: &[f64], structure: &Structure) -> State<Self>;
 
-    /// Usual magnitudes of the numbers of a state.
-    fn usual(structure: &Structure) -> State<Self>;
-
     /// The motion of a `transition` in words.
     fn told(transition: &Transition<Self>) -> String;
-
-    /// Sentences of warning about the structure at a level of detail.
-    fn doubts(structure: &Structure, detail: Detail) -> Vec<String>;
 
     /// The watcher of a motion of which nothing but transitions is `told`.
     fn listener(told: &mut Told<'_, Self>) -> impl Watch<Self>;
@@ -83,13 +67,6 @@ impl Masses for f64 {
     #[inline(always)]
     fn load(_: &Structure, input: impl Fn(usize) -> f64) -> Load {
         Load { a_g: input(0), F_t: input(1), a_v: input(VERTICAL) }
-    }
-
-    fn structure(setup: &Setup, contents: &Contents) -> Result<Structure, Refusal> {
-        Ok(match setup.parameters {
-            Some(parameters) => Structure::new(parameters)?,
-            None => contents.structure.clone(),
-        })
     }
 
     fn initial(initial: &State) -> State {
@@ -118,10 +95,6 @@ impl Masses for f64 {
         })
     }
 
-    fn lateral(_: &Contents) -> usize {
-        1
-    }
-
     fn components(state: &State, _: usize) -> Vec<f64> {
         state.components().into()
     }
@@ -130,19 +103,11 @@ impl Masses for f64 {
         State::of(std::array::from_fn(|at| components[at]))
     }
 
-    fn usual(structure: &Structure) -> State {
-        structure.one().map_or(State::default(), State::usual)
-    }
-
     fn told(Transition { before, after, .. }: &Transition) -> String {
         format!(
             "u = {} m, u_dot = {} m/s (before: {}), theta_dot = {} rad/s (before: {})",
             after.u, after.u_dot, before.u_dot, after.theta_dot, before.theta_dot
         )
-    }
-
-    fn doubts(structure: &Structure, detail: Detail) -> Vec<String> {
-        [structure.doubts(), validity::of_structure(structure, detail)].concat()
     }
 
     #[inline(always)]
@@ -161,16 +126,12 @@ impl Masses for Modes {
 
     /// a_g and a_v, then a force on each floor.
     fn inputs(contents: &Contents) -> Inputs {
-        Inputs::new([0, VERTICAL].into_iter().chain(frame(contents).floors().iter().map(|_| FORCE)))
+        Inputs::new([0, VERTICAL].into_iter().chain(contents.structure.floors().iter().map(|_| FORCE)))
     }
 
     fn load(frame: &Structure, input: impl Fn(usize) -> f64) -> Load<Modes> {
         let forces: Vec<_> = (2..).map(&input).take(frame.floors().len()).collect();
         frame.load(input(0), input(1), &forces).expect("each floor has a force")
-    }
-
-    fn structure(_: &Setup, contents: &Contents) -> Result<Structure, Refusal> {
-        Ok(frame(contents).clone())
     }
 
     fn initial(&State { theta, theta_dot, .. }: &State) -> State<Modes> {
@@ -203,10 +164,6 @@ impl Masses for Modes {
         })
     }
 
-    fn lateral(contents: &Contents) -> usize {
-        frame(contents).modes().len()
-    }
-
     fn components(State { u, u_dot, theta, theta_dot }: &State<Modes>, lateral: usize) -> Vec<f64> {
         let mut components = vec![0.0; 2 * lateral]; // the level rigid has none
         components[..u.numbers().len()].copy_from_slice(u.numbers());
@@ -222,16 +179,8 @@ impl Masses for Modes {
         State { u, u_dot, theta: turning[0], theta_dot: turning[1] }
     }
 
-    fn usual(frame: &Structure) -> State<Modes> {
-        frame.usual()
-    }
-
     fn told(Transition { before, after, .. }: &Transition<Modes>) -> String {
         format!("theta_dot = {} rad/s (before: {})", after.theta_dot, before.theta_dot)
-    }
-
-    fn doubts(frame: &Structure, detail: Detail) -> Vec<String> {
-        [frame.doubts(), validity::of_structure(frame, detail)].concat()
     }
 
     /// One type for all cases keeps the library small.
@@ -248,11 +197,6 @@ impl Masses for Modes {
         };
         (rate, reactions)
     }
-}
-
-/// The structure of many masses of an archive with these `contents`.
-fn frame(contents: &Contents) -> &Structure {
-    &contents.structure
 }
 
 /// The output at a place of the table.

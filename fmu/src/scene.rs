@@ -14,7 +14,7 @@ use rocking::run::ground_motion::{Elapsed, Placement};
 use rocking::run::outside_step::Checkpoint;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits, Validity};
-use rocking::{Engine, LinearLoad, Load, Phase};
+use rocking::{Engine, LinearLoad, Load, Phase, Structure};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -52,7 +52,8 @@ impl Setup {
     fn engine<Q: Masses>(&self, contents: &Contents, vertical: bool) -> Result<Engine<Q>, Refusal> {
         let &Setup { detail, tolerance, start_time, .. } = self;
         let settings = Settings { detail, tolerance, vertical, stops: false };
-        Ok(Q::engine(Q::structure(self, contents)?, Q::initial(&self.initial), start_time, settings)?)
+        let structure = self.parameters.map_or_else(|| Ok(contents.structure.clone()), Structure::new)?;
+        Ok(Q::engine(structure, Q::initial(&self.initial), start_time, settings)?)
     }
 
     /// The record of `source` in m/s² and scaled. Refuses scales that leave no ground motion in the range of the inputs.
@@ -77,7 +78,7 @@ impl<Q: Masses> Scene<Q> {
         let ground = source.as_deref().map(|source| setup.scaled(source, g)).transpose()?;
         let engine = setup.engine::<Q>(contents, may_move_vertically(setup, ground.as_ref()))?;
         let peaks = Falling::since(setup.start_time, engine.structure(), setup.detail);
-        let (validity, lateral) = (Findings::since(setup.start_time), Q::lateral(contents));
+        let (validity, lateral) = (Findings::since(setup.start_time), contents.structure.modes().len());
         Ok(Scene { engine, source, ground, elapsed: Elapsed::default(), outside: None, peaks, validity, lateral })
     }
 

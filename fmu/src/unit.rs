@@ -18,7 +18,7 @@ use fmi_unit::{Completed, Experiment, Failure, Interface, Logger, Model, Progres
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::fall::Falling;
 use rocking::run::ground_motion::Elapsed;
-use rocking::run::validity::Findings;
+use rocking::run::validity::{Findings, of_structure};
 use rocking::{Motion, OutOfRange, State};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -268,7 +268,9 @@ impl<Q: Masses> Model for Unit<Q> {
         for doubt in scene.ground.iter().flat_map(|ground| rocking_records::doubts(ground, g)) {
             logger.warning(&format!("the record: {doubt}"));
         }
-        Q::doubts(scene.engine.structure(), setup.detail).iter().for_each(|doubt| logger.warning(doubt));
+        let structure = scene.engine.structure();
+        let doubts = [structure.doubts(), of_structure(structure, setup.detail)].concat();
+        doubts.iter().for_each(|doubt| logger.warning(doubt));
         match interface {
             Interface::CoSimulation(_) => inputs.start(setup.between()),
             Interface::ModelExchange => {
@@ -427,7 +429,7 @@ impl<Q: Masses> Model for Unit<Q> {
 
     fn nominals(&mut self) -> Result<Vec<f64>, Failure> {
         let scene = self.scene()?;
-        Ok(Q::components(&Q::usual(scene.engine.structure()), scene.lateral))
+        Ok(Q::components(&scene.engine.structure().usual(), scene.lateral))
     }
 
     fn state_rates(&mut self) -> Result<Vec<f64>, Failure> {

@@ -1,6 +1,5 @@
 //! State and phase of the structure.
 
-use crate::OneMass;
 use crate::digits::with_unit;
 use crate::mechanics::lateral::Coordinates;
 use crate::structure::NotOneMass;
@@ -176,13 +175,6 @@ impl State {
     /// The state with these components.
     pub fn of([u, u_dot, theta, theta_dot]: [f64; 4]) -> State {
         State { u, u_dot, theta, theta_dot }
-    }
-
-    /// Usual magnitudes in a motion of `one` mass: u_cr, at which the base lifts off, α_cg, at which the structure falls, and the
-    /// rates that belong to them.
-    pub fn usual(one: &OneMass) -> State {
-        let (u, theta) = (one.u_cr, libm::atan(one.tan_alpha_cg));
-        State { u, u_dot: one.omega_fc * u, theta, theta_dot: one.p_l * theta }
     }
 
     /// The phase that this state starts in: full contact for θ = 0, otherwise rocking about the side of θ's sign.

@@ -6,14 +6,12 @@
 //! ω² = φᵀKφ,   effective mass Γ² with Γ = φᵀM1,   effective height κ/Γ with κ = φᵀMh
 //! ```
 
-use crate::Parameters;
 use crate::digits::short;
 use crate::mechanics::lateral::{MOST_MODES, Modes};
 use crate::structure::natural_quantities::{self, Given, GivenError};
 use crate::structure::parameters::{MAX_DAMPING, MAX_SLENDERNESS, ParameterError};
 use crate::structure::quantity::{OutOfRange, Quantity};
-use crate::{Body, Floor, Structure, StructureError};
-use crate::{Mode, Ties};
+use crate::{Body, Floor, Mode, Parameters, Structure, StructureError, Ties};
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 use std::f64::consts::TAU;
@@ -602,29 +600,6 @@ mod tests {
         }
         let without_floors = Structure::from_modes(&usual(), &damping, &modes, Some(total), &[]).unwrap();
         assert_same(&Structure::of_body(*storeys.body(), storeys.modes(), &[]).unwrap(), &without_floors);
-    }
-
-    #[test]
-    fn one_mass_is_one_storey_and_three_masses_at_one_height() {
-        let pier = OneMass::new(Parameters::MCMANUS).unwrap();
-        let &Parameters { m, m0, H, B, J0, r, zeta_fc, .. } = pier.parameters();
-        let given = base(&[("m0", m0), ("J0", J0), ("width", 2.0 * B), ("r", r)]);
-        let damping = Damping::All(zeta_fc);
-        let storey = Storey { m, h: H, k: pier.k };
-        let one = Structure::from_storeys(&given, &damping, &[storey]).unwrap();
-        assert_relative_eq!(one.modes()[0].damping, pier.c_fc / m, max_relative = 1e-13);
-        let shares = [0.5, 0.3, 0.2];
-        let row = |i: usize| (0..3).map(|j| if i == j { shares[i] * pier.k } else { 0.0 }).collect();
-        let places = shares.map(|share| Place { m: share * m, h: H });
-        let three = Structure::from_matrices(&given, &damping, &places, &[row(0), row(1), row(2)]).unwrap();
-        for frame in [one, three] {
-            let Base { m_t, J_P, p_l, tan_alpha_cg, .. } = *frame.base();
-            let found = [m_t, J_P, p_l, tan_alpha_cg, frame.rocking_frequencies().pop().unwrap()];
-            let known = [m + m0, pier.J_P, pier.p_l, pier.tan_alpha_cg, pier.omega_u];
-            for (found, known) in found.into_iter().zip(known) {
-                assert_relative_eq!(found, known, max_relative = 1e-13);
-            }
-        }
     }
 
     /// C = α M + β K through the ratios of its modes.

@@ -3,7 +3,7 @@
 use fmi_unit::{DataType, Variable};
 use model_description::Unit;
 use rocking::structure::parameters::PARAMETERS;
-use rocking::{Base, Body, State, Structure};
+use rocking::{Base, Body, Modes, Structure};
 
 /// The units of the variables, as exponents of kg, m, s, rad.
 pub const UNITS: [(&str, [i32; 4]); 17] = [
@@ -64,12 +64,11 @@ pub fn nominal(variable: &Variable, structure: &Structure) -> Option<f64> {
     let &Base { m_t, B, g, p_l, tan_alpha_cg, .. } = structure.base();
     let acceleration = g * tan_alpha_cg;
     let &Body { m_s: m, S_1, .. } = structure.body();
-    let (height, lowest) = (S_1 / m, structure.vibration().rocking[0]);
-    let usual = structure.one().map(State::usual);
-    let (u, u_dot) = usual.map_or((acceleration / (lowest * lowest), acceleration / lowest), |of| (of.u, of.u_dot));
+    let (height, lowest) = (S_1 / m, structure.vibration().contact);
+    let (u, u_dot) = (acceleration / (lowest * lowest), acceleration / lowest);
     let (alpha, name) = (tan_alpha_cg.atan(), &*variable.name);
     let (name, number) = symbol_and_number(name);
-    let coordinates = || number.map(|number| (number, structure.usual()));
+    let coordinates = || number.map(|number| (number, structure.usual::<Modes>()));
     let name = ["_max", "_0"].iter().find_map(|ending| name.strip_suffix(ending)).unwrap_or(&name);
     let magnitude = match name {
         "theta" => Some(alpha),
