@@ -86,6 +86,7 @@ pub enum Progress {
 
 /// The reason why an advance failed. The motion is then as before the advance, whatever has been shown on the way.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // the messages name the fields
 pub enum AdvanceError {
     /// The interval is not positive and finite.
     #[error(
@@ -93,12 +94,7 @@ pub enum AdvanceError {
         with_unit(*from, "s"),
         with_unit(*interval, "s")
     )]
-    NotAhead {
-        /// The motion's time, s.
-        from: f64,
-        /// The refused interval, s.
-        interval: f64,
-    },
+    NotAhead { from: f64, interval: f64 },
     /// The load is not finite over the interval.
     #[error(
         "{name} = {} with slope {}/s is not finite over {}: give finite loads",
@@ -106,38 +102,17 @@ pub enum AdvanceError {
         with_unit(*slope, unit),
         with_unit(*interval, "s")
     )]
-    Load {
-        /// `a_g` or `F_t`.
-        name: &'static str,
-        /// Its unit.
-        unit: &'static str,
-        /// At the start.
-        value: f64,
-        /// Per second.
-        slope: f64,
-        /// The interval, s.
-        interval: f64,
-    },
+    Load { name: &'static str, unit: &'static str, value: f64, slope: f64, interval: f64 },
     /// The ground moves vertically, and the engine was made without ([`Settings::vertical`]).
     #[error("a_v = {} with slope {slope:?} m/s3: this structure was to be shaken horizontally alone", with_unit(*value, "m/s2"))]
-    Vertical {
-        /// At the start, m/s².
-        value: f64,
-        /// m/s³.
-        slope: f64,
-    },
+    Vertical { value: f64, slope: f64 },
     /// Too many steps for one call.
     #[error(
         "the advance used up its {MAX_STEPS_PER_ADVANCE} steps at t = {} of {}: advance in shorter intervals",
         with_unit(*time, "s"),
         with_unit(*until, "s")
     )]
-    TooLong {
-        /// Time at which the steps ended, s.
-        time: f64,
-        /// End of the interval, s.
-        until: f64,
-    },
+    TooLong { time: f64, until: f64 },
     /// Watchers asked for too many polynomials of an interval that the engine leapt over.
     #[error(
         "the vibration from t = {} to {} does not die away, and its peaks, validity or picture take more than {MOST_POLYNOMIALS} \
@@ -145,12 +120,7 @@ pub enum AdvanceError {
         with_unit(*time, "s"),
         with_unit(*until, "s")
     )]
-    TooManyPolynomials {
-        /// Start of the leap, s.
-        time: f64,
-        /// End of the leap, s.
-        until: f64,
-    },
+    TooManyPolynomials { time: f64, until: f64 },
     /// The equations have no finite solution from here on.
     #[error(
         "the motion cannot be continued beyond t = {} (u = {}, theta = {}): the mass passes above the pivot of a \
@@ -159,14 +129,7 @@ pub enum AdvanceError {
         with_unit(*u, "m"),
         with_unit(*theta, "rad")
     )]
-    Singular {
-        /// s.
-        time: f64,
-        /// m; of many masses, the displacement of their centre.
-        u: f64,
-        /// rad.
-        theta: f64,
-    },
+    Singular { time: f64, u: f64, theta: f64 },
 }
 
 impl AdvanceError {

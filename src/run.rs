@@ -105,6 +105,7 @@ pub struct Finish<Q = f64> {
 
 /// Why there is no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // the messages name the fields
 pub enum RunError {
     /// The run cannot start.
     #[error(transparent)]
@@ -113,39 +114,19 @@ pub enum RunError {
     #[error(
         "the run cannot end at {end:?} s: a finite time after the record's first sample, at {start:?} s, is needed"
     )]
-    End {
-        /// The refused end, s.
-        end: f64,
-        /// First sample of the record, s.
-        start: f64,
-    },
+    End { end: f64, start: f64 },
     /// It takes more steps than one of its segments may.
     #[error("the run used up its steps at t = {} of {}: give a shorter duration", with_unit(*time, "s"), with_unit(*until, "s"))]
-    TooLong {
-        /// Instant at which the steps ended, s.
-        time: f64,
-        /// End of the stretch, s.
-        until: f64,
-    },
+    TooLong { time: f64, until: f64 },
     /// It takes more points than a curve may have.
     #[error(
         "a picture of the run needs more than {most} points, which end at t = {}; give it a shorter duration",
         with_unit(*time, "s")
     )]
-    TooManyPoints {
-        /// How many a curve may have.
-        most: usize,
-        /// Instant at which the points end, s.
-        time: f64,
-    },
+    TooManyPoints { most: usize, time: f64 },
     /// The run cannot go on.
     #[error("{cause}")]
-    Advance {
-        /// From here, s.
-        time: f64,
-        /// Why.
-        cause: AdvanceError,
-    },
+    Advance { time: f64, cause: AdvanceError },
 }
 
 impl RunError {

@@ -175,6 +175,7 @@ pub(crate) fn rest(whole: f64, of_modes: f64, rounding: f64) -> f64 {
 
 /// The reason why modes and floors are no structure.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // the messages name the fields
 pub enum StructureError {
     /// More modes than a structure may have, or none.
     #[error("{0} modes are given: a structure has 1 to {MOST_MODES}")]
@@ -187,54 +188,21 @@ pub enum StructureError {
     Base(#[from] ParameterError),
     /// A number of a mode or of a floor out of its range.
     #[error("{what} {number}: {cause}")]
-    At {
-        /// `mode` or `floor`.
-        what: &'static str,
-        /// Its number, from 1 on.
-        number: usize,
-        /// The number that is refused.
-        cause: OutOfRange,
-    },
+    At { what: &'static str, number: usize, cause: OutOfRange },
     /// The modes carry more than the structure has.
     #[error(
         "the modes carry {of_modes:?} {unit} of the {name} = {whole:?} {unit} above the foundation: check masses, heights and units"
     )]
-    Beyond {
-        /// `m_s` or `I_2`.
-        name: &'static str,
-        /// Unit.
-        unit: &'static str,
-        /// Sum over the modes.
-        of_modes: f64,
-        /// The value of the structure.
-        whole: f64,
-    },
+    Beyond { name: &'static str, unit: &'static str, of_modes: f64, whole: f64 },
     /// A floor whose shape has not one number for each mode.
     #[error("floor {floor} has {numbers} numbers of its shape: give one for each of the {modes} modes")]
-    Shape {
-        /// The floor, from 1 on.
-        floor: usize,
-        /// Numbers that are given.
-        numbers: usize,
-        /// Number of modes.
-        modes: usize,
-    },
+    Shape { floor: usize, numbers: usize, modes: usize },
     /// More modes are to be kept than there are.
     #[error("{count} modes cannot be kept of {modes}: keep 0 to {modes}")]
-    Kept {
-        /// Modes to be kept.
-        count: usize,
-        /// Number of modes.
-        modes: usize,
-    },
+    Kept { count: usize, modes: usize },
     /// Forces that do not match the floors.
     #[error("{forces} forces are given on {floors} floors: give one for each floor, or none")]
-    Forces {
-        /// Forces that are given.
-        forces: usize,
-        /// Number of floors.
-        floors: usize,
-    },
+    Forces { forces: usize, floors: usize },
 }
 
 impl Structure {

@@ -5,7 +5,7 @@ use crate::engine::motion::Motion;
 use crate::engine::phases;
 use crate::engine::piece::{Piece, Watch};
 use crate::levels::detail::AnyLevel;
-use crate::levels::level::{ElasticRocking, Level};
+use crate::levels::level::Level;
 use crate::levels::nonlinear::lanes::{RockingStep, Stepped};
 use crate::levels::shown::Searched;
 use crate::series::taylor::{Arc, Start};
@@ -48,7 +48,7 @@ pub(crate) trait Passes: Watch {
 impl Engine {
     /// Whether the structure rocks by Eqs 5 and 6 without ties, so that its steps of rocking can be taken among others.
     pub(crate) fn is_for_lanes(&self) -> bool {
-        matches!(&*self.level, AnyLevel::Nonlinear(level) if !level.rocking().subject().is_tied)
+        matches!(&*self.level, AnyLevel::Nonlinear(level) if !level.subject().is_tied)
     }
 
     /// Takes such a structure over `interval` (s) under `load`, all but the clock, if one leap in full contact is all of it.

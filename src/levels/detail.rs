@@ -92,13 +92,20 @@ impl Detail {
         let is_tied = structure.base().is_restrained() || is_vertical;
         let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
         let contact = ExactContact::new(&one);
+        let nonlinear = NonlinearRocking::new(one, is_tied);
         Ok(match self {
-            Detail::Auto => AnyLevel::Nonlinear(Elastic::new(Some(contact), NonlinearRocking::new(subject, one))),
-            Detail::Nonlinear => AnyLevel::Nonlinear(Elastic::new(None, NonlinearRocking::new(subject, one))),
+            Detail::Auto => AnyLevel::Nonlinear(Elastic { subject, one, contact: Some(contact), rocking: nonlinear }),
+            Detail::Nonlinear => AnyLevel::Nonlinear(Elastic { subject, one, contact: None, rocking: nonlinear }),
             Detail::Linear if is_tied => AnyLevel::Modes(ManyModes::new(subject, self)),
-            Detail::Linear => AnyLevel::Linear(Elastic::new(Some(contact), LinearRocking::new(subject, one))),
+            Detail::Linear => {
+                let rocking = LinearRocking::new(&one);
+                AnyLevel::Linear(Elastic { subject, one, contact: Some(contact), rocking })
+            }
             Detail::Modal if is_tied => return Err(InitialStateError::RestrainedModal),
-            Detail::Modal => AnyLevel::Linear(Elastic::new(Some(contact), LinearRocking::modal(subject, one))),
+            Detail::Modal => {
+                let rocking = LinearRocking::modal(&one);
+                AnyLevel::Linear(Elastic { subject, one, contact: Some(contact), rocking })
+            }
             Detail::Rigid => AnyLevel::Modes(ManyModes::rigid(subject, &one)),
             Detail::FixedBase => AnyLevel::FixedBase(FixedBase { subject, one, contact }),
         })
@@ -168,6 +175,8 @@ impl AnyLevel {
 /// A level with an elastic strut: by exact flow in full contact where there is one, otherwise by series.
 #[derive(Clone, Debug)]
 pub(crate) struct Elastic<Rocking> {
+    subject: Subject,
+    one: OneMass,
     contact: Option<ExactContact>,
     rocking: Rocking,
 }
@@ -186,15 +195,11 @@ impl<Rocking: ElasticRocking> Elastic<Rocking> {
         &self.rocking
     }
 
-    fn new(contact: Option<ExactContact>, rocking: Rocking) -> Elastic<Rocking> {
-        Elastic { contact, rocking }
-    }
-
     /// The |u| (m) below which the base stays down over the interval of `start`, whatever pushes the top mass.
     #[inline(always)]
     fn least_displacement(&self, start: &Start) -> f64 {
-        let one = self.rocking.one();
-        match self.rocking.subject().is_tied {
+        let one = &self.one;
+        match self.subject.is_tied {
             false => one.u_cr, // every leap asks
             true => {
                 let hold = least_hold(one.base(), start.a_v, start.interval, start.dissipators);
@@ -207,7 +212,7 @@ impl<Rocking: ElasticRocking> Elastic<Rocking> {
 impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
     #[inline(always)]
     fn subject(&self) -> &Subject {
-        self.rocking.subject()
+        &self.subject
     }
 
     #[inline(always)]
@@ -235,7 +240,7 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
     fn series(&self, phase: Phase, start: &Start, arc: &mut Arc) {
         match phase {
             Phase::Rocking(side) => self.rocking.series(side, start, arc),
-            Phase::FullContact | Phase::Overturned(_) => full_contact::series(self.rocking.one(), start, arc),
+            Phase::FullContact | Phase::Overturned(_) => full_contact::series(&self.one, start, arc),
         }
     }
 
@@ -245,7 +250,7 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
 
     #[inline(always)]
     fn liftable(&self) -> Option<Liftable<'_>> {
-        let one = self.rocking.one();
+        let one = &self.one;
         Some(Liftable {
             base: one.base(),
             modes: std::slice::from_ref(one.mode()),

@@ -152,11 +152,6 @@ pub(crate) fn derivatives<Q: Coordinates, const K: usize>(
 
 /// Equations of rocking with an elastic strut.
 pub(crate) trait ElasticRocking {
-    fn subject(&self) -> &Subject;
-
-    /// The numbers of the one mass.
-    fn one(&self) -> &OneMass;
-
     fn leap(&self, _side: Side, _start: &Start) -> Option<State> {
         None
     }

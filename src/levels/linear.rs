@@ -24,7 +24,7 @@
 //! A force F_t on the top mass makes a_g − F_t/m of a_g. Under loads that are linear in time the exact solution is a
 //! matrix exponential, kept for the step lengths used last; series serve the steps on which a transition may happen.
 
-use crate::levels::level::{Bounds, ElasticRocking, Pace, Subject};
+use crate::levels::level::{Bounds, ElasticRocking, Pace};
 use crate::levels::oscillator::Kept;
 use crate::mechanics::instant::Second;
 use crate::numbers::bend::Bend;
@@ -113,8 +113,6 @@ impl LinearSystem {
 /// Exact propagation by a linear system.
 #[derive(Clone, Debug)]
 pub(crate) struct LinearRocking {
-    subject: Subject,
-    one: OneMass,
     pace: Pace,
     system: LinearSystem,
     /// Flows, and the amplification of |θ̈| over the same time.
@@ -131,9 +129,9 @@ pub(crate) struct LinearRocking {
 
 impl LinearRocking {
     /// Eqs 7 and 8.
-    pub(crate) fn new(subject: Subject, one: OneMass) -> LinearRocking {
+    pub(crate) fn new(one: &OneMass) -> LinearRocking {
         let &crate::Parameters { H, B, g, .. } = one.parameters();
-        let OneMass { stiffness, damping_u, foundation, gamma, .. } = one;
+        let &OneMass { stiffness, damping_u, foundation, gamma, .. } = one;
         let inertia = foundation + B * B;
         let theta_ddot = Row {
             u: (H * stiffness + g) / inertia,
@@ -149,12 +147,12 @@ impl LinearRocking {
             a_top: -1.0,
             side: -H * theta_ddot.side,
         };
-        LinearRocking::of(subject, one, LinearSystem { u_ddot, theta_ddot }, 1.0)
+        LinearRocking::of(one, LinearSystem { u_ddot, theta_ddot }, 1.0)
     }
 
     /// Eqs 11, 16 and 18. The two modes leave χ (1−χ) of the moment g u.
-    pub(crate) fn modal(subject: Subject, one: OneMass) -> LinearRocking {
-        let OneMass { p_l, omega_u, zeta_u, tan_alpha_cg, chi, one_minus_chi, .. } = one;
+    pub(crate) fn modal(one: &OneMass) -> LinearRocking {
+        let &OneMass { p_l, omega_u, zeta_u, tan_alpha_cg, chi, one_minus_chi, .. } = one;
         let g = one.parameters().g;
         let (side, rocking) = (chi / one_minus_chi * g * tan_alpha_cg, p_l * p_l);
         let [u, u_dot] = [-omega_u * omega_u, -2.0 * zeta_u * omega_u];
@@ -167,15 +165,13 @@ impl LinearRocking {
             a_top: 0.0,
             side: -rocking * tan_alpha_cg - shape * side,
         };
-        LinearRocking::of(subject, one, LinearSystem { u_ddot, theta_ddot }, chi * one_minus_chi)
+        LinearRocking::of(one, LinearSystem { u_ddot, theta_ddot }, chi * one_minus_chi)
     }
 
-    fn of(subject: Subject, one: OneMass, system: LinearSystem, lean: f64) -> LinearRocking {
+    fn of(one: &OneMass, system: LinearSystem, lean: f64) -> LinearRocking {
         let omega = (-system.u_ddot.u).sqrt();
         LinearRocking {
-            pace: Pace::new(&one),
-            subject,
-            one,
+            pace: Pace::new(one),
             flows: Kept::new((Flow::zeros(), 1.0)),
             omega,
             compliance: 1.0 / (omega * omega),
@@ -249,16 +245,6 @@ struct Swing {
 }
 
 impl ElasticRocking for LinearRocking {
-    #[inline(always)]
-    fn subject(&self) -> &Subject {
-        &self.subject
-    }
-
-    #[inline(always)]
-    fn one(&self) -> &OneMass {
-        &self.one
-    }
-
     /// The state after the interval of `start` if rocking about `side` certainly continues until then. Two bounds can prove it: θ
     /// leaves its chord by at most |θ̈| h²/8, and its cubic by at most [`LinearRocking::off_cubic`]. The Bernstein coefficients of
     /// the cubic bound the cubic.

@@ -31,7 +31,7 @@
 #[cfg(feature = "lanes")]
 pub(crate) mod lanes;
 
-use crate::levels::level::{ElasticRocking, Pace, Subject};
+use crate::levels::level::{ElasticRocking, Pace};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
@@ -318,29 +318,19 @@ impl<N: Expanded> Recurrence<N> {
 /// Series of the motion by Eqs 5 and 6.
 #[derive(Clone, Debug)]
 pub(crate) struct NonlinearRocking {
-    subject: Subject,
     one: OneMass,
+    is_tied: bool,
     pace: Pace,
     products: RefCell<Products<f64>>,
 }
 
 impl NonlinearRocking {
-    pub(crate) fn new(subject: Subject, one: OneMass) -> NonlinearRocking {
-        NonlinearRocking { subject, one, pace: Pace::new(&one), products: RefCell::new(Products::new(0.0)) }
+    pub(crate) fn new(one: OneMass, is_tied: bool) -> NonlinearRocking {
+        NonlinearRocking { one, is_tied, pace: Pace::new(&one), products: RefCell::new(Products::new(0.0)) }
     }
 }
 
 impl ElasticRocking for NonlinearRocking {
-    #[inline(always)]
-    fn subject(&self) -> &Subject {
-        &self.subject
-    }
-
-    #[inline(always)]
-    fn one(&self) -> &OneMass {
-        &self.one
-    }
-
     fn is_singular(&self, side: Side, state: &State) -> bool {
         let structure = &self.one;
         let (foundation, B) = (structure.foundation, structure.parameters().B);
@@ -350,11 +340,7 @@ impl ElasticRocking for NonlinearRocking {
 
     #[inline(always)]
     fn series(&self, side: Side, start: &Start, arc: &mut Arc) {
-        if self.subject.is_tied {
-            self.expand::<true>(side, start, arc)
-        } else {
-            self.expand::<false>(side, start, arc)
-        }
+        if self.is_tied { self.expand::<true>(side, start, arc) } else { self.expand::<false>(side, start, arc) }
     }
 }
 
@@ -441,8 +427,7 @@ mod tests {
             let load = LinearLoad { value, slope: Load { a_g: slope, F_t: force_slope, a_v: 0.0 } };
             let (a_g, a_top) = (load.on_foundation(), load.on_top(&structure.into()));
             let start = Start { state, a_g, a_top, interval: 2e-3, local_error: 1e-16, ..Start::default() };
-            let subject = Subject { structure: structure.into(), local_error: 1e-16, is_tied: false, angles: Angles::Any };
-            NonlinearRocking::new(subject, structure).series(side, &start, &mut arc);
+            NonlinearRocking::new(structure, false).series(side, &start, &mut arc);
             for sigma in [0.0, 0.2, 0.55, 1.0] {
                 let load = load.at(sigma * arc.span);
                 let expected = accelerations(&structure, side, &arc.at(sigma), load, &Dissipators::NEW).unwrap();

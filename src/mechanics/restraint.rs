@@ -14,11 +14,9 @@
 //! at the end. The equations for small angles have e = l θ instead. All elongations are 0 at θ = 0. An elastoplastic dissipator
 //! then pulls with its residual force − k_d e_p. Impacts leave e_p unchanged.
 
-use crate::mechanics::uplift::hold;
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
-use crate::{Base, Ties};
-use crate::{OneMass, Side};
+use crate::{Base, Side, Ties};
 use serde::{Deserialize, Serialize};
 
 /// The state of the dissipators and the energy they have taken. The first is at +ξ_d, the second at −ξ_d.
@@ -152,7 +150,6 @@ pub(crate) fn sum(ties: &[Tie; 3], weight: impl Fn(&Tie) -> f64) -> Tie {
 pub struct Restraint<'a> {
     base: &'a Base,
     side: Side,
-    dissipators: &'a Dissipators,
     /// The tendon and both dissipators.
     ties: [Tie; 3],
 }
@@ -160,8 +157,8 @@ pub struct Restraint<'a> {
 impl<'a> Restraint<'a> {
     /// The restraint of `base` about `side`, with the dissipators in this state.
     #[inline]
-    pub fn about(base: &'a Base, side: Side, dissipators: &'a Dissipators) -> Restraint<'a> {
-        Restraint { base, side, dissipators, ties: ties(base, side, dissipators) }
+    pub fn about(base: &'a Base, side: Side, dissipators: &Dissipators) -> Restraint<'a> {
+        Restraint { base, side, ties: ties(base, side, dissipators) }
     }
 
     /// The forces of the ties at this `chord`.
@@ -209,19 +206,6 @@ impl<'a> Restraint<'a> {
             let force = tie.force(chord.length, N::constant(0.0));
             sum + force * force / (2.0 * k_d)
         })
-    }
-
-    /// The displacement u_cr,s (m) towards the side at which the base lifts off, if its turning moment suffices there:
-    ///
-    /// ```text
-    /// u_cr,s = { [(m + m0)(g + a_v) + P_0] B + Σ F (B − s ξ) }/(m H ω_fc²)
-    /// ```
-    ///
-    /// If u_cr,s is not above 0, the weight no longer holds the base. `a_v` in m/s².
-    pub fn uplift_displacement(&self, one: &OneMass, a_v: f64) -> f64 {
-        let &Restraint { base, side, dissipators, .. } = self;
-        let more = hold(base, side, a_v, dissipators) - base.hold_at_rest();
-        one.u_cr + more / (one.parameters().H * one.k)
     }
 
     /// Moment that turns the base back about the pivot at the rotation `theta` (rad), at rest and with u = 0, N·m:

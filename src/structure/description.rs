@@ -484,7 +484,6 @@ fn shape(number: usize, found: &FoundMode, height: f64, floors: &[Place]) -> Res
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::OneMass;
     use crate::structure::Base;
     use approx::assert_relative_eq;
     use proptest::prelude::*;

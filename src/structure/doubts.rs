@@ -114,7 +114,8 @@ mod tests {
             Structure::new(parameters).unwrap().doubts()
         };
         assert!(doubts(|_| ()).is_empty());
-        let changes: [(fn(&mut Parameters), &str); 5] = [
+        type Change = fn(&mut Parameters);
+        let changes: [(Change, &str); 5] = [
             (|of| (of.m, of.m0) = (100.0, 50.0), "m_t = 150 kg is little"),
             (|of| of.f_fc = 400_f64.recip(), "f = 0.00 Hz of the lowest mode is far"),
             (|of| (of.H, of.B) = (8e3, 1.5e3), "f = 2.00 Hz of the lowest mode is far"),
