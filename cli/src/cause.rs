@@ -18,7 +18,7 @@ enum Part {
     Text(Option<String>),
     Number(f64),
     OneMass(Parameters),
-    ManyMasses(BTreeMap<String, f64>),
+    Numbers(BTreeMap<String, f64>),
     State(State),
 }
 
@@ -39,7 +39,7 @@ impl Cause {
         let structure = structure.into();
         let numbers = || describe::numbers(&structure).into_iter().map(|of| (of.name, of.value)).collect();
         let one = structure.one().map(|one| Part::OneMass(*one.parameters()));
-        Cause::of(Some(one.unwrap_or_else(|| Part::ManyMasses(numbers()))))
+        Cause::of(Some(one.unwrap_or_else(|| Part::Numbers(numbers()))))
     }
 
     /// The cause of results of the record in the file at `path` only, which is understood as `options` say.
