@@ -58,7 +58,7 @@ struct OfPulse {
 }
 
 impl OfPulse {
-    /// The pulse, in the units of `structure` where it is asked for in these.
+    /// The pulse. Its ratios are to the units that follow from the `base`.
     fn pulse(&self, base: &Base) -> Pulse {
         let &OfPulse { shape, phase, error, .. } = self;
         let (of_amplitude, of_frequency) = units_of(base);
@@ -83,7 +83,7 @@ pub fn run(args: &PulseArgs) -> anyhow::Result<()> {
     args.results.print_table(Some(&args.output), title, &cause, &amounts(&pulse, &record, structure.base()))
 }
 
-/// Measures of the pulse, alone and for `structure`.
+/// Measures of the pulse, alone and in the units that follow from the `base`.
 fn amounts(pulse: &Pulse, record: &Record, base: &Base) -> Vec<NamedValue> {
     let (of_amplitude, of_frequency) = units_of(base);
     let [velocity, displacement] = record.velocities_and_displacements().last().expect("a record has samples");

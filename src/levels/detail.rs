@@ -92,18 +92,17 @@ impl Detail {
         let is_tied = structure.base().is_restrained() || is_vertical;
         let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
         let contact = ExactContact::new(&one);
-        let nonlinear = NonlinearRocking::new(one, is_tied);
         Ok(match self {
-            Detail::Auto => AnyLevel::Nonlinear(Elastic { subject, one, contact: Some(contact), rocking: nonlinear }),
-            Detail::Nonlinear => AnyLevel::Nonlinear(Elastic { subject, one, contact: None, rocking: nonlinear }),
-            Detail::Linear if is_tied => AnyLevel::Modes(ManyModes::new(subject, self)),
-            Detail::Linear => {
-                let rocking = LinearRocking::new(&one);
-                AnyLevel::Linear(Elastic { subject, one, contact: Some(contact), rocking })
+            Detail::Auto | Detail::Nonlinear => {
+                let contact = (self == Detail::Auto).then_some(contact);
+                let rocking = NonlinearRocking::new(one, is_tied);
+                AnyLevel::Nonlinear(Elastic { subject, one, contact, rocking })
             }
+            Detail::Linear if is_tied => AnyLevel::Modes(ManyModes::new(subject, self)),
             Detail::Modal if is_tied => return Err(InitialStateError::RestrainedModal),
-            Detail::Modal => {
-                let rocking = LinearRocking::modal(&one);
+            Detail::Linear | Detail::Modal => {
+                let rocking =
+                    if self == Detail::Linear { LinearRocking::new(&one) } else { LinearRocking::modal(&one) };
                 AnyLevel::Linear(Elastic { subject, one, contact: Some(contact), rocking })
             }
             Detail::Rigid => AnyLevel::Modes(ManyModes::rigid(subject, &one)),

@@ -1,11 +1,10 @@
 //! Mechanical energy: constant between impacts when c_u = 0 and a_g = 0.
 
-use crate::Base;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::Load;
 use crate::numbers::Number;
-use crate::{Phase, State, Structure};
+use crate::{Base, Phase, State, Structure};
 
 /// Energy in J, zero at height zero:
 ///

@@ -2,11 +2,10 @@
 //!
 //! A formula reads the motion in numbers of any kind: at an instant, or as series in time over a polynomial of the motion.
 
-use crate::Floor;
-use crate::Structure;
 use crate::mechanics::gauge::Gauge;
 use crate::mechanics::instant::{Place, uplift};
 use crate::numbers::{Number, Turn};
+use crate::{Floor, Structure};
 use serde::{Deserialize, Serialize};
 
 /// An output of a structure of many masses. Floors and storeys count from 0, from below; storey i is below floor i.

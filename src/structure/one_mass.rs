@@ -36,7 +36,6 @@ pub struct OneMass {
     pub omega_u: f64,
     /// Bound of the rates of rocking, 1/s: ω_u and p_l, with the stiffness and the damping that the ties add to them.
     pub(crate) rocking_rate: f64,
-    is_restrained: bool,
     pub(crate) base: Base,
     pub(crate) mode: Mode,
     /// ω_fc² = k/m, 1/s².
@@ -74,7 +73,6 @@ impl OneMass {
         let rocking_rate = (omega_u * omega_u + held / inertia).sqrt().max(p_l).max(c_d * pair / inertia);
         Ok(OneMass {
             parameters,
-            is_restrained: [P_0, k_t, c_d, k_d].iter().any(|restraint| *restraint > 0.0),
             base: Base { m_t: m + m0, m0, S_res: 0.0, B, J0, J_P, r: Some(r), g, c_ratio, p_l, tan_alpha_cg, ties },
             mode: Mode { mass: m, gamma: m, share: 1.0, height: H, stiffness: k, damping: c_fc },
             gamma,
@@ -110,7 +108,7 @@ impl OneMass {
 
     /// Whether a tendon or dissipators restrain the structure.
     pub fn is_restrained(&self) -> bool {
-        self.is_restrained
+        self.base.is_restrained()
     }
 
     /// The parameters that this structure was derived from.

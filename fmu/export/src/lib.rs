@@ -108,7 +108,9 @@ pub fn export(
     if let Some(two) = libraries.windows(2).find(|two| two[0].platform == two[1].platform) {
         return Err(ExportError::SamePlatform(two[0].platform));
     }
-    FrameNumbers::from(&contents.structure).frame()?;
+    if contents.structure.one().is_none() {
+        FrameNumbers::from(&contents.structure).frame()?;
+    }
     let mut files = Vec::new();
     let mut pack = |contents: &Contents, (path, content): RecordFile| {
         let record = GroundRecord::from_bytes(&path, &content, contents.structure.base().g)?;

@@ -3,7 +3,7 @@
 use fmi_unit::{DataType, Variable};
 use model_description::Unit;
 use rocking::structure::parameters::PARAMETERS;
-use rocking::{Base, Body, Modes, Structure};
+use rocking::{Base, Body, Modes, Structure, Ties};
 
 /// The units of the variables, as exponents of kg, m, s, rad.
 pub const UNITS: [(&str, [i32; 4]); 17] = [
@@ -59,13 +59,13 @@ pub fn display_unit(variable: &Variable, structure: &Structure) -> Option<&'stat
 /// The magnitude that is usual for `variable` in a motion, to three digits.
 ///
 /// The structure is about to fall at the rotation α_cg. Its base lifts off at u_cr, and statically under the acceleration
-/// g tan α_cg (Eqs 2 to 4).
+/// g tan α_cg without a tendon (Eqs 2 to 4).
 pub fn nominal(variable: &Variable, structure: &Structure) -> Option<f64> {
-    let &Base { m_t, B, g, p_l, tan_alpha_cg, .. } = structure.base();
+    let &Base { m_t, B, g, p_l, tan_alpha_cg, ties: Ties { P_0, .. }, .. } = structure.base();
     let acceleration = g * tan_alpha_cg;
     let &Body { m_s: m, S_1, .. } = structure.body();
-    let (height, lowest) = (S_1 / m, structure.vibration().contact);
-    let (u, u_dot) = (acceleration / (lowest * lowest), acceleration / lowest);
+    let (height, lowest, lifting) = (S_1 / m, structure.vibration().contact, acceleration + P_0 * B / S_1);
+    let (u, u_dot) = (lifting / (lowest * lowest), lifting / lowest);
     let (alpha, name) = (tan_alpha_cg.atan(), &*variable.name);
     let (name, number) = symbol_and_number(name);
     let coordinates = || number.map(|number| (number, structure.usual::<Modes>()));
