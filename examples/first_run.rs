@@ -1,8 +1,8 @@
 //! A record is read and run, the levels of detail are compared on it, and piers of four stiffnesses are swept.
 
 use rocking::estimates::intensity::IntensityMeasure::Pga;
-use rocking::run::{levels, peaks::PEAKS};
-use rocking::{Parameters, Run, Structure};
+use rocking::run::levels;
+use rocking::{Output, Parameters, Run, Structure};
 use rocking_records::Reading;
 use rocking_sweep::fragility::{FragilityCurve, Trials};
 use rocking_sweep::outcome::Limit;
@@ -13,7 +13,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{}: {}", ground.title(), source.unit);
     let run = Run::new(Structure::new(Parameters::MCMANUS)?, &ground);
     let (peaks, finish) = run.peaks()?;
-    PEAKS.iter().for_each(|peak| println!("{} in {}: {:?}", peak.name, peak.unit, peak.of(&peaks)));
+    let show = |of: &Output| println!("{} in {}: {:?}", of.symbol(), of.unit(), peaks.of(*of));
+    Output::with_peak(&run.structure).iter().for_each(show);
     println!("{:?} at {} s", finish.ending, finish.motion.time);
     let verdicts = levels::compare(&run)?.verdicts;
     verdicts.iter().for_each(|level| println!("{:?}: {:?}", level.response.choice.detail, level.errors));

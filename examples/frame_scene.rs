@@ -3,7 +3,7 @@
 #![allow(non_snake_case)] // the letters of the equations
 
 use rocking::engine::Settings;
-use rocking::{Body, Detail, Engine, Floor, FrameOutput, LinearLoad, Load, Modes, State, Structure, Transition};
+use rocking::{Body, Detail, Engine, Floor, LinearLoad, Load, Modes, Output, State, Structure, Transition};
 use rocking::{Mode, Ties};
 use std::array::from_fn;
 
@@ -39,8 +39,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let slope = Load { a_g: (end.a_g - value.a_g) / dt, a_v: (end.a_v - value.a_v) / dt, ..value };
         engine.advance(dt, LinearLoad { value, slope }, &mut show)?;
         let now = engine.sample(end);
-        print!("S {:?}", now.output(FrameOutput::theta));
-        for of in [FrameOutput::u, FrameOutput::a_t] {
+        print!("S {:?}", now.output(Output::theta));
+        for of in [Output::u, Output::a_t] {
             (0..engine.structure().floors().len()).for_each(|floor| print!(" {:?}", now.output(of(floor))));
         }
         println!();

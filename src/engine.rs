@@ -24,7 +24,6 @@ use crate::levels::detail::{AnyLevel, Detail, by_level};
 use crate::levels::level::{Level, Subject, derivatives};
 use crate::levels::modes::ManyModes;
 use crate::mechanics::energy::energy;
-use crate::mechanics::floors::FrameOutput;
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
@@ -34,10 +33,10 @@ use crate::mechanics::state::InitialStateError;
 use crate::numbers::dual::Dual;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, Start};
-use crate::{Outputs, Phase, State, Structure};
+use crate::{Output, Phase, State, Structure};
 use motion::{Chatter, Motion, Work};
 use phases::{Closed, Step, Watched};
-use piece::{Piece, Room, Sample, Turning, Watch};
+use piece::{Piece, Room, Sample, Watch, shown};
 use std::fmt::Debug;
 use std::ops::Deref;
 use transition::Transition;
@@ -175,7 +174,8 @@ impl Settings {
 /// Lateral coordinates of the structures that an engine moves.
 pub trait Moves: Coordinates {
     /// The levels of detail of these structures.
-    type Level: Deref<Target = dyn Level<Self>> + Clone + Debug;
+    #[allow(private_bounds)] // the coordinates name the type, and nobody else can use it
+    type Level: Deref<Target = dyn Level<Self>> + AsRef<Subject> + Clone + Debug;
 
     /// Starts `structure` at `time` (s) from `initial`.
     fn engine(
@@ -188,8 +188,8 @@ pub trait Moves: Coordinates {
     /// The level of detail at which `structure` moves with these `settings`.
     fn level(structure: Structure, settings: Settings) -> Result<Box<Self::Level>, InitialStateError>;
 
-    /// The loads of a ground motion alone.
-    fn loads(ground: LinearLoad) -> LinearLoad<Self>;
+    /// The load on `structure` of the ground accelerations `a_g` and `a_v` (m/s²) and of a horizontal force on each floor (N).
+    fn load(structure: &Structure, a_g: f64, a_v: f64, forces: impl Iterator<Item = f64>) -> Load<Self>;
 
     /// Advances with a level by its type: each gets a loop of its own, so that nothing stands between the loop and the level's
     /// equations.
@@ -214,8 +214,8 @@ impl Moves for f64 {
     }
 
     #[inline(always)]
-    fn loads(ground: LinearLoad) -> LinearLoad {
-        ground
+    fn load(_: &Structure, a_g: f64, a_v: f64, mut forces: impl Iterator<Item = f64>) -> Load {
+        Load { a_g, F_t: forces.next().unwrap_or(0.0), a_v }
     }
 
     #[inline(always)]
@@ -235,6 +235,13 @@ impl Deref for LevelOfModes {
 
     fn deref(&self) -> &Self::Target {
         &self.0
+    }
+}
+
+impl AsRef<Subject> for LevelOfModes {
+    #[inline(always)]
+    fn as_ref(&self) -> &Subject {
+        self.0.subject()
     }
 }
 
@@ -262,9 +269,8 @@ impl Moves for Modes {
         Ok(Box::new(LevelOfModes(ManyModes::new(subject, settings.detail))))
     }
 
-    fn loads(LinearLoad { value, slope }: LinearLoad) -> LinearLoad<Modes> {
-        let [value, slope] = [value, slope].map(|Load { a_g, a_v, .. }| Load { a_g, F_t: Modes::ZERO, a_v });
-        LinearLoad { value, slope }
+    fn load(structure: &Structure, a_g: f64, a_v: f64, forces: impl Iterator<Item = f64>) -> Load<Modes> {
+        structure.load_of(a_g, a_v, forces)
     }
 
     fn advance<W: Watch<Modes>>(any: &LevelOfModes, task: Task<'_, Modes, W>) -> Result<Progress, AdvanceError> {
@@ -318,20 +324,6 @@ impl Engine {
         level.check_start(&initial)?;
         Ok(Engine::start(level, settings, time, initial, phase))
     }
-
-    /// The outputs now under `load`; once overturned, those of the instant before.
-    pub fn outputs(&self, load: Load) -> Outputs {
-        self.level.outputs(self.motion.phase.in_motion(), &self.motion.under(load)) // a sample would copy the motion
-    }
-
-    /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned.
-    /// The derivatives at a transition are taken just after the transition.
-    pub fn rates(&self, load: LinearLoad) -> (Outputs, Reactions) {
-        let derivatives = self.derivatives(load);
-        let Motion { phase, state, .. } = &self.motion;
-        let outputs = self.level.output_rates(*phase, state, derivatives, load);
-        (outputs, Reactions::rates(self.structure(), *phase, state, derivatives, load))
-    }
 }
 
 impl Engine<Modes> {
@@ -360,12 +352,6 @@ impl Engine<Modes> {
         let of_frame = |numbers: Modes| Modes::each(level.structure(), |j, _| numbers.of(j));
         let state = State { u: of_frame(u), u_dot: of_frame(u_dot), ..state };
         Ok(Engine::start(level, settings, time, state, phase))
-    }
-
-    /// Time derivatives now under `load`, from the equations of motion; 0 once overturned. The derivatives at a transition are taken
-    /// just after the transition.
-    pub fn rates(&self, load: LinearLoad<Modes>) -> FrameRates<'_> {
-        FrameRates { engine: self, load, derivatives: self.derivatives(load) }
     }
 
     /// Mechanical energy now, J.
@@ -414,6 +400,25 @@ impl<Q: Moves> Engine<Q> {
         let now = self.sample(load.value);
         phases::of::<Q>(self.structure(), &self.motion)
             .is_none_or(|watched| watched.guards.iter().all(|guard| guard.stays_open(&now, ahead)))
+    }
+
+    /// The value of `output` now under `load`; once overturned, the value of the instant before.
+    pub fn output(&self, output: Output, load: Load<Q>) -> f64 {
+        self.outputs(load)(output)
+    }
+
+    /// The values of outputs now under `load`, of which each costs less than by [`Engine::output`].
+    #[inline]
+    pub fn outputs(&self, load: Load<Q>) -> impl Fn(Output) -> f64 {
+        // a sample would copy the motion
+        let x = shown::<Q>(&self.level, self.motion.phase.in_motion(), &self.motion.under(load));
+        move |output| output.of(&x)
+    }
+
+    /// Time derivatives now under `load`, from the equations of motion; 0 once overturned. The derivatives at a transition are taken
+    /// just after the transition.
+    pub fn rates(&self, load: LinearLoad<Q>) -> Rates<'_, Q> {
+        Rates { engine: self, load, derivatives: self.derivatives(load) }
     }
 
     /// The reactions now under `load`; once overturned, those of the instant before.
@@ -550,25 +555,25 @@ impl<Q: Moves> Engine<Q> {
     }
 }
 
-/// Time derivatives of the outputs and reactions of a structure of many masses.
+/// Time derivatives of outputs and reactions.
 #[derive(Debug)]
-pub struct FrameRates<'a> {
-    engine: &'a Engine<Modes>,
-    load: LinearLoad<Modes>,
-    derivatives: [Second<f64, Modes>; 2],
+pub struct Rates<'a, Q: Moves = f64> {
+    engine: &'a Engine<Q>,
+    load: LinearLoad<Q>,
+    derivatives: [Second<f64, Q>; 2],
 }
 
-impl FrameRates<'_> {
+impl<Q: Moves> Rates<'_, Q> {
     /// The rate of `output`.
-    pub fn of(&self, output: FrameOutput) -> f64 {
-        let FrameRates { engine, load, derivatives: [accelerations, jerks] } = self;
+    pub fn of(&self, output: Output) -> f64 {
+        let Rates { engine, load, derivatives: [accelerations, jerks] } = self;
         let Motion { phase, state, .. } = &engine.motion;
         if let Phase::Overturned(_) = phase {
             return 0.0;
         }
         let x = Instant::moving(engine.structure(), *phase, state, accelerations, *load);
         let theta_ddot = Dual { value: accelerations.theta_ddot, rate: jerks.theta_ddot };
-        output.of(&Turning { x, theta_ddot }).rate
+        output.of(&Instant { theta_ddot, ..x }).rate
     }
 
     /// The rates of the reactions.

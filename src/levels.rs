@@ -9,5 +9,4 @@ pub(crate) mod modes;
 pub mod nonlinear;
 pub(crate) mod oscillator;
 pub mod rules;
-pub(crate) mod shown;
 pub(crate) mod ties;

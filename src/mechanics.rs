@@ -1,13 +1,13 @@
 //! The paper's equations, without a solver: state, loads, outputs, reactions, energy, what starts and what follows an impact.
 
 pub mod energy;
-pub mod floors;
 pub mod gauge;
 pub mod impact;
 pub(crate) mod instant;
 pub(crate) mod lateral;
 pub mod load;
 pub mod outputs;
+pub(crate) mod reach;
 pub mod reactions;
 pub mod restraint;
 pub mod state;

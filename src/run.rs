@@ -13,7 +13,6 @@ pub mod levels;
 pub mod outside_step;
 pub mod peak_watch;
 pub mod peaks;
-pub mod profile;
 mod reaction_series;
 pub mod record;
 mod samples;
@@ -26,7 +25,7 @@ use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::state::InitialStateError;
 use crate::run::ground_motion::Segment;
 use crate::run::record::Record;
-use crate::{Detail, Engine, LinearLoad, Modes, Motion, Progress, State, Structure, Watch};
+use crate::{Detail, Engine, LinearLoad, Load, Modes, Motion, Progress, State, Structure, Watch};
 use peaks::Peaks;
 use samples::Samples;
 use serde::{Deserialize, Serialize};
@@ -228,11 +227,9 @@ impl<'a, Q: Moves> Run<'a, Q> {
         samples.end(&engine);
         Ok(Finish { ending, motion: *engine.motion() })
     }
-}
 
-impl Run<'_> {
     /// The exact peaks of all of the run, a fall too, and how it ended; those that are shown are [`Run::found`]'s.
-    pub fn peaks(&self) -> Result<(Peaks, Finish), RunError> {
+    pub fn peaks(&self) -> Result<(Peaks, Finish<Q>), RunError> {
         let mut peaks = Peaks::since(self.ground.start(), &self.structure, self.detail);
         let finish = self.follow(&mut peaks.watch())?;
         Ok((peaks, finish))
@@ -314,7 +311,9 @@ fn over<Q: Moves, W: Watch<Q>>(
     segment: Segment,
     watch: &mut W,
 ) -> Result<Progress, AdvanceError> {
-    let progress = engine.advance(segment.duration, Q::loads(segment.ground), watch)?;
+    let [value, slope] =
+        [segment.ground.value, segment.ground.slope].map(|Load { a_g, a_v, .. }| Load { a_g, F_t: Q::ZERO, a_v });
+    let progress = engine.advance(segment.duration, LinearLoad { value, slope }, watch)?;
     if progress != Progress::Overturned {
         engine.set_time(segment.until);
     }

@@ -14,6 +14,7 @@ pub mod quantity;
 
 use crate::mechanics::gauge::Gauge;
 use crate::mechanics::lateral::{Coordinates, Lateral, MOST_MODES, Modes};
+use crate::mechanics::reach::{Reach, reaches};
 use crate::series::bisection::last_where;
 use crate::{Load, State};
 use base::{Base, Ties};
@@ -21,7 +22,7 @@ use mode::{Floor, Mode, Vibration};
 use one_mass::OneMass;
 use parameters::{ParameterError, Parameters};
 use quantity::{OutOfRange, Quantity, quantity};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A rest beside the modes that counts as none, as a fraction of the whole.
 pub(crate) const ROUNDING: f64 = 1e-9;
@@ -105,6 +106,17 @@ struct Whole {
     vibration: Vibration,
     /// Of one mass, its parameters and what follows from them.
     one: Option<OneMass>,
+    reaches: Reaches,
+}
+
+/// The reaches of outputs, which follow from the rest of a structure, once they have been asked for.
+#[derive(Debug, Default)]
+struct Reaches(OnceLock<Vec<Reach>>);
+
+impl PartialEq for Reaches {
+    fn eq(&self, _: &Reaches) -> bool {
+        true
+    }
 }
 
 /// A structure of many masses where one mass is needed.
@@ -123,6 +135,8 @@ pub struct NotOneMass {
 /// What is measured on a structure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gauges {
+    /// Shape of the drift of each storey in the modes.
+    pub(crate) drift: Vec<Modes>,
     /// Acceleration of each floor along the turning e_x a_i, m/s².
     pub a: Vec<Gauge>,
     /// Shear of the storey below each floor V_k, from the given floors, N.
@@ -133,6 +147,8 @@ pub struct Gauges {
     pub V_t: Gauge,
     /// Overturning moment M_t, N·m.
     pub M_t: Gauge,
+    /// Whether a value depends on the ground acceleration directly.
+    pub has_feedthrough: bool,
 }
 
 impl Gauges {
@@ -151,19 +167,15 @@ impl Gauges {
             let foot = if k == 0 { 0.0 } else { floors[k - 1].height };
             sum(&floors[k..], &|floor| floor.mass * (floor.height - foot))
         };
-        Gauges {
-            a: floors.iter().map(|floor| Gauge::new(modes, 1.0, floor.shape, floor.height, rounding)).collect(),
-            V: (0..floors.len()).map(|k| sum(&floors[k..], &|floor| floor.mass)).collect(),
-            M: (0..floors.len()).map(moment).collect(),
-            V_t: Gauge::new(modes, m_s, shape(|mode| mode.gamma), S_1, rounding),
-            M_t: Gauge::new(modes, S_1, shape(|mode| mode.mass * mode.height), I_2, rounding),
-        }
-    }
-
-    /// Whether a value depends on the ground acceleration directly.
-    pub(crate) fn have_feedthrough(&self) -> bool {
-        let Gauges { a, V, M, V_t, M_t } = self;
-        [V_t, M_t].into_iter().chain(a).chain(V).chain(M).any(Gauge::has_feedthrough)
+        let a = Vec::from_iter(floors.iter().map(|floor| Gauge::new(modes, 1.0, floor.shape, floor.height, rounding)));
+        let V = Vec::from_iter((0..floors.len()).map(|k| sum(&floors[k..], &|floor| floor.mass)));
+        let M = Vec::from_iter((0..floors.len()).map(moment));
+        let V_t = Gauge::new(modes, m_s, shape(|mode| mode.gamma), S_1, rounding);
+        let M_t = Gauge::new(modes, S_1, shape(|mode| mode.mass * mode.height), I_2, rounding);
+        let has_feedthrough = [&V_t, &M_t].into_iter().chain(&a).chain(&V).chain(&M).any(Gauge::has_feedthrough);
+        let below = |i: usize| i.checked_sub(1).map_or(Modes::ZERO, |below| floors[below].shape);
+        let drift = floors.iter().enumerate().map(|(i, floor)| floor.shape.plus(below(i), -1.0)).collect();
+        Gauges { drift, a, V, M, V_t, M_t, has_feedthrough }
     }
 }
 
@@ -252,7 +264,7 @@ impl Structure {
             let rest = [m_res.max(0.0), rest(body.S_1, first, rounding), I_res.max(0.0)];
             (rest, Gauges::new(&body, modes, floors, rounding))
         };
-        let rounded = Some(rests(ROUNDING)).filter(|(rest, gauges)| *rest == [0.0; 3] && !gauges.have_feedthrough());
+        let rounded = Some(rests(ROUNDING)).filter(|(rest, gauges)| *rest == [0.0; 3] && !gauges.has_feedthrough);
         let exact = |whole, of_modes| if rest(whole, of_modes, EXACT) == 0.0 { whole } else { of_modes };
         let body = match rounded {
             Some(_) => {
@@ -280,7 +292,16 @@ impl Structure {
         };
         let vibration = vibration(&base, modes);
         let (modes, floors) = (modes.to_vec(), floors.to_vec());
-        Structure(Arc::new(Whole { base, body, modes, floors, gauges, vibration, one: None }))
+        Structure(Arc::new(Whole {
+            base,
+            body,
+            modes,
+            floors,
+            gauges,
+            vibration,
+            one: None,
+            reaches: Reaches::default(),
+        }))
     }
 
     /// This structure with its `count` modes of the lowest frequencies, or none. The mass of the others turns rigidly with the base.
@@ -292,6 +313,14 @@ impl Structure {
     /// This structure without modes: all of its mass turns rigidly with the base.
     pub fn without_modes(&self) -> Structure {
         self.with_lowest(0)
+    }
+
+    /// This structure as the level `rigid` of one mass shows it: floors and gauges know no mode.
+    pub(crate) fn shown_rigid(&self) -> Structure {
+        let Whole { base, body, vibration, one, .. } = *self.0;
+        let floors = Vec::from_iter(self.0.floors.iter().map(|floor| Floor { shape: Modes::ZERO, ..*floor }));
+        let (gauges, modes) = (Gauges::new(&body, &[], &floors, ROUNDING), self.0.modes.clone());
+        Structure(Arc::new(Whole { base, body, modes, floors, gauges, vibration, one, reaches: Reaches::default() }))
     }
 
     fn with_lowest(&self, count: usize) -> Structure {
@@ -317,13 +346,18 @@ impl Structure {
         if !forces.is_empty() && forces.len() != self.0.floors.len() {
             return Err(StructureError::Forces { forces: forces.len(), floors: self.0.floors.len() });
         }
+        Ok(self.load_of(a_g, a_v, forces.iter().copied()))
+    }
+
+    /// [`Structure::load`] of forces that match the floors.
+    pub(crate) fn load_of(&self, a_g: f64, a_v: f64, forces: impl Iterator<Item = f64>) -> Load<Modes> {
         let mut on_modes = Modes::parts(self, 0.0);
         let mut rest = [0.0; 2];
-        for ((force, floor), gauge) in forces.iter().zip(&self.0.floors).zip(&self.0.gauges.a) {
-            on_modes = on_modes.plus(floor.shape, *force);
-            rest = std::array::from_fn(|i| rest[i] + gauge.on_rest(*force)[i]);
+        for ((force, floor), gauge) in forces.zip(&self.0.floors).zip(&self.0.gauges.a) {
+            on_modes = on_modes.plus(floor.shape, force);
+            rest = std::array::from_fn(|i| rest[i] + gauge.on_rest(force)[i]);
         }
-        Ok(Load { a_g, F_t: on_modes.and_rest(rest), a_v })
+        Load { a_g, F_t: on_modes.and_rest(rest), a_v }
     }
 
     /// The structure as a rigid body.
@@ -332,9 +366,9 @@ impl Structure {
     }
 
     /// The sum of the horizontal forces of `load` (N), and the sum of their moments in full contact (N·m).
-    pub(crate) fn pushes(&self, load: &Load<Modes>) -> [f64; 2] {
+    pub(crate) fn pushes<Q: Coordinates>(&self, load: &Load<Q>) -> [f64; 2] {
         let [force, moment] = load.F_t.rest().unwrap_or_default();
-        let on_modes = |part: fn(&Mode) -> f64| Modes::sum(self, |j, mode| part(mode) * load.F_t.of(j));
+        let on_modes = |part: fn(&Mode) -> f64| Q::sum(self, |j, mode| part(mode) * load.F_t.of(j));
         [force + on_modes(|mode| mode.share), moment + on_modes(|mode| mode.height)]
     }
 
@@ -372,7 +406,14 @@ impl Structure {
         &self.0.gauges
     }
 
+    /// How far each output reaches that may have a peak.
+    #[inline(always)]
+    pub(crate) fn reaches(&self) -> &[Reach] {
+        self.0.reaches.0.get_or_init(|| reaches(self))
+    }
+
     /// The floors, from below.
+    #[inline(always)]
     pub fn floors(&self) -> &[Floor] {
         &self.0.floors
     }
@@ -407,7 +448,16 @@ impl From<OneMass> for Structure {
         let (modes, floors) = (vec![mode], vec![Floor { mass: m, height: H, shape: Modes::new(&[1.0]) }]);
         let gauges = Gauges::new(&body, &modes, &floors, ROUNDING);
         let vibration = Vibration { contact: one.omega_fc, rocking: [one.omega_u; 2] };
-        Structure(Arc::new(Whole { base, body, modes, floors, gauges, vibration, one: Some(one) }))
+        Structure(Arc::new(Whole {
+            base,
+            body,
+            modes,
+            floors,
+            gauges,
+            vibration,
+            one: Some(one),
+            reaches: Reaches::default(),
+        }))
     }
 }
 

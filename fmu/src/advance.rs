@@ -1,8 +1,8 @@
 //! How the structure on its ground is taken over one step of a co-simulation.
 
-use crate::masses::Masses;
 use crate::scene::Scene;
 use crate::setup::Setup;
+use rocking::engine::Moves;
 use rocking::engine::{AdvanceError, Progress};
 use rocking::run::fall::FallWatch;
 use rocking::run::validity::Validity;
@@ -15,13 +15,13 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 pub type Told<'a, Q> = dyn FnMut(&Transition<Q>) + 'a;
 
 /// Watches peaks and limits, if they are asked for. One type for all cases keeps the library small.
-pub struct Watching<'a, 'b, Q: Masses> {
+pub struct Watching<'a, 'b, Q: Moves> {
     pub peaks: Option<FallWatch<'a, Q>>,
     pub validity: Option<&'a mut Validity>,
     pub told: &'a mut Told<'b, Q>,
 }
 
-impl<Q: Masses> Watch<Q> for Watching<'_, '_, Q> {
+impl<Q: Moves> Watch<Q> for Watching<'_, '_, Q> {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &Piece<Q>) {
@@ -36,7 +36,7 @@ impl<Q: Masses> Watch<Q> for Watching<'_, '_, Q> {
     }
 }
 
-impl<Q: Masses> Scene<Q> {
+impl<Q: Moves> Scene<Q> {
     /// [`Scene::advance`] up to the first transition. One within rounding of the end of the step counts as at its end: a
     /// host that goes back and steps to the instant that it was told meets it again. One at the very start, where an
     /// input has just jumped, is applied at once: every step takes time.
@@ -62,7 +62,7 @@ impl<Q: Masses> Scene<Q> {
                 return Ok(progress);
             }
             let motion = *self.engine.motion();
-            progress = self.follow(setup, rounding, &later, &mut Q::listener(told)).unwrap_or(Progress::Complete);
+            progress = self.follow(setup, rounding, &later, &mut &mut *told).unwrap_or(Progress::Complete);
             if progress == Progress::Complete {
                 self.engine.set_motion(motion);
             }
@@ -87,7 +87,7 @@ impl<Q: Masses> Scene<Q> {
         if setup.peaks || setup.validity {
             self.advance_watched(setup, step, inputs, told)
         } else {
-            self.follow(setup, step, inputs, &mut Q::listener(told))
+            self.follow(setup, step, inputs, &mut &mut *told)
         }
     }
 

@@ -1,13 +1,13 @@
 //! Derivatives of outputs: by time, and by what the host sets.
 
-use crate::masses::Masses;
 use crate::shown::Shown;
 use crate::unit::Unit;
 use crate::variables::Source;
 use fmi_unit::{Failure, Model, sensitivity};
+use rocking::engine::Moves;
 use rocking::{LinearLoad, Load, Reactions};
 
-impl<Q: Masses> Unit<Q> {
+impl<Q: Moves> Unit<Q> {
     /// Rates of outputs by the equations of motion, under the present inputs and their slopes: those set for the next
     /// step, or else those that the last step followed.
     pub(crate) fn output_rates(&mut self, references: &[u32], rates: &mut [f64]) -> Result<(), Failure> {
@@ -15,13 +15,15 @@ impl<Q: Masses> Unit<Q> {
         let found: Vec<_> = {
             let (scene, setup, inputs) = self.parts()?;
             let load = scene.load(setup, inputs.now(scene.engine.structure()));
-            let (output, reactions) = Q::rates(&scene.engine, load);
+            let rates = scene.engine.rates(load);
+            let reactions = rates.reactions();
             let rate = |source| match source {
+                Source::Output(of) => Some(rates.of(of)),
                 Source::Reaction(of) => Some(of(&reactions)),
                 Source::Restraint(of) => Some(of(&scene.engine.restraint_rates(load.value))),
                 Source::Ground(true) => Some(load.slope.a_v),
                 Source::Ground(false) => Some(load.slope.a_g),
-                source => output(source),
+                _ => None,
             };
             sources.into_iter().map(rate).collect()
         };
@@ -46,12 +48,10 @@ impl<Q: Masses> Unit<Q> {
         // impulses change at events alone, and numbers that are calculated never
         let is_one = |source: &Source| {
             use Source::{
-                Coordinate, Derived, Dissipator, Floor, Ground, Impulse, Known, Output, Reaction, Restraint, StateRate,
+                Coordinate, Derived, Dissipator, Ground, Impulse, Known, Output, Reaction, Restraint, StateRate,
             };
-            matches!(
-                source,
-                Output(_) | Floor(_) | Coordinate(_) | StateRate(_) | Reaction(_) | Restraint(_) | Dissipator(_)
-            ) || matches!(source, Ground(_) | Impulse(_) | Derived(_) | Known(_) | Source::RecordDuration)
+            matches!(source, Output(_) | Coordinate(_) | StateRate(_) | Reaction(_) | Restraint(_) | Dissipator(_))
+                || matches!(source, Ground(_) | Impulse(_) | Derived(_) | Known(_) | Source::RecordDuration)
         };
         if let Some(at) = unknowns.iter().position(|source| !is_one(source)) {
             return Err(Failure::NoOutput { name: self.name(of[at]) });
@@ -84,7 +84,7 @@ impl<Q: Masses> Unit<Q> {
         if is_admitted_for_this {
             scene.set(|settings| settings.vertical = true)?;
         }
-        let shown = |load| Shown::new(scene, setup, load, Q::outputs(&scene.engine, load));
+        let shown = |load| Shown::new(scene, setup, load);
         let before = shown(at_rest.value);
         let (Reactions { R_h, R_v, .. }, base) =
             (scene.engine.reactions(at_rest.value), scene.engine.structure().base());

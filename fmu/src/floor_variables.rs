@@ -4,19 +4,20 @@ use crate::variables::{ACCELERATION, Row, Source};
 use fmi_unit::variables::Text;
 use fmi_unit::{Causality, Variable};
 use rocking::mechanics::load::{LOADS, VERTICAL};
-use rocking::run::profile::Profile;
 use rocking::structure::derived::{OF_MODE, OF_STRUCTURE};
-use rocking::{Detail, FrameOutput, Structure};
+use rocking::{Output, Structure};
 use std::collections::HashSet;
 
 /// The rows of `frame`, made with the rows of `one_mass`.
 pub(crate) fn rows(frame: &Structure, one_mass: impl Iterator<Item = Row>) -> Vec<Row> {
     let (inputs, others): (Vec<_>, Vec<_>) = one_mass.partition(|(_, source)| matches!(source, Source::Input(_)));
+    let is_peak = |(_, source): &Row| matches!(source, Source::Peak(_) | Source::PeakInstant(_));
+    let (peaks, others): (Vec<_>, Vec<_>) = others.into_iter().partition(is_peak);
     let rows: Vec<_> = loads(frame, &inputs)
         .into_iter()
-        .chain(FrameOutput::all(frame).enumerate().map(output))
+        .chain(Output::all(frame).into_iter().map(|of| output(of, frame)))
         .chain(states(frame))
-        .chain(peaks(frame))
+        .chain(peaks)
         .chain(numbers(frame))
         .chain(others.into_iter().filter(is_of_many))
         .collect();
@@ -43,7 +44,7 @@ pub(crate) fn rows(frame: &Structure, one_mass: impl Iterator<Item = Row>) -> Ve
 fn is_of_many((variable, source): &Row) -> bool {
     match source {
         Source::InitialValue(_) => variable.name.starts_with("theta"),
-        Source::Output(_) | Source::StateRate(_) | Source::Parameter(_) | Source::Derived(_) | Source::Peak(_) => false,
+        Source::Output(_) | Source::StateRate(_) | Source::Parameter(_) | Source::Derived(_) => false,
         _ => true,
     }
 }
@@ -60,23 +61,24 @@ fn loads(frame: &Structure, inputs: &[Row]) -> Vec<Row> {
     all.enumerate().map(|(which, variable)| (variable, Source::Input(which))).collect()
 }
 
-fn output((place, of): (usize, FrameOutput)) -> Row {
+fn output(of: Output, frame: &Structure) -> Row {
     let depends_on: &[&'static str] = match of {
-        FrameOutput::theta => &["theta_0"],
-        FrameOutput::theta_dot => &["theta_dot_0"],
-        FrameOutput::uplift => &["theta"],
-        FrameOutput::V_t | FrameOutput::M_t => ACCELERATION,
-        FrameOutput::a_t(_) | FrameOutput::V(_) | FrameOutput::M(_) => ACCELERATION,
-        FrameOutput::u(_) | FrameOutput::drift(_) => &["u"],
-        FrameOutput::u_dot(_) => &["u_dot"],
-        FrameOutput::delta_t(_) => &["u", "theta"],
-        FrameOutput::v_t(_) => &["u", "u_dot", "theta", "theta_dot"],
+        Output::theta => &["theta_0"],
+        Output::theta_dot => &["theta_dot_0"],
+        Output::uplift => &["theta"],
+        Output::V_t | Output::M_t => ACCELERATION,
+        Output::a_t(_) | Output::V(_) | Output::M(_) => ACCELERATION,
+        Output::u(_) | Output::drift(_) => &["u"],
+        Output::u_dot(_) => &["u_dot"],
+        Output::delta_t(_) => &["u", "theta"],
+        Output::v_t(_) => &["u", "u_dot", "theta", "theta_dot"],
     };
-    let is_local = matches!(of, FrameOutput::theta_dot | FrameOutput::u_dot(_));
+    let is_local = matches!(of, Output::theta_dot | Output::u_dot(_));
     let causality = if is_local { Causality::Local } else { Causality::Output };
-    let variable = Variable::real(causality, of.name(), of.unit(), of.description()).from(depends_on.iter().copied());
-    let is_state = matches!(of, FrameOutput::theta | FrameOutput::theta_dot);
-    (if is_state { variable.state() } else { variable }, Source::Floor(place))
+    let variable =
+        Variable::real(causality, of.name(frame), of.unit(), of.description()).from(depends_on.iter().copied());
+    let is_state = matches!(of, Output::theta | Output::theta_dot);
+    (if is_state { variable.state() } else { variable }, Source::Output(of))
 }
 
 /// The coordinates of the modes, and the derivatives of all states.
@@ -109,25 +111,6 @@ fn states(frame: &Structure) -> Vec<Row> {
         (variable.from(of.iter().copied()).from(own).rate_of(name), Source::StateRate(place))
     };
     (0..2 * n).map(coordinate).chain((0..2 * n + 2).map(rate)).collect()
-}
-
-/// Largest magnitudes and their instants.
-fn peaks(frame: &Structure) -> Vec<Row> {
-    let profile = Profile::since(0.0, frame, Detail::Auto);
-    let rows = profile.peaks().enumerate().flat_map(|(place, (of, _))| {
-        let (symbol, name) = (of.symbol(), of.name());
-        let peak = name.replacen(symbol, &format!("{symbol}_max"), 1);
-        let magnitude = format!(
-            "largest |{name}| since startTime, exact, also between communication points, without the fall if the structure \
-             overturns; NaN unless peaks is true"
-        );
-        let instant = format!("first instant of {peak}; NaN unless peaks is true");
-        [
-            (Variable::real(Causality::Local, peak.clone(), of.unit(), magnitude), Source::FloorPeak(place)),
-            (Variable::real(Causality::Local, format!("t_{peak}"), "s", instant), Source::FloorPeakInstant(place)),
-        ]
-    });
-    rows.collect()
 }
 
 /// Fixed numbers of the base, the modes and the floors.

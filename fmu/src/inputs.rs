@@ -1,9 +1,12 @@
 //! The inputs: what the host sets at communication points, and the line that each of them follows over a step.
 
-use crate::masses::Masses;
+use rocking::engine::Moves;
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::{LinearLoad, Load, OutOfRange, Ramp, Structure};
 use serde::{Deserialize, Serialize};
+
+/// The place of F_t in [`LOADS`].
+const FORCE: usize = 1;
 
 /// How an input acts between communication points if nothing but its value is set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -139,15 +142,23 @@ impl Input {
 }
 
 impl Inputs {
-    /// Inputs that are 0 and act at once, given the places of their `loads` in [`LOADS`].
-    pub fn new(loads: impl Iterator<Item = usize>) -> Inputs {
+    /// Inputs of `structure` that are 0 and act at once: a_g, F_t and a_v of one mass, or a_g, a_v and a force on each floor.
+    pub fn new(structure: &Structure) -> Inputs {
+        match structure.one() {
+            Some(_) => Inputs::of(0..LOADS.len()),
+            None => Inputs::of([0, VERTICAL].into_iter().chain(structure.floors().iter().map(|_| FORCE))),
+        }
+    }
+
+    /// Such inputs, given the places of their `loads` in [`LOADS`].
+    fn of(loads: impl Iterator<Item = usize>) -> Inputs {
         let each = loads.map(|load| Input { load, ..Input::default() }).collect();
         Inputs { each, since: 0.0, ended_early: false, stairs: 0 }
     }
 
     /// As many inputs, all 0, that act at once.
     pub fn at_rest(&self) -> Inputs {
-        Inputs::new(self.each.iter().map(|input| input.load))
+        Inputs::of(self.each.iter().map(|input| input.load))
     }
 
     /// Makes the inputs act as the setup says, in the order of [`LOADS`]. Until then, and where no steps are made, they act at once.
@@ -195,29 +206,35 @@ impl Inputs {
         input.set_slope((value - input.set) / step);
     }
 
+    /// The load on `structure`, given the value `of` each input.
+    #[inline]
+    fn load<Q: Moves>(&self, structure: &Structure, of: impl Fn(&Input) -> f64) -> Load<Q> {
+        let all = |load: usize| self.each.iter().filter(move |input| input.load == load).map(&of);
+        let [a_g, a_v] = [0, VERTICAL].map(|load| all(load).next().unwrap_or(0.0));
+        Q::load(structure, a_g, a_v, all(FORCE))
+    }
+
     /// The loads that act now on `structure`.
     #[inline]
-    pub fn values<Q: Masses>(&self, structure: &Structure) -> Load<Q> {
-        Q::load(structure, |which| self.each[which].next.value)
+    pub fn values<Q: Moves>(&self, structure: &Structure) -> Load<Q> {
+        self.load(structure, |input| input.next.value)
     }
 
     /// The loads that act now on `structure`, with the slopes of the next step, or of the last step if none are set.
-    pub fn now<Q: Masses>(&self, structure: &Structure) -> LinearLoad<Q> {
-        let slope = |which: usize| {
-            let input = &self.each[which];
+    pub fn now<Q: Moves>(&self, structure: &Structure) -> LinearLoad<Q> {
+        let slope = |input: &Input| {
             let is_old = input.given == Given::Nothing || !input.acts_at_once();
             if is_old { input.followed.slope } else { input.next.slope }
         };
-        LinearLoad { value: self.values(structure), slope: Q::load(structure, slope) }
+        LinearLoad { value: self.values(structure), slope: self.load(structure, slope) }
     }
 
     /// Puts every input on its line over a step of `duration` (s), and returns the loads on `structure` along the lines.
     #[inline]
-    pub fn over<Q: Masses>(&mut self, duration: f64, structure: &Structure) -> LinearLoad<Q> {
+    pub fn over<Q: Moves>(&mut self, duration: f64, structure: &Structure) -> LinearLoad<Q> {
         self.each.iter_mut().for_each(|input| input.line = input.over(duration));
-        let [value, slope] = [|line: &Ramp| line.value, |line: &Ramp| line.slope]
-            .map(|of| Q::load(structure, |which| of(&self.each[which].line)));
-        LinearLoad { value, slope }
+        let value = self.load(structure, |input| input.line.value);
+        LinearLoad { value, slope: self.load(structure, |input| input.line.slope) }
     }
 
     /// Checks that the lines lead to values in range after `duration` (s). Returns the place of the input that does not.

@@ -8,7 +8,6 @@
 //! | [`any`] | the model: a unit of one mass or of many |
 //! | [`unit`] | what an instance is asked: values, start, steps, events, its state as bytes |
 //! | `derivatives`, `outside` | derivatives of outputs; the motion under the host's integrator |
-//! | [`masses`] | what one mass and many masses do each in their own way |
 //! | `shown` | the values of all computed real numbers at an instant |
 //! | `advance` | the structure on its ground over one step |
 //! | `scene` | the structure on its ground, from its start on |
@@ -29,7 +28,6 @@ mod failure;
 mod floor_variables;
 pub mod ground;
 mod inputs;
-pub mod masses;
 mod motion_log;
 mod outside;
 pub mod resources;

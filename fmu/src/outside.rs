@@ -4,14 +4,14 @@
 
 use crate::advance::Told;
 use crate::failure::Refusal;
-use crate::masses::Masses;
 use crate::motion_log::log;
 use crate::scene::{Outside, Scene};
 use crate::setup::Setup;
 use fmi_unit::{Completed, Failure, Logger, Update};
+use rocking::engine::Moves;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::outside_step::{Checked, Checkpoint};
-use rocking::{Load, Transition};
+use rocking::{Load, State, Transition};
 
 /// The relative tolerance up to which samples of the record are events.
 ///
@@ -22,7 +22,7 @@ const KINKS_MATTER: f64 = 1e-8;
 /// The largest state (SI units) that is taken from a host.
 const FARTHEST: f64 = 1e12;
 
-impl<Q: Masses> Scene<Q> {
+impl<Q: Moves> Scene<Q> {
     /// The record's time at the host's `time` (s). After a late start the last digits of `time` are coarse. An instant that the
     /// unit has announced for a sample therefore counts as the sample.
     fn elapsed_at(&self, setup: &Setup, time: f64) -> Elapsed {
@@ -50,7 +50,7 @@ impl<Q: Masses> Scene<Q> {
         }
         let ground = self.ground.as_ref().map(|ground| setup.ground_motion(ground));
         Ok(known
-            .check(&mut self.engine, ground.as_ref(), self.elapsed, load, &mut Q::listener(told))
+            .check(&mut self.engine, ground.as_ref(), self.elapsed, load, &mut &mut *told)
             .map_err(Refusal::from)?)
     }
 
@@ -91,7 +91,9 @@ impl<Q: Masses> Scene<Q> {
         if let Some(far) = states.iter().position(|value| value.abs() > FARTHEST) {
             return Err(Refusal::FarState { name: names(far), value: states[far] }.into());
         }
-        self.engine.set_state(Q::state(states, self.engine.structure()));
+        let [.., theta, theta_dot] = *states else { unreachable!("the host gives a number for each state") };
+        let part = |from: usize| Q::each(self.engine.structure(), |j, _| states[from + j]);
+        self.engine.set_state(State { u: part(0), u_dot: part(self.lateral), theta, theta_dot });
         Ok(())
     }
 
@@ -122,8 +124,8 @@ impl<Q: Masses> Scene<Q> {
         let mut passed: Vec<Transition<Q>> = Vec::new();
         let Checked { motion, was_hidden, .. } =
             self.check(setup, &outside.known, outside.arrived, &mut |transition| passed.push(*transition))?;
-        let host = *self.engine.motion();
-        passed.iter().for_each(|transition| log(logger, transition));
+        let (host, structure) = (*self.engine.motion(), self.engine.structure().clone());
+        passed.iter().for_each(|transition| log(logger, &structure, transition));
         if was_hidden {
             logger.event(|| {
                 format!(
@@ -135,8 +137,8 @@ impl<Q: Masses> Scene<Q> {
         }
         self.engine.set_motion(motion);
         let acting = self.acting(setup, load);
-        let told: &mut Told<Q> = &mut |transition| log(logger, transition);
-        self.engine.lift_off_if_due(acting, &mut Q::listener(told));
+        let told: &mut Told<Q> = &mut |transition| log(logger, &structure, transition);
+        self.engine.lift_off_if_due(acting, &mut &mut *told);
         let motion = *self.engine.motion();
         let known = Checkpoint { motion, elapsed: self.elapsed, load };
         self.outside = Some(Outside { known, arrived: load, event: outside.event });

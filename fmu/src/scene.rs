@@ -4,9 +4,9 @@
 use crate::advance::{Told, Watching};
 use crate::failure::Refusal;
 use crate::ground::{Digest, GroundRecord};
-use crate::masses::Masses;
 use crate::resources::Contents;
 use crate::setup::Setup;
+use rocking::engine::Moves;
 use rocking::engine::Settings;
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::fall::Falling;
@@ -14,13 +14,13 @@ use rocking::run::ground_motion::{Elapsed, Placement};
 use rocking::run::outside_step::Checkpoint;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits, Validity};
-use rocking::{Engine, LinearLoad, Load, Phase, Structure};
+use rocking::{Engine, LinearLoad, Load, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The structure on its ground.
-pub struct Scene<Q: Masses = f64> {
+pub struct Scene<Q: Moves = f64> {
     pub engine: Engine<Q>,
     /// The record that the ground follows, as its files give it.
     pub source: Option<Arc<GroundRecord>>,
@@ -30,7 +30,7 @@ pub struct Scene<Q: Masses = f64> {
     pub elapsed: Elapsed,
     /// If the host integrates: the engine is then where the host is.
     pub outside: Option<Outside<Q>>,
-    pub peaks: Falling<Q>,
+    pub peaks: Falling,
     pub validity: Findings,
     /// How many lateral coordinates the table has.
     pub lateral: usize,
@@ -49,11 +49,13 @@ pub struct Outside<Q = f64> {
 
 impl Setup {
     /// The structure at the start time, on ground that may move vertically if `vertical`.
-    fn engine<Q: Masses>(&self, contents: &Contents, vertical: bool) -> Result<Engine<Q>, Refusal> {
+    fn engine<Q: Moves>(&self, contents: &Contents, vertical: bool) -> Result<Engine<Q>, Refusal> {
         let &Setup { detail, tolerance, start_time, .. } = self;
         let settings = Settings { detail, tolerance, vertical, stops: false };
         let structure = self.parameters.map_or_else(|| Ok(contents.structure.clone()), Structure::new)?;
-        Ok(Q::engine(structure, Q::initial(&self.initial), start_time, settings)?)
+        let State { u, u_dot, theta, theta_dot } = self.initial;
+        let [u, u_dot] = [u, u_dot].map(|of| Q::each(&structure, |_, _| of)); // only of one mass other than 0
+        Ok(Q::engine(structure, State { u, u_dot, theta, theta_dot }, start_time, settings)?)
     }
 
     /// The record of `source` in m/s² and scaled. Refuses scales that leave no ground motion in the range of the inputs.
@@ -71,7 +73,7 @@ fn may_move_vertically(setup: &Setup, ground: Option<&Record>) -> bool {
     setup.vertical || ground.is_some_and(|record| record.vertical().is_some())
 }
 
-impl<Q: Masses> Scene<Q> {
+impl<Q: Moves> Scene<Q> {
     /// At the start that `setup` describes, of an archive with these `contents`, on ground that follows the record of `source`.
     pub fn new(setup: &Setup, contents: &Contents, source: Option<Arc<GroundRecord>>) -> Result<Scene<Q>, Refusal> {
         let g = setup.g(contents);
@@ -90,6 +92,12 @@ impl<Q: Masses> Scene<Q> {
             self.engine = self.engine.remade(settings)?;
         }
         Ok(())
+    }
+
+    /// The numbers of a `state`, in the order of the table.
+    pub fn components(&self, state: &State<Q>) -> Vec<f64> {
+        let of = |coordinates: Q| (0..self.lateral).map(move |j| coordinates.of(j));
+        of(state.u).chain(of(state.u_dot)).chain([state.theta, state.theta_dot]).collect()
     }
 
     /// Whether the ground may move vertically.
@@ -166,10 +174,10 @@ impl<Q: Masses> Scene<Q> {
     }
 }
 
-impl<Q: Masses> Scene<Q> {
+impl<Q: Moves> Scene<Q> {
     /// The peaks since the start, of a structure that has overturned those before it fell; before the first step, the
     /// values under `load`.
-    pub fn peaks(&self, load: Load<Q>) -> Cow<'_, Falling<Q>> {
+    pub fn peaks(&self, load: Load<Q>) -> Cow<'_, Falling> {
         let mut peaks = Cow::Borrowed(&self.peaks);
         if self.is_at_start(load) {
             peaks.to_mut().see_instant(&self.engine.sample(load));

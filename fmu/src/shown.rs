@@ -1,20 +1,19 @@
 //! The values of all Reals that are computed, at an instant.
 
-use crate::masses::Masses;
 use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::variables::Source;
+use rocking::engine::Moves;
 use rocking::engine::piece::Sample;
+use rocking::run::peaks::{Peak, Peaking};
 use rocking::{Load, Reactions, State};
 use std::cell::OnceCell;
 
 /// The values of a scene under a load.
-pub struct Shown<'a, Q: Masses = f64> {
+pub struct Shown<'a, Q: Moves = f64> {
     pub scene: &'a Scene<Q>,
     pub setup: &'a Setup,
     pub load: Load<Q>,
-    /// The outputs.
-    pub outputs: Q::Outputs,
     /// Computed when they are first asked for, as the next.
     reactions: OnceCell<Reactions>,
     /// Derivatives of the states.
@@ -22,11 +21,11 @@ pub struct Shown<'a, Q: Masses = f64> {
     sample: OnceCell<Sample<'a, Q>>,
 }
 
-impl<'a, Q: Masses> Shown<'a, Q> {
-    /// The values of `scene`, which follows `setup` and has these `outputs`, under `load`.
-    pub fn new(scene: &'a Scene<Q>, setup: &'a Setup, load: Load<Q>, outputs: Q::Outputs) -> Shown<'a, Q> {
+impl<'a, Q: Moves> Shown<'a, Q> {
+    /// The values of `scene`, which follows `setup`, under `load`.
+    pub fn new(scene: &'a Scene<Q>, setup: &'a Setup, load: Load<Q>) -> Shown<'a, Q> {
         let (reactions, rates, sample) = Default::default();
-        Shown { scene, setup, load, outputs, reactions, rates, sample }
+        Shown { scene, setup, load, reactions, rates, sample }
     }
 
     /// The motion.
@@ -59,6 +58,11 @@ impl<'a, Q: Masses> Shown<'a, Q> {
     /// The value of a Real from `source`, if it is one that is computed.
     pub fn value(&self, source: Source) -> Option<f64> {
         let Shown { scene, setup, load, .. } = *self;
+        let structure = scene.engine.structure();
+        let peak = |of: Peaking| match setup.peaks && !scene.is_integrated_outside() {
+            true => scene.peaks(load).peaks().peak(of),
+            false => Some(Peak { magnitude: f64::NAN, time: f64::NAN }),
+        };
         Some(match source {
             Source::Reaction(of) => of(self.reactions()),
             Source::Indicator(which) => self.sample().event_indicators()[which],
@@ -78,7 +82,14 @@ impl<'a, Q: Masses> Shown<'a, Q> {
             Source::Overturning => scene.overturned_at().unwrap_or(setup.start_time),
             Source::Time => scene.engine.motion().time,
             Source::RecordDuration => scene.record_duration(),
-            source => return Q::own(source, self),
+            Source::Output(of) => scene.engine.output(of, load),
+            Source::Coordinate(which) => scene.components(&scene.engine.motion().state)[which],
+            Source::StateRate(which) => scene.components(self.state_rates())[which],
+            Source::Peak(of) => peak(of)?.magnitude,
+            Source::PeakInstant(of) => peak(of)?.time,
+            Source::Derived(derived) => (derived.value)(structure.one()?),
+            Source::Known(value) => value,
+            _ => return None,
         })
     }
 }

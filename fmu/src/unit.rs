@@ -4,7 +4,6 @@ use crate::advance::Told;
 use crate::failure::Refusal;
 use crate::ground::{Digest, Kept};
 use crate::inputs::Inputs;
-use crate::masses::Masses;
 use crate::motion_log::{log, warn, warn_of_stairs};
 use crate::resources::{Archive, Contents};
 use crate::scene::{Outside, Scene};
@@ -16,6 +15,7 @@ use fmi_unit::snapshot::write_state;
 use fmi_unit::variables::state_references;
 use fmi_unit::{Completed, Experiment, Failure, Interface, Logger, Model, Progress, Step, Update, Value, Variable};
 use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::engine::Moves;
 use rocking::run::fall::Falling;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::validity::{Findings, of_structure};
@@ -25,7 +25,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// An instance between two calls, whose structure has the lateral coordinates `Q`.
-pub struct Unit<Q: Masses = f64> {
+pub struct Unit<Q: Moves = f64> {
     pub(crate) table: Table,
     archive: Archive,
     pub(crate) setup: Setup,
@@ -46,7 +46,7 @@ pub type Condition<Q> = (Setup, Inputs, Option<Course<Q>>);
 /// How far a simulation has come.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
-pub struct Course<Q: Masses = f64> {
+pub struct Course<Q: Moves = f64> {
     /// The motion; the host's, if the host integrates.
     pub motion: Motion<Q>,
     /// The knowledge beside the motion, if the host integrates.
@@ -54,18 +54,19 @@ pub struct Course<Q: Masses = f64> {
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     /// Peaks so far, if they are watched.
-    pub peaks: Falling<Q>,
+    pub peaks: Falling,
     /// Which limits of the model have been passed so far, if they are watched.
     pub validity: Findings,
     /// Names the record that the ground follows.
     pub record: Option<Digest>,
 }
 
-impl<Q: Masses> Unit<Q> {
+impl<Q: Moves> Unit<Q> {
     /// An instance just instantiated from `archive`.
     pub fn new(archive: Archive) -> Unit<Q> {
         let (table, setup) = (Table::new(&archive.contents), Setup::new(&archive.contents));
-        let (inputs, has_started, kept, told_of_stairs) = (Q::inputs(&archive.contents), false, None, false);
+        let (inputs, has_started, kept, told_of_stairs) =
+            (Inputs::new(&archive.contents.structure), false, None, false);
         Unit { table, archive, setup, inputs, scene: None, has_started, kept, told_of_stairs }
     }
 
@@ -140,7 +141,7 @@ fn integer(count: u64) -> Value {
 /// The value of a real number that is no output: one that is `shown`, or set.
 #[cold]
 #[inline(never)]
-fn other<Q: Masses>(shown: &Shown<Q>, inputs: &Inputs, source: Source) -> f64 {
+fn other<Q: Moves>(shown: &Shown<Q>, inputs: &Inputs, source: Source) -> f64 {
     shown.value(source).unwrap_or_else(|| setting(shown.setup, inputs, source))
 }
 
@@ -152,7 +153,7 @@ fn setting(setup: &Setup, inputs: &Inputs, source: Source) -> f64 {
     }
 }
 
-impl<Q: Masses> Model for Unit<Q> {
+impl<Q: Moves> Model for Unit<Q> {
     fn open(resources: &Path) -> Result<Unit<Q>, Failure> {
         Ok(Unit::new(Archive::open(resources.to_owned()).map_err(Refusal::from)?))
     }
@@ -200,18 +201,15 @@ impl<Q: Masses> Model for Unit<Q> {
             unreachable!("it is built")
         };
         let load = scene.load(setup, inputs.values::<Q>(scene.engine.structure()).into()).value;
-        let outputs = Q::outputs(&scene.engine, load);
-        let (mut shown, sources): (_, &[Source]) = (None, sources);
+        let (mut outputs, mut shown, sources): (_, _, &[Source]) = (None, None, sources);
         for (reference, value) in references.iter().zip(values) {
             let source = &sources[*reference as usize];
-            *value = match Q::output(source, &outputs) {
-                Some(output) => output,
-                None => {
-                    let shown = shown.get_or_insert_with(|| Shown::new(scene, setup, load, outputs));
-                    other(shown, inputs, *source)
-                }
+            *value = match source {
+                Source::Output(of) => outputs.get_or_insert_with(|| scene.engine.outputs(load))(*of),
+                _ => other(shown.get_or_insert_with(|| Shown::new(scene, setup, load)), inputs, *source),
             };
         }
+        drop(outputs);
         let Some(shown) = shown else { return Ok(()) };
         let Some(reference) = shown.unsolved(references, sources) else { return Ok(()) };
         Err(Refusal::NoReaction { name: self.name(reference), time: self.time()? }.into())
@@ -308,7 +306,8 @@ impl<Q: Masses> Model for Unit<Q> {
             scene.set(|settings| settings.stops = stops)?;
         }
         let known = setup.validity.then_some(scene.validity);
-        let told: &mut Told<Q> = &mut |transition| log(logger, transition);
+        let structure = scene.engine.structure().clone();
+        let told: &mut Told<Q> = &mut |transition| log(logger, &structure, transition);
         let result = if stops {
             scene.advance_to_transition(setup, step, load, told)
         } else {
@@ -344,7 +343,8 @@ impl<Q: Masses> Model for Unit<Q> {
         }
         let known = setup.validity.then_some(scene.validity);
         let load = inputs.values(scene.engine.structure());
-        scene.transit(setup, load, &mut |transition| log(logger, transition));
+        let structure = scene.engine.structure().clone();
+        scene.transit(setup, load, &mut |transition| log(logger, &structure, transition));
         known.iter().for_each(|known| warn(logger, known, &scene.validity));
         Ok(Update::default())
     }
@@ -416,7 +416,7 @@ impl<Q: Masses> Model for Unit<Q> {
 
     fn states(&mut self) -> Result<Vec<f64>, Failure> {
         let scene = self.scene()?;
-        Ok(Q::components(&scene.engine.motion().state, scene.lateral))
+        Ok(scene.components(&scene.engine.motion().state))
     }
 
     fn set_states(&mut self, states: &[f64]) -> Result<(), Failure> {
@@ -429,7 +429,7 @@ impl<Q: Masses> Model for Unit<Q> {
 
     fn nominals(&mut self) -> Result<Vec<f64>, Failure> {
         let scene = self.scene()?;
-        Ok(Q::components(&scene.engine.structure().usual(), scene.lateral))
+        Ok(scene.components(&scene.engine.structure().usual()))
     }
 
     fn state_rates(&mut self) -> Result<Vec<f64>, Failure> {
@@ -439,7 +439,7 @@ impl<Q: Masses> Model for Unit<Q> {
             let &Motion { time, state: State { u, theta, .. }, .. } = scene.engine.motion();
             return Err(Refusal::NoStateRates { time, u: u.total(), theta }.into());
         }
-        Ok(Q::components(&rates, scene.lateral))
+        Ok(scene.components(&rates))
     }
 
     fn indicators(&mut self) -> Result<Vec<f64>, Failure> {

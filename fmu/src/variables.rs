@@ -10,12 +10,12 @@ use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::mechanics::state::{COMPONENTS, INITIAL_VALUES};
 use rocking::run::ground_motion::{PLACEMENT, Placement};
 use rocking::run::outside_step::INDICATORS;
-use rocking::run::peaks::Peaks;
+use rocking::run::peaks::Peaking;
 use rocking::run::validity::{ASSUMPTIONS, Assumption};
 use rocking::structure::derived::{DERIVED, Derived};
 use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::Quantity;
-use rocking::{Detail, Impulse, Outputs, Parameters, Phase, Reactions, Side, State};
+use rocking::{Detail, Impulse, Output, Parameters, Phase, Reactions, Side, State, Structure};
 use rocking_records::LAYOUTS;
 use std::borrow::Cow;
 use std::sync::{Arc, LazyLock};
@@ -26,9 +26,7 @@ use std::sync::{Arc, LazyLock};
 pub enum Source {
     /// By its place among the inputs.
     Input(usize),
-    Output(fn(&Outputs) -> f64),
-    /// An output of many masses, by its place in [`FrameOutput::all`](rocking::FrameOutput::all).
-    Floor(usize),
+    Output(Output),
     Reaction(fn(&Reactions) -> f64),
     /// A state of many masses, by its place.
     Coordinate(usize),
@@ -51,10 +49,8 @@ pub enum Source {
     Detail,
     /// A ground acceleration, the input and the record; whether it is the vertical one.
     Ground(bool),
-    Peak(fn(&Peaks) -> f64),
-    /// A peak of many masses, by its place in [`Profile::peaks`](rocking::run::profile::Profile::peaks).
-    FloorPeak(usize),
-    FloorPeakInstant(usize),
+    Peak(Peaking),
+    PeakInstant(Peaking),
     /// The worst value of one of [`ASSUMPTIONS`].
     Worst(usize),
     /// The instant of the worst value of one of [`ASSUMPTIONS`].
@@ -201,7 +197,7 @@ impl Table {
             .chain(locals())
             .chain(state_rates())
             .chain(event_indicators())
-            .chain(peaks())
+            .chain(peaks(&contents.structure))
             .chain(validity())
             .chain(const { &PARAMETERS }.iter().map(|quantity| fixed(quantity, Source::Parameter(quantity))))
             .chain([parameter("detail", DETAILS.description, DataType::Enumeration(&DETAILS), Source::Detail)])
@@ -309,24 +305,24 @@ fn outputs() -> Vec<Row> {
     let moment = "m H a_t, the overturning moment if F_t is 0 (Eqs 3, 24)";
     let first = "force of the dissipators at +xi_d, viscous plus elastoplastic; tension is positive";
     vec![
-        state(of_state("theta", "rad", turned, |o| o.theta, &[]), "theta_0"),
-        state(of_state("u", "m", elastic, |o| o.u, &[]), "u_0"),
-        of_state("a_t", "m/s2", "acceleration of the top mass, ground included (Eq 27)", |o| o.a_t, ACCELERATION),
-        of_state("V_t", "N", shear, |o| o.V_t, &["m", "a_t"]),
-        of_state("M_t", "N.m", moment, |o| o.M_t, &["m", "H", "a_t"]),
-        of_state("uplift", "m", "height of the free edge of the base (Eq 25)", |o| o.uplift, &["theta", "B"]),
+        state(of_state("theta", "rad", turned, Output::theta, &[]), "theta_0"),
+        state(of_state("u", "m", elastic, Output::u(0), &[]), "u_0"),
+        of_state("a_t", "m/s2", "acceleration of the top mass, ground included (Eq 27)", Output::a_t(0), ACCELERATION),
+        of_state("V_t", "N", shear, Output::V_t, &["m", "a_t"]),
+        of_state("M_t", "N.m", moment, Output::M_t, &["m", "H", "a_t"]),
+        of_state("uplift", "m", "height of the free edge of the base (Eq 25)", Output::uplift, &["theta", "B"]),
         of_state(
             "delta_t",
             "m",
             "lateral displacement of the top mass (Eq 26)",
-            |o| o.delta_t,
+            Output::delta_t(0),
             &["u", "theta", "H", "B"],
         ),
         of_state(
             "v_t",
             "m/s",
             "lateral velocity of the top mass relative to the ground",
-            |o| o.v_t,
+            Output::v_t(0),
             &["u", "u_dot", "theta", "theta_dot", "H", "B"],
         ),
         reaction("R_h", "N", "horizontal force on the ground, positive to the right", |r| r.R_h),
@@ -345,7 +341,7 @@ fn outputs() -> Vec<Row> {
 fn locals() -> Vec<Row> {
     const PLASTIC: &[&str] = &["B", "theta_0", "xi_d", "k_d", "F_y"];
     let kept = |name, unit, description, of, from| local([name, unit, description], Source::Dissipator(of), from);
-    let (turning, swaying) = (Source::Output(|o| o.theta_dot), Source::Output(|o| o.u_dot));
+    let (turning, swaying) = (Source::Output(Output::theta_dot), Source::Output(Output::u_dot(0)));
     let ground = |name, description, is_vertical, input, record| {
         let placed = ["record_scale", "record_time_scale", "record_start", "g", "time"];
         local([name, "m/s2", description], Source::Ground(is_vertical), &[&[input, record][..], &placed].concat())
@@ -416,32 +412,26 @@ fn event_indicators() -> [Row; INDICATORS] {
     ]
 }
 
-/// Largest magnitudes and their instants.
-fn peaks() -> Vec<Row> {
-    let peak = |name, unit, description, of| local([name, unit, description], Source::Peak(of), &[]);
-    macro_rules! peaks {
-        ($($name:ident $unit:literal)*) => {
-            vec![$(
-                peak(
-                    concat!(stringify!($name), "_max"),
-                    $unit,
-                    concat!(
-                        "largest |",
-                        stringify!($name),
-                        "| since startTime, exact, also between communication points, without the fall if the structure overturns; NaN unless peaks is true"
-                    ),
-                    |peaks| peaks.$name().magnitude,
-                ),
-                peak(
-                    concat!("t_", stringify!($name), "_max"),
-                    "s",
-                    concat!("first instant of ", stringify!($name), "_max; NaN unless peaks is true"),
-                    |peaks| peaks.$name().time,
-                ),
-            )*]
-        };
+/// Largest magnitudes and their instants. One mass may have a tendon.
+fn peaks(structure: &Structure) -> Vec<Row> {
+    let mut all: Vec<_> = Peaking::of(structure).collect();
+    if structure.one().is_some() && !all.contains(&Peaking::Tendon) {
+        all.push(Peaking::Tendon);
     }
-    peaks!(theta "rad" u "m" delta_t "m" uplift "m" a_t "m/s2" V_t "N" M_t "N.m" P_t "N")
+    let rows = all.into_iter().flat_map(|of| {
+        let (symbol, name) = (of.symbol(), of.name(structure));
+        let peak = name.replacen(symbol, &format!("{symbol}_max"), 1);
+        let magnitude = format!(
+            "largest |{name}| since startTime, exact, also between communication points, without the fall if the structure \
+             overturns; NaN unless peaks is true"
+        );
+        let instant = format!("first instant of {peak}; NaN unless peaks is true");
+        [
+            (Variable::real(Causality::Local, peak.clone(), of.unit(), magnitude), Source::Peak(of)),
+            (Variable::real(Causality::Local, format!("t_{peak}"), "s", instant), Source::PeakInstant(of)),
+        ]
+    });
+    rows.collect()
 }
 
 /// The limits that the motion passes.

@@ -6,13 +6,13 @@ mod host;
 mod hostile;
 
 use FlexibleRocking::any::AnyUnit as Model;
-use FlexibleRocking::masses::Masses;
 use FlexibleRocking::{fmi2, fmi3};
 use fmi_unit::snapshot::Snapshot;
 use fmi_unit::state_machine::Stage;
 use hostile::{Subject, hostile_calls};
 use rocking::Modes;
 use rocking::engine::MAX_STEPS_PER_ADVANCE;
+use rocking::engine::Moves;
 use rocking::run::validity::ASSUMPTIONS;
 use std::ffi::CString;
 use std::fs;
@@ -39,12 +39,12 @@ fn many_masses() -> Subject {
     Subject { never_in: &[Stage::Error], ..subject::<Modes>(host::resources_of_many()) }
 }
 
-fn subject<Q: Masses>(resources: TempDir) -> Subject {
+fn subject<Q: Moves>(resources: TempDir) -> Subject {
     let texts = records(resources.path());
     Subject { texts, may_be_infinite, check_step: check_step::<Q>, ..Subject::of(resources, time::<Q>) }
 }
 
-fn time<Q: Masses>(snapshot: &Snapshot) -> f64 {
+fn time<Q: Moves>(snapshot: &Snapshot) -> f64 {
     let Some(course) = host::course::<Q>(snapshot) else { return 0.0 };
     course.outside.map_or(course.motion.time, |outside| outside.known.motion.time)
 }
@@ -55,7 +55,7 @@ fn may_be_infinite(name: &str) -> bool {
 }
 
 /// The work is bounded.
-fn check_step<Q: Masses>(before: &Snapshot, after: &Snapshot) {
+fn check_step<Q: Moves>(before: &Snapshot, after: &Snapshot) {
     let [before, after] = [before, after].map(|of| host::course::<Q>(of).unwrap().motion.work.steps);
     assert!(after - before <= MAX_STEPS_PER_ADVANCE, "{} steps", after - before);
 }

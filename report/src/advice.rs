@@ -2,10 +2,10 @@
 
 use crate::estimate::Estimate;
 use crate::quantities::{Number, of_motion};
-use crate::run::{NamedPeak, OneOrMany, Run, symbol, with};
+use crate::run::{NamedPeak, Run, symbol, with};
 use rocking::Detail;
 use rocking::digits::{short, significant};
-use rocking::engine::{DEFAULT_TOLERANCE, motion::Work};
+use rocking::engine::{DEFAULT_TOLERANCE, Moves, motion::Work};
 use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::run::levels::{self, Choice, Criterion, REFERENCE_TOLERANCE, RULE, Response, Verdict};
@@ -66,10 +66,10 @@ pub struct Level {
 }
 
 /// All levels of detail on `run`, each beside the reference.
-fn compare<Q: OneOrMany>(run: &rocking::Run<Q>, (within, criteria): (f64, &[Criterion])) -> Result<Advice, RunError> {
+fn compare<Q: Moves>(run: &rocking::Run<Q>, (within, criteria): (f64, &[Criterion])) -> Result<Advice, RunError> {
     let all = levels::compare(run)?;
     let advised = all.recommended(within, criteria).map(|verdict| verdict.response.choice);
-    let level = |level, response: &Response<Q>, errors, is_right_about_overturning, is_allowed| Level {
+    let level = |level, response: &Response, errors, is_right_about_overturning, is_allowed| Level {
         level,
         modes: response.choice.modes.map(|[kept, _]| kept),
         errors,
@@ -78,15 +78,15 @@ fn compare<Q: OneOrMany>(run: &rocking::Run<Q>, (within, criteria): (f64, &[Crit
         work: response.work,
         cost: all.cost_over_auto(response),
         advised: false,
-        peaks: Q::peaks(&run.structure, &response.peaks),
+        peaks: NamedPeak::all(&run.structure, &response.peaks),
         choice: response.choice,
         transitions: response.transitions,
         is_allowed,
     };
-    let beside = |name, of: &Verdict<Q>| {
+    let beside = |name, of: &Verdict| {
         level(name, &of.response, of.errors, of.is_right_about_overturning, of.is_within(within, criteria))
     };
-    let of = |verdict: &Verdict<Q>| {
+    let of = |verdict: &Verdict| {
         let choice = verdict.response.choice;
         Level { advised: advised == Some(choice), ..beside(choice.detail.name(), verdict) }
     };

@@ -2,20 +2,16 @@
 
 use crate::tables::{TIES, line};
 use anyhow::ensure;
+use rocking::engine::Moves;
 use rocking::engine::motion::Work;
-use rocking::engine::piece::Sample;
 use rocking::estimates::response_spectrum::floor_spectrum;
-use rocking::mechanics::outputs::OUTPUTS;
 use rocking::mechanics::restraint::Dissipators;
-use rocking::run::curve::{self, Drawn};
-use rocking::run::peaks::{self, Peak, Peaks};
-use rocking::run::profile::Profile;
+use rocking::run::curve;
+use rocking::run::peaks::{Peak, Peaking, Peaks};
 use rocking::run::record::Record;
-use rocking::run::validity::{self, Findings, Judged, Limits};
+use rocking::run::validity::{self, Findings, Limits};
 use rocking::run::{End, Ending, Finish, RunError, fall};
-use rocking::{
-    FrameOutput, Modes, Outputs, Phase, Run as Follow, Side, State, Structure, Ties, Transition, TransitionKind, Watch,
-};
+use rocking::{Modes, Output, Phase, Run as Follow, Side, State, Structure, Ties, Transition, TransitionKind, Watch};
 use rocking_sweep::plan::Conditions;
 use serde::Serialize;
 use std::sync::Arc;
@@ -153,80 +149,6 @@ pub trait Watcher: Watch<f64> + Watch<Modes> + Clone {
 
 impl Watcher for () {}
 
-/// Lateral coordinates of one mass or of many: all that differs between their runs.
-pub(crate) trait OneOrMany: Judged + Drawn {
-    /// Values of the outputs, in the order of [`Run::outputs`].
-    fn values(structure: &Structure, sample: &Sample<Self>) -> Vec<f64>;
-
-    /// Acceleration of a floor along the turning e_x, m/s². Floors count from 0.
-    fn acceleration(sample: &Sample<Self>, floor: usize) -> f64;
-
-    /// The elastic displacements and velocities of a state.
-    fn displaced(structure: &Structure, state: &State<Self>) -> Vec<f64>;
-
-    /// The peaks of the structure.
-    fn peaks(structure: &Structure, peaks: &Self::Peaks) -> Vec<NamedPeak>;
-
-    /// Right-hand-side evaluations that the search for the peaks took, if it counts them.
-    fn evaluations(peaks: &Self::Peaks) -> Option<u64>;
-
-    /// The drawn output at the place `which` of [`Run::drawn`].
-    fn drawn(outputs: &Self::Outputs, which: usize) -> f64;
-}
-
-impl OneOrMany for f64 {
-    fn values(_: &Structure, sample: &Sample) -> Vec<f64> {
-        sample.outputs().values().to_vec()
-    }
-
-    fn acceleration(sample: &Sample, _: usize) -> f64 {
-        sample.outputs().a_t
-    }
-
-    fn displaced(_: &Structure, state: &State) -> Vec<f64> {
-        vec![state.u, state.u_dot]
-    }
-
-    fn peaks(structure: &Structure, peaks: &Peaks) -> Vec<NamedPeak> {
-        peaks::of(structure).map(|of| NamedPeak::new(of.name, of.unit, of.of(peaks))).collect()
-    }
-
-    fn evaluations(peaks: &Peaks) -> Option<u64> {
-        Some(peaks.evaluations())
-    }
-
-    fn drawn(outputs: &Outputs, which: usize) -> f64 {
-        [outputs.theta, outputs.u, outputs.a_t, outputs.delta_t][which]
-    }
-}
-
-impl OneOrMany for Modes {
-    fn values(frame: &Structure, sample: &Sample<Modes>) -> Vec<f64> {
-        FrameOutput::all(frame).map(sample.outputs()).collect()
-    }
-
-    fn acceleration(sample: &Sample<Modes>, floor: usize) -> f64 {
-        sample.output(FrameOutput::a_t(floor))
-    }
-
-    fn displaced(frame: &Structure, state: &State<Modes>) -> Vec<f64> {
-        let of = |part| frame.floors().iter().map(move |floor| floor.displacement(part));
-        of(&state.u).chain(of(&state.u_dot)).collect()
-    }
-
-    fn peaks(_: &Structure, peaks: &Profile) -> Vec<NamedPeak> {
-        peaks.peaks().map(|(of, peak)| NamedPeak::new(of.name(), of.unit(), peak)).collect()
-    }
-
-    fn evaluations(_: &Profile) -> Option<u64> {
-        None
-    }
-
-    fn drawn(outputs: &Vec<f64>, which: usize) -> f64 {
-        outputs[which]
-    }
-}
-
 /// `$do` with `$follow`, the library's run of one mass or of many.
 macro_rules! with {
     ($run:expr, $follow:ident => $do:expr) => {
@@ -274,8 +196,8 @@ impl Run {
         watch: &mut impl Watcher,
     ) -> Result<(), RunError> {
         with!(self, run => {
-            let run = Follow { end: end.map_or(run.end, End::At), ..run };
-            run.sample(times, |sample| show(line(sample, OneOrMany::values(&run.structure, sample))), watch).map(|_| ())
+            let (outputs, run) = (Output::all(&self.structure), Follow { end: end.map_or(run.end, End::At), ..run });
+            run.sample(times, |sample| show(line(sample, outputs.iter().copied().map(sample.outputs()).collect())), watch).map(|_| ())
         })
     }
 
@@ -322,21 +244,18 @@ impl Run {
         let end = found.fall.unwrap_or(found.end);
         ensure!(end > found.start, "the structure falls from its start on: its floors have no spectrum");
         with!(self, run => {
-            Ok(floor_spectrum(&run, end, |sample| OneOrMany::acceleration(sample, floor), periods, zeta, watch)?)
+            Ok(floor_spectrum(&run, end, |sample| sample.output(Output::a_t(floor)), periods, zeta, watch)?)
         })
     }
 
     /// The run as points between which θ, u and a_t of each floor leave straight lines by at most `part` of their peaks.
     pub fn curve(&self, part: f64) -> Result<Curve, RunError> {
-        with!(self, run => curve(self, &run, part))
+        with!(self, run => curve(&run, part))
     }
 
     /// The outputs.
     pub fn outputs(&self) -> Vec<Named> {
-        match self.structure.one() {
-            Some(_) => OUTPUTS.iter().map(|output| (output.name.into(), output.unit)).collect(),
-            None => FrameOutput::all(&self.structure).map(|of| (of.name(), of.unit())).collect(),
-        }
+        Output::all(&self.structure).into_iter().map(|of| (of.name(&self.structure), of.unit())).collect()
     }
 
     /// The components of a state: elastic displacements and velocities, then rotation and angular velocity.
@@ -344,14 +263,6 @@ impl Run {
         let is_of_strut = |(name, _): &Named| matches!(symbol(name), "u" | "u_dot");
         let of_base = [("theta".to_owned(), "rad"), ("theta_dot".to_owned(), "rad/s")];
         self.outputs().into_iter().filter(is_of_strut).chain(of_base).collect()
-    }
-
-    /// The names of the outputs that are drawn.
-    fn drawn(&self) -> Vec<String> {
-        match self.structure.one() {
-            Some(_) => ["theta", "u", "a_t", "delta_t"].map(str::to_owned).into(),
-            None => curve::drawn(&self.structure).map(FrameOutput::name).collect(),
-        }
     }
 
     /// The peaks of each floor from below, in the order of [`OF_FLOOR`]. One mass is a floor.
@@ -386,6 +297,12 @@ impl Found {
 }
 
 impl NamedPeak {
+    /// The `peaks` of `structure`.
+    pub(crate) fn all(structure: &Structure, peaks: &Peaks) -> Vec<NamedPeak> {
+        let peak = |of: Peaking| Some(NamedPeak::new(of.name(structure), of.unit(), peaks.peak(of)?));
+        Peaking::of(structure).filter_map(peak).collect()
+    }
+
     fn new(name: impl Into<String>, unit: &'static str, Peak { magnitude, time }: Peak) -> NamedPeak {
         NamedPeak { name: name.into(), magnitude, unit, time }
     }
@@ -397,7 +314,7 @@ pub(crate) fn symbol(name: &str) -> &str {
 }
 
 /// The results of `run`.
-fn found<Q: OneOrMany>(run: &Follow<Q>, limits: Option<Limits>, watch: &mut impl Watch<Q>) -> Result<Found, RunError> {
+fn found<Q: Moves>(run: &Follow<Q>, limits: Option<Limits>, watch: &mut impl Watch<Q>) -> Result<Found, RunError> {
     let mut transitions = Vec::new();
     let mut see = |transition: &Transition<Q>| transitions.push(*transition);
     let mut validity = limits.map(|limits| run.validity_watch(limits)).transpose()?;
@@ -408,9 +325,10 @@ fn found<Q: OneOrMany>(run: &Follow<Q>, limits: Option<Limits>, watch: &mut impl
     Ok(Found { findings: validity.map(|of| *of.found()), ..results(&run.structure, &found, &transitions) })
 }
 
-fn results<Q: OneOrMany>(structure: &Structure, found: &fall::Found<Q>, transitions: &[Transition<Q>]) -> Found {
+fn results<Q: Moves>(structure: &Structure, found: &fall::Found<Q>, transitions: &[Transition<Q>]) -> Found {
     let &fall::Found { ground, ref peaks, fall, start, finish: Finish { ending, ref motion } } = found;
-    let state = |of: &State<Q>| [&Q::displaced(structure, of)[..], &[of.theta, of.theta_dot]].concat();
+    let floors = |of: &Q| Vec::from_iter(structure.floors().iter().map(|floor| floor.displacement(of)));
+    let state = |of: &State<Q>| [floors(&of.u), floors(&of.u_dot), vec![of.theta, of.theta_dot]].concat();
     let event = |of: &Transition<Q>| Event { time: of.time, kind: of.kind, states: [&of.before, &of.after].map(state) };
     let first = |is_meant: fn(&TransitionKind) -> bool| {
         transitions.iter().find(|transition| is_meant(&transition.kind)).map(|transition| transition.time)
@@ -424,7 +342,7 @@ fn results<Q: OneOrMany>(structure: &Structure, found: &fall::Found<Q>, transiti
         ending,
         overturned: ending.overturned(),
         fall,
-        peaks: [NamedPeak::new("a_g", "m/s2", ground)].into_iter().chain(Q::peaks(structure, peaks)).collect(),
+        peaks: [NamedPeak::new("a_g", "m/s2", ground)].into_iter().chain(NamedPeak::all(structure, peaks)).collect(),
         taken: (c_d > 0.0 || k_d > 0.0).then_some(taken),
         first_uplift: first(|kind| matches!(kind, TransitionKind::Uplift(_))),
         first_impact: first(|kind| {
@@ -434,18 +352,18 @@ fn results<Q: OneOrMany>(structure: &Structure, found: &fall::Found<Q>, transiti
         work: motion.work,
         events: transitions.iter().map(event).collect(),
         phase: motion.phase,
-        for_peaks: Q::evaluations(peaks),
+        for_peaks: structure.one().map(|_| peaks.evaluations()),
         findings: None,
     }
 }
 
-fn curve<Q: OneOrMany>(of: &Run, run: &Follow<Q>, part: f64) -> Result<Curve, RunError> {
+fn curve<Q: Moves>(run: &Follow<Q>, part: f64) -> Result<Curve, RunError> {
     let curve::Curve { points, transitions, found } = run.curve(part)?;
     let mut columns = vec![("a_g".to_owned(), points.iter().map(|at| at.a_g).collect())];
-    for (i, name) in of.drawn().into_iter().enumerate() {
-        columns.push((name, points.iter().map(|at| Q::drawn(&at.outputs, i)).collect()));
+    for (i, output) in curve::drawn(&run.structure).into_iter().enumerate() {
+        columns.push((output.name(&run.structure), points.iter().map(|at| at.outputs[i]).collect()));
     }
-    if of.structure.base().is_restrained() {
+    if run.structure.base().is_restrained() {
         let tie = |(name, force): &(&str, fn(&_) -> f64)| {
             ((*name).to_owned(), points.iter().map(|at| force(&at.restraints)).collect())
         };

@@ -1,5 +1,6 @@
 //! The tables of a run: the response and its transitions.
-use crate::run::{Event, Line, Named, OneOrMany, Run};
+use crate::run::{Event, Line, Named, Run};
+use rocking::engine::Moves;
 use rocking::engine::piece::Sample;
 use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::{Impulse, Reactions};
@@ -30,7 +31,7 @@ const AFTER: [(&str, &str); 14] = [
 ];
 
 /// A line of the response, in the order of [`Run::headings`], with these values of the `outputs`.
-pub(crate) fn line<Q: OneOrMany>(sample: &Sample<Q>, outputs: Vec<f64>) -> Line {
+pub(crate) fn line<Q: Moves>(sample: &Sample<Q>, outputs: Vec<f64>) -> Line {
     let Sample { motion, load, .. } = sample;
     let Reactions { R_h, R_v, R_m } = sample.reactions();
     let Impulse { I_h, I_v, I_m } = motion.impulse;

@@ -3,13 +3,13 @@
 use super::{Advance, AdvanceError, Engine, Loop, MAX_STEPS_PER_ADVANCE, Progress, Settings, is_at_its_end, leapt};
 use crate::engine::motion::Motion;
 use crate::engine::phases;
-use crate::engine::piece::{Piece, Watch};
+use crate::engine::piece::{Piece, Watch, magnitudes};
 use crate::levels::detail::AnyLevel;
-use crate::levels::level::Level;
+use crate::levels::level::{Level, most_of_swings};
 use crate::levels::nonlinear::lanes::{RockingStep, Stepped};
-use crate::levels::shown::Searched;
+use crate::mechanics::reach::Magnitudes;
 use crate::series::taylor::{Arc, Start};
-use crate::{LinearLoad, Phase, State};
+use crate::{LinearLoad, Phase, State, Structure};
 
 /// A step that an engine is about to take, of which only the end and bounds are known.
 #[derive(Clone, Copy, Debug)]
@@ -24,11 +24,12 @@ pub(crate) struct Bounded<'a> {
 }
 
 impl Bounded<'_> {
-    /// Bounds of the magnitudes of the searched outputs.
+    /// The structure, and bounds of the magnitudes.
     #[inline]
-    pub(crate) fn outputs(&self) -> Searched<f64> {
+    pub(crate) fn bounds(&self) -> (&Structure, Magnitudes<'static, f64>) {
         let Engine { level, motion, .. } = self.engine;
-        level.most(motion.phase, [0.0, self.duration].map(|tau| self.load.at(tau)), &self.most)
+        let loads = [0.0, self.duration].map(|tau| self.load.at(tau));
+        (level.structure(), magnitudes(level.structure(), motion.phase, loads, self.most))
     }
 
     /// Instants (s) and ground accelerations of the ends.
@@ -61,11 +62,11 @@ impl Engine {
             return false;
         }
         let start = level.subject().start(motion.state, &motion.dissipators, load, interval);
-        let Some((end, rates)) = level.bounded_leap(&start) else { return false };
+        let Some((end, swings)) = level.bounded_leap(&start) else { return false };
         if !end.is_finite() {
             return false;
         }
-        let most = rates.most(&start, &end);
+        let most = most_of_swings(level.structure(), &start, &end, &swings);
         if watch.passes(&Bounded { engine: self, duration: interval, load, end, most }) {
             leapt((&*self.level, &self.room), &mut self.motion, interval, load, end, &mut ()).is_ok()
         } else {

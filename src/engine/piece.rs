@@ -8,19 +8,16 @@ use crate::engine::motion::Motion;
 use crate::engine::phases::{self, Step};
 use crate::engine::transition::Transition;
 use crate::levels::level::{Now, Subject};
-use crate::levels::shown::Searched;
-use crate::mechanics::floors::{FrameOutput, MotionOfFloors};
 use crate::mechanics::gauge::{Gauge, Reading};
-use crate::mechanics::instant::{Instant, Second, Strut};
-use crate::mechanics::lateral::{Lateral, Modes};
+use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::load::{LinearLoad, Load};
-use crate::mechanics::outputs::Measure;
+use crate::mechanics::outputs::Shows;
+use crate::mechanics::reach::Magnitudes;
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
-use crate::numbers::{Number, Turn};
-use crate::series::extremes::Bound;
+use crate::numbers::{Angle, Number, Turn};
 use crate::series::taylor::{Arc, Start, evaluate};
 use crate::series::terms::Terms;
-use crate::{Floor, Outputs, Phase, Reactions, State, Structure};
+use crate::{Modes, Output, Phase, Ramp, Reactions, State, Structure};
 use std::cell::{Cell, RefCell};
 use std::f64::consts::TAU;
 
@@ -89,6 +86,7 @@ impl<Q: Moves> Sample<'_, Q> {
         level.accelerations(motion.phase.in_motion(), &motion.under(*load))
     }
 
+    /// The structure at the instant, without θ̈.
     fn instant(&self) -> Instant<'_, f64, Q> {
         Instant::of(self.level.structure(), self.motion.phase.in_motion(), &self.motion.state, self.load)
     }
@@ -118,74 +116,33 @@ impl<Q: Moves> Sample<'_, Q> {
     }
 }
 
-impl Sample<'_> {
-    /// The outputs; once overturned, those of the instant before.
-    pub fn outputs(&self) -> Outputs {
-        self.level.outputs(self.motion.phase.in_motion(), &self.motion.under(self.load))
-    }
-}
-
-impl Sample<'_, Modes> {
+impl<Q: Moves> Sample<'_, Q> {
     /// The value of `output`; once overturned, the value of the instant before.
-    pub fn output(&self, output: FrameOutput) -> f64 {
-        output.of(&self.turning(output.has_feedthrough(self.level.structure())))
+    pub fn output(&self, output: Output) -> f64 {
+        output.of(&self.shown())
     }
 
     /// The values of outputs, of which each costs less than by [`Sample::output`].
-    pub fn outputs(&self) -> impl Fn(FrameOutput) -> f64 {
-        let turning = self.turning(self.level.structure().gauges().have_feedthrough());
-        move |output| output.of(&turning)
+    pub fn outputs(&self) -> impl Fn(Output) -> f64 {
+        let shown = self.shown();
+        move |output| output.of(&shown)
     }
 
-    /// The structure at the instant, with θ̈ if an output depends on θ̈.
-    fn turning(&self, needs_second: bool) -> Turning<'_, f64, Modes> {
-        let theta_ddot = if needs_second { self.second().theta_ddot } else { 0.0 };
-        Turning { x: self.instant(), theta_ddot }
+    pub(crate) fn shown(&self) -> Instant<'_, f64, Q> {
+        let Sample { motion, load, level } = self;
+        shown::<Q>(level, motion.phase.in_motion(), &motion.under(*load))
     }
 }
 
-/// A structure of many masses at an instant, with θ̈.
-pub(crate) struct Turning<'a, N: Number, Q: Lateral<N>> {
-    pub x: Instant<'a, N, Q>,
-    pub theta_ddot: N,
-}
-
-impl<N: Number, Q: Lateral<N>> MotionOfFloors<N> for Turning<'_, N, Q> {
-    fn frame(&self) -> &Structure {
-        self.x.structure
+/// The structure of `level` as outputs read it, with θ̈ if one of them needs it.
+#[inline]
+pub(crate) fn shown<'a, Q: Moves>(level: &'a Q::Level, phase: Phase, now: &Now<Q>) -> Instant<'a, f64, Q> {
+    let structure = &level.as_ref().structure;
+    let x = Instant::of(structure, phase, now.state, now.load);
+    if !structure.gauges().has_feedthrough {
+        return x;
     }
-
-    fn pivot(&self) -> f64 {
-        self.x.pivot()
-    }
-
-    fn theta(&self) -> N {
-        self.x.theta
-    }
-
-    fn theta_dot(&self) -> N {
-        self.x.theta_dot
-    }
-
-    fn turn(&self) -> Turn<N> {
-        self.x.turn
-    }
-
-    fn u(&self, floor: &Floor) -> N {
-        self.x.sum(|j, _| self.x.u.of(j) * floor.shape.of(j))
-    }
-
-    fn u_dot(&self, floor: &Floor) -> N {
-        self.x.sum(|j, _| self.x.u_dot.of(j) * floor.shape.of(j))
-    }
-
-    fn gauge(&self, gauge: &Gauge) -> N {
-        let &Turning { ref x, theta_ddot } = self;
-        let Strut::Elastic(damping) = x.strut else { unreachable!("the rigid limit has no mode") };
-        let (elastic, push) = (gauge.elastic(x.structure, damping, &x.u, &x.u_dot), gauge.push(x.structure, &x.F_t));
-        let &Instant { turn, theta_dot, a_g, a_v, .. } = x;
-        gauge.value(x.base(), x.s, &Reading { elastic, push, turn, theta_dot, theta_ddot, a_g, a_v })
-    }
+    Instant { theta_ddot: level.accelerations(phase, now).theta_ddot, ..x }
 }
 
 /// A series of an output that is off by less than this part of its terms at its end has converged.
@@ -226,7 +183,7 @@ impl<Q> Default for Room<Q> {
     }
 }
 
-impl<Q: Moves> Piece<'_, Q> {
+impl<'p, Q: Moves> Piece<'p, Q> {
     /// The whole piece as a part.
     #[inline]
     pub(crate) fn whole(&self) -> Part<'_, Q> {
@@ -238,10 +195,11 @@ impl<Q: Moves> Piece<'_, Q> {
         self.whole().arcs()
     }
 
-    /// The motion in `state`, `tau` seconds after the start of the piece, with the dissipators of the start.
-    pub(crate) fn in_state(&self, tau: f64, state: State<Q>) -> Sample<'_, Q> {
-        let &Piece { before, load, level, .. } = self;
-        Sample { motion: Motion { time: before.time + tau, state, ..*before }, load: load.at(tau), level }
+    /// The structure in `state`, `tau` seconds after the start of the piece, as outputs read it.
+    #[inline]
+    pub(crate) fn shown(&self, tau: f64, state: &State<Q>) -> Instant<'p, f64, Q> {
+        let now = Now { state, load: self.load.at(tau), dissipators: &self.before.dissipators };
+        shown::<Q>(self.level, self.before.phase, &now)
     }
 
     /// The state `tau` seconds after the start of the piece.
@@ -288,14 +246,6 @@ impl<Q: Moves> Piece<'_, Q> {
     }
 }
 
-impl Piece<'_> {
-    /// The outputs in `state`, `tau` seconds after the start of the piece.
-    pub(crate) fn outputs(&self, tau: f64, state: &State) -> Outputs {
-        let now = Now { state, load: self.load.at(tau), dissipators: &self.before.dissipators };
-        self.level.outputs(self.before.phase, &now)
-    }
-}
-
 /// A part of a piece.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Part<'a, Q: Moves = f64> {
@@ -311,7 +261,7 @@ impl<'a, Q: Moves> Part<'a, Q> {
     #[inline]
     pub(crate) fn step(&self) -> Start<'a, Q> {
         let Part { piece, start: (passed, state), end: (until, _) } = *self;
-        piece.level.subject().start(state, &piece.before.dissipators, piece.load.from(passed), until - passed)
+        piece.level.as_ref().start(state, &piece.before.dissipators, piece.load.from(passed), until - passed)
     }
 
     /// The motion of the part as polynomials, in order of time.
@@ -320,73 +270,56 @@ impl<'a, Q: Moves> Part<'a, Q> {
     }
 }
 
-impl<'a> Part<'a> {
-    /// The halves of the part, if the state between them is known without expanding the motion.
-    pub(crate) fn halves(&self) -> Option<[Part<'a>; 2]> {
-        let Part { piece, start, .. } = *self;
-        if piece.arc.is_some() {
-            return None;
-        }
-        let mut half = self.step();
-        half.interval *= 0.5;
-        let middle = piece.level.leap(piece.before.phase, &half)?;
-        let middle = (start.0 + half.interval, middle);
-        Some([Part { end: middle, ..*self }, Part { start: middle, ..*self }])
+impl<'a, Q: Moves> Part<'a, Q> {
+    /// Bounds of the magnitudes over this part.
+    pub(crate) fn most(&self) -> Magnitudes<'a, Q> {
+        let loads = [self.start.0, self.end.0].map(|tau| self.piece.load.at(tau));
+        self.most_under(&self.piece.level.as_ref().structure, loads)
     }
 
-    /// The outputs at both ends of the part, with seconds from the start of the piece.
-    pub(crate) fn ends(&self) -> [(f64, Outputs); 2] {
-        [self.start, self.end].map(|(tau, state)| (tau, self.piece.outputs(tau, &state)))
-    }
-
-    /// Bounds of the magnitudes of the searched outputs over this part.
-    pub(crate) fn bounds(&self) -> Searched<Bound> {
-        let Piece { level, before, load, arc, .. } = self.piece;
-        match arc {
-            Some(arc) => level.bounds(before.phase, *load, arc),
-            None => self.bounds_of_leap(),
-        }
-    }
-
-    /// Bounds of the same magnitudes that cost less.
-    pub(crate) fn crude_bounds(&self) -> Searched<f64> {
-        let &Piece { level, before, load, arc, .. } = self.piece;
-        if !level.has_strut() {
-            return self.bounds().map(|bound| bound.largest());
-        }
-        let end = &self.end.1;
-        let most = if let Some(arc) = arc {
-            State {
-                u: arc.most(&arc.u, end.u),
-                u_dot: arc.most(&arc.u_dot, end.u_dot),
-                theta: arc.most(&arc.theta, end.theta),
-                theta_dot: arc.most(&arc.theta_dot, end.theta_dot),
+    /// Bounds of the magnitudes over this part, with these `loads` at its ends.
+    #[inline(always)]
+    pub(crate) fn most_under(&self, structure: &Structure, loads: [Load<Q>; 2]) -> Magnitudes<'a, Q> {
+        let &Part { piece, start: (from, _), ref end } = self;
+        match piece.arc {
+            Some(arc) => Expansion { piece, from, arc }.most_under(structure, loads, &end.1),
+            None => {
+                let phase = piece.before.phase;
+                magnitudes(structure, phase, loads, piece.level.most(phase, &self.step(), &end.1))
             }
-        } else {
-            let start = self.step();
-            level.leap_bounds(before.phase, &start, end).most(&start, end)
-        };
-        level.most(before.phase, [self.start.0, self.end.0].map(|tau| load.at(tau)), &most)
+        }
     }
 
-    /// Bounds over a leap: a quantity whose second derivative is at most M over the time h stays within M h²/8 of its chord. It
-    /// does not turn round if its rate at the start exceeds M h.
-    fn bounds_of_leap(&self) -> Searched<Bound> {
-        let &Piece { level, before: &Motion { phase, .. }, load, .. } = self.piece;
-        let (step, end, load) = (self.step(), &self.end.1, load.from(self.start.0));
-        let h = step.interval;
-        let bends = level.bends(phase, load, h, &level.leap_bounds(phase, &step, end));
-        let [(_, first), (_, last)] = self.ends();
-        let now = Now { state: &step.state, load: load.value, dissipators: step.dissipators };
-        let rates = level.searched_rates(phase, &step.state, &level.accelerations(phase, &now), load);
-        std::array::from_fn(|i| {
-            let of = |outputs: &Outputs| Measure::SEARCHED[i].of(outputs).abs();
-            let ends = of(&first).max(of(&last));
-            let bend = bends[i].bend;
-            let between = (bend * h * h / 8.0).min((bends[i].value - ends).max(0.0));
-            let rate = rates[i].abs() * h;
-            Bound { ends, between, rate: [rate - bend * h * h, rate + bend * h * h] }
+    /// The motion at both ends.
+    pub(crate) fn samples(&self) -> [Sample<'a, Q>; 2] {
+        let Piece { before, load, level, .. } = *self.piece;
+        [self.start, self.end].map(|(tau, state)| Sample {
+            motion: Motion { time: before.time + tau, state, ..*before },
+            load: load.at(tau),
+            level,
         })
+    }
+}
+
+/// Bounds of the magnitudes between two instants with these `loads`, given bounds of the state.
+#[inline(always)]
+pub(crate) fn magnitudes<Q: Moves>(
+    structure: &Structure,
+    phase: Phase,
+    loads: [Load<Q>; 2],
+    State { u, u_dot, theta, theta_dot }: State<Q>,
+) -> Magnitudes<'static, Q> {
+    let largest = |of: [f64; 2]| of[0].abs().max(of[1].abs());
+    Magnitudes {
+        arc: None,
+        damping: structure.base().damping(phase),
+        u,
+        u_dot,
+        theta,
+        theta_dot,
+        a_g: largest(loads.map(|load| load.a_g)),
+        F_t: Q::each(structure, |j, _| largest(loads.map(|load| load.F_t.of(j)))),
+        a_v: largest(loads.map(|load| load.a_v)),
     }
 }
 
@@ -432,24 +365,13 @@ impl<Q: Moves> Drop for Arcs<'_, Q> {
     }
 }
 
-impl<'a> Arcs<'a, Modes> {
-    /// What is left of a leap in full contact, with bounds of |u|, |u̇|, |ü| and |u⃛| of the vibration about the motion that follows
-    /// the load.
-    pub(crate) fn rest(&self) -> Option<(Part<'a, Modes>, [Modes; 4])> {
-        let part = self.left?;
-        Some((part, part.piece.level.swings(part.piece.before.phase, &part.step())?))
+impl<'a, Q: Moves> Arcs<'a, Q> {
+    /// The part that is left.
+    pub(crate) fn left(&self) -> Option<Part<'a, Q>> {
+        self.left
     }
-}
 
-impl Part<'_, Modes> {
-    /// The motion at both ends.
-    pub(crate) fn samples(&self) -> [Sample<'_, Modes>; 2] {
-        [self.start, self.end].map(|(tau, state)| self.piece.in_state(tau, state))
-    }
-}
-
-impl Arcs<'_> {
-    /// Leaves out the middle of what is left of a long leap.
+    /// Leaves out the middle of what is left of a long leap of one mode.
     ///
     /// The motion in full contact is a line and a decaying vibration about the line. The magnitudes of the line and of the
     /// vibration are convex. Their sum is convex too, and the motion touches the sum once a period. The largest magnitude is therefore
@@ -459,7 +381,11 @@ impl Arcs<'_> {
         let &Piece { level, before: &Motion { phase, .. }, .. } = part.piece;
         let periods = 2.0 * TAU / level.structure().vibration().contact;
         let (passed, until) = (part.start.0, part.end.0);
-        if phase != Phase::FullContact || passed - self.begin < periods || until - passed <= 2.0 * periods {
+        if phase != Phase::FullContact
+            || level.structure().modes().len() != 1
+            || passed - self.begin < periods
+            || until - passed <= 2.0 * periods
+        {
             return;
         }
         let mut middle = part.step();
@@ -519,30 +445,114 @@ impl<Q: Moves> Expansion<'_, Q> {
     }
 }
 
-impl Expansion<'_> {
-    /// The outputs at `sigma`.
-    pub(crate) fn outputs(&self, sigma: f64) -> Outputs {
-        self.piece.outputs(self.from + sigma * self.arc.span, &self.arc.at(sigma))
+impl<'a, Q: Moves> Expansion<'a, Q> {
+    /// The structure at `sigma` as outputs read it.
+    pub(crate) fn shown(&self, sigma: f64) -> Instant<'a, f64, Q> {
+        self.piece.shown(self.from + sigma * self.arc.span, &self.arc.at(sigma))
     }
 
-    /// Shows `measure` as series in σ, each with the polynomial that it belongs to: this one, or parts of it if sin θ and cos θ need
+    /// Bounds of the magnitudes.
+    pub(crate) fn most(&self) -> Magnitudes<'a, Q> {
+        let loads = [self.from, self.from + self.arc.duration()].map(|tau| self.piece.load.at(tau));
+        self.most_under(&self.piece.level.as_ref().structure, loads, &self.arc.end())
+    }
+
+    /// Bounds of the magnitudes, given the loads at both ends and the state at the last.
+    #[inline(always)]
+    fn most_under(&self, structure: &Structure, loads: [Load<Q>; 2], end: &State<Q>) -> Magnitudes<'a, Q> {
+        let &Expansion { piece, arc, .. } = self;
+        let most = magnitudes(structure, piece.before.phase, loads, arc.most(end));
+        let a_g = || Ramp { value: loads[0].a_g, slope: piece.load.slope.a_g };
+        Magnitudes { arc: structure.gauges().has_feedthrough.then(|| (arc, a_g())), ..most }
+    }
+
+    /// Shows the series of outputs in σ, each over the polynomial that it belongs to: this one, or parts of it if sin θ and cos θ need
     /// more terms than it has.
-    pub(crate) fn series(&self, measure: Measure, show: &mut dyn FnMut(&Expansion, &Terms)) {
+    pub(crate) fn series(&self, outputs: &[Output], show: &mut dyn FnMut(&Expansion<Q>, &[Terms])) {
         self.in_parts(&mut |part, is_finest| {
-            let &Expansion { piece: &Piece { level, before, load, .. }, from, arc } = part;
-            let series = match measure {
-                Measure::theta => Terms::of(&arc.theta, arc.order),
-                Measure::u => Terms::of(&arc.u, arc.order),
-                _ => {
-                    let series = measure.at(&level.terms(before.phase, load.from(from), arc));
-                    if !is_finest && !part.has_converged(&series, measure.of(&part.outputs(arc.reach)), CONVERGED) {
-                        return false;
-                    }
-                    series
-                }
+            let (over, end) = (Over::new(*part), part.shown(part.arc.reach));
+            let series = |output: &Output| {
+                let series = output.of(&over);
+                let is_whole = is_finest || output.is_component();
+                (is_whole || part.has_converged(&series, output.of(&end), CONVERGED)).then_some(series)
             };
+            let Some(series) = outputs.iter().map(series).collect::<Option<Vec<_>>>() else { return false };
             show(part, &series);
             true
         });
+    }
+}
+
+/// A polynomial of the motion in series, as far as several outputs read it.
+pub(crate) struct Over<'a, Q: Moves> {
+    of: Expansion<'a, Q>,
+    theta: Terms,
+    theta_dot: Terms,
+    turn: Turn<Terms>,
+}
+
+impl<'a, Q: Moves> Over<'a, Q> {
+    pub(crate) fn new(of: Expansion<'a, Q>) -> Over<'a, Q> {
+        let none = Terms::constant(0.0);
+        let (theta, theta_dot, turn) = match of.piece.before.phase {
+            Phase::FullContact => (none, none, Turn::none()),
+            Phase::Rocking(_) | Phase::Overturned(_) => {
+                let [theta, theta_dot] = [&of.arc.theta, &of.arc.theta_dot].map(|it| Terms::of(it, of.arc.order));
+                (theta, theta_dot, theta.turn())
+            }
+        };
+        Over { of, theta, theta_dot, turn }
+    }
+
+    /// A number that is linear in the lateral coordinates.
+    fn lateral(&self, of: impl Fn(usize) -> f64) -> Terms {
+        Terms::from_fn(self.of.arc.order, of)
+    }
+}
+
+impl<Q: Moves> Shows<Terms> for Over<'_, Q> {
+    fn structure(&self) -> &Structure {
+        self.of.piece.level.structure()
+    }
+
+    fn pivot(&self) -> f64 {
+        self.of.piece.before.phase.side().sign() * self.structure().base().B
+    }
+
+    fn theta(&self) -> Terms {
+        self.theta
+    }
+
+    fn theta_dot(&self) -> Terms {
+        self.theta_dot
+    }
+
+    fn turn(&self) -> Turn<Terms> {
+        self.turn
+    }
+
+    fn u(&self, shape: &Modes) -> Terms {
+        self.lateral(|k| self.of.arc.u[k].weighed(shape))
+    }
+
+    fn u_dot(&self, shape: &Modes) -> Terms {
+        self.lateral(|k| self.of.arc.u_dot[k].weighed(shape))
+    }
+
+    fn gauge(&self, gauge: &Gauge) -> Terms {
+        let Expansion { piece, from, arc } = self.of;
+        let (structure, phase) = (self.structure(), piece.before.phase);
+        let (damping, load) = (structure.base().damping(phase), piece.load.from(from));
+        let ramp = |value: f64, slope: f64| Terms::ramp(value, slope * arc.span);
+        let reading = Reading {
+            elastic: self.lateral(|k| gauge.elastic(structure, damping, &arc.u[k], &arc.u_dot[k])),
+            push: ramp(gauge.push(structure, &load.value.F_t), gauge.push(structure, &load.slope.F_t)),
+            turn: self.turn,
+            theta_dot: self.theta_dot,
+            theta_ddot: self.theta_dot.slope(arc.span),
+            a_g: ramp(load.value.a_g, load.slope.a_g),
+            a_v: ramp(load.value.a_v, load.slope.a_v),
+        };
+        gauge.value(structure.base(), phase.side().sign(), &reading)
     }
 }

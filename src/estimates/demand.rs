@@ -14,7 +14,6 @@
 //! The equations are for a structure that its weight alone turns back. A structure with a tendon or dissipators is an error.
 
 use crate::OneMass;
-use crate::mechanics::outputs::{base_shear, overturning_moment};
 use crate::structure::quantity::OutOfRange;
 
 /// The amplification C of an instant transition, and its largest value.
@@ -95,8 +94,8 @@ impl Demand {
             rocking,
             impact,
             a_t,
-            V_t: base_shear(m, a_t),
-            M_t: overturning_moment(m, H, a_t),
+            V_t: m * a_t,
+            M_t: m * H * a_t,
         })
     }
 }

@@ -16,15 +16,13 @@
 
 use crate::levels::first_uplift::Liftable;
 use crate::levels::full_contact::{self, ExactContact};
-use crate::levels::level::{Bounds, ElasticRocking, Level, Subject};
+use crate::levels::level::{ElasticRocking, Level, Subject, most_of_swings};
 use crate::levels::linear::LinearRocking;
 use crate::levels::modes::ManyModes;
 use crate::levels::nonlinear::NonlinearRocking;
-use crate::mechanics::instant::Second;
 use crate::mechanics::restraint::Angles;
 use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift::least_hold;
-use crate::numbers::bend::Bend;
 use crate::series::taylor::{Arc, Start};
 use crate::{OneMass, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
@@ -105,7 +103,10 @@ impl Detail {
                     if self == Detail::Linear { LinearRocking::new(&one) } else { LinearRocking::modal(&one) };
                 AnyLevel::Linear(Elastic { subject, one, contact: Some(contact), rocking })
             }
-            Detail::Rigid => AnyLevel::Modes(ManyModes::rigid(subject, &one)),
+            Detail::Rigid => {
+                let structure = subject.structure.shown_rigid();
+                AnyLevel::Modes(ManyModes::rigid(Subject { structure, ..subject }, &one))
+            }
             Detail::FixedBase => AnyLevel::FixedBase(FixedBase { subject, one, contact }),
         })
     }
@@ -144,17 +145,14 @@ impl Deref for AnyLevel {
     }
 }
 
-impl AnyLevel {
-    #[inline]
-    pub(crate) fn subject(&self) -> &Subject {
+impl AsRef<Subject> for AnyLevel {
+    #[inline(always)]
+    fn as_ref(&self) -> &Subject {
         by_level!(self, level => level.subject())
     }
+}
 
-    #[inline]
-    pub(crate) fn structure(&self) -> &Structure {
-        &self.subject().structure
-    }
-
+impl AnyLevel {
     /// Whether an elastic strut carries the top mass. If not, its force follows from θ̈ alone.
     #[inline]
     pub(crate) fn has_strut(&self) -> bool {
@@ -181,10 +179,10 @@ pub(crate) struct Elastic<Rocking> {
 }
 
 impl<Rocking: ElasticRocking> Elastic<Rocking> {
-    /// The leap over `start` in full contact with bounds of the motion, if an exact flow is known and the structure stays down.
+    /// The leap over `start` in full contact with bounds of the vibration, if an exact flow is known and the structure stays down.
     #[cfg(feature = "lanes")]
     #[inline(always)]
-    pub(crate) fn bounded_leap(&self, start: &Start) -> Option<(State, Bounds)> {
+    pub(crate) fn bounded_leap(&self, start: &Start) -> Option<(State, [f64; 4])> {
         self.contact.as_ref()?.bounded_leap(start, self.least_displacement(start))
     }
 
@@ -223,16 +221,17 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
         }
     }
 
-    fn leap_bounds(&self, phase: Phase, start: &Start, end: &State) -> Bounds {
-        match (phase, &self.contact) {
-            (Phase::Rocking(side), _) => self.rocking.leap_bounds(side, start, end),
-            (_, Some(contact)) => contact.bounds(start),
-            (_, None) => Bounds::NONE,
-        }
+    fn swings(&self, phase: Phase, start: &Start) -> Option<[f64; 4]> {
+        self.contact.as_ref().filter(|_| phase == Phase::FullContact).map(|contact| contact.swings(start))
     }
 
-    fn second(&self, bounds: &Bounds) -> Option<Second<Bend>> {
-        self.rocking.second(bounds)
+    fn most(&self, phase: Phase, start: &Start, end: &State) -> State {
+        match (phase, &self.contact) {
+            (Phase::FullContact, Some(contact)) => {
+                most_of_swings(&self.subject.structure, start, end, &contact.swings(start))
+            }
+            _ => self.rocking.most(phase.side(), start, end),
+        }
     }
 
     #[inline(always)]
@@ -280,8 +279,9 @@ impl Level for FixedBase {
         self.contact.leap(start, f64::INFINITY)
     }
 
-    fn leap_bounds(&self, _phase: Phase, start: &Start, _end: &State) -> Bounds {
-        self.contact.bounds(start)
+    #[inline(always)]
+    fn swings(&self, _phase: Phase, start: &Start) -> Option<[f64; 4]> {
+        Some(self.contact.swings(start))
     }
 
     fn series(&self, _phase: Phase, start: &Start, arc: &mut Arc) {
@@ -292,10 +292,7 @@ impl Level for FixedBase {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::levels::level::Now;
-    use crate::mechanics::instant::Second;
-    use crate::mechanics::restraint::Dissipators;
-    use crate::{Load, Parameters, Ramp, Side};
+    use crate::{Parameters, Ramp, Side};
     use proptest::prelude::*;
 
     /// Numbers between −1 and 1: a linear congruential generator.
@@ -355,16 +352,11 @@ mod tests {
             let lowest = (0..=1000).map(|i| s * arc.at(f64::from(i) / 1000.0).theta).fold(1.0, f64::min);
             if let Some(end) = level.leap(phase, &start) {
                 prop_assert!(lowest > 0.0);
-                let most = level.leap_bounds(phase, &start, &end);
+                let most = level.most(phase, &start, &end);
                 for i in 0..=20 {
-                    let sigma = f64::from(i) / 20.0;
-                    let (state, load) = (&arc.at(sigma), Load::ground(a_g.at(sigma * interval)));
-                    let Second { u_ddot, theta_ddot } =
-                        level.accelerations(phase, &Now { state, load, dissipators: &Dissipators::NEW });
-                    let bounds = [most.u, most.u_dot, most.u_ddot, most.theta, most.theta_dot, most.theta_ddot];
-                    let values = [state.u, state.u_dot, u_ddot, state.theta, state.theta_dot, theta_ddot];
-                    let is_within = values.iter().zip(bounds).all(|(value, most)| value.abs() <= most * (1.0 + 1e-9));
-                    prop_assert!(is_within, "{values:?} {bounds:?}");
+                    let state = arc.at(f64::from(i) / 20.0);
+                    let is_within = state.components().iter().zip(most.components()).all(|(value, most)| value.abs() <= most * (1.0 + 1e-9));
+                    prop_assert!(is_within, "{state:?} {most:?}");
                 }
                 let expected = arc.end();
                 prop_assert!((end.theta - expected.theta).abs() < 1e-14);

@@ -4,7 +4,6 @@
 //! ü + 2 ζ_fc ω_fc u̇ + ω_fc² u = −a_g + F_t/m,      θ = θ̇ = 0                                    (1)
 //! ```
 
-use crate::levels::level::Bounds;
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::mechanics::load::Load;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
@@ -62,12 +61,12 @@ impl ExactContact {
         goes_on.then_some(end)
     }
 
-    /// The same leap with bounds of what changes over it.
+    /// The same leap with bounds of the vibration.
     #[cfg(feature = "lanes")]
     #[inline(always)]
-    pub(crate) fn bounded_leap(&self, start: &Start, limit: f64) -> Option<(State, Bounds)> {
+    pub(crate) fn bounded_leap(&self, start: &Start, limit: f64) -> Option<(State, [f64; 4])> {
         let (end, swing) = (self.end(start), self.swing(start));
-        self.is_low(start, &end, &swing, limit).then(|| (end, self.bounds_of(start, &swing)))
+        self.is_low(start, &end, &swing, limit).then(|| (end, self.oscillator.swings(&swing)))
     }
 
     /// The state after the interval of `start`.
@@ -93,22 +92,11 @@ impl ExactContact {
         swing.farthest() < limit || start.state.u.abs().max(end.u.abs()) + off_chord < limit
     }
 
-    /// Bounds of what changes over the interval of `start`.
-    pub(crate) fn bounds(&self, start: &Start) -> Bounds {
-        self.bounds_of(start, &self.swing(start))
-    }
-
+    /// Bounds of |u|, |u̇|, |ü| and |u⃛| of the vibration over the interval of `start`.
     #[inline(always)]
-    fn bounds_of(&self, start: &Start, swing: &Swing) -> Bounds {
-        bounds(&self.oscillator, swing, start.a_top.slope)
+    pub(crate) fn swings(&self, start: &Start) -> [f64; 4] {
+        self.oscillator.swings(&self.swing(start))
     }
-}
-
-/// Bounds of what changes while `oscillator` swings under a load of this `slope`.
-#[inline(always)]
-pub(crate) fn bounds(oscillator: &Oscillator, swing: &Swing, slope: f64) -> Bounds {
-    let [u_dot, u_ddot, u_dddot] = oscillator.bounds(swing, slope);
-    Bounds { u: swing.farthest(), u_dot, u_ddot, u_dddot, ..Bounds::default() }
 }
 
 #[cfg(test)]

@@ -7,7 +7,6 @@ use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::restraint::{Angles, Dissipators};
-use crate::numbers::bend::Bend;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{OneMass, Phase, Side, State, Structure};
@@ -60,17 +59,22 @@ pub trait Level<Q: Coordinates = f64> {
     /// The state at the end of `start`, if it is known exactly and no transition can happen until then.
     fn leap(&self, phase: Phase, start: &Start<Q>) -> Option<State<Q>>;
 
-    /// Bounds of the motion over such a leap from `start` to `end`.
-    fn leap_bounds(&self, phase: Phase, start: &Start<Q>, end: &State<Q>) -> Bounds;
-
-    /// Bounds of (ü, θ̈) and of their derivatives over such a leap while rocking.
-    fn second(&self, _bounds: &Bounds) -> Option<Second<Bend>> {
+    /// Bounds of |u|, |u̇|, |ü| and |u⃛| of the vibration about the motion that follows the load, over a leap in full contact.
+    fn swings(&self, _phase: Phase, _start: &Start<Q>) -> Option<[Q; 4]> {
         None
     }
 
-    /// Bounds of |u|, |u̇|, |ü| and |u⃛| of the vibration about the motion that follows the load, over an exact leap.
-    fn swings(&self, _phase: Phase, _start: &Start<Q>) -> Option<[Q; 4]> {
-        None
+    /// Bounds of the magnitudes of the state over a leap from `start` to `end`.
+    fn most(&self, phase: Phase, start: &Start<Q>, end: &State<Q>) -> State<Q> {
+        match self.swings(phase, start) {
+            Some(swings) => most_of_swings(self.structure(), start, end, &swings),
+            None => State {
+                u: Q::each(self.structure(), |_, _| f64::INFINITY),
+                u_dot: Q::each(self.structure(), |_, _| f64::INFINITY),
+                theta: f64::INFINITY,
+                theta_dot: f64::INFINITY,
+            },
+        }
     }
 
     /// Writes the motion from `start` in `phase` into `arc`.
@@ -133,6 +137,29 @@ pub trait Level<Q: Coordinates = f64> {
     }
 }
 
+/// Bounds of the magnitudes of the state over a leap in full contact from `start` to `end`, given bounds of the vibration: u and u̇
+/// leave their chords by at most twice the vibration, and by at most M h²/8 over the time h if their second derivative is at most M.
+#[inline]
+pub(crate) fn most_of_swings<Q: Coordinates>(
+    structure: &Structure,
+    start: &Start<Q>,
+    end: &State<Q>,
+    [u, u_dot, u_ddot, jerk]: &[Q; 4],
+) -> State<Q> {
+    let per_bend = start.interval * start.interval / 8.0;
+    let most = |first: &Q, last: &Q, vibration: &Q, bend: &Q| {
+        Q::each(structure, |j, _| {
+            first.of(j).abs().max(last.of(j).abs()) + (2.0 * vibration.of(j)).min(per_bend * bend.of(j))
+        })
+    };
+    State {
+        u: most(&start.state.u, &end.u, u, u_ddot),
+        u_dot: most(&start.state.u_dot, &end.u_dot, u_dot, jerk),
+        theta: 0.0,
+        theta_dot: 0.0,
+    }
+}
+
 /// (ü, θ̈) in `phase` and, if two are asked for, (u⃛, θ⃛) from the first terms of the series of `level`, which it writes into `arc`.
 pub(crate) fn derivatives<Q: Coordinates, const K: usize>(
     level: &(impl Level<Q> + ?Sized),
@@ -156,12 +183,9 @@ pub(crate) trait ElasticRocking {
         None
     }
 
-    fn leap_bounds(&self, _side: Side, _start: &Start, _end: &State) -> Bounds {
-        Bounds::NONE
-    }
-
-    fn second(&self, _bounds: &Bounds) -> Option<Second<Bend>> {
-        None
+    /// Bounds of the magnitudes of the state over such a leap to `end`.
+    fn most(&self, _side: Side, _start: &Start, _end: &State) -> State {
+        State { u: f64::INFINITY, u_dot: f64::INFINITY, theta: f64::INFINITY, theta_dot: f64::INFINITY }
     }
 
     fn series(&self, side: Side, start: &Start, arc: &mut Arc);
@@ -212,37 +236,4 @@ impl Pace {
         let theta_dot = state.theta_dot.abs() + u_dot / self.height;
         Truncation { u_dot: local_error * u_dot, theta_dot: local_error * theta_dot }
     }
-}
-
-/// Bounds of |u|, |θ| and their derivatives over an exact leap.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Bounds {
-    pub u: f64,
-    pub u_dot: f64,
-    pub u_ddot: f64,
-    pub u_dddot: f64,
-    pub theta: f64,
-    pub theta_dot: f64,
-    pub theta_ddot: f64,
-}
-
-impl Bounds {
-    /// Bounds of the magnitudes of the state over the leap from `start` to `end`.
-    #[inline]
-    pub(crate) fn most(&self, start: &Start, end: &State) -> State {
-        let off_chord = start.interval * start.interval / 8.0;
-        let bound = |most: f64, from: f64, to: f64, bend: f64| most.min(from.abs().max(to.abs()) + bend * off_chord);
-        State {
-            u: bound(self.u, start.state.u, end.u, self.u_ddot),
-            u_dot: bound(self.u_dot, start.state.u_dot, end.u_dot, self.u_dddot),
-            theta: bound(self.theta, start.state.theta, end.theta, self.theta_ddot),
-            theta_dot: self.theta_dot,
-        }
-    }
-
-    /// Bounds of a motion of which nothing is known.
-    pub(crate) const NONE: Bounds = {
-        const ANY: f64 = f64::INFINITY;
-        Bounds { u: ANY, u_dot: ANY, u_ddot: ANY, u_dddot: ANY, theta: ANY, theta_dot: ANY, theta_ddot: ANY }
-    };
 }

@@ -24,10 +24,8 @@
 //! A force F_t on the top mass makes a_g − F_t/m of a_g. Under loads that are linear in time the exact solution is a
 //! matrix exponential, kept for the step lengths used last; series serve the steps on which a transition may happen.
 
-use crate::levels::level::{Bounds, ElasticRocking, Pace};
+use crate::levels::level::{ElasticRocking, Pace};
 use crate::levels::oscillator::Kept;
-use crate::mechanics::instant::Second;
-use crate::numbers::bend::Bend;
 use crate::series::taylor::{Arc, Start};
 use crate::{OneMass, Side, State};
 use nalgebra::{SMatrix, SVector};
@@ -74,20 +72,6 @@ impl Row {
 }
 
 impl LinearSystem {
-    /// Bounds of (ü, θ̈) and of their derivatives, given bounds of the motion. The load has no second derivative.
-    fn second(&self, bounds: &Bounds) -> Second<Bend> {
-        let &Bounds { u_dot, u_ddot, u_dddot, theta_dot, theta_ddot, .. } = bounds;
-        let sum = |row: &Row, u: f64, u_dot: f64, theta: f64| {
-            row.u.abs() * u + row.u_dot.abs() * u_dot + row.theta.abs() * theta
-        };
-        let [u_bend, theta_bend] = [&self.u_ddot, &self.theta_ddot].map(|row| sum(row, u_ddot, u_dddot, theta_ddot));
-        let theta_rate = sum(&self.theta_ddot, u_dot, u_ddot, theta_dot);
-        Second {
-            u_ddot: Bend { value: u_ddot, rate: u_dddot, bend: u_bend },
-            theta_ddot: Bend { value: theta_ddot, rate: theta_rate, bend: theta_bend },
-        }
-    }
-
     /// Writes the motion from `start` about `side` into `arc`.
     fn series(&self, pace: &Pace, side: Side, start: &Start, arc: &mut Arc) {
         let &Start { state, a_top, .. } = start;
@@ -212,7 +196,9 @@ impl LinearRocking {
     /// How far θ can leave the cubic with its values and slopes at both ends of a leap from `start` that swings so: |θ⁗| h⁴/384.
     #[inline(never)] // few leaps ask
     fn off_cubic(&self, start: &Start, swing: &Swing) -> f64 {
-        self.system.second(&self.bounds_of(start, swing)).theta_ddot.bend * start.interval.powi(4) / 384.0
+        let (Row { u, u_dot, theta, .. }, bounds) = (&self.system.theta_ddot, self.bounds_of(start, swing));
+        let fourth = u.abs() * bounds.u_ddot + u_dot.abs() * bounds.u_dddot + theta.abs() * bounds.theta_ddot;
+        fourth * start.interval.powi(4) / 384.0
     }
 
     /// Bounds of what changes on a leap from `start` that swings so.
@@ -232,6 +218,33 @@ impl LinearRocking {
             theta: theta.abs() + theta_dot * h,
             theta_dot,
             theta_ddot: turning,
+        }
+    }
+}
+
+/// Bounds of |u|, |θ| and their derivatives over an exact leap.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    u: f64,
+    u_dot: f64,
+    u_ddot: f64,
+    u_dddot: f64,
+    theta: f64,
+    theta_dot: f64,
+    theta_ddot: f64,
+}
+
+impl Bounds {
+    /// Bounds of the magnitudes of the state over the leap from `start` to `end`.
+    #[inline]
+    fn most(&self, start: &Start, end: &State) -> State {
+        let off_chord = start.interval * start.interval / 8.0;
+        let bound = |most: f64, from: f64, to: f64, bend: f64| most.min(from.abs().max(to.abs()) + bend * off_chord);
+        State {
+            u: bound(self.u, start.state.u, end.u, self.u_ddot),
+            u_dot: bound(self.u_dot, start.state.u_dot, end.u_dot, self.u_dddot),
+            theta: bound(self.theta, start.state.theta, end.theta, self.theta_ddot),
+            theta_dot: self.theta_dot,
         }
     }
 }
@@ -272,13 +285,8 @@ impl ElasticRocking for LinearRocking {
         goes_on.then(|| State { u: end[0], u_dot: end[1], theta: end[2], theta_dot: end[3] })
     }
 
-    fn leap_bounds(&self, side: Side, start: &Start, _end: &State) -> Bounds {
-        let swing = self.swing(side, start, self.amplification(start.interval));
-        if swing.turning < f64::INFINITY { self.bounds_of(start, &swing) } else { Bounds::NONE }
-    }
-
-    fn second(&self, bounds: &Bounds) -> Option<Second<Bend>> {
-        Some(self.system.second(bounds))
+    fn most(&self, side: Side, start: &Start, end: &State) -> State {
+        self.bounds_of(start, &self.swing(side, start, self.amplification(start.interval))).most(start, end)
     }
 
     fn series(&self, side: Side, start: &Start, arc: &mut Arc) {

@@ -17,8 +17,7 @@
 
 use crate::levels::detail::Detail;
 use crate::levels::first_uplift::Liftable;
-use crate::levels::full_contact;
-use crate::levels::level::{Bounds, Level, Now, Subject, derivatives};
+use crate::levels::level::{Level, Now, Subject, derivatives};
 use crate::levels::nonlinear::{Factors, LEAST_INERTIA, NO_ROW, products, row};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::levels::rules::{ChatterLimit, after_rigid_impact};
@@ -492,17 +491,6 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
         (farthest < hold || near < hold).then_some(end)
     }
 
-    fn leap_bounds(&self, phase: Phase, start: &Start<Q>, _end: &State<Q>) -> Bounds {
-        match (phase, self.contact.as_deref()) {
-            (Phase::FullContact, Some([(oscillator, _)])) => {
-                let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
-                let swing = oscillator.swing([u.of(0), u_dot.of(0)], a_top.value.of(0), a_top.slope.of(0), interval);
-                full_contact::bounds(oscillator, &swing, a_top.slope.of(0))
-            }
-            _ => Bounds::NONE,
-        }
-    }
-
     fn swings(&self, phase: Phase, start: &Start<Q>) -> Option<[Q; 4]> {
         let (Phase::FullContact, Some(contact)) = (phase, &self.contact) else { return None };
         let &Start { state, a_top, interval, .. } = start;
@@ -510,9 +498,7 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
         for (j, (oscillator, _)) in contact.iter().enumerate() {
             let from = [state.u.of(j), state.u_dot.of(j)];
             let swing = oscillator.swing(from, a_top.value.of(j), a_top.slope.of(j), interval);
-            let [velocity, acceleration, jerk] = oscillator.bounds(&swing, 0.0);
-            let most = [swing.amplitude, velocity, acceleration, jerk];
-            bounds.iter_mut().zip(most).for_each(|(of, most)| of.set(j, most));
+            bounds.iter_mut().zip(oscillator.swings(&swing)).for_each(|(of, most)| of.set(j, most));
         }
         Some(bounds)
     }
@@ -571,9 +557,7 @@ mod tests {
     use super::*;
     use crate::OneMass;
     use crate::Ties;
-    use crate::engine::piece::Turning;
     use crate::levels::nonlinear::accelerations;
-    use crate::mechanics::floors::MotionOfFloors;
     use crate::mechanics::gauge::Gauge;
     use crate::mechanics::instant::Instant;
     use crate::mechanics::lateral::{Lateral, Modes};
@@ -726,8 +710,8 @@ mod tests {
             let second = level.accelerations(phase, &now);
             let x = Instant::<f64, Modes>::of(&frame, phase, &state, load);
             let Instant { turn, theta_dot, a_g, a_v, s, .. } = x;
-            let seen = Turning { x, theta_ddot: second.theta_ddot };
-            let value = |gauge: &Gauge| seen.gauge(gauge);
+            let x = Instant { theta_ddot: second.theta_ddot, ..x };
+            let value = |gauge: &Gauge| gauge.at(&x);
             let (mut storey, gauges) = (0.0, frame.gauges());
             for (i, floor) in floors.iter().enumerate().rev() {
                 let lever = s * frame.base().B - floor.displacement(&u);
@@ -737,8 +721,7 @@ mod tests {
                 storey += floor.mass * expected;
                 assert_relative_eq!(value(&gauges.V[i]), storey, max_relative = 1e-12);
             }
-            let x = &seen.x;
-            let reactions = Reactions::at(x, &second);
+            let reactions = Reactions::at(&x, &second);
             if let Phase::Rocking(_) = phase {
                 assert_relative_eq!(reactions.R_m, x.pivot() * reactions.R_v, max_relative = 1e-11);
             } else {

@@ -129,6 +129,13 @@ impl Oscillator {
         Swing { following, amplitude: (rest * rest + rest_dot * rest_dot * per_stiffness).sqrt() }
     }
 
+    /// Bounds of the vibration of a `swing` about the motion that follows the load, and of its three derivatives.
+    #[inline(always)]
+    pub(crate) fn swings(&self, swing: &Swing) -> [f64; 4] {
+        let [velocity, acceleration, jerk] = self.bounds(swing, 0.0);
+        [swing.amplitude, velocity, acceleration, jerk]
+    }
+
     /// Bounds of |ẇ|, |ẅ| and |w⃛| of a `swing` of this oscillator under a load of this `slope`.
     pub(crate) fn bounds(&self, swing: &Swing, slope: f64) -> [f64; 3] {
         let &Oscillator { omega, zeta } = self;

@@ -9,18 +9,27 @@
 //!
 //! The last two terms vanish if the modes carry the whole mass. Then no output depends on the ground acceleration directly.
 
-use crate::mechanics::lateral::{Lateral, Modes};
+use crate::mechanics::instant::Instant;
+use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
+use crate::mechanics::reach::Magnitudes;
 use crate::numbers::{Number, Turn};
+use crate::series::taylor::{Arc, ORDERS, ZERO, evaluate};
 use crate::structure::rest;
-use crate::{Base, Mode, Structure};
+use crate::{Base, Mode, Ramp, Structure};
+
+/// Parts of the largest weight that rounding may leave between two gauges that measure the same.
+const ROUNDING: f64 = 1e-14;
 
 /// A weighed sum of the accelerations of masses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gauge {
     /// Sum of the weights.
     weight: f64,
-    /// Σ φ of each mode.
+    /// Σ φ of each mode, and Σ φ k/μ, Σ φ c/μ, Σ φ/μ.
     shape: Modes,
+    stiffness: Modes,
+    damping: Modes,
+    push: Modes,
     /// What the modes leave of the sum of the heights, and of the sum of the weights.
     left: [f64; 2],
 }
@@ -45,7 +54,12 @@ impl Gauge {
     pub(crate) fn new(modes: &[Mode], weight: f64, shape: Modes, height: f64, rounding: f64) -> Gauge {
         let of = |part: fn(&Mode) -> f64| modes.iter().enumerate().map(|(j, mode)| shape.of(j) * part(mode)).sum();
         let left = [rest(height, of(|mode| mode.height), rounding), rest(weight, of(|mode| mode.share), rounding)];
-        Gauge { weight, shape, left }
+        let per_mass = |part: fn(&Mode) -> f64| {
+            Modes::new(&Vec::from_iter(modes.iter().enumerate().map(|(j, mode)| shape.of(j) * part(mode) / mode.mass)))
+        };
+        let [stiffness, damping, push] =
+            [|of: &Mode| of.stiffness, |of: &Mode| of.damping, |_: &Mode| 1.0].map(per_mass);
+        Gauge { weight, shape, stiffness, damping, push, left }
     }
 
     /// Whether the value depends on the ground acceleration directly.
@@ -53,25 +67,36 @@ impl Gauge {
         self.left != [0.0; 2]
     }
 
+    /// The value as a multiple of the value of `other`, if all weights are in this proportion.
+    pub(crate) fn over(&self, other: &Gauge) -> Option<f64> {
+        let ratio = self.weight / other.weight;
+        let are_same = |own: &[f64], other: &[f64]| {
+            let most = own.iter().fold(0.0, |most: f64, own| most.max(own.abs()));
+            own.iter().zip(other).all(|(own, other)| (own - ratio * other).abs() <= ROUNDING * most)
+        };
+        let is_multiple = are_same(self.shape.numbers(), other.shape.numbers())
+            && (0..2).all(|i| are_same(&self.left[i..=i], &other.left[i..=i]));
+        is_multiple.then_some(ratio)
+    }
+
     /// Σ φ (c u̇ + k u)/μ, with the part `damping` of the damping in full contact: linear in `u` and `u_dot`.
-    pub(crate) fn elastic<N: Number, Q>(&self, frame: &Structure, damping: f64, u: &Q, u_dot: &Q) -> N
+    #[inline]
+    pub(crate) fn elastic<N: Number, Q>(&self, structure: &Structure, damping: f64, u: &Q, u_dot: &Q) -> N
     where
         Q: Lateral<N>,
     {
-        Q::sum(frame, |j, mode| {
-            let force = u_dot.of(j) * (mode.damping * damping) + u.of(j) * mode.stiffness;
-            force * self.shape.of(j) / mode.mass
-        })
+        Q::sum(structure, |j, _| u_dot.of(j) * (self.damping.of(j) * damping) + u.of(j) * self.stiffness.of(j))
     }
 
     /// Σ φ φᵀF/μ: linear in the forces.
-    pub(crate) fn push<N: Number, Q: Lateral<N>>(&self, frame: &Structure, F_t: &Q) -> N {
-        Q::sum(frame, |j, mode| F_t.of(j) * self.shape.of(j) / mode.mass)
+    #[inline]
+    pub(crate) fn push<N: Number, Q: Lateral<N>>(&self, structure: &Structure, F_t: &Q) -> N {
+        Q::sum(structure, |j, _| F_t.of(j) * self.push.of(j))
     }
 
     /// Σ φ u.
-    pub(crate) fn displacement(&self, u: &Modes) -> f64 {
-        self.shape.dot(u)
+    pub(crate) fn displacement<Q: Coordinates>(&self, u: &Q) -> f64 {
+        u.weighed(&self.shape)
     }
 
     /// The force and the moment on mass that no mode carries, of a `force` (N) on a floor whose acceleration this gauge reads.
@@ -80,15 +105,46 @@ impl Gauge {
         [force * share, force * height]
     }
 
+    /// The value at the instant `x`.
+    #[inline]
+    pub(crate) fn at<N: Number, Q: Lateral<N>>(&self, x: &Instant<N, Q>) -> N {
+        let &Instant { structure, damping, turn, theta_dot, theta_ddot, a_g, a_v, .. } = x;
+        let (elastic, push) = (self.elastic(structure, damping, &x.u, &x.u_dot), self.push(structure, &x.F_t));
+        self.value(x.base(), x.s, &Reading { elastic, push, turn, theta_dot, theta_ddot, a_g, a_v })
+    }
+
     /// The value on `base` while rocking about the pivot `s`, or at rest if s = 0.
+    #[inline]
     pub(crate) fn value<N: Number>(&self, base: &Base, s: f64, x: &Reading<N>) -> N {
-        let value = x.turn.sin * (base.g * self.weight) + x.push * x.turn.cos - x.elastic;
+        let [height, share] = self.left;
+        let value = x.turn.sin * (base.g * (self.weight - share)) + x.push * x.turn.cos - x.elastic;
         if !self.has_feedthrough() {
             return value;
         }
-        let [height, share] = self.left;
-        let ground =
-            x.theta_dot * x.theta_dot * (s * base.B) + x.a_g * x.turn.cos - (x.a_v + N::constant(base.g)) * x.turn.sin;
+        let ground = x.theta_dot * x.theta_dot * (s * base.B) + x.a_g * x.turn.cos - x.a_v * x.turn.sin;
         value + x.theta_ddot * height + ground * share
+    }
+
+    /// Bound of the magnitude of the terms of [`Gauge::value`] in θ and in the ground acceleration over a polynomial, within `most`.
+    /// They are added up before they are bounded, because θ̈ opposes the ground acceleration.
+    pub(crate) fn turning<Q: Coordinates>(
+        &self,
+        base: &Base,
+        (arc, a_g): (&Arc<Q>, Ramp),
+        most: &Magnitudes<Q>,
+    ) -> f64 {
+        let ([height, share], mut linear) = (self.left, ZERO);
+        let tilt = base.g * (self.weight - share);
+        for k in 0..=arc.order {
+            let theta_ddot = if k < arc.order { ORDERS[k + 1] * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
+            linear[k] = height * theta_ddot + tilt * arc.theta[k];
+        }
+        linear[0] += share * a_g.value;
+        linear[1] += share * a_g.slope * arc.span;
+        let linear = arc.used(&linear);
+        let &Magnitudes { theta, theta_dot, a_g, a_v, .. } = most;
+        let ground = base.B * theta_dot * theta_dot + a_g * theta * theta / 2.0 + a_v * theta;
+        let rest = share.abs() * ground + tilt.abs() * theta * theta * theta / 6.0;
+        f64::most(linear, &evaluate(linear, arc.reach), arc.reach) + rest
     }
 }

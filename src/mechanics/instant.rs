@@ -1,7 +1,9 @@
 //! All that a formula reads: the structure at one instant, in numbers of any kind.
 
-use crate::mechanics::lateral::{Coordinates, Lateral};
+use crate::mechanics::gauge::Gauge;
+use crate::mechanics::lateral::{Coordinates, Duals, Lateral, Modes};
 use crate::mechanics::load::{LinearLoad, Load};
+use crate::mechanics::outputs::Shows;
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
 use crate::{Base, Mode, Structure};
@@ -13,7 +15,8 @@ pub(crate) struct Instant<'a, N: Number, Q: Lateral<N> = N> {
     pub structure: &'a Structure,
     /// s: +1 about the right pivot, −1 about the left one.
     pub s: f64,
-    pub strut: Strut<N>,
+    /// Viscous damping as a fraction of the damping in full contact.
+    pub damping: f64,
     /// u, m.
     pub u: Q,
     /// u̇, m/s.
@@ -22,6 +25,8 @@ pub(crate) struct Instant<'a, N: Number, Q: Lateral<N> = N> {
     pub theta: N,
     /// θ̇, rad/s.
     pub theta_dot: N,
+    /// θ̈, rad/s², which gauges of mass that no mode carries read; otherwise any number.
+    pub theta_ddot: N,
     pub turn: Turn<N>,
     /// Ground acceleration, m/s².
     pub a_g: N,
@@ -29,15 +34,6 @@ pub(crate) struct Instant<'a, N: Number, Q: Lateral<N> = N> {
     pub F_t: Q,
     /// Vertical ground acceleration, m/s².
     pub a_v: N,
-}
-
-/// The part that carries the top mass.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Strut<N> {
-    /// An elastic strut with this viscous damping, as a fraction of the damping in full contact.
-    Elastic(f64),
-    /// The rigid limit with θ̈ in rad/s². There u is 0 whatever the forces are.
-    Rigid(N),
 }
 
 /// The accelerations, which the formulas of the reactions read besides.
@@ -86,21 +82,18 @@ impl Base {
 }
 
 impl<'a, Q: Coordinates> Instant<'a, f64, Q> {
-    /// The structure in `phase` and `state` under `load`, with an elastic strut.
+    /// The structure in `phase` and `state` under `load`; θ̈ is left at 0.
     #[inline]
     pub(crate) fn of(structure: &'a Structure, phase: Phase, state: &State<Q>, load: Load<Q>) -> Self {
         let &State { u, u_dot, theta, theta_dot } = state;
         let Load { a_g, F_t, a_v } = load;
-        let (s, strut) = (phase.side().sign(), Strut::Elastic(structure.base().damping(phase)));
-        Instant { structure, s, strut, u, u_dot, theta, theta_dot, turn: theta.turn(), a_g, F_t, a_v }
+        let (s, damping, turn) = (phase.side().sign(), structure.base().damping(phase), theta.turn());
+        Instant { structure, s, damping, u, u_dot, theta, theta_dot, theta_ddot: 0.0, turn, a_g, F_t, a_v }
     }
 }
 
-impl<'a, Q: Coordinates> Instant<'a, Dual<f64>, Dual<Q>>
-where
-    Dual<Q>: Lateral<Dual<f64>>,
-{
-    /// The structure with its rates, given (ü, θ̈); once it has overturned, all rates are 0.
+impl<'a, Q: Coordinates> Instant<'a, Dual<f64>, Duals<Q>> {
+    /// The structure with its rates, given (ü, θ̈), and without the rate of θ̈; once it has overturned, all rates are 0.
     #[inline]
     pub(crate) fn moving(
         structure: &'a Structure,
@@ -113,21 +106,64 @@ where
             Instant::<f64, Q>::of(structure, phase, state, load.value);
         let moves = if let Phase::Overturned(_) = phase { 0.0 } else { 1.0 };
         let dual = |value, rate: f64| Dual { value, rate: moves * rate };
-        let lateral = |value: Q, rate: Q| Dual { value, rate: rate.times(moves) };
+        let lateral = |value: Q, rate: Q| Duals { value, rate: rate.times(moves) };
         let LinearLoad { value, slope } = load;
         Instant {
             structure,
             s,
-            strut: Strut::Elastic(structure.base().damping(phase)),
+            damping: structure.base().damping(phase),
             u: lateral(u, u_dot),
             u_dot: lateral(u_dot, u_ddot),
             theta: dual(theta, theta_dot),
             theta_dot: dual(theta_dot, theta_ddot),
+            theta_ddot: Dual { value: theta_ddot, rate: 0.0 },
             turn: turn.at_rate(moves * theta_dot),
             a_g: dual(value.a_g, slope.a_g),
             F_t: lateral(value.F_t, slope.F_t),
             a_v: dual(value.a_v, slope.a_v),
         }
+    }
+}
+
+impl<N: Number, Q: Lateral<N>> Shows<N> for Instant<'_, N, Q> {
+    #[inline]
+    fn structure(&self) -> &Structure {
+        self.structure
+    }
+
+    #[inline]
+    fn pivot(&self) -> f64 {
+        self.s * self.base().B
+    }
+
+    #[inline]
+    fn theta(&self) -> N {
+        self.theta
+    }
+
+    #[inline]
+    fn theta_dot(&self) -> N {
+        self.theta_dot
+    }
+
+    #[inline]
+    fn turn(&self) -> Turn<N> {
+        self.turn
+    }
+
+    #[inline]
+    fn u(&self, shape: &Modes) -> N {
+        self.sum(|j, _| self.u.of(j) * shape.of(j))
+    }
+
+    #[inline]
+    fn u_dot(&self, shape: &Modes) -> N {
+        self.sum(|j, _| self.u_dot.of(j) * shape.of(j))
+    }
+
+    #[inline]
+    fn gauge(&self, gauge: &Gauge) -> N {
+        gauge.at(self)
     }
 }
 

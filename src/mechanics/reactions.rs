@@ -32,7 +32,7 @@
 //! ```
 
 use crate::mechanics::instant::{Instant, Place, Second};
-use crate::mechanics::lateral::{Coordinates, Lateral};
+use crate::mechanics::lateral::{Coordinates, Duals, Lateral};
 use crate::mechanics::load::LinearLoad;
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
@@ -120,25 +120,6 @@ pub(crate) fn forces<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Secon
     ]
 }
 
-/// R_h and R_v, N, given a rule for rates: the forces of the loads less the rate of the momentum. It takes fewer products than
-/// [`forces`], which has the rates of the motion.
-pub(crate) fn forces_by_momentum<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, rate: impl Fn(&N) -> N) -> [N; 2] {
-    let &Base { m_t, m0, S_res, g, .. } = x.base();
-    let (mut along, mut lever, mut push) = (N::constant(0.0), N::constant(m0 * x.pivot()), -(x.a_g * m_t));
-    if S_res != 0.0 {
-        along = x.theta_dot * S_res;
-    }
-    for (j, mode) in Q::modes(x.structure).iter().enumerate() {
-        along = along + (x.u_dot.of(j) + x.theta_dot * mode.height) * mode.gamma;
-        lever = lever + x.place(j, mode).lever(x.pivot()) * mode.gamma;
-        push = push + mode.part(x.F_t.of(j));
-    }
-    if let Some([force, _]) = x.F_t.rest() {
-        push = push + force;
-    }
-    less_momentum([push, (x.a_v + N::constant(g)) * m_t], [along, lever * x.theta_dot], &x.turn, rate)
-}
-
 /// The forces to the right and downwards less the `rate` of the momentum, given `along` u and across.
 #[inline(always)]
 pub(crate) fn less_momentum<N: Number>(
@@ -204,15 +185,12 @@ impl Reactions {
         state: &State<Q>,
         [accelerations, jerks]: [Second<f64, Q>; 2],
         load: LinearLoad<Q>,
-    ) -> Reactions
-    where
-        Dual<Q>: Lateral<Dual<f64>>,
-    {
+    ) -> Reactions {
         if let Phase::Overturned(_) = phase {
             return Reactions { R_h: 0.0, R_v: 0.0, R_m: 0.0 };
         }
         let x = Instant::moving(structure, phase, state, &accelerations, load);
-        let u_ddot = Dual { value: accelerations.u_ddot, rate: jerks.u_ddot };
+        let u_ddot = Duals { value: accelerations.u_ddot, rate: jerks.u_ddot };
         let theta_ddot = Dual { value: accelerations.theta_ddot, rate: jerks.theta_ddot };
         let Reactions { R_h, R_v, R_m } = Reactions::at(&x, &Second { u_ddot, theta_ddot });
         Reactions { R_h: R_h.rate, R_v: R_v.rate, R_m: R_m.rate }
@@ -284,11 +262,12 @@ mod tests {
         let x = Instant {
             structure: &structure,
             s: -1.0,
-            strut: crate::mechanics::instant::Strut::Elastic(0.0),
+            damping: 0.0,
             u: twice(state.u, state.u_dot, u_ddot),
             u_dot: none(),
             theta: none(),
             theta_dot: none(),
+            theta_ddot: none(),
             turn: state.theta.turn().at_rate(state.theta_dot).at_rate(theta_dot),
             a_g: none(),
             F_t: none(),

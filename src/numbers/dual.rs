@@ -4,7 +4,7 @@ use super::{Angle, Number, Turn, operators};
 
 /// A value and its time derivative. The parts may be any number: the rate of a rate is a second derivative.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Dual<T> {
+pub struct Dual<T> {
     pub value: T,
     pub rate: T,
 }

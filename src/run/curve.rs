@@ -4,18 +4,14 @@
 //! straight lines as is allowed. Two points of the same instant have a transition, or the end of the record, between them.
 
 use super::fall::Found;
-use super::peak_watch::Peaked;
 use super::peaks::{Peak, Peaks};
-use super::profile::{Over, Profile};
 use super::{Run, RunError};
-use crate::engine::piece::{CONVERGED, Expansion, Piece, Sample, Watch};
-use crate::mechanics::floors::MotionOfFloors;
-use crate::mechanics::outputs::Measure;
+use crate::engine::Moves;
+use crate::engine::piece::{Piece, Sample, Watch};
 use crate::mechanics::restraint::Restraints;
 use crate::series::terms::Terms;
 use crate::series::{extremes, taylor};
-use crate::{FrameOutput, Modes, Outputs, Phase, Structure, Transition};
-use std::fmt::Debug;
+use crate::{Output, Phase, Structure, Transition};
 
 /// The largest number of times that a polynomial is divided.
 const DIVISIONS: u32 = 30;
@@ -30,140 +26,68 @@ const MOST_POINTS: usize = 1_000_000;
 /// Part of its peak by which a_g may differ between the end of a piece and the start of the next without a jump.
 const ROUNDING: f64 = 1e-9;
 
-/// A function that gets the series of all lines, and the polynomial that they belong to.
-#[doc(hidden)]
-#[allow(private_interfaces)]
-pub type Show<'a, Q> = dyn FnMut(&Expansion<Q>, &[&[f64]]) + 'a;
-
-/// Lateral coordinates whose motion is drawn.
-pub trait Drawn: Peaked<Peaks: Debug> {
-    /// The outputs at a point.
-    type Outputs: Clone + Debug;
-
-    /// The peaks of a_g and of each line that is drawn, among `all` of a motion.
-    #[doc(hidden)]
-    fn exact(structure: &Structure, all: &Self::Peaks) -> Vec<Peak>;
-
-    /// The kind of each line: rotation (0), elastic displacement (1), acceleration or force (2).
-    #[doc(hidden)]
-    fn kinds(structure: &Structure) -> Vec<usize>;
-
-    /// The outputs of `sample`.
-    #[doc(hidden)]
-    fn outputs(sample: &Sample<Self>) -> Self::Outputs;
-
-    /// Shows the series of all lines, in the order of their peaks, over the polynomial or over parts of it.
-    #[doc(hidden)]
-    #[allow(private_interfaces)] // the coordinates name the type, and nobody else can use it
-    fn lines(of: &Expansion<Self>, show: &mut Show<Self>);
+/// The outputs of `structure` that a picture follows and that levels are compared by: of its base, then u and a_t of each floor.
+pub(super) fn lines(structure: &Structure) -> Vec<Output> {
+    let of_base: &[Output] = match structure.one() {
+        Some(_) => &[Output::theta],
+        None => &[Output::theta, Output::V_t, Output::M_t],
+    };
+    let of_floors = (0..structure.floors().len()).flat_map(|i| [Output::u(i), Output::a_t(i)]);
+    of_base.iter().copied().chain(of_floors).collect()
 }
 
-impl Drawn for f64 {
-    type Outputs = Outputs;
-
-    fn exact(_: &Structure, all: &Peaks) -> Vec<Peak> {
-        vec![all.a_g(), all.theta(), all.u(), all.a_t()]
-    }
-
-    fn kinds(_: &Structure) -> Vec<usize> {
-        vec![0, 1, 2]
-    }
-
-    fn outputs(sample: &Sample) -> Outputs {
-        sample.outputs()
-    }
-
-    #[allow(private_interfaces)]
-    fn lines(of: &Expansion, show: &mut Show<f64>) {
-        of.series(Measure::a_t, &mut |part, a_t| {
-            let arc = part.arc;
-            show(part, &[arc.used(&arc.theta), arc.used(&arc.u), a_t.used()]);
-        });
-    }
+/// The outputs of `structure` at the points of a picture: its lines, and the displacement of one mass.
+pub fn drawn(structure: &Structure) -> Vec<Output> {
+    let mut drawn = lines(structure);
+    drawn.extend(structure.one().map(|_| Output::delta_t(0)));
+    drawn
 }
 
-/// The outputs of `frame` that are drawn: of its base, then u and a_t of each floor.
-pub fn drawn(frame: &Structure) -> impl Iterator<Item = FrameOutput> + use<> {
-    let floors = frame.floors().len();
-    let of_floors = (0..floors).flat_map(|i| [FrameOutput::u(i), FrameOutput::a_t(i)]);
-    [FrameOutput::theta, FrameOutput::V_t, FrameOutput::M_t].into_iter().chain(of_floors)
-}
-
-impl Drawn for Modes {
-    /// In the order of [`drawn`].
-    type Outputs = Vec<f64>;
-
-    fn exact(frame: &Structure, all: &Profile) -> Vec<Peak> {
-        let line = |line| all.of(line).expect("each line has a peak");
-        [all.a_g].into_iter().chain(drawn(frame).map(line)).collect()
-    }
-
-    fn kinds(structure: &Structure) -> Vec<usize> {
-        let kind = |line| match line {
-            FrameOutput::theta => 0,
-            FrameOutput::u(_) => 1,
-            _ => 2,
-        };
-        drawn(structure).map(kind).collect()
-    }
-
-    fn outputs(sample: &Sample<Modes>) -> Vec<f64> {
-        drawn(sample.level.structure()).map(sample.outputs()).collect()
-    }
-
-    #[allow(private_interfaces)]
-    fn lines(of: &Expansion<Modes>, show: &mut Show<Modes>) {
-        of.in_parts(&mut |part, is_finest| {
-            let (over, end) = (Over::new(*part), part.sample(part.arc.reach));
-            let last = end.outputs();
-            let series = |line: FrameOutput| {
-                let series = line.of(&over);
-                (is_finest || part.has_converged(&series, last(line), CONVERGED)).then_some(series)
-            };
-            let Some(series) = drawn(over.frame()).map(series).collect::<Option<Vec<_>>>() else { return false };
-            show(part, &series.iter().map(Terms::used).collect::<Vec<_>>());
-            true
-        });
-    }
+/// The peak of each of `lines` among `peaks`.
+pub(super) fn peaks_of<'a>(lines: &'a [Output], peaks: &'a Peaks) -> impl Iterator<Item = Peak> + 'a {
+    lines.iter().map(|line| peaks.of(*line).expect("each line has a peak"))
 }
 
 /// The motion at one instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point<O = Outputs> {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
     /// Its time, s.
     pub time: f64,
     /// The phase that it belongs to; of two points at a transition the first is just before it.
     pub phase: Phase,
     /// Ground acceleration, m/s².
     pub a_g: f64,
-    /// Outputs of the structure.
-    pub outputs: O,
+    /// Outputs of the structure, in the order of [`drawn`].
+    pub outputs: Vec<f64>,
     /// Forces of its tendon and dissipators.
     pub restraints: Restraints,
 }
 
 /// A run as it is drawn.
 #[derive(Clone, Debug)]
-pub struct Curve<Q: Drawn = f64> {
+pub struct Curve<Q: Moves = f64> {
     /// In the order of time; straight lines join them. The largest a_g and the largest of each line are among them.
-    pub points: Vec<Point<Q::Outputs>>,
+    pub points: Vec<Point>,
     /// In the order of time, too.
     pub transitions: Vec<Transition<Q>>,
     /// Exact peaks, and how the run ended.
     pub found: Found<Q>,
 }
 
-impl<Q: Drawn> Run<'_, Q> {
+impl<Q: Moves> Run<'_, Q> {
     /// The run as points between which θ, u and a_t of each floor leave straight lines by at most `part` of their peaks; the
     /// ground acceleration does not leave them at all. Refuses a run that takes more points than fit in 100 MB.
     pub fn curve(&self, part: f64) -> Result<Curve<Q>, RunError> {
         let (found, peaks) = self.found_and_all(&mut ())?;
-        let peaks = Q::exact(&self.structure, &peaks);
+        let (lines, drawn, a_g) = (lines(&self.structure), drawn(&self.structure), peaks.a_g());
+        let peaks = Vec::from_iter(peaks_of(&lines, &peaks));
         let mut tracer = Tracer {
-            within: peaks[1..].iter().map(|peak| part * peak.magnitude).collect(),
-            exact: peaks.iter().map(|peak| peak.time).collect(),
-            pga: peaks[0].magnitude,
-            most: 10 * MOST_POINTS / (6 + peaks.len()),
+            within: peaks.iter().map(|peak| part * peak.magnitude).collect(),
+            exact: [a_g].iter().chain(&peaks).map(|peak| peak.time).collect(),
+            pga: a_g.magnitude,
+            most: 10 * MOST_POINTS / (7 + peaks.len()),
+            lines,
+            drawn,
             is_restrained: self.structure.base().is_restrained(),
             points: Vec::new(),
             transitions: Vec::new(),
@@ -179,7 +103,10 @@ impl<Q: Drawn> Run<'_, Q> {
 }
 
 /// Gathers the points of a motion as it goes by.
-struct Tracer<Q: Drawn> {
+struct Tracer<Q: Moves> {
+    lines: Vec<Output>,
+    /// The outputs at each point.
+    drawn: Vec<Output>,
     /// How far each line may be left, in its unit.
     within: Vec<f64>,
     /// Instants (s) that are to be points.
@@ -189,13 +116,13 @@ struct Tracer<Q: Drawn> {
     /// The largest number of points.
     most: usize,
     is_restrained: bool,
-    points: Vec<Point<Q::Outputs>>,
+    points: Vec<Point>,
     transitions: Vec<Transition<Q>>,
     /// Whether the next piece begins with a point of its own.
     is_torn: bool,
 }
 
-impl<Q: Drawn> Tracer<Q> {
+impl<Q: Moves> Tracer<Q> {
     fn is_full(&self) -> bool {
         self.points.len() > self.most
     }
@@ -203,12 +130,12 @@ impl<Q: Drawn> Tracer<Q> {
     fn see(&mut self, sample: &Sample<Q>) {
         let restraints = if self.is_restrained { sample.restraints() } else { Restraints::default() };
         let Sample { motion, load, .. } = sample;
-        let (outputs, a_g) = (Q::outputs(sample), load.a_g);
+        let (outputs, a_g) = (self.drawn.iter().copied().map(sample.outputs()).collect(), load.a_g);
         self.points.push(Point { time: motion.time, phase: motion.phase, a_g, outputs, restraints });
     }
 }
 
-impl<Q: Drawn> Watch<Q> for Tracer<Q> {
+impl<Q: Moves> Watch<Q> for Tracer<Q> {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &Piece<Q>) {
@@ -228,7 +155,7 @@ impl<Q: Drawn> Watch<Q> for Tracer<Q> {
         while let Some(expansion) = arcs.next() {
             let (passed, span) = (expansion.from, expansion.arc.span);
             let mut between = Vec::new();
-            Q::lines(&expansion, &mut |part, lines| {
+            expansion.series(&self.lines, &mut |part, lines| {
                 let (from, arc) = ((part.from - passed) / span, part.arc);
                 let mut add = |sigma: f64| between.push(from + sigma * (arc.span / span));
                 divide(lines, &self.within, [0.0, arc.reach], DIVISIONS, &mut add);
@@ -260,8 +187,9 @@ impl<Q: Drawn> Watch<Q> for Tracer<Q> {
 
 /// Shows, in their order, the σ between `from` and `to` at which points are needed: between them the polynomials stay within
 /// `within` of straight lines. `divisions` are left.
-fn divide(lines: &[&[f64]], within: &[f64], [from, to]: [f64; 2], divisions: u32, show: &mut impl FnMut(f64)) {
-    let excess = |(coefficients, within): (&&[f64], &f64)| {
+fn divide(lines: &[Terms], within: &[f64], [from, to]: [f64; 2], divisions: u32, show: &mut impl FnMut(f64)) {
+    let excess = |(line, within): (&Terms, &f64)| {
+        let coefficients = line.used();
         let mut series = taylor::series(coefficients);
         let over = &mut series[..coefficients.len()];
         taylor::stretch(over, from, to - from);

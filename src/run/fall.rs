@@ -2,10 +2,8 @@
 //! such a structure are those before the fall.
 
 use super::peak_watch::PeakWatch;
-use super::peak_watch::Peaked;
-use super::peaks::Peak;
+use super::peaks::{Peak, Peaks};
 use super::{Finish, Run, RunError};
-use crate::Base;
 use crate::engine::Moves;
 #[cfg(feature = "lanes")]
 use crate::engine::lanes::{Bounded, Passes};
@@ -15,18 +13,17 @@ use crate::run::ground_motion::GroundMotion;
 use crate::series::bisection::last_where;
 use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
 use crate::series::taylor::{self, Arc, sum_of_magnitudes};
-use crate::{Detail, Piece, Side, Structure, Transition, TransitionKind, Watch};
-use serde::de::DeserializeOwned;
+use crate::{Base, Detail, Piece, Side, Structure, Transition, TransitionKind, Watch};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
 /// Result of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Found<Q: Peaked = f64> {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found<Q: Moves = f64> {
     /// Peak of the ground acceleration until the run ended, m/s².
     pub ground: Peak,
     /// Peaks of the structure; if it overturns, those before it falls.
-    pub peaks: Q::Peaks,
+    pub peaks: Peaks,
     /// Start of the fall of a structure that overturns, s.
     pub fall: Option<f64>,
     /// Start of the run, s.
@@ -36,14 +33,13 @@ pub struct Found<Q: Peaked = f64> {
 }
 
 /// Exact peaks of a motion that may end in a fall: those of all the motion, and those before the fall.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(bound = "Q::Peaks: Serialize + DeserializeOwned")]
-pub struct Falling<Q: Peaked = f64> {
-    all: Q::Peaks,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Falling {
+    all: Peaks,
     /// Angle of no return, rad; none below π/2 if the tendon turns the structure back from everywhere.
     no_return: Option<f64>,
     /// The last passing of the angle of no return, while |θ| is beyond: its instant (s), and the peaks until then.
-    fall: Option<(f64, Q::Peaks)>,
+    fall: Option<(f64, Peaks)>,
     has_overturned: bool,
 }
 
@@ -63,20 +59,20 @@ pub fn angle_of_no_return(base: &Base) -> Option<f64> {
     (!restores(FRAC_PI_2)).then(|| last_where(0.0, FRAC_PI_2, restores))
 }
 
-impl<Q: Peaked> Falling<Q> {
+impl Falling {
     /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion.
-    pub fn since(time: f64, structure: &Structure, detail: Detail) -> Falling<Q> {
-        let (all, no_return) = (Q::none(time, structure, detail), angle_of_no_return(structure.base()));
+    pub fn since(time: f64, structure: &Structure, detail: Detail) -> Falling {
+        let (all, no_return) = (Peaks::since(time, structure, detail), angle_of_no_return(structure.base()));
         Falling { all, no_return, fall: None, has_overturned: false }
     }
 
     /// Peaks of all the motion, including a fall.
-    pub fn all(&self) -> &Q::Peaks {
+    pub fn all(&self) -> &Peaks {
         &self.all
     }
 
     /// Peaks before the fall, if the structure has overturned, otherwise of all the motion.
-    pub fn peaks(&self) -> &Q::Peaks {
+    pub fn peaks(&self) -> &Peaks {
         self.passing().map_or(&self.all, |(_, before)| before)
     }
 
@@ -85,17 +81,17 @@ impl<Q: Peaked> Falling<Q> {
         self.passing().map(|(instant, _)| *instant)
     }
 
-    fn passing(&self) -> Option<&(f64, Q::Peaks)> {
+    fn passing(&self) -> Option<&(f64, Peaks)> {
         self.fall.as_ref().filter(|_| self.has_overturned)
     }
 
     /// Adds the values of `sample`, which need not be in a piece.
-    pub fn see_instant(&mut self, sample: &Sample<Q>) {
-        Q::see_instant(&mut self.all, sample);
+    pub fn see_instant<Q: Moves>(&mut self, sample: &Sample<Q>) {
+        self.all.see(&sample.shown(), sample.motion.time);
     }
 
     /// Looks for peaks in the pieces of a motion. The peaks are complete when the watch is dropped.
-    pub fn watch(&mut self) -> FallWatch<'_, Q> {
+    pub fn watch<Q: Moves>(&mut self) -> FallWatch<'_, Q> {
         let Falling { all, no_return, fall, has_overturned } = self;
         FallWatch { all: PeakWatch::new(all), no_return: *no_return, fall, has_overturned }
     }
@@ -103,14 +99,14 @@ impl<Q: Peaked> Falling<Q> {
 
 /// Looks for the peaks of a motion that may end in a fall.
 #[derive(Debug)]
-pub struct FallWatch<'a, Q: Peaked = f64> {
+pub struct FallWatch<'a, Q: Moves = f64> {
     all: PeakWatch<'a, Q>,
     no_return: Option<f64>,
-    fall: &'a mut Option<(f64, Q::Peaks)>,
+    fall: &'a mut Option<(f64, Peaks)>,
     has_overturned: &'a mut bool,
 }
 
-impl<Q: Peaked> Watch<Q> for FallWatch<'_, Q> {
+impl<Q: Moves> Watch<Q> for FallWatch<'_, Q> {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &Piece<Q>) {
@@ -136,7 +132,7 @@ impl Passes for FallWatch<'_> {
     #[inline(always)]
     fn passes(&mut self, step: &Bounded) -> bool {
         let falls = self.no_return.is_some_and(|angle| step.end.theta.abs() >= angle);
-        let passes = !falls && self.all.passes(&step.outputs(), step.ends());
+        let passes = !falls && self.all.passes(step.bounds(), step.ends());
         if passes {
             *self.fall = None;
         }
@@ -144,9 +140,9 @@ impl Passes for FallWatch<'_> {
     }
 }
 
-impl<Q: Peaked> FallWatch<'_, Q> {
+impl<Q: Moves> FallWatch<'_, Q> {
     /// The peaks, once the motion has been watched.
-    pub(crate) fn end(mut self) -> Falling<Q> {
+    pub(crate) fn end(mut self) -> Falling {
         let (all, no_return) = (self.all.so_far().clone(), self.no_return);
         Falling { all, no_return, fall: self.fall.clone(), has_overturned: *self.has_overturned }
     }
@@ -161,8 +157,8 @@ impl<Q: Peaked> FallWatch<'_, Q> {
         if tau > 0.0 {
             PeakWatch::new(&mut before).piece(&until);
         } else {
-            Q::see_ground(&mut before, piece.load.value.a_g, instant);
-            Q::see(&mut before, piece, 0.0, &piece.before.state);
+            before.see_ground(piece.load.value.a_g, instant);
+            before.see(&piece.shown(0.0, &piece.before.state), instant);
         }
         *self.fall = Some((instant, before));
     }
@@ -207,21 +203,21 @@ fn last_passing<Q: Moves>(angle: f64, side: f64, expansion: &Expansion<Q>) -> Op
     }
 }
 
-impl<Q: Peaked> Run<'_, Q> {
+impl<Q: Moves> Run<'_, Q> {
     /// Follows the motion to the end, which `watch` sees, too, and finds its exact peaks.
     pub fn found(&self, watch: &mut impl Watch<Q>) -> Result<Found<Q>, RunError> {
         Ok(self.found_and_all(watch)?.0)
     }
 
     /// Result of the run, and the peaks of all its motion, including a fall.
-    pub(super) fn found_and_all(&self, watch: &mut impl Watch<Q>) -> Result<(Found<Q>, Q::Peaks), RunError> {
-        let mut peaks = Falling::<Q>::since(self.ground.start(), &self.structure, self.detail);
+    pub(super) fn found_and_all(&self, watch: &mut impl Watch<Q>) -> Result<(Found<Q>, Peaks), RunError> {
+        let mut peaks = Falling::since(self.ground.start(), &self.structure, self.detail);
         let finish = self.follow(&mut (&mut peaks.watch(), watch))?;
         Ok((self.found_of(peaks.peaks().clone(), peaks.fall(), finish), peaks.all))
     }
 
     /// Result of the run with these `peaks`, the start of the `fall` and the `finish`.
-    pub(super) fn found_of(&self, peaks: Q::Peaks, fall: Option<f64>, finish: Finish<Q>) -> Found<Q> {
+    pub(super) fn found_of(&self, peaks: Peaks, fall: Option<f64>, finish: Finish<Q>) -> Found<Q> {
         let ground = self.peak_of_ground(finish.motion.time);
         Found { ground, peaks, fall, start: self.ground.start(), finish }
     }
@@ -246,15 +242,14 @@ impl<Q: Peaked> Run<'_, Q> {
 mod tests {
     use super::*;
     use crate::estimates::restoring;
-    use crate::run::peaks::PEAKS;
     use crate::run::record::Record;
     use crate::run::{End, Ending};
-    use crate::{OneMass, Outputs, Parameters, State};
+    use crate::{OneMass, Output, Parameters, State};
     use std::f64::consts::TAU;
 
     /// The peaks before the fall and its instant, of a run that overturns.
     fn fall_of(run: &Run) -> Falling {
-        let mut peaks = Falling::<f64>::since(run.ground.start(), &run.structure, run.detail);
+        let mut peaks = Falling::since(run.ground.start(), &run.structure, run.detail);
         assert_eq!(run.follow(&mut peaks.watch()).unwrap().ending, Ending::Overturned);
         peaks
     }
@@ -269,22 +264,20 @@ mod tests {
         let ground = Record::from_samples("", times, acceleration).unwrap();
         for detail in [Detail::Auto, Detail::Linear, Detail::Rigid] {
             let run = Run { detail, ..Run::new(structure, &ground) };
-            let mut seen: Vec<(f64, Outputs)> = Vec::new();
+            let shown = [Output::theta, Output::u(0), Output::delta_t(0), Output::a_t(0)];
+            let mut seen = Vec::new();
             let dense = (0..40_000).map(|i| f64::from(i) * 1e-4);
-            let mut watched = Falling::<f64>::since(0.0, &structure.into(), Detail::Auto);
-            run.sample(dense, |at| seen.push((at.motion.time, at.outputs())), &mut watched.watch()).unwrap();
+            let mut watched = Falling::since(0.0, &structure.into(), Detail::Auto);
+            run.sample(dense, |at| seen.push((at.motion.time, shown.map(at.outputs()))), &mut watched.watch()).unwrap();
             let instant = watched.fall().unwrap();
-            let last = seen.iter().rposition(|(_, outputs)| outputs.theta.abs() < alpha_cg).unwrap();
+            let last = seen.iter().rposition(|(_, outputs)| outputs[0].abs() < alpha_cg).unwrap();
             assert!(seen[last].0 <= instant && instant <= seen[last + 1].0, "{detail:?}: {instant}");
 
             let peaks = watched.peaks();
             assert!((peaks.theta().magnitude - alpha_cg).abs() < 1e-9);
-            for (peak, of) in [
-                (peaks.u(), (|at| at.u) as fn(&Outputs) -> f64),
-                (peaks.delta_t(), |at| at.delta_t),
-                (peaks.a_t(), |at| at.a_t),
-            ] {
-                let most = seen[..=last].iter().fold(0.0_f64, |most, (_, at)| most.max(of(at).abs()));
+            for (i, of) in (1..).zip(&shown[1..]) {
+                let peak = peaks.of(*of).unwrap();
+                let most = seen[..=last].iter().fold(0.0_f64, |most, (_, at)| most.max(at[i].abs()));
                 assert!(most <= peak.magnitude * (1.0 + 1e-9) && peak.time <= instant, "{detail:?}: {most} {peak:?}");
                 assert!(most >= peak.magnitude * 0.99, "{detail:?}: {most} {peak:?}");
             }
@@ -292,9 +285,9 @@ mod tests {
 
             // a run that ends at the start of the fall
             let until = Run { end: End::At(instant), ..run.clone() }.peaks().unwrap().0;
-            for peaking in &PEAKS {
-                let [expected, one_pass] = [&until, peaks].map(|peaks| peaking.of(peaks).magnitude);
-                assert!((one_pass - expected).abs() <= 1e-12 * expected, "{detail:?} {}", peaking.name);
+            for output in Output::PEAKS_OF_ONE {
+                let [expected, one_pass] = [&until, peaks].map(|peaks| peaks.of(output).unwrap().magnitude);
+                assert!((one_pass - expected).abs() <= 1e-12 * expected, "{detail:?} {}", output.symbol());
             }
         }
     }
@@ -310,7 +303,7 @@ mod tests {
             for beyond in (0..40).map(|i| 1e-4 * f64::from(i)) {
                 let initial = State { theta: -alpha_cg * (1.0 + beyond), ..State::default() };
                 let run = Run { detail, initial, ..Run::new(structure, &ground) };
-                let (mut watched, mut seen) = (Falling::<f64>::since(0.0, &structure.into(), Detail::Auto), Vec::new());
+                let (mut watched, mut seen) = (Falling::since(0.0, &structure.into(), Detail::Auto), Vec::new());
                 let times = (0..100_000).map(|i| f64::from(i) * 2e-4);
                 let show = |at: &crate::engine::piece::Sample| seen.push((at.motion.time, at.motion.state.theta.abs()));
                 let ending = run.sample(times, show, &mut watched.watch()).unwrap().ending;
@@ -351,7 +344,7 @@ mod tests {
             let loop_there = restoring::flag(structure.base(), no_return, 1000)[1000];
             assert!(loop_there.moment.abs() < 1e-9 * restoring::flag(structure.base(), 0.0, 1)[0].moment);
             let falls = |theta_dot: f64| {
-                let mut peaks = Falling::<f64>::since(0.0, &structure.into(), Detail::Auto);
+                let mut peaks = Falling::since(0.0, &structure.into(), Detail::Auto);
                 let ending = pushed(structure, theta_dot).follow(&mut peaks.watch()).unwrap().ending;
                 (ending == Ending::Overturned, peaks)
             };

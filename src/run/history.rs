@@ -2,7 +2,8 @@
 //!
 //! The time that both motions have covered is compared and dropped, so that neither motion is kept whole.
 
-use super::curve::Drawn;
+use crate::Output;
+use crate::engine::Moves;
 use crate::engine::piece::{Piece, Watch};
 use crate::series::extremes;
 use crate::series::taylor::{self, Series};
@@ -14,6 +15,8 @@ const SAME_LANDING: f64 = 1e-3;
 /// The part of a motion that is still to be compared.
 #[derive(Clone, Debug)]
 pub struct History {
+    /// The compared quantities.
+    pub lines: Vec<Output>,
     pub sections: Vec<Section>,
 }
 
@@ -94,16 +97,16 @@ impl Section {
     }
 }
 
-impl<Q: Drawn> Watch<Q> for History {
+impl<Q: Moves> Watch<Q> for History {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &Piece<Q>) {
         let transitions = piece.before.transitions;
         let mut arcs = piece.arcs();
         while let Some(expansion) = arcs.next() {
-            Q::lines(&expansion, &mut |part, lines| {
+            expansion.series(&self.lines, &mut |part, lines| {
                 let (start, arc) = (part.time(0.0), part.arc);
-                let series = lines.iter().map(|line| taylor::series(line)).collect();
+                let series = lines.iter().map(|line| taylor::series(line.used())).collect();
                 self.sections.push(Section { start, end: start + arc.duration(), transitions, span: arc.span, series });
             });
         }

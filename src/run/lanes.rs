@@ -59,7 +59,7 @@ fn peaks_of(runs: &[Run]) -> Vec<Falling> {
 /// Result of a `run` with this `finish`, all of which `watch` has seen.
 fn found(run: &Run, finish: Result<Finish, RunError>, watch: FallWatch) -> Result<Found, RunError> {
     let peaks = watch.end();
-    finish.map(|finish| run.found_of(*peaks.peaks(), peaks.fall(), finish))
+    finish.map(|finish| run.found_of(peaks.peaks().clone(), peaks.fall(), finish))
 }
 
 /// Follows `runs` to their ends, each seen by one of `watches`. Tells `done` of each how it ended, as [`found_each`] does.

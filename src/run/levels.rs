@@ -2,13 +2,15 @@
 //!
 //! A level of a structure of many masses is also the number of modes that are kept ([`Structure::keeping`]).
 
-use super::curve::Drawn;
+use super::curve::{lines, peaks_of};
 use super::fall::{FallWatch, Falling};
 use super::history::{Distance, History};
+use super::peaks::Peaks;
 use super::{Ending, Follower, Run, RunError};
+use crate::engine::Moves;
 use crate::engine::motion::Work;
 use crate::run::ground_motion::Segment;
-use crate::{Detail, Mode, State, Structure};
+use crate::{Detail, Mode, Output, State, Structure};
 use std::fmt;
 
 /// Tolerance of the run that all others are measured by.
@@ -90,7 +92,7 @@ fn all_modes(structure: &Structure) -> Option<[usize; 2]> {
 }
 
 /// The levels to compare on `run`, the one of the fewest equations first.
-fn choices<'a, Q: Drawn>(run: &Run<'a, Q>) -> Vec<(Choice, Run<'a, Q>)> {
+fn choices<'a, Q: Moves>(run: &Run<'a, Q>) -> Vec<(Choice, Run<'a, Q>)> {
     let Some([all, _]) = all_modes(&run.structure) else {
         let of = |detail| (Choice { detail, modes: None }, Run { detail, ..run.clone() });
         return SIMPLEST_FIRST.map(of).into();
@@ -111,11 +113,11 @@ fn choices<'a, Q: Drawn>(run: &Run<'a, Q>) -> Vec<(Choice, Run<'a, Q>)> {
 
 /// Result of a level on a run.
 #[derive(Clone, Debug)]
-pub struct Response<Q: Drawn = f64> {
+pub struct Response {
     /// The level.
     pub choice: Choice,
     /// Its peaks: of a structure that overturns, those before it falls.
-    pub peaks: Q::Peaks,
+    pub peaks: Peaks,
     /// How it ended.
     pub ending: Ending,
     /// Transitions.
@@ -126,9 +128,9 @@ pub struct Response<Q: Drawn = f64> {
 
 /// A level beside the reference.
 #[derive(Clone, Debug)]
-pub struct Verdict<Q: Drawn = f64> {
+pub struct Verdict {
     /// Result of the level.
-    pub response: Response<Q>,
+    pub response: Response,
     /// Relative errors, in the order of [`Criterion::ALL`]: of several floors the largest.
     pub errors: [f64; 6],
     /// Whether it predicts overturning, or none, as the reference does; None if the reference leaves it open.
@@ -137,20 +139,20 @@ pub struct Verdict<Q: Drawn = f64> {
 
 /// All levels on one run.
 #[derive(Clone, Debug)]
-pub struct Comparison<Q: Drawn = f64> {
+pub struct Comparison {
     /// Eqs 1, 5, 6 to [`REFERENCE_TOLERANCE`].
-    pub reference: Response<Q>,
+    pub reference: Response,
     /// The simplest first, each to the tolerance of the run.
-    pub verdicts: Vec<Verdict<Q>>,
+    pub verdicts: Vec<Verdict>,
     /// The level `auto` without the vertical ground acceleration, if the run has one.
-    pub without_vertical: Option<Result<Verdict<Q>, RunError>>,
+    pub without_vertical: Option<Result<Verdict, RunError>>,
     /// Levels that cannot do the run, and why.
     pub refused: Vec<(Choice, RunError)>,
 }
 
 /// Does `run` at every level.
-pub fn compare<Q: Drawn>(run: &Run<Q>) -> Result<Comparison<Q>, RunError> {
-    let since = |run: &Run<Q>| Falling::<Q>::since(run.ground.start(), &run.structure, run.detail);
+pub fn compare<Q: Moves>(run: &Run<Q>) -> Result<Comparison, RunError> {
+    let since = |run: &Run<Q>| Falling::since(run.ground.start(), &run.structure, run.detail);
     let of_all = |detail| Choice { detail, modes: all_modes(&run.structure) };
     let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..run.clone() };
     let (choices, level_ground) = (choices(run), run.ground.clone().without_vertical());
@@ -202,7 +204,7 @@ pub fn compare<Q: Drawn>(run: &Run<Q>) -> Result<Comparison<Q>, RunError> {
 }
 
 /// A level on its way.
-struct Trial<'a, Q: Drawn, Segments> {
+struct Trial<'a, Q: Moves, Segments> {
     choice: Choice,
     /// Whether its ground moves horizontally alone and the reference's does not.
     is_level: bool,
@@ -219,11 +221,12 @@ struct Trial<'a, Q: Drawn, Segments> {
 }
 
 /// Of `run`, whose `peaks` will be there.
-fn start<'a, Q: Drawn>(
+fn start<'a, Q: Moves>(
     run: &Run<'a, Q>,
     choice: Choice,
-    peaks: &'a mut Falling<Q>,
+    peaks: &'a mut Falling,
 ) -> Result<Trial<'a, Q, impl Iterator<Item = Segment> + use<'a, Q>>, RunError> {
+    let lines = lines(&run.structure);
     let [slowest, fastest] = run.structure.vibration().rocking;
     let Follower { engine, segments, end, rest } = run.course()?;
     let segments = segments.flat_map(move |segment| cut(segment, LONGEST_STRETCH / fastest));
@@ -232,8 +235,8 @@ fn start<'a, Q: Drawn>(
         is_level: false,
         course: Follower { engine, segments, end, rest },
         peaks: peaks.watch(),
-        history: History { sections: Vec::new() },
-        distance: Distance::new(slowest, Q::kinds(&run.structure).len()),
+        distance: Distance::new(slowest, lines.len()),
+        history: History { lines, sections: Vec::new() },
         compared: 0,
         ending: None,
     })
@@ -250,7 +253,7 @@ fn cut(segment: Segment, longest: f64) -> impl Iterator<Item = Segment> {
     })
 }
 
-impl<Q: Drawn, Segments: Iterator<Item = Segment>> Trial<'_, Q, Segments> {
+impl<Q: Moves, Segments: Iterator<Item = Segment>> Trial<'_, Q, Segments> {
     /// Follows the motion over the next segment unless the run has ended.
     fn go_on(&mut self) -> Result<(), RunError> {
         if self.ending.is_none() {
@@ -275,7 +278,7 @@ impl<Q: Drawn, Segments: Iterator<Item = Segment>> Trial<'_, Q, Segments> {
     }
 
     /// The response, the peaks of all the motion, and the distance from the reference.
-    fn response(self) -> (Response<Q>, Q::Peaks, Distance) {
+    fn response(self) -> (Response, Peaks, Distance) {
         let motion = self.course.engine.motion();
         let ending = self.ending.expect("it has been followed to its end");
         let (transitions, work) = (motion.transitions, motion.work);
@@ -290,40 +293,44 @@ pub fn relative((difference, expected): (f64, f64)) -> f64 {
     if difference == 0.0 { 0.0 } else { difference / expected }
 }
 
-impl<Q: Drawn> Response<Q> {
+impl Response {
     /// Steps and evaluations together: an exact leap costs about as much as an evaluation.
     pub fn cost(&self) -> u64 {
         self.work.steps + self.work.evaluations
     }
 }
 
-/// For each kind of line, as [`Drawn::kinds`] numbers them, the largest of the `differences` in proportion to what is `expected`.
-fn errors(kinds: &[usize], differences: &[f64], expected: &[f64]) -> [f64; 3] {
+/// For rotation, elastic displacements, and accelerations and forces among `lines`, the largest of the `differences` in proportion to
+/// what is `expected`.
+fn errors(lines: &[Output], differences: &[f64], expected: &[f64]) -> [f64; 3] {
     let mut errors = [0.0; 3];
-    for (kind, pair) in kinds.iter().zip(differences.iter().copied().zip(expected.iter().copied())) {
-        errors[*kind] = f64::max(errors[*kind], relative(pair));
+    for (line, pair) in lines.iter().zip(differences.iter().copied().zip(expected.iter().copied())) {
+        let kind = match line {
+            Output::theta => 0,
+            Output::u(_) => 1,
+            _ => 2,
+        };
+        errors[kind] = f64::max(errors[kind], relative(pair));
     }
     errors
 }
 
-impl<Q: Drawn> Verdict<Q> {
+impl Verdict {
     /// Of a `response` that has been this far from the `reference`, whose peaks are these with a fall, `all` of it.
     fn new(
         structure: &Structure,
-        response: Response<Q>,
+        response: Response,
         distance: &Distance,
-        reference: &Response<Q>,
-        all: &Q::Peaks,
-    ) -> Verdict<Q> {
-        let kinds = &Q::kinds(structure);
-        let magnitudes = |peaks: &Q::Peaks| -> Vec<f64> {
-            Q::exact(structure, peaks)[1..].iter().map(|peak| peak.magnitude).collect()
-        };
+        reference: &Response,
+        all: &Peaks,
+    ) -> Verdict {
+        let lines = &lines(structure);
+        let magnitudes = |peaks: &Peaks| Vec::from_iter(peaks_of(lines, peaks).map(|peak| peak.magnitude));
         let [found, expected] = [&response.peaks, &reference.peaks].map(magnitudes);
         let differences: Vec<_> =
             found.iter().zip(&expected).map(|(found, expected)| (found - expected).abs()).collect();
-        let [theta, u, a_t] = errors(kinds, &differences, &expected);
-        let [theta_history, u_history, a_t_history] = errors(kinds, &distance.largest, &magnitudes(all));
+        let [theta, u, a_t] = errors(lines, &differences, &expected);
+        let [theta_history, u_history, a_t_history] = errors(lines, &distance.largest, &magnitudes(all));
         Verdict {
             is_right_about_overturning: reference
                 .ending
@@ -342,9 +349,9 @@ impl<Q: Drawn> Verdict<Q> {
     }
 }
 
-impl<Q: Drawn> Comparison<Q> {
+impl Comparison {
     /// Cost of `response` as a multiple of the cost of the level `auto` with all modes; None if `auto` cannot do the run.
-    pub fn cost_over_auto(&self, response: &Response<Q>) -> Option<f64> {
+    pub fn cost_over_auto(&self, response: &Response) -> Option<f64> {
         let auto = Choice { detail: Detail::Auto, ..self.reference.choice };
         let auto = self.verdicts.iter().find(|verdict| verdict.response.choice == auto);
         auto.map(|auto| response.cost() as f64 / auto.response.cost() as f64)
@@ -352,7 +359,7 @@ impl<Q: Drawn> Comparison<Q> {
 
     /// Returns the cheapest level whose errors by every one of `criteria` are at most `within`; the one of the fewest
     /// equations if several levels have the least cost.
-    pub fn recommended(&self, within: f64, criteria: &[Criterion]) -> Option<&Verdict<Q>> {
+    pub fn recommended(&self, within: f64, criteria: &[Criterion]) -> Option<&Verdict> {
         let admitted = self.verdicts.iter().filter(|verdict| verdict.is_within(within, criteria));
         admitted.min_by_key(|verdict| verdict.response.cost()) // the first of several
     }

@@ -1,19 +1,24 @@
 //! The largest magnitudes of a motion and their instants, exact: between the ends of its pieces too.
 //!
-//! In a piece that may hold a larger magnitude ([`peak_watch`](super::peak_watch)) each output is expanded as a series in time
-//! (`levels::shown`). Between its stationary points (`extremes`) a series only rises or falls, so that the largest magnitude is at
-//! a stationary point or at an end.
+//! Bounds over a piece tell most of the time that an output has no larger magnitude there than so far
+//! ([`peak_watch`](super::peak_watch)). Otherwise the output is expanded as a series in time. Between its stationary points
+//! (`extremes`) a series only rises or falls, so that the largest magnitude is at a stationary point or at an end. The series tells
+//! the instant; the value there comes from the state.
 
-use super::peak_watch::{PeakWatch, Peaked};
+use super::peak_watch::PeakWatch;
+use crate::engine::Moves;
 #[cfg(feature = "lanes")]
 use crate::engine::lanes::{Bounded, Passes};
-use crate::engine::piece::{Expansion, Part, Piece, Sample, Watch};
-use crate::levels::shown::Searched;
-use crate::mechanics::outputs::{Measure, OUTPUTS, PeakRule, Sizes};
+#[cfg(feature = "lanes")]
+use crate::engine::piece::Watch;
+use crate::engine::piece::{CONVERGED, Expansion, Over, Piece};
+use crate::mechanics::instant::Instant;
+use crate::mechanics::reach::Magnitudes;
 use crate::mechanics::restraint::Angles;
-use crate::series::extremes::{self, Bound};
-use crate::{Base, Ties};
-use crate::{Detail, Floor, Outputs, Phase, State, Structure, Transition, TransitionKind};
+use crate::series::extremes;
+use crate::{Base, Detail, Output, Structure, Ties};
+#[cfg(feature = "lanes")]
+use crate::{Phase, Transition, TransitionKind};
 use serde::{Deserialize, Serialize};
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
@@ -21,9 +26,6 @@ const ROUNDING: f64 = 1e-14;
 
 /// Magnitudes that differ by no more than this part are the same but for what rounding adds up to in many steps.
 const SAME: f64 = 1e-12;
-
-/// How often an exact leap is halved before a polynomial is asked for: a bound on a half has a quarter of the slack.
-const HALVINGS: u32 = 2;
 
 /// The largest magnitude of a quantity, and its instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -47,32 +49,91 @@ impl Peak {
 
     /// Whether a magnitude of at most `bound` may equal or exceed the peak.
     #[inline]
-    pub(super) fn may_be_same(&self, bound: f64) -> bool {
+    fn may_be_same(&self, bound: f64) -> bool {
         bound >= self.magnitude * (1.0 - SAME)
     }
 
     /// Whether a magnitude of at most `bound` at `time` (s) or later may be more than it, or the same and sooner.
-    pub(super) fn may_change(&self, bound: f64, time: f64) -> bool {
+    fn may_change(&self, bound: f64, time: f64) -> bool {
         bound > self.magnitude * if time < self.time { 1.0 - SAME } else { 1.0 + ROUNDING }
     }
 }
 
+/// A quantity of a structure that has a peak.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Peaking {
+    /// An output.
+    Output(Output),
+    /// The force of the tendon P_t, N.
+    Tendon,
+}
+
+impl Peaking {
+    /// The quantities of `structure` that have a peak: outputs, and with a tendon its force.
+    pub fn of(structure: &Structure) -> impl Iterator<Item = Peaking> {
+        let tendon = has_tendon(structure.base()).then_some(Peaking::Tendon);
+        Output::with_peak(structure).into_iter().map(Peaking::Output).chain(tendon)
+    }
+
+    /// The name, of many masses with the number of the floor or storey from 1.
+    pub fn name(self, structure: &Structure) -> String {
+        match self {
+            Peaking::Output(output) => output.name(structure),
+            Peaking::Tendon => self.symbol().into(),
+        }
+    }
+
+    /// The symbol without a number.
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Peaking::Output(output) => output.symbol(),
+            Peaking::Tendon => "P_t",
+        }
+    }
+
+    /// The unit.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Peaking::Output(output) => output.unit(),
+            Peaking::Tendon => "N",
+        }
+    }
+}
+
 /// Peaks of the motion that has been watched.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peaks {
-    /// Peaks of the searched outputs, in the order of [`Measure::SEARCHED`].
-    largest: Searched<Peak>,
+    /// Half-width of the base, m.
+    B: f64,
     ground: Peak,
-    /// Sizes of the structure, which give the peaks that come with others.
-    sizes: Sizes,
+    /// The peaks that are searched.
+    searched: Vec<Searched>,
+    /// Outputs whose peaks come with one of these: its place, and the multiple that they are of it.
+    with: Vec<(Output, usize, f64)>,
     tendon: Tendon,
     /// Right-hand-side evaluations that the search took.
     evaluations: u64,
 }
 
+/// A peak that is searched.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Searched {
+    output: Output,
+    peak: Peak,
+    /// The place of the output among the reaches.
+    place: usize,
+}
+
+impl Searched {
+    #[inline(always)]
+    fn bound<Q: Moves>(&self, structure: &Structure, bounds: &Magnitudes<Q>) -> f64 {
+        structure.reaches()[self.place].bound(self.output, structure, bounds)
+    }
+}
+
 /// The tendon of a base, as far as the peak of its force needs it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Tendon {
+struct Tendon {
     /// Prestress and stiffness.
     P_0: f64,
     k_t: f64,
@@ -82,151 +143,60 @@ pub(super) struct Tendon {
     start: f64,
 }
 
-impl Tendon {
-    /// The tendon of `base` at the level `detail` from `start` (s) on.
-    pub(super) fn new(base: &Base, detail: Detail, start: f64) -> Tendon {
-        let Ties { P_0, k_t, .. } = base.ties;
-        Tendon { P_0, k_t, angles: detail.angles(), start }
-    }
-
-    /// Peak of the force P_t = P_0 + k_t e, N, under a base of the half-width `B` (m). It comes with the peak of |θ|, unless the
-    /// force is constant.
-    pub(super) fn peak(&self, B: f64, theta: Peak) -> Peak {
-        let &Tendon { P_0, k_t, angles, start } = self;
-        let magnitude = P_0 + k_t * B * angles.chord(theta.magnitude, 0.0).length;
-        Peak { magnitude, time: if k_t > 0.0 { theta.time } else { start } }
-    }
-}
-
 /// Whether `base` has a tendon.
-pub(super) fn has_tendon(base: &Base) -> bool {
+fn has_tendon(base: &Base) -> bool {
     base.ties.P_0 > 0.0 || base.ties.k_t > 0.0
-}
-
-/// A row of the table of peaks.
-#[derive(Clone, Copy, Debug)]
-pub struct Peaking {
-    /// Symbol of the quantity.
-    pub name: &'static str,
-    /// Its unit.
-    pub unit: &'static str,
-    quantity: Quantity,
-}
-
-/// A quantity that has a peak.
-#[derive(Clone, Copy, Debug)]
-enum Quantity {
-    Output(Measure),
-    Tendon,
-}
-
-impl Peaking {
-    /// The peak of the quantity among `peaks`.
-    pub fn of(&self, peaks: &Peaks) -> Peak {
-        match self.quantity {
-            Quantity::Output(measure) => peaks.of(measure),
-            Quantity::Tendon => peaks.P_t(),
-        }
-    }
-}
-
-/// The number of outputs that have a peak.
-const COUNT: usize = {
-    let (mut count, mut i) = (0, 0);
-    while i < OUTPUTS.len() {
-        count += !matches!(OUTPUTS[i].peak, PeakRule::None) as usize;
-        i += 1;
-    }
-    count
-};
-
-/// The peaks of the outputs, each at the place that its row in the table of outputs gives it.
-pub const PEAKS: [Peaking; COUNT] = {
-    let mut peaks = [TENDON; COUNT];
-    let mut i = 0;
-    while i < OUTPUTS.len() {
-        let output = &OUTPUTS[i];
-        if let PeakRule::Searched(place) | PeakRule::With(place, ..) = output.peak {
-            peaks[place] = Peaking { name: output.name, unit: output.unit, quantity: Quantity::Output(output.measure) };
-        }
-        i += 1;
-    }
-    peaks
-};
-
-/// The force of the tendon.
-pub(super) const TENDON: Peaking = Peaking { name: "P_t", unit: "N", quantity: Quantity::Tendon };
-
-/// The peaks that `structure` has: all of [`PEAKS`], and with a tendon the peak of its force.
-pub fn of(structure: &Structure) -> impl Iterator<Item = &'static Peaking> + use<> {
-    let tendon = has_tendon(structure.base()).then_some(const { &TENDON });
-    const { &PEAKS }.iter().chain(tendon)
 }
 
 impl Peaks {
     /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion. A peak that stays 0 has this instant.
     pub fn since(time: f64, structure: &Structure, detail: Detail) -> Peaks {
-        let (Floor { mass: m, height: H, .. }, B) = (structure.floors()[0], structure.base().B);
-        let (none, tendon) = (Peak { magnitude: 0.0, time }, Tendon::new(structure.base(), detail, time));
-        let largest = [none; Measure::SEARCHED.len()];
-        Peaks { largest, ground: none, sizes: Sizes { m, H, B }, tendon, evaluations: 0 }
-    }
-
-    /// Sees the `outputs` at `time` (s), which need not be in a piece.
-    pub fn see_instant(&mut self, time: f64, outputs: &Outputs) {
-        Measure::SEARCHED.into_iter().for_each(|measure| self.see(measure, time, outputs));
-    }
-
-    /// Peak of an output that has one; of any other output the peak is 0.
-    pub fn of(&self, measure: Measure) -> Peak {
-        match measure.row().peak {
-            PeakRule::None => Peak::default(),
-            PeakRule::Searched(_) => self.largest[measure.place()],
-            PeakRule::With(_, measure, magnitude) => {
-                let peak = self.of(measure);
-                Peak { magnitude: magnitude(&self.sizes, peak.magnitude), ..peak }
+        let (&Base { B, ties: Ties { P_0, k_t, .. }, .. }, none) = (structure.base(), Peak { magnitude: 0.0, time });
+        let (mut searched, mut with): (Vec<Searched>, Vec<_>) = (Vec::new(), Vec::new());
+        for output in Output::with_peak(structure).into_iter().filter(|of| *of != Output::uplift) {
+            let over = |(at, other): (usize, &Searched)| Some((output, at, output.over(other.output, structure)?));
+            match searched.iter().enumerate().find_map(over) {
+                Some(found) => with.push(found),
+                None => searched.push(Searched { output, peak: none, place: output.place(structure.floors().len()) }),
             }
+        }
+        let tendon = Tendon { P_0, k_t, angles: detail.angles(), start: time };
+        Peaks { B, ground: none, searched, with, tendon, evaluations: 0 }
+    }
+
+    /// Peak of an output that has one.
+    pub fn of(&self, output: Output) -> Option<Peak> {
+        if output == Output::uplift {
+            // it comes with the peak of |θ|, which never exceeds π/2
+            let theta = self.theta();
+            return Some(Peak { magnitude: 2.0 * self.B * libm::sin(theta.magnitude), ..theta });
+        }
+        let searched = self.searched.iter().find(|of| of.output == output).map(|of| of.peak);
+        searched.or_else(|| {
+            let (_, place, factor) = self.with.iter().find(|(of, ..)| *of == output)?;
+            let peak = self.searched[*place].peak;
+            Some(Peak { magnitude: factor * peak.magnitude, ..peak })
+        })
+    }
+
+    /// Peak of the `quantity`, if it has one.
+    pub fn peak(&self, quantity: Peaking) -> Option<Peak> {
+        match quantity {
+            Peaking::Output(output) => self.of(output),
+            Peaking::Tendon => Some(self.P_t()),
         }
     }
 
     /// Peak of the rotation |θ|, rad.
     pub fn theta(&self) -> Peak {
-        self.of(Measure::theta)
+        self.searched[0].peak
     }
 
-    /// Peak of the elastic displacement |u|, m.
-    pub fn u(&self) -> Peak {
-        self.of(Measure::u)
-    }
-
-    /// Peak of the lateral displacement of the top mass |δ_t|, m (Eq 26).
-    pub fn delta_t(&self) -> Peak {
-        self.of(Measure::delta_t)
-    }
-
-    /// Peak of the uplift δ_u = 2 B sin|θ|, m (Eq 25). It comes with the peak of |θ|, which never exceeds π/2.
-    pub fn uplift(&self) -> Peak {
-        self.of(Measure::uplift)
-    }
-
-    /// Peak of the tendon's force P_t = P_0 + k_t e, N.
+    /// Peak of the tendon's force P_t = P_0 + k_t e, N. It comes with the peak of |θ|, unless the force is constant.
     pub fn P_t(&self) -> Peak {
-        self.tendon.peak(self.sizes.B, self.theta())
-    }
-
-    /// Peak of the acceleration of the top mass |a_t|, m/s² (Eq 27).
-    pub fn a_t(&self) -> Peak {
-        self.of(Measure::a_t)
-    }
-
-    /// Peak of |V_t| = m |a_t|, N (Eqs 2, 23).
-    pub fn V_t(&self) -> Peak {
-        self.of(Measure::V_t)
-    }
-
-    /// Peak of |M_t| = m H |a_t|, N·m (Eqs 3, 24).
-    pub fn M_t(&self) -> Peak {
-        self.of(Measure::M_t)
+        let (theta, &Tendon { P_0, k_t, angles, start }) = (self.theta(), &self.tendon);
+        let magnitude = P_0 + k_t * self.B * angles.chord(theta.magnitude, 0.0).length;
+        Peak { magnitude, time: if k_t > 0.0 { theta.time } else { start } }
     }
 
     /// Peak of the ground acceleration |a_g|, m/s², which is linear in a piece.
@@ -240,130 +210,97 @@ impl Peaks {
     }
 
     /// The watcher that searches the pieces of a motion for larger peaks. The peaks are complete once the watcher is dropped.
-    pub fn watch(&mut self) -> PeakWatch<'_> {
+    pub fn watch<Q: Moves>(&mut self) -> PeakWatch<'_, Q> {
         PeakWatch::new(self)
     }
 
-    /// The watcher that searches for the peaks of θ and of the uplift only.
+    /// The watcher that searches for the peak of θ only.
+    #[cfg(feature = "lanes")]
     pub fn watch_theta(&mut self) -> ThetaWatch<'_> {
+        self.searched.truncate(1);
         ThetaWatch { peaks: self, impacts: 0 }
     }
 
-    /// Looks for those of `measures` in `part`, where it may hold larger magnitudes; `halvings` are left.
-    fn look(&mut self, measures: &[Measure], part: &Part, halvings: u32) {
-        let start = part.piece.before.time + part.start.0;
-        if !self.may_change_within(measures, &part.crude_bounds(), start) {
-            return;
-        }
-        let bounds = part.bounds();
-        let mut is_open = false;
-        for &measure in measures {
-            let bound = &bounds[measure.place()];
-            if self.may_change(measure, bound.ends, start) {
-                for (tau, outputs) in part.ends() {
-                    self.see(measure, part.piece.before.time + tau, &outputs);
-                }
-            }
-            is_open |= self.is_open(measure, bound, start);
-        }
-        if !is_open {
-            return;
-        }
-        if halvings > 0
-            && let Some(halves) = part.halves()
-        {
-            halves.iter().for_each(|half| self.look(measures, half, halvings - 1));
-            return;
-        }
-        let mut arcs = part.arcs();
+    /// Whether the peaks are of a motion that has begun.
+    pub(super) fn goes_on(&self) -> bool {
+        self.searched.iter().any(|of| of.peak.magnitude > 0.0)
+    }
+
+    /// Sees the ground acceleration `a_g` (m/s²) at `time` (s).
+    pub(super) fn see_ground(&mut self, a_g: f64, time: f64) {
+        self.ground.see(a_g, time);
+    }
+
+    /// Sees the values at the instant `x`, at `time` (s).
+    pub(super) fn see<Q: Moves>(&mut self, x: &Instant<f64, Q>, time: f64) {
+        self.searched.iter_mut().for_each(|of| of.peak.see(of.output.of(x), time));
+    }
+
+    /// Whether magnitudes of `structure` within `bounds` may equal or exceed a peak.
+    #[inline(always)]
+    pub(super) fn may_be_same<Q: Moves>(&self, structure: &Structure, bounds: &Magnitudes<Q>) -> bool {
+        let may_be_same = |of: &Searched| {
+            let bound = of.bound(structure, bounds);
+            bound > 0.0 && of.peak.may_be_same(bound)
+        };
+        self.searched.iter().any(may_be_same)
+    }
+
+    /// Whether magnitudes of `structure` within `bounds` at `time` (s) or later may change a peak.
+    pub(super) fn may_change<Q: Moves>(&self, structure: &Structure, bounds: &Magnitudes<Q>, time: f64) -> bool {
+        self.searched.iter().any(|of| of.peak.may_change(of.bound(structure, bounds), time))
+    }
+
+    /// Whether `piece` may change a peak.
+    pub(super) fn may_change_in<Q: Moves>(&self, piece: &Piece<Q>) -> bool {
+        self.may_change(&piece.level.as_ref().structure, &piece.whole().most(), piece.before.time)
+    }
+
+    /// Looks for larger magnitudes between the ends of `piece`.
+    pub(super) fn look<Q: Moves>(&mut self, piece: &Piece<Q>) {
+        let mut arcs = piece.arcs();
         while let Some(expansion) = arcs.next() {
-            for &measure in measures {
-                if self.is_open(measure, &bounds[measure.place()], start) {
-                    self.search(measure, &expansion);
-                }
-            }
+            self.look_over(&expansion);
             arcs.skip_middle();
+            let (structure, start) = (&piece.level.as_ref().structure, piece.before.time);
+            if arcs.left().is_some_and(|rest| !self.may_change(structure, &rest.most(), start + rest.start.0)) {
+                break;
+            }
         }
         self.evaluations += arcs.evaluations;
     }
 
-    /// Whether magnitudes of `measures` within `bounds` from `time` (s) on may change what has been seen.
-    fn may_change_within(&self, measures: &[Measure], bounds: &Searched<f64>, time: f64) -> bool {
-        measures.iter().any(|measure| self.may_change(*measure, bounds[measure.place()], time))
-    }
-
-    /// Whether a magnitude of at most `bound` from `time` (s) on may change the peak of `measure`.
-    fn may_change(&self, measure: Measure, bound: f64, time: f64) -> bool {
-        self.largest[measure.place()].may_change(bound, time)
-    }
-
-    /// Whether a magnitude of at most `bound` may equal or exceed the peak of `measure`.
-    #[inline]
-    fn may_be_same(&self, measure: Measure, bound: f64) -> bool {
-        bound > 0.0 && self.largest[measure.place()].may_be_same(bound)
-    }
-
-    /// Whether the peak of `measure` may change between the ends.
-    fn is_open(&self, measure: Measure, bound: &Bound, time: f64) -> bool {
-        bound.may_turn() && self.may_change(measure, bound.largest(), time)
-    }
-
-    /// Looks at a polynomial wherever `measure` is stationary.
-    fn search(&mut self, measure: Measure, expansion: &Expansion) {
-        expansion.series(measure, &mut |part, series| {
-            if !self.may_change(measure, extremes::bound_by_cubic(series.used(), part.arc.reach), part.time(0.0)) {
-                return;
+    /// Looks at a polynomial.
+    fn look_over<Q: Moves>(&mut self, expansion: &Expansion<Q>) {
+        expansion.in_parts(&mut |part, is_finest| {
+            let (structure, bounds) = (&part.piece.level.as_ref().structure, part.most());
+            let (reach, start) = (part.arc.reach, part.time(0.0));
+            let (mut ends, mut over) = (None, None);
+            for of in &mut self.searched {
+                let bound = of.bound(structure, &bounds);
+                let Searched { output, peak, .. } = of;
+                if !peak.may_change(bound, start) {
+                    continue;
+                }
+                let [first, last] = ends.get_or_insert_with(|| [part.shown(0.0), part.shown(reach)]);
+                let at_end = output.of(last);
+                peak.see(output.of(first), start);
+                peak.see(at_end, part.time(reach));
+                if !peak.may_change(bound, start) {
+                    continue;
+                }
+                let series = output.of(over.get_or_insert_with(|| Over::new(*part)));
+                if !is_finest && !output.is_component() && !part.has_converged(&series, at_end, CONVERGED) {
+                    return false;
+                }
+                if peak.may_change(extremes::bound(series.used(), reach), start) {
+                    extremes::stationary_points(series.used(), reach, |sigma| {
+                        peak.see(output.of(&part.shown(sigma)), part.time(sigma));
+                    });
+                }
             }
-            extremes::stationary_points(series.used(), part.arc.reach, |sigma| {
-                self.see(measure, part.time(sigma), &part.outputs(sigma));
-            });
+            true
         });
-    }
-
-    fn see(&mut self, measure: Measure, time: f64, outputs: &Outputs) {
-        self.largest[measure.place()].see(measure.of(outputs), time);
-    }
-}
-
-impl Peaked for f64 {
-    type Peaks = Peaks;
-    type Bounds = Searched<f64>;
-
-    fn none(time: f64, structure: &Structure, detail: Detail) -> Peaks {
-        Peaks::since(time, structure, detail)
-    }
-
-    fn goes_on(peaks: &Peaks) -> bool {
-        peaks.largest.iter().any(|peak| peak.magnitude > 0.0)
-    }
-
-    fn see_ground(peaks: &mut Peaks, a_g: f64, time: f64) {
-        peaks.ground.see(a_g, time);
-    }
-
-    fn see_instant(peaks: &mut Peaks, sample: &Sample) {
-        peaks.see_instant(sample.motion.time, &sample.outputs());
-    }
-
-    fn see(peaks: &mut Peaks, piece: &Piece, tau: f64, state: &State) {
-        peaks.see_instant(piece.before.time + tau, &piece.outputs(tau, state));
-    }
-
-    fn bounds(_: &Peaks, piece: &Piece) -> Searched<f64> {
-        piece.whole().crude_bounds()
-    }
-
-    #[inline]
-    fn may_be_same(peaks: &Peaks, bounds: &Searched<f64>) -> bool {
-        Measure::SEARCHED.iter().any(|measure| peaks.may_be_same(*measure, bounds[measure.place()]))
-    }
-
-    fn may_change(peaks: &Peaks, bounds: &Searched<f64>, time: f64) -> bool {
-        peaks.may_change_within(&Measure::SEARCHED, bounds, time)
-    }
-
-    fn look(peaks: &mut Peaks, piece: &Piece) {
-        peaks.look(&Measure::SEARCHED, &piece.whole(), HALVINGS);
     }
 }
 
@@ -371,11 +308,12 @@ impl Peaked for f64 {
 impl Passes for ThetaWatch<'_> {
     #[inline(always)]
     fn passes(&mut self, step: &Bounded) -> bool {
-        !self.peaks.may_be_same(Measure::theta, step.most.theta)
+        !self.may_hold(step.most.theta)
     }
 }
 
 /// Looks for the peak of θ alone in the pieces of a motion, and counts impacts.
+#[cfg(feature = "lanes")]
 #[derive(Debug)]
 pub struct ThetaWatch<'a> {
     pub(super) peaks: &'a mut Peaks,
@@ -383,26 +321,34 @@ pub struct ThetaWatch<'a> {
     pub(super) impacts: u64,
 }
 
+#[cfg(feature = "lanes")]
+impl ThetaWatch<'_> {
+    /// Whether a rotation of at most `bound` (rad) may equal or exceed the peak.
+    #[inline]
+    fn may_hold(&self, bound: f64) -> bool {
+        bound > 0.0 && self.peaks.searched[0].peak.may_be_same(bound)
+    }
+}
+
+#[cfg(feature = "lanes")]
 impl Watch for ThetaWatch<'_> {
     const SEES_PIECES: bool = true;
 
     #[inline]
     fn piece(&mut self, piece: &Piece) {
-        let (peaks, before) = (&mut *self.peaks, piece.before);
+        let before = piece.before;
         if before.phase == Phase::FullContact {
             return;
         }
-        let Some(arc) = piece.arc else { return peaks.look(&[Measure::theta], &piece.whole(), HALVINGS) };
-        if !peaks.may_be_same(Measure::theta, arc.most(&arc.theta, piece.end.theta)) {
-            return;
+        if let Some(arc) = piece.arc {
+            if !self.may_hold(arc.most(&piece.end).theta) {
+                return;
+            }
+            for (tau, state) in [(0.0, before.state), (piece.duration, piece.end)] {
+                self.peaks.searched[0].peak.see(state.theta, before.time + tau);
+            }
         }
-        for (tau, state) in [(0.0, before.state), (piece.duration, piece.end)] {
-            peaks.largest[Measure::theta.place()].see(state.theta, before.time + tau);
-        }
-        let [range] = extremes::ranges(|k| [arc.theta[k]], arc.order, arc.reach);
-        if peaks.is_open(Measure::theta, &range.and(0.0, 0.0), before.time) {
-            peaks.search(Measure::theta, &Expansion { piece, from: 0.0, arc });
-        }
+        self.peaks.look(piece);
     }
 
     fn transition(&mut self, transition: &Transition) {

@@ -24,17 +24,14 @@
 
 mod assumptions;
 
-use super::profile::Mosts;
-use super::reaction_series::{self, Extent, extents};
+use super::reaction_series::{self, Extent};
 use super::{Finish, Run, RunError};
 use crate::digits::short;
 use crate::engine::Moves;
-use crate::engine::piece::{Arcs, Expansion, Piece, Sample, Watch};
-use crate::levels::level::{Bounds, Now, Subject};
+use crate::engine::piece::{Expansion, Part, Piece, Sample, Watch};
 use crate::mechanics::impact;
-use crate::mechanics::instant::{Instant, Second, Strut};
-use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::reactions::forces;
+use crate::mechanics::instant::{Instant, Second};
+use crate::mechanics::lateral::Mosts;
 use crate::mechanics::state::State;
 use crate::numbers::Angle;
 use crate::numbers::most::Most;
@@ -43,8 +40,8 @@ use crate::series::extremes;
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
 use crate::{
-    Base, Detail, Impulse, Mode, Modes, Motion, OneMass, Parameters, Phase, Ramp, Reactions, Side, Structure,
-    Transition, TransitionKind,
+    Base, Detail, Impulse, Modes, Motion, OneMass, Parameters, Phase, Ramp, Reactions, Side, Structure, Transition,
+    TransitionKind,
 };
 pub use assumptions::{
     ASSUMPTIONS, Assumption, EDGE_LOAD, ENERGY, FRICTION, IMPACT_FRICTION, IMPACT_TENSION, Passing, TENSION, WEIGHT,
@@ -228,7 +225,7 @@ impl Validity {
     }
 
     /// Sees an instant, which need not be in a piece.
-    pub fn see_instant<Q: Judged>(&mut self, at: &Sample<Q>) {
+    pub fn see_instant<Q: Moves>(&mut self, at: &Sample<Q>) {
         let &Sample { motion: Motion { time, phase, .. }, load, .. } = at;
         self.found.see(WEIGHT, 1.0 + load.a_v / self.structure.base().g, time);
         self.see_reactions(time, phase, &at.edges());
@@ -268,9 +265,9 @@ impl Validity {
     }
 
     /// Looks at the motion over a polynomial; `extents` are bounds of its reactions.
-    fn look<Q: Judged>(&mut self, expansion: &Expansion<Q>, extents: &Reactions<Extent>) {
+    fn look<Q: Moves>(&mut self, expansion: &Expansion<Q>, extents: &Reactions<Extent>) {
         expansion.in_parts(&mut |part, is_finest| {
-            let polynomial = Polynomial { of: *part, series: Q::reactions(part), extents };
+            let polynomial = Polynomial { of: *part, series: reaction_series::over(part), extents };
             let &Expansion { piece, arc, .. } = part;
             let last = polynomial.reactions(arc.reach);
             if !is_finest && !polynomial.has_converged(&last) {
@@ -291,7 +288,7 @@ impl Validity {
     }
 
     /// Looks within `polynomial` for the worst value of an assumption, and for the time beyond its limit.
-    fn look_for<A: OfReactions, Q: Judged>(&mut self, phase: Phase, polynomial: &Polynomial<Q>) {
+    fn look_for<A: OfReactions, Q: Moves>(&mut self, phase: Phase, polynomial: &Polynomial<Q>) {
         if !A::holds_in(phase) {
             return;
         }
@@ -303,7 +300,7 @@ impl Validity {
     }
 
     /// Looks for the worst value of an assumption within `polynomial`.
-    fn search<A: OfReactions, Q: Judged>(&mut self, polynomial: &Polynomial<Q>) {
+    fn search<A: OfReactions, Q: Moves>(&mut self, polynomial: &Polynomial<Q>) {
         let (scale, reach) = (self.scale(), polynomial.of.arc.reach);
         loop {
             let worst = self.found.worst[A::PLACE].value;
@@ -347,7 +344,7 @@ impl Validity {
     }
 
     /// Sees that `piece` passes, whatever its reactions are.
-    fn see_passing<Q: Judged>(&mut self, piece: &Piece<Q>) {
+    fn see_passing<Q: Moves>(&mut self, piece: &Piece<Q>) {
         self.found.duration += piece.duration;
         self.found.held += piece.before.chatter.held.min(piece.duration);
         if piece.load.is_vertical() {
@@ -359,7 +356,7 @@ impl Validity {
     }
 
     /// Sees a `transition`.
-    fn see_transition<Q: Judged>(&mut self, transition: &Transition<Q>) {
+    fn see_transition<Q: Moves>(&mut self, transition: &Transition<Q>) {
         let &Transition { time, kind, before, after } = transition;
         let structure = &self.structure;
         let (side, phase) = match kind {
@@ -390,52 +387,26 @@ impl Validity {
     }
 }
 
-/// Lateral coordinates of the structures whose reactions are watched.
-#[allow(private_interfaces)] // an expansion, its bounds and its series are the library's own
-pub trait Judged: Moves {
-    /// Bounds of the reactions of the edges over a leap, if they are known.
-    #[doc(hidden)]
-    fn extents_of_leap(piece: &Piece<Self>) -> Option<Reactions<Extent>>;
-
-    /// The same over a polynomial.
-    #[doc(hidden)]
-    fn extents(expansion: &Expansion<Self>) -> Reactions<Extent>;
-
-    /// The same over what is left of a leap whose first polynomials, of this `count`, have been seen. What can be no worse than these
-    /// is left out.
-    #[doc(hidden)]
-    fn extents_of_rest(arcs: &mut Arcs<Self>, count: u32) -> Option<Reactions<Extent>>;
-
-    /// The reactions of the edges over a polynomial.
-    #[doc(hidden)]
-    fn reactions(expansion: &Expansion<Self>) -> Reactions<Terms>;
-}
-
-impl<Q: Judged> Watch<Q> for Validity {
+impl<Q: Moves> Watch<Q> for Validity {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &Piece<Q>) {
         self.see_passing(piece);
         let phase = piece.before.phase;
-        let of_leap = if piece.arc.is_none() { Q::extents_of_leap(piece) } else { None };
-        if of_leap.is_some_and(|extents| !self.may_matter(phase, &extents)) {
-            return;
-        }
         let (mut arcs, mut count) = (piece.arcs(), 0);
         loop {
-            let of_rest = Q::extents_of_rest(&mut arcs, count);
-            if of_rest.is_some_and(|extents| !self.may_matter(phase, &extents)) {
+            if arcs.left().and_then(extents_of_vibration).is_some_and(|extents| !self.may_matter(phase, &extents)) {
                 break;
             }
             let Some(expansion) = arcs.next() else { break };
-            let extents = match of_leap {
-                Some(extents) if phase == Phase::FullContact => extents,
-                _ => Q::extents(&expansion),
-            };
+            let extents = extents(&expansion);
             if self.may_matter(phase, &extents) {
                 self.look(&expansion, &extents);
             }
             count += 1;
+            if count >= MOST_ARCS {
+                arcs.skip_middle();
+            }
         }
     }
 
@@ -444,108 +415,46 @@ impl<Q: Judged> Watch<Q> for Validity {
     }
 }
 
-#[allow(private_interfaces)]
-impl Judged for f64 {
-    /// Known under gravity alone: a quantity whose second derivative is at most M over the time h stays within M h²/8 of its chord.
-    fn extents_of_leap(piece: &Piece) -> Option<Reactions<Extent>> {
-        let &Piece { level, before: &Motion { phase, .. }, duration, load, .. } = piece;
-        if load.is_vertical() || level.subject().is_tied {
-            return None;
-        }
-        let structure = level.structure();
-        let bounds = level.leap_bounds(phase, &piece.whole().step(), &piece.end);
-        let states = [(0.0, &piece.before.state), (duration, &piece.end)];
-        let per_bend = duration * duration / 8.0;
-        if phase != Phase::FullContact {
-            let bends = level.bends_of_forces(phase, load, duration, &bounds, &level.second(&bounds)?);
-            let [first, last] = states.map(|(tau, state)| {
-                let now = Now { state, load: load.at(tau), dissipators: &piece.before.dissipators };
-                forces(&Instant::of(structure, phase, state, now.load), &level.accelerations(phase, &now))
-            });
-            let [R_h, R_v] = std::array::from_fn(|i| Extent::between(first[i], last[i], bends[i].bend * per_bend));
-            return Some(Reactions { R_h, R_v, R_m: Extent::ANY });
-        }
-        let &Base { m_t, m0, g, .. } = structure.base();
-        let Mode { mass: m, height: H, stiffness: k, damping: c_fc, .. } = structure.modes()[0];
-        let [first, last] = states.map(|(tau, state)| {
-            let strut = c_fc * state.u_dot + k * state.u;
-            [strut - m0 * load.at(tau).a_g, H * strut + m * g * state.u]
-        });
-        let Bounds { u_ddot, u_dddot, .. } = bounds;
-        let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
-        let off = [strut, H * strut + per_bend * m * g * u_ddot];
-        let W = m_t * g;
-        let [R_h, R_m] = std::array::from_fn(|i| Extent::between(first[i], last[i], off[i]));
-        Some(Reactions { R_h, R_v: Extent::between(W, W, 0.0), R_m })
-    }
-
-    /// Of what the ties pull there are no bounds.
-    fn extents(&Expansion { piece, from, arc }: &Expansion) -> Reactions<Extent> {
-        let &Subject { ref structure, is_tied, .. } = piece.level.subject();
-        if is_tied { UNBOUNDED } else { extents(structure, piece.before.phase, piece.load.from(from), arc) }
-    }
-
-    fn extents_of_rest(arcs: &mut Arcs, count: u32) -> Option<Reactions<Extent>> {
-        if count >= MOST_ARCS {
-            arcs.skip_middle();
-        }
-        None
-    }
-
-    fn reactions(expansion: &Expansion) -> Reactions<Terms> {
-        reaction_series::of_one(expansion)
+/// Bounds of the reactions of the edges over a polynomial.
+fn extents<Q: Moves>(expansion: &Expansion<Q>) -> Reactions<Extent> {
+    let (series, reach) = (reaction_series::over(expansion), expansion.arc.reach);
+    let polynomial = Polynomial { of: *expansion, series, extents: &UNBOUNDED };
+    match polynomial.has_converged(&polynomial.reactions(reach)) {
+        true => Extent::of_all(&series, reach),
+        false => UNBOUNDED,
     }
 }
 
-#[allow(private_interfaces)]
-impl Judged for Modes {
-    fn extents_of_leap(_: &Piece<Modes>) -> Option<Reactions<Extent>> {
-        None
+/// Bounds of the reactions of the edges over a part in full contact, if the ground does not move vertically. The reactions of the motion
+/// that follows the load are linear in time. Those of the vibration about that motion add at most `off`, at an instant and at the ends.
+fn extents_of_vibration<Q: Moves>(part: Part<Q>) -> Option<Reactions<Extent>> {
+    let &Piece { level, before: &Motion { phase, .. }, load, .. } = part.piece;
+    let [u, u_dot, u_ddot, _] = level.swings(phase, &part.step())?;
+    if load.is_vertical() {
+        return None;
     }
-
-    fn extents(expansion: &Expansion<Modes>) -> Reactions<Extent> {
-        let (series, reach) = (reaction_series::of_modes(expansion), expansion.arc.reach);
-        let polynomial = Polynomial { of: *expansion, series, extents: &UNBOUNDED };
-        match polynomial.has_converged(&polynomial.reactions(reach)) {
-            true => Extent::of_all(&series, reach),
-            false => UNBOUNDED,
-        }
-    }
-
-    /// Known if the ground does not move vertically. The reactions of the motion that follows the load are linear in time. Those of
-    /// the vibration about that motion add at most `off`, at an instant and at the ends.
-    fn extents_of_rest(arcs: &mut Arcs<Modes>, _: u32) -> Option<Reactions<Extent>> {
-        let (part, [u, u_dot, u_ddot, _]) = arcs.rest()?;
-        let &Piece { level, before: &Motion { phase, .. }, load, .. } = part.piece;
-        if load.is_vertical() {
-            return None;
-        }
-        let (structure, none) = (level.structure(), Most(0.0));
-        let x = Instant {
-            structure,
-            s: phase.side().sign(),
-            strut: Strut::Elastic(structure.base().damping(phase)),
-            u: Mosts(u),
-            u_dot: Mosts(u_dot),
-            theta: none,
-            theta_dot: none,
-            turn: none.turn(),
-            a_g: none,
-            F_t: Mosts(Modes::parts(structure, 0.0)),
-            a_v: none,
-        };
-        let off = Reactions::at(&x, &Second { u_ddot: Mosts(u_ddot), theta_ddot: none });
-        let [first, last] = part.samples().map(|sample| sample.edges());
-        Some(Reactions {
-            R_h: Extent::between(first.R_h, last.R_h, 2.0 * off.R_h.0),
-            R_v: Extent::between(first.R_v, last.R_v, 0.0),
-            R_m: Extent::between(first.R_m, last.R_m, 2.0 * off.R_m.0),
-        })
-    }
-
-    fn reactions(expansion: &Expansion<Modes>) -> Reactions<Terms> {
-        reaction_series::of_modes(expansion)
-    }
+    let (structure, still) = (level.structure(), Most(0.0));
+    let x = Instant {
+        structure,
+        s: phase.side().sign(),
+        damping: 1.0,
+        u: Mosts(u),
+        u_dot: Mosts(u_dot),
+        theta: still,
+        theta_dot: still,
+        theta_ddot: still,
+        turn: still.turn(),
+        a_g: still,
+        F_t: Mosts(Q::parts(structure, 0.0)),
+        a_v: still,
+    };
+    let off = Reactions::at(&x, &Second { u_ddot: Mosts(u_ddot), theta_ddot: still });
+    let [first, last] = part.samples().map(|sample| sample.edges());
+    Some(Reactions {
+        R_h: Extent::between(first.R_h, last.R_h, 2.0 * off.R_h.0),
+        R_v: Extent::between(first.R_v, last.R_v, 0.0),
+        R_m: Extent::between(first.R_m, last.R_m, 2.0 * off.R_m.0),
+    })
 }
 
 /// A polynomial of a motion with its reactions.
@@ -622,7 +531,7 @@ fn positive(coefficients: &[f64], reach: f64, found: &mut Vec<(f64, f64)>) {
     look(reach);
 }
 
-impl<Q: Judged> Run<'_, Q> {
+impl<Q: Moves> Run<'_, Q> {
     /// The watcher of the assumptions that the run breaks.
     pub fn validity_watch(&self, limits: Limits) -> Result<Validity, RunError> {
         Ok(Validity::new(self.start()?.structure(), limits, Findings::since(self.ground.start())))

@@ -1,7 +1,7 @@
 //! The largest magnitude of a polynomial: bounds over a step, and all of its stationary points.
 
 use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
-use crate::series::taylor::{MAX_ORDER, ORDERS, Series, ZERO, evaluate, weighed_sum};
+use crate::series::taylor::{MAX_ORDER, Series, ZERO, evaluate, weighed_sum};
 
 /// max (σ − σᵏ) over 0 ≤ σ ≤ 1 for each k, rounded up.
 pub(crate) const OFF_CHORD: Series = {
@@ -16,96 +16,6 @@ pub(crate) const OFF_CHORD: Series = {
     off
 };
 
-/// Bounds of |Σ c_k σᵏ| over a step, found without a search for its extremes.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Bound {
-    /// The larger of the magnitudes at both ends.
-    pub ends: f64,
-    /// The most by which the magnitude exceeds `ends` in between.
-    pub between: f64,
-    /// The least and the largest rate, per unit of σ/reach. The polynomial may turn round unless the least is above 0.
-    pub rate: [f64; 2],
-}
-
-impl Bound {
-    /// Whether the polynomial may turn round; so may one whose rate is not known.
-    pub fn may_turn(&self) -> bool {
-        self.rate[0] <= 0.0 || self.rate[0].is_nan()
-    }
-
-    /// Bound of the magnitude.
-    pub fn largest(&self) -> f64 {
-        self.ends + if self.may_turn() { self.between } else { 0.0 }
-    }
-}
-
-/// The course of Σ c_k σᵏ over a step: its ends, and bounds between them.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Range {
-    /// Value at σ = 0.
-    pub start: f64,
-    /// Value at σ = `reach`.
-    pub end: f64,
-    /// The most by which the polynomial leaves the chord between its ends.
-    pub off_chord: f64,
-    /// Magnitude of the slope at the start, per unit of σ/reach.
-    slope: f64,
-    /// The most by which the slope changes.
-    turning: f64,
-}
-
-impl Range {
-    /// Bounds of the magnitude of the polynomial and a rest, which is at most `rest` and changes by at most `rest_rate`.
-    #[inline]
-    pub fn and(&self, rest: f64, rest_rate: f64) -> Bound {
-        let turning = self.turning + rest_rate;
-        let ends = self.start.abs().max(self.end.abs()) + rest;
-        Bound { ends, between: self.off_chord, rate: [self.slope - turning, self.slope + turning] }
-    }
-
-    /// Bound of the change from the start.
-    #[inline]
-    pub fn change(&self) -> f64 {
-        (self.end - self.start).abs() + self.off_chord
-    }
-
-    /// Bound of the rate, per unit of σ/reach.
-    #[inline]
-    pub fn rate(&self) -> f64 {
-        self.slope + self.turning
-    }
-}
-
-/// The courses of several Σ c_k σᵏ up to σ = `reach`; `row` gives their coefficients of each order up to `order`.
-///
-/// Between its ends a polynomial leaves their chord by no more than its terms of higher order do. If these are too small to
-/// turn the polynomial round, it rises or falls throughout.
-#[inline]
-pub fn ranges<const N: usize>(row: impl Fn(usize) -> [f64; N], order: usize, reach: f64) -> [Range; N] {
-    let start = row(0);
-    let first = row(1).map(|c| c * reach); // of order 0 the next coefficient is 0
-    let mut end: [f64; N] = std::array::from_fn(|i| start[i] + first[i]);
-    let [mut off, mut turning] = [[0.0; N]; 2];
-    let mut power = reach;
-    for k in 2..OFF_CHORD.len().min(order + 1) {
-        power *= reach;
-        let (terms, order) = (row(k), ORDERS[k]);
-        for i in 0..N {
-            let term = terms[i] * power;
-            end[i] += term;
-            off[i] += OFF_CHORD[k] * term.abs();
-            turning[i] += order * term.abs();
-        }
-    }
-    std::array::from_fn(|i| Range {
-        start: start[i],
-        end: end[i],
-        off_chord: off[i],
-        slope: first[i].abs(),
-        turning: turning[i],
-    })
-}
-
 /// How far Σ c_k σᵏ can leave the chord between its ends up to σ = `reach`.
 #[inline(always)]
 pub fn off_chord(coefficients: &[f64], reach: f64) -> f64 {
@@ -117,15 +27,9 @@ pub fn off_chord(coefficients: &[f64], reach: f64) -> f64 {
     weighed_sum(weights, higher)
 }
 
-/// Bound of |Σ c_k σᵏ| up to σ = `reach`, by its course.
-pub fn bound(coefficients: &[f64], reach: f64) -> f64 {
-    let [range] = ranges(|k| [coefficients.get(k).copied().unwrap_or(0.0)], coefficients.len() - 1, reach);
-    range.and(0.0, 0.0).largest()
-}
-
-/// A tighter bound of |Σ c_k σᵏ| up to σ = `reach`. The cubic with the values and slopes at both ends has a largest magnitude,
+/// Bound of |Σ c_k σᵏ| up to σ = `reach`. The cubic with the values and slopes at both ends has a largest magnitude,
 /// and the terms of higher order leave the cubic by a bounded amount.
-pub fn bound_by_cubic(coefficients: &[f64], reach: f64) -> f64 {
+pub fn bound(coefficients: &[f64], reach: f64) -> f64 {
     let (mut end, mut slope_end, mut off_cubic, mut power) = (0.0, 0.0, 0.0, 1.0);
     for (k, c) in coefficients.iter().enumerate() {
         let term = c * power;
@@ -221,7 +125,7 @@ mod tests {
             let unseen = curvature * (reach / SAMPLES as f64).powi(2) / 8.0;
             prop_assert!(value >= sampled * (1.0 - 1e-14) && value <= sampled + unseen + 1e-14, "{value} {sampled}");
             prop_assert!(bound(&coefficients, reach) >= value * (1.0 - 1e-14));
-            prop_assert!(bound_by_cubic(&coefficients, reach) >= value * (1.0 - 1e-14));
+            prop_assert!(bound(&coefficients, reach) >= value * (1.0 - 1e-14));
         }
     }
 

@@ -10,7 +10,6 @@ use crate::State;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Ramp;
 use crate::mechanics::restraint::Dissipators;
-use crate::series::extremes::off_chord;
 
 /// Highest order of an expansion. At a local error of 1e-16 it carries ω·h of more than 3 rad per step.
 pub const MAX_ORDER: usize = 28;
@@ -178,25 +177,15 @@ impl<Q: Coordinates> Arc<Q> {
         }
     }
 
-    /// A series of the same order, of these `coefficients`.
-    pub(crate) fn series(&self, coefficients: impl Fn(usize) -> f64) -> Series {
-        let mut series = ZERO;
-        series.iter_mut().enumerate().take(self.order + 1).for_each(|(k, c)| *c = coefficients(k));
-        series
-    }
-
-    /// Bound of the magnitude of a `series` of this arc that ends in `end`.
+    /// Bounds of the magnitudes of this motion, which ends in `end`.
     #[inline(always)]
-    pub(crate) fn most(&self, series: &Series, end: f64) -> f64 {
-        series[0].abs().max(end.abs()) + off_chord(self.used(series), self.reach)
-    }
-}
-
-impl Arc {
-    /// Coefficient `k` of the slope of `series` per unit of σ; 0 of the highest order, because the next one is not known.
-    #[inline(always)]
-    pub(crate) fn slope(&self, series: &Series, k: usize) -> f64 {
-        if k < self.order { ORDERS[k + 1] * series[k + 1] } else { 0.0 }
+    pub(crate) fn most(&self, end: &State<Q>) -> State<Q> {
+        State {
+            u: Q::most(self.used(&self.u), &end.u, self.reach),
+            u_dot: Q::most(self.used(&self.u_dot), &end.u_dot, self.reach),
+            theta: f64::most(self.used(&self.theta), &end.theta, self.reach),
+            theta_dot: f64::most(self.used(&self.theta_dot), &end.theta_dot, self.reach),
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The modes of vibration of a structure in full contact, and the floors that show their motion.
 
 use crate::Modes;
+use crate::mechanics::lateral::Coordinates;
 
 /// A mode of vibration in full contact: an oscillator on the base. One mass is one mode with the shape 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +56,7 @@ impl Mode {
 
 impl Floor {
     /// Elastic displacement of the floor at the coordinates `u`, m.
-    pub fn displacement(&self, u: &Modes) -> f64 {
-        self.shape.dot(u)
+    pub fn displacement<Q: Coordinates>(&self, u: &Q) -> f64 {
+        u.weighed(&self.shape)
     }
 }

@@ -5,7 +5,7 @@ use crate::fixed_step::{Method, Point};
 use crate::guards::{PhaseEnd, UpliftRule};
 use crate::response::{Failure, Response, Sample};
 use crate::scene::Scene;
-use rocking::{Outputs, Phase};
+use rocking::{Load, Phase, Structure};
 use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
 
@@ -93,14 +93,15 @@ pub fn run(
         transitions: 0,
         evaluations: Cell::new(0),
     };
-    let mut samples = Vec::with_capacity(scene.intervals());
+    let (mut samples, structure) = (Vec::with_capacity(scene.intervals()), Structure::from(scene.structure));
     let mut failure = None;
     for k in 0..scene.intervals() {
         if let Err(reason) = motion.advance(k, integrator, transitions, observe) {
             failure = Some(reason);
             break;
         }
-        samples.push(Sample::of(&Outputs::of(&scene.structure.into(), motion.phase, &motion.point.state(), 0.0)));
+        let state = motion.point.state();
+        samples.push(Sample::of(|output| output.at(&structure, motion.phase, &state, Load::default())));
     }
     Response { samples, evaluations: motion.evaluations.get(), transitions: motion.transitions, failure }
 }

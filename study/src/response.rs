@@ -1,6 +1,6 @@
 //! Result of a run: the response at the samples, its cost, or the reason of a failure.
 
-use rocking::Outputs;
+use rocking::Output;
 
 /// The response of a scene, as far as it goes.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +21,8 @@ pub struct Sample {
 
 impl Sample {
     /// The outputs that the study compares.
-    pub fn of(&Outputs { theta, u, a_t, .. }: &Outputs) -> Sample {
+    pub fn of(outputs: impl Fn(Output) -> f64) -> Sample {
+        let [theta, u, a_t] = [Output::theta, Output::u(0), Output::a_t(0)].map(outputs);
         Sample { theta, u, a_t }
     }
 }

@@ -6,6 +6,7 @@ use crate::scene::Scene;
 use crate::tables;
 use anyhow::Result;
 use population::{Pair, both};
+use rocking::Output;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::impact;
 use rocking::run::validity::{ASSUMPTIONS, Limits, TENSION, WEIGHT};
@@ -46,7 +47,7 @@ pub fn write(records: &Path, folder: &Path) -> Result<()> {
             [worst.value, share]
         });
         let rules = [&model, &repaired].into_iter().flat_map(|of| {
-            let [theta, a_t] = [of.peaks.theta().magnitude, of.peaks.a_t().magnitude];
+            let [theta, a_t] = [of.peaks.theta().magnitude, of.peaks.of(Output::a_t(0)).unwrap().magnitude];
             [theta, a_t, of.transitions as f64, f64::from(of.overturns), of.found.worst[TENSION].value]
         });
         let numbers = of.into_iter().chain(counts).chain(worst).chain(rules).map(|number| format!("{number:.8e}"));

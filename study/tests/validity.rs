@@ -2,6 +2,7 @@
 
 mod synthetic;
 
+use rocking::Output;
 use rocking::Detail;
 use rocking::engine::DEFAULT_TOLERANCE;
 use study::validity::population::both;
@@ -16,6 +17,6 @@ fn the_repaired_rule_leaves_no_tension() {
     assert!(repaired.abs() < 1e-9, "{repaired}");
     assert!(pair.model.transitions > 2 && pair.repaired.transitions > 2);
     let [model, repaired] =
-        [&pair.model, &pair.repaired].map(|of| (of.peaks.theta().magnitude, of.peaks.a_t().magnitude));
+        [&pair.model, &pair.repaired].map(|of| (of.peaks.theta().magnitude, of.peaks.of(Output::a_t(0)).unwrap().magnitude));
     assert!(model.0 != repaired.0 && model.1 != repaired.1, "{model:?} {repaired:?}");
 }

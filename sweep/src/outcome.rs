@@ -1,11 +1,10 @@
 //! Outcome of a run in a few numbers, and whether the run exceeded a limit.
 
 use crate::{Refused, ensure};
-use rocking::Watch;
 use rocking::digits::{short, with_unit};
 use rocking::run::fall::Found;
-use rocking::run::peaks::PEAKS;
 use rocking::run::{Ending, Run, RunError};
+use rocking::{Output, Watch};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
@@ -42,12 +41,12 @@ pub struct Summary {
     pub evaluations: u64,
 }
 
-/// Measures of a run with their units: [`PEAKS`], and the largest rotation as a fraction of the slenderness angle.
-pub const MEASURES: [(&str, &str); PEAKS.len() + 1] = {
-    let mut measures = [("theta/alpha_cg", "1"); PEAKS.len() + 1];
+/// Measures of a run with their units: [`Output::PEAKS_OF_ONE`], and the largest rotation as a fraction of the slenderness angle.
+pub const MEASURES: [(&str, &str); Output::PEAKS_OF_ONE.len() + 1] = {
+    let mut measures = [("theta/alpha_cg", "1"); Output::PEAKS_OF_ONE.len() + 1];
     let mut i = 0;
-    while i < PEAKS.len() {
-        measures[i] = (PEAKS[i].name, PEAKS[i].unit);
+    while i < Output::PEAKS_OF_ONE.len() {
+        measures[i] = (Output::PEAKS_OF_ONE[i].symbol(), Output::PEAKS_OF_ONE[i].unit());
         i += 1;
     }
     measures
@@ -104,8 +103,8 @@ impl Outcome {
             }
         };
         let mut magnitudes = [peaks.theta().magnitude / libm::atan(run.structure.base().tan_alpha_cg); MEASURES.len()];
-        for (magnitude, peaking) in magnitudes.iter_mut().zip(&PEAKS) {
-            *magnitude = peaking.of(&peaks).magnitude;
+        for (magnitude, output) in magnitudes.iter_mut().zip(Output::PEAKS_OF_ONE) {
+            *magnitude = peaks.of(output).map_or(f64::NAN, |peak| peak.magnitude);
         }
         Outcome::Ended(Summary {
             ending: finish.ending,

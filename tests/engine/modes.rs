@@ -2,14 +2,14 @@
 
 use nalgebra::{Matrix3, Vector3};
 use rocking::engine::Settings;
-use rocking::mechanics::floors::FrameOutput;
+
 use rocking::mechanics::restraint::Restraint;
 use rocking::run::record::Record;
 use rocking::run::validity::Limits;
 use rocking::run::{End, Run};
 use rocking::{
-    Body, Detail, Engine, Floor, LinearLoad, Load, Mode, Modes, Motion, OneMass, Parameters, Progress, Reactions,
-    State, Structure, Ties, Transition, TransitionKind,
+    Body, Detail, Engine, Floor, LinearLoad, Load, Mode, Modes, Motion, OneMass, Output, Parameters, Progress,
+    Reactions, State, Structure, Ties, Transition, TransitionKind,
 };
 use std::f64::consts::TAU;
 
@@ -155,7 +155,7 @@ fn a_frame_without_modes_is_the_rigid_limit() {
             many.advance(0.01, LinearLoad { value, slope: rate }, &mut ()).unwrap();
             one.advance(0.01, LinearLoad { value: from, slope }, &mut ()).unwrap();
             let load = many.structure().load(to.a_g, to.a_v, &[to.F_t]).unwrap();
-            let outputs = [one.outputs(to).a_t, many.sample(load).output(FrameOutput::a_t(0))];
+            let outputs = [one.output(Output::a_t(0), to), many.sample(load).output(Output::a_t(0))];
             let (many, one) = (&many.motion().state, &one.motion().state);
             (theta, a_t) = (theta.max(one.theta.abs()), a_t.max(outputs[0].abs()));
             off[0] = off[0].max((many.theta - one.theta).abs());
@@ -186,7 +186,7 @@ fn rates_are_the_slopes_of_states_outputs_and_reactions() {
         let mut engine = Engine::of_modes(frame.clone(), initial, 0.0, settings).unwrap();
         let load = |a_g, a_v, forces: [f64; 3]| frame.load(a_g, a_v, &forces).unwrap();
         let load = LinearLoad { value: load(1.0, -0.5, [9e3, -4e3, 6e3]), slope: load(40.0, 9.0, [5e5, 8e5, -7e5]) };
-        let outputs = Vec::from_iter(FrameOutput::all(&frame));
+        let outputs = Output::all(&frame);
         let h = 1e-5;
         let mut show = |until: f64| {
             let now = engine.motion().time;

@@ -5,7 +5,7 @@ use crate::shaking::shaking;
 use rocking::run::peaks::Peaks;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
-use rocking::{Detail, Engine, OneMass, Parameters, Ramp, State};
+use rocking::{Detail, Engine, OneMass, Output, Parameters, Ramp, State};
 
 /// A leap over many vibrations, which takes many polynomials: what is read of it is as if it had been cut.
 #[test]
@@ -22,16 +22,16 @@ fn a_long_leap_is_read_to_its_end() {
             let run = Run { detail, initial, tolerance: 1e-12, end: End::At(0.3), ..Run::new(structure, &ground) };
             let mut read = Vec::new();
             let instants = (0..300).map(|i| f64::from(i) * 1e-3 + 3e-4);
-            let finish = run.sample(instants, |sample| read.push(sample.outputs().delta_t), &mut ()).unwrap();
+            let finish = run.sample(instants, |sample| read.push(sample.output(Output::delta_t(0))), &mut ()).unwrap();
             (run.peaks().unwrap().0, read, finish.motion.work.steps)
         });
         let [(at_once, read_at_once, steps), (cut, read_cut, _)] = &results;
         assert!(detail != Detail::FixedBase || *steps == 1, "{detail:?} takes {steps} steps");
-        for peaking in &rocking::run::peaks::PEAKS {
-            let [whole, cut] = [at_once, cut].map(|peaks| peaking.of(peaks).magnitude);
-            assert!((whole - cut).abs() <= 1e-11 * cut, "{detail:?}: {} = {whole} {cut}", peaking.name);
+        for output in Output::PEAKS_OF_ONE {
+            let [whole, cut] = [at_once, cut].map(|peaks| peaks.of(output).unwrap().magnitude);
+            assert!((whole - cut).abs() <= 1e-11 * cut, "{detail:?}: {} = {whole} {cut}", output.symbol());
         }
-        let largest = (cut.delta_t()).magnitude;
+        let largest = (cut.of(Output::delta_t(0)).unwrap()).magnitude;
         for (whole, cut) in read_at_once.iter().zip(read_cut) {
             assert!((whole - cut).abs() <= 1e-10 * largest, "{detail:?}: {whole} {cut}");
         }
@@ -53,7 +53,10 @@ fn a_leap_without_end_is_looked_at_at_its_ends() {
             assert_eq!(finish.motion.work.steps, 1);
             assert!(peaks.evaluations() < 20_000, "{}", peaks.evaluations());
             let first = Run { end: End::At(2.0), ..run.clone() }.peaks().unwrap().0;
-            assert!((peaks.u().magnitude / first.u().magnitude - 1.0).abs() < 1e-9);
+            assert!(
+                (peaks.of(Output::u(0)).unwrap().magnitude / first.of(Output::u(0)).unwrap().magnitude - 1.0).abs()
+                    < 1e-9
+            );
         }
     }
 }
@@ -73,8 +76,8 @@ fn contact_of_no_duration_is_no_motion() {
         let run = Run { detail, initial, end: End::At(0.2), ..Run::new(structure, &ground) };
         let mut largest = 0.0_f64;
         let times = (0..=200_000).map(|i| f64::from(i) * 1e-6);
-        run.sample(times, |sample| largest = largest.max(sample.outputs().a_t.abs()), &mut ()).unwrap();
-        let peak = run.peaks().unwrap().0.a_t().magnitude;
+        run.sample(times, |sample| largest = largest.max(sample.output(Output::a_t(0)).abs()), &mut ()).unwrap();
+        let peak = run.peaks().unwrap().0.of(Output::a_t(0)).unwrap().magnitude;
         assert!((peak / largest - 1.0).abs() < 1e-4, "{}: {peak} {largest}", detail.name());
     }
 }
@@ -93,7 +96,7 @@ fn the_first_of_equal_peaks_counts() {
                 engine.advance(step, Ramp::default(), &mut peaks.watch()).unwrap();
                 highest = highest.max(engine.motion().state.u.abs());
             }
-            let peak = peaks.u();
+            let peak = peaks.of(Output::u(0)).unwrap();
             assert!((peak.time - crest).abs() < 1e-6, "u = {u}, u_dot = {u_dot}, {step}: {peak:?} {crest}");
             assert!(peak.magnitude >= highest, "u = {u}, u_dot = {u_dot}, {step}: {peak:?} {highest}");
         }

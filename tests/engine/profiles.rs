@@ -2,14 +2,12 @@
 
 use rocking::engine::AdvanceError;
 use rocking::engine::piece::Sample;
-use rocking::run::peaks::Peak;
-use rocking::run::profile::{Peaking, Profile};
 use rocking::run::record::Record;
 use rocking::run::validity::{ASSUMPTIONS, EDGE_LOAD, FRICTION, Findings, Limits, TENSION};
 use rocking::run::{End, Run, RunError};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Given;
-use rocking::{Detail, FrameOutput, Modes, OneMass, Parameters, Phase, Reactions, State, Structure};
+use rocking::{Detail, Modes, OneMass, Output, Parameters, Phase, Reactions, State, Structure};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -45,26 +43,25 @@ fn one_mode_is_one_mass() {
             let one = Run { initial: State { theta, ..one.initial }, ..one };
             let many = Run { detail, tolerance, ..Run::of_modes(frame.clone(), &ground) };
             let many = Run { initial: State { theta, ..many.initial }, ..many };
-            let ((expected, _), (found, finish)) = (one.peaks().unwrap(), many.profile().unwrap());
+            let ((expected, _), (found, finish)) = (one.peaks().unwrap(), many.peaks().unwrap());
             assert_same_findings(
                 &one.validity(Limits::default()).unwrap().0,
                 &many.validity(Limits::default()).unwrap().0,
             );
             assert!(finish.motion.transitions > 2 || !detail.has_uplift(), "{}", finish.motion.transitions);
             let pairs = [
-                (found.a_g, expected.a_g()),
-                (found.of(FrameOutput::theta).unwrap(), expected.theta()),
-                (found.of(FrameOutput::uplift).unwrap(), expected.uplift()),
-                (found.of(FrameOutput::u(0)).unwrap(), expected.u()),
-                (found.of(FrameOutput::drift(0)).unwrap(), expected.u()),
-                (found.of(FrameOutput::delta_t(0)).unwrap(), expected.delta_t()),
-                (found.of(FrameOutput::a_t(0)).unwrap(), expected.a_t()),
-                (found.of(FrameOutput::V(0)).unwrap(), expected.V_t()),
-                (found.of(FrameOutput::V_t).unwrap(), expected.V_t()),
-                (found.of(FrameOutput::M_t).unwrap(), expected.M_t()),
+                (found.a_g(), expected.a_g()),
+                (found.of(Output::theta).unwrap(), expected.theta()),
+                (found.of(Output::uplift).unwrap(), expected.of(Output::uplift).unwrap()),
+                (found.of(Output::u(0)).unwrap(), expected.of(Output::u(0)).unwrap()),
+                (found.of(Output::drift(0)).unwrap(), expected.of(Output::u(0)).unwrap()),
+                (found.of(Output::delta_t(0)).unwrap(), expected.of(Output::delta_t(0)).unwrap()),
+                (found.of(Output::a_t(0)).unwrap(), expected.of(Output::a_t(0)).unwrap()),
+                (found.of(Output::V(0)).unwrap(), expected.of(Output::V_t).unwrap()),
+                (found.of(Output::V_t).unwrap(), expected.of(Output::V_t).unwrap()),
+                (found.of(Output::M_t).unwrap(), expected.of(Output::M_t).unwrap()),
             ];
-            let of_tendon = tendon(&found).map(|found| (found, expected.P_t()));
-            assert_eq!(of_tendon.is_some(), parameters == tied);
+            let of_tendon = (parameters == tied).then(|| (found.P_t(), expected.P_t()));
             for (i, (found, expected)) in pairs.into_iter().chain(of_tendon).enumerate() {
                 let off = (found.magnitude - expected.magnitude).abs();
                 assert!(off <= 1e-13 * expected.magnitude, "{detail:?} {i}: {found:?}, not {expected:?}: {off:e}");
@@ -72,11 +69,6 @@ fn one_mode_is_one_mass() {
             }
         }
     }
-}
-
-/// Peak of the tendon's force.
-fn tendon(found: &Profile) -> Option<Peak> {
-    found.peaks().find(|(of, _)| *of == Peaking::Tendon).map(|(_, peak)| peak)
 }
 
 fn assert_same_findings(expected: &Findings, found: &Findings) {
@@ -110,9 +102,9 @@ fn a_profile_holds_every_sample_and_no_more() {
     for modes in 0..=3 {
         let frame = three_storeys(0.0, 0.0).keeping(modes).unwrap();
         let run = Run { end: End::At(4.0), ..Run::of_modes(frame.clone(), &ground) };
-        let (profile, finish) = run.profile().unwrap();
+        let (profile, finish) = run.peaks().unwrap();
         assert!(finish.motion.transitions > 2, "{}", finish.motion.transitions);
-        let outputs = FrameOutput::all(&frame).filter_map(|output| Some((output, profile.of(output)?)));
+        let outputs = Output::with_peak(&frame).into_iter().filter_map(|output| Some((output, profile.of(output)?)));
         let peaks = Vec::from_iter(outputs);
         let limits = Limits { friction: 0.15, ..Limits::default() };
         let worst = run.validity(limits).unwrap().0.worst;
@@ -157,7 +149,7 @@ fn the_peak_of_the_tendon_holds_every_sample_and_no_more() {
     let ground = ground();
     for (k_t, detail) in [(2e6, Detail::Auto), (2e6, Detail::Linear), (2e6, Detail::Rigid), (0.0, Detail::Auto)] {
         let run = Run { detail, end: End::At(4.0), ..Run::of_modes(three_storeys(1e5, k_t), &ground) };
-        let (peak, mut largest) = (tendon(&run.profile().unwrap().0).unwrap(), (0.0, 0.0));
+        let (peak, mut largest) = (run.peaks().unwrap().0.P_t(), (0.0, 0.0));
         let times = (0..80_000).map(|i| f64::from(i) * 5e-5);
         run.sample(
             times,
@@ -187,9 +179,11 @@ fn a_long_leap_in_full_contact_holds_every_sample() {
     for kept in [1, 3] {
         let frame = three_storeys(1e4, 0.0).keeping(kept).unwrap();
         let run = Run { end: End::At(70.0), ..Run::of_modes(frame.clone(), &ground) };
-        let (profile, finish) = run.profile().unwrap();
+        let (profile, finish) = run.peaks().unwrap();
         assert_eq!(finish.motion.transitions, 0);
-        let peaks = Vec::from_iter(FrameOutput::all(&frame).filter_map(|output| Some((output, profile.of(output)?))));
+        let peaks = Vec::from_iter(
+            Output::with_peak(&frame).into_iter().filter_map(|output| Some((output, profile.of(output)?))),
+        );
         let (mut largest, mut friction) = (vec![0.0_f64; peaks.len()], 0.0_f64);
         let see = |sample: &Sample<Modes>| {
             for (largest, (output, _)) in largest.iter_mut().zip(&peaks) {
@@ -215,7 +209,7 @@ fn a_long_rest_is_seen_at_once() {
     let [short, long] = [1e2, 1e9].map(|end| {
         let run = Run { end: End::At(end), ..Run::of_modes(three_storeys(1e4, 2e6), &ground) };
         let findings = run.validity(Limits::default()).unwrap().0;
-        (run.profile().unwrap().0.peaks().collect::<Vec<_>>(), findings.worst)
+        (run.peaks().unwrap().0, findings.worst)
     });
     assert_eq!(short, long);
 }
@@ -228,7 +222,10 @@ fn a_rest_without_damping_ends() {
     let one = OneMass::new(Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS }).unwrap();
     let one = Run { end: End::At(1e9), ..Run::new(one, &ground) };
     let short = Run { end: End::At(20.0), ..one.clone() }; // it rests from 12 s on
-    assert_eq!(one.peaks().unwrap().0.a_t(), short.peaks().unwrap().0.a_t());
+    assert_eq!(
+        one.peaks().unwrap().0.of(Output::a_t(0)).unwrap(),
+        short.peaks().unwrap().0.of(Output::a_t(0)).unwrap()
+    );
     let [worst, expected] =
         [&one, &short].map(|run| run.validity(Limits::default()).unwrap().0.worst.map(|it| it.value));
     assert_eq!(worst, expected);
@@ -237,7 +234,7 @@ fn a_rest_without_damping_ends() {
     assert_eq!(many.follow(&mut ()).unwrap().motion.time, 1e9);
     let is_refused =
         |error: RunError| matches!(error, RunError::Advance { cause: AdvanceError::TooManyPolynomials { .. }, .. });
-    assert!(is_refused(many.profile().unwrap_err()) && is_refused(many.validity(Limits::default()).unwrap_err()));
+    assert!(is_refused(many.peaks().unwrap_err()) && is_refused(many.validity(Limits::default()).unwrap_err()));
 }
 
 /// Momentum gives r < 0, so that the first impact stops the base at full speed.

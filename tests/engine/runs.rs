@@ -4,7 +4,7 @@ use rocking::engine::piece::Sample;
 use rocking::run::levels::Criterion;
 use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError, levels};
-use rocking::{Body, Detail, Mode, Modes, OneMass, Parameters, Structure, Ties, Transition};
+use rocking::{Body, Detail, Mode, OneMass, Parameters, Structure, Ties, Transition};
 
 /// However finely a record is sampled, the histories of two levels are as far apart.
 #[test]
@@ -82,8 +82,7 @@ fn a_level_of_a_frame_is_also_how_many_modes_are_kept() {
     let ground = growing(4.0);
     let comparison = levels::compare(&Run::of_modes(frame, &ground)).unwrap();
     let errors = |detail, kept| {
-        let is_it =
-            |of: &&levels::Verdict<Modes>| of.response.choice == levels::Choice { detail, modes: Some([kept, 3]) };
+        let is_it = |of: &&levels::Verdict| of.response.choice == levels::Choice { detail, modes: Some([kept, 3]) };
         let verdict = comparison.verdicts.iter().find(is_it).unwrap();
         (verdict.errors, verdict.response.cost())
     };

@@ -3,7 +3,7 @@
 use approx::assert_relative_eq;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::energy::energy;
-use rocking::{Detail, Engine, LinearLoad, Load, OneMass, Parameters, State, Transition, TransitionKind};
+use rocking::{Detail, Engine, LinearLoad, Load, OneMass, Output, Parameters, State, Transition, TransitionKind};
 
 fn start(parameters: Parameters, initial: State, detail: Detail) -> Engine {
     Engine::with_detail(OneMass::new(parameters).unwrap(), initial, 0.0, DEFAULT_TOLERANCE, detail).unwrap()
@@ -63,7 +63,7 @@ fn energy_grows_by_its_work() {
         let total = |engine: &Engine| {
             let motion = engine.motion();
             energy(engine.structure(), motion.phase, &motion.state)
-                - F_t * engine.outputs(Load { a_g: 0.0, F_t, a_v: 0.0 }).delta_t
+                - F_t * engine.output(Output::delta_t(0), Load { a_g: 0.0, F_t, a_v: 0.0 })
         };
         let (mut before, mut pieces, mut moved) = (total(&engine), 0, 0.0_f64);
         follow(
@@ -75,7 +75,7 @@ fn energy_grows_by_its_work() {
                 if transition.is_none() {
                     assert_relative_eq!(now, before, max_relative = 1e-10);
                     pieces += 1;
-                    moved = moved.max(engine.outputs(Load { a_g: 0.0, F_t, a_v: 0.0 }).delta_t.abs());
+                    moved = moved.max(engine.output(Output::delta_t(0), Load { a_g: 0.0, F_t, a_v: 0.0 }).abs());
                 }
                 before = now;
             },

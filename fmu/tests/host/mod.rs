@@ -4,7 +4,6 @@
 use FlexibleRocking::any::AnyUnit;
 use FlexibleRocking::fmi2::{self, CallbackFunctions, CallbackLogger, EventInfo};
 use FlexibleRocking::fmi3::{self, IntermediateUpdateCallback, LogMessageCallback};
-use FlexibleRocking::masses::Masses;
 use FlexibleRocking::resources::{Contents, FRAME_FILE, FrameNumbers, PARAMETERS_FILE};
 use FlexibleRocking::unit::{Condition, Course};
 use FlexibleRocking::variables::Table;
@@ -13,6 +12,7 @@ use fmi_unit::snapshot::Snapshot;
 use fmi_unit::variables::{position, state_references};
 use fmi_unit::{DataType, Model, Update, Variable};
 use libc::{c_char, c_int, c_uint, c_void};
+use rocking::engine::Moves;
 use rocking::{Body, Floor, Mode, Modes, Parameters, Structure, Ties};
 use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
@@ -31,7 +31,7 @@ pub const DISCARD: c_int = 2;
 pub const ERROR: c_int = 3;
 
 /// How far the simulation had come that `snapshot` is of, once it had started.
-pub fn course<Q: Masses>(snapshot: &Snapshot) -> Option<Course<Q>> {
+pub fn course<Q: Moves>(snapshot: &Snapshot) -> Option<Course<Q>> {
     postcard::from_bytes::<Condition<Q>>(&snapshot.model).unwrap().2
 }
 

@@ -2,7 +2,7 @@
 
 use crate::host::*;
 use approx::assert_relative_eq;
-use rocking::run::peaks::PEAKS;
+use rocking::Output;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
 use rocking::{Detail, LinearLoad, Load, Parameters, Structure};
@@ -116,9 +116,9 @@ fn any_step_meets_every_sample() {
                 let steps = vec![duration / f64::from(count); count as usize];
                 assert_close(&shown, step_through(&host, steps).last().unwrap(), tolerance);
                 assert_eq!(host.get("record_duration"), duration);
-                for peaking in &PEAKS {
-                    let peak = peaking.of(&expected);
-                    let [found, time] = ["", "t_"].map(|start| host.get(&format!("{start}{}_max", peaking.name)));
+                for output in Output::PEAKS_OF_ONE {
+                    let peak = expected.of(output).unwrap();
+                    let [found, time] = ["", "t_"].map(|start| host.get(&format!("{start}{}_max", output.symbol())));
                     assert_relative_eq!(found, peak.magnitude, max_relative = tolerance);
                     assert_relative_eq!(time, peak.time - record.start(), max_relative = 1e-9, epsilon = 1e-9);
                 }

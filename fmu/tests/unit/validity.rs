@@ -4,8 +4,8 @@ use crate::host::*;
 use FlexibleRocking::BUILD;
 use approx::assert_relative_eq;
 use fmi_unit::snapshot::Snapshot;
+use rocking::Output;
 use rocking::run::fall::Falling;
-use rocking::run::peaks::PEAKS;
 use rocking::run::validity::{ASSUMPTIONS, Findings, Limits};
 use rocking::run::{End, Run};
 use rocking::{Detail, Parameters, Structure};
@@ -113,11 +113,15 @@ fn what_nobody_asks_for_is_not_watched() {
     let ((_, with), (silent, without)) = (run(1), run(0));
     assert_eq!(with.motion, without.motion);
     let structure = Structure::new(Parameters { r: 1.0, f_fc: 4.0, ..Parameters::EVISON }).unwrap();
-    let nothing = Falling::<f64>::since(0.0, &structure, Detail::Auto);
+    let nothing = Falling::since(0.0, &structure, Detail::Auto);
     assert_eq!((without.peaks, without.validity), (nothing, Findings::since(0.0)));
     assert!(with.peaks.all().theta().magnitude > 0.0);
     assert_relative_eq!(with.validity.duration, 5.0, max_relative = 1e-12);
     assert!(read(&silent).iter().all(|value| value.is_nan()) && silent.integer("energy_gains") == 0);
-    assert!(PEAKS.iter().all(|of| ["", "t_"].iter().all(|t| silent.get(&format!("{t}{}_max", of.name)).is_nan())));
+    assert!(
+        Output::PEAKS_OF_ONE
+            .iter()
+            .all(|of| ["", "t_"].iter().all(|t| silent.get(&format!("{t}{}_max", of.symbol())).is_nan()))
+    );
     assert!(silent.log.take().is_empty());
 }

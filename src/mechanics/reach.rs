@@ -1,0 +1,114 @@
+//! How far outputs reach: bounds of their magnitudes, which spare most pieces of a motion the search for peaks.
+
+use crate::mechanics::instant::Instant;
+use crate::mechanics::lateral::{Coordinates, Modes, Mosts};
+use crate::numbers::Turn;
+use crate::numbers::most::Most;
+use crate::series::taylor::Arc;
+use crate::{Output, Ramp, Structure};
+
+/// Bounds of the magnitudes of a motion.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Magnitudes<'a, Q> {
+    /// The motion and the ground acceleration, unless it is an exact leap.
+    pub arc: Option<(&'a Arc<Q>, Ramp)>,
+    /// Part of the viscous damping in full contact.
+    pub damping: f64,
+    pub u: Q,
+    pub u_dot: Q,
+    pub theta: f64,
+    pub theta_dot: f64,
+    pub a_g: f64,
+    pub F_t: Q,
+    pub a_v: f64,
+}
+
+/// How far an output reaches: the weights of the magnitudes of the motion in the bound of its magnitude.
+#[derive(Clone, Debug)]
+pub(crate) struct Reach {
+    /// Of |sin θ| and of 1 − cos θ.
+    turn: [f64; 2],
+    /// Of |a_g| in full contact, if the output depends on the ground acceleration directly.
+    a_g: Option<f64>,
+    /// Of each |u|, of each |u̇| times the part of the damping, and of each |F_t|.
+    u: Modes,
+    u_dot: Modes,
+    push: Modes,
+}
+
+/// The reaches of the outputs of `structure` that may be searched for peaks, each at its place. The formula of an output in bounds of
+/// magnitudes is linear in what the weights are of, so that one magnitude of 1 among others of 0 shows its weight.
+pub(crate) fn reaches(structure: &Structure) -> Vec<Reach> {
+    let [none, one] = [0.0, 1.0].map(Most);
+    let nothing = Modes::parts(structure, 0.0);
+    let of_mode = |j: usize| Modes::each(structure, |i, _| f64::from(i == j));
+    let x = Instant {
+        structure,
+        s: 1.0,
+        damping: 1.0,
+        u: Mosts(nothing),
+        u_dot: Mosts(nothing),
+        theta: none,
+        theta_dot: none,
+        theta_ddot: none,
+        turn: Turn { sin: none, cos: one, versine: none },
+        a_g: none,
+        F_t: Mosts(nothing),
+        a_v: none,
+    };
+    let reach = |output: Output| {
+        let of = |x: &Instant<Most, Mosts<Modes>>| output.of(x).0;
+        let sin = Turn { sin: one, ..x.turn };
+        Reach {
+            turn: [
+                of(&Instant { theta: one, turn: sin, ..x }),
+                of(&Instant { turn: Turn { versine: one, ..x.turn }, ..x }),
+            ],
+            a_g: output.has_feedthrough(structure).then(|| of(&Instant { a_g: one, ..x })),
+            u: Modes::each(structure, |j, _| of(&Instant { u: Mosts(of_mode(j)), ..x })),
+            u_dot: Modes::each(structure, |j, _| of(&Instant { u_dot: Mosts(of_mode(j)), ..x })),
+            push: Modes::each(structure, |j, _| of(&Instant { F_t: Mosts(of_mode(j)), ..x })),
+        }
+    };
+    let floors = structure.floors().len();
+    let of_floors = [Output::u, Output::drift, Output::delta_t, Output::a_t, Output::V, Output::M]
+        .into_iter()
+        .flat_map(|of| (0..floors).map(of));
+    [Output::theta, Output::V_t, Output::M_t].into_iter().chain(of_floors).map(reach).collect()
+}
+
+impl Output {
+    /// The place of an output that has a peak among the reaches of a structure with so many `floors`.
+    pub(crate) fn place(self, floors: usize) -> usize {
+        let of_floor = |kind: usize, i: usize| 3 + kind * floors + i;
+        match self {
+            Output::theta | Output::theta_dot | Output::uplift => 0,
+            Output::V_t => 1,
+            Output::M_t => 2,
+            Output::u(i) | Output::u_dot(i) => of_floor(0, i),
+            Output::drift(i) => of_floor(1, i),
+            Output::delta_t(i) | Output::v_t(i) => of_floor(2, i),
+            Output::a_t(i) => of_floor(3, i),
+            Output::V(i) => of_floor(4, i),
+            Output::M(i) => of_floor(5, i),
+        }
+    }
+}
+
+impl Reach {
+    /// Bound of the magnitude of this `output` of `structure`, given bounds of the motion.
+    #[inline(always)]
+    pub(crate) fn bound<Q: Coordinates>(&self, output: Output, structure: &Structure, most: &Magnitudes<Q>) -> f64 {
+        let Reach { turn: [sin, versine], a_g, u, u_dot, push } = self;
+        let elastic = most.u.weighed(u) + most.damping * most.u_dot.weighed(u_dot) + most.F_t.weighed(push);
+        match (a_g, most.arc) {
+            (None, _) => elastic + sin * most.theta + versine * (0.5 * most.theta * most.theta),
+            (Some(_), Some(arc)) => {
+                let gauge = output.gauge(structure).expect("a gauge alone reads the ground acceleration");
+                elastic + gauge.turning(structure.base(), arc, most)
+            }
+            (Some(a_g), None) if most.theta == 0.0 => elastic + a_g * most.a_g,
+            _ => f64::INFINITY,
+        }
+    }
+}
