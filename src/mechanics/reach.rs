@@ -96,6 +96,11 @@ impl Output {
 }
 
 impl Reach {
+    /// The part of the bound of magnitudes of u and u̇ in full contact.
+    pub(crate) fn elastic<Q: Coordinates>(&self, u: &Q, u_dot: &Q) -> f64 {
+        u.weighed(&self.u) + u_dot.weighed(&self.u_dot)
+    }
+
     /// Bound of the magnitude of this `output` of `structure`, given bounds of the motion.
     #[inline(always)]
     pub(crate) fn bound<Q: Coordinates>(&self, output: Output, structure: &Structure, most: &Magnitudes<Q>) -> f64 {

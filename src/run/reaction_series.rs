@@ -12,9 +12,9 @@ use crate::mechanics::reactions::less_momentum;
 use crate::mechanics::restraint::Restraint;
 use crate::numbers::Number;
 use crate::series::extremes;
-use crate::series::taylor::{Arc, Series, evaluate};
+use crate::series::taylor::{Arc, ORDERS, Series, ZERO, evaluate};
 use crate::series::terms::Terms;
-use crate::{Dissipators, Motion, Phase, Reactions};
+use crate::{Base, Dissipators, Motion, Phase, Reactions};
 
 /// The part of `reactions` that the edges carry.
 fn of_edges<Q: Coordinates>(
@@ -57,6 +57,47 @@ pub(crate) fn over<Q: Moves>(expansion: &Expansion<Q>) -> Reactions<Terms> {
         _ => Terms::constant(0.0),
     };
     of_edges(piece.level.subject(), phase, dissipators, arc, Reactions { R_h, R_v, R_m })
+}
+
+/// Bounds of the reactions over a polynomial of rocking without ties, which cost little beside their series.
+///
+/// The terms that are linear in ü and θ̈ are added up, turned as the base is at the start, before they are bounded. The others are at
+/// most `rest`: those in θ̇, in u θ̈, and what the base turns on by.
+pub(crate) fn bounds<Q: Moves>(expansion: &Expansion<Q>) -> Option<Reactions<Extent>> {
+    let &Expansion { piece, from, arc } = expansion;
+    let (level, phase, load) = (piece.level.as_ref(), piece.before.phase, piece.load.from(from));
+    if phase == Phase::FullContact || level.is_tied {
+        return None;
+    }
+    let (structure, most) = (&level.structure, expansion.most());
+    let (&Base { m_t, B, g, .. }, S_1) = (structure.base(), structure.body().S_1);
+    let (sin, cos) = libm::sincos(arc.theta[0]);
+    let [mut turning, mut along, mut across, mut right, mut down] = [ZERO; 5];
+    for k in 0..arc.order {
+        let rate = ORDERS[k + 1] / arc.span;
+        turning[k] = rate * arc.theta_dot[k + 1];
+        along[k] = rate * structure.gauges().V_t.displacement(&arc.u_dot[k + 1]) + S_1 * turning[k];
+        across[k] = phase.side().sign() * B * m_t * turning[k];
+        (right[k], down[k]) = (-along[k] * cos - across[k] * sin, across[k] * cos - along[k] * sin);
+    }
+    for (k, load, g, scale) in [(0, &load.value, g, 1.0), (1, &load.slope, 0.0, arc.span)] {
+        right[k] += scale * (structure.pushes(load)[0] - m_t * load.a_g);
+        down[k] += scale * m_t * (g + load.a_v);
+    }
+    let used = |of: &Series| f64::most(arc.used(of), &evaluate(arc.used(of), arc.reach), arc.reach);
+    let moved = |of: &Q| Q::sum(structure, |j, mode| mode.gamma.abs() * of.of(j));
+    let (theta_ddot, square) = (used(&turning), most.theta_dot * most.theta_dot);
+    let rest = square * (m_t * B + moved(&most.u) + S_1.abs())
+        + moved(&most.u) * theta_ddot
+        + 2.0 * moved(&most.u_dot) * most.theta_dot;
+    let theta = arc.used(&arc.theta);
+    let turned = (evaluate(theta, arc.reach) - theta[0]).abs() + extremes::off_chord(theta, arc.reach);
+    let off = rest + (used(&along) + used(&across) + rest) * turned;
+    let [R_h, R_v] = [right, down].map(|of| {
+        let used = arc.used(&of);
+        Extent::between(used[0], evaluate(used, arc.reach), extremes::off_chord(used, arc.reach) + off)
+    });
+    Some(Reactions { R_h, R_v, R_m: Extent::ANY })
 }
 
 /// Bounds of a reaction over a polynomial: it stays within `half` of `middle`.

@@ -30,18 +30,14 @@ use crate::digits::short;
 use crate::engine::Moves;
 use crate::engine::piece::{Expansion, Part, Piece, Sample, Watch};
 use crate::mechanics::impact;
-use crate::mechanics::instant::{Instant, Second};
-use crate::mechanics::lateral::Mosts;
 use crate::mechanics::state::State;
-use crate::numbers::Angle;
-use crate::numbers::most::Most;
 use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
 use crate::{
-    Base, Detail, Impulse, Modes, Motion, OneMass, Parameters, Phase, Ramp, Reactions, Side, Structure, Transition,
-    TransitionKind,
+    Base, Detail, Impulse, Modes, Motion, OneMass, Output, Parameters, Phase, Ramp, Reactions, Side, Structure,
+    Transition, TransitionKind,
 };
 pub use assumptions::{
     ASSUMPTIONS, Assumption, EDGE_LOAD, ENERGY, FRICTION, IMPACT_FRICTION, IMPACT_TENSION, Passing, TENSION, WEIGHT,
@@ -399,9 +395,12 @@ impl<Q: Moves> Watch<Q> for Validity {
                 break;
             }
             let Some(expansion) = arcs.next() else { break };
-            let extents = extents(&expansion);
-            if self.may_matter(phase, &extents) {
-                self.look(&expansion, &extents);
+            let is_passed = reaction_series::bounds(&expansion).is_some_and(|bounds| !self.may_matter(phase, &bounds));
+            if !is_passed {
+                let extents = extents(&expansion);
+                if self.may_matter(phase, &extents) {
+                    self.look(&expansion, &extents);
+                }
             }
             count += 1;
             if count >= MOST_ARCS {
@@ -426,34 +425,27 @@ fn extents<Q: Moves>(expansion: &Expansion<Q>) -> Reactions<Extent> {
 }
 
 /// Bounds of the reactions of the edges over a part in full contact, if the ground does not move vertically. The reactions of the motion
-/// that follows the load are linear in time. Those of the vibration about that motion add at most `off`, at an instant and at the ends.
+/// that follows the load are linear in time. Those of the vibration leave their chord by at most twice their magnitude, and by at most
+/// M h²/8 over the time h if their second derivative is at most M.
 fn extents_of_vibration<Q: Moves>(part: Part<Q>) -> Option<Reactions<Extent>> {
     let &Piece { level, before: &Motion { phase, .. }, load, .. } = part.piece;
-    let [u, u_dot, u_ddot, _] = level.swings(phase, &part.step())?;
+    let step = part.step();
+    let [u, u_dot, u_ddot, jerk] = level.swings(phase, &step)?;
     if load.is_vertical() {
         return None;
     }
-    let (structure, still) = (level.structure(), Most(0.0));
-    let x = Instant {
-        structure,
-        s: phase.side().sign(),
-        damping: 1.0,
-        u: Mosts(u),
-        u_dot: Mosts(u_dot),
-        theta: still,
-        theta_dot: still,
-        theta_ddot: still,
-        turn: still.turn(),
-        a_g: still,
-        F_t: Mosts(Q::parts(structure, 0.0)),
-        a_v: still,
+    let (structure, per_bend) = (&level.as_ref().structure, step.interval * step.interval / 8.0);
+    let moved = |of: &Q| Q::sum(structure, |j, mode| mode.gamma.abs() * of.of(j));
+    let off = |output: Output, weight: f64| {
+        let reach = &structure.reaches()[output.place(structure.floors().len())];
+        let of = |u: &Q, u_dot: &Q| reach.elastic(u, u_dot) + weight * moved(u);
+        (2.0 * of(&u, &u_dot)).min(per_bend * of(&u_ddot, &jerk))
     };
-    let off = Reactions::at(&x, &Second { u_ddot: Mosts(u_ddot), theta_ddot: still });
     let [first, last] = part.samples().map(|sample| sample.edges());
     Some(Reactions {
-        R_h: Extent::between(first.R_h, last.R_h, 2.0 * off.R_h.0),
+        R_h: Extent::between(first.R_h, last.R_h, off(Output::V_t, 0.0)),
         R_v: Extent::between(first.R_v, last.R_v, 0.0),
-        R_m: Extent::between(first.R_m, last.R_m, 2.0 * off.R_m.0),
+        R_m: Extent::between(first.R_m, last.R_m, off(Output::M_t, structure.base().g)),
     })
 }
 
