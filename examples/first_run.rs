@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{:?} at {} s", finish.ending, finish.motion.time);
     let verdicts = levels::compare(&run)?.verdicts;
     verdicts.iter().for_each(|level| println!("{:?}: {:?}", level.response.choice.detail, level.errors));
-    let piers = Population::new("piers", Parameters::MCMANUS).vary("f_fc", vec![3.0, 4.0, 5.0, 6.0])?;
+    let piers = Population::new("piers", run.structure).vary("f_fc", vec![3.0, 4.0, 5.0, 6.0])?;
     let plan = Plan::new(vec![piers], vec![NamedRecord::new("pulse", ground, 1.0)?], vec![1.1, 1.15, 1.2, 1.25, 1.3])?;
     let overturns = |case: Case| (case.group, case.intensity(Pga), case.outcome().exceeds(&Limit::Overturning, 9.81));
     println!("{:?}", FragilityCurve::fit(&Trials::count(plan.cases().map(overturns)))?);

@@ -22,6 +22,8 @@ use mode::{Floor, Mode, Vibration};
 use one_mass::OneMass;
 use parameters::{ParameterError, Parameters};
 use quantity::{OutOfRange, Quantity, quantity};
+use serde::Serialize;
+use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
 /// A rest beside the modes that counts as none, as a fraction of the whole.
@@ -34,7 +36,7 @@ const EXACT: f64 = 1e-13;
 const EXCESS: f64 = 5e-3;
 
 /// A structure as a rigid body: its foundation, and the moments of all mass above the foundation.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Body {
     /// Mass of the foundation m0, at the height of the pivots, kg.
     pub m0: f64,
@@ -61,9 +63,15 @@ pub struct Body {
 impl Body {
     /// Checks the base, its tendon and its dissipators against the limits of one mass.
     fn check(&self) -> Result<(), ParameterError> {
+        let r = self.r.unwrap_or(1.0);
+        Parameters { H: 1.0, r, ..self.over(Parameters::EVISON) }.check()
+    }
+
+    /// The parameters of the base, and the others from `rest`; r is NaN without a coefficient.
+    fn over(&self, rest: Parameters) -> Parameters {
         let &Body { m0, J0, B, r, g, c_ratio, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y }, .. } = self;
-        let (H, r) = (1.0, r.unwrap_or(1.0));
-        Parameters { m0, J0, H, B, c_ratio, r, g, P_0, k_t, xi_d, c_d, k_d, F_y, ..Parameters::EVISON }.check()
+        let r = r.unwrap_or(f64::NAN);
+        Parameters { m0, J0, B, c_ratio, r, g, P_0, k_t, xi_d, c_d, k_d, F_y, ..rest }
     }
 }
 
@@ -122,8 +130,8 @@ impl PartialEq for Reaches {
 /// A structure of many masses where one mass is needed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "{task} needs a structure of one mass, and this structure has {modes} modes: describe, simulate, view, advise and export take \
-     many masses"
+    "{task} needs a structure of one mass, and this structure has {modes} modes: describe, simulate, sweep, view, advise and export \
+     take many masses"
 )]
 pub struct NotOneMass {
     /// Name of the task.
@@ -376,6 +384,27 @@ impl Structure {
     #[inline]
     pub fn one(&self) -> Option<&OneMass> {
         self.0.one.as_ref()
+    }
+
+    /// The parameters of one mass. Many masses have those of the base, and the lowest mode gives f_fc and zeta_fc. m and H are NaN, and
+    /// so is r if no coefficient is given.
+    pub fn parameters(&self) -> Parameters {
+        if let Some(one) = self.one() {
+            return *one.parameters();
+        }
+        let lowest = self.0.modes.iter().min_by(|a, b| a.omega().total_cmp(&b.omega()));
+        let [f_fc, zeta_fc] = lowest.map_or([f64::NAN; 2], |mode| [mode.omega() / TAU, mode.zeta()]);
+        self.0.body.over(Parameters { m: f64::NAN, H: f64::NAN, f_fc, zeta_fc, ..Parameters::EVISON })
+    }
+
+    /// This structure with these `parameters`; of many masses only the parameters of the base are changed.
+    pub fn with(&self, parameters: Parameters) -> Result<Structure, StructureError> {
+        if self.one().is_some() {
+            return Ok(Structure::new(parameters)?);
+        }
+        let Parameters { m0, J0, B, r, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
+        let (r, ties) = (Some(r).filter(|r| !r.is_nan()), Ties { P_0, k_t, xi_d, c_d, k_d, F_y });
+        Structure::of_body(Body { m0, J0, B, r, g, c_ratio, ties, ..self.0.body }, &self.0.modes, &self.0.floors)
     }
 
     /// The numbers of one mass, which `task` needs.

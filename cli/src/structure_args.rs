@@ -80,7 +80,7 @@ impl StructureArgs {
 }
 
 /// The structure that the TOML `text` describes: of many masses if there are tables of them.
-fn of_file(text: &str) -> anyhow::Result<Structure> {
+pub fn of_file(text: &str) -> anyhow::Result<Structure> {
     let keys: toml::Table = toml::from_str(text)?;
     if ["base", "storeys", "floors", "modes"].iter().any(|key| keys.contains_key(*key)) {
         let described: Described = toml::from_str(text)?;

@@ -62,7 +62,7 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let picture = args.picture.clone().unwrap_or(output.with_extension("svg"));
     let picture = Picture::create(&picture, &mut files)?;
     match asked {
-        Asked::Records(sweep) => run_records(args, sweep, &pool, &output, picture),
+        Asked::Records(sweep) => run_records(args, *sweep, &pool, &output, picture),
         Asked::Pulses(sweep) => map::run(args, sweep, &pool, &output, picture),
     }
 }

@@ -34,11 +34,11 @@ def sweep(
 ) -> "pd.DataFrame":
     """Runs every structure under every record at every scale on all cores: a DataFrame with a row per run.
 
-    structures: one, several, or populations by name, each one or several. records: one, several, or by name.
-    scale: factors on the accelerations. detail, tolerance, duration and initial values: as in `simulate`.
+    structures: one, several, or populations by name, each one or several. Each has one mass or many. records: one, several, or by
+    name. scale: factors on the accelerations. detail, tolerance, duration and initial values: as in `simulate`.
     validity: whether the rows have how far each run exceeds the model's limits. threads: 0 is one per core.
 
-    intensity: the measure for `fragility`, "PGA" (g), "PGV" (m/s), "S_a" (g, at the structure's own f_fc and zeta_fc), "CAV"
+    intensity: the measure for `fragility`, "PGA" (g), "PGV" (m/s), "S_a" (g, at f_fc and zeta_fc, a building's lowest mode), "CAV"
     (m/s), "I_A" (m/s, Arias), "D_5_95" (s, significant duration) or "S_a_avg". S_a_avg (g) is the geometric mean of S_a at ten
     periods, evenly spaced from 0.2/f_fc to 3/f_fc. The table has S_a_avg only if that is the measure, and always the others.
 
@@ -46,7 +46,8 @@ def sweep(
     to do, 20 times per second.
 
     The columns are those of `rocking-fmu sweep`: structures, parameters, record, scale, intensities, ending, peaks
-    ("peak_theta[rad]", ...), transitions, ... A run that cannot go on is a row with the ending "failed" and a reason.
+    ("peak_theta[rad]", ..., of a building "peak_a_t[3][m/s2]", ...), transitions, ... A number that a structure does not have is
+    NaN. A run that cannot go on is a row with the ending "failed" and a reason.
 
     path: the command line's file of rows. Runs whose rows are there are not repeated. Rows are added as runs end, and a
     stopped sweep continues after them. Ctrl-C raises KeyboardInterrupt, whose attribute `table` has the runs that are done.
@@ -172,10 +173,11 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, by: str | Non
     """Fits the lognormal curve of greatest likelihood to the runs of one population in a sweep's table, or to some of its rows.
 
     limit: "overturned", or a peak such as "theta/alpha_cg >= 0.5", "theta >= 3 deg", "uplift >= 1 cm", "a_t >= 0.3 g" (the
-    structure's own g). A run that overturned has exceeded every limit. intensity: a measure of `sweep` or a column of the
-    table; by default the measure of the sweep. by: a column, such as "structures" or "f_fc[Hz]". With by, the result is a dict
-    with the curve of each value of the column. Runs that failed are not counted. The uncertainty
-    of the curve treats records as independent of each other, or, if there is one record, structures.
+    structure's own g). Of a building, "a_t[3] >= 0.3 g" is of a floor, and "a_t >= 0.3 g" of all floors: the largest counts. A run
+    that overturned has exceeded every limit. intensity: a measure of `sweep` or a column of the table; by default the measure of the
+    sweep. by: a column, such as "structures" or "f_fc[Hz]". With by, the result is a dict with the curve of each value of the column.
+    Runs that failed are not counted. The uncertainty of the curve treats records as independent of each other, or, if there is one
+    record, structures.
     Several structures that `sweep` ran under one name are one population. Raises ValueError with the reason if there is no
     curve (never exceeded, always exceeded, no overlap). A table with several populations or conditions, with a run twice, with
     peaks that are NaN, or without the measure of its sweep raises ValueError, too.
@@ -199,8 +201,7 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, by: str | Non
             except ValueError as refused:
                 raise ValueError(f"{by} = {value!r}: {refused}") from None
         return curves
-    peak = _native.measure_of(limit) or "peak_theta[rad]"
-    if lacking := [name for name in ("run", "record", "ending", peak, "g[m/s2]", "B[m]") if name not in table]:
+    if lacking := [name for name in ("record", "ending", "g[m/s2]", "B[m]") if name not in table]:
         raise ValueError(f"the table has no {', '.join(lacking)}: a table with the columns of `sweep` is needed, such as "
                          f"pandas.read_csv of its file")
     conditions = ["structures", "detail", "tolerance", "duration[s]", *table.filter(regex=r"_0\[(rad|m)(/s)?]$")]
@@ -209,10 +210,11 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, by: str | Non
             several = ", ".join(map(repr, values[:5].tolist())) + (", ..." if len(values) > 5 else "")
             raise ValueError(f"the table has {len(values)} values of {name}, {several}, and a curve is of one: choose the rows, "
                              f"table[table[{name!r}] == {values[0]!r}], or give by={name!r} for a curve of each")
-    if twice := int(table["run"].duplicated().sum()):
+    if twice := int(table.filter(items=["run"]).duplicated().sum()):
         raise ValueError(f"the table has {twice} rows of runs that it has already: leave them out by table.drop_duplicates('run')")
     ended = table[table["ending"] != "failed"]
-    varying = ["record"] if ended["record"].nunique() > 1 else list(table.columns[1:table.columns.get_loc("record")])
+    of_structure = table.columns[:table.columns.get_loc("record")].drop("run", errors="ignore")
+    varying = ["record"] if ended["record"].nunique() > 1 else list(of_structure)
     groups = ended.groupby(varying, sort=False, dropna=False).ngroup()
     curve, bins = _native.fragility(groups.tolist(), ended[column].tolist(), _exceeds(ended, limit))
     names = ["lowest", "mean", "highest", "runs", "known", "exceedances"]
@@ -221,12 +223,13 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, by: str | Non
 
 def _exceeds(table: "pd.DataFrame", limit: str) -> list[bool | None]:
     """Whether each run of a sweep's table exceeds the limit; None where that is unknown."""
-    peaks = table[_native.measure_of(limit) or "peak_theta[rad]"]
-    if missing := int((peaks.isna() & ~table["ending"].isin(["overturned", "failed"])).sum()):
-        raise ValueError(f"{peaks.name} is NaN in {missing} rows of runs that ended: run them again, or leave them out by "
-                         f"table.dropna(subset={[peaks.name]!r}); removed runs do not count")
+    columns = _native.columns_of(limit, list(table.columns.astype(str)))
+    peaks = table[columns].max(axis=1)
+    if columns and (missing := int((peaks.isna() & (table["ending"] != "failed")).sum())):
+        raise ValueError(f"{', '.join(columns)} is NaN in {missing} rows of runs that ended: choose a limit that their structures "
+                         f"have, or leave them out by table.dropna(subset={columns!r}, how='all'); removed runs do not count")
     endings = [str(ending) for ending in table["ending"]]
-    return _native.exceeds(endings, peaks.tolist(), table["g[m/s2]"].tolist(), limit, table["B[m]"].max())
+    return _native.exceeds(endings, peaks.tolist(), table["g[m/s2]"].tolist(), limit, table["B[m]"].max(), columns)
 
 
 def intensity_at(

@@ -14,9 +14,9 @@ use rocking::run::Ending;
 use rocking_report::program::program;
 use rocking_sweep::exceedances::{self, Bin, Tally};
 use rocking_sweep::fragility::{Certainty, FragilityCurve};
-use rocking_sweep::outcome::{Limit, MEASURES, Outcome, Summary};
+use rocking_sweep::outcome::{Limit, Measure};
 use rocking_sweep::plan::{NamedRecord, Plan, Population};
-use rocking_sweep::row_file::heading;
+use rocking_sweep::row_file::name_and_unit;
 use rocking_sweep::rows::{Column, FAILED, Sweep};
 use rocking_sweep::thread_pool;
 use serde::Deserialize;
@@ -53,8 +53,7 @@ pub fn sweep<'py>(
     let scales = numbers("scale", scale)?;
     let intensity = one_of("intensity", intensity, IntensityMeasure::ALL.map(|of| (of.name(), of)))?;
     let population = |(name, of): &(String, Vec<Py<Structure>>)| {
-        let parameters = |structure: &Py<Structure>| Ok(*structure.get().one("sweep")?.parameters());
-        Population::of(name, of.iter().map(parameters).collect::<PyResult<_>>()?).map_err(refused)
+        Population::of(name, of.iter().map(|structure| structure.get().of.clone()).collect()).map_err(refused)
     };
     let populations = structures.iter().map(population).collect::<PyResult<_>>()?;
     let mut gs = structures.iter().flat_map(|(_, of)| of).map(|structure| structure.get().of.base().g);
@@ -191,8 +190,17 @@ impl Curve {
 /// known, and how many exceed the limit.
 type Counted = (f64, f64, f64, usize, usize, usize);
 
-/// Whether each run exceeds `limit`; None where that is unknown. Each run has its ending, the peak that `limit` compares, and g
-/// (m/s²). `half_width` (m) is the largest B of their structures.
+/// The measures of the peaks among the columns of a sweep's table, and these columns.
+fn measures(columns: Vec<String>) -> (Vec<Measure>, Vec<String>) {
+    let measure = |heading: String| {
+        let (name, unit) = name_and_unit(heading.strip_prefix("peak_")?);
+        Some(((name.to_owned(), unit.to_owned()), heading))
+    };
+    columns.into_iter().filter_map(measure).unzip()
+}
+
+/// Whether each run exceeds `limit`; None where that is unknown. Each run has its ending, the largest peak of [`columns_of`] the
+/// limit, and g (m/s²). `half_width` (m) is the largest B of their structures.
 #[pyfunction]
 pub fn exceeds(
     endings: Vec<String>,
@@ -200,17 +208,16 @@ pub fn exceeds(
     gs: Vec<f64>,
     limit: &str,
     half_width: f64,
+    columns: Vec<String>,
 ) -> PyResult<Vec<Option<bool>>> {
-    let limit: Limit = limit.parse().map_err(refused)?;
+    let limit = Limit::read(limit, &measures(columns).0).map_err(refused)?;
     limit.check(half_width).map_err(refused)?;
     let exceeds = |((ending, peak), g): ((&String, f64), f64)| -> PyResult<Option<bool>> {
         if ending == FAILED {
             return Ok(None);
         }
         let ending: Result<_, serde::de::value::Error> = Ending::deserialize(ending.as_str().into_deserializer());
-        let (ending, peaks) = (ending.map_err(refused)?, [peak; MEASURES.len()]);
-        let summary = Summary { ending, end: 0.0, peaks, transitions: 0, steps: 0, evaluations: 0 };
-        Ok(Outcome::Ended(summary).exceeds(&limit, g))
+        Ok(limit.is_exceeded(ending.map_err(refused)?, peak, g))
     };
     endings.iter().zip(peaks).zip(gs).map(exceeds).collect()
 }
@@ -231,11 +238,10 @@ pub fn fragility(
     Ok((Curve(curve), bins.into_iter().map(counts).collect()))
 }
 
-/// The column of a sweep's table that `limit` is of; None where it is of overturning.
+/// The columns of a sweep's table whose largest value `limit` compares; none if the limit is overturning.
 #[pyfunction]
-pub fn measure_of(limit: &str) -> PyResult<Option<String>> {
-    Ok(match limit.parse().map_err(refused)? {
-        Limit::Overturning => None,
-        Limit::Peak { measure, .. } => Some(heading(&format!("peak_{}", MEASURES[measure].0), MEASURES[measure].1)),
-    })
+pub fn columns_of(limit: &str, columns: Vec<String>) -> PyResult<Vec<String>> {
+    let (measures, columns) = measures(columns);
+    let limit = Limit::read(limit, &measures).map_err(refused)?;
+    Ok(limit.measures().iter().map(|at| columns[*at].clone()).collect())
 }

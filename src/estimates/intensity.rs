@@ -10,7 +10,7 @@
 //! | S_a | largest acceleration of the structure on a fixed base, S_a(1/f_fc, ζ_fc) | g |
 //! | S_a_avg | geometric mean of S_a at ten periods, evenly spaced from 0.2/f_fc to 3/f_fc | g |
 //!
-//! All are exact for a record that is linear between its samples.
+//! f_fc and ζ_fc are those of the lowest mode of many masses. All are exact for a record that is linear between its samples.
 
 use crate::estimates::response_spectrum::spectral_acceleration;
 use crate::run::record::Record;

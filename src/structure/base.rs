@@ -1,5 +1,7 @@
 //! The rigid base of a structure and the ties between the base and the ground, by their numbers.
 
+use serde::Serialize;
+
 /// The rigid base of a structure, with all mass that no mode carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Base {
@@ -30,7 +32,7 @@ pub struct Base {
 }
 
 /// The tendon and the dissipators between the base and the ground, by their parameters.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Ties {
     /// Prestress of the tendon with the base down, N.
     pub P_0: f64,

@@ -59,9 +59,7 @@ pub struct ModeOf {
 /// The numbers of a mode that are shown.
 pub const OF_MODE: [Derived<ModeOf>; 7] = [
     derived!("f" ["Hz"] "frequency in full contact", "", |of| of.mode.omega() / TAU),
-    derived!("zeta" ["1"] "damping ratio in full contact", "", |of| {
-        of.mode.damping / (2.0 * (of.mode.stiffness * of.mode.mass).sqrt())
-    }),
+    derived!("zeta" ["1"] "damping ratio in full contact", "", |of| of.mode.zeta()),
     derived!("mass" ["kg"] "effective mass", "", |of| of.mode.gamma * of.mode.share),
     derived!("share" ["1"] "effective mass as a fraction of m_s", "", |of| of.mode.gamma * of.mode.share / of.m_s),
     derived!("height" ["m"] "effective height; 0 if the mode has no effective mass", "", |of| {

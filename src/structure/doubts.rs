@@ -53,7 +53,7 @@ impl Structure {
                 short(2.0 * B)
             ));
         }
-        let zeta = mode.damping / (2.0 * mode.mass * mode.omega());
+        let zeta = mode.zeta();
         if zeta > MOST_DAMPING {
             doubts.push(format!("zeta = {} of the lowest mode is large: is it a fraction, not per cent?", short(zeta)));
         }

@@ -2,9 +2,10 @@
 
 use crate::Modes;
 use crate::mechanics::lateral::Coordinates;
+use serde::Serialize;
 
 /// A mode of vibration in full contact: an oscillator on the base. One mass is one mode with the shape 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Mode {
     /// Modal mass μ = φᵀMφ, kg.
     pub mass: f64,
@@ -30,7 +31,7 @@ pub struct Vibration {
 }
 
 /// A floor, whose motion is shown.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Floor {
     /// Mass, kg.
     pub mass: f64,
@@ -51,6 +52,11 @@ impl Mode {
     /// Circular frequency in full contact, rad/s.
     pub fn omega(&self) -> f64 {
         (self.stiffness / self.mass).sqrt()
+    }
+
+    /// Damping ratio in full contact.
+    pub fn zeta(&self) -> f64 {
+        self.damping / (2.0 * (self.stiffness * self.mass).sqrt())
     }
 }
 

@@ -82,7 +82,7 @@ pub fn count(plan: &Plan, measure: IntensityMeasure, limits: &[Limit], outcomes:
     let mut runs = plan.cases().zip(outcomes).peekable();
     let mut next_of = |name: &str| runs.next_if(|(case, _)| case.population.name == name);
     let counted =
-        |(case, outcome): (Case, _)| (case.group, case.intensity(measure), (outcome, case.structure.parameters().g));
+        |(case, outcome): (Case, _)| (case.group, case.intensity(measure), (outcome, case.structure.base().g));
     let of = |population: &Population| {
         let runs: Vec<_> = std::iter::from_fn(|| next_of(&population.name).map(counted)).collect();
         of_population(&population.name, limits, &runs)
@@ -98,7 +98,7 @@ fn of_population(name: &str, limits: &[Limit], runs: &[Counted<Of>]) -> Exceedan
     let bins = bins(ended.collect());
     Exceedances {
         population: name.into(),
-        fragilities: [Limit::Overturning].iter().chain(limits).map(|limit| fragility(*limit, &bins)).collect(),
+        fragilities: [Limit::Overturning].iter().chain(limits).map(|limit| fragility(limit.clone(), &bins)).collect(),
         bins: bins.iter().map(|runs| Bin::of(runs)).collect(),
         failed: number(&|outcome| matches!(outcome, Outcome::Failed { .. })),
         still_rocking: number(&still_rocking),
@@ -187,7 +187,7 @@ mod tests {
             (0, 4.0, &falls),
             (0, 8.0, &failed),
         ];
-        let limit = Limit::peak("theta", 0.5).unwrap();
+        let limit = Limit::read("theta >= 0.5", &[("theta".into(), "rad".into())]).unwrap();
         let runs = runs.map(|(group, intensity, outcome)| (group, intensity, (outcome, 9.81)));
         let Exceedances { bins, fragilities, failed, still_rocking, .. } = of_population("piers", &[limit], &runs);
         assert_eq!((failed, still_rocking), (1, 1));

@@ -1,6 +1,6 @@
 //! Many runs: every structure of some populations under every ground motion at every scale factor.
 
-use crate::outcome::Outcome;
+use crate::outcome::{self, Measure, Outcome};
 use crate::{Refused, ensure};
 use rocking::digits::with_unit;
 use rocking::engine::{DEFAULT_TOLERANCE, Moves, Settings};
@@ -14,7 +14,7 @@ use rocking::run::lanes::found_each;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
 use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
-use rocking::{Detail, Engine, Modes, OneMass, Parameters, Quantity, State, Structure, Watch};
+use rocking::{Detail, Engine, Modes, Parameters, Quantity, State, Structure, Watch};
 use serde::Serialize;
 use std::collections::HashSet;
 use std::sync::OnceLock;
@@ -51,7 +51,7 @@ pub struct Population {
     /// Name of the population.
     pub name: String,
     /// One or more.
-    bases: Vec<Parameters>,
+    bases: Vec<Structure>,
     /// Positions in [`AXES`], increasing, and the values there.
     varying: Vec<(usize, Vec<f64>)>,
 }
@@ -107,6 +107,8 @@ pub struct Plan {
     pub motions: Vec<NamedRecord>,
     scales: Vec<f64>,
     conditions: Conditions,
+    /// Measures of all structures, each once.
+    pub measures: Vec<Measure>,
     /// S_a and S_a_avg of every structure under every ground motion before it is scaled, m/s²: worked out when asked for.
     spectral: Vec<[OnceLock<f64>; 2]>,
 }
@@ -119,13 +121,14 @@ pub struct Case<'a> {
     /// Number of the structure in its population, from 0.
     member: usize,
     /// The structure.
-    pub structure: OneMass,
+    pub structure: Structure,
     /// The ground motion before it is scaled.
     pub motion: &'a NamedRecord,
     /// Factor on its acceleration, beside its own.
     pub scale: f64,
     /// Conditions of all runs.
     pub conditions: &'a Conditions,
+    measures: &'a [Measure],
     /// Runs of different groups do not depend on each other: the ground motion's number, or where there is one alone the
     /// structure's.
     pub group: usize,
@@ -136,23 +139,28 @@ pub struct Case<'a> {
 
 impl Population {
     /// Population of the one structure `base`, until something varies.
-    pub fn new(name: impl Into<String>, base: Parameters) -> Population {
-        Population { name: name.into(), bases: vec![base], varying: Vec::new() }
+    pub fn new(name: impl Into<String>, base: impl Into<Structure>) -> Population {
+        Population { name: name.into(), bases: vec![base.into()], varying: Vec::new() }
     }
 
     /// Population of the structures `bases`, at least one.
-    pub fn of(name: impl Into<String>, bases: Vec<Parameters>) -> Result<Population, Refused> {
+    pub fn of(name: impl Into<String>, bases: Vec<Structure>) -> Result<Population, Refused> {
         let name = name.into();
         ensure(!bases.is_empty(), || is_empty(&format!("structures {name:?}")))?;
         Ok(Population { name, bases, varying: Vec::new() })
     }
 
     /// Every structure that there is so far with each of `values` of the parameter called `name`, or of `slenderness`,
-    /// which is H/B: H = slenderness × B, while B, m, m0, J0 and f_fc stay.
+    /// which is H/B: H = slenderness × B, while B, m, m0, J0 and f_fc stay. Of a building, parameters of the base can vary.
     pub fn vary(mut self, name: &str, values: Vec<f64>) -> Result<Population, Refused> {
-        let known = || AXES.map(|axis| axis.name).join(", ");
-        let axis = AXES.iter().position(|axis| axis.name == name);
-        let axis = axis.ok_or_else(|| Refused(format!("{name:?} cannot vary: these can: {}", known())))?;
+        let is_building = self.bases.iter().any(|base| base.one().is_none());
+        let can_vary = |name: &str| !is_building || !["m", "H", "f_fc", "zeta_fc", SLENDERNESS.name].contains(&name);
+        let axis = AXES.iter().position(|axis| axis.name == name && can_vary(name));
+        let axis = axis.ok_or_else(|| {
+            let known = AXES.iter().map(|axis| axis.name).filter(|name| can_vary(name)).collect::<Vec<_>>().join(", ");
+            let why = if can_vary(name) { "" } else { " in a building, whose storeys determine it" };
+            Refused(format!("{name:?} cannot vary{why}: these can: {known}"))
+        })?;
         check_list(name, &values)?;
         let varies = |name| self.varying.iter().any(|(axis, _)| AXES[*axis].name == name);
         ensure(!varies(name), || is_there_twice(name))?;
@@ -179,10 +187,14 @@ impl Population {
         })
     }
 
-    fn structure(&self, member: usize) -> Result<OneMass, Refused> {
-        let mut parameters = self.bases[member / (self.len() / self.bases.len())];
+    fn structure(&self, member: usize) -> Result<Structure, Refused> {
+        let base = &self.bases[member / (self.len() / self.bases.len())];
+        if self.varying.is_empty() {
+            return Ok(base.clone());
+        }
+        let mut parameters = base.parameters();
         self.values(member).for_each(|(axis, value)| (axis.set)(&mut parameters, value));
-        OneMass::new(parameters).map_err(|problem| Refused(format!("structures {:?}: {problem}", self.name)))
+        base.with(parameters).map_err(|problem| Refused(format!("structures {:?}: {problem}", self.name)))
     }
 }
 
@@ -261,8 +273,8 @@ impl Plan {
         ensure(!motions.is_empty(), || is_empty("records"))?;
         check_names("populations", populations.iter().map(|of| &of.name))?;
         check_names("ground motions", motions.iter().map(|of| &of.name))?;
-        let (conditions, spectral) = (Conditions::default(), Vec::new());
-        let mut plan = Plan { populations, motions, scales, conditions, spectral };
+        let (conditions, measures, spectral) = (Conditions::default(), Vec::new(), Vec::new());
+        let mut plan = Plan { populations, motions, scales, conditions, measures, spectral };
         let [structures, motions, scales] = plan.size();
         ensure(structures.saturating_mul(motions).saturating_mul(scales) <= MAX_RUNS, || {
             format!(
@@ -270,7 +282,11 @@ impl Plan {
             )
         })?;
         for population in &plan.populations {
-            (0..population.len()).try_for_each(|member| population.structure(member).map(|_| ()))?;
+            for member in 0..population.len() {
+                let mut of_member = outcome::measures(&population.structure(member)?);
+                of_member.retain(|measure| !plan.measures.contains(measure));
+                plan.measures.append(&mut of_member);
+            }
         }
         plan.spectral = vec![[const { OnceLock::new() }; 2]; structures * motions];
         Ok(plan)
@@ -278,7 +294,7 @@ impl Plan {
 
     /// These runs under other `conditions`.
     pub fn under(self, conditions: Conditions) -> Result<Plan, Refused> {
-        conditions.check(&self.case(0).structure.into())?;
+        self.populations.iter().flat_map(|of| &of.bases).try_for_each(|base| conditions.check(base))?;
         Ok(Plan { conditions, ..self })
     }
 
@@ -291,8 +307,7 @@ impl Plan {
     /// A sentence for each number of a structure that is usual in another unit.
     pub fn doubts(&self) -> Vec<String> {
         let members = self.populations.iter().flat_map(|of| (0..Population::len(of)).map(move |member| (of, member)));
-        let structures =
-            members.filter_map(|(of, member)| Some((&of.name, Structure::from(of.structure(member).ok()?))));
+        let structures = members.filter_map(|(of, member)| Some((&of.name, of.structure(member).ok()?)));
         let doubts = structures.flat_map(|(name, of)| of.doubts().into_iter().map(move |doubt| (name, doubt)));
         doubts.map(|(name, doubt)| format!("{name}: {doubt}")).collect()
     }
@@ -316,18 +331,23 @@ impl Plan {
         let population = population.expect("the plan has such a run");
         let structure = population.structure(member).expect("the plan has been checked");
         let group = if self.motions.len() > 1 { motion_number } else { rest };
-        let (motion, conditions, spectral) = (&self.motions[motion_number], &self.conditions, &self.spectral[rest]);
-        Case { population, member, structure, motion, scale, conditions, group, motion_number, spectral }
+        let Plan { motions, conditions, measures, spectral, .. } = self;
+        let (motion, spectral) = (&motions[motion_number], &spectral[rest]);
+        Case { population, member, structure, motion, scale, conditions, measures, group, motion_number, spectral }
     }
 
-    /// Does the runs `indices`, several at a time on one thread, and tells `done` the outcome of each as it ends. Once `done` says
-    /// no, the rest is left undone.
+    /// Does the runs `indices` on one thread, several at a time if all are of one mass, and tells `done` the outcome of each as it ends.
+    /// Once `done` says no, the rest is left undone.
     pub fn each_outcome(&self, indices: &[usize], mut done: impl FnMut(usize, Outcome) -> bool) {
         let cases: Vec<_> = indices.iter().map(|index| self.case(*index)).collect();
+        if cases.iter().any(|case| case.structure.one().is_none()) {
+            indices.iter().zip(&cases).all(|(index, case)| done(*index, case.outcome()));
+            return;
+        }
         let grounds: Vec<_> = cases.iter().map(Case::ground).collect();
-        let run = |(case, ground): (&Case, _)| self.conditions.run(case.structure, ground);
+        let run = |(case, ground): (&Case, _)| self.conditions.run(case.structure.clone(), ground);
         let runs: Vec<_> = cases.iter().zip(&grounds).map(run).collect();
-        found_each(&runs, |at, found| done(indices[at], Outcome::found(&runs[at], found)));
+        found_each(&runs, |at, found| done(indices[at], Outcome::found(&runs[at], &self.measures, found)));
     }
 
     /// Every run, in this order.
@@ -343,8 +363,14 @@ impl Case<'_> {
     }
 
     /// Does it while `watch` sees it go by.
-    pub fn outcome_watched(&self, watch: &mut impl Watch) -> Outcome {
-        Outcome::of(&self.conditions.run(self.structure, &self.ground()), watch)
+    pub fn outcome_watched(&self, watch: &mut (impl Watch<f64> + Watch<Modes>)) -> Outcome {
+        let (structure, ground) = (self.structure.clone(), self.ground());
+        if structure.one().is_some() {
+            let run = self.conditions.run(structure, &ground);
+            return Outcome::found(&run, self.measures, run.found(watch));
+        }
+        let run = self.conditions.run_of_modes(structure, &ground).expect("the plan has been checked");
+        Outcome::found(&run, self.measures, run.found(watch))
     }
 
     /// The ground motion as it is scaled.
@@ -354,7 +380,7 @@ impl Case<'_> {
 
     /// How strong the ground motion is, in the unit of `measure`.
     pub fn intensity(&self, measure: IntensityMeasure) -> f64 {
-        let &Parameters { g, f_fc, zeta_fc, .. } = self.structure.parameters();
+        let Parameters { g, f_fc, zeta_fc, .. } = self.structure.parameters();
         let (NamedRecord { record, .. }, [sa, average]) = (self.motion, self.spectral);
         let unscaled = match measure {
             IntensityMeasure::Pga => self.motion.pga / g,
@@ -375,10 +401,10 @@ impl Case<'_> {
         self.motion.scale * self.scale
     }
 
-    /// The structure's number on `axis`, one of [`AXES`], to the bit as it was given.
+    /// The structure's number on `axis`, one of [`AXES`], to the bit as it was given; NaN if a building has none.
     pub fn value(&self, axis: &Quantity<Parameters>) -> f64 {
         let varying = self.population.values(self.member).find(|(varying, _)| varying.name == axis.name);
-        varying.map_or_else(|| (axis.get)(self.structure.parameters()), |(_, value)| value)
+        varying.map_or_else(|| (axis.get)(&self.structure.parameters()), |(_, value)| value)
     }
 }
 
@@ -416,8 +442,14 @@ fn check_list(name: &str, values: &[f64]) -> Result<(), Refused> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::{MEASURES, Summary};
+    use crate::exceedances::count;
+    use crate::outcome::{Limit, Summary};
+    use rocking::OneMass;
+    use rocking::run::peaks::Peaking;
     use rocking::run::{End, Ending};
+    use rocking::structure::description::{Damping, Storey};
+    use rocking::structure::natural_quantities::Given;
+    use std::collections::BTreeMap;
     use std::f64::consts::TAU;
 
     /// A full sine of 0.5 s and 0.6 g that ends with its last sample.
@@ -427,8 +459,12 @@ mod tests {
         NamedRecord::new("pulse", Record::from_samples("", times, acceleration).unwrap(), 1.0).unwrap()
     }
 
+    fn structure(parameters: Parameters) -> Structure {
+        Structure::new(parameters).unwrap()
+    }
+
     fn only(base: Parameters, scale: f64) -> Outcome {
-        let plan = Plan::new(vec![Population::new("only", base)], vec![pulse()], vec![scale]).unwrap();
+        let plan = Plan::new(vec![Population::new("only", structure(base))], vec![pulse()], vec![scale]).unwrap();
         assert_eq!(plan.len(), 1);
         plan.case(0).outcome()
     }
@@ -441,7 +477,6 @@ mod tests {
         assert_eq!(ending, Ending::Overturned);
         assert!((peaks[0] - alpha_cg).abs() < 1e-12, "before it falls: {peaks:?}");
         assert!((end - 2.96).abs() < 0.005, "{end}");
-        assert_eq!(MEASURES[0], ("theta", "rad"));
         assert_eq!(peaks[7], peaks[0] / alpha_cg);
 
         let Outcome::Ended(standing) = only(Parameters::MCMANUS, 1.0) else { panic!() };
@@ -460,11 +495,54 @@ mod tests {
         assert!((time - 0.51).abs() < 0.01, "{time}");
     }
 
+    /// The bits are those of the library, run by run; a limit on all floors counts the largest of them.
+    #[test]
+    fn a_building_is_swept_and_counted() {
+        let storeys = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)].map(|(m, h, k)| Storey { m, h, k });
+        let core = |k_t| {
+            let base = [("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("k_t", k_t)].map(|(name, value)| (name.into(), value));
+            let base = Given::try_from(BTreeMap::from(base)).unwrap();
+            Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap()
+        };
+        let cores = Population::new("cores", core(0.0)).vary("k_t", vec![0.0, 1e6]).unwrap();
+        let pier = Population::new("pier", structure(Parameters::MCMANUS));
+        let slow = NamedRecord::new("slow", pulse().record.scaled(2.0, 1.0).unwrap(), 1.0).unwrap();
+        let plan = Plan::new(vec![cores, pier], vec![pulse(), slow], vec![0.3, 0.6, 0.9, 1.2]).unwrap();
+        let (outcomes, mut largest) = (Vec::from_iter(plan.cases().map(|case| case.outcome())), Vec::new());
+        for (case, outcome) in plan.cases().zip(&outcomes).take(16) {
+            let ground = case.motion.record.clone().multiplied(case.scale);
+            let structure = core(if largest.len() < 8 { 0.0 } else { 1e6 });
+            let found = Run::of_modes(structure.clone(), &ground).found(&mut ()).unwrap();
+            let Outcome::Ended(Summary { ending, end, peaks, .. }) = outcome else { panic!() };
+            assert_eq!((*ending, *end), (found.finish.ending, found.finish.motion.time));
+            let named: BTreeMap<_, _> = plan.measures.iter().map(|(name, _)| &**name).zip(peaks).collect();
+            for of in Peaking::of(&structure) {
+                assert_eq!(*named[&*of.name(&structure)], found.peaks.peak(of).unwrap().magnitude, "{of:?}");
+            }
+            largest.push(["a_t[1]", "a_t[2]", "a_t[3]"].map(|a_t| *named[a_t]).into_iter().fold(0.0, f64::max));
+        }
+        let limit = |text| Limit::read(text, &plan.measures);
+        let limits = ["a_t >= 0.5 g", "drift[2] >= 15 mm"].map(|text| limit(text).unwrap());
+        let [cores, pier] = &count(&plan, IntensityMeasure::Pga, &limits, &outcomes)[..] else { panic!() };
+        let exceeding = |of: usize| cores.fragilities[of].tallies.iter().map(|tally| tally.exceedances).sum::<usize>();
+        let own = largest.iter().filter(|a_t| **a_t >= 0.5 * 9.81).count();
+        assert!((1..16).contains(&own), "{largest:?}");
+        assert_eq!(exceeding(1), own);
+        assert_eq!(pier.fragilities[2].curve, Err(Refused("no run is counted".into())));
+        let refused = limit("drift[4] >= 15 mm").unwrap_err().0;
+        assert!(refused.starts_with("\"drift[4]\" is unknown; these are known: theta, uplift, V_t, M_t, u[1], u[2]"));
+        let refused = Population::new("core", core(0.0)).vary("f_fc", vec![1.0]).unwrap_err().0;
+        assert!(
+            refused.starts_with("\"f_fc\" cannot vary in a building, whose storeys determine it: these can: m0, B")
+        );
+    }
+
     #[test]
     fn cases_are_all_combinations_in_order() {
-        let piers = Population::new("piers", Parameters::MCMANUS).vary("slenderness", vec![4.0, 6.3]).unwrap();
+        let piers =
+            Population::new("piers", structure(Parameters::MCMANUS)).vary("slenderness", vec![4.0, 6.3]).unwrap();
         let piers = piers.vary("B", vec![0.3, 0.2, 0.1]).unwrap();
-        let wall = Population::new("wall", Parameters::EVISON);
+        let wall = Population::new("wall", structure(Parameters::EVISON));
         let halved = NamedRecord::new("half", pulse().record, 0.5).unwrap();
         let plan = Plan::new(vec![piers, wall], vec![pulse(), halved], vec![1.0, -2.0]).unwrap();
         assert_eq!((plan.size(), plan.len()), ([7, 2, 2], 28));
@@ -478,7 +556,7 @@ mod tests {
         assert_eq!(column(|case, [B, _]| case.value(B), 4), [0.3, 0.3, 0.2, 0.2, 0.1, 0.1, 0.285]);
         assert_eq!(column(|case, [_, slenderness]| case.value(slenderness), 4)[..3], [4.0, 6.3, 4.0]);
         assert_eq!(column(|case, _| case.structure.parameters().H, 4)[1], 6.3 * 0.3);
-        let both = Population::of("both", vec![Parameters::EVISON, Parameters::MCMANUS]).unwrap();
+        let both = Population::of("both", [Parameters::EVISON, Parameters::MCMANUS].map(structure).into()).unwrap();
         let both = Plan::new(vec![both.vary("r", vec![0.9, 0.8]).unwrap()], vec![pulse()], vec![1.0]).unwrap();
         let numbers = both.cases().map(|case| (case.structure.parameters().m, case.structure.parameters().r));
         assert_eq!(numbers.collect::<Vec<_>>(), [(125.8, 0.9), (125.8, 0.8), (130.1, 0.9), (130.1, 0.8)]);
@@ -498,23 +576,24 @@ mod tests {
     fn conditions_are_those_of_every_run() {
         let initial = State { theta: 0.05, ..State::default() };
         let conditions = Conditions { initial, detail: Detail::Linear, tolerance: 1e-6, duration: Some(0.7) };
-        let pier = Population::new("pier", Parameters::MCMANUS);
+        let pier = Population::new("pier", structure(Parameters::MCMANUS));
         let plan = Plan::new(vec![pier], vec![pulse()], vec![0.5]).unwrap().under(conditions).unwrap();
         let ground = pulse().record.multiplied(0.5);
         let Conditions { detail, tolerance, .. } = conditions;
         let usual = Run::new(OneMass::new(Parameters::MCMANUS).unwrap(), &ground);
         let run = Run { initial, detail, tolerance, end: End::At(0.7), ..usual.clone() };
-        assert_eq!(plan.case(0).outcome(), Outcome::of(&run, &mut ()));
+        let outcome = |run: &Run| Outcome::found(run, &plan.measures, run.found(&mut ()));
+        assert_eq!(plan.case(0).outcome(), outcome(&run));
         let Outcome::Ended(Summary { ending, end, .. }) = plan.case(0).outcome() else { panic!() };
         assert_eq!((ending, end), (Ending::AtTime, 0.7));
-        assert_ne!(plan.case(0).outcome(), Outcome::of(&Run { detail: Detail::Auto, ..run }, &mut ()));
-        assert_ne!(plan.case(0).outcome(), Outcome::of(&usual, &mut ()));
+        assert_ne!(plan.case(0).outcome(), outcome(&Run { detail: Detail::Auto, ..run }));
+        assert_ne!(plan.case(0).outcome(), outcome(&usual));
     }
 
     /// A record with a factor of its own is the record with its samples multiplied; measures grow with it.
     #[test]
     fn a_record_may_have_a_scale_of_its_own() {
-        let piers = || Population::new("piers", Parameters::MCMANUS).vary("f_fc", vec![2.0, 5.0]).unwrap();
+        let piers = || Population::new("piers", structure(Parameters::MCMANUS)).vary("f_fc", vec![2.0, 5.0]).unwrap();
         let own = NamedRecord::new("own", pulse().record, -0.5).unwrap();
         let multiplied = NamedRecord::new("multiplied", pulse().record.multiplied(-0.5), 1.0).unwrap();
         let plan = Plan::new(vec![piers()], vec![pulse(), own, multiplied], vec![2.0]).unwrap();

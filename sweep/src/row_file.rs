@@ -147,6 +147,12 @@ pub fn heading(name: &str, unit: &str) -> String {
     if unit == "1" { name.into() } else { format!("{name}[{unit}]") }
 }
 
+/// Name and unit of the column with this [`heading`]; a number in brackets is of a floor.
+pub fn name_and_unit(heading: &str) -> (&str, &str) {
+    let parts = heading.strip_suffix(']').and_then(|of| of.rsplit_once('['));
+    parts.filter(|(_, unit)| unit.parse::<usize>().is_err()).unwrap_or((heading, "1"))
+}
+
 /// The headings of columns that are called the same whatever the sweep is of.
 pub fn fixed(headings: &[&str]) -> Vec<String> {
     headings.iter().map(|heading| (*heading).to_owned()).collect()

@@ -2,7 +2,7 @@
 //!
 //! A run's key stands for names, parameters, samples, scale factors, conditions, the build of the program.
 
-use crate::outcome::{MEASURES, Outcome};
+use crate::outcome::{Measure, Outcome, Summary};
 use crate::plan::{AXES, Case, Conditions, NamedRecord, Plan};
 use crate::row_file::{Known, Program, RowFile, digest, do_runs, fixed, heading, line};
 use anyhow::{bail, ensure};
@@ -88,7 +88,7 @@ impl<'a> Sweep<'a> {
             keys.iter().collect::<HashSet<_>>().len() == keys.len(),
             "two runs are the same: values that vary differ by less than a rounding error"
         );
-        let (file, mut others) = match path.map(open).transpose()? {
+        let (file, mut others) = match path.map(|path| open(path, &plan.measures)).transpose()? {
             Some((file, known)) => (Some(file), known),
             None => (None, Known::default()),
         };
@@ -138,7 +138,8 @@ impl<'a> Sweep<'a> {
         let done = || self.done.iter().enumerate().filter_map(|(index, done)| Some((index, done.get()?)));
         let rows = done().count();
         let added = Some(measure).filter(|measure| !IntensityMeasure::COLUMNS.contains(measure));
-        let headings = headings().into_iter().skip(1).chain(added.map(|of| heading(of.name(), of.unit())));
+        let headings =
+            headings(&self.plan.measures).into_iter().skip(1).chain(added.map(|of| heading(of.name(), of.unit())));
         let mut columns: Vec<_> = headings.map(|heading| (heading, Column::of(rows))).collect();
         let mut texts = vec![HashMap::new(); columns.len()];
         for (index, done) in done() {
@@ -153,7 +154,7 @@ impl<'a> Sweep<'a> {
     fn run_with_validity(&self, index: usize) -> Done {
         let case = self.plan.case(index);
         let found = Findings::since(case.motion.record.start());
-        let mut validity = Validity::new(&case.structure.into(), Limits::default(), found);
+        let mut validity = Validity::new(&case.structure, Limits::default(), found);
         let outcome = case.outcome_watched(&mut validity);
         if let Outcome::Failed { .. } = outcome {
             return Done { outcome, beyond: Box::default() };
@@ -178,13 +179,13 @@ impl<'a> Sweep<'a> {
         let reason = match outcome {
             Outcome::Ended(of) => {
                 row.extend([Cell::Ending(of.ending), Cell::Number(of.end)]);
-                row.extend(of.peaks.map(Cell::Number));
+                row.extend(of.peaks.iter().copied().map(Cell::Number));
                 row.extend([of.transitions, of.steps, of.evaluations].map(Cell::Count));
                 Cell::Empty
             }
             Outcome::Failed { time, reason } => {
                 row.extend([Cell::Text(FAILED), Cell::Number(*time)]);
-                row.extend([Cell::Empty; MEASURES.len() + 3]);
+                row.resize(row.len() + self.plan.measures.len() + 3, Cell::Empty);
                 Cell::Text(reason)
             }
         };
@@ -262,33 +263,37 @@ fn keys(plan: &Plan, digests: &[Uuid], validity: bool, program: &Program) -> Vec
     let of_case = |case: Case| {
         let names = (&case.population.name, &case.motion.name);
         let motion = (digests[case.motion_number].into_bytes(), case.motion.scale, case.scale);
-        program.key(&(names, case.structure.parameters(), motion, case.conditions, validity))
+        let Case { structure: of, conditions, .. } = &case;
+        program.key(&(names, (of.parameters(), of.body(), of.modes(), of.floors()), motion, conditions, validity))
     };
     plan.cases().map(of_case).collect()
 }
 
 /// Opens the file at `path`, or begins it, and reads what its rows say.
-fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Done>)> {
-    let headings = headings();
+fn open(path: &Path, measures: &[Measure]) -> anyhow::Result<(RowFile, Known<Done>)> {
+    let headings = headings(measures);
     let at = |heading: &str| headings.iter().position(|found| found == heading).expect("it is one of them");
-    let (ending, after, reason) = (at("ending"), at("evaluations") + 1, at("reason"));
+    let (ending, counts, after, reason) = (at("ending"), at("transitions"), at("evaluations") + 1, at("reason"));
     RowFile::open(path, &headings, |row| {
         if &row[ending] == FAILED {
             let outcome = Outcome::Failed { time: row[ending + 1].parse()?, reason: row[reason].into() };
             return Ok(Done { outcome, beyond: Box::default() });
         }
-        let summary: StringRecord = row.iter().take(after).skip(ending).collect();
+        let peaks = row.iter().take(counts).skip(ending + 2).map(str::parse).collect::<Result<_, _>>()?;
+        let others: StringRecord = row.iter().skip(ending).take(2).chain(row.iter().take(after).skip(counts)).collect();
+        let (ending, end, transitions, steps, evaluations) = others.deserialize(None)?;
+        let summary = Summary { ending, end, peaks, transitions, steps, evaluations };
         let beyond = row.iter().take(reason).skip(after).filter(|number| !number.is_empty()).map(str::parse);
-        Ok(Done { outcome: Outcome::Ended(summary.deserialize(None)?), beyond: beyond.collect::<Result<_, _>>()? })
+        Ok(Done { outcome: Outcome::Ended(summary), beyond: beyond.collect::<Result<_, _>>()? })
     })
 }
 
 /// Headings of the rows.
-fn headings() -> Vec<String> {
+fn headings(measures: &[Measure]) -> Vec<String> {
     let quantities = AXES.map(|axis| heading(axis.name, axis.unit));
     let intensities = IntensityMeasure::COLUMNS.map(|measure| heading(measure.name(), measure.unit()));
     let initial = INITIAL_VALUES.each_ref().map(|quantity| heading(quantity.name, quantity.unit));
-    let peaks = MEASURES.map(|(name, unit)| heading(&format!("peak_{name}"), unit));
+    let peaks = measures.iter().map(|(name, unit)| heading(&format!("peak_{name}"), unit)).collect();
     [
         fixed(&["run", "structures", "version"]),
         quantities.into(),
@@ -297,7 +302,7 @@ fn headings() -> Vec<String> {
         fixed(&["detail", "tolerance", "duration[s]"]),
         initial.into(),
         fixed(&["ending", "end[s]"]),
-        peaks.into(),
+        peaks,
         fixed(&["transitions", "steps", "evaluations"]),
         ASSUMPTIONS.iter().flat_map(|of| [of.name.to_owned(), heading(of.time_name, "s")]).collect(),
         fixed(&["energy_gains", "settlings", "reason"]),
@@ -309,7 +314,7 @@ fn headings() -> Vec<String> {
 mod tests {
     use super::*;
     use crate::plan::Population;
-    use rocking::Parameters;
+    use rocking::{Parameters, Structure};
 
     /// Two files of one ground motion, in g and in m/s², differ in the last digits.
     #[test]
@@ -320,7 +325,7 @@ mod tests {
             let copies = [("one", 1.0, 1.0), ("two", scale, factor)];
             let motion = |(name, scale, factor)| NamedRecord::new(name, record.clone().multiplied(factor), scale);
             let motions = copies.map(|copy| motion(copy).unwrap());
-            let only = Population::new("only", Parameters::EVISON);
+            let only = Population::new("only", Structure::new(Parameters::EVISON).unwrap());
             let plan = Plan::new(vec![only], motions.into(), vec![1.0]).unwrap();
             Sweep::open(&plan, false, &program, None).map(|_| ()).map_err(|error| error.to_string())
         };

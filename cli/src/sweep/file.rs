@@ -2,16 +2,17 @@
 //! and amplitude.
 use crate::record_args::RecordOptions;
 use crate::scene_args::InitialArgs;
+use crate::structure_args::of_file;
 use crate::talk::{few, warning};
 use anyhow::{Context, anyhow, bail, ensure};
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::record::Record;
 use rocking::structure::natural_quantities::Given;
-use rocking::{Detail, OneMass, Parameters, engine::DEFAULT_TOLERANCE};
+use rocking::{Detail, Parameters, Structure, engine::DEFAULT_TOLERANCE};
 use rocking_records::{Column, Unit};
 use rocking_report::{input, output_files::OutputFiles, record::no_pair};
 use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map};
-use rocking_sweep::outcome::Limit;
+use rocking_sweep::outcome::{Limit, Measure};
 use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population};
 use rocking_sweep::pulse::{Pulse, Shape};
 use serde::Deserialize;
@@ -36,7 +37,7 @@ pub type MapSweep = (Vec<(String, Map)>, u32);
 /// Content of a file.
 pub enum Asked {
     /// Records on structures.
-    Records(RecordSweep),
+    Records(Box<RecordSweep>),
     /// Pulses on structures.
     Pulses(MapSweep),
 }
@@ -155,6 +156,8 @@ struct StructureGrid {
     name: String,
     preset: Option<String>,
     parameters: Option<Given>,
+    /// Of any structure, from the folder of the TOML file.
+    file: Option<PathBuf>,
     /// By the name of a parameter, or `slenderness`; every combination is run.
     #[serde(default)]
     vary: BTreeMap<String, Values>,
@@ -177,18 +180,20 @@ enum Values {
 /// Reads the sweep in the TOML file at `path`, and its records, each of which is an input of `files`.
 pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
     let mut read = || -> anyhow::Result<_> {
-        let text = input::text(path)?;
+        let (text, folder) = (input::text(path)?, path.parent().unwrap_or(Path::new("")));
         let table: toml::Table = toml::from_str(&text)?;
         if table.contains_key("pulses") {
-            return Ok(Asked::Pulses(toml::from_str::<MapFile>(&text)?.sweep()?));
+            return Ok(Asked::Pulses(toml::from_str::<MapFile>(&text)?.sweep(folder, files)?));
         }
         let file: SweepFile = toml::from_str(&text)?;
         let (unit, time_scale) = (file.unit, file.time_scale);
         let scales = file.scale.list().context("scale")?;
-        let limits = file.limits().context("limits")?;
         let measure = file.measure()?;
-        let g = gravity(&file.structures)?;
-        let populations = file.structures.iter().map(StructureGrid::population).collect::<Result<_, _>>()?;
+        let (grids, mut bases) = (&file.structures, Vec::new());
+        grids.iter().try_for_each(|grid| grid.base(folder, files).map(|base| bases.push(base)))?;
+        let g = gravity(&bases)?;
+        let populations =
+            grids.iter().zip(bases).map(|(grid, base)| grid.population(base)).collect::<Result<_, _>>()?;
         let (mut records, mut warnings) = (Vec::new(), Vec::new());
         let mut read_one = |path: &Path, options: &RecordOptions| {
             files.add_input(path);
@@ -204,22 +209,23 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
             let Some((vertical, options)) = vertical else { return Ok(record) };
             record.with_vertical(&read_one(vertical, options)?).map_err(|error| no_pair(error, "vertical_column"))
         };
-        let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read);
+        let motions = motions(&file.records, folder, read);
         let all_warn = |warnings| few(warnings, "warnings").iter().for_each(|warning| warning!("{warning}"));
         all_warn(warnings);
         let (tolerance, duration) = (file.tolerance.unwrap_or(DEFAULT_TOLERANCE), file.duration);
         let conditions = Conditions { initial: file.initial.state(), detail: file.detail, tolerance, duration };
         let plan = Plan::new(populations, motions?, scales)?.under(conditions)?;
         all_warn(plan.doubts());
-        let widest = plan.cases().map(|case| case.structure.parameters().B).fold(0.0, f64::max);
+        let limits = file.limits(&plan.measures).context("limits")?;
+        let widest = plan.cases().map(|case| case.structure.base().B).fold(0.0, f64::max);
         limits.iter().try_for_each(|limit| limit.check(widest)).context("limits")?;
-        Ok(Asked::Records(RecordSweep { plan, limits, measure, records }))
+        Ok(Asked::Records(Box::new(RecordSweep { plan, limits, measure, records })))
     };
     read().with_context(|| format!("sweep in {}", path.display()))
 }
 
 impl MapFile {
-    fn sweep(&self) -> anyhow::Result<MapSweep> {
+    fn sweep(&self, folder: &Path, files: &mut OutputFiles) -> anyhow::Result<MapSweep> {
         let refine = self.refine;
         ensure!(refine <= MAX_REFINEMENTS, "refine = {refine} is out of range: 0 to {MAX_REFINEMENTS} are possible");
         ensure!(!self.structures.is_empty(), "structures is empty: name one or more");
@@ -227,15 +233,16 @@ impl MapFile {
         for grid in &self.structures {
             let name = &grid.name;
             ensure!(maps.iter().all(|(other, _)| other != name), "two structures have the name {name:?}: rename one");
-            let map = self.map(grid).with_context(|| format!("structures {name:?}"))?;
+            let base = grid.base(folder, files)?;
+            let map = self.map(grid, &base).with_context(|| format!("structures {name:?}"))?;
             maps.push((name.into(), map));
         }
         Ok((maps, refine))
     }
 
-    fn map(&self, grid: &StructureGrid) -> anyhow::Result<Map> {
+    fn map(&self, grid: &StructureGrid, structure: &Structure) -> anyhow::Result<Map> {
         ensure!(grid.vary.is_empty(), "vary is not possible with pulses: list each structure under [[structures]]");
-        let structure = OneMass::new(grid.base()?)?;
+        let structure = *structure.one_mass("a map of pulses")?;
         let &PulseGrid { shape, cycles, phase, error, ref frequency, ref amplitude, dimensionless } = &self.pulses;
         let unit = if dimensionless { 1.0 } else { structure.parameters().g };
         let frequency = frequency.axis(1.0).context("frequency")?;
@@ -256,15 +263,16 @@ impl SweepFile {
         found.with_context(|| format!("intensity = {name:?} is unknown; these are known: {known}"))
     }
 
-    fn limits(&self) -> anyhow::Result<Vec<Limit>> {
+    fn limits(&self, measures: &[Measure]) -> anyhow::Result<Vec<Limit>> {
         let mut limits = Vec::new();
         for (name, values) in &self.limits {
             ensure!(!values.is_empty(), "{name} is empty: give one or more");
             for value in values {
-                limits.push(match value {
-                    Amount::InOwnUnit(value) => Limit::peak(name, *value)?,
-                    Amount::WithUnit(value) => format!("{name} >= {value}").parse()?,
-                });
+                let text = match value {
+                    Amount::InOwnUnit(value) => format!("{name} >= {value}"),
+                    Amount::WithUnit(value) => format!("{name} >= {value}"),
+                };
+                limits.push(Limit::read(&text, measures)?);
             }
         }
         Ok(limits)
@@ -272,15 +280,12 @@ impl SweepFile {
 }
 
 /// The one acceleration of gravity of all structures, m/s²: that in which the records are given.
-fn gravity(structures: &[StructureGrid]) -> anyhow::Result<f64> {
-    let mut found = None;
-    for grid in structures {
-        ensure!(!grid.vary.contains_key("g"), "structures {:?}: g cannot vary: a sweep has one g", grid.name);
-        let g = grid.base().with_context(|| format!("structures {:?}", grid.name))?.g;
-        let first = *found.get_or_insert(g);
+fn gravity(structures: &[Structure]) -> anyhow::Result<f64> {
+    let first = structures.first().context("structures is empty: name one or more")?.base().g;
+    for g in structures.iter().map(|structure| structure.base().g) {
         ensure!(g == first, "g = {g} m/s2 and g = {first} m/s2: a sweep has one g, in which its records are given");
     }
-    found.context("structures is empty: name one or more")
+    Ok(first)
 }
 
 impl Values {
@@ -315,20 +320,27 @@ impl Values {
 }
 
 impl StructureGrid {
-    fn base(&self) -> anyhow::Result<Parameters> {
-        match (&self.preset, &self.parameters) {
-            (Some(preset), None) => Ok(Parameters::preset(preset)?),
-            (None, Some(given)) => Ok(given.parameters()?),
-            _ => bail!("give either preset or parameters"),
-        }
+    fn base(&self, folder: &Path, files: &mut OutputFiles) -> anyhow::Result<Structure> {
+        let mut base = || match (&self.preset, &self.parameters, &self.file) {
+            (Some(preset), None, None) => Ok(Structure::new(Parameters::preset(preset)?)?),
+            (None, Some(given), None) => Ok(Structure::new(given.parameters()?)?),
+            (None, None, Some(file)) => {
+                let path = folder.join(file);
+                files.add_input(&path);
+                input::text(&path).and_then(|text| of_file(&text)).with_context(|| path.display().to_string())
+            }
+            _ => bail!("give one of preset, parameters and file"),
+        };
+        base().with_context(|| format!("structures {:?}", self.name))
     }
 
-    fn population(&self) -> anyhow::Result<Population> {
+    fn population(&self, base: Structure) -> anyhow::Result<Population> {
         let vary = |population: Population, (name, values): (&String, &Values)| -> anyhow::Result<_> {
+            ensure!(name != "g", "g cannot vary: a sweep has one g");
             Ok(population.vary(name, values.list().context(name.clone())?)?)
         };
-        let population = || self.vary.iter().try_fold(Population::new(&self.name, self.base()?), vary);
-        population().with_context(|| format!("structures {:?}", self.name))
+        let population = self.vary.iter().try_fold(Population::new(&self.name, base), vary);
+        population.with_context(|| format!("structures {:?}", self.name))
     }
 }
 

@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from frames import FRAMES, Frame, toml
+from statsmodels import api
 
 import flexible_rocking as fr
 
@@ -255,12 +256,44 @@ def test_pictures_of_a_building_show_its_top_and_its_height(run, monkeypatch):
     (lambda run: run.spectrum("top"), "floor = 'top': a whole number is needed"),
     (lambda run: run.spectrum(1, [-1.0]), "period = -1 s is out of range"),
     (lambda run: run.plot("heights"), "kind = 'heights' is unknown"),
-    (lambda run: fr.sweep(run.structure, run.record), "sweep needs a structure of one mass"),
+    (lambda run: fr.sweep(run.structure, run.record, u_0=0.1), "u_0 = 0.1 m, u_dot_0 = 0.0 m/s are of one mass"),
+    (lambda run: fr.intensity_at(run.structure, run.record, "a_t[11] >= 1 g"), "\"a_t[11]\" is unknown; these are known: theta, uplift, V_t"),
+    (lambda run: fr.fragility(fr.sweep(run.structure, run.record), "uplift >= 20 m"), "stays below 2 B = 8 m; use overturned"),
 ])
 def test_what_a_run_of_many_masses_has_not_is_named(run, refused, text):
     with pytest.raises(ValueError) as error:
         refused(run)
     assert text in str(error.value)
+
+
+def test_a_building_is_swept_as_it_is_simulated(exporter, tmp_path):
+    core, scales, limit = of_storeys(), [0.3, 0.6, 1, 2], "a_t >= 0.78 g"
+    records = {f"{f}.csv": fr.pulse("sine", amplitude=0.4, frequency=f) for f in (1, 2, 3.5)}
+    table = fr.sweep(core, records, scale=scales)
+    for row, (name, scale) in zip(table.to_dict("records"), [(name, scale) for name in records for scale in scales], strict=True):
+        run = fr.simulate(core, records[name].scaled(scale))
+        assert all(row[f"peak_{of}[{peak.unit}]"] == peak for of, peak in run.peaks.items() if of != "a_g")
+        assert (row["record"], row["scale"], row["ending"], row["end[s]"]) == (name, scale, run.ending, run.end)
+    exceeds = table.filter(regex=r"peak_a_t\[").max(axis=1) >= 0.78 * 9.81
+    family = api.families.Binomial(api.families.links.Probit())
+    a, b = api.GLM(exceeds.astype(float), api.add_constant(np.log(table["PGA[g]"])), family=family).fit(tol=1e-12).params
+    for runs in (table, table.drop(columns="run")):
+        curve = fr.fragility(runs, limit, intensity="PGA")
+        assert [curve.median, curve.dispersion] == pytest.approx([np.exp(-a / b), 1 / b], rel=1e-6)
+    found = fr.intensity_at(core, records, "drift[2] >= 4 mm", accuracy=1e-6).set_index("record")["scale"]
+    for name, record in records.items():
+        below, at = (fr.simulate(core, record.scaled(found[name] * factor)).peaks["drift[2]"] for factor in (1 - 2e-6, 1))
+        assert below < 4e-3 <= at
+    (tmp_path / "core.toml").write_text(toml(FRAME))
+    (tmp_path / "sweep.toml").write_text(f"records = ['*.csv']\nscale = {scales}\nstructures = [{{ name = 'core', file = 'core.toml' }}]\n"
+                                         f"[limits]\na_t = ['0.78 g']\n")
+    for name, record in records.items():
+        record.write(tmp_path / name)
+    command = [exporter, "sweep", "sweep.toml", "-o", "rows.out", "--format", "json"]
+    printed = subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+    assert json.loads(printed)[1]["median"] == pytest.approx(fr.fragility(table, limit).median, rel=1e-5)
+    rows = pd.read_csv(tmp_path / "rows.out").sort_values(["record", "scale"], ignore_index=True).filter(like="peak_")
+    pd.testing.assert_frame_equal(rows, table.sort_values(["record", "scale"], ignore_index=True).filter(like="peak_"), check_exact=True)
 
 
 def test_the_command_line_shows_a_building_as_the_module_does(run, exporter, tmp_path):

@@ -547,7 +547,7 @@ def test_curves_by_a_column_are_those_of_its_rows(two_populations):
     low = two_populations["PGV[m/s]"] < two_populations["PGV[m/s]"].min() * 1.01
     for refused, options in [("structures = 'mcmanus': never exceeded: raise", {"table": two_populations[low], "by": "structures"}),
                              ("by = 'period' is no column of the table: give one of run, ", {"table": two_populations, "by": "period"}),
-                             ("the table has no run, g[m/s2], B[m]: a table with the columns of `sweep`",
+                             ("the table has no g[m/s2], B[m]: a table with the columns of `sweep`",
                               {"table": two_populations.drop(columns=["run", "g[m/s2]", "B[m]"])})]:
         with pytest.raises(ValueError, match=re.escape(refused)):
             fr.fragility(limit=limit, **options)
