@@ -68,7 +68,7 @@ fn output(of: Output, frame: &Structure) -> Row {
         Output::uplift => &["theta"],
         Output::V_t | Output::M_t => ACCELERATION,
         Output::a_t(_) | Output::V(_) | Output::M(_) => ACCELERATION,
-        Output::u(_) | Output::drift(_) => &["u"],
+        Output::u(_) | Output::drift(_) | Output::drift_ratio(_) => &["u"],
         Output::u_dot(_) => &["u_dot"],
         Output::delta_t(_) => &["u", "theta"],
         Output::v_t(_) => &["u", "u_dot", "theta", "theta_dot"],

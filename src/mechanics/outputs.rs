@@ -41,6 +41,8 @@ pub enum Output {
     u_dot(usize),
     /// Drift of a storey u_i − u_{i−1}, m.
     drift(usize),
+    /// Drift of a storey over its height, 1.
+    drift_ratio(usize),
     /// Displacement of a floor relative to the ground δ_i = sB (1 − cos θ) + u_i cos θ + h_i sin θ, m (Eq 26).
     delta_t(usize),
     /// Velocity of a floor relative to the ground, the rate of δ_i: u̇_i cos θ + [(sB − u_i) sin θ + h_i cos θ] θ̇, m/s.
@@ -53,7 +55,7 @@ pub enum Output {
     M(usize),
 }
 
-use Output::{M, M_t, V, V_t, a_t, delta_t, drift, theta, theta_dot, u, u_dot, v_t};
+use Output::{M, M_t, V, V_t, a_t, delta_t, drift, drift_ratio, theta, theta_dot, u, u_dot, v_t};
 
 /// A motion in numbers of the kind `N`, as formulas of outputs read it.
 pub(crate) trait Shows<N> {
@@ -82,7 +84,7 @@ impl Output {
     const OF_BASE: [Output; 5] = [theta, theta_dot, Output::uplift, V_t, M_t];
 
     /// The outputs of a floor and of the storey below the floor.
-    const OF_FLOOR: [fn(usize) -> Output; 8] = [u, u_dot, drift, delta_t, v_t, a_t, V, M];
+    const OF_FLOOR: [fn(usize) -> Output; 9] = [u, u_dot, drift, drift_ratio, delta_t, v_t, a_t, V, M];
 
     /// All outputs of `structure` in the order of their columns: of many masses those of the base, then each output of the floors
     /// from below.
@@ -92,7 +94,9 @@ impl Output {
         }
         let floors = structure.floors().len();
         let of_floors = Output::OF_FLOOR.iter().flat_map(|of| (0..floors).map(of));
-        Output::OF_BASE.into_iter().chain(of_floors).collect()
+        // two floors at the same height have a drift and no storey
+        let is_one = |of: &Output| of.displaced(structure).is_none_or(|(_, factor)| factor.is_finite());
+        Output::OF_BASE.into_iter().chain(of_floors).filter(is_one).collect()
     }
 
     /// The outputs of `structure` that have a peak, in the order of their peaks.
@@ -116,6 +120,7 @@ impl Output {
             u(i) => ("u", "m", "elastic displacement of floor #", Some(i)),
             u_dot(i) => ("u_dot", "m/s", "elastic velocity of floor #", Some(i)),
             drift(i) => ("drift", "m", "drift of storey #", Some(i)),
+            drift_ratio(i) => ("drift_ratio", "1", "drift of storey # over its height", Some(i)),
             delta_t(i) => ("delta_t", "m", "displacement of floor # relative to the ground", Some(i)),
             v_t(i) => ("v_t", "m/s", "velocity of floor # relative to the ground", Some(i)),
             a_t(i) => ("a_t", "m/s2", "lateral acceleration of floor #", Some(i)),
@@ -153,16 +158,32 @@ impl Output {
         self.gauge(structure).is_some_and(Gauge::has_feedthrough)
     }
 
-    /// Whether the output is a component of the motion, or a difference of two.
+    /// Whether the output is linear in the components of the motion.
     pub(crate) fn is_component(self) -> bool {
-        matches!(self, theta | theta_dot | u(_) | u_dot(_) | drift(_))
+        matches!(self, theta | theta_dot | u(_) | u_dot(_) | drift(_) | drift_ratio(_))
     }
 
     /// The output as a multiple of `other`, if it is one in every motion of `structure`.
     pub(crate) fn over(self, other: Output, structure: &Structure) -> Option<f64> {
-        match (self, other) {
-            (drift(0), u(0)) => Some(1.0),
-            _ => self.gauge(structure)?.over(other.gauge(structure)?),
+        match [self, other].map(|of| of.displaced(structure)) {
+            [Some((shape, factor)), Some((other, of_other))] => (shape == other).then(|| factor / of_other),
+            [None, None] => self.gauge(structure)?.over(other.gauge(structure)?),
+            _ => None,
+        }
+    }
+
+    /// Of a displacement, the shape in the modes and the factor.
+    #[inline]
+    fn displaced(self, structure: &Structure) -> Option<(&Modes, f64)> {
+        let (floors, drifts) = (structure.floors(), &structure.gauges().drift);
+        match self {
+            u(i) => Some((&floors[i].shape, 1.0)),
+            drift(i) => Some((&drifts[i], 1.0)),
+            drift_ratio(i) => {
+                let foot = if i == 0 { 0.0 } else { floors[i - 1].height };
+                Some((&drifts[i], 1.0 / (floors[i].height - foot)))
+            }
+            _ => None,
         }
     }
 
@@ -194,9 +215,11 @@ impl Output {
             theta => x.theta(),
             theta_dot => x.theta_dot(),
             Output::uplift => uplift(x.pivot(), &x.turn()),
-            u(i) => x.u(&floor(i).shape),
+            u(_) | drift(_) | drift_ratio(_) => {
+                let (shape, factor) = self.displaced(x.structure()).expect("it is a displacement");
+                x.u(shape) * factor
+            }
             u_dot(i) => x.u_dot(&floor(i).shape),
-            drift(i) => x.u(&x.structure().gauges().drift[i]),
             delta_t(i) => place(i).right(x.pivot(), &x.turn()),
             v_t(i) => place(i).rate_of_right(x.pivot(), &x.turn(), [x.u_dot(&floor(i).shape), x.theta_dot()]),
             V_t | M_t | a_t(_) | V(_) | M(_) => {

@@ -86,7 +86,7 @@ impl Output {
             Output::V_t => 1,
             Output::M_t => 2,
             Output::u(i) | Output::u_dot(i) => of_floor(0, i),
-            Output::drift(i) => of_floor(1, i),
+            Output::drift(i) | Output::drift_ratio(i) => of_floor(1, i),
             Output::delta_t(i) | Output::v_t(i) => of_floor(2, i),
             Output::a_t(i) => of_floor(3, i),
             Output::V(i) => of_floor(4, i),
