@@ -114,6 +114,8 @@ struct Whole {
     vibration: Vibration,
     /// Of one mass, its parameters and what follows from them.
     one: Option<OneMass>,
+    /// Of a structure with one mode that is all of it, the numbers of this mode as of one mass.
+    of_mode: Option<OneMass>,
     reaches: Reaches,
 }
 
@@ -308,6 +310,7 @@ impl Structure {
             gauges,
             vibration,
             one: None,
+            of_mode: None,
             reaches: Reaches::default(),
         }))
     }
@@ -325,10 +328,20 @@ impl Structure {
 
     /// This structure as the level `rigid` of one mass shows it: floors and gauges know no mode.
     pub(crate) fn shown_rigid(&self) -> Structure {
-        let Whole { base, body, vibration, one, .. } = *self.0;
+        let Whole { base, body, vibration, one, of_mode, .. } = *self.0;
         let floors = Vec::from_iter(self.0.floors.iter().map(|floor| Floor { shape: Modes::ZERO, ..*floor }));
         let (gauges, modes) = (Gauges::new(&body, &[], &floors, ROUNDING), self.0.modes.clone());
-        Structure(Arc::new(Whole { base, body, modes, floors, gauges, vibration, one, reaches: Reaches::default() }))
+        Structure(Arc::new(Whole {
+            base,
+            body,
+            modes,
+            floors,
+            gauges,
+            vibration,
+            one,
+            of_mode,
+            reaches: Reaches::default(),
+        }))
     }
 
     fn with_lowest(&self, count: usize) -> Structure {
@@ -405,6 +418,38 @@ impl Structure {
         let Parameters { m0, J0, B, r, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
         let (r, ties) = (Some(r).filter(|r| !r.is_nan()), Ties { P_0, k_t, xi_d, c_d, k_d, F_y });
         Structure::of_body(Body { m0, J0, B, r, g, c_ratio, ties, ..self.0.body }, &self.0.modes, &self.0.floors)
+    }
+
+    /// This structure as engines of one coordinate move it, if one mode is all of it: the coordinate is scaled so that the mode takes the
+    /// whole translation of the base. Its names stay those of this structure.
+    pub fn of_one_mode(&self) -> Option<Structure> {
+        if self.0.of_mode.is_some() {
+            return Some(self.clone());
+        }
+        let &[Mode { mass, gamma, share, height, stiffness, damping }] = self.modes() else { return None };
+        if self.rest() != [0.0; 3] || self.0.gauges.has_feedthrough {
+            return None;
+        }
+        let square = share * share;
+        let mode = Mode {
+            mass: mass * square,
+            gamma: gamma * share,
+            share: 1.0,
+            height: height / share,
+            stiffness: stiffness * square,
+            damping: damping * square,
+        };
+        let (m, H, r) = (mode.mass, mode.height, self.0.body.r.unwrap_or(1.0));
+        let of_mode = OneMass::new(Parameters { m, H, r, ..self.parameters() }).ok()?;
+        let floor = |floor: &Floor| Floor { shape: floor.shape.times(share), ..*floor };
+        let Structure(whole) = Structure::of(self.0.body, &[mode], &Vec::from_iter(self.0.floors.iter().map(floor)));
+        Some(Structure(Arc::new(Whole { of_mode: Some(of_mode), ..Arc::into_inner(whole)? })))
+    }
+
+    /// The numbers of one mass of a structure that engines of one coordinate move.
+    pub(crate) fn of_mode(&self) -> Result<&OneMass, NotOneMass> {
+        let task = "an engine of one coordinate";
+        self.0.of_mode.as_ref().ok_or_else(|| NotOneMass { task, modes: self.modes().len() })
     }
 
     /// The numbers of one mass, which `task` needs.
@@ -485,6 +530,7 @@ impl From<OneMass> for Structure {
             gauges,
             vibration,
             one: Some(one),
+            of_mode: Some(one),
             reaches: Reaches::default(),
         }))
     }

@@ -152,13 +152,13 @@ impl Watcher for () {}
 /// `$do` with `$follow`, the library's run of one mass or of many.
 macro_rules! with {
     ($run:expr, $follow:ident => $do:expr) => {
-        match &$run.structure {
-            structure if structure.one().is_some() => {
-                let $follow = $run.conditions.run(structure.clone(), &$run.ground);
+        match $run.structure.of_one_mode() {
+            Some(structure) => {
+                let $follow = $run.conditions.run(structure, &$run.ground);
                 $do
             }
-            structure => {
-                let $follow = $run.conditions.run_of_modes(structure.clone(), &$run.ground)?;
+            None => {
+                let $follow = $run.conditions.run_of_modes($run.structure.clone(), &$run.ground)?;
                 $do
             }
         }

@@ -86,7 +86,7 @@ impl Detail {
         local_error: f64,
         is_vertical: bool,
     ) -> Result<AnyLevel, InitialStateError> {
-        let one = *structure.one_mass("an engine of one coordinate")?;
+        let one = *structure.of_mode()?;
         let is_tied = structure.base().is_restrained() || is_vertical;
         let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
         let contact = ExactContact::new(&one);

@@ -86,9 +86,9 @@ impl fmt::Display for Choice {
     }
 }
 
-/// The modes of a structure of many masses, all kept.
+/// The modes of a structure, all kept, unless an engine of one coordinate moves it.
 fn all_modes(structure: &Structure) -> Option<[usize; 2]> {
-    structure.one().is_none().then_some([structure.modes().len(); 2])
+    structure.of_mode().is_err().then_some([structure.modes().len(); 2])
 }
 
 /// The levels to compare on `run`, the one of the fewest equations first.

@@ -58,7 +58,7 @@ fn magnitudes(structure: &Structure, peaks: &Peaks) -> Vec<(String, &'static str
 }
 
 /// Usual units of limits: name, unit of the measure, and how many of that one it is; g is the structure's own.
-const USUAL_UNITS: [(&str, &str, Option<f64>); 8] = [
+const USUAL_UNITS: [(&str, &str, Option<f64>); 9] = [
     ("deg", "rad", Some(PI / 180.0)),
     ("mrad", "rad", Some(1e-3)),
     ("cm", "m", Some(1e-2)),
@@ -67,6 +67,7 @@ const USUAL_UNITS: [(&str, &str, Option<f64>); 8] = [
     ("cm/s2", "m/s2", Some(1e-2)),
     ("kN", "N", Some(1e3)),
     ("kN.m", "N.m", Some(1e3)),
+    ("%", "1", Some(1e-2)),
 ];
 
 /// Limit that a run can exceed.
@@ -147,11 +148,12 @@ impl Limit {
         let own = meant.first().map(|at| &*measures[*at].1);
         let own = own.ok_or_else(|| Refused(format!("{name:?} is unknown; these are known: {}", known())))?;
         let usual = USUAL_UNITS.into_iter().filter_map(|(usual, of, _)| (of == own).then_some(usual));
-        let units: Vec<_> = [own].into_iter().chain(usual).filter(|unit| *unit != "1").collect();
+        let units: Vec<_> = [own].into_iter().chain(usual).collect();
         let in_unit = |unit| Some((given.strip_suffix(unit)?.trim_end().parse().ok()?, unit));
         let value = given.parse().ok().map(|value| (value, own)).or(units.iter().copied().find_map(in_unit));
         let (value, unit): (f64, _) = value.ok_or_else(|| {
-            let possible = if units.is_empty() { "no unit".into() } else { units.join(", ") };
+            let possible = units.iter().map(|unit| if *unit == "1" { "no unit" } else { unit });
+            let possible = Vec::from_iter(possible).join(", ");
             Refused(format!("limit = {text:?}: a number is needed, in {possible}"))
         })?;
         ensure(value > 0.0 && value.is_finite(), || {
@@ -215,7 +217,9 @@ mod tests {
 
     #[test]
     fn a_limit_is_read_as_it_is_shown() {
-        for text in ["overturned", "theta/alpha_cg >= 0.5", "uplift >= 0.002 m", "theta >= 3 deg", "a_t >= 0.3 g"] {
+        for text in
+            ["overturned", "theta/alpha_cg >= 0.5", "uplift >= 0.002 m", "theta >= 3 deg", "theta/alpha_cg >= 50 %"]
+        {
             assert_eq!(limit(text).unwrap().to_string(), text);
         }
         assert_eq!(limit("a_t >= 3"), limit("a_t >= 3 m/s2"));
@@ -226,7 +230,7 @@ mod tests {
         assert_eq!(refused("a_t >= 3 kN"), unknown);
         assert_eq!(
             refused("theta/alpha_cg >= 3 deg"),
-            "limit = \"theta/alpha_cg >= 3 deg\": a number is needed, in no unit"
+            "limit = \"theta/alpha_cg >= 3 deg\": a number is needed, in no unit, %"
         );
         assert_eq!(
             refused("theta >= -3 deg"),

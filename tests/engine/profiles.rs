@@ -2,6 +2,7 @@
 
 use rocking::engine::AdvanceError;
 use rocking::engine::piece::Sample;
+use rocking::run::peaks::Peaks;
 use rocking::run::record::Record;
 use rocking::run::validity::{ASSUMPTIONS, EDGE_LOAD, FRICTION, Findings, Limits, TENSION};
 use rocking::run::{End, Run, RunError};
@@ -43,31 +44,32 @@ fn one_mode_is_one_mass() {
             let one = Run { initial: State { theta, ..one.initial }, ..one };
             let many = Run { detail, tolerance, ..Run::of_modes(frame.clone(), &ground) };
             let many = Run { initial: State { theta, ..many.initial }, ..many };
+            let of_one = Run { structure: frame.of_one_mode().unwrap(), ..one.clone() };
             let ((expected, _), (found, finish)) = (one.peaks().unwrap(), many.peaks().unwrap());
-            assert_same_findings(
-                &one.validity(Limits::default()).unwrap().0,
-                &many.validity(Limits::default()).unwrap().0,
-            );
+            let [findings, of_one_findings] = [&one, &of_one].map(|run| run.validity(Limits::default()).unwrap().0);
+            assert_same_findings(&findings, &many.validity(Limits::default()).unwrap().0);
+            assert_same_findings(&findings, &of_one_findings);
             assert!(finish.motion.transitions > 2 || !detail.has_uplift(), "{}", finish.motion.transitions);
-            let pairs = [
-                (found.a_g(), expected.a_g()),
-                (found.of(Output::theta).unwrap(), expected.theta()),
-                (found.of(Output::uplift).unwrap(), expected.of(Output::uplift).unwrap()),
-                (found.of(Output::u(0)).unwrap(), expected.of(Output::u(0)).unwrap()),
-                (found.of(Output::drift(0)).unwrap(), expected.of(Output::u(0)).unwrap()),
-                (found.of(Output::delta_t(0)).unwrap(), expected.of(Output::delta_t(0)).unwrap()),
-                (found.of(Output::a_t(0)).unwrap(), expected.of(Output::a_t(0)).unwrap()),
-                (found.of(Output::V(0)).unwrap(), expected.of(Output::V_t).unwrap()),
-                (found.of(Output::V_t).unwrap(), expected.of(Output::V_t).unwrap()),
-                (found.of(Output::M_t).unwrap(), expected.of(Output::M_t).unwrap()),
-            ];
-            let of_tendon = (parameters == tied).then(|| (found.P_t(), expected.P_t()));
-            for (i, (found, expected)) in pairs.into_iter().chain(of_tendon).enumerate() {
-                let off = (found.magnitude - expected.magnitude).abs();
-                assert!(off <= 1e-13 * expected.magnitude, "{detail:?} {i}: {found:?}, not {expected:?}: {off:e}");
-                assert!((found.time - expected.time).abs() < 1e-6, "{detail:?} {i}: {found:?}, {expected:?}");
+            for found in [found, of_one.peaks().unwrap().0] {
+                assert_same_peaks(&found, &expected, parameters == tied);
             }
         }
+    }
+}
+
+/// Whether a building of one storey has `found` the peaks that are `expected` of one mass.
+fn assert_same_peaks(found: &Peaks, expected: &Peaks, is_tied: bool) {
+    let of_base = [Output::theta, Output::uplift, Output::V_t, Output::M_t].map(|of| (of, of));
+    let u = Output::u(0);
+    let of_floor = [u, Output::delta_t(0), Output::a_t(0)].map(|of| (of, of));
+    let of_storey = [(Output::drift(0), u), (Output::V(0), Output::V_t), (Output::M(0), Output::M_t)];
+    let pairs = of_base.into_iter().chain(of_floor).chain(of_storey);
+    let pairs = pairs.map(|(of, expected_of)| (found.of(of).unwrap(), expected.of(expected_of).unwrap()));
+    let of_tendon = is_tied.then(|| (found.P_t(), expected.P_t()));
+    for (found, expected) in pairs.chain(of_tendon).chain([(found.a_g(), expected.a_g())]) {
+        let off = (found.magnitude - expected.magnitude).abs();
+        assert!(off <= 1e-13 * expected.magnitude, "{found:?}, not {expected:?}: {off:e}");
+        assert!((found.time - expected.time).abs() < 1e-6, "{found:?}, {expected:?}");
     }
 }
 
