@@ -73,8 +73,12 @@ pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Structure> {
         }),
     };
     let keep = keywords.take("keep")?.map(|keep| integer("keep", &keep)).transpose()?;
-    let described =
-        Described { zeta: damping(&zeta)?, storeys, floors, K, modes, total, keep, base: given(&keywords.0)? };
+    let truth = |of: Bound<'_, PyAny>| {
+        of.extract().map_err(|_| PyValueError::new_err(format!("p_delta = {of:?}: True or False is needed")))
+    };
+    let p_delta = keywords.take("p_delta")?.map_or(Ok(false), truth)?;
+    let (zeta, base) = (damping(&zeta)?, given(&keywords.0)?);
+    let described = Described { zeta, storeys, p_delta, floors, K, modes, total, keep, base };
     described.structure().map_err(refused)
 }
 

@@ -36,7 +36,8 @@ use rocking_report::describe;
 /// A shear building of many masses. Each storey has the stiffness k (N/m), and the mass m (kg) and height h (m) above the base
 /// of its floor. zeta: one damping ratio, one for each mode, or dict(f=(Hz, Hz), zeta=...) for Rayleigh damping. The numbers of
 /// the base are those above. Without r, momentum gives a coefficient for each impact. keep: how many modes are kept; the rest of
-/// the mass turns rigidly with the base. See also from_matrices and from_modes.
+/// the mass turns rigidly with the base. p_delta=True subtracts the weight above each storey, over the storey's height, from its k.
+/// See also from_matrices and from_modes.
 ///
 /// A Python warning names a number that is usual in another unit. Raises ValueError where a number is unknown, missing, given twice in
 /// different ways or out of its range.

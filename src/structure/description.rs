@@ -6,7 +6,7 @@
 //! ω² = φᵀKφ,   effective mass Γ² with Γ = φᵀM1,   effective height κ/Γ with κ = φᵀMh
 //! ```
 
-use crate::digits::short;
+use crate::digits::{short, with_unit};
 use crate::mechanics::lateral::{MOST_MODES, Modes};
 use crate::structure::natural_quantities::{self, Given, GivenError};
 use crate::structure::parameters::{MAX_DAMPING, MAX_SLENDERNESS, ParameterError};
@@ -96,6 +96,9 @@ pub struct Described {
     /// The storeys from the base up.
     #[serde(default)]
     pub storeys: Vec<Storey>,
+    /// Whether the weights above soften each storey ([`with_p_delta`]).
+    #[serde(default)]
+    pub p_delta: bool,
     /// The floors from the base up, with the matrix K or with modes.
     #[serde(default)]
     pub floors: Vec<Place>,
@@ -147,6 +150,15 @@ pub enum DescriptionError {
          each floor to a base that cannot move"
     )]
     NotDefinite { omega_2: f64, floor: usize },
+    #[error("p_delta = true needs storeys: subtract the geometric stiffness from K, or give modes that contain it")]
+    PDelta,
+    #[error(
+        "storey {number}: k = {} does not exceed P/h = {}, at which the weight P above buckles the storey of height h: raise k, or \
+         leave p_delta out",
+        with_unit(*k, STOREY.unit),
+        with_unit(*least, STOREY.unit)
+    )]
+    Buckles { number: usize, k: f64, least: f64 },
     #[error("mode {number} needs {one} or {other}, and not both")]
     Either { number: usize, one: &'static str, other: &'static str },
     #[error("I_2 (kg.m2) or J_P (kg.m2) is needed, and not both")]
@@ -231,9 +243,13 @@ fn moments(masses: impl Iterator<Item = (f64, f64)>) -> [f64; 3] {
 impl Described {
     /// The structure that is described.
     pub fn structure(&self) -> Result<Structure, DescriptionError> {
-        let Described { base, zeta, storeys, floors, K, modes, total, keep } = self;
+        let Described { base, zeta, storeys, p_delta, floors, K, modes, total, keep } = self;
         let whole = match [storeys.is_empty(), K.is_empty(), modes.is_empty()] {
-            [false, true, true] if floors.is_empty() && total.is_none() => Structure::from_storeys(base, zeta, storeys),
+            [false, true, true] if floors.is_empty() && total.is_none() => match p_delta {
+                true => Structure::from_storeys(base, zeta, &with_p_delta(base, storeys)?),
+                false => Structure::from_storeys(base, zeta, storeys),
+            },
+            _ if *p_delta => Err(DescriptionError::PDelta),
             [true, false, true] if total.is_none() => Structure::from_matrices(base, zeta, floors, K),
             [true, true, false] => Structure::from_modes(base, zeta, modes, *total, floors),
             [true, true, true] => Err(DescriptionError::Ways("none of these")),
@@ -247,18 +263,42 @@ impl Described {
     }
 }
 
+/// The `storeys` under their weight. The geometric stiffness of the weight P_i of the floors from i on, over the height of storey i
+/// (Wilson, Three-Dimensional Static and Dynamic Analysis of Structures, Eq 11.3 with T = −P; read),
+///
+/// ```text
+/// k_i − P_i/(h_i − h_{i−1}),   P_i = g Σ_{j ≥ i} m_j     (N/m)
+/// ```
+///
+/// is linear in the drift, and P_i is the weight at rest. An error names a storey whose k does not exceed P_i/(h_i − h_{i−1}).
+pub fn with_p_delta(base: &Given, storeys: &[Storey]) -> Result<Vec<Storey>, DescriptionError> {
+    let (floors, g) = (checked_storeys(storeys)?, base.base()?.0.g);
+    let soften = |(i, &Storey { m, h, k })| {
+        let [weight, ..] = moments(floors[i..].iter().map(|floor| (g * floor.m, 0.0)));
+        let least = weight / (h - if i == 0 { 0.0 } else { floors[i - 1].h });
+        let buckles = DescriptionError::Buckles { number: i + 1, k, least };
+        if k > least { Ok(Storey { m, h, k: k - least }) } else { Err(buckles) }
+    };
+    storeys.iter().enumerate().map(soften).collect()
+}
+
+/// The floors of the `storeys`, whose numbers and order are checked.
+fn checked_storeys(storeys: &[Storey]) -> Result<Vec<Place>, DescriptionError> {
+    for (number, storey) in (1..).zip(storeys) {
+        STOREY.check(storey.k).map_err(|cause| DescriptionError::At { what: "storey", number, cause })?;
+    }
+    let floors: Vec<_> = storeys.iter().map(|&Storey { m, h, .. }| Place { m, h }).collect();
+    check_floors(&floors, 1)?;
+    match (1..floors.len()).find(|&i| floors[i].h == floors[i - 1].h) {
+        Some(i) => Err(DescriptionError::Order { number: i + 1, h: floors[i].h, below: floors[i - 1].h }),
+        None => Ok(floors),
+    }
+}
+
 impl Structure {
     /// A shear building, whose storeys resist the drift between its floors.
     pub fn from_storeys(base: &Given, damping: &Damping, storeys: &[Storey]) -> Result<Structure, DescriptionError> {
-        for (number, storey) in (1..).zip(storeys) {
-            STOREY.check(storey.k).map_err(|cause| DescriptionError::At { what: "storey", number, cause })?;
-        }
-        let floors: Vec<_> = storeys.iter().map(|&Storey { m, h, .. }| Place { m, h }).collect();
-        check_floors(&floors, 1)?;
-        if let Some(i) = (1..floors.len()).find(|&i| floors[i].h == floors[i - 1].h) {
-            let (h, below) = (floors[i].h, floors[i - 1].h);
-            return Err(DescriptionError::Order { number: i + 1, h, below });
-        }
+        let floors = checked_storeys(storeys)?;
         let mut K = vec![vec![0.0; storeys.len()]; storeys.len()];
         for (i, &Storey { k, .. }) in storeys.iter().enumerate() {
             K[i][i] += k;
@@ -573,7 +613,8 @@ mod tests {
         let kept = |keep| {
             let none = (Vec::new(), Vec::new(), Vec::new());
             let (base, zeta, (floors, K, modes)) = (usual(), Damping::All(0.02), none);
-            Described { base, zeta, storeys: STOREYS.to_vec(), floors, K, modes, total: None, keep }.structure()
+            let (storeys, p_delta, total) = (STOREYS.to_vec(), false, None);
+            Described { base, zeta, storeys, p_delta, floors, K, modes, total, keep }.structure()
         };
         assert_eq!(kept(None).unwrap(), frame());
         assert_eq!(kept(Some(2)).unwrap(), frame().keeping(2).unwrap());
@@ -581,6 +622,21 @@ mod tests {
         assert_eq!(refused(0), "keep = 0 is out of range: keep 1 to 3 modes, or use detail = rigid");
         assert_eq!(refused(4), "keep = 4 is out of range: keep 1 to 3 modes");
         assert_eq!(refused(-1), "keep = -1 is out of range: keep 1 to 3 modes");
+    }
+
+    #[test]
+    fn one_storey_under_its_weight_has_the_known_frequency() {
+        let frame = |k| {
+            let storeys = with_p_delta(&usual(), &[Storey { m: 40e3, h: 3.5, k }])?;
+            Structure::from_storeys(&usual(), &Damping::All(0.02), &storeys)
+        };
+        let omega = frame(1e6).unwrap().modes()[0].omega();
+        assert_relative_eq!(omega * omega, 1e6 / 40e3 - 9.81 / 3.5, max_relative = 1e-14);
+        let refused = frame(112e3).unwrap_err().to_string();
+        assert!(
+            refused.starts_with("storey 1: k = 112000 N/m does not exceed P/h = 112114 N/m, at which"),
+            "{refused}"
+        );
     }
 
     #[test]

@@ -12,6 +12,8 @@ import numpy as np
 import pandas as pd
 import pytest
 from frames import FRAMES, Frame, toml
+
+from scipy.linalg import eigh
 from statsmodels import api
 
 import flexible_rocking as fr
@@ -49,6 +51,18 @@ def test_the_modes_are_those_of_scipy(name):
     for number, value in {"S_1": frame.S_1, "J_P": frame.J_P, "m_t": frame.m_t, "r": frame.r or momentum}.items():
         assert structure.derived[number] == pytest.approx(value, rel=1e-12), number
     assert ("r is not given" in str(structure)) == (frame.r is None)
+
+
+def test_p_delta_subtracts_the_weights_above_from_the_storeys(exporter, tmp_path):
+    drift = np.eye(3) - np.eye(3, k=-1)
+    weights = 9.81 * drift.T @ np.diag((np.triu(np.ones((3, 3))) @ FRAME.m) / np.diff(FRAME.h, prepend=0)) @ drift
+    squares = eigh(FRAME.K - weights, np.diag(FRAME.m), eigvals_only=True)
+    structure = of_storeys(p_delta=True)
+    np.testing.assert_allclose(structure.mode_table["f"], np.sqrt(squares) / (2 * math.pi), rtol=1e-12)
+    assert structure.replace(p_delta=False) == of_storeys() and (1 - structure.mode_table["f"] / FRAME.omega * 2 * math.pi > 1e-3).all()
+    (tmp_path / "frame.toml").write_text("p_delta = true\n" + toml(FRAME))
+    describe = [exporter, "describe", "--parameters", tmp_path / "frame.toml"]
+    assert subprocess.check_output(describe, text=True) == str(structure)
 
 
 def test_three_ways_and_a_file_are_one_structure(exporter, tmp_path):
@@ -106,6 +120,8 @@ def test_a_structure_of_many_masses_is_a_value():
     (lambda: of_modes(shapes=FRAME.phi[:, :2]), "shapes has 2 columns and must have 3, one for each mode"),
     (lambda: fr.Structure.from_matrices([1], [1], [1, 2], zeta=0), "K has the shape [2]: two dimensions are needed"),
     (lambda: of_storeys(keep=-1), "keep = -1 is out of range: keep 1 to 3 modes"),
+    (lambda: of_storeys(p_delta="no"), "p_delta = 'no': True or False is needed"),
+    (lambda: of_modes(p_delta=True), "p_delta = true needs storeys"),
     (lambda: of_storeys(keep=2.5), "keep = 2.5: a whole number is needed"),
     (lambda: of_storeys(preset="mcmanus"), "preset is a structure of one mass, and storeys makes one of many"),
     (lambda: of_storeys(storeys=pd.DataFrame(STOREYS)), 'storeys=table.to_dict("records")'),
