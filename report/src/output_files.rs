@@ -98,16 +98,15 @@ impl OutputFile {
 
 /// Writes a new file beside `target`, which then replaces `target` and keeps its permissions. A full disk loses nothing.
 fn replace(target: &Path, content: &[u8]) -> io::Result<()> {
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)] // on Windows the folder decides
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.prefix(".rocking-fmu-").tempfile_in(folder_of(target))?;
+    // `make_in` and `as_file_mut` leave the name of the new file out of errors
+    let create = |path: &Path| File::options().write(true).create_new(true).open(path);
+    let mut file = tempfile::Builder::new().prefix(".rocking-fmu-").make_in(folder_of(target), create)?;
     match File::options().write(true).open(target) {
         Ok(there) => file.as_file().set_permissions(there.metadata()?.permissions())?,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {}
         Err(error) => return Err(error),
     }
-    file.write_all(content)?;
+    file.as_file_mut().write_all(content)?;
     file.persist(target)?;
     Ok(())
 }
@@ -128,6 +127,11 @@ mod tests {
         assert_eq!((fs::read(&path).unwrap(), fs::read(before).unwrap()), (b"after".into(), b"before".into()));
         assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o640);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+        if cfg!(target_os = "linux") {
+            let refused = OutputFiles::default().create(Path::new("/proc/out.csv")).unwrap().write(b"").unwrap_err();
+            let expected = "/proc/out.csv cannot be written: No such file or directory (os error 2)";
+            assert_eq!(crate::message(&refused), expected);
+        }
         let structure = folder.path().join("other.TOML");
         assert!(OutputFiles::default().create(&structure).is_ok());
         fs::write(&structure, "m = 1").unwrap();
