@@ -7,7 +7,7 @@ use rocking_report::{describe, program::version, record::Understood};
 use rocking_sweep::plan::Conditions;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The origin of a result, part by part under its name; a part without influence on the result is left out.
 pub struct Cause(Vec<(&'static str, Part)>);
@@ -49,7 +49,8 @@ impl Cause {
 
     /// This cause under the `record` that `args` ask for.
     pub fn under(self, args: &RecordArgs, record: &Record) -> Cause {
-        let files = [&args.record, &args.vertical.record_v].map(Option::as_deref);
+        let files =
+            [args.record.as_ref(), args.vertical.file(args.record.as_ref())].map(|file| file.map(PathBuf::as_path));
         self.on(files, record, args.options.unit, &args.options, args.vertical.column_v.as_ref())
     }
 

@@ -68,7 +68,7 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     let g = structure.base().g;
     let records = args.record.iter().map(|path| record(&args.options, path, g)).collect::<Result<Vec<_>, _>>()?;
     let of_vertical = args.options.with_column(&args.vertical.column_v);
-    let vertical = args.vertical.record_v.as_ref().map(|path| record(&of_vertical, path, g)).transpose()?;
+    let vertical = args.vertical.file(args.record.first()).map(|path| record(&of_vertical, path, g)).transpose()?;
     let vertical = match (vertical, records.first()) {
         (Some((_, bytes)), Some((name, along))) if bytes == *along => {
             return Err(no_pair(SamplesError::Twice { title: name.display().to_string() }, "--column-v"));

@@ -36,8 +36,8 @@ pub struct VerticalArgs {
     /// Vertical component of the (first) record, positive upwards: read and scaled by the same options
     #[arg(long, value_name = "FILE", requires = "record")]
     pub record_v: Option<PathBuf>,
-    /// Column or channel of the vertical component [default: that of --column]
-    #[arg(long, value_name = "COLUMN", requires = "record_v")]
+    /// Column or channel of the vertical component, in the (first) record if --record-v is not given [default: that of --column]
+    #[arg(long, value_name = "COLUMN", requires = "record")]
     pub column_v: Option<Column>,
 }
 
@@ -66,13 +66,20 @@ pub struct RecordOptions {
     pub scale: Option<f64>,
 }
 
+impl VerticalArgs {
+    /// The file of the vertical component, if there is one. The file may be the `record`.
+    pub fn file<'a>(&'a self, record: Option<&'a PathBuf>) -> Option<&'a PathBuf> {
+        self.record_v.as_ref().or(record.filter(|_| self.column_v.is_some()))
+    }
+}
+
 impl RecordArgs {
     /// Reads and scales the record, and reports what it found and assumed. A record's g means `g` (m/s²).
     pub fn load(&self, g: f64) -> anyhow::Result<Option<Record>> {
         let Some(path) = &self.record else { return Ok(None) };
         let record = self.options.load("record", path, g)?;
-        let VerticalArgs { record_v: Some(vertical), column_v } = &self.vertical else { return Ok(Some(record)) };
-        let vertical = self.options.with_column(column_v).load("record_v", vertical, g)?;
+        let Some(vertical) = self.vertical.file(Some(path)) else { return Ok(Some(record)) };
+        let vertical = self.options.with_column(&self.vertical.column_v).load("record_v", vertical, g)?;
         record.with_vertical(&vertical).map(Some).map_err(|error| no_pair(error, "--column-v"))
     }
 

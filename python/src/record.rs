@@ -203,8 +203,8 @@ impl Record {
     ///
     /// The options replace statements that the file lacks: unit (of the accelerations), dt (s between samples), column (a
     /// number from 1, a heading, or "all"). unit overrides a heading. ignore_npts reads all samples, even if the file states
-    /// another number. vertical: the file of the vertical component, read by the same options, vertical_column: its column, if
-    /// it is another. time_scale and scale multiply. A Python warning names an
+    /// another number. vertical: the file of the vertical component, read by the same options, vertical_column: its column,
+    /// in `file` without vertical. time_scale and scale multiply. A Python warning names an
     /// assumption about the file, or a likely fault. Raises ValueError with the line and what would help.
     #[staticmethod]
     #[pyo3(signature = (file, *, vertical=None, unit=None, dt=None, column=None, vertical_column=None, ignore_npts=false, time_scale=1.0, scale=1.0))]
@@ -226,9 +226,7 @@ impl Record {
         let named = |column: Bound<'_, PyAny>| -> PyResult<_> { Ok(Column::from(column.str()?.to_str()?)) };
         let [column, column_v] = [column, vertical_column].map(|column| column.map(named).transpose());
         let (column, column_v) = (column?, column_v?);
-        if vertical.is_none() && column_v.is_some() {
-            return Err(PyValueError::new_err("vertical_column is a column of the file vertical: give vertical"));
-        }
+        let vertical = vertical.or_else(|| column_v.is_some().then(|| file.clone()));
         let read = |file: PathBuf, column: Option<Column>| -> PyResult<(Samples, Unit)> {
             let how = Reading { unit, dt, column, ignores_count: ignore_npts };
             let understood =

@@ -138,11 +138,8 @@ impl RecordEntry {
                     vertical.as_str().with_context(|| format!("records {pattern:?}: vertical is the path of one file"))
                 });
                 let options = RecordOptions::deserialize(options).with_context(|| format!("records {pattern:?}"))?;
-                let vertical = vertical.transpose()?.map(|vertical| (vertical, options.with_column(&column_v)));
-                ensure!(
-                    column_v.is_none() || vertical.is_some(),
-                    "records {pattern:?}: vertical_column is a column of the file vertical, which is missing"
-                );
+                let vertical = vertical.transpose()?.or(column_v.as_ref().map(|_| pattern));
+                let vertical = vertical.map(|vertical| (vertical, options.with_column(&column_v)));
                 Ok(((pattern, options), vertical))
             }
         }
@@ -359,10 +356,10 @@ fn motions(
         };
         let up = vertical.as_ref().map(|(up, of_up)| match of_up.column == options.column {
             true => format!(" with {up}"),
+            false if *up == pattern => format!(" with{}", column(of_up)),
             false => format!(" with {up}{}", column(of_up)),
         });
         let with = column(&options) + &up.unwrap_or_default();
-        let vertical = vertical.map(|(vertical, options)| (folder.join(vertical), options));
         let in_folder = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
         let paths = glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))?;
         let mut paths = paths.peekable();
@@ -372,11 +369,13 @@ fn motions(
         for (i, path) in paths.enumerate() {
             let path = path?;
             ensure!(
-                i == 0 || vertical.is_none(),
+                i == 0 || vertical.as_ref().is_none_or(|(up, _)| *up == pattern),
                 "records {pattern:?}: vertical goes with one file, and there are more"
             );
             // The same on every system, so that a sweep can go on on another.
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace(MAIN_SEPARATOR, "/");
+            let file_of = |up: &str| if up == pattern { path.clone() } else { folder.join(up) };
+            let vertical = vertical.as_ref().map(|(up, options)| (file_of(up), options.clone()));
             let record = read(&path, vertical.as_ref(), &options);
             match record.and_then(|record| Ok(NamedRecord::new(name + &with, record, scale)?)) {
                 Ok(motion) => motions.push(motion),

@@ -271,8 +271,10 @@ def test_both_components_are_written(tmp_path):
     file = tmp_path / "array.csv"
     file.write_text("t (s),north (g),up (g)\n0,0,1\n.01,2,0\n.02,0,3\n")
     assert np.array_equal(fr.Record.read(file, column=2, vertical=file, vertical_column="up").a_v, both.a_v)
-    with pytest.raises(ValueError, match='the vertical component of "array" has the samples of the horizontal one'):
-        fr.Record.read(file, column=2, vertical=file)
+    assert np.array_equal(fr.Record.read(file, column=2, vertical_column="up").a_v, both.a_v)
+    for same in ({"vertical": file}, {"vertical_column": 2}):
+        with pytest.raises(ValueError, match='"array" has the samples of the horizontal one: use another file for it, or another column, vertical_column'):
+            fr.Record.read(file, column=2, **same)
 
 
 @pytest.fixture(scope="module")
