@@ -1,5 +1,6 @@
 //! Arguments of Python, and their errors with name, value and limit in the words of the library.
 
+use anyhow::anyhow;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::call::PyCallArgs;
 use pyo3::exceptions::{PyUserWarning, PyValueError};
@@ -128,7 +129,7 @@ pub fn one_of<T, const N: usize>(name: &str, asked: &Bound<'_, PyAny>, all: [(&s
     let asked = asked.str()?.to_string();
     let known = all.each_ref().map(|(known, _)| *known).join(", ");
     let found = all.into_iter().find_map(|(known, of)| (known == asked).then_some(of));
-    found.ok_or_else(|| PyValueError::new_err(format!("{name} = {asked:?} is unknown; these are known: {known}")))
+    found.ok_or_else(|| refused(anyhow!("{name} = {asked:?} is unknown; these are known: {known}")))
 }
 
 /// The conditions that runs have in common, with `initial` values by their names.

@@ -27,5 +27,25 @@ pub fn message(error: &anyhow::Error) -> String {
             message = format!("{message}: {cause}");
         }
     }
-    message
+    with_nearest(message)
 }
+
+/// The `message`, with the known name that is nearest to the unknown one, if the message lists the known names.
+pub fn with_nearest(message: String) -> String {
+    let of_library = message.split_once("these are known: ").and_then(|(before, known)| {
+        Some((before.rsplit('"').nth(1)?, known.split(['\n', ';']).next()?.split(", ").collect::<Vec<_>>()))
+    });
+    let of_serde = || {
+        let mut quoted = message.rsplit_once("unknown ")?.1.split('`').skip(1).step_by(2);
+        Some((quoted.next()?, quoted.collect()))
+    };
+    let Some((name, known)) = of_library.or_else(of_serde) else { return message };
+    let likeness = |known: &&str| strsim::jaro(&known.to_lowercase(), &name.to_lowercase());
+    match known.into_iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b))).filter(|best| likeness(best) > ALIKE) {
+        Some(nearest) => format!("{}; did you mean {nearest}?", message.trim_end()),
+        None => message,
+    }
+}
+
+/// Similarity of Jaro, from 0 to 1, from which on one name may be meant by another.
+const ALIKE: f64 = 0.75;

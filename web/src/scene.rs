@@ -138,7 +138,9 @@ impl Fields {
         match fields.0.keys().find(|key| !known.contains(&key.as_str())) {
             Some(key) => {
                 let known = known.join(", ");
-                Err(format!("{key:?} of the link is unknown with ground = {ground}; these are known: {known}"))
+                let refused =
+                    format!("{key:?} of the link is unknown with ground = {ground}; these are known: {known}");
+                Err(rocking_report::with_nearest(refused))
             }
             None => Ok(fields),
         }
