@@ -54,12 +54,12 @@ impl StructureArgs {
 
     fn read(&self) -> anyhow::Result<Structure> {
         let numbers = &self.numbers.0;
-        let parameters = match (&self.parameters, self.preset) {
+        Ok(match (&self.parameters, self.preset) {
             (Some(path), _) => {
                 let read = || of_file(&input::text(path)?);
                 let structure = read().with_context(|| format!("parameters in {}", input::name(path)))?;
                 match structure.one() {
-                    Some(one) => numbers.over(one.parameters())?,
+                    Some(one) => numbers.structure(Some(one.parameters()))?,
                     None if numbers.is_empty() => return Ok(structure),
                     None => bail!(
                         "{} replaces a number of one mass, and {} describes many masses: change it in the file",
@@ -68,14 +68,13 @@ impl StructureArgs {
                     ),
                 }
             }
-            (None, Some(preset)) => numbers.over(&preset)?,
+            (None, Some(preset)) => numbers.structure(Some(&preset))?,
             (None, None) if numbers.is_empty() => {
                 say!("structure      mcmanus, the default: choose another with --preset or --parameters");
-                Parameters::MCMANUS
+                Structure::new(Parameters::MCMANUS)?
             }
-            (None, None) => numbers.parameters().map_err(with_options)?,
-        };
-        Ok(Structure::new(parameters)?)
+            (None, None) => Structure::new(numbers.parameters().map_err(with_options)?)?,
+        })
     }
 }
 
@@ -86,8 +85,7 @@ pub fn of_file(text: &str) -> anyhow::Result<Structure> {
         let described: Described = toml::from_str(text)?;
         return Ok(described.structure()?);
     }
-    let given: Given = toml::from_str(text)?;
-    Ok(Structure::new(given.parameters()?)?)
+    Ok(toml::from_str::<Given>(text)?.structure(None)?)
 }
 
 /// The error with the options that help.

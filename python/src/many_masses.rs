@@ -1,12 +1,16 @@
 //! Structures of many masses from the keywords of Python.
 
 use crate::arguments::{integer, matrix, number, numbers, refused};
+use anyhow::anyhow;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rocking::Structure;
 use rocking::structure::description::{Damping, Described, FoundMode, Place, Storey, Total};
-use rocking::structure::natural_quantities::Given;
+use rocking::structure::natural_quantities::{Given, names, names_of_base};
+use rocking::structure::quantity::Units;
+use serde::{Deserialize, de::IntoDeserializer};
+use std::cell::RefCell;
 
 /// Keywords that only a structure of many masses has.
 pub const OF_MANY: [&str; 3] = ["storeys", "K", "mass"];
@@ -16,23 +20,28 @@ pub const INSTEAD: [[&str; 2]; 5] =
     [["B", "width"], ["m0", "weight0"], ["f", "period"], ["height", "moment"], ["I_2", "J_P"]];
 
 /// Keywords that have not been read yet.
-struct Keywords<'py>(Bound<'py, PyDict>);
+struct Keywords<'py> {
+    left: Bound<'py, PyDict>,
+    /// Names of all keywords that have been read, given or not.
+    known: RefCell<Vec<&'static str>>,
+}
 
 impl<'py> Keywords<'py> {
-    fn take(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let value = self.0.get_item(name)?;
+    fn take(&self, name: &'static str) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.known.borrow_mut().push(name);
+        let value = self.left.get_item(name)?;
         if value.is_some() {
-            self.0.del_item(name)?;
+            self.left.del_item(name)?;
         }
         Ok(value.filter(|value| !value.is_none()))
     }
 
-    fn number(&self, name: &str) -> PyResult<Option<f64>> {
+    fn number(&self, name: &'static str) -> PyResult<Option<f64>> {
         self.take(name)?.map(|value| number(name, &value)).transpose()
     }
 
     /// The column of this `name`: nothing, or a number for each of the `rows` called `of`.
-    fn column(&self, name: &str, rows: usize, of: &str) -> PyResult<Vec<Option<f64>>> {
+    fn column(&self, name: &'static str, rows: usize, of: &str) -> PyResult<Vec<Option<f64>>> {
         let Some(value) = self.take(name)? else { return Ok(vec![None; rows]) };
         let column = numbers(name, &value)?;
         if column.len() != rows {
@@ -45,9 +54,9 @@ impl<'py> Keywords<'py> {
 
 /// The structure of many masses that `keywords` describe.
 pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Structure> {
-    let keywords = Keywords(keywords);
+    let keywords = Keywords { left: keywords, known: RefCell::default() };
     let missing = |name: &str| PyValueError::new_err(format!("{name} is missing"));
-    let zeta = keywords.take("zeta")?.ok_or_else(|| missing("zeta (damping ratio in full contact)"))?;
+    let zeta = keywords.take("zeta")?;
     let storeys = match keywords.take("storeys")? {
         Some(table) if table.hasattr("to_dict")? => {
             let message = "storeys is a table: give its rows as dicts, storeys=table.to_dict(\"records\")";
@@ -77,19 +86,33 @@ pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Structure> {
         of.extract().map_err(|_| PyValueError::new_err(format!("p_delta = {of:?}: True or False is needed")))
     };
     let p_delta = keywords.take("p_delta")?.map_or(Ok(false), truth)?;
-    let (zeta, base) = (damping(&zeta)?, given(&keywords.0)?);
-    let described = Described { zeta, storeys, p_delta, floors, K, modes, total, keep, base };
+    let units = keywords.take("units")?.map_or(Ok(Units::default()), |of| units(&of))?;
+    let is_unknown = |name: &String| name == "zeta_fc" || !names().any(|known| known == name);
+    if let Some(name) = keywords.left.keys().extract::<Vec<String>>()?.into_iter().find(is_unknown) {
+        let known = [keywords.known.take(), names_of_base().collect()].concat().join(", ");
+        return Err(refused(anyhow!("{name:?} is unknown; these are known: {known}")));
+    }
+    let zeta = damping(&zeta.ok_or_else(|| missing("zeta (damping ratio in full contact)"))?)?;
+    let base = given(&keywords.left)?;
+    let described = Described { units, zeta, storeys, p_delta, floors, K, modes, total, keep, base };
     described.structure().map_err(refused)
 }
 
-/// The numbers of one mass, or of a base, by their names.
+/// The numbers of one mass, or of a base, by their names, in the keyword `units`.
 pub fn given(keywords: &Bound<'_, PyDict>) -> PyResult<Given> {
-    let mut given = Given::default();
+    let (mut given, mut units) = (Given::default(), Units::default());
     for (name, value) in keywords {
-        let name: String = name.extract()?;
-        given.give(&name, number(&name, &value)?).map_err(refused)?;
+        match name.extract::<String>()?.as_str() {
+            "units" => units = self::units(&value)?,
+            name => given.give(name, number(name, &value)?).map_err(refused)?,
+        }
     }
-    Ok(given)
+    Ok(given.measured_in(units))
+}
+
+fn units(value: &Bound<'_, PyAny>) -> PyResult<Units> {
+    let units = Units::deserialize(value.str()?.to_str()?.into_deserializer());
+    units.map_err(|error: serde::de::value::Error| PyValueError::new_err(format!("units: {error}")))
 }
 
 fn storey(i: usize, row: &Bound<'_, PyAny>) -> PyResult<Storey> {

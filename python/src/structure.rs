@@ -13,7 +13,7 @@ use rocking::estimates::pushover::{self, Equilibrium};
 use rocking::structure::derived::{DERIVED, Derived};
 use rocking::structure::derived::{OF_MODE, OF_STRUCTURE};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking::{OneMass, Parameters, Side, State};
+use rocking::{OneMass, Side, State};
 use rocking_report::describe;
 
 /// A flexible structure on a base that may lift off (Fig 2 of the paper).
@@ -24,7 +24,7 @@ use rocking_report::describe;
 /// Every number is a keyword and an attribute, in SI units. Parameters: m, m0 (kg), H, B (m), J0 (kg.m2, 0), f_fc (Hz),
 /// zeta_fc, c_ratio (1), r, g (m/s2, 9.81); the numbers in brackets are defaults. These replace parameters: period_fc (s) for
 /// f_fc, weight and weight0 (N) for m and m0, width (m) for B. p_l (rad/s) replaces J0. alpha_cg (rad) replaces H, or B if H
-/// is given. Tendon: P_0 (N), k_t (N/m). Pair of dissipators: distance xi_d (m) from the middle, viscous c_d (N.s/m), or
+/// is given. units="kN, m, t": masses in t, forces in kN, J0 in t.m2, k in kN/m. Tendon: P_0 (N), k_t (N/m). Pair of dissipators: distance xi_d (m) from the middle, viscous c_d (N.s/m), or
 /// elastoplastic k_d (N/m) and F_y (N). With preset, "mcmanus" or "evison", the specimen of the paper with these numbers in
 /// the place of its own.
 ///
@@ -66,10 +66,6 @@ impl Structure {
         Ok(Structure { of, keywords })
     }
 
-    fn one_mass(py: Python<'_>, parameters: Parameters) -> PyResult<Structure> {
-        Structure::of(py, rocking::Structure::new(parameters).map_err(refused)?, None)
-    }
-
     fn many(keywords: &Bound<'_, PyDict>) -> PyResult<Structure> {
         let kept = copied(keywords)?;
         for (name, _) in keywords.iter().filter(|(_, value)| value.is_none()) {
@@ -106,17 +102,17 @@ impl Structure {
     ) -> PyResult<Structure> {
         let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
         let of_many = OF_MANY.iter().find(|name| numbers.contains(name).unwrap_or(false));
-        let parameters = match preset {
+        let structure = match preset {
             None if of_many.is_some() => return Structure::many(&numbers),
-            None => given(&numbers)?.parameters(),
+            None => given(&numbers)?.structure(None),
             Some(_) if let Some(name) = of_many => {
                 let message =
                     format!("preset is a structure of one mass, and {name} makes one of many: leave out one of them");
                 return Err(PyValueError::new_err(message));
             }
-            Some(preset) => given(&numbers)?.over(&one_of("preset", preset, PRESETS)?),
+            Some(preset) => given(&numbers)?.structure(Some(&one_of("preset", preset, PRESETS)?)),
         };
-        Structure::one_mass(py, parameters.map_err(refused)?)
+        Structure::of(py, structure.map_err(refused)?, None)
     }
 
     /// The structure of these masses (kg) at these heights (m) above the base, lowest first. K (N/m) is the stiffness matrix on
@@ -159,7 +155,7 @@ impl Structure {
     fn replace<'py>(&self, py: Python<'py>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<Structure> {
         let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
         if let Some(structure) = self.of.one() {
-            return Structure::one_mass(py, given(&numbers)?.over(structure.parameters()).map_err(refused)?);
+            return Structure::of(py, given(&numbers)?.structure(Some(structure.parameters())).map_err(refused)?, None);
         }
         let keywords = self.parameters(py)?;
         for [one, other] in INSTEAD {

@@ -10,7 +10,7 @@ use crate::digits::{short, with_unit};
 use crate::mechanics::lateral::{MOST_MODES, Modes};
 use crate::structure::natural_quantities::{self, Given, GivenError};
 use crate::structure::parameters::{MAX_DAMPING, MAX_SLENDERNESS, ParameterError};
-use crate::structure::quantity::{OutOfRange, Quantity};
+use crate::structure::quantity::{OutOfRange, Quantity, Units};
 use crate::{Body, Floor, Mode, Parameters, Structure, StructureError, Ties};
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
@@ -88,6 +88,9 @@ pub enum Damping {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Described {
+    /// Units of masses and forces.
+    #[serde(default)]
+    pub units: Units,
     /// The base: m0, B, J0, r, g, c_ratio, the tendon and the dissipators.
     #[serde(deserialize_with = "natural_quantities::base")]
     pub base: Given,
@@ -124,6 +127,8 @@ pub enum DescriptionError {
     Parameters(#[from] ParameterError),
     #[error(transparent)]
     Structure(#[from] StructureError),
+    #[error("{0}")]
+    InUnits(String),
     #[error("keep = {count} is out of range: keep 1 to {modes} modes{}", if *count == 0 { ", or use detail = rigid" } else { "" })]
     Keep { count: i64, modes: usize },
     #[error("{0} floors are given: a structure has 1 to {MOST_FLOORS}")]
@@ -241,9 +246,35 @@ fn moments(masses: impl Iterator<Item = (f64, f64)>) -> [f64; 3] {
 }
 
 impl Described {
-    /// The structure that is described.
-    pub fn structure(&self) -> Result<Structure, DescriptionError> {
-        let Described { base, zeta, storeys, p_delta, floors, K, modes, total, keep } = self;
+    /// The structure that is described. Messages name the numbers in their own units.
+    pub fn structure(self) -> Result<Structure, DescriptionError> {
+        let units = self.units;
+        self.in_si().structure_in_si().map_err(|error| DescriptionError::InUnits(units.message(error)))
+    }
+
+    fn in_si(mut self) -> Described {
+        let units = self.units;
+        let to_si = |of: &Quantity<f64>, value: &mut f64| *value = units.in_si(*value, of.unit);
+        for Storey { m, k, .. } in &mut self.storeys {
+            to_si(&FLOOR_MASS, m);
+            to_si(&STOREY, k);
+        }
+        self.floors.iter_mut().for_each(|floor| to_si(&FLOOR_MASS, &mut floor.m));
+        self.K.iter_mut().flatten().for_each(|entry| to_si(&ENTRY, entry));
+        for FoundMode { mass, moment, .. } in &mut self.modes {
+            to_si(&MASS, mass);
+            moment.iter_mut().for_each(|moment| to_si(&MOMENT, moment));
+        }
+        if let Some(Total { m_s, S_1, I_2, J_P }) = &mut self.total {
+            to_si(&FLOOR_MASS, m_s);
+            to_si(&MOMENT, S_1);
+            [I_2, J_P].into_iter().flatten().for_each(|second| *second = units.in_si(*second, "kg.m2"));
+        }
+        Described { base: self.base.measured_in(units), ..self }
+    }
+
+    fn structure_in_si(&self) -> Result<Structure, DescriptionError> {
+        let Described { base, zeta, storeys, p_delta, floors, K, modes, total, keep, .. } = self;
         let whole = match [storeys.is_empty(), K.is_empty(), modes.is_empty()] {
             [false, true, true] if floors.is_empty() && total.is_none() => match p_delta {
                 true => Structure::from_storeys(base, zeta, &with_p_delta(base, storeys)?),
@@ -613,8 +644,8 @@ mod tests {
         let kept = |keep| {
             let none = (Vec::new(), Vec::new(), Vec::new());
             let (base, zeta, (floors, K, modes)) = (usual(), Damping::All(0.02), none);
-            let (storeys, p_delta, total) = (STOREYS.to_vec(), false, None);
-            Described { base, zeta, storeys, p_delta, floors, K, modes, total, keep }.structure()
+            let (units, storeys, p_delta, total) = (Units::Newtons, STOREYS.to_vec(), false, None);
+            Described { units, base, zeta, storeys, p_delta, floors, K, modes, total, keep }.structure()
         };
         assert_eq!(kept(None).unwrap(), frame());
         assert_eq!(kept(Some(2)).unwrap(), frame().keeping(2).unwrap());

@@ -10,12 +10,14 @@
 //!
 //! A natural quantity and the parameter that it stands for cannot be given together, because they may contradict each other.
 
+use crate::Structure;
 use crate::digits::with_unit;
 use crate::structure::derived::{DERIVED, Derived};
 use crate::structure::parameters::{PARAMETERS, Parameters};
-use crate::structure::quantity::{OutOfRange, Quantity};
+use crate::structure::quantity::{OutOfRange, Quantity, Units};
 use serde::{Deserialize, Deserializer, de::Error};
 use std::collections::BTreeMap;
+use std::fmt::Display;
 
 /// A derived quantity that may be given in the place of a parameter.
 #[derive(Debug)]
@@ -57,29 +59,39 @@ pub const DEFAULTS: [(&str, f64); 9] = [
 
 /// Numbers that are given for a structure, by name: parameters and natural quantities.
 ///
-/// As a file: `name = value`; an unknown name is an error.
+/// As a file: `name = value`, and perhaps `units`; an unknown name is an error.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(try_from = "BTreeMap<String, f64>")]
-pub struct Given(Vec<(&'static str, f64)>);
+#[serde(try_from = "BTreeMap<String, Entry>")]
+pub struct Given {
+    /// In SI units.
+    numbers: Vec<(&'static str, f64)>,
+    /// The units of the numbers in messages.
+    units: Units,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected a number, or units = \"N, m, kg\" or \"kN, m, t\"")]
+enum Entry {
+    Number(f64),
+    Units(Units),
+}
 
 /// Why numbers determine no structure.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // the messages name the fields
 pub enum GivenError {
     /// The name is unknown.
-    #[error("{name:?} is unknown; these are known: {}", names().collect::<Vec<_>>().join(", "))]
-    Unknown {
-        /// The refused name.
-        name: String,
-    },
+    #[error("{name:?} is unknown; these are known: {}", names().chain(["units"]).collect::<Vec<_>>().join(", "))]
+    Unknown { name: String },
+    /// No structure, in a message with the units of its numbers.
+    #[error("{0}")]
+    InUnits(String),
     /// The name is unknown beside `[base]`.
     #[error(
         "{name:?} is no number of the base; these are known: {}; other numbers of the structure stand above [base]",
         names_of_base().collect::<Vec<_>>().join(", ")
     )]
-    UnknownOfBase {
-        /// The refused name.
-        name: String,
-    },
+    UnknownOfBase { name: String },
     /// A number is given twice.
     #[error("{0} is given twice")]
     Twice(&'static str),
@@ -96,15 +108,10 @@ pub enum GivenError {
         with.join(" and ")
     )]
     OverDetermined {
-        /// The natural quantity.
         natural: &'static str,
-        /// Value of the natural quantity.
         value: f64,
-        /// Unit of the natural quantity.
         unit: &'static str,
-        /// Numbers that are given beside it.
         with: Vec<&'static str>,
-        /// Parameter that the natural quantity determines.
         determined: &'static str,
     },
     /// Parameters that nothing determines.
@@ -112,28 +119,14 @@ pub enum GivenError {
     Missing(Vec<Missing>),
     /// A natural quantity requires a parameter that is out of range.
     #[error("{natural} = {} does not fit: {cause}", with_unit(*value, unit))]
-    Impossible {
-        /// The natural quantity.
-        natural: &'static str,
-        /// Value of the natural quantity.
-        value: f64,
-        /// Unit of the natural quantity.
-        unit: &'static str,
-        /// Error of the parameter that the natural quantity determines.
-        cause: OutOfRange,
-    },
+    Impossible { natural: &'static str, value: f64, unit: &'static str, cause: OutOfRange },
     /// The frequency parameter is higher than the masses allow.
     #[error(
         "p_l = {} does not fit: it would take a negative J0; with these masses, H and B it is {} at most",
         with_unit(*p_l, "rad/s"),
         with_unit(*largest, "rad/s")
     )]
-    TooFast {
-        /// The refused value, rad/s.
-        p_l: f64,
-        /// Frequency parameter with J0 = 0, rad/s.
-        largest: f64,
-    },
+    TooFast { p_l: f64, largest: f64 },
 }
 
 /// A parameter that is not determined.
@@ -166,7 +159,8 @@ fn in_words(missing: &[Missing]) -> String {
 /// Numbers that a structure of many masses has not.
 const OF_ONE_MASS: [&str; 8] = ["m", "weight", "H", "alpha_cg", "f_fc", "period_fc", "zeta_fc", "p_l"];
 
-fn names_of_base() -> impl Iterator<Item = &'static str> {
+/// Names of the numbers of a base.
+pub fn names_of_base() -> impl Iterator<Item = &'static str> {
     names().filter(|name| !OF_ONE_MASS.contains(name))
 }
 
@@ -176,12 +170,18 @@ pub(crate) fn base<'de, D: Deserializer<'de>>(file: D) -> Result<Given, D::Error
     if let Some(name) = numbers.keys().find(|name| !names().any(|known| known == *name)) {
         return Err(D::Error::custom(GivenError::UnknownOfBase { name: name.clone() }));
     }
-    Given::try_from(numbers).map_err(D::Error::custom)
+    let entries = numbers.into_iter().map(|(name, number)| (name, Entry::Number(number)));
+    Given::try_from(BTreeMap::from_iter(entries)).map_err(D::Error::custom)
 }
 
 /// Names of all numbers that may be given.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    PARAMETERS.iter().map(|parameter| parameter.name).chain(NATURAL.iter().map(|natural| natural.name))
+    names_and_units().map(|(name, _)| name)
+}
+
+fn names_and_units() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let natural = NATURAL.iter().map(|natural| (natural.name, natural.derived().unit));
+    PARAMETERS.iter().map(|parameter| (parameter.name, parameter.unit)).chain(natural)
 }
 
 impl Natural {
@@ -198,8 +198,24 @@ impl Given {
         if self.get(name).is_some() {
             return Err(GivenError::Twice(name));
         }
-        self.0.push((name, value));
+        self.numbers.push((name, value));
         Ok(())
+    }
+
+    /// These numbers, which were given in `units`.
+    pub fn measured_in(mut self, units: Units) -> Given {
+        let unit_of = |name| names_and_units().find_map(|(known, unit)| (known == name).then_some(unit));
+        self.numbers.iter_mut().for_each(|(name, value)| *value = units.in_si(*value, unit_of(*name).unwrap_or("1")));
+        Given { units, ..self }
+    }
+
+    /// The structure of one mass of these [`Given::parameters`], or of `base` changed by these numbers. Messages name the numbers as
+    /// they were given.
+    pub fn structure(&self, base: Option<&Parameters>) -> Result<Structure, GivenError> {
+        let in_units = |error: &dyn Display| GivenError::InUnits(self.units.message(error));
+        let parameters = base.map_or_else(|| self.parameters(), |base| self.over(base));
+        let parameters = parameters.map_err(|error| in_units(&error))?;
+        Structure::new(parameters).map_err(|error| in_units(&error))
     }
 
     /// The parameters that these numbers determine, with [`DEFAULTS`] for the rest.
@@ -225,12 +241,12 @@ impl Given {
 
     /// Names of the numbers that are given.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
-        self.0.iter().map(|(name, _)| *name)
+        self.numbers.iter().map(|(name, _)| *name)
     }
 
     /// Whether no number is given.
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.numbers.is_empty()
     }
 
     /// Whether these numbers determine the parameter called `name`, directly or by a natural quantity.
@@ -244,7 +260,7 @@ impl Given {
     }
 
     fn get(&self, name: &str) -> Option<f64> {
-        self.0.iter().find(|(given, _)| *given == name).map(|(_, value)| *value)
+        self.numbers.iter().find(|(given, _)| *given == name).map(|(_, value)| *value)
     }
 
     /// The parameters, with `otherwise` for the numbers that are not given.
@@ -342,13 +358,19 @@ fn missing(&Quantity { name, unit, description, .. }: &Quantity<Parameters>) -> 
     Missing { name, description, ways: ways.collect() }
 }
 
-impl TryFrom<BTreeMap<String, f64>> for Given {
+impl TryFrom<BTreeMap<String, Entry>> for Given {
     type Error = GivenError;
 
-    fn try_from(numbers: BTreeMap<String, f64>) -> Result<Given, GivenError> {
-        let mut given = Given::default();
-        numbers.into_iter().try_for_each(|(name, value)| given.give(&name, value))?;
-        Ok(given)
+    fn try_from(entries: BTreeMap<String, Entry>) -> Result<Given, GivenError> {
+        let (mut given, mut units) = (Given::default(), Units::default());
+        for (name, entry) in entries {
+            match entry {
+                Entry::Number(number) => given.give(&name, number)?,
+                Entry::Units(of_numbers) if name == "units" => units = of_numbers,
+                Entry::Units(_) => return Err(GivenError::InUnits(format!("{name}: a number is needed"))),
+            }
+        }
+        Ok(given.measured_in(units))
     }
 }
 

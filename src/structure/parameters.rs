@@ -92,12 +92,8 @@ pub enum ParameterError {
     TooSlender(f64),
     /// An elastoplastic dissipator takes both a stiffness and a force at which it yields.
     #[error("k_d = {k_d:?} N/m and F_y = {F_y:?} N are no dissipator: set both above 0, or both to 0")]
-    HalfDissipator {
-        /// Stiffness of the dissipator, N/m.
-        k_d: f64,
-        /// Yield force of the dissipator, N.
-        F_y: f64,
-    },
+    #[allow(missing_docs)] // the message names the fields
+    HalfDissipator { k_d: f64, F_y: f64 },
 }
 
 impl Parameters {

@@ -1,6 +1,49 @@
 //! A named number with a unit and a range: the one table that checks, messages, files and the FMU read.
 
-use crate::digits::with_unit;
+use crate::digits::{short, with_unit};
+use serde::Deserialize;
+use std::fmt::Display;
+
+/// The units in which a description gives masses and forces; lengths are in m and times in s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+pub enum Units {
+    /// SI units.
+    #[default]
+    #[serde(rename = "N, m, kg")]
+    Newtons,
+    /// 1000 times the SI unit of each number in [`LARGE`].
+    #[serde(rename = "kN, m, t")]
+    Kilonewtons,
+}
+
+/// Each SI unit that contains a mass or a force, and 1000 times this unit.
+pub const LARGE: [(&str, &str); 6] =
+    [("kg", "t"), ("kg.m", "t.m"), ("kg.m2", "t.m2"), ("N", "kN"), ("N/m", "kN/m"), ("N.s/m", "kN.s/m")];
+
+impl Units {
+    /// The `value` of a number whose SI unit is `unit`, in SI units.
+    pub fn in_si(self, value: f64, unit: &str) -> f64 {
+        let is_large = self == Units::Kilonewtons && LARGE.iter().any(|(si, _)| *si == unit);
+        if is_large { 1e3 * value } else { value }
+    }
+
+    /// The `message` about numbers in SI units, with these numbers as they were given: before a unit, and before "and" and a number.
+    pub fn message(self, message: impl Display) -> String {
+        let message = message.to_string();
+        let mut words: Vec<String> = message.split(' ').map(str::to_owned).collect();
+        for i in (0..words.len()).filter(|_| self == Units::Kilonewtons) {
+            let is_mark = |letter| "(),;:".contains(letter);
+            let Some((si, large)) = LARGE.iter().find(|(si, _)| *si == words[i].trim_matches(is_mark)) else {
+                continue;
+            };
+            words[i] = words[i].replace(si, large);
+            let before = if i > 2 && words[i - 2] == "and" { vec![i - 1, i - 3] } else { vec![i.saturating_sub(1)] };
+            let numbers = before.into_iter().map_while(|j| Some((j, words[j].parse::<f64>().ok()?)));
+            numbers.collect::<Vec<_>>().into_iter().for_each(|(j, number)| words[j] = short(number / 1e3));
+        }
+        words.join(" ")
+    }
+}
 
 /// A number of `T`, such as a parameter or an initial value, with its name, unit and range.
 #[derive(Debug)]
@@ -29,18 +72,13 @@ pub struct Quantity<T> {
     with_unit(*min, "1"),
     with_unit(*max, unit)
 )]
+#[allow(missing_docs)] // as in [`Quantity`]
 pub struct OutOfRange {
-    /// The quantity's name.
     pub name: &'static str,
-    /// The refused value.
     pub value: f64,
-    /// Its unit.
     pub unit: &'static str,
-    /// Smallest value accepted.
     pub min: f64,
-    /// Largest value accepted.
     pub max: f64,
-    /// Description of the quantity.
     pub description: &'static str,
 }
 

@@ -77,6 +77,14 @@ def test_three_ways_and_a_file_are_one_structure(exporter, tmp_path):
     assert subprocess.check_output(describe, text=True) == str(storeys)
     listed = {of["name"]: of["value"] for of in json.loads(subprocess.check_output([*describe, "--format", "json"]))}
     assert listed["f_u[3]"] == storeys.mode_table["f_u"][2]
+    large = {**BASE, "m0": FRAME.m0 / 1e3, "J0": FRAME.J0 / 1e3, "units": "kN, m, t"}
+    tonnes, modes = FRAME.m / 1e3, of_modes().parameters
+    modes |= {name: modes[name] / 1e3 for name in ("mass", "moment", "masses")}
+    for of, same in ((fr.Structure(storeys=[of | {"m": of["m"] / 1e3, "k": of["k"] / 1e3} for of in STOREYS], zeta=0.02, **large), storeys),
+                     (fr.Structure.from_matrices(tonnes, FRAME.heights, FRAME.K / 1e3, zeta=[0.02] * 3, **large), matrices),
+                     (fr.Structure.from_modes(**modes | large), of_modes()),
+                     (fr.Structure(preset="mcmanus", m=0.2, P_0=3, k_t=5, units="kN, m, t"), fr.Structure(preset="mcmanus", m=200, P_0=3e3, k_t=5e3))):
+        assert of.derived == pytest.approx(same.derived, rel=1e-15, abs=0)
 
 
 def test_an_fmu_is_the_one_of_the_command_line(exporter, tmp_path):
@@ -120,6 +128,12 @@ def test_a_structure_of_many_masses_is_a_value():
     (lambda: of_modes(shapes=FRAME.phi[:, :2]), "shapes has 2 columns and must have 3, one for each mode"),
     (lambda: fr.Structure.from_matrices([1], [1], [1, 2], zeta=0), "K has the shape [2]: two dimensions are needed"),
     (lambda: of_storeys(keep=-1), "keep = -1 is out of range: keep 1 to 3 modes"),
+    (lambda: of_storeys(kep=2), "did you mean keep?"),
+    (lambda: of_storeys(zeta=None, zeta_fc=0.02), "did you mean zeta?"),
+    (lambda: fr.Structure(preset="mcmanus", zeta=0.1), "did you mean zeta_fc?"),
+    (lambda: fr.simulate(of_storeys(), wavelet(), theta0=0.1), "did you mean theta_0?"),
+    (lambda: of_storeys(units="kN, mm, t"), "unknown variant `kN, mm, t`, expected `N, m, kg` or `kN, m, t`"),
+    (lambda: of_storeys(units="kN, m, t", m0=-20), "base: m0 = -20 t is out of range: it must lie between 0 and 1e9 t (foundation mass)"),
     (lambda: of_storeys(p_delta="no"), "p_delta = 'no': True or False is needed"),
     (lambda: of_modes(p_delta=True), "p_delta = true needs storeys"),
     (lambda: of_storeys(keep=2.5), "keep = 2.5: a whole number is needed"),
