@@ -17,8 +17,6 @@ _Unit = Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "in/s2", "ft/s2", "mg", "%
 _Shape = Literal["half_sine", "sine", "cosine", "ricker", "antisymmetric_ricker", "mavroeidis_papageorgiou"]
 _Criterion = Literal["theta", "u", "a_t", "theta_history", "u_history", "a_t_history"]
 
-_Units = Literal["N, m, kg", "kN, m, t"]
-
 class _Numbers(TypedDict, total=False):
     m: float
     m0: float
@@ -42,7 +40,7 @@ class _Numbers(TypedDict, total=False):
     width: float
     alpha_cg: float
     p_l: float
-    units: _Units
+    units: Literal["N, m, kg", "kN, m, t"]
 
 class _Storey(TypedDict):
     m: float
@@ -64,10 +62,10 @@ class Structure:
     @overload
     def __new__(cls, *, preset: Literal["mcmanus", "evison"] | None = None, **numbers: Unpack[_Numbers]) -> Structure: ...
     @overload
-    def __new__(cls, *, storeys: Sequence[_Storey], zeta: ArrayLike | _Rayleigh, p_delta: bool = False, units: _Units = ..., **base: float) -> Structure: ...
+    def __new__(cls, *, storeys: Sequence[_Storey], zeta: ArrayLike | _Rayleigh, **base: float | str) -> Structure: ...
     @staticmethod
     def from_matrices(
-        masses: ArrayLike, heights: ArrayLike, K: ArrayLike, *, zeta: ArrayLike | _Rayleigh, units: _Units = ..., **base: float
+        masses: ArrayLike, heights: ArrayLike, K: ArrayLike, *, zeta: ArrayLike | _Rayleigh, **base: float | str
     ) -> Structure: ...
     @staticmethod
     def from_modes(
@@ -85,8 +83,7 @@ class Structure:
         masses: ArrayLike | None = None,
         heights: ArrayLike | None = None,
         shapes: ArrayLike | None = None,
-        units: _Units = ...,
-        **base: float,
+        **base: float | str,
     ) -> Structure: ...
     def replace(self, **numbers: Unpack[_Numbers]) -> Structure: ...
     @property
