@@ -12,7 +12,6 @@ import numpy as np
 import pandas as pd
 import pytest
 from frames import FRAMES, Frame, toml
-
 from scipy.linalg import eigh
 from statsmodels import api
 
