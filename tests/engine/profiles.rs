@@ -9,7 +9,6 @@ use rocking::run::{End, Run, RunError};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Given;
 use rocking::{Detail, Modes, OneMass, Output, Parameters, Phase, Reactions, State, Structure};
-use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// A wavelet of 3 s that rocks the specimens, in samples of 10 ms.
@@ -24,8 +23,13 @@ fn base(parameters: &Parameters) -> Given {
     let &Parameters { m0, B, J0, r, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
     let own = [("m0", m0), ("B", B), ("J0", J0), ("r", r), ("g", g), ("c_ratio", c_ratio)];
     let ties = [("P_0", P_0), ("k_t", k_t), ("xi_d", xi_d), ("c_d", c_d), ("k_d", k_d), ("F_y", F_y)];
-    let numbers = [own, ties].concat();
-    Given::try_from(BTreeMap::from_iter(numbers.into_iter().map(|(name, value)| (name.to_owned(), value)))).unwrap()
+    given(&[own, ties].concat())
+}
+
+fn given(numbers: &[(&str, f64)]) -> Given {
+    let mut given = Given::default();
+    numbers.iter().for_each(|(name, value)| given.give(name, *value).unwrap());
+    given
 }
 
 /// At rest, and with dissipators from a start beyond their yield.
@@ -243,8 +247,7 @@ fn a_rest_without_damping_ends() {
 #[test]
 fn the_hard_landing_of_a_squat_structure_without_modes_is_an_impact() {
     let storeys = [(40e3, 3.5, 60e6), (40e3, 7.0, 50e6)].map(|(m, h, k)| Storey { m, h, k });
-    let numbers = [("m0", 20e3), ("B", 7.5), ("J0", 3e4)].map(|(name, value)| (name.to_owned(), value));
-    let squat = Given::try_from(BTreeMap::from_iter(numbers)).unwrap();
+    let squat = given(&[("m0", 20e3), ("B", 7.5), ("J0", 3e4)]);
     let frame = Structure::from_storeys(&squat, &Damping::All(0.02), &storeys).unwrap();
     let ground = Record::at_rest(2.0);
     let run = Run { detail: Detail::Rigid, end: End::At(2.0), ..Run::of_modes(frame, &ground) };
