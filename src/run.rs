@@ -25,7 +25,7 @@ use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::state::InitialStateError;
 use crate::run::ground_motion::Segment;
 use crate::run::record::Record;
-use crate::{Detail, Engine, LinearLoad, Load, Modes, Motion, Progress, State, Structure, Watch};
+use crate::{Base, Detail, Engine, LinearLoad, Load, Modes, Motion, Progress, State, Structure, Ties, Watch};
 use peaks::Peaks;
 use samples::Samples;
 use serde::{Deserialize, Serialize};
@@ -34,6 +34,9 @@ use std::fmt;
 
 /// For how long a structure may rock on after its record, in units of 1/p_l: amplitudes change by e^±1 in each.
 pub const LONGEST_REST: f64 = 100.0;
+
+/// Steps that a run may take: half a minute to five minutes of computing. The pier of README takes some thousands.
+pub const MOST_STEPS: u64 = 5_000_000;
 
 /// A structure under a ground motion, and how the engine follows it.
 #[derive(Clone, Debug)]
@@ -117,6 +120,14 @@ pub enum RunError {
     /// It takes more steps than one of its segments may.
     #[error("the run used up its steps at t = {} of {}: give a shorter duration", with_unit(*time, "s"), with_unit(*until, "s"))]
     TooLong { time: f64, until: f64 },
+    /// The run takes more than [`MOST_STEPS`]; the rate of the tendon and the dissipators is in 1/s.
+    #[error(
+        "the run used up its {MOST_STEPS} steps at t = {}. The rate of tendon and dissipators is {}: are k_t, k_d, c_d \
+         in N and m, and xi_d in m? Otherwise give a shorter duration",
+        with_unit(*time, "s"),
+        with_unit(*rate, "1/s")
+    )]
+    TooManySteps { time: f64, rate: f64 },
     /// It takes more points than a curve may have.
     #[error(
         "a picture of the run needs more than {most} points, which end at t = {}; give it a shorter duration",
@@ -132,7 +143,9 @@ impl RunError {
     /// Instant at which a run that had begun failed, s.
     pub fn time(&self) -> Option<f64> {
         match self {
-            RunError::Advance { time, .. } | RunError::TooLong { time, .. } => Some(*time),
+            RunError::Advance { time, .. } | RunError::TooLong { time, .. } | RunError::TooManySteps { time, .. } => {
+                Some(*time)
+            }
             RunError::Initial(_) | RunError::End { .. } | RunError::TooManyPoints { .. } => None,
         }
     }
@@ -260,15 +273,26 @@ impl<Q: Moves, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
     /// Follows the motion over the next segment. Returns the ending of the run if the run has ended.
     #[inline(always)]
     fn go_on<W: Watch<Q>>(&mut self, watch: &mut W) -> Result<Option<Ending>, RunError> {
-        let (segment, ending) = match self.segments.next() {
-            Some(segment) => (segment, None),
-            None => match self.come_to_rest() {
-                Ok(next) => next,
-                Err(ending) => return Ok(Some(ending)),
-            },
+        let (segment, ending) = match self.next()? {
+            Ok(next) => next,
+            Err(ending) => return Ok(Some(ending)),
         };
         let progress = over(&mut self.engine, segment, watch).map_err(|cause| error(&self.engine, cause))?;
         Ok(if progress == Progress::Overturned { Some(Ending::Overturned) } else { ending })
+    }
+
+    /// The next segment, and the ending of the run after that segment if the run ends there. The inner error is the ending if the run
+    /// ends here.
+    #[inline(always)]
+    fn next(&mut self) -> Result<Result<(Segment, Option<Ending>), Ending>, RunError> {
+        let &Motion { time, work, .. } = self.engine.motion();
+        if work.steps > MOST_STEPS {
+            let &Base { B, J_P, ties: Ties { k_t, xi_d, c_d, k_d, .. }, .. } = self.engine.structure().base();
+            let pair = 2.0 * (B * B + xi_d * xi_d);
+            let rate = (c_d * pair / J_P).max(((k_t * B * B + k_d * pair) / J_P).sqrt());
+            return Err(RunError::TooManySteps { time, rate });
+        }
+        Ok(self.segments.next().map_or_else(|| self.come_to_rest(), |segment| Ok((segment, None))))
     }
 
     /// The next segment after the record, and the ending of the run after that segment if the run ends there. Fails with the ending if
@@ -318,4 +342,26 @@ fn over<Q: Moves, W: Watch<Q>>(
         engine.set_time(segment.until);
     }
     Ok(progress)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{OneMass, Parameters};
+
+    #[test]
+    fn a_run_ends_after_its_most_steps() {
+        let ground = Record::from_samples("", vec![1.0, 2.0, 3.0], vec![0.0, 1.0, 0.0]).unwrap();
+        let pier = OneMass::new(Parameters { xi_d: 2.0, c_d: 1e9, ..Parameters::MCMANUS }).unwrap();
+        let rate = 2e9 * (pier.parameters().B.powi(2) + 4.0) / pier.J_P;
+        let run = Run::new(pier, &ground);
+        let mut follower = run.course().unwrap();
+        assert_eq!(follower.go_on(&mut ()).unwrap(), None);
+        let mut motion = *follower.engine.motion();
+        motion.work.steps = MOST_STEPS + 1;
+        follower.engine.set_motion(motion);
+        let error = follower.finish(&mut ()).unwrap_err();
+        assert_eq!(error, RunError::TooManySteps { time: 2.0, rate });
+        assert!(error.to_string().starts_with("the run used up its 5000000 steps at t = 2 s. The rate of"), "{error}");
+    }
 }

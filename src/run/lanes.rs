@@ -128,12 +128,9 @@ impl<Segments: Iterator<Item = Segment>, W: Passes> Lane<Segments, W> {
     /// before.
     fn go_on(&mut self) -> Result<Option<Ending>, RunError> {
         loop {
-            let (Segment { duration, until, ground, .. }, ending) = match self.follower.segments.next() {
-                Some(segment) => (segment, None),
-                None => match self.follower.come_to_rest() {
-                    Ok(next) => next,
-                    Err(ending) => return Ok(Some(ending)),
-                },
+            let (Segment { duration, until, ground, .. }, ending) = match self.follower.next()? {
+                Ok(next) => next,
+                Err(ending) => return Ok(Some(ending)),
             };
             (self.until, self.ending) = (until, ending);
             let Lane { follower: Follower { engine, .. }, advance, step, watch, .. } = self;
