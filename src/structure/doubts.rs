@@ -14,8 +14,12 @@ const UNUSUAL: [f64; 2] = [10.0, 30.0];
 /// A force below this fraction of the weight changes next to nothing. Forces in kN are below it.
 const NEXT_TO_NOTHING: f64 = 1e-3;
 
-/// Mass over width and height from which on kg are no tonnes, kg/m². The paper's bridge pier, a light model, has 186.
-const LIGHT: f64 = 10.0;
+/// Mass over width and height from which on kg are no tonnes, kg/m². The paper's bridge pier, a light model, has 186. A building has
+/// some 7,000 and a pier 10,000 to 20,000, so the limit doubts tonnes up to 50,000.
+const LIGHT: f64 = 50.0;
+
+/// Least ratio of the foundation's mass to the mass above, and of the mass above to the foundation's, if both are in one unit.
+const ONE_UNIT: [f64; 2] = [1e-3, 1e-2];
 
 /// Damping ratio of the lowest mode that no structure exceeds without dampers.
 const MOST_DAMPING: f64 = 0.2;
@@ -23,7 +27,8 @@ const MOST_DAMPING: f64 = 0.2;
 impl Structure {
     /// A sentence for each number that is usual in another unit, before anything moves.
     pub fn doubts(&self) -> Vec<String> {
-        let (&Base { m_t, g, B, tan_alpha_cg, ties: Ties { P_0, F_y, .. }, .. }, body) = (self.base(), self.body());
+        let (&Base { m_t, m0, g, B, tan_alpha_cg, ties: Ties { P_0, xi_d, F_y, .. }, .. }, body) =
+            (self.base(), self.body());
         let weight = m_t * g;
         let is_small = |(_, force): &(&str, f64)| (0.0..NEXT_TO_NOTHING * weight).contains(force) && *force > 0.0;
         let doubt = |(name, force)| {
@@ -33,6 +38,17 @@ impl Structure {
             )
         };
         let mut doubts: Vec<_> = [("P_0", P_0), ("F_y", F_y)].into_iter().filter(is_small).map(doubt).collect();
+        if xi_d > 2.0 * B {
+            doubts.push(format!(
+                "xi_d = {} m is more than the width of the base, {} m: is xi_d in m, not in mm?",
+                short(xi_d),
+                short(2.0 * B)
+            ));
+        }
+        if m0 > 0.0 && (m0 < ONE_UNIT[0] * body.m_s || body.m_s < ONE_UNIT[1] * m0) {
+            let [m0, m_s] = [m0, body.m_s].map(short);
+            doubts.push(format!("m0 = {m0} kg is below {m_s} kg: are both masses in kg, not one in t?"));
+        }
         // of mass that is spread evenly over the height
         let of_floors = self.floors().iter().map(|floor| floor.height).reduce(f64::max);
         let height = of_floors.unwrap_or(2.0 * body.S_1 / body.m_s);
@@ -103,7 +119,7 @@ mod tests {
             Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap().doubts().len()
         };
         let units = [[1.0; 3], [1e-3, 1.0, 1.0], [1e-3, 1.0, 1e-3], [1.0, 100.0, 1.0], [1.0, 1.0, 1e-3]];
-        assert_eq!(units.map(doubts), [0, 2, 1, 2, 1]);
+        assert_eq!(units.map(doubts), [0, 3, 2, 2, 1]);
     }
 
     #[test]
@@ -115,8 +131,12 @@ mod tests {
         };
         assert!(doubts(|_| ()).is_empty());
         type Change = fn(&mut Parameters);
-        let changes: [(Change, &str); 5] = [
+        let changes: [(Change, &str); 9] = [
             (|of| (of.m, of.m0) = (100.0, 50.0), "m_t = 150 kg is little"),
+            (|of| (of.m, of.m0) = (970.0, 480.0), "m_t = 1450 kg is little"),
+            (|of| of.m0 = 50.0, "m0 = 50 kg is below 100000 kg: are both"),
+            (|of| of.m = 100.0, "m0 = 50000 kg is below 100 kg: are both"),
+            (|of| of.xi_d = 320.0, "xi_d = 320 m is more than the width of the base, 3 m: is xi_d in m"),
             (|of| of.f_fc = 400_f64.recip(), "f = 0.00 Hz of the lowest mode is far"),
             (|of| (of.H, of.B) = (8e3, 1.5e3), "f = 2.00 Hz of the lowest mode is far"),
             (|of| of.zeta_fc = 0.5, "zeta = 0.5 of the lowest mode is large"),
