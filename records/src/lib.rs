@@ -249,7 +249,12 @@ pub fn doubts(record: &Record, g: f64) -> Vec<String> {
         }),
         rounded(record.times()).map(|[least, most]| {
             let [least, most] = [least, most].map(nine_digits);
-            format!("steps of {least} to {most} s beside even times: are the times rounded? Give the right step")
+            let steps = format!("steps of {least} to {most} s beside even times");
+            if most < 1.9 * least {
+                return format!("{steps}: are the times rounded? Give the right step");
+            }
+            let gap = nine_digits(gap);
+            format!("{steps}: is a sample missing after t = {gap} s, or are the times rounded? Complete the file, or give the right step")
         }),
     ];
     doubts.into_iter().flatten().collect()

@@ -30,11 +30,12 @@ pub(super) enum Times {
 }
 
 impl Times {
-    /// These times, which must have the step `dt` (s), or the step that they have. Times of few digits are made even.
-    pub fn with_step(self, dt: f64) -> Result<Times, String> {
+    /// These times, which must have the step `dt` (s), or the first sample that contradicts and what they have. Times of
+    /// few digits are made even.
+    pub fn with_step(self, dt: f64) -> Result<Times, (usize, String)> {
         let (times, step) = match self {
             Times::Every(step) if (step - dt).abs() <= SAME_STEP * dt => return Ok(self),
-            Times::Every(step) => return Err(format!("a sample every {step:?} s")),
+            Times::Every(step) => return Err((0, format!("a sample every {step:?} s"))),
             Times::At(times) if times.len() < 2 => return Ok(Times::At(times)),
             Times::At(times) => {
                 let step = nine_digits((times[times.len() - 1] - times[0]) / (times.len() - 1) as f64);
@@ -45,13 +46,16 @@ impl Times {
         let off = (0..times.len()).map(|i| (times[i] - even(i)).abs()).fold(0.0, f64::max);
         let is_whole = |unit: f64| times.iter().all(|time| (time / unit - (time / unit).round()).abs() < SAME_STEP);
         let last_digit = (0..MOST_DECIMALS).map(|decimals| 0.1_f64.powi(decimals)).find(|unit| is_whole(*unit));
-        match off {
+        let is_missing = |i: &usize| times[*i] - times[i - 1] > 1.5 * dt && (step - dt).abs() < ROUNDING * dt;
+        let missing = (1..times.len()).find(is_missing);
+        match missing {
             _ if off <= SAME_STEP * dt => Ok(Times::At(times)),
             _ if off <= (0.5 + SAME_STEP) * last_digit.unwrap_or(0.0) || off < ROUNDING * dt => {
                 Ok(Times::At((0..times.len()).map(even).collect()))
             }
-            _ if (step - dt).abs() > SAME_STEP * dt => Err(format!("a sample every {step:?} s")),
-            _ => Err(format!("a sample every {step:?} s on average, but up to {off:.3} s beside the even times")),
+            Some(i) => Err((i, format!("no sample between {:?} and {:?} s", times[i - 1], times[i]))),
+            _ if (step - dt).abs() > SAME_STEP * dt => Err((0, format!("a sample every {step:?} s"))),
+            _ => Err((0, format!("a sample every {step:?} s on average, but up to {off:.3} s beside the even times"))),
         }
     }
 }
@@ -120,7 +124,7 @@ impl Parsed {
         let Parsed { title, mut times, values: acceleration, source, last_line } = self;
         if let Some(asked) = how.dt {
             let contradicted =
-                |found| bad(last_line, format!("the file states {found}, but the given step is {asked:?} s"));
+                |(_, found)| bad(last_line, format!("the file states {found}, but the given step is {asked:?} s"));
             times = times.with_step(asked).map_err(contradicted)?;
         }
         let count = acceleration.len();

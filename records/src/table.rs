@@ -50,13 +50,13 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     let (unit, unit_from) = of_heading(stated, how.unit, line)?;
     let mut times = table.times(time, how)?;
     if let Some(dt) = table.stated.dt {
-        let contradicted = |found| {
-            bad(
-                table.first,
-                format!("DT states a sample every {dt:?} s, and the times have {found}: correct one of them"),
-            )
-        };
-        times = times.with_step(dt).map_err(contradicted)?;
+        let says =
+            |found| format!("DT states a sample every {dt:?} s, and the times have {found}: correct one of them");
+        times = times.with_step(dt).map_err(|(row, found)| table.bad(row, says(found)))?;
+    }
+    if let (Times::At(_), Some(dt)) = (&times, how.dt) {
+        let says = |found| format!("the times have {found}, but the given step is {dt:?} s");
+        times = times.with_step(dt).map_err(|(row, found)| table.bad(row, says(found)))?;
     }
     let mut parsed = Parsed::new("", unit, unit_from, times);
     parsed.remark(table.layout.to_string());
@@ -185,6 +185,12 @@ impl<'a> Table<'a> {
     /// The line of samples after so many others.
     fn line(&self, after: usize) -> Option<(usize, &'a str)> {
         numbered(self.text).skip(self.first - 1).filter(|(_, line)| !is_comment(line)).nth(after)
+    }
+
+    /// A `problem` on the line of the sample `row`.
+    fn bad(&self, row: usize, problem: String) -> BadLine {
+        let line = self.line(row / self.pairs.unwrap_or(1));
+        bad(line.map_or(self.last, |(line, _)| line), problem)
     }
 
     fn no_number(&self, column: usize, field: &str) -> String {
@@ -615,7 +621,17 @@ mod tests {
             assert!(crate::doubts(&even, 9.81).is_empty());
         }
         let refused = problem(&rows, &Reading { dt: Some(0.003), ..AS_IT_IS });
-        assert!(refused.ends_with("a sample every 0.00251282051 s, but the given step is 0.003 s"), "{refused}");
+        assert_eq!(refused, "1: the times have a sample every 0.00251282051 s, but the given step is 0.003 s");
+    }
+
+    #[test]
+    fn a_missing_line_is_named() {
+        let rows: String = (0..40).filter(|i| *i != 20).map(|i| format!("{},{i}\n", f64::from(i) / 100.0)).collect();
+        let refused = problem(&rows, &Reading { dt: Some(0.01), ..AS_IT_IS });
+        assert_eq!(refused, "21: the times have no sample between 0.19 and 0.21 s, but the given step is 0.01 s");
+        let doubt = "steps of 0.01 to 0.02 s beside even times: is a sample missing after t = 0.19 s, or are the times rounded? \
+                     Complete the file, or give the right step";
+        assert_eq!(crate::doubts(&read(&rows, &AS_IT_IS).unwrap().0, 9.81), [doubt]);
     }
 
     #[test]
