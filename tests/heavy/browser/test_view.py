@@ -276,9 +276,10 @@ def test_a_frame_moves_as_its_response_says(opened, exporter, pacoima_record, tm
             delta_t = f"delta_t[{floor}][m]"
             assert abs(reading(page, "delta_t") - now[delta_t] / 1e-3) <= 2e-3 * largest[delta_t] / 1e-3
     assert page.locator("#heights").is_visible() and page.locator("#peaks tr").count() == 3
-    for width, height in ((1366, 768), (390, 844)):
+    for width, height in ((1366, 768), (1100, 800), (390, 844)):
         page.set_viewport_size({"width": width, "height": height})
         page.wait_for_timeout(200)
+        assert page.locator("#numbers").evaluate("numbers => numbers.scrollWidth <= numbers.clientWidth"), width
         scales = page.evaluate(SCALES)
         assert len(scales) == 5 and min(scales) >= 2, (width, scales)
         titles = page.locator("#profile text").evaluate_all("all => all.map(text => text.getBoundingClientRect().toJSON())")
