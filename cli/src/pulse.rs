@@ -1,10 +1,11 @@
 //! `pulse`: one of the field's standard ground motions as a CSV file that every other command reads.
-use crate::{cause::Cause, record_args::one_of, results::FormatArgs, structure_args::StructureArgs, talk::write_as};
+use crate::talk::{warning, write_as};
+use crate::{cause::Cause, record_args::one_of, results::FormatArgs, structure_args::StructureArgs};
 use clap::{ArgGroup, builder::PossibleValue};
 use rocking::Base;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::run::record::Record;
-use rocking_records::{Unit, csv_in};
+use rocking_records::{Unit, csv_in, doubt_of_peak};
 use rocking_report::{output_files::OutputFiles, quantities::NamedValue};
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::path::PathBuf;
@@ -77,6 +78,7 @@ pub fn run(args: &PulseArgs) -> anyhow::Result<()> {
     let structure = args.structure.load_any()?;
     let pulse = args.of.pulse(structure.base());
     let record = pulse.record()?;
+    doubt_of_peak(&record, structure.base().g).iter().for_each(|doubt| warning!("{}: {doubt}", record.title()));
     let file = OutputFiles::of_inputs(args.structure.input()).create(&args.output)?;
     write_as(file, "pulse", csv_in(&record, Unit::MetrePerSecondSquared).as_bytes())?;
     let (title, cause) = ((record.title(), structure.base().g), Cause::new(structure.clone()));

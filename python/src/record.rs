@@ -11,7 +11,7 @@ use rocking::Parameters;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::estimates::response_spectrum;
 use rocking::run::record::Record as Samples;
-use rocking_records::{Column, Reading, Unit, csv_in, doubts, vertical_csv};
+use rocking_records::{Column, Reading, Unit, csv_in, doubt_of_peak, doubts, vertical_csv};
 use rocking_report::output_files::OutputFiles;
 use rocking_report::record::{no_pair, understand};
 use rocking_report::run::Watcher;
@@ -361,8 +361,8 @@ type Array<'py> = Bound<'py, PyArray1<f64>>;
 ///
 /// amplitude a_p in g, frequency in Hz. With a structure, amplitude is in g tan(alpha_cg), and frequency is the circular one
 /// in p_l. cycles: periods of a sine or cosine (1), gamma of mavroeidis_papageorgiou (2). phase in rad, g in m/s2. error: the
-/// largest distance of the straight lines from the curve, as a fraction of the amplitude. Raises ValueError for a pulse that
-/// cannot be.
+/// largest distance of the straight lines from the curve, as a fraction of the amplitude. A peak above 5 g
+/// warns. Raises ValueError for a pulse that cannot be.
 #[pyfunction]
 #[pyo3(signature = (shape, *, amplitude, frequency, cycles=None, phase=0.0, error=DEFAULT_ERROR, structure=None, g=G))]
 #[pyo3(
@@ -370,6 +370,7 @@ type Array<'py> = Bound<'py, PyArray1<f64>>;
 )]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn pulse(
+    py: Python<'_>,
     shape: &Bound<'_, PyAny>,
     #[pyo3(from_py_with = argument::amplitude)] amplitude: f64,
     #[pyo3(from_py_with = argument::frequency)] frequency: f64,
@@ -387,5 +388,8 @@ pub fn pulse(
     let pulse = Pulse::new(shape, amplitude * of_amplitude, frequency * of_frequency);
     let cycles = cycles.map_or(Ok(pulse.cycles), |cycles| number("cycles", cycles))?;
     let pulse = Pulse { cycles, phase, error, ..pulse };
-    pulse.record().map(Record::in_si).map_err(refused)
+    let record = pulse.record().map_err(refused)?;
+    let g = structure.map_or(g, |structure| structure.of.base().g);
+    warn(py, doubt_of_peak(&record, g).map(|doubt| format!("{}: {doubt}", record.title())), 1)?;
+    Ok(Record::in_si(record))
 }

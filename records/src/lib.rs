@@ -221,6 +221,12 @@ pub fn in_m_s2(record: Record, unit: Unit, g: f64) -> Result<Record, OutOfRange>
     Ok(record.multiplied(unit.in_m_s2(g)))
 }
 
+/// A sentence about the peak of `record` (m/s²) if no ground shakes as much under `g` (m/s²).
+pub fn doubt_of_peak(record: &Record, g: f64) -> Option<String> {
+    let peak = record.pga().max(record.vertical_peak()) / g;
+    (peak > LARGEST_USUAL_PEAK).then(|| format!("a peak of {peak:.0} g: is the unit right?"))
+}
+
 /// A sentence for each property that no earthquake has but a wrongly read record often has; `record` and `g` in m/s².
 pub fn doubts(record: &Record, g: f64) -> Vec<String> {
     let duration = record.end() - record.start();
@@ -229,11 +235,10 @@ pub fn doubts(record: &Record, g: f64) -> Vec<String> {
     let gaps = record.times().windows(2).map(|pair| (pair[1] - pair[0], pair[0]));
     let (longest, gap) = gaps.fold((0.0, 0.0), |most: (f64, f64), gap| if gap.0 > most.0 { gap } else { most });
     let velocity = last.unwrap_or_default()[0];
-    let peak = record.pga().max(record.vertical_peak()) / g;
     let is_drift = velocity.abs() > LARGEST_USUAL_VELOCITY;
     let is_usual = USUAL_STEPS.contains(&step);
     let doubts = [
-        (peak > LARGEST_USUAL_PEAK).then(|| format!("a peak of {peak:.0} g: is the unit right?")),
+        doubt_of_peak(record, g),
         (!is_usual).then(|| format!("a step of {step} s: is the time in another unit?")),
         (longest > LONGEST_GAP * step).then(|| {
             format!(

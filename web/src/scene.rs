@@ -261,6 +261,8 @@ impl Fields {
             (scaled(ground.record)?, scaled(ground.in_file_unit)?, ground.warnings);
         if matches!(self.kind(), EL_CENTRO | "record") {
             warnings.extend(rocking_records::doubts(&record, g));
+        } else {
+            warnings.extend(rocking_records::doubt_of_peak(&record, g));
         }
         Ok(Ground { record, in_file_unit, warnings, ..ground })
     }
