@@ -65,6 +65,9 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     let output = args.output.clone().unwrap_or_else(|| format!("{}.fmu", args.name.as_str()).into());
     let inputs = args.structure.input().into_iter().chain(args.records().chain(&args.library).map(PathBuf::as_path));
     let file = OutputFiles::of_inputs(inputs).create(&output)?;
+    if !input::is_stream(&output) {
+        fmu_export::check_target(&output)?;
+    }
     let g = structure.base().g;
     let records = args.record.iter().map(|path| record(&args.options, path, g)).collect::<Result<Vec<_>, _>>()?;
     let of_vertical = args.options.with_column(&args.vertical.column_v);

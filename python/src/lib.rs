@@ -70,7 +70,8 @@ fn export(
             files.add_input(path);
         }
     }
-    let target = files.create(&target).map_err(refused)?;
+    let file = files.create(&target).map_err(refused)?;
+    fmu_export::check_target(&target).map_err(refused)?;
     let is_plain = |letter: char| letter.is_alphanumeric() || letter == '-';
     // the file, or the tables of the record, the vertical component last
     let contents = |packed: &Packed| -> PyResult<Vec<(PathBuf, Vec<u8>)>> {
@@ -97,6 +98,6 @@ fn export(
         let records = records.into_iter().flatten().collect();
         let contents = Contents { fixed: !strings, ..structure.into() };
         let (_, archive) = fmu_export::export(version, &name, contents, records, vertical, &libraries)?;
-        target.write(&archive)
+        file.write(&archive)
     })
 }

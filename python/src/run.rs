@@ -315,7 +315,7 @@ impl Run {
 #[pyo3(text_signature = "(structure, record=None, *, duration=None, detail='auto', tolerance=1e-09, **initial)")]
 pub fn simulate(
     py: Python<'_>,
-    structure: Py<Structure>,
+    #[pyo3(from_py_with = argument::structure)] structure: Py<Structure>,
     record: Option<Ground>,
     duration: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = argument::detail)] detail: Detail,

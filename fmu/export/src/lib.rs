@@ -17,7 +17,7 @@ pub use library::{Library, LibraryError, Platform};
 use rocking::StructureError;
 use rocking::run::record::SamplesError;
 use rocking_records::RecordError;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// Licences of all that the shared library is made of, on every [`Platform`]; `WRITE_LICENSES=1 cargo test --release -p fmu-export --test licenses` writes it.
@@ -56,12 +56,21 @@ impl FromStr for ModelName {
     }
 }
 
+/// Accepts a `target` that ends in .fmu.
+pub fn check_target(target: &Path) -> Result<(), ExportError> {
+    let is_fmu = target.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("fmu"));
+    if is_fmu { Ok(()) } else { Err(ExportError::Suffix(target.into())) }
+}
+
 /// Why an FMU could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// A name that hosts and file systems do not take.
     #[error("the name {0:?} must consist of the letters a to z and A to Z, digits and _, and not begin with a digit")]
     Name(String),
+    /// A file that hosts do not open.
+    #[error("{} does not end in .fmu, as hosts require: add .fmu", .0.display())]
+    Suffix(PathBuf),
     /// Two libraries for one platform.
     #[error("two shared libraries are for {}: leave one out", .0.tuple())]
     SamePlatform(Platform),
