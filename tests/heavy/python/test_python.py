@@ -355,6 +355,8 @@ def test_what_is_asked_for_in_another_form_is_taken_or_refused_by_name(run, grou
                   lambda: fr.sweep(pier, ["a.AT2"]), lambda: fr.estimate(pier, "a.AT2")):
         with pytest.raises(TypeError, match="record = 'a.AT2' is no Record: Record.read"):
             wrong()
+    with pytest.raises(TypeError, match="structure = .* is no Structure"):
+        fr.simulate(ground, pier)
     assert hash(ground) == hash(copy.copy(ground)) and len({ground, ground.scaled(2)}) == 2
     flat = fr.Structure(preset="evison", J0=-0.0)
     assert flat == fr.Structure(preset="evison") and hash(flat) == hash(fr.Structure(preset="evison"))
