@@ -36,7 +36,7 @@ pub fn integer(name: &str, value: &Bound<'_, PyAny>) -> PyResult<i64> {
 
 /// Readers of an argument of their name, whose messages have that name.
 pub mod argument {
-    use super::{Bound, Detail, Py, PyAny, PyAnyMethods, PyResult, PyTypeError, Structure, integer, number, one_of};
+    use super::{Bound, Detail, Py, PyAny, PyResult, PyTypeError, Structure, integer, number, one_of};
 
     macro_rules! numbers {
         ($($name:ident)*) => {$(

@@ -626,7 +626,8 @@ mod tests {
 
     #[test]
     fn a_missing_line_is_named() {
-        let rows: String = (0..40).filter(|i| *i != 20).map(|i| format!("{},{i}\n", f64::from(i) / 100.0)).collect();
+        let rows: String =
+            (0..40).filter(|i| *i != 20).map(|i| format!("{},{}\n", f64::from(i) / 100.0, i % 2)).collect();
         let refused = problem(&rows, &Reading { dt: Some(0.01), ..AS_IT_IS });
         assert_eq!(refused, "21: the times have no sample between 0.19 and 0.21 s, but the given step is 0.01 s");
         let doubt = "steps of 0.01 to 0.02 s beside even times: is a sample missing after t = 0.19 s, or are the times rounded? \

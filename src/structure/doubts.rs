@@ -133,7 +133,7 @@ mod tests {
         type Change = fn(&mut Parameters);
         let changes: [(Change, &str); 9] = [
             (|of| (of.m, of.m0) = (100.0, 50.0), "m_t = 150 kg is little"),
-            (|of| (of.m, of.m0) = (970.0, 480.0), "m_t = 1450 kg is little"),
+            (|of| (of.m, of.m0, of.H, of.B) = (970.0, 480.0, 12.0, 3.2), "m_t = 1450 kg is little"),
             (|of| of.m0 = 50.0, "m0 = 50 kg is below 100000 kg: are both"),
             (|of| of.m = 100.0, "m0 = 50000 kg is below 100 kg: are both"),
             (|of| of.xi_d = 320.0, "xi_d = 320 m is more than the width of the base, 3 m: is xi_d in m"),

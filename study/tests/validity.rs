@@ -2,8 +2,8 @@
 
 mod synthetic;
 
-use rocking::Output;
 use rocking::Detail;
+use rocking::Output;
 use rocking::engine::DEFAULT_TOLERANCE;
 use study::validity::population::both;
 
@@ -16,7 +16,7 @@ fn the_repaired_rule_leaves_no_tension() {
     assert!(model > 0.01, "{model}");
     assert!(repaired.abs() < 1e-9, "{repaired}");
     assert!(pair.model.transitions > 2 && pair.repaired.transitions > 2);
-    let [model, repaired] =
-        [&pair.model, &pair.repaired].map(|of| (of.peaks.theta().magnitude, of.peaks.of(Output::a_t(0)).unwrap().magnitude));
+    let [model, repaired] = [&pair.model, &pair.repaired]
+        .map(|of| (of.peaks.theta().magnitude, of.peaks.of(Output::a_t(0)).unwrap().magnitude));
     assert!(model.0 != repaired.0 && model.1 != repaired.1, "{model:?} {repaired:?}");
 }
