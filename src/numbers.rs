@@ -128,26 +128,3 @@ impl Angle for f64 {
         Turn { sin, cos, versine: sin * sin / (1.0 + cos) } // without cancellation: cos θ ≥ 0
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::most::Most;
-    use super::*;
-    use proptest::prelude::*;
-
-    /// Turns, and products with turns.
-    fn quantities<N: Number>(x: N, theta: N, Turn { sin, cos, versine }: Turn<N>) -> [N; 6] {
-        [sin, cos, versine, x * cos, x * sin - theta * x, x * x * theta]
-    }
-
-    proptest! {
-        #[test]
-        fn bounds_hold(x in -0.5..0.5f64, theta in -1.5..1.5f64, more in 0.0..0.2f64) {
-            let [most_x, most_theta] = [x, theta].map(|of| Most(of.abs() + more));
-            let mosts = quantities(most_x, most_theta, most_theta.turn());
-            for (value, Most(most)) in quantities(x, theta, theta.turn()).into_iter().zip(mosts) {
-                prop_assert!(value.abs() <= most * (1.0 + 1e-12), "{value} beyond {most}");
-            }
-        }
-    }
-}

@@ -120,13 +120,8 @@ pub enum RunError {
     /// It takes more steps than one of its segments may.
     #[error("the run used up its steps at t = {} of {}: give a shorter duration", with_unit(*time, "s"), with_unit(*until, "s"))]
     TooLong { time: f64, until: f64 },
-    /// The run takes more than [`MOST_STEPS`]; the rate of the tendon and the dissipators is in 1/s.
-    #[error(
-        "the run used up its {MOST_STEPS} steps at t = {}. The rate of tendon and dissipators is {}: are k_t, k_d, c_d \
-         in N and m, and xi_d in m? Otherwise give a shorter duration",
-        with_unit(*time, "s"),
-        with_unit(*rate, "1/s")
-    )]
+    /// The run takes more than [`MOST_STEPS`]; the rate of the tendon and the dissipators is in 1/s, 0 without any.
+    #[error("the run used up its {MOST_STEPS} steps at t = {}{}", with_unit(*time, "s"), too_many(*rate))]
     TooManySteps { time: f64, rate: f64 },
     /// It takes more points than a curve may have.
     #[error(
@@ -286,13 +281,14 @@ impl<Q: Moves, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
     #[inline(always)]
     fn next(&mut self) -> Result<Result<(Segment, Option<Ending>), Ending>, RunError> {
         let &Motion { time, work, .. } = self.engine.motion();
-        if work.steps > MOST_STEPS {
+        let next = self.segments.next().map_or_else(|| self.come_to_rest(), |segment| Ok((segment, None)));
+        if next.is_ok() && work.steps > MOST_STEPS {
             let &Base { B, J_P, ties: Ties { k_t, xi_d, c_d, k_d, .. }, .. } = self.engine.structure().base();
             let pair = 2.0 * (B * B + xi_d * xi_d);
             let rate = (c_d * pair / J_P).max(((k_t * B * B + k_d * pair) / J_P).sqrt());
             return Err(RunError::TooManySteps { time, rate });
         }
-        Ok(self.segments.next().map_or_else(|| self.come_to_rest(), |segment| Ok((segment, None))))
+        Ok(next)
     }
 
     /// The next segment after the record, and the ending of the run after that segment if the run ends there. Fails with the ending if
@@ -316,6 +312,17 @@ impl<Q: Moves, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
         let (duration, ending) = if stays_down { (TAU / omega, Some(Ending::AtRest)) } else { (1.0 / p_l, None) };
         let until = engine.motion().time + duration;
         Ok((Segment { since: 0.0, duration, until, ground: LinearLoad::default() }, ending))
+    }
+}
+
+/// What may shorten a run with too many steps, whose tendon and dissipators have this `rate` (1/s).
+fn too_many(rate: f64) -> String {
+    match rate > 0.0 {
+        true => format!(
+            ". The rate of tendon and dissipators is {}: are k_t, k_d, c_d and xi_d in the right units? Otherwise give a shorter duration",
+            with_unit(rate, "1/s")
+        ),
+        false => ": give a shorter duration".into(),
     }
 }
 

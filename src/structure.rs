@@ -486,6 +486,11 @@ impl Structure {
         self.0.reaches.0.get_or_init(|| reaches(self))
     }
 
+    /// Whether no mode moves what is shown of the structure.
+    pub(crate) fn is_rigid(&self) -> bool {
+        self.0.gauges.V_t.is_rigid()
+    }
+
     /// The floors, from below.
     #[inline(always)]
     pub fn floors(&self) -> &[Floor] {

@@ -166,7 +166,7 @@ impl Run {
         }
         let theta = largest(&reference.peaks, "theta").map_or(0.0, |peak| peak.magnitude);
         if theta == 0.0 {
-            let estimate = if of_many { "" } else { "; the estimate assumes that it does" };
+            let estimate = if self.structure.one().is_none() { "" } else { "; the estimate assumes that it does" };
             return writeln!(out, "  the base never lifts off{estimate}\n");
         }
         if let Some(structure) = self.structure.one()

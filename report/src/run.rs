@@ -154,7 +154,7 @@ macro_rules! with {
     ($run:expr, $follow:ident => $do:expr) => {
         match $run.structure.of_one_mode() {
             Some(structure) => {
-                let $follow = $run.conditions.run(structure, &$run.ground);
+                let $follow = $run.conditions.run_of_one_mode(structure, &$run.ground)?;
                 $do
             }
             None => {

@@ -10,7 +10,7 @@ use crate::{Output, Ramp, Structure};
 /// Bounds of the magnitudes of a motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Magnitudes<'a, Q> {
-    /// The motion and the ground acceleration, unless it is an exact leap.
+    /// The motion over a polynomial and the ground acceleration, if an output depends on the ground acceleration.
     pub arc: Option<(&'a Arc<Q>, Ramp)>,
     /// Part of the viscous damping in full contact.
     pub damping: f64,
@@ -78,20 +78,21 @@ pub(crate) fn reaches(structure: &Structure) -> Vec<Reach> {
 }
 
 impl Output {
-    /// The place of an output that has a peak among the reaches of a structure with so many `floors`.
-    pub(crate) fn place(self, floors: usize) -> usize {
-        let of_floor = |kind: usize, i: usize| 3 + kind * floors + i;
-        match self {
-            Output::theta | Output::theta_dot | Output::uplift => 0,
-            Output::V_t => 1,
-            Output::M_t => 2,
-            Output::u(i) | Output::u_dot(i) => of_floor(0, i),
-            Output::drift(i) | Output::drift_ratio(i) => of_floor(1, i),
-            Output::delta_t(i) | Output::v_t(i) => of_floor(2, i),
-            Output::a_t(i) => of_floor(3, i),
-            Output::V(i) => of_floor(4, i),
-            Output::M(i) => of_floor(5, i),
-        }
+    /// The place of an output that is searched for its peak among the reaches of a structure with so many `floors`.
+    pub(crate) fn place(self, floors: usize) -> Option<usize> {
+        let (kind, i) = match self {
+            Output::theta => return Some(0),
+            Output::V_t => return Some(1),
+            Output::M_t => return Some(2),
+            Output::u(i) => (0, i),
+            Output::drift(i) => (1, i),
+            Output::delta_t(i) => (2, i),
+            Output::a_t(i) => (3, i),
+            Output::V(i) => (4, i),
+            Output::M(i) => (5, i),
+            _ => return None,
+        };
+        Some(3 + kind * floors + i)
     }
 }
 
@@ -107,6 +108,7 @@ impl Reach {
         let Reach { turn: [sin, versine], a_g, u, u_dot, push } = self;
         let elastic = most.u.weighed(u) + most.damping * most.u_dot.weighed(u_dot) + most.F_t.weighed(push);
         match (a_g, most.arc) {
+            _ if most.theta == f64::INFINITY => f64::INFINITY,
             (None, _) => elastic + sin * most.theta + versine * (0.5 * most.theta * most.theta),
             (Some(_), Some(arc)) => {
                 let gauge = output.gauge(structure).expect("a gauge alone reads the ground acceleration");
@@ -114,6 +116,52 @@ impl Reach {
             }
             (Some(a_g), None) if most.theta == 0.0 => elastic + a_g * most.a_g,
             _ => f64::INFINITY,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::lateral::Lateral;
+    use crate::mechanics::load::Load;
+    use crate::structure::description::{Damping, Storey};
+    use crate::structure::natural_quantities::Given;
+    use crate::{Phase, Side, State};
+    use proptest::prelude::*;
+
+    proptest! {
+        /// No output of three storeys exceeds its bound.
+        #[test]
+        fn bounds_hold(
+            u in prop::array::uniform3(-9.0..9.0f64), u_dot in prop::array::uniform3(-90.0..90.0f64), theta in -1.5..1.5f64,
+            forces in prop::array::uniform3(-1e5..1e5f64), more in 1.0..1.2f64,
+        ) {
+            let mut base = Given::default();
+            [("m0", 20e3), ("J0", 3e4), ("B", 1.5)].iter().for_each(|(name, value)| base.give(name, *value).unwrap());
+            let storeys = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)].map(|(m, h, k)| Storey { m, h, k });
+            let structure = Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap();
+            let [u, u_dot] = [u, u_dot].map(|of| Modes::new(&of));
+            let Load { F_t, .. } = structure.load(0.0, 0.0, &forces).unwrap();
+            let most = |of: Modes| Modes::each(&structure, |j, _| of.of(j).abs() * more);
+            let (phase, state) = (Phase::Rocking(Side::of(theta)), State { u, u_dot, theta, theta_dot: 0.0 });
+            let bounds = Magnitudes {
+                arc: None,
+                damping: 1.0,
+                u: most(u),
+                u_dot: most(u_dot),
+                theta: theta.abs() * more,
+                theta_dot: 0.0,
+                a_g: 0.0,
+                F_t: most(F_t),
+                a_v: 0.0,
+            };
+            for output in Output::all(&structure) {
+                let Some(place) = output.place(3) else { continue };
+                let value = output.at(&structure, phase, &state, Load { a_g: 0.0, F_t, a_v: 0.0 });
+                let bound = structure.reaches()[place].bound(output, &structure, &bounds);
+                prop_assert!(value.abs() <= bound * (1.0 + 1e-12), "{output:?} = {value} beyond {bound}");
+            }
         }
     }
 }

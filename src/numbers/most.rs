@@ -1,6 +1,6 @@
 //! A bound of a magnitude.
 
-use super::{Angle, Number, Turn, operators};
+use super::{Number, operators};
 
 /// The largest magnitude that a quantity can have over a piece.
 #[derive(Clone, Copy, Debug)]
@@ -29,13 +29,5 @@ impl Number for Most {
     #[inline]
     fn constant(value: f64) -> Self {
         Most(value.abs())
-    }
-}
-
-/// Uses |sin θ| ≤ |θ|, |cos θ| ≤ 1 and 1 − cos θ ≤ θ²/2.
-impl Angle for Most {
-    #[inline]
-    fn turn(self) -> Turn<Most> {
-        Turn { sin: self, cos: Most(1.0), versine: Most(self.0 * self.0 / 2.0) }
     }
 }

@@ -20,7 +20,7 @@ const DIVISIONS: u32 = 30;
 /// takes.
 const NEARLY: f64 = 16.0;
 
-/// More points of one mass are no picture: 100 MB. Points of many masses are larger and fewer.
+/// More points of one mass are no picture: 130 MB. Points of many masses are larger and fewer.
 const MOST_POINTS: usize = 1_000_000;
 
 /// Part of its peak by which a_g may differ between the end of a piece and the start of the next without a jump.
@@ -76,7 +76,7 @@ pub struct Curve<Q: Moves = f64> {
 
 impl<Q: Moves> Run<'_, Q> {
     /// The run as points between which θ, u and a_t of each floor leave straight lines by at most `part` of their peaks; the
-    /// ground acceleration does not leave them at all. Refuses a run that takes more points than fit in 100 MB.
+    /// ground acceleration does not leave them at all. Refuses a run that takes more points than fit in 130 MB.
     pub fn curve(&self, part: f64) -> Result<Curve<Q>, RunError> {
         let (found, peaks) = self.found_and_all(&mut ())?;
         let (lines, drawn, a_g) = (lines(&self.structure), drawn(&self.structure), peaks.a_g());

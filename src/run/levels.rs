@@ -72,7 +72,7 @@ impl Criterion {
 pub struct Choice {
     /// The level.
     pub detail: Detail,
-    /// Modes that are kept, of how many; None for one mass.
+    /// Modes that are kept, of how many; None if an engine of one coordinate moves the structure.
     pub modes: Option<[usize; 2]>,
 }
 

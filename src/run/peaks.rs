@@ -157,7 +157,11 @@ impl Peaks {
             let over = |(at, other): (usize, &Searched)| Some((output, at, output.over(other.output, structure)?));
             match searched.iter().enumerate().find_map(over) {
                 Some(found) => with.push(found),
-                None => searched.push(Searched { output, peak: none, place: output.place(structure.floors().len()) }),
+                None => searched.push(Searched {
+                    output,
+                    peak: none,
+                    place: output.place(structure.floors().len()).expect("it reaches"),
+                }),
             }
         }
         let tendon = Tendon { P_0, k_t, angles: detail.angles(), start: time };
@@ -175,7 +179,7 @@ impl Peaks {
         searched.or_else(|| {
             let (_, place, factor) = self.with.iter().find(|(of, ..)| *of == output)?;
             let peak = self.searched[*place].peak;
-            Some(Peak { magnitude: factor * peak.magnitude, ..peak })
+            Some(Peak { magnitude: factor.abs() * peak.magnitude, ..peak })
         })
     }
 
@@ -218,6 +222,7 @@ impl Peaks {
     #[cfg(feature = "lanes")]
     pub fn watch_theta(&mut self) -> ThetaWatch<'_> {
         self.searched.truncate(1);
+        self.with.clear();
         ThetaWatch { peaks: self, impacts: 0 }
     }
 

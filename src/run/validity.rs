@@ -366,9 +366,13 @@ impl Validity {
         };
         self.found.settlings += u64::from(kind == TransitionKind::Settling);
         let is_landing = phase == Phase::FullContact;
-        let bounces = Q::modes(structure).is_empty() && impact::restitution::<Q>(structure, side, &before) > 0.0;
-        if is_landing && (bounces || after != impact::land::<Q>(structure, &before)) {
-            return; // the rigid limit has come to rest: what is left below the tolerance is no impact
+        // the rigid limit that bounces has come to rest: what is left below the tolerance is no impact
+        let is_no_impact = match structure.is_rigid() {
+            true => impact::restitution::<Q>(structure, side, &before) > 0.0,
+            false => after != impact::land::<Q>(structure, &before),
+        };
+        if is_landing && is_no_impact {
+            return;
         }
         let kinetic = impact::kinetic_energy::<Q>(structure, side, &before);
         if kinetic == 0.0 {
@@ -437,7 +441,7 @@ fn extents_of_vibration<Q: Moves>(part: Part<Q>) -> Option<Reactions<Extent>> {
     let (structure, per_bend) = (&level.as_ref().structure, step.interval * step.interval / 8.0);
     let moved = |of: &Q| Q::sum(structure, |j, mode| mode.gamma.abs() * of.of(j));
     let off = |output: Output, weight: f64| {
-        let reach = &structure.reaches()[output.place(structure.floors().len())];
+        let reach = &structure.reaches()[output.place(structure.floors().len()).expect("it reaches")];
         let of = |u: &Q, u_dot: &Q| reach.elastic(u, u_dot) + weight * moved(u);
         (2.0 * of(&u, &u_dot)).min(per_bend * of(&u_ddot, &jerk))
     };

@@ -47,7 +47,9 @@ impl Structure {
         }
         if m0 > 0.0 && (m0 < ONE_UNIT[0] * body.m_s || body.m_s < ONE_UNIT[1] * m0) {
             let [m0, m_s] = [m0, body.m_s].map(short);
-            doubts.push(format!("m0 = {m0} kg is below {m_s} kg: are both masses in kg, not one in t?"));
+            doubts.push(format!(
+                "the foundation has m0 = {m0} kg and carries {m_s} kg: are both masses in kg, not one in t?"
+            ));
         }
         // of mass that is spread evenly over the height
         let of_floors = self.floors().iter().map(|floor| floor.height).reduce(f64::max);
@@ -134,8 +136,8 @@ mod tests {
         let changes: [(Change, &str); 9] = [
             (|of| (of.m, of.m0) = (100.0, 50.0), "m_t = 150 kg is little"),
             (|of| (of.m, of.m0, of.H, of.B) = (970.0, 480.0, 12.0, 3.2), "m_t = 1450 kg is little"),
-            (|of| of.m0 = 50.0, "m0 = 50 kg is below 100000 kg: are both"),
-            (|of| of.m = 100.0, "m0 = 50000 kg is below 100 kg: are both"),
+            (|of| of.m0 = 50.0, "the foundation has m0 = 50 kg and carries 100000 kg: are both"),
+            (|of| of.m = 100.0, "the foundation has m0 = 50000 kg and carries 100 kg: are both"),
             (|of| of.xi_d = 320.0, "xi_d = 320 m is more than the width of the base, 3 m: is xi_d in m"),
             (|of| of.f_fc = 400_f64.recip(), "f = 0.00 Hz of the lowest mode is far"),
             (|of| (of.H, of.B) = (8e3, 1.5e3), "f = 2.00 Hz of the lowest mode is far"),

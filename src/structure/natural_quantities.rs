@@ -365,6 +365,9 @@ impl TryFrom<BTreeMap<String, Entry>> for Given {
         let (mut given, mut units) = (Given::default(), Units::default());
         for (name, entry) in entries {
             match entry {
+                Entry::Number(_) if name == "units" => {
+                    return Err(GivenError::InUnits("units: \"N, m, kg\" or \"kN, m, t\" is needed".into()));
+                }
                 Entry::Number(number) => given.give(&name, number)?,
                 Entry::Units(of_numbers) if name == "units" => units = of_numbers,
                 Entry::Units(_) => return Err(GivenError::InUnits(format!("{name}: a number is needed"))),

@@ -12,9 +12,10 @@ use rocking::estimates::response_spectrum::spectral_acceleration;
 use rocking::mechanics::state::InitialStateError;
 use rocking::run::lanes::found_each;
 use rocking::run::record::Record;
+use rocking::run::validity::{Findings, Limits};
 use rocking::run::{End, Run};
 use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
-use rocking::{Detail, Engine, Modes, Parameters, Quantity, State, Structure, Watch};
+use rocking::{Detail, Engine, Modes, Parameters, Quantity, State, Structure};
 use serde::Serialize;
 use std::collections::HashSet;
 use std::sync::OnceLock;
@@ -158,7 +159,7 @@ impl Population {
         let axis = AXES.iter().position(|axis| axis.name == name && can_vary(name));
         let axis = axis.ok_or_else(|| {
             let known = AXES.iter().map(|axis| axis.name).filter(|name| can_vary(name)).collect::<Vec<_>>().join(", ");
-            let why = if can_vary(name) { "" } else { " in a building, whose storeys determine it" };
+            let why = if can_vary(name) { "" } else { " in a building, whose modes determine it" };
             Refused(format!("{name:?} cannot vary{why}: these can: {known}"))
         })?;
         check_list(name, &values)?;
@@ -232,6 +233,15 @@ impl Conditions {
         Run { initial: self.initial, ..self.over(Run::new(structure, ground)) }
     }
 
+    /// The run of `structure` under `ground`, which an engine of one coordinate moves. Refuses initial displacements of a building.
+    pub fn run_of_one_mode<'a>(&self, structure: Structure, ground: &'a Record) -> Result<Run<'a>, InitialStateError> {
+        let State { u, u_dot, .. } = self.initial;
+        match structure.one() {
+            None if (u, u_dot) != (0.0, 0.0) => Err(InitialStateError::DeformedModes { u, u_dot }),
+            _ => Ok(self.run(structure, ground)),
+        }
+    }
+
     /// The run of the `structure` of many masses under `ground`. Refuses initial displacements.
     pub fn run_of_modes<'a>(
         &self,
@@ -253,10 +263,12 @@ impl Conditions {
             format!("duration = {} is out of range: a finite number greater than 0 is needed", with_unit(duration, "1"))
         })?;
         let settings = Settings { detail: self.detail, tolerance: self.tolerance, ..Settings::default() };
-        if structure.one().is_some() {
-            return Engine::with(structure.clone(), self.initial, 0.0, settings).map(|_| ()).map_err(Refused::by);
-        }
         let ground = Record::at_rest(1.0);
+        if let Some(structure) = structure.of_one_mode() {
+            let run = self.run_of_one_mode(structure, &ground);
+            let engine = run.and_then(|Run { structure, initial, .. }| Engine::with(structure, initial, 0.0, settings));
+            return engine.map(|_| ()).map_err(Refused::by);
+        }
         let run = self.run_of_modes(structure.clone(), &ground);
         run.and_then(|Run { structure, initial, .. }| Engine::of_modes(structure, initial, 0.0, settings))
             .map(|_| ())
@@ -359,18 +371,35 @@ impl Plan {
 impl Case<'_> {
     /// Does it.
     pub fn outcome(&self) -> Outcome {
-        self.outcome_watched(&mut ())
+        self.follow(false).0
     }
 
-    /// Does it while `watch` sees it go by.
-    pub fn outcome_watched(&self, watch: &mut (impl Watch<f64> + Watch<Modes>)) -> Outcome {
-        let (structure, ground) = (self.structure.clone(), self.ground());
-        if structure.one().is_some() {
-            let run = self.conditions.run(structure, &ground);
-            return Outcome::found(&run, self.measures, run.found(watch));
+    /// Does it, and finds how far it breaks the assumptions of the model.
+    pub fn outcome_and_findings(&self) -> (Outcome, Findings) {
+        let (outcome, findings) = self.follow(true);
+        (outcome, findings.expect("they were asked for"))
+    }
+
+    fn follow(&self, with_validity: bool) -> (Outcome, Option<Findings>) {
+        const CHECKED: &str = "the plan has been checked";
+        fn of<Q: Moves>(run: &Run<Q>, measures: &[Measure], with_validity: bool) -> (Outcome, Option<Findings>) {
+            if !with_validity {
+                return (Outcome::found(run, measures, run.found(&mut ())), None);
+            }
+            let mut validity = run.validity_watch(Limits::default()).expect(CHECKED);
+            (Outcome::found(run, measures, run.found(&mut validity)), Some(*validity.found()))
         }
-        let run = self.conditions.run_of_modes(structure, &ground).expect("the plan has been checked");
-        Outcome::found(&run, self.measures, run.found(watch))
+        let ground = self.ground();
+        match self.structure.of_one_mode() {
+            Some(structure) => {
+                let run = self.conditions.run_of_one_mode(structure, &ground).expect(CHECKED);
+                of(&run, self.measures, with_validity)
+            }
+            None => {
+                let run = self.conditions.run_of_modes(self.structure.clone(), &ground).expect(CHECKED);
+                of(&run, self.measures, with_validity)
+            }
+        }
     }
 
     /// The ground motion as it is scaled.
@@ -533,9 +562,7 @@ mod tests {
         let refused = limit("drift[4] >= 15 mm").unwrap_err().0;
         assert!(refused.starts_with("\"drift[4]\" is unknown; these are known: theta, uplift, V_t, M_t, u[1], u[2]"));
         let refused = Population::new("core", core(0.0)).vary("f_fc", vec![1.0]).unwrap_err().0;
-        assert!(
-            refused.starts_with("\"f_fc\" cannot vary in a building, whose storeys determine it: these can: m0, B")
-        );
+        assert!(refused.starts_with("\"f_fc\" cannot vary in a building, whose modes determine it: these can: m0, B"));
     }
 
     #[test]

@@ -11,7 +11,7 @@ use rocking::estimates::intensity::IntensityMeasure;
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::Ending;
 use rocking::run::record::Record;
-use rocking::run::validity::{ASSUMPTIONS, Findings, Limits, Validity};
+use rocking::run::validity::{ASSUMPTIONS, Findings};
 use serde::Serialize;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -152,16 +152,13 @@ impl<'a> Sweep<'a> {
     }
 
     fn run_with_validity(&self, index: usize) -> Done {
-        let case = self.plan.case(index);
-        let found = Findings::since(case.motion.record.start());
-        let mut validity = Validity::new(&case.structure, Limits::default(), found);
-        let outcome = case.outcome_watched(&mut validity);
+        let (outcome, findings) = self.plan.case(index).outcome_and_findings();
         if let Outcome::Failed { .. } = outcome {
             return Done { outcome, beyond: Box::default() };
         }
-        let Findings { worst, gains, settlings, .. } = validity.found();
+        let Findings { worst, gains, settlings, .. } = findings;
         let beyond = worst.iter().flat_map(|worst| [worst.value, worst.time]);
-        Done { outcome, beyond: beyond.chain([*gains as f64, *settlings as f64]).collect() }
+        Done { outcome, beyond: beyond.chain([gains as f64, settlings as f64]).collect() }
     }
 
     /// The row of a run that is done, without its key.
