@@ -357,7 +357,7 @@ def test_a_unit_that_is_far_off_is_doubted_before_a_run():
         with warnings.catch_warnings(record=True) as found:
             warnings.simplefilter("always")
             of_storeys(storeys=[of | {name: factor * of[name]} for of in STOREYS])
-        assert "far from the usual frequency" in str(found[0].message)
+        assert any("far from the usual frequency" in str(of.message) for of in found)
     squat = {"m0": FRAME.m0, "J0": FRAME.J0, "B": 20}
     with pytest.warns(UserWarning, match="B = 20 m is more than the height of the centre of gravity"):
         wide = fr.Structure(storeys=STOREYS, zeta=0.02, **squat)
