@@ -22,10 +22,11 @@ use crate::digits::with_unit;
 use crate::engine::piece::Sample;
 use crate::engine::{AdvanceError, DEFAULT_TOLERANCE, Moves, Settings};
 use crate::mechanics::lateral::Coordinates;
+use crate::mechanics::restraint;
 use crate::mechanics::state::InitialStateError;
 use crate::run::ground_motion::Segment;
 use crate::run::record::Record;
-use crate::{Base, Detail, Engine, LinearLoad, Load, Modes, Motion, Progress, State, Structure, Ties, Watch};
+use crate::{Detail, Dissipators, Engine, LinearLoad, Load, Modes, Motion, Progress, Side, State, Structure, Watch};
 use peaks::Peaks;
 use samples::Samples;
 use serde::{Deserialize, Serialize};
@@ -283,9 +284,9 @@ impl<Q: Moves, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
         let &Motion { time, work, .. } = self.engine.motion();
         let next = self.segments.next().map_or_else(|| self.come_to_rest(), |segment| Ok((segment, None)));
         if next.is_ok() && work.steps > MOST_STEPS {
-            let &Base { B, J_P, ties: Ties { k_t, xi_d, c_d, k_d, .. }, .. } = self.engine.structure().base();
-            let pair = 2.0 * (B * B + xi_d * xi_d);
-            let rate = (c_d * pair / J_P).max(((k_t * B * B + k_d * pair) / J_P).sqrt());
+            let base = self.engine.structure().base();
+            let ties = restraint::sum(&restraint::ties(base, Side::Right, &Dissipators::NEW), |tie| tie.lever);
+            let rate = (ties.damping / base.J_P).max((ties.stiffness / base.J_P).sqrt());
             return Err(RunError::TooManySteps { time, rate });
         }
         Ok(next)

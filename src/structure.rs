@@ -300,19 +300,21 @@ impl Structure {
             tan_alpha_cg: m_t * B / S_1,
             ties,
         };
-        let vibration = vibration(&base, modes);
-        let (modes, floors) = (modes.to_vec(), floors.to_vec());
-        Structure(Arc::new(Whole {
-            base,
-            body,
-            modes,
-            floors,
-            gauges,
-            vibration,
-            one: None,
-            of_mode: None,
-            reaches: Reaches::default(),
-        }))
+        Structure::made(base, body, modes.to_vec(), floors.to_vec(), gauges, vibration(&base, modes), None)
+    }
+
+    /// The structure of these numbers, and of one mass those of `one`.
+    fn made(
+        base: Base,
+        body: Body,
+        modes: Vec<Mode>,
+        floors: Vec<Floor>,
+        gauges: Gauges,
+        vibration: Vibration,
+        one: Option<OneMass>,
+    ) -> Structure {
+        let reaches = Reaches::default();
+        Structure(Arc::new(Whole { base, body, modes, floors, gauges, vibration, one, of_mode: one, reaches }))
     }
 
     /// This structure with its `count` modes of the lowest frequencies, or none. The mass of the others turns rigidly with the base.
@@ -328,20 +330,16 @@ impl Structure {
 
     /// This structure as the level `rigid` of one mass shows it: floors and gauges know no mode.
     pub(crate) fn shown_rigid(&self) -> Structure {
-        let Whole { base, body, vibration, one, of_mode, .. } = *self.0;
+        let Whole { base, body, ref modes, vibration, one, of_mode, .. } = *self.0;
         let floors = Vec::from_iter(self.0.floors.iter().map(|floor| Floor { shape: Modes::ZERO, ..*floor }));
-        let (gauges, modes) = (Gauges::new(&body, &[], &floors, ROUNDING), self.0.modes.clone());
-        Structure(Arc::new(Whole {
-            base,
-            body,
-            modes,
-            floors,
-            gauges,
-            vibration,
-            one,
-            of_mode,
-            reaches: Reaches::default(),
-        }))
+        let gauges = Gauges::new(&body, &[], &floors, ROUNDING);
+        Structure::made(base, body, modes.clone(), floors, gauges, vibration, one).moved_by(of_mode)
+    }
+
+    /// This structure, which nothing else shares yet, with the numbers of its mode as of one mass.
+    fn moved_by(self, of_mode: Option<OneMass>) -> Structure {
+        let whole = Arc::into_inner(self.0).expect("it has just been made");
+        Structure(Arc::new(Whole { of_mode, ..whole }))
     }
 
     fn with_lowest(&self, count: usize) -> Structure {
@@ -405,8 +403,7 @@ impl Structure {
         if let Some(one) = self.one() {
             return *one.parameters();
         }
-        let lowest = self.0.modes.iter().min_by(|a, b| a.omega().total_cmp(&b.omega()));
-        let [f_fc, zeta_fc] = lowest.map_or([f64::NAN; 2], |mode| [mode.omega() / TAU, mode.zeta()]);
+        let [f_fc, zeta_fc] = self.lowest().map_or([f64::NAN; 2], |mode| [mode.omega() / TAU, mode.zeta()]);
         self.0.body.over(Parameters { m: f64::NAN, H: f64::NAN, f_fc, zeta_fc, ..Parameters::EVISON })
     }
 
@@ -442,8 +439,8 @@ impl Structure {
         let (m, H, r) = (mode.mass, mode.height, self.0.body.r.unwrap_or(1.0));
         let of_mode = OneMass::new(Parameters { m, H, r, ..self.parameters() }).ok()?;
         let floor = |floor: &Floor| Floor { shape: floor.shape.times(share), ..*floor };
-        let Structure(whole) = Structure::of(self.0.body, &[mode], &Vec::from_iter(self.0.floors.iter().map(floor)));
-        Some(Structure(Arc::new(Whole { of_mode: Some(of_mode), ..Arc::into_inner(whole)? })))
+        let floors = Vec::from_iter(self.0.floors.iter().map(floor));
+        Some(Structure::of(self.0.body, &[mode], &floors).moved_by(Some(of_mode)))
     }
 
     /// The numbers of one mass of a structure that engines of one coordinate move.
@@ -473,6 +470,11 @@ impl Structure {
     #[inline(always)]
     pub fn modes(&self) -> &[Mode] {
         &self.0.modes
+    }
+
+    /// The mode of the lowest frequency in full contact.
+    pub(crate) fn lowest(&self) -> Option<&Mode> {
+        self.0.modes.iter().min_by(|a, b| a.omega().total_cmp(&b.omega()))
     }
 
     /// The gauges of the floors and of the base.
@@ -527,17 +529,7 @@ impl From<OneMass> for Structure {
         let (modes, floors) = (vec![mode], vec![Floor { mass: m, height: H, shape: Modes::new(&[1.0]) }]);
         let gauges = Gauges::new(&body, &modes, &floors, ROUNDING);
         let vibration = Vibration { contact: one.omega_fc, rocking: [one.omega_u; 2] };
-        Structure(Arc::new(Whole {
-            base,
-            body,
-            modes,
-            floors,
-            gauges,
-            vibration,
-            one: Some(one),
-            of_mode: Some(one),
-            reaches: Reaches::default(),
-        }))
+        Structure::made(base, body, modes, floors, gauges, vibration, Some(one))
     }
 }
 

@@ -3,7 +3,7 @@
 use fmi_unit::Logger;
 use rocking::engine::Moves;
 use rocking::run::validity::{ASSUMPTIONS, Findings, Limits};
-use rocking::{Side, Structure, Transition, TransitionKind};
+use rocking::{Side, Transition, TransitionKind};
 
 /// Warns of the limits that `found` is beyond and `known`, found before, was not.
 pub(crate) fn warn(logger: &Logger, known: &Findings, found: &Findings) {
@@ -15,13 +15,13 @@ pub(crate) fn warn(logger: &Logger, known: &Findings, found: &Findings) {
 }
 
 /// An event; where contact is held by force, which is not the model's, a warning.
-pub(crate) fn log<Q: Moves>(logger: &Logger, structure: &Structure, transition: &Transition<Q>) {
+pub(crate) fn log<Q: Moves>(logger: &Logger, is_one_mass: bool, transition: &Transition<Q>) {
     match transition.kind {
         TransitionKind::Settling => logger.warning(&format!(
             "{}; too many transitions within one vibration period: contact is held for the rest of it",
-            describe(structure, transition)
+            describe(is_one_mass, transition)
         )),
-        _ => logger.event(|| describe(structure, transition)),
+        _ => logger.event(|| describe(is_one_mass, transition)),
     }
 }
 
@@ -36,7 +36,7 @@ pub(crate) fn warn_of_stairs(logger: &Logger, time: f64) {
     ));
 }
 
-fn describe<Q: Moves>(structure: &Structure, transition: &Transition<Q>) -> String {
+fn describe<Q: Moves>(is_one_mass: bool, transition: &Transition<Q>) -> String {
     let Transition { time, kind, before, after } = transition;
     let side = |side| if side == Side::Left { "left" } else { "right" };
     let what = match *kind {
@@ -46,7 +46,7 @@ fn describe<Q: Moves>(structure: &Structure, transition: &Transition<Q>) -> Stri
         TransitionKind::Overturning(pivot) => format!("overturning about the {} edge", side(pivot)),
         kind @ (TransitionKind::Yielding(_) | TransitionKind::Unloading(_)) => kind.name().to_owned(),
     };
-    let of_one = structure.one().map(|_| {
+    let of_one = is_one_mass.then(|| {
         let [u, u_dot, u_dot_before] = [after.u, after.u_dot, before.u_dot].map(|of| of.of(0));
         format!("u = {u} m, u_dot = {u_dot} m/s (before: {u_dot_before}), ")
     });
@@ -61,7 +61,7 @@ fn describe<Q: Moves>(structure: &Structure, transition: &Transition<Q>) -> Stri
 mod tests {
     use super::*;
     use fmi_unit::logger::Status;
-    use rocking::{Parameters, State};
+    use rocking::State;
     use std::cell::RefCell;
     use std::rc::Rc;
 
@@ -73,11 +73,10 @@ mod tests {
             let sent = Rc::clone(&sent);
             move |status, category, text| sent.borrow_mut().push((status, category.to_owned(), text.to_owned()))
         }));
-        let structure = Structure::new(Parameters::EVISON).unwrap();
         let before = State { u: 0.001, u_dot: 0.25, theta: 0.0, theta_dot: -0.5 };
         let after = State { u_dot: -0.75, theta_dot: 0.0, ..before };
-        log(&logger, &structure, &Transition { time: 1.5, kind: TransitionKind::Landing, before, after });
-        log(&logger, &structure, &Transition { time: 2.5, kind: TransitionKind::Settling, before, after });
+        log(&logger, true, &Transition { time: 1.5, kind: TransitionKind::Landing, before, after });
+        log(&logger, true, &Transition { time: 2.5, kind: TransitionKind::Settling, before, after });
         let text = "t = 2.5 s: landing in full contact; u = 0.001 m, u_dot = -0.75 m/s (before: 0.25), theta_dot = 0 \
                      rad/s (before: -0.5); too many transitions within one vibration period: contact is held for the \
                      rest of it";

@@ -124,8 +124,8 @@ impl<Q: Moves> Scene<Q> {
         let mut passed: Vec<Transition<Q>> = Vec::new();
         let Checked { motion, was_hidden, .. } =
             self.check(setup, &outside.known, outside.arrived, &mut |transition| passed.push(*transition))?;
-        let (host, structure) = (*self.engine.motion(), self.engine.structure().clone());
-        passed.iter().for_each(|transition| log(logger, &structure, transition));
+        let (host, is_one_mass) = (*self.engine.motion(), self.is_one_mass());
+        passed.iter().for_each(|transition| log(logger, is_one_mass, transition));
         if was_hidden {
             logger.event(|| {
                 format!(
@@ -137,7 +137,7 @@ impl<Q: Moves> Scene<Q> {
         }
         self.engine.set_motion(motion);
         let acting = self.acting(setup, load);
-        let told: &mut Told<Q> = &mut |transition| log(logger, &structure, transition);
+        let told: &mut Told<Q> = &mut |transition| log(logger, is_one_mass, transition);
         self.engine.lift_off_if_due(acting, &mut &mut *told);
         let motion = *self.engine.motion();
         let known = Checkpoint { motion, elapsed: self.elapsed, load };

@@ -94,6 +94,11 @@ impl<Q: Moves> Scene<Q> {
         Ok(())
     }
 
+    /// Whether the structure has the names of one mass.
+    pub fn is_one_mass(&self) -> bool {
+        self.engine.structure().one().is_some()
+    }
+
     /// The numbers of a `state`, in the order of the table.
     pub fn components(&self, state: &State<Q>) -> Vec<f64> {
         let of = |coordinates: Q| (0..self.lateral).map(move |j| coordinates.of(j));

@@ -306,8 +306,8 @@ impl<Q: Moves> Model for Unit<Q> {
             scene.set(|settings| settings.stops = stops)?;
         }
         let known = setup.validity.then_some(scene.validity);
-        let structure = scene.engine.structure().clone();
-        let told: &mut Told<Q> = &mut |transition| log(logger, &structure, transition);
+        let is_one_mass = scene.is_one_mass();
+        let told: &mut Told<Q> = &mut |transition| log(logger, is_one_mass, transition);
         let result = if stops {
             scene.advance_to_transition(setup, step, load, told)
         } else {
@@ -343,8 +343,8 @@ impl<Q: Moves> Model for Unit<Q> {
         }
         let known = setup.validity.then_some(scene.validity);
         let load = inputs.values(scene.engine.structure());
-        let structure = scene.engine.structure().clone();
-        scene.transit(setup, load, &mut |transition| log(logger, &structure, transition));
+        let is_one_mass = scene.is_one_mass();
+        scene.transit(setup, load, &mut |transition| log(logger, is_one_mass, transition));
         known.iter().for_each(|known| warn(logger, known, &scene.validity));
         Ok(Update::default())
     }

@@ -114,9 +114,7 @@ impl<Q: Moves> Sample<'_, Q> {
         let chord = self.level.subject().angles.chord(state.theta, state.theta_dot);
         Restraint::about(self.level.structure().base(), phase.side(), dissipators).forces(&chord)
     }
-}
 
-impl<Q: Moves> Sample<'_, Q> {
     /// The value of `output`; once overturned, the value of the instant before.
     pub fn output(&self, output: Output) -> f64 {
         output.of(&self.shown())
@@ -268,9 +266,7 @@ impl<'a, Q: Moves> Part<'a, Q> {
     pub(crate) fn arcs(&self) -> Arcs<'a, Q> {
         Arcs { begin: self.start.0, left: Some(*self), arc: None, room: self.piece.room, evaluations: 0 }
     }
-}
 
-impl<'a, Q: Moves> Part<'a, Q> {
     /// Bounds of the magnitudes over this part.
     pub(crate) fn most(&self) -> Magnitudes<'a, Q> {
         let loads = [self.start.0, self.end.0].map(|tau| self.piece.load.at(tau));

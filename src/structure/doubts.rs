@@ -54,8 +54,7 @@ impl Structure {
         // of mass that is spread evenly over the height
         let of_floors = self.floors().iter().map(|floor| floor.height).reduce(f64::max);
         let height = of_floors.unwrap_or(2.0 * body.S_1 / body.m_s);
-        let lowest = self.modes().iter().min_by(|a, b| a.omega().total_cmp(&b.omega()));
-        let Some((mode, f)) = lowest.map(|mode| (mode, mode.omega() / TAU)) else { return doubts };
+        let Some((mode, f)) = self.lowest().map(|mode| (mode, mode.omega() / TAU)) else { return doubts };
         let usual = USUAL_SPEED / height;
         let (height, area) = (short(height), 2.0 * B * height);
         if (f / usual).max(usual / f) > UNUSUAL[usize::from(self.one().is_some())] {
