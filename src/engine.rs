@@ -191,10 +191,14 @@ pub trait Moves: Coordinates {
     /// The load on `structure` of the ground accelerations `a_g` and `a_v` (m/s²) and of a horizontal force on each floor (N).
     fn load(structure: &Structure, a_g: f64, a_v: f64, forces: impl Iterator<Item = f64>) -> Load<Self>;
 
-    /// Advances with a level by its type: each gets a loop of its own, so that nothing stands between the loop and the level's
-    /// equations.
+    /// The state after `interval` (s) of `motion` under `load`, if it is known exactly and no transition can happen until then.
     #[doc(hidden)]
-    fn advance<W: Watch<Self>>(level: &Self::Level, task: Task<'_, Self, W>) -> Result<Progress, AdvanceError>;
+    fn leap(level: &Self::Level, motion: &Motion<Self>, interval: f64, load: LinearLoad<Self>) -> Option<State<Self>>;
+
+    /// Advances with a level by its type: each gets a loop of its own, so that nothing stands between the loop and the level's
+    /// equations. The loop is no generic function, or every crate that follows runs would compile one.
+    #[doc(hidden)]
+    fn go(level: &Self::Level, task: Task<'_, Self>) -> Result<Progress, AdvanceError>;
 }
 
 impl Moves for f64 {
@@ -219,8 +223,12 @@ impl Moves for f64 {
     }
 
     #[inline(always)]
-    fn advance<W: Watch>(any: &AnyLevel, task: Task<'_, f64, W>) -> Result<Progress, AdvanceError> {
-        by_level!(any, level => task.with(any, level))
+    fn leap(any: &AnyLevel, motion: &Motion, interval: f64, load: LinearLoad) -> Option<State> {
+        by_level!(any, level => leap_under(level, motion, interval, load))
+    }
+
+    fn go(any: &AnyLevel, task: Task<'_, f64>) -> Result<Progress, AdvanceError> {
+        by_level!(any, level => task.go(any, level))
     }
 }
 
@@ -273,8 +281,18 @@ impl Moves for Modes {
         structure.load_of(a_g, a_v, forces)
     }
 
-    fn advance<W: Watch<Modes>>(any: &LevelOfModes, task: Task<'_, Modes, W>) -> Result<Progress, AdvanceError> {
-        task.with(any, &any.0)
+    #[inline(always)]
+    fn leap(
+        any: &LevelOfModes,
+        motion: &Motion<Modes>,
+        interval: f64,
+        load: LinearLoad<Modes>,
+    ) -> Option<State<Modes>> {
+        leap_under(&any.0, motion, interval, load)
+    }
+
+    fn go(any: &LevelOfModes, task: Task<'_, Modes>) -> Result<Progress, AdvanceError> {
+        task.go(any, &any.0)
     }
 }
 
@@ -484,7 +502,7 @@ impl<Q: Moves> Engine<Q> {
     }
 
     /// Applies the transition that is due, if there is one, and shows it to `watch`.
-    pub fn transit<W: Watch<Q>>(&mut self, watch: &mut W) {
+    pub fn transit<W: Watch<Q> + ?Sized>(&mut self, watch: &mut W) {
         let watched = phases::of(self.level.structure(), &self.motion);
         if let Some(transition) = transit(&**self.level, watched, &mut self.motion) {
             watch.transition(&transition);
@@ -518,8 +536,17 @@ impl<Q: Moves> Engine<Q> {
             self.transit(watch);
         }
         let &mut Engine { ref level, settings: Settings { stops, .. }, ref mut motion, ref mut arc, ref room } = self;
-        let task = Task { motion, arc, room, before: &mut before, interval, load, watch, last_step, stops };
-        let result = Q::advance(level, task);
+        // most advances are one leap
+        let end = (motion.work.steps != last_step).then(|| Q::leap(level, motion, interval, load)).flatten();
+        let result = match end {
+            Some(end) => leapt((&**level, room), motion, interval, load, end, watch).map(|()| {
+                motion.time += interval;
+                Progress::Complete
+            }),
+            None => {
+                Q::go(level, Task { motion, arc, room, before: &mut before, interval, load, watch, last_step, stops })
+            }
+        };
         if let (Err(_), Some(before)) = (&result, before) {
             self.motion = before;
         }
@@ -604,9 +631,20 @@ fn leap<Q: Moves>(level: &impl Level<Q>, motion: &Motion<Q>, start: &Start<Q>) -
     level.leap(motion.phase, start).filter(State::is_finite)
 }
 
+/// The state after `interval` (s) of `motion` under `load`, like [`leap`].
+#[inline(always)]
+fn leap_under<Q: Moves>(
+    level: &impl Level<Q>,
+    motion: &Motion<Q>,
+    interval: f64,
+    load: LinearLoad<Q>,
+) -> Option<State<Q>> {
+    leap(level, motion, &level.subject().start(motion.state, &motion.dissipators, load, interval))
+}
+
 /// Takes `motion`, all but its time, over a leap to the state `end`. Fails if watchers need too many polynomials of the leap.
 #[inline(always)]
-fn leapt<Q: Moves, W: Watch<Q>>(
+fn leapt<Q: Moves, W: Watch<Q> + ?Sized>(
     (level, room): (&Q::Level, &Room<Q>),
     motion: &mut Motion<Q>,
     duration: f64,
@@ -614,7 +652,7 @@ fn leapt<Q: Moves, W: Watch<Q>>(
     end: State<Q>,
     watch: &mut W,
 ) -> Result<(), AdvanceError> {
-    if W::SEES_PIECES {
+    if watch.sees_pieces() {
         room.left.set(MOST_POLYNOMIALS);
         watch.piece(&Piece { before: motion, duration, load, end, level, arc: None, room });
         if room.left.get() == 0 {
@@ -629,33 +667,22 @@ fn leapt<Q: Moves, W: Watch<Q>>(
 
 /// One advance.
 #[doc(hidden)]
-#[derive(Debug)]
-pub struct Task<'a, Q: Moves, W> {
+pub struct Task<'a, Q: Moves> {
     motion: &'a mut Motion<Q>,
     arc: &'a mut Arc<Q>,
     room: &'a Room<Q>,
     before: &'a mut Option<Motion<Q>>,
     interval: f64,
     load: LinearLoad<Q>,
-    watch: &'a mut W,
+    watch: &'a mut dyn Watch<Q>,
     last_step: u64,
     stops: bool,
 }
 
-impl<Q: Moves, W: Watch<Q>> Task<'_, Q, W> {
-    /// Advances with `level`, which is `any` by its type.
-    #[inline(always)]
-    fn with<L: Level<Q>>(self, any: &Q::Level, level: &L) -> Result<Progress, AdvanceError> {
+impl<Q: Moves> Task<'_, Q> {
+    /// Advances step by step with `level`, which is `any` by its type.
+    fn go<L: Level<Q>>(self, any: &Q::Level, level: &L) -> Result<Progress, AdvanceError> {
         let Task { motion, arc, room, before, interval, load, watch, last_step, stops } = self;
-        let start = level.subject().start(motion.state, &motion.dissipators, load, interval);
-        // most advances are one leap
-        if motion.work.steps != last_step
-            && let Some(end) = leap(level, motion, &start)
-        {
-            leapt((any, room), motion, interval, load, end, watch)?;
-            motion.time += interval;
-            return Ok(Progress::Complete);
-        }
         let phases = |motion: &Motion<Q>| phases::of::<Q>(level.structure(), motion);
         let expand = |phase: Phase, start: &Start<Q>, arc: &mut Arc<Q>| {
             level.series(phase, start, arc);
@@ -738,12 +765,12 @@ where
     /// interval is taken in parts, each twice as long as the one before, until the rest is one leap. The motion `before` the first
     /// change is kept: an advance that fails changes nothing. Returns none where a series is not there yet.
     #[inline(never)]
-    fn go<W: Watch<Q>>(
+    fn go(
         &mut self,
         motion: &mut Motion<Q>,
         before: &mut Option<Motion<Q>>,
         on_the_way: &mut Advance<Q>,
-        watch: &mut W,
+        watch: &mut dyn Watch<Q>,
     ) -> Result<Option<Progress>, AdvanceError> {
         let level = self.level;
         let mut advance = *on_the_way; // in registers
@@ -807,7 +834,7 @@ where
             motion.work.evaluations += self.arc.order as u64;
             let state = self.arc.end();
             // a step without duration, as in contact if uplift is due at once, is no motion
-            if W::SEES_PIECES && duration > 0.0 {
+            if watch.sees_pieces() && duration > 0.0 {
                 let (load, arc) = (load.from(elapsed), Some(&*self.arc));
                 let &mut Loop { any: level, room, .. } = self;
                 watch.piece(&Piece { before: motion, duration, load, end: state, level, arc, room });

@@ -27,11 +27,15 @@ use crate::mechanics::state::InitialStateError;
 use crate::run::ground_motion::Segment;
 use crate::run::record::Record;
 use crate::{Detail, Dissipators, Engine, LinearLoad, Load, Modes, Motion, Progress, Side, State, Structure, Watch};
+use curve::Curve;
+use fall::Found;
+use levels::Comparison;
 use peaks::Peaks;
 use samples::Samples;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::fmt;
+use validity::Validity;
 
 /// For how long a structure may rock on after its record, in units of 1/p_l: amplitudes change by e^±1 in each.
 pub const LONGEST_REST: f64 = 100.0;
@@ -185,7 +189,7 @@ impl<'a> Run<'a, Modes> {
     }
 }
 
-impl<'a, Q: Moves> Run<'a, Q> {
+impl<'a, Q: Runs> Run<'a, Q> {
     /// The same structure on a fixed base, from rest under the same ground motion until `end` (s).
     pub fn on_fixed_base(&self, end: f64) -> Run<'a, Q> {
         let u = Q::parts(&self.structure, 0.0);
@@ -194,8 +198,8 @@ impl<'a, Q: Moves> Run<'a, Q> {
     }
 
     /// Follows the motion to the end.
-    pub fn follow<W: Watch<Q>>(&self, watch: &mut W) -> Result<Finish<Q>, RunError> {
-        let (ending, engine) = self.course()?.finish(watch)?;
+    pub fn follow(&self, watch: &mut dyn Watch<Q>) -> Result<Finish<Q>, RunError> {
+        let (ending, engine) = Q::finish(self, watch)?;
         Ok(Finish { ending, motion: *engine.motion() })
     }
 
@@ -224,15 +228,15 @@ impl<'a, Q: Moves> Run<'a, Q> {
 
     /// Follows the motion to the end and shows it at `times` (s), which rise; those before the start and after the end
     /// are left out, and the end itself is shown last. The samples are read from the pieces and change nothing.
-    pub fn sample<W: Watch<Q>>(
+    pub fn sample(
         &self,
         times: impl IntoIterator<Item = f64>,
         show: impl FnMut(&Sample<Q>),
-        watch: &mut W,
+        watch: &mut dyn Watch<Q>,
     ) -> Result<Finish<Q>, RunError> {
         let start = self.ground.start();
         let mut samples = Samples::new(times.into_iter().filter(|time| *time >= start), show);
-        let (ending, engine) = self.course()?.finish(&mut (&mut *watch, &mut samples))?;
+        let (ending, engine) = Q::finish(self, &mut (watch, &mut samples))?;
         samples.end(&engine);
         Ok(Finish { ending, motion: *engine.motion() })
     }
@@ -244,6 +248,72 @@ impl<'a, Q: Moves> Run<'a, Q> {
         Ok((peaks, finish))
     }
 }
+
+/// Coordinates for which this crate compiles all that follows a run, so that no crate that asks for runs compiles it again.
+pub trait Runs: Moves {
+    /// Follows `run` to the end.
+    #[doc(hidden)]
+    fn finish(run: &Run<Self>, watch: &mut dyn Watch<Self>) -> Result<(Ending, Engine<Self>), RunError>;
+
+    /// See [`Run::found`]; also the peaks of all the motion, including a fall.
+    #[doc(hidden)]
+    fn found(run: &Run<Self>, watch: &mut dyn Watch<Self>) -> Result<(Found<Self>, Peaks), RunError>;
+
+    /// See [`Run::judged`].
+    #[doc(hidden)]
+    fn judged(run: &Run<Self>, validity: &mut Validity, watch: &mut dyn Watch<Self>) -> Result<Found<Self>, RunError>;
+
+    /// See [`Run::judge`].
+    #[doc(hidden)]
+    fn judge(run: &Run<Self>, validity: &mut Validity, watch: &mut dyn Watch<Self>) -> Result<Finish<Self>, RunError>;
+
+    /// See [`Run::curve`].
+    #[doc(hidden)]
+    fn curve(run: &Run<Self>, part: f64) -> Result<Curve<Self>, RunError>;
+
+    /// See [`levels::compare`].
+    #[doc(hidden)]
+    fn compare(run: &Run<Self>) -> Result<Comparison, RunError>;
+}
+
+macro_rules! runs {
+    ($($of:ty),*) => {$(
+        impl Runs for $of {
+            fn finish(run: &Run<Self>, watch: &mut dyn Watch<Self>) -> Result<(Ending, Engine<Self>), RunError> {
+                run.course()?.finish(&mut (&mut (), watch))
+            }
+
+            fn found(run: &Run<Self>, watch: &mut dyn Watch<Self>) -> Result<(Found<Self>, Peaks), RunError> {
+                fall::find(run, watch)
+            }
+
+            fn judged(
+                run: &Run<Self>,
+                validity: &mut Validity,
+                watch: &mut dyn Watch<Self>,
+            ) -> Result<Found<Self>, RunError> {
+                Ok(fall::find(run, &mut (validity, watch))?.0)
+            }
+
+            fn judge(
+                run: &Run<Self>,
+                validity: &mut Validity,
+                watch: &mut dyn Watch<Self>,
+            ) -> Result<Finish<Self>, RunError> {
+                run.follow(&mut (validity, watch))
+            }
+
+            fn curve(run: &Run<Self>, part: f64) -> Result<Curve<Self>, RunError> {
+                curve::trace(run, part)
+            }
+
+            fn compare(run: &Run<Self>) -> Result<Comparison, RunError> {
+                levels::compare_levels(run)
+            }
+        }
+    )*};
+}
+runs!(f64, Modes);
 
 /// A run on its way, segment by segment: from sample to sample of its record, and then for 1/p_l each until nothing more can
 /// happen.

@@ -22,8 +22,6 @@ pub struct Watching<'a, 'b, Q: Moves> {
 }
 
 impl<Q: Moves> Watch<Q> for Watching<'_, '_, Q> {
-    const SEES_PIECES: bool = true;
-
     fn piece(&mut self, piece: &Piece<Q>) {
         self.peaks.iter_mut().for_each(|peaks| peaks.piece(piece));
         self.validity.iter_mut().for_each(|validity| validity.piece(piece));

@@ -17,8 +17,9 @@
 //! | `setup`, `inputs` | what is set before the start and during the simulation |
 //! | [`ground`], [`resources`] | records; what the archive carries |
 //!
-//! In a browser no host calls C functions: the table of variables alone is used there.
-#![cfg_attr(target_family = "wasm", allow(dead_code))]
+//! In a browser no host calls C functions: the table of variables alone is used there. The tests of this crate's own files do without,
+//! too, and need not wait for the engine to be compiled.
+#![cfg_attr(any(target_family = "wasm", test), allow(dead_code))]
 #![allow(non_snake_case)] // the shared library's name
 
 mod advance;
@@ -40,7 +41,7 @@ pub mod variables;
 use resources::{Contents, FrameNumbers};
 use uuid::Uuid;
 
-#[cfg(not(target_family = "wasm"))]
+#[cfg(not(any(target_family = "wasm", test)))]
 fmi_unit::export_fmu!(any::AnyUnit);
 
 /// Names the build: all that enters the library.

@@ -32,8 +32,6 @@ impl Watcher for Abandoned {
 }
 
 impl<Q: Moves> Watch<Q> for Abandoned {
-    const SEES_PIECES: bool = true;
-
     fn piece(&mut self, _: &Piece<Q>) {
         self.check();
     }

@@ -5,11 +5,11 @@ use crate::quantities::{Number, of_motion};
 use crate::run::{NamedPeak, Run, symbol, with};
 use rocking::Detail;
 use rocking::digits::{short, significant};
-use rocking::engine::{DEFAULT_TOLERANCE, Moves, motion::Work};
+use rocking::engine::{DEFAULT_TOLERANCE, motion::Work};
 use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::run::levels::{self, Choice, Criterion, REFERENCE_TOLERANCE, RULE, Response, Verdict};
-use rocking::run::{LONGEST_REST, RunError, validity::Limits};
+use rocking::run::{LONGEST_REST, RunError, Runs, validity::Limits};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};
@@ -66,7 +66,7 @@ pub struct Level {
 }
 
 /// All levels of detail on `run`, each beside the reference.
-fn compare<Q: Moves>(run: &rocking::Run<Q>, (within, criteria): (f64, &[Criterion])) -> Result<Advice, RunError> {
+fn compare<Q: Runs>(run: &rocking::Run<Q>, (within, criteria): (f64, &[Criterion])) -> Result<Advice, RunError> {
     let all = levels::compare(run)?;
     let advised = all.recommended(within, criteria).map(|verdict| verdict.response.choice);
     let level = |level, response: &Response, errors, is_right_about_overturning, is_allowed| Level {

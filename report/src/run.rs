@@ -2,7 +2,6 @@
 
 use crate::tables::{TIES, line};
 use anyhow::ensure;
-use rocking::engine::Moves;
 use rocking::engine::motion::Work;
 use rocking::estimates::response_spectrum::floor_spectrum;
 use rocking::mechanics::restraint::Dissipators;
@@ -10,7 +9,7 @@ use rocking::run::curve;
 use rocking::run::peaks::{Peak, Peaking, Peaks};
 use rocking::run::record::Record;
 use rocking::run::validity::{self, Findings, Limits};
-use rocking::run::{End, Ending, Finish, RunError, fall};
+use rocking::run::{End, Ending, Finish, RunError, Runs, fall};
 use rocking::{Modes, Output, Phase, Run as Follow, Side, State, Structure, Ties, Transition, TransitionKind, Watch};
 use rocking_sweep::plan::Conditions;
 use serde::Serialize;
@@ -181,7 +180,7 @@ impl Run {
     pub fn validity(&self, limits: Limits, watch: &mut impl Watcher) -> Result<Findings, RunError> {
         with!(self, run => {
             let mut validity = run.validity_watch(limits)?;
-            run.follow(&mut (watch, &mut validity))?;
+            run.judge(&mut validity, watch)?;
             Ok(*validity.found())
         })
     }
@@ -314,18 +313,18 @@ pub(crate) fn symbol(name: &str) -> &str {
 }
 
 /// The results of `run`.
-fn found<Q: Moves>(run: &Follow<Q>, limits: Option<Limits>, watch: &mut impl Watch<Q>) -> Result<Found, RunError> {
+fn found<Q: Runs>(run: &Follow<Q>, limits: Option<Limits>, watch: &mut dyn Watch<Q>) -> Result<Found, RunError> {
     let mut transitions = Vec::new();
     let mut see = |transition: &Transition<Q>| transitions.push(*transition);
     let mut validity = limits.map(|limits| run.validity_watch(limits)).transpose()?;
     let found = match &mut validity {
-        Some(validity) => run.found(&mut (watch, &mut (validity, &mut see)))?,
+        Some(validity) => run.judged(validity, &mut (watch, &mut see))?,
         None => run.found(&mut (watch, &mut see))?,
     };
     Ok(Found { findings: validity.map(|of| *of.found()), ..results(&run.structure, &found, &transitions) })
 }
 
-fn results<Q: Moves>(structure: &Structure, found: &fall::Found<Q>, transitions: &[Transition<Q>]) -> Found {
+fn results<Q: Runs>(structure: &Structure, found: &fall::Found<Q>, transitions: &[Transition<Q>]) -> Found {
     let &fall::Found { ground, ref peaks, fall, start, finish: Finish { ending, ref motion } } = found;
     let floors = |of: &Q| Vec::from_iter(structure.floors().iter().map(|floor| floor.displacement(of)));
     let state = |of: &State<Q>| [floors(&of.u), floors(&of.u_dot), vec![of.theta, of.theta_dot]].concat();
@@ -357,7 +356,7 @@ fn results<Q: Moves>(structure: &Structure, found: &fall::Found<Q>, transitions:
     }
 }
 
-fn curve<Q: Moves>(run: &Follow<Q>, part: f64) -> Result<Curve, RunError> {
+fn curve<Q: Runs>(run: &Follow<Q>, part: f64) -> Result<Curve, RunError> {
     let curve::Curve { points, transitions, found } = run.curve(part)?;
     let mut columns = vec![("a_g".to_owned(), points.iter().map(|at| at.a_g).collect())];
     for (i, output) in curve::drawn(&run.structure).into_iter().enumerate() {

@@ -85,12 +85,12 @@ impl Engine {
     /// Goes on with `advance` to its end, or to a step of rocking, which `step` becomes; without a `step` to its end. The engine has
     /// the next series already if the series `is_expanded`.
     #[inline(always)]
-    pub(crate) fn go_on<W: Watch>(
+    pub(crate) fn go_on(
         &mut self,
         advance: &mut Advance<f64>,
         mut is_expanded: bool,
         mut step: Option<&mut RockingStep>,
-        watch: &mut W,
+        watch: &mut dyn Watch,
     ) -> Result<Option<Progress>, AdvanceError> {
         let Engine { level, motion, arc, room, settings: Settings { stops, .. } } = self;
         let any = &**level;

@@ -24,7 +24,9 @@ use std::f64::consts::TAU;
 /// Watches a motion go by.
 pub trait Watch<Q: Moves = f64> {
     /// Whether the watcher looks at pieces. If not, the engine makes none for it.
-    const SEES_PIECES: bool;
+    fn sees_pieces(&self) -> bool {
+        true
+    }
 
     /// Sees the next piece.
     #[inline]
@@ -37,12 +39,16 @@ pub trait Watch<Q: Moves = f64> {
 
 /// The watcher that ignores pieces and transitions.
 impl<Q: Moves> Watch<Q> for () {
-    const SEES_PIECES: bool = false;
+    fn sees_pieces(&self) -> bool {
+        false
+    }
 }
 
 /// A watcher of transitions only.
 impl<Q: Moves, F: FnMut(&Transition<Q>)> Watch<Q> for F {
-    const SEES_PIECES: bool = false;
+    fn sees_pieces(&self) -> bool {
+        false
+    }
 
     fn transition(&mut self, transition: &Transition<Q>) {
         self(transition);
@@ -50,17 +56,14 @@ impl<Q: Moves, F: FnMut(&Transition<Q>)> Watch<Q> for F {
 }
 
 /// Two watchers of the same motion.
-impl<Q: Moves, A: Watch<Q>, B: Watch<Q>> Watch<Q> for (&mut A, &mut B) {
-    const SEES_PIECES: bool = A::SEES_PIECES || B::SEES_PIECES;
+impl<Q: Moves, A: Watch<Q> + ?Sized, B: Watch<Q> + ?Sized> Watch<Q> for (&mut A, &mut B) {
+    fn sees_pieces(&self) -> bool {
+        self.0.sees_pieces() || self.1.sees_pieces()
+    }
 
-    #[inline]
     fn piece(&mut self, piece: &Piece<Q>) {
-        if A::SEES_PIECES {
-            self.0.piece(piece);
-        }
-        if B::SEES_PIECES {
-            self.1.piece(piece);
-        }
+        self.0.piece(piece);
+        self.1.piece(piece);
     }
 
     fn transition(&mut self, transition: &Transition<Q>) {

@@ -19,12 +19,11 @@
 //! peak between samples is exact, too. |ü + a_g| is largest at a sample or at a zero of its rate b + ẅ. The zeros of the slope of
 //! this rate have a closed form, and between two of them the rate passes 0 at most once.
 
-use crate::engine::Moves;
 use crate::engine::piece::{Sample, Watch};
 use crate::levels::oscillator::Oscillator;
 use crate::run::ground_motion::Segment;
 use crate::run::record::{Record, SamplesError};
-use crate::run::{End, Run, RunError};
+use crate::run::{End, Run, RunError, Runs};
 use crate::series::bisection::last_where;
 use crate::structure::quantity::OutOfRange;
 use nalgebra::{Matrix2, Vector2};
@@ -64,13 +63,13 @@ pub enum FloorSpectrumError {
 ///
 /// The acceleration is sampled and linear between samples. The step is at first the mean step of the ground motion. It is halved until
 /// no S_a changes by more than 1e-3 of itself, which estimates the error and does not bound it.
-pub fn floor_spectrum<Q: Moves>(
+pub fn floor_spectrum<Q: Runs>(
     run: &Run<Q>,
     end: f64,
     acceleration: impl Fn(&Sample<Q>) -> f64,
     periods: &[f64],
     zeta: f64,
-    watch: &mut impl Watch<Q>,
+    watch: &mut dyn Watch<Q>,
 ) -> Result<Vec<f64>, FloorSpectrumError> {
     let (start, ground) = (run.ground.start(), run.ground);
     let run = Run { end: End::At(end), ..run.clone() };

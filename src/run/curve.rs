@@ -5,7 +5,7 @@
 
 use super::fall::Found;
 use super::peaks::{Peak, Peaks};
-use super::{Run, RunError};
+use super::{Run, RunError, Runs};
 use crate::engine::Moves;
 use crate::engine::piece::{Piece, Sample, Watch};
 use crate::mechanics::restraint::Restraints;
@@ -74,32 +74,36 @@ pub struct Curve<Q: Moves = f64> {
     pub found: Found<Q>,
 }
 
-impl<Q: Moves> Run<'_, Q> {
+impl<Q: Runs> Run<'_, Q> {
     /// The run as points between which θ, u and a_t of each floor leave straight lines by at most `part` of their peaks; the
     /// ground acceleration does not leave them at all. Refuses a run that takes more points than fit in 130 MB.
     pub fn curve(&self, part: f64) -> Result<Curve<Q>, RunError> {
-        let (found, peaks) = self.found_and_all(&mut ())?;
-        let (lines, drawn, a_g) = (lines(&self.structure), drawn(&self.structure), peaks.a_g());
-        let peaks = Vec::from_iter(peaks_of(&lines, &peaks));
-        let mut tracer = Tracer {
-            within: peaks.iter().map(|peak| part * peak.magnitude).collect(),
-            exact: [a_g].iter().chain(&peaks).map(|peak| peak.time).collect(),
-            pga: a_g.magnitude,
-            most: 10 * MOST_POINTS / (7 + peaks.len()),
-            lines,
-            drawn,
-            is_restrained: self.structure.base().is_restrained(),
-            points: Vec::new(),
-            transitions: Vec::new(),
-            is_torn: true,
-        };
-        self.follow(&mut tracer)?;
-        let Tracer { points, transitions, most, .. } = tracer;
-        if points.len() > most {
-            return Err(RunError::TooManyPoints { most, time: points[most - 1].time });
-        }
-        Ok(Curve { points, transitions, found })
+        Q::curve(self, part)
     }
+}
+
+pub(super) fn trace<Q: Runs>(run: &Run<Q>, part: f64) -> Result<Curve<Q>, RunError> {
+    let (found, peaks) = Q::found(run, &mut ())?;
+    let (lines, drawn, a_g) = (lines(&run.structure), drawn(&run.structure), peaks.a_g());
+    let peaks = Vec::from_iter(peaks_of(&lines, &peaks));
+    let mut tracer = Tracer {
+        within: peaks.iter().map(|peak| part * peak.magnitude).collect(),
+        exact: [a_g].iter().chain(&peaks).map(|peak| peak.time).collect(),
+        pga: a_g.magnitude,
+        most: 10 * MOST_POINTS / (7 + peaks.len()),
+        lines,
+        drawn,
+        is_restrained: run.structure.base().is_restrained(),
+        points: Vec::new(),
+        transitions: Vec::new(),
+        is_torn: true,
+    };
+    run.follow(&mut tracer)?;
+    let Tracer { points, transitions, most, .. } = tracer;
+    if points.len() > most {
+        return Err(RunError::TooManyPoints { most, time: points[most - 1].time });
+    }
+    Ok(Curve { points, transitions, found })
 }
 
 /// Gathers the points of a motion as it goes by.
@@ -136,8 +140,6 @@ impl<Q: Moves> Tracer<Q> {
 }
 
 impl<Q: Moves> Watch<Q> for Tracer<Q> {
-    const SEES_PIECES: bool = true;
-
     fn piece(&mut self, piece: &Piece<Q>) {
         if self.is_full() {
             return;

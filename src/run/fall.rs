@@ -3,13 +3,14 @@
 
 use super::peak_watch::PeakWatch;
 use super::peaks::{Peak, Peaks};
-use super::{Finish, Run, RunError};
+use super::{Finish, Run, RunError, Runs};
 use crate::engine::Moves;
 #[cfg(feature = "lanes")]
 use crate::engine::lanes::{Bounded, Passes};
 use crate::engine::piece::{Expansion, Sample};
 use crate::mechanics::restraint::{Dissipators, Restraint};
 use crate::run::ground_motion::GroundMotion;
+use crate::run::validity::Validity;
 use crate::series::bisection::last_where;
 use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
 use crate::series::taylor::{self, Arc, sum_of_magnitudes};
@@ -107,8 +108,6 @@ pub struct FallWatch<'a, Q: Moves = f64> {
 }
 
 impl<Q: Moves> Watch<Q> for FallWatch<'_, Q> {
-    const SEES_PIECES: bool = true;
-
     fn piece(&mut self, piece: &Piece<Q>) {
         match self.no_return {
             Some(angle) if piece.end.theta.abs() >= angle => self.beyond(piece, angle),
@@ -203,17 +202,15 @@ fn last_passing<Q: Moves>(angle: f64, side: f64, expansion: &Expansion<Q>) -> Op
     }
 }
 
-impl<Q: Moves> Run<'_, Q> {
+impl<Q: Runs> Run<'_, Q> {
     /// Follows the motion to the end, which `watch` sees, too, and finds its exact peaks.
-    pub fn found(&self, watch: &mut impl Watch<Q>) -> Result<Found<Q>, RunError> {
-        Ok(self.found_and_all(watch)?.0)
+    pub fn found(&self, watch: &mut dyn Watch<Q>) -> Result<Found<Q>, RunError> {
+        Ok(Q::found(self, watch)?.0)
     }
 
-    /// Result of the run, and the peaks of all its motion, including a fall.
-    pub(super) fn found_and_all(&self, watch: &mut impl Watch<Q>) -> Result<(Found<Q>, Peaks), RunError> {
-        let mut peaks = Falling::since(self.ground.start(), &self.structure, self.detail);
-        let finish = self.follow(&mut (&mut peaks.watch(), watch))?;
-        Ok((self.found_of(peaks.peaks().clone(), peaks.fall(), finish), peaks.all))
+    /// Like [`Run::found`]; `validity` sees the motion, too.
+    pub fn judged(&self, validity: &mut Validity, watch: &mut dyn Watch<Q>) -> Result<Found<Q>, RunError> {
+        Q::judged(self, validity, watch)
     }
 
     /// Result of the run with these `peaks`, the start of the `fall` and the `finish`.
@@ -236,6 +233,14 @@ impl<Q: Moves> Run<'_, Q> {
         };
         samples.chain(cut).fold(Peak { magnitude: 0.0, time: self.ground.start() }, most)
     }
+}
+
+/// Result of `run`, which `watch` sees, and the peaks of all its motion, including a fall.
+pub(super) fn find<Q: Runs>(run: &Run<Q>, watch: &mut dyn Watch<Q>) -> Result<(Found<Q>, Peaks), RunError> {
+    let mut peaks = Falling::since(run.ground.start(), &run.structure, run.detail);
+    let (ending, engine) = run.course()?.finish(&mut (&mut peaks.watch(), watch))?;
+    let finish = Finish { ending, motion: *engine.motion() };
+    Ok((run.found_of(peaks.peaks().clone(), peaks.fall(), finish), peaks.all))
 }
 
 #[cfg(test)]

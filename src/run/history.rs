@@ -98,8 +98,6 @@ impl Section {
 }
 
 impl<Q: Moves> Watch<Q> for History {
-    const SEES_PIECES: bool = true;
-
     fn piece(&mut self, piece: &Piece<Q>) {
         let transitions = piece.before.transitions;
         let mut arcs = piece.arcs();

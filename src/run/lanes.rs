@@ -26,7 +26,7 @@ const LEAST: usize = 3;
 
 /// Follows `runs` to their ends and finds the exact peaks of each, as [`Run::found`] does. Tells `done` each result, with the
 /// run's position, as the run ends; once `done` says no, the rest is left undone.
-pub fn found_each(runs: &[Run], mut done: impl FnMut(usize, Result<Found, RunError>) -> bool) {
+pub fn found_each(runs: &[Run], done: &mut dyn FnMut(usize, Result<Found, RunError>) -> bool) {
     let mut peaks = peaks_of(runs);
     let watches = peaks.iter_mut().map(Falling::watch);
     follow_each(runs, watches, |number, finish, watch| done(number, found(&runs[number], finish, watch)));
@@ -42,7 +42,7 @@ pub struct Rocked {
 }
 
 /// Follows `runs` to their ends like [`found_each`], and tells `done` of each how it ended and how far it has rocked by then.
-pub fn rocked_each(runs: &[Run], mut done: impl FnMut(usize, Result<Finish, RunError>, Rocked) -> bool) {
+pub fn rocked_each(runs: &[Run], done: &mut dyn FnMut(usize, Result<Finish, RunError>, Rocked) -> bool) {
     let since = |run: &Run| Peaks::since(run.ground.start(), &run.structure, run.detail);
     let mut peaks: Vec<_> = runs.iter().map(since).collect();
     follow_each(runs, peaks.iter_mut().map(Peaks::watch_theta), |number, finish, watch| {
@@ -336,8 +336,6 @@ mod tests {
     struct Rocking(u64);
 
     impl Watch for Rocking {
-        const SEES_PIECES: bool = true;
-
         fn piece(&mut self, piece: &Piece) {
             self.0 += u64::from(matches!(piece.before.phase, Phase::Rocking(_)));
         }

@@ -6,7 +6,7 @@ use super::curve::{lines, peaks_of};
 use super::fall::{FallWatch, Falling};
 use super::history::{Distance, History};
 use super::peaks::Peaks;
-use super::{Ending, Follower, Run, RunError};
+use super::{Ending, Follower, Run, RunError, Runs};
 use crate::engine::Moves;
 use crate::engine::motion::Work;
 use crate::run::ground_motion::Segment;
@@ -92,7 +92,7 @@ fn all_modes(structure: &Structure) -> Option<[usize; 2]> {
 }
 
 /// The levels to compare on `run`, the one of the fewest equations first.
-fn choices<'a, Q: Moves>(run: &Run<'a, Q>) -> Vec<(Choice, Run<'a, Q>)> {
+fn choices<'a, Q: Runs>(run: &Run<'a, Q>) -> Vec<(Choice, Run<'a, Q>)> {
     let Some([all, _]) = all_modes(&run.structure) else {
         let of = |detail| (Choice { detail, modes: None }, Run { detail, ..run.clone() });
         return SIMPLEST_FIRST.map(of).into();
@@ -151,7 +151,11 @@ pub struct Comparison {
 }
 
 /// Does `run` at every level.
-pub fn compare<Q: Moves>(run: &Run<Q>) -> Result<Comparison, RunError> {
+pub fn compare<Q: Runs>(run: &Run<Q>) -> Result<Comparison, RunError> {
+    Q::compare(run)
+}
+
+pub(super) fn compare_levels<Q: Runs>(run: &Run<Q>) -> Result<Comparison, RunError> {
     let since = |run: &Run<Q>| Falling::since(run.ground.start(), &run.structure, run.detail);
     let of_all = |detail| Choice { detail, modes: all_modes(&run.structure) };
     let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..run.clone() };
@@ -221,7 +225,7 @@ struct Trial<'a, Q: Moves, Segments> {
 }
 
 /// Of `run`, whose `peaks` will be there.
-fn start<'a, Q: Moves>(
+fn start<'a, Q: Runs>(
     run: &Run<'a, Q>,
     choice: Choice,
     peaks: &'a mut Falling,
@@ -253,7 +257,7 @@ fn cut(segment: Segment, longest: f64) -> impl Iterator<Item = Segment> {
     })
 }
 
-impl<Q: Moves, Segments: Iterator<Item = Segment>> Trial<'_, Q, Segments> {
+impl<Q: Runs, Segments: Iterator<Item = Segment>> Trial<'_, Q, Segments> {
     /// Follows the motion over the next segment unless the run has ended.
     fn go_on(&mut self) -> Result<(), RunError> {
         if self.ending.is_none() {

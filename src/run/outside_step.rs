@@ -76,13 +76,13 @@ pub struct Checkpoint<Q = f64> {
 impl<Q: Moves> Checkpoint<Q> {
     /// Checks the step from here to where `engine` is now, under `load`, which came about linearly, and on `ground`. The engine
     /// stays where it is; transitions on the way are shown to `watch`.
-    pub fn check<W: Watch<Q>>(
+    pub fn check(
         &self,
         engine: &mut Engine<Q>,
         ground: Option<&GroundMotion>,
         elapsed: Elapsed,
         load: Load<Q>,
-        watch: &mut W,
+        watch: &mut dyn Watch<Q>,
     ) -> Result<Checked<Q>, AdvanceError> {
         if let Phase::Overturned(_) = self.motion.phase {
             return Ok(Checked { motion: self.motion, is_corrected: false, was_hidden: false });
@@ -104,13 +104,13 @@ impl<Q: Moves> Checkpoint<Q> {
     }
 
     /// The engine's own motion from here over `interval` (s).
-    fn go_on<W: Watch<Q>>(
+    fn go_on(
         &self,
         engine: &mut Engine<Q>,
         ground: Option<&GroundMotion>,
         interval: f64,
         load: Load<Q>,
-        watch: &mut W,
+        watch: &mut dyn Watch<Q>,
     ) -> Result<(), AdvanceError> {
         if interval == 0.0 {
             return Ok(());
@@ -125,8 +125,8 @@ impl<Q: Moves> Checkpoint<Q> {
         };
         let load = LinearLoad { value: self.load, slope };
         match ground {
-            Some(ground) => ground.advance(engine, &mut self.elapsed.clone(), interval, load, watch),
-            None => engine.advance(interval, load, watch),
+            Some(ground) => ground.advance(engine, &mut self.elapsed.clone(), interval, load, &mut (&mut (), watch)),
+            None => engine.advance(interval, load, &mut (&mut (), watch)),
         }
         .map(|_| ())
     }

@@ -91,8 +91,6 @@ impl<Q: Moves> Drop for PeakWatch<'_, Q> {
 }
 
 impl<Q: Moves> Watch<Q> for PeakWatch<'_, Q> {
-    const SEES_PIECES: bool = true;
-
     fn piece(&mut self, piece: &Piece<Q>) {
         let &Piece { before, duration, load, end, level, arc, .. } = piece;
         let (until, loads, structure) =

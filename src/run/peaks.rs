@@ -337,8 +337,6 @@ impl ThetaWatch<'_> {
 
 #[cfg(feature = "lanes")]
 impl Watch for ThetaWatch<'_> {
-    const SEES_PIECES: bool = true;
-
     #[inline]
     fn piece(&mut self, piece: &Piece) {
         let before = piece.before;

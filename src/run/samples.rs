@@ -38,8 +38,6 @@ impl<Q: Moves, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Samples<Tim
 }
 
 impl<Q: Moves, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Watch<Q> for Samples<Times, Show, Q> {
-    const SEES_PIECES: bool = true;
-
     fn piece(&mut self, piece: &Piece<Q>) {
         self.until(piece.before.time, piece.level);
         let end = piece.before.time + piece.duration;

@@ -25,7 +25,7 @@
 mod assumptions;
 
 use super::reaction_series::{self, Extent};
-use super::{Finish, Run, RunError};
+use super::{Finish, Run, RunError, Runs};
 use crate::digits::short;
 use crate::engine::Moves;
 use crate::engine::piece::{Expansion, Part, Piece, Sample, Watch};
@@ -388,8 +388,6 @@ impl Validity {
 }
 
 impl<Q: Moves> Watch<Q> for Validity {
-    const SEES_PIECES: bool = true;
-
     fn piece(&mut self, piece: &Piece<Q>) {
         self.see_passing(piece);
         let phase = piece.before.phase;
@@ -527,7 +525,7 @@ fn positive(coefficients: &[f64], reach: f64, found: &mut Vec<(f64, f64)>) {
     look(reach);
 }
 
-impl<Q: Moves> Run<'_, Q> {
+impl<Q: Runs> Run<'_, Q> {
     /// The watcher of the assumptions that the run breaks.
     pub fn validity_watch(&self, limits: Limits) -> Result<Validity, RunError> {
         Ok(Validity::new(self.start()?.structure(), limits, Findings::since(self.ground.start())))
@@ -536,8 +534,13 @@ impl<Q: Moves> Run<'_, Q> {
     /// The assumptions that the run breaks, and its end.
     pub fn validity(&self, limits: Limits) -> Result<(Findings, Finish<Q>), RunError> {
         let mut validity = self.validity_watch(limits)?;
-        let finish = self.follow(&mut validity)?;
+        let finish = self.judge(&mut validity, &mut ())?;
         Ok((validity.found, finish))
+    }
+
+    /// Follows the motion to the end, which `validity` and `watch` see.
+    pub fn judge(&self, validity: &mut Validity, watch: &mut dyn Watch<Q>) -> Result<Finish<Q>, RunError> {
+        Q::judge(self, validity, watch)
     }
 }
 

@@ -266,7 +266,7 @@ impl Map {
         let run = |ground| Run { detail: self.detail, tolerance: self.tolerance, ..Run::new(self.structure, ground) };
         let runs: Vec<_> = grounds.iter().map(run).collect();
         let mut first = vec![None; places.len()];
-        rocked_each(&runs, |number, finish, rocked| {
+        rocked_each(&runs, &mut |number, finish, rocked| {
             let (at, point) = (number % places.len(), Point::of(&runs[number], finish, rocked));
             if !self.finds_condition {
                 return done(at, point);

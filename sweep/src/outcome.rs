@@ -2,10 +2,9 @@
 
 use crate::{Refused, ensure};
 use rocking::digits::{short, with_unit};
-use rocking::engine::Moves;
 use rocking::run::fall::Found;
 use rocking::run::peaks::{Peaking, Peaks};
-use rocking::run::{Ending, Run, RunError};
+use rocking::run::{Ending, Run, RunError, Runs};
 use rocking::{Detail, Structure};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
@@ -96,7 +95,7 @@ impl Outcome {
     }
 
     /// Outcome of a `run` with this result, whose peaks are those of `measures`.
-    pub(crate) fn found<Q: Moves>(run: &Run<Q>, measures: &[Measure], found: Result<Found<Q>, RunError>) -> Outcome {
+    pub(crate) fn found<Q: Runs>(run: &Run<Q>, measures: &[Measure], found: Result<Found<Q>, RunError>) -> Outcome {
         let Found { peaks, finish, .. } = match found {
             Ok(found) => found,
             Err(error) => {

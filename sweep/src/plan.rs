@@ -3,7 +3,7 @@
 use crate::outcome::{self, Measure, Outcome};
 use crate::{Refused, ensure};
 use rocking::digits::with_unit;
-use rocking::engine::{DEFAULT_TOLERANCE, Moves, Settings};
+use rocking::engine::{DEFAULT_TOLERANCE, Settings};
 use rocking::estimates::intensity::{
     IntensityMeasure, arias_intensity, average_spectral_acceleration, cumulative_absolute_velocity, peak_velocity,
     significant_duration,
@@ -13,7 +13,7 @@ use rocking::mechanics::state::InitialStateError;
 use rocking::run::lanes::found_each;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits};
-use rocking::run::{End, Run};
+use rocking::run::{End, Run, Runs};
 use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
 use rocking::{Detail, Engine, Modes, Parameters, Quantity, State, Structure};
 use serde::Serialize;
@@ -251,7 +251,7 @@ impl Conditions {
         self.over(Run::of_modes(structure, ground)).from(&self.initial)
     }
 
-    fn over<'a, Q: Moves>(&self, run: Run<'a, Q>) -> Run<'a, Q> {
+    fn over<'a, Q: Runs>(&self, run: Run<'a, Q>) -> Run<'a, Q> {
         let end = self.duration.map_or(End::AtRest, |duration| End::At(run.ground.start() + duration));
         Run { detail: self.detail, tolerance: self.tolerance, end, ..run }
     }
@@ -359,7 +359,7 @@ impl Plan {
         let grounds: Vec<_> = cases.iter().map(Case::ground).collect();
         let run = |(case, ground): (&Case, _)| self.conditions.run(case.structure.clone(), ground);
         let runs: Vec<_> = cases.iter().zip(&grounds).map(run).collect();
-        found_each(&runs, |at, found| done(indices[at], Outcome::found(&runs[at], &self.measures, found)));
+        found_each(&runs, &mut |at, found| done(indices[at], Outcome::found(&runs[at], &self.measures, found)));
     }
 
     /// Every run, in this order.
@@ -382,12 +382,12 @@ impl Case<'_> {
 
     fn follow(&self, with_validity: bool) -> (Outcome, Option<Findings>) {
         const CHECKED: &str = "the plan has been checked";
-        fn of<Q: Moves>(run: &Run<Q>, measures: &[Measure], with_validity: bool) -> (Outcome, Option<Findings>) {
+        fn of<Q: Runs>(run: &Run<Q>, measures: &[Measure], with_validity: bool) -> (Outcome, Option<Findings>) {
             if !with_validity {
                 return (Outcome::found(run, measures, run.found(&mut ())), None);
             }
             let mut validity = run.validity_watch(Limits::default()).expect(CHECKED);
-            (Outcome::found(run, measures, run.found(&mut validity)), Some(*validity.found()))
+            (Outcome::found(run, measures, run.judged(&mut validity, &mut ())), Some(*validity.found()))
         }
         let ground = self.ground();
         match self.structure.of_one_mode() {

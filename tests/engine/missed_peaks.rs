@@ -52,8 +52,6 @@ fn worst(&Parameters { m, m0, B, g, .. }: &Parameters, phase: Phase, r: Reaction
 
 /// A piece of no duration is no motion.
 impl Watch for Dense {
-    const SEES_PIECES: bool = true;
-
     fn piece(&mut self, piece: &Piece) {
         const SAMPLES: u32 = 400;
         self.pieces += 1;
@@ -83,8 +81,6 @@ struct There {
 }
 
 impl Watch for There {
-    const SEES_PIECES: bool = true;
-
     fn piece(&mut self, piece: &Piece) {
         let (start, duration, phase) = (piece.before.time, piece.duration, piece.before.phase);
         // the clock rounds
