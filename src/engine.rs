@@ -20,9 +20,9 @@ pub mod transition;
 pub(crate) mod yielding;
 
 use crate::digits::with_unit;
-use crate::levels::detail::{AnyLevel, Detail, by_level};
-use crate::levels::level::{Level, Subject, derivatives};
-use crate::levels::modes::ManyModes;
+use crate::levels::detail::Detail;
+use crate::levels::level::Subject;
+use crate::levels::level::{Level, derivatives};
 use crate::mechanics::energy::energy;
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
@@ -37,8 +37,6 @@ use crate::{Output, Phase, State, Structure};
 use motion::{Chatter, Motion, Work};
 use phases::{Closed, Step, Watched};
 use piece::{Piece, Room, Sample, Watch, shown};
-use std::fmt::Debug;
-use std::ops::Deref;
 use transition::Transition;
 
 /// The default relative tolerance of the results.
@@ -173,10 +171,6 @@ impl Settings {
 
 /// Lateral coordinates of the structures that an engine moves.
 pub trait Moves: Coordinates {
-    /// The levels of detail of these structures.
-    #[allow(private_bounds)] // the coordinates name the type, and nobody else can use it
-    type Level: Deref<Target = dyn Level<Self>> + AsRef<Subject> + Clone + Debug;
-
     /// Starts `structure` at `time` (s) from `initial`.
     fn engine(
         structure: Structure,
@@ -186,24 +180,18 @@ pub trait Moves: Coordinates {
     ) -> Result<Engine<Self>, InitialStateError>;
 
     /// The level of detail at which `structure` moves with these `settings`.
-    fn level(structure: Structure, settings: Settings) -> Result<Box<Self::Level>, InitialStateError>;
+    #[allow(private_interfaces)] // the coordinates name the trait, and nobody else can use it
+    fn level(structure: Structure, settings: Settings) -> Result<Box<dyn Level<Self>>, InitialStateError>;
 
     /// The load on `structure` of the ground accelerations `a_g` and `a_v` (m/s²) and of a horizontal force on each floor (N).
     fn load(structure: &Structure, a_g: f64, a_v: f64, forces: impl Iterator<Item = f64>) -> Load<Self>;
 
-    /// The state after `interval` (s) of `motion` under `load`, if it is known exactly and no transition can happen until then.
+    /// Advances step by step. This is no generic function, or every crate that follows runs would compile the engine again.
     #[doc(hidden)]
-    fn leap(level: &Self::Level, motion: &Motion<Self>, interval: f64, load: LinearLoad<Self>) -> Option<State<Self>>;
-
-    /// Advances with a level by its type: each gets a loop of its own, so that nothing stands between the loop and the level's
-    /// equations. The loop is no generic function, or every crate that follows runs would compile one.
-    #[doc(hidden)]
-    fn go(level: &Self::Level, task: Task<'_, Self>) -> Result<Progress, AdvanceError>;
+    fn go(task: Task<'_, Self>) -> Result<Progress, AdvanceError>;
 }
 
 impl Moves for f64 {
-    type Level = AnyLevel;
-
     fn engine(
         structure: Structure,
         initial: State,
@@ -213,8 +201,8 @@ impl Moves for f64 {
         Engine::with(structure, initial, time, settings)
     }
 
-    fn level(structure: Structure, settings: Settings) -> Result<Box<AnyLevel>, InitialStateError> {
-        settings.detail.level(structure, settings.local_error()?, settings.vertical).map(Box::new)
+    fn level(structure: Structure, settings: Settings) -> Result<Box<dyn Level>, InitialStateError> {
+        settings.detail.level_of_one(structure, settings.local_error()?, settings.vertical)
     }
 
     #[inline(always)]
@@ -222,40 +210,12 @@ impl Moves for f64 {
         Load { a_g, F_t: forces.next().unwrap_or(0.0), a_v }
     }
 
-    #[inline(always)]
-    fn leap(any: &AnyLevel, motion: &Motion, interval: f64, load: LinearLoad) -> Option<State> {
-        by_level!(any, level => leap_under(level, motion, interval, load))
-    }
-
-    fn go(any: &AnyLevel, task: Task<'_, f64>) -> Result<Progress, AdvanceError> {
-        by_level!(any, level => task.go(any, level))
-    }
-}
-
-/// The levels of detail of structures of many masses.
-#[doc(hidden)]
-#[derive(Clone, Debug)]
-#[allow(private_interfaces)] // the coordinates name the type, and nobody else can use it
-pub struct LevelOfModes(ManyModes<Modes>);
-
-impl Deref for LevelOfModes {
-    type Target = dyn Level<Modes>;
-
-    fn deref(&self) -> &Self::Target {
-        &self.0
-    }
-}
-
-impl AsRef<Subject> for LevelOfModes {
-    #[inline(always)]
-    fn as_ref(&self) -> &Subject {
-        self.0.subject()
+    fn go(task: Task<'_, f64>) -> Result<Progress, AdvanceError> {
+        task.go_on()
     }
 }
 
 impl Moves for Modes {
-    type Level = LevelOfModes;
-
     fn engine(
         structure: Structure,
         initial: State<Modes>,
@@ -265,41 +225,23 @@ impl Moves for Modes {
         Engine::of_modes(structure, initial, time, settings)
     }
 
-    fn level(structure: Structure, settings: Settings) -> Result<Box<LevelOfModes>, InitialStateError> {
-        let structure = match settings.detail {
-            Detail::Modal => return Err(InitialStateError::OneMass(settings.detail.name())),
-            Detail::Rigid => structure.without_modes(),
-            _ => structure,
-        };
-        let is_tied = structure.base().is_restrained() || settings.vertical;
-        let (local_error, angles) = (settings.local_error()?, settings.detail.angles());
-        let subject = Subject { structure, local_error, is_tied, angles };
-        Ok(Box::new(LevelOfModes(ManyModes::new(subject, settings.detail))))
+    fn level(structure: Structure, settings: Settings) -> Result<Box<dyn Level<Modes>>, InitialStateError> {
+        settings.detail.level_of_modes(structure, settings.local_error()?, settings.vertical)
     }
 
     fn load(structure: &Structure, a_g: f64, a_v: f64, forces: impl Iterator<Item = f64>) -> Load<Modes> {
         structure.load_of(a_g, a_v, forces)
     }
 
-    #[inline(always)]
-    fn leap(
-        any: &LevelOfModes,
-        motion: &Motion<Modes>,
-        interval: f64,
-        load: LinearLoad<Modes>,
-    ) -> Option<State<Modes>> {
-        leap_under(&any.0, motion, interval, load)
-    }
-
-    fn go(any: &LevelOfModes, task: Task<'_, Modes>) -> Result<Progress, AdvanceError> {
-        task.go(any, &any.0)
+    fn go(task: Task<'_, Modes>) -> Result<Progress, AdvanceError> {
+        task.go_on()
     }
 }
 
 /// A structure in motion.
 #[derive(Debug)]
 pub struct Engine<Q: Moves = f64> {
-    level: Box<Q::Level>,
+    level: Box<dyn Level<Q>>,
     settings: Settings,
     motion: Motion<Q>,
     /// The step in hand.
@@ -339,7 +281,13 @@ impl Engine {
     ) -> Result<Engine, InitialStateError> {
         let phase = initial.initial_phase()?;
         let level = f64::level(structure.into(), settings)?;
-        level.check_start(&initial)?;
+        let (State { u, u_dot, theta, .. }, detail) = (initial, settings.detail);
+        if !detail.has_strut() && (u, u_dot) != (0.0, 0.0) {
+            return Err(InitialStateError::DeformedRigid { u, u_dot });
+        }
+        if detail == Detail::FixedBase && theta != 0.0 {
+            return Err(InitialStateError::TurnedFixedBase(theta));
+        }
         Ok(Engine::start(level, settings, time, initial, phase))
     }
 }
@@ -380,7 +328,7 @@ impl Engine<Modes> {
 
 impl<Q: Moves> Engine<Q> {
     /// The engine of a structure that starts in `phase`, its dissipators moved there slowly from rest.
-    fn start(level: Box<Q::Level>, settings: Settings, time: f64, state: State<Q>, phase: Phase) -> Engine<Q> {
+    fn start(level: Box<dyn Level<Q>>, settings: Settings, time: f64, state: State<Q>, phase: Phase) -> Engine<Q> {
         let subject = level.subject();
         let chord = subject.angles.chord(state.theta, 0.0);
         let moved = Dissipators::NEW.moved_by(subject.structure.base(), phase.side(), chord);
@@ -404,7 +352,7 @@ impl<Q: Moves> Engine<Q> {
         if let Phase::Overturned(_) = phase {
             return [Second { u_ddot: Q::each(level.structure(), |_, _| 0.0), theta_ddot: 0.0 }; 2];
         }
-        derivatives(&***level, *phase, (state, dissipators, load), &mut Arc::default())
+        derivatives(&**level, *phase, (state, dissipators, load), &mut Arc::default())
     }
 
     /// The same structure in the same motion, with other `settings`.
@@ -429,7 +377,7 @@ impl<Q: Moves> Engine<Q> {
     #[inline]
     pub fn outputs(&self, load: Load<Q>) -> impl Fn(Output) -> f64 {
         // a sample would copy the motion
-        let x = shown::<Q>(&self.level, self.motion.phase.in_motion(), &self.motion.under(load));
+        let x = shown::<Q>(&*self.level, self.motion.phase.in_motion(), &self.motion.under(load));
         move |output| output.of(&x)
     }
 
@@ -478,7 +426,7 @@ impl<Q: Moves> Engine<Q> {
 
     /// The motion now, under `load`.
     pub fn sample(&self, load: Load<Q>) -> Sample<'_, Q> {
-        Sample { motion: self.motion, load, level: &self.level }
+        Sample { motion: self.motion, load, level: &*self.level }
     }
 
     /// The settings of the engine.
@@ -504,7 +452,7 @@ impl<Q: Moves> Engine<Q> {
     /// Applies the transition that is due, if there is one, and shows it to `watch`.
     pub fn transit<W: Watch<Q> + ?Sized>(&mut self, watch: &mut W) {
         let watched = phases::of(self.level.structure(), &self.motion);
-        if let Some(transition) = transit(&**self.level, watched, &mut self.motion) {
+        if let Some(transition) = transit(&*self.level, watched, &mut self.motion) {
             watch.transition(&transition);
         }
     }
@@ -537,14 +485,15 @@ impl<Q: Moves> Engine<Q> {
         }
         let &mut Engine { ref level, settings: Settings { stops, .. }, ref mut motion, ref mut arc, ref room } = self;
         // most advances are one leap
-        let end = (motion.work.steps != last_step).then(|| Q::leap(level, motion, interval, load)).flatten();
+        let level = &**level;
+        let end = (motion.work.steps != last_step).then(|| leap_under(level, motion, interval, load)).flatten();
         let result = match end {
-            Some(end) => leapt((&**level, room), motion, interval, load, end, watch).map(|()| {
+            Some(end) => leapt((level, room), motion, interval, load, end, watch).map(|()| {
                 motion.time += interval;
                 Progress::Complete
             }),
             None => {
-                Q::go(level, Task { motion, arc, room, before: &mut before, interval, load, watch, last_step, stops })
+                Q::go(Task { level, motion, arc, room, before: &mut before, interval, load, watch, last_step, stops })
             }
         };
         if let (Err(_), Some(before)) = (&result, before) {
@@ -624,7 +573,7 @@ fn transit<Q: Moves>(
 
 /// The state at the end of `start`, if it is known exactly and no transition can happen until then.
 #[inline(always)]
-fn leap<Q: Moves>(level: &impl Level<Q>, motion: &Motion<Q>, start: &Start<Q>) -> Option<State<Q>> {
+fn leap<Q: Moves>(level: &dyn Level<Q>, motion: &Motion<Q>, start: &Start<Q>) -> Option<State<Q>> {
     if motion.chatter.held > 0.0 {
         return None;
     }
@@ -634,7 +583,7 @@ fn leap<Q: Moves>(level: &impl Level<Q>, motion: &Motion<Q>, start: &Start<Q>) -
 /// The state after `interval` (s) of `motion` under `load`, like [`leap`].
 #[inline(always)]
 fn leap_under<Q: Moves>(
-    level: &impl Level<Q>,
+    level: &dyn Level<Q>,
     motion: &Motion<Q>,
     interval: f64,
     load: LinearLoad<Q>,
@@ -645,7 +594,7 @@ fn leap_under<Q: Moves>(
 /// Takes `motion`, all but its time, over a leap to the state `end`. Fails if watchers need too many polynomials of the leap.
 #[inline(always)]
 fn leapt<Q: Moves, W: Watch<Q> + ?Sized>(
-    (level, room): (&Q::Level, &Room<Q>),
+    (level, room): (&dyn Level<Q>, &Room<Q>),
     motion: &mut Motion<Q>,
     duration: f64,
     load: LinearLoad<Q>,
@@ -668,6 +617,7 @@ fn leapt<Q: Moves, W: Watch<Q> + ?Sized>(
 /// One advance.
 #[doc(hidden)]
 pub struct Task<'a, Q: Moves> {
+    level: &'a dyn Level<Q>,
     motion: &'a mut Motion<Q>,
     arc: &'a mut Arc<Q>,
     room: &'a Room<Q>,
@@ -680,16 +630,16 @@ pub struct Task<'a, Q: Moves> {
 }
 
 impl<Q: Moves> Task<'_, Q> {
-    /// Advances step by step with `level`, which is `any` by its type.
-    fn go<L: Level<Q>>(self, any: &Q::Level, level: &L) -> Result<Progress, AdvanceError> {
-        let Task { motion, arc, room, before, interval, load, watch, last_step, stops } = self;
+    /// Advances step by step.
+    fn go_on(self) -> Result<Progress, AdvanceError> {
+        let Task { level, motion, arc, room, before, interval, load, watch, last_step, stops } = self;
         let phases = |motion: &Motion<Q>| phases::of::<Q>(level.structure(), motion);
         let expand = |phase: Phase, start: &Start<Q>, arc: &mut Arc<Q>| {
             level.series(phase, start, arc);
             true
         };
         let mut advance = Advance::new(level.structure(), motion.time, interval, load, last_step);
-        let progress = Loop { any, level, phases, expand, arc, room, stops }.go(motion, before, &mut advance, watch)?;
+        let progress = Loop { level, phases, expand, arc, room, stops }.go(motion, before, &mut advance, watch)?;
         Ok(progress.expect("every series is there"))
     }
 }
@@ -739,10 +689,8 @@ impl<Q: Moves> Advance<Q> {
 }
 
 /// The loop over the steps of one advance.
-struct Loop<'a, Q: Moves, L, P, E> {
-    any: &'a Q::Level,
-    /// The same level by its type.
-    level: &'a L,
+struct Loop<'a, Q: Moves, P, E> {
+    level: &'a dyn Level<Q>,
     /// Gives the phase of a motion; none where the motion is over.
     phases: P,
     /// Writes the series of a step, or says that the series is not there yet.
@@ -754,10 +702,9 @@ struct Loop<'a, Q: Moves, L, P, E> {
     stops: bool,
 }
 
-impl<Q, L, P, E> Loop<'_, Q, L, P, E>
+impl<Q, P, E> Loop<'_, Q, P, E>
 where
     Q: Moves,
-    L: Level<Q>,
     P: Fn(&Motion<Q>) -> Option<&'static Watched<Q>>,
     E: FnMut(Phase, &Start<Q>, &mut Arc<Q>) -> bool,
 {
@@ -794,7 +741,7 @@ where
                 };
                 if let Some((to, state)) = leap(interval).or_else(|| leap(advance.end)) {
                     advance.end = to;
-                    leapt((self.any, self.room), motion, to - elapsed, load, state, watch)?;
+                    leapt((level, self.room), motion, to - elapsed, load, state, watch)?;
                     motion.time = advance.pass(to - elapsed);
                     continue;
                 }
@@ -836,7 +783,7 @@ where
             // a step without duration, as in contact if uplift is due at once, is no motion
             if watch.sees_pieces() && duration > 0.0 {
                 let (load, arc) = (load.from(elapsed), Some(&*self.arc));
-                let &mut Loop { any: level, room, .. } = self;
+                let room = self.room;
                 watch.piece(&Piece { before: motion, duration, load, end: state, level, arc, room });
             }
             motion.state = state;
@@ -857,7 +804,7 @@ where
 }
 
 /// Whether a step of this `duration` (s), which goes from `motion` to less than the requested end, is the last that there can be.
-fn is_at_its_end<Q: Moves>(level: &impl Level<Q>, motion: &Motion<Q>, duration: f64, closed: Option<Closed>) -> bool {
+fn is_at_its_end<Q: Moves>(level: &dyn Level<Q>, motion: &Motion<Q>, duration: f64, closed: Option<Closed>) -> bool {
     let has_stalled = duration <= STALLED / level.structure().vibration().rocking[1];
     has_stalled && closed.is_none() || level.is_singular(motion.phase, &motion.state)
 }
@@ -935,14 +882,13 @@ mod tests {
         let Engine { level, motion, arc, room, .. } = &mut engine;
         let mut bounces = Vec::new();
         let mut watch = |transition: &Transition| bounces.push(transition.time);
-        let AnyLevel::Nonlinear(of_its_type) = &**level else { panic!("another level") };
         let expand = |phase: Phase, start: &Start, arc: &mut Arc| {
-            of_its_type.series(phase, start, arc);
+            level.series(phase, start, arc);
             true
         };
         let interval = 9.0 * PI / structure.omega_fc;
         let mut advance = Advance::new(&structure.into(), 0.0, interval, LinearLoad::default(), u64::MAX);
-        Loop { any: &**level, level: of_its_type, phases: |_: &Motion| Some(&WALLED), expand, arc, room, stops: false }
+        Loop { level: &**level, phases: |_: &Motion| Some(&WALLED), expand, arc, room, stops: false }
             .go(motion, &mut None, &mut advance, &mut watch)
             .unwrap();
         assert_eq!(bounces.len(), 7);

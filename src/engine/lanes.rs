@@ -4,8 +4,9 @@ use super::{Advance, AdvanceError, Engine, Loop, MAX_STEPS_PER_ADVANCE, Progress
 use crate::engine::motion::Motion;
 use crate::engine::phases;
 use crate::engine::piece::{Piece, Watch, magnitudes};
-use crate::levels::detail::AnyLevel;
+use crate::levels::detail::Elastic;
 use crate::levels::level::{Level, most_of_swings};
+use crate::levels::nonlinear::NonlinearRocking;
 use crate::levels::nonlinear::lanes::{RockingStep, Stepped};
 use crate::mechanics::reach::Magnitudes;
 use crate::series::taylor::{Arc, Start};
@@ -46,16 +47,24 @@ pub(crate) trait Passes: Watch {
     fn passes(&mut self, step: &Bounded) -> bool;
 }
 
+const STEPS_ALONE: &str = "another level steps alone";
+
+/// The `level` by its type, if it is Eqs 5 and 6.
+#[inline(always)]
+fn by_equations_5_and_6(level: &dyn Level) -> Option<&Elastic<NonlinearRocking>> {
+    level.as_any()?.downcast_ref()
+}
+
 impl Engine {
     /// Whether the structure rocks by Eqs 5 and 6 without ties, so that its steps of rocking can be taken among others.
     pub(crate) fn is_for_lanes(&self) -> bool {
-        matches!(&*self.level, AnyLevel::Nonlinear(level) if !level.subject().is_tied)
+        by_equations_5_and_6(&*self.level).is_some() && !self.level.subject().is_tied
     }
 
     /// Takes such a structure over `interval` (s) under `load`, all but the clock, if one leap in full contact is all of it.
     #[inline(always)]
     pub(crate) fn leaps<W: Passes>(&mut self, interval: f64, load: LinearLoad, watch: &mut W) -> bool {
-        let AnyLevel::Nonlinear(level) = &*self.level else { return false };
+        let Some(level) = by_equations_5_and_6(&*self.level) else { return false };
         let motion = &self.motion;
         let is_free = motion.phase == Phase::FullContact && motion.held() <= 0.0;
         if !is_free || self.check(interval, &load).is_err() {
@@ -94,7 +103,7 @@ impl Engine {
     ) -> Result<Option<Progress>, AdvanceError> {
         let Engine { level, motion, arc, room, settings: Settings { stops, .. } } = self;
         let any = &**level;
-        let AnyLevel::Nonlinear(level) = any else { unreachable!("another level steps alone") };
+        let level = by_equations_5_and_6(any).expect(STEPS_ALONE);
         if let Phase::Rocking(side) = motion.phase
             && !is_expanded
             && let Some(step) = &mut step
@@ -115,7 +124,7 @@ impl Engine {
             true
         };
         let phases = |motion: &Motion| phases::of::<f64>(level.structure(), motion);
-        Loop { any, level, phases, expand, arc, room, stops: *stops }.go(motion, &mut None, advance, watch)
+        Loop { level: any, phases, expand, arc, room, stops: *stops }.go(motion, &mut None, advance, watch)
     }
 
     /// Takes the step of `advance` that was `stepped` among others, whose series `write` gives, and goes on like [`Engine::go_on`].
@@ -128,7 +137,7 @@ impl Engine {
         step: &mut RockingStep,
         watch: &mut W,
     ) -> Result<Option<Progress>, AdvanceError> {
-        let AnyLevel::Nonlinear(level) = &*self.level else { unreachable!("another level steps alone") };
+        let level = by_equations_5_and_6(&*self.level).expect(STEPS_ALONE);
         let &Stepped { order, duration, stays, end, most } = stepped;
         let is_whole = duration == advance.end - advance.elapsed;
         let is_last = !is_whole && is_at_its_end(level, &self.motion, duration, None);
@@ -140,7 +149,7 @@ impl Engine {
         if !watch.passes(&Bounded { engine: self, duration, load, end, most }) {
             write(&mut self.arc);
             let Engine { level, motion, arc, room, .. } = &*self;
-            watch.piece(&Piece { before: motion, duration, load, end, level, arc: Some(arc), room });
+            watch.piece(&Piece { before: motion, duration, load, end, level: &**level, arc: Some(arc), room });
         }
         let motion = &mut self.motion;
         motion.work.steps += 1;

@@ -7,6 +7,7 @@ use crate::engine::Moves;
 use crate::engine::motion::Motion;
 use crate::engine::phases::{self, Step};
 use crate::engine::transition::Transition;
+use crate::levels::level::Level;
 use crate::levels::level::{Now, Subject};
 use crate::mechanics::gauge::{Gauge, Reading};
 use crate::mechanics::instant::{Instant, Second};
@@ -79,7 +80,7 @@ pub struct Sample<'a, Q: Moves = f64> {
     pub motion: Motion<Q>,
     /// Load at the instant.
     pub load: Load<Q>,
-    pub(crate) level: &'a Q::Level,
+    pub(crate) level: &'a dyn Level<Q>,
 }
 
 impl<Q: Moves> Sample<'_, Q> {
@@ -131,14 +132,14 @@ impl<Q: Moves> Sample<'_, Q> {
 
     pub(crate) fn shown(&self) -> Instant<'_, f64, Q> {
         let Sample { motion, load, level } = self;
-        shown::<Q>(level, motion.phase.in_motion(), &motion.under(*load))
+        shown::<Q>(*level, motion.phase.in_motion(), &motion.under(*load))
     }
 }
 
 /// The structure of `level` as outputs read it, with θ̈ if one of them needs it.
 #[inline]
-pub(crate) fn shown<'a, Q: Moves>(level: &'a Q::Level, phase: Phase, now: &Now<Q>) -> Instant<'a, f64, Q> {
-    let structure = &level.as_ref().structure;
+pub(crate) fn shown<'a, Q: Moves>(level: &'a dyn Level<Q>, phase: Phase, now: &Now<Q>) -> Instant<'a, f64, Q> {
+    let structure = level.structure();
     let x = Instant::of(structure, phase, now.state, now.load);
     if !structure.gauges().has_feedthrough {
         return x;
@@ -163,7 +164,7 @@ pub struct Piece<'a, Q: Moves = f64> {
     pub load: LinearLoad<Q>,
     /// State at its end.
     pub end: State<Q>,
-    pub(crate) level: &'a Q::Level,
+    pub(crate) level: &'a dyn Level<Q>,
     /// Polynomial of the piece; none if the engine leapt over the piece.
     pub(crate) arc: Option<&'a Arc<Q>>,
     pub(crate) room: &'a Room<Q>,
@@ -229,7 +230,7 @@ impl<'p, Q: Moves> Piece<'p, Q> {
     /// The dissipators `tau` seconds after the start of the piece.
     fn dissipators_at(&self, tau: f64) -> Dissipators {
         let moved = phases::of::<Q>(self.level.structure(), self.before).zip(self.arc).and_then(|(watched, arc)| {
-            let (level, side) = (&**self.level, self.before.phase.side());
+            let (level, side) = (self.level, self.before.phase.side());
             let step = Step { level, side, start: &self.whole().step(), arc, reach: tau / arc.span };
             watched.moved(level.subject(), &step)
         });
@@ -262,7 +263,7 @@ impl<'a, Q: Moves> Part<'a, Q> {
     #[inline]
     pub(crate) fn step(&self) -> Start<'a, Q> {
         let Part { piece, start: (passed, state), end: (until, _) } = *self;
-        piece.level.as_ref().start(state, &piece.before.dissipators, piece.load.from(passed), until - passed)
+        piece.level.subject().start(state, &piece.before.dissipators, piece.load.from(passed), until - passed)
     }
 
     /// The motion of the part as polynomials, in order of time.
@@ -273,7 +274,7 @@ impl<'a, Q: Moves> Part<'a, Q> {
     /// Bounds of the magnitudes over this part.
     pub(crate) fn most(&self) -> Magnitudes<'a, Q> {
         let loads = [self.start.0, self.end.0].map(|tau| self.piece.load.at(tau));
-        self.most_under(&self.piece.level.as_ref().structure, loads)
+        self.most_under(self.piece.level.structure(), loads)
     }
 
     /// Bounds of the magnitudes over this part, with these `loads` at its ends.
@@ -453,7 +454,7 @@ impl<'a, Q: Moves> Expansion<'a, Q> {
     /// Bounds of the magnitudes.
     pub(crate) fn most(&self) -> Magnitudes<'a, Q> {
         let loads = [self.from, self.from + self.arc.duration()].map(|tau| self.piece.load.at(tau));
-        self.most_under(&self.piece.level.as_ref().structure, loads, &self.arc.end())
+        self.most_under(self.piece.level.structure(), loads, &self.arc.end())
     }
 
     /// Bounds of the magnitudes, given the loads at both ends and the state at the last.

@@ -24,9 +24,10 @@ use crate::mechanics::restraint::Angles;
 use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift::least_hold;
 use crate::series::taylor::{Arc, Start};
-use crate::{OneMass, Phase, State, Structure};
+use crate::{Modes, OneMass, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
-use std::ops::Deref;
+use std::any::Any;
+use std::fmt::Debug;
 
 /// A level of detail.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -79,13 +80,13 @@ impl Detail {
         if self == Detail::Linear { Angles::Small } else { Angles::Any }
     }
 
-    /// The level of `structure`, in steps of this `local_error`; `is_vertical` if the ground may move vertically.
-    pub(crate) fn level(
+    /// The level of a `structure` of one mass, in steps of this `local_error`; `is_vertical` if the ground may move vertically.
+    pub(crate) fn level_of_one(
         self,
         structure: Structure,
         local_error: f64,
         is_vertical: bool,
-    ) -> Result<AnyLevel, InitialStateError> {
+    ) -> Result<Box<dyn Level>, InitialStateError> {
         let one = *structure.of_mode()?;
         let is_tied = structure.base().is_restrained() || is_vertical;
         let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
@@ -94,78 +95,38 @@ impl Detail {
             Detail::Auto | Detail::Nonlinear => {
                 let contact = (self == Detail::Auto).then_some(contact);
                 let rocking = NonlinearRocking::new(one, is_tied);
-                AnyLevel::Nonlinear(Elastic { subject, one, contact, rocking })
+                Box::new(Elastic { subject, one, contact, rocking })
             }
-            Detail::Linear if is_tied => AnyLevel::Modes(ManyModes::new(subject, self)),
+            Detail::Linear if is_tied => Box::new(ManyModes::<f64>::new(subject, self)),
             Detail::Modal if is_tied => return Err(InitialStateError::RestrainedModal),
             Detail::Linear | Detail::Modal => {
                 let rocking =
                     if self == Detail::Linear { LinearRocking::new(&one) } else { LinearRocking::modal(&one) };
-                AnyLevel::Linear(Elastic { subject, one, contact: Some(contact), rocking })
+                Box::new(Elastic { subject, one, contact: Some(contact), rocking })
             }
             Detail::Rigid => {
                 let structure = subject.structure.shown_rigid();
-                AnyLevel::Modes(ManyModes::rigid(Subject { structure, ..subject }, &one))
+                Box::new(ManyModes::<f64>::rigid(Subject { structure, ..subject }, &one))
             }
-            Detail::FixedBase => AnyLevel::FixedBase(FixedBase { subject, one, contact }),
+            Detail::FixedBase => Box::new(FixedBase { subject, one, contact }),
         })
     }
-}
 
-/// A level of any type.
-#[derive(Clone, Debug)]
-#[doc(hidden)]
-#[allow(clippy::large_enum_variant)] // an engine keeps one, behind a pointer
-#[allow(private_interfaces)] // the coordinates of one mass name the type, and nobody else can use it
-pub enum AnyLevel {
-    Nonlinear(Elastic<NonlinearRocking>),
-    Linear(Elastic<LinearRocking>),
-    FixedBase(FixedBase),
-    Modes(ManyModes<f64>),
-}
-
-/// Does the same with a level of every type.
-macro_rules! by_level {
-    ($any:expr, $level:ident => $do:expr) => {
-        match $any {
-            AnyLevel::Nonlinear($level) => $do,
-            AnyLevel::Linear($level) => $do,
-            AnyLevel::FixedBase($level) => $do,
-            AnyLevel::Modes($level) => $do,
-        }
-    };
-}
-pub(crate) use by_level;
-
-impl Deref for AnyLevel {
-    type Target = dyn Level;
-
-    fn deref(&self) -> &Self::Target {
-        by_level!(self, level => level)
-    }
-}
-
-impl AsRef<Subject> for AnyLevel {
-    #[inline(always)]
-    fn as_ref(&self) -> &Subject {
-        by_level!(self, level => level.subject())
-    }
-}
-
-impl AnyLevel {
-    /// Whether an elastic strut carries the top mass. If not, its force follows from θ̈ alone.
-    #[inline]
-    pub(crate) fn has_strut(&self) -> bool {
-        !matches!(self, AnyLevel::Modes(level) if level.is_rigid())
-    }
-
-    /// Whether a motion may start from `initial` at this level.
-    pub(crate) fn check_start(&self, &State { u, u_dot, theta, .. }: &State) -> Result<(), InitialStateError> {
-        match self {
-            _ if !self.has_strut() && (u, u_dot) != (0.0, 0.0) => Err(InitialStateError::DeformedRigid { u, u_dot }),
-            AnyLevel::FixedBase(_) if theta != 0.0 => Err(InitialStateError::TurnedFixedBase(theta)),
-            _ => Ok(()),
-        }
+    /// The level of any `structure`, which moves in a coordinate for each of its modes.
+    pub(crate) fn level_of_modes(
+        self,
+        structure: Structure,
+        local_error: f64,
+        is_vertical: bool,
+    ) -> Result<Box<dyn Level<Modes>>, InitialStateError> {
+        let structure = match self {
+            Detail::Modal => return Err(InitialStateError::OneMass(self.name())),
+            Detail::Rigid => structure.without_modes(),
+            _ => structure,
+        };
+        let is_tied = structure.base().is_restrained() || is_vertical;
+        let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
+        Ok(Box::new(ManyModes::<Modes>::new(subject, self)))
     }
 }
 
@@ -206,13 +167,19 @@ impl<Rocking: ElasticRocking> Elastic<Rocking> {
     }
 }
 
-impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
-    #[inline(always)]
+impl<Rocking: ElasticRocking + Clone + Debug + Send + 'static> Level for Elastic<Rocking> {
     fn subject(&self) -> &Subject {
         &self.subject
     }
 
-    #[inline(always)]
+    fn boxed(&self) -> Box<dyn Level> {
+        Box::new(self.clone())
+    }
+
+    fn as_any(&self) -> Option<&dyn Any> {
+        Some(self)
+    }
+
     fn leap(&self, phase: Phase, start: &Start) -> Option<State> {
         match phase {
             Phase::FullContact => self.contact.as_ref()?.leap(start, self.least_displacement(start)),
@@ -269,9 +236,12 @@ pub(crate) struct FixedBase {
 }
 
 impl Level for FixedBase {
-    #[inline(always)]
     fn subject(&self) -> &Subject {
         &self.subject
+    }
+
+    fn boxed(&self) -> Box<dyn Level> {
+        Box::new(self.clone())
     }
 
     #[inline(always)]
@@ -314,7 +284,7 @@ mod tests {
             (Detail::Linear, Phase::Rocking(Side::Right), rocking),
             (Detail::FixedBase, Phase::FullContact, down),
         ] {
-            let level = detail.level(structure.into(), 1e-9, false).unwrap();
+            let level = detail.level_of_one(structure.into(), 1e-9, false).unwrap();
             let (mut expected, mut arc) = (state, Arc::default());
             let (mut u_dot, mut theta_dot) = (0.0_f64, 0.0_f64);
             for (k, pair) in noise().map(|x| 20.0 * x).take(1001).collect::<Vec<_>>().windows(2).enumerate() {
@@ -342,7 +312,7 @@ mod tests {
             value in -5.0..5.0f64, slope in -300.0..300.0f64, interval in 1e-4..0.02f64, zeta_fc in 0.0..0.2f64,
         ) {
             let structure = OneMass::new(Parameters { zeta_fc, ..Parameters::MCMANUS }).unwrap();
-            let (level, phase) = (detail.level(structure.into(), 1e-15, false).unwrap(), Phase::Rocking(Side::of(s)));
+            let (level, phase) = (detail.level_of_one(structure.into(), 1e-15, false).unwrap(), Phase::Rocking(Side::of(s)));
             let a_g = Ramp { value, slope };
             let state = State { u, u_dot, theta: s * theta, theta_dot };
             let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15, ..Start::default() };

@@ -149,7 +149,7 @@ mod tests {
 
     /// The first uplift of the motion in full contact that starts in `state`, its σ, and the state and time there.
     fn first_from(parameters: Parameters, state: State, push: f64, interval: f64) -> (Crossing, Side, State, f64) {
-        let level = Detail::Nonlinear.level(OneMass::new(parameters).unwrap().into(), 1e-15, false).unwrap();
+        let level = Detail::Nonlinear.level_of_one(OneMass::new(parameters).unwrap().into(), 1e-15, false).unwrap();
         let (mut arc, push) = (Arc::default(), Ramp { value: push, slope: 0.0 });
         let start = Start { state, a_g: push, a_top: push, interval, local_error: 1e-15, ..Start::default() };
         level.series(Phase::FullContact, &start, &mut arc);

@@ -10,6 +10,8 @@ use crate::mechanics::restraint::{Angles, Dissipators};
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{OneMass, Phase, Side, State, Structure};
+use std::any::Any;
+use std::fmt::Debug;
 
 /// A structure at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -49,11 +51,19 @@ impl Subject {
 /// The level of detail of a structure. The provided methods are those of an elastic strut. A level without a
 /// [liftable](Level::liftable) structure has a fixed base.
 #[allow(private_interfaces)] // the coordinates name the trait, and nobody else can use it
-pub trait Level<Q: Coordinates = f64> {
+pub trait Level<Q: Coordinates = f64>: Debug + Send {
     fn subject(&self) -> &Subject;
+
+    /// The same level again.
+    fn boxed(&self) -> Box<dyn Level<Q>>;
 
     fn structure(&self) -> &Structure {
         &self.subject().structure
+    }
+
+    /// The level by its type, for those who take steps of one of them among others.
+    fn as_any(&self) -> Option<&dyn Any> {
+        None
     }
 
     /// The state at the end of `start`, if it is known exactly and no transition can happen until then.

@@ -335,7 +335,7 @@ mod tests {
 
     fn accelerations_of(detail: Detail, structure: OneMass, side: Side, state: &State, a_g: f64) -> [f64; 2] {
         let now = Now { state, load: Load::ground(a_g), dissipators: &Dissipators::NEW };
-        detail.level(structure.into(), 1e-9, false).unwrap().accelerations(Phase::Rocking(side), &now).into()
+        detail.level_of_one(structure.into(), 1e-9, false).unwrap().accelerations(Phase::Rocking(side), &now).into()
     }
 
     /// Eqs 7 and 8 as they stand, and their distance from Eqs 5 and 6, which is of second order.

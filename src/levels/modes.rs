@@ -463,9 +463,12 @@ impl<Q: Coordinates> ManyModes<Q> {
 }
 
 impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
-    #[inline(always)]
     fn subject(&self) -> &Subject {
         &self.subject
+    }
+
+    fn boxed(&self) -> Box<dyn Level<Q>> {
+        Box::new(self.clone())
     }
 
     /// The exact flow of every mode, if the moment of the springs certainly stays below what holds the base.

@@ -41,7 +41,9 @@ pub trait Lateral<N: Number>: Copy {
 }
 
 /// Lateral coordinates of a state, or anything else that has a value for each mode.
-pub trait Coordinates: Lateral<f64> + Debug + Default + PartialEq + Serialize + DeserializeOwned + 'static {
+pub trait Coordinates:
+    Lateral<f64> + Debug + Default + PartialEq + Send + Serialize + DeserializeOwned + 'static
+{
     /// All coordinates are 0.
     const ZERO: Self;
 

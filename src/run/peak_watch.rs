@@ -6,6 +6,7 @@
 use super::peaks::Peaks;
 use crate::engine::piece::{Piece, Room, Watch};
 use crate::engine::{MOST_POLYNOMIALS, Moves};
+use crate::levels::level::Level;
 use crate::series::taylor::{Arc, LONGEST_SPAN};
 use crate::{LinearLoad, Motion, State, Transition};
 #[cfg(feature = "lanes")]
@@ -21,7 +22,7 @@ pub struct PeakWatch<'a, Q: Moves = f64> {
     /// Pieces that may hold more than what has been seen.
     kept: Vec<Candidate<Q>>,
     /// The level of the kept pieces, and room for their polynomials.
-    level: Option<Box<Q::Level>>,
+    level: Option<Box<dyn Level<Q>>>,
     room: Room<Q>,
     /// Whether the next piece may begin with other outputs than the last one ended with.
     is_torn: bool,
@@ -68,7 +69,7 @@ impl<'a, Q: Moves> PeakWatch<'a, Q> {
     fn look_back(&mut self) {
         let Some(level) = &self.level else { return };
         while let Some(kept) = self.kept.pop() {
-            let piece = kept.piece(level, &self.room);
+            let piece = kept.piece(&**level, &self.room);
             if self.peaks.may_change_in(&piece) {
                 self.room.left.set(MOST_POLYNOMIALS); // never used up: only short leaps are kept
                 self.peaks.look(&piece);
@@ -78,7 +79,7 @@ impl<'a, Q: Moves> PeakWatch<'a, Q> {
 }
 
 impl<Q: Moves> Candidate<Q> {
-    fn piece<'a>(&'a self, level: &'a Q::Level, room: &'a Room<Q>) -> Piece<'a, Q> {
+    fn piece<'a>(&'a self, level: &'a dyn Level<Q>, room: &'a Room<Q>) -> Piece<'a, Q> {
         let &Candidate { ref before, duration, load, end, ref arc } = self;
         Piece { before, duration, load, end, level, arc: arc.as_deref(), room }
     }
@@ -93,8 +94,7 @@ impl<Q: Moves> Drop for PeakWatch<'_, Q> {
 impl<Q: Moves> Watch<Q> for PeakWatch<'_, Q> {
     fn piece(&mut self, piece: &Piece<Q>) {
         let &Piece { before, duration, load, end, level, arc, .. } = piece;
-        let (until, loads, structure) =
-            (before.time + duration, [load.value, load.at(duration)], &level.as_ref().structure);
+        let (until, loads, structure) = (before.time + duration, [load.value, load.at(duration)], level.structure());
         self.peaks.see_ground(loads[0].a_g, before.time);
         self.peaks.see_ground(loads[1].a_g, until);
         let [is_torn, is_first] = [&mut self.is_torn, &mut self.is_first].map(std::mem::take);
@@ -113,7 +113,7 @@ impl<Q: Moves> Watch<Q> for PeakWatch<'_, Q> {
         if is_first || is_long {
             return self.peaks.look(piece);
         }
-        let level = &**self.level.get_or_insert_with(|| Box::new(level.clone()));
+        let level = &**self.level.get_or_insert_with(|| level.boxed());
         if self.kept.len() == MOST_CANDIDATES {
             self.kept.retain(|kept| self.peaks.may_change_in(&kept.piece(level, &self.room)));
         }

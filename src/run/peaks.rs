@@ -258,7 +258,7 @@ impl Peaks {
 
     /// Whether `piece` may change a peak.
     pub(super) fn may_change_in<Q: Moves>(&self, piece: &Piece<Q>) -> bool {
-        self.may_change(&piece.level.as_ref().structure, &piece.whole().most(), piece.before.time)
+        self.may_change(piece.level.structure(), &piece.whole().most(), piece.before.time)
     }
 
     /// Looks for larger magnitudes between the ends of `piece`.
@@ -267,7 +267,7 @@ impl Peaks {
         while let Some(expansion) = arcs.next() {
             self.look_over(&expansion);
             arcs.skip_middle();
-            let (structure, start) = (&piece.level.as_ref().structure, piece.before.time);
+            let (structure, start) = (piece.level.structure(), piece.before.time);
             if arcs.left().is_some_and(|rest| !self.may_change(structure, &rest.most(), start + rest.start.0)) {
                 break;
             }
@@ -278,7 +278,7 @@ impl Peaks {
     /// Looks at a polynomial.
     fn look_over<Q: Moves>(&mut self, expansion: &Expansion<Q>) {
         expansion.in_parts(&mut |part, is_finest| {
-            let (structure, bounds) = (&part.piece.level.as_ref().structure, part.most());
+            let (structure, bounds) = (part.piece.level.structure(), part.most());
             let (reach, start) = (part.arc.reach, part.time(0.0));
             let (mut ends, mut over) = (None, None);
             for of in &mut self.searched {

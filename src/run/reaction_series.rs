@@ -65,7 +65,7 @@ pub(crate) fn over<Q: Moves>(expansion: &Expansion<Q>) -> Reactions<Terms> {
 /// most `rest`: those in θ̇, in u θ̈, and what the base turns on by.
 pub(crate) fn bounds<Q: Moves>(expansion: &Expansion<Q>) -> Option<Reactions<Extent>> {
     let &Expansion { piece, from, arc } = expansion;
-    let (level, phase, load) = (piece.level.as_ref(), piece.before.phase, piece.load.from(from));
+    let (level, phase, load) = (piece.level.subject(), piece.before.phase, piece.load.from(from));
     if phase == Phase::FullContact || level.is_tied {
         return None;
     }

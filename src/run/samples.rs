@@ -2,6 +2,7 @@
 
 use crate::Motion;
 use crate::engine::piece::{Piece, Sample, Watch};
+use crate::levels::level::Level;
 use crate::mechanics::load::Load;
 use crate::{Engine, engine::Moves};
 use std::iter::Peekable;
@@ -22,7 +23,7 @@ impl<Q: Moves, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Samples<Tim
     }
 
     /// Shows the instants before `time` (s) that are left, at the end of the last piece.
-    fn until(&mut self, time: f64, level: &Q::Level) {
+    fn until(&mut self, time: f64, level: &dyn Level<Q>) {
         let Some(last) = self.last else { return };
         while let Some(time) = self.times.next_if(|next| *next < time) {
             (self.show)(&Sample { motion: Motion { time, ..last }, load: self.load, level });

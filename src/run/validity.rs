@@ -436,7 +436,7 @@ fn extents_of_vibration<Q: Moves>(part: Part<Q>) -> Option<Reactions<Extent>> {
     if load.is_vertical() {
         return None;
     }
-    let (structure, per_bend) = (&level.as_ref().structure, step.interval * step.interval / 8.0);
+    let (structure, per_bend) = (level.structure(), step.interval * step.interval / 8.0);
     let moved = |of: &Q| Q::sum(structure, |j, mode| mode.gamma.abs() * of.of(j));
     let off = |output: Output, weight: f64| {
         let reach = &structure.reaches()[output.place(structure.floors().len()).expect("it reaches")];
