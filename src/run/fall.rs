@@ -238,7 +238,12 @@ impl<Q: Runs> Run<'_, Q> {
 /// Result of `run`, which `watch` sees, and the peaks of all its motion, including a fall.
 pub(super) fn find<Q: Runs>(run: &Run<Q>, watch: &mut dyn Watch<Q>) -> Result<(Found<Q>, Peaks), RunError> {
     let mut peaks = Falling::since(run.ground.start(), &run.structure, run.detail);
-    let (ending, engine) = run.course()?.finish(&mut (&mut peaks.watch(), watch))?;
+    let (course, mut own) = (run.course()?, peaks.watch());
+    let (ending, engine) = match watch.sees_pieces() {
+        true => course.finish(&mut (&mut own, watch))?,
+        false => course.finish(&mut (&mut own, &mut |transition: &Transition<Q>| watch.transition(transition)))?,
+    };
+    drop(own);
     let finish = Finish { ending, motion: *engine.motion() };
     Ok((run.found_of(peaks.peaks().clone(), peaks.fall(), finish), peaks.all))
 }

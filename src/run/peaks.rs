@@ -13,7 +13,7 @@ use crate::engine::lanes::{Bounded, Passes};
 use crate::engine::piece::Watch;
 use crate::engine::piece::{CONVERGED, Expansion, Over, Piece};
 use crate::mechanics::instant::Instant;
-use crate::mechanics::reach::Magnitudes;
+use crate::mechanics::reach::{Magnitudes, Reach};
 use crate::mechanics::restraint::Angles;
 use crate::series::extremes;
 use crate::{Base, Detail, Output, Structure, Ties};
@@ -126,8 +126,8 @@ struct Searched {
 
 impl Searched {
     #[inline(always)]
-    fn bound<Q: Moves>(&self, structure: &Structure, bounds: &Magnitudes<Q>) -> f64 {
-        structure.reaches()[self.place].bound(self.output, structure, bounds)
+    fn bound<Q: Moves>(&self, (structure, reaches): (&Structure, &[Reach]), bounds: &Magnitudes<Q>) -> f64 {
+        reaches[self.place].bound(self.output, structure, bounds)
     }
 }
 
@@ -244,8 +244,9 @@ impl Peaks {
     /// Whether magnitudes of `structure` within `bounds` may equal or exceed a peak.
     #[inline(always)]
     pub(super) fn may_be_same<Q: Moves>(&self, structure: &Structure, bounds: &Magnitudes<Q>) -> bool {
+        let reaches = structure.reaches();
         let may_be_same = |of: &Searched| {
-            let bound = of.bound(structure, bounds);
+            let bound = of.bound((structure, reaches), bounds);
             bound > 0.0 && of.peak.may_be_same(bound)
         };
         self.searched.iter().any(may_be_same)
@@ -253,7 +254,8 @@ impl Peaks {
 
     /// Whether magnitudes of `structure` within `bounds` at `time` (s) or later may change a peak.
     pub(super) fn may_change<Q: Moves>(&self, structure: &Structure, bounds: &Magnitudes<Q>, time: f64) -> bool {
-        self.searched.iter().any(|of| of.peak.may_change(of.bound(structure, bounds), time))
+        let reaches = structure.reaches();
+        self.searched.iter().any(|of| of.peak.may_change(of.bound((structure, reaches), bounds), time))
     }
 
     /// Whether `piece` may change a peak.
@@ -282,7 +284,7 @@ impl Peaks {
             let (reach, start) = (part.arc.reach, part.time(0.0));
             let (mut ends, mut over) = (None, None);
             for of in &mut self.searched {
-                let bound = of.bound(structure, &bounds);
+                let bound = of.bound((structure, structure.reaches()), &bounds);
                 let Searched { output, peak, .. } = of;
                 if !peak.may_change(bound, start) {
                     continue;
