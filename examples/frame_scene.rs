@@ -3,7 +3,7 @@
 #![allow(non_snake_case)] // the letters of the equations
 
 use rocking::engine::Settings;
-use rocking::{Body, Detail, Engine, Floor, LinearLoad, Load, Modes, Output, State, Structure, Transition};
+use rocking::{Body, Detail, Engine, Floor, Ground, LinearLoad, Load, Modes, Output, State, Structure, Transition};
 use rocking::{Mode, Ties};
 use std::array::from_fn;
 
@@ -26,7 +26,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             shape: Modes::new(&Vec::from_iter(modes.iter().map(|_| next()))),
         })
         .collect();
+    let points = next() as usize;
+    let [xi, k, c] = [(); 3].map(|()| Vec::from_iter((0..points).map(|_| next())));
     let frame = Structure::of_body(body, &modes, &floors)?;
+    let frame = if points == 0 { frame } else { frame.on(&Ground { xi, k, c, ..Ground::default() })? };
     let [dt, samples] = from_fn(|_| next());
     let ground: Vec<[f64; 2]> = (0..samples as usize).map(|_| from_fn(|_| next())).collect();
 
@@ -40,6 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         engine.advance(dt, LinearLoad { value, slope }, &mut show)?;
         let now = engine.sample(end);
         print!("S {:?}", now.output(Output::theta));
+        engine.structure().foundation().iter().for_each(|_| print!(" {:?}", now.output(Output::y)));
         for of in [Output::u, Output::a_t] {
             (0..engine.structure().floors().len()).for_each(|floor| print!(" {:?}", now.output(of(floor))));
         }

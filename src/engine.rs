@@ -11,6 +11,7 @@
 //! 2 ζ_u ω_u is the largest 2 ζ ω of the modes times J_P/(J_P − Σ μ h²). One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. At levels
 //! with an exact flow of full contact, one step covers the rest of a long interval once the base stays down for good.
 
+pub(crate) mod contacts;
 #[cfg(feature = "lanes")]
 pub(crate) mod lanes;
 pub mod motion;
@@ -23,17 +24,19 @@ use crate::digits::with_unit;
 use crate::levels::detail::Detail;
 use crate::levels::level::Subject;
 use crate::levels::level::{Level, derivatives};
+use crate::mechanics::contact;
 use crate::mechanics::energy::energy;
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
-use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
+use crate::mechanics::restraint::{Dissipators, Restraint, Restraints, Tie};
 use crate::mechanics::state::InitialStateError;
 use crate::numbers::dual::Dual;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, Start};
-use crate::{Output, Phase, State, Structure};
+use crate::structure::ground::MORE;
+use crate::{Foundation, Output, Phase, State, Structure};
 use motion::{Chatter, Motion, Work};
 use phases::{Closed, Step, Watched};
 use piece::{Piece, Room, Sample, Watch, shown};
@@ -308,7 +311,8 @@ impl Engine<Modes> {
         let (State { u, u_dot, theta, .. }, modes) = (state, level.structure().modes().len());
         for numbers in [u, u_dot] {
             let given = numbers.count();
-            if given != modes && !numbers.is_within(&Modes::ZERO) {
+            let more = level.structure().foundation().map_or(0, |_| MORE);
+            if given != modes && given != modes + more && !numbers.is_within(&Modes::ZERO) {
                 return Err(InitialStateError::Coordinates { given, modes });
             }
         }
@@ -317,12 +321,27 @@ impl Engine<Modes> {
         }
         let of_frame = |numbers: Modes| Modes::each(level.structure(), |j, _| numbers.of(j));
         let state = State { u: of_frame(u), u_dot: of_frame(u_dot), ..state };
-        Ok(Engine::start(level, settings, time, state, phase))
+        let Some(foundation) = level.structure().foundation().cloned() else {
+            return Ok(Engine::start(level, settings, time, state, phase));
+        };
+        let base = *level.structure().base();
+        let state = foundation.begin(&state, &base);
+        if settings.detail == Detail::FixedBase {
+            return Ok(Engine::start(level, settings, time, state, phase));
+        }
+        let phase = Phase::OnGround(foundation.contact(&state, &base));
+        let mut engine = Engine::start(level, settings, time, state, phase);
+        engine.motion.dissipators = foundation.moved(&state, &base);
+        Ok(engine)
     }
 
     /// Mechanical energy now, J.
     pub fn energy(&self) -> f64 {
-        energy(self.structure(), self.motion.phase, &self.motion.state)
+        let Motion { phase, state, dissipators, .. } = &self.motion;
+        match phase {
+            Phase::OnGround(pressed) => contact::energy(self.structure(), *pressed, state, dissipators),
+            _ => energy(self.structure(), *phase, state),
+        }
     }
 }
 
@@ -377,7 +396,7 @@ impl<Q: Moves> Engine<Q> {
     #[inline]
     pub fn outputs(&self, load: Load<Q>) -> impl Fn(Output) -> f64 {
         // a sample would copy the motion
-        let x = shown::<Q>(&*self.level, self.motion.phase.in_motion(), &self.motion.under(load));
+        let x = shown::<Q>(&*self.level, self.motion.phase.in_motion(self.structure()), &self.motion.under(load));
         move |output| output.of(&x)
     }
 
@@ -408,7 +427,13 @@ impl<Q: Moves> Engine<Q> {
         if let Phase::Overturned(_) = phase {
             return Restraints::default();
         }
-        let theta_ddot = self.sample(load).second().theta_ddot;
+        let Second { u_ddot, theta_ddot } = self.sample(load).second();
+        if let Some(Foundation { rest, place, .. }) = self.structure().foundation() {
+            let moving = contact::ties_on_ground(self.structure().base(), *rest, dissipators, phase.contact());
+            let rates = moving.map(|tie| Tie { force: 0.0, ..tie });
+            let of = |at: usize| [state.u_dot.of(at), u_ddot.of(at)];
+            return contact::forces_on_ground(&rates, [of(*place), of(place + 1)]);
+        }
         let restraint = Restraint::about(self.structure().base(), phase.side(), dissipators);
         Restraints::rates(&restraint, self.level.subject().angles, [state.theta, state.theta_dot, theta_ddot])
     }
@@ -421,7 +446,7 @@ impl<Q: Moves> Engine<Q> {
     /// Whether the structure, in full contact now, stays there while nothing acts on it.
     pub fn stays_down(&self) -> bool {
         let Motion { phase, state, dissipators, .. } = &self.motion;
-        *phase == Phase::FullContact && self.level.stays_down(state, dissipators)
+        matches!(phase, Phase::FullContact | Phase::OnGround(_)) && self.level.stays_down(state, dissipators)
     }
 
     /// The motion now, under `load`.
@@ -549,7 +574,11 @@ impl<Q: Moves> Rates<'_, Q> {
         }
         let x = Instant::moving(engine.structure(), *phase, state, accelerations, *load);
         let theta_ddot = Dual { value: accelerations.theta_ddot, rate: jerks.theta_ddot };
-        output.of(&Instant { theta_ddot, ..x }).rate
+        let lift = engine.structure().foundation().map(|Foundation { place, .. }| {
+            let [value, rate] = [accelerations, jerks].map(|of| of.u_ddot.of(*place));
+            Dual { value, rate }
+        });
+        output.of(&Instant { theta_ddot, a_v: lift.map_or(x.a_v, |lift| x.a_v + lift), ..x }).rate
     }
 
     /// The rates of the reactions.
@@ -760,8 +789,8 @@ where
                 *on_the_way = advance;
                 return Ok(None);
             }
-            let mut step =
-                Step { level, side: motion.phase.side(), start: &begin, arc: self.arc, reach: self.arc.reach };
+            let (side, contact) = (motion.side(), motion.phase.contact());
+            let mut step = Step { level, side, contact, start: &begin, arc: self.arc, reach: self.arc.reach };
             let closed = first(watched, &mut step);
             let (reach, moved) = (step.reach, watched.moved(level.subject(), &step));
             self.arc.reach = reach;

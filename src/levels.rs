@@ -7,6 +7,7 @@ pub(crate) mod level;
 mod linear;
 pub(crate) mod modes;
 pub mod nonlinear;
+pub(crate) mod on_ground;
 pub(crate) mod oscillator;
 pub mod rules;
 pub(crate) mod ties;

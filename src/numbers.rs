@@ -29,12 +29,33 @@ pub trait Number:
 {
     /// The number that does not change with time.
     fn constant(value: f64) -> Self;
+
+    /// The value by which numbers are compared.
+    fn value(&self) -> f64;
+
+    /// The number, or 0 if it is negative. A bound and a power series stay what they are: the value of the part is not beyond them, and
+    /// changes where they do.
+    #[inline]
+    fn positive(self) -> Self {
+        if self.value() > 0.0 { self } else { Self::constant(0.0) }
+    }
+
+    /// The larger of two numbers.
+    #[inline]
+    fn larger(self, other: Self) -> Self {
+        if self.value() >= other.value() { self } else { other }
+    }
 }
 
 impl Number for f64 {
     #[inline]
     fn constant(value: f64) -> f64 {
         value
+    }
+
+    #[inline]
+    fn value(&self) -> f64 {
+        *self
     }
 }
 

@@ -6,6 +6,7 @@ pub mod base;
 pub mod derived;
 pub mod description;
 pub mod doubts;
+pub mod ground;
 pub mod mode;
 pub mod natural_quantities;
 pub mod one_mass;
@@ -18,6 +19,7 @@ use crate::mechanics::reach::{Reach, reaches};
 use crate::series::bisection::last_where;
 use crate::{Load, State};
 use base::{Base, Ties};
+use ground::{Foundation, Ground, GroundError, MORE};
 use mode::{Floor, Mode, Vibration};
 use one_mass::OneMass;
 use parameters::{ParameterError, Parameters};
@@ -109,6 +111,10 @@ struct Whole {
     base: Base,
     body: Body,
     modes: Vec<Mode>,
+    /// What carries the base on ground that gives; none on rigid ground.
+    foundation: Option<Foundation>,
+    /// A mode for each lateral coordinate: on ground that gives, y, sin θ and the energy of the ground take no part in any sum.
+    coordinates: Vec<Mode>,
     floors: Vec<Floor>,
     gauges: Gauges,
     vibration: Vibration,
@@ -225,6 +231,9 @@ pub enum StructureError {
     /// Forces that do not match the floors.
     #[error("{forces} forces are given on {floors} floors: give one for each floor, or none")]
     Forces { forces: usize, floors: usize },
+    /// Ground that cannot carry the structure.
+    #[error("ground: {0}")]
+    Ground(#[from] GroundError),
 }
 
 impl Structure {
@@ -313,8 +322,56 @@ impl Structure {
         vibration: Vibration,
         one: Option<OneMass>,
     ) -> Structure {
-        let reaches = Reaches::default();
-        Structure(Arc::new(Whole { base, body, modes, floors, gauges, vibration, one, of_mode: one, reaches }))
+        let (reaches, coordinates) = (Reaches::default(), modes.clone());
+        let whole = Whole {
+            base,
+            body,
+            modes,
+            foundation: None,
+            coordinates,
+            floors,
+            gauges,
+            vibration,
+            one,
+            of_mode: one,
+            reaches,
+        };
+        Structure(Arc::new(whole))
+    }
+
+    /// This structure on `ground` that gives, with at most 21 modes. The structure has no numbers of one mass any more: it is moved as
+    /// structures of many masses are.
+    pub fn on(&self, ground: &Ground) -> Result<Structure, StructureError> {
+        let kept =
+            if self.modes().len() > MOST_MODES - MORE { self.with_lowest(MOST_MODES - MORE) } else { self.clone() };
+        let Whole { base, body, ref modes, ref floors, ref gauges, vibration, .. } = *kept.0;
+        let foundation = Foundation::new(ground, &base, &body, modes)?;
+        if foundation.is_none() {
+            return Ok(self.clone());
+        }
+        let on_rigid = Structure::made(base, body, modes.clone(), floors.clone(), gauges.clone(), vibration, None);
+        let whole = Arc::into_inner(on_rigid.0).expect("it has just been made");
+        let coordinates = [&modes[..], &[Mode { mass: 1.0, ..Mode::default() }; MORE]].concat();
+        Ok(Structure(Arc::new(Whole { foundation, coordinates, ..whole })))
+    }
+
+    /// `structure` on the ground of this one.
+    fn on_own_ground(&self, structure: Structure) -> Result<Structure, StructureError> {
+        let Some(Foundation { points, .. }) = self.foundation() else { return Ok(structure) };
+        let list = |of: fn(&ground::Point) -> f64| points.iter().map(of).collect();
+        structure.on(&Ground { xi: list(|at| at.xi), k: list(|at| at.k), c: list(|at| at.c), ..Ground::default() })
+    }
+
+    /// What carries the base on ground that gives; none on rigid ground.
+    #[inline(always)]
+    pub fn foundation(&self) -> Option<&Foundation> {
+        self.0.foundation.as_ref()
+    }
+
+    /// A mode for each lateral coordinate.
+    #[inline(always)]
+    pub(crate) fn coordinates(&self) -> &[Mode] {
+        &self.0.coordinates
     }
 
     /// This structure with its `count` modes of the lowest frequencies, or none. The mass of the others turns rigidly with the base.
@@ -350,7 +407,8 @@ impl Structure {
         kept.sort_unstable();
         let shape = |floor: &Floor| Modes::new(&Vec::from_iter(kept.iter().map(|j| floor.shape.of(*j))));
         let floors = Vec::from_iter(self.0.floors.iter().map(|floor| Floor { shape: shape(floor), ..*floor }));
-        Structure::of(self.0.body, &Vec::from_iter(kept.iter().map(|j| self.0.modes[*j])), &floors)
+        let kept = Structure::of(self.0.body, &Vec::from_iter(kept.iter().map(|j| self.0.modes[*j])), &floors);
+        self.on_own_ground(kept).expect("the rest of the modes rides rigidly, which makes the base heavier and stiffer")
     }
 
     /// The load of the ground accelerations `a_g` and `a_v` (m/s²) and of a horizontal force on each floor (N, to the right), or of
@@ -414,7 +472,11 @@ impl Structure {
         }
         let Parameters { m0, J0, B, r, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
         let (r, ties) = (Some(r).filter(|r| !r.is_nan()), Ties { P_0, k_t, xi_d, c_d, k_d, F_y });
-        Structure::of_body(Body { m0, J0, B, r, g, c_ratio, ties, ..self.0.body }, &self.0.modes, &self.0.floors)
+        self.on_own_ground(Structure::of_body(
+            Body { m0, J0, B, r, g, c_ratio, ties, ..self.0.body },
+            &self.0.modes,
+            &self.0.floors,
+        )?)
     }
 
     /// This structure as engines of one coordinate move it, if one mode is all of it: the coordinate is scaled so that the mode takes the
@@ -424,7 +486,7 @@ impl Structure {
             return Some(self.clone());
         }
         let &[Mode { mass, gamma, share, height, stiffness, damping }] = self.modes() else { return None };
-        if self.rest() != [0.0; 3] || self.0.gauges.has_feedthrough {
+        if self.rest() != [0.0; 3] || self.0.gauges.has_feedthrough || self.foundation().is_some() {
             return None;
         }
         let square = share * share;
@@ -502,6 +564,12 @@ impl Structure {
     /// Circular frequencies of vibration while the structure rocks, rad/s, lowest first.
     pub fn rocking_frequencies(&self) -> Vec<f64> {
         (1..=self.0.modes.len()).map(|n| rocking(&self.0.base, &self.0.modes, n)).collect()
+    }
+
+    /// Circular frequencies of small motions on ground that gives with all points pressed, rad/s, lowest first; none on rigid ground.
+    pub fn frequencies_on_ground(&self) -> Vec<f64> {
+        let frequencies = |of: &Foundation| of.frequencies(self.base(), self.body(), self.modes());
+        self.foundation().map_or(Vec::new(), frequencies)
     }
 
     /// Usual magnitudes in a motion: of each mode, as if the mode had all mass, where the base is about to lift off statically; the

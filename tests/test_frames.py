@@ -17,13 +17,13 @@ def program(exporter):
     return exporter.parent / "examples/frame_scene"
 
 
-def engine(program: Path, frame: Frame, dt: float, a_g, a_v, ties: Ties, detail: str):
+def engine(program: Path, frame: Frame, dt: float, a_g, a_v, ties: Ties, detail: str, points=()):
     """Transitions, and rows of theta, u and a at the samples, by the modes of the frame (examples/frame_scene.rs)."""
     phi, M_phi = frame.phi, frame.m[:, None] * frame.phi
     zeta = np.diag(phi.T @ frame.C @ phi) / (2 * frame.omega)
     numbers = [detail == "auto", 1e-11, frame.m0, frame.J0, frame.m.sum(), frame.S_1, frame.I_2, frame.B, frame.r or -1, frame.g,
                ties.P_0, ties.k_t, ties.xi_d, ties.c_d, ties.k_d, ties.F_y, len(frame.omega), len(frame.m),
-               *frame.omega, *zeta, *M_phi.sum(axis=0), *(frame.h @ M_phi), *np.column_stack([frame.m, frame.h, phi]).ravel(),
+               *frame.omega, *zeta, *M_phi.sum(axis=0), *(frame.h @ M_phi), *np.column_stack([frame.m, frame.h, phi]).ravel(), len(points), *np.ravel(points, order="F"),
                dt, len(a_g), *np.column_stack([a_g, a_v]).ravel()]
     done = subprocess.run([program], check=True, capture_output=True, text=True, input=" ".join(repr(float(x)) for x in numbers))
     lines = [line.split() for line in done.stdout.splitlines()]

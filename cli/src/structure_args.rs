@@ -62,7 +62,7 @@ impl StructureArgs {
                     Some(one) => numbers.structure(Some(one.parameters()))?,
                     None if numbers.is_empty() => return Ok(structure),
                     None => bail!(
-                        "{} replaces a number of one mass, and {} describes many masses: change it in the file",
+                        "{} replaces a number of one mass, and {} describes many masses or ground that gives: change it in the file",
                         numbers.names().map(on_command_line).collect::<Vec<_>>().join(", "),
                         input::name(path)
                     ),

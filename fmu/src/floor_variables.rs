@@ -15,7 +15,7 @@ pub(crate) fn rows(frame: &Structure, one_mass: impl Iterator<Item = Row>) -> Ve
     let (peaks, others): (Vec<_>, Vec<_>) = others.into_iter().partition(is_peak);
     let rows: Vec<_> = loads(frame, &inputs)
         .into_iter()
-        .chain(Output::all(frame).into_iter().map(|of| output(of, frame)))
+        .chain(Output::all(frame).into_iter().filter(|of| *of != Output::y).map(|of| output(of, frame)))
         .chain(states(frame))
         .chain(peaks)
         .chain(numbers(frame))
@@ -65,13 +65,16 @@ fn output(of: Output, frame: &Structure) -> Row {
     let depends_on: &[&'static str] = match of {
         Output::theta => &["theta_0"],
         Output::theta_dot => &["theta_dot_0"],
-        Output::uplift => &["theta"],
+        Output::uplift => &["theta", "y"],
         Output::V_t | Output::M_t => ACCELERATION,
         Output::a_t(_) | Output::V(_) | Output::M(_) => ACCELERATION,
         Output::u(_) | Output::drift(_) | Output::drift_ratio(_) => &["u"],
         Output::u_dot(_) => &["u_dot"],
         Output::delta_t(_) => &["u", "theta"],
         Output::v_t(_) => &["u", "u_dot", "theta", "theta_dot"],
+        Output::y | Output::P_t | Output::settlement | Output::settled(_) | Output::lifted(_) => &["y", "theta"],
+        Output::N_left | Output::N_right | Output::N(_) | Output::pressure => &["y", "y_dot", "theta", "theta_dot"],
+        Output::contact | Output::E_foundation => &[],
     };
     let is_local = matches!(of, Output::theta_dot | Output::u_dot(_));
     let causality = if is_local { Causality::Local } else { Causality::Output };
@@ -81,16 +84,27 @@ fn output(of: Output, frame: &Structure) -> Row {
     (if is_state { variable.state() } else { variable }, Source::Output(of))
 }
 
+/// Number of lateral coordinates that are states: of the modes, and on ground that gives y.
+pub(crate) fn lateral_states(frame: &Structure) -> usize {
+    frame.modes().len() + usize::from(frame.foundation().is_some())
+}
+
 /// The coordinates of the modes, and the derivatives of all states.
 fn states(frame: &Structure) -> Vec<Row> {
-    let n = frame.modes().len();
+    let n = lateral_states(frame);
+    let is_y = |place: usize| place % n == frame.modes().len() && place < 2 * n;
     let name = |place: usize| match place {
+        place if is_y(place) => ["y", "y_dot"][place / n].to_owned(),
         place if place < n => format!("q[{}]", place + 1),
         place if place < 2 * n => format!("q_dot[{}]", place - n + 1),
         place => ["theta", "theta_dot"][place - 2 * n].to_owned(),
     };
     let coordinate = |place: usize| {
-        let (unit, description) = if place < n {
+        let (unit, description) = if is_y(place) {
+            let of_base =
+                ["height of the middle of the base above the unloaded ground", "velocity of the middle of the base"];
+            (["m", "m/s"][place / n], of_base[place / n].into())
+        } else if place < n {
             ("m", format!("coordinate of mode {}, scaled to a modal mass of 1 kg", place + 1))
         } else {
             ("m/s", format!("velocity of mode {}", place - n + 1))

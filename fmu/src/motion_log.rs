@@ -44,7 +44,10 @@ fn describe<Q: Moves>(is_one_mass: bool, transition: &Transition<Q>) -> String {
         TransitionKind::Impact(pivot) => format!("impact, rocking on about the {} edge", side(pivot)),
         TransitionKind::Landing | TransitionKind::Settling => "landing in full contact".to_owned(),
         TransitionKind::Overturning(pivot) => format!("overturning about the {} edge", side(pivot)),
-        kind @ (TransitionKind::Yielding(_) | TransitionKind::Unloading(_)) => kind.name().to_owned(),
+        TransitionKind::Touch(point) | TransitionKind::Release(point) => {
+            format!("{} of contact point {}", kind.name(), point + 1)
+        }
+        kind => kind.name().to_owned(),
     };
     let of_one = is_one_mass.then(|| {
         let [u, u_dot, u_dot_before] = [after.u, after.u_dot, before.u_dot].map(|of| of.of(0));

@@ -92,8 +92,12 @@ impl<Q: Moves> Scene<Q> {
             return Err(Refusal::FarState { name: names(far), value: states[far] }.into());
         }
         let [.., theta, theta_dot] = *states else { unreachable!("the host gives a number for each state") };
-        let part = |from: usize| Q::each(self.engine.structure(), |j, _| states[from + j]);
-        self.engine.set_state(State { u: part(0), u_dot: part(self.lateral), theta, theta_dot });
+        let State { mut u, mut u_dot, .. } = self.engine.motion().state;
+        for (j, at) in (0..self.lateral).filter_map(|j| Some((j, self.place(j)?))) {
+            u.set(at, states[j]);
+            u_dot.set(at, states[self.lateral + j]);
+        }
+        self.engine.set_state(State { u, u_dot, theta, theta_dot });
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 //! the list of the records that were packed.
 
 use rocking::structure::parameters::ParameterError;
-use rocking::{Body, Floor, Mode, Modes, Structure, StructureError, Ties};
+use rocking::{Body, Floor, Ground, Mode, Modes, Structure, StructureError, Ties};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -54,11 +54,14 @@ pub struct FrameNumbers {
     modes: Vec<f64>,
     /// Of each floor mass, height, and the displacement per coordinate of each mode.
     floors: Vec<f64>,
+    /// Place, stiffness and damping of each contact point of ground that gives.
+    points: Vec<f64>,
 }
 
 /// Numbers of a structure without r, and of a mode.
 const OF_BODY: usize = 14;
 const OF_MODE: usize = 6;
+const OF_POINT: usize = 3;
 
 /// Lines of other numbers, or of another count of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,7 +69,8 @@ pub struct Incomplete;
 
 impl Display for FrameNumbers {
     fn fmt(&self, text: &mut Formatter) -> fmt::Result {
-        for line in [&self.body, &self.modes, &self.floors] {
+        let points = [&self.points].into_iter().filter(|points| !points.is_empty());
+        for line in [&self.body, &self.modes, &self.floors].into_iter().chain(points) {
             line.iter().try_for_each(|number| write!(text, "{number:?} "))?;
             writeln!(text)?;
         }
@@ -82,12 +86,15 @@ impl FromStr for FrameNumbers {
         let number = |word: &str| word.parse().ok().filter(|number: &f64| number.is_finite());
         let mut line =
             || -> Option<Vec<f64>> { lines.next().unwrap_or_default().split_whitespace().map(number).collect() };
-        let (Some(body), Some(modes), Some(floors)) = (line(), line(), line()) else { return Err(Incomplete) };
+        let (Some(body), Some(modes), Some(floors), Some(points)) = (line(), line(), line(), line()) else {
+            return Err(Incomplete);
+        };
         let of_floor = 2 + modes.len() / OF_MODE;
         let are_all = (OF_BODY..=OF_BODY + 1).contains(&body.len())
             && modes.len().is_multiple_of(OF_MODE)
-            && floors.len().is_multiple_of(of_floor);
-        if are_all { Ok(FrameNumbers { body, modes, floors }) } else { Err(Incomplete) }
+            && floors.len().is_multiple_of(of_floor)
+            && points.len().is_multiple_of(OF_POINT);
+        if are_all { Ok(FrameNumbers { body, modes, floors, points }) } else { Err(Incomplete) }
     }
 }
 
@@ -102,6 +109,12 @@ impl From<&Structure> for FrameNumbers {
             body: body.collect(),
             modes: frame.modes().iter().flat_map(mode).collect(),
             floors: frame.floors().iter().flat_map(floor).collect(),
+            points: frame
+                .foundation()
+                .into_iter()
+                .flat_map(|of| &of.points)
+                .flat_map(|of| [of.xi, of.k, of.c])
+                .collect(),
         }
     }
 }
@@ -125,7 +138,13 @@ impl FrameNumbers {
         };
         let modes: Vec<_> = self.modes.as_chunks().0.iter().map(mode).collect();
         let floor = |of: &[f64]| Floor { mass: of[0], height: of[1], shape: Modes::new(&of[2..]) };
-        Structure::of_body(body, &modes, &self.floors.chunks_exact(2 + modes.len()).map(floor).collect::<Vec<_>>())
+        let floors = Vec::from_iter(self.floors.chunks_exact(2 + modes.len()).map(floor));
+        let frame = Structure::of_body(body, &modes, &floors)?;
+        if self.points.is_empty() {
+            return Ok(frame);
+        }
+        let list = |which: usize| self.points.iter().skip(which).step_by(OF_POINT).copied().collect();
+        frame.on(&Ground { xi: list(0), k: list(1), c: list(2), ..Ground::default() })
     }
 }
 
@@ -258,7 +277,7 @@ mod tests {
     fn a_structure_of_many_masses_needs_all_its_numbers() {
         let body = Body {
             m0: 1.0,
-            J0: 0.0,
+            J0: 0.1,
             m_s: 2.0,
             S_1: 6.0,
             I_2: 20.0,
@@ -270,6 +289,7 @@ mod tests {
         };
         let floor = Floor { mass: 2.0, height: 3.0, shape: Modes::new(&[1.0]) };
         let frame = Structure::of_body(body, &[Mode::new(20.0, 0.02, 1.2, 4.0)], &[floor]).unwrap();
+        let frame = frame.on(&Ground { f_v: Some(40.0), ..Ground::default() }).unwrap();
         let whole = FrameNumbers::from(&frame).to_string();
         let read = |text: &str| text.parse::<FrameNumbers>().map(|numbers| numbers.frame().unwrap());
         assert_eq!(read(&whole), Ok(frame));

@@ -3,6 +3,7 @@
 
 use crate::advance::{Told, Watching};
 use crate::failure::Refusal;
+use crate::floor_variables::lateral_states;
 use crate::ground::{Digest, GroundRecord};
 use crate::resources::Contents;
 use crate::setup::Setup;
@@ -80,7 +81,7 @@ impl<Q: Moves> Scene<Q> {
         let ground = source.as_deref().map(|source| setup.scaled(source, g)).transpose()?;
         let engine = setup.engine::<Q>(contents, may_move_vertically(setup, ground.as_ref()))?;
         let peaks = Falling::since(setup.start_time, engine.structure(), setup.detail);
-        let (validity, lateral) = (Findings::since(setup.start_time), contents.structure.modes().len());
+        let (validity, lateral) = (Findings::since(setup.start_time), lateral_states(&contents.structure));
         Ok(Scene { engine, source, ground, elapsed: Elapsed::default(), outside: None, peaks, validity, lateral })
     }
 
@@ -101,8 +102,15 @@ impl<Q: Moves> Scene<Q> {
 
     /// The numbers of a `state`, in the order of the table.
     pub fn components(&self, state: &State<Q>) -> Vec<f64> {
-        let of = |coordinates: Q| (0..self.lateral).map(move |j| coordinates.of(j));
+        let of = |coordinates: Q| (0..self.lateral).map(move |j| self.place(j).map_or(0.0, |at| coordinates.of(at)));
         of(state.u).chain(of(state.u_dot)).chain([state.theta, state.theta_dot]).collect()
+    }
+
+    /// The place in the engine of lateral coordinate `j` of the table, whose last is y on ground that gives; none of what does not move.
+    pub fn place(&self, j: usize) -> Option<usize> {
+        let (structure, modes) = (self.engine.structure(), self.engine.structure().modes().len());
+        let is_y = structure.foundation().is_some() && j + 1 == self.lateral;
+        (is_y || j < modes).then_some(if is_y { modes } else { j })
     }
 
     /// Whether the ground may move vertically.

@@ -175,7 +175,10 @@ impl<Q: Moves> Model for Unit<Q> {
     fn get(&mut self, reference: u32) -> Result<Value, Failure> {
         let source = self.table.sources[reference as usize];
         Ok(match source {
-            Source::Phase => Value::Integer(phase_number(self.scene()?.engine.motion().phase)),
+            Source::Phase => {
+                let motion = self.scene()?.engine.motion();
+                Value::Integer(phase_number(motion.phase.shown(motion.state.theta)))
+            }
             Source::Transitions => integer(self.scene()?.engine.motion().transitions),
             Source::Overturned => Value::Boolean(self.scene()?.has_overturned()),
             Source::Gains => integer(self.scene()?.validity.gains),

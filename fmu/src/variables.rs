@@ -139,6 +139,7 @@ pub static PHASES: Enumeration = Enumeration {
         Phase::Rocking(Side::Left).name(),
         Phase::Rocking(Side::Right).name(),
         Phase::Overturned(Side::Right).name(),
+        Phase::FLIGHT.name(),
     ],
 };
 
@@ -172,6 +173,7 @@ pub(crate) fn phase_number(phase: Phase) -> i32 {
         Phase::Rocking(Side::Left) => 2,
         Phase::Rocking(Side::Right) => 3,
         Phase::Overturned(_) => 4,
+        Phase::OnGround(_) => 5,
     }
 }
 

@@ -25,10 +25,11 @@ from pathlib import Path
 
 from . import _native
 from ._native import Curve, Record, Run, Structure, __version__, advise, estimate, pulse, simulate
+from ._ground import Ground
 from ._results import Advice, Estimate, Peak, Profile, Response, Transition, Transitions, Worst
 from ._sweep import Fragility, fragility, intensity_at, sweep
 
-__all__ = ["Advice", "Curve", "Estimate", "Fragility", "Peak", "Profile", "Record", "Response", "Run", "Structure", "Transition",
+__all__ = ["Advice", "Curve", "Estimate", "Fragility", "Ground", "Peak", "Profile", "Record", "Response", "Run", "Structure", "Transition",
            "Transitions", "Worst", "__version__", "advise", "estimate", "export", "fmu", "fragility", "intensity_at", "pulse", "simulate", "sweep"]
 
 

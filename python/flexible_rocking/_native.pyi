@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Unpack
 
+from ._ground import Ground
 from ._results import Advice, Estimate, Peak, Profile, Response, Transitions, Worst
 
 __version__: str
@@ -41,6 +42,7 @@ class _Numbers(TypedDict, total=False):
     alpha_cg: float
     p_l: float
     units: Literal["N, m, kg", "kN, m, t"]
+    ground: Ground
 
 class _Storey(TypedDict):
     m: float
@@ -62,10 +64,10 @@ class Structure:
     @overload
     def __new__(cls, *, preset: Literal["mcmanus", "evison"] | None = None, **numbers: Unpack[_Numbers]) -> Structure: ...
     @overload
-    def __new__(cls, *, storeys: Sequence[_Storey], zeta: ArrayLike | _Rayleigh, **base: float | str) -> Structure: ...
+    def __new__(cls, *, storeys: Sequence[_Storey], zeta: ArrayLike | _Rayleigh, **base: float | str | Ground) -> Structure: ...
     @staticmethod
     def from_matrices(
-        masses: ArrayLike, heights: ArrayLike, K: ArrayLike, *, zeta: ArrayLike | _Rayleigh, **base: float | str
+        masses: ArrayLike, heights: ArrayLike, K: ArrayLike, *, zeta: ArrayLike | _Rayleigh, **base: float | str | Ground
     ) -> Structure: ...
     @staticmethod
     def from_modes(
@@ -83,7 +85,7 @@ class Structure:
         masses: ArrayLike | None = None,
         heights: ArrayLike | None = None,
         shapes: ArrayLike | None = None,
-        **base: float | str,
+        **base: float | str | Ground,
     ) -> Structure: ...
     def replace(self, **numbers: Unpack[_Numbers]) -> Structure: ...
     @property

@@ -5,10 +5,10 @@ use anyhow::anyhow;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rocking::Structure;
 use rocking::structure::description::{Damping, Described, FoundMode, Place, Storey, Total};
 use rocking::structure::natural_quantities::{Given, names, names_of_base};
 use rocking::structure::quantity::Units;
+use rocking::{Ground, Structure};
 use serde::{Deserialize, de::IntoDeserializer};
 use std::cell::RefCell;
 
@@ -54,6 +54,9 @@ impl<'py> Keywords<'py> {
 
 /// The structure of many masses that `keywords` describe.
 pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Structure> {
+    if !OF_MANY.iter().any(|name| keywords.contains(name).unwrap_or(false)) {
+        return given(&keywords)?.structure(None).map_err(refused);
+    }
     let keywords = Keywords { left: keywords, known: RefCell::default() };
     let missing = |name: &str| PyValueError::new_err(format!("{name} is missing"));
     let zeta = keywords.take("zeta")?;
@@ -81,6 +84,7 @@ pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Structure> {
             J_P,
         }),
     };
+    let ground = keywords.take("ground")?.map(|of| ground(&of)).transpose()?;
     let keep = keywords.take("keep")?.map(|keep| integer("keep", &keep)).transpose()?;
     let truth = |of: Bound<'_, PyAny>| {
         of.extract().map_err(|_| PyValueError::new_err(format!("p_delta = {of:?}: True or False is needed")))
@@ -94,7 +98,7 @@ pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Structure> {
     }
     let zeta = damping(&zeta.ok_or_else(|| missing("zeta (damping ratio in full contact)"))?)?;
     let base = given(&keywords.left)?;
-    let described = Described { units, zeta, storeys, p_delta, floors, K, modes, total, keep, base };
+    let described = Described { units, zeta, storeys, p_delta, floors, K, modes, total, keep, base, ground };
     described.structure().map_err(refused)
 }
 
@@ -104,10 +108,39 @@ pub fn given(keywords: &Bound<'_, PyDict>) -> PyResult<Given> {
     for (name, value) in keywords {
         match name.extract::<String>()?.as_str() {
             "units" => units = self::units(&value)?,
+            "ground" => given = given.on(ground(&value)?),
             name => given.give(name, number(name, &value)?).map_err(refused)?,
         }
     }
     Ok(given.measured_in(units))
+}
+
+/// Ground that gives, from flexible_rocking.Ground or a dict with its names.
+fn ground(value: &Bound<'_, PyAny>) -> PyResult<Ground> {
+    let wrong = || PyValueError::new_err(format!("ground = {value:?}: flexible_rocking.Ground(f_v=...) is needed"));
+    let mut ground = Ground::default();
+    for (name, value) in value.cast::<PyDict>().map_err(|_| wrong())? {
+        let name = name.extract::<String>()?;
+        let one = || number(&name, &value).map(Some);
+        match name.as_str() {
+            "f_v" => ground.f_v = one()?,
+            "k_v" => ground.k_v = one()?,
+            "zeta_v" => ground.zeta_v = one()?,
+            "c_v" => ground.c_v = one()?,
+            "kr_ratio" => ground.kr_ratio = one()?,
+            "k_r" => ground.k_r = one()?,
+            "n_points" => ground.n_points = Some(usize::try_from(integer(&name, &value)?).unwrap_or(0)),
+            "xi" => ground.xi = numbers(&name, &value)?,
+            "k" => ground.k = numbers(&name, &value)?,
+            "c" => ground.c = numbers(&name, &value)?,
+            _ => {
+                return Err(PyValueError::new_err(format!(
+                    "ground: {name:?} is unknown; see help(flexible_rocking.Ground)"
+                )));
+            }
+        }
+    }
+    Ok(ground)
 }
 
 fn units(value: &Bound<'_, PyAny>) -> PyResult<Units> {

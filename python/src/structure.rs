@@ -37,7 +37,7 @@ use rocking_report::describe;
 /// of its floor. zeta: one damping ratio, one for each mode, or dict(f=(Hz, Hz), zeta=...) for Rayleigh damping. The numbers of
 /// the base are those above. Without r, momentum gives a coefficient for each impact. keep: how many modes are kept; the rest of
 /// the mass turns rigidly with the base. p_delta=True subtracts the weight above each storey, over the storey's height, from its k.
-/// See also from_matrices and from_modes.
+/// See also from_matrices and from_modes. ground=Ground(f_v=40, zeta_v=0.2) puts either on contact points that push and never pull.
 ///
 /// A Python warning names a number that is usual in another unit. Raises ValueError where a number is unknown, missing, given twice in
 /// different ways or out of its range.
@@ -103,14 +103,23 @@ impl Structure {
         let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
         let of_many = OF_MANY.iter().find(|name| numbers.contains(name).unwrap_or(false));
         let structure = match preset {
-            None if of_many.is_some() => return Structure::many(&numbers),
+            None if of_many.is_some() || numbers.contains("ground")? => return Structure::many(&numbers),
             None => given(&numbers)?.structure(None),
             Some(_) if let Some(name) = of_many => {
                 let message =
                     format!("preset is a structure of one mass, and {name} makes one of many: leave out one of them");
                 return Err(PyValueError::new_err(message));
             }
-            Some(preset) => given(&numbers)?.structure(Some(&one_of("preset", preset, PRESETS)?)),
+            Some(preset) => {
+                let on_rigid = numbers.copy()?;
+                let ground = on_rigid.get_item("ground")?;
+                ground.iter().try_for_each(|_| on_rigid.del_item("ground"))?;
+                let structure = given(&on_rigid)?.structure(Some(&one_of("preset", preset, PRESETS)?));
+                let Some(ground) = ground else { return Structure::of(py, structure.map_err(refused)?, None) };
+                let keywords = Structure { of: structure.map_err(refused)?, keywords: None }.parameters(py)?;
+                keywords.set_item("ground", ground)?;
+                return Structure::many(&keywords);
+            }
         };
         Structure::of(py, structure.map_err(refused)?, None)
     }

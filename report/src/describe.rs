@@ -8,6 +8,7 @@ use rocking::structure::derived::{DERIVED, Derived};
 use rocking::structure::derived::{OF_MODE, OF_STRUCTURE};
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{Detail, Structure};
+use std::f64::consts::TAU;
 use std::fmt::{self, Write};
 
 /// The parameters of one mass.
@@ -19,7 +20,20 @@ fn given(structure: &Structure) -> Vec<NamedValue> {
 
 /// The derived quantities of one mass; the numbers of a structure of many masses.
 pub fn derived(structure: &Structure) -> Vec<NamedValue> {
-    structure.one().map_or_else(|| named(&OF_STRUCTURE, structure), |one| named(&DERIVED, one))
+    let mut all = structure.one().map_or_else(|| named(&OF_STRUCTURE, structure), |one| named(&DERIVED, one));
+    if let Some(foundation) = structure.foundation() {
+        let [k_v, k_r] = [0, 2].map(|power| foundation.sum(power));
+        let lowest = structure.frequencies_on_ground()[0] / TAU;
+        let f_v = (k_v / structure.base().m_t).sqrt() / TAU;
+        all.extend([
+            NamedValue::new("k_v", k_v, "N/m", "", "vertical stiffness of the ground"),
+            NamedValue::new("k_r", k_r, "N.m/rad", "", "rotational stiffness of the ground"),
+            NamedValue::new("f_v", f_v, "Hz", "", "frequency of the bounce on the ground"),
+            NamedValue::new("f_g", lowest, "Hz", "", "lowest frequency on the ground with all points pressed"),
+            NamedValue::new("y_s", foundation.rest, "m", "", "height of the base at rest above the unloaded ground"),
+        ]);
+    }
+    all
 }
 
 /// The numbers of each mode of a structure of many masses, lowest frequency first.

@@ -115,8 +115,13 @@ pub struct Event {
 pub struct Line(pub Vec<f64>, pub &'static str, pub u64);
 
 /// The phases by their numbers among the [`Samples`].
-pub const PHASES: [Phase; 4] =
-    [Phase::Overturned(Side::Left), Phase::FullContact, Phase::Rocking(Side::Left), Phase::Rocking(Side::Right)];
+pub const PHASES: [Phase; 5] = [
+    Phase::Overturned(Side::Left),
+    Phase::FullContact,
+    Phase::Rocking(Side::Left),
+    Phase::Rocking(Side::Right),
+    Phase::FLIGHT,
+];
 
 /// A motion at instants.
 pub struct Samples {
@@ -343,9 +348,10 @@ fn results<Q: Runs>(structure: &Structure, found: &fall::Found<Q>, transitions: 
         fall,
         peaks: [NamedPeak::new("a_g", "m/s2", ground)].into_iter().chain(NamedPeak::all(structure, peaks)).collect(),
         taken: (c_d > 0.0 || k_d > 0.0).then_some(taken),
-        first_uplift: first(|kind| matches!(kind, TransitionKind::Uplift(_))),
+        first_uplift: first(|kind| matches!(kind, TransitionKind::Uplift(_) | TransitionKind::Release(_))),
         first_impact: first(|kind| {
-            matches!(kind, TransitionKind::Impact(_) | TransitionKind::Landing | TransitionKind::Settling)
+            use TransitionKind::{Impact, Landing, Settling, Touch};
+            matches!(kind, Impact(_) | Landing | Settling | Touch(_))
         }),
         transitions: motion.transitions,
         work: motion.work,

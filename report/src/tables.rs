@@ -39,7 +39,11 @@ pub(crate) fn line<Q: Moves>(sample: &Sample<Q>, outputs: Vec<f64>) -> Line {
     let [P_t, F_d1, F_d2] = TIES.map(|(_, force)| force(&restraints));
     let Dissipators { plastic: [e_p1, e_p2], viscous, hysteretic, .. } = motion.dissipators;
     let after = [R_h, R_v, R_m, I_h, I_v, I_m, load.a_v, P_t, F_d1, F_d2, e_p1, e_p2, viscous, hysteretic];
-    Line([&[motion.time, load.a_g], &outputs[..], &after].concat(), motion.phase.name(), motion.transitions)
+    Line(
+        [&[motion.time, load.a_g], &outputs[..], &after].concat(),
+        motion.phase.shown(motion.state.theta).name(),
+        motion.transitions,
+    )
 }
 
 impl Run {

@@ -7,7 +7,7 @@ use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
 use crate::mechanics::reactions::Impulse;
 use crate::mechanics::restraint::Dissipators;
-use crate::{Phase, State};
+use crate::{Phase, Side, State};
 use serde::{Deserialize, Serialize};
 
 /// Work done since the start, counted.
@@ -46,6 +46,12 @@ impl<Q: Coordinates> Motion<Q> {
     #[inline]
     pub(crate) fn under(&self, load: Load<Q>) -> Now<'_, Q> {
         Now { state: &self.state, load, dissipators: &self.dissipators }
+    }
+
+    /// The side about which the structure rocks, or to which it leans on ground that gives.
+    #[inline]
+    pub(crate) fn side(&self) -> Side {
+        if let Phase::OnGround(_) = self.phase { Side::of(self.state.theta) } else { self.phase.side() }
     }
 
     /// Whether a transition is due at this instant: state and phase are those before it.

@@ -4,6 +4,7 @@
 //! A new kind of contact is one more [`Watched`] here, with its guards.
 
 use crate::engine::Moves;
+use crate::engine::contacts::{self, Points, Tied};
 use crate::engine::motion::Motion;
 use crate::engine::piece::Sample;
 use crate::engine::transition::{TransitionKind, enter};
@@ -16,7 +17,7 @@ use crate::mechanics::restraint::Dissipators;
 use crate::mechanics::state::way;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
-use crate::{Phase, Side, Structure};
+use crate::{Contact, Phase, Side, Structure};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
@@ -29,6 +30,8 @@ pub(crate) struct Step<'a, Q: Moves = f64> {
     pub level: &'a dyn Level<Q>,
     /// The side about which the structure rocks.
     pub side: Side,
+    /// What carries the base on ground that gives.
+    pub contact: Contact,
     pub start: &'a Start<'a, Q>,
     pub arc: &'a Arc<Q>,
     /// The σ up to which no guard is known to close.
@@ -108,6 +111,13 @@ impl<Q: Moves> Watched<Q> {
     const ROCKING_YIELDING: &'static Watched<Q> =
         &Watched { guards: &[&Yielding, &Overturning, &Impact], moved: Some(yielding::moved), ..Watched::RESTING };
 
+    /// Ground that gives.
+    const ON_GROUND: &'static Watched<Q> = &Watched { guards: &[&Overturning, &Points], ..Watched::RESTING };
+
+    /// Ground that gives, with a tendon or dissipators.
+    const ON_GROUND_TIED: &'static Watched<Q> =
+        &Watched { guards: &[&Overturning, &Points, &Tied], moved: Some(contacts::moved), ..Watched::RESTING };
+
     /// The dissipators at the reach of `step`, if it moves them.
     #[inline]
     pub(crate) fn moved(&self, subject: &Subject, step: &Step<Q>) -> Option<Dissipators> {
@@ -124,6 +134,8 @@ pub(crate) fn of<Q: Moves>(structure: &Structure, motion: &Motion<Q>) -> Option<
         Phase::FullContact => Some(Watched::CONTACT),
         Phase::Rocking(_) if structure.base().ties.F_y > 0.0 => Some(Watched::ROCKING_YIELDING),
         Phase::Rocking(_) => Some(Watched::ROCKING),
+        Phase::OnGround(_) if structure.base().is_restrained() => Some(Watched::ON_GROUND_TIED),
+        Phase::OnGround(_) => Some(Watched::ON_GROUND),
         Phase::Overturned(_) => None,
     }
 }
@@ -174,7 +186,7 @@ impl<Q: Moves> Guard<Q> for Overturning {
     }
 
     fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, _way: Way) -> TransitionKind {
-        let side = motion.phase.side();
+        let side = motion.side();
         enter(level, motion, Phase::Overturned(side), motion.state);
         TransitionKind::Overturning(side)
     }

@@ -9,6 +9,7 @@ use crate::engine::phases::{self, Step};
 use crate::engine::transition::Transition;
 use crate::levels::level::Level;
 use crate::levels::level::{Now, Subject};
+use crate::mechanics::contact;
 use crate::mechanics::gauge::{Gauge, Reading};
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::load::{LinearLoad, Load};
@@ -18,7 +19,7 @@ use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
 use crate::numbers::{Angle, Number, Turn};
 use crate::series::taylor::{Arc, Start, evaluate};
 use crate::series::terms::Terms;
-use crate::{Modes, Output, Phase, Ramp, Reactions, State, Structure};
+use crate::{Contact, Foundation, Modes, Output, Phase, Ramp, Reactions, State, Structure};
 use std::cell::{Cell, RefCell};
 use std::f64::consts::TAU;
 
@@ -87,12 +88,17 @@ impl<Q: Moves> Sample<'_, Q> {
     /// ü and θ̈; once overturned, those of the instant before.
     pub(crate) fn second(&self) -> Second<f64, Q> {
         let Sample { motion, load, level } = self;
-        level.accelerations(motion.phase.in_motion(), &motion.under(*load))
+        level.accelerations(motion.phase.in_motion(level.structure()), &motion.under(*load))
     }
 
     /// The structure at the instant, without θ̈.
     fn instant(&self) -> Instant<'_, f64, Q> {
-        Instant::of(self.level.structure(), self.motion.phase.in_motion(), &self.motion.state, self.load)
+        Instant::of(
+            self.level.structure(),
+            self.motion.phase.in_motion(self.level.structure()),
+            &self.motion.state,
+            self.load,
+        )
     }
 
     /// The reactions; once overturned, those of the instant before.
@@ -107,6 +113,11 @@ impl<Q: Moves> Sample<'_, Q> {
         if !is_tied {
             return reactions;
         }
+        if structure.foundation().is_some() {
+            let Restraints { P_t, F_d1, F_d2 } = self.restraints();
+            let moment = structure.base().ties.xi_d * (F_d1 - F_d2) * libm::cos(state.theta);
+            return reactions.of_edges(P_t + F_d1 + F_d2, 0.0, moment);
+        }
         let restraint = Restraint::about(structure.base(), phase.side(), dissipators);
         let [up, right, moment] = restraint.pulls(&level.subject().angles.chord(state.theta, state.theta_dot));
         reactions.of_edges(up, right, moment)
@@ -115,8 +126,16 @@ impl<Q: Moves> Sample<'_, Q> {
     /// The forces of the restraints.
     pub fn restraints(&self) -> Restraints {
         let Motion { phase, state, dissipators, .. } = &self.motion;
+        let structure = self.level.structure();
+        if let Some(Foundation { rest, place, .. }) = structure.foundation() {
+            let ties = contact::ties_on_ground(structure.base(), *rest, dissipators, phase.contact());
+            return contact::forces_on_ground(
+                &ties,
+                [*place, place + 1].map(|at| [state.u.of(at), state.u_dot.of(at)]),
+            );
+        }
         let chord = self.level.subject().angles.chord(state.theta, state.theta_dot);
-        Restraint::about(self.level.structure().base(), phase.side(), dissipators).forces(&chord)
+        Restraint::about(structure.base(), phase.side(), dissipators).forces(&chord)
     }
 
     /// The value of `output`; once overturned, the value of the instant before.
@@ -132,7 +151,7 @@ impl<Q: Moves> Sample<'_, Q> {
 
     pub(crate) fn shown(&self) -> Instant<'_, f64, Q> {
         let Sample { motion, load, level } = self;
-        shown::<Q>(*level, motion.phase.in_motion(), &motion.under(*load))
+        shown::<Q>(*level, motion.phase.in_motion(level.structure()), &motion.under(*load))
     }
 }
 
@@ -144,7 +163,9 @@ pub(crate) fn shown<'a, Q: Moves>(level: &'a dyn Level<Q>, phase: Phase, now: &N
     if !structure.gauges().has_feedthrough {
         return x;
     }
-    Instant { theta_ddot: level.accelerations(phase, now).theta_ddot, ..x }
+    let Second { u_ddot, theta_ddot } = level.accelerations(phase, now);
+    let lift = structure.foundation().map_or(0.0, |foundation| u_ddot.of(foundation.place));
+    Instant { theta_ddot, a_v: x.a_v + lift, ..x }
 }
 
 /// A series of an output that is off by less than this part of its terms at its end has converged.
@@ -230,8 +251,8 @@ impl<'p, Q: Moves> Piece<'p, Q> {
     /// The dissipators `tau` seconds after the start of the piece.
     fn dissipators_at(&self, tau: f64) -> Dissipators {
         let moved = phases::of::<Q>(self.level.structure(), self.before).zip(self.arc).and_then(|(watched, arc)| {
-            let (level, side) = (self.level, self.before.phase.side());
-            let step = Step { level, side, start: &self.whole().step(), arc, reach: tau / arc.span };
+            let (level, side, contact) = (self.level, self.before.phase.side(), self.before.phase.contact());
+            let step = Step { level, side, contact, start: &self.whole().step(), arc, reach: tau / arc.span };
             watched.moved(level.subject(), &step)
         });
         moved.unwrap_or(self.before.dissipators)
@@ -496,12 +517,18 @@ impl<'a, Q: Moves> Over<'a, Q> {
         let none = Terms::constant(0.0);
         let (theta, theta_dot, turn) = match of.piece.before.phase {
             Phase::FullContact => (none, none, Turn::none()),
-            Phase::Rocking(_) | Phase::Overturned(_) => {
+            Phase::Rocking(_) | Phase::Overturned(_) | Phase::OnGround(_) => {
                 let [theta, theta_dot] = [&of.arc.theta, &of.arc.theta_dot].map(|it| Terms::of(it, of.arc.order));
                 (theta, theta_dot, theta.turn())
             }
         };
         Over { of, theta, theta_dot, turn }
+    }
+
+    /// ÿ on ground that gives, m/s².
+    pub(crate) fn lift(&self) -> Option<Terms> {
+        let place = self.structure().foundation()?.place;
+        Some(self.coordinate(place)[1].slope(self.of.arc.span))
     }
 
     /// A number that is linear in the lateral coordinates.
@@ -516,7 +543,7 @@ impl<Q: Moves> Shows<Terms> for Over<'_, Q> {
     }
 
     fn pivot(&self) -> f64 {
-        self.of.piece.before.phase.side().sign() * self.structure().base().B
+        self.of.piece.before.phase.pivot() * self.structure().base().B
     }
 
     fn theta(&self) -> Terms {
@@ -539,11 +566,20 @@ impl<Q: Moves> Shows<Terms> for Over<'_, Q> {
         self.lateral(|k| self.of.arc.u_dot[k].weighed(shape))
     }
 
+    fn contact(&self) -> Contact {
+        self.of.piece.before.phase.contact()
+    }
+
+    fn coordinate(&self, place: usize) -> [Terms; 2] {
+        [&self.of.arc.u, &self.of.arc.u_dot].map(|series| self.lateral(|k| series[k].of(place)))
+    }
+
     fn gauge(&self, gauge: &Gauge) -> Terms {
         let Expansion { piece, from, arc } = self.of;
         let (structure, phase) = (self.structure(), piece.before.phase);
         let (damping, load) = (structure.base().damping(phase), piece.load.from(from));
         let ramp = |value: f64, slope: f64| Terms::ramp(value, slope * arc.span);
+        let a_v = ramp(load.value.a_v, load.slope.a_v);
         let reading = Reading {
             elastic: self.lateral(|k| gauge.elastic(structure, damping, &arc.u[k], &arc.u_dot[k])),
             push: ramp(gauge.push(structure, &load.value.F_t), gauge.push(structure, &load.slope.F_t)),
@@ -551,8 +587,8 @@ impl<Q: Moves> Shows<Terms> for Over<'_, Q> {
             theta_dot: self.theta_dot,
             theta_ddot: self.theta_dot.slope(arc.span),
             a_g: ramp(load.value.a_g, load.slope.a_g),
-            a_v: ramp(load.value.a_v, load.slope.a_v),
+            a_v: self.lift().map_or(a_v, |lift| a_v + lift),
         };
-        gauge.value(structure.base(), phase.side().sign(), &reading)
+        gauge.value(structure.base(), phase.pivot(), &reading)
     }
 }

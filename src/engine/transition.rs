@@ -23,6 +23,14 @@ pub enum TransitionKind {
     Yielding(usize),
     /// This dissipator ceases to yield.
     Unloading(usize),
+    /// The ground touches this contact point, the leftmost (0) first.
+    Touch(usize),
+    /// The ground releases this contact point.
+    Release(usize),
+    /// The tendon becomes taut.
+    Taut,
+    /// The tendon becomes slack.
+    Slack,
 }
 
 impl TransitionKind {
@@ -41,6 +49,10 @@ impl TransitionKind {
             TransitionKind::Yielding(_) => "yielding of the second dissipator",
             TransitionKind::Unloading(0) => "unloading of the first dissipator",
             TransitionKind::Unloading(_) => "unloading of the second dissipator",
+            TransitionKind::Touch(_) => "touch",
+            TransitionKind::Release(_) => "release",
+            TransitionKind::Taut => "tendon taut",
+            TransitionKind::Slack => "tendon slack",
         }
     }
 }

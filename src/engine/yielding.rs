@@ -27,7 +27,7 @@ const AT_CONTACT: f64 = 1e-10;
 pub(crate) struct Yielding;
 
 impl<Q: Moves> Guard<Q> for Yielding {
-    fn first(&self, &Step { level, side, start, arc, reach }: &Step<Q>) -> (Crossing, Way) {
+    fn first(&self, &Step { level, side, start, arc, reach, .. }: &Step<Q>) -> (Crossing, Way) {
         let (base, dissipators) = (level.structure().base(), start.dissipators);
         let Ties { k_d, F_y, .. } = base.ties;
         let mut found = (Crossing::None, Way::default());
@@ -106,7 +106,7 @@ fn least_margin<Q: Moves>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
 }
 
 /// The dissipators at the reach of a step.
-pub(crate) fn moved<Q: Moves>(&Step { level, side, start, arc, reach }: &Step<Q>) -> Dissipators {
+pub(crate) fn moved<Q: Moves>(&Step { level, side, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
     let (base, angles, dissipators) = (level.structure().base(), level.subject().angles, start.dissipators);
     let &Base { B, ties: Ties { xi_d, c_d, k_d, F_y, .. }, .. } = base;
     let (mut moved, theta) = (*dissipators, evaluate(arc.used(&arc.theta), reach));
@@ -128,7 +128,7 @@ pub(crate) fn moved<Q: Moves>(&Step { level, side, start, arc, reach }: &Step<Q>
 }
 
 /// ∫ (Σ c_k σᵏ)² dσ from 0 to `reach`.
-fn square_integral(coefficients: &[f64], reach: f64) -> f64 {
+pub(super) fn square_integral(coefficients: &[f64], reach: f64) -> f64 {
     let mut terms = ZERO;
     terms.iter_mut().zip(coefficients).fold(1.0, |power, (term, c)| {
         *term = c * power;

@@ -20,6 +20,7 @@ use crate::levels::level::{ElasticRocking, Level, Subject, most_of_swings};
 use crate::levels::linear::LinearRocking;
 use crate::levels::modes::ManyModes;
 use crate::levels::nonlinear::NonlinearRocking;
+use crate::levels::on_ground::OnGround;
 use crate::mechanics::restraint::Angles;
 use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift::least_hold;
@@ -126,7 +127,12 @@ impl Detail {
         };
         let is_tied = structure.base().is_restrained() || is_vertical;
         let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
-        Ok(Box::new(ManyModes::<Modes>::new(subject, self)))
+        match self {
+            _ if subject.structure.foundation().is_none() => Ok(Box::new(ManyModes::<Modes>::new(subject, self))),
+            Detail::Linear => Err(InitialStateError::OnGround(self.name())),
+            Detail::FixedBase => Ok(Box::new(ManyModes::<Modes>::new(subject, self))),
+            _ => Ok(Box::new(OnGround::new(subject))),
+        }
     }
 }
 
@@ -184,7 +190,7 @@ impl<Rocking: ElasticRocking + Clone + Debug + Send + 'static> Level for Elastic
         match phase {
             Phase::FullContact => self.contact.as_ref()?.leap(start, self.least_displacement(start)),
             Phase::Rocking(side) => self.rocking.leap(side, start),
-            Phase::Overturned(_) => None,
+            Phase::Overturned(_) | Phase::OnGround(_) => None,
         }
     }
 
@@ -205,7 +211,7 @@ impl<Rocking: ElasticRocking + Clone + Debug + Send + 'static> Level for Elastic
     fn series(&self, phase: Phase, start: &Start, arc: &mut Arc) {
         match phase {
             Phase::Rocking(side) => self.rocking.series(side, start, arc),
-            Phase::FullContact | Phase::Overturned(_) => full_contact::series(&self.one, start, arc),
+            _ => full_contact::series(&self.one, start, arc),
         }
     }
 

@@ -136,7 +136,7 @@ pub trait Level<Q: Coordinates = f64>: Debug + Send {
     fn admissible(&self, phase: Phase, state: State<Q>) -> State<Q> {
         match phase {
             Phase::FullContact => State { theta: 0.0, theta_dot: 0.0, ..state },
-            Phase::Rocking(_) | Phase::Overturned(_) => state,
+            Phase::Rocking(_) | Phase::Overturned(_) | Phase::OnGround(_) => state,
         }
     }
 

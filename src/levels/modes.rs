@@ -78,36 +78,36 @@ struct Scratch {
 }
 
 /// Coefficients for four modes.
-type FourSeries = [f64x4; MAX_ORDER + 1];
+pub(super) type FourSeries = [f64x4; MAX_ORDER + 1];
 
 /// Four modes side by side; modes that are none have no mass and stay at rest.
 #[derive(Clone, Debug, Default)]
-struct Four {
+pub(super) struct Four {
     /// The number of the first mode.
-    first: usize,
-    mass: f64x4,
-    share: f64x4,
-    height: f64x4,
+    pub first: usize,
+    pub mass: f64x4,
+    pub share: f64x4,
+    pub height: f64x4,
     /// μ h.
-    arm: f64x4,
+    pub arm: f64x4,
     /// k/μ.
-    stiffness: f64x4,
+    pub stiffness: f64x4,
     /// c/μ in full contact.
-    damping: f64x4,
+    pub damping: f64x4,
     /// The newest coefficients of u and u̇.
-    motion: [f64x4; 2],
+    pub motion: [f64x4; 2],
     /// Force over mass, and its change over the span.
-    push: [f64x4; 2],
+    pub push: [f64x4; 2],
     /// e + w θ̇² of the newest order.
-    resistance: f64x4,
+    pub resistance: f64x4,
     /// w.
-    lever: FourSeries,
+    pub lever: FourSeries,
     /// μ w, from the end.
     heavy: FourSeries,
 }
 
 impl Four {
-    fn new((place, modes): (usize, &[Mode])) -> Four {
+    pub fn new((place, modes): (usize, &[Mode])) -> Four {
         let both = |of: fn(&Mode) -> f64| f64x4::new([0, 1, 2, 3].map(|i| modes.get(i).map_or(0.0, of)));
         Four {
             first: 4 * place,
@@ -123,7 +123,7 @@ impl Four {
 
     /// Σ a_i b_{k−i} over the first terms of `a`, with b kept from its end.
     #[inline(always)]
-    fn product(a: &[f64x4], b: &[f64x4]) -> f64x4 {
+    pub fn product(a: &[f64x4], b: &[f64x4]) -> f64x4 {
         let mut sum = f64x4::ZERO;
         a.iter().zip(b).for_each(|(a, b)| sum += a * b);
         sum
@@ -131,7 +131,7 @@ impl Four {
 
     /// Puts w in order 0.
     #[inline(always)]
-    fn start(&mut self, lever: f64x4) -> f64x4 {
+    pub fn start(&mut self, lever: f64x4) -> f64x4 {
         let heavy = self.mass * lever;
         (self.lever[0], self.heavy[MAX_ORDER]) = (lever, heavy);
         heavy
@@ -139,7 +139,7 @@ impl Four {
 
     /// Puts −u in order `k` of w, and returns that order of μ w² and μ w.
     #[inline(always)]
-    fn next(&mut self, k: usize, per: f64) -> [f64x4; 2] {
+    pub fn next(&mut self, k: usize, per: f64) -> [f64x4; 2] {
         let Four { lever, heavy, .. } = self;
         lever[k] = self.motion[1] * -per;
         heavy[MAX_ORDER - k] = self.mass * lever[k];
@@ -511,13 +511,13 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
             Phase::Rocking(side) if self.detail == Detail::Linear => self.rocking_little(side, start, arc),
             Phase::Rocking(side) if self.is_rigid() => self.rocking_rigidly(side, start, arc),
             Phase::Rocking(side) => self.rocking(side, start, arc),
-            Phase::FullContact | Phase::Overturned(_) if self.is_rigid() => {
+            Phase::FullContact | Phase::Overturned(_) | Phase::OnGround(_) if self.is_rigid() => {
                 let nothing = Truncation { u_dot: Q::ZERO, theta_dot: 0.0 };
                 arc.expand(&self.admissible(Phase::FullContact, start.state), start.interval, nothing, |_, _, _| {
                     (Q::ZERO, 0.0)
                 });
             }
-            Phase::FullContact | Phase::Overturned(_) => self.resting(start, arc),
+            Phase::FullContact | Phase::Overturned(_) | Phase::OnGround(_) => self.resting(start, arc),
         }
     }
 

@@ -19,19 +19,19 @@ pub fn energy<Q: Coordinates>(structure: &Structure, phase: Phase, state: &State
 }
 
 /// Energy at the instant `x`, J.
-fn mechanical<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>) -> N {
+pub(super) fn mechanical<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>) -> N {
     kinetic(x) + x.sum(|j, mode| x.u.of(j) * (0.5 * mode.stiffness) * x.u.of(j)) + potential(x)
 }
 
 /// Kinetic energy, J.
 pub(crate) fn kinetic<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>) -> N {
-    let &Base { m0, J0, B, .. } = x.base();
+    let &Base { m0, J0, .. } = x.base();
     let of_modes = x.sum(|j, mode| {
         let along = x.u_dot.of(j) + x.theta_dot * mode.height;
         let across = x.place(j, mode).lever(x.pivot()) * x.theta_dot;
         (along * along + across * across) * (0.5 * mode.mass)
     });
-    of_modes + x.theta_dot * (0.5 * (J0 + m0 * B * B)) * x.theta_dot
+    of_modes + x.theta_dot * (0.5 * (J0 + m0 * x.pivot() * x.pivot())) * x.theta_dot
 }
 
 /// Potential energy of the weights, J.

@@ -7,14 +7,16 @@ use crate::mechanics::outputs::Shows;
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
 use crate::{Base, Mode, Structure};
-use crate::{Phase, State};
+use crate::{Contact, Phase, State};
 
 /// The structure at an instant, with lateral coordinates `Q`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Instant<'a, N: Number, Q: Lateral<N> = N> {
     pub structure: &'a Structure,
-    /// s: +1 about the right pivot, −1 about the left one.
+    /// s: +1 about the right pivot, −1 about the left one; 0 on ground that gives.
     pub s: f64,
+    /// What carries the base on ground that gives.
+    pub contact: Contact,
     /// Viscous damping as a fraction of the damping in full contact.
     pub damping: f64,
     /// u, m.
@@ -75,7 +77,7 @@ impl Base {
     #[inline]
     pub(crate) fn damping(&self, phase: Phase) -> f64 {
         match phase {
-            Phase::FullContact => 1.0,
+            Phase::FullContact | Phase::OnGround(_) => 1.0,
             Phase::Rocking(_) | Phase::Overturned(_) => self.c_ratio,
         }
     }
@@ -87,8 +89,9 @@ impl<'a, Q: Coordinates> Instant<'a, f64, Q> {
     pub(crate) fn of(structure: &'a Structure, phase: Phase, state: &State<Q>, load: Load<Q>) -> Self {
         let &State { u, u_dot, theta, theta_dot } = state;
         let Load { a_g, F_t, a_v } = load;
-        let (s, damping, turn) = (phase.side().sign(), structure.base().damping(phase), theta.turn());
-        Instant { structure, s, damping, u, u_dot, theta, theta_dot, theta_ddot: 0.0, turn, a_g, F_t, a_v }
+        let (s, damping, turn) = (phase.pivot(), structure.base().damping(phase), theta.turn());
+        let contact = phase.contact();
+        Instant { structure, s, contact, damping, u, u_dot, theta, theta_dot, theta_ddot: 0.0, turn, a_g, F_t, a_v }
     }
 }
 
@@ -111,6 +114,7 @@ impl<'a, Q: Coordinates> Instant<'a, Dual<f64>, Duals<Q>> {
         Instant {
             structure,
             s,
+            contact: phase.contact(),
             damping: structure.base().damping(phase),
             u: lateral(u, u_dot),
             u_dot: lateral(u_dot, u_ddot),
@@ -164,6 +168,16 @@ impl<N: Number, Q: Lateral<N>> Shows<N> for Instant<'_, N, Q> {
     #[inline]
     fn gauge(&self, gauge: &Gauge) -> N {
         gauge.at(self)
+    }
+
+    #[inline]
+    fn contact(&self) -> Contact {
+        self.contact
+    }
+
+    #[inline]
+    fn coordinate(&self, place: usize) -> [N; 2] {
+        [self.u.of(place), self.u_dot.of(place)]
     }
 }
 

@@ -319,8 +319,13 @@ impl Coordinates for Modes {
 
     #[inline(always)]
     fn each(structure: &Structure, coordinate: impl Fn(usize, &Mode) -> f64) -> Modes {
-        let mut modes = Modes { count: structure.modes().len(), ..Modes::ZERO };
-        modes.of.iter_mut().zip(structure.modes()).enumerate().for_each(|(j, (of, mode))| *of = coordinate(j, mode));
+        let mut modes = Modes { count: structure.coordinates().len(), ..Modes::ZERO };
+        modes
+            .of
+            .iter_mut()
+            .zip(structure.coordinates())
+            .enumerate()
+            .for_each(|(j, (of, mode))| *of = coordinate(j, mode));
         modes
     }
 

@@ -18,7 +18,7 @@ use crate::mechanics::instant::{Instant, Place, uplift};
 use crate::mechanics::lateral::{Coordinates, Modes};
 use crate::mechanics::load::Load;
 use crate::numbers::{Number, Turn};
-use crate::{Phase, State, Structure};
+use crate::{Contact, Foundation, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 
 /// An output of a structure. Floors and storeys count from 0, from below; storey i is below floor i.
@@ -53,9 +53,32 @@ pub enum Output {
     V(usize),
     /// Overturning moment at the foot of a storey M_i, N·m.
     M(usize),
+    /// On ground that gives: height of the middle of the base above the unloaded ground, m.
+    y,
+    /// Settlement of the lower one of the outer contact points −min(e), m.
+    settlement,
+    /// Stiffness of the pressed points over the stiffness of all, 1.
+    contact,
+    /// Energy that the ground has taken, J.
+    E_foundation,
+    /// Force of the left outer contact point, N.
+    N_left,
+    /// Force of the right outer contact point, N.
+    N_right,
+    /// Largest force of a contact point over the width that it stands for, N/m.
+    pressure,
+    /// Force of a contact point, N.
+    N(usize),
+    /// Settlement of the left (0) or the right (1) outer point, or 0 above the unloaded ground, m.
+    settled(usize),
+    /// Force of the tendon on ground that gives, N.
+    P_t,
+    /// Height of the left (0) or the right (1) edge above the unloaded ground, or 0 below, m.
+    lifted(usize),
 }
 
-use Output::{M, M_t, V, V_t, a_t, delta_t, drift, drift_ratio, theta, theta_dot, u, u_dot, v_t};
+use Output::{E_foundation, M, M_t, N, N_left, N_right, V, V_t, a_t, contact, delta_t, drift, drift_ratio, lifted};
+use Output::{P_t, pressure, settled, settlement, theta, theta_dot, u, u_dot, v_t, y};
 
 /// A motion in numbers of the kind `N`, as formulas of outputs read it.
 pub(crate) trait Shows<N> {
@@ -70,6 +93,19 @@ pub(crate) trait Shows<N> {
     /// Elastic velocity of a floor of this `shape`, m/s.
     fn u_dot(&self, shape: &Modes) -> N;
     fn gauge(&self, gauge: &Gauge) -> N;
+    /// What carries the base on ground that gives.
+    fn contact(&self) -> Contact;
+    /// A lateral coordinate and its rate.
+    fn coordinate(&self, place: usize) -> [N; 2];
+
+    /// The height of the base at `xi` (m) above the unloaded ground that gives (m), and its rate (F1).
+    fn height(&self, place: usize, xi: f64) -> [N; 2]
+    where
+        N: Number,
+    {
+        let [middle, sin] = [place, place + 1].map(|place| self.coordinate(place));
+        [0, 1].map(|i| middle[i] - sin[i] * xi)
+    }
 }
 
 impl Output {
@@ -82,6 +118,9 @@ impl Output {
 
     /// The outputs of a base.
     const OF_BASE: [Output; 5] = [theta, theta_dot, Output::uplift, V_t, M_t];
+
+    /// The outputs of a base on ground that gives.
+    const OF_GROUND: [Output; 6] = [y, settlement, contact, E_foundation, N_left, N_right];
 
     /// The outputs of a floor and of the storey below the floor.
     const OF_FLOOR: [fn(usize) -> Output; 9] = [u, u_dot, drift, drift_ratio, delta_t, v_t, a_t, V, M];
@@ -96,16 +135,21 @@ impl Output {
         let of_floors = Output::OF_FLOOR.iter().flat_map(|of| (0..floors).map(of));
         // two floors at the same height have a drift and no storey
         let is_one = |of: &Output| of.displaced(structure).is_none_or(|(_, factor)| factor.is_finite());
-        Output::OF_BASE.into_iter().chain(of_floors).filter(is_one).collect()
+        let points = structure.foundation().map(|foundation| foundation.points.len());
+        let of_ground = points.iter().flat_map(|_| Output::OF_GROUND);
+        // two points are the outer ones
+        let of_points = points.into_iter().filter(|n| *n > 2).flat_map(|n| [pressure].into_iter().chain((0..n).map(N)));
+        Output::OF_BASE.into_iter().chain(of_ground).chain(of_points).chain(of_floors).filter(is_one).collect()
     }
 
     /// The outputs of `structure` that have a peak, in the order of their peaks.
     pub fn with_peak(structure: &Structure) -> Vec<Output> {
         match structure.one() {
             Some(_) => Output::PEAKS_OF_ONE.into(),
-            None => {
-                Output::all(structure).into_iter().filter(|of| !matches!(of, theta_dot | u_dot(_) | v_t(_))).collect()
-            }
+            None => Output::all(structure)
+                .into_iter()
+                .filter(|of| !matches!(of, theta_dot | u_dot(_) | v_t(_) | y | contact | E_foundation))
+                .collect(),
         }
     }
 
@@ -126,6 +170,17 @@ impl Output {
             a_t(i) => ("a_t", "m/s2", "lateral acceleration of floor #", Some(i)),
             V(i) => ("V", "N", "shear of storey # if all F_t are 0: the sum of m a_t above it", Some(i)),
             M(i) => ("M", "N.m", "overturning moment at the foot of storey # if all F_t are 0", Some(i)),
+            y => ("y", "m", "height of the middle of the base above the unloaded ground", None),
+            settlement => ("settlement", "m", "settlement of the lower outer contact point", None),
+            contact => ("contact", "1", "stiffness of the pressed contact points over the stiffness of all", None),
+            E_foundation => ("E_foundation", "J", "energy that the ground has taken", None),
+            N_left => ("N_left", "N", "force of the left outer contact point", None),
+            N_right => ("N_right", "N", "force of the right outer contact point", None),
+            pressure => ("pressure", "N/m", "largest force of a contact point over the width that it stands for", None),
+            N(i) => ("N", "N", "force of contact point # from the left", Some(i)),
+            settled(i) => ("settled", "m", "settlement of outer contact point #", Some(i)),
+            P_t => ("P_t", "N", "force of the tendon", None),
+            lifted(i) => ("lifted", "m", "height of edge # above the unloaded ground", Some(i)),
         }
     }
 
@@ -160,7 +215,23 @@ impl Output {
 
     /// Whether the output is linear in the components of the motion.
     pub(crate) fn is_component(self) -> bool {
-        matches!(self, theta | theta_dot | u(_) | u_dot(_) | drift(_) | drift_ratio(_))
+        let of_ground = matches!(self, y | E_foundation | N_left | N_right | N(_) | P_t | settled(_) | lifted(_));
+        of_ground || matches!(self, theta | theta_dot | u(_) | u_dot(_) | drift(_) | drift_ratio(_))
+    }
+
+    /// The outputs of `structure` on ground that gives of whose peaks the largest is the peak of this one, each with its factor.
+    pub(crate) fn parts(self, structure: &Structure) -> Vec<(Output, f64)> {
+        let Some(Foundation { points, .. }) = structure.foundation() else { return Vec::new() };
+        let last = points.len() - 1;
+        let width = |i: usize| (points[last.min(i + 1)].xi - points[i.saturating_sub(1)].xi) / 2.0;
+        match self {
+            Output::uplift => vec![(lifted(0), 1.0), (lifted(1), 1.0)],
+            settlement => vec![(settled(0), 1.0), (settled(1), 1.0)],
+            N_left => vec![(N(0), 1.0)],
+            N_right => vec![(N(last), 1.0)],
+            pressure => (0..=last).map(|i| (N(i), 1.0 / width(i))).collect(),
+            _ => Vec::new(),
+        }
     }
 
     /// The output as a multiple of `other`, if it is one in every motion of `structure`.
@@ -206,15 +277,53 @@ impl Output {
         self.of(&Instant::of(structure, phase, state, load))
     }
 
+    /// The output in the motion `x` on ground that gives (F1, F2).
+    fn on_ground<K: Number>(self, x: &impl Shows<K>, foundation: &Foundation) -> K {
+        let Foundation { points, place, .. } = foundation;
+        let last = points.len() - 1;
+        let ends = |of: fn(usize) -> Output| of(0).on_ground(x, foundation).larger(of(1).on_ground(x, foundation));
+        match self {
+            y => x.coordinate(*place)[0],
+            E_foundation => x.coordinate(place + 2)[0],
+            Output::uplift => ends(lifted),
+            settlement => ends(settled),
+            lifted(i) => x.height(*place, [-1.0, 1.0][i] * x.structure().base().B)[0].positive(),
+            settled(i) => (-x.height(*place, points[i * last].xi)[0]).positive(),
+            P_t => {
+                let ties = x.structure().base().ties;
+                let stretch = x.coordinate(*place)[0] + K::constant(-foundation.rest);
+                (stretch * ties.k_t + K::constant(ties.P_0)).positive()
+            }
+            N_left => N(0).on_ground(x, foundation),
+            N_right => N(last).on_ground(x, foundation),
+            N(i) if x.contact().is_pressed(i) => {
+                let [e, rate] = x.height(*place, points[i].xi);
+                -(e * points[i].k + rate * points[i].c)
+            }
+            contact => {
+                let pressed = points.iter().enumerate().filter(|(i, _)| x.contact().is_pressed(*i));
+                K::constant(pressed.map(|(_, point)| point.k).sum::<f64>() / foundation.sum(0))
+            }
+            pressure => {
+                let parts = pressure.parts(x.structure()).into_iter();
+                parts
+                    .map(|(of, factor)| of.on_ground(x, foundation) * factor)
+                    .reduce(K::larger)
+                    .expect("there are points")
+            }
+            _ => K::constant(0.0),
+        }
+    }
+
     /// The output in the motion `x`.
     #[inline]
-    pub(crate) fn of<N: Number>(self, x: &impl Shows<N>) -> N {
+    pub(crate) fn of<K: Number>(self, x: &impl Shows<K>) -> K {
         let floor = |i: usize| &x.structure().floors()[i];
         let place = |i| Place { share: 1.0, height: floor(i).height, u: x.u(&floor(i).shape) };
         match self {
             theta => x.theta(),
             theta_dot => x.theta_dot(),
-            Output::uplift => uplift(x.pivot(), &x.turn()),
+            Output::uplift if x.structure().foundation().is_none() => uplift(x.pivot(), &x.turn()),
             u(_) | drift(_) | drift_ratio(_) => {
                 let (shape, factor) = self.displaced(x.structure()).expect("it is a displacement");
                 x.u(shape) * factor
@@ -225,6 +334,7 @@ impl Output {
             V_t | M_t | a_t(_) | V(_) | M(_) => {
                 x.gauge(self.gauge(x.structure()).expect("a gauge measures accelerations and forces"))
             }
+            _ => x.structure().foundation().map_or(K::constant(0.0), |foundation| self.on_ground(x, foundation)),
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::mechanics::lateral::{Coordinates, Modes, Mosts};
 use crate::numbers::Turn;
 use crate::numbers::most::Most;
 use crate::series::taylor::Arc;
-use crate::{Output, Ramp, Structure};
+use crate::{Contact, Output, Ramp, Structure};
 
 /// Bounds of the magnitudes of a motion.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +45,7 @@ pub(crate) fn reaches(structure: &Structure) -> Vec<Reach> {
     let x = Instant {
         structure,
         s: 1.0,
+        contact: Contact { pressed: u32::MAX, ..Contact::default() },
         damping: 1.0,
         u: Mosts(nothing),
         u_dot: Mosts(nothing),
@@ -74,7 +75,11 @@ pub(crate) fn reaches(structure: &Structure) -> Vec<Reach> {
     let of_floors = [Output::u, Output::drift, Output::delta_t, Output::a_t, Output::V, Output::M]
         .into_iter()
         .flat_map(|of| (0..floors).map(of));
-    [Output::theta, Output::V_t, Output::M_t].into_iter().chain(of_floors).map(reach).collect()
+    let of_ground = structure.foundation().into_iter().flat_map(|foundation| {
+        let ends = [Output::settled, Output::lifted].into_iter().flat_map(|of| [0, 1].map(of));
+        ends.chain([Output::P_t]).chain((0..foundation.points.len()).map(Output::N))
+    });
+    [Output::theta, Output::V_t, Output::M_t].into_iter().chain(of_floors).chain(of_ground).map(reach).collect()
 }
 
 impl Output {
@@ -90,6 +95,10 @@ impl Output {
             Output::a_t(i) => (3, i),
             Output::V(i) => (4, i),
             Output::M(i) => (5, i),
+            Output::settled(i) => (6, i),
+            Output::lifted(i) => (6, 2 + i),
+            Output::P_t => (6, 4),
+            Output::N(i) => (6, 5 + i),
             _ => return None,
         };
         Some(3 + kind * floors + i)
@@ -109,6 +118,7 @@ impl Reach {
         let elastic = most.u.weighed(u) + most.damping * most.u_dot.weighed(u_dot) + most.F_t.weighed(push);
         match (a_g, most.arc) {
             _ if most.theta == f64::INFINITY => f64::INFINITY,
+            (Some(_), _) if structure.foundation().is_some() => f64::INFINITY, // the base accelerates
             (None, _) => elastic + sin * most.theta + versine * (0.5 * most.theta * most.theta),
             (Some(_), Some(arc)) => {
                 let gauge = output.gauge(structure).expect("a gauge alone reads the ground acceleration");

@@ -95,10 +95,17 @@ impl<N: Number> Acceleration<N> {
     }
 }
 
+/// The acceleration of weights, g + a_v, m/s²; on ground that gives the base adds its own, ÿ.
+#[inline(always)]
+fn weight<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> N {
+    let weight = x.a_v + N::constant(x.base().g);
+    x.structure.foundation().map_or(weight, |foundation| weight + second.u_ddot.of(foundation.place))
+}
+
 /// R_h and R_v, N.
 #[inline(always)]
 pub(crate) fn forces<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> [N; 2] {
-    let &Base { m_t, m0, S_res, g, .. } = x.base();
+    let &Base { m_t, m0, S_res, .. } = x.base();
     let base = Acceleration::of_base(x, second);
     let (mut along, mut across, mut push) = (base.along * m0, base.across * m0, -(x.a_g * m_t));
     if S_res != 0.0 {
@@ -116,7 +123,7 @@ pub(crate) fn forces<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Secon
     }
     [
         push - along * x.turn.cos - across * x.turn.sin,
-        (x.a_v + N::constant(g)) * m_t + across * x.turn.cos - along * x.turn.sin,
+        weight(x, second) * m_t + across * x.turn.cos - along * x.turn.sin,
     ]
 }
 
@@ -135,8 +142,8 @@ pub(crate) fn less_momentum<N: Number>(
 /// R_m, N·m.
 #[inline(always)]
 pub(crate) fn moment<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> N {
-    let &Base { m0, S_res, J0, g, .. } = x.base();
-    let ground = [x.a_g, x.a_v + N::constant(g)];
+    let &Base { m0, S_res, J0, .. } = x.base();
+    let ground = [x.a_g, weight(x, second)];
     let base = Acceleration::of_base(x, second);
     let [right, down] = base.force(&x.turn, ground, m0);
     let mut moment = x.turn.sin * x.pivot() * right + x.turn.versine * x.pivot() * down;
@@ -218,7 +225,7 @@ impl Impulse {
 /// the rates of the places.
 fn momentum<Q: Coordinates>(structure: &Structure, phase: Phase, state: &State<Q>) -> Impulse {
     let &Base { m0, S_res, B, J0, .. } = structure.base();
-    let (pivot, moves) = (phase.side().sign() * B, phase == phase.in_motion());
+    let (pivot, moves) = (phase.pivot() * B, !matches!(phase, Phase::Overturned(_)));
     let rate = |rate: f64| if moves { rate } else { 0.0 };
     let turn = state.theta.turn().at_rate(rate(state.theta_dot));
     let about = |right: Dual<f64>, up: Dual<f64>| up.value * right.rate - right.value * up.rate;

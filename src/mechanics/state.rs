@@ -1,5 +1,6 @@
 //! State and phase of the structure.
 
+use crate::Structure;
 use crate::digits::with_unit;
 use crate::mechanics::lateral::Coordinates;
 use crate::structure::NotOneMass;
@@ -63,9 +64,38 @@ pub enum Phase {
     Rocking(Side),
     /// |θ| has reached π/2; the simulation is over.
     Overturned(Side),
+    /// On ground that gives, with these points pressed.
+    OnGround(Contact),
+}
+
+/// What carries the base on ground that gives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Contact {
+    /// A bit for each contact point, the lowest for the left edge: whether the point is pressed.
+    pub pressed: u32,
+    /// Number of contact points.
+    pub points: u8,
+    /// Whether the tendon is slack.
+    pub is_slack: bool,
+}
+
+impl Contact {
+    /// Whether point `i` is pressed.
+    #[inline]
+    pub fn is_pressed(self, i: usize) -> bool {
+        self.pressed >> i & 1 == 1
+    }
+
+    /// Whether all points are pressed.
+    pub fn is_full(self) -> bool {
+        self.pressed.count_ones() == u32::from(self.points)
+    }
 }
 
 impl Phase {
+    /// No point of ground that gives is pressed.
+    pub const FLIGHT: Phase = Phase::OnGround(Contact { pressed: 0, points: 0, is_slack: false });
+
     /// Name of the phase.
     pub const fn name(self) -> &'static str {
         match self {
@@ -73,20 +103,46 @@ impl Phase {
             Phase::Rocking(Side::Left) => "rocking left",
             Phase::Rocking(Side::Right) => "rocking right",
             Phase::Overturned(_) => "overturned",
+            Phase::OnGround(Contact { pressed: 0, .. }) => "flight",
+            Phase::OnGround(_) => "on ground that gives",
         }
     }
 
     /// The pivot; the right one in full contact, where it does not matter.
     pub fn side(self) -> Side {
         match self {
-            Phase::FullContact => Side::Right,
+            Phase::FullContact | Phase::OnGround(_) => Side::Right,
             Phase::Rocking(side) | Phase::Overturned(side) => side,
         }
     }
 
-    /// This phase, or the phase in which the structure overturned.
-    pub(crate) fn in_motion(self) -> Phase {
+    /// The place of the pivot over B: the sign s, or 0 on ground that gives, where the middle of the base is held.
+    #[inline]
+    pub(crate) fn pivot(self) -> f64 {
+        if let Phase::OnGround(_) = self { 0.0 } else { self.side().sign() }
+    }
+
+    /// What carries the base on ground that gives; otherwise nothing.
+    #[inline]
+    pub(crate) fn contact(self) -> Contact {
+        if let Phase::OnGround(contact) = self { contact } else { Contact::default() }
+    }
+
+    /// This phase as it is shown at the rotation `theta` (rad): on ground that gives full contact if all points are pressed, flight if
+    /// none is, and otherwise rocking about the side of θ.
+    pub fn shown(self, theta: f64) -> Phase {
         match self {
+            Phase::OnGround(contact) if contact.is_full() => Phase::FullContact,
+            Phase::OnGround(Contact { pressed: 0, .. }) => Phase::FLIGHT,
+            Phase::OnGround(_) => Phase::Rocking(Side::of(theta)),
+            phase => phase,
+        }
+    }
+
+    /// This phase, or the phase in which `structure` overturned.
+    pub(crate) fn in_motion(self, structure: &Structure) -> Phase {
+        match self {
+            Phase::Overturned(_) if structure.foundation().is_some() => Phase::FLIGHT,
             Phase::Overturned(side) => Phase::Rocking(side),
             phase => phase,
         }
@@ -141,6 +197,11 @@ pub enum InitialStateError {
     /// Structures of many masses have no such level.
     #[error("detail = {0} moves structures of one mass alone: choose auto, nonlinear, linear, rigid or fixed_base")]
     OneMass(&'static str),
+    /// The level has no equations on ground that gives.
+    #[error(
+        "detail = {0} has no ground that gives: choose auto, nonlinear, rigid or fixed_base, or leave [ground] out"
+    )]
+    OnGround(&'static str),
     /// Coordinates of modes that the structure does not have.
     #[error(
         "the initial state has {given} coordinates, and {modes} modes move: give one coordinate for each, or 0 for all"

@@ -32,6 +32,11 @@ impl<T: Number> Number for Dual<T> {
     fn constant(value: f64) -> Self {
         Dual { value: T::constant(value), rate: T::constant(0.0) }
     }
+
+    #[inline]
+    fn value(&self) -> f64 {
+        self.value.value()
+    }
 }
 
 impl<T: Angle> Angle for Dual<T> {

@@ -135,7 +135,13 @@ impl<Q: Moves> Tracer<Q> {
         let restraints = if self.is_restrained { sample.restraints() } else { Restraints::default() };
         let Sample { motion, load, .. } = sample;
         let (outputs, a_g) = (self.drawn.iter().copied().map(sample.outputs()).collect(), load.a_g);
-        self.points.push(Point { time: motion.time, phase: motion.phase, a_g, outputs, restraints });
+        self.points.push(Point {
+            time: motion.time,
+            phase: motion.phase.shown(motion.state.theta),
+            a_g,
+            outputs,
+            restraints,
+        });
     }
 }
 

@@ -13,7 +13,7 @@ use crate::engine::{AdvanceError, Moves};
 use crate::mechanics::instant::Second;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::run::ground_motion::Elapsed;
-use crate::{Engine, GroundMotion, Motion, Phase, State};
+use crate::{Engine, Foundation, GroundMotion, Motion, Phase, State};
 use serde::{Deserialize, Serialize};
 
 /// How many event indicators there are.
@@ -31,7 +31,7 @@ impl<Q: Moves> Sample<'_, Q> {
                 let none = Q::each(self.level.structure(), |_, _| 0.0);
                 State { u: none, u_dot: none, theta: 0.0, theta_dot: 0.0 }
             }
-            Phase::FullContact | Phase::Rocking(_) => {
+            Phase::FullContact | Phase::Rocking(_) | Phase::OnGround(_) => {
                 State { u: u_dot, u_dot: u_ddot, theta: theta_dot, theta_dot: theta_ddot }
             }
         }
@@ -99,7 +99,10 @@ impl<Q: Moves> Checkpoint<Q> {
         let has_changed = own.transitions != self.motion.transitions;
         let is_corrected = has_changed || is_beyond;
         let time = if let Phase::Overturned(_) = own.phase { own.time } else { end.time };
-        let state = if is_corrected { own.state } else { end.state };
+        let mut state = if is_corrected { own.state } else { end.state };
+        if let Some(Foundation { place, .. }) = engine.structure().foundation() {
+            state.u.set(place + 2, own.state.u.of(place + 2)); // the host does not integrate what the ground takes
+        }
         Ok(Checked { motion: Motion { time, state, ..own }, is_corrected, was_hidden: has_changed && !is_beyond })
     }
 

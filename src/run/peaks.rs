@@ -153,16 +153,32 @@ impl Peaks {
     pub fn since(time: f64, structure: &Structure, detail: Detail) -> Peaks {
         let (&Base { B, ties: Ties { P_0, k_t, .. }, .. }, none) = (structure.base(), Peak { magnitude: 0.0, time });
         let (mut searched, mut with): (Vec<Searched>, Vec<_>) = (Vec::new(), Vec::new());
-        for output in Output::with_peak(structure).into_iter().filter(|of| *of != Output::uplift) {
-            let over = |(at, other): (usize, &Searched)| Some((output, at, output.over(other.output, structure)?));
-            match searched.iter().enumerate().find_map(over) {
-                Some(found) => with.push(found),
-                None => searched.push(Searched {
-                    output,
-                    peak: none,
-                    place: output.place(structure.floors().len()).expect("it reaches"),
-                }),
+        let mut search = |output: Output| {
+            let place = output.place(structure.floors().len()).expect("it reaches");
+            let same = searched.iter().position(|of| of.output == output);
+            same.unwrap_or_else(|| {
+                searched.push(Searched { output, peak: none, place });
+                searched.len() - 1
+            })
+        };
+        let is_on_ground = structure.foundation().is_some();
+        let mut alone: Vec<Output> = Vec::new();
+        for output in Output::with_peak(structure).into_iter().filter(|of| is_on_ground || *of != Output::uplift) {
+            let parts = output.parts(structure);
+            let over = |other: &Output| Some((*other, output.over(*other, structure)?));
+            match alone.iter().find_map(over) {
+                _ if !parts.is_empty() => {
+                    with.extend(parts.into_iter().map(|(part, factor)| (output, search(part), factor)));
+                }
+                Some((other, factor)) => with.push((output, search(other), factor)),
+                None => {
+                    search(output);
+                    alone.push(output);
+                }
             }
+        }
+        if is_on_ground && has_tendon(structure.base()) {
+            search(Output::P_t);
         }
         let tendon = Tendon { P_0, k_t, angles: detail.angles(), start: time };
         Peaks { B, ground: none, searched, with, tendon, evaluations: 0 }
@@ -170,16 +186,18 @@ impl Peaks {
 
     /// Peak of an output that has one.
     pub fn of(&self, output: Output) -> Option<Peak> {
-        if output == Output::uplift {
+        if output == Output::uplift && self.with.iter().all(|(of, ..)| *of != output) {
             // it comes with the peak of |θ|, which never exceeds π/2
             let theta = self.theta();
             return Some(Peak { magnitude: 2.0 * self.B * libm::sin(theta.magnitude), ..theta });
         }
         let searched = self.searched.iter().find(|of| of.output == output).map(|of| of.peak);
         searched.or_else(|| {
-            let (_, place, factor) = self.with.iter().find(|(of, ..)| *of == output)?;
-            let peak = self.searched[*place].peak;
-            Some(Peak { magnitude: factor.abs() * peak.magnitude, ..peak })
+            let parts = self.with.iter().filter(|(of, ..)| *of == output).map(|(_, place, factor)| {
+                let peak = self.searched[*place].peak;
+                Peak { magnitude: factor.abs() * peak.magnitude, ..peak }
+            });
+            parts.reduce(|a, b| if b.magnitude > a.magnitude { b } else { a })
         })
     }
 
@@ -198,6 +216,9 @@ impl Peaks {
 
     /// Peak of the tendon's force P_t = P_0 + k_t e, N. It comes with the peak of |θ|, unless the force is constant.
     pub fn P_t(&self) -> Peak {
+        if let Some(of) = self.searched.iter().find(|of| of.output == Output::P_t) {
+            return of.peak;
+        }
         let (theta, &Tendon { P_0, k_t, angles, start }) = (self.theta(), &self.tendon);
         let magnitude = P_0 + k_t * self.B * angles.chord(theta.magnitude, 0.0).length;
         Peak { magnitude, time: if k_t > 0.0 { theta.time } else { start } }

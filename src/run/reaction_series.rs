@@ -47,6 +47,7 @@ pub(crate) fn over<Q: Moves>(expansion: &Expansion<Q>) -> Reactions<Terms> {
     let ramp = |of: &dyn Fn(&Load<Q>) -> f64| Terms::ramp(of(&load.value), of(&load.slope) * arc.span);
     let sum = |of: &Series<Q>| Terms::from_fn(arc.order, |k| gauges.V_t.displacement(&of[k]));
     let (offset, weight) = (sum(&arc.u), ramp(&|load| load.a_v) + Terms::constant(base.g));
+    let weight = over.lift().map_or(weight, |lift| weight + lift);
     let along = sum(&arc.u_dot) + over.theta_dot() * structure.body().S_1;
     let across = (Terms::constant(over.pivot() * base.m_t) - offset) * over.theta_dot();
     let push = ramp(&|load| structure.pushes(load)[0] - base.m_t * load.a_g);
@@ -66,10 +67,11 @@ pub(crate) fn over<Q: Moves>(expansion: &Expansion<Q>) -> Reactions<Terms> {
 pub(crate) fn bounds<Q: Moves>(expansion: &Expansion<Q>) -> Option<Reactions<Extent>> {
     let &Expansion { piece, from, arc } = expansion;
     let (level, phase, load) = (piece.level.subject(), piece.before.phase, piece.load.from(from));
-    if phase == Phase::FullContact || level.is_tied {
+    let structure = &level.structure;
+    if phase == Phase::FullContact || level.is_tied || structure.foundation().is_some() {
         return None;
     }
-    let (structure, most) = (&level.structure, expansion.most());
+    let most = expansion.most();
     let (&Base { m_t, B, g, .. }, S_1) = (structure.base(), structure.body().S_1);
     let (sin, cos) = libm::sincos(arc.theta[0]);
     let [mut turning, mut along, mut across, mut right, mut down] = [ZERO; 5];

@@ -36,8 +36,8 @@ use crate::series::extremes;
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
 use crate::{
-    Base, Detail, Impulse, Modes, Motion, OneMass, Output, Parameters, Phase, Ramp, Reactions, Side, Structure,
-    Transition, TransitionKind,
+    Base, Detail, Foundation, Impulse, Modes, Motion, OneMass, Output, Parameters, Phase, Ramp, Reactions, Side,
+    Structure, Transition, TransitionKind,
 };
 pub use assumptions::{
     ASSUMPTIONS, Assumption, EDGE_LOAD, ENERGY, FRICTION, IMPACT_FRICTION, IMPACT_TENSION, Passing, TENSION, WEIGHT,
@@ -47,6 +47,7 @@ use assumptions::{
     Tension,
 };
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// Something worse by no more than this part may be rounding.
 const ROUNDING: f64 = 1e-14;
@@ -56,6 +57,10 @@ const MARGIN: f64 = 1e-12;
 
 /// A series of reactions that is off by less than this part of its terms at its end has converged.
 const CONVERGED: f64 = 1e-10;
+
+/// Settlement at rest as a fraction of B, and bounce frequency as a multiple of the highest frequency, that are doubted.
+const SETTLED: f64 = 0.02;
+const STIFF: f64 = 20.0;
 
 /// Reactions without bounds.
 const UNBOUNDED: Reactions<Extent> = Reactions { R_h: Extent::ANY, R_v: Extent::ANY, R_m: Extent::ANY };
@@ -343,7 +348,7 @@ impl Validity {
     fn see_passing<Q: Moves>(&mut self, piece: &Piece<Q>) {
         self.found.duration += piece.duration;
         self.found.held += piece.before.chatter.held.min(piece.duration);
-        if piece.load.is_vertical() {
+        if piece.load.is_vertical() && EdgeLoad::holds_in(piece.before.phase) {
             let g = self.structure.base().g;
             self.found.see_vertical(g, piece.load.upwards(), piece.before.time, piece.duration);
         } else {
@@ -362,7 +367,11 @@ impl Validity {
             TransitionKind::Uplift(_)
             | TransitionKind::Overturning(_)
             | TransitionKind::Yielding(_)
-            | TransitionKind::Unloading(_) => return,
+            | TransitionKind::Unloading(_)
+            | TransitionKind::Touch(_)
+            | TransitionKind::Release(_)
+            | TransitionKind::Taut
+            | TransitionKind::Slack => return,
         };
         self.found.settlings += u64::from(kind == TransitionKind::Settling);
         let is_landing = phase == Phase::FullContact;
@@ -391,6 +400,9 @@ impl<Q: Moves> Watch<Q> for Validity {
     fn piece(&mut self, piece: &Piece<Q>) {
         self.see_passing(piece);
         let phase = piece.before.phase;
+        if !Friction::holds_in(phase) {
+            return;
+        }
         let (mut arcs, mut count) = (piece.arcs(), 0);
         loop {
             if arcs.left().and_then(extents_of_vibration).is_some_and(|extents| !self.may_matter(phase, &extents)) {
@@ -589,6 +601,9 @@ fn of_many(frame: &Structure, detail: Detail) -> Vec<String> {
     let base @ &Base { J_P, m_t, B, r, .. } = frame.base();
     let at_rest = impact::restitution(frame, Side::Right, &State::<Modes>::default());
     let mut warnings = Vec::new();
+    if let Some(foundation) = frame.foundation().filter(|_| detail.has_uplift()) {
+        return on_ground(frame, foundation);
+    }
     if detail.has_uplift() {
         warnings.extend(r.and_then(|r| pulling(r, impact::pulling_restitution(base), "m_t")));
         if r.is_none() && at_rest <= 0.0 {
@@ -598,6 +613,29 @@ fn of_many(frame: &Structure, detail: Detail) -> Vec<String> {
                  rocking; are masses in kg, heights in m, and is B half of the base's width?"
             ));
         }
+    }
+    warnings
+}
+
+/// The warnings that follow from ground that gives.
+fn on_ground(frame: &Structure, foundation: &Foundation) -> Vec<String> {
+    let (&Base { m_t, B, r, .. }, K_z) = (frame.base(), foundation.sum(0));
+    let (f_v, settled) = ((K_z / m_t).sqrt() / TAU, -foundation.rest);
+    let highest = frame.modes().iter().map(|mode| mode.omega() / TAU).fold(0.0, f64::max);
+    let mut warnings =
+        Vec::from_iter(r.map(|r| format!("r = {} is not used on ground that gives: nothing impacts", short(r))));
+    if settled > SETTLED * B {
+        warnings.push(format!(
+            "the base settles by {} m under its weight, more than B/50: are k_v in N/m and masses in kg?",
+            short(settled)
+        ));
+    }
+    if highest > 0.0 && f_v > STIFF * highest {
+        warnings.push(format!(
+            "f_v = {} Hz is more than 20 times the highest frequency of the structure, {} Hz: a run takes many steps",
+            short(f_v),
+            short(highest)
+        ));
     }
     warnings
 }

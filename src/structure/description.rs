@@ -8,6 +8,7 @@
 
 use crate::digits::{short, with_unit};
 use crate::mechanics::lateral::{MOST_MODES, Modes};
+use crate::structure::ground::Ground;
 use crate::structure::natural_quantities::{self, Given, GivenError};
 use crate::structure::parameters::{MAX_DAMPING, MAX_SLENDERNESS, ParameterError};
 use crate::structure::quantity::{OutOfRange, Quantity, Units};
@@ -113,6 +114,8 @@ pub struct Described {
     pub modes: Vec<FoundMode>,
     /// All mass above the base, with modes; without it the floors have all mass.
     pub total: Option<Total>,
+    /// Ground that gives; without it rigid ground.
+    pub ground: Option<Ground>,
     /// Number of modes that are kept, lowest frequency first; without it all. The rest of the mass turns rigidly with the base.
     pub keep: Option<i64>,
 }
@@ -270,11 +273,12 @@ impl Described {
             to_si(&MOMENT, S_1);
             [I_2, J_P].into_iter().flatten().for_each(|second| *second = units.in_si(*second, "kg.m2"));
         }
-        Described { base: self.base.measured_in(units), ..self }
+        let ground = self.ground.map(|ground| ground.in_si(units));
+        Described { base: self.base.measured_in(units), ground, ..self }
     }
 
     fn structure_in_si(&self) -> Result<Structure, DescriptionError> {
-        let Described { base, zeta, storeys, p_delta, floors, K, modes, total, keep, .. } = self;
+        let Described { base, zeta, storeys, p_delta, floors, K, modes, total, keep, ground, .. } = self;
         let whole = match [storeys.is_empty(), K.is_empty(), modes.is_empty()] {
             [false, true, true] if floors.is_empty() && total.is_none() => match p_delta {
                 true => Structure::from_storeys(base, zeta, &with_p_delta(base, storeys)?),
@@ -286,6 +290,7 @@ impl Described {
             [true, true, true] => Err(DescriptionError::Ways("none of these")),
             _ => Err(DescriptionError::Ways("more than one")),
         }?;
+        let whole = ground.as_ref().map_or(Ok(whole.clone()), |ground| whole.on(ground))?;
         let (Some(count), modes) = (*keep, whole.modes().len()) else { return Ok(whole) };
         match usize::try_from(count) {
             Ok(kept @ 1..) if kept <= modes => Ok(whole.keeping(kept)?),
@@ -645,7 +650,7 @@ mod tests {
             let none = (Vec::new(), Vec::new(), Vec::new());
             let (base, zeta, (floors, K, modes)) = (usual(), Damping::All(0.02), none);
             let (units, storeys, p_delta, total) = (Units::Newtons, STOREYS.to_vec(), false, None);
-            Described { units, base, zeta, storeys, p_delta, floors, K, modes, total, keep }.structure()
+            Described { units, base, zeta, storeys, p_delta, floors, K, modes, total, keep, ground: None }.structure()
         };
         assert_eq!(kept(None).unwrap(), frame());
         assert_eq!(kept(Some(2)).unwrap(), frame().keeping(2).unwrap());

@@ -5,7 +5,7 @@ use crate::mechanics::lateral::Coordinates;
 use serde::Serialize;
 
 /// A mode of vibration in full contact: an oscillator on the base. One mass is one mode with the shape 1.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Mode {
     /// Modal mass μ = φᵀMφ, kg.
     pub mass: f64,

@@ -13,6 +13,7 @@
 use crate::Structure;
 use crate::digits::with_unit;
 use crate::structure::derived::{DERIVED, Derived};
+use crate::structure::ground::Ground;
 use crate::structure::parameters::{PARAMETERS, Parameters};
 use crate::structure::quantity::{OutOfRange, Quantity, Units};
 use serde::{Deserialize, Deserializer, de::Error};
@@ -67,13 +68,16 @@ pub struct Given {
     numbers: Vec<(&'static str, f64)>,
     /// The units of the numbers in messages.
     units: Units,
+    /// Ground that gives.
+    ground: Option<Ground>,
 }
 
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "expected a number, or units = \"N, m, kg\" or \"kN, m, t\"")]
+#[serde(untagged, expecting = "expected a number, units = \"N, m, kg\" or \"kN, m, t\", or [ground] with its numbers")]
 enum Entry {
     Number(f64),
     Units(Units),
+    Ground(Ground),
 }
 
 /// Why numbers determine no structure.
@@ -206,7 +210,8 @@ impl Given {
     pub fn measured_in(mut self, units: Units) -> Given {
         let unit_of = |name| names_and_units().find_map(|(known, unit)| (known == name).then_some(unit));
         self.numbers.iter_mut().for_each(|(name, value)| *value = units.in_si(*value, unit_of(*name).unwrap_or("1")));
-        Given { units, ..self }
+        let ground = self.ground.map(|ground| ground.in_si(units));
+        Given { units, ground, ..self }
     }
 
     /// The structure of one mass of these [`Given::parameters`], or of `base` changed by these numbers. Messages name the numbers as
@@ -215,7 +220,16 @@ impl Given {
         let in_units = |error: &dyn Display| GivenError::InUnits(self.units.message(error));
         let parameters = base.map_or_else(|| self.parameters(), |base| self.over(base));
         let parameters = parameters.map_err(|error| in_units(&error))?;
-        Structure::new(parameters).map_err(|error| in_units(&error))
+        let structure = Structure::new(parameters).map_err(|error| in_units(&error))?;
+        match &self.ground {
+            Some(ground) => structure.on(ground).map_err(|error| in_units(&error)),
+            None => Ok(structure),
+        }
+    }
+
+    /// These numbers on `ground` that gives.
+    pub fn on(self, ground: Ground) -> Given {
+        Given { ground: Some(ground), ..self }
     }
 
     /// The parameters that these numbers determine, with [`DEFAULTS`] for the rest.
@@ -370,7 +384,10 @@ impl TryFrom<BTreeMap<String, Entry>> for Given {
                 }
                 Entry::Number(number) => given.give(&name, number)?,
                 Entry::Units(of_numbers) if name == "units" => units = of_numbers,
-                Entry::Units(_) => return Err(GivenError::InUnits(format!("{name}: a number is needed"))),
+                Entry::Ground(ground) if name == "ground" => given.ground = Some(ground),
+                Entry::Units(_) | Entry::Ground(_) => {
+                    return Err(GivenError::InUnits(format!("{name}: a number is needed")));
+                }
             }
         }
         Ok(given.measured_in(units))

@@ -17,8 +17,15 @@ pub enum Units {
 }
 
 /// Each SI unit that contains a mass or a force, and 1000 times this unit.
-pub const LARGE: [(&str, &str); 6] =
-    [("kg", "t"), ("kg.m", "t.m"), ("kg.m2", "t.m2"), ("N", "kN"), ("N/m", "kN/m"), ("N.s/m", "kN.s/m")];
+pub const LARGE: [(&str, &str); 7] = [
+    ("kg", "t"),
+    ("kg.m", "t.m"),
+    ("kg.m2", "t.m2"),
+    ("N", "kN"),
+    ("N/m", "kN/m"),
+    ("N.s/m", "kN.s/m"),
+    ("N.m/rad", "kN.m/rad"),
+];
 
 impl Units {
     /// The `value` of a number whose SI unit is `unit`, in SI units.

@@ -202,7 +202,7 @@ fn phase_after(kind: TransitionKind) -> Phase {
         TransitionKind::Uplift(side) | TransitionKind::Impact(side) => Phase::Rocking(side),
         TransitionKind::Overturning(side) => Phase::Overturned(side),
         TransitionKind::Landing | TransitionKind::Settling => Phase::FullContact,
-        TransitionKind::Yielding(_) | TransitionKind::Unloading(_) => unreachable!("nothing is restrained"),
+        _ => unreachable!("nothing is restrained, and the ground is rigid"),
     }
 }
 
@@ -255,6 +255,7 @@ proptest! {
             match now {
                 Phase::FullContact => prop_assert_eq!((state.theta, state.theta_dot), (0.0, 0.0)),
                 Phase::Rocking(side) => prop_assert!((-1e-12..FRAC_PI_2).contains(&(side.sign() * state.theta))),
+                Phase::OnGround(_) => unreachable!("the ground is rigid"),
                 Phase::Overturned(side) => prop_assert!((side.sign() * state.theta - FRAC_PI_2).abs() < 1e-9),
             }
             prop_assert!(transitions.is_sorted_by(|one, next| one.time <= next.time));

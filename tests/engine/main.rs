@@ -3,6 +3,7 @@
 
 mod curves;
 mod edges;
+mod ground;
 mod hybrid_engine;
 mod levels;
 mod missed_peaks;

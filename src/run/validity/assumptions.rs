@@ -4,7 +4,7 @@ use super::Limits;
 use crate::numbers::Number;
 use crate::run::reaction_series::Extent;
 use crate::series::terms::Terms;
-use crate::{Impulse, Phase, Reactions};
+use crate::{Contact, Impulse, Phase, Reactions};
 use std::fmt;
 
 /// Values that pass a limit: those on this side of the limit.
@@ -208,6 +208,11 @@ pub(super) struct EdgeLoad;
 impl OfReactions for EdgeLoad {
     const PLACE: usize = EDGE_LOAD;
 
+    /// Ground that gives cannot pull.
+    fn holds_in(phase: Phase) -> bool {
+        !matches!(phase, Phase::OnGround(_))
+    }
+
     fn value(Scale { W, .. }: Scale, &Reactions { R_v, .. }: &Reactions) -> f64 {
         R_v / W
     }
@@ -222,6 +227,11 @@ pub(super) struct Friction;
 
 impl OfReactions for Friction {
     const PLACE: usize = FRICTION;
+
+    /// In flight nothing rubs.
+    fn holds_in(phase: Phase) -> bool {
+        !matches!(phase, Phase::OnGround(Contact { pressed: 0, .. }))
+    }
 
     fn value(_: Scale, &Reactions { R_h, R_v, .. }: &Reactions) -> f64 {
         if R_v > 0.0 { R_h.abs() / R_v } else { f64::INFINITY }

@@ -1,0 +1,27 @@
+"""Ground that gives, for Structure(ground=...)."""
+
+from collections.abc import Sequence
+from typing import TypedDict
+
+
+class Ground(TypedDict, total=False):
+    """Contact points under the base that push and never pull, each a spring and a dashpot: Ground(f_v=40, zeta_v=0.2).
+
+    f_v: frequency of the bounce, Hz, or else k_v: stiffness of all points, N/m. f_v=0 is rigid ground.
+    zeta_v: damping ratio of the bounce, by default 0.2, or else c_v: damping of all points, N.s/m.
+    n_points: 2 (the edges) to 21, equally spaced. kr_ratio: K_r/(k_v B^2), by default 1 for two points and 1/3 (a uniform bed) for
+    more, or else k_r: rotational stiffness, N.m/rad.
+    xi, k, c: the points themselves in the place of all these, from left to right: places (m), stiffnesses (N/m), dampings (N.s/m).
+    The points take the place of impacts: r has no effect. The structure then has the names of many masses, such as a_t[1].
+    """
+
+    f_v: float
+    k_v: float
+    zeta_v: float
+    c_v: float
+    n_points: int
+    kr_ratio: float
+    k_r: float
+    xi: Sequence[float]
+    k: Sequence[float]
+    c: Sequence[float]

@@ -1,0 +1,255 @@
+//! Guards of ground that gives: contact points that are touched and released, a tendon that goes slack, dissipators that yield.
+//!
+//! A pressed point is released when f returns to 0. A free point is touched when e < 0 and f > 0 hold together. Both depend on the state
+//! alone, so that nothing is remembered between steps. A gap that starts within rounding of its root is divided by time until its first
+//! coefficient is a number: it is then closed, and closes at once, or it opens and must return. Points that act at one instant, as in
+//! vertical motion, follow one another in steps without duration.
+
+use crate::engine::Moves;
+use crate::engine::motion::Motion;
+use crate::engine::phases::{BAND, Guard, Step, Way};
+use crate::engine::piece::Sample;
+use crate::engine::transition::TransitionKind;
+use crate::engine::yielding::square_integral;
+use crate::levels::level::Level;
+use crate::mechanics::contact::margins;
+use crate::mechanics::lateral::Coordinates;
+use crate::mechanics::restraint::Dissipators;
+use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
+use crate::series::taylor::{Arc, Series, ZERO, evaluate};
+use crate::structure::ground::Point;
+use crate::{Foundation, Phase, Ties};
+
+/// Part of its terms by which a gap may miss its root.
+const ROUNDING: f64 = 1e-13;
+
+/// y, sin θ and their rates over a step.
+struct Rises {
+    y: [Series; 2],
+    sin: [Series; 2],
+    order: usize,
+    /// |y_s| + |y| at the start.
+    scale: f64,
+}
+
+impl Rises {
+    #[inline]
+    fn new<Q: Coordinates>(foundation: &Foundation, arc: &Arc<Q>) -> Rises {
+        let (mut y, mut sin) = ([ZERO; 2], [ZERO; 2]);
+        for (i, series) in [&arc.u, &arc.u_dot].into_iter().enumerate() {
+            for (k, of) in arc.used(series).iter().enumerate() {
+                (y[i][k], sin[i][k]) = (of.of(foundation.place), of.of(foundation.place + 1));
+            }
+        }
+        Rises { y, sin, order: arc.order, scale: foundation.rest.abs() + y[0][0].abs() }
+    }
+
+    /// The height over the step at ξ plus τ times its rate, and what counts as 0 of it.
+    #[inline]
+    fn at(&self, xi: f64, tau: f64) -> (Series, f64) {
+        let Rises { y, sin, order, scale, .. } = self;
+        let mut height = ZERO;
+        for k in 0..=*order {
+            height[k] = y[0][k] - xi * sin[0][k] + tau * (y[1][k] - xi * sin[1][k]);
+        }
+        let rates = y[1][0].abs() + (xi * sin[1][0]).abs();
+        (height, ROUNDING * (scale + (xi * sin[0][0]).abs() + tau * rates))
+    }
+
+    /// The rate of the height at ξ, and what counts as 0 of it.
+    fn rate(&self, xi: f64) -> (Series, f64) {
+        let Rises { y, sin, .. } = self;
+        let rate = std::array::from_fn(|k| y[1][k] - xi * sin[1][k]);
+        (rate, ROUNDING * (y[1][0].abs() + (xi * sin[1][0]).abs()))
+    }
+
+    /// The gap of `sign` times a series, divided by time while its first coefficients are no more than `rounding`; none if all are.
+    #[inline]
+    fn gap<'b>(&self, (series, rounding): &'b (Series, f64), sign: f64) -> Option<Gap<'b>> {
+        let used = &series[..=self.order];
+        let zeros = used.iter().position(|c| c.abs() > *rounding)?;
+        Some(Gap::new(&used[zeros..], sign, 0.0))
+    }
+}
+
+/// The first instant up to `reach` at which all `gaps` are closed.
+fn first<const N: usize>(gaps: [Option<Gap>; N], reach: f64) -> Crossing {
+    match gaps.iter().all(Option::is_some) {
+        true => first_time_all_closed(gaps.map(|gap| gap.expect("all are there")), reach),
+        false => Crossing::None,
+    }
+}
+
+/// The first of these instants, each with its way.
+#[derive(Default)]
+struct First(Option<(Crossing, Way)>);
+
+impl First {
+    fn see(&mut self, crossing: Crossing, which: usize, sign: i8) {
+        if crossing.sigma() < self.0.map_or(f64::INFINITY, |(first, _)| first.sigma()) {
+            self.0 = Some((crossing, Way { which: which as u8, sign }));
+        }
+    }
+
+    fn found(self) -> (Crossing, Way) {
+        self.0.unwrap_or((Crossing::None, Way::default()))
+    }
+}
+
+/// The pressed points change.
+pub(crate) struct Points;
+
+impl<Q: Moves> Guard<Q> for Points {
+    fn first(&self, &Step { level, contact, arc, reach, .. }: &Step<Q>) -> (Crossing, Way) {
+        let Some(foundation) = level.structure().foundation() else { return First::default().found() };
+        let (rises, mut found) = (Rises::new(foundation, arc), First::default());
+        for (i, point) in foundation.points.iter().enumerate() {
+            let pushes = rises.at(point.xi, point.c / point.k);
+            let reach = found.0.map_or(reach, |(crossing, _)| crossing.sigma());
+            match contact.is_pressed(i) {
+                true => found.see(first([rises.gap(&pushes, -1.0)], reach), i, -1),
+                false => {
+                    let height = rises.at(point.xi, 0.0);
+                    found.see(first([rises.gap(&height, 1.0), rises.gap(&pushes, 1.0)], reach), i, 1);
+                }
+            }
+        }
+        found.found()
+    }
+
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind {
+        let (i, state) = (usize::from(way.which), &mut motion.state);
+        if let (Phase::OnGround(contact), Some(foundation)) = (&mut motion.phase, level.structure().foundation()) {
+            let (Point { xi, k, .. }, place) = (foundation.points[i], foundation.place);
+            let e = state.u.of(place) - xi * state.u.of(place + 1);
+            contact.pressed ^= 1 << i;
+            let taken = state.u.of(place + 2) - f64::from(way.sign) * 0.5 * k * e * e;
+            state.u.set(place + 2, taken);
+        }
+        if way.sign > 0 { TransitionKind::Touch(i) } else { TransitionKind::Release(i) }
+    }
+
+    fn stays_open(&self, _now: &Sample<Q>, _ahead: f64) -> bool {
+        false
+    }
+
+    fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
+        let (Phase::OnGround(contact), Some(foundation)) = (now.motion.phase, now.level.structure().foundation())
+        else {
+            return (0, 1.0);
+        };
+        let of = |(i, margin): (usize, f64)| if contact.is_pressed(i) { margin } else { -margin };
+        let least = margins(foundation, &now.motion.state).enumerate().map(of).fold(f64::INFINITY, f64::min);
+        (0, least / foundation.rest.abs() + BAND)
+    }
+
+    fn closed(&self, now: &Sample<Q>) -> Option<Way> {
+        let (Phase::OnGround(contact), foundation) = (now.motion.phase, now.level.structure().foundation()?) else {
+            return None;
+        };
+        let is_closed = |(i, margin): &(usize, f64)| (*margin > 0.0) != contact.is_pressed(*i);
+        let (i, _) = margins(foundation, &now.motion.state).enumerate().find(is_closed)?;
+        Some(Way { which: i as u8, sign: if contact.is_pressed(i) { -1 } else { 1 } })
+    }
+}
+
+/// Number of the tendon among the ties.
+const TENDON: u8 = 2;
+
+/// The tendon becomes slack or taut, or a dissipator begins or ceases to yield.
+pub(crate) struct Tied;
+
+impl<Q: Moves> Guard<Q> for Tied {
+    fn first(&self, &Step { level, contact, start, arc, reach, .. }: &Step<Q>) -> (Crossing, Way) {
+        let Some(foundation) = level.structure().foundation() else { return First::default().found() };
+        let (rises, mut found) = (Rises::new(foundation, arc), First::default());
+        let Ties { P_0, k_t, xi_d, k_d, F_y, .. } = level.structure().base().ties;
+        if k_t > 0.0 {
+            let ((height, rounding), slack) = (rises.at(0.0, 0.0), P_0 / k_t - foundation.rest);
+            let (sign, way) = if contact.is_slack { (-1.0, 1) } else { (1.0, -1) };
+            let gap = Gap::new(&height[..=rises.order], sign, sign * slack + rounding);
+            found.see(first_time_all_closed([gap], reach), usize::from(TENDON), way);
+        }
+        for (j, xi) in [xi_d, -xi_d].into_iter().enumerate().filter(|_| F_y > 0.0) {
+            match start.dissipators.yields[j] {
+                0 => {
+                    for way in [1_i8, -1] {
+                        let mut height = rises.at(xi, 0.0);
+                        height.0[0] -= foundation.rest + start.dissipators.plastic[j] + f64::from(way) * F_y / k_d;
+                        height.1 += ROUNDING * F_y / k_d;
+                        found.see(first([rises.gap(&height, -f64::from(way))], reach), j, way);
+                    }
+                }
+                way => found.see(first([rises.gap(&rises.rate(xi), f64::from(way))], reach), j, 0),
+            }
+        }
+        found.found()
+    }
+
+    fn apply(&self, _level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind {
+        let which = usize::from(way.which);
+        match (&mut motion.phase, way) {
+            (Phase::OnGround(contact), Way { which: TENDON, sign }) => {
+                contact.is_slack = sign < 0;
+                if sign < 0 { TransitionKind::Slack } else { TransitionKind::Taut }
+            }
+            (_, Way { sign, .. }) => {
+                motion.dissipators.yields[which] = sign;
+                if sign == 0 { TransitionKind::Unloading(which) } else { TransitionKind::Yielding(which) }
+            }
+        }
+    }
+
+    fn stays_open(&self, _now: &Sample<Q>, _ahead: f64) -> bool {
+        false
+    }
+
+    fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
+        (1, tied_margins(now).map(|(margin, _)| margin).fold(f64::INFINITY, f64::min) + BAND)
+    }
+
+    fn closed(&self, now: &Sample<Q>) -> Option<Way> {
+        tied_margins(now).find(|(margin, _)| *margin < 0.0).map(|(_, way)| way)
+    }
+}
+
+/// How far the ties are from their next change, of order one, and the ways of the changes.
+fn tied_margins<'a, Q: Moves>(now: &'a Sample<Q>) -> impl Iterator<Item = (f64, Way)> + 'a {
+    let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
+    let Ties { P_0, k_t, xi_d, k_d, F_y, .. } = structure.base().ties;
+    structure.foundation().into_iter().flat_map(move |&Foundation { rest, place, .. }| {
+        let of = move |i: usize, xi: f64| [state.u, state.u_dot].map(|q| q.of(place) - xi * q.of(place + 1))[i];
+        let is_slack = phase.contact().is_slack;
+        let of_tendon = (of(0, 0.0) - rest + P_0 / k_t) / rest.abs() * if is_slack { -1.0 } else { 1.0 };
+        let tendon = (of_tendon, Way { which: TENDON, sign: if is_slack { 1 } else { -1 } });
+        let of_pair = [(0, xi_d), (1, -xi_d)].into_iter().map(move |(j, xi)| {
+            let way = dissipators.yields[j];
+            let force = k_d * (of(0, xi) - rest - dissipators.plastic[j]);
+            let (margin, sign) = match way {
+                0 => (1.0 - force.abs() / F_y, if force > 0.0 { 1 } else { -1 }),
+                way => (f64::from(way) * of(1, xi) / (rest.abs() * structure.vibration().contact), 0),
+            };
+            (margin, Way { which: j as u8, sign })
+        });
+        Some(tendon).filter(|_| k_t > 0.0).into_iter().chain(of_pair.filter(move |_| F_y > 0.0))
+    })
+}
+
+/// The dissipators at the reach of a step.
+pub(crate) fn moved<Q: Moves>(&Step { level, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
+    let mut moved = *start.dissipators;
+    let Some(foundation) = level.structure().foundation() else { return moved };
+    let (rises, Ties { xi_d, c_d, k_d, F_y, .. }) = (Rises::new(foundation, arc), level.structure().base().ties);
+    for (j, xi) in [xi_d, -xi_d].into_iter().enumerate() {
+        let way = f64::from(moved.yields[j]);
+        if way != 0.0 {
+            let plastic = evaluate(&rises.at(xi, 0.0).0[..=arc.order], reach) - foundation.rest - way * F_y / k_d;
+            moved.hysteretic += way * F_y * (plastic - moved.plastic[j]);
+            moved.plastic[j] = plastic;
+        }
+        if c_d > 0.0 {
+            moved.viscous += c_d * arc.span * square_integral(&rises.rate(xi).0[..=arc.order], reach);
+        }
+    }
+    moved
+}

@@ -1,0 +1,294 @@
+//! Ground that gives: contact points under the base, each a spring and a dashpot that push and never pull.
+//!
+//! A point at ξ from the middle of the base is compressed by −e and pushes with N:
+//!
+//! ```text
+//! e = y − ξ sin θ,   f = −(k e + c ė),   N = f where e < 0 and f > 0 ("pressed"), and 0 elsewhere         (F1, F2)
+//! ```
+//!
+//! y is the height of the middle of the base above the unloaded ground. The middle moves vertically only. At rest all points are
+//! pressed, and y is y_s = −(m_t g + P_0)/Σ k. The points take the place of uplift, impact and restitution.
+
+use crate::digits::with_unit;
+use crate::structure::quantity::{OutOfRange, Quantity, Units};
+use crate::{Base, Body, Mode, Ties};
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// The numbers of ground that gives, as a file has them in `[ground]`. A number that is left out has its default.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Ground {
+    /// Bounce frequency √(K_z/m_t)/2π, Hz; 0 is rigid ground. Or else `k_v`.
+    pub f_v: Option<f64>,
+    /// Vertical stiffness of all points K_z, N/m.
+    pub k_v: Option<f64>,
+    /// Damping ratio of the bounce, by default 0.2. Or else `c_v`.
+    pub zeta_v: Option<f64>,
+    /// Vertical damping of all points, N·s/m.
+    pub c_v: Option<f64>,
+    /// Number of points, equally spaced from edge to edge, by default 2.
+    pub n_points: Option<usize>,
+    /// K_r/(K_z B²), by default 1 for two points and 1/3 for more. Or else `k_r`.
+    pub kr_ratio: Option<f64>,
+    /// Rotational stiffness of all points K_r, N·m/rad.
+    pub k_r: Option<f64>,
+    /// The points themselves, in the place of the numbers above: places (m), stiffnesses (N/m) and dampings (N·s/m), from left to right.
+    pub xi: Vec<f64>,
+    #[allow(missing_docs)]
+    pub k: Vec<f64>,
+    #[allow(missing_docs)]
+    pub c: Vec<f64>,
+}
+
+/// A contact point: its place from the middle of the base to the right (m), its stiffness (N/m) and its damping (N·s/m).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct Point {
+    pub xi: f64,
+    pub k: f64,
+    pub c: f64,
+}
+
+/// The contact points under a structure.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Foundation {
+    /// The points, from left to right.
+    pub points: Vec<Point>,
+    /// y at rest y_s, m.
+    pub rest: f64,
+    /// The place of y among the lateral coordinates, after the modes; sin θ and the energy that the ground has taken follow.
+    pub(crate) place: usize,
+}
+
+/// Coordinates after those of the modes on ground that gives.
+pub(crate) const MORE: usize = 3;
+
+/// The most contact points.
+pub const MOST_POINTS: usize = 21;
+
+/// Least inertia about the middle of the base as a fraction of m_t B².
+const LEAST_INERTIA: f64 = 1e-4;
+
+/// Part by which two numbers that must be equal may differ.
+const SAME: f64 = 1e-9;
+
+/// The limits of a number.
+const fn limit(name: &'static str, unit: &'static str, [min, max]: [f64; 2]) -> Quantity<f64> {
+    Quantity { name, unit, description: "of ground that gives", min, max, get: |of| *of, set: |of, value| *of = value }
+}
+
+const F_V: Quantity<f64> = limit("f_v", "Hz", [0.1, 1e3]);
+const K_V: Quantity<f64> = limit("k_v", "N/m", [1e-6, 1e18]);
+const ZETA_V: Quantity<f64> = limit("zeta_v", "1", [0.0, 5.0]);
+const C_V: Quantity<f64> = limit("c_v", "N.s/m", [0.0, 1e18]);
+const N_POINTS: Quantity<f64> = limit("n_points", "1", [2.0, MOST_POINTS as f64]);
+
+/// Why the ground is refused: the message.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{0}")]
+pub struct GroundError(String);
+
+impl From<OutOfRange> for GroundError {
+    fn from(error: OutOfRange) -> GroundError {
+        GroundError(error.to_string())
+    }
+}
+
+/// Refuses what is not so.
+fn ensure(is_so: bool, message: impl FnOnce() -> String) -> Result<(), GroundError> {
+    if is_so { Ok(()) } else { Err(GroundError(message())) }
+}
+
+impl Ground {
+    /// The same ground with numbers in SI units.
+    pub fn in_si(mut self, units: Units) -> Ground {
+        let to_si = |unit: &'static str| move |value: &mut f64| *value = units.in_si(*value, unit);
+        self.k_v.iter_mut().chain(&mut self.k).for_each(to_si("N/m"));
+        self.c_v.iter_mut().chain(&mut self.c).for_each(to_si("N.s/m"));
+        self.k_r.iter_mut().for_each(to_si("N.m/rad"));
+        self
+    }
+
+    /// The points under a base of half-width `B` (m) that carries `m_t` (kg), none on rigid ground.
+    fn points(&self, m_t: f64, B: f64) -> Result<Vec<Point>, GroundError> {
+        let &Ground { f_v, k_v, zeta_v, c_v, n_points, kr_ratio, k_r, .. } = self;
+        let [xi, k, c] = [&self.xi, &self.k, &self.c];
+        let list = Some(xi.len() as f64).filter(|points| *points > 0.0);
+        for (one, other, both) in [
+            ("f_v", "k_v", f_v.zip(k_v)),
+            ("zeta_v", "c_v", zeta_v.zip(c_v)),
+            ("kr_ratio", "k_r", kr_ratio.zip(k_r)),
+            ("f_v", "xi", f_v.zip(list)),
+            ("k_v", "xi", k_v.zip(list)),
+        ] {
+            ensure(both.is_none(), || format!("{one} and {other} are both given: leave one of them out"))?;
+        }
+        let points = n_points.map(|points| points as f64);
+        for (limit, value) in
+            [(F_V, f_v.filter(|f_v| *f_v != 0.0)), (K_V, k_v), (ZETA_V, zeta_v), (C_V, c_v), (N_POINTS, points)]
+        {
+            value.map_or(Ok(()), |value| limit.check(value))?;
+        }
+        if !(xi.is_empty() && k.is_empty() && c.is_empty()) {
+            let counts = [xi, k, c].map(Vec::len);
+            ensure(counts == [counts[0]; 3] && (2..=MOST_POINTS).contains(&counts[0]), || {
+                format!("xi, k and c have {counts:?} numbers: give 2 to {MOST_POINTS} of each, one for each point")
+            })?;
+            return Ok((0..xi.len()).map(|i| Point { xi: xi[i], k: k[i], c: c[i] }).collect());
+        }
+        let K_z = match (f_v, k_v) {
+            (Some(0.0), _) => return Ok(Vec::new()),
+            (Some(f_v), _) => m_t * (TAU * f_v) * (TAU * f_v),
+            (None, Some(k_v)) => k_v,
+            (None, None) => {
+                let needed =
+                    "neither f_v (Hz) nor k_v (N/m) is given: give one, or leave [ground] out for rigid ground";
+                return Err(GroundError(needed.into()));
+            }
+        };
+        let tau = c_v.map_or(2.0 * zeta_v.unwrap_or(0.2) / (K_z / m_t).sqrt(), |c_v| c_v / K_z);
+        let n = n_points.unwrap_or(2);
+        let xi = |i: usize| B * (2.0 * i as f64 / (n - 1) as f64 - 1.0);
+        let (inner, most) = ((1..n - 1).map(|i| xi(i) * xi(i)).sum::<f64>(), (n - 2) as f64 * B * B);
+        let ratio = k_r.map(|k_r| k_r / (K_z * B * B)).or(kr_ratio).unwrap_or(if n == 2 { 1.0 } else { 1.0 / 3.0 });
+        let least = if n == 2 { 1.0 } else { inner / most };
+        ensure(((1.0 - SAME) * least..=1.0 + SAME).contains(&ratio), || {
+            format!(
+                "kr_ratio = {ratio} is not possible with {n} points: it must lie between {least:.3} and 1, so that no stiffness is \
+                 negative; of two points it is 1, and k_r is k_v B^2"
+            )
+        })?;
+        let k_int = if n == 2 { 0.0 } else { K_z * B * B * (1.0 - ratio) / (most - inner) };
+        let k_end = (K_z - (n - 2) as f64 * k_int) / 2.0;
+        let k = |i: usize| if i == 0 || i == n - 1 { k_end } else { k_int };
+        Ok((0..n).map(|i| Point { xi: xi(i), k: k(i), c: tau * k(i) }).filter(|point| point.k > 0.0).collect())
+    }
+}
+
+impl Foundation {
+    /// The foundation of `ground` under a structure; none on rigid ground.
+    pub(crate) fn new(
+        ground: &Ground,
+        base: &Base,
+        body: &Body,
+        modes: &[Mode],
+    ) -> Result<Option<Foundation>, GroundError> {
+        let &Base { m_t, J0, B, g, c_ratio, ties: Ties { P_0, .. }, .. } = base;
+        let points = ground.points(m_t, B)?;
+        if points.is_empty() {
+            return Ok(None);
+        }
+        let is_close = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
+        for (i, (&Point { xi, k, c }, mirrored)) in points.iter().zip(points.iter().rev()).enumerate() {
+            let (is_ordered, is_under) = (i == 0 || points[i - 1].xi < xi, xi.abs() <= B * (1.0 + SAME));
+            let is_symmetric =
+                (xi + mirrored.xi).abs() <= SAME * B && is_close(k, mirrored.k) && is_close(c, mirrored.c);
+            for (is_so, needed) in [
+                (k > 0.0 && k.is_finite() && c >= 0.0 && c.is_finite(), "k must exceed 0 and c must not be negative"),
+                (is_under, "the point must lie under the base, |xi| <= B"),
+                (is_ordered, "give the points from left to right"),
+                (is_symmetric, "the points must be symmetric about the middle: xi, -xi with the same k and c"),
+            ] {
+                ensure(is_so, || format!("xi[{}] = {xi:?} m, k = {k:?} N/m, c = {c:?} N.s/m: {needed}", i + 1))?;
+            }
+        }
+        ensure(c_ratio == 1.0, || {
+            format!(
+                "c_ratio = {c_ratio} has no meaning on ground that gives, where nothing rocks about an edge: set c_ratio to 1"
+            )
+        })?;
+        let mut foundation = Foundation { points, rest: 0.0, place: modes.len() };
+        foundation.rest = -(m_t * g + P_0) / foundation.sum(0);
+        let [K_r, least] = [foundation.sum(2), least_stiffness(base, body, modes)];
+        ensure(K_r > least, || {
+            let [K_r, least] = [K_r, least].map(|of| with_unit(of, "N.m/rad"));
+            format!(
+                "it cannot stand: the ground holds the rotation with K_r = {K_r}, and K_r = {least} is needed; raise f_v, k_v or kr_ratio"
+            )
+        })?;
+        ensure(J0 >= LEAST_INERTIA * m_t * B * B, || {
+            format!(
+                "J0 = {} is too small, because the base turns about its middle: give J0, for a block m0 (4 B^2 + t^2)/12 of the thickness t",
+                with_unit(body.J0, "kg.m2")
+            )
+        })?;
+        Ok(Some(foundation))
+    }
+
+    /// The sum of the stiffnesses of all points times this power of their places.
+    pub fn sum(&self, power: i32) -> f64 {
+        self.points.iter().map(|point| point.k * point.xi.powi(power)).sum()
+    }
+
+    /// The circular frequencies of small motions in full contact without damping, rad/s, lowest first: the bounce √(K_z/m_t), and the
+    /// roots λ = ω² of
+    ///
+    /// ```text
+    /// K_r − g S_1 − λ J = Σ (κ_j λ + g Γ_j)²/(ω_j² − λ)          J: inertia about the middle of the base
+    /// ```
+    ///
+    /// as eigenvalues of the symmetric mass and stiffness of (q, θ).
+    pub(crate) fn frequencies(&self, base: &Base, body: &Body, modes: &[Mode]) -> Vec<f64> {
+        let (n, mut inertia) = (modes.len(), base.J0);
+        let [mut mass, mut stiffness] = [DMatrix::identity(n + 1, n + 1), DMatrix::zeros(n + 1, n + 1)];
+        stiffness[(n, n)] = self.sum(2) - base.g * body.S_1;
+        for (j, mode) in modes.iter().enumerate() {
+            let (scale, arm) = (mode.mass.sqrt(), mode.mass.sqrt() * mode.height);
+            stiffness[(j, j)] = mode.stiffness / mode.mass;
+            inertia += arm * arm;
+            for at in [(j, n), (n, j)] {
+                (mass[at], stiffness[at]) = (arm, -base.g * mode.gamma / scale);
+            }
+        }
+        mass[(n, n)] = inertia;
+        let inverse = mass.cholesky().expect("the inertia is positive").inverse();
+        let root = inverse.cholesky().expect("the inertia is positive").l();
+        let squares = (root.transpose() * stiffness * &root).symmetric_eigen().eigenvalues;
+        let bounce = (self.sum(0) / base.m_t).sqrt();
+        let mut all: Vec<_> = squares.iter().map(|square| square.sqrt()).chain([bounce]).collect();
+        all.sort_by(f64::total_cmp);
+        all
+    }
+
+    /// The energy (J) above rest below which no point certainly leaves the ground, by the weakest way there: small motions in full contact.
+    pub(crate) fn least_lift(&self, base: &Base, body: &Body, modes: &[Mode]) -> f64 {
+        let [K_z, K_r] = [0, 2].map(|power| self.sum(power));
+        let outer = self.points[0].xi;
+        0.5 * self.rest * self.rest / (1.0 / K_z + outer * outer / (K_r - least_stiffness(base, body, modes)))
+    }
+
+    /// y of a structure that is held at the rotation of this sine, whose tendon has the prestress P_0 at y_s and the stiffness k_t:
+    ///
+    /// ```text
+    /// Σ k max(0, ξ sin θ − y) = m_t g + max(0, P_0 + k_t (y − y_s))
+    /// ```
+    ///
+    /// and the slope of y over sin θ there.
+    pub(crate) fn held_at(&self, sin: f64, base: &Base) -> [f64; 2] {
+        let &Base { m_t, g, ties: Ties { P_0, k_t, .. }, .. } = base;
+        let mut y = self.rest - self.points[0].xi.abs() * sin.abs();
+        let mut slope = 0.0;
+        // a step of Newton's method is exact once the pressed points are known
+        for _ in 0..2 * MOST_POINTS {
+            let is_taut = P_0 + k_t * (y - self.rest) > 0.0;
+            let [pull, hold] = if is_taut { [P_0 - k_t * self.rest, k_t] } else { [0.0; 2] };
+            let pressed = || self.points.iter().filter(|point| point.xi * sin > y);
+            let [K_0, K_1] = pressed().fold([hold, 0.0], |[a, b], point| [a + point.k, b + point.k * point.xi]);
+            let next = (K_1 * sin - m_t * g - pull) / K_0;
+            slope = K_1 / K_0;
+            if next == y {
+                break;
+            }
+            y = next;
+        }
+        [y, slope]
+    }
+}
+
+/// The rotational stiffness of the ground at which a structure at rest falls over, g S_1 + Σ (g Γ)²/(μ ω²), N·m/rad.
+fn least_stiffness(base: &Base, body: &Body, modes: &[Mode]) -> f64 {
+    let leaning = |mode: &Mode| (base.g * mode.gamma).powi(2) / mode.stiffness;
+    base.g * body.S_1 + modes.iter().map(leaning).sum::<f64>()
+}

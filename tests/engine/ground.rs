@@ -1,0 +1,263 @@
+//! Ground that gives: printed numbers, closed forms, energy. An independent integration is in `test_ground.py`.
+
+use approx::assert_relative_eq;
+use rocking::engine::Settings;
+use rocking::run::record::Record;
+use rocking::run::{End, Ending, Run};
+use rocking::structure::description::{Damping, Storey};
+use rocking::structure::natural_quantities::Given;
+use rocking::{
+    Detail, Engine, Ground, LinearLoad, Modes, Output, Parameters, State, Structure, Transition, TransitionKind,
+};
+use std::f64::consts::TAU;
+
+const EVISON: Parameters = Parameters { J0: 1.1918415, f_fc: 11.0, ..Parameters::EVISON };
+
+fn ground(f_v: f64, zeta_v: f64, points: usize) -> Ground {
+    Ground { f_v: Some(f_v), zeta_v: Some(zeta_v), n_points: Some(points), ..Ground::default() }
+}
+
+fn one_mass(parameters: Parameters, ground: Ground) -> Structure {
+    Structure::new(parameters).unwrap().on(&ground).unwrap()
+}
+
+/// The frame of three storeys whose numbers are known.
+fn frame(ground: Ground) -> Structure {
+    let mut base = Given::default();
+    [("m0", 20e3), ("J0", 3e4), ("B", 1.5)].iter().for_each(|(name, value)| base.give(name, *value).unwrap());
+    let storeys = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)].map(|(m, h, k)| Storey { m, h, k });
+    Structure::from_storeys(&base, &Damping::All(0.0), &storeys).unwrap().on(&ground).unwrap()
+}
+
+fn engine(structure: &Structure, u: f64, theta: f64) -> Engine<Modes> {
+    let settings = Settings { tolerance: 1e-12, vertical: true, ..Settings::default() };
+    let none = Modes::new(&vec![0.0; structure.modes().len()]);
+    let u = if u == 0.0 { none } else { Modes::new(&[u]) };
+    Engine::of_modes(structure.clone(), State { u, u_dot: none, theta, theta_dot: 0.0 }, 0.0, settings).unwrap()
+}
+
+fn load(structure: &Structure, a_g: f64, a_v: f64) -> LinearLoad<Modes> {
+    structure.load(a_g, a_v, &[]).unwrap().into()
+}
+
+#[test]
+fn evison_on_two_springs_has_its_six_events_and_peaks() {
+    let structure = one_mass(EVISON, ground(160.0, 0.2, 2));
+    let mut engine = engine(&structure, 0.75246734e-3, 0.04);
+    assert_relative_eq!(structure.foundation().unwrap().rest, -9.70664855e-6, max_relative = 1e-9);
+    let no_load = structure.load(0.0, 0.0, &[]).unwrap();
+    assert_relative_eq!(engine.output(Output::y, no_load), 11.37754695e-3, max_relative = 1e-9);
+    let mut events = Vec::new();
+    let mut watch = |transition: &Transition<Modes>| events.push((transition.kind, transition.time));
+    engine.advance(0.5, no_load, &mut watch).unwrap();
+    use TransitionKind::{Release, Touch};
+    let expected = [
+        (Touch(0), 0.167986795),
+        (Release(1), 0.170751817),
+        (Release(0), 0.189341689),
+        (Touch(0), 0.196002570),
+        (Touch(1), 0.487288998),
+        (Release(0), 0.490062871),
+    ];
+    assert_eq!(events.len(), expected.len(), "{events:?}");
+    for ((kind, time), (of, at)) in events.into_iter().zip(expected) {
+        assert!(kind == of && (time - at).abs() < 1e-9, "{kind:?} {time}");
+    }
+    let none = Record::from_samples("none", vec![0.0, 0.5], vec![0.0, 0.0]).unwrap();
+    let run = Run { end: End::At(0.5), tolerance: 1e-12, ..Run::of_modes(structure, &none) };
+    let initial = State { u: Modes::new(&[0.75246734e-3]), theta: 0.04, ..run.initial };
+    let (peaks, _) = Run { initial, ..run }.peaks().unwrap();
+    let of = |output| peaks.of(output).unwrap();
+    assert_relative_eq!(of(Output::a_t(0)).magnitude / 9.81, 0.79264971, max_relative = 1e-8);
+    assert!((of(Output::a_t(0)).time - 0.176901).abs() < 5e-7);
+    assert_relative_eq!(of(Output::settlement).magnitude, 0.113399e-3, max_relative = 5e-6);
+    assert_relative_eq!(of(Output::N_right).magnitude, 10765.40, max_relative = 5e-7);
+}
+
+/// Energy, with what dissipators and dashpots have taken, of a bed, all ties, any number of modes.
+#[test]
+fn energy_is_kept() {
+    let tied = Parameters { zeta_fc: 0.0, P_0: 0.0, k_t: 4e4, xi_d: 0.2, c_d: 30.0, k_d: 1e5, F_y: 150.0, ..EVISON };
+    let scenes = [
+        (one_mass(tied, ground(60.0, 0.0, 5)), 7e-4, 0.04, 0.5),
+        (one_mass(tied, ground(60.0, 0.2, 2)), 7e-4, 0.04, 0.5),
+        (frame(ground(12.0, 0.1, 11)), 0.0, 0.1, 5.0),
+        (frame(ground(12.0, 0.1, 3)).keeping(2).unwrap(), 0.0, 0.1, 5.0),
+        (frame(ground(12.0, 0.0, 2)).without_modes(), 0.0, 0.1, 5.0),
+    ];
+    for (structure, u, theta, until) in scenes {
+        let (mut engine, mut kinds) = (engine(&structure, u, theta), Vec::new());
+        let whole = |engine: &Engine<Modes>| {
+            let (taken, load) = (engine.motion().dissipators, structure.load(0.0, 0.0, &[]).unwrap());
+            engine.energy() + engine.output(Output::E_foundation, load) + taken.viscous + taken.hysteretic
+        };
+        let start = whole(&engine);
+        engine.advance(until, load(&structure, 0.0, 0.0), &mut |it: &Transition<Modes>| kinds.push(it.kind)).unwrap();
+        assert!(kinds.len() > 3, "{kinds:?}");
+        if structure.base().is_restrained() {
+            use TransitionKind::{Slack, Unloading, Yielding};
+            assert!([Yielding(0), Unloading(1), Slack].iter().all(|kind| kinds.contains(kind)), "{kinds:?}");
+        }
+        assert_relative_eq!(whole(&engine), start, max_relative = 1e-12);
+    }
+}
+
+/// In vertical motion all points of a bed act at one instant. Without weight a drop rebounds by
+///
+/// ```text
+/// exp[−(2 ζ/√(1−ζ²)) atan2(√(1−ζ²), ζ)],   e⁻² at ζ = 1,   exp[−(2 ζ/√(ζ²−1)) ln(ζ + √(ζ²−1))] above
+/// ```
+#[test]
+fn a_drop_rebounds_as_one_spring_and_dashpot_do() {
+    for (zeta, expected) in [(0.05_f64, 0.859), (0.2, 0.572), (1.0, 0.135), (2.0, 0.048)] {
+        let rebound = match zeta {
+            1.0 => f64::exp(-2.0),
+            ..1.0 => {
+                let root = (1.0 - zeta * zeta).sqrt();
+                (-2.0 * zeta / root * root.atan2(zeta)).exp()
+            }
+            _ => {
+                let root = (zeta * zeta - 1.0_f64).sqrt();
+                (-2.0 * zeta / root * (zeta + root).ln()).exp()
+            }
+        };
+        assert!((rebound - expected).abs() < 6e-4);
+        let structure = one_mass(EVISON, ground(20.0, zeta, 11));
+        let (mut engine, mut seen) = (engine(&structure, 0.0, 0.0), Vec::new());
+        // the springs throw the base up, the ground comes after it for a while, and meets it at a constant velocity
+        for (interval, a_v) in [(0.5, -9.81), (0.01, 90.0), (2.0, -9.81)] {
+            let mut watch = |it: &Transition<Modes>| seen.push((it.kind, it.time, it.after.u_dot.numbers()[1]));
+            engine.advance(interval, load(&structure, 0.0, a_v), &mut watch).unwrap();
+        }
+        assert_eq!(seen.len(), 33, "{seen:?}");
+        for (act, of) in seen.chunks(11).zip([TransitionKind::Release(0), TransitionKind::Touch(0)]) {
+            assert!(act.iter().all(|(kind, time, _)| kind.name() == of.name() && *time == act[0].1), "{act:?}");
+        }
+        assert_relative_eq!(seen[22].2, -rebound * seen[11].2, max_relative = 1e-10);
+        assert!(engine.motion().state.theta.abs() < 1e-15);
+    }
+}
+
+/// The moment of the points under a structure that is held turned: two springs, and beds beside the closed form of a uniform bed,
+///
+/// ```text
+/// W B θ/(3 θ_u) to W B/3, then W B (1 − ⅔ √(θ_u/θ)),   θ_u = W/(K_z B)
+/// ```
+#[test]
+fn static_moments_are_the_closed_forms() {
+    let moment = |points: usize, at: f64| {
+        let structure = one_mass(Parameters::MCMANUS, ground(200.0, 0.2, points));
+        let (base, foundation) = (structure.base(), structure.foundation().unwrap());
+        let weight = base.m_t * base.g;
+        let engine = engine(&structure, 0.0, (at * weight / (foundation.sum(0) * base.B)).asin());
+        let at_rest = structure.load(0.0, 0.0, &[]).unwrap();
+        let forces = Vec::from_iter((0..points).map(|i| engine.output(Output::N(i), at_rest)));
+        assert_relative_eq!(forces.iter().sum::<f64>(), weight, max_relative = 1e-12);
+        let moment: f64 = foundation.points.iter().zip(forces).map(|(point, force)| point.xi * force).sum();
+        moment / (weight * base.B)
+    };
+    for (at, expected) in [(0.5, 0.5), (1.0, 1.0), (7.0, 1.0)] {
+        assert_relative_eq!(moment(2, at), expected, max_relative = 1e-12);
+    }
+    for (points, at, above) in
+        [(11, 0.5, 0.0), (11, 4.0, 0.007), (11, 10.0, 0.009), (11, 100.0, 0.058), (21, 10.0, 0.002)]
+    {
+        let uniform = if at < 1.0 { at / 3.0 } else { 1.0 - 2.0 / 3.0 / f64::sqrt(at) };
+        assert!((moment(points, at) / uniform - 1.0 - above).abs() < 6e-4, "{points} {at} {}", moment(points, at));
+    }
+}
+
+/// At rest the ground carries the weight and the prestress. A run on a bed comes to rest, and stays on a fixed base.
+#[test]
+fn a_structure_at_rest_is_carried_and_comes_to_rest() {
+    let tied = Parameters { P_0: 500.0, k_t: 1e4, ..EVISON };
+    let structure = one_mass(tied, ground(30.0, 0.2, 7));
+    let (engine, at_rest) = (engine(&structure, 0.0, 0.0), structure.load(0.0, 0.0, &[]).unwrap());
+    let weight = structure.base().m_t * structure.base().g;
+    let carried: f64 = (0..7).map(|i| engine.output(Output::N(i), at_rest)).sum();
+    assert_relative_eq!(carried, weight + 500.0, max_relative = 1e-12);
+    assert_relative_eq!(engine.reactions(at_rest).R_v, weight, max_relative = 1e-9);
+    assert_relative_eq!(engine.edges(at_rest).R_v, weight + 500.0, max_relative = 1e-9);
+    assert_eq!(engine.output(Output::contact, at_rest), 1.0);
+
+    let pulse = Record::from_samples("pulse", vec![0.0, 0.1, 0.2], vec![0.0, 9.0, 0.0]).unwrap();
+    let run = Run::of_modes(one_mass(EVISON, ground(60.0, 0.2, 3)), &pulse);
+    let mut events = 0;
+    let finish = run.follow(&mut |_: &Transition<Modes>| events += 1).unwrap();
+    assert!(finish.ending == Ending::AtRest && events > 4, "{:?} {events}", finish.ending);
+    let (peaks, _) = Run { detail: Detail::FixedBase, ..run.clone() }.peaks().unwrap();
+    let settled = -run.structure.foundation().unwrap().rest;
+    assert_eq!([Output::theta, Output::settlement].map(|of| peaks.of(of).unwrap().magnitude), [0.0, settled]);
+    let refusal = Run { detail: Detail::Linear, ..run }.peaks().unwrap_err().to_string();
+    assert!(refusal.contains("choose auto, nonlinear, rigid or fixed_base"), "{refusal}");
+}
+
+/// The forces of the points carry the momentum balance, with forces on floors, vertical motion and mass that turns rigidly.
+#[test]
+fn the_points_carry_the_reactions() {
+    for structure in [frame(ground(12.0, 0.1, 5)), frame(ground(12.0, 0.1, 5)).keeping(1).unwrap()] {
+        let mut engine = engine(&structure, 0.0, 0.01);
+        let [value, slope] = [(2.0, -1.0, 4e4), (9.0, 30.0, -2e5)]
+            .map(|(a_g, a_v, force)| structure.load(a_g, a_v, &[force, 0.0, -0.5 * force]).unwrap());
+        engine.advance(0.3, LinearLoad { value, slope }, &mut ()).unwrap();
+        let load = LinearLoad { value, slope }.at(0.3);
+        let (reactions, points) = (engine.reactions(load), &structure.foundation().unwrap().points);
+        let forces = Vec::from_iter((0..5).map(|i| engine.output(Output::N(i), load)));
+        let turned = engine.motion().state.theta.cos();
+        let moment: f64 = points.iter().zip(&forces).map(|(point, force)| point.xi * force).sum();
+        assert_relative_eq!(reactions.R_v, forces.iter().sum(), max_relative = 1e-10);
+        assert_relative_eq!(reactions.R_m, turned * moment, max_relative = 1e-9);
+        let h = 1e-5;
+        let rates = engine.rates(LinearLoad { value: load, slope });
+        for output in Output::all(&structure) {
+            let (before, rate) = (engine.output(output, load), rates.of(output));
+            let settings = engine.settings();
+            let mut later = engine.remade(settings).unwrap();
+            later.advance(h, LinearLoad { value: load, slope }, &mut ()).unwrap();
+            let after = later.output(output, LinearLoad { value: load, slope }.at(h));
+            assert_relative_eq!((after - before) / h, rate, max_relative = 0.02, epsilon = 1e-3 * before.abs() + 1e-6);
+        }
+    }
+}
+
+#[test]
+fn frequencies_are_the_printed_ones() {
+    let of = |structure: Structure| {
+        structure.frequencies_on_ground().into_iter().map(|omega| omega / TAU).collect::<Vec<_>>()
+    };
+    let mcmanus = of(one_mass(Parameters::MCMANUS, ground(40.0, 0.0, 2)));
+    let frame = of(frame(ground(12.0, 0.1, 2)));
+    let expected: [&[f64]; 2] =
+        [&[4.16323761, 40.0, 58.45388815], &[1.93761549, 7.10814155, 10.04614086, 12.0, 54.46823722]];
+    for (found, expected) in [mcmanus, frame].iter().zip(expected) {
+        assert_eq!(found.len(), expected.len());
+        found.iter().zip(expected).for_each(|(f, of)| assert_relative_eq!(f, of, max_relative = 2e-9));
+    }
+}
+
+#[test]
+fn bad_ground_is_refused_with_a_remedy() {
+    let refused = |parameters: Parameters, ground: Ground| {
+        Structure::new(parameters).unwrap().on(&ground).unwrap_err().to_string()
+    };
+    let soft = Parameters::MCMANUS;
+    let list = |xi: [f64; 2], k: [f64; 2]| Ground { xi: xi.into(), k: k.into(), c: vec![0.0; 2], ..Ground::default() };
+    let cases = [
+        (refused(soft, ground(1.5, 0.2, 2)), "it cannot stand: the ground holds"),
+        (refused(Parameters::EVISON, ground(40.0, 0.2, 2)), "give J0, for a block m0 (4 B^2 + t^2)/12"),
+        (refused(Parameters { c_ratio: 0.5, ..soft }, ground(40.0, 0.2, 2)), "set c_ratio to 1"),
+        (refused(soft, ground(4000.0, 0.2, 2)), "f_v = 4000 Hz is out of range"),
+        (refused(soft, Ground { k_v: Some(1e6), ..ground(40.0, 0.2, 2) }), "f_v and k_v are both given"),
+        (refused(soft, Ground { f_v: None, ..ground(40.0, 0.2, 2) }), "neither f_v (Hz) nor k_v (N/m) is given"),
+        (refused(soft, Ground { kr_ratio: Some(0.5), ..ground(40.0, 0.2, 2) }), "of two points it is 1"),
+        (refused(soft, Ground { kr_ratio: Some(0.1), ..ground(40.0, 0.2, 5) }), "it must lie between 0.167 and 1"),
+        (refused(soft, list([-0.2, 0.1], [1e6; 2])), "the points must be symmetric"),
+        (refused(soft, list([-0.9, 0.9], [1e6; 2])), "the point must lie under the base"),
+        (refused(soft, list([-0.2, 0.2], [0.0; 2])), "k must exceed 0"),
+    ];
+    for (message, expected) in cases {
+        assert!(message.starts_with("ground: ") && message.contains(expected), "{message}");
+    }
+    let rigid = Structure::new(soft).unwrap();
+    assert_eq!(rigid.on(&ground(0.0, 0.2, 2)).unwrap(), rigid);
+}

@@ -1,0 +1,136 @@
+"""An independent integration of a frame of n masses on ground that gives, to compare the engine with.
+
+The state is u, theta, y and their rates. Mass matrix and forces follow from the places of the masses by their Jacobians: no modes,
+no elimination. DOP853 goes from sample to sample and from event to event; Newton's method refines an event by fresh integrations.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from frames import Frame, Ties
+from scipy.integrate import solve_ivp
+
+NEAR = 1e-12  # a condition this small is on its root
+AFTER = 1e-7  # s, an event is not looked for so soon after another
+
+
+class Motion:
+    """The frame on `points`, rows of place, stiffness and damping, at rest at the time 0."""
+
+    def __init__(self, frame: Frame, ties: Ties, points):
+        self.frame, self.ties, self.n = frame, ties, len(frame.masses)
+        self.xi, self.k, self.c = np.array(points, dtype=float).T
+        self.rest = -(frame.m_t * frame.g + ties.P_0) / self.k.sum()
+        self.s = np.zeros(2 * self.n + 4)
+        self.s[self.n + 1] = self.rest
+        self.pressed, self.taut = np.ones(len(self.xi), dtype=bool), True
+        self.plastic, self.yields, self.events = np.zeros(2), np.zeros(2), []
+        self.xi_d = np.array([ties.xi_d, -ties.xi_d])
+
+    def heights(self, s, xi):
+        """e and its rate at the places xi (F1)."""
+        n, theta = self.n, s[self.n]
+        return s[n + 1] - xi * np.sin(theta), s[2 * n + 3] - xi * np.cos(theta) * s[2 * n + 2]
+
+    def pull(self, s):
+        """Forces of the dissipators, and the elongations with their rates."""
+        t, (height, rate) = self.ties, self.heights(s, self.xi_d)
+        elastic = t.k_d * (height - self.rest - self.plastic)
+        return np.where(self.yields != 0, self.yields * t.F_y, elastic) + t.c_d * rate, elastic, rate
+
+    def rates(self, t, s):
+        p, n = self.frame, self.n
+        u, (theta, y), u_dot, (w, _) = s[:n], s[n:n + 2], s[n + 2:2 * n + 2], s[2 * n + 2:]
+        sn, cs, one = np.sin(theta), np.cos(theta), np.ones(n)
+        # rows of the Jacobians of x = u cos + h sin and z = y + h cos - u sin by u_i, theta, y
+        by_x, by_z = np.array([cs * one, p.h * cs - u * sn, 0 * one]), np.array([-sn * one, -p.h * sn - u * cs, one])
+        ground = [a + slope * (t - self.start) for a, slope in (self.a_g, self.a_v)]
+        x = -2 * sn * w * u_dot - (u * cs + p.h * sn) * w**2 + ground[0]
+        z = -2 * cs * w * u_dot - (p.h * cs - u * sn) * w**2 + ground[1] + p.g
+        mass, force = np.zeros((n + 2, n + 2)), np.zeros(n + 2)
+        mass[:n, :n] = np.diag(p.m * (by_x[0] ** 2 + by_z[0] ** 2))
+        for j, row in ((n, 1), (n + 1, 2)):
+            mass[:n, j] = mass[j, :n] = p.m * (by_x[0] * by_x[row] + by_z[0] * by_z[row])
+        for i, j in ((1, 1), (1, 2), (2, 2)):
+            mass[n + i - 1, n + j - 1] = mass[n + j - 1, n + i - 1] = p.m @ (by_x[i] * by_x[j] + by_z[i] * by_z[j])
+        mass[n, n] += p.J0
+        mass[n + 1, n + 1] += p.m0
+        inertial = p.m * (by_x * x + by_z * z)
+        force[:n] = -inertial[0] - p.K @ u - p.C @ u_dot
+        e, rate = self.heights(s, self.xi)
+        N, (F, *_) = np.where(self.pressed, -(self.k * e + self.c * rate), 0.0), self.pull(s)
+        P = self.taut * (self.ties.P_0 + self.ties.k_t * (y - self.rest))
+        force[n] = -inertial[1].sum() - cs * (self.xi @ N - self.xi_d @ F)
+        force[n + 1] = -inertial[2].sum() - p.m0 * (p.g + ground[1]) + N.sum() - F.sum() - P
+        return np.concatenate([s[n + 2:], np.linalg.solve(mass, force)])
+
+    def conditions(self, s):
+        """Numbers that are positive while nothing changes: of the points, the tendon, and both dissipators."""
+        t, (e, rate), (_, elastic, stretch) = self.ties, self.heights(s, self.xi), self.pull(s)
+        margin = np.minimum(-e, -(e + self.c / self.k * rate)) / -self.rest
+        points = np.where(self.pressed, margin, -margin)
+        slack = (t.P_0 + t.k_t * (s[self.n + 1] - self.rest)) * (1 if self.taut else -1) / (self.frame.m_t * self.frame.g)
+        held = np.where(self.yields != 0, self.yields * stretch, 1 - np.abs(elastic) / t.F_y if t.F_y else 1.0)
+        return np.concatenate([points, [slack if t.k_t else 1.0], held])
+
+    def change(self, i, s, time):
+        """Applies the change of condition i."""
+        points = len(self.xi)
+        if i < points:
+            self.pressed[i] = not self.pressed[i]
+            self.events.append((time, "touch" if self.pressed[i] else "release"))
+        elif i == points:
+            self.taut = not self.taut
+        else:
+            j, elastic = i - points - 1, self.pull(s)[1]
+            if self.yields[j]:
+                self.plastic[j] += (elastic[j] - self.yields[j] * self.ties.F_y) / self.ties.k_d
+                self.yields[j] = 0.0
+            else:
+                self.yields[j] = np.sign(elastic[j])
+
+    def solve(self, start, end, s, **options):
+        return solve_ivp(self.rates, (start, end), s, "DOP853", rtol=1e-12, atol=1e-14, **options)
+
+    def to(self, end):
+        """Goes on to `end` under the present acceleration."""
+        time = self.start
+        while time < end:
+            left = min(end, time + AFTER) if self.fresh else end
+            events = []
+            if not self.fresh:
+                for i, value in enumerate(self.conditions(self.s)):
+                    events.append(lambda t, s, i=i: self.conditions(s)[i])
+                    events[-1].terminal, events[-1].direction = True, -1
+            run = self.solve(time, left, self.s, events=events, max_step=self.longest)
+            self.fresh = False
+            if run.status == 0:
+                time, self.s = left, run.y[:, -1]
+            else:
+                i = next(i for i, times in enumerate(run.t_events) if len(times))
+                begin, s = run.t[-2], run.y[:, -2]
+                guess = run.t_events[i][0]
+                for _ in range(3):
+                    at = self.solve(begin, guess, s).y[:, -1]
+                    slope = (self.conditions(at + 1e-7 * self.rates(guess, at))[i] - self.conditions(at)[i]) / 1e-7
+                    guess -= self.conditions(at)[i] / slope
+                time, self.s = guess, self.solve(begin, guess, s).y[:, -1]
+                self.change(i, self.s, time)
+                self.fresh = True
+            # what has changed just after another event
+            for i, value in enumerate(self.conditions(self.s)):
+                if value < -1e3 * NEAR and not self.fresh:
+                    self.change(i, self.s, time)
+
+    def follow(self, dt, a_g, a_v):
+        """Rows of theta, y, u and accelerations of the floors at the samples but the first."""
+        p, n, rows = self.frame, self.n, []
+        stiff = max(p.omega[-1] ** 2, self.k.sum() / p.m_t, self.k @ self.xi**2 / p.J0)
+        self.longest, self.fresh = 0.5 / np.sqrt(stiff), False
+        for i in range(len(a_g) - 1):
+            self.start = i * dt
+            self.a_g, self.a_v = ((a[i], (a[i + 1] - a[i]) / dt) for a in (a_g, a_v))
+            self.to((i + 1) * dt)
+            u, theta, y = self.s[:n], *self.s[n:n + 2]
+            rows.append([theta, y, *u, *(p.g * np.sin(theta) - p.elastic @ np.concatenate([u, self.s[n + 2:2 * n + 2]]))])
+        return np.array(rows)

@@ -1,0 +1,84 @@
+"""Ground that gives: the engine against an independent integration of the masses, and against printed numbers."""
+
+import json
+import subprocess
+
+import numpy as np
+import pytest
+from frames import FRAMES, Frame, Ties
+from ground_reference import Motion
+from host import G, ground_motion
+from test_frames import engine, program  # noqa: F401
+
+MCMANUS = Frame((130.1,), (1.84,), (130.1 * (2 * np.pi * 5) ** 2,), m0=65.4, J0=10.7, B=0.285, zeta=0.02)
+STOREYS = Frame((40e3,) * 5, tuple(3.2 * i for i in range(1, 6)), tuple(5e6 * (25 - 3 * i) for i in range(1, 6)),
+                m0=60e3, J0=2e5, B=2.5, zeta=0.02)
+
+
+def bed(frame: Frame, f_v: float, zeta_v: float, n: int) -> np.ndarray:
+    """Rows of place, stiffness and damping of a uniform bed, or of two springs."""
+    K = frame.m_t * (2 * np.pi * f_v) ** 2
+    xi = np.linspace(-frame.B, frame.B, n)
+    ratio = 1 if n == 2 else 1 / 3
+    inner = K * frame.B**2 * (1 - ratio) / ((n - 2) * frame.B**2 - (xi[1:-1] ** 2).sum()) if n > 2 else 0.0
+    k = np.full(n, inner)
+    k[[0, -1]] = (K - (n - 2) * inner) / 2
+    return np.column_stack([xi, k, 2 * zeta_v / np.sqrt(K / frame.m_t) * k])
+
+
+def record(event: str, first: int, samples: int, scale: float):
+    along, up = (ground_motion(event, which, first + samples, scale=scale) for which in ("elc180", "up"))
+    return along[0][1], along[1][first:], up[1][first:]
+
+
+def tied(frame: Frame) -> Ties:
+    weight, B = frame.m_t * frame.g, frame.B
+    return Ties(P_0=0.1 * weight, k_t=20 * weight / B, xi_d=0.8 * B, c_d=0.02 * weight / B, k_d=50 * weight / B, F_y=0.1 * weight)
+
+
+SCENES = {
+    "one mass on two springs": (MCMANUS, 40.0, 0.2, 2, 0.7, False),
+    "one mass on a bed of 11": (MCMANUS, 40.0, 0.1, 11, 0.35, False),
+    "five storeys": (STOREYS, 8.0, 0.1, 3, 1.6, False),
+    "three storeys, tied, with a_v": (FRAMES["frame"], 12.0, 0.1, 2, 1.6, True),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_engine_moves_as_the_masses_do(name, program):  # noqa: F811
+    """Every touch and release, and theta, y, u and a of every floor at every sample, to 1e-9 of the peak and 100 times conditioning."""
+    frame, f_v, zeta_v, n, scale, is_tied = SCENES[name]
+    dt, a_g, a_v = record("imperialValley_elCentro_1940", 150, 150, scale)
+    ties, a_v, points = (tied(frame), a_v, bed(frame, f_v, zeta_v, n)) if is_tied else (Ties(), 0 * a_v, bed(frame, f_v, zeta_v, n))
+    exact = Motion(frame, ties, points)
+    expected = exact.follow(dt, a_g, a_v)
+    transitions, rows = engine(program, frame, dt, a_g, a_v, ties, "auto", points)
+    found = [(time, kind) for time, kind in transitions if kind in ("touch", "release")]
+    assert [kind for _, kind in found] == [kind for _, kind in exact.events] and len(found) > 4
+    np.testing.assert_allclose([time for time, _ in found], [time for time, _ in exact.events], rtol=0, atol=1e-8)
+    changed = engine(program, frame, dt, a_g * (1 + 1e-12), a_v, ties, "auto", points)[1]
+    m = len(frame.masses)
+    for of in (slice(0, 1), slice(1, 2), slice(2, m + 2), slice(m + 2, None)):
+        peak, off = np.abs(expected[:, of]).max(), np.abs(changed[:, of] - rows[:, of]).max()
+        np.testing.assert_allclose(rows[:, of], expected[:, of], rtol=0, atol=max(1e-9 * peak, 100 * off))
+
+
+@pytest.mark.parametrize("zeta_v, n, scale, theta, time, a_t, events", [
+    (0.0, 2, 0.7, 0.0415168056, 5.94587, 0.40722319, 39),
+    (0.2, 2, 0.7, 0.0354615336, 5.92357, 0.38821333, 37),
+    (0.0, 11, 0.35, 0.0264593849, 5.85507, 0.26853149, 290),
+])
+def test_mcmanus_on_springs_has_the_printed_numbers(zeta_v, n, scale, theta, time, a_t, events, exporter, tmp_path):
+    """From a file and a record, by the command line."""
+    dt, a_g, _ = record("imperialValley_elCentro_1940", 0, 801, scale)
+    np.savetxt(tmp_path / "a.csv", np.column_stack([np.arange(801) * dt, a_g]), "%.17g", delimiter=",", header="time,a_g", comments="")
+    (tmp_path / "pier.toml").write_text(
+        f"m = 130.1\nm0 = 65.4\nH = 1.84\nB = 0.285\nJ0 = 10.7\nf_fc = 5\nzeta_fc = 0.02\nr = 0.99\n"
+        f"[ground]\nf_v = 40\nzeta_v = {zeta_v}\nn_points = {n}\n")
+    command = [exporter, "simulate", "--parameters", "pier.toml", "--record", "a.csv", "--unit", "m/s2", "--duration", "8",
+               "--tolerance", "1e-12", "--format", "json"]
+    found = json.loads(subprocess.run(command, check=True, capture_output=True, text=True, cwd=tmp_path).stdout)
+    peaks = {of["name"]: (of["peak"], of["time"]) for of in found["peaks"]}
+    assert peaks["theta"] == (pytest.approx(theta, rel=2e-9), pytest.approx(time, abs=6e-6))
+    assert peaks["a_t[1]"][0] / G == pytest.approx(a_t, rel=2e-8)
+    assert found["transitions"] == events
