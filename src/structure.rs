@@ -580,7 +580,13 @@ impl Structure {
         let u_dot = |_: usize, mode: &Mode| u(mode) * mode.omega();
         let theta = libm::atan(self.0.base.tan_alpha_cg);
         let theta_dot = self.0.base.p_l * theta;
-        State { u: Q::each(self, |_, mode| u(mode)), u_dot: Q::each(self, u_dot), theta, theta_dot }
+        let mut usual = State { u: Q::each(self, |_, mode| u(mode)), u_dot: Q::each(self, u_dot), theta, theta_dot };
+        if let Some(foundation) = self.foundation() {
+            let settled = foundation.rest.abs();
+            usual.u.set(foundation.place, settled);
+            usual.u_dot.set(foundation.place, (self.0.base.g * settled).sqrt());
+        }
+        usual
     }
 
     /// Mass (kg), first (kg·m) and second moment (kg·m²) that no mode carries.

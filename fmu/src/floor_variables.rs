@@ -25,10 +25,11 @@ pub(crate) fn rows(frame: &Structure, one_mass: impl Iterator<Item = Row>) -> Ve
     let names: HashSet<Text> = rows.iter().map(|(variable, _)| variable.name.clone()).collect();
     let (modes, floors) = (frame.modes().len(), frame.floors().len());
     let known = |name: &Text| -> Vec<Text> {
-        let all = |of: &str, count| (1..=count).map(|at| format!("{of}[{at}]").into()).collect();
+        let all = |of: &str, count| Vec::from_iter((1..=count).map(|at| Text::from(format!("{of}[{at}]"))));
         match &**name {
-            "u" => all("q", modes),
-            "u_dot" => all("q_dot", modes),
+            // on ground that gives all accelerations depend on y
+            "u" => all("q", modes).into_iter().chain(names.get("y").cloned()).collect(),
+            "u_dot" => all("q_dot", modes).into_iter().chain(names.get("y_dot").cloned()).collect(),
             "F_t" => all("F_t", floors),
             _ => names.get(name).cloned().into_iter().collect(),
         }
