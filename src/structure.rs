@@ -138,8 +138,8 @@ impl PartialEq for Reaches {
 /// A structure of many masses where one mass is needed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "{task} needs a structure of one mass, and this structure has {modes} modes: describe, simulate, sweep, view, advise and export \
-     take many masses"
+    "{task} needs a structure of one mass, because Eqs 10 to 24 have one mode of vibration, and this structure has {modes} modes: simulate \
+     the motion instead"
 )]
 pub struct NotOneMass {
     /// Name of the task.

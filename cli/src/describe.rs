@@ -2,15 +2,14 @@
 
 use crate::results::{FormatArgs, print};
 use crate::structure_args::StructureArgs;
-use anyhow::ensure;
+use anyhow::Context;
 use rocking::digits::{short, significant};
-use rocking::estimates::restoring::{FlagPoint, flag};
+use rocking::estimates::restoring::FlagPoint;
 use rocking::structure::derived::Derived;
 use rocking::structure::natural_quantities::{NATURAL, Natural};
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{OneMass, Quantity};
 use rocking_report::describe;
-use std::f64::consts::FRAC_PI_2;
 use std::fmt::{self, Write};
 
 /// Arguments of `describe`.
@@ -28,19 +27,17 @@ pub struct DescribeArgs {
     restoring: Option<f64>,
 }
 
-/// Steps of each way of the loop.
-const STEPS: u32 = 20;
-
 /// Prints the parameters as they were given and the derived quantities with the equations that define them.
 pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     let structure = args.structure.load_any()?;
     if args.template {
-        return print(&template(structure.one_mass("--template")?)?);
+        let one = structure.one().context(
+            "--template has the parameters of one mass: copy the file of a building from docs/howto/frames.md",
+        )?;
+        return print(&template(one)?);
     }
     if let Some(theta) = args.restoring {
-        let is_in_range = theta > 0.0 && theta < FRAC_PI_2;
-        ensure!(is_in_range, "restoring = {theta} rad is out of range: a rotation above 0 and below pi/2 is needed");
-        let rows = flag(structure.base(), theta, STEPS);
+        let rows = describe::restoring(&structure, theta)?;
         return args.results.print(|| Ok(text_of_loop(&rows)), &rows);
     }
     args.results.print(|| Ok(describe::text(&structure)?), &describe::numbers(&structure))

@@ -35,7 +35,7 @@ pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     if let Some(part) = args.amplitudes.iter().find(|part| !(**part > 0.0 && **part < 1.0)) {
         bail!("amplitudes = {part} is out of range: parts above 0 and below 1 are needed");
     }
-    let structure = args.structure.load()?;
+    let structure = *args.structure.load_any()?.one_mass("estimate")?;
     let record = args.ground.load(structure.parameters().g)?;
     let Estimate { terms: mut lines, .. } = Estimate::new(&structure, record.as_ref(), args.amplification)?;
     for part in &args.amplitudes {

@@ -4,7 +4,7 @@ use crate::cause::Cause;
 use crate::results::{FormatArgs, Traced, csv};
 use crate::structure_args::StructureArgs;
 use crate::talk::write_as;
-use rocking::estimates::pushover::curve;
+use rocking::estimates::pushover::Pushover;
 use rocking_report::output_files::OutputFiles;
 use rocking_report::pushover::{Corner, HEADINGS, corners, line};
 use std::path::PathBuf;
@@ -27,15 +27,16 @@ pub struct PushoverArgs {
 /// Writes the curve from 0 to overturning, to the right, and prints its corners.
 pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     args.results.check_beside(args.output.as_deref())?;
-    let structure = args.structure.load()?;
+    let structure = args.structure.load_any()?;
     let create = |path: &PathBuf| OutputFiles::of_inputs(args.structure.input()).create(path);
     let file = args.output.as_ref().map(create).transpose()?;
-    let curve = curve(&structure, args.points)?;
+    let pushed = Pushover::new(&structure)?;
+    let curve = pushed.curve(args.points)?;
     if let Some(file) = file {
         write_as(file, "curve", &csv(HEADINGS, curve.iter().map(line))?)?;
     }
-    let rows = corners(&structure)?;
+    let rows = corners(&pushed)?;
     let text = || Ok(rows.iter().map(Corner::line).collect());
-    let traced = Traced { cause: &Cause::new(structure), rows: &rows };
+    let traced = Traced { cause: &Cause::new(structure.clone()), rows: &rows };
     args.results.print_beside(args.output.as_deref(), text, &traced)
 }

@@ -12,7 +12,7 @@ use rocking::structure::description::Described;
 use rocking::structure::natural_quantities::{Given, GivenError, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::quantity::Quantity;
-use rocking::{OneMass, Parameters, Structure};
+use rocking::{Parameters, Structure};
 use rocking_report::input;
 use std::path::{Path, PathBuf};
 
@@ -38,11 +38,6 @@ impl StructureArgs {
     /// The file that is read, if any.
     pub fn input(&self) -> Option<&Path> {
         self.parameters.as_deref()
-    }
-
-    /// Reads a structure of one mass.
-    pub fn load(&self) -> anyhow::Result<OneMass> {
-        Ok(*self.load_any()?.one_mass("this command")?)
     }
 
     /// Reads the structure, and warns of doubtful numbers; a refusal names the file, the line and the key.

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::estimates::modal_split::{ModalAccelerations, Modes};
-use rocking::estimates::pushover::{self, Equilibrium};
+use rocking::estimates::pushover::{Equilibrium, Pushover};
 use rocking::structure::derived::{DERIVED, Derived};
 use rocking::structure::derived::{OF_MODE, OF_STRUCTURE};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
@@ -225,14 +225,14 @@ impl Structure {
     }
 
     /// The static pushover of Fig 1 to the right, from rest to overturning (Eqs 5 and 6 without inertia). Returns a dict of
-    /// arrays (2 points,): theta (rad), u, delta_t (m), P (N), M (N.m). `points` of them are in full contact, and as many
-    /// rock.
+    /// arrays (2 points,): theta (rad), u, delta_t (m) of the top floor, P (N), M (N.m). `points` of them are in full contact, and
+    /// as many rock. Floors take parts of P in proportion to mass times height.
     ///
-    /// Raises ValueError where the strut is too soft to hold the structure, and for other than 2 to 1,000,000 points.
+    /// Raises ValueError where the structure is too soft to be held, and for other than 2 to 1,000,000 points.
     #[pyo3(signature = (points=100))]
     fn pushover<'py>(&self, py: Python<'py>, points: u32) -> PyResult<Bound<'py, PyDict>> {
-        let structure = self.one("pushover")?;
-        let curve = interruptible(py, move |_| pushover::curve(&structure, points))?;
+        let structure = self.of.clone();
+        let curve = interruptible(py, move |_| Pushover::new(&structure)?.curve(points))?;
         let column = |of: fn(&Equilibrium) -> f64| PyArray1::from_iter(py, curve.iter().map(of));
         let named = PyDict::new(py);
         named.set_item("theta", column(|at| at.theta))?;
@@ -240,6 +240,15 @@ impl Structure {
         named.set_item("delta_t", column(|at| at.delta_t))?;
         named.set_item("P", column(|at| at.force))?;
         named.set_item("M", column(|at| at.moment))?;
+        Ok(named)
+    }
+
+    /// The moment that weight, tendon and dissipators turn the base back with, while the base is turned slowly from rest to theta (rad,
+    /// above 0 and below pi/2) and back in 20 steps each. Returns a dict of arrays (41,): theta (rad), moment (N.m).
+    fn restoring<'py>(&self, py: Python<'py>, theta: f64) -> PyResult<Bound<'py, PyDict>> {
+        let (points, named) = (describe::restoring(&self.of, theta).map_err(refused)?, PyDict::new(py));
+        named.set_item("theta", PyArray1::from_iter(py, points.iter().map(|at| at.theta)))?;
+        named.set_item("moment", PyArray1::from_iter(py, points.iter().map(|at| at.moment)))?;
         Ok(named)
     }
 

@@ -1,14 +1,16 @@
 //! A structure's parameters and what follows from them.
 
 use crate::quantities::NamedValue;
+use anyhow::ensure;
 use rocking::Body;
 use rocking::digits::{short, significant, with_unit};
+use rocking::estimates::restoring::{FlagPoint, flag};
 use rocking::run::validity;
 use rocking::structure::derived::{DERIVED, Derived};
 use rocking::structure::derived::{OF_MODE, OF_STRUCTURE};
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{Detail, Structure};
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::{self, Write};
 
 /// The parameters of one mass.
@@ -40,6 +42,16 @@ pub fn derived(structure: &Structure) -> Vec<NamedValue> {
 pub fn modes(structure: &Structure) -> Vec<Vec<NamedValue>> {
     let modes = [structure].into_iter().filter(|of| of.one().is_none()).flat_map(Structure::mode_table);
     modes.map(|mode| named(&OF_MODE, &mode)).collect()
+}
+
+/// Steps of each way of [`restoring`].
+const STEPS: u32 = 20;
+
+/// The moment that turns the base back, while it is turned slowly to the rotation `theta` (rad, 0 to π/2) and back.
+pub fn restoring(structure: &Structure, theta: f64) -> anyhow::Result<Vec<FlagPoint>> {
+    let is_in_range = theta > 0.0 && theta < FRAC_PI_2;
+    ensure!(is_in_range, "restoring = {theta} rad is out of range: a rotation above 0 and below pi/2 is needed");
+    Ok(flag(structure.base(), theta, STEPS))
 }
 
 fn named<T>(all: &[Derived<T>], of: &T) -> Vec<NamedValue> {

@@ -1,9 +1,9 @@
 //! The pushover: lateral force and moment against displacement (Fig 1).
 
 use crate::quantities::in_readable_unit;
+use rocking::Phase;
 use rocking::digits::significant;
-use rocking::estimates::pushover::{Equilibrium, PushoverError, at_overturning, at_rotation, in_full_contact};
-use rocking::{OneMass, Phase};
+use rocking::estimates::pushover::{Equilibrium, Pushover, PushoverError};
 use serde::Serialize;
 
 /// Headings of the curve.
@@ -19,16 +19,16 @@ pub struct Corner {
     M: f64,
 }
 
-/// The corners of the curve, in its order. Refuses a strut that is too soft.
-pub fn corners(structure: &OneMass) -> Result<[Corner; 3], PushoverError> {
+/// The corners of the curve, in its order. Refuses a structure that is too soft.
+pub fn corners(pushed: &Pushover) -> Result<[Corner; 3], PushoverError> {
     let corner = |(name, corner)| {
         let Equilibrium { theta, delta_t, force: P, moment: M, .. } = corner;
         Corner { name, delta_t, theta, P, M }
     };
     let corners = [
-        ("uplift", in_full_contact(structure, structure.u_cr)),
-        ("start of rocking", at_rotation(structure, 0.0).ok_or(PushoverError::TooSoft)?),
-        ("overturning", at_overturning(structure).ok_or(PushoverError::TooSoft)?),
+        ("uplift", pushed.at_uplift()),
+        ("start of rocking", pushed.at_rotation(0.0).ok_or(PushoverError::TooSoft)?),
+        ("overturning", pushed.at_overturning().ok_or(PushoverError::TooSoft)?),
     ];
     Ok(corners.map(corner))
 }

@@ -1,52 +1,51 @@
-//! Displacement-controlled pushover (Fig 1): a horizontal force P on the top mass, slow enough for equilibrium.
+//! Displacement-controlled pushover (Fig 1): a horizontal force P on the floors, slow enough for equilibrium.
 //!
-//! In full contact P = k u up to u_cr (after Eq 4). Beyond it, Eqs 5 and 6 without inertia, damping and ground motion,
-//! P in the direction of each coordinate on the other side:
-//!
-//! ```text
-//! P cos θ                        = k u − m g sin θ                                                     (5)
-//! P [H cos θ + (sB − u) sin θ]   = s (m + m0) g B cos θ − m g H sin θ − m g u cos θ                    (6)
-//! ```
-//!
-//! Without P, for s = +1, they leave a quadratic in u, whose smaller root is the equilibrium:
+//! Floor i takes the part w_i = m_i h_i/Σ m h of P (EN 1998-1, Eq 4.11), and one mass takes all of it. In full contact
+//! P = u_w/C up to uplift at P h_w = hold ([`uplift`](crate::mechanics::uplift)), which is u_cr of one mass. Beyond it, the
+//! equations without inertia, damping and ground motion, P in the direction of each coordinate on the other side, are
 //!
 //! ```text
-//! k sin θ u² − [k (H cos θ + B sin θ) + m g] u + g B (m + m0 cos² θ) = 0
+//! k u = P f cos θ + g Γ sin θ     of each mode, f = Σ w φ                                               (5)
+//! P [(sB − Σ f u) sin θ + h_w cos θ] = g [(s m_t B − Σ Γ u) cos θ − S_1 sin θ] + T,   h_w = Σ w h          (6)
 //! ```
 //!
-//! Ties ([`restraint`](crate::mechanics::restraint)) add their moment Σ F s l cos(θ/2) to the right side of (6), and cos θ times
-//! that to the last term of the quadratic.
+//! with T = Σ F l cos(θ/2) of the ties ([`restraint`](crate::mechanics::restraint)). Without u, for s = +1, they leave a quadratic
+//! in P, whose smaller root is the equilibrium:
 //!
-//! The bracket of P is the height of the top mass, so that (6) is the balance of moments about the pivot. At θ → 0 the quadratic
-//! gives u_cr/(1 + g/(ω_fc² H)), because u_cr leaves out the moment m g u of the top mass. The force drops by this fraction as the
-//! base lifts off (2e-3 for Evison, 5e-3 for McManus).
+//! ```text
+//! C sin θ cos θ P² − [B sin θ + h_w cos θ + g A cos 2θ] P + g (m_t B − g G sin θ) cos θ − g S_1 sin θ + T = 0
+//! C = Σ f²/k,   A = Σ f Γ/k,   G = Σ Γ²/k
+//! ```
+//!
+//! As the base lifts off, the force drops because uplift leaves out the moment of the displaced weights: of one mass by
+//! 1/(1 + g/(ω_fc² H)) (2e-3 for Evison, 5e-3 for McManus).
 
 use crate::mechanics::instant::Place;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
 use crate::numbers::Angle;
 use crate::run::fall::angle_of_no_return;
 use crate::series::bisection::last_where;
-use crate::{OneMass, Phase, Side};
+use crate::{Base, Mode, Phase, Side, Structure};
 use std::f64::consts::FRAC_PI_2;
 
-/// The structure at rest under a horizontal force on the top mass.
+/// The structure at rest under a horizontal force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Equilibrium {
     /// Phase: full contact, or rocking about a side.
     pub phase: Phase,
     /// Rotation of the base, rad.
     pub theta: f64,
-    /// Elastic displacement, m.
+    /// Elastic displacement of the top floor, m.
     pub u: f64,
-    /// Lateral displacement of the top mass, m (Eq 26).
+    /// Lateral displacement of the top floor, m (Eq 26).
     pub delta_t: f64,
-    /// Horizontal force on the top mass, P, N.
+    /// Horizontal force P, N.
     pub force: f64,
-    /// Its moment about the base, the restoring moment, N·m.
+    /// The moment of P about the base, the restoring moment, N·m.
     pub moment: f64,
 }
 
-/// Most points on each branch of a [`curve`].
+/// Most points on each branch of a curve.
 pub const MOST_POINTS: u32 = 1_000_000;
 
 /// Why there is no pushover.
@@ -55,93 +54,162 @@ pub enum PushoverError {
     /// Another number of points than a curve has.
     #[error("points = {0} is out of range: 2 to {MOST_POINTS} on each branch are possible")]
     BadPoints(u32),
-    /// The strut gives way before the structure overturns.
-    #[error("the strut is too soft to hold the structure all the way to overturning: raise f_fc or lower m0")]
+    /// Modes alone.
+    #[error("the structure has no floors that take the force: give masses, heights and shapes")]
+    NoFloors,
+    /// The structure gives way before it overturns.
+    #[error(
+        "the structure is too soft to be held all the way to overturning: raise f_fc or its stiffnesses, or lower m0"
+    )]
     TooSoft,
 }
 
-/// The pushover from rest to overturning, to the right: `points` evenly over the displacements in full contact, then as many
-/// while rocking.
-pub fn curve(structure: &OneMass, points: u32) -> Result<Vec<Equilibrium>, PushoverError> {
-    if !(2..=MOST_POINTS).contains(&points) {
-        return Err(PushoverError::BadPoints(points));
-    }
-    let end = at_overturning(structure).ok_or(PushoverError::TooSoft)?.delta_t;
-    let u_cr = structure.u_cr;
-    let evenly = |from: f64, to: f64| {
-        let part = move |i| f64::from(i) / f64::from(points - 1);
-        (0..points).map(move |i| if i == points - 1 { to } else { from + (to - from) * part(i) })
-    };
-    let displacements = evenly(0.0, u_cr).chain(evenly(u_cr.next_up(), end));
-    displacements.map(|delta_t| at_displacement(structure, delta_t).ok_or(PushoverError::TooSoft)).collect()
+/// A structure under a horizontal force on its floors.
+#[derive(Clone, Copy, Debug)]
+pub struct Pushover<'a> {
+    base: &'a Base,
+    /// S_1, kg·m.
+    first: f64,
+    /// Heights of the force h_w and of the top floor, m.
+    height: f64,
+    top: f64,
+    /// C (m/N), A (s²) and G (kg·s²).
+    C: f64,
+    A: f64,
+    G: f64,
+    /// Displacement of the top floor under P = 1 N (m/N), and under the weights if they act sideways and g is 1 (s²).
+    of_top: [f64; 2],
 }
 
-/// Full contact at the elastic displacement `u` (m), |u| ≤ u_cr.
-pub fn in_full_contact(structure: &OneMass, u: f64) -> Equilibrium {
-    let force = structure.k * u;
-    let moment = structure.parameters().H * force;
-    Equilibrium { phase: Phase::FullContact, theta: 0.0, u, delta_t: u, force, moment }
-}
-
-/// Rocking at the rotation `theta` (rad), |θ| < π/2; 0 is the start of rocking to the right. `None` for a strut too
-/// soft to hold the structure there. The dissipators have been moved there from rest.
-pub fn at_rotation(structure: &OneMass, theta: f64) -> Option<Equilibrium> {
-    let &crate::Parameters { m, m0, H, B, g, .. } = structure.parameters();
-    let k = structure.k;
-    let side = Side::of(theta);
-    let s = side.sign();
-    let (sin, cos) = libm::sincos(theta.abs());
-    let (quadratic, linear) = (k * sin, k * (H * cos + B * sin) + m * g);
-    let dissipators = Dissipators::NEW.moved(structure.base(), side, theta);
-    let held = s * Restraint::about(structure.base(), side, &dissipators).moment(&Angles::Any.chord(theta, 0.0));
-    let constant = g * B * (m + m0 * cos * cos) + held * cos;
-    let discriminant = linear * linear - 4.0 * quadratic * constant;
-    if discriminant < 0.0 {
-        return None;
+impl<'a> Pushover<'a> {
+    /// The pushover of `structure`, which must have floors.
+    pub fn new(structure: &'a Structure) -> Result<Pushover<'a>, PushoverError> {
+        let floors = structure.floors();
+        let top = floors.last().ok_or(PushoverError::NoFloors)?;
+        let whole: f64 = floors.iter().map(|floor| floor.mass * floor.height).sum();
+        let mean = |of: &dyn Fn(usize) -> f64| {
+            let parts = floors.iter().enumerate().map(|(i, floor)| floor.mass * floor.height / whole * of(i));
+            parts.sum::<f64>()
+        };
+        let force = |j: usize| mean(&|i| floors[i].shape.numbers()[j]);
+        let weight = |j: usize| structure.modes()[j].gamma;
+        let under = |a: &dyn Fn(usize) -> f64, b: &dyn Fn(usize) -> f64| {
+            let each = |(j, mode): (usize, &Mode)| a(j) * b(j) / mode.stiffness;
+            structure.modes().iter().enumerate().map(each).sum::<f64>()
+        };
+        let at_top = |j: usize| top.shape.numbers()[j];
+        Ok(Pushover {
+            base: structure.base(),
+            first: structure.body().S_1,
+            height: mean(&|i| floors[i].height),
+            top: top.height,
+            C: under(&force, &force),
+            A: under(&force, &weight),
+            G: under(&weight, &weight),
+            of_top: [under(&at_top, &force), under(&at_top, &weight)],
+        })
     }
-    let u = 2.0 * constant / (linear + discriminant.sqrt());
-    let force = (k * u - m * g * sin) / cos;
-    let moment = force * (H * cos + (B - u) * sin);
-    let phase = Phase::Rocking(side);
-    let delta_t = Place { share: 1.0, height: H, u: s * u }.right(s * B, &theta.turn());
-    Some(Equilibrium { phase, theta, u: s * u, delta_t, force: s * force, moment: s * moment })
-}
 
-/// The pushover at the lateral displacement `delta_t` (m) of the top mass: full contact up to u_cr, rocking beyond.
-/// `None` where rocking does not reach, B + H at most.
-pub fn at_displacement(structure: &OneMass, delta_t: f64) -> Option<Equilibrium> {
-    if delta_t.abs() <= structure.u_cr {
-        return Some(in_full_contact(structure, delta_t));
+    /// The curve from rest to overturning, to the right: `points` evenly over the displacements in full contact, then as many
+    /// while rocking.
+    pub fn curve(&self, points: u32) -> Result<Vec<Equilibrium>, PushoverError> {
+        if !(2..=MOST_POINTS).contains(&points) {
+            return Err(PushoverError::BadPoints(points));
+        }
+        let end = self.at_overturning().ok_or(PushoverError::TooSoft)?.delta_t;
+        let lifts = self.at_uplift().u;
+        let evenly = |from: f64, to: f64| {
+            let part = move |i| f64::from(i) / f64::from(points - 1);
+            (0..points).map(move |i| if i == points - 1 { to } else { from + (to - from) * part(i) })
+        };
+        let displacements = evenly(0.0, lifts).chain(evenly(lifts.next_up(), end));
+        displacements.map(|delta_t| self.at_displacement(delta_t).ok_or(PushoverError::TooSoft)).collect()
     }
-    let reaches = |theta| at_rotation(structure, theta).is_some_and(|there| there.delta_t >= delta_t.abs());
-    if !reaches(FRAC_PI_2) {
-        return None;
-    }
-    let theta = last_where(0.0, FRAC_PI_2, |theta| !reaches(theta));
-    at_rotation(structure, theta.copysign(delta_t))
-}
 
-/// The unstable equilibrium without a force, beyond which the structure overturns (to the right); at π/2 of one that its
-/// tendon turns back from everywhere. `None` for a strut too soft to hold the structure on the way there.
-pub fn at_overturning(structure: &OneMass) -> Option<Equilibrium> {
-    let farthest = angle_of_no_return(structure.base()).unwrap_or(FRAC_PI_2); // an elastic strut overturns before
-    let restores = |theta| at_rotation(structure, theta).is_some_and(|there| there.force >= 0.0);
-    at_rotation(structure, last_where(0.0, farthest, restores))
+    /// Full contact, about to lift off to the right.
+    pub fn at_uplift(&self) -> Equilibrium {
+        self.in_full_contact(self.base.hold_at_rest() / self.height * self.of_top[0])
+    }
+
+    /// Full contact with the top floor displaced by `u` (m).
+    fn in_full_contact(&self, u: f64) -> Equilibrium {
+        let force = u / self.of_top[0];
+        Equilibrium { phase: Phase::FullContact, theta: 0.0, u, delta_t: u, force, moment: force * self.height }
+    }
+
+    /// Rocking at the rotation `theta` (rad), |θ| ≤ π/2; 0 is the start of rocking to the right. `None` for a structure too
+    /// soft to be held there. The dissipators have been moved there from rest.
+    pub fn at_rotation(&self, theta: f64) -> Option<Equilibrium> {
+        let &Pushover { base, first, height, top, C, A, G, of_top } = self;
+        let &Base { m_t, B, g, .. } = base;
+        let side = Side::of(theta);
+        let s = side.sign();
+        let (sin, cos) = libm::sincos(theta.abs());
+        let dissipators = Dissipators::NEW.moved(base, side, theta);
+        let held = s * Restraint::about(base, side, &dissipators).moment(&Angles::Any.chord(theta, 0.0));
+        let (quadratic, linear) = (C * sin * cos, B * sin + height * cos + g * A * (cos * cos - sin * sin));
+        let constant = g * ((m_t * B - g * G * sin) * cos - first * sin) + held;
+        let discriminant = linear * linear - 4.0 * quadratic * constant;
+        if discriminant < 0.0 {
+            return None;
+        }
+        let force = 2.0 * constant / (linear + discriminant.sqrt());
+        let [u, of_force] = [of_top, [C, A]].map(|[push, weight]| force * cos * push + g * sin * weight);
+        let moment = force * (height * cos + (B - of_force) * sin);
+        let delta_t = Place { share: 1.0, height: top, u: s * u }.right(s * B, &theta.turn());
+        let phase = Phase::Rocking(side);
+        Some(Equilibrium { phase, theta, u: s * u, delta_t, force: s * force, moment: s * moment })
+    }
+
+    /// The structure with its top floor displaced by `delta_t` (m): full contact up to uplift, rocking beyond. `None` where rocking
+    /// does not reach, B and the height of the floor at most.
+    pub fn at_displacement(&self, delta_t: f64) -> Option<Equilibrium> {
+        if delta_t.abs() <= self.at_uplift().u {
+            return Some(self.in_full_contact(delta_t));
+        }
+        let reaches = |theta| self.at_rotation(theta).is_some_and(|there| there.delta_t >= delta_t.abs());
+        if !reaches(FRAC_PI_2) {
+            return None;
+        }
+        let theta = last_where(0.0, FRAC_PI_2, |theta| !reaches(theta));
+        self.at_rotation(theta.copysign(delta_t))
+    }
+
+    /// The unstable equilibrium without a force, beyond which the structure overturns (to the right); at π/2 of one that its
+    /// tendon turns back from everywhere. `None` for a structure too soft to be held on the way there.
+    pub fn at_overturning(&self) -> Option<Equilibrium> {
+        let farthest = angle_of_no_return(self.base).unwrap_or(FRAC_PI_2); // an elastic structure overturns before
+        let restores = |theta| self.at_rotation(theta).is_some_and(|there| there.force >= 0.0);
+        self.at_rotation(last_where(0.0, farthest, restores))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Parameters;
-    use crate::State;
     use crate::levels::nonlinear::accelerations;
     use crate::mechanics::load::Load;
+    use crate::structure::description::{Damping, Storey};
+    use crate::structure::natural_quantities::Given;
+    use crate::{OneMass, Parameters, State};
     use approx::assert_relative_eq;
-    use nalgebra::{Matrix2, Vector2};
+    use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
     use proptest::prelude::*;
 
     fn specimens() -> [OneMass; 2] {
         [Parameters::EVISON, Parameters::MCMANUS].map(|parameters| OneMass::new(parameters).unwrap())
+    }
+
+    fn at_rotation(structure: &OneMass, theta: f64) -> Option<Equilibrium> {
+        Pushover::new(&(*structure).into()).unwrap().at_rotation(theta)
+    }
+
+    fn at_displacement(structure: &OneMass, delta_t: f64) -> Option<Equilibrium> {
+        Pushover::new(&(*structure).into()).unwrap().at_displacement(delta_t)
+    }
+
+    fn curve(structure: &OneMass, points: u32) -> Result<Vec<Equilibrium>, PushoverError> {
+        Pushover::new(&(*structure).into()).unwrap().curve(points)
     }
 
     #[test]
@@ -199,13 +267,14 @@ mod tests {
             let &Parameters { H, g, .. } = structure.parameters();
             let left_out = 1.0 + g / (structure.omega_fc * structure.omega_fc * H);
             let rocking = at_rotation(&structure, 0.0).unwrap();
-            assert_relative_eq!(rocking.u, structure.u_cr / left_out, max_relative = 1e-15);
-            let contact = at_displacement(&structure, structure.u_cr).unwrap();
+            assert_relative_eq!(rocking.u, structure.u_cr / left_out, max_relative = 1e-14);
+            let contact = Pushover::new(&structure.into()).unwrap().at_uplift();
             assert_eq!(contact.phase, Phase::FullContact);
-            assert_relative_eq!(contact.force, left_out * rocking.force, max_relative = 1e-15);
+            assert_relative_eq!(contact.u, structure.u_cr, max_relative = 1e-14);
+            assert_relative_eq!(contact.force, left_out * rocking.force, max_relative = 1e-14);
             let weight_moment = structure.gamma * structure.parameters().m * g * structure.parameters().B;
-            assert_relative_eq!(contact.moment, weight_moment, max_relative = 1e-15);
-            let lifted = at_displacement(&structure, -structure.u_cr.next_up()).unwrap();
+            assert_relative_eq!(contact.moment, weight_moment, max_relative = 1e-14);
+            let lifted = at_displacement(&structure, -contact.u.next_up()).unwrap();
             assert_eq!(lifted.phase, Phase::Rocking(Side::Left));
         }
     }
@@ -214,7 +283,7 @@ mod tests {
     #[test]
     fn the_stiffness_is_negative_until_overturning() {
         for structure in specimens() {
-            let end = at_overturning(&structure).unwrap();
+            let end = Pushover::new(&structure.into()).unwrap().at_overturning().unwrap();
             let weight = structure.gamma * structure.parameters().m * structure.parameters().g;
             assert!(end.force >= 0.0 && end.force < 1e-13 * weight);
             assert_relative_eq!(end.theta, libm::atan(structure.tan_alpha_cg), max_relative = 6e-3);
@@ -232,5 +301,37 @@ mod tests {
         let soft = OneMass::new(Parameters { f_fc: 0.05, m0: 5e4, ..Parameters::EVISON }).unwrap();
         assert_eq!(at_rotation(&soft, 0.5), None);
         assert_eq!(at_displacement(&specimens()[0], 1.4), None);
+    }
+
+    /// Three storeys, balanced mass by mass with their stiffness matrix; a file of modes has no floors that take the force.
+    #[test]
+    fn three_storeys_are_in_balance() {
+        let (mut base, m, h) = (Given::default(), Vector3::new(4e4, 4e4, 3e4), Vector3::new(3.5, 7.0, 10.5));
+        let [B, m0, P_0, k_t] = [1.5, 2e4, 3e4, 2e5];
+        let numbers = [("m0", m0), ("J0", 3e4), ("B", B), ("P_0", P_0), ("k_t", k_t)];
+        numbers.iter().for_each(|(name, value)| base.give(name, *value).unwrap());
+        let [a, b, c] = [6e6, 5e6, 4e6];
+        let storeys: Vec<_> = [a, b, c].iter().zip(m.iter().zip(&h)).map(|(&k, (&m, &h))| Storey { m, h, k }).collect();
+        let structure = Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap();
+        let stiffness = Matrix3::new(a + b, -b, 0.0, -b, b + c, -c, 0.0, -c, c);
+        let (pushed, g, w) = (Pushover::new(&structure).unwrap(), 9.81, m.component_mul(&h) / m.dot(&h));
+        let weight = (m.sum() + m0) * g;
+        for theta in [0.0, 0.02, 0.1, 0.3] {
+            let Equilibrium { u, delta_t, force, moment, .. } = pushed.at_rotation(theta).unwrap();
+            let (sin, cos) = theta.sin_cos();
+            let displaced = stiffness.try_inverse().unwrap() * (w * force * cos + m * g * sin);
+            assert_relative_eq!(u, displaced[2], max_relative = 1e-10);
+            assert_relative_eq!(delta_t, B * (1.0 - cos) + u * cos + h[2] * sin, max_relative = 1e-12);
+            let tendon = (P_0 + k_t * 2.0 * B * (theta / 2.0).sin()) * B * (theta / 2.0).cos();
+            let restoring = (weight * B - m.dot(&displaced) * g) * cos - m.dot(&h) * g * sin + tendon;
+            assert_relative_eq!(moment, restoring, max_relative = 1e-10);
+            let about = (0..3).map(|i| w[i] * ((B - displaced[i]) * sin + h[i] * cos)).sum::<f64>();
+            assert_relative_eq!(moment, force * about, max_relative = 1e-10);
+        }
+        let lifts = pushed.at_uplift();
+        assert_relative_eq!(lifts.force * w.dot(&h), (weight + P_0) * B, max_relative = 1e-12);
+        assert_relative_eq!(lifts.u, (stiffness.try_inverse().unwrap() * w * lifts.force)[2], max_relative = 1e-10);
+        let bare = Structure::of_body(*structure.body(), structure.modes(), &[]).unwrap();
+        assert_eq!(Pushover::new(&bare).unwrap_err(), PushoverError::NoFloors);
     }
 }

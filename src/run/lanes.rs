@@ -9,10 +9,10 @@
 use super::fall::{FallWatch, Falling, Found};
 use super::ground_motion::Segment;
 use super::peaks::{Peaks, ThetaWatch};
-use super::{Ending, Finish, Follower, LONGEST_REST, Run, RunError, error};
+use super::{Ending, Finish, Follower, LONGEST_REST, Run, RunError, Runs, error};
 use crate::Progress;
-use crate::engine::Advance;
 use crate::engine::lanes::Passes;
+use crate::engine::Advance;
 use crate::levels::nonlinear::lanes::{RockingStep, Steps};
 use crate::numbers::lanes::MOST;
 use pulp::{Arch, Simd, WithSimd};
@@ -49,6 +49,17 @@ pub fn rocked_each(runs: &[Run], done: &mut dyn FnMut(usize, Result<Finish, RunE
         let ThetaWatch { peaks, impacts } = watch;
         done(number, finish, Rocked { theta: peaks.theta().magnitude, impacts })
     });
+}
+
+impl<Q: Runs> Run<'_, Q> {
+    /// Follows the motion to its end, and finds how it ended and how far it has rocked by then.
+    pub fn rocked(&self) -> (Result<Finish<Q>, RunError>, Rocked) {
+        let mut peaks = Peaks::since(self.ground.start(), &self.structure, self.detail);
+        let mut watch = peaks.watch_theta();
+        let finish = self.follow(&mut watch);
+        let ThetaWatch { peaks, impacts } = watch;
+        (finish, Rocked { theta: peaks.theta().magnitude, impacts })
+    }
 }
 
 /// The peaks of `runs` before any motion.

@@ -359,9 +359,9 @@ impl ThetaWatch<'_> {
 }
 
 #[cfg(feature = "lanes")]
-impl Watch for ThetaWatch<'_> {
+impl<Q: Moves> Watch<Q> for ThetaWatch<'_> {
     #[inline]
-    fn piece(&mut self, piece: &Piece) {
+    fn piece(&mut self, piece: &Piece<Q>) {
         let before = piece.before;
         if before.phase == Phase::FullContact {
             return;
@@ -377,7 +377,7 @@ impl Watch for ThetaWatch<'_> {
         self.peaks.look(piece);
     }
 
-    fn transition(&mut self, transition: &Transition) {
+    fn transition(&mut self, transition: &Transition<Q>) {
         use TransitionKind::{Impact, Landing, Settling};
         self.impacts += u64::from(matches!(transition.kind, Impact(_) | Landing | Settling));
     }

@@ -5,14 +5,15 @@
 //! in squares between neighbouring points that differ in [`Class`], and from there along the boundary wherever the finer
 //! points show that it goes.
 
+use crate::plan::Conditions;
 use crate::pulse::{Pulse, units_of};
 use crate::{Refused, ensure};
-use rocking::engine::{DEFAULT_TOLERANCE, check_tolerance};
+use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::uplift::least_push;
 use rocking::run::lanes::{Rocked, rocked_each};
 use rocking::run::record::Record;
-use rocking::run::{Ending, Finish, Run, RunError};
-use rocking::{Detail, OneMass};
+use rocking::run::{Ending, Finish, Run, RunError, Runs};
+use rocking::{Detail, Structure};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
 
@@ -41,7 +42,7 @@ pub struct Axis {
 #[derive(Clone, Debug)]
 pub struct Map {
     /// The structure.
-    pub structure: OneMass,
+    pub structure: Structure,
     /// But for its frequency and its amplitude.
     pulse: Pulse,
     /// Frequencies: in Hz, or, where the map is dimensionless, ω/p_l.
@@ -158,7 +159,7 @@ impl Point {
         (self.fate, if self.fate == Fate::Overturns { self.impacts.min(2) } else { 0 })
     }
 
-    fn of(run: &Run, finish: Result<Finish, RunError>, Rocked { theta, impacts }: Rocked) -> Point {
+    fn of<Q: Runs>(run: &Run<Q>, finish: Result<Finish<Q>, RunError>, Rocked { theta, impacts }: Rocked) -> Point {
         let theta = theta / libm::atan(run.structure.base().tan_alpha_cg);
         let (fate, transitions, end, reason) = match finish {
             Ok(finish) => {
@@ -191,7 +192,7 @@ impl Map {
     /// Map of `structure` under `pulse` at each of the frequencies (Hz) and amplitudes (m/s²). A map that `is_dimensionless`
     /// has ω/p_l and a_p/(g tan α_cg) instead. The level of detail is `auto`, and the tolerance the default.
     pub fn new(
-        structure: OneMass,
+        structure: impl Into<Structure>,
         pulse: Pulse,
         [frequency, amplitude]: [Axis; 2],
         is_dimensionless: bool,
@@ -203,7 +204,7 @@ impl Map {
             format!("{frequencies} frequencies x {amplitudes} amplitudes: more than {MAX_POINTS} points")
         })?;
         let (detail, tolerance) = (Detail::default(), DEFAULT_TOLERANCE);
-        let finds_condition = false;
+        let (structure, finds_condition) = (structure.into(), false);
         let map = Map { structure, pulse, frequency, amplitude, is_dimensionless, detail, tolerance, finds_condition };
         for place in [Place::of_grid(0, 0), Place::of_grid(frequencies - 1, amplitudes - 1)] {
             map.pulse(place).check()?;
@@ -214,7 +215,7 @@ impl Map {
     /// This map to the relative `tolerance`, at the level `detail`, with each point's condition, by a second run, if it
     /// `finds_condition`.
     pub fn computed_by(self, detail: Detail, tolerance: f64, finds_condition: bool) -> Result<Map, Refused> {
-        check_tolerance(tolerance).map_err(Refused::by)?;
+        Conditions { detail, tolerance, ..Conditions::default() }.check(&self.structure)?;
         Ok(Map { detail, tolerance, finds_condition, ..self })
     }
 
@@ -263,11 +264,9 @@ impl Map {
             let changed = grounds.iter_mut().skip(places.len());
             changed.for_each(|ground| *ground = ground.clone().multiplied(1.0 + PERTURBATION));
         }
-        let run = |ground| Run { detail: self.detail, tolerance: self.tolerance, ..Run::new(self.structure, ground) };
-        let runs: Vec<_> = grounds.iter().map(run).collect();
         let mut first = vec![None; places.len()];
-        rocked_each(&runs, &mut |number, finish, rocked| {
-            let (at, point) = (number % places.len(), Point::of(&runs[number], finish, rocked));
+        let see = |number: usize, point| {
+            let at = number % places.len();
             if !self.finds_condition {
                 return done(at, point);
             }
@@ -277,7 +276,27 @@ impl Map {
             };
             let (point, other) = if number == at { (point, other) } else { (other, point) };
             done(at, Point { condition: Some(point.condition(&other)), ..point })
-        });
+        };
+        self.points(&grounds, see);
+    }
+
+    /// Runs the structure under `grounds` and tells `see` each point with its number.
+    fn points(&self, grounds: &[Record], mut see: impl FnMut(usize, Point) -> bool) {
+        let conditions = Conditions { detail: self.detail, tolerance: self.tolerance, ..Conditions::default() };
+        match self.structure.of_one_mode() {
+            Some(structure) => {
+                let runs: Vec<_> = grounds.iter().map(|ground| conditions.run(structure.clone(), ground)).collect();
+                rocked_each(&runs, &mut |number, finish, rocked| see(number, Point::of(&runs[number], finish, rocked)));
+            }
+            None => {
+                let point = |ground| {
+                    let run = conditions.run_of_modes(self.structure.clone(), ground).expect("it starts at rest");
+                    let (finish, rocked) = run.rocked();
+                    Point::of(&run, finish, rocked)
+                };
+                grounds.iter().map(point).enumerate().all(|(number, point)| see(number, point));
+            }
+        }
     }
 
     /// The points of the grid, amplitudes changing last.
@@ -287,7 +306,15 @@ impl Map {
             .flat_map(move |amplitude| (0..frequencies).map(move |frequency| Place::of_grid(frequency, amplitude)))
     }
 
-    /// Points that the `level`th refinement, 1 to [`MAX_REFINEMENTS`], of the `known` points still needs. Each square of the
+    /// Points that the `level`th refinement, 1 to [`MAX_REFINEMENTS`], of the `known` points still needs; at level 0 the points of the grid.
+    pub fn lacking(&self, level: u32, known: &HashMap<Place, Point>) -> Vec<Place> {
+        match level {
+            0 => self.grid().filter(|place| !known.contains_key(place)).collect(),
+            level => self.refinement(level, known),
+        }
+    }
+
+    /// Points that the `level`th refinement of the `known` points still needs. Each square of the
     /// coarser grid with different classes gets its middle and the middles of its edges. New points can make more squares
     /// differ: the refinement is complete when no point is needed.
     pub fn refinement(&self, level: u32, known: &HashMap<Place, Point>) -> Vec<Place> {

@@ -1,22 +1,33 @@
 //! Overturning under pulses: the rigid block's boundary against its closed form, maps that refine, conditions.
 #![allow(non_snake_case)] // B, H: the paper's own letters
 
-use rocking::{Detail, OneMass, Parameters};
+use rocking::run::Run;
+use rocking::structure::description::{Damping, Storey};
+use rocking::structure::natural_quantities::Given;
+use rocking::{Detail, OneMass, Parameters, Structure};
 use rocking_sweep::map::{Axis, Fate, Map, Place, Point, nearest};
 use rocking_sweep::pulse::{Pulse, Shape, units_of};
 use std::collections::HashMap;
 
 /// A rigid block of this `slenderness` H/B, all of its mass at the top.
-fn block(slenderness: f64) -> OneMass {
+fn block(slenderness: f64) -> Structure {
     let parameters = Parameters { m0: 1e-3, J0: 0.0, H: 1.0, B: 1.0 / slenderness, ..Parameters::MCMANUS };
-    OneMass::new(parameters).unwrap()
+    Structure::new(parameters).unwrap()
+}
+
+/// Three storeys of 10.5 m on a base of this half-width `B` (m) and mass `m0` (kg).
+fn storeys(B: f64, m0: f64) -> Structure {
+    let mut base = Given::default();
+    [("m0", m0), ("J0", 0.0), ("B", B)].iter().for_each(|(name, value)| base.give(name, *value).unwrap());
+    let storeys = [3.5, 7.0, 10.5].map(|h| Storey { m: 4e4, h, k: 6e7 });
+    Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap()
 }
 
 /// Fate of `structure` at the level `rigid` under one pulse, with both numbers in units of the structure.
-fn fate(structure: &OneMass, shape: Shape, frequency: f64, amplitude: f64) -> Point {
+fn fate(structure: &Structure, shape: Shape, frequency: f64, amplitude: f64) -> Point {
     let axis = |value: f64| Axis { values: vec![value, 2.0 * value], is_log: false };
     let pulse = Pulse { error: 1e-6, ..Pulse::new(shape, 1.0, 1.0) };
-    let map = Map::new(*structure, pulse, [axis(frequency), axis(amplitude)], true).unwrap();
+    let map = Map::new(structure.clone(), pulse, [axis(frequency), axis(amplitude)], true).unwrap();
     map.computed_by(Detail::Rigid, 1e-12, false).unwrap().run(Place::of_grid(0, 0))
 }
 
@@ -48,14 +59,16 @@ fn least_amplitude_of_half_sine(frequency: f64) -> f64 {
     bisect(1.0 + 1e-12, 1e3, |a| excess(a) > 0.0)
 }
 
-/// Housner's (1963) block under a half sine: the boundary agrees with the closed form to 1e-6 after extrapolation to the
+/// Housner's (1963) block and three storeys, as rigid as it, under a half sine: the boundary agrees with the closed form to 1e-6 after extrapolation to the
 /// slenderness angle 0. The angles are 1/50 and 1/100, and the error of an angle grows with its square.
 #[test]
 fn the_rigid_boundary_is_the_closed_form() {
-    for frequency in [0.5, 1.5, 4.0] {
+    let of_storeys = |slenderness| storeys(7.0 / slenderness, 1e-3);
+    let cases = [(0.5, block as fn(f64) -> Structure), (1.5, block), (4.0, block), (1.5, of_storeys)];
+    for (frequency, structure) in cases {
         let exact = least_amplitude_of_half_sine(frequency);
         let found = [50.0, 100.0].map(|slenderness| {
-            let structure = block(slenderness);
+            let structure = structure(slenderness);
             bisect(0.9 * exact, 1.1 * exact, |amplitude| {
                 fate(&structure, Shape::HalfSine, frequency, amplitude).fate == Fate::Overturns
             })
@@ -130,6 +143,27 @@ fn conditions_are_of_the_order_of_the_change() {
             _ => assert!((1e-3..1e5).contains(&condition), "{place:?}: {condition}"),
         }
     }
+}
+
+/// Each point of a map of three storeys is the run of its pulse.
+#[test]
+fn a_building_has_a_map() {
+    let (structure, shape) = (storeys(1.5, 2e4), Shape::Sine);
+    let axis = |values: [f64; 4]| Axis { values: values.into(), is_log: false };
+    let axes = [axis([2.0, 4.0, 6.0, 9.0]), axis([1.0, 3.0, 6.0, 9.0])];
+    let map = Map::new(structure.clone(), Pulse { error: 1e-3, ..Pulse::new(shape, 1.0, 1.0) }, axes, true).unwrap();
+    let (mut classes, alpha_cg) = (std::collections::BTreeSet::new(), structure.base().tan_alpha_cg.atan());
+    for place in map.grid() {
+        let (point, ground) = (map.run(place), map.pulse(place).record().unwrap());
+        let (peaks, finish) = Run::of_modes(structure.clone(), &ground).peaks().unwrap();
+        assert_eq!((point.end, point.transitions), (finish.motion.time, finish.motion.transitions), "{place:?}");
+        assert!((point.theta * alpha_cg - peaks.theta().magnitude).abs() <= 1e-15, "{place:?}");
+        assert_eq!(point.fate == Fate::Overturns, finish.ending.overturned() == Some(true));
+        classes.insert(point.class());
+    }
+    assert!(classes.len() >= 3, "{classes:?}");
+    let refused = map.computed_by(Detail::Modal, 1e-9, false).unwrap_err().0;
+    assert!(refused.starts_with("detail = modal moves structures of one mass alone"), "{refused}");
 }
 
 #[test]

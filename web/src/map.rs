@@ -29,13 +29,12 @@ impl Spectrum {
     #[wasm_bindgen(constructor)]
     pub fn new(fields: &str) -> Result<Spectrum, String> {
         let fields = Fields::read(fields)?;
-        let structure = fields.one_mass("the map")?;
+        let structure = fields.structure()?;
         let axis = |(from, to): (f64, f64)| {
             let at = |i| from * (to / from).powf(i as f64 / STEPS as f64);
             Axis { values: (0..=STEPS).map(at).collect(), is_log: true }
         };
-        let (pulse, detail, tolerance) =
-            (fields.pulse(structure.parameters().g)?, fields.detail()?, fields.tolerance()?);
+        let (pulse, detail, tolerance) = (fields.pulse(structure.base().g)?, fields.detail()?, fields.tolerance()?);
         let map = Map::new(structure, pulse, RANGES.map(axis), true)
             .and_then(|map| map.computed_by(detail, tolerance, false))
             .map_err(|refused| refused.to_string())?;

@@ -239,15 +239,14 @@ impl MapFile {
 
     fn map(&self, grid: &StructureGrid, structure: &Structure) -> anyhow::Result<Map> {
         ensure!(grid.vary.is_empty(), "vary is not possible with pulses: list each structure under [[structures]]");
-        let structure = *structure.one_mass("a map of pulses")?;
         let &PulseGrid { shape, cycles, phase, error, ref frequency, ref amplitude, dimensionless } = &self.pulses;
-        let unit = if dimensionless { 1.0 } else { structure.parameters().g };
+        let unit = if dimensionless { 1.0 } else { structure.base().g };
         let frequency = frequency.axis(1.0).context("frequency")?;
         let amplitude = amplitude.axis(unit).context("amplitude")?;
         let pulse = Pulse::new(shape, amplitude.values[0], frequency.values[0]);
         let (cycles, error) = (cycles.unwrap_or(pulse.cycles), error.unwrap_or(pulse.error));
         let pulse = Pulse { cycles, phase, error, ..pulse };
-        let map = Map::new(structure, pulse, [frequency, amplitude], dimensionless).context("pulses")?;
+        let map = Map::new(structure.clone(), pulse, [frequency, amplitude], dimensionless).context("pulses")?;
         Ok(map.computed_by(self.detail, self.tolerance.unwrap_or(DEFAULT_TOLERANCE), self.condition)?)
     }
 }

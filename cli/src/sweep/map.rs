@@ -11,7 +11,6 @@ use crate::talk::{say, warning};
 use anyhow::{bail, ensure};
 use csv::StringRecord;
 use rayon::{ThreadPool, prelude::*};
-use rocking::Structure;
 use rocking::digits::short;
 use rocking::run::{LONGEST_REST, validity};
 use rocking_report::program::{program, version};
@@ -53,8 +52,8 @@ pub fn run(
     ensure!(!args.validity, "--validity is for records: `simulate` a pulse that `pulse` writes");
     let (file, mut known) = open(output)?;
     for (name, map) in &maps {
-        let structure = Structure::from(map.structure);
-        let warnings = structure.doubts().into_iter().chain(validity::of_structure(&structure, map.detail));
+        let structure = &map.structure;
+        let warnings = structure.doubts().into_iter().chain(validity::of_structure(structure, map.detail));
         warnings.for_each(|warning| warning!("{name}: {warning}"));
     }
     let mut spectra = Vec::new();
@@ -62,12 +61,7 @@ pub fn run(
         let mut spectrum = Spectrum { name, map, points: HashMap::new() };
         for level in 0..=refinements {
             loop {
-                let Spectrum { map, points, .. } = &spectrum;
-                let lacking = match level {
-                    0 if points.is_empty() => map.grid().collect(),
-                    0 => Vec::new(),
-                    level => map.refinement(level, points),
-                };
+                let lacking = spectrum.map.lacking(level, &spectrum.points);
                 if lacking.is_empty() {
                     break;
                 }
@@ -125,8 +119,8 @@ fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Point>)> {
 
 /// The key of a point of the map of the structure called `name`.
 fn key_at(name: &str, map: &Map, place: Place) -> Uuid {
-    let of_map = (map.detail, map.tolerance, map.finds_condition);
-    program().key(&(name, map.structure.parameters(), map.pulse(place), of_map.0, of_map.1, of_map.2))
+    let (of_map, of) = ((map.detail, map.tolerance, map.finds_condition), &map.structure);
+    program().key(&(name, (of.parameters(), of.body(), of.modes(), of.floors()), map.pulse(place), of_map))
 }
 
 fn headings() -> Vec<String> {
@@ -144,7 +138,7 @@ fn headings() -> Vec<String> {
 fn row(key: &Uuid, name: &str, map: &Map, (level, place): (u32, Place), point: &Point) -> anyhow::Result<Vec<u8>> {
     let pulse = map.pulse(place);
     let (of_amplitude, of_frequency) = units_of(map.structure.base());
-    let of_structure = AXES.map(|axis| (axis.get)(map.structure.parameters()));
+    let of_structure = AXES.map(|axis| (axis.get)(&map.structure.parameters()));
     let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail.name(), map.tolerance);
     let ratios = (pulse.frequency / of_frequency, pulse.amplitude / of_amplitude);
     let of_program = (key.to_string(), name, version());

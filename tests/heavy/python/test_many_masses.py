@@ -138,7 +138,7 @@ def test_a_structure_of_many_masses_is_a_value():
     (lambda: of_storeys(keep=2.5), "keep = 2.5: a whole number is needed"),
     (lambda: of_storeys(preset="mcmanus"), "preset is a structure of one mass, and storeys makes one of many"),
     (lambda: of_storeys(storeys=pd.DataFrame(STOREYS)), 'storeys=table.to_dict("records")'),
-    (lambda: of_storeys().pushover(), "pushover needs a structure of one mass, and this structure has 3 modes"),
+    (lambda: of_storeys().effective_frequency(0.1), "effective_frequency needs a structure of one mass, because Eqs 10 to 24 have one mode"),
     (lambda: fr.Structure(preset="mcmanus").mode_table, "mode_table needs a structure of many masses"),
 ])
 def test_what_is_refused_is_named(refused, text):
