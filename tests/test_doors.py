@@ -20,6 +20,7 @@ from reference import EVISON, MCMANUS, Structure
 
 LEVELS = ("auto", "nonlinear", "linear", "modal", "rigid", "fixed_base")
 VALIDITY = ("tension_max", "R_v_min", "mu_required", "mu_impact", "tension_impact", "energy_gain_max", "weight_min")
+TIES = {"P_t", "F_d1", "F_d2"}  # the FMU of one mass has their peaks in any case
 GROUNDS = ("AT2", "CSV", "arrays", "arrays with a_v", "free")
 SCENES = range(40)  # the last 15 in tests/heavy
 
@@ -192,7 +193,7 @@ def test_both_fmus_have_the_command_lines_numbers(scene_of, exporter, tmp_path, 
     fmu = export(exporter, scene, 2, tmp_path)
     found = co_simulation(fmu, scene)
     assert co_simulation(export(exporter, scene, 3, tmp_path), scene) == found
-    assert found.keys() - {"P_t"} == expected.keys() - {"P_t"}
+    assert found.keys() - TIES == expected.keys() - TIES
     for name, of in expected.items():
         is_exact = (expected["end"][1] if name in VALIDITY else max(of[1], found[name][1])) <= scene.record_end
         assert found[name] == pytest.approx(of, rel=0 if is_exact else 1e-9, abs=0), name

@@ -9,13 +9,13 @@ use crate::results::{FormatArgs, csv};
 use crate::scene_args::MotionArgs;
 use crate::talk::{say, write_as};
 use anyhow::ensure;
-use rocking::Base;
 use rocking::digits::{short, significant};
 use rocking::mechanics::restraint::centring_moments;
 use rocking::run::record::Record;
+use rocking::{Base, Output};
 use rocking_report::output_files::{OutputFile, OutputFiles};
 use rocking_report::quantities::in_readable_unit;
-use rocking_report::run::{Line, Run};
+use rocking_report::run::{Line, Run, usual_periods};
 use rocking_report::summary::instant;
 use rocking_report::tables::event_line;
 use std::path::PathBuf;
@@ -48,6 +48,12 @@ struct ResultArgs {
     /// Draw ground acceleration, rotation, displacements and acceleration over time, with marks at transitions; of many masses those of the top floor
     #[arg(long, value_name = "FILE.svg")]
     picture: Option<PathBuf>,
+    /// Response spectrum S_a of the acceleration of each floor as CSV, at 100 periods from 0.02 to 4 s
+    #[arg(long, value_name = "FILE.csv")]
+    spectrum: Option<PathBuf>,
+    /// Damping ratio of --spectrum
+    #[arg(long, value_name = "RATIO", default_value_t = 0.05, requires = "spectrum", allow_hyphen_values = true)]
+    spectrum_zeta: f64,
     /// Draw the largest acceleration, drift, shear and moment of each floor and storey over the height, and those on a fixed base
     #[arg(long, value_name = "FILE.svg")]
     profile: Option<PathBuf>,
@@ -111,9 +117,10 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let output = args.results.output.as_deref();
     args.results.format.check_beside(output)?;
     let run = args.motion.load()?;
-    let ResultArgs { picture, profile, events, .. } = &args.results;
-    let has_floors = !run.structure.floors().is_empty();
-    ensure!(profile.is_none() || has_floors, "--profile: the structure has no floors; give masses, heights and shapes");
+    let ResultArgs { picture, profile, events, spectrum, .. } = &args.results;
+    let floors = run.structure.floors().len();
+    let is_possible = floors > 0 || profile.is_none() && spectrum.is_none();
+    ensure!(is_possible, "--profile and --spectrum: the structure has no floors; give masses, heights and shapes");
     if let Some(line) = centring(run.structure.base()) {
         say!("centring       {line}");
     }
@@ -122,6 +129,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let mut files = OutputFiles::of_inputs(args.motion.inputs());
     let response = output.map(|path| files.create(path)).transpose()?;
     let events = events.as_deref().map(|path| files.create(path)).transpose()?;
+    let spectrum = spectrum.as_deref().map(|path| files.create(path)).transpose()?;
     let picture = picture.as_deref().map(|path| Picture::create(path, &mut files)).transpose()?;
     let profile = profile.as_deref().map(|path| Picture::create(path, &mut files)).transpose()?;
     let found = run.found(Some(limits), &mut ())?;
@@ -132,6 +140,16 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
         let (samples, interval) = args.samples_and_interval(&run.ground);
         check_rows(samples, interval, found.end)?;
         args.write_response(&run, file)?;
+    }
+    if let Some(file) = spectrum {
+        let (periods, zeta) = (usual_periods(), args.results.spectrum_zeta);
+        let of = |floor| run.spectrum(&found, floor, &periods, zeta, &mut ());
+        let columns = (0..floors).map(of).collect::<Result<Vec<_>, _>>()?;
+        let name = |floor| format!("{}[m/s2]", Output::a_t(floor).name(&run.structure).replacen("a_t", "S_a", 1));
+        let headings = ["period[s]".to_owned()].into_iter().chain((0..floors).map(name));
+        let row =
+            |(i, period): (usize, &f64)| Vec::from_iter([*period].into_iter().chain(columns.iter().map(|of| of[i])));
+        write_as(file, "spectrum", &csv(Vec::from_iter(headings), periods.iter().enumerate().map(row))?)?;
     }
     let text = || {
         let (title, start, end) = (run.ground.title(), instant(found.start), instant(found.end));

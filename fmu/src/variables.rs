@@ -414,12 +414,11 @@ fn event_indicators() -> [Row; INDICATORS] {
     ]
 }
 
-/// Largest magnitudes and their instants. One mass may have a tendon.
+/// Largest magnitudes and their instants. One mass may have a tendon and dissipators.
 fn peaks(structure: &Structure) -> Vec<Row> {
     let mut all: Vec<_> = Peaking::of(structure).collect();
-    if structure.one().is_some() && !all.contains(&Peaking::Tendon) {
-        all.push(Peaking::Tendon);
-    }
+    let missing = Peaking::OF_TIES.into_iter().filter(|of| structure.one().is_some() && !all.contains(of));
+    all.extend(Vec::from_iter(missing));
     let rows = all.into_iter().flat_map(|of| {
         let (symbol, name) = (of.symbol(), of.name(structure));
         let peak = name.replacen(symbol, &format!("{symbol}_max"), 1);

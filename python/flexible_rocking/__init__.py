@@ -27,10 +27,11 @@ from . import _native
 from ._native import Curve, Record, Run, Structure, __version__, advise, estimate, pulse, simulate
 from ._ground import Ground
 from ._results import Advice, Estimate, Peak, Profile, Response, Transition, Transitions, Worst
-from ._sweep import Fragility, fragility, intensity_at, sweep
+from ._sweep import Fragility, fragility, intensity_at, overturning_map, sweep
 
 __all__ = ["Advice", "Curve", "Estimate", "Fragility", "Ground", "Peak", "Profile", "Record", "Response", "Run", "Structure", "Transition",
-           "Transitions", "Worst", "__version__", "advise", "estimate", "export", "fmu", "fragility", "intensity_at", "pulse", "simulate", "sweep"]
+           "Transitions", "Worst", "__version__", "advise", "estimate", "export", "fmu", "fragility", "intensity_at", "overturning_map", "pulse",
+           "simulate", "sweep"]
 
 
 def fmu() -> Path:

@@ -253,6 +253,21 @@ def sweep(
     threads: int,
     progress: Callable[[int, int], object] | None,
 ) -> tuple[list[str], list[tuple[str, Any]], BaseException | None]: ...
+def overturning_map(
+    structure: Structure,
+    shape: str,
+    frequency: ArrayLike,
+    amplitude: ArrayLike,
+    cycles: float | None,
+    phase: float,
+    error: float,
+    dimensionless: bool,
+    refine: int,
+    condition: bool,
+    detail: str,
+    tolerance: float,
+    threads: int,
+) -> list[tuple[str, Any]]: ...
 def exceeds(
     endings: list[str], peaks: list[float], gs: list[float], limit: str, half_width: float, columns: list[str]
 ) -> list[bool | None]: ...

@@ -69,6 +69,39 @@ def sweep(
     return table
 
 
+def overturning_map(
+    structure: "Structure",
+    shape: str = "sine",
+    *,
+    frequency: "ArrayLike",
+    amplitude: "ArrayLike",
+    cycles: float | None = None,
+    phase: float = 0.0,
+    error: float = 1e-4,
+    dimensionless: bool = True,
+    refine: int = 0,
+    condition: bool = False,
+    detail: str = "auto",
+    tolerance: float = 1e-9,
+    threads: int = 0,
+) -> "pd.DataFrame":
+    """Runs a structure under pulses of every frequency and amplitude: a DataFrame with a row per pulse, an overturning spectrum.
+
+    frequency, amplitude: two or more rising values, in units of p_l and g tan(alpha_cg); with dimensionless=False in Hz and g. shape,
+    cycles, phase, error: as in `pulse`. refine: how often to halve the steps along the boundaries (0 to 8). condition: whether each
+    pulse runs again at an amplitude larger by the factor 1 + 1e-12. detail, tolerance, threads: as in `sweep`.
+
+    The columns are those of `rocking-fmu sweep` with pulses: refinement, frequency[Hz], amplitude[m/s2], omega/p_l,
+    a_p/(g tan alpha_cg), fate ("no uplift", "stands", "overturns", "still rocking", "failed"), impacts, theta_max/alpha_cg,
+    transitions, end[s], condition, reason. Raises ValueError for values that do not rise and for a level that cannot move the structure.
+    """
+    with extras():
+        import pandas
+
+    return pandas.DataFrame(dict(_native.overturning_map(structure, shape, frequency, amplitude, cycles, phase, error, dimensionless,
+                                                         refine, condition, detail, tolerance, threads)))
+
+
 def _named(records: "Record | Sequence[Record] | Mapping[str, Record]") -> "list[tuple[str, Record]]":
     """Records with their names."""
     if isinstance(records, Mapping):

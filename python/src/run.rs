@@ -12,7 +12,7 @@ use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::validity::{ASSUMPTIONS, Limits, Worst};
 use rocking::{Detail, Phase};
-use rocking_report::run::{Event, Found, NamedPeak, OF_FLOOR, PHASES, Run as Followed, Samples};
+use rocking_report::run::{Event, Found, NamedPeak, OF_FLOOR, PHASES, Run as Followed, Samples, usual_periods};
 use rocking_sweep::plan::Conditions;
 
 /// A structure that has been followed through a ground motion: what `simulate` returns.
@@ -56,7 +56,7 @@ impl Run {
 
     /// The exact largest magnitudes by name, each a Peak (a float with unit and time). Names: a_g (m/s2), theta (rad), u (m),
     /// delta_t (m, Eq 26), uplift (m, Eq 25), a_t (m/s2, Eq 27), V_t (N, Eqs 2, 23), M_t (N.m, Eqs 3, 24). A tendon adds P_t
-    /// (N). Many masses: a_g, theta, uplift, V_t, M_t, and of each floor from 1 on u[1], drift[1], delta_t[1], a_t[1], V[1], M[1].
+    /// (N), dissipators F_d1 and F_d2 (N). Many masses: a_g, theta, uplift, V_t, M_t, and of each floor from 1 on u[1], drift[1], delta_t[1], a_t[1], V[1], M[1].
     /// If the structure overturns, the peaks are those before its fall.
     #[getter]
     fn peaks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -231,8 +231,7 @@ impl Run {
             };
             return Err(PyValueError::new_err(format!("floor = {floor} is out of range: the structure has {has}")));
         };
-        let usual = || (0..100).map(|i| 0.02 * 200.0_f64.powf(f64::from(i) / 99.0)).collect();
-        let periods = periods.map_or_else(|| Ok(usual()), |periods| numbers("periods", periods))?;
+        let periods = periods.map_or_else(|| Ok(usual_periods()), |periods| numbers("periods", periods))?;
         let named = PyDict::new(py);
         named.set_item("period", PyArray1::from_slice(py, &periods))?;
         let S_a = interruptible(py, move |abandoned| {

@@ -1,9 +1,10 @@
 //! `sweep` and `fragility`: many runs on all cores, and what they say together.
 
 use crate::arguments::{argument, conditions, numbers, one_of, refused};
-use crate::interruptible::{FAULT, MOMENT};
+use crate::interruptible::{FAULT, MOMENT, interruptible};
 use crate::record::{G, Ground};
 use crate::structure::Structure;
+use anyhow::ensure;
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -12,16 +13,21 @@ use rocking::Detail;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::Ending;
 use rocking_report::program::program;
+use rocking_report::run::Watcher;
 use rocking_sweep::exceedances::{self, Bin, Tally};
 use rocking_sweep::fragility::{Certainty, FragilityCurve};
+use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map, Place, Point};
 use rocking_sweep::outcome::{Limit, Measure};
 use rocking_sweep::plan::{NamedRecord, Plan, Population};
-use rocking_sweep::row_file::name_and_unit;
+use rocking_sweep::pulse::{Pulse, Shape, units_of};
+use rocking_sweep::row_file::{do_runs, name_and_unit};
 use rocking_sweep::rows::{Column, FAILED, Sweep};
 use rocking_sweep::thread_pool;
 use serde::Deserialize;
 use serde::de::IntoDeserializer;
+use std::collections::HashMap;
 use std::path::PathBuf;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
@@ -113,6 +119,79 @@ pub fn sweep<'py>(
     let (keys, columns) = py.detach(|| sweep.table(intensity));
     let columns = columns.into_iter().map(|(heading, column)| Ok((heading, values(py, column)?)));
     Ok((keys.iter().map(ToString::to_string).collect(), columns.collect::<PyResult<_>>()?, stopped))
+}
+
+/// The columns of a map of `structure` under pulses, by their headings: a row for each point, those of the grid first.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub fn overturning_map<'py>(
+    py: Python<'py>,
+    structure: &Structure,
+    shape: &Bound<'py, PyAny>,
+    frequency: &Bound<'py, PyAny>,
+    amplitude: &Bound<'py, PyAny>,
+    cycles: Option<f64>,
+    phase: f64,
+    error: f64,
+    dimensionless: bool,
+    refine: u32,
+    condition: bool,
+    #[pyo3(from_py_with = argument::detail)] detail: Detail,
+    #[pyo3(from_py_with = argument::tolerance)] tolerance: f64,
+    threads: usize,
+) -> PyResult<Vec<(&'static str, Bound<'py, PyAny>)>> {
+    let shape = one_of("shape", shape, Shape::ALL.map(|of| (of.name(), of)))?;
+    let structure = structure.of.clone();
+    let g = if dimensionless { 1.0 } else { structure.base().g };
+    let axis = |name, values, unit| -> PyResult<Axis> {
+        Ok(Axis { values: numbers(name, values)?.into_iter().map(|value| value * unit).collect(), is_log: false })
+    };
+    let axes = [axis("frequency", frequency, 1.0)?, axis("amplitude", amplitude, g)?];
+    let pulse = Pulse::new(shape, 1.0, 1.0);
+    let pulse = Pulse { cycles: cycles.unwrap_or(pulse.cycles), phase, error, ..pulse };
+    let (map, mut rows) = interruptible(py, move |abandoned| -> anyhow::Result<_> {
+        let map = Map::new(structure, pulse, axes, dimensionless)?.computed_by(detail, tolerance, condition)?;
+        ensure!(refine <= MAX_REFINEMENTS, "refine = {refine} is out of range: 0 to {MAX_REFINEMENTS} are possible");
+        let (pool, rows) = (thread_pool(threads)?, Mutex::new(Vec::new()));
+        map.complete(refine, &mut HashMap::new(), |level, lacking, points| {
+            let (waiting, points) = (abandoned.clone(), Mutex::new(points));
+            let run = |places: &[Place], done: &mut dyn FnMut(_) -> bool| {
+                map.run_each(places, |at, point| done((places[at], point)));
+            };
+            let keep = |(place, point): (Place, Point)| {
+                waiting.check();
+                points.lock().expect("no thread panics with them").insert(place, point.clone());
+                rows.lock().expect("no thread panics with them").push((level, place, point));
+                Ok(())
+            };
+            pool.install(|| do_runs(&lacking, run, keep))
+        })?;
+        Ok((map, rows.into_inner()?))
+    })?;
+    rows.sort_by_key(|(level, place, _)| (*level, *place));
+    let (of_amplitude, of_frequency) = units_of(map.structure.base());
+    let column = |of: &dyn Fn(Pulse, &Point) -> f64| {
+        PyArray1::from_iter(py, rows.iter().map(|(_, place, point)| of(map.pulse(*place), point))).into_any()
+    };
+    let count = |of: &dyn Fn(u32, &Point) -> u64| {
+        PyArray1::from_iter(py, rows.iter().map(|(level, _, point)| of(*level, point))).into_any()
+    };
+    let text =
+        |of: &dyn Fn(&Point) -> String| Vec::from_iter(rows.iter().map(|(.., point)| of(point))).into_pyobject(py);
+    Ok(vec![
+        ("refinement", count(&|level, _| level.into())),
+        ("frequency[Hz]", column(&|pulse, _| pulse.frequency)),
+        ("amplitude[m/s2]", column(&|pulse, _| pulse.amplitude)),
+        ("omega/p_l", column(&|pulse, _| pulse.frequency / of_frequency)),
+        ("a_p/(g tan alpha_cg)", column(&|pulse, _| pulse.amplitude / of_amplitude)),
+        ("fate", text(&|point| point.fate.to_string())?),
+        ("impacts", count(&|_, point| point.impacts)),
+        ("theta_max/alpha_cg", column(&|_, point| point.theta)),
+        ("transitions", count(&|_, point| point.transitions)),
+        ("end[s]", column(&|_, point| point.end)),
+        ("condition", column(&|_, point| point.condition.unwrap_or(f64::NAN))),
+        ("reason", text(&|point| point.reason.clone())?),
+    ])
 }
 
 /// An array of the numbers of a column; of texts, each once, and the array of their positions.

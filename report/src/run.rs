@@ -22,6 +22,11 @@ pub type Named = (String, &'static str);
 pub const OF_FLOOR: [(&str, &str); 7] =
     [("h", "m"), ("u", "m"), ("drift", "m"), ("delta_t", "m"), ("a_t", "m/s2"), ("V", "N"), ("M", "N.m")];
 
+/// The usual periods of a floor spectrum: 100 from 0.02 to 4 s.
+pub fn usual_periods() -> Vec<f64> {
+    (0..100).map(|i| 0.02 * 200.0_f64.powf(f64::from(i) / 99.0)).collect()
+}
+
 /// A structure under a ground motion, and how the engine follows it.
 #[derive(Clone)]
 pub struct Run {

@@ -167,6 +167,12 @@ impl<'a> Restraint<'a> {
         Restraints { P_t, F_d1, F_d2 }
     }
 
+    /// Bounds of the forces of the dissipators while |θ| and |θ̇| stay within `theta` (rad) and `theta_dot` (rad/s), N.
+    pub(crate) fn most(&self, theta: f64, theta_dot: f64) -> [f64; 2] {
+        let most = |tie: &Tie| tie.force.abs() + tie.lever.abs() * (tie.stiffness * theta + tie.damping * theta_dot);
+        [most(&self.ties[1]), most(&self.ties[2])]
+    }
+
     /// The tie that turns the base back about the pivot like all ties together: its force times cos(θ/2) is their moment, N·m.
     #[inline]
     pub(crate) fn moments(&self) -> Tie {

@@ -97,6 +97,7 @@ impl<Q: Moves> Watch<Q> for PeakWatch<'_, Q> {
         let (until, loads, structure) = (before.time + duration, [load.value, load.at(duration)], level.structure());
         self.peaks.see_ground(loads[0].a_g, before.time);
         self.peaks.see_ground(loads[1].a_g, until);
+        self.peaks.look_at_dissipators(piece);
         let [is_torn, is_first] = [&mut self.is_torn, &mut self.is_first].map(std::mem::take);
         let bounds = piece.whole().most_under(structure, loads);
         if !self.peaks.may_be_same(structure, &bounds) {

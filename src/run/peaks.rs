@@ -13,10 +13,11 @@ use crate::engine::lanes::{Bounded, Passes};
 use crate::engine::piece::Watch;
 use crate::engine::piece::{CONVERGED, Expansion, Over, Piece};
 use crate::mechanics::instant::Instant;
+use crate::mechanics::outputs::Shows;
 use crate::mechanics::reach::{Magnitudes, Reach};
-use crate::mechanics::restraint::Angles;
+use crate::mechanics::restraint::{Angles, Restraint, Restraints};
 use crate::series::extremes;
-use crate::{Base, Detail, Output, Structure, Ties};
+use crate::{Base, Detail, Output, State, Structure, Ties};
 #[cfg(feature = "lanes")]
 use crate::{Phase, Transition, TransitionKind};
 use serde::{Deserialize, Serialize};
@@ -66,20 +67,28 @@ pub enum Peaking {
     Output(Output),
     /// The force of the tendon P_t, N.
     Tendon,
+    /// The force of the dissipators at +ξ_d (0) or −ξ_d (1), F_d, N.
+    Dissipator(usize),
 }
 
 impl Peaking {
-    /// The quantities of `structure` that have a peak: outputs, and with a tendon its force.
+    /// The forces of a tendon and of dissipators.
+    pub const OF_TIES: [Peaking; 3] = [Peaking::Tendon, Peaking::Dissipator(0), Peaking::Dissipator(1)];
+
+    /// The quantities of `structure` that have a peak: outputs, and the forces of its tendon and of its dissipators.
     pub fn of(structure: &Structure) -> impl Iterator<Item = Peaking> {
-        let tendon = has_tendon(structure.base()).then_some(Peaking::Tendon);
-        Output::with_peak(structure).into_iter().map(Peaking::Output).chain(tendon)
+        let base = *structure.base();
+        let is_there =
+            move |of: &Peaking| if *of == Peaking::Tendon { has_tendon(&base) } else { has_dissipators(&base) };
+        let ties = Peaking::OF_TIES.into_iter().filter(is_there);
+        Output::with_peak(structure).into_iter().map(Peaking::Output).chain(ties)
     }
 
     /// The name, of many masses with the number of the floor or storey from 1.
     pub fn name(self, structure: &Structure) -> String {
         match self {
             Peaking::Output(output) => output.name(structure),
-            Peaking::Tendon => self.symbol().into(),
+            _ => self.symbol().into(),
         }
     }
 
@@ -88,6 +97,8 @@ impl Peaking {
         match self {
             Peaking::Output(output) => output.symbol(),
             Peaking::Tendon => "P_t",
+            Peaking::Dissipator(0) => "F_d1",
+            Peaking::Dissipator(_) => "F_d2",
         }
     }
 
@@ -95,7 +106,7 @@ impl Peaking {
     pub const fn unit(self) -> &'static str {
         match self {
             Peaking::Output(output) => output.unit(),
-            Peaking::Tendon => "N",
+            _ => "N",
         }
     }
 }
@@ -111,6 +122,8 @@ pub struct Peaks {
     /// Outputs whose peaks come with one of these: its place, and the multiple that they are of it.
     with: Vec<(Output, usize, f64)>,
     tendon: Tendon,
+    /// Peaks of the forces of the dissipators.
+    pair: [Peak; 2],
     /// Right-hand-side evaluations that the search took.
     evaluations: u64,
 }
@@ -148,6 +161,11 @@ fn has_tendon(base: &Base) -> bool {
     base.ties.P_0 > 0.0 || base.ties.k_t > 0.0
 }
 
+/// Whether `base` has dissipators.
+fn has_dissipators(base: &Base) -> bool {
+    base.ties.c_d > 0.0 || base.ties.k_d > 0.0
+}
+
 impl Peaks {
     /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion. A peak that stays 0 has this instant.
     pub fn since(time: f64, structure: &Structure, detail: Detail) -> Peaks {
@@ -181,7 +199,7 @@ impl Peaks {
             search(Output::P_t);
         }
         let tendon = Tendon { P_0, k_t, angles: detail.angles(), start: time };
-        Peaks { B, ground: none, searched, with, tendon, evaluations: 0 }
+        Peaks { B, ground: none, searched, with, tendon, pair: [none; 2], evaluations: 0 }
     }
 
     /// Peak of an output that has one.
@@ -206,6 +224,7 @@ impl Peaks {
         match quantity {
             Peaking::Output(output) => self.of(output),
             Peaking::Tendon => Some(self.P_t()),
+            Peaking::Dissipator(which) => self.pair.get(which).copied(),
         }
     }
 
@@ -298,6 +317,42 @@ impl Peaks {
         self.evaluations += arcs.evaluations;
     }
 
+    /// Looks for larger forces of the dissipators in `piece`. They depend on θ and θ̇ alone.
+    pub(super) fn look_at_dissipators<Q: Moves>(&mut self, piece: &Piece<Q>) {
+        let (base, before) = (piece.level.structure().base(), piece.before);
+        if !has_dissipators(base) {
+            return;
+        }
+        let (angles, pair) = (self.tendon.angles, &mut self.pair);
+        let restraint = Restraint::about(base, before.phase.side(), &before.dissipators);
+        let forces = |state: &State<Q>| of_pair(restraint.forces(&angles.chord(state.theta, state.theta_dot)));
+        for (time, state) in [(before.time, before.state), (before.time + piece.duration, piece.end)] {
+            pair.iter_mut().zip(forces(&state)).for_each(|(peak, force)| peak.see(force, time));
+        }
+        let most = piece.whole().most();
+        let bounds = restraint.most(most.theta, most.theta_dot);
+        if !pair.iter().zip(bounds).any(|(peak, bound)| peak.may_change(bound, before.time)) {
+            return;
+        }
+        let mut arcs = piece.arcs();
+        while let Some(expansion) = arcs.next() {
+            expansion.in_parts(&mut |part, is_finest| {
+                let (over, reach) = (Over::new(*part), part.arc.reach);
+                let series = of_pair(restraint.forces(&angles.chord(over.theta(), over.theta_dot())));
+                let mut ends = series.iter().zip(forces(&part.arc.at(reach)));
+                if !is_finest && !ends.all(|(series, last)| part.has_converged(series, last, CONVERGED)) {
+                    return false;
+                }
+                for (which, series) in series.iter().enumerate() {
+                    extremes::stationary_points(series.used(), reach, |sigma| {
+                        pair[which].see(forces(&part.arc.at(sigma))[which], part.time(sigma));
+                    });
+                }
+                true
+            });
+        }
+    }
+
     /// Looks at a polynomial.
     fn look_over<Q: Moves>(&mut self, expansion: &Expansion<Q>) {
         expansion.in_parts(&mut |part, is_finest| {
@@ -330,6 +385,11 @@ impl Peaks {
             true
         });
     }
+}
+
+/// The forces of the dissipators.
+fn of_pair<N>(Restraints { F_d1, F_d2, .. }: Restraints<N>) -> [N; 2] {
+    [F_d1, F_d2]
 }
 
 #[cfg(feature = "lanes")]

@@ -16,6 +16,7 @@ use rocking::run::{Ending, Finish, Run, RunError, Runs};
 use rocking::{Detail, Structure};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
+use std::fmt;
 
 /// Parts of the grid's steps that a place can have.
 const PARTS: u32 = 1 << MAX_REFINEMENTS;
@@ -84,6 +85,13 @@ pub enum Fate {
     StillRocking,
     /// The motion cannot be continued: not decided.
     Failed,
+}
+
+impl fmt::Display for Fate {
+    /// As it is called in files.
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        self.serialize(out)
+    }
 }
 
 /// Class of a point: the fate, and for a structure that overturns the number of impacts before, 2 for more than one.
@@ -306,15 +314,25 @@ impl Map {
             .flat_map(move |amplitude| (0..frequencies).map(move |frequency| Place::of_grid(frequency, amplitude)))
     }
 
-    /// Points that the `level`th refinement, 1 to [`MAX_REFINEMENTS`], of the `known` points still needs; at level 0 the points of the grid.
-    pub fn lacking(&self, level: u32, known: &HashMap<Place, Point>) -> Vec<Place> {
-        match level {
-            0 => self.grid().filter(|place| !known.contains_key(place)).collect(),
-            level => self.refinement(level, known),
+    /// Completes the `known` points of the map, refined so many times: `run` adds the places that a refinement needs, 0 for the grid.
+    pub fn complete<E>(
+        &self,
+        refinements: u32,
+        known: &mut HashMap<Place, Point>,
+        mut run: impl FnMut(u32, Vec<Place>, &mut HashMap<Place, Point>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut lacking = Vec::from_iter(self.grid().filter(|place| !known.contains_key(place)));
+        for level in 0..=refinements {
+            while !lacking.is_empty() {
+                run(level, lacking, known)?;
+                lacking = if level == 0 { Vec::new() } else { self.refinement(level, known) };
+            }
+            lacking = self.refinement(level + 1, known);
         }
+        Ok(())
     }
 
-    /// Points that the `level`th refinement of the `known` points still needs. Each square of the
+    /// Points that the `level`th refinement, 1 to [`MAX_REFINEMENTS`], of the `known` points still needs. Each square of the
     /// coarser grid with different classes gets its middle and the middles of its edges. New points can make more squares
     /// differ: the refinement is complete when no point is needed.
     pub fn refinement(&self, level: u32, known: &HashMap<Place, Point>) -> Vec<Place> {

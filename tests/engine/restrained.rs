@@ -7,6 +7,7 @@ use rocking::engine::piece::Sample;
 use rocking::mechanics::energy::energy;
 use rocking::mechanics::restraint::{Restraint, centring_moments};
 use rocking::run::ground_motion::Elapsed;
+use rocking::run::peaks::Peaking;
 use rocking::run::record::Record;
 use rocking::run::validity::{Limits, WEIGHT, of_structure};
 use rocking::run::{End, Run};
@@ -506,5 +507,36 @@ fn no_dissipator_begins_to_yield_at_an_impact() {
                 && pair[1].time - pair[0].time < 1e-9
         };
         assert!(transitions.len() > 20 && !transitions.windows(2).any(at_impact), "{detail:?} {part}");
+    }
+}
+
+/// Against 4000 instants: no force is larger, and the peak is the force at its instant, or just before an impact then. Pulled to their yield force, elastoplastic
+/// dissipators alone have no larger one.
+#[test]
+fn peaks_of_the_dissipators_are_their_largest_forces() {
+    let ground = shaking(5, 0.01, 300, 4.0);
+    let yielding = Parameters { c_d: 0.0, ..RESTRAINED };
+    for parameters in [RESTRAINED, yielding, Parameters { k_d: 0.0, F_y: 0.0, ..RESTRAINED }] {
+        for detail in [Detail::Auto, Detail::Linear] {
+            let run = Run { detail, end: End::At(3.0), ..Run::new(structure(parameters), &ground) };
+            let found = run.found(&mut ()).unwrap();
+            for which in [0, 1] {
+                let peak = found.peaks.peak(Peaking::Dissipator(which)).unwrap();
+                let (mut most, mut there) = (0.0_f64, 0.0);
+                let times = (0..4000).map(|i| 7.5e-4 * f64::from(i)).filter(|t| *t < peak.time - 1e-9);
+                let times = times.chain([peak.time - 1e-9, peak.time]);
+                let after = (0..4000).map(|i| 7.5e-4 * f64::from(i)).filter(|t| *t > peak.time);
+                let see = |at: &Sample| {
+                    let ties = at.restraints();
+                    let force = [ties.F_d1, ties.F_d2][which].abs();
+                    most = most.max(force);
+                    there = if (at.motion.time - peak.time).abs() < 2e-9 { force.max(there) } else { there };
+                };
+                run.sample(times.chain(after), see, &mut ()).unwrap();
+                assert!(most <= peak.magnitude * (1.0 + 1e-9) && most > 0.9 * peak.magnitude, "{most} {peak:?}");
+                assert_relative_eq!(there, peak.magnitude, max_relative = 1e-6);
+                assert!(parameters != yielding || (peak.magnitude / parameters.F_y - 1.0).abs() < 1e-12);
+            }
+        }
     }
 }

@@ -373,7 +373,7 @@
   // ---- The run: shown to 1/100 of a peak while a control moves, and to 1/10000 when it rests
 
   let pinned;
-  const beside = new Set(["fixed_base"]);
+  const beside = new Map([["fixed_base", { detail: "fixed_base" }]]);
   const colours = { fixed_base: "--orange", rigid: "--grey", modal: "--purple", linear: "--green", nonlinear: "--ink", auto: "--blue" };
 
   function update(part) {
@@ -383,9 +383,9 @@
       motion = decode(JSON.parse(explorer.show(text(), part)));
       const others = [];
       if (tab === "compare" && !isFrame()) {
-        for (const detail of beside) {
+        for (const of of beside.values()) {
           if (detail === (fields.detail ?? "auto")) continue;
-          others.push({ ...decode(JSON.parse(explorer.show(JSON.stringify({ ...fields, detail }), part))), colour: colours[detail] });
+          others.push({ ...decode(JSON.parse(explorer.show(JSON.stringify({ ...fields, ...of }), part))), colour: colours[of.detail] });
         }
         if (pinned) others.push({ ...pinned, colour: "--pinned" });
       }
@@ -481,24 +481,26 @@
   function drawLevels({ levels, advised, rule, refused }) {
     const body = at("levels").tBodies[0];
     body.replaceChildren(
-      ...levels.map(({ detail, errors, overturns, cost }) => {
-        const choice = Object.assign(document.createElement("input"), { type: "checkbox", checked: beside.has(detail), name: detail });
+      ...levels.map(({ level, detail, modes, errors, overturns, cost }) => {
+        const name = modes ? level : detail; // of all modes the detail alone, as of one mass
+        const choice = Object.assign(document.createElement("input"), { type: "checkbox", checked: beside.has(name), name });
         choice.addEventListener("change", () => {
-          beside[choice.checked ? "add" : "delete"](detail);
+          beside.delete(name);
+          if (choice.checked) beside.set(name, modes ? { detail, modes } : { detail });
           update(1e-4);
         });
         const swatch = Object.assign(document.createElement("span"), { className: "swatch", style: `--colour: var(${colours[detail]})` });
         const label = document.createElement("label");
-        label.append(choice, " ", swatch, detail);
+        label.append(choice, " ", swatch, level);
         const errorsOf = errors.map((error) => percent(unlimited(error)));
         const falls = { true: "yes", false: "no", null: "not known" }[overturns];
         const made = line([label, ...errorsOf, falls, cost === null ? "–" : view.significant(cost, 2)]);
-        made.classList.toggle("advised", detail === advised);
-        made.dataset.detail = detail;
+        made.classList.toggle("advised", level === advised);
+        made.dataset.detail = name;
         return made;
       }),
-      ...refused.map(([detail, why]) => {
-        const made = line([detail, why]);
+      ...refused.map(([level, why]) => {
+        const made = line([level, why]);
         made.cells[1].colSpan = 8;
         return made;
       }),
@@ -647,11 +649,10 @@
     button.addEventListener("click", () => navigator.clipboard.writeText(at(button.dataset.copy).textContent));
   }
 
-  const ofOneMass = (draw) => () => isFrame() || draw();
   const panels = {
     play: drawValidity,
-    compare: ofOneMass(() => ask("compare", fields, drawLevels)),
-    map: ofOneMass(drawMap),
+    compare: () => ask("compare", fields, drawLevels),
+    map: drawMap,
     export: drawExport,
   };
   const tabs = [...at("tabs").children];

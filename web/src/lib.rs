@@ -157,17 +157,17 @@ impl Explorer {
     /// The levels of detail, compared on this scene as `advise` compares them.
     pub fn compare(&mut self, fields: &str) -> Result<String, String> {
         let (_, run, _) = self.load(fields)?;
-        run.structure.one_mass("the comparison of levels").map_err(says)?;
         let advice = run.advice(WITHIN, &Criterion::ALL).map_err(says)?;
         let row = |level: &Level| {
             json!({
-                "detail": level.choice.detail.name(), "errors": level.errors.map(|error| error.to_string()),
+                "level": level.choice.to_string(), "detail": level.choice.detail.name(),
+                "modes": level.choice.modes.filter(|[kept, all]| kept < all).map(|[kept, _]| kept.to_string()), "errors": level.errors.map(|error| error.to_string()),
                 "overturns": level.overturned, "transitions": level.transitions, "cost": level.cost,
             })
         };
-        let refused = |(choice, error): &(Choice, RunError)| json!([choice.detail.name(), error.to_string()]);
+        let refused = |(choice, error): &(Choice, RunError)| json!([choice.to_string(), error.to_string()]);
         Ok(json!({
-            "advised": advice.advised.map(|choice| choice.detail.name()), "rule": RULE,
+            "advised": advice.advised.map(|choice| choice.to_string()), "rule": RULE,
             "levels": advice.levels.iter().map(row).collect::<Vec<_>>(),
             "refused": advice.refused.iter().map(refused).collect::<Vec<_>>(),
         })

@@ -6,7 +6,7 @@ use rocking::run::record::Record;
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::{Given, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking::{Detail, OneMass, Parameters, State, Structure};
+use rocking::{Detail, Parameters, State, Structure};
 use rocking_records::{Column, Reading, RecordError, Remedy, Source, Unit, csv_in};
 use rocking_sweep::plan::Conditions;
 use rocking_sweep::pulse::{Pulse, Shape};
@@ -205,11 +205,6 @@ impl Fields {
         let base = self.has_preset().then(|| Parameters::preset(preset)).transpose().map_err(says)?;
         let parameters = base.map_or_else(|| given.parameters(), |base| given.over(&base)).map_err(says)?;
         Structure::new(parameters).map_err(says)
-    }
-
-    /// The structure of one mass, which `task` needs.
-    pub fn one_mass(&self, task: &'static str) -> Result<OneMass, String> {
-        self.structure()?.one_mass(task).copied().map_err(says)
     }
 
     fn frame(&self, base: &Given, storeys: &str) -> Result<Structure, String> {

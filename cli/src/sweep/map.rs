@@ -58,17 +58,11 @@ pub fn run(
     }
     let mut spectra = Vec::new();
     for (name, map) in maps {
-        let mut spectrum = Spectrum { name, map, points: HashMap::new() };
-        for level in 0..=refinements {
-            loop {
-                let lacking = spectrum.map.lacking(level, &spectrum.points);
-                if lacking.is_empty() {
-                    break;
-                }
-                pool.install(|| do_points(&mut spectrum, level, lacking, &mut known, &file))?;
-            }
-        }
-        spectra.push(spectrum);
+        let mut points = HashMap::new();
+        map.complete(refinements, &mut points, |level, lacking, points| {
+            pool.install(|| do_points((&name, &map, points), level, lacking, &mut known, &file))
+        })?;
+        spectra.push(Spectrum { name, map, points });
     }
     row_file::others(known.len(), output, "points that are not in these maps").iter().for_each(|line| say!("{line}"));
     let counts: Vec<_> = spectra.iter().flat_map(count).collect();
@@ -80,13 +74,12 @@ pub fn run(
 
 /// Finds `places` of a map among the points that are `known`, or runs the structure there and adds the row.
 fn do_points(
-    spectrum: &mut Spectrum,
+    (name, map, points): (&str, &Map, &mut HashMap<Place, Point>),
     level: u32,
     places: Vec<Place>,
     known: &mut Known<Point>,
     file: &RowFile,
 ) -> anyhow::Result<()> {
-    let Spectrum { name, map, points } = spectrum;
     let keys: Vec<_> = places.par_iter().map(|place| key_at(name, map, *place)).collect();
     let mut lacking = Vec::new();
     for (place, key) in places.into_iter().zip(keys) {
