@@ -9,9 +9,10 @@ use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource};
 use rocking::digits::short;
 use rocking::structure::derived::Derived;
 use rocking::structure::description::Described;
+use rocking::structure::doubts::DOUBTED;
 use rocking::structure::natural_quantities::{Given, GivenError, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking::structure::quantity::Quantity;
+use rocking::structure::quantity::{Quantity, Units};
 use rocking::{Parameters, Structure};
 use rocking_report::input;
 use std::path::{Path, PathBuf};
@@ -28,6 +29,9 @@ pub struct StructureArgs {
     parameters: Option<PathBuf>,
     #[command(flatten)]
     numbers: Numbers,
+    /// Numbers whose warnings about units to leave out
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = one_of(DOUBTED.map(|name| (name, name))))]
+    allow: Vec<&'static str>,
 }
 
 /// Numbers in the place of the specimen's or the file's, or alone: an option for every parameter and natural quantity.
@@ -42,20 +46,24 @@ impl StructureArgs {
 
     /// Reads the structure, and warns of doubtful numbers; a refusal names the file, the line and the key.
     pub fn load_any(&self) -> anyhow::Result<Structure> {
-        let structure = self.read()?;
-        structure.doubts().iter().for_each(|doubt| warning!("{doubt}"));
+        let (structure, units) = self.read()?;
+        let doubts = structure.doubts_in(units, &self.allow);
+        doubts.iter().for_each(|doubt| {
+            warning!("{doubt}; --allow {} if it is right", doubt.split(" = ").next().unwrap_or(doubt))
+        });
         Ok(structure)
     }
 
-    fn read(&self) -> anyhow::Result<Structure> {
-        let numbers = &self.numbers.0;
-        Ok(match (&self.parameters, self.preset) {
+    fn read(&self) -> anyhow::Result<(Structure, Units)> {
+        let (numbers, mut units) = (&self.numbers.0, Units::default());
+        let structure = match (&self.parameters, self.preset) {
             (Some(path), _) => {
                 let read = || of_file(&input::text(path)?);
-                let structure = read().with_context(|| format!("parameters in {}", input::name(path)))?;
+                let (structure, of_file) = read().with_context(|| format!("parameters in {}", input::name(path)))?;
+                units = of_file;
                 match structure.one() {
                     Some(one) => numbers.structure(Some(one.parameters()))?,
-                    None if numbers.is_empty() => return Ok(structure),
+                    None if numbers.is_empty() => structure,
                     None => bail!(
                         "{} replaces a number of one mass, and {} describes many masses or ground that gives: change it in the file",
                         numbers.names().map(on_command_line).collect::<Vec<_>>().join(", "),
@@ -69,18 +77,21 @@ impl StructureArgs {
                 Structure::new(Parameters::MCMANUS)?
             }
             (None, None) => Structure::new(numbers.parameters().map_err(with_options)?)?,
-        })
+        };
+        Ok((structure, units))
     }
 }
 
-/// The structure that the TOML `text` describes: of many masses if there are tables of them.
-pub fn of_file(text: &str) -> anyhow::Result<Structure> {
+/// The structure that the TOML `text` describes, of many masses if there are tables of them, and the units of its numbers.
+pub fn of_file(text: &str) -> anyhow::Result<(Structure, Units)> {
     let keys: toml::Table = toml::from_str(text)?;
     if ["base", "storeys", "floors", "modes"].iter().any(|key| keys.contains_key(*key)) {
         let described: Described = toml::from_str(text)?;
-        return Ok(described.structure()?);
+        let units = described.units;
+        return Ok((described.structure()?, units));
     }
-    Ok(toml::from_str::<Given>(text)?.structure(None)?)
+    let given: Given = toml::from_str(text)?;
+    Ok((given.structure(None)?, given.units()))
 }
 
 /// The error with the options that help.

@@ -40,7 +40,8 @@ def sweep(
 
     intensity: the measure for `fragility`, "PGA" (g), "PGV" (m/s), "S_a" (g, at f_fc and zeta_fc, a building's lowest mode), "CAV"
     (m/s), "I_A" (m/s, Arias), "D_5_95" (s, significant duration) or "S_a_avg". S_a_avg (g) is the geometric mean of S_a at ten
-    periods, evenly spaced from 0.2/f_fc to 3/f_fc. The table has S_a_avg only if that is the measure, and always the others.
+    periods, evenly spaced from 0.2/f_fc to 3/f_fc. "S_a(1 s)" is S_a at this period with 5 % damping, whatever the structure has, and
+    "S_a(1 s, 2 %)" with another. The table has S_a_avg and S_a at a period only if that is the measure, and always the others.
 
     progress: True shows the runs, their rate and the time left by tqdm. A function is called with the numbers of runs done and
     to do, 20 times per second.
@@ -62,7 +63,7 @@ def sweep(
         keys, columns, stopped = _native.sweep(populations, _named(records), scale, intensity, path, detail, tolerance, duration,
                                                initial, validity, threads, tell)
     table = pandas.DataFrame({"run": keys} | {name: _values(of) for name, of in columns}, copy=False)
-    table.attrs["intensity"] = f"{intensity}[{_native.intensity_measures()[intensity]}]"
+    table.attrs["intensity"] = _native.heading_of(intensity)
     if stopped is not None:
         stopped.table = table  # type: ignore[attr-defined]
         raise stopped
@@ -141,6 +142,9 @@ def _told(progress: "bool | Callable[[int, int], object]") -> "Iterator[Callable
             yield move
 
 
+_BINS = ["lowest", "mean", "highest", "runs", "known", "exceedances"]
+
+
 class Fragility:
     """A lognormal fragility curve through the runs of a sweep: what `fragility` returns.
 
@@ -207,7 +211,8 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, by: str | Non
 
     limit: "overturned", or a peak such as "theta/alpha_cg >= 0.5", "theta >= 3 deg", "uplift >= 1 cm", "a_t >= 0.3 g" (the
     structure's own g). Of a building, "a_t[3] >= 0.3 g" is of a floor, and "a_t >= 0.3 g" of all floors: the largest counts. A run
-    that overturned has exceeded every limit. intensity: a measure of `sweep` or a column of the table; by default the measure of the
+    that overturned has exceeded every limit. Another table needs a column of an intensity and a column of a demand: limit is then
+    "COLUMN >= VALUE". Its records, if it has a column "record", or else its rows are independent of each other. intensity: a measure of `sweep` or a column of the table; by default the measure of the
     sweep. by: a column, such as "structures" or "f_fc[Hz]". With by, the result is a dict with the curve of each value of the column.
     Runs that failed are not counted. The uncertainty of the curve treats records as independent of each other, or, if there is one
     record, structures.
@@ -217,13 +222,13 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, by: str | Non
     """
     import pandas
 
-    units = _native.intensity_measures()
-    known = {name: f"{name}[{unit}]" for name, unit in units.items()}
-    if intensity is None and "intensity" not in table.attrs:  # merge, concat and read_csv lose it
-        raise ValueError(f"intensity is needed: the table has lost the measure of its sweep; give one of {', '.join(units)}")
-    column = known.get(intensity, intensity) if intensity else table.attrs["intensity"]
+    column = intensity or table.attrs.get("intensity")
+    if column is None:  # merge, concat and read_csv lose it
+        raise ValueError("intensity is needed: the table has lost the measure of its sweep; give one, such as PGA, or a column")
     if column not in table:
-        raise ValueError(f"intensity = {intensity!r} is unknown; these are known: {', '.join(units)}, and the table's columns")
+        column = _native.heading_of(column)
+        if column not in table:
+            raise ValueError(f"intensity = {intensity!r}: the table has no column {column}; give one of {', '.join(table.columns)}")
     if by is not None:
         if by not in table:
             raise ValueError(f"by = {by!r} is no column of the table: give one of {', '.join(table.columns)}")
@@ -234,6 +239,8 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, by: str | Non
             except ValueError as refused:
                 raise ValueError(f"{by} = {value!r}: {refused}") from None
         return curves
+    if "ending" not in table:
+        return _of_own(table, limit, column)
     if lacking := [name for name in ("record", "ending", "g[m/s2]", "B[m]") if name not in table]:
         raise ValueError(f"the table has no {', '.join(lacking)}: a table with the columns of `sweep` is needed, such as "
                          f"pandas.read_csv of its file")
@@ -250,8 +257,23 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, by: str | Non
     varying = ["record"] if ended["record"].nunique() > 1 else list(of_structure)
     groups = ended.groupby(varying, sort=False, dropna=False).ngroup()
     curve, bins = _native.fragility(groups.tolist(), ended[column].tolist(), _exceeds(ended, limit))
-    names = ["lowest", "mean", "highest", "runs", "known", "exceedances"]
-    return Fragility(limit, column, curve, pandas.DataFrame(bins, columns=names))
+    return Fragility(limit, column, curve, pandas.DataFrame(bins, columns=_BINS))
+
+
+def _of_own(table: "pd.DataFrame", limit: str, column: str) -> Fragility:
+    """The curve of a table that `sweep` did not make."""
+    import pandas
+
+    name, _, value = (part.strip() for part in limit.partition(">="))
+    try:
+        exceeds = (table[name] >= float(value)).where(table[name].notna())
+    except (KeyError, ValueError):
+        raise ValueError(f"limit = {limit!r}: COLUMN >= VALUE is needed, with a column of {', '.join(map(str, table.columns))} and a number"
+                         ) from None
+    groups = pandas.factorize(table["record"])[0] if "record" in table else range(len(table))
+    known = [None if pandas.isna(of) else bool(of) for of in exceeds]
+    curve, bins = _native.fragility(list(groups), table[column].tolist(), known)
+    return Fragility(limit, column, curve, pandas.DataFrame(bins, columns=_BINS))
 
 
 def _exceeds(table: "pd.DataFrame", limit: str) -> list[bool | None]:

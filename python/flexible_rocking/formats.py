@@ -1,4 +1,4 @@
-"""Fragility curves in the formats of the field: pelicun's CSV, OpenQuake's NRML 0.5."""
+"""Fragility curves and demands in the formats of the field: pelicun's CSV, OpenQuake's NRML 0.5."""
 
 import csv
 import re
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 from xml.etree import ElementTree
 
 if TYPE_CHECKING:
+    import pandas as pd
     from numpy.typing import ArrayLike
 
     from ._sweep import Fragility
@@ -36,6 +37,35 @@ def write_pelicun(file: str | PathLike[str], components: "Mapping[str, Fragility
         table.writerow(heads + [f"LS{state}-{what}" for state in states for what in ("Family", "Theta_0", "Theta_1")])
         for name, curves in rows.items():
             table.writerow([name, 0, *kinds[name], 0, 0] + [cell for of in curves for cell in ("lognormal", of.median, of.dispersion)])
+
+
+def write_demands(file: str | PathLike[str], table: "pd.DataFrame") -> None:
+    """Writes the demands of a sweep's table as a sample of pelicun 3: a row per run, and below the headings a row of units.
+
+    Columns: 1-PFA-0-1 (ground) and 1-PFA-1-1, ... (floors, mps2), 1-PID-1-1, ... (peak drift ratios of storeys, rad), 1-ROT-0-1 (peak
+    rotation of the base, rad) and 1-PGA-0-1 (mps2), or, if the sweep has another intensity, 1-IM-0-1 in its own unit. The index names
+    record and scale. One mass is one floor. Runs that overturned or failed have no demands: their probability is `fragility`'s.
+    Raises ValueError for structures of different floors.
+    """
+    ended = table[~table["ending"].isin(["overturned", "failed"])].dropna(axis="columns", how="all")
+    g, columns = ended["g[m/s2]"], {("1-PFA-0-1", "mps2"): ended["PGA[g]"] * ended["g[m/s2]"]}
+    floors = sum(bool(re.fullmatch(r"peak_a_t\[\d+\]\[m/s2\]", name)) for name in ended)
+    for i in range(1, floors + 1):
+        columns[f"1-PFA-{i}-1", "mps2"] = ended[f"peak_a_t[{i}][m/s2]"]
+    for i in range(1, floors + 1):
+        columns[f"1-PID-{i}-1", "rad"] = ended[f"peak_drift_ratio[{i}]"]
+    if not floors:
+        columns |= {("1-PFA-1-1", "mps2"): ended["peak_a_t[m/s2]"], ("1-PID-1-1", "rad"): ended["peak_u[m]"] / ended["H[m]"]}
+    columns |= {("1-ROT-0-1", "rad"): ended["peak_theta[rad]"], ("1-PGA-0-1", "mps2"): ended["PGA[g]"] * g}
+    if (measure := table.attrs.get("intensity", "PGA[g]")) != "PGA[g]":
+        columns["1-IM-0-1", measure.rpartition("[")[2].rstrip("]")] = ended[measure]
+    if any(column.isna().any() for column in columns.values()):
+        raise ValueError("the structures of the table have different floors: write each population by itself")
+    with open(file, "w", newline="", encoding="utf-8") as lines:
+        rows = csv.writer(lines)
+        rows.writerows([["", *(name for name, _ in columns)], ["Units", *(unit for _, unit in columns)]])
+        names = [f"{record} x {scale:g}" for record, scale in zip(ended["record"], ended["scale"])]
+        rows.writerows(zip(names, *(column.tolist() for column in columns.values())))
 
 
 def write_openquake(file: str | PathLike[str], functions: "Mapping[str, Mapping[str, Fragility]]", *,
@@ -91,7 +121,8 @@ def _kind(name: str, curves: "list[Fragility]", known: dict[str, tuple[str, T]],
     measure = measures.pop()
     if measure in known:
         return known[measure]
-    if period := re.fullmatch(r"SA\((\d+(?:\.\d+)?)\)", measure):
+    if period := re.fullmatch(r"SA\((\d+(?:\.\d+)?)\)|S_a\((\d+(?:\.\d+)?) s\)\[g\]", measure):
+        period = [period[0], period[1] or period[2]]  # type: ignore[assignment]
         return spectral[0].format(period[1]), spectral[1]
     raise ValueError(f"{name!r} has curves over {measure}, which the format does not have: give fr.fragility an intensity of "
-                     f"{', '.join(known)}, or a column named SA(0.4) with S_a (g) at the period 0.4 s and the damping ratio 0.05")
+                     f"{', '.join(known)}, S_a(0.4 s), or a column named SA(0.4) with S_a (g) at the period 0.4 s and the damping ratio 0.05")

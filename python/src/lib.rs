@@ -35,7 +35,7 @@ mod _native {
     #[pymodule_export]
     use super::structure::Structure;
     #[pymodule_export]
-    use super::sweep::{Curve, columns_of, exceeds, fragility, intensity_measures, overturning_map, sweep};
+    use super::sweep::{Curve, columns_of, exceeds, fragility, heading_of, overturning_map, sweep};
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "as Python has it")]

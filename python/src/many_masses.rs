@@ -143,7 +143,8 @@ fn ground(value: &Bound<'_, PyAny>) -> PyResult<Ground> {
     Ok(ground)
 }
 
-fn units(value: &Bound<'_, PyAny>) -> PyResult<Units> {
+/// The units that `value` names.
+pub fn units(value: &Bound<'_, PyAny>) -> PyResult<Units> {
     let units = Units::deserialize(value.str()?.to_str()?.into_deserializer());
     units.map_err(|error: serde::de::value::Error| PyValueError::new_err(format!("units: {error}")))
 }

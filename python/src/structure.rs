@@ -2,7 +2,7 @@
 
 use crate::arguments::{numbers, one_of, refused, warn};
 use crate::interruptible::interruptible;
-use crate::many_masses::{INSTEAD, OF_MANY, frame, given};
+use crate::many_masses::{INSTEAD, OF_MANY, frame, given, units};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyAttributeError, PyValueError};
 use pyo3::prelude::*;
@@ -13,6 +13,7 @@ use rocking::estimates::pushover::{Equilibrium, Pushover};
 use rocking::structure::derived::{DERIVED, Derived};
 use rocking::structure::derived::{OF_MODE, OF_STRUCTURE};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
+use rocking::structure::quantity::Units;
 use rocking::{OneMass, Side, State};
 use rocking_report::describe;
 
@@ -39,7 +40,8 @@ use rocking_report::describe;
 /// the mass turns rigidly with the base. p_delta=True subtracts the weight above each storey, over the storey's height, from its k.
 /// See also from_matrices and from_modes. ground=Ground(f_v=40, zeta_v=0.2) puts either on contact points that push and never pull.
 ///
-/// A Python warning names a number that is usual in another unit. Raises ValueError where a number is unknown, missing, given twice in
+/// A Python warning begins with the name of a number that is usual in another unit: warnings.filterwarnings("ignore", "m_t = ")
+/// silences it. Raises ValueError where a number is unknown, missing, given twice in
 /// different ways or out of its range.
 #[pyclass(frozen, eq, module = "flexible_rocking")]
 pub struct Structure {
@@ -61,8 +63,9 @@ fn copied<'py>(keywords: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
 
 impl Structure {
     /// The structure, with a Python warning for each doubtful number.
-    fn of(py: Python<'_>, of: rocking::Structure, keywords: Option<Py<PyDict>>) -> PyResult<Structure> {
-        warn(py, of.doubts(), 1)?;
+    fn of(given: &Bound<'_, PyDict>, of: rocking::Structure, keywords: Option<Py<PyDict>>) -> PyResult<Structure> {
+        let units = given.get_item("units")?.map_or(Ok(Units::default()), |of| units(&of))?;
+        warn(given.py(), of.doubts_in(units, &[]), 1)?;
         Ok(Structure { of, keywords })
     }
 
@@ -71,7 +74,7 @@ impl Structure {
         for (name, _) in keywords.iter().filter(|(_, value)| value.is_none()) {
             kept.del_item(name)?;
         }
-        Structure::of(keywords.py(), frame(kept.copy()?)?, Some(kept.unbind()))
+        Structure::of(keywords, frame(kept.copy()?)?, Some(kept.unbind()))
     }
 
     /// The structure of one mass, which `task` needs.
@@ -121,7 +124,7 @@ impl Structure {
                 return Structure::many(&keywords);
             }
         };
-        Structure::of(py, structure.map_err(refused)?, None)
+        Structure::of(&numbers, structure.map_err(refused)?, None)
     }
 
     /// The structure of these masses (kg) at these heights (m) above the base, lowest first. K (N/m) is the stiffness matrix on
@@ -164,7 +167,11 @@ impl Structure {
     fn replace<'py>(&self, py: Python<'py>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<Structure> {
         let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
         if let Some(structure) = self.of.one() {
-            return Structure::of(py, given(&numbers)?.structure(Some(structure.parameters())).map_err(refused)?, None);
+            return Structure::of(
+                &numbers,
+                given(&numbers)?.structure(Some(structure.parameters())).map_err(refused)?,
+                None,
+            );
         }
         let keywords = self.parameters(py)?;
         for [one, other] in INSTEAD {

@@ -20,7 +20,7 @@ use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map, Place, Point};
 use rocking_sweep::outcome::{Limit, Measure};
 use rocking_sweep::plan::{NamedRecord, Plan, Population};
 use rocking_sweep::pulse::{Pulse, Shape, units_of};
-use rocking_sweep::row_file::{do_runs, name_and_unit};
+use rocking_sweep::row_file::{do_runs, heading, name_and_unit};
 use rocking_sweep::rows::{Column, FAILED, Sweep};
 use rocking_sweep::thread_pool;
 use serde::Deserialize;
@@ -46,7 +46,7 @@ pub fn sweep<'py>(
     structures: Vec<(String, Vec<Py<Structure>>)>,
     records: Vec<(String, Ground)>,
     scale: &Bound<'_, PyAny>,
-    intensity: &Bound<'_, PyAny>,
+    intensity: &str,
     path: Option<PathBuf>,
     #[pyo3(from_py_with = argument::detail)] detail: Detail,
     #[pyo3(from_py_with = argument::tolerance)] tolerance: f64,
@@ -57,7 +57,7 @@ pub fn sweep<'py>(
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Table<'py>> {
     let scales = numbers("scale", scale)?;
-    let intensity = one_of("intensity", intensity, IntensityMeasure::ALL.map(|of| (of.name(), of)))?;
+    let intensity = IntensityMeasure::read(intensity).map_err(refused)?;
     let population = |(name, of): &(String, Vec<Py<Structure>>)| {
         Population::of(name, of.iter().map(|structure| structure.get().of.clone()).collect()).map_err(refused)
     };
@@ -203,12 +203,11 @@ fn values(py: Python<'_>, column: Column) -> PyResult<Bound<'_, PyAny>> {
     })
 }
 
-/// Names and units of the measures by which a ground motion's intensity is told.
+/// The heading of the column of the `intensity` measure of this name.
 #[pyfunction]
-pub fn intensity_measures(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
-    let measures = PyDict::new(py);
-    IntensityMeasure::ALL.iter().try_for_each(|measure| measures.set_item(measure.name(), measure.unit()))?;
-    Ok(measures)
+pub fn heading_of(intensity: &str) -> PyResult<String> {
+    let measure = IntensityMeasure::read(intensity).map_err(refused)?;
+    Ok(heading(&measure.name(), measure.unit()))
 }
 
 /// How sure a curve is: a covariance, and a number of standard deviations.

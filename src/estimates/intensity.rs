@@ -8,17 +8,20 @@
 //! | CAV | cumulative absolute velocity, ∫ abs(a_g) dt | m/s |
 //! | D_5_95 | time from 5 % to 95 % of the Arias intensity, the significant duration | s |
 //! | S_a | largest acceleration of the structure on a fixed base, S_a(1/f_fc, ζ_fc) | g |
+//! | S_a(1 s) | S_a at a given period, here 1 s, with 5 % damping or, as in S_a(1 s, 2 %), another | g |
 //! | S_a_avg | geometric mean of S_a at ten periods, evenly spaced from 0.2/f_fc to 3/f_fc | g |
 //!
 //! f_fc and ζ_fc are those of the lowest mode of many masses. All are exact for a record that is linear between its samples.
 
+use crate::digits::short;
 use crate::estimates::response_spectrum::spectral_acceleration;
 use crate::run::record::Record;
 use crate::series::bisection::last_where;
+use std::borrow::Cow;
 use std::f64::consts::FRAC_PI_2;
 
 /// An intensity measure.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum IntensityMeasure {
     /// Peak ground acceleration, g.
     #[default]
@@ -35,7 +38,12 @@ pub enum IntensityMeasure {
     Duration,
     /// Average spectral acceleration of the fixed base, g.
     AverageSa,
+    /// Spectral acceleration at this period (s) with this damping ratio, whatever the structure has, g.
+    SaAt(f64, f64),
 }
+
+/// The damping ratio of S_a(1 s).
+const USUAL_ZETA: f64 = 0.05;
 
 impl IntensityMeasure {
     /// All intensity measures.
@@ -52,9 +60,24 @@ impl IntensityMeasure {
     /// The measures that every row of a sweep has: all but the average, which takes as long as many a run.
     pub const COLUMNS: [IntensityMeasure; 6] = *IntensityMeasure::ALL.first_chunk().expect("there are seven");
 
+    /// The measure called `name`.
+    pub fn read(name: &str) -> Result<IntensityMeasure, UnknownMeasure> {
+        let at = || {
+            let (period, zeta) =
+                name.strip_prefix("S_a(")?.strip_suffix(')').map(|of| of.split_once(',').unwrap_or((of, "")))?;
+            let number = |text: &str, unit| text.trim().strip_suffix(unit)?.trim().parse::<f64>().ok();
+            let zeta = if zeta.is_empty() { USUAL_ZETA } else { number(zeta, '%')? / 100.0 };
+            let at = IntensityMeasure::SaAt(number(period, 's')?, zeta);
+            matches!(at, IntensityMeasure::SaAt(T, zeta) if (1e-4..=1e3).contains(&T) && (0.0..=10.0).contains(&zeta))
+                .then_some(at)
+        };
+        let named = IntensityMeasure::ALL.into_iter().find(|measure| measure.name() == name);
+        named.or_else(at).ok_or_else(|| UnknownMeasure { name: name.into() })
+    }
+
     /// Its name in files and tables.
-    pub const fn name(self) -> &'static str {
-        match self {
+    pub fn name(self) -> Cow<'static, str> {
+        let name = match self {
             IntensityMeasure::Pga => "PGA",
             IntensityMeasure::Pgv => "PGV",
             IntensityMeasure::Sa => "S_a",
@@ -62,20 +85,25 @@ impl IntensityMeasure {
             IntensityMeasure::Arias => "I_A",
             IntensityMeasure::Duration => "D_5_95",
             IntensityMeasure::AverageSa => "S_a_avg",
-        }
+            IntensityMeasure::SaAt(T, USUAL_ZETA) => return format!("S_a({T} s)").into(),
+            IntensityMeasure::SaAt(T, zeta) => return format!("S_a({T} s, {} %)", short(100.0 * zeta)).into(),
+        };
+        name.into()
     }
 
     /// Its unit.
     pub const fn unit(self) -> &'static str {
         match self {
-            IntensityMeasure::Pga | IntensityMeasure::Sa | IntensityMeasure::AverageSa => "g",
+            IntensityMeasure::Pga | IntensityMeasure::Sa | IntensityMeasure::AverageSa | IntensityMeasure::SaAt(..) => {
+                "g"
+            }
             IntensityMeasure::Pgv | IntensityMeasure::Cav | IntensityMeasure::Arias => "m/s",
             IntensityMeasure::Duration => "s",
         }
     }
 
     /// Description.
-    pub const fn description(self) -> &'static str {
+    pub fn description(self) -> &'static str {
         match self {
             IntensityMeasure::Pga => "peak ground acceleration PGA",
             IntensityMeasure::Pgv => "peak ground velocity PGV",
@@ -84,8 +112,19 @@ impl IntensityMeasure {
             IntensityMeasure::Arias => "Arias intensity I_A",
             IntensityMeasure::Duration => "significant duration D_5_95",
             IntensityMeasure::AverageSa => "average spectral acceleration of the fixed base from 0.2/f_fc to 3/f_fc",
+            IntensityMeasure::SaAt(..) => "spectral acceleration",
         }
     }
+}
+
+/// A name that no measure has.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "intensity = {name:?} is unknown; these are known: {known}, S_a(1 s), S_a(1 s, 2 %)",
+    known = IntensityMeasure::ALL.map(IntensityMeasure::name).join(", ")
+)]
+pub struct UnknownMeasure {
+    name: String,
 }
 
 /// Peak ground velocity of `record`, m/s: at rest before its first sample. The velocity is largest at a sample or where

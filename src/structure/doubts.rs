@@ -1,6 +1,7 @@
 //! Numbers that a structure may have, but that are usual in another unit.
 
 use crate::digits::{short, with_unit};
+use crate::structure::quantity::Units;
 use crate::{Base, Structure, Ties};
 use std::f64::consts::TAU;
 
@@ -21,10 +22,19 @@ const LIGHT: f64 = 50.0;
 /// Least ratio of the foundation's mass to the mass above, and of the mass above to the foundation's, if both are in one unit.
 const ONE_UNIT: [f64; 2] = [1e-3, 1e-2];
 
+/// Names of the numbers that are doubted. A sentence begins with its name.
+pub const DOUBTED: [&str; 8] = ["P_0", "F_y", "xi_d", "m0", "f", "m_t", "zeta", "B"];
+
 /// Damping ratio of the lowest mode that no structure exceeds without dampers.
 const MOST_DAMPING: f64 = 0.2;
 
 impl Structure {
+    /// The [`doubts`](Structure::doubts) about numbers that were given in `units`, but those of these `names`.
+    pub fn doubts_in(&self, units: Units, names: &[&str]) -> Vec<String> {
+        let doubted = |doubt: &String| doubt.split(" = ").next().is_none_or(|name| !names.contains(&name));
+        self.doubts().into_iter().filter(doubted).map(|doubt| units.message(doubt)).collect()
+    }
+
     /// A sentence for each number that is usual in another unit, before anything moves.
     pub fn doubts(&self) -> Vec<String> {
         let (&Base { m_t, m0, g, B, tan_alpha_cg, ties: Ties { P_0, xi_d, F_y, .. }, .. }, body) =
@@ -34,7 +44,7 @@ impl Structure {
         let doubt = |(name, force)| {
             let [force, weight] = [force, weight].map(|force| with_unit(force, "N"));
             format!(
-                "{name} = {force} changes next to nothing under the weight of the structure, {weight}: is {name} in N, not in kN?"
+                "{name} = {force} changes next to nothing under the weight of the structure, {weight}: is {name} in N?"
             )
         };
         let mut doubts: Vec<_> = [("P_0", P_0), ("F_y", F_y)].into_iter().filter(is_small).map(doubt).collect();
@@ -47,9 +57,7 @@ impl Structure {
         }
         if m0 > 0.0 && (m0 < ONE_UNIT[0] * body.m_s || body.m_s < ONE_UNIT[1] * m0) {
             let [m0, m_s] = [m0, body.m_s].map(short);
-            doubts.push(format!(
-                "the foundation has m0 = {m0} kg and carries {m_s} kg: are both masses in kg, not one in t?"
-            ));
+            doubts.push(format!("m0 = {m0} kg of the foundation does not fit {m_s} kg above it: are both in kg?"));
         }
         // of mass that is spread evenly over the height
         let of_floors = self.floors().iter().map(|floor| floor.height).reduce(f64::max);
@@ -65,7 +73,7 @@ impl Structure {
         }
         if m_t < LIGHT * area {
             doubts.push(format!(
-                "m_t = {} kg is little for a structure {} m wide and {height} m high: are masses in kg, not in t?",
+                "m_t = {} kg is little for a structure {} m wide and {height} m high: are masses in kg?",
                 short(m_t),
                 short(2.0 * B)
             ));
@@ -103,7 +111,7 @@ mod tests {
         let doubts = doubts([0.5e-3 * weight, 0.01e-3 * weight]);
         let [P_0, weight] = [0.5e-3 * weight, weight].map(short);
         let expected = format!(
-            "P_0 = {P_0} N changes next to nothing under the weight of the structure, {weight} N: is P_0 in N, not in kN?"
+            "P_0 = {P_0} N changes next to nothing under the weight of the structure, {weight} N: is P_0 in N?"
         );
         assert!(doubts[0] == expected && doubts[1].starts_with("F_y = ") && doubts.len() == 2, "{doubts:?}");
     }
@@ -135,8 +143,8 @@ mod tests {
         let changes: [(Change, &str); 9] = [
             (|of| (of.m, of.m0) = (100.0, 50.0), "m_t = 150 kg is little"),
             (|of| (of.m, of.m0, of.H, of.B) = (970.0, 480.0, 12.0, 3.2), "m_t = 1450 kg is little"),
-            (|of| of.m0 = 50.0, "the foundation has m0 = 50 kg and carries 100000 kg: are both"),
-            (|of| of.m = 100.0, "the foundation has m0 = 50000 kg and carries 100 kg: are both"),
+            (|of| of.m0 = 50.0, "m0 = 50 kg of the foundation does not fit 100000 kg above it: are both"),
+            (|of| of.m = 100.0, "m0 = 50000 kg of the foundation does not fit 100 kg above it: are both"),
             (|of| of.xi_d = 320.0, "xi_d = 320 m is more than the width of the base, 3 m: is xi_d in m"),
             (|of| of.f_fc = 400_f64.recip(), "f = 0.00 Hz of the lowest mode is far"),
             (|of| (of.H, of.B) = (8e3, 1.5e3), "f = 2.00 Hz of the lowest mode is far"),
@@ -145,6 +153,12 @@ mod tests {
         ];
         for (change, expected) in changes {
             assert!(doubts(change)[0].starts_with(expected), "{:?}", doubts(change));
+            assert!(doubts(change).iter().all(|doubt| DOUBTED.contains(&doubt.split(" = ").next().unwrap())));
         }
+        let light = Structure::new(Parameters { m: 100.0, m0: 50.0, H: 8.0, B: 1.5, f_fc: 2.0, ..Parameters::MCMANUS })
+            .unwrap();
+        let expected = "m_t = 0.15 t is little for a structure 3 m wide and 8 m high: are masses in t?";
+        assert_eq!(light.doubts_in(Units::Kilonewtons, &["f"]), [expected]);
+        assert!(light.doubts_in(Units::Kilonewtons, &["f", "m_t"]).is_empty());
     }
 }

@@ -214,6 +214,11 @@ impl Given {
         Given { units, ground, ..self }
     }
 
+    /// The units in which the numbers were given.
+    pub fn units(&self) -> Units {
+        self.units
+    }
+
     /// The structure of one mass of these [`Given::parameters`], or of `base` changed by these numbers. Messages name the numbers as
     /// they were given.
     pub fn structure(&self, base: Option<&Parameters>) -> Result<Structure, GivenError> {

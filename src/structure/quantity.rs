@@ -39,7 +39,7 @@ impl Units {
         let message = message.to_string();
         let mut words: Vec<String> = message.split(' ').map(str::to_owned).collect();
         for i in (0..words.len()).filter(|_| self == Units::Kilonewtons) {
-            let is_mark = |letter| "(),;:".contains(letter);
+            let is_mark = |letter| "(),;:?".contains(letter);
             let Some((si, large)) = LARGE.iter().find(|(si, _)| *si == words[i].trim_matches(is_mark)) else {
                 continue;
             };

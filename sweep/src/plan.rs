@@ -110,8 +110,17 @@ pub struct Plan {
     conditions: Conditions,
     /// Measures of all structures, each once.
     pub measures: Vec<Measure>,
-    /// S_a and S_a_avg of every structure under every ground motion before it is scaled, m/s²: worked out when asked for.
-    spectral: Vec<[OnceLock<f64>; 2]>,
+    /// Of every structure under every ground motion.
+    spectral: Vec<Spectral>,
+}
+
+/// Spectral accelerations of a ground motion before it is scaled, m/s²: worked out when asked for.
+#[derive(Clone, Debug, Default)]
+struct Spectral {
+    sa: OnceLock<f64>,
+    average: OnceLock<f64>,
+    /// A period (s), a damping ratio and S_a there.
+    at: OnceLock<(f64, f64, f64)>,
 }
 
 /// One run of a plan.
@@ -135,7 +144,7 @@ pub struct Case<'a> {
     pub group: usize,
     /// Number of the ground motion in the plan, from 0.
     pub motion_number: usize,
-    spectral: &'a [OnceLock<f64>; 2],
+    spectral: &'a Spectral,
 }
 
 impl Population {
@@ -300,7 +309,7 @@ impl Plan {
                 plan.measures.append(&mut of_member);
             }
         }
-        plan.spectral = vec![[const { OnceLock::new() }; 2]; structures * motions];
+        plan.spectral = vec![Spectral::default(); structures * motions];
         Ok(plan)
     }
 
@@ -410,13 +419,19 @@ impl Case<'_> {
     /// How strong the ground motion is, in the unit of `measure`.
     pub fn intensity(&self, measure: IntensityMeasure) -> f64 {
         let Parameters { g, f_fc, zeta_fc, .. } = self.structure.parameters();
-        let (NamedRecord { record, .. }, [sa, average]) = (self.motion, self.spectral);
+        let (NamedRecord { record, .. }, Spectral { sa, average, at }) = (self.motion, self.spectral);
         let unscaled = match measure {
             IntensityMeasure::Pga => self.motion.pga / g,
             IntensityMeasure::Pgv => self.motion.pgv,
             IntensityMeasure::Sa => sa.get_or_init(|| spectral_acceleration(record, f_fc.recip(), zeta_fc)) / g,
             IntensityMeasure::AverageSa => {
                 average.get_or_init(|| average_spectral_acceleration(record, f_fc.recip(), zeta_fc)) / g
+            }
+            IntensityMeasure::SaAt(T, zeta) => {
+                match at.get_or_init(|| (T, zeta, spectral_acceleration(record, T, zeta))) {
+                    (period, ratio, found) if (*period, *ratio) == (T, zeta) => found / g,
+                    _ => spectral_acceleration(record, T, zeta) / g,
+                }
             }
             IntensityMeasure::Cav => self.motion.cav,
             IntensityMeasure::Arias => return self.motion.arias / g * self.factor().powi(2),
@@ -641,6 +656,19 @@ mod tests {
             }
         }
         let [f_2, f_5] = [0, 3].map(|index| plan.case(index).intensity(IntensityMeasure::Sa));
+        let at = |text| plan.case(0).intensity(IntensityMeasure::read(text).unwrap());
+        let of = |T, zeta| 2.0 * spectral_acceleration(&pulse().record, T, zeta) / 9.81;
+        let texts = ["S_a(1.0 s)", "S_a(1 s, 2 %)", "S_a(0.3s)"];
+        assert_eq!(texts.map(at), [of(1.0, 0.05), of(1.0, 0.02), of(0.3, 0.05)]);
+        assert_eq!(IntensityMeasure::read(texts[0]).unwrap().name(), "S_a(1 s)");
+        for unknown in ["S_a(0 s)", "S_a(1)", "S_a(1 s, 2)"] {
+            assert!(
+                IntensityMeasure::read(unknown)
+                    .unwrap_err()
+                    .to_string()
+                    .starts_with(&format!("intensity = {unknown:?} is"))
+            );
+        }
         let expected = |T| 2.0 * spectral_acceleration(&pulse().record, T, 0.02) / 9.81;
         assert_eq!([f_2, f_5], [0.5, 0.2].map(expected));
         assert_eq!([0, 1, 2, 3, 4, 5].map(|index| plan.case(index).group), [0, 1, 2, 0, 1, 2]);

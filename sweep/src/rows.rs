@@ -139,7 +139,7 @@ impl<'a> Sweep<'a> {
         let rows = done().count();
         let added = Some(measure).filter(|measure| !IntensityMeasure::COLUMNS.contains(measure));
         let headings =
-            headings(&self.plan.measures).into_iter().skip(1).chain(added.map(|of| heading(of.name(), of.unit())));
+            headings(&self.plan.measures).into_iter().skip(1).chain(added.map(|of| heading(&of.name(), of.unit())));
         let mut columns: Vec<_> = headings.map(|heading| (heading, Column::of(rows))).collect();
         let mut texts = vec![HashMap::new(); columns.len()];
         for (index, done) in done() {
@@ -288,7 +288,7 @@ fn open(path: &Path, measures: &[Measure]) -> anyhow::Result<(RowFile, Known<Don
 /// Headings of the rows.
 fn headings(measures: &[Measure]) -> Vec<String> {
     let quantities = AXES.map(|axis| heading(axis.name, axis.unit));
-    let intensities = IntensityMeasure::COLUMNS.map(|measure| heading(measure.name(), measure.unit()));
+    let intensities = IntensityMeasure::COLUMNS.map(|measure| heading(&measure.name(), measure.unit()));
     let initial = INITIAL_VALUES.each_ref().map(|quantity| heading(quantity.name, quantity.unit));
     let peaks = measures.iter().map(|(name, unit)| heading(&format!("peak_{name}"), unit)).collect();
     [

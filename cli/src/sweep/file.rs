@@ -254,9 +254,7 @@ impl MapFile {
 impl SweepFile {
     fn measure(&self) -> anyhow::Result<IntensityMeasure> {
         let Some(name) = &self.intensity else { return Ok(IntensityMeasure::default()) };
-        let known = IntensityMeasure::ALL.map(IntensityMeasure::name).join(", ");
-        let found = IntensityMeasure::ALL.into_iter().find(|measure| measure.name() == name);
-        found.with_context(|| format!("intensity = {name:?} is unknown; these are known: {known}"))
+        Ok(IntensityMeasure::read(name)?)
     }
 
     fn limits(&self, measures: &[Measure]) -> anyhow::Result<Vec<Limit>> {
@@ -323,7 +321,7 @@ impl StructureGrid {
             (None, None, Some(file)) => {
                 let path = folder.join(file);
                 files.add_input(&path);
-                input::text(&path).and_then(|text| of_file(&text)).with_context(|| path.display().to_string())
+                input::text(&path).and_then(|text| Ok(of_file(&text)?.0)).with_context(|| path.display().to_string())
             }
             _ => bail!("give one of preset, parameters and file"),
         };

@@ -88,7 +88,7 @@ pub fn write(out: &mut impl Write, of: &Exceedances, measure: IntensityMeasure) 
 pub struct Fitted {
     structures: String,
     limit: String,
-    measure: &'static str,
+    measure: String,
     unit: &'static str,
     median: Option<Number>,
     median_is_beyond_the_runs: Option<bool>,
@@ -121,7 +121,7 @@ pub fn curves(populations: &[Exceedances], measure: IntensityMeasure) -> Vec<Fit
         Fitted {
             structures: of.population.clone(),
             limit: limit.to_string(),
-            measure: measure.name(),
+            measure: measure.name().into(),
             unit: measure.unit(),
             median: fitted.map(|curve| Number(curve.median)),
             median_is_beyond_the_runs: fitted.map(|_| is_beyond_the_runs(of, fragility)),
