@@ -168,7 +168,7 @@ def co_simulation(fmu: Path, scene: Scene) -> dict:
     values = {f"record_{name}": value for name, value in scene.scales.items()} | scene.initial
     values |= dict(peaks=True, validity=True, detail=1 + LEVELS.index(scene.how.get("detail", "auto")))
     names = {variable.name for variable in fmpy.read_model_description(str(fmu)).modelVariables}
-    peaks = {name.removeprefix("t_") for name in names if re.fullmatch("t_.*_max|t_mu_.*|t_R_v_min|t_tension_impact|t_weight_min", name)}
+    peaks = {name.removeprefix("t_") for name in names if re.fullmatch(r"t_.*_max(\[\d+\])?|t_mu_.*|t_R_v_min|t_tension_impact|t_weight_min", name)}
     asked = [*peaks, *(f"t_{name}" for name in peaks), "transitions", "phase", "t_overturned"]
     rows, messages = simulate(str(fmu), start_time=scene.start, stop_time=until, output_interval=until - scene.start,
                               start_values=values, relative_tolerance=scene.how.get("tolerance", 1e-9), output=asked, record_events=False,
@@ -176,7 +176,7 @@ def co_simulation(fmu: Path, scene: Scene) -> dict:
     said = [message.text for message in messages]
     last = rows[-1]
     end = last["t_overturned"] if last["phase"] == PHASES["overturned"] else last["time"]
-    found = {name if name in VALIDITY else name.removesuffix("_max"): (last[name], last[f"t_{name}"]) for name in peaks}
+    found = {name if name in VALIDITY else re.sub(r"_max(?=\[|$)", "", name): (last[name], last[f"t_{name}"]) for name in peaks}
     kinds = "uplift|impact|landing|overturning|yielding|unloading"
     transitions = [(text, re.match(rf"t = (\S+) s: ({kinds})", text)) for text in said]
     transitions = [(float(of[1]), "settling" if "contact is held" in text else of[2]) for text, of in transitions if of]

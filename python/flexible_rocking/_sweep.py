@@ -1,5 +1,6 @@
 """Many runs, and the fragility curves through them."""
 
+import io
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -99,8 +100,9 @@ def overturning_map(
     with extras():
         import pandas
 
-    return pandas.DataFrame(dict(_native.overturning_map(structure, shape, frequency, amplitude, cycles, phase, error, dimensionless,
-                                                         refine, condition, detail, tolerance, threads)))
+    rows = _native.overturning_map(structure, shape, frequency, amplitude, cycles, phase, error, dimensionless, refine, condition, detail,
+                                   tolerance, threads)
+    return pandas.read_csv(io.StringIO(rows), float_precision="round_trip")
 
 
 def _named(records: "Record | Sequence[Record] | Mapping[str, Record]") -> "list[tuple[str, Record]]":

@@ -10,17 +10,16 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rocking::Detail;
-use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::Ending;
 use rocking_report::program::program;
 use rocking_report::run::Watcher;
 use rocking_sweep::exceedances::{self, Bin, Tally};
 use rocking_sweep::fragility::{Certainty, FragilityCurve};
-use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map, Place, Point};
+use rocking_sweep::map::{Axis, HEADINGS, MAX_REFINEMENTS, Map, Place, Point};
 use rocking_sweep::outcome::{Limit, Measure};
-use rocking_sweep::plan::{NamedRecord, Plan, Population};
-use rocking_sweep::pulse::{Pulse, Shape, units_of};
-use rocking_sweep::row_file::{do_runs, heading, name_and_unit};
+use rocking_sweep::plan::{NamedRecord, Plan, Population, measure};
+use rocking_sweep::pulse::{Pulse, Shape};
+use rocking_sweep::row_file::{do_runs, heading, line, name_and_unit};
 use rocking_sweep::rows::{Column, FAILED, Sweep};
 use rocking_sweep::thread_pool;
 use serde::Deserialize;
@@ -57,7 +56,7 @@ pub fn sweep<'py>(
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Table<'py>> {
     let scales = numbers("scale", scale)?;
-    let intensity = IntensityMeasure::read(intensity).map_err(refused)?;
+    let intensity = measure(intensity).map_err(refused)?;
     let population = |(name, of): &(String, Vec<Py<Structure>>)| {
         Population::of(name, of.iter().map(|structure| structure.get().of.clone()).collect()).map_err(refused)
     };
@@ -121,15 +120,15 @@ pub fn sweep<'py>(
     Ok((keys.iter().map(ToString::to_string).collect(), columns.collect::<PyResult<_>>()?, stopped))
 }
 
-/// The columns of a map of `structure` under pulses, by their headings: a row for each point, those of the grid first.
+/// A map of `structure` under pulses as CSV: a row for each point, those of the grid first.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
-pub fn overturning_map<'py>(
-    py: Python<'py>,
+pub fn overturning_map(
+    py: Python<'_>,
     structure: &Structure,
-    shape: &Bound<'py, PyAny>,
-    frequency: &Bound<'py, PyAny>,
-    amplitude: &Bound<'py, PyAny>,
+    shape: &Bound<'_, PyAny>,
+    frequency: &Bound<'_, PyAny>,
+    amplitude: &Bound<'_, PyAny>,
     cycles: Option<f64>,
     phase: f64,
     error: f64,
@@ -139,7 +138,7 @@ pub fn overturning_map<'py>(
     #[pyo3(from_py_with = argument::detail)] detail: Detail,
     #[pyo3(from_py_with = argument::tolerance)] tolerance: f64,
     threads: usize,
-) -> PyResult<Vec<(&'static str, Bound<'py, PyAny>)>> {
+) -> PyResult<String> {
     let shape = one_of("shape", shape, Shape::ALL.map(|of| (of.name(), of)))?;
     let structure = structure.of.clone();
     let g = if dimensionless { 1.0 } else { structure.base().g };
@@ -169,29 +168,9 @@ pub fn overturning_map<'py>(
         Ok((map, rows.into_inner()?))
     })?;
     rows.sort_by_key(|(level, place, _)| (*level, *place));
-    let (of_amplitude, of_frequency) = units_of(map.structure.base());
-    let column = |of: &dyn Fn(Pulse, &Point) -> f64| {
-        PyArray1::from_iter(py, rows.iter().map(|(_, place, point)| of(map.pulse(*place), point))).into_any()
-    };
-    let count = |of: &dyn Fn(u32, &Point) -> u64| {
-        PyArray1::from_iter(py, rows.iter().map(|(level, _, point)| of(*level, point))).into_any()
-    };
-    let text =
-        |of: &dyn Fn(&Point) -> String| Vec::from_iter(rows.iter().map(|(.., point)| of(point))).into_pyobject(py);
-    Ok(vec![
-        ("refinement", count(&|level, _| level.into())),
-        ("frequency[Hz]", column(&|pulse, _| pulse.frequency)),
-        ("amplitude[m/s2]", column(&|pulse, _| pulse.amplitude)),
-        ("omega/p_l", column(&|pulse, _| pulse.frequency / of_frequency)),
-        ("a_p/(g tan alpha_cg)", column(&|pulse, _| pulse.amplitude / of_amplitude)),
-        ("fate", text(&|point| point.fate.to_string())?),
-        ("impacts", count(&|_, point| point.impacts)),
-        ("theta_max/alpha_cg", column(&|_, point| point.theta)),
-        ("transitions", count(&|_, point| point.transitions)),
-        ("end[s]", column(&|_, point| point.end)),
-        ("condition", column(&|_, point| point.condition.unwrap_or(f64::NAN))),
-        ("reason", text(&|point| point.reason.clone())?),
-    ])
+    let lines = rows.iter().map(|(level, place, point)| line(&map.row(*level, *place, point)));
+    let table = [line(&HEADINGS)].into_iter().chain(lines).collect::<Result<Vec<_>, _>>();
+    String::from_utf8(table.map_err(refused)?.concat()).map_err(refused)
 }
 
 /// An array of the numbers of a column; of texts, each once, and the array of their positions.
@@ -206,7 +185,7 @@ fn values(py: Python<'_>, column: Column) -> PyResult<Bound<'_, PyAny>> {
 /// The heading of the column of the `intensity` measure of this name.
 #[pyfunction]
 pub fn heading_of(intensity: &str) -> PyResult<String> {
-    let measure = IntensityMeasure::read(intensity).map_err(refused)?;
+    let measure = measure(intensity).map_err(refused)?;
     Ok(heading(&measure.name(), measure.unit()))
 }
 

@@ -14,7 +14,7 @@
 //! f_fc and ζ_fc are those of the lowest mode of many masses. All are exact for a record that is linear between its samples.
 
 use crate::digits::short;
-use crate::estimates::response_spectrum::spectral_acceleration;
+use crate::estimates::response_spectrum::{PERIOD, ZETA, spectral_acceleration};
 use crate::run::record::Record;
 use crate::series::bisection::last_where;
 use std::borrow::Cow;
@@ -60,19 +60,17 @@ impl IntensityMeasure {
     /// The measures that every row of a sweep has: all but the average, which takes as long as many a run.
     pub const COLUMNS: [IntensityMeasure; 6] = *IntensityMeasure::ALL.first_chunk().expect("there are seven");
 
-    /// The measure called `name`.
-    pub fn read(name: &str) -> Result<IntensityMeasure, UnknownMeasure> {
+    /// The measure called `name`, such as PGA, S_a(1 s) or S_a(1 s, 2 %).
+    pub fn read(name: &str) -> Option<IntensityMeasure> {
         let at = || {
             let (period, zeta) =
                 name.strip_prefix("S_a(")?.strip_suffix(')').map(|of| of.split_once(',').unwrap_or((of, "")))?;
             let number = |text: &str, unit| text.trim().strip_suffix(unit)?.trim().parse::<f64>().ok();
             let zeta = if zeta.is_empty() { USUAL_ZETA } else { number(zeta, '%')? / 100.0 };
-            let at = IntensityMeasure::SaAt(number(period, 's')?, zeta);
-            matches!(at, IntensityMeasure::SaAt(T, zeta) if (1e-4..=1e3).contains(&T) && (0.0..=10.0).contains(&zeta))
-                .then_some(at)
+            let period = number(period, 's').filter(|period| PERIOD.contains(period))?;
+            ZETA.contains(&zeta).then_some(IntensityMeasure::SaAt(period, zeta))
         };
-        let named = IntensityMeasure::ALL.into_iter().find(|measure| measure.name() == name);
-        named.or_else(at).ok_or_else(|| UnknownMeasure { name: name.into() })
+        IntensityMeasure::ALL.into_iter().find(|measure| measure.name() == name).or_else(at)
     }
 
     /// Its name in files and tables.
@@ -103,8 +101,8 @@ impl IntensityMeasure {
     }
 
     /// Description.
-    pub fn description(self) -> &'static str {
-        match self {
+    pub fn description(self) -> Cow<'static, str> {
+        let description = match self {
             IntensityMeasure::Pga => "peak ground acceleration PGA",
             IntensityMeasure::Pgv => "peak ground velocity PGV",
             IntensityMeasure::Sa => "spectral acceleration of the fixed base S_a(1/f_fc, zeta_fc)",
@@ -112,19 +110,10 @@ impl IntensityMeasure {
             IntensityMeasure::Arias => "Arias intensity I_A",
             IntensityMeasure::Duration => "significant duration D_5_95",
             IntensityMeasure::AverageSa => "average spectral acceleration of the fixed base from 0.2/f_fc to 3/f_fc",
-            IntensityMeasure::SaAt(..) => "spectral acceleration",
-        }
+            IntensityMeasure::SaAt(..) => return format!("spectral acceleration {}", self.name()).into(),
+        };
+        description.into()
     }
-}
-
-/// A name that no measure has.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "intensity = {name:?} is unknown; these are known: {known}, S_a(1 s), S_a(1 s, 2 %)",
-    known = IntensityMeasure::ALL.map(IntensityMeasure::name).join(", ")
-)]
-pub struct UnknownMeasure {
-    name: String,
 }
 
 /// Peak ground velocity of `record`, m/s: at rest before its first sample. The velocity is largest at a sample or where

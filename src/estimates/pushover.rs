@@ -66,8 +66,8 @@ pub enum PushoverError {
 
 /// A structure under a horizontal force on its floors.
 #[derive(Clone, Copy, Debug)]
-pub struct Pushover<'a> {
-    base: &'a Base,
+pub struct Pushover {
+    base: Base,
     /// S_1, kg·m.
     first: f64,
     /// Heights of the force h_w and of the top floor, m.
@@ -81,9 +81,9 @@ pub struct Pushover<'a> {
     of_top: [f64; 2],
 }
 
-impl<'a> Pushover<'a> {
+impl Pushover {
     /// The pushover of `structure`, which must have floors.
-    pub fn new(structure: &'a Structure) -> Result<Pushover<'a>, PushoverError> {
+    pub fn new(structure: &Structure) -> Result<Pushover, PushoverError> {
         let floors = structure.floors();
         let top = floors.last().ok_or(PushoverError::NoFloors)?;
         let whole: f64 = floors.iter().map(|floor| floor.mass * floor.height).sum();
@@ -99,7 +99,7 @@ impl<'a> Pushover<'a> {
         };
         let at_top = |j: usize| top.shape.numbers()[j];
         Ok(Pushover {
-            base: structure.base(),
+            base: *structure.base(),
             first: structure.body().S_1,
             height: mean(&|i| floors[i].height),
             top: top.height,
@@ -140,7 +140,7 @@ impl<'a> Pushover<'a> {
     /// Rocking at the rotation `theta` (rad), |θ| ≤ π/2; 0 is the start of rocking to the right. `None` for a structure too
     /// soft to be held there. The dissipators have been moved there from rest.
     pub fn at_rotation(&self, theta: f64) -> Option<Equilibrium> {
-        let &Pushover { base, first, height, top, C, A, G, of_top } = self;
+        let &Pushover { ref base, first, height, top, C, A, G, of_top } = self;
         let &Base { m_t, B, g, .. } = base;
         let side = Side::of(theta);
         let s = side.sign();
@@ -178,7 +178,7 @@ impl<'a> Pushover<'a> {
     /// The unstable equilibrium without a force, beyond which the structure overturns (to the right); at π/2 of one that its
     /// tendon turns back from everywhere. `None` for a structure too soft to be held on the way there.
     pub fn at_overturning(&self) -> Option<Equilibrium> {
-        let farthest = angle_of_no_return(self.base).unwrap_or(FRAC_PI_2); // an elastic structure overturns before
+        let farthest = angle_of_no_return(&self.base).unwrap_or(FRAC_PI_2); // an elastic structure overturns before
         let restores = |theta| self.at_rotation(theta).is_some_and(|there| there.force >= 0.0);
         self.at_rotation(last_where(0.0, farthest, restores))
     }
@@ -200,30 +200,22 @@ mod tests {
         [Parameters::EVISON, Parameters::MCMANUS].map(|parameters| OneMass::new(parameters).unwrap())
     }
 
-    fn at_rotation(structure: &OneMass, theta: f64) -> Option<Equilibrium> {
-        Pushover::new(&(*structure).into()).unwrap().at_rotation(theta)
-    }
-
-    fn at_displacement(structure: &OneMass, delta_t: f64) -> Option<Equilibrium> {
-        Pushover::new(&(*structure).into()).unwrap().at_displacement(delta_t)
-    }
-
-    fn curve(structure: &OneMass, points: u32) -> Result<Vec<Equilibrium>, PushoverError> {
-        Pushover::new(&(*structure).into()).unwrap().curve(points)
+    fn of(structure: &OneMass) -> Pushover {
+        Pushover::new(&(*structure).into()).unwrap()
     }
 
     #[test]
     fn more_points_than_fit_into_memory_are_refused() {
         for points in [0, 1, 2_000_000_000] {
-            let refused = curve(&specimens()[0], points).unwrap_err().to_string();
+            let refused = of(&specimens()[0]).curve(points).unwrap_err().to_string();
             assert_eq!(refused, format!("points = {points} is out of range: 2 to 1000000 on each branch are possible"));
         }
-        assert_eq!(curve(&specimens()[0], 2).unwrap().len(), 4);
+        assert_eq!(of(&specimens()[0]).curve(2).unwrap().len(), 4);
     }
 
     #[test]
     fn the_points_of_each_branch_are_even() {
-        let points = curve(&specimens()[0], 5).unwrap();
+        let points = of(&specimens()[0]).curve(5).unwrap();
         for branch in points.chunks(5) {
             let step = (branch[4].delta_t - branch[0].delta_t) / 4.0;
             for pair in branch.windows(2) {
@@ -240,7 +232,7 @@ mod tests {
             let [evison, mcmanus] = specimens();
             let structure = [evison, mcmanus, OneMass::new(tied).unwrap()][preset];
             let &Parameters { m, m0, H, B, J0, .. } = structure.parameters();
-            let Equilibrium { u, force, .. } = at_rotation(&structure, theta).unwrap();
+            let Equilibrium { u, force, .. } = of(&structure).at_rotation(theta).unwrap();
             let side = Side::of(theta);
             let lever = side.sign() * B - u;
             let state = State { u, theta, ..State::default() };
@@ -256,7 +248,7 @@ mod tests {
         #[test]
         fn a_displacement_is_met_to_rounding(delta_t in -1.3..1.3f64, preset in 0..2usize) {
             let structure = specimens()[preset];
-            let there = at_displacement(&structure, delta_t).unwrap();
+            let there = of(&structure).at_displacement(delta_t).unwrap();
             prop_assert!((there.delta_t - delta_t).abs() < 1e-15, "{there:?}");
         }
     }
@@ -266,15 +258,15 @@ mod tests {
         for structure in specimens() {
             let &Parameters { H, g, .. } = structure.parameters();
             let left_out = 1.0 + g / (structure.omega_fc * structure.omega_fc * H);
-            let rocking = at_rotation(&structure, 0.0).unwrap();
+            let rocking = of(&structure).at_rotation(0.0).unwrap();
             assert_relative_eq!(rocking.u, structure.u_cr / left_out, max_relative = 1e-14);
-            let contact = Pushover::new(&structure.into()).unwrap().at_uplift();
+            let contact = of(&structure).at_uplift();
             assert_eq!(contact.phase, Phase::FullContact);
             assert_relative_eq!(contact.u, structure.u_cr, max_relative = 1e-14);
             assert_relative_eq!(contact.force, left_out * rocking.force, max_relative = 1e-14);
             let weight_moment = structure.gamma * structure.parameters().m * g * structure.parameters().B;
             assert_relative_eq!(contact.moment, weight_moment, max_relative = 1e-14);
-            let lifted = at_displacement(&structure, -contact.u.next_up()).unwrap();
+            let lifted = of(&structure).at_displacement(-contact.u.next_up()).unwrap();
             assert_eq!(lifted.phase, Phase::Rocking(Side::Left));
         }
     }
@@ -283,13 +275,13 @@ mod tests {
     #[test]
     fn the_stiffness_is_negative_until_overturning() {
         for structure in specimens() {
-            let end = Pushover::new(&structure.into()).unwrap().at_overturning().unwrap();
+            let end = of(&structure).at_overturning().unwrap();
             let weight = structure.gamma * structure.parameters().m * structure.parameters().g;
             assert!(end.force >= 0.0 && end.force < 1e-13 * weight);
             assert_relative_eq!(end.theta, libm::atan(structure.tan_alpha_cg), max_relative = 6e-3);
             assert!(end.theta < libm::atan(structure.tan_alpha_cg));
             let forces: Vec<_> = (0..=50)
-                .map(|i| at_rotation(&structure, f64::from(i) / 50.0 * end.theta).unwrap())
+                .map(|i| of(&structure).at_rotation(f64::from(i) / 50.0 * end.theta).unwrap())
                 .map(|there| (there.force, there.moment))
                 .collect();
             assert!(forces.windows(2).all(|pair| pair[1].0 < pair[0].0 && pair[1].1 < pair[0].1));
@@ -299,8 +291,8 @@ mod tests {
     #[test]
     fn too_soft_a_strut_and_too_far_a_displacement_have_no_equilibrium() {
         let soft = OneMass::new(Parameters { f_fc: 0.05, m0: 5e4, ..Parameters::EVISON }).unwrap();
-        assert_eq!(at_rotation(&soft, 0.5), None);
-        assert_eq!(at_displacement(&specimens()[0], 1.4), None);
+        assert_eq!(of(&soft).at_rotation(0.5), None);
+        assert_eq!(of(&specimens()[0]).at_displacement(1.4), None);
     }
 
     /// Three storeys, balanced mass by mass with their stiffness matrix; a file of modes has no floors that take the force.

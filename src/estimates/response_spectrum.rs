@@ -31,8 +31,8 @@ use std::f64::consts::{PI, TAU};
 use std::ops::RangeInclusive;
 
 /// Ranges of an oscillator: those of a structure's f_fc and zeta_fc.
-const PERIOD: RangeInclusive<f64> = 1e-4..=1e3;
-const ZETA: RangeInclusive<f64> = 0.0..=10.0;
+pub(crate) const PERIOD: RangeInclusive<f64> = 1e-4..=1e3;
+pub(crate) const ZETA: RangeInclusive<f64> = 0.0..=10.0;
 
 /// The largest change of a value of a floor spectrum, as a fraction of the value, when the step is halved for the last time.
 const SAME: f64 = 1e-3;

@@ -16,7 +16,6 @@ use rocking::run::{Ending, Finish, Run, RunError, Runs};
 use rocking::{Detail, Structure};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
-use std::fmt;
 
 /// Parts of the grid's steps that a place can have.
 const PARTS: u32 = 1 << MAX_REFINEMENTS;
@@ -87,13 +86,6 @@ pub enum Fate {
     Failed,
 }
 
-impl fmt::Display for Fate {
-    /// As it is called in files.
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        self.serialize(out)
-    }
-}
-
 /// Class of a point: the fate, and for a structure that overturns the number of impacts before, 2 for more than one.
 pub type Class = (Fate, u64);
 
@@ -106,6 +98,22 @@ pub const CLASSES: [(Class, &str); 7] = [
     ((Fate::Overturns, 2), "overturns after more impacts"),
     ((Fate::StillRocking, 0), "still rocking"),
     ((Fate::Failed, 0), "failed"),
+];
+
+/// Headings of [`Map::row`].
+pub const HEADINGS: [&str; 12] = [
+    "refinement",
+    "frequency[Hz]",
+    "amplitude[m/s2]",
+    "omega/p_l",
+    "a_p/(g tan alpha_cg)",
+    "fate",
+    "impacts",
+    "theta_max/alpha_cg",
+    "transitions",
+    "end[s]",
+    "condition",
+    "reason",
 ];
 
 /// A point that has been run.
@@ -239,6 +247,13 @@ impl Map {
         let (of_amplitude, of_frequency) =
             if self.is_dimensionless { units_of(self.structure.base()) } else { (1.0, 1.0) };
         Pulse { frequency: frequency * of_frequency, amplitude: amplitude * of_amplitude, ..self.pulse }
+    }
+
+    /// The row of a `point` at `place`, which the refinement of this `level` has asked for; 0 is the grid.
+    pub fn row<'a>(&self, level: u32, place: Place, point: &'a Point) -> impl Serialize + use<'a> {
+        let Pulse { frequency, amplitude, .. } = self.pulse(place);
+        let (of_amplitude, of_frequency) = units_of(self.structure.base());
+        (level, frequency, amplitude, frequency / of_frequency, amplitude / of_amplitude, point)
     }
 
     /// The pulse at `place` in straight lines. Their corners stand a little outside the curve; where the curve does not push

@@ -452,6 +452,13 @@ impl Case<'_> {
     }
 }
 
+/// The intensity measure called `name`.
+pub fn measure(name: &str) -> Result<IntensityMeasure, Refused> {
+    let known = || IntensityMeasure::ALL.map(IntensityMeasure::name).join(", ") + ", S_a(1 s), S_a(1 s, 2 %)";
+    let unknown = || Refused(format!("intensity = {name:?} is unknown; these are known: {}", known()));
+    IntensityMeasure::read(name).ok_or_else(unknown)
+}
+
 fn is_empty(name: &str) -> String {
     format!("{name} is empty: give one or more")
 }
@@ -656,18 +663,13 @@ mod tests {
             }
         }
         let [f_2, f_5] = [0, 3].map(|index| plan.case(index).intensity(IntensityMeasure::Sa));
-        let at = |text| plan.case(0).intensity(IntensityMeasure::read(text).unwrap());
+        let at = |text| plan.case(0).intensity(measure(text).unwrap());
         let of = |T, zeta| 2.0 * spectral_acceleration(&pulse().record, T, zeta) / 9.81;
         let texts = ["S_a(1.0 s)", "S_a(1 s, 2 %)", "S_a(0.3s)"];
         assert_eq!(texts.map(at), [of(1.0, 0.05), of(1.0, 0.02), of(0.3, 0.05)]);
-        assert_eq!(IntensityMeasure::read(texts[0]).unwrap().name(), "S_a(1 s)");
+        assert_eq!(measure(texts[0]).unwrap().name(), "S_a(1 s)");
         for unknown in ["S_a(0 s)", "S_a(1)", "S_a(1 s, 2)"] {
-            assert!(
-                IntensityMeasure::read(unknown)
-                    .unwrap_err()
-                    .to_string()
-                    .starts_with(&format!("intensity = {unknown:?} is"))
-            );
+            assert!(measure(unknown).unwrap_err().0.starts_with(&format!("intensity = {unknown:?} is")));
         }
         let expected = |T| 2.0 * spectral_acceleration(&pulse().record, T, 0.02) / 9.81;
         assert_eq!([f_2, f_5], [0.5, 0.2].map(expected));

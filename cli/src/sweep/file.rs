@@ -13,7 +13,7 @@ use rocking_records::{Column, Unit};
 use rocking_report::{input, output_files::OutputFiles, record::no_pair};
 use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map};
 use rocking_sweep::outcome::{Limit, Measure};
-use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population};
+use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population, measure};
 use rocking_sweep::pulse::{Pulse, Shape};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -254,7 +254,7 @@ impl MapFile {
 impl SweepFile {
     fn measure(&self) -> anyhow::Result<IntensityMeasure> {
         let Some(name) = &self.intensity else { return Ok(IntensityMeasure::default()) };
-        Ok(IntensityMeasure::read(name)?)
+        Ok(measure(name)?)
     }
 
     fn limits(&self, measures: &[Measure]) -> anyhow::Result<Vec<Limit>> {

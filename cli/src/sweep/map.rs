@@ -14,9 +14,8 @@ use rayon::{ThreadPool, prelude::*};
 use rocking::digits::short;
 use rocking::run::{LONGEST_REST, validity};
 use rocking_report::program::{program, version};
-use rocking_sweep::map::{CLASSES, Class, Fate, Map, Place, Point};
+use rocking_sweep::map::{CLASSES, Class, Fate, HEADINGS, Map, Place, Point};
 use rocking_sweep::plan::AXES;
-use rocking_sweep::pulse::units_of;
 use rocking_sweep::row_file::{self, Known, RowFile, fixed, heading, line};
 use serde::Serialize;
 use std::{collections::HashMap, fmt::Write, path::Path, sync::Mutex};
@@ -121,8 +120,7 @@ fn headings() -> Vec<String> {
         fixed(&["run", "structures", "version"]),
         AXES.map(|axis| heading(axis.name, axis.unit)).into(),
         fixed(&["shape", "cycles", "phase[rad]", "error", "detail", "tolerance"]),
-        fixed(&["refinement", "frequency[Hz]", "amplitude[m/s2]", "omega/p_l", "a_p/(g tan alpha_cg)"]),
-        fixed(&["fate", "impacts", "theta_max/alpha_cg", "transitions", "end[s]", "condition", "reason"]),
+        fixed(&HEADINGS),
     ]
     .concat()
 }
@@ -130,12 +128,10 @@ fn headings() -> Vec<String> {
 /// The row of a point, which the refinement of this level has asked for; 0 is the grid.
 fn row(key: &Uuid, name: &str, map: &Map, (level, place): (u32, Place), point: &Point) -> anyhow::Result<Vec<u8>> {
     let pulse = map.pulse(place);
-    let (of_amplitude, of_frequency) = units_of(map.structure.base());
     let of_structure = AXES.map(|axis| (axis.get)(&map.structure.parameters()));
     let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail.name(), map.tolerance);
-    let ratios = (pulse.frequency / of_frequency, pulse.amplitude / of_amplitude);
     let of_program = (key.to_string(), name, version());
-    line(&(of_program, of_structure, of_map, level, pulse.frequency, pulse.amplitude, ratios, point))
+    line(&(of_program, of_structure, of_map, map.row(level, place, point)))
 }
 
 /// How many points of the grid there are of each class that there are any of.

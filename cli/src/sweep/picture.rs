@@ -44,10 +44,7 @@ pub fn draw(picture: Picture, populations: &[Exceedances], measure: IntensityMea
         let medians = all().filter_map(|(_, fragility)| Some(fragility.curve.as_ref().ok()?.median));
         let end = medians.filter(|median| *median < BEYOND * strongest).fold(strongest, f64::max);
         let mut plot = chart(&upper, 46.0).build_cartesian_2d(0.0..1.02 * end, 0.0..1.0)?;
-        let x = match measure {
-            IntensityMeasure::SaAt(..) => format!("{} {} ({})", measure.description(), measure.name(), measure.unit()),
-            _ => format!("{} ({})", measure.description(), measure.unit()),
-        };
+        let x = format!("{} ({})", measure.description(), measure.unit());
         axes(&mut plot, [&x, "fraction of the runs, probability"], [8, 6])?;
         for (i, (_, fragility)) in all().enumerate() {
             if let Ok(curve) = &fragility.curve {

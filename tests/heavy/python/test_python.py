@@ -659,8 +659,9 @@ def test_the_sweep_on_dask_comes_to_the_same(tmp_path):
 
 def test_formats_read_back(tmp_path):
     pulses = {f"{f} Hz": fr.pulse("sine", amplitude=0.3 + 0.1 * f, frequency=f) for f in (1.0, 1.5, 2.0, 3.0)}
-    runs = fr.sweep(fr.Structure(preset="mcmanus"), pulses, scale=np.linspace(0.2, 3, 15), intensity="S_a")
+    runs = fr.sweep(fr.Structure(preset="mcmanus"), pulses, scale=np.linspace(0.2, 3, 15), intensity="S_a(0.2 s)")
     runs["SA(0.20)"] = runs["record"].map({name: of.spectrum(0.2)[0] / 9.81 for name, of in pulses.items()}) * runs["scale"]
+    assert runs["S_a(0.2 s)[g]"].tolist() == pytest.approx(runs["SA(0.20)"].tolist())
     over = lambda measure: {name: fr.fragility(runs, limit, intensity=measure)
                             for name, limit in (("slight", "theta/alpha_cg >= 0.3"), ("fallen", "overturned"))}
     states = over("SA(0.20)")
@@ -669,7 +670,7 @@ def test_formats_read_back(tmp_path):
     assert [row["Demand-Type"], row["Demand-Unit"], row["LS2-Family"]] == ["Peak Spectral Acceleration|0.20", "g", "lognormal"]
     assert [row[f"LS{i}-Theta_{j}"] for i in (1, 2) for j in (0, 1)] == [
         number for of in states.values() for number in (of.median, of.dispersion)]
-    for measure, kind, factor in (("SA(0.20)", "SA(0.20)", 1), ("PGA", "PGA", 1), ("PGV", "PGV", 100), ("CAV", "CAV", 1 / 9.80665),
+    for measure, kind, factor in (("SA(0.20)", "SA(0.20)", 1), ("S_a(0.2 s)", "SA(0.2)", 1), ("PGA", "PGA", 1), ("PGV", "PGV", 100), ("CAV", "CAV", 1 / 9.80665),
                                   ("I_A", "IA", 1), ("D_5_95", "RSD", 1)):
         states = over(measure)
         for levels in (None, [0.5, 1.0, 2.0]):
@@ -705,3 +706,20 @@ def test_statistics_of_the_page_of_sweeps_are_those_of_statsmodels(tmp_path, mon
         expected = [median, deviation * np.sqrt(len(values) / (len(values) - 1)), *p]
         assert [float(number) for number in line.split()[-4:]] == pytest.approx(expected, abs=6e-4)
     assert of["rate"] == pytest.approx(of["closed"], rel=1e-3)
+    runs, family = of["runs"], api.families.Binomial(api.families.links.Probit())
+    table = pd.DataFrame({"S": runs["S_a(1 s)[g]"], "PID": runs.filter(regex=r"peak_drift_ratio").max(axis=1), "record": runs["record"]})
+    exceeds = (table["PID"] >= 0.004).astype(float)
+    a, b = api.GLM(exceeds, api.add_constant(np.log(table["S"])), family=family).fit(tol=1e-12).params
+    own = fr.fragility(table, "PID >= 0.004", intensity="S")
+    for curve in (fr.fragility(runs, "drift_ratio >= 0.4 %"), own):
+        assert [curve.median, curve.dispersion] == pytest.approx([np.exp(-a / b), 1 / b], rel=1e-6)
+        assert curve.curve.median_range == own.curve.median_range
+    with pytest.raises(ValueError, match="COLUMN >= VALUE is needed, with a column of S, PID, record and a number"):
+        fr.fragility(table, "drift >= 0.004", intensity="S")
+    formats.write_demands("demands.csv", runs)
+    demands = pd.read_csv("demands.csv", index_col=0)
+    stands = runs[runs["ending"] != "overturned"]
+    assert demands.loc["Units", ["1-PFA-0-1", "1-PFA-6-1", "1-PID-6-1", "1-IM-0-1"]].tolist() == ["mps2", "mps2", "rad", "g"]
+    found = demands.drop("Units").astype(float)
+    assert found["1-PFA-6-1"].tolist() == stands["peak_a_t[6][m/s2]"].tolist() and found["1-PID-1-1"].tolist() == stands["peak_drift_ratio[1]"].tolist()
+    assert found["1-ROT-0-1"].tolist() == stands["peak_theta[rad]"].tolist() and found.index[0] == "I-ELC180 x 0.2"
