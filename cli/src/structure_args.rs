@@ -48,9 +48,8 @@ impl StructureArgs {
     pub fn load_any(&self) -> anyhow::Result<Structure> {
         let (structure, units) = self.read()?;
         let doubts = structure.doubts_in(units, &self.allow);
-        doubts.iter().for_each(|doubt| {
-            warning!("{doubt}; --allow {} if it is right", doubt.split(" = ").next().unwrap_or(doubt))
-        });
+        let name = |doubt: &String| doubt.split(" = ").next().unwrap_or(doubt).to_owned();
+        doubts.iter().for_each(|doubt| warning!("{doubt} (--allow {} silences this warning)", name(doubt)));
         Ok(structure)
     }
 
