@@ -102,7 +102,7 @@ def overturning_map(
 
     rows = _native.overturning_map(structure, shape, frequency, amplitude, cycles, phase, error, dimensionless, refine, condition, detail,
                                    tolerance, threads)
-    return pandas.read_csv(io.StringIO(rows), float_precision="round_trip")
+    return pandas.read_csv(io.StringIO(rows))
 
 
 def _named(records: "Record | Sequence[Record] | Mapping[str, Record]") -> "list[tuple[str, Record]]":

@@ -81,10 +81,11 @@ class Doors:
         return json.loads(self.shell(*arguments, "--format", "json"))
 
     def table(self, name: str) -> pd.DataFrame:
-        return pd.read_csv(self.folder / name, float_precision="round_trip")
+        return pd.read_csv(self.folder / name)
 
     def swept(self, text: str) -> pd.DataFrame:
         (self.folder / "sweep.toml").write_text(f"{text}\n[[structures]]\nname = 'structures'\nfile = 'structure.toml'\n")
+        (self.folder / "rows.csv").unlink(missing_ok=True)
         self.shell("sweep", "sweep.toml", "-o", "rows.csv", structure=False)
         return self.table("rows.csv")
 
