@@ -518,7 +518,7 @@ def test_a_curve_is_of_one_population_under_one_measure(two_populations):
         (pd.concat([alone, alone.assign(detail="linear")]), "the table has 2 values of detail, 'auto', 'linear'"),
         (pd.concat([alone, alone.assign(**{"u_0[m]": 0.01})]), "the table has 2 values of u_0[m], 0.0, 0.01, and"),
         (pd.concat([alone, alone[:2]]), "the table has 2 rows of runs that it has already: leave them out by table.drop_duplicates"),
-        (lost, "intensity is needed: the table has lost the measure of its sweep; give one of PGA, PGV, S_a"),
+        (lost, "intensity is needed: the table has lost the measure of its sweep; give one, such as PGA, or a column"),
         (alone.assign(**{"peak_theta/alpha_cg": np.nan}), "peak_theta/alpha_cg is NaN in"),
         (alone.assign(ending=np.nan), "unknown variant `nan`"),
     ]:
