@@ -118,7 +118,7 @@ impl Structure {
                 let ground = on_rigid.get_item("ground")?;
                 ground.iter().try_for_each(|_| on_rigid.del_item("ground"))?;
                 let structure = given(&on_rigid)?.structure(Some(&one_of("preset", preset, PRESETS)?));
-                let Some(ground) = ground else { return Structure::of(py, structure.map_err(refused)?, None) };
+                let Some(ground) = ground else { return Structure::of(&numbers, structure.map_err(refused)?, None) };
                 let keywords = Structure { of: structure.map_err(refused)?, keywords: None }.parameters(py)?;
                 keywords.set_item("ground", ground)?;
                 return Structure::many(&keywords);
