@@ -149,5 +149,5 @@ fn values_during_initialization_follow_what_is_set() {
         assert_eq!((host.set_boolean("a_g_late", on), host.try_boolean("a_g_late")), (OK, Ok(on)));
     }
     assert_eq!((host.record().as_str(), host.set_record("a ü.csv"), host.record().as_str()), ("", OK, "a ü.csv"));
-    assert_eq!(PHASES.items, ["full contact", "rocking left", "rocking right", "overturned"]);
+    assert_eq!(PHASES.items, ["full contact", "rocking left", "rocking right", "overturned", "flight"]);
 }
