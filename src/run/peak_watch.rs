@@ -3,7 +3,7 @@
 //! A bound of a piece tells most of the time that it holds nothing larger than what has been seen. A piece that may hold more is
 //! first kept, since most are soon beaten by the end of another.
 
-use super::peaks::Peaks;
+use super::peaks::{Peaks, has_dissipators};
 use crate::engine::piece::{Piece, Room, Watch};
 use crate::engine::{MOST_POLYNOMIALS, Moves};
 use crate::levels::level::Level;
@@ -97,7 +97,9 @@ impl<Q: Moves> Watch<Q> for PeakWatch<'_, Q> {
         let (until, loads, structure) = (before.time + duration, [load.value, load.at(duration)], level.structure());
         self.peaks.see_ground(loads[0].a_g, before.time);
         self.peaks.see_ground(loads[1].a_g, until);
-        self.peaks.look_at_dissipators(piece);
+        if has_dissipators(structure.base()) {
+            self.peaks.look_at_dissipators(piece);
+        }
         let [is_torn, is_first] = [&mut self.is_torn, &mut self.is_first].map(std::mem::take);
         let bounds = piece.whole().most_under(structure, loads);
         if !self.peaks.may_be_same(structure, &bounds) {

@@ -162,7 +162,8 @@ fn has_tendon(base: &Base) -> bool {
 }
 
 /// Whether `base` has dissipators.
-fn has_dissipators(base: &Base) -> bool {
+#[inline(always)]
+pub(super) fn has_dissipators(base: &Base) -> bool {
     base.ties.c_d > 0.0 || base.ties.k_d > 0.0
 }
 
@@ -320,9 +321,6 @@ impl Peaks {
     /// Looks for larger forces of the dissipators in `piece`. They depend on θ and θ̇ alone.
     pub(super) fn look_at_dissipators<Q: Moves>(&mut self, piece: &Piece<Q>) {
         let (base, before) = (piece.level.structure().base(), piece.before);
-        if !has_dissipators(base) {
-            return;
-        }
         let (angles, pair) = (self.tendon.angles, &mut self.pair);
         let restraint = Restraint::about(base, before.phase.side(), &before.dissipators);
         let forces = |state: &State<Q>| of_pair(restraint.forces(&angles.chord(state.theta, state.theta_dot)));
