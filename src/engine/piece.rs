@@ -579,7 +579,10 @@ impl<Q: Moves> Shows<Terms> for Over<'_, Q> {
         let (structure, phase) = (self.structure(), piece.before.phase);
         let (damping, load) = (structure.base().damping(phase), piece.load.from(from));
         let ramp = |value: f64, slope: f64| Terms::ramp(value, slope * arc.span);
-        let a_v = ramp(load.value.a_v, load.slope.a_v);
+        let mut a_v = ramp(load.value.a_v, load.slope.a_v);
+        if let Some(lift) = self.lift() {
+            a_v = a_v + lift;
+        }
         let reading = Reading {
             elastic: self.lateral(|k| gauge.elastic(structure, damping, &arc.u[k], &arc.u_dot[k])),
             push: ramp(gauge.push(structure, &load.value.F_t), gauge.push(structure, &load.slope.F_t)),
@@ -587,7 +590,7 @@ impl<Q: Moves> Shows<Terms> for Over<'_, Q> {
             theta_dot: self.theta_dot,
             theta_ddot: self.theta_dot.slope(arc.span),
             a_g: ramp(load.value.a_g, load.slope.a_g),
-            a_v: self.lift().map_or(a_v, |lift| a_v + lift),
+            a_v,
         };
         gauge.value(structure.base(), phase.pivot(), &reading)
     }

@@ -269,7 +269,7 @@ mod tests {
         let x = Instant {
             structure: &structure,
             s: -1.0,
-            contact: plain.contact,
+            contact: phase.contact(),
             damping: 0.0,
             u: twice(state.u, state.u_dot, u_ddot),
             u_dot: none(),

@@ -46,8 +46,10 @@ pub(crate) fn over<Q: Moves>(expansion: &Expansion<Q>) -> Reactions<Terms> {
     let (base, gauges) = (structure.base(), structure.gauges());
     let ramp = |of: &dyn Fn(&Load<Q>) -> f64| Terms::ramp(of(&load.value), of(&load.slope) * arc.span);
     let sum = |of: &Series<Q>| Terms::from_fn(arc.order, |k| gauges.V_t.displacement(&of[k]));
-    let (offset, weight) = (sum(&arc.u), ramp(&|load| load.a_v) + Terms::constant(base.g));
-    let weight = over.lift().map_or(weight, |lift| weight + lift);
+    let (offset, mut weight) = (sum(&arc.u), ramp(&|load| load.a_v) + Terms::constant(base.g));
+    if let Some(lift) = over.lift() {
+        weight = weight + lift;
+    }
     let along = sum(&arc.u_dot) + over.theta_dot() * structure.body().S_1;
     let across = (Terms::constant(over.pivot() * base.m_t) - offset) * over.theta_dot();
     let push = ramp(&|load| structure.pushes(load)[0] - base.m_t * load.a_g);
