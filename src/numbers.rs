@@ -59,6 +59,43 @@ impl Number for f64 {
     }
 }
 
+/// A number of one run, or one number of each of several runs side by side.
+pub(crate) trait Real:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// The number `value`, of as many runs as this one.
+    fn like(self, value: f64) -> Self;
+
+    fn abs(self) -> Self;
+
+    /// The larger one; not for numbers that may be NaN.
+    fn max(self, other: Self) -> Self;
+
+    /// The smaller one; not for numbers that may be NaN.
+    fn min(self, other: Self) -> Self;
+
+    fn sqrt(self) -> Self;
+}
+
+/// Implements methods by those of the same names.
+macro_rules! its_own {
+    ($($name:ident $(($other:ident))?)*) => {
+        $(#[inline(always)]
+        fn $name(self $(, $other: f64)?) -> f64 {
+            f64::$name(self $(, $other)?)
+        })*
+    };
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn like(self, value: f64) -> f64 {
+        value
+    }
+
+    its_own! { abs max(other) min(other) sqrt }
+}
+
 /// Implements the operators of a number by its methods `plus`, `times` and `map`. The method `map` applies a linear function
 /// to each part.
 macro_rules! operators {

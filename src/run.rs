@@ -24,7 +24,7 @@ use crate::engine::{AdvanceError, DEFAULT_TOLERANCE, Moves, Settings};
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::restraint;
 use crate::mechanics::state::InitialStateError;
-use crate::run::ground_motion::Segment;
+use crate::run::ground_motion::{Segment, Segments};
 use crate::run::record::Record;
 use crate::{Detail, Dissipators, Engine, LinearLoad, Load, Modes, Motion, Progress, Side, State, Structure, Watch};
 use curve::Curve;
@@ -211,7 +211,7 @@ impl<'a, Q: Runs> Run<'a, Q> {
     }
 
     /// The run before its start.
-    fn course(&self) -> Result<Follower<Q, impl Iterator<Item = Segment> + use<'a, Q>>, RunError> {
+    fn course(&self) -> Result<Follower<Q, Segments<'a>>, RunError> {
         let until = match self.end {
             End::AtRest => self.ground.end(),
             End::At(end) => end,

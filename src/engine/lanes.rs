@@ -1,50 +1,386 @@
-//! An engine among others that step together.
+//! Engines whose steps are taken together: leaps in full contact, and steps of rocking by Eqs 5 and 6.
+//!
+//! A register of the processor has one number of each run. The operations on the numbers of a run are those of the run by itself,
+//! in the same order, so that all results have the same bits. The bounds for watchers are a little wider: what they prove, the run
+//! by itself proves too.
 
-use super::{Advance, AdvanceError, Engine, Loop, MAX_STEPS_PER_ADVANCE, Progress, Settings, is_at_its_end, leapt};
+use super::{
+    Advance, AdvanceError, Engine, Loop, MAX_STEPS_PER_ADVANCE, Progress, Settings, is_at_its_end, leap_under, leapt,
+};
 use crate::engine::motion::Motion;
 use crate::engine::phases;
-use crate::engine::piece::{Piece, Watch, magnitudes};
+use crate::engine::piece::{Piece, Watch};
 use crate::levels::detail::Elastic;
-use crate::levels::level::{Level, most_of_swings};
-use crate::levels::nonlinear::NonlinearRocking;
-use crate::levels::nonlinear::lanes::{RockingStep, Stepped};
-use crate::mechanics::reach::Magnitudes;
-use crate::series::taylor::{Arc, Start};
-use crate::{LinearLoad, Phase, State, Structure};
+use crate::levels::level::{Level, most_of_swing};
+use crate::levels::nonlinear::{Equations, NonlinearRocking, Products, Recurrence};
+use crate::levels::oscillator::{Oscillator, driven};
+use crate::numbers::Real;
+use crate::numbers::lanes::{Answers, Lanes, MOST};
+use crate::series::extremes::OFF_CHORD;
+use crate::series::taylor::{self, Arc, MAX_ORDER, MIN_ORDER, Start, Truncation, reciprocal};
+use crate::{Detail, LinearLoad, Phase, State};
+use pulp::{Simd, WithSimd};
+use std::f64::consts::FRAC_PI_2;
 
-/// A step that an engine is about to take, of which only the end and bounds are known.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Bounded<'a> {
-    engine: &'a Engine,
-    /// s.
-    pub duration: f64,
-    pub load: LinearLoad,
-    pub end: State,
-    /// Bounds of the magnitudes of the state.
-    pub most: State,
+/// What rounding may add to a bound that is summed in another order, as a factor.
+const ROUNDING: f64 = 1.0 + 1e-13;
+
+/// The most quantities whose peaks a watcher seeks.
+pub(crate) const MOST_SOUGHT: usize = 4;
+
+/// A number of each run.
+pub(crate) type Row = [f64; MOST];
+
+/// What the watchers of several runs must see. Places with weights of 0 seek nothing.
+#[derive(Debug, Default)]
+pub(crate) struct Sought {
+    /// Of each quantity: the weights of four magnitudes in its bound. These are |u|, |u̇|, and while rocking |θ| and θ²/2, in full
+    /// contact |a_g| and nothing.
+    pub weights: [[Row; 4]; MOST_SOUGHT],
+    /// The least magnitude of each quantity that must be seen.
+    pub least: [Row; MOST_SOUGHT],
+    /// The least |a_g| at an end of a piece, and |θ| at its last end, that must be seen.
+    pub ends: [Row; 2],
 }
 
-impl Bounded<'_> {
-    /// The structure, and bounds of the magnitudes.
-    #[inline]
-    pub(crate) fn bounds(&self) -> (&Structure, Magnitudes<'static, f64>) {
-        let Engine { level, motion, .. } = self.engine;
-        let loads = [0.0, self.duration].map(|tau| self.load.at(tau));
-        (level.structure(), magnitudes(level.structure(), motion.phase, loads, self.most))
-    }
-
-    /// Instants (s) and ground accelerations of the ends.
-    #[inline]
-    pub(crate) fn ends(&self) -> [(f64, f64); 2] {
-        let start = self.engine.motion.time;
-        [0.0, self.duration].map(|tau| (start + tau, self.load.at(tau).a_g))
-    }
-}
-
-/// A watch of a motion whose steps are taken among others.
+/// A watcher of a motion whose steps are taken among others.
 pub(crate) trait Passes: Watch {
-    /// Passes `step` if the step certainly changes nothing that the watch looks for. Otherwise the piece is to be shown.
-    fn passes(&mut self, step: &Bounded) -> bool;
+    /// Puts what the watcher must see of the structure of `engine` in its present phase into a `lane` of `sought`.
+    fn seek(&self, engine: &Engine, lane: usize, sought: &mut Sought);
+
+    /// Passes a piece that the watcher need not see.
+    fn pass(&mut self);
+}
+
+impl Sought {
+    /// Whether pieces within these `magnitudes` and `ends` certainly need not be seen.
+    #[inline(always)]
+    fn are_passed<S: Simd>(&self, simd: S, magnitudes: [Lanes<S>; 4], ends: [Lanes<S>; 2]) -> Answers<S> {
+        let mut passed = ends[0].is_less(Lanes::load(simd, &self.ends[0]));
+        passed = passed.and(ends[1].is_less(Lanes::load(simd, &self.ends[1])));
+        let zero = Lanes::splat(simd, 0.0);
+        for (weights, least) in self.weights.iter().zip(&self.least) {
+            let mut bound = zero;
+            for (weight, magnitude) in weights.iter().zip(magnitudes) {
+                bound = bound + Lanes::load(simd, weight) * magnitude;
+            }
+            bound = bound * zero.like(ROUNDING);
+            passed = passed.and(bound.is_less(Lanes::load(simd, least)).or(bound.is_at_most(zero)));
+        }
+        passed
+    }
+}
+
+/// The samples of a record that end whole segments of a run.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Samples<'a> {
+    /// s.
+    pub times: &'a [f64],
+    /// m/s².
+    pub a_g: &'a [f64],
+    /// The sample that ends the next segment.
+    pub next: usize,
+    /// The first sample that ends none.
+    pub last: usize,
+}
+
+/// Leaps in full contact of several runs, from sample to sample.
+#[derive(Debug, Default)]
+pub(crate) struct Contacts<'a> {
+    sought: Sought,
+    samples: [Samples<'a>; MOST],
+    entered: [usize; MOST],
+    oscillator: Oscillator<Row>,
+    u_cr: Row,
+    u: Row,
+    u_dot: Row,
+    age: Row,
+    /// Of the next leap, s.
+    duration: Row,
+    /// The ground acceleration at both its ends.
+    a_g: [Row; 2],
+    flow: [Row; 6],
+    /// 1 where the last leap has been taken.
+    is_taken: Row,
+}
+
+impl<'a> Contacts<'a> {
+    /// Puts the run of `engine`, which has come to these samples, into `lane`.
+    pub(crate) fn enter<W: Passes>(&mut self, lane: usize, engine: &Engine, samples: Samples<'a>, watch: &W) {
+        let (one, motion) = (engine.structure().one().expect("it is of one mass"), engine.motion());
+        watch.seek(engine, lane, &mut self.sought);
+        (self.samples[lane], self.entered[lane]) = (samples, samples.next);
+        (self.oscillator.omega[lane], self.oscillator.zeta[lane]) = (one.omega_fc, one.parameters().zeta_fc);
+        (self.u_cr[lane], self.age[lane], self.duration[lane]) = (one.u_cr, motion.chatter.age, 0.0);
+        (self.u[lane], self.u_dot[lane]) = (motion.state.u, motion.state.u_dot);
+    }
+
+    /// Puts the next leap of the run in `lane`.
+    #[inline]
+    pub(crate) fn put(&mut self, lane: usize, engine: &Engine) {
+        let Samples { times, a_g, next, .. } = self.samples[lane];
+        let duration = times[next] - times[next - 1];
+        (self.a_g[0][lane], self.a_g[1][lane]) = (a_g[next - 1], a_g[next]);
+        if duration != self.duration[lane] {
+            let flow = by_equations_5_and_6(&*engine.level).expect(STEPS_ALONE).flow(duration);
+            self.duration[lane] = duration;
+            self.flow.iter_mut().zip(flow).for_each(|(row, number)| row[lane] = number);
+        }
+    }
+
+    /// Leaps, if the bases certainly stay down and the watchers need not see it.
+    pub(crate) fn step<S: Simd>(&mut self, simd: S) {
+        simd.vectorize(Leapt(simd, self));
+    }
+
+    /// Whether the run in `lane` has leapt and may do so again.
+    #[inline]
+    pub(crate) fn goes_on(&mut self, lane: usize) -> bool {
+        let has_leapt = self.is_taken[lane] == 1.0;
+        self.samples[lane].next += usize::from(has_leapt);
+        has_leapt && self.samples[lane].next < self.samples[lane].last
+    }
+
+    /// Takes the run in `lane` out. Returns the next sample.
+    pub(crate) fn leave<W: Passes>(&self, lane: usize, engine: &mut Engine, watch: &mut W) -> usize {
+        let (Samples { times, next, .. }, motion) = (self.samples[lane], &mut engine.motion);
+        if next > self.entered[lane] {
+            motion.state = State { u: self.u[lane], u_dot: self.u_dot[lane], theta: 0.0, theta_dot: 0.0 };
+            (motion.chatter.age, motion.time) = (self.age[lane], times[next - 1]);
+            motion.work.steps += (next - self.entered[lane]) as u64;
+            watch.pass();
+        }
+        next
+    }
+}
+
+/// Leaping.
+struct Leapt<'c, 'a, S: Simd>(S, &'c mut Contacts<'a>);
+
+impl<S: Simd> WithSimd for Leapt<'_, '_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<T: Simd>(self, _simd: T) {
+        let Leapt(simd, of) = self;
+        let row = |row: &Row| Lanes::load(simd, row);
+        let oscillator = Oscillator { omega: row(&of.oscillator.omega), zeta: row(&of.oscillator.zeta) };
+        let (u, u_dot, duration) = (row(&of.u), row(&of.u_dot), row(&of.duration));
+        let (a, a_next) = (row(&of.a_g[0]), row(&of.a_g[1]));
+        let slope = (a_next - a) / duration;
+        let a_end = a + slope * duration;
+        let [m11, m12, m21, m22, step, ramp] = &of.flow;
+        let flow = [row(m11), row(m12), row(m21), row(m22), row(step), row(ramp)];
+        let [u_end, u_dot_end] = driven(flow, [u, u_dot], a, slope);
+        let swing = oscillator.swing([u, u_dot], a, slope, duration);
+        let is_low = oscillator.farthest(&swing, [u, u_end], slope, duration).is_less(row(&of.u_cr));
+        let [swing_u, swing_u_dot, u_ddot, jerk] = oscillator.swings(&swing);
+        let per_bend = duration * duration / u.like(8.0);
+        let most_u = most_of_swing([u, u_end], swing_u, [u_ddot, per_bend]);
+        let most_u_dot = most_of_swing([u_dot, u_dot_end], swing_u_dot, [jerk, per_bend]);
+        let (most_a, none, largest) = (a.abs().max(a_end.abs()), u.like(0.0), u.like(f64::MAX));
+        let is_finite = (u_end + u_dot_end).abs().is_at_most(largest).and(a_end.abs().is_at_most(largest));
+        let is_passed = of.sought.are_passed(simd, [most_u, most_u_dot, most_a, none], [most_a, none]);
+        let is_taken = is_low.and(is_finite).and(is_passed);
+        is_taken.choose(u_end, u).store(&mut of.u);
+        is_taken.choose(u_dot_end, u_dot).store(&mut of.u_dot);
+        let age = row(&of.age);
+        is_taken.choose(age + duration, age).store(&mut of.age);
+        is_taken.choose(u.like(1.0), none).store(&mut of.is_taken);
+    }
+}
+
+/// The step of rocking that a run is about to take.
+#[derive(Clone, Copy, Debug, Default)]
+struct RockingStep {
+    equations: Equations<f64>,
+    theta: f64,
+    /// s.
+    side: f64,
+    /// s.
+    span: f64,
+    truncation: Truncation,
+}
+
+/// Steps of rocking of several runs.
+#[derive(Debug)]
+pub(crate) struct Rocking<S: Simd> {
+    simd: S,
+    sought: Sought,
+    steps: [RockingStep; MOST],
+    /// 1 where there is a run.
+    is_there: Row,
+    /// Where a watcher has seen a piece or a transition, which may have changed what it seeks, or the run has come.
+    is_changed: [bool; MOST],
+    products: Products<Lanes<S>>,
+    /// u, u̇, θ and θ̇, order by order.
+    series: [[Lanes<S>; 4]; MAX_ORDER + 1],
+    order: Row,
+    /// The part of each series' span up to which the series holds.
+    reach: Row,
+    end: [Row; 4],
+    /// 1 where a series proves that no guard closes, and where moreover the watcher need not see it.
+    stays: Row,
+    is_passed: Row,
+}
+
+impl<S: Simd> Rocking<S> {
+    pub(crate) fn new(simd: S) -> Rocking<S> {
+        let (zero, none) = (Lanes::splat(simd, 0.0), [0.0; MOST]);
+        Rocking {
+            simd,
+            sought: Sought::default(),
+            steps: [RockingStep::default(); MOST],
+            is_there: none,
+            is_changed: [true; MOST],
+            products: Products::new(zero),
+            series: [[zero; 4]; MAX_ORDER + 1],
+            order: none,
+            reach: none,
+            end: [none; 4],
+            stays: none,
+            is_passed: none,
+        }
+    }
+
+    /// Takes the run in `lane` out.
+    pub(crate) fn leave(&mut self, lane: usize) {
+        (self.is_there[lane], self.is_changed[lane]) = (0.0, true);
+    }
+
+    /// Puts the next step of `engine` on its `advance` into `lane`.
+    #[inline]
+    pub(crate) fn put<W: Passes>(&mut self, lane: usize, engine: &Engine, advance: &Advance<f64>, watch: &W) {
+        let level = by_equations_5_and_6(&*engine.level).expect(STEPS_ALONE);
+        if std::mem::take(&mut self.is_changed[lane]) {
+            watch.seek(engine, lane, &mut self.sought);
+            self.is_there[lane] = 1.0;
+        }
+        let (motion, rocking) = (&engine.motion, level.rocking());
+        let start = advance.start(level.subject(), motion);
+        let span = rocking.pace.span(&start);
+        let side = motion.phase.side();
+        self.steps[lane] = RockingStep {
+            equations: rocking.equations::<false>(side, &start, span),
+            theta: motion.state.theta,
+            side: side.sign(),
+            span,
+            truncation: rocking.pace.truncation(&start, span),
+        };
+    }
+
+    /// Takes the steps.
+    pub(crate) fn step(&mut self) {
+        self.simd.vectorize(Taken(self));
+    }
+
+    /// Writes the series of the run in `lane` into `arc`.
+    #[cold]
+    fn write(&self, lane: usize, arc: &mut Arc) {
+        let order = self.order[lane] as usize;
+        for (k, [u, u_dot, theta, theta_dot]) in self.series.iter().enumerate().take(order + 1) {
+            (arc.u[k], arc.u_dot[k]) = (u.of(lane), u_dot.of(lane));
+            (arc.theta[k], arc.theta_dot[k]) = (theta.of(lane), theta_dot.of(lane));
+        }
+        (arc.order, arc.span, arc.reach) = (order, self.steps[lane].span, self.reach[lane]);
+    }
+}
+
+/// Taking steps of rocking.
+struct Taken<'a, S: Simd>(&'a mut Rocking<S>);
+
+impl<S: Simd> WithSimd for Taken<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<T: Simd>(self, _simd: T) {
+        let Rocking { simd, steps, products, series, reach, .. } = self.0;
+        let simd = *simd;
+        let of = |number: fn(&RockingStep) -> f64| Lanes::load(simd, &steps.each_ref().map(number));
+        let (theta, side, span) = (of(|step| step.theta), of(|step| step.side), of(|step| step.span));
+        let (truncation, truncation_turning) = (of(|step| step.truncation.u_dot), of(|step| step.truncation.theta_dot));
+        let (zero, push) = (theta.like(0.0), [of(|step| step.equations.push[0]), of(|step| step.equations.push[1])]);
+        let equations = Equations {
+            u: of(|step| step.equations.u),
+            u_dot: of(|step| step.equations.u_dot),
+            theta_dot: of(|step| step.equations.theta_dot),
+            sin: of(|step| step.equations.sin),
+            cos: of(|step| step.equations.cos),
+            push,
+            ground: push, // no force acts
+            gravity: [of(|step| step.equations.gravity[0]), zero],
+            H: of(|step| step.equations.H),
+            weight_offset: of(|step| step.equations.weight_offset),
+            lever: of(|step| step.equations.lever),
+            foundation: of(|step| step.equations.foundation),
+            stiffness: of(|step| step.equations.stiffness),
+            damping_u: of(|step| step.equations.damping_u),
+        };
+        let (u, u_dot, theta_dot, g) = (equations.u, equations.u_dot, equations.theta_dot, equations.gravity[0]);
+        let (none, one) = (g.like(-0.0), g.like(1.0));
+        let mut recurrence = Recurrence::new(equations);
+        let (mut ended, mut was_small, mut order) =
+            (Lanes::load(simd, &self.0.is_there).is_less(one), one.is_less(zero), zero);
+        let (mut last, mut of_order) = (0, [u, u_dot, theta, theta_dot]);
+        series[0] = of_order;
+        for (k, places) in series.iter_mut().enumerate().skip(1) {
+            let [_, u_dot, _, theta_dot] = of_order;
+            let per = span * g.like(reciprocal(k));
+            let (u, theta) = (u_dot * per, theta_dot * per);
+            let (u_dot, theta_dot) = recurrence.next::<false>(products, k, u, per, |none| none);
+            of_order = [u, u_dot, theta, theta_dot];
+            // what has ended adds nothing
+            for (place, number) in places.iter_mut().zip(of_order) {
+                *place = ended.choose(none, number);
+            }
+            order = ended.choose(order, g.like(k as f64));
+            last = k;
+            let is_small = u_dot.abs().is_at_most(truncation).and(theta_dot.abs().is_at_most(truncation_turning));
+            if k >= MIN_ORDER {
+                ended = ended.or(is_small.and(was_small));
+                if ended.all() {
+                    break;
+                }
+            }
+            was_small = is_small;
+        }
+        *reach = [1.0; MOST];
+        if !ended.all() {
+            let ended = ended.choose(one, zero);
+            for lane in (0..S::F64_LANES).filter(|lane| ended.of(*lane) == 0.0) {
+                let velocities = |k: usize| (series[k][1].of(lane), series[k][3].of(lane));
+                reach[lane] = taylor::reach(velocities, &steps[lane].truncation).min(1.0);
+            }
+        }
+        let sigma = Lanes::load(simd, reach);
+        let sum = sigma.is_less(one).choose(zero, none);
+        let (mut end, mut off, mut excursion) = ([sum; 4], [zero; 4], zero);
+        for k in (1..last + 1).rev() {
+            let weight = g.like(OFF_CHORD[k]);
+            for (i, number) in series[k].into_iter().enumerate() {
+                end[i] = end[i] * sigma + number;
+                off[i] = (off[i] + weight * number.abs()) * sigma;
+            }
+            excursion = (excursion + series[k][2].abs()) * sigma;
+        }
+        let (rounding, mut most) = (g.like(ROUNDING), off);
+        for (i, number) in series[0].into_iter().enumerate() {
+            end[i] = end[i] * sigma + number;
+            most[i] = number.abs().max(end[i].abs()) + off[i];
+            end[i].store(&mut self.0.end[i]);
+        }
+        let (start, a_end) = (side * theta, push[0] + push[1] * sigma);
+        let stays =
+            (excursion * rounding).is_less(start).and(((excursion + start) * rounding).is_less(g.like(FRAC_PI_2)));
+        let size = end[0].abs() + end[1].abs() + end[2].abs() + end[3].abs();
+        let stays = stays.and(size.is_at_most(g.like(f64::MAX)));
+        let magnitudes = [most[0], most[1], most[2], g.like(0.5) * (most[2] * most[2])];
+        let ends = [push[0].abs().max(a_end.abs()) * rounding, end[2].abs()];
+        let is_passed = self.0.sought.are_passed(simd, magnitudes, ends).and(stays);
+        stays.choose(one, zero).store(&mut self.0.stays);
+        is_passed.choose(one, zero).store(&mut self.0.is_passed);
+        order.store(&mut self.0.order);
+    }
 }
 
 const STEPS_ALONE: &str = "another level steps alone";
@@ -56,110 +392,104 @@ fn by_equations_5_and_6(level: &dyn Level) -> Option<&Elastic<NonlinearRocking>>
 }
 
 impl Engine {
-    /// Whether the structure rocks by Eqs 5 and 6 without ties, so that its steps of rocking can be taken among others.
+    /// Whether the structure rocks by Eqs 5 and 6 without ties, so that its steps can be taken among others.
     pub(crate) fn is_for_lanes(&self) -> bool {
         by_equations_5_and_6(&*self.level).is_some() && !self.level.subject().is_tied
     }
 
-    /// Takes such a structure over `interval` (s) under `load`, all but the clock, if one leap in full contact is all of it.
-    #[inline(always)]
-    pub(crate) fn leaps<W: Passes>(&mut self, interval: f64, load: LinearLoad, watch: &mut W) -> bool {
-        let Some(level) = by_equations_5_and_6(&*self.level) else { return false };
-        let motion = &self.motion;
-        let is_free = motion.phase == Phase::FullContact && motion.held() <= 0.0;
-        if !is_free || self.check(interval, &load).is_err() {
-            return false;
-        }
-        let start = level.subject().start(motion.state, &motion.dissipators, load, interval);
-        let Some((end, swings)) = level.bounded_leap(&start) else { return false };
-        if !end.is_finite() {
-            return false;
-        }
-        let most = most_of_swings(level.structure(), &start, &end, &swings);
-        if watch.passes(&Bounded { engine: self, duration: interval, load, end, most }) {
-            leapt((&*self.level, &self.room), &mut self.motion, interval, load, end, &mut ()).is_ok()
-        } else {
-            leapt((&*self.level, &self.room), &mut self.motion, interval, load, end, watch).is_ok()
-        }
+    /// Whether such a structure is in full contact from which it may lift off, and leaps there.
+    #[inline]
+    pub(crate) fn may_leap(&self) -> bool {
+        let Motion { phase, chatter, .. } = &self.motion;
+        *phase == Phase::FullContact && chatter.held <= 0.0 && self.settings.detail == Detail::Auto
     }
 
-    /// Begins an advance by `interval` (s) under `load`, which is no such leap.
-    #[inline(always)]
-    pub(crate) fn begin(&self, interval: f64, load: LinearLoad) -> Result<Advance<f64>, AdvanceError> {
+    /// Advances such a structure by `interval` (s) under `load` like [`Engine::go_on`], on `advance` unless one leap is all of it.
+    pub(crate) fn begin<W: Passes>(
+        &mut self,
+        interval: f64,
+        load: LinearLoad,
+        advance: &mut Option<Advance<f64>>,
+        watch: &mut W,
+    ) -> Result<Option<Progress>, AdvanceError> {
         self.check(interval, &load)?;
-        let last_step = self.motion.work.steps + MAX_STEPS_PER_ADVANCE;
-        Ok(Advance::new(self.structure(), self.motion.time, interval, load, last_step))
+        let (level, motion) = (&*self.level, &mut self.motion);
+        if let Some(end) = leap_under(level, motion, interval, load) {
+            leapt((level, &self.room), motion, interval, load, end, watch)?;
+            return Ok(Some(Progress::Complete));
+        }
+        let last_step = motion.work.steps + MAX_STEPS_PER_ADVANCE;
+        let advance = advance.insert(Advance::new(level.structure(), motion.time, interval, load, last_step));
+        self.go_on(advance, false, true, watch)
     }
 
-    /// Goes on with `advance` to its end, or to a step of rocking, which `step` becomes; without a `step` to its end. The engine has
-    /// the next series already if the series `is_expanded`.
+    /// Goes on with `advance` to its end, or to a step of rocking, if the engine `stops` before it. The engine has the next series
+    /// already if the series `is_expanded`.
     #[inline(always)]
     pub(crate) fn go_on(
         &mut self,
         advance: &mut Advance<f64>,
         mut is_expanded: bool,
-        mut step: Option<&mut RockingStep>,
+        stops: bool,
         watch: &mut dyn Watch,
     ) -> Result<Option<Progress>, AdvanceError> {
-        let Engine { level, motion, arc, room, settings: Settings { stops, .. } } = self;
-        let any = &**level;
-        let level = by_equations_5_and_6(any).expect(STEPS_ALONE);
-        if let Phase::Rocking(side) = motion.phase
-            && !is_expanded
-            && let Some(step) = &mut step
-            && advance.elapsed < advance.end
-        {
-            **step = level.rocking().step(side, &advance.start(level.subject(), motion));
+        let Engine { level, motion, arc, room, settings: Settings { stops: at_transitions, .. } } = self;
+        let level = &**level;
+        let is_next = |phase: Phase| stops && matches!(phase, Phase::Rocking(_));
+        if !is_expanded && is_next(motion.phase) && advance.elapsed < advance.end {
             return Ok(None);
         }
         let expand = |phase: Phase, start: &Start, arc: &mut Arc| {
-            match (phase, &mut step) {
+            match phase {
                 _ if std::mem::take(&mut is_expanded) => {}
-                (Phase::Rocking(side), Some(step)) => {
-                    **step = level.rocking().step(side, start);
-                    return false;
-                }
+                _ if is_next(phase) => return false,
                 _ => level.series(phase, start, arc),
             }
             true
         };
         let phases = |motion: &Motion| phases::of::<f64>(level.structure(), motion);
-        Loop { level: any, phases, expand, arc, room, stops: *stops }.go(motion, &mut None, advance, watch)
+        Loop { level, phases, expand, arc, room, stops: *at_transitions }.go(motion, &mut None, advance, watch)
     }
 
-    /// Takes the step of `advance` that was `stepped` among others, whose series `write` gives, and goes on like [`Engine::go_on`].
+    /// Takes the step of `advance` that was taken in `lane` of `steps`, and goes on like [`Engine::go_on`] to the next step of rocking.
     #[inline]
-    pub(crate) fn take<W: Passes>(
+    pub(crate) fn take<S: Simd, W: Passes>(
         &mut self,
-        stepped: &Stepped,
-        write: impl FnOnce(&mut Arc),
+        steps: &mut Rocking<S>,
+        lane: usize,
         advance: &mut Advance<f64>,
-        step: &mut RockingStep,
         watch: &mut W,
     ) -> Result<Option<Progress>, AdvanceError> {
-        let level = by_equations_5_and_6(&*self.level).expect(STEPS_ALONE);
-        let &Stepped { order, duration, stays, end, most } = stepped;
+        let level = &*self.level;
+        let duration = steps.reach[lane] * steps.steps[lane].span;
         let is_whole = duration == advance.end - advance.elapsed;
         let is_last = !is_whole && is_at_its_end(level, &self.motion, duration, None);
-        if !stays || is_last || self.motion.work.steps == advance.last_step {
-            write(&mut self.arc);
-            return self.go_on(advance, true, Some(step), watch);
+        let stays = steps.stays[lane] == 1.0 && !is_last && self.motion.work.steps != advance.last_step;
+        let is_passed = stays && steps.is_passed[lane] == 1.0;
+        steps.is_changed[lane] = !is_passed;
+        if !is_passed {
+            steps.write(lane, &mut self.arc);
         }
-        let load = advance.load.from(advance.elapsed);
-        if !watch.passes(&Bounded { engine: self, duration, load, end, most }) {
-            write(&mut self.arc);
-            let Engine { level, motion, arc, room, .. } = &*self;
+        if !stays {
+            return self.go_on(advance, true, true, watch);
+        }
+        let [u, u_dot, theta, theta_dot] = &steps.end;
+        let end = State { u: u[lane], u_dot: u_dot[lane], theta: theta[lane], theta_dot: theta_dot[lane] };
+        if is_passed {
+            watch.pass();
+        } else {
+            let (Engine { level, motion, arc, room, .. }, load) = (&*self, advance.load.from(advance.elapsed));
             watch.piece(&Piece { before: motion, duration, load, end, level: &**level, arc: Some(arc), room });
         }
         let motion = &mut self.motion;
         motion.work.steps += 1;
-        motion.work.evaluations += order as u64;
+        motion.work.evaluations += steps.order[lane] as u64;
         motion.state = end;
         motion.chatter.pass(duration);
         motion.time = advance.pass(duration);
         if advance.elapsed >= advance.interval {
             return Ok(Some(Progress::Complete));
         }
-        self.go_on(advance, false, Some(step), watch)
+        self.go_on(advance, false, true, watch)
     }
 }

@@ -69,7 +69,7 @@ impl<Q: Coordinates> Motion<Q> {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Chatter {
     /// Time since the first of them, s.
-    age: f64,
+    pub age: f64,
     /// Number of transitions since then.
     transitions: u32,
     /// Duration over which contact is held from now on, s.

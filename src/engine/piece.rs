@@ -20,7 +20,7 @@ use crate::numbers::{Angle, Number, Turn};
 use crate::series::taylor::{Arc, Start, evaluate};
 use crate::series::terms::Terms;
 use crate::{Contact, Foundation, Modes, Output, Phase, Ramp, Reactions, State, Structure};
-use std::cell::{Cell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 use std::f64::consts::TAU;
 
 /// Watches a motion go by.
@@ -509,20 +509,20 @@ pub(crate) struct Over<'a, Q: Moves> {
     of: Expansion<'a, Q>,
     theta: Terms,
     theta_dot: Terms,
-    turn: Turn<Terms>,
+    /// Made when an output first reads it.
+    turn: OnceCell<Turn<Terms>>,
 }
 
 impl<'a, Q: Moves> Over<'a, Q> {
     pub(crate) fn new(of: Expansion<'a, Q>) -> Over<'a, Q> {
         let none = Terms::constant(0.0);
-        let (theta, theta_dot, turn) = match of.piece.before.phase {
-            Phase::FullContact => (none, none, Turn::none()),
+        let [theta, theta_dot] = match of.piece.before.phase {
+            Phase::FullContact => [none; 2],
             Phase::Rocking(_) | Phase::Overturned(_) | Phase::OnGround(_) => {
-                let [theta, theta_dot] = [&of.arc.theta, &of.arc.theta_dot].map(|it| Terms::of(it, of.arc.order));
-                (theta, theta_dot, theta.turn())
+                [&of.arc.theta, &of.arc.theta_dot].map(|it| Terms::of(it, of.arc.order))
             }
         };
-        Over { of, theta, theta_dot, turn }
+        Over { of, theta, theta_dot, turn: OnceCell::new() }
     }
 
     /// ÿ on ground that gives, m/s².
@@ -555,7 +555,10 @@ impl<Q: Moves> Shows<Terms> for Over<'_, Q> {
     }
 
     fn turn(&self) -> Turn<Terms> {
-        self.turn
+        *self.turn.get_or_init(|| match self.of.piece.before.phase {
+            Phase::FullContact => Turn::none(),
+            Phase::Rocking(_) | Phase::Overturned(_) => self.theta.turn(),
+        })
     }
 
     fn u(&self, shape: &Modes) -> Terms {
@@ -586,7 +589,7 @@ impl<Q: Moves> Shows<Terms> for Over<'_, Q> {
         let reading = Reading {
             elastic: self.lateral(|k| gauge.elastic(structure, damping, &arc.u[k], &arc.u_dot[k])),
             push: ramp(gauge.push(structure, &load.value.F_t), gauge.push(structure, &load.slope.F_t)),
-            turn: self.turn,
+            turn: self.turn(),
             theta_dot: self.theta_dot,
             theta_ddot: self.theta_dot.slope(arc.span),
             a_g: ramp(load.value.a_g, load.slope.a_g),

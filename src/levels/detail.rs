@@ -146,11 +146,11 @@ pub(crate) struct Elastic<Rocking> {
 }
 
 impl<Rocking: ElasticRocking> Elastic<Rocking> {
-    /// The leap over `start` in full contact with bounds of the vibration, if an exact flow is known and the structure stays down.
+    /// The [coefficients](crate::levels::oscillator::Flow::coefficients) of the exact flow of full contact over `duration` (s).
     #[cfg(feature = "lanes")]
-    #[inline(always)]
-    pub(crate) fn bounded_leap(&self, start: &Start) -> Option<(State, [f64; 4])> {
-        self.contact.as_ref()?.bounded_leap(start, self.least_displacement(start))
+    #[inline]
+    pub(crate) fn flow(&self, duration: f64) -> [f64; 6] {
+        self.contact.as_ref().expect("there is an exact flow").flow(duration).coefficients()
     }
 
     /// The equations of rocking.

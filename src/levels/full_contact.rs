@@ -8,6 +8,7 @@ use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::mechanics::load::Load;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{OneMass, State};
+use std::cell::RefMut;
 
 /// Elastic acceleration ü (m/s²) under the `load` by Eq 1.
 pub fn acceleration(structure: &OneMass, state: &State, load: Load) -> f64 {
@@ -52,8 +53,7 @@ impl ExactContact {
         ExactContact { oscillator, flows: Kept::new(Flow::NONE) }
     }
 
-    /// The state after the interval of `start` if |u| certainly stays below `limit` (m) until then. Two bounds can prove it: |u| is
-    /// at most the whole swing, and u leaves its chord by at most |ü| h²/8.
+    /// The state after the interval of `start` if |u| certainly stays below `limit` (m) until then.
     #[inline]
     pub(crate) fn leap(&self, start: &Start, limit: f64) -> Option<State> {
         let end = self.end(start);
@@ -61,20 +61,17 @@ impl ExactContact {
         goes_on.then_some(end)
     }
 
-    /// The same leap with bounds of the vibration.
-    #[cfg(feature = "lanes")]
+    /// The flow over `duration` (s).
     #[inline(always)]
-    pub(crate) fn bounded_leap(&self, start: &Start, limit: f64) -> Option<(State, [f64; 4])> {
-        let (end, swing) = (self.end(start), self.swing(start));
-        self.is_low(start, &end, &swing, limit).then(|| (end, self.oscillator.swings(&swing)))
+    pub(crate) fn flow(&self, duration: f64) -> RefMut<'_, Flow> {
+        self.flows.over(duration, || self.oscillator.flow(duration))
     }
 
     /// The state after the interval of `start`.
     #[inline(always)]
     fn end(&self, start: &Start) -> State {
         let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
-        let flow = self.flows.over(interval, || self.oscillator.flow(interval));
-        let [u, u_dot] = flow.driven([u, u_dot], a_top.value, a_top.slope);
+        let [u, u_dot] = self.flow(interval).driven([u, u_dot], a_top.value, a_top.slope);
         State { u, u_dot, theta: 0.0, theta_dot: 0.0 }
     }
 
@@ -87,9 +84,7 @@ impl ExactContact {
     /// Whether |u| certainly stays below `limit` (m) from `start` to `end`.
     #[inline(always)]
     fn is_low(&self, start: &Start, end: &State, swing: &Swing, limit: f64) -> bool {
-        let [_, u_ddot, _] = self.oscillator.bounds(swing, start.a_top.slope);
-        let off_chord = u_ddot * start.interval * start.interval / 8.0;
-        swing.farthest() < limit || start.state.u.abs().max(end.u.abs()) + off_chord < limit
+        self.oscillator.farthest(swing, [start.state.u, end.u], start.a_top.slope, start.interval) < limit
     }
 
     /// Bounds of |u|, |u̇|, |ü| and |u⃛| of the vibration over the interval of `start`.

@@ -7,6 +7,7 @@ use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::restraint::{Angles, Dissipators};
+use crate::numbers::Real;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{OneMass, Phase, Side, State, Structure};
@@ -147,8 +148,14 @@ pub trait Level<Q: Coordinates = f64>: Debug + Send {
     }
 }
 
-/// Bounds of the magnitudes of the state over a leap in full contact from `start` to `end`, given bounds of the vibration: u and u̇
-/// leave their chords by at most twice the vibration, and by at most M h²/8 over the time h if their second derivative is at most M.
+/// Bound of the magnitude of a motion from `first` to `last`. The motion leaves its chord by at most twice the `vibration` about a
+/// line, and by at most M h²/8 over the time h if its second derivative is at most M: `bend` is M and h²/8.
+#[inline(always)]
+pub(crate) fn most_of_swing<N: Real>([first, last]: [N; 2], vibration: N, bend: [N; 2]) -> N {
+    first.abs().max(last.abs()) + (first.like(2.0) * vibration).min(bend[0] * bend[1])
+}
+
+/// Bounds of the magnitudes of the state over a leap in full contact from `start` to `end`, given bounds of the vibration.
 #[inline]
 pub(crate) fn most_of_swings<Q: Coordinates>(
     structure: &Structure,
@@ -158,9 +165,7 @@ pub(crate) fn most_of_swings<Q: Coordinates>(
 ) -> State<Q> {
     let per_bend = start.interval * start.interval / 8.0;
     let most = |first: &Q, last: &Q, vibration: &Q, bend: &Q| {
-        Q::each(structure, |j, _| {
-            first.of(j).abs().max(last.of(j).abs()) + (2.0 * vibration.of(j)).min(per_bend * bend.of(j))
-        })
+        Q::each(structure, |j, _| most_of_swing([first.of(j), last.of(j)], vibration.of(j), [bend.of(j), per_bend]))
     };
     State {
         u: most(&start.state.u, &end.u, u, u_ddot),

@@ -28,18 +28,15 @@
 //! Of a restrained structure, or one shaken vertically, g is g + a_v, linear in time, and the moment of the ties
 //! ([`restraint`](crate::mechanics::restraint)) over m is taken from L̇.
 
-#[cfg(feature = "lanes")]
-pub(crate) mod lanes;
-
 use crate::levels::level::{ElasticRocking, Pace};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
+use crate::numbers::Real;
 use crate::series::taylor::{Arc, MAX_ORDER, Start};
 use crate::{OneMass, Side, State};
 use nalgebra::{Matrix2, Vector2};
 use std::cell::RefCell;
-use std::ops::{Add, Div, Mul, Neg, Sub};
 use wide::f64x2;
 
 /// Accelerations (ü, θ̈) in m/s² and rad/s² under `load`, by Eqs 5 and 6 with the ties and these `dissipators`. None if the mass
@@ -126,17 +123,12 @@ pub(super) fn products<const PAIRS: usize>(
     [first[0], first[1], second[0], second[1], third[0], third[1]]
 }
 
-/// A number in which Eqs 5 and 6 are expanded: of one run, or of several side by side.
-pub(crate) trait Expanded:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
-{
+/// A number in which Eqs 5 and 6 are expanded.
+pub(crate) trait Expanded: Real {
     /// One order of the left factors of the six products.
     type Left: Copy;
     /// One order of their right factors.
     type Right: Copy;
-
-    /// The number `value`, of as many runs as this one.
-    fn constant(self, value: f64) -> Self;
 
     fn left(turning: Self, lever_turning: Self, lever: Self) -> Self::Left;
 
@@ -154,11 +146,6 @@ pub(crate) trait Expanded:
 impl Expanded for f64 {
     type Left = Row;
     type Right = Row;
-
-    #[inline(always)]
-    fn constant(self, value: f64) -> f64 {
-        value
-    }
 
     #[inline(always)]
     fn left(turning: f64, lever_turning: f64, lever: f64) -> Row {
@@ -251,7 +238,7 @@ impl<N: Expanded> Recurrence<N> {
     pub(crate) fn new(of: Equations<N>) -> Recurrence<N> {
         let Equations { u, u_dot, theta_dot, sin, cos, H, weight_offset, lever, foundation, .. } = of;
         let ([g, _], [a, _], [a_ground, _]) = (of.gravity, of.push, of.ground);
-        let per_inertia = g.constant(1.0) / (foundation + lever * lever);
+        let per_inertia = g.like(1.0) / (foundation + lever * lever);
         Recurrence {
             of,
             per_inertia,
@@ -320,7 +307,7 @@ impl<N: Expanded> Recurrence<N> {
 pub(crate) struct NonlinearRocking {
     one: OneMass,
     is_tied: bool,
-    pace: Pace,
+    pub pace: Pace,
     products: RefCell<Products<f64>>,
 }
 
@@ -348,7 +335,7 @@ impl NonlinearRocking {
     /// The numbers in the equations over a step of `span` s from `start`. The structure is `TIED` or not throughout a step, and most
     /// are not.
     #[inline(always)]
-    fn equations<const TIED: bool>(&self, side: Side, start: &Start, span: f64) -> Equations<f64> {
+    pub(crate) fn equations<const TIED: bool>(&self, side: Side, start: &Start, span: f64) -> Equations<f64> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_g, a_top, a_v, .. } = start;
         let structure = &self.one;
         let &crate::Parameters { H, B, g, .. } = structure.parameters();

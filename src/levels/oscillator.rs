@@ -8,15 +8,16 @@
 //!
 //! with d = ω √(1 − ζ²), hyperbolic functions for ζ > 1 and S = τ e^{−ωτ} for ζ = 1.
 
+use crate::numbers::Real;
 use crate::series::taylor::reciprocal;
 use nalgebra::Matrix2;
 use std::cell::{RefCell, RefMut};
 
 /// An oscillator of circular frequency ω (rad/s) and damping ratio ζ.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Oscillator {
-    pub omega: f64,
-    pub zeta: f64,
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Oscillator<N = f64> {
+    pub omega: N,
+    pub zeta: N,
 }
 
 /// Coefficients that advance an oscillator by a given time.
@@ -33,15 +34,29 @@ impl Flow {
     /// Over no time at all.
     pub(crate) const NONE: Flow = Flow { free: Matrix2::new(1.0, 0.0, 0.0, 1.0), step: 0.0, ramp: 0.0 };
 
-    /// (w, ẇ) at the end, from `start` under the load a + b τ: `value` = a in m/s², `slope` = b in m/s³.
+    /// The elements of the free flow, row by row, W and R.
+    #[inline]
+    pub(crate) fn coefficients(&self) -> [f64; 6] {
+        let Flow { free, step, ramp } = self;
+        [free.m11, free.m12, free.m21, free.m22, *step, *ramp]
+    }
+
+    /// (w, ẇ) at the end, as [`driven`] computes it.
     #[inline]
     pub(crate) fn driven(&self, start: [f64; 2], value: f64, slope: f64) -> [f64; 2] {
-        let Flow { free, step, ramp } = self;
-        [
-            free.m11 * start[0] + free.m12 * start[1] - (step * value + ramp * slope),
-            free.m21 * start[0] + free.m22 * start[1] - (free.m12 * value + step * slope),
-        ]
+        driven(self.coefficients(), start, value, slope)
     }
+}
+
+/// (w, ẇ) at the end of the flow with these [coefficients](Flow::coefficients), from `start` under the load a + b τ: `value` = a in
+/// m/s², `slope` = b in m/s³.
+#[inline(always)]
+pub(crate) fn driven<N: Real>(flow: [N; 6], start: [N; 2], value: N, slope: N) -> [N; 2] {
+    let [m11, m12, m21, m22, step, ramp] = flow;
+    [
+        m11 * start[0] + m12 * start[1] - (step * value + ramp * slope),
+        m21 * start[0] + m22 * start[1] - (m12 * value + step * slope),
+    ]
 }
 
 impl Oscillator {
@@ -117,48 +132,62 @@ impl Oscillator {
         }
         [step * tau * tau, ramp * tau * tau * tau]
     }
+}
 
+impl<N: Real> Oscillator<N> {
     /// The region in which the oscillator stays for `tau` seconds from `start`. The motion that follows the load a + b τ is
     /// w = −(a + b (τ − 2ζ/ω))/ω². The rest vibrates freely about that motion, with an energy that does not grow.
-    #[inline]
-    pub(crate) fn swing(&self, start: [f64; 2], value: f64, slope: f64, tau: f64) -> Swing {
-        let per_stiffness = 1.0 / (self.omega * self.omega);
-        let lag = 2.0 * self.zeta / self.omega;
-        let following = [0.0, tau].map(|tau| -(value + slope * (tau - lag)) * per_stiffness);
+    #[inline(always)]
+    pub(crate) fn swing(&self, start: [N; 2], value: N, slope: N, tau: N) -> Swing<N> {
+        let per_stiffness = tau.like(1.0) / (self.omega * self.omega);
+        let lag = tau.like(2.0) * self.zeta / self.omega;
+        let following = |tau: N| -(value + slope * (tau - lag)) * per_stiffness;
+        let following = [following(tau.like(0.0)), following(tau)];
         let (rest, rest_dot) = (start[0] - following[0], start[1] + slope * per_stiffness);
         Swing { following, amplitude: (rest * rest + rest_dot * rest_dot * per_stiffness).sqrt() }
     }
 
     /// Bounds of the vibration of a `swing` about the motion that follows the load, and of its three derivatives.
     #[inline(always)]
-    pub(crate) fn swings(&self, swing: &Swing) -> [f64; 4] {
-        let [velocity, acceleration, jerk] = self.bounds(swing, 0.0);
+    pub(crate) fn swings(&self, swing: &Swing<N>) -> [N; 4] {
+        let [velocity, acceleration, jerk] = self.bounds(swing, self.omega.like(0.0));
         [swing.amplitude, velocity, acceleration, jerk]
     }
 
     /// Bounds of |ẇ|, |ẅ| and |w⃛| of a `swing` of this oscillator under a load of this `slope`.
-    pub(crate) fn bounds(&self, swing: &Swing, slope: f64) -> [f64; 3] {
+    #[inline(always)]
+    pub(crate) fn bounds(&self, swing: &Swing<N>, slope: N) -> [N; 3] {
         let &Oscillator { omega, zeta } = self;
+        let two_zeta = omega.like(2.0) * zeta;
         let velocity = omega * swing.amplitude;
-        let acceleration = omega * velocity * (1.0 + 2.0 * zeta);
-        let jerk = omega * (omega * velocity + 2.0 * zeta * acceleration);
+        let acceleration = omega * velocity * (omega.like(1.0) + two_zeta);
+        let jerk = omega * (omega * velocity + two_zeta * acceleration);
         [velocity + slope.abs() / (omega * omega), acceleration, jerk]
+    }
+
+    /// Bound of |w| from `first` to `last`, `tau` seconds later, over a `swing` under a load of this `slope`: the whole swing, or the
+    /// larger end with the most by which w leaves its chord, |ẅ| τ²/8.
+    #[inline(always)]
+    pub(crate) fn farthest(&self, swing: &Swing<N>, [first, last]: [N; 2], slope: N, tau: N) -> N {
+        let [_, acceleration, _] = self.bounds(swing, slope);
+        let off_chord = acceleration * tau * tau / tau.like(8.0);
+        swing.farthest().min(first.abs().max(last.abs()) + off_chord)
     }
 }
 
 /// The region in which a driven oscillator stays.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Swing {
+pub(crate) struct Swing<N = f64> {
     /// Position that follows the load, at the start and at the end; linear in between.
-    pub following: [f64; 2],
+    pub following: [N; 2],
     /// Bound of the distance from that position.
-    pub amplitude: f64,
+    pub amplitude: N,
 }
 
-impl Swing {
+impl<N: Real> Swing<N> {
     /// Bound of |w|.
-    #[inline]
-    pub(crate) fn farthest(&self) -> f64 {
+    #[inline(always)]
+    pub(crate) fn farthest(&self) -> N {
         self.following[0].abs().max(self.following[1].abs()) + self.amplitude
     }
 }

@@ -1,5 +1,7 @@
 //! How far outputs reach: bounds of their magnitudes, which spare most pieces of a motion the search for peaks.
 
+#[cfg(feature = "lanes")]
+use crate::Phase;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Modes, Mosts};
 use crate::numbers::Turn;
@@ -109,6 +111,18 @@ impl Reach {
     /// The part of the bound of magnitudes of u and u̇ in full contact.
     pub(crate) fn elastic<Q: Coordinates>(&self, u: &Q, u_dot: &Q) -> f64 {
         u.weighed(&self.u) + u_dot.weighed(&self.u_dot)
+    }
+
+    /// The weights of |u|, |u̇|, and while rocking of |θ| and θ²/2, in full contact of |a_g| and of nothing, in the bound of the
+    /// output of one mass without force in `phase`. The bound is infinite where [`Reach::bound`] requires a polynomial.
+    #[cfg(feature = "lanes")]
+    pub(crate) fn of_one(&self, structure: &Structure, phase: Phase) -> [f64; 4] {
+        let [u, u_dot] = [1.0.weighed(&self.u), structure.base().damping(phase).weighed(&self.u_dot)];
+        match (phase, self.a_g) {
+            (Phase::FullContact, a_g) => [u, u_dot, a_g.unwrap_or(0.0), 0.0],
+            (_, None) => [u, u_dot, self.turn[0], self.turn[1]],
+            (_, Some(_)) => [f64::INFINITY; 4],
+        }
     }
 
     /// Bound of the magnitude of this `output` of `structure`, given bounds of the motion.

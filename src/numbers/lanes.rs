@@ -1,5 +1,8 @@
 //! A number of several runs side by side, in one register of the processor.
 
+use crate::levels::nonlinear::Expanded;
+use crate::numbers::Real;
+use crate::series::taylor::MAX_ORDER;
 use pulp::Simd;
 use pulp::bytemuck::cast_slice;
 use std::array::from_ref;
@@ -28,33 +31,20 @@ impl<S: Simd> Lanes<S> {
         Lanes { simd, of: simd.splat_f64s(value) }
     }
 
-    /// The number `value`, of as many runs as this one.
-    #[inline(always)]
-    pub(crate) fn like(self, value: f64) -> Lanes<S> {
-        Lanes::splat(self.simd, value)
-    }
-
     #[inline(always)]
     pub(crate) fn load(simd: S, numbers: &[f64; MOST]) -> Lanes<S> {
         Lanes { simd, of: S::as_simd_f64s(numbers).0[0] }
+    }
+
+    #[inline(always)]
+    pub(crate) fn store(self, numbers: &mut [f64; MOST]) {
+        S::as_mut_simd_f64s(numbers).0[0] = self.of;
     }
 
     /// The number of the run in `lane`.
     #[inline]
     pub(crate) fn of(&self, lane: usize) -> f64 {
         cast_slice(from_ref(&self.of))[lane]
-    }
-
-    #[inline(always)]
-    pub(crate) fn abs(self) -> Lanes<S> {
-        let magnitude = self.simd.splat_f64s(f64::from_bits(i64::MAX as u64));
-        Lanes { of: self.simd.and_f64s(self.of, magnitude), ..self }
-    }
-
-    /// The larger one; not for numbers that may be NaN.
-    #[inline(always)]
-    pub(crate) fn max(self, other: Lanes<S>) -> Lanes<S> {
-        Lanes { of: self.simd.max_f64s(self.of, other.of), ..self }
     }
 
     #[inline(always)]
@@ -65,6 +55,34 @@ impl<S: Simd> Lanes<S> {
     #[inline(always)]
     pub(crate) fn is_less(self, other: Lanes<S>) -> Answers<S> {
         Answers { simd: self.simd, of: self.simd.less_than_f64s(self.of, other.of) }
+    }
+}
+
+impl<S: Simd> Real for Lanes<S> {
+    #[inline(always)]
+    fn like(self, value: f64) -> Lanes<S> {
+        Lanes::splat(self.simd, value)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Lanes<S> {
+        let magnitude = self.simd.splat_f64s(f64::from_bits(i64::MAX as u64));
+        Lanes { of: self.simd.and_f64s(self.of, magnitude), ..self }
+    }
+
+    #[inline(always)]
+    fn max(self, other: Lanes<S>) -> Lanes<S> {
+        Lanes { of: self.simd.max_f64s(self.of, other.of), ..self }
+    }
+
+    #[inline(always)]
+    fn min(self, other: Lanes<S>) -> Lanes<S> {
+        Lanes { of: self.simd.min_f64s(self.of, other.of), ..self }
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Lanes<S> {
+        Lanes { of: self.simd.sqrt_f64s(self.of), ..self }
     }
 }
 
@@ -119,4 +137,51 @@ impl<S: Simd> Neg for Lanes<S> {
     fn neg(self) -> Self {
         Lanes { of: self.simd.xor_f64s(self.of, self.simd.splat_f64s(-0.0)), ..self }
     }
+}
+
+impl<S: Simd> Expanded for Lanes<S> {
+    /// θ̇, w θ̇, w.
+    type Left = [Lanes<S>; 3];
+    /// cos θ, sin θ, w, θ̇, G.
+    type Right = [Lanes<S>; 5];
+
+    #[inline(always)]
+    fn left(turning: Self, lever_turning: Self, lever: Self) -> Self::Left {
+        [turning, lever_turning, lever]
+    }
+
+    #[inline(always)]
+    fn right(cos: Self, sin: Self, next_lever: Self, turning: Self, weight: Self) -> Self::Right {
+        [cos, sin, next_lever, turning, weight]
+    }
+
+    #[inline(always)]
+    fn products(
+        left: &[Self::Left; MAX_ORDER + 1],
+        right: &[Self::Right; MAX_ORDER + 1],
+        (newest_left, newest_right): (&Self::Left, &Self::Right),
+        n: usize,
+    ) -> [Self; 6] {
+        let mut sum = [newest_left[0].like(0.0); 6];
+        if n > 0 {
+            for (left, right) in left[1..n].iter().zip(&right[MAX_ORDER - n + 1..MAX_ORDER]) {
+                add_products(&mut sum, left, right);
+            }
+            add_products(&mut sum, newest_left, &right[MAX_ORDER]);
+        }
+        add_products(&mut sum, &left[0], newest_right);
+        sum
+    }
+}
+
+#[inline(always)]
+fn add_products<S: Simd>(sum: &mut [Lanes<S>; 6], left: &[Lanes<S>; 3], right: &[Lanes<S>; 5]) {
+    let &[turning, lever_turning, lever] = left;
+    let &[cos, sin, next_lever, right_turning, weight] = right;
+    sum[0] = sum[0] + turning * cos;
+    sum[1] = sum[1] + turning * sin;
+    sum[2] = sum[2] + turning * next_lever;
+    sum[3] = sum[3] + lever_turning * next_lever;
+    sum[4] = sum[4] + lever_turning * right_turning;
+    sum[5] = sum[5] + lever * weight;
 }

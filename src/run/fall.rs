@@ -5,8 +5,6 @@ use super::peak_watch::PeakWatch;
 use super::peaks::{Peak, Peaks};
 use super::{Finish, Run, RunError, Runs};
 use crate::engine::Moves;
-#[cfg(feature = "lanes")]
-use crate::engine::lanes::{Bounded, Passes};
 use crate::engine::piece::{Expansion, Sample};
 use crate::mechanics::restraint::{Dissipators, Restraint};
 use crate::run::ground_motion::GroundMotion;
@@ -15,6 +13,11 @@ use crate::series::bisection::last_where;
 use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
 use crate::series::taylor::{self, Arc, sum_of_magnitudes};
 use crate::{Base, Detail, Piece, Side, Structure, Transition, TransitionKind, Watch};
+#[cfg(feature = "lanes")]
+use crate::{
+    Engine,
+    engine::lanes::{Passes, Sought},
+};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
@@ -128,14 +131,15 @@ impl<Q: Moves> Watch<Q> for FallWatch<'_, Q> {
 
 #[cfg(feature = "lanes")]
 impl Passes for FallWatch<'_> {
+    fn seek(&self, engine: &Engine, lane: usize, sought: &mut Sought) {
+        self.all.peaks.seek(engine, lane, sought);
+        sought.ends[1][lane] = self.no_return.unwrap_or(f64::INFINITY);
+    }
+
     #[inline(always)]
-    fn passes(&mut self, step: &Bounded) -> bool {
-        let falls = self.no_return.is_some_and(|angle| step.end.theta.abs() >= angle);
-        let passes = !falls && self.all.passes(step.bounds(), step.ends());
-        if passes {
-            *self.fall = None;
-        }
-        passes
+    fn pass(&mut self) {
+        *self.fall = None;
+        self.all.pass();
     }
 }
 

@@ -4,6 +4,8 @@
 //! a clock, so that the same steps give the same bits at every start time. A host whose steps are those of the record meets
 //! the samples only up to rounding. A step that ends as close to a sample as that is not cut there.
 
+#[cfg(feature = "lanes")]
+use crate::engine::lanes::Samples;
 use crate::engine::{AdvanceError, MAX_STEPS_PER_ADVANCE, Moves};
 use crate::run::record::Record;
 use crate::structure::quantity::{Quantity, quantity};
@@ -275,7 +277,7 @@ pub struct Segments<'a> {
     /// Latest known end of a segment, s after the start of the interval.
     since: f64,
     /// The sample that ends the next segment.
-    next: usize,
+    pub(super) next: usize,
     /// The last sample within the interval, once a segment has ended before the end of the interval.
     last: usize,
 }
@@ -296,7 +298,16 @@ impl Iterator for Segments<'_> {
     }
 }
 
-impl Segments<'_> {
+impl<'a> Segments<'a> {
+    /// The samples that end whole segments, and those before them, unless the ground moves vertically.
+    #[cfg(feature = "lanes")]
+    #[inline]
+    pub(super) fn samples(&self) -> Option<Samples<'a>> {
+        let &Segments { motion: GroundMotion { record, .. }, next, last, .. } = self;
+        let samples = Samples { times: record.times(), a_g: record.acceleration(), next, last };
+        (next < last && record.vertical().is_none()).then_some(samples)
+    }
+
     /// The first segment of the interval, or a segment after which no whole one comes.
     #[cold]
     fn first_or_last(&mut self) -> Option<Segment> {

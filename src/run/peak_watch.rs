@@ -9,8 +9,6 @@ use crate::engine::{MOST_POLYNOMIALS, Moves};
 use crate::levels::level::Level;
 use crate::series::taylor::{Arc, LONGEST_SPAN};
 use crate::{LinearLoad, Motion, State, Transition};
-#[cfg(feature = "lanes")]
-use crate::{Structure, mechanics::reach::Magnitudes};
 
 /// How many pieces are kept at most.
 const MOST_CANDIDATES: usize = 32;
@@ -18,7 +16,7 @@ const MOST_CANDIDATES: usize = 32;
 /// Looks for peaks in the pieces of a motion.
 #[derive(Debug)]
 pub struct PeakWatch<'a, Q: Moves = f64> {
-    peaks: &'a mut Peaks,
+    pub(super) peaks: &'a mut Peaks,
     /// Pieces that may hold more than what has been seen.
     kept: Vec<Candidate<Q>>,
     /// The level of the kept pieces, and room for their polynomials.
@@ -53,16 +51,11 @@ impl<'a, Q: Moves> PeakWatch<'a, Q> {
         self.peaks
     }
 
-    /// Passes a piece with these `ends` if magnitudes within `bounds` certainly are no peaks. Otherwise the piece is to be shown.
+    /// Passes a piece that holds no peak.
     #[cfg(feature = "lanes")]
     #[inline]
-    pub(super) fn passes(&mut self, (structure, bounds): (&Structure, Magnitudes<Q>), ends: [(f64, f64); 2]) -> bool {
-        if self.peaks.may_be_same(structure, &bounds) {
-            return false;
-        }
-        ends.into_iter().for_each(|(time, a_g)| self.peaks.see_ground(a_g, time));
+    pub(super) fn pass(&mut self) {
         (self.is_torn, self.is_first) = (false, false);
-        true
     }
 
     /// Looks at what has been kept, the latest first, which is often the largest.

@@ -8,7 +8,7 @@
 use super::peak_watch::PeakWatch;
 use crate::engine::Moves;
 #[cfg(feature = "lanes")]
-use crate::engine::lanes::{Bounded, Passes};
+use crate::engine::lanes::{MOST_SOUGHT, Passes, Sought};
 #[cfg(feature = "lanes")]
 use crate::engine::piece::Watch;
 use crate::engine::piece::{CONVERGED, Expansion, Over, Piece};
@@ -19,7 +19,7 @@ use crate::mechanics::restraint::{Angles, Restraint, Restraints};
 use crate::series::extremes;
 use crate::{Base, Detail, Output, State, Structure, Ties};
 #[cfg(feature = "lanes")]
-use crate::{Phase, Transition, TransitionKind};
+use crate::{Engine, Phase, Transition, TransitionKind};
 use serde::{Deserialize, Serialize};
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
@@ -51,7 +51,13 @@ impl Peak {
     /// Whether a magnitude of at most `bound` may equal or exceed the peak.
     #[inline]
     fn may_be_same(&self, bound: f64) -> bool {
-        bound >= self.magnitude * (1.0 - SAME)
+        bound >= self.least()
+    }
+
+    /// The least magnitude that may equal or exceed the peak.
+    #[inline]
+    fn least(&self) -> f64 {
+        self.magnitude * (1.0 - SAME)
     }
 
     /// Whether a magnitude of at most `bound` at `time` (s) or later may be more than it, or the same and sooner.
@@ -293,6 +299,20 @@ impl Peaks {
         self.searched.iter().any(may_be_same)
     }
 
+    /// Puts what may equal or exceed a peak of the structure of `engine` in its present phase into a `lane` of `sought`.
+    #[cfg(feature = "lanes")]
+    pub(super) fn seek(&self, engine: &Engine, lane: usize, sought: &mut Sought) {
+        let (structure, phase) = (engine.structure(), engine.motion().phase);
+        assert!(self.searched.len() <= MOST_SOUGHT, "one mass has no more");
+        for i in 0..MOST_SOUGHT {
+            let weights =
+                self.searched.get(i).map_or([0.0; 4], |of| structure.reaches()[of.place].of_one(structure, phase));
+            (0..4).for_each(|j| sought.weights[i][j][lane] = weights[j]);
+            sought.least[i][lane] = self.searched.get(i).map_or(0.0, |of| of.peak.least());
+        }
+        (sought.ends[0][lane], sought.ends[1][lane]) = (self.ground.least(), f64::INFINITY);
+    }
+
     /// Whether magnitudes of `structure` within `bounds` at `time` (s) or later may change a peak.
     pub(super) fn may_change<Q: Moves>(&self, structure: &Structure, bounds: &Magnitudes<Q>, time: f64) -> bool {
         let reaches = structure.reaches();
@@ -392,10 +412,13 @@ fn of_pair<N>(Restraints { F_d1, F_d2, .. }: Restraints<N>) -> [N; 2] {
 
 #[cfg(feature = "lanes")]
 impl Passes for ThetaWatch<'_> {
-    #[inline(always)]
-    fn passes(&mut self, step: &Bounded) -> bool {
-        !self.may_hold(step.most.theta)
+    fn seek(&self, engine: &Engine, lane: usize, sought: &mut Sought) {
+        self.peaks.seek(engine, lane, sought);
+        sought.ends[0][lane] = f64::INFINITY;
     }
+
+    #[inline(always)]
+    fn pass(&mut self) {}
 }
 
 /// Looks for the peak of θ alone in the pieces of a motion, and counts impacts.
