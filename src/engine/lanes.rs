@@ -13,7 +13,7 @@ use crate::engine::piece::{Piece, Watch};
 use crate::levels::detail::Elastic;
 use crate::levels::level::{Level, most_of_swing};
 use crate::levels::nonlinear::{Equations, NonlinearRocking, Products, Recurrence};
-use crate::levels::oscillator::{Oscillator, driven};
+use crate::levels::oscillator::{Flow, Oscillator};
 use crate::numbers::Real;
 use crate::numbers::lanes::{Answers, Lanes, MOST};
 use crate::series::extremes::OFF_CHORD;
@@ -86,6 +86,7 @@ pub(crate) struct Samples<'a> {
 
 /// Leaps in full contact of several runs, from sample to sample.
 #[derive(Debug, Default)]
+#[repr(align(64))]
 pub(crate) struct Contacts<'a> {
     sought: Sought,
     samples: [Samples<'a>; MOST],
@@ -99,7 +100,7 @@ pub(crate) struct Contacts<'a> {
     duration: Row,
     /// The ground acceleration at both its ends.
     a_g: [Row; 2],
-    flow: [Row; 6],
+    flow: Flow<Row>,
     /// 1 where the last leap has been taken.
     is_taken: Row,
 }
@@ -122,9 +123,10 @@ impl<'a> Contacts<'a> {
         let duration = times[next] - times[next - 1];
         (self.a_g[0][lane], self.a_g[1][lane]) = (a_g[next - 1], a_g[next]);
         if duration != self.duration[lane] {
-            let flow = by_equations_5_and_6(&*engine.level).expect(STEPS_ALONE).flow(duration);
+            let Flow { free, step, ramp } = by_equations_5_and_6(&*engine.level).expect(STEPS_ALONE).flow(duration);
             self.duration[lane] = duration;
-            self.flow.iter_mut().zip(flow).for_each(|(row, number)| row[lane] = number);
+            (0..4).for_each(|i| self.flow.free[i][lane] = free[i]);
+            (self.flow.step[lane], self.flow.ramp[lane]) = (step, ramp);
         }
     }
 
@@ -169,9 +171,9 @@ impl<S: Simd> WithSimd for Leapt<'_, '_, S> {
         let (a, a_next) = (row(&of.a_g[0]), row(&of.a_g[1]));
         let slope = (a_next - a) / duration;
         let a_end = a + slope * duration;
-        let [m11, m12, m21, m22, step, ramp] = &of.flow;
-        let flow = [row(m11), row(m12), row(m21), row(m22), row(step), row(ramp)];
-        let [u_end, u_dot_end] = driven(flow, [u, u_dot], a, slope);
+        let Flow { free: [m11, m12, m21, m22], step, ramp } = &of.flow;
+        let flow = Flow { free: [row(m11), row(m12), row(m21), row(m22)], step: row(step), ramp: row(ramp) };
+        let [u_end, u_dot_end] = flow.driven([u, u_dot], a, slope);
         let swing = oscillator.swing([u, u_dot], a, slope, duration);
         let is_low = oscillator.farthest(&swing, [u, u_end], slope, duration).is_less(row(&of.u_cr));
         let [swing_u, swing_u_dot, u_ddot, jerk] = oscillator.swings(&swing);
@@ -204,6 +206,7 @@ struct RockingStep {
 
 /// Steps of rocking of several runs.
 #[derive(Debug)]
+#[repr(align(64))]
 pub(crate) struct Rocking<S: Simd> {
     simd: S,
     sought: Sought,

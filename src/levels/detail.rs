@@ -21,6 +21,8 @@ use crate::levels::linear::LinearRocking;
 use crate::levels::modes::ManyModes;
 use crate::levels::nonlinear::NonlinearRocking;
 use crate::levels::on_ground::OnGround;
+#[cfg(feature = "lanes")]
+use crate::levels::oscillator::Flow;
 use crate::mechanics::restraint::Angles;
 use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift::least_hold;
@@ -146,11 +148,11 @@ pub(crate) struct Elastic<Rocking> {
 }
 
 impl<Rocking: ElasticRocking> Elastic<Rocking> {
-    /// The [coefficients](crate::levels::oscillator::Flow::coefficients) of the exact flow of full contact over `duration` (s).
+    /// The exact flow of full contact over `duration` (s).
     #[cfg(feature = "lanes")]
     #[inline]
-    pub(crate) fn flow(&self, duration: f64) -> [f64; 6] {
-        self.contact.as_ref().expect("there is an exact flow").flow(duration).coefficients()
+    pub(crate) fn flow(&self, duration: f64) -> Flow {
+        *self.contact.as_ref().expect("there is an exact flow").flow(duration)
     }
 
     /// The equations of rocking.

@@ -21,42 +21,31 @@ pub(crate) struct Oscillator<N = f64> {
 }
 
 /// Coefficients that advance an oscillator by a given time.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Flow {
-    free: Matrix2<f64>,
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Flow<N = f64> {
+    /// The matrix of free vibration, row by row.
+    pub free: [N; 4],
     /// W, s².
-    step: f64,
+    pub step: N,
     /// R, s³.
-    ramp: f64,
+    pub ramp: N,
 }
 
 impl Flow {
     /// Over no time at all.
-    pub(crate) const NONE: Flow = Flow { free: Matrix2::new(1.0, 0.0, 0.0, 1.0), step: 0.0, ramp: 0.0 };
-
-    /// The elements of the free flow, row by row, W and R.
-    #[inline]
-    pub(crate) fn coefficients(&self) -> [f64; 6] {
-        let Flow { free, step, ramp } = self;
-        [free.m11, free.m12, free.m21, free.m22, *step, *ramp]
-    }
-
-    /// (w, ẇ) at the end, as [`driven`] computes it.
-    #[inline]
-    pub(crate) fn driven(&self, start: [f64; 2], value: f64, slope: f64) -> [f64; 2] {
-        driven(self.coefficients(), start, value, slope)
-    }
+    pub(crate) const NONE: Flow = Flow { free: [1.0, 0.0, 0.0, 1.0], step: 0.0, ramp: 0.0 };
 }
 
-/// (w, ẇ) at the end of the flow with these [coefficients](Flow::coefficients), from `start` under the load a + b τ: `value` = a in
-/// m/s², `slope` = b in m/s³.
-#[inline(always)]
-pub(crate) fn driven<N: Real>(flow: [N; 6], start: [N; 2], value: N, slope: N) -> [N; 2] {
-    let [m11, m12, m21, m22, step, ramp] = flow;
-    [
-        m11 * start[0] + m12 * start[1] - (step * value + ramp * slope),
-        m21 * start[0] + m22 * start[1] - (m12 * value + step * slope),
-    ]
+impl<N: Real> Flow<N> {
+    /// (w, ẇ) at the end, from `start` under the load a + b τ: `value` = a in m/s², `slope` = b in m/s³.
+    #[inline(always)]
+    pub(crate) fn driven(&self, start: [N; 2], value: N, slope: N) -> [N; 2] {
+        let Flow { free: [m11, m12, m21, m22], step, ramp } = *self;
+        [
+            m11 * start[0] + m12 * start[1] - (step * value + ramp * slope),
+            m21 * start[0] + m22 * start[1] - (m12 * value + step * slope),
+        ]
+    }
 }
 
 impl Oscillator {
@@ -95,7 +84,7 @@ impl Oscillator {
             let step = (1.0 - free.m11) / (omega * omega);
             [step, (tau - free.m12 - 2.0 * zeta * omega * step) / (omega * omega)]
         };
-        Flow { free, step, ramp }
+        Flow { free: [free.m11, free.m12, free.m21, free.m22], step, ramp }
     }
 
     /// W and R far beyond critical damping, where 2ζω W all but cancels τ, by the two rates of decay λ, λ':

@@ -11,8 +11,9 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// The most runs that lie side by side.
 pub(crate) const MOST: usize = 8;
 
-/// One number of each run.
+/// One number of each run. In what begins with a line of the processor's memory, 64 bytes, none of them lies in two lines.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
 pub(crate) struct Lanes<S: Simd> {
     simd: S,
     of: S::f64s,

@@ -241,10 +241,12 @@ impl<'a, S: Simd> Together<'a, S> {
     }
 }
 
+type Ended<'a, W> = (Box<Lane<'a, W>>, Result<Ending, RunError>);
+
 /// The runs on their way, by what they do next, and those that have ended.
 struct Lanes<'a, W> {
     of_kind: [VecDeque<Box<Lane<'a, W>>>; KINDS],
-    ended: Vec<(Box<Lane<'a, W>>, Result<Ending, RunError>)>,
+    ended: Vec<Ended<'a, W>>,
 }
 
 impl<'a, W: Passes> Lanes<'a, W> {
