@@ -22,7 +22,7 @@ use crate::{Detail, LinearLoad, Phase, State};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::FRAC_PI_2;
 
-/// What rounding may add to a bound that is summed in another order, as a factor.
+/// Factor by which rounding may raise a bound that is summed in another order.
 const ROUNDING: f64 = 1.0 + 1e-13;
 
 /// The most quantities whose peaks a watcher seeks.
@@ -31,7 +31,7 @@ pub(crate) const MOST_SOUGHT: usize = 4;
 /// A number of each run.
 pub(crate) type Row = [f64; MOST];
 
-/// What the watchers of several runs must see. Places with weights of 0 seek nothing.
+/// Limits beyond which the watchers of several runs must see a piece. Places with weights of 0 seek nothing.
 #[derive(Debug, Default)]
 pub(crate) struct Sought {
     /// Of each quantity: the weights of four magnitudes in its bound. These are |u|, |u̇|, and while rocking |θ| and θ²/2, in full
@@ -213,7 +213,7 @@ pub(crate) struct Rocking<S: Simd> {
     steps: [RockingStep; MOST],
     /// 1 where there is a run.
     is_there: Row,
-    /// Where a watcher has seen a piece or a transition, which may have changed what it seeks, or the run has come.
+    /// True if the run is new in its lane, or if a watcher has seen a piece or a transition, which may change its limits.
     is_changed: [bool; MOST],
     products: Products<Lanes<S>>,
     /// u, u̇, θ and θ̇, order by order.

@@ -120,7 +120,7 @@ struct Lane<'a, W> {
     advance: Option<Advance<f64>>,
 }
 
-/// What a run does next.
+/// The next action of a run.
 enum Next {
     /// Something that other runs do too, by its place among the [`KINDS`].
     Kind(usize),
@@ -128,7 +128,7 @@ enum Next {
     End(Ending),
 }
 
-/// What runs do together: leap in full contact, and rock in their records and after them, where steps are longer.
+/// Kinds of steps that runs take together: leaps in full contact, and steps of rocking in a record and after it, which are longer.
 const KINDS: usize = 3;
 const LEAPS: usize = 0;
 const ROCKS: usize = 1;
@@ -160,7 +160,7 @@ impl<W: Passes> Lane<'_, W> {
         }
     }
 
-    /// What the run does next, which has `made` this progress over its segment, if others do it too or the run has ended.
+    /// The next action of the run, which has `made` this progress over its segment, if others do the same or the run has ended.
     #[inline(always)]
     fn arrive(&mut self, made: Option<Progress>) -> Option<Next> {
         let Follower { engine, segments, rest, .. } = &mut self.follower;
@@ -216,7 +216,7 @@ impl<'a, S: Simd> Together<'a, S> {
         self.contacts.put(slot, engine);
     }
 
-    /// What the lane in a `slot` does after its step; none if it takes another step of this `kind` there.
+    /// The action of the lane in a `slot` after its step; none if it takes another step of this `kind` there.
     #[inline]
     fn take<W: Passes>(&mut self, kind: usize, slot: usize, lane: &mut Lane<'a, W>) -> Option<Result<Next, RunError>> {
         if kind == LEAPS && self.contacts.goes_on(slot) {
