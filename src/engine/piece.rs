@@ -557,7 +557,7 @@ impl<Q: Moves> Shows<Terms> for Over<'_, Q> {
     fn turn(&self) -> Turn<Terms> {
         *self.turn.get_or_init(|| match self.of.piece.before.phase {
             Phase::FullContact => Turn::none(),
-            Phase::Rocking(_) | Phase::Overturned(_) => self.theta.turn(),
+            Phase::Rocking(_) | Phase::Overturned(_) | Phase::OnGround(_) => self.theta.turn(),
         })
     }
 
