@@ -33,9 +33,13 @@ impl Equations for PhaseEquations<'_> {
                 nonlinear::accelerations(self.structure, side, &state, load, &Dissipators::NEW)
                     .unwrap_or_else(|| Vector2::repeat(f64::NAN))
             }
+            Phase::OnGround(_) => unreachable!("{RIGID}"),
         }
     }
 }
+
+/// The scenes have no other ground.
+pub const RIGID: &str = "the ground of a scene is rigid";
 
 /// Positions (u, θ) and velocities (u̇, θ̇) as a state.
 pub fn state(position: Vector2<f64>, velocity: Vector2<f64>) -> State {

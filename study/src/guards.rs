@@ -1,6 +1,7 @@
 //! The rules of the model as a fixed-step code applies them, state by state: the end of a phase, and the next phase. Uplift
 //! and impact are the engine's own.
 
+use crate::equations::RIGID;
 use rocking::mechanics::{impact, uplift};
 use rocking::{OneMass, Phase, Side, State};
 use std::f64::consts::FRAC_PI_2;
@@ -31,6 +32,7 @@ impl PhaseEnd<'_> {
         match self.phase {
             Phase::FullContact => -(self.uplift)(self.structure, state),
             Phase::Rocking(side) | Phase::Overturned(side) => side.sign() * state.theta,
+            Phase::OnGround(_) => unreachable!("{RIGID}"),
         }
     }
 
@@ -42,7 +44,7 @@ impl PhaseEnd<'_> {
                 let (angle, rate) = (side.sign() * state.theta, side.sign() * state.theta_dot);
                 angle < 0.0 || (angle == 0.0 && rate < 0.0) || angle >= FRAC_PI_2
             }
-            Phase::Overturned(_) => false,
+            Phase::Overturned(_) | Phase::OnGround(_) => false,
         }
     }
 
@@ -52,7 +54,7 @@ impl PhaseEnd<'_> {
             Phase::FullContact => (Phase::Rocking(Side::of(before.u)), before),
             Phase::Rocking(side) if side.sign() * before.theta >= FRAC_PI_2 => (Phase::Overturned(side), before),
             Phase::Rocking(side) => impact::resolve(&(*self.structure).into(), side, &before),
-            Phase::Overturned(_) => (self.phase, before),
+            Phase::Overturned(_) | Phase::OnGround(_) => (self.phase, before),
         }
     }
 }
