@@ -223,7 +223,8 @@ impl Given {
     /// they were given.
     pub fn structure(&self, base: Option<&Parameters>) -> Result<Structure, GivenError> {
         let in_units = |error: &dyn Display| GivenError::InUnits(self.units.message(error));
-        let parameters = base.map_or_else(|| self.parameters(), |base| self.over(base));
+        let on_rigid = Given { ground: None, ..self.clone() };
+        let parameters = base.map_or_else(|| on_rigid.parameters(), |base| self.over(base));
         let parameters = parameters.map_err(|error| in_units(&error))?;
         let structure = Structure::new(parameters).map_err(|error| in_units(&error))?;
         match &self.ground {
@@ -237,8 +238,13 @@ impl Given {
         Given { ground: Some(ground), ..self }
     }
 
-    /// The parameters that these numbers determine, with [`DEFAULTS`] for the rest.
+    /// The parameters that these numbers determine, with [`DEFAULTS`] for the rest. Refuses ground that gives, which is no parameter.
     pub fn parameters(&self) -> Result<Parameters, GivenError> {
+        if self.ground.is_some() {
+            let message =
+                "ground has no place here, where parameters change: describe the structure in a file of its own";
+            return Err(GivenError::InUnits(message.into()));
+        }
         self.solve(|name| DEFAULTS.iter().find(|(default, _)| *default == name).map(|(_, value)| *value))
     }
 
