@@ -4,6 +4,7 @@ use crate::mechanics::energy::mechanical;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::restraint::{Dissipators, Restraints, Tie};
+use crate::numbers::Number;
 use crate::structure::ground::Point;
 use crate::{Base, Contact, Foundation, Load, Phase, State, Structure, Ties};
 
@@ -66,9 +67,9 @@ pub(crate) fn ties_on_ground(base: &Base, rest: f64, dissipators: &Dissipators, 
 }
 
 /// The forces of `ties` on ground that gives, given y and sin θ with their rates, N.
-pub(crate) fn forces_on_ground(ties: &[Tie; 3], [y, sin]: [[f64; 2]; 2]) -> Restraints {
+pub(crate) fn forces_on_ground<N: Number>(ties: &[Tie; 3], [y, sin]: [[N; 2]; 2]) -> Restraints<N> {
     let [P_t, F_d1, F_d2] = ties.map(|Tie { lever, force, stiffness, damping }| {
-        force + stiffness * (y[0] - lever * sin[0]) + damping * (y[1] - lever * sin[1])
+        N::constant(force) + (y[0] - sin[0] * lever) * stiffness + (y[1] - sin[1] * lever) * damping
     });
     Restraints { P_t, F_d1, F_d2 }
 }

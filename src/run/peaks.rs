@@ -12,12 +12,13 @@ use crate::engine::lanes::{MOST_SOUGHT, Passes, Sought};
 #[cfg(feature = "lanes")]
 use crate::engine::piece::Watch;
 use crate::engine::piece::{CONVERGED, Expansion, Over, Piece};
+use crate::mechanics::contact::{forces_on_ground, ties_on_ground};
 use crate::mechanics::instant::Instant;
 use crate::mechanics::outputs::Shows;
 use crate::mechanics::reach::{Magnitudes, Reach};
 use crate::mechanics::restraint::{Angles, Restraint, Restraints};
 use crate::series::extremes;
-use crate::{Base, Detail, Output, State, Structure, Ties};
+use crate::{Base, Detail, Foundation, Output, State, Structure, Ties};
 #[cfg(feature = "lanes")]
 use crate::{Engine, Phase, Transition, TransitionKind};
 use serde::{Deserialize, Serialize};
@@ -338,17 +339,26 @@ impl Peaks {
         self.evaluations += arcs.evaluations;
     }
 
-    /// Looks for larger forces of the dissipators in `piece`. They depend on θ and θ̇ alone.
+    /// Looks for larger forces of the dissipators in `piece`. They depend on θ and θ̇ alone, and on y on ground that gives.
     pub(super) fn look_at_dissipators<Q: Moves>(&mut self, piece: &Piece<Q>) {
         let (base, before) = (piece.level.structure().base(), piece.before);
         let (angles, pair) = (self.tendon.angles, &mut self.pair);
         let restraint = Restraint::about(base, before.phase.side(), &before.dissipators);
-        let forces = |state: &State<Q>| of_pair(restraint.forces(&angles.chord(state.theta, state.theta_dot)));
+        let on_ground = piece.level.structure().foundation().map(|&Foundation { rest, place, .. }| {
+            (ties_on_ground(base, rest, &before.dissipators, before.phase.contact()), [place, place + 1])
+        });
+        let forces = |state: &State<Q>| match &on_ground {
+            Some((ties, at)) => of_pair(forces_on_ground(ties, at.map(|at| [state.u.of(at), state.u_dot.of(at)]))),
+            None => of_pair(restraint.forces(&angles.chord(state.theta, state.theta_dot))),
+        };
         for (time, state) in [(before.time, before.state), (before.time + piece.duration, piece.end)] {
             pair.iter_mut().zip(forces(&state)).for_each(|(peak, force)| peak.see(force, time));
         }
         let most = piece.whole().most();
-        let bounds = restraint.most(most.theta, most.theta_dot);
+        let bounds = match on_ground {
+            Some(_) => [f64::INFINITY; 2],
+            None => restraint.most(most.theta, most.theta_dot),
+        };
         if !pair.iter().zip(bounds).any(|(peak, bound)| peak.may_change(bound, before.time)) {
             return;
         }
@@ -356,7 +366,10 @@ impl Peaks {
         while let Some(expansion) = arcs.next() {
             expansion.in_parts(&mut |part, is_finest| {
                 let (over, reach) = (Over::new(*part), part.arc.reach);
-                let series = of_pair(restraint.forces(&angles.chord(over.theta(), over.theta_dot())));
+                let series = match &on_ground {
+                    Some((ties, at)) => of_pair(forces_on_ground(ties, at.map(|at| over.coordinate(at)))),
+                    None => of_pair(restraint.forces(&angles.chord(over.theta(), over.theta_dot()))),
+                };
                 let mut ends = series.iter().zip(forces(&part.arc.at(reach)));
                 if !is_finest && !ends.all(|(series, last)| part.has_converged(series, last, CONVERGED)) {
                     return false;
