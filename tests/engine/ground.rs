@@ -2,12 +2,15 @@
 
 use approx::assert_relative_eq;
 use rocking::engine::Settings;
+use rocking::engine::piece::Sample;
+use rocking::run::peaks::Peaking;
 use rocking::run::record::Record;
 use rocking::run::{End, Ending, Run};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Given;
 use rocking::{
-    Detail, Engine, Ground, LinearLoad, Modes, Output, Parameters, State, Structure, Transition, TransitionKind,
+    Detail, Engine, Ground, LinearLoad, Modes, Output, Parameters, Restraints, State, Structure, Transition,
+    TransitionKind,
 };
 use std::f64::consts::TAU;
 
@@ -186,6 +189,17 @@ fn a_structure_at_rest_is_carried_and_comes_to_rest() {
     let finish = run.follow(&mut |_: &Transition<Modes>| events += 1).unwrap();
     assert!(finish.ending == Ending::AtRest && events > 4, "{:?} {events}", finish.ending);
     let (peaks, _) = Run { detail: Detail::FixedBase, ..run.clone() }.peaks().unwrap();
+    let tied = Parameters { P_0: 500.0, k_t: 1e4, xi_d: 0.2, c_d: 900.0, k_d: 1e5, F_y: 150.0, ..EVISON };
+    let tied = Run { end: End::At(2.0), ..Run::of_modes(one_mass(tied, ground(60.0, 0.2, 3)), &pulse) };
+    let (mut most, (of_ties, _)) = ([0.0_f64; 3], tied.peaks().unwrap());
+    let see = |sample: &Sample<Modes>| {
+        let Restraints { P_t, F_d1, F_d2 } = sample.restraints();
+        most = [0, 1, 2].map(|i| most[i].max([P_t, F_d1, F_d2][i].abs()));
+    };
+    tied.sample((0..200_000).map(|i| 1e-5 * f64::from(i)), see, &mut ()).unwrap();
+    for (of, most) in Peaking::OF_TIES.into_iter().zip(most) {
+        assert_relative_eq!(of_ties.peak(of).unwrap().magnitude, most, max_relative = 1e-4);
+    }
     let settled = -run.structure.foundation().unwrap().rest;
     assert_eq!([Output::theta, Output::settlement].map(|of| peaks.of(of).unwrap().magnitude), [0.0, settled]);
     let refusal = Run { detail: Detail::Linear, ..run }.peaks().unwrap_err().to_string();
