@@ -22,6 +22,7 @@ pub(crate) mod yielding;
 
 use crate::digits::with_unit;
 use crate::levels::detail::Detail;
+#[cfg(feature = "lanes")]
 use crate::levels::level::Subject;
 use crate::levels::level::{Level, derivatives};
 use crate::mechanics::contact;
