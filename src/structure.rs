@@ -138,14 +138,14 @@ impl PartialEq for Reaches {
 /// A structure of many masses where one mass is needed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "{task} needs a structure of one mass, because Eqs 10 to 24 have one mode of vibration, and this structure has {modes} modes: simulate \
-     the motion instead"
+    "{task} needs a structure of one mass, because Eqs 10 to 24 have one mode of vibration, and this structure {has}: simulate the \
+     motion instead"
 )]
 pub struct NotOneMass {
     /// Name of the task.
     pub task: &'static str,
-    /// Number of modes.
-    pub modes: usize,
+    /// The reason why the structure is none.
+    pub has: String,
 }
 
 /// What is measured on a structure.
@@ -508,12 +508,20 @@ impl Structure {
     /// The numbers of one mass of a structure that engines of one coordinate move.
     pub(crate) fn of_mode(&self) -> Result<&OneMass, NotOneMass> {
         let task = "an engine of one coordinate";
-        self.0.of_mode.as_ref().ok_or_else(|| NotOneMass { task, modes: self.modes().len() })
+        self.0.of_mode.as_ref().ok_or_else(|| self.is_no_one_mass(task))
     }
 
     /// The numbers of one mass, which `task` needs.
     pub fn one_mass(&self, task: &'static str) -> Result<&OneMass, NotOneMass> {
-        self.one().ok_or_else(|| NotOneMass { task, modes: self.modes().len() })
+        self.one().ok_or_else(|| self.is_no_one_mass(task))
+    }
+
+    fn is_no_one_mass(&self, task: &'static str) -> NotOneMass {
+        let has = match self.foundation() {
+            Some(_) => "stands on ground that gives".into(),
+            None => format!("has {} modes", self.modes().len()),
+        };
+        NotOneMass { task, has }
     }
 
     /// Circular frequencies of vibration, rad/s.

@@ -273,7 +273,7 @@ def _of_own(table: "pd.DataFrame", limit: str, column: str) -> Fragility:
         raise ValueError(f"limit = {limit!r}: COLUMN >= VALUE is needed, with a column of {', '.join(map(str, table.columns))} and a number"
                          ) from None
     groups = pandas.factorize(table["record"])[0] if "record" in table else range(len(table))
-    known = [None if pandas.isna(of) else bool(of) for of in exceeds]
+    known: list[bool | None] = [None if pandas.isna(of) else bool(of) for of in exceeds]
     curve, bins = _native.fragility(list(groups), table[column].tolist(), known)
     return Fragility(limit, column, curve, pandas.DataFrame(bins, columns=_BINS))
 

@@ -16,9 +16,11 @@ use crate::structure::derived::{DERIVED, Derived};
 use crate::structure::ground::Ground;
 use crate::structure::parameters::{PARAMETERS, Parameters};
 use crate::structure::quantity::{OutOfRange, Quantity, Units};
-use serde::{Deserialize, Deserializer, de::Error};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{self, Error, IntoDeserializer, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
-use std::fmt::Display;
+use std::fmt::{self, Display};
 
 /// A derived quantity that may be given in the place of a parameter.
 #[derive(Debug)]
@@ -72,12 +74,47 @@ pub struct Given {
     ground: Option<Ground>,
 }
 
-#[derive(Deserialize)]
-#[serde(untagged, expecting = "expected a number, units = \"N, m, kg\" or \"kN, m, t\", or [ground] with its numbers")]
 enum Entry {
     Number(f64),
     Units(Units),
     Ground(Ground),
+}
+
+impl<'de> Deserialize<'de> for Entry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Entry, D::Error> {
+        deserializer.deserialize_any(OfEntry)
+    }
+}
+
+/// Reads an entry by its type, so that an error in `[ground]` names the number there.
+struct OfEntry;
+
+impl<'de> Visitor<'de> for OfEntry {
+    type Value = Entry;
+
+    fn expecting(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.write_str("a number, units = \"N, m, kg\" or \"kN, m, t\", or [ground] with its numbers")
+    }
+
+    fn visit_f64<E: de::Error>(self, number: f64) -> Result<Entry, E> {
+        Ok(Entry::Number(number))
+    }
+
+    fn visit_i64<E: de::Error>(self, number: i64) -> Result<Entry, E> {
+        Ok(Entry::Number(number as f64))
+    }
+
+    fn visit_u64<E: de::Error>(self, number: u64) -> Result<Entry, E> {
+        Ok(Entry::Number(number as f64))
+    }
+
+    fn visit_str<E: de::Error>(self, text: &str) -> Result<Entry, E> {
+        Units::deserialize(text.into_deserializer()).map(Entry::Units)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Entry, A::Error> {
+        Ground::deserialize(MapAccessDeserializer::new(map)).map(Entry::Ground)
+    }
 }
 
 /// Why numbers determine no structure.
@@ -85,7 +122,7 @@ enum Entry {
 #[allow(missing_docs)] // the messages name the fields
 pub enum GivenError {
     /// The name is unknown.
-    #[error("{name:?} is unknown; these are known: {}", names().chain(["units"]).collect::<Vec<_>>().join(", "))]
+    #[error("{name:?} is unknown; these are known: {}", names().chain(["units", "ground"]).collect::<Vec<_>>().join(", "))]
     Unknown { name: String },
     /// No structure, in a message with the units of its numbers.
     #[error("{0}")]

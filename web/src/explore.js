@@ -382,12 +382,12 @@
       about = JSON.parse(explorer.about(text()));
       motion = decode(JSON.parse(explorer.show(text(), part)));
       const others = [];
-      if (tab === "compare" && !isFrame()) {
+      if (tab === "compare") {
         for (const of of beside.values()) {
-          if (detail === (fields.detail ?? "auto")) continue;
+          if (of.detail === (fields.detail ?? "auto") && (of.modes ?? fields.modes) === fields.modes) continue;
           others.push({ ...decode(JSON.parse(explorer.show(JSON.stringify({ ...fields, ...of }), part))), colour: colours[of.detail] });
         }
-        if (pinned) others.push({ ...pinned, colour: "--pinned" });
+        if (pinned && !isFrame()) others.push({ ...pinned, colour: "--pinned" });
       }
       showControls();
       show(motion, others);
