@@ -17,7 +17,7 @@ use crate::structure::ground::Ground;
 use crate::structure::parameters::{PARAMETERS, Parameters};
 use crate::structure::quantity::{OutOfRange, Quantity, Units};
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{self, Error, IntoDeserializer, MapAccess, Visitor};
+use serde::de::{self, Error, IntoDeserializer, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -109,7 +109,8 @@ impl<'de> Visitor<'de> for OfEntry {
     }
 
     fn visit_str<E: de::Error>(self, text: &str) -> Result<Entry, E> {
-        Units::deserialize(text.into_deserializer()).map(Entry::Units)
+        let units = Units::deserialize(text.into_deserializer()).map(Entry::Units);
+        units.map_err(|_: E| E::invalid_value(Unexpected::Str(text), &self))
     }
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Entry, A::Error> {
