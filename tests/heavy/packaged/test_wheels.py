@@ -39,7 +39,7 @@ def test_there_are_no_others():
 
 def test_files(wheel):
     machine, content = wheel
-    module = {f"flexible_rocking/{name}" for name in ("__init__.py", "_native.pyi", "_results.py", "_sweep.py", "formats.py", "py.typed",
+    module = {f"flexible_rocking/{name}" for name in ("__init__.py", "_ground.py", "_native.pyi", "_results.py", "_sweep.py", "formats.py", "py.typed",
                                                       MODULES[machine])}
     own = module | {f"{NAME}.data/data/share/flexible-rocking/FlexibleRocking.fmu", f"{NAME}.data/scripts/{PROGRAMS[machine]}"}
     about = {f"{NAME}.dist-info/{file}" for file in ("METADATA", "WHEEL", "RECORD", "licenses/LICENSE-MIT", "licenses/LICENSE-APACHE")}
