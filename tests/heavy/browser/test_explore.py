@@ -640,7 +640,12 @@ def test_a_frame_is_built_from_storeys(opened):
     wait(page, lambda: page.locator("path.curve[data-name=theta]").count() == curves + 1)
     page.locator("#tab-map").click()
     canvas = page.locator("#spectrum")
-    wait(page, lambda: canvas.evaluate("canvas => canvas.getContext('2d').getImageData(0, canvas.height - 1, 1, 1).data[3]") > 0)
+    wait(page, lambda: canvas.evaluate("""canvas => {
+        const copy = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height });
+        const context = copy.getContext("2d", { willReadFrequently: true });
+        context.drawImage(canvas, 0, 0);
+        return context.getImageData(0, canvas.height - 1, 1, 1).data[3];
+    }""") > 0)
     assert page.locator("#problem").is_hidden()
     page.locator("#reset").click()
     settled(page)
