@@ -214,7 +214,7 @@ release:
 measure: $(if $(filter-out record,$(WHAT)),.venv/peers module,.venv/ready)
 	$(if $(filter record,$(WHAT)),RECORD="$$(realpath $(RECORDS)/$(EL_CENTRO))" cargo bench --profile dist --manifest-path benches/Cargo.toml)
 	$(if $(filter precision,$(WHAT)),cargo run --release --manifest-path study/Cargo.toml -- precision && $(PYTHON) -m evidence accuracy)
-	$(if $(filter ensembles,$(WHAT)),OMP_NUM_THREADS=1 $(PYTHON) study/ensemble.py && $(PYTHON) -m evidence.pictures ensembles)
+	$(if $(filter ensembles,$(WHAT)),OMP_NUM_THREADS=1 $(PYTHON) study/ensemble.py && $(PYTHON) study/ensemble_jax.py && $(PYTHON) -m evidence.pictures ensembles)
 
 # What the demo takes: what packs the shared library, and that, in the folder `deps`, which it is linked to.
 library:
