@@ -139,7 +139,7 @@ def motion(path: Path) -> None:
 
 
 WAYS = {"this engine, one by one": ("0.4", "o"), "this engine, lanes": ("black", "s"), "heyoka, one by one": (COLOURS[5], "^"),
-        "heyoka, batches of 4": (COLOURS[0], "D"), "heyoka, batches of 8": (COLOURS[1], "v")}
+        "heyoka, batches of 4": (COLOURS[0], "D"), "heyoka, batches of 8": (COLOURS[1], "v"), "JAX": (COLOURS[3], "P")}
 
 
 def ensembles(path: Path) -> None:
@@ -152,7 +152,7 @@ def ensembles(path: Path) -> None:
     title = "64 runs of McManus's pier under El Centro at scales 0.5 to 1, one thread"
     axis.set(xlabel="computing time per run (µs)", ylabel="largest error of θ over its peak", ylim=(1e-10, 10), xlim=(300, 6e4), title=title)
     figure.legend(loc="outside lower center", ncols=3)
-    save(figure, path, title, "Error of θ against time per run: this engine alone and in lanes, heyoka alone and in batches.")
+    save(figure, path, title, "Error of θ against time per run: this engine alone and in lanes, heyoka alone and in batches, JAX.")
 
 
 LEVELS = {"fixed_base": "#d9d9d9", "rigid": "#f0e442", "modal": "#56b4e9", "linear": "#009e73", "auto": "#d55e00"}
