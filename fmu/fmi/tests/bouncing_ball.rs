@@ -1,18 +1,36 @@
-//! The example's table, and what follows from it.
+//! The example: hostile calls, and what follows from its table.
+#![allow(unsafe_code)] // the C interface
 
 #[path = "../examples/bouncing_ball.rs"]
 #[allow(dead_code)] // main
 mod bouncing_ball;
+mod hostile;
 
-use bouncing_ball::Ball;
+use bouncing_ball::{Ball as Model, fmi2, fmi3};
+use fmi_unit::snapshot::Snapshot;
+use fmi_unit::state_machine::Stage;
 use fmi_unit::variables::{dependencies, position};
-use fmi_unit::{Experiment, Model, Step};
+use fmi_unit::{Experiment, Model as _, Step};
+use hostile::{Subject, hostile_calls};
 use std::path::Path;
+
+hostile_calls!(ball);
+
+fn ball() -> Subject {
+    let never_in = &[Stage::StepFailed, Stage::Error];
+    Subject { never_in, ..Subject::of(tempfile::tempdir().unwrap(), time) }
+}
+
+fn time(snapshot: &Snapshot) -> f64 {
+    let mut ball = Model::open(Path::new("")).unwrap();
+    ball.restore(&snapshot.model).unwrap();
+    ball.time().unwrap()
+}
 
 /// Directional derivatives by states come from the table and differences, and steps of any length follow one motion.
 #[test]
 fn what_the_model_does_not_write_follows_from_what_it_does() {
-    let mut ball = Ball::open(Path::new("")).unwrap();
+    let mut ball = Model::open(Path::new("")).unwrap();
     let table = ball.variables();
     assert_eq!(dependencies(&table, position(&table, "der(h)"), false), [position(&table, "v")]);
     let calculated = table.iter().filter(|variable| variable.is_initial_unknown());
@@ -24,7 +42,7 @@ fn what_the_model_does_not_write_follows_from_what_it_does() {
     assert_eq!(ball.time().unwrap(), 2.0);
     let log = fmi_unit::Logger::new(Box::new(|_, _, _| ()));
     ball.start(fmi_unit::Interface::ModelExchange, &log).unwrap();
-    let mut once = Ball::open(Path::new("")).unwrap();
+    let mut once = Model::open(Path::new("")).unwrap();
     let mut state = Vec::new();
     ball.state(&mut state);
     once.restore(&state).unwrap();
