@@ -97,7 +97,7 @@ impl Falling {
     /// Looks for peaks in the pieces of a motion. The peaks are complete when the watch is dropped.
     pub fn watch<Q: Moves>(&mut self) -> FallWatch<'_, Q> {
         let Falling { all, no_return, fall, has_overturned } = self;
-        FallWatch { all: PeakWatch::new(all), no_return: *no_return, fall, has_overturned }
+        FallWatch { all: all.watch(), no_return: *no_return, fall, has_overturned }
     }
 }
 
@@ -158,7 +158,7 @@ impl<Q: Moves> FallWatch<'_, Q> {
         let arc = piece.arc.map(|arc| Arc { reach: tau / arc.span, ..arc.clone() });
         let until = Piece { duration: tau, end: piece.state_at(tau), arc: arc.as_ref(), ..*piece };
         if tau > 0.0 {
-            PeakWatch::new(&mut before).piece(&until);
+            before.watch().piece(&until);
         } else {
             before.see_ground(piece.load.value.a_g, instant);
             before.see(&piece.shown(0.0, &piece.before.state), instant);

@@ -258,6 +258,13 @@ impl<'a> GroundMotion<'a> {
     }
 }
 
+impl Record {
+    /// The ground motion segment by segment, over `duration` (s) from the first sample on. After the last sample the ground rests.
+    pub fn segments(&self, duration: f64) -> Segments<'_> {
+        GroundMotion::from(self).segments(Elapsed::default(), duration)
+    }
+}
+
 impl<'a> From<&'a Record> for GroundMotion<'a> {
     fn from(record: &'a Record) -> GroundMotion<'a> {
         GroundMotion { record, start: 0.0 }

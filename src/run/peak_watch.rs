@@ -38,13 +38,15 @@ struct Candidate<Q: Moves> {
     arc: Option<Box<Arc<Q>>>,
 }
 
-impl<'a, Q: Moves> PeakWatch<'a, Q> {
-    /// The watcher that searches for larger `peaks`.
-    pub(super) fn new(peaks: &'a mut Peaks) -> PeakWatch<'a, Q> {
-        let is_first = peaks.goes_on();
-        PeakWatch { peaks, kept: Vec::new(), level: None, room: Room::default(), is_torn: true, is_first }
+impl Peaks {
+    /// The watcher that searches the pieces of a motion for larger peaks. The peaks are complete once the watcher is dropped.
+    pub fn watch<Q: Moves>(&mut self) -> PeakWatch<'_, Q> {
+        let is_first = self.goes_on();
+        PeakWatch { peaks: self, kept: Vec::new(), level: None, room: Room::default(), is_torn: true, is_first }
     }
+}
 
+impl<Q: Moves> PeakWatch<'_, Q> {
     /// Peaks of the pieces so far.
     pub(super) fn so_far(&mut self) -> &Peaks {
         self.look_back();

@@ -5,7 +5,6 @@
 //! (`extremes`) a series only rises or falls, so that the largest magnitude is at a stationary point or at an end. The series tells
 //! the instant; the value there comes from the state.
 
-use super::peak_watch::PeakWatch;
 use crate::engine::Moves;
 #[cfg(feature = "lanes")]
 use crate::engine::lanes::{MOST_SOUGHT, Passes, Sought};
@@ -259,11 +258,6 @@ impl Peaks {
     /// Right-hand-side evaluations that the search took beside those of the motion.
     pub fn evaluations(&self) -> u64 {
         self.evaluations
-    }
-
-    /// The watcher that searches the pieces of a motion for larger peaks. The peaks are complete once the watcher is dropped.
-    pub fn watch<Q: Moves>(&mut self) -> PeakWatch<'_, Q> {
-        PeakWatch::new(self)
     }
 
     /// The watcher that searches for the peak of θ only.

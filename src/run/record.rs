@@ -1,6 +1,5 @@
 //! A ground motion record: its samples, between which the ground accelerations are linear.
 
-use crate::run::ground_motion::{Elapsed, GroundMotion, Segments};
 use std::sync::Arc;
 
 /// Most samples that a record has.
@@ -189,11 +188,6 @@ impl Record {
     /// Largest magnitude of the vertical ground acceleration, m/s²; 0 without a vertical component.
     pub fn vertical_peak(&self) -> f64 {
         self.vertical.iter().flatten().fold(0.0, |peak, a_v| peak.max(a_v.abs()))
-    }
-
-    /// The ground motion segment by segment, over `duration` (s) from the first sample on. After the last sample the ground rests.
-    pub fn segments(&self, duration: f64) -> Segments<'_> {
-        GroundMotion::from(self).segments(Elapsed::default(), duration)
     }
 
     /// Velocity (m/s) and displacement (m) of the ground at each sample, at rest before the first one: exact, as the

@@ -42,10 +42,7 @@ use crate::{
 pub use assumptions::{
     ASSUMPTIONS, Assumption, EDGE_LOAD, ENERGY, FRICTION, IMPACT_FRICTION, IMPACT_TENSION, Passing, TENSION, WEIGHT,
 };
-use assumptions::{
-    Combination, EdgeLoad, EnergyGain, Friction, Impact, ImpactFriction, ImpactTension, OfImpacts, OfReactions, Scale,
-    Tension,
-};
+use assumptions::{Combination, EdgeLoad, Friction, Impact, OfReactions, Scale, Tension};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -330,17 +327,12 @@ impl Validity {
     fn see_impact(&mut self, time: f64, impact: &Impact) {
         self.found.impacts += 1;
         self.found.gains += u64::from(impact.gain > 0.0);
-        self.see_at::<ImpactFriction>(time, impact);
-        self.see_at::<ImpactTension>(time, impact);
-        self.see_at::<EnergyGain>(time, impact);
-    }
-
-    fn see_at<A: OfImpacts>(&mut self, time: f64, impact: &Impact) {
-        let value = A::value(self.scale(), impact);
-        self.found.see(A::PLACE, value, time);
-        let Assumption { limit, passing, .. } = &ASSUMPTIONS[A::PLACE];
-        if passing.passes(value, limit(&self.limits)) {
-            self.found.see_beyond(A::PLACE, time, 1.0);
+        for (which, value) in impact.values(self.scale().B) {
+            self.found.see(which, value, time);
+            let Assumption { limit, passing, .. } = &ASSUMPTIONS[which];
+            if passing.passes(value, limit(&self.limits)) {
+                self.found.see_beyond(which, time, 1.0);
+            }
         }
     }
 

@@ -248,49 +248,15 @@ pub(super) struct Impact {
     pub gain: f64,
 }
 
-/// An assumption about impacts.
-pub(super) trait OfImpacts {
-    /// Place in [`ASSUMPTIONS`].
-    const PLACE: usize;
-
-    /// The value that tells of the assumption.
-    fn value(scale: Scale, impact: &Impact) -> f64;
-}
-
-/// `force` over the vertical impulse; infinite where this does not press.
-fn per_impulse(force: f64, &Impulse { I_v, .. }: &Impulse) -> f64 {
-    if I_v > 0.0 { force / I_v } else { f64::INFINITY }
-}
-
-/// The base does not slide at an impact.
-pub(super) struct ImpactFriction;
-
-impl OfImpacts for ImpactFriction {
-    const PLACE: usize = IMPACT_FRICTION;
-
-    fn value(_: Scale, Impact { impulse, .. }: &Impact) -> f64 {
-        per_impulse(impulse.I_h.abs(), impulse)
-    }
-}
-
-/// The edges of the base only press at an impact.
-pub(super) struct ImpactTension;
-
-impl OfImpacts for ImpactTension {
-    const PLACE: usize = IMPACT_TENSION;
-
-    fn value(Scale { B, .. }: Scale, Impact { impulse, .. }: &Impact) -> f64 {
-        per_impulse(impulse.I_m.abs() / B - impulse.I_v, impulse)
-    }
-}
-
-/// Impacts never raise the energy.
-pub(super) struct EnergyGain;
-
-impl OfImpacts for EnergyGain {
-    const PLACE: usize = ENERGY;
-
-    fn value(_: Scale, impact: &Impact) -> f64 {
-        impact.gain
+impl Impact {
+    /// The values that tell of the assumptions about impacts, each with its place in [`ASSUMPTIONS`]; `B` is half the width of the base.
+    pub fn values(&self, B: f64) -> [(usize, f64); 3] {
+        let &Impulse { I_h, I_v, I_m } = &self.impulse;
+        let per_impulse = |force: f64| if I_v > 0.0 { force / I_v } else { f64::INFINITY };
+        [
+            (IMPACT_FRICTION, per_impulse(I_h.abs())),
+            (IMPACT_TENSION, per_impulse(I_m.abs() / B - I_v)),
+            (ENERGY, self.gain),
+        ]
     }
 }
