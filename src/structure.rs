@@ -23,7 +23,7 @@ use ground::{Foundation, Ground, GroundError, MORE};
 use mode::{Floor, Mode, Vibration};
 use one_mass::OneMass;
 use parameters::{ParameterError, Parameters};
-use quantity::{OutOfRange, Quantity, quantity};
+use quantity::{OutOfRange, Quantity, Units, quantity};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
@@ -102,8 +102,15 @@ const OF_FLOOR: [Quantity<Floor>; 2] = [
 
 /// A rigid base that carries modes. The mass above the foundation that the modes do not carry turns rigidly with the base. Copies share
 /// their numbers.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Structure(Arc<Whole>);
+#[derive(Clone, Debug)]
+pub struct Structure(Arc<Whole>, Units);
+
+/// Units are no part of what is compared.
+impl PartialEq for Structure {
+    fn eq(&self, other: &Structure) -> bool {
+        self.0 == other.0
+    }
+}
 
 /// The numbers of a structure.
 #[derive(Debug, PartialEq)]
@@ -336,7 +343,7 @@ impl Structure {
             of_mode: one,
             reaches,
         };
-        Structure(Arc::new(whole))
+        Structure(Arc::new(whole), Units::default())
     }
 
     /// This structure on `ground` that gives, with at most 21 modes. The structure has no numbers of one mass any more: it is moved as
@@ -352,7 +359,7 @@ impl Structure {
         let on_rigid = Structure::made(base, body, modes.clone(), floors.clone(), gauges.clone(), vibration, None);
         let whole = Arc::into_inner(on_rigid.0).expect("it has just been made");
         let coordinates = [&modes[..], &[Mode { mass: 1.0, ..Mode::default() }; MORE]].concat();
-        Ok(Structure(Arc::new(Whole { foundation, coordinates, ..whole })))
+        Ok(Structure(Arc::new(Whole { foundation, coordinates, ..whole }), self.1))
     }
 
     /// `structure` on the ground of this one.
@@ -396,7 +403,17 @@ impl Structure {
     /// This structure, which nothing else shares yet, with the numbers of its mode as of one mass.
     fn moved_by(self, of_mode: Option<OneMass>) -> Structure {
         let whole = Arc::into_inner(self.0).expect("it has just been made");
-        Structure(Arc::new(Whole { of_mode, ..whole }))
+        Structure(Arc::new(Whole { of_mode, ..whole }), self.1)
+    }
+
+    /// This structure, whose numbers were given in `units`, in which its doubts name them.
+    pub fn measured_in(self, units: Units) -> Structure {
+        Structure(self.0, units)
+    }
+
+    /// The units in which the numbers were given.
+    pub fn units(&self) -> Units {
+        self.1
     }
 
     fn with_lowest(&self, count: usize) -> Structure {

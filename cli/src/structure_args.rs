@@ -12,7 +12,7 @@ use rocking::structure::description::Described;
 use rocking::structure::doubts::DOUBTED;
 use rocking::structure::natural_quantities::{Given, GivenError, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking::structure::quantity::{Quantity, Units};
+use rocking::structure::quantity::Quantity;
 use rocking::{Parameters, Structure};
 use rocking_report::input;
 use std::path::{Path, PathBuf};
@@ -46,22 +46,24 @@ impl StructureArgs {
 
     /// Reads the structure, and warns of doubtful numbers; a refusal names the file, the line and the key.
     pub fn load_any(&self) -> anyhow::Result<Structure> {
-        let (structure, units) = self.read()?;
-        let doubts = structure.doubts_in(units, &self.allow);
-        let name = |doubt: &String| doubt.split(" = ").next().unwrap_or(doubt).to_owned();
-        doubts.iter().for_each(|doubt| warning!("{doubt} (--allow {} silences this warning)", name(doubt)));
+        let structure = self.read()?;
+        for doubt in structure.doubts() {
+            let name = doubt.split(" = ").next().unwrap_or(&doubt);
+            if !self.allow.contains(&name) {
+                warning!("{doubt} (--allow {name} silences this warning)");
+            }
+        }
         Ok(structure)
     }
 
-    fn read(&self) -> anyhow::Result<(Structure, Units)> {
-        let (numbers, mut units) = (&self.numbers.0, Units::default());
-        let structure = match (&self.parameters, self.preset) {
+    fn read(&self) -> anyhow::Result<Structure> {
+        let numbers = &self.numbers.0;
+        Ok(match (&self.parameters, self.preset) {
             (Some(path), _) => {
                 let read = || of_file(&input::text(path)?);
-                let (structure, of_file) = read().with_context(|| format!("parameters in {}", input::name(path)))?;
-                units = of_file;
+                let structure = read().with_context(|| format!("parameters in {}", input::name(path)))?;
                 match structure.one() {
-                    Some(one) => numbers.structure(Some(one.parameters()))?,
+                    Some(one) => numbers.structure(Some(one.parameters()))?.measured_in(structure.units()),
                     None if numbers.is_empty() => structure,
                     None => bail!(
                         "{} replaces a number of one mass, and {} describes many masses or ground that gives: change it in the file",
@@ -76,21 +78,17 @@ impl StructureArgs {
                 Structure::new(Parameters::MCMANUS)?
             }
             (None, None) => Structure::new(numbers.parameters().map_err(with_options)?)?,
-        };
-        Ok((structure, units))
+        })
     }
 }
 
-/// The structure that the TOML `text` describes, of many masses if there are tables of them, and the units of its numbers.
-pub fn of_file(text: &str) -> anyhow::Result<(Structure, Units)> {
+/// The structure that the TOML `text` describes, of many masses if there are tables of them.
+pub fn of_file(text: &str) -> anyhow::Result<Structure> {
     let keys: toml::Table = toml::from_str(text)?;
     if ["base", "storeys", "floors", "modes"].iter().any(|key| keys.contains_key(*key)) {
-        let described: Described = toml::from_str(text)?;
-        let units = described.units;
-        return Ok((described.structure()?, units));
+        return Ok(toml::from_str::<Described>(text)?.structure()?);
     }
-    let given: Given = toml::from_str(text)?;
-    Ok((given.structure(None)?, given.units()))
+    Ok(toml::from_str::<Given>(text)?.structure(None)?)
 }
 
 /// The error with the options that help.

@@ -144,7 +144,7 @@ fn ground(value: &Bound<'_, PyAny>) -> PyResult<Ground> {
 }
 
 /// The units that `value` names.
-pub fn units(value: &Bound<'_, PyAny>) -> PyResult<Units> {
+fn units(value: &Bound<'_, PyAny>) -> PyResult<Units> {
     let units = Units::deserialize(value.str()?.to_str()?.into_deserializer());
     units.map_err(|error: serde::de::value::Error| PyValueError::new_err(format!("units: {error}")))
 }

@@ -2,7 +2,7 @@
 
 use crate::arguments::{numbers, one_of, refused, warn};
 use crate::interruptible::interruptible;
-use crate::many_masses::{INSTEAD, OF_MANY, frame, given, units};
+use crate::many_masses::{INSTEAD, OF_MANY, frame, given};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyAttributeError, PyValueError};
 use pyo3::prelude::*;
@@ -13,7 +13,6 @@ use rocking::estimates::pushover::{Equilibrium, Pushover};
 use rocking::structure::derived::{DERIVED, Derived};
 use rocking::structure::derived::{OF_MODE, OF_STRUCTURE};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking::structure::quantity::Units;
 use rocking::{OneMass, Side, State};
 use rocking_report::describe;
 
@@ -63,9 +62,8 @@ fn copied<'py>(keywords: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
 
 impl Structure {
     /// The structure, with a Python warning for each doubtful number.
-    fn of(given: &Bound<'_, PyDict>, of: rocking::Structure, keywords: Option<Py<PyDict>>) -> PyResult<Structure> {
-        let units = given.get_item("units")?.map_or(Ok(Units::default()), |of| units(&of))?;
-        warn(given.py(), of.doubts_in(units, &[]), 1)?;
+    fn of(py: Python<'_>, of: rocking::Structure, keywords: Option<Py<PyDict>>) -> PyResult<Structure> {
+        warn(py, of.doubts(), 1)?;
         Ok(Structure { of, keywords })
     }
 
@@ -74,7 +72,7 @@ impl Structure {
         for (name, _) in keywords.iter().filter(|(_, value)| value.is_none()) {
             kept.del_item(name)?;
         }
-        Structure::of(keywords, frame(kept.copy()?)?, Some(kept.unbind()))
+        Structure::of(keywords.py(), frame(kept.copy()?)?, Some(kept.unbind()))
     }
 
     /// The structure of one mass, which `task` needs.
@@ -118,13 +116,13 @@ impl Structure {
                 let ground = on_rigid.get_item("ground")?;
                 ground.iter().try_for_each(|_| on_rigid.del_item("ground"))?;
                 let structure = given(&on_rigid)?.structure(Some(&one_of("preset", preset, PRESETS)?));
-                let Some(ground) = ground else { return Structure::of(&numbers, structure.map_err(refused)?, None) };
+                let Some(ground) = ground else { return Structure::of(py, structure.map_err(refused)?, None) };
                 let keywords = Structure { of: structure.map_err(refused)?, keywords: None }.parameters(py)?;
                 keywords.set_item("ground", ground)?;
                 return Structure::many(&keywords);
             }
         };
-        Structure::of(&numbers, structure.map_err(refused)?, None)
+        Structure::of(py, structure.map_err(refused)?, None)
     }
 
     /// The structure of these masses (kg) at these heights (m) above the base, lowest first. K (N/m) is the stiffness matrix on
@@ -167,11 +165,8 @@ impl Structure {
     fn replace<'py>(&self, py: Python<'py>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<Structure> {
         let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
         if let Some(structure) = self.of.one() {
-            return Structure::of(
-                &numbers,
-                given(&numbers)?.structure(Some(structure.parameters())).map_err(refused)?,
-                None,
-            );
+            let changed = given(&numbers)?.structure(Some(structure.parameters()));
+            return Structure::of(py, changed.map_err(refused)?, None);
         }
         let keywords = self.parameters(py)?;
         for [one, other] in INSTEAD {

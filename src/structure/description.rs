@@ -252,7 +252,8 @@ impl Described {
     /// The structure that is described. Messages name the numbers in their own units.
     pub fn structure(self) -> Result<Structure, DescriptionError> {
         let units = self.units;
-        self.in_si().structure_in_si().map_err(|error| DescriptionError::InUnits(units.message(error)))
+        let structure = self.in_si().structure_in_si();
+        Ok(structure.map_err(|error| DescriptionError::InUnits(units.message(error)))?.measured_in(units))
     }
 
     fn in_si(mut self) -> Described {

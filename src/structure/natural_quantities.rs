@@ -252,11 +252,6 @@ impl Given {
         Given { units, ground, ..self }
     }
 
-    /// The units in which the numbers were given.
-    pub fn units(&self) -> Units {
-        self.units
-    }
-
     /// The structure of one mass of these [`Given::parameters`], or of `base` changed by these numbers. Messages name the numbers as
     /// they were given.
     pub fn structure(&self, base: Option<&Parameters>) -> Result<Structure, GivenError> {
@@ -265,10 +260,8 @@ impl Given {
         let parameters = base.map_or_else(|| on_rigid.parameters(), |base| self.over(base));
         let parameters = parameters.map_err(|error| in_units(&error))?;
         let structure = Structure::new(parameters).map_err(|error| in_units(&error))?;
-        match &self.ground {
-            Some(ground) => structure.on(ground).map_err(|error| in_units(&error)),
-            None => Ok(structure),
-        }
+        let on_ground = self.ground.as_ref().map_or(Ok(structure.clone()), |ground| structure.on(ground));
+        Ok(on_ground.map_err(|error| in_units(&error))?.measured_in(self.units))
     }
 
     /// These numbers on `ground` that gives.

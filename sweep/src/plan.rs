@@ -204,7 +204,9 @@ impl Population {
         }
         let mut parameters = base.parameters();
         self.values(member).for_each(|(axis, value)| (axis.set)(&mut parameters, value));
-        base.with(parameters).map_err(|problem| Refused(format!("structures {:?}: {problem}", self.name)))
+        let structure =
+            base.with(parameters).map_err(|problem| Refused(format!("structures {:?}: {problem}", self.name)));
+        Ok(structure?.measured_in(base.units()))
     }
 }
 
@@ -325,12 +327,18 @@ impl Plan {
         [structures, self.motions.len(), self.scales.len()]
     }
 
-    /// A sentence for each number of a structure that is usual in another unit.
+    /// A sentence for each number that is usual in another unit, once for each population.
     pub fn doubts(&self) -> Vec<String> {
-        let members = self.populations.iter().flat_map(|of| (0..Population::len(of)).map(move |member| (of, member)));
-        let structures = members.filter_map(|(of, member)| Some((&of.name, of.structure(member).ok()?)));
-        let doubts = structures.flat_map(|(name, of)| of.doubts().into_iter().map(move |doubt| (name, doubt)));
-        doubts.map(|(name, doubt)| format!("{name}: {doubt}")).collect()
+        let (mut said, mut doubts) = (HashSet::new(), Vec::new());
+        for (of, member) in self.populations.iter().flat_map(|of| (0..of.len()).map(move |member| (of, member))) {
+            for doubt in of.structure(member).iter().flat_map(Structure::doubts) {
+                let name = doubt.split(" = ").next().unwrap_or(&doubt).to_owned();
+                if said.insert((&of.name, name)) {
+                    doubts.push(format!("{}: {doubt}", of.name));
+                }
+            }
+        }
+        doubts
     }
 
     /// How many runs there are.
@@ -496,10 +504,12 @@ mod tests {
     use crate::exceedances::count;
     use crate::outcome::{Limit, Summary};
     use rocking::OneMass;
+    use rocking::digits::short;
     use rocking::run::peaks::Peaking;
     use rocking::run::{End, Ending};
     use rocking::structure::description::{Damping, Storey};
     use rocking::structure::natural_quantities::Given;
+    use rocking::structure::quantity::Units;
     use std::collections::BTreeMap;
     use std::f64::consts::TAU;
 
@@ -583,6 +593,16 @@ mod tests {
         assert_eq!(pier.fragilities[2].curve, Err(Refused("no run is counted".into())));
         let refused = limit("drift[4] >= 15 mm").unwrap_err().0;
         assert!(refused.starts_with("\"drift[4]\" is unknown; these are known: theta, uplift, V_t, M_t, u[1], u[2]"));
+        let cores = core(0.0).measured_in(Units::Kilonewtons);
+        let weak = Population::new("weak", cores).vary("P_0", vec![100.0, 200.0]).unwrap();
+        let weight = 130.0 * 9.81;
+        assert_eq!(
+            Plan::new(vec![weak], vec![pulse()], vec![1.0]).unwrap().doubts(),
+            [format!(
+                "weak: P_0 = 0.1 kN changes next to nothing under the weight of the structure, {} kN: is P_0 in kN?",
+                short(weight)
+            )]
+        );
         let refused = Population::new("core", core(0.0)).vary("f_fc", vec![1.0]).unwrap_err().0;
         assert!(refused.starts_with("\"f_fc\" cannot vary in a building, whose modes determine it: these can: m0, B"));
     }

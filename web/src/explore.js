@@ -237,13 +237,13 @@
   });
   /** Takes other storeys, rows of m, h and k from below. */
   function build(rows) {
-    fields.storeys = rows.map((row) => row.map((text) => text.replace(/[\s,]/g, "?")).join(",")).join(" ");
+    fields.storeys = rows.map((row) => row.map((text) => text.replace(/\s/g, "").replaceAll(",", "?")).join(",")).join(" ");
     if (Number(fields.modes) > rows.length) delete fields.modes;
     change();
   }
   at("add").addEventListener("click", () => {
     const [below, last] = [[0, 0, 0], ...storeys()].slice(-2);
-    const height = 2 * Number(last[1]) - Number(below[1]);
+    const height = 2 * parseFloat(last[1]) - parseFloat(below[1]);
     build([...storeys(), [last[0], String(Number(height.toPrecision(6))), last[2]]]);
   });
   /** Shows the storeys, the top first. */
@@ -280,7 +280,7 @@
     shake(target.value);
   });
   for (const id of ["detail", "unit"]) at(id).addEventListener("change", ({ target }) => give(id, target.value));
-  for (const id of ["dt", "column"]) at(id).addEventListener("input", ({ target }) => give(id, target.value.trim()));
+  for (const id of ["dt", "column", "column_v"]) at(id).addEventListener("input", ({ target }) => give(id, target.value.trim()));
   at("ignore_npts").addEventListener("change", ({ target }) => give("ignore_npts", target.checked ? "true" : ""));
   at("natural").addEventListener("change", change);
   at("reset").addEventListener("click", () => {
@@ -305,7 +305,7 @@
     at("reading").hidden = ground() !== "record";
     at("restraints").open ||= restraints.some((name) => name in fields);
     at("ignore_npts").checked = "ignore_npts" in fields;
-    for (const id of ["unit", "dt", "column"]) if (document.activeElement !== at(id)) at(id).value = fields[id] ?? "";
+    for (const id of ["unit", "dt", "column", "column_v"]) if (document.activeElement !== at(id)) at(id).value = fields[id] ?? "";
     const ofGround = numbersOf(ground()).filter((name) => !isFrame() || name !== "u_0");
     const own = [...ofGround, "tolerance", ...(isFrame() ? ["zeta", "modes"] : [])];
     const cycles = tables.shapes.find(({ name }) => name === ground())?.cycles;
@@ -522,6 +522,26 @@
     parent.append(made);
   };
 
+  /** Draws the spectrum of each floor, in g over periods in a logarithmic scale; the top floor is blue. */
+  function drawSpectra([periods, spectra]) {
+    const picture = at("spectra").querySelector("svg");
+    const most = Math.max(...spectra.flat());
+    const [x, y] = [(period) => 40 + 107 * Math.log(period / 0.02), (S_a) => 205 - (195 * S_a) / most];
+    picture.replaceChildren();
+    spectra.forEach((spectrum, i) => {
+      const points = spectrum.map((S_a, k) => `${x(periods[k]).toFixed(1)},${y(S_a).toFixed(1)}`);
+      const stroke = i === spectra.length - 1 ? "var(--blue)" : "var(--muted)";
+      svg(picture, "polyline", { points: points.join(" "), fill: "none", stroke });
+    });
+    for (const period of [0.02, 0.1, 0.5, 1, 2, 4]) svg(picture, "text", { x: x(period), y: 220, "text-anchor": "middle" }, `${period}`);
+    svg(picture, "text", { class: "muted", x: 320, y: 236, "text-anchor": "middle" }, "period in s");
+    const peak = `${short(most / motion.parameters.g)} g`;
+    svg(picture, "text", { x: 40, y: 10 }, peak);
+    picture.setAttribute("aria-label", `Response spectra of the accelerations of the floors, largest ${peak}`);
+  }
+  const askSpectra = () => at("spectra").open && ask("spectra", fields, drawSpectra);
+  at("spectra").addEventListener("toggle", askSpectra);
+
   // The map has 32 steps along each axis, and its finest points are an eighth of a step apart.
   const [steps, finest] = [32, 8];
   const spectrum = { points: [], axes: undefined, of: "" };
@@ -650,7 +670,7 @@
   }
 
   const panels = {
-    play: drawValidity,
+    play: () => (drawValidity(), askSpectra()),
     compare: () => ask("compare", fields, drawLevels),
     map: drawMap,
     export: drawExport,

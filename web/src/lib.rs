@@ -15,13 +15,17 @@ use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::{Body, Structure};
 use rocking_records::Unit;
-use rocking_report::{advice::Level, describe, run::Run};
+use rocking_report::{
+    advice::Level,
+    describe,
+    run::{Run, usual_periods},
+};
 use rocking_sweep::{map::CLASSES, pulse::Shape};
 use scene::{Fields, File, Files, GROUNDS, Ground, NUMBERS, READING, numbers_of};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
-use take::{GROUND, taken_along};
+use take::{GROUND, VERTICAL, taken_along};
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// Largest error of an advised level of detail, as in `advise`.
@@ -154,6 +158,15 @@ impl Explorer {
         Ok(Value::from_iter(ASSUMPTIONS.iter().zip(&found.worst).map(row)).to_string())
     }
 
+    /// The periods of floor spectra, s, and the spectrum of each floor from below with a damping ratio of 5 %, m/s².
+    pub fn spectra(&mut self, fields: &str) -> Result<String, String> {
+        let (_, run, _) = self.load(fields)?;
+        let (found, periods) = (run.found(None, &mut ()).map_err(says)?, usual_periods());
+        let of = |floor| run.spectrum(&found, floor, &periods, 0.05, &mut ());
+        let spectra = (0..run.structure.floors().len()).map(of).collect::<Result<Vec<_>, _>>();
+        Ok(json!([periods, spectra.map_err(|error| rocking_report::message(&error))?]).to_string())
+    }
+
     /// The levels of detail, compared on this scene as `advise` compares them.
     pub fn compare(&mut self, fields: &str) -> Result<String, String> {
         let (_, run, _) = self.load(fields)?;
@@ -199,8 +212,9 @@ impl Explorer {
             ("record", Ok(file)) => vec![(file.path.with_extension("csv"), ground.table().into_bytes())],
             _ => vec![(GROUND.into(), ground.table().into_bytes())],
         };
+        let vertical = ground.vertical_table().map(|table| (VERTICAL.into(), table.into_bytes()));
         let exported =
-            fmu_export::export(version, &ModelName::default(), structure.into(), record, None, &self.libraries);
+            fmu_export::export(version, &ModelName::default(), structure.into(), record, vertical, &self.libraries);
         Ok(exported.map_err(says)?.1)
     }
 }

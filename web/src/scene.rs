@@ -6,8 +6,10 @@ use rocking::run::record::Record;
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::{Given, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
+use rocking::structure::quantity::LARGE;
 use rocking::{Detail, Parameters, State, Structure};
-use rocking_records::{Column, Reading, RecordError, Remedy, Source, Unit, csv_in};
+use rocking_records::{Column, Reading, RecordError, Remedy, Source, Unit, csv_in, vertical_csv};
+use rocking_report::record::no_pair;
 use rocking_sweep::plan::Conditions;
 use rocking_sweep::pulse::{Pulse, Shape};
 use rocking_sweep::synthetic;
@@ -55,7 +57,7 @@ pub const GROUNDS: [(&str, &[&str]); 4] = [
 ];
 
 /// Keys of a link that say how the record's file is read.
-pub const READING: [&str; 4] = ["unit", "dt", "column", "ignore_npts"];
+pub const READING: [&str; 5] = ["unit", "dt", "column", "column_v", "ignore_npts"];
 
 /// Keys of a link that scale the ground motion.
 pub const SCALES: [&str; 2] = ["time_scale", "scale"];
@@ -89,11 +91,11 @@ impl Default for Files {
     }
 }
 
-/// A record's file, and its last reading.
+/// A record's file, and its last two readings: of both components.
 pub struct File {
     pub path: PathBuf,
     pub bytes: Vec<u8>,
-    read: Option<(Reading, Record, Source)>,
+    read: Vec<(Reading, Record, Source)>,
 }
 
 /// A ground motion, with remarks on its file and warnings about it.
@@ -114,9 +116,23 @@ impl Ground {
         Ground { record, in_file_unit, unit, remarks: Vec::new(), warnings: Vec::new() }
     }
 
+    /// This ground motion with the vertical component `up`, from another column of its file.
+    fn with_vertical(self, up: &Ground) -> Result<Ground, String> {
+        let pair = |own: Record, up: &Record| {
+            own.with_vertical(up).map_err(|error| rocking_report::message(&no_pair(error, "column_v")))
+        };
+        let (record, in_file_unit) = (pair(self.record, &up.record)?, pair(self.in_file_unit, &up.in_file_unit)?);
+        Ok(Ground { record, in_file_unit, ..self })
+    }
+
     /// The ground motion as a table that is read without options, in s and the unit of its file.
     pub fn table(&self) -> String {
         csv_in(&self.in_file_unit, self.unit)
+    }
+
+    /// Likewise the vertical component, if there is one.
+    pub fn vertical_table(&self) -> Option<String> {
+        vertical_csv(&self.in_file_unit, self.unit)
     }
 }
 
@@ -230,7 +246,12 @@ impl Fields {
     pub fn unscaled(&self, files: &mut Files, g: f64) -> Result<Ground, String> {
         match self.kind() {
             EL_CENTRO => files.el_centro.as_mut().map_err(|why| why.clone())?.ground(Reading::default(), g),
-            "record" => files.own.as_mut().map_err(|why| why.clone())?.ground(self.reading()?, g),
+            "record" => {
+                let (file, how) = (files.own.as_mut().map_err(|why| why.clone())?, self.reading()?);
+                let Some(column) = self.text("column_v") else { return file.ground(how, g) };
+                let up = file.ground(Reading { column: Some(Column::from(column)), ..how.clone() }, g)?;
+                file.ground(how, g)?.with_vertical(&up)
+            }
             "free" => Ok(Ground::of(Record::at_rest(self.number("duration")?))),
             "synthetic" => {
                 let pga = g * self.number("amplitude")?;
@@ -301,24 +322,31 @@ impl Fields {
 }
 
 /// The unit of the number called `name`.
-fn unit_of(name: &str) -> &'static str {
+pub fn unit_of(name: &str) -> &'static str {
     let of_structure = PARAMETERS.iter().find(|of| of.name == name).map(|of| of.unit);
     let of_natural = || NATURAL.iter().find(|of| of.name == name).map(|of| of.derived().unit);
     let of_run = || NUMBERS.iter().find(|of| of.0 == name).map(|of| of.1);
     of_structure.or_else(of_natural).or_else(of_run).unwrap_or("s") // dt
 }
 
-/// The number in `text`, which has the `name` and the `unit`.
-fn number_of(name: &str, unit: &str, text: &str) -> Result<f64, String> {
-    let needed = match unit {
-        "1" => "a number is needed, without a comma".to_owned(),
-        unit => format!("a number in {unit} is needed, without the unit or a comma"),
+/// The number in `text`, which has the `name` and the `unit`. A number of the structure may have its unit behind it, or 1000 times
+/// this unit: 1200 t, 45 kN/m.
+pub fn number_of(name: &str, unit: &str, text: &str) -> Result<f64, String> {
+    let large = LARGE.iter().find(|(si, _)| *si == unit).map(|(_, large)| *large);
+    let is_of_structure = unit != "1" && NUMBERS.iter().all(|of| of.0 != name) && name != "dt";
+    let units = [Some((unit, 1.0)), large.map(|large| (large, 1e3))].into_iter().flatten().filter(|_| is_of_structure);
+    let in_unit = |(unit, factor)| Some(factor * text.strip_suffix(unit)?.trim_end().parse::<f64>().ok()?);
+    let needed = match (unit, large) {
+        ("1", _) => "a number is needed, without a comma".to_owned(),
+        (unit, Some(large)) => format!("a number in {unit} or {large} is needed, without a comma"),
+        (unit, None) => format!("a number in {unit} is needed, without a comma"),
     };
-    text.parse().map_err(|_| format!("{name} = {text:?}: {needed}"))
+    let number = text.parse().ok().or_else(|| { units }.find_map(in_unit));
+    number.ok_or_else(|| format!("{name} = {text:?}: {needed}"))
 }
 
 /// The storey in `row`: m (kg), h (m) and k (N/m), with commas between them.
-fn storey(number: usize, row: &str) -> Result<Storey, String> {
+pub fn storey(number: usize, row: &str) -> Result<Storey, String> {
     let read = |((name, unit), text)| number_of(&format!("storey {number}: {name}"), unit, text);
     let numbers = [("m", "kg"), ("h", "m"), ("k", "N/m")]
         .into_iter()
@@ -333,11 +361,11 @@ fn storey(number: usize, row: &str) -> Result<Storey, String> {
 
 impl File {
     pub fn new(name: &str, bytes: Vec<u8>) -> File {
-        File { path: Path::new(name).into(), bytes, read: None }
+        File { path: Path::new(name).into(), bytes, read: Vec::new() }
     }
 
     fn ground(&mut self, how: Reading, g: f64) -> Result<Ground, String> {
-        if self.read.as_ref().is_none_or(|(before, ..)| *before != how) {
+        if self.read.iter().all(|(before, ..)| *before != how) {
             let read = rocking_records::from_bytes(&self.path, &self.bytes, &how);
             let (record, source) = read.map_err(|error| match error {
                 RecordError::Malformed { remedy: Some(remedy), .. } => {
@@ -345,9 +373,11 @@ impl File {
                 }
                 _ => says(error),
             })?;
-            self.read = Some((how, record, source));
+            self.read.truncate(1);
+            self.read.insert(0, (how.clone(), record, source));
         }
-        let (_, in_file_unit, source) = self.read.clone().expect("it has just been read");
+        let known = self.read.iter().find(|(before, ..)| *before == how).expect("it has been read");
+        let (_, in_file_unit, source) = known.clone();
         let record = rocking_records::in_m_s2(in_file_unit.clone(), source.unit, g).map_err(says)?;
         let mut remarks = vec![format!("{}, {}", source.format, source.unit)];
         remarks.extend(source.remarks.iter().cloned());

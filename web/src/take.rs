@@ -1,6 +1,7 @@
 //! The scene for use outside the page: commands for a shell, a script in Python, and values to set in its FMU.
 
-use crate::scene::{EL_CENTRO, Fields, RUN};
+use crate::scene::{EL_CENTRO, Fields, RUN, number_of, storey, unit_of};
+use rocking::structure::description::Storey;
 use rocking::structure::natural_quantities::names;
 use rocking::structure::parameters::PRESETS;
 use rocking_records::Column;
@@ -9,6 +10,9 @@ use std::path::Path;
 
 /// Name of the file in which the page saves a ground motion.
 pub const GROUND: &str = "ground.csv";
+
+/// Name of the file of its vertical component in an FMU.
+pub const VERTICAL: &str = "ground_v.csv";
 
 /// Name of the file of a structure of many masses.
 const BUILDING: &str = "building.toml";
@@ -77,8 +81,8 @@ fn building(fields: &Fields, storeys: &str, numbers: &Options) -> Result<(String
     numbers.iter().for_each(|(name, value)| file += &format!("{name} = {value}\n"));
     let mut rows = Vec::new();
     for row in storeys.split_whitespace() {
-        let numbers = row.split(',').map(|text| literal("storeys", text)).collect::<Result<Vec<_>, _>>()?;
-        let named = || ["m", "h", "k"].iter().zip(&numbers);
+        let Storey { m, h, k } = storey(rows.len() + 1, row)?;
+        let named = || ["m", "h", "k"].iter().zip([m, h, k]).map(|(name, number)| (name, Value::from(number)));
         file += &format!(
             "\n[[storeys]]\n{}",
             named().map(|(name, value)| format!("{name} = {value}\n")).collect::<String>()
@@ -93,11 +97,12 @@ fn building(fields: &Fields, storeys: &str, numbers: &Options) -> Result<(String
 
 /// The value of the key `name`, given as `text`.
 fn literal(name: &str, text: &str) -> Result<Value, String> {
-    let number = || text.parse::<i64>().map(Number::from).ok().or_else(|| Number::from_f64(text.parse().ok()?));
+    let given = || number_of(name, unit_of(name), text).ok();
+    let number = || text.parse::<i64>().map(Number::from).ok().or_else(|| Number::from_f64(given()?));
     match name {
         "preset" | "unit" | "detail" => Ok(text.into()),
         "ignore_npts" => Ok(true.into()),
-        "column" => Ok(match Column::from(text) {
+        "column" | "column_v" => Ok(match Column::from(text) {
             Column::Number(number) => number.into(),
             _ => text.into(),
         }),
@@ -120,5 +125,6 @@ fn command(name: &str, options: &[&Options]) -> Result<String, String> {
 /// The `options` as keyword arguments of Python, each behind a comma. Strings and numbers of JSON are literals of Python.
 fn arguments(options: &Options) -> String {
     let literal = |value: &Value| if value.is_boolean() { "True".into() } else { value.to_string() };
-    options.iter().map(|(name, value)| format!(", {name}={}", literal(value))).collect()
+    let called = |name| if name == "column_v" { "vertical_column" } else { name };
+    options.iter().map(|(name, value)| format!(", {}={}", called(*name), literal(value))).collect()
 }

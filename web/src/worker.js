@@ -4,6 +4,7 @@ let current = 0;
 
 const work = {
   compare: (fields, answer) => answer(JSON.parse(explorer.compare(fields))),
+  spectra: (fields, answer) => answer(JSON.parse(explorer.spectra(fields))),
 
   async map(fields, answer) {
     const spectrum = new wasm_bindgen.Spectrum(fields);

@@ -317,11 +317,11 @@ impl StructureGrid {
     fn base(&self, folder: &Path, files: &mut OutputFiles) -> anyhow::Result<Structure> {
         let mut base = || match (&self.preset, &self.parameters, &self.file) {
             (Some(preset), None, None) => Ok(Structure::new(Parameters::preset(preset)?)?),
-            (None, Some(given), None) => Ok(Structure::new(given.parameters()?)?),
+            (None, Some(given), None) => Ok(given.parameters().and_then(|_| given.structure(None))?),
             (None, None, Some(file)) => {
                 let path = folder.join(file);
                 files.add_input(&path);
-                input::text(&path).and_then(|text| Ok(of_file(&text)?.0)).with_context(|| path.display().to_string())
+                input::text(&path).and_then(|text| of_file(&text)).with_context(|| path.display().to_string())
             }
             _ => bail!("give one of preset, parameters and file"),
         };

@@ -129,7 +129,10 @@ def test_a_scene_is_the_same_by_its_command_and_by_its_script(opened, exporter, 
     """For any link and any name of a record or column, a shell and Python find the page's peaks and run nothing else."""
     page = opened()
     frame, pier = FRAME | {"modes": "2.0", "zeta": "0.03", "ground": "ricker"}, PIER | {"ground": "ricker"}
-    for number, (fields, name, record) in enumerate([(frame, "-", ""), (pier, "-", ""), *random_scenes(40)]):
+    time = np.arange(0, 3, 0.01)
+    table = "".join(f"{t},{4 * np.sin(9 * t)},{2 * np.cos(20 * t)}\n" for t in time)
+    shaken = PIER | {"m": "1200 t", "k_t": "20000 kN/m", "ground": "record", "column": "2", "column_v": "3"}
+    for number, (fields, name, record) in enumerate([(frame, "-", ""), (pier, "-", ""), (shaken, "up.csv", table), *random_scenes(40)]):
         page.evaluate("hash => { location.hash = hash }", urlencode(fields | {"tab": "export"}))
         if fields.get("ground") == "record":
             drop(page, name, record.encode())
@@ -145,6 +148,10 @@ def test_a_scene_is_the_same_by_its_command_and_by_its_script(opened, exporter, 
         assert agree(peaks, by_command_line(exporter, folder, page.locator("#command").text_content())), fields
         assert agree(peaks, by_script(folder, page.locator("#python").text_content())), fields
         assert set(folder.iterdir()) == files
+        if number == 0:
+            periods, spectra = json.loads(page.evaluate("fields => new wasm_bindgen.Explorer().spectra(JSON.stringify(fields))", fields))
+            by_command_line(exporter, folder, page.locator("#command").text_content() + " --spectrum=floors.csv")
+            assert np.loadtxt(folder / "floors.csv", delimiter=",", skiprows=1).T.tolist() == [periods, *spectra]
 
 
 def test_a_link_is_taken_whole_or_what_is_wrong_in_it_is_named(opened):
@@ -155,7 +162,7 @@ def test_a_link_is_taken_whole_or_what_is_wrong_in_it_is_named(opened):
                      ("ground=cosine&packed=H4sI", '"packed" of the link is unknown with ground = cosine; these'),
                      ("ground=quake", 'ground = "quake" is unknown; these are known: half_sine, sine,'),
                      ("ground=synthetic&seed=1.5", "seed = 1.5 is out of range: a whole number of at least 0 is needed"),
-                     ("H=2&H=3", 'H = "2, 3": a number in m is needed, without the unit or a comma')]:
+                     ("H=2&H=3", 'H = "2, 3": a number in m is needed, without a comma')]:
         page.evaluate("hash => { location.hash = hash }", key)
         settled(page)
         said = page.locator("#problem").text_content()
@@ -268,7 +275,7 @@ def test_what_is_refused_is_said_as_everywhere_and_the_page_stays_alive(opened, 
     for text in ("heavy", "1,85e6", "1850 t"):
         page.locator("#field-m").fill(text)
         wait(page, lambda: text in problem.text_content())
-        assert problem.text_content() == f'm = "{text}": a number in kg is needed, without the unit or a comma'
+        assert problem.text_content() == f'm = "{text}": a number in kg or t is needed, without a comma'
         assert faulty() == ["m"] and page.locator("#field-m").evaluate("field => getComputedStyle(field).boxShadow") != "none"
     page.locator("#reset").click()
     problem.wait_for(state="hidden")
@@ -601,6 +608,8 @@ def test_a_frame_is_built_from_storeys(opened):
     assert page.locator("#about").text_content().startswith("3 floors, 110 t on a base of 20 t, H = 10.5 m, 2B = 3 m, 2.8 Hz")
     assert page.locator("#peaks tr").count() == page.locator("#body rect.mass").count() - 1 == 3
     assert "are exceeded" in page.locator("#validity summary").text_content() and page.locator("#validity tbody tr").count() == 7
+    page.locator("#spectra summary").click()
+    wait(page, lambda: page.locator("#spectra polyline").count() == 3)
     # acceleration: of the ground at height 0, of floors; moment: at the foot of storeys, 0 at the roof
     ends = page.locator("#profile path").evaluate_all("paths => paths.map(path => path.getAttribute('d').match(/[-\\d.]+/g).map(Number))")
     for k, parts in ((0, 4), (2, 6), (4, 6), (6, 4)):
@@ -627,11 +636,14 @@ def test_a_frame_is_built_from_storeys(opened):
     page.get_by_label("h (m) of floor 2").fill("3")
     page.locator("#problem").wait_for()
     assert page.locator("#problem").text_content().startswith("floor 2 is at h = 3 m and the floor below it at 3.5 m")
-    page.get_by_label("h (m) of floor 2").fill("7 m")
-    wait(page, lambda: page.locator("#problem").text_content() == 'storey 2: h = "7?m": a number in m is needed, without the unit or a comma')
+    page.get_by_label("h (m) of floor 2").fill("7,0 m")
+    wait(page, lambda: page.locator("#problem").text_content() == 'storey 2: h = "7?0m": a number in m is needed, without a comma')
     assert page.locator("#controls [aria-invalid=true]").evaluate_all("all => all.map(({ name }) => name)") == ["storey 2: h"]
-    page.get_by_label("h (m) of floor 2").fill("7")
+    page.get_by_label("h (m) of floor 2").fill("7 m")
+    page.get_by_label("m (kg) of floor 1").fill("40 t")
     page.locator("#problem").wait_for(state="hidden")
+    settled(page)
+    assert shown(page, "V_t", 1) == kept
     page.locator("#tab-compare").click()
     page.locator("#levels tr.advised").wait_for()
     kept = page.locator("#levels input[name^=nonlinear]").first
