@@ -24,7 +24,7 @@ use mode::{Floor, Mode, Vibration};
 use one_mass::OneMass;
 use parameters::{ParameterError, Parameters};
 use quantity::{OutOfRange, Quantity, Units, quantity};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
@@ -38,7 +38,7 @@ const EXACT: f64 = 1e-13;
 const EXCESS: f64 = 5e-3;
 
 /// A structure as a rigid body: its foundation, and the moments of all mass above the foundation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Body {
     /// Mass of the foundation m0, at the height of the pivots, kg.
     pub m0: f64,
@@ -365,8 +365,7 @@ impl Structure {
     /// `structure` on the ground of this one.
     fn on_own_ground(&self, structure: Structure) -> Result<Structure, StructureError> {
         let Some(Foundation { points, .. }) = self.foundation() else { return Ok(structure) };
-        let list = |of: fn(&ground::Point) -> f64| points.iter().map(of).collect();
-        structure.on(&Ground { xi: list(|at| at.xi), k: list(|at| at.k), c: list(|at| at.c), ..Ground::default() })
+        structure.on(&Ground::of_points(points))
     }
 
     /// What carries the base on ground that gives; none on rigid ground.

@@ -38,7 +38,7 @@ mod shown;
 pub mod unit;
 pub mod variables;
 
-use resources::{Contents, FrameNumbers};
+use resources::{Contents, frame_bytes};
 use uuid::Uuid;
 
 #[cfg(not(any(target_family = "wasm", test)))]
@@ -54,7 +54,7 @@ pub fn guid(contents: &Contents) -> String {
     let Contents { structure, records, vertical, fixed } = contents;
     let bytes = match structure.one() {
         Some(one) => postcard::to_stdvec(&(one.parameters(), records, vertical, fixed)),
-        None => postcard::to_stdvec(&(FrameNumbers::from(structure).to_string(), records, vertical, fixed)),
+        None => postcard::to_stdvec(&(frame_bytes(structure), records, vertical, fixed)),
     };
     let bytes = bytes.expect("numbers and text can always be written");
     Uuid::new_v5(&build, &bytes).braced().to_string()

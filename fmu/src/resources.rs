@@ -1,21 +1,21 @@
 //! The content of the archive's folder `resources`, found through the URI that the host gives: the numbers of the structure, and
 //! the list of the records that were packed.
 
+use rocking::structure::ground::Point;
 use rocking::structure::parameters::ParameterError;
-use rocking::{Body, Floor, Ground, Mode, Modes, Structure, StructureError, Ties};
+use rocking::structure::quantity::Units;
+use rocking::{Body, Floor, Ground, Mode, Modes, Structure, StructureError};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 use std::{fs, io};
 
 /// The file with the parameters of one mass, in the archive's folder `resources`.
 pub const PARAMETERS_FILE: &str = "parameters.toml";
 
 /// The file with the numbers of many masses, in the same folder in place of [`PARAMETERS_FILE`].
-pub const FRAME_FILE: &str = "frame.txt";
+pub const FRAME_FILE: &str = "frame.bin";
 
 /// The file with the names of the records, in the same folder; there is none without records that the host may set.
 pub const RECORDS_FILE: &str = "records.toml";
@@ -44,108 +44,35 @@ pub struct Contents {
     pub fixed: bool,
 }
 
-/// The numbers from which a structure of many masses is made to the same bits: as text, three lines of numbers. TOML would
-/// take 40 kB of the library.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FrameNumbers {
-    /// m0, J0, m_s, S_1, I_2, B, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, and r if the structure has one.
-    body: Vec<f64>,
-    /// Of each mode mass, gamma, share, height, stiffness and damping.
-    modes: Vec<f64>,
-    /// Of each floor mass, height, and the displacement per coordinate of each mode.
-    floors: Vec<f64>,
-    /// Place, stiffness and damping of each contact point of ground that gives.
-    points: Vec<f64>,
+/// The numbers from which a structure of many masses is made to the same bits. TOML would take 40 kB of the library.
+pub fn frame_bytes(frame: &Structure) -> Vec<u8> {
+    let floor = |of: &Floor| (of.mass, of.height, of.shape.numbers().to_vec());
+    let floors = Vec::from_iter(frame.floors().iter().map(floor));
+    let points = frame.foundation().map(|of| &of.points[..]).unwrap_or_default();
+    let numbers = (frame.units(), frame.body(), frame.modes(), floors, points);
+    postcard::to_stdvec(&numbers).expect("numbers can always be written")
 }
 
-/// Numbers of a structure without r, and of a mode.
-const OF_BODY: usize = 14;
-const OF_MODE: usize = 6;
-const OF_POINT: usize = 3;
-
-/// Lines of other numbers, or of another count of them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Incomplete;
-
-impl Display for FrameNumbers {
-    fn fmt(&self, text: &mut Formatter) -> fmt::Result {
-        let points = [&self.points].into_iter().filter(|points| !points.is_empty());
-        for line in [&self.body, &self.modes, &self.floors].into_iter().chain(points) {
-            line.iter().try_for_each(|number| write!(text, "{number:?} "))?;
-            writeln!(text)?;
-        }
-        Ok(())
-    }
+/// The structure of these [`frame_bytes`].
+pub fn frame(bytes: &[u8]) -> Result<Structure, FrameError> {
+    type Numbers = (Units, Body, Vec<Mode>, Vec<(f64, f64, Vec<f64>)>, Vec<Point>);
+    let numbers = postcard::from_bytes::<Numbers>(bytes);
+    let (units, body, modes, floors, points) = numbers.map_err(|_| FrameError::NoNumbers)?;
+    let floor =
+        |(mass, height, shape): &(f64, f64, Vec<f64>)| Floor { mass: *mass, height: *height, shape: Modes::new(shape) };
+    let frame = Structure::of_body(body, &modes, &Vec::from_iter(floors.iter().map(floor)))?.measured_in(units);
+    if points.is_empty() { Ok(frame) } else { Ok(frame.on(&Ground::of_points(&points))?) }
 }
 
-impl FromStr for FrameNumbers {
-    type Err = Incomplete;
-
-    fn from_str(text: &str) -> Result<FrameNumbers, Incomplete> {
-        let mut lines = text.lines();
-        let number = |word: &str| word.parse().ok().filter(|number: &f64| number.is_finite());
-        let mut line =
-            || -> Option<Vec<f64>> { lines.next().unwrap_or_default().split_whitespace().map(number).collect() };
-        let (Some(body), Some(modes), Some(floors), Some(points)) = (line(), line(), line(), line()) else {
-            return Err(Incomplete);
-        };
-        let of_floor = 2 + modes.len() / OF_MODE;
-        let are_all = (OF_BODY..=OF_BODY + 1).contains(&body.len())
-            && modes.len().is_multiple_of(OF_MODE)
-            && floors.len().is_multiple_of(of_floor)
-            && points.len().is_multiple_of(OF_POINT);
-        if are_all { Ok(FrameNumbers { body, modes, floors, points }) } else { Err(Incomplete) }
-    }
-}
-
-impl From<&Structure> for FrameNumbers {
-    fn from(frame: &Structure) -> FrameNumbers {
-        let &Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties } = frame.body();
-        let Ties { P_0, k_t, xi_d, c_d, k_d, F_y } = ties;
-        let body = [m0, J0, m_s, S_1, I_2, B, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y].into_iter().chain(r);
-        let mode = |of: &Mode| [of.mass, of.gamma, of.share, of.height, of.stiffness, of.damping];
-        let floor = |of: &Floor| [&[of.mass, of.height], of.shape.numbers()].concat();
-        FrameNumbers {
-            body: body.collect(),
-            modes: frame.modes().iter().flat_map(mode).collect(),
-            floors: frame.floors().iter().flat_map(floor).collect(),
-            points: frame
-                .foundation()
-                .into_iter()
-                .flat_map(|of| &of.points)
-                .flat_map(|of| [of.xi, of.k, of.c])
-                .collect(),
-        }
-    }
-}
-
-impl FrameNumbers {
-    /// The structure.
-    pub fn frame(&self) -> Result<Structure, StructureError> {
-        let mut body = self.body.iter().copied();
-        let mut next = || body.next().unwrap_or(f64::NAN);
-        let [m0, J0, m_s, S_1, I_2, B, g, c_ratio] = std::array::from_fn(|_| next());
-        let [P_0, k_t, xi_d, c_d, k_d, F_y] = std::array::from_fn(|_| next());
-        let ties = Ties { P_0, k_t, xi_d, c_d, k_d, F_y };
-        let body = Body { m0, J0, m_s, S_1, I_2, B, r: body.next(), g, c_ratio, ties };
-        let mode = |&[mass, gamma, share, height, stiffness, damping]: &[f64; OF_MODE]| Mode {
-            mass,
-            gamma,
-            share,
-            height,
-            stiffness,
-            damping,
-        };
-        let modes: Vec<_> = self.modes.as_chunks().0.iter().map(mode).collect();
-        let floor = |of: &[f64]| Floor { mass: of[0], height: of[1], shape: Modes::new(&of[2..]) };
-        let floors = Vec::from_iter(self.floors.chunks_exact(2 + modes.len()).map(floor));
-        let frame = Structure::of_body(body, &modes, &floors)?;
-        if self.points.is_empty() {
-            return Ok(frame);
-        }
-        let list = |which: usize| self.points.iter().skip(which).step_by(OF_POINT).copied().collect();
-        frame.on(&Ground { xi: list(0), k: list(1), c: list(2), ..Ground::default() })
-    }
+/// Why bytes are no structure of many masses.
+#[derive(Debug, PartialEq, thiserror::Error)]
+pub enum FrameError {
+    /// Not the numbers that were exported.
+    #[error("not the numbers that were exported; export it again")]
+    NoNumbers,
+    /// Numbers that make no structure.
+    #[error(transparent)]
+    NoFrame(#[from] StructureError),
 }
 
 /// A record of an archive.
@@ -208,12 +135,9 @@ pub enum ResourceError {
     /// A parameter out of range.
     #[error("{file}: {1}", file = .0.display())]
     Refused(PathBuf, ParameterError),
-    /// Not the numbers of many masses.
-    #[error("{file}: not the lines of numbers that were exported; export it again", file = .0.display())]
-    NoNumbers(PathBuf),
-    /// Numbers that make no structure of many masses.
+    /// No structure of many masses.
     #[error("{file}: {1}", file = .0.display())]
-    NoFrame(PathBuf, Box<StructureError>),
+    NoFrame(PathBuf, Box<FrameError>),
 }
 
 impl Archive {
@@ -221,10 +145,8 @@ impl Archive {
     pub fn open(folder: PathBuf) -> Result<Archive, ResourceError> {
         let (of_many, file) = (folder.join(FRAME_FILE), folder.join(PARAMETERS_FILE));
         let structure = if of_many.exists() {
-            let text =
-                fs::read_to_string(&of_many).map_err(|error| ResourceError::Unreadable(of_many.clone(), error))?;
-            let numbers: FrameNumbers = text.parse().map_err(|_| ResourceError::NoNumbers(of_many.clone()))?;
-            numbers.frame().map_err(|error| ResourceError::NoFrame(of_many, Box::new(error)))?
+            let bytes = fs::read(&of_many).map_err(|error| ResourceError::Unreadable(of_many.clone(), error))?;
+            frame(&bytes).map_err(|error| ResourceError::NoFrame(of_many, Box::new(error)))?
         } else {
             Structure::new(read(&file)?).map_err(|error| ResourceError::Refused(file, error))?
         };
@@ -253,7 +175,7 @@ fn read<T: DeserializeOwned>(file: &Path) -> Result<T, ResourceError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rocking::Parameters;
+    use rocking::{Parameters, Ties};
 
     #[test]
     fn a_refusal_names_the_file_and_the_reason() {
@@ -290,20 +212,10 @@ mod tests {
         let floor = Floor { mass: 2.0, height: 3.0, shape: Modes::new(&[1.0]) };
         let frame = Structure::of_body(body, &[Mode::new(20.0, 0.02, 1.2, 4.0)], &[floor]).unwrap();
         let frame = frame.on(&Ground { f_v: Some(40.0), ..Ground::default() }).unwrap();
-        let whole = FrameNumbers::from(&frame).to_string();
-        let read = |text: &str| text.parse::<FrameNumbers>().map(|numbers| numbers.frame().unwrap());
-        assert_eq!(read(&whole), Ok(frame));
-        let lines: Vec<Vec<_>> = whole.lines().map(|line| line.split_whitespace().collect()).collect();
-        for (line, word) in (0..lines.len()).flat_map(|line| (0..lines[line].len()).map(move |word| (line, word))) {
-            let [mut less, mut none] = [lines.clone(), lines.clone()];
-            less[line].remove(word);
-            none[line][word] = "NaN";
-            for changed in [less, none] {
-                assert_eq!(
-                    read(&changed.iter().map(|line| line.join(" ") + "\n").collect::<String>()),
-                    Err(Incomplete)
-                );
-            }
+        let whole = frame_bytes(&frame);
+        assert_eq!(super::frame(&whole), Ok(frame));
+        for end in 0..whole.len() {
+            assert_eq!(super::frame(&whole[..end]), Err(FrameError::NoNumbers));
         }
     }
 }

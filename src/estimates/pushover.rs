@@ -298,10 +298,9 @@ mod tests {
     /// Three storeys, balanced mass by mass with their stiffness matrix; a file of modes has no floors that take the force.
     #[test]
     fn three_storeys_are_in_balance() {
-        let (mut base, m, h) = (Given::default(), Vector3::new(4e4, 4e4, 3e4), Vector3::new(3.5, 7.0, 10.5));
+        let (m, h) = (Vector3::new(4e4, 4e4, 3e4), Vector3::new(3.5, 7.0, 10.5));
         let [B, m0, P_0, k_t] = [1.5, 2e4, 3e4, 2e5];
-        let numbers = [("m0", m0), ("J0", 3e4), ("B", B), ("P_0", P_0), ("k_t", k_t)];
-        numbers.iter().for_each(|(name, value)| base.give(name, *value).unwrap());
+        let base = Given::of(&[("m0", m0), ("J0", 3e4), ("B", B), ("P_0", P_0), ("k_t", k_t)]).unwrap();
         let [a, b, c] = [6e6, 5e6, 4e6];
         let storeys: Vec<_> = [a, b, c].iter().zip(m.iter().zip(&h)).map(|(&k, (&m, &h))| Storey { m, h, k }).collect();
         let structure = Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap();

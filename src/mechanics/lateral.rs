@@ -442,116 +442,41 @@ mod tests {
     use super::*;
     use crate::Base;
     use crate::Body;
-    use crate::Ties;
     use crate::mechanics::energy::energy;
     use crate::mechanics::impact::{angular_momentum, energy_gained, land, resolve, restitution};
-    use crate::mechanics::instant::{Instant, Second};
-    use crate::mechanics::reactions::{Impulse, Reactions};
-    use crate::{Load, Parameters, Phase, Side, State};
+    use crate::mechanics::reactions::Impulse;
+    use crate::structure::description::{Damping, Storey};
+    use crate::structure::natural_quantities::Given;
+    use crate::{Phase, Side, State};
     use approx::assert_relative_eq;
     use nalgebra::{Matrix3, Vector3};
-    use std::ops::Deref;
-
-    /// Three masses on a base, with their modes.
-    struct Masses {
-        frame: Structure,
-        m: Vector3<f64>,
-        h: Vector3<f64>,
-        stiffness: Matrix3<f64>,
-        damping: Matrix3<f64>,
-        /// The shapes of the modes, by columns.
-        shapes: Matrix3<f64>,
-    }
-
-    impl Deref for Masses {
-        type Target = Structure;
-
-        fn deref(&self) -> &Structure {
-            &self.frame
-        }
-    }
-
-    impl Masses {
-        /// The masses `m` (kg) at the heights `h` (m), with the damping ratio `zeta` in each mode, on the base of `parameters`.
-        fn new(m: [f64; 3], h: [f64; 3], stiffness: Matrix3<f64>, zeta: f64, parameters: &Parameters) -> Masses {
-            let &Parameters { m0, B, J0, r, g, c_ratio, .. } = parameters;
-            let (m, h) = (Vector3::from(m), Vector3::from(h));
-            let root = Matrix3::from_diagonal(&m.map(f64::sqrt));
-            let inverse = root.try_inverse().unwrap();
-            let eigen = (inverse * stiffness * inverse).symmetric_eigen();
-            let shapes = inverse * eigen.eigenvectors * 30.0; // any scale of the shapes gives the same structure
-            let mass = Matrix3::from_diagonal(&m);
-            let mode = |j: usize| {
-                let shape = shapes.column(j);
-                let [mu, gamma, kappa] =
-                    [shape.into_owned(), Vector3::repeat(1.0), h].map(|with| shape.dot(&(mass * with)));
-                let omega = eigen.eigenvalues[j].sqrt();
-                Mode {
-                    mass: mu,
-                    gamma,
-                    share: gamma / mu,
-                    height: kappa / mu,
-                    stiffness: mu * omega * omega,
-                    damping: 2.0 * zeta * omega * mu,
-                }
-            };
-            let modes: Vec<_> = (0..3).map(mode).collect();
-            let weights = Matrix3::from_diagonal(&Vector3::from_fn(|j, _| modes[j].damping / modes[j].mass.powi(2)));
-            let damping = mass * shapes * weights * shapes.transpose() * mass;
-            let (S_1, I_2) = (m.dot(&h), m.dot(&h.component_mul(&h)));
-            let ties = Ties::default();
-            let body = Body { m0, J0, m_s: m.sum(), S_1, I_2, B, r: Some(r), g, c_ratio, ties };
-            let frame = Structure::of_body(body, &modes, &[]).unwrap();
-            Masses { frame, m, h, stiffness, damping, shapes }
-        }
-
-        /// The frame of three storeys whose numbers are known.
-        fn three_storeys() -> Masses {
-            let [a, b, c] = [60e6, 50e6, 40e6];
-            let stiffness = Matrix3::new(a + b, -b, 0.0, -b, b + c, -c, 0.0, -c, c);
-            let parameters = Parameters { m0: 20e3, B: 1.5, J0: 3e4, r: 0.93, ..Parameters::MCMANUS };
-            Masses::new([40e3, 40e3, 30e3], [3.5, 7.0, 10.5], stiffness, 0.02, &parameters)
-        }
-
-        /// Coordinates of the modes from displacements of the masses.
-        fn modal(&self, u: &Vector3<f64>) -> Modes {
-            let weighed = u.component_mul(&self.m);
-            Modes::each(self, |j, mode| self.shapes.column(j).dot(&weighed) / mode.mass)
-        }
-
-        fn state(&self, u: &Vector3<f64>, u_dot: &Vector3<f64>, theta: f64, theta_dot: f64) -> State<Modes> {
-            State { u: self.modal(u), u_dot: self.modal(u_dot), theta, theta_dot }
-        }
-
-        /// Forces of springs and dampers on the masses.
-        fn elastic(&self, u: &Vector3<f64>, u_dot: &Vector3<f64>) -> Vector3<f64> {
-            self.stiffness * u + self.damping * u_dot
-        }
-
-        fn no_force(&self) -> Modes {
-            Modes::each(self, |_, _| 0.0)
-        }
-    }
-
-    fn displacements() -> [Vector3<f64>; 2] {
-        [Vector3::new(0.02, -0.05, 0.11), Vector3::new(0.4, 0.7, -0.3)]
-    }
 
     /// Energy and angular momentum of the masses themselves, and the gains of energy at an impact and at a landing.
     #[test]
     fn energy_and_impact_are_those_of_the_masses() {
-        let frame = Masses::three_storeys();
-        let &Base { m0, B, J0, r, g, .. } = frame.base();
-        let [u, u_dot] = displacements();
+        let base = Given::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("r", 0.93)]).unwrap();
+        let storey = |m, h, k| Storey { m, h, k };
+        let storeys = [storey(40e3, 3.5, 60e6), storey(40e3, 7.0, 50e6), storey(30e3, 10.5, 40e6)];
+        let frame = Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap();
+        let (m, h) = (storeys.map(|of| of.m), storeys.map(|of| of.h));
+        let stiffness = Matrix3::new(110e6, -50e6, 0.0, -50e6, 90e6, -40e6, 0.0, -40e6, 40e6);
+        let &Base { m0, B, J0, r, g, m_t, .. } = frame.base();
+        let [u, u_dot] = [Vector3::new(0.02, -0.05, 0.11), Vector3::new(0.4, 0.7, -0.3)];
+        // coordinates of the modes from displacements of the masses
+        let modal = |u: &Vector3<f64>| {
+            let weighed =
+                |j| frame.floors().iter().zip(u).map(|(floor, u)| floor.mass * floor.shape.of(j) * u).sum::<f64>();
+            Modes::each(&frame, |j, mode| weighed(j) / mode.mass)
+        };
         for side in [Side::Right, Side::Left] {
             let (s, theta, theta_dot) = (side.sign(), side.sign() * 0.1, -0.3 * side.sign());
-            let state = frame.state(&u, &u_dot, theta, theta_dot);
+            let state = State { u: modal(&u), u_dot: modal(&u_dot), theta, theta_dot };
             let (sin, cos) = theta.sin_cos();
-            let mut expected = 0.5 * u.dot(&(frame.stiffness * u)) + m0 * g * s * B * sin;
+            let mut expected = 0.5 * u.dot(&(stiffness * u)) + m0 * g * s * B * sin;
             expected += 0.5 * (J0 + m0 * B * B) * theta_dot * theta_dot;
             let mut momentum = -(m0 * B * B - J0) * theta_dot;
             for i in 0..3 {
-                let (m, h) = (frame.m[i], frame.h[i]);
+                let (m, h) = (m[i], h[i]);
                 let (along, across) = (u_dot[i] + h * theta_dot, (s * B - u[i]) * theta_dot);
                 expected += 0.5 * m * (along * along + across * across) + m * g * ((s * B - u[i]) * sin + h * cos);
                 momentum += m * h * along - m * (B * B - u[i] * u[i]) * theta_dot;
@@ -564,72 +489,28 @@ mod tests {
             let energy_before = of(Phase::Rocking(side), &before);
             // (M17): a landing loses ½ D θ̇²
             let landed = land(&frame, &before);
-            let D = J0 + m0 * B * B + (0..3).map(|i| frame.m[i] * (s * B - u[i]).powi(2)).sum::<f64>();
+            let D = J0 + m0 * B * B + (0..3).map(|i| m[i] * (s * B - u[i]).powi(2)).sum::<f64>();
             let lost = energy_before - of(Phase::FullContact, &landed);
             assert_relative_eq!(lost, 0.5 * D * theta_dot * theta_dot, max_relative = 1e-9);
             // each mass keeps its horizontal momentum
             let Impulse { I_h, I_v, .. } =
                 Impulse::of(&frame, (Phase::Rocking(side), &before), (Phase::FullContact, &landed));
-            let mu = frame.m.dot(&u);
+            let mu = Vector3::from(m).dot(&u);
             assert_relative_eq!(I_h, 0.0, epsilon = 1e-9);
-            assert_relative_eq!(I_v, -(s * frame.base().m_t * B - mu) * theta_dot, max_relative = 1e-12);
+            assert_relative_eq!(I_v, -(s * m_t * B - mu) * theta_dot, max_relative = 1e-12);
             // (M19)
             let momentum = Structure::of_body(Body { r: None, ..*frame.body() }, frame.modes(), &[]).unwrap();
-            let of_masses = |with: &dyn Fn(usize) -> f64| (0..3).map(|i| frame.m[i] * with(i)).sum::<f64>();
+            let of_masses = |with: &dyn Fn(usize) -> f64| (0..3).map(|i| m[i] * with(i)).sum::<f64>();
             let rest = of_masses(&|i| B * B - u[i] * u[i]) + m0 * B * B - J0;
-            let height = of_masses(&|i| frame.h[i] * frame.h[i]);
+            let height = of_masses(&|i| h[i] * h[i]);
             let after = J0 + m0 * B * B + height + of_masses(&|i| (B + s * u[i]).powi(2));
             assert_relative_eq!(restitution(&momentum, side, &before), (height - rest) / after, max_relative = 1e-12);
             // (M16)
-            let going = State { u_dot: frame.modal(&(-s * u_dot)), ..before };
+            let going = State { u_dot: modal(&(-s * u_dot)), ..before };
             let (phase, after) = resolve(&frame, side, &going);
             assert_eq!((phase, after.theta_dot), (Phase::Rocking(side.opposite()), r.unwrap() * theta_dot));
             let gained = of(phase, &after) - of(Phase::Rocking(side), &going);
             assert_relative_eq!(energy_gained(&frame, side, &going), gained, max_relative = 1e-9);
         }
-    }
-
-    /// (M1) in full contact and (M7) while rocking, written for the masses, against the reactions and the accelerations of the
-    /// modes: R_m of (M2), and sB R_v.
-    #[test]
-    fn the_reactions_are_those_of_the_masses() {
-        let frame = Masses::three_storeys();
-        let &Base { m_t, B, J0, m0, g, .. } = frame.base();
-        let [u, u_dot] = displacements();
-        let Masses { m, h, .. } = &frame;
-        let load = Load { a_g: 3.0, F_t: frame.no_force(), a_v: -1.5 };
-        let weight = g + load.a_v;
-        let (elastic, mu) = (frame.elastic(&u, &u_dot), m.dot(&u));
-
-        let state = frame.state(&u, &u_dot, 0.0, 0.0);
-        let u_ddot = -elastic.component_div(m) - Vector3::repeat(load.a_g);
-        let second = Second { u_ddot: frame.modal(&u_ddot), theta_ddot: 0.0 };
-        let x = Instant::of(&frame, Phase::FullContact, &state, load);
-        let Reactions { R_h, R_v, R_m } = Reactions::at(&x, &second);
-        assert_relative_eq!(R_h, elastic.sum() - m0 * load.a_g, max_relative = 1e-12);
-        assert_relative_eq!(R_v, m_t * weight, max_relative = 1e-12);
-        assert_relative_eq!(R_m, h.dot(&elastic) + mu * weight, max_relative = 1e-12);
-
-        let (s, theta, theta_dot) = (-1.0, -0.2, 0.6);
-        let state = frame.state(&u, &u_dot, theta, theta_dot);
-        let (sin, cos) = f64::sin_cos(theta);
-        let d = Vector3::repeat(s * B) - u;
-        let D = J0 + m0 * B * B + d.dot(&m.component_mul(&d));
-        let centrifugal = theta_dot * theta_dot * h.dot(&m.component_mul(&d));
-        let theta_ddot = (h.dot(&elastic) + centrifugal + 2.0 * theta_dot * d.dot(&m.component_mul(&u_dot))
-            - (s * m_t * B - mu) * (weight * cos + load.a_g * sin))
-            / D;
-        let u_ddot = -elastic.component_div(m) - h * theta_ddot - d * theta_dot * theta_dot
-            + Vector3::repeat(weight * sin - load.a_g * cos);
-        let x = Instant::of(&frame, Phase::Rocking(Side::Left), &state, load);
-        let second = Second { u_ddot: frame.modal(&u_ddot), theta_ddot };
-        let Reactions { R_h, R_v, R_m } = Reactions::at(&x, &second);
-        let across = s * m_t * B - mu;
-        let first_moment = m.dot(h);
-        let p_x = m.dot(&u_ddot) + first_moment * theta_ddot + across * theta_dot * theta_dot;
-        let p_y = across * theta_ddot - 2.0 * theta_dot * m.dot(&u_dot) - first_moment * theta_dot * theta_dot;
-        assert_relative_eq!(R_h, -(m_t * load.a_g + p_x * cos + p_y * sin), max_relative = 1e-12);
-        assert_relative_eq!(R_v, m_t * weight - p_x * sin + p_y * cos, max_relative = 1e-12);
-        assert_relative_eq!(R_m, s * B * R_v, max_relative = 1e-11);
     }
 }

@@ -161,8 +161,7 @@ mod tests {
             u in prop::array::uniform3(-9.0..9.0f64), u_dot in prop::array::uniform3(-90.0..90.0f64), theta in -1.5..1.5f64,
             forces in prop::array::uniform3(-1e5..1e5f64), more in 1.0..1.2f64,
         ) {
-            let mut base = Given::default();
-            [("m0", 20e3), ("J0", 3e4), ("B", 1.5)].iter().for_each(|(name, value)| base.give(name, *value).unwrap());
+            let base = Given::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5)]).unwrap();
             let storeys = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)].map(|(m, h, k)| Storey { m, h, k });
             let structure = Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap();
             let [u, u_dot] = [u, u_dot].map(|of| Modes::new(&of));

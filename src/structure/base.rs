@@ -1,6 +1,6 @@
 //! The rigid base of a structure and the ties between the base and the ground, by their numbers.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The rigid base of a structure, with all mass that no mode carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +32,7 @@ pub struct Base {
 }
 
 /// The tendon and the dissipators between the base and the ground, by their parameters.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ties {
     /// Prestress of the tendon with the base down, N.
     pub P_0: f64,

@@ -566,9 +566,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn base(numbers: &[(&str, f64)]) -> Given {
-        let mut given = Given::default();
-        numbers.iter().try_for_each(|(name, value)| given.give(name, *value)).unwrap();
-        given
+        Given::of(numbers).unwrap()
     }
 
     fn usual() -> Given {

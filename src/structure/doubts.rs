@@ -118,10 +118,7 @@ mod tests {
     #[test]
     fn storeys_in_another_unit_are_doubted() {
         let doubts = |[of_m, of_h, of_k]: [f64; 3]| {
-            let mut base = Given::default();
-            for (name, value) in [("m0", 2e4), ("J0", 3e4), ("B", 1.5 * of_h)] {
-                base.give(name, value).unwrap();
-            }
+            let base = Given::of(&[("m0", 2e4), ("J0", 3e4), ("B", 1.5 * of_h)]).unwrap();
             let storey = |m, h, k| Storey { m: of_m * m, h: of_h * h, k: of_k * k };
             let storeys = [storey(4e4, 3.5, 6e7), storey(3e4, 7.0, 4e7)];
             Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap().doubts().len()

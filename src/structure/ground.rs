@@ -43,7 +43,7 @@ pub struct Ground {
 }
 
 /// A contact point: its place from the middle of the base to the right (m), its stiffness (N/m) and its damping (N·s/m).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub struct Point {
     pub xi: f64,
@@ -102,6 +102,12 @@ fn ensure(is_so: bool, message: impl FnOnce() -> String) -> Result<(), GroundErr
 }
 
 impl Ground {
+    /// Ground of these `points`.
+    pub fn of_points(points: &[Point]) -> Ground {
+        let list = |of: fn(&Point) -> f64| points.iter().map(of).collect();
+        Ground { xi: list(|at| at.xi), k: list(|at| at.k), c: list(|at| at.c), ..Ground::default() }
+    }
+
     /// The same ground with numbers in SI units.
     pub fn in_si(mut self, units: Units) -> Ground {
         let to_si = |unit: &'static str| move |value: &mut f64| *value = units.in_si(*value, unit);

@@ -2,10 +2,10 @@
 
 use crate::Modes;
 use crate::mechanics::lateral::Coordinates;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A mode of vibration in full contact: an oscillator on the base. One mass is one mode with the shape 1.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Mode {
     /// Modal mass μ = φᵀMφ, kg.
     pub mass: f64,

@@ -234,6 +234,12 @@ impl Natural {
 }
 
 impl Given {
+    /// These numbers by their names.
+    pub fn of(numbers: &[(&str, f64)]) -> Result<Given, GivenError> {
+        let mut given = Given::default();
+        numbers.iter().try_for_each(|(name, value)| given.give(name, *value)).map(|()| given)
+    }
+
     /// Adds the number called `name`.
     pub fn give(&mut self, name: &str, value: f64) -> Result<(), GivenError> {
         let name = names().find(|known| *known == name).ok_or_else(|| GivenError::Unknown { name: name.into() })?;
@@ -444,9 +450,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn given(numbers: &[(&str, f64)]) -> Given {
-        let mut given = Given::default();
-        numbers.iter().for_each(|(name, value)| given.give(name, *value).unwrap());
-        given
+        Given::of(numbers).unwrap()
     }
 
     fn derived(parameters: Parameters, name: &str) -> f64 {

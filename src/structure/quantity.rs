@@ -1,11 +1,11 @@
 //! A named number with a unit and a range: the one table that checks, messages, files and the FMU read.
 
 use crate::digits::{short, with_unit};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::fmt::Display;
 
 /// The units in which a description gives masses and forces; lengths are in m and times in s.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Units {
     /// SI units.
     #[default]

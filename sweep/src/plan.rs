@@ -561,9 +561,7 @@ mod tests {
     fn a_building_is_swept_and_counted() {
         let storeys = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)].map(|(m, h, k)| Storey { m, h, k });
         let core = |k_t| {
-            let mut base = Given::default();
-            let numbers = [("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("k_t", k_t)];
-            numbers.iter().for_each(|(name, value)| base.give(name, *value).unwrap());
+            let base = Given::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("k_t", k_t)]).unwrap();
             Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap()
         };
         let cores = Population::new("cores", core(0.0)).vary("k_t", vec![0.0, 1e6]).unwrap();

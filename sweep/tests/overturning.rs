@@ -17,8 +17,7 @@ fn block(slenderness: f64) -> Structure {
 
 /// Three storeys of 10.5 m on a base of this half-width `B` (m) and mass `m0` (kg).
 fn storeys(B: f64, m0: f64) -> Structure {
-    let mut base = Given::default();
-    [("m0", m0), ("J0", 0.0), ("B", B)].iter().for_each(|(name, value)| base.give(name, *value).unwrap());
+    let base = Given::of(&[("m0", m0), ("J0", 0.0), ("B", B)]).unwrap();
     let storeys = [3.5, 7.0, 10.5].map(|h| Storey { m: 4e4, h, k: 6e7 });
     Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap()
 }

@@ -1,12 +1,11 @@
 //! Curves of runs from outside: what straight lines between their points say, beside the motion itself.
 
+use crate::modes::three_storeys;
 use rocking::engine::piece::Sample;
 use rocking::run::curve::{Point, drawn};
 use rocking::run::fall::Found;
 use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError};
-use rocking::structure::description::{Damping, Storey};
-use rocking::structure::natural_quantities::Given;
 use rocking::{Detail, Modes, OneMass, Output, Parameters, Phase, State, Structure, TransitionKind};
 
 /// Lifts, bounces and lands the McManus specimen at every level: two sines that die away.
@@ -99,12 +98,7 @@ fn a_curve_has_no_more_points_than_a_picture_needs() {
 /// Three storeys whose lines and peaks are those of their samples, floor by floor.
 #[test]
 fn lines_of_many_masses_stay_as_close_to_each_floor() {
-    let mut base = Given::default();
-    for (name, value) in [("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("r", 0.93), ("P_0", 1e5), ("k_t", 1e6)] {
-        base.give(name, value).unwrap();
-    }
-    let storeys = [(40e3, 3.5, 60e6), (40e3, 7.0, 50e6), (30e3, 10.5, 40e6)].map(|(m, h, k)| Storey { m, h, k });
-    let frame = Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap();
+    let frame = three_storeys(0.02, &[("r", 0.93), ("P_0", 1e5), ("k_t", 1e6)]);
     let ground = ground();
     let run = Run { end: End::At(6.0), ..Run::of_modes(frame, &ground) };
     let outputs = drawn(&run.structure);

@@ -1,13 +1,12 @@
 //! Ground that gives: printed numbers, closed forms, energy. An independent integration is in `test_ground.py`.
 
+use crate::modes::three_storeys;
 use approx::assert_relative_eq;
 use rocking::engine::Settings;
 use rocking::engine::piece::Sample;
 use rocking::run::peaks::Peaking;
 use rocking::run::record::Record;
 use rocking::run::{End, Ending, Run};
-use rocking::structure::description::{Damping, Storey};
-use rocking::structure::natural_quantities::Given;
 use rocking::{
     Detail, Engine, Ground, LinearLoad, Modes, Output, Parameters, Restraints, State, Structure, Transition,
     TransitionKind,
@@ -24,12 +23,8 @@ fn one_mass(parameters: Parameters, ground: Ground) -> Structure {
     Structure::new(parameters).unwrap().on(&ground).unwrap()
 }
 
-/// The frame of three storeys whose numbers are known.
 fn frame(ground: Ground) -> Structure {
-    let mut base = Given::default();
-    [("m0", 20e3), ("J0", 3e4), ("B", 1.5)].iter().for_each(|(name, value)| base.give(name, *value).unwrap());
-    let storeys = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)].map(|(m, h, k)| Storey { m, h, k });
-    Structure::from_storeys(&base, &Damping::All(0.0), &storeys).unwrap().on(&ground).unwrap()
+    three_storeys(0.0, &[]).on(&ground).unwrap()
 }
 
 fn engine(structure: &Structure, u: f64, theta: f64) -> Engine<Modes> {

@@ -1,12 +1,12 @@
 //! Structures of many masses: energy, rates, and one mass as a mode. An independent integration of the masses is in `test_frames.py`.
 
-use nalgebra::{Matrix3, Vector3};
 use rocking::engine::Settings;
-
 use rocking::mechanics::restraint::Restraint;
 use rocking::run::record::Record;
 use rocking::run::validity::Limits;
 use rocking::run::{End, Run};
+use rocking::structure::description::{Damping, Storey};
+use rocking::structure::natural_quantities::Given;
 use rocking::{
     Body, Detail, Engine, Floor, LinearLoad, Load, Mode, Modes, Motion, OneMass, Output, Parameters, Progress,
     Reactions, State, Structure, Ties, Transition, TransitionKind,
@@ -15,37 +15,19 @@ use std::f64::consts::TAU;
 
 const G: f64 = 9.81;
 
-/// Three masses on a base.
-struct Masses {
-    frame: Structure,
+/// Three storeys whose response is known, with `more` numbers of their base.
+pub fn three_storeys(zeta: f64, more: &[(&str, f64)]) -> Structure {
+    let base = Given::of(&[&[("m0", 20e3), ("J0", 3e4), ("B", 1.5)], more].concat()).unwrap();
+    let storeys = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)].map(|(m, h, k)| Storey { m, h, k });
+    Structure::from_storeys(&base, &Damping::All(zeta), &storeys).unwrap()
 }
 
-impl Masses {
-    /// Three storeys whose response is known.
-    fn new(zeta: f64, r: f64) -> Masses {
-        Masses::with(zeta, r, 3, 1.0)
-    }
-
-    /// The storeys with `kept` of their modes; all but the first `stiffer` in frequency by this factor.
-    fn with(zeta: f64, r: f64, kept: usize, stiffer: f64) -> Masses {
-        let (m, h) = (Vector3::new(40e3, 40e3, 30e3), Vector3::new(3.5, 7.0, 10.5));
-        let stiffness = Matrix3::new(110e6, -50e6, 0.0, -50e6, 90e6, -40e6, 0.0, -40e6, 40e6);
-        let (m0, J0, B) = (20e3, 3e4, 1.5);
-        let root = Matrix3::from_diagonal(&m.map(|m: f64| 1.0 / m.sqrt()));
-        let eigen = (root * stiffness * root).symmetric_eigen();
-        let shapes = root * eigen.eigenvectors;
-        let lowest = eigen.eigenvalues.imin();
-        let mode = |j: usize| {
-            let of = |with: Vector3<f64>| shapes.column(j).dot(&m.component_mul(&with));
-            let factor = if j == lowest { 1.0 } else { stiffer };
-            Mode::new(factor * eigen.eigenvalues[j].sqrt(), zeta, of(Vector3::repeat(1.0)), of(h))
-        };
-        let body = body([m0, J0, B], [m.sum(), m.dot(&h), m.dot(&h.component_mul(&h))], r, G);
-        let shape = |i: usize| Modes::new(&[0, 1, 2].map(|j| shapes[(i, j)]));
-        let floors = [0, 1, 2].map(|i| Floor { mass: m[i], height: h[i], shape: shape(i) });
-        let frame = Structure::of_body(body, &[0, 1, 2].map(mode), &floors).unwrap();
-        Masses { frame: frame.keeping(kept).unwrap() }
-    }
+/// These storeys with `kept` of their modes; all but the first `stiffer` in frequency by this factor.
+fn storeys(zeta: f64, r: f64, kept: usize, stiffer: f64) -> Structure {
+    let frame = three_storeys(zeta, &[("r", r)]);
+    let stiff = |of: &Mode| Mode { stiffness: of.stiffness * stiffer * stiffer, damping: of.damping * stiffer, ..*of };
+    let modes = [&frame.modes()[..1], &Vec::from_iter(frame.modes()[1..].iter().map(stiff))].concat();
+    Structure::of_body(*frame.body(), &modes, frame.floors()).unwrap().keeping(kept).unwrap()
 }
 
 fn body([m0, J0, B]: [f64; 3], [m_s, S_1, I_2]: [f64; 3], r: f64, g: f64) -> Body {
@@ -73,15 +55,15 @@ fn pulse(i: usize) -> f64 {
 #[test]
 fn a_frame_keeps_its_energy_between_impacts() {
     for kept in [3, 1] {
-        keeps_its_energy(&Masses::with(0.0, 0.95, kept, 1.0), kept);
+        keeps_its_energy(&storeys(0.0, 0.95, kept, 1.0), kept);
     }
 }
 
-fn keeps_its_energy(masses: &Masses, modes: usize) {
+fn keeps_its_energy(frame: &Structure, modes: usize) {
     let mut state = at_rest(modes);
     (state.u, state.theta) = (Modes::new(&[2.0, -1.0, 0.5][..modes]), 0.03);
     let settings = Settings { detail: Detail::Nonlinear, ..Settings::default() };
-    let mut engine = Engine::of_modes(masses.frame.clone(), state, 0.0, settings).unwrap();
+    let mut engine = Engine::of_modes(frame.clone(), state, 0.0, settings).unwrap();
     let (mut last, mut seen, mut impacts, mut pieces) = (engine.energy(), 0, 0, 0);
     for _ in 0..600 {
         engine.advance(0.01, ground(modes, 0.0, 0.0, 0.01), &mut ()).unwrap();
@@ -105,16 +87,16 @@ fn keeps_its_energy(masses: &Masses, modes: usize) {
 fn modes_left_out_are_the_limit_of_stiff_modes() {
     let forces = |t: f64| [50e3 * t, -60e3 * t, 90e3 * t];
     for (theta, theta_dot, duration, transitions) in [(1e-3, 0.2, 20, 0), (0.0, 0.0, 24, 1)] {
-        let of = |masses: Masses| {
-            let modes = masses.frame.modes().len();
+        let of = |frame: Structure| {
+            let modes = frame.modes().len();
             let start = State { theta, theta_dot, ..at_rest(modes) };
-            let mut engine = Engine::of_modes(masses.frame.clone(), start, 0.0, Settings::default()).unwrap();
+            let mut engine = Engine::of_modes(frame.clone(), start, 0.0, Settings::default()).unwrap();
             for i in 0..duration {
-                let at = |i| masses.frame.load(1.2 * pulse(i), 0.0, &forces(0.01 * i as f64)).unwrap();
+                let at = |i| frame.load(1.2 * pulse(i), 0.0, &forces(0.01 * i as f64)).unwrap();
                 let slope = |from: f64, to: f64| (to - from) / 0.01;
                 let [from, to] = [at(i), at(i + 1)];
                 let rate = forces(1.0).into_iter().zip(forces(0.0)).map(|(to, from)| to - from);
-                let rate = masses.frame.load(slope(from.a_g, to.a_g), 0.0, &Vec::from_iter(rate)).unwrap();
+                let rate = frame.load(slope(from.a_g, to.a_g), 0.0, &Vec::from_iter(rate)).unwrap();
                 engine.advance(0.01, LinearLoad { value: from, slope: rate }, &mut ()).unwrap();
             }
             assert_eq!(engine.motion().transitions, transitions);
@@ -122,7 +104,7 @@ fn modes_left_out_are_the_limit_of_stiff_modes() {
         };
         let mut off = Vec::new();
         for stiffer in [30.0, 300.0] {
-            off.push((of(Masses::with(0.0, 0.93, 3, stiffer)) / of(Masses::with(0.0, 0.93, 1, 1.0)) - 1.0).abs());
+            off.push((of(storeys(0.0, 0.93, 3, stiffer)) / of(storeys(0.0, 0.93, 1, 1.0)) - 1.0).abs());
         }
         assert!(off[1] < 0.15 * off[0] && off[1] < 1e-3, "{theta}: {off:?}");
     }
@@ -178,7 +160,7 @@ fn a_frame_without_modes_is_the_rigid_limit() {
 #[test]
 fn rates_are_the_slopes_of_states_outputs_and_reactions() {
     for (kept, theta) in [(3, -0.02), (1, -0.02), (3, 0.0), (1, 0.0)] {
-        let frame = Masses::with(0.02, 0.93, kept, 1.0).frame;
+        let frame = storeys(0.02, 0.93, kept, 1.0);
         let of = |numbers: [f64; 3]| Modes::new(&numbers[..kept]);
         let (u, u_dot) = (of([0.3, 0.1, -0.05]), of([5.0, -2.0, 1.0]));
         let initial = State { u, u_dot, theta, theta_dot: if theta == 0.0 { 0.0 } else { -0.4 } };
@@ -232,7 +214,7 @@ fn modes_leave_all_their_moments_or_none() {
 
 #[test]
 fn what_fits_no_frame_is_refused_with_the_remedy() {
-    let frame = Masses::new(0.02, 0.93).frame;
+    let frame = storeys(0.02, 0.93, 3, 1.0);
     assert_eq!(frame.keeping(4).unwrap_err().to_string(), "4 modes cannot be kept of 3: keep 0 to 3");
     let without_moment = Structure::of_body(Body { S_1: 0.0, ..*frame.body() }, frame.modes(), frame.floors());
     assert_eq!(

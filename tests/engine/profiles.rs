@@ -23,13 +23,7 @@ fn base(parameters: &Parameters) -> Given {
     let &Parameters { m0, B, J0, r, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
     let own = [("m0", m0), ("B", B), ("J0", J0), ("r", r), ("g", g), ("c_ratio", c_ratio)];
     let ties = [("P_0", P_0), ("k_t", k_t), ("xi_d", xi_d), ("c_d", c_d), ("k_d", k_d), ("F_y", F_y)];
-    given(&[own, ties].concat())
-}
-
-fn given(numbers: &[(&str, f64)]) -> Given {
-    let mut given = Given::default();
-    numbers.iter().for_each(|(name, value)| given.give(name, *value).unwrap());
-    given
+    Given::of(&[own, ties].concat()).unwrap()
 }
 
 /// At rest, and with dissipators from a start beyond their yield.
@@ -89,15 +83,8 @@ fn assert_same_findings(expected: &Findings, found: &Findings) {
 }
 
 /// Three storeys, held down by a tendon of this prestress (N) and stiffness (N/m).
-fn three_storeys(P_0: f64, k_t: f64) -> Structure {
-    damped_storeys(P_0, k_t, 0.02)
-}
-
-fn damped_storeys(P_0: f64, k_t: f64, zeta: f64) -> Structure {
-    let storeys = [(40e3, 3.5, 60e6), (40e3, 7.0, 50e6), (30e3, 10.5, 40e6)].map(|(m, h, k)| Storey { m, h, k });
-    let parameters =
-        Parameters { m0: 20e3, B: 1.5, J0: 3e4, r: 0.93, g: 9.81, c_ratio: 1.0, P_0, k_t, ..Parameters::MCMANUS };
-    Structure::from_storeys(&base(&parameters), &Damping::All(zeta), &storeys).unwrap()
+fn tied_storeys(P_0: f64, k_t: f64, zeta: f64) -> Structure {
+    crate::modes::three_storeys(zeta, &[("r", 0.93), ("P_0", P_0), ("k_t", k_t)])
 }
 
 /// The samples are 50 µs apart. They miss a peak just before a transition by the rate there. Modes that are left out ride rigidly, so
@@ -106,7 +93,7 @@ fn damped_storeys(P_0: f64, k_t: f64, zeta: f64) -> Structure {
 fn a_profile_holds_every_sample_and_no_more() {
     let ground = ground();
     for modes in 0..=3 {
-        let frame = three_storeys(0.0, 0.0).keeping(modes).unwrap();
+        let frame = tied_storeys(0.0, 0.0, 0.02).keeping(modes).unwrap();
         let run = Run { end: End::At(4.0), ..Run::of_modes(frame.clone(), &ground) };
         let (profile, finish) = run.peaks().unwrap();
         assert!(finish.motion.transitions > 2, "{}", finish.motion.transitions);
@@ -154,7 +141,7 @@ fn a_profile_holds_every_sample_and_no_more() {
 fn the_peak_of_the_tendon_holds_every_sample_and_no_more() {
     let ground = ground();
     for (k_t, detail) in [(2e6, Detail::Auto), (2e6, Detail::Linear), (2e6, Detail::Rigid), (0.0, Detail::Auto)] {
-        let run = Run { detail, end: End::At(4.0), ..Run::of_modes(three_storeys(1e5, k_t), &ground) };
+        let run = Run { detail, end: End::At(4.0), ..Run::of_modes(tied_storeys(1e5, k_t, 0.02), &ground) };
         let (peak, mut largest) = (run.peaks().unwrap().0.P_t(), (0.0, 0.0));
         let times = (0..80_000).map(|i| f64::from(i) * 5e-5);
         run.sample(
@@ -183,7 +170,7 @@ fn a_long_leap_in_full_contact_holds_every_sample() {
     let (times, a_g) = (vec![0.0, 20.0, 60.0, 61.0], vec![0.3, -0.2, 0.9, 0.0]);
     let ground = Record::from_samples("", times, a_g).unwrap();
     for kept in [1, 3] {
-        let frame = three_storeys(1e4, 0.0).keeping(kept).unwrap();
+        let frame = tied_storeys(1e4, 0.0, 0.02).keeping(kept).unwrap();
         let run = Run { end: End::At(70.0), ..Run::of_modes(frame.clone(), &ground) };
         let (profile, finish) = run.peaks().unwrap();
         assert_eq!(finish.motion.transitions, 0);
@@ -213,7 +200,7 @@ fn a_long_leap_in_full_contact_holds_every_sample() {
 fn a_long_rest_is_seen_at_once() {
     let ground = ground();
     let [short, long] = [1e2, 1e9].map(|end| {
-        let run = Run { end: End::At(end), ..Run::of_modes(three_storeys(1e4, 2e6), &ground) };
+        let run = Run { end: End::At(end), ..Run::of_modes(tied_storeys(1e4, 2e6, 0.02), &ground) };
         let findings = run.validity(Limits::default()).unwrap().0;
         (run.peaks().unwrap().0, findings.worst)
     });
@@ -236,7 +223,7 @@ fn a_rest_without_damping_ends() {
         [&one, &short].map(|run| run.validity(Limits::default()).unwrap().0.worst.map(|it| it.value));
     assert_eq!(worst, expected);
 
-    let many = Run { end: End::At(1e9), ..Run::of_modes(damped_storeys(1e4, 2e6, 0.0), &ground) };
+    let many = Run { end: End::At(1e9), ..Run::of_modes(tied_storeys(1e4, 2e6, 0.0), &ground) };
     assert_eq!(many.follow(&mut ()).unwrap().motion.time, 1e9);
     let is_refused =
         |error: RunError| matches!(error, RunError::Advance { cause: AdvanceError::TooManyPolynomials { .. }, .. });
@@ -247,7 +234,7 @@ fn a_rest_without_damping_ends() {
 #[test]
 fn the_hard_landing_of_a_squat_structure_without_modes_is_an_impact() {
     let storeys = [(40e3, 3.5, 60e6), (40e3, 7.0, 50e6)].map(|(m, h, k)| Storey { m, h, k });
-    let squat = given(&[("m0", 20e3), ("B", 7.5), ("J0", 3e4)]);
+    let squat = Given::of(&[("m0", 20e3), ("B", 7.5), ("J0", 3e4)]).unwrap();
     let frame = Structure::from_storeys(&squat, &Damping::All(0.02), &storeys).unwrap();
     let ground = Record::at_rest(2.0);
     let run = Run { detail: Detail::Rigid, end: End::At(2.0), ..Run::of_modes(frame, &ground) };

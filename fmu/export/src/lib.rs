@@ -12,9 +12,10 @@ pub use ::model_description::Version;
 use ::model_description::archive::{Entry, archive};
 use FlexibleRocking::ground::GroundRecord;
 pub use FlexibleRocking::resources::Contents;
-use FlexibleRocking::resources::{FRAME_FILE, FrameNumbers, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records};
+use FlexibleRocking::resources::{
+    FRAME_FILE, FrameError, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records, frame, frame_bytes,
+};
 pub use library::{Library, LibraryError, Platform};
-use rocking::StructureError;
 use rocking::run::record::SamplesError;
 use rocking_records::RecordError;
 use std::path::{Path, PathBuf};
@@ -76,7 +77,7 @@ pub enum ExportError {
     SamePlatform(Platform),
     /// A structure of many masses without modes.
     #[error("the FMU moves modes: {0}; for a rigid structure set detail = rigid")]
-    Structure(#[from] StructureError),
+    Structure(#[from] FrameError),
     /// The vertical component does not belong to the record.
     #[error(transparent)]
     NoPair(#[from] SamplesError),
@@ -118,7 +119,7 @@ pub fn export(
         return Err(ExportError::SamePlatform(two[0].platform));
     }
     if contents.structure.one().is_none() {
-        FrameNumbers::from(&contents.structure).frame()?;
+        frame(&frame_bytes(&contents.structure))?;
     }
     let mut files = Vec::new();
     let mut pack = |contents: &Contents, (path, content): RecordFile| {
@@ -162,13 +163,13 @@ fn entries(
     let icon = if version == Version::Fmi2 { "model.png" } else { "terminalsAndIcons/icon.png" };
     let mut entries = vec![entry("modelDescription.xml", description.into()), entry(icon, ICON.to_vec())];
     let (file, numbers) = match contents.structure.one() {
-        Some(one) => (PARAMETERS_FILE, toml::to_string(one.parameters())?),
-        None => (FRAME_FILE, FrameNumbers::from(&contents.structure).to_string()),
+        Some(one) => (PARAMETERS_FILE, toml::to_string(one.parameters())?.into()),
+        None => (FRAME_FILE, frame_bytes(&contents.structure)),
     };
     entries.extend([
         entry("documentation/index.html", page.into()),
         entry("documentation/licenses/license.txt", LICENSES.into()),
-        entry(&format!("resources/{file}"), numbers.into()),
+        entry(&format!("resources/{file}"), numbers),
     ]);
     if !records.is_empty() || contents.fixed {
         let Contents { records: record, vertical, fixed, .. } = contents.clone();

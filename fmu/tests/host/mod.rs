@@ -4,7 +4,7 @@
 use FlexibleRocking::any::AnyUnit;
 use FlexibleRocking::fmi2::{self, CallbackFunctions, CallbackLogger, EventInfo};
 use FlexibleRocking::fmi3::{self, IntermediateUpdateCallback, LogMessageCallback};
-use FlexibleRocking::resources::{Contents, FRAME_FILE, FrameNumbers, PARAMETERS_FILE};
+use FlexibleRocking::resources::{Contents, FRAME_FILE, PARAMETERS_FILE, frame_bytes};
 use FlexibleRocking::unit::{Condition, Course};
 use FlexibleRocking::variables::Table;
 use fmi_unit::interface::Stepping;
@@ -116,7 +116,7 @@ pub fn resources_of_many() -> TempDir {
     let frame = Structure::of_body(body, &[Mode::new(20.0, 0.02, 250.0, 1.4e3)], &[floor(3.5, 2e-3), floor(7.0, 4e-3)])
         .unwrap();
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join(FRAME_FILE), FrameNumbers::from(&frame).to_string()).unwrap();
+    std::fs::write(folder.path().join(FRAME_FILE), frame_bytes(&frame)).unwrap();
     folder
 }
 
