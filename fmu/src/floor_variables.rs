@@ -75,7 +75,7 @@ fn output(of: Output, frame: &Structure) -> Row {
         Output::v_t(_) => &["u", "u_dot", "theta", "theta_dot"],
         Output::y | Output::P_t | Output::settlement | Output::settled(_) | Output::lifted(_) => &["y", "theta"],
         Output::N_left | Output::N_right | Output::N(_) | Output::pressure => &["y", "y_dot", "theta", "theta_dot"],
-        Output::contact | Output::E_foundation => &[],
+        _ => &[],
     };
     let is_local = matches!(of, Output::theta_dot | Output::u_dot(_));
     let causality = if is_local { Causality::Local } else { Causality::Output };

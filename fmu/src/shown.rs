@@ -5,7 +5,7 @@ use crate::setup::Setup;
 use crate::variables::Source;
 use rocking::engine::Moves;
 use rocking::engine::piece::Sample;
-use rocking::run::peaks::{Peak, Peaking};
+use rocking::run::peaks::Peak;
 use rocking::{Load, Reactions, State};
 use std::cell::OnceCell;
 
@@ -59,7 +59,7 @@ impl<'a, Q: Moves> Shown<'a, Q> {
     pub fn value(&self, source: Source) -> Option<f64> {
         let Shown { scene, setup, load, .. } = *self;
         let structure = scene.engine.structure();
-        let peak = |of: Peaking| match setup.peaks && !scene.is_integrated_outside() {
+        let peak = |of: Output| match setup.peaks && !scene.is_integrated_outside() {
             true => scene.peaks(load).peaks().peak(of),
             false => Some(Peak { magnitude: f64::NAN, time: f64::NAN }),
         };

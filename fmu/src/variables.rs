@@ -10,7 +10,6 @@ use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::mechanics::state::{COMPONENTS, INITIAL_VALUES};
 use rocking::run::ground_motion::{PLACEMENT, Placement};
 use rocking::run::outside_step::INDICATORS;
-use rocking::run::peaks::Peaking;
 use rocking::run::validity::{ASSUMPTIONS, Assumption};
 use rocking::structure::derived::{DERIVED, Derived};
 use rocking::structure::parameters::PARAMETERS;
@@ -49,8 +48,8 @@ pub enum Source {
     Detail,
     /// A ground acceleration, the input and the record; whether it is the vertical one.
     Ground(bool),
-    Peak(Peaking),
-    PeakInstant(Peaking),
+    Peak(Output),
+    PeakInstant(Output),
     /// The worst value of one of [`ASSUMPTIONS`].
     Worst(usize),
     /// The instant of the worst value of one of [`ASSUMPTIONS`].
@@ -416,8 +415,8 @@ fn event_indicators() -> [Row; INDICATORS] {
 
 /// Largest magnitudes and their instants. One mass may have a tendon and dissipators.
 fn peaks(structure: &Structure) -> Vec<Row> {
-    let mut all: Vec<_> = Peaking::of(structure).collect();
-    let missing = Peaking::OF_TIES.into_iter().filter(|of| structure.one().is_some() && !all.contains(of));
+    let mut all = Output::with_peak(structure);
+    let missing = Output::OF_TIES.into_iter().filter(|of| structure.one().is_some() && !all.contains(of));
     all.extend(Vec::from_iter(missing));
     let rows = all.into_iter().flat_map(|of| {
         let (symbol, name) = (of.symbol(), of.name(structure));

@@ -1,12 +1,12 @@
 //! A run of a structure of one mass or of many: what every door prints, writes and draws comes from here.
 
-use crate::tables::{TIES, line};
+use crate::tables::line;
 use anyhow::ensure;
 use rocking::engine::motion::Work;
 use rocking::estimates::response_spectrum::floor_spectrum;
 use rocking::mechanics::restraint::Dissipators;
 use rocking::run::curve;
-use rocking::run::peaks::{Peak, Peaking, Peaks};
+use rocking::run::peaks::{Peak, Peaks};
 use rocking::run::record::Record;
 use rocking::run::validity::{self, Findings, Limits};
 use rocking::run::{End, Ending, Finish, RunError, Runs, fall};
@@ -146,7 +146,7 @@ pub struct Curve {
     pub times: Vec<f64>,
     /// The phase of each point.
     pub phases: Vec<Phase>,
-    /// a_g and the drawn outputs by name; of a restrained structure also the forces of the tendon and of the dissipators.
+    /// a_g and the drawn outputs by name.
     pub columns: Vec<(String, Vec<f64>)>,
 }
 
@@ -308,8 +308,8 @@ impl Found {
 impl NamedPeak {
     /// The `peaks` of `structure`.
     pub(crate) fn all(structure: &Structure, peaks: &Peaks) -> Vec<NamedPeak> {
-        let peak = |of: Peaking| Some(NamedPeak::new(of.name(structure), of.unit(), peaks.peak(of)?));
-        Peaking::of(structure).filter_map(peak).collect()
+        let peak = |of: Output| Some(NamedPeak::new(of.name(structure), of.unit(), peaks.of(of)?));
+        Output::with_peak(structure).into_iter().filter_map(peak).collect()
     }
 
     fn new(name: impl Into<String>, unit: &'static str, Peak { magnitude, time }: Peak) -> NamedPeak {
@@ -372,12 +372,6 @@ fn curve<Q: Runs>(run: &Follow<Q>, part: f64) -> Result<Curve, RunError> {
     let mut columns = vec![("a_g".to_owned(), points.iter().map(|at| at.a_g).collect())];
     for (i, output) in curve::drawn(&run.structure).into_iter().enumerate() {
         columns.push((output.name(&run.structure), points.iter().map(|at| at.outputs[i]).collect()));
-    }
-    if run.structure.base().is_restrained() {
-        let tie = |(name, force): &(&str, fn(&_) -> f64)| {
-            ((*name).to_owned(), points.iter().map(|at| force(&at.restraints)).collect())
-        };
-        columns.extend(TIES.iter().map(tie));
     }
     let (times, phases) = points.iter().map(|at| (at.time, at.phase)).unzip();
     Ok(Curve { found: results(&run.structure, &found, &transitions), times, phases, columns })

@@ -3,14 +3,8 @@ use crate::run::{Event, Line, Named, Run};
 use rocking::engine::Moves;
 use rocking::engine::piece::Sample;
 use rocking::mechanics::restraint::{Dissipators, Restraints};
-use rocking::{Impulse, Reactions};
+use rocking::{Impulse, Output, Reactions};
 use serde::Serialize;
-
-/// The name of a force of the tendon or of a dissipator, N, and the force.
-type Tie = (&'static str, fn(&Restraints) -> f64);
-
-/// The forces of the tendon and of the dissipators.
-pub(crate) const TIES: [Tie; 3] = [("P_t", |of| of.P_t), ("F_d1", |of| of.F_d1), ("F_d2", |of| of.F_d2)];
 
 /// Names and units of the columns after the outputs: reactions, impulses, vertical ground acceleration, ties and dissipators.
 const AFTER: [(&str, &str); 14] = [
@@ -21,9 +15,9 @@ const AFTER: [(&str, &str); 14] = [
     ("I_v", "N.s"),
     ("I_m", "N.m.s"),
     ("a_v", "m/s2"),
-    (TIES[0].0, "N"),
-    (TIES[1].0, "N"),
-    (TIES[2].0, "N"),
+    (Output::P_t.symbol(), "N"),
+    (Output::F_d1.symbol(), "N"),
+    (Output::F_d2.symbol(), "N"),
     ("e_p1", "m"),
     ("e_p2", "m"),
     ("E_viscous", "J"),
@@ -35,8 +29,7 @@ pub(crate) fn line<Q: Moves>(sample: &Sample<Q>, outputs: Vec<f64>) -> Line {
     let Sample { motion, load, .. } = sample;
     let Reactions { R_h, R_v, R_m } = sample.reactions();
     let Impulse { I_h, I_v, I_m } = motion.impulse;
-    let restraints = sample.restraints();
-    let [P_t, F_d1, F_d2] = TIES.map(|(_, force)| force(&restraints));
+    let Restraints { P_t, F_d1, F_d2 } = sample.restraints();
     let Dissipators { plastic: [e_p1, e_p2], viscous, hysteretic, .. } = motion.dissipators;
     let after = [R_h, R_v, R_m, I_h, I_v, I_m, load.a_v, P_t, F_d1, F_d2, e_p1, e_p2, viscous, hysteretic];
     Line(

@@ -140,13 +140,21 @@ impl<Q: Moves> Sample<'_, Q> {
 
     /// The value of `output`; once overturned, the value of the instant before.
     pub fn output(&self, output: Output) -> f64 {
-        output.of(&self.shown())
+        self.outputs()(output)
     }
 
     /// The values of outputs, of which each costs less than by [`Sample::output`].
     pub fn outputs(&self) -> impl Fn(Output) -> f64 {
-        let shown = self.shown();
-        move |output| output.of(&shown)
+        let (shown, ties) = (self.shown(), OnceCell::new());
+        move |output| {
+            let ties = || ties.get_or_init(|| self.restraints());
+            match output {
+                Output::P_t => ties().P_t,
+                Output::F_d1 => ties().F_d1,
+                Output::F_d2 => ties().F_d2,
+                _ => output.of(&shown),
+            }
+        }
     }
 
     pub(crate) fn shown(&self) -> Instant<'_, f64, Q> {

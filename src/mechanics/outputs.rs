@@ -71,14 +71,18 @@ pub enum Output {
     N(usize),
     /// Settlement of the left (0) or the right (1) outer point, or 0 above the unloaded ground, m.
     settled(usize),
-    /// Force of the tendon on ground that gives, N.
+    /// Force of the tendon, N.
     P_t,
+    /// Force of the dissipators at +ξ_d, N; a [`Sample`](crate::engine::piece::Sample) has it.
+    F_d1,
+    /// Force of the dissipators at −ξ_d, N.
+    F_d2,
     /// Height of the left (0) or the right (1) edge above the unloaded ground, or 0 below, m.
     lifted(usize),
 }
 
 use Output::{E_foundation, M, M_t, N, N_left, N_right, V, V_t, a_t, contact, delta_t, drift, drift_ratio, lifted};
-use Output::{P_t, pressure, settled, settlement, theta, theta_dot, u, u_dot, v_t, y};
+use Output::{F_d1, F_d2, P_t, pressure, settled, settlement, theta, theta_dot, u, u_dot, v_t, y};
 
 /// A motion in numbers of the kind `N`, as formulas of outputs read it.
 pub(crate) trait Shows<N> {
@@ -116,6 +120,9 @@ impl Output {
     /// The outputs of one mass that have a peak, in the order of their peaks.
     pub const PEAKS_OF_ONE: [Output; 7] = [theta, u(0), delta_t(0), Output::uplift, a_t(0), V_t, M_t];
 
+    /// The forces of a tendon and of dissipators.
+    pub const OF_TIES: [Output; 3] = [P_t, F_d1, F_d2];
+
     /// The outputs of a base.
     const OF_BASE: [Output; 5] = [theta, theta_dot, Output::uplift, V_t, M_t];
 
@@ -142,8 +149,15 @@ impl Output {
         Output::OF_BASE.into_iter().chain(of_ground).chain(of_points).chain(of_floors).filter(is_one).collect()
     }
 
-    /// The outputs of `structure` that have a peak, in the order of their peaks.
+    /// The outputs of `structure` that have a peak, in the order of their peaks; the forces of its tendon and of its dissipators last.
     pub fn with_peak(structure: &Structure) -> Vec<Output> {
+        let base = structure.base();
+        let is_there = |of: &Output| if *of == P_t { base.has_tendon() } else { base.has_dissipators() };
+        Output::searched(structure).into_iter().chain(Output::OF_TIES.into_iter().filter(is_there)).collect()
+    }
+
+    /// The outputs with a peak, without the forces of tendon and dissipators.
+    pub(crate) fn searched(structure: &Structure) -> Vec<Output> {
         match structure.one() {
             Some(_) => Output::PEAKS_OF_ONE.into(),
             None => Output::all(structure)
@@ -180,6 +194,8 @@ impl Output {
             N(i) => ("N", "N", "force of contact point # from the left", Some(i)),
             settled(i) => ("settled", "m", "settlement of outer contact point #", Some(i)),
             P_t => ("P_t", "N", "force of the tendon", None),
+            F_d1 => ("F_d1", "N", "force of the dissipators at +xi_d", None),
+            F_d2 => ("F_d2", "N", "force of the dissipators at -xi_d", None),
             lifted(i) => ("lifted", "m", "height of edge # above the unloaded ground", Some(i)),
         }
     }

@@ -8,7 +8,6 @@ use super::peaks::{Peak, Peaks};
 use super::{Run, RunError, Runs};
 use crate::engine::Moves;
 use crate::engine::piece::{Piece, Sample, Watch};
-use crate::mechanics::restraint::Restraints;
 use crate::series::terms::Terms;
 use crate::series::{extremes, taylor};
 use crate::{Output, Phase, Structure, Transition};
@@ -36,10 +35,11 @@ pub(super) fn lines(structure: &Structure) -> Vec<Output> {
     of_base.iter().copied().chain(of_floors).collect()
 }
 
-/// The outputs of `structure` at the points of a picture: its lines, and the displacement of one mass.
+/// The outputs of `structure` at the points of a picture: its lines, the displacement of one mass, and the forces of ties.
 pub fn drawn(structure: &Structure) -> Vec<Output> {
     let mut drawn = lines(structure);
     drawn.extend(structure.one().map(|_| Output::delta_t(0)));
+    drawn.extend(Output::OF_TIES.into_iter().filter(|_| structure.base().is_restrained()));
     drawn
 }
 
@@ -59,8 +59,6 @@ pub struct Point {
     pub a_g: f64,
     /// Outputs of the structure, in the order of [`drawn`].
     pub outputs: Vec<f64>,
-    /// Forces of its tendon and dissipators.
-    pub restraints: Restraints,
 }
 
 /// A run as it is drawn.
@@ -93,7 +91,6 @@ pub(super) fn trace<Q: Runs>(run: &Run<Q>, part: f64) -> Result<Curve<Q>, RunErr
         most: 10 * MOST_POINTS / (7 + peaks.len()),
         lines,
         drawn,
-        is_restrained: run.structure.base().is_restrained(),
         points: Vec::new(),
         transitions: Vec::new(),
         is_torn: true,
@@ -119,7 +116,6 @@ struct Tracer<Q: Moves> {
     pga: f64,
     /// The largest number of points.
     most: usize,
-    is_restrained: bool,
     points: Vec<Point>,
     transitions: Vec<Transition<Q>>,
     /// Whether the next piece begins with a point of its own.
@@ -132,7 +128,6 @@ impl<Q: Moves> Tracer<Q> {
     }
 
     fn see(&mut self, sample: &Sample<Q>) {
-        let restraints = if self.is_restrained { sample.restraints() } else { Restraints::default() };
         let Sample { motion, load, .. } = sample;
         let (outputs, a_g) = (self.drawn.iter().copied().map(sample.outputs()).collect(), load.a_g);
         self.points.push(Point {
@@ -140,7 +135,6 @@ impl<Q: Moves> Tracer<Q> {
             phase: motion.phase.shown(motion.state.theta),
             a_g,
             outputs,
-            restraints,
         });
     }
 }

@@ -3,7 +3,7 @@
 //! A bound of a piece tells most of the time that it holds nothing larger than what has been seen. A piece that may hold more is
 //! first kept, since most are soon beaten by the end of another.
 
-use super::peaks::{Peaks, has_dissipators};
+use super::peaks::Peaks;
 use crate::engine::piece::{Piece, Room, Watch};
 use crate::engine::{MOST_POLYNOMIALS, Moves};
 use crate::levels::level::Level;
@@ -92,7 +92,7 @@ impl<Q: Moves> Watch<Q> for PeakWatch<'_, Q> {
         let (until, loads, structure) = (before.time + duration, [load.value, load.at(duration)], level.structure());
         self.peaks.see_ground(loads[0].a_g, before.time);
         self.peaks.see_ground(loads[1].a_g, until);
-        if has_dissipators(structure.base()) {
+        if structure.base().has_dissipators() {
             self.peaks.look_at_dissipators(piece);
         }
         let [is_torn, is_first] = [&mut self.is_torn, &mut self.is_first].map(std::mem::take);

@@ -66,57 +66,6 @@ impl Peak {
     }
 }
 
-/// A quantity of a structure that has a peak.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Peaking {
-    /// An output.
-    Output(Output),
-    /// The force of the tendon P_t, N.
-    Tendon,
-    /// The force of the dissipators at +ξ_d (0) or −ξ_d (1), F_d, N.
-    Dissipator(usize),
-}
-
-impl Peaking {
-    /// The forces of a tendon and of dissipators.
-    pub const OF_TIES: [Peaking; 3] = [Peaking::Tendon, Peaking::Dissipator(0), Peaking::Dissipator(1)];
-
-    /// The quantities of `structure` that have a peak: outputs, and the forces of its tendon and of its dissipators.
-    pub fn of(structure: &Structure) -> impl Iterator<Item = Peaking> {
-        let base = *structure.base();
-        let is_there =
-            move |of: &Peaking| if *of == Peaking::Tendon { has_tendon(&base) } else { has_dissipators(&base) };
-        let ties = Peaking::OF_TIES.into_iter().filter(is_there);
-        Output::with_peak(structure).into_iter().map(Peaking::Output).chain(ties)
-    }
-
-    /// The name, of many masses with the number of the floor or storey from 1.
-    pub fn name(self, structure: &Structure) -> String {
-        match self {
-            Peaking::Output(output) => output.name(structure),
-            _ => self.symbol().into(),
-        }
-    }
-
-    /// The symbol without a number.
-    pub const fn symbol(self) -> &'static str {
-        match self {
-            Peaking::Output(output) => output.symbol(),
-            Peaking::Tendon => "P_t",
-            Peaking::Dissipator(0) => "F_d1",
-            Peaking::Dissipator(_) => "F_d2",
-        }
-    }
-
-    /// The unit.
-    pub const fn unit(self) -> &'static str {
-        match self {
-            Peaking::Output(output) => output.unit(),
-            _ => "N",
-        }
-    }
-}
-
 /// Peaks of the motion that has been watched.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peaks {
@@ -162,17 +111,6 @@ struct Tendon {
     start: f64,
 }
 
-/// Whether `base` has a tendon.
-fn has_tendon(base: &Base) -> bool {
-    base.ties.P_0 > 0.0 || base.ties.k_t > 0.0
-}
-
-/// Whether `base` has dissipators.
-#[inline(always)]
-pub(super) fn has_dissipators(base: &Base) -> bool {
-    base.ties.c_d > 0.0 || base.ties.k_d > 0.0
-}
-
 impl Peaks {
     /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion. A peak that stays 0 has this instant.
     pub fn since(time: f64, structure: &Structure, detail: Detail) -> Peaks {
@@ -188,7 +126,7 @@ impl Peaks {
         };
         let is_on_ground = structure.foundation().is_some();
         let mut alone: Vec<Output> = Vec::new();
-        for output in Output::with_peak(structure).into_iter().filter(|of| is_on_ground || *of != Output::uplift) {
+        for output in Output::searched(structure).into_iter().filter(|of| is_on_ground || *of != Output::uplift) {
             let parts = output.parts(structure);
             let over = |other: &Output| Some((*other, output.over(*other, structure)?));
             match alone.iter().find_map(over) {
@@ -202,7 +140,7 @@ impl Peaks {
                 }
             }
         }
-        if is_on_ground && has_tendon(structure.base()) {
+        if is_on_ground && structure.base().has_tendon() {
             search(Output::P_t);
         }
         let tendon = Tendon { P_0, k_t, angles: detail.angles(), start: time };
@@ -216,7 +154,12 @@ impl Peaks {
             let theta = self.theta();
             return Some(Peak { magnitude: 2.0 * self.B * libm::sin(theta.magnitude), ..theta });
         }
-        let searched = self.searched.iter().find(|of| of.output == output).map(|of| of.peak);
+        let searched = match output {
+            Output::P_t => Some(self.P_t()),
+            Output::F_d1 => Some(self.pair[0]),
+            Output::F_d2 => Some(self.pair[1]),
+            _ => self.searched.iter().find(|of| of.output == output).map(|of| of.peak),
+        };
         searched.or_else(|| {
             let parts = self.with.iter().filter(|(of, ..)| *of == output).map(|(_, place, factor)| {
                 let peak = self.searched[*place].peak;
@@ -224,15 +167,6 @@ impl Peaks {
             });
             parts.reduce(|a, b| if b.magnitude > a.magnitude { b } else { a })
         })
-    }
-
-    /// Peak of the `quantity`, if it has one.
-    pub fn peak(&self, quantity: Peaking) -> Option<Peak> {
-        match quantity {
-            Peaking::Output(output) => self.of(output),
-            Peaking::Tendon => Some(self.P_t()),
-            Peaking::Dissipator(which) => self.pair.get(which).copied(),
-        }
     }
 
     /// Peak of the rotation |θ|, rad.

@@ -52,7 +52,17 @@ impl Base {
     /// Whether a tendon or dissipators restrain the structure.
     #[inline]
     pub fn is_restrained(&self) -> bool {
-        let &Ties { P_0, k_t, c_d, k_d, .. } = &self.ties;
-        [P_0, k_t, c_d, k_d].iter().any(|restraint| *restraint > 0.0)
+        self.has_tendon() || self.has_dissipators()
+    }
+
+    /// Whether the base has a tendon.
+    pub fn has_tendon(&self) -> bool {
+        self.ties.P_0 > 0.0 || self.ties.k_t > 0.0
+    }
+
+    /// Whether the base has dissipators.
+    #[inline(always)]
+    pub fn has_dissipators(&self) -> bool {
+        self.ties.c_d > 0.0 || self.ties.k_d > 0.0
     }
 }

@@ -3,9 +3,9 @@
 use crate::{Refused, ensure};
 use rocking::digits::{short, with_unit};
 use rocking::run::fall::Found;
-use rocking::run::peaks::{Peaking, Peaks};
+use rocking::run::peaks::Peaks;
 use rocking::run::{Ending, Run, RunError, Runs};
-use rocking::{Detail, Structure};
+use rocking::{Detail, Output, Structure};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
@@ -51,9 +51,10 @@ pub fn measures(structure: &Structure) -> Vec<Measure> {
 
 /// Name, unit and magnitude of each of [`measures`].
 fn magnitudes(structure: &Structure, peaks: &Peaks) -> Vec<(String, &'static str, f64)> {
-    let named = |of: Peaking| Some((of.name(structure), of.unit(), peaks.peak(of)?.magnitude));
+    let named = |of: Output| Some((of.name(structure), of.unit(), peaks.of(of)?.magnitude));
     let rotation = peaks.theta().magnitude / libm::atan(structure.base().tan_alpha_cg);
-    Peaking::of(structure).filter_map(named).chain([("theta/alpha_cg".into(), "1", rotation)]).collect()
+    let all = Output::with_peak(structure).into_iter().filter_map(named);
+    all.chain([("theta/alpha_cg".into(), "1", rotation)]).collect()
 }
 
 /// Usual units of limits: name, unit of the measure, and how many of that one it is; g is the structure's own.

@@ -503,9 +503,8 @@ mod tests {
     use super::*;
     use crate::exceedances::count;
     use crate::outcome::{Limit, Summary};
-    use rocking::OneMass;
+    use rocking::{OneMass, Output};
     use rocking::digits::short;
-    use rocking::run::peaks::Peaking;
     use rocking::run::{End, Ending};
     use rocking::structure::description::{Damping, Storey};
     use rocking::structure::natural_quantities::Given;
@@ -576,8 +575,8 @@ mod tests {
             let Outcome::Ended(Summary { ending, end, peaks, .. }) = outcome else { panic!() };
             assert_eq!((*ending, *end), (found.finish.ending, found.finish.motion.time));
             let named: BTreeMap<_, _> = plan.measures.iter().map(|(name, _)| &**name).zip(peaks).collect();
-            for of in Peaking::of(&structure) {
-                assert_eq!(*named[&*of.name(&structure)], found.peaks.peak(of).unwrap().magnitude, "{of:?}");
+            for of in Output::with_peak(&structure) {
+                assert_eq!(*named[&*of.name(&structure)], found.peaks.of(of).unwrap().magnitude, "{of:?}");
             }
             largest.push(["a_t[1]", "a_t[2]", "a_t[3]"].map(|a_t| *named[a_t]).into_iter().fold(0.0, f64::max));
         }

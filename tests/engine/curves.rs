@@ -101,7 +101,8 @@ fn lines_of_many_masses_stay_as_close_to_each_floor() {
     let frame = three_storeys(0.02, &[("r", 0.93), ("P_0", 1e5), ("k_t", 1e6)]);
     let ground = ground();
     let run = Run { end: End::At(6.0), ..Run::of_modes(frame, &ground) };
-    let outputs = drawn(&run.structure);
+    let mut outputs = drawn(&run.structure);
+    outputs.truncate(outputs.len() - Output::OF_TIES.len());
     let curve = run.curve(1e-3).unwrap();
     let Found { peaks: profile, finish, .. } = &curve.found;
     assert!(finish.motion.transitions > 5 && curve.transitions.len() as u64 == finish.motion.transitions);
@@ -122,7 +123,7 @@ fn lines_of_many_masses_stay_as_close_to_each_floor() {
         for (i, of) in outputs.iter().enumerate() {
             missed[i] = missed[i].max((line(i) - sample.output(*of)).abs() / largest[i]);
         }
-        let pull = from.restraints.P_t * (1.0 - part) + to.restraints.P_t * part;
+        let pull = line(outputs.len());
         let e = 2.0 * 1.5 * f64::sin(sample.motion.state.theta.abs() / 2.0);
         assert!((pull - 1e5 - 1e6 * e).abs() <= 1.1e-3 * 1.5e6 * largest[0], "{time} {pull} {e}");
     };

@@ -7,7 +7,6 @@ use rocking::engine::piece::Sample;
 use rocking::mechanics::energy::energy;
 use rocking::mechanics::restraint::{Restraint, centring_moments};
 use rocking::run::ground_motion::Elapsed;
-use rocking::run::peaks::Peaking;
 use rocking::run::record::Record;
 use rocking::run::validity::{Limits, WEIGHT, of_structure};
 use rocking::run::{End, Run};
@@ -520,15 +519,14 @@ fn peaks_of_the_dissipators_are_their_largest_forces() {
         for detail in [Detail::Auto, Detail::Linear] {
             let run = Run { detail, end: End::At(3.0), ..Run::new(structure(parameters), &ground) };
             let found = run.found(&mut ()).unwrap();
-            for which in [0, 1] {
-                let peak = found.peaks.peak(Peaking::Dissipator(which)).unwrap();
+            for output in [Output::F_d1, Output::F_d2] {
+                let peak = found.peaks.of(output).unwrap();
                 let (mut most, mut there) = (0.0_f64, 0.0);
                 let times = (0..4000).map(|i| 7.5e-4 * f64::from(i)).filter(|t| *t < peak.time - 1e-9);
                 let times = times.chain([peak.time - 1e-9, peak.time]);
                 let after = (0..4000).map(|i| 7.5e-4 * f64::from(i)).filter(|t| *t > peak.time);
                 let see = |at: &Sample| {
-                    let ties = at.restraints();
-                    let force = [ties.F_d1, ties.F_d2][which].abs();
+                    let force = at.output(output).abs();
                     most = most.max(force);
                     there = if (at.motion.time - peak.time).abs() < 2e-9 { force.max(there) } else { there };
                 };
