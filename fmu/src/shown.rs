@@ -6,7 +6,7 @@ use crate::variables::Source;
 use rocking::engine::Moves;
 use rocking::engine::piece::Sample;
 use rocking::run::peaks::Peak;
-use rocking::{Load, Reactions, State};
+use rocking::{Load, Output, Reactions, State};
 use std::cell::OnceCell;
 
 /// The values of a scene under a load.
@@ -60,7 +60,7 @@ impl<'a, Q: Moves> Shown<'a, Q> {
         let Shown { scene, setup, load, .. } = *self;
         let structure = scene.engine.structure();
         let peak = |of: Output| match setup.peaks && !scene.is_integrated_outside() {
-            true => scene.peaks(load).peaks().peak(of),
+            true => scene.peaks(load).peaks().of(of),
             false => Some(Peak { magnitude: f64::NAN, time: f64::NAN }),
         };
         Some(match source {

@@ -130,12 +130,7 @@ impl<Q: Moves> Tracer<Q> {
     fn see(&mut self, sample: &Sample<Q>) {
         let Sample { motion, load, .. } = sample;
         let (outputs, a_g) = (self.drawn.iter().copied().map(sample.outputs()).collect(), load.a_g);
-        self.points.push(Point {
-            time: motion.time,
-            phase: motion.phase.shown(motion.state.theta),
-            a_g,
-            outputs,
-        });
+        self.points.push(Point { time: motion.time, phase: motion.phase.shown(motion.state.theta), a_g, outputs });
     }
 }
 

@@ -503,12 +503,12 @@ mod tests {
     use super::*;
     use crate::exceedances::count;
     use crate::outcome::{Limit, Summary};
-    use rocking::{OneMass, Output};
     use rocking::digits::short;
     use rocking::run::{End, Ending};
     use rocking::structure::description::{Damping, Storey};
     use rocking::structure::natural_quantities::Given;
     use rocking::structure::quantity::Units;
+    use rocking::{OneMass, Output};
     use std::collections::BTreeMap;
     use std::f64::consts::TAU;
 

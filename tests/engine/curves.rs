@@ -6,7 +6,7 @@ use rocking::run::curve::{Point, drawn};
 use rocking::run::fall::Found;
 use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError};
-use rocking::{Detail, Modes, OneMass, Output, Parameters, Phase, State, Structure, TransitionKind};
+use rocking::{Detail, Modes, OneMass, Output, Parameters, Phase, State, TransitionKind};
 
 /// Lifts, bounces and lands the McManus specimen at every level: two sines that die away.
 fn ground() -> Record {

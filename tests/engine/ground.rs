@@ -7,8 +7,7 @@ use rocking::engine::piece::Sample;
 use rocking::run::record::Record;
 use rocking::run::{End, Ending, Run};
 use rocking::{
-    Detail, Engine, Ground, LinearLoad, Modes, Output, Parameters, State, Structure, Transition,
-    TransitionKind,
+    Detail, Engine, Ground, LinearLoad, Modes, Output, Parameters, State, Structure, Transition, TransitionKind,
 };
 use std::f64::consts::TAU;
 

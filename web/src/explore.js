@@ -535,9 +535,7 @@
     });
     for (const period of [0.02, 0.1, 0.5, 1, 2, 4]) svg(picture, "text", { x: x(period), y: 220, "text-anchor": "middle" }, `${period}`);
     svg(picture, "text", { class: "muted", x: 320, y: 236, "text-anchor": "middle" }, "period in s");
-    const peak = `${short(most / motion.parameters.g)} g`;
-    svg(picture, "text", { x: 40, y: 10 }, peak);
-    picture.setAttribute("aria-label", `Response spectra of the accelerations of the floors, largest ${peak}`);
+    svg(picture, "text", { x: 40, y: 10 }, `${short(most / motion.parameters.g)} g`);
   }
   const askSpectra = () => at("spectra").open && ask("spectra", fields, drawSpectra);
   at("spectra").addEventListener("toggle", askSpectra);

@@ -26,6 +26,8 @@ onmessage = async ({ data }) => {
     explorer.take_record(data.record.name, data.record.bytes);
   } else {
     current = data.job;
+    await new Promise((next) => setTimeout(next)); // a newer job may wait
+    if (current !== data.job) return;
     /** Sends a part of the answer. Returns whether the page still needs the rest. */
     const answer = async (part) => {
       postMessage({ job: data.job, part });

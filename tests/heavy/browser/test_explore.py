@@ -272,7 +272,7 @@ def test_what_is_refused_is_said_as_everywhere_and_the_page_stays_alive(opened, 
         assert faulty() == [name]
         field.fill("")
         problem.wait_for(state="hidden")
-    for text in ("heavy", "1,85e6", "1850 t"):
+    for text in ("heavy", "1,85e6", "1850 tonnes"):
         page.locator("#field-m").fill(text)
         wait(page, lambda: text in problem.text_content())
         assert problem.text_content() == f'm = "{text}": a number in kg or t is needed, without a comma'
