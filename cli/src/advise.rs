@@ -61,18 +61,3 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let text = || run.advice_text(&args.ground.title(&run.ground), &advice, &limits);
     args.results.print(text, &Traced { cause: &cause, rows: &advice.rows() })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_percent_sign_or_a_ratio() {
-        assert_eq!(relative_error("5%"), Ok(0.05));
-        assert_eq!(relative_error("0.05"), Ok(0.05));
-        assert_eq!(relative_error("0.1 %"), Ok(0.001));
-        for nonsense in ["5", "100%", "0", "0%", "-5%", "nan", "inf%", "five", "%", ""] {
-            assert!(relative_error(nonsense).is_err(), "{nonsense}");
-        }
-    }
-}

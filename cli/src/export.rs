@@ -102,7 +102,7 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
 fn record(options: &RecordOptions, path: &Path, g: f64) -> anyhow::Result<(PathBuf, Vec<u8>)> {
     let understood = options.understand(path, g, on_command_line)?;
     say_understood("", &understood);
-    if options.are_none() && !input::is_stream(path) {
+    if *options == RecordOptions::default() && !input::is_stream(path) {
         return Ok((path.into(), rocking_records::read_file(path)?));
     }
     Ok(((input::stem(path) + ".csv").into(), understood.table()?.into_bytes()))

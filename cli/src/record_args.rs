@@ -118,11 +118,6 @@ impl RecordOptions {
     pub fn factors(&self) -> [f64; 2] {
         [self.time_scale, self.scale].map(|factor| factor.unwrap_or(1.0))
     }
-
-    /// Whether a file is read as it is.
-    pub fn are_none(&self) -> bool {
-        *self == RecordOptions::default()
-    }
 }
 
 /// Prints findings and assumptions about a record after `label`, and warnings.

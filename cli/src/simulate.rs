@@ -161,16 +161,3 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     }
     profile.map_or(Ok(()), |picture| profile::draw(picture, &run, &found))
 }
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn an_interval_that_is_refused_names_one_that_is_not() {
-        let check = |interval: f64, end| super::check_rows(&[0.0], interval, end).map_err(|error| error.to_string());
-        let refused = |given: &str, over: &str, least: &str| {
-            Err(format!("interval = {given} s over {over} s: give {least} s or more, for at most 1e6 rows"))
-        };
-        assert_eq!((check(1e-6, 1.0), check(9e-7, 1.0)), (Ok(()), refused("9e-7", "1", "1e-6")));
-        assert_eq!((check(4.9e-6, 4.87077), check(-1.0, 4.87077)), (Ok(()), refused("-1", "4.87077", "4.9e-6")));
-    }
-}

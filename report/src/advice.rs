@@ -10,6 +10,7 @@ use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::run::levels::{self, Choice, Criterion, REFERENCE_TOLERANCE, RULE, Response, Verdict};
 use rocking::run::{LONGEST_REST, RunError, Runs, validity::Limits};
+use rocking_sweep::with_run;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};

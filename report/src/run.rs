@@ -11,7 +11,7 @@ use rocking::run::record::Record;
 use rocking::run::validity::{self, Findings, Limits};
 use rocking::run::{End, Ending, Finish, RunError, Runs, fall};
 use rocking::{Modes, Output, Phase, Run as Follow, Side, State, Structure, Ties, Transition, TransitionKind, Watch};
-use rocking_sweep::plan::Conditions;
+use rocking_sweep::{plan::Conditions, with_run};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -161,16 +161,7 @@ impl Watcher for () {}
 /// `$do` with `$follow`, the library's run of one mass or of many.
 macro_rules! with {
     ($run:expr, $follow:ident => $do:expr) => {
-        match $run.structure.of_one_mode() {
-            Some(structure) => {
-                let $follow = $run.conditions.run_of_one_mode(structure, &$run.ground)?;
-                $do
-            }
-            None => {
-                let $follow = $run.conditions.run_of_modes($run.structure.clone(), &$run.ground)?;
-                $do
-            }
-        }
+        with_run!($run.conditions, $run.structure, &$run.ground, $follow => $do)?
     };
 }
 pub(crate) use with;

@@ -88,6 +88,17 @@ pub struct Conditions {
     pub duration: Option<f64>,
 }
 
+/// `$do` with `$run`, the library's run of one mass or of many of `$structure` under `$ground` and `$conditions`.
+#[macro_export]
+macro_rules! with_run {
+    ($conditions:expr, $structure:expr, $ground:expr, $run:ident => $do:expr) => {
+        match $structure.of_one_mode() {
+            Some(structure) => $conditions.run_of_one_mode(structure, $ground).map(|$run| $do),
+            None => $conditions.run_of_modes($structure.clone(), $ground).map(|$run| $do),
+        }
+    };
+}
+
 impl Default for Conditions {
     fn default() -> Conditions {
         Conditions {
@@ -275,15 +286,10 @@ impl Conditions {
         })?;
         let settings = Settings { detail: self.detail, tolerance: self.tolerance, ..Settings::default() };
         let ground = Record::at_rest(1.0);
-        if let Some(structure) = structure.of_one_mode() {
-            let run = self.run_of_one_mode(structure, &ground);
-            let engine = run.and_then(|Run { structure, initial, .. }| Engine::with(structure, initial, 0.0, settings));
-            return engine.map(|_| ()).map_err(Refused::by);
+        fn start<Q: Runs>(run: Run<Q>, settings: Settings) -> Result<(), InitialStateError> {
+            Q::engine(run.structure, run.initial, 0.0, settings).map(|_| ())
         }
-        let run = self.run_of_modes(structure.clone(), &ground);
-        run.and_then(|Run { structure, initial, .. }| Engine::of_modes(structure, initial, 0.0, settings))
-            .map(|_| ())
-            .map_err(Refused::by)
+        with_run!(self, structure, &ground, run => start(run, settings)).and_then(|of| of).map_err(Refused::by)
     }
 }
 
@@ -329,16 +335,14 @@ impl Plan {
 
     /// A sentence for each number that is usual in another unit, once for each population.
     pub fn doubts(&self) -> Vec<String> {
-        let (mut said, mut doubts) = (HashSet::new(), Vec::new());
-        for (of, member) in self.populations.iter().flat_map(|of| (0..of.len()).map(move |member| (of, member))) {
-            for doubt in of.structure(member).iter().flat_map(Structure::doubts) {
-                let name = doubt.split(" = ").next().unwrap_or(&doubt).to_owned();
-                if said.insert((&of.name, name)) {
-                    doubts.push(format!("{}: {doubt}", of.name));
-                }
-            }
-        }
-        doubts
+        let structures =
+            self.populations.iter().flat_map(|of| (0..of.len()).map(move |member| (&of.name, of.structure(member))));
+        let doubts = structures.flat_map(|(of, member)| {
+            member.map_or(Vec::new(), |of| of.doubts()).into_iter().map(move |doubt| (of, doubt))
+        });
+        let mut said = HashSet::new();
+        let is_new = |(of, doubt): &(&String, String)| said.insert((*of, doubt.split(" = ").next().map(str::to_owned)));
+        doubts.filter(is_new).map(|(of, doubt)| format!("{of}: {doubt}")).collect()
     }
 
     /// How many runs there are.
@@ -407,16 +411,8 @@ impl Case<'_> {
             (Outcome::found(run, measures, run.judged(&mut validity, &mut ())), Some(*validity.found()))
         }
         let ground = self.ground();
-        match self.structure.of_one_mode() {
-            Some(structure) => {
-                let run = self.conditions.run_of_one_mode(structure, &ground).expect(CHECKED);
-                of(&run, self.measures, with_validity)
-            }
-            None => {
-                let run = self.conditions.run_of_modes(self.structure.clone(), &ground).expect(CHECKED);
-                of(&run, self.measures, with_validity)
-            }
-        }
+        with_run!(self.conditions, self.structure, &ground, run => of(&run, self.measures, with_validity))
+            .expect(CHECKED)
     }
 
     /// The ground motion as it is scaled.

@@ -87,24 +87,6 @@ def test_a_run_prints_what_the_command_line_prints(run, said):
     assert {name: of.limit for name, of in run.validity.items()} == {of["name"]: of["limit"] for of in validity}
 
 
-def test_the_motion_between_samples_is_the_command_lines(run, said, tmp_path):
-    said("simulate", "--record", RECORD, *OPTIONS, "--interval", "0.001", "-o", "response.csv")
-    table = pd.read_csv(tmp_path / "response.csv")
-    table = table[table["time[s]"] <= run.end]
-    order = np.random.default_rng(1).permutation(len(table))
-    response = run.at(table["time[s]"].to_numpy()[order])
-    for heading in table:
-        name = heading.partition("[")[0]
-        assert np.array_equal(response[name], table[heading].to_numpy()[order]), name
-
-
-def test_the_pushover_is_the_command_lines(run, said, tmp_path):
-    said("pushover", "--points", 50, "-o", "curve.csv")
-    table = pd.read_csv(tmp_path / "curve.csv").rename(columns=lambda heading: heading.partition("[")[0])
-    found = pd.DataFrame(run.structure.pushover(50))
-    assert np.array_equal(found, table[list(found)])
-
-
 def test_the_modes_are_those_of_the_state(run):
     """Eq 16: together they are the rotation, and the vibration mode is the share chi of the strut's."""
     response = run.at(np.linspace(run.start, run.end, 1000))
