@@ -15,7 +15,7 @@ use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits};
 use rocking::run::{End, Run, Runs};
 use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
-use rocking::{Detail, Engine, Modes, Parameters, Quantity, State, Structure};
+use rocking::{Detail, Modes, Parameters, Quantity, State, Structure};
 use serde::Serialize;
 use std::collections::HashSet;
 use std::sync::OnceLock;
@@ -340,9 +340,11 @@ impl Plan {
         let doubts = structures.flat_map(|(of, member)| {
             member.map_or(Vec::new(), |of| of.doubts()).into_iter().map(move |doubt| (of, doubt))
         });
-        let mut said = HashSet::new();
-        let is_new = |(of, doubt): &(&String, String)| said.insert((*of, doubt.split(" = ").next().map(str::to_owned)));
-        doubts.filter(is_new).map(|(of, doubt)| format!("{of}: {doubt}")).collect()
+        let (mut said, name) = (HashSet::new(), |doubt: &str| doubt.split(" = ").next().map(str::to_owned));
+        doubts
+            .filter(|(of, doubt)| said.insert((*of, name(doubt))))
+            .map(|(of, doubt)| format!("{of}: {doubt}"))
+            .collect()
     }
 
     /// How many runs there are.
