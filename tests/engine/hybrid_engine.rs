@@ -1,9 +1,8 @@
-//! The engine from outside: advances that end at transitions, overturning.
+//! The engine from outside: advances that end at transitions.
 
 use approx::assert_abs_diff_eq;
-use rocking::engine::{DEFAULT_TOLERANCE, Settings};
-use rocking::{Engine, Motion, OneMass, Parameters, Phase, Progress, Ramp, Side, State, Transition, TransitionKind};
-use std::f64::consts::FRAC_PI_2;
+use rocking::engine::Settings;
+use rocking::{Engine, Motion, OneMass, Parameters, Phase, Progress, Ramp, State, Transition};
 
 const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };
 
@@ -50,20 +49,4 @@ fn an_advance_can_end_at_every_transition() {
         left.advance(1.0 - left.motion().time, STILL, &mut ()).unwrap();
     }
     assert_eq!(left.motion().state, to_each.motion().state);
-}
-
-#[test]
-fn a_tall_push_overturns_at_a_right_angle_and_stays_there() {
-    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
-    let mut engine = Engine::new(structure, State::default(), 10.0, DEFAULT_TOLERANCE).unwrap();
-    let push = Ramp { value: -6.0, slope: 0.0 };
-    let mut last = None;
-    let progress = engine.advance(20.0, push, &mut |transition: &Transition| last = Some(*transition)).unwrap();
-    assert_eq!(progress, Progress::Overturned);
-    let end = *engine.motion();
-    assert_eq!(last.unwrap().kind, TransitionKind::Overturning(Side::Right));
-    assert_abs_diff_eq!(end.state.theta, FRAC_PI_2, epsilon = 1e-14);
-    assert!(end.time > 10.0 && end.time < 20.0);
-    assert_eq!(engine.advance(30.0, STILL, &mut ()).unwrap(), Progress::Overturned);
-    assert_eq!(*engine.motion(), end);
 }
