@@ -76,21 +76,19 @@ class Response:
     transitions: list[list[Transition]]
 
 
-def integrate(system, knots, a_g, *, per_sample: int = 1, rtol: float = RTOL, atol: float = ATOL) -> Response:
+def integrate(system, knots, a_g) -> Response:
     """The response from rest to the ground acceleration `a_g` (m/s2) at `knots` (s), linear between them."""
     def rates(phases, a_g):
         return lambda t, y: system.rates(phases, y.tolist(), a_g(t))
 
     start, h = np.zeros(2 + 4 * len(system.structures)), float(knots[1] - knots[0])
-    run = reference.Run(system.structures, rates, start, 0.0, h, rtol, atol, system.recoil)
+    run = reference.Run(system.structures, rates, start, 0.0, h, RTOL, ATOL, system.recoil)
     rows = [(run.t, run.y, tuple(run.phases))]
     for t0, t1, a0, a1 in zip(knots[:-1].tolist(), knots[1:].tolist(), a_g[:-1].tolist(), a_g[1:].tolist()):
-        for part in range(1, per_sample + 1):
-            end = t0 + (t1 - t0) * part / per_sample if part < per_sample else t1
-            while run.t < end:
-                run.advance(end, lambda t: a0 + (a1 - a0) / (t1 - t0) * (t - t0))
-                if run.overturned:
-                    raise RuntimeError(f"a structure overturns at {run.t} s")
-            rows.append((run.t, run.y, tuple(run.phases)))
+        while run.t < t1:
+            run.advance(t1, lambda t: a0 + (a1 - a0) / (t1 - t0) * (t - t0))
+            if run.overturned:
+                raise RuntimeError(f"a structure overturns at {run.t} s")
+        rows.append((run.t, run.y, tuple(run.phases)))
     t, y, phases = zip(*rows)
     return Response(np.array(t), np.array(y), np.array(phases), run.transitions)

@@ -110,9 +110,6 @@ class Response:
         states = zip(self.u, self.u_dot, self.theta, self.theta_dot)
         return np.array([top(self.structure, s, y) for s, y in zip(self.phase, states)])
 
-    def times(self, kind: str) -> list[float]:
-        return [transition.time for transition in self.transitions if transition.kind == kind]
-
 
 @dataclass(frozen=True)
 class Load:
@@ -141,7 +138,7 @@ def accelerations(p: Structure, s: int, y, a_g: float, F_t: float) -> tuple[floa
 
 
 def _rates(p: Structure, s: int, load: Load):
-
+    """Right-hand side of (1), or of (5, 6) about side s, under a load linear in time."""
     def rates(t, y):
         y = y.tolist()
         a_g = load.a_g + load.a_g_rate * (t - load.t0)
@@ -150,11 +147,6 @@ def _rates(p: Structure, s: int, load: Load):
         return [y[1], u_ddot, y[3], theta_ddot]
 
     return rates
-
-
-def full_contact(p: Structure, load: Load):
-    """Right-hand side of (1) under a load linear in time."""
-    return _rates(p, FULL_CONTACT, load)
 
 
 def rocking(p: Structure, s: int, load: Load):
@@ -294,34 +286,32 @@ def _first_touch(s: int, step: _Step, zeros_at_start: int) -> tuple[float, int, 
     return min(touches, key=lambda touch: touch[0], default=None)
 
 
-def integrate(p: Structure, knots, a_g, initial=(0.0, 0.0, 0.0, 0.0), *, F_t=None, per_sample: int = 1,
-              rtol: float = RTOL, atol: float = ATOL) -> Response:
+def integrate(p: Structure, knots, a_g, initial=(0.0, 0.0, 0.0, 0.0), *, F_t=None) -> Response:
     """The response to the ground acceleration `a_g` (m/s2) and the force `F_t` (N) on the top mass at `knots` (s), both
     linear between them.
 
-    `initial` is (u, u_dot, theta, theta_dot). The response is given at the knots and at per_sample - 1 instants
-    evenly between each two. It ends early, at that instant, when the structure overturns.
+    `initial` is (u, u_dot, theta, theta_dot). The response is given at the knots. It ends early, at that instant, when the
+    structure overturns.
     """
     def rates(phases, load):
-        return full_contact(p, load) if phases[0] == FULL_CONTACT else rocking(p, phases[0], load)
+        return (_rates if phases[0] == FULL_CONTACT else rocking)(p, phases[0], load)
 
-    run = Run([p], rates, np.array(initial, dtype=float), float(knots[0]), float(knots[1] - knots[0]), rtol, atol)
+    run = Run([p], rates, np.array(initial, dtype=float), float(knots[0]), float(knots[1] - knots[0]), RTOL, ATOL)
     run.test_uplifts()
     transitions, rows = run.transitions[0], [run.row()]
     F_t = np.zeros(len(knots)) if F_t is None else F_t
     for t0, t1, a0, a1, F0, F1 in zip(knots[:-1], knots[1:], a_g[:-1], a_g[1:], F_t[:-1], F_t[1:]):
         load = Load(*map(float, (t0, a0, (a1 - a0) / (t1 - t0), F0, (F1 - F0) / (t1 - t0))))
         budget = len(transitions) + TRANSITIONS_PER_SAMPLE
-        for part in range(1, per_sample + 1):
-            end = float(t0 + (t1 - t0) * part / per_sample) if part < per_sample else float(t1)
-            while run.t < end and not run.overturned:
-                run.advance(end, load)
-                if len(transitions) > budget:
-                    raise RuntimeError(f"more than {TRANSITIONS_PER_SAMPLE} transitions in the sample from {t0} s")
-            rows.append(run.row())
-            if run.overturned:
-                return _response(p, rows, transitions)
-    return _response(p, rows, transitions)
+        while run.t < t1 and not run.overturned:
+            run.advance(float(t1), load)
+            if len(transitions) > budget:
+                raise RuntimeError(f"more than {TRANSITIONS_PER_SAMPLE} transitions in the sample from {t0} s")
+        rows.append(run.row())
+        if run.overturned:
+            break
+    t, u, u_dot, theta, theta_dot, phase = np.array(rows).T
+    return Response(p, t, u, u_dot, theta, theta_dot, phase.astype(int), transitions)
 
 
 class Run:
@@ -432,8 +422,3 @@ def impulses(p: Structure, transition: Transition) -> tuple[float, float, float]
 
     after = {"impact": -transition.side}.get(transition.kind, transition.side)
     return tuple(momentum(transition.side, transition.before) - momentum(after, transition.after))
-
-
-def _response(p, rows, transitions) -> Response:
-    t, u, u_dot, theta, theta_dot, phase = np.array(rows).T
-    return Response(p, t, u, u_dot, theta, theta_dot, phase.astype(int), transitions)
