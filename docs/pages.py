@@ -98,7 +98,7 @@ def row(name: str, meaning: str) -> list[str]:
 
 
 def command_line(exporter: Path) -> str:
-    """The commands and options of `rocking-fmu`, from its help: an option that several commands have stands once."""
+    """The commands and options of `rocking-fmu`, from its help."""
     def printed(*arguments: str) -> str:
         text = subprocess.run([exporter, *arguments, "--help"], check=True, capture_output=True, text=True).stdout
         return "".join(f"{line.rstrip()}\n" for line in text.splitlines())
@@ -106,24 +106,13 @@ def command_line(exporter: Path) -> str:
     whole = printed()
     listed = re.search(r"^Commands:\n(.*?)\n\n", whole, re.MULTILINE | re.DOTALL)[1]
     summaries = dict(line.split(maxsplit=1) for line in listed.splitlines() if not line.startswith("  help"))
-    helps = {name: printed(name).partition("\nExamples:\n") for name in summaries}
-    commands: dict[tuple[str, str], list[str]] = {}
-    for command, (text, _, _) in helps.items():
-        for option in options(text):
-            commands.setdefault(option, []).append(command)
-
     page = table(["command", "does"], [[f"[`{name}`](#{name})", what] for name, what in summaries.items()])
     page += f"\n{re.search(r'^A structure .*?(?=^Usage)', whole, re.MULTILINE | re.DOTALL)[0]}"
-    page += "## Options of several commands\n\nEvery command has `--help` and `--quiet`, which prints only warnings and errors on standard error.\n"
-    for group in dict.fromkeys(map(tuple, commands.values())):
-        if len(group) > 1:
-            shared = [row(*option) for option, names in commands.items() if tuple(names) == group]
-            page += f"\n{', '.join(f'`{name}`' for name in group)}:\n\n{table(['option', 'meaning'], shared)}"
-    for command, (text, _, examples) in helps.items():
+    page += "Every command has `--help` and `--quiet`, which prints only warnings and errors on standard error.\n"
+    for command in summaries:
+        text, _, examples = printed(command).partition("\nExamples:\n")
         about, usage = re.match(r"(.*)^Usage: (.*?)$", text, re.MULTILINE | re.DOTALL).groups()
-        page += f"\n## {command}\n\n{about}`{usage}`\n"
-        own = [row(*option) for option in options(text) if len(commands[option]) == 1]
-        page += f"\n{table(['option', 'meaning'], own)}" if own else ""
+        page += f"\n## {command}\n\n{about}`{usage}`\n\n{table(['option', 'meaning'], [row(*option) for option in options(text)])}"
         page += f"\n```text\n{examples.rstrip()}\n```\n"
     return page
 
