@@ -148,7 +148,6 @@ def test_what_is_refused_has_the_command_lines_text(said, arguments, options):
     (lambda ground: fr.Record(0.1, [True, 1.0]), "a_g: these are bools"),
     (lambda ground: fr.Record(0.1, np.array([0.0, np.True_], object)), "a_g: these are bools"),
     (lambda ground: fr.Record(0.1, [0, 1], unit="m"), 'unit = "m" is unknown; these are known: g, m/s2'),
-    (lambda ground: fr.Record(0.1, [0, 1], scale="2"), "scale = '2': it is no number"),
     (lambda ground: fr.export("a.fmu", fr.Structure(preset="mcmanus"), fmi="3.0"), 'fmi = "3.0" is unknown; these are known: 2, 3'),
     (lambda ground: fr.advise(fr.Structure(preset="mcmanus"), ground, within="5%"), "within = '5%': it is no number"),
     (lambda ground: fr.advise(fr.Structure(preset="mcmanus"), ground, of=["theta", 3]), 'of = "3" is unknown'),
@@ -156,11 +155,9 @@ def test_what_is_refused_has_the_command_lines_text(said, arguments, options):
     (lambda ground: fr.Structure(preset="mcmanus", m=True), "m = True: it is no number"),
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), duration=np.timedelta64(9, "ns")), "it is no number"),
     (lambda ground: ground.spectrum([0.2, 1e-9]), "period = 1e-9 s is out of range: it must lie between 0.0001 and 1000 s"),
-    (lambda ground: ground.spectrum(0.2, zeta=float("nan")), "zeta = NaN is out of range"),
     (lambda ground: ground.spectrum(0.2, zeta=-0.1), "zeta = -0.1 is out of range: it must lie between 0 and 10"),
     (lambda ground: fr.Structure(preset="mcmanus").pushover(points=2_000_000_000), "points = 2000000000 is out of range: 2 to 1000000"),
     (lambda ground: fr.sweep(fr.Structure(preset="mcmanus"), ground, threads=2**40), "threads = 1099511627776 is out of range: 0"),
-    (lambda ground: fr.Structure(preset="mcmanus", r="high"), "r = 'high': it is no number"),
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus")), "record and duration are missing"),
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground, detail="fine"), 'detail = "fine" is unknown; these'),
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground, tolerance=1), "tolerance = 1 is out of range"),
@@ -197,11 +194,6 @@ def test_a_file_says_what_would_help(tmp_path):
         fr.Record(0.01, [0, 6, -6, 0], unit="g", title="mine")
     with pytest.raises(ValueError, match="this would overwrite the input"):
         fr.export(tmp_path / "column.txt", fr.Structure(preset="mcmanus"), record=tmp_path / "column.txt")
-
-
-def test_a_tendon_has_the_peak_of_its_force(ground):
-    peaks = fr.simulate(fr.Structure(preset="mcmanus", P_0=500, k_t=2e5), ground).peaks
-    assert peaks["P_t"].value == pytest.approx(500 + 4e5 * 0.285 * np.sin(peaks["theta"].value / 2), rel=1e-12)
 
 
 def test_arrays_are_read_whatever_their_strides(ground):
@@ -312,8 +304,8 @@ def test_a_peak_is_a_float(run):
 
 
 def test_every_instant_has_its_own_values(run):
-    """Alone and among others, just before a transition and at a peak."""
-    instants = np.nextafter([of.time for of in run.transitions], 0)
+    """Alone and among others in any order, just before a transition and at a peak."""
+    instants = np.random.default_rng(1).permutation(np.nextafter([of.time for of in run.transitions], 0))
     alone = [{name: values[0] for name, values in run.at(instant).items()} for instant in instants]
     together = run.at(instants)
     assert all(together[name].tolist() == [of[name] for of in alone] for name in together)
@@ -539,14 +531,19 @@ def test_curves_by_a_column_are_those_of_its_rows(two_populations):
             fr.fragility(limit=limit, **options)
 
 
+def probit(x, over):
+    """The regression of statsmodels of what is `over` a limit on x, with its constant and its slope."""
+    model = api.GLM(over.astype(float), api.add_constant(x), family=api.families.Binomial(api.families.links.Probit()))
+    return model, model.fit(tol=1e-12).params
+
+
 def test_curve_and_band_are_those_of_statsmodels(two_populations):
     """A probit regression with a covariance that is robust against clusters; the band by Student's distribution."""
     rows = two_populations[two_populations["structures"] == "mcmanus"]
     found = fr.fragility(rows, "theta/alpha_cg >= 0.3")
     x, over = np.log(rows["PGV[m/s]"]), (rows["peak_theta/alpha_cg"] >= 0.3) | (rows["ending"] == "overturned")
-    family = api.families.Binomial(api.families.links.Probit())
-    model = api.GLM(over.astype(float), api.add_constant(x), family=family)
-    a, b = params = model.fit(tol=1e-12).params
+    model, (a, b) = probit(x, over)
+    params = np.array([a, b])
     assert [found.median, found.dispersion] == pytest.approx([np.exp(-a / b), 1 / b], rel=1e-6)
     scores = pd.DataFrame(model.score_obs(params)).groupby(rows["record"].to_numpy()).sum().to_numpy()
     information, groups = np.linalg.inv(model.hessian(params, observed=False)), len(scores)
@@ -688,10 +685,9 @@ def test_statistics_of_the_page_of_sweeps_are_those_of_statsmodels(tmp_path, mon
         expected = [median, deviation * np.sqrt(len(values) / (len(values) - 1)), *p]
         assert [float(number) for number in line.split()[-4:]] == pytest.approx(expected, abs=6e-4)
     assert of["rate"] == pytest.approx(of["closed"], rel=1e-3)
-    runs, family = of["runs"], api.families.Binomial(api.families.links.Probit())
+    runs = of["runs"]
     table = pd.DataFrame({"S": runs["S_a(1 s)[g]"], "PID": runs.filter(regex=r"peak_drift_ratio").max(axis=1), "record": runs["record"]})
-    exceeds = (table["PID"] >= 0.004).astype(float)
-    a, b = api.GLM(exceeds, api.add_constant(np.log(table["S"])), family=family).fit(tol=1e-12).params
+    _, (a, b) = probit(np.log(table["S"]), table["PID"] >= 0.004)
     own = fr.fragility(table, "PID >= 0.004", intensity="S")
     for curve in (fr.fragility(runs, "drift_ratio >= 0.4 %"), own):
         assert [curve.median, curve.dispersion] == pytest.approx([np.exp(-a / b), 1 / b], rel=1e-6)
