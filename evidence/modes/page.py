@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 from scipy.linalg import expm
 from tqdm import tqdm
 
-from ..figures import COLOURS, FIXED, save, subplots
+from ..figures import COLOURS, save, subplots
 from ..page import table
 from ..scenes import RECORDS as DATA
 from ..scenes import G
@@ -20,7 +20,6 @@ SHOWN = "RSN77_SFERN_PUL164"  # whose floors are drawn
 DURATION = 25.0  # of each run at most, s
 LIMIT = 0.05
 QUESTIONS = {"theta": "θ", "u": "u of each floor", "V": "V of each storey", "a_t": "a of each floor"}
-OLD = "the old rule"
 MODES = (("mode 1", 1, 1), ("mode 2", 2, 2), ("mode 3", 3, 3), ("mode 4", 4, 4), ("modes 5 to 12", 5, 12))
 
 
@@ -42,17 +41,13 @@ def columns(response: fr.Response, name: str, count: int) -> np.ndarray:
     return np.column_stack([response[f"{name}[{i + 1}]"] for i in range(count)])
 
 
-class Motion:
-    """A run at instants: u and u_dot of the floors, theta, and the force of each mode on its unit mass."""
-
-    def __init__(self, building: Frame, record: fr.Record, keep: int | None = None, detail: str = "auto"):
-        self.run = fr.simulate(structure(building).replace(keep=keep), record, detail=detail, duration=min(record.duration, DURATION))
-        response = self.run.at(np.arange(self.run.start, self.run.end, np.pi / 10 / building.omega[-1]))  # 20 in a period
-        count = len(building.m)
-        self.u, u_dot = (columns(response, name, count) for name in ("u", "u_dot"))
-        omega, phi = building.omega, building.phi
-        q, q_dot = (of @ (building.m[:, None] * phi) for of in (self.u, u_dot))
-        self.theta, self.q, self.force = response["theta"], q, 2 * building.zeta * omega * q_dot + omega**2 * q
+def motion(building: Frame, record: fr.Record, detail: str = "auto") -> tuple[fr.Run, np.ndarray]:
+    """A run, and the largest acceleration of each mode, m/s2."""
+    run = fr.simulate(structure(building), record, detail=detail, duration=min(record.duration, DURATION))
+    response = run.at(np.arange(run.start, run.end, np.pi / 10 / building.omega[-1]))  # 20 in a period
+    omega, M_phi = building.omega, building.m[:, None] * building.phi
+    q, q_dot = (columns(response, name, len(building.m)) @ M_phi for name in ("u", "u_dot"))
+    return run, np.abs(2 * building.zeta * omega * q_dot + omega**2 * q).max(axis=0) / np.abs(building.m @ building.phi)
 
 
 def peaks(run: fr.Run) -> dict[str, np.ndarray]:
@@ -60,20 +55,6 @@ def peaks(run: fr.Run) -> dict[str, np.ndarray]:
     count = sum(name.startswith("a_t[") for name in run.peaks)
     of_floors = {name: np.array([run.peaks[f"{name}[{i + 1}]"] for i in range(count)]) for name in ("u", "V", "a_t")}
     return {"theta": np.array([run.peaks["theta"]]), **of_floors}
-
-
-def old_rule(building: Frame, rocking: Motion, fixed: Motion) -> dict[str, np.ndarray]:
-    """Peaks if the first mode alone rocks and the others vibrate as on a fixed base."""
-    phi = building.phi
-    until = min(len(rocking.theta), len(fixed.theta))
-    force = fixed.force[:until].copy()
-    force[:, 0] = rocking.force[:until, 0]
-    a = G * np.sin(rocking.theta[:until, None]) - force @ phi.T
-    u = fixed.q[:until].copy()
-    u[:, 0] = rocking.q[:until, 0]
-    V = np.cumsum((a * building.m)[:, ::-1], axis=1)[:, ::-1]
-    of_floors = {name: np.abs(of).max(axis=0) for name, of in (("u", u @ phi.T), ("V", V), ("a_t", a))}
-    return {"theta": np.array([rocking.run.peaks["theta"]]), **of_floors}
 
 
 def errors(found: dict[str, np.ndarray], exact: dict[str, np.ndarray]) -> dict[str, float]:
@@ -108,17 +89,15 @@ def landing(building: Frame, run: fr.Run) -> np.ndarray:
 def scene(name: str, path: str) -> tuple[list[dict[str, object]], list[dict[str, object]], dict[str, dict[str, np.ndarray]]]:
     """Errors of fewer modes, parts of the modes, and profiles of a building under a record."""
     building, record = BUILDINGS[name], fr.Record.read(path)
-    exact, fixed, one = Motion(building, record), Motion(building, record, detail="fixed_base"), Motion(building, record, 1)
-    count, profiles = len(building.m), {"all modes": peaks(exact.run), "fixed base": peaks(fixed.run), OLD: old_rule(building, one, fixed)}
+    (exact, rocks), (fixed, stands) = motion(building, record), motion(building, record, "fixed_base")
+    count, profiles = len(building.m), {"all modes": peaks(exact), "fixed base": peaks(fixed)}
     for kept in range(1, count):
-        profiles[f"{kept}"] = peaks(fr.simulate(structure(building).replace(keep=kept), record, duration=min(record.duration, DURATION)))
+        profiles[kept] = peaks(fr.simulate(structure(building).replace(keep=kept), record, duration=min(record.duration, DURATION)))
     place = {"building": name, "record": Path(path).stem}
     wrong = [{**place, "modes": kept, **errors(of, profiles["all modes"])} for kept, of in profiles.items()
              if kept not in ("all modes", "fixed base")]
-    gamma = np.abs(building.m @ building.phi)
-    rocks, stands = (np.abs(of.force).max(axis=0) / gamma for of in (exact, fixed))
     parts = pd.DataFrame({**place, "mode": np.arange(1, count + 1), "rocking": rocks, "fixed": stands, "reversal": reversal(building),
-                          "landing": landing(building, exact.run), "theta": float(exact.run.peaks["theta"])})
+                          "landing": landing(building, exact), "theta": float(exact.peaks["theta"])})
     return wrong, parts.to_dict("records"), profiles
 
 
@@ -136,8 +115,6 @@ def values(figures: Path) -> dict:
     return dict(
         buildings=table(["structure", "f, Hz", "α_cg, rad", "largest θ, mrad"], [building(name, parts) for name in BUILDINGS]),
         needed=table(["modes for errors within 5 %", *QUESTIONS.values()], [needed(name, wrong) for name in BUILDINGS]),
-        old=table(["error in %, median and largest", *QUESTIONS.values()],
-                  [row for name in BUILDINGS for row in old_errors(name, wrong)]),
         parts=table(["structure", "mode", "f, Hz", "share of the mass", "fixed base, g", "rocking, g", "rocking over fixed base",
                      "reversal, g", "landing, g"], [row for name in BUILDINGS for row in isolation(name, parts)]),
         **rule(parts))
@@ -151,7 +128,7 @@ def building(name: str, parts: pd.DataFrame) -> list[object]:
 
 def needed(name: str, wrong: pd.DataFrame) -> list[object]:
     """The fewest modes from which on the error stays within the limit, under the middle and under the worst of the records."""
-    of = wrong[(wrong["building"] == name) & (wrong["modes"] != OLD)].astype({"modes": int})
+    of = wrong[wrong["building"] == name]
     count = len(BUILDINGS[name].m)
 
     def fewest(errors: pd.Series) -> int:
@@ -160,12 +137,6 @@ def needed(name: str, wrong: pd.DataFrame) -> list[object]:
     groups = of.groupby("modes")[list(QUESTIONS)]
     both = [[fewest(errors[question]) for errors in (groups.median(), groups.max())] for question in QUESTIONS]
     return [f"{name}: of {count}", *(f"{middle}" if middle == worst else f"{middle}, {worst}" for middle, worst in both)]
-
-
-def old_errors(name: str, wrong: pd.DataFrame) -> list[list[object]]:
-    of = wrong[wrong["building"] == name].set_index("modes")[list(QUESTIONS)]
-    return [[f"{name}, {title}", *(f"{100 * of.loc[[key], question].median():.3g}, {100 * of.loc[[key], question].max():.3g}" for question in QUESTIONS)]
-            for key, title in ((OLD, "the old rule"), ("2", "2 modes"))]
 
 
 def isolation(name: str, parts: pd.DataFrame) -> list[list[object]]:
@@ -194,12 +165,9 @@ def rule(parts: pd.DataFrame) -> dict[str, float]:
 def draw_errors(wrong: pd.DataFrame, path: Path) -> None:
     figure, axes = subplots(1, len(BUILDINGS), 3.6, sharey=True)
     for axis, name in zip(axes, BUILDINGS):
-        of = wrong[wrong["building"] == name]
-        medians = of[of["modes"] != OLD].astype({"modes": int}).groupby("modes")[list(QUESTIONS)].median()
-        old = of[of["modes"] == OLD][list(QUESTIONS)].median()
+        medians = wrong[wrong["building"] == name].groupby("modes")[list(QUESTIONS)].median()
         for color, marker, (question, title) in zip(COLOURS, "os^D", QUESTIONS.items()):
             axis.plot(medians.index, 100 * medians[question], f"{marker}-", color=color, markersize=3.5, label=title)
-            axis.axhline(100 * old[question], color=color, linestyle=":")
         axis.set(title=name, xlabel=f"modes kept of {len(BUILDINGS[name].m)}", yscale="log", ylim=(1e-3, 200))
         axis.axhline(100 * LIMIT, color="0.7", linewidth=2, zorder=0)
         axis.xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -210,15 +178,14 @@ def draw_errors(wrong: pd.DataFrame, path: Path) -> None:
 
 def draw_floors(profiles: dict[str, dict[str, dict[str, np.ndarray]]], path: Path) -> None:
     figure, axes = subplots(1, len(profiles), 4.2)
-    styles = {"all modes": ("black", "-"), "fixed base": ("0.6", "-"), "1": (COLOURS[0], "o-"), "2": (COLOURS[1], "s-"),
-              "3": (COLOURS[2], "^-"), OLD: (FIXED, ":")}
+    styles = {"all modes": ("black", "-"), "fixed base": ("0.6", "-"), 1: (COLOURS[0], "o-"), 2: (COLOURS[1], "s-"), 3: (COLOURS[2], "^-")}
     for axis, (name, of) in zip(axes, profiles.items()):
         for kept, (color, style) in styles.items():
             axis.plot(of[kept]["a_t"] / G, BUILDINGS[name].h, style, color=color, markersize=3.5,
-                      label=f"{kept} mode{'s' * (kept > '1')} kept" if kept.isdigit() else kept)
+                      label=f"{kept} mode{'s' * (kept > 1)} kept" if isinstance(kept, int) else kept)
         axis.set(title=name, xlabel="largest acceleration, g", xlim=(0, None))
     axes[0].set_ylabel("height, m")
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=6)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=5)
     save(figure, path, "The largest acceleration over the height", "With all modes, with fewer, and on a fixed base.")
 
 
