@@ -35,15 +35,18 @@ def browser():
         browser.close()
 
 
-@pytest.fixture(scope="module")
-def view(exporter, pacoima_record, tmp_path_factory):
-    """The page of the Pacoima Dam scene, the response every 0.1 ms and the transitions."""
-    folder = tmp_path_factory.mktemp("view")
-    scene = ["--record", pacoima_record, "--duration", str(END)]
+def shown(exporter, record, folder, *structure):
+    """The page of a structure under the Pacoima Dam scene, the response every 0.1 ms and the transitions."""
+    scene = [*structure, "--record", record, "--duration", str(END)]
     subprocess.run([exporter, "view", *scene, "-o", "view.html"], cwd=folder, check=True)
     subprocess.run([exporter, "simulate", *scene, "--interval", "1e-4", "-o", "response.csv", "--events", "events.csv"],
                    cwd=folder, check=True)
     return folder / "view.html", pd.read_csv(folder / "response.csv"), pd.read_csv(folder / "events.csv")
+
+
+@pytest.fixture(scope="module")
+def view(exporter, pacoima_record, tmp_path_factory):
+    return shown(exporter, pacoima_record, tmp_path_factory.mktemp("view"))
 
 
 @pytest.fixture
@@ -96,35 +99,39 @@ def go_to(page, instant: float) -> None:
     page.locator("#time").evaluate("(slider, t) => { slider.value = t; slider.dispatchEvent(new Event('input')); }", instant)
 
 
-def drawn(page) -> tuple[float, float, float]:
-    """θ (rad) and the pivot (m) by the transform of the body, u (m) by that of its top."""
+def drawn(page, floor: int = 1) -> tuple[float, float, float]:
+    """θ (rad) and the pivot (m) by the transform of the body, u (m) by that of a floor."""
     transform = page.locator("#body").get_attribute("transform")
     angle, pivot = re.fullmatch(r"rotate\((\S+) (\S+) 0\)", transform).groups()
-    top = page.locator("#body rect.mass").nth(1).get_attribute("transform")
+    top = page.locator("#body rect.mass").nth(floor).get_attribute("transform")
     return math.radians(float(angle)), float(pivot), float(re.match(r"translate\((\S+) ", top)[1])
+
+
+def compare(page, table, row, floor: int = 1, of_floor: str = "", exaggeration: int = 1):
+    """What is drawn and read at the instant of a row of the table, on a floor; returns the row."""
+    now, largest = table.iloc[row], table.select_dtypes("number").abs().max()
+    go_to(page, now["time[s]"])
+    theta, _, u = drawn(page, floor)
+    # the page's lines leave the motion by a ten-thousandth of its peaks, its values are rounded to a tenth of that
+    assert abs(theta / exaggeration - now["theta[rad]"]) <= 1.1e-4 * largest["theta[rad]"]
+    assert abs(u / exaggeration - now[f"u{of_floor}[m]"]) <= 1.1e-4 * largest[f"u{of_floor}[m]"]
+    for name, column, unit in [("a_g", "a_g[m/s2]", 9.81), ("theta", "theta[rad]", 1), ("u", f"u{of_floor}[m]", 1e-3), ("V_t", "V_t[N]", 1e3),
+                               ("delta_t", f"delta_t{of_floor}[m]", 1e-3), ("a_t", f"a_t{of_floor}[m/s2]", 9.81), ("uplift", "uplift[m]", 1e-3),
+                               ("M_t", "M_t[N.m]", 1e3)]:
+        assert abs(reading(page, name) - now[column] / unit) <= 2e-3 * largest[column] / unit, (name, row)
+    return now
 
 
 @pytest.mark.parametrize("exaggeration", [1, 20])
 def test_what_is_drawn_is_the_response(opened, view, exaggeration):
     page = opened()
     page.select_option("#exaggeration", str(exaggeration))
-    _, table, _ = view
-    largest = table.select_dtypes("number").abs().max()
     for row in (0, 6667, 8765, 17041, 30000):
-        now = table.iloc[row]
-        go_to(page, now["time[s]"])
-        theta, pivot, u = drawn(page)
-        # the page's lines leave the motion by a ten-thousandth of its peaks, its values are rounded to a tenth of that
-        assert abs(theta / exaggeration - now["theta[rad]"]) <= 1.1e-4 * largest["theta[rad]"]
-        assert abs(u / exaggeration - now["u[m]"]) <= 1.1e-4 * largest["u[m]"]
+        now = compare(page, view[1], row, exaggeration=exaggeration)
         if now["theta[rad]"] != 0:
-            assert pivot == math.copysign(0.285, now["theta[rad]"])
+            assert drawn(page)[1] == math.copysign(0.285, now["theta[rad]"])
         assert page.locator("#pivot").is_visible() == (now["theta[rad]"] != 0)
         assert page.locator("tr.phase td").text_content() == now["phase"]
-        for name, column, unit in [("a_g", "a_g[m/s2]", 9.81), ("theta", "theta[rad]", 1), ("u", "u[m]", 1e-3),
-                                   ("delta_t", "delta_t[m]", 1e-3), ("uplift", "uplift[m]", 1e-3), ("a_t", "a_t[m/s2]", 9.81), ("V_t", "V_t[N]", 1e3),
-                                   ("M_t", "M_t[N.m]", 1e3)]:
-            assert abs(reading(page, name) - now[column] / unit) <= 2e-3 * largest[column] / unit, (name, row)
 
 
 def test_what_is_drawn_is_true_to_scale(opened):
@@ -255,26 +262,13 @@ def test_a_hostile_title_is_text(opened, exporter, tmp_path):
 
 def test_a_frame_moves_as_its_response_says(opened, exporter, pacoima_record, tmp_path):
     (tmp_path / "frame.toml").write_text(toml(FRAMES["frame"]))
-    scene = ["--parameters", "frame.toml", "--record", pacoima_record, "--duration", str(END)]
-    subprocess.run([exporter, "view", *scene, "-o", "view.html"], cwd=tmp_path, check=True)
-    subprocess.run([exporter, "simulate", *scene, "--interval", "1e-3", "-o", "response.csv"], cwd=tmp_path, check=True)
-    table = pd.read_csv(tmp_path / "response.csv")
-    largest = table.select_dtypes("number").abs().max()
-    page = opened(tmp_path / "view.html")
+    path, table, _ = shown(exporter, pacoima_record, tmp_path, "--parameters", "frame.toml")
+    page = opened(path)
     page.select_option("#exaggeration", "1")
-    for row in (0, 1234, 3000):
-        now = table.iloc[row]
-        go_to(page, now["time[s]"])
-        theta, _, _ = drawn(page)
-        assert abs(theta - now["theta[rad]"]) <= 1.1e-4 * largest["theta[rad]"]
+    for row in (0, 12340, 30000):
         for floor in (1, 2, 3):
             page.select_option("#floor", str(floor))
-            u = float(re.match(r"translate\((\S+) ", page.locator("#body rect.mass").nth(floor).get_attribute("transform"))[1])
-            assert abs(u - now[f"u[{floor}][m]"]) <= 1.1e-4 * largest[f"u[{floor}][m]"]
-            a_t = f"a_t[{floor}][m/s2]"
-            assert abs(reading(page, "a_t") - now[a_t] / 9.81) <= 2e-3 * largest[a_t] / 9.81
-            delta_t = f"delta_t[{floor}][m]"
-            assert abs(reading(page, "delta_t") - now[delta_t] / 1e-3) <= 2e-3 * largest[delta_t] / 1e-3
+            compare(page, table, row, floor, f"[{floor}]")
     assert page.locator("#heights").is_visible() and page.locator("#peaks tr").count() == 3
     for width, height in ((1366, 768), (1100, 800), (390, 844)):
         page.set_viewport_size({"width": width, "height": height})
