@@ -5,14 +5,12 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 from tqdm import tqdm
 
 from .. import figures
-from ..page import table
 from . import block
 from .block import homogeneous
-from .slender_block import HALF_SINE, ONE_COSINE, ONE_SINE, PULSES, Boundary, Pulse, boundaries, half_sine_boundary
+from .slender_block import HALF_SINE, ONE_COSINE, ONE_SINE, PULSES, Boundary, Pulse, boundaries
 
 R = 0.9  # coefficient of restitution
 MOST = 10.0  # amplitude, g tan alpha
@@ -70,30 +68,6 @@ class Case:
 def compute() -> list[Case]:
     """All boundaries of CASES."""
     return [Case(pulse, omega, of) for pulse, omega in tqdm(CASES) for of in boundaries(pulse, omega, R, MOST)]
-
-
-def save(cases: list[Case], path: Path) -> None:
-    """Writes the table of all boundaries."""
-    how = ["without impact", "after one impact", "after two impacts"]
-    pd.DataFrame([{
-        "pulse": case.pulse.name, "omega/p": case.omega,
-        "overturns": f"{how[case.boundary.impacts]}, {'below' if case.boundary.upper else 'above'}",
-        "closed form": f"{case.boundary.amplitude:.10f}",
-        f"difference at tan alpha = {TANGENTS[0]:g}": f"{case.differences[0]:.1e}",
-        f"difference at tan alpha = {TANGENTS[-1]:g}": f"{case.differences[-1]:.1e}",
-        "rate": f"{case.rate:.3f}", "extrapolated": f"{case.extrapolated:.10f}",
-        "difference": f"{case.error:.0e}",
-    } for case in cases]).to_csv(path, index=False)
-
-
-def half_sines() -> str:
-    """The table of the half sine's closed form beside the formula that lets the sine go on."""
-    lines = []
-    for pulse, omega in CASES:
-        if pulse is HALF_SINE:
-            amplitude, endless = half_sine_boundary(omega), np.hypot(1, omega)
-            lines.append([f"{omega:g}", f"{amplitude:.6f}", f"{endless:.6f}", f"{endless / amplitude:.2f}"])
-    return table(["ω/p", "closed form", "√(1 + (ω/p)²)", "ratio"], lines)
 
 
 def draw(cases: list[Case], path: Path) -> None:

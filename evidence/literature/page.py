@@ -10,9 +10,8 @@ def values(figures: Path) -> dict:
     """Pulses that overturn a rigid block."""
     cases = overturning.compute()
     overturning.draw(cases, figures / "overturning.svg")
-    overturning.save(cases, figures / "overturning.csv")
     return dict(
         restitution=overturning.R, impacts_agree=sum(case.impacts == case.boundary.impacts for case in cases),
         most=overturning.MOST, boundary_count=len(cases), boundary_error=max(case.error for case in cases),
-        boundary_rates=spread([case.rate for case in cases], ".3f"), samples=block.SAMPLES, half_sines=overturning.half_sines(),
+        boundary_rates=spread([case.rate for case in cases], ".3f"), samples=block.SAMPLES,
         tangents=", ".join(f"{tangent:g}" for tangent in overturning.TANGENTS))

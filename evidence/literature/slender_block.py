@@ -108,15 +108,3 @@ def boundaries(pulse: Pulse, omega: float, r: float, most: float, step: float = 
             root = brentq(lambda x: follow(pulse, omega, r, x, toppling)[1], last[0], amplitude, xtol=1e-15, rtol=1e-15)
             yield Boundary(root, toppling, last[2])
         last = amplitude, impacts, margin > 0
-
-
-def half_sine_boundary(omega: float) -> float:
-    """The one boundary of the half sine in closed form: the root of A exp(t_0 - pi/omega) + sqrt(A^2 - 1) = omega.
-
-    It says that the part of y that grows, integrated from lift-off at t_0 on, is zero at the end.
-    """
-    def growing(amplitude):
-        left = HALF_SINE.lift_off(omega, amplitude) - np.pi / omega
-        return amplitude * np.exp(left) + np.sqrt(amplitude**2 - 1) - omega
-
-    return brentq(growing, 1, 1 + omega, xtol=1e-15, rtol=1e-15)
