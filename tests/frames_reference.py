@@ -27,9 +27,9 @@ FIT = np.linalg.inv(np.vander(NODES, increasing=True))  # from values at NODES t
 class Motion:
     """The frame at one instant, and how its motion continues. The state is u, u_dot, theta, theta_dot in one row."""
 
-    def __init__(self, frame: Frame, ties: Ties, y, rtol: float, atol: float):
-        self.frame, self.ties, self.y, self.n = frame, ties, np.array(y, dtype=float), len(frame.masses)
-        self.tolerances, self.t, self.h, self.s = dict(rtol=rtol, atol=atol), 0.0, 1e-4, int(np.sign(y[-2]))
+    def __init__(self, frame: Frame, ties: Ties):
+        self.frame, self.ties, self.n, self.y = frame, ties, len(frame.masses), np.zeros(2 * len(frame.masses) + 2)
+        self.tolerances, self.t, self.h, self.s = dict(rtol=1e-13, atol=1e-16), 0.0, 1e-4, FULL_CONTACT
         self.zeros, self.plastic, self.yields, self.released = 0, [0.0, 0.0], [0, 0], [0, 0]  # zeros of theta(t) at this instant
         self.transitions, self.peaks = [], np.abs(self.outputs(self.y)[0])
         self.viscous, self.hysteretic = 0.0, 0.0  # energies that the dissipators took
@@ -206,11 +206,11 @@ class Motion:
             self.peaks[i] = max([self.peaks[i], *np.abs(polynomial.polyval(np.array(extrema), c))])
 
 
-def simulate(frame: Frame, dt: float, a_g, a_v=None, ties: Ties = Ties(), *, initial=None, rtol=1e-13, atol=1e-16):
-    """The response to accelerations (m/s2) linear between samples every dt (s), at the samples: motion, forces, energies.
+def simulate(frame: Frame, dt: float, a_g, a_v, ties: Ties):
+    """The response from rest to accelerations (m/s2) linear between samples every dt (s), at the samples: motion, forces, energies.
     `transitions` have the states before and after; `peaks` has u, a, theta, V_t and M_t in one row."""
-    n, time, a_v = len(frame.masses), dt * np.arange(len(a_g)), np.zeros(len(a_g)) if a_v is None else a_v
-    motion = Motion(frame, ties, np.zeros(2 * n + 2) if initial is None else initial, rtol, atol)
+    n, time = len(frame.masses), dt * np.arange(len(a_g))
+    motion = Motion(frame, ties)
     rows = [motion.row()]
     for i, end in enumerate(time[1:].tolist()):
         motion.start = float(time[i])

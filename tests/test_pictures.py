@@ -22,11 +22,10 @@ class Drawing:
     axes: list  # vertical ones: x, top, bottom
     words: list  # (text, x, y, anchor)
     dots: list  # (colour, x, y)
-    size: tuple
 
     def panels(self):
-        """The vertical axes, from the top and from left to right."""
-        return sorted(self.axes, key=lambda axis: (round(axis[1]), axis[0]))
+        """The vertical axes, from the top."""
+        return sorted(self.axes, key=lambda axis: axis[1])
 
     def upward(self, panel):
         """Pixels down -> values, by the numbers beside the axis."""
@@ -45,12 +44,9 @@ class Drawing:
 
     def curves(self, colour, panel):
         """The data lines of a colour that lie in a panel."""
-        x, top, bottom = panel
-        nearest = [other for other, t, b in self.panels() if (t, b) == (top, bottom) and other > x]
-        right = min(nearest, default=np.inf)
+        _, top, bottom = panel
         return [points for of, points in self.lines if of == colour and len(points) > 2
-                and (top - 1 <= points[:, 1]).all() and (points[:, 1] <= bottom + 1).all()
-                and (x - 1 <= points[:, 0]).all() and points[0, 0] < right]
+                and (top - 1 <= points[:, 1]).all() and (points[:, 1] <= bottom + 1).all()]
 
 
 def value(text):
@@ -77,7 +73,7 @@ def read(path) -> Drawing:
     axes = [(a[0], min(a[1], b[1]), max(a[1], b[1])) for a, b in axes if a[0] == b[0] and abs(a[1] - b[1]) > 40]
     return Drawing(lines, axes,
                    [(node.text.strip(), *position(node, "x", "y"), node.get("text-anchor")) for node in of["text"]],
-                   [(node.get("fill"), *position(node, "cx", "cy")) for node in of["circle"]], size)
+                   [(node.get("fill"), *position(node, "cx", "cy")) for node in of["circle"]])
 
 
 def is_on(time, values, of_time, of_values, points):

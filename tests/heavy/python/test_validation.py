@@ -5,15 +5,6 @@ import pytest
 
 from evidence.paper import isolation, modal_components
 from evidence.paper.half_cycles import half_cycles
-from evidence.paper.rows import Row
-
-
-def test_a_row_agrees_when_it_rounds_to_what_is_printed():
-    assert Row("x", "0.50", 0.5049).agrees
-    assert not Row("x", "0.50", 0.5051).agrees
-    assert Row("x", "39", 38.51).agrees
-    assert Row("x", None, 1.0).agrees
-    assert Row("x", "0.85", 0.921, ".3f", "g").cells() == ["x", "0.85 g", "0.921 g", "+0.071 g (+8.4 %)", ""]
 
 
 def test_half_cycles_of_a_decaying_cosine():
