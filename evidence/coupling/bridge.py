@@ -109,11 +109,6 @@ def simulate(system, step, guess, time, per_sample, row) -> np.ndarray:
     return np.array(rows)
 
 
-def iterated(bridge: Bridge, time, row) -> np.ndarray:
-    """The values of `row` at every sample of `time`. The master iterates, and halves steps with transitions."""
-    return simulate(bridge, functools.partial(between_transitions, MASTERS["iqn-ils"]()), extrapolate, time, 1, row)
-
-
 def histories(path: Path, title: str, time, labels: list[str], *curves: list[tuple]) -> None:
     """Panels over time, one under the other, each with its curves: values, colour and name."""
     figure, axes = subplots(len(labels), 1, 7.0, sharex=True)
@@ -139,7 +134,8 @@ def draw(fmus, path: Path) -> None:
         forces = (bridge.deck.k * (bridge.deck.x - tops) + bridge.deck.c * (bridge.deck.v - rates)) / len(bridge.piers)
         return [bridge.deck.x, *tops, *uplifts, *forces]
 
-    x, top_1, top_2, *others = iterated(bridge, time, row).T
+    master = functools.partial(between_transitions, MASTERS["iqn-ils"]())
+    x, top_1, top_2, *others = simulate(bridge, master, extrapolate, time, 1, row).T
     colors = (ROCKING, FIXED)
     uplifts, forces = ([*zip(of, colors, PIERS)] for of in (1e3 * np.array(others[:2]), others[2:]))
     histories(path, "Two piers under one deck rock out of step", time,

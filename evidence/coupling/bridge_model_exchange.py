@@ -11,14 +11,13 @@ import numpy as np
 from ..model_exchange.hosts import Model, cvode, follow
 from ..page import table
 from ..scenes import PACOIMA_DAM, pacoima_dam
-from . import convergence, stability
+from . import convergence
 from .bridge import deck
 from .swaying_mass import SwayingMass
 
 DECK, STATES, INDICATORS = 2, 4, 2  # states of the deck; of every pier states and event indicators
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
 SETTINGS = [*((tolerance, 0.0) for tolerance in TOLERANCES), (1e-10, 0.2e-3)]  # the latter the longest step, s; 0: any
-RATIOS = (0.03, 0.3, 3.0, 30.0)  # mass of the deck over the top masses of both piers
 
 
 class Pier(Model):
@@ -110,30 +109,13 @@ def response(fmus, of_deck, tolerance: float, time, longest_step: float = 0.0) -
     return rows[:, [0, 4, 2, 8, 6]], system
 
 
-def errors(fmus, step: float, masters) -> str:
-    """Errors and work of each pier, beside the masters that go from transition to transition."""
+def errors(fmus) -> str:
+    """Errors and work of each pier."""
     time, a_g = pacoima_dam()
     expected = convergence.columns(monolithic.integrate(convergence.monolithic_bridge(deck()), time, a_g))
     rows = []
     for tolerance, longest_step in SETTINGS:
         found, system = response(fmus, deck(), tolerance, time, longest_step)
         limit = f", steps of at most {1e3 * longest_step:g} ms" if longest_step else ""
-        rows.append([f"one system, tolerance {tolerance:g}{limit}", f"{convergence.error(found, expected):.1e}",
-                     f"{system.evaluations} evaluations, {system.steps} steps of the solver"])
-    for (name, per_sample), (error, _, sweeps, _) in masters.items():
-        rows.append([f"{name}, {1e3 * step / per_sample:g} ms", f"{error:.1e}",
-                     f"{sweeps * per_sample * (len(time) - 1):.0f} steps"])
-    return table(["", "error", "work of each pier"], rows)
-
-
-def stability_errors(fmus) -> str:
-    """The scene of the stability maps: errors by tolerances and masses of the deck."""
-    rows = []
-    for tolerance in TOLERANCES[:-1]:
-        errors = []
-        for ratio in RATIOS:
-            time, expected = stability.reference_deck(ratio)
-            found, _ = response(fmus, deck(stability.mass(ratio), stability.FREQUENCY), tolerance, time)
-            errors.append(f"{np.max(np.abs(found[:, 0] - expected)) / np.max(np.abs(expected)):.1e}")
-        rows.append([f"one system, tolerance {tolerance:g}", *errors])
-    return table(["deck / top masses", *(f"{ratio:g}" for ratio in RATIOS)], rows)
+        rows.append([f"{tolerance:g}{limit}", f"{convergence.error(found, expected):.1e}", system.evaluations, system.steps])
+    return table(["tolerance", "error", "evaluations of each pier", "steps of the solver"], rows)

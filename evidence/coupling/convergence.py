@@ -6,6 +6,7 @@ from pathlib import Path
 import monolithic
 import numpy as np
 import reference
+from tqdm import tqdm
 
 from ..figures import FIXED, QUIET, ROCKING, SMOOTH, save, subplots
 from ..page import table
@@ -77,7 +78,7 @@ SCENES = {
 }
 
 
-def study(fmus, update=lambda: None):
+def study(fmus):
     """By scene: steps (s), errors of every variant at each, transitions, and the change under a_g times 1 + 1e-12."""
     found = {}
     for scene, (motion, per_sample) in SCENES.items():
@@ -86,9 +87,8 @@ def study(fmus, update=lambda: None):
         response, nudged = (monolithic.integrate(system, time, scale * a_g) for scale in (1, 1 + 1e-12))
         expected = columns(response)
         errors = {}
-        for variant in VARIANTS:
+        for variant in tqdm(VARIANTS, desc=scene):
             errors[variant] = [error(cosimulated(time, a_g, fmus, deck(), variant, n), expected) for n in per_sample]
-            update()
         found[scene] = (time[1] / np.array(per_sample), errors, sum(map(len, response.transitions)),
                         error(columns(nudged), expected))
     return found

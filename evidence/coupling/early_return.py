@@ -8,6 +8,7 @@ import weakref
 
 import monolithic
 import numpy as np
+from tqdm import tqdm
 
 from ..page import table
 from ..scenes import exported, pacoima_dam
@@ -135,20 +136,19 @@ MASTERS = {
 }
 
 
-def study(update=lambda: None):
+def study():
     """Of every master at each of STEPS per sample: the error, and for how many steps and sweeps."""
     time, a_g = pacoima_dam()
     response = monolithic.integrate(convergence.monolithic_bridge(deck()), time, a_g)
     expected, found = convergence.columns(response), {}
     for way, (new, new_pier, fmi, Of) in MASTERS.items():
-        for per_sample in STEPS:
+        for per_sample in tqdm(STEPS, desc=way):
             iterated = masters.MASTERS["iqn-ils"]()
             system = Of([new_pier(exported(name.lower(), fmi)) for name in PIERS], deck(), linear(time, a_g))
             rows = convergence.course(system, new(iterated), extrapolate, time, per_sample)
             asked = (len(time) - 1) * per_sample
             found[way, per_sample] = (convergence.error(rows, expected), (iterated.steps - asked) / system.transitions(),
                                        iterated.sweeps / asked, system.transitions())
-            update()
     return time[1], found
 
 

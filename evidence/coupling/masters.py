@@ -48,15 +48,15 @@ class Iterated:
     """Repeats the sweep over a step, each time from the same state, until its w is the w that it was given.
 
     The next w is the result of the sweep (fixed point, `columns` = 0), or the w with the least residual if the residual were linear in w
-    (Anderson: least squares over the last differences). IQN-ILS keeps them from step to step.
+    (IQN-ILS: least squares over the last differences, which it keeps from step to step).
     """
 
-    def __init__(self, columns: int = 0, keep: bool = False):
+    def __init__(self, columns: int = 0):
         self.residuals, self.values = deque(maxlen=columns), deque(maxlen=columns)
-        self.keep, self.largest, self.h, self.steps, self.sweeps = keep, 1.0, 0.0, 0, 0
+        self.largest, self.h, self.steps, self.sweeps = 1.0, 0.0, 0, 0
 
     def __call__(self, system, t, h, guess):
-        if not self.keep or h != self.h:
+        if h != self.h:
             self.residuals.clear(), self.values.clear()
         self.h = h
         self.steps += 1
@@ -105,7 +105,5 @@ def between_transitions(step, system, t, h, guess):
 MASTERS = {
     "jacobi": lambda: jacobi,
     "gauss-seidel": lambda: gauss_seidel,
-    "fixed-point": Iterated,
-    "anderson": lambda: Iterated(columns=4),
-    "iqn-ils": lambda: Iterated(columns=8, keep=True),
+    "iqn-ils": lambda: Iterated(columns=8),
 }
