@@ -40,7 +40,6 @@ class Result:
 
     rows: np.ndarray  # OUTPUTS over time
     hidden: int  # events of which the host's own step showed nothing
-    evaluations: int = 0  # of the derivatives, where the host counts them
 
     @property
     def transitions(self) -> int:
@@ -96,7 +95,6 @@ class Model:
             set_value([self.references[name]], [value])
         self.fmu.enterInitializationMode()
         self.fmu.exitInitializationMode()
-        self.evaluations = 0
         self._numbers = np.empty(4)
         self._pointer = self._numbers.ctypes.data_as(POINTER(c_double))
 
@@ -110,7 +108,6 @@ class Model:
         return self._numbers.copy()
 
     def rates(self, time: float, states: np.ndarray, rates: np.ndarray) -> None:
-        self.evaluations += 1
         self.at(time, states)
         self.fmu.getDerivatives(self._pointer, 4)
         rates[:] = self._numbers
@@ -218,4 +215,4 @@ def follow(system, states, start, step, points):
 def _result(scene: Scene, model: Model, start, step) -> Result:
     points = scene.interval * np.arange(round(scene.end / scene.interval) + 1)
     rows = [model.row(time) for time, _ in follow(model, None, start, step, points)]
-    return Result(np.array(rows, dtype=[(name, float) for name in ("time", *OUTPUTS)]), model.hidden, model.evaluations)
+    return Result(np.array(rows, dtype=[(name, float) for name in ("time", *OUTPUTS)]), model.hidden)
