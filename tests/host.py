@@ -190,10 +190,6 @@ class Instance:
     def reals(self, names=REALS) -> tuple[float, ...]:
         return tuple(self.slave.getReal([self._reference(name) for name in names]))
 
-    def load(self, a_g: float, slope: float = 0.0):
-        """The ground acceleration over the next step: its value at the start and its rate."""
-        self.input("a_g", a_g, slope)
-
     def input(self, name: str, value: float, slope: float = 0.0):
         """An input over the next step: its value at the start and its rate."""
         self.set(**{name: value})
@@ -213,11 +209,6 @@ class Instance:
             self.step(t1)
             rows.append(self.reals(names))
         return np.array(rows, dtype=[(name, float) for name in names])
-
-    def rest(self, until: float, steps: int, names=REALS) -> np.ndarray:
-        """Steps to `until` with the ground at rest."""
-        time = np.linspace(self.time, until, steps + 1)
-        return self.follow(time, np.zeros_like(time), names)
 
     @property
     def events(self) -> list[Event]:

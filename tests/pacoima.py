@@ -51,7 +51,7 @@ def held(fmu: Fmu, delay: int = 0) -> np.ndarray:
     with fmu.start() as instance:
         samples = [instance.reals(OUTPUTS)]
         for until, a_g in zip(TIME[1:], late):
-            instance.load(a_g)
+            instance.input("a_g", a_g)
             instance.step(until)
             samples.append(instance.reals(OUTPUTS))
     return np.array(samples)

@@ -106,7 +106,7 @@ def compare(fmu, level, p, time, a_g, initial, limit):
         assert all(np.isfinite(rows[name]).all() for name in rows.dtype.names)
         if overturns:
             slope = (a_g[count] - a_g[count - 1]) / (time[count] - time[count - 1])
-            instance.load(a_g[count - 1], slope)
+            instance.input("a_g", a_g[count - 1], slope)
             with pytest.raises(FMICallException, match="discard"):
                 instance.step(time[count])
             assert instance.events[-1].time == pytest.approx(exact.transitions[-1].time, rel=limit)

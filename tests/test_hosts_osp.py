@@ -61,7 +61,7 @@ def test_start_values_and_overturning(mcmanus):
         steps += 1
     assert pier.execution.status().state == CosimExecutionState.ERROR.value
     with mcmanus.start(theta_0=0.3) as instance:
-        instance.rest(0.01 * steps, steps)
+        instance.step(0.01 * steps)
         assert pier.get(["theta"]) == pytest.approx([instance.get("theta")], rel=1e-10)
         assert instance.get("theta") > 1.5
 
