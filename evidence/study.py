@@ -39,13 +39,10 @@ def named(rows: pd.DataFrame) -> dict:
     return {name: value(text) for name, text in zip(rows["name"], rows["value"])}
 
 
-def power_of_ten(exponent: int) -> str:
-    return str(10**exponent) if 0 <= exponent <= 2 else f"10{str(exponent).translate(SUPERSCRIPTS)}"
-
-
 def decade(value: float) -> str:
     """A power of ten."""
-    return power_of_ten(round(math.log10(value)))
+    exponent = round(math.log10(value))
+    return str(10**exponent) if 0 <= exponent <= 2 else f"10{str(exponent).translate(SUPERSCRIPTS)}"
 
 
 def scientific(value: float) -> str:

@@ -10,9 +10,8 @@ import numpy as np
 from .. import figures
 from ..page import spread
 from ..scenes import G
-from .half_cycles import HalfCycles, half_cycles
 from .rows import Row
-from .specimens import EVISON, free_vibration
+from .specimens import EVISON, HalfCycles, free_vibration, half_cycles
 
 THETA_0 = 0.04  # rad
 OTHER_THETA_0 = [0.03, 0.035, 0.045, 0.05]  # rad

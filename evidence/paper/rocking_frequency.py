@@ -6,9 +6,8 @@ import numpy as np
 
 from .. import figures
 from .free_vibration import TANGENT, release
-from .half_cycles import HalfCycles, half_cycles
 from .rows import Row
-from .specimens import EVISON, free_vibration
+from .specimens import EVISON, HalfCycles, free_vibration, half_cycles
 
 AMPLITUDE = 0.9  # of tan alpha_cg, to start from
 DURATION, INTERVAL = 20.0, 2e-4  # s

@@ -11,7 +11,6 @@ import pandas as pd
 
 from ..figures import FIXED, QUIET, ROCKING, SMOOTH, save, subplots
 from ..page import spread, table
-from ..paper.specimens import MCMANUS
 from ..scenes import horizontal_records
 
 STRUCTURES = 400
@@ -20,8 +19,6 @@ CHANGED = 0.05  # relative difference from which a peak has changed
 LARGER = 1.01  # factor on the horizontal component, for comparison
 CHANGES = ["runs", "runs whose θ_max changes by more than 5 %", "median change of θ_max"]
 BANDS = [0, 0.01, 0.05, 0.2, 1]  # of θ_max/α_cg
-STIFFNESSES = [0.0, 0.5, 0.9, 1.1, 2.0, 4.0]  # k_t over the critical one
-ANGLES = [1e-3, 1e-4]  # of release, rad
 
 
 def population() -> dict[str, fr.Structure]:
@@ -50,13 +47,9 @@ def weight(s: fr.Structure) -> float:
     return (s.m + s.m0) * s.g
 
 
-def critical_stiffness(s: fr.Structure) -> float:
-    """k_t at which the tendon gives back what the weight loses by rocking: k_t B² = m g H."""
-    return s.m * s.g * s.H / s.B**2
-
-
 def tendon(s: fr.Structure) -> dict[str, float]:
-    return {"P_0": 0.5 * weight(s), "k_t": critical_stiffness(s)}
+    """At the critical k_t the tendon gives back what the weight loses by rocking: k_t B² = m g H."""
+    return {"P_0": 0.5 * weight(s), "k_t": s.m * s.g * s.H / s.B**2}
 
 
 def viscous(s: fr.Structure) -> dict[str, float]:
@@ -187,28 +180,10 @@ def draw_restraints(path: Path, sizes: dict[str, np.ndarray]) -> None:
     save(figure, path)
 
 
-def time_to_impact(s: fr.Structure, theta: float) -> float:
-    """From rest at `theta` to the impact, of a rigid structure at small angles: a hyperbolic cosine or a cosine."""
-    moment, stiffness = weight(s) * s.B, s.k_t * s.B**2 - s.m * s.g * s.H
-    inverse = math.acosh if stiffness < 0 else math.acos
-    return inverse(1 / (1 + theta * stiffness / moment)) / math.sqrt(abs(stiffness) / s.J_P)
-
-
-def closed_forms(theta: float) -> str:
-    """Largest error of the time to the impact of a rigid structure with a tendon, beside the closed forms at small angles."""
-    errors = []
-    for part in STIFFNESSES:
-        s = MCMANUS.replace(k_t=part * critical_stiffness(MCMANUS))
-        found = fr.simulate(s, duration=0.1, theta_0=theta, detail="rigid").transitions[0].time
-        errors.append(abs(found / time_to_impact(s, theta) - 1))
-    return f"{max(errors):.0e}"
-
-
 def values(figures: Path) -> dict:
     """Effects of the vertical component, a tendon and dissipators."""
     structures, (alone, both) = population(), records()
     return dict(
         structures=STRUCTURES, scales=", ".join(f"{scale:g}" for scale in SCALES), components=len(both),
-        events=len({path.parent for path in horizontal_records().values()}), stiffest=STIFFNESSES[-1],
-        errors=" and ".join(map(closed_forms, ANGLES)), **vertical(structures, alone, both, figures / "vertical.png"),
+        events=len({path.parent for path in horizontal_records().values()}), **vertical(structures, alone, both, figures / "vertical.png"),
         **restraints(structures, both, figures / "restraints.png"))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from evidence.paper import isolation, modal_components
-from evidence.paper.half_cycles import half_cycles
+from evidence.paper.specimens import half_cycles
 
 
 def test_half_cycles_of_a_decaying_cosine():
