@@ -196,6 +196,16 @@ def test_a_file_says_what_would_help(tmp_path):
         fr.export(tmp_path / "column.txt", fr.Structure(preset="mcmanus"), record=tmp_path / "column.txt")
 
 
+@pytest.mark.parametrize("part", [0.0, 0.9, 1.1, 4.0])
+def test_a_tendon_brings_a_rigid_structure_down_in_the_time_of_the_closed_form(part):
+    """From rest at a small angle: a hyperbolic cosine below the critical k_t, which is m g H/B², a cosine above it."""
+    pier = fr.Structure(preset="mcmanus")
+    stiffness, moment = (part - 1) * pier.weight * pier.H, (pier.weight + pier.weight0) * pier.B
+    time_ = (np.arccosh if part < 1 else np.arccos)(1 / (1 + 1e-4 * stiffness / moment)) / np.sqrt(abs(stiffness) / pier.J_P)
+    run = fr.simulate(pier.replace(k_t=part * pier.weight * pier.H / pier.B**2), duration=0.1, theta_0=1e-4, detail="rigid")
+    assert run.transitions[0].time == pytest.approx(time_, rel=1e-8)
+
+
 def test_arrays_are_read_whatever_their_strides(ground):
     """A field beside an int32, as fmpy returns, and every other thing that has the same numbers."""
     pier = fr.Structure(preset="mcmanus")
