@@ -1,14 +1,12 @@
 """How fast each master's error falls with the communication step, against the bridge integrated as one system."""
 
 import functools
-from pathlib import Path
 
 import monolithic
 import numpy as np
 import reference
 from tqdm import tqdm
 
-from ..figures import FIXED, QUIET, ROCKING, SMOOTH, save, subplots
 from ..page import table
 from ..scenes import pacoima_dam
 from .bridge import Bridge, deck, linear, pier, simulate
@@ -31,8 +29,7 @@ VARIANTS = {
     "iterated, lines of same moments": (MASTERS["iqn-ils"], extrapolate, True, 4),
     "the same, steps with transitions halved": (halving, extrapolate, True, 4),
 }
-LOOKS = [(FIXED, "o:"), (ROCKING, "o:"), (FIXED, "s--"), (ROCKING, "s--"),
-         (SMOOTH, "^--"), (SMOOTH, "v-"), ("black", "D-")]
+PARTS = (1, 2, 4, 8, 16)  # steps per sample
 
 
 def monolithic_bridge(of_deck, structures=STRUCTURES) -> monolithic.Bridge:
@@ -72,43 +69,12 @@ def smooth() -> tuple[np.ndarray, np.ndarray]:
     return time, 0.2 * (1 - 2 * phase) * np.exp(-phase)
 
 
-SCENES = {
-    "a pulse, bases down": (smooth, (1, 2, 4, 8, 16)),
-    "Pacoima Dam": (pacoima_dam, (1, 2, 4, 8, 16)),
-}
-
-
 def study(fmus):
-    """By scene: steps (s), errors of every variant at each, transitions, and the change under a_g times 1 + 1e-12."""
-    found = {}
-    for scene, (motion, per_sample) in SCENES.items():
-        time, a_g = motion()
-        system = monolithic_bridge(deck())
-        response, nudged = (monolithic.integrate(system, time, scale * a_g) for scale in (1, 1 + 1e-12))
-        expected = columns(response)
-        errors = {}
-        for variant in tqdm(VARIANTS, desc=scene):
-            errors[variant] = [error(cosimulated(time, a_g, fmus, deck(), variant, n), expected) for n in per_sample]
-        found[scene] = (time[1] / np.array(per_sample), errors, sum(map(len, response.transitions)),
-                        error(columns(nudged), expected))
-    return found
-
-
-def plot(path: Path, found) -> None:
-    figure, axes = subplots(1, 2, 4.6, sharey=True)
-    for axis, (scene, (steps, errors, transitions, floor)) in zip(axes, found.items()):
-        for (variant, values), (color, style) in zip(errors.items(), LOOKS):
-            axis.loglog(1e3 * steps, values, style, color=color, markersize=3.5, label=variant)
-        axis.axhline(floor, color=QUIET, linewidth=0.8)
-        axis.annotate("ground motion times 1 + 1e-12", (1e3 * steps[0], floor), xytext=(0, 2),
-                      textcoords="offset points", ha="right", color=QUIET, fontsize=8)
-        axis.set(title=f"{scene}: {transitions} transitions", xlabel="communication step (ms)")
-        axis.set_xticks(1e3 * steps, [f"{1e3 * h:g}" for h in steps])
-        axis.minorticks_off()
-    axes[0].set_ylabel("largest error over the peak")
-    figure.suptitle("Fourth order takes iteration, lines of same moments, and steps that end at transitions")
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
-    save(figure, path)
+    """Steps (s) under Pacoima Dam, errors of every variant at each, and transitions."""
+    time, a_g = pacoima_dam()
+    response = monolithic.integrate(monolithic_bridge(deck()), time, a_g)
+    errors = {variant: [error(cosimulated(time, a_g, fmus, deck(), variant, n), columns(response)) for n in PARTS] for variant in tqdm(VARIANTS)}
+    return time[1] / np.array(PARTS), errors, sum(map(len, response.transitions))
 
 
 def errors_by_step(steps, errors) -> str:

@@ -11,9 +11,7 @@ def values(figures: Path) -> dict:
     fmus = tuple(exported(name.lower()) for name in bridge.PIERS)
     bridge.draw(fmus, figures / "bridge.png")
     building_on_soil.draw(fmus[0], figures / "building_on_soil.png")
-    errors = convergence.study(fmus)
-    convergence.plot(figures / "convergence.png", errors)
-    steps, of_variants, transitions, _ = errors["Pacoima Dam"]
+    steps, of_variants, transitions = convergence.study(fmus)
     return dict(
         convergence=convergence.errors_by_step(steps, of_variants), early_return=early_return.errors(*early_return.study()),
         frequency=stability.FREQUENCY, one_system=bridge_model_exchange.errors(fmus), transitions=transitions,
