@@ -36,17 +36,12 @@ def structure(of: Frame) -> fr.Structure:
     return fr.Structure.from_matrices(of.m, of.h, of.K, zeta=of.zeta, m0=of.m0, J0=of.J0, B=of.B)
 
 
-def columns(response: fr.Response, name: str, count: int) -> np.ndarray:
-    """A column for each floor."""
-    return np.column_stack([response[f"{name}[{i + 1}]"] for i in range(count)])
-
-
 def motion(building: Frame, record: fr.Record, detail: str = "auto") -> tuple[fr.Run, np.ndarray]:
     """A run, and the largest acceleration of each mode, m/s2."""
     run = fr.simulate(structure(building), record, detail=detail, duration=min(record.duration, DURATION))
     response = run.at(np.arange(run.start, run.end, np.pi / 10 / building.omega[-1]))  # 20 in a period
     omega, M_phi = building.omega, building.m[:, None] * building.phi
-    q, q_dot = (columns(response, name, len(building.m)) @ M_phi for name in ("u", "u_dot"))
+    q, q_dot = (np.column_stack([response[f"{name}[{i + 1}]"] for i in range(len(omega))]) @ M_phi for name in ("u", "u_dot"))
     return run, np.abs(2 * building.zeta * omega * q_dot + omega**2 * q).max(axis=0) / np.abs(building.m @ building.phi)
 
 
