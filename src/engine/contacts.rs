@@ -104,14 +104,16 @@ impl<Q: Moves> Guard<Q> for Points {
         let Some(foundation) = level.structure().foundation() else { return First::default().found() };
         let (rises, mut found) = (Rises::new(foundation, arc), First::default());
         for (i, point) in foundation.points.iter().enumerate() {
-            let pushes = rises.at(point.xi, point.c / point.k);
+            let pushes = || rises.at(point.xi, point.c / point.k);
             let reach = found.0.map_or(reach, |(crossing, _)| crossing.sigma());
-            match contact.is_pressed(i) {
-                true => found.see(first([rises.gap(&pushes, -1.0)], reach), i, -1),
-                false => {
-                    let height = rises.at(point.xi, 0.0);
-                    found.see(first([rises.gap(&height, 1.0), rises.gap(&pushes, 1.0)], reach), i, 1);
-                }
+            if contact.is_pressed(i) {
+                found.see(first([rises.gap(&pushes(), -1.0)], reach), i, -1);
+                continue;
+            }
+            let height = rises.at(point.xi, 0.0);
+            let above = rises.gap(&height, 1.0);
+            if above.is_some_and(|above| !above.is_open_throughout(reach)) {
+                found.see(first([above, rises.gap(&pushes(), 1.0)], reach), i, 1);
             }
         }
         found.found()

@@ -492,7 +492,8 @@ impl<'a, Q: Moves> Expansion<'a, Q> {
         let &Expansion { piece, arc, .. } = self;
         let most = magnitudes(structure, piece.before.phase, loads, arc.most(end));
         let a_g = || Ramp { value: loads[0].a_g, slope: piece.load.slope.a_g };
-        Magnitudes { arc: structure.gauges().has_feedthrough.then(|| (arc, a_g())), ..most }
+        let needs_arc = structure.gauges().has_feedthrough || structure.foundation().is_some();
+        Magnitudes { arc: needs_arc.then(|| (arc, a_g())), ..most }
     }
 
     /// Shows the series of outputs in σ, each over the polynomial that it belongs to: this one, or parts of it if sin θ and cos θ need

@@ -31,6 +31,7 @@ use crate::{Modes, OneMass, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::fmt::Debug;
+use wide::f64x4;
 
 /// A level of detail.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -133,7 +134,8 @@ impl Detail {
             _ if subject.structure.foundation().is_none() => Ok(Box::new(ManyModes::<Modes>::new(subject, self))),
             Detail::Linear => Err(InitialStateError::OnGround(self.name())),
             Detail::FixedBase => Ok(Box::new(ManyModes::<Modes>::new(subject, self))),
-            _ => Ok(Box::new(OnGround::new(subject))),
+            _ if subject.structure.modes().len() <= 1 => Ok(Box::new(OnGround::<f64>::new(subject))),
+            _ => Ok(Box::new(OnGround::<f64x4>::new(subject))),
         }
     }
 }

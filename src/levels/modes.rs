@@ -24,7 +24,7 @@ use crate::levels::rules::{ChatterLimit, after_rigid_impact};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::impact;
 use crate::mechanics::instant::Second;
-use crate::mechanics::lateral::Coordinates;
+use crate::mechanics::lateral::{Coordinates, Modes};
 use crate::mechanics::restraint::{self, Angles, Dissipators};
 use crate::mechanics::uplift::inertia;
 use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
@@ -32,6 +32,8 @@ use crate::structure::mode::Vibration;
 use crate::{Base, Mode};
 use crate::{LinearLoad, OneMass, Parameters, Phase, Side, State};
 use std::cell::RefCell;
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 use wide::f64x4;
 
 /// Part of the acceleration of gravity by which a motion is as good as none.
@@ -77,61 +79,131 @@ struct Scratch {
     square: FourSeries,
 }
 
-/// Coefficients for four modes.
-pub(super) type FourSeries = [f64x4; MAX_ORDER + 1];
+/// Numbers of modes side by side: of four, or of one.
+pub(crate) trait Abreast:
+    Copy
+    + Debug
+    + Default
+    + PartialEq
+    + Send
+    + AddAssign
+    + SubAssign
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Neg<Output = Self>
+    + Mul<Output = Self>
+    + Mul<f64, Output = Self>
+    + 'static
+{
+    /// How many modes.
+    const COUNT: usize;
 
-/// Four modes side by side; modes that are none have no mass and stay at rest.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Four {
-    /// The number of the first mode.
-    pub first: usize,
-    pub mass: f64x4,
-    pub share: f64x4,
-    pub height: f64x4,
-    /// μ h.
-    pub arm: f64x4,
-    /// k/μ.
-    pub stiffness: f64x4,
-    /// c/μ in full contact.
-    pub damping: f64x4,
-    /// The newest coefficients of u and u̇.
-    pub motion: [f64x4; 2],
-    /// Force over mass, and its change over the span.
-    pub push: [f64x4; 2],
-    /// e + w θ̇² of the newest order.
-    pub resistance: f64x4,
-    /// w.
-    pub lever: FourSeries,
-    /// μ w, from the end.
-    heavy: FourSeries,
+    /// The number of each.
+    fn each(number: impl Fn(usize) -> f64) -> Self;
+
+    fn sum(self) -> f64;
+
+    /// Writes the numbers to `modes`, from mode `first` on.
+    fn put(self, modes: &mut Modes, first: usize);
 }
 
-impl Four {
-    pub fn new((place, modes): (usize, &[Mode])) -> Four {
-        let both = |of: fn(&Mode) -> f64| f64x4::new([0, 1, 2, 3].map(|i| modes.get(i).map_or(0.0, of)));
+impl Abreast for f64 {
+    const COUNT: usize = 1;
+
+    #[inline(always)]
+    fn each(number: impl Fn(usize) -> f64) -> f64 {
+        number(0)
+    }
+
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        self
+    }
+
+    #[inline(always)]
+    fn put(self, modes: &mut Modes, first: usize) {
+        modes.set(first, self);
+    }
+}
+
+impl Abreast for f64x4 {
+    const COUNT: usize = 4;
+
+    #[inline(always)]
+    fn each(number: impl Fn(usize) -> f64) -> f64x4 {
+        f64x4::new([0, 1, 2, 3].map(number))
+    }
+
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        self.reduce_add()
+    }
+
+    #[inline(always)]
+    fn put(self, modes: &mut Modes, first: usize) {
+        modes.set_four(first, self);
+    }
+}
+
+/// Coefficients for modes side by side.
+pub(super) type FourSeries<V = f64x4> = [V; MAX_ORDER + 1];
+
+/// Four modes side by side, or one; modes that are none have no mass and stay at rest.
+#[derive(Clone, Debug)]
+pub(super) struct Four<V = f64x4> {
+    /// The number of the first mode.
+    pub first: usize,
+    pub mass: V,
+    pub share: V,
+    pub height: V,
+    /// μ h.
+    pub arm: V,
+    /// k/μ.
+    pub stiffness: V,
+    /// c/μ in full contact.
+    pub damping: V,
+    /// The newest coefficients of u and u̇.
+    pub motion: [V; 2],
+    /// Force over mass, and its change over the span.
+    pub push: [V; 2],
+    /// e + w θ̇² of the newest order.
+    pub resistance: V,
+    /// w.
+    pub lever: FourSeries<V>,
+    /// μ w, from the end.
+    heavy: FourSeries<V>,
+}
+
+impl<V: Abreast> Four<V> {
+    pub fn new((place, modes): (usize, &[Mode])) -> Four<V> {
+        let both = |of: fn(&Mode) -> f64| V::each(|i| modes.get(i).map_or(0.0, of));
         Four {
-            first: 4 * place,
+            first: V::COUNT * place,
             mass: both(|mode| mode.mass),
             share: both(|mode| mode.share),
             height: both(|mode| mode.height),
             arm: both(|mode| mode.mass * mode.height),
             stiffness: both(|mode| mode.stiffness / mode.mass),
             damping: both(|mode| mode.damping / mode.mass),
-            ..Four::default()
+            motion: Default::default(),
+            push: Default::default(),
+            resistance: V::default(),
+            lever: [V::default(); MAX_ORDER + 1],
+            heavy: [V::default(); MAX_ORDER + 1],
         }
     }
 
     /// Σ a_i b_{k−i} over the first terms of `a`, with b kept from its end.
     #[inline(always)]
-    pub fn product(a: &[f64x4], b: &[f64x4]) -> f64x4 {
-        let mut sum = f64x4::ZERO;
-        a.iter().zip(b).for_each(|(a, b)| sum += a * b);
+    pub fn product(a: &[V], b: &[V]) -> V {
+        let mut sum = V::default();
+        a.iter().zip(b).for_each(|(a, b)| sum += *a * *b);
         sum
     }
 
     /// Puts w in order 0.
     #[inline(always)]
-    pub fn start(&mut self, lever: f64x4) -> f64x4 {
+    pub fn start(&mut self, lever: V) -> V {
         let heavy = self.mass * lever;
         (self.lever[0], self.heavy[MAX_ORDER]) = (lever, heavy);
         heavy
@@ -139,7 +211,7 @@ impl Four {
 
     /// Puts −u in order `k` of w, and returns that order of μ w² and μ w.
     #[inline(always)]
-    pub fn next(&mut self, k: usize, per: f64) -> [f64x4; 2] {
+    pub fn next(&mut self, k: usize, per: f64) -> [V; 2] {
         let Four { lever, heavy, .. } = self;
         lever[k] = self.motion[1] * -per;
         heavy[MAX_ORDER - k] = self.mass * lever[k];

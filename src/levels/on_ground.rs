@@ -9,8 +9,8 @@
 //! d²/dt² [m_t y + S_1 cos θ − μ sin θ] = Σ N − m_t (g + a_v)                                                              (F6)
 //! ```
 //!
-//! T_θ = N_res cos θ − sin θ Σ u φᵀF. A tendon and dissipators are points that pull. An order takes eleven products and two for each mode.
-//! Four products run side by side. Two unknowns are left, θ̈ and γ, with E = μ cos θ + S_res sin θ and m* = Σ Γ S:
+//! T_θ = N_res cos θ − sin θ Σ u φᵀF. A tendon and dissipators are points that pull. An order takes eight products, three squares, and a
+//! product and a square for each mode. Products run side by side, four and four; modes do, too, or there is one and it is a number. Two unknowns are left, θ̈ and γ, with E = μ cos θ + S_res sin θ and m* = Σ Γ S:
 //!
 //! ```text
 //! | D         −E            | | θ̈ |   (F7)
@@ -18,7 +18,7 @@
 //! ```
 
 use crate::levels::level::{Level, Now, Subject, derivatives};
-use crate::levels::modes::Four;
+use crate::levels::modes::{Abreast, Four, FourSeries};
 use crate::mechanics::contact::{energy, ties_on_ground};
 use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
@@ -33,7 +33,7 @@ const AT_REST: f64 = 0.9;
 
 /// A structure on ground that gives.
 #[derive(Clone, Debug)]
-pub(crate) struct OnGround {
+pub(crate) struct OnGround<V> {
     subject: Subject,
     /// The longest span of a series, s.
     longest_span: f64,
@@ -42,62 +42,55 @@ pub(crate) struct OnGround {
     radius: f64,
     /// Energy above rest below which no point leaves the ground, J.
     least_lift: f64,
-    scratch: RefCell<Box<Scratch>>,
+    scratch: RefCell<Box<Scratch<V>>>,
     /// Room for the series of which only the first terms count.
     first: RefCell<Box<Arc<Modes>>>,
 }
 
-/// Left factors of four products of each order, and the right factors counted from their end.
-type Rows = [[f64x4; MAX_ORDER + 2]; 2];
+/// Two rows of four factors of an order.
+type Row = [f64x4; 2];
 
 /// Room for the series of one step.
 #[derive(Clone, Debug)]
-struct Scratch {
-    fours: Vec<Four>,
-    /// Row i of the left factors, and row j of the right ones. The power is what the dashpots take.
+struct Scratch<V> {
+    fours: Vec<Four<V>>,
+    /// Row i of the left factors, and row j of the right ones counted from their end, of eight products of order i + j:
     ///
     /// ```text
-    /// ahead    left: θ̇, θ̇, θ̇, μ of i + 1            right: cos θ, sin θ, Σ m u², sin θ of j + 1
-    /// behind   left: γ, γ, μ of i + 1, cos θ of i + 1      right: sin θ of j + 1, cos θ of j + 1, G, Σ ξ N
-    /// same     left: θ̇, ẏ, θ̇ cos θ, Σ u φᵀF          right: θ̇, the power over ẏ, the power over θ̇ cos θ, sin θ
+    /// left   θ̇, θ̇, θ̇, μ of i + 1                  from i = 1 on   γ of i − 1, γ of i − 1, μ, cos θ
+    /// right  cos θ, sin θ, Σ m u², sin θ of j + 1                  sin θ of j + 1, cos θ of j + 1, G, Σ ξ N
     /// ```
-    ahead: Rows,
-    behind: Rows,
-    same: Rows,
+    left: [Row; MAX_ORDER + 1],
+    right: [Row; MAX_ORDER + 1],
+    /// θ̇, the rate at the middle of the pressed dashpots, and θ̇ cos θ, to be squared.
+    squared: [f64x4; MAX_ORDER + 1],
+    /// Σ u φᵀF, if there are forces.
+    pushed: [f64; MAX_ORDER + 1],
     /// θ̇² for the modes of a four, from the end.
-    square: [f64x4; MAX_ORDER + 1],
+    square: FourSeries<V>,
 }
 
-/// Puts the newest factors of order `n` and returns the sum over the orders from 0 to n of the products.
-#[inline(always)]
-fn products([left, right]: &mut Rows, n: usize, newest_left: [f64; 4], newest_right: [f64; 4]) -> [f64; 4] {
-    (left[n], right[MAX_ORDER + 1 - n]) = (f64x4::new(newest_left), f64x4::new(newest_right));
-    let mut sum = f64x4::ZERO;
-    left[..=n].iter().zip(&right[MAX_ORDER + 1 - n..]).for_each(|(a, b)| sum += a * b);
-    sum.to_array()
-}
-
-impl OnGround {
+impl<V: Abreast> OnGround<V> {
     /// The structure of `subject`, which stands on ground that gives.
-    pub(crate) fn new(subject: Subject) -> OnGround {
+    pub(crate) fn new(subject: Subject) -> OnGround<V> {
         let structure = &subject.structure;
         let (base, body, modes) = (structure.base(), structure.body(), structure.modes());
         let foundation = structure.foundation().expect("it stands on ground that gives");
         let frequencies = foundation.frequencies(base, body, modes);
         let (highest, point) = (frequencies[frequencies.len() - 1], foundation.points[0]);
         let fastest = highest.max(point.c / point.k * highest * highest);
-        let rows: Rows = [[f64x4::ZERO; MAX_ORDER + 2]; 2];
         OnGround {
             longest_span: LONGEST_SPAN / fastest,
             lowest: frequencies[0],
             radius: (base.J_P / base.m_t).sqrt(),
             least_lift: foundation.least_lift(base, body, modes),
             scratch: RefCell::new(Box::new(Scratch {
-                fours: modes.chunks(4).enumerate().map(Four::new).collect(),
-                ahead: rows,
-                behind: rows,
-                same: rows,
-                square: [f64x4::ZERO; MAX_ORDER + 1],
+                fours: modes.chunks(V::COUNT).enumerate().map(Four::new).collect(),
+                left: [[f64x4::ZERO; 2]; MAX_ORDER + 1],
+                right: [[f64x4::ZERO; 2]; MAX_ORDER + 1],
+                squared: [f64x4::ZERO; MAX_ORDER + 1],
+                pushed: [0.0; MAX_ORDER + 1],
+                square: [V::default(); MAX_ORDER + 1],
             })),
             first: RefCell::default(),
             subject,
@@ -151,17 +144,17 @@ impl OnGround {
             }
         }
         let (ground, weight) = ([a_g.value, a_g.slope * span], [g + a_v.value, a_v.slope * span]);
-        let scratch = &mut **self.scratch.borrow_mut();
-        let Scratch { fours, ahead, behind, same, square } = scratch;
-        let (mut inertia, mut offset, mut carried, mut is_pushed) = (f64x4::ZERO, f64x4::ZERO, f64x4::ZERO, false);
+        // the power of the dashpots is c (ẏ − lever θ̇ cos θ)² and what is left for (θ̇ cos θ)²
+        let lever = if taken[0] > 0.0 { taken[1] / taken[0] } else { 0.0 };
+        let left_for_turning = taken[2] - lever * taken[1];
+        let Scratch { fours, left, right, squared, pushed, square } = &mut **self.scratch.borrow_mut();
+        let (mut inertia, mut offset, mut carried, mut is_pushed) = (V::default(), V::default(), V::default(), false);
         for four in fours.iter_mut() {
-            let of = |q: &Modes| {
-                f64x4::new([0, 1, 2, 3].map(|i| if four.first + i < at { q.of(four.first + i) } else { 0.0 }))
-            };
+            let of = |q: &Modes| V::each(|i| if four.first + i < at { q.of(four.first + i) } else { 0.0 });
             let heavy = four.share * four.mass;
             (four.motion, four.push) = ([of(&state.u), of(&state.u_dot)], [of(&a_top.value), of(&a_top.slope)]);
             four.push = [four.share * a_g.value - four.push[0], (four.share * a_g.slope - four.push[1]) * span];
-            is_pushed |= four.push != [f64x4::ZERO; 2];
+            is_pushed |= four.push != [V::default(); 2];
             inertia += four.motion[0] * four.start(-four.motion[0]);
             offset += heavy * four.motion[0];
             carried += heavy * four.share;
@@ -170,60 +163,60 @@ impl OnGround {
         is_pushed |= on_rest != [0.0; 2];
         let on_rest = [on_rest[0], on_rest[1] * span];
         let (sin_0, cos_0) = libm::sincos(state.theta);
-        let (offset_0, carried) = (offset.reduce_add(), carried.reduce_add());
-        let (D, E, M) = (J0 - inertia.reduce_add(), offset_0 * cos_0 + S_res * sin_0, m_t - carried * sin_0 * sin_0);
-        let per_determinant = 1.0 / (D * M - E * E);
-        let [D, E, M] = [D, E, M].map(|of| of * per_determinant);
+        let (offset_0, carried) = (offset.sum(), carried.sum());
+        let (D, E, M_0) = (J0 - inertia.sum(), offset_0 * cos_0 + S_res * sin_0, m_t - carried * sin_0 * sin_0);
+        let per_determinant = 1.0 / (D * M_0 - E * E);
+        let [D, E, M_0] = [D, E, M_0].map(|of| of * per_determinant);
         let S_1 = structure.body().S_1;
         let (mut theta_dot, mut turning, mut turning_sin) =
             (state.theta_dot, state.theta_dot * cos_0, state.theta_dot * sin_0);
         let (mut sin, mut cos, [mut sin_before, mut cos_before]) = (sin_0, cos_0, [0.0; 2]);
-        let (mut y_dot, mut gamma, mut G, mut M_before, mut offset) = (state.u_dot.of(at), 0.0, 0.0, 0.0, offset_0);
+        let (mut y_dot, mut gamma, mut offset) = (state.u_dot.of(at), 0.0, offset_0);
         let mut state = *state;
         state.u.set(at + 1, sin_0);
         state.u_dot.set(at + 1, turning);
         let truncation = self.truncation(start, span);
+        let per_span = 1.0 / span;
         arc.expand_in_place(&state, span, &truncation, |arc, order, per| {
-            let n = order - 1;
+            let (n, rate) = (order - 1, order as f64 * per_span);
             let (y, next_sin, next_cos) = (arc.u[n].of(at), turning * per, -turning_sin * per);
-            let [mut inertia, mut next_offset] = [f64x4::ZERO; 2];
+            let [mut inertia, mut next_offset] = [V::default(); 2];
             for four in fours.iter_mut() {
                 let [of_inertia, heavy] = four.next(order, per);
                 inertia += of_inertia;
                 next_offset -= four.share * heavy;
             }
-            let next_offset = next_offset.reduce_add();
-            let newest = [next_cos, next_sin, inertia.reduce_add(), next_sin];
-            let [turning_cos, sin_turning, spin, lean] =
-                products(ahead, n, [theta_dot, theta_dot, theta_dot, next_offset], newest);
-            let [fall, hang, weighed, moved] = match n {
-                0 => [0.0; 4],
-                _ => products(behind, n - 1, [gamma, gamma, offset, cos], [sin, cos, G, M_before]),
-            };
-            let mut pushed = f64x4::ZERO;
-            if is_pushed {
-                for four in fours.iter() {
-                    let before = if n > 0 { four.lever[n - 1] } else { f64x4::ZERO };
-                    pushed -= four.mass * (four.push[0] * four.lever[n] + four.push[1] * before);
-                }
+            let next_offset = next_offset.sum();
+            left[n][0] = f64x4::new([theta_dot, theta_dot, theta_dot, next_offset]);
+            left[n][1] = f64x4::new([gamma, gamma, offset, cos]);
+            let newest = f64x4::new([next_cos, next_sin, inertia.sum(), next_sin]);
+            right[MAX_ORDER - n][0] = newest;
+            let (mut ahead, mut behind) = (left[0][0] * newest, f64x4::ZERO);
+            for (left, right) in left[1..=n].iter().zip(&right[MAX_ORDER + 1 - n..]) {
+                ahead += left[0] * right[0];
+                behind += left[1] * right[1];
             }
-            let powers = [taken[0] * y_dot - taken[1] * turning, taken[2] * turning - taken[1] * y_dot];
-            let [turning_square, of_y, of_turning, pushed] = products(
-                same,
-                n,
-                [theta_dot, y_dot, turning, pushed.reduce_add()],
-                [theta_dot, powers[0], powers[1], sin],
-            );
-            square[MAX_ORDER - n] = f64x4::splat(turning_square);
-            let power = of_y + of_turning;
+            let [turning_cos, sin_turning, spin, lean] = ahead.to_array();
+            let [fall, hang, weighed, moved] = behind.to_array();
+            squared[n] = f64x4::new([theta_dot, y_dot - lever * turning, turning, 0.0]);
+            let half = order / 2;
+            let mut squares = f64x4::ZERO;
+            squared[..half].iter().zip(squared[n + 1 - half..=n].iter().rev()).for_each(|(a, b)| squares += a * b);
+            squares += squares;
+            if n % 2 == 0 {
+                squares += squared[half] * squared[half];
+            }
+            let [turning_square, of_middle, of_turning, _] = squares.to_array();
+            square[MAX_ORDER - n] = V::each(|_| turning_square);
+            let power = taken[0] * of_middle + left_for_turning * of_turning;
             arc.u_dot[n].set(at + 2, power);
             arc.u[order].set(at + 2, power * per);
             let of_order = |of: [f64; 2]| of.get(n).copied().unwrap_or(0.0);
             let N = of_order([push[0], 0.0]) - k[0] * y + k[1] * sin - c[0] * y_dot + c[1] * turning;
-            M_before = of_order([push[1], 0.0]) - k[1] * y + k[2] * sin - c[1] * y_dot + c[2] * turning;
+            let M = of_order([push[1], 0.0]) - k[1] * y + k[2] * sin - c[1] * y_dot + c[2] * turning;
             let fall = fall - (ground[0] * cos + ground[1] * cos_before);
             let hang = hang + ground[0] * sin + ground[1] * sin_before;
-            let [mut moment, mut upwards] = [f64x4::ZERO; 2];
+            let [mut moment, mut upwards] = [V::default(); 2];
             for four in fours.iter_mut() {
                 let [u, u_dot] = four.motion;
                 let elastic = four.stiffness * u + four.damping * u_dot;
@@ -235,23 +228,29 @@ impl OnGround {
                 }
                 upwards += four.share * four.mass * four.resistance;
             }
-            let mut moment =
-                moment.reduce_add() + offset_0 * hang + weighed + S_res * fall - cos_0 * M_before - moved - spin / per;
+            let mut moment = moment.sum() + offset_0 * hang + weighed + S_res * fall - cos_0 * M - moved - spin * rate;
             if is_pushed {
-                moment += on_rest[0] * cos + on_rest[1] * cos_before - pushed;
+                let force = |of: usize, k: usize| {
+                    fours.iter().map(move |four| (four.mass * four.push[of] * four.lever[k]).sum())
+                };
+                let before = if n > 0 { force(1, n - 1).sum() } else { 0.0 };
+                pushed[n] = -(force(0, n).sum::<f64>() + before);
+                let sines = right[MAX_ORDER + 1 - n..].iter().map(|row| row[0].to_array()[1]);
+                moment -= pushed[n] * sin_0 + pushed[..n].iter().zip(sines).map(|(of, sin)| of * sin).sum::<f64>();
+                moment += on_rest[0] * cos + on_rest[1] * cos_before;
             }
-            let rise = S_1 * sin_turning + offset_0 * turning_cos + (n + 2) as f64 / span * lean;
-            let upwards = N + rise / per + sin_0 * upwards.reduce_add();
-            let theta_ddot = M * moment + E * upwards;
+            let rise = S_1 * sin_turning + offset_0 * turning_cos + (n + 2) as f64 * per_span * lean;
+            let upwards = N + rise * rate + sin_0 * upwards.sum();
+            let theta_ddot = M_0 * moment + E * upwards;
             gamma = E * moment + D * upwards;
-            G = hang + gamma * cos_0;
+            right[MAX_ORDER - n][1] = f64x4::new([next_sin, next_cos, hang + gamma * cos_0, M]);
             theta_dot = theta_ddot * per;
             y_dot = (gamma - of_order(weight)) * per;
             arc.u_dot[order].count_as(&state.u_dot);
             for four in fours.iter_mut() {
                 let along = four.resistance + four.share * (sin_0 * gamma) - four.height * theta_ddot;
                 four.motion = [four.motion[1] * per, along * per];
-                arc.u_dot[order].set_four(four.first, four.motion[1]);
+                four.motion[1].put(&mut arc.u_dot[order], four.first);
             }
             (turning, turning_sin) = (turning_cos + theta_dot * cos_0, sin_turning + theta_dot * sin_0);
             (sin_before, cos_before, sin, cos, offset) = (sin, cos, next_sin, next_cos, next_offset);
@@ -261,7 +260,7 @@ impl OnGround {
     }
 }
 
-impl Level<Modes> for OnGround {
+impl<V: Abreast> Level<Modes> for OnGround<V> {
     #[inline(always)]
     fn subject(&self) -> &Subject {
         &self.subject

@@ -18,7 +18,7 @@ use crate::mechanics::instant::{Instant, Place, uplift};
 use crate::mechanics::lateral::{Coordinates, Modes};
 use crate::mechanics::load::Load;
 use crate::numbers::{Number, Turn};
-use crate::{Contact, Foundation, Phase, State, Structure};
+use crate::{Base, Contact, Foundation, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 
 /// An output of a structure. Floors and storeys count from 0, from below; storey i is below floor i.
@@ -291,6 +291,17 @@ impl Output {
     /// The output of `structure`, all of whose mass the modes carry, in `phase` and `state` under `load`.
     pub fn at<Q: Coordinates>(self, structure: &Structure, phase: Phase, state: &State<Q>, load: Load<Q>) -> f64 {
         self.of(&Instant::of(structure, phase, state, load))
+    }
+
+    /// ξ, k, c and offset of an output that is the positive part of offset + k e + c ė of the height e at ξ, or 0.
+    pub(crate) fn of_height(self, base: &Base, Foundation { points, rest, .. }: &Foundation) -> Option<[f64; 4]> {
+        match self {
+            N(i) => points.get(i).map(|point| [point.xi, -point.k, -point.c, 0.0]),
+            settled(i) => Some([points[i * (points.len() - 1)].xi, -1.0, 0.0, 0.0]),
+            lifted(i) => Some([[-base.B, base.B][i], 1.0, 0.0, 0.0]),
+            P_t => Some([0.0, base.ties.k_t, 0.0, base.ties.P_0 - base.ties.k_t * rest]),
+            _ => None,
+        }
     }
 
     /// The output in the motion `x` on ground that gives (F1, F2).

@@ -6,13 +6,14 @@ use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Modes, Mosts};
 use crate::numbers::Turn;
 use crate::numbers::most::Most;
-use crate::series::taylor::Arc;
+use crate::series::extremes::off_chord;
+use crate::series::taylor::{Arc, ZERO, evaluate};
 use crate::{Contact, Output, Ramp, Structure};
 
 /// Bounds of the magnitudes of a motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Magnitudes<'a, Q> {
-    /// The motion over a polynomial and the ground acceleration, if an output depends on the ground acceleration.
+    /// The motion over a polynomial and the ground acceleration, if an output depends on the ground acceleration, or on ground that gives.
     pub arc: Option<(&'a Arc<Q>, Ramp)>,
     /// Part of the viscous damping in full contact.
     pub damping: f64,
@@ -129,6 +130,11 @@ impl Reach {
     #[inline(always)]
     pub(crate) fn bound<Q: Coordinates>(&self, output: Output, structure: &Structure, most: &Magnitudes<Q>) -> f64 {
         let Reach { turn: [sin, versine], a_g, u, u_dot, push } = self;
+        if let (Some((arc, _)), Some(foundation)) = (most.arc, structure.foundation())
+            && let Some(parts) = output.of_height(structure.base(), foundation)
+        {
+            return most_of_height(arc, foundation.place, parts);
+        }
         let elastic = most.u.weighed(u) + most.damping * most.u_dot.weighed(u_dot) + most.F_t.weighed(push);
         match (a_g, most.arc) {
             _ if most.theta == f64::INFINITY => f64::INFINITY,
@@ -142,6 +148,18 @@ impl Reach {
             _ => f64::INFINITY,
         }
     }
+}
+
+/// Bound of the positive part of offset + k e + c ė of the height e at ξ, on ground that gives. y and ξ sin θ cancel in e, so that the
+/// bound is of their series.
+fn most_of_height<Q: Coordinates>(arc: &Arc<Q>, place: usize, [xi, k, c, offset]: [f64; 4]) -> f64 {
+    let mut series = ZERO;
+    for (of, (u, u_dot)) in series.iter_mut().zip(arc.used(&arc.u).iter().zip(&arc.u_dot)) {
+        *of = k * (u.of(place) - xi * u.of(place + 1)) + c * (u_dot.of(place) - xi * u_dot.of(place + 1));
+    }
+    series[0] += offset;
+    let used = arc.used(&series);
+    (used[0].max(evaluate(used, arc.reach)) + off_chord(used, arc.reach)).max(0.0)
 }
 
 #[cfg(test)]
