@@ -62,12 +62,13 @@ def of_one_mass(p) -> Frame:
     return Frame((p.m,), (p.H,), (p.k,), m0=p.m0, J0=p.J0, B=p.B, r=p.r, zeta=p.zeta_fc, g=p.g)
 
 
-def toml(frame: Frame, ties: Ties = Ties()) -> str:
-    """The file of a shear frame and what ties it down, for the command line."""
+def toml(frame: Frame, ties: Ties = Ties(), ground: str = "") -> str:
+    """The file of a shear frame, of what ties it down, and of the ground if it gives, for the command line."""
     base = {"m0": frame.m0, "J0": frame.J0, "B": frame.B, "r": frame.r, "g": frame.g, **vars(ties)}
     storeys = zip(frame.masses, frame.heights, frame.stiffness, strict=True)
     return (f"zeta = {frame.zeta}\n[base]\n" + "".join(f"{name} = {value}\n" for name, value in base.items())
-            + "".join(f"[[storeys]]\nm = {m}\nh = {h}\nk = {k}\n" for m, h, k in storeys))
+            + "".join(f"[[storeys]]\nm = {m}\nh = {h}\nk = {k}\n" for m, h, k in storeys)
+            + (f"[ground]\n{ground}\n" if ground else ""))
 
 
 def cantilever(heights, EI: float) -> tuple:

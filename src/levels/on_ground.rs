@@ -143,7 +143,7 @@ impl<V: Abreast> OnGround<V> {
                 push = [push[0] - tie.force, push[1] - tie.lever * tie.force];
             }
         }
-        let (ground, weight) = ([a_g.value, a_g.slope * span], [g + a_v.value, a_v.slope * span]);
+        let (ground, mut weight) = ([a_g.value, a_g.slope * span], [g + a_v.value, a_v.slope * span]);
         // the power of the dashpots is c (ẏ − lever θ̇ cos θ)² and what is left for (θ̇ cos θ)²
         let lever = if taken[0] > 0.0 { taken[1] / taken[0] } else { 0.0 };
         let left_for_turning = taken[2] - lever * taken[1];
@@ -211,9 +211,8 @@ impl<V: Abreast> OnGround<V> {
             let power = taken[0] * of_middle + left_for_turning * of_turning;
             arc.u_dot[n].set(at + 2, power);
             arc.u[order].set(at + 2, power * per);
-            let of_order = |of: [f64; 2]| of.get(n).copied().unwrap_or(0.0);
-            let N = of_order([push[0], 0.0]) - k[0] * y + k[1] * sin - c[0] * y_dot + c[1] * turning;
-            let M = of_order([push[1], 0.0]) - k[1] * y + k[2] * sin - c[1] * y_dot + c[2] * turning;
+            let N = push[0] - k[0] * y + k[1] * sin - c[0] * y_dot + c[1] * turning;
+            let M = push[1] - k[1] * y + k[2] * sin - c[1] * y_dot + c[2] * turning;
             let fall = fall - (ground[0] * cos + ground[1] * cos_before);
             let hang = hang + ground[0] * sin + ground[1] * sin_before;
             let [mut moment, mut upwards] = [V::default(); 2];
@@ -245,7 +244,8 @@ impl<V: Abreast> OnGround<V> {
             gamma = E * moment + D * upwards;
             right[MAX_ORDER - n][1] = f64x4::new([next_sin, next_cos, hang + gamma * cos_0, M]);
             theta_dot = theta_ddot * per;
-            y_dot = (gamma - of_order(weight)) * per;
+            y_dot = (gamma - weight[0]) * per;
+            (push, weight) = ([0.0; 2], [weight[1], 0.0]); // of the next order
             arc.u_dot[order].count_as(&state.u_dot);
             for four in fours.iter_mut() {
                 let along = four.resistance + four.share * (sin_0 * gamma) - four.height * theta_ddot;
