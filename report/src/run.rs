@@ -24,7 +24,7 @@ pub const OF_FLOOR: [(&str, &str); 7] =
 
 /// The usual periods of a floor spectrum: 100 from 0.02 to 4 s.
 pub fn usual_periods() -> Vec<f64> {
-    (0..100).map(|i| 0.02 * 200.0_f64.powf(f64::from(i) / 99.0)).collect()
+    (0..100).map(|i| 0.02 * libm::pow(200.0, f64::from(i) / 99.0)).collect()
 }
 
 /// A structure under a ground motion, and how the engine follows it.
