@@ -444,33 +444,70 @@ mod tests {
     use crate::Body;
     use crate::mechanics::energy::energy;
     use crate::mechanics::impact::{angular_momentum, energy_gained, land, resolve, restitution};
-    use crate::mechanics::reactions::Impulse;
+    use crate::mechanics::instant::{Instant, Second};
+    use crate::mechanics::reactions::{Impulse, Reactions};
     use crate::structure::description::{Damping, Storey};
     use crate::structure::natural_quantities::Given;
-    use crate::{Phase, Side, State};
+    use crate::{Load, Phase, Side, State};
     use approx::assert_relative_eq;
     use nalgebra::{Matrix3, Vector3};
+
+    const STOREYS: [Storey; 3] = [
+        Storey { m: 40e3, h: 3.5, k: 60e6 },
+        Storey { m: 40e3, h: 7.0, k: 50e6 },
+        Storey { m: 30e3, h: 10.5, k: 40e6 },
+    ];
+
+    fn three_storeys() -> Structure {
+        let base = Given::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("r", 0.93)]).unwrap();
+        Structure::from_storeys(&base, &Damping::All(0.02), &STOREYS).unwrap()
+    }
+
+    /// Coordinates of the modes from displacements of the masses.
+    fn modal(frame: &Structure, u: &Vector3<f64>) -> Modes {
+        let weighed =
+            |j| frame.floors().iter().zip(u).map(|(floor, u)| floor.mass * floor.shape.of(j) * u).sum::<f64>();
+        Modes::each(frame, |j, mode| weighed(j) / mode.mass)
+    }
+
+    /// From the accelerations of the masses, whatever brings these about.
+    #[test]
+    fn the_reactions_are_those_of_the_masses() {
+        let frame = three_storeys();
+        let &Base { m0, B, m_t, g, .. } = frame.base();
+        let [u, u_dot, u_ddot] = [[0.02, -0.05, 0.11], [0.4, 0.7, -0.3], [3.0, -7.0, 11.0]].map(|of| Vector3::from(of));
+        let load = Load { a_g: 3.0, F_t: Modes::each(&frame, |_, _| 0.0), a_v: -1.5 };
+        for side in [Side::Right, Side::Left] {
+            let (s, theta, theta_dot, theta_ddot) = (side.sign(), side.sign() * 0.2, 0.6, -1.7);
+            let (sin, cos) = f64::sin_cos(theta);
+            let state = State { u: modal(&frame, &u), u_dot: modal(&frame, &u_dot), theta, theta_dot };
+            let x = Instant::of(&frame, Phase::Rocking(side), &state, load);
+            let found = Reactions::at(&x, &Second { u_ddot: modal(&frame, &u_ddot), theta_ddot });
+            // m (a along, a across) of all masses in the axes of the base, whose foundation is at u = 0, h = 0
+            let [mut along, mut across] = [0.0, m0 * s * B * theta_ddot];
+            along += m0 * s * B * theta_dot * theta_dot;
+            for (i, &Storey { m, h, .. }) in STOREYS.iter().enumerate() {
+                let arm = s * B - u[i];
+                along += m * (u_ddot[i] + h * theta_ddot + arm * theta_dot * theta_dot);
+                across += m * (arm * theta_ddot - 2.0 * u_dot[i] * theta_dot - h * theta_dot * theta_dot);
+            }
+            let R_h = -(m_t * load.a_g + along * cos + across * sin);
+            assert_relative_eq!(found.R_h, R_h, max_relative = 1e-12);
+            assert_relative_eq!(found.R_v, m_t * (g + load.a_v) - along * sin + across * cos, max_relative = 1e-12);
+        }
+    }
 
     /// Energy and angular momentum of the masses themselves, and the gains of energy at an impact and at a landing.
     #[test]
     fn energy_and_impact_are_those_of_the_masses() {
-        let base = Given::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("r", 0.93)]).unwrap();
-        let storey = |m, h, k| Storey { m, h, k };
-        let storeys = [storey(40e3, 3.5, 60e6), storey(40e3, 7.0, 50e6), storey(30e3, 10.5, 40e6)];
-        let frame = Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap();
-        let (m, h) = (storeys.map(|of| of.m), storeys.map(|of| of.h));
+        let frame = three_storeys();
+        let (m, h) = (STOREYS.map(|of| of.m), STOREYS.map(|of| of.h));
         let stiffness = Matrix3::new(110e6, -50e6, 0.0, -50e6, 90e6, -40e6, 0.0, -40e6, 40e6);
         let &Base { m0, B, J0, r, g, m_t, .. } = frame.base();
         let [u, u_dot] = [Vector3::new(0.02, -0.05, 0.11), Vector3::new(0.4, 0.7, -0.3)];
-        // coordinates of the modes from displacements of the masses
-        let modal = |u: &Vector3<f64>| {
-            let weighed =
-                |j| frame.floors().iter().zip(u).map(|(floor, u)| floor.mass * floor.shape.of(j) * u).sum::<f64>();
-            Modes::each(&frame, |j, mode| weighed(j) / mode.mass)
-        };
         for side in [Side::Right, Side::Left] {
             let (s, theta, theta_dot) = (side.sign(), side.sign() * 0.1, -0.3 * side.sign());
-            let state = State { u: modal(&u), u_dot: modal(&u_dot), theta, theta_dot };
+            let state = State { u: modal(&frame, &u), u_dot: modal(&frame, &u_dot), theta, theta_dot };
             let (sin, cos) = theta.sin_cos();
             let mut expected = 0.5 * u.dot(&(stiffness * u)) + m0 * g * s * B * sin;
             expected += 0.5 * (J0 + m0 * B * B) * theta_dot * theta_dot;
@@ -506,7 +543,7 @@ mod tests {
             let after = J0 + m0 * B * B + height + of_masses(&|i| (B + s * u[i]).powi(2));
             assert_relative_eq!(restitution(&momentum, side, &before), (height - rest) / after, max_relative = 1e-12);
             // (M16)
-            let going = State { u_dot: modal(&(-s * u_dot)), ..before };
+            let going = State { u_dot: modal(&frame, &(-s * u_dot)), ..before };
             let (phase, after) = resolve(&frame, side, &going);
             assert_eq!((phase, after.theta_dot), (Phase::Rocking(side.opposite()), r.unwrap() * theta_dot));
             let gained = of(phase, &after) - of(Phase::Rocking(side), &going);
