@@ -106,7 +106,22 @@ impl Liftable<'_> {
             let terms: f64 = arc.u[1..=arc.order].iter().map(|u| u.of(j).abs()).sum();
             arc.u[0].of(j).abs() + terms * arc.reach
         };
-        if self.most_springs(|j, _| farthest(j)) < self.least_hold(start) {
+        let hold_at_least = self.least_hold(start);
+        if self.most_springs(|j, _| farthest(j)) < hold_at_least {
+            return (Crossing::None, Side::Right);
+        }
+        let end = arc.end().u;
+        let most = Q::most(arc.used(&arc.u), &end, arc.reach);
+        // about a side the springs leave the larger of their ends by no more than the displacements leave their chords
+        let springs = |side: Side, j: usize, mode: &Mode| {
+            let (first, last, per_u) = (arc.u[0].of(j), end.of(j), side.sign() * mode.height * mode.stiffness);
+            (per_u * first).max(per_u * last) + per_u.abs() * (most.of(j) - first.abs().max(last.abs()))
+        };
+        let stays_down = [Side::Right, Side::Left].map(|side| {
+            let springs: f64 = self.modes.iter().enumerate().map(|(j, mode)| springs(side, j, mode)).sum();
+            !self.turning_decides && springs < hold_at_least
+        });
+        if stays_down == [true; 2] {
             return (Crossing::None, Side::Right);
         }
         let &Start { a_g, a_top, a_v, dissipators, .. } = start;
@@ -119,6 +134,9 @@ impl Liftable<'_> {
             [&arc.u, &arc.u_dot].map(|series| Terms::from_fn(arc.order, |k| series[k].of(j)))
         });
         let about = |side: Side| {
+            if stays_down[usize::from(side == Side::Left)] {
+                return Crossing::None;
+            }
             let hold = hold(self.base, side, a_v_terms, dissipators);
             let [rule, turns] = lift.missing(self.base, side, hold);
             let [rule, turns, hold] = [&rule, &turns, &hold].map(|gap| Gap::new(gap.used(), 1.0, 0.0));
