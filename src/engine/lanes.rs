@@ -18,7 +18,7 @@ use crate::numbers::Real;
 use crate::numbers::lanes::{Answers, Lanes, MOST};
 use crate::series::extremes::OFF_CHORD;
 use crate::series::taylor::{self, Arc, MAX_ORDER, MIN_ORDER, Start, Truncation, reciprocal};
-use crate::{Detail, LinearLoad, Phase, State};
+use crate::{Detail, LinearLoad, Phase, State, Transition};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::FRAC_PI_2;
 
@@ -50,6 +50,23 @@ pub(crate) trait Passes: Watch {
 
     /// Passes a piece that the watcher need not see.
     fn pass(&mut self);
+}
+
+/// Watches a motion after the piece under way, which it `passes` if the watcher need not see it.
+struct After<'a, W> {
+    watch: &'a mut W,
+    passes: bool,
+}
+
+impl<W: Passes> Watch for After<'_, W> {
+    fn piece(&mut self, piece: &Piece) {
+        if std::mem::take(&mut self.passes) { self.watch.pass() } else { self.watch.piece(piece) }
+    }
+
+    fn transition(&mut self, transition: &Transition) {
+        self.passes = false; // a step without duration is no piece
+        self.watch.transition(transition);
+    }
 }
 
 impl Sought {
@@ -222,7 +239,7 @@ pub(crate) struct Rocking<S: Simd> {
     /// The part of each series' span up to which the series holds.
     reach: Row,
     end: [Row; 4],
-    /// 1 where a series proves that no guard closes, and where moreover the watcher need not see it.
+    /// 1 where a series proves that no guard closes, and where the watcher need not see it or a part of it from its start.
     stays: Row,
     is_passed: Row,
 }
@@ -373,13 +390,17 @@ impl<S: Simd> WithSimd for Taken<'_, S> {
             end[i].store(&mut self.0.end[i]);
         }
         let (start, a_end) = (side * theta, push[0] + push[1] * sigma);
-        let stays =
-            (excursion * rounding).is_less(start).and(((excursion + start) * rounding).is_less(g.like(FRAC_PI_2)));
+        // as the run by itself proves that no guard closes
+        let [first, second] = [1, 2].map(|k| side * sigma * series[k][2]);
+        let lead = first.abs().is_at_most(zero).choose(second * sigma, first);
+        let leads = start.abs().is_at_most(zero).and((excursion * rounding).is_less(lead + lead));
+        let rises = (excursion * rounding).is_less(start).or((off[2] * rounding).is_less(start.min(side * end[2])));
+        let stays = rises.or(leads).and(((excursion + start) * rounding).is_less(g.like(FRAC_PI_2)));
         let size = end[0].abs() + end[1].abs() + end[2].abs() + end[3].abs();
         let stays = stays.and(size.is_at_most(g.like(f64::MAX)));
         let magnitudes = [most[0], most[1], most[2], g.like(0.5) * (most[2] * most[2])];
         let ends = [push[0].abs().max(a_end.abs()) * rounding, end[2].abs()];
-        let is_passed = self.0.sought.are_passed(simd, magnitudes, ends).and(stays);
+        let is_passed = self.0.sought.are_passed(simd, magnitudes, ends);
         stays.choose(one, zero).store(&mut self.0.stays);
         is_passed.choose(one, zero).store(&mut self.0.is_passed);
         order.store(&mut self.0.order);
@@ -468,13 +489,13 @@ impl Engine {
         let is_whole = duration == advance.end - advance.elapsed;
         let is_last = !is_whole && is_at_its_end(level, &self.motion, duration, None);
         let stays = steps.stays[lane] == 1.0 && !is_last && self.motion.work.steps != advance.last_step;
-        let is_passed = stays && steps.is_passed[lane] == 1.0;
-        steps.is_changed[lane] = !is_passed;
-        if !is_passed {
+        let is_passed = steps.is_passed[lane] == 1.0;
+        steps.is_changed[lane] = !(stays && is_passed);
+        if steps.is_changed[lane] {
             steps.write(lane, &mut self.arc);
         }
         if !stays {
-            return self.go_on(advance, true, true, watch);
+            return self.go_on(advance, true, true, &mut After { watch, passes: is_passed });
         }
         let [u, u_dot, theta, theta_dot] = &steps.end;
         let end = State { u: u[lane], u_dot: u_dot[lane], theta: theta[lane], theta_dot: theta_dot[lane] };

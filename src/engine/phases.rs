@@ -15,8 +15,9 @@ use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::LinearLoad;
 use crate::mechanics::restraint::Dissipators;
 use crate::mechanics::state::way;
+use crate::series::extremes::off_chord;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
-use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
+use crate::series::taylor::{Arc, Start, evaluate, sum_of_magnitudes};
 use crate::{Contact, Phase, Side, Structure};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
@@ -252,7 +253,8 @@ impl<Q: Moves> Guard<Q> for Impact {
     }
 }
 
-/// Whether the magnitudes of the terms of θ prove that s θ stays between 0 and π/2 on `arc`.
+/// Whether the magnitudes of the terms of θ prove that s θ stays between 0 and π/2 on `arc`. A motion that starts at θ = 0 stays above
+/// if the first term that is not 0 exceeds the sum of all others.
 fn stays_about<Q: Coordinates>(arc: &Arc<Q>, side: Side) -> bool {
     let start = side.sign() * arc.theta[0];
     let terms = &arc.theta[1..=arc.order];
@@ -261,5 +263,15 @@ fn stays_about<Q: Coordinates>(arc: &Arc<Q>, side: Side) -> bool {
     } else {
         sum_of_magnitudes(terms)
     };
-    excursion < start && excursion + start < FRAC_PI_2
+    if !(excursion + start < FRAC_PI_2) {
+        return false;
+    }
+    if start == 0.0 {
+        let lead = if arc.theta[1] == 0.0 { arc.reach * arc.theta[2] } else { arc.theta[1] };
+        return excursion < 2.0 * (side.sign() * arc.reach * lead);
+    }
+    excursion < start || {
+        let end = side.sign() * evaluate(arc.used(&arc.theta), arc.reach);
+        off_chord(arc.used(&arc.theta), arc.reach) < start.min(end)
+    }
 }

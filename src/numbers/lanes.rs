@@ -165,7 +165,13 @@ impl<S: Simd> Expanded for Lanes<S> {
     ) -> [Self; 6] {
         let mut sum = [newest_left[0].like(0.0); 6];
         if n > 0 {
-            for (left, right) in left[1..n].iter().zip(&right[MAX_ORDER - n + 1..MAX_ORDER]) {
+            let (lefts, last_left) = left[1..n].as_chunks::<2>();
+            let (rights, last_right) = right[MAX_ORDER - n + 1..MAX_ORDER].as_chunks::<2>();
+            for (left, right) in lefts.iter().zip(rights) {
+                add_products(&mut sum, &left[0], &right[0]);
+                add_products(&mut sum, &left[1], &right[1]);
+            }
+            for (left, right) in last_left.iter().zip(last_right) {
                 add_products(&mut sum, left, right);
             }
             add_products(&mut sum, newest_left, &right[MAX_ORDER]);
