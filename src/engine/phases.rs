@@ -275,3 +275,27 @@ fn stays_about<Q: Coordinates>(arc: &Arc<Q>, side: Side) -> bool {
         off_chord(arc.used(&arc.theta), arc.reach) < start.min(end)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Motions that start above the ground, from the ground with a velocity, and from there at rest. A proof holds at every sample, and
+    /// most that stay above are proved.
+    #[test]
+    fn a_motion_that_is_proved_to_stay_above_the_ground_does_so() {
+        let (random, side) = (&mut fastrand::Rng::with_seed(1), Side::Left);
+        let (mut proved, mut above) = ([0; 3], [0; 3]);
+        for i in 0..30_000 {
+            let (mut arc, zeros) =
+                (Arc::<f64> { order: 6, span: 1.0, reach: [1.0, 0.5][i % 2], ..Arc::default() }, i % 3);
+            (zeros..7).for_each(|k| arc.theta[k] = 0.5_f64.powi((k - zeros) as i32) * (2.0 * random.f64() - 1.0));
+            let at = |j: i32| side.sign() * evaluate(arc.used(&arc.theta), f64::from(j) / 100.0 * arc.reach);
+            let (stays, is_above) = (stays_about(&arc, side), (1..=100).all(|j| (0.0..FRAC_PI_2).contains(&at(j))));
+            assert!(is_above || !stays, "{arc:?}");
+            proved[zeros] += i32::from(stays);
+            above[zeros] += i32::from(is_above);
+        }
+        assert!((0..3).all(|zeros| 2 * proved[zeros] > above[zeros]), "{proved:?} of {above:?}");
+    }
+}
