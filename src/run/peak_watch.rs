@@ -36,6 +36,8 @@ struct Candidate<Q: Moves> {
     load: LinearLoad<Q>,
     end: State<Q>,
     arc: Option<Box<Arc<Q>>>,
+    /// Bounds of what is searched.
+    bounds: Vec<f64>,
 }
 
 impl Peaks {
@@ -64,10 +66,9 @@ impl<Q: Moves> PeakWatch<'_, Q> {
     fn look_back(&mut self) {
         let Some(level) = &self.level else { return };
         while let Some(kept) = self.kept.pop() {
-            let piece = kept.piece(&**level, &self.room);
-            if self.peaks.may_change_in(&piece) {
+            if self.peaks.may_change_within(&kept.bounds, kept.before.time) {
                 self.room.left.set(MOST_POLYNOMIALS); // never used up: only short leaps are kept
-                self.peaks.look(&piece);
+                self.peaks.look(&kept.piece(&**level, &self.room));
             }
         }
     }
@@ -75,7 +76,7 @@ impl<Q: Moves> PeakWatch<'_, Q> {
 
 impl<Q: Moves> Candidate<Q> {
     fn piece<'a>(&'a self, level: &'a dyn Level<Q>, room: &'a Room<Q>) -> Piece<'a, Q> {
-        let &Candidate { ref before, duration, load, end, ref arc } = self;
+        let &Candidate { ref before, duration, load, end, ref arc, .. } = self;
         Piece { before, duration, load, end, level, arc: arc.as_deref(), room }
     }
 }
@@ -111,14 +112,15 @@ impl<Q: Moves> Watch<Q> for PeakWatch<'_, Q> {
         if is_first || is_long {
             return self.peaks.look(piece);
         }
-        let level = &**self.level.get_or_insert_with(|| level.boxed());
+        self.level.get_or_insert_with(|| level.boxed());
         if self.kept.len() == MOST_CANDIDATES {
-            self.kept.retain(|kept| self.peaks.may_change_in(&kept.piece(level, &self.room)));
+            self.kept.retain(|kept| self.peaks.may_change_within(&kept.bounds, kept.before.time));
         }
         if self.kept.len() == MOST_CANDIDATES {
             self.look_back();
         }
-        self.kept.push(Candidate { before: *before, duration, load, end, arc: arc.cloned().map(Box::new) });
+        let (arc, bounds) = (arc.cloned().map(Box::new), self.peaks.bounds(structure, &bounds));
+        self.kept.push(Candidate { before: *before, duration, load, end, arc, bounds });
     }
 
     fn transition(&mut self, _transition: &Transition<Q>) {

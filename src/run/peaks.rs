@@ -248,9 +248,14 @@ impl Peaks {
         self.searched.iter().any(|of| of.peak.may_change(of.bound((structure, reaches), bounds), time))
     }
 
-    /// Whether `piece` may change a peak.
-    pub(super) fn may_change_in<Q: Moves>(&self, piece: &Piece<Q>) -> bool {
-        self.may_change(piece.level.structure(), &piece.whole().most(), piece.before.time)
+    /// Bounds of what is searched, of magnitudes of `structure` within `most`.
+    pub(super) fn bounds<Q: Moves>(&self, structure: &Structure, most: &Magnitudes<Q>) -> Vec<f64> {
+        self.searched.iter().map(|of| of.bound((structure, structure.reaches()), most)).collect()
+    }
+
+    /// Whether what is searched may change a peak within these `bounds` at `time` (s) or later.
+    pub(super) fn may_change_within(&self, bounds: &[f64], time: f64) -> bool {
+        self.searched.iter().zip(bounds).any(|(of, bound)| of.peak.may_change(*bound, time))
     }
 
     /// Looks for larger magnitudes between the ends of `piece`.
