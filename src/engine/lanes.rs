@@ -11,6 +11,7 @@ use crate::engine::motion::Motion;
 use crate::engine::phases;
 use crate::engine::piece::{Piece, Watch};
 use crate::levels::detail::Elastic;
+use crate::levels::full_contact::ExactContact;
 use crate::levels::level::{Level, most_of_swing};
 use crate::levels::nonlinear::{Equations, NonlinearRocking, Products, Recurrence};
 use crate::levels::oscillator::{Flow, Oscillator};
@@ -107,6 +108,8 @@ pub(crate) struct Samples<'a> {
 pub(crate) struct Contacts<'a> {
     sought: Sought,
     samples: [Samples<'a>; MOST],
+    /// None where there is no run.
+    exact: [Option<ExactContact>; MOST],
     entered: [usize; MOST],
     oscillator: Oscillator<Row>,
     u_cr: Row,
@@ -131,37 +134,52 @@ impl<'a> Contacts<'a> {
         (self.oscillator.omega[lane], self.oscillator.zeta[lane]) = (one.omega_fc, one.parameters().zeta_fc);
         (self.u_cr[lane], self.age[lane], self.duration[lane]) = (one.u_cr, motion.chatter.age, 0.0);
         (self.u[lane], self.u_dot[lane]) = (motion.state.u, motion.state.u_dot);
+        let level = by_equations_5_and_6(&*engine.level).expect(STEPS_ALONE);
+        self.exact[lane] = Some(level.contact().expect("it may leap").clone());
+        self.put(lane);
     }
 
     /// Puts the next leap of the run in `lane`.
     #[inline]
-    pub(crate) fn put(&mut self, lane: usize, engine: &Engine) {
-        let Samples { times, a_g, next, .. } = self.samples[lane];
+    fn put(&mut self, lane: usize) {
+        let (Samples { times, a_g, next, .. }, Some(exact)) = (self.samples[lane], &self.exact[lane]) else { return };
         let duration = times[next] - times[next - 1];
         (self.a_g[0][lane], self.a_g[1][lane]) = (a_g[next - 1], a_g[next]);
         if duration != self.duration[lane] {
-            let Flow { free, step, ramp } = by_equations_5_and_6(&*engine.level).expect(STEPS_ALONE).flow(duration);
+            let Flow { free, step, ramp } = *exact.flow(duration);
             self.duration[lane] = duration;
             (0..4).for_each(|i| self.flow.free[i][lane] = free[i]);
             (self.flow.step[lane], self.flow.ramp[lane]) = (step, ramp);
         }
     }
 
-    /// Leaps, if the bases certainly stay down and the watchers need not see it.
+    /// Leaps as often as all runs do: while the bases certainly stay down and the watchers need not see it.
     pub(crate) fn step<S: Simd>(&mut self, simd: S) {
-        simd.vectorize(Leapt(simd, self));
+        let mut all_go_on = true;
+        while all_go_on {
+            simd.vectorize(Leapt(simd, self));
+            for lane in 0..S::F64_LANES {
+                if self.exact[lane].is_none() {
+                    continue;
+                }
+                self.samples[lane].next += usize::from(self.is_taken[lane] == 1.0);
+                match self.goes_on(lane) {
+                    true => self.put(lane),
+                    false => all_go_on = false,
+                }
+            }
+        }
     }
 
     /// Whether the run in `lane` has leapt and may do so again.
     #[inline]
-    pub(crate) fn goes_on(&mut self, lane: usize) -> bool {
-        let has_leapt = self.is_taken[lane] == 1.0;
-        self.samples[lane].next += usize::from(has_leapt);
-        has_leapt && self.samples[lane].next < self.samples[lane].last
+    pub(crate) fn goes_on(&self, lane: usize) -> bool {
+        self.is_taken[lane] == 1.0 && self.samples[lane].next < self.samples[lane].last
     }
 
     /// Takes the run in `lane` out. Returns the next sample.
-    pub(crate) fn leave<W: Passes>(&self, lane: usize, engine: &mut Engine, watch: &mut W) -> usize {
+    pub(crate) fn leave<W: Passes>(&mut self, lane: usize, engine: &mut Engine, watch: &mut W) -> usize {
+        self.exact[lane] = None;
         let (Samples { times, next, .. }, motion) = (self.samples[lane], &mut engine.motion);
         if next > self.entered[lane] {
             motion.state = State { u: self.u[lane], u_dot: self.u_dot[lane], theta: 0.0, theta_dot: 0.0 };

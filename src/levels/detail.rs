@@ -21,8 +21,6 @@ use crate::levels::linear::LinearRocking;
 use crate::levels::modes::ManyModes;
 use crate::levels::nonlinear::NonlinearRocking;
 use crate::levels::on_ground::OnGround;
-#[cfg(feature = "lanes")]
-use crate::levels::oscillator::Flow;
 use crate::mechanics::restraint::Angles;
 use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift::least_hold;
@@ -150,11 +148,10 @@ pub(crate) struct Elastic<Rocking> {
 }
 
 impl<Rocking: ElasticRocking> Elastic<Rocking> {
-    /// The exact flow of full contact over `duration` (s).
+    /// Full contact by its exact flow.
     #[cfg(feature = "lanes")]
-    #[inline]
-    pub(crate) fn flow(&self, duration: f64) -> Flow {
-        *self.contact.as_ref().expect("there is an exact flow").flow(duration)
+    pub(crate) fn contact(&self) -> Option<&ExactContact> {
+        self.contact.as_ref()
     }
 
     /// The equations of rocking.

@@ -213,7 +213,6 @@ impl<'a, S: Simd> Together<'a, S> {
             samples.last = samples.last.min(samples.next + left as usize);
             self.contacts.enter(slot, engine, samples, watch);
         }
-        self.contacts.put(slot, engine);
     }
 
     /// The action of the lane in a `slot` after its step; none if it takes another step of this `kind` there.
