@@ -263,17 +263,15 @@ fn stays_about<Q: Coordinates>(arc: &Arc<Q>, side: Side) -> bool {
     } else {
         sum_of_magnitudes(terms)
     };
-    if !(excursion + start < FRAC_PI_2) {
-        return false;
-    }
-    if start == 0.0 {
+    let leads = || {
         let lead = if arc.theta[1] == 0.0 { arc.reach * arc.theta[2] } else { arc.theta[1] };
-        return excursion < 2.0 * (side.sign() * arc.reach * lead);
-    }
-    excursion < start || {
+        excursion < 2.0 * (side.sign() * arc.reach * lead)
+    };
+    let ends_above = || {
         let end = side.sign() * evaluate(arc.used(&arc.theta), arc.reach);
         off_chord(arc.used(&arc.theta), arc.reach) < start.min(end)
-    }
+    };
+    excursion + start < FRAC_PI_2 && (excursion < start || if start == 0.0 { leads() } else { ends_above() })
 }
 
 #[cfg(test)]
