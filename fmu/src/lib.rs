@@ -5,8 +5,7 @@
 //!
 //! | file | does |
 //! |---|---|
-//! | [`any`] | the model: a unit of one mass or of many |
-//! | [`unit`] | what an instance is asked: values, start, steps, events, its state as bytes |
+//! | [`unit`] | the model, of one mass or of many: what an instance is asked: values, start, steps, events, its state as bytes |
 //! | `derivatives`, `outside` | derivatives of outputs; the motion under the host's integrator |
 //! | `shown` | the values of all computed real numbers at an instant |
 //! | `advance` | the structure on its ground over one step |
@@ -23,7 +22,6 @@
 #![allow(non_snake_case)] // the shared library's name
 
 mod advance;
-pub mod any;
 mod derivatives;
 mod failure;
 mod floor_variables;
@@ -42,7 +40,7 @@ use resources::{Contents, frame_bytes};
 use uuid::Uuid;
 
 #[cfg(not(any(target_family = "wasm", test)))]
-fmi_unit::export_fmu!(any::AnyUnit);
+fmi_unit::export_fmu!(unit::Unit);
 
 /// Names the build: all that enters the library.
 pub const BUILD: &str = env!("FLEXIBLE_ROCKING_BUILD");

@@ -19,7 +19,7 @@ use rocking::engine::Moves;
 use rocking::run::fall::Falling;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::validity::{Findings, of_structure};
-use rocking::{Motion, OutOfRange, State};
+use rocking::{Modes, Motion, OutOfRange, State};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
@@ -154,8 +154,12 @@ fn setting(setup: &Setup, inputs: &Inputs, source: Source) -> f64 {
 }
 
 impl<Q: Moves> Model for Unit<Q> {
-    fn open(resources: &Path) -> Result<Unit<Q>, Failure> {
-        Ok(Unit::new(Archive::open(resources.to_owned()).map_err(Refusal::from)?))
+    fn open(resources: &Path) -> Result<Box<dyn Model>, Failure> {
+        let archive = Archive::open(resources.to_owned()).map_err(Refusal::from)?;
+        Ok(match archive.contents.structure.one() {
+            Some(_) => Box::new(Unit::<f64>::new(archive)),
+            None => Box::new(Unit::<Modes>::new(archive)),
+        })
     }
 
     fn token(&self) -> String {

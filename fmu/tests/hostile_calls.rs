@@ -5,7 +5,6 @@ mod host;
 #[path = "../fmi/tests/hostile/mod.rs"]
 mod hostile;
 
-use FlexibleRocking::any::AnyUnit as Model;
 use FlexibleRocking::{fmi2, fmi3};
 use fmi_unit::snapshot::Snapshot;
 use fmi_unit::state_machine::Stage;
@@ -18,6 +17,8 @@ use std::ffi::CString;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
+
+type Model = FlexibleRocking::unit::Unit;
 
 hostile_calls!(structure);
 

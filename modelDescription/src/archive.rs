@@ -67,7 +67,7 @@ pub fn write_fmu(
 
 /// Writes the FMU `name` of the `model` of an example to the path that the program is called with; a second argument, 3, asks
 /// for FMI 3.0. The functions are in the example `library`, of the type `cdylib`.
-pub fn write_example(name: &str, model: &impl Model, library: &str) -> Result<(), Box<dyn Error>> {
+pub fn write_example(name: &str, model: &dyn Model, library: &str) -> Result<(), Box<dyn Error>> {
     let arguments: Vec<_> = env::args().skip(1).collect();
     let path = arguments.first().ok_or("call it with the path of the FMU to write")?;
     let version = if arguments.get(1).is_some_and(|version| version == "3") { Version::Fmi3 } else { Version::Fmi2 };

@@ -45,8 +45,8 @@ impl Ball {
 }
 
 impl Model for Ball {
-    fn open(_resources: &Path) -> Result<Ball, Failure> {
-        Ok(Ball { known: [0.0; 5], here: [1.0, 0.0, 9.81, 0.7, 0.0], bounces: 0, rests: false })
+    fn open(_resources: &Path) -> Result<Box<dyn Model>, Failure> {
+        Ok(Box::new(Ball { known: [0.0; 5], here: [1.0, 0.0, 9.81, 0.7, 0.0], bounces: 0, rests: false }))
     }
 
     fn variables(&self) -> Arc<[Variable]> {
@@ -96,5 +96,5 @@ impl Model for Ball {
 
 /// Writes the FMU.
 pub fn main() -> Result<(), Box<dyn Error>> {
-    archive::write_example("BouncingBall", &Ball::open(Path::new(""))?, "bouncing_ball_unit")
+    archive::write_example("BouncingBall", &*Ball::open(Path::new(""))?, "bouncing_ball_unit")
 }

@@ -97,7 +97,7 @@ impl Words {
 
 /// The instance behind a component, for a host that speaks the version with the functions `F`.
 #[repr(C)] // the magic number first, whatever the version
-struct Component<F, M> {
+struct Component<F> {
     magic: Cell<u64>,
     /// [`READY`], [`BUSY`] or [`BROKEN`].
     availability: AtomicU8,
@@ -105,7 +105,7 @@ struct Component<F, M> {
     calls_back: AtomicBool,
     /// The stages in which the instance accepts each function.
     allowed_in: &'static Table,
-    instance: UnsafeCell<Instance<M>>,
+    instance: UnsafeCell<Instance>,
     version: PhantomData<F>,
 }
 
@@ -124,15 +124,15 @@ const MAX_TEXT: usize = 1 << 16;
 const MAX_LENGTH: usize = 1 << 24;
 
 /// The parts of an instance: model, interface, the host that is called back, and whether the log categories are on.
-pub(crate) type Parts<M> = (M, Interface, Option<IntermediateUpdate>, bool);
+pub(crate) type Parts = (Box<dyn Model>, Interface, Option<IntermediateUpdate>, bool);
 
 /// A component with the instance of the `parts`, which switches the log `categories`. If `function` finds no parts, the result
 /// is null and the log has the reason; if it panics, null.
-pub(crate) fn instantiate<F: Function, M: Model>(
+pub(crate) fn instantiate<F: Function>(
     function: &str,
     categories: &[Category],
     sink: Sink,
-    parts: impl FnOnce() -> Result<Parts<M>, Failure>,
+    parts: impl FnOnce() -> Result<Parts, Failure>,
 ) -> *mut c_void {
     let _control = Control::usual();
     let mut logger = Logger::new(sink);
@@ -148,7 +148,7 @@ pub(crate) fn instantiate<F: Function, M: Model>(
     };
     let created = catch_unwind(AssertUnwindSafe(create)).ok().flatten();
     let Some((instance, allowed_in)) = created else { return ptr::null_mut() };
-    let component = Component::<F, M> {
+    let component = Component::<F> {
         magic: Cell::new(F::WORDS.magic),
         availability: AtomicU8::new(READY),
         calls_back: AtomicBool::new(false),
@@ -160,7 +160,7 @@ pub(crate) fn instantiate<F: Function, M: Model>(
 }
 
 /// The model in the folder `resources`, whose token must be `given`, the argument `name`.
-pub(crate) fn open<M: Model>(name: &'static str, given: &str, resources: &Path) -> Result<M, Failure> {
+pub(crate) fn open<M: Model>(name: &'static str, given: &str, resources: &Path) -> Result<Box<dyn Model>, Failure> {
     let model = M::open(resources)?;
     let needed = model.token();
     if given != needed {
@@ -170,22 +170,22 @@ pub(crate) fn open<M: Model>(name: &'static str, given: &str, resources: &Path) 
 }
 
 /// Frees a component. Does nothing for null, and while a call is under way, as from within the logger or a callback.
-pub(crate) unsafe fn free<F: Function, M: Model>(c: *mut c_void) {
-    let Some(component) = (unsafe { component::<F, M>(c) }) else { return };
+pub(crate) unsafe fn free<F: Function>(c: *mut c_void) {
+    let Some(component) = (unsafe { component::<F>(c) }) else { return };
     if component.calls_back.load(Ordering::Relaxed) || component.availability.swap(BUSY, Ordering::Acquire) == BUSY {
         return;
     }
     // Volatile, so that a call with the freed component finds no magic number as long as the memory is not used anew.
     unsafe { component.magic.as_ptr().write_volatile(0) };
-    let free = || drop(unsafe { Box::from_raw(c.cast::<Component<F, M>>()) });
+    let free = || drop(unsafe { Box::from_raw(c.cast::<Component<F>>()) });
     // Freeing has no status to return: a panic is swallowed.
     let _ = catch_unwind(AssertUnwindSafe(free));
 }
 
 /// Follows `c` if it points to a component.
 #[inline]
-unsafe fn component<'a, F: Function, M>(c: *mut c_void) -> Option<&'a Component<F, M>> {
-    let c = c.cast::<Component<F, M>>();
+unsafe fn component<'a, F: Function>(c: *mut c_void) -> Option<&'a Component<F>> {
+    let c = c.cast::<Component<F>>();
     if c.is_null() || !c.is_aligned() {
         return None;
     }
@@ -196,39 +196,39 @@ unsafe fn component<'a, F: Function, M>(c: *mut c_void) -> Option<&'a Component<
 
 /// Calls `body` with the instance that `c` points to, if `function` is allowed in its state. No panic gets out.
 #[inline]
-pub(crate) unsafe fn call<F: Function, M: Model>(
+pub(crate) unsafe fn call<F: Function>(
     c: *mut c_void,
     function: F,
-    body: impl FnOnce(&mut Instance<M>) -> Result<(), Failure>,
+    body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
 ) -> c_int {
     unsafe { call_in(c, function, |allowed_in| allowed_in[function.place()], body) }
 }
 
 /// Calls the host back within a step of the instance that `c` points to, which is not freed meanwhile.
-pub(crate) unsafe fn call_back<F: Function, M: Model>(c: *mut c_void, host: impl FnOnce()) {
-    let Some(component) = (unsafe { component::<F, M>(c) }) else { return };
+pub(crate) unsafe fn call_back<F: Function>(c: *mut c_void, host: impl FnOnce()) {
+    let Some(component) = (unsafe { component::<F>(c) }) else { return };
     component.calls_back.store(true, Ordering::Relaxed);
     host();
     component.calls_back.store(false, Ordering::Relaxed);
 }
 
 /// The rest of a call of `function`, after the host has been called back.
-pub(crate) unsafe fn call_on<F: Function, M: Model>(
+pub(crate) unsafe fn call_on<F: Function>(
     c: *mut c_void,
     function: F,
-    body: impl FnOnce(&mut Instance<M>) -> Result<(), Failure>,
+    body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
 ) -> c_int {
     unsafe { call_in(c, function, |_| Stage::WITHIN_STEP, body) }
 }
 
 #[inline]
-unsafe fn call_in<F: Function, M: Model>(
+unsafe fn call_in<F: Function>(
     c: *mut c_void,
     function: F,
     allowed: impl FnOnce(&Table) -> Stages,
-    body: impl FnOnce(&mut Instance<M>) -> Result<(), Failure>,
+    body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
 ) -> c_int {
-    let Some(component) = (unsafe { component::<F, M>(c) }) else { return Status::Error as c_int };
+    let Some(component) = (unsafe { component::<F>(c) }) else { return Status::Error as c_int };
     let _control = Control::usual();
     match component.availability.compare_exchange(READY, BUSY, Ordering::Acquire, Ordering::Relaxed) {
         Ok(_) => (),
@@ -501,7 +501,7 @@ macro_rules! functions {
             #[doc = concat!("`", $version, stringify!($apart), "`")]
             #[doc = ""]
             $(#[$apart_doc])*
-            pub unsafe fn $apart<M: $crate::Model>($($apart_argument: $apart_type),*) -> c_int $apart_body
+            pub unsafe fn $apart($($apart_argument: $apart_type),*) -> c_int $apart_body
         )*
 
         $(
@@ -510,9 +510,9 @@ macro_rules! functions {
             $(#[$doc])*
             #[inline]
             #[allow(clippy::too_many_arguments)] // the standard's
-            pub unsafe fn $name<M: $crate::Model>(c: *mut c_void $(, $argument: $type)*) -> c_int {
+            pub unsafe fn $name(c: *mut c_void $(, $argument: $type)*) -> c_int {
                 unsafe {
-                    $crate::c_abi::call::<Function, M>(
+                    $crate::c_abi::call(
                         c, Function::$name, $crate::c_abi::functions!(@ $(|$instance| $body)?),
                     )
                 }
@@ -524,8 +524,10 @@ macro_rules! functions {
         macro_rules! $export {
             ($model:ty, $module:ident) => {
                 $crate::exported! {
-                    $model, $module, $version:
-                    $($other($($other_argument: $other_type),*) $(-> $returned)?;)*
+                    $module, $version [::<$model>]: $($other($($other_argument: $other_type),*) $(-> $returned)?;)*
+                }
+                $crate::exported! {
+                    $module, $version []:
                     $($apart($($apart_argument: $apart_type),*) -> c_int;)*
                     $($name(c: *mut c_void $(, $argument: $type)*) -> c_int;)*
                 }
@@ -637,12 +639,12 @@ pub(crate) use shared_functions;
 #[doc(hidden)]
 #[macro_export]
 macro_rules! exported {
-    ($model:ty, $module:ident, $version:literal:
-    $($name:ident($($argument:ident: $type:ty),*) $(-> $returned:ty)?;)*) => { $(
+    (@ $module:ident $name:ident [$($of_model:tt)*]) => { $crate::$module::$name$($of_model)* };
+    ($module:ident, $version:literal $of_model:tt: $($name:ident($($argument:ident: $type:ty),*) $(-> $returned:ty)?;)*) => { $(
         #[doc = concat!("`", $version, stringify!($name), "`")]
         #[unsafe(export_name = concat!($version, stringify!($name)))]
         pub unsafe extern "C" fn $name($($argument: $type),*) $(-> $returned)? {
-            unsafe { $crate::$module::$name::<$model>($($argument),*) }
+            unsafe { $crate::exported!(@ $module $name $of_model)($($argument),*) }
         }
     )* };
 }

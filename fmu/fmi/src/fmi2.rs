@@ -108,7 +108,7 @@ shared_functions! {
         }
         let name = unsafe { text("instanceName", instanceName) };
         let sink = sink(unsafe { &*functions }, name.as_ref().unwrap_or(&""));
-        c_abi::instantiate::<Function, M>("Instantiate", &[Category::Events], sink, || {
+        c_abi::instantiate::<Function>("Instantiate", &[Category::Events], sink, || {
             let accepted = "0 (fmi2ModelExchange), 1 (fmi2CoSimulation)";
             let interface = match fmuType {
                 0 => Interface::ModelExchange,
@@ -129,7 +129,7 @@ shared_functions! {
 
     {
         /// Ignored for null, and while a call is under way, as from within the logger.
-        FreeInstance(c: *mut c_void) { unsafe { c_abi::free::<Function, M>(c) } }
+        FreeInstance(c: *mut c_void) { unsafe { c_abi::free::<Function>(c) } }
     }
 
     SetDebugLogging(loggingOn: c_int, nCategories: size_t, categories: *const *const c_char) |instance| {

@@ -30,9 +30,9 @@ unsafe fn create<M: Model>(
     function: &str,
     [name, token, folder]: [*const c_char; 3],
     (environment, log, logging_on): (*mut c_void, Option<LogMessageCallback>, u8),
-    interface: impl FnOnce(&M) -> Result<(Interface, Option<IntermediateUpdate>), Failure>,
+    interface: impl FnOnce(&dyn Model) -> Result<(Interface, Option<IntermediateUpdate>), Failure>,
 ) -> *mut c_void {
-    c_abi::instantiate::<Function, M>(function, &Category::ALL, sink(log, environment), || {
+    c_abi::instantiate::<Function>(function, &Category::ALL, sink(log, environment), || {
         let name = unsafe { text("instanceName", name) }?;
         let token = unsafe { text("instantiationToken", token) }?;
         let folder = unsafe { text("resourcePath", folder) }?;
@@ -41,7 +41,7 @@ unsafe fn create<M: Model>(
             return Err(Failure::NoName);
         }
         let model = c_abi::open::<M>("instantiationToken", token, Path::new(folder))?;
-        let (interface, host) = interface(&model)?;
+        let (interface, host) = interface(&*model)?;
         Ok((model, interface, host, on))
     })
 }
@@ -86,11 +86,11 @@ fn position(reference: &u32) -> u32 {
 
 /// Has `call` done with the positions of the variables, all of which are scalars, that as many values are for. The instance
 /// keeps the room for them.
-unsafe fn with_positions<M: Model>(
-    instance: &mut Instance<M>,
+unsafe fn with_positions(
+    instance: &mut Instance,
     valueReferences: *const c_uint,
     [nValueReferences, nValues]: [size_t; 2],
-    call: impl FnOnce(&mut Instance<M>, &[u32]) -> Result<(), Failure>,
+    call: impl FnOnce(&mut Instance, &[u32]) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     check_count("nValues", nValues, nValueReferences)?;
     let references = unsafe { values("valueReferences", valueReferences, nValueReferences) }?;
@@ -224,7 +224,7 @@ with_lists! {
         nRequiredIntermediateVariables: size_t, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
         intermediateUpdate: Option<IntermediateUpdateCallback>,
     ) -> *mut c_void {
-        let interface = |model: &M| {
+        let interface = |model: &dyn Model| {
             let event_mode = boolean("eventModeUsed", eventModeUsed)?;
             let early_return = boolean("earlyReturnAllowed", earlyReturnAllowed)?;
             let (name, length) = ("requiredIntermediateVariables", nRequiredIntermediateVariables);
@@ -240,16 +240,16 @@ with_lists! {
             Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), host))
         };
         let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
-        unsafe { create("InstantiateCoSimulation", texts, log, interface) }
+        unsafe { create::<M>("InstantiateCoSimulation", texts, log, interface) }
     } }
 
     { InstantiateModelExchange(
         instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, _visible: u8,
         loggingOn: u8, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
     ) -> *mut c_void {
-        let interface = |_: &M| Ok((Interface::ModelExchange, None));
+        let interface = |_: &dyn Model| Ok((Interface::ModelExchange, None));
         let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
-        unsafe { create("InstantiateModelExchange", texts, log, interface) }
+        unsafe { create::<M>("InstantiateModelExchange", texts, log, interface) }
     } }
 
     {
@@ -258,14 +258,14 @@ with_lists! {
         instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, _visible: u8,
         loggingOn: u8, environment: *mut c_void, logMessage: Option<LogMessageCallback>,
     ) -> *mut c_void {
-        let interface = |_: &M| Err(Failure::NotThisInterface);
+        let interface = |_: &dyn Model| Err(Failure::NotThisInterface);
         let (texts, log) = ([instanceName, instantiationToken, resourcePath], (environment, logMessage, loggingOn));
-        unsafe { create("InstantiateScheduledExecution", texts, log, interface) }
+        unsafe { create::<M>("InstantiateScheduledExecution", texts, log, interface) }
     } }
 
     {
         /// Ignored for null, and while a call is under way, as from within a callback.
-        FreeInstance(instance: *mut c_void) { unsafe { c_abi::free::<Function, M>(instance) } }
+        FreeInstance(instance: *mut c_void) { unsafe { c_abi::free::<Function>(instance) } }
     }
 
     [
@@ -285,7 +285,7 @@ with_lists! {
             check_pointer("lastSuccessfulTime", lastSuccessfulTime)
         };
         let (mut asked, mut told) = (None, None);
-        let mut compute = |instance: &mut Instance<M>| unsafe {
+        let mut compute = |instance: &mut Instance| unsafe {
             let progress = instance.do_step(point, step)?;
             let (time, may_return_early) = (instance.model.time()?, instance.interface.stepping().early_return);
             if let (Progress::Ended, Some(ending)) = (progress, instance.ending()?) {
@@ -299,19 +299,19 @@ with_lists! {
             told = instance.show_step().map(|host| (host, time));
             Ok(())
         };
-        let begin = |instance: &mut Instance<M>| {
+        let begin = |instance: &mut Instance| {
             check()?;
             asked = instance.begin_step(point, step)?;
             if asked.is_none() { compute(instance) } else { Ok(()) }
         };
         let mut status = unsafe { call(c, Function::DoStep, begin) };
         if let Some(host) = asked {
-            unsafe { call_back::<Function, M>(c, || host.call(point + step, true)) };
+            unsafe { call_back::<Function>(c, || host.call(point + step, true)) };
             status = unsafe { call_on(c, Function::DoStep, compute) };
         }
         if let Some((host, time)) = told {
-            unsafe { call_back::<Function, M>(c, || host.call(time, false)) };
-            let end = |instance: &mut Instance<M>| {
+            unsafe { call_back::<Function>(c, || host.call(time, false)) };
+            let end = |instance: &mut Instance| {
                 instance.end_step();
                 Ok(())
             };
@@ -406,7 +406,7 @@ mod tests {
     unsafe extern "C" fn update(c: *mut c_void, _: f64, _: u8, _: u8, _: u8, _: u8, _: *mut u8, _: *mut f64) {
         unsafe {
             let c = *c.cast::<*mut c_void>();
-            assert_eq!(GetFloat64::<Touchy>(c, &(PANICS + 1), 1, &mut 0.0, 1), Status::Fatal as c_int);
+            assert_eq!(GetFloat64(c, &(PANICS + 1), 1, &mut 0.0, 1), Status::Fatal as c_int);
             FreeInstance::<Touchy>(c);
             assert_eq!(DROPPED.get(), 0);
         }
@@ -422,14 +422,11 @@ mod tests {
             let [name, token, folder] = [c"a".as_ptr(), token.as_ptr(), c"/".as_ptr()];
             let instantiate = InstantiateCoSimulation::<Touchy>;
             c = instantiate(name, token, folder, 0, 0, 0, 0, &(PANICS + 1), 1, environment, None, Some(update));
-            assert_eq!(
-                (EnterInitializationMode::<Touchy>(c, 0, 0.0, 0.0, 0, 0.0), ExitInitializationMode::<Touchy>(c)),
-                (0, 0)
-            );
+            assert_eq!((EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), ExitInitializationMode(c)), (0, 0));
             let (mut flags, mut time) = ([0; 3], 0.0);
             let [event, end, early] = &mut flags;
-            assert_eq!(DoStep::<Touchy>(c, 0.0, 0.1, 0, event, end, early, &mut time), Status::Fatal as c_int);
-            assert_eq!(Reset::<Touchy>(c), Status::Fatal as c_int);
+            assert_eq!(DoStep(c, 0.0, 0.1, 0, event, end, early, &mut time), Status::Fatal as c_int);
+            assert_eq!(Reset(c), Status::Fatal as c_int);
             FreeInstance::<Touchy>(c);
         }
         assert_eq!(DROPPED.get(), 1);

@@ -21,9 +21,9 @@ const SAME_TIME: (f64, f64) = (1e-3, 2.0 * f32::EPSILON as f64);
 const MANY_TRIALS: u32 = 1000;
 
 /// One instance.
-pub struct Instance<M> {
+pub struct Instance {
     /// The model, for what needs no check but that of the stage.
-    pub(crate) model: M,
+    pub(crate) model: Box<dyn Model>,
     variables: Arc<[Variable]>,
     /// The value reference that the host has for the variable at position 0.
     first: u32,
@@ -92,15 +92,15 @@ fn range(variable: &Variable) -> (f64, f64) {
     of_input.unwrap_or((f64::INFINITY, f64::NEG_INFINITY))
 }
 
-impl<M: Model> Instance<M> {
+impl Instance {
     /// An instance of `model`, just instantiated, with the value references `first` and more.
     pub(crate) fn new(
-        model: M,
+        model: Box<dyn Model>,
         first: u32,
         interface: Interface,
         logger: Logger,
         host: Option<IntermediateUpdate>,
-    ) -> Instance<M> {
+    ) -> Instance {
         let variables = model.variables();
         let mut at_start = Vec::new();
         model.state(&mut at_start);
@@ -250,7 +250,7 @@ impl<M: Model> Instance<M> {
 }
 
 /// How values are read and set: all of a call, or none if one is refused.
-impl<M: Model> Instance<M> {
+impl Instance {
     /// Reads real numbers.
     #[inline(always)]
     pub(crate) fn get_real(&mut self, references: &[u32]) -> Result<&[f64], Failure> {
@@ -536,7 +536,7 @@ fn refused(variable: &Variable) -> Failure {
 }
 
 /// Steps of a co-simulation.
-impl<M: Model> Instance<M> {
+impl Instance {
     /// Begins a step over `step` (s) from `point` (s). If the host sets inputs within steps, returns how to call it back,
     /// which comes before [`Instance::do_step`].
     pub(crate) fn begin_step(&mut self, point: f64, step: f64) -> Result<Option<IntermediateUpdate>, Failure> {
@@ -623,7 +623,7 @@ fn is_same_time(a: f64, b: f64, step: f64) -> bool {
 }
 
 /// The service of an instance to a host that integrates.
-impl<M: Model> Instance<M> {
+impl Instance {
     /// Goes to the host's `time` (s).
     pub(crate) fn set_time(&mut self, time: f64) -> Result<(), Failure> {
         if !(time.is_finite() && (time - self.experiment.start_time).is_finite()) {

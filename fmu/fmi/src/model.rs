@@ -13,9 +13,11 @@ use uuid::Uuid;
 ///
 /// The unit checks a call before the model sees it: stage, references, types, ranges, counts. A call that the model refuses
 /// must leave the model as it was.
-pub trait Model: Sized + 'static {
+pub trait Model: 'static {
     /// The model of the FMU whose folder `resources` is this one; the error is a message to the user.
-    fn open(resources: &Path) -> Result<Self, Failure>;
+    fn open(resources: &Path) -> Result<Box<dyn Model>, Failure>
+    where
+        Self: Sized;
 
     /// The GUID of the FMU, FMI 3.0's instantiation token. FMUs that differ in anything must differ in it: here in the type of
     /// the model and its table of variables.

@@ -58,7 +58,7 @@ fn limit(quotients: impl Iterator<Item = (f64, f64)>) -> Option<(f64, f64)> {
 
 /// The derivatives of `of` along `direction` by inputs, before the simulation `has_started` by real parameters, and afterwards by
 /// states.
-pub fn along<M: Model>(
+pub fn along<M: Model + ?Sized>(
     model: &mut M,
     of: &[u32],
     direction: &[(u32, f64)],

@@ -1,11 +1,10 @@
 //! A host: loads nothing, calls the C functions of either version directly, keeps what is logged.
 #![allow(unsafe_code, dead_code, unused_imports)] // the C interface; every test file uses a part of this
 
-use FlexibleRocking::any::AnyUnit;
 use FlexibleRocking::fmi2::{self, CallbackFunctions, CallbackLogger, EventInfo};
 use FlexibleRocking::fmi3::{self, IntermediateUpdateCallback, LogMessageCallback};
 use FlexibleRocking::resources::{Contents, FRAME_FILE, PARAMETERS_FILE, frame_bytes};
-use FlexibleRocking::unit::{Condition, Course};
+use FlexibleRocking::unit::{Condition, Course, Unit};
 use FlexibleRocking::variables::Table;
 use fmi_unit::interface::Stepping;
 use fmi_unit::snapshot::Snapshot;
@@ -203,7 +202,7 @@ impl Host {
     /// Just instantiated, or the log.
     pub fn instantiate(arguments: Instantiate) -> Result<Host, Vec<Message>> {
         let Instantiate { is_fmi_3, name, fmu_type, stepping, update, logging_on, resources, around, .. } = arguments;
-        let (model, log) = (AnyUnit::open(resources.path()).unwrap(), Box::<Log>::default());
+        let (model, log) = (Unit::<f64>::open(resources.path()).unwrap(), Box::<Log>::default());
         let start = if is_fmi_3 { "" } else { "file://" };
         let location = arguments.location.unwrap_or_else(|| format!("{start}{}", resources.path().display()));
         let guid = arguments.guid.unwrap_or_else(|| model.token());
