@@ -242,37 +242,4 @@ mod tests {
             "by its path it is any file"
         );
     }
-
-    #[test]
-    fn what_is_no_record_is_told() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = folder.path().display();
-        fs::create_dir(folder.path().join("folder.csv")).unwrap();
-        fs::write(folder.path().join("broken.csv"), "0,1\nroot:x:0:0:secret,2\n").unwrap();
-        let archive = archive(folder.path());
-        let refusal = |text: &str| archive.ground("", text, 9.81, &mut None).unwrap_err().to_string();
-        for (text, message) in [
-            (
-                "absent.csv",
-                format!("record_v = \"absent.csv\" is not in {at}; a path on disk needs a separator: ./absent.csv"),
-            ),
-            ("..", format!("record_v: {at}/.. is not a file")),
-            ("folder.csv", format!("record_v: {at}/folder.csv is not a file")),
-            (
-                "broken.csv",
-                format!("record_v: {at}/broken.csv, line 2: the time \"root:x:0:0:secret\" is not a number"),
-            ),
-            (
-                "file:a.csv",
-                "record_v = \"file:a.csv\" is not a file URI of this machine, such as file:///tmp/record.AT2"
-                    .to_owned(),
-            ),
-            (
-                &format!("{at}/absent.AT2"),
-                format!("record_v: the record {at}/absent.AT2 cannot be read: No such file or directory (os error 2)"),
-            ),
-        ] {
-            assert_eq!(refusal(text), message);
-        }
-    }
 }

@@ -6,7 +6,15 @@ use rocking::{LinearLoad, Load, OutOfRange, Ramp, Structure};
 use serde::{Deserialize, Serialize};
 
 /// The place of F_t in [`LOADS`].
-const FORCE: usize = 1;
+pub(crate) const FORCE: usize = 1;
+
+/// The places in [`LOADS`] of the inputs of `structure`: a_g, F_t and a_v of one mass, or a_g, a_v and a force on each floor.
+pub(crate) fn loads(structure: &Structure) -> Vec<usize> {
+    match structure.one() {
+        Some(_) => (0..LOADS.len()).collect(),
+        None => [0, VERTICAL].into_iter().chain(structure.floors().iter().map(|_| FORCE)).collect(),
+    }
+}
 
 /// How an input acts between communication points if nothing but its value is set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -142,12 +150,9 @@ impl Input {
 }
 
 impl Inputs {
-    /// Inputs of `structure` that are 0 and act at once: a_g, F_t and a_v of one mass, or a_g, a_v and a force on each floor.
+    /// Inputs of `structure` that are 0 and act at once.
     pub fn new(structure: &Structure) -> Inputs {
-        match structure.one() {
-            Some(_) => Inputs::of(0..LOADS.len()),
-            None => Inputs::of([0, VERTICAL].into_iter().chain(structure.floors().iter().map(|_| FORCE))),
-        }
+        Inputs::of(loads(structure).into_iter())
     }
 
     /// Such inputs, given the places of their `loads` in [`LOADS`].

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The settings before a simulation starts.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Setup {
     /// Those of one mass; a host cannot change the numbers of many masses.
     pub(crate) parameters: Option<Parameters>,
@@ -42,18 +42,10 @@ impl Setup {
     pub(crate) fn new(contents: &Contents) -> Setup {
         Setup {
             parameters: contents.structure.one().map(|one| *one.parameters()),
-            initial: State::default(),
-            detail: Detail::default(),
             tolerance: DEFAULT_TOLERANCE,
-            start_time: 0.0,
             record: contents.default_record().into(),
             record_v: contents.default_vertical().into(),
-            placement: Placement::default(),
-            vertical: false,
-            a_g_late: false,
-            F_t_extrapolated: false,
-            peaks: false,
-            validity: false,
+            ..Setup::default()
         }
     }
 

@@ -2,12 +2,13 @@
 //! here and nowhere else.
 
 use crate::floor_variables;
+use crate::inputs::{FORCE, loads};
 use crate::resources::Contents;
 use crate::setup::Setup;
 use fmi_unit::{Causality, DataType, Enumeration, Value, Variable};
 use rocking::mechanics::load::LOADS;
 use rocking::mechanics::restraint::{Dissipators, Restraints};
-use rocking::mechanics::state::{COMPONENTS, INITIAL_VALUES};
+use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::ground_motion::{PLACEMENT, Placement};
 use rocking::run::outside_step::INDICATORS;
 use rocking::run::validity::{ASSUMPTIONS, Assumption};
@@ -17,6 +18,7 @@ use rocking::structure::quantity::Quantity;
 use rocking::{Detail, Impulse, Output, Parameters, Phase, Reactions, Side, State, Structure};
 use rocking_records::LAYOUTS;
 use std::borrow::Cow;
+use std::collections::HashSet;
 use std::sync::{Arc, LazyLock};
 
 /// The source of the value of a variable.
@@ -58,25 +60,13 @@ pub enum Source {
     Gains,
     /// The instant of overturning.
     Overturning,
-    Text(&'static Text),
+    /// A parameter that is text: which record.
+    Text(fn(&mut Setup) -> &mut Arc<str>),
     RecordDuration,
     Time,
     Placement(&'static Quantity<Placement>),
-    Switch(&'static Switch),
-}
-
-/// A parameter that is text: which record.
-#[derive(Debug)]
-pub struct Text {
-    pub(crate) get: fn(&Setup) -> &str,
-    pub(crate) set: fn(&mut Setup, &str),
-}
-
-/// A Boolean parameter.
-#[derive(Debug)]
-pub struct Switch {
-    pub(crate) get: fn(&Setup) -> bool,
-    pub(crate) set: fn(&mut Setup, bool),
+    /// A Boolean parameter.
+    Switch(fn(&mut Setup) -> &mut bool),
 }
 
 impl Source {
@@ -101,8 +91,8 @@ impl Source {
         match self {
             Source::Input(_) => Some(Value::Real(0.0)),
             Source::Detail => Some(Value::Integer(detail_number(setup.detail))),
-            Source::Text(text) => Some(Value::String((text.get)(setup).to_owned())),
-            Source::Switch(switch) => Some(Value::Boolean((switch.get)(setup))),
+            Source::Text(of) => Some(Value::String(of(&mut setup.clone()).to_string())),
+            Source::Switch(of) => Some(Value::Boolean(*of(&mut setup.clone()))),
             _ => self.setting(setup).map(Value::Real),
         }
     }
@@ -111,8 +101,8 @@ impl Source {
     pub fn set_to(&self, setup: &mut Setup, value: Value) {
         match (self, value) {
             (Source::Detail, Value::Integer(number)) => setup.detail = detail(number.into()).unwrap_or(setup.detail),
-            (Source::Text(text), Value::String(value)) => (text.set)(setup, &value),
-            (Source::Switch(switch), Value::Boolean(on)) => (switch.set)(setup, on),
+            (Source::Text(of), Value::String(value)) => *of(setup) = value.into(),
+            (Source::Switch(of), Value::Boolean(on)) => *of(setup) = on,
             (_, Value::Real(value)) => self.set(setup, value),
             _ => (),
         }
@@ -191,35 +181,18 @@ pub struct Table {
 impl Table {
     /// The table of an FMU with these `contents`, which give start values.
     pub fn new(contents: &Contents) -> Table {
-        let setup = Setup::new(contents);
-        let one_mass = (0..LOADS.len())
-            .map(input)
-            .chain(outputs())
-            .chain(locals())
-            .chain(state_rates())
-            .chain(event_indicators())
-            .chain(peaks(&contents.structure))
-            .chain(validity())
-            .chain(const { &PARAMETERS }.iter().map(|quantity| fixed(quantity, Source::Parameter(quantity))))
-            .chain([parameter("detail", DETAILS.description, DataType::Enumeration(&DETAILS), Source::Detail)])
-            .chain(const { &INITIAL_VALUES }.iter().map(|quantity| fixed(quantity, Source::InitialValue(quantity))))
-            .chain(records())
-            .chain(const { &PLACEMENT }.iter().map(|quantity| fixed(quantity, Source::Placement(quantity))))
-            .chain(switches())
-            .chain(calculated_parameters())
-            .chain([(Variable::time(), Source::Time)]);
-        let mut rows: Vec<Row> = match contents.structure.one() {
-            Some(_) => one_mass.collect(),
-            None => floor_variables::rows(&contents.structure, one_mass),
+        let (setup, mut rows) = (Setup::new(contents), rows(&contents.structure));
+        rows.retain(|(variable, _)| !contents.fixed || variable.data_type != DataType::String);
+        let names: HashSet<_> = rows.iter().map(|(variable, _)| variable.name.clone()).collect();
+        let known = |name: &Cow<'static, str>| match &**name {
+            // on ground that gives all accelerations depend on y
+            of @ ("u" | "u_dot" | "F_t") if contents.structure.one().is_none() => floor_variables::all_of(of, &names),
+            _ => names.get(name).cloned().into_iter().collect(),
         };
-        if contents.fixed {
-            rows.retain(|(variable, _)| variable.data_type != DataType::String);
-            let is_left = |name: &Cow<str>| !["record", "record_v"].contains(&&**name);
-            rows.iter_mut().for_each(|(variable, _)| variable.depends_on.retain(is_left));
-        }
-        let started = rows
-            .into_iter()
-            .map(|(variable, source)| (Variable { start: source.set_value(&setup), ..variable }, source));
+        let started = rows.into_iter().map(|(variable, source)| {
+            let depends_on = variable.depends_on.iter().flat_map(known).collect();
+            (Variable { start: source.set_value(&setup), depends_on, ..variable }, source)
+        });
         let (variables, sources): (Vec<_>, Vec<_>) = started.unzip();
         Table { variables: variables.into(), sources: sources.into() }
     }
@@ -231,9 +204,41 @@ impl Table {
     }
 }
 
+/// The rows of `structure`. One mass has parameters where many masses have fixed numbers, and its locals follow its outputs.
+fn rows(structure: &Structure) -> Vec<Row> {
+    let is_one = structure.one().is_some();
+    let of_one = |rows: Vec<Row>| if is_one { rows } else { Vec::new() };
+    let of_many = |rows: fn(&Structure) -> Vec<Row>| if is_one { Vec::new() } else { rows(structure) };
+    let outputs = Output::all(structure).into_iter().filter(|of| *of != Output::y).map(|of| output(of, structure));
+    let (outputs, locals_of_one): (Vec<_>, Vec<_>) =
+        outputs.partition(|(variable, _)| !is_one || variable.causality == Causality::Output);
+    let is_initial = |of: &&Quantity<State>| is_one || of.name.starts_with("theta");
+    inputs(structure)
+        .into_iter()
+        .chain(outputs)
+        .chain(of_many(floor_variables::coordinates))
+        .chain(of_many(floor_variables::state_rates))
+        .chain(of_many(peaks))
+        .chain(of_many(floor_variables::numbers))
+        .chain(forces())
+        .chain(locals_of_one)
+        .chain(locals())
+        .chain(of_one(floor_variables::state_rates(structure)))
+        .chain(event_indicators())
+        .chain(of_one(peaks(structure)))
+        .chain(validity())
+        .chain(of_one(const { &PARAMETERS }.iter().map(|of| fixed(of, Source::Parameter(of))).collect()))
+        .chain([parameter("detail", DETAILS.description, DataType::Enumeration(&DETAILS), Source::Detail)])
+        .chain(const { &INITIAL_VALUES }.iter().filter(is_initial).map(|of| fixed(of, Source::InitialValue(of))))
+        .chain(records())
+        .chain(const { &PLACEMENT }.iter().map(|of| fixed(of, Source::Placement(of))))
+        .chain(switches())
+        .chain(of_one(calculated_parameters().into()))
+        .chain([record_duration(), (Variable::time(), Source::Time)])
+        .collect()
+}
+
 fn records() -> [Row; 2] {
-    static HORIZONTAL: Text = Text { get: |setup| &setup.record, set: |setup, text| setup.record = text.into() };
-    static VERTICAL: Text = Text { get: |setup| &setup.record_v, set: |setup, text| setup.record_v = text.into() };
     static OF_HORIZONTAL: LazyLock<String> = LazyLock::new(|| {
         format!(
             "ground motion record, which is added to a_g: the name of a file in the archive's resources, or the path or \
@@ -243,14 +248,23 @@ fn records() -> [Row; 2] {
     let vertical = "vertical ground motion record, which is added to a_v: a file as for record, with the same start and \
                     scales; none if empty";
     [
-        parameter("record", &OF_HORIZONTAL, DataType::String, Source::Text(&HORIZONTAL)),
-        parameter("record_v", vertical, DataType::String, Source::Text(&VERTICAL)),
+        parameter("record", &OF_HORIZONTAL, DataType::String, Source::Text(|setup| &mut setup.record)),
+        parameter("record_v", vertical, DataType::String, Source::Text(|setup| &mut setup.record_v)),
     ]
 }
 
-fn input(which: usize) -> Row {
-    let (variable, source) = fixed(&LOADS[which], Source::Input(which));
-    (Variable { causality: Causality::Input, is_continuous: true, ..variable }, source)
+/// The loads, of many masses a force on each floor.
+fn inputs(structure: &Structure) -> Vec<Row> {
+    let row = |(which, load): (usize, usize)| {
+        let (mut variable, source) = fixed(&LOADS[load], Source::Input(which));
+        if load == FORCE && structure.one().is_none() {
+            let floor = which - 1; // after a_g and a_v
+            variable.name = format!("{}[{floor}]", variable.name).into();
+            variable.description = format!("external horizontal force on floor {floor}, positive to the right").into();
+        }
+        (Variable { causality: Causality::Input, is_continuous: true, ..variable }, source)
+    };
+    loads(structure).into_iter().enumerate().map(row).collect()
 }
 
 /// The variables that accelerations follow from.
@@ -270,7 +284,7 @@ fn real(
     (Variable::real(causality, name, unit, description).from(of.iter().copied()), source)
 }
 
-fn output(texts: [&'static str; 3], source: Source, of: &[&'static str]) -> Row {
+fn force(texts: [&'static str; 3], source: Source, of: &[&'static str]) -> Row {
     real(Causality::Output, texts, source, of)
 }
 
@@ -283,49 +297,57 @@ fn counted(name: &'static str, description: &'static str, data_type: DataType, s
     (Variable::of_type(data_type, Causality::Local, name, description), source)
 }
 
-/// The row of a continuous state, which starts from the parameter `from`.
-fn state((variable, source): Row, from: &'static str) -> Row {
-    (variable.state().from([from]), source)
-}
-
 const fn number(unit: &'static str) -> DataType {
     DataType::Real { unit, range: None }
 }
 
-fn outputs() -> Vec<Row> {
-    let of_state = |name, unit, description, of, from| output([name, unit, description], Source::Output(of), from);
-    let reaction = |name, unit, description, of| output([name, unit, description], Source::Reaction(of), ACCELERATION);
+/// An output of the library, with the variables that it follows from, of which many masses have some.
+fn output(of: Output, structure: &Structure) -> Row {
+    let is_one = structure.one().is_some();
+    let (of_one, depends_on): (_, &[&str]) = match of {
+        Output::theta => ("rotation of the base, positive about the right edge", &["theta_0"]),
+        Output::theta_dot => ("angular velocity of the base", &["theta_dot_0"]),
+        Output::u(_) if is_one => {
+            ("elastic displacement of the top mass in the frame that turns with the base", &["u_0"])
+        }
+        Output::u_dot(_) if is_one => ("elastic velocity of the top mass", &["u_dot_0"]),
+        Output::uplift => ("height of the free edge of the base (Eq 25)", &["theta", "B", "y"]),
+        Output::V_t => ("m a_t, the base shear if F_t is 0 (Eqs 2, 23)", ACCELERATION),
+        Output::M_t => ("m H a_t, the overturning moment if F_t is 0 (Eqs 3, 24)", ACCELERATION),
+        Output::a_t(_) => ("acceleration of the top mass, ground included (Eq 27)", ACCELERATION),
+        Output::delta_t(_) => ("lateral displacement of the top mass (Eq 26)", &["u", "theta", "H", "B"]),
+        Output::v_t(_) => {
+            ("lateral velocity of the top mass relative to the ground", &["u", "u_dot", "theta", "theta_dot", "H", "B"])
+        }
+        Output::V(_) | Output::M(_) => ("", ACCELERATION),
+        Output::u(_) | Output::drift(_) | Output::drift_ratio(_) => ("", &["u"]),
+        Output::u_dot(_) => ("", &["u_dot"]),
+        Output::y | Output::P_t | Output::settlement | Output::settled(_) | Output::lifted(_) => ("", &["y", "theta"]),
+        Output::N_left | Output::N_right | Output::N(_) | Output::pressure => {
+            ("", &["y", "y_dot", "theta", "theta_dot"])
+        }
+        _ => ("", &[]),
+    };
+    let is_local = matches!(of, Output::theta_dot | Output::u_dot(_));
+    let causality = if is_local { Causality::Local } else { Causality::Output };
+    let description = if is_one { of_one.into() } else { of.description() };
+    let variable =
+        Variable::real(causality, of.name(structure), of.unit(), description).from(depends_on.iter().copied());
+    let is_state =
+        matches!(of, Output::theta | Output::theta_dot) || is_one && matches!(of, Output::u(_) | Output::u_dot(_));
+    (if is_state { variable.state() } else { variable }, Source::Output(of))
+}
+
+/// Reactions, forces of the ties, and impulses.
+fn forces() -> [Row; 9] {
+    let reaction = |name, unit, description, of| force([name, unit, description], Source::Reaction(of), ACCELERATION);
     let impulse = |name, unit, description, of| {
         (Variable::of_type(number(unit), Causality::Output, name, description), Source::Impulse(of))
     };
-    let tie = |name, description, of, from| output([name, "N", description], Source::Restraint(of), from);
+    let tie = |name, description, of, from| force([name, "N", description], Source::Restraint(of), from);
     const OF_DISSIPATOR: &[&str] = &["theta", "theta_dot", "B", "xi_d", "c_d", "k_d", "F_y"];
-    let turned = "rotation of the base, positive about the right edge";
-    let elastic = "elastic displacement of the top mass in the frame that turns with the base";
-    let shear = "m a_t, the base shear if F_t is 0 (Eqs 2, 23)";
-    let moment = "m H a_t, the overturning moment if F_t is 0 (Eqs 3, 24)";
     let first = "force of the dissipators at +xi_d, viscous plus elastoplastic; tension is positive";
-    vec![
-        state(of_state("theta", "rad", turned, Output::theta, &[]), "theta_0"),
-        state(of_state("u", "m", elastic, Output::u(0), &[]), "u_0"),
-        of_state("a_t", "m/s2", "acceleration of the top mass, ground included (Eq 27)", Output::a_t(0), ACCELERATION),
-        of_state("V_t", "N", shear, Output::V_t, &["m", "a_t"]),
-        of_state("M_t", "N.m", moment, Output::M_t, &["m", "H", "a_t"]),
-        of_state("uplift", "m", "height of the free edge of the base (Eq 25)", Output::uplift, &["theta", "B"]),
-        of_state(
-            "delta_t",
-            "m",
-            "lateral displacement of the top mass (Eq 26)",
-            Output::delta_t(0),
-            &["u", "theta", "H", "B"],
-        ),
-        of_state(
-            "v_t",
-            "m/s",
-            "lateral velocity of the top mass relative to the ground",
-            Output::v_t(0),
-            &["u", "u_dot", "theta", "theta_dot", "H", "B"],
-        ),
+    [
         reaction("R_h", "N", "horizontal force on the ground, positive to the right", |r| r.R_h),
         reaction("R_v", "N", "vertical force on the ground, positive downwards", |r| r.R_v),
         reaction("R_m", "N.m", "moment on the ground about the middle of the base, signed like theta", |r| r.R_m),
@@ -342,15 +364,12 @@ fn outputs() -> Vec<Row> {
 fn locals() -> Vec<Row> {
     const PLASTIC: &[&str] = &["B", "theta_0", "xi_d", "k_d", "F_y"];
     let kept = |name, unit, description, of, from| local([name, unit, description], Source::Dissipator(of), from);
-    let (turning, swaying) = (Source::Output(Output::theta_dot), Source::Output(Output::u_dot(0)));
     let ground = |name, description, is_vertical, input, record| {
         let placed = ["record_scale", "record_time_scale", "record_start", "g", "time"];
         local([name, "m/s2", description], Source::Ground(is_vertical), &[&[input, record][..], &placed].concat())
     };
     let (phase, source) = counted("phase", PHASES.description, DataType::Enumeration(&PHASES), Source::Phase);
     vec![
-        state(local(["theta_dot", "rad/s", "angular velocity of the base"], turning, &[]), "theta_dot_0"),
-        state(local(["u_dot", "m/s", "elastic velocity of the top mass"], swaying, &[]), "u_dot_0"),
         ground("a_ground", "ground acceleration: a_g and the record", false, "a_g", "record"),
         ground("a_v_ground", "vertical ground acceleration: a_v and record_v", true, "a_v", "record_v"),
         kept("e_p1", "m", "plastic elongation of the elastoplastic dissipator at +xi_d", |d| d.plastic[0], PLASTIC),
@@ -371,25 +390,6 @@ fn locals() -> Vec<Row> {
             number("s"),
             Source::Overturning,
         ),
-    ]
-}
-
-/// Derivatives of the states.
-fn state_rates() -> [Row; 4] {
-    let rate = |which, name, unit, description, of| {
-        let (variable, source) = local([name, unit, description], Source::StateRate(which), of);
-        (variable.rate_of(COMPONENTS[which]), source)
-    };
-    let [of_u, of_theta] = ["rate of u", "rate of theta"];
-    let [of_u_dot, of_theta_dot] = [
-        "rate of u_dot, by the equations of the level of detail",
-        "rate of theta_dot, by the equations of the level of detail",
-    ];
-    [
-        rate(0, "der(u)", "m/s", of_u, &["u_dot"]),
-        rate(1, "der(u_dot)", "m/s2", of_u_dot, ACCELERATION),
-        rate(2, "der(theta)", "rad/s", of_theta, &["theta_dot"]),
-        rate(3, "der(theta_dot)", "rad/s2", of_theta_dot, ACCELERATION),
     ]
 }
 
@@ -452,11 +452,7 @@ fn validity() -> Vec<Row> {
 }
 
 fn switches() -> [Row; 4] {
-    static LATE: Switch = Switch { get: |setup| setup.a_g_late, set: |setup, on| setup.a_g_late = on };
-    static EXTRAPOLATED: Switch =
-        Switch { get: |setup| setup.F_t_extrapolated, set: |setup, on| setup.F_t_extrapolated = on };
-    static PEAKS: Switch = Switch { get: |setup| setup.peaks, set: |setup, on| setup.peaks = on };
-    static VALIDITY: Switch = Switch { get: |setup| setup.validity, set: |setup, on| setup.validity = on };
+    let switch = |name, description, of| parameter(name, description, DataType::Boolean, Source::Switch(of));
     let peaks = "true computes the largest magnitudes theta_max, u_max, ... and their instants";
     let validity = "true checks the limits of the model (tension, load of the edge, friction, energy gain) and logs the first \
                     time that the motion exceeds each";
@@ -465,30 +461,32 @@ fn switches() -> [Row; 4] {
     let extrapolated = "if F_t is set without its derivative: true extrapolates F_t over the step from its values at the last \
                         two communication points; false, or a step before which F_t is not set, holds F_t";
     [
-        parameter("a_g_late", late, DataType::Boolean, Source::Switch(&LATE)),
-        parameter("F_t_extrapolated", extrapolated, DataType::Boolean, Source::Switch(&EXTRAPOLATED)),
-        parameter("peaks", peaks, DataType::Boolean, Source::Switch(&PEAKS)),
-        parameter("validity", validity, DataType::Boolean, Source::Switch(&VALIDITY)),
+        switch("a_g_late", late, |setup| &mut setup.a_g_late),
+        switch("F_t_extrapolated", extrapolated, |setup| &mut setup.F_t_extrapolated),
+        switch("peaks", peaks, |setup| &mut setup.peaks),
+        switch("validity", validity, |setup| &mut setup.validity),
     ]
 }
 
-fn calculated_parameters() -> [Row; 6] {
-    let causality = Causality::CalculatedParameter;
+fn calculated_parameters() -> [Row; 5] {
     let calculated = |name, of: &[&'static str]| {
         let derived = const { &DERIVED }.iter().find(|derived| derived.name == name);
         let derived = derived.unwrap_or_else(|| panic!("no derived quantity is called {name}"));
-        real(causality, [name, derived.unit, derived.description], Source::Derived(derived), of)
+        real(Causality::CalculatedParameter, [name, derived.unit, derived.description], Source::Derived(derived), of)
     };
-    let duration = "time from the first to the last sample of the record, of either component; 0 without a record";
-    let of_record = ["record", "record_v", "record_time_scale"];
     [
         calculated("alpha_cg", &["m", "m0", "H", "B"]),
         calculated("p_l", &["m", "m0", "H", "B", "J0", "g"]),
         calculated("chi", &["m", "m0", "H", "B", "J0"]),
         calculated("u_cr", &["m", "m0", "H", "B", "f_fc", "g", "P_0"]),
         calculated("f_u", &["m", "m0", "H", "B", "J0", "f_fc"]),
-        real(causality, ["record_duration", "s", duration], Source::RecordDuration, &of_record),
     ]
+}
+
+fn record_duration() -> Row {
+    let duration = "time from the first to the last sample of the record, of either component; 0 without a record";
+    let texts = ["record_duration", "s", duration];
+    real(Causality::CalculatedParameter, texts, Source::RecordDuration, &["record", "record_v", "record_time_scale"])
 }
 
 fn parameter(name: &'static str, description: &'static str, data_type: DataType, source: Source) -> Row {

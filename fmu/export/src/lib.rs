@@ -197,20 +197,20 @@ mod tests {
         Library { platform, content: platform.target().into() }
     }
 
+    fn exported(
+        parameters: Parameters,
+        records: Vec<RecordFile>,
+        vertical: Option<RecordFile>,
+        platforms: &[Platform],
+    ) -> Result<(Contents, Vec<u8>), ExportError> {
+        let libraries: Vec<_> = platforms.iter().copied().map(library).collect();
+        let contents = structure(parameters).into();
+        super::export(Version::Fmi2, &ModelName::default(), contents, records, vertical, &libraries)
+    }
+
     #[test]
     fn two_exports_of_the_same_are_the_same_bytes() {
-        let exported = |parameters, platforms: [Platform; 2]| {
-            export(
-                Version::Fmi2,
-                &ModelName::default(),
-                structure(parameters).into(),
-                Vec::new(),
-                None,
-                &platforms.map(library),
-            )
-            .unwrap()
-            .1
-        };
+        let exported = |of, platforms: [Platform; 2]| exported(of, Vec::new(), None, &platforms).unwrap().1;
         let [linux, windows] = [Platform::Linux64, Platform::Windows64];
         let first = exported(Parameters::EVISON, [linux, windows]);
         assert_eq!(first, exported(Parameters::EVISON, [windows, linux]));
@@ -219,11 +219,8 @@ mod tests {
 
     #[test]
     fn one_library_for_each_platform() {
-        let two = [Platform::LinuxArm64; 2].map(library);
-        let refusal =
-            export(Version::Fmi2, &ModelName::default(), structure(Parameters::EVISON).into(), Vec::new(), None, &two)
-                .unwrap_err()
-                .to_string();
+        let two = exported(Parameters::EVISON, Vec::new(), None, &[Platform::LinuxArm64; 2]);
+        let refusal = two.unwrap_err().to_string();
         assert_eq!(refusal, "two shared libraries are for aarch64-linux: leave one out");
     }
 
@@ -278,34 +275,27 @@ mod tests {
         let [same, broken]: [Packed; 2] = [("other/Sine.TXT", "t/s,a\n0,2\n1,0\n"), ("broken.csv", "0,1\n1,?\n")];
         let file = |(path, text): &Packed| (path.into(), text.as_bytes().to_vec());
         let with_vertical = |records: &[&Packed], vertical: Option<&Packed>| {
-            super::export(
-                Version::Fmi2,
-                &ModelName::default(),
-                structure(Parameters::EVISON).into(),
-                records.iter().map(|packed| file(packed)).collect(),
-                vertical.map(file),
-                &[library(Platform::Linux64)],
-            )
+            let records = records.iter().map(|packed| file(packed)).collect();
+            exported(Parameters::EVISON, records, vertical.map(file), &[Platform::Linux64])
         };
         let export = |records: &[&Packed]| with_vertical(records, None);
         let (contents, bytes) = export(&[&pulse, &sine]).unwrap();
         assert_eq!(contents.default_record(), "pulse 1.csv");
-        let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
-        let mut read = |name: &str| std::io::read_to_string(archive.by_name(name).unwrap()).unwrap();
-        assert_eq!(read("resources/pulse 1.csv"), "t/s,a\r\n0,1\r\n1,2\r\n");
-        assert_eq!(read("resources/sine.txt"), "t/s,a\n0,1\n1,-1\n");
-        assert!(read("modelDescription.xml").contains("<String start=\"pulse 1.csv\"/>"));
-        let names: Records = toml::from_str(&read("resources/records.toml")).unwrap();
+        let read = |bytes: &[u8], name: &str| {
+            let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
+            std::io::read_to_string(archive.by_name(name).unwrap()).unwrap()
+        };
+        assert_eq!(read(&bytes, "resources/pulse 1.csv"), "t/s,a\r\n0,1\r\n1,2\r\n");
+        assert_eq!(read(&bytes, "resources/sine.txt"), "t/s,a\n0,1\n1,-1\n");
+        assert!(read(&bytes, "modelDescription.xml").contains("<String start=\"pulse 1.csv\"/>"));
+        let names: Records = toml::from_str(&read(&bytes, "resources/records.toml")).unwrap();
         assert_eq!(names.record, contents.records);
         let (swapped, _) = export(&[&sine, &pulse]).unwrap();
         assert_ne!(FlexibleRocking::guid(&swapped), FlexibleRocking::guid(&contents));
 
         let (pair, bytes) = with_vertical(&[&pulse], Some(&sine)).unwrap();
         assert_eq!((pair.default_record(), pair.default_vertical()), ("pulse 1.csv", "sine.txt"));
-        let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
-        let names: Records =
-            toml::from_str(&std::io::read_to_string(archive.by_name("resources/records.toml").unwrap()).unwrap())
-                .unwrap();
+        let names: Records = toml::from_str(&read(&bytes, "resources/records.toml")).unwrap();
         assert_eq!((names.record, names.vertical), (pair.records, pair.vertical));
 
         let late: Packed = ("late.txt", "t/s,a\n1,1\n2,-1\n");

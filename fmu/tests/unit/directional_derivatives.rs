@@ -64,25 +64,15 @@ fn they_exist_from_initialization_to_overturning() {
 }
 
 #[test]
-fn what_is_no_known_or_unknown_is_refused() {
-    let host = rocking();
+fn what_is_no_known_is_refused() {
     let can = "only the inputs can, before the simulation starts real parameters and, once it has started, u, u_dot, \
                theta, theta_dot and time";
-    let no_known = |name: &str| format!("{name} cannot be a known of a directional derivative: {can}");
-    for (unknowns, knowns, message) in [
-        (["a_t"], [("delta_t", 1.0)], &no_known("delta_t")[..]),
-        (["a_t"], [("m", 1.0)], &no_known("m")),
-        (["theta_max"], [("a_g", 1.0)], "theta_max has no derivative: only continuous real outputs have"),
-        (["a_t"], [("F_t", f64::NAN)], "the derivative of F_t, NaN, is out of range: it must be finite"),
-        (["phase"], [("a_g", 1.0)], "phase has no derivative: only continuous real outputs have"),
-        (["F_t"], [("a_g", 1.0)], "F_t has no derivative: only continuous real outputs have"),
-    ] {
-        let message = format!("fmi2GetDirectionalDerivative: {message}");
-        host.assert_refused(|| host.derive(&unknowns, &knowns), Err(ERROR), &message);
+    let no_known = |name: &str| {
+        format!("fmi2GetDirectionalDerivative: {name} cannot be a known of a directional derivative: {can}")
+    };
+    for (host, known) in [(rocking(), "delta_t"), (rocking(), "m"), (Host::initializing(&[]), "theta")] {
+        host.assert_refused(|| host.derive(&["a_t"], &[(known, 1.0)]), Err(ERROR), &no_known(known));
     }
-    let host = Host::initializing(&[]);
-    let message = format!("fmi2GetDirectionalDerivative: {}", no_known("theta"));
-    host.assert_refused(|| host.derive(&["a_t"], &[("theta", 1.0)]), Err(ERROR), &message);
 }
 
 /// The top mass above the pivot of a foundation without inertia: nothing says how it turns.

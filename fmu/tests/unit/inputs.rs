@@ -12,22 +12,35 @@ fn started(switches: &[&str], start_values: &[(&str, f64)]) -> Host {
     host
 }
 
-fn assert_close(host: &Host, other: &Host) {
-    for (found, expected) in host.try_get(&SHOWN).unwrap().into_iter().zip(other.try_get(&SHOWN).unwrap()) {
-        assert_relative_eq!(found, expected, max_relative = 1e-11);
+/// Value and slope that are set, step, value and slope that act.
+type Line = (Option<f64>, Option<f64>, f64, (f64, f64));
+
+/// Steps of different lengths beside a host that sends the lines themselves. Outputs between two steps are those of what acts.
+fn follow(input: &str, acting: &str, [host, other]: [&Host; 2], lines: &[Line]) {
+    let mut time = 0.0;
+    for &(value, slope, step, line) in lines {
+        // set again and again, as a master does that iterates: the last value counts
+        value.into_iter().for_each(|value| assert_eq!(host.set(&[(input, 9.0), (input, value)]), OK));
+        slope.into_iter().for_each(|slope| assert_eq!(host.set_slope(input, 1, slope), OK));
+        assert_relative_eq!(host.get(input), value.unwrap_or(line.0), max_relative = 1e-13);
+        assert_relative_eq!(host.get(acting), line.0, max_relative = 1e-13);
+        assert_eq!((other.set(&[(input, line.0)]), other.set_slope(input, 1, line.1)), (OK, OK));
+        assert_eq!((host.step(time, step), other.step(time, step)), (OK, OK));
+        for (found, expected) in host.try_get(&SHOWN).unwrap().into_iter().zip(other.try_get(&SHOWN).unwrap()) {
+            assert_relative_eq!(found, expected, max_relative = 1e-11);
+        }
+        let [found, expected] = [host, other].map(|host| host.rate("R_h", 1).unwrap());
+        assert_relative_eq!(found, expected, max_relative = 1e-9, epsilon = 1e-9);
+        time += step;
     }
 }
 
-/// Beside a host that sends the lines themselves, over steps of different lengths: from the value at the start on, to what is
-/// set, or on where nothing is; a slope that is set wins. Outputs between two steps are those of what acts.
+/// From the value at the start on, to what is set, or on where nothing is; a slope that is set wins.
 #[test]
 fn a_g_is_followed_one_step_late() {
-    let other = Host::started(&[("a_g", 0.5)]);
-    let host = started(&["a_g_late", "peaks"], &[("a_g", 0.5)]);
-    assert_eq!(host.get("a_ground"), 0.5);
-    let mut time = 0.0;
-    // value and slope that are set, step, value and slope that act
-    for (a_g, slope, step, line) in [
+    let hosts = [&started(&["a_g_late", "peaks"], &[("a_g", 0.5)]), &Host::started(&[("a_g", 0.5)])];
+    assert_eq!(hosts[0].get("a_ground"), 0.5);
+    let lines = [
         (Some(1.5), None, 0.1, (0.5, 10.0)),
         (Some(0.5), None, 0.05, (1.5, -20.0)),
         (None, None, 0.1, (0.5, 0.0)),
@@ -36,19 +49,23 @@ fn a_g_is_followed_one_step_late() {
         (None, Some(5.0), 0.1, (-2.0, 5.0)),
         (Some(-1.5), Some(0.0), 0.1, (-1.5, 0.0)),
         (Some(0.0), None, 0.1, (-1.5, 15.0)),
-    ] {
-        // set again and again, as a master does that iterates: the last value counts
-        a_g.into_iter().for_each(|a_g| assert_eq!(host.set(&[("a_g", 9.0), ("a_g", a_g)]), OK));
-        slope.into_iter().for_each(|slope| assert_eq!(host.set_slope("a_g", 1, slope), OK));
-        let shown = a_g.unwrap_or(line.0);
-        assert_relative_eq!(host.get("a_g"), shown, max_relative = 1e-13);
-        assert_relative_eq!(host.get("a_ground"), line.0, max_relative = 1e-13);
-        assert_eq!((other.set(&[("a_g", line.0)]), other.set_slope("a_g", 1, line.1)), (OK, OK));
-        assert_eq!((host.step(time, step), other.step(time, step)), (OK, OK));
-        assert_close(&host, &other);
-        assert_relative_eq!(host.rate("R_h", 1).unwrap(), other.rate("R_h", 1).unwrap(), max_relative = 1e-9);
-        time += step;
-    }
+    ];
+    follow("a_g", "a_ground", hosts, &lines);
+}
+
+/// From the second step on, of what is set and has no slope of its own.
+#[test]
+fn F_t_goes_on_with_the_slope_of_its_last_two_values() {
+    let lines = [
+        (Some(100.0), None, 0.1, (100.0, 0.0)),
+        (Some(200.0), None, 0.05, (200.0, 1000.0)),
+        (Some(300.0), None, 0.1, (300.0, 2000.0)),
+        (None, None, 0.1, (500.0, 0.0)),
+        (Some(450.0), Some(-100.0), 0.2, (450.0, -100.0)),
+        (Some(-100.0), Some(0.0), 0.1, (-100.0, 0.0)),
+        (Some(-200.0), None, 0.1, (-200.0, -1000.0)),
+    ];
+    follow("F_t", "F_t", [&started(&["F_t_extrapolated"], &[]), &started(&[], &[])], &lines);
 }
 
 /// While a_g is late it has no feedthrough: what is set changes no output before the next step.
@@ -63,35 +80,6 @@ fn what_is_late_does_not_act_at_once() {
     assert_eq!(by_a_g(&host), 0.0);
     assert_eq!(host.set_slope("a_g", 1, 0.0), OK);
     assert_eq!((host.get("a_ground"), by_a_g(&host) < -1.0), (5.0, true));
-}
-
-/// Beside a host that sends the slopes: from the second step on, of what is set and has no slope of its own.
-#[test]
-fn F_t_goes_on_with_the_slope_of_its_last_two_values() {
-    let [host, other] = [started(&["F_t_extrapolated"], &[]), started(&[], &[])];
-    let mut time = 0.0;
-    // value and slope that are set, step, slope that is followed
-    for (F_t, slope, step, followed) in [
-        (Some(100.0), None, 0.1, 0.0),
-        (Some(200.0), None, 0.05, 1000.0),
-        (Some(300.0), None, 0.1, 2000.0),
-        (None, None, 0.1, 0.0),
-        (Some(450.0), Some(-100.0), 0.2, -100.0),
-        (Some(-100.0), Some(0.0), 0.1, 0.0),
-        (Some(-200.0), None, 0.1, -1000.0),
-    ] {
-        F_t.into_iter().for_each(|F_t| assert_eq!(host.set(&[("F_t", 900.0), ("F_t", F_t)]), OK));
-        slope.into_iter().for_each(|slope| assert_eq!(host.set_slope("F_t", 1, slope), OK));
-        assert_eq!((other.set(&[("F_t", host.get("F_t"))]), other.set_slope("F_t", 1, followed)), (OK, OK));
-        // of what is not set, the rates tell how it came here
-        if F_t.is_some() {
-            let [found, expected] = [&host, &other].map(|host| host.rate("R_h", 1).unwrap());
-            assert_relative_eq!(found, expected, max_relative = 1e-12, epsilon = 1e-9);
-        }
-        assert_eq!((host.step(time, step), other.step(time, step)), (OK, OK));
-        assert_close(&host, &other);
-        time += step;
-    }
 }
 
 /// A jump over a tiny step has a slope that leads nowhere: the input is held, and the late one where it was.

@@ -203,24 +203,29 @@ fn a_record_that_cannot_be_followed_is_refused() {
     host.write("broken.csv", "t,a\n0,1\n0.1,root:x:0\n0.2,3\n");
     host.write("strong.csv", "t (s),a\n0,1\n1,-6000\n");
     host.write("late.csv", "t/s,a\n0.5,1\n1,0\n");
+    fs::create_dir(host.resources.path().join("folder.csv")).unwrap();
     let begins = "record_v: the vertical component \"late\" begins at 0.5 s and \"strong\" at 0.0 s";
-    for (record, scale, record_v, message) in [
+    for (record, record_v, message) in [
+        ("broken.csv", "", &*format!("{folder}/broken.csv, line 3: the acceleration \"root:x:0\" is not a number")),
+        ("strong.csv", "", "the record, as it is scaled: a_g = 12000 m/s2 is out of range: it must lie between"),
         (
-            "broken.csv",
-            2.0,
             "",
-            &format!("{folder}/broken.csv, line 3: the acceleration \"root:x:0\" is not a number")[..],
+            "up.csv",
+            &format!("record_v = \"up.csv\" is not in {folder}; a path on disk needs a separator: ./up.csv"),
         ),
-        ("strong.csv", 2.0, "", "the record, as it is scaled: a_g = 12000 m/s2 is out of range: it must lie between"),
-        ("strong.csv", 1.0, "up.csv", "record_v = \"up.csv\" is not in "),
-        ("strong.csv", 1.0, "late.csv", begins),
+        ("strong.csv", "late.csv", begins),
+        ("..", "", &format!("record: {folder}/.. is not a file")),
+        ("folder.csv", "", &format!("record: {folder}/folder.csv is not a file")),
+        ("file:a.csv", "", "record = \"file:a.csv\" is not a file URI of this machine, such as file:///tmp/record.A"),
+        ("./absent.AT2", "", "record: the record ./absent.AT2 cannot be read: No such file or directory (os error"),
     ] {
-        assert_eq!((host.set_record(record), host.set(&[("record_scale", scale)])), (OK, OK));
+        assert_eq!((host.set_record(record), host.set(&[("record_scale", 2.0)])), (OK, OK));
         assert_eq!(host.set_text("record_v", record_v), OK);
         host.assert_refused(|| host.exit(), ERROR, message);
         host.assert_refused(|| host.try_get(&["a_ground"]), Err(ERROR), message);
-        assert_eq!((host.get("record_scale"), host.record().as_str()), (scale, record));
+        assert_eq!((host.get("record_scale"), host.record().as_str()), (2.0, record));
     }
+    assert_eq!(host.set_record("strong.csv"), OK);
     assert_eq!((host.set_text("record_v", ""), host.set(&[("record_scale", -1.0)]), host.exit()), (OK, OK, OK));
     assert_eq!((host.get("a_ground"), host.get("record_duration")), (-1.0, 1.0));
 }

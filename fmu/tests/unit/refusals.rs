@@ -64,6 +64,10 @@ const STEPPING: &[Refused] = &[
     ("detail is fixed once the simulation has started", |h| h.set_integer("detail", 2)),
     ("order = 2 for theta is out of range: only derivatives of order 1 exist", |h| h.rate("theta", 2).unwrap_err()),
     ("phase has no derivative: only continuous real outputs have", |h| h.rate("phase", 1).unwrap_err()),
+    ("phase has no derivative: only continuous real outputs have", |h| derive(h, "phase", 1.0)),
+    ("F_t has no derivative: only continuous real outputs have", |h| derive(h, "F_t", 1.0)),
+    ("theta_max has no derivative: only continuous real outputs have", |h| derive(h, "theta_max", 1.0)),
+    ("the derivative of a_g, NaN, is out of range: it must be finite", |h| derive(h, "a_t", f64::NAN)),
     ("a_g has no derivative: only continuous real outputs have", |h| h.rate("a_g", 1).unwrap_err()),
     ("chi has no derivative: only continuous real outputs have", |h| h.rate("chi", 1).unwrap_err()),
     ("I_v has no derivative: only continuous real outputs have", |h| h.rate("I_v", 1).unwrap_err()),
@@ -138,6 +142,11 @@ fn initialize(host: &Host, tolerance: Option<f64>, start: f64, stop: Option<f64>
 
 fn get(host: &Host, names: &[&str]) -> c_int {
     host.try_get(names).unwrap_err()
+}
+
+/// The status of a derivative along a_g.
+fn derive(host: &Host, of: &str, change: f64) -> c_int {
+    host.derive(&[of], &[("a_g", change)]).unwrap_err()
 }
 
 #[test]

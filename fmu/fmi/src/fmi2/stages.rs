@@ -15,43 +15,28 @@ tables! {
                                             m ContinuousTimeMode,
                                               x Terminated,
                                                 x Error]
-    SetDebugLogging               [x x x x x x x x]
-    SetupExperiment               [x - - - - - - -]
-    EnterInitializationMode       [x - - - - - - -]
+    SetDebugLogging Reset GetFMUstate SetFMUstate FreeFMUstate SerializedFMUstateSize SerializeFMUstate
+    DeSerializeFMUstate           [x x x x x x x x]
+    SetupExperiment EnterInitializationMode
+                                  [x - - - - - - -]
     ExitInitializationMode        [- x - - - - - -]
     Terminate                     [- - x x x x - -]
-    Reset                         [x x x x x x x x]
-    GetReal                       [- x x x x x x x]
-    GetInteger                    [- x x x x x x x]
-    GetBoolean                    [- x x x x x x x]
-    GetString                     [- x x x x x x x]
+    GetReal GetInteger GetBoolean GetString GetDirectionalDerivative
+                                  [- x x x x x x x]
     SetReal                       [x x x - x x - -]
-    SetInteger                    [x x x - x - - -]
-    SetBoolean                    [x x x - x - - -]
-    SetString                     [x x x - x - - -]
-    GetFMUstate                   [x x x x x x x x]
-    SetFMUstate                   [x x x x x x x x]
-    FreeFMUstate                  [x x x x x x x x]
-    SerializedFMUstateSize        [x x x x x x x x]
-    SerializeFMUstate             [x x x x x x x x]
-    DeSerializeFMUstate           [x x x x x x x x]
-    GetDirectionalDerivative      [- x x x x x x x]
+    SetInteger SetBoolean SetString
+                                  [x x x - x - - -]
     SetRealInputDerivatives       [s s x - - - - -]
     GetRealOutputDerivatives      [- - x x - - s s]
     DoStep                        [- - x - - - - -]
-    GetStatus                     [- - x x - - s -]
-    GetRealStatus                 [- - x x - - s -]
-    GetIntegerStatus              [- - x x - - s -]
-    GetBooleanStatus              [- - x x - - s -]
-    GetStringStatus               [- - x x - - s -]
-    EnterEventMode                [- - - - x x - -]
-    NewDiscreteStates             [- - - - x - - -]
-    EnterContinuousTimeMode       [- - - - x - - -]
-    CompletedIntegratorStep       [- - - - - x - -]
-    SetTime                       [- - - - x x - -]
-    SetContinuousStates           [- - - - - x - -]
-    GetDerivatives                [- m - - x x m m]
-    GetEventIndicators            [- m - - x x m m]
-    GetContinuousStates           [- m - - x x m m]
+    GetStatus GetRealStatus GetIntegerStatus GetBooleanStatus GetStringStatus
+                                  [- - x x - - s -]
+    EnterEventMode SetTime        [- - - - x x - -]
+    NewDiscreteStates EnterContinuousTimeMode
+                                  [- - - - x - - -]
+    CompletedIntegratorStep SetContinuousStates
+                                  [- - - - - x - -]
+    GetDerivatives GetEventIndicators GetContinuousStates
+                                  [- m - - x x m m]
     GetNominalsOfContinuousStates [m m - - x x m m]
 }

@@ -17,46 +17,29 @@ tables! {
                                                 m ContinuousTimeMode,
                                                   x Terminated,
                                                     x Error]
-    SetDebugLogging               [x x x x x x x x x x]
+    SetDebugLogging GetNumberOfEventIndicators GetNumberOfContinuousStates
+                                  [x x x x x x x x x x]
     EnterInitializationMode       [x - - - - - - - - -]
     ExitInitializationMode        [- x - - - - - - - -]
     EnterEventMode                [- - x - - - - x - -]
     Terminate                     [- - x - - x x x - -]
-    Reset                         [x x x - - x x x x x]
-    GetFloat64                    [x x x - x x x x x x]
-    GetInt32                      [x x x - x x x x x x]
-    GetInt64                      [x x x - x x x x x x]
-    GetBoolean                    [x x x - x x x x x x]
-    GetString                     [x x x - x x x x x x]
-    GetFloat32 GetInt8 GetUInt8 GetInt16 GetUInt16 GetUInt32 GetUInt64 GetBinary GetClock
-                                  [x x x - x x x x x x]
+    Reset GetFMUState SetFMUState FreeFMUState SerializedFMUStateSize SerializeFMUState DeserializeFMUState
+                                  [x x x - - x x x x x]
+    GetFloat64 GetInt32 GetInt64 GetBoolean GetString GetFloat32 GetInt8 GetUInt8 GetInt16 GetUInt16 GetUInt32
+    GetUInt64 GetBinary GetClock  [x x x - x x x x x x]
     SetFloat64                    [x x x x - - x x - -]
-    SetInt32                      [x x x - - - x - - -]
-    SetInt64                      [x x x - - - x - - -]
-    SetBoolean                    [x x x - - - x - - -]
-    SetString                     [x x x - - - x - - -]
-    SetFloat32 SetInt8 SetUInt8 SetInt16 SetUInt16 SetUInt32 SetUInt64 SetBinary SetClock
-                                  [x x x - - - x - - -]
-    GetFMUState                   [x x x - - x x x x x]
-    SetFMUState                   [x x x - - x x x x x]
-    FreeFMUState                  [x x x - - x x x x x]
-    SerializedFMUStateSize        [x x x - - x x x x x]
-    SerializeFMUState             [x x x - - x x x x x]
-    DeserializeFMUState           [x x x - - x x x x x]
+    SetInt32 SetInt64 SetBoolean SetString SetFloat32 SetInt8 SetUInt8 SetInt16 SetUInt16 SetUInt32 SetUInt64
+    SetBinary SetClock            [x x x - - - x - - -]
     GetDirectionalDerivative      [- x x - - x x x x x]
-    EvaluateDiscreteStates        [- - - - - - x - - -]
-    UpdateDiscreteStates          [- - - - - - x - - -]
+    EvaluateDiscreteStates UpdateDiscreteStates
+                                  [- - - - - - x - - -]
     EnterStepMode                 [- - - - - - s - - -]
     GetOutputDerivatives          [- - x - x x - - s s]
     DoStep                        [- - x - - - - - - -]
-    GetNumberOfEventIndicators    [x x x x x x x x x x]
-    GetNumberOfContinuousStates   [x x x x x x x x x x]
     EnterContinuousTimeMode       [- - - - - - m - - -]
-    CompletedIntegratorStep       [- - - - - - - x - -]
+    CompletedIntegratorStep SetContinuousStates
+                                  [- - - - - - - x - -]
     SetTime                       [- - - - - - m x - -]
-    SetContinuousStates           [- - - - - - - x - -]
-    GetContinuousStateDerivatives [- m - - - - m x m m]
-    GetEventIndicators            [- m - - - - m x m m]
-    GetContinuousStates           [- m - - - - m x m m]
-    GetNominalsOfContinuousStates [- m - - - - m x m m]
+    GetContinuousStateDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates
+                                  [- m - - - - m x m m]
 }
