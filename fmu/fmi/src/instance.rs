@@ -27,9 +27,9 @@ pub struct Instance {
     variables: Arc<[Variable]>,
     /// The value reference that the host has for the variable at position 0.
     first: u32,
-    /// The part of each variable that the calls of every step ask for.
-    kinds: Vec<Kind>,
-    /// The range of each input; no number is in that of other variables.
+    /// Whether each variable is a real number.
+    are_real: Vec<bool>,
+    /// The range of each real input; no number is in that of other variables.
     ranges: Vec<(f64, f64)>,
     pub(crate) interface: Interface,
     pub(crate) stage: Stage,
@@ -67,26 +67,6 @@ struct EventHandling {
     is_warned: bool,
 }
 
-/// The kind of a variable for the calls of every step.
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    /// A real number that the host sets while time goes on.
-    Input,
-    /// Another real number.
-    Real,
-    Other,
-}
-
-impl From<&Variable> for Kind {
-    fn from(variable: &Variable) -> Kind {
-        match (variable.data_type, variable.causality) {
-            (DataType::Real { .. }, Causality::Input) => Kind::Input,
-            (DataType::Real { .. }, _) => Kind::Real,
-            _ => Kind::Other,
-        }
-    }
-}
-
 fn range(variable: &Variable) -> (f64, f64) {
     let of_input = variable.data_type.limits().filter(|_| variable.causality == Causality::Input);
     of_input.unwrap_or((f64::INFINITY, f64::NEG_INFINITY))
@@ -107,7 +87,7 @@ impl Instance {
         Instance {
             model,
             first,
-            kinds: variables.iter().map(Kind::from).collect(),
+            are_real: variables.iter().map(|variable| variable.data_type.limits().is_some()).collect(),
             ranges: variables.iter().map(range).collect(),
             variables,
             interface,
@@ -254,7 +234,7 @@ impl Instance {
     /// Reads real numbers.
     #[inline(always)]
     pub(crate) fn get_real(&mut self, references: &[u32]) -> Result<&[f64], Failure> {
-        let is_real = |reference: &u32| self.kinds.get(*reference as usize).is_some_and(|kind| *kind != Kind::Other);
+        let is_real = |reference: &u32| self.are_real.get(*reference as usize) == Some(&true);
         if let Some(wrong) = references.iter().find(|reference| !is_real(reference)) {
             return Err(self.not_real(*wrong));
         }
@@ -453,7 +433,7 @@ impl Instance {
         values: &[f64],
     ) -> Result<(), Failure> {
         for ((reference, &order), &value) in references.iter().zip(orders).zip(values) {
-            let is_input = self.kinds.get(*reference as usize) == Some(&Kind::Input);
+            let is_input = self.ranges.get(*reference as usize).is_some_and(|(min, max)| min <= max);
             if !(is_input && order == 1 && value.abs() <= f64::MAX) {
                 return Err(self.no_slope(*reference, order, value));
             }
