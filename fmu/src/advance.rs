@@ -2,8 +2,7 @@
 
 use crate::scene::Scene;
 use crate::setup::Setup;
-use rocking::engine::Moves;
-use rocking::engine::{AdvanceError, Progress};
+use rocking::engine::{AdvanceError, Moves, Progress};
 use rocking::run::fall::FallWatch;
 use rocking::run::validity::Validity;
 use rocking::{LinearLoad, Piece, Transition, Watch};

@@ -24,51 +24,43 @@ pub(crate) fn lateral_states(frame: &Structure) -> usize {
     frame.modes().len() + usize::from(frame.foundation().is_some())
 }
 
-/// Whether the state at a place is y of ground that gives, or its rate.
-fn is_y(structure: &Structure, place: usize) -> bool {
+/// The place in [`COMPONENTS`] of what the state at a place is, its number from 1, and whether it is y of ground that gives.
+fn kind(structure: &Structure, place: usize) -> (usize, usize, bool) {
     let n = lateral_states(structure);
-    place % n == structure.modes().len() && place < 2 * n
+    let kind = if place < 2 * n { place / n } else { place - 2 * n + 2 };
+    (kind, place % n + 1, kind < 2 && place % n == structure.modes().len())
 }
 
 /// The name of the state at a place.
 fn name(structure: &Structure, place: usize) -> String {
-    let n = lateral_states(structure);
-    match place {
-        place if structure.one().is_some() => COMPONENTS[place].to_owned(),
-        place if is_y(structure, place) => ["y", "y_dot"][place / n].to_owned(),
-        place if place < n => format!("q[{}]", place + 1),
-        place if place < 2 * n => format!("q_dot[{}]", place - n + 1),
-        place => COMPONENTS[place - 2 * n + 2].to_owned(),
+    match kind(structure, place) {
+        (kind, _, true) => ["y", "y_dot"][kind].to_owned(),
+        (kind @ 0..2, number, _) if structure.one().is_none() => format!("{}[{number}]", ["q", "q_dot"][kind]),
+        (kind, ..) => COMPONENTS[kind].to_owned(),
     }
 }
 
 /// The coordinates of the modes.
 pub(crate) fn coordinates(frame: &Structure) -> Vec<Row> {
-    let n = lateral_states(frame);
     let coordinate = |place: usize| {
-        let (of, unit) = (place % n + 1, ["m", "m/s"][place / n]);
-        let description = match place / n {
-            0 if is_y(frame, place) => "height of the middle of the base above the unloaded ground".into(),
-            _ if is_y(frame, place) => "velocity of the middle of the base".into(),
-            0 => format!("coordinate of mode {of}, scaled to a modal mass of 1 kg"),
-            _ => format!("velocity of mode {of}"),
+        let (unit, description) = match kind(frame, place) {
+            (0, _, true) => ("m", "height of the middle of the base above the unloaded ground".into()),
+            (_, _, true) => ("m/s", "velocity of the middle of the base".into()),
+            (0, mode, _) => ("m", format!("coordinate of mode {mode}, scaled to a modal mass of 1 kg")),
+            (_, mode, _) => ("m/s", format!("velocity of mode {mode}")),
         };
         let variable = Variable::real(Causality::Local, name(frame, place), unit, description);
         (variable.state(), Source::Coordinate(place))
     };
-    (0..2 * n).map(coordinate).collect()
+    (0..2 * lateral_states(frame)).map(coordinate).collect()
 }
 
 /// The derivatives of all states.
 pub(crate) fn state_rates(structure: &Structure) -> Vec<Row> {
     let (n, is_one) = (lateral_states(structure), structure.one().is_some());
     let rate = |place: usize| {
-        let (unit, is_velocity) = match place {
-            place if place < n => ("m/s", true),
-            place if place < 2 * n => ("m/s2", false),
-            place if place == 2 * n => ("rad/s", true),
-            _ => ("rad/s2", false),
-        };
+        let (unit, is_velocity) =
+            [("m/s", true), ("m/s2", false), ("rad/s", true), ("rad/s2", false)][kind(structure, place).0];
         let of = if is_velocity { Vec::new() } else { ACCELERATION.to_vec() };
         let own = is_velocity.then(|| name(structure, if place < n { place + n } else { place + 1 }));
         let (name, by) = (name(structure, place), ", by the equations of the level of detail");

@@ -59,30 +59,3 @@ fn describe<Q: Moves>(is_one_mass: bool, transition: &Transition<Q>) -> String {
         of_one.unwrap_or_default()
     )
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use fmi_unit::logger::Status;
-    use rocking::State;
-    use std::cell::RefCell;
-    use std::rc::Rc;
-
-    /// A result that is not the model's alone is said to be so, even if no events are asked for.
-    #[test]
-    fn contact_held_by_force_is_a_warning() {
-        let sent = Rc::new(RefCell::new(Vec::new()));
-        let logger = Logger::new(Box::new({
-            let sent = Rc::clone(&sent);
-            move |status, category, text| sent.borrow_mut().push((status, category.to_owned(), text.to_owned()))
-        }));
-        let before = State { u: 0.001, u_dot: 0.25, theta: 0.0, theta_dot: -0.5 };
-        let after = State { u_dot: -0.75, theta_dot: 0.0, ..before };
-        log(&logger, true, &Transition { time: 1.5, kind: TransitionKind::Landing, before, after });
-        log(&logger, true, &Transition { time: 2.5, kind: TransitionKind::Settling, before, after });
-        let text = "t = 2.5 s: landing in full contact; u = 0.001 m, u_dot = -0.75 m/s (before: 0.25), theta_dot = 0 \
-                     rad/s (before: -0.5); too many transitions within one vibration period: contact is held for the \
-                     rest of it";
-        assert_eq!(*sent.borrow(), [(Status::Warning, c"logStatusWarning".to_owned(), text.to_owned())]);
-    }
-}

@@ -7,8 +7,7 @@ use crate::floor_variables::lateral_states;
 use crate::ground::{Digest, GroundRecord};
 use crate::resources::Contents;
 use crate::setup::Setup;
-use rocking::engine::Moves;
-use rocking::engine::Settings;
+use rocking::engine::{Moves, Settings};
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::fall::Falling;
 use rocking::run::ground_motion::{Elapsed, Placement};
@@ -185,9 +184,7 @@ impl<Q: Moves> Scene<Q> {
         drop(watch);
         self.validity = *validity.found();
     }
-}
 
-impl<Q: Moves> Scene<Q> {
     /// The peaks since the start, of a structure that has overturned those before it fell; before the first step, the
     /// values under `load`.
     pub fn peaks(&self, load: Load<Q>) -> Cow<'_, Falling> {

@@ -72,13 +72,8 @@ impl<'a, Q: Moves> Shown<'a, Q> {
             Source::Restraint(of) => of(&scene.engine.restraints()),
             Source::Dissipator(of) => of(&scene.engine.motion().dissipators),
             Source::Impulse(of) => of(&scene.engine.motion().impulse),
-            Source::Ground(is_vertical) => {
-                if is_vertical {
-                    load.a_v
-                } else {
-                    load.a_g
-                }
-            }
+            Source::Ground(true) => load.a_v,
+            Source::Ground(false) => load.a_g,
             Source::Overturning => scene.overturned_at().unwrap_or(setup.start_time),
             Source::Time => scene.engine.motion().time,
             Source::RecordDuration => scene.record_duration(),

@@ -14,8 +14,7 @@ use crate::{BUILD, guid};
 use fmi_unit::snapshot::write_state;
 use fmi_unit::variables::state_references;
 use fmi_unit::{Completed, Experiment, Failure, Interface, Logger, Model, Progress, Step, Update, Value, Variable};
-use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::engine::Moves;
+use rocking::engine::{DEFAULT_TOLERANCE, Moves};
 use rocking::run::fall::Falling;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::validity::{Findings, of_structure};
@@ -125,11 +124,11 @@ impl<Q: Moves> Unit<Q> {
         Refusal::InputRunsOut(Failure::OutOfRange { name, value, unit, min, max, description }).into()
     }
 
-    /// Whether one of `values` moves the ground vertically.
+    /// Lets the ground move vertically from now on if one of `values` is not 0 and moves it so.
     #[inline]
-    fn is_vertical(&self, references: &[u32], values: &[f64]) -> bool {
+    fn admit(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
         let moves = |(reference, value): (&u32, &f64)| *value != 0.0 && self.inputs.is_vertical(*reference as usize);
-        references.iter().zip(values).any(moves)
+        if references.iter().zip(values).any(moves) { self.admit_vertical() } else { Ok(()) }
     }
 }
 
@@ -232,26 +231,20 @@ impl<Q: Moves> Model for Unit<Q> {
 
     #[inline(always)]
     fn set_inputs(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
-        if self.is_vertical(references, values) {
-            self.admit_vertical()?;
-        }
+        self.admit(references, values)?;
         references.iter().zip(values).for_each(|(reference, value)| self.inputs.set(*reference as usize, *value));
         Ok(())
     }
 
     #[inline(always)]
     fn set_slopes(&mut self, references: &[u32], slopes: &[f64]) -> Result<(), Failure> {
-        if self.is_vertical(references, slopes) {
-            self.admit_vertical()?;
-        }
+        self.admit(references, slopes)?;
         references.iter().zip(slopes).for_each(|(reference, slope)| self.inputs.set_slope(*reference as usize, *slope));
         Ok(())
     }
 
     fn lead(&mut self, reference: u32, value: f64, step: f64) -> Result<(), Failure> {
-        if self.is_vertical(&[reference], &[value]) {
-            self.admit_vertical()?;
-        }
+        self.admit(&[reference], &[value])?;
         self.inputs.lead(reference as usize, value, step);
         Ok(())
     }

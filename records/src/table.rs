@@ -506,18 +506,8 @@ mod tests {
     }
 
     #[test]
-    fn the_heading_decides_the_unit_and_must_not_be_contradicted() {
+    fn a_unit_that_is_given_overrides_the_heading() {
         let cm = Unit::CentimetrePerSecondSquared;
-        for (before, unit) in [
-            ("time (s),acc (cm/s2)\n", cm),
-            ("# peak in g: 0.3\nt,a (gal)\n", cm),
-            ("time,acc\ns,mm/s2\n", Unit::MillimetrePerSecondSquared),
-            ("Time (s) Acceleration (m/s^2)\n", Unit::MetrePerSecondSquared),
-        ] {
-            let text = format!("{before}0,1\n.5,2\n");
-            let source = read(&text, &AS_IT_IS).unwrap().1;
-            assert_eq!((source.unit, source.unit_from), (unit, UnitFrom::File), "{before}");
-        }
         let asked = Reading { unit: Some(Unit::G), ..AS_IT_IS };
         assert_eq!(read("t,a (north)\n0,1\n.5,2\n", &asked).unwrap().1.unit, Unit::G);
         for (heading, from) in

@@ -50,32 +50,6 @@ fn at_most(seconds: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rocking::run::Ending;
-    use rocking::{Parameters, Structure};
-    use std::path::Path;
-
-    /// Against the end of the run, of a structure that comes to rest after the record and of one that overturns on it.
-    #[test]
-    fn a_run_is_followed_to_its_end_by_the_samples_of_its_record() {
-        let structure = Structure::new(Parameters::MCMANUS).unwrap();
-        for (interval, scale, ending) in [(0.02, 0.4, Ending::AtRest), (1.0 / 240.0, 0.9, Ending::Overturned)] {
-            let line = |i: u32| {
-                let time = f64::from(i) * interval;
-                format!("{},{}\n", 3.7 + time, scale * (TAU * time / 0.5).sin() * f64::from(time < 0.5))
-            };
-            let text: String = (0..4000).map(line).collect();
-            let ground =
-                GroundRecord::from_bytes(Path::new("a.csv"), format!("t (s),a (g)\n{text}").as_bytes(), 9.81).unwrap();
-            let DefaultExperiment { stop_time, step_size, .. } = default_experiment(&structure, Some(&ground));
-            let record = ground.in_m_s2(9.81);
-            let finish = Run::new(structure.clone(), &record).follow(&mut ()).unwrap();
-            assert_eq!(finish.ending, ending);
-            assert!((step_size - interval).abs() < 1e-8 * interval, "{step_size}");
-            let steps = stop_time / step_size;
-            assert!((steps - steps.round()).abs() < 1e-3, "{stop_time} {step_size}");
-            assert!((0.0..interval).contains(&(stop_time - (finish.motion.time - 3.7))), "{stop_time} {finish:?}");
-        }
-    }
 
     #[test]
     fn numbers_are_round() {

@@ -154,22 +154,15 @@ impl Library {
 mod tests {
     use super::*;
 
-    /// A header alone.
+    /// The header alone of a shared library of 64 bits, little-endian.
     fn elf(machine: u8) -> Vec<u8> {
-        let mut header = [0; 64];
-        header[..7].copy_from_slice(b"\x7fELF\x02\x01\x01"); // 64 bits, little-endian
-        header[16] = 3; // shared
-        header[18] = machine;
-        header[20] = 1;
-        header[52] = 64;
-        header.into()
+        let (start, shared) = (b"\x7fELF\x02\x01\x01".as_slice(), [3, 0, machine, 0, 1]);
+        [start, &[0; 9], &shared, &[0; 31], &[64], &[0; 11]].concat()
     }
 
     fn macho(cpu: u8) -> Vec<u8> {
-        let mut header = [0; 32];
-        header[..8].copy_from_slice(&[0xcf, 0xfa, 0xed, 0xfe, cpu, 0, 0, 1]);
-        header[12] = 6; // dylib
-        header.into()
+        let (start, dylib) = ([0xcf, 0xfa, 0xed, 0xfe, cpu, 0, 0, 1], [0, 0, 0, 0, 6]);
+        [start.as_slice(), &dylib, &[0; 19]].concat()
     }
 
     /// Both architectures behind one header, which is big-endian.

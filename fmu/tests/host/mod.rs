@@ -179,23 +179,25 @@ fn done<T>(status: c_int, value: T) -> Result<T, c_int> {
     if status == OK { Ok(value) } else { Err(status) }
 }
 
-/// Methods for functions without arguments.
-macro_rules! without_arguments {
-    ($($method:ident: $function:ident)*) => {
+/// Methods for functions of which nothing but their names differs between the versions.
+macro_rules! alike {
+    ($($method:ident($($argument:ident: $type:ty)?): $two:ident $three:ident)*) => {
         impl Host {
-            $(pub fn $method(&self) -> c_int {
-                call!(self, $function())
+            $(pub fn $method(&self $(, $argument: $type)?) -> c_int {
+                call!(self, $two($($argument)?), $three($($argument)?))
             })*
         }
     };
 }
 
-without_arguments! {
-    exit: ExitInitializationMode
-    terminate: Terminate
-    reset: Reset
-    enter_event_mode: EnterEventMode
-    go_on: EnterContinuousTimeMode
+alike! {
+    exit(): ExitInitializationMode ExitInitializationMode
+    terminate(): Terminate Terminate
+    reset(): Reset Reset
+    enter_event_mode(): EnterEventMode EnterEventMode
+    go_on(): EnterContinuousTimeMode EnterContinuousTimeMode
+    set_time(time: f64): SetTime SetTime
+    go_back(state: *mut c_void): SetFMUstate SetFMUState
 }
 
 impl Host {
@@ -435,10 +437,6 @@ impl Host {
         (status, flags, reached)
     }
 
-    pub fn set_time(&self, time: f64) -> c_int {
-        call!(self, SetTime(time))
-    }
-
     pub fn set_states(&self, states: &[f64]) -> c_int {
         call!(self, SetContinuousStates(states.as_ptr(), states.len()))
     }
@@ -527,10 +525,6 @@ impl Host {
 
     pub fn keep(&self) -> *mut c_void {
         self.try_keep(ptr::null_mut()).unwrap()
-    }
-
-    pub fn go_back(&self, state: *mut c_void) -> c_int {
-        call!(self, SetFMUstate(state), SetFMUState(state))
     }
 
     pub fn free_state(&self, mut state: *mut c_void) -> c_int {

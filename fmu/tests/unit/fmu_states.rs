@@ -4,8 +4,7 @@ use crate::host::*;
 use crate::records::at2;
 use FlexibleRocking::BUILD;
 use FlexibleRocking::fmi2;
-use std::ffi::c_void;
-use std::ptr::{null_mut, without_provenance_mut};
+use std::ptr::null_mut;
 
 const OUTPUTS: [&str; 12] = [
     "theta",
@@ -116,26 +115,17 @@ fn a_state_can_be_overwritten_and_outlives_a_reset() {
     host.assert_refused(|| host.step(0.0, 2.0), ERROR, "the step would end at t = 2 s, past stopTime = 1 s");
 }
 
+/// Freed states and what is none are among the hostile calls.
 #[test]
-fn a_state_that_is_not_the_instances_own_is_refused_everywhere() {
-    let host = rocking();
-    let other = Host::new();
-    let freed = host.keep();
-    assert_eq!(host.free_state(freed), OK);
-    let _reuses_its_memory = host.keep();
-    let local = 0_u64;
-    for state in [freed, other.keep(), (&raw const local).cast_mut().cast::<c_void>(), without_provenance_mut(1)] {
-        let message = format!(
-            "fmi2SetFMUstate: FMUstate {:#x} is not one that this instance has handed out and not freed",
-            state.addr()
-        );
-        host.assert_refused(|| host.go_back(state), ERROR, &message);
-        let refused = [host.try_keep(state).is_err(), host.size(state).is_err(), host.serialize(state, 300).is_err()];
-        assert_eq!((refused, host.free_state(state)), ([true; 3], ERROR));
-    }
+fn a_state_of_another_instance_is_refused_everywhere() {
+    let (host, other) = (rocking(), Host::new());
+    let state = other.keep();
+    let message = format!("fmi2SetFMUstate: FMUstate {:#x} is not one that this instance has handed", state.addr());
+    host.assert_refused(|| host.go_back(state), ERROR, &message);
+    let refused = [host.try_keep(state).is_err(), host.size(state).is_err(), host.serialize(state, 300).is_err()];
+    assert_eq!((refused, host.free_state(state)), ([true; 3], ERROR));
     assert_eq!(host.free_state(null_mut()), OK);
     assert_eq!(unsafe { fmi2::FreeFMUstate(host.component, null_mut()) }, OK);
-    assert_eq!(host.go_back(null_mut()), ERROR);
 }
 
 #[test]

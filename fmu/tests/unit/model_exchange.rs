@@ -91,12 +91,6 @@ fn no_indicator_is_zero_where_integration_starts() {
         assert_eq!(host.integer("phase"), phase);
         assert_relative_eq!(by_theta(host), sign * 2.0 * host.get("B"), max_relative = 1e-6);
     }
-    assert_eq!(host.go_on(), OK);
-    for i in 0..2000 {
-        host.integrate(f64::from(i) * 1e-3, 1e-3);
-        assert!(host.indicators().unwrap().iter().all(|indicator| *indicator > 0.0), "at step {i}");
-    }
-    assert!(host.integer("transitions") > 3);
 }
 
 #[test]
@@ -158,6 +152,12 @@ fn the_end_of_held_contact_is_foreseen() {
         (host.integer("phase"), next)
     };
     let end = update(0.9 * period, 0.0).1.unwrap();
+    let held = "; too many transitions within one vibration period: contact is held for the rest of it";
+    let warnings: Vec<_> = host.log.take().into_iter().filter(|message| message.text.ends_with(held)).collect();
+    assert!(warnings.len() == 1 && warnings[0].status == WARNING, "a warning even if no events are asked for");
+    assert!(
+        warnings[0].text.contains(" s: landing in full contact; u = 0 m, u_dot = 0 m/s (before: 0), theta_dot = 0 ")
+    );
     let (phase, foreseen) = update(0.95 * period, 9.0);
     assert_eq!(phase, PHASE_IN_CONTACT);
     assert_relative_eq!(foreseen.unwrap(), end, max_relative = 1e-14);

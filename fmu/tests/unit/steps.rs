@@ -58,23 +58,6 @@ fn the_slope_holds_for_one_step_and_its_end_value_from_then_on() {
 }
 
 #[test]
-fn initial_values_tolerance_and_start_time_reach_the_engine() {
-    let host = Host::new();
-    let initial = State { u: 1e-4, u_dot: -0.02, theta: -0.03, theta_dot: 0.1 };
-    let start_values = [("u_0", initial.u), ("u_dot_0", initial.u_dot), ("theta_0", initial.theta)];
-    assert_eq!((host.set(&start_values), host.setup(Some(1e-4), 5.0, Some(7.0)), host.enter()), (OK, OK, OK));
-    assert_eq!((host.set(&[("theta_dot_0", initial.theta_dot)]), host.exit()), (OK, OK));
-    let mut loose = engine(initial, 5.0, 1e-4);
-    assert_same(&host, &loose);
-    assert_eq!(host.step(5.0, 2.0), OK);
-    advance(&mut loose, 2.0, 0.0, 0.0);
-    assert_same(&host, &loose);
-    let mut default = engine(initial, 5.0, DEFAULT_TOLERANCE);
-    advance(&mut default, 2.0, 0.0, 0.0);
-    assert_ne!(host.get("theta"), default.motion().state.theta, "the tolerance makes no difference");
-}
-
-#[test]
 fn rates_are_those_of_the_equations_of_motion_under_the_present_input() {
     let host = Host::started(&[("theta_0", 0.05)]);
     assert_eq!((host.set(&[("a_g", 1.0)]), host.set_slope("a_g", 1, 20.0)), (OK, OK));

@@ -178,26 +178,19 @@ impl Version {
 /// The tests of the model that the function `$subject` makes.
 macro_rules! hostile_calls {
     ($subject:ident) => {
-        #[test]
-        fn no_call_of_fmi_2_co_simulation_does_harm() {
-            hostile::no_call_does_harm(&$subject(), 2, false);
-        }
-
-        #[test]
-        fn no_call_of_fmi_2_model_exchange_does_harm() {
-            hostile::no_call_does_harm(&$subject(), 2, true);
-        }
-
-        #[test]
-        fn no_call_of_fmi_3_co_simulation_does_harm() {
-            hostile::no_call_does_harm(&$subject(), 3, false);
-        }
-
-        #[test]
-        fn no_call_of_fmi_3_model_exchange_does_harm() {
-            hostile::no_call_does_harm(&$subject(), 3, true);
+        hostile_calls! { $subject:
+            no_call_of_fmi_2_co_simulation_does_harm(2, false)
+            no_call_of_fmi_2_model_exchange_does_harm(2, true)
+            no_call_of_fmi_3_co_simulation_does_harm(3, false)
+            no_call_of_fmi_3_model_exchange_does_harm(3, true)
         }
     };
+    ($subject:ident: $($name:ident($version:literal, $is_model:literal))*) => { $(
+        #[test]
+        fn $name() {
+            hostile::no_call_does_harm(&$subject(), $version, $is_model);
+        }
+    )* };
 }
 pub(crate) use hostile_calls;
 
