@@ -475,7 +475,7 @@ mod tests {
     fn the_reactions_are_those_of_the_masses() {
         let frame = three_storeys();
         let &Base { m0, B, m_t, g, .. } = frame.base();
-        let [u, u_dot, u_ddot] = [[0.02, -0.05, 0.11], [0.4, 0.7, -0.3], [3.0, -7.0, 11.0]].map(|of| Vector3::from(of));
+        let [u, u_dot, u_ddot] = [[0.02, -0.05, 0.11], [0.4, 0.7, -0.3], [3.0, -7.0, 11.0]].map(Vector3::from);
         let load = Load { a_g: 3.0, F_t: Modes::each(&frame, |_, _| 0.0), a_v: -1.5 };
         for side in [Side::Right, Side::Left] {
             let (s, theta, theta_dot, theta_ddot) = (side.sign(), side.sign() * 0.2, 0.6, -1.7);
