@@ -364,8 +364,7 @@ impl Structure {
 
     /// `structure` on the ground of this one.
     fn on_own_ground(&self, structure: Structure) -> Result<Structure, StructureError> {
-        let Some(Foundation { points, .. }) = self.foundation() else { return Ok(structure) };
-        structure.on(&Ground::of_points(points))
+        self.foundation().map_or(Ok(structure.clone()), |Foundation { ground, .. }| structure.on(ground))
     }
 
     /// What carries the base on ground that gives; none on rigid ground.

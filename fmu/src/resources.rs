@@ -1,7 +1,6 @@
 //! The content of the archive's folder `resources`, found through the URI that the host gives: the numbers of the structure, and
 //! the list of the records that were packed.
 
-use rocking::structure::ground::Point;
 use rocking::structure::parameters::ParameterError;
 use rocking::structure::quantity::Units;
 use rocking::{Body, Floor, Ground, Mode, Modes, Structure, StructureError};
@@ -48,20 +47,20 @@ pub struct Contents {
 pub fn frame_bytes(frame: &Structure) -> Vec<u8> {
     let floor = |of: &Floor| (of.mass, of.height, of.shape.numbers().to_vec());
     let floors = Vec::from_iter(frame.floors().iter().map(floor));
-    let points = frame.foundation().map(|of| &of.points[..]).unwrap_or_default();
-    let numbers = (frame.units(), frame.body(), frame.modes(), floors, points);
+    let ground = frame.foundation().map(|of| &of.ground);
+    let numbers = (frame.units(), frame.body(), frame.modes(), floors, ground);
     postcard::to_stdvec(&numbers).expect("numbers can always be written")
 }
 
 /// The structure of these [`frame_bytes`].
 pub fn frame(bytes: &[u8]) -> Result<Structure, FrameError> {
-    type Numbers = (Units, Body, Vec<Mode>, Vec<(f64, f64, Vec<f64>)>, Vec<Point>);
+    type Numbers = (Units, Body, Vec<Mode>, Vec<(f64, f64, Vec<f64>)>, Option<Ground>);
     let numbers = postcard::from_bytes::<Numbers>(bytes);
-    let (units, body, modes, floors, points) = numbers.map_err(|_| FrameError::NoNumbers)?;
+    let (units, body, modes, floors, ground) = numbers.map_err(|_| FrameError::NoNumbers)?;
     let floor =
         |(mass, height, shape): &(f64, f64, Vec<f64>)| Floor { mass: *mass, height: *height, shape: Modes::new(shape) };
     let frame = Structure::of_body(body, &modes, &Vec::from_iter(floors.iter().map(floor)))?.measured_in(units);
-    if points.is_empty() { Ok(frame) } else { Ok(frame.on(&Ground::of_points(&points))?) }
+    Ok(ground.map_or(Ok(frame.clone()), |ground| frame.on(&ground))?)
 }
 
 /// Why bytes are no structure of many masses.

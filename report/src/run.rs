@@ -345,10 +345,7 @@ fn results<Q: Runs>(structure: &Structure, found: &fall::Found<Q>, transitions: 
         peaks: [NamedPeak::new("a_g", "m/s2", ground)].into_iter().chain(NamedPeak::all(structure, peaks)).collect(),
         taken: (c_d > 0.0 || k_d > 0.0).then_some(taken),
         first_uplift: first(|kind| matches!(kind, TransitionKind::Uplift(_) | TransitionKind::Release(_))),
-        first_impact: first(|kind| {
-            use TransitionKind::{Impact, Landing, Settling, Touch};
-            matches!(kind, Impact(_) | Landing | Settling | Touch(_))
-        }),
+        first_impact: first(|kind| kind.is_impact()),
         transitions: motion.transitions,
         work: motion.work,
         events: transitions.iter().map(event).collect(),

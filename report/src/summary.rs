@@ -69,7 +69,8 @@ impl Run {
         }
         let first = |time: Option<f64>| time.map_or("none".into(), |time| format!("at {} s", instant(time)));
         writeln!(out, "first uplift   {}", first(found.first_uplift))?;
-        writeln!(out, "first impact   {}", first(found.first_impact))?;
+        let impact = if self.structure.foundation().is_some() { "touch " } else { "impact" };
+        writeln!(out, "first {impact}   {}", first(found.first_impact))?;
         writeln!(out, "transitions    {}", found.transitions)?;
         let overturned = match (found.phase, found.ending) {
             (Phase::Overturned(Side::Left), _) => format!("to the left at {} s", instant(found.end)),

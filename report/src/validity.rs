@@ -57,7 +57,9 @@ impl Run {
         let is_level = found.worst[WEIGHT].value == 1.0;
         let shown = (0..ASSUMPTIONS.len()).filter(|which| *which != WEIGHT || !is_level);
         lines.extend(shown.map(|which| line(which, found, limits)));
-        lines.push(format!("  {:<34} {}", "energy gained at", of_impacts(found.gains, found.impacts)));
+        if self.structure.foundation().is_none() {
+            lines.push(format!("  {:<34} {}", "energy gained at", of_impacts(found.gains, found.impacts)));
+        }
         let held = match found.settlings {
             0 => "0".to_owned(),
             bursts => format!(

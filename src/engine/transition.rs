@@ -34,6 +34,12 @@ pub enum TransitionKind {
 }
 
 impl TransitionKind {
+    /// Whether the base comes down: an impact, a landing, or a touch of the ground.
+    pub const fn is_impact(self) -> bool {
+        use TransitionKind::{Impact, Landing, Settling, Touch};
+        matches!(self, Impact(_) | Landing | Settling | Touch(_))
+    }
+
     /// Name of the kind.
     pub const fn name(self) -> &'static str {
         match self {

@@ -122,6 +122,9 @@ impl Detail {
         is_vertical: bool,
     ) -> Result<Box<dyn Level<Modes>>, InitialStateError> {
         let structure = match self {
+            Detail::Modal if structure.foundation().is_some() => {
+                return Err(InitialStateError::OnGround(self.name()));
+            }
             Detail::Modal => return Err(InitialStateError::OneMass(self.name())),
             Detail::Rigid => structure.without_modes(),
             _ => structure,

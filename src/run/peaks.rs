@@ -19,7 +19,7 @@ use crate::mechanics::restraint::{Angles, Restraint, Restraints};
 use crate::series::extremes;
 use crate::{Base, Detail, Foundation, Output, State, Structure, Ties};
 #[cfg(feature = "lanes")]
-use crate::{Engine, Phase, Transition, TransitionKind};
+use crate::{Engine, Phase, Transition};
 use serde::{Deserialize, Serialize};
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
@@ -405,7 +405,6 @@ impl<Q: Moves> Watch<Q> for ThetaWatch<'_> {
     }
 
     fn transition(&mut self, transition: &Transition<Q>) {
-        use TransitionKind::{Impact, Landing, Settling};
-        self.impacts += u64::from(matches!(transition.kind, Impact(_) | Landing | Settling));
+        self.impacts += u64::from(transition.kind.is_impact());
     }
 }

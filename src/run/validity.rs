@@ -36,7 +36,7 @@ use crate::series::extremes;
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
 use crate::{
-    Base, Detail, Foundation, Impulse, Modes, Motion, OneMass, Output, Parameters, Phase, Ramp, Reactions, Side,
+    Base, Detail, Foundation, Impulse, Mode, Modes, Motion, OneMass, Output, Parameters, Phase, Ramp, Reactions, Side,
     Structure, Transition, TransitionKind,
 };
 pub use assumptions::{
@@ -612,21 +612,23 @@ fn of_many(frame: &Structure, detail: Detail) -> Vec<String> {
 /// The warnings that follow from ground that gives.
 fn on_ground(frame: &Structure, foundation: &Foundation) -> Vec<String> {
     let (&Base { m_t, B, r, .. }, K_z) = (frame.base(), foundation.sum(0));
-    let (f_v, settled) = ((K_z / m_t).sqrt() / TAU, -foundation.rest);
-    let highest = frame.modes().iter().map(|mode| mode.omega() / TAU).fold(0.0, f64::max);
+    let (omega_v, settled) = ((K_z / m_t).sqrt(), -foundation.rest);
+    let zeta_v = foundation.points.iter().map(|point| point.c).sum::<f64>() / (2.0 * m_t * omega_v);
+    let highest = frame.modes().iter().map(Mode::omega).fold(0.0, f64::max);
     let mut warnings =
-        Vec::from_iter(r.map(|r| format!("r = {} is not used on ground that gives: nothing impacts", short(r))));
+        Vec::from_iter(r.map(|r| format!("r = {} is not used on ground that gives: no impact needs it", short(r))));
     if settled > SETTLED * B {
         warnings.push(format!(
             "the base settles by {} m under its weight, more than B/50: are k_v in N/m and masses in kg?",
             short(settled)
         ));
     }
-    if highest > 0.0 && f_v > STIFF * highest {
+    // beyond ζ_v = 1/2 the dashpots are faster than the springs
+    if highest > 0.0 && omega_v * f64::max(1.0, 2.0 * zeta_v) > STIFF * highest {
+        let [f_v, zeta_v, highest] = [omega_v / TAU, zeta_v, highest / TAU].map(short);
         warnings.push(format!(
-            "f_v = {} Hz is more than 20 times the highest frequency of the structure, {} Hz: a run takes many steps",
-            short(f_v),
-            short(highest)
+            "f_v = {f_v} Hz with zeta_v = {zeta_v} is more than 20 times as fast as the highest frequency of the structure, {highest} \
+             Hz: a run takes many steps; lower f_v or zeta_v"
         ));
     }
     warnings

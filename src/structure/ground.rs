@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// The numbers of ground that gives, as a file has them in `[ground]`. A number that is left out has its default.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Ground {
     /// Bounce frequency √(K_z/m_t)/2π, Hz; 0 is rigid ground. Or else `k_v`.
@@ -56,6 +56,9 @@ pub struct Point {
 pub struct Foundation {
     /// The points, from left to right.
     pub points: Vec<Point>,
+    /// The numbers that the points follow from, under another base too.
+    #[serde(skip)]
+    pub ground: Ground,
     /// y at rest y_s, m.
     pub rest: f64,
     /// The place of y among the lateral coordinates, after the modes; sin θ and the energy that the ground has taken follow.
@@ -102,12 +105,6 @@ fn ensure(is_so: bool, message: impl FnOnce() -> String) -> Result<(), GroundErr
 }
 
 impl Ground {
-    /// Ground of these `points`.
-    pub fn of_points(points: &[Point]) -> Ground {
-        let list = |of: fn(&Point) -> f64| points.iter().map(of).collect();
-        Ground { xi: list(|at| at.xi), k: list(|at| at.k), c: list(|at| at.c), ..Ground::default() }
-    }
-
     /// The same ground with numbers in SI units.
     pub fn in_si(mut self, units: Units) -> Ground {
         let to_si = |unit: &'static str| move |value: &mut f64| *value = units.in_si(*value, unit);
@@ -205,7 +202,7 @@ impl Foundation {
                 "c_ratio = {c_ratio} has no meaning on ground that gives, where nothing rocks about an edge: set c_ratio to 1"
             )
         })?;
-        let mut foundation = Foundation { points, rest: 0.0, place: modes.len() };
+        let mut foundation = Foundation { points, ground: ground.clone(), rest: 0.0, place: modes.len() };
         foundation.rest = -(m_t * g + P_0) / foundation.sum(0);
         let [K_r, least] = [foundation.sum(2), least_stiffness(base, body, modes)];
         ensure(K_r > least, || {

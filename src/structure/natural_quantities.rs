@@ -262,11 +262,15 @@ impl Given {
     /// they were given.
     pub fn structure(&self, base: Option<&Parameters>) -> Result<Structure, GivenError> {
         let in_units = |error: &dyn Display| GivenError::InUnits(self.units.message(error));
-        let on_rigid = Given { ground: None, ..self.clone() };
+        let mut on_rigid = Given { ground: None, ..self.clone() };
+        let needs_no_r = self.ground.is_some() && base.is_none() && self.get("r").is_none();
+        on_rigid.numbers.extend(needs_no_r.then_some(("r", 1.0)));
         let parameters = base.map_or_else(|| on_rigid.parameters(), |base| self.over(base));
         let parameters = parameters.map_err(|error| in_units(&error))?;
         let structure = Structure::new(parameters).map_err(|error| in_units(&error))?;
         let on_ground = self.ground.as_ref().map_or(Ok(structure.clone()), |ground| structure.on(ground));
+        let without_r = |of: Structure| of.with(Parameters { r: f64::NAN, ..of.parameters() });
+        let on_ground = if needs_no_r { on_ground.and_then(without_r) } else { on_ground };
         Ok(on_ground.map_err(|error| in_units(&error))?.measured_in(self.units))
     }
 

@@ -5,7 +5,9 @@ use approx::assert_relative_eq;
 use rocking::engine::Settings;
 use rocking::engine::piece::Sample;
 use rocking::run::record::Record;
+use rocking::run::validity::of_structure;
 use rocking::run::{End, Ending, Run};
+use rocking::structure::natural_quantities::Given;
 use rocking::{
     Detail, Engine, Ground, LinearLoad, Modes, Output, Parameters, State, Structure, Transition, TransitionKind,
 };
@@ -266,4 +268,23 @@ fn bad_ground_is_refused_with_a_remedy() {
     }
     let rigid = Structure::new(soft).unwrap();
     assert_eq!(rigid.on(&ground(0.0, 0.2, 2)).unwrap(), rigid);
+}
+
+/// A change of the base changes the points as a new description does, and nothing needs r.
+#[test]
+fn the_points_follow_the_base() {
+    for points in [2, 5] {
+        for on in [ground(5.0, 0.3, points), Ground { k_v: Some(6.5e8), f_v: None, ..ground(5.0, 0.3, points) }] {
+            let described = |B, m0| {
+                let one = [("m", 1.2e6), ("H", 22.0), ("J0", 2e6), ("f_fc", 0.8), ("zeta_fc", 0.03)];
+                let given = Given::of(&[&one[..], &[("B", B), ("m0", m0)]].concat()).unwrap();
+                given.on(on.clone()).structure(None).unwrap()
+            };
+            let narrow = described(3.0, 1.2e5);
+            assert!(of_structure(&narrow, Detail::Auto).is_empty());
+            let wide = narrow.with(Parameters { B: 3.5, m0: 6e5, ..narrow.parameters() }).unwrap();
+            assert_eq!(wide.foundation(), described(3.5, 6e5).foundation());
+            assert_ne!(wide.foundation(), narrow.foundation());
+        }
+    }
 }
