@@ -139,7 +139,7 @@ def motion(path: Path) -> None:
 
 
 WAYS = {"this engine, one by one": ("0.4", "o"), "this engine, lanes": ("black", "s"), "heyoka, one by one": (COLOURS[5], "^"),
-        "heyoka, batches of 4": (COLOURS[0], "D"), "heyoka, batches of 8": (COLOURS[1], "v"), "JAX": (COLOURS[3], "P")}
+        "heyoka, batches of 4": (COLOURS[0], "D"), "heyoka, batches of 8": (COLOURS[1], "v"), "JAX": (COLOURS[4], "P")}
 
 
 def ensembles(path: Path) -> None:

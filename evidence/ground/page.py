@@ -53,7 +53,7 @@ def compared(figures: Path) -> dict:
         axis.loglog([8 / step for step in STEPS], [abs(errors[axial, step][0]) for step in STEPS], "o-", color=color, label=f"OpenSees, {name}")
     axis.axvline(run.steps, color=QUIET, label="steps of this engine, to 1e-12")
     axis.set(xlabel="steps over 8 s", ylabel=r"relative error of $\theta_{max}$", title="OpenSees converges with the square of its step, to a wrong result with damped columns")
-    axis.legend(loc="lower left", fontsize=7)
+    figure.legend(loc="outside lower center", ncols=2)
     save(figure, figures / "opensees.svg", "Error of OpenSees by steps", "Errors of the peak of the rotation against the number of steps")
     at = {name: signed(errors[axial, step][i]) for name, axial, step, i in (
         ("at_record", None, 1e-2, 0), ("at_record_a", None, 1e-2, 1), ("at_ms", None, 1e-3, 0), ("at_ms_a", None, 1e-3, 1),
