@@ -415,18 +415,15 @@
     document.body.classList.toggle("unseen", problem !== undefined && !isSeen);
   }
 
-  let waits = false;
+  let frame;
   let timer;
   /** The page is ready when the scene that was asked for is shown exactly. */
   const isBusy = () => delete document.body.dataset.ready;
   function change() {
-    if (!waits) {
-      waits = true;
-      requestAnimationFrame(() => {
-        waits = false;
-        update(1e-2);
-      });
-    }
+    frame ??= requestAnimationFrame(() => {
+      frame = undefined;
+      update(1e-2);
+    });
     later();
   }
   function later() {
@@ -436,6 +433,7 @@
   }
 
   function settle() {
+    frame = cancelAnimationFrame(frame); // a frame that is late would draw the coarse motion over the exact one
     const { name: record, packed } = (ground() === "record" && file) || {};
     const shown = tab === "play" ? {} : { tab };
     const scene = new URLSearchParams({ ...fields, ...shown, ...(record && { record }), ...(packed && { packed }) });
