@@ -9,7 +9,7 @@ use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource};
 use rocking::digits::short;
 use rocking::structure::derived::Derived;
 use rocking::structure::description::Described;
-use rocking::structure::doubts::DOUBTED;
+use rocking::structure::doubts::{DOUBTED, doubted};
 use rocking::structure::natural_quantities::{Given, GivenError, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::quantity::Quantity;
@@ -48,7 +48,7 @@ impl StructureArgs {
     pub fn load_any(&self) -> anyhow::Result<Structure> {
         let structure = self.read()?;
         for doubt in structure.doubts() {
-            let name = doubt.split(" = ").next().unwrap_or(&doubt);
+            let name = doubted(&doubt);
             if !self.allow.contains(&name) {
                 warning!("{doubt} (--allow {name} silences this warning)");
             }

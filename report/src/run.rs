@@ -10,7 +10,7 @@ use rocking::run::peaks::{Peak, Peaks};
 use rocking::run::record::Record;
 use rocking::run::validity::{self, Findings, Limits};
 use rocking::run::{End, Ending, Finish, RunError, Runs, fall};
-use rocking::{Modes, Output, Phase, Run as Follow, Side, State, Structure, Ties, Transition, TransitionKind, Watch};
+use rocking::{Modes, Output, Phase, Run as Follow, Side, State, Structure, Transition, TransitionKind, Watch};
 use rocking_sweep::{plan::Conditions, with_run};
 use serde::Serialize;
 use std::sync::Arc;
@@ -333,7 +333,6 @@ fn results<Q: Runs>(structure: &Structure, found: &fall::Found<Q>, transitions: 
     let first = |is_meant: fn(&TransitionKind) -> bool| {
         transitions.iter().find(|transition| is_meant(&transition.kind)).map(|transition| transition.time)
     };
-    let &Ties { c_d, k_d, .. } = &structure.base().ties;
     let Dissipators { viscous: E_viscous, hysteretic: E_hysteretic, .. } = motion.dissipators;
     let taken = Taken { E_viscous, E_hysteretic, theta_end: motion.state.theta };
     Found {
@@ -343,7 +342,7 @@ fn results<Q: Runs>(structure: &Structure, found: &fall::Found<Q>, transitions: 
         overturned: ending.overturned(),
         fall,
         peaks: [NamedPeak::new("a_g", "m/s2", ground)].into_iter().chain(NamedPeak::all(structure, peaks)).collect(),
-        taken: (c_d > 0.0 || k_d > 0.0).then_some(taken),
+        taken: structure.base().has_dissipators().then_some(taken),
         first_uplift: first(|kind| matches!(kind, TransitionKind::Uplift(_) | TransitionKind::Release(_))),
         first_impact: first(|kind| kind.is_impact()),
         transitions: motion.transitions,

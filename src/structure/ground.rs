@@ -43,7 +43,7 @@ pub struct Ground {
 }
 
 /// A contact point: its place from the middle of the base to the right (m), its stiffness (N/m) and its damping (N·s/m).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct Point {
     pub xi: f64,

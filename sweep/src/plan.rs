@@ -14,6 +14,7 @@ use rocking::run::lanes::found_each;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits};
 use rocking::run::{End, Run, Runs};
+use rocking::structure::doubts::doubted;
 use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
 use rocking::{Detail, Modes, Parameters, Quantity, State, Structure};
 use serde::Serialize;
@@ -340,9 +341,9 @@ impl Plan {
         let doubts = structures.flat_map(|(of, member)| {
             member.map_or(Vec::new(), |of| of.doubts()).into_iter().map(move |doubt| (of, doubt))
         });
-        let (mut said, name) = (HashSet::new(), |doubt: &str| doubt.split(" = ").next().map(str::to_owned));
+        let mut said = HashSet::new();
         doubts
-            .filter(|(of, doubt)| said.insert((*of, name(doubt))))
+            .filter(|(of, doubt)| said.insert((*of, doubted(doubt).to_owned())))
             .map(|(of, doubt)| format!("{of}: {doubt}"))
             .collect()
     }
