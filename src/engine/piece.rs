@@ -14,7 +14,7 @@ use crate::mechanics::gauge::{Gauge, Reading};
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::Shows;
-use crate::mechanics::reach::Magnitudes;
+use crate::mechanics::reach::{Magnitudes, OffChord};
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
 use crate::numbers::{Angle, Number, Turn};
 use crate::series::taylor::{Arc, Start, evaluate};
@@ -319,6 +319,21 @@ impl<'a, Q: Moves> Part<'a, Q> {
         }
     }
 
+    /// How far the motion of the part leaves the chords between its ends; none where no bound is known.
+    pub(crate) fn off_chord(&self) -> Option<OffChord<Q>> {
+        let &Part { piece: &Piece { level, before, arc, .. }, ref start, ref end } = self;
+        let thetas = [start.1.theta, end.1.theta];
+        let Some(arc) = arc else {
+            let step = self.step();
+            let [u, u_dot, u_ddot, jerk] = level.swings(before.phase, &step)?;
+            let per_bend = step.interval * step.interval / 8.0;
+            let off =
+                |swing: &Q, bend: &Q| Q::each(level.structure(), |j, _| (2.0 * swing.of(j)).min(bend.of(j) * per_bend));
+            return Some(OffChord::new(off(&u, &u_ddot), off(&u_dot, &jerk), 0.0, thetas));
+        };
+        Some(OffChord::of(arc, thetas))
+    }
+
     /// The motion at both ends.
     pub(crate) fn samples(&self) -> [Sample<'a, Q>; 2] {
         let Piece { before, load, level, .. } = *self.piece;
@@ -347,7 +362,10 @@ pub(crate) fn magnitudes<Q: Moves>(
         theta,
         theta_dot,
         a_g: largest(loads.map(|load| load.a_g)),
-        F_t: Q::each(structure, |j, _| largest(loads.map(|load| load.F_t.of(j)))),
+        F_t: match loads.iter().all(|load| load.F_t.is_within(&Q::ZERO)) {
+            true => Q::ZERO, // with no numbers to weigh
+            false => Q::each(structure, |j, _| largest(loads.map(|load| load.F_t.of(j)))),
+        },
         a_v: largest(loads.map(|load| load.a_v)),
     }
 }
@@ -596,8 +614,8 @@ impl<Q: Moves> Shows<Terms> for Over<'_, Q> {
             a_v = a_v + lift;
         }
         let reading = Reading {
-            elastic: self.lateral(|k| gauge.elastic(structure, damping, &arc.u[k], &arc.u_dot[k])),
-            push: ramp(gauge.push(structure, &load.value.F_t), gauge.push(structure, &load.slope.F_t)),
+            elastic: self.lateral(|k| gauge.elastic(damping, &arc.u[k], &arc.u_dot[k])),
+            push: ramp(gauge.push(&load.value.F_t), gauge.push(&load.slope.F_t)),
             turn: self.turn(),
             theta_dot: self.theta_dot,
             theta_ddot: self.theta_dot.slope(arc.span),

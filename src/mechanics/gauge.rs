@@ -15,7 +15,7 @@ use crate::mechanics::reach::Magnitudes;
 use crate::numbers::{Number, Turn};
 use crate::series::taylor::{Arc, ORDERS, ZERO, evaluate};
 use crate::structure::rest;
-use crate::{Base, Mode, Ramp, Structure};
+use crate::{Base, Mode, Ramp};
 
 /// Parts of the largest weight that rounding may leave between two gauges that measure the same.
 const ROUNDING: f64 = 1e-14;
@@ -86,17 +86,14 @@ impl Gauge {
 
     /// Σ φ (c u̇ + k u)/μ, with the part `damping` of the damping in full contact: linear in `u` and `u_dot`.
     #[inline]
-    pub(crate) fn elastic<N: Number, Q>(&self, structure: &Structure, damping: f64, u: &Q, u_dot: &Q) -> N
-    where
-        Q: Lateral<N>,
-    {
-        Q::sum(structure, |j, _| u_dot.of(j) * (self.damping.of(j) * damping) + u.of(j) * self.stiffness.of(j))
+    pub(crate) fn elastic<N: Number, Q: Lateral<N>>(&self, damping: f64, u: &Q, u_dot: &Q) -> N {
+        u_dot.weighed(&self.damping) * damping + u.weighed(&self.stiffness)
     }
 
     /// Σ φ φᵀF/μ: linear in the forces.
     #[inline]
-    pub(crate) fn push<N: Number, Q: Lateral<N>>(&self, structure: &Structure, F_t: &Q) -> N {
-        Q::sum(structure, |j, _| F_t.of(j) * self.push.of(j))
+    pub(crate) fn push<N: Number, Q: Lateral<N>>(&self, F_t: &Q) -> N {
+        F_t.weighed(&self.push)
     }
 
     /// Σ φ u.
@@ -113,8 +110,8 @@ impl Gauge {
     /// The value at the instant `x`.
     #[inline]
     pub(crate) fn at<N: Number, Q: Lateral<N>>(&self, x: &Instant<N, Q>) -> N {
-        let &Instant { structure, damping, turn, theta_dot, theta_ddot, a_g, a_v, .. } = x;
-        let (elastic, push) = (self.elastic(structure, damping, &x.u, &x.u_dot), self.push(structure, &x.F_t));
+        let &Instant { damping, turn, theta_dot, theta_ddot, a_g, a_v, .. } = x;
+        let (elastic, push) = (self.elastic(damping, &x.u, &x.u_dot), self.push(&x.F_t));
         self.value(x.base(), x.s, &Reading { elastic, push, turn, theta_dot, theta_ddot, a_g, a_v })
     }
 

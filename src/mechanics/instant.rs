@@ -157,12 +157,12 @@ impl<N: Number, Q: Lateral<N>> Shows<N> for Instant<'_, N, Q> {
 
     #[inline]
     fn u(&self, shape: &Modes) -> N {
-        self.sum(|j, _| self.u.of(j) * shape.of(j))
+        self.u.weighed(shape)
     }
 
     #[inline]
     fn u_dot(&self, shape: &Modes) -> N {
-        self.sum(|j, _| self.u_dot.of(j) * shape.of(j))
+        self.u_dot.weighed(shape)
     }
 
     #[inline]

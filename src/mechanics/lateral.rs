@@ -26,6 +26,13 @@ pub trait Lateral<N: Number>: Copy {
         None
     }
 
+    /// The sum of the coordinates times their `weights`.
+    #[inline(always)]
+    fn weighed(&self, weights: &Modes) -> N {
+        let terms = weights.numbers().iter().enumerate().map(|(j, weight)| self.of(j) * *weight);
+        terms.reduce(|sum, term| sum + term).unwrap_or(N::constant(0.0))
+    }
+
     /// The modes of a structure, which has no more than there are coordinates.
     #[inline(always)]
     fn modes(structure: &Structure) -> &[Mode] {
@@ -86,17 +93,23 @@ pub trait Coordinates:
     /// The values at `sigma` of the polynomials with these coefficients.
     fn evaluate(coefficients: &[Self], sigma: f64) -> Self;
 
+    /// How far the polynomials with these coefficients leave the chords between their ends, up to σ = `reach`.
+    fn off_chord(coefficients: &[Self], reach: f64) -> Self;
+
+    /// Bounds of the magnitudes of a motion between these ends that leaves its chords by this much.
+    fn beyond(ends: [&Self; 2], off_chord: Self) -> Self;
+
     /// Bounds of the magnitudes of the polynomials with these coefficients, which end in `end`, up to σ = `reach`.
-    fn most(coefficients: &[Self], end: &Self, reach: f64) -> Self;
+    #[inline(always)]
+    fn most(coefficients: &[Self], end: &Self, reach: f64) -> Self {
+        Self::beyond([&coefficients[0], end], Self::off_chord(coefficients, reach))
+    }
 
     /// Whether no coordinate exceeds its limit in magnitude.
     fn is_within(&self, limits: &Self) -> bool;
 
     /// The least ratio of a limit to the magnitude of its coordinate.
     fn room(&self, limits: &Self) -> f64;
-
-    /// The sum of the coordinates times their `weights`.
-    fn weighed(&self, weights: &Modes) -> f64;
 
     /// The sum of the coordinates: finite if all of them are.
     fn total(&self) -> f64;
@@ -150,6 +163,11 @@ impl<N: Number> Lateral<N> for N {
     #[inline(always)]
     fn of(&self, _: usize) -> N {
         *self
+    }
+
+    #[inline(always)]
+    fn weighed(&self, weights: &Modes) -> N {
+        *self * weights.of[0]
     }
 
     #[inline(always)]
@@ -212,8 +230,13 @@ impl Coordinates for f64 {
     }
 
     #[inline(always)]
-    fn most(coefficients: &[f64], end: &f64, reach: f64) -> f64 {
-        coefficients[0].abs().max(end.abs()) + off_chord(coefficients, reach)
+    fn off_chord(coefficients: &[f64], reach: f64) -> f64 {
+        off_chord(coefficients, reach)
+    }
+
+    #[inline(always)]
+    fn beyond([first, last]: [&f64; 2], off_chord: f64) -> f64 {
+        first.abs().max(last.abs()) + off_chord
     }
 
     #[inline(always)]
@@ -224,11 +247,6 @@ impl Coordinates for f64 {
     #[inline(always)]
     fn room(&self, limits: &f64) -> f64 {
         limits / self.abs()
-    }
-
-    #[inline(always)]
-    fn weighed(&self, weights: &Modes) -> f64 {
-        self * weights.of[0]
     }
 
     #[inline(always)]
@@ -312,6 +330,18 @@ impl Lateral<f64> for Modes {
     fn rest(&self) -> Option<[f64; 2]> {
         (self.rest != [0.0; 2]).then_some(self.rest)
     }
+
+    /// In four sums side by side.
+    #[inline(always)]
+    fn weighed(&self, weights: &Modes) -> f64 {
+        let mut sums = [0.0; 4];
+        for (own, weights) in self.fours().zip(weights.fours()) {
+            for i in 0..4 {
+                sums[i] += own[i] * weights[i];
+            }
+        }
+        sums.iter().sum()
+    }
 }
 
 impl Coordinates for Modes {
@@ -383,19 +413,24 @@ impl Coordinates for Modes {
         value
     }
 
-    fn most(coefficients: &[Modes], end: &Modes, reach: f64) -> Modes {
-        let mut most = Modes { count: end.count, ..Modes::ZERO };
-        for (four, most) in most.fours_mut().enumerate() {
-            let own = |of: &Modes| of.of.as_chunks::<4>().0[four].map(f64::abs);
-            let ([first, last], mut off, mut power) = ([&coefficients[0], end].map(own), [0.0; 4], reach);
+    fn off_chord(coefficients: &[Modes], reach: f64) -> Modes {
+        let mut off = Modes { count: coefficients[0].count, ..Modes::ZERO };
+        for (four, off) in off.fours_mut().enumerate() {
+            let mut power = reach;
             for (weight, c) in OFF_CHORD.iter().zip(coefficients).skip(2) {
                 power *= reach;
-                let c = own(c);
-                (0..4).for_each(|i| off[i] += weight * power * c[i]);
+                let c = &c.of.as_chunks::<4>().0[four];
+                (0..4).for_each(|i| off[i] += weight * power * c[i].abs());
             }
-            *most = std::array::from_fn(|i| first[i].max(last[i]) + off[i]);
         }
-        most
+        off
+    }
+
+    fn beyond([first, last]: [&Modes; 2], mut off_chord: Modes) -> Modes {
+        for ((off, first), last) in off_chord.fours_mut().zip(first.fours()).zip(last.fours()) {
+            (0..4).for_each(|i| off[i] += first[i].abs().max(last[i].abs()));
+        }
+        off_chord
     }
 
     #[inline]
@@ -405,18 +440,6 @@ impl Coordinates for Modes {
 
     fn room(&self, limits: &Modes) -> f64 {
         self.numbers().iter().zip(&limits.of).map(|(own, limit)| limit / own.abs()).fold(f64::INFINITY, f64::min)
-    }
-
-    /// In four sums side by side.
-    #[inline(always)]
-    fn weighed(&self, weights: &Modes) -> f64 {
-        let mut sums = [0.0; 4];
-        for (own, weights) in self.fours().zip(weights.fours()) {
-            for i in 0..4 {
-                sums[i] += own[i] * weights[i];
-            }
-        }
-        sums.iter().sum()
     }
 
     #[inline]

@@ -3,7 +3,7 @@
 #[cfg(feature = "lanes")]
 use crate::Phase;
 use crate::mechanics::instant::Instant;
-use crate::mechanics::lateral::{Coordinates, Modes, Mosts};
+use crate::mechanics::lateral::{Coordinates, Lateral, Modes, Mosts};
 use crate::numbers::Turn;
 use crate::numbers::most::Most;
 use crate::series::extremes::off_chord;
@@ -24,6 +24,33 @@ pub(crate) struct Magnitudes<'a, Q> {
     pub a_g: f64,
     pub F_t: Q,
     pub a_v: f64,
+}
+
+/// How far a motion leaves the chords between its ends.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OffChord<Q> {
+    u: Q,
+    u_dot: Q,
+    /// Of sin θ, cos θ and 1 − cos θ.
+    turn: f64,
+    /// Of a number times cos θ, beyond the number itself, as a part of its largest magnitude: a product of two chords leaves its own
+    /// chord by at most a quarter of the product of their rises.
+    product: f64,
+}
+
+impl<Q: Coordinates> OffChord<Q> {
+    /// Of a motion in which u, u̇ and θ (rad) leave their chords by this much, and θ goes from one of these angles to the other.
+    pub(crate) fn new(u: Q, u_dot: Q, theta: f64, [from, to]: [f64; 2]) -> OffChord<Q> {
+        let (turned, most) = ((to - from).abs(), from.abs().max(to.abs()) + theta);
+        let turn = theta + turned * turned / 8.0;
+        OffChord { u, u_dot, turn, product: turn + most * turned / 2.0 }
+    }
+
+    /// Of the motion of `arc`, whose rotations at the ends are `thetas` (rad).
+    pub(crate) fn of(arc: &Arc<Q>, thetas: [f64; 2]) -> OffChord<Q> {
+        let [u, u_dot] = [&arc.u, &arc.u_dot].map(|of| Q::off_chord(arc.used(of), arc.reach));
+        OffChord::new(u, u_dot, off_chord(arc.used(&arc.theta), arc.reach), thetas)
+    }
 }
 
 /// How far an output reaches: the weights of the magnitudes of the motion in the bound of its magnitude.
@@ -60,6 +87,11 @@ pub(crate) fn reaches(structure: &Structure) -> Vec<Reach> {
         F_t: Mosts(nothing),
         a_v: none,
     };
+    // nothing is weighed if all weights are 0
+    let weights = |of: &dyn Fn(usize) -> Most| {
+        let weights = Modes::each(structure, |j, _| of(j).0);
+        if weights.is_within(&Modes::ZERO) { Modes::ZERO } else { weights }
+    };
     let reach = |output: Output| {
         let of = |x: &Instant<Most, Mosts<Modes>>| output.of(x).0;
         let sin = Turn { sin: one, ..x.turn };
@@ -69,9 +101,9 @@ pub(crate) fn reaches(structure: &Structure) -> Vec<Reach> {
                 of(&Instant { turn: Turn { versine: one, ..x.turn }, ..x }),
             ],
             a_g: output.has_feedthrough(structure).then(|| of(&Instant { a_g: one, ..x })),
-            u: Modes::each(structure, |j, _| of(&Instant { u: Mosts(of_mode(j)), ..x })),
-            u_dot: Modes::each(structure, |j, _| of(&Instant { u_dot: Mosts(of_mode(j)), ..x })),
-            push: Modes::each(structure, |j, _| of(&Instant { F_t: Mosts(of_mode(j)), ..x })),
+            u: weights(&|j| output.of(&Instant { u: Mosts(of_mode(j)), ..x })),
+            u_dot: weights(&|j| output.of(&Instant { u_dot: Mosts(of_mode(j)), ..x })),
+            push: weights(&|j| output.of(&Instant { F_t: Mosts(of_mode(j)), ..x })),
         }
     };
     let floors = structure.floors().len();
@@ -118,7 +150,7 @@ impl Reach {
     /// output of one mass without force in `phase`. The bound is infinite where [`Reach::bound`] requires a polynomial.
     #[cfg(feature = "lanes")]
     pub(crate) fn of_one(&self, structure: &Structure, phase: Phase) -> [f64; 4] {
-        let [u, u_dot] = [1.0.weighed(&self.u), structure.base().damping(phase).weighed(&self.u_dot)];
+        let [u, u_dot] = [self.u.of(0), structure.base().damping(phase) * self.u_dot.of(0)];
         match (phase, self.a_g) {
             (Phase::FullContact, a_g) => [u, u_dot, a_g.unwrap_or(0.0), 0.0],
             (_, None) => [u, u_dot, self.turn[0], self.turn[1]],
@@ -148,6 +180,28 @@ impl Reach {
             _ => f64::INFINITY,
         }
     }
+
+    /// How far this `output` of `structure` leaves the chord between its ends, of a motion within `most` that leaves its chords by `off`
+    /// under a load that is linear in time; infinite where no bound is known.
+    pub(crate) fn off_chord<Q: Coordinates>(
+        &self,
+        output: Output,
+        structure: &Structure,
+        most: &Magnitudes<Q>,
+        off: &OffChord<Q>,
+    ) -> f64 {
+        let is_known = match structure.foundation() {
+            Some(foundation) => self.a_g.is_none() && output.of_height(structure.base(), foundation).is_none(),
+            None => self.a_g.is_none() || most.theta == 0.0,
+        };
+        if !is_known {
+            return f64::INFINITY;
+        }
+        let [sin, versine] = self.turn;
+        let sum = |u: &Q, u_dot: &Q| u.weighed(&self.u) + most.damping * u_dot.weighed(&self.u_dot);
+        let elastic = sum(&most.u, &most.u_dot) + most.F_t.weighed(&self.push);
+        sum(&off.u, &off.u_dot) + (sin + versine) * off.turn + elastic * off.product
+    }
 }
 
 /// Bound of the positive part of offset + k e + c ė of the height e at ξ, on ground that gives. y and ξ sin θ cancel in e, so that the
@@ -165,23 +219,58 @@ fn most_of_height<Q: Coordinates>(arc: &Arc<Q>, place: usize, [xi, k, c, offset]
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::lateral::Lateral;
+    use crate::engine::piece::magnitudes;
     use crate::mechanics::load::Load;
     use crate::structure::description::{Damping, Storey};
     use crate::structure::natural_quantities::Given;
     use crate::{Phase, Side, State};
     use proptest::prelude::*;
 
+    fn three_storeys() -> Structure {
+        let base = Given::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5)]).unwrap();
+        let storeys = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)].map(|(m, h, k)| Storey { m, h, k });
+        Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap()
+    }
+
     proptest! {
+        /// No output of three storeys leaves its chord by more than its bound, under a force that is linear in time.
+        #[test]
+        fn chords_hold(
+            u in prop::array::uniform4(prop::array::uniform3(-0.1..0.1f64)), theta in prop::array::uniform4(-0.4..0.4f64),
+            u_dot in prop::array::uniform4(prop::array::uniform3(-1.0..1.0f64)), reach in 0.1..1.0f64,
+            forces in prop::array::uniform2(prop::array::uniform3(-1e5..1e5f64)),
+        ) {
+            let structure = three_storeys();
+            let mut arc = Arc { order: 3, span: 0.01, reach, ..Arc::default() };
+            for k in 0..=3 {
+                (arc.u[k], arc.u_dot[k], arc.theta[k]) = (Modes::new(&u[k]), Modes::new(&u_dot[k]), theta[k]);
+            }
+            let ends = [0.0, reach].map(|sigma| arc.at(sigma));
+            let loads = forces.map(|forces| structure.load(0.0, 0.0, &forces).unwrap());
+            let phase = Phase::Rocking(Side::Right);
+            let most = magnitudes(&structure, phase, loads, arc.most(&ends[1]));
+            let off = OffChord::of(&arc, ends.map(|of| of.theta));
+            for output in Output::all(&structure) {
+                let Some(place) = output.place(3) else { continue };
+                let at = |part: f64| {
+                    let F_t = loads[0].F_t.times(1.0 - part).plus(loads[1].F_t, part);
+                    output.at(&structure, phase, &arc.at(part * reach), Load { F_t, ..loads[0] })
+                };
+                let bound = structure.reaches()[place].off_chord(output, &structure, &most, &off);
+                for part in (1..8).map(|i| f64::from(i) / 8.0) {
+                    let away = (at(part) - at(0.0) * (1.0 - part) - at(1.0) * part).abs();
+                    prop_assert!(away <= bound * (1.0 + 1e-12), "{output:?} {away} beyond {bound}");
+                }
+            }
+        }
+
         /// No output of three storeys exceeds its bound.
         #[test]
         fn bounds_hold(
             u in prop::array::uniform3(-9.0..9.0f64), u_dot in prop::array::uniform3(-90.0..90.0f64), theta in -1.5..1.5f64,
             forces in prop::array::uniform3(-1e5..1e5f64), more in 1.0..1.2f64,
         ) {
-            let base = Given::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5)]).unwrap();
-            let storeys = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)].map(|(m, h, k)| Storey { m, h, k });
-            let structure = Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap();
+            let structure = three_storeys();
             let [u, u_dot] = [u, u_dot].map(|of| Modes::new(&of));
             let Load { F_t, .. } = structure.load(0.0, 0.0, &forces).unwrap();
             let most = |of: Modes| Modes::each(&structure, |j, _| of.of(j).abs() * more);

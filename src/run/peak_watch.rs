@@ -24,6 +24,8 @@ pub struct PeakWatch<'a, Q: Moves = f64> {
     room: Room<Q>,
     /// Whether the next piece may begin with other outputs than the last one ended with.
     is_torn: bool,
+    /// Room for the bounds of a piece.
+    bounds: Vec<f64>,
     /// Whether the next piece is the first since other peaks: the step of a host is often no more, and not put off.
     is_first: bool,
 }
@@ -44,7 +46,15 @@ impl Peaks {
     /// The watcher that searches the pieces of a motion for larger peaks. The peaks are complete once the watcher is dropped.
     pub fn watch<Q: Moves>(&mut self) -> PeakWatch<'_, Q> {
         let is_first = self.goes_on();
-        PeakWatch { peaks: self, kept: Vec::new(), level: None, room: Room::default(), is_torn: true, is_first }
+        PeakWatch {
+            peaks: self,
+            kept: Vec::new(),
+            level: None,
+            room: Room::default(),
+            bounds: Vec::new(),
+            is_torn: true,
+            is_first,
+        }
     }
 }
 
@@ -68,7 +78,7 @@ impl<Q: Moves> PeakWatch<'_, Q> {
         while let Some(kept) = self.kept.pop() {
             if self.peaks.may_change_within(&kept.bounds, kept.before.time) {
                 self.room.left.set(MOST_POLYNOMIALS); // never used up: only short leaps are kept
-                self.peaks.look(&kept.piece(&**level, &self.room));
+                self.peaks.look(&kept.piece(&**level, &self.room), &kept.bounds);
             }
         }
     }
@@ -97,20 +107,18 @@ impl<Q: Moves> Watch<Q> for PeakWatch<'_, Q> {
             self.peaks.look_at_dissipators(piece);
         }
         let [is_torn, is_first] = [&mut self.is_torn, &mut self.is_first].map(std::mem::take);
-        let bounds = piece.whole().most_under(structure, loads);
-        if !self.peaks.may_be_same(structure, &bounds) {
-            return;
-        }
-        if is_torn {
-            self.peaks.see(&piece.shown(0.0, &before.state), before.time);
-        }
-        self.peaks.see(&piece.shown(duration, &end), until);
-        if !self.peaks.may_change(structure, &bounds, before.time) {
+        let most = piece.whole().most_under(structure, loads);
+        if !self.peaks.may_be_same(structure, &most) {
             return;
         }
         let is_long = arc.is_none() && duration * structure.vibration().rocking[1] > LONGEST_SPAN;
-        if is_first || is_long {
-            return self.peaks.look(piece);
+        let is_now = is_first || is_long;
+        self.bounds.clear();
+        if !self.peaks.see_ends(piece, is_torn, &most, (!is_now).then_some(&mut self.bounds)) {
+            return;
+        }
+        if is_now {
+            return self.peaks.look(piece, &[]);
         }
         self.level.get_or_insert_with(|| level.boxed());
         if self.kept.len() == MOST_CANDIDATES {
@@ -119,7 +127,7 @@ impl<Q: Moves> Watch<Q> for PeakWatch<'_, Q> {
         if self.kept.len() == MOST_CANDIDATES {
             self.look_back();
         }
-        let (arc, bounds) = (arc.cloned().map(Box::new), self.peaks.bounds(structure, &bounds));
+        let (arc, bounds) = (arc.cloned().map(Box::new), std::mem::take(&mut self.bounds));
         self.kept.push(Candidate { before: *before, duration, load, end, arc, bounds });
     }
 

@@ -14,7 +14,7 @@ use crate::engine::piece::{CONVERGED, Expansion, Over, Piece};
 use crate::mechanics::contact::{forces_on_ground, ties_on_ground};
 use crate::mechanics::instant::Instant;
 use crate::mechanics::outputs::Shows;
-use crate::mechanics::reach::{Magnitudes, Reach};
+use crate::mechanics::reach::{Magnitudes, OffChord, Reach};
 use crate::mechanics::restraint::{Angles, Restraint, Restraints};
 use crate::series::extremes;
 use crate::{Base, Detail, Foundation, Output, State, Structure, Ties};
@@ -96,6 +96,20 @@ impl Searched {
     #[inline(always)]
     fn bound<Q: Moves>(&self, (structure, reaches): (&Structure, &[Reach]), bounds: &Magnitudes<Q>) -> f64 {
         reaches[self.place].bound(self.output, structure, bounds)
+    }
+
+    /// Sees the output at the instant `x`, at `time` (s), and returns its magnitude.
+    #[inline]
+    fn see<Q: Moves>(&mut self, x: &Instant<f64, Q>, time: f64) -> f64 {
+        let value = self.output.of(x);
+        self.peak.see(value, time);
+        value.abs()
+    }
+
+    /// How far the output leaves its chord over a stretch of motion within `most` that leaves its chords by `off`.
+    fn off_chord<Q: Moves>(&self, structure: &Structure, most: &Magnitudes<Q>, off: Option<&OffChord<Q>>) -> f64 {
+        let of = |off| structure.reaches()[self.place].off_chord(self.output, structure, most, off);
+        off.map_or(f64::INFINITY, of)
     }
 }
 
@@ -214,7 +228,50 @@ impl Peaks {
 
     /// Sees the values at the instant `x`, at `time` (s).
     pub(super) fn see<Q: Moves>(&mut self, x: &Instant<f64, Q>, time: f64) {
-        self.searched.iter_mut().for_each(|of| of.peak.see(of.output.of(x), time));
+        self.searched.iter_mut().for_each(|of| _ = of.see(x, time));
+    }
+
+    /// Sees the values at the end of `piece`, and at its start if the piece before ended with others, of all that may equal or exceed its
+    /// peak within `most`. Returns whether a peak may change between the ends, and puts bounds of what is searched into `bounds`.
+    pub(super) fn see_ends<Q: Moves>(
+        &mut self,
+        piece: &Piece<Q>,
+        is_torn: bool,
+        most: &Magnitudes<Q>,
+        mut bounds: Option<&mut Vec<f64>>,
+    ) -> bool {
+        let (&Piece { before, duration, load, end, .. }, structure) = (piece, piece.level.structure());
+        let times = [before.time, before.time + duration];
+        let (mut first, mut last, mut off, mut may_change) = (None, None, None, false);
+        let mut see_first = |of: &mut Searched| {
+            // what has a bound of its own between the ends does not read θ̈
+            let shown = || match is_torn {
+                true => piece.shown(0.0, &before.state),
+                false => Instant::of(structure, before.phase, &before.state, load.value),
+            };
+            of.see(first.get_or_insert_with(shown), times[0])
+        };
+        for of in &mut self.searched {
+            let mut bound = of.bound((structure, structure.reaches()), most);
+            if bound > 0.0 && of.peak.may_be_same(bound) {
+                let last = of.see(last.get_or_insert_with(|| piece.shown(duration, &end)), times[1]);
+                if is_torn {
+                    see_first(of);
+                }
+                if of.peak.may_change(bound, times[0]) {
+                    let off = off.get_or_insert_with(|| piece.whole().off_chord());
+                    let off = of.off_chord(structure, most, off.as_ref());
+                    if off < f64::INFINITY {
+                        bound = bound.min(see_first(of).max(last) + off);
+                    }
+                }
+            }
+            may_change |= of.peak.may_change(bound, times[0]);
+            if let Some(bounds) = &mut bounds {
+                bounds.push(bound);
+            }
+        }
+        may_change
     }
 
     /// Whether magnitudes of `structure` within `bounds` may equal or exceed a peak.
@@ -248,21 +305,16 @@ impl Peaks {
         self.searched.iter().any(|of| of.peak.may_change(of.bound((structure, reaches), bounds), time))
     }
 
-    /// Bounds of what is searched, of magnitudes of `structure` within `most`.
-    pub(super) fn bounds<Q: Moves>(&self, structure: &Structure, most: &Magnitudes<Q>) -> Vec<f64> {
-        self.searched.iter().map(|of| of.bound((structure, structure.reaches()), most)).collect()
-    }
-
     /// Whether what is searched may change a peak within these `bounds` at `time` (s) or later.
     pub(super) fn may_change_within(&self, bounds: &[f64], time: f64) -> bool {
         self.searched.iter().zip(bounds).any(|(of, bound)| of.peak.may_change(*bound, time))
     }
 
-    /// Looks for larger magnitudes between the ends of `piece`.
-    pub(super) fn look<Q: Moves>(&mut self, piece: &Piece<Q>) {
+    /// Looks for larger magnitudes between the ends of `piece`, within these `bounds` of what is searched if they are known.
+    pub(super) fn look<Q: Moves>(&mut self, piece: &Piece<Q>, bounds: &[f64]) {
         let mut arcs = piece.arcs();
         while let Some(expansion) = arcs.next() {
-            self.look_over(&expansion);
+            self.look_over(&expansion, bounds);
             arcs.skip_middle();
             let (structure, start) = (piece.level.structure(), piece.before.time);
             if arcs.left().is_some_and(|rest| !self.may_change(structure, &rest.most(), start + rest.start.0)) {
@@ -318,25 +370,29 @@ impl Peaks {
     }
 
     /// Looks at a polynomial.
-    fn look_over<Q: Moves>(&mut self, expansion: &Expansion<Q>) {
+    fn look_over<Q: Moves>(&mut self, expansion: &Expansion<Q>, bounds: &[f64]) {
         expansion.in_parts(&mut |part, is_finest| {
-            let (structure, bounds) = (part.piece.level.structure(), part.most());
+            let (structure, most) = (part.piece.level.structure(), part.most());
             let (reach, start) = (part.arc.reach, part.time(0.0));
-            let (mut ends, mut over) = (None, None);
-            for of in &mut self.searched {
-                let bound = of.bound((structure, structure.reaches()), &bounds);
+            let (mut ends, mut off, mut over) = (None, None, None);
+            let bounds = bounds.iter().copied().chain(std::iter::repeat(f64::INFINITY));
+            for (of, bound) in self.searched.iter_mut().zip(bounds) {
+                if !of.peak.may_change(bound, start) {
+                    continue;
+                }
+                let bound = of.bound((structure, structure.reaches()), &most);
+                if !of.peak.may_change(bound, start) {
+                    continue;
+                }
+                let ends = ends.get_or_insert_with(|| [part.shown(0.0), part.shown(reach)]);
+                let magnitude = of.see(&ends[0], start).max(of.see(&ends[1], part.time(reach)));
+                let off = off.get_or_insert_with(|| OffChord::of(part.arc, [0, 1].map(|i| ends[i].theta)));
+                let bound = bound.min(magnitude + of.off_chord(structure, &most, Some(off)));
                 let Searched { output, peak, .. } = of;
                 if !peak.may_change(bound, start) {
                     continue;
                 }
-                let [first, last] = ends.get_or_insert_with(|| [part.shown(0.0), part.shown(reach)]);
-                let at_end = output.of(last);
-                peak.see(output.of(first), start);
-                peak.see(at_end, part.time(reach));
-                if !peak.may_change(bound, start) {
-                    continue;
-                }
-                let series = output.of(over.get_or_insert_with(|| Over::new(*part)));
+                let (series, at_end) = (output.of(over.get_or_insert_with(|| Over::new(*part))), output.of(&ends[1]));
                 if !is_finest && !output.is_component() && !part.has_converged(&series, at_end, CONVERGED) {
                     return false;
                 }
@@ -401,7 +457,7 @@ impl<Q: Moves> Watch<Q> for ThetaWatch<'_> {
                 self.peaks.searched[0].peak.see(state.theta, before.time + tau);
             }
         }
-        self.peaks.look(piece);
+        self.peaks.look(piece, &[]);
     }
 
     fn transition(&mut self, transition: &Transition<Q>) {
