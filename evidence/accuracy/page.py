@@ -72,7 +72,8 @@ def values(figures: Path) -> dict:
         times=f"{significant(min(times))} to {significant(max(times))}", ratios=f"{min(ratios):.1f} to {max(ratios):.1f}",
         perturbation=decade(PERTURBATION), held=f"{scientific(min(held))} to {scientific(max(held))}", costs=costs(scenes, runs),
         scenes="\n\n".join(section(scene, runs[scene.key]) for scene in scenes.itertuples()),
-        undercut=f"""`auto` is not the cheapest at low accuracy. The smallest error in θ at which another method is cheaper is {scientific(error)}. Such a large error needs only one or a few evaluations per sample.""" if np.isfinite(error)
+        undercut=f"""`auto` is not the cheapest at low accuracy. The smallest error in θ at which another method is cheaper is {scientific(error)}. Such a
+large error needs only one or a few evaluations per sample.""" if np.isfinite(error)
         else "No other method on this page is cheaper than `auto` at any error below 1.")
 
 
