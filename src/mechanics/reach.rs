@@ -3,7 +3,9 @@
 #[cfg(feature = "lanes")]
 use crate::Phase;
 use crate::mechanics::instant::Instant;
-use crate::mechanics::lateral::{Coordinates, Lateral, Modes, Mosts};
+#[cfg(feature = "lanes")]
+use crate::mechanics::lateral::Lateral;
+use crate::mechanics::lateral::{Coordinates, Modes, Mosts};
 use crate::numbers::Turn;
 use crate::numbers::most::Most;
 use crate::series::extremes::off_chord;
@@ -220,6 +222,7 @@ fn most_of_height<Q: Coordinates>(arc: &Arc<Q>, place: usize, [xi, k, c, offset]
 mod tests {
     use super::*;
     use crate::engine::piece::magnitudes;
+    use crate::mechanics::lateral::Lateral as _;
     use crate::mechanics::load::Load;
     use crate::structure::description::{Damping, Storey};
     use crate::structure::natural_quantities::Given;
