@@ -3,8 +3,6 @@
 #[cfg(feature = "lanes")]
 use crate::Phase;
 use crate::mechanics::instant::Instant;
-#[cfg(feature = "lanes")]
-use crate::mechanics::lateral::Lateral;
 use crate::mechanics::lateral::{Coordinates, Modes, Mosts};
 use crate::numbers::Turn;
 use crate::numbers::most::Most;
@@ -152,7 +150,7 @@ impl Reach {
     /// output of one mass without force in `phase`. The bound is infinite where [`Reach::bound`] requires a polynomial.
     #[cfg(feature = "lanes")]
     pub(crate) fn of_one(&self, structure: &Structure, phase: Phase) -> [f64; 4] {
-        let [u, u_dot] = [self.u.of(0), structure.base().damping(phase) * self.u_dot.of(0)];
+        let [u, u_dot] = [self.elastic(&1.0, &0.0), self.elastic(&0.0, &structure.base().damping(phase))];
         match (phase, self.a_g) {
             (Phase::FullContact, a_g) => [u, u_dot, a_g.unwrap_or(0.0), 0.0],
             (_, None) => [u, u_dot, self.turn[0], self.turn[1]],
@@ -222,7 +220,7 @@ fn most_of_height<Q: Coordinates>(arc: &Arc<Q>, place: usize, [xi, k, c, offset]
 mod tests {
     use super::*;
     use crate::engine::piece::magnitudes;
-    use crate::mechanics::lateral::Lateral as _;
+    use crate::mechanics::lateral::Lateral;
     use crate::mechanics::load::Load;
     use crate::structure::description::{Damping, Storey};
     use crate::structure::natural_quantities::Given;
