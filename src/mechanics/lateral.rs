@@ -105,17 +105,28 @@ pub trait Coordinates:
         Self::beyond([&coefficients[0], end], Self::off_chord(coefficients, reach))
     }
 
+    /// The coordinates in their order.
+    fn as_slice(&self) -> &[f64];
+
     /// Whether no coordinate exceeds its limit in magnitude.
-    fn is_within(&self, limits: &Self) -> bool;
+    #[inline(always)]
+    fn is_within(&self, limits: &Self) -> bool {
+        self.as_slice().iter().enumerate().all(|(j, own)| own.abs() <= limits.of(j)) && self.rest().is_none()
+    }
 
     /// The least ratio of a limit to the magnitude of its coordinate.
-    fn room(&self, limits: &Self) -> f64;
+    #[inline(always)]
+    fn room(&self, limits: &Self) -> f64 {
+        self.as_slice().iter().enumerate().map(|(j, own)| limits.of(j) / own.abs()).fold(f64::INFINITY, f64::min)
+    }
 
     /// The sum of the coordinates: finite if all of them are.
     fn total(&self) -> f64;
 
     /// Displacement of the centre of the mass that moves, m.
-    fn middle(&self, structure: &Structure) -> f64;
+    fn middle(&self, structure: &Structure) -> f64 {
+        Self::sum(structure, |j, mode| mode.gamma * self.of(j)) / structure.body().m_s
+    }
 }
 
 /// Bounds of the magnitudes of coordinates.
@@ -240,22 +251,13 @@ impl Coordinates for f64 {
     }
 
     #[inline(always)]
-    fn is_within(&self, limits: &f64) -> bool {
-        self.abs() <= *limits
-    }
-
-    #[inline(always)]
-    fn room(&self, limits: &f64) -> f64 {
-        limits / self.abs()
-    }
-
-    #[inline(always)]
     fn total(&self) -> f64 {
         *self
     }
 
-    fn middle(&self, _: &Structure) -> f64 {
-        *self
+    #[inline(always)]
+    fn as_slice(&self) -> &[f64] {
+        std::slice::from_ref(self)
     }
 }
 
@@ -281,15 +283,15 @@ impl Modes {
         modes
     }
 
-    /// How many numbers were given.
-    pub(crate) fn count(&self) -> usize {
-        self.count
-    }
-
     /// One number for each mode.
     #[inline]
     pub fn numbers(&self) -> &[f64] {
         &self.of[..self.count.min(MOST_MODES)]
+    }
+
+    /// How many numbers were given.
+    pub(crate) fn count(&self) -> usize {
+        self.count
     }
 
     /// These forces on the modes, and the force and the moment of what acts on mass that no mode carries.
@@ -434,21 +436,13 @@ impl Coordinates for Modes {
     }
 
     #[inline]
-    fn is_within(&self, limits: &Modes) -> bool {
-        self.numbers().iter().zip(&limits.of).all(|(own, limit)| own.abs() <= *limit) && self.rest == [0.0; 2]
-    }
-
-    fn room(&self, limits: &Modes) -> f64 {
-        self.numbers().iter().zip(&limits.of).map(|(own, limit)| limit / own.abs()).fold(f64::INFINITY, f64::min)
-    }
-
-    #[inline]
     fn total(&self) -> f64 {
         self.numbers().iter().chain(&self.rest).sum()
     }
 
-    fn middle(&self, structure: &Structure) -> f64 {
-        Modes::sum(structure, |j, mode| mode.gamma * self.of(j)) / structure.body().m_s
+    #[inline(always)]
+    fn as_slice(&self) -> &[f64] {
+        self.numbers()
     }
 }
 
