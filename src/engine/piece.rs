@@ -218,7 +218,7 @@ impl<'p, Q: Moves> Piece<'p, Q> {
     /// The whole piece as a part.
     #[inline]
     pub(crate) fn whole(&self) -> Part<'_, Q> {
-        Part { piece: self, start: (0.0, self.before.state), end: (self.duration, self.end) }
+        Part { piece: self, start: (0.0, self.before.state) }
     }
 
     /// The motion of the piece as polynomials, in order of time.
@@ -283,16 +283,14 @@ pub(crate) struct Part<'a, Q: Moves = f64> {
     pub piece: &'a Piece<'a, Q>,
     /// Seconds from the piece's start to its own, and the state there.
     pub start: (f64, State<Q>),
-    /// Seconds from the piece's start to its end, and the state there.
-    pub end: (f64, State<Q>),
 }
 
 impl<'a, Q: Moves> Part<'a, Q> {
     /// The part as a step.
     #[inline]
     pub(crate) fn step(&self) -> Start<'a, Q> {
-        let Part { piece, start: (passed, state), end: (until, _) } = *self;
-        piece.level.subject().start(state, &piece.before.dissipators, piece.load.from(passed), until - passed)
+        let Part { piece, start: (passed, state) } = *self;
+        piece.level.subject().start(state, &piece.before.dissipators, piece.load.from(passed), piece.duration - passed)
     }
 
     /// The motion of the part as polynomials, in order of time.
@@ -302,27 +300,27 @@ impl<'a, Q: Moves> Part<'a, Q> {
 
     /// Bounds of the magnitudes over this part.
     pub(crate) fn most(&self) -> Magnitudes<'a, Q> {
-        let loads = [self.start.0, self.end.0].map(|tau| self.piece.load.at(tau));
-        self.most_under(self.piece.level.structure(), loads)
+        let loads = [self.start.0, self.piece.duration].map(|tau| self.piece.load.at(tau));
+        self.most_under(self.piece.level.structure(), &loads)
     }
 
     /// Bounds of the magnitudes over this part, with these `loads` at its ends.
     #[inline(always)]
-    pub(crate) fn most_under(&self, structure: &Structure, loads: [Load<Q>; 2]) -> Magnitudes<'a, Q> {
-        let &Part { piece, start: (from, _), ref end } = self;
+    pub(crate) fn most_under(&self, structure: &Structure, loads: &[Load<Q>; 2]) -> Magnitudes<'a, Q> {
+        let &Part { piece, start: (from, _) } = self;
         match piece.arc {
-            Some(arc) => Expansion { piece, from, arc }.most_under(structure, loads, &end.1),
+            Some(arc) => Expansion { piece, from, arc }.most_under(structure, loads, &piece.end),
             None => {
                 let phase = piece.before.phase;
-                magnitudes(structure, phase, loads, piece.level.most(phase, &self.step(), &end.1))
+                magnitudes(structure, phase, loads, piece.level.most(phase, &self.step(), &piece.end))
             }
         }
     }
 
     /// How far the motion of the part leaves the chords between its ends; none where no bound is known.
     pub(crate) fn off_chord(&self) -> Option<OffChord<Q>> {
-        let &Part { piece: &Piece { level, before, arc, .. }, ref start, ref end } = self;
-        let thetas = [start.1.theta, end.1.theta];
+        let &Part { piece: &Piece { level, before, arc, ref end, .. }, start: (_, ref start) } = self;
+        let thetas = [start.theta, end.theta];
         let Some(arc) = arc else {
             let step = self.step();
             let [u, u_dot, u_ddot, jerk] = level.swings(before.phase, &step)?;
@@ -336,8 +334,8 @@ impl<'a, Q: Moves> Part<'a, Q> {
 
     /// The motion at both ends.
     pub(crate) fn samples(&self) -> [Sample<'a, Q>; 2] {
-        let Piece { before, load, level, .. } = *self.piece;
-        [self.start, self.end].map(|(tau, state)| Sample {
+        let &Piece { before, ref load, level, duration, end, .. } = self.piece;
+        [self.start, (duration, end)].map(|(tau, state)| Sample {
             motion: Motion { time: before.time + tau, state, ..*before },
             load: load.at(tau),
             level,
@@ -350,10 +348,10 @@ impl<'a, Q: Moves> Part<'a, Q> {
 pub(crate) fn magnitudes<Q: Moves>(
     structure: &Structure,
     phase: Phase,
-    loads: [Load<Q>; 2],
+    loads: &[Load<Q>; 2],
     State { u, u_dot, theta, theta_dot }: State<Q>,
 ) -> Magnitudes<'static, Q> {
-    let largest = |of: [f64; 2]| of[0].abs().max(of[1].abs());
+    let largest = |of: fn(&Load<Q>, usize) -> f64, j: usize| of(&loads[0], j).abs().max(of(&loads[1], j).abs());
     Magnitudes {
         arc: None,
         damping: structure.base().damping(phase),
@@ -361,12 +359,12 @@ pub(crate) fn magnitudes<Q: Moves>(
         u_dot,
         theta,
         theta_dot,
-        a_g: largest(loads.map(|load| load.a_g)),
+        a_g: largest(|load, _| load.a_g, 0),
         F_t: match loads.iter().all(|load| load.F_t.is_within(&Q::ZERO)) {
             true => Q::ZERO, // with no numbers to weigh
-            false => Q::each(structure, |j, _| largest(loads.map(|load| load.F_t.of(j)))),
+            false => Q::each(structure, |j, _| largest(|load, j| load.F_t.of(j), j)),
         },
-        a_v: largest(loads.map(|load| load.a_v)),
+        a_v: largest(|load, _| load.a_v, 0),
     }
 }
 
@@ -387,7 +385,8 @@ impl<Q: Moves> Arcs<'_, Q> {
     /// The motion from where the last one ends on, as far as one polynomial reaches.
     pub(crate) fn next(&mut self) -> Option<Expansion<'_, Q>> {
         let part = self.left.take()?;
-        let Part { piece, start: (from, _), end: (until, _) } = part;
+        let Part { piece, start: (from, _) } = part;
+        let until = piece.duration;
         if let Some(arc) = piece.arc {
             return Some(Expansion { piece, from, arc });
         }
@@ -398,7 +397,7 @@ impl<Q: Moves> Arcs<'_, Q> {
         self.evaluations += arc.order as u64;
         let covered = arc.duration();
         if covered < until - from && from + covered > from {
-            self.left = Some(Part { start: (from + covered, arc.end()), ..part });
+            self.left = Some(Part { piece, start: (from + covered, arc.end()) });
         }
         Some(Expansion { piece, from, arc })
     }
@@ -427,7 +426,7 @@ impl<'a, Q: Moves> Arcs<'a, Q> {
         let Some(part) = &mut self.left else { return };
         let &Piece { level, before: &Motion { phase, .. }, .. } = part.piece;
         let periods = 2.0 * TAU / level.structure().vibration().contact;
-        let (passed, until) = (part.start.0, part.end.0);
+        let (passed, until) = (part.start.0, part.piece.duration);
         if phase != Phase::FullContact
             || level.structure().modes().len() != 1
             || passed - self.begin < periods
@@ -501,12 +500,12 @@ impl<'a, Q: Moves> Expansion<'a, Q> {
     /// Bounds of the magnitudes.
     pub(crate) fn most(&self) -> Magnitudes<'a, Q> {
         let loads = [self.from, self.from + self.arc.duration()].map(|tau| self.piece.load.at(tau));
-        self.most_under(self.piece.level.structure(), loads, &self.arc.end())
+        self.most_under(self.piece.level.structure(), &loads, &self.arc.end())
     }
 
     /// Bounds of the magnitudes, given the loads at both ends and the state at the last.
     #[inline(always)]
-    fn most_under(&self, structure: &Structure, loads: [Load<Q>; 2], end: &State<Q>) -> Magnitudes<'a, Q> {
+    fn most_under(&self, structure: &Structure, loads: &[Load<Q>; 2], end: &State<Q>) -> Magnitudes<'a, Q> {
         let &Expansion { piece, arc, .. } = self;
         let most = magnitudes(structure, piece.before.phase, loads, arc.most(end));
         let a_g = || Ramp { value: loads[0].a_g, slope: piece.load.slope.a_g };

@@ -303,7 +303,7 @@ impl<Q: Coordinates> ManyModes<Q> {
     /// The truncation that `start` requires over a step of `span` s, while rocking or not.
     #[inline]
     fn truncation(&self, start: &Start<Q>, span: f64, is_rocking: bool) -> Truncation<Q> {
-        let &Start { state, a_g, a_top, local_error, .. } = start;
+        let &Start { ref state, a_g, ref a_top, local_error, .. } = start;
         let (&Base { m_t, g, tan_alpha_cg, .. }, vibration) = (&self.base, self.vibration);
         let elastic = self.size(|j, mode| mode.stiffness / mode.mass * state.u.of(j));
         let load = self.size(|j, _| a_top.value.of(j)) + span * self.size(|j, _| a_top.slope.of(j));
@@ -546,8 +546,8 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
     /// The exact flow of every mode, if the moment of the springs certainly stays below what holds the base.
     fn leap(&self, phase: Phase, start: &Start<Q>) -> Option<State<Q>> {
         let (Phase::FullContact, Some(contact)) = (phase, &self.contact) else { return None };
-        let &Start { state, a_top, interval, .. } = start;
-        let (mut end, mut farthest, mut bend) = (State { theta: 0.0, theta_dot: 0.0, ..state }, 0.0, 0.0);
+        let &Start { ref state, ref a_top, interval, .. } = start;
+        let (mut end, mut farthest, mut bend) = (State { theta: 0.0, theta_dot: 0.0, ..*state }, 0.0, 0.0);
         let mut springs = [0.0; 2];
         for (j, (mode, (oscillator, flows))) in self.modes.iter().zip(contact).enumerate() {
             let (from, value, slope) = ([state.u.of(j), state.u_dot.of(j)], a_top.value.of(j), a_top.slope.of(j));
@@ -568,7 +568,7 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
 
     fn swings(&self, phase: Phase, start: &Start<Q>) -> Option<[Q; 4]> {
         let (Phase::FullContact, Some(contact)) = (phase, &self.contact) else { return None };
-        let &Start { state, a_top, interval, .. } = start;
+        let &Start { ref state, ref a_top, interval, .. } = start;
         let mut bounds = [Q::parts(&self.subject.structure, 0.0); 4];
         for (j, (oscillator, _)) in contact.iter().enumerate() {
             let from = [state.u.of(j), state.u_dot.of(j)];

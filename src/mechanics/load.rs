@@ -102,7 +102,7 @@ impl Load {
 impl<Q: Coordinates> Load<Q> {
     /// The ground acceleration that each mode feels, a_g Γ/μ − F_t/μ, m/s², beside the force on mass that no mode carries.
     #[inline(always)]
-    pub(crate) fn on_modes(self, structure: &Structure) -> Q {
+    pub(crate) fn on_modes(&self, structure: &Structure) -> Q {
         Q::each(structure, |j, mode| mode.part(self.a_g) - self.F_t.of(j) / mode.mass).beside(&self.F_t)
     }
 }
@@ -150,7 +150,7 @@ impl<Q: Coordinates> LinearLoad<Q> {
 
     /// Loads `tau` seconds after the start of the interval.
     #[inline]
-    pub fn at(self, tau: f64) -> Load<Q> {
+    pub fn at(&self, tau: f64) -> Load<Q> {
         Load {
             a_g: self.value.a_g + self.slope.a_g * tau,
             F_t: self.value.F_t.plus(self.slope.F_t, tau),
@@ -159,8 +159,8 @@ impl<Q: Coordinates> LinearLoad<Q> {
     }
 
     /// The same loads with an interval that starts `tau` seconds later.
-    pub fn from(self, tau: f64) -> LinearLoad<Q> {
-        LinearLoad { value: self.at(tau), ..self }
+    pub fn from(&self, tau: f64) -> LinearLoad<Q> {
+        LinearLoad { value: self.at(tau), slope: self.slope }
     }
 
     /// Whether the sum of the loads at the end of an `interval` (s) is finite. Then every load is finite throughout.
@@ -177,18 +177,18 @@ impl<Q: Coordinates> LinearLoad<Q> {
     }
 
     /// The vertical ground acceleration.
-    pub(crate) fn upwards(self) -> Ramp {
+    pub(crate) fn upwards(&self) -> Ramp {
         Ramp { value: self.value.a_v, slope: self.slope.a_v }
     }
 
     /// The horizontal ground acceleration.
-    pub(crate) fn on_foundation(self) -> Ramp {
+    pub(crate) fn on_foundation(&self) -> Ramp {
         Ramp { value: self.value.a_g, slope: self.slope.a_g }
     }
 
     /// The ground acceleration that each mode feels; of one mass, the acceleration that the top mass feels.
     #[inline]
-    pub(crate) fn on_top(self, structure: &Structure) -> Ramp<Q> {
+    pub(crate) fn on_top(&self, structure: &Structure) -> Ramp<Q> {
         if self.value.F_t.is_within(&Q::ZERO) && self.slope.F_t.is_within(&Q::ZERO) {
             let Ramp { value, slope } = self.on_foundation(); // the result of the divisions, at less cost
             return Ramp { value: Q::parts(structure, value), slope: Q::parts(structure, slope) };
@@ -198,7 +198,7 @@ impl<Q: Coordinates> LinearLoad<Q> {
 
     /// [`LinearLoad::on_top`] with a force.
     #[cold]
-    fn on_pushed_top(self, structure: &Structure) -> Ramp<Q> {
+    fn on_pushed_top(&self, structure: &Structure) -> Ramp<Q> {
         Ramp { value: self.value.on_modes(structure), slope: self.slope.on_modes(structure) }
     }
 }

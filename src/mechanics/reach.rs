@@ -249,7 +249,7 @@ mod tests {
             let ends = [0.0, reach].map(|sigma| arc.at(sigma));
             let loads = forces.map(|forces| structure.load(0.0, 0.0, &forces).unwrap());
             let phase = Phase::Rocking(Side::Right);
-            let most = magnitudes(&structure, phase, loads, arc.most(&ends[1]));
+            let most = magnitudes(&structure, phase, &loads, arc.most(&ends[1]));
             let off = OffChord::of(&arc, ends.map(|of| of.theta));
             for output in Output::all(&structure) {
                 let Some(place) = output.place(3) else { continue };

@@ -99,7 +99,7 @@ impl<Q: Moves> Drop for PeakWatch<'_, Q> {
 
 impl<Q: Moves> Watch<Q> for PeakWatch<'_, Q> {
     fn piece(&mut self, piece: &Piece<Q>) {
-        let &Piece { before, duration, load, end, level, arc, .. } = piece;
+        let &Piece { before, duration, ref load, ref end, level, arc, .. } = piece;
         let (until, loads, structure) = (before.time + duration, [load.value, load.at(duration)], level.structure());
         self.peaks.see_ground(loads[0].a_g, before.time);
         self.peaks.see_ground(loads[1].a_g, until);
@@ -107,7 +107,7 @@ impl<Q: Moves> Watch<Q> for PeakWatch<'_, Q> {
             self.peaks.look_at_dissipators(piece);
         }
         let [is_torn, is_first] = [&mut self.is_torn, &mut self.is_first].map(std::mem::take);
-        let most = piece.whole().most_under(structure, loads);
+        let most = piece.whole().most_under(structure, &loads);
         if !self.peaks.may_be_same(structure, &most) {
             return;
         }
@@ -128,7 +128,7 @@ impl<Q: Moves> Watch<Q> for PeakWatch<'_, Q> {
             self.look_back();
         }
         let (arc, bounds) = (arc.cloned().map(Box::new), std::mem::take(&mut self.bounds));
-        self.kept.push(Candidate { before: *before, duration, load, end, arc, bounds });
+        self.kept.push(Candidate { before: *before, duration, load: *load, end: *end, arc, bounds });
     }
 
     fn transition(&mut self, _transition: &Transition<Q>) {
