@@ -7,8 +7,7 @@ use crate::engine::Moves;
 use crate::engine::motion::Motion;
 use crate::engine::phases::{self, Step};
 use crate::engine::transition::Transition;
-use crate::levels::level::Level;
-use crate::levels::level::{Now, Subject};
+use crate::levels::level::{Level, Now, Subject, off_chord};
 use crate::mechanics::contact;
 use crate::mechanics::gauge::{Gauge, Reading};
 use crate::mechanics::instant::{Instant, Second};
@@ -326,7 +325,7 @@ impl<'a, Q: Moves> Part<'a, Q> {
             let [u, u_dot, u_ddot, jerk] = level.swings(before.phase, &step)?;
             let per_bend = step.interval * step.interval / 8.0;
             let off =
-                |swing: &Q, bend: &Q| Q::each(level.structure(), |j, _| (2.0 * swing.of(j)).min(bend.of(j) * per_bend));
+                |swing: &Q, bend: &Q| Q::each(level.structure(), |j, _| off_chord(swing.of(j), [bend.of(j), per_bend]));
             return Some(OffChord::new(off(&u, &u_ddot), off(&u_dot, &jerk), 0.0, thetas));
         };
         Some(OffChord::of(arc, thetas))

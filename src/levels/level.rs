@@ -148,11 +148,17 @@ pub trait Level<Q: Coordinates = f64>: Debug + Send {
     }
 }
 
-/// Bound of the magnitude of a motion from `first` to `last`. The motion leaves its chord by at most twice the `vibration` about a
-/// line, and by at most M h²/8 over the time h if its second derivative is at most M: `bend` is M and h²/8.
+/// How far a motion leaves its chord: by at most twice the `vibration` about a line, and by at most M h²/8 over the time h if its
+/// second derivative is at most M. `bend` is M and h²/8.
+#[inline(always)]
+pub(crate) fn off_chord<N: Real>(vibration: N, bend: [N; 2]) -> N {
+    (vibration.like(2.0) * vibration).min(bend[0] * bend[1])
+}
+
+/// Bound of the magnitude of a motion from `first` to `last`, as [`off_chord`] says.
 #[inline(always)]
 pub(crate) fn most_of_swing<N: Real>([first, last]: [N; 2], vibration: N, bend: [N; 2]) -> N {
-    first.abs().max(last.abs()) + (first.like(2.0) * vibration).min(bend[0] * bend[1])
+    first.abs().max(last.abs()) + off_chord(vibration, bend)
 }
 
 /// Bounds of the magnitudes of the state over a leap in full contact from `start` to `end`, given bounds of the vibration.

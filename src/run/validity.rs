@@ -29,6 +29,7 @@ use super::{Finish, Run, RunError, Runs};
 use crate::digits::short;
 use crate::engine::Moves;
 use crate::engine::piece::{Expansion, Part, Piece, Sample, Watch};
+use crate::levels::level::off_chord;
 use crate::mechanics::impact;
 use crate::mechanics::state::State;
 use crate::series::bisection::last_where;
@@ -431,8 +432,7 @@ fn extents<Q: Moves>(expansion: &Expansion<Q>) -> Reactions<Extent> {
 }
 
 /// Bounds of the reactions of the edges over a part in full contact, if the ground does not move vertically. The reactions of the motion
-/// that follows the load are linear in time. Those of the vibration leave their chord by at most twice their magnitude, and by at most
-/// M h²/8 over the time h if their second derivative is at most M.
+/// that follows the load are linear in time, so that the vibration alone leaves the chord.
 fn extents_of_vibration<Q: Moves>(part: Part<Q>) -> Option<Reactions<Extent>> {
     let &Piece { level, before: &Motion { phase, .. }, load, .. } = part.piece;
     let step = part.step();
@@ -445,7 +445,7 @@ fn extents_of_vibration<Q: Moves>(part: Part<Q>) -> Option<Reactions<Extent>> {
     let off = |output: Output, weight: f64| {
         let reach = &structure.reaches()[output.place(structure.floors().len()).expect("it reaches")];
         let of = |u: &Q, u_dot: &Q| reach.elastic(u, u_dot) + weight * moved(u);
-        (2.0 * of(&u, &u_dot)).min(per_bend * of(&u_ddot, &jerk))
+        off_chord(of(&u, &u_dot), [per_bend, of(&u_ddot, &jerk)])
     };
     let [first, last] = part.samples().map(|sample| sample.edges());
     Some(Reactions {
