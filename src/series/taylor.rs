@@ -94,7 +94,9 @@ fn shift<Q: Coordinates>(coefficients: &mut [Q], by: f64) {
 
 /// Coefficients of the same polynomial over `scale` from `from` on: 0 is then what `from` was, and 1 what lay `scale` beyond.
 pub fn stretch<Q: Coordinates>(coefficients: &mut [Q], from: f64, scale: f64) {
-    shift(coefficients, from);
+    if from != 0.0 {
+        shift(coefficients, from);
+    }
     coefficients.iter_mut().fold(1.0, |power, c| {
         *c = c.times(power);
         power * scale
