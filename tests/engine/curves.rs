@@ -16,18 +16,13 @@ fn ground() -> Record {
     Record::from_samples("two sines", samples.clone().collect(), samples.map(a_g).collect()).unwrap()
 }
 
-/// θ, u, a_t and a_g.
-fn values(point: &Point) -> [f64; 4] {
-    let [theta, u, a_t, _] = point.outputs[..] else { panic!("one mass has four drawn outputs") };
-    [theta, u, a_t, point.a_g]
-}
-
-/// Values at `time` of the line through `points`, after a transition at that instant.
-fn on_the_line(points: &[Point], time: f64) -> [f64; 4] {
+/// Values at `time` of the line through `points`, after a transition at that instant: the outputs, then a_g.
+fn on_the_line(points: &[Point], time: f64) -> Vec<f64> {
     let after = points.partition_point(|point| point.time <= time).clamp(1, points.len() - 1);
     let (from, to) = (&points[after - 1], &points[after]);
     let part = if to.time > from.time { (time - from.time) / (to.time - from.time) } else { 1.0 };
-    std::array::from_fn(|i| values(from)[i] * (1.0 - part) + values(to)[i] * part)
+    let [from, to] = [from, to].map(|point| point.outputs.iter().copied().chain([point.a_g]));
+    from.zip(to).map(|(from, to)| from * (1.0 - part) + to * part).collect()
 }
 
 #[test]
@@ -37,25 +32,21 @@ fn lines_stay_as_close_to_the_motion_as_was_asked_for() {
     for detail in Detail::ALL {
         let run = Run { detail, end: End::At(8.0), ..Run::new(structure, &ground) };
         let found = run.found(&mut ()).unwrap();
-        let peaks = &found.peaks;
-        let largest = [peaks.theta(), peaks.of(Output::u(0)).unwrap(), peaks.of(Output::a_t(0)).unwrap(), peaks.a_g()]
-            .map(|peak| peak.magnitude);
+        let outputs = [Output::theta, Output::u(0), Output::a_t(0)];
+        let largest = outputs.map(|of| found.peaks.of(of).unwrap().magnitude.max(1e-12));
+        let of_ground = found.peaks.a_g().magnitude;
         for part in [1e-2, 1e-4] {
             let curve = run.curve(part).unwrap();
             assert_eq!(curve.found, found);
-            let times = (0..80_000).map(|i| 1e-4 * f64::from(i)).take_while(|time| *time < found.finish.motion.time);
-            let mut missed = [0.0f64; 4];
-            let mut compare = |time: f64, expected: [f64; 4]| {
-                let found = on_the_line(&curve.points, time);
-                (0..4).for_each(|i| missed[i] = missed[i].max((found[i] - expected[i]).abs() / largest[i].max(1e-12)));
-            };
             let show = |sample: &Sample| {
-                let [theta, u, a_t] = [Output::theta, Output::u(0), Output::a_t(0)].map(sample.outputs());
-                compare(sample.motion.time, [theta, u, a_t, sample.load.a_g]);
+                let line = on_the_line(&curve.points, sample.motion.time);
+                for (i, expected) in outputs.map(sample.outputs()).into_iter().enumerate() {
+                    assert!((line[i] - expected).abs() <= part * largest[i], "{detail:?} {part} {:?}", outputs[i]);
+                }
+                assert!((line[line.len() - 1] - sample.load.a_g).abs() < 1e-12 * of_ground, "{detail:?}");
             };
+            let times = (0..80_000).map(|i| 1e-4 * f64::from(i)).take_while(|time| *time < found.finish.motion.time);
             run.sample(times, show, &mut ()).unwrap();
-            assert!(missed[..3].iter().all(|missed| *missed <= part), "{detail:?} {part} {missed:?}");
-            assert!(missed[3] < 1e-12, "{detail:?} {missed:?}");
         }
     }
 }
@@ -66,12 +57,13 @@ fn peaks_and_transitions_are_points() {
     let ground = ground();
     let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     let curve = Run::new(structure, &ground).curve(1e-2).unwrap();
-    let peaks = curve.found.peaks;
-    let peaks = [peaks.theta(), peaks.of(Output::u(0)).unwrap(), peaks.of(Output::a_t(0)).unwrap(), peaks.a_g()];
-    for (i, peak) in peaks.into_iter().enumerate() {
-        let most = curve.points.iter().map(|point| values(point)[i].abs()).fold(0.0, f64::max);
-        assert!((most / peak.magnitude - 1.0).abs() < 1e-9, "{i}: {most} {peak:?}");
+    for (i, of) in [Output::theta, Output::u(0), Output::a_t(0)].into_iter().enumerate() {
+        let most = curve.points.iter().map(|point| point.outputs[i].abs()).fold(0.0, f64::max);
+        let peak = curve.found.peaks.of(of).unwrap();
+        assert!((most / peak.magnitude - 1.0).abs() < 1e-9, "{of:?}: {most} {peak:?}");
     }
+    let most = curve.points.iter().map(|point| point.a_g.abs()).fold(0.0, f64::max);
+    assert!((most / curve.found.peaks.a_g().magnitude - 1.0).abs() < 1e-9, "{most}");
     assert!(curve.transitions.len() > 10);
     assert!(curve.points.is_sorted_by(|a, b| a.time <= b.time));
     assert_eq!(curve.points.last().unwrap().time, curve.found.finish.motion.time);
@@ -79,7 +71,7 @@ fn peaks_and_transitions_are_points() {
         let i = curve.points.partition_point(|point| point.time < transition.time);
         let (before, after) = (&curve.points[i], &curve.points[i + 1]);
         assert_eq!((before.time, after.time), (transition.time, transition.time));
-        assert_eq!((values(before)[1], values(after)[1]), (transition.before.u, transition.after.u));
+        assert_eq!((before.outputs[1], after.outputs[1]), (transition.before.u, transition.after.u));
         assert_eq!(before.phase == Phase::FullContact, matches!(transition.kind, TransitionKind::Uplift(_)));
     }
 }
@@ -111,22 +103,15 @@ fn lines_of_many_masses_stay_as_close_to_each_floor() {
         let most = curve.points.iter().map(|point| point.outputs[i].abs()).fold(0.0, f64::max);
         assert!((most / largest - 1.0).abs() < 1e-9, "{:?}: {most} {largest}", outputs[i]);
     }
-    let (mut missed, mut after) = (vec![0.0f64; outputs.len()], 1);
     let show = |sample: &Sample<Modes>| {
-        let time = sample.motion.time;
-        while curve.points[after].time <= time && after + 1 < curve.points.len() {
-            after += 1;
-        }
-        let (from, to) = (&curve.points[after - 1], &curve.points[after]);
-        let part = if to.time > from.time { (time - from.time) / (to.time - from.time) } else { 1.0 };
-        let line = |i: usize| from.outputs[i] * (1.0 - part) + to.outputs[i] * part;
+        let line = on_the_line(&curve.points, sample.motion.time);
         for (i, of) in outputs.iter().enumerate() {
-            missed[i] = missed[i].max((line(i) - sample.output(*of)).abs() / largest[i]);
+            let missed = (line[i] - sample.output(*of)).abs() / largest[i];
+            assert!(missed <= 1e-3, "{of:?}: {missed}");
         }
-        let pull = line(outputs.len());
+        let pull = line[outputs.len()];
         let e = 2.0 * 1.5 * f64::sin(sample.motion.state.theta.abs() / 2.0);
-        assert!((pull - 1e5 - 1e6 * e).abs() <= 1.1e-3 * 1.5e6 * largest[0], "{time} {pull} {e}");
+        assert!((pull - 1e5 - 1e6 * e).abs() <= 1.1e-3 * 1.5e6 * largest[0], "{pull} {e}");
     };
     run.sample((0..60_000).map(|i| 1e-4 * f64::from(i)), show, &mut ()).unwrap();
-    assert!(missed.iter().all(|missed| *missed <= 1e-3), "{missed:?}");
 }

@@ -1,35 +1,27 @@
 //! The edges of what the engine accepts: parameters at the ends of their ranges, angles and steps next to nothing, at
 //! every level of detail.
 
+use crate::common::{start, transitions};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use proptest::prelude::*;
-use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE};
+use rocking::engine::AdvanceError;
 use rocking::mechanics::energy::energy;
 use rocking::{
-    Detail, Engine, LinearLoad, Load, Motion, OneMass, Output, Parameters, Phase, Progress, State, Transition,
-    TransitionKind,
+    Detail, Engine, Load, Motion, OneMass, Output, Parameters, Phase, Progress, State, Transition, TransitionKind,
 };
 use std::f64::consts::FRAC_PI_2;
 
 /// All but the fixed base.
 const ROCKING: [Detail; 5] = [Detail::Auto, Detail::Nonlinear, Detail::Linear, Detail::Modal, Detail::Rigid];
 
-fn ground(value: f64) -> LinearLoad {
-    LinearLoad { value: Load::ground(value), slope: Load::default() }
-}
-
 /// Evison's wall from `initial` through the instants `until` under the ground acceleration `a_g`.
 fn run(detail: Detail, initial: State, a_g: f64, until: &[f64]) -> (Motion, Vec<Transition>) {
-    let structure = OneMass::new(Parameters::EVISON).unwrap();
-    let mut engine = Engine::with_detail(structure, initial, 0.0, DEFAULT_TOLERANCE, detail).unwrap();
-    let mut transitions = Vec::new();
-    for until in until {
-        engine
-            .advance(until - engine.motion().time, ground(a_g), &mut |transition: &Transition| {
-                transitions.push(*transition)
-            })
-            .unwrap();
-    }
+    let mut engine = start(Parameters::EVISON, initial, detail);
+    let advance = |until: &f64| {
+        let interval = until - engine.motion().time;
+        transitions(&mut engine, interval, Load::ground(a_g))
+    };
+    let transitions = Vec::from_iter(until.iter().flat_map(advance));
     (*engine.motion(), transitions)
 }
 
@@ -101,7 +93,9 @@ fn a_step_may_end_right_before_a_return() {
     let released = State { u: structure.u_cr, ..State::default() };
     let run = |until: &[f64]| {
         let mut engine = Engine::new(structure, released, 0.0, 1e-10).unwrap();
-        until.iter().for_each(|until| _ = engine.advance(until - engine.motion().time, ground(0.0), &mut ()).unwrap());
+        until
+            .iter()
+            .for_each(|until| _ = engine.advance(until - engine.motion().time, Load::default(), &mut ()).unwrap());
         *engine.motion()
     };
     let (whole, cut) = (run(&[1e-9]), run(&[2e-9 / (2.0 * structure.zeta_u * structure.omega_u), 1e-9]));
@@ -128,7 +122,7 @@ fn a_way_without_end_is_told_for_what_it_is() {
     let released = State { theta: 0.0265, ..State::default() };
     let mut engine = Engine::new(structure.unwrap(), released, 0.0, 1e-10).unwrap();
     let before = *engine.motion();
-    let Err(AdvanceError::Singular { time, u, .. }) = engine.advance(0.01, ground(0.0), &mut ()) else {
+    let Err(AdvanceError::Singular { time, u, .. }) = engine.advance(0.01, Load::default(), &mut ()) else {
         panic!("goes on")
     };
     assert!(time < 2e-3 && (u - 1e-3).abs() < 1e-6, "{time} s, {u} m");
@@ -232,8 +226,7 @@ proptest! {
             if until <= time {
                 continue;
             }
-            let value = Load { a_g: peak * a_g, F_t: peak * parameters.m * F_t, a_v: 0.0 };
-            let load = LinearLoad { value, slope: Load::default() };
+            let load = Load { a_g: peak * a_g, F_t: peak * parameters.m * F_t, a_v: 0.0 };
             let mut transitions = Vec::new();
             match engine.advance(until - engine.motion().time, load, &mut |transition: &Transition| transitions.push(*transition)) {
                 Ok(progress) => {
@@ -248,9 +241,9 @@ proptest! {
                 Err(error) => prop_assert!(false, "{error}"),
             }
             let Motion { state, phase: now, .. } = *engine.motion();
-            let outputs = Output::all(engine.structure()).into_iter().map(engine.outputs(load.value));
+            let outputs = Output::all(engine.structure()).into_iter().map(engine.outputs(load));
             let outputs = Vec::from_iter(outputs);
-            let reactions = engine.reactions(load.value);
+            let reactions = engine.reactions(load);
             prop_assert!(outputs.iter().chain(&[reactions.R_h, reactions.R_v]).all(|x| x.is_finite()), "{outputs:?} {reactions:?}");
             match now {
                 Phase::FullContact => prop_assert_eq!((state.theta, state.theta_dot), (0.0, 0.0)),

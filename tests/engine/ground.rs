@@ -1,9 +1,9 @@
 //! Ground that gives: printed numbers, closed forms, energy. An independent integration is in `test_ground.py`.
 
+use crate::common::{peaks_beside_samples, transitions};
 use crate::modes::three_storeys;
 use approx::assert_relative_eq;
 use rocking::engine::Settings;
-use rocking::engine::piece::Sample;
 use rocking::run::record::Record;
 use rocking::run::validity::of_structure;
 use rocking::run::{End, Ending, Run};
@@ -45,9 +45,7 @@ fn evison_on_two_springs_has_its_six_events_and_peaks() {
     assert_relative_eq!(structure.foundation().unwrap().rest, -9.70664855e-6, max_relative = 1e-9);
     let no_load = structure.load(0.0, 0.0, &[]).unwrap();
     assert_relative_eq!(engine.output(Output::y, no_load), 11.37754695e-3, max_relative = 1e-9);
-    let mut events = Vec::new();
-    let mut watch = |transition: &Transition<Modes>| events.push((transition.kind, transition.time));
-    engine.advance(0.5, no_load, &mut watch).unwrap();
+    let events = transitions(&mut engine, 0.5, no_load);
     use TransitionKind::{Release, Touch};
     let expected = [
         (Touch(0), 0.167986795),
@@ -58,7 +56,7 @@ fn evison_on_two_springs_has_its_six_events_and_peaks() {
         (Release(0), 0.490062871),
     ];
     assert_eq!(events.len(), expected.len(), "{events:?}");
-    for ((kind, time), (of, at)) in events.into_iter().zip(expected) {
+    for (Transition { kind, time, .. }, (of, at)) in events.into_iter().zip(expected) {
         assert!(kind == of && (time - at).abs() < 1e-9, "{kind:?} {time}");
     }
     let none = Record::from_samples("none", vec![0.0, 0.5], vec![0.0, 0.0]).unwrap();
@@ -84,13 +82,14 @@ fn energy_is_kept() {
         (frame(ground(12.0, 0.0, 2)).without_modes(), 0.0, 0.1, 5.0),
     ];
     for (structure, u, theta, until) in scenes {
-        let (mut engine, mut kinds) = (engine(&structure, u, theta), Vec::new());
+        let mut engine = engine(&structure, u, theta);
         let whole = |engine: &Engine<Modes>| {
             let (taken, load) = (engine.motion().dissipators, structure.load(0.0, 0.0, &[]).unwrap());
             engine.energy() + engine.output(Output::E_foundation, load) + taken.viscous + taken.hysteretic
         };
         let start = whole(&engine);
-        engine.advance(until, load(&structure, 0.0, 0.0), &mut |it: &Transition<Modes>| kinds.push(it.kind)).unwrap();
+        let transitions = transitions(&mut engine, until, load(&structure, 0.0, 0.0));
+        let kinds = Vec::from_iter(transitions.iter().map(|it| it.kind));
         assert!(kinds.len() > 3, "{kinds:?}");
         if structure.base().is_restrained() {
             use TransitionKind::{Slack, Unloading, Yielding};
@@ -121,17 +120,17 @@ fn a_drop_rebounds_as_one_spring_and_dashpot_do() {
         };
         assert!((rebound - expected).abs() < 6e-4);
         let structure = one_mass(EVISON, ground(20.0, zeta, 11));
-        let (mut engine, mut seen) = (engine(&structure, 0.0, 0.0), Vec::new());
+        let mut engine = engine(&structure, 0.0, 0.0);
         // the springs throw the base up, the ground comes after it for a while, and meets it at a constant velocity
-        for (interval, a_v) in [(0.5, -9.81), (0.01, 90.0), (2.0, -9.81)] {
-            let mut watch = |it: &Transition<Modes>| seen.push((it.kind, it.time, it.after.u_dot.numbers()[1]));
-            engine.advance(interval, load(&structure, 0.0, a_v), &mut watch).unwrap();
-        }
+        let seen = [(0.5, -9.81), (0.01, 90.0), (2.0, -9.81)]
+            .map(|(interval, a_v)| transitions(&mut engine, interval, load(&structure, 0.0, a_v)))
+            .concat();
         assert_eq!(seen.len(), 33, "{seen:?}");
         for (act, of) in seen.chunks(11).zip([TransitionKind::Release(0), TransitionKind::Touch(0)]) {
-            assert!(act.iter().all(|(kind, time, _)| kind.name() == of.name() && *time == act[0].1), "{act:?}");
+            assert!(act.iter().all(|it| it.kind.name() == of.name() && it.time == act[0].time), "{act:?}");
         }
-        assert_relative_eq!(seen[22].2, -rebound * seen[11].2, max_relative = 1e-10);
+        let [fallen, rebounds] = [11, 22].map(|at| seen[at].after.u_dot.numbers()[1]);
+        assert_relative_eq!(rebounds, -rebound * fallen, max_relative = 1e-10);
         assert!(engine.motion().state.theta.abs() < 1e-15);
     }
 }
@@ -180,20 +179,13 @@ fn a_structure_at_rest_is_carried_and_comes_to_rest() {
 
     let pulse = Record::from_samples("pulse", vec![0.0, 0.1, 0.2], vec![0.0, 9.0, 0.0]).unwrap();
     let run = Run::of_modes(one_mass(EVISON, ground(60.0, 0.2, 3)), &pulse);
-    let mut events = 0;
-    let finish = run.follow(&mut |_: &Transition<Modes>| events += 1).unwrap();
-    assert!(finish.ending == Ending::AtRest && events > 4, "{:?} {events}", finish.ending);
+    let finish = run.follow(&mut ()).unwrap();
+    assert!(finish.ending == Ending::AtRest && finish.motion.transitions > 4, "{finish:?}");
     let (peaks, _) = Run { detail: Detail::FixedBase, ..run.clone() }.peaks().unwrap();
     let tied = Parameters { P_0: 500.0, k_t: 1e4, xi_d: 0.2, c_d: 900.0, k_d: 1e5, F_y: 150.0, ..EVISON };
     let tied = Run { end: End::At(2.0), ..Run::of_modes(one_mass(tied, ground(60.0, 0.2, 3)), &pulse) };
-    let (mut most, (of_ties, _)) = ([0.0_f64; 3], tied.peaks().unwrap());
-    let see = |sample: &Sample<Modes>| {
-        most = [0, 1, 2].map(|i| most[i].max(sample.output(Output::OF_TIES[i]).abs()));
-    };
-    tied.sample((0..200_000).map(|i| 1e-5 * f64::from(i)), see, &mut ()).unwrap();
-    for (of, most) in Output::OF_TIES.into_iter().zip(most) {
-        assert_relative_eq!(of_ties.of(of).unwrap().magnitude, most, max_relative = 1e-4);
-    }
+    let times = (0..200_000).map(|i| 1e-5 * f64::from(i));
+    peaks_beside_samples(&tied, times, &Output::OF_TIES, 1e-4, |_| ());
     let settled = -run.structure.foundation().unwrap().rest;
     assert_eq!([Output::theta, Output::settlement].map(|of| peaks.of(of).unwrap().magnitude), [0.0, settled]);
     let refusal = Run { detail: Detail::Linear, ..run }.peaks().unwrap_err().to_string();

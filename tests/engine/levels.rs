@@ -1,10 +1,13 @@
-//! The levels of detail from outside: the rigid one against its closed forms, rest, memory. What tolerances promise is in
+//! The levels of detail from outside: the rigid one against its closed forms, rest, memory, advances that end at transitions. What tolerances promise is in
 //! `tolerance.rs`.
 
-use crate::shaking::shaking;
+use crate::common::{shaking, transitions};
 use approx::assert_abs_diff_eq;
+use rocking::engine::Settings;
 use rocking::levels::rules::MAX_RIGID_TRANSITIONS_PER_PERIOD;
-use rocking::{Detail, Engine, OneMass, Parameters, Phase, Progress, Ramp, Side, State, Transition, TransitionKind};
+use rocking::{
+    Detail, Engine, Motion, OneMass, Parameters, Phase, Progress, Ramp, Side, State, Transition, TransitionKind,
+};
 
 const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };
 
@@ -27,8 +30,7 @@ fn rigid_rocks_as_its_equation_says() {
     };
     let squared = initial.theta_dot.powi(2) + 2.0 * (work(0.0) - work(initial.theta)) / structure.J_P;
     let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-10, Detail::Rigid).unwrap();
-    let mut impacts = Vec::new();
-    engine.advance(1.0, push, &mut |impact: &Transition| impacts.push(*impact)).unwrap();
+    let impacts = transitions(&mut engine, 1.0, push);
     assert_eq!(impacts[0].kind, TransitionKind::Impact(Side::Right));
     assert_abs_diff_eq!(impacts[0].before.theta_dot, squared.sqrt(), epsilon = 1e-10);
     assert_eq!(impacts[0].after.theta_dot, r * impacts[0].before.theta_dot);
@@ -42,8 +44,7 @@ fn rigid_comes_to_rest_with_less_energy_than_the_tolerance() {
     for tolerance in [1e-4, 1e-9] {
         let released = State { theta: 0.1, ..State::default() };
         let mut engine = Engine::with_detail(structure, released, 0.0, tolerance, Detail::Rigid).unwrap();
-        let mut transitions = Vec::new();
-        engine.advance(30.0, STILL, &mut |transition: &Transition| transitions.push(*transition)).unwrap();
+        let transitions = transitions(&mut engine, 30.0, STILL);
         let landing = transitions.last().unwrap();
         assert_eq!(landing.kind, TransitionKind::Landing);
         assert_eq!(engine.motion().phase, Phase::FullContact);
@@ -65,12 +66,8 @@ fn too_many_impacts_end_in_contact() {
     let period = 1.0 / structure.p_l;
     let released = State { theta: 1e-11, ..State::default() };
     let mut engine = Engine::with_detail(structure, released, 0.0, 1e-9, Detail::Rigid).unwrap();
-    let mut transitions = Vec::new();
-    let mut advance = |interval, a_g| {
-        engine.advance(interval, a_g, &mut |transition: &Transition| transitions.push(*transition)).unwrap();
-    };
-    advance(0.9 * period, STILL);
-    advance(0.2 * period, Ramp { value: 9.0, slope: 0.0 });
+    let mut advance = |interval, value| transitions(&mut engine, interval, Ramp { value, slope: 0.0 });
+    let transitions = [advance(0.9 * period, 0.0), advance(0.2 * period, 9.0)].concat();
     let [settling, uplift] = transitions[transitions.len() - 2..] else { unreachable!() };
     assert_eq!(transitions.len(), MAX_RIGID_TRANSITIONS_PER_PERIOD as usize + 2);
     assert_eq!((settling.kind, uplift.kind), (TransitionKind::Settling, TransitionKind::Uplift(Side::Left)));
@@ -84,9 +81,7 @@ fn rigid_lifts_off_when_the_push_exceeds_its_slenderness() {
     let limit = 9.81 * structure.tan_alpha_cg;
     let ramp = Ramp { value: 0.0, slope: 2.0 * limit };
     let mut engine = Engine::with_detail(structure, State::default(), 0.0, 1e-9, Detail::Rigid).unwrap();
-    let mut first = None;
-    engine.advance(0.55, ramp, &mut |transition: &Transition| first = first.or(Some(*transition))).unwrap();
-    let first = first.unwrap();
+    let first = transitions(&mut engine, 0.55, ramp)[0];
     assert_eq!(first.kind, TransitionKind::Uplift(Side::Left)); // ground to the right, structure to the left
     assert_abs_diff_eq!(first.time, 0.5, epsilon = 1e-11);
     assert!(engine.motion().state.theta < 0.0);
@@ -171,4 +166,39 @@ fn stepping_allocates_nothing() {
         assert_eq!(counted.count_total, 0, "{}", detail.name());
         assert!(transitions > 0 || detail == Detail::FixedBase, "{}", detail.name());
     }
+}
+
+/// Advances that end at transitions meet the transitions of one long advance, each before it is applied: the last state of
+/// rocking is on the ground, and the last state of full contact at the limit of uplift.
+#[test]
+fn an_advance_can_end_at_every_transition() {
+    let structure = OneMass::new(Parameters { r: 0.85, ..Parameters::EVISON }).unwrap();
+    let released = State { theta: 0.01, ..State::default() };
+    let new = |stops| Engine::with(structure, released, 0.0, Settings { stops, ..Settings::default() }).unwrap();
+    let (mut through, mut to_each) = (new(false), new(true));
+    let (expected, mut met) = (transitions(&mut through, 1.0, STILL), Vec::new());
+    while to_each.motion().time < 1.0 {
+        let due = to_each.advance(1.0 - to_each.motion().time, STILL, &mut ()).unwrap() == Progress::Transition;
+        let Motion { phase, state, .. } = *to_each.motion();
+        assert_eq!(to_each.motion().is_transition_due(), due);
+        if due {
+            let limit = if phase == Phase::FullContact { state.u.abs() - structure.u_cr } else { state.theta };
+            assert!(limit.abs() < 1e-14 || phase == Phase::FullContact && limit > 0.0, "{phase:?} {state:?}");
+            to_each.transit(&mut |transition: &Transition| met.push(*transition));
+            assert_ne!(to_each.motion().phase, phase);
+        }
+    }
+    assert!(expected.len() > 10);
+    assert_eq!(met.len(), expected.len());
+    for (transition, expected) in met.iter().zip(&expected) {
+        assert_eq!(transition.kind, expected.kind);
+        assert_abs_diff_eq!(transition.time, expected.time, epsilon = 1e-10);
+        assert_abs_diff_eq!(transition.after.u_dot, expected.after.u_dot, epsilon = 1e-8);
+    }
+    // what is due is applied by the next advance if nobody has
+    let mut left = new(true);
+    while left.motion().time < 1.0 {
+        left.advance(1.0 - left.motion().time, STILL, &mut ()).unwrap();
+    }
+    assert_eq!(left.motion().state, to_each.motion().state);
 }

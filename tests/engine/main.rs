@@ -1,10 +1,10 @@
 //! The engine from outside, as one program: linking one takes less time than linking one for each file.
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
+mod common;
 mod curves;
 mod edges;
 mod ground;
-mod hybrid_engine;
 mod levels;
 mod missed_peaks;
 mod modes;
@@ -14,7 +14,6 @@ mod profiles;
 mod reactions;
 mod restrained;
 mod runs;
-mod shaking;
 mod tolerance;
 mod top_force;
 mod validity;

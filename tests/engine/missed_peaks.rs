@@ -1,6 +1,7 @@
 //! Peaks, and what motions go beyond, against dense sampling of the same pieces: random structures, states and loads at all
 //! levels.
 
+use crate::common::{between, log_between};
 use fastrand::Rng;
 use rocking::engine::Settings;
 use rocking::engine::piece::Sample;
@@ -9,14 +10,6 @@ use rocking::run::validity::{Findings, Limits, Validity};
 use rocking::{
     Detail, Engine, LinearLoad, Load, OneMass, Output, Parameters, Phase, Piece, Progress, Reactions, State, Watch,
 };
-
-fn between(rng: &mut Rng, low: f64, high: f64) -> f64 {
-    low + (high - low) * rng.f64()
-}
-
-fn log_between(rng: &mut Rng, low: f64, high: f64) -> f64 {
-    between(rng, low.ln(), high.ln()).exp()
-}
 
 /// From -1 to 1.
 fn either_way(rng: &mut Rng) -> f64 {
@@ -27,7 +20,7 @@ fn either_way(rng: &mut Rng) -> f64 {
 struct Dense {
     parameters: Parameters,
     largest: [f64; PEAKS.len()],
-    /// (|R_m|/B − R_v)/W in full contact, −R_v/W, and |R_h|/R_v while R_v > 0, otherwise ∞.
+    /// As [`worst`] has them.
     worst: [f64; 3],
     /// How long each of them is beyond its limit, s, and the first sample that is.
     beyond: [f64; 3],
@@ -42,7 +35,7 @@ fn magnitudes(sample: &Sample) -> [f64; PEAKS.len()] {
     PEAKS.map(sample.outputs()).map(f64::abs)
 }
 
-/// As in [`Dense::worst`].
+/// (|R_m|/B − R_v)/W in full contact, −R_v/W, and |R_h|/R_v while R_v > 0, otherwise ∞.
 fn worst(&Parameters { m, m0, B, g, .. }: &Parameters, phase: Phase, r: Reactions) -> [f64; 3] {
     let weight = (m + m0) * g;
     let friction = if r.R_v > 0.0 { r.R_h.abs() / r.R_v } else { f64::INFINITY };

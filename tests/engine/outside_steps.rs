@@ -1,6 +1,7 @@
 //! An integrator of its own on the equations of the library: never below the floor, and nearer to the engine the smaller
 //! its steps. Bad integrators are in `test_model_exchange.py`.
 
+use crate::common::transitions;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::outside_step::{BAND, Checked, Checkpoint};
 use rocking::run::record::Record;
@@ -22,8 +23,10 @@ struct Outside<'a> {
 }
 
 impl<'a> Outside<'a> {
-    fn new(structure: OneMass, initial: State, detail: Detail, record: &'a Record) -> Outside<'a> {
-        let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-12, detail).unwrap();
+    /// From rest.
+    fn new(detail: Detail, record: &'a Record) -> Outside<'a> {
+        let structure = OneMass::new(Parameters::MCMANUS).unwrap();
+        let mut engine = Engine::with_detail(structure, State::default(), 0.0, 1e-12, detail).unwrap();
         let (mut transitions, ground) = (Vec::new(), GroundMotion::from(record));
         let a_g = LinearLoad::default().on_ground(ground.at(Elapsed::default())).value;
         engine.lift_off_if_due(a_g, &mut |transition: &Transition| transitions.push(*transition));
@@ -82,8 +85,7 @@ impl<'a> Outside<'a> {
 
 /// The sway u + H θ at every hundredth of a second, by steps of `h`.
 fn outside(detail: Detail, record: &Record, h: f64) -> (Vec<f64>, Outside<'_>) {
-    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
-    let mut outside = Outside::new(structure, State::default(), detail, record);
+    let mut outside = Outside::new(detail, record);
     let steps = (0.01 / h).round() as usize;
     let row = |_| {
         (0..steps).for_each(|_| outside.step(h));
@@ -94,9 +96,8 @@ fn outside(detail: Detail, record: &Record, h: f64) -> (Vec<f64>, Outside<'_>) {
 
 /// The same by the engine, and its transitions.
 fn own(detail: Detail, record: &Record) -> (Vec<f64>, Vec<Transition>) {
-    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
-    let mut engine = Engine::with_detail(structure, State::default(), 0.0, 1e-12, detail).unwrap();
-    let (mut transitions, mut elapsed, ground) = (Vec::new(), Elapsed::default(), GroundMotion::from(record));
+    let Outside { mut engine, ground, mut transitions, .. } = Outside::new(detail, record);
+    let mut elapsed = Elapsed::default();
     let row = |_| {
         let mut watch = |transition: &Transition| transitions.push(*transition);
         ground.advance(&mut engine, &mut elapsed, 0.01, LinearLoad::default(), &mut watch).unwrap();
@@ -132,55 +133,41 @@ fn the_smaller_the_steps_the_nearer_to_the_engine() {
     }
 }
 
-/// A hop that starts and ends within one step leaves no trace at the step's end but the engine's.
+/// A hop that starts and ends within one step leaves no trace at the step's end but the engine's. A step's end that is beyond a
+/// guard, whether the engine reaches that or not, is put back to where the engine is.
 #[test]
-fn a_hop_within_one_step_is_found() {
-    let structure = OneMass::new(Parameters::EVISON).unwrap();
-    let initial = State { theta: 1e-5, theta_dot: 1e-4, ..State::default() };
-    let mut engine = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
-    let known = Checkpoint { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
-    let mut alone = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
-    alone.advance(0.05, Load::default(), &mut ()).unwrap();
-    assert!(alone.motion().transitions > 0);
-
-    engine.set_time(0.05);
-    engine.set_state(initial); // an integrator to which nothing has happened
-    let mut seen = 0;
-    let mut watch = |_: &Transition| seen += 1;
-    let checked = known.check(&mut engine, None, Elapsed::default(), Load::default(), &mut watch).unwrap();
-    assert_eq!(checked, Checked { motion: *alone.motion(), is_corrected: true, was_hidden: true });
-    assert_eq!((seen, engine.motion().state), (alone.motion().transitions, initial));
-
-    engine.set_state(State { theta: -1e-3, ..initial }); // or one that fell through the floor
-    let checked = known.check(&mut engine, None, Elapsed::default(), Load::default(), &mut ()).unwrap();
-    assert_eq!(checked, Checked { motion: *alone.motion(), is_corrected: true, was_hidden: false });
-}
-
-/// A step's end that is beyond a guard which the engine does not reach is put back to where the engine is.
-#[test]
-fn a_step_that_ends_below_the_floor_without_reason_is_put_right() {
-    let structure = OneMass::new(Parameters::EVISON).unwrap();
-    let initial = State { theta: 0.03, ..State::default() };
-    let mut engine = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
-    let known = Checkpoint { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
-    let mut alone = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
-    alone.advance(1e-3, Load::default(), &mut ()).unwrap();
-    for wrong in [-1e-3, 3.0, f64::NAN] {
-        engine.set_time(1e-3);
-        engine.set_state(State { theta: wrong, ..initial });
-        let checked = known.check(&mut engine, None, Elapsed::default(), Load::default(), &mut ()).unwrap();
-        assert_eq!(checked, Checked { motion: *alone.motion(), is_corrected: true, was_hidden: false }, "{wrong}");
+fn a_step_that_hides_a_hop_or_ends_below_the_floor_is_put_right() {
+    let hop = State { theta: 1e-5, theta_dot: 1e-4, ..State::default() };
+    let high = State { theta: 0.03, ..State::default() };
+    for (initial, duration, hops, ends) in
+        [(hop, 0.05, true, [hop.theta, -1e-3].as_slice()), (high, 1e-3, false, &[-1e-3, 3.0, f64::NAN])]
+    {
+        let [mut engine, mut alone] =
+            [(); 2].map(|()| Engine::new(OneMass::new(Parameters::EVISON).unwrap(), initial, 0.0, 1e-12).unwrap());
+        let known = Checkpoint { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
+        let transitions = transitions(&mut alone, duration, Load::default());
+        assert_eq!(!transitions.is_empty(), hops);
+        for &theta in ends {
+            let state = State { theta, ..initial }; // an integrator to which nothing has happened, or that fell
+            engine.set_time(duration);
+            engine.set_state(state);
+            let mut seen = Vec::new();
+            let mut watch = |transition: &Transition| seen.push(*transition);
+            let checked = known.check(&mut engine, None, Elapsed::default(), Load::default(), &mut watch).unwrap();
+            let was_hidden = state == initial;
+            assert_eq!(checked, Checked { motion: *alone.motion(), is_corrected: true, was_hidden }, "{theta}");
+            assert_eq!(seen, transitions);
+            assert!(engine.motion().state == state || theta.is_nan());
+        }
     }
 }
 
 #[test]
 fn indicators_vanish_where_the_engine_sees_transitions() {
     let record = burst();
-    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     for detail in [Detail::Auto, Detail::Linear, Detail::Modal, Detail::Rigid] {
         let (_, transitions) = own(detail, &record);
-        let ground = GroundMotion::from(&record);
-        let mut engine = Engine::with_detail(structure, State::default(), 0.0, 1e-12, detail).unwrap();
+        let Outside { mut engine, ground, .. } = Outside::new(detail, &record);
         let mut elapsed = Elapsed::default();
         for transition in transitions.iter().take(12) {
             let step = transition.time - engine.motion().time;

@@ -1,7 +1,7 @@
 //! Peaks of leaps, of equal crests and of contact that lasts no time, and what finding peaks costs. That none is missed
 //! is in `missed_peaks.rs`.
 
-use crate::shaking::shaking;
+use crate::common::shaking;
 use rocking::run::peaks::Peaks;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};

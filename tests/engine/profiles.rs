@@ -1,5 +1,6 @@
 //! Runs of structures of many masses: the exact peaks of each floor.
 
+use crate::common::peaks_beside_samples;
 use rocking::engine::AdvanceError;
 use rocking::engine::piece::Sample;
 use rocking::run::peaks::Peaks;
@@ -95,37 +96,22 @@ fn a_profile_holds_every_sample_and_no_more() {
     for modes in 0..=3 {
         let frame = tied_storeys(0.0, 0.0, 0.02).keeping(modes).unwrap();
         let run = Run { end: End::At(4.0), ..Run::of_modes(frame.clone(), &ground) };
-        let (profile, finish) = run.peaks().unwrap();
-        assert!(finish.motion.transitions > 2, "{}", finish.motion.transitions);
-        let outputs = Output::with_peak(&frame).into_iter().filter_map(|output| Some((output, profile.of(output)?)));
-        let peaks = Vec::from_iter(outputs);
         let limits = Limits { friction: 0.15, ..Limits::default() };
-        let worst = run.validity(limits).unwrap().0.worst;
-        let mut largest = vec![0.0_f64; peaks.len()];
+        let (validity, finish) = run.validity(limits).unwrap();
+        assert!(finish.motion.transitions > 2, "{}", finish.motion.transitions);
         let ([mut tension, mut least, mut friction], mut beyond) = ([f64::NEG_INFINITY, f64::INFINITY, 0.0], 0.0);
         let W = frame.base().m_t * frame.base().g;
-        let times = (0..80_000).map(|i| f64::from(i) * 5e-5);
-        run.sample(
-            times,
-            |sample| {
-                for (largest, (output, _)) in largest.iter_mut().zip(&peaks) {
-                    *largest = largest.max(sample.output(*output).abs());
-                }
-                let Reactions { R_h, R_v, R_m } = sample.reactions();
-                if sample.motion.phase == Phase::FullContact {
-                    tension = tension.max((R_m.abs() / frame.base().B - R_v) / W);
-                }
-                (least, friction) = (least.min(R_v / W), friction.max(R_h.abs() / R_v.max(0.0)));
-                beyond += if R_h.abs() > limits.friction * R_v { 5e-5 } else { 0.0 };
-            },
-            &mut (),
-        )
-        .unwrap();
-        for ((output, peak), sampled) in peaks.iter().zip(largest) {
-            let (least, most) = (sampled * (1.0 - 1e-12), sampled * (1.0 + 1e-3));
-            assert!((least..=most).contains(&peak.magnitude), "{modes} {output:?}: {peak:?}, sampled {sampled}");
-        }
+        let see = |sample: &Sample<Modes>| {
+            let Reactions { R_h, R_v, R_m } = sample.reactions();
+            if sample.motion.phase == Phase::FullContact {
+                tension = tension.max((R_m.abs() / frame.base().B - R_v) / W);
+            }
+            (least, friction) = (least.min(R_v / W), friction.max(R_h.abs() / R_v.max(0.0)));
+            beyond += if R_h.abs() > limits.friction * R_v { 5e-5 } else { 0.0 };
+        };
+        peaks_beside_samples(&run, every_50_us(), &Output::with_peak(&frame), 1e-3, see);
         // the friction by its reciprocal: R_v comes near 0
+        let worst = validity.worst;
         let [edge, slip] = [-worst[EDGE_LOAD].value, -1.0 / worst[FRICTION].value];
         for (found, sampled) in [(worst[TENSION].value, tension), (edge, -least), (slip, -1.0 / friction)] {
             let (least, most) = (sampled - 1e-9, sampled + 5e-3 * sampled.abs().max(1.0));
@@ -136,29 +122,22 @@ fn a_profile_holds_every_sample_and_no_more() {
     }
 }
 
-/// The samples are 50 µs apart. A constant force has its peak at the start.
+fn every_50_us() -> impl Iterator<Item = f64> {
+    (0..80_000).map(|i| f64::from(i) * 5e-5)
+}
+
+/// A constant force has its peak at the start.
 #[test]
 fn the_peak_of_the_tendon_holds_every_sample_and_no_more() {
     let ground = ground();
     for (k_t, detail) in [(2e6, Detail::Auto), (2e6, Detail::Linear), (2e6, Detail::Rigid), (0.0, Detail::Auto)] {
         let run = Run { detail, end: End::At(4.0), ..Run::of_modes(tied_storeys(1e5, k_t, 0.02), &ground) };
-        let (peak, mut largest) = (run.peaks().unwrap().0.P_t(), (0.0, 0.0));
-        let times = (0..80_000).map(|i| f64::from(i) * 5e-5);
-        run.sample(
-            times,
-            |sample| {
-                let P_t = sample.restraints().P_t;
-                if P_t > largest.0 {
-                    largest = (P_t, sample.motion.time);
-                }
-            },
-            &mut (),
-        )
-        .unwrap();
-        assert!(
-            peak.magnitude >= largest.0 && peak.magnitude < largest.0 * (1.0 + 1e-6),
-            "{peak:?}, sampled {largest:?}"
-        );
+        let mut largest = (0.0, 0.0);
+        let see = |sample: &Sample<Modes>| {
+            let P_t = sample.restraints().P_t;
+            largest = if P_t > largest.0 { (P_t, sample.motion.time) } else { largest };
+        };
+        let peak = peaks_beside_samples(&run, every_50_us(), &[Output::P_t], 1e-6, see).P_t();
         assert!((peak.time - largest.1).abs() <= 5e-5, "{peak:?}, sampled {largest:?}");
         assert_eq!(peak.magnitude > 1.1e5, k_t > 0.0, "{peak:?}");
     }
@@ -172,25 +151,16 @@ fn a_long_leap_in_full_contact_holds_every_sample() {
     for kept in [1, 3] {
         let frame = tied_storeys(1e4, 0.0, 0.02).keeping(kept).unwrap();
         let run = Run { end: End::At(70.0), ..Run::of_modes(frame.clone(), &ground) };
-        let (profile, finish) = run.peaks().unwrap();
+        let (validity, finish) = run.validity(Limits::default()).unwrap();
         assert_eq!(finish.motion.transitions, 0);
-        let peaks = Vec::from_iter(
-            Output::with_peak(&frame).into_iter().filter_map(|output| Some((output, profile.of(output)?))),
-        );
-        let (mut largest, mut friction) = (vec![0.0_f64; peaks.len()], 0.0_f64);
+        let mut friction = 0.0_f64;
         let see = |sample: &Sample<Modes>| {
-            for (largest, (output, _)) in largest.iter_mut().zip(&peaks) {
-                *largest = largest.max(sample.output(*output).abs());
-            }
             let Reactions { R_h, R_v, .. } = sample.edges();
             friction = friction.max(R_h.abs() / R_v);
         };
-        run.sample((0..70_000).map(|i| 1e-3 * f64::from(i)), see, &mut ()).unwrap();
-        for ((output, peak), sampled) in peaks.iter().zip(largest) {
-            let (least, most) = (sampled * (1.0 - 1e-12), sampled * (1.0 + 1e-3));
-            assert!((least..=most).contains(&peak.magnitude), "{kept} {output:?}: {peak:?}, sampled {sampled}");
-        }
-        let found = run.validity(Limits::default()).unwrap().0.worst[FRICTION].value;
+        let times = (0..70_000).map(|i| 1e-3 * f64::from(i));
+        peaks_beside_samples(&run, times, &Output::with_peak(&frame), 1e-3, see);
+        let found = validity.worst[FRICTION].value;
         assert!(found >= friction && found < friction * (1.0 + 1e-3), "{kept}: {found}, sampled {friction}");
     }
 }

@@ -1,11 +1,7 @@
 //! Reactions on the ground and impulses of impacts: the balance of momentum.
 
-use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::{Detail, Engine, LinearLoad, Load, OneMass, Parameters, Reactions, State, Transition};
-
-fn start(parameters: Parameters, initial: State, detail: Detail) -> Engine {
-    Engine::with_detail(OneMass::new(parameters).unwrap(), initial, 0.0, DEFAULT_TOLERANCE, detail).unwrap()
-}
+use crate::common::start;
+use rocking::{Detail, Engine, LinearLoad, Load, Parameters, Reactions, State, Transition};
 
 /// Position of the top mass and of the middle of the base, their momenta to the right and upwards, and the angular
 /// momentum about the origin, from the geometry as it stands.

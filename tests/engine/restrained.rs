@@ -1,6 +1,6 @@
 //! Vertical ground motion, tendon and dissipators: against structures that they make another, energy and statics by hand.
 
-use crate::shaking::shaking;
+use crate::common::{peaks_beside_samples, shaking, transitions, transitions_of};
 use approx::assert_relative_eq;
 use rocking::engine::Settings;
 use rocking::engine::piece::Sample;
@@ -169,10 +169,8 @@ fn uplift_is_due_where_the_vertical_acceleration_and_the_prestress_put_it() {
         let initial = State { u_dot: side.sign() * 0.9 * u_cr(0.0) * omega, ..State::default() };
         let settings = Settings { detail, tolerance: 1e-12, vertical: true, ..Settings::default() };
         let mut engine = Engine::with(structure, initial, 0.0, settings).unwrap();
-        let mut seen = None;
         let load = LinearLoad { slope: Load { a_v: -40.0, ..Load::default() }, ..LinearLoad::default() };
-        engine.advance(0.1, load, &mut |at: &Transition| _ = seen.get_or_insert(*at)).unwrap();
-        let Transition { time, kind, before, .. } = seen.unwrap();
+        let Transition { time, kind, before, .. } = transitions(&mut engine, 0.1, load)[0];
         assert!(kind == TransitionKind::Uplift(side) && (time - meets).abs() < 2e-6, "{kind:?} {time} {meets}");
         let limit = uplift_displacement(&structure, -40.0 * time);
         assert_relative_eq!(side.sign() * before.u, limit, max_relative = 1e-12);
@@ -181,12 +179,10 @@ fn uplift_is_due_where_the_vertical_acceleration_and_the_prestress_put_it() {
     let settings = Settings { detail: Detail::Rigid, vertical: true, ..Settings::default() };
     let mut engine = Engine::with(structure, State::default(), 0.0, settings).unwrap();
     let slope = Load { a_g: 5.0, F_t: 0.0, a_v: -40.0 };
-    let mut seen = None;
     let load = LinearLoad { slope, ..LinearLoad::default() };
-    engine.advance(0.2, load, &mut |at: &Transition| _ = seen.get_or_insert((at.time, at.kind))).unwrap();
+    let Transition { time, kind, .. } = transitions(&mut engine, 0.2, load)[0];
     let moment = structure.gamma * m * g * B + P_0 * B;
     let due = moment / (m * H * 5.0 + structure.gamma * m * 40.0 * B);
-    let (time, kind) = seen.unwrap();
     assert_eq!(kind, TransitionKind::Uplift(Side::Left));
     assert_relative_eq!(time, due, max_relative = 1e-11);
 }
@@ -203,9 +199,7 @@ fn uplift_waits_for_the_moment() {
     let load = LinearLoad { value: Load { a_g: -60.0, F_t: 0.0, a_v: 2.0 }, slope };
     let settings = Settings { tolerance: 1e-12, vertical: true, ..Settings::default() };
     let mut engine = Engine::with(structure, initial, 0.0, settings).unwrap();
-    let mut seen = None;
-    engine.advance(0.1, load, &mut |at: &Transition| _ = seen.get_or_insert(*at)).unwrap();
-    let Transition { time, kind, before: State { u, u_dot, .. }, .. } = seen.unwrap();
+    let Transition { time, kind, before: State { u, u_dot, .. }, .. } = transitions(&mut engine, 0.1, load)[0];
     assert!(kind == TransitionKind::Uplift(Side::Right) && time > 1e-4, "{kind:?} {time}");
     let weight = g + load.at(time).a_v;
     let turning = H * (structure.k * u + structure.c_u * u_dot) + m * weight * u;
@@ -239,9 +233,7 @@ fn a_free_fall_lifts_the_base_off_and_is_told() {
     let vertical = with_vertical(&ground, |t| -100.0 * t);
     for detail in LEVELS {
         let run = Run { detail, end: End::At(0.11), ..Run::new(structure, &vertical) };
-        let mut first = None;
-        run.follow(&mut |at: &Transition| _ = first.get_or_insert((at.time, at.kind))).unwrap();
-        let (time, kind) = first.unwrap();
+        let Transition { time, kind, .. } = transitions_of(&run)[0];
         assert!(matches!(kind, TransitionKind::Uplift(Side::Left)), "{kind:?}");
         assert!(0.097 < time && time <= 0.0981 + 1e-12, "{detail:?}: {time}");
         let (found, _) = run.validity(Limits::default()).unwrap();
@@ -275,7 +267,6 @@ fn the_edges_carry_what_the_ties_pull_beside_the_reactions() {
     for detail in [Detail::Auto, Detail::Rigid] {
         let run = Run { detail, end: End::At(ground.end()), ..Run::new(structure, &ground) };
         let (mut least, mut friction) = (f64::INFINITY, 0.0_f64);
-        let mut most = [0.0_f64; 4];
         let dense = (0..150_000).map(|i| f64::from(i) * 2e-5);
         let show = |at: &Sample| {
             let (edges, reactions, ties) = (at.edges(), at.reactions(), at.restraints());
@@ -292,22 +283,10 @@ fn the_edges_carry_what_the_ties_pull_beside_the_reactions() {
             }
             least = least.min(edges.R_v / ((m + m0) * g));
             friction = friction.max(edges.R_h.abs() / edges.R_v);
-            let [theta, a_t, delta_t] = [Output::theta, Output::a_t(0), Output::delta_t(0)].map(at.outputs());
-            let shown = [theta, a_t, delta_t, ties.P_t];
-            most.iter_mut().zip(shown).for_each(|(most, value)| *most = most.max(value.abs()));
         };
-        run.sample(dense, show, &mut ()).unwrap();
+        let outputs = [Output::theta, Output::a_t(0), Output::delta_t(0), Output::P_t];
+        peaks_beside_samples(&run, dense, &outputs, 0.01, show);
         let (found, finish) = run.validity(Limits::default()).unwrap();
-        let (peaks, _) = run.peaks().unwrap();
-        for (sampled, peak) in most.into_iter().zip([
-            peaks.theta(),
-            peaks.of(Output::a_t(0)).unwrap(),
-            peaks.of(Output::delta_t(0)).unwrap(),
-            peaks.P_t(),
-        ]) {
-            let exact = peak.magnitude;
-            assert!(sampled <= exact * (1.0 + 1e-9) && sampled > 0.99 * exact, "{detail:?}: {sampled} {exact}");
-        }
         let [_, edge_load, mu, ..] = found.worst;
         assert!(finish.motion.transitions > 10);
         assert!(edge_load.value <= least && edge_load.value > least - 1e-2, "{} {least}", edge_load.value);
@@ -386,14 +365,13 @@ fn a_dissipator_at_the_edge_never_yields_about_that_edge() {
     for (detail, F_y) in LEVELS.into_iter().flat_map(|detail| [30.0, 80.0, 200.0].map(|F_y| (detail, F_y))) {
         let at_edge = Parameters { xi_d: Parameters::MCMANUS.B, k_d: 1e6, F_y, ..Parameters::MCMANUS };
         let run = Run { detail, end: End::At(3.0), ..Run::new(structure(at_edge), &ground) };
-        let mut see = |at: &Transition| {
+        for at in transitions_of(&run) {
             if let TransitionKind::Yielding(which) | TransitionKind::Unloading(which) = at.kind {
                 let beside = usize::from(at.before.theta < 0.0); // the first is at the right edge
                 assert!(which != beside, "{detail:?}, {F_y} N: {at:?}");
                 yieldings += 1;
             }
-        };
-        run.follow(&mut see).unwrap();
+        }
     }
     assert!(yieldings > 50, "{yieldings}");
 }
@@ -446,7 +424,7 @@ fn a_transition_is_foreseen_whatever_brings_it() {
         for detail in [Detail::Auto, Detail::Linear, Detail::Rigid] {
             let run = Run { detail, end: End::At(ground.end()), ..Run::new(structure(parameters), ground) };
             let mut transitions = vec![0.0];
-            run.follow(&mut |at: &Transition| transitions.push(at.time)).unwrap();
+            transitions.extend(transitions_of(&run).iter().map(|at| at.time));
             assert!(transitions.len() > 5, "{detail:?}: {}", transitions.len());
             let (motion, ahead) = (GroundMotion::from(ground), 1e-10);
             let foresees = |time: f64| {
@@ -492,10 +470,8 @@ fn no_dissipator_begins_to_yield_at_an_impact() {
     for (detail, part) in LEVELS.into_iter().flat_map(|detail| [0.5, 0.8, 1.2].map(|part| (detail, part))) {
         let yielding = Parameters { xi_d: part * Parameters::MCMANUS.B, k_d: 1e5, F_y: 100.0, ..Parameters::MCMANUS };
         let followed_to = |end: End| {
-            let mut transitions: Vec<Transition> = Vec::new();
             let run = Run { detail, end, ..Run::new(structure(yielding), &ground) };
-            let finish = run.follow(&mut |at: &Transition| transitions.push(*at)).unwrap();
-            (finish.motion.time, transitions)
+            (run.follow(&mut ()).unwrap().motion.time, transitions_of(&run))
         };
         let (end, transitions) = followed_to(End::AtRest);
         let kinds = |of: &[Transition]| of.iter().map(|at| discriminant(&at.kind)).collect::<Vec<_>>();
@@ -509,8 +485,8 @@ fn no_dissipator_begins_to_yield_at_an_impact() {
     }
 }
 
-/// Against 4000 instants: no force is larger, and the peak is the force at its instant, or just before an impact then. Pulled to their yield force, elastoplastic
-/// dissipators alone have no larger one.
+/// Against 4000 instants: no force is larger, and the peak is the force at its instant, or just before an impact then. Pulled to
+/// their yield force, elastoplastic dissipators alone have no larger one.
 #[test]
 fn peaks_of_the_dissipators_are_their_largest_forces() {
     let ground = shaking(5, 0.01, 300, 4.0);
@@ -518,20 +494,13 @@ fn peaks_of_the_dissipators_are_their_largest_forces() {
     for parameters in [RESTRAINED, yielding, Parameters { k_d: 0.0, F_y: 0.0, ..RESTRAINED }] {
         for detail in [Detail::Auto, Detail::Linear] {
             let run = Run { detail, end: End::At(3.0), ..Run::new(structure(parameters), &ground) };
-            let found = run.found(&mut ()).unwrap();
-            for output in [Output::F_d1, Output::F_d2] {
-                let peak = found.peaks.of(output).unwrap();
-                let (mut most, mut there) = (0.0_f64, 0.0);
-                let times = (0..4000).map(|i| 7.5e-4 * f64::from(i)).filter(|t| *t < peak.time - 1e-9);
-                let times = times.chain([peak.time - 1e-9, peak.time]);
-                let after = (0..4000).map(|i| 7.5e-4 * f64::from(i)).filter(|t| *t > peak.time);
-                let see = |at: &Sample| {
-                    let force = at.output(output).abs();
-                    most = most.max(force);
-                    there = if (at.motion.time - peak.time).abs() < 2e-9 { force.max(there) } else { there };
-                };
-                run.sample(times.chain(after), see, &mut ()).unwrap();
-                assert!(most <= peak.magnitude * (1.0 + 1e-9) && most > 0.9 * peak.magnitude, "{most} {peak:?}");
+            let outputs = [Output::F_d1, Output::F_d2];
+            let peaks = peaks_beside_samples(&run, (0..4000).map(|i| 7.5e-4 * f64::from(i)), &outputs, 0.1, |_| ());
+            for output in outputs {
+                let (peak, mut there) = (peaks.of(output).unwrap(), 0.0_f64);
+                let see = |at: &Sample| there = there.max(at.output(output).abs());
+                let until = End::At(peak.time + 1e-9);
+                Run { end: until, ..run.clone() }.sample([peak.time - 1e-9, peak.time], see, &mut ()).unwrap();
                 assert_relative_eq!(there, peak.magnitude, max_relative = 1e-6);
                 assert!(parameters != yielding || (peak.magnitude / parameters.F_y - 1.0).abs() < 1e-12);
             }

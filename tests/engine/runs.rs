@@ -1,10 +1,12 @@
 //! Runs from outside: levels compared on fine records, ends.
 
+use crate::common::transitions_of;
+use crate::modes::three_storeys;
 use rocking::engine::piece::Sample;
 use rocking::run::levels::Criterion;
 use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError, levels};
-use rocking::{Body, Detail, Mode, OneMass, Parameters, Structure, Ties, Transition};
+use rocking::{Detail, OneMass, Parameters, Structure, Transition};
 
 /// However finely a record is sampled, the histories of two levels are as far apart.
 #[test]
@@ -58,27 +60,8 @@ fn growing(amplitude: f64) -> Record {
 /// Fewer modes cost less and err more. Advice names how many of them are enough.
 #[test]
 fn a_level_of_a_frame_is_also_how_many_modes_are_kept() {
-    let frame = Structure::of_body(
-        Body {
-            m0: 20e3,
-            J0: 3e4,
-            m_s: 110e3,
-            S_1: 735e3,
-            I_2: 5.7575e6,
-            B: 1.5,
-            r: Some(0.93),
-            g: 9.81,
-            c_ratio: 1.0,
-            ties: Ties::default(),
-        },
-        &[(2.79631878, 97782.91, 7.652647), (7.16132844, 9645.66, -1.689684), (10.06584242, 2571.43, 1.166667)].map(
-            |(f, mass, height): (f64, f64, f64)| {
-                Mode::new(std::f64::consts::TAU * f, 0.02, mass.sqrt(), mass.sqrt() * height)
-            },
-        ),
-        &[],
-    )
-    .unwrap();
+    let storeys = three_storeys(0.02, &[("r", 0.93)]);
+    let frame = Structure::of_body(*storeys.body(), storeys.modes(), &[]).unwrap();
     let ground = growing(4.0);
     let comparison = levels::compare(&Run::of_modes(frame, &ground)).unwrap();
     let errors = |detail, kept| {
@@ -106,9 +89,8 @@ fn every_instant_of_a_run_is_shown() {
     let wave = |t: &f64| 3.0 * (std::f64::consts::TAU * 1.3 * t).sin() * (-((t - 2.0) / 1.5).powi(2)).exp();
     let ground = Record::from_samples("wave", times.clone(), times.iter().map(wave).collect()).unwrap();
     let run = Run::new(OneMass::new(Parameters::MCMANUS).unwrap(), &ground);
-    let mut transitions = Vec::new();
-    run.follow(&mut |of: &Transition| transitions.push((of.time, of.before.u))).unwrap();
-    let mut instants = Vec::from_iter(transitions.iter().flat_map(|(time, _)| [time.next_down(), *time]));
+    let transitions = transitions_of(&run);
+    let mut instants = Vec::from_iter(transitions.iter().flat_map(|of| [of.time.next_down(), of.time]));
     instants.sort_by(f64::total_cmp);
     let sampled = |instants: &[f64]| {
         let mut shown = Vec::new();
@@ -120,10 +102,11 @@ fn every_instant_of_a_run_is_shown() {
     let together = sampled(&instants);
     assert_eq!(together.len(), instants.len());
     for (instant, shown) in instants.iter().zip(together) {
-        let count = transitions.partition_point(|of| of.0 <= *instant);
+        let count = transitions.partition_point(|of| of.time <= *instant);
         assert_eq!((shown.0, shown.1), (*instant, count));
         assert_eq!(sampled(&[*instant]), [shown]);
-        assert!(transitions.get(count).is_none_or(|of| of.0 > instant.next_up() || of.1 == shown.2), "{shown:?}");
+        let is_before = |of: &Transition| of.time > instant.next_up() || of.before.u == shown.2;
+        assert!(transitions.get(count).is_none_or(is_before), "{shown:?}");
     }
 }
 

@@ -1,5 +1,6 @@
 //! The promise of a tolerance: random structures, records and initial states at all levels that rock.
 
+use crate::common::{between, log_between};
 use fastrand::Rng;
 use rocking::{Detail, Engine, OneMass, Parameters, Progress, Ramp, State};
 use std::f64::consts::TAU;
@@ -11,14 +12,6 @@ struct Scene {
     initial: State,
     dt: f64,
     ground: Vec<f64>,
-}
-
-fn between(rng: &mut Rng, low: f64, high: f64) -> f64 {
-    low + (high - low) * rng.f64()
-}
-
-fn log_between(rng: &mut Rng, low: f64, high: f64) -> f64 {
-    between(rng, low.ln(), high.ln()).exp()
 }
 
 impl Scene {

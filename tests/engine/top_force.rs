@@ -1,13 +1,9 @@
 //! The force on the top mass, against ground motion that does the same and against its work.
 
+use crate::common::start;
 use approx::assert_relative_eq;
-use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::energy::energy;
-use rocking::{Detail, Engine, LinearLoad, Load, OneMass, Output, Parameters, State, Transition, TransitionKind};
-
-fn start(parameters: Parameters, initial: State, detail: Detail) -> Engine {
-    Engine::with_detail(OneMass::new(parameters).unwrap(), initial, 0.0, DEFAULT_TOLERANCE, detail).unwrap()
-}
+use rocking::{Detail, Engine, LinearLoad, Load, Output, Parameters, State, Transition, TransitionKind};
 
 /// Linear between samples of `load` every 10 ms; `each` sees the engine after every one of `steps`.
 fn follow(

@@ -1,7 +1,7 @@
 //! Validity at impacts, against the momenta and the kinetic energy before and after. `missed_peaks.rs` compares the motion
 //! between impacts with dense sampling, and `reactions.rs` the reactions with the balance of momentum.
 
-use crate::shaking::shaking;
+use crate::common::{shaking, transitions_of};
 use rocking::run::record::Record;
 use rocking::run::validity::{
     ASSUMPTIONS, EDGE_LOAD, ENERGY, IMPACT_FRICTION, IMPACT_TENSION, Limits, TENSION, WEIGHT,
@@ -48,8 +48,7 @@ fn impacts_go_beyond_what_momenta_say() {
         let structure = OneMass::new(parameters).unwrap();
         let run = Run { initial, detail, end: End::At(ground.end()), ..Run::new(structure, &ground) };
         let (found, _) = run.validity(Limits::default()).unwrap();
-        let mut transitions = Vec::new();
-        run.follow(&mut |transition: &Transition| transitions.push(*transition)).unwrap();
+        let transitions = transitions_of(&run);
         // of mu_impact, tension_impact and energy_gain_max: the worst, how many are beyond the limit, the first of them
         let mut seen = [(0.0, 0.0, None), (-1.0, 0.0, None), (0.0, 0.0, None)];
         let (mut gains, mut impacts) = (0, 0);

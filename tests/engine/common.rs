@@ -1,0 +1,82 @@
+//! What several tests share: a ground motion, random numbers, transitions of an advance, peaks beside samples.
+
+use fastrand::Rng;
+use rocking::engine::piece::Sample;
+use rocking::engine::{DEFAULT_TOLERANCE, Moves};
+use rocking::run::peaks::{Peak, Peaks};
+use rocking::run::record::Record;
+use rocking::run::{Run, Runs};
+use rocking::{Detail, Engine, LinearLoad, OneMass, Output, Parameters, State, Transition};
+
+/// `count` samples of a sum of sines that grows and fades, `dt` (s) apart, of about `peak` (m/s²).
+pub fn shaking(seed: u32, dt: f64, count: usize, peak: f64) -> Record {
+    let phase = f64::from(seed);
+    let sample = |i: usize| {
+        let t = i as f64 * dt;
+        let waves = (5.1 * t + phase).sin() + 0.7 * (13.7 * t + 2.0 * phase).sin() + 0.4 * (37.3 * t + phase).cos();
+        peak * (t / 0.5).min(1.0) * (-0.15 * t).exp() * waves
+    };
+    let times = (0..count).map(|i| i as f64 * dt).collect();
+    Record::from_samples("shaking", times, (0..count).map(sample).collect()).unwrap()
+}
+
+pub fn between(rng: &mut Rng, low: f64, high: f64) -> f64 {
+    low + (high - low) * rng.f64()
+}
+
+/// Evenly distributed in its logarithm.
+pub fn log_between(rng: &mut Rng, low: f64, high: f64) -> f64 {
+    between(rng, low.ln(), high.ln()).exp()
+}
+
+/// One mass at the default tolerance.
+pub fn start(parameters: Parameters, initial: State, detail: Detail) -> Engine {
+    Engine::with_detail(OneMass::new(parameters).unwrap(), initial, 0.0, DEFAULT_TOLERANCE, detail).unwrap()
+}
+
+/// The transitions of an advance over `interval` (s).
+pub fn transitions<Q: Moves>(
+    engine: &mut Engine<Q>,
+    interval: f64,
+    load: impl Into<LinearLoad<Q>>,
+) -> Vec<Transition<Q>> {
+    let mut transitions = Vec::new();
+    engine.advance(interval, load, &mut |transition: &Transition<Q>| transitions.push(*transition)).unwrap();
+    transitions
+}
+
+/// The transitions of a run.
+pub fn transitions_of<Q: Runs>(run: &Run<Q>) -> Vec<Transition<Q>> {
+    let mut transitions = Vec::new();
+    run.follow(&mut |transition: &Transition<Q>| transitions.push(*transition)).unwrap();
+    transitions
+}
+
+/// The peaks of `run`, which no sample at `times` (s) exceeds; those of the `outputs` are beyond the samples by the part `above`
+/// at most. `see` is shown the samples.
+pub fn peaks_beside_samples<Q: Runs>(
+    run: &Run<Q>,
+    times: impl Iterator<Item = f64>,
+    outputs: &[Output],
+    above: f64,
+    mut see: impl FnMut(&Sample<Q>),
+) -> Peaks {
+    let (peaks, _) = run.peaks().unwrap();
+    let mut largest = vec![Peak::default(); outputs.len()];
+    let show = |sample: &Sample<Q>| {
+        for (largest, of) in largest.iter_mut().zip(outputs) {
+            let (magnitude, time) = (sample.output(*of).abs(), sample.motion.time);
+            if magnitude > largest.magnitude {
+                *largest = Peak { magnitude, time };
+            }
+        }
+        see(sample);
+    };
+    run.sample(times, show, &mut ()).unwrap();
+    for (of, sampled) in outputs.iter().zip(largest) {
+        let peak = peaks.of(*of).unwrap();
+        let (least, most) = (sampled.magnitude * (1.0 - 1e-12), sampled.magnitude * (1.0 + above));
+        assert!((least..=most).contains(&peak.magnitude), "{:?}, {of:?}: {peak:?}, {sampled:?}", run.detail);
+    }
+    peaks
+}
