@@ -54,7 +54,7 @@ impl<Q: Moves> Scene<Q> {
         let rounding = ROUNDING * until.abs().max(self.engine.structure().base().p_l.recip());
         if progress == Progress::Complete {
             let later = inputs.from(step);
-            let load = if self.may_move_vertically(setup) { self.load(setup, later) } else { later };
+            let load = if setup.may_move_vertically(self.ground.as_ref()) { self.load(setup, later) } else { later };
             if self.engine.goes_on_for(rounding, load) {
                 return Ok(progress);
             }

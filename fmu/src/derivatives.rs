@@ -80,7 +80,7 @@ impl<Q: Moves> Unit<Q> {
         direction.extend([(0, of_time * a_g), (vertical, of_time * a_v)]);
         direction.retain(|(_, change)| *change != 0.0);
         let is_vertical = direction.iter().any(|(which, _)| *which == vertical);
-        let is_admitted_for_this = is_vertical && !scene.may_move_vertically(setup);
+        let is_admitted_for_this = is_vertical && !setup.may_move_vertically(scene.ground.as_ref());
         if is_admitted_for_this {
             scene.set(|settings| settings.vertical = true)?;
         }

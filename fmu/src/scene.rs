@@ -48,6 +48,11 @@ pub struct Outside<Q = f64> {
 }
 
 impl Setup {
+    /// Whether ground that follows `ground` may move vertically.
+    pub fn may_move_vertically(&self, ground: Option<&Record>) -> bool {
+        self.vertical || ground.is_some_and(|record| record.vertical().is_some())
+    }
+
     /// The structure at the start time, on ground that may move vertically if `vertical`.
     fn engine<Q: Moves>(&self, contents: &Contents, vertical: bool) -> Result<Engine<Q>, Refusal> {
         let &Setup { detail, tolerance, start_time, .. } = self;
@@ -68,17 +73,12 @@ impl Setup {
     }
 }
 
-/// Whether what follows `ground` may move vertically.
-fn may_move_vertically(setup: &Setup, ground: Option<&Record>) -> bool {
-    setup.vertical || ground.is_some_and(|record| record.vertical().is_some())
-}
-
 impl<Q: Moves> Scene<Q> {
     /// At the start that `setup` describes, of an archive with these `contents`, on ground that follows the record of `source`.
     pub fn new(setup: &Setup, contents: &Contents, source: Option<Arc<GroundRecord>>) -> Result<Scene<Q>, Refusal> {
         let g = setup.g(contents);
         let ground = source.as_deref().map(|source| setup.scaled(source, g)).transpose()?;
-        let engine = setup.engine::<Q>(contents, may_move_vertically(setup, ground.as_ref()))?;
+        let engine = setup.engine::<Q>(contents, setup.may_move_vertically(ground.as_ref()))?;
         let peaks = Falling::since(setup.start_time, engine.structure(), setup.detail);
         let (validity, lateral) = (Findings::since(setup.start_time), lateral_states(&contents.structure));
         Ok(Scene { engine, source, ground, elapsed: Elapsed::default(), outside: None, peaks, validity, lateral })
@@ -110,11 +110,6 @@ impl<Q: Moves> Scene<Q> {
         let (structure, modes) = (self.engine.structure(), self.engine.structure().modes().len());
         let is_y = structure.foundation().is_some() && j + 1 == self.lateral;
         (is_y || j < modes).then_some(if is_y { modes } else { j })
-    }
-
-    /// Whether the ground may move vertically.
-    pub fn may_move_vertically(&self, setup: &Setup) -> bool {
-        may_move_vertically(setup, self.ground.as_ref())
     }
 
     /// The load that acts now: `inputs` and the record.

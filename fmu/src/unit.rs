@@ -97,14 +97,6 @@ impl<Q: Moves> Unit<Q> {
         references.iter().map(|reference| self.table.sources[*reference as usize]).collect()
     }
 
-    /// Reads real numbers that the host sets.
-    fn settings(&self, references: &[u32], values: &mut [f64]) -> Result<(), Failure> {
-        for (reference, value) in references.iter().zip(values) {
-            *value = setting(&self.setup, &self.inputs, self.table.sources[*reference as usize]);
-        }
-        Ok(())
-    }
-
     /// Lets the ground move vertically from now on.
     #[cold]
     #[inline(never)]
@@ -197,9 +189,11 @@ impl<Q: Moves> Model for Unit<Q> {
     #[inline(always)]
     fn get_reals(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Failure> {
         if self.scene.is_none() {
-            let is_set = |reference: &u32| self.table.sources[*reference as usize].is_set();
-            if references.iter().all(is_set) {
-                return self.settings(references, values);
+            let sources = self.sources_of(references);
+            if sources.iter().all(|source| source.is_set()) {
+                let settings = sources.into_iter().map(|source| setting(&self.setup, &self.inputs, source));
+                values.iter_mut().zip(settings).for_each(|(value, setting)| *value = setting);
+                return Ok(());
             }
             self.build()?;
         }

@@ -90,30 +90,24 @@ impl Source {
     pub fn set_value(&self, setup: &Setup) -> Option<Value> {
         match self {
             Source::Input(_) => Some(Value::Real(0.0)),
-            Source::Detail => Some(Value::Integer(detail_number(setup.detail))),
+            Source::Detail => Some(Value::Integer(setup.detail as i32 + 1)),
             Source::Text(of) => Some(Value::String(of(&mut setup.clone()).to_string())),
             Source::Switch(of) => Some(Value::Boolean(*of(&mut setup.clone()))),
             _ => self.setting(setup).map(Value::Real),
         }
     }
 
-    /// Sets a parameter.
+    /// Sets a parameter or an initial value.
     pub fn set_to(&self, setup: &mut Setup, value: Value) {
         match (self, value) {
-            (Source::Detail, Value::Integer(number)) => setup.detail = detail(number.into()).unwrap_or(setup.detail),
+            (Source::Detail, Value::Integer(number)) => setup.detail = Detail::ALL[number as usize - 1],
             (Source::Text(of), Value::String(value)) => *of(setup) = value.into(),
             (Source::Switch(of), Value::Boolean(on)) => *of(setup) = on,
-            (_, Value::Real(value)) => self.set(setup, value),
-            _ => (),
-        }
-    }
-
-    /// Sets a Real parameter or an initial value.
-    pub fn set(&self, setup: &mut Setup, value: f64) {
-        match self {
-            Source::Parameter(quantity) => setup.parameters.iter_mut().for_each(|of| (quantity.set)(of, value)),
-            Source::InitialValue(quantity) => (quantity.set)(&mut setup.initial, value),
-            Source::Placement(quantity) => (quantity.set)(&mut setup.placement, value),
+            (Source::Parameter(quantity), Value::Real(value)) => {
+                setup.parameters.iter_mut().for_each(|of| (quantity.set)(of, value));
+            }
+            (Source::InitialValue(quantity), Value::Real(value)) => (quantity.set)(&mut setup.initial, value),
+            (Source::Placement(quantity), Value::Real(value)) => (quantity.set)(&mut setup.placement, value),
             _ => (),
         }
     }
@@ -145,16 +139,6 @@ pub static DETAILS: Enumeration = Enumeration {
         Detail::FixedBase.name(),
     ],
 };
-
-/// The level that `number` stands for.
-pub(crate) fn detail(number: i64) -> Option<Detail> {
-    usize::try_from(number).ok()?.checked_sub(1).and_then(|at| Detail::ALL.get(at)).copied()
-}
-
-/// The number that stands for `detail`.
-pub(crate) fn detail_number(detail: Detail) -> i32 {
-    detail as i32 + 1
-}
 
 pub(crate) fn phase_number(phase: Phase) -> i32 {
     match phase {
@@ -284,10 +268,6 @@ fn real(
     (Variable::real(causality, name, unit, description).from(of.iter().copied()), source)
 }
 
-fn force(texts: [&'static str; 3], source: Source, of: &[&'static str]) -> Row {
-    real(Causality::Output, texts, source, of)
-}
-
 fn local(texts: [&'static str; 3], source: Source, of: &[&'static str]) -> Row {
     real(Causality::Local, texts, source, of)
 }
@@ -340,6 +320,7 @@ fn output(of: Output, structure: &Structure) -> Row {
 
 /// Reactions, forces of the ties, and impulses.
 fn forces() -> [Row; 9] {
+    let force = |texts, source, of: &_| real(Causality::Output, texts, source, of);
     let reaction = |name, unit, description, of| force([name, unit, description], Source::Reaction(of), ACCELERATION);
     let impulse = |name, unit, description, of| {
         (Variable::of_type(number(unit), Causality::Output, name, description), Source::Impulse(of))

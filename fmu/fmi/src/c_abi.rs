@@ -194,16 +194,6 @@ unsafe fn component<'a, F: Function>(c: *mut c_void) -> Option<&'a Component<F>>
     if magic == F::WORDS.magic { Some(unsafe { &*c }) } else { None }
 }
 
-/// Calls `body` with the instance that `c` points to, if `function` is allowed in its state. No panic gets out.
-#[inline]
-pub(crate) unsafe fn call<F: Function>(
-    c: *mut c_void,
-    function: F,
-    body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
-) -> c_int {
-    unsafe { call_in(c, function, |allowed_in| allowed_in[function.place()], body) }
-}
-
 /// Calls the host back within a step of the instance that `c` points to, which is not freed meanwhile.
 pub(crate) unsafe fn call_back<F: Function>(c: *mut c_void, host: impl FnOnce()) {
     let Some(component) = (unsafe { component::<F>(c) }) else { return };
@@ -212,20 +202,13 @@ pub(crate) unsafe fn call_back<F: Function>(c: *mut c_void, host: impl FnOnce())
     component.calls_back.store(false, Ordering::Relaxed);
 }
 
-/// The rest of a call of `function`, after the host has been called back.
-pub(crate) unsafe fn call_on<F: Function>(
-    c: *mut c_void,
-    function: F,
-    body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
-) -> c_int {
-    unsafe { call_in(c, function, |_| Stage::WITHIN_STEP, body) }
-}
-
+/// Calls `body` with the instance that `c` points to, if `function` is allowed in its state; the rest of a call, after the host has
+/// been called back, is given the stages that `it_goes_on` in. No panic gets out.
 #[inline]
-unsafe fn call_in<F: Function>(
+pub(crate) unsafe fn call<F: Function>(
     c: *mut c_void,
     function: F,
-    allowed: impl FnOnce(&Table) -> Stages,
+    it_goes_on: Option<Stages>,
     body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
 ) -> c_int {
     let Some(component) = (unsafe { component::<F>(c) }) else { return Status::Error as c_int };
@@ -238,7 +221,8 @@ unsafe fn call_in<F: Function>(
     // This is the only reference to the instance: no other call gets here while the component is busy.
     let instance = unsafe { &mut *component.instance.get() };
     let guarded = || {
-        let (stage, stages) = (instance.stage, allowed(component.allowed_in));
+        let allowed = || component.allowed_in[function.place()];
+        let (stage, stages) = (instance.stage, it_goes_on.unwrap_or_else(allowed));
         let result = if stage.bit() & stages != 0 { body(instance) } else { Err(wrong_stage(stage, stages)) };
         result.map_or_else(|failure| report(&instance.logger, function, failure), |()| Status::Ok)
     };
@@ -401,6 +385,14 @@ pub(crate) unsafe fn read<T: Copy>(name: &'static str, pointer: *const T) -> Res
     Ok(unsafe { *pointer })
 }
 
+/// The truth that the Boolean `value`, given as `name`, stands for: `accepted` says how the version writes both.
+pub(crate) fn truth(name: &str, value: c_int, accepted: &'static str) -> Result<bool, Failure> {
+    match value {
+        0 | 1 => Ok(value == 1),
+        _ => Err(Failure::BadChoice { name: name.into(), value, accepted }),
+    }
+}
+
 /// Writes `value` to `pointer`.
 pub(crate) unsafe fn write<T>(name: &'static str, pointer: *mut T, value: T) -> Result<(), Failure> {
     check_pointer(name, pointer)?;
@@ -513,7 +505,7 @@ macro_rules! functions {
             pub unsafe fn $name(c: *mut c_void $(, $argument: $type)*) -> c_int {
                 unsafe {
                     $crate::c_abi::call(
-                        c, Function::$name, $crate::c_abi::functions!(@ $(|$instance| $body)?),
+                        c, Function::$name, None, $crate::c_abi::functions!(@ $(|$instance| $body)?),
                     )
                 }
             }

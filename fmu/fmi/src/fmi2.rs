@@ -64,11 +64,7 @@ fn sink(functions: &CallbackFunctions, instance_name: &str) -> Sink {
 
 /// The truth that the `fmi2Boolean` `value`, given as `name`, stands for.
 fn boolean(name: &str, value: c_int) -> Result<bool, Failure> {
-    match value {
-        0 => Ok(false),
-        1 => Ok(true),
-        _ => Err(Failure::BadChoice { name: name.into(), value, accepted: "0 (fmi2False), 1 (fmi2True)" }),
-    }
+    truth(name, value, "0 (fmi2False), 1 (fmi2True)")
 }
 
 /// The item of `fmi2StatusKind` that a host asks for.

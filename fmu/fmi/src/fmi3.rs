@@ -70,13 +70,7 @@ impl IntermediateUpdate {
 
 /// The truth that the `fmi3Boolean` `value`, given as `name`, stands for.
 fn boolean(name: &str, value: u8) -> Result<bool, Failure> {
-    match value {
-        0 => Ok(false),
-        1 => Ok(true),
-        _ => {
-            Err(Failure::BadChoice { name: name.into(), value: value.into(), accepted: "0 (fmi3False), 1 (fmi3True)" })
-        }
-    }
+    truth(name, value.into(), "0 (fmi3False), 1 (fmi3True)")
 }
 
 /// The position of the variable that the host refers to; [`Instance`] refuses those that do not exist.
@@ -304,10 +298,10 @@ with_lists! {
             asked = instance.begin_step(point, step)?;
             if asked.is_none() { compute(instance) } else { Ok(()) }
         };
-        let mut status = unsafe { call(c, Function::DoStep, begin) };
+        let mut status = unsafe { call(c, Function::DoStep, None, begin) };
         if let Some(host) = asked {
             unsafe { call_back::<Function>(c, || host.call(point + step, true)) };
-            status = unsafe { call_on(c, Function::DoStep, compute) };
+            status = unsafe { call(c, Function::DoStep, Some(Stage::WITHIN_STEP), compute) };
         }
         if let Some((host, time)) = told {
             unsafe { call_back::<Function>(c, || host.call(time, false)) };
@@ -315,7 +309,7 @@ with_lists! {
                 instance.end_step();
                 Ok(())
             };
-            status = unsafe { call_on(c, Function::DoStep, end) };
+            status = unsafe { call(c, Function::DoStep, Some(Stage::WITHIN_STEP), end) };
         }
         status
     } ]

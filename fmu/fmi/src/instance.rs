@@ -19,6 +19,7 @@ const SAME_TIME: (f64, f64) = (1e-3, 2.0 * f32::EPSILON as f64);
 
 /// Times that a host sets without completing a step, before it is warned. No solver tries as many within one step.
 const MANY_TRIALS: u32 = 1000;
+const TRIALS: &str = "the host integrates without completing steps: call CompletedIntegratorStep after every step";
 
 /// One instance.
 pub struct Instance {
@@ -164,7 +165,7 @@ impl Instance {
     pub(crate) fn terminate(&mut self) -> Result<(), Failure> {
         let is_outside = self.stage == Stage::ContinuousTimeMode && !self.handling.has_begun;
         if is_outside && self.model.time()? > self.experiment.start_time {
-            self.warn_of_trials()?;
+            self.warn_of_events(TRIALS)?;
         }
         self.enter(Stage::Terminated)
     }
@@ -613,7 +614,7 @@ impl Instance {
         self.model.set_time(time, self.stage == Stage::EventMode);
         let is_trial = self.stage == Stage::ContinuousTimeMode;
         self.handling.trials = self.handling.trials.saturating_add(is_trial.into());
-        if self.handling.trials >= MANY_TRIALS { self.warn_of_trials() } else { Ok(()) }
+        if self.handling.trials >= MANY_TRIALS { self.warn_of_events(TRIALS) } else { Ok(()) }
     }
 
     /// Goes to the host's states.
@@ -638,13 +639,6 @@ impl Instance {
         (self.handling.awaits_event, self.handling.trials) = (completed.needs_event_mode, 0);
         self.handling.has_begun = true;
         Ok(completed)
-    }
-
-    #[cold]
-    fn warn_of_trials(&mut self) -> Result<(), Failure> {
-        self.warn_of_events(
-            "the host integrates without completing steps: call CompletedIntegratorStep after every step",
-        )
     }
 
     /// Warns once that the host keeps events from being applied.
