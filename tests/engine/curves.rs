@@ -1,12 +1,12 @@
 //! Curves of runs from outside: what straight lines between their points say, beside the motion itself.
 
 use crate::modes::three_storeys;
+use approx::assert_relative_eq;
 use rocking::engine::piece::Sample;
-use rocking::run::curve::{Point, drawn};
-use rocking::run::fall::Found;
+use rocking::run::curve::{Curve, Point, drawn};
 use rocking::run::record::Record;
-use rocking::run::{End, Run, RunError};
-use rocking::{Detail, Modes, OneMass, Output, Parameters, Phase, State, TransitionKind};
+use rocking::run::{End, Run, RunError, Runs};
+use rocking::{Detail, OneMass, Output, Parameters, Phase, State, TransitionKind};
 
 /// Lifts, bounces and lands the McManus specimen at every level: two sines that die away.
 fn ground() -> Record {
@@ -25,54 +25,53 @@ fn on_the_line(points: &[Point], time: f64) -> Vec<f64> {
     from.zip(to).map(|(from, to)| from * (1.0 - part) + to * part).collect()
 }
 
+/// The curve of `run` to `part` of each largest value: its lines pass through the peaks of the first `count` drawn outputs and of
+/// the ground, and stay as close to samples every 0.1 ms, which `see` is shown beside the lines.
+fn near_the_motion<Q: Runs>(run: &Run<Q>, part: f64, count: usize, see: impl Fn(&Sample<Q>, &[f64])) -> Curve<Q> {
+    let curve = run.curve(part).unwrap();
+    let (found, points) = (&curve.found, &curve.points);
+    assert_eq!(*found, run.found(&mut ()).unwrap());
+    let outputs = &drawn(&run.structure)[..count];
+    let largest = Vec::from_iter(outputs.iter().map(|of| found.peaks.of(*of).unwrap().magnitude));
+    let of_ground = found.peaks.a_g().magnitude;
+    let most = |of: &dyn Fn(&Point) -> f64| points.iter().map(|point| of(point).abs()).fold(0.0, f64::max);
+    assert_relative_eq!(most(&|point| point.a_g), of_ground, max_relative = 1e-9);
+    for (i, largest) in largest.iter().enumerate() {
+        assert_relative_eq!(most(&|point| point.outputs[i]), *largest, max_relative = 1e-9);
+    }
+    let show = |sample: &Sample<Q>| {
+        let line = on_the_line(points, sample.motion.time);
+        for (i, of) in outputs.iter().enumerate() {
+            let missed = (line[i] - sample.output(*of)).abs();
+            assert!(missed <= part * largest[i].max(1e-12), "{:?} {part} {of:?}: {missed}", run.detail);
+        }
+        assert!((line[line.len() - 1] - sample.load.a_g).abs() < 1e-12 * of_ground, "{:?}", run.detail);
+        see(sample, &line);
+    };
+    let times = (0..80_000).map(|i| 1e-4 * f64::from(i)).take_while(|time| *time < found.finish.motion.time);
+    run.sample(times, show, &mut ()).unwrap();
+    curve
+}
+
+/// The line of a picture passes through both sides of each transition.
 #[test]
 fn lines_stay_as_close_to_the_motion_as_was_asked_for() {
     let ground = ground();
     let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     for detail in Detail::ALL {
         let run = Run { detail, end: End::At(8.0), ..Run::new(structure, &ground) };
-        let found = run.found(&mut ()).unwrap();
-        let outputs = [Output::theta, Output::u(0), Output::a_t(0)];
-        let largest = outputs.map(|of| found.peaks.of(of).unwrap().magnitude.max(1e-12));
-        let of_ground = found.peaks.a_g().magnitude;
-        for part in [1e-2, 1e-4] {
-            let curve = run.curve(part).unwrap();
-            assert_eq!(curve.found, found);
-            let show = |sample: &Sample| {
-                let line = on_the_line(&curve.points, sample.motion.time);
-                for (i, expected) in outputs.map(sample.outputs()).into_iter().enumerate() {
-                    assert!((line[i] - expected).abs() <= part * largest[i], "{detail:?} {part} {:?}", outputs[i]);
-                }
-                assert!((line[line.len() - 1] - sample.load.a_g).abs() < 1e-12 * of_ground, "{detail:?}");
-            };
-            let times = (0..80_000).map(|i| 1e-4 * f64::from(i)).take_while(|time| *time < found.finish.motion.time);
-            run.sample(times, show, &mut ()).unwrap();
+        near_the_motion(&run, 1e-4, 3, |_, _| ());
+        let curve = near_the_motion(&run, 1e-2, 3, |_, _| ());
+        assert!(curve.transitions.len() > 10 || detail == Detail::FixedBase);
+        assert!(curve.points.is_sorted_by(|a, b| a.time <= b.time));
+        assert_eq!(curve.points.last().unwrap().time, curve.found.finish.motion.time);
+        for transition in &curve.transitions {
+            let i = curve.points.partition_point(|point| point.time < transition.time);
+            let (before, after) = (&curve.points[i], &curve.points[i + 1]);
+            assert_eq!((before.time, after.time), (transition.time, transition.time));
+            assert_eq!((before.outputs[1], after.outputs[1]), (transition.before.u, transition.after.u));
+            assert_eq!(before.phase == Phase::FullContact, matches!(transition.kind, TransitionKind::Uplift(_)));
         }
-    }
-}
-
-/// The line of a picture passes through each peak and both sides of each transition.
-#[test]
-fn peaks_and_transitions_are_points() {
-    let ground = ground();
-    let structure = OneMass::new(Parameters::MCMANUS).unwrap();
-    let curve = Run::new(structure, &ground).curve(1e-2).unwrap();
-    for (i, of) in [Output::theta, Output::u(0), Output::a_t(0)].into_iter().enumerate() {
-        let most = curve.points.iter().map(|point| point.outputs[i].abs()).fold(0.0, f64::max);
-        let peak = curve.found.peaks.of(of).unwrap();
-        assert!((most / peak.magnitude - 1.0).abs() < 1e-9, "{of:?}: {most} {peak:?}");
-    }
-    let most = curve.points.iter().map(|point| point.a_g.abs()).fold(0.0, f64::max);
-    assert!((most / curve.found.peaks.a_g().magnitude - 1.0).abs() < 1e-9, "{most}");
-    assert!(curve.transitions.len() > 10);
-    assert!(curve.points.is_sorted_by(|a, b| a.time <= b.time));
-    assert_eq!(curve.points.last().unwrap().time, curve.found.finish.motion.time);
-    for transition in &curve.transitions {
-        let i = curve.points.partition_point(|point| point.time < transition.time);
-        let (before, after) = (&curve.points[i], &curve.points[i + 1]);
-        assert_eq!((before.time, after.time), (transition.time, transition.time));
-        assert_eq!((before.outputs[1], after.outputs[1]), (transition.before.u, transition.after.u));
-        assert_eq!(before.phase == Phase::FullContact, matches!(transition.kind, TransitionKind::Uplift(_)));
     }
 }
 
@@ -93,25 +92,12 @@ fn lines_of_many_masses_stay_as_close_to_each_floor() {
     let frame = three_storeys(0.02, &[("r", 0.93), ("P_0", 1e5), ("k_t", 1e6)]);
     let ground = ground();
     let run = Run { end: End::At(6.0), ..Run::of_modes(frame, &ground) };
-    let mut outputs = drawn(&run.structure);
-    outputs.truncate(outputs.len() - Output::OF_TIES.len());
-    let curve = run.curve(1e-3).unwrap();
-    let Found { peaks: profile, finish, .. } = &curve.found;
-    assert!(finish.motion.transitions > 5 && curve.transitions.len() as u64 == finish.motion.transitions);
-    let largest: Vec<_> = outputs.iter().map(|of| profile.of(*of).unwrap().magnitude).collect();
-    for (i, largest) in largest.iter().enumerate() {
-        let most = curve.points.iter().map(|point| point.outputs[i].abs()).fold(0.0, f64::max);
-        assert!((most / largest - 1.0).abs() < 1e-9, "{:?}: {most} {largest}", outputs[i]);
-    }
-    let show = |sample: &Sample<Modes>| {
-        let line = on_the_line(&curve.points, sample.motion.time);
-        for (i, of) in outputs.iter().enumerate() {
-            let missed = (line[i] - sample.output(*of)).abs() / largest[i];
-            assert!(missed <= 1e-3, "{of:?}: {missed}");
-        }
-        let pull = line[outputs.len()];
+    let (count, theta) =
+        (drawn(&run.structure).len() - Output::OF_TIES.len(), run.peaks().unwrap().0.theta().magnitude);
+    let curve = near_the_motion(&run, 1e-3, count, |sample, line| {
         let e = 2.0 * 1.5 * f64::sin(sample.motion.state.theta.abs() / 2.0);
-        assert!((pull - 1e5 - 1e6 * e).abs() <= 1.1e-3 * 1.5e6 * largest[0], "{pull} {e}");
-    };
-    run.sample((0..60_000).map(|i| 1e-4 * f64::from(i)), show, &mut ()).unwrap();
+        assert!((line[count] - 1e5 - 1e6 * e).abs() <= 1.1e-3 * 1.5e6 * theta, "{} {e}", line[count]);
+    });
+    let transitions = curve.found.finish.motion.transitions;
+    assert!(transitions > 5 && curve.transitions.len() as u64 == transitions);
 }

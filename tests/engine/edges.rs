@@ -14,6 +14,9 @@ use std::f64::consts::FRAC_PI_2;
 /// All but the fixed base.
 const ROCKING: [Detail; 5] = [Detail::Auto, Detail::Nonlinear, Detail::Linear, Detail::Modal, Detail::Rigid];
 
+/// Next to no mass on a foundation without any.
+const LIGHT: Parameters = Parameters { m: 1e-6, m0: 0.0, c_ratio: 1.0, r: 1.0, ..Parameters::EVISON };
+
 /// Evison's wall from `initial` through the instants `until` under the ground acceleration `a_g`.
 fn run(detail: Detail, initial: State, a_g: f64, until: &[f64]) -> (Motion, Vec<Transition>) {
     let mut engine = start(Parameters::EVISON, initial, detail);
@@ -77,19 +80,8 @@ fn an_angle_next_to_nothing_is_none() {
 /// Released at u_cr, where next to nothing lifts it and damping soon brings it back; the first step ends before that.
 #[test]
 fn a_step_may_end_right_before_a_return() {
-    let structure = OneMass::new(Parameters {
-        m: 1e-6,
-        m0: 0.0,
-        H: 500.0,
-        B: 10.0,
-        J0: 9.999999999999999e-5,
-        f_fc: 1e4,
-        zeta_fc: 0.99,
-        c_ratio: 1.0,
-        r: 1.0,
-        ..Parameters::EVISON
-    });
-    let structure = structure.unwrap();
+    let stiff = Parameters { H: 500.0, B: 10.0, J0: 9.999999999999999e-5, f_fc: 1e4, zeta_fc: 0.99, ..LIGHT };
+    let structure = OneMass::new(stiff).unwrap();
     let released = State { u: structure.u_cr, ..State::default() };
     let run = |until: &[f64]| {
         let mut engine = Engine::new(structure, released, 0.0, 1e-10).unwrap();
@@ -107,18 +99,8 @@ fn a_step_may_end_right_before_a_return() {
 /// reaches, while steps shrink with the square of the distance.
 #[test]
 fn a_way_without_end_is_told_for_what_it_is() {
-    let structure = OneMass::new(Parameters {
-        m: 1e-6,
-        m0: 0.0,
-        H: 0.04189042488611558,
-        B: 1e-3,
-        J0: 0.0,
-        f_fc: 1e-3,
-        zeta_fc: 0.96,
-        c_ratio: 2.875,
-        r: 1.0,
-        ..Parameters::EVISON
-    });
+    let soft = Parameters { B: 1e-3, f_fc: 1e-3, zeta_fc: 0.96, c_ratio: 2.875, ..LIGHT };
+    let structure = OneMass::new(Parameters { H: 0.04189042488611558, J0: 0.0, ..soft });
     let released = State { theta: 0.0265, ..State::default() };
     let mut engine = Engine::new(structure.unwrap(), released, 0.0, 1e-10).unwrap();
     let before = *engine.motion();

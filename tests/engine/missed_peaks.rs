@@ -7,9 +7,7 @@ use rocking::engine::Settings;
 use rocking::engine::piece::Sample;
 use rocking::run::peaks::Peaks;
 use rocking::run::validity::{Findings, Limits, Validity};
-use rocking::{
-    Detail, Engine, LinearLoad, Load, OneMass, Output, Parameters, Phase, Piece, Progress, Reactions, State, Watch,
-};
+use rocking::{Detail, Engine, LinearLoad, Load, OneMass, Output, Parameters, Phase, Piece, Progress, State, Watch};
 
 /// From -1 to 1.
 fn either_way(rng: &mut Rng) -> f64 {
@@ -19,28 +17,30 @@ fn either_way(rng: &mut Rng) -> f64 {
 /// Samples of each piece.
 struct Dense {
     parameters: Parameters,
-    largest: [f64; PEAKS.len()],
-    /// As [`worst`] has them.
-    worst: [f64; 3],
-    /// How long each of them is beyond its limit, s, and the first sample that is.
+    largest: [f64; SHOWN],
+    /// How long each of the last three is beyond its limit, s, and the first sample that is.
     beyond: [f64; 3],
     first: [Option<f64>; 3],
     pieces: usize,
 }
 
 const PEAKS: [Output; 7] = Output::PEAKS_OF_ONE;
+const SHOWN: usize = PEAKS.len() + 3;
 
-/// The magnitudes in the order of [`PEAKS`].
-fn magnitudes(sample: &Sample) -> [f64; PEAKS.len()] {
-    PEAKS.map(sample.outputs()).map(f64::abs)
-}
+/// What has been seen of no sample.
+const NOTHING: [f64; SHOWN] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0];
 
-/// (|R_m|/B − R_v)/W in full contact, −R_v/W, and |R_h|/R_v while R_v > 0, otherwise ∞.
-fn worst(&Parameters { m, m0, B, g, .. }: &Parameters, phase: Phase, r: Reactions) -> [f64; 3] {
-    let weight = (m + m0) * g;
+/// The magnitudes in the order of [`PEAKS`], then (|R_m|/B − R_v)/W in full contact, −R_v/W, and |R_h|/R_v while R_v > 0,
+/// otherwise ∞.
+fn shown(&Parameters { m, m0, B, g, .. }: &Parameters, sample: &Sample) -> [f64; SHOWN] {
+    let (weight, r) = ((m + m0) * g, sample.reactions());
     let friction = if r.R_v > 0.0 { r.R_h.abs() / r.R_v } else { f64::INFINITY };
-    let tension = if phase == Phase::FullContact { (r.R_m.abs() / B - r.R_v) / weight } else { f64::NEG_INFINITY };
-    [tension, -r.R_v / weight, friction]
+    let is_down = sample.motion.phase == Phase::FullContact;
+    let tension = if is_down { (r.R_m.abs() / B - r.R_v) / weight } else { f64::NEG_INFINITY };
+    let mut shown = [0.0; SHOWN];
+    shown[..PEAKS.len()].copy_from_slice(&PEAKS.map(sample.outputs()).map(f64::abs));
+    shown[PEAKS.len()..].copy_from_slice(&[tension, -r.R_v / weight, friction]);
+    shown
 }
 
 /// A piece of no duration is no motion.
@@ -48,20 +48,18 @@ impl Watch for Dense {
     fn piece(&mut self, piece: &Piece) {
         const SAMPLES: u32 = 400;
         self.pieces += 1;
-        let (start, duration, phase) = (piece.before.time, piece.duration, piece.before.phase);
+        let (start, duration) = (piece.before.time, piece.duration);
         let Limits { tension, edge_load, friction, .. } = Limits::default();
         for i in (0..=SAMPLES).filter(|_| duration > 0.0) {
             let sample = piece.sample(start + duration * f64::from(i) / f64::from(SAMPLES));
-            let values = worst(&self.parameters, phase, sample.reactions());
-            for (i, (value, limit)) in values.into_iter().zip([tension, -edge_load, friction]).enumerate() {
-                self.worst[i] = value.max(self.worst[i]);
-                if value > limit {
+            let values = shown(&self.parameters, &sample);
+            self.largest.iter_mut().zip(values).for_each(|(largest, value)| *largest = value.max(*largest));
+            for (i, limit) in [tension, -edge_load, friction].into_iter().enumerate() {
+                if values[PEAKS.len() + i] > limit {
                     self.beyond[i] += duration / f64::from(SAMPLES + 1);
                     self.first[i].get_or_insert(sample.motion.time);
                 }
             }
-            let values = magnitudes(&sample);
-            self.largest.iter_mut().zip(values).for_each(|(largest, value)| *largest = value.max(*largest));
         }
     }
 }
@@ -69,25 +67,17 @@ impl Watch for Dense {
 /// Values of a motion at the instants of its peaks and worst values.
 struct There {
     parameters: Parameters,
-    peaks: [(f64, f64); PEAKS.len()],
-    worst: [(f64, f64); 3],
+    at: [(f64, f64); SHOWN],
 }
 
 impl Watch for There {
     fn piece(&mut self, piece: &Piece) {
-        let (start, duration, phase) = (piece.before.time, piece.duration, piece.before.phase);
+        let (start, duration) = (piece.before.time, piece.duration);
         // the clock rounds
         let slack = 4.0 * f64::EPSILON * (start.abs() + duration);
         let is_within = |time: f64| duration > 0.0 && time >= start - slack && time <= start + duration + slack;
-        let sample = |time: f64| {
-            let sample = piece.sample(time.max(start));
-            (magnitudes(&sample), worst(&self.parameters, phase, sample.reactions()))
-        };
-        for (i, (time, shown)) in self.peaks.iter_mut().enumerate().filter(|(_, (time, _))| is_within(*time)) {
-            *shown = shown.max(sample(*time).0[i]);
-        }
-        for (i, (time, shown)) in self.worst.iter_mut().enumerate().filter(|(_, (time, _))| is_within(*time)) {
-            *shown = shown.max(sample(*time).1[i]);
+        for (i, (time, most)) in self.at.iter_mut().enumerate().filter(|(_, (time, _))| is_within(*time)) {
+            *most = most.max(shown(&self.parameters, &piece.sample(time.max(start)))[i]);
         }
     }
 }
@@ -136,14 +126,7 @@ fn no_peak_is_missed() {
         let mut engine = start();
         let [mut peaks, mut alone] = [(); 2].map(|()| Peaks::since(0.0, &structure.into(), detail));
         let mut validity = Validity::new(&structure.into(), Limits::default(), Findings::since(0.0));
-        let mut dense = Dense {
-            parameters,
-            largest: [0.0; PEAKS.len()],
-            worst: [f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0],
-            beyond: [0.0; 3],
-            first: [None; 3],
-            pieces: 0,
-        };
+        let mut dense = Dense { parameters, largest: NOTHING, beyond: [0.0; 3], first: [None; 3], pieces: 0 };
         let weight = 9.81 * structure.tan_alpha_cg;
         let amplitude = weight * [0.0, 0.3, 1.0, 3.0][rng.usize(0..4)];
         let force = parameters.m * weight * [0.0, 0.3, 1.0][rng.usize(0..3)];
@@ -176,7 +159,7 @@ fn no_peak_is_missed() {
         assert!(is_same, "scene {seed}, theta watched alone: {alone:?} {theta:?}");
         let found = validity.found().worst;
         for (i, sign) in [1.0, -1.0, 1.0].into_iter().enumerate() {
-            let (worst, sampled) = (sign * found[i].value, dense.worst[i]);
+            let (worst, sampled) = (sign * found[i].value, dense.largest[PEAKS.len() + i]);
             let slack = 1e-9 * (1.0 + sampled.abs());
             assert!(
                 worst == sampled || worst >= sampled - slack,
@@ -200,27 +183,26 @@ fn no_peak_is_missed() {
                 detail.name()
             );
         }
-        let mut there = There {
-            parameters,
-            peaks: PEAKS.map(|output| (peaks.of(output).unwrap().time, 0.0)),
-            worst: [0, 1, 2].map(|i| (found[i].time, f64::NEG_INFINITY)),
-        };
+        let times =
+            PEAKS.map(|output| peaks.of(output).unwrap().time).into_iter().chain([0, 1, 2].map(|i| found[i].time));
+        let mut at = times.zip(NOTHING);
+        let mut there = There { parameters, at: [(); SHOWN].map(|()| at.next().unwrap()) };
         engine = start();
         for (h, load) in advances {
             let _ = engine.advance(h, load, &mut there);
         }
-        for ((output, sampled), (time, shown)) in PEAKS.iter().zip(dense.largest).zip(there.peaks) {
+        for ((output, sampled), (time, shown)) in PEAKS.iter().zip(dense.largest).zip(there.at) {
             let peak = peaks.of(*output).unwrap().magnitude;
             let name = format!("scene {seed}, {}: {} = {peak} at {time} s", detail.name(), output.symbol());
             assert!(peak >= sampled * (1.0 - 1e-9), "{name} < {sampled}");
             assert!((peak - shown).abs() <= 1e-9 * peak, "{name}, where it is {shown}");
         }
-        for (i, (time, shown)) in there.worst.into_iter().enumerate() {
+        for (i, (time, shown)) in there.at.into_iter().skip(PEAKS.len()).enumerate() {
             let value = if i == 1 { -found[i].value } else { found[i].value };
             let name = format!("scene {seed}, {}: {i}: {value} at {time} s", detail.name());
             if value == f64::INFINITY {
                 assert_eq!(Some(time), found[1].first_beyond, "{name}");
-            } else if value != [f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0][i] {
+            } else if value != NOTHING[PEAKS.len() + i] {
                 assert!((value - shown).abs() <= 1e-9 * (1.0 + value.abs()), "{name}, where it is {shown}");
             }
         }

@@ -1,7 +1,7 @@
 //! Peaks of leaps, of equal crests and of contact that lasts no time, and what finding peaks costs. That none is missed
 //! is in `missed_peaks.rs`.
 
-use crate::common::shaking;
+use crate::common::{peaks_beside_samples, shaking};
 use rocking::run::peaks::Peaks;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
@@ -53,10 +53,8 @@ fn a_leap_without_end_is_looked_at_at_its_ends() {
             assert_eq!(finish.motion.work.steps, 1);
             assert!(peaks.evaluations() < 20_000, "{}", peaks.evaluations());
             let first = Run { end: End::At(2.0), ..run.clone() }.peaks().unwrap().0;
-            assert!(
-                (peaks.of(Output::u(0)).unwrap().magnitude / first.of(Output::u(0)).unwrap().magnitude - 1.0).abs()
-                    < 1e-9
-            );
+            let [whole, first] = [peaks, first].map(|peaks| peaks.of(Output::u(0)).unwrap().magnitude);
+            assert!((whole / first - 1.0).abs() < 1e-9, "{whole} {first}");
         }
     }
 }
@@ -74,11 +72,8 @@ fn contact_of_no_duration_is_no_motion() {
         let u = if detail == Detail::Rigid { 0.0 } else { 1.5 * structure.u_cr };
         let initial = State { u, u_dot: 20.0 * u, ..State::default() };
         let run = Run { detail, initial, end: End::At(0.2), ..Run::new(structure, &ground) };
-        let mut largest = 0.0_f64;
         let times = (0..=200_000).map(|i| f64::from(i) * 1e-6);
-        run.sample(times, |sample| largest = largest.max(sample.output(Output::a_t(0)).abs()), &mut ()).unwrap();
-        let peak = run.peaks().unwrap().0.of(Output::a_t(0)).unwrap().magnitude;
-        assert!((peak / largest - 1.0).abs() < 1e-4, "{}: {peak} {largest}", detail.name());
+        peaks_beside_samples(&run, times, &[Output::a_t(0)], 1e-4, |_| ());
     }
 }
 

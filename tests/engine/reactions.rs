@@ -1,6 +1,6 @@
 //! Reactions on the ground and impulses of impacts: the balance of momentum.
 
-use crate::common::start;
+use crate::common::{start, transitions};
 use rocking::{Detail, Engine, LinearLoad, Load, Parameters, Reactions, State, Transition};
 
 /// Position of the top mass and of the middle of the base, their momenta to the right and upwards, and the angular
@@ -61,13 +61,12 @@ fn the_momentum_balance_closes_across_impacts() {
         let mut engine = fresh();
         for k in 0..800 {
             cuts.push((k as f64 * dt, k));
-            engine
-                .advance((k + 1) as f64 * dt - engine.motion().time, piece(k), &mut |transition: &Transition| {
-                    if transition.time > cuts[cuts.len() - 1].0 {
-                        cuts.push((transition.time, k));
-                    }
-                })
-                .unwrap();
+            let interval = (k + 1) as f64 * dt - engine.motion().time;
+            for Transition { time, .. } in transitions(&mut engine, interval, piece(k)) {
+                if time > cuts[cuts.len() - 1].0 {
+                    cuts.push((time, k));
+                }
+            }
         }
         assert_eq!(engine.motion().transitions > 5, detail != Detail::FixedBase);
         cuts.push((800.0 * dt, 800));

@@ -1,9 +1,9 @@
 //! The force on the top mass, against ground motion that does the same and against its work.
 
-use crate::common::start;
+use crate::common::{start, transitions};
 use approx::assert_relative_eq;
 use rocking::mechanics::energy::energy;
-use rocking::{Detail, Engine, LinearLoad, Load, Output, Parameters, State, Transition, TransitionKind};
+use rocking::{Detail, Engine, LinearLoad, Load, Output, Parameters, State, TransitionKind};
 
 /// Linear between samples of `load` every 10 ms; `each` sees the engine after every one of `steps`.
 fn follow(
@@ -16,12 +16,7 @@ fn follow(
         let [from, to] = [k, k + 1].map(|k| k as f64 * 0.01);
         let (value, next) = (load(from), load(to));
         let slope = Load { a_g: (next.a_g - value.a_g) / 0.01, F_t: (next.F_t - value.F_t) / 0.01, a_v: 0.0 };
-        let mut last = None;
-        engine
-            .advance(to - engine.motion().time, LinearLoad { value, slope }, &mut |transition: &Transition| {
-                last = Some(transition.kind)
-            })
-            .unwrap();
+        let last = transitions(engine, to - engine.motion().time, LinearLoad { value, slope }).last().map(|it| it.kind);
         each(engine, last);
     }
 }

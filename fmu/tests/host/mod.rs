@@ -119,30 +119,28 @@ pub fn resources_of_many() -> TempDir {
     folder
 }
 
-unsafe fn record(environment: *mut c_void, instance: &str, status: c_int, [category, text]: [*const c_char; 2]) {
+pub type Text = *const c_char;
+
+unsafe fn record(log: *mut c_void, instance: &str, status: c_int, [category, text]: [Text; 2]) {
     let [category, text] = [category, text].map(|text| unsafe { CStr::from_ptr(text) }.to_str().unwrap().to_owned());
-    let log = unsafe { &*environment.cast::<Log>() };
+    let log = unsafe { &*log.cast::<Log>() };
     log.borrow_mut().push(Message { instance: instance.to_owned(), status, category, text });
 }
 
-unsafe extern "C" fn record_2(
-    environment: *mut c_void,
-    instance: *const c_char,
-    status: c_int,
-    category: *const c_char,
-    text: *const c_char,
-) {
-    unsafe { record(environment, CStr::from_ptr(instance).to_str().unwrap(), status, [category, text]) }
+unsafe extern "C" fn record_2(log: *mut c_void, instance: Text, status: c_int, category: Text, text: Text) {
+    unsafe { record(log, CStr::from_ptr(instance).to_str().unwrap(), status, [category, text]) }
 }
 
-unsafe extern "C" fn record_3(log: *mut c_void, status: c_int, category: *const c_char, text: *const c_char) {
+unsafe extern "C" fn record_3(log: *mut c_void, status: c_int, category: Text, text: Text) {
     unsafe { record(log, "", status, [category, text]) }
 }
 
-/// Callbacks that log into `environment`. The logger has no further arguments to read, so that it may be declared
-/// without them.
-pub fn callbacks(environment: *mut c_void) -> CallbackFunctions {
-    let logger: unsafe extern "C" fn(_, _, _, _, _) = record_2;
+/// Callbacks that log into `environment` by a `logger`, which has no further arguments to read, so that it may be declared without
+/// them.
+pub fn callbacks(
+    environment: *mut c_void,
+    logger: unsafe extern "C" fn(*mut c_void, Text, c_int, Text, Text),
+) -> CallbackFunctions {
     CallbackFunctions {
         logger: Some(unsafe { std::mem::transmute::<*const (), CallbackLogger>(logger as *const ()) }),
         allocate_memory: ptr::null(),
@@ -212,7 +210,7 @@ impl Host {
         let [name, guid, location] = texts.each_ref().map(|text| text.as_ptr());
         let (to, log_3) = ((&raw const *log).cast_mut().cast(), Some(record_3 as LogMessageCallback));
         let (functions, model_of_3, slave_of_3) =
-            (callbacks(to), fmi3::InstantiateModelExchange, fmi3::InstantiateCoSimulation);
+            (callbacks(to, record_2), fmi3::InstantiateModelExchange, fmi3::InstantiateCoSimulation);
         let [on, events, early] = [logging_on == 1, stepping.event_mode, stepping.early_return].map(u8::from);
         let (of, n) = (arguments.required.as_ptr(), arguments.required.len());
         around(true);

@@ -63,18 +63,6 @@ fn they_exist_from_initialization_to_overturning() {
     }
 }
 
-#[test]
-fn what_is_no_known_is_refused() {
-    let can = "only the inputs can, before the simulation starts real parameters and, once it has started, u, u_dot, \
-               theta, theta_dot and time";
-    let no_known = |name: &str| {
-        format!("fmi2GetDirectionalDerivative: {name} cannot be a known of a directional derivative: {can}")
-    };
-    for (host, known) in [(rocking(), "delta_t"), (rocking(), "m"), (Host::initializing(&[]), "theta")] {
-        host.assert_refused(|| host.derive(&["a_t"], &[(known, 1.0)]), Err(ERROR), &no_known(known));
-    }
-}
-
 /// The top mass above the pivot of a foundation without inertia: nothing says how it turns.
 #[test]
 fn where_the_equations_are_singular_neither_they_nor_the_reactions_exist() {

@@ -1,10 +1,10 @@
 //! Instances come and go: what they say of themselves, calls at the same time, many at once.
 
 use crate::host::*;
-use FlexibleRocking::fmi2::{self, CallbackFunctions, CallbackLogger};
+use FlexibleRocking::fmi2;
 use FlexibleRocking::{BUILD, guid};
 use rocking::Parameters;
-use std::ffi::{CStr, CString, c_char, c_void};
+use std::ffi::{CStr, CString, c_void};
 use std::hint::spin_loop;
 use std::ptr::with_exposed_provenance_mut;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -33,7 +33,7 @@ fn a_call_while_another_thread_calls_is_refused() {
         most: AtomicUsize,
         calls: AtomicUsize,
     }
-    unsafe extern "C" fn look(inside: *mut c_void, _: *const c_char, _: i32, _: *const c_char, _: *const c_char) {
+    unsafe extern "C" fn look(inside: *mut c_void, _: Text, _: i32, _: Text, _: Text) {
         let inside = unsafe { &*inside.cast::<Inside>() };
         inside.most.fetch_max(inside.now.fetch_add(1, Relaxed) + 1, Relaxed);
         inside.calls.fetch_add(1, Relaxed);
@@ -41,11 +41,7 @@ fn a_call_while_another_thread_calls_is_refused() {
         inside.now.fetch_sub(1, Relaxed);
     }
     let inside = Inside::default();
-    let logger: unsafe extern "C" fn(_, _, _, _, _) = look;
-    let functions = CallbackFunctions {
-        logger: Some(unsafe { std::mem::transmute::<*const (), CallbackLogger>(logger as *const ()) }),
-        ..callbacks((&raw const inside).cast_mut().cast())
-    };
+    let functions = callbacks((&raw const inside).cast_mut().cast(), look);
     let folder = resources();
     let location = CString::new(format!("file://{}", folder.path().display())).unwrap();
     let guid = CString::new(guid(&contents(Parameters::EVISON))).unwrap();

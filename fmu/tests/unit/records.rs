@@ -3,8 +3,9 @@
 use crate::host::*;
 use approx::assert_relative_eq;
 use rocking::Output;
+use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::record::Record;
-use rocking::{Detail, LinearLoad, Load, Parameters, Structure};
+use rocking::{Detail, Engine, LinearLoad, Load, Parameters, State, Structure};
 use rocking_records::Reading;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -173,13 +174,8 @@ fn the_input_adds_to_the_record() {
     assert_eq!((host.set(&[("a_g", 0.5), ("F_t", 30.0)]), host.set_slope("a_g", 1, -0.25)), (OK, OK));
     assert_eq!(host.set_slope("F_t", 1, 8.0), OK);
     assert_eq!(host.step(0.0, 1.5), OK);
-    let mut engine = rocking::Engine::new(
-        Structure::new(Parameters::EVISON).unwrap(),
-        rocking::State::default(),
-        0.0,
-        rocking::engine::DEFAULT_TOLERANCE,
-    )
-    .unwrap();
+    let structure = Structure::new(Parameters::EVISON).unwrap();
+    let mut engine = Engine::new(structure, State::default(), 0.0, DEFAULT_TOLERANCE).unwrap();
     for (duration, value, slope) in [(1.0, (1.5, 30.0), (0.75, 8.0)), (0.5, (2.25, 38.0), (-2.25, 8.0))] {
         let load = |(a_g, F_t)| Load { a_g, F_t, a_v: 0.0 };
         engine.advance(duration, LinearLoad { value: load(value), slope: load(slope) }, &mut ()).unwrap();
@@ -268,10 +264,8 @@ fn what_was_found_and_assumed_of_a_record_is_logged_before_the_run() {
         let host = Host::instantiate(Instantiate { logging_on: 1, ..Instantiate::default() }).unwrap();
         host.write("a.csv", text);
         assert_eq!(host.set(&[("record_scale", scale)]), OK);
-        assert_eq!(
-            (host.set_record("a.csv"), host.setup(None, 0.0, None), host.enter(), host.exit()),
-            (OK, OK, OK, OK)
-        );
+        assert_eq!(host.set_record("a.csv"), OK);
+        host.begin(None, 0.0, None);
         let log = host.log.take();
         assert!(log[0].text.starts_with("a.csv: ") && log[0].text.contains(found), "{log:?}");
         assert_eq!((log[0].category.as_str(), log.len()), ("logEvents", 1 + doubts), "{log:?}");

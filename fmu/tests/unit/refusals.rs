@@ -36,6 +36,10 @@ const INITIALIZING: &[Refused] = &[
     ("record is a string: call fmi2GetString or fmi2SetString instead", |h| h.set(&[("record", 1.0)])),
     ("phase is an enumeration: call fmi2GetInteger or fmi2SetInteger instead", |h| get(h, &["phase"])),
     ("overturned is a Boolean: call fmi2GetBoolean or fmi2SetBoolean instead", |h| get(h, &["theta", "overturned"])),
+    (
+        "theta cannot be a known of a directional derivative: only the inputs can, before the simulation starts real",
+        |h| derive_by(h, "a_t", "theta"),
+    ),
     ("m is a real number: call fmi2GetReal or fmi2SetReal instead", |h| h.set_integer("m", 1)),
     ("transitions is an integer: call fmi2GetInteger instead", |h| h.try_boolean("transitions").unwrap_err()),
     ("value reference 4000000000 does not exist; they run from 0 to ", |h| {
@@ -66,6 +70,12 @@ const STEPPING: &[Refused] = &[
     ("phase has no derivative: only continuous real outputs have", |h| h.rate("phase", 1).unwrap_err()),
     ("phase has no derivative: only continuous real outputs have", |h| derive(h, "phase", 1.0)),
     ("F_t has no derivative: only continuous real outputs have", |h| derive(h, "F_t", 1.0)),
+    ("m cannot be a known of a directional derivative: only the inputs can, before", |h| derive_by(h, "a_t", "m")),
+    (
+        "delta_t cannot be a known of a directional derivative: only the inputs can, before the simulation starts real parameters \
+      and, once it has started, u, u_dot, theta, theta_dot and time",
+        |h| derive_by(h, "a_t", "delta_t"),
+    ),
     ("theta_max has no derivative: only continuous real outputs have", |h| derive(h, "theta_max", 1.0)),
     ("the derivative of a_g, NaN, is out of range: it must be finite", |h| derive(h, "a_t", f64::NAN)),
     ("a_g has no derivative: only continuous real outputs have", |h| h.rate("a_g", 1).unwrap_err()),
@@ -142,6 +152,10 @@ fn initialize(host: &Host, tolerance: Option<f64>, start: f64, stop: Option<f64>
 
 fn get(host: &Host, names: &[&str]) -> c_int {
     host.try_get(names).unwrap_err()
+}
+
+fn derive_by(host: &Host, of: &str, known: &str) -> c_int {
+    host.derive(&[of], &[(known, 1.0)]).unwrap_err()
 }
 
 /// The status of a derivative along a_g.

@@ -30,29 +30,23 @@ fn the_slope_holds_for_one_step_and_its_end_value_from_then_on() {
     let host = Host::started(&[("theta_0", 0.01)]);
     let mut engine = engine(State { theta: 0.01, ..State::default() }, 0.0, DEFAULT_TOLERANCE);
 
-    assert_eq!((host.set(&[("a_g", 2.0)]), host.set_slope("a_g", 1, 30.0)), (OK, OK));
-    assert_eq!(host.step(0.0, 0.1), OK);
-    advance(&mut engine, 0.1, 2.0, 30.0);
-    assert_same(&host, &engine);
-    assert_eq!(host.get("a_g"), 5.0);
-
-    assert_eq!(host.step(0.1, 0.05), OK);
-    advance(&mut engine, 0.05, 5.0, 0.0);
-    assert_same(&host, &engine);
-
-    // A slope may be set before the value.
-    assert_eq!((host.set_slope("a_g", 1, 0.5), host.set(&[("a_g", -1.5)])), (OK, OK));
-    assert_eq!(host.step(0.15, 1.0), OK);
-    advance(&mut engine, 1.0, -1.5, 0.5);
-    assert_same(&host, &engine);
-
-    // A slope alone starts from the value held.
-    let held = host.get("a_g");
-    assert_relative_eq!(held, -1.0, max_relative = 1e-14);
-    assert_eq!(host.set_slope("a_g", 1, -10.0), OK);
-    assert_eq!(host.step(1.15, 0.1), OK);
-    advance(&mut engine, 0.1, held, -10.0);
-    assert_same(&host, &engine);
+    // a slope may be set before the value; alone it starts from the value held
+    let mut time = 0.0;
+    for (value, slope, step, line) in [
+        (Some(2.0), Some(30.0), 0.1, (2.0, 30.0)),
+        (None, None, 0.05, (5.0, 0.0)),
+        (Some(-1.5), Some(0.5), 1.0, (-1.5, 0.5)),
+        (None, Some(-10.0), 0.1, (-1.0, -10.0)),
+    ] {
+        let held = value.unwrap_or(host.get("a_g"));
+        assert_relative_eq!(held, line.0, max_relative = 1e-14);
+        slope.into_iter().for_each(|slope| assert_eq!(host.set_slope("a_g", 1, slope), OK));
+        value.into_iter().for_each(|value| assert_eq!(host.set(&[("a_g", value)]), OK));
+        assert_eq!(host.step(time, step), OK);
+        advance(&mut engine, step, held, line.1);
+        assert_same(&host, &engine);
+        time += step;
+    }
     assert!(engine.motion().transitions > 1, "the comparison saw {} transitions", engine.motion().transitions);
     assert_relative_eq!(host.get("a_g"), -2.0, max_relative = 1e-14);
 }
@@ -150,8 +144,8 @@ fn a_clock_of_single_precision_loses_no_time() {
     let single = |time: f64| f64::from(time as f32);
     let from_start = || {
         let host = Host::new();
-        assert_eq!((host.set(&[("theta_0", 0.02)]), host.setup(None, 500.0, None)), (OK, OK));
-        assert_eq!((host.enter(), host.exit()), (OK, OK));
+        assert_eq!(host.set(&[("theta_0", 0.02)]), OK);
+        host.begin(None, 500.0, None);
         host
     };
     let (host, once) = (from_start(), from_start());

@@ -101,15 +101,11 @@ fn instantiate(rng: &mut Rng, interface: Interface, [name, guid, location]: [*co
     unsafe { Instantiate(name, kind, guid, location, &functions, 0, rng.i32(0..2)) }
 }
 
-unsafe extern "C" fn tell(
-    environment: *mut c_void,
-    _: *const c_char,
-    status: c_int,
-    _: *const c_char,
-    text: *const c_char,
-) {
+type Text = *const c_char;
+
+unsafe extern "C" fn tell(told: *mut c_void, _: Text, status: c_int, _: Text, text: Text) {
     unsafe {
-        (*environment.cast::<Told>()).tell(status, text, |c| {
+        (*told.cast::<Told>()).tell(status, text, |c| {
             FreeInstance(c);
             assert_eq!((DoStep(c, 0.0, 1.0, 0), Reset(c)), (ERROR, ERROR));
         });
