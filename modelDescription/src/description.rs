@@ -6,9 +6,6 @@ use fmi_unit::logger::Category;
 use fmi_unit::variables::{dependencies, position};
 use fmi_unit::{Causality, DataType, Enumeration, Role, Value, Variable};
 
-/// Whether a variable is of a kind.
-type IsOne = fn(&Variable) -> bool;
-
 /// The content of a model description.
 #[derive(Clone, Debug, Default)]
 pub struct Description<'a> {
@@ -40,7 +37,9 @@ impl Description<'_> {
     /// The text of `modelDescription.xml` for hosts of `version`.
     pub fn to_xml(&self, version: Version) -> String {
         let (number, token, indicators) = match version {
-            Version::Fmi2 => ("2.0", "guid", Some(self.unknowns(is_indicator, false).count())),
+            Version::Fmi2 => {
+                ("2.0", "guid", Some(self.variables.iter().filter(|of| of.role == Role::Indicator).count()))
+            }
             Version::Fmi3 => ("3.0", "instantiationToken", None),
         };
         let has_numbers = self.variables.iter().any(|variable| variable.name.contains('['));
@@ -184,26 +183,21 @@ impl Description<'_> {
         }
     }
 
-    /// The positions of the variables that are one, with the positions of what they depend on.
-    fn unknowns(&self, is_one: IsOne, at_start: bool) -> impl Iterator<Item = (usize, Vec<usize>)> {
-        let found = (0..self.variables.len()).filter(move |at| is_one(&self.variables[*at]));
-        found.map(move |at| (at, dependencies(self.variables, at, at_start)))
-    }
-
     /// The dependencies: in FMI 2.0 after the start on inputs and states alone, in FMI 3.0 on parameters and time, too.
     fn structure(&self, version: Version) -> Element {
-        let lists: [(_, _, IsOne, _); 4] = [
-            ("Outputs", "Output", is_output, false),
-            ("Derivatives", "ContinuousStateDerivative", is_rate, false),
+        let lists: [(_, _, fn(&Variable) -> bool, _); 4] = [
+            ("Outputs", "Output", |of| of.causality == Causality::Output, false),
+            ("Derivatives", "ContinuousStateDerivative", |of| matches!(of.role, Role::RateOf(_)), false),
             ("InitialUnknowns", "InitialUnknown", Variable::is_initial_unknown, true),
-            ("", "EventIndicator", is_indicator, false),
+            ("", "EventIndicator", |of| of.role == Role::Indicator, false),
         ];
         let is_input_or_state = |at: &usize| {
             let variable = &self.variables[*at];
             variable.causality == Causality::Input || variable.role == Role::State
         };
         let listed = lists.into_iter().flat_map(|(list, of_3, is_one, at_start)| {
-            let unknowns = self.unknowns(is_one, at_start);
+            let found = (0..self.variables.len()).filter(move |at| is_one(&self.variables[*at]));
+            let unknowns = found.map(move |at| (at, dependencies(self.variables, at, at_start)));
             match version {
                 Version::Fmi2 if list.is_empty() => Vec::new(),
                 Version::Fmi2 => {
@@ -225,18 +219,6 @@ impl Description<'_> {
 /// The index in FMI 2.0 and the value reference in FMI 3.0 of the variable at a position.
 fn index(at: usize) -> usize {
     at + 1
-}
-
-fn is_output(variable: &Variable) -> bool {
-    variable.causality == Causality::Output
-}
-
-fn is_rate(variable: &Variable) -> bool {
-    matches!(variable.role, Role::RateOf(_))
-}
-
-fn is_indicator(variable: &Variable) -> bool {
-    variable.role == Role::Indicator
 }
 
 fn unit(Unit { name, base, display }: Unit) -> Element {

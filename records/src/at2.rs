@@ -40,10 +40,6 @@ mod tests {
     use super::*;
     use crate::Record;
 
-    const PACOIMA: &str = "PEER NGA STRONG MOTION DATABASE RECORD\n\
-        San Fernando, 2/9/1971, Pacoima Dam (upper left abut), 164\n\
-        ACCELERATION TIME SERIES IN UNITS OF G\n";
-
     /// The step of 3 samples, as each header variant states it.
     const COUNTS: [(&str, f64); 9] = [
         ("NPTS=   3, DT=   .0100 SEC,                    ", 0.01),
@@ -57,15 +53,22 @@ mod tests {
         ("NPTS= 3, DT= .01 SEC, UNITS=G", 0.01),
     ];
 
+    const TITLE: &str = "San Fernando, 2/9/1971, Pacoima Dam (upper left abut), 164";
+
     fn at2(counts: &str, values: &str) -> Result<Record, BadLine> {
-        Ok(crate::parse(&format!("{PACOIMA}{counts}\n{values}"), &Reading::default())?.0)
+        let first = "PEER NGA STRONG MOTION DATABASE RECORD";
+        let text = format!("{first}\n{TITLE}\nACCELERATION TIME SERIES IN UNITS OF G\n{counts}\n{values}");
+        let late = crate::parse(&format!("a line more\n{text}"), &Reading::default());
+        let record = crate::parse(&text, &Reading::default())?.0;
+        assert_eq!(late.map(|(late, _)| late), Ok(record.clone()), "the header may start later");
+        Ok(record)
     }
 
     #[test]
     fn every_header_variant_gives_the_same_samples() {
         for (counts, dt) in COUNTS {
             let record = at2(counts, " .1297983E-02\t-.4E-03\n1.2d-03  \n\n \n").unwrap();
-            assert_eq!(record.title(), "San Fernando, 2/9/1971, Pacoima Dam (upper left abut), 164");
+            assert_eq!(record.title(), TITLE);
             assert_eq!(record.times(), [0.0, dt, 2.0 * dt], "{counts}");
             assert_eq!(record.acceleration(), [0.1297983e-2, -0.4e-3, 1.2e-3], "{counts}");
         }
@@ -91,15 +94,5 @@ mod tests {
             let expected = format!("6: the acceleration {not_a_number:?} is not a number");
             assert_eq!(problem(&format!(".1\n {not_a_number}\n.3\n")), expected);
         }
-    }
-
-    /// The content decides, not the name: any number of lines before the title.
-    #[test]
-    fn a_header_may_start_later() {
-        let late = format!("a line more\n{PACOIMA}NPTS= 2, DT= .01 SEC\n1 2\n");
-        assert_eq!(
-            crate::parse(&late, &Reading::default()).unwrap().0.title(),
-            "San Fernando, 2/9/1971, Pacoima Dam (upper left abut), 164"
-        );
     }
 }

@@ -95,8 +95,11 @@ fn channels(text: &str) -> Result<Vec<Announced<'_>>, BadLine> {
             let start = ["units=", "units:", " in "].iter().find_map(|before| Some(lower.find(before)? + before.len()));
             let unit = start.and_then(|start| content.get(start..)).map(|rest| rest.split([',', '(', ')', ' ']));
             let unit = unit.and_then(|mut words| words.find(|word| !word.is_empty())).ok_or_else(unclear)?;
-            let own = lower.split_once("spaced at").and_then(|(_, rest)| step(rest.split_whitespace().next()?));
-            let dt = own.or(reals.step()).ok_or_else(|| bad(line, "no line states the interval of the samples"))?;
+            let own = lower.split_once("spaced at").and_then(|(_, rest)| number(rest.split_whitespace().next()?));
+            let dt = own
+                .filter(|dt| *dt > 0.0)
+                .or(reals.step())
+                .ok_or_else(|| bad(line, "no line states the interval of the samples"))?;
             channels.push(Announced { line, name, count, unit: unit.trim_end_matches('.'), width: width(content), dt });
         }
     }
@@ -109,10 +112,6 @@ fn width(line: &str) -> Option<usize> {
     let (_, width) = format.split_once(['f', 'F', 'e', 'E', 'i', 'I', 'g', 'G'])?;
     let digits = width.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(width.len());
     width[..digits].parse().ok().filter(|width| (1..=100).contains(width))
-}
-
-fn step(word: &str) -> Option<f64> {
-    number(word).filter(|dt| *dt > 0.0)
 }
 
 /// The real numbers of a channel's header, of which two are needed.

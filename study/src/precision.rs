@@ -4,7 +4,7 @@ mod curves;
 mod peers;
 
 use crate::engine;
-use crate::response::{Errors, Failure, Response};
+use crate::response::{Failure, Response, Sample};
 use crate::scene::Scene;
 use crate::tables;
 use anyhow::Result;
@@ -32,14 +32,14 @@ pub struct Point {
     pub cost: f64,                       // time per sample, s
     pub evaluations: f64,                // right-hand-side evaluations per sample
     pub transitions: u64,                // uplifts, impacts and landings
-    pub errors: Result<Errors, Failure>, // against the reference, or why there are none
+    pub errors: Result<Sample, Failure>, // against the reference, or why there are none
 }
 
 /// All curves on one scene.
 #[derive(Debug)]
 pub struct Diagram {
     /// How far the response moves when the input is scaled by 1 + [`PERTURBATION`].
-    pub conditioning: Errors,
+    pub conditioning: Sample,
     pub curves: Vec<Curve>,
 }
 
@@ -75,8 +75,8 @@ pub fn measure(scene: &Scene, limits: Limits, python: Option<&Path>, progress: &
 }
 
 /// How far the response of `scene`, which is `exact`, moves when the input is scaled by 1 + [`PERTURBATION`].
-fn conditioning(scene: &Scene, exact: &Response) -> Result<Errors, Failure> {
-    Errors::of(&engine::reference(&scene.scaled(1.0 + PERTURBATION)), exact)
+fn conditioning(scene: &Scene, exact: &Response) -> Result<Sample, Failure> {
+    engine::reference(&scene.scaled(1.0 + PERTURBATION)).errors(exact)
 }
 
 /// One method from coarse to fine, until its error in θ is as small as the conditioning or a run takes too long.
@@ -84,7 +84,7 @@ fn sweep(method: &Method, scene: &Scene, exact: &Response, conditioning: f64, li
     let mut points = Vec::new();
     for (setting, run) in &method.settings {
         let (response, time) = fastest(run);
-        let errors = Errors::of(&response, exact);
+        let errors = response.errors(exact);
         let is_exact = errors.as_ref().is_ok_and(|errors| errors.theta <= conditioning);
         let samples = response.samples.len().max(1) as f64;
         points.push(Point {
@@ -142,7 +142,7 @@ pub fn write(
 pub fn write_scenes(scenes: &[Scene], folder: &Path) -> Result<()> {
     let row = |scene: &Scene| {
         let exact = engine::reference(scene);
-        let Errors { theta, u, a_t } = conditioning(scene, &exact)?;
+        let Sample { theta, u, a_t } = conditioning(scene, &exact)?;
         let numbers = [scene.dt(), exact.transitions as f64, theta, u, a_t].map(|number| number.to_string());
         Ok([scene.key, scene.title].map(str::to_string).into_iter().chain(numbers))
     };
@@ -155,7 +155,7 @@ fn save(curves: &[Curve], path: &Path) -> Result<()> {
                    error_theta,error_u,error_a_t,failure";
     let row = |(curve, point): (&Curve, &Point)| {
         let error =
-            |get: fn(&Errors) -> f64| point.errors.as_ref().map_or(String::new(), |e| format!("{:.3e}", get(e)));
+            |get: fn(&Sample) -> f64| point.errors.as_ref().map_or(String::new(), |e| format!("{:.3e}", get(e)));
         [
             curve.name.clone(),
             curve.setting.clone(),

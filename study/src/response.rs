@@ -11,7 +11,7 @@ pub struct Response {
     pub failure: Option<Failure>, // why it ends before the scene does
 }
 
-/// The response at one instant.
+/// The response at one instant; or its errors, each the largest difference over the samples relative to the largest exact value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     pub theta: f64, // rotation of the base, rad
@@ -48,25 +48,17 @@ pub enum Failure {
     GaveUp { time: f64, message: String },
 }
 
-/// The errors of a response, each the largest difference over the samples relative to the largest exact value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Errors {
-    pub theta: f64, // max |Δθ| / max |θ|
-    pub u: f64,     // max |Δu| / max |u|
-    pub a_t: f64,   // max |Δa_t| / max |a_t|
-}
-
-impl Errors {
-    /// Of `response` against `exact`, or why it has none.
-    pub fn of(response: &Response, exact: &Response) -> Result<Errors, Failure> {
-        if let Some(failure) = &response.failure {
+impl Response {
+    /// The errors of the response against `exact`, or why it has none.
+    pub fn errors(&self, exact: &Response) -> Result<Sample, Failure> {
+        if let Some(failure) = &self.failure {
             return Err(failure.clone());
         }
         let error = |get: fn(&Sample) -> f64| {
             let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
-            let pairs = response.samples.iter().zip(&exact.samples);
+            let pairs = self.samples.iter().zip(&exact.samples);
             largest(&mut pairs.map(|(a, b)| get(a) - get(b))) / largest(&mut exact.samples.iter().map(get))
         };
-        Ok(Errors { theta: error(|s| s.theta), u: error(|s| s.u), a_t: error(|s| s.a_t) })
+        Ok(Sample { theta: error(|s| s.theta), u: error(|s| s.u), a_t: error(|s| s.a_t) })
     }
 }

@@ -4,7 +4,6 @@ use study::engine;
 use study::fixed_step::{Method, TEXTBOOK};
 use study::guards::uplift_excess;
 use study::hybrid::{self, Grid, Transitions};
-use study::response::Errors;
 use study::scene::Scene;
 
 /// The error in θ of Evison's free vibration, with its eight impacts, by `steps` steps between samples.
@@ -12,7 +11,7 @@ fn error(method: Method, transitions: Transitions, steps: u32) -> f64 {
     let scene = Scene::evison_free_vibration();
     let grid = Grid { method, h: scene.dt() / f64::from(steps) };
     let response = hybrid::run(&scene, &grid, transitions, uplift_excess, &mut |_, _| ());
-    Errors::of(&response, &engine::reference(&scene)).unwrap().theta
+    response.errors(&engine::reference(&scene)).unwrap().theta
 }
 
 /// Order from the errors at h and h/2.

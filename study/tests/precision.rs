@@ -5,7 +5,7 @@ mod synthetic;
 use indicatif::ProgressBar;
 use study::engine;
 use study::precision::{Curve, Limits, measure, write};
-use study::response::{Errors, Failure};
+use study::response::Failure;
 
 /// Five points to each curve, whatever a run takes.
 const SMALL: Limits = Limits { run: 0.0, points: 5 };
@@ -52,7 +52,7 @@ fn the_command_writes_what_it_has_measured() {
     assert_eq!(rows.len(), 25 * 5);
     let row = rows.iter().find(|row| &row[0] == "this project, auto" && row[2].starts_with("1.000000e-3")).unwrap();
     let response = engine::run(&scene, rocking::Detail::Auto, 1e-3, &mut ());
-    let errors = Errors::of(&response, &engine::reference(&scene)).unwrap();
+    let errors = response.errors(&engine::reference(&scene)).unwrap();
     assert_eq!(row[6], format!("{:.3e}", errors.theta));
     assert_eq!(row[5], response.transitions.to_string());
     assert_eq!(row[4], format!("{:.3}", response.evaluations as f64 / scene.intervals() as f64));

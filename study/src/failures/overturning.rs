@@ -17,10 +17,6 @@ fn released(theta: f64) -> History {
     exact(&scene, Detail::Auto, every(SAMPLE)).expect("a release has an answer")
 }
 
-fn falls_back(theta: f64) -> bool {
-    !released(theta).transitions.iter().any(|one| matches!(one.kind, TransitionKind::Overturning(_)))
-}
-
 /// The rate at which a small error grows at the unstable equilibrium, 1/s: Eq 6 linearised at θ = α_cg.
 pub fn growth() -> f64 {
     let structure = structure(Parameters::MCMANUS);
@@ -30,6 +26,8 @@ pub fn growth() -> f64 {
 /// Two releases on either side of the angle that balances.
 pub fn show() -> Result<Exhibit> {
     let alpha_cg = structure(Parameters::MCMANUS).tan_alpha_cg.atan();
+    let overturns = |one: &Transition| matches!(one.kind, TransitionKind::Overturning(_));
+    let falls_back = |theta| !released(theta).transitions.iter().any(overturns);
     let balance = last_where(0.5 * alpha_cg, 1.5 * alpha_cg, falls_back);
     let [inside, outside] = [1.0 - CHANGE, 1.0 + CHANGE].map(|factor| released(balance * factor).theta());
     let difference: Vec<_> = inside.iter().zip(&outside).map(|((t, a), (_, b))| (*t, (a - b).abs())).collect();

@@ -1,7 +1,7 @@
 //! The peers of `peers.py`: heyoka and scipy, which Python drives.
 
 use super::{Curve, Limits, Point};
-use crate::response::{Errors, Failure, Response, Sample};
+use crate::response::{Failure, Response, Sample};
 use crate::scene::Scene;
 use anyhow::{Context, Result, ensure};
 use rocking::Parameters;
@@ -48,11 +48,12 @@ pub fn curves(scene: &Scene, exact: &Response, conditioning: f64, limits: Limits
     let curve = |runs: &[Run]| {
         let mut points = Vec::new();
         for run in runs {
+            let sample = |numbers: &[f64]| Sample { theta: numbers[0], u: numbers[1], a_t: numbers[2] };
             let samples: Vec<_> = run.samples.chunks(3).map(sample).collect();
             let failure = run.failure.clone().map(Failure::AsWritten);
             let (count, transitions) = (scene.intervals() as f64, run.transitions);
             let response = Response { samples, evaluations: 0, transitions, failure };
-            let errors = Errors::of(&response, exact);
+            let errors = response.errors(exact);
             let is_exact = errors.as_ref().is_ok_and(|errors| errors.theta <= conditioning);
             let (cost, evaluations) = (run.seconds / count, run.evaluations / count);
             points.push(Point { setting: run.tolerance, cost, evaluations, transitions, errors });
@@ -63,8 +64,4 @@ pub fn curves(scene: &Scene, exact: &Response, conditioning: f64, limits: Limits
         Curve { name: runs[0].method.clone(), setting: "tolerance".into(), points }
     };
     Ok(runs.chunk_by(|a, b| a.method == b.method).map(curve).collect())
-}
-
-fn sample(numbers: &[f64]) -> Sample {
-    Sample { theta: numbers[0], u: numbers[1], a_t: numbers[2] }
 }
