@@ -68,10 +68,16 @@ pub fn numbers(structure: &Structure) -> Vec<NamedValue> {
     given(structure).into_iter().chain(derived(structure)).chain(modes).collect()
 }
 
+/// A number of things by their name in the singular.
+fn counted((name, count): (&str, usize)) -> String {
+    format!("{count} {name}{}", if count == 1 { "" } else { "s" })
+}
+
 /// The parameters of one mass in one line; how many floors and modes many masses have.
 pub fn in_one_line(structure: &Structure) -> String {
     if structure.one().is_none() {
-        return format!("{} floors, {} modes", structure.floors().len(), structure.modes().len());
+        let [floors, modes] = [("floor", structure.floors().len()), ("mode", structure.modes().len())].map(counted);
+        return format!("{floors}, {modes}");
     }
     let value = |of: &NamedValue| format!("{} = {}", of.name, with_unit(of.value, of.unit));
     given(structure).iter().map(value).collect::<Vec<_>>().join(", ")
@@ -83,7 +89,9 @@ pub fn text(structure: &Structure) -> Result<String, fmt::Error> {
     let unit = |unit| if unit == "1" { "-" } else { unit };
     let derived = derived(structure);
     if structure.one().is_none() {
-        writeln!(out, "Structure of many masses")?;
+        let masses = if structure.floors().len() == 1 { "one mass" } else { "many masses" };
+        let ground = if structure.foundation().is_some() { " on ground that gives" } else { "" };
+        writeln!(out, "Structure of {masses}{ground}")?;
         for NamedValue { name, value, unit: of, description, .. } in derived.iter().filter(|of| of.value != 0.0) {
             writeln!(out, "  {name:<10} {:>12} {:<6} {description}", significant(*value), unit(of))?;
         }
@@ -113,9 +121,8 @@ fn print_modes(out: &mut String, frame: &Structure, table: &[Vec<NamedValue>]) -
     let part = |rest: f64, whole: f64| format!("{:.2} %", 100.0 * (1.0 - rest / whole));
     let [mass, first, second] = [part(mass, m_s), part(first, S_1), part(second, I_2)];
     let modes = match (frame.modes().len(), frame.floors().len()) {
-        (modes, floors) if floors > modes => format!("{modes} modes of {floors} floors"),
-        (1, _) => "1 mode".to_owned(),
-        (modes, _) => format!("{modes} modes"),
+        (modes, floors) if floors > modes => format!("{} of {floors} floors", counted(("mode", modes))),
+        (modes, _) => counted(("mode", modes)),
     };
     writeln!(
         out,

@@ -66,5 +66,6 @@ pub fn sizes(structure: &Structure) -> Sizes {
     let H = floors.last().map_or(S_1 / m, |floor| floor.height);
     let f_fc = structure.mode_table().next().map_or(0.0, |first| (OF_MODE[0].value)(&first));
     let floors = structure.one().is_none().then(|| floors.iter().map(|floor| [floor.mass, floor.height]).collect());
-    Sizes { m, m0, H, B: base.B, f_fc, g: base.g, P_0, k_t, xi_d, c_d, k_d, floors }
+    let points = structure.foundation().map_or(Vec::new(), |of| of.points.iter().map(|point| point.xi).collect());
+    Sizes { m, m0, H, B: base.B, f_fc, g: base.g, P_0, k_t, xi_d, c_d, k_d, points, floors }
 }

@@ -67,6 +67,8 @@ pub struct Sizes {
     pub xi_d: f64,
     pub c_d: f64,
     pub k_d: f64,
+    /// Places of the contact points on ground that gives.
+    pub points: Vec<f64>,
     /// Mass and height of each floor from below, of many masses.
     pub floors: Option<Vec<[f64; 2]>>,
 }

@@ -12,6 +12,7 @@ function motionView() {
     let sum = 0;
     const time = Float64Array.from(data.time.values, (difference) => data.start + (sum += difference) * data.time.quantum);
     const values = Object.fromEntries(data.columns.map(([name, of]) => [name, column(of)]));
+    if (data.parameters.floors?.length === 1) for (const name of ["u", "a_t"]) values[name] = values[`${name}[1]`]; // as of one mass
     const peaks = (list) => Object.fromEntries(list.map(([name, magnitude, instant]) => [name, { magnitude, instant }]));
     const most = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
     return {
@@ -31,6 +32,7 @@ function motionView() {
   let beside = []; // those that are drawn beside it, each with its `colour`
   let floor; // the one whose histories are shown, from 1
   const floors = () => motion.parameters.floors;
+  const givesWay = () => motion.parameters.points.length > 0;
   /** The output `name`, of the floor that is shown if floors have it. */
   const own = (name) => (`${name}[${floor}]` in motion.peaks ? `${name}[${floor}]` : name);
   const peakOf = (name) => motion.peaks[own(name)];
@@ -60,8 +62,9 @@ function motionView() {
     const { theta } = state;
     const [u, a_t, h] = floors() ? [state[own("u")], state[own("a_t")], floors()[floor - 1]?.[1] ?? H] : [state.u, state.a_t, H];
     const uplift = 2 * B * Math.sin(Math.abs(theta));
-    const delta_t = Math.sign(theta) * B * (1 - Math.cos(theta)) + u * Math.cos(theta) + h * Math.sin(theta);
-    return { V_t: m * a_t, M_t: m * H * a_t, ...state, phase, uplift, u, a_t, delta_t };
+    const pivot = givesWay() ? 0 : Math.sign(theta) * B;
+    const delta_t = pivot * (1 - Math.cos(theta)) + u * Math.cos(theta) + h * Math.sin(theta);
+    return { V_t: m * a_t, M_t: m * H * a_t, uplift, ...state, phase, u, a_t, delta_t };
   }
 
   /** The peak of `name` with its sign, which the largest of the points about its `instant` has. */
@@ -125,6 +128,9 @@ function motionView() {
     a_t: { symbol: "a_t", meaning: "acceleration of the top", unit: "g" },
     V_t: { symbol: "V_t", meaning: "base shear", unit: "kN", per: 1e3 },
     M_t: { symbol: "M_t", meaning: "overturning moment", unit: "kN m", per: 1e3 },
+    settlement: { symbol: "s", meaning: "settlement", unit: "mm", per: 1e-3 },
+    N_left: { symbol: "N_left", meaning: "force of the left edge", unit: "kN", per: 1e3 },
+    N_right: { symbol: "N_right", meaning: "force of the right edge", unit: "kN", per: 1e3 },
   };
   /** `value` of the quantity `name` in its unit, in as many digits as its peak has. */
   function inUnit(name, value) {
@@ -195,18 +201,22 @@ function motionView() {
   }
 
   /** The ties as lines from the ground to the base, and their forces below, from left to right. */
-  function drawTies(state, side, theta) {
+  function drawTies(state, place) {
     const { x, y } = stage;
-    const { B } = motion.parameters;
     const [lines, forces] = [at("ties"), at("pulls")];
     lines.replaceChildren();
     forces.replaceChildren();
     const text = element(forces, "text", { x, y: y + 56, "text-anchor": "middle" });
     for (const { name, kind, along } of ties().sort((one, other) => one.along - other.along)) {
-      const lever = along - side * B;
-      const top = { x: side * B + lever * Math.cos(theta), y: lever * Math.sin(theta) };
+      const top = place(along);
       element(lines, "line", { class: kind, x1: along, y1: 0, x2: top.x, y2: top.y });
       element(text, "tspan", { dx: 10, "data-name": name }, `${name} ${significant(state[name] / 1e3)} kN`);
+    }
+    // a spring of the ground ends at the base, or at the surface if the base is above it
+    for (const xi of motion.parameters.points) {
+      const [foot, end] = [12 / stage.scale, place(xi)];
+      const part = (Math.max(0, end.y) - foot) / 4;
+      element(lines, "path", { class: "spring", d: `M${end.x} ${foot}l${foot / 3} ${part}l${-foot / 1.5} ${part}l${foot / 1.5} ${part}l${-foot / 3} ${part}` });
     }
   }
 
@@ -275,17 +285,20 @@ function motionView() {
     const { B } = motion.parameters;
     const side = state.theta < 0 ? -1 : 1;
     const theta = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, exaggeration * state.theta));
-    at("body").setAttribute("transform", `rotate(${(theta * 180) / Math.PI} ${side * B} 0)`);
+    // about an edge; on ground that gives about the middle, which moves vertically
+    const [pivot, rise] = givesWay() ? [0, exaggeration * state.y] : [side * B, 0];
+    const place = (along) => ({ x: pivot + (along - pivot) * Math.cos(theta), y: (along - pivot) * Math.sin(theta) - rise });
+    at("body").setAttribute("transform", `${rise ? `translate(0 ${-rise}) ` : ""}rotate(${(theta * 180) / Math.PI} ${pivot} 0)`);
     bend(displacements(state).map((u) => exaggeration * u));
     const lifts = state.theta !== 0;
-    set(at("pivot"), { cx: side * B, visibility: lifts ? "visible" : "hidden" });
-    const edge = { x: side * B - 2 * side * B * Math.cos(theta), y: -2 * B * Math.sin(Math.abs(theta)) };
+    set(at("pivot"), { cx: pivot, visibility: lifts && pivot ? "visible" : "hidden" });
+    const edge = place(-side * B);
     const isSeen = lifts && -edge.y * scale > 2;
     set(at("gap"), { x1: edge.x, x2: edge.x, y1: 0, y2: edge.y, visibility: isSeen ? "visible" : "hidden" });
     const lift = at("lift");
     lift.textContent = isSeen ? `${inUnit("uplift", state.uplift)} mm` : "";
     set(lift, { x: x + scale * edge.x - 8 * side, y: y + Math.min((scale * edge.y) / 2 + 4, -5), "text-anchor": side > 0 ? "end" : "start" });
-    drawTies(state, side, theta);
+    drawTies(state, place);
     drawShaking(state.a_g, width);
     const fallen = at("fallen");
     fallen.textContent = state.phase === "overturned" ? `overturned at ${fixed(motion.end, 3)} s, peaks until ${fixed(motion.fall, 3)} s` : "";
@@ -357,7 +370,7 @@ function motionView() {
   /** The choice of a floor, and the table of peaks, from the top down. */
   function layOutFloors() {
     const count = floors()?.length ?? 0;
-    at("choice").hidden = at("heights").hidden = count === 0;
+    at("choice").hidden = at("heights").hidden = count <= 1;
     if (!(floor >= 1 && floor <= count) || floor === at("floor").length) floor = count; // the top stays the top
     if (at("floor").length !== count) {
       at("floor").replaceChildren(...Array.from({ length: count }, (_, i) => new Option(i + 1 === count ? `${count}, the top` : i + 1, i + 1)).reverse());
@@ -421,7 +434,7 @@ function motionView() {
   function layOutPanels() {
     const { g, m } = motion.parameters;
     const all = [motion, ...beside];
-    const most = (name) => Math.max(...all.map(({ largest }) => largest[own(name)]));
+    const most = (name) => Math.max(...all.map(({ largest }) => largest[own(name)] ?? largest[name] ?? 0));
     const angle = most("theta") < 0.1 ? { unit: "mrad", per: 1e-3 } : { unit: "rad", per: 1 };
     panels = [
       { name: "a_g", title: "a_g (g)", per: g, colour: "--grey" },
@@ -429,12 +442,16 @@ function motionView() {
       { name: "u", title: "u (mm)", per: 1e-3, colour: "--blue" },
       {
         name: "a_t", title: "a_t (g)", per: g, colour: "--blue",
-        right: floors() ? undefined : { meaning: "base shear", title: "V_t (kN)", factor: (m * g) / 1e3 },
+        right: floors()?.length > 1 ? undefined : { meaning: "base shear", title: "V_t (kN)", factor: (m * g) / 1e3 },
       },
-      ...(floors() ? [{ name: "V_t", title: "V_t (kN)", per: 1e3, colour: "--blue" }] : []),
+      ...(floors()?.length > 1 ? [{ name: "V_t", title: "V_t (kN)", per: 1e3, colour: "--blue" }] : []),
+      ...(givesWay() ? ["uplift", "settlement", "N_left", "N_right"] : []).map((name) => (
+        { name, title: `${quantities[name].symbol} (${quantities[name].unit})`, per: quantities[name].per, colour: "--green" }
+      )),
     ].filter(({ name }) => peakOf(name))
       .map((panel) => ({ ...panel, meaning: meaningOf(panel.name), largest: most(panel.name) }))
       .filter(({ name, largest }) => ["theta", "a_t"].includes(name) || largest > 0);
+    document.body.style.setProperty("--panels", panels.length);
     lanes = kinds
       .map((kind) => ({ ...kind, times: motion.transitions.filter((each) => kind.is(each.kind)).map((each) => each.instant) }))
       .filter((lane) => lane.times.length > 0);
@@ -442,6 +459,8 @@ function motionView() {
   const kinds = [
     { name: "uplift", colour: "--green", is: (kind) => kind.startsWith("uplift") },
     { name: "impact", colour: "--orange", is: (kind) => kind.startsWith("impact") },
+    { name: "release", colour: "--green", is: (kind) => kind === "release" },
+    { name: "touch", colour: "--orange", is: (kind) => kind === "touch" },
     { name: "landing", colour: "--ink", is: (kind) => kind === "landing" || kind === "settling" },
     { name: "overturning", colour: "--purple", is: (kind) => kind.startsWith("overturning") },
     { name: "yielding", colour: "--orange", is: (kind) => kind.startsWith("yielding") },
@@ -533,8 +552,9 @@ function motionView() {
         }
       }
       const g = element(svg, "g", { "clip-path": "url(#inside)" });
-      const curve = ({ time, values }, colour) =>
-        element(g, "path", { class: "curve", "data-name": panel.name, style: `stroke:var(${colour})`, d: path(time, values[own(panel.name)], y) });
+      const drawn = (values) => values[own(panel.name)] ?? values[panel.name];
+      const curve = ({ time, values }, colour) => drawn(values) &&
+        element(g, "path", { class: "curve", "data-name": panel.name, style: `stroke:var(${colour})`, d: path(time, drawn(values), y) });
       for (const other of beside) curve(other, other.colour);
       curve(motion, panel.colour);
       if (magnitude > 0) {
@@ -773,7 +793,7 @@ function motionView() {
     });
     set(at("histories"), { "aria-label": `Histories: ${peaks.join("; ")}` });
     at("title").textContent = title;
-    const masses = floors() ? `${floors().length} floors, ${mass(m)} on a base of` : `masses ${mass(m)} and`;
+    const masses = floors()?.length > 1 ? `${floors().length} floors, ${mass(m)} on a base of` : `masses ${mass(m)} and`;
     at("about").textContent =
       `${masses} ${mass(m0)}, H = ${significant(H)} m, 2B = ${significant(2 * B)} m, ` +
       `${significant(f_fc)} Hz in full contact; ${count} transition${count === 1 ? "" : "s"}` +

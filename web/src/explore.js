@@ -26,7 +26,9 @@
   const module = await WebAssembly.compile(await packedIn("engine"));
   await wasm_bindgen({ module_or_path: module });
   const tables = JSON.parse(wasm_bindgen.tables());
-  tables.numbers = tables.numbers.map(([name, unit, description, usual, slider]) => ({ name, unit, description, usual, slider }));
+  for (const table of ["numbers", "ground"]) {
+    tables[table] = tables[table].map(([name, unit, description, usual, slider]) => ({ name, unit, description, usual, slider }));
+  }
   const explorer = new wasm_bindgen.Explorer();
   const elCentro = { name: at("el_centro").dataset.name, bytes: await packedIn("el_centro") };
   explorer.take_el_centro(elCentro.name, elCentro.bytes);
@@ -48,16 +50,16 @@
     ({ tab = "play", ...fields } = Object.fromEntries(texts));
     if (location.hash.length < 2) fields = first();
     [isLinked, isSeen] = [true, false];
-    if (ground() !== "record" || !fields.record) return;
-    const { record, packed } = fields;
-    delete fields.record;
+    if (record() !== "record" || !fields.file) return;
+    const { file: name, packed } = fields;
+    delete fields.file;
     delete fields.packed;
-    file = { name: record, packed };
-    if (!packed) return explorer.take_no_record(`this scene needs the file ${record}, which the link does not contain: open it`);
+    file = { name, packed };
+    if (!packed) return explorer.take_no_record(`this scene needs the file ${name}, which the link does not contain: open it`);
     try {
       takeRecord(await unpacked(packed.replaceAll("-", "+").replaceAll("_", "/")));
     } catch {
-      explorer.take_no_record(`the record ${record} of this link is not whole: copy the link again, or open the file`);
+      explorer.take_no_record(`the record ${name} of this link is not whole: copy the link again, or open the file`);
     }
   }
 
@@ -78,6 +80,8 @@
   };
   const first = () => ({ ...structures.pier[1] });
   const isFrame = () => "storeys" in fields;
+  const givesWay = () => tables.ground.some(({ name }) => name in fields);
+  const isMany = () => isFrame() || givesWay();
   /** The one of `structures` that the scene started from. */
   const origin = () => (isFrame() ? "storeys" : fields.preset === "none" ? "pier" : preset().name);
   const differs = (name) => fields[name] !== structures[origin()][1][name];
@@ -92,6 +96,7 @@
     const { stands_for } = tables.natural.find((of) => of.name === name) ?? {};
     delete fields[stands_for]; // the field that was given last replaces the other
     for (const natural of tables.natural) if (natural.stands_for === name) delete fields[natural.name];
+    delete fields[{ f_v: "k_v", k_v: "f_v" }[name]];
     change();
   }
 
@@ -162,7 +167,7 @@
     small.textContent = unitOf(unit);
     range.addEventListener("input", () => {
       const value = scale(limits).value(Number(range.value));
-      number.value = String(["seed", "modes"].includes(name) ? Math.round(value) : Number(value.toPrecision(3)));
+      number.value = String(["seed", "modes", "n_points"].includes(name) ? Math.round(value) : Number(value.toPrecision(3)));
       given(number.value);
     });
     number.addEventListener("input", () => {
@@ -205,10 +210,12 @@
     row(parent, { ...of, slider }, (value) => give(of.name, value));
   }
 
+  for (const of of tables.ground) row("foundation", { ...of, slider: () => of.slider }, (value) => give(of.name, value));
+
   at("preset").append(...Object.keys(structures).map((name) => new Option("", name)));
-  const grounds = { el_centro: "El Centro, 1940", record: "your record", free: "free vibration", synthetic: "synthetic record" };
-  at("ground").append(
-    ...tables.grounds.map(([name]) => new Option(grounds[name], name)),
+  const motions = { el_centro: "El Centro, 1940", record: "your record", free: "free vibration", synthetic: "synthetic record" };
+  at("record").append(
+    ...tables.motions.map(([name]) => new Option(motions[name], name)),
     ...tables.shapes.map(({ name, definition }) => Object.assign(new Option(`pulse: ${words(name)}`, name), { title: definition })),
   );
   at("unit").append(new Option("unit: as stated", ""), ...tables.units.map((name) => new Option(name, name)));
@@ -216,23 +223,35 @@
 
   /** Names of the numbers of a ground motion. */
   function numbersOf(name) {
-    return tables.shapes.find((of) => of.name === name)?.numbers ?? tables.grounds.find(([of]) => of === name)?.[1] ?? [];
+    return tables.shapes.find((of) => of.name === name)?.numbers ?? tables.motions.find(([of]) => of === name)?.[1] ?? [];
   }
 
   /** Takes another ground motion. Fields that only the ground motion before it has are dropped. */
   function shake(name) {
     const kept = ["tolerance", "zeta", "modes", ...numbersOf(name), ...(name === "record" ? tables.reading : [])];
     const numbers = [...tables.reading, ...tables.numbers.map((of) => of.name)];
-    if (name !== ground()) for (const of of numbers) if (!kept.includes(of)) delete fields[of];
-    give("ground", name);
+    if (name !== record()) for (const of of numbers) if (!kept.includes(of)) delete fields[of];
+    give("record", name);
   }
 
   const ofStructure = [...tables.parameters, ...tables.natural].map(({ name }) => name);
   at("preset").addEventListener("change", ({ target }) => {
-    for (const name of [...ofStructure, "preset", "storeys", "zeta", "modes", "u_0"]) delete fields[name];
+    for (const name of [...ofStructure, ...tables.ground.map(({ name }) => name), "preset", "storeys", "zeta", "modes", "u_0"]) delete fields[name];
     if (target.value === "storeys" && fields.detail === "modal") delete fields.detail;
     Object.assign(fields, structures[target.value][1]);
     emptied = undefined;
+    change();
+  });
+  /** Ground that gives takes no r, and needs J0: of a thin base, if none is given. */
+  at("ground").addEventListener("change", ({ target }) => {
+    const { m0, J0, B } = about.parameters;
+    for (const { name } of tables.ground) delete fields[name];
+    if (target.value) {
+      for (const name of ["r", "u_0"]) delete fields[name];
+      if (["linear", "modal"].includes(fields.detail)) delete fields.detail;
+      if (!J0) fields.J0 = String(Number(((m0 * B ** 2) / 3).toPrecision(4)));
+      fields.f_v = String(tables.ground[0].usual);
+    } else if (structures[origin()][1].r) fields.r = structures[origin()][1].r;
     change();
   });
   /** Takes other storeys, rows of m, h and k from below. */
@@ -275,7 +294,7 @@
     });
     at("add").disabled = rows.length >= mostStoreys;
   }
-  at("ground").addEventListener("change", ({ target }) => {
+  at("record").addEventListener("change", ({ target }) => {
     if (target.value === "free") fields.theta_0 ??= "0.05";
     shake(target.value);
   });
@@ -292,23 +311,25 @@
   function showGiven() {
     document.body.dataset.structure = isFrame() ? "storeys" : "mass";
     at("frame").hidden = !isFrame();
-    at("natural").parentElement.hidden = isFrame();
-    for (const option of at("detail").options) option.disabled = isFrame() && option.value === "modal";
+    at("natural").parentElement.hidden = isMany();
+    for (const of of at("detail").options) of.disabled = { modal: isMany(), linear: givesWay() }[of.value] ?? false;
+    at("ground").value = givesWay() ? "gives" : "";
+    for (const { name } of tables.ground) rows[name].element.hidden = !givesWay();
     showStoreys();
     for (const option of at("preset").options) {
       option.selected = option.value === origin();
       const isChanged = option.selected && !isFrame() && ofStructure.some(differs);
       option.textContent = structures[option.value][0] + (isChanged ? ", changed" : "");
     }
-    at("ground").value = ground();
+    at("record").value = record();
     at("detail").value = fields.detail ?? "auto";
-    at("reading").hidden = ground() !== "record";
+    at("reading").hidden = record() !== "record";
     at("restraints").open ||= restraints.some((name) => name in fields);
     at("ignore_npts").checked = "ignore_npts" in fields;
     for (const id of ["unit", "dt", "column", "column_v"]) if (document.activeElement !== at(id)) at(id).value = fields[id] ?? "";
-    const ofGround = numbersOf(ground()).filter((name) => !isFrame() || name !== "u_0");
-    const own = [...ofGround, "tolerance", ...(isFrame() ? ["zeta", "modes"] : [])];
-    const cycles = tables.shapes.find(({ name }) => name === ground())?.cycles;
+    const ofRecord = numbersOf(record()).filter((name) => !isMany() || name !== "u_0");
+    const own = [...ofRecord, "tolerance", ...(isFrame() ? ["zeta", "modes"] : [])];
+    const cycles = tables.shapes.find(({ name }) => name === record())?.cycles;
     for (const { name, usual } of tables.numbers) {
       rows[name](Number(fields[name] ?? { cycles, modes: storeys().length }[name] ?? usual), name in fields);
       rows[name].element.hidden = !own.includes(name) && !(name in fields);
@@ -326,18 +347,20 @@
 
   function showControls() {
     derived = Object.fromEntries(about.derived.map(({ name, value }) => [name, value]));
-    const isNatural = at("natural").checked && !isFrame();
+    const isNatural = at("natural").checked && !isMany();
     const stand_in = (name) => tables.natural.some((of) => of.stands_for === name);
     for (const { name } of tables.parameters) {
       rows[name](about.parameters[name] ?? NaN, differs(name));
       rows[name].element.hidden = (isNatural && stand_in(name)) || !(name in about.parameters);
     }
+    for (const { name, usual } of tables.ground) rows[name](Number(fields[name] ?? derived[name] ?? usual), name in fields);
+    rows.r.element.hidden ||= givesWay() && !("r" in fields);
     if (isFrame()) rows.r.element.querySelector("input").placeholder = short(derived.r);
     for (const { name } of tables.natural) {
       rows[name](derived[name], name in fields);
       rows[name].element.hidden = !isNatural;
     }
-    const source = ground() === "el_centro" ? [elCentroFrom] : [];
+    const source = record() === "el_centro" ? [elCentroFrom] : [];
     const ofMotion = [`${about.samples} samples, peak ${short(about.pga)} g`, ...about.remarks, ...source];
     at("remarks").textContent = ofMotion.join("; ");
     const item = (textContent) => Object.assign(document.createElement("li"), { textContent });
@@ -350,7 +373,7 @@
     at("derived").replaceChildren(...about.derived.map(derivedLine), ...modes.map(ofMode));
     const share = modes.reduce((sum, of) => sum + of.share, 0);
     const carried = `${modes.length} of ${storeys().length} modes carry ${view.significant(100 * share, 4)} % of m_s; `;
-    at("kept").textContent = isFrame() ? `${share < 1 - 1e-9 ? carried : ""}r is ${"r" in fields ? "given" : "by momentum with the shape frozen"}` : "";
+    at("kept").textContent = isFrame() ? `${share < 1 - 1e-9 ? carried : ""}${givesWay() ? "" : `r is ${"r" in fields ? "given" : "by momentum with the shape frozen"}`}` : "";
   }
 
   /** A number that the engine writes as text, because JSON has no infinity. */
@@ -434,9 +457,9 @@
 
   function settle() {
     frame = cancelAnimationFrame(frame); // a frame that is late would draw the coarse motion over the exact one
-    const { name: record, packed } = (ground() === "record" && file) || {};
+    const { name, packed } = (record() === "record" && file) || {};
     const shown = tab === "play" ? {} : { tab };
-    const scene = new URLSearchParams({ ...fields, ...shown, ...(record && { record }), ...(packed && { packed }) });
+    const scene = new URLSearchParams({ ...fields, ...shown, ...(name && { file: name }), ...(packed && { packed }) });
     history.replaceState(null, "", `#${scene}`);
     update(1e-4);
     if (at("problem").hidden) trying(panels[tab])();
@@ -541,7 +564,7 @@
   // The map has 32 steps along each axis, and its finest points are an eighth of a step apart.
   const [steps, finest] = [32, 8];
   const spectrum = { points: [], axes: undefined, of: "" };
-  const shapeOfMap = () => (tables.shapes.some(({ name }) => name === ground()) ? ground() : "sine");
+  const shapeOfMap = () => (tables.shapes.some(({ name }) => name === record()) ? record() : "sine");
   tables.classes.forEach((name, k) => {
     const key = document.createElement("span");
     key.innerHTML = `<span class="swatch" style="--colour: var(--class-${k})"></span>`;
@@ -552,7 +575,7 @@
 
   /** The scene without the numbers that differ from point to point, and without those that no point has. */
   function sceneOfMap() {
-    const scene = { ...fields, ground: shapeOfMap() };
+    const scene = { ...fields, record: shapeOfMap() };
     const none = ["amplitude", "frequency", "duration", "seed", "theta_0", "u_0", "scale", "time_scale", ...tables.reading];
     for (const name of none) delete scene[name];
     return scene;
@@ -607,7 +630,7 @@
     const upright = `translate(14 ${top + height / 2}) rotate(-90)`;
     svg(axes, "text", { ...middle, transform: upright }, `a_p/(g tan α_cg): ${ofAmplitude}`);
     const here = [value("frequency") / value("time_scale") / of_frequency, (value("amplitude") * value("scale") * g) / of_amplitude];
-    if (ground() === shapeOfMap()) svg(axes, "circle", { class: "here", cx: x(here[0]), cy: y(here[1]), r: 6 });
+    if (record() === shapeOfMap()) svg(axes, "circle", { class: "here", cx: x(here[0]), cy: y(here[1]), r: 6 });
   }
 
   at("spectrum").addEventListener("click", ({ offsetX, offsetY, target }) => {
@@ -626,14 +649,14 @@
   function drawExport() {
     const [command, script, toSet] = JSON.parse(explorer.taken_along(text()));
     at("link").textContent = location.href;
-    if (ground() !== "record") at("carries").textContent = "";
+    if (record() !== "record") at("carries").textContent = "";
     else if (file.packed) at("carries").textContent = `The scene and its record ${file.name}.`;
     else at("carries").textContent = `The scene without its record, which is too large for a link: send the file ${file.name} too.`;
     const word = (textContent) => Object.assign(document.createElement("span"), { textContent });
     at("command").replaceChildren(...command.split(/([ \n]+)/).map((part) => (part.trim() ? word(part) : part)));
     at("python").textContent = script;
     at("to_set").textContent = toSet && `An FMU holds neither the start nor the method of a run. Set in the host: ${toSet}`;
-    at("csv").parentElement.hidden = ground() === "free";
+    at("csv").parentElement.hidden = record() === "free";
   }
 
   function save(name, content) {

@@ -13,7 +13,7 @@ use rocking::run::levels::{Choice, Criterion, RULE, relative};
 use rocking::run::validity::{ASSUMPTIONS, Assumption, Limits, Worst};
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking::{Body, Structure};
+use rocking::{Body, Parameters, Structure};
 use rocking_records::Unit;
 use rocking_report::{
     advice::Level,
@@ -21,11 +21,11 @@ use rocking_report::{
     run::{Run, usual_periods},
 };
 use rocking_sweep::{map::CLASSES, pulse::Shape};
-use scene::{Fields, File, Files, GROUNDS, Ground, NUMBERS, READING, numbers_of};
+use scene::{Fields, File, Files, MOTIONS, Motion, NUMBERS, OF_GROUND, READING, numbers_of};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
-use take::{GROUND, VERTICAL, taken_along};
+use take::{TABLE, VERTICAL, taken_along};
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// Largest error of an advised level of detail, as in `advise`.
@@ -38,7 +38,7 @@ fn says(error: impl std::error::Error) -> String {
 /// The library's tables, of which the page makes its controls.
 #[wasm_bindgen]
 pub fn tables() -> String {
-    let parameter = |of: &rocking::Quantity<rocking::Parameters>| json!({ "name": of.name, "unit": of.unit, "description": of.description, "min": of.min, "max": of.max });
+    let parameter = |of: &rocking::Quantity<Parameters>| json!({ "name": of.name, "unit": of.unit, "description": of.description, "min": of.min, "max": of.max });
     let natural = |of: &rocking::structure::natural_quantities::Natural| {
         let derived = of.derived();
         json!({
@@ -47,14 +47,15 @@ pub fn tables() -> String {
         })
     };
     let shape = |of: Shape| json!({ "name": of.name(), "definition": of.definition(), "cycles": of.cycles(), "numbers": numbers_of(of.name()) });
-    let preset = |(name, parameters): &(&str, rocking::Parameters)| json!({ "name": name, "parameters": parameters });
+    let preset = |(name, parameters): &(&str, Parameters)| json!({ "name": name, "parameters": parameters });
     json!({
         "parameters": PARAMETERS.iter().map(parameter).collect::<Vec<_>>(),
         "natural": NATURAL.iter().map(natural).collect::<Vec<_>>(),
         "presets": PRESETS.iter().map(preset).collect::<Vec<_>>(),
         "shapes": Shape::ALL.map(shape),
         "numbers": NUMBERS,
-        "grounds": GROUNDS,
+        "motions": MOTIONS,
+        "ground": OF_GROUND,
         "reading": READING,
         "details": Detail::ALL.map(Detail::name),
         "units": Unit::NAMES.map(|(name, _)| name),
@@ -101,12 +102,12 @@ impl Explorer {
     }
 
     /// The run of the scene, with remarks on its ground motion.
-    fn load(&mut self, fields: &str) -> Result<(Fields, Run, Ground), String> {
+    fn load(&mut self, fields: &str) -> Result<(Fields, Run, Motion), String> {
         let fields = Fields::read(fields)?;
         let structure = fields.structure()?;
-        let ground = fields.ground(&mut self.files, structure.base().g)?;
-        let run = Run { structure, ground: Arc::new(ground.record.clone()), conditions: fields.conditions()? };
-        Ok((fields, run, ground))
+        let motion = fields.motion(&mut self.files, structure.base().g)?;
+        let run = Run { structure, ground: Arc::new(motion.record.clone()), conditions: fields.conditions()? };
+        Ok((fields, run, motion))
     }
 
     /// The run as the script of `view` shows it, exact to this `part` of each peak.
@@ -129,11 +130,17 @@ impl Explorer {
 
     /// Derived quantities of the structure, remarks on the record's file, and warnings about the parameters.
     pub fn about(&mut self, fields: &str) -> Result<String, String> {
-        let (_, run, Ground { record, remarks, mut warnings, .. }) = self.load(fields)?;
+        let (fields, run, Motion { record, remarks, mut warnings, .. }) = self.load(fields)?;
         warnings.extend(run.structure.doubts());
         warnings.extend(run.warnings());
         let structure = &run.structure;
-        let parameters = structure.one().map_or_else(|| of_base(structure), |one| json!(one.parameters()));
+        let parameters = match (structure.one(), structure.floors()) {
+            (Some(one), _) => json!(one.parameters()),
+            (None, [mass]) if !fields.is_frame() => {
+                json!(Parameters { m: mass.mass, H: mass.height, ..structure.parameters() })
+            }
+            _ => of_base(structure),
+        };
         Ok(json!({
             "parameters": parameters, "derived": describe::derived(&run.structure),
             "modes": describe::modes(&run.structure), "warnings": warnings, "remarks": remarks,
@@ -203,16 +210,16 @@ impl Explorer {
 
     /// The FMU of this structure under this ground motion, for FMI 2.0, or 3.0 if `fmi` is 3.
     pub fn export(&mut self, fields: &str, fmi: u32) -> Result<Vec<u8>, String> {
-        let (fields, Run { structure, .. }, ground) = self.load(fields)?;
+        let (fields, Run { structure, .. }, motion) = self.load(fields)?;
         let version = if fmi == 3 { Version::Fmi3 } else { Version::Fmi2 };
         let is_as_read = fields.of_file().all(|key| fields.text(key).is_none());
         let record = match (fields.kind(), &self.files.own) {
             ("free", _) => Vec::new(),
             ("record", Ok(file)) if is_as_read => vec![(file.path.clone(), file.bytes.clone())],
-            ("record", Ok(file)) => vec![(file.path.with_extension("csv"), ground.table().into_bytes())],
-            _ => vec![(GROUND.into(), ground.table().into_bytes())],
+            ("record", Ok(file)) => vec![(file.path.with_extension("csv"), motion.table().into_bytes())],
+            _ => vec![(TABLE.into(), motion.table().into_bytes())],
         };
-        let vertical = ground.vertical_table().map(|table| (VERTICAL.into(), table.into_bytes()));
+        let vertical = motion.vertical_table().map(|table| (VERTICAL.into(), table.into_bytes()));
         let exported =
             fmu_export::export(version, &ModelName::default(), structure.into(), record, vertical, &self.libraries);
         Ok(exported.map_err(says)?.1)

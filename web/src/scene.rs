@@ -4,6 +4,7 @@ use crate::says;
 use rocking::engine::{DEFAULT_TOLERANCE, check_tolerance};
 use rocking::run::record::Record;
 use rocking::structure::description::{Damping, Storey};
+use rocking::structure::ground::Ground;
 use rocking::structure::natural_quantities::{Given, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::quantity::LARGE;
@@ -39,6 +40,14 @@ pub const NUMBERS: [Number; 13] = [
     ("modes", "1", "modes kept; the mass of the others turns rigidly with the base", f64::NAN, [1.0, 24.0]),
 ];
 
+/// The numbers of ground that gives, as [`Ground`] has them; without all of them the ground is rigid.
+pub const OF_GROUND: [Number; 4] = [
+    ("f_v", "Hz", "frequency of the bounce on the ground", 10.0, [0.5, 200.0]),
+    ("k_v", "N/m", "vertical stiffness of the ground", f64::NAN, [1e6, 1e12]),
+    ("zeta_v", "1", "damping ratio of the bounce", 0.2, [0.0, 1.0]),
+    ("n_points", "1", "contact points from edge to edge", 2.0, [2.0, 21.0]),
+];
+
 /// The preset of a structure whose numbers stand alone.
 const NO_PRESET: &str = "none";
 
@@ -49,7 +58,7 @@ const OF_STRUCTURE: [&str; 2] = ["zeta", "modes"];
 pub const EL_CENTRO: &str = "el_centro";
 
 /// Ground motions other than pulses, with the names of their numbers.
-pub const GROUNDS: [(&str, &[&str]); 4] = [
+pub const MOTIONS: [(&str, &[&str]); 4] = [
     (EL_CENTRO, &["scale", "time_scale"]),
     ("record", &["scale", "time_scale"]),
     ("synthetic", &["amplitude", "duration", "seed", "time_scale"]),
@@ -65,12 +74,12 @@ pub const SCALES: [&str; 2] = ["time_scale", "scale"];
 /// Keys of a link that say how the motion starts and how it is computed.
 pub const RUN: [&str; 4] = ["theta_0", "u_0", "detail", "tolerance"];
 
-/// Names of the numbers of the ground motion called `ground`, none if it is unknown.
-pub fn numbers_of(ground: &str) -> Option<Vec<&'static str>> {
-    let shape = Shape::ALL.into_iter().find(|shape| shape.name() == ground);
+/// Names of the numbers of the ground motion called `motion`, none if it is unknown.
+pub fn numbers_of(motion: &str) -> Option<Vec<&'static str>> {
+    let shape = Shape::ALL.into_iter().find(|shape| shape.name() == motion);
     let of_pulse = |shape: Shape| if shape.has_choice() { 4 } else { 2 };
     let of_pulse = shape.map(|shape| NUMBERS[..of_pulse(shape)].iter().map(|number| number.0).collect());
-    of_pulse.or_else(|| GROUNDS.iter().find(|(name, _)| *name == ground).map(|(_, numbers)| numbers.to_vec()))
+    of_pulse.or_else(|| MOTIONS.iter().find(|(name, _)| *name == motion).map(|(_, numbers)| numbers.to_vec()))
 }
 
 /// The scene as key and text: parameters and natural quantities, the ground motion, how the motion is computed.
@@ -99,7 +108,7 @@ pub struct File {
 }
 
 /// A ground motion, with remarks on its file and warnings about it.
-pub struct Ground {
+pub struct Motion {
     /// The ground motion in m/s².
     pub record: Record,
     /// The ground motion in the unit of its file.
@@ -109,20 +118,20 @@ pub struct Ground {
     pub warnings: Vec<String>,
 }
 
-impl Ground {
-    fn of(record: Record) -> Ground {
+impl Motion {
+    fn of(record: Record) -> Motion {
         let in_file_unit = record.clone();
         let unit = Unit::MetrePerSecondSquared;
-        Ground { record, in_file_unit, unit, remarks: Vec::new(), warnings: Vec::new() }
+        Motion { record, in_file_unit, unit, remarks: Vec::new(), warnings: Vec::new() }
     }
 
     /// This ground motion with the vertical component `up`, from another column of its file.
-    fn with_vertical(self, up: &Ground) -> Result<Ground, String> {
+    fn with_vertical(self, up: &Motion) -> Result<Motion, String> {
         let pair = |own: Record, up: &Record| {
             own.with_vertical(up).map_err(|error| rocking_report::message(&no_pair(error, "column_v")))
         };
         let (record, in_file_unit) = (pair(self.record, &up.record)?, pair(self.in_file_unit, &up.in_file_unit)?);
-        Ok(Ground { record, in_file_unit, ..self })
+        Ok(Motion { record, in_file_unit, ..self })
     }
 
     /// The ground motion as a table that is read without options, in s and the unit of its file.
@@ -141,21 +150,22 @@ impl Fields {
     pub fn read(json: &str) -> Result<Fields, String> {
         let given: BTreeMap<String, String> = serde_json::from_str(json).map_err(says)?;
         let fields = Fields(given.into_iter().map(|(key, text)| (key, text.trim().to_owned())).collect());
-        let ground = fields.kind();
-        let numbers = numbers_of(ground).ok_or_else(|| {
-            let known = Shape::ALL.map(Shape::name).into_iter().chain(GROUNDS.map(|(name, _)| name));
-            format!("ground = {ground:?} is unknown; these are known: {}", known.collect::<Vec<_>>().join(", "))
+        let kind = fields.kind();
+        let numbers = numbers_of(kind).ok_or_else(|| {
+            let known = Shape::ALL.map(Shape::name).into_iter().chain(MOTIONS.map(|(name, _)| name));
+            format!("record = {kind:?} is unknown; these are known: {}", known.collect::<Vec<_>>().join(", "))
         })?;
         let of_structure = if fields.is_frame() { [&["storeys"], &OF_STRUCTURE[..]].concat() } else { vec!["preset"] };
-        let mut known: Vec<_> = of_structure.into_iter().chain(names()).chain(["ground"]).chain(numbers).collect();
+        let of_ground = OF_GROUND.map(|number| number.0);
+        let mut known: Vec<_> =
+            of_structure.into_iter().chain(names()).chain(of_ground).chain(["record"]).chain(numbers).collect();
         let others = fields.of_file().chain(RUN).filter(|name| !known.contains(name)).collect::<Vec<_>>();
         known.extend(others);
-        known.retain(|name| *name != "u_0" || !fields.is_frame());
+        known.retain(|name| *name != "u_0" || !fields.is_many());
         match fields.0.keys().find(|key| !known.contains(&key.as_str())) {
             Some(key) => {
                 let known = known.join(", ");
-                let refused =
-                    format!("{key:?} of the link is unknown with ground = {ground}; these are known: {known}");
+                let refused = format!("{key:?} of the link is unknown with record = {kind}; these are known: {known}");
                 Err(rocking_report::with_nearest(refused))
             }
             None => Ok(fields),
@@ -164,7 +174,7 @@ impl Fields {
 
     /// Name of the ground motion.
     pub fn kind(&self) -> &str {
-        self.text("ground").unwrap_or(EL_CENTRO)
+        self.text("record").unwrap_or(EL_CENTRO)
     }
 
     /// Keys that say how this kind of ground motion is read from its file and scaled.
@@ -206,27 +216,55 @@ impl Fields {
         !self.is_frame() && self.text("preset") != Some(NO_PRESET)
     }
 
-    /// The structure: storeys on a base, a specimen with the given numbers in place of its own, or these numbers alone.
-    pub fn structure(&self) -> Result<Structure, String> {
-        let mut given = Given::default();
-        for name in names() {
-            if let Some(value) = self.given(name) {
-                given.give(name, value?).map_err(says)?;
-            }
-        }
-        if let Some(storeys) = self.text("storeys") {
-            return self.frame(&given, storeys);
-        }
-        let preset = self.text("preset").unwrap_or(PRESETS[0].0);
-        let base = self.has_preset().then(|| Parameters::preset(preset)).transpose().map_err(says)?;
-        let parameters = base.map_or_else(|| given.parameters(), |base| given.over(&base)).map_err(says)?;
-        Structure::new(parameters).map_err(says)
+    /// Whether the structure has the names of a building.
+    pub fn is_many(&self) -> bool {
+        self.is_frame() || OF_GROUND.iter().any(|number| self.text(number.0).is_some())
     }
 
-    fn frame(&self, base: &Given, storeys: &str) -> Result<Structure, String> {
+    /// The given numbers of the structure; on ground that gives, without storeys, all numbers of a specimen, which is rigid by name.
+    pub fn numbers(&self) -> Result<Vec<(&'static str, f64)>, String> {
+        let given = names().filter_map(|name| Some(self.given(name)?.map(|value| (name, value))));
+        let given = given.collect::<Result<Vec<_>, _>>()?;
+        let Some(preset) = self.preset()?.filter(|_| self.is_many()) else { return Ok(given) };
+        let all = Given::of(&given).and_then(|given| given.over(&preset)).map_err(says)?;
+        let needed = PARAMETERS.iter().filter(|of| of.name != "r" || self.text("r").is_some());
+        Ok(needed.map(|of| (of.name, (of.get)(&all))).collect())
+    }
+
+    fn preset(&self) -> Result<Option<Parameters>, String> {
+        let preset = || Parameters::preset(self.text("preset").unwrap_or(PRESETS[0].0));
+        self.has_preset().then(preset).transpose().map_err(says)
+    }
+
+    /// Ground that gives; none if it is rigid.
+    pub fn ground(&self) -> Result<Option<Ground>, String> {
+        let [f_v, k_v, zeta_v, _] = OF_GROUND.map(|number| self.given(number.0).transpose());
+        let ground = Ground {
+            f_v: f_v?,
+            k_v: k_v?,
+            zeta_v: zeta_v?,
+            n_points: self.whole("n_points", 2.0)?,
+            ..Ground::default()
+        };
+        Ok((ground != Ground::default()).then_some(ground))
+    }
+
+    /// The structure: storeys on a base, a specimen with the given numbers in place of its own, or these numbers alone.
+    pub fn structure(&self) -> Result<Structure, String> {
+        let given = Given::of(&self.numbers()?).map_err(says)?;
+        let ground = self.ground()?;
+        match (self.text("storeys"), ground) {
+            (Some(storeys), ground) => self.frame(&given, storeys, ground),
+            (None, Some(ground)) => given.on(ground).structure(None).map_err(says),
+            (None, None) => given.structure(self.preset()?.as_ref()).map_err(says),
+        }
+    }
+
+    fn frame(&self, base: &Given, storeys: &str, ground: Option<Ground>) -> Result<Structure, String> {
         let storeys = (1..).zip(storeys.split_whitespace()).map(|(number, row)| storey(number, row));
         let storeys = storeys.collect::<Result<Vec<_>, _>>()?;
         let frame = Structure::from_storeys(base, &Damping::All(self.number("zeta")?), &storeys).map_err(says)?;
+        let frame = ground.map_or(Ok(frame.clone()), |ground| frame.on(&ground)).map_err(says)?;
         match self.modes()? {
             None => Ok(frame),
             Some(count) => frame.keeping(count).map_err(says),
@@ -235,57 +273,63 @@ impl Fields {
 
     /// How many modes of a structure of many masses are kept, if not all.
     pub fn modes(&self) -> Result<Option<usize>, String> {
-        match self.given("modes").transpose()? {
+        self.whole("modes", 1.0)
+    }
+
+    fn whole(&self, name: &str, least: f64) -> Result<Option<usize>, String> {
+        match self.given(name).transpose()? {
             None => Ok(None),
-            Some(count) if count >= 1.0 && count.fract() == 0.0 => Ok(Some(count as usize)),
-            Some(count) => Err(format!("modes = {count} is out of range: a whole number of at least 1 is needed")),
+            Some(count) if count >= least && count.fract() == 0.0 => Ok(Some(count as usize)),
+            Some(count) => {
+                Err(format!("{name} = {count} is out of range: a whole number of at least {least} is needed"))
+            }
         }
     }
 
     /// The ground motion before it is scaled; `g` in m/s².
-    pub fn unscaled(&self, files: &mut Files, g: f64) -> Result<Ground, String> {
+    pub fn unscaled(&self, files: &mut Files, g: f64) -> Result<Motion, String> {
         match self.kind() {
-            EL_CENTRO => files.el_centro.as_mut().map_err(|why| why.clone())?.ground(Reading::default(), g),
+            EL_CENTRO => files.el_centro.as_mut().map_err(|why| why.clone())?.motion(Reading::default(), g),
             "record" => {
                 let (file, how) = (files.own.as_mut().map_err(|why| why.clone())?, self.reading()?);
-                let Some(column) = self.text("column_v") else { return file.ground(how, g) };
-                let up = file.ground(Reading { column: Some(Column::from(column)), ..how.clone() }, g)?;
-                file.ground(how, g)?.with_vertical(&up)
+                let Some(column) = self.text("column_v") else { return file.motion(how, g) };
+                let up = file.motion(Reading { column: Some(Column::from(column)), ..how.clone() }, g)?;
+                file.motion(how, g)?.with_vertical(&up)
             }
-            "free" => Ok(Ground::of(Record::at_rest(self.number("duration")?))),
+            "free" => Ok(Motion::of(Record::at_rest(self.number("duration")?))),
             "synthetic" => {
                 let pga = g * self.number("amplitude")?;
                 let (duration, seed) = (self.number("duration")?, self.number("seed")?);
                 if seed as u64 as f64 != seed {
                     return Err(format!("seed = {seed} is out of range: a whole number of at least 0 is needed"));
                 }
-                synthetic::record(pga, duration, seed as u64).map(Ground::of).map_err(says)
+                synthetic::record(pga, duration, seed as u64).map(Motion::of).map_err(says)
             }
             shape => {
                 let title = format!("{shape} pulse, {} g, {} Hz", self.number("amplitude")?, self.number("frequency")?);
-                self.pulse(g)?.record().map(|record| Ground::of(record.titled(title))).map_err(says)
+                self.pulse(g)?.record().map(|record| Motion::of(record.titled(title))).map_err(says)
             }
         }
     }
 
     /// The ground motion, scaled; `g` in m/s².
-    pub fn ground(&self, files: &mut Files, g: f64) -> Result<Ground, String> {
-        let ground = self.unscaled(files, g)?;
+    pub fn motion(&self, files: &mut Files, g: f64) -> Result<Motion, String> {
+        let motion = self.unscaled(files, g)?;
         let (time_scale, scale) = (self.number("time_scale")?, self.number("scale")?);
         let scaled = |record: Record| record.scaled(time_scale, scale).map_err(says);
         let (record, in_file_unit, mut warnings) =
-            (scaled(ground.record)?, scaled(ground.in_file_unit)?, ground.warnings);
+            (scaled(motion.record)?, scaled(motion.in_file_unit)?, motion.warnings);
         if matches!(self.kind(), EL_CENTRO | "record") {
             warnings.extend(rocking_records::doubts(&record, g));
         } else {
             warnings.extend(rocking_records::doubt_of_peak(&record, g));
         }
-        Ok(Ground { record, in_file_unit, warnings, ..ground })
+        Ok(Motion { record, in_file_unit, warnings, ..motion })
     }
 
     /// The pulse of the scene; `g` in m/s².
     pub fn pulse(&self, g: f64) -> Result<Pulse, String> {
-        let shape = self.named("ground", Shape::Sine.name())?;
+        let shape = self.named("record", Shape::Sine.name())?;
         let pulse = Pulse::new(shape, g * self.number("amplitude")?, self.number("frequency")?);
         Ok(Pulse { cycles: self.given("cycles").unwrap_or(Ok(pulse.cycles))?, phase: self.number("phase")?, ..pulse })
     }
@@ -325,7 +369,7 @@ impl Fields {
 pub fn unit_of(name: &str) -> &'static str {
     let of_structure = PARAMETERS.iter().find(|of| of.name == name).map(|of| of.unit);
     let of_natural = || NATURAL.iter().find(|of| of.name == name).map(|of| of.derived().unit);
-    let of_run = || NUMBERS.iter().find(|of| of.0 == name).map(|of| of.1);
+    let of_run = || NUMBERS.iter().chain(&OF_GROUND).find(|of| of.0 == name).map(|of| of.1);
     of_structure.or_else(of_natural).or_else(of_run).unwrap_or("s") // dt
 }
 
@@ -364,7 +408,7 @@ impl File {
         File { path: Path::new(name).into(), bytes, read: Vec::new() }
     }
 
-    fn ground(&mut self, how: Reading, g: f64) -> Result<Ground, String> {
+    fn motion(&mut self, how: Reading, g: f64) -> Result<Motion, String> {
         if self.read.iter().all(|(before, ..)| *before != how) {
             let read = rocking_records::from_bytes(&self.path, &self.bytes, &how);
             let (record, source) = read.map_err(|error| match error {
@@ -382,6 +426,6 @@ impl File {
         let mut remarks = vec![format!("{}, {}", source.format, source.unit)];
         remarks.extend(source.remarks.iter().cloned());
         let warnings = source.assumption(&Remedy::Unit.advice(str::to_owned)).into_iter().collect();
-        Ok(Ground { record, in_file_unit, unit: source.unit, remarks, warnings })
+        Ok(Motion { record, in_file_unit, unit: source.unit, remarks, warnings })
     }
 }

@@ -2,19 +2,20 @@
 
 use crate::scene::{EL_CENTRO, Fields, RUN, number_of, storey, unit_of};
 use rocking::structure::description::Storey;
+use rocking::structure::ground::Ground;
 use rocking::structure::natural_quantities::names;
 use rocking::structure::parameters::PRESETS;
 use rocking_records::Column;
-use serde_json::{Number, Value};
+use serde_json::{Number, Value, json};
 use std::path::Path;
 
 /// Name of the file in which the page saves a ground motion.
-pub const GROUND: &str = "ground.csv";
+pub const TABLE: &str = "ground.csv";
 
 /// Name of the file of its vertical component in an FMU.
 pub const VERTICAL: &str = "ground_v.csv";
 
-/// Name of the file of a structure of many masses.
+/// Name of the file of a structure of many masses or on ground that gives.
 const BUILDING: &str = "building.toml";
 
 /// Options of one call, by the names that the command line and Python share.
@@ -33,11 +34,14 @@ pub fn taken_along(fields: &Fields, path: Option<&Path>) -> Result<[String; 3], 
             names.filter_map(|name| Some((name, fields.text(name).map(str::to_owned).or_else(|| usual(name))?)));
         given.map(|(name, text)| Ok((name, literal(name, &text)?))).collect()
     };
-    let numbers =
-        options(&mut ["preset"].into_iter().chain(names()).filter(|name| *name != "preset" || fields.has_preset()))?;
-    let structure = if fields.is_frame() { vec![("parameters", BUILDING.into())] } else { numbers.clone() };
+    let numbers = if fields.is_many() && fields.has_preset() {
+        fields.numbers()?.into_iter().map(|(name, value)| (name, value.into())).collect()
+    } else {
+        options(&mut ["preset"].into_iter().chain(names()).filter(|name| *name != "preset" || fields.has_preset()))?
+    };
+    let structure = if fields.is_many() { vec![("parameters", BUILDING.into())] } else { numbers.clone() };
     let (of_file, run) = (options(&mut fields.of_file())?, options(&mut RUN.into_iter())?);
-    let file = path.filter(|_| fields.kind() == "record").map_or(GROUND.into(), |path| path.display().to_string());
+    let file = path.filter(|_| fields.kind() == "record").map_or(TABLE.into(), |path| path.display().to_string());
     let file = if file == "-" { "./-".into() } else { file }; // `-` alone is standard input
     let simulate = |motion, of_file| command("simulate", &[&structure, &vec![motion], of_file, &run]);
     let after_first = |options: &Options| arguments(options)[", ".len()..].to_owned();
@@ -54,17 +58,16 @@ pub fn taken_along(fields: &Fields, path: Option<&Path>) -> Result<[String; 3], 
             let pulse = options(&mut ["amplitude", "frequency", "cycles", "phase"].into_iter())?;
             let preset = vec![("preset", PRESETS[0].0.into())]; // for its g
             let of_g = numbers.iter().filter(|(name, _)| *name == "g").cloned();
-            let of_g = if fields.is_frame() { preset.into_iter().chain(of_g).collect() } else { structure.clone() };
-            let written = command(&format!("pulse {shape}"), &[&pulse, &of_g, &vec![("output", GROUND.into())]])?;
+            let of_g = if fields.is_many() { preset.into_iter().chain(of_g).collect() } else { structure.clone() };
+            let written = command(&format!("pulse {shape}"), &[&pulse, &of_g, &vec![("output", TABLE.into())]])?;
             let scaled = if of_file.is_empty() { "".into() } else { format!(".scaled({})", after_first(&of_file)) };
             let record = format!("record = fr.pulse(\"{shape}\"{}, g=structure.g){scaled}\n", arguments(&pulse));
             (format!("{written}\n{}", simulate(("record", file.into()), &of_file)?), record, ", record".into())
         }
     };
-    let (building, structure) = match fields.text("storeys") {
-        Some(storeys) => building(fields, storeys, &numbers)?,
-        None => (String::new(), after_first(&numbers)),
-    };
+    let (building, structure) =
+        if fields.is_many() { building(fields, &numbers)? } else { (String::new(), arguments(&numbers)) };
+    let structure = structure.trim_start_matches(", ");
     let (command, run) = (format!("{building}{command}"), arguments(&run));
     let script = format!(
         "import flexible_rocking as fr\n\nstructure = fr.Structure({structure})\n{record}run = fr.simulate(structure{motion}{run})"
@@ -72,13 +75,30 @@ pub fn taken_along(fields: &Fields, path: Option<&Path>) -> Result<[String; 3], 
     Ok([command, script, run.trim_start_matches(", ").to_owned()])
 }
 
-/// A command that writes the file of `storeys` on the base of these `numbers`, and the arguments of the same structure in Python.
-fn building(fields: &Fields, storeys: &str, numbers: &Options) -> Result<(String, String), String> {
+/// A command that writes the file of one mass of these `numbers`, or of storeys on their base, and of ground that gives, and the
+/// arguments of the same structure in Python.
+fn building(fields: &Fields, numbers: &Options) -> Result<(String, String), String> {
+    let lines = |of: &Options| of.iter().map(|(name, value)| format!("{name} = {value}\n")).collect::<String>();
+    let (mut file, mut structure) = match fields.text("storeys") {
+        Some(storeys) => of_storeys(fields, storeys, lines(numbers))?,
+        None => (lines(numbers), String::new()),
+    };
+    structure += &arguments(numbers);
+    if let Some(Ground { f_v, k_v, zeta_v, n_points, .. }) = fields.ground()? {
+        let all = [("f_v", json!(f_v)), ("k_v", json!(k_v)), ("zeta_v", json!(zeta_v)), ("n_points", json!(n_points))];
+        let ground = all.into_iter().filter(|(_, value)| !value.is_null()).collect();
+        file += &format!("\n[ground]\n{}", lines(&ground));
+        structure += &format!(", ground=fr.Ground({})", arguments(&ground).trim_start_matches(", "));
+    }
+    Ok((format!("cat >{BUILDING} <<'END'\n{file}END\n"), structure))
+}
+
+/// Storeys as a file with these lines of the `base`, and as arguments of Python.
+fn of_storeys(fields: &Fields, storeys: &str, base: String) -> Result<(String, String), String> {
     let zeta = literal("zeta", &fields.number("zeta")?.to_string())?;
     let keep = fields.modes()?;
     let kept = keep.map_or(String::new(), |count| format!("keep = {count}\n"));
-    let mut file = format!("zeta = {zeta}\n{kept}\n[base]\n");
-    numbers.iter().for_each(|(name, value)| file += &format!("{name} = {value}\n"));
+    let mut file = format!("zeta = {zeta}\n{kept}\n[base]\n{base}");
     let mut rows = Vec::new();
     for row in storeys.split_whitespace() {
         let Storey { m, h, k } = storey(rows.len() + 1, row)?;
@@ -91,8 +111,7 @@ fn building(fields: &Fields, storeys: &str, numbers: &Options) -> Result<(String
     }
     let rows: String = rows.iter().map(|row| format!("    {{{row}}},\n")).collect();
     let kept = keep.map_or(String::new(), |count| format!(", keep={count}"));
-    let arguments = format!("storeys=[\n{rows}], zeta={zeta}{kept}{}", arguments(numbers));
-    Ok((format!("cat >{BUILDING} <<'END'\n{file}END\n"), arguments))
+    Ok((file, format!("storeys=[\n{rows}], zeta={zeta}{kept}")))
 }
 
 /// The value of the key `name`, given as `text`.

@@ -2,11 +2,10 @@
 //! shows when it opens, and the shared libraries of its FMUs, all compressed.
 
 use anyhow::Context;
-use flate2::{Compression, write::GzEncoder};
-use std::io::Write;
 use std::path::Path;
 use std::{env, fs};
 use wasm_bindgen_cli_support::Bindgen;
+use zopfli::{Format, Options};
 
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -16,9 +15,9 @@ fn main() -> anyhow::Result<()> {
     let mut bound = Bindgen::new().input_path(engine).no_modules(true)?.typescript(false).generate_output()?;
     let glue = bound.js().to_owned();
     let packed = |bytes: &[u8]| -> anyhow::Result<String> {
-        let mut gzip = GzEncoder::new(Vec::new(), Compression::best());
-        gzip.write_all(bytes)?;
-        Ok(letters(&gzip.finish()?))
+        let (mut gzip, options) = (Vec::new(), Options { iteration_count: 5.try_into()?, ..Options::default() });
+        zopfli::compress(options, Format::Gzip, bytes, &mut gzip)?;
+        Ok(letters(&gzip))
     };
     let file = |path: &String| packed(&fs::read(path).with_context(|| path.clone())?);
     let name = Path::new(record).file_name().and_then(|name| name.to_str()).context("the record has no name")?;
