@@ -35,18 +35,14 @@ pub(super) fn lines(structure: &Structure) -> Vec<Output> {
     of_base.iter().copied().chain(of_floors).collect()
 }
 
-/// The outputs of `structure` that straight lines follow: on ground that gives, the forces of its outer points, too.
-fn followed(structure: &Structure) -> Vec<Output> {
-    let of_ground = structure.foundation().map(|_| [Output::N_left, Output::N_right]);
-    lines(structure).into_iter().chain(of_ground.into_iter().flatten()).collect()
-}
+/// The outputs on ground that gives at the points of a picture. Straight lines follow the first two, the forces of the outer points.
+const OF_GROUND: [Output; 5] = [Output::N_left, Output::N_right, Output::y, Output::uplift, Output::settlement];
 
-/// The outputs of `structure` at the points of a picture: those that straight lines follow, the displacement of one mass, heights on
-/// ground that gives, and the forces of ties.
+/// The outputs of `structure` at the points of a picture: its lines, those on ground that gives, the displacement of one mass, and the
+/// forces of ties.
 pub fn drawn(structure: &Structure) -> Vec<Output> {
-    let mut drawn = followed(structure);
-    let of_ground = structure.foundation().map(|_| [Output::y, Output::uplift, Output::settlement]);
-    drawn.extend(of_ground.into_iter().flatten());
+    let mut drawn = lines(structure);
+    drawn.extend(structure.foundation().iter().flat_map(|_| OF_GROUND));
     drawn.extend(structure.one().map(|_| Output::delta_t(0)));
     drawn.extend(Output::OF_TIES.into_iter().filter(|_| structure.base().is_restrained()));
     drawn
@@ -91,7 +87,8 @@ impl<Q: Runs> Run<'_, Q> {
 
 pub(super) fn trace<Q: Runs>(run: &Run<Q>, part: f64) -> Result<Curve<Q>, RunError> {
     let (found, peaks) = Q::found(run, &mut ())?;
-    let (lines, drawn, a_g) = (followed(&run.structure), drawn(&run.structure), peaks.a_g());
+    let (mut lines, drawn, a_g) = (lines(&run.structure), drawn(&run.structure), peaks.a_g());
+    lines.extend(run.structure.foundation().iter().flat_map(|_| &OF_GROUND[..2]));
     let peaks = Vec::from_iter(peaks_of(&lines, &peaks));
     let mut tracer = Tracer {
         within: peaks.iter().map(|peak| part * peak.magnitude).collect(),

@@ -70,7 +70,7 @@
   }
 
   const text = () => JSON.stringify(fields);
-  const ground = () => fields.ground ?? "el_centro";
+  const record = () => fields.record ?? "el_centro";
   /** Structures to start from: their names and their fields. */
   const structures = {
     pier: ["bridge pier of 22 m", { preset: "none", m: "1.2e6", m0: "4e5", H: "22", B: "3.5", f_fc: "0.8", zeta_fc: "0.03", r: "0.95" }],
@@ -246,7 +246,7 @@
   at("ground").addEventListener("change", ({ target }) => {
     const { m0, J0, B } = about.parameters;
     for (const { name } of tables.ground) delete fields[name];
-    if (target.value) {
+    if (target.value === "gives") {
       for (const name of ["r", "u_0"]) delete fields[name];
       if (["linear", "modal"].includes(fields.detail)) delete fields.detail;
       if (!J0) fields.J0 = String(Number(((m0 * B ** 2) / 3).toPrecision(4)));
@@ -313,7 +313,7 @@
     at("frame").hidden = !isFrame();
     at("natural").parentElement.hidden = isMany();
     for (const of of at("detail").options) of.disabled = { modal: isMany(), linear: givesWay() }[of.value] ?? false;
-    at("ground").value = givesWay() ? "gives" : "";
+    at("ground").value = givesWay() ? "gives" : "rigid";
     for (const { name } of tables.ground) rows[name].element.hidden = !givesWay();
     showStoreys();
     for (const option of at("preset").options) {

@@ -24,10 +24,13 @@ from test_view import SCALES, browser, new_page, number, wait  # noqa: F401
 
 PAGE = ROOT / "out" / "explore.html"
 EL_CENTRO = next(RECORD.parents[1].glob("*/*ELC180*.AT2"))
-PACOIMA = {"ground": "record", "scale": str(SCALE), "time_scale": str(TIME_SCALE)}
+PACOIMA = {"record": "record", "scale": str(SCALE), "time_scale": str(TIME_SCALE)}
 
 FRAME = {"storeys": "4e4,3.5,6e7 4e4,7,5e7 3e4,10.5,4e7", "m0": "2e4", "J0": "3e4", "B": "1.5", "r": "0.93"}
 PIER = {"preset": "none", "m": "1.2e6", "m0": "4e5", "H": "22", "B": "3.5", "f_fc": "0.8", "zeta_fc": "0.03", "r": "0.95"}
+#: The pier, a specimen and a frame on ground that gives.
+ON_GROUND = [{name: text for name, text in PIER.items() if name != "r"} | {"J0": "1.7e6", "k_v": "1.25e6 kN/m", "zeta_v": "0.3", "n_points": "5.0"},
+             {"preset": "mcmanus", "f_v": "40", "f_fc": "4"}, FRAME | {"f_v": "15", "modes": "2"}]
 #: Another real pier, entered over McManus's.
 OWN = {"m": "1850000", "m0": "900000", "H": "31", "B": "4.5", "f_fc": "0.625"}
 
@@ -80,7 +83,7 @@ def agree(ours: str, theirs) -> bool:
 def possible(scene_of) -> list:
     """The scenes of test_doors.py that the page's fields can hold, and what RUN needs for them."""
     scenes = [scene for scene in map(scene_of, SCENES) if not scene.vertical and not (scene.record and scene.duration)]
-    grounds = [{"ground": "record"} | of.scales if of.record else {"ground": "free", "duration": of.duration} for of in scenes]
+    grounds = [{"record": "record"} | of.scales if of.record else {"record": "free", "duration": of.duration} for of in scenes]
     return [(of, [{name: str(value) for name, value in (of.structure | of.initial | of.how | ground).items()},
                   of.record and of.record.name, of.record and of.record.read_text()]) for of, ground in zip(scenes, grounds)]
 
@@ -106,8 +109,8 @@ def random_scenes(count: int):
     """Scenes, and the name and content of their records, the same ones every time."""
     random = Random(1)
     some = lambda fields: {name: random.choice(texts) for name, texts in fields.items() if random.random() < 0.3}
-    shapes = [{"ground": "half_sine"}, {"ground": "cosine", "cycles": "1.5", "phase": "-0.3"}, {"ground": "sine", "frequency": "1"},
-              {"ground": "mavroeidis_papageorgiou", "phase": ".4"}, {"ground": "antisymmetric_ricker", "amplitude": "1e0"}]
+    shapes = [{"record": "half_sine"}, {"record": "cosine", "cycles": "1.5", "phase": "-0.3"}, {"record": "sine", "frequency": "1"},
+              {"record": "mavroeidis_papageorgiou", "phase": ".4"}, {"record": "antisymmetric_ricker", "amplitude": "1e0"}]
     for number in range(count):
         structure = some({"preset": ["evison"], "g": ["3.71", "9.8"], "H": ["3.", "+2.25"], "weight": ["2.5e6"], "r": ["0.85"],
                           "zeta_fc": ["01e-2"], "P_0": ["300"], "k_t": ["4e4"]})
@@ -118,23 +121,24 @@ def random_scenes(count: int):
         table = f"time [s],other,{heading}\n" + "".join(f"{0.2 * i},7,{size * a}\n" for i, a in enumerate([0, 1, -1.2, 0.4, 0, 0]))
         bare = "".join(f"{size * a}\n" for a in [0, 1, -1.2, 0.4, 0])
         ground = random.choice([random.choice(shapes) | scales,
-                                {"ground": "synthetic", "seed": "7", "duration": "5"} | scales,
-                                {"ground": "free", "duration": "4", "theta_0": "0.05"},
-                                {"ground": "record", "unit": unit, "column": random.choice(["3", heading])} | scales,
-                                {"ground": "record", "unit": unit, "dt": ".1"} | scales])
+                                {"record": "synthetic", "seed": "7", "duration": "5"} | scales,
+                                {"record": "free", "duration": "4", "theta_0": "0.05"},
+                                {"record": "record", "unit": unit, "column": random.choice(["3", heading])} | scales,
+                                {"record": "record", "unit": unit, "dt": ".1"} | scales])
         yield structure | run | ground, name, bare if "dt" in ground else table
 
 
 def test_a_scene_is_the_same_by_its_command_and_by_its_script(opened, exporter, tmp_path):
     """For any link and any name of a record or column, a shell and Python find the page's peaks and run nothing else."""
     page = opened()
-    frame, pier = FRAME | {"modes": "2.0", "zeta": "0.03", "ground": "ricker"}, PIER | {"ground": "ricker"}
+    frame, pier = FRAME | {"modes": "2.0", "zeta": "0.03", "record": "ricker"}, PIER | {"record": "ricker"}
     time = np.arange(0, 3, 0.01)
     table = "".join(f"{t},{4 * np.sin(9 * t)},{2 * np.cos(20 * t)}\n" for t in time)
-    shaken = PIER | {"m": "1200 t", "k_t": "20000 kN/m", "ground": "record", "column": "2", "column_v": "3"}
-    for number, (fields, name, record) in enumerate([(frame, "-", ""), (pier, "-", ""), (shaken, "up.csv", table), *random_scenes(40)]):
+    shaken = PIER | {"m": "1200 t", "k_t": "20000 kN/m", "record": "record", "column": "2", "column_v": "3"}
+    on_ground = [(fields | {"record": "ricker", "amplitude": "1"}, "-", "") for fields in ON_GROUND]
+    for number, (fields, name, record) in enumerate([(frame, "-", ""), (pier, "-", ""), (shaken, "up.csv", table), *on_ground, *random_scenes(40)]):
         page.evaluate("hash => { location.hash = hash }", urlencode(fields | {"tab": "export"}))
-        if fields.get("ground") == "record":
+        if fields.get("record") == "record":
             drop(page, name, record.encode())
         settled(page)
         assert page.locator("#problem").text_content() == "", (fields, record)
@@ -156,12 +160,12 @@ def test_a_scene_is_the_same_by_its_command_and_by_its_script(opened, exporter, 
 
 def test_a_link_is_taken_whole_or_what_is_wrong_in_it_is_named(opened):
     page = opened({"f_cf": "9"})
-    for key, why in [("f_cf=9", '"f_cf" of the link is unknown with ground = el_centro; these are known: preset, m, m0, H, B,'),
-                     ("ground=record&amplitude=1", '"amplitude" of the link is unknown with ground = record; these'),
-                     ("dt=0.1", '"dt" of the link is unknown with ground = el_centro; these'),
-                     ("ground=cosine&packed=H4sI", '"packed" of the link is unknown with ground = cosine; these'),
-                     ("ground=quake", 'ground = "quake" is unknown; these are known: half_sine, sine,'),
-                     ("ground=synthetic&seed=1.5", "seed = 1.5 is out of range: a whole number of at least 0 is needed"),
+    for key, why in [("f_cf=9", '"f_cf" of the link is unknown with record = el_centro; these are known: preset, m, m0, H, B,'),
+                     ("record=record&amplitude=1", '"amplitude" of the link is unknown with record = record; these'),
+                     ("dt=0.1", '"dt" of the link is unknown with record = el_centro; these'),
+                     ("record=cosine&packed=H4sI", '"packed" of the link is unknown with record = cosine; these'),
+                     ("record=quake", 'record = "quake" is unknown; these are known: half_sine, sine,'),
+                     ("record=synthetic&seed=1.5", "seed = 1.5 is out of range: a whole number of at least 0 is needed"),
                      ("H=2&H=3", 'H = "2, 3": a number in m is needed, without a comma')]:
         page.evaluate("hash => { location.hash = hash }", key)
         settled(page)
@@ -169,10 +173,10 @@ def test_a_link_is_taken_whole_or_what_is_wrong_in_it_is_named(opened):
         assert said.startswith(why)
         known = said.partition("these are known: ")[2].split(";")[0].split(", ")
         assert said.endswith("did you mean f_fc?") == key.startswith("f_cf") and len(known) == len(set(known))
-    page.evaluate("hash => { location.hash = hash }", "ground=record&unit=g&column=2&theta_0=0.01&H=2.25")
+    page.evaluate("hash => { location.hash = hash }", "record=record&unit=g&column=2&theta_0=0.01&H=2.25")
     drop(page, "record.csv", b"0,1\n0.1,2\n0.2,3\n")
     settled(page)
-    assert "#ground=record&unit=g&column=2&theta_0=0.01&H=2.25&record=record.csv&packed=" in page.url
+    assert "#record=record&unit=g&column=2&theta_0=0.01&H=2.25&file=record.csv&packed=" in page.url
     assert page.locator("#problem").is_hidden() and page.locator(".row[data-name=theta_0]").is_visible()
 
 
@@ -285,7 +289,7 @@ def test_what_is_refused_is_said_as_everywhere_and_the_page_stays_alive(opened, 
         problem.wait_for()
         refused = subprocess.run([exporter, "--quiet", "simulate", "--record", f"bad{number}.csv"], cwd=tmp_path, capture_output=True, text=True)
         assert refused.stderr.strip().replace("--ignore-npts", "ignore_npts") == f"error: {problem.text_content()}"
-        page.select_option("#ground", "sine")
+        page.select_option("#record", "sine")
         problem.wait_for(state="hidden")
 
 
@@ -383,7 +387,7 @@ def test_the_map_fills_in_and_a_click_shows_the_run(opened):
 
 
 def test_what_is_taken_along_is_what_the_command_line_makes(opened, exporter, tmp_path):
-    page = opened({"tab": "export", "ground": "record", "m": "150", "theta_0": "0.01"})
+    page = opened({"tab": "export", "record": "record", "m": "150", "theta_0": "0.01"})
     (tmp_path / "record.csv").write_text("time[s],a_g[g]\n0,0\n0.2,0.6\n0.4,-0.6\n0.6,0\n")
     drop(page, "record.csv", (tmp_path / "record.csv").read_bytes())
     library = exporter.with_name("deps") / "libFlexibleRocking.so"
@@ -399,9 +403,9 @@ def test_what_is_taken_along_is_what_the_command_line_makes(opened, exporter, tm
                         "--library", library, "-o", "own.fmu"], cwd=tmp_path, check=True)
         assert content("page.fmu") == content("own.fmu")
     assert page.locator("#to_set").text_content().endswith(": theta_0=0.01")
-    link = re.sub("&record=.*", "", page.locator("#link").text_content())
+    link = re.sub("&file=.*", "", page.locator("#link").text_content())
     again = page.context.new_page()
-    again.goto(link.replace("ground=record", "ground=cosine"))
+    again.goto(link.replace("record=record", "record=cosine"))
     again.locator("body[data-ready]").wait_for()
     assert again.locator("#command").text_content() == """\
 rocking-fmu pulse cosine --amplitude=0.6 --frequency=2 --preset=mcmanus --m=150 --output=ground.csv
@@ -459,8 +463,25 @@ def test_a_link_carries_its_record_or_names_it(opened):
     assert again.locator("#problem").is_hidden() and shown(again, "theta", 1) == shown(page, "theta", 1)
 
 
+def test_ground_gives_and_is_rigid_again(opened):
+    page = opened()
+    rigid, row = shown(page, "theta", 1), page.locator(".row[data-name=r]")
+    page.select_option("#ground", "gives")
+    settled(page)
+    assert page.locator("#problem").is_hidden() and page.locator("#warnings li").count() == 0 and row.is_hidden()
+    assert page.locator("#ties .spring").count() == 2 and page.locator("path.curve[data-name=N_left]").count() == 1
+    assert shown(page, "settlement", 1) > 1e3 * 9.81 / (2 * np.pi * 10) ** 2  # at rest g/(2 pi f_v)^2
+    page.locator("#field-f_v").fill("0.01")
+    page.locator("#problem").wait_for()
+    assert page.locator("#problem").text_content().startswith("f_v = 0.01 Hz is out of range: ")
+    page.select_option("#ground", "rigid")
+    page.locator("#field-J0").fill("")
+    settled(page)
+    assert row.is_visible() and shown(page, "theta", 1) == rigid
+
+
 def test_a_picture_and_a_film_show_the_page(opened, browser, tmp_path):
-    page = opened({"tab": "export", "ground": "ricker", "amplitude": "1", "frequency": "3"})
+    page = opened({"tab": "export", "record": "ricker", "amplitude": "1", "frequency": "3"})
     with page.expect_download() as download:
         page.locator("#picture").click()
     download.value.save_as(tmp_path / "picture.png")
@@ -542,7 +563,7 @@ def test_every_view_has_room(opened, size):
     else:
         button = page.locator("#controls .file").bounding_box()
         assert button["y"] + button["height"] < height
-    for scene in (OWN, {"ground": "sine", "amplitude": "0.5", "frequency": "0.5"}, FRAME):
+    for scene in (OWN, {"record": "sine", "amplitude": "0.5", "frequency": "0.5"}, ON_GROUND[0], FRAME):
         for tab in TABS if scene != FRAME else ["play"]:
             page.evaluate("hash => { location.hash = hash }", urlencode(scene | {"tab": tab}))
             settled(page)

@@ -102,7 +102,7 @@ def go_to(page, instant: float) -> None:
 def drawn(page, floor: int = 1) -> tuple[float, float, float]:
     """θ (rad) and the pivot (m) by the transform of the body, u (m) by that of a floor."""
     transform = page.locator("#body").get_attribute("transform")
-    angle, pivot = re.fullmatch(r"rotate\((\S+) (\S+) 0\)", transform).groups()
+    angle, pivot = re.fullmatch(r"(?:translate\(0 \S+\) )?rotate\((\S+) (\S+) 0\)", transform).groups()
     top = page.locator("#body rect.mass").nth(floor).get_attribute("transform")
     return math.radians(float(angle)), float(pivot), float(re.match(r"translate\((\S+) ", top)[1])
 
@@ -117,7 +117,7 @@ def compare(page, table, row, floor: int = 1, of_floor: str = "", exaggeration: 
     assert abs(u / exaggeration - now[f"u{of_floor}[m]"]) <= 1.1e-4 * largest[f"u{of_floor}[m]"]
     for name, column, unit in [("a_g", "a_g[m/s2]", 9.81), ("theta", "theta[rad]", 1), ("u", f"u{of_floor}[m]", 1e-3), ("V_t", "V_t[N]", 1e3),
                                ("delta_t", f"delta_t{of_floor}[m]", 1e-3), ("a_t", f"a_t{of_floor}[m/s2]", 9.81), ("uplift", "uplift[m]", 1e-3),
-                               ("M_t", "M_t[N.m]", 1e3)]:
+                               ("M_t", "M_t[N.m]", 1e3), ("settlement", "settlement[m]", 1e-3), ("N_left", "N_left[N]", 1e3)][:8 + 2 * ("y[m]" in table)]:
         assert abs(reading(page, name) - now[column] / unit) <= 2e-3 * largest[column] / unit, (name, row)
     return now
 
@@ -260,22 +260,26 @@ def test_a_hostile_title_is_text(opened, exporter, tmp_path):
     assert page.title().startswith("</script>")
 
 
-def test_a_frame_moves_as_its_response_says(opened, exporter, pacoima_record, tmp_path):
-    (tmp_path / "frame.toml").write_text(toml(FRAMES["frame"]))
+@pytest.mark.parametrize("ground", ["", "f_v = 15"])
+def test_a_frame_moves_as_its_response_says(opened, exporter, pacoima_record, tmp_path, ground):
+    (tmp_path / "frame.toml").write_text(toml(FRAMES["frame"], ground=ground))
     path, table, _ = shown(exporter, pacoima_record, tmp_path, "--parameters", "frame.toml")
     page = opened(path)
     page.select_option("#exaggeration", "1")
     for row in (0, 12340, 30000):
         for floor in (1, 2, 3):
             page.select_option("#floor", str(floor))
-            compare(page, table, row, floor, f"[{floor}]")
+            now = compare(page, table, row, floor, f"[{floor}]")
+        if ground:
+            down = re.match(r"translate\(0 (\S+)\) ", page.locator("#body").get_attribute("transform"))
+            assert abs(float(down[1]) + now["y[m]"]) <= 2e-3 * table["y[m]"].abs().max()
     assert page.locator("#heights").is_visible() and page.locator("#peaks tr").count() == 3
     for width, height in ((1366, 768), (1100, 800), (390, 844)):
         page.set_viewport_size({"width": width, "height": height})
         page.wait_for_timeout(200)
         assert page.locator("#numbers").evaluate("numbers => numbers.scrollWidth <= numbers.clientWidth"), width
         scales = page.evaluate(SCALES)
-        assert len(scales) == 5 and min(scales) >= 2, (width, scales)
+        assert len(scales) == (9 if ground else 5) and min(scales) >= 2, (width, scales)
         titles = page.locator("#profile text").evaluate_all("all => all.map(text => text.getBoundingClientRect().toJSON())")
         meet = lambda a, b: a["left"] < b["right"] and b["left"] < a["right"] and a["top"] < b["bottom"] - 3 and b["top"] < a["bottom"] - 3
         assert not any(meet(a, b) for i, a in enumerate(titles) for b in titles[:i]), width
