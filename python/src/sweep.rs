@@ -157,13 +157,13 @@ pub fn overturning_map(
             let run = |places: &[Place], done: &mut dyn FnMut(_) -> bool| {
                 map.run_each(places, |at, point| done((places[at], point)));
             };
-            let keep = |(place, point): (Place, Point)| {
+            let keep = |(place, point): (Place, Point), _: &mut _| {
                 waiting.check();
                 points.lock().expect("no thread panics with them").insert(place, point.clone());
                 rows.lock().expect("no thread panics with them").push((level, place, point));
                 Ok(())
             };
-            pool.install(|| do_runs(&lacking, run, keep))
+            pool.install(|| do_runs(&lacking, None, run, keep))
         })?;
         Ok((map, rows.into_inner()?))
     })?;

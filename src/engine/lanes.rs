@@ -371,7 +371,7 @@ impl<S: Simd> WithSimd for Taken<'_, S> {
             for (place, number) in places.iter_mut().zip(of_order) {
                 *place = ended.choose(none, number);
             }
-            order = ended.choose(order, g.like(k as f64));
+            order = order + ended.choose(zero, one);
             last = k;
             let is_small = u_dot.abs().is_at_most(truncation).and(theta_dot.abs().is_at_most(truncation_turning));
             if k >= MIN_ORDER {

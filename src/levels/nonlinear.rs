@@ -113,7 +113,13 @@ pub(super) fn products<const PAIRS: usize>(
 ) -> [f64; 6] {
     let mut sum = NO_ROW;
     if n > 0 {
-        for (a, b) in a[1..n].iter().zip(&b[MAX_ORDER - n + 1..MAX_ORDER]) {
+        let (twos, last) = a[1..n].as_chunks::<2>();
+        let (twos_b, last_b) = b[MAX_ORDER - n + 1..MAX_ORDER].as_chunks::<2>();
+        for (a, b) in twos.iter().zip(twos_b) {
+            add_product::<PAIRS>(&mut sum, &a[0], &b[0]);
+            add_product::<PAIRS>(&mut sum, &a[1], &b[1]);
+        }
+        if let ([a], [b]) = (last, last_b) {
             add_product::<PAIRS>(&mut sum, a, b);
         }
         add_product::<PAIRS>(&mut sum, newest_a, &b[MAX_ORDER]);

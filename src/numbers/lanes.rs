@@ -108,7 +108,7 @@ impl<S: Simd> Answers<S> {
     #[inline(always)]
     pub(crate) fn all(self) -> bool {
         let [zero, one] = [0.0, 1.0].map(|value| Lanes::splat(self.simd, value));
-        self.simd.reduce_min_f64s(self.choose(one, zero).of) > 0.0
+        self.simd.reduce_sum_f64s(self.choose(zero, one).of) == 0.0
     }
 }
 
@@ -171,7 +171,7 @@ impl<S: Simd> Expanded for Lanes<S> {
                 add_products(&mut sum, &left[0], &right[0]);
                 add_products(&mut sum, &left[1], &right[1]);
             }
-            for (left, right) in last_left.iter().zip(last_right) {
+            if let ([left], [right]) = (last_left, last_right) {
                 add_products(&mut sum, left, right);
             }
             add_products(&mut sum, newest_left, &right[MAX_ORDER]);

@@ -8,12 +8,12 @@ pub const MAX_SAMPLES: usize = 10_000_000;
 /// A ground motion: at least two samples, finite, at strictly increasing times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
-    /// Shared with the copies of the record that are scaled, as the times are.
+    /// Shared with the copies of the record, as the samples are until they are scaled.
     title: Arc<str>,
     times: Arc<[f64]>,
-    acceleration: Vec<f64>,
+    acceleration: Arc<[f64]>,
     /// At the same times; none where the ground moves horizontally alone.
-    vertical: Option<Vec<f64>>,
+    vertical: Option<Arc<[f64]>>,
 }
 
 /// Duration of the fall to 0 of a component that ends before the other one, as a part of its last step.
@@ -76,14 +76,14 @@ impl Record {
     ) -> Result<Record, SamplesError> {
         let title = title.into();
         match check_samples(&times, &acceleration) {
-            Ok(()) => Ok(Record { title: title.into(), times: times.into(), acceleration, vertical: None }),
+            Ok(()) => Ok(Record { title: title.into(), times: times.into(), acceleration: acceleration.into(), vertical: None }),
             Err(problem) => Err(SamplesError::BadSamples { title, problem }),
         }
     }
 
     /// Ground at rest for `duration` (s), greater than 0: free vibration.
     pub fn at_rest(duration: f64) -> Record {
-        let (times, acceleration) = ([0.0, duration].into(), vec![0.0, 0.0]);
+        let (times, acceleration) = ([0.0, duration].into(), [0.0, 0.0].into());
         Record { title: "free vibration".into(), times, acceleration, vertical: None }
     }
 
@@ -105,12 +105,12 @@ impl Record {
         }
         let end = self.end().max(vertical.end());
         let [own, other] = [(&self.times, &self.acceleration), (&vertical.times, &vertical.acceleration)]
-            .map(|(times, acceleration)| until(end, times.to_vec(), acceleration.clone()));
+            .map(|(times, acceleration)| until(end, times.to_vec(), acceleration.to_vec()));
         let mut times = [&own.0[..], &other.0].concat();
         times.sort_by(f64::total_cmp);
         times.dedup();
         let [acceleration, vertical] =
-            [own, other].map(|(samples, of)| times.iter().map(|time| at(&samples, &of, *time)).collect::<Vec<_>>());
+            [own, other].map(|(samples, of)| times.iter().map(|time| at(&samples, &of, *time)).collect());
         Ok(Record { times: times.into(), acceleration, vertical: Some(vertical), ..self })
     }
 
@@ -125,7 +125,7 @@ impl Record {
         self.times = self.times.iter().map(|time| time * time_scale).collect();
         let record = self.multiplied(scale);
         let is_motion = |(t, a): (&[f64], &[f64])| t[1] > t[0] && ((a[1] - a[0]) / (t[1] - t[0])).is_finite();
-        let is_record = |of: &Vec<f64>| record.times.windows(2).zip(of.windows(2)).all(is_motion);
+        let is_record = |of: &Arc<[f64]>| record.times.windows(2).zip(of.windows(2)).all(is_motion);
         let is_whole = is_record(&record.acceleration) && record.vertical.iter().all(is_record);
         match is_whole && record.end().is_finite() {
             true => Ok(record),
@@ -140,8 +140,11 @@ impl Record {
 
     /// This ground motion with every horizontal acceleration multiplied by `scale` and every vertical one by `vertical`.
     pub fn multiplied_each(mut self, scale: f64, vertical: f64) -> Record {
-        self.acceleration.iter_mut().for_each(|acceleration| *acceleration *= scale);
-        self.vertical.iter_mut().flatten().for_each(|acceleration| *acceleration *= vertical);
+        for (samples, scale) in [(Some(&mut self.acceleration), scale), (self.vertical.as_mut(), vertical)] {
+            if let Some(samples) = samples.filter(|_| scale != 1.0) {
+                *samples = samples.iter().map(|acceleration| acceleration * scale).collect();
+            }
+        }
         self
     }
 
@@ -187,7 +190,7 @@ impl Record {
 
     /// Largest magnitude of the vertical ground acceleration, m/s²; 0 without a vertical component.
     pub fn vertical_peak(&self) -> f64 {
-        self.vertical.iter().flatten().fold(0.0, |peak, a_v| peak.max(a_v.abs()))
+        self.vertical().into_iter().flatten().fold(0.0, |peak, a_v| peak.max(a_v.abs()))
     }
 
     /// Velocity (m/s) and displacement (m) of the ground at each sample, at rest before the first one: exact, as the

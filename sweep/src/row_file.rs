@@ -3,8 +3,8 @@
 //! A row begins with the run's key, which stands for all that the run depends on. So rows may stand in any order, and
 //! those of other runs among them.
 //!
-//! A row is written whole, as soon as its run ends. However the program ends, the file holds complete rows and at most a part
-//! of one more. That part is cut off when the runs continue.
+//! A thread writes the rows of its last runs together, ten times a second at most. However the program ends, the file holds complete
+//! rows and at most a part of one more. That part is cut off when the runs continue.
 
 use anyhow::{Context, bail, ensure};
 use csv::{ReaderBuilder, StringRecord, WriterBuilder};
@@ -16,6 +16,7 @@ use std::{
     io::{Read, Seek, SeekFrom, Write},
     path::{Path, PathBuf},
     sync::Mutex,
+    time::{Duration, Instant},
 };
 use uuid::Uuid;
 
@@ -25,6 +26,12 @@ const MOST_TOGETHER: usize = 64;
 
 /// How often each thread takes runs, if there are few.
 const SHARES: usize = 4;
+
+/// The least time from one writing of a thread to the next, unless its runs are done.
+const BETWEEN_WRITINGS: Duration = Duration::from_millis(100);
+
+/// Rows that are not in a file yet.
+pub type Rows = csv::Writer<Vec<u8>>;
 
 /// An open file, to which rows can be added.
 #[derive(Debug)]
@@ -110,35 +117,42 @@ impl RowFile {
         Ok((RowFile { path: path.into(), file: Mutex::new((file, length as u64)) }, known))
     }
 
-    /// Adds a row, or nothing.
-    pub fn append(&self, row: &[u8]) -> anyhow::Result<()> {
+    /// Adds all of these rows, or nothing, and leaves none behind.
+    fn append(&self, rows: &mut Rows) -> anyhow::Result<()> {
+        let rows = std::mem::replace(rows, no_rows()).into_inner()?;
         let mut guard = self.file.lock().expect("no thread panics with the file in hand");
         let (file, length) = &mut *guard;
-        let written = file.write_all(row);
+        let written = file.write_all(&rows);
         if written.is_err() {
             file.seek(SeekFrom::Start(*length))?;
             file.set_len(*length)?;
         }
         written.with_context(|| format!("{} cannot be written", self.path.display()))?;
-        *length += row.len() as u64;
+        *length += rows.len() as u64;
         Ok(())
     }
 }
 
-/// Does `runs` on all threads, several together: `run` hands each result to `keep`, until `keep` fails.
+/// Does `runs` on all threads, several together: `run` hands each result to `keep`, until `keep` fails. What `keep` adds to the rows is
+/// added to the `file`.
 pub fn do_runs<T: Sync, R>(
     runs: &[T],
+    file: Option<&RowFile>,
     run: impl Fn(&[T], &mut dyn FnMut(R) -> bool) + Sync,
-    keep: impl Fn(R) -> anyhow::Result<()> + Sync,
+    keep: impl Fn(R, &mut Rows) -> anyhow::Result<()> + Sync,
 ) -> anyhow::Result<()> {
     let together = (runs.len() / (SHARES * rayon::current_num_threads())).clamp(FEWEST_TOGETHER, MOST_TOGETHER);
     runs.par_chunks(together).try_for_each(|runs| {
-        let mut result = Ok(());
+        let (mut result, mut rows, mut written) = (Ok(()), no_rows(), Instant::now());
+        let write = |rows: &mut Rows| file.map_or(Ok(()), |file| file.append(rows));
         run(runs, &mut |done| {
-            result = keep(done);
+            result = keep(done, &mut rows);
+            if result.is_ok() && written.elapsed() > BETWEEN_WRITINGS {
+                (result, written) = (write(&mut rows), Instant::now());
+            }
             result.is_ok()
         });
-        result
+        write(&mut rows).and(result)
     })
 }
 
@@ -160,7 +174,11 @@ pub fn fixed(headings: &[&str]) -> Vec<String> {
 
 /// A line of these values; numbers read back to the same bits.
 pub fn line(of: &impl Serialize) -> anyhow::Result<Vec<u8>> {
-    let mut writer = WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-    writer.serialize(of)?;
-    Ok(writer.into_inner()?)
+    let mut rows = no_rows();
+    rows.serialize(of)?;
+    Ok(rows.into_inner()?)
+}
+
+fn no_rows() -> Rows {
+    WriterBuilder::new().has_headers(false).from_writer(Vec::new())
 }

@@ -4,7 +4,7 @@
 
 use crate::outcome::{Measure, Outcome, Summary};
 use crate::plan::{AXES, Case, Conditions, NamedRecord, Plan};
-use crate::row_file::{Known, Program, RowFile, digest, do_runs, fixed, heading, line};
+use crate::row_file::{Known, Program, RowFile, Rows, digest, do_runs, fixed, heading};
 use anyhow::{bail, ensure};
 use csv::StringRecord;
 use rocking::estimates::intensity::IntensityMeasure;
@@ -113,13 +113,14 @@ impl<'a> Sweep<'a> {
                 self.plan.each_outcome(indices, |index, outcome| done((index, unchecked(outcome))));
             }
         };
-        do_runs(&self.missing(), run, |(index, done)| self.keep(index, done, &goes_on))
+        let keep = |(index, done), rows: &mut Rows| self.keep(index, done, rows, &goes_on);
+        do_runs(&self.missing(), self.file.as_ref(), run, keep)
     }
 
-    /// Keeps the run that is `done`, and adds its row to the file. Fails if the sweep no longer `goes_on`.
-    fn keep(&self, index: usize, done: Done, goes_on: &impl Fn() -> bool) -> anyhow::Result<()> {
-        if let Some(file) = &self.file {
-            file.append(&line(&(self.keys[index].to_string(), self.row(index, &done)))?)?;
+    /// Keeps the run that is `done`, and adds its row to `rows`, if there is a file. Fails if the sweep no longer `goes_on`.
+    fn keep(&self, index: usize, done: Done, rows: &mut Rows, goes_on: &impl Fn() -> bool) -> anyhow::Result<()> {
+        if self.file.is_some() {
+            rows.serialize((self.keys[index].to_string(), self.row(index, &done)))?;
         }
         self.done[index].set(done).expect("each run is done once");
         ensure!(goes_on(), "stopped: the runs that are finished are kept");
