@@ -151,8 +151,8 @@ INITIAL_VALUES = ("theta_0", "theta_dot_0", "u_0", "u_dot_0")
 KINDS = {
     "Inputs": lambda v: v.causality == "input",
     "Outputs": lambda v: v.causality == "output",
-    "Parameters": lambda v: v.causality == "parameter" and v.name not in INITIAL_VALUES,
-    "Initial values": lambda v: v.causality == "parameter" and v.name in INITIAL_VALUES,
+    "Parameters": lambda v: v.causality == "parameter" and v.name.partition("[")[0] not in INITIAL_VALUES,
+    "Initial values": lambda v: v.causality == "parameter" and v.name.partition("[")[0] in INITIAL_VALUES,
     "Calculated parameters": lambda v: v.causality == "calculatedParameter",
     "Local variables": lambda v: v.causality == "local",
 }

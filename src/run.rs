@@ -21,7 +21,7 @@ pub mod validity;
 use crate::digits::with_unit;
 use crate::engine::piece::Sample;
 use crate::engine::{AdvanceError, DEFAULT_TOLERANCE, Moves, Settings};
-use crate::mechanics::lateral::{Coordinates, Lateral};
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint;
 use crate::mechanics::state::InitialStateError;
 use crate::run::ground_motion::{Segment, Segments};
@@ -178,21 +178,6 @@ impl<'a> Run<'a, Modes> {
             tolerance: DEFAULT_TOLERANCE,
             end: End::AtRest,
         }
-    }
-
-    /// This run from θ and θ̇ of `initial`, whose u and u̇ must be 0 except of one mass on ground that gives.
-    pub fn from(self, &State { u, u_dot, theta, theta_dot }: &State) -> Result<Run<'a, Modes>, InitialStateError> {
-        let mut initial = State { theta, theta_dot, ..self.initial };
-        if (u, u_dot) != (0.0, 0.0) {
-            match (self.structure.foundation(), self.structure.modes(), self.structure.floors()) {
-                (Some(_), [_], [floor]) => {
-                    initial.u.set(0, u / floor.shape.of(0));
-                    initial.u_dot.set(0, u_dot / floor.shape.of(0));
-                }
-                _ => return Err(InitialStateError::DeformedModes { u, u_dot }),
-            }
-        }
-        Ok(Run { initial, ..self })
     }
 }
 

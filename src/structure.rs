@@ -452,6 +452,11 @@ impl Structure {
         Load { a_g, F_t: on_modes.and_rest(rest), a_v }
     }
 
+    /// All numbers by which its motion differs from that of another structure.
+    pub fn numbers(&self) -> impl Serialize + use<'_> {
+        (self.parameters(), self.body(), self.modes(), self.floors(), self.foundation())
+    }
+
     /// The structure as a rigid body.
     pub fn body(&self) -> &Body {
         &self.0.body

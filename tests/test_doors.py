@@ -104,7 +104,8 @@ def random_scene(number: int, folder: Path) -> Scene:
 
 
 def options(**values) -> list[str]:
-    return [f"--{name.replace('_', '-')}={value}" for name, value in values.items()]
+    text = {name: ",".join(map(str, value)) if isinstance(value, list) else value for name, value in values.items()}
+    return [f"--{name.replace('_', '-')}={value}" for name, value in text.items()]
 
 
 def command_line(exporter: Path, scene: Scene, folder: Path) -> dict:
@@ -165,7 +166,9 @@ def co_simulation(fmu: Path, scene: Scene) -> dict:
     """The same of an FMU, the record inside, that fmpy steps to the end in one step."""
     end, overturns = scene.answer["end"][0], scene.answer["ending"][0] == "overturned"
     until = max(end, scene.record_end) + 1 if overturns else end
-    values = {f"record_{name}": value for name, value in scene.scales.items()} | scene.initial
+    values = {f"record_{name}": value for name, value in scene.scales.items()}
+    for name, of in scene.initial.items():
+        values |= {f"{name}[{i}]": number for i, number in enumerate(of, 1)} if np.size(of) > 1 else {name: np.ravel(of)[0]}
     values |= dict(peaks=True, validity=True, detail=1 + LEVELS.index(scene.how.get("detail", "auto")))
     names = {variable.name for variable in fmpy.read_model_description(str(fmu)).modelVariables}
     peaks = {name.removeprefix("t_") for name in names if re.fullmatch(r"t_.*_max(\[\d+\])?|t_mu_.*|t_R_v_min|t_tension_impact|t_weight_min", name)}

@@ -1,5 +1,6 @@
 //! The origin of a result: program, structure, ground motion, and the conditions of the computation.
 use crate::record_args::{RecordArgs, RecordOptions};
+use crate::scene_args::OneOrMore;
 use rocking::run::record::Record;
 use rocking::{Parameters, State, Structure};
 use rocking_records::{Column, Unit};
@@ -19,7 +20,7 @@ enum Part {
     Number(f64),
     OneMass(Parameters),
     Numbers(BTreeMap<String, f64>),
-    State(State),
+    State(State<OneOrMore>),
 }
 
 impl Serialize for Cause {
@@ -79,14 +80,20 @@ impl Cause {
 
     /// This cause of a run under these `conditions`.
     pub fn computed(mut self, conditions: &Conditions) -> Cause {
-        let &Conditions { detail, tolerance, initial, .. } = conditions;
+        let &Conditions { detail, tolerance, ref initial, .. } = conditions;
         self.0.extend([("detail", Part::Text(Some(detail.name().into()))), ("tolerance", Part::Number(tolerance))]);
         self.with_initial(initial)
     }
 
     /// This cause of runs from `initial`.
-    pub fn with_initial(mut self, initial: State) -> Cause {
-        self.0.push(("initial", Part::State(initial)));
+    pub fn with_initial(mut self, initial: &State<Vec<f64>>) -> Cause {
+        let [u, u_dot] = [&initial.u, &initial.u_dot].map(|of| match of[..] {
+            [] => OneOrMore::One(0.0),
+            [one] => OneOrMore::One(one),
+            _ => OneOrMore::More(of.clone()),
+        });
+        let &State { theta, theta_dot, .. } = initial;
+        self.0.push(("initial", Part::State(State { u, u_dot, theta, theta_dot })));
         self
     }
 }

@@ -7,6 +7,7 @@ use rocking::run::record::Record;
 use rocking::{Detail, State, engine::DEFAULT_TOLERANCE};
 use rocking_report::run::Run;
 use rocking_sweep::plan::Conditions;
+use serde::{Deserialize, Deserializer, Serialize};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -67,7 +68,7 @@ pub struct GroundArgs {
 }
 
 /// The state at the start.
-#[derive(clap::Args, Default, serde::Deserialize)]
+#[derive(clap::Args, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[command(next_help_heading = "Initial values")]
 pub struct InitialArgs {
@@ -77,12 +78,29 @@ pub struct InitialArgs {
     /// Initial angular velocity of the base
     #[arg(long, value_name = "RAD/S", default_value_t = 0.0, allow_hyphen_values = true)]
     theta_dot_0: f64,
-    /// Initial elastic displacement of the top mass
-    #[arg(long, value_name = "M", default_value_t = 0.0, allow_hyphen_values = true)]
-    u_0: f64,
-    /// Initial elastic velocity of the top mass
-    #[arg(long, value_name = "M/S", default_value_t = 0.0, allow_hyphen_values = true)]
-    u_dot_0: f64,
+    /// Initial elastic displacement of the top mass, or of each floor from below, with commas between them
+    #[arg(long, value_name = "M", default_value = "0", value_delimiter = ',', allow_hyphen_values = true)]
+    #[serde(deserialize_with = "one_or_more")]
+    u_0: Vec<f64>,
+    /// Initial elastic velocity of the top mass, or of each floor like --u-0
+    #[arg(long, value_name = "M/S", default_value = "0", value_delimiter = ',', allow_hyphen_values = true)]
+    #[serde(deserialize_with = "one_or_more")]
+    u_dot_0: Vec<f64>,
+}
+
+/// A number, or one for each floor.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged, expecting = "expected a number, or a list of one for each floor")]
+pub enum OneOrMore {
+    One(f64),
+    More(Vec<f64>),
+}
+
+fn one_or_more<'de, D: Deserializer<'de>>(of: D) -> Result<Vec<f64>, D::Error> {
+    Ok(match OneOrMore::deserialize(of)? {
+        OneOrMore::One(number) => vec![number],
+        OneOrMore::More(numbers) => numbers,
+    })
 }
 
 /// How the motion is computed.
@@ -120,8 +138,8 @@ impl GroundArgs {
 
 impl InitialArgs {
     /// The initial state.
-    pub fn state(&self) -> State {
-        let &InitialArgs { theta_0: theta, theta_dot_0: theta_dot, u_0: u, u_dot_0: u_dot } = self;
-        State { u, u_dot, theta, theta_dot }
+    pub fn state(&self) -> State<Vec<f64>> {
+        let InitialArgs { theta_0, theta_dot_0, u_0, u_dot_0 } = self;
+        State { u: u_0.clone(), u_dot: u_dot_0.clone(), theta: *theta_0, theta_dot: *theta_dot_0 }
     }
 }

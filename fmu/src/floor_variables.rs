@@ -49,7 +49,11 @@ pub(crate) fn coordinates(frame: &Structure) -> Vec<Row> {
             (0, mode, _) => ("m", format!("coordinate of mode {mode}, scaled to a modal mass of 1 kg")),
             (_, mode, _) => ("m/s", format!("velocity of mode {mode}")),
         };
-        let variable = Variable::real(Causality::Local, name(frame, place), unit, description);
+        let from = match kind(frame, place) {
+            (.., true) => None,
+            (kind, ..) => Some(["u_0", "u_dot_0"][kind]),
+        };
+        let variable = Variable::real(Causality::Local, name(frame, place), unit, description).from(from);
         (variable.state(), Source::Coordinate(place))
     };
     (0..2 * lateral_states(frame)).map(coordinate).collect()

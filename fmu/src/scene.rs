@@ -58,9 +58,8 @@ impl Setup {
         let &Setup { detail, tolerance, start_time, .. } = self;
         let settings = Settings { detail, tolerance, vertical, stops: false };
         let structure = self.parameters.map_or_else(|| Ok(contents.structure.clone()), Structure::new)?;
-        let State { u, u_dot, theta, theta_dot } = self.initial;
-        let [u, u_dot] = [u, u_dot].map(|of| Q::each(&structure, |_, _| of)); // only of one mass other than 0
-        Ok(Q::engine(structure, State { u, u_dot, theta, theta_dot }, start_time, settings)?)
+        let initial = self.initial.on(&structure)?;
+        Ok(Q::engine(structure, initial, start_time, settings)?)
     }
 
     /// The record of `source` in m/s² and scaled. Refuses scales that leave no ground motion in the range of the inputs.

@@ -15,8 +15,8 @@ use std::sync::Arc;
 pub struct Setup {
     /// Those of one mass; a host cannot change the numbers of many masses.
     pub(crate) parameters: Option<Parameters>,
-    /// Of many masses, the rotation and its rate alone.
-    pub(crate) initial: State,
+    /// With u and u̇ of each floor.
+    pub(crate) initial: State<Vec<f64>>,
     pub(crate) detail: Detail,
     pub(crate) tolerance: f64,
     pub(crate) start_time: f64,
@@ -40,7 +40,9 @@ pub struct Setup {
 impl Setup {
     /// The setup of an instance just instantiated from an archive with these contents.
     pub(crate) fn new(contents: &Contents) -> Setup {
+        let at_rest = vec![0.0; contents.structure.floors().len()];
         Setup {
+            initial: State { u: at_rest.clone(), u_dot: at_rest, ..State::default() },
             parameters: contents.structure.one().map(|one| *one.parameters()),
             tolerance: DEFAULT_TOLERANCE,
             record: contents.default_record().into(),

@@ -15,7 +15,7 @@ use rocking::run::validity::{ASSUMPTIONS, Assumption};
 use rocking::structure::derived::{DERIVED, Derived};
 use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::Quantity;
-use rocking::{Detail, Impulse, Output, Parameters, Phase, Reactions, Side, State, Structure};
+use rocking::{Detail, Impulse, Output, Parameters, Phase, Reactions, Side, Structure};
 use rocking_records::LAYOUTS;
 use std::borrow::Cow;
 use std::collections::HashSet;
@@ -43,7 +43,8 @@ pub enum Source {
     Transitions,
     Overturned,
     Parameter(&'static Quantity<Parameters>),
-    InitialValue(&'static Quantity<State>),
+    /// One of [`INITIAL_VALUES`] by its place, of a floor.
+    InitialValue(usize, usize),
     Derived(&'static Derived),
     /// A number of many masses, which nothing changes.
     Known(f64),
@@ -73,14 +74,14 @@ impl Source {
     /// Whether the host sets the value, a real number.
     pub fn is_set(self) -> bool {
         use Source::{InitialValue, Input, Parameter, Placement};
-        matches!(self, Input(_) | Parameter(_) | InitialValue(_) | Placement(_))
+        matches!(self, Input(_) | Parameter(_) | InitialValue(..) | Placement(_))
     }
 
     /// The value of a Real parameter or an initial value.
     pub fn setting(&self, setup: &Setup) -> Option<f64> {
         match self {
             Source::Parameter(quantity) => Some((quantity.get)(setup.parameters.as_ref()?)),
-            Source::InitialValue(quantity) => Some((quantity.get)(&setup.initial)),
+            Source::InitialValue(which, floor) => Some(setup.initial.numbers()[*which][*floor]),
             Source::Placement(quantity) => Some((quantity.get)(&setup.placement)),
             _ => None,
         }
@@ -106,7 +107,11 @@ impl Source {
             (Source::Parameter(quantity), Value::Real(value)) => {
                 setup.parameters.iter_mut().for_each(|of| (quantity.set)(of, value));
             }
-            (Source::InitialValue(quantity), Value::Real(value)) => (quantity.set)(&mut setup.initial, value),
+            (Source::InitialValue(which, floor), Value::Real(value)) => {
+                let mut numbers = setup.initial.numbers()[*which].to_vec();
+                numbers[*floor] = value;
+                setup.initial.set(*which, numbers);
+            }
             (Source::Placement(quantity), Value::Real(value)) => (quantity.set)(&mut setup.placement, value),
             _ => (),
         }
@@ -170,7 +175,9 @@ impl Table {
         let names: HashSet<_> = rows.iter().map(|(variable, _)| variable.name.clone()).collect();
         let known = |name: &Cow<'static, str>| match &**name {
             // on ground that gives all accelerations depend on y
-            of @ ("u" | "u_dot" | "F_t") if contents.structure.one().is_none() => floor_variables::all_of(of, &names),
+            of @ ("u" | "u_dot" | "F_t" | "u_0" | "u_dot_0") if contents.structure.one().is_none() => {
+                floor_variables::all_of(of, &names)
+            }
             _ => names.get(name).cloned().into_iter().collect(),
         };
         let started = rows.into_iter().map(|(variable, source)| {
@@ -196,7 +203,6 @@ fn rows(structure: &Structure) -> Vec<Row> {
     let outputs = Output::all(structure).into_iter().filter(|of| *of != Output::y).map(|of| output(of, structure));
     let (outputs, locals_of_one): (Vec<_>, Vec<_>) =
         outputs.partition(|(variable, _)| !is_one || variable.causality == Causality::Output);
-    let is_initial = |of: &&Quantity<State>| is_one || of.name.starts_with("theta");
     inputs(structure)
         .into_iter()
         .chain(outputs)
@@ -213,13 +219,27 @@ fn rows(structure: &Structure) -> Vec<Row> {
         .chain(validity())
         .chain(of_one(const { &PARAMETERS }.iter().map(|of| fixed(of, Source::Parameter(of))).collect()))
         .chain([parameter("detail", DETAILS.description, DataType::Enumeration(&DETAILS), Source::Detail)])
-        .chain(const { &INITIAL_VALUES }.iter().filter(is_initial).map(|of| fixed(of, Source::InitialValue(of))))
+        .chain(initial_values(structure))
         .chain(records())
         .chain(const { &PLACEMENT }.iter().map(|of| fixed(of, Source::Placement(of))))
         .chain(switches())
         .chain(of_one(calculated_parameters().into()))
         .chain([record_duration(), (Variable::time(), Source::Time)])
         .collect()
+}
+
+/// The initial values, of many masses of each floor.
+fn initial_values(structure: &Structure) -> Vec<Row> {
+    let row = |which: usize, floor: usize| {
+        let (mut variable, source) = fixed(&INITIAL_VALUES[which], Source::InitialValue(which, floor));
+        if which > 1 && structure.one().is_none() {
+            variable.name = format!("{}[{}]", variable.name, floor + 1).into();
+            variable.description = variable.description.replace("the top mass", &format!("floor {}", floor + 1)).into();
+        }
+        (variable, source)
+    };
+    let count = |which| if which < 2 { 1 } else { structure.floors().len() };
+    (0..INITIAL_VALUES.len()).flat_map(|which| (0..count(which)).map(move |floor| row(which, floor))).collect()
 }
 
 fn records() -> [Row; 2] {

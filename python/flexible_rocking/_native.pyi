@@ -1,4 +1,4 @@
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from typing import Any, Literal, TypedDict, final, overload
 
@@ -56,8 +56,8 @@ class _Rayleigh(TypedDict):
 class _InitialValues(TypedDict, total=False):
     theta_0: float
     theta_dot_0: float
-    u_0: float
-    u_dot_0: float
+    u_0: ArrayLike
+    u_dot_0: ArrayLike
 
 @final
 class Structure:
@@ -248,7 +248,7 @@ def sweep(
     detail: str,
     tolerance: float,
     duration: float | None,
-    initial: dict[str, float],
+    initial: Mapping[str, ArrayLike],
     validity: bool,
     threads: int,
     progress: Callable[[int, int], object] | None,

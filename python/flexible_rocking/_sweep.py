@@ -31,7 +31,7 @@ def sweep(
     threads: int = 0,
     path: str | PathLike[str] | None = None,
     progress: "bool | Callable[[int, int], object]" = False,
-    **initial: float,
+    **initial: "ArrayLike",
 ) -> "pd.DataFrame":
     """Runs every structure under every record at every scale on all cores: a DataFrame with a row per run.
 

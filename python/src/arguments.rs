@@ -10,6 +10,7 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyTuple};
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::{Detail, State};
 use rocking_sweep::plan::Conditions;
+use std::array;
 use std::ffi::CString;
 
 const BOOLS: &str = "these are bools: numbers are needed";
@@ -148,9 +149,12 @@ pub fn conditions(
 ) -> PyResult<Conditions> {
     let duration = duration.map(|duration| number("duration", duration)).transpose()?;
     let mut state = State::default();
+    let places: [_; INITIAL_VALUES.len()] = array::from_fn(|place| (INITIAL_VALUES[place].name, place));
     for (name, value) in initial.into_iter().flatten() {
-        let quantity = one_of("argument or initial value", &name, INITIAL_VALUES.each_ref().map(|of| (of.name, of)))?;
-        (quantity.set)(&mut state, number(quantity.name, &value)?);
+        let place = one_of("argument or initial value", &name, places)?;
+        let name = places[place].0;
+        let is_of_floors = name.starts_with('u');
+        state.set(place, if is_of_floors { numbers(name, &value)? } else { vec![number(name, &value)?] });
     }
     Ok(Conditions { initial: state, detail, tolerance, duration })
 }

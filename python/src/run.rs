@@ -291,7 +291,10 @@ impl Run {
         asked.set_item("duration", duration)?;
         asked.set_item("detail", detail.name())?;
         asked.set_item("tolerance", tolerance)?;
-        INITIAL_VALUES.iter().try_for_each(|of| asked.set_item(of.name, (of.get)(initial)))?;
+        for (of, numbers) in INITIAL_VALUES.iter().zip(initial.numbers()).filter(|(_, numbers)| !numbers.is_empty()) {
+            let is_one = numbers.len() == 1;
+            if is_one { asked.set_item(of.name, numbers[0]) } else { asked.set_item(of.name, numbers) }?;
+        }
         let simulate = py.import("flexible_rocking")?.getattr("simulate")?;
         let scene = (simulate, self.structure(py), self.record(py));
         Ok((py.import("functools")?.getattr("partial")?.call(scene, Some(&asked))?, ()))
@@ -301,11 +304,12 @@ impl Run {
 /// Follows a structure through a ground motion, or in free vibration, exactly, and returns the Run.
 ///
 /// record: a Record; without one the ground is at rest for `duration`. The structure starts at rest in full contact unless
-/// initial values are given: theta_0 (rad), theta_dot_0 (rad/s), u_0 (m), u_dot_0 (m/s). duration (s): the length of the run.
+/// initial values are given: theta_0 (rad), theta_dot_0 (rad/s), u_0 (m), u_dot_0 (m/s), of many masses a number for each floor from
+/// below, which u[1], u[2], ... and u_dot[1], ... of a Response are. duration (s): the length of the run.
 /// Without a duration, the run ends when the base is down for good or the structure overturns, at the latest 100/p_l after
 /// the record. detail: "auto", "nonlinear" (Eqs 1, 5, 6), "linear" (Eqs 1, 7, 8), "modal" (Eqs 1, 11, 18), "rigid" (Eq 6 with
 /// u = 0), "fixed_base" (Eq 1). tolerance: relative, of the results. Many masses move at every level
-/// but "modal", and start without displacement.
+/// but "modal".
 ///
 /// Overturning is a result, not an error. Raises ValueError where the run cannot begin, or not go on. Other threads of
 /// Python go on meanwhile; the same inputs give the same bits.

@@ -2,10 +2,12 @@
 
 use crate::Structure;
 use crate::digits::with_unit;
-use crate::mechanics::lateral::Coordinates;
+use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::structure::NotOneMass;
 use crate::structure::quantity::{OutOfRange, Quantity, quantity};
+use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
+use std::slice::from_ref;
 
 /// State of the structure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -159,6 +161,7 @@ pub const INITIAL_VALUES: [Quantity<State>; 4] = [
 
 /// Why an initial state is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // the messages name the fields
 pub enum InitialStateError {
     /// One value is outside its own range.
     #[error(transparent)]
@@ -181,16 +184,17 @@ pub enum InitialStateError {
          time and with what yields: choose linear, or set P_0, k_t, c_d, k_d and a_v to 0"
     )]
     RestrainedModal,
-    /// Masses are displaced although the structure has many.
+    /// Displacements or velocities of another count than the floors.
     #[error(
-        "u_0 = {u:?} m, u_dot_0 = {u_dot:?} m/s are of one mass: many masses start without displacement, set both to 0"
+        "{name} = {given:?} {unit}: the structure has {floors} floors, give a number for each from below, or 0 for all"
     )]
-    DeformedModes {
-        /// u_0, m.
-        u: f64,
-        /// u_dot_0, m/s.
-        u_dot: f64,
-    },
+    OtherFloors { name: &'static str, unit: &'static str, given: Vec<f64>, floors: usize },
+    /// Displacements or velocities that no modes of the structure have.
+    #[error(
+        "{name}[{floor}] = {given:?} {unit} is out of reach of the {modes} modes, which come as near as {nearest:?} {unit} \
+         there: give a sum of their shapes, or keep all modes"
+    )]
+    NoSuchShape { name: &'static str, unit: &'static str, floor: usize, given: f64, nearest: f64, modes: usize },
     /// The structure has more than one mass.
     #[error(transparent)]
     NotOneMass(#[from] NotOneMass),
@@ -244,6 +248,71 @@ impl State {
             quantity.check((quantity.get)(self))?;
         }
         self.phase()
+    }
+}
+
+/// u and u̇ of each floor from below, or of none, which is 0 for all; of one mass those of the top mass.
+impl State<Vec<f64>> {
+    /// The numbers under each name of [`INITIAL_VALUES`].
+    pub fn numbers(&self) -> [&[f64]; 4] {
+        [from_ref(&self.theta), from_ref(&self.theta_dot), &self.u, &self.u_dot]
+    }
+
+    /// Sets the numbers under the name of [`INITIAL_VALUES`] at this place.
+    pub fn set(&mut self, place: usize, numbers: Vec<f64>) {
+        match place {
+            0 => self.theta = numbers[0],
+            1 => self.theta_dot = numbers[0],
+            2 => self.u = numbers,
+            _ => self.u_dot = numbers,
+        }
+    }
+
+    /// The coordinates q of the modes of `structure` for which its floors move as these do: those nearest to them weighed by mass,
+    /// (ΦᵀMΦ) q = ΦᵀM u, refused where they are not near to 1e-6 of the largest.
+    pub fn on<Q: Coordinates>(&self, structure: &Structure) -> Result<State<Q>, InitialStateError> {
+        let &State { ref u, ref u_dot, theta, theta_dot } = self;
+        let [of_u, of_rate] = [&INITIAL_VALUES[2], &INITIAL_VALUES[3]];
+        Ok(State {
+            u: coordinates(structure, of_u, u)?,
+            u_dot: coordinates(structure, of_rate, u_dot)?,
+            theta,
+            theta_dot,
+        })
+    }
+}
+
+fn coordinates<Q: Coordinates>(
+    structure: &Structure,
+    of: &Quantity<State>,
+    given: &[f64],
+) -> Result<Q, InitialStateError> {
+    let &Quantity { name, unit, .. } = of;
+    given.iter().try_for_each(|number| of.check(*number))?;
+    let largest = given.iter().fold(0.0, |most: f64, number| most.max(number.abs()));
+    let (floors, modes) = (structure.floors(), structure.modes().len());
+    if largest == 0.0 {
+        return Ok(Q::each(structure, |_, _| 0.0));
+    }
+    if given.len() != floors.len() {
+        return Err(InitialStateError::OtherFloors { name, unit, given: given.into(), floors: floors.len() });
+    }
+    if structure.one().is_some() {
+        return Ok(Q::each(structure, |_, _| given[0]));
+    }
+    let root = |i: usize| floors[i].mass.sqrt();
+    let shapes = DMatrix::from_fn(floors.len(), modes, |i, j| root(i) * floors[i].shape.of(j));
+    let weighed = DVector::from_fn(floors.len(), |i, _| root(i) * given[i]);
+    let solved = (shapes.transpose() * &shapes).cholesky().map(|of| of.solve(&(shapes.transpose() * weighed)));
+    let coordinates = solved.unwrap_or_else(|| DVector::zeros(modes));
+    let found = Q::each(structure, |j, _| coordinates.get(j).copied().unwrap_or(0.0));
+    let nearest = |i: usize| floors[i].displacement(&found);
+    match (0..floors.len()).find(|i| (nearest(*i) - given[*i]).abs() > 1e-6 * largest) {
+        None => Ok(found),
+        Some(i) => {
+            let (floor, given, nearest) = (i + 1, given[i], nearest(i));
+            Err(InitialStateError::NoSuchShape { name, unit, floor, given, nearest, modes })
+        }
     }
 }
 

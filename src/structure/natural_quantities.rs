@@ -60,6 +60,10 @@ pub const DEFAULTS: [(&str, f64); 9] = [
     ("F_y", 0.0),
 ];
 
+fn default(name: &str) -> Option<f64> {
+    DEFAULTS.iter().find(|(default, _)| *default == name).map(|(_, value)| *value)
+}
+
 /// Numbers that are given for a structure, by name: parameters and natural quantities.
 ///
 /// As a file: `name = value`, and perhaps `units`; an unknown name is an error.
@@ -262,11 +266,9 @@ impl Given {
     /// they were given.
     pub fn structure(&self, base: Option<&Parameters>) -> Result<Structure, GivenError> {
         let in_units = |error: &dyn Display| GivenError::InUnits(self.units.message(error));
-        let mut on_rigid = Given { ground: None, ..self.clone() };
         let needs_no_r = self.ground.is_some() && base.is_none() && self.get("r").is_none();
-        on_rigid.numbers.extend(needs_no_r.then_some(("r", 1.0)));
-        let parameters = base.map_or_else(|| on_rigid.parameters(), |base| self.over(base));
-        let parameters = parameters.map_err(|error| in_units(&error))?;
+        let alone = || self.solve(|name| default(name).or((needs_no_r && name == "r").then_some(1.0)));
+        let parameters = base.map_or_else(alone, |base| self.over(base)).map_err(|error| in_units(&error))?;
         let structure = Structure::new(parameters).map_err(|error| in_units(&error))?;
         let on_ground = self.ground.as_ref().map_or(Ok(structure.clone()), |ground| structure.on(ground));
         let without_r = |of: Structure| of.with(Parameters { r: f64::NAN, ..of.parameters() });
@@ -279,14 +281,9 @@ impl Given {
         Given { ground: Some(ground), ..self }
     }
 
-    /// The parameters that these numbers determine, with [`DEFAULTS`] for the rest. Refuses ground that gives, which is no parameter.
+    /// The parameters that these numbers determine on rigid ground, with [`DEFAULTS`] for the rest.
     pub fn parameters(&self) -> Result<Parameters, GivenError> {
-        if self.ground.is_some() {
-            let message =
-                "ground has no place here, where parameters change: describe the structure in a file of its own";
-            return Err(GivenError::InUnits(message.into()));
-        }
-        self.solve(|name| DEFAULTS.iter().find(|(default, _)| *default == name).map(|(_, value)| *value))
+        self.solve(default)
     }
 
     /// The parameters `base` changed by these numbers. α_cg changes H, or B if H is given.
@@ -299,7 +296,6 @@ impl Given {
         if let Some(name) = OF_ONE_MASS.into_iter().find(|name| self.get(name).is_some()) {
             return Err(GivenError::OfOneMass(name));
         }
-        let default = |name: &str| DEFAULTS.iter().find(|(default, _)| *default == name).map(|(_, value)| *value);
         let of_mass = |name: &str| ["m", "H", "f_fc", "zeta_fc", "r"].contains(&name).then_some(0.5);
         let parameters = self.solve(|name| default(name).or_else(|| of_mass(name)))?;
         Ok((parameters, self.get("r")))

@@ -13,7 +13,7 @@ use rocking::mechanics::uplift::least_push;
 use rocking::run::lanes::{Rocked, rocked_each};
 use rocking::run::record::Record;
 use rocking::run::{Ending, Finish, Run, RunError, Runs};
-use rocking::{Detail, Structure};
+use rocking::{Detail, Modes, Structure};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
 
@@ -305,15 +305,17 @@ impl Map {
 
     /// Runs the structure under `grounds` and tells `see` each point with its number.
     fn points(&self, grounds: &[Record], mut see: impl FnMut(usize, Point) -> bool) {
+        const AT_REST: &str = "it starts at rest";
         let conditions = Conditions { detail: self.detail, tolerance: self.tolerance, ..Conditions::default() };
         match self.structure.of_one_mode() {
             Some(structure) => {
-                let runs: Vec<_> = grounds.iter().map(|ground| conditions.run(structure.clone(), ground)).collect();
+                let run = |ground| conditions.run(structure.clone(), ground).expect(AT_REST);
+                let runs: Vec<_> = grounds.iter().map(run).collect();
                 rocked_each(&runs, &mut |number, finish, rocked| see(number, Point::of(&runs[number], finish, rocked)));
             }
             None => {
                 let point = |ground| {
-                    let run = conditions.run_of_modes(self.structure.clone(), ground).expect("it starts at rest");
+                    let run: Run<Modes> = conditions.run(self.structure.clone(), ground).expect(AT_REST);
                     let (finish, rocked) = run.rocked();
                     Point::of(&run, finish, rocked)
                 };

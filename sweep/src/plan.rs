@@ -16,13 +16,15 @@ use rocking::run::validity::{Findings, Limits};
 use rocking::run::{End, Run, Runs};
 use rocking::structure::doubts::doubted;
 use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
-use rocking::{Detail, Modes, Parameters, Quantity, State, Structure};
+use rocking::{Detail, Parameters, Quantity, State, Structure};
 use serde::Serialize;
 use std::collections::HashSet;
 use std::sync::OnceLock;
 
 /// More runs than this are refused: thousands of runs a second take hours for them.
 pub const MAX_RUNS: usize = 10_000_000;
+
+const CHECKED: &str = "the plan has been checked";
 
 /// H/B, which varies H at constant B; m, m0, J0 and f_fc stay as they are.
 const SLENDERNESS: Quantity<Parameters> = Quantity {
@@ -77,10 +79,10 @@ pub struct NamedRecord {
 }
 
 /// Conditions of all runs of a plan.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Conditions {
-    /// State at the first sample.
-    pub initial: State,
+    /// State at the first sample, with u and u̇ of each floor, or of none.
+    pub initial: State<Vec<f64>>,
     /// Level of detail.
     pub detail: Detail,
     /// Relative tolerance of the results.
@@ -94,8 +96,8 @@ pub struct Conditions {
 macro_rules! with_run {
     ($conditions:expr, $structure:expr, $ground:expr, $run:ident => $do:expr) => {
         match $structure.of_one_mode() {
-            Some(structure) => $conditions.run_of_one_mode(structure, $ground).map(|$run| $do),
-            None => $conditions.run_of_modes($structure.clone(), $ground).map(|$run| $do),
+            Some(structure) => $conditions.run::<f64>(structure, $ground).map(|$run| $do),
+            None => $conditions.run::<::rocking::Modes>($structure.clone(), $ground).map(|$run| $do),
         }
     };
 }
@@ -251,32 +253,11 @@ impl NamedRecord {
 }
 
 impl Conditions {
-    /// The run of `structure` under `ground`.
-    pub fn run<'a>(&self, structure: impl Into<Structure>, ground: &'a Record) -> Run<'a> {
-        Run { initial: self.initial, ..self.over(Run::new(structure, ground)) }
-    }
-
-    /// The run of `structure` under `ground`, which an engine of one coordinate moves. Refuses initial displacements of a building.
-    pub fn run_of_one_mode<'a>(&self, structure: Structure, ground: &'a Record) -> Result<Run<'a>, InitialStateError> {
-        let State { u, u_dot, .. } = self.initial;
-        match structure.one() {
-            None if (u, u_dot) != (0.0, 0.0) => Err(InitialStateError::DeformedModes { u, u_dot }),
-            _ => Ok(self.run(structure, ground)),
-        }
-    }
-
-    /// The run of the `structure` of many masses under `ground`. Refuses initial displacements.
-    pub fn run_of_modes<'a>(
-        &self,
-        structure: Structure,
-        ground: &'a Record,
-    ) -> Result<Run<'a, Modes>, InitialStateError> {
-        self.over(Run::of_modes(structure, ground)).from(&self.initial)
-    }
-
-    fn over<'a, Q: Runs>(&self, run: Run<'a, Q>) -> Run<'a, Q> {
-        let end = self.duration.map_or(End::AtRest, |duration| End::At(run.ground.start() + duration));
-        Run { detail: self.detail, tolerance: self.tolerance, end, ..run }
+    /// The run of `structure` under `ground`, which an engine of coordinates `Q` moves.
+    pub fn run<'a, Q: Runs>(&self, structure: Structure, ground: &'a Record) -> Result<Run<'a, Q>, InitialStateError> {
+        let (initial, &Conditions { detail, tolerance, .. }) = (self.initial.on(&structure)?, self);
+        let end = self.duration.map_or(End::AtRest, |duration| End::At(ground.start() + duration));
+        Ok(Run { structure, ground, initial, detail, tolerance, end })
     }
 
     /// Refuses, with the reason, what no run of `structure` can have.
@@ -365,7 +346,7 @@ impl Plan {
             is_of_it
         });
         let population = population.expect("the plan has such a run");
-        let structure = population.structure(member).expect("the plan has been checked");
+        let structure = population.structure(member).expect(CHECKED);
         let group = if self.motions.len() > 1 { motion_number } else { rest };
         let Plan { motions, conditions, measures, spectral, .. } = self;
         let (motion, spectral) = (&motions[motion_number], &spectral[rest]);
@@ -381,7 +362,7 @@ impl Plan {
             return;
         }
         let grounds: Vec<_> = cases.iter().map(Case::ground).collect();
-        let run = |(case, ground): (&Case, _)| self.conditions.run(case.structure.clone(), ground);
+        let run = |(case, ground): (&Case, _)| self.conditions.run(case.structure.clone(), ground).expect(CHECKED);
         let runs: Vec<_> = cases.iter().zip(&grounds).map(run).collect();
         found_each(&runs, &mut |at, found| done(indices[at], Outcome::found(&runs[at], &self.measures, found)));
     }
@@ -405,7 +386,6 @@ impl Case<'_> {
     }
 
     fn follow(&self, with_validity: bool) -> (Outcome, Option<Findings>) {
-        const CHECKED: &str = "the plan has been checked";
         fn of<Q: Runs>(run: &Run<Q>, measures: &[Measure], with_validity: bool) -> (Outcome, Option<Findings>) {
             if !with_validity {
                 return (Outcome::found(run, measures, run.found(&mut ())), None);

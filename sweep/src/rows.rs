@@ -12,7 +12,7 @@ use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::Ending;
 use rocking::run::record::Record;
 use rocking::run::validity::{ASSUMPTIONS, Findings};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::OnceLock;
@@ -56,7 +56,18 @@ enum Cell<'a> {
     Ending(Ending),
     Number(f64),
     Count(u64),
+    /// A number for each floor, as a text with spaces between them.
+    #[serde(serialize_with = "with_spaces")]
+    Floors(&'a [f64]),
     Empty,
+}
+
+fn spaced(of: &[f64]) -> String {
+    of.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
+}
+
+fn with_spaces<S: Serializer>(of: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&spaced(of))
 }
 
 /// The values of one column, row by row.
@@ -173,7 +184,11 @@ impl<'a> Sweep<'a> {
         row.extend([case.motion.scale, case.scale].map(Cell::Number));
         row.extend(IntensityMeasure::COLUMNS.map(|measure| Cell::Number(case.intensity(measure))));
         row.extend([Cell::Text(detail.name()), Cell::Number(*tolerance), duration.map_or(Cell::Empty, Cell::Number)]);
-        row.extend(INITIAL_VALUES.each_ref().map(|quantity| Cell::Number((quantity.get)(initial))));
+        row.extend(initial.numbers().map(|of| match *of {
+            [] => Cell::Number(0.0),
+            [one] => Cell::Number(one),
+            _ => Cell::Floors(of),
+        }));
         let reason = match outcome {
             Outcome::Ended(of) => {
                 row.extend([Cell::Ending(of.ending), Cell::Number(of.end)]);
@@ -217,6 +232,7 @@ impl Column {
                 }
             }
             (Column::Texts(_, of), Cell::Empty) => of.push(usize::MAX),
+            (_, Cell::Floors(of)) => self.push(Cell::Text(&spaced(of)), known),
             (_, Cell::Ending(ending)) => self.push(Cell::Text(&ending.to_string()), known),
             (Column::Numbers(of), Cell::Text(_)) => {
                 // nothing so far
@@ -261,8 +277,7 @@ fn keys(plan: &Plan, digests: &[Uuid], validity: bool, program: &Program) -> Vec
     let of_case = |case: Case| {
         let names = (&case.population.name, &case.motion.name);
         let motion = (digests[case.motion_number].into_bytes(), case.motion.scale, case.scale);
-        let Case { structure: of, conditions, .. } = &case;
-        program.key(&(names, (of.parameters(), of.body(), of.modes(), of.floors()), motion, conditions, validity))
+        program.key(&(names, case.structure.numbers(), motion, case.conditions, validity))
     };
     plan.cases().map(of_case).collect()
 }
@@ -312,7 +327,7 @@ fn headings(measures: &[Measure]) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::plan::Population;
-    use rocking::{Parameters, Structure};
+    use rocking::{Ground, Parameters, Structure};
 
     /// Two files of one ground motion, in g and in m/s², differ in the last digits.
     #[test]
@@ -332,6 +347,19 @@ mod tests {
             assert_eq!(opened(scale, factor), Err(refused.into()), "{scale} {factor}");
         }
         assert_eq!((opened(-1.0, 1.0), opened(1.0, 1.01)), (Ok(()), Ok(())));
+    }
+
+    #[test]
+    fn a_run_on_other_ground_has_another_key() {
+        let program = Program { build: Uuid::nil(), version: "0".into() };
+        let key = |k_v: f64| {
+            let ground = Ground { k_v: Some(k_v), c_v: Some(1e4), ..Ground::default() };
+            let only = Population::new("only", Structure::new(Parameters::EVISON).unwrap().on(&ground).unwrap());
+            let record = Record::from_samples("", vec![0.0, 1.0], vec![0.0, 1.0]).unwrap();
+            let plan = Plan::new(vec![only], vec![NamedRecord::new("one", record, 1.0).unwrap()], vec![1.0]).unwrap();
+            Sweep::open(&plan, false, &program, None).unwrap().keys[0]
+        };
+        assert_eq!((key(1e8) == key(1e8), key(1e8) == key(2e8)), (true, false));
     }
 
     #[test]

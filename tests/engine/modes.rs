@@ -2,6 +2,7 @@
 
 use crate::common::{transitions, transitions_of};
 use rocking::engine::Settings;
+use rocking::engine::piece::Sample;
 use rocking::mechanics::restraint::Restraint;
 use rocking::run::record::Record;
 use rocking::run::validity::Limits;
@@ -248,6 +249,68 @@ fn two_masses(f: [f64; 2], zeta: [f64; 2], angle: f64, c_ratio: f64, ties: Ties)
     let of = |power: i32| m[0] * h[0].powi(power) + m[1] * h[1].powi(power);
     let body = Body { c_ratio, ties, ..body([10.0, 10.0, 1.7], [of(0), of(1), of(2)], 0.95, G) };
     Structure::of_body(body, &[mode(0), mode(1)], &[]).unwrap()
+}
+
+/// Floors that start in the shape of a mode, at the rate −ζω of it, move as that mode alone: e^(−ζωt) cos(ω_d t).
+#[test]
+fn floors_that_start_in_the_shape_of_a_mode_keep_it() {
+    let (zeta, frame, none) = (0.02, three_storeys(0.02, &[]), Record::at_rest(1.0));
+    for (j, mode) in frame.modes().iter().enumerate() {
+        let u = Vec::from_iter(frame.floors().iter().map(|floor| 1e-2 * floor.shape.numbers()[j]));
+        let (omega, largest) = (mode.omega(), u.iter().fold(0.0, |most: f64, u| most.max(u.abs())));
+        let u_dot = u.iter().map(|u| -zeta * omega * u).collect();
+        let initial = State { u: u.clone(), u_dot, ..State::default() }.on(&frame).unwrap();
+        let run = Run { initial, end: End::At(1.0), ..Run::of_modes(frame.clone(), &none) };
+        let mut show = |sample: &Sample<Modes>| {
+            let t = sample.motion.time;
+            let part = (-zeta * omega * t).exp() * (omega * (1.0 - zeta * zeta).sqrt() * t).cos();
+            for (i, u) in u.iter().enumerate() {
+                assert!((sample.output(Output::u(i)) - part * u).abs() < 1e-8 * largest, "mode {j}, floor {i}, {t} s");
+            }
+        };
+        let times = (0..=10).map(|i| 0.1 * f64::from(i));
+        assert_eq!(run.sample(times, &mut show, &mut ()).unwrap().motion.transitions, 0);
+    }
+}
+
+/// From the floors, the rotation and their rates at an instant, a second run goes on as the first does.
+#[test]
+fn a_run_from_the_state_of_another_goes_on_like_it() {
+    let times = Vec::from_iter((0..=300).map(|i| 0.01 * f64::from(i)));
+    let a_g = Vec::from_iter((0..=300).map(|i| 2.0 * pulse(i)));
+    let whole = Record::from_samples("", times.clone(), a_g.clone()).unwrap();
+    let frame = three_storeys(0.02, &[("r", 0.9)]).keeping(2).unwrap();
+    let cases = [(10, false), (60, true), (100, true)];
+    let rests = cases.map(|(from, _)| Record::from_samples("", times[from..].into(), a_g[from..].into()).unwrap());
+    let seen = |run: Run<Modes>, from: usize| {
+        let (floors, mut seen) = (frame.floors().len(), Vec::new());
+        let mut show = |sample: &Sample<Modes>| {
+            let of = |output: fn(usize) -> Output| Vec::from_iter((0..floors).map(|i| sample.output(output(i))));
+            let [theta, theta_dot] = [Output::theta, Output::theta_dot].map(|of| sample.output(of));
+            seen.push(State { u: of(Output::u), u_dot: of(Output::u_dot), theta, theta_dot });
+        };
+        run.sample(times[from..].iter().copied(), &mut show, &mut ()).unwrap();
+        seen
+    };
+    let usual = |ground| Run { end: End::At(3.0), tolerance: 1e-12, ..Run::of_modes(frame.clone(), ground) };
+    let first = seen(usual(&whole), 0);
+    for ((from, rocks), rest) in cases.into_iter().zip(&rests) {
+        assert_eq!(first[from].theta != 0.0, rocks, "{from}");
+        let second = seen(Run { initial: first[from].on(&frame).unwrap(), ..usual(rest) }, from);
+        for (i, (one, other)) in first[from..].iter().zip(&second).enumerate().take(100) {
+            for (one, other) in one.numbers().into_iter().flatten().zip(other.numbers().into_iter().flatten()) {
+                assert!((one - other).abs() < 1e-9, "from {from}, {i} samples later: {one} {other}");
+            }
+        }
+    }
+    let refused = |u: &[f64]| State { u: u.into(), ..State::default() }.on::<Modes>(&frame).unwrap_err().to_string();
+    let floors = "u_0 = [0.1, 0.2] m: the structure has 3 floors, give a number for each from below, or 0 for all";
+    assert_eq!(refused(&[0.1, 0.2]), floors);
+    assert!(
+        refused(&[0.1, 2e4, 0.0]).starts_with("u_0 = 20000 m is out of range: it must lie between -10000 and 10000 m")
+    );
+    let beyond = refused(&[0.01, -0.01, 0.01]);
+    assert!(beyond.starts_with("u_0[1] = 0.01 m is out of reach of the 2 modes, which come as near as "), "{beyond}");
 }
 
 /// Modes of 60 Hz ring when the base comes down and lift it again. The bursts are bounded. If damping while rocking is far from damping

@@ -348,7 +348,7 @@ impl Fields {
 
     /// Start, method and end of the run.
     pub fn conditions(&self) -> Result<Conditions, String> {
-        let initial = State { theta: self.number("theta_0")?, u: self.number("u_0")?, ..State::default() };
+        let initial = State { theta: self.number("theta_0")?, u: vec![self.number("u_0")?], ..State::default() };
         let duration = (self.kind() == "free").then(|| self.number("duration")).transpose()?;
         Ok(Conditions { initial, detail: self.detail()?, tolerance: self.tolerance()?, duration })
     }

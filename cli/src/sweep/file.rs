@@ -185,7 +185,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let file: SweepFile = toml::from_str(&text)?;
         let (unit, time_scale) = (file.unit, file.time_scale);
         let scales = file.scale.list().context("scale")?;
-        let measure = file.measure()?;
+        let measure = file.intensity.as_deref().map_or(Ok(IntensityMeasure::default()), measure)?;
         let (grids, mut bases) = (&file.structures, Vec::new());
         grids.iter().try_for_each(|grid| grid.base(folder, files).map(|base| bases.push(base)))?;
         let g = gravity(&bases)?;
@@ -252,11 +252,6 @@ impl MapFile {
 }
 
 impl SweepFile {
-    fn measure(&self) -> anyhow::Result<IntensityMeasure> {
-        let Some(name) = &self.intensity else { return Ok(IntensityMeasure::default()) };
-        Ok(measure(name)?)
-    }
-
     fn limits(&self, measures: &[Measure]) -> anyhow::Result<Vec<Limit>> {
         let mut limits = Vec::new();
         for (name, values) in &self.limits {
@@ -317,7 +312,7 @@ impl StructureGrid {
     fn base(&self, folder: &Path, files: &mut OutputFiles) -> anyhow::Result<Structure> {
         let mut base = || match (&self.preset, &self.parameters, &self.file) {
             (Some(preset), None, None) => Ok(Structure::new(Parameters::preset(preset)?)?),
-            (None, Some(given), None) => Ok(given.parameters().and_then(|_| given.structure(None))?),
+            (None, Some(given), None) => Ok(given.structure(None)?),
             (None, None, Some(file)) => {
                 let path = folder.join(file);
                 files.add_input(&path);

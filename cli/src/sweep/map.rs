@@ -111,8 +111,8 @@ fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Point>)> {
 
 /// The key of a point of the map of the structure called `name`.
 fn key_at(name: &str, map: &Map, place: Place) -> Uuid {
-    let (of_map, of) = ((map.detail, map.tolerance, map.finds_condition), &map.structure);
-    program().key(&(name, (of.parameters(), of.body(), of.modes(), of.floors()), map.pulse(place), of_map))
+    let of_map = (map.detail, map.tolerance, map.finds_condition);
+    program().key(&(name, map.structure.numbers(), map.pulse(place), of_map))
 }
 
 fn headings() -> Vec<String> {

@@ -54,7 +54,7 @@ class Doors:
 
     def __init__(self, exporter, folder, kind: str, case: str):
         base, storeys, ties, how = STRUCTURES[kind]
-        self.exporter, self.folder, self.how = exporter, folder, how
+        self.exporter, self.folder = exporter, folder
         base = base | (ties if case == "tied" else {})
         text = "".join(f"{name} = {value!r}\n" for name, value in base.items())
         rows = "".join(f"[[storeys]]\nm = {m!r}\nh = {h!r}\nk = {k!r}\n" for m, h, k in storeys)
@@ -66,9 +66,16 @@ class Doors:
         record = write(folder / "ground.csv", "m/s2", time, 4 * np.sin(9 * time))
         up = write(folder / "up.csv", "m/s2", time, 3 * np.cos(20 * time)) if case == "vertical" else None
         self.ground = fr.Record.read(record, vertical=up)
-        self.scene = Scene(dict(parameters=self.file), "CSV", record=record, vertical=up, how=how, duration=2.5, record_end=3.0)
+        initial = self.initial() if case == "free" and not how else {}
+        self.how = how | initial
+        self.scene = Scene(dict(parameters=self.file), "CSV", record=record, vertical=up, how=how, initial=initial, duration=2.5, record_end=3.0)
         self.motion = options(record=record, **(dict(record_v=up) if up else {}))
-        self.run = fr.simulate(self.structure, self.ground, duration=2.5, **how)
+        self.run = fr.simulate(self.structure, self.ground, duration=2.5, **self.how)
+
+    def initial(self) -> dict:
+        """What the floors do while the structure rocks."""
+        response = fr.simulate(self.structure, self.ground).at(0.5)
+        return {f"{name}_0": [float(of[0]) for column, of in response.items() if column.partition("[")[0] == name] for name in ("u", "u_dot")}
 
     def shell(self, command: str, *more, structure=True):
         of = options(parameters=self.file) if structure else []
@@ -83,7 +90,8 @@ class Doors:
     def table(self, name: str) -> pd.DataFrame:
         return pd.read_csv(self.folder / name)
 
-    def swept(self, text: str) -> pd.DataFrame:
+    def swept(self, text: str, **initial) -> pd.DataFrame:
+        text += f"\ninitial = {{ {', '.join(f'{name} = {of}' for name, of in initial.items())} }}" if initial else ""
         (self.folder / "sweep.toml").write_text(f"{text}\n[[structures]]\nname = 'structures'\nfile = 'structure.toml'\n")
         (self.folder / "rows.csv").unlink(missing_ok=True)
         self.shell("sweep", "sweep.toml", "-o", "rows.csv", structure=False)
@@ -112,7 +120,7 @@ def pushed(door):
 
 
 def advised(door):
-    rows = [row for row in door.told("advise", *door.motion, "--duration", 2.5)["rows"] if row["level"] not in ("reference", "auto without a_v")]
+    rows = [row for row in door.told("advise", *door.motion, *options(duration=2.5, **door.scene.initial))["rows"] if row["level"] not in ("reference", "auto without a_v")]
     return [(row["level"], row.get("modes"), float(row["error_theta"]), float(row["error_a_t"]), row["steps"]) for row in rows]
 
 
@@ -130,14 +138,14 @@ CAPABILITIES = {
     "response": (response, lambda door: {name: of.tolist() for name, of in door.run.at(WHEN).items()}),
     "floor spectrum": (spectra, lambda door: [door.run.spectrum(i + 1)["S_a"].tolist() for i in range(len(door.run.profile["h"]))]),
     "advise": (advised, lambda door: [(of["level"], of.get("modes"), of["theta"], of["a_t"], of["steps"])
-                                      for of in fr.advise(door.structure, door.ground, duration=2.5).levels]),
+                                      for of in fr.advise(door.structure, door.ground, duration=2.5, **door.scene.initial).levels]),
     "estimate": (lambda door: {of["name"]: of["value"] for of in door.told("estimate", *door.motion)["rows"] if "f_r" not in of["name"]},
                  lambda door: dict(fr.estimate(door.structure, door.ground))),
     "pushover": (pushed, lambda door: [of.tolist() for of in door.structure.pushover(5).values()]),
     "restoring": (lambda door: [of["moment"] for of in door.told("describe", "--restoring", 0.02)],
                   lambda door: door.structure.restoring(0.02)["moment"].tolist()),
-    "sweep": (lambda door: door.swept(f"records = [{{ file = 'ground.csv'{vertical_of(door)} }}]\nscale = [0.8, 1.2]").filter(like="peak_").to_dict("list"),
-              lambda door: fr.sweep(door.structure, door.ground, scale=[0.8, 1.2]).filter(like="peak_").to_dict("list")),
+    "sweep": (lambda door: door.swept(f"records = [{{ file = 'ground.csv'{vertical_of(door)} }}]\nscale = [0.8, 1.2]", **door.scene.initial).filter(like="peak_").to_dict("list"),
+              lambda door: fr.sweep(door.structure, door.ground, scale=[0.8, 1.2], **door.scene.initial).filter(like="peak_").to_dict("list")),
     "map": (lambda door: door.swept(PULSES).sort_values(["amplitude[m/s2]", "frequency[Hz]"])[MAPPED].to_dict("list"),
             lambda door: fr.overturning_map(door.structure, frequency=[2, 5], amplitude=[1.5, 6])[MAPPED].to_dict("list")),
 }

@@ -276,14 +276,14 @@ def test_pictures_of_a_building_show_its_top_and_its_height(run, monkeypatch):
 
 
 @pytest.mark.parametrize("refused, text", [
-    (lambda run: fr.simulate(run.structure, duration=1, u_0=0.1), "u_0 = 0.1 m, u_dot_0 = 0.0 m/s are of one mass"),
+    (lambda run: fr.simulate(run.structure, duration=1, u_0=0.1), "u_0 = [0.1] m: the structure has 10 floors, give a number for each from"),
     (lambda run: fr.simulate(run.structure, duration=1, detail="modal"), "detail = modal moves structures of one mass alone"),
     (lambda run: fr.simulate(run.structure, duration=-1), "duration = -1 is out of range"),
     (lambda run: run.spectrum(11), "floor = 11 is out of range: the structure has floors 1 to 10"),
     (lambda run: run.spectrum("top"), "floor = 'top': a whole number is needed"),
     (lambda run: run.spectrum(1, [-1.0]), "period = -1 s is out of range"),
     (lambda run: run.plot("heights"), "kind = 'heights' is unknown"),
-    (lambda run: fr.sweep(run.structure, run.record, u_0=0.1), "u_0 = 0.1 m, u_dot_0 = 0.0 m/s are of one mass"),
+    (lambda run: fr.sweep(run.structure, run.record, u_dot_0=[0.1] * 9), "0.1] m/s: the structure has 10 floors"),
     (lambda run: fr.intensity_at(run.structure, run.record, "a_t[11] >= 1 g"), "\"a_t[11]\" is unknown; these are known: theta, uplift, V_t"),
     (lambda run: fr.fragility(fr.sweep(run.structure, run.record), "uplift >= 20 m"), "stays below 2 B = 8 m; use overturned"),
 ])
