@@ -620,13 +620,14 @@ mod tests {
     /// Against the run itself: the same conditions, the same bits.
     #[test]
     fn conditions_are_those_of_every_run() {
-        let initial = State { theta: 0.05, ..State::default() };
+        let initial = State { theta: 0.05, u: vec![1e-3], ..State::default() };
         let conditions = Conditions { initial, detail: Detail::Linear, tolerance: 1e-6, duration: Some(0.7) };
         let pier = Population::new("pier", structure(Parameters::MCMANUS));
-        let plan = Plan::new(vec![pier], vec![pulse()], vec![0.5]).unwrap().under(conditions).unwrap();
+        let plan = Plan::new(vec![pier], vec![pulse()], vec![0.5]).unwrap().under(conditions.clone()).unwrap();
         let ground = pulse().record.multiplied(0.5);
         let Conditions { detail, tolerance, .. } = conditions;
         let usual = Run::new(OneMass::new(Parameters::MCMANUS).unwrap(), &ground);
+        let initial = State { theta: 0.05, u: 1e-3, ..State::default() };
         let run = Run { initial, detail, tolerance, end: End::At(0.7), ..usual.clone() };
         let outcome = |run: &Run| Outcome::found(run, &plan.measures, run.found(&mut ()));
         assert_eq!(plan.case(0).outcome(), outcome(&run));

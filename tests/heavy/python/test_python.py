@@ -397,23 +397,6 @@ def _history(structure, ground):
     return pickle.dumps(pickle.loads(pickle.dumps(fr.simulate(structure, ground))).at(ground.time)["theta"])
 
 
-def test_a_sweep_goes_on_where_the_command_line_was(exporter, tmp_path):
-    ground = fr.pulse("sine", amplitude=0.6, frequency=2)
-    ground.write(tmp_path / "sine.csv")
-    (tmp_path / "sweep.toml").write_text("records = ['sine.csv']\nscale = { from = 0.5, to = 2, count = 7 }\n"
-                                         "[[structures]]\nname = 'piers'\npreset = 'mcmanus'\nvary.f_fc = [2, 4]\n")
-    subprocess.run([exporter, "sweep", "sweep.toml", "-o", "rows.csv", "--quiet"], cwd=tmp_path, check=True, capture_output=True)
-    before = (tmp_path / "rows.csv").read_bytes()
-    piers = [fr.Structure(preset="mcmanus", f_fc=f) for f in (2, 4)]
-    motions = {"sine.csv": fr.Record.read(tmp_path / "sine.csv")}
-    table = fr.sweep({"piers": piers}, motions, scale=np.linspace(0.5, 2, 7), path=tmp_path / "rows.csv")
-    assert (tmp_path / "rows.csv").read_bytes() == before
-    pd.testing.assert_frame_equal(table, fr.sweep({"piers": piers}, motions, scale=np.linspace(0.5, 2, 7), threads=1))
-    assert list(table["f_fc[Hz]"]) == [2] * 7 + [4] * 7 and list(table["scale"][:7]) == list(np.linspace(0.5, 2, 7))
-    alone = fr.simulate(piers[1], motions["sine.csv"].scaled(0.5))
-    assert table["peak_theta[rad]"][7] == alone.peaks["theta"].value
-
-
 def test_a_table_in_memory_is_that_of_the_file_of_rows(tmp_path):
     with pytest.warns(UserWarning, match="far from the usual frequency"):
         soft = fr.Structure(preset="mcmanus", m0=0, J0=0, f_fc=0.2)  # some runs fail
@@ -469,7 +452,7 @@ def test_a_sweep_that_is_stopped_keeps_its_rows(tmp_path):
     assert re.fullmatch(r"[1-9]\d+ \{.*'at rest'.*\}\n", printed), printed
 
 
-def test_the_fragility_is_the_command_lines(exporter, tmp_path):
+def test_a_sweep_and_its_fragility_go_on_where_the_command_line_was(exporter, tmp_path):
     for frequency in (1.5, 2, 2.5, 3, 4):
         fr.pulse("cosine", amplitude=0.5, frequency=frequency).write(tmp_path / f"{frequency}.csv")
     (tmp_path / "sweep.toml").write_text("records = ['*.csv']\nscale = { from = 0.3, to = 3, count = 10 }\nintensity = 'S_a'\n"
@@ -478,8 +461,12 @@ def test_the_fragility_is_the_command_lines(exporter, tmp_path):
     command = [exporter, "sweep", "sweep.toml", "-o", "rows", "--quiet", "--format", "json"]
     printed = json.loads(subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout)
     motions = {path.name: fr.Record.read(path) for path in sorted(tmp_path.glob("*.csv"))}
-    table = fr.sweep({"piers": [fr.Structure(preset="mcmanus", f_fc=f) for f in (4, 8)]}, motions,
-                     scale=np.linspace(0.3, 3, 10), intensity="S_a")
+    before = (tmp_path / "rows").read_bytes()
+    runs = dict(structures={"piers": [fr.Structure(preset="mcmanus", f_fc=f) for f in (4, 8)]}, records=motions, scale=np.linspace(0.3, 3, 10),
+                intensity="S_a")
+    table = fr.sweep(**runs, path=tmp_path / "rows")
+    assert (tmp_path / "rows").read_bytes() == before
+    pd.testing.assert_frame_equal(table, fr.sweep(**runs, threads=1))
     for expected in printed:
         found = fr.fragility(table, expected["limit"])
         assert [found.median, found.dispersion] == pytest.approx([expected["median"], expected["dispersion"]], rel=1e-12)
