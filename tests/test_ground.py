@@ -82,3 +82,5 @@ def test_mcmanus_on_springs_has_the_printed_numbers(zeta_v, n, scale, theta, tim
     assert peaks["theta"] == (pytest.approx(theta, rel=2e-9), pytest.approx(time, abs=6e-6))
     assert peaks["a_t[1]"][0] / G == pytest.approx(a_t, rel=2e-8)
     assert found["transitions"] == events
+    described = subprocess.run([exporter, "describe", "--parameters", "pier.toml"], check=True, capture_output=True, text=True, cwd=tmp_path)
+    assert described.stdout.startswith("Structure of one mass on ground that gives\n")

@@ -351,7 +351,7 @@
     const stand_in = (name) => tables.natural.some((of) => of.stands_for === name);
     for (const { name } of tables.parameters) {
       rows[name](about.parameters[name] ?? NaN, differs(name));
-      rows[name].element.hidden = (isNatural && stand_in(name)) || !(name in about.parameters);
+      rows[name].element.hidden = (isNatural && stand_in(name)) || (isFrame() && ["m", "H", "f_fc", "zeta_fc"].includes(name));
     }
     for (const { name, usual } of tables.ground) rows[name](Number(fields[name] ?? derived[name] ?? usual), name in fields);
     rows.r.element.hidden ||= givesWay() && !("r" in fields);
@@ -425,7 +425,7 @@
   function tell(problem) {
     const names = String(problem ?? "").split("; ").map((clause) => {
       const [, storey, ofStorey] = /^(?:storey|floor) (\d+)\W.*?\b([mhk]) = /.exec(clause) ?? [];
-      return storey ? `storey ${storey}: ${ofStorey}` : /^\w*/.exec(clause)[0];
+      return storey ? `storey ${storey}: ${ofStorey}` : /^(?:ground: )?(\w*)/.exec(clause)[1];
     });
     for (const input of at("controls").querySelectorAll("input[name]")) {
       const isFaulty = names.includes(input.name);

@@ -6,14 +6,13 @@ mod scene;
 mod take;
 
 use fmu_export::{Library, ModelName, Version};
-use rocking::Ties;
+use rocking::Parameters;
 use rocking::levels::detail::Detail;
 use rocking::run::RunError;
 use rocking::run::levels::{Choice, Criterion, RULE, relative};
 use rocking::run::validity::{ASSUMPTIONS, Assumption, Limits, Worst};
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking::{Body, Parameters, Structure};
 use rocking_records::Unit;
 use rocking_report::{
     advice::Level,
@@ -134,13 +133,10 @@ impl Explorer {
         warnings.extend(run.structure.doubts());
         warnings.extend(run.warnings());
         let structure = &run.structure;
-        let parameters = match (structure.one(), structure.floors()) {
-            (Some(one), _) => json!(one.parameters()),
-            (None, [mass]) if !fields.is_frame() => {
-                json!(Parameters { m: mass.mass, H: mass.height, ..structure.parameters() })
-            }
-            _ => of_base(structure),
-        };
+        let mut parameters = structure.parameters(); // of many masses those of the base
+        if let (false, [mass]) = (fields.is_frame(), structure.floors()) {
+            (parameters.m, parameters.H) = (mass.mass, mass.height);
+        }
         Ok(json!({
             "parameters": parameters, "derived": describe::derived(&run.structure),
             "modes": describe::modes(&run.structure), "warnings": warnings, "remarks": remarks,
@@ -181,7 +177,7 @@ impl Explorer {
         let row = |level: &Level| {
             json!({
                 "level": level.choice.to_string(), "detail": level.choice.detail.name(),
-                "modes": level.choice.modes.filter(|[kept, all]| kept < all).map(|[kept, _]| kept.to_string()), "errors": level.errors.map(|error| error.to_string()),
+                "modes": level.choice.modes.filter(|[kept, all]| *kept > 0 && kept < all).map(|[kept, _]| kept.to_string()), "errors": level.errors.map(|error| error.to_string()),
                 "overturns": level.overturned, "transitions": level.transitions, "cost": level.cost,
             })
         };
@@ -224,13 +220,4 @@ impl Explorer {
             fmu_export::export(version, &ModelName::default(), structure.into(), record, vertical, &self.libraries);
         Ok(exported.map_err(says)?.1)
     }
-}
-
-/// The numbers of the base, by the names that one mass has, too.
-fn of_base(frame: &Structure) -> Value {
-    let &Body { m0, J0, B, r, g, c_ratio, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y }, .. } = frame.body();
-    json!({
-        "m0": m0, "J0": J0, "B": B, "r": r, "g": g, "c_ratio": c_ratio,
-        "P_0": P_0, "k_t": k_t, "xi_d": xi_d, "c_d": c_d, "k_d": k_d, "F_y": F_y,
-    })
 }

@@ -265,18 +265,14 @@ impl Fields {
         let storeys = storeys.collect::<Result<Vec<_>, _>>()?;
         let frame = Structure::from_storeys(base, &Damping::All(self.number("zeta")?), &storeys).map_err(says)?;
         let frame = ground.map_or(Ok(frame.clone()), |ground| frame.on(&ground)).map_err(says)?;
-        match self.modes()? {
+        match self.whole("modes", 1.0)? {
             None => Ok(frame),
             Some(count) => frame.keeping(count).map_err(says),
         }
     }
 
-    /// How many modes of a structure of many masses are kept, if not all.
-    pub fn modes(&self) -> Result<Option<usize>, String> {
-        self.whole("modes", 1.0)
-    }
-
-    fn whole(&self, name: &str, least: f64) -> Result<Option<usize>, String> {
+    /// The whole number called `name`, if it is given.
+    pub fn whole(&self, name: &str, least: f64) -> Result<Option<usize>, String> {
         match self.given(name).transpose()? {
             None => Ok(None),
             Some(count) if count >= least && count.fract() == 0.0 => Ok(Some(count as usize)),

@@ -473,7 +473,8 @@ def test_ground_gives_and_is_rigid_again(opened):
     assert shown(page, "settlement", 1) > 1e3 * 9.81 / (2 * np.pi * 10) ** 2  # at rest g/(2 pi f_v)^2
     page.locator("#field-f_v").fill("0.01")
     page.locator("#problem").wait_for()
-    assert page.locator("#problem").text_content().startswith("f_v = 0.01 Hz is out of range: ")
+    assert page.locator("#problem").text_content().startswith("ground: f_v = 0.01 Hz is out of range: ")
+    assert page.locator("#field-f_v").get_attribute("aria-invalid") == "true"
     page.select_option("#ground", "rigid")
     page.locator("#field-J0").fill("")
     settled(page)
