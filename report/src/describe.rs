@@ -110,7 +110,7 @@ pub fn text(structure: &Structure) -> Result<String, fmt::Error> {
 }
 
 fn print_modes(out: &mut String, frame: &Structure, table: &[Vec<NamedValue>]) -> fmt::Result {
-    if frame.base().r.is_none() {
+    if frame.base().r.is_none() && frame.foundation().is_none() {
         writeln!(out, "  r is not given: momentum with the shape frozen gives it for each impact")?;
     }
     for warning in validity::of_structure(frame, Detail::Auto) {
