@@ -601,16 +601,7 @@ fn transit<Q: Moves>(
     Some(Transition { time: motion.time, kind, before, after: motion.state })
 }
 
-/// The state at the end of `start`, if it is known exactly and no transition can happen until then.
-#[inline(always)]
-fn leap<Q: Moves>(level: &dyn Level<Q>, motion: &Motion<Q>, start: &Start<Q>) -> Option<State<Q>> {
-    if motion.chatter.held > 0.0 {
-        return None;
-    }
-    level.leap(motion.phase, start).filter(State::is_finite)
-}
-
-/// The state after `interval` (s) of `motion` under `load`, like [`leap`].
+/// The state after `interval` (s) of `motion` under `load`, if it is known exactly and no transition can happen until then.
 #[inline(always)]
 fn leap_under<Q: Moves>(
     level: &dyn Level<Q>,
@@ -618,7 +609,11 @@ fn leap_under<Q: Moves>(
     interval: f64,
     load: LinearLoad<Q>,
 ) -> Option<State<Q>> {
-    leap(level, motion, &level.subject().start(motion.state, &motion.dissipators, load, interval))
+    if motion.chatter.held > 0.0 || matches!(motion.phase, Phase::OnGround(_)) {
+        return None;
+    }
+    let start = level.subject().start(motion.state, &motion.dissipators, load, interval);
+    level.leap(motion.phase, &start).filter(State::is_finite)
 }
 
 /// Takes `motion`, all but its time, over a leap to the state `end`. Fails if watchers need too many polynomials of the leap.
@@ -765,10 +760,7 @@ where
                 advance.end = if elapsed + part < interval { elapsed + part } else { interval };
                 advance.part *= 2.0;
                 let load = load.from(elapsed);
-                let leap = |to: f64| {
-                    let start = level.subject().start(motion.state, &motion.dissipators, load, to - elapsed);
-                    Some((to, leap(level, motion, &start)?))
-                };
+                let leap = |to: f64| Some((to, leap_under(level, motion, to - elapsed, load)?));
                 if let Some((to, state)) = leap(interval).or_else(|| leap(advance.end)) {
                     advance.end = to;
                     leapt((level, self.room), motion, to - elapsed, load, state, watch)?;

@@ -98,6 +98,11 @@ pub(crate) trait Abreast:
     /// How many modes.
     const COUNT: usize;
 
+    /// Modes of a structure: an array if their number is known, which spares loops.
+    type Groups: AsMut<[Four<Self>]> + Clone + Debug + Send;
+
+    fn groups(modes: &[Mode]) -> Self::Groups;
+
     /// The number of each.
     fn each(number: impl Fn(usize) -> f64) -> Self;
 
@@ -109,6 +114,12 @@ pub(crate) trait Abreast:
 
 impl Abreast for f64 {
     const COUNT: usize = 1;
+
+    type Groups = [Four<f64>; 1];
+
+    fn groups(modes: &[Mode]) -> [Four<f64>; 1] {
+        [Four::new((0, modes))]
+    }
 
     #[inline(always)]
     fn each(number: impl Fn(usize) -> f64) -> f64 {
@@ -128,6 +139,12 @@ impl Abreast for f64 {
 
 impl Abreast for f64x4 {
     const COUNT: usize = 4;
+
+    type Groups = Vec<Four>;
+
+    fn groups(modes: &[Mode]) -> Vec<Four> {
+        modes.chunks(4).enumerate().map(Four::new).collect()
+    }
 
     #[inline(always)]
     fn each(number: impl Fn(usize) -> f64) -> f64x4 {
@@ -150,7 +167,7 @@ pub(super) type FourSeries<V = f64x4> = [V; MAX_ORDER + 1];
 
 /// Four modes side by side, or one; modes that are none have no mass and stay at rest.
 #[derive(Clone, Debug)]
-pub(super) struct Four<V = f64x4> {
+pub(crate) struct Four<V = f64x4> {
     /// The number of the first mode.
     pub first: usize,
     pub mass: V,
@@ -268,7 +285,7 @@ impl<Q: Coordinates> ManyModes<Q> {
             quickening: base.J_P / left,
             longest_span: LONGEST_SPAN / fastest,
             scratch: RefCell::new(Box::new(Scratch {
-                fours: modes.chunks(4).enumerate().map(Four::new).collect(),
+                fours: f64x4::groups(modes),
                 factors: [[NO_ROW; MAX_ORDER + 1]; 2],
                 square: [f64x4::ZERO; MAX_ORDER + 1],
             })),

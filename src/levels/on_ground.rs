@@ -23,17 +23,17 @@ use crate::mechanics::contact::{energy, ties_on_ground};
 use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::restraint::Dissipators;
-use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
+use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation, reciprocal};
 use crate::{Base, Contact, Foundation, LinearLoad, Phase, State};
 use std::cell::RefCell;
-use wide::f64x4;
+use wide::{f64x2, f64x4};
 
 /// Part of the energy that certainly leaves all points pressed that a structure at rest may have.
 const AT_REST: f64 = 0.9;
 
 /// A structure on ground that gives.
 #[derive(Clone, Debug)]
-pub(crate) struct OnGround<V> {
+pub(crate) struct OnGround<V: Abreast> {
     subject: Subject,
     /// The longest span of a series, s.
     longest_span: f64,
@@ -52,8 +52,8 @@ type Row = [f64x4; 2];
 
 /// Room for the series of one step.
 #[derive(Clone, Debug)]
-struct Scratch<V> {
-    fours: Vec<Four<V>>,
+struct Scratch<V: Abreast> {
+    fours: V::Groups,
     /// Row i of the left factors, and row j of the right ones counted from their end, of eight products of order i + j:
     ///
     /// ```text
@@ -85,7 +85,7 @@ impl<V: Abreast> OnGround<V> {
             radius: (base.J_P / base.m_t).sqrt(),
             least_lift: foundation.least_lift(base, body, modes),
             scratch: RefCell::new(Box::new(Scratch {
-                fours: modes.chunks(V::COUNT).enumerate().map(Four::new).collect(),
+                fours: V::groups(modes),
                 left: [[f64x4::ZERO; 2]; MAX_ORDER + 1],
                 right: [[f64x4::ZERO; 2]; MAX_ORDER + 1],
                 squared: [f64x4::ZERO; MAX_ORDER + 1],
@@ -143,11 +143,14 @@ impl<V: Abreast> OnGround<V> {
                 push = [push[0] - tie.force, push[1] - tie.lever * tie.force];
             }
         }
+        // N and Σ ξ N by y, sin θ, ẏ and θ̇ cos θ
+        let by = [[-k[0], -k[1]], [k[1], k[2]], [-c[0], -c[1]], [c[1], c[2]]].map(f64x2::new);
         let (ground, mut weight) = ([a_g.value, a_g.slope * span], [g + a_v.value, a_v.slope * span]);
         // the power of the dashpots is c (ẏ − lever θ̇ cos θ)² and what is left for (θ̇ cos θ)²
         let lever = if taken[0] > 0.0 { taken[1] / taken[0] } else { 0.0 };
         let left_for_turning = taken[2] - lever * taken[1];
         let Scratch { fours, left, right, squared, pushed, square } = &mut **self.scratch.borrow_mut();
+        let fours = fours.as_mut();
         let (mut inertia, mut offset, mut carried, mut is_pushed) = (V::default(), V::default(), V::default(), false);
         for four in fours.iter_mut() {
             let of = |q: &Modes| V::each(|i| if four.first + i < at { q.of(four.first + i) } else { 0.0 });
@@ -171,15 +174,18 @@ impl<V: Abreast> OnGround<V> {
         let (mut theta_dot, mut turning, mut turning_sin) =
             (state.theta_dot, state.theta_dot * cos_0, state.theta_dot * sin_0);
         let (mut sin, mut cos, [mut sin_before, mut cos_before]) = (sin_0, cos_0, [0.0; 2]);
-        let (mut y_dot, mut gamma, mut offset) = (state.u_dot.of(at), 0.0, offset_0);
+        let (mut y, mut y_dot, mut gamma, mut offset) = (state.u.of(at), state.u_dot.of(at), 0.0, offset_0);
         let mut state = *state;
         state.u.set(at + 1, sin_0);
         state.u_dot.set(at + 1, turning);
         let truncation = self.truncation(start, span);
         let per_span = 1.0 / span;
-        arc.expand_in_place(&state, span, &truncation, |arc, order, per| {
+        arc.begin(&state, span);
+        let mut previous_is_small = false;
+        for order in 1..=MAX_ORDER {
+            let per = span * reciprocal(order);
             let (n, rate) = (order - 1, order as f64 * per_span);
-            let (y, next_sin, next_cos) = (arc.u[n].of(at), turning * per, -turning_sin * per);
+            let (next_sin, next_cos) = (turning * per, -turning_sin * per);
             let [mut inertia, mut next_offset] = [V::default(); 2];
             for four in fours.iter_mut() {
                 let [of_inertia, heavy] = four.next(order, per);
@@ -192,9 +198,14 @@ impl<V: Abreast> OnGround<V> {
             let newest = f64x4::new([next_cos, next_sin, inertia.sum(), next_sin]);
             right[MAX_ORDER - n][0] = newest;
             let (mut ahead, mut behind) = (left[0][0] * newest, f64x4::ZERO);
-            for (left, right) in left[1..=n].iter().zip(&right[MAX_ORDER + 1 - n..]) {
-                ahead += left[0] * right[0];
-                behind += left[1] * right[1];
+            let (lefts, rights) = (left[1..=n].as_chunks::<2>(), right[MAX_ORDER + 1 - n..].as_chunks::<2>());
+            for ([a, b], [c, d]) in lefts.0.iter().zip(rights.0) {
+                ahead += a[0] * c[0] + b[0] * d[0];
+                behind += a[1] * c[1] + b[1] * d[1];
+            }
+            if let ([a], [c]) = (lefts.1, rights.1) {
+                ahead += a[0] * c[0];
+                behind += a[1] * c[1];
             }
             let [turning_cos, sin_turning, spin, lean] = ahead.to_array();
             let [fall, hang, weighed, moved] = behind.to_array();
@@ -210,9 +221,7 @@ impl<V: Abreast> OnGround<V> {
             square[MAX_ORDER - n] = V::each(|_| turning_square);
             let power = taken[0] * of_middle + left_for_turning * of_turning;
             arc.u_dot[n].set(at + 2, power);
-            arc.u[order].set(at + 2, power * per);
-            let N = push[0] - k[0] * y + k[1] * sin - c[0] * y_dot + c[1] * turning;
-            let M = push[1] - k[1] * y + k[2] * sin - c[1] * y_dot + c[2] * turning;
+            let [N, M] = (f64x2::new(push) + by[0] * y + by[1] * sin + by[2] * y_dot + by[3] * turning).to_array();
             let fall = fall - (ground[0] * cos + ground[1] * cos_before);
             let hang = hang + ground[0] * sin + ground[1] * sin_before;
             let [mut moment, mut upwards] = [V::default(); 2];
@@ -244,19 +253,27 @@ impl<V: Abreast> OnGround<V> {
             gamma = E * moment + D * upwards;
             right[MAX_ORDER - n][1] = f64x4::new([next_sin, next_cos, hang + gamma * cos_0, M]);
             theta_dot = theta_ddot * per;
-            y_dot = (gamma - weight[0]) * per;
+            (y, y_dot) = (y_dot * per, (gamma - weight[0]) * per);
             (push, weight) = ([0.0; 2], [weight[1], 0.0]); // of the next order
-            arc.u_dot[order].count_as(&state.u_dot);
+            let (new, new_rate) = (&mut arc.u[order], &mut arc.u_dot[order]);
+            new.count_as(&state.u);
+            new_rate.count_as(&state.u_dot);
             for four in fours.iter_mut() {
                 let along = four.resistance + four.share * (sin_0 * gamma) - four.height * theta_ddot;
                 four.motion = [four.motion[1] * per, along * per];
-                four.motion[1].put(&mut arc.u_dot[order], four.first);
+                four.motion[0].put(new, four.first);
+                four.motion[1].put(new_rate, four.first);
             }
             (turning, turning_sin) = (turning_cos + theta_dot * cos_0, sin_turning + theta_dot * sin_0);
             (sin_before, cos_before, sin, cos, offset) = (sin, cos, next_sin, next_cos, next_offset);
-            [y_dot, turning, 0.0].iter().enumerate().for_each(|(i, of)| arc.u_dot[order].set(at + i, *of));
-            theta_dot
-        });
+            [y, sin, power * per].iter().enumerate().for_each(|(i, of)| new.set(at + i, *of));
+            [y_dot, turning, 0.0].iter().enumerate().for_each(|(i, of)| new_rate.set(at + i, *of));
+            (arc.theta[order], arc.theta_dot[order]) = (arc.theta_dot[n] * per, theta_dot);
+            if arc.ends_at(order, &truncation, &mut previous_is_small) {
+                return;
+            }
+        }
+        arc.cut(&truncation);
     }
 }
 

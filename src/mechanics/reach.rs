@@ -208,8 +208,10 @@ impl Reach {
 /// bound is of their series.
 fn most_of_height<Q: Coordinates>(arc: &Arc<Q>, place: usize, [xi, k, c, offset]: [f64; 4]) -> f64 {
     let mut series = ZERO;
-    for (of, (u, u_dot)) in series.iter_mut().zip(arc.used(&arc.u).iter().zip(&arc.u_dot)) {
-        *of = k * (u.of(place) - xi * u.of(place + 1)) + c * (u_dot.of(place) - xi * u_dot.of(place + 1));
+    let height = |q: &Q| q.of(place) - xi * q.of(place + 1);
+    series.iter_mut().zip(arc.used(&arc.u)).for_each(|(of, u)| *of = k * height(u));
+    if c != 0.0 {
+        series.iter_mut().zip(arc.used(&arc.u_dot)).for_each(|(of, u_dot)| *of += c * height(u_dot));
     }
     series[0] += offset;
     let used = arc.used(&series);
