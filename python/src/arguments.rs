@@ -149,11 +149,13 @@ pub fn conditions(
 ) -> PyResult<Conditions> {
     let duration = duration.map(|duration| number("duration", duration)).transpose()?;
     let mut state = State::default();
-    let places: [_; INITIAL_VALUES.len()] = array::from_fn(|place| (INITIAL_VALUES[place].name, place));
     for (name, value) in initial.into_iter().flatten() {
-        let place = one_of("argument or initial value", &name, places)?;
-        let name = places[place].0;
-        let is_of_floors = name.starts_with('u');
+        let (asked, known) = (name.str()?.to_string(), INITIAL_VALUES.each_ref().map(|of| of.name).join(", "));
+        let place = INITIAL_VALUES.iter().position(|of| of.name == asked).ok_or_else(|| {
+            let all = format!("{known}, detail, tolerance, duration");
+            refused(anyhow!("argument or initial value = {asked:?} is unknown; these are known: {all}"))
+        })?;
+        let (name, is_of_floors) = (INITIAL_VALUES[place].name, asked.starts_with('u'));
         state.set(place, if is_of_floors { numbers(name, &value)? } else { vec![number(name, &value)?] });
     }
     Ok(Conditions { initial: state, detail, tolerance, duration })

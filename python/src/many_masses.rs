@@ -109,6 +109,8 @@ pub fn given(keywords: &Bound<'_, PyDict>) -> PyResult<Given> {
         match name.extract::<String>()?.as_str() {
             "units" => units = self::units(&value)?,
             "ground" => given = given.on(ground(&value)?),
+            // the message names an unknown keyword, whatever its value is
+            name if !names().any(|known| known == name) => given.give(name, f64::NAN).map_err(refused)?,
             name => given.give(name, number(name, &value)?).map_err(refused)?,
         }
     }
@@ -134,9 +136,8 @@ fn ground(value: &Bound<'_, PyAny>) -> PyResult<Ground> {
             "k" => ground.k = numbers(&name, &value)?,
             "c" => ground.c = numbers(&name, &value)?,
             _ => {
-                return Err(PyValueError::new_err(format!(
-                    "ground: {name:?} is unknown; see help(flexible_rocking.Ground)"
-                )));
+                let known = "f_v, k_v, zeta_v, c_v, n_points, kr_ratio, k_r, xi, k, c";
+                return Err(refused(anyhow!("ground: {name:?} is unknown; these are known: {known}")));
             }
         }
     }

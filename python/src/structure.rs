@@ -10,9 +10,8 @@ use pyo3::types::PyDict;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::estimates::modal_split::{ModalAccelerations, Modes};
 use rocking::estimates::pushover::{Equilibrium, Pushover};
-use rocking::structure::derived::{DERIVED, Derived};
-use rocking::structure::derived::{OF_MODE, OF_STRUCTURE};
-use rocking::structure::parameters::{PARAMETERS, PRESETS};
+use rocking::structure::derived::{Derived, OF_MODE};
+use rocking::structure::parameters::PRESETS;
 use rocking::{OneMass, Side, State};
 use rocking_report::describe;
 
@@ -81,14 +80,9 @@ impl Structure {
     }
 
     /// Its numbers by name: first the parameters of one mass, then what follows from them.
-    fn named(&self) -> [Vec<(&'static str, f64)>; 2] {
-        match self.of.one() {
-            Some(one) => [
-                PARAMETERS.iter().map(|of| (of.name, (of.get)(one.parameters()))).collect(),
-                DERIVED.iter().map(|of| (of.name, (of.value)(one))).collect(),
-            ],
-            None => [Vec::new(), OF_STRUCTURE.iter().map(|of| (of.name, (of.value)(&self.of))).collect()],
-        }
+    fn named(&self) -> [Vec<(String, f64)>; 2] {
+        [describe::given(&self.of), describe::derived(&self.of)]
+            .map(|all| all.into_iter().map(|of| (of.name, of.value)).collect())
     }
 }
 
@@ -295,7 +289,7 @@ impl Structure {
     fn __dir__(slf: Bound<'_, Self>) -> PyResult<Vec<String>> {
         let own: Vec<String> =
             slf.py().import("builtins")?.getattr("object")?.call_method1("__dir__", (&slf,))?.extract()?;
-        let numbers = slf.get().named().concat().into_iter().map(|(name, _)| name.to_owned());
+        let numbers = slf.get().named().concat().into_iter().map(|(name, _)| name);
         Ok(own.into_iter().chain(numbers).collect())
     }
 

@@ -14,7 +14,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::{self, Write};
 
 /// The parameters of one mass.
-fn given(structure: &Structure) -> Vec<NamedValue> {
+pub fn given(structure: &Structure) -> Vec<NamedValue> {
     let Some(one) = structure.one() else { return Vec::new() };
     let all = PARAMETERS.iter();
     all.map(|of| NamedValue::new(of.name, (of.get)(one.parameters()), of.unit, "", of.description)).collect()

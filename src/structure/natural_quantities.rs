@@ -433,6 +433,9 @@ impl TryFrom<BTreeMap<String, Entry>> for Given {
                 Entry::Number(number) => given.give(&name, number)?,
                 Entry::Units(of_numbers) if name == "units" => units = of_numbers,
                 Entry::Ground(ground) if name == "ground" => given.ground = Some(ground),
+                Entry::Ground(_) if !names().chain(["units"]).any(|known| known == name) => {
+                    return Err(GivenError::Unknown { name });
+                }
                 Entry::Units(_) | Entry::Ground(_) => {
                     return Err(GivenError::InUnits(format!("{name}: a number is needed")));
                 }

@@ -76,6 +76,9 @@ def test_three_ways_and_a_file_are_one_structure(exporter, tmp_path):
     assert subprocess.check_output(describe, text=True) == str(storeys)
     listed = {of["name"]: of["value"] for of in json.loads(subprocess.check_output([*describe, "--format", "json"]))}
     assert listed["f_u[3]"] == storeys.mode_table["f_u"][2]
+    (tmp_path / "frame.toml").write_text(toml(FRAME) + "[ground]\nf_v = 12\n")
+    on_ground = {of["name"]: of["value"] for of in json.loads(subprocess.check_output([*describe, "--format", "json"])) if "[" not in of["name"]}
+    assert storeys.replace(ground=fr.Ground(f_v=12)).derived == on_ground and {"k_v", "f_g", "y_s"} <= {*on_ground}
     large = {**BASE, "m0": FRAME.m0 / 1e3, "J0": FRAME.J0 / 1e3, "units": "kN, m, t"}
     tonnes, modes = FRAME.m / 1e3, of_modes().parameters
     modes |= {name: modes[name] / 1e3 for name in ("mass", "moment", "masses")}
@@ -130,6 +133,9 @@ def test_a_structure_of_many_masses_is_a_value():
     (lambda: of_storeys(kep=2), "did you mean keep?"),
     (lambda: of_storeys(zeta=None, zeta_fc=0.02), "did you mean zeta?"),
     (lambda: fr.simulate(of_storeys(), wavelet(), theta0=0.1), "did you mean theta_0?"),
+    (lambda: fr.simulate(of_storeys(), wavelet(), detial="linear"), "did you mean detail?"),
+    (lambda: of_storeys(ground=fr.Ground(fv=10)), "did you mean f_v?"),
+    (lambda: fr.Structure(preset="mcmanus", grund=fr.Ground(f_v=10)), "did you mean ground?"),
     (lambda: of_storeys(units="kN, mm, t"), "unknown variant `kN, mm, t`, expected `N, m, kg` or `kN, m, t`"),
     (lambda: of_storeys(units="kN, m, t", m0=-20), "base: m0 = -20 t is out of range: it must lie between 0 and 1e9 t (foundation mass)"),
     (lambda: of_storeys(p_delta="no"), "p_delta = 'no': True or False is needed"),
