@@ -60,6 +60,9 @@ const CONVERGED: f64 = 1e-10;
 const SETTLED: f64 = 0.02;
 const STIFF: f64 = 20.0;
 
+/// Damping ratio of a bounce as fast as that, below which a change of 1e-9 of a record grows more than 1e4 times.
+const BOUNCING: f64 = 0.02;
+
 /// Reactions without bounds.
 const UNBOUNDED: Reactions<Extent> = Reactions { R_h: Extent::ANY, R_v: Extent::ANY, R_m: Extent::ANY };
 
@@ -625,10 +628,12 @@ fn on_ground(frame: &Structure, foundation: &Foundation) -> Vec<String> {
     }
     // beyond ζ_v = 1/2 the dashpots are faster than the springs
     if highest > 0.0 && omega_v * f64::max(1.0, 2.0 * zeta_v) > STIFF * highest {
+        let chaotic = if zeta_v < BOUNCING { ", and its many bounces leave few sure digits" } else { "" };
+        let remedy = if zeta_v < BOUNCING { "lower f_v, or raise zeta_v" } else { "lower f_v or zeta_v" };
         let [f_v, zeta_v, highest] = [omega_v / TAU, zeta_v, highest / TAU].map(short);
         warnings.push(format!(
             "f_v = {f_v} Hz with zeta_v = {zeta_v} is more than 20 times as fast as the highest frequency of the structure, {highest} \
-             Hz: a run takes many steps; lower f_v or zeta_v"
+             Hz: a run takes many steps{chaotic}; {remedy}"
         ));
     }
     warnings

@@ -213,7 +213,7 @@ impl Foundation {
         })?;
         ensure(J0 >= LEAST_INERTIA * m_t * B * B, || {
             format!(
-                "J0 = {} is too small, because the base turns about its middle: give J0, for a block m0 (4 B^2 + t^2)/12 of the thickness t",
+                "J0 = {} is too small, because the base turns about the middle of its lower side: give J0, for a block m0 (B^2 + t^2)/3 of the thickness t",
                 with_unit(body.J0, "kg.m2")
             )
         })?;

@@ -244,7 +244,7 @@ fn bad_ground_is_refused_with_a_remedy() {
     let list = |xi: [f64; 2], k: [f64; 2]| Ground { xi: xi.into(), k: k.into(), c: vec![0.0; 2], ..Ground::default() };
     let cases = [
         (refused(soft, ground(1.5, 0.2, 2)), "it cannot stand: the ground holds"),
-        (refused(Parameters::EVISON, ground(40.0, 0.2, 2)), "give J0, for a block m0 (4 B^2 + t^2)/12"),
+        (refused(Parameters::EVISON, ground(40.0, 0.2, 2)), "give J0, for a block m0 (B^2 + t^2)/3"),
         (refused(Parameters { c_ratio: 0.5, ..soft }, ground(40.0, 0.2, 2)), "set c_ratio to 1"),
         (refused(soft, ground(4000.0, 0.2, 2)), "f_v = 4000 Hz is out of range"),
         (refused(soft, Ground { k_v: Some(1e6), ..ground(40.0, 0.2, 2) }), "f_v and k_v are both given"),
@@ -274,6 +274,8 @@ fn the_points_follow_the_base() {
             };
             let narrow = described(3.0, 1.2e5);
             assert!(of_structure(&narrow, Detail::Auto).is_empty());
+            let bouncing = narrow.on(&ground(900.0, 0.0, points)).unwrap();
+            assert!(of_structure(&bouncing, Detail::Auto)[0].contains("few sure digits; lower f_v, or raise zeta_v"));
             let wide = narrow.with(Parameters { B: 3.5, m0: 6e5, ..narrow.parameters() }).unwrap();
             assert_eq!(wide.foundation(), described(3.5, 6e5).foundation());
             assert_ne!(wide.foundation(), narrow.foundation());
