@@ -76,7 +76,12 @@ impl Record {
     ) -> Result<Record, SamplesError> {
         let title = title.into();
         match check_samples(&times, &acceleration) {
-            Ok(()) => Ok(Record { title: title.into(), times: times.into(), acceleration: acceleration.into(), vertical: None }),
+            Ok(()) => Ok(Record {
+                title: title.into(),
+                times: times.into(),
+                acceleration: acceleration.into(),
+                vertical: None,
+            }),
             Err(problem) => Err(SamplesError::BadSamples { title, problem }),
         }
     }
