@@ -10,7 +10,6 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyTuple};
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::{Detail, State};
 use rocking_sweep::plan::Conditions;
-use std::array;
 use std::ffi::CString;
 
 const BOOLS: &str = "these are bools: numbers are needed";
