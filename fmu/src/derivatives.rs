@@ -1,5 +1,6 @@
 //! Derivatives of outputs: by time, and by what the host sets.
 
+use crate::inputs::Inputs;
 use crate::shown::Shown;
 use crate::unit::Unit;
 use crate::variables::Source;
@@ -73,8 +74,8 @@ impl<Q: Moves> Unit<Q> {
             self.restore(&before)?;
             found = by_others?;
         }
-        let (mut unit_load, vertical) = (self.inputs.at_rest(), self.inputs.vertical());
-        let (scene, setup, _) = self.parts()?;
+        let (scene, setup, inputs) = self.parts()?;
+        let (mut unit_load, vertical) = (Inputs::new(scene.engine.structure()), inputs.vertical());
         let at_rest: LinearLoad<Q> = unit_load.values(scene.engine.structure()).into();
         let Load { a_g, a_v, .. } = scene.load(setup, at_rest).slope;
         direction.extend([(0, of_time * a_g), (vertical, of_time * a_v)]);

@@ -152,18 +152,8 @@ impl Input {
 impl Inputs {
     /// Inputs of `structure` that are 0 and act at once.
     pub fn new(structure: &Structure) -> Inputs {
-        Inputs::of(loads(structure).into_iter())
-    }
-
-    /// Such inputs, given the places of their `loads` in [`LOADS`].
-    fn of(loads: impl Iterator<Item = usize>) -> Inputs {
-        let each = loads.map(|load| Input { load, ..Input::default() }).collect();
+        let each = loads(structure).into_iter().map(|load| Input { load, ..Input::default() }).collect();
         Inputs { each, since: 0.0, ended_early: false, stairs: 0 }
-    }
-
-    /// As many inputs, all 0, that act at once.
-    pub fn at_rest(&self) -> Inputs {
-        Inputs::of(self.each.iter().map(|input| input.load))
     }
 
     /// Makes the inputs act as the setup says, in the order of [`LOADS`]. Until then, and where no steps are made, they act at once.

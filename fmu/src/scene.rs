@@ -28,7 +28,7 @@ pub struct Scene<Q: Moves = f64> {
     pub ground: Option<Record>,
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
-    /// If the host integrates: the engine is then where the host is.
+    /// If the host integrates: the engine is then where the host is, and the motion between its steps is not the engine's to watch.
     pub outside: Option<Outside<Q>>,
     pub peaks: Falling,
     pub validity: Findings,
@@ -146,11 +146,6 @@ impl<Q: Moves> Scene<Q> {
     pub fn overturned_at(&self) -> Option<f64> {
         let motion = self.outside.as_ref().map_or(self.engine.motion(), |outside| &outside.known.motion);
         self.has_overturned().then_some(motion.time)
-    }
-
-    /// Whether the host integrates: the motion between its steps is then not the engine's to watch.
-    pub fn is_integrated_outside(&self) -> bool {
-        self.outside.is_some()
     }
 
     /// The limits that the motion has passed since the start; before the first step by the reactions under `load`.

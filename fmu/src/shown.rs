@@ -59,14 +59,14 @@ impl<'a, Q: Moves> Shown<'a, Q> {
     pub fn value(&self, source: Source) -> Option<f64> {
         let Shown { scene, setup, load, .. } = *self;
         let structure = scene.engine.structure();
-        let peak = |of: Output| match setup.peaks && !scene.is_integrated_outside() {
+        let peak = |of: Output| match setup.peaks && !scene.outside.is_some() {
             true => scene.peaks(load).peaks().of(of),
             false => Some(Peak { magnitude: f64::NAN, time: f64::NAN }),
         };
         Some(match source {
             Source::Reaction(of) => of(self.reactions()),
             Source::Indicator(which) => self.sample().event_indicators()[which],
-            Source::Worst(_) | Source::WorstInstant(_) if !setup.validity || scene.is_integrated_outside() => f64::NAN,
+            Source::Worst(_) | Source::WorstInstant(_) if !setup.validity || scene.outside.is_some() => f64::NAN,
             Source::Worst(which) => scene.validity(load).worst[which].value,
             Source::WorstInstant(which) => scene.validity(load).worst[which].time,
             Source::Restraint(of) => of(&scene.engine.restraints()),

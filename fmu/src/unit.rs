@@ -332,7 +332,7 @@ impl<Q: Moves> Model for Unit<Q> {
 
     fn update(&mut self, logger: &Logger) -> Result<Update, Failure> {
         let (scene, setup, inputs) = self.parts()?;
-        if scene.is_integrated_outside() {
+        if scene.outside.is_some() {
             return scene.catch_up(setup, inputs.values(scene.engine.structure()), logger);
         }
         let known = setup.validity.then_some(scene.validity);
