@@ -1,14 +1,14 @@
 //! The origin of a result: program, structure, ground motion, and the conditions of the computation.
-use crate::record_args::{RecordArgs, RecordOptions};
+use crate::record_args::RecordArgs;
 use crate::scene_args::OneOrMore;
 use rocking::run::record::Record;
 use rocking::{Parameters, State, Structure};
-use rocking_records::{Column, Unit};
-use rocking_report::{describe, program::version, record::Understood};
+use rocking_records::Column;
+use rocking_report::{describe, program::version};
 use rocking_sweep::plan::Conditions;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The origin of a result, part by part under its name; a part without influence on the result is left out.
 pub struct Cause(Vec<(&'static str, Part)>);
@@ -29,9 +29,18 @@ impl Serialize for Cause {
     }
 }
 
+fn text((name, of): (&'static str, Option<String>)) -> (&'static str, Part) {
+    (name, Part::Text(of))
+}
+
 impl Cause {
+    /// The cause of results of a record alone.
+    pub fn of_record(args: &RecordArgs, record: &Record) -> Cause {
+        Cause::of(None).under(args, record)
+    }
+
     fn of(structure: Option<Part>) -> Cause {
-        let version = ("version", Part::Text(Some(version())));
+        let version = text(("version", Some(version())));
         Cause([version].into_iter().chain(structure.map(|part| ("structure", part))).collect())
     }
 
@@ -43,35 +52,19 @@ impl Cause {
         Cause::of(Some(one.unwrap_or_else(|| Part::Numbers(numbers()))))
     }
 
-    /// The cause of results of the record in the file at `path` only, which is understood as `options` say.
-    pub fn of_record(path: &Path, options: &RecordOptions, understood: &Understood) -> Cause {
-        Cause::of(None).on([Some(path), None], &understood.record, Some(understood.unit), options, None)
-    }
-
     /// This cause under the `record` that `args` ask for.
-    pub fn under(self, args: &RecordArgs, record: &Record) -> Cause {
-        let files =
-            [args.record.as_ref(), args.vertical.file(args.record.as_ref())].map(|file| file.map(PathBuf::as_path));
-        self.on(files, record, args.options.unit, &args.options, args.vertical.column_v.as_ref())
-    }
-
-    /// This cause under the `record` from `files`, its accelerations in `unit`; the second file is the vertical component from `column_v`.
-    fn on(
-        mut self,
-        files: [Option<&Path>; 2],
-        record: &Record,
-        unit: Option<Unit>,
-        options: &RecordOptions,
-        column_v: Option<&Column>,
-    ) -> Cause {
-        let [file, file_v] = files.map(|path| path.map(|path| path.display().to_string()));
-        self.0.extend([("record", Part::Text(Some(record.title().into()))), ("file", Part::Text(file))]);
-        let [column, column_v] = [options.column.as_ref(), column_v].map(|column| column.map(Column::as_asked));
-        let unit = unit.map(|unit| unit.to_string());
-        let asked =
-            [("file_v", file_v), ("record_unit", unit), ("record_column", column), ("record_column_v", column_v)];
-        self.0
-            .extend(asked.into_iter().filter(|(_, text)| text.is_some()).map(|(name, text)| (name, Part::Text(text))));
+    pub fn under(mut self, args: &RecordArgs, record: &Record) -> Cause {
+        let RecordArgs { record: file, vertical, options } = args;
+        let path = |file: Option<&PathBuf>| file.map(|path| path.display().to_string());
+        let column = |of: &Option<Column>| of.as_ref().map(Column::as_asked);
+        self.0.extend([("record", Some(record.title().into())), ("file", path(file.as_ref()))].map(text));
+        let asked = [
+            ("file_v", path(vertical.file(file.as_ref()))),
+            ("record_unit", options.unit.map(|unit| unit.to_string())),
+            ("record_column", column(&options.column)),
+            ("record_column_v", column(&vertical.column_v)),
+        ];
+        self.0.extend(asked.into_iter().filter(|(_, of)| of.is_some()).map(text));
         self.0.extend(options.dt.map(|dt| ("record_dt", Part::Number(dt))));
         let [time_scale, scale] = options.factors().map(Part::Number);
         self.0.extend([("time_scale", time_scale), ("scale", scale)]);

@@ -1,6 +1,6 @@
 //! `record`: what is understood of a record, and the same as a table that is read without options.
 use crate::cause::Cause;
-use crate::record_args::{RecordOptions, help_of_record, say_understood};
+use crate::record_args::{RecordArgs, RecordOptions, VerticalArgs, help_of_record, say_understood};
 use crate::results::FormatArgs;
 use crate::structure_args::on_command_line;
 use crate::talk::write_as;
@@ -38,7 +38,9 @@ pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
         write_as(file, "written", understood.table()?.as_bytes())?;
     }
     let (record, output) = (&understood.record, args.output.as_deref());
-    let cause = Cause::of_record(&args.record, &args.options, &understood);
+    let options = RecordOptions { unit: Some(understood.unit), ..args.options.clone() };
+    let asked = RecordArgs { record: Some(args.record.clone()), vertical: VerticalArgs::default(), options };
+    let cause = Cause::of_record(&asked, record);
     args.results.print_table(output, (record.title(), G), &cause, &amounts(record))
 }
 

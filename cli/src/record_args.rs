@@ -30,7 +30,7 @@ pub fn help_of_record() -> String {
 }
 
 /// The vertical component of a record, if any.
-#[derive(clap::Args)]
+#[derive(clap::Args, Default)]
 #[command(next_help_heading = "Ground motion")]
 pub struct VerticalArgs {
     /// Vertical component of the (first) record, positive upwards: read and scaled by the same options
