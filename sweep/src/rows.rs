@@ -352,14 +352,15 @@ mod tests {
     #[test]
     fn a_run_on_other_ground_has_another_key() {
         let program = Program { build: Uuid::nil(), version: "0".into() };
-        let key = |k_v: f64| {
-            let ground = Ground { k_v: Some(k_v), c_v: Some(1e4), ..Ground::default() };
-            let only = Population::new("only", Structure::new(Parameters::EVISON).unwrap().on(&ground).unwrap());
+        let key = |f_v: f64| {
+            let ground = Ground { f_v: Some(f_v), zeta_v: Some(0.2), n_points: Some(3), ..Ground::default() };
+            let wall = Structure::new(Parameters { J0: 1.2, ..Parameters::EVISON }).unwrap().on(&ground).unwrap();
+            let only = Population::new("only", wall);
             let record = Record::from_samples("", vec![0.0, 1.0], vec![0.0, 1.0]).unwrap();
             let plan = Plan::new(vec![only], vec![NamedRecord::new("one", record, 1.0).unwrap()], vec![1.0]).unwrap();
             Sweep::open(&plan, false, &program, None).unwrap().keys[0]
         };
-        assert_eq!((key(1e8) == key(1e8), key(1e8) == key(2e8)), (true, false));
+        assert_eq!((key(60.0) == key(60.0), key(60.0) == key(90.0)), (true, false));
     }
 
     #[test]
