@@ -8,6 +8,7 @@ import numpy as np
 STIFF, ROD = 1e13, 1e12  # of arms (N, N·m²) and of the rod that guides the mass (N/m)
 TOLERANCE = 1e-8  # of an iteration: the end of the rod moves 1000 times as far as θ
 ARM = 1000.0  # length of that rod, m, which bends the path of the mass by u²/2000
+GAP = 1e5  # stiffness of a gap before a dashpot over the stiffness of its spring
 
 
 def solve_with(ops, kind: str, *integrator) -> None:
@@ -21,30 +22,42 @@ def solve_with(ops, kind: str, *integrator) -> None:
     ops.analysis(kind)
 
 
-def pier(s: fr.Structure, k_v: float, axial: float | None) -> None:
-    """The pier at rest on two springs of `k_v` (N/m) together, whose base node 1 is held horizontally. The mass, node 5, is guided along an
-    axis that turns with the base; or it stands on an elastic column, `axial` times as stiff along its axis, with damping of its initial stiffness."""
+def pier(s: fr.Structure, ground: fr.Ground, axial: float | None) -> None:
+    """The pier at rest on the points of `ground` (xi, k, c), whose base node 1 is held horizontally. A point with a dashpot has a gap above spring and
+    dashpot. The mass, node 5, is guided along an axis that turns with the base; or it stands on an elastic column, `axial` times as stiff
+    along its axis, with damping of its initial stiffness."""
     import openseespy.opensees as ops
 
     ops.wipe()
     ops.model("basic", "-ndm", 2, "-ndf", 3)
     ops.geomTransf("Corotational", 1)
-    places = [(0, 0), (-s.B, 0), (s.B, 0), (0, s.H), (0, s.H), (-1, s.H), (0, s.H - ARM), (-s.B, 0), (s.B, 0)]
-    for node, (x, y) in enumerate(places, start=1):
-        if not axial or node not in (4, 6, 7):
-            ops.node(node, float(x), float(y))
+    places = {1: (0, 0), 5: (0, s.H)} | ({} if axial else {4: (0, s.H), 6: (-1, s.H), 7: (0, s.H - ARM)})
+    for node, (x, y) in places.items():
+        ops.node(node, float(x), float(y))
     ops.fix(1, 1, 0, 0)
     ops.mass(1, s.m0, s.m0, s.J0)
     ops.mass(5, s.m, s.m, 0.0)
-    ops.uniaxialMaterial("ENT", 1, k_v / 2)
 
     def arm(element: int, start: int, end: int) -> None:
         ops.element("elasticBeamColumn", element, start, end, 1.0, STIFF, 1.0, 1)
 
-    for edge, ground in ((2, 8), (3, 9)):
-        arm(edge, 1, edge)
-        ops.fix(ground, 1, 1, 1)
-        ops.element("zeroLength", ground, ground, edge, "-mat", 1, "-dir", 2)
+    for i, (xi, k, c) in enumerate(zip(ground["xi"], ground["k"], ground["c"], strict=True)):
+        foot, end, soil = (20 + 3 * i + j for j in range(3))  # which also number materials and elements
+        for node in (foot, soil):
+            ops.node(node, xi, 0.0)
+        if xi:
+            arm(foot, 1, foot)
+        else:
+            ops.equalDOF(1, foot, 1, 2, 3)
+        ops.fix(soil, 1, 1, 1)
+        ops.uniaxialMaterial("ENT", foot, GAP * k if c else k)
+        if c:
+            ops.node(end, xi, 0.0)
+            ops.fix(end, 1, 0, 1)
+            ops.uniaxialMaterial("Elastic", end, k)
+            ops.uniaxialMaterial("Viscous", soil, c, 1.0)
+            ops.element("zeroLength", end, soil, end, "-mat", end, soil, "-dir", 2, 2)
+        ops.element("zeroLength", soil, end if c else soil, foot, "-mat", foot, "-dir", 2)
     if not axial:
         arm(4, 1, 4)
         arm(6, 4, 6)
@@ -69,11 +82,11 @@ def pier(s: fr.Structure, k_v: float, axial: float | None) -> None:
     ops.wipeAnalysis()
 
 
-def shaken(s: fr.Structure, k_v: float, record: fr.Record, duration: float, step: float, axial: float | None = None) -> np.ndarray:
+def shaken(s: fr.Structure, ground: fr.Ground, record: fr.Record, duration: float, step: float, axial: float | None = None) -> np.ndarray:
     """Largest |θ| (rad) and |a_t| (m/s²) over `duration` (s) under `record` with steps of `step` (s); not numbers if the iteration does not converge."""
     import openseespy.opensees as ops
 
-    pier(s, k_v, axial)
+    pier(s, ground, axial)
     ops.timeSeries("Path", 2, "-time", *record.time.tolist(), "-values", *record.a_g.tolist())
     ops.pattern("UniformExcitation", 2, 1, "-accel", 2)
     ops.setTime(0.0)
@@ -82,7 +95,7 @@ def shaken(s: fr.Structure, k_v: float, record: fr.Record, duration: float, step
     for i in range(1, round(duration / step) + 1):
         if ops.analyze(1, step) != 0:
             return np.array([math.nan, math.nan])
-        turn, ground = -ops.nodeDisp(1, 3), np.interp(i * step, record.time, record.a_g)
-        along = (ops.nodeAccel(5, 1) + ground) * math.cos(turn) - ops.nodeAccel(5, 2) * math.sin(turn)
+        turn, a_g = -ops.nodeDisp(1, 3), np.interp(i * step, record.time, record.a_g)
+        along = (ops.nodeAccel(5, 1) + a_g) * math.cos(turn) - ops.nodeAccel(5, 2) * math.sin(turn)
         theta, a_t = max(theta, abs(turn)), max(a_t, abs(along))
     return np.array([theta, a_t])
