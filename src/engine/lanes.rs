@@ -75,7 +75,7 @@ impl Sought {
     #[inline(always)]
     fn are_passed<S: Simd>(&self, simd: S, magnitudes: [Lanes<S>; 4], ends: [Lanes<S>; 2]) -> Answers<S> {
         let mut passed = ends[0].is_less(Lanes::load(simd, &self.ends[0]));
-        passed = passed.and(ends[1].is_less(Lanes::load(simd, &self.ends[1])));
+        passed = passed & ends[1].is_less(Lanes::load(simd, &self.ends[1]));
         let zero = Lanes::splat(simd, 0.0);
         for (weights, least) in self.weights.iter().zip(&self.least) {
             let mut bound = zero;
@@ -83,7 +83,7 @@ impl Sought {
                 bound = bound + Lanes::load(simd, weight) * magnitude;
             }
             bound = bound * zero.like(ROUNDING);
-            passed = passed.and(bound.is_less(Lanes::load(simd, least)).or(bound.is_at_most(zero)));
+            passed = passed & (bound.is_less(Lanes::load(simd, least)) | bound.is_at_most(zero));
         }
         passed
     }
@@ -216,9 +216,9 @@ impl<S: Simd> WithSimd for Leapt<'_, '_, S> {
         let most_u = most_of_swing([u, u_end], swing_u, [u_ddot, per_bend]);
         let most_u_dot = most_of_swing([u_dot, u_dot_end], swing_u_dot, [jerk, per_bend]);
         let (most_a, none, largest) = (a.abs().max(a_end.abs()), u.like(0.0), u.like(f64::MAX));
-        let is_finite = (u_end + u_dot_end).abs().is_at_most(largest).and(a_end.abs().is_at_most(largest));
+        let is_finite = (u_end + u_dot_end).abs().is_at_most(largest) & a_end.abs().is_at_most(largest);
         let is_passed = of.sought.are_passed(simd, [most_u, most_u_dot, most_a, none], [most_a, none]);
-        let is_taken = is_low.and(is_finite).and(is_passed);
+        let is_taken = is_low & is_finite & is_passed;
         is_taken.choose(u_end, u).store(&mut of.u);
         is_taken.choose(u_dot_end, u_dot).store(&mut of.u_dot);
         let age = row(&of.age);
@@ -373,9 +373,9 @@ impl<S: Simd> WithSimd for Taken<'_, S> {
             }
             order = order + ended.choose(zero, one);
             last = k;
-            let is_small = u_dot.abs().is_at_most(truncation).and(theta_dot.abs().is_at_most(truncation_turning));
+            let is_small = u_dot.abs().is_at_most(truncation) & theta_dot.abs().is_at_most(truncation_turning);
             if k >= MIN_ORDER {
-                ended = ended.or(is_small.and(was_small));
+                ended = ended | is_small & was_small;
                 if ended.all() {
                     break;
                 }
@@ -383,12 +383,10 @@ impl<S: Simd> WithSimd for Taken<'_, S> {
             was_small = is_small;
         }
         *reach = [1.0; MOST];
-        if !ended.all() {
-            let ended = ended.choose(one, zero);
-            for lane in (0..S::F64_LANES).filter(|lane| ended.of(*lane) == 0.0) {
-                let velocities = |k: usize| (series[k][1].of(lane), series[k][3].of(lane));
-                reach[lane] = taylor::reach(velocities, &steps[lane].truncation).min(1.0);
-            }
+        let ended = ended.choose(one, zero);
+        for lane in (0..S::F64_LANES).filter(|lane| ended.of(*lane) == 0.0) {
+            let velocities = |k: usize| (series[k][1].of(lane), series[k][3].of(lane));
+            reach[lane] = taylor::reach(velocities, &steps[lane].truncation).min(1.0);
         }
         let sigma = Lanes::load(simd, reach);
         let sum = sigma.is_less(one).choose(zero, none);
@@ -411,11 +409,11 @@ impl<S: Simd> WithSimd for Taken<'_, S> {
         // as the run by itself proves that no guard closes
         let [first, second] = [1, 2].map(|k| side * sigma * series[k][2]);
         let lead = first.abs().is_at_most(zero).choose(second * sigma, first);
-        let leads = start.abs().is_at_most(zero).and((excursion * rounding).is_less(lead + lead));
-        let rises = (excursion * rounding).is_less(start).or((off[2] * rounding).is_less(start.min(side * end[2])));
-        let stays = rises.or(leads).and(((excursion + start) * rounding).is_less(g.like(FRAC_PI_2)));
+        let leads = start.abs().is_at_most(zero) & (excursion * rounding).is_less(lead + lead);
+        let rises = (excursion * rounding).is_less(start) | (off[2] * rounding).is_less(start.min(side * end[2]));
+        let stays = (rises | leads) & ((excursion + start) * rounding).is_less(g.like(FRAC_PI_2));
         let size = end[0].abs() + end[1].abs() + end[2].abs() + end[3].abs();
-        let stays = stays.and(size.is_at_most(g.like(f64::MAX)));
+        let stays = stays & size.is_at_most(g.like(f64::MAX));
         let magnitudes = [most[0], most[1], most[2], g.like(0.5) * (most[2] * most[2])];
         let ends = [push[0].abs().max(a_end.abs()) * rounding, end[2].abs()];
         let is_passed = self.0.sought.are_passed(simd, magnitudes, ends);

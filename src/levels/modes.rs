@@ -419,7 +419,7 @@ impl<Q: Coordinates> ManyModes<Q> {
             let newest_right = row([cos, sin, theta_dot, theta_dot, weight, sin]);
             (left[n], right[MAX_ORDER - n]) = (newest_left, newest_right);
             let [sin_rate, minus_cos_rate, turning, known, weight_moment, push_moment] =
-                products::<3>(left, right, &newest_left, &newest_right, n);
+                products::<3>(left, right, (&newest_left, &newest_right), n);
             square[MAX_ORDER - n] = f64x4::splat(turning);
             let mut moment = f64x4::ZERO;
             for four in fours.iter_mut() {
@@ -476,7 +476,7 @@ impl<Q: Coordinates> ManyModes<Q> {
             let [sin, cos] = turn;
             let (newest_left, newest_right) = (row([theta_dot; 6]), row([cos, sin, 0.0, 0.0, 0.0, 0.0]));
             (left[k - 1][0], right[MAX_ORDER + 1 - k][0]) = (newest_left[0], newest_right[0]);
-            let [sin_rate, minus_cos_rate, ..] = products::<1>(left, right, &newest_left, &newest_right, k - 1);
+            let [sin_rate, minus_cos_rate, ..] = products::<1>(left, right, (&newest_left, &newest_right), k - 1);
             let mut theta_ddot = by[0] * sin + by[1] * cos + slopes[0] * before[0] + slopes[1] * before[1];
             if let Some(ties) = &mut ties {
                 theta_ddot -= per_inertia * ties.next(&arc.theta_dot, k - 1, per);

@@ -100,31 +100,33 @@ fn add_product<const PAIRS: usize>(sum: &mut Row, a: &Row, b: &Row) {
     }
 }
 
-/// Σ a_i b_{n−i} over i = 0 … n in each column of the first `PAIRS` pairs: six Cauchy products at once. b is kept backwards, so that both are read in
-/// one direction. The newest factors, a_n and b_n, come last and not from memory, so that the processor can sum the others
-/// before it knows them.
+/// Adds to `$sum` the products of `$left` and `$right` factors whose orders sum to `$n`. The right ones are kept backwards, so that
+/// both are read in one direction. The `$newest`, of order n, come last and not from memory: the processor can sum the others before
+/// it knows them. A macro, because a closure called in wide registers would not be compiled for them.
+macro_rules! add_each_product {
+    ($add:expr, $sum:expr, $left:expr, $right:expr, $newest:expr, $n:expr) => {
+        if $n > 0 {
+            let (lefts, last_left) = $left[1..$n].as_chunks::<2>();
+            let (rights, last_right) = $right[MAX_ORDER - $n + 1..MAX_ORDER].as_chunks::<2>();
+            for (left, right) in lefts.iter().zip(rights) {
+                $add($sum, &left[0], &right[0]);
+                $add($sum, &left[1], &right[1]);
+            }
+            if let ([left], [right]) = (last_left, last_right) {
+                $add($sum, left, right);
+            }
+            $add($sum, $newest.0, &$right[MAX_ORDER]);
+        }
+        $add($sum, &$left[0], $newest.1);
+    };
+}
+pub(crate) use add_each_product;
+
+/// Coefficient `n` of the products in each column of the first `PAIRS` pairs: six Cauchy products at once.
 #[inline(always)]
-pub(super) fn products<const PAIRS: usize>(
-    a: &Factors,
-    b: &Factors,
-    newest_a: &Row,
-    newest_b: &Row,
-    n: usize,
-) -> [f64; 6] {
+pub(super) fn products<const PAIRS: usize>(a: &Factors, b: &Factors, newest: (&Row, &Row), n: usize) -> [f64; 6] {
     let mut sum = NO_ROW;
-    if n > 0 {
-        let (twos, last) = a[1..n].as_chunks::<2>();
-        let (twos_b, last_b) = b[MAX_ORDER - n + 1..MAX_ORDER].as_chunks::<2>();
-        for (a, b) in twos.iter().zip(twos_b) {
-            add_product::<PAIRS>(&mut sum, &a[0], &b[0]);
-            add_product::<PAIRS>(&mut sum, &a[1], &b[1]);
-        }
-        if let ([a], [b]) = (last, last_b) {
-            add_product::<PAIRS>(&mut sum, a, b);
-        }
-        add_product::<PAIRS>(&mut sum, newest_a, &b[MAX_ORDER]);
-    }
-    add_product::<PAIRS>(&mut sum, &a[0], newest_b);
+    add_each_product!(add_product::<PAIRS>, &mut sum, a, b, newest, n);
     let [first, second, third] = sum.map(f64x2::to_array);
     [first[0], first[1], second[0], second[1], third[0], third[1]]
 }
@@ -165,7 +167,7 @@ impl Expanded for f64 {
 
     #[inline(always)]
     fn products(left: &Factors, right: &Factors, newest: (&Row, &Row), n: usize) -> [f64; 6] {
-        products::<3>(left, right, newest.0, newest.1, n)
+        products::<3>(left, right, newest, n)
     }
 }
 

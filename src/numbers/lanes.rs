@@ -1,12 +1,12 @@
 //! A number of several runs side by side, in one register of the processor.
 
-use crate::levels::nonlinear::Expanded;
+use crate::levels::nonlinear::{Expanded, add_each_product};
 use crate::numbers::Real;
 use crate::series::taylor::MAX_ORDER;
 use pulp::Simd;
 use pulp::bytemuck::cast_slice;
 use std::array::from_ref;
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
 /// The most runs that lie side by side.
 pub(crate) const MOST: usize = 8;
@@ -88,16 +88,6 @@ impl<S: Simd> Real for Lanes<S> {
 }
 
 impl<S: Simd> Answers<S> {
-    #[inline(always)]
-    pub(crate) fn and(self, other: Answers<S>) -> Answers<S> {
-        Answers { of: self.simd.and_m64s(self.of, other.of), ..self }
-    }
-
-    #[inline(always)]
-    pub(crate) fn or(self, other: Answers<S>) -> Answers<S> {
-        Answers { of: self.simd.or_m64s(self.of, other.of), ..self }
-    }
-
     /// `yes` where the answer is so, otherwise `no`.
     #[inline(always)]
     pub(crate) fn choose(self, yes: Lanes<S>, no: Lanes<S>) -> Lanes<S> {
@@ -114,22 +104,24 @@ impl<S: Simd> Answers<S> {
 
 /// Implements an operator lane by lane.
 macro_rules! operator {
-    ($trait:ident, $name:ident, $operation:ident) => {
-        impl<S: Simd> $trait for Lanes<S> {
+    ($of:ident, $trait:ident, $name:ident, $operation:ident) => {
+        impl<S: Simd> $trait for $of<S> {
             type Output = Self;
 
             #[inline(always)]
             fn $name(self, other: Self) -> Self {
-                Lanes { of: self.simd.$operation(self.of, other.of), ..self }
+                $of { of: self.simd.$operation(self.of, other.of), ..self }
             }
         }
     };
 }
 
-operator!(Add, add, add_f64s);
-operator!(Sub, sub, sub_f64s);
-operator!(Mul, mul, mul_f64s);
-operator!(Div, div, div_f64s);
+operator!(Lanes, Add, add, add_f64s);
+operator!(Lanes, Sub, sub, sub_f64s);
+operator!(Lanes, Mul, mul, mul_f64s);
+operator!(Lanes, Div, div, div_f64s);
+operator!(Answers, BitAnd, bitand, and_m64s);
+operator!(Answers, BitOr, bitor, or_m64s);
 
 impl<S: Simd> Neg for Lanes<S> {
     type Output = Self;
@@ -160,23 +152,11 @@ impl<S: Simd> Expanded for Lanes<S> {
     fn products(
         left: &[Self::Left; MAX_ORDER + 1],
         right: &[Self::Right; MAX_ORDER + 1],
-        (newest_left, newest_right): (&Self::Left, &Self::Right),
+        newest: (&Self::Left, &Self::Right),
         n: usize,
     ) -> [Self; 6] {
-        let mut sum = [newest_left[0].like(0.0); 6];
-        if n > 0 {
-            let (lefts, last_left) = left[1..n].as_chunks::<2>();
-            let (rights, last_right) = right[MAX_ORDER - n + 1..MAX_ORDER].as_chunks::<2>();
-            for (left, right) in lefts.iter().zip(rights) {
-                add_products(&mut sum, &left[0], &right[0]);
-                add_products(&mut sum, &left[1], &right[1]);
-            }
-            if let ([left], [right]) = (last_left, last_right) {
-                add_products(&mut sum, left, right);
-            }
-            add_products(&mut sum, newest_left, &right[MAX_ORDER]);
-        }
-        add_products(&mut sum, &left[0], newest_right);
+        let mut sum = [newest.0[0].like(0.0); 6];
+        add_each_product!(add_products, &mut sum, left, right, newest, n);
         sum
     }
 }

@@ -144,13 +144,10 @@ impl Record {
     }
 
     /// This ground motion with every horizontal acceleration multiplied by `scale` and every vertical one by `vertical`.
-    pub fn multiplied_each(mut self, scale: f64, vertical: f64) -> Record {
-        for (samples, scale) in [(Some(&mut self.acceleration), scale), (self.vertical.as_mut(), vertical)] {
-            if let Some(samples) = samples.filter(|_| scale != 1.0) {
-                *samples = samples.iter().map(|acceleration| acceleration * scale).collect();
-            }
-        }
-        self
+    pub fn multiplied_each(self, scale: f64, vertical: f64) -> Record {
+        let times = |of: Arc<[f64]>, scale: f64| if scale == 1.0 { of } else { of.iter().map(|a| a * scale).collect() };
+        let (acceleration, vertical) = (times(self.acceleration, scale), self.vertical.map(|of| times(of, vertical)));
+        Record { acceleration, vertical, ..self }
     }
 
     /// This ground motion under another title.

@@ -16,7 +16,7 @@ use std::{
     io::{Read, Seek, SeekFrom, Write},
     path::{Path, PathBuf},
     sync::Mutex,
-    time::{Duration, Instant},
+    time::Instant,
 };
 use uuid::Uuid;
 
@@ -26,9 +26,6 @@ const MOST_TOGETHER: usize = 64;
 
 /// How often each thread takes runs, if there are few.
 const SHARES: usize = 4;
-
-/// The least time from one writing of a thread to the next, unless its runs are done.
-const BETWEEN_WRITINGS: Duration = Duration::from_millis(100);
 
 /// Rows that are not in a file yet.
 pub type Rows = csv::Writer<Vec<u8>>;
@@ -133,8 +130,7 @@ impl RowFile {
     }
 }
 
-/// Does `runs` on all threads, several together: `run` hands each result to `keep`, until `keep` fails. What `keep` adds to the rows is
-/// added to the `file`.
+/// Does `runs` on all threads, several together: `run` hands each result to `keep`, whose rows go to the `file`, until `keep` fails.
 pub fn do_runs<T: Sync, R>(
     runs: &[T],
     file: Option<&RowFile>,
@@ -147,7 +143,7 @@ pub fn do_runs<T: Sync, R>(
         let write = |rows: &mut Rows| file.map_or(Ok(()), |file| file.append(rows));
         run(runs, &mut |done| {
             result = keep(done, &mut rows);
-            if result.is_ok() && written.elapsed() > BETWEEN_WRITINGS {
+            if result.is_ok() && written.elapsed().as_secs_f64() > 0.1 {
                 (result, written) = (write(&mut rows), Instant::now());
             }
             result.is_ok()

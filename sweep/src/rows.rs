@@ -124,18 +124,15 @@ impl<'a> Sweep<'a> {
                 self.plan.each_outcome(indices, |index, outcome| done((index, unchecked(outcome))));
             }
         };
-        let keep = |(index, done), rows: &mut Rows| self.keep(index, done, rows, &goes_on);
+        let keep = |(index, done): (usize, Done), rows: &mut Rows| {
+            if self.file.is_some() {
+                rows.serialize((self.keys[index].to_string(), self.row(index, &done)))?;
+            }
+            self.done[index].set(done).expect("each run is done once");
+            ensure!(goes_on(), "stopped: the runs that are finished are kept");
+            Ok(())
+        };
         do_runs(&self.missing(), self.file.as_ref(), run, keep)
-    }
-
-    /// Keeps the run that is `done`, and adds its row to `rows`, if there is a file. Fails if the sweep no longer `goes_on`.
-    fn keep(&self, index: usize, done: Done, rows: &mut Rows, goes_on: &impl Fn() -> bool) -> anyhow::Result<()> {
-        if self.file.is_some() {
-            rows.serialize((self.keys[index].to_string(), self.row(index, &done)))?;
-        }
-        self.done[index].set(done).expect("each run is done once");
-        ensure!(goes_on(), "stopped: the runs that are finished are kept");
-        Ok(())
     }
 
     /// The key of every run of the plan, which its row begins with, and what became of it, once all are done.

@@ -16,7 +16,7 @@ use rocking::run::{LONGEST_REST, validity};
 use rocking_report::program::{program, version};
 use rocking_sweep::map::{CLASSES, Class, Fate, HEADINGS, Map, Place, Point};
 use rocking_sweep::plan::AXES;
-use rocking_sweep::row_file::{self, Known, RowFile, Rows, fixed, heading};
+use rocking_sweep::row_file::{self, Known, RowFile, fixed, heading};
 use serde::Serialize;
 use std::{collections::HashMap, fmt::Write, path::Path, sync::Mutex};
 use uuid::Uuid;
@@ -93,7 +93,7 @@ fn do_points(
     };
     let (bar, points) = (progress(lacking.len(), "points")?, Mutex::new(points));
     row_file::do_runs(&lacking, Some(file), run, |((place, key), point), rows| {
-        add_row(rows, &key, name, map, (level, place), &point)?;
+        rows.serialize(row(&key, name, map, (level, place), &point))?;
         points.lock().expect("no thread panics with the points in hand").insert(place, point);
         bar.inc(1);
         Ok(())
@@ -125,20 +125,13 @@ fn headings() -> Vec<String> {
     .concat()
 }
 
-/// Adds the row of a point, which the refinement of this level has asked for; 0 is the grid.
-fn add_row(
-    rows: &mut Rows,
-    key: &Uuid,
-    name: &str,
-    map: &Map,
-    (level, place): (u32, Place),
-    point: &Point,
-) -> anyhow::Result<()> {
+/// The row of a point, which the refinement of this level has asked for; 0 is the grid.
+fn row(key: &Uuid, name: &str, map: &Map, (level, place): (u32, Place), point: &Point) -> impl Serialize {
     let pulse = map.pulse(place);
     let of_structure = AXES.map(|axis| (axis.get)(&map.structure.parameters()));
     let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail.name(), map.tolerance);
     let of_program = (key.to_string(), name, version());
-    Ok(rows.serialize((of_program, of_structure, of_map, map.row(level, place, point)))?)
+    (of_program, of_structure, of_map, map.row(level, place, point))
 }
 
 /// How many points of the grid there are of each class that there are any of.
