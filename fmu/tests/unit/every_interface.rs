@@ -38,7 +38,10 @@ fn what_is_listed_has_a_derivative() {
             let variables = &host.variables;
             let derive = |of: usize, at_start: bool| {
                 let by = dependencies(variables, of, at_start).into_iter().map(|by| &variables[by]);
-                let is_one = |by: &&Variable| is_real(by) && (at_start || by.causality != Causality::Parameter);
+                // one mode moves both floors of the fixture together
+                let is_alone = |by: &Variable| force == "F_t" || !by.name.starts_with("u_");
+                let is_one =
+                    |by: &&Variable| is_real(by) && is_alone(by) && (at_start || by.causality != Causality::Parameter);
                 by.filter(is_one).for_each(|by| _ = host.derivative(&variables[of].name, &by.name));
             };
             let unknowns = || (0..variables.len()).filter(|of| is_real(&variables[*of]));
