@@ -76,7 +76,7 @@ def test_the_stub_has_the_names_of_the_tables():
     assert all(re.search(rf"\b{name}\b", fr.Structure.__doc__) for name in typed["_Numbers"])
     with pytest.raises(ValueError) as refused:
         fr.simulate(fr.Structure(preset="evison"), duration=1, none=1)
-    assert typed["_InitialValues"] == known(refused)
+    assert [*typed["_InitialValues"], "detail", "tolerance", "duration"] == known(refused)
     assert all(re.search(rf"\b{name}\b", fr.simulate.__doc__) for name in typed["_InitialValues"])
 
 
@@ -455,14 +455,15 @@ def test_a_sweep_that_is_stopped_keeps_its_rows(tmp_path):
 def test_a_sweep_and_its_fragility_go_on_where_the_command_line_was(exporter, tmp_path):
     for frequency in (1.5, 2, 2.5, 3, 4):
         fr.pulse("cosine", amplitude=0.5, frequency=frequency).write(tmp_path / f"{frequency}.csv")
-    (tmp_path / "sweep.toml").write_text("records = ['*.csv']\nscale = { from = 0.3, to = 3, count = 10 }\nintensity = 'S_a'\n"
+    scales = np.linspace(0.3, 3, 10).tolist()
+    (tmp_path / "sweep.toml").write_text(f"records = ['*.csv']\nscale = {scales}\nintensity = 'S_a'\n"
                                          "[limits]\n'theta/alpha_cg' = [0.1]\n"
                                          "[[structures]]\nname = 'piers'\npreset = 'mcmanus'\nvary.f_fc = [4, 8]\n")
     command = [exporter, "sweep", "sweep.toml", "-o", "rows", "--quiet", "--format", "json"]
     printed = json.loads(subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout)
     motions = {path.name: fr.Record.read(path) for path in sorted(tmp_path.glob("*.csv"))}
     before = (tmp_path / "rows").read_bytes()
-    runs = dict(structures={"piers": [fr.Structure(preset="mcmanus", f_fc=f) for f in (4, 8)]}, records=motions, scale=np.linspace(0.3, 3, 10),
+    runs = dict(structures={"piers": [fr.Structure(preset="mcmanus", f_fc=f) for f in (4, 8)]}, records=motions, scale=scales,
                 intensity="S_a")
     table = fr.sweep(**runs, path=tmp_path / "rows")
     assert (tmp_path / "rows").read_bytes() == before
