@@ -59,7 +59,7 @@ impl<'a, Q: Moves> Shown<'a, Q> {
     pub fn value(&self, source: Source) -> Option<f64> {
         let Shown { scene, setup, load, .. } = *self;
         let structure = scene.engine.structure();
-        let peak = |of: Output| match setup.peaks && !scene.outside.is_some() {
+        let peak = |of: Output| match setup.peaks && scene.outside.is_none() {
             true => scene.peaks(load).peaks().of(of),
             false => Some(Peak { magnitude: f64::NAN, time: f64::NAN }),
         };

@@ -185,7 +185,8 @@ impl Description<'_> {
 
     /// The dependencies: in FMI 2.0 after the start on inputs and states alone, in FMI 3.0 on parameters and time, too.
     fn structure(&self, version: Version) -> Element {
-        let lists: [(_, _, fn(&Variable) -> bool, _); 4] = [
+        type IsListed = fn(&Variable) -> bool;
+        let lists: [(_, _, IsListed, _); 4] = [
             ("Outputs", "Output", |of| of.causality == Causality::Output, false),
             ("Derivatives", "ContinuousStateDerivative", |of| matches!(of.role, Role::RateOf(_)), false),
             ("InitialUnknowns", "InitialUnknown", Variable::is_initial_unknown, true),

@@ -120,6 +120,7 @@ macro_rules! add_each_product {
         $add($sum, &$left[0], $newest.1);
     };
 }
+#[cfg(feature = "lanes")]
 pub(crate) use add_each_product;
 
 /// Coefficient `n` of the products in each column of the first `PAIRS` pairs: six Cauchy products at once.
