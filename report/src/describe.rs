@@ -49,6 +49,10 @@ const STEPS: u32 = 20;
 
 /// The moment that turns the base back, while it is turned slowly to the rotation `theta` (rad, 0 to π/2) and back.
 pub fn restoring(structure: &Structure, theta: f64) -> anyhow::Result<Vec<FlagPoint>> {
+    ensure!(
+        structure.foundation().is_none(),
+        "the restoring moment is of a base that turns about an edge on rigid ground: leave ground out, or simulate the motion"
+    );
     let is_in_range = theta > 0.0 && theta < FRAC_PI_2;
     ensure!(is_in_range, "restoring = {theta} rad is out of range: a rotation above 0 and below pi/2 is needed");
     Ok(flag(structure.base(), theta, STEPS))

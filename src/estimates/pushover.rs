@@ -54,6 +54,11 @@ pub enum PushoverError {
     /// Another number of points than a curve has.
     #[error("points = {0} is out of range: 2 to {MOST_POINTS} on each branch are possible")]
     BadPoints(u32),
+    /// The ground gives.
+    #[error(
+        "the pushover is of a base that turns about an edge on rigid ground (Fig 1): leave ground out, or simulate a slow force"
+    )]
+    OnGround,
     /// Modes alone.
     #[error("the structure has no floors that take the force: give masses, heights and shapes")]
     NoFloors,
@@ -82,8 +87,11 @@ pub struct Pushover {
 }
 
 impl Pushover {
-    /// The pushover of `structure`, which must have floors.
+    /// The pushover of `structure` on rigid ground, which must have floors.
     pub fn new(structure: &Structure) -> Result<Pushover, PushoverError> {
+        if structure.foundation().is_some() {
+            return Err(PushoverError::OnGround);
+        }
         let floors = structure.floors();
         let top = floors.last().ok_or(PushoverError::NoFloors)?;
         let whole: f64 = floors.iter().map(|floor| floor.mass * floor.height).sum();

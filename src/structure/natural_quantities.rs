@@ -266,7 +266,8 @@ impl Given {
     /// they were given.
     pub fn structure(&self, base: Option<&Parameters>) -> Result<Structure, GivenError> {
         let in_units = |error: &dyn Display| GivenError::InUnits(self.units.message(error));
-        let needs_no_r = self.ground.is_some() && base.is_none() && self.get("r").is_none();
+        let gives = self.ground.as_ref().is_some_and(|ground| ground.f_v != Some(0.0));
+        let needs_no_r = gives && base.is_none() && self.get("r").is_none();
         let alone = || self.solve(|name| default(name).or((needs_no_r && name == "r").then_some(1.0)));
         let parameters = base.map_or_else(alone, |base| self.over(base)).map_err(|error| in_units(&error))?;
         let structure = Structure::new(parameters).map_err(|error| in_units(&error))?;

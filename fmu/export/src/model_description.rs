@@ -7,7 +7,7 @@ use fmi_unit::Variable;
 use model_description::{DefaultExperiment, Description};
 
 /// The model in one line.
-pub const DESCRIPTION: &str = "A flexible structure that rocks freely on rigid ground under earthquake ground motion";
+pub const DESCRIPTION: &str = "A flexible structure that rocks on its foundation under earthquake ground motion";
 
 /// The content of the log category of events, in one line.
 pub const EVENTS: &str = "uplift, impact, landing and overturning, as they happen";
