@@ -96,7 +96,7 @@ def test_a_misspelt_name_is_answered_with_the_nearest(table, key, meant, exporte
 @pytest.mark.parametrize("command, f_v, told", [
     (["pushover"], 40, "the pushover is of a base that turns about an edge on rigid ground"),
     (["describe", "--restoring", "0.03"], 40, "the restoring moment is of a base that turns about an edge on rigid ground"),
-    (["describe"], 0, "r (coefficient of restitution) is missing"),
+    (["describe"], 0, "is missing: give r"),
 ])
 def test_what_needs_rigid_ground_says_so(command, f_v, told, exporter, tmp_path):
     (tmp_path / "pier.toml").write_text(f"m = 130.1\nm0 = 65.4\nH = 1.84\nB = 0.285\nJ0 = 10.7\nf_fc = 5\nzeta_fc = 0.02\n[ground]\nf_v = {f_v}\n")
