@@ -33,7 +33,7 @@ pub(crate) struct OffChord<Q> {
     u_dot: Q,
     /// Of sin θ, cos θ and 1 − cos θ.
     turn: f64,
-    /// Of a number times cos θ, beyond the number itself, as a part of its largest magnitude: a product of two chords leaves its own
+    /// Of a number times cos θ: beyond the number itself, as a part of its largest magnitude. A product of two chords leaves its own
     /// chord by at most a quarter of the product of their rises.
     product: f64,
 }
@@ -181,8 +181,8 @@ impl Reach {
         }
     }
 
-    /// How far this `output` of `structure` leaves the chord between its ends, of a motion within `most` that leaves its chords by `off`
-    /// under a load that is linear in time; infinite where no bound is known.
+    /// How far this `output` of `structure` leaves the chord between its ends. The motion is within `most` and leaves its chords by `off`;
+    /// the load is linear in time. Infinite where no bound is known.
     pub(crate) fn off_chord<Q: Coordinates>(
         &self,
         output: Output,

@@ -268,8 +268,8 @@ impl State<Vec<f64>> {
         }
     }
 
-    /// The coordinates q of the modes of `structure` for which its floors move as these do: those nearest to them weighed by mass,
-    /// (ΦᵀMΦ) q = ΦᵀM u, refused where they are not near to 1e-6 of the largest.
+    /// The coordinates q of the modes of `structure` whose floors move as these do. The nearest, weighed by mass, solve
+    /// (ΦᵀMΦ) q = ΦᵀM u; refused are floors that stay away from them by more than 1e-6 of the largest.
     pub fn on<Q: Coordinates>(&self, structure: &Structure) -> Result<State<Q>, InitialStateError> {
         let &State { ref u, ref u_dot, theta, theta_dot } = self;
         let [of_u, of_rate] = [&INITIAL_VALUES[2], &INITIAL_VALUES[3]];
