@@ -40,8 +40,11 @@ pub fn with_nearest(message: String) -> String {
         Some((quoted.next()?, quoted.collect()))
     };
     let Some((name, known)) = of_library.or_else(of_serde) else { return message };
-    let plain = |name: &str| name.to_lowercase().replace('_', "");
-    let likeness = |known: &&str| strsim::jaro(&plain(known), &plain(name));
+    let [plain, lower] = [|name: &str| name.to_lowercase().replace('_', ""), |name: &str| name.to_lowercase()];
+    let likeness = |known: &&str| match plain(known) == plain(name) {
+        true => 1.0,
+        false => strsim::jaro(&lower(known), &lower(name)),
+    };
     match known.into_iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b))).filter(|best| likeness(best) > ALIKE) {
         Some(nearest) => format!("{}; did you mean {nearest}?", message.trim_end()),
         None => message,

@@ -445,9 +445,11 @@ function motionView() {
         right: floors()?.length > 1 ? undefined : { meaning: "base shear", title: "V_t (kN)", factor: (m * g) / 1e3 },
       },
       ...(floors()?.length > 1 ? [{ name: "V_t", title: "V_t (kN)", per: 1e3, colour: "--blue" }] : []),
-      ...(givesWay() ? ["uplift", "settlement", "N_left", "N_right"] : []).map((name) => (
-        { name, title: `${quantities[name].symbol} (${quantities[name].unit})`, per: quantities[name].per, colour: "--green" }
-      )),
+      ...(givesWay() ? ["uplift", "settlement", "N_left", "N_right"] : []).map((name) => {
+        const { symbol, ...usual } = quantities[name];
+        const { unit, per } = usual.unit === "kN" && most(name) >= 1e7 ? { unit: "MN", per: 1e6 } : usual;
+        return { name, title: `${symbol} (${unit})`, per, colour: "--green" };
+      }),
     ].filter(({ name }) => peakOf(name))
       .map((panel) => ({ ...panel, meaning: meaningOf(panel.name), largest: most(panel.name) }))
       .filter(({ name, largest }) => ["theta", "a_t"].includes(name) || largest > 0);
