@@ -350,7 +350,7 @@ pub(crate) fn magnitudes<Q: Moves>(
     loads: &[Load<Q>; 2],
     State { u, u_dot, theta, theta_dot }: State<Q>,
 ) -> Magnitudes<'static, Q> {
-    let largest = |of: fn(&Load<Q>, usize) -> f64, j: usize| of(&loads[0], j).abs().max(of(&loads[1], j).abs());
+    let ([first, last], largest) = (loads, |a: f64, b: f64| a.abs().max(b.abs()));
     Magnitudes {
         arc: None,
         damping: structure.base().damping(phase),
@@ -358,12 +358,12 @@ pub(crate) fn magnitudes<Q: Moves>(
         u_dot,
         theta,
         theta_dot,
-        a_g: largest(|load, _| load.a_g, 0),
+        a_g: largest(first.a_g, last.a_g),
         F_t: match loads.iter().all(|load| load.F_t.is_within(&Q::ZERO)) {
             true => Q::ZERO, // with no numbers to weigh
-            false => Q::each(structure, |j, _| largest(|load, j| load.F_t.of(j), j)),
+            false => Q::each(structure, |j, _| largest(first.F_t.of(j), last.F_t.of(j))),
         },
-        a_v: largest(|load, _| load.a_v, 0),
+        a_v: largest(first.a_v, last.a_v),
     }
 }
 

@@ -141,16 +141,18 @@ impl Output {
 }
 
 impl Reach {
-    /// The part of the bound of magnitudes of u and u̇ in full contact.
-    pub(crate) fn elastic<Q: Coordinates>(&self, u: &Q, u_dot: &Q) -> f64 {
-        u.weighed(&self.u) + u_dot.weighed(&self.u_dot)
+    /// The part of the bound of magnitudes of u and u̇, with this part `damping` of the damping in full contact.
+    #[inline(always)]
+    pub(crate) fn elastic<Q: Coordinates>(&self, damping: f64, u: &Q, u_dot: &Q) -> f64 {
+        u.weighed(&self.u) + damping * u_dot.weighed(&self.u_dot)
     }
 
     /// The weights of |u|, |u̇|, and while rocking of |θ| and θ²/2, in full contact of |a_g| and of nothing, in the bound of the
     /// output of one mass without force in `phase`. The bound is infinite where [`Reach::bound`] requires a polynomial.
     #[cfg(feature = "lanes")]
     pub(crate) fn of_one(&self, structure: &Structure, phase: Phase) -> [f64; 4] {
-        let [u, u_dot] = [self.elastic(&1.0, &0.0), self.elastic(&0.0, &structure.base().damping(phase))];
+        let damping = structure.base().damping(phase);
+        let [u, u_dot] = [self.elastic(damping, &1.0, &0.0), self.elastic(damping, &0.0, &1.0)];
         match (phase, self.a_g) {
             (Phase::FullContact, a_g) => [u, u_dot, a_g.unwrap_or(0.0), 0.0],
             (_, None) => [u, u_dot, self.turn[0], self.turn[1]],
@@ -161,13 +163,13 @@ impl Reach {
     /// Bound of the magnitude of this `output` of `structure`, given bounds of the motion.
     #[inline(always)]
     pub(crate) fn bound<Q: Coordinates>(&self, output: Output, structure: &Structure, most: &Magnitudes<Q>) -> f64 {
-        let Reach { turn: [sin, versine], a_g, u, u_dot, push } = self;
+        let Reach { turn: [sin, versine], a_g, push, .. } = self;
         if let (Some((arc, _)), Some(foundation)) = (most.arc, structure.foundation())
             && let Some(parts) = output.of_height(structure.base(), foundation)
         {
             return most_of_height(arc, foundation.place, parts);
         }
-        let elastic = most.u.weighed(u) + most.damping * most.u_dot.weighed(u_dot) + most.F_t.weighed(push);
+        let elastic = self.elastic(most.damping, &most.u, &most.u_dot) + most.F_t.weighed(push);
         match (a_g, most.arc) {
             _ if most.theta == f64::INFINITY => f64::INFINITY,
             (Some(_), _) if structure.foundation().is_some() => f64::INFINITY, // the base accelerates
@@ -198,9 +200,8 @@ impl Reach {
             return f64::INFINITY;
         }
         let [sin, versine] = self.turn;
-        let sum = |u: &Q, u_dot: &Q| u.weighed(&self.u) + most.damping * u_dot.weighed(&self.u_dot);
-        let elastic = sum(&most.u, &most.u_dot) + most.F_t.weighed(&self.push);
-        sum(&off.u, &off.u_dot) + (sin + versine) * off.turn + elastic * off.product
+        let elastic = self.elastic(most.damping, &most.u, &most.u_dot) + most.F_t.weighed(&self.push);
+        self.elastic(most.damping, &off.u, &off.u_dot) + (sin + versine) * off.turn + elastic * off.product
     }
 }
 

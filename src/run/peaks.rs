@@ -98,12 +98,12 @@ impl Searched {
         reaches[self.place].bound(self.output, structure, bounds)
     }
 
-    /// Sees the output at the instant `x`, at `time` (s), and returns its magnitude.
+    /// Sees the output at the instant `x`, at `time` (s), and returns its value.
     #[inline]
     fn see<Q: Moves>(&mut self, x: &Instant<f64, Q>, time: f64) -> f64 {
         let value = self.output.of(x);
         self.peak.see(value, time);
-        value.abs()
+        value
     }
 
     /// How far the output leaves its chord over a stretch of motion within `most` that leaves its chords by `off`.
@@ -262,7 +262,7 @@ impl Peaks {
                     let off = off.get_or_insert_with(|| piece.whole().off_chord());
                     let off = of.off_chord(structure, most, off.as_ref());
                     if off < f64::INFINITY {
-                        bound = bound.min(see_first(of).max(last) + off);
+                        bound = bound.min(see_first(of).abs().max(last.abs()) + off);
                     }
                 }
             }
@@ -385,14 +385,14 @@ impl Peaks {
                     continue;
                 }
                 let ends = ends.get_or_insert_with(|| [part.shown(0.0), part.shown(reach)]);
-                let magnitude = of.see(&ends[0], start).max(of.see(&ends[1], part.time(reach)));
+                let [at_start, at_end] = [of.see(&ends[0], start), of.see(&ends[1], part.time(reach))];
                 let off = off.get_or_insert_with(|| OffChord::of(part.arc, [0, 1].map(|i| ends[i].theta)));
-                let bound = bound.min(magnitude + of.off_chord(structure, &most, Some(off)));
+                let bound = bound.min(at_start.abs().max(at_end.abs()) + of.off_chord(structure, &most, Some(off)));
                 let Searched { output, peak, .. } = of;
                 if !peak.may_change(bound, start) {
                     continue;
                 }
-                let (series, at_end) = (output.of(over.get_or_insert_with(|| Over::new(*part))), output.of(&ends[1]));
+                let series = output.of(over.get_or_insert_with(|| Over::new(*part)));
                 if !is_finest && !output.is_component() && !part.has_converged(&series, at_end, CONVERGED) {
                     return false;
                 }

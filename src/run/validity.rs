@@ -447,7 +447,7 @@ fn extents_of_vibration<Q: Moves>(part: Part<Q>) -> Option<Reactions<Extent>> {
     let moved = |of: &Q| Q::sum(structure, |j, mode| mode.gamma.abs() * of.of(j));
     let off = |output: Output, weight: f64| {
         let reach = &structure.reaches()[output.place(structure.floors().len()).expect("it reaches")];
-        let of = |u: &Q, u_dot: &Q| reach.elastic(u, u_dot) + weight * moved(u);
+        let of = |u: &Q, u_dot: &Q| reach.elastic(1.0, u, u_dot) + weight * moved(u);
         off_chord(of(&u, &u_dot), [per_bend, of(&u_ddot, &jerk)])
     };
     let [first, last] = part.samples().map(|sample| sample.edges());
@@ -628,8 +628,10 @@ fn on_ground(frame: &Structure, foundation: &Foundation) -> Vec<String> {
     }
     // beyond ζ_v = 1/2 the dashpots are faster than the springs
     if highest > 0.0 && omega_v * f64::max(1.0, 2.0 * zeta_v) > STIFF * highest {
-        let chaotic = if zeta_v < BOUNCING { ", and its many bounces leave few sure digits" } else { "" };
-        let remedy = if zeta_v < BOUNCING { "lower f_v, or raise zeta_v" } else { "lower f_v or zeta_v" };
+        let (chaotic, remedy) = match zeta_v < BOUNCING {
+            true => (", and its many bounces leave few sure digits", "lower f_v, or raise zeta_v"),
+            false => ("", "lower f_v or zeta_v"),
+        };
         let [f_v, zeta_v, highest] = [omega_v / TAU, zeta_v, highest / TAU].map(short);
         warnings.push(format!(
             "f_v = {f_v} Hz with zeta_v = {zeta_v} is more than 20 times as fast as the highest frequency of the structure, {highest} \
