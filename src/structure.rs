@@ -347,8 +347,9 @@ impl Structure {
     }
 
     /// This structure on `ground` that gives, with at most 21 modes. The structure has no numbers of one mass any more: it is moved as
-    /// structures of many masses are.
-    pub fn on(&self, ground: &Ground) -> Result<Structure, StructureError> {
+    /// structures of many masses are. Without ground that gives, this structure.
+    pub fn on<'g>(&self, ground: impl Into<Option<&'g Ground>>) -> Result<Structure, StructureError> {
+        let Some(ground) = ground.into() else { return Ok(self.clone()) };
         let kept =
             if self.modes().len() > MOST_MODES - MORE { self.with_lowest(MOST_MODES - MORE) } else { self.clone() };
         let Whole { base, body, ref modes, ref floors, ref gauges, vibration, .. } = *kept.0;
@@ -364,7 +365,7 @@ impl Structure {
 
     /// `structure` on the ground of this one.
     fn on_own_ground(&self, structure: Structure) -> Result<Structure, StructureError> {
-        self.foundation().map_or(Ok(structure.clone()), |Foundation { ground, .. }| structure.on(ground))
+        structure.on(self.foundation().map(|foundation| &foundation.ground))
     }
 
     /// What carries the base on ground that gives; none on rigid ground.

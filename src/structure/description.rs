@@ -291,7 +291,7 @@ impl Described {
             [true, true, true] => Err(DescriptionError::Ways("none of these")),
             _ => Err(DescriptionError::Ways("more than one")),
         }?;
-        let whole = ground.as_ref().map_or(Ok(whole.clone()), |ground| whole.on(ground))?;
+        let whole = whole.on(ground)?;
         let (Some(count), modes) = (*keep, whole.modes().len()) else { return Ok(whole) };
         match usize::try_from(count) {
             Ok(kept @ 1..) if kept <= modes => Ok(whole.keeping(kept)?),

@@ -114,6 +114,11 @@ impl Ground {
         self
     }
 
+    /// Whether this ground does not give.
+    pub(crate) fn is_rigid(&self) -> bool {
+        self.f_v == Some(0.0)
+    }
+
     /// The points under a base of half-width `B` (m) that carries `m_t` (kg), none on rigid ground.
     fn points(&self, m_t: f64, B: f64) -> Result<Vec<Point>, GroundError> {
         let &Ground { f_v, k_v, zeta_v, c_v, n_points, kr_ratio, k_r, .. } = self;
@@ -130,7 +135,7 @@ impl Ground {
         }
         let points = n_points.map(|points| points as f64);
         for (limit, value) in
-            [(F_V, f_v.filter(|f_v| *f_v != 0.0)), (K_V, k_v), (ZETA_V, zeta_v), (C_V, c_v), (N_POINTS, points)]
+            [(F_V, f_v.filter(|_| !self.is_rigid())), (K_V, k_v), (ZETA_V, zeta_v), (C_V, c_v), (N_POINTS, points)]
         {
             value.map_or(Ok(()), |value| limit.check(value))?;
         }
@@ -142,7 +147,7 @@ impl Ground {
             return Ok((0..xi.len()).map(|i| Point { xi: xi[i], k: k[i], c: c[i] }).collect());
         }
         let K_z = match (f_v, k_v) {
-            (Some(0.0), _) => return Ok(Vec::new()),
+            _ if self.is_rigid() => return Ok(Vec::new()),
             (Some(f_v), _) => m_t * (TAU * f_v) * (TAU * f_v),
             (None, Some(k_v)) => k_v,
             (None, None) => {

@@ -266,12 +266,12 @@ impl Given {
     /// they were given.
     pub fn structure(&self, base: Option<&Parameters>) -> Result<Structure, GivenError> {
         let in_units = |error: &dyn Display| GivenError::InUnits(self.units.message(error));
-        let gives = self.ground.as_ref().is_some_and(|ground| ground.f_v != Some(0.0));
+        let gives = self.ground.as_ref().is_some_and(|ground| !ground.is_rigid());
         let needs_no_r = gives && base.is_none() && self.get("r").is_none();
         let alone = || self.solve(|name| default(name).or((needs_no_r && name == "r").then_some(1.0)));
         let parameters = base.map_or_else(alone, |base| self.over(base)).map_err(|error| in_units(&error))?;
         let structure = Structure::new(parameters).map_err(|error| in_units(&error))?;
-        let on_ground = self.ground.as_ref().map_or(Ok(structure.clone()), |ground| structure.on(ground));
+        let on_ground = structure.on(&self.ground);
         let without_r = |of: Structure| of.with(Parameters { r: f64::NAN, ..of.parameters() });
         let on_ground = if needs_no_r { on_ground.and_then(without_r) } else { on_ground };
         Ok(on_ground.map_err(|error| in_units(&error))?.measured_in(self.units))

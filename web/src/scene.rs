@@ -264,7 +264,7 @@ impl Fields {
         let storeys = (1..).zip(storeys.split_whitespace()).map(|(number, row)| storey(number, row));
         let storeys = storeys.collect::<Result<Vec<_>, _>>()?;
         let frame = Structure::from_storeys(base, &Damping::All(self.number("zeta")?), &storeys).map_err(says)?;
-        let frame = ground.map_or(Ok(frame.clone()), |ground| frame.on(&ground)).map_err(says)?;
+        let frame = frame.on(&ground).map_err(says)?;
         match self.whole("modes", 1.0)? {
             None => Ok(frame),
             Some(count) => frame.keeping(count).map_err(says),
