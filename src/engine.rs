@@ -609,6 +609,7 @@ fn leap_under<Q: Moves>(
     interval: f64,
     load: LinearLoad<Q>,
 ) -> Option<State<Q>> {
+    // no level leaps on ground that gives, where a step need not be made ready in vain
     if motion.chatter.held > 0.0 || matches!(motion.phase, Phase::OnGround(_)) {
         return None;
     }

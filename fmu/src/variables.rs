@@ -108,9 +108,7 @@ impl Source {
                 setup.parameters.iter_mut().for_each(|of| (quantity.set)(of, value));
             }
             (Source::InitialValue(which, floor), Value::Real(value)) => {
-                let mut numbers = setup.initial.numbers()[*which].to_vec();
-                numbers[*floor] = value;
-                setup.initial.set(*which, numbers);
+                setup.initial.numbers_mut()[*which][*floor] = value;
             }
             (Source::Placement(quantity), Value::Real(value)) => (quantity.set)(&mut setup.placement, value),
             _ => (),

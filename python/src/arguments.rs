@@ -132,10 +132,11 @@ pub fn result<'py>(py: Python<'py>, name: &str, parts: impl PyCallArgs<'py>) -> 
 }
 
 /// The one of `all` that `asked` names; a message calls the argument `name`.
-pub fn one_of<T, const N: usize>(name: &str, asked: &Bound<'_, PyAny>, all: [(&str, T); N]) -> PyResult<T> {
+pub fn one_of<'n, T>(name: &str, asked: &Bound<'_, PyAny>, all: impl IntoIterator<Item = (&'n str, T)>) -> PyResult<T> {
     let asked = asked.str()?.to_string();
-    let known = all.each_ref().map(|(known, _)| *known).join(", ");
-    let found = all.into_iter().find_map(|(known, of)| (known == asked).then_some(of));
+    let (known, all): (Vec<_>, Vec<_>) = all.into_iter().unzip();
+    let found = known.iter().zip(all).find_map(|(known, of)| (*known == asked).then_some(of));
+    let known = known.join(", ");
     found.ok_or_else(|| refused(anyhow!("{name} = {asked:?} is unknown; these are known: {known}")))
 }
 
@@ -149,13 +150,11 @@ pub fn conditions(
     let duration = duration.map(|duration| number("duration", duration)).transpose()?;
     let mut state = State::default();
     for (name, value) in initial.into_iter().flatten() {
-        let (asked, known) = (name.str()?.to_string(), INITIAL_VALUES.each_ref().map(|of| of.name).join(", "));
-        let place = INITIAL_VALUES.iter().position(|of| of.name == asked).ok_or_else(|| {
-            let all = format!("{known}, detail, tolerance, duration");
-            refused(anyhow!("argument or initial value = {asked:?} is unknown; these are known: {all}"))
-        })?;
-        let (name, is_of_floors) = (INITIAL_VALUES[place].name, asked.starts_with('u'));
-        state.set(place, if is_of_floors { numbers(name, &value)? } else { vec![number(name, &value)?] });
+        // Python takes the other arguments out before
+        let known = INITIAL_VALUES.iter().map(|of| of.name).chain(["detail", "tolerance", "duration"]);
+        let place = one_of("argument or initial value", &name, known.zip(0..))?;
+        let name = INITIAL_VALUES[place].name;
+        state.set(place, if name.starts_with('u') { numbers(name, &value)? } else { vec![number(name, &value)?] });
     }
     Ok(Conditions { initial: state, detail, tolerance, duration })
 }

@@ -7,7 +7,7 @@ use crate::structure::NotOneMass;
 use crate::structure::quantity::{OutOfRange, Quantity, quantity};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
-use std::slice::from_ref;
+use std::slice::{from_mut, from_ref};
 
 /// State of the structure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -256,6 +256,11 @@ impl State<Vec<f64>> {
     /// The numbers under each name of [`INITIAL_VALUES`].
     pub fn numbers(&self) -> [&[f64]; 4] {
         [from_ref(&self.theta), from_ref(&self.theta_dot), &self.u, &self.u_dot]
+    }
+
+    /// These numbers, to be changed.
+    pub fn numbers_mut(&mut self) -> [&mut [f64]; 4] {
+        [from_mut(&mut self.theta), from_mut(&mut self.theta_dot), &mut self.u, &mut self.u_dot]
     }
 
     /// Sets the numbers under the name of [`INITIAL_VALUES`] at this place.

@@ -123,8 +123,13 @@ struct Lane<'a, W> {
     advance: Option<Advance<f64>>,
 }
 
-/// The next action of a run, which other runs do too, by its place among the [`KINDS`]; or how the run has ended.
-type Next = Result<usize, Ending>;
+/// The next action of a run.
+enum Next {
+    /// Something that other runs do too, by its place among the [`KINDS`].
+    Kind(usize),
+    /// Nothing: it has ended.
+    End(Ending),
+}
 
 /// Kinds of steps that runs take together: leaps in full contact, and steps of rocking in a record and after it, which are longer.
 const KINDS: usize = 3;
@@ -147,7 +152,7 @@ impl<W: Passes> Lane<'_, W> {
         loop {
             let (Segment { duration, until, ground, .. }, ending) = match self.follower.next()? {
                 Ok(next) => next,
-                Err(ending) => return Ok(Err(ending)),
+                Err(ending) => return Ok(Next::End(ending)),
             };
             (self.until, self.ending) = (until, ending);
             let Lane { follower: Follower { engine, .. }, advance, watch, .. } = self;
@@ -163,13 +168,13 @@ impl<W: Passes> Lane<'_, W> {
     fn arrive(&mut self, made: Option<Progress>) -> Option<Next> {
         let Follower { engine, segments, rest, .. } = &mut self.follower;
         match made {
-            None => return Some(Ok(if *rest < LONGEST_REST { ROCKS_ON } else { ROCKS })),
-            Some(Progress::Overturned) => return Some(Err(Ending::Overturned)),
+            None => return Some(Next::Kind(if *rest < LONGEST_REST { ROCKS_ON } else { ROCKS })),
+            Some(Progress::Overturned) => return Some(Next::End(Ending::Overturned)),
             Some(_) => engine.set_time(self.until),
         }
         self.advance = None;
         let may_leap = || engine.may_leap() && engine.motion().work.steps <= MOST_STEPS && segments.samples().is_some();
-        self.ending.map(Err).or_else(|| may_leap().then_some(Ok(LEAPS)))
+        self.ending.map(Next::End).or_else(|| may_leap().then_some(Next::Kind(LEAPS)))
     }
 
     /// Follows the run by itself to its end.
@@ -178,7 +183,7 @@ impl<W: Passes> Lane<'_, W> {
         let made =
             advance.as_mut().map_or(Ok(Some(Progress::Complete)), |advance| engine.go_on(advance, false, false, watch));
         let made = made.map_err(|cause| error(engine, cause))?;
-        if let Some(Err(ending)) = self.arrive(made) {
+        if let Some(Next::End(ending)) = self.arrive(made) {
             return Ok(ending);
         }
         loop {
@@ -220,7 +225,7 @@ impl<'a, S: Simd> Together<'a, S> {
             return None;
         }
         let next = (kind != LEAPS).then(|| lane.take(&mut self.rocking, slot));
-        if matches!(next, Some(Ok(Ok(next))) if next == kind) {
+        if matches!(next, Some(Ok(Next::Kind(next))) if next == kind) {
             return None;
         }
         self.leave(kind, slot, lane);
@@ -254,8 +259,8 @@ impl<'a, W: Passes> Lanes<'a, W> {
     /// Sorts a lane by what it does next.
     fn goes_on(&mut self, lane: Box<Lane<'a, W>>, next: Result<Next, RunError>) {
         match next {
-            Ok(Ok(kind)) => self.of_kind[kind].push_back(lane),
-            Ok(Err(ending)) => self.ended.push((lane, Ok(ending))),
+            Ok(Next::Kind(kind)) => self.of_kind[kind].push_back(lane),
+            Ok(Next::End(ending)) => self.ended.push((lane, Ok(ending))),
             Err(error) => self.ended.push((lane, Err(error))),
         }
     }
