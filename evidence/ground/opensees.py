@@ -24,8 +24,8 @@ def solve_with(ops, kind: str, *integrator) -> None:
 
 def pier(s: fr.Structure, ground: fr.Ground, axial: float | None) -> None:
     """The pier at rest on the points of `ground` (xi, k, c), whose base node 1 is held horizontally. A point with a dashpot has a gap above spring and
-    dashpot. The mass, node 5, is guided along an axis that turns with the base; or it stands on an elastic column, `axial` times as stiff
-    along its axis, with damping of its initial stiffness."""
+    dashpot. The mass, node 5, is guided along an axis that turns with the base. With `axial` it stands on an elastic column instead, so many
+    times as stiff along its axis as across it, with damping of its initial stiffness."""
     import openseespy.opensees as ops
 
     ops.wipe()

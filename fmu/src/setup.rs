@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// The settings before a simulation starts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Setup {
-    /// Those of one mass; a host cannot change the numbers of many masses.
+    /// The parameters of one mass; a host cannot change the numbers of many masses.
     pub(crate) parameters: Option<Parameters>,
     /// With u and u̇ of each floor.
     pub(crate) initial: State<Vec<f64>>,

@@ -43,7 +43,7 @@ pub enum Source {
     Transitions,
     Overturned,
     Parameter(&'static Quantity<Parameters>),
-    /// One of [`INITIAL_VALUES`] by its place, of a floor.
+    /// An initial value by its place among [`INITIAL_VALUES`], and the floor that has it.
     InitialValue(usize, usize),
     Derived(&'static Derived),
     /// A number of many masses, which nothing changes.

@@ -198,7 +198,7 @@ pub struct Piece<'a, Q: Moves = f64> {
     pub(crate) room: &'a Room<Q>,
 }
 
-/// What watchers use of an engine when they ask for the polynomials of a leap.
+/// The part of an engine that watchers use when they ask for the polynomials of a leap.
 #[derive(Debug)]
 pub(crate) struct Room<Q> {
     /// Polynomials that they may still ask for.

@@ -148,8 +148,8 @@ pub trait Level<Q: Coordinates = f64>: Debug + Send {
     }
 }
 
-/// How far a motion leaves its chord: by at most twice the `vibration` about a line, and by at most M h²/8 over the time h if its
-/// second derivative is at most M. `bend` is M and h²/8.
+/// How far a motion leaves its chord. A vibration about a line leaves it by at most twice the `vibration`. A motion whose second
+/// derivative is at most M leaves it by at most M h²/8 over the time h: `bend` is M and h²/8.
 #[inline(always)]
 pub(crate) fn off_chord<N: Real>(vibration: N, bend: [N; 2]) -> N {
     (vibration.like(2.0) * vibration).min(bend[0] * bend[1])

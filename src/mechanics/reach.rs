@@ -147,8 +147,8 @@ impl Reach {
         u.weighed(&self.u) + damping * u_dot.weighed(&self.u_dot)
     }
 
-    /// The weights of |u|, |u̇|, and while rocking of |θ| and θ²/2, in full contact of |a_g| and of nothing, in the bound of the
-    /// output of one mass without force in `phase`. The bound is infinite where [`Reach::bound`] requires a polynomial.
+    /// Four weights in the bound of the output of one mass without force in `phase`: of |u|, of |u̇|, and while rocking of |θ| and of
+    /// θ²/2. In full contact the third is of |a_g| and the fourth is 0. The bound is infinite where [`Reach::bound`] requires a polynomial.
     #[cfg(feature = "lanes")]
     pub(crate) fn of_one(&self, structure: &Structure, phase: Phase) -> [f64; 4] {
         let damping = structure.base().damping(phase);
@@ -205,8 +205,8 @@ impl Reach {
     }
 }
 
-/// Bound of the positive part of offset + k e + c ė of the height e at ξ, on ground that gives. y and ξ sin θ cancel in e, so that the
-/// bound is of their series.
+/// Bound of the positive part of offset + k e + c ė of the height e at ξ, on ground that gives. y and ξ sin θ cancel in e: their series
+/// are added before they are bounded.
 fn most_of_height<Q: Coordinates>(arc: &Arc<Q>, place: usize, [xi, k, c, offset]: [f64; 4]) -> f64 {
     let mut series = ZERO;
     let height = |q: &Q| q.of(place) - xi * q.of(place + 1);

@@ -124,14 +124,14 @@ impl Phase {
         if let Phase::OnGround(_) = self { 0.0 } else { self.side().sign() }
     }
 
-    /// What carries the base on ground that gives; otherwise nothing.
+    /// The points that carry the base on ground that gives; otherwise none.
     #[inline]
     pub(crate) fn contact(self) -> Contact {
         if let Phase::OnGround(contact) = self { contact } else { Contact::default() }
     }
 
-    /// This phase as it is shown at the rotation `theta` (rad): on ground that gives full contact if all points are pressed, flight if
-    /// none is, and otherwise rocking about the side of θ.
+    /// This phase as it is shown at the rotation `theta` (rad). On ground that gives, this is full contact if all points are pressed,
+    /// flight if none is pressed, and otherwise rocking about the side of θ.
     pub fn shown(self, theta: f64) -> Phase {
         match self {
             Phase::OnGround(contact) if contact.is_full() => Phase::FullContact,

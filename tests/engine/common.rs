@@ -1,4 +1,4 @@
-//! What several tests share: a ground motion, random numbers, transitions of an advance, peaks beside samples.
+//! Shared by several tests: a ground motion, random numbers, transitions of an advance, peaks beside samples.
 
 use fastrand::Rng;
 use rocking::engine::piece::Sample;

@@ -25,8 +25,8 @@ fn on_the_line(points: &[Point], time: f64) -> Vec<f64> {
     from.zip(to).map(|(from, to)| from * (1.0 - part) + to * part).collect()
 }
 
-/// The curve of `run` to `part` of each largest value: its lines pass through the peaks of the first `count` drawn outputs and of
-/// the ground, and stay as close to samples every 0.1 ms, which `see` is shown beside the lines.
+/// The curve of `run` to `part` of each largest value. Its lines pass through the peaks of the first `count` drawn outputs and of
+/// the ground. They stay as close to samples every 0.1 ms; `see` gets each sample and the lines there.
 fn near_the_motion<Q: Runs>(run: &Run<Q>, part: f64, count: usize, see: impl Fn(&Sample<Q>, &[f64])) -> Curve<Q> {
     let curve = run.curve(part).unwrap();
     let (found, points) = (&curve.found, &curve.points);

@@ -27,7 +27,7 @@ struct Dense {
 const PEAKS: [Output; 7] = Output::PEAKS_OF_ONE;
 const SHOWN: usize = PEAKS.len() + 3;
 
-/// What has been seen of no sample.
+/// The shown numbers before any sample.
 const NOTHING: [f64; SHOWN] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0];
 
 /// The magnitudes in the order of [`PEAKS`], then (|R_m|/B − R_v)/W in full contact, −R_v/W, and |R_h|/R_v while R_v > 0,
@@ -110,8 +110,8 @@ fn scene(rng: &mut Rng) -> (OneMass, State, Detail) {
     (structure, state, detail)
 }
 
-/// No peak lies below what is sampled, and each is what the motion shows at its instant; nor is what is found of
-/// assumptions, but for friction that is infinite from where R_v is 0. COUNT sets how many scenes are tried.
+/// No peak and no worst value of an assumption lies below its samples. The motion shows each of them at its instant, but for friction
+/// that is infinite from where R_v is 0. COUNT sets how many scenes are tried.
 #[test]
 fn no_peak_is_missed() {
     let count = std::env::var("COUNT").map_or(600, |count| count.parse().unwrap());

@@ -202,8 +202,8 @@ pub(crate) unsafe fn call_back<F: Function>(c: *mut c_void, host: impl FnOnce())
     component.calls_back.store(false, Ordering::Relaxed);
 }
 
-/// Calls `body` with the instance that `c` points to, if `function` is allowed in its state; the rest of a call, after the host has
-/// been called back, is given the stages that `it_goes_on` in. No panic gets out.
+/// Calls `body` with the instance that `c` points to, if `function` is allowed in its stage. The rest of a call, after the host has
+/// been called back, is allowed in the stages that `it_goes_on` in instead. A panic becomes [`Status::Fatal`].
 #[inline]
 pub(crate) unsafe fn call<F: Function>(
     c: *mut c_void,
