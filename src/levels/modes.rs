@@ -649,7 +649,6 @@ mod tests {
     use super::*;
     use crate::OneMass;
     use crate::Ties;
-    use crate::levels::nonlinear::accelerations;
     use crate::mechanics::gauge::Gauge;
     use crate::mechanics::instant::Instant;
     use crate::mechanics::lateral::{Lateral, Modes};
@@ -687,26 +686,6 @@ mod tests {
     fn level(frame: &Structure, detail: Detail) -> ManyModes<Modes> {
         let angles = detail.angles();
         ManyModes::new(Subject { structure: frame.clone(), local_error: 1e-16, is_tied: true, angles }, detail)
-    }
-
-    /// One mode of any scale, under all loads and with all ties, against Eqs 5 and 6.
-    #[test]
-    fn one_mode_has_the_accelerations_of_equations_5_and_6() {
-        let (scale, dissipators) = (1.7, Dissipators { plastic: [2e-3, -1e-3], yields: [0, 1], ..Dissipators::NEW });
-        let (structure, frame) = frame(&[1.0 / scale], 1.0);
-        for side in [Side::Right, Side::Left] {
-            let theta = 0.1 * side.sign();
-            let one = State { u: 0.02, u_dot: -0.7, theta, theta_dot: 0.6 };
-            let load = Load { a_g: 3.0, F_t: 250.0, a_v: -1.5 };
-            let expected = accelerations(&structure, side, &one, load, &dissipators).unwrap();
-            let of = |number: f64| Modes::new(&[number]);
-            let state = State { u: of(one.u / scale), u_dot: of(one.u_dot / scale), theta, theta_dot: one.theta_dot };
-            let load = Load { a_g: load.a_g, F_t: of(load.F_t * scale), a_v: load.a_v };
-            let now = Now { state: &state, load, dissipators: &dissipators };
-            let found = level(&frame, Detail::Nonlinear).accelerations(Phase::Rocking(side), &now);
-            assert_relative_eq!(scale * found.u_ddot.of(0), expected[0], max_relative = 1e-12);
-            assert_relative_eq!(found.theta_ddot, expected[1], max_relative = 1e-12);
-        }
     }
 
     /// The derivatives of the series are the accelerations along it, under all loads and with all ties.

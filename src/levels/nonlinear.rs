@@ -403,39 +403,6 @@ impl NonlinearRocking {
 mod tests {
     use super::*;
     use crate::Parameters;
-    use crate::mechanics::load::LinearLoad;
-    use crate::series::taylor::Series;
-    use proptest::prelude::*;
-
-    proptest! {
-        /// The series' first coefficients are the accelerations of Eqs 5 and 6 as they stand, and the second ones
-        /// their time derivatives (central differences along the motion).
-        #[test]
-        fn the_series_satisfies_equations_5_and_6(
-            u in -0.05..0.05f64, u_dot in -2.0..2.0f64, theta in -1.2..1.2f64, theta_dot in -3.0..3.0f64,
-            value in -20.0..20.0f64, slope in -500.0..500.0f64, force in -3e3..3e3f64, force_slope in -1e5..1e5f64,
-        ) {
-            let structure = OneMass::new(Parameters::MCMANUS).unwrap();
-            let side = Side::of(theta);
-            let state = State { u, u_dot, theta, theta_dot };
-            let mut arc = Arc::default();
-            let value = Load { a_g: value, F_t: force, a_v: 0.0 };
-            let load = LinearLoad { value, slope: Load { a_g: slope, F_t: force_slope, a_v: 0.0 } };
-            let (a_g, a_top) = (load.on_foundation(), load.on_top(&structure.into()));
-            let start = Start { state, a_g, a_top, interval: 2e-3, local_error: 1e-16, ..Start::default() };
-            NonlinearRocking::new(structure, false).series(side, &start, &mut arc);
-            for sigma in [0.0, 0.2, 0.55, 1.0] {
-                let load = load.at(sigma * arc.span);
-                let expected = accelerations(&structure, side, &arc.at(sigma), load, &Dissipators::NEW).unwrap();
-                let derivative = |series: &Series| -> f64 {
-                    (1..=arc.order).map(|k| k as f64 * series[k] * sigma.powi(k as i32 - 1)).sum::<f64>() / arc.span
-                };
-                let size = expected.norm() + 100.0;
-                prop_assert!((derivative(&arc.u_dot) - expected[0]).abs() < 1e-10 * size);
-                prop_assert!((derivative(&arc.theta_dot) - expected[1]).abs() < 1e-10 * size);
-            }
-        }
-    }
 
     #[test]
     fn the_mass_matrix_is_singular_with_the_top_mass_above_the_pivot_of_a_massless_foundation() {

@@ -463,22 +463,11 @@ mod tests {
     use crate::mechanics::impact::{angular_momentum, energy_gained, land, resolve, restitution};
     use crate::mechanics::instant::{Instant, Second};
     use crate::mechanics::reactions::{Impulse, Reactions};
-    use crate::structure::description::{Damping, Storey};
-    use crate::structure::natural_quantities::Given;
+    use crate::structure::description::Storey;
+    use crate::structure::description::tests::{STOREYS, three_storeys};
     use crate::{Load, Phase, Side, State};
     use approx::assert_relative_eq;
     use nalgebra::{Matrix3, Vector3};
-
-    const STOREYS: [Storey; 3] = [
-        Storey { m: 40e3, h: 3.5, k: 60e6 },
-        Storey { m: 40e3, h: 7.0, k: 50e6 },
-        Storey { m: 30e3, h: 10.5, k: 40e6 },
-    ];
-
-    fn three_storeys() -> Structure {
-        let base = Given::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("r", 0.93)]).unwrap();
-        Structure::from_storeys(&base, &Damping::All(0.02), &STOREYS).unwrap()
-    }
 
     /// Coordinates of the modes from displacements of the masses.
     fn modal(frame: &Structure, u: &Vector3<f64>) -> Modes {

@@ -16,7 +16,6 @@ use crate::Structure;
 use crate::mechanics::lateral::Coordinates;
 use crate::structure::quantity::{OutOfRange, Quantity, quantity};
 use serde::{Deserialize, Serialize};
-use std::ops::{Index, IndexMut};
 
 /// An acceleration over one interval, positive to the right: `value + slope·(t − start of the interval)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -104,32 +103,6 @@ impl<Q: Coordinates> Load<Q> {
     #[inline(always)]
     pub(crate) fn on_modes(&self, structure: &Structure) -> Q {
         Q::each(structure, |j, mode| mode.part(self.a_g) - self.F_t.of(j) / mode.mass).beside(&self.F_t)
-    }
-}
-
-impl Index<usize> for Load {
-    type Output = f64;
-
-    #[inline]
-    fn index(&self, which: usize) -> &f64 {
-        match which {
-            0 => &self.a_g,
-            1 => &self.F_t,
-            2 => &self.a_v,
-            _ => panic!("there is no load {which}"),
-        }
-    }
-}
-
-impl IndexMut<usize> for Load {
-    #[inline]
-    fn index_mut(&mut self, which: usize) -> &mut f64 {
-        match which {
-            0 => &mut self.a_g,
-            1 => &mut self.F_t,
-            2 => &mut self.a_v,
-            _ => panic!("there is no load {which}"),
-        }
     }
 }
 

@@ -368,31 +368,9 @@ impl Output {
 
 #[cfg(test)]
 mod tests {
-    use crate::levels::{full_contact, nonlinear};
     use crate::mechanics::load::LinearLoad;
-    use crate::mechanics::restraint::Dissipators;
-    use crate::{Detail, Engine, Load, OneMass, Output, Parameters, Phase, Reactions, Side, State};
+    use crate::{Detail, Engine, Load, OneMass, Output, Parameters, Reactions, State};
     use approx::assert_relative_eq;
-
-    /// Eq 27 with ü and θ̈ from Eqs 5 and 6, or from Eq 1 in full contact, agrees with a_t from the state.
-    #[test]
-    fn the_acceleration_is_that_of_equation_27() {
-        let structure = OneMass::new(Parameters::MCMANUS).unwrap();
-        let &Parameters { H, B, .. } = structure.parameters();
-        let state = State { u: 3e-3, u_dot: -0.2, theta: -0.08, theta_dot: 0.6 };
-        let load = Load { a_g: 7.0, F_t: 300.0, a_v: -3.0 };
-        let accelerations = nonlinear::accelerations(&structure, Side::Left, &state, load, &Dissipators::NEW).unwrap();
-        let expected = accelerations[0]
-            + H * accelerations[1]
-            + state.theta_dot.powi(2) * (-B - state.u)
-            + load.a_g * libm::cos(state.theta)
-            - load.a_v * libm::sin(state.theta);
-        let a_t = |phase, state: &State| Output::a_t(0).at(&structure.into(), phase, state, load);
-        assert_relative_eq!(a_t(Phase::Rocking(Side::Left), &state), expected, max_relative = 1e-12);
-        let down = State { theta: 0.0, theta_dot: 0.0, ..state };
-        let expected = full_contact::acceleration(&structure, &down, load) + load.a_g;
-        assert_relative_eq!(a_t(Phase::FullContact, &down), expected, max_relative = 1e-12);
-    }
 
     /// The rates are the slopes of the outputs and reactions along the motion, at every level.
     #[test]

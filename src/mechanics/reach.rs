@@ -225,16 +225,9 @@ mod tests {
     use crate::engine::piece::magnitudes;
     use crate::mechanics::lateral::Lateral;
     use crate::mechanics::load::Load;
-    use crate::structure::description::{Damping, Storey};
-    use crate::structure::natural_quantities::Given;
+    use crate::structure::description::tests::three_storeys;
     use crate::{Phase, Side, State};
     use proptest::prelude::*;
-
-    fn three_storeys() -> Structure {
-        let base = Given::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5)]).unwrap();
-        let storeys = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)].map(|(m, h, k)| Storey { m, h, k });
-        Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap()
-    }
 
     proptest! {
         /// No output of three storeys leaves its chord by more than its bound, under a force that is linear in time.

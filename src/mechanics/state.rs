@@ -210,20 +210,10 @@ pub enum InitialStateError {
     #[error(
         "the initial state has {given} coordinates, and {modes} modes move: give one coordinate for each, or 0 for all"
     )]
-    Coordinates {
-        /// Coordinates that are given.
-        given: usize,
-        /// Modes that move.
-        modes: usize,
-    },
+    Coordinates { given: usize, modes: usize },
     /// The top mass is displaced although the strut is rigid.
     #[error("u_0 = {u:?} m, u_dot_0 = {u_dot:?} m/s contradict detail = rigid, where u is always 0: set both to 0")]
-    DeformedRigid {
-        /// u_0, m.
-        u: f64,
-        /// u_dot_0, m/s.
-        u_dot: f64,
-    },
+    DeformedRigid { u: f64, u_dot: f64 },
 }
 
 /// The most by which a quantity with this `rate` changes over `ahead` (s), whatever accelerates it.

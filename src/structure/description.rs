@@ -202,28 +202,20 @@ pub enum DescriptionError {
     Little { of_modes: f64, m_s: f64 },
 }
 
-const fn limit(
-    name: &'static str,
-    unit: &'static str,
-    [min, max]: [f64; 2],
-    description: &'static str,
-) -> Quantity<f64> {
-    Quantity { name, unit, description, min, max, get: |of| *of, set: |of, value| *of = value }
-}
-
-const FLOOR_MASS: Quantity<f64> = limit("m", "kg", [1e-6, 1e12], "mass of the floor");
-const FLOOR_HEIGHT: Quantity<f64> = limit("h", "m", [1e-3, 1e4], "height of the floor above the base");
-const STOREY: Quantity<f64> = limit("k", "N/m", [1e-6, 1e18], "stiffness of the storey below the floor");
-const ENTRY: Quantity<f64> = limit("K", "N/m", [-1e18, 1e18], "stiffness");
-const ZETA: Quantity<f64> = limit("zeta", "1", [0.0, MAX_DAMPING], "damping ratio in full contact");
-const RAYLEIGH: Quantity<f64> = limit("zeta", "1", [0.0, 10.0], "damping ratio of a mode by Rayleigh damping");
-const F: Quantity<f64> = limit("f", "Hz", [1e-3, 1e4], "frequency in full contact");
-const PERIOD: Quantity<f64> = limit("period", "s", [1e-4, 1e3], "period in full contact");
+const FLOOR_MASS: Quantity<f64> = Quantity::limit("m", "kg", [1e-6, 1e12], "mass of the floor");
+const FLOOR_HEIGHT: Quantity<f64> = Quantity::limit("h", "m", [1e-3, 1e4], "height of the floor above the base");
+const STOREY: Quantity<f64> = Quantity::limit("k", "N/m", [1e-6, 1e18], "stiffness of the storey below the floor");
+const ENTRY: Quantity<f64> = Quantity::limit("K", "N/m", [-1e18, 1e18], "stiffness");
+const ZETA: Quantity<f64> = Quantity::limit("zeta", "1", [0.0, MAX_DAMPING], "damping ratio in full contact");
+const RAYLEIGH: Quantity<f64> =
+    Quantity::limit("zeta", "1", [0.0, 10.0], "damping ratio of a mode by Rayleigh damping");
+const F: Quantity<f64> = Quantity::limit("f", "Hz", [1e-3, 1e4], "frequency in full contact");
+const PERIOD: Quantity<f64> = Quantity::limit("period", "s", [1e-4, 1e3], "period in full contact");
 const MASS: Quantity<f64> =
-    limit("mass", "kg", [1e-6, 1e12], "effective mass along the record; leave out a mode without such mass");
-const HEIGHT: Quantity<f64> = limit("height", "m", [-1e4, 1e4], "effective height");
-const MOMENT: Quantity<f64> = limit("moment", "kg.m", [-1e16, 1e16], "effective mass times effective height");
-const SHAPE: Quantity<f64> = limit("shape", "1", [-1e12, 1e12], "displacement of a floor");
+    Quantity::limit("mass", "kg", [1e-6, 1e12], "effective mass along the record; leave out a mode without such mass");
+const HEIGHT: Quantity<f64> = Quantity::limit("height", "m", [-1e4, 1e4], "effective height");
+const MOMENT: Quantity<f64> = Quantity::limit("moment", "kg.m", [-1e16, 1e16], "effective mass times effective height");
+const SHAPE: Quantity<f64> = Quantity::limit("shape", "1", [-1e12, 1e12], "displacement of a floor");
 
 /// The most floors of a structure, whose modes take a time that grows with the cube of the number.
 const MOST_FLOORS: usize = 500;
@@ -559,7 +551,7 @@ fn shape(number: usize, found: &FoundMode, height: f64, floors: &[Place]) -> Res
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::structure::Base;
     use approx::assert_relative_eq;
@@ -573,13 +565,14 @@ mod tests {
         base(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("r", 0.93)])
     }
 
-    const STOREYS: [Storey; 3] = [
+    pub(crate) const STOREYS: [Storey; 3] = [
         Storey { m: 40e3, h: 3.5, k: 60e6 },
         Storey { m: 40e3, h: 7.0, k: 50e6 },
         Storey { m: 30e3, h: 10.5, k: 40e6 },
     ];
 
-    fn frame() -> Structure {
+    /// Three storeys whose response is known.
+    pub(crate) fn three_storeys() -> Structure {
         Structure::from_storeys(&usual(), &Damping::All(0.02), &STOREYS).unwrap()
     }
 
@@ -621,7 +614,7 @@ mod tests {
     /// Numbers of an independent calculation.
     #[test]
     fn the_storeys_have_the_known_modes() {
-        let frame = frame();
+        let frame = three_storeys();
         let base = frame.base();
         let known = [
             (2.79631878, 97782.91, 7.652647, 0.941852),
@@ -644,39 +637,8 @@ mod tests {
     }
 
     #[test]
-    fn a_structure_keeps_as_many_modes_as_it_says() {
-        let kept = |keep| {
-            let none = (Vec::new(), Vec::new(), Vec::new());
-            let (base, zeta, (floors, K, modes)) = (usual(), Damping::All(0.02), none);
-            let (units, storeys, p_delta, total) = (Units::Newtons, STOREYS.to_vec(), false, None);
-            Described { units, base, zeta, storeys, p_delta, floors, K, modes, total, keep, ground: None }.structure()
-        };
-        assert_eq!(kept(None).unwrap(), frame());
-        assert_eq!(kept(Some(2)).unwrap(), frame().keeping(2).unwrap());
-        let refused = |keep| kept(Some(keep)).unwrap_err().to_string();
-        assert_eq!(refused(0), "keep = 0 is out of range: keep 1 to 3 modes, or use detail = rigid");
-        assert_eq!(refused(4), "keep = 4 is out of range: keep 1 to 3 modes");
-        assert_eq!(refused(-1), "keep = -1 is out of range: keep 1 to 3 modes");
-    }
-
-    #[test]
-    fn one_storey_under_its_weight_has_the_known_frequency() {
-        let frame = |k| {
-            let storeys = with_p_delta(&usual(), &[Storey { m: 40e3, h: 3.5, k }])?;
-            Structure::from_storeys(&usual(), &Damping::All(0.02), &storeys)
-        };
-        let omega = frame(1e6).unwrap().modes()[0].omega();
-        assert_relative_eq!(omega * omega, 1e6 / 40e3 - 9.81 / 3.5, max_relative = 1e-14);
-        let refused = frame(112e3).unwrap_err().to_string();
-        assert!(
-            refused.starts_with("storey 1: k = 112000 N/m does not exceed P/h = 112114 N/m, at which"),
-            "{refused}"
-        );
-    }
-
-    #[test]
     fn storeys_matrices_and_modes_are_the_same_structure() {
-        let storeys = frame();
+        let storeys = three_storeys();
         let K = [vec![110e6, -50e6, 0.0], vec![-50e6, 90e6, -40e6], vec![0.0, -40e6, 40e6]];
         let damping = Damping::Each(vec![0.02; 3]);
         assert_same(&storeys, &Structure::from_matrices(&usual(), &damping, &places(), &K).unwrap());
@@ -703,62 +665,9 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_names_the_number_the_limit_and_the_remedy() {
-        let all = Damping::All(0.02);
-        let storeys = |change: fn(&mut [Storey; 3])| {
-            let mut storeys = STOREYS;
-            change(&mut storeys);
-            Structure::from_storeys(&usual(), &Damping::All(0.02), &storeys).unwrap_err().to_string()
-        };
-        assert!(storeys(|of| of[1].k = 0.0).starts_with("storey 2: k = 0 N/m is out of range: it must lie between"));
-        assert!(storeys(|of| of[2].m = -30e3).starts_with("floor 3: m = -30000 kg is out of range"));
-        assert!(storeys(|of| of[2].m = f64::NAN).starts_with("floor 3: m = NaN kg is out of range"));
-        let drifts = storeys(|of| of[1].h = 3.5);
-        assert_eq!(
-            drifts,
-            "floor 2 is at h = 3.5 m and the floor below it at 3.5 m: h is the height above the base, from the lowest floor up"
-        );
-        let matrices = |change: fn(&mut Vec<Vec<f64>>)| {
-            let mut K = vec![vec![110e6, -50e6, 0.0], vec![-50e6, 90e6, -40e6], vec![0.0, -40e6, 40e6]];
-            change(&mut K);
-            Structure::from_matrices(&usual(), &Damping::All(0.02), &places(), &K).unwrap_err().to_string()
-        };
-        assert_eq!(matrices(|K| drop(K.pop())), "K has 2 numbers and must have 3, one for each floor");
-        assert_eq!(matrices(|K| K[1].push(0.0)), "K[2] has 4 numbers and must have 3, one for each floor");
-        assert_eq!(
-            matrices(|K| K[2][1] = -4e6),
-            "K[3][2] = -4000000 N/m and K[2][3] = -40000000 N/m: K must be symmetric"
-        );
-        let soft = matrices(|K| K[2][2] = 10e6);
-        assert!(soft.starts_with("K is not positive definite: a mode has omega^2 = -"), "{soft}");
-        assert!(soft.contains("in which floor 3 moves most"), "{soft}");
-        assert!(matrices(|K| K[0][0] = f64::NAN).starts_with("row 1: K = NaN N/m is out of range"));
-        let damped = |damping| Structure::from_storeys(&usual(), &damping, &STOREYS).unwrap_err().to_string();
-        assert_eq!(damped(Damping::Each(vec![0.02])), "zeta has 1 numbers and must have 3, one for each mode");
-        for zeta in [-0.1, 5.0] {
-            let expected = format!("zeta = {zeta} is out of range: it must lie between 0 and 0.99 (damping ratio");
-            for damping in [Damping::All(zeta), Damping::Each(vec![zeta; 3]), Damping::Rayleigh { f: [1.0, 2.0], zeta }]
-            {
-                assert!(damped(damping).starts_with(&expected), "{zeta}");
-            }
-        }
-        assert!(damped(Damping::Rayleigh { f: [0.0, 1.0], zeta: 0.1 }).starts_with("f = 0 Hz is out of range"));
-        let of_base = |base, storeys: &[Storey]| Structure::from_storeys(&base, &all, storeys).unwrap_err().to_string();
-        assert_eq!(of_base(usual(), &[]), "0 floors are given: a structure has 1 to 500");
-        assert!(of_base(usual(), &[STOREYS[0]; 501]).starts_with("501 floors are given"));
-        let without_width = of_base(base(&[("m0", 1.0)]), &STOREYS);
-        assert!(without_width.starts_with("base: B (half-width of the base) is missing: give B (m) or width (m)"));
-        let of_one = of_base(base(&[("m0", 1.0), ("B", 1.0), ("H", 1.0)]), &STOREYS);
-        assert!(of_one.starts_with("base: H is a number of a structure of one mass"));
-        assert!(of_base(base(&[("m0", 1.0), ("B", -1.0)]), &STOREYS).starts_with("base: B = -1 m is out of range"));
-        let thin = of_base(base(&[("m0", 1.0), ("B", 1e-3)]), &STOREYS);
-        assert!(thin.starts_with("the centre of the mass above the base is 6681.8"), "{thin}");
-    }
-
-    #[test]
     fn modes_that_do_not_fit_the_mass_are_refused_with_the_excess() {
         let refused = |change: fn(&mut Vec<FoundMode>, &mut Total)| {
-            let mut modes = found(&frame());
+            let mut modes = found(&three_storeys());
             let mut total = Total { m_s: 110e3, S_1: 735e3, I_2: Some(40e3 * 61.25 + 30e3 * 110.25), J_P: None };
             change(&mut modes, &mut total);
             let built = Structure::from_modes(&usual(), &Damping::All(0.02), &modes, Some(total), &places());
@@ -793,10 +702,11 @@ mod tests {
         assert!(
             refused(|_, total| total.J_P = Some(1.0)).starts_with("I_2 (kg.m2) or J_P (kg.m2) is needed, and not both")
         );
-        let many = vec![found(&frame())[0].clone(); 25];
+        let many = vec![found(&three_storeys())[0].clone(); 25];
         let many = Structure::from_modes(&usual(), &Damping::All(0.0), &many, None, &places());
         assert_eq!(many, Err(StructureError::Modes(25).into()));
-        let without_total = Structure::from_modes(&usual(), &Damping::All(0.0), &found(&frame())[..1], None, &[]);
+        let without_total =
+            Structure::from_modes(&usual(), &Damping::All(0.0), &found(&three_storeys())[..1], None, &[]);
         assert_eq!(without_total, Err(DescriptionError::NoTotal));
     }
 

@@ -89,6 +89,18 @@ pub struct OutOfRange {
     pub description: &'static str,
 }
 
+impl Quantity<f64> {
+    /// The limits of a number that no field holds.
+    pub const fn limit(
+        name: &'static str,
+        unit: &'static str,
+        [min, max]: [f64; 2],
+        description: &'static str,
+    ) -> Self {
+        Quantity { name, unit, description, min, max, get: |of| *of, set: |of, value| *of = value }
+    }
+}
+
 impl<T> Quantity<T> {
     /// Accepts `value` (in the unit of the quantity) if it is in range. NaN and ±∞ are out of range.
     #[inline]

@@ -1,5 +1,6 @@
 //! Curves of runs from outside: what straight lines between their points say, beside the motion itself.
 
+use crate::common::sampled;
 use crate::modes::three_storeys;
 use approx::assert_relative_eq;
 use rocking::engine::piece::Sample;
@@ -10,10 +11,7 @@ use rocking::{Detail, OneMass, Output, Parameters, Phase, State, TransitionKind}
 
 /// Lifts, bounces and lands the McManus specimen at every level: two sines that die away.
 fn ground() -> Record {
-    let time = |i: usize| i as f64 * 0.02;
-    let a_g = |t: f64| (4.0 * (9.0 * t).sin() + 2.0 * (23.0 * t).cos()) * (-0.4 * t).exp();
-    let samples = (0..300).map(time);
-    Record::from_samples("two sines", samples.clone().collect(), samples.map(a_g).collect()).unwrap()
+    sampled(300, 0.02, |t| (4.0 * (9.0 * t).sin() + 2.0 * (23.0 * t).cos()) * (-0.4 * t).exp())
 }
 
 /// Values at `time` of the line through `points`, after a transition at that instant: the outputs, then a_g.

@@ -15,27 +15,6 @@ fn mcmanus() -> OneMass {
     OneMass::new(Parameters::MCMANUS).unwrap()
 }
 
-/// A rigid body that falls back under a steady push strikes with the energy that weight and push gave it: Eq 6 with u = 0
-/// over θ.
-#[test]
-fn rigid_rocks_as_its_equation_says() {
-    let structure = mcmanus();
-    let &Parameters { m, m0, H, B, g, r, .. } = structure.parameters();
-    let push = Ramp { value: 1.0, slope: 0.0 };
-    let initial = State { theta: -0.05, theta_dot: 0.1, ..State::default() };
-    // of the weight and of the push, about the left pivot
-    let work = |theta: f64| {
-        let (sin, cos) = theta.sin_cos();
-        -m * g * H * cos + (m + m0) * g * B * sin - push.value * (m * H * sin + (m + m0) * B * cos)
-    };
-    let squared = initial.theta_dot.powi(2) + 2.0 * (work(0.0) - work(initial.theta)) / structure.J_P;
-    let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-10, Detail::Rigid).unwrap();
-    let impacts = transitions(&mut engine, 1.0, push);
-    assert_eq!(impacts[0].kind, TransitionKind::Impact(Side::Right));
-    assert_abs_diff_eq!(impacts[0].before.theta_dot, squared.sqrt(), epsilon = 1e-10);
-    assert_eq!(impacts[0].after.theta_dot, r * impacts[0].before.theta_dot);
-}
-
 /// Zeno: the rigid structure comes to rest through finitely many impacts, with no more energy left than a step's error has.
 #[test]
 fn rigid_comes_to_rest_with_less_energy_than_the_tolerance() {
@@ -72,19 +51,6 @@ fn too_many_impacts_end_in_contact() {
     assert_eq!(transitions.len(), MAX_RIGID_TRANSITIONS_PER_PERIOD as usize + 2);
     assert_eq!((settling.kind, uplift.kind), (TransitionKind::Settling, TransitionKind::Uplift(Side::Left)));
     assert_abs_diff_eq!(uplift.time, transitions[0].time + period, epsilon = 1e-12);
-}
-
-/// Uplift of the rigid structure is at |a_g| = g tan α_cg.
-#[test]
-fn rigid_lifts_off_when_the_push_exceeds_its_slenderness() {
-    let structure = mcmanus();
-    let limit = 9.81 * structure.tan_alpha_cg;
-    let ramp = Ramp { value: 0.0, slope: 2.0 * limit };
-    let mut engine = Engine::with_detail(structure, State::default(), 0.0, 1e-9, Detail::Rigid).unwrap();
-    let first = transitions(&mut engine, 0.55, ramp)[0];
-    assert_eq!(first.kind, TransitionKind::Uplift(Side::Left)); // ground to the right, structure to the left
-    assert_abs_diff_eq!(first.time, 0.5, epsilon = 1e-11);
-    assert!(engine.motion().state.theta < 0.0);
 }
 
 /// A structure that has come to rest stays so, in one call or in many, long after its motion is too small for numbers.
@@ -136,15 +102,6 @@ fn what_is_down_for_good_takes_no_more_steps() {
             assert!(off < 1e-9 * structure.u_cr, "{name}: {off} beside {expected}");
         }
     }
-}
-
-#[test]
-fn initial_states_that_a_level_cannot_have_are_refused() {
-    let refused = |detail, initial| Engine::with_detail(mcmanus(), initial, 0.0, 1e-9, detail).unwrap_err().to_string();
-    let turned = State { theta: 0.1, ..State::default() };
-    assert!(refused(Detail::FixedBase, turned).starts_with("theta_0 = 0.1 rad contradicts detail = fixed_base"));
-    let deformed = State { u: 0.01, ..State::default() };
-    assert!(refused(Detail::Rigid, deformed).starts_with("u_0 = 0.01 m, u_dot_0 = 0.0 m/s contradict detail = rigid"));
 }
 
 /// Stepping allocates nothing, at any level, through any transition.

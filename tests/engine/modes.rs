@@ -53,26 +53,6 @@ fn pulse(i: usize) -> f64 {
     if t < 0.8 { 0.3 * G * (TAU * t / 0.8).sin() } else { 0.0 }
 }
 
-/// Without damping, a frame that rocks freely keeps its energy between impacts.
-#[test]
-fn a_frame_keeps_its_energy_between_impacts() {
-    for modes in [3, 1] {
-        let state = State { u: Modes::new(&[2.0, -1.0, 0.5][..modes]), theta: 0.03, ..at_rest(modes) };
-        let settings = Settings { detail: Detail::Nonlinear, ..Settings::default() };
-        let mut engine = Engine::of_modes(storeys(0.0, 0.95, modes, 1.0), state, 0.0, settings).unwrap();
-        let (mut last, mut impacts) = (engine.energy(), 0);
-        for _ in 0..600 {
-            if transitions(&mut engine, 0.01, ground(modes, 0.0, 0.0, 0.01)).is_empty() {
-                let now = engine.energy();
-                assert!((now / last - 1.0).abs() <= 1e-12, "{}: {now} and not {last}", engine.motion().time);
-            } else {
-                (last, impacts) = (engine.energy(), impacts + 1);
-            }
-        }
-        assert!((4..300).contains(&impacts), "{impacts}");
-    }
-}
-
 /// Modes left out are the limit of stiff modes between landings: while rocking from θ̇ = 0.2 rad/s on, and at the uplift of a base at
 /// rest, with forces on the floors.
 #[test]

@@ -1,7 +1,7 @@
 //! An integrator of its own on the equations of the library: never below the floor, and nearer to the engine the smaller
 //! its steps. Bad integrators are in `test_model_exchange.py`.
 
-use crate::common::transitions;
+use crate::common::{sampled, transitions};
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::outside_step::{BAND, Checked, Checkpoint};
 use rocking::run::record::Record;
@@ -9,9 +9,7 @@ use rocking::{Detail, Engine, GroundMotion, LinearLoad, Load, OneMass, Parameter
 
 /// A burst that lifts McManus's pier some twenty times.
 fn burst() -> Record {
-    let times: Vec<_> = (0..=400).map(|i| f64::from(i) * 0.01).collect();
-    let a_g = times.iter().map(|t| 5.0 * (-t / 2.0_f64).exp() * (std::f64::consts::TAU * 2.3 * t).sin()).collect();
-    Record::from_samples("burst", times, a_g).unwrap()
+    sampled(401, 0.01, |t| 5.0 * (-t / 2.0_f64).exp() * (std::f64::consts::TAU * 2.3 * t).sin())
 }
 
 /// An integrator on an engine's equations.

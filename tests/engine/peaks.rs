@@ -1,7 +1,7 @@
 //! Peaks of leaps, of equal crests and of contact that lasts no time, and what finding peaks costs. That none is missed
 //! is in `missed_peaks.rs`.
 
-use crate::common::{peaks_beside_samples, shaking};
+use crate::common::{peaks_beside_samples, sampled, shaking};
 use rocking::run::peaks::Peaks;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
@@ -17,8 +17,7 @@ fn a_long_leap_is_read_to_its_end() {
         let initial =
             if detail == Detail::FixedBase { State { theta: 0.0, theta_dot: 0.0, ..initial } } else { initial };
         let results = [0.3, 1e-3].map(|dt| {
-            let times: Vec<f64> = (0..=(0.3 / dt) as u32).map(|i| f64::from(i) * dt).collect();
-            let ground = Record::from_samples("rest", times.clone(), vec![0.0; times.len()]).unwrap();
+            let ground = sampled((0.3 / dt) as usize + 1, dt, |_| 0.0);
             let run = Run { detail, initial, tolerance: 1e-12, end: End::At(0.3), ..Run::new(structure, &ground) };
             let mut read = Vec::new();
             let instants = (0..300).map(|i| f64::from(i) * 1e-3 + 3e-4);
@@ -63,9 +62,7 @@ fn a_leap_without_end_is_looked_at_at_its_ends() {
 #[test]
 fn contact_of_no_duration_is_no_motion() {
     let structure = OneMass::new(Parameters::MCMANUS).unwrap();
-    let times: Vec<f64> = (0..=200).map(|i| f64::from(i) * 1e-3).collect();
-    let cosine = times.iter().map(|t| 6.85 * (40.0 * t).cos()).collect();
-    let ground = Record::from_samples("cosine", times, cosine).unwrap();
+    let ground = sampled(201, 1e-3, |t| 6.85 * (40.0 * t).cos());
     for (detail, c_ratio) in [(Detail::Rigid, 1.0), (Detail::Auto, 3.0), (Detail::Linear, 0.2)] {
         let structure = OneMass::new(Parameters { c_ratio, ..*structure.parameters() }).unwrap();
         // beyond uplift from the start

@@ -1,6 +1,6 @@
 //! Runs of structures of many masses: the exact peaks of each floor.
 
-use crate::common::peaks_beside_samples;
+use crate::common::{peaks_beside_samples, sampled};
 use rocking::engine::AdvanceError;
 use rocking::engine::piece::Sample;
 use rocking::run::peaks::Peaks;
@@ -14,9 +14,7 @@ use std::f64::consts::TAU;
 
 /// A wavelet of 3 s that rocks the specimens, in samples of 10 ms.
 fn ground() -> Record {
-    let times: Vec<f64> = (0..=300).map(|i| 0.01 * f64::from(i)).collect();
-    let a_g = times.iter().map(|t| 6.0 * (TAU * 1.1 * t).sin() * (TAU * t / 6.0).sin()).collect();
-    Record::from_samples("", times, a_g).unwrap()
+    sampled(301, 0.01, |t| 6.0 * (TAU * 1.1 * t).sin() * (TAU * t / 6.0).sin())
 }
 
 /// The base of `parameters` without the top mass.

@@ -94,67 +94,6 @@ fn a_prestressed_tendon_is_more_weight_at_the_base() {
     assert!(its == transitions && transitions > 5 && off < 1e-9, "{off:e}, {transitions}");
 }
 
-/// Released, without damping of its own: what the structure and the restraints store falls by what the dissipators take, and
-/// only by that, until the impact.
-#[test]
-fn energy_goes_where_the_dissipators_take_it() {
-    let undamped = Parameters { zeta_fc: 0.0, ..RESTRAINED };
-    for parameters in [
-        Parameters { c_d: 0.0, k_d: 0.0, F_y: 0.0, ..undamped },
-        Parameters { c_d: 0.0, F_y: 1e9, ..undamped },
-        Parameters { k_d: 0.0, F_y: 0.0, ..undamped },
-        undamped,
-        Parameters { xi_d: 0.4, ..undamped },
-    ] {
-        let structure = structure(parameters);
-        for (theta, theta_dot) in [(0.03, 0.0), (-0.02, -0.2)] {
-            let initial = State { theta, theta_dot, u: 1e-3, u_dot: 0.0 };
-            let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-11, Detail::Nonlinear).unwrap();
-            let total = |&Motion { phase, state, dissipators, .. }: &Motion| {
-                let stored = Restraint::about(structure.base(), phase.side(), &dissipators).stored_energy(state.theta);
-                let taken = dissipators.viscous + dissipators.hysteretic;
-                (energy(&structure.into(), phase, &state) + stored + taken, taken)
-            };
-            let (before, _) = total(engine.motion());
-            let scale = before - energy(&structure.into(), Phase::FullContact, &<State>::default());
-            let mut last = (0.0, 0.0);
-            for _ in 0..400 {
-                engine.advance(2e-3, Load::default(), &mut ()).unwrap();
-                if engine.motion().phase != Phase::Rocking(Side::of(theta)) {
-                    break;
-                }
-                let (now, taken) = total(engine.motion());
-                assert!((now - before).abs() < 1e-12 * before, "{parameters:?}: {:e}", now - before);
-                assert!(taken >= last.0, "{taken} {last:?}");
-                last = (taken, engine.motion().time);
-            }
-            assert!(last.1 > 0.02, "it rocked for {} s", last.1);
-            let is_taken = parameters.c_d > 0.0 || (0.0..1e9).contains(&parameters.F_y) && parameters.k_d > 0.0;
-            assert_eq!(last.0 > 1e-3 * scale.abs(), is_taken, "{parameters:?}: {} of {scale} J", last.0);
-        }
-    }
-}
-
-/// While a dissipator yields, too.
-#[test]
-fn forces_within_a_piece_are_the_forces_of_a_motion_that_ends_there() {
-    let ground = Record::from_samples("at rest", vec![0.0, 1.0], vec![0.0, 0.0]).unwrap();
-    let initial = State { theta: 0.3, theta_dot: -2.0, ..State::default() };
-    let run = Run { initial, end: End::At(0.1), tolerance: 1e-12, ..Run::new(structure(RESTRAINED), &ground) };
-    let mut samples = Vec::new();
-    let show = |at: &Sample| samples.push((at.motion.time, at.restraints(), at.motion.dissipators.hysteretic));
-    run.sample((1..20).map(|i| 5e-3 * f64::from(i)), show, &mut ()).unwrap();
-    for (time, found, taken) in &samples {
-        let mut engine = Engine::new(run.structure.clone(), initial, 0.0, 1e-12).unwrap();
-        engine.advance(*time, Load::default(), &mut ()).unwrap();
-        let expected = engine.restraints();
-        assert_relative_eq!(found.F_d1, expected.F_d1, max_relative = 1e-9);
-        assert_relative_eq!(found.F_d2, expected.F_d2, max_relative = 1e-9);
-        assert_relative_eq!(*taken, engine.motion().dissipators.hysteretic, epsilon = 1e-9);
-    }
-    assert!(samples[2].2 < samples[3].2 && samples.len() == 20, "no dissipator yields: {samples:?}");
-}
-
 /// Undamped, u = U sin ωt below u_cr at rest: the weight falls, and the base lifts off where u meets what u_cr has come to.
 #[test]
 fn uplift_is_due_where_the_vertical_acceleration_and_the_prestress_put_it() {

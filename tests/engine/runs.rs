@@ -1,6 +1,6 @@
 //! Runs from outside: levels compared on fine records, ends.
 
-use crate::common::transitions_of;
+use crate::common::{sampled, transitions_of};
 use crate::modes::three_storeys;
 use rocking::engine::piece::Sample;
 use rocking::run::levels::Criterion;
@@ -37,9 +37,7 @@ fn histories_do_not_depend_on_how_finely_a_record_is_sampled() {
 fn comparing_levels_takes_no_more_memory_for_more_of_them() {
     let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     let most = |dt: f64, samples: usize| {
-        let times = (0..samples).map(|i| i as f64 * dt).collect();
-        let waves = (0..samples).map(|i| 2.0 * (0.09 * i as f64).sin()).collect();
-        let ground = Record::from_samples("waves", times, waves).unwrap();
+        let ground = sampled(samples, dt, |t| 2.0 * (0.09 * t / dt).sin());
         let run = Run { end: End::At(ground.end()), ..Run::new(structure, &ground) };
         allocation_counter::measure(|| drop(levels::compare(&run).unwrap())).bytes_max
     };
@@ -52,9 +50,7 @@ fn comparing_levels_takes_no_more_memory_for_more_of_them() {
 
 /// A wave that grows to `amplitude` (m/s²) over 3 s.
 fn growing(amplitude: f64) -> Record {
-    let times: Vec<_> = (0..=300).map(|i| 0.01 * f64::from(i)).collect();
-    let wave = times.iter().map(|t| amplitude * t / 3.0 * (9.0 * t).sin()).collect();
-    Record::from_samples("growing", times, wave).unwrap()
+    sampled(301, 0.01, |t| amplitude * t / 3.0 * (9.0 * t).sin())
 }
 
 /// Fewer modes cost less and err more. Advice names how many of them are enough.
@@ -85,9 +81,8 @@ fn a_level_of_a_frame_is_also_how_many_modes_are_kept() {
 /// requested instant is shown once, alone or among others.
 #[test]
 fn every_instant_of_a_run_is_shown() {
-    let times = (0..600).map(|i| 0.02 * f64::from(i)).collect::<Vec<_>>();
-    let wave = |t: &f64| 3.0 * (std::f64::consts::TAU * 1.3 * t).sin() * (-((t - 2.0) / 1.5).powi(2)).exp();
-    let ground = Record::from_samples("wave", times.clone(), times.iter().map(wave).collect()).unwrap();
+    let wave = |t: f64| 3.0 * (std::f64::consts::TAU * 1.3 * t).sin() * (-((t - 2.0) / 1.5).powi(2)).exp();
+    let ground = sampled(600, 0.02, wave);
     let run = Run::new(OneMass::new(Parameters::MCMANUS).unwrap(), &ground);
     let transitions = transitions_of(&run);
     let mut instants = Vec::from_iter(transitions.iter().flat_map(|of| [of.time.next_down(), of.time]));
