@@ -31,8 +31,7 @@ pub fn effective_frequency(structure: &OneMass, theta: f64) -> Result<f64, Restr
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimates::modal_split::Modes;
-    use crate::{Parameters, State};
+    use crate::Parameters;
     use approx::assert_relative_eq;
 
     fn evison() -> OneMass {
@@ -58,13 +57,5 @@ mod tests {
         assert_eq!(effective_frequency(&structure, 0.0), Ok(f64::INFINITY));
         assert_eq!(effective_frequency(&structure, -structure.tan_alpha_cg), Ok(0.0));
         assert_eq!(effective_frequency(&structure, 1.0), Ok(0.0));
-    }
-
-    #[test]
-    fn a_tied_structure_has_no_effective_frequency_and_no_modes() {
-        let tied = OneMass::new(Parameters { k_t: 1e4, ..Parameters::EVISON }).unwrap();
-        let refused = Restrained { P_0: 0.0, k_t: 1e4, c_d: 0.0, k_d: 0.0 };
-        assert_eq!(effective_frequency(&tied, 0.01), Err(refused.clone()));
-        assert_eq!(Modes::of(&tied, &State::default()), Err(refused));
     }
 }

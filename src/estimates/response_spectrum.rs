@@ -25,7 +25,7 @@ use crate::run::ground_motion::Segment;
 use crate::run::record::{Record, SamplesError};
 use crate::run::{End, Run, RunError, Runs};
 use crate::series::bisection::last_where;
-use crate::structure::quantity::OutOfRange;
+use crate::structure::quantity::{OutOfRange, Quantity};
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::{PI, TAU};
 

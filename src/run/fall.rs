@@ -261,13 +261,6 @@ mod tests {
     use crate::{OneMass, Output, Parameters, State};
     use std::f64::consts::TAU;
 
-    /// The peaks before the fall and its instant, of a run that overturns.
-    fn fall_of(run: &Run) -> Falling {
-        let mut peaks = Falling::since(run.ground.start(), &run.structure, run.detail);
-        assert_eq!(run.follow(&mut peaks.watch()).unwrap().ending, Ending::Overturned);
-        peaks
-    }
-
     /// Against dense samples: below α_cg before it, beyond from then on, and no peak is of later.
     #[test]
     fn the_fall_begins_where_the_rotation_passes_alpha_cg_for_the_last_time() {
@@ -346,9 +339,11 @@ mod tests {
         let stiff = OneMass::new(Parameters { k_t: 4e4, ..tied }).unwrap();
         assert_eq!(angle_of_no_return(&stiff.base), None);
         let ground = Record::at_rest(60.0);
-        let pushed = |structure: OneMass, theta_dot: f64| {
+        let falls = |structure: OneMass, theta_dot: f64| {
+            let mut peaks = Falling::since(0.0, &structure.into(), Detail::Auto);
             let initial = State { theta: 1e-3, theta_dot, ..State::default() };
-            Run { initial, ..Run::new(structure, &ground) }
+            let ending = Run { initial, ..Run::new(structure, &ground) }.follow(&mut peaks.watch()).unwrap().ending;
+            (ending == Ending::Overturned, peaks)
         };
         for tied in [tied, Parameters { k_t: 1e4, P_0: 500.0, ..tied }] {
             let structure = OneMass::new(tied).unwrap();
@@ -357,20 +352,15 @@ mod tests {
             assert!(no_return > 1.5 * alpha_cg, "{no_return}");
             let loop_there = restoring::flag(structure.base(), no_return, 1000)[1000];
             assert!(loop_there.moment.abs() < 1e-9 * restoring::flag(structure.base(), 0.0, 1)[0].moment);
-            let falls = |theta_dot: f64| {
-                let mut peaks = Falling::since(0.0, &structure.into(), Detail::Auto);
-                let ending = pushed(structure, theta_dot).follow(&mut peaks.watch()).unwrap().ending;
-                (ending == Ending::Overturned, peaks)
-            };
-            let least = last_where(0.0, 20.0, |theta_dot| !falls(theta_dot).0);
-            let (_, stands) = falls(least);
+            let least = last_where(0.0, 20.0, |theta_dot| !falls(structure, theta_dot).0);
+            let (_, stands) = falls(structure, least);
             assert!(stands.peaks().theta().magnitude > alpha_cg && stands.fall().is_none());
             assert_eq!(stands.peaks(), stands.all());
-            let (_, falls) = falls(least * 1.001);
+            let (_, falls) = falls(structure, least * 1.001);
             assert!((falls.peaks().theta().magnitude - no_return).abs() < 1e-12);
         }
-        let falls = fall_of(&pushed(stiff, 20.0));
-        assert_eq!(falls.peaks(), falls.all());
+        let (overturns, falls) = falls(stiff, 20.0);
+        assert!(overturns && falls.peaks() == falls.all());
         assert!((falls.peaks().theta().magnitude - FRAC_PI_2).abs() < 1e-12);
     }
 

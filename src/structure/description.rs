@@ -557,12 +557,8 @@ pub(crate) mod tests {
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
-    fn base(numbers: &[(&str, f64)]) -> Given {
-        Given::of(numbers).unwrap()
-    }
-
     fn usual() -> Given {
-        base(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("r", 0.93)])
+        Given::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("r", 0.93)]).unwrap()
     }
 
     pub(crate) const STOREYS: [Storey; 3] = [

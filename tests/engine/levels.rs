@@ -1,19 +1,12 @@
-//! The levels of detail from outside: the rigid one against its closed forms, rest, memory, advances that end at transitions. What tolerances promise is in
+//! The levels of detail from outside: rest, bounds, memory. What tolerances promise is in
 //! `tolerance.rs`.
 
-use crate::common::{shaking, transitions};
+use crate::common::{shaking, start, transitions};
 use approx::assert_abs_diff_eq;
-use rocking::engine::Settings;
 use rocking::levels::rules::MAX_RIGID_TRANSITIONS_PER_PERIOD;
-use rocking::{
-    Detail, Engine, Motion, OneMass, Parameters, Phase, Progress, Ramp, Side, State, Transition, TransitionKind,
-};
+use rocking::{Detail, Engine, OneMass, Parameters, Phase, Progress, Ramp, Side, State, Transition, TransitionKind};
 
 const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };
-
-fn mcmanus() -> OneMass {
-    OneMass::new(Parameters::MCMANUS).unwrap()
-}
 
 /// Zeno: the rigid structure comes to rest through finitely many impacts, with no more energy left than a step's error has.
 #[test]
@@ -109,7 +102,7 @@ fn what_is_down_for_good_takes_no_more_steps() {
 fn stepping_allocates_nothing() {
     let ground = shaking(2, 0.01, 1000, 3.0);
     for detail in Detail::ALL {
-        let mut engine = Engine::with_detail(mcmanus(), State::default(), 0.0, 1e-9, detail).unwrap();
+        let mut engine = start(Parameters::MCMANUS, State::default(), detail);
         let mut transitions = 0;
         let counted = allocation_counter::measure(|| {
             for pair in ground.acceleration().windows(2) {
@@ -123,39 +116,4 @@ fn stepping_allocates_nothing() {
         assert_eq!(counted.count_total, 0, "{}", detail.name());
         assert!(transitions > 0 || detail == Detail::FixedBase, "{}", detail.name());
     }
-}
-
-/// Advances that end at transitions meet the transitions of one long advance, each before it is applied: the last state of
-/// rocking is on the ground, and the last state of full contact at the limit of uplift.
-#[test]
-fn an_advance_can_end_at_every_transition() {
-    let structure = OneMass::new(Parameters { r: 0.85, ..Parameters::EVISON }).unwrap();
-    let released = State { theta: 0.01, ..State::default() };
-    let new = |stops| Engine::with(structure, released, 0.0, Settings { stops, ..Settings::default() }).unwrap();
-    let (mut through, mut to_each) = (new(false), new(true));
-    let (expected, mut met) = (transitions(&mut through, 1.0, STILL), Vec::new());
-    while to_each.motion().time < 1.0 {
-        let due = to_each.advance(1.0 - to_each.motion().time, STILL, &mut ()).unwrap() == Progress::Transition;
-        let Motion { phase, state, .. } = *to_each.motion();
-        assert_eq!(to_each.motion().is_transition_due(), due);
-        if due {
-            let limit = if phase == Phase::FullContact { state.u.abs() - structure.u_cr } else { state.theta };
-            assert!(limit.abs() < 1e-14 || phase == Phase::FullContact && limit > 0.0, "{phase:?} {state:?}");
-            to_each.transit(&mut |transition: &Transition| met.push(*transition));
-            assert_ne!(to_each.motion().phase, phase);
-        }
-    }
-    assert!(expected.len() > 10);
-    assert_eq!(met.len(), expected.len());
-    for (transition, expected) in met.iter().zip(&expected) {
-        assert_eq!(transition.kind, expected.kind);
-        assert_abs_diff_eq!(transition.time, expected.time, epsilon = 1e-10);
-        assert_abs_diff_eq!(transition.after.u_dot, expected.after.u_dot, epsilon = 1e-8);
-    }
-    // what is due is applied by the next advance if nobody has
-    let mut left = new(true);
-    while left.motion().time < 1.0 {
-        left.advance(1.0 - left.motion().time, STILL, &mut ()).unwrap();
-    }
-    assert_eq!(left.motion().state, to_each.motion().state);
 }

@@ -1,4 +1,4 @@
-//! Structures of many masses: energy, rates, and one mass as a mode. An independent integration of the masses is in `test_frames.py`.
+//! Structures of many masses: rates, and one mass as a mode. An independent integration of the masses is in `test_frames.py`.
 
 use crate::common::{transitions, transitions_of};
 use rocking::engine::Settings;

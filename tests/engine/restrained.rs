@@ -1,11 +1,10 @@
-//! Vertical ground motion, tendon and dissipators: against structures that they make another, energy and statics by hand.
+//! Vertical ground motion, tendon and dissipators: against structures that they make another, and statics by hand.
 
 use crate::common::{peaks_beside_samples, shaking, transitions, transitions_of};
 use approx::assert_relative_eq;
 use rocking::engine::Settings;
 use rocking::engine::piece::Sample;
-use rocking::mechanics::energy::energy;
-use rocking::mechanics::restraint::{Restraint, centring_moments};
+use rocking::mechanics::restraint::centring_moments;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::record::Record;
 use rocking::run::validity::{Limits, WEIGHT, of_structure};
