@@ -54,11 +54,6 @@ impl<Q: Coordinates> Motion<Q> {
         if let Phase::OnGround(_) = self.phase { Side::of(self.state.theta) } else { self.phase.side() }
     }
 
-    /// Whether a transition is due at this instant: state and phase are those before it.
-    pub fn is_transition_due(&self) -> bool {
-        self.due.is_some()
-    }
-
     /// Duration from now on, s, over which contact is held because too many transitions came before.
     pub fn held(&self) -> f64 {
         self.chatter.held

@@ -194,26 +194,6 @@ impl<'a> Restraint<'a> {
         [pull * chord.half.cos, pull * chord.half.sin, moment * chord.half.cos]
     }
 
-    /// Energy that the ties store at the rotation `theta` (rad), J.
-    pub fn stored_energy(&self, theta: f64) -> f64 {
-        self.stored(&Angles::Any.chord(theta, 0.0))
-    }
-
-    /// Stored energy P_0 e + ½ k_t e² + Σ F²/(2 k_d) at this `chord`, J, with F the force of an elastoplastic dissipator.
-    fn stored<N: Number>(&self, chord: &Chord<N>) -> N {
-        let Ties { P_0, k_t, k_d, F_y, .. } = self.base.ties;
-        let [tendon, pair @ ..] = &self.ties;
-        let e = chord.length * tendon.lever;
-        let of_tendon = e * (N::constant(P_0) + e * (0.5 * k_t));
-        if F_y == 0.0 {
-            return of_tendon;
-        }
-        pair.iter().fold(of_tendon, |sum, tie| {
-            let force = tie.force(chord.length, N::constant(0.0));
-            sum + force * force / (2.0 * k_d)
-        })
-    }
-
     /// Moment that turns the base back about the pivot at the rotation `theta` (rad), at rest and with u = 0, N·m:
     ///
     /// ```text

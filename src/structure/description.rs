@@ -660,52 +660,6 @@ pub(crate) mod tests {
         assert_relative_eq!(ratios[2], 0.05, max_relative = 1e-14);
     }
 
-    #[test]
-    fn modes_that_do_not_fit_the_mass_are_refused_with_the_excess() {
-        let refused = |change: fn(&mut Vec<FoundMode>, &mut Total)| {
-            let mut modes = found(&three_storeys());
-            let mut total = Total { m_s: 110e3, S_1: 735e3, I_2: Some(40e3 * 61.25 + 30e3 * 110.25), J_P: None };
-            change(&mut modes, &mut total);
-            let built = Structure::from_modes(&usual(), &Damping::All(0.02), &modes, Some(total), &places());
-            built.unwrap_err().to_string()
-        };
-        assert_eq!(
-            refused(|modes, _| modes[0].shape = modes[1].shape.clone()),
-            "the shape of mode 1 has the effective mass 9.64566e3 kg with the masses of the floors, but mass = 9.77829e4 kg: \
-             check the order of the floors and of the modes"
-        );
-        let upside_down = refused(|modes, _| modes[0].shape.reverse());
-        assert!(upside_down.starts_with("the shape of mode 1 has the effective "), "{upside_down}");
-        let other_direction = refused(|modes, _| modes[1].mass = 0.0);
-        assert!(other_direction.ends_with("leave out a mode without such mass)"), "{other_direction}");
-        let in_tonnes = refused(|modes, _| modes.iter_mut().for_each(|mode| mode.mass /= 1e3));
-        assert!(in_tonnes.starts_with("the modes carry 0.10 % of m_s = 110000 kg above the foundation"), "{in_tonnes}");
-        let tonnes = refused(|_, total| total.m_s = 110.0);
-        assert!(tonnes.ends_with("kg of the m_s = 110.0 kg above the foundation: check masses, heights and units"));
-        assert!(
-            refused(|_, total| total.I_2 = Some(5e6)).contains("of the I_2 = 5000000.0 kg.m2 above the foundation")
-        );
-        assert!(refused(|_, total| total.S_1 = 800e3).starts_with("S_1 = 800000 kg.m does not fit m_s and I_2"));
-        assert!(
-            refused(|modes, _| modes[1].f = Some(7.0)).starts_with("mode 2 needs f (Hz) or period (s), and not both")
-        );
-        assert!(refused(|modes, _| modes[1].height = None).starts_with("mode 2 needs height (m) or moment (kg.m)"));
-        assert!(refused(|modes, _| modes[2].period = Some(-1.0)).starts_with("mode 3: period = -1 s is out of range"));
-        assert!(refused(|modes, _| modes.swap(0, 1)).starts_with("mode 2 has f = 2.79632 Hz"));
-        assert!(
-            refused(|modes, _| modes[0].shape.truncate(2)).starts_with("the shape of mode 1 has 2 numbers and must")
-        );
-        assert!(
-            refused(|_, total| total.J_P = Some(1.0)).starts_with("I_2 (kg.m2) or J_P (kg.m2) is needed, and not both")
-        );
-        let many = vec![found(&three_storeys())[0].clone(); 25];
-        let many = Structure::from_modes(&usual(), &Damping::All(0.0), &many, None, &places());
-        assert_eq!(many, Err(StructureError::Modes(25).into()));
-        let without_total =
-            Structure::from_modes(&usual(), &Damping::All(0.0), &found(&three_storeys())[..1], None, &[]);
-        assert_eq!(without_total, Err(DescriptionError::NoTotal));
-    }
-
     proptest! {
         /// Up to 24 storeys the modes carry all mass; of more, the rest is a possible mass.
         #[test]
