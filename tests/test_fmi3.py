@@ -15,7 +15,7 @@ from evidence.coupling.masters import MASTERS, extrapolate
 from evidence.coupling.structure import opened
 from fmpy import read_model_description, simulate_fmu
 from fmpy.validation import validate_fmu
-from host import OUTPUTS, PHASES, Message, events, simulate
+from host import ERROR, OK, OUTPUTS, PHASES, Message, events, simulate, status
 from pacoima import A_G, END, STEP, TIME, linear, rows
 from pacoima import OUTPUTS as COMPARED
 
@@ -247,6 +247,61 @@ def test_overturning_ends_the_simulation(mcmanus3, handles_events):
                               early_return_allowed=may_return_early, use_event_mode=handles_events)
         assert result["time"][-1] == pytest.approx(end, rel=1e-14)
         assert result["t_overturned"][-1] == pytest.approx(instant, rel=1e-14)
+
+
+@pytest.mark.parametrize("a_g_late, phase", [(False, "rocking right"), (True, "full contact")])
+def test_what_acts_at_an_event_is_what_lifts_off_there(wall3, a_g_late, phase):
+    """An acceleration that a host sets at an event lifts a rigid structure off there and then, unless it is to come one step late."""
+    one = wall3.instance(eventModeUsed=True, earlyReturnAllowed=True).initialize(detail=5, a_g_late=a_g_late)
+    one.set(a_g=-50.0)
+    assert one.update() == (False, False, None)
+    assert one.get("phase") == PHASES[phase]
+
+
+def test_a_step_ends_early_for_hosts_that_take_it_alone(wall3):
+    """A host that handles events but no early return gets whole steps, from the start time that it has set, whatever it read before."""
+    one = wall3.instance(eventModeUsed=True)
+    one.set(theta_0=0.02)
+    assert one.get("theta") == 0.02
+    one.initialize(start=5.0)
+    one.slave.enterStepMode()
+    assert one.slave.doStep(5.0, 1.0) == (False, False, False, 6.0)
+
+
+@pytest.mark.parametrize("sets, reads", [(True, False), (False, True), (True, True)])
+def test_a_host_that_is_called_back_sets_inputs_reads_and_does_no_harm(wall3, sets, reads):
+    """It sets inputs before a step is computed, and reads afterwards."""
+    calls, end = [], 0.0
+
+    def update(_environment, time, set_requested, get_allowed, step_finished, *_):
+        one.slave.fmi3FreeInstance(one.slave.component)
+        harm = [status(call) for call in (one.slave.terminate, one.slave.reset, one.slave.getFMUState, lambda: one.set(m=end),
+                                          lambda: one.set(a_g=np.nan))]
+        got = (one.get("theta"), one.rate("theta")) if get_allowed else (status(one.get, "theta"), status(one.rate, "theta"))
+        calls.append(((set_requested, get_allowed, step_finished), harm, status(one.slave.setDebugLogging, True, []),
+                      status(lambda: one.set(a_g=end)), time, got))
+
+    names = ["a_g"] * sets + ["theta"] * reads
+    one = wall3.instance(intermediateUpdate=update, requiredIntermediateVariables=[wall3.variables[name].valueReference for name in names])
+    one.initialize(theta_0=0.3)
+    for time, end in ((0.0, 2.0), (0.25, -1.0)):
+        one.slave.doStep(time, 0.25)
+        assert one.get("a_g") == (end if sets else 0.0)
+        refused, shown = [ERROR] * 5, (one.get("theta"), one.rate("theta"))
+        asked = [((True, False, False), refused, OK, OK, time + 0.25, (ERROR, ERROR))] * sets
+        assert calls == asked + [((False, True, True), refused, OK, ERROR, time + 0.25, shown)] * reads
+        calls.clear()
+    end = 1e4
+    one.set(a_g=3.0)
+    assert status(one.slave.fmi3DoStep, one.slave.component, 0.5, 0.25, False, None, None, None, None) == ERROR
+    assert calls == [] and one.get("a_g") == 3, "a step that is refused asks for nothing"
+    end = 0.0
+    _, terminate, is_early, reached = one.slave.doStep(0.5, 100.0)
+    assert (terminate, is_early) == (True, False)
+    assert [call[4] for call in calls if call[0][1]] == [reached] * reads, "the host reads last at the instant of overturning"
+    for unknown in (0, 2**32 - 1):
+        with pytest.raises(Exception, match="Failed to instantiate"):
+            wall3.instance(intermediateUpdate=update, requiredIntermediateVariables=[unknown])
 
 
 def test_a_master_needs_one_further_step_for_a_transition(export):

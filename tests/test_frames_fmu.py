@@ -203,7 +203,6 @@ def test_states_of_another_structure_are_refused(export_frame, mcmanus):
                 assert "it does not begin with the name of this build" in instance.errors[-1]
     for instance, state in kept:
         instance.slave.deSerializeFMUstate(state)
-        instance.slave.freeInstance()
 
 
 def test_modes_left_out_and_what_is_fixed_are_told(export_frame):

@@ -1,18 +1,19 @@
 //! Hostile calls of the structure.
 #![allow(unsafe_code)] // the C interface
 
-mod host;
 #[path = "../fmi/tests/hostile/mod.rs"]
 mod hostile;
+mod wall;
 
+use FlexibleRocking::resources::{FRAME_FILE, frame_bytes};
+use FlexibleRocking::unit::{Condition, Course};
 use FlexibleRocking::{fmi2, fmi3};
 use fmi_unit::snapshot::Snapshot;
 use fmi_unit::state_machine::Stage;
 use hostile::{Subject, hostile_calls};
-use rocking::Modes;
-use rocking::engine::MAX_STEPS_PER_ADVANCE;
-use rocking::engine::Moves;
+use rocking::engine::{MAX_STEPS_PER_ADVANCE, Moves};
 use rocking::run::validity::ASSUMPTIONS;
+use rocking::{Body, Floor, Mode, Modes, Structure, Ties};
 use std::ffi::CString;
 use std::fs;
 use std::path::Path;
@@ -31,13 +32,21 @@ mod frame {
 fn structure() -> Subject {
     // the top mass above the pivot of a foundation without inertia
     let sticks = [("m0", 0.0), ("J0", 0.0), ("B", 0.3), ("theta_0", 0.1), ("u_0", 0.3)];
-    let sticks = sticks.map(|(name, value)| (host::reference(name), value)).into();
-    Subject { sticks, ..subject::<f64>(host::resources()) }
+    let sticks = sticks.map(|(name, value)| (wall::reference(name), value)).into();
+    Subject { sticks, ..subject::<f64>(wall::resources()) }
 }
 
 /// Two floors, with a mode left out, and dissipators; the foundation has inertia.
 fn many_masses() -> Subject {
-    Subject { never_in: &[Stage::Error], ..subject::<Modes>(host::resources_of_many()) }
+    let ties = Ties { xi_d: 1.0, c_d: 2e4, k_d: 2e7, F_y: 4e4, ..Ties::default() };
+    let r = Some(0.93);
+    let body = Body { m0: 2e4, J0: 3e4, m_s: 7e4, S_1: 3.5e5, I_2: 2e6, B: 1.5, r, g: 9.81, c_ratio: 1.0, ties };
+    let floor = |height, shape| Floor { mass: 3.5e4, height, shape: Modes::new(&[shape]) };
+    let frame = Structure::of_body(body, &[Mode::new(20.0, 0.02, 250.0, 1.4e3)], &[floor(3.5, 2e-3), floor(7.0, 4e-3)])
+        .unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join(FRAME_FILE), frame_bytes(&frame)).unwrap();
+    Subject { never_in: &[Stage::Error], ..subject::<Modes>(folder) }
 }
 
 fn subject<Q: Moves>(resources: TempDir) -> Subject {
@@ -45,8 +54,13 @@ fn subject<Q: Moves>(resources: TempDir) -> Subject {
     Subject { texts, may_be_infinite, check_step: check_step::<Q>, ..Subject::of(resources, time::<Q>) }
 }
 
+/// How far the simulation had come that `snapshot` is of, once it had started.
+fn course<Q: Moves>(snapshot: &Snapshot) -> Option<Course<Q>> {
+    postcard::from_bytes::<Condition<Q>>(&snapshot.model).unwrap().2
+}
+
 fn time<Q: Moves>(snapshot: &Snapshot) -> f64 {
-    let Some(course) = host::course::<Q>(snapshot) else { return 0.0 };
+    let Some(course) = course::<Q>(snapshot) else { return 0.0 };
     course.outside.map_or(course.motion.time, |outside| outside.known.motion.time)
 }
 
@@ -57,7 +71,7 @@ fn may_be_infinite(name: &str) -> bool {
 
 /// The work is bounded.
 fn check_step<Q: Moves>(before: &Snapshot, after: &Snapshot) {
-    let [before, after] = [before, after].map(|of| host::course::<Q>(of).unwrap().motion.work.steps);
+    let [before, after] = [before, after].map(|of| course::<Q>(of).unwrap().motion.work.steps);
     assert!(after - before <= MAX_STEPS_PER_ADVANCE, "{} steps", after - before);
 }
 
