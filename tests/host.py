@@ -184,11 +184,14 @@ class Instance:
         made = [[FMU2Slave, FMU2Model], [FMU3Slave, FMU3Model]][self.is_3][self.is_model]
         identifier = fmu.description.coSimulation.modelIdentifier
         self.slave = made(guid=fmu.description.guid, unzipDirectory=fmu.folder, modelIdentifier=identifier, instanceName=name)
-        if self.is_3:
-            self.slave.instantiate(loggingOn=logs, **how, logMessage=lambda _, status, category, text:
-                                   messages.append(Message(status, category.decode(), text.decode())))
-        else:
-            self.slave.instantiate(callbacks=_callbacks(), loggingOn=logs)
+        try:
+            if self.is_3:
+                self.slave.instantiate(loggingOn=logs, **how, logMessage=lambda _, status, category, text:
+                                       messages.append(Message(status, category.decode(), text.decode())))
+            else:
+                self.slave.instantiate(callbacks=_callbacks(), loggingOn=logs)
+        except Exception as error:  # fmpy's own says no reason
+            raise RuntimeError(*(message.text for message in messages)) from error
         self.free = weakref.finalize(self, self.slave.freeInstance)
 
     def __enter__(self) -> Instance:

@@ -46,6 +46,14 @@ def test_they_exist_from_initialization_to_overturning(wall):
         assert one.derivative("a_t", "F_t") == pytest.approx(expected, rel=1e-9, abs=1e-12)
 
 
+def test_at_the_edge_of_a_range_they_are_one_sided(wall):
+    """No parameter leaves its range: p_l² = m g H/J_P where m0 and J0 are 0."""
+    one, J_P = wall.instance().enter(m0=0.0, J0=0.0), EVISON.m * (EVISON.H**2 + EVISON.B**2)
+    for by, change in (("m0", EVISON.B**2), ("J0", 1.0)):
+        assert one.derivative("p_l", by) == pytest.approx(-one.get("p_l") * change / (2 * J_P), rel=1e-9)
+    assert one.get("m0", "J0") == [0.0, 0.0]
+
+
 def test_where_the_equations_are_singular_neither_they_nor_the_reactions_exist(wall):
     """The top mass above the pivot of a foundation without inertia: nothing says how it turns."""
     one = wall.start(m0=0.0, J0=0.0, B=0.25, u_0=0.25, theta_0=0.01)

@@ -16,9 +16,8 @@
 //! | `setup`, `inputs` | what is set before the start and during the simulation |
 //! | [`ground`], [`resources`] | records; what the archive carries |
 //!
-//! In a browser no host calls C functions: the table of variables alone is used there. The tests of this crate's own files do without,
-//! too, and need not wait for the engine to be compiled.
-#![cfg_attr(any(target_family = "wasm", test), allow(dead_code))]
+//! In a browser no host calls C functions: the table of variables alone is used there.
+#![cfg_attr(target_family = "wasm", allow(dead_code))]
 #![allow(non_snake_case)] // the shared library's name
 
 mod advance;
@@ -39,7 +38,7 @@ pub mod variables;
 use resources::{Contents, frame_bytes};
 use uuid::Uuid;
 
-#[cfg(not(any(target_family = "wasm", test)))]
+#[cfg(not(target_family = "wasm"))]
 fmi_unit::export_fmu!(unit::Unit);
 
 /// Names the build: all that enters the library.

@@ -197,43 +197,16 @@ mod tests {
         Library { platform, content: platform.target().into() }
     }
 
-    fn exported(
-        parameters: Parameters,
-        records: Vec<RecordFile>,
-        vertical: Option<RecordFile>,
-        platforms: &[Platform],
-    ) -> Result<(Contents, Vec<u8>), ExportError> {
-        let libraries: Vec<_> = platforms.iter().copied().map(library).collect();
-        let contents = structure(parameters).into();
-        super::export(Version::Fmi2, &ModelName::default(), contents, records, vertical, &libraries)
-    }
-
     #[test]
     fn two_exports_of_the_same_are_the_same_bytes() {
-        let exported = |of, platforms: [Platform; 2]| exported(of, Vec::new(), None, &platforms).unwrap().1;
+        let exported = |of, platforms: [Platform; 2]| {
+            let contents = structure(of).into();
+            export(Version::Fmi2, &ModelName::default(), contents, Vec::new(), None, &platforms.map(library)).unwrap().1
+        };
         let [linux, windows] = [Platform::Linux64, Platform::Windows64];
         let first = exported(Parameters::EVISON, [linux, windows]);
         assert_eq!(first, exported(Parameters::EVISON, [windows, linux]));
         assert_ne!(first, exported(Parameters::MCMANUS, [linux, windows]));
-    }
-
-    #[test]
-    fn one_library_for_each_platform() {
-        let two = exported(Parameters::EVISON, Vec::new(), None, &[Platform::LinuxArm64; 2]);
-        let refusal = two.unwrap_err().to_string();
-        assert_eq!(refusal, "two shared libraries are for aarch64-linux: leave one out");
-    }
-
-    #[test]
-    fn a_name_is_an_identifier_of_c() {
-        for name in ["Pier1", "_", "a_b_2"] {
-            assert_eq!(name.parse::<ModelName>().unwrap().as_str(), name);
-        }
-        for name in ["", "1Pier", "Pier 1", "../Pier", "Pfahl_ä", "Pier.1"] {
-            let refusal = name.parse::<ModelName>().unwrap_err().to_string();
-            let rule = "must consist of the letters a to z and A to Z, digits and _, and not begin with a digit";
-            assert_eq!(refusal, format!("the name {name:?} {rule}"));
-        }
     }
 
     #[test]
@@ -265,47 +238,5 @@ mod tests {
             let parameters: Parameters = toml::from_slice(&other.last().unwrap().content).unwrap();
             assert_eq!(parameters, Parameters::EVISON);
         }
-    }
-
-    #[test]
-    fn records_are_packed_as_they_are_and_the_first_is_the_default() {
-        type Packed = (&'static str, &'static str);
-        let [pulse, sine]: [Packed; 2] =
-            [("pulse 1.csv", "t/s,a\r\n0,1\r\n1,2\r\n"), ("sine.txt", "t/s,a\n0,1\n1,-1\n")];
-        let [same, broken]: [Packed; 2] = [("other/Sine.TXT", "t/s,a\n0,2\n1,0\n"), ("broken.csv", "0,1\n1,?\n")];
-        let file = |(path, text): &Packed| (path.into(), text.as_bytes().to_vec());
-        let with_vertical = |records: &[&Packed], vertical: Option<&Packed>| {
-            let records = records.iter().map(|packed| file(packed)).collect();
-            exported(Parameters::EVISON, records, vertical.map(file), &[Platform::Linux64])
-        };
-        let export = |records: &[&Packed]| with_vertical(records, None);
-        let (contents, bytes) = export(&[&pulse, &sine]).unwrap();
-        assert_eq!(contents.default_record(), "pulse 1.csv");
-        let read = |bytes: &[u8], name: &str| {
-            let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
-            std::io::read_to_string(archive.by_name(name).unwrap()).unwrap()
-        };
-        assert_eq!(read(&bytes, "resources/pulse 1.csv"), "t/s,a\r\n0,1\r\n1,2\r\n");
-        assert_eq!(read(&bytes, "resources/sine.txt"), "t/s,a\n0,1\n1,-1\n");
-        assert!(read(&bytes, "modelDescription.xml").contains("<String start=\"pulse 1.csv\"/>"));
-        let names: Records = toml::from_str(&read(&bytes, "resources/records.toml")).unwrap();
-        assert_eq!(names.record, contents.records);
-        let (swapped, _) = export(&[&sine, &pulse]).unwrap();
-        assert_ne!(FlexibleRocking::guid(&swapped), FlexibleRocking::guid(&contents));
-
-        let (pair, bytes) = with_vertical(&[&pulse], Some(&sine)).unwrap();
-        assert_eq!((pair.default_record(), pair.default_vertical()), ("pulse 1.csv", "sine.txt"));
-        let names: Records = toml::from_str(&read(&bytes, "resources/records.toml")).unwrap();
-        assert_eq!((names.record, names.vertical), (pair.records, pair.vertical));
-
-        let late: Packed = ("late.txt", "t/s,a\n1,1\n2,-1\n");
-        let refused = with_vertical(&[&pulse], Some(&late)).unwrap_err().to_string();
-        assert!(refused.starts_with("the vertical component \"late\" begins at 1.0 s and"), "{refused}");
-        let refusal = |records: &[&Packed]| export(records).unwrap_err().to_string();
-        assert_eq!(
-            refusal(&[&sine, &same]),
-            "two records are called Sine.TXT: rename one of them; capitals and small letters are the same here"
-        );
-        assert_eq!(refusal(&[&sine, &broken]), "broken.csv, line 2: the acceleration \"?\" is not a number");
     }
 }

@@ -392,15 +392,60 @@ with_lists! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::logger::Status;
-    use crate::touchy::{DROPPED, PANICS, Touchy};
+    use crate::logger::{Logger, Status};
+    use crate::model::Step;
+    use crate::variables::{Value, Variable};
+    use std::cell::Cell;
     use std::ffi::CString;
+    use std::sync::Arc;
+
+    thread_local! {
+        /// How many models this thread has dropped.
+        static DROPPED: Cell<u32> = const { Cell::new(0) };
+    }
+
+    /// A model with a variable whose value panics.
+    #[derive(serde::Serialize, serde::Deserialize)]
+    struct Touchy;
+
+    impl Drop for Touchy {
+        fn drop(&mut self) {
+            DROPPED.set(DROPPED.get() + 1);
+        }
+    }
+
+    impl Model for Touchy {
+        fn open(_: &Path) -> Result<Box<dyn Model>, Failure> {
+            Ok(Box::new(Touchy))
+        }
+
+        fn variables(&self) -> Arc<[Variable]> {
+            Arc::new([Variable::real(Causality::Local, "z", "1", "panic"), Variable::time()])
+        }
+
+        fn get(&mut self, reference: u32) -> Result<Value, Failure> {
+            assert_ne!(reference, 0, "on purpose");
+            Ok(Value::Real(0.0))
+        }
+
+        fn set(&mut self, _: u32, _: Value) {}
+
+        fn advance(&mut self, _: Step, _: &Logger) -> Result<Progress, Failure> {
+            Ok(Progress::Complete)
+        }
+
+        fn update(&mut self, _: &Logger) -> Result<Update, Failure> {
+            Ok(Update::default())
+        }
+
+        crate::state_by_serde!();
+    }
 
     /// The callback reads a variable whose value panics, and tries to free the instance.
     unsafe extern "C" fn update(c: *mut c_void, _: f64, _: u8, _: u8, _: u8, _: u8, _: *mut u8, _: *mut f64) {
         unsafe {
             let c = *c.cast::<*mut c_void>();
-            assert_eq!(GetFloat64(c, &(PANICS + 1), 1, &mut 0.0, 1), Status::Fatal as c_int);
+            assert_eq!(GetFloat64(c, &1, 1, &mut 0.0, 1), Status::Fatal as c_int);
             FreeInstance::<Touchy>(c);
             assert_eq!(DROPPED.get(), 0);
         }
@@ -409,13 +454,13 @@ mod tests {
     #[test]
     fn an_instance_that_panics_can_only_be_freed_and_not_within_a_step() {
         let mut c: *mut c_void = ptr::null_mut();
-        let token = CString::new(Touchy { x: 0.0 }.token()).unwrap();
+        let token = CString::new(Touchy.token()).unwrap();
         let environment = (&raw mut c).cast();
         DROPPED.set(0);
         unsafe {
             let [name, token, folder] = [c"a".as_ptr(), token.as_ptr(), c"/".as_ptr()];
             let instantiate = InstantiateCoSimulation::<Touchy>;
-            c = instantiate(name, token, folder, 0, 0, 0, 0, &(PANICS + 1), 1, environment, None, Some(update));
+            c = instantiate(name, token, folder, 0, 0, 0, 0, &1, 1, environment, None, Some(update));
             assert_eq!((EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), ExitInitializationMode(c)), (0, 0));
             let (mut flags, mut time) = ([0; 3], 0.0);
             let [event, end, early] = &mut flags;

@@ -36,8 +36,6 @@ pub mod model;
 pub mod sensitivity;
 pub mod snapshot;
 pub mod state_machine;
-#[cfg(test)]
-mod touchy;
 pub mod uri;
 pub mod variables;
 

@@ -109,19 +109,3 @@ pub fn along<M: Model + ?Sized>(
     }
     Ok(sums)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::touchy::Touchy;
-
-    #[test]
-    fn differences_stay_in_the_range_of_an_input() {
-        for (x, slope) in [(0.0, 0.0), (0.5, 2.0), (1.0, 4.0)] {
-            let mut model = Touchy { x };
-            let by = along(&mut model, &[1], &[(0, 3.0)], true).unwrap();
-            assert!((by[0] - 3.0 * slope).abs() < 1e-9, "{by:?}");
-            assert_eq!(model.x, x);
-        }
-    }
-}
