@@ -159,8 +159,8 @@ def test_the_description_has_the_variables_of_the_structure(exported, records):
 
 
 def test_the_structure_points_at_what_values_follow_from(export):
-    """Once the simulation goes on, these are the inputs and states. At the start they are the variables that give the states; FMI 3.0
-    adds parameters and time."""
+    """Once the simulation goes on, these are the inputs and states. The variables that give the states count at the start. FMI 3.0 adds
+    parameters and time."""
     of_2, of_3 = described(export("mcmanus")), described(export("mcmanus", fmi=3))
     in_order = [variable.get("name") for variable in of_2.find("ModelVariables")]
     by_reference = {variable.get("valueReference"): variable.get("name") for variable in of_3.find("ModelVariables")}

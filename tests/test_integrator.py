@@ -159,8 +159,8 @@ def test_a_sample_has_one_instant_however_the_host_gets_there(wall):
 
 
 def test_a_jump_is_still_to_come_until_its_event(wall3):
-    """A host that arrives at a jump sees what led there until it enters event mode, which a kept state remembers, and one that
-    never does sees what comes after it as soon as it has passed the jump."""
+    """A host that arrives at a jump sees what led there until it enters event mode, which a kept state remembers. A host that never
+    enters event mode sees what follows the jump as soon as it has passed the jump."""
     wall3.write("push.csv", "t (s),a_g (m/s2)\n0,4\n1,2\n")
     one = wall3.start("ModelExchange", start=10.0, record="push.csv", record_start=0.5)
 
@@ -215,7 +215,7 @@ def test_what_no_integrator_should_try_is_sent_back(model):
 
 
 def test_a_host_that_ignores_events_is_warned_once(model):
-    """One that enters no event mode, or completes no step, holds a structure down that should rock."""
+    """A host that enters no event mode, or completes no step, holds a structure down that should rock."""
 
     def pushed():
         one = model()

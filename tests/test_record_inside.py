@@ -5,7 +5,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from host import DISCARD, OUTPUTS, WARNING, refused, simulate
+from host import OUTPUTS, WARNING, refused
 from reference import EVISON
 from test_states import at2
 

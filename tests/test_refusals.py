@@ -4,7 +4,6 @@ import ctypes
 from ctypes import POINTER, c_char_p, c_double, c_uint, c_void_p, cast
 
 import numpy as np
-import pytest
 from fmpy.fmi2 import FMU2Slave
 from host import DISCARD, ERROR, _callbacks, _LOGS, refused, status
 

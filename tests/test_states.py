@@ -8,7 +8,7 @@ from itertools import groupby
 
 import numpy as np
 import pytest
-from host import DISCARD, ERROR, OK, WARNING, refused, status
+from host import ERROR, OK, WARNING, refused, status
 
 SHOWN = "theta u a_t theta_dot u_dot e_p1 E_viscous a_v_ground a_ground theta_max R_v_min energy_gain_max".split()
 
@@ -102,11 +102,12 @@ def test_a_state_can_be_overwritten_and_outlives_a_reset(wall):
 
 def test_a_state_of_another_instance_is_refused_everywhere(wall):
     one, other = rocking(wall), wall.instance()
-    state = other.slave.getFMUstate()
+    own, state = one.slave.getFMUstate(), other.slave.getFMUstate()
     into = lambda: one.slave.fmi2GetFMUstate(one.slave.component, byref(state))
     for call in (one.slave.setFMUstate, one.slave.serializeFMUstate, one.slave.freeFMUstate, lambda _: into()):
         with refused(one, f"FMUstate {state.value:#x} is not one that this instance has handed"):
             call(state)
+    one.slave.setFMUstate(own)
     for nothing in (byref(ctypes.c_void_p()), None):
         assert one.slave.fmi2FreeFMUstate(one.slave.component, nothing) == OK
 
