@@ -59,6 +59,9 @@ demo:
 	cp $(RECORDS)/$(PACOIMA) $(RECORDS)/$(EL_CENTRO) out/
 	$(PYTHON) examples/first_run.py out/mcmanus.fmu
 
+# What tests fmu/, beside its own tests.
+OF_THE_FMU := archive,derivatives,floating_point,fmi3,inputs,integrator,record_inside,refusals,states
+
 # All of it in the release profile: what the demo has built, and `cargo run --release` runs, is what is tested.
 test:
 	$(MAKE) --no-print-directory .venv/test & cargo test --release $(PACKAGES) && wait $$!
@@ -73,7 +76,7 @@ check:
 		until test -e "$$file/Cargo.toml"; do file=$$(dirname "$$file"); done; \
 		echo --package "$$(cargo pkgid --manifest-path "$$file/Cargo.toml")"; done | sort -u); \
 	test -z "$$packages" || { echo cargo test $$packages && FUZZ_CALLS=2000 FUZZ_RECORDS=2000 cargo test --no-fail-fast $$packages || exit; }; \
-	files=$$(changed 'tests/test_*.py'); \
+	files=$$(changed 'tests/test_*.py'; test -z "$$(changed fmu)" || echo tests/test_{$(OF_THE_FMU)}.py); \
 	test -z "$$files" || { $(MAKE) .venv/test exporter && $(PYTEST) $$files; }
 
 lint:
