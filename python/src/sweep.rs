@@ -8,7 +8,7 @@ use anyhow::ensure;
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList, PyString};
 use rocking::Detail;
 use rocking::run::Ending;
 use rocking_report::program::program;
@@ -33,7 +33,7 @@ use std::thread;
 
 /// A table: the keys of its rows, its columns with their headings, and the error that stopped the sweep before its end, if one
 /// did.
-type Table<'py> = (Vec<String>, Vec<(String, Bound<'py, PyAny>)>, Option<PyErr>);
+type Table<'py> = (Bound<'py, PyList>, Vec<(String, Bound<'py, PyAny>)>, Option<PyErr>);
 
 /// Does every one of the populations of structures under every record at every scale, but for the runs whose rows are in the
 /// file at `path`. Returns the rows in that order, with a column of the measure `intensity`. `progress` is called with how
@@ -117,7 +117,8 @@ pub fn sweep<'py>(
     };
     let (keys, columns) = py.detach(|| sweep.table(intensity));
     let columns = columns.into_iter().map(|(heading, column)| Ok((heading, values(py, column)?)));
-    Ok((keys.iter().map(ToString::to_string).collect(), columns.collect::<PyResult<_>>()?, stopped))
+    let keys = keys.iter().map(|key| PyString::new(py, key.hyphenated().encode_lower(&mut [0; 36])));
+    Ok((PyList::new(py, keys)?, columns.collect::<PyResult<_>>()?, stopped))
 }
 
 /// A map of `structure` under pulses as CSV: a row for each point, those of the grid first.
@@ -154,10 +155,10 @@ pub fn overturning_map(
         let (pool, rows) = (thread_pool(threads)?, Mutex::new(Vec::new()));
         map.complete(refine, &mut HashMap::new(), |level, lacking, points| {
             let (waiting, points) = (abandoned.clone(), Mutex::new(points));
-            let run = |places: &[Place], done: &mut dyn FnMut(_) -> bool| {
-                map.run_each(places, |at, point| done((places[at], point)));
+            let run = |places: &[Place], done: &mut dyn FnMut(_, &[u8]) -> bool| {
+                map.run_each(places, |at, point| done((places[at], point), &[]));
             };
-            let keep = |(place, point): (Place, Point), _: &mut _| {
+            let keep = |(place, point): (Place, Point)| {
                 waiting.check();
                 points.lock().expect("no thread panics with them").insert(place, point.clone());
                 rows.lock().expect("no thread panics with them").push((level, place, point));
@@ -168,9 +169,8 @@ pub fn overturning_map(
         Ok((map, rows.into_inner()?))
     })?;
     rows.sort_by_key(|(level, place, _)| (*level, *place));
-    let lines = rows.iter().map(|(level, place, point)| line(&map.row(*level, *place, point)));
-    let table = [line(&HEADINGS)].into_iter().chain(lines).collect::<Result<Vec<_>, _>>();
-    String::from_utf8(table.map_err(refused)?.concat()).map_err(refused)
+    let lines = rows.iter().flat_map(|(level, place, point)| line(&map.row(*level, *place, point)));
+    String::from_utf8(line(&HEADINGS).into_iter().chain(lines).collect()).map_err(refused)
 }
 
 /// An array of the numbers of a column; of texts, each once, and the array of their positions.

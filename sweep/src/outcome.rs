@@ -3,9 +3,8 @@
 use crate::{Refused, ensure};
 use rocking::digits::{short, with_unit};
 use rocking::run::fall::Found;
-use rocking::run::peaks::Peaks;
 use rocking::run::{Ending, Run, RunError, Runs};
-use rocking::{Detail, Output, Structure};
+use rocking::{Output, Structure};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
@@ -45,16 +44,38 @@ pub type Measure = (String, String);
 
 /// The measures of a run of `structure`: its peaks, and the largest rotation as a fraction of the slenderness angle.
 pub fn measures(structure: &Structure) -> Vec<Measure> {
-    let named = magnitudes(structure, &Peaks::since(0.0, structure, Detail::Auto));
-    named.into_iter().map(|(name, unit, _)| (name, unit.into())).collect()
+    let named = |of: Output| (of.name(structure), of.unit().into());
+    let all = Output::with_peak(structure).into_iter().map(named);
+    all.chain([("theta/alpha_cg".into(), "1".into())]).collect()
 }
 
-/// Name, unit and magnitude of each of [`measures`].
-fn magnitudes(structure: &Structure, peaks: &Peaks) -> Vec<(String, &'static str, f64)> {
-    let named = |of: Output| Some((of.name(structure), of.unit(), peaks.of(of)?.magnitude));
-    let rotation = peaks.theta().magnitude / libm::atan(structure.base().tan_alpha_cg);
-    let all = Output::with_peak(structure).into_iter().filter_map(named);
-    all.chain([("theta/alpha_cg".into(), "1", rotation)]).collect()
+/// Places of the measures of one kind of structures among the measures of a plan.
+#[derive(Clone, Debug)]
+pub(crate) struct Layout {
+    /// Outputs with a peak; those of one mass have other names.
+    outputs: Vec<Output>,
+    is_of_one: bool,
+    /// The place of each of [`measures`].
+    places: Vec<usize>,
+}
+
+impl Layout {
+    /// Layout of structures like `structure`, whose measures are added to `all` if they are not there.
+    pub(crate) fn new(structure: &Structure, all: &mut Vec<Measure>) -> Layout {
+        let place = |measure| {
+            all.iter().position(|of| *of == measure).unwrap_or_else(|| {
+                all.push(measure);
+                all.len() - 1
+            })
+        };
+        let places = measures(structure).into_iter().map(place).collect();
+        Layout { outputs: Output::with_peak(structure), is_of_one: structure.one().is_some(), places }
+    }
+
+    /// Whether the measures of `structure` are these.
+    pub(crate) fn is_of(&self, structure: &Structure) -> bool {
+        self.is_of_one == structure.one().is_some() && self.outputs == Output::with_peak(structure)
+    }
 }
 
 /// Usual units of limits: name, unit of the measure, and how many of that one it is; g is the structure's own.
@@ -95,8 +116,13 @@ impl Outcome {
         Outcome::Ended(Summary { ending, end: 1.0, peaks: vec![peak; 8], transitions: 0, steps: 0, evaluations: 0 })
     }
 
-    /// Outcome of a `run` with this result, whose peaks are those of `measures`.
-    pub(crate) fn found<Q: Runs>(run: &Run<Q>, measures: &[Measure], found: Result<Found<Q>, RunError>) -> Outcome {
+    /// Outcome of a `run` with this result: its peaks are at the places of `layout` among so many `measures`.
+    pub(crate) fn found<Q: Runs>(
+        run: &Run<Q>,
+        layout: &Layout,
+        measures: usize,
+        found: Result<Found<Q>, RunError>,
+    ) -> Outcome {
         let Found { peaks, finish, .. } = match found {
             Ok(found) => found,
             Err(error) => {
@@ -104,12 +130,14 @@ impl Outcome {
                 return Outcome::Failed { time, reason: error.to_string() };
             }
         };
-        let named = magnitudes(&run.structure, &peaks);
-        let of = |measure: &str| named.iter().find(|(name, ..)| name == measure).map_or(f64::NAN, |(.., most)| *most);
+        let rotation = peaks.theta().magnitude / libm::atan(run.structure.base().tan_alpha_cg);
+        let magnitudes = layout.outputs.iter().map(|of| peaks.of(*of).map_or(f64::NAN, |peak| peak.magnitude));
+        let mut all = vec![f64::NAN; measures];
+        layout.places.iter().zip(magnitudes.chain([rotation])).for_each(|(place, magnitude)| all[*place] = magnitude);
         Outcome::Ended(Summary {
             ending: finish.ending,
             end: finish.motion.time,
-            peaks: measures.iter().map(|(name, _)| of(name)).collect(),
+            peaks: all,
             transitions: finish.motion.transitions,
             steps: finish.motion.work.steps,
             evaluations: finish.motion.work.evaluations,

@@ -1,6 +1,6 @@
 //! Many runs: every structure of some populations under every ground motion at every scale factor.
 
-use crate::outcome::{self, Measure, Outcome};
+use crate::outcome::{Layout, Measure, Outcome};
 use crate::{Refused, ensure};
 use rocking::digits::with_unit;
 use rocking::engine::{DEFAULT_TOLERANCE, Settings};
@@ -13,7 +13,8 @@ use rocking::mechanics::state::InitialStateError;
 use rocking::run::lanes::found_each;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits};
-use rocking::run::{End, Run, Runs};
+use rocking::run::fall::Found;
+use rocking::run::{End, Run, RunError, Runs};
 use rocking::structure::doubts::doubted;
 use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
 use rocking::{Detail, Parameters, Quantity, State, Structure};
@@ -124,6 +125,7 @@ pub struct Plan {
     conditions: Conditions,
     /// Measures of all structures, each once.
     pub measures: Vec<Measure>,
+    layouts: Vec<Layout>,
     /// Of every structure under every ground motion.
     spectral: Vec<Spectral>,
 }
@@ -137,28 +139,40 @@ struct Spectral {
     at: OnceLock<(f64, f64, f64)>,
 }
 
+/// A structure of a plan.
+#[derive(Clone, Debug)]
+struct Member<'a> {
+    population: &'a Population,
+    /// Number of the structure in its population, from 0.
+    number: usize,
+    structure: Structure,
+    layout: &'a Layout,
+}
+
 /// One run of a plan.
 #[derive(Clone, Debug)]
 pub struct Case<'a> {
+    plan: &'a Plan,
+    /// Number of the run in the plan, from 0.
+    pub index: usize,
+    /// Number of the structure in the plan, from 0.
+    pub structure_number: usize,
     /// Population of the structure.
     pub population: &'a Population,
     /// Number of the structure in its population, from 0.
     member: usize,
     /// The structure.
     pub structure: Structure,
+    layout: &'a Layout,
     /// The ground motion before it is scaled.
     pub motion: &'a NamedRecord,
+    /// Number of the ground motion in the plan, from 0.
+    pub motion_number: usize,
     /// Factor on its acceleration, beside its own.
     pub scale: f64,
-    /// Conditions of all runs.
-    pub conditions: &'a Conditions,
-    measures: &'a [Measure],
     /// Runs of different groups do not depend on each other: the ground motion's number, or where there is one alone the
     /// structure's.
     pub group: usize,
-    /// Number of the ground motion in the plan, from 0.
-    pub motion_number: usize,
-    spectral: &'a Spectral,
 }
 
 impl Population {
@@ -284,8 +298,8 @@ impl Plan {
         ensure(!motions.is_empty(), || is_empty("records"))?;
         check_names("populations", populations.iter().map(|of| &of.name))?;
         check_names("ground motions", motions.iter().map(|of| &of.name))?;
-        let (conditions, measures, spectral) = (Conditions::default(), Vec::new(), Vec::new());
-        let mut plan = Plan { populations, motions, scales, conditions, measures, spectral };
+        let (conditions, measures, layouts, spectral) = (Conditions::default(), Vec::new(), Vec::new(), Vec::new());
+        let mut plan = Plan { populations, motions, scales, conditions, measures, layouts, spectral };
         let [structures, motions, scales] = plan.size();
         ensure(structures.saturating_mul(motions).saturating_mul(scales) <= MAX_RUNS, || {
             format!(
@@ -294,9 +308,10 @@ impl Plan {
         })?;
         for population in &plan.populations {
             for member in 0..population.len() {
-                let mut of_member = outcome::measures(&population.structure(member)?);
-                of_member.retain(|measure| !plan.measures.contains(measure));
-                plan.measures.append(&mut of_member);
+                let structure = population.structure(member)?;
+                if plan.layouts.iter().all(|layout| !layout.is_of(&structure)) {
+                    plan.layouts.push(Layout::new(&structure, &mut plan.measures));
+                }
             }
         }
         plan.spectral = vec![Spectral::default(); structures * motions];
@@ -337,39 +352,81 @@ impl Plan {
 
     /// Run `index` < [`Plan::len`]: scale factors change first, then ground motions, then structures.
     pub fn case(&self, index: usize) -> Case<'_> {
-        let (rest, scale) = (index / self.scales.len(), self.scales[index % self.scales.len()]);
-        let (mut member, motion_number) = (rest / self.motions.len(), rest % self.motions.len());
+        self.cases_of([index]).next().expect("there is one")
+    }
+
+    /// Every run, in this order.
+    pub fn cases(&self) -> impl Iterator<Item = Case<'_>> {
+        self.cases_of(0..self.len())
+    }
+
+    /// The runs `indices`. Neighbours of the same structure share it.
+    pub fn cases_of(&self, indices: impl IntoIterator<Item = usize>) -> impl Iterator<Item = Case<'_>> {
+        let mut made: Option<(usize, Member)> = None;
+        indices.into_iter().map(move |index| {
+            let (rest, scale) = (index / self.scales.len(), self.scales[index % self.scales.len()]);
+            let (structure_number, motion_number) = (rest / self.motions.len(), rest % self.motions.len());
+            let of_last = made.take().filter(|(number, _)| *number == structure_number);
+            let (_, member) = made.insert(of_last.unwrap_or_else(|| (structure_number, self.member(structure_number))));
+            let Member { population, number: member, structure, layout } = member.clone();
+            let group = if self.motions.len() > 1 { motion_number } else { rest };
+            let (plan, motion) = (self, &self.motions[motion_number]);
+            Case {
+                plan,
+                index,
+                structure_number,
+                population,
+                member,
+                structure,
+                layout,
+                motion,
+                motion_number,
+                scale,
+                group,
+            }
+        })
+    }
+
+    /// The structure of this `number` in the plan.
+    fn member(&self, mut number: usize) -> Member<'_> {
         let mut populations = self.populations.iter();
         let population = populations.find(|population| {
-            let is_of_it = member < population.len();
-            member -= if is_of_it { 0 } else { population.len() };
+            let is_of_it = number < population.len();
+            number -= if is_of_it { 0 } else { population.len() };
             is_of_it
         });
-        let population = population.expect("the plan has such a run");
-        let structure = population.structure(member).expect(CHECKED);
-        let group = if self.motions.len() > 1 { motion_number } else { rest };
-        let Plan { motions, conditions, measures, spectral, .. } = self;
-        let (motion, spectral) = (&motions[motion_number], &spectral[rest]);
-        Case { population, member, structure, motion, scale, conditions, measures, group, motion_number, spectral }
+        let population = population.expect("the plan has such a structure");
+        let structure = population.structure(number).expect(CHECKED);
+        let layout = self.layouts.iter().find(|layout| layout.is_of(&structure)).expect(CHECKED);
+        Member { population, number, structure, layout }
+    }
+
+    /// Conditions of all runs.
+    pub fn conditions(&self) -> &Conditions {
+        &self.conditions
     }
 
     /// Does the runs `indices` on one thread, several at a time if all are of one mass, and tells `done` the outcome of each as it ends.
-    /// Once `done` says no, the rest is left undone.
-    pub fn each_outcome(&self, indices: &[usize], mut done: impl FnMut(usize, Outcome) -> bool) {
-        let cases: Vec<_> = indices.iter().map(|index| self.case(*index)).collect();
-        if cases.iter().any(|case| case.structure.one().is_none()) {
-            indices.iter().zip(&cases).all(|(index, case)| done(*index, case.outcome()));
+    /// With `validity` each is by itself, and its findings say how far it breaks the assumptions of the model. Once `done` says no,
+    /// the rest is left undone.
+    pub fn each_outcome(
+        &self,
+        indices: &[usize],
+        validity: bool,
+        mut done: impl FnMut(&Case, Outcome, Option<Findings>) -> bool,
+    ) {
+        let cases: Vec<_> = self.cases_of(indices.iter().copied()).collect();
+        if validity || cases.iter().any(|case| case.structure.one().is_none()) {
+            cases.iter().all(|case| {
+                let (outcome, findings) = case.follow(validity);
+                done(case, outcome, findings)
+            });
             return;
         }
         let grounds: Vec<_> = cases.iter().map(Case::ground).collect();
         let run = |(case, ground): (&Case, _)| self.conditions.run(case.structure.clone(), ground).expect(CHECKED);
         let runs: Vec<_> = cases.iter().zip(&grounds).map(run).collect();
-        found_each(&runs, &mut |at, found| done(indices[at], Outcome::found(&runs[at], &self.measures, found)));
-    }
-
-    /// Every run, in this order.
-    pub fn cases(&self) -> impl Iterator<Item = Case<'_>> {
-        (0..self.len()).map(|index| self.case(index))
+        found_each(&runs, &mut |at, found| done(&cases[at], cases[at].outcome_of(&runs[at], found), None));
     }
 }
 
@@ -379,23 +436,22 @@ impl Case<'_> {
         self.follow(false).0
     }
 
-    /// Does it, and finds how far it breaks the assumptions of the model.
-    pub fn outcome_and_findings(&self) -> (Outcome, Findings) {
-        let (outcome, findings) = self.follow(true);
-        (outcome, findings.expect("they were asked for"))
-    }
-
-    fn follow(&self, with_validity: bool) -> (Outcome, Option<Findings>) {
-        fn of<Q: Runs>(run: &Run<Q>, measures: &[Measure], with_validity: bool) -> (Outcome, Option<Findings>) {
-            if !with_validity {
-                return (Outcome::found(run, measures, run.found(&mut ())), None);
+    /// Does it, and with `validity` finds how far it breaks the assumptions of the model.
+    fn follow(&self, validity: bool) -> (Outcome, Option<Findings>) {
+        fn of<Q: Runs>(case: &Case, run: &Run<Q>, validity: bool) -> (Outcome, Option<Findings>) {
+            if !validity {
+                return (case.outcome_of(run, run.found(&mut ())), None);
             }
             let mut validity = run.validity_watch(Limits::default()).expect(CHECKED);
-            (Outcome::found(run, measures, run.judged(&mut validity, &mut ())), Some(*validity.found()))
+            (case.outcome_of(run, run.judged(&mut validity, &mut ())), Some(*validity.found()))
         }
         let ground = self.ground();
-        with_run!(self.conditions, self.structure, &ground, run => of(&run, self.measures, with_validity))
-            .expect(CHECKED)
+        with_run!(self.plan.conditions, self.structure, &ground, run => of(self, &run, validity)).expect(CHECKED)
+    }
+
+    /// Outcome of its `run` with this result.
+    fn outcome_of<Q: Runs>(&self, run: &Run<Q>, found: Result<Found<Q>, RunError>) -> Outcome {
+        Outcome::found(run, self.layout, self.plan.measures.len(), found)
     }
 
     /// The ground motion as it is scaled.
@@ -406,7 +462,8 @@ impl Case<'_> {
     /// How strong the ground motion is, in the unit of `measure`.
     pub fn intensity(&self, measure: IntensityMeasure) -> f64 {
         let Parameters { g, f_fc, zeta_fc, .. } = self.structure.parameters();
-        let (NamedRecord { record, .. }, Spectral { sa, average, at }) = (self.motion, self.spectral);
+        let pair = self.structure_number * self.plan.motions.len() + self.motion_number;
+        let (NamedRecord { record, .. }, Spectral { sa, average, at }) = (self.motion, &self.plan.spectral[pair]);
         let unscaled = match measure {
             IntensityMeasure::Pga => self.motion.pga / g,
             IntensityMeasure::Pgv => self.motion.pgv,
@@ -629,7 +686,7 @@ mod tests {
         let usual = Run::new(OneMass::new(Parameters::MCMANUS).unwrap(), &ground);
         let initial = State { theta: 0.05, u: 1e-3, ..State::default() };
         let run = Run { initial, detail, tolerance, end: End::At(0.7), ..usual.clone() };
-        let outcome = |run: &Run| Outcome::found(run, &plan.measures, run.found(&mut ()));
+        let outcome = |run: &Run| plan.case(0).outcome_of(run, run.found(&mut ()));
         assert_eq!(plan.case(0).outcome(), outcome(&run));
         let Outcome::Ended(Summary { ending, end, .. }) = plan.case(0).outcome() else { panic!() };
         assert_eq!((ending, end), (Ending::AtTime, 0.7));

@@ -3,11 +3,12 @@
 //! A row begins with the run's key, which stands for all that the run depends on. So rows may stand in any order, and
 //! those of other runs among them.
 //!
-//! A thread writes the rows of its last runs together, ten times a second at most. However the program ends, the file holds complete
+//! A thread writes the rows of its last runs together, at least ten times a second. However the program ends, the file holds complete
 //! rows and at most a part of one more. That part is cut off when the runs continue.
 
 use anyhow::{Context, bail, ensure};
 use csv::{ReaderBuilder, StringRecord, WriterBuilder};
+use sha1_smol::Sha1;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::{
@@ -18,7 +19,7 @@ use std::{
     sync::Mutex,
     time::Instant,
 };
-use uuid::Uuid;
+use uuid::{Builder, Uuid};
 
 /// Runs that a thread does together: enough for full lanes to the end, and few enough to share them out and to stop soon.
 const FEWEST_TOGETHER: usize = 16;
@@ -26,9 +27,6 @@ const MOST_TOGETHER: usize = 64;
 
 /// How often each thread takes runs, if there are few.
 const SHARES: usize = 4;
-
-/// Rows that are not in a file yet.
-pub type Rows = csv::Writer<Vec<u8>>;
 
 /// An open file, to which rows can be added.
 #[derive(Debug)]
@@ -50,16 +48,27 @@ pub struct Program {
     pub version: String,
 }
 
-impl Program {
-    /// The key of what depends on this program and on `of`.
-    pub fn key(&self, of: &impl Serialize) -> Uuid {
-        digest(&self.build, of)
-    }
-}
+/// Becomes a number that identifies all that was added in this order: a UUID of version 5.
+#[derive(Clone)]
+pub struct Digest(Sha1);
 
-/// Number that identifies `of` in `namespace`.
-pub fn digest(namespace: &Uuid, of: &impl Serialize) -> Uuid {
-    Uuid::new_v5(namespace, &postcard::to_allocvec(of).expect("numbers and slices can be serialized"))
+impl Digest {
+    /// Nothing in `namespace`, such as the build of a program that a result depends on.
+    pub fn new(namespace: &Uuid) -> Digest {
+        Digest(Sha1::from(namespace))
+    }
+
+    /// Adds `of`.
+    pub fn and(mut self, of: &impl Serialize) -> Digest {
+        self.0.update(&postcard::to_allocvec(of).expect("numbers and slices can be serialized"));
+        self
+    }
+
+    /// The number.
+    pub fn uuid(&self) -> Uuid {
+        let bytes = self.0.digest().bytes();
+        Builder::from_sha1_bytes(*bytes.first_chunk().expect("there are 20")).into_uuid()
+    }
 }
 
 /// A sentence about the `count` rows in the file at `path` that were not taken: rows of other runs or points, `what`.
@@ -85,7 +94,7 @@ impl RowFile {
             }
             let mut content = Vec::new();
             file.read_to_end(&mut content)?;
-            let first = line(&headings)?;
+            let first = line(&headings);
             let mut known = Known::default();
             if first.starts_with(&content) {
                 file.rewind()?;
@@ -115,34 +124,36 @@ impl RowFile {
     }
 
     /// Adds all of these rows, or nothing, and leaves none behind.
-    fn append(&self, rows: &mut Rows) -> anyhow::Result<()> {
-        let rows = std::mem::replace(rows, no_rows()).into_inner()?;
+    fn append(&self, rows: &mut Vec<u8>) -> anyhow::Result<()> {
         let mut guard = self.file.lock().expect("no thread panics with the file in hand");
         let (file, length) = &mut *guard;
-        let written = file.write_all(&rows);
+        let written = file.write_all(rows);
         if written.is_err() {
             file.seek(SeekFrom::Start(*length))?;
             file.set_len(*length)?;
         }
+        let added = std::mem::take(rows).len();
         written.with_context(|| format!("{} cannot be written", self.path.display()))?;
-        *length += rows.len() as u64;
+        *length += added as u64;
         Ok(())
     }
 }
 
-/// Does `runs` on all threads, several together: `run` hands each result to `keep`, whose rows go to the `file`, until `keep` fails.
+/// Does `runs` on all threads, several together: `run` hands out each result, which goes to `keep`, and its row, which goes to the
+/// `file`, until `keep` fails.
 pub fn do_runs<T: Sync, R>(
     runs: &[T],
     file: Option<&RowFile>,
-    run: impl Fn(&[T], &mut dyn FnMut(R) -> bool) + Sync,
-    keep: impl Fn(R, &mut Rows) -> anyhow::Result<()> + Sync,
+    run: impl Fn(&[T], &mut dyn FnMut(R, &[u8]) -> bool) + Sync,
+    keep: impl Fn(R) -> anyhow::Result<()> + Sync,
 ) -> anyhow::Result<()> {
     let together = (runs.len() / (SHARES * rayon::current_num_threads())).clamp(FEWEST_TOGETHER, MOST_TOGETHER);
     runs.par_chunks(together).try_for_each(|runs| {
-        let (mut result, mut rows, mut written) = (Ok(()), no_rows(), Instant::now());
-        let write = |rows: &mut Rows| file.map_or(Ok(()), |file| file.append(rows));
-        run(runs, &mut |done| {
-            result = keep(done, &mut rows);
+        let (mut result, mut rows, mut written) = (Ok(()), Vec::new(), Instant::now());
+        let write = |rows: &mut Vec<u8>| file.map_or(Ok(()), |file| file.append(rows));
+        run(runs, &mut |done, row| {
+            rows.extend(row);
+            result = keep(done);
             if result.is_ok() && written.elapsed().as_secs_f64() > 0.1 {
                 (result, written) = (write(&mut rows), Instant::now());
             }
@@ -169,12 +180,8 @@ pub fn fixed(headings: &[&str]) -> Vec<String> {
 }
 
 /// A line of these values; numbers read back to the same bits.
-pub fn line(of: &impl Serialize) -> anyhow::Result<Vec<u8>> {
-    let mut rows = no_rows();
-    rows.serialize(of)?;
-    Ok(rows.into_inner()?)
-}
-
-fn no_rows() -> Rows {
-    WriterBuilder::new().has_headers(false).from_writer(Vec::new())
+pub fn line(of: &impl Serialize) -> Vec<u8> {
+    let mut rows = WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    rows.serialize(of).expect("numbers and texts can be written to memory");
+    rows.into_inner().expect("numbers and texts can be written to memory")
 }

@@ -4,7 +4,7 @@
 
 use crate::outcome::{Measure, Outcome, Summary};
 use crate::plan::{AXES, Case, Conditions, NamedRecord, Plan};
-use crate::row_file::{Known, Program, RowFile, Rows, digest, do_runs, fixed, heading};
+use crate::row_file::{Digest, Known, Program, RowFile, do_runs, fixed, heading, line};
 use anyhow::{bail, ensure};
 use csv::StringRecord;
 use rocking::estimates::intensity::IntensityMeasure;
@@ -12,8 +12,8 @@ use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::Ending;
 use rocking::run::record::Record;
 use rocking::run::validity::{ASSUMPTIONS, Findings};
-use serde::{Serialize, Serializer};
 use std::collections::{HashMap, HashSet};
+use std::io::Write;
 use std::path::Path;
 use std::sync::OnceLock;
 use uuid::Uuid;
@@ -49,15 +49,13 @@ struct Done {
 }
 
 /// One value of a row.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Cell<'a> {
     Text(&'a str),
     Ending(Ending),
     Number(f64),
     Count(u64),
     /// A number for each floor, as a text with spaces between them.
-    #[serde(serialize_with = "with_spaces")]
     Floors(&'a [f64]),
     Empty,
 }
@@ -66,8 +64,23 @@ fn spaced(of: &[f64]) -> String {
     of.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
 }
 
-fn with_spaces<S: Serializer>(of: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(&spaced(of))
+impl Cell<'_> {
+    /// Adds the cell and a comma to a row of CSV; a number reads back to the same bits.
+    fn write(self, row: &mut Vec<u8>) {
+        match self {
+            Cell::Text(text) if text.contains(['"', ',', '\n', '\r']) => {
+                row.extend(line(&[text]));
+                row.pop();
+            }
+            Cell::Text(text) => row.extend(text.as_bytes()),
+            Cell::Ending(ending) => write!(row, "{ending}").expect("memory can be written"),
+            Cell::Number(number) => row.extend(ryu::Buffer::new().format(number).as_bytes()),
+            Cell::Count(count) => row.extend(itoa::Buffer::new().format(count).as_bytes()),
+            Cell::Floors(of) => row.extend(spaced(of).as_bytes()),
+            Cell::Empty => {}
+        }
+        row.push(b',');
+    }
 }
 
 /// The values of one column, row by row.
@@ -116,18 +129,26 @@ impl<'a> Sweep<'a> {
     /// Does the runs that are not done, on all threads, and adds their rows to the file as they end. After each run
     /// `goes_on` is asked; once it says no, the rest is left undone and that is an error.
     pub fn finish(&self, goes_on: impl Fn() -> bool + Sync) -> anyhow::Result<()> {
-        let run = |indices: &[usize], done: &mut dyn FnMut((usize, Done)) -> bool| {
-            if self.validity {
-                indices.iter().all(|index| done((*index, self.run_with_validity(*index))));
-            } else {
-                let unchecked = |outcome| Done { outcome, beyond: Box::default() };
-                self.plan.each_outcome(indices, |index, outcome| done((index, unchecked(outcome))));
-            }
+        let run = |indices: &[usize], hand_out: &mut dyn FnMut((usize, Done), &[u8]) -> bool| {
+            let (mut structure, mut of_structure, mut row) = (usize::MAX, Vec::new(), Vec::new());
+            self.plan.each_outcome(indices, self.validity, |case, outcome, findings| {
+                let done = Done::new(outcome, findings);
+                if self.file.is_some() {
+                    if structure != case.structure_number {
+                        structure = case.structure_number;
+                        of_structure.clear();
+                        self.of_structure(case).for_each(|cell| cell.write(&mut of_structure));
+                    }
+                    row.clear();
+                    Cell::Text(self.keys[case.index].hyphenated().encode_lower(&mut Uuid::encode_buffer())).write(&mut row);
+                    row.extend(&of_structure);
+                    self.of_run(case, &done).for_each(|cell| cell.write(&mut row));
+                    *row.last_mut().expect("a comma") = b'\n';
+                }
+                hand_out((case.index, done), &row)
+            });
         };
-        let keep = |(index, done): (usize, Done), rows: &mut Rows| {
-            if self.file.is_some() {
-                rows.serialize((self.keys[index].to_string(), self.row(index, &done)))?;
-            }
+        let keep = |(index, done): (usize, Done)| {
             self.done[index].set(done).expect("each run is done once");
             ensure!(goes_on(), "stopped: the runs that are finished are kept");
             Ok(())
@@ -144,66 +165,81 @@ impl<'a> Sweep<'a> {
     /// The rows of the runs that are done, in the order of the plan: their keys, and the columns with their headings. The
     /// column of `measure` is among them.
     pub fn table(&self, measure: IntensityMeasure) -> (Vec<Uuid>, Vec<(String, Column)>) {
-        let done = || self.done.iter().enumerate().filter_map(|(index, done)| Some((index, done.get()?)));
+        let done = || (0..self.plan.len()).filter(|index| self.done[*index].get().is_some());
         let rows = done().count();
         let added = Some(measure).filter(|measure| !IntensityMeasure::COLUMNS.contains(measure));
         let headings =
             headings(&self.plan.measures).into_iter().skip(1).chain(added.map(|of| heading(&of.name(), of.unit())));
         let mut columns: Vec<_> = headings.map(|heading| (heading, Column::of(rows))).collect();
         let mut texts = vec![HashMap::new(); columns.len()];
-        for (index, done) in done() {
-            let added = added.map(|measure| Cell::Number(self.plan.case(index).intensity(measure)));
-            let cells = self.row(index, done).into_iter().chain(added);
-            let columns = columns.iter_mut().zip(&mut texts);
-            columns.zip(cells).for_each(|(((_, column), texts), cell)| column.push(cell, texts));
+        let (mut structure, mut of_structure) = (usize::MAX, Vec::new());
+        for case in self.plan.cases_of(done()) {
+            if structure != case.structure_number {
+                (structure, of_structure) = (case.structure_number, self.of_structure(&case).collect());
+            }
+            let done = self.done[case.index].get().expect("it is done");
+            let mut columns = columns.iter_mut().zip(&mut texts);
+            let mut push = |cell| {
+                let ((_, column), texts) = columns.next().expect("every cell has a heading");
+                column.push(cell, texts);
+            };
+            of_structure.iter().copied().for_each(&mut push);
+            self.of_run(&case, done).for_each(&mut push);
+            added.into_iter().for_each(|measure| push(Cell::Number(case.intensity(measure))));
         }
-        (done().map(|(index, _)| self.keys[index]).collect(), columns)
+        (done().map(|index| self.keys[index]).collect(), columns)
     }
 
-    fn run_with_validity(&self, index: usize) -> Done {
-        let (outcome, findings) = self.plan.case(index).outcome_and_findings();
-        if let Outcome::Failed { .. } = outcome {
-            return Done { outcome, beyond: Box::default() };
-        }
-        let Findings { worst, gains, settlings, .. } = findings;
-        let beyond = worst.iter().flat_map(|worst| [worst.value, worst.time]);
-        Done { outcome, beyond: beyond.chain([gains as f64, settlings as f64]).collect() }
+    /// The cells of a row that depend on its structure alone, without the key of the run.
+    fn of_structure<'b>(&'b self, case: &Case<'b>) -> impl Iterator<Item = Cell<'b>> {
+        let names = [&case.population.name, &self.program.version].map(|text| Cell::Text(text));
+        names.into_iter().chain(AXES.map(|axis| Cell::Number(case.value(axis))))
     }
 
-    /// The row of a run that is done, without its key.
-    fn row<'b>(&'b self, index: usize, Done { outcome, beyond }: &'b Done) -> Vec<Cell<'b>> {
-        let case = self.plan.case(index);
-        let Conditions { initial, detail, tolerance, duration } = case.conditions;
-        let mut row = Vec::with_capacity(64);
-        row.extend([&case.population.name, &self.program.version].map(|text| Cell::Text(text)));
-        row.extend(AXES.map(|axis| Cell::Number(case.value(axis))));
-        row.extend([&case.motion.name, &self.digests[case.motion_number]].map(|text| Cell::Text(text)));
-        row.extend([case.motion.scale, case.scale].map(Cell::Number));
-        row.extend(IntensityMeasure::COLUMNS.map(|measure| Cell::Number(case.intensity(measure))));
-        row.extend([Cell::Text(detail.name()), Cell::Number(*tolerance), duration.map_or(Cell::Empty, Cell::Number)]);
-        row.extend(initial.numbers().map(|of| match *of {
+    /// The other cells of the row of a run that is done.
+    fn of_run<'b>(&'b self, case: &Case<'b>, Done { outcome, beyond }: &'b Done) -> impl Iterator<Item = Cell<'b>> {
+        let (ending, end, peaks, counts, reason) = match outcome {
+            Outcome::Ended(of) => {
+                let counts = [of.transitions, of.steps, of.evaluations].map(Cell::Count);
+                (Cell::Ending(of.ending), of.end, &of.peaks[..], counts, Cell::Empty)
+            }
+            Outcome::Failed { time, reason } => {
+                (Cell::Text(FAILED), *time, &[][..], [Cell::Empty; 3], Cell::Text(reason))
+            }
+        };
+        let numbers = |of: &'b [f64], count| {
+            (0..count).map(|at| of.get(at).map_or(Cell::Empty, |number| Cell::Number(*number)))
+        };
+        let motion = [&case.motion.name, &self.digests[case.motion_number]].map(|text| Cell::Text(text));
+        let Conditions { initial, detail, tolerance, duration } = self.plan.conditions();
+        let initial = initial.numbers().map(|of| match *of {
             [] => Cell::Number(0.0),
             [one] => Cell::Number(one),
             _ => Cell::Floors(of),
-        }));
-        let reason = match outcome {
-            Outcome::Ended(of) => {
-                row.extend([Cell::Ending(of.ending), Cell::Number(of.end)]);
-                row.extend(of.peaks.iter().copied().map(Cell::Number));
-                row.extend([of.transitions, of.steps, of.evaluations].map(Cell::Count));
-                Cell::Empty
-            }
-            Outcome::Failed { time, reason } => {
-                row.extend([Cell::Text(FAILED), Cell::Number(*time)]);
-                row.resize(row.len() + self.plan.measures.len() + 3, Cell::Empty);
-                Cell::Text(reason)
-            }
+        });
+        { motion }
+            .into_iter()
+            .chain([case.motion.scale, case.scale].map(Cell::Number))
+            .chain(IntensityMeasure::COLUMNS.map(|measure| Cell::Number(case.intensity(measure))))
+            .chain([Cell::Text(detail.name()), Cell::Number(*tolerance), duration.map_or(Cell::Empty, Cell::Number)])
+            .chain(initial)
+            .chain([ending, Cell::Number(end)])
+            .chain(numbers(peaks, self.plan.measures.len()))
+            .chain(counts)
+            .chain(numbers(beyond, BEYOND))
+            .chain([reason])
+    }
+}
+
+impl Done {
+    /// A run with this `outcome`; the `findings` count if it did not fail.
+    fn new(outcome: Outcome, findings: Option<Findings>) -> Done {
+        let of = findings.filter(|_| matches!(outcome, Outcome::Ended(_)));
+        let numbers = |Findings { worst, gains, settlings, .. }: Findings| {
+            let worst = worst.iter().flat_map(|worst| [worst.value, worst.time]);
+            worst.chain([gains as f64, settlings as f64]).collect()
         };
-        let with_beyond = row.len() + BEYOND;
-        row.extend(beyond.iter().copied().map(Cell::Number));
-        row.resize(with_beyond, Cell::Empty);
-        row.push(reason);
-        row
+        Done { outcome, beyond: of.map_or_else(Box::default, numbers) }
     }
 }
 
@@ -222,7 +258,8 @@ impl Column {
             (Column::Numbers(of), Cell::Number(number)) => of.push(number),
             (Column::Numbers(of), Cell::Empty) => of.push(f64::NAN),
             (Column::Texts(texts, of), Cell::Text(text)) => {
-                of.push(known.get(text).copied().unwrap_or(texts.len()));
+                let last = of.last().copied().filter(|last| texts.get(*last).is_some_and(|of| of == text));
+                of.push(last.or_else(|| known.get(text).copied()).unwrap_or(texts.len()));
                 if of.last() == Some(&texts.len()) {
                     known.insert(text.into(), texts.len());
                     texts.push(text.into());
@@ -251,11 +288,8 @@ impl Column {
 
 /// Stands for the samples of a record.
 fn digest_of(record: &Record) -> Uuid {
-    let samples = (record.times(), record.acceleration());
-    match record.vertical() {
-        None => digest(&Uuid::NAMESPACE_OID, &samples),
-        Some(vertical) => digest(&Uuid::NAMESPACE_OID, &(samples, vertical)),
-    }
+    let samples = Digest::new(&Uuid::NAMESPACE_OID).and(&(record.times(), record.acceleration()));
+    record.vertical().map_or_else(|| samples.uuid(), |vertical| samples.clone().and(&vertical).uuid())
 }
 
 /// Refuses two ground motions that are the same: each of their runs would count twice.
@@ -269,12 +303,18 @@ fn check_records(motions: &[NamedRecord]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The key of each run of `plan`, which is another one where it is asked what a run goes beyond.
+/// The key of each run of `plan`, which is another one where it is asked what a run goes beyond. Runs of a structure under a ground
+/// motion share the digest of these two.
 fn keys(plan: &Plan, digests: &[Uuid], validity: bool, program: &Program) -> Vec<Uuid> {
+    let (mut last, mut of_pair) = (None, Digest::new(&program.build));
     let of_case = |case: Case| {
-        let names = (&case.population.name, &case.motion.name);
-        let motion = (digests[case.motion_number].into_bytes(), case.motion.scale, case.scale);
-        program.key(&(names, case.structure.numbers(), motion, case.conditions, validity))
+        let pair = Some((case.structure_number, case.motion_number));
+        if pair != last {
+            let names = (&case.population.name, &case.motion.name);
+            let motion = (digests[case.motion_number].into_bytes(), case.motion.scale);
+            (last, of_pair) = (pair, Digest::new(&program.build).and(&(names, case.structure.numbers(), motion)));
+        }
+        of_pair.clone().and(&(case.scale, plan.conditions(), validity)).uuid()
     };
     plan.cases().map(of_case).collect()
 }

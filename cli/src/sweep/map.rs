@@ -16,7 +16,7 @@ use rocking::run::{LONGEST_REST, validity};
 use rocking_report::program::{program, version};
 use rocking_sweep::map::{CLASSES, Class, Fate, HEADINGS, Map, Place, Point};
 use rocking_sweep::plan::AXES;
-use rocking_sweep::row_file::{self, Known, RowFile, fixed, heading};
+use rocking_sweep::row_file::{self, Digest, Known, RowFile, fixed, heading};
 use serde::Serialize;
 use std::{collections::HashMap, fmt::Write, path::Path, sync::Mutex};
 use uuid::Uuid;
@@ -87,13 +87,15 @@ fn do_points(
             None => lacking.push((place, key)),
         }
     }
-    let run = |lacking: &[(Place, Uuid)], done: &mut dyn FnMut(_) -> bool| {
+    let run = |lacking: &[(Place, Uuid)], done: &mut dyn FnMut(_, &[u8]) -> bool| {
         let places: Vec<_> = lacking.iter().map(|(place, _)| *place).collect();
-        map.run_each(&places, |at, point| done((lacking[at], point)));
+        map.run_each(&places, |at, point| {
+            let row = row(&lacking[at].1, name, map, (level, places[at]), &point);
+            done((places[at], point), &row)
+        });
     };
     let (bar, points) = (progress(lacking.len(), "points")?, Mutex::new(points));
-    row_file::do_runs(&lacking, Some(file), run, |((place, key), point), rows| {
-        rows.serialize(row(&key, name, map, (level, place), &point))?;
+    row_file::do_runs(&lacking, Some(file), run, |(place, point)| {
         points.lock().expect("no thread panics with the points in hand").insert(place, point);
         bar.inc(1);
         Ok(())
@@ -112,7 +114,7 @@ fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Point>)> {
 /// The key of a point of the map of the structure called `name`.
 fn key_at(name: &str, map: &Map, place: Place) -> Uuid {
     let of_map = (map.detail, map.tolerance, map.finds_condition);
-    program().key(&(name, map.structure.numbers(), map.pulse(place), of_map))
+    Digest::new(&program().build).and(&(name, map.structure.numbers(), map.pulse(place), of_map)).uuid()
 }
 
 fn headings() -> Vec<String> {
@@ -126,12 +128,12 @@ fn headings() -> Vec<String> {
 }
 
 /// The row of a point, which the refinement of this level has asked for; 0 is the grid.
-fn row(key: &Uuid, name: &str, map: &Map, (level, place): (u32, Place), point: &Point) -> impl Serialize {
+fn row(key: &Uuid, name: &str, map: &Map, (level, place): (u32, Place), point: &Point) -> Vec<u8> {
     let pulse = map.pulse(place);
     let of_structure = AXES.map(|axis| (axis.get)(&map.structure.parameters()));
     let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail.name(), map.tolerance);
     let of_program = (key.to_string(), name, version());
-    (of_program, of_structure, of_map, map.row(level, place, point))
+    row_file::line(&(of_program, of_structure, of_map, map.row(level, place, point)))
 }
 
 /// How many points of the grid there are of each class that there are any of.
