@@ -5,6 +5,7 @@ use rocking::digits::{short, with_unit};
 use rocking::run::fall::Found;
 use rocking::run::{Ending, Run, RunError, Runs};
 use rocking::{Output, Structure};
+use smallvec::{SmallVec, smallvec};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
@@ -30,7 +31,7 @@ pub struct Summary {
     /// Time of the end, s.
     pub end: f64,
     /// Largest magnitude of each measure, NaN if the structure does not have it; of a structure that overturns, before it falls.
-    pub peaks: Vec<f64>,
+    pub peaks: Magnitudes,
     /// Transitions.
     pub transitions: u64,
     /// Steps taken.
@@ -38,6 +39,9 @@ pub struct Summary {
     /// Right-hand-side evaluations.
     pub evaluations: u64,
 }
+
+/// Magnitudes in place if they are of one mass: small blocks of memory that outlive a run make those of the next runs slow.
+pub type Magnitudes = SmallVec<[f64; Output::PEAKS_OF_ONE.len() + Output::OF_TIES.len() + 1]>;
 
 /// Name and unit of a peak.
 pub type Measure = (String, String);
@@ -113,7 +117,7 @@ impl Outcome {
     /// The outcome of a run in which every measure of one mass had this `peak`.
     #[cfg(test)]
     pub(crate) fn ended(ending: Ending, peak: f64) -> Outcome {
-        Outcome::Ended(Summary { ending, end: 1.0, peaks: vec![peak; 8], transitions: 0, steps: 0, evaluations: 0 })
+        Outcome::Ended(Summary { ending, end: 1.0, peaks: smallvec![peak; 8], transitions: 0, steps: 0, evaluations: 0 })
     }
 
     /// Outcome of a `run` with this result: its peaks are at the places of `layout` among so many `measures`.
@@ -132,7 +136,7 @@ impl Outcome {
         };
         let rotation = peaks.theta().magnitude / libm::atan(run.structure.base().tan_alpha_cg);
         let magnitudes = layout.outputs.iter().map(|of| peaks.of(*of).map_or(f64::NAN, |peak| peak.magnitude));
-        let mut all = vec![f64::NAN; measures];
+        let mut all = smallvec![f64::NAN; measures];
         layout.places.iter().zip(magnitudes.chain([rotation])).for_each(|(place, magnitude)| all[*place] = magnitude);
         Outcome::Ended(Summary {
             ending: finish.ending,

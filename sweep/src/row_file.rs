@@ -60,7 +60,8 @@ impl Digest {
 
     /// Adds `of`.
     pub fn and(mut self, of: &impl Serialize) -> Digest {
-        self.0.update(&postcard::to_allocvec(of).expect("numbers and slices can be serialized"));
+        let bytes = postcard::to_extend(of, Vec::with_capacity(1024)).expect("numbers and slices can be serialized");
+        self.0.update(&bytes);
         self
     }
 

@@ -7,6 +7,7 @@ use crate::plan::{AXES, Case, Conditions, NamedRecord, Plan};
 use crate::row_file::{Digest, Known, Program, RowFile, do_runs, fixed, heading, line};
 use anyhow::{bail, ensure};
 use csv::StringRecord;
+use rayon::prelude::*;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::Ending;
@@ -74,7 +75,8 @@ impl Cell<'_> {
             }
             Cell::Text(text) => row.extend(text.as_bytes()),
             Cell::Ending(ending) => write!(row, "{ending}").expect("memory can be written"),
-            Cell::Number(number) => row.extend(ryu::Buffer::new().format(number).as_bytes()),
+            Cell::Number(of) if of.abs() >= 1e16 => row.extend(zmij::Buffer::new().format(of).replace('+', "").as_bytes()),
+            Cell::Number(of) => row.extend(zmij::Buffer::new().format(of).as_bytes()),
             Cell::Count(count) => row.extend(itoa::Buffer::new().format(count).as_bytes()),
             Cell::Floors(of) => row.extend(spaced(of).as_bytes()),
             Cell::Empty => {}
@@ -137,12 +139,12 @@ impl<'a> Sweep<'a> {
                     if structure != case.structure_number {
                         structure = case.structure_number;
                         of_structure.clear();
-                        self.of_structure(case).for_each(|cell| cell.write(&mut of_structure));
+                        self.of_structure(case, |cell| cell.write(&mut of_structure));
                     }
                     row.clear();
                     Cell::Text(self.keys[case.index].hyphenated().encode_lower(&mut Uuid::encode_buffer())).write(&mut row);
                     row.extend(&of_structure);
-                    self.of_run(case, &done).for_each(|cell| cell.write(&mut row));
+                    self.of_run(case, &done, |cell| cell.write(&mut row));
                     *row.last_mut().expect("a comma") = b'\n';
                 }
                 hand_out((case.index, done), &row)
@@ -175,7 +177,8 @@ impl<'a> Sweep<'a> {
         let (mut structure, mut of_structure) = (usize::MAX, Vec::new());
         for case in self.plan.cases_of(done()) {
             if structure != case.structure_number {
-                (structure, of_structure) = (case.structure_number, self.of_structure(&case).collect());
+                (structure, of_structure) = (case.structure_number, Vec::new());
+                self.of_structure(&case, |cell| of_structure.push(cell));
             }
             let done = self.done[case.index].get().expect("it is done");
             let mut columns = columns.iter_mut().zip(&mut texts);
@@ -184,50 +187,50 @@ impl<'a> Sweep<'a> {
                 column.push(cell, texts);
             };
             of_structure.iter().copied().for_each(&mut push);
-            self.of_run(&case, done).for_each(&mut push);
+            self.of_run(&case, done, &mut push);
             added.into_iter().for_each(|measure| push(Cell::Number(case.intensity(measure))));
         }
         (done().map(|index| self.keys[index]).collect(), columns)
     }
 
-    /// The cells of a row that depend on its structure alone, without the key of the run.
-    fn of_structure<'b>(&'b self, case: &Case<'b>) -> impl Iterator<Item = Cell<'b>> {
-        let names = [&case.population.name, &self.program.version].map(|text| Cell::Text(text));
-        names.into_iter().chain(AXES.map(|axis| Cell::Number(case.value(axis))))
+    /// Shows `see` the cells of a row that depend on its structure alone, without the key of the run.
+    fn of_structure<'b>(&'b self, case: &Case<'b>, mut see: impl FnMut(Cell<'b>)) {
+        [&case.population.name, &self.program.version].into_iter().for_each(|text| see(Cell::Text(text)));
+        AXES.iter().for_each(|axis| see(Cell::Number(case.value(axis))));
     }
 
-    /// The other cells of the row of a run that is done.
-    fn of_run<'b>(&'b self, case: &Case<'b>, Done { outcome, beyond }: &'b Done) -> impl Iterator<Item = Cell<'b>> {
-        let (ending, end, peaks, counts, reason) = match outcome {
-            Outcome::Ended(of) => {
-                let counts = [of.transitions, of.steps, of.evaluations].map(Cell::Count);
-                (Cell::Ending(of.ending), of.end, &of.peaks[..], counts, Cell::Empty)
-            }
-            Outcome::Failed { time, reason } => {
-                (Cell::Text(FAILED), *time, &[][..], [Cell::Empty; 3], Cell::Text(reason))
-            }
-        };
-        let numbers = |of: &'b [f64], count| {
-            (0..count).map(|at| of.get(at).map_or(Cell::Empty, |number| Cell::Number(*number)))
-        };
-        let motion = [&case.motion.name, &self.digests[case.motion_number]].map(|text| Cell::Text(text));
+    /// Shows `see` the other cells of the row of a run that is done.
+    fn of_run<'b>(&'b self, case: &Case<'b>, Done { outcome, beyond }: &'b Done, mut see: impl FnMut(Cell<'b>)) {
+        [&case.motion.name, &self.digests[case.motion_number]].into_iter().for_each(|text| see(Cell::Text(text)));
+        [case.motion.scale, case.scale].into_iter().for_each(|number| see(Cell::Number(number)));
+        IntensityMeasure::COLUMNS.into_iter().for_each(|measure| see(Cell::Number(case.intensity(measure))));
         let Conditions { initial, detail, tolerance, duration } = self.plan.conditions();
-        let initial = initial.numbers().map(|of| match *of {
-            [] => Cell::Number(0.0),
-            [one] => Cell::Number(one),
-            _ => Cell::Floors(of),
+        see(Cell::Text(detail.name()));
+        see(Cell::Number(*tolerance));
+        see(duration.map_or(Cell::Empty, Cell::Number));
+        initial.numbers().into_iter().for_each(|of| {
+            see(match *of {
+                [] => Cell::Number(0.0),
+                [one] => Cell::Number(one),
+                _ => Cell::Floors(of),
+            });
         });
-        { motion }
-            .into_iter()
-            .chain([case.motion.scale, case.scale].map(Cell::Number))
-            .chain(IntensityMeasure::COLUMNS.map(|measure| Cell::Number(case.intensity(measure))))
-            .chain([Cell::Text(detail.name()), Cell::Number(*tolerance), duration.map_or(Cell::Empty, Cell::Number)])
-            .chain(initial)
-            .chain([ending, Cell::Number(end)])
-            .chain(numbers(peaks, self.plan.measures.len()))
-            .chain(counts)
-            .chain(numbers(beyond, BEYOND))
-            .chain([reason])
+        let measures = self.plan.measures.len();
+        match outcome {
+            Outcome::Ended(of) => {
+                see(Cell::Ending(of.ending));
+                see(Cell::Number(of.end));
+                of.peaks.iter().for_each(|peak| see(Cell::Number(*peak)));
+                [of.transitions, of.steps, of.evaluations].into_iter().for_each(|count| see(Cell::Count(count)));
+            }
+            Outcome::Failed { time, .. } => {
+                see(Cell::Text(FAILED));
+                see(Cell::Number(*time));
+                (0..measures + 3).for_each(|_| see(Cell::Empty));
+            }
+        }
+        (0..BEYOND).for_each(|at| see(beyond.get(at).map_or(Cell::Empty, |number| Cell::Number(*number))));
+        see(if let Outcome::Failed { reason, .. } = outcome { Cell::Text(reason) } else { Cell::Empty });
     }
 }
 
@@ -306,17 +309,21 @@ fn check_records(motions: &[NamedRecord]) -> anyhow::Result<()> {
 /// The key of each run of `plan`, which is another one where it is asked what a run goes beyond. Runs of a structure under a ground
 /// motion share the digest of these two.
 fn keys(plan: &Plan, digests: &[Uuid], validity: bool, program: &Program) -> Vec<Uuid> {
-    let (mut last, mut of_pair) = (None, Digest::new(&program.build));
-    let of_case = |case: Case| {
-        let pair = Some((case.structure_number, case.motion_number));
-        if pair != last {
-            let names = (&case.population.name, &case.motion.name);
-            let motion = (digests[case.motion_number].into_bytes(), case.motion.scale);
-            (last, of_pair) = (pair, Digest::new(&program.build).and(&(names, case.structure.numbers(), motion)));
-        }
-        of_pair.clone().and(&(case.scale, plan.conditions(), validity)).uuid()
+    const TOGETHER: usize = 1024;
+    let of_some = |first: usize| {
+        let (mut last, mut of_pair) = (None, Digest::new(&program.build));
+        let of_case = move |case: Case| {
+            let pair = Some((case.structure_number, case.motion_number));
+            if pair != last {
+                let names = (&case.population.name, &case.motion.name);
+                let motion = (digests[case.motion_number].into_bytes(), case.motion.scale);
+                (last, of_pair) = (pair, Digest::new(&program.build).and(&(names, case.structure.numbers(), motion)));
+            }
+            of_pair.clone().and(&(case.scale, plan.conditions(), validity)).uuid()
+        };
+        plan.cases_of(first..plan.len().min(first + TOGETHER)).map(of_case)
     };
-    plan.cases().map(of_case).collect()
+    (0..plan.len()).into_par_iter().step_by(TOGETHER).flat_map_iter(of_some).collect()
 }
 
 /// Opens the file at `path`, or begins it, and reads what its rows say.
