@@ -115,7 +115,7 @@ pub fn sweep<'py>(
         None => say(py).err(),
         stopped => stopped,
     };
-    let (keys, columns) = py.detach(|| sweep.table(intensity));
+    let (keys, columns) = py.detach(|| sweep.table(intensity)); // nothing of the sweep is left beside its table
     let columns = columns.into_iter().map(|(heading, column)| Ok((heading, values(py, column)?)));
     let keys = keys.iter().map(|key| PyString::new(py, key.hyphenated().encode_lower(&mut [0; 36])));
     Ok((PyList::new(py, keys)?, columns.collect::<PyResult<_>>()?, stopped))

@@ -66,13 +66,10 @@ pub(crate) struct Layout {
 impl Layout {
     /// Layout of structures like `structure`, whose measures are added to `all` if they are not there.
     pub(crate) fn new(structure: &Structure, all: &mut Vec<Measure>) -> Layout {
-        let place = |measure| {
-            all.iter().position(|of| *of == measure).unwrap_or_else(|| {
-                all.push(measure);
-                all.len() - 1
-            })
-        };
-        let places = measures(structure).into_iter().map(place).collect();
+        let own = measures(structure);
+        let added: Vec<_> = own.iter().filter(|measure| !all.contains(measure)).cloned().collect();
+        all.extend(added);
+        let places = own.iter().filter_map(|own| all.iter().position(|of| of == own)).collect();
         Layout { outputs: Output::with_peak(structure), is_of_one: structure.one().is_some(), places }
     }
 
@@ -117,16 +114,19 @@ impl Outcome {
     /// The outcome of a run in which every measure of one mass had this `peak`.
     #[cfg(test)]
     pub(crate) fn ended(ending: Ending, peak: f64) -> Outcome {
-        Outcome::Ended(Summary { ending, end: 1.0, peaks: smallvec![peak; 8], transitions: 0, steps: 0, evaluations: 0 })
+        Outcome::Ended(Summary {
+            ending,
+            end: 1.0,
+            peaks: smallvec![peak; 8],
+            transitions: 0,
+            steps: 0,
+            evaluations: 0,
+        })
     }
 
     /// Outcome of a `run` with this result: its peaks are at the places of `layout` among so many `measures`.
-    pub(crate) fn found<Q: Runs>(
-        run: &Run<Q>,
-        layout: &Layout,
-        measures: usize,
-        found: Result<Found<Q>, RunError>,
-    ) -> Outcome {
+    pub(crate) fn found<Q: Runs>(run: &Run<Q>, of: (&Layout, usize), found: Result<Found<Q>, RunError>) -> Outcome {
+        let (layout, measures) = of;
         let Found { peaks, finish, .. } = match found {
             Ok(found) => found,
             Err(error) => {

@@ -10,10 +10,10 @@ use rocking::estimates::intensity::{
 };
 use rocking::estimates::response_spectrum::spectral_acceleration;
 use rocking::mechanics::state::InitialStateError;
+use rocking::run::fall::Found;
 use rocking::run::lanes::found_each;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits};
-use rocking::run::fall::Found;
 use rocking::run::{End, Run, RunError, Runs};
 use rocking::structure::doubts::doubted;
 use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
@@ -122,7 +122,8 @@ pub struct Plan {
     /// The ground motions.
     pub motions: Vec<NamedRecord>,
     scales: Vec<f64>,
-    conditions: Conditions,
+    /// Conditions of all runs, which [`Plan::under`] checks.
+    pub(crate) conditions: Conditions,
     /// Measures of all structures, each once.
     pub measures: Vec<Measure>,
     layouts: Vec<Layout>,
@@ -139,24 +140,12 @@ struct Spectral {
     at: OnceLock<(f64, f64, f64)>,
 }
 
-/// A structure of a plan.
-#[derive(Clone, Debug)]
-struct Member<'a> {
-    population: &'a Population,
-    /// Number of the structure in its population, from 0.
-    number: usize,
-    structure: Structure,
-    layout: &'a Layout,
-}
-
 /// One run of a plan.
 #[derive(Clone, Debug)]
 pub struct Case<'a> {
     plan: &'a Plan,
     /// Number of the run in the plan, from 0.
     pub index: usize,
-    /// Number of the structure in the plan, from 0.
-    pub structure_number: usize,
     /// Population of the structure.
     pub population: &'a Population,
     /// Number of the structure in its population, from 0.
@@ -166,8 +155,6 @@ pub struct Case<'a> {
     layout: &'a Layout,
     /// The ground motion before it is scaled.
     pub motion: &'a NamedRecord,
-    /// Number of the ground motion in the plan, from 0.
-    pub motion_number: usize,
     /// Factor on its acceleration, beside its own.
     pub scale: f64,
     /// Runs of different groups do not depend on each other: the ground motion's number, or where there is one alone the
@@ -362,33 +349,20 @@ impl Plan {
 
     /// The runs `indices`. Neighbours of the same structure share it.
     pub fn cases_of(&self, indices: impl IntoIterator<Item = usize>) -> impl Iterator<Item = Case<'_>> {
-        let mut made: Option<(usize, Member)> = None;
+        let mut last = None;
         indices.into_iter().map(move |index| {
-            let (rest, scale) = (index / self.scales.len(), self.scales[index % self.scales.len()]);
-            let (structure_number, motion_number) = (rest / self.motions.len(), rest % self.motions.len());
-            let of_last = made.take().filter(|(number, _)| *number == structure_number);
-            let (_, member) = made.insert(of_last.unwrap_or_else(|| (structure_number, self.member(structure_number))));
-            let Member { population, number: member, structure, layout } = member.clone();
-            let group = if self.motions.len() > 1 { motion_number } else { rest };
-            let (plan, motion) = (self, &self.motions[motion_number]);
-            Case {
-                plan,
-                index,
-                structure_number,
-                population,
-                member,
-                structure,
-                layout,
-                motion,
-                motion_number,
-                scale,
-                group,
-            }
+            let (pair, scale) = (index / self.scales.len(), self.scales[index % self.scales.len()]);
+            let (number, motion) = (pair / self.motions.len(), pair % self.motions.len());
+            let made = last.take().filter(|(of, _)| *of == number);
+            let (_, made) = last.insert(made.unwrap_or_else(|| (number, self.member(number))));
+            let (population, member, structure, layout) = made.clone();
+            let (group, motion) = (if self.motions.len() > 1 { motion } else { pair }, &self.motions[motion]);
+            Case { plan: self, index, population, member, structure, layout, motion, scale, group }
         })
     }
 
-    /// The structure of this `number` in the plan.
-    fn member(&self, mut number: usize) -> Member<'_> {
+    /// The structure of this `number` in the plan: its population, its number there, itself, and the layout of its measures.
+    fn member(&self, mut number: usize) -> (&Population, usize, Structure, &Layout) {
         let mut populations = self.populations.iter();
         let population = populations.find(|population| {
             let is_of_it = number < population.len();
@@ -398,12 +372,7 @@ impl Plan {
         let population = population.expect("the plan has such a structure");
         let structure = population.structure(number).expect(CHECKED);
         let layout = self.layouts.iter().find(|layout| layout.is_of(&structure)).expect(CHECKED);
-        Member { population, number, structure, layout }
-    }
-
-    /// Conditions of all runs.
-    pub fn conditions(&self) -> &Conditions {
-        &self.conditions
+        (population, number, structure, layout)
     }
 
     /// Does the runs `indices` on one thread, several at a time if all are of one mass, and tells `done` the outcome of each as it ends.
@@ -451,7 +420,7 @@ impl Case<'_> {
 
     /// Outcome of its `run` with this result.
     fn outcome_of<Q: Runs>(&self, run: &Run<Q>, found: Result<Found<Q>, RunError>) -> Outcome {
-        Outcome::found(run, self.layout, self.plan.measures.len(), found)
+        Outcome::found(run, (self.layout, self.plan.measures.len()), found)
     }
 
     /// The ground motion as it is scaled.
@@ -462,8 +431,8 @@ impl Case<'_> {
     /// How strong the ground motion is, in the unit of `measure`.
     pub fn intensity(&self, measure: IntensityMeasure) -> f64 {
         let Parameters { g, f_fc, zeta_fc, .. } = self.structure.parameters();
-        let pair = self.structure_number * self.plan.motions.len() + self.motion_number;
-        let (NamedRecord { record, .. }, Spectral { sa, average, at }) = (self.motion, &self.plan.spectral[pair]);
+        let (NamedRecord { record, .. }, Spectral { sa, average, at }) =
+            (self.motion, &self.plan.spectral[self.pair()]);
         let unscaled = match measure {
             IntensityMeasure::Pga => self.motion.pga / g,
             IntensityMeasure::Pgv => self.motion.pgv,
@@ -482,6 +451,21 @@ impl Case<'_> {
             IntensityMeasure::Duration => return self.motion.duration,
         };
         unscaled * self.factor().abs()
+    }
+
+    /// Number of the structure and ground motion among all pairs of the plan, from 0.
+    pub(crate) fn pair(&self) -> usize {
+        self.index / self.plan.scales.len()
+    }
+
+    /// Number of the structure in the plan, from 0.
+    pub(crate) fn structure_number(&self) -> usize {
+        self.pair() / self.plan.motions.len()
+    }
+
+    /// Number of the ground motion in the plan, from 0.
+    pub(crate) fn motion_number(&self) -> usize {
+        self.pair() % self.plan.motions.len()
     }
 
     /// Factor on the record's accelerations.

@@ -8,9 +8,9 @@
 
 use anyhow::{Context, bail, ensure};
 use csv::{ReaderBuilder, StringRecord, WriterBuilder};
-use sha1_smol::Sha1;
 use rayon::prelude::*;
 use serde::Serialize;
+use sha1_smol::Sha1;
 use std::{
     collections::HashMap,
     fs::{File, TryLockError},

@@ -75,7 +75,9 @@ impl Cell<'_> {
             }
             Cell::Text(text) => row.extend(text.as_bytes()),
             Cell::Ending(ending) => write!(row, "{ending}").expect("memory can be written"),
-            Cell::Number(of) if of.abs() >= 1e16 => row.extend(zmij::Buffer::new().format(of).replace('+', "").as_bytes()),
+            Cell::Number(of) if of.abs() >= 1e16 => {
+                row.extend(zmij::Buffer::new().format(of).replace('+', "").as_bytes())
+            }
             Cell::Number(of) => row.extend(zmij::Buffer::new().format(of).as_bytes()),
             Cell::Count(count) => row.extend(itoa::Buffer::new().format(count).as_bytes()),
             Cell::Floors(of) => row.extend(spaced(of).as_bytes()),
@@ -136,15 +138,16 @@ impl<'a> Sweep<'a> {
             self.plan.each_outcome(indices, self.validity, |case, outcome, findings| {
                 let done = Done::new(outcome, findings);
                 if self.file.is_some() {
-                    if structure != case.structure_number {
-                        structure = case.structure_number;
+                    if structure != case.structure_number() {
+                        structure = case.structure_number();
                         of_structure.clear();
-                        self.of_structure(case, |cell| cell.write(&mut of_structure));
+                        self.of_structure(case).into_iter().for_each(|cell| cell.write(&mut of_structure));
                     }
                     row.clear();
-                    Cell::Text(self.keys[case.index].hyphenated().encode_lower(&mut Uuid::encode_buffer())).write(&mut row);
+                    Cell::Text(self.keys[case.index].hyphenated().encode_lower(&mut Uuid::encode_buffer()))
+                        .write(&mut row);
                     row.extend(&of_structure);
-                    self.of_run(case, &done, |cell| cell.write(&mut row));
+                    self.of_run(case, &done).into_iter().for_each(|cell| cell.write(&mut row));
                     *row.last_mut().expect("a comma") = b'\n';
                 }
                 hand_out((case.index, done), &row)
@@ -166,7 +169,7 @@ impl<'a> Sweep<'a> {
 
     /// The rows of the runs that are done, in the order of the plan: their keys, and the columns with their headings. The
     /// column of `measure` is among them.
-    pub fn table(&self, measure: IntensityMeasure) -> (Vec<Uuid>, Vec<(String, Column)>) {
+    pub fn table(self, measure: IntensityMeasure) -> (Vec<Uuid>, Vec<(String, Column)>) {
         let done = || (0..self.plan.len()).filter(|index| self.done[*index].get().is_some());
         let rows = done().count();
         let added = Some(measure).filter(|measure| !IntensityMeasure::COLUMNS.contains(measure));
@@ -176,73 +179,67 @@ impl<'a> Sweep<'a> {
         let mut texts = vec![HashMap::new(); columns.len()];
         let (mut structure, mut of_structure) = (usize::MAX, Vec::new());
         for case in self.plan.cases_of(done()) {
-            if structure != case.structure_number {
-                (structure, of_structure) = (case.structure_number, Vec::new());
-                self.of_structure(&case, |cell| of_structure.push(cell));
+            if structure != case.structure_number() {
+                (structure, of_structure) = (case.structure_number(), self.of_structure(&case));
             }
-            let done = self.done[case.index].get().expect("it is done");
-            let mut columns = columns.iter_mut().zip(&mut texts);
-            let mut push = |cell| {
-                let ((_, column), texts) = columns.next().expect("every cell has a heading");
-                column.push(cell, texts);
-            };
-            of_structure.iter().copied().for_each(&mut push);
-            self.of_run(&case, done, &mut push);
-            added.into_iter().for_each(|measure| push(Cell::Number(case.intensity(measure))));
+            let of_run = self.of_run(&case, self.done[case.index].get().expect("it is done"));
+            let added = added.map(|measure| Cell::Number(case.intensity(measure)));
+            let cells = of_structure.iter().copied().chain(of_run).chain(added);
+            let columns = columns.iter_mut().zip(&mut texts);
+            columns.zip(cells).for_each(|(((_, column), texts), cell)| column.push(cell, texts));
         }
         (done().map(|index| self.keys[index]).collect(), columns)
     }
 
-    /// Shows `see` the cells of a row that depend on its structure alone, without the key of the run.
-    fn of_structure<'b>(&'b self, case: &Case<'b>, mut see: impl FnMut(Cell<'b>)) {
-        [&case.population.name, &self.program.version].into_iter().for_each(|text| see(Cell::Text(text)));
-        AXES.iter().for_each(|axis| see(Cell::Number(case.value(axis))));
+    /// The cells of a row that depend on its structure alone, without the key of the run.
+    fn of_structure<'b>(&'b self, case: &Case<'b>) -> Vec<Cell<'b>> {
+        let names = [&case.population.name, &self.program.version].map(|text| Cell::Text(text));
+        names.into_iter().chain(AXES.map(|axis| Cell::Number(case.value(axis)))).collect()
     }
 
-    /// Shows `see` the other cells of the row of a run that is done.
-    fn of_run<'b>(&'b self, case: &Case<'b>, Done { outcome, beyond }: &'b Done, mut see: impl FnMut(Cell<'b>)) {
-        [&case.motion.name, &self.digests[case.motion_number]].into_iter().for_each(|text| see(Cell::Text(text)));
-        [case.motion.scale, case.scale].into_iter().for_each(|number| see(Cell::Number(number)));
-        IntensityMeasure::COLUMNS.into_iter().for_each(|measure| see(Cell::Number(case.intensity(measure))));
-        let Conditions { initial, detail, tolerance, duration } = self.plan.conditions();
-        see(Cell::Text(detail.name()));
-        see(Cell::Number(*tolerance));
-        see(duration.map_or(Cell::Empty, Cell::Number));
-        initial.numbers().into_iter().for_each(|of| {
-            see(match *of {
-                [] => Cell::Number(0.0),
-                [one] => Cell::Number(one),
-                _ => Cell::Floors(of),
-            });
-        });
-        let measures = self.plan.measures.len();
-        match outcome {
+    /// The other cells of the row of a run that is done.
+    fn of_run<'b>(&'b self, case: &Case<'b>, Done { outcome, beyond }: &'b Done) -> Vec<Cell<'b>> {
+        let Conditions { initial, detail, tolerance, duration } = &self.plan.conditions;
+        let mut row = Vec::with_capacity(64);
+        row.extend([&case.motion.name, &self.digests[case.motion_number()]].map(|text| Cell::Text(text)));
+        row.extend([case.motion.scale, case.scale].map(Cell::Number));
+        row.extend(IntensityMeasure::COLUMNS.map(|measure| Cell::Number(case.intensity(measure))));
+        row.extend([Cell::Text(detail.name()), Cell::Number(*tolerance), duration.map_or(Cell::Empty, Cell::Number)]);
+        row.extend(initial.numbers().map(|of| match *of {
+            [] => Cell::Number(0.0),
+            [one] => Cell::Number(one),
+            _ => Cell::Floors(of),
+        }));
+        let reason = match outcome {
             Outcome::Ended(of) => {
-                see(Cell::Ending(of.ending));
-                see(Cell::Number(of.end));
-                of.peaks.iter().for_each(|peak| see(Cell::Number(*peak)));
-                [of.transitions, of.steps, of.evaluations].into_iter().for_each(|count| see(Cell::Count(count)));
+                row.extend([Cell::Ending(of.ending), Cell::Number(of.end)]);
+                row.extend(of.peaks.iter().copied().map(Cell::Number));
+                row.extend([of.transitions, of.steps, of.evaluations].map(Cell::Count));
+                Cell::Empty
             }
-            Outcome::Failed { time, .. } => {
-                see(Cell::Text(FAILED));
-                see(Cell::Number(*time));
-                (0..measures + 3).for_each(|_| see(Cell::Empty));
+            Outcome::Failed { time, reason } => {
+                row.extend([Cell::Text(FAILED), Cell::Number(*time)]);
+                row.resize(row.len() + self.plan.measures.len() + 3, Cell::Empty);
+                Cell::Text(reason)
             }
-        }
-        (0..BEYOND).for_each(|at| see(beyond.get(at).map_or(Cell::Empty, |number| Cell::Number(*number))));
-        see(if let Outcome::Failed { reason, .. } = outcome { Cell::Text(reason) } else { Cell::Empty });
+        };
+        let with_beyond = row.len() + BEYOND;
+        row.extend(beyond.iter().copied().map(Cell::Number));
+        row.resize(with_beyond, Cell::Empty);
+        row.push(reason);
+        row
     }
 }
 
 impl Done {
     /// A run with this `outcome`; the `findings` count if it did not fail.
     fn new(outcome: Outcome, findings: Option<Findings>) -> Done {
-        let of = findings.filter(|_| matches!(outcome, Outcome::Ended(_)));
         let numbers = |Findings { worst, gains, settlings, .. }: Findings| {
             let worst = worst.iter().flat_map(|worst| [worst.value, worst.time]);
             worst.chain([gains as f64, settlings as f64]).collect()
         };
-        Done { outcome, beyond: of.map_or_else(Box::default, numbers) }
+        let findings = findings.filter(|_| matches!(outcome, Outcome::Ended(_)));
+        Done { beyond: findings.map_or_else(Box::default, numbers), outcome }
     }
 }
 
@@ -313,13 +310,13 @@ fn keys(plan: &Plan, digests: &[Uuid], validity: bool, program: &Program) -> Vec
     let of_some = |first: usize| {
         let (mut last, mut of_pair) = (None, Digest::new(&program.build));
         let of_case = move |case: Case| {
-            let pair = Some((case.structure_number, case.motion_number));
-            if pair != last {
+            if last != Some(case.pair()) {
                 let names = (&case.population.name, &case.motion.name);
-                let motion = (digests[case.motion_number].into_bytes(), case.motion.scale);
-                (last, of_pair) = (pair, Digest::new(&program.build).and(&(names, case.structure.numbers(), motion)));
+                let motion = (digests[case.motion_number()].into_bytes(), case.motion.scale);
+                let pair = Digest::new(&program.build).and(&(names, case.structure.numbers(), motion));
+                (last, of_pair) = (Some(case.pair()), pair);
             }
-            of_pair.clone().and(&(case.scale, plan.conditions(), validity)).uuid()
+            of_pair.clone().and(&(case.scale, &plan.conditions, validity)).uuid()
         };
         plan.cases_of(first..plan.len().min(first + TOGETHER)).map(of_case)
     };
