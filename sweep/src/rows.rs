@@ -390,18 +390,42 @@ mod tests {
         assert_eq!((opened(-1.0, 1.0), opened(1.0, 1.01)), (Ok(()), Ok(())));
     }
 
+    /// The key of a run is the digest of all that it depends on, in one piece.
     #[test]
     fn a_run_on_other_ground_has_another_key() {
-        let program = Program { build: Uuid::nil(), version: "0".into() };
+        let program = Program { build: Uuid::max(), version: "0".into() };
         let key = |f_v: f64| {
             let ground = Ground { f_v: Some(f_v), zeta_v: Some(0.2), n_points: Some(3), ..Ground::default() };
             let wall = Structure::new(Parameters { J0: 1.2, ..Parameters::EVISON }).unwrap().on(&ground).unwrap();
             let only = Population::new("only", wall);
             let record = Record::from_samples("", vec![0.0, 1.0], vec![0.0, 1.0]).unwrap();
-            let plan = Plan::new(vec![only], vec![NamedRecord::new("one", record, 1.0).unwrap()], vec![1.0]).unwrap();
-            Sweep::open(&plan, false, &program, None).unwrap().keys[0]
+            let plan =
+                Plan::new(vec![only], vec![NamedRecord::new("one", record, 2.0).unwrap()], vec![1.0, 3.0]).unwrap();
+            let Sweep { keys, .. } = Sweep::open(&plan, false, &program, None).unwrap();
+            let (case, conditions) = (plan.case(1), Conditions::default());
+            let motion = (digest_of(&case.motion.record).into_bytes(), 2.0, 3.0);
+            let all = (("only", "one"), case.structure.numbers(), motion, conditions, false);
+            assert_eq!(keys[1], Uuid::new_v5(&program.build, &postcard::to_allocvec(&all).unwrap()));
+            keys[1]
         };
         assert_eq!((key(60.0) == key(60.0), key(60.0) == key(90.0)), (true, false));
+    }
+
+    /// As the crate csv writes them, which finds the digits in another way.
+    #[test]
+    fn cells_are_written_as_csv() {
+        let (mut random, special) =
+            (fastrand::Rng::with_seed(1), [0.0, -0.0, 1e-5, 1e15, 1e16, -1.5e17, f64::MAX, f64::NAN]);
+        let numbers = (0..20_000).map(|_| f64::from_bits(random.u64(..))).chain(special).chain([f64::INFINITY, 5e-324]);
+        for (number, text) in numbers.zip(["", "a b", "a, b", "\"a\"", "a\nb", "a\r"].into_iter().cycle()) {
+            let mut row = Vec::new();
+            [Cell::Number(number), Cell::Text(text), Cell::Count(7), Cell::Ending(Ending::AtRest), Cell::Empty]
+                .into_iter()
+                .for_each(|cell| cell.write(&mut row));
+            row.pop();
+            let expected = line(&(number, text, 7, Ending::AtRest, ""));
+            assert_eq!(String::from_utf8(row).unwrap() + "\n", String::from_utf8(expected).unwrap());
+        }
     }
 
     #[test]

@@ -94,17 +94,13 @@ fn map(count: usize, finds_condition: bool) -> Map {
 
 /// All points of `map`, refined so many times.
 fn complete(map: &Map, refinements: u32) -> HashMap<Place, Point> {
-    let mut known: HashMap<_, _> = map.grid().map(|place| (place, map.run(place))).collect();
-    for level in 1..=refinements {
-        loop {
-            let lacking = map.refinement(level, &known);
-            if lacking.is_empty() {
-                break;
-            }
-            known.extend(lacking.into_iter().map(|place| (place, map.run(place))));
-        }
-    }
-    known
+    let mut all = HashMap::new();
+    let add = |_, lacking: Vec<Place>, all: &mut HashMap<_, _>| {
+        all.extend(lacking.into_iter().map(|place| (place, map.run(place))));
+        Ok::<_, ()>(())
+    };
+    map.complete(refinements, &mut all, add).unwrap();
+    all
 }
 
 /// A refined map has every point of the boundary of a grid as fine, at a fraction of the runs. If two neighbours of the fine
