@@ -40,8 +40,8 @@ pub struct Summary {
     pub evaluations: u64,
 }
 
-/// Magnitudes in place if they are of one mass: small blocks of memory that outlive a run make those of the next runs slow.
-pub type Magnitudes = SmallVec<[f64; Output::PEAKS_OF_ONE.len() + Output::OF_TIES.len() + 1]>;
+/// Magnitudes in place if they are of one mass without ties: blocks of memory that outlive a run slow the next runs down.
+pub type Magnitudes = SmallVec<[f64; Output::PEAKS_OF_ONE.len() + 1]>;
 
 /// Name and unit of a peak.
 pub type Measure = (String, String);

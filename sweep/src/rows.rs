@@ -94,8 +94,8 @@ pub enum Column {
     Numbers(Vec<f64>),
     /// Counts, of which every row has one.
     Counts(Vec<u64>),
-    /// Texts, each once, and of every row the position of its text; [`usize::MAX`] where a row has nothing.
-    Texts(Vec<String>, Vec<usize>),
+    /// Texts, each once, and of every row the position of its text; [`u32::MAX`] where a row has nothing.
+    Texts(Vec<String>, Vec<u32>),
 }
 
 impl<'a> Sweep<'a> {
@@ -188,7 +188,8 @@ impl<'a> Sweep<'a> {
             let columns = columns.iter_mut().zip(&mut texts);
             columns.zip(cells).for_each(|(((_, column), texts), cell)| column.push(cell, texts));
         }
-        (done().map(|index| self.keys[index]).collect(), columns)
+        let keys = self.keys.into_iter().zip(&self.done).filter_map(|(key, done)| done.get().map(|_| key));
+        (keys.collect(), columns)
     }
 
     /// The cells of a row that depend on its structure alone, without the key of the run.
@@ -251,27 +252,27 @@ impl Column {
 
     /// Adds the value of the next row. The values decide whether the column has counts, numbers or texts. The positions of its
     /// texts are kept in `known`.
-    fn push(&mut self, cell: Cell, known: &mut HashMap<String, usize>) {
+    fn push(&mut self, cell: Cell, known: &mut HashMap<String, u32>) {
         match (&mut *self, cell) {
             (Column::Counts(of), Cell::Count(count)) => of.push(count),
             (Column::Numbers(of), Cell::Count(count)) => of.push(count as f64),
             (Column::Numbers(of), Cell::Number(number)) => of.push(number),
             (Column::Numbers(of), Cell::Empty) => of.push(f64::NAN),
             (Column::Texts(texts, of), Cell::Text(text)) => {
-                let last = of.last().copied().filter(|last| texts.get(*last).is_some_and(|of| of == text));
-                of.push(last.or_else(|| known.get(text).copied()).unwrap_or(texts.len()));
-                if of.last() == Some(&texts.len()) {
-                    known.insert(text.into(), texts.len());
+                let last = of.last().copied().filter(|last| texts.get(*last as usize).is_some_and(|of| of == text));
+                of.push(last.or_else(|| known.get(text).copied()).unwrap_or(texts.len() as u32));
+                if of.last() == Some(&(texts.len() as u32)) {
+                    known.insert(text.into(), texts.len() as u32);
                     texts.push(text.into());
                 }
             }
-            (Column::Texts(_, of), Cell::Empty) => of.push(usize::MAX),
+            (Column::Texts(_, of), Cell::Empty) => of.push(u32::MAX),
             (_, Cell::Floors(of)) => self.push(Cell::Text(&spaced(of)), known),
             (_, Cell::Ending(ending)) => self.push(Cell::Text(&ending.to_string()), known),
             (Column::Numbers(of), Cell::Text(_)) => {
                 // nothing so far
                 let mut positions = Vec::with_capacity(of.capacity());
-                positions.resize(of.len(), usize::MAX);
+                positions.resize(of.len(), u32::MAX);
                 *self = Column::Texts(Vec::new(), positions);
                 self.push(cell, known);
             }
@@ -433,6 +434,6 @@ mod tests {
         let (mut column, mut known) = (Column::of(5), HashMap::new());
         let cells = [Cell::Empty, Cell::Text("a"), Cell::Text("b"), Cell::Text("a"), Cell::Empty];
         cells.into_iter().for_each(|cell| column.push(cell, &mut known));
-        assert_eq!(column, Column::Texts(vec!["a".into(), "b".into()], vec![usize::MAX, 0, 1, 0, usize::MAX]));
+        assert_eq!(column, Column::Texts(vec!["a".into(), "b".into()], vec![u32::MAX, 0, 1, 0, u32::MAX]));
     }
 }
