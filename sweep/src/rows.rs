@@ -133,7 +133,7 @@ impl<'a> Sweep<'a> {
     /// Does the runs that are not done, on all threads, and adds their rows to the file as they end. After each run
     /// `goes_on` is asked; once it says no, the rest is left undone and that is an error.
     pub fn finish(&self, goes_on: impl Fn() -> bool + Sync) -> anyhow::Result<()> {
-        let run = |indices: &[usize], hand_out: &mut dyn FnMut((usize, Done), &[u8]) -> bool| {
+        let run = |indices: &[usize], hand_out: &mut dyn FnMut(_, &[u8]) -> bool| {
             let (mut structure, mut of_structure, mut row) = (usize::MAX, Vec::new(), Vec::new());
             self.plan.each_outcome(indices, self.validity, |case, outcome, findings| {
                 let done = Done::new(outcome, findings);
