@@ -171,80 +171,32 @@ impl Settings {
         check_tolerance(self.tolerance)?;
         Ok((LOCAL_SHARE * self.tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR))
     }
-}
 
-/// Lateral coordinates of the structures that an engine moves.
-pub trait Moves: Coordinates {
-    /// Starts `structure` at `time` (s) from `initial`.
-    fn engine(
+    /// The level of detail at which `structure` moves.
+    fn level<Q: Coordinates>(
+        self,
+        kind: &Kind<Q>,
         structure: Structure,
-        initial: State<Self>,
-        time: f64,
-        settings: Settings,
-    ) -> Result<Engine<Self>, InitialStateError>;
-
-    /// The level of detail at which `structure` moves with these `settings`.
-    #[allow(private_interfaces)] // the coordinates name the trait, and nobody else can use it
-    fn level(structure: Structure, settings: Settings) -> Result<Box<dyn Level<Self>>, InitialStateError>;
-
-    /// The load on `structure` of the ground accelerations `a_g` and `a_v` (m/s²) and of a horizontal force on each floor (N).
-    fn load(structure: &Structure, a_g: f64, a_v: f64, forces: impl Iterator<Item = f64>) -> Load<Self>;
-
-    /// Advances step by step. This is no generic function, or every crate that follows runs would compile the engine again.
-    #[doc(hidden)]
-    fn go(task: Task<'_, Self>) -> Result<Progress, AdvanceError>;
-}
-
-impl Moves for f64 {
-    fn engine(
-        structure: Structure,
-        initial: State,
-        time: f64,
-        settings: Settings,
-    ) -> Result<Engine, InitialStateError> {
-        Engine::with(structure, initial, time, settings)
-    }
-
-    fn level(structure: Structure, settings: Settings) -> Result<Box<dyn Level>, InitialStateError> {
-        settings.detail.level_of_one(structure, settings.local_error()?, settings.vertical)
-    }
-
-    #[inline(always)]
-    fn load(_: &Structure, a_g: f64, a_v: f64, mut forces: impl Iterator<Item = f64>) -> Load {
-        Load { a_g, F_t: forces.next().unwrap_or(0.0), a_v }
-    }
-
-    fn go(task: Task<'_, f64>) -> Result<Progress, AdvanceError> {
-        task.go_on()
+    ) -> Result<Box<dyn Level<Q>>, InitialStateError> {
+        (kind.level)(self.detail, structure, self.local_error()?, self.vertical)
     }
 }
 
-impl Moves for Modes {
-    fn engine(
-        structure: Structure,
-        initial: State<Modes>,
-        time: f64,
-        settings: Settings,
-    ) -> Result<Engine<Modes>, InitialStateError> {
-        Engine::of_modes(structure, initial, time, settings)
-    }
-
-    fn level(structure: Structure, settings: Settings) -> Result<Box<dyn Level<Modes>>, InitialStateError> {
-        settings.detail.level_of_modes(structure, settings.local_error()?, settings.vertical)
-    }
-
-    fn load(structure: &Structure, a_g: f64, a_v: f64, forces: impl Iterator<Item = f64>) -> Load<Modes> {
-        structure.load_of(a_g, a_v, forces)
-    }
-
-    fn go(task: Task<'_, Modes>) -> Result<Progress, AdvanceError> {
-        task.go_on()
-    }
+/// The levels of structures with the coordinates `Q`, and the way to advance step by step. They are compiled here alone, because a
+/// generic function would be compiled again in every crate that follows runs.
+#[derive(Debug)]
+struct Kind<Q: Coordinates> {
+    level: fn(Detail, Structure, f64, bool) -> Result<Box<dyn Level<Q>>, InitialStateError>,
+    advance: fn(Task<'_, Q>) -> Result<Progress, AdvanceError>,
 }
+
+static ONE: Kind<f64> = Kind { level: Detail::level_of_one, advance: |task| task.go_on() };
+static MANY: Kind<Modes> = Kind { level: Detail::level_of_modes, advance: |task| task.go_on() };
 
 /// A structure in motion.
 #[derive(Debug)]
-pub struct Engine<Q: Moves = f64> {
+pub struct Engine<Q: Coordinates = f64> {
+    kind: &'static Kind<Q>,
     level: Box<dyn Level<Q>>,
     settings: Settings,
     motion: Motion<Q>,
@@ -284,7 +236,7 @@ impl Engine {
         settings: Settings,
     ) -> Result<Engine, InitialStateError> {
         let phase = initial.initial_phase()?;
-        let level = f64::level(structure.into(), settings)?;
+        let level = settings.level(&ONE, structure.into())?;
         let (State { u, u_dot, theta, .. }, detail) = (initial, settings.detail);
         if !detail.has_strut() && (u, u_dot) != (0.0, 0.0) {
             return Err(InitialStateError::DeformedRigid { u, u_dot });
@@ -292,7 +244,7 @@ impl Engine {
         if detail == Detail::FixedBase && theta != 0.0 {
             return Err(InitialStateError::TurnedFixedBase(theta));
         }
-        Ok(Engine::start(level, settings, time, initial, phase))
+        Ok(Engine::start(&ONE, level, settings, time, initial, phase))
     }
 }
 
@@ -308,7 +260,7 @@ impl Engine<Modes> {
         // coordinates of modes have no limits, but are numbers
         let [u, u_dot] = [&state.u, &state.u_dot].map(|numbers| 0.0 * numbers.total());
         let phase = State { u, u_dot, theta: state.theta, theta_dot: state.theta_dot }.initial_phase()?;
-        let level = Modes::level(frame, settings)?;
+        let level = settings.level(&MANY, frame)?;
         let (State { u, u_dot, theta, .. }, modes) = (state, level.structure().modes().len());
         for numbers in [u, u_dot] {
             let given = numbers.count();
@@ -323,15 +275,15 @@ impl Engine<Modes> {
         let of_frame = |numbers: Modes| Modes::each(level.structure(), |j, _| numbers.of(j));
         let state = State { u: of_frame(u), u_dot: of_frame(u_dot), ..state };
         let Some(foundation) = level.structure().foundation().cloned() else {
-            return Ok(Engine::start(level, settings, time, state, phase));
+            return Ok(Engine::start(&MANY, level, settings, time, state, phase));
         };
         let base = *level.structure().base();
         let state = foundation.begin(&state, &base);
         if settings.detail == Detail::FixedBase {
-            return Ok(Engine::start(level, settings, time, state, phase));
+            return Ok(Engine::start(&MANY, level, settings, time, state, phase));
         }
         let phase = Phase::OnGround(foundation.contact(&state, &base));
-        let mut engine = Engine::start(level, settings, time, state, phase);
+        let mut engine = Engine::start(&MANY, level, settings, time, state, phase);
         engine.motion.dissipators = foundation.moved(&state, &base);
         Ok(engine)
     }
@@ -346,9 +298,16 @@ impl Engine<Modes> {
     }
 }
 
-impl<Q: Moves> Engine<Q> {
+impl<Q: Coordinates> Engine<Q> {
     /// The engine of a structure that starts in `phase`, its dissipators moved there slowly from rest.
-    fn start(level: Box<dyn Level<Q>>, settings: Settings, time: f64, state: State<Q>, phase: Phase) -> Engine<Q> {
+    fn start(
+        kind: &'static Kind<Q>,
+        level: Box<dyn Level<Q>>,
+        settings: Settings,
+        time: f64,
+        state: State<Q>,
+        phase: Phase,
+    ) -> Engine<Q> {
         let subject = level.subject();
         let chord = subject.angles.chord(state.theta, 0.0);
         let moved = Dissipators::NEW.moved_by(subject.structure.base(), phase.side(), chord);
@@ -363,7 +322,7 @@ impl<Q: Moves> Engine<Q> {
             chatter: Chatter::NONE,
             due: None,
         };
-        Engine { level, settings, motion, arc: Arc::default(), room: Room::default() }
+        Engine { kind, level, settings, motion, arc: Arc::default(), room: Room::default() }
     }
 
     /// (ü, θ̈) and (u⃛, θ⃛) now under `load`, from the first terms of the series; 0 once overturned.
@@ -377,8 +336,8 @@ impl<Q: Moves> Engine<Q> {
 
     /// The same structure in the same motion, with other `settings`.
     pub fn remade(&self, settings: Settings) -> Result<Engine<Q>, InitialStateError> {
-        let level = Q::level(self.structure().clone(), settings)?;
-        Ok(Engine { level, settings, motion: self.motion, arc: Arc::default(), room: Room::default() })
+        let (kind, level) = (self.kind, settings.level(self.kind, self.structure().clone())?);
+        Ok(Engine { kind, level, settings, motion: self.motion, arc: Arc::default(), room: Room::default() })
     }
 
     /// Whether certainly no transition comes within `ahead` (s), a tiny time, under `load`.
@@ -509,7 +468,8 @@ impl<Q: Moves> Engine<Q> {
             before = Some(self.motion);
             self.transit(watch);
         }
-        let &mut Engine { ref level, settings: Settings { stops, .. }, ref mut motion, ref mut arc, ref room } = self;
+        let &mut Engine { kind, ref level, settings: Settings { stops, .. }, ref mut motion, ref mut arc, ref room } =
+            self;
         // most advances are one leap
         let level = &**level;
         let end = (motion.work.steps != last_step).then(|| leap_under(level, motion, interval, load)).flatten();
@@ -519,7 +479,8 @@ impl<Q: Moves> Engine<Q> {
                 Progress::Complete
             }),
             None => {
-                Q::go(Task { level, motion, arc, room, before: &mut before, interval, load, watch, last_step, stops })
+                let before = &mut before;
+                (kind.advance)(Task { level, motion, arc, room, before, interval, load, watch, last_step, stops })
             }
         };
         if let (Err(_), Some(before)) = (&result, before) {
@@ -559,14 +520,15 @@ impl<Q: Moves> Engine<Q> {
 
 /// Time derivatives of outputs and reactions.
 #[derive(Debug)]
-pub struct Rates<'a, Q: Moves = f64> {
+pub struct Rates<'a, Q: Coordinates = f64> {
     engine: &'a Engine<Q>,
     load: LinearLoad<Q>,
     derivatives: [Second<f64, Q>; 2],
 }
 
-impl<Q: Moves> Rates<'_, Q> {
+impl<Q: Coordinates> Rates<'_, Q> {
     /// The rate of `output`.
+    #[inline(never)]
     pub fn of(&self, output: Output) -> f64 {
         let Rates { engine, load, derivatives: [accelerations, jerks] } = self;
         let Motion { phase, state, .. } = &engine.motion;
@@ -583,6 +545,7 @@ impl<Q: Moves> Rates<'_, Q> {
     }
 
     /// The rates of the reactions.
+    #[inline(never)]
     pub fn reactions(&self) -> Reactions {
         let Motion { phase, state, .. } = &self.engine.motion;
         Reactions::rates(self.engine.structure(), *phase, state, self.derivatives, self.load)
@@ -590,7 +553,7 @@ impl<Q: Moves> Rates<'_, Q> {
 }
 
 /// Applies the transition that is due in `motion`, if there is one, in the phase that is `watched`.
-fn transit<Q: Moves>(
+fn transit<Q: Coordinates>(
     level: &dyn Level<Q>,
     watched: Option<&Watched<Q>>,
     motion: &mut Motion<Q>,
@@ -603,7 +566,7 @@ fn transit<Q: Moves>(
 
 /// The state after `interval` (s) of `motion` under `load`, if it is known exactly and no transition can happen until then.
 #[inline(always)]
-fn leap_under<Q: Moves>(
+fn leap_under<Q: Coordinates>(
     level: &dyn Level<Q>,
     motion: &Motion<Q>,
     interval: f64,
@@ -619,7 +582,7 @@ fn leap_under<Q: Moves>(
 
 /// Takes `motion`, all but its time, over a leap to the state `end`. Fails if watchers need too many polynomials of the leap.
 #[inline(always)]
-fn leapt<Q: Moves, W: Watch<Q> + ?Sized>(
+fn leapt<Q: Coordinates, W: Watch<Q> + ?Sized>(
     (level, room): (&dyn Level<Q>, &Room<Q>),
     motion: &mut Motion<Q>,
     duration: f64,
@@ -641,8 +604,7 @@ fn leapt<Q: Moves, W: Watch<Q> + ?Sized>(
 }
 
 /// One advance.
-#[doc(hidden)]
-pub struct Task<'a, Q: Moves> {
+struct Task<'a, Q: Coordinates> {
     level: &'a dyn Level<Q>,
     motion: &'a mut Motion<Q>,
     arc: &'a mut Arc<Q>,
@@ -655,7 +617,7 @@ pub struct Task<'a, Q: Moves> {
     stops: bool,
 }
 
-impl<Q: Moves> Task<'_, Q> {
+impl<Q: Coordinates> Task<'_, Q> {
     /// Advances step by step.
     fn go_on(self) -> Result<Progress, AdvanceError> {
         let Task { level, motion, arc, room, before, interval, load, watch, last_step, stops } = self;
@@ -687,7 +649,7 @@ pub(crate) struct Advance<Q> {
     part: f64,
 }
 
-impl<Q: Moves> Advance<Q> {
+impl<Q: Coordinates> Advance<Q> {
     #[inline(always)]
     fn new(structure: &Structure, start: f64, interval: f64, load: LinearLoad<Q>, last_step: u64) -> Advance<Q> {
         let part = FAR / structure.vibration().contact;
@@ -715,7 +677,7 @@ impl<Q: Moves> Advance<Q> {
 }
 
 /// The loop over the steps of one advance.
-struct Loop<'a, Q: Moves, P, E> {
+struct Loop<'a, Q: Coordinates, P, E> {
     level: &'a dyn Level<Q>,
     /// Gives the phase of a motion; none where the motion is over.
     phases: P,
@@ -730,7 +692,7 @@ struct Loop<'a, Q: Moves, P, E> {
 
 impl<Q, P, E> Loop<'_, Q, P, E>
 where
-    Q: Moves,
+    Q: Coordinates,
     P: Fn(&Motion<Q>) -> Option<&'static Watched<Q>>,
     E: FnMut(Phase, &Start<Q>, &mut Arc<Q>) -> bool,
 {
@@ -827,14 +789,19 @@ where
 }
 
 /// Whether a step of this `duration` (s), which goes from `motion` to less than the requested end, is the last that there can be.
-fn is_at_its_end<Q: Moves>(level: &dyn Level<Q>, motion: &Motion<Q>, duration: f64, closed: Option<Closed>) -> bool {
+fn is_at_its_end<Q: Coordinates>(
+    level: &dyn Level<Q>,
+    motion: &Motion<Q>,
+    duration: f64,
+    closed: Option<Closed>,
+) -> bool {
     let has_stalled = duration <= STALLED / level.structure().vibration().rocking[1];
     has_stalled && closed.is_none() || level.is_singular(motion.phase, &motion.state)
 }
 
 /// The first guard of `watched` that closes on `step`, which is cut there.
 #[inline]
-fn first<Q: Moves>(watched: &Watched<Q>, step: &mut Step<Q>) -> Option<Closed> {
+fn first<Q: Coordinates>(watched: &Watched<Q>, step: &mut Step<Q>) -> Option<Closed> {
     if watched.stays.is_some_and(|stays| stays(step)) {
         return None;
     }

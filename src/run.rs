@@ -20,7 +20,7 @@ pub mod validity;
 
 use crate::digits::with_unit;
 use crate::engine::piece::Sample;
-use crate::engine::{AdvanceError, DEFAULT_TOLERANCE, Moves, Settings};
+use crate::engine::{AdvanceError, DEFAULT_TOLERANCE, Settings};
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint;
 use crate::mechanics::state::InitialStateError;
@@ -45,7 +45,7 @@ pub const MOST_STEPS: u64 = 5_000_000;
 
 /// A structure under a ground motion, and how the engine follows it.
 #[derive(Clone, Debug)]
-pub struct Run<'a, Q: Moves = f64> {
+pub struct Run<'a, Q: Coordinates = f64> {
     /// The structure.
     pub structure: Structure,
     /// The ground motion.
@@ -191,7 +191,7 @@ impl<'a, Q: Runs> Run<'a, Q> {
 
     /// Follows the motion to the end.
     pub fn follow(&self, watch: &mut dyn Watch<Q>) -> Result<Finish<Q>, RunError> {
-        let (ending, engine) = Q::finish(self, watch)?;
+        let (ending, engine) = (Q::compiled().finish)(self, watch)?;
         Ok(Finish { ending, motion: *engine.motion() })
     }
 
@@ -213,7 +213,7 @@ impl<'a, Q: Runs> Run<'a, Q> {
             _ => {
                 let &Run { ref structure, ground, initial, detail, tolerance, .. } = self;
                 let settings = Settings { detail, tolerance, vertical: ground.vertical().is_some(), stops: false };
-                Ok(Q::engine(structure.clone(), initial, start, settings)?)
+                Ok(Q::START(structure.clone(), initial, start, settings)?)
             }
         }
     }
@@ -228,7 +228,7 @@ impl<'a, Q: Runs> Run<'a, Q> {
     ) -> Result<Finish<Q>, RunError> {
         let start = self.ground.start();
         let mut samples = Samples::new(times.into_iter().filter(|time| *time >= start), show);
-        let (ending, engine) = Q::finish(self, &mut (watch, &mut samples))?;
+        let (ending, engine) = (Q::compiled().finish)(self, &mut (watch, &mut samples))?;
         samples.end(&engine);
         Ok(Finish { ending, motion: *engine.motion() })
     }
@@ -242,74 +242,55 @@ impl<'a, Q: Runs> Run<'a, Q> {
 }
 
 /// Coordinates for which this crate compiles all that follows a run, so that no crate that asks for runs compiles it again.
-pub trait Runs: Moves {
-    /// Follows `run` to the end.
+pub trait Runs: Coordinates {
+    /// Starts an engine.
     #[doc(hidden)]
-    fn finish(run: &Run<Self>, watch: &mut dyn Watch<Self>) -> Result<(Ending, Engine<Self>), RunError>;
+    const START: Start<Self>;
 
-    /// See [`Run::found`]; also the peaks of all the motion, including a fall.
+    /// What follows runs, of which the FMU has no use.
     #[doc(hidden)]
-    fn found(run: &Run<Self>, watch: &mut dyn Watch<Self>) -> Result<(Found<Self>, Peaks), RunError>;
-
-    /// See [`Run::judged`].
-    #[doc(hidden)]
-    fn judged(run: &Run<Self>, validity: &mut Validity, watch: &mut dyn Watch<Self>) -> Result<Found<Self>, RunError>;
-
-    /// See [`Run::judge`].
-    #[doc(hidden)]
-    fn judge(run: &Run<Self>, validity: &mut Validity, watch: &mut dyn Watch<Self>) -> Result<Finish<Self>, RunError>;
-
-    /// See [`Run::curve`].
-    #[doc(hidden)]
-    fn curve(run: &Run<Self>, part: f64) -> Result<Curve<Self>, RunError>;
-
-    /// See [`levels::compare`].
-    #[doc(hidden)]
-    fn compare(run: &Run<Self>) -> Result<Comparison, RunError>;
+    fn compiled() -> &'static Compiled<Self>;
 }
 
-macro_rules! runs {
-    ($($of:ty),*) => {$(
+/// Starts a structure at a time (s) from a state.
+type Start<Q> = fn(Structure, State<Q>, f64, Settings) -> Result<Engine<Q>, InitialStateError>;
+
+/// The functions that follow runs.
+#[doc(hidden)]
+pub struct Compiled<Q: Coordinates> {
+    finish: fn(&Run<Q>, &mut dyn Watch<Q>) -> Result<(Ending, Engine<Q>), RunError>,
+    /// See [`Run::found`]; also the peaks of all the motion, including a fall.
+    found: fn(&Run<Q>, &mut dyn Watch<Q>) -> Result<(Found<Q>, Peaks), RunError>,
+    judged: fn(&Run<Q>, &mut Validity, &mut dyn Watch<Q>) -> Result<Found<Q>, RunError>,
+    judge: fn(&Run<Q>, &mut Validity, &mut dyn Watch<Q>) -> Result<Finish<Q>, RunError>,
+    curve: fn(&Run<Q>, f64) -> Result<Curve<Q>, RunError>,
+    compare: fn(&Run<Q>) -> Result<Comparison, RunError>,
+}
+
+macro_rules! compiled {
+    ($($of:ty: $start:ident),*) => {$(
         impl Runs for $of {
-            fn finish(run: &Run<Self>, watch: &mut dyn Watch<Self>) -> Result<(Ending, Engine<Self>), RunError> {
-                run.course()?.finish(&mut (&mut (), watch))
-            }
+            const START: Start<$of> = Engine::$start;
 
-            fn found(run: &Run<Self>, watch: &mut dyn Watch<Self>) -> Result<(Found<Self>, Peaks), RunError> {
-                fall::find(run, watch)
-            }
-
-            fn judged(
-                run: &Run<Self>,
-                validity: &mut Validity,
-                watch: &mut dyn Watch<Self>,
-            ) -> Result<Found<Self>, RunError> {
-                Ok(fall::find(run, &mut (validity, watch))?.0)
-            }
-
-            fn judge(
-                run: &Run<Self>,
-                validity: &mut Validity,
-                watch: &mut dyn Watch<Self>,
-            ) -> Result<Finish<Self>, RunError> {
-                run.follow(&mut (validity, watch))
-            }
-
-            fn curve(run: &Run<Self>, part: f64) -> Result<Curve<Self>, RunError> {
-                curve::trace(run, part)
-            }
-
-            fn compare(run: &Run<Self>) -> Result<Comparison, RunError> {
-                levels::compare_levels(run)
+            fn compiled() -> &'static Compiled<$of> {
+                static ALL: Compiled<$of> = Compiled {
+                    finish: |run, watch| run.course()?.finish(&mut (&mut (), watch)),
+                    found: fall::find,
+                    judged: |run, validity, watch| Ok(fall::find(run, &mut (validity, watch))?.0),
+                    judge: |run, validity, watch| run.follow(&mut (validity, watch)),
+                    curve: curve::trace,
+                    compare: levels::compare_levels,
+                };
+                &ALL
             }
         }
     )*};
 }
-runs!(f64, Modes);
+compiled!(f64: with, Modes: of_modes);
 
 /// A run on its way, segment by segment: from sample to sample of its record, and then for 1/p_l each until nothing more can
 /// happen.
-struct Follower<Q: Moves, Segments> {
+struct Follower<Q: Coordinates, Segments> {
     engine: Engine<Q>,
     /// The ground motion that is left.
     segments: Segments,
@@ -318,7 +299,7 @@ struct Follower<Q: Moves, Segments> {
     rest: f64,
 }
 
-impl<Q: Moves, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
+impl<Q: Coordinates, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
     /// Follows the motion to the end.
     fn finish<W: Watch<Q>>(mut self, watch: &mut W) -> Result<(Ending, Engine<Q>), RunError> {
         loop {
@@ -391,7 +372,7 @@ fn too_many(rate: f64) -> String {
 
 /// Why a run of `engine` cannot go on.
 #[cold]
-fn error<Q: Moves>(engine: &Engine<Q>, cause: AdvanceError) -> RunError {
+fn error<Q: Coordinates>(engine: &Engine<Q>, cause: AdvanceError) -> RunError {
     match cause {
         AdvanceError::TooLong { time, until } => RunError::TooLong { time, until },
         cause => RunError::Advance { time: cause.time().unwrap_or(engine.motion().time), cause },
@@ -400,7 +381,7 @@ fn error<Q: Moves>(engine: &Engine<Q>, cause: AdvanceError) -> RunError {
 
 /// Follows a structure over `segment`.
 #[inline]
-fn over<Q: Moves, W: Watch<Q>>(
+fn over<Q: Coordinates, W: Watch<Q>>(
     engine: &mut Engine<Q>,
     segment: Segment,
     watch: &mut W,

@@ -439,18 +439,7 @@ impl Structure {
         if !forces.is_empty() && forces.len() != self.0.floors.len() {
             return Err(StructureError::Forces { forces: forces.len(), floors: self.0.floors.len() });
         }
-        Ok(self.load_of(a_g, a_v, forces.iter().copied()))
-    }
-
-    /// [`Structure::load`] of forces that match the floors.
-    pub(crate) fn load_of(&self, a_g: f64, a_v: f64, forces: impl Iterator<Item = f64>) -> Load<Modes> {
-        let mut on_modes = Modes::parts(self, 0.0);
-        let mut rest = [0.0; 2];
-        for ((force, floor), gauge) in forces.zip(&self.0.floors).zip(&self.0.gauges.a) {
-            on_modes = on_modes.plus(floor.shape, force);
-            rest = std::array::from_fn(|i| rest[i] + gauge.on_rest(force)[i]);
-        }
-        Load { a_g, F_t: on_modes.and_rest(rest), a_v }
+        Ok(Load { a_g, F_t: Modes::of_forces(self, forces.iter().copied()), a_v })
     }
 
     /// All numbers by which its motion differs from that of another structure.

@@ -2,7 +2,8 @@
 
 use crate::scene::Scene;
 use crate::setup::Setup;
-use rocking::engine::{AdvanceError, Moves, Progress};
+use rocking::engine::{AdvanceError, Progress};
+use rocking::run::Runs;
 use rocking::run::fall::FallWatch;
 use rocking::run::validity::Validity;
 use rocking::{LinearLoad, Piece, Transition, Watch};
@@ -14,13 +15,13 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 pub type Told<'a, Q> = dyn FnMut(&Transition<Q>) + 'a;
 
 /// Watches peaks and limits, if they are asked for. One type for all cases keeps the library small.
-pub struct Watching<'a, 'b, Q: Moves> {
+pub struct Watching<'a, 'b, Q: Runs> {
     pub peaks: Option<FallWatch<'a, Q>>,
     pub validity: Option<&'a mut Validity>,
     pub told: &'a mut Told<'b, Q>,
 }
 
-impl<Q: Moves> Watch<Q> for Watching<'_, '_, Q> {
+impl<Q: Runs> Watch<Q> for Watching<'_, '_, Q> {
     fn piece(&mut self, piece: &Piece<Q>) {
         self.peaks.iter_mut().for_each(|peaks| peaks.piece(piece));
         self.validity.iter_mut().for_each(|validity| validity.piece(piece));
@@ -33,7 +34,7 @@ impl<Q: Moves> Watch<Q> for Watching<'_, '_, Q> {
     }
 }
 
-impl<Q: Moves> Scene<Q> {
+impl<Q: Runs> Scene<Q> {
     /// [`Scene::advance`] up to the first transition. One within rounding of the end of the step counts as at its end: a
     /// host that goes back and steps to the instant that it was told meets it again. One at the very start, where an
     /// input has just jumped, is applied at once: every step takes time.

@@ -5,10 +5,10 @@ use crate::shown::Shown;
 use crate::unit::Unit;
 use crate::variables::Source;
 use fmi_unit::{Failure, Model, sensitivity};
-use rocking::engine::Moves;
+use rocking::run::Runs;
 use rocking::{LinearLoad, Load, Reactions};
 
-impl<Q: Moves> Unit<Q> {
+impl<Q: Runs> Unit<Q> {
     /// Rates of outputs by the equations of motion, under the present inputs and their slopes: those set for the next
     /// step, or else those that the last step followed.
     pub(crate) fn output_rates(&mut self, references: &[u32], rates: &mut [f64]) -> Result<(), Failure> {

@@ -1,7 +1,7 @@
 //! The inputs: what the host sets at communication points, and the line that each of them follows over a step.
 
-use rocking::engine::Moves;
 use rocking::mechanics::load::{LOADS, VERTICAL};
+use rocking::run::Runs;
 use rocking::{LinearLoad, Load, OutOfRange, Ramp, Structure};
 use serde::{Deserialize, Serialize};
 
@@ -203,20 +203,20 @@ impl Inputs {
 
     /// The load on `structure`, given the value `of` each input.
     #[inline]
-    fn load<Q: Moves>(&self, structure: &Structure, of: impl Fn(&Input) -> f64) -> Load<Q> {
+    fn load<Q: Runs>(&self, structure: &Structure, of: impl Fn(&Input) -> f64) -> Load<Q> {
         let all = |load: usize| self.each.iter().filter(move |input| input.load == load).map(&of);
         let [a_g, a_v] = [0, VERTICAL].map(|load| all(load).next().unwrap_or(0.0));
-        Q::load(structure, a_g, a_v, all(FORCE))
+        Load { a_g, F_t: Q::of_forces(structure, all(FORCE)), a_v }
     }
 
     /// The loads that act now on `structure`.
     #[inline]
-    pub fn values<Q: Moves>(&self, structure: &Structure) -> Load<Q> {
+    pub fn values<Q: Runs>(&self, structure: &Structure) -> Load<Q> {
         self.load(structure, |input| input.next.value)
     }
 
     /// The loads that act now on `structure`, with the slopes of the next step, or of the last step if none are set.
-    pub fn now<Q: Moves>(&self, structure: &Structure) -> LinearLoad<Q> {
+    pub fn now<Q: Runs>(&self, structure: &Structure) -> LinearLoad<Q> {
         let slope = |input: &Input| {
             let is_old = input.given == Given::Nothing || !input.acts_at_once();
             if is_old { input.followed.slope } else { input.next.slope }
@@ -226,7 +226,7 @@ impl Inputs {
 
     /// Puts every input on its line over a step of `duration` (s), and returns the loads on `structure` along the lines.
     #[inline]
-    pub fn over<Q: Moves>(&mut self, duration: f64, structure: &Structure) -> LinearLoad<Q> {
+    pub fn over<Q: Runs>(&mut self, duration: f64, structure: &Structure) -> LinearLoad<Q> {
         self.each.iter_mut().for_each(|input| input.line = input.over(duration));
         let value = self.load(structure, |input| input.line.value);
         LinearLoad { value, slope: self.load(structure, |input| input.line.slope) }

@@ -1,7 +1,7 @@
 //! The messages to the host about the motion: its transitions, and the limits of the model that it passes.
 
 use fmi_unit::Logger;
-use rocking::engine::Moves;
+use rocking::run::Runs;
 use rocking::run::validity::{ASSUMPTIONS, Findings, Limits};
 use rocking::{Side, Transition, TransitionKind};
 
@@ -15,7 +15,7 @@ pub(crate) fn warn(logger: &Logger, known: &Findings, found: &Findings) {
 }
 
 /// An event; where contact is held by force, which is not the model's, a warning.
-pub(crate) fn log<Q: Moves>(logger: &Logger, is_one_mass: bool, transition: &Transition<Q>) {
+pub(crate) fn log<Q: Runs>(logger: &Logger, is_one_mass: bool, transition: &Transition<Q>) {
     match transition.kind {
         TransitionKind::Settling => logger.warning(&format!(
             "{}; too many transitions within one vibration period: contact is held for the rest of it",
@@ -36,7 +36,7 @@ pub(crate) fn warn_of_stairs(logger: &Logger, time: f64) {
     ));
 }
 
-fn describe<Q: Moves>(is_one_mass: bool, transition: &Transition<Q>) -> String {
+fn describe<Q: Runs>(is_one_mass: bool, transition: &Transition<Q>) -> String {
     let Transition { time, kind, before, after } = transition;
     let side = |side| if side == Side::Left { "left" } else { "right" };
     let what = match *kind {

@@ -8,7 +8,7 @@ use crate::motion_log::log;
 use crate::scene::{Outside, Scene};
 use crate::setup::Setup;
 use fmi_unit::{Completed, Failure, Logger, Update};
-use rocking::engine::Moves;
+use rocking::run::Runs;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::outside_step::{Checked, Checkpoint};
 use rocking::{Load, State, Transition};
@@ -22,7 +22,7 @@ const KINKS_MATTER: f64 = 1e-8;
 /// The largest state (SI units) that is taken from a host.
 const FARTHEST: f64 = 1e12;
 
-impl<Q: Moves> Scene<Q> {
+impl<Q: Runs> Scene<Q> {
     /// The record's time at the host's `time` (s). After a late start the last digits of `time` are coarse. An instant that the
     /// unit has announced for a sample therefore counts as the sample.
     fn elapsed_at(&self, setup: &Setup, time: f64) -> Elapsed {

@@ -7,8 +7,9 @@ use crate::floor_variables::lateral_states;
 use crate::ground::{Digest, GroundRecord};
 use crate::resources::Contents;
 use crate::setup::Setup;
-use rocking::engine::{Moves, Settings};
+use rocking::engine::Settings;
 use rocking::mechanics::load::{LOADS, VERTICAL};
+use rocking::run::Runs;
 use rocking::run::fall::Falling;
 use rocking::run::ground_motion::{Elapsed, Placement};
 use rocking::run::outside_step::Checkpoint;
@@ -20,7 +21,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The structure on its ground.
-pub struct Scene<Q: Moves = f64> {
+pub struct Scene<Q: Runs = f64> {
     pub engine: Engine<Q>,
     /// The record that the ground follows, as its files give it.
     pub source: Option<Arc<GroundRecord>>,
@@ -54,12 +55,12 @@ impl Setup {
     }
 
     /// The structure at the start time, on ground that may move vertically if `vertical`.
-    fn engine<Q: Moves>(&self, contents: &Contents, vertical: bool) -> Result<Engine<Q>, Refusal> {
+    fn engine<Q: Runs>(&self, contents: &Contents, vertical: bool) -> Result<Engine<Q>, Refusal> {
         let &Setup { detail, tolerance, start_time, .. } = self;
         let settings = Settings { detail, tolerance, vertical, stops: false };
         let structure = self.parameters.map_or_else(|| Ok(contents.structure.clone()), Structure::new)?;
         let initial = self.initial.on(&structure)?;
-        Ok(Q::engine(structure, initial, start_time, settings)?)
+        Ok(Q::START(structure, initial, start_time, settings)?)
     }
 
     /// The record of `source` in m/s² and scaled. Refuses scales that leave no ground motion in the range of the inputs.
@@ -72,7 +73,7 @@ impl Setup {
     }
 }
 
-impl<Q: Moves> Scene<Q> {
+impl<Q: Runs> Scene<Q> {
     /// At the start that `setup` describes, of an archive with these `contents`, on ground that follows the record of `source`.
     pub fn new(setup: &Setup, contents: &Contents, source: Option<Arc<GroundRecord>>) -> Result<Scene<Q>, Refusal> {
         let g = setup.g(contents);

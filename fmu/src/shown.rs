@@ -3,14 +3,14 @@
 use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::variables::Source;
-use rocking::engine::Moves;
 use rocking::engine::piece::Sample;
+use rocking::run::Runs;
 use rocking::run::peaks::Peak;
 use rocking::{Load, Output, Reactions, State};
 use std::cell::OnceCell;
 
 /// The values of a scene under a load.
-pub struct Shown<'a, Q: Moves = f64> {
+pub struct Shown<'a, Q: Runs = f64> {
     pub scene: &'a Scene<Q>,
     pub setup: &'a Setup,
     pub load: Load<Q>,
@@ -21,7 +21,7 @@ pub struct Shown<'a, Q: Moves = f64> {
     sample: OnceCell<Sample<'a, Q>>,
 }
 
-impl<'a, Q: Moves> Shown<'a, Q> {
+impl<'a, Q: Runs> Shown<'a, Q> {
     /// The values of `scene`, which follows `setup`, under `load`.
     pub fn new(scene: &'a Scene<Q>, setup: &'a Setup, load: Load<Q>) -> Shown<'a, Q> {
         let (reactions, rates, sample) = Default::default();
@@ -56,6 +56,7 @@ impl<'a, Q: Moves> Shown<'a, Q> {
     }
 
     /// The value of a Real from `source`, if it is one that is computed.
+    #[inline(never)]
     pub fn value(&self, source: Source) -> Option<f64> {
         let Shown { scene, setup, load, .. } = *self;
         let structure = scene.engine.structure();

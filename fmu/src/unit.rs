@@ -14,7 +14,8 @@ use crate::{BUILD, guid};
 use fmi_unit::snapshot::write_state;
 use fmi_unit::variables::state_references;
 use fmi_unit::{Completed, Experiment, Failure, Interface, Logger, Model, Progress, Step, Update, Value, Variable};
-use rocking::engine::{DEFAULT_TOLERANCE, Moves};
+use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::run::Runs;
 use rocking::run::fall::Falling;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::validity::{Findings, of_structure};
@@ -24,7 +25,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// An instance between two calls, whose structure has the lateral coordinates `Q`.
-pub struct Unit<Q: Moves = f64> {
+pub struct Unit<Q: Runs = f64> {
     pub(crate) table: Table,
     archive: Archive,
     pub(crate) setup: Setup,
@@ -45,7 +46,7 @@ pub type Condition<Q> = (Setup, Inputs, Option<Course<Q>>);
 /// How far a simulation has come.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
-pub struct Course<Q: Moves = f64> {
+pub struct Course<Q: Runs = f64> {
     /// The motion; the host's, if the host integrates.
     pub motion: Motion<Q>,
     /// The knowledge beside the motion, if the host integrates.
@@ -60,7 +61,7 @@ pub struct Course<Q: Moves = f64> {
     pub record: Option<Digest>,
 }
 
-impl<Q: Moves> Unit<Q> {
+impl<Q: Runs> Unit<Q> {
     /// An instance just instantiated from `archive`.
     pub fn new(archive: Archive) -> Unit<Q> {
         let (table, setup) = (Table::new(&archive.contents), Setup::new(&archive.contents));
@@ -132,7 +133,7 @@ fn integer(count: u64) -> Value {
 /// The value of a real number that is no output: one that is `shown`, or set.
 #[cold]
 #[inline(never)]
-fn other<Q: Moves>(shown: &Shown<Q>, inputs: &Inputs, source: Source) -> f64 {
+fn other<Q: Runs>(shown: &Shown<Q>, inputs: &Inputs, source: Source) -> f64 {
     shown.value(source).unwrap_or_else(|| setting(shown.setup, inputs, source))
 }
 
@@ -144,7 +145,7 @@ fn setting(setup: &Setup, inputs: &Inputs, source: Source) -> f64 {
     }
 }
 
-impl<Q: Moves> Model for Unit<Q> {
+impl<Q: Runs> Model for Unit<Q> {
     fn open(resources: &Path) -> Result<Box<dyn Model>, Failure> {
         let archive = Archive::open(resources.to_owned()).map_err(Refusal::from)?;
         Ok(match archive.contents.structure.one() {

@@ -11,7 +11,8 @@ use FlexibleRocking::{fmi2, fmi3};
 use fmi_unit::snapshot::Snapshot;
 use fmi_unit::state_machine::Stage;
 use hostile::{Subject, hostile_calls};
-use rocking::engine::{MAX_STEPS_PER_ADVANCE, Moves};
+use rocking::engine::MAX_STEPS_PER_ADVANCE;
+use rocking::run::Runs;
 use rocking::run::validity::ASSUMPTIONS;
 use rocking::{Body, Floor, Mode, Modes, Structure, Ties};
 use std::ffi::CString;
@@ -49,17 +50,17 @@ fn many_masses() -> Subject {
     Subject { never_in: &[Stage::Error], ..subject::<Modes>(folder) }
 }
 
-fn subject<Q: Moves>(resources: TempDir) -> Subject {
+fn subject<Q: Runs>(resources: TempDir) -> Subject {
     let texts = records(resources.path());
     Subject { texts, may_be_infinite, check_step: check_step::<Q>, ..Subject::of(resources, time::<Q>) }
 }
 
 /// How far the simulation had come that `snapshot` is of, once it had started.
-fn course<Q: Moves>(snapshot: &Snapshot) -> Option<Course<Q>> {
+fn course<Q: Runs>(snapshot: &Snapshot) -> Option<Course<Q>> {
     postcard::from_bytes::<Condition<Q>>(&snapshot.model).unwrap().2
 }
 
-fn time<Q: Moves>(snapshot: &Snapshot) -> f64 {
+fn time<Q: Runs>(snapshot: &Snapshot) -> f64 {
     let Some(course) = course::<Q>(snapshot) else { return 0.0 };
     course.outside.map_or(course.motion.time, |outside| outside.known.motion.time)
 }
@@ -70,7 +71,7 @@ fn may_be_infinite(name: &str) -> bool {
 }
 
 /// The work is bounded.
-fn check_step<Q: Moves>(before: &Snapshot, after: &Snapshot) {
+fn check_step<Q: Runs>(before: &Snapshot, after: &Snapshot) {
     let [before, after] = [before, after].map(|of| course::<Q>(of).unwrap().motion.work.steps);
     assert!(after - before <= MAX_STEPS_PER_ADVANCE, "{} steps", after - before);
 }

@@ -3,7 +3,7 @@
 use crate::arguments::refused;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use rocking::engine::Moves;
+use rocking::run::Runs;
 use rocking::{Piece, Watch};
 use rocking_report::run::Watcher;
 use std::panic::resume_unwind;
@@ -31,7 +31,7 @@ impl Watcher for Abandoned {
     }
 }
 
-impl<Q: Moves> Watch<Q> for Abandoned {
+impl<Q: Runs> Watch<Q> for Abandoned {
     fn piece(&mut self, _: &Piece<Q>) {
         self.check();
     }

@@ -1,8 +1,8 @@
 //! The tables of a run: the response and its transitions.
 use crate::run::{Event, Line, Named, Run};
-use rocking::engine::Moves;
 use rocking::engine::piece::Sample;
 use rocking::mechanics::restraint::{Dissipators, Restraints};
+use rocking::run::Runs;
 use rocking::{Impulse, Output, Reactions};
 use serde::Serialize;
 
@@ -25,7 +25,7 @@ const AFTER: [(&str, &str); 14] = [
 ];
 
 /// A line of the response, in the order of [`Run::headings`], with these values of the `outputs`.
-pub(crate) fn line<Q: Moves>(sample: &Sample<Q>, outputs: Vec<f64>) -> Line {
+pub(crate) fn line<Q: Runs>(sample: &Sample<Q>, outputs: Vec<f64>) -> Line {
     let Sample { motion, load, .. } = sample;
     let Reactions { R_h, R_v, R_m } = sample.reactions();
     let Impulse { I_h, I_v, I_m } = motion.impulse;

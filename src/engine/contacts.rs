@@ -5,7 +5,6 @@
 //! coefficient is a number: it is then closed, and closes at once, or it opens and must return. Points that act at one instant, as in
 //! vertical motion, follow one another in steps without duration.
 
-use crate::engine::Moves;
 use crate::engine::motion::Motion;
 use crate::engine::phases::{BAND, Guard, Step, Way};
 use crate::engine::piece::Sample;
@@ -99,7 +98,7 @@ impl First {
 /// The pressed points change.
 pub(crate) struct Points;
 
-impl<Q: Moves> Guard<Q> for Points {
+impl<Q: Coordinates> Guard<Q> for Points {
     fn first(&self, &Step { level, contact, arc, reach, .. }: &Step<Q>) -> (Crossing, Way) {
         let Some(foundation) = level.structure().foundation() else { return First::default().found() };
         let (rises, mut found) = (Rises::new(foundation, arc), First::default());
@@ -161,7 +160,7 @@ const TENDON: u8 = 2;
 /// The tendon becomes slack or taut, or a dissipator begins or ceases to yield.
 pub(crate) struct Tied;
 
-impl<Q: Moves> Guard<Q> for Tied {
+impl<Q: Coordinates> Guard<Q> for Tied {
     fn first(&self, &Step { level, contact, start, arc, reach, .. }: &Step<Q>) -> (Crossing, Way) {
         let Some(foundation) = level.structure().foundation() else { return First::default().found() };
         let (rises, mut found) = (Rises::new(foundation, arc), First::default());
@@ -217,7 +216,7 @@ impl<Q: Moves> Guard<Q> for Tied {
 }
 
 /// How far the ties are from their next change, of order one, and the ways of the changes.
-fn tied_margins<'a, Q: Moves>(now: &'a Sample<Q>) -> impl Iterator<Item = (f64, Way)> + 'a {
+fn tied_margins<'a, Q: Coordinates>(now: &'a Sample<Q>) -> impl Iterator<Item = (f64, Way)> + 'a {
     let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
     let Ties { P_0, k_t, xi_d, k_d, F_y, .. } = structure.base().ties;
     structure.foundation().into_iter().flat_map(move |&Foundation { rest, place, .. }| {
@@ -239,7 +238,7 @@ fn tied_margins<'a, Q: Moves>(now: &'a Sample<Q>) -> impl Iterator<Item = (f64, 
 }
 
 /// The dissipators at the reach of a step.
-pub(crate) fn moved<Q: Moves>(&Step { level, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
+pub(crate) fn moved<Q: Coordinates>(&Step { level, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
     let mut moved = *start.dissipators;
     let Some(foundation) = level.structure().foundation() else { return moved };
     let (rises, Ties { xi_d, c_d, k_d, F_y, .. }) = (Rises::new(foundation, arc), level.structure().base().ties);

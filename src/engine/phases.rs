@@ -3,7 +3,6 @@
 //! The loop of the [engine](crate::engine) expands the motion, finds the first guard that closes, and applies the guard's transition.
 //! A new kind of contact is one more [`Watched`] here, with its guards.
 
-use crate::engine::Moves;
 use crate::engine::contacts::{self, Points, Tied};
 use crate::engine::motion::Motion;
 use crate::engine::piece::Sample;
@@ -27,7 +26,7 @@ use std::f64::consts::FRAC_PI_2;
 pub const BAND: f64 = 1e-9;
 
 /// One expanded step in one phase.
-pub(crate) struct Step<'a, Q: Moves = f64> {
+pub(crate) struct Step<'a, Q: Coordinates = f64> {
     pub level: &'a dyn Level<Q>,
     /// The side about which the structure rocks.
     pub side: Side,
@@ -55,7 +54,7 @@ pub(crate) struct Closed {
 }
 
 /// A condition that ends a phase, or changes the equations within it.
-pub(crate) trait Guard<Q: Moves = f64>: Sync {
+pub(crate) trait Guard<Q: Coordinates = f64>: Sync {
     /// The first instant of `step` at which the guard closes.
     fn first(&self, step: &Step<Q>) -> (Crossing, Way);
 
@@ -80,7 +79,7 @@ pub(crate) trait Guard<Q: Moves = f64>: Sync {
 }
 
 /// A phase as the loop knows it.
-pub(crate) struct Watched<Q: Moves = f64> {
+pub(crate) struct Watched<Q: Coordinates = f64> {
     /// Duration of the phase at most, s.
     pub lasts: Option<fn(&Motion<Q>) -> f64>,
     /// A cheap proof that no guard closes over a step.
@@ -90,7 +89,7 @@ pub(crate) struct Watched<Q: Moves = f64> {
     pub moved: Option<fn(&Step<Q>) -> Dissipators>,
 }
 
-impl<Q: Moves> Watched<Q> {
+impl<Q: Coordinates> Watched<Q> {
     /// A phase in which the base does not move, without guards.
     pub(super) const RESTING: Watched<Q> = Watched { lasts: None, stays: None, guards: &[], moved: None };
 
@@ -129,7 +128,7 @@ impl<Q: Moves> Watched<Q> {
 
 /// The phase of `motion` of `structure`; none once the structure has overturned.
 #[inline]
-pub(crate) fn of<Q: Moves>(structure: &Structure, motion: &Motion<Q>) -> Option<&'static Watched<Q>> {
+pub(crate) fn of<Q: Coordinates>(structure: &Structure, motion: &Motion<Q>) -> Option<&'static Watched<Q>> {
     match motion.phase {
         Phase::FullContact if motion.held() > 0.0 => Some(Watched::HELD),
         Phase::FullContact => Some(Watched::CONTACT),
@@ -144,7 +143,7 @@ pub(crate) fn of<Q: Moves>(structure: &Structure, motion: &Motion<Q>) -> Option<
 /// The base lifts off about the side of the sign.
 struct Uplift;
 
-impl<Q: Moves> Guard<Q> for Uplift {
+impl<Q: Coordinates> Guard<Q> for Uplift {
     fn first(&self, step: &Step<Q>) -> (Crossing, Way) {
         let (crossing, side) = step.level.first_uplift(step.start, step.arc);
         (crossing, about(side))
@@ -179,7 +178,7 @@ fn about(side: Side) -> Way {
 /// |θ| reaches π/2.
 struct Overturning;
 
-impl<Q: Moves> Guard<Q> for Overturning {
+impl<Q: Coordinates> Guard<Q> for Overturning {
     fn first(&self, step: &Step<Q>) -> (Crossing, Way) {
         let theta = step.arc.used(&step.arc.theta);
         let falls = Gap::new(theta, -step.side.sign(), FRAC_PI_2);
@@ -209,7 +208,7 @@ impl<Q: Moves> Guard<Q> for Overturning {
 /// s θ returns to 0.
 struct Impact;
 
-impl<Q: Moves> Guard<Q> for Impact {
+impl<Q: Coordinates> Guard<Q> for Impact {
     /// A start at θ = 0 is a root of θ. With z leading zeros the polynomial that is searched is therefore s θ/σ^z. The start is then
     /// no return, and a return right after the start is found. A coefficient that underflows counts as zero. If θ is zero
     /// throughout, over a step of 1e-200 s say, there is no return.

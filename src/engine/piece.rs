@@ -3,7 +3,6 @@
 //! Within a piece there is no transition. If the engine expanded the motion into a polynomial, the piece has that polynomial. If
 //! the engine leapt by an exact flow, the piece has bounds, and makes polynomials on request.
 
-use crate::engine::Moves;
 use crate::engine::motion::Motion;
 use crate::engine::phases::{self, Step};
 use crate::engine::transition::Transition;
@@ -11,6 +10,7 @@ use crate::levels::level::{Level, Now, Subject, off_chord};
 use crate::mechanics::contact;
 use crate::mechanics::gauge::{Gauge, Reading};
 use crate::mechanics::instant::{Instant, Second};
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::Shows;
 use crate::mechanics::reach::{Magnitudes, OffChord};
@@ -23,7 +23,7 @@ use std::cell::{Cell, OnceCell, RefCell};
 use std::f64::consts::TAU;
 
 /// Watches a motion go by.
-pub trait Watch<Q: Moves = f64> {
+pub trait Watch<Q: Coordinates = f64> {
     /// Whether the watcher looks at pieces. If not, the engine makes none for it.
     fn sees_pieces(&self) -> bool {
         true
@@ -39,14 +39,14 @@ pub trait Watch<Q: Moves = f64> {
 }
 
 /// The watcher that ignores pieces and transitions.
-impl<Q: Moves> Watch<Q> for () {
+impl<Q: Coordinates> Watch<Q> for () {
     fn sees_pieces(&self) -> bool {
         false
     }
 }
 
 /// A watcher of transitions only.
-impl<Q: Moves, F: FnMut(&Transition<Q>)> Watch<Q> for F {
+impl<Q: Coordinates, F: FnMut(&Transition<Q>)> Watch<Q> for F {
     fn sees_pieces(&self) -> bool {
         false
     }
@@ -57,7 +57,7 @@ impl<Q: Moves, F: FnMut(&Transition<Q>)> Watch<Q> for F {
 }
 
 /// Two watchers of the same motion.
-impl<Q: Moves, A: Watch<Q> + ?Sized, B: Watch<Q> + ?Sized> Watch<Q> for (&mut A, &mut B) {
+impl<Q: Coordinates, A: Watch<Q> + ?Sized, B: Watch<Q> + ?Sized> Watch<Q> for (&mut A, &mut B) {
     fn sees_pieces(&self) -> bool {
         self.0.sees_pieces() || self.1.sees_pieces()
     }
@@ -75,7 +75,7 @@ impl<Q: Moves, A: Watch<Q> + ?Sized, B: Watch<Q> + ?Sized> Watch<Q> for (&mut A,
 
 /// A motion at one instant; at a transition, just after it.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample<'a, Q: Moves = f64> {
+pub struct Sample<'a, Q: Coordinates = f64> {
     /// Time, state and phase, transitions and impulses so far.
     pub motion: Motion<Q>,
     /// Load at the instant.
@@ -83,7 +83,7 @@ pub struct Sample<'a, Q: Moves = f64> {
     pub(crate) level: &'a dyn Level<Q>,
 }
 
-impl<Q: Moves> Sample<'_, Q> {
+impl<Q: Coordinates> Sample<'_, Q> {
     /// ü and θ̈; once overturned, those of the instant before.
     pub(crate) fn second(&self) -> Second<f64, Q> {
         let Sample { motion, load, level } = self;
@@ -164,7 +164,7 @@ impl<Q: Moves> Sample<'_, Q> {
 
 /// The structure of `level` as outputs read it, with θ̈ if one of them needs it.
 #[inline]
-pub(crate) fn shown<'a, Q: Moves>(level: &'a dyn Level<Q>, phase: Phase, now: &Now<Q>) -> Instant<'a, f64, Q> {
+pub(crate) fn shown<'a, Q: Coordinates>(level: &'a dyn Level<Q>, phase: Phase, now: &Now<Q>) -> Instant<'a, f64, Q> {
     let structure = level.structure();
     let x = Instant::of(structure, phase, now.state, now.load);
     if !structure.gauges().has_feedthrough {
@@ -183,7 +183,7 @@ const FINEST_PART: u32 = 5;
 
 /// A stretch of time without a transition.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece<'a, Q: Moves = f64> {
+pub struct Piece<'a, Q: Coordinates = f64> {
     /// The motion at its start: time, state, and the phase that it is in throughout.
     pub before: &'a Motion<Q>,
     /// Duration of the piece, s.
@@ -213,7 +213,7 @@ impl<Q> Default for Room<Q> {
     }
 }
 
-impl<'p, Q: Moves> Piece<'p, Q> {
+impl<'p, Q: Coordinates> Piece<'p, Q> {
     /// The whole piece as a part.
     #[inline]
     pub(crate) fn whole(&self) -> Part<'_, Q> {
@@ -278,13 +278,13 @@ impl<'p, Q: Moves> Piece<'p, Q> {
 
 /// A part of a piece.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Part<'a, Q: Moves = f64> {
+pub(crate) struct Part<'a, Q: Coordinates = f64> {
     pub piece: &'a Piece<'a, Q>,
     /// Seconds from the piece's start to its own, and the state there.
     pub start: (f64, State<Q>),
 }
 
-impl<'a, Q: Moves> Part<'a, Q> {
+impl<'a, Q: Coordinates> Part<'a, Q> {
     /// The part as a step.
     #[inline]
     pub(crate) fn step(&self) -> Start<'a, Q> {
@@ -344,7 +344,7 @@ impl<'a, Q: Moves> Part<'a, Q> {
 
 /// Bounds of the magnitudes between two instants with these `loads`, given bounds of the state.
 #[inline(always)]
-pub(crate) fn magnitudes<Q: Moves>(
+pub(crate) fn magnitudes<Q: Coordinates>(
     structure: &Structure,
     phase: Phase,
     loads: &[Load<Q>; 2],
@@ -369,7 +369,7 @@ pub(crate) fn magnitudes<Q: Moves>(
 
 /// Goes through a part of a piece polynomial by polynomial.
 #[derive(Debug)]
-pub(crate) struct Arcs<'a, Q: Moves = f64> {
+pub(crate) struct Arcs<'a, Q: Coordinates = f64> {
     /// Start of the part, s after the start of the piece.
     begin: f64,
     left: Option<Part<'a, Q>>,
@@ -380,7 +380,7 @@ pub(crate) struct Arcs<'a, Q: Moves = f64> {
     pub evaluations: u64,
 }
 
-impl<Q: Moves> Arcs<'_, Q> {
+impl<Q: Coordinates> Arcs<'_, Q> {
     /// The motion from where the last one ends on, as far as one polynomial reaches.
     pub(crate) fn next(&mut self) -> Option<Expansion<'_, Q>> {
         let part = self.left.take()?;
@@ -402,7 +402,7 @@ impl<Q: Moves> Arcs<'_, Q> {
     }
 }
 
-impl<Q: Moves> Drop for Arcs<'_, Q> {
+impl<Q: Coordinates> Drop for Arcs<'_, Q> {
     fn drop(&mut self) {
         if let Some(arc) = self.arc.take() {
             self.room.arc.replace(Some(arc));
@@ -410,7 +410,7 @@ impl<Q: Moves> Drop for Arcs<'_, Q> {
     }
 }
 
-impl<'a, Q: Moves> Arcs<'a, Q> {
+impl<'a, Q: Coordinates> Arcs<'a, Q> {
     /// The part that is left.
     pub(crate) fn left(&self) -> Option<Part<'a, Q>> {
         self.left
@@ -443,14 +443,14 @@ impl<'a, Q: Moves> Arcs<'a, Q> {
 
 /// A polynomial of the motion of a piece.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Expansion<'a, Q: Moves = f64> {
+pub(crate) struct Expansion<'a, Q: Coordinates = f64> {
     pub piece: &'a Piece<'a, Q>,
     /// Start of the polynomial, s after the start of the piece.
     pub from: f64,
     pub arc: &'a Arc<Q>,
 }
 
-impl<Q: Moves> Expansion<'_, Q> {
+impl<Q: Coordinates> Expansion<'_, Q> {
     /// The instant of `sigma`, s.
     pub(crate) fn time(&self, sigma: f64) -> f64 {
         self.piece.before.time + self.from + sigma * self.arc.span
@@ -490,7 +490,7 @@ impl<Q: Moves> Expansion<'_, Q> {
     }
 }
 
-impl<'a, Q: Moves> Expansion<'a, Q> {
+impl<'a, Q: Coordinates> Expansion<'a, Q> {
     /// The structure at `sigma` as outputs read it.
     pub(crate) fn shown(&self, sigma: f64) -> Instant<'a, f64, Q> {
         self.piece.shown(self.from + sigma * self.arc.span, &self.arc.at(sigma))
@@ -530,7 +530,7 @@ impl<'a, Q: Moves> Expansion<'a, Q> {
 }
 
 /// A polynomial of the motion in series, as far as several outputs read it.
-pub(crate) struct Over<'a, Q: Moves> {
+pub(crate) struct Over<'a, Q: Coordinates> {
     of: Expansion<'a, Q>,
     theta: Terms,
     theta_dot: Terms,
@@ -538,7 +538,7 @@ pub(crate) struct Over<'a, Q: Moves> {
     turn: OnceCell<Turn<Terms>>,
 }
 
-impl<'a, Q: Moves> Over<'a, Q> {
+impl<'a, Q: Coordinates> Over<'a, Q> {
     pub(crate) fn new(of: Expansion<'a, Q>) -> Over<'a, Q> {
         let none = Terms::constant(0.0);
         let [theta, theta_dot] = match of.piece.before.phase {
@@ -562,7 +562,7 @@ impl<'a, Q: Moves> Over<'a, Q> {
     }
 }
 
-impl<Q: Moves> Shows<Terms> for Over<'_, Q> {
+impl<Q: Coordinates> Shows<Terms> for Over<'_, Q> {
     fn structure(&self) -> &Structure {
         self.of.piece.level.structure()
     }

@@ -5,12 +5,12 @@
 //! The zeros of θ̇ at the start are therefore divided out, like the zeros of θ at an uplift.
 
 use crate::Side;
-use crate::engine::Moves;
 use crate::engine::motion::Motion;
 use crate::engine::phases::{BAND, Guard, Step, Way};
 use crate::engine::piece::Sample;
 use crate::engine::transition::TransitionKind;
 use crate::levels::level::Level;
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::{Dissipators, levers};
 use crate::mechanics::state::way;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
@@ -26,7 +26,7 @@ const AT_CONTACT: f64 = 1e-10;
 /// A dissipator begins to yield, pulled or pressed by the sign, or ceases to yield if the sign is 0.
 pub(crate) struct Yielding;
 
-impl<Q: Moves> Guard<Q> for Yielding {
+impl<Q: Coordinates> Guard<Q> for Yielding {
     fn first(&self, &Step { level, side, start, arc, reach, .. }: &Step<Q>) -> (Crossing, Way) {
         let (base, dissipators) = (level.structure().base(), start.dissipators);
         let Ties { k_d, F_y, .. } = base.ties;
@@ -90,7 +90,7 @@ fn moving(base: &Base, side: Side) -> impl Iterator<Item = (usize, f64)> {
 
 /// The smallest distance of the dissipators from beginning or ceasing to yield, less the most by which `changes` of θ and θ̇ (rad,
 /// rad/s) can reduce the distance. The distance from yielding is a fraction of F_y, and from ceasing a fraction of p_l α_cg.
-fn least_margin<Q: Moves>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
+fn least_margin<Q: Coordinates>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
     let (base, Motion { phase, state, dissipators, .. }) = (now.level.structure().base(), &now.motion);
     let (side, angles) = (phase.side(), now.level.subject().angles);
     let Ties { k_d, F_y, .. } = base.ties;
@@ -106,7 +106,7 @@ fn least_margin<Q: Moves>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
 }
 
 /// The dissipators at the reach of a step.
-pub(crate) fn moved<Q: Moves>(&Step { level, side, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
+pub(crate) fn moved<Q: Coordinates>(&Step { level, side, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
     let (base, angles, dissipators) = (level.structure().base(), level.subject().angles, start.dissipators);
     let &Base { B, ties: Ties { xi_d, c_d, k_d, F_y, .. }, .. } = base;
     let (mut moved, theta) = (*dissipators, evaluate(arc.used(&arc.theta), reach));

@@ -28,7 +28,6 @@ use crate::series::taylor::{Arc, Start};
 use crate::{Modes, OneMass, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 use std::any::Any;
-use std::fmt::Debug;
 use wide::f64x4;
 
 /// A level of detail.
@@ -177,7 +176,7 @@ impl<Rocking: ElasticRocking> Elastic<Rocking> {
     }
 }
 
-impl<Rocking: ElasticRocking + Clone + Debug + Send + 'static> Level for Elastic<Rocking> {
+impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking> {
     fn subject(&self) -> &Subject {
         &self.subject
     }

@@ -12,7 +12,7 @@ use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{OneMass, Phase, Side, State, Structure};
 use std::any::Any;
-use std::fmt::Debug;
+use std::fmt::{self, Debug};
 
 /// A structure at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +52,7 @@ impl Subject {
 /// The level of detail of a structure. The provided methods are those of an elastic strut. A level without a
 /// [liftable](Level::liftable) structure has a fixed base.
 #[allow(private_interfaces)] // the coordinates name the trait, and nobody else can use it
-pub trait Level<Q: Coordinates = f64>: Debug + Send {
+pub trait Level<Q: Coordinates = f64>: Send {
     fn subject(&self) -> &Subject;
 
     /// The same level again.
@@ -145,6 +145,12 @@ pub trait Level<Q: Coordinates = f64>: Debug + Send {
     fn accelerations(&self, phase: Phase, &Now { state, load, dissipators }: &Now<Q>) -> Second<f64, Q> {
         let [second] = derivatives(self, phase, (state, dissipators, LinearLoad::held(load)), &mut Arc::default());
         second
+    }
+}
+
+impl<Q: Coordinates> Debug for dyn Level<Q> + '_ {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        self.subject().fmt(out)
     }
 }
 

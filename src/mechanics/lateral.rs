@@ -57,6 +57,9 @@ pub trait Coordinates:
     /// Makes the coordinates of a structure, each from its number and its mode.
     fn each(structure: &Structure, coordinate: impl Fn(usize, &Mode) -> f64) -> Self;
 
+    /// The generalized forces of horizontal `forces` (N) on the floors of a structure; a force on one mass is its own.
+    fn of_forces(structure: &Structure, forces: impl Iterator<Item = f64>) -> Self;
+
     /// These coordinates beside what acts on mass that no mode carries among `forces`.
     #[inline(always)]
     fn beside(self, _forces: &Self) -> Self {
@@ -193,6 +196,11 @@ impl Coordinates for f64 {
     #[inline(always)]
     fn each(structure: &Structure, coordinate: impl Fn(usize, &Mode) -> f64) -> f64 {
         coordinate(0, &structure.modes()[0])
+    }
+
+    #[inline(always)]
+    fn of_forces(_: &Structure, mut forces: impl Iterator<Item = f64>) -> f64 {
+        forces.next().unwrap_or(0.0)
     }
 
     #[inline(always)]
@@ -359,6 +367,16 @@ impl Coordinates for Modes {
             .enumerate()
             .for_each(|(j, (of, mode))| *of = coordinate(j, mode));
         modes
+    }
+
+    fn of_forces(structure: &Structure, forces: impl Iterator<Item = f64>) -> Modes {
+        let mut on_modes = Modes::parts(structure, 0.0);
+        let mut rest = [0.0; 2];
+        for ((force, floor), gauge) in forces.zip(structure.floors()).zip(&structure.gauges().a) {
+            on_modes = on_modes.plus(floor.shape, force);
+            rest = std::array::from_fn(|i| rest[i] + gauge.on_rest(force)[i]);
+        }
+        on_modes.and_rest(rest)
     }
 
     #[inline]

@@ -6,8 +6,8 @@
 use super::fall::Found;
 use super::peaks::{Peak, Peaks};
 use super::{Run, RunError, Runs};
-use crate::engine::Moves;
 use crate::engine::piece::{Piece, Sample, Watch};
+use crate::mechanics::lateral::Coordinates;
 use crate::series::terms::Terms;
 use crate::series::{extremes, taylor};
 use crate::{Output, Phase, Structure, Transition};
@@ -68,7 +68,7 @@ pub struct Point {
 
 /// A run as it is drawn.
 #[derive(Clone, Debug)]
-pub struct Curve<Q: Moves = f64> {
+pub struct Curve<Q: Coordinates = f64> {
     /// In the order of time; straight lines join them. The largest a_g and the largest of each line are among them.
     pub points: Vec<Point>,
     /// In the order of time, too.
@@ -81,12 +81,12 @@ impl<Q: Runs> Run<'_, Q> {
     /// The run as points between which θ, u and a_t of each floor leave straight lines by at most `part` of their peaks; the
     /// ground acceleration does not leave them at all. Refuses a run that takes more points than fit in 130 MB.
     pub fn curve(&self, part: f64) -> Result<Curve<Q>, RunError> {
-        Q::curve(self, part)
+        (Q::compiled().curve)(self, part)
     }
 }
 
 pub(super) fn trace<Q: Runs>(run: &Run<Q>, part: f64) -> Result<Curve<Q>, RunError> {
-    let (found, peaks) = Q::found(run, &mut ())?;
+    let (found, peaks) = (Q::compiled().found)(run, &mut ())?;
     let (mut lines, drawn, a_g) = (lines(&run.structure), drawn(&run.structure), peaks.a_g());
     lines.extend(run.structure.foundation().iter().flat_map(|_| &OF_GROUND[..2]));
     let peaks = Vec::from_iter(peaks_of(&lines, &peaks));
@@ -110,7 +110,7 @@ pub(super) fn trace<Q: Runs>(run: &Run<Q>, part: f64) -> Result<Curve<Q>, RunErr
 }
 
 /// Gathers the points of a motion as it goes by.
-struct Tracer<Q: Moves> {
+struct Tracer<Q: Coordinates> {
     lines: Vec<Output>,
     /// The outputs at each point.
     drawn: Vec<Output>,
@@ -128,7 +128,7 @@ struct Tracer<Q: Moves> {
     is_torn: bool,
 }
 
-impl<Q: Moves> Tracer<Q> {
+impl<Q: Coordinates> Tracer<Q> {
     fn is_full(&self) -> bool {
         self.points.len() > self.most
     }
@@ -140,7 +140,7 @@ impl<Q: Moves> Tracer<Q> {
     }
 }
 
-impl<Q: Moves> Watch<Q> for Tracer<Q> {
+impl<Q: Coordinates> Watch<Q> for Tracer<Q> {
     fn piece(&mut self, piece: &Piece<Q>) {
         if self.is_full() {
             return;

@@ -4,8 +4,8 @@
 use super::peak_watch::PeakWatch;
 use super::peaks::{Peak, Peaks};
 use super::{Finish, Run, RunError, Runs};
-use crate::engine::Moves;
 use crate::engine::piece::{Expansion, Sample};
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::{Dissipators, Restraint};
 use crate::run::ground_motion::GroundMotion;
 use crate::run::validity::Validity;
@@ -23,7 +23,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Result of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found<Q: Moves = f64> {
+pub struct Found<Q: Coordinates = f64> {
     /// Peak of the ground acceleration until the run ended, m/s².
     pub ground: Peak,
     /// Peaks of the structure; if it overturns, those before it falls.
@@ -90,12 +90,12 @@ impl Falling {
     }
 
     /// Adds the values of `sample`, which need not be in a piece.
-    pub fn see_instant<Q: Moves>(&mut self, sample: &Sample<Q>) {
+    pub fn see_instant<Q: Coordinates>(&mut self, sample: &Sample<Q>) {
         self.all.see(&sample.shown(), sample.motion.time);
     }
 
     /// Looks for peaks in the pieces of a motion. The peaks are complete when the watch is dropped.
-    pub fn watch<Q: Moves>(&mut self) -> FallWatch<'_, Q> {
+    pub fn watch<Q: Coordinates>(&mut self) -> FallWatch<'_, Q> {
         let Falling { all, no_return, fall, has_overturned } = self;
         FallWatch { all: all.watch(), no_return: *no_return, fall, has_overturned }
     }
@@ -103,14 +103,14 @@ impl Falling {
 
 /// Looks for the peaks of a motion that may end in a fall.
 #[derive(Debug)]
-pub struct FallWatch<'a, Q: Moves = f64> {
+pub struct FallWatch<'a, Q: Coordinates = f64> {
     all: PeakWatch<'a, Q>,
     no_return: Option<f64>,
     fall: &'a mut Option<(f64, Peaks)>,
     has_overturned: &'a mut bool,
 }
 
-impl<Q: Moves> Watch<Q> for FallWatch<'_, Q> {
+impl<Q: Coordinates> Watch<Q> for FallWatch<'_, Q> {
     fn piece(&mut self, piece: &Piece<Q>) {
         match self.no_return {
             Some(angle) if piece.end.theta.abs() >= angle => self.beyond(piece, angle),
@@ -143,7 +143,7 @@ impl Passes for FallWatch<'_> {
     }
 }
 
-impl<Q: Moves> FallWatch<'_, Q> {
+impl<Q: Coordinates> FallWatch<'_, Q> {
     /// The peaks, once the motion has been watched.
     pub(crate) fn end(mut self) -> Falling {
         let (all, no_return) = (self.all.so_far().clone(), self.no_return);
@@ -169,7 +169,7 @@ impl<Q: Moves> FallWatch<'_, Q> {
 
 /// The last passing of `angle` (rad) in a `piece` that ends beyond: the instant, and seconds from the start of the piece. A motion that
 /// starts beyond, and not `falls` already, falls from its start.
-fn start_of_fall<Q: Moves>(piece: &Piece<Q>, angle: f64, falls: bool) -> Option<(f64, f64)> {
+fn start_of_fall<Q: Coordinates>(piece: &Piece<Q>, angle: f64, falls: bool) -> Option<(f64, f64)> {
     // most pieces of a fall stay beyond
     if falls
         && let Some(arc) = piece.arc
@@ -187,7 +187,7 @@ fn start_of_fall<Q: Moves>(piece: &Piece<Q>, angle: f64, falls: bool) -> Option<
 
 /// The last time at which |θ| passes `angle` (rad) on a polynomial that ends beyond on this `side`: the instant, and seconds from
 /// the start of the piece. The search goes back from the end of the polynomial.
-fn last_passing<Q: Moves>(angle: f64, side: f64, expansion: &Expansion<Q>) -> Option<(f64, f64)> {
+fn last_passing<Q: Coordinates>(angle: f64, side: f64, expansion: &Expansion<Q>) -> Option<(f64, f64)> {
     let arc = expansion.arc;
     let mut theta = arc.theta;
     let back = &mut theta[..=arc.order];
@@ -209,12 +209,12 @@ fn last_passing<Q: Moves>(angle: f64, side: f64, expansion: &Expansion<Q>) -> Op
 impl<Q: Runs> Run<'_, Q> {
     /// Follows the motion to the end, which `watch` sees, too, and finds its exact peaks.
     pub fn found(&self, watch: &mut dyn Watch<Q>) -> Result<Found<Q>, RunError> {
-        Ok(Q::found(self, watch)?.0)
+        Ok((Q::compiled().found)(self, watch)?.0)
     }
 
     /// Like [`Run::found`]; `validity` sees the motion, too.
     pub fn judged(&self, validity: &mut Validity, watch: &mut dyn Watch<Q>) -> Result<Found<Q>, RunError> {
-        Q::judged(self, validity, watch)
+        (Q::compiled().judged)(self, validity, watch)
     }
 
     /// Result of the run with these `peaks`, the start of the `fall` and the `finish`.

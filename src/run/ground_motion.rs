@@ -6,7 +6,8 @@
 
 #[cfg(feature = "lanes")]
 use crate::engine::lanes::Samples;
-use crate::engine::{AdvanceError, MAX_STEPS_PER_ADVANCE, Moves};
+use crate::engine::{AdvanceError, MAX_STEPS_PER_ADVANCE};
+use crate::mechanics::lateral::Coordinates;
 use crate::run::record::Record;
 use crate::structure::quantity::{Quantity, quantity};
 use crate::{Engine, LinearLoad, Progress, Ramp, Watch};
@@ -130,7 +131,7 @@ impl<'a> GroundMotion<'a> {
 
     /// Advances `engine` and `elapsed` by `interval` (s), or to a transition that ends the advance, under the record and `load`.
     /// One bound on the work holds for all samples together. If the advance fails, nothing has changed.
-    pub fn advance<Q: Moves, W: Watch<Q>>(
+    pub fn advance<Q: Coordinates, W: Watch<Q>>(
         &self,
         engine: &mut Engine<Q>,
         elapsed: &mut Elapsed,

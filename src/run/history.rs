@@ -3,8 +3,8 @@
 //! The time that both motions have covered is compared and dropped, so that neither motion is kept whole.
 
 use crate::Output;
-use crate::engine::Moves;
 use crate::engine::piece::{Piece, Watch};
+use crate::mechanics::lateral::Coordinates;
 use crate::series::extremes;
 use crate::series::taylor::{self, Series};
 
@@ -97,7 +97,7 @@ impl Section {
     }
 }
 
-impl<Q: Moves> Watch<Q> for History {
+impl<Q: Coordinates> Watch<Q> for History {
     fn piece(&mut self, piece: &Piece<Q>) {
         let transitions = piece.before.transitions;
         let mut arcs = piece.arcs();

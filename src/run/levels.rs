@@ -7,8 +7,8 @@ use super::fall::{FallWatch, Falling};
 use super::history::{Distance, History};
 use super::peaks::Peaks;
 use super::{Ending, Follower, Run, RunError, Runs};
-use crate::engine::Moves;
 use crate::engine::motion::Work;
+use crate::mechanics::lateral::Coordinates;
 use crate::run::ground_motion::Segment;
 use crate::{Detail, Mode, Output, State, Structure};
 use std::fmt;
@@ -152,7 +152,7 @@ pub struct Comparison {
 
 /// Does `run` at every level.
 pub fn compare<Q: Runs>(run: &Run<Q>) -> Result<Comparison, RunError> {
-    Q::compare(run)
+    (Q::compiled().compare)(run)
 }
 
 pub(super) fn compare_levels<Q: Runs>(run: &Run<Q>) -> Result<Comparison, RunError> {
@@ -208,7 +208,7 @@ pub(super) fn compare_levels<Q: Runs>(run: &Run<Q>) -> Result<Comparison, RunErr
 }
 
 /// A level on its way.
-struct Trial<'a, Q: Moves, Segments> {
+struct Trial<'a, Q: Coordinates, Segments> {
     choice: Choice,
     /// Whether its ground moves horizontally alone and the reference's does not.
     is_level: bool,

@@ -7,10 +7,11 @@
 //! passes nothing over. If the engine finds a transition on the way, or if the integrator ended beyond a guard without one,
 //! the engine's own motion from the start of the step counts.
 
+use crate::engine::AdvanceError;
 use crate::engine::phases::{self, Closed};
 use crate::engine::piece::{Sample, Watch};
-use crate::engine::{AdvanceError, Moves};
 use crate::mechanics::instant::Second;
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::run::ground_motion::Elapsed;
 use crate::{Engine, Foundation, GroundMotion, Motion, Phase, State};
@@ -21,7 +22,7 @@ pub const INDICATORS: usize = 2;
 
 pub use crate::engine::phases::BAND;
 
-impl<Q: Moves> Sample<'_, Q> {
+impl<Q: Coordinates> Sample<'_, Q> {
     /// (u̇, ü, θ̇, θ̈) by the equations of the level and the phase; not numbers where these have no solution.
     pub fn state_rates(&self) -> State<Q> {
         let State { u_dot, theta_dot, .. } = self.level.admissible(self.motion.phase, self.motion.state);
@@ -73,7 +74,7 @@ pub struct Checkpoint<Q = f64> {
     pub load: Load<Q>,
 }
 
-impl<Q: Moves> Checkpoint<Q> {
+impl<Q: Coordinates> Checkpoint<Q> {
     /// Checks the step from here to where `engine` is now, under `load`, which came about linearly, and on `ground`. The engine
     /// stays where it is; transitions on the way are shown to `watch`.
     pub fn check(
@@ -135,7 +136,7 @@ impl<Q: Moves> Checkpoint<Q> {
     }
 }
 
-impl<Q: Moves> Engine<Q> {
+impl<Q: Coordinates> Engine<Q> {
     /// Takes `state` from another integrator; what does not move in the present phase stays at rest.
     pub fn set_state(&mut self, state: State<Q>) {
         let Sample { motion, level, .. } = self.sample(Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 });

@@ -4,9 +4,10 @@
 //! first kept, since most are soon beaten by the end of another.
 
 use super::peaks::Peaks;
+use crate::engine::MOST_POLYNOMIALS;
 use crate::engine::piece::{Piece, Room, Watch};
-use crate::engine::{MOST_POLYNOMIALS, Moves};
 use crate::levels::level::Level;
+use crate::mechanics::lateral::Coordinates;
 use crate::series::taylor::{Arc, LONGEST_SPAN};
 use crate::{LinearLoad, Motion, State, Transition};
 
@@ -15,7 +16,7 @@ const MOST_CANDIDATES: usize = 32;
 
 /// Looks for peaks in the pieces of a motion.
 #[derive(Debug)]
-pub struct PeakWatch<'a, Q: Moves = f64> {
+pub struct PeakWatch<'a, Q: Coordinates = f64> {
     pub(super) peaks: &'a mut Peaks,
     /// Pieces that may hold more than what has been seen.
     kept: Vec<Candidate<Q>>,
@@ -32,7 +33,7 @@ pub struct PeakWatch<'a, Q: Moves = f64> {
 
 /// A piece that is looked at after others have been shown.
 #[derive(Debug)]
-struct Candidate<Q: Moves> {
+struct Candidate<Q: Coordinates> {
     before: Motion<Q>,
     duration: f64,
     load: LinearLoad<Q>,
@@ -44,7 +45,7 @@ struct Candidate<Q: Moves> {
 
 impl Peaks {
     /// The watcher that searches the pieces of a motion for larger peaks. The peaks are complete once the watcher is dropped.
-    pub fn watch<Q: Moves>(&mut self) -> PeakWatch<'_, Q> {
+    pub fn watch<Q: Coordinates>(&mut self) -> PeakWatch<'_, Q> {
         let is_first = self.goes_on();
         PeakWatch {
             peaks: self,
@@ -58,7 +59,7 @@ impl Peaks {
     }
 }
 
-impl<Q: Moves> PeakWatch<'_, Q> {
+impl<Q: Coordinates> PeakWatch<'_, Q> {
     /// Peaks of the pieces so far.
     pub(super) fn so_far(&mut self) -> &Peaks {
         self.look_back();
@@ -84,20 +85,20 @@ impl<Q: Moves> PeakWatch<'_, Q> {
     }
 }
 
-impl<Q: Moves> Candidate<Q> {
+impl<Q: Coordinates> Candidate<Q> {
     fn piece<'a>(&'a self, level: &'a dyn Level<Q>, room: &'a Room<Q>) -> Piece<'a, Q> {
         let &Candidate { ref before, duration, load, end, ref arc, .. } = self;
         Piece { before, duration, load, end, level, arc: arc.as_deref(), room }
     }
 }
 
-impl<Q: Moves> Drop for PeakWatch<'_, Q> {
+impl<Q: Coordinates> Drop for PeakWatch<'_, Q> {
     fn drop(&mut self) {
         self.look_back();
     }
 }
 
-impl<Q: Moves> Watch<Q> for PeakWatch<'_, Q> {
+impl<Q: Coordinates> Watch<Q> for PeakWatch<'_, Q> {
     fn piece(&mut self, piece: &Piece<Q>) {
         let &Piece { before, duration, ref load, ref end, level, arc, .. } = piece;
         let (until, loads, structure) = (before.time + duration, [load.value, load.at(duration)], level.structure());

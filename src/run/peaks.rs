@@ -5,7 +5,6 @@
 //! (`extremes`) a series only rises or falls, so that the largest magnitude is at a stationary point or at an end. The series tells
 //! the instant; the value there comes from the state.
 
-use crate::engine::Moves;
 #[cfg(feature = "lanes")]
 use crate::engine::lanes::{MOST_SOUGHT, Passes, Sought};
 #[cfg(feature = "lanes")]
@@ -13,6 +12,7 @@ use crate::engine::piece::Watch;
 use crate::engine::piece::{CONVERGED, Expansion, Over, Piece};
 use crate::mechanics::contact::{forces_on_ground, ties_on_ground};
 use crate::mechanics::instant::Instant;
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::outputs::Shows;
 use crate::mechanics::reach::{Magnitudes, OffChord, Reach};
 use crate::mechanics::restraint::{Angles, Restraint, Restraints};
@@ -94,20 +94,20 @@ struct Searched {
 
 impl Searched {
     #[inline(always)]
-    fn bound<Q: Moves>(&self, (structure, reaches): (&Structure, &[Reach]), bounds: &Magnitudes<Q>) -> f64 {
+    fn bound<Q: Coordinates>(&self, (structure, reaches): (&Structure, &[Reach]), bounds: &Magnitudes<Q>) -> f64 {
         reaches[self.place].bound(self.output, structure, bounds)
     }
 
     /// Sees the output at the instant `x`, at `time` (s), and returns its value.
     #[inline]
-    fn see<Q: Moves>(&mut self, x: &Instant<f64, Q>, time: f64) -> f64 {
+    fn see<Q: Coordinates>(&mut self, x: &Instant<f64, Q>, time: f64) -> f64 {
         let value = self.output.of(x);
         self.peak.see(value, time);
         value
     }
 
     /// How far the output leaves its chord over a stretch of motion within `most` that leaves its chords by `off`.
-    fn off_chord<Q: Moves>(&self, structure: &Structure, most: &Magnitudes<Q>, off: Option<&OffChord<Q>>) -> f64 {
+    fn off_chord<Q: Coordinates>(&self, structure: &Structure, most: &Magnitudes<Q>, off: Option<&OffChord<Q>>) -> f64 {
         let of = |off| structure.reaches()[self.place].off_chord(self.output, structure, most, off);
         off.map_or(f64::INFINITY, of)
     }
@@ -227,13 +227,13 @@ impl Peaks {
     }
 
     /// Sees the values at the instant `x`, at `time` (s).
-    pub(super) fn see<Q: Moves>(&mut self, x: &Instant<f64, Q>, time: f64) {
+    pub(super) fn see<Q: Coordinates>(&mut self, x: &Instant<f64, Q>, time: f64) {
         self.searched.iter_mut().for_each(|of| _ = of.see(x, time));
     }
 
     /// Sees the values at the end of `piece`, and at its start if the piece before ended with others, of all that may equal or exceed its
     /// peak within `most`. Returns whether a peak may change between the ends, and puts bounds of what is searched into `bounds`.
-    pub(super) fn see_ends<Q: Moves>(
+    pub(super) fn see_ends<Q: Coordinates>(
         &mut self,
         piece: &Piece<Q>,
         is_torn: bool,
@@ -276,7 +276,7 @@ impl Peaks {
 
     /// Whether magnitudes of `structure` within `bounds` may equal or exceed a peak.
     #[inline(always)]
-    pub(super) fn may_be_same<Q: Moves>(&self, structure: &Structure, bounds: &Magnitudes<Q>) -> bool {
+    pub(super) fn may_be_same<Q: Coordinates>(&self, structure: &Structure, bounds: &Magnitudes<Q>) -> bool {
         let reaches = structure.reaches();
         let may_be_same = |of: &Searched| {
             let bound = of.bound((structure, reaches), bounds);
@@ -300,7 +300,7 @@ impl Peaks {
     }
 
     /// Whether magnitudes of `structure` within `bounds` at `time` (s) or later may change a peak.
-    pub(super) fn may_change<Q: Moves>(&self, structure: &Structure, bounds: &Magnitudes<Q>, time: f64) -> bool {
+    pub(super) fn may_change<Q: Coordinates>(&self, structure: &Structure, bounds: &Magnitudes<Q>, time: f64) -> bool {
         let reaches = structure.reaches();
         self.searched.iter().any(|of| of.peak.may_change(of.bound((structure, reaches), bounds), time))
     }
@@ -311,7 +311,7 @@ impl Peaks {
     }
 
     /// Looks for larger magnitudes between the ends of `piece`, within these `bounds` of what is searched if they are known.
-    pub(super) fn look<Q: Moves>(&mut self, piece: &Piece<Q>, bounds: &[f64]) {
+    pub(super) fn look<Q: Coordinates>(&mut self, piece: &Piece<Q>, bounds: &[f64]) {
         let mut arcs = piece.arcs();
         while let Some(expansion) = arcs.next() {
             self.look_over(&expansion, bounds);
@@ -325,7 +325,7 @@ impl Peaks {
     }
 
     /// Looks for larger forces of the dissipators in `piece`. They depend on θ and θ̇ alone, and on y on ground that gives.
-    pub(super) fn look_at_dissipators<Q: Moves>(&mut self, piece: &Piece<Q>) {
+    pub(super) fn look_at_dissipators<Q: Coordinates>(&mut self, piece: &Piece<Q>) {
         let (base, before) = (piece.level.structure().base(), piece.before);
         let (angles, pair) = (self.tendon.angles, &mut self.pair);
         let restraint = Restraint::about(base, before.phase.side(), &before.dissipators);
@@ -370,7 +370,7 @@ impl Peaks {
     }
 
     /// Looks at a polynomial.
-    fn look_over<Q: Moves>(&mut self, expansion: &Expansion<Q>, bounds: &[f64]) {
+    fn look_over<Q: Coordinates>(&mut self, expansion: &Expansion<Q>, bounds: &[f64]) {
         expansion.in_parts(&mut |part, is_finest| {
             let (structure, most) = (part.piece.level.structure(), part.most());
             let (reach, start) = (part.arc.reach, part.time(0.0));
@@ -442,7 +442,7 @@ impl ThetaWatch<'_> {
 }
 
 #[cfg(feature = "lanes")]
-impl<Q: Moves> Watch<Q> for ThetaWatch<'_> {
+impl<Q: Coordinates> Watch<Q> for ThetaWatch<'_> {
     #[inline]
     fn piece(&mut self, piece: &Piece<Q>) {
         let before = piece.before;

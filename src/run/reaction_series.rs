@@ -2,7 +2,6 @@
 //!
 //! The series tell the instant at which a reaction is largest; its value there comes from the state.
 
-use crate::engine::Moves;
 use crate::engine::piece::{Expansion, Over};
 use crate::levels::level::Subject;
 use crate::mechanics::lateral::Coordinates;
@@ -39,7 +38,7 @@ fn of_edges<Q: Coordinates>(
 }
 
 /// The reactions of the edges over a polynomial. The moment is given in full contact only; while rocking it is sB R_v.
-pub(crate) fn over<Q: Moves>(expansion: &Expansion<Q>) -> Reactions<Terms> {
+pub(crate) fn over<Q: Coordinates>(expansion: &Expansion<Q>) -> Reactions<Terms> {
     let &Expansion { piece, from, arc } = expansion;
     let (structure, load, over) = (piece.level.structure(), piece.load.from(from), Over::new(*expansion));
     let &Motion { phase, ref dissipators, .. } = piece.before;
@@ -66,7 +65,7 @@ pub(crate) fn over<Q: Moves>(expansion: &Expansion<Q>) -> Reactions<Terms> {
 ///
 /// The terms that are linear in ü and θ̈ are added up, turned as the base is at the start, before they are bounded. The others are at
 /// most `rest`: those in θ̇, in u θ̈, and what the base turns on by.
-pub(crate) fn bounds<Q: Moves>(expansion: &Expansion<Q>) -> Option<Reactions<Extent>> {
+pub(crate) fn bounds<Q: Coordinates>(expansion: &Expansion<Q>) -> Option<Reactions<Extent>> {
     let &Expansion { piece, from, arc } = expansion;
     let (level, phase, load) = (piece.level.subject(), piece.before.phase, piece.load.from(from));
     let structure = &level.structure;

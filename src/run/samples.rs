@@ -1,10 +1,11 @@
 //! A motion at given instants, read from its pieces.
 
+use crate::Engine;
 use crate::Motion;
 use crate::engine::piece::{Piece, Sample, Watch};
 use crate::levels::level::Level;
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
-use crate::{Engine, engine::Moves};
 use std::iter::Peekable;
 
 /// Shows a motion at given instants, none of which is before the start. A piece lasts until the next one begins: its own end, start
@@ -17,7 +18,7 @@ pub(crate) struct Samples<Times: Iterator<Item = f64>, Show, Q> {
     load: Load<Q>,
 }
 
-impl<Q: Moves, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Samples<Times, Show, Q> {
+impl<Q: Coordinates, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Samples<Times, Show, Q> {
     pub(crate) fn new(times: Times, show: Show) -> Self {
         Samples { times: times.peekable(), show, last: None, load: Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 } }
     }
@@ -38,7 +39,7 @@ impl<Q: Moves, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Samples<Tim
     }
 }
 
-impl<Q: Moves, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Watch<Q> for Samples<Times, Show, Q> {
+impl<Q: Coordinates, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Watch<Q> for Samples<Times, Show, Q> {
     fn piece(&mut self, piece: &Piece<Q>) {
         self.until(piece.before.time, piece.level);
         let end = piece.before.time + piece.duration;

@@ -27,10 +27,10 @@ mod assumptions;
 use super::reaction_series::{self, Extent};
 use super::{Finish, Run, RunError, Runs};
 use crate::digits::short;
-use crate::engine::Moves;
 use crate::engine::piece::{Expansion, Part, Piece, Sample, Watch};
 use crate::levels::level::off_chord;
 use crate::mechanics::impact;
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::state::State;
 use crate::series::bisection::last_where;
 use crate::series::extremes;
@@ -227,7 +227,7 @@ impl Validity {
     }
 
     /// Sees an instant, which need not be in a piece.
-    pub fn see_instant<Q: Moves>(&mut self, at: &Sample<Q>) {
+    pub fn see_instant<Q: Coordinates>(&mut self, at: &Sample<Q>) {
         let &Sample { motion: Motion { time, phase, .. }, load, .. } = at;
         self.found.see(WEIGHT, 1.0 + load.a_v / self.structure.base().g, time);
         self.see_reactions(time, phase, &at.edges());
@@ -267,7 +267,7 @@ impl Validity {
     }
 
     /// Looks at the motion over a polynomial; `extents` are bounds of its reactions.
-    fn look<Q: Moves>(&mut self, expansion: &Expansion<Q>, extents: &Reactions<Extent>) {
+    fn look<Q: Coordinates>(&mut self, expansion: &Expansion<Q>, extents: &Reactions<Extent>) {
         expansion.in_parts(&mut |part, is_finest| {
             let polynomial = Polynomial { of: *part, series: reaction_series::over(part), extents };
             let &Expansion { piece, arc, .. } = part;
@@ -290,7 +290,7 @@ impl Validity {
     }
 
     /// Looks within `polynomial` for the worst value of an assumption, and for the time beyond its limit.
-    fn look_for<A: OfReactions, Q: Moves>(&mut self, phase: Phase, polynomial: &Polynomial<Q>) {
+    fn look_for<A: OfReactions, Q: Coordinates>(&mut self, phase: Phase, polynomial: &Polynomial<Q>) {
         if !A::holds_in(phase) {
             return;
         }
@@ -302,7 +302,7 @@ impl Validity {
     }
 
     /// Looks for the worst value of an assumption within `polynomial`.
-    fn search<A: OfReactions, Q: Moves>(&mut self, polynomial: &Polynomial<Q>) {
+    fn search<A: OfReactions, Q: Coordinates>(&mut self, polynomial: &Polynomial<Q>) {
         let (scale, reach) = (self.scale(), polynomial.of.arc.reach);
         loop {
             let worst = self.found.worst[A::PLACE].value;
@@ -341,7 +341,7 @@ impl Validity {
     }
 
     /// Sees that `piece` passes, whatever its reactions are.
-    fn see_passing<Q: Moves>(&mut self, piece: &Piece<Q>) {
+    fn see_passing<Q: Coordinates>(&mut self, piece: &Piece<Q>) {
         self.found.duration += piece.duration;
         self.found.held += piece.before.chatter.held.min(piece.duration);
         if piece.load.is_vertical() && EdgeLoad::holds_in(piece.before.phase) {
@@ -353,7 +353,7 @@ impl Validity {
     }
 
     /// Sees a `transition`.
-    fn see_transition<Q: Moves>(&mut self, transition: &Transition<Q>) {
+    fn see_transition<Q: Coordinates>(&mut self, transition: &Transition<Q>) {
         let &Transition { time, kind, before, after } = transition;
         let structure = &self.structure;
         let (side, phase) = match kind {
@@ -392,7 +392,7 @@ impl Validity {
     }
 }
 
-impl<Q: Moves> Watch<Q> for Validity {
+impl<Q: Coordinates> Watch<Q> for Validity {
     fn piece(&mut self, piece: &Piece<Q>) {
         self.see_passing(piece);
         let phase = piece.before.phase;
@@ -425,7 +425,7 @@ impl<Q: Moves> Watch<Q> for Validity {
 }
 
 /// Bounds of the reactions of the edges over a polynomial.
-fn extents<Q: Moves>(expansion: &Expansion<Q>) -> Reactions<Extent> {
+fn extents<Q: Coordinates>(expansion: &Expansion<Q>) -> Reactions<Extent> {
     let (series, reach) = (reaction_series::over(expansion), expansion.arc.reach);
     let polynomial = Polynomial { of: *expansion, series, extents: &UNBOUNDED };
     match polynomial.has_converged(&polynomial.reactions(reach)) {
@@ -436,7 +436,7 @@ fn extents<Q: Moves>(expansion: &Expansion<Q>) -> Reactions<Extent> {
 
 /// Bounds of the reactions of the edges over a part in full contact, if the ground does not move vertically. The reactions of the motion
 /// that follows the load are linear in time, so that the vibration alone leaves the chord.
-fn extents_of_vibration<Q: Moves>(part: Part<Q>) -> Option<Reactions<Extent>> {
+fn extents_of_vibration<Q: Coordinates>(part: Part<Q>) -> Option<Reactions<Extent>> {
     let &Piece { level, before: &Motion { phase, .. }, load, .. } = part.piece;
     let step = part.step();
     let [u, u_dot, u_ddot, jerk] = level.swings(phase, &step)?;
@@ -459,13 +459,13 @@ fn extents_of_vibration<Q: Moves>(part: Part<Q>) -> Option<Reactions<Extent>> {
 }
 
 /// A polynomial of a motion with its reactions.
-struct Polynomial<'a, Q: Moves> {
+struct Polynomial<'a, Q: Coordinates> {
     of: Expansion<'a, Q>,
     series: Reactions<Terms>,
     extents: &'a Reactions<Extent>,
 }
 
-impl<Q: Moves> Polynomial<'_, Q> {
+impl<Q: Coordinates> Polynomial<'_, Q> {
     /// The reactions at `sigma`, from the state there.
     fn reactions(&self, sigma: f64) -> Reactions {
         self.of.sample(sigma).edges()
@@ -547,7 +547,7 @@ impl<Q: Runs> Run<'_, Q> {
 
     /// Follows the motion to the end, which `validity` and `watch` see.
     pub fn judge(&self, validity: &mut Validity, watch: &mut dyn Watch<Q>) -> Result<Finish<Q>, RunError> {
-        Q::judge(self, validity, watch)
+        (Q::compiled().judge)(self, validity, watch)
     }
 }
 

@@ -19,7 +19,7 @@ pub(crate) struct Terms {
 
 impl Terms {
     /// The first `order` + 1 coefficients of `series`.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn of(series: &Series, order: usize) -> Terms {
         let mut terms = Terms { coefficients: [0.0; LENGTH], degree: order, order };
         terms.coefficients[..=order].copy_from_slice(&series[..=order]);
@@ -35,7 +35,7 @@ impl Terms {
     }
 
     /// A value that changes by `rise` over σ = 1.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn ramp(value: f64, rise: f64) -> Terms {
         let mut terms = Terms::constant(value);
         if rise != 0.0 {
@@ -71,6 +71,7 @@ impl Terms {
     }
 
     /// The product row by row, so that the sums of four orders run side by side.
+    #[inline(never)]
     fn times(&self, other: &Terms) -> Terms {
         let order = self.order.min(other.order);
         let (short, long) = if self.degree <= other.degree { (self, other) } else { (other, self) };
@@ -90,7 +91,7 @@ impl Terms {
         product
     }
 
-    #[inline]
+    #[inline(never)]
     fn map(&self, linear: impl Fn(f64) -> f64) -> Terms {
         Terms::by_fours(self.degree, self.order, |i| self.four(i).map(&linear))
     }
@@ -115,7 +116,7 @@ impl Terms {
 operators!([] Terms);
 
 impl Number for Terms {
-    #[inline]
+    #[inline(never)]
     fn constant(value: f64) -> Terms {
         let mut coefficients = [0.0; LENGTH];
         coefficients[0] = value;

@@ -270,7 +270,7 @@ impl Conditions {
         let settings = Settings { detail: self.detail, tolerance: self.tolerance, ..Settings::default() };
         let ground = Record::at_rest(1.0);
         fn start<Q: Runs>(run: Run<Q>, settings: Settings) -> Result<(), InitialStateError> {
-            Q::engine(run.structure, run.initial, 0.0, settings).map(|_| ())
+            Q::START(run.structure, run.initial, 0.0, settings).map(|_| ())
         }
         with_run!(self, structure, &ground, run => start(run, settings)).and_then(|of| of).map_err(Refused::by)
     }
