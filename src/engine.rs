@@ -388,7 +388,7 @@ impl<Q: Coordinates> Engine<Q> {
             return Restraints::default();
         }
         let Second { u_ddot, theta_ddot } = self.sample(load).second();
-        if let Some(Foundation { rest, place, .. }) = self.structure().foundation() {
+        if let Some(Foundation { rest, place, .. }) = Q::foundation(self.structure()) {
             let moving = contact::ties_on_ground(self.structure().base(), *rest, dissipators, phase.contact());
             let rates = moving.map(|tie| Tie { force: 0.0, ..tie });
             let of = |at: usize| [state.u_dot.of(at), u_ddot.of(at)];
@@ -537,7 +537,7 @@ impl<Q: Coordinates> Rates<'_, Q> {
         }
         let x = Instant::moving(engine.structure(), *phase, state, accelerations, *load);
         let theta_ddot = Dual { value: accelerations.theta_ddot, rate: jerks.theta_ddot };
-        let lift = engine.structure().foundation().map(|Foundation { place, .. }| {
+        let lift = Q::foundation(engine.structure()).map(|Foundation { place, .. }| {
             let [value, rate] = [accelerations, jerks].map(|of| of.u_ddot.of(*place));
             Dual { value, rate }
         });

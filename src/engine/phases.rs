@@ -134,8 +134,10 @@ pub(crate) fn of<Q: Coordinates>(structure: &Structure, motion: &Motion<Q>) -> O
         Phase::FullContact => Some(Watched::CONTACT),
         Phase::Rocking(_) if structure.base().ties.F_y > 0.0 => Some(Watched::ROCKING_YIELDING),
         Phase::Rocking(_) => Some(Watched::ROCKING),
-        Phase::OnGround(_) if structure.base().is_restrained() => Some(Watched::ON_GROUND_TIED),
-        Phase::OnGround(_) => Some(Watched::ON_GROUND),
+        Phase::OnGround(_) => Q::foundation(structure).map(|_| match structure.base().is_restrained() {
+            true => Watched::ON_GROUND_TIED,
+            false => Watched::ON_GROUND,
+        }),
         Phase::Overturned(_) => None,
     }
 }

@@ -112,7 +112,7 @@ impl<Q: Coordinates> Sample<'_, Q> {
         if !is_tied {
             return reactions;
         }
-        if structure.foundation().is_some() {
+        if Q::foundation(structure).is_some() {
             let Restraints { P_t, F_d1, F_d2 } = self.restraints();
             let moment = structure.base().ties.xi_d * (F_d1 - F_d2) * libm::cos(state.theta);
             return reactions.of_edges(P_t + F_d1 + F_d2, 0.0, moment);
@@ -126,7 +126,7 @@ impl<Q: Coordinates> Sample<'_, Q> {
     pub fn restraints(&self) -> Restraints {
         let Motion { phase, state, dissipators, .. } = &self.motion;
         let structure = self.level.structure();
-        if let Some(Foundation { rest, place, .. }) = structure.foundation() {
+        if let Some(Foundation { rest, place, .. }) = Q::foundation(structure) {
             let ties = contact::ties_on_ground(structure.base(), *rest, dissipators, phase.contact());
             return contact::forces_on_ground(
                 &ties,
@@ -171,7 +171,7 @@ pub(crate) fn shown<'a, Q: Coordinates>(level: &'a dyn Level<Q>, phase: Phase, n
         return x;
     }
     let Second { u_ddot, theta_ddot } = level.accelerations(phase, now);
-    let lift = structure.foundation().map_or(0.0, |foundation| u_ddot.of(foundation.place));
+    let lift = Q::foundation(structure).map_or(0.0, |foundation| u_ddot.of(foundation.place));
     Instant { theta_ddot, a_v: x.a_v + lift, ..x }
 }
 
@@ -508,7 +508,7 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
         let &Expansion { piece, arc, .. } = self;
         let most = magnitudes(structure, piece.before.phase, loads, arc.most(end));
         let a_g = || Ramp { value: loads[0].a_g, slope: piece.load.slope.a_g };
-        let needs_arc = structure.gauges().has_feedthrough || structure.foundation().is_some();
+        let needs_arc = structure.gauges().has_feedthrough || Q::foundation(structure).is_some();
         Magnitudes { arc: needs_arc.then(|| (arc, a_g())), ..most }
     }
 
@@ -552,7 +552,7 @@ impl<'a, Q: Coordinates> Over<'a, Q> {
 
     /// ÿ on ground that gives, m/s².
     pub(crate) fn lift(&self) -> Option<Terms> {
-        let place = self.structure().foundation()?.place;
+        let place = self.foundation()?.place;
         Some(self.coordinate(place)[1].slope(self.of.arc.span))
     }
 
@@ -565,6 +565,10 @@ impl<'a, Q: Coordinates> Over<'a, Q> {
 impl<Q: Coordinates> Shows<Terms> for Over<'_, Q> {
     fn structure(&self) -> &Structure {
         self.of.piece.level.structure()
+    }
+
+    fn foundation(&self) -> Option<&Foundation> {
+        Q::foundation(self.structure())
     }
 
     fn pivot(&self) -> f64 {

@@ -6,7 +6,7 @@ use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::Shows;
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
-use crate::{Base, Mode, Structure};
+use crate::{Base, Foundation, Mode, Structure};
 use crate::{Contact, Phase, State};
 
 /// The structure at an instant, with lateral coordinates `Q`.
@@ -133,6 +133,11 @@ impl<N: Number, Q: Lateral<N>> Shows<N> for Instant<'_, N, Q> {
     #[inline]
     fn structure(&self) -> &Structure {
         self.structure
+    }
+
+    #[inline]
+    fn foundation(&self) -> Option<&Foundation> {
+        Q::foundation(self.structure)
     }
 
     #[inline]

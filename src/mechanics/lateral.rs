@@ -3,13 +3,13 @@
 //! A structure is a rigid base that carries modes of vibration in full contact. A formula of this room is a sum over the modes. For
 //! one mass the sum is its only term, so that no result differs from the paper's formula in a bit.
 
-use crate::Structure;
 use crate::numbers::Number;
 use crate::numbers::dual::Dual;
 use crate::numbers::most::Most;
 use crate::series::extremes::{OFF_CHORD, off_chord};
 use crate::series::taylor::evaluate;
 use crate::structure::mode::Mode;
+use crate::{Foundation, Structure};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
@@ -37,6 +37,12 @@ pub trait Lateral<N: Number>: Copy {
     #[inline(always)]
     fn modes(structure: &Structure) -> &[Mode] {
         structure.modes()
+    }
+
+    /// The ground that gives under a structure; never under one mass, whose engine is compiled without.
+    #[inline(always)]
+    fn foundation(structure: &Structure) -> Option<&Foundation> {
+        structure.foundation()
     }
 
     /// A sum over the modes of a structure.
@@ -146,6 +152,11 @@ impl<Q: Coordinates> Lateral<Most> for Mosts<Q> {
     fn modes(structure: &Structure) -> &[Mode] {
         Q::modes(structure)
     }
+
+    #[inline(always)]
+    fn foundation(structure: &Structure) -> Option<&Foundation> {
+        Q::foundation(structure)
+    }
 }
 
 /// Coordinates and their rates.
@@ -164,6 +175,11 @@ impl<Q: Coordinates> Lateral<Dual<f64>> for Duals<Q> {
     #[inline(always)]
     fn modes(structure: &Structure) -> &[Mode] {
         Q::modes(structure)
+    }
+
+    #[inline(always)]
+    fn foundation(structure: &Structure) -> Option<&Foundation> {
+        Q::foundation(structure)
     }
 
     fn rest(&self) -> Option<[Dual<f64>; 2]> {
@@ -187,6 +203,11 @@ impl<N: Number> Lateral<N> for N {
     #[inline(always)]
     fn modes(structure: &Structure) -> &[Mode] {
         std::slice::from_ref(&structure.modes()[0])
+    }
+
+    #[inline(always)]
+    fn foundation(_: &Structure) -> Option<&Foundation> {
+        None
     }
 }
 

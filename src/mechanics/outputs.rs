@@ -87,6 +87,7 @@ use Output::{F_d1, F_d2, P_t, pressure, settled, settlement, theta, theta_dot, u
 /// A motion in numbers of the kind `N`, as formulas of outputs read it.
 pub(crate) trait Shows<N> {
     fn structure(&self) -> &Structure;
+    fn foundation(&self) -> Option<&Foundation>;
     /// Place of the pivot, sB, m.
     fn pivot(&self) -> f64;
     fn theta(&self) -> N;
@@ -350,7 +351,7 @@ impl Output {
         match self {
             theta => x.theta(),
             theta_dot => x.theta_dot(),
-            Output::uplift if x.structure().foundation().is_none() => uplift(x.pivot(), &x.turn()),
+            Output::uplift if x.foundation().is_none() => uplift(x.pivot(), &x.turn()),
             u(_) | drift(_) | drift_ratio(_) => {
                 let (shape, factor) = self.displaced(x.structure()).expect("it is a displacement");
                 x.u(shape) * factor
@@ -361,7 +362,7 @@ impl Output {
             V_t | M_t | a_t(_) | V(_) | M(_) => {
                 x.gauge(self.gauge(x.structure()).expect("a gauge measures accelerations and forces"))
             }
-            _ => x.structure().foundation().map_or(K::constant(0.0), |foundation| self.on_ground(x, foundation)),
+            _ => x.foundation().map_or(K::constant(0.0), |foundation| self.on_ground(x, foundation)),
         }
     }
 }

@@ -164,7 +164,7 @@ impl Reach {
     #[inline(always)]
     pub(crate) fn bound<Q: Coordinates>(&self, output: Output, structure: &Structure, most: &Magnitudes<Q>) -> f64 {
         let Reach { turn: [sin, versine], a_g, push, .. } = self;
-        if let (Some((arc, _)), Some(foundation)) = (most.arc, structure.foundation())
+        if let (Some((arc, _)), Some(foundation)) = (most.arc, Q::foundation(structure))
             && let Some(parts) = output.of_height(structure.base(), foundation)
         {
             return most_of_height(arc, foundation.place, parts);
@@ -172,7 +172,7 @@ impl Reach {
         let elastic = self.elastic(most.damping, &most.u, &most.u_dot) + most.F_t.weighed(push);
         match (a_g, most.arc) {
             _ if most.theta == f64::INFINITY => f64::INFINITY,
-            (Some(_), _) if structure.foundation().is_some() => f64::INFINITY, // the base accelerates
+            (Some(_), _) if Q::foundation(structure).is_some() => f64::INFINITY, // the base accelerates
             (None, _) => elastic + sin * most.theta + versine * (0.5 * most.theta * most.theta),
             (Some(_), Some(arc)) => {
                 let gauge = output.gauge(structure).expect("a gauge alone reads the ground acceleration");
@@ -192,7 +192,7 @@ impl Reach {
         most: &Magnitudes<Q>,
         off: &OffChord<Q>,
     ) -> f64 {
-        let is_known = match structure.foundation() {
+        let is_known = match Q::foundation(structure) {
             Some(foundation) => self.a_g.is_none() && output.of_height(structure.base(), foundation).is_none(),
             None => self.a_g.is_none() || most.theta == 0.0,
         };

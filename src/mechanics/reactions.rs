@@ -99,7 +99,7 @@ impl<N: Number> Acceleration<N> {
 #[inline(always)]
 fn weight<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> N {
     let weight = x.a_v + N::constant(x.base().g);
-    x.structure.foundation().map_or(weight, |foundation| weight + second.u_ddot.of(foundation.place))
+    Q::foundation(x.structure).map_or(weight, |foundation| weight + second.u_ddot.of(foundation.place))
 }
 
 /// R_h and R_v, N.

@@ -101,7 +101,7 @@ impl<Q: Coordinates> Checkpoint<Q> {
         let is_corrected = has_changed || is_beyond;
         let time = if let Phase::Overturned(_) = own.phase { own.time } else { end.time };
         let mut state = if is_corrected { own.state } else { end.state };
-        if let Some(Foundation { place, .. }) = engine.structure().foundation() {
+        if let Some(Foundation { place, .. }) = Q::foundation(engine.structure()) {
             state.u.set(place + 2, own.state.u.of(place + 2)); // the host does not integrate what the ground takes
         }
         Ok(Checked { motion: Motion { time, state, ..own }, is_corrected, was_hidden: has_changed && !is_beyond })

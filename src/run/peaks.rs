@@ -329,7 +329,7 @@ impl Peaks {
         let (base, before) = (piece.level.structure().base(), piece.before);
         let (angles, pair) = (self.tendon.angles, &mut self.pair);
         let restraint = Restraint::about(base, before.phase.side(), &before.dissipators);
-        let on_ground = piece.level.structure().foundation().map(|&Foundation { rest, place, .. }| {
+        let on_ground = Q::foundation(piece.level.structure()).map(|&Foundation { rest, place, .. }| {
             (ties_on_ground(base, rest, &before.dissipators, before.phase.contact()), [place, place + 1])
         });
         let forces = |state: &State<Q>| match &on_ground {
