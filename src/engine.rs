@@ -182,16 +182,17 @@ impl Settings {
     }
 }
 
-/// The levels of structures with the coordinates `Q`, and the way to advance step by step. They are compiled here alone, because a
-/// generic function would be compiled again in every crate that follows runs.
+/// The functions of structures with the coordinates `Q` that are compiled here alone: a generic function would be compiled again in every
+/// crate that follows runs.
 #[derive(Debug)]
 struct Kind<Q: Coordinates> {
     level: fn(Detail, Structure, f64, bool) -> Result<Box<dyn Level<Q>>, InitialStateError>,
+    watched: fn(&Structure, &Motion<Q>) -> Option<&'static Watched<Q>>,
     advance: fn(Task<'_, Q>) -> Result<Progress, AdvanceError>,
 }
 
-static ONE: Kind<f64> = Kind { level: Detail::level_of_one, advance: |task| task.go_on() };
-static MANY: Kind<Modes> = Kind { level: Detail::level_of_modes, advance: |task| task.go_on() };
+static ONE: Kind<f64> = Kind { level: Detail::level_of_one, watched: phases::of, advance: |task| task.go_on() };
+static MANY: Kind<Modes> = Kind { level: Detail::level_of_modes, watched: phases::of, advance: |task| task.go_on() };
 
 /// A structure in motion.
 #[derive(Debug)]
@@ -343,8 +344,7 @@ impl<Q: Coordinates> Engine<Q> {
     /// Whether certainly no transition comes within `ahead` (s), a tiny time, under `load`.
     pub fn goes_on_for(&self, ahead: f64, load: LinearLoad<Q>) -> bool {
         let now = self.sample(load.value);
-        phases::of::<Q>(self.structure(), &self.motion)
-            .is_none_or(|watched| watched.guards.iter().all(|guard| guard.stays_open(&now, ahead)))
+        self.watched().is_none_or(|watched| watched.guards.iter().all(|guard| guard.stays_open(&now, ahead)))
     }
 
     /// The value of `output` now under `load`; once overturned, the value of the instant before.
@@ -434,10 +434,14 @@ impl<Q: Coordinates> Engine<Q> {
         self.motion.time = time;
     }
 
+    /// The guards of the present phase; none once the structure has overturned.
+    pub(crate) fn watched(&self) -> Option<&'static Watched<Q>> {
+        (self.kind.watched)(self.structure(), &self.motion)
+    }
+
     /// Applies the transition that is due, if there is one, and shows it to `watch`.
     pub fn transit<W: Watch<Q> + ?Sized>(&mut self, watch: &mut W) {
-        let watched = phases::of(self.level.structure(), &self.motion);
-        if let Some(transition) = transit(&*self.level, watched, &mut self.motion) {
+        if let Some(transition) = transit(&*self.level, self.watched(), &mut self.motion) {
             watch.transition(&transition);
         }
     }

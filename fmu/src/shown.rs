@@ -66,7 +66,7 @@ impl<'a, Q: Runs> Shown<'a, Q> {
         };
         Some(match source {
             Source::Reaction(of) => of(self.reactions()),
-            Source::Indicator(which) => self.sample().event_indicators()[which],
+            Source::Indicator(which) => scene.engine.event_indicators(load)[which],
             Source::Worst(_) | Source::WorstInstant(_) if !setup.validity || scene.outside.is_some() => f64::NAN,
             Source::Worst(which) => scene.validity(load).worst[which].value,
             Source::WorstInstant(which) => scene.validity(load).worst[which].time,

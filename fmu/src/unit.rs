@@ -439,7 +439,7 @@ impl<Q: Runs> Model for Unit<Q> {
 
     fn indicators(&mut self) -> Result<Vec<f64>, Failure> {
         let (scene, setup, inputs) = self.parts()?;
-        Ok(scene.engine.sample(scene.acting(setup, inputs.values(scene.engine.structure()))).event_indicators().into())
+        Ok(scene.engine.event_indicators(scene.acting(setup, inputs.values(scene.engine.structure()))).into())
     }
 
     fn complete_step(&mut self, _log: &Logger) -> Result<Completed, Failure> {

@@ -473,7 +473,7 @@ impl Engine {
         stops: bool,
         watch: &mut dyn Watch,
     ) -> Result<Option<Progress>, AdvanceError> {
-        let Engine { level, motion, arc, room, settings: Settings { stops: at_transitions, .. } } = self;
+        let Engine { level, motion, arc, room, settings: Settings { stops: at_transitions, .. }, .. } = self;
         let level = &**level;
         let is_next = |phase: Phase| stops && matches!(phase, Phase::Rocking(_));
         if !is_expanded && is_next(motion.phase) && advance.elapsed < advance.end {

@@ -8,7 +8,7 @@
 //! the engine's own motion from the start of the step counts.
 
 use crate::engine::AdvanceError;
-use crate::engine::phases::{self, Closed};
+use crate::engine::phases::Closed;
 use crate::engine::piece::{Sample, Watch};
 use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::Coordinates;
@@ -36,19 +36,6 @@ impl<Q: Coordinates> Sample<'_, Q> {
                 State { u: u_dot, u_dot: u_ddot, theta: theta_dot, theta_dot: theta_ddot }
             }
         }
-    }
-
-    /// Event indicators: continuous, of order one, positive while the phase lasts. The first is for uplift in full contact and
-    /// for impact while rocking. The second is for overturning and for dissipators that begin or cease to yield.
-    pub fn event_indicators(&self) -> [f64; INDICATORS] {
-        let mut indicators = [f64::INFINITY; INDICATORS];
-        for guard in phases::of::<Q>(self.level.structure(), &self.motion).map_or(&[][..], |watched| watched.guards) {
-            let (place, value) = guard.indicator(self);
-            if value < indicators[place] || value.is_nan() {
-                indicators[place] = value;
-            }
-        }
-        indicators.map(|value| if value == f64::INFINITY { 1.0 } else { value })
     }
 }
 
@@ -91,7 +78,7 @@ impl<Q: Coordinates> Checkpoint<Q> {
         let end = *engine.motion();
         let now = LinearLoad::held(load);
         let now = ground.map_or(now, |ground| now.on_ground(ground.since(self.elapsed, elapsed)));
-        let is_beyond = !engine.sample(now.value).event_indicators().iter().all(|indicator| *indicator > 0.0);
+        let is_beyond = !engine.event_indicators(now.value).iter().all(|indicator| *indicator > 0.0);
         engine.set_motion(self.motion);
         let own = self.go_on(engine, ground, end.time - self.motion.time, load, watch);
         let own = own.map(|()| *engine.motion());
@@ -137,6 +124,20 @@ impl<Q: Coordinates> Checkpoint<Q> {
 }
 
 impl<Q: Coordinates> Engine<Q> {
+    /// Event indicators: continuous, of order one, positive while the phase lasts under `load`. The first is for uplift in full contact and
+    /// for impact while rocking. The second is for overturning and for dissipators that begin or cease to yield.
+    pub fn event_indicators(&self, load: Load<Q>) -> [f64; INDICATORS] {
+        let now = self.sample(load);
+        let mut indicators = [f64::INFINITY; INDICATORS];
+        for guard in self.watched().map_or(&[][..], |watched| watched.guards) {
+            let (place, value) = guard.indicator(&now);
+            if value < indicators[place] || value.is_nan() {
+                indicators[place] = value;
+            }
+        }
+        indicators.map(|value| if value == f64::INFINITY { 1.0 } else { value })
+    }
+
     /// Takes `state` from another integrator; what does not move in the present phase stays at rest.
     pub fn set_state(&mut self, state: State<Q>) {
         let Sample { motion, level, .. } = self.sample(Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 });
@@ -160,7 +161,7 @@ impl<Q: Coordinates> Engine<Q> {
     /// The guard that is closed from the start under `load`.
     fn due_at_once(&self, load: Load<Q>) -> Option<Closed> {
         let now = self.sample(load);
-        let mut guards = phases::of::<Q>(self.structure(), &now.motion)?.guards.iter().enumerate();
+        let mut guards = self.watched()?.guards.iter().enumerate();
         guards.find_map(|(guard, of)| Some(Closed { guard: guard as u8, way: of.closed(&now)? }))
     }
 }

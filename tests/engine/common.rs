@@ -1,8 +1,8 @@
 //! Shared by several tests: a ground motion, random numbers, transitions of an advance, peaks beside samples.
 
 use fastrand::Rng;
+use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::engine::piece::Sample;
-use rocking::engine::{DEFAULT_TOLERANCE, Moves};
 use rocking::run::peaks::{Peak, Peaks};
 use rocking::run::record::Record;
 use rocking::run::{Run, Runs};
@@ -39,7 +39,7 @@ pub fn start(parameters: Parameters, initial: State, detail: Detail) -> Engine {
 }
 
 /// The transitions of an advance over `interval` (s).
-pub fn transitions<Q: Moves>(
+pub fn transitions<Q: Runs>(
     engine: &mut Engine<Q>,
     interval: f64,
     load: impl Into<LinearLoad<Q>>,

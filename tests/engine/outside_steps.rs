@@ -175,13 +175,13 @@ fn indicators_vanish_where_the_engine_sees_transitions() {
                 ground.advance(&mut engine, &mut elapsed, before, LinearLoad::default(), &mut ()).unwrap();
             }
             let load = LinearLoad::default().on_ground(ground.at(elapsed));
-            let indicators = engine.sample(load.value).event_indicators();
+            let indicators = engine.event_indicators(load.value);
             assert!(
                 (0.0..2e-3).contains(&indicators[0]) && indicators[1] > 0.0,
                 "{detail:?} {transition:?} {indicators:?}"
             );
             ground.advance(&mut engine, &mut elapsed, step - before + 1e-9, LinearLoad::default(), &mut ()).unwrap();
-            assert!(engine.sample(load.value).event_indicators().iter().all(|indicator| *indicator > 0.0));
+            assert!(engine.event_indicators(load.value).iter().all(|indicator| *indicator > 0.0));
         }
     }
 }

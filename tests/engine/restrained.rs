@@ -265,10 +265,13 @@ fn shaken_restrained_structures_keep_their_tolerance() {
 fn indicators_stay_positive_between_transitions_and_vanish_there() {
     let ground = with_vertical(&shaking(9, 0.01, 300, 8.0), |t| 3.0 * (20.0 * t).sin());
     let run = Run { end: End::At(ground.end()), ..Run::new(structure(RESTRAINED), &ground) };
+    let settings = Settings { vertical: true, ..Settings::default() };
+    let mut engine = Engine::with(structure(RESTRAINED), State::default(), 0.0, settings).unwrap();
     let (mut yielding, mut least) = (0, 1.0_f64);
     let times = (0..60_000).map(|i| f64::from(i) * 5e-5);
     let show = |at: &Sample| {
-        let indicators = at.event_indicators();
+        engine.set_motion(at.motion);
+        let indicators = engine.event_indicators(at.load);
         assert!(indicators.iter().all(|indicator| *indicator > -1e-9), "{:?}", at.motion);
         match at.motion.dissipators.yields {
             [0, 0] => least = least.min(indicators[1]),

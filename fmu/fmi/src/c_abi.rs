@@ -239,6 +239,16 @@ pub(crate) unsafe fn call<F: Function>(
     }
 }
 
+/// [`call`], compiled once for all functions that hosts do not call at every step.
+#[inline(never)]
+pub(crate) unsafe fn call_seldom<F: Function>(
+    c: *mut c_void,
+    function: F,
+    body: &mut dyn FnMut(&mut Instance) -> Result<(), Failure>,
+) -> c_int {
+    unsafe { call(c, function, None, body) }
+}
+
 /// The host's floating point control, which comes back at the end of a call: rounding, traps, and whether tiny numbers count as 0.
 struct Control(usize);
 
@@ -438,11 +448,13 @@ pub(crate) fn escaped(message: &str, marks: &[char]) -> CString {
 
 /// The functions that take an instance, without the version in front of their names: the arguments after the component,
 /// and what is asked of the instance, nothing of those that are never allowed. Those in brackets call the instance
-/// themselves; those in braces make one, free it or take none. The macro `$export` exports all of them for a model, where
+/// themselves; those in braces make one, free it or take none. Those with `[often]` are called at every step. The macro `$export` exports all of them for a model, where
 /// the types of the arguments are in scope.
 macro_rules! functions {
     (@) => { |_| Ok(()) };
     (@ |$instance:ident| $body:block) => { |$instance| $body };
+    (@call [often] $c:ident $name:ident $body:expr) => { $crate::c_abi::call($c, Function::$name, None, $body) };
+    (@call [] $c:ident $name:ident $body:expr) => { $crate::c_abi::call_seldom($c, Function::$name, &mut $body) };
     ($version:literal $export:ident
     $({
         $(#[$other_doc:meta])*
@@ -452,7 +464,7 @@ macro_rules! functions {
         $apart:ident($($apart_argument:ident: $apart_type:ty),* $(,)?) $apart_body:block
     ])* $(
         $(#[$doc:meta])*
-        $name:ident($($argument:ident: $type:ty),* $(,)?) $(|$instance:ident| $body:block)?
+        $name:ident($($argument:ident: $type:ty),* $(,)?) $([$often:ident])? $(|$instance:ident| $body:block)?
     )*) => {
         /// The functions of this version that take an instance, except for the one that frees it, which may always be
         /// called.
@@ -504,8 +516,8 @@ macro_rules! functions {
             #[allow(clippy::too_many_arguments)] // the standard's
             pub unsafe fn $name(c: *mut c_void $(, $argument: $type)*) -> c_int {
                 unsafe {
-                    $crate::c_abi::call(
-                        c, Function::$name, None, $crate::c_abi::functions!(@ $(|$instance| $body)?),
+                    $crate::c_abi::functions!(
+                        @call [$($often)?] c $name $crate::c_abi::functions!(@ $(|$instance| $body)?)
                     )
                 }
             }

@@ -144,7 +144,7 @@ shared_functions! {
 
     EnterInitializationMode() |instance| { instance.enter(Stage::InitializationMode) }
 
-    GetReal(vr: *const c_uint, nvr: size_t, value: *mut c_double) |instance| {
+    GetReal(vr: *const c_uint, nvr: size_t, value: *mut c_double) [often] |instance| {
         let (references, places) = (values("vr", vr, nvr)?, room("value", value, nvr)?);
         fill(places, instance.get_real(references)?);
         Ok(())
@@ -163,7 +163,7 @@ shared_functions! {
         write_all("value", value, ("nvr", nvr), instance.get_texts(values("vr", vr, nvr)?)?)
     }
 
-    SetReal(vr: *const c_uint, nvr: size_t, value: *const c_double) |instance| {
+    SetReal(vr: *const c_uint, nvr: size_t, value: *const c_double) [often] |instance| {
         instance.set_real(values("vr", vr, nvr)?, values("value", value, nvr)?)
     }
 
@@ -207,7 +207,7 @@ shared_functions! {
     /// `noSetFMUStatePriorToCurrentPoint` is ignored: FMU states are kept until the host frees them.
     DoStep(
         currentCommunicationPoint: c_double, communicationStepSize: c_double, _noSetFMUStatePriorToCurrentPoint: c_int,
-    ) |instance| {
+    ) [often] |instance| {
         let progress = instance.do_step(currentCommunicationPoint, communicationStepSize)?;
         if progress == Progress::Ended { instance.ending()?.map_or(Ok(()), Err) } else { Ok(()) }
     }

@@ -114,7 +114,7 @@ macro_rules! with_lists {
     (
         values: {$(
             $(#[$doc:meta])*
-            $name:ident($type:ty) |$instance:ident, $positions:ident, $values:ident, $count:ident| $body:block
+            $name:ident($type:ty) $([$often:ident])? |$instance:ident, $positions:ident, $values:ident, $count:ident| $body:block
         )*}
         no_variables: [$($none:ident)*]
         never: [$($never:ident)*]
@@ -127,7 +127,7 @@ macro_rules! with_lists {
                 $(#[$doc])*
                 $name(
                     valueReferences: *const c_uint, nValueReferences: size_t, $values: $type, nValues: size_t,
-                ) |instance| {
+                ) $([$often])? |instance| {
                     let counts = [nValueReferences, nValues];
                     let $count = ("nValues", nValues);
                     with_positions(instance, valueReferences, counts, |$instance, $positions| $body)
@@ -145,7 +145,7 @@ macro_rules! with_lists {
 
 with_lists! {
     values: {
-        GetFloat64(*mut f64) |instance, positions, value, count| {
+        GetFloat64(*mut f64) [often] |instance, positions, value, count| {
             let places = room("values", value, count.1)?;
             fill(places, instance.get_real(positions)?);
             Ok(())
@@ -169,7 +169,7 @@ with_lists! {
             write_all("values", value, count, instance.get_texts(positions)?)
         }
 
-        SetFloat64(*const f64) |instance, positions, value, count| {
+        SetFloat64(*const f64) [often] |instance, positions, value, count| {
             instance.set_real(positions, values("values", value, count.1)?)
         }
 
