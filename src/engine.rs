@@ -172,13 +172,18 @@ impl Settings {
         Ok((LOCAL_SHARE * self.tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR))
     }
 
-    /// The level of detail at which `structure` moves.
+    /// The level of detail at which `structure` moves that is turned by `theta` (rad).
     fn level<Q: Coordinates>(
         self,
         kind: &Kind<Q>,
         structure: Structure,
+        theta: f64,
     ) -> Result<Box<dyn Level<Q>>, InitialStateError> {
-        (kind.level)(self.detail, structure, self.local_error()?, self.vertical)
+        let level = (kind.level)(self.detail, structure, self.local_error()?, self.vertical)?;
+        match self.detail {
+            Detail::FixedBase if theta != 0.0 => Err(InitialStateError::TurnedFixedBase(theta)),
+            _ => Ok(level),
+        }
     }
 }
 
@@ -237,13 +242,10 @@ impl Engine {
         settings: Settings,
     ) -> Result<Engine, InitialStateError> {
         let phase = initial.initial_phase()?;
-        let level = settings.level(&ONE, structure.into())?;
-        let (State { u, u_dot, theta, .. }, detail) = (initial, settings.detail);
-        if !detail.has_strut() && (u, u_dot) != (0.0, 0.0) {
+        let level = settings.level(&ONE, structure.into(), initial.theta)?;
+        let State { u, u_dot, .. } = initial;
+        if !settings.detail.has_strut() && (u, u_dot) != (0.0, 0.0) {
             return Err(InitialStateError::DeformedRigid { u, u_dot });
-        }
-        if detail == Detail::FixedBase && theta != 0.0 {
-            return Err(InitialStateError::TurnedFixedBase(theta));
         }
         Ok(Engine::start(&ONE, level, settings, time, initial, phase))
     }
@@ -261,8 +263,8 @@ impl Engine<Modes> {
         // coordinates of modes have no limits, but are numbers
         let [u, u_dot] = [&state.u, &state.u_dot].map(|numbers| 0.0 * numbers.total());
         let phase = State { u, u_dot, theta: state.theta, theta_dot: state.theta_dot }.initial_phase()?;
-        let level = settings.level(&MANY, frame)?;
-        let (State { u, u_dot, theta, .. }, modes) = (state, level.structure().modes().len());
+        let level = settings.level(&MANY, frame, state.theta)?;
+        let (State { u, u_dot, .. }, modes) = (state, level.structure().modes().len());
         for numbers in [u, u_dot] {
             let given = numbers.count();
             let more = level.structure().foundation().map_or(0, |_| MORE);
@@ -270,22 +272,16 @@ impl Engine<Modes> {
                 return Err(InitialStateError::Coordinates { given, modes });
             }
         }
-        if settings.detail == Detail::FixedBase && theta != 0.0 {
-            return Err(InitialStateError::TurnedFixedBase(theta));
-        }
         let of_frame = |numbers: Modes| Modes::each(level.structure(), |j, _| numbers.of(j));
         let state = State { u: of_frame(u), u_dot: of_frame(u_dot), ..state };
-        let Some(foundation) = level.structure().foundation().cloned() else {
-            return Ok(Engine::start(&MANY, level, settings, time, state, phase));
-        };
-        let base = *level.structure().base();
-        let state = foundation.begin(&state, &base);
-        if settings.detail == Detail::FixedBase {
-            return Ok(Engine::start(&MANY, level, settings, time, state, phase));
-        }
-        let phase = Phase::OnGround(foundation.contact(&state, &base));
+        let (ground, base) = (level.structure().foundation().cloned(), *level.structure().base());
+        let state = ground.as_ref().map_or(state, |ground| ground.begin(&state, &base));
+        let ground = ground.filter(|_| settings.detail != Detail::FixedBase);
+        let phase = ground.as_ref().map_or(phase, |ground| Phase::OnGround(ground.contact(&state, &base)));
         let mut engine = Engine::start(&MANY, level, settings, time, state, phase);
-        engine.motion.dissipators = foundation.moved(&state, &base);
+        if let Some(ground) = ground {
+            engine.motion.dissipators = ground.moved(&state, &base);
+        }
         Ok(engine)
     }
 
@@ -337,7 +333,7 @@ impl<Q: Coordinates> Engine<Q> {
 
     /// The same structure in the same motion, with other `settings`.
     pub fn remade(&self, settings: Settings) -> Result<Engine<Q>, InitialStateError> {
-        let (kind, level) = (self.kind, settings.level(self.kind, self.structure().clone())?);
+        let (kind, level) = (self.kind, settings.level(self.kind, self.structure().clone(), self.motion.state.theta)?);
         Ok(Engine { kind, level, settings, motion: self.motion, arc: Arc::default(), room: Room::default() })
     }
 

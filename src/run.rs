@@ -155,38 +155,29 @@ impl<'a> Run<'a> {
     /// Of `structure` under `ground` from rest, at the level of detail `auto` to the default tolerance, until nothing
     /// more can happen.
     pub fn new(structure: impl Into<Structure>, ground: &'a Record) -> Run<'a> {
-        Run {
-            structure: structure.into(),
-            ground,
-            initial: State::default(),
-            detail: Detail::Auto,
-            tolerance: DEFAULT_TOLERANCE,
-            end: End::AtRest,
-        }
+        Run::from_rest(structure.into(), ground)
     }
 }
 
 impl<'a> Run<'a, Modes> {
     /// Of the structure `frame` of many masses under `ground` from rest, like [`Run::new`].
     pub fn of_modes(frame: Structure, ground: &'a Record) -> Run<'a, Modes> {
-        let none = Modes::parts(&frame, 0.0);
-        Run {
-            structure: frame,
-            ground,
-            initial: State { u: none, u_dot: none, theta: 0.0, theta_dot: 0.0 },
-            detail: Detail::Auto,
-            tolerance: DEFAULT_TOLERANCE,
-            end: End::AtRest,
-        }
+        Run::from_rest(frame, ground)
     }
 }
 
 impl<'a, Q: Runs> Run<'a, Q> {
+    fn from_rest(structure: Structure, ground: &'a Record) -> Run<'a, Q> {
+        let u = Q::parts(&structure, 0.0);
+        let initial = State { u, u_dot: u, theta: 0.0, theta_dot: 0.0 };
+        let (detail, tolerance, end) = (Detail::Auto, DEFAULT_TOLERANCE, End::AtRest);
+        Run { structure, ground, initial, detail, tolerance, end }
+    }
+
     /// The same structure on a fixed base, from rest under the same ground motion until `end` (s).
     pub fn on_fixed_base(&self, end: f64) -> Run<'a, Q> {
-        let u = Q::parts(&self.structure, 0.0);
-        let initial = State { u, u_dot: u, theta: 0.0, theta_dot: 0.0 };
-        Run { initial, detail: Detail::FixedBase, end: End::At(end), ..self.clone() }
+        let (detail, tolerance, end) = (Detail::FixedBase, self.tolerance, End::At(end));
+        Run { detail, tolerance, end, ..Run::from_rest(self.structure.clone(), self.ground) }
     }
 
     /// Follows the motion to the end.

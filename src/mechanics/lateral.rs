@@ -152,11 +152,6 @@ impl<Q: Coordinates> Lateral<Most> for Mosts<Q> {
     fn modes(structure: &Structure) -> &[Mode] {
         Q::modes(structure)
     }
-
-    #[inline(always)]
-    fn foundation(structure: &Structure) -> Option<&Foundation> {
-        Q::foundation(structure)
-    }
 }
 
 /// Coordinates and their rates.
@@ -381,12 +376,9 @@ impl Coordinates for Modes {
     #[inline(always)]
     fn each(structure: &Structure, coordinate: impl Fn(usize, &Mode) -> f64) -> Modes {
         let mut modes = Modes { count: structure.coordinates().len(), ..Modes::ZERO };
-        modes
-            .of
-            .iter_mut()
-            .zip(structure.coordinates())
-            .enumerate()
-            .for_each(|(j, (of, mode))| *of = coordinate(j, mode));
+        for (j, (of, mode)) in modes.of.iter_mut().zip(structure.coordinates()).enumerate() {
+            *of = coordinate(j, mode);
+        }
         modes
     }
 
