@@ -27,7 +27,6 @@ use crate::mechanics::uplift::least_hold;
 use crate::series::taylor::{Arc, Start};
 use crate::{Modes, OneMass, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
-use std::any::Any;
 use wide::f64x4;
 
 /// A level of detail.
@@ -185,7 +184,8 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
         Box::new(self.clone())
     }
 
-    fn as_any(&self) -> Option<&dyn Any> {
+    #[cfg(feature = "lanes")]
+    fn as_any(&self) -> Option<&dyn std::any::Any> {
         Some(self)
     }
 

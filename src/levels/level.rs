@@ -11,7 +11,6 @@ use crate::numbers::Real;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{OneMass, Phase, Side, State, Structure};
-use std::any::Any;
 use std::fmt::{self, Debug};
 
 /// A structure at one instant.
@@ -63,7 +62,8 @@ pub trait Level<Q: Coordinates = f64>: Send {
     }
 
     /// The level by its type, for those who take steps of one of them among others.
-    fn as_any(&self) -> Option<&dyn Any> {
+    #[cfg(feature = "lanes")]
+    fn as_any(&self) -> Option<&dyn std::any::Any> {
         None
     }
 
