@@ -109,7 +109,7 @@ pub enum AdvanceError {
     Vertical { value: f64, slope: f64 },
     /// Too many steps for one call.
     #[error(
-        "the advance used up its {MAX_STEPS_PER_ADVANCE} steps at t = {} of {}: advance in shorter intervals",
+        "the {MAX_STEPS_PER_ADVANCE} steps of an advance end by t = {} of {}: advance in shorter intervals",
         with_unit(*time, "s"),
         with_unit(*until, "s")
     )]
@@ -263,11 +263,11 @@ impl Engine<Modes> {
         // coordinates of modes have no limits, but are numbers
         let [u, u_dot] = [&state.u, &state.u_dot].map(|numbers| 0.0 * numbers.total());
         let phase = State { u, u_dot, theta: state.theta, theta_dot: state.theta_dot }.initial_phase()?;
+        let more = frame.foundation().map_or(0, |_| MORE);
         let level = settings.level(&MANY, frame, state.theta)?;
         let (State { u, u_dot, .. }, modes) = (state, level.structure().modes().len());
         for numbers in [u, u_dot] {
             let given = numbers.count();
-            let more = level.structure().foundation().map_or(0, |_| MORE);
             if given != modes && given != modes + more && !numbers.is_within(&Modes::ZERO) {
                 return Err(InitialStateError::Coordinates { given, modes });
             }
@@ -276,7 +276,6 @@ impl Engine<Modes> {
         let state = State { u: of_frame(u), u_dot: of_frame(u_dot), ..state };
         let (ground, base) = (level.structure().foundation().cloned(), *level.structure().base());
         let state = ground.as_ref().map_or(state, |ground| ground.begin(&state, &base));
-        let ground = ground.filter(|_| settings.detail != Detail::FixedBase);
         let phase = ground.as_ref().map_or(phase, |ground| Phase::OnGround(ground.contact(&state, &base)));
         let mut engine = Engine::start(&MANY, level, settings, time, state, phase);
         if let Some(ground) = ground {
@@ -719,6 +718,10 @@ where
                 return Ok(Some(Progress::Complete));
             }
             if elapsed >= advance.end {
+                let reached = level.longest_step() * (last_step - motion.work.steps) as f64;
+                if elapsed > 0.0 && interval - elapsed > reached {
+                    return Err(AdvanceError::TooLong { time: motion.time + reached, until });
+                }
                 before.get_or_insert(*motion);
                 advance.end = if elapsed + part < interval { elapsed + part } else { interval };
                 advance.part *= 2.0;

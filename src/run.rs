@@ -123,7 +123,7 @@ pub enum RunError {
     )]
     End { end: f64, start: f64 },
     /// It takes more steps than one of its segments may.
-    #[error("the run used up its steps at t = {} of {}: give a shorter duration", with_unit(*time, "s"), with_unit(*until, "s"))]
+    #[error("the steps of the run end by t = {} of {}: give a shorter duration", with_unit(*time, "s"), with_unit(*until, "s"))]
     TooLong { time: f64, until: f64 },
     /// The run takes more than [`MOST_STEPS`]; the rate of the tendon and the dissipators is in 1/s, 0 without any.
     #[error("the run used up its {MOST_STEPS} steps at t = {}{}", with_unit(*time, "s"), too_many(*rate))]

@@ -17,9 +17,9 @@ use crate::mechanics::gauge::Gauge;
 use crate::mechanics::lateral::{Coordinates, Lateral, MOST_MODES, Modes};
 use crate::mechanics::reach::{Reach, reaches};
 use crate::series::bisection::last_where;
-use crate::{Load, State};
+use crate::{Detail, Load, State};
 use base::{Base, Ties};
-use ground::{Foundation, Ground, GroundError, MORE};
+use ground::{Foundation, Ground, MORE};
 use mode::{Floor, Mode, Vibration};
 use one_mass::OneMass;
 use parameters::{ParameterError, Parameters};
@@ -113,7 +113,7 @@ impl PartialEq for Structure {
 }
 
 /// The numbers of a structure.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 struct Whole {
     base: Base,
     body: Body,
@@ -133,7 +133,7 @@ struct Whole {
 }
 
 /// The reaches of outputs, which follow from the rest of a structure, once they have been asked for.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Reaches(OnceLock<Vec<Reach>>);
 
 impl PartialEq for Reaches {
@@ -240,7 +240,7 @@ pub enum StructureError {
     Forces { forces: usize, floors: usize },
     /// Ground that cannot carry the structure.
     #[error("ground: {0}")]
-    Ground(#[from] GroundError),
+    Ground(String),
 }
 
 impl Structure {
@@ -352,15 +352,25 @@ impl Structure {
         let Some(ground) = ground.into() else { return Ok(self.clone()) };
         let kept =
             if self.modes().len() > MOST_MODES - MORE { self.with_lowest(MOST_MODES - MORE) } else { self.clone() };
-        let Whole { base, body, ref modes, ref floors, ref gauges, vibration, .. } = *kept.0;
-        let foundation = Foundation::new(ground, &base, &body, modes)?;
+        let foundation =
+            Foundation::new(ground, kept.base(), kept.body(), kept.modes()).map_err(StructureError::Ground)?;
         if foundation.is_none() {
             return Ok(self.clone());
         }
-        let on_rigid = Structure::made(base, body, modes.clone(), floors.clone(), gauges.clone(), vibration, None);
-        let whole = Arc::into_inner(on_rigid.0).expect("it has just been made");
-        let coordinates = [&modes[..], &[Mode { mass: 1.0, ..Mode::default() }; MORE]].concat();
-        Ok(Structure(Arc::new(Whole { foundation, coordinates, ..whole }), self.1))
+        let coordinates = [kept.modes(), &[Mode { mass: 1.0, ..Mode::default() }; MORE]].concat();
+        Ok(kept.standing(foundation, coordinates))
+    }
+
+    /// This structure as the level `detail` moves it: a fixed base stands on no ground that gives, and has no outputs of such ground.
+    pub fn at(&self, detail: Detail) -> Structure {
+        let stays = detail.has_uplift() || self.foundation().is_none();
+        if stays { self.clone() } else { self.standing(None, self.modes().to_vec()) }
+    }
+
+    /// This structure with these lateral `coordinates`, and without numbers of one mass.
+    fn standing(&self, foundation: Option<Foundation>, coordinates: Vec<Mode>) -> Structure {
+        let (whole, reaches) = (Whole::clone(&self.0), Reaches::default());
+        Structure(Arc::new(Whole { foundation, coordinates, one: None, of_mode: None, reaches, ..whole }), self.1)
     }
 
     /// `structure` on the ground of this one.
@@ -372,6 +382,12 @@ impl Structure {
     #[inline(always)]
     pub fn foundation(&self) -> Option<&Foundation> {
         self.0.foundation.as_ref()
+    }
+
+    /// What carries the base of a structure that stands on ground that gives.
+    #[inline(always)]
+    pub(crate) fn ground(&self) -> &Foundation {
+        self.foundation().expect("it stands on ground that gives")
     }
 
     /// A mode for each lateral coordinate.
@@ -393,16 +409,9 @@ impl Structure {
 
     /// This structure as the level `rigid` of one mass shows it: floors and gauges know no mode.
     pub(crate) fn shown_rigid(&self) -> Structure {
-        let Whole { base, body, ref modes, vibration, one, of_mode, .. } = *self.0;
         let floors = Vec::from_iter(self.0.floors.iter().map(|floor| Floor { shape: Modes::ZERO, ..*floor }));
-        let gauges = Gauges::new(&body, &[], &floors, ROUNDING);
-        Structure::made(base, body, modes.clone(), floors, gauges, vibration, one).moved_by(of_mode)
-    }
-
-    /// This structure, which nothing else shares yet, with the numbers of its mode as of one mass.
-    fn moved_by(self, of_mode: Option<OneMass>) -> Structure {
-        let whole = Arc::into_inner(self.0).expect("it has just been made");
-        Structure(Arc::new(Whole { of_mode, ..whole }), self.1)
+        let (gauges, reaches) = (Gauges::new(self.body(), &[], &floors, ROUNDING), Reaches::default());
+        Structure(Arc::new(Whole { floors, gauges, reaches, ..Whole::clone(&self.0) }), self.1)
     }
 
     /// This structure, whose numbers were given in `units`, in which its doubts name them.
@@ -512,7 +521,8 @@ impl Structure {
         let of_mode = OneMass::new(Parameters { m, H, r, ..self.parameters() }).ok()?;
         let floor = |floor: &Floor| Floor { shape: floor.shape.times(share), ..*floor };
         let floors = Vec::from_iter(self.0.floors.iter().map(floor));
-        Some(Structure::of(self.0.body, &[mode], &floors).moved_by(Some(of_mode)))
+        let Structure(scaled, units) = Structure::of(self.0.body, &[mode], &floors);
+        Some(Structure(Arc::new(Whole { of_mode: Some(of_mode), ..Whole::clone(&scaled) }), units))
     }
 
     /// The numbers of one mass of a structure that engines of one coordinate move.

@@ -118,6 +118,21 @@ def test_outputs_at_the_samples_are_those_of_the_librarys_run(exporter, export_f
         np.testing.assert_allclose(found[name], values, rtol=0, atol=limit, err_msg=name)
 
 
+def test_ground_is_known_and_a_fixed_base_has_no_outputs_of_it(export_frame):
+    fmu, k_v = export_frame(ground=SPRINGS), FRAME.m_t * (24 * np.pi) ** 2
+    of_ground = ["N_left", "N_right", "N[2]", "pressure", "settlement", "contact", "E_foundation", "settlement_max", "t_N_max[2]"]
+    with fmu.start(peaks=True) as free, fmu.start(detail=6, peaks=True) as fixed:
+        known = free.get("k_v", "k_r", "f_v", "zeta_v", "y_s")
+        assert known == pytest.approx([k_v, k_v * FRAME.B**2 / 3, 12, 0.1, -FRAME.m_t * FRAME.g / k_v], rel=1e-12)
+        for instance in free, fixed:
+            instance.set(a_g=3.0)
+            instance.step(0.2)
+        assert np.isfinite(free.get(*of_ground)).all() and np.isnan(fixed.get(*of_ground)).all()
+        assert fixed.get("theta", "y", "uplift") == [0, 0, 0] and fixed.get("a_t_max[3]") > 1
+    host = fmpy.simulate_fmu(fmu.path, fmi_type="ModelExchange", stop_time=0.2, start_values={"detail": 6}, output=["y", "N_left"])
+    assert (host["y"] == 0).all() and np.isnan(host["N_left"]).all()
+
+
 def test_peaks_of_floors_are_exact(export_frame):
     frame, dt, a_g, _, ties = scene("frame", "El Centro", False)
     time = dt * np.arange(len(a_g))

@@ -10,6 +10,7 @@ use rocking::digits::short;
 use rocking::structure::derived::Derived;
 use rocking::structure::description::Described;
 use rocking::structure::doubts::{DOUBTED, doubted};
+use rocking::structure::ground;
 use rocking::structure::natural_quantities::{Given, GivenError, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::quantity::Quantity;
@@ -29,7 +30,7 @@ pub struct StructureArgs {
     parameters: Option<PathBuf>,
     #[command(flatten)]
     numbers: Numbers,
-    /// Numbers whose warnings about units to leave out
+    /// Numbers whose warnings to leave out
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = one_of(DOUBTED.map(|name| (name, name))))]
     allow: Vec<&'static str>,
 }
@@ -132,7 +133,11 @@ impl clap::Args for Numbers {
             let &Derived { name, unit, description, .. } = natural.derived();
             option(name, unit, format!("{description}; replaces {}", natural.in_place_of))
         });
-        command.args(parameters.chain(natural))
+        let of_ground = ground::NAMES.into_iter().filter(|name| name.contains('_')).map(|name| {
+            let refuse = |_: &str| Err::<f64, _>("ground that gives stands in [ground] of the file of --parameters");
+            Arg::new(name).long(option_name(name)).hide(true).allow_hyphen_values(true).value_parser(refuse)
+        });
+        command.args(parameters.chain(natural).chain(of_ground))
     }
 
     fn augment_args_for_update(command: Command) -> Command {

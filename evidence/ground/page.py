@@ -118,7 +118,7 @@ def wall() -> dict:
 def block(slenderness: float, f_v: float = 800.0) -> str:
     """Restitution of a rigid block on springs with ζ_v = 1, beside Housner's 1 − 2 m_t B²/J_P."""
     m, m0, B, H = 1e3, 5e2, 0.3, 0.3 * slenderness
-    s = fr.Structure(m=m, m0=m0, H=H, B=B, J0=m0 * B**2, f_fc=50, zeta_fc=0.02, r=0.9, ground=fr.Ground(f_v=f_v, zeta_v=1))
+    s = fr.Structure(m=m, m0=m0, H=H, B=B, J0=m0 * B**2, f_fc=50, zeta_fc=0.02, ground=fr.Ground(f_v=f_v, zeta_v=1))
     alpha = (m + m0) * B / (m * H)
     _, r_eq = released(s, 0.1 * alpha, alpha, "rigid")
     return f"{r_eq:.3f} (Housner {1 - 2 * (m + m0) * B**2 / (m * (B**2 + H**2) + 2 * m0 * B**2):.3f})"

@@ -5,7 +5,7 @@ use fmi_unit::variables::Text;
 use fmi_unit::{Causality, Variable};
 use rocking::Structure;
 use rocking::mechanics::state::COMPONENTS;
-use rocking::structure::derived::{OF_MODE, OF_STRUCTURE};
+use rocking::structure::derived::OF_MODE;
 use std::collections::HashSet;
 
 /// The names among `names` that many masses have for `of`, a name of one mass. On ground that gives y moves like a mode.
@@ -80,8 +80,7 @@ pub(crate) fn numbers(frame: &Structure) -> Vec<Row> {
     let known = |name: String, unit, description: String, value| {
         (Variable::real(Causality::CalculatedParameter, name, unit, description), Source::Known(value))
     };
-    let of_base =
-        OF_STRUCTURE.iter().map(|of| known(of.name.into(), of.unit, of.description.into(), (of.value)(frame)));
+    let of_base = frame.derived().map(|of| known(of.name.into(), of.unit, of.description.into(), (of.value)(frame)));
     let of_modes = OF_MODE.iter().flat_map(|of| {
         (1..).zip(frame.mode_table()).map(move |(j, mode)| {
             known(format!("{}[{j}]", of.name), of.unit, format!("mode {j}: {}", of.description), (of.value)(&mode))

@@ -60,9 +60,10 @@ impl<'a, Q: Runs> Shown<'a, Q> {
     pub fn value(&self, source: Source) -> Option<f64> {
         let Shown { scene, setup, load, .. } = *self;
         let structure = scene.engine.structure();
-        let peak = |of: Output| match setup.peaks && scene.outside.is_none() {
-            true => scene.peaks(load).peaks().of(of),
-            false => Some(Peak { magnitude: f64::NAN, time: f64::NAN }),
+        let peak = |of: Output| {
+            let is_watched = setup.peaks && scene.outside.is_none();
+            let found = is_watched.then(|| scene.peaks(load).peaks().of(of)).flatten();
+            found.unwrap_or(Peak { magnitude: f64::NAN, time: f64::NAN })
         };
         Some(match source {
             Source::Reaction(of) => of(self.reactions()),
@@ -81,8 +82,8 @@ impl<'a, Q: Runs> Shown<'a, Q> {
             Source::Output(of) => scene.engine.output(of, load),
             Source::Coordinate(which) => scene.components(&scene.engine.motion().state)[which],
             Source::StateRate(which) => scene.components(self.state_rates())[which],
-            Source::Peak(of) => peak(of)?.magnitude,
-            Source::PeakInstant(of) => peak(of)?.time,
+            Source::Peak(of) => peak(of).magnitude,
+            Source::PeakInstant(of) => peak(of).time,
             Source::Derived(derived) => (derived.value)(structure.one()?),
             Source::Known(value) => value,
             _ => return None,

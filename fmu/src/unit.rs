@@ -424,7 +424,8 @@ impl<Q: Runs> Model for Unit<Q> {
 
     fn nominals(&mut self) -> Result<Vec<f64>, Failure> {
         let scene = self.scene()?;
-        Ok(scene.components(&scene.engine.structure().usual()))
+        let usual = scene.components(&scene.engine.structure().usual()).into_iter();
+        Ok(usual.map(|of| if of > 0.0 { of } else { 1.0 }).collect()) // 1 of what does not move at this level
     }
 
     fn state_rates(&mut self) -> Result<Vec<f64>, Failure> {

@@ -29,6 +29,8 @@ mod _native {
     #[pymodule_export]
     use super::export;
     #[pymodule_export]
+    use super::many_masses::check_ground;
+    #[pymodule_export]
     use super::record::{Record, pulse};
     #[pymodule_export]
     use super::run::{Run, simulate};

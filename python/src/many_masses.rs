@@ -6,6 +6,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rocking::structure::description::{Damping, Described, FoundMode, Place, Storey, Total};
+use rocking::structure::ground::NAMES;
 use rocking::structure::natural_quantities::{Given, names, names_of_base};
 use rocking::structure::quantity::Units;
 use rocking::{Ground, Structure};
@@ -117,6 +118,12 @@ pub fn given(keywords: &Bound<'_, PyDict>) -> PyResult<Given> {
     Ok(given.measured_in(units))
 }
 
+/// Refuses what is no ground that gives, where it is written.
+#[pyfunction]
+pub fn check_ground(value: &Bound<'_, PyAny>) -> PyResult<()> {
+    ground(value).map(drop)
+}
+
 /// Ground that gives, from flexible_rocking.Ground or a dict with its names.
 fn ground(value: &Bound<'_, PyAny>) -> PyResult<Ground> {
     let wrong = || PyValueError::new_err(format!("ground = {value:?}: flexible_rocking.Ground(f_v=...) is needed"));
@@ -131,13 +138,12 @@ fn ground(value: &Bound<'_, PyAny>) -> PyResult<Ground> {
             "c_v" => ground.c_v = one()?,
             "kr_ratio" => ground.kr_ratio = one()?,
             "k_r" => ground.k_r = one()?,
-            "n_points" => ground.n_points = Some(usize::try_from(integer(&name, &value)?).unwrap_or(0)),
+            "n_points" => ground.n_points = one()?,
             "xi" => ground.xi = numbers(&name, &value)?,
             "k" => ground.k = numbers(&name, &value)?,
             "c" => ground.c = numbers(&name, &value)?,
             _ => {
-                let known = "f_v, k_v, zeta_v, c_v, n_points, kr_ratio, k_r, xi, k, c";
-                return Err(refused(anyhow!("ground: {name:?} is unknown; these are known: {known}")));
+                return Err(refused(anyhow!("ground: {name:?} is unknown; these are known: {}", NAMES.join(", "))));
             }
         }
     }

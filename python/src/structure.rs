@@ -12,7 +12,7 @@ use rocking::estimates::modal_split::{ModalAccelerations, Modes};
 use rocking::estimates::pushover::{Equilibrium, Pushover};
 use rocking::structure::derived::{Derived, OF_MODE};
 use rocking::structure::parameters::PRESETS;
-use rocking::{OneMass, Side, State};
+use rocking::{OneMass, Parameters, Side, State};
 use rocking_report::describe;
 
 /// A flexible structure on a base that may lift off (Fig 2 of the paper).
@@ -74,6 +74,21 @@ impl Structure {
         Structure::of(keywords.py(), frame(kept.copy()?)?, Some(kept.unbind()))
     }
 
+    /// One mass of the parameters `base`, changed by `numbers`; on ground that gives, without the r of `base`.
+    fn over(base: &Parameters, numbers: &Bound<'_, PyDict>) -> PyResult<Structure> {
+        let (on_rigid, py) = (numbers.copy()?, numbers.py());
+        let ground = on_rigid.get_item("ground")?;
+        ground.iter().try_for_each(|_| on_rigid.del_item("ground"))?;
+        let of = given(&on_rigid)?.structure(Some(base)).map_err(refused)?;
+        let Some(ground) = ground.filter(|ground| !ground.is_none()) else { return Structure::of(py, of, None) };
+        let keywords = Structure { of, keywords: None }.parameters(py)?;
+        keywords.set_item("ground", ground)?;
+        if !numbers.contains("r")? {
+            keywords.del_item("r")?;
+        }
+        Structure::many(&keywords)
+    }
+
     /// The structure of one mass, which `task` needs.
     pub fn one(&self, task: &'static str) -> PyResult<OneMass> {
         self.of.one_mass(task).copied().map_err(refused)
@@ -97,26 +112,16 @@ impl Structure {
     ) -> PyResult<Structure> {
         let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
         let of_many = OF_MANY.iter().find(|name| numbers.contains(name).unwrap_or(false));
-        let structure = match preset {
-            None if of_many.is_some() || numbers.contains("ground")? => return Structure::many(&numbers),
-            None => given(&numbers)?.structure(None),
+        match preset {
+            None if of_many.is_some() || numbers.contains("ground")? => Structure::many(&numbers),
+            None => Structure::of(py, given(&numbers)?.structure(None).map_err(refused)?, None),
             Some(_) if let Some(name) = of_many => {
                 let message =
                     format!("preset is a structure of one mass, and {name} makes one of many: leave out one of them");
-                return Err(PyValueError::new_err(message));
+                Err(PyValueError::new_err(message))
             }
-            Some(preset) => {
-                let on_rigid = numbers.copy()?;
-                let ground = on_rigid.get_item("ground")?;
-                ground.iter().try_for_each(|_| on_rigid.del_item("ground"))?;
-                let structure = given(&on_rigid)?.structure(Some(&one_of("preset", preset, PRESETS)?));
-                let Some(ground) = ground else { return Structure::of(py, structure.map_err(refused)?, None) };
-                let keywords = Structure { of: structure.map_err(refused)?, keywords: None }.parameters(py)?;
-                keywords.set_item("ground", ground)?;
-                return Structure::many(&keywords);
-            }
-        };
-        Structure::of(py, structure.map_err(refused)?, None)
+            Some(preset) => Structure::over(&one_of("preset", preset, PRESETS)?, &numbers),
+        }
     }
 
     /// The structure of these masses (kg) at these heights (m) above the base, lowest first. K (N/m) is the stiffness matrix on
@@ -159,8 +164,7 @@ impl Structure {
     fn replace<'py>(&self, py: Python<'py>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<Structure> {
         let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
         if let Some(structure) = self.of.one() {
-            let changed = given(&numbers)?.structure(Some(structure.parameters()));
-            return Structure::of(py, changed.map_err(refused)?, None);
+            return Structure::over(structure.parameters(), &numbers);
         }
         let keywords = self.parameters(py)?;
         for [one, other] in INSTEAD {

@@ -6,11 +6,10 @@ use rocking::Body;
 use rocking::digits::{short, significant, with_unit};
 use rocking::estimates::restoring::{FlagPoint, flag};
 use rocking::run::validity;
-use rocking::structure::derived::{DERIVED, Derived};
-use rocking::structure::derived::{OF_MODE, OF_STRUCTURE};
+use rocking::structure::derived::{DERIVED, Derived, OF_MODE};
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{Detail, Structure};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::FRAC_PI_2;
 use std::fmt::{self, Write};
 
 /// The parameters of one mass.
@@ -22,20 +21,7 @@ pub fn given(structure: &Structure) -> Vec<NamedValue> {
 
 /// The derived quantities of one mass; the numbers of a structure of many masses.
 pub fn derived(structure: &Structure) -> Vec<NamedValue> {
-    let mut all = structure.one().map_or_else(|| named(&OF_STRUCTURE, structure), |one| named(&DERIVED, one));
-    if let Some(foundation) = structure.foundation() {
-        let [k_v, k_r] = [0, 2].map(|power| foundation.sum(power));
-        let lowest = structure.frequencies_on_ground()[0] / TAU;
-        let f_v = (k_v / structure.base().m_t).sqrt() / TAU;
-        all.extend([
-            NamedValue::new("k_v", k_v, "N/m", "", "vertical stiffness of the ground"),
-            NamedValue::new("k_r", k_r, "N.m/rad", "", "rotational stiffness of the ground"),
-            NamedValue::new("f_v", f_v, "Hz", "", "frequency of the bounce on the ground"),
-            NamedValue::new("f_g", lowest, "Hz", "", "lowest frequency on the ground with all points pressed"),
-            NamedValue::new("y_s", foundation.rest, "m", "", "height of the base at rest above the unloaded ground"),
-        ]);
-    }
-    all
+    structure.one().map_or_else(|| named(structure.derived(), structure), |one| named(&DERIVED, one))
 }
 
 /// The numbers of each mode of a structure of many masses, lowest frequency first.
@@ -58,8 +44,8 @@ pub fn restoring(structure: &Structure, theta: f64) -> anyhow::Result<Vec<FlagPo
     Ok(flag(structure.base(), theta, STEPS))
 }
 
-fn named<T>(all: &[Derived<T>], of: &T) -> Vec<NamedValue> {
-    let all = all.iter();
+fn named<'a, T: 'a>(all: impl IntoIterator<Item = &'a Derived<T>>, of: &T) -> Vec<NamedValue> {
+    let all = all.into_iter();
     all.map(|line| NamedValue::new(line.name, (line.value)(of), line.unit, line.equation, line.description)).collect()
 }
 

@@ -44,7 +44,7 @@ impl Run {
         let fixed = has_fixed.then(|| self.on_fixed_base(found.end).ok()).flatten();
         Ok(Scene {
             title: self.ground.title().into(),
-            parameters: sizes(&self.structure),
+            parameters: sizes(&self.structure.at(self.conditions.detail)),
             start: found.start,
             ending: found.ending,
             fall: found.fall,

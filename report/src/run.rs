@@ -196,7 +196,7 @@ impl Run {
         watch: &mut impl Watcher,
     ) -> Result<(), RunError> {
         with!(self, run => {
-            let (outputs, run) = (Output::all(&self.structure), Follow { end: end.map_or(run.end, End::At), ..run });
+            let (outputs, run) = (Output::all(&run.structure.at(run.detail)), Follow { end: end.map_or(run.end, End::At), ..run });
             run.sample(times, |sample| show(line(sample, outputs.iter().copied().map(sample.outputs()).collect())), watch).map(|_| ())
         })
     }
@@ -253,9 +253,10 @@ impl Run {
         with!(self, run => curve(&run, part))
     }
 
-    /// The outputs.
+    /// The outputs at the level of detail.
     pub fn outputs(&self) -> Vec<Named> {
-        Output::all(&self.structure).into_iter().map(|of| (of.name(&self.structure), of.unit())).collect()
+        let structure = self.structure.at(self.conditions.detail);
+        Output::all(&structure).into_iter().map(|of| (of.name(&structure), of.unit())).collect()
     }
 
     /// The components of a state: elastic displacements and velocities, then rotation and angular velocity.
@@ -357,7 +358,7 @@ fn results<Q: Runs>(structure: &Structure, found: &fall::Found<Q>, transitions: 
 fn curve<Q: Runs>(run: &Follow<Q>, part: f64) -> Result<Curve, RunError> {
     let curve::Curve { points, transitions, found } = run.curve(part)?;
     let mut columns = vec![("a_g".to_owned(), points.iter().map(|at| at.a_g).collect())];
-    for (i, output) in curve::drawn(&run.structure).into_iter().enumerate() {
+    for (i, output) in curve::drawn(run).into_iter().enumerate() {
         columns.push((output.name(&run.structure), points.iter().map(|at| at.outputs[i]).collect()));
     }
     let (times, phases) = points.iter().map(|at| (at.time, at.phase)).unzip();

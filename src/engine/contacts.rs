@@ -79,19 +79,10 @@ fn first<const N: usize>(gaps: [Option<Gap>; N], reach: f64) -> Crossing {
     }
 }
 
-/// The first of these instants, each with its way.
-#[derive(Default)]
-struct First(Option<(Crossing, Way)>);
-
-impl First {
-    fn see(&mut self, crossing: Crossing, which: usize, sign: i8) {
-        if crossing.sigma() < self.0.map_or(f64::INFINITY, |(first, _)| first.sigma()) {
-            self.0 = Some((crossing, Way { which: which as u8, sign }));
-        }
-    }
-
-    fn found(self) -> (Crossing, Way) {
-        self.0.unwrap_or((Crossing::None, Way::default()))
+/// Takes `crossing` if it comes before the one that is `found`.
+fn see(found: &mut (Crossing, Way), crossing: Crossing, which: usize, sign: i8) {
+    if crossing.sigma() < found.0.sigma() {
+        *found = (crossing, Way { which: which as u8, sign });
     }
 }
 
@@ -100,28 +91,29 @@ pub(crate) struct Points;
 
 impl<Q: Coordinates> Guard<Q> for Points {
     fn first(&self, &Step { level, contact, arc, reach, .. }: &Step<Q>) -> (Crossing, Way) {
-        let Some(foundation) = level.structure().foundation() else { return First::default().found() };
-        let (rises, mut found) = (Rises::new(foundation, arc), First::default());
+        let foundation = level.structure().ground();
+        let (rises, mut found) = (Rises::new(foundation, arc), (Crossing::None, Way::default()));
         for (i, point) in foundation.points.iter().enumerate() {
             let pushes = || rises.at(point.xi, point.c / point.k);
-            let reach = found.0.map_or(reach, |(crossing, _)| crossing.sigma());
+            let reach = found.0.sigma().min(reach);
             if contact.is_pressed(i) {
-                found.see(first([rises.gap(&pushes(), -1.0)], reach), i, -1);
+                see(&mut found, first([rises.gap(&pushes(), -1.0)], reach), i, -1);
                 continue;
             }
             let height = rises.at(point.xi, 0.0);
             let above = rises.gap(&height, 1.0);
             if above.is_some_and(|above| !above.is_open_throughout(reach)) {
-                found.see(first([above, rises.gap(&pushes(), 1.0)], reach), i, 1);
+                see(&mut found, first([above, rises.gap(&pushes(), 1.0)], reach), i, 1);
             }
         }
-        found.found()
+        found
     }
 
     fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind {
         let (i, state) = (usize::from(way.which), &mut motion.state);
-        if let (Phase::OnGround(contact), Some(foundation)) = (&mut motion.phase, level.structure().foundation()) {
-            let (Point { xi, k, .. }, place) = (foundation.points[i], foundation.place);
+        if let Phase::OnGround(contact) = &mut motion.phase {
+            let &Foundation { ref points, place, .. } = level.structure().ground();
+            let Point { xi, k, .. } = points[i];
             let e = state.u.of(place) - xi * state.u.of(place + 1);
             contact.pressed ^= 1 << i;
             let taken = state.u.of(place + 2) - f64::from(way.sign) * 0.5 * k * e * e;
@@ -130,24 +122,15 @@ impl<Q: Coordinates> Guard<Q> for Points {
         if way.sign > 0 { TransitionKind::Touch(i) } else { TransitionKind::Release(i) }
     }
 
-    fn stays_open(&self, _now: &Sample<Q>, _ahead: f64) -> bool {
-        false
-    }
-
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
-        let (Phase::OnGround(contact), Some(foundation)) = (now.motion.phase, now.level.structure().foundation())
-        else {
-            return (0, 1.0);
-        };
+        let (contact, foundation) = (now.motion.phase.contact(), now.level.structure().ground());
         let of = |(i, margin): (usize, f64)| if contact.is_pressed(i) { margin } else { -margin };
         let least = margins(foundation, &now.motion.state).enumerate().map(of).fold(f64::INFINITY, f64::min);
         (0, least / foundation.rest.abs() + BAND)
     }
 
     fn closed(&self, now: &Sample<Q>) -> Option<Way> {
-        let (Phase::OnGround(contact), foundation) = (now.motion.phase, now.level.structure().foundation()?) else {
-            return None;
-        };
+        let (contact, foundation) = (now.motion.phase.contact(), now.level.structure().ground());
         let is_closed = |(i, margin): &(usize, f64)| (*margin > 0.0) != contact.is_pressed(*i);
         let (i, _) = margins(foundation, &now.motion.state).enumerate().find(is_closed)?;
         Some(Way { which: i as u8, sign: if contact.is_pressed(i) { -1 } else { 1 } })
@@ -162,14 +145,14 @@ pub(crate) struct Tied;
 
 impl<Q: Coordinates> Guard<Q> for Tied {
     fn first(&self, &Step { level, contact, start, arc, reach, .. }: &Step<Q>) -> (Crossing, Way) {
-        let Some(foundation) = level.structure().foundation() else { return First::default().found() };
-        let (rises, mut found) = (Rises::new(foundation, arc), First::default());
+        let foundation = level.structure().ground();
+        let (rises, mut found) = (Rises::new(foundation, arc), (Crossing::None, Way::default()));
         let Ties { P_0, k_t, xi_d, k_d, F_y, .. } = level.structure().base().ties;
         if k_t > 0.0 {
             let ((height, rounding), slack) = (rises.at(0.0, 0.0), P_0 / k_t - foundation.rest);
             let (sign, way) = if contact.is_slack { (-1.0, 1) } else { (1.0, -1) };
             let gap = Gap::new(&height[..=rises.order], sign, sign * slack + rounding);
-            found.see(first_time_all_closed([gap], reach), usize::from(TENDON), way);
+            see(&mut found, first_time_all_closed([gap], reach), usize::from(TENDON), way);
         }
         for (j, xi) in [xi_d, -xi_d].into_iter().enumerate().filter(|_| F_y > 0.0) {
             match start.dissipators.yields[j] {
@@ -178,13 +161,13 @@ impl<Q: Coordinates> Guard<Q> for Tied {
                         let mut height = rises.at(xi, 0.0);
                         height.0[0] -= foundation.rest + start.dissipators.plastic[j] + f64::from(way) * F_y / k_d;
                         height.1 += ROUNDING * F_y / k_d;
-                        found.see(first([rises.gap(&height, -f64::from(way))], reach), j, way);
+                        see(&mut found, first([rises.gap(&height, -f64::from(way))], reach), j, way);
                     }
                 }
-                way => found.see(first([rises.gap(&rises.rate(xi), f64::from(way))], reach), j, 0),
+                way => see(&mut found, first([rises.gap(&rises.rate(xi), f64::from(way))], reach), j, 0),
             }
         }
-        found.found()
+        found
     }
 
     fn apply(&self, _level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind {
@@ -201,10 +184,6 @@ impl<Q: Coordinates> Guard<Q> for Tied {
         }
     }
 
-    fn stays_open(&self, _now: &Sample<Q>, _ahead: f64) -> bool {
-        false
-    }
-
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
         (1, tied_margins(now).map(|(margin, _)| margin).fold(f64::INFINITY, f64::min) + BAND)
     }
@@ -219,28 +198,27 @@ impl<Q: Coordinates> Guard<Q> for Tied {
 fn tied_margins<'a, Q: Coordinates>(now: &'a Sample<Q>) -> impl Iterator<Item = (f64, Way)> + 'a {
     let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
     let Ties { P_0, k_t, xi_d, k_d, F_y, .. } = structure.base().ties;
-    structure.foundation().into_iter().flat_map(move |&Foundation { rest, place, .. }| {
-        let of = move |i: usize, xi: f64| [state.u, state.u_dot].map(|q| q.of(place) - xi * q.of(place + 1))[i];
-        let is_slack = phase.contact().is_slack;
-        let of_tendon = (of(0, 0.0) - rest + P_0 / k_t) / rest.abs() * if is_slack { -1.0 } else { 1.0 };
-        let tendon = (of_tendon, Way { which: TENDON, sign: if is_slack { 1 } else { -1 } });
-        let of_pair = [(0, xi_d), (1, -xi_d)].into_iter().map(move |(j, xi)| {
-            let way = dissipators.yields[j];
-            let force = k_d * (of(0, xi) - rest - dissipators.plastic[j]);
-            let (margin, sign) = match way {
-                0 => (1.0 - force.abs() / F_y, if force > 0.0 { 1 } else { -1 }),
-                way => (f64::from(way) * of(1, xi) / (rest.abs() * structure.vibration().contact), 0),
-            };
-            (margin, Way { which: j as u8, sign })
-        });
-        Some(tendon).filter(|_| k_t > 0.0).into_iter().chain(of_pair.filter(move |_| F_y > 0.0))
-    })
+    let &Foundation { rest, place, .. } = structure.ground();
+    let of = move |i: usize, xi: f64| [state.u, state.u_dot].map(|q| q.of(place) - xi * q.of(place + 1))[i];
+    let is_slack = phase.contact().is_slack;
+    let of_tendon = (of(0, 0.0) - rest + P_0 / k_t) / rest.abs() * if is_slack { -1.0 } else { 1.0 };
+    let tendon = (of_tendon, Way { which: TENDON, sign: if is_slack { 1 } else { -1 } });
+    let of_pair = [(0, xi_d), (1, -xi_d)].into_iter().map(move |(j, xi)| {
+        let way = dissipators.yields[j];
+        let force = k_d * (of(0, xi) - rest - dissipators.plastic[j]);
+        let (margin, sign) = match way {
+            0 => (1.0 - force.abs() / F_y, if force > 0.0 { 1 } else { -1 }),
+            way => (f64::from(way) * of(1, xi) / (rest.abs() * structure.vibration().contact), 0),
+        };
+        (margin, Way { which: j as u8, sign })
+    });
+    Some(tendon).filter(|_| k_t > 0.0).into_iter().chain(of_pair.filter(move |_| F_y > 0.0))
 }
 
 /// The dissipators at the reach of a step.
 pub(crate) fn moved<Q: Coordinates>(&Step { level, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
     let mut moved = *start.dissipators;
-    let Some(foundation) = level.structure().foundation() else { return moved };
+    let foundation = level.structure().ground();
     let (rises, Ties { xi_d, c_d, k_d, F_y, .. }) = (Rises::new(foundation, arc), level.structure().base().ties);
     for (j, xi) in [xi_d, -xi_d].into_iter().enumerate() {
         let way = f64::from(moved.yields[j]);

@@ -62,7 +62,9 @@ pub(crate) trait Guard<Q: Coordinates = f64>: Sync {
     fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind;
 
     /// Whether the guard certainly stays open for `ahead` (s), a tiny time.
-    fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool;
+    fn stays_open(&self, _now: &Sample<Q>, _ahead: f64) -> bool {
+        false
+    }
 
     /// Place and value of the event indicator: continuous, of order one, positive while the guard is open.
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64);

@@ -125,14 +125,13 @@ impl Detail {
             }
             Detail::Modal => return Err(InitialStateError::OneMass(self.name())),
             Detail::Rigid => structure.without_modes(),
-            _ => structure,
+            _ => structure.at(self),
         };
         let is_tied = structure.base().is_restrained() || is_vertical;
         let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
         match self {
             _ if subject.structure.foundation().is_none() => Ok(Box::new(ManyModes::<Modes>::new(subject, self))),
             Detail::Linear => Err(InitialStateError::OnGround(self.name())),
-            Detail::FixedBase => Ok(Box::new(ManyModes::<Modes>::new(subject, self))),
             _ if subject.structure.modes().len() <= 1 => Ok(Box::new(OnGround::<f64>::new(subject))),
             _ => Ok(Box::new(OnGround::<f64x4>::new(subject))),
         }

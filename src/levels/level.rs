@@ -68,7 +68,14 @@ pub trait Level<Q: Coordinates = f64>: Send {
     }
 
     /// The state at the end of `start`, if it is known exactly and no transition can happen until then.
-    fn leap(&self, phase: Phase, start: &Start<Q>) -> Option<State<Q>>;
+    fn leap(&self, _phase: Phase, _start: &Start<Q>) -> Option<State<Q>> {
+        None
+    }
+
+    /// The longest step, s, of a level that never leaps.
+    fn longest_step(&self) -> f64 {
+        f64::INFINITY
+    }
 
     /// Bounds of |u|, |u̇|, |ü| and |u⃛| of the vibration about the motion that follows the load, over a leap in full contact.
     fn swings(&self, _phase: Phase, _start: &Start<Q>) -> Option<[Q; 4]> {

@@ -37,6 +37,7 @@ use crate::series::taylor::{Arc, MAX_ORDER, Start};
 use crate::{OneMass, Side, State};
 use nalgebra::{Matrix2, Vector2};
 use std::cell::RefCell;
+use std::ops::{AddAssign, Mul};
 use wide::f64x2;
 
 /// Accelerations (ü, θ̈) in m/s² and rad/s² under `load`, by Eqs 5 and 6 with the ties and these `dissipators`. None if the mass
@@ -94,8 +95,12 @@ pub(super) fn row(columns: [f64; 6]) -> Row {
 }
 
 #[inline(always)]
-fn add_product<const PAIRS: usize>(sum: &mut Row, a: &Row, b: &Row) {
-    for lanes in 0..PAIRS {
+pub(super) fn add_product<const FIRST: usize, const ALL: usize, V: Copy + Mul<Output = V> + AddAssign>(
+    sum: &mut [V; ALL],
+    a: &[V; ALL],
+    b: &[V; ALL],
+) {
+    for lanes in 0..FIRST {
         sum[lanes] += a[lanes] * b[lanes];
     }
 }
@@ -120,14 +125,13 @@ macro_rules! add_each_product {
         $add($sum, &$left[0], $newest.1);
     };
 }
-#[cfg(feature = "lanes")]
 pub(crate) use add_each_product;
 
 /// Coefficient `n` of the products in each column of the first `PAIRS` pairs: six Cauchy products at once.
 #[inline(always)]
 pub(super) fn products<const PAIRS: usize>(a: &Factors, b: &Factors, newest: (&Row, &Row), n: usize) -> [f64; 6] {
     let mut sum = NO_ROW;
-    add_each_product!(add_product::<PAIRS>, &mut sum, a, b, newest, n);
+    add_each_product!(add_product::<PAIRS, 3, _>, &mut sum, a, b, newest, n);
     let [first, second, third] = sum.map(f64x2::to_array);
     [first[0], first[1], second[0], second[1], third[0], third[1]]
 }

@@ -19,6 +19,7 @@
 
 use crate::levels::level::{Level, Now, Subject, derivatives};
 use crate::levels::modes::{Abreast, Four, FourSeries};
+use crate::levels::nonlinear::{add_each_product, add_product};
 use crate::mechanics::contact::{energy, ties_on_ground};
 use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
@@ -75,7 +76,7 @@ impl<V: Abreast> OnGround<V> {
     pub(crate) fn new(subject: Subject) -> OnGround<V> {
         let structure = &subject.structure;
         let (base, body, modes) = (structure.base(), structure.body(), structure.modes());
-        let foundation = structure.foundation().expect("it stands on ground that gives");
+        let foundation = structure.ground();
         let frequencies = foundation.frequencies(base, body, modes);
         let (highest, point) = (frequencies[frequencies.len() - 1], foundation.points[0]);
         let fastest = highest.max(point.c / point.k * highest * highest);
@@ -97,14 +98,10 @@ impl<V: Abreast> OnGround<V> {
         }
     }
 
-    fn foundation(&self) -> &Foundation {
-        self.subject.structure.foundation().expect("it stands on ground that gives")
-    }
-
     /// The truncation that `start` requires over a step of `span` s.
     fn truncation(&self, start: &Start<Modes>, span: f64) -> Truncation<Modes> {
         let (structure, state) = (&self.subject.structure, &start.state);
-        let (&Base { m_t, g, tan_alpha_cg, .. }, place) = (structure.base(), self.foundation().place);
+        let (&Base { m_t, g, tan_alpha_cg, .. }, place) = (structure.base(), structure.ground().place);
         let size = |of: &dyn Fn(usize, f64) -> f64| {
             let modes = structure.modes().iter().enumerate();
             (modes.map(|(j, mode)| mode.mass * of(j, mode.stiffness / mode.mass).powi(2)).sum::<f64>() / m_t).sqrt()
@@ -125,7 +122,7 @@ impl<V: Abreast> OnGround<V> {
         let Start { state, a_g, a_top, a_v, .. } = start;
         let structure = &self.subject.structure;
         let &Base { m_t, J0, S_res, g, .. } = structure.base();
-        let &Foundation { ref points, rest, place: at, .. } = self.foundation();
+        let &Foundation { ref points, rest, place: at, .. } = structure.ground();
         let span = start.interval.min(self.longest_span);
         // Σ N = push − k y + k ξ sin θ − c ẏ + c ξ θ̇ cos θ, and Σ ξ N
         let (mut k, mut taken, mut push) = ([0.0; 3], [0.0; 3], [0.0; 2]);
@@ -195,20 +192,11 @@ impl<V: Abreast> OnGround<V> {
             let next_offset = next_offset.sum();
             left[n][0] = f64x4::new([theta_dot, theta_dot, theta_dot, next_offset]);
             left[n][1] = f64x4::new([gamma, gamma, offset, cos]);
-            let newest = f64x4::new([next_cos, next_sin, inertia.sum(), next_sin]);
-            right[MAX_ORDER - n][0] = newest;
-            let (mut ahead, mut behind) = (left[0][0] * newest, f64x4::ZERO);
-            let (lefts, rights) = (left[1..=n].as_chunks::<2>(), right[MAX_ORDER + 1 - n..].as_chunks::<2>());
-            for ([a, b], [c, d]) in lefts.0.iter().zip(rights.0) {
-                ahead += a[0] * c[0] + b[0] * d[0];
-                behind += a[1] * c[1] + b[1] * d[1];
-            }
-            if let ([a], [c]) = (lefts.1, rights.1) {
-                ahead += a[0] * c[0];
-                behind += a[1] * c[1];
-            }
-            let [turning_cos, sin_turning, spin, lean] = ahead.to_array();
-            let [fall, hang, weighed, moved] = behind.to_array();
+            let newest = [f64x4::new([next_cos, next_sin, inertia.sum(), next_sin]), f64x4::ZERO];
+            right[MAX_ORDER - n][0] = newest[0];
+            let mut sums = [f64x4::ZERO; 2];
+            add_each_product!(add_product::<2, 2, _>, &mut sums, left, right, (&left[n], &newest), n);
+            let [[turning_cos, sin_turning, spin, lean], [fall, hang, weighed, moved]] = sums.map(f64x4::to_array);
             squared[n] = f64x4::new([theta_dot, y_dot - lever * turning, turning, 0.0]);
             let half = order / 2;
             let mut squares = f64x4::ZERO;
@@ -287,8 +275,8 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
         Box::new(self.clone())
     }
 
-    fn leap(&self, _phase: Phase, _start: &Start<Modes>) -> Option<State<Modes>> {
-        None
+    fn longest_step(&self) -> f64 {
+        self.longest_span
     }
 
     fn series(&self, phase: Phase, start: &Start<Modes>, arc: &mut Arc<Modes>) {
@@ -303,7 +291,7 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
 
     /// `state` with the sine of its rotation.
     fn admissible(&self, _phase: Phase, mut state: State<Modes>) -> State<Modes> {
-        let ((sin, cos), place) = (libm::sincos(state.theta), self.foundation().place + 1);
+        let ((sin, cos), place) = (libm::sincos(state.theta), self.subject.structure.ground().place + 1);
         state.u.set(place, sin);
         state.u_dot.set(place, state.theta_dot * cos);
         state
@@ -312,12 +300,9 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
     /// Whether the energy above rest is too small to lift a point.
     fn stays_down(&self, state: &State<Modes>, dissipators: &Dissipators) -> bool {
         let structure = &self.subject.structure;
-        let still = Modes::parts(structure, 0.0);
-        let rest =
-            self.foundation().begin(&State { u: still, u_dot: still, theta: 0.0, theta_dot: 0.0 }, structure.base());
-        let of = |state: &State<Modes>| {
-            energy(structure, self.foundation().contact(state, structure.base()), state, dissipators)
-        };
+        let (ground, base, still) = (structure.ground(), structure.base(), Modes::parts(structure, 0.0));
+        let rest = ground.begin(&State { u: still, u_dot: still, theta: 0.0, theta_dot: 0.0 }, base);
+        let of = |state: &State<Modes>| energy(structure, ground.contact(state, base), state, dissipators);
         of(state) - of(&rest) < AT_REST * self.least_lift
     }
 }

@@ -308,22 +308,13 @@ impl Output {
     /// The output in the motion `x` on ground that gives (F1, F2).
     fn on_ground<K: Number>(self, x: &impl Shows<K>, foundation: &Foundation) -> K {
         let Foundation { points, place, .. } = foundation;
-        let last = points.len() - 1;
-        let ends = |of: fn(usize) -> Output| of(0).on_ground(x, foundation).larger(of(1).on_ground(x, foundation));
         match self {
             y => x.coordinate(*place)[0],
             E_foundation => x.coordinate(place + 2)[0],
-            Output::uplift => ends(lifted),
-            settlement => ends(settled),
-            lifted(i) => x.height(*place, [-1.0, 1.0][i] * x.structure().base().B)[0].positive(),
-            settled(i) => (-x.height(*place, points[i * last].xi)[0]).positive(),
-            P_t => {
-                let ties = x.structure().base().ties;
-                let stretch = x.coordinate(*place)[0] + K::constant(-foundation.rest);
-                (stretch * ties.k_t + K::constant(ties.P_0)).positive()
+            lifted(_) | settled(_) | P_t => {
+                let [xi, k, _, offset] = self.of_height(x.structure().base(), foundation).expect("it is of a height");
+                (x.height(*place, xi)[0] * k + K::constant(offset)).positive()
             }
-            N_left => N(0).on_ground(x, foundation),
-            N_right => N(last).on_ground(x, foundation),
             N(i) if x.contact().is_pressed(i) => {
                 let [e, rate] = x.height(*place, points[i].xi);
                 -(e * points[i].k + rate * points[i].c)
@@ -332,18 +323,16 @@ impl Output {
                 let pressed = points.iter().enumerate().filter(|(i, _)| x.contact().is_pressed(*i));
                 K::constant(pressed.map(|(_, point)| point.k).sum::<f64>() / foundation.sum(0))
             }
-            pressure => {
-                let parts = pressure.parts(x.structure()).into_iter();
-                parts
-                    .map(|(of, factor)| of.on_ground(x, foundation) * factor)
-                    .reduce(K::larger)
-                    .expect("there are points")
+            Output::uplift | settlement | N_left | N_right | pressure => {
+                let parts = self.parts(x.structure()).into_iter();
+                let each = parts.map(|(of, factor)| of.on_ground(x, foundation) * factor);
+                each.reduce(K::larger).expect("it has parts")
             }
             _ => K::constant(0.0),
         }
     }
 
-    /// The output in the motion `x`.
+    /// The output in the motion `x`, NaN if the structure does not have it.
     #[inline]
     pub(crate) fn of<K: Number>(self, x: &impl Shows<K>) -> K {
         let floor = |i: usize| &x.structure().floors()[i];
@@ -362,7 +351,7 @@ impl Output {
             V_t | M_t | a_t(_) | V(_) | M(_) => {
                 x.gauge(self.gauge(x.structure()).expect("a gauge measures accelerations and forces"))
             }
-            _ => x.foundation().map_or(K::constant(0.0), |foundation| self.on_ground(x, foundation)),
+            _ => x.foundation().map_or(K::constant(f64::NAN), |foundation| self.on_ground(x, foundation)),
         }
     }
 }

@@ -38,9 +38,10 @@ pub(super) fn lines(structure: &Structure) -> Vec<Output> {
 /// The outputs on ground that gives at the points of a picture. Straight lines follow the first two, the forces of the outer points.
 const OF_GROUND: [Output; 5] = [Output::N_left, Output::N_right, Output::y, Output::uplift, Output::settlement];
 
-/// The outputs of `structure` at the points of a picture: its lines, those on ground that gives, the displacement of one mass, and the
+/// The outputs of `run` at the points of a picture: its lines, those on ground that gives, the displacement of one mass, and the
 /// forces of ties.
-pub fn drawn(structure: &Structure) -> Vec<Output> {
+pub fn drawn<Q: Moves>(run: &Run<Q>) -> Vec<Output> {
+    let structure = &run.structure.at(run.detail);
     let mut drawn = lines(structure);
     drawn.extend(structure.foundation().iter().flat_map(|_| OF_GROUND));
     drawn.extend(structure.one().map(|_| Output::delta_t(0)));
@@ -87,8 +88,8 @@ impl<Q: Runs> Run<'_, Q> {
 
 pub(super) fn trace<Q: Runs>(run: &Run<Q>, part: f64) -> Result<Curve<Q>, RunError> {
     let (found, peaks) = (Q::compiled().found)(run, &mut ())?;
-    let (mut lines, drawn, a_g) = (lines(&run.structure), drawn(&run.structure), peaks.a_g());
-    lines.extend(run.structure.foundation().iter().flat_map(|_| &OF_GROUND[..2]));
+    let (mut lines, drawn, a_g) = (lines(&run.structure), drawn(run), peaks.a_g());
+    lines.extend(OF_GROUND[..2].iter().filter(|of| drawn.contains(of)));
     let peaks = Vec::from_iter(peaks_of(&lines, &peaks));
     let mut tracer = Tracer {
         within: peaks.iter().map(|peak| part * peak.magnitude).collect(),

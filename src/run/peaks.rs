@@ -128,6 +128,7 @@ struct Tendon {
 impl Peaks {
     /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion. A peak that stays 0 has this instant.
     pub fn since(time: f64, structure: &Structure, detail: Detail) -> Peaks {
+        let structure = &structure.at(detail);
         let (&Base { B, ties: Ties { P_0, k_t, .. }, .. }, none) = (structure.base(), Peak { magnitude: 0.0, time });
         let (mut searched, mut with): (Vec<Searched>, Vec<_>) = (Vec::new(), Vec::new());
         let mut search = |output: Output| {

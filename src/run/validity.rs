@@ -614,13 +614,11 @@ fn of_many(frame: &Structure, detail: Detail) -> Vec<String> {
 
 /// The warnings that follow from ground that gives.
 fn on_ground(frame: &Structure, foundation: &Foundation) -> Vec<String> {
-    let (&Base { m_t, B, r, .. }, K_z) = (frame.base(), foundation.sum(0));
-    let (omega_v, settled) = ((K_z / m_t).sqrt(), -foundation.rest);
-    let zeta_v = foundation.points.iter().map(|point| point.c).sum::<f64>() / (2.0 * m_t * omega_v);
+    let (base, settled) = (frame.base(), -foundation.rest);
+    let [omega_v, zeta_v] = [foundation.omega_v(base), foundation.zeta_v(base)];
     let highest = frame.modes().iter().map(Mode::omega).fold(0.0, f64::max);
-    let mut warnings =
-        Vec::from_iter(r.map(|r| format!("r = {} is not used on ground that gives: no impact needs it", short(r))));
-    if settled > SETTLED * B {
+    let mut warnings = Vec::new();
+    if settled > SETTLED * base.B {
         warnings.push(format!(
             "the base settles by {} m under its weight, more than B/50: are k_v in N/m and masses in kg?",
             short(settled)

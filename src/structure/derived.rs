@@ -70,8 +70,8 @@ pub const OF_MODE: [Derived<ModeOf>; 7] = [
     derived!("f_u" ["Hz"] "frequency while rocking", "", |of| of.omega_u / TAU),
 ];
 
-/// The numbers of a structure that are shown, apart from the numbers of its modes.
-pub const OF_STRUCTURE: [Derived<Structure>; 15] = [
+/// The numbers of any structure.
+const OF_STRUCTURE: [Derived<Structure>; 15] = [
     derived!("m_s" ["kg"] "mass above the base", "", |of| of.body().m_s),
     derived!("m_t" ["kg"] "mass of the whole structure", "", |of| of.base().m_t),
     derived!("S_1" ["kg.m"] "first moment of the mass above the base", "", |of| of.body().S_1),
@@ -92,7 +92,25 @@ pub const OF_STRUCTURE: [Derived<Structure>; 15] = [
     derived!("F_y" ["N"] "force at which an elastoplastic dissipator yields", "", |of| of.base().ties.F_y),
 ];
 
+/// The numbers of ground that gives, of a structure that stands there.
+const OF_GROUND: [Derived<Structure>; 6] = [
+    derived!("k_v" ["N/m"] "vertical stiffness of the ground", "", |of| of.ground().sum(0)),
+    derived!("k_r" ["N.m/rad"] "rotational stiffness of the ground", "", |of| of.ground().sum(2)),
+    derived!("f_v" ["Hz"] "frequency of the bounce on the ground", "", |of| of.ground().omega_v(of.base()) / TAU),
+    derived!("zeta_v" ["1"] "damping ratio of the bounce on the ground", "", |of| of.ground().zeta_v(of.base())),
+    derived!("f_g" ["Hz"] "lowest frequency on the ground with all points pressed", "", |of| {
+        of.frequencies_on_ground()[0] / TAU
+    }),
+    derived!("y_s" ["m"] "height of the base at rest above the unloaded ground", "", |of| of.ground().rest),
+];
+
 impl Structure {
+    /// The numbers that are shown, apart from the numbers of the modes; on ground that gives, the numbers of the ground last.
+    pub fn derived(&self) -> impl Iterator<Item = &'static Derived<Structure>> {
+        let of_ground = const { &OF_GROUND }.iter().filter(|_| self.foundation().is_some());
+        const { &OF_STRUCTURE }.iter().chain(of_ground)
+    }
+
     /// The numbers of each mode, lowest frequency first.
     pub fn mode_table(&self) -> impl Iterator<Item = ModeOf> {
         let (J_P, m_s) = (self.base().J_P, self.body().m_s);

@@ -22,7 +22,7 @@ const LIGHT: f64 = 50.0;
 const ONE_UNIT: [f64; 2] = [1e-3, 1e-2];
 
 /// Names of the numbers that are doubted. A sentence begins with its name.
-pub const DOUBTED: [&str; 8] = ["P_0", "F_y", "xi_d", "m0", "f", "m_t", "zeta", "B"];
+pub const DOUBTED: [&str; 9] = ["r", "P_0", "F_y", "xi_d", "m0", "f", "m_t", "zeta", "B"];
 
 /// Damping ratio of the lowest mode that no structure exceeds without dampers.
 const MOST_DAMPING: f64 = 0.2;
@@ -33,7 +33,7 @@ pub fn doubted(doubt: &str) -> &str {
 }
 
 impl Structure {
-    /// A sentence for each number that is usual in another unit, before anything moves. It begins with the name of the number, whose
+    /// A sentence for each number that is usual in another unit or has no effect, before anything moves. It begins with the name of the number, whose
     /// units are those in which it was given.
     pub fn doubts(&self) -> Vec<String> {
         self.doubts_in_si().into_iter().map(|doubt| self.units().message(doubt)).collect()
@@ -50,7 +50,11 @@ impl Structure {
                 "{name} = {force} changes next to nothing under the weight of the structure, {weight}: is {name} in N?"
             )
         };
-        let mut doubts: Vec<_> = [("P_0", P_0), ("F_y", F_y)].into_iter().filter(is_small).map(doubt).collect();
+        let unused = self.foundation().and(self.base().r).map(|r| {
+            format!("r = {} is not used on ground that gives, where no impact needs it: leave r out", short(r))
+        });
+        let small = [("P_0", P_0), ("F_y", F_y)].into_iter().filter(is_small).map(doubt);
+        let mut doubts: Vec<_> = unused.into_iter().chain(small).collect();
         if xi_d > 2.0 * B {
             doubts.push(format!(
                 "xi_d = {} m is more than the width of the base, {} m: is xi_d in m, not in mm?",

@@ -10,7 +10,7 @@
 //! pressed, and y is y_s = −(m_t g + P_0)/Σ k. The points take the place of uplift, impact and restitution.
 
 use crate::digits::with_unit;
-use crate::structure::quantity::{OutOfRange, Quantity, Units};
+use crate::structure::quantity::{Quantity, Units};
 use crate::{Base, Body, Mode, Ties};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
@@ -29,7 +29,7 @@ pub struct Ground {
     /// Vertical damping of all points, N·s/m.
     pub c_v: Option<f64>,
     /// Number of points, equally spaced from edge to edge, by default 2.
-    pub n_points: Option<usize>,
+    pub n_points: Option<f64>,
     /// K_r/(K_z B²), by default 1 for two points and 1/3 for more. Or else `k_r`.
     pub kr_ratio: Option<f64>,
     /// Rotational stiffness of all points K_r, N·m/rad.
@@ -65,6 +65,9 @@ pub struct Foundation {
     pub(crate) place: usize,
 }
 
+/// The names of the numbers of [`Ground`].
+pub const NAMES: [&str; 10] = ["f_v", "k_v", "zeta_v", "c_v", "n_points", "kr_ratio", "k_r", "xi", "k", "c"];
+
 /// Coordinates after those of the modes on ground that gives.
 pub(crate) const MORE: usize = 3;
 
@@ -86,22 +89,10 @@ const F_V: Quantity<f64> = limit("f_v", "Hz", [0.1, 1e3]);
 const K_V: Quantity<f64> = limit("k_v", "N/m", [1e-6, 1e18]);
 const ZETA_V: Quantity<f64> = limit("zeta_v", "1", [0.0, 5.0]);
 const C_V: Quantity<f64> = limit("c_v", "N.s/m", [0.0, 1e18]);
-const N_POINTS: Quantity<f64> = limit("n_points", "1", [2.0, MOST_POINTS as f64]);
-
-/// Why the ground is refused: the message.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct GroundError(String);
-
-impl From<OutOfRange> for GroundError {
-    fn from(error: OutOfRange) -> GroundError {
-        GroundError(error.to_string())
-    }
-}
 
 /// Refuses what is not so.
-fn ensure(is_so: bool, message: impl FnOnce() -> String) -> Result<(), GroundError> {
-    if is_so { Ok(()) } else { Err(GroundError(message())) }
+fn ensure(is_so: bool, message: impl FnOnce() -> String) -> Result<(), String> {
+    if is_so { Ok(()) } else { Err(message()) }
 }
 
 impl Ground {
@@ -120,7 +111,7 @@ impl Ground {
     }
 
     /// The points under a base of half-width `B` (m) that carries `m_t` (kg), none on rigid ground.
-    fn points(&self, m_t: f64, B: f64) -> Result<Vec<Point>, GroundError> {
+    fn points(&self, m_t: f64, B: f64) -> Result<Vec<Point>, String> {
         let &Ground { f_v, k_v, zeta_v, c_v, n_points, kr_ratio, k_r, .. } = self;
         let [xi, k, c] = [&self.xi, &self.k, &self.c];
         let list = Some(xi.len() as f64).filter(|points| *points > 0.0);
@@ -133,12 +124,14 @@ impl Ground {
         ] {
             ensure(both.is_none(), || format!("{one} and {other} are both given: leave one of them out"))?;
         }
-        let points = n_points.map(|points| points as f64);
-        for (limit, value) in
-            [(F_V, f_v.filter(|_| !self.is_rigid())), (K_V, k_v), (ZETA_V, zeta_v), (C_V, c_v), (N_POINTS, points)]
-        {
-            value.map_or(Ok(()), |value| limit.check(value))?;
+        for (limit, value) in [(F_V, f_v.filter(|_| !self.is_rigid())), (K_V, k_v), (ZETA_V, zeta_v), (C_V, c_v)] {
+            value.map_or(Ok(()), |value| limit.check(value)).map_err(|error| error.to_string())?;
         }
+        let n = n_points.unwrap_or(2.0);
+        ensure((2.0..=MOST_POINTS as f64).contains(&n) && n.fract() == 0.0, || {
+            format!("n_points = {n} is out of range: a whole number from 2 to {MOST_POINTS} is needed")
+        })?;
+        let n = n as usize;
         if !(xi.is_empty() && k.is_empty() && c.is_empty()) {
             let counts = [xi, k, c].map(Vec::len);
             ensure(counts == [counts[0]; 3] && (2..=MOST_POINTS).contains(&counts[0]), || {
@@ -146,18 +139,12 @@ impl Ground {
             })?;
             return Ok((0..xi.len()).map(|i| Point { xi: xi[i], k: k[i], c: c[i] }).collect());
         }
-        let K_z = match (f_v, k_v) {
-            _ if self.is_rigid() => return Ok(Vec::new()),
-            (Some(f_v), _) => m_t * (TAU * f_v) * (TAU * f_v),
-            (None, Some(k_v)) => k_v,
-            (None, None) => {
-                let needed =
-                    "neither f_v (Hz) nor k_v (N/m) is given: give one, or leave [ground] out for rigid ground";
-                return Err(GroundError(needed.into()));
-            }
-        };
+        if self.is_rigid() {
+            return Ok(Vec::new());
+        }
+        let needed = "neither f_v (Hz) nor k_v (N/m) is given: give one, or leave [ground] out for rigid ground";
+        let K_z = f_v.map(|f_v| m_t * (TAU * f_v) * (TAU * f_v)).or(k_v).ok_or(needed)?;
         let tau = c_v.map_or(2.0 * zeta_v.unwrap_or(0.2) / (K_z / m_t).sqrt(), |c_v| c_v / K_z);
-        let n = n_points.unwrap_or(2);
         let xi = |i: usize| B * (2.0 * i as f64 / (n - 1) as f64 - 1.0);
         let (inner, most) = ((1..n - 1).map(|i| xi(i) * xi(i)).sum::<f64>(), (n - 2) as f64 * B * B);
         let ratio = k_r.map(|k_r| k_r / (K_z * B * B)).or(kr_ratio).unwrap_or(if n == 2 { 1.0 } else { 1.0 / 3.0 });
@@ -177,12 +164,7 @@ impl Ground {
 
 impl Foundation {
     /// The foundation of `ground` under a structure; none on rigid ground.
-    pub(crate) fn new(
-        ground: &Ground,
-        base: &Base,
-        body: &Body,
-        modes: &[Mode],
-    ) -> Result<Option<Foundation>, GroundError> {
+    pub(crate) fn new(ground: &Ground, base: &Base, body: &Body, modes: &[Mode]) -> Result<Option<Foundation>, String> {
         let &Base { m_t, J0, B, g, c_ratio, ties: Ties { P_0, .. }, .. } = base;
         let points = ground.points(m_t, B)?;
         if points.is_empty() {
@@ -230,6 +212,16 @@ impl Foundation {
         self.points.iter().map(|point| point.k * point.xi.powi(power)).sum()
     }
 
+    /// The circular frequency of the bounce √(K_z/m_t), rad/s.
+    pub(crate) fn omega_v(&self, base: &Base) -> f64 {
+        (self.sum(0) / base.m_t).sqrt()
+    }
+
+    /// The damping ratio of the bounce.
+    pub(crate) fn zeta_v(&self, base: &Base) -> f64 {
+        self.points.iter().map(|point| point.c).sum::<f64>() / (2.0 * base.m_t * self.omega_v(base))
+    }
+
     /// The circular frequencies of small motions in full contact without damping, rad/s, lowest first: the bounce √(K_z/m_t), and the
     /// roots λ = ω² of
     ///
@@ -254,8 +246,7 @@ impl Foundation {
         let inverse = mass.cholesky().expect("the inertia is positive").inverse();
         let root = inverse.cholesky().expect("the inertia is positive").l();
         let squares = (root.transpose() * stiffness * &root).symmetric_eigen().eigenvalues;
-        let bounce = (self.sum(0) / base.m_t).sqrt();
-        let mut all: Vec<_> = squares.iter().map(|square| square.sqrt()).chain([bounce]).collect();
+        let mut all: Vec<_> = squares.iter().map(|square| square.sqrt()).chain([self.omega_v(base)]).collect();
         all.sort_by(f64::total_cmp);
         all
     }

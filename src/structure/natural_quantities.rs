@@ -101,10 +101,6 @@ impl<'de> Visitor<'de> for OfEntry {
         Ok(Entry::Number(number as f64))
     }
 
-    fn visit_u64<E: de::Error>(self, number: u64) -> Result<Entry, E> {
-        Ok(Entry::Number(number as f64))
-    }
-
     fn visit_str<E: de::Error>(self, text: &str) -> Result<Entry, E> {
         let units = Units::deserialize(text.into_deserializer()).map(Entry::Units);
         units.map_err(|_: E| E::invalid_value(Unexpected::Str(text), &self))

@@ -228,6 +228,14 @@ impl Map {
         Ok(map)
     }
 
+    /// The name of a class of this map: on ground that gives, the base touches the ground without impacts.
+    pub fn named(&self, class: &str) -> String {
+        match self.structure.foundation() {
+            Some(_) => class.replace("impacts", "touches").replace("impact", "touch"),
+            None => class.into(),
+        }
+    }
+
     /// This map to the relative `tolerance`, at the level `detail`, with each point's condition, by a second run, if it
     /// `finds_condition`.
     pub fn computed_by(self, detail: Detail, tolerance: f64, finds_condition: bool) -> Result<Map, Refused> {

@@ -293,21 +293,23 @@ impl Plan {
                 "{structures} structures x {motions} ground motions x {scales} scale factors: more than {MAX_RUNS} runs"
             )
         })?;
-        for population in &plan.populations {
+        plan.spectral = vec![Spectral::default(); structures * motions];
+        plan.under(Conditions::default())
+    }
+
+    /// These runs under other `conditions`, with the measures of their level.
+    pub fn under(mut self, conditions: Conditions) -> Result<Plan, Refused> {
+        self.populations.iter().flat_map(|of| &of.bases).try_for_each(|base| conditions.check(base))?;
+        self.populations.iter_mut().flat_map(|of| &mut of.bases).for_each(|base| *base = base.at(conditions.detail));
+        (self.measures, self.layouts) = (Vec::new(), Vec::new());
+        for population in &self.populations {
             for member in 0..population.len() {
                 let structure = population.structure(member)?;
-                if plan.layouts.iter().all(|layout| !layout.is_of(&structure)) {
-                    plan.layouts.push(Layout::new(&structure, &mut plan.measures));
+                if self.layouts.iter().all(|layout| !layout.is_of(&structure)) {
+                    self.layouts.push(Layout::new(&structure, &mut self.measures));
                 }
             }
         }
-        plan.spectral = vec![Spectral::default(); structures * motions];
-        Ok(plan)
-    }
-
-    /// These runs under other `conditions`.
-    pub fn under(self, conditions: Conditions) -> Result<Plan, Refused> {
-        self.populations.iter().flat_map(|of| &of.bases).try_for_each(|base| conditions.check(base))?;
         Ok(Plan { conditions, ..self })
     }
 

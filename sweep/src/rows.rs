@@ -396,7 +396,7 @@ mod tests {
     fn a_run_on_other_ground_has_another_key() {
         let program = Program { build: Uuid::max(), version: "0".into() };
         let key = |f_v: f64| {
-            let ground = Ground { f_v: Some(f_v), zeta_v: Some(0.2), n_points: Some(3), ..Ground::default() };
+            let ground = Ground { f_v: Some(f_v), zeta_v: Some(0.2), n_points: Some(3.0), ..Ground::default() };
             let wall = Structure::new(Parameters { J0: 1.2, ..Parameters::EVISON }).unwrap().on(&ground).unwrap();
             let only = Population::new("only", wall);
             let record = Record::from_samples("", vec![0.0, 1.0], vec![0.0, 1.0]).unwrap();

@@ -29,7 +29,7 @@ fn near_the_motion<Q: Runs>(run: &Run<Q>, part: f64, count: usize, see: impl Fn(
     let curve = run.curve(part).unwrap();
     let (found, points) = (&curve.found, &curve.points);
     assert_eq!(*found, run.found(&mut ()).unwrap());
-    let outputs = &drawn(&run.structure)[..count];
+    let outputs = &drawn(run)[..count];
     let largest = Vec::from_iter(outputs.iter().map(|of| found.peaks.of(*of).unwrap().magnitude));
     let of_ground = found.peaks.a_g().magnitude;
     let most = |of: &dyn Fn(&Point) -> f64| points.iter().map(|point| of(point).abs()).fold(0.0, f64::max);
@@ -91,8 +91,7 @@ fn lines_of_many_masses_stay_as_close_to_each_floor() {
     let frame = three_storeys(0.02, &[("r", 0.93), ("P_0", 1e5), ("k_t", 1e6)]);
     let ground = ground();
     let run = Run { end: End::At(6.0), ..Run::of_modes(frame, &ground) };
-    let (count, theta) =
-        (drawn(&run.structure).len() - Output::OF_TIES.len(), run.peaks().unwrap().0.theta().magnitude);
+    let (count, theta) = (drawn(&run).len() - Output::OF_TIES.len(), run.peaks().unwrap().0.theta().magnitude);
     let curve = near_the_motion(&run, 1e-3, count, |sample, line| {
         let e = 2.0 * 1.5 * f64::sin(sample.motion.state.theta.abs() / 2.0);
         assert!((line[count] - 1e5 - 1e6 * e).abs() <= 1.1e-3 * 1.5e6 * theta, "{} {e}", line[count]);

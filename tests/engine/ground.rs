@@ -3,20 +3,22 @@
 use crate::common::{peaks_beside_samples, transitions};
 use crate::modes::three_storeys;
 use approx::assert_relative_eq;
-use rocking::engine::Settings;
+use rocking::engine::piece::{Piece, Sample};
+use rocking::engine::{Progress, Settings};
 use rocking::run::record::Record;
 use rocking::run::validity::of_structure;
 use rocking::run::{End, Ending, Run};
+use rocking::structure::doubts::doubted;
 use rocking::structure::natural_quantities::Given;
 use rocking::{
-    Detail, Engine, Ground, LinearLoad, Modes, Output, Parameters, State, Structure, Transition, TransitionKind,
+    Detail, Engine, Ground, LinearLoad, Modes, Output, Parameters, State, Structure, Transition, TransitionKind, Watch,
 };
 use std::f64::consts::TAU;
 
 const EVISON: Parameters = Parameters { J0: 1.1918415, f_fc: 11.0, ..Parameters::EVISON };
 
 fn ground(f_v: f64, zeta_v: f64, points: usize) -> Ground {
-    Ground { f_v: Some(f_v), zeta_v: Some(zeta_v), n_points: Some(points), ..Ground::default() }
+    Ground { f_v: Some(f_v), zeta_v: Some(zeta_v), n_points: Some(points as f64), ..Ground::default() }
 }
 
 fn one_mass(parameters: Parameters, ground: Ground) -> Structure {
@@ -181,13 +183,21 @@ fn a_structure_at_rest_is_carried_and_comes_to_rest() {
     let run = Run::of_modes(one_mass(EVISON, ground(60.0, 0.2, 3)), &pulse);
     let finish = run.follow(&mut ()).unwrap();
     assert!(finish.ending == Ending::AtRest && finish.motion.transitions > 4, "{finish:?}");
-    let (peaks, _) = Run { detail: Detail::FixedBase, ..run.clone() }.peaks().unwrap();
+    // at the level fixed_base ground that gives has no outputs, and the rest is as on rigid ground
+    let fixed = Run { detail: Detail::FixedBase, end: End::At(1.0), ..run.clone() };
+    let on_rigid = Run { structure: Structure::new(EVISON).unwrap(), ..fixed.clone() };
+    let [peaks, expected] = [&fixed, &on_rigid].map(|run| run.peaks().unwrap().0.of(Output::a_t(0)).unwrap());
+    assert_relative_eq!(peaks.magnitude, expected.magnitude, max_relative = 1e-12);
+    let [shown, rigid] = [&run, &fixed].map(|of| Output::all(&of.structure.at(of.detail)));
+    let found = fixed.curve(1e-3).unwrap().found.peaks;
+    let see =
+        |sample: &Sample<Modes>| assert!(shown.iter().all(|of| sample.output(*of).is_nan() != rigid.contains(of)));
+    assert!([Output::N_left, Output::settlement, Output::N(1)].iter().all(|of| found.of(*of).is_none()));
+    fixed.sample([0.5], see, &mut ()).unwrap();
     let tied = Parameters { P_0: 500.0, k_t: 1e4, xi_d: 0.2, c_d: 900.0, k_d: 1e5, F_y: 150.0, ..EVISON };
     let tied = Run { end: End::At(2.0), ..Run::of_modes(one_mass(tied, ground(60.0, 0.2, 3)), &pulse) };
     let times = (0..200_000).map(|i| 1e-5 * f64::from(i));
     peaks_beside_samples(&tied, times, &Output::OF_TIES, 1e-4, |_| ());
-    let settled = -run.structure.foundation().unwrap().rest;
-    assert_eq!([Output::theta, Output::settlement].map(|of| peaks.of(of).unwrap().magnitude), [0.0, settled]);
     let refusal = Run { detail: Detail::Linear, ..run }.peaks().unwrap_err().to_string();
     assert!(refusal.contains("choose auto, nonlinear, rigid or fixed_base"), "{refusal}");
 }
@@ -235,6 +245,54 @@ fn frequencies_are_the_printed_ones() {
     }
 }
 
+#[test]
+fn bad_ground_is_refused_with_a_remedy() {
+    let refused = |parameters: Parameters, ground: Ground| {
+        Structure::new(parameters).unwrap().on(&ground).unwrap_err().to_string()
+    };
+    let soft = Parameters::MCMANUS;
+    let list = |xi: [f64; 2], k: [f64; 2]| Ground { xi: xi.into(), k: k.into(), c: vec![0.0; 2], ..Ground::default() };
+    let cases = [
+        (refused(soft, ground(1.5, 0.2, 2)), "it cannot stand: the ground holds"),
+        (refused(Parameters::EVISON, ground(40.0, 0.2, 2)), "give J0, for a block m0 (B^2 + t^2)/3"),
+        (refused(Parameters { c_ratio: 0.5, ..soft }, ground(40.0, 0.2, 2)), "set c_ratio to 1"),
+        (refused(soft, ground(4000.0, 0.2, 2)), "f_v = 4000 Hz is out of range"),
+        (refused(soft, Ground { k_v: Some(1e6), ..ground(40.0, 0.2, 2) }), "f_v and k_v are both given"),
+        (refused(soft, Ground { f_v: None, ..ground(40.0, 0.2, 2) }), "neither f_v (Hz) nor k_v (N/m) is given"),
+        (
+            refused(soft, Ground { n_points: Some(2.5), ..ground(40.0, 0.2, 2) }),
+            "a whole number from 2 to 21 is needed",
+        ),
+        (refused(soft, Ground { kr_ratio: Some(0.5), ..ground(40.0, 0.2, 2) }), "of two points it is 1"),
+        (refused(soft, Ground { kr_ratio: Some(0.1), ..ground(40.0, 0.2, 5) }), "it must lie between 0.167 and 1"),
+        (refused(soft, list([-0.2, 0.1], [1e6; 2])), "the points must be symmetric"),
+        (refused(soft, list([-0.9, 0.9], [1e6; 2])), "the point must lie under the base"),
+        (refused(soft, list([-0.2, 0.2], [0.0; 2])), "k must exceed 0"),
+    ];
+    for (message, expected) in cases {
+        assert!(message.starts_with("ground: ") && message.contains(expected), "{message}");
+    }
+    let rigid = Structure::new(soft).unwrap();
+    assert_eq!(rigid.on(&ground(0.0, 0.2, 2)).unwrap(), rigid);
+}
+
+/// A step that cannot end says so long before its 2,000,000 steps; a structure that falls on the way has fallen.
+#[test]
+fn a_step_without_end_is_refused_early() {
+    struct Pieces(u64);
+    impl Watch<Modes> for Pieces {
+        fn piece(&mut self, _: &Piece<Modes>) {
+            self.0 += 1;
+        }
+    }
+    let structure = one_mass(EVISON, ground(60.0, 0.2, 2));
+    let (mut engine, mut pieces) = (engine(&structure, 0.0, 0.02), Pieces(0));
+    let error = engine.advance(1e9, load(&structure, 0.0, 0.0), &mut pieces).unwrap_err();
+    assert!(error.to_string().starts_with("the 2000000 steps of an advance end by t = "), "{error}");
+    assert!(error.time().unwrap() < 1e6 && engine.motion().time == 0.0 && pieces.0 < 100_000, "{}", pieces.0);
+    assert_eq!(engine.advance(1e9, load(&structure, 6.0, 0.0), &mut ()).unwrap(), Progress::Overturned);
+}
+
 /// A change of the base changes the points as a new description does, and nothing needs r.
 #[test]
 fn the_points_follow_the_base() {
@@ -247,6 +305,9 @@ fn the_points_follow_the_base() {
             };
             let narrow = described(3.0, 1.2e5);
             assert!(of_structure(&narrow, Detail::Auto).is_empty());
+            let unused = narrow.with(Parameters { r: 0.9, ..narrow.parameters() }).unwrap();
+            assert!(of_structure(&unused, Detail::Auto).is_empty() && doubted(&unused.doubts()[0]) == "r");
+            assert!(!narrow.doubts().iter().any(|doubt| doubted(doubt) == "r"));
             let bouncing = narrow.on(&ground(900.0, 0.0, points)).unwrap();
             assert!(of_structure(&bouncing, Detail::Auto)[0].contains("few sure digits; lower f_v, or raise zeta_v"));
             let wide = narrow.with(Parameters { B: 3.5, m0: 6e5, ..narrow.parameters() }).unwrap();

@@ -182,7 +182,9 @@
     at(parent).append(made);
     rows[name] = (value, isGiven = true) => {
       const isFinite = Number.isFinite(value);
-      const text = isFinite ? String(Number(value.toPrecision(6))) : "";
+      const shown = Number(value.toPrecision(isGiven ? 15 : 6)); // a given number has all its digits
+      const [long, short] = [String(shown), shown.toExponential().replace("e+", "e")];
+      const text = isFinite ? (long.length > 8 && short.length < long.length ? short : long) : "";
       number.placeholder = name in structures[origin()][1] ? "" : text; // what holds while the field is empty
       note.value = emptied === name && !isGiven && text ? `left empty: ${text} holds again` : "";
       if (document.activeElement !== number) number.value = text || (fields[name] ?? "");
@@ -591,6 +593,7 @@
     ask("map", scene, ({ axes, points }) => {
       if (axes) {
         spectrum.axes = axes;
+        axes.classes.forEach((name, k) => (swatches[k].nextSibling.textContent = name));
         drawAxes();
       } else {
         spectrum.points.push(points);

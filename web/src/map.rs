@@ -43,12 +43,16 @@ impl Spectrum {
         Ok(Spectrum { map, known: HashMap::new(), queue: queue.into(), level: 0 })
     }
 
-    /// The ranges of the axes in units of the structure, and these units in Hz and m/s².
+    /// The ranges of the axes in units of the structure, these units in Hz and m/s², and the names of the classes.
     pub fn axes(&self) -> String {
         let [frequency, amplitude] = RANGES.map(|(from, to)| [from, to]);
         let (of_amplitude, of_frequency) = units_of(self.map.structure.base());
-        json!({ "frequency": frequency, "amplitude": amplitude, "of_frequency": of_frequency, "of_amplitude": of_amplitude })
-            .to_string()
+        let classes = CLASSES.map(|(_, name)| self.map.named(name));
+        json!({
+            "frequency": frequency, "amplitude": amplitude, "of_frequency": of_frequency, "of_amplitude": of_amplitude,
+            "classes": classes,
+        })
+        .to_string()
     }
 
     /// Runs the next points, at most `count`. Each point is five numbers: its steps along frequency and amplitude, the size of

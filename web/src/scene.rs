@@ -238,14 +238,8 @@ impl Fields {
 
     /// Ground that gives; none if it is rigid.
     pub fn ground(&self) -> Result<Option<Ground>, String> {
-        let [f_v, k_v, zeta_v, _] = OF_GROUND.map(|number| self.given(number.0).transpose());
-        let ground = Ground {
-            f_v: f_v?,
-            k_v: k_v?,
-            zeta_v: zeta_v?,
-            n_points: self.whole("n_points", 2.0)?,
-            ..Ground::default()
-        };
+        let [f_v, k_v, zeta_v, n_points] = OF_GROUND.map(|number| self.given(number.0).transpose());
+        let ground = Ground { f_v: f_v?, k_v: k_v?, zeta_v: zeta_v?, n_points: n_points?, ..Ground::default() };
         Ok((ground != Ground::default()).then_some(ground))
     }
 
@@ -265,20 +259,18 @@ impl Fields {
         let storeys = storeys.collect::<Result<Vec<_>, _>>()?;
         let frame = Structure::from_storeys(base, &Damping::All(self.number("zeta")?), &storeys).map_err(says)?;
         let frame = frame.on(&ground).map_err(says)?;
-        match self.whole("modes", 1.0)? {
+        match self.modes()? {
             None => Ok(frame),
             Some(count) => frame.keeping(count).map_err(says),
         }
     }
 
-    /// The whole number called `name`, if it is given.
-    pub fn whole(&self, name: &str, least: f64) -> Result<Option<usize>, String> {
-        match self.given(name).transpose()? {
+    /// The number of modes that are kept, if it is given.
+    pub fn modes(&self) -> Result<Option<usize>, String> {
+        match self.given("modes").transpose()? {
             None => Ok(None),
-            Some(count) if count >= least && count.fract() == 0.0 => Ok(Some(count as usize)),
-            Some(count) => {
-                Err(format!("{name} = {count} is out of range: a whole number of at least {least} is needed"))
-            }
+            Some(count) if count >= 1.0 && count.fract() == 0.0 => Ok(Some(count as usize)),
+            Some(count) => Err(format!("modes = {count} is out of range: a whole number of at least 1 is needed")),
         }
     }
 

@@ -96,7 +96,7 @@ fn building(fields: &Fields, numbers: &Options) -> Result<(String, String), Stri
 /// Storeys as a file with these lines of the `base`, and as arguments of Python.
 fn of_storeys(fields: &Fields, storeys: &str, base: String) -> Result<(String, String), String> {
     let zeta = literal("zeta", &fields.number("zeta")?.to_string())?;
-    let keep = fields.whole("modes", 1.0)?;
+    let keep = fields.modes()?;
     let kept = keep.map_or(String::new(), |count| format!("keep = {count}\n"));
     let mut file = format!("zeta = {zeta}\n{kept}\n[base]\n{base}");
     let mut rows = Vec::new();

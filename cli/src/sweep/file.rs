@@ -18,6 +18,7 @@ use rocking_sweep::pulse::{Pulse, Shape};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
+use std::slice::from_ref;
 
 /// Records on structures.
 pub struct RecordSweep {
@@ -63,16 +64,9 @@ struct SweepFile {
     initial: InitialArgs,
     /// Name of the intensity measure.
     intensity: Option<String>,
-    /// By the name of a measure, in its own unit or with a usual one.
+    /// One or several by the name of a measure, in its own unit or with a usual one.
     #[serde(default)]
-    limits: BTreeMap<String, Vec<Amount>>,
-}
-
-#[derive(Deserialize)]
-#[serde(untagged, expecting = "expected a number, or a text such as \"3 deg\"")]
-enum Amount {
-    InOwnUnit(f64),
-    WithUnit(String),
+    limits: toml::Table,
 }
 
 /// The file with `pulses`.
@@ -254,14 +248,12 @@ impl MapFile {
 impl SweepFile {
     fn limits(&self, measures: &[Measure]) -> anyhow::Result<Vec<Limit>> {
         let mut limits = Vec::new();
-        for (name, values) in &self.limits {
+        for (name, given) in &self.limits {
+            let values = given.as_array().map_or(from_ref(given), Vec::as_slice);
             ensure!(!values.is_empty(), "{name} is empty: give one or more");
             for value in values {
-                let text = match value {
-                    Amount::InOwnUnit(value) => format!("{name} >= {value}"),
-                    Amount::WithUnit(value) => format!("{name} >= {value}"),
-                };
-                limits.push(Limit::read(&text, measures)?);
+                let value = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+                limits.push(Limit::read(&format!("{name} >= {value}"), measures)?);
             }
         }
         Ok(limits)

@@ -35,7 +35,7 @@ pub struct Spectrum {
 #[derive(Serialize)]
 struct Count<'a> {
     structure: &'a str,
-    class: &'static str,
+    class: String,
     points: usize,
     part: f64,
 }
@@ -141,8 +141,9 @@ fn count(spectrum: &Spectrum) -> Vec<Count<'_>> {
     let Spectrum { name, map, points } = spectrum;
     let total = map.grid().count();
     let of = |(class, what): (Class, &'static str)| {
-        let count = map.grid().filter(|place| points[place].class() == class).count();
-        (count > 0).then_some(Count { structure: name, class: what, points: count, part: count as f64 / total as f64 })
+        let points = map.grid().filter(|place| points[place].class() == class).count();
+        let (class, part) = (map.named(what), points as f64 / total as f64);
+        (points > 0).then_some(Count { structure: name, class, points, part })
     };
     CLASSES.into_iter().filter_map(of).collect()
 }

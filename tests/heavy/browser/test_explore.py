@@ -335,6 +335,15 @@ def test_an_empty_field_says_what_holds_or_what_is_missing(opened):
     assert (field.input_value(), field.get_attribute("aria-invalid"), note.text_content()) == ("130.1", "false", "")
 
 
+def test_a_long_number_keeps_its_digits(opened):
+    page = opened(ON_GROUND[0])
+    field = page.locator("#field-k_v")
+    field.fill("1516372389")
+    page.keyboard.press("Tab")
+    settled(page)
+    assert field.input_value() == "1516372389" and field.evaluate("field => field.scrollWidth <= field.clientWidth")
+
+
 def test_natural_quantities_take_the_place_of_parameters(opened):
     page = opened()
     page.locator("#natural").check()

@@ -121,19 +121,19 @@ pub fn draw(picture: Picture, spectra: &[Spectrum], refinements: u32) -> anyhow:
             rest = below;
         }
         for (i, legend) in legends.iter().enumerate() {
-            draw_legend(&rest, LEFT + i as f64 * f64::from(width), legend)?;
+            draw_legend(&rest, LEFT + i as f64 * f64::from(width), legend, map)?;
         }
         Ok(())
     })
 }
 
-fn draw_legend(area: &Area, x: f64, swatches: &[&Swatch]) -> anyhow::Result<()> {
+fn draw_legend(area: &Area, x: f64, swatches: &[&Swatch], map: &Map) -> anyhow::Result<()> {
     for (i, (colour, name)) in swatches.iter().enumerate() {
         let y = LEGEND_LINE * (i as f64 + 0.8);
         let swatch = [(px(x), px(y - 6.0)), (px(x + 18.0), px(y + 6.0))];
         area.draw(&Rectangle::new(swatch, colour.filled()))?;
         area.draw(&Rectangle::new(swatch, stroke(colour::GREY, 0.5)))?;
-        area.draw(&Text::new(*name, (px(x + 26.0), px(y)), words(SMALL, colour::INK)))?;
+        area.draw(&Text::new(map.named(name), (px(x + 26.0), px(y)), words(SMALL, colour::INK)))?;
     }
     Ok(())
 }
