@@ -245,37 +245,6 @@ fn frequencies_are_the_printed_ones() {
     }
 }
 
-#[test]
-fn bad_ground_is_refused_with_a_remedy() {
-    let refused = |parameters: Parameters, ground: Ground| {
-        Structure::new(parameters).unwrap().on(&ground).unwrap_err().to_string()
-    };
-    let soft = Parameters::MCMANUS;
-    let list = |xi: [f64; 2], k: [f64; 2]| Ground { xi: xi.into(), k: k.into(), c: vec![0.0; 2], ..Ground::default() };
-    let cases = [
-        (refused(soft, ground(1.5, 0.2, 2)), "it cannot stand: the ground holds"),
-        (refused(Parameters::EVISON, ground(40.0, 0.2, 2)), "give J0, for a block m0 (B^2 + t^2)/3"),
-        (refused(Parameters { c_ratio: 0.5, ..soft }, ground(40.0, 0.2, 2)), "set c_ratio to 1"),
-        (refused(soft, ground(4000.0, 0.2, 2)), "f_v = 4000 Hz is out of range"),
-        (refused(soft, Ground { k_v: Some(1e6), ..ground(40.0, 0.2, 2) }), "f_v and k_v are both given"),
-        (refused(soft, Ground { f_v: None, ..ground(40.0, 0.2, 2) }), "neither f_v (Hz) nor k_v (N/m) is given"),
-        (
-            refused(soft, Ground { n_points: Some(2.5), ..ground(40.0, 0.2, 2) }),
-            "a whole number from 2 to 21 is needed",
-        ),
-        (refused(soft, Ground { kr_ratio: Some(0.5), ..ground(40.0, 0.2, 2) }), "of two points it is 1"),
-        (refused(soft, Ground { kr_ratio: Some(0.1), ..ground(40.0, 0.2, 5) }), "it must lie between 0.167 and 1"),
-        (refused(soft, list([-0.2, 0.1], [1e6; 2])), "the points must be symmetric"),
-        (refused(soft, list([-0.9, 0.9], [1e6; 2])), "the point must lie under the base"),
-        (refused(soft, list([-0.2, 0.2], [0.0; 2])), "k must exceed 0"),
-    ];
-    for (message, expected) in cases {
-        assert!(message.starts_with("ground: ") && message.contains(expected), "{message}");
-    }
-    let rigid = Structure::new(soft).unwrap();
-    assert_eq!(rigid.on(&ground(0.0, 0.2, 2)).unwrap(), rigid);
-}
-
 /// A step that cannot end says so long before its 2,000,000 steps; a structure that falls on the way has fallen.
 #[test]
 fn a_step_without_end_is_refused_early() {
