@@ -40,7 +40,7 @@ const OF_GROUND: [Output; 5] = [Output::N_left, Output::N_right, Output::y, Outp
 
 /// The outputs of `run` at the points of a picture: its lines, those on ground that gives, the displacement of one mass, and the
 /// forces of ties.
-pub fn drawn<Q: Moves>(run: &Run<Q>) -> Vec<Output> {
+pub fn drawn<Q: Runs>(run: &Run<Q>) -> Vec<Output> {
     let structure = &run.structure.at(run.detail);
     let mut drawn = lines(structure);
     drawn.extend(structure.foundation().iter().flat_map(|_| OF_GROUND));
