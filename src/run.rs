@@ -35,6 +35,7 @@ use samples::Samples;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::fmt;
+use std::iter::repeat_n;
 use validity::Validity;
 
 /// For how long a structure may rock on after its record, in units of 1/p_l: amplitudes change by e^±1 in each.
@@ -117,6 +118,9 @@ pub enum RunError {
     /// The run cannot start.
     #[error(transparent)]
     Initial(#[from] InitialStateError),
+    /// There is no floor on which the force of the ground motion may act.
+    #[error("the force on the top floor needs a structure with floors; give masses, heights and shapes")]
+    NoFloor,
     /// The run ends before it starts, or never.
     #[error(
         "the run cannot end at {end:?} s: a finite time after the record's first sample, at {start:?} s, is needed"
@@ -146,7 +150,7 @@ impl RunError {
             RunError::Advance { time, .. } | RunError::TooLong { time, .. } | RunError::TooManySteps { time, .. } => {
                 Some(*time)
             }
-            RunError::Initial(_) | RunError::End { .. } | RunError::TooManyPoints { .. } => None,
+            RunError::Initial(_) | RunError::NoFloor | RunError::End { .. } | RunError::TooManyPoints { .. } => None,
         }
     }
 }
@@ -201,6 +205,7 @@ impl<'a, Q: Runs> Run<'a, Q> {
         let start = self.ground.start();
         match self.end {
             End::At(end) if !(end > start && end.is_finite()) => Err(RunError::End { end, start }),
+            _ if self.ground.force().is_some() && self.structure.floors().is_empty() => Err(RunError::NoFloor),
             _ => {
                 let &Run { ref structure, ground, initial, detail, tolerance, .. } = self;
                 let settings = Settings { detail, tolerance, vertical: ground.vertical().is_some(), stops: false };
@@ -370,6 +375,13 @@ fn error<Q: Coordinates>(engine: &Engine<Q>, cause: AdvanceError) -> RunError {
     }
 }
 
+/// The force `F_t` (N) on the top floor of `structure`.
+#[cold]
+fn on_top<Q: Coordinates>(structure: &Structure, F_t: f64) -> Q {
+    let below = structure.floors().len().saturating_sub(1);
+    Q::of_forces(structure, repeat_n(0.0, below).chain([F_t]))
+}
+
 /// Follows a structure over `segment`.
 #[inline]
 fn over<Q: Coordinates, W: Watch<Q>>(
@@ -377,8 +389,9 @@ fn over<Q: Coordinates, W: Watch<Q>>(
     segment: Segment,
     watch: &mut W,
 ) -> Result<Progress, AdvanceError> {
+    let on_top = |F_t| if F_t == 0.0 { Q::ZERO } else { on_top(engine.structure(), F_t) };
     let [value, slope] =
-        [segment.ground.value, segment.ground.slope].map(|Load { a_g, a_v, .. }| Load { a_g, F_t: Q::ZERO, a_v });
+        [segment.ground.value, segment.ground.slope].map(|Load { a_g, F_t, a_v }| Load { a_g, F_t: on_top(F_t), a_v });
     let progress = engine.advance(segment.duration, LinearLoad { value, slope }, watch)?;
     if progress != Progress::Overturned {
         engine.set_time(segment.until);

@@ -15,7 +15,7 @@ import fmpy
 import numpy as np
 import pytest
 from evidence.scenes import RECORD
-from host import PHASES, simulate
+from host import PHASES, Fmu, simulate
 from reference import EVISON, MCMANUS, Structure
 
 LEVELS = ("auto", "nonlinear", "linear", "modal", "rigid", "fixed_base")
@@ -33,6 +33,8 @@ class Scene:
     ground: str
     record: Path | None = None
     vertical: Path | None = None
+    force: Path | None = None
+    push: tuple = ()  # s, N
     arrays: list = field(default_factory=list)  # s, m/s2, m/s2
     scales: dict = field(default_factory=dict)
     initial: dict = field(default_factory=dict)
@@ -59,9 +61,9 @@ def random_structure(random: Random) -> tuple[Structure, dict]:
     return structure, numbers
 
 
-def write(path: Path, unit: str, time, a) -> Path:
+def write(path: Path, unit: str, time, a, heading="t (s),a ({})") -> Path:
     """A table with all digits."""
-    path.write_text(f"t (s),a ({unit})\n" + "".join(f"{t!r},{a!r}\n" for t, a in zip(time.tolist(), a.tolist())))
+    path.write_text(heading.format(unit) + "\n" + "".join(f"{t!r},{a!r}\n" for t, a in zip(time.tolist(), a.tolist())))
     return path
 
 
@@ -111,7 +113,7 @@ def options(**values) -> list[str]:
 def command_line(exporter: Path, scene: Scene, folder: Path) -> dict:
     """Every number, and the instant that decides it: peaks, worsts, transitions, and how the run ended."""
     ground = options(record=scene.record, **scene.scales) if scene.record else options(free=scene.duration)
-    ground += options(record_v=scene.vertical) if scene.vertical else []
+    ground += options(**{name: of for name, of in (("record_v", scene.vertical), ("force", scene.force)) if of})
     ground += options(duration=scene.duration) if scene.duration and scene.record else []
     command = [exporter, "--quiet", "simulate", *ground, *options(**scene.structure, **scene.initial, **scene.how)]
     told = json.loads(subprocess.run([*command, "--format", "json", "--events", "events.csv"], cwd=folder, check=True,
@@ -173,11 +175,19 @@ def co_simulation(fmu: Path, scene: Scene) -> dict:
     names = {variable.name for variable in fmpy.read_model_description(str(fmu)).modelVariables}
     peaks = {name.removeprefix("t_") for name in names if re.fullmatch(r"t_.*_max(\[\d+\])?|t_mu_.*|t_R_v_min|t_tension_impact|t_weight_min", name)}
     asked = [*peaks, *(f"t_{name}" for name in peaks), "transitions", "phase", "t_overturned"]
-    rows, messages = simulate(str(fmu), start_time=scene.start, stop_time=until, output_interval=until - scene.start,
-                              start_values=values, relative_tolerance=scene.how.get("tolerance", 1e-9), output=asked, record_events=False,
-                              fmi_type="CoSimulation")
+    tolerance = scene.how.get("tolerance", 1e-9)
+    if scene.force:
+        floors = sum(name.startswith("F_t[") for name in names)
+        time, F_t = np.append(scene.push[0], until), np.append(scene.push[1], 0.0)
+        with Fmu(fmu, fmu.with_suffix("")).start(tolerance=tolerance, **values) as instance:
+            instance.follow(time, 0 * time, ["theta"], **{f"F_t[{floors}]" if floors else "F_t": F_t})
+            last, messages = dict(zip(asked, instance.get(*asked))) | {"time": until}, instance.messages
+    else:
+        rows, messages = simulate(str(fmu), start_time=scene.start, stop_time=until, output_interval=until - scene.start,
+                                  start_values=values, relative_tolerance=tolerance, output=asked, record_events=False,
+                                  fmi_type="CoSimulation")
+        last = rows[-1]
     said = [message.text for message in messages]
-    last = rows[-1]
     end = last["t_overturned"] if last["phase"] == PHASES["overturned"] else last["time"]
     found = {name if name in VALIDITY else re.sub(r"_max(?=\[|$)", "", name): (last[name], last[f"t_{name}"]) for name in peaks}
     kinds = "uplift|impact|landing|overturning|yielding|unloading"

@@ -56,8 +56,8 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let limits = args.limits.limits()?;
     let (initial, duration) = (args.initial.state(), args.ground.duration());
     let run = load(&args.structure, &args.ground, Conditions { initial, duration, ..Conditions::default() })?;
-    let cause =
-        Cause::new(run.structure.clone()).under(&args.ground.record, &run.ground).with_initial(&run.conditions.initial);
+    let cause = Cause::new(run.structure.clone()).under(&args.ground.record, &run.ground);
+    let cause = cause.pushed(args.ground.force.as_ref()).with_initial(&run.conditions.initial);
     let advice = run.advice(args.allowed.within, &args.allowed.of).context("detail = nonlinear")?;
     let text = || run.advice_text(&args.ground.title(&run.ground), &advice, &limits);
     args.results.print(text, &Traced { cause: &cause, rows: &advice.rows() })

@@ -71,6 +71,12 @@ impl Cause {
         self
     }
 
+    /// This cause with the force in the table at `path`, if there is one.
+    pub fn pushed(mut self, path: Option<&PathBuf>) -> Cause {
+        self.0.extend(path.map(|path| text(("force", Some(path.display().to_string())))));
+        self
+    }
+
     /// This cause of a run under these `conditions`.
     pub fn computed(mut self, conditions: &Conditions) -> Cause {
         let &Conditions { detail, tolerance, ref initial, .. } = conditions;

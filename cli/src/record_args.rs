@@ -1,10 +1,12 @@
 //! Which ground motion record a command works on, how it is read, and how it is scaled.
 use crate::structure_args::on_command_line;
 use crate::talk::{say, warning};
+use anyhow::{Context, ensure};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rocking::digits::short;
 use rocking::run::record::Record;
 use rocking_records::{Column, LAYOUTS, Reading, Unit};
+use rocking_report::input;
 use rocking_report::record::{Understood, no_pair, understand};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -118,6 +120,18 @@ impl RecordOptions {
     pub fn factors(&self) -> [f64; 2] {
         [self.time_scale, self.scale].map(|factor| factor.unwrap_or(1.0))
     }
+}
+
+/// The `record` with the force on the top floor in the table at `path`, if there is one.
+pub fn with_force(record: Record, path: Option<&Path>) -> anyhow::Result<Record> {
+    let Some(path) = path else { return Ok(record) };
+    let what = || format!("force = {}: a table with the columns time[s] and F_t[N] is needed", path.display());
+    let bytes = input::read(path).with_context(what)?;
+    let mut table = csv::Reader::from_reader(&*bytes);
+    ensure!(table.headers().with_context(what)? == ["time[s]", "F_t[N]"].as_slice(), what());
+    let rows = table.into_deserialize::<(f64, f64)>().collect::<Result<_, _>>();
+    let (times, F_t): (Vec<_>, Vec<_>) = rows.with_context(what)?;
+    Ok(record.with_force(&times, &F_t)?)
 }
 
 /// Prints findings and assumptions about a record after `label`, and warnings.

@@ -1,5 +1,5 @@
 //! The scene that a command simulates: a ground motion record or free vibration, and the initial values.
-use crate::record_args::{RecordArgs, one_of};
+use crate::record_args::{RecordArgs, one_of, with_force};
 use crate::structure_args::StructureArgs;
 use clap::ArgGroup;
 use rocking::digits::short;
@@ -8,7 +8,7 @@ use rocking::{Detail, State, engine::DEFAULT_TOLERANCE};
 use rocking_report::run::Run;
 use rocking_sweep::plan::Conditions;
 use serde::{Deserialize, Deserializer, Serialize};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A motion to follow: of which structure, under which ground motion, from where, and how it is computed.
@@ -43,7 +43,7 @@ impl MotionArgs {
 
     /// The files that are read.
     pub fn inputs(&self) -> impl Iterator<Item = &Path> {
-        self.structure.input().into_iter().chain(self.ground.record.inputs())
+        self.structure.input().into_iter().chain(self.ground.record.inputs()).chain(self.ground.force.as_deref())
     }
 }
 
@@ -65,6 +65,9 @@ pub struct GroundArgs {
         conflicts_with_all = ["record_v", "unit", "dt", "column", "ignore_npts", "time_scale", "scale", "duration"]
     )]
     pub free: Option<f64>,
+    /// Horizontal force on the top floor, positive to the right, beside the ground motion: a table with the columns time[s] and F_t[N], linear between them. --scale and --time-scale do not change the force
+    #[arg(long, value_name = "FILE.csv")]
+    pub force: Option<PathBuf>,
 }
 
 /// The state at the start.
@@ -118,8 +121,8 @@ struct LevelArgs {
 impl GroundArgs {
     /// The ground motion; a record's g means `g` (m/s²).
     pub fn load(&self, g: f64) -> anyhow::Result<Record> {
-        let record = self.record.load(g)?;
-        Ok(record.unwrap_or_else(|| Record::at_rest(self.free.expect("clap asks for --record or --free"))))
+        let free = || Record::at_rest(self.free.expect("clap asks for --record or --free"));
+        with_force(self.record.load(g)?.unwrap_or_else(free), self.force.as_deref())
     }
 
     /// From the start to the end of the run, s, where that is asked for.

@@ -124,8 +124,9 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     if let Some(line) = centring(run.structure.base()) {
         say!("centring       {line}");
     }
-    let cause =
-        Cause::new(run.structure.clone()).under(&args.motion.ground.record, &run.ground).computed(&run.conditions);
+    let ground = &args.motion.ground;
+    let cause = Cause::new(run.structure.clone()).under(&ground.record, &run.ground).pushed(ground.force.as_ref());
+    let cause = cause.computed(&run.conditions);
     let mut files = OutputFiles::of_inputs(args.motion.inputs());
     let response = output.map(|path| files.create(path)).transpose()?;
     let events = events.as_deref().map(|path| files.create(path)).transpose()?;

@@ -79,9 +79,10 @@ fn export(
     let contents = |packed: &Packed| -> PyResult<Vec<(PathBuf, Vec<u8>)>> {
         let path = match packed {
             Packed::Record(record) => {
+                let tables = record.get().tables().map_err(refused)?;
                 let name = record.get().title().replace(|letter| !is_plain(letter), "_");
                 let files = ["", "_v"].map(|ending| PathBuf::from(format!("{name}{ending}.csv")));
-                return Ok(files.into_iter().zip(record.get().tables().into_iter().map(String::into_bytes)).collect());
+                return Ok(files.into_iter().zip(tables.into_iter().map(String::into_bytes)).collect());
             }
             Packed::File(path) => path,
         };

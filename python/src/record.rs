@@ -84,9 +84,13 @@ impl Record {
     }
 
     /// Its components, the horizontal one first, as tables that are read without options.
-    pub fn tables(&self) -> Vec<String> {
+    pub fn tables(&self) -> anyhow::Result<Vec<String>> {
         let scaled = self.given.clone().multiplied(self.scale);
-        [csv_in(&scaled, self.unit)].into_iter().chain(vertical_csv(&scaled, self.unit)).collect()
+        ensure!(
+            scaled.force().is_none(),
+            "the record has a force, which its file cannot have; an FMU has the input F_t"
+        );
+        Ok([csv_in(&scaled, self.unit)].into_iter().chain(vertical_csv(&scaled, self.unit)).collect())
     }
 }
 
@@ -159,7 +163,7 @@ impl Record {
             None => of_trace(time, unit)?,
         };
         let title = title.unwrap_or(&name);
-        let record = Record::_of(&time, &a_g, a_v, unit, scale, title)?.scaled(1.0, time_scale)?;
+        let record = Record::_of(&time, &a_g, a_v, unit, scale, title, None)?.scaled(1.0, time_scale)?;
         warn(py, doubts(&record.usual, G).into_iter().map(|doubt| format!("{title}: {doubt}")), 1)?;
         Ok(record)
     }
@@ -173,6 +177,7 @@ impl Record {
         #[pyo3(from_py_with = unit)] unit: Unit,
         scale: f64,
         title: &str,
+        F_t: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Record> {
         let a_g = numbers("a_g", a_g)?;
         let times: Vec<f64> = match number("dt", time) {
@@ -188,6 +193,9 @@ impl Record {
         if let Some(a_v) = a_v {
             samples = samples.with_vertical(&component(numbers("a_v", a_v)?)?).map_err(refused)?;
         }
+        if let Some(F_t) = F_t {
+            samples = samples.with_force(&times, &numbers("F_t", F_t)?).map_err(refused)?;
+        }
         let (given, unit) = fixed(samples, unit);
         Record::new(given, unit, 1.0).scaled(scale, 1.0)
     }
@@ -196,7 +204,8 @@ impl Record {
         let (of, array) = (slf.get(), |of| PyArray1::from_slice(slf.py(), of));
         let [times, a_g] = [of.given.times(), of.given.acceleration()].map(array);
         let (unit, title) = (of.unit.to_string(), of.title().to_owned());
-        Ok((slf.getattr("_of")?, (times, a_g, of.given.vertical().map(array), unit, of.scale, title)))
+        let [a_v, F_t] = [of.given.vertical(), of.given.force()].map(|of| of.map(array));
+        Ok((slf.getattr("_of")?, (times, a_g, a_v, unit, of.scale, title, F_t)))
     }
 
     /// Reads the record in `file`, in one of the layouts Record.LAYOUTS, known by its content.
@@ -266,6 +275,12 @@ impl Record {
         self.usual.vertical().map(|a_v| PyArray1::from_slice(py, a_v))
     }
 
+    /// Horizontal forces on the top floor at the samples, N, to the right: an array (n,), a copy; None without them.
+    #[getter]
+    fn F_t<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.usual.force().map(|F_t| PyArray1::from_slice(py, F_t))
+    }
+
     /// Title of the record.
     #[getter]
     pub fn title(&self) -> &str {
@@ -288,6 +303,16 @@ impl Record {
     #[getter]
     fn duration(&self) -> f64 {
         self.usual.end() - self.usual.start()
+    }
+
+    /// This ground motion with the horizontal force F_t (N, to the right) on the top floor at `time` (s): arrays of one shape (n,),
+    /// n >= 2, from the start of the record on; linear between them, and 0 after the last one.
+    ///
+    /// The samples are then at the times of both. A sweep and `scaled` multiply accelerations, not the force. Raises ValueError for other
+    /// shapes, NaN and infinity, times that do not increase, and another start. A structure without floors cannot be pushed.
+    fn with_force(&self, time: &Bound<'_, PyAny>, F_t: &Bound<'_, PyAny>) -> PyResult<Record> {
+        let (time, F_t) = (numbers("time", time)?, numbers("F_t", F_t)?);
+        Ok(Record::new(self.given.clone().with_force(&time, &F_t).map_err(refused)?, self.unit, self.scale))
     }
 
     /// This ground motion with its times multiplied by time_scale, its accelerations by scale.
@@ -323,7 +348,7 @@ impl Record {
     #[pyo3(signature = (file, *, vertical=None))]
     fn write(&self, file: PathBuf, vertical: Option<PathBuf>) -> PyResult<()> {
         let write = || -> anyhow::Result<()> {
-            let (paths, tables) = ([Some(&file), vertical.as_ref()].into_iter().flatten(), self.tables());
+            let (paths, tables) = ([Some(&file), vertical.as_ref()].into_iter().flatten(), self.tables()?);
             ensure!(
                 paths.clone().count() >= tables.len(),
                 "the record has a vertical component: give its file as vertical"
@@ -353,7 +378,7 @@ impl Record {
 }
 
 /// Arguments of [`Record::_of`].
-type Parts<'py> = (Array<'py>, Array<'py>, Option<Array<'py>>, String, f64, String);
+type Parts<'py> = (Array<'py>, Array<'py>, Option<Array<'py>>, String, f64, String, Option<Array<'py>>);
 type Array<'py> = Bound<'py, PyArray1<f64>>;
 
 /// The pulse of this shape as a Record: "half_sine", "sine", "cosine", "ricker", "antisymmetric_ricker",

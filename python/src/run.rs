@@ -303,7 +303,7 @@ impl Run {
 
 /// Follows a structure through a ground motion, or in free vibration, exactly, and returns the Run.
 ///
-/// record: a Record; without one the ground is at rest for `duration`. The structure starts at rest in full contact unless
+/// record: a Record, whose with_force also pushes the top floor; without one the ground is at rest for `duration`. The structure starts at rest in full contact unless
 /// initial values are given: theta_0 (rad), theta_dot_0 (rad/s), u_0 (m), u_dot_0 (m/s). Of many masses u_0 and u_dot_0 have
 /// a number for each floor from below, as u[1], u[2], ... and u_dot[1], ... of a Response. duration (s): the length of the run.
 /// Without a duration, the run ends when the base is down for good or the structure overturns, at the latest 100/p_l after

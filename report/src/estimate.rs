@@ -1,6 +1,7 @@
 //! Demands without a time history, term by term (Eqs 4, 21 to 24).
 
 use crate::quantities::NamedValue;
+use anyhow::ensure;
 use rocking::OneMass;
 use rocking::estimates::demand::Demand;
 use rocking::estimates::response_spectrum::spectral_acceleration;
@@ -18,6 +19,7 @@ pub struct Estimate {
 impl Estimate {
     /// Of `structure` under `record`, or on ground at rest, with the dynamic amplification `C`, 0 to 2.
     pub fn new(structure: &OneMass, record: Option<&Record>, C: f64) -> anyhow::Result<Estimate> {
+        ensure!(record.is_none_or(|record| record.force().is_none()), "Eqs 10 to 24 hold only without a force F_t");
         let spectral = |record| spectral_acceleration(record, TAU / structure.omega_u, structure.zeta_u);
         let S_a = record.map_or(0.0, spectral);
         let demand = Demand::new(structure, S_a, C)?;

@@ -63,7 +63,7 @@ pub trait Coordinates:
     /// Makes the coordinates of a structure, each from its number and its mode.
     fn each(structure: &Structure, coordinate: impl Fn(usize, &Mode) -> f64) -> Self;
 
-    /// The generalized forces of horizontal `forces` (N) on the floors of a structure; a force on one mass is its own.
+    /// The generalized forces of horizontal `forces` (N) on the floors of a structure.
     fn of_forces(structure: &Structure, forces: impl Iterator<Item = f64>) -> Self;
 
     /// These coordinates beside what acts on mass that no mode carries among `forces`.
@@ -215,8 +215,9 @@ impl Coordinates for f64 {
     }
 
     #[inline(always)]
-    fn of_forces(_: &Structure, mut forces: impl Iterator<Item = f64>) -> f64 {
-        forces.next().unwrap_or(0.0)
+    fn of_forces(structure: &Structure, forces: impl Iterator<Item = f64>) -> f64 {
+        let on_mode = forces.zip(structure.floors()).map(|(force, floor)| force * floor.shape.of(0));
+        on_mode.reduce(|sum, force| sum + force).unwrap_or(0.0)
     }
 
     #[inline(always)]

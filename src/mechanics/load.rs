@@ -17,17 +17,17 @@ use crate::mechanics::lateral::Coordinates;
 use crate::structure::quantity::{OutOfRange, Quantity, quantity};
 use serde::{Deserialize, Serialize};
 
-/// An acceleration over one interval, positive to the right: `value + slope·(t − start of the interval)`.
+/// An acceleration (m/s²) or a force (N) over one interval, positive to the right: `value + slope·(t − start of the interval)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ramp<Q = f64> {
-    /// Value at the start of the interval, m/s².
+    /// Value at the start of the interval.
     pub value: Q,
-    /// Rate of the acceleration, m/s³.
+    /// Rate per second.
     pub slope: Q,
 }
 
 impl Ramp {
-    /// The acceleration that changes from `from` to `to` (m/s²) within `duration` (s).
+    /// The ramp that changes from `from` to `to` within `duration` (s).
     #[inline(always)] // for each sample of a run
     pub fn between(from: f64, to: f64, duration: f64) -> Ramp {
         Ramp { value: from, slope: (to - from) / duration }
@@ -35,12 +35,12 @@ impl Ramp {
 }
 
 impl<Q: Coordinates> Ramp<Q> {
-    /// Acceleration `tau` seconds after the start of the interval, m/s².
+    /// Value `tau` seconds after the start of the interval.
     pub fn at(self, tau: f64) -> Q {
         self.value.plus(self.slope, tau)
     }
 
-    /// The same acceleration with an interval that starts `tau` seconds later.
+    /// The same ramp with an interval that starts `tau` seconds later.
     pub fn from(self, tau: f64) -> Ramp<Q> {
         Ramp { value: self.at(tau), slope: self.slope }
     }
@@ -66,7 +66,7 @@ pub static LOADS: [Quantity<Load>; 3] = [
 /// The place of a_v in [`LOADS`].
 pub const VERTICAL: usize = 2;
 
-/// The loads at one instant, or their rates; indexed in the order of [`LOADS`].
+/// The loads at one instant, or their rates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Load<Q = f64> {
     /// Ground acceleration, m/s², positive to the right.
@@ -174,9 +174,7 @@ impl<Q: Coordinates> LinearLoad<Q> {
     fn on_pushed_top(&self, structure: &Structure) -> Ramp<Q> {
         Ramp { value: self.value.on_modes(structure), slope: self.slope.on_modes(structure) }
     }
-}
 
-impl<Q: Coordinates> LinearLoad<Q> {
     /// These loads with the accelerations of `ground` added.
     pub fn on_ground(self, ground: LinearLoad) -> LinearLoad<Q> {
         let and = |own: Load<Q>, ground: Load| Load { a_g: own.a_g + ground.a_g, a_v: own.a_v + ground.a_v, ..own };
@@ -185,10 +183,11 @@ impl<Q: Coordinates> LinearLoad<Q> {
 }
 
 impl LinearLoad {
-    /// These loads with the vertical ground acceleration `a_v`.
+    /// These loads with the force `F_t` and the vertical ground acceleration `a_v`.
     #[cold]
-    pub(crate) fn and_upwards(self, a_v: Ramp) -> LinearLoad {
-        LinearLoad { value: Load { a_v: a_v.value, ..self.value }, slope: Load { a_v: a_v.slope, ..self.slope } }
+    pub(crate) fn and(self, F_t: Ramp, a_v: Ramp) -> LinearLoad {
+        let (value, slope) = (Load { F_t: F_t.value, a_v: a_v.value, ..self.value }, self.slope);
+        LinearLoad { value, slope: Load { F_t: F_t.slope, a_v: a_v.slope, ..slope } }
     }
 }
 

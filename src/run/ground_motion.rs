@@ -85,7 +85,7 @@ pub struct Segment {
     pub duration: f64,
     /// End of the segment by the times of the record, s.
     pub until: f64,
-    /// Ground accelerations from the start of the segment on.
+    /// Ground accelerations, and the force on the top floor, from the start of the segment on.
     pub ground: LinearLoad,
 }
 
@@ -129,8 +129,8 @@ impl<'a> GroundMotion<'a> {
         samples.find(|i| self.ahead(*i, elapsed) > self.same_instant(*i)).map(|i| self.instant(i))
     }
 
-    /// Advances `engine` and `elapsed` by `interval` (s), or to a transition that ends the advance, under the record and `load`.
-    /// One bound on the work holds for all samples together. If the advance fails, nothing has changed.
+    /// Advances `engine` and `elapsed` by `interval` (s), or to a transition that ends the advance, under the accelerations of the record,
+    /// not its force, and `load`. One bound on the work holds for all samples together. If the advance fails, nothing has changed.
     pub fn advance<Q: Coordinates, W: Watch<Q>>(
         &self,
         engine: &mut Engine<Q>,
@@ -182,9 +182,10 @@ impl<'a> GroundMotion<'a> {
         (elapsed.sum - self.start + elapsed.rounding) + self.record.start()
     }
 
-    /// Whether the ground accelerates at sample `i`.
+    /// Whether the ground accelerates, or a force acts, at sample `i`.
     fn is_moved(&self, i: usize) -> bool {
-        self.record.acceleration()[i] != 0.0 || self.record.vertical().is_some_and(|vertical| vertical[i] != 0.0)
+        let others = [self.record.vertical(), self.record.force()];
+        self.record.acceleration()[i] != 0.0 || others.into_iter().flatten().any(|of| of[i] != 0.0)
     }
 
     /// Instant of sample `i`, s after the start.
@@ -234,19 +235,20 @@ impl<'a> GroundMotion<'a> {
         reached + usize::from(is_next_here)
     }
 
-    /// The ground accelerations from the last of `reached` samples to the next.
+    /// The ground accelerations and the force from the last of `reached` samples to the next.
     #[inline(always)]
     pub(super) fn ramp(&self, reached: usize) -> LinearLoad {
-        let (times, a_g) = (self.record.times(), self.record.acceleration());
+        let (times, record) = (self.record.times(), self.record);
         if reached == 0 || reached >= times.len() {
             return LinearLoad::default();
         }
         let last = reached - 1;
         let step = times[reached] - times[last];
-        let ground: LinearLoad = Ramp::between(a_g[last], a_g[reached], step).into();
-        match self.record.vertical() {
-            Some(a_v) => ground.and_upwards(Ramp::between(a_v[last], a_v[reached], step)),
-            None => ground,
+        let ramp = |of: &[f64]| Ramp::between(of[last], of[reached], step);
+        let ground: LinearLoad = ramp(record.acceleration()).into();
+        match (record.force(), record.vertical()) {
+            (None, None) => ground,
+            others => ground.and(others.0.map(ramp).unwrap_or_default(), others.1.map(ramp).unwrap_or_default()),
         }
     }
 

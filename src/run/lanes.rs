@@ -323,7 +323,7 @@ fn follow<S: Simd, W: Passes>(
             && let Some((number, (run, mut watch))) = waiting.next()
         {
             match run.course() {
-                Ok(follower) if follower.engine.is_for_lanes() => {
+                Ok(follower) if follower.engine.is_for_lanes() && run.ground.force().is_none() => {
                     let until = follower.engine.motion().time;
                     let mut lane = Box::new(Lane { number, follower, watch, until, ending: None, advance: None });
                     let next = lane.go_on();
@@ -379,6 +379,8 @@ mod tests {
         let acceleration: Vec<_> = noise.collect();
         let times: Vec<_> = (0..300).map(|i| f64::from(i) * step).collect();
         let record = Record::from_samples("", times, acceleration).unwrap();
+        let record =
+            if random.u8(..) < 16 { record.with_force(&[0.0, 1.0], &[300.0, -200.0]).unwrap() } else { record };
         if random.u8(..) < 16 { record.clone().with_vertical(&record.multiplied(0.3)).unwrap() } else { record }
     }
 

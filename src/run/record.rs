@@ -14,6 +14,8 @@ pub struct Record {
     acceleration: Arc<[f64]>,
     /// At the same times; none where the ground moves horizontally alone.
     vertical: Option<Arc<[f64]>>,
+    /// On the top floor at the same times, N; none without a force.
+    force: Option<Arc<[f64]>>,
 }
 
 /// Duration of the fall to 0 of a component that ends before the other one, as a part of its last step.
@@ -43,18 +45,15 @@ pub enum SamplesError {
         /// The problem and its index, counted from 0.
         problem: String,
     },
-    /// The components of a ground motion do not begin together.
-    #[error(
-        "the vertical component {vertical:?} begins at {begins:?} s and {title:?} at {start:?} s: shift the times of one \
-         of them"
-    )]
+    /// The components of a ground motion, or a force, do not begin together.
+    #[error("{other} begins at {begins:?} s and {title:?} at {start:?} s: shift the times of one of them")]
     Apart {
         /// Title of the record.
         title: String,
         /// Its first sample, s.
         start: f64,
-        /// Title of the vertical component.
-        vertical: String,
+        /// The vertical component with its title, or the force.
+        other: String,
         /// Its first sample, s.
         begins: f64,
     },
@@ -75,21 +74,15 @@ impl Record {
         acceleration: Vec<f64>,
     ) -> Result<Record, SamplesError> {
         let title = title.into();
-        match check_samples(&times, &acceleration) {
-            Ok(()) => Ok(Record {
-                title: title.into(),
-                times: times.into(),
-                acceleration: acceleration.into(),
-                vertical: None,
-            }),
-            Err(problem) => Err(SamplesError::BadSamples { title, problem }),
-        }
+        check_samples(&title, &times, ("acceleration", "m/s²", &acceleration))?;
+        let (times, acceleration) = (times.into(), acceleration.into());
+        Ok(Record { title: title.into(), times, acceleration, vertical: None, force: None })
     }
 
     /// Ground at rest for `duration` (s), greater than 0: free vibration.
     pub fn at_rest(duration: f64) -> Record {
         let (times, acceleration) = ([0.0, duration].into(), [0.0, 0.0].into());
-        Record { title: "free vibration".into(), times, acceleration, vertical: None }
+        Record { title: "free vibration".into(), times, acceleration, vertical: None, force: None }
     }
 
     /// This ground motion with the vertical component `vertical`, positive upwards, whose first sample comes with its own. The
@@ -97,26 +90,51 @@ impl Record {
     /// direction: it comes to rest within 1e-9 of the last step, where it has not. A component of zeros is no vertical motion:
     /// the ground motion stays as it is.
     pub fn with_vertical(self, vertical: &Record) -> Result<Record, SamplesError> {
-        if self.start() != vertical.start() {
-            let (start, begins) = (self.start(), vertical.start());
-            let [title, vertical] = [self.title, vertical.title.clone()].map(|title| title.to_string());
-            return Err(SamplesError::Apart { title, start, vertical, begins });
-        }
+        self.check_start(vertical.start(), || format!("the vertical component {:?}", vertical.title))?;
         if vertical.acceleration.iter().all(|a_v| *a_v == 0.0) {
             return Ok(self);
         }
         if vertical.acceleration == self.acceleration {
             return Err(SamplesError::Twice { title: self.title.to_string() });
         }
-        let end = self.end().max(vertical.end());
-        let [own, other] = [(&self.times, &self.acceleration), (&vertical.times, &vertical.acceleration)]
-            .map(|(times, acceleration)| until(end, times.to_vec(), acceleration.to_vec()));
-        let mut times = [&own.0[..], &other.0].concat();
-        times.sort_by(f64::total_cmp);
-        times.dedup();
-        let [acceleration, vertical] =
-            [own, other].map(|(samples, of)| times.iter().map(|time| at(&samples, &of, *time)).collect());
-        Ok(Record { times: times.into(), acceleration, vertical: Some(vertical), ..self })
+        let (record, vertical) = self.beside(&vertical.times, &vertical.acceleration);
+        Ok(Record { vertical: Some(vertical), ..record })
+    }
+
+    /// This ground motion with the horizontal force `force[i]` (N, to the right) on the top floor at `times[i]` (s), linear between
+    /// them: two samples or more, the first of which comes with the first of the ground motion. The samples are then at the times of
+    /// both, as by [`Record::with_vertical`]. After its last sample the force is 0. A force of zeros is none. No scale changes the force.
+    pub fn with_force(self, times: &[f64], force: &[f64]) -> Result<Record, SamplesError> {
+        check_samples("force", times, ("F_t", "N", force))?;
+        self.check_start(times[0], || "the force".into())?;
+        if force.iter().all(|F_t| *F_t == 0.0) {
+            return Ok(self);
+        }
+        let (record, force) = self.beside(times, force);
+        Ok(Record { force: Some(force), ..record })
+    }
+
+    /// Refuses an `other` component that does not begin with the record, at `begins` (s).
+    fn check_start(&self, begins: f64, other: impl FnOnce() -> String) -> Result<(), SamplesError> {
+        let (title, start) = (self.title.to_string(), self.start());
+        if begins == start { Ok(()) } else { Err(SamplesError::Apart { title, start, other: other(), begins }) }
+    }
+
+    /// This ground motion, and `other` at `times` (s), all at the times of both.
+    fn beside(self, times: &[f64], other: &[f64]) -> (Record, Arc<[f64]>) {
+        let end = self.end().max(times[times.len() - 1]);
+        let [own, others] = [&self.times, times].map(|times| until(end, times.to_vec(), vec![0.0; times.len()]).0);
+        let mut all = [own, others].concat();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        let at_all = |times: &[f64], values: &[f64]| -> Arc<[f64]> {
+            let (times, values) = until(end, times.to_vec(), values.to_vec());
+            all.iter().map(|time| at(&times, &values, *time)).collect()
+        };
+        let own = |of: Arc<[f64]>| at_all(&self.times, &of);
+        let (acceleration, vertical, force) = (own(self.acceleration), self.vertical.map(own), self.force.map(own));
+        let other = at_all(times, other);
+        (Record { title: self.title, times: all.into(), acceleration, vertical, force }, other)
     }
 
     /// This ground motion without its vertical component, at the same times.
@@ -124,14 +142,14 @@ impl Record {
         Record { vertical: None, ..self }
     }
 
-    /// This ground motion with every time multiplied by `time_scale`, greater than 0, and every acceleration by
+    /// This ground motion with every time, also of the force, multiplied by `time_scale`, greater than 0, and every acceleration by
     /// `scale`; an error where that leaves no motion whose accelerations and slopes are finite.
     pub fn scaled(mut self, time_scale: f64, scale: f64) -> Result<Record, SamplesError> {
         self.times = self.times.iter().map(|time| time * time_scale).collect();
         let record = self.multiplied(scale);
         let is_motion = |(t, a): (&[f64], &[f64])| t[1] > t[0] && ((a[1] - a[0]) / (t[1] - t[0])).is_finite();
         let is_record = |of: &Arc<[f64]>| record.times.windows(2).zip(of.windows(2)).all(is_motion);
-        let is_whole = is_record(&record.acceleration) && record.vertical.iter().all(is_record);
+        let is_whole = is_record(&record.acceleration) && record.vertical.iter().chain(&record.force).all(is_record);
         match is_whole && record.end().is_finite() {
             true => Ok(record),
             false => Err(SamplesError::BadScales { title: record.title.to_string(), time_scale, scale }),
@@ -173,6 +191,11 @@ impl Record {
     /// Vertical ground accelerations of the samples, m/s², positive upwards, if there are any.
     pub fn vertical(&self) -> Option<&[f64]> {
         self.vertical.as_deref()
+    }
+
+    /// Forces on the top floor at the samples, N, positive to the right, if there are any.
+    pub fn force(&self) -> Option<&[f64]> {
+        self.force.as_deref()
     }
 
     /// Instant of the first sample, s.
@@ -230,25 +253,23 @@ fn at(times: &[f64], acceleration: &[f64], time: f64) -> f64 {
     acceleration[next - 1] + part * (acceleration[next] - acceleration[next - 1])
 }
 
-fn check_samples(times: &[f64], acceleration: &[f64]) -> Result<(), String> {
-    let counts = (times.len(), acceleration.len());
+/// Refuses `samples`, which have a name, a unit and values, where they are none of a record or a force of this `title`.
+fn check_samples(title: &str, times: &[f64], samples: (&str, &str, &[f64])) -> Result<(), SamplesError> {
+    let refused = |problem| Err(SamplesError::BadSamples { title: title.into(), problem });
+    let (name, counts) = (samples.0, (times.len(), samples.2.len()));
     if counts.0 != counts.1 || counts.0 < 2 {
-        return Err(format!(
-            "{} time(s) and {} acceleration(s) instead of as many of each, two or more",
-            counts.0, counts.1
-        ));
+        let needed = "instead of as many of each, two or more";
+        return refused(format!("{} time(s) and {} {name}(s) {needed}", counts.0, counts.1));
     }
-    for (name, unit, values) in [("times", "s", times), ("acceleration", "m/s²", acceleration)] {
+    for (name, unit, values) in [("times", "s", times), samples] {
         if let Some(i) = values.iter().position(|value| !value.is_finite()) {
-            return Err(format!("{name}[{i}] = {} {unit} is not finite", values[i]));
+            return refused(format!("{name}[{i}] = {} {unit} is not finite", values[i]));
         }
     }
-    match times.windows(2).position(|pair| pair[1] <= pair[0]) {
-        Some(i) => {
-            Err(format!("times[{}] = {} s does not come after times[{i}] = {} s", i + 1, times[i + 1], times[i]))
-        }
-        None => Ok(()),
-    }
+    let late = times.windows(2).position(|pair| pair[1] <= pair[0]);
+    late.map_or(Ok(()), |i| {
+        refused(format!("times[{}] = {} s does not come after times[{i}] = {} s", i + 1, times[i + 1], times[i]))
+    })
 }
 
 #[cfg(test)]
@@ -278,10 +299,29 @@ mod tests {
         assert_eq!((scaled.end(), scaled.acceleration()[1], scaled.vertical().unwrap()[1]), (0.75, 30.0, -80.0));
         let late = Record::from_samples("late", vec![0.1, 1.0], vec![0.0, 1.0]).unwrap();
         let refused = own.with_vertical(&late).unwrap_err().to_string();
-        assert!(
-            refused.starts_with("the vertical component \"late\" begins at 0.1 s and \"own\" at 0.0 s"),
-            "{refused}"
-        );
+        let expected = "the vertical component \"late\" begins at 0.1 s and \"own\" at 0.0 s";
+        assert!(refused.starts_with(expected), "{refused}");
+    }
+
+    /// By hand: the force has a sample between those of the ground, and ends first.
+    #[test]
+    fn a_force_is_at_the_times_of_both_and_keeps_its_size() {
+        let own = Record::from_samples("own", vec![0.0, 1.0, 2.0], vec![2.0, 4.0, -2.0]).unwrap();
+        let pushed = |times: &[f64], F_t: &[f64]| own.clone().with_force(times, F_t);
+        let both = pushed(&[0.0, 0.5], &[3.0, 5.0]).unwrap().with_vertical(&own.clone().multiplied(2.0)).unwrap();
+        assert_eq!((both.times(), both.acceleration()[1]), (&[0.0, 0.5, 0.5 + 0.5 * FALL, 1.0, 2.0][..], 3.0));
+        assert_eq!(both.force().unwrap(), [3.0, 5.0, 0.0, 0.0, 0.0]);
+        let scaled = both.scaled(0.5, 10.0).unwrap();
+        assert_eq!((scaled.times()[1], scaled.acceleration()[1], scaled.force().unwrap()[1]), (0.25, 30.0, 5.0));
+        assert_eq!(pushed(&[0.0, 9.0], &[0.0; 2]), Ok(own.clone()));
+        for (times, F_t, refused) in [
+            (&[0.5, 1.0][..], &[1.0; 2][..], "the force begins at 0.5 s and \"own\" at 0.0 s: shift"),
+            (&[0.0, 1.0], &[1.0; 3], "\"force\": 2 time(s) and 3 F_t(s) instead of as many of each"),
+            (&[0.0, 1.0], &[1.0, f64::NAN], "\"force\": F_t[1] = NaN N is not finite"),
+        ] {
+            let error = pushed(times, F_t).unwrap_err().to_string();
+            assert!(error.starts_with(refused), "{error}");
+        }
     }
 
     #[test]

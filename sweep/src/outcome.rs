@@ -244,7 +244,7 @@ mod tests {
 
     /// A limit of one mass.
     fn limit(text: &str) -> Result<Limit, Refused> {
-        Limit::read(text, &measures(&Structure::new(Parameters::EVISON).unwrap(), Detail::Auto))
+        Limit::read(text, &measures(&Structure::new(Parameters::EVISON).unwrap()))
     }
 
     #[test]

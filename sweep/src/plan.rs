@@ -241,10 +241,11 @@ impl NamedRecord {
     /// the largest.
     pub(crate) fn is_same(&self, other: &NamedRecord) -> bool {
         const ROUNDING: f64 = 1e-4;
-        fn parts(of: &NamedRecord) -> [(&[f64], f64, f64); 3] {
-            let [a_g, a_v] = [of.record.acceleration(), of.record.vertical().unwrap_or_default()];
-            let (scale, largest) = (of.scale, of.scale * of.pga);
-            [(of.record.times(), 1.0, of.record.end()), (a_g, scale, largest), (a_v, scale, largest)]
+        fn parts(of: &NamedRecord) -> [(&[f64], f64, f64); 4] {
+            let (NamedRecord { record, scale, pga, .. }, a_g) = (of, of.record.acceleration());
+            let [a_v, F_t] = [record.vertical(), record.force()].map(Option::unwrap_or_default);
+            let (largest, most_F_t) = (scale * pga, F_t.iter().fold(0.0, |most: f64, F_t| most.max(F_t.abs())));
+            [(record.times(), 1.0, record.end()), (a_g, *scale, largest), (a_v, *scale, largest), (F_t, 1.0, most_F_t)]
         }
         parts(self).into_iter().zip(parts(other)).all(|((these, factor, most), (others, of_others, _))| {
             let is_near = |(a, b): (&f64, &f64)| (factor * a - of_others * b).abs() <= ROUNDING * most.abs();

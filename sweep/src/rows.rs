@@ -290,7 +290,11 @@ impl Column {
 /// Stands for the samples of a record.
 fn digest_of(record: &Record) -> Uuid {
     let samples = Digest::new(&Uuid::NAMESPACE_OID).and(&(record.times(), record.acceleration()));
-    record.vertical().map_or_else(|| samples.uuid(), |vertical| samples.clone().and(&vertical).uuid())
+    match (record.vertical(), record.force()) {
+        (None, None) => samples.uuid(),
+        (Some(vertical), None) => samples.and(&vertical).uuid(),
+        (vertical, force) => samples.and(&vertical).and(&force).uuid(),
+    }
 }
 
 /// Refuses two ground motions that are the same: each of their runs would count twice.

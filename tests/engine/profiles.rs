@@ -25,12 +25,13 @@ fn base(parameters: &Parameters) -> Given {
     Given::of(&[own, ties].concat()).unwrap()
 }
 
-/// At rest, and with dissipators from a start beyond their yield.
+/// Under a force on the top, from rest, and with dissipators from a start beyond their yield.
 #[test]
 fn one_mode_is_one_mass() {
-    let ground = ground();
     let tied = Parameters { P_0: 400.0, k_t: 2e4, xi_d: 0.2, c_d: 150.0, k_d: 2e5, F_y: 120.0, ..Parameters::MCMANUS };
-    for (parameters, theta) in [(Parameters::MCMANUS, 0.0), (Parameters::EVISON, 0.0), (tied, 0.1)] {
+    for (parameters, theta, F_t) in [(Parameters::MCMANUS, 0.0, 60.0), (Parameters::EVISON, 0.0, 0.0), (tied, 0.1, 0.0)]
+    {
+        let ground = ground().with_force(&[0.0, 1.0, 3.5], &[0.0, F_t, -F_t]).unwrap();
         let (tolerance, structure) = (1e-11, OneMass::new(parameters).unwrap());
         let Parameters { m, H, zeta_fc, .. } = parameters;
         let storey = Storey { m, h: H, k: structure.k };

@@ -1,8 +1,13 @@
-//! The force on the top mass, against ground motion that does the same.
+//! The force on the top mass, against ground motion that does the same and against free vibration.
 
 use crate::common::start;
 use approx::assert_relative_eq;
-use rocking::{Detail, LinearLoad, Load, Parameters, State};
+use rocking::engine::piece::Sample;
+use rocking::run::record::Record;
+use rocking::run::{End, Ending, RunError, Runs};
+use rocking::structure::description::{Damping, Storey};
+use rocking::structure::natural_quantities::Given;
+use rocking::{Detail, LinearLoad, Load, Modes, OneMass, Parameters, Run, State, Structure};
 
 /// On a foundation without mass −m a_g on the top mass is the same as a_g, at every level of detail.
 #[test]
@@ -30,4 +35,41 @@ fn without_a_foundation_mass_it_is_as_good_as_ground_motion() {
         assert_eq!(pushed.1, shaken.1);
         assert_eq!(shaken.1 > 3, detail != Detail::FixedBase, "{}", detail.name());
     }
+}
+
+/// A constant force holds its static displacement φ F/k of each mode. Once it is released, each mode vibrates freely.
+fn snaps_back<Q: Runs>(structure: &Structure) {
+    let (F_t, released, top) = (50.0, 0.5, structure.floors().last().unwrap());
+    let ground = Record::at_rest(1.0).with_force(&[0.0, released], &[F_t; 2]).unwrap();
+    let u = Q::each(structure, |j, mode| F_t * top.shape.numbers()[j] / mode.stiffness);
+    let initial = State { u, u_dot: Q::parts(structure, 0.0), theta: 0.0, theta_dot: 0.0 };
+    let (detail, tolerance, end) = (Detail::Auto, 1e-12, End::At(1.0));
+    let run = Run { structure: structure.clone(), ground: &ground, initial, detail, tolerance, end };
+    let see = |sample: &Sample<Q>| {
+        for (j, mode) in structure.modes().iter().enumerate() {
+            let (omega, tau) = (mode.omega(), (sample.motion.time - released).max(0.0));
+            let decay = mode.damping / (2.0 * mode.mass);
+            let omega_d = (omega * omega - decay * decay).sqrt();
+            let free = (-decay * tau).exp() * ((omega_d * tau).cos() + decay / omega_d * (omega_d * tau).sin());
+            assert_relative_eq!(sample.motion.state.u.of(j), u.of(j) * free, epsilon = 1e-7 * u.of(j).abs());
+        }
+    };
+    let finish = run.sample((0..100).map(|i| 0.01 * f64::from(i)), see, &mut ()).unwrap();
+    assert_eq!((finish.ending, finish.motion.transitions), (Ending::AtTime, 0));
+}
+
+#[test]
+fn a_released_force_leaves_free_vibration() {
+    snaps_back::<f64>(&OneMass::new(Parameters::MCMANUS).unwrap().into());
+    let base = Given::of(&[("m0", 2e4), ("J0", 3e4), ("B", 1.5)]).unwrap();
+    let storeys = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)].map(|(m, h, k)| Storey { m, h, k });
+    snaps_back::<Modes>(&Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap());
+}
+
+#[test]
+fn a_force_needs_a_floor() {
+    let ground = Record::at_rest(1.0).with_force(&[0.0, 1.0], &[1.0; 2]).unwrap();
+    let one = Structure::from(OneMass::new(Parameters::MCMANUS).unwrap());
+    let without_floors = Structure::of_body(*one.body(), one.modes(), &[]).unwrap();
+    assert_eq!(Run::of_modes(without_floors, &ground).peaks().unwrap_err(), RunError::NoFloor);
 }

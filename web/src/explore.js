@@ -192,6 +192,7 @@
         limits = around(slider(), value, min, max);
         range.value = scale(limits).part(value);
       }
+      range.hidden = name === "u_0" && isMany();
       made.classList.toggle("given", isGiven);
     };
     rows[name].element = made;
@@ -249,7 +250,7 @@
     const { m0, J0, B } = about.parameters;
     for (const { name } of tables.ground) delete fields[name];
     if (target.value === "gives") {
-      for (const name of ["r", "u_0"]) delete fields[name];
+      delete fields.r;
       if (["linear", "modal"].includes(fields.detail)) delete fields.detail;
       if (!J0) fields.J0 = String(Number(((m0 * B ** 2) / 3).toPrecision(4)));
       fields.f_v = String(tables.ground[0].usual);
@@ -329,8 +330,7 @@
     at("restraints").open ||= restraints.some((name) => name in fields);
     at("ignore_npts").checked = "ignore_npts" in fields;
     for (const id of ["unit", "dt", "column", "column_v"]) if (document.activeElement !== at(id)) at(id).value = fields[id] ?? "";
-    const ofRecord = numbersOf(record()).filter((name) => !isMany() || name !== "u_0");
-    const own = [...ofRecord, "tolerance", ...(isFrame() ? ["zeta", "modes"] : [])];
+    const own = [...numbersOf(record()), "tolerance", ...(isFrame() ? ["zeta", "modes"] : [])];
     const cycles = tables.shapes.find(({ name }) => name === record())?.cycles;
     for (const { name, usual } of tables.numbers) {
       rows[name](Number(fields[name] ?? { cycles, modes: storeys().length }[name] ?? usual), name in fields);

@@ -32,7 +32,7 @@ pub const NUMBERS: [Number; 13] = [
     ("duration", "s", "duration of the ground motion", 10.0, [1.0, 60.0]),
     ("seed", "1", "seed of the noise", 1.0, [1.0, 100.0]),
     ("theta_0", "rad", "rotation at the start", 0.0, [-0.3, 0.3]),
-    ("u_0", "m", "elastic displacement at the start", 0.0, [-0.05, 0.05]),
+    ("u_0", "m", "elastic displacement at the start; of floors from below: 0.01, 0.02", 0.0, [-0.05, 0.05]),
     ("scale", "1", "factor on the accelerations", 1.0, [0.1, 10.0]),
     ("time_scale", "1", "factor on the times", 1.0, [0.1, 10.0]),
     ("tolerance", "1", "relative tolerance of the results", DEFAULT_TOLERANCE, [1e-12, 1e-3]),
@@ -161,7 +161,6 @@ impl Fields {
             of_structure.into_iter().chain(names()).chain(of_ground).chain(["record"]).chain(numbers).collect();
         let others = fields.of_file().chain(RUN).filter(|name| !known.contains(name)).collect::<Vec<_>>();
         known.extend(others);
-        known.retain(|name| *name != "u_0" || !fields.is_many());
         match fields.0.keys().find(|key| !known.contains(&key.as_str())) {
             Some(key) => {
                 let known = known.join(", ");
@@ -336,7 +335,9 @@ impl Fields {
 
     /// Start, method and end of the run.
     pub fn conditions(&self) -> Result<Conditions, String> {
-        let initial = State { theta: self.number("theta_0")?, u: vec![self.number("u_0")?], ..State::default() };
+        let of_floor = |text: &str| number_of("u_0", "m", text.trim());
+        let u = self.text("u_0").unwrap_or("0").split(',').map(of_floor).collect::<Result<_, _>>()?;
+        let initial = State { theta: self.number("theta_0")?, u, ..State::default() };
         let duration = (self.kind() == "free").then(|| self.number("duration")).transpose()?;
         Ok(Conditions { initial, detail: self.detail()?, tolerance: self.tolerance()?, duration })
     }

@@ -125,6 +125,7 @@ fn literal(name: &str, text: &str) -> Result<Value, String> {
             Column::Number(number) => number.into(),
             _ => text.into(),
         }),
+        "u_0" if text.contains(',') => text.split(',').map(|text| literal(name, text.trim())).collect(),
         _ => number().map(Value::Number).ok_or_else(|| format!("{name} = {text:?} is no finite number")),
     }
 }
@@ -133,7 +134,7 @@ fn literal(name: &str, text: &str) -> Result<Value, String> {
 fn command(name: &str, options: &[&Options]) -> Result<String, String> {
     let mut words = vec![format!("rocking-fmu {name}")];
     for (name, value) in options.iter().copied().flatten() {
-        let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        let text = value.as_str().map_or_else(|| value.to_string().replace(['[', ']'], ""), str::to_owned);
         let quoted = shlex::try_quote(&text).map_err(|error| format!("{name} = {text:?}: {error}"))?;
         let name = name.replace('_', "-");
         words.push(if value.is_boolean() { format!("--{name}") } else { format!("--{name}={quoted}") });

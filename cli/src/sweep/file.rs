@@ -1,6 +1,6 @@
 //! The TOML file of a sweep: every record at every scale factor on every structure, or pulses of every frequency
 //! and amplitude.
-use crate::record_args::RecordOptions;
+use crate::record_args::{RecordOptions, with_force};
 use crate::scene_args::InitialArgs;
 use crate::structure_args::of_file;
 use crate::talk::{few, warning};
@@ -117,6 +117,11 @@ enum RecordEntry {
 type Described<'a> = (&'a str, RecordOptions);
 
 impl RecordEntry {
+    /// The path of the force on the top floor beside these records, if any.
+    fn force(&self) -> Option<&str> {
+        if let RecordEntry::As(table) = self { table.get("force")?.as_str() } else { None }
+    }
+
     /// The pattern of the files, the vertical component that goes with the one file, if any, and how each is read.
     fn pattern_and_options(&self) -> anyhow::Result<(Described<'_>, Option<Described<'_>>)> {
         match self {
@@ -125,8 +130,7 @@ impl RecordEntry {
                 let pattern = table.get("file").and_then(toml::Value::as_str);
                 let pattern = pattern.context("records: a table without file: expected { file = ..., scale = ... }")?;
                 let mut options = table.clone();
-                options.remove("file");
-                options.remove("vertical");
+                options.retain(|name, of| !["file", "vertical"].contains(&name) && !(name == "force" && of.is_str()));
                 let column_v = options.remove("vertical_column").map(Column::deserialize).transpose()?;
                 let vertical = table.get("vertical").map(|vertical| {
                     vertical.as_str().with_context(|| format!("records {pattern:?}: vertical is the path of one file"))
@@ -201,6 +205,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
             record.with_vertical(&read_one(vertical, options)?).map_err(|error| no_pair(error, "vertical_column"))
         };
         let motions = motions(&file.records, folder, read);
+        file.records.iter().filter_map(RecordEntry::force).for_each(|force| files.add_input(&folder.join(force)));
         let all_warn = |warnings| few(warnings, "warnings").iter().for_each(|warning| warning!("{warning}"));
         all_warn(warnings);
         let (tolerance, duration) = (file.tolerance.unwrap_or(DEFAULT_TOLERANCE), file.duration);
@@ -343,7 +348,9 @@ fn motions(
             false if *up == pattern => format!(" with{}", column(of_up)),
             false => format!(" with {up}{}", column(of_up)),
         });
-        let with = column(&options) + &up.unwrap_or_default();
+        let force = source.force();
+        let with = column(&options) + &up.unwrap_or_default() + &force.map_or("".into(), |of| format!(" with {of}"));
+        let force = force.map(|path| folder.join(path));
         let in_folder = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
         let paths = glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))?;
         let mut paths = paths.peekable();
@@ -361,6 +368,7 @@ fn motions(
             let file_of = |up: &str| if up == pattern { path.clone() } else { folder.join(up) };
             let vertical = vertical.as_ref().map(|(up, options)| (file_of(up), options.clone()));
             let record = read(&path, vertical.as_ref(), &options);
+            let record = record.and_then(|record| with_force(record, force.as_deref()));
             match record.and_then(|record| Ok(NamedRecord::new(name + &with, record, scale)?)) {
                 Ok(motion) => motions.push(motion),
                 Err(error) => bad.push(error),

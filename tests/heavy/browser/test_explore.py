@@ -136,7 +136,8 @@ def test_a_scene_is_the_same_by_its_command_and_by_its_script(opened, exporter, 
     table = "".join(f"{t},{4 * np.sin(9 * t)},{2 * np.cos(20 * t)}\n" for t in time)
     shaken = PIER | {"m": "1200 t", "k_t": "20000 kN/m", "record": "record", "column": "2", "column_v": "3"}
     on_ground = [(fields | {"record": "ricker", "amplitude": "1"}, "-", "") for fields in ON_GROUND]
-    for number, (fields, name, record) in enumerate([(frame, "-", ""), (pier, "-", ""), (shaken, "up.csv", table), *on_ground, *random_scenes(40)]):
+    pulled = FRAME | {"record": "free", "duration": "2", "theta_0": "0.01", "u_0": "1e-3, 2e-3,-3e-3"}
+    for number, (fields, name, record) in enumerate([(frame, "-", ""), (pier, "-", ""), (pulled, "-", ""), (shaken, "up.csv", table), *on_ground, *random_scenes(40)]):
         page.evaluate("hash => { location.hash = hash }", urlencode(fields | {"tab": "export"}))
         if fields.get("record") == "record":
             drop(page, name, record.encode())

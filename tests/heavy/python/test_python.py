@@ -261,6 +261,17 @@ def test_both_components_are_written(tmp_path):
             fr.Record.read(file, column=2, **same)
 
 
+def test_a_force_goes_with_a_record_and_no_scale_changes_it(tmp_path, ground):
+    pushed = ground.with_force([0, 1, 60], [0, 300, 0])
+    assert pushed != ground and pushed.F_t.max() == pushed.scaled(2).F_t.max() == 300 and ground.F_t is None
+    assert pickle.loads(pickle.dumps(pushed.scaled(2, time_scale=0.5))) == copy.copy(pushed).scaled(2, time_scale=0.5)
+    pier = fr.Structure(preset="mcmanus")
+    assert fr.sweep(pier, pushed, scale=[2])["peak_theta[rad]"][0] == fr.simulate(pier, pushed.scaled(2)).peaks["theta"]
+    for refuse in (lambda: pushed.write(tmp_path / "a.csv"), lambda: fr.export(tmp_path / "a.fmu", pier, record=pushed)):
+        with pytest.raises(ValueError, match="the record has a force, which its file cannot have; an FMU has the input F_t"):
+            refuse()
+
+
 @pytest.fixture(scope="module")
 def long_run():
     time_ = np.arange(4_000_000) * 0.01
