@@ -173,12 +173,7 @@ impl Settings {
     }
 
     /// The level of detail at which `structure` moves that is turned by `theta` (rad).
-    fn level<Q: Coordinates>(
-        self,
-        kind: &Kind<Q>,
-        structure: Structure,
-        theta: f64,
-    ) -> Result<Box<dyn Level<Q>>, InitialStateError> {
+    fn level<Q: Coordinates>(self, kind: &Kind<Q>, structure: Structure, theta: f64) -> LevelOrNot<Q> {
         let level = (kind.level)(self.detail, structure, self.local_error()?, self.vertical)?;
         match self.detail {
             Detail::FixedBase if theta != 0.0 => Err(InitialStateError::TurnedFixedBase(theta)),
@@ -187,11 +182,13 @@ impl Settings {
     }
 }
 
+type LevelOrNot<Q> = Result<Box<dyn Level<Q>>, InitialStateError>;
+
 /// The functions of structures with the coordinates `Q` that are compiled here alone: a generic function would be compiled again in every
 /// crate that follows runs.
 #[derive(Debug)]
 struct Kind<Q: Coordinates> {
-    level: fn(Detail, Structure, f64, bool) -> Result<Box<dyn Level<Q>>, InitialStateError>,
+    level: fn(Detail, Structure, f64, bool) -> LevelOrNot<Q>,
     watched: fn(&Structure, &Motion<Q>) -> Option<&'static Watched<Q>>,
     advance: fn(Task<'_, Q>) -> Result<Progress, AdvanceError>,
 }

@@ -251,14 +251,17 @@ pub trait Runs: Coordinates {
 /// Starts a structure at a time (s) from a state.
 type Start<Q> = fn(Structure, State<Q>, f64, Settings) -> Result<Engine<Q>, InitialStateError>;
 
+type Watched<Q, T> = fn(&Run<Q>, &mut dyn Watch<Q>) -> Result<T, RunError>;
+type Judged<Q, T> = fn(&Run<Q>, &mut Validity, &mut dyn Watch<Q>) -> Result<T, RunError>;
+
 /// The functions that follow runs.
 #[doc(hidden)]
 pub struct Compiled<Q: Coordinates> {
-    finish: fn(&Run<Q>, &mut dyn Watch<Q>) -> Result<(Ending, Engine<Q>), RunError>,
+    finish: Watched<Q, (Ending, Engine<Q>)>,
     /// See [`Run::found`]; also the peaks of all the motion, including a fall.
-    found: fn(&Run<Q>, &mut dyn Watch<Q>) -> Result<(Found<Q>, Peaks), RunError>,
-    judged: fn(&Run<Q>, &mut Validity, &mut dyn Watch<Q>) -> Result<Found<Q>, RunError>,
-    judge: fn(&Run<Q>, &mut Validity, &mut dyn Watch<Q>) -> Result<Finish<Q>, RunError>,
+    found: Watched<Q, (Found<Q>, Peaks)>,
+    judged: Judged<Q, Found<Q>>,
+    judge: Judged<Q, Finish<Q>>,
     curve: fn(&Run<Q>, f64) -> Result<Curve<Q>, RunError>,
     compare: fn(&Run<Q>) -> Result<Comparison, RunError>,
 }

@@ -215,9 +215,8 @@ impl Coordinates for f64 {
     }
 
     #[inline(always)]
-    fn of_forces(structure: &Structure, forces: impl Iterator<Item = f64>) -> f64 {
-        let on_mode = forces.zip(structure.floors()).map(|(force, floor)| force * floor.shape.of(0));
-        on_mode.reduce(|sum, force| sum + force).unwrap_or(0.0)
+    fn of_forces(_: &Structure, forces: impl Iterator<Item = f64>) -> f64 {
+        forces.reduce(|sum, force| sum + force).unwrap_or(0.0) // every floor moves as the mass does
     }
 
     #[inline(always)]

@@ -130,7 +130,7 @@ impl RecordEntry {
                 let pattern = table.get("file").and_then(toml::Value::as_str);
                 let pattern = pattern.context("records: a table without file: expected { file = ..., scale = ... }")?;
                 let mut options = table.clone();
-                options.retain(|name, of| !["file", "vertical"].contains(&name) && !(name == "force" && of.is_str()));
+                options.retain(|name, of| !(["file", "vertical"].contains(&name) || name == "force" && of.is_str()));
                 let column_v = options.remove("vertical_column").map(Column::deserialize).transpose()?;
                 let vertical = table.get("vertical").map(|vertical| {
                     vertical.as_str().with_context(|| format!("records {pattern:?}: vertical is the path of one file"))
