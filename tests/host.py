@@ -179,6 +179,7 @@ class Instance:
     def __init__(self, fmu: Fmu, kind: str = "CoSimulation", logs: bool = True, **how):
         self.fmu, self.time = fmu, 0.0
         self.is_3, self.is_model = fmu.description.fmiVersion.startswith("3"), kind == "ModelExchange"
+        self.handles_events = self.is_model or how.get("eventModeUsed", False)
         name = f"instance {next(_NUMBERS)}"
         self.messages = messages = _LOGS[name.encode()] = []
         made = [[FMU2Slave, FMU2Model], [FMU3Slave, FMU3Model]][self.is_3][self.is_model]
@@ -223,12 +224,15 @@ class Instance:
         return self
 
     def exit(self) -> Instance:
-        """Starts the simulation, in model exchange up to continuous-time mode."""
+        """Starts the simulation. A host that handles events goes on to continuous-time mode, or to step mode."""
         self.slave.exitInitializationMode()
-        if self.is_model:
+        if self.handles_events:
             self.update()
-            self.slave.enterContinuousTimeMode()
+            self.leave_event()
         return self
+
+    def leave_event(self):
+        self.slave.enterContinuousTimeMode() if self.is_model else self.slave.enterStepMode()
 
     def initialize(self, tolerance=None, start=0.0, stop=None, **start_values) -> Instance:
         return self.enter(tolerance, start, stop, **start_values).exit()
@@ -331,7 +335,7 @@ class Instance:
         """Enters event mode and leaves it."""
         self.slave.enterEventMode()
         found = self.update()
-        self.slave.enterContinuousTimeMode()
+        self.leave_event()
         return found
 
     def go_to(self, time: float, states):

@@ -81,10 +81,3 @@ def test_response_with_ties_under_both_components(scene, mcmanus):
     for name in SEEN:
         expected = vars(exact)["a" if name == "a_t" else name].reshape(len(time))
         np.testing.assert_allclose(rows[name], expected, rtol=0, atol=1e-9 * max(np.abs(expected).max(), 1e-300), err_msg=name)
-
-
-def test_modal_refuses_vertical_motion_and_says_why(mcmanus):
-    with mcmanus.start(detail=4) as instance:
-        with pytest.raises(Exception):
-            instance.set(a_v=1.0)
-        assert "detail = modal has no modes of a structure that is restrained or shaken vertically" in instance.errors[-1]

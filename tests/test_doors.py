@@ -203,13 +203,9 @@ def test_both_fmus_have_the_command_lines_numbers(scene_of, exporter, tmp_path, 
     scene = scene_of(number)
     check_ground(scene)
     expected = {name: of for name, of in scene.answer.items() if name not in ("a_g", "ending", "steps", "evaluations")}
-    fmu = export(exporter, scene, 2, tmp_path)
-    found = co_simulation(fmu, scene)
-    assert co_simulation(export(exporter, scene, 3, tmp_path), scene) == found
+    found, of_3 = (co_simulation(export(exporter, scene, fmi, tmp_path), scene) for fmi in (2, 3))
+    assert of_3 == found
     assert found.keys() - TIES == expected.keys() - TIES
     for name, of in expected.items():
         is_exact = (expected["end"][1] if name in VALIDITY else max(of[1], found[name][1])) <= scene.record_end
         assert found[name] == pytest.approx(of, rel=0 if is_exact else 1e-9, abs=0), name
-    if scene.record and not (scene.scales or scene.how or scene.duration):
-        own = fmpy.read_model_description(str(fmu)).defaultExperiment
-        assert -1e-8 < float(own.stopTime) - (expected["end"][0] - scene.start) < float(own.stepSize)

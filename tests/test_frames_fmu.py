@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
-from frames import FRAMES, Ties, of_one_mass, scene, toml
+from frames import FRAMES, Ties, scene, toml
 from host import Fmu
-from reference import MCMANUS
 from scipy.integrate import solve_ivp
 
 FRAME, N = FRAMES["frame"], 3
@@ -75,20 +74,6 @@ def simulated(exporter, fmu, *options):
     return json.loads(subprocess.run(command, cwd=folder, check=True, capture_output=True).stdout)
 
 
-@pytest.mark.parametrize("ties", [Ties(), Ties(P_0=2e5, k_t=1e4, xi_d=1.2, c_d=1e4, k_d=1e6, F_y=1e4)], ids=["free", "tied"])
-def test_a_frame_that_overturns_has_the_peaks_of_the_librarys_run(exporter, export_frame, ties):
-    """To the bit, with their instants: the fall is left out."""
-    time = 0.01 * np.arange(301)
-    fmu = export_frame(ties=ties, time=time, a_g=np.where(time < 1.6, 7.0 * np.sin(2 * np.pi * time / 1.6), 0.0))
-    told = simulated(exporter, fmu)
-    assert told["overturned"] and told["fall"] < told["end"] - 1
-    peaks = {of["name"].replace("[", "_max[") if "[" in of["name"] else of["name"] + "_max": of for of in told["peaks"][1:]}
-    assert ("P_t_max" in peaks) == (ties.P_0 > 0) and len(peaks) > 20
-    found = fmpy.simulate_fmu(fmu.path, stop_time=20.0, output_interval=20.0, start_values={"peaks": True}, relative_tolerance=1e-9,
-                              output=[*peaks, *(f"t_{name}" for name in peaks)])[-1]
-    assert {name: (found[name], found[f"t_{name}"]) for name in peaks} == {name: (of["peak"], of["time"]) for name, of in peaks.items()}
-
-
 SPRINGS = "f_v = 12\nzeta_v = 0.1\nn_points = 3"
 
 
@@ -143,23 +128,6 @@ def test_peaks_of_floors_are_exact(export_frame):
     np.testing.assert_allclose([values[name] for name in names], exact, rtol=1e-8)
 
 
-def test_one_storey_is_the_fmu_of_one_mass(export_frame, mcmanus):
-    """At its instants to 1e-9 of the peak, under forces and vertical motion, with slopes."""
-    p = MCMANUS
-    time = np.linspace(0.0, 4.0, 801)
-    a_g, a_v, F_t = (size * np.sin(omega * time) for size, omega in ((6.0, 14.0), (2.0, 30.0), (300.0, 9.0)))
-    one, many = mcmanus, export_frame(of_one_mass(p))
-    names = {"theta": "theta", "u": "u[1]", "a_t": "a_t[1]", "v_t": "v_t[1]", "delta_t": "delta_t[1]", "V_t": "V[1]", "M_t": "M_t",
-             "R_h": "R_h", "R_v": "R_v", "R_m": "R_m", "I_v": "I_v", "uplift": "uplift"}
-    with one.start(tolerance=1e-12) as instance:
-        expected, transitions = instance.follow(time, a_g, names, a_v=a_v, F_t=F_t), instance.get("transitions")
-    with many.start(tolerance=1e-12) as instance:
-        found = instance.follow(time, a_g, names.values(), a_v=a_v, **{"F_t[1]": F_t})
-        assert instance.get("transitions") == transitions > 10
-    for name, of_floor in names.items():
-        np.testing.assert_allclose(found[of_floor], expected[name], rtol=0, atol=1e-9 * np.abs(expected[name]).max(), err_msg=name)
-
-
 def test_an_oscillator_on_a_floor_is_the_structure_integrated_as_one(export_frame):
     """A mass on a spring at the second floor, until the first impact; the force over each step is a line."""
     p, k, M, until, steps = FRAME, 2e6, 8e3, 0.15, 3000
@@ -192,32 +160,6 @@ def test_an_oscillator_on_a_floor_is_the_structure_integrated_as_one(export_fram
     assert expected[:, 0].min() > 0
     peaks = np.abs(expected).max(axis=0)
     np.testing.assert_allclose(rows / peaks, expected / peaks, rtol=0, atol=1e-6)
-
-
-def test_a_force_that_runs_out_of_range_is_named_with_its_floor(export_frame):
-    with export_frame().start() as instance:
-        instance.input("F_t[2]", 9e14, 1e17)
-        with pytest.raises(FMICallException):
-            instance.step(0.01)
-        assert "at the end of the step, F_t[2] = 1.9e15 N is out of range" in instance.errors[-1]
-        assert "between -1e15 and 1e15 N (external horizontal force on floor 2" in instance.errors[-1]
-
-
-def test_states_of_another_structure_are_refused(export_frame, mcmanus):
-    def slave_and_bytes(fmu):
-        instance = fmu.start()
-        state = instance.slave.getFMUstate()
-        return instance, instance.slave.serializeFMUstate(state)
-
-    kept = [slave_and_bytes(fmu) for fmu in (export_frame(), export_frame(ties=Ties(P_0=1e5)), mcmanus)]
-    for instance, _ in kept:
-        for other, state in kept:
-            if other is not instance:
-                with pytest.raises(FMICallException):
-                    instance.slave.deSerializeFMUstate(state)
-                assert "it does not begin with the name of this build" in instance.errors[-1]
-    for instance, state in kept:
-        instance.slave.deSerializeFMUstate(state)
 
 
 def test_modes_left_out_and_what_is_fixed_are_told(export_frame):

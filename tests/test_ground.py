@@ -86,13 +86,6 @@ def test_mcmanus_on_springs_has_the_printed_numbers(zeta_v, n, scale, theta, tim
     assert described.stdout.startswith("Structure of one mass on ground that gives\n")
 
 
-@pytest.mark.parametrize("table, key, meant", [("grund", "f_v", "ground"), ("ground", "fv", "f_v")])
-def test_a_misspelt_name_is_answered_with_the_nearest(table, key, meant, exporter, tmp_path):
-    (tmp_path / "pier.toml").write_text(f"m = 130.1\nm0 = 65.4\nH = 1.84\nB = 0.285\nJ0 = 10.7\nf_fc = 5\nzeta_fc = 0.02\n[{table}]\n{key} = 40\n")
-    told = subprocess.run([exporter, "describe", "--parameters", tmp_path / "pier.toml"], capture_output=True, text=True)
-    assert told.returncode and told.stderr.rstrip().endswith(f"did you mean {meant}?")
-
-
 @pytest.mark.parametrize("command, f_v, told", [
     (["pushover"], 40, "the pushover is of a base that turns about an edge on rigid ground"),
     (["describe", "--restoring", "0.03"], 40, "the restoring moment is of a base that turns about an edge on rigid ground"),

@@ -10,7 +10,6 @@ import fmpy
 import numpy as np
 import pytest
 from evidence.scenes import PACOIMA_DAM
-from fmpy.fmi1 import FMICallException
 from fmpy.util import read_csv
 from host import events, simulate
 from pacoima import A_G, END, OUTPUTS, STEP, STEPS, TIME, distance, held, rows
@@ -55,12 +54,6 @@ def test_the_script_of_the_page_inside_runs(mcmanus):
     assert peak == pytest.approx(0.01200009, abs=5e-9) and 0 < instant < 4
 
 
-def test_simulate_fmu_ends_at_overturning_and_keeps_the_results(mcmanus):
-    result, _ = simulate(mcmanus, stop_time=10.0, output_interval=0.01, start_values={"theta_0": 0.3}, output=["theta", "t_overturned"])
-    assert len(result) == int(result["t_overturned"][-1] / 0.01) + 2, "every sample before, and the instant itself"
-    assert result["time"][-1] == result["t_overturned"][-1] and result["theta"][-1] == pytest.approx(np.pi / 2, abs=1e-8)
-
-
 def test_a_run_goes_on_from_bytes(shaken, exact):
     """simulate_fmu with fmu_instance to the middle; from its serialized state to the end."""
     fmu, step, middle = shaken["mcmanus"], 2e-3, 2.0
@@ -72,11 +65,3 @@ def test_a_run_goes_on_from_bytes(shaken, exact):
         instance.slave.freeFMUstate(state)
     second, _ = simulate(fmu, start_time=middle, stop_time=END, fmu_state=middle_state, **arguments)
     assert distance(np.vstack([rows(first), rows(second)[1:]]), exact(step)) < 1e-9
-
-
-def test_a_refused_start_value_ends_the_run_with_the_reason_in_the_log(mcmanus):
-    messages = []
-    with pytest.raises(FMICallException, match="fmi2SetReal failed with status 3"):
-        simulate(mcmanus, messages, stop_time=1.0, start_values={"r": 0.0})
-    (message,) = messages
-    assert message.category == "logStatusError" and "r = 0 " in message.text
