@@ -25,7 +25,7 @@ def exported(exporter, tmp_path):
 @pytest.fixture
 def records(tmp_path):
     files = {"pulse & 1.csv": "t/s,a\r\n0,1\r\n1,2\r\n", "sine.txt": "t/s,a\n0,1\n1,-1\n", "late.txt": "t/s,a\n1,1\n2,-1\n",
-             "Sine.TXT": "t/s,a\n0,2\n1,0\n", "broken.csv": "0,1\n1,?\n"}
+             "Sine.TXT": "t/s,a\n0,2\n1,0\n"}
     (tmp_path / "other").mkdir()
     for name, text in files.items():
         (tmp_path / ("other" if name == "Sine.TXT" else "") / name).write_bytes(text.encode())
@@ -47,7 +47,6 @@ def test_records_are_packed_as_they_are_and_the_first_is_the_default(exported, r
     for options, text in [
         (("--record", "pulse & 1.csv", "--record-v", "late.txt"), 'the vertical component "late" begins at 1.0 s and'),
         (("--record", "sine.txt", "other/Sine.TXT"), "two records are called Sine.TXT: rename one of them; capitals and small letters"),
-        (("--record", "sine.txt", "broken.csv"), 'broken.csv, line 2: the acceleration "?" is not a number'),
     ]:
         assert text in exported(*options)
 

@@ -256,8 +256,5 @@ def test_values_during_initialization_follow_what_is_set(wall):
         one.set(theta_0=theta_0)
         assert one.get("phase") == phase
     assert one.get("transitions", "overturned") == [0, False]
-    for on in (True, False):
-        one.set(a_g_late=on)
-        assert one.get("a_g_late") == on
     one.set(record="a ü.csv")
     assert one.get("record").decode() == "a ü.csv"

@@ -5,7 +5,7 @@ docs/evidence/model_exchange.md has three records and all tolerances; these are 
 import numpy as np
 import pytest
 from evidence.scenes import PACOIMA_DAM
-from evidence.model_exchange.hosts import Scene, co_simulation, dop853, fmpy_cvode, fmpy_euler, sundae
+from evidence.model_exchange.hosts import Scene, co_simulation, dop853, fmpy_cvode, sundae
 
 BAND = 1e-9 * 0.23  # rad, of alpha_cg
 
@@ -34,11 +34,3 @@ def test_a_solver_of_one_step_stays_within_its_tolerance_times_the_scenes_amplif
     result = dop853(scene, tolerance)
     assert result.error(exact) <= tolerance * amplification
     assert result.depth <= BAND and np.array_equal(result.rows["transitions"], exact.rows["transitions"])
-
-
-@pytest.mark.parametrize("step", [10e-3, 1e-3])
-def test_eulers_method_never_falls_through_the_floor(scene, step):
-    """At 10 ms it blows up in the vibration mode."""
-    result = fmpy_euler(scene, step)
-    assert result.depth <= BAND and result.transitions > 10
-    assert np.abs(result.rows["theta"]).max() <= np.pi / 2 + 1e-9

@@ -127,12 +127,6 @@ def test_a_refused_call_says_why_and_changes_nothing(wall, wall3):
     assert of_3.slave.getUInt8([]) == [] and of_3.slave.setBinary([], []) is None
 
 
-def test_a_refused_call_writes_nothing(wall):
-    one, value = wall.start(), (c_double * 2)(7.0, 7.0)
-    assert status(one.slave.fmi2GetReal, one.slave.component, (c_uint * 2)(one.reference("m"), one.reference("phase")), 2, value) == ERROR
-    assert list(value) == [7.0, 7.0]
-
-
 def test_a_fixed_parameter_may_be_set_to_the_value_that_it_has(wall):
     """Hosts set all start values again, also after the start."""
     one = wall.start(theta_0=0.02)

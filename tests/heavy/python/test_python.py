@@ -326,13 +326,6 @@ def test_every_instant_has_its_own_values(run):
         assert max(abs(run.at([np.nextafter(peak.time, 0), peak.time])[name])) == pytest.approx(peak, rel=1e-9), name
 
 
-def test_transitions_are_a_table(run):
-    table = run.transitions.to_pandas()
-    assert list(table.index) == [of.time for of in run.transitions] and set(table["kind"]) == {of.kind for of in run.transitions}
-    assert table["theta_dot_before"].tolist() == [of.before["theta_dot"] for of in run.transitions]
-    assert run.transitions[1:1] == [] and list(type(run.transitions)().to_pandas()) == list(table)
-
-
 def test_what_is_asked_for_in_another_form_is_taken_or_refused_by_name(run, ground):
     pier = run.structure
     assert fr.advise(pier, ground, of="theta").detail == fr.advise(pier, ground, of=["theta"]).detail
