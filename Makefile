@@ -129,13 +129,12 @@ module: .venv/dist exporter
 	VIRTUAL_ENV=.venv $(MATURIN) develop --release --locked
 
 # The page contains a record and this machine's library: the libraries of all platforms would make it 10 MB. It takes them from an FMU.
-explore: targets .venv/ready
-	CARGO_PROFILE_DIST_STRIP=symbols cargo build --profile dist --locked --package flexible-rocking-fmu
+explore: targets library .venv/ready
 	cargo build --profile page --locked --package rocking-web --target $(WEB)
 	mkdir -p out
 	cargo run --locked --manifest-path web/pack/Cargo.toml -- \
 		$(TARGET)/$(WEB)/page/rocking_web.wasm $(RECORDS)/$(EL_CENTRO) \
-		$(TARGET)/dist/libFlexibleRocking.so out/explore.html
+		$(TARGET)/release/deps/libFlexibleRocking.so out/explore.html
 
 evidence: .venv/heavy module
 	$(if $(PAGE),$(PYTHON) -m evidence $(PAGE),$(PYTEST) tests/heavy/evidence)

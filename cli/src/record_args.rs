@@ -131,7 +131,7 @@ pub fn with_force(record: Record, path: Option<&Path>) -> anyhow::Result<Record>
     ensure!(table.headers().with_context(what)? == ["time[s]", "F_t[N]"].as_slice(), what());
     let rows = table.into_deserialize::<(f64, f64)>().collect::<Result<_, _>>();
     let (times, F_t): (Vec<_>, Vec<_>) = rows.with_context(what)?;
-    Ok(record.with_force(&times, &F_t)?)
+    record.with_force(&times, &F_t).with_context(|| format!("force = {}", path.display()))
 }
 
 /// Prints findings and assumptions about a record after `label`, and warnings.

@@ -182,7 +182,7 @@
     at(parent).append(made);
     rows[name] = (value, isGiven = true) => {
       const isFinite = Number.isFinite(value);
-      const shown = Number(value.toPrecision(isGiven ? 15 : 6)); // a given number has all its digits
+      const shown = isFinite ? Number(value.toPrecision(isGiven ? 15 : 6)) : 0; // a given number has all its digits
       const [long, short] = [String(shown), shown.toExponential().replace("e+", "e")];
       const text = isFinite ? (long.length > 8 && short.length < long.length ? short : long) : "";
       number.placeholder = name in structures[origin()][1] ? "" : text; // what holds while the field is empty

@@ -246,6 +246,23 @@ def settled(page) -> None:
     page.locator("body[data-ready]").wait_for()
 
 
+def test_a_record_is_dropped_shown_and_moved(opened):
+    page = opened({"scale": str(SCALE), "time_scale": str(TIME_SCALE)})
+    drop(page, RECORD.name, RECORD.read_bytes())
+    settled(page)
+    assert "PEER AT2" in page.locator("#remarks").text_content()
+    peak = lambda name: number(page.locator(f"tr[data-name={name}] td").nth(1).text_content())
+    assert abs(peak("theta") - 0.0120001) < 1e-6
+    assert page.locator("#validity summary").text_content().endswith("3 of 7 are exceeded")
+    before = page.locator("path.curve[data-name=theta]").get_attribute("d")
+    slider = page.locator(".row[data-name=H] input[type=range]")
+    slider.evaluate("slider => { slider.value = 0.6; slider.dispatchEvent(new Event('input', { bubbles: true })); }")
+    settled(page)
+    assert float(page.locator("#field-H").input_value()) > 1.84
+    assert page.locator("path.curve[data-name=theta]").get_attribute("d") != before
+    assert "H=2.79" in page.url
+
+
 def test_what_is_refused_is_said_as_everywhere_and_the_page_stays_alive(opened, exporter, tmp_path):
     page = opened({"preset": "mcmanus"})
     problem = page.locator("#problem")

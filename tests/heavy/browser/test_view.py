@@ -227,6 +227,14 @@ def test_scrubbing_and_the_keyboard(opened):
     assert not page.locator("#help").is_visible()
 
 
+def test_a_narrow_screen_shows_everything(opened):
+    page = opened(viewport={"width": 390, "height": 844})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    for selector in ("#scene", "#readings", "#histories", "#play", "#time", "#speed"):
+        box = page.locator(selector).bounding_box()
+        assert box["x"] >= 0 and box["x"] + box["width"] <= 390 and box["height"] > 0, selector
+
+
 def test_a_structure_that_falls_lies(opened, exporter, tmp_path):
     (tmp_path / "push.csv").write_text("time (s),a (m/s2)\n0,0\n0.2,6\n0.6,6\n0.8,-2\n1.2,0\n")
     subprocess.run([exporter, "view", "--record", "push.csv", "-o", "view.html"], cwd=tmp_path, check=True)
