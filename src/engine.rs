@@ -715,9 +715,11 @@ where
                 return Ok(Some(Progress::Complete));
             }
             if elapsed >= advance.end {
-                let reached = level.longest_step() * (last_step - motion.work.steps) as f64;
-                if elapsed > 0.0 && interval - elapsed > reached {
-                    return Err(AdvanceError::TooLong { time: motion.time + reached, until });
+                if elapsed > 0.0 {
+                    let reached = level.longest_step() * (last_step - motion.work.steps) as f64;
+                    if interval - elapsed > reached {
+                        return Err(AdvanceError::TooLong { time: motion.time + reached, until });
+                    }
                 }
                 before.get_or_insert(*motion);
                 advance.end = if elapsed + part < interval { elapsed + part } else { interval };

@@ -8,10 +8,11 @@ use libc::{c_char, c_int, c_void};
 use std::ffi::CString;
 use std::fs;
 use std::hint::spin_loop;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::ptr::{null, null_mut, with_exposed_provenance_mut};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::thread;
+use tempfile::TempDir;
 use wall::{contents, reference, resources};
 
 const OK: c_int = 0;
@@ -77,6 +78,14 @@ impl Drop for Host {
     }
 }
 
+/// A host, and a folder with the file of a record of so many samples.
+fn host_and_record(samples: u32) -> (Host, TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("quake.csv");
+    fs::write(&path, quake(samples)).unwrap();
+    (Host::new(), folder, path)
+}
+
 /// A table of so many samples, every 20 ms.
 fn quake(samples: u32) -> String {
     let line = |i| format!("{:.2},{:.4}\n", 0.02 * f64::from(i), 4.0 * (0.6 * f64::from(i)).cos());
@@ -106,9 +115,7 @@ fn nothing_is_left_when_the_last_instance_goes() {
 /// The engine is not built anew where only the motion differs.
 #[test]
 fn a_state_that_is_kept_again_takes_little_memory() {
-    let folder = tempfile::tempdir().unwrap();
-    let (host, path) = (Host::new(), folder.path().join("quake.csv"));
-    fs::write(&path, quake(600)).unwrap();
+    let (host, _folder, path) = host_and_record(600);
     host.enter(&path);
     host.exit();
     host.step(0.0, 1.0);
@@ -123,9 +130,7 @@ fn a_state_that_is_kept_again_takes_little_memory() {
 /// A record is parsed once: another run only reads the bytes of the file and scales the samples.
 #[test]
 fn a_record_is_kept_for_another_run() {
-    let folder = tempfile::tempdir().unwrap();
-    let (host, path) = (Host::new(), folder.path().join("long.csv"));
-    fs::write(&path, quake(20_000)).unwrap();
+    let (host, _folder, path) = host_and_record(20_000);
     let size = fs::metadata(&path).unwrap().len();
     let allocated = || {
         host.enter(&path);

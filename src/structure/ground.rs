@@ -80,15 +80,11 @@ const LEAST_INERTIA: f64 = 1e-4;
 /// Part by which two numbers that must be equal may differ.
 const SAME: f64 = 1e-9;
 
-/// The limits of a number.
-const fn limit(name: &'static str, unit: &'static str, [min, max]: [f64; 2]) -> Quantity<f64> {
-    Quantity { name, unit, description: "of ground that gives", min, max, get: |of| *of, set: |of, value| *of = value }
-}
-
-const F_V: Quantity<f64> = limit("f_v", "Hz", [0.1, 1e3]);
-const K_V: Quantity<f64> = limit("k_v", "N/m", [1e-6, 1e18]);
-const ZETA_V: Quantity<f64> = limit("zeta_v", "1", [0.0, 5.0]);
-const C_V: Quantity<f64> = limit("c_v", "N.s/m", [0.0, 1e18]);
+const OF_GROUND: &str = "of ground that gives";
+const F_V: Quantity<f64> = Quantity::limit("f_v", "Hz", [0.1, 1e3], OF_GROUND);
+const K_V: Quantity<f64> = Quantity::limit("k_v", "N/m", [1e-6, 1e18], OF_GROUND);
+const ZETA_V: Quantity<f64> = Quantity::limit("zeta_v", "1", [0.0, 5.0], OF_GROUND);
+const C_V: Quantity<f64> = Quantity::limit("c_v", "N.s/m", [0.0, 1e18], OF_GROUND);
 
 /// Refuses what is not so.
 fn ensure(is_so: bool, message: impl FnOnce() -> String) -> Result<(), String> {

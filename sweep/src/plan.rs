@@ -295,13 +295,24 @@ impl Plan {
             )
         })?;
         plan.spectral = vec![Spectral::default(); structures * motions];
-        plan.under(Conditions::default())
+        plan.laid_out()
     }
 
     /// These runs under other `conditions`, with the measures of their level.
     pub fn under(mut self, conditions: Conditions) -> Result<Plan, Refused> {
         self.populations.iter().flat_map(|of| &of.bases).try_for_each(|base| conditions.check(base))?;
-        self.populations.iter_mut().flat_map(|of| &mut of.bases).for_each(|base| *base = base.at(conditions.detail));
+        let mut is_other = false;
+        for base in self.populations.iter_mut().flat_map(|of| &mut of.bases) {
+            let at_level = base.at(conditions.detail);
+            is_other |= at_level != *base;
+            *base = at_level;
+        }
+        let plan = Plan { conditions, ..self };
+        if is_other { plan.laid_out() } else { Ok(plan) }
+    }
+
+    /// This plan with the measures of its structures, each of which is made once for this.
+    fn laid_out(mut self) -> Result<Plan, Refused> {
         (self.measures, self.layouts) = (Vec::new(), Vec::new());
         for population in &self.populations {
             for member in 0..population.len() {
@@ -311,7 +322,7 @@ impl Plan {
                 }
             }
         }
-        Ok(Plan { conditions, ..self })
+        Ok(self)
     }
 
     /// Numbers of structures, ground motions and scale factors.

@@ -448,8 +448,8 @@ pub(crate) fn escaped(message: &str, marks: &[char]) -> CString {
 
 /// The functions that take an instance, without the version in front of their names: the arguments after the component,
 /// and what is asked of the instance, nothing of those that are never allowed. Those in brackets call the instance
-/// themselves; those in braces make one, free it or take none. Those with `[often]` are called at every step. The macro `$export` exports all of them for a model, where
-/// the types of the arguments are in scope.
+/// themselves; those in braces make one, free it or take none. Hosts call those with `[often]` at every step. The macro
+/// `$export` exports all of them for a model, where the types of the arguments are in scope.
 macro_rules! functions {
     (@) => { |_| Ok(()) };
     (@ |$instance:ident| $body:block) => { |$instance| $body };
