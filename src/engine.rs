@@ -31,7 +31,7 @@ use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
-use crate::mechanics::restraint::{Dissipators, Restraint, Restraints, Tie};
+use crate::mechanics::restraint::{Dissipators, Restraints};
 use crate::mechanics::state::InitialStateError;
 use crate::numbers::dual::Dual;
 use crate::series::first_crossing::Crossing;
@@ -379,15 +379,10 @@ impl<Q: Coordinates> Engine<Q> {
         if let Phase::Overturned(_) = phase {
             return Restraints::default();
         }
-        let Second { u_ddot, theta_ddot } = self.sample(load).second();
-        if let Some(Foundation { rest, place, .. }) = Q::foundation(self.structure()) {
-            let moving = contact::ties_on_ground(self.structure().base(), *rest, dissipators, phase.contact());
-            let rates = moving.map(|tie| Tie { force: 0.0, ..tie });
-            let of = |at: usize| [state.u_dot.of(at), u_ddot.of(at)];
-            return contact::forces_on_ground(&rates, [of(*place), of(place + 1)]);
-        }
-        let restraint = Restraint::about(self.structure().base(), phase.side(), dissipators);
-        Restraints::rates(&restraint, self.level.subject().angles, [state.theta, state.theta_dot, theta_ddot])
+        let (second, angles) = (self.sample(load).second(), self.level.subject().angles);
+        let x = Instant::moving(self.structure(), *phase, state, &second, LinearLoad::held(load));
+        let Restraints { P_t, F_d1, F_d2 } = contact::restraints(&x, angles, dissipators);
+        Restraints { P_t: P_t.rate, F_d1: F_d1.rate, F_d2: F_d2.rate }
     }
 
     /// The structure.

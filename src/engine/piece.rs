@@ -8,17 +8,15 @@ use crate::engine::phases::{self, Step};
 use crate::engine::transition::Transition;
 use crate::levels::level::{Level, Now, Subject, off_chord};
 use crate::mechanics::contact;
-use crate::mechanics::gauge::{Gauge, Reading};
 use crate::mechanics::instant::{Instant, Second};
-use crate::mechanics::lateral::Coordinates;
+use crate::mechanics::lateral::{Coordinates, Lateral, Polynomials};
 use crate::mechanics::load::{LinearLoad, Load};
-use crate::mechanics::outputs::Shows;
 use crate::mechanics::reach::{Magnitudes, OffChord};
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
 use crate::numbers::{Angle, Number, Turn};
 use crate::series::taylor::{Arc, Start, evaluate};
 use crate::series::terms::Terms;
-use crate::{Contact, Foundation, Modes, Output, Phase, Ramp, Reactions, State, Structure};
+use crate::{Output, Phase, Ramp, Reactions, State, Structure};
 use std::cell::{Cell, OnceCell, RefCell};
 use std::f64::consts::TAU;
 
@@ -124,17 +122,7 @@ impl<Q: Coordinates> Sample<'_, Q> {
 
     /// The forces of the restraints.
     pub fn restraints(&self) -> Restraints {
-        let Motion { phase, state, dissipators, .. } = &self.motion;
-        let structure = self.level.structure();
-        if let Some(Foundation { rest, place, .. }) = Q::foundation(structure) {
-            let ties = contact::ties_on_ground(structure.base(), *rest, dissipators, phase.contact());
-            return contact::forces_on_ground(
-                &ties,
-                [*place, place + 1].map(|at| [state.u.of(at), state.u_dot.of(at)]),
-            );
-        }
-        let chord = self.level.subject().angles.chord(state.theta, state.theta_dot);
-        Restraint::about(structure.base(), phase.side(), dissipators).forces(&chord)
+        contact::restraints(&self.instant(), self.level.subject().angles, &self.motion.dissipators)
     }
 
     /// The value of `output`; once overturned, the value of the instant before.
@@ -496,6 +484,42 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
         self.piece.shown(self.from + sigma * self.arc.span, &self.arc.at(sigma))
     }
 
+    /// The structure over the polynomial in power series.
+    pub(crate) fn over(&self) -> Instant<'a, Terms, Polynomials<'a, Q>> {
+        let &Expansion { piece: &Piece { before, level, load, .. }, from, arc } = self;
+        let (structure, phase, LinearLoad { value, slope }) = (level.structure(), before.phase, load.from(from));
+        let (theta, theta_dot, turn) = match phase {
+            Phase::FullContact => (Terms::constant(0.0), Terms::constant(0.0), Turn::none()),
+            Phase::Rocking(_) | Phase::Overturned(_) | Phase::OnGround(_) => {
+                let [theta, theta_dot] = [&arc.theta, &arc.theta_dot].map(|of| Terms::of(of, arc.order));
+                (theta, theta_dot, theta.turn())
+            }
+        };
+        let [u, u_dot] = [&arc.u, &arc.u_dot].map(|of| Polynomials::Motion(arc.used(of)));
+        let a_v = Terms::ramp(value.a_v, slope.a_v * arc.span);
+        Instant {
+            structure,
+            s: phase.pivot(),
+            contact: phase.contact(),
+            damping: structure.base().damping(phase),
+            u,
+            u_dot,
+            theta,
+            theta_dot,
+            theta_ddot: theta_dot.slope(arc.span),
+            turn,
+            a_g: Terms::ramp(value.a_g, slope.a_g * arc.span),
+            F_t: Polynomials::Load(Ramp { value: value.F_t, slope: slope.F_t }, arc.span),
+            a_v: self.lift().map_or(a_v, |lift| a_v + lift),
+        }
+    }
+
+    /// ÿ on ground that gives, m/s².
+    pub(crate) fn lift(&self) -> Option<Terms> {
+        let place = Q::foundation(self.piece.level.structure())?.place;
+        Some(Polynomials::Motion(self.arc.used(&self.arc.u_dot)).of(place).slope(self.arc.span))
+    }
+
     /// Bounds of the magnitudes.
     pub(crate) fn most(&self) -> Magnitudes<'a, Q> {
         let loads = [self.from, self.from + self.arc.duration()].map(|tau| self.piece.load.at(tau));
@@ -516,7 +540,7 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
     /// more terms than it has.
     pub(crate) fn series(&self, outputs: &[Output], show: &mut dyn FnMut(&Expansion<Q>, &[Terms])) {
         self.in_parts(&mut |part, is_finest| {
-            let (over, end) = (Over::new(*part), part.shown(part.arc.reach));
+            let (over, end) = (part.over(), part.shown(part.arc.reach));
             let series = |output: &Output| {
                 let series = output.of(&over);
                 let is_whole = is_finest || output.is_component();
@@ -526,104 +550,5 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
             show(part, &series);
             true
         });
-    }
-}
-
-/// A polynomial of the motion in series, as far as several outputs read it.
-pub(crate) struct Over<'a, Q: Coordinates> {
-    of: Expansion<'a, Q>,
-    theta: Terms,
-    theta_dot: Terms,
-    /// Made when an output first reads it.
-    turn: OnceCell<Turn<Terms>>,
-}
-
-impl<'a, Q: Coordinates> Over<'a, Q> {
-    pub(crate) fn new(of: Expansion<'a, Q>) -> Over<'a, Q> {
-        let none = Terms::constant(0.0);
-        let [theta, theta_dot] = match of.piece.before.phase {
-            Phase::FullContact => [none; 2],
-            Phase::Rocking(_) | Phase::Overturned(_) | Phase::OnGround(_) => {
-                [&of.arc.theta, &of.arc.theta_dot].map(|it| Terms::of(it, of.arc.order))
-            }
-        };
-        Over { of, theta, theta_dot, turn: OnceCell::new() }
-    }
-
-    /// ÿ on ground that gives, m/s².
-    pub(crate) fn lift(&self) -> Option<Terms> {
-        let place = self.foundation()?.place;
-        Some(self.coordinate(place)[1].slope(self.of.arc.span))
-    }
-
-    /// A number that is linear in the lateral coordinates.
-    fn lateral(&self, of: impl Fn(usize) -> f64) -> Terms {
-        Terms::from_fn(self.of.arc.order, of)
-    }
-}
-
-impl<Q: Coordinates> Shows<Terms> for Over<'_, Q> {
-    fn structure(&self) -> &Structure {
-        self.of.piece.level.structure()
-    }
-
-    fn foundation(&self) -> Option<&Foundation> {
-        Q::foundation(self.structure())
-    }
-
-    fn pivot(&self) -> f64 {
-        self.of.piece.before.phase.pivot() * self.structure().base().B
-    }
-
-    fn theta(&self) -> Terms {
-        self.theta
-    }
-
-    fn theta_dot(&self) -> Terms {
-        self.theta_dot
-    }
-
-    fn turn(&self) -> Turn<Terms> {
-        *self.turn.get_or_init(|| match self.of.piece.before.phase {
-            Phase::FullContact => Turn::none(),
-            Phase::Rocking(_) | Phase::Overturned(_) | Phase::OnGround(_) => self.theta.turn(),
-        })
-    }
-
-    fn u(&self, shape: &Modes) -> Terms {
-        self.lateral(|k| self.of.arc.u[k].weighed(shape))
-    }
-
-    fn u_dot(&self, shape: &Modes) -> Terms {
-        self.lateral(|k| self.of.arc.u_dot[k].weighed(shape))
-    }
-
-    fn contact(&self) -> Contact {
-        self.of.piece.before.phase.contact()
-    }
-
-    fn coordinate(&self, place: usize) -> [Terms; 2] {
-        [&self.of.arc.u, &self.of.arc.u_dot].map(|series| self.lateral(|k| series[k].of(place)))
-    }
-
-    fn gauge(&self, gauge: &Gauge) -> Terms {
-        let Expansion { piece, from, arc } = self.of;
-        let (structure, phase) = (self.structure(), piece.before.phase);
-        let (damping, load) = (structure.base().damping(phase), piece.load.from(from));
-        let ramp = |value: f64, slope: f64| Terms::ramp(value, slope * arc.span);
-        let mut a_v = ramp(load.value.a_v, load.slope.a_v);
-        if let Some(lift) = self.lift() {
-            a_v = a_v + lift;
-        }
-        let reading = Reading {
-            elastic: self.lateral(|k| gauge.elastic(damping, &arc.u[k], &arc.u_dot[k])),
-            push: ramp(gauge.push(&load.value.F_t), gauge.push(&load.slope.F_t)),
-            turn: self.turn(),
-            theta_dot: self.theta_dot,
-            theta_ddot: self.theta_dot.slope(arc.span),
-            a_g: ramp(load.value.a_g, load.slope.a_g),
-            a_v,
-        };
-        gauge.value(structure.base(), phase.pivot(), &reading)
     }
 }

@@ -3,10 +3,10 @@
 use crate::mechanics::energy::mechanical;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
-use crate::mechanics::restraint::{Dissipators, Restraints, Tie};
-use crate::numbers::Number;
+use crate::mechanics::restraint::{Angles, Dissipators, Restraint, Restraints, Tie};
+use crate::numbers::{Angle, Number};
 use crate::structure::ground::Point;
-use crate::{Base, Contact, Foundation, Load, Phase, State, Structure, Ties};
+use crate::{Base, Contact, Foundation, Load, Phase, Side, State, Structure, Ties};
 
 /// min(−e, f/k) of each point, m: positive if the point is pressed.
 pub(crate) fn margins<Q: Coordinates>(foundation: &Foundation, state: &State<Q>) -> impl Iterator<Item = f64> {
@@ -67,11 +67,24 @@ pub(crate) fn ties_on_ground(base: &Base, rest: f64, dissipators: &Dissipators, 
 }
 
 /// The forces of `ties` on ground that gives, given y and sin θ with their rates, N.
-pub(crate) fn forces_on_ground<N: Number>(ties: &[Tie; 3], [y, sin]: [[N; 2]; 2]) -> Restraints<N> {
+fn forces_on_ground<N: Number>(ties: &[Tie; 3], [y, sin]: [[N; 2]; 2]) -> Restraints<N> {
     let [P_t, F_d1, F_d2] = ties.map(|Tie { lever, force, stiffness, damping }| {
         N::constant(force) + (y[0] - sin[0] * lever) * stiffness + (y[1] - sin[1] * lever) * damping
     });
     Restraints { P_t, F_d1, F_d2 }
+}
+
+/// The forces of the restraints at the instant `x`, N, at the `angles` of its level with the dissipators in this state.
+pub(crate) fn restraints<N: Angle, Q: Lateral<N>>(
+    x: &Instant<N, Q>,
+    angles: Angles,
+    dissipators: &Dissipators,
+) -> Restraints<N> {
+    if let Some(&Foundation { rest, place, .. }) = Q::foundation(x.structure) {
+        let ties = ties_on_ground(x.base(), rest, dissipators, x.contact);
+        return forces_on_ground(&ties, [place, place + 1].map(|at| x.coordinate(at)));
+    }
+    Restraint::about(x.base(), Side::of(x.s), dissipators).forces(&angles.chord(x.theta, x.theta_dot))
 }
 
 /// Energy on ground that gives with these points pressed, J, zero at height zero of the unloaded ground (F8):

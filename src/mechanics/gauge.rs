@@ -12,7 +12,7 @@
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::reach::Magnitudes;
-use crate::numbers::{Number, Turn};
+use crate::numbers::Number;
 use crate::series::taylor::{Arc, ORDERS, ZERO, evaluate};
 use crate::structure::rest;
 use crate::{Base, Mode, Ramp};
@@ -32,20 +32,6 @@ pub struct Gauge {
     push: Modes,
     /// What the modes leave of the sum of the heights, and of the sum of the weights.
     left: [f64; 2],
-}
-
-/// What a gauge reads of the structure at one instant, in numbers of the kind `N`.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Reading<N> {
-    /// Σ φ (c u̇ + k u)/μ of the gauge.
-    pub elastic: N,
-    /// Σ φ φᵀF/μ of the gauge.
-    pub push: N,
-    pub turn: Turn<N>,
-    pub theta_dot: N,
-    pub theta_ddot: N,
-    pub a_g: N,
-    pub a_v: N,
 }
 
 impl Gauge {
@@ -107,27 +93,20 @@ impl Gauge {
         [force * share, force * height]
     }
 
-    /// The value at the instant `x`.
+    /// The value at the instant `x` while rocking about the pivot s, or at rest if s = 0.
     #[inline]
     pub(crate) fn at<N: Number, Q: Lateral<N>>(&self, x: &Instant<N, Q>) -> N {
-        let &Instant { damping, turn, theta_dot, theta_ddot, a_g, a_v, .. } = x;
-        let (elastic, push) = (self.elastic(damping, &x.u, &x.u_dot), self.push(&x.F_t));
-        self.value(x.base(), x.s, &Reading { elastic, push, turn, theta_dot, theta_ddot, a_g, a_v })
-    }
-
-    /// The value on `base` while rocking about the pivot `s`, or at rest if s = 0.
-    #[inline]
-    pub(crate) fn value<N: Number>(&self, base: &Base, s: f64, x: &Reading<N>) -> N {
-        let [height, share] = self.left;
-        let value = x.turn.sin * (base.g * (self.weight - share)) + x.push * x.turn.cos - x.elastic;
+        let (base, [height, share]) = (x.base(), self.left);
+        let elastic = self.elastic(x.damping, &x.u, &x.u_dot);
+        let value = x.turn.sin * (base.g * (self.weight - share)) + self.push(&x.F_t) * x.turn.cos - elastic;
         if !self.has_feedthrough() {
             return value;
         }
-        let ground = x.theta_dot * x.theta_dot * (s * base.B) + x.a_g * x.turn.cos - x.a_v * x.turn.sin;
+        let ground = x.theta_dot * x.theta_dot * (x.s * base.B) + x.a_g * x.turn.cos - x.a_v * x.turn.sin;
         value + x.theta_ddot * height + ground * share
     }
 
-    /// Bound of the magnitude of the terms of [`Gauge::value`] in θ and in the ground acceleration over a polynomial, within `most`.
+    /// Bound of the magnitude of the terms of [`Gauge::at`] in θ and in the ground acceleration over a polynomial, within `most`.
     /// They are added up before they are bounded, because θ̈ opposes the ground acceleration.
     pub(crate) fn turning<Q: Coordinates>(
         &self,

@@ -1,12 +1,10 @@
 //! All that a formula reads: the structure at one instant, in numbers of any kind.
 
-use crate::mechanics::gauge::Gauge;
-use crate::mechanics::lateral::{Coordinates, Duals, Lateral, Modes};
+use crate::mechanics::lateral::{Coordinates, Duals, Lateral};
 use crate::mechanics::load::{LinearLoad, Load};
-use crate::mechanics::outputs::Shows;
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
-use crate::{Base, Foundation, Mode, Structure};
+use crate::{Base, Mode, Structure};
 use crate::{Contact, Phase, State};
 
 /// The structure at an instant, with lateral coordinates `Q`.
@@ -129,63 +127,6 @@ impl<'a, Q: Coordinates> Instant<'a, Dual<f64>, Duals<Q>> {
     }
 }
 
-impl<N: Number, Q: Lateral<N>> Shows<N> for Instant<'_, N, Q> {
-    #[inline]
-    fn structure(&self) -> &Structure {
-        self.structure
-    }
-
-    #[inline]
-    fn foundation(&self) -> Option<&Foundation> {
-        Q::foundation(self.structure)
-    }
-
-    #[inline]
-    fn pivot(&self) -> f64 {
-        self.s * self.base().B
-    }
-
-    #[inline]
-    fn theta(&self) -> N {
-        self.theta
-    }
-
-    #[inline]
-    fn theta_dot(&self) -> N {
-        self.theta_dot
-    }
-
-    #[inline]
-    fn turn(&self) -> Turn<N> {
-        self.turn
-    }
-
-    #[inline]
-    fn u(&self, shape: &Modes) -> N {
-        self.u.weighed(shape)
-    }
-
-    #[inline]
-    fn u_dot(&self, shape: &Modes) -> N {
-        self.u_dot.weighed(shape)
-    }
-
-    #[inline]
-    fn gauge(&self, gauge: &Gauge) -> N {
-        gauge.at(self)
-    }
-
-    #[inline]
-    fn contact(&self) -> Contact {
-        self.contact
-    }
-
-    #[inline]
-    fn coordinate(&self, place: usize) -> [N; 2] {
-        [self.u.of(place), self.u_dot.of(place)]
-    }
-}
-
 impl<N: Number, Q: Lateral<N>> Instant<'_, N, Q> {
     /// The base.
     #[inline(always)]
@@ -197,6 +138,18 @@ impl<N: Number, Q: Lateral<N>> Instant<'_, N, Q> {
     #[inline(always)]
     pub(crate) fn pivot(&self) -> f64 {
         self.s * self.base().B
+    }
+
+    /// A lateral coordinate and its rate.
+    #[inline(always)]
+    pub(crate) fn coordinate(&self, place: usize) -> [N; 2] {
+        [self.u.of(place), self.u_dot.of(place)]
+    }
+
+    /// The height of the base at `xi` (m) above the unloaded ground that gives (m), and its rate (F1).
+    pub(crate) fn height(&self, place: usize, xi: f64) -> [N; 2] {
+        let [middle, sin] = [place, place + 1].map(|place| self.coordinate(place));
+        [0, 1].map(|i| middle[i] - sin[i] * xi)
     }
 
     /// A sum over the modes.

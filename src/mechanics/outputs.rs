@@ -15,10 +15,10 @@
 
 use crate::mechanics::gauge::Gauge;
 use crate::mechanics::instant::{Instant, Place, uplift};
-use crate::mechanics::lateral::{Coordinates, Modes};
+use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::load::Load;
-use crate::numbers::{Number, Turn};
-use crate::{Base, Contact, Foundation, Phase, State, Structure};
+use crate::numbers::Number;
+use crate::{Base, Foundation, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 
 /// An output of a structure. Floors and storeys count from 0, from below; storey i is below floor i.
@@ -83,35 +83,6 @@ pub enum Output {
 
 use Output::{E_foundation, M, M_t, N, N_left, N_right, V, V_t, a_t, contact, delta_t, drift, drift_ratio, lifted};
 use Output::{F_d1, F_d2, P_t, pressure, settled, settlement, theta, theta_dot, u, u_dot, v_t, y};
-
-/// A motion in numbers of the kind `N`, as formulas of outputs read it.
-pub(crate) trait Shows<N> {
-    fn structure(&self) -> &Structure;
-    fn foundation(&self) -> Option<&Foundation>;
-    /// Place of the pivot, sB, m.
-    fn pivot(&self) -> f64;
-    fn theta(&self) -> N;
-    fn theta_dot(&self) -> N;
-    fn turn(&self) -> Turn<N>;
-    /// Elastic displacement of a floor of this `shape`, m.
-    fn u(&self, shape: &Modes) -> N;
-    /// Elastic velocity of a floor of this `shape`, m/s.
-    fn u_dot(&self, shape: &Modes) -> N;
-    fn gauge(&self, gauge: &Gauge) -> N;
-    /// What carries the base on ground that gives.
-    fn contact(&self) -> Contact;
-    /// A lateral coordinate and its rate.
-    fn coordinate(&self, place: usize) -> [N; 2];
-
-    /// The height of the base at `xi` (m) above the unloaded ground that gives (m), and its rate (F1).
-    fn height(&self, place: usize, xi: f64) -> [N; 2]
-    where
-        N: Number,
-    {
-        let [middle, sin] = [place, place + 1].map(|place| self.coordinate(place));
-        [0, 1].map(|i| middle[i] - sin[i] * xi)
-    }
-}
 
 impl Output {
     /// The outputs of one mass, in the order of their columns.
@@ -306,25 +277,25 @@ impl Output {
     }
 
     /// The output in the motion `x` on ground that gives (F1, F2).
-    fn on_ground<K: Number>(self, x: &impl Shows<K>, foundation: &Foundation) -> K {
+    fn on_ground<K: Number, Q: Lateral<K>>(self, x: &Instant<K, Q>, foundation: &Foundation) -> K {
         let Foundation { points, place, .. } = foundation;
         match self {
             y => x.coordinate(*place)[0],
             E_foundation => x.coordinate(place + 2)[0],
             lifted(_) | settled(_) | P_t => {
-                let [xi, k, _, offset] = self.of_height(x.structure().base(), foundation).expect("it is of a height");
+                let [xi, k, _, offset] = self.of_height(x.base(), foundation).expect("it is of a height");
                 (x.height(*place, xi)[0] * k + K::constant(offset)).positive()
             }
-            N(i) if x.contact().is_pressed(i) => {
+            N(i) if x.contact.is_pressed(i) => {
                 let [e, rate] = x.height(*place, points[i].xi);
                 -(e * points[i].k + rate * points[i].c)
             }
             contact => {
-                let pressed = points.iter().enumerate().filter(|(i, _)| x.contact().is_pressed(*i));
+                let pressed = points.iter().enumerate().filter(|(i, _)| x.contact.is_pressed(*i));
                 K::constant(pressed.map(|(_, point)| point.k).sum::<f64>() / foundation.sum(0))
             }
             Output::uplift | settlement | N_left | N_right | pressure => {
-                let parts = self.parts(x.structure()).into_iter();
+                let parts = self.parts(x.structure).into_iter();
                 let each = parts.map(|(of, factor)| of.on_ground(x, foundation) * factor);
                 each.reduce(K::larger).expect("it has parts")
             }
@@ -334,24 +305,24 @@ impl Output {
 
     /// The output in the motion `x`, NaN if the structure does not have it.
     #[inline]
-    pub(crate) fn of<K: Number>(self, x: &impl Shows<K>) -> K {
-        let floor = |i: usize| &x.structure().floors()[i];
-        let place = |i| Place { share: 1.0, height: floor(i).height, u: x.u(&floor(i).shape) };
+    pub(crate) fn of<K: Number, Q: Lateral<K>>(self, x: &Instant<K, Q>) -> K {
+        let floor = |i: usize| &x.structure.floors()[i];
+        let place = |i| Place { share: 1.0, height: floor(i).height, u: x.u.weighed(&floor(i).shape) };
         match self {
-            theta => x.theta(),
-            theta_dot => x.theta_dot(),
-            Output::uplift if x.foundation().is_none() => uplift(x.pivot(), &x.turn()),
+            theta => x.theta,
+            theta_dot => x.theta_dot,
+            Output::uplift if Q::foundation(x.structure).is_none() => uplift(x.pivot(), &x.turn),
             u(_) | drift(_) | drift_ratio(_) => {
-                let (shape, factor) = self.displaced(x.structure()).expect("it is a displacement");
-                x.u(shape) * factor
+                let (shape, factor) = self.displaced(x.structure).expect("it is a displacement");
+                x.u.weighed(shape) * factor
             }
-            u_dot(i) => x.u_dot(&floor(i).shape),
-            delta_t(i) => place(i).right(x.pivot(), &x.turn()),
-            v_t(i) => place(i).rate_of_right(x.pivot(), &x.turn(), [x.u_dot(&floor(i).shape), x.theta_dot()]),
+            u_dot(i) => x.u_dot.weighed(&floor(i).shape),
+            delta_t(i) => place(i).right(x.pivot(), &x.turn),
+            v_t(i) => place(i).rate_of_right(x.pivot(), &x.turn, [x.u_dot.weighed(&floor(i).shape), x.theta_dot]),
             V_t | M_t | a_t(_) | V(_) | M(_) => {
-                x.gauge(self.gauge(x.structure()).expect("a gauge measures accelerations and forces"))
+                self.gauge(x.structure).expect("a gauge measures accelerations and forces").at(x)
             }
-            _ => x.foundation().map_or(K::constant(f64::NAN), |foundation| self.on_ground(x, foundation)),
+            _ => Q::foundation(x.structure).map_or(K::constant(f64::NAN), |foundation| self.on_ground(x, foundation)),
         }
     }
 }

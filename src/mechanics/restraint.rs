@@ -14,7 +14,6 @@
 //! at the end. The equations for small angles have e = l θ instead. All elongations are 0 at θ = 0. An elastoplastic dissipator
 //! then pulls with its residual force − k_d e_p. Impacts leave e_p unchanged.
 
-use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
 use crate::{Base, Side, Ties};
 use serde::{Deserialize, Serialize};
@@ -204,15 +203,6 @@ impl<'a> Restraint<'a> {
         let of_ties = self.moment(&Angles::Any.chord(theta, 0.0));
         let (sin, cos) = libm::sincos(theta);
         m_t * g * B * (self.side.sign() * cos - sin / tan_alpha_cg) + of_ties
-    }
-}
-
-impl Restraints {
-    /// Rates of the forces, N/s, from θ, θ̇ and θ̈.
-    pub(crate) fn rates(restraint: &Restraint, angles: Angles, [theta, theta_dot, theta_ddot]: [f64; 3]) -> Restraints {
-        let (theta, theta_dot) = (Dual { value: theta, rate: theta_dot }, Dual { value: theta_dot, rate: theta_ddot });
-        let Restraints { P_t, F_d1, F_d2 } = restraint.forces(&angles.chord(theta, theta_dot));
-        Restraints { P_t: P_t.rate, F_d1: F_d1.rate, F_d2: F_d2.rate }
     }
 }
 

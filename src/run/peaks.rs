@@ -9,15 +9,14 @@
 use crate::engine::lanes::{MOST_SOUGHT, Passes, Sought};
 #[cfg(feature = "lanes")]
 use crate::engine::piece::Watch;
-use crate::engine::piece::{CONVERGED, Expansion, Over, Piece};
-use crate::mechanics::contact::{forces_on_ground, ties_on_ground};
+use crate::engine::piece::{CONVERGED, Expansion, Piece};
+use crate::mechanics::contact::restraints;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::outputs::Shows;
 use crate::mechanics::reach::{Magnitudes, OffChord, Reach};
 use crate::mechanics::restraint::{Angles, Restraint, Restraints};
 use crate::series::extremes;
-use crate::{Base, Detail, Foundation, Output, State, Structure, Ties};
+use crate::{Base, Detail, Output, State, Structure, Ties};
 #[cfg(feature = "lanes")]
 use crate::{Engine, Phase, Transition};
 use serde::{Deserialize, Serialize};
@@ -327,23 +326,22 @@ impl Peaks {
 
     /// Looks for larger forces of the dissipators in `piece`. They depend on θ and θ̇ alone, and on y on ground that gives.
     pub(super) fn look_at_dissipators<Q: Coordinates>(&mut self, piece: &Piece<Q>) {
-        let (base, before) = (piece.level.structure().base(), piece.before);
+        let (structure, before) = (piece.level.structure(), piece.before);
         let (angles, pair) = (self.tendon.angles, &mut self.pair);
-        let restraint = Restraint::about(base, before.phase.side(), &before.dissipators);
-        let on_ground = Q::foundation(piece.level.structure()).map(|&Foundation { rest, place, .. }| {
-            (ties_on_ground(base, rest, &before.dissipators, before.phase.contact()), [place, place + 1])
-        });
-        let forces = |state: &State<Q>| match &on_ground {
-            Some((ties, at)) => of_pair(forces_on_ground(ties, at.map(|at| [state.u.of(at), state.u_dot.of(at)]))),
-            None => of_pair(restraint.forces(&angles.chord(state.theta, state.theta_dot))),
+        let forces = |state: &State<Q>| {
+            let x = Instant::of(structure, before.phase, state, piece.load.value);
+            of_pair(restraints(&x, angles, &before.dissipators))
         };
         for (time, state) in [(before.time, before.state), (before.time + piece.duration, piece.end)] {
             pair.iter_mut().zip(forces(&state)).for_each(|(peak, force)| peak.see(force, time));
         }
         let most = piece.whole().most();
-        let bounds = match on_ground {
+        let bounds = match Q::foundation(structure) {
             Some(_) => [f64::INFINITY; 2],
-            None => restraint.most(most.theta, most.theta_dot),
+            None => {
+                let restraint = Restraint::about(structure.base(), before.phase.side(), &before.dissipators);
+                restraint.most(most.theta, most.theta_dot)
+            }
         };
         if !pair.iter().zip(bounds).any(|(peak, bound)| peak.may_change(bound, before.time)) {
             return;
@@ -351,11 +349,8 @@ impl Peaks {
         let mut arcs = piece.arcs();
         while let Some(expansion) = arcs.next() {
             expansion.in_parts(&mut |part, is_finest| {
-                let (over, reach) = (Over::new(*part), part.arc.reach);
-                let series = match &on_ground {
-                    Some((ties, at)) => of_pair(forces_on_ground(ties, at.map(|at| over.coordinate(at)))),
-                    None => of_pair(restraint.forces(&angles.chord(over.theta(), over.theta_dot()))),
-                };
+                let reach = part.arc.reach;
+                let series = of_pair(restraints(&part.over(), angles, &before.dissipators));
                 let mut ends = series.iter().zip(forces(&part.arc.at(reach)));
                 if !is_finest && !ends.all(|(series, last)| part.has_converged(series, last, CONVERGED)) {
                     return false;
@@ -393,7 +388,7 @@ impl Peaks {
                 if !peak.may_change(bound, start) {
                     continue;
                 }
-                let series = output.of(over.get_or_insert_with(|| Over::new(*part)));
+                let series = output.of(over.get_or_insert_with(|| part.over()));
                 if !is_finest && !output.is_component() && !part.has_converged(&series, at_end, CONVERGED) {
                     return false;
                 }

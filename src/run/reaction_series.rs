@@ -2,11 +2,10 @@
 //!
 //! The series tell the instant at which a reaction is largest; its value there comes from the state.
 
-use crate::engine::piece::{Expansion, Over};
+use crate::engine::piece::Expansion;
 use crate::levels::level::Subject;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
-use crate::mechanics::outputs::Shows;
 use crate::mechanics::reactions::less_momentum;
 use crate::mechanics::restraint::Restraint;
 use crate::numbers::Number;
@@ -40,22 +39,22 @@ fn of_edges<Q: Coordinates>(
 /// The reactions of the edges over a polynomial. The moment is given in full contact only; while rocking it is sB R_v.
 pub(crate) fn over<Q: Coordinates>(expansion: &Expansion<Q>) -> Reactions<Terms> {
     let &Expansion { piece, from, arc } = expansion;
-    let (structure, load, over) = (piece.level.structure(), piece.load.from(from), Over::new(*expansion));
+    let (structure, load, over) = (piece.level.structure(), piece.load.from(from), expansion.over());
     let &Motion { phase, ref dissipators, .. } = piece.before;
     let (base, gauges) = (structure.base(), structure.gauges());
     let ramp = |of: &dyn Fn(&Load<Q>) -> f64| Terms::ramp(of(&load.value), of(&load.slope) * arc.span);
     let sum = |of: &Series<Q>| Terms::from_fn(arc.order, |k| gauges.V_t.displacement(&of[k]));
     let (offset, mut weight) = (sum(&arc.u), ramp(&|load| load.a_v) + Terms::constant(base.g));
-    if let Some(lift) = over.lift() {
+    if let Some(lift) = expansion.lift() {
         weight = weight + lift;
     }
-    let along = sum(&arc.u_dot) + over.theta_dot() * structure.body().S_1;
-    let across = (Terms::constant(over.pivot() * base.m_t) - offset) * over.theta_dot();
+    let along = sum(&arc.u_dot) + over.theta_dot * structure.body().S_1;
+    let across = (Terms::constant(over.pivot() * base.m_t) - offset) * over.theta_dot;
     let push = ramp(&|load| structure.pushes(load)[0] - base.m_t * load.a_g);
     let forces = [push, weight * base.m_t];
-    let [R_h, R_v] = less_momentum(forces, [along, across], &over.turn(), |momentum| momentum.slope(arc.span));
+    let [R_h, R_v] = less_momentum(forces, [along, across], &over.turn, |momentum| momentum.slope(arc.span));
     let R_m = match phase {
-        Phase::FullContact => ramp(&|load| structure.pushes(load)[1]) - over.gauge(&gauges.M_t) + weight * offset,
+        Phase::FullContact => ramp(&|load| structure.pushes(load)[1]) - gauges.M_t.at(&over) + weight * offset,
         _ => Terms::constant(0.0),
     };
     of_edges(piece.level.subject(), phase, dissipators, arc, Reactions { R_h, R_v, R_m })
