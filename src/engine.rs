@@ -28,7 +28,7 @@ use crate::levels::level::{Level, derivatives};
 use crate::mechanics::contact;
 use crate::mechanics::energy::energy;
 use crate::mechanics::instant::{Instant, Second};
-use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
+use crate::mechanics::lateral::{Coordinates, Duals, Lateral, Modes};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
 use crate::mechanics::restraint::{Dissipators, Restraints};
@@ -182,6 +182,14 @@ impl Settings {
     }
 }
 
+/// Advances an engine, whose motion `before` is kept, by an interval (s) under a load until a last step.
+type GoOn<Q> = fn(
+    &mut Engine<Q>,
+    &mut Option<Motion<Q>>,
+    (f64, LinearLoad<Q>, u64),
+    &mut dyn Watch<Q>,
+) -> Result<Progress, AdvanceError>;
+
 type LevelOrNot<Q> = Result<Box<dyn Level<Q>>, InitialStateError>;
 
 /// The functions of structures with the coordinates `Q` that are compiled here alone: a generic function would be compiled again in every
@@ -190,11 +198,11 @@ type LevelOrNot<Q> = Result<Box<dyn Level<Q>>, InitialStateError>;
 struct Kind<Q: Coordinates> {
     level: fn(Detail, Structure, f64, bool) -> LevelOrNot<Q>,
     watched: fn(&Structure, &Motion<Q>) -> Option<&'static Watched<Q>>,
-    advance: fn(Task<'_, Q>) -> Result<Progress, AdvanceError>,
+    advance: GoOn<Q>,
 }
 
-static ONE: Kind<f64> = Kind { level: Detail::level_of_one, watched: phases::of, advance: |task| task.go_on() };
-static MANY: Kind<Modes> = Kind { level: Detail::level_of_modes, watched: phases::of, advance: |task| task.go_on() };
+static ONE: Kind<f64> = Kind { level: Detail::level_of_one, watched: phases::of, advance: Engine::go_on_by_steps };
+static MANY: Kind<Modes> = Kind { level: Detail::level_of_modes, watched: phases::of, advance: Engine::go_on_by_steps };
 
 /// A structure in motion.
 #[derive(Debug)]
@@ -217,17 +225,6 @@ impl Engine {
         tolerance: f64,
     ) -> Result<Engine, InitialStateError> {
         Engine::with(structure, initial, time, Settings { tolerance, ..Settings::default() })
-    }
-
-    /// Starts at `time` (s) from `initial`, to a relative `tolerance` of the results, at the level of detail `detail`.
-    pub fn with_detail(
-        structure: impl Into<Structure>,
-        initial: State,
-        time: f64,
-        tolerance: f64,
-        detail: Detail,
-    ) -> Result<Engine, InitialStateError> {
-        Engine::with(structure, initial, time, Settings { detail, tolerance, ..Settings::default() })
     }
 
     /// Starts at `time` (s) from `initial`. The dissipators of a structure that starts turned have been moved there slowly from
@@ -339,12 +336,7 @@ impl<Q: Coordinates> Engine<Q> {
         self.watched().is_none_or(|watched| watched.guards.iter().all(|guard| guard.stays_open(&now, ahead)))
     }
 
-    /// The value of `output` now under `load`; once overturned, the value of the instant before.
-    pub fn output(&self, output: Output, load: Load<Q>) -> f64 {
-        self.outputs(load)(output)
-    }
-
-    /// The values of outputs now under `load`, of which each costs less than by [`Engine::output`].
+    /// The values of outputs now under `load`; once overturned, the values of the instant before.
     #[inline]
     pub fn outputs(&self, load: Load<Q>) -> impl Fn(Output) -> f64 {
         // a sample would copy the motion
@@ -355,22 +347,12 @@ impl<Q: Coordinates> Engine<Q> {
     /// Time derivatives now under `load`, from the equations of motion; 0 once overturned. The derivatives at a transition are taken
     /// just after the transition.
     pub fn rates(&self, load: LinearLoad<Q>) -> Rates<'_, Q> {
-        Rates { engine: self, load, derivatives: self.derivatives(load) }
-    }
-
-    /// The reactions now under `load`; once overturned, those of the instant before.
-    pub fn reactions(&self, load: Load<Q>) -> Reactions {
-        self.sample(load).reactions()
-    }
-
-    /// The part of the reactions now under `load` that the edges of the base carry.
-    pub fn edges(&self, load: Load<Q>) -> Reactions {
-        self.sample(load).edges()
-    }
-
-    /// The forces of the restraints now.
-    pub fn restraints(&self) -> Restraints {
-        self.sample(Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 }).restraints()
+        let Motion { phase, state, .. } = &self.motion;
+        let [second, third] = self.derivatives(load);
+        let x = Instant::moving(self.structure(), *phase, state, &second, load);
+        let u_ddot = Duals { value: second.u_ddot, rate: third.u_ddot };
+        let theta_ddot = Dual { value: second.theta_ddot, rate: third.theta_ddot };
+        Rates { x, second: Second { u_ddot, theta_ddot }, is_over: matches!(phase, Phase::Overturned(_)) }
     }
 
     /// Rates of the forces of the restraints now under `load`, N/s; 0 once overturned.
@@ -459,9 +441,8 @@ impl<Q: Coordinates> Engine<Q> {
             before = Some(self.motion);
             self.transit(watch);
         }
-        let &mut Engine { kind, ref level, settings: Settings { stops, .. }, ref mut motion, ref mut arc, ref room } =
-            self;
         // most advances are one leap
+        let Engine { kind, level, motion, room, .. } = &mut *self;
         let level = &**level;
         let end = (motion.work.steps != last_step).then(|| leap_under(level, motion, interval, load)).flatten();
         let result = match end {
@@ -470,14 +451,33 @@ impl<Q: Coordinates> Engine<Q> {
                 Progress::Complete
             }),
             None => {
-                let before = &mut before;
-                (kind.advance)(Task { level, motion, arc, room, before, interval, load, watch, last_step, stops })
+                let from = (interval, load, last_step);
+                (kind.advance)(self, &mut before, from, watch)
             }
         };
         if let (Err(_), Some(before)) = (&result, before) {
             self.motion = before;
         }
         result
+    }
+
+    /// Advances step by step.
+    fn go_on_by_steps(
+        &mut self,
+        before: &mut Option<Motion<Q>>,
+        (interval, load, last_step): (f64, LinearLoad<Q>, u64),
+        watch: &mut dyn Watch<Q>,
+    ) -> Result<Progress, AdvanceError> {
+        let Engine { level, motion, arc, room, settings: Settings { stops, .. }, .. } = self;
+        let (level, stops) = (&**level, *stops);
+        let phases = |motion: &Motion<Q>| phases::of::<Q>(level.structure(), motion);
+        let expand = |phase: Phase, start: &Start<Q>, arc: &mut Arc<Q>| {
+            level.series(phase, start, arc);
+            true
+        };
+        let mut advance = Advance::new(level.structure(), motion.time, interval, load, last_step);
+        let progress = Loop { level, phases, expand, arc, room, stops }.go(motion, before, &mut advance, watch)?;
+        Ok(progress.expect("every series is there"))
     }
 
     /// Whether `load` can act over `interval` (s).
@@ -512,34 +512,28 @@ impl<Q: Coordinates> Engine<Q> {
 /// Time derivatives of outputs and reactions.
 #[derive(Debug)]
 pub struct Rates<'a, Q: Coordinates = f64> {
-    engine: &'a Engine<Q>,
-    load: LinearLoad<Q>,
-    derivatives: [Second<f64, Q>; 2],
+    x: Instant<'a, Dual<f64>, Duals<Q>>,
+    second: Second<Dual<f64>, Duals<Q>>,
+    /// Whether the structure has overturned, after which nothing changes.
+    is_over: bool,
 }
 
 impl<Q: Coordinates> Rates<'_, Q> {
     /// The rate of `output`.
     #[inline(never)]
     pub fn of(&self, output: Output) -> f64 {
-        let Rates { engine, load, derivatives: [accelerations, jerks] } = self;
-        let Motion { phase, state, .. } = &engine.motion;
-        if let Phase::Overturned(_) = phase {
-            return 0.0;
-        }
-        let x = Instant::moving(engine.structure(), *phase, state, accelerations, *load);
-        let theta_ddot = Dual { value: accelerations.theta_ddot, rate: jerks.theta_ddot };
-        let lift = Q::foundation(engine.structure()).map(|Foundation { place, .. }| {
-            let [value, rate] = [accelerations, jerks].map(|of| of.u_ddot.of(*place));
-            Dual { value, rate }
-        });
-        output.of(&Instant { theta_ddot, a_v: lift.map_or(x.a_v, |lift| x.a_v + lift), ..x }).rate
+        let Rates { x, second: Second { u_ddot, theta_ddot }, is_over } = *self;
+        let lift = Q::foundation(x.structure).map(|Foundation { place, .. }| u_ddot.of(*place));
+        let x = Instant { theta_ddot, a_v: lift.map_or(x.a_v, |lift| x.a_v + lift), ..x };
+        if is_over { 0.0 } else { output.of(&x).rate }
     }
 
     /// The rates of the reactions.
     #[inline(never)]
     pub fn reactions(&self) -> Reactions {
-        let Motion { phase, state, .. } = &self.engine.motion;
-        Reactions::rates(self.engine.structure(), *phase, state, self.derivatives, self.load)
+        let of = |of: Dual<f64>| if self.is_over { 0.0 } else { of.rate };
+        let Reactions { R_h, R_v, R_m } = Reactions::at(&self.x, &self.second);
+        Reactions { R_h: of(R_h), R_v: of(R_v), R_m: of(R_m) }
     }
 }
 
@@ -592,35 +586,6 @@ fn leapt<Q: Coordinates, W: Watch<Q> + ?Sized>(
     motion.work.steps += 1;
     motion.chatter.pass(duration);
     Ok(())
-}
-
-/// One advance.
-struct Task<'a, Q: Coordinates> {
-    level: &'a dyn Level<Q>,
-    motion: &'a mut Motion<Q>,
-    arc: &'a mut Arc<Q>,
-    room: &'a Room<Q>,
-    before: &'a mut Option<Motion<Q>>,
-    interval: f64,
-    load: LinearLoad<Q>,
-    watch: &'a mut dyn Watch<Q>,
-    last_step: u64,
-    stops: bool,
-}
-
-impl<Q: Coordinates> Task<'_, Q> {
-    /// Advances step by step.
-    fn go_on(self) -> Result<Progress, AdvanceError> {
-        let Task { level, motion, arc, room, before, interval, load, watch, last_step, stops } = self;
-        let phases = |motion: &Motion<Q>| phases::of::<Q>(level.structure(), motion);
-        let expand = |phase: Phase, start: &Start<Q>, arc: &mut Arc<Q>| {
-            level.series(phase, start, arc);
-            true
-        };
-        let mut advance = Advance::new(level.structure(), motion.time, interval, load, last_step);
-        let progress = Loop { level, phases, expand, arc, room, stops }.go(motion, before, &mut advance, watch)?;
-        Ok(progress.expect("every series is there"))
-    }
 }
 
 /// An advance on its way.
@@ -864,8 +829,9 @@ mod tests {
     fn a_new_phase_is_one_more_list_of_guards() {
         static WALLED: Watched = Watched { guards: &[&Wall], ..Watched::RESTING };
         let structure = OneMass::new(Parameters { zeta_fc: 0.0, ..Parameters::EVISON }).unwrap();
+        let settings = Settings { detail: Detail::Nonlinear, tolerance: 1e-12, ..Settings::default() };
         let released = State { u: -AMPLITUDE, ..State::default() };
-        let mut engine = Engine::with_detail(structure, released, 0.0, 1e-12, Detail::Nonlinear).unwrap();
+        let mut engine = Engine::with(structure, released, 0.0, settings).unwrap();
         let Engine { level, motion, arc, room, .. } = &mut engine;
         let mut bounces = Vec::new();
         let mut watch = |transition: &Transition| bounces.push(transition.time);

@@ -347,7 +347,7 @@ impl Structure {
     }
 
     /// This structure on `ground` that gives, with at most 21 modes. The structure has no numbers of one mass any more: it is moved as
-    /// structures of many masses are. Without ground that gives, this structure.
+    /// structures of many masses are. Without `ground`, this structure.
     pub fn on<'g>(&self, ground: impl Into<Option<&'g Ground>>) -> Result<Structure, StructureError> {
         let Some(ground) = ground.into() else { return Ok(self.clone()) };
         let kept =
@@ -355,7 +355,7 @@ impl Structure {
         let foundation =
             Foundation::new(ground, kept.base(), kept.body(), kept.modes()).map_err(StructureError::Ground)?;
         if foundation.is_none() {
-            return Ok(self.clone());
+            return Ok(self.on_rigid_ground());
         }
         let coordinates = [kept.modes(), &[Mode { mass: 1.0, ..Mode::default() }; MORE]].concat();
         Ok(kept.standing(foundation, coordinates))
@@ -363,8 +363,14 @@ impl Structure {
 
     /// This structure as the level `detail` moves it: a fixed base stands on no ground that gives, and has no outputs of such ground.
     pub fn at(&self, detail: Detail) -> Structure {
-        let stays = detail.has_uplift() || self.foundation().is_none();
-        if stays { self.clone() } else { self.standing(None, self.modes().to_vec()) }
+        if detail.has_uplift() { self.clone() } else { self.on_rigid_ground() }
+    }
+
+    fn on_rigid_ground(&self) -> Structure {
+        match self.foundation() {
+            Some(_) => self.standing(None, self.modes().to_vec()),
+            None => self.clone(),
+        }
     }
 
     /// This structure with these lateral `coordinates`, and without numbers of one mass.

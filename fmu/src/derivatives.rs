@@ -88,7 +88,7 @@ impl<Q: Runs> Unit<Q> {
         let shown = |load| Shown::new(scene, setup, load);
         let before = shown(at_rest.value);
         let (Reactions { R_h, R_v, .. }, base) =
-            (scene.engine.reactions(at_rest.value), scene.engine.structure().base());
+            (scene.engine.sample(at_rest.value).reactions(), scene.engine.structure().base());
         let acceleration = |(which, change): &(usize, f64)| {
             change.abs() / if *which == 0 || *which == vertical { 1.0 } else { base.m_t }
         };

@@ -6,13 +6,13 @@
 use crate::engine::motion::Motion;
 use crate::engine::phases::{self, Step};
 use crate::engine::transition::Transition;
-use crate::levels::level::{Level, Now, Subject, off_chord};
+use crate::levels::level::{Level, Now, edges, off_chord};
 use crate::mechanics::contact;
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::{Coordinates, Lateral, Polynomials};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::reach::{Magnitudes, OffChord};
-use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
+use crate::mechanics::restraint::{Dissipators, Restraints};
 use crate::numbers::{Angle, Number, Turn};
 use crate::series::taylor::{Arc, Start, evaluate};
 use crate::series::terms::Terms;
@@ -105,19 +105,8 @@ impl<Q: Coordinates> Sample<'_, Q> {
 
     /// The part of the reactions that the edges of the base carry: all of it, unless the structure is restrained.
     pub fn edges(&self) -> Reactions {
-        let Sample { motion: Motion { phase, state, dissipators, .. }, level, .. } = self;
-        let (&Subject { ref structure, is_tied, .. }, reactions) = (level.subject(), self.reactions());
-        if !is_tied {
-            return reactions;
-        }
-        if Q::foundation(structure).is_some() {
-            let Restraints { P_t, F_d1, F_d2 } = self.restraints();
-            let moment = structure.base().ties.xi_d * (F_d1 - F_d2) * libm::cos(state.theta);
-            return reactions.of_edges(P_t + F_d1 + F_d2, 0.0, moment);
-        }
-        let restraint = Restraint::about(structure.base(), phase.side(), dissipators);
-        let [up, right, moment] = restraint.pulls(&level.subject().angles.chord(state.theta, state.theta_dot));
-        reactions.of_edges(up, right, moment)
+        let x = self.instant();
+        edges(&x, self.level.subject(), &self.motion.dissipators, Reactions::at(&x, &self.second()))
     }
 
     /// The forces of the restraints.

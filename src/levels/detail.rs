@@ -16,7 +16,7 @@
 
 use crate::levels::first_uplift::Liftable;
 use crate::levels::full_contact::{self, ExactContact};
-use crate::levels::level::{ElasticRocking, Level, Subject, most_of_swings};
+use crate::levels::level::{ElasticRocking, FixedBase, Level, Subject, most_of_swings};
 use crate::levels::linear::LinearRocking;
 use crate::levels::modes::ManyModes;
 use crate::levels::nonlinear::NonlinearRocking;
@@ -108,7 +108,7 @@ impl Detail {
                 let structure = subject.structure.shown_rigid();
                 Box::new(ManyModes::<f64>::rigid(Subject { structure, ..subject }, &one))
             }
-            Detail::FixedBase => Box::new(FixedBase { subject, one, contact }),
+            Detail::FixedBase => Box::new(Elastic { subject, one, contact: Some(contact), rocking: FixedBase }),
         })
     }
 
@@ -165,6 +165,7 @@ impl<Rocking: ElasticRocking> Elastic<Rocking> {
     fn least_displacement(&self, start: &Start) -> f64 {
         let one = &self.one;
         match self.subject.is_tied {
+            _ if !Rocking::IS_POSSIBLE => f64::INFINITY,
             false => one.u_cr, // every leap asks
             true => {
                 let hold = least_hold(one.base(), start.a_v, start.interval, start.dissipators);
@@ -224,7 +225,7 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
     #[inline(always)]
     fn liftable(&self) -> Option<Liftable<'_>> {
         let one = &self.one;
-        Some(Liftable {
+        Rocking::IS_POSSIBLE.then(|| Liftable {
             base: one.base(),
             modes: std::slice::from_ref(one.mode()),
             rigid: None,
@@ -232,38 +233,6 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
             has_constant_inertia: self.subject().angles == Angles::Small,
             turning_decides: one.u_cr == f64::NEG_INFINITY,
         })
-    }
-}
-
-/// Full contact throughout.
-#[derive(Clone, Debug)]
-pub(crate) struct FixedBase {
-    subject: Subject,
-    one: OneMass,
-    contact: ExactContact,
-}
-
-impl Level for FixedBase {
-    fn subject(&self) -> &Subject {
-        &self.subject
-    }
-
-    fn boxed(&self) -> Box<dyn Level> {
-        Box::new(self.clone())
-    }
-
-    #[inline(always)]
-    fn leap(&self, _phase: Phase, start: &Start) -> Option<State> {
-        self.contact.leap(start, f64::INFINITY)
-    }
-
-    #[inline(always)]
-    fn swings(&self, _phase: Phase, start: &Start) -> Option<[f64; 4]> {
-        Some(self.contact.swings(start))
-    }
-
-    fn series(&self, _phase: Phase, start: &Start, arc: &mut Arc) {
-        full_contact::series(&self.one, start, arc);
     }
 }
 

@@ -2,12 +2,14 @@
 
 use crate::levels::first_uplift::Liftable;
 use crate::levels::rules::ChatterLimit;
+use crate::mechanics::contact::restraints;
 use crate::mechanics::impact;
-use crate::mechanics::instant::Second;
-use crate::mechanics::lateral::Coordinates;
+use crate::mechanics::instant::{Instant, Second};
+use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::{LinearLoad, Load};
-use crate::mechanics::restraint::{Angles, Dissipators};
-use crate::numbers::Real;
+use crate::mechanics::reactions::Reactions;
+use crate::mechanics::restraint::{Angles, Dissipators, Restraint, Restraints};
+use crate::numbers::{Angle, Real};
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{OneMass, Phase, Side, State, Structure};
@@ -161,6 +163,26 @@ impl<Q: Coordinates> Debug for dyn Level<Q> + '_ {
     }
 }
 
+/// The part of `reactions` that the edges of the base carry at the instant `x`: all of it, unless the structure is restrained.
+pub(crate) fn edges<N: Angle, Q: Lateral<N>>(
+    x: &Instant<N, Q>,
+    &Subject { is_tied, angles, .. }: &Subject,
+    dissipators: &Dissipators,
+    reactions: Reactions<N>,
+) -> Reactions<N> {
+    if !is_tied {
+        return reactions;
+    }
+    if Q::foundation(x.structure).is_some() {
+        let Restraints { P_t, F_d1, F_d2 } = restraints(x, angles, dissipators);
+        let moment = (F_d1 - F_d2) * x.base().ties.xi_d * x.turn.cos;
+        return reactions.of_edges(P_t + F_d1 + F_d2, N::constant(0.0), moment);
+    }
+    let restraint = Restraint::about(x.base(), Side::of(x.s), dissipators);
+    let [up, right, moment] = restraint.pulls(&angles.chord(x.theta, x.theta_dot));
+    reactions.of_edges(up, right, moment)
+}
+
 /// How far a motion leaves its chord. A vibration about a line leaves it by at most twice the `vibration`. A motion whose second
 /// derivative is at most M leaves it by at most M h²/8 over the time h: `bend` is M and h²/8.
 #[inline(always)]
@@ -213,6 +235,9 @@ pub(crate) fn derivatives<Q: Coordinates, const K: usize>(
 
 /// Equations of rocking with an elastic strut.
 pub(crate) trait ElasticRocking {
+    /// Whether the base can lift off.
+    const IS_POSSIBLE: bool = true;
+
     fn leap(&self, _side: Side, _start: &Start) -> Option<State> {
         None
     }
@@ -232,6 +257,16 @@ pub(crate) trait ElasticRocking {
     fn lean(&self) -> f64 {
         1.0
     }
+}
+
+/// A base that never rocks.
+#[derive(Clone, Debug)]
+pub(crate) struct FixedBase;
+
+impl ElasticRocking for FixedBase {
+    const IS_POSSIBLE: bool = false;
+
+    fn series(&self, _side: Side, _start: &Start, _arc: &mut Arc) {}
 }
 
 /// The length and the accuracy of steps while a structure with an elastic strut rocks.

@@ -45,20 +45,6 @@ pub(crate) struct Second<N, Q = N> {
     pub theta_ddot: N,
 }
 
-impl From<[f64; 2]> for Second<f64> {
-    #[inline(always)]
-    fn from([u_ddot, theta_ddot]: [f64; 2]) -> Second<f64> {
-        Second { u_ddot, theta_ddot }
-    }
-}
-
-impl From<Second<f64>> for [f64; 2] {
-    #[inline(always)]
-    fn from(Second { u_ddot, theta_ddot }: Second<f64>) -> [f64; 2] {
-        [u_ddot, theta_ddot]
-    }
-}
-
 /// A place on the structure: a mass, or what stands for it in a sum over the modes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place<N> {

@@ -329,6 +329,7 @@ impl Output {
 
 #[cfg(test)]
 mod tests {
+    use crate::engine::Settings;
     use crate::mechanics::load::LinearLoad;
     use crate::{Detail, Engine, Load, OneMass, Output, Parameters, Reactions, State};
     use approx::assert_relative_eq;
@@ -353,14 +354,17 @@ mod tests {
             let (value, slope) = (Load { a_g: 1.2, F_t: 90.0, a_v: 0.0 }, Load { a_g: 40.0, F_t: -700.0, a_v: 0.0 });
             let start = LinearLoad { value, slope };
             let h = 1e-5;
-            let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-11, detail).unwrap();
+            let mut engine =
+                Engine::with(structure, initial, 0.0, Settings { detail, tolerance: 1e-11, ..Settings::default() })
+                    .unwrap();
             let all = Output::all(engine.structure());
             let mut show = |until: f64| {
                 let now = engine.motion().time;
                 engine.advance(until - now, start.from(now), &mut ()).unwrap();
                 let (load, rates) = (start.at(until), engine.rates(start.from(until)));
                 let with = |Reactions { R_h, R_v, R_m }, outputs: Vec<f64>| [outputs, vec![R_h, R_v, R_m]].concat();
-                let values = with(engine.reactions(load), all.iter().copied().map(engine.outputs(load)).collect());
+                let values =
+                    with(engine.sample(load).reactions(), all.iter().copied().map(engine.outputs(load)).collect());
                 (values, with(rates.reactions(), all.iter().map(|output| rates.of(*output)).collect()))
             };
             let [(before, _), (_, rates), (after, _)] = [1e-3 - h, 1e-3, 1e-3 + h].map(&mut show);

@@ -32,8 +32,7 @@
 //! ```
 
 use crate::mechanics::instant::{Instant, Place, Second};
-use crate::mechanics::lateral::{Coordinates, Duals, Lateral};
-use crate::mechanics::load::LinearLoad;
+use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
 use crate::{Base, Mode, Structure};
@@ -181,26 +180,6 @@ impl<N: Number> Reactions<N> {
     #[inline]
     pub(crate) fn of_edges(self, up: N, right: N, moment: N) -> Reactions<N> {
         Reactions { R_h: self.R_h - right, R_v: self.R_v + up, R_m: self.R_m + moment }
-    }
-}
-
-impl Reactions {
-    /// Time derivatives under `load`, given (ü, θ̈) and (u⃛, θ⃛); 0 once overturned.
-    pub(crate) fn rates<Q: Coordinates>(
-        structure: &Structure,
-        phase: Phase,
-        state: &State<Q>,
-        [accelerations, jerks]: [Second<f64, Q>; 2],
-        load: LinearLoad<Q>,
-    ) -> Reactions {
-        if let Phase::Overturned(_) = phase {
-            return Reactions { R_h: 0.0, R_v: 0.0, R_m: 0.0 };
-        }
-        let x = Instant::moving(structure, phase, state, &accelerations, load);
-        let u_ddot = Duals { value: accelerations.u_ddot, rate: jerks.u_ddot };
-        let theta_ddot = Dual { value: accelerations.theta_ddot, rate: jerks.theta_ddot };
-        let Reactions { R_h, R_v, R_m } = Reactions::at(&x, &Second { u_ddot, theta_ddot });
-        Reactions { R_h: R_h.rate, R_v: R_v.rate, R_m: R_m.rate }
     }
 }
 

@@ -349,6 +349,7 @@ impl<'a> Segments<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::Settings;
     use crate::{Detail, OneMass, Parameters, State};
 
     fn after(steps: impl IntoIterator<Item = f64>) -> Elapsed {
@@ -431,8 +432,8 @@ mod tests {
         for record in [record(&even, &shaken), record(&uneven, &steep)] {
             let ground = GroundMotion::from(&record);
             let after = |miss: f64| {
-                let mut engine =
-                    Engine::with_detail(structure, State::default(), 0.0, 1e-9, Detail::FixedBase).unwrap();
+                let settings = Settings { detail: Detail::FixedBase, ..Settings::default() };
+                let mut engine = Engine::with(structure, State::default(), 0.0, settings).unwrap();
                 let mut elapsed = Elapsed::default();
                 let first = record.times()[1] + miss;
                 for step in std::iter::once(first).chain((1..210).map(|_| 0.01)).chain([0.01 - miss]) {

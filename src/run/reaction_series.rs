@@ -3,38 +3,15 @@
 //! The series tell the instant at which a reaction is largest; its value there comes from the state.
 
 use crate::engine::piece::Expansion;
-use crate::levels::level::Subject;
+use crate::levels::level::edges;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
 use crate::mechanics::reactions::less_momentum;
-use crate::mechanics::restraint::Restraint;
 use crate::numbers::Number;
 use crate::series::extremes;
-use crate::series::taylor::{Arc, ORDERS, Series, ZERO, evaluate};
+use crate::series::taylor::{ORDERS, Series, ZERO, evaluate};
 use crate::series::terms::Terms;
-use crate::{Base, Dissipators, Motion, Phase, Reactions};
-
-/// The part of `reactions` that the edges carry.
-fn of_edges<Q: Coordinates>(
-    &Subject { ref structure, is_tied, angles, .. }: &Subject,
-    phase: Phase,
-    dissipators: &Dissipators,
-    arc: &Arc<Q>,
-    reactions: Reactions<Terms>,
-) -> Reactions<Terms> {
-    if !is_tied {
-        return reactions;
-    }
-    let restraint = Restraint::about(structure.base(), phase.side(), dissipators);
-    let [up, right, moment] = match phase {
-        Phase::FullContact => restraint.pulls(&angles.chord(0.0, 0.0)).map(Terms::constant),
-        _ => {
-            let [theta, theta_dot] = [&arc.theta, &arc.theta_dot].map(|series| Terms::of(series, arc.order));
-            restraint.pulls(&angles.chord(theta, theta_dot))
-        }
-    };
-    reactions.of_edges(up, right, moment)
-}
+use crate::{Base, Motion, Phase, Reactions};
 
 /// The reactions of the edges over a polynomial. The moment is given in full contact only; while rocking it is sB R_v.
 pub(crate) fn over<Q: Coordinates>(expansion: &Expansion<Q>) -> Reactions<Terms> {
@@ -57,7 +34,7 @@ pub(crate) fn over<Q: Coordinates>(expansion: &Expansion<Q>) -> Reactions<Terms>
         Phase::FullContact => ramp(&|load| structure.pushes(load)[1]) - gauges.M_t.at(&over) + weight * offset,
         _ => Terms::constant(0.0),
     };
-    of_edges(piece.level.subject(), phase, dissipators, arc, Reactions { R_h, R_v, R_m })
+    edges(&over, piece.level.subject(), dissipators, Reactions { R_h, R_v, R_m })
 }
 
 /// Bounds of the reactions over a polynomial of rocking without ties, which cost little beside their series.

@@ -1,8 +1,8 @@
 //! Shared by several tests: a ground motion, random numbers, transitions of an advance, peaks beside samples.
 
 use fastrand::Rng;
-use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::engine::piece::Sample;
+use rocking::engine::{DEFAULT_TOLERANCE, Settings};
 use rocking::run::peaks::{Peak, Peaks};
 use rocking::run::record::Record;
 use rocking::run::{Run, Runs};
@@ -35,7 +35,12 @@ pub fn log_between(rng: &mut Rng, low: f64, high: f64) -> f64 {
 
 /// One mass at the default tolerance.
 pub fn start(parameters: Parameters, initial: State, detail: Detail) -> Engine {
-    Engine::with_detail(OneMass::new(parameters).unwrap(), initial, 0.0, DEFAULT_TOLERANCE, detail).unwrap()
+    engine_of(OneMass::new(parameters).unwrap(), initial, DEFAULT_TOLERANCE, detail)
+}
+
+/// One mass from t = 0 on.
+pub fn engine_of(structure: OneMass, initial: State, tolerance: f64, detail: Detail) -> Engine {
+    Engine::with(structure, initial, 0.0, Settings { detail, tolerance, ..Settings::default() }).unwrap()
 }
 
 /// The transitions of an advance over `interval` (s).

@@ -1,7 +1,7 @@
 //! The edges of what the engine accepts: parameters at the ends of their ranges, angles and steps next to nothing, at
 //! every level of detail.
 
-use crate::common::{start, transitions};
+use crate::common::{engine_of, start, transitions};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use proptest::prelude::*;
 use rocking::engine::AdvanceError;
@@ -199,7 +199,7 @@ proptest! {
     ) {
         let Ok(structure) = OneMass::new(parameters) else { return Ok(()) };
         let start = initial(&structure, detail, over);
-        let mut engine = Engine::with_detail(structure, start, 0.0, 1e-10, detail).unwrap();
+        let mut engine = engine_of(structure, start, 1e-10, detail);
         let fastest = structure.omega_u.max(2.0 * structure.zeta_u * structure.omega_u).max(structure.p_l);
         let (mut phase, mut last, mut scale) = (engine.motion().phase, start, energy_scale(&structure, &start));
         for (a_g, F_t, part) in samples {
@@ -225,7 +225,7 @@ proptest! {
             let Motion { state, phase: now, .. } = *engine.motion();
             let outputs = Output::all(engine.structure()).into_iter().map(engine.outputs(load));
             let outputs = Vec::from_iter(outputs);
-            let reactions = engine.reactions(load);
+            let reactions = engine.sample(load).reactions();
             prop_assert!(outputs.iter().chain(&[reactions.R_h, reactions.R_v]).all(|x| x.is_finite()), "{outputs:?} {reactions:?}");
             match now {
                 Phase::FullContact => prop_assert_eq!((state.theta, state.theta_dot), (0.0, 0.0)),

@@ -6,12 +6,13 @@ use approx::assert_relative_eq;
 use rocking::engine::piece::{Piece, Sample};
 use rocking::engine::{Progress, Settings};
 use rocking::run::record::Record;
-use rocking::run::validity::of_structure;
+use rocking::run::validity::{FRICTION, Limits, of_structure};
 use rocking::run::{End, Ending, Run};
 use rocking::structure::doubts::doubted;
 use rocking::structure::natural_quantities::Given;
 use rocking::{
-    Detail, Engine, Ground, LinearLoad, Modes, Output, Parameters, State, Structure, Transition, TransitionKind, Watch,
+    Detail, Engine, Ground, LinearLoad, Modes, Output, Parameters, Reactions, State, Structure, Transition,
+    TransitionKind, Watch,
 };
 use std::f64::consts::TAU;
 
@@ -46,7 +47,7 @@ fn evison_on_two_springs_has_its_six_events_and_peaks() {
     let mut engine = engine(&structure, 0.75246734e-3, 0.04);
     assert_relative_eq!(structure.foundation().unwrap().rest, -9.70664855e-6, max_relative = 1e-9);
     let no_load = structure.load(0.0, 0.0, &[]).unwrap();
-    assert_relative_eq!(engine.output(Output::y, no_load), 11.37754695e-3, max_relative = 1e-9);
+    assert_relative_eq!(engine.sample(no_load).output(Output::y), 11.37754695e-3, max_relative = 1e-9);
     let events = transitions(&mut engine, 0.5, no_load);
     use TransitionKind::{Release, Touch};
     let expected = [
@@ -87,7 +88,7 @@ fn energy_is_kept() {
         let mut engine = engine(&structure, u, theta);
         let whole = |engine: &Engine<Modes>| {
             let (taken, load) = (engine.motion().dissipators, structure.load(0.0, 0.0, &[]).unwrap());
-            engine.energy() + engine.output(Output::E_foundation, load) + taken.viscous + taken.hysteretic
+            engine.energy() + engine.sample(load).output(Output::E_foundation) + taken.viscous + taken.hysteretic
         };
         let start = whole(&engine);
         let transitions = transitions(&mut engine, until, load(&structure, 0.0, 0.0));
@@ -150,7 +151,7 @@ fn static_moments_are_the_closed_forms() {
         let weight = base.m_t * base.g;
         let engine = engine(&structure, 0.0, (at * weight / (foundation.sum(0) * base.B)).asin());
         let at_rest = structure.load(0.0, 0.0, &[]).unwrap();
-        let forces = Vec::from_iter((0..points).map(|i| engine.output(Output::N(i), at_rest)));
+        let forces = Vec::from_iter((0..points).map(|i| engine.sample(at_rest).output(Output::N(i))));
         assert_relative_eq!(forces.iter().sum::<f64>(), weight, max_relative = 1e-12);
         let moment: f64 = foundation.points.iter().zip(forces).map(|(point, force)| point.xi * force).sum();
         moment / (weight * base.B)
@@ -173,11 +174,11 @@ fn a_structure_at_rest_is_carried_and_comes_to_rest() {
     let structure = one_mass(tied, ground(30.0, 0.2, 7));
     let (engine, at_rest) = (engine(&structure, 0.0, 0.0), structure.load(0.0, 0.0, &[]).unwrap());
     let weight = structure.base().m_t * structure.base().g;
-    let carried: f64 = (0..7).map(|i| engine.output(Output::N(i), at_rest)).sum();
+    let carried: f64 = (0..7).map(|i| engine.sample(at_rest).output(Output::N(i))).sum();
     assert_relative_eq!(carried, weight + 500.0, max_relative = 1e-12);
-    assert_relative_eq!(engine.reactions(at_rest).R_v, weight, max_relative = 1e-9);
-    assert_relative_eq!(engine.edges(at_rest).R_v, weight + 500.0, max_relative = 1e-9);
-    assert_eq!(engine.output(Output::contact, at_rest), 1.0);
+    assert_relative_eq!(engine.sample(at_rest).reactions().R_v, weight, max_relative = 1e-9);
+    assert_relative_eq!(engine.sample(at_rest).edges().R_v, weight + 500.0, max_relative = 1e-9);
+    assert_eq!(engine.sample(at_rest).output(Output::contact), 1.0);
 
     let pulse = Record::from_samples("pulse", vec![0.0, 0.1, 0.2], vec![0.0, 9.0, 0.0]).unwrap();
     let run = Run::of_modes(one_mass(EVISON, ground(60.0, 0.2, 3)), &pulse);
@@ -197,7 +198,14 @@ fn a_structure_at_rest_is_carried_and_comes_to_rest() {
     let tied = Parameters { P_0: 500.0, k_t: 1e4, xi_d: 0.2, c_d: 900.0, k_d: 1e5, F_y: 150.0, ..EVISON };
     let tied = Run { end: End::At(2.0), ..Run::of_modes(one_mass(tied, ground(60.0, 0.2, 3)), &pulse) };
     let times = (0..200_000).map(|i| 1e-5 * f64::from(i));
-    peaks_beside_samples(&tied, times, &Output::OF_TIES, 1e-4, |_| ());
+    let (limits, mut friction, mut beyond) = (Limits { friction: 0.2, ..Limits::default() }, 0.0_f64, 0.0);
+    peaks_beside_samples(&tied, times, &Output::OF_TIES, 1e-4, |sample| {
+        let Reactions { R_h, R_v, .. } = sample.edges();
+        friction = friction.max(R_h.abs() / R_v.max(0.0));
+        beyond += if R_h.abs() > limits.friction * R_v { 1e-5 } else { 0.0 };
+    });
+    let found = tied.validity(limits).unwrap().0.worst[FRICTION];
+    assert!(found.value >= friction && (found.beyond - beyond).abs() < 1e-3, "{found:?} {friction} {beyond}");
     let refusal = Run { detail: Detail::Linear, ..run }.peaks().unwrap_err().to_string();
     assert!(refusal.contains("choose auto, nonlinear, rigid or fixed_base"), "{refusal}");
 }
@@ -211,8 +219,8 @@ fn the_points_carry_the_reactions() {
             .map(|(a_g, a_v, force)| structure.load(a_g, a_v, &[force, 0.0, -0.5 * force]).unwrap());
         engine.advance(0.3, LinearLoad { value, slope }, &mut ()).unwrap();
         let load = LinearLoad { value, slope }.at(0.3);
-        let (reactions, points) = (engine.reactions(load), &structure.foundation().unwrap().points);
-        let forces = Vec::from_iter((0..5).map(|i| engine.output(Output::N(i), load)));
+        let (reactions, points) = (engine.sample(load).reactions(), &structure.foundation().unwrap().points);
+        let forces = Vec::from_iter((0..5).map(|i| engine.sample(load).output(Output::N(i))));
         let turned = engine.motion().state.theta.cos();
         let moment: f64 = points.iter().zip(&forces).map(|(point, force)| point.xi * force).sum();
         assert_relative_eq!(reactions.R_v, forces.iter().sum(), max_relative = 1e-10);
@@ -220,11 +228,11 @@ fn the_points_carry_the_reactions() {
         let h = 1e-5;
         let rates = engine.rates(LinearLoad { value: load, slope });
         for output in Output::all(&structure) {
-            let (before, rate) = (engine.output(output, load), rates.of(output));
+            let (before, rate) = (engine.sample(load).output(output), rates.of(output));
             let settings = engine.settings();
             let mut later = engine.remade(settings).unwrap();
             later.advance(h, LinearLoad { value: load, slope }, &mut ()).unwrap();
-            let after = later.output(output, LinearLoad { value: load, slope }.at(h));
+            let after = later.sample(LinearLoad { value: load, slope }.at(h)).output(output);
             assert_relative_eq!((after - before) / h, rate, max_relative = 0.02, epsilon = 1e-3 * before.abs() + 1e-6);
         }
     }

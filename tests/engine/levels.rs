@@ -1,10 +1,10 @@
 //! The levels of detail from outside: rest, bounds, memory. What tolerances promise is in
 //! `tolerance.rs`.
 
-use crate::common::{shaking, start, transitions};
+use crate::common::{engine_of, shaking, start, transitions};
 use approx::assert_abs_diff_eq;
 use rocking::levels::rules::MAX_RIGID_TRANSITIONS_PER_PERIOD;
-use rocking::{Detail, Engine, OneMass, Parameters, Phase, Progress, Ramp, Side, State, Transition, TransitionKind};
+use rocking::{Detail, OneMass, Parameters, Phase, Progress, Ramp, Side, State, Transition, TransitionKind};
 
 const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };
 
@@ -15,7 +15,7 @@ fn rigid_comes_to_rest_with_less_energy_than_the_tolerance() {
     let &Parameters { m, H, g, .. } = structure.parameters();
     for tolerance in [1e-4, 1e-9] {
         let released = State { theta: 0.1, ..State::default() };
-        let mut engine = Engine::with_detail(structure, released, 0.0, tolerance, Detail::Rigid).unwrap();
+        let mut engine = engine_of(structure, released, tolerance, Detail::Rigid);
         let transitions = transitions(&mut engine, 30.0, STILL);
         let landing = transitions.last().unwrap();
         assert_eq!(landing.kind, TransitionKind::Landing);
@@ -37,7 +37,7 @@ fn too_many_impacts_end_in_contact() {
     let structure = OneMass::new(Parameters { r: 0.9999, ..Parameters::MCMANUS }).unwrap();
     let period = 1.0 / structure.p_l;
     let released = State { theta: 1e-11, ..State::default() };
-    let mut engine = Engine::with_detail(structure, released, 0.0, 1e-9, Detail::Rigid).unwrap();
+    let mut engine = engine_of(structure, released, 1e-9, Detail::Rigid);
     let mut advance = |interval, value| transitions(&mut engine, interval, Ramp { value, slope: 0.0 });
     let transitions = [advance(0.9 * period, 0.0), advance(0.2 * period, 9.0)].concat();
     let [settling, uplift] = transitions[transitions.len() - 2..] else { unreachable!() };
@@ -55,7 +55,7 @@ fn rest_lasts_at_every_level() {
             let theta = if detail == Detail::FixedBase { 0.0 } else { 1e-3 };
             let u = if detail == Detail::Rigid { 0.0 } else { 0.9 * structure.u_cr };
             let initial = State { theta, u, ..State::default() };
-            let start = || Engine::with_detail(structure, initial, 0.0, 1e-9, detail).unwrap();
+            let start = || engine_of(structure, initial, 1e-9, detail);
             let mut at_once = start();
             at_once.advance(1000.0, STILL, &mut ()).unwrap();
             let mut bit_by_bit = start();
@@ -78,7 +78,7 @@ fn what_is_down_for_good_takes_no_more_steps() {
         for (zeta_fc, a_g) in [(0.02, 0.0), (0.0, 0.0), (0.0, 0.4), (1e-6, -0.4)] {
             let structure = OneMass::new(Parameters { zeta_fc, r: 0.9, ..Parameters::MCMANUS }).unwrap();
             let initial = State { theta: 0.05, ..State::default() };
-            let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-9, detail).unwrap();
+            let mut engine = engine_of(structure, initial, 1e-9, detail);
             let mut landed = State::default();
             let load = Ramp { value: a_g, slope: 0.0 };
             engine.advance(1e9, load, &mut |transition: &Transition| landed = transition.after).unwrap();

@@ -109,7 +109,7 @@ fn a_frame_without_modes_is_the_rigid_limit() {
             many.advance(0.01, LinearLoad { value, slope: rate }, &mut ()).unwrap();
             one.advance(0.01, LinearLoad { value: from, slope }, &mut ()).unwrap();
             let load = many.structure().load(to.a_g, to.a_v, &[to.F_t]).unwrap();
-            let outputs = [one.output(Output::a_t(0), to), many.sample(load).output(Output::a_t(0))];
+            let outputs = [one.sample(to).output(Output::a_t(0)), many.sample(load).output(Output::a_t(0))];
             let (many, one) = (&many.motion().state, &one.motion().state);
             (theta, a_t) = (theta.max(one.theta.abs()), a_t.max(outputs[0].abs()));
             off[0] = off[0].max((many.theta - one.theta).abs());
@@ -321,7 +321,7 @@ fn dissipators_that_yield_together_keep_the_energy() {
     let start = State { theta: 0.05, ..at_rest(2) };
     let mut engine = Engine::of_modes(frame, start, 0.0, Settings::default()).unwrap();
     let total = |engine: &Engine<Modes>| {
-        let Restraints { F_d1, F_d2, .. } = engine.restraints();
+        let Restraints { F_d1, F_d2, .. } = engine.sample(ground(2, 0.0, 0.0, 0.01).value).restraints();
         engine.energy() + (F_d1 * F_d1 + F_d2 * F_d2) / (2.0 * ties.k_d) + engine.motion().dissipators.hysteretic
     };
     let (mut yielded, mut last, mut kept) = ([Vec::new(), Vec::new()], total(&engine), 0);

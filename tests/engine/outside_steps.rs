@@ -1,7 +1,7 @@
 //! An integrator of its own on the equations of the library: never below the floor, and nearer to the engine the smaller
 //! its steps. Bad integrators are in `test_model_exchange.py`.
 
-use crate::common::{sampled, transitions};
+use crate::common::{engine_of, sampled, transitions};
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::outside_step::{BAND, Checked, Checkpoint};
 use rocking::run::record::Record;
@@ -24,7 +24,7 @@ impl<'a> Outside<'a> {
     /// From rest.
     fn new(detail: Detail, record: &'a Record) -> Outside<'a> {
         let structure = OneMass::new(Parameters::MCMANUS).unwrap();
-        let mut engine = Engine::with_detail(structure, State::default(), 0.0, 1e-12, detail).unwrap();
+        let mut engine = engine_of(structure, State::default(), 1e-12, detail);
         let (mut transitions, ground) = (Vec::new(), GroundMotion::from(record));
         let a_g = LinearLoad::default().on_ground(ground.at(Elapsed::default())).value;
         engine.lift_off_if_due(a_g, &mut |transition: &Transition| transitions.push(*transition));

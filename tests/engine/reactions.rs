@@ -81,7 +81,7 @@ fn the_momentum_balance_closes_across_impacts() {
                 let until = from + node * (to - from);
                 engine.advance(until - engine.motion().time, at(engine.motion().time), &mut ()).unwrap();
                 let Load { a_g, F_t, .. } = at(until).value;
-                let Reactions { R_h, R_v, R_m } = engine.reactions(Load { a_g, F_t, a_v: 0.0 });
+                let Reactions { R_h, R_v, R_m } = engine.sample(Load { a_g, F_t, a_v: 0.0 }).reactions();
                 let Balance { x, y, .. } = balance(&engine);
                 let rates = [
                     F_t - (m + m0) * a_g - R_h,

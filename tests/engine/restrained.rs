@@ -1,6 +1,6 @@
 //! Vertical ground motion, tendon and dissipators: against structures that they make another, and statics by hand.
 
-use crate::common::{peaks_beside_samples, shaking, transitions, transitions_of};
+use crate::common::{engine_of, peaks_beside_samples, shaking, transitions, transitions_of};
 use approx::assert_relative_eq;
 use rocking::engine::Settings;
 use rocking::engine::piece::Sample;
@@ -197,8 +197,8 @@ fn the_edges_carry_what_the_ties_pull_beside_the_reactions() {
     let &Parameters { m, m0, B, g, P_0, .. } = structure.parameters();
     let load = Load { a_v: 2.0, ..Load::default() };
     for detail in LEVELS.into_iter().chain([Detail::FixedBase]) {
-        let engine = Engine::with_detail(structure, State::default(), 0.0, 1e-9, detail).unwrap();
-        assert_relative_eq!(engine.edges(load).R_v, (m + m0) * (g + 2.0) + P_0, max_relative = 1e-14);
+        let engine = engine_of(structure, State::default(), 1e-9, detail);
+        assert_relative_eq!(engine.sample(load).edges().R_v, (m + m0) * (g + 2.0) + P_0, max_relative = 1e-14);
     }
 
     let ground = with_vertical(&shaking(6, 0.01, 300, 8.0), |t| 3.0 * (30.0 * t).sin());

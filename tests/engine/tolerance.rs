@@ -1,8 +1,8 @@
 //! The promise of a tolerance: random structures, records and initial states at all levels that rock.
 
-use crate::common::{between, log_between};
+use crate::common::{between, engine_of, log_between};
 use fastrand::Rng;
-use rocking::{Detail, Engine, OneMass, Parameters, Progress, Ramp, State};
+use rocking::{Detail, OneMass, Parameters, Progress, Ramp, State};
 use std::f64::consts::TAU;
 
 /// A structure that starts from `initial` under ground accelerations, m/s², `dt` seconds apart and linear in between.
@@ -64,7 +64,7 @@ impl Scene {
 
     /// θ at its samples, and the evaluations that these take.
     fn run(&self, detail: Detail, tolerance: f64) -> (Vec<f64>, u64) {
-        let mut engine = Engine::with_detail(self.structure, self.initial, 0.0, tolerance, detail).unwrap();
+        let mut engine = engine_of(self.structure, self.initial, tolerance, detail);
         let mut progress = Progress::Complete;
         let mut rotation = Vec::new();
         for (i, pair) in self.ground.windows(2).enumerate() {
