@@ -173,7 +173,7 @@ def test_an_instance_that_cannot_be_made_is_null_and_the_log_says_why(wall, mcma
         (dict(kind=2), "fmuType = 2 is not one of 0 (fmi2ModelExchange), 1 (fmi2CoSimulation)"),
         (dict(logs=2), "loggingOn = 2 is not one of 0 (fmi2False), 1 (fmi2True)"),
         (dict(location="file:///nowhere/100%25"),
-         "/nowhere/100%/parameters.toml: No such file or directory (os error 2); unpack the whole archive and pass "),
+         "/nowhere/100%/contents.bin: No such file or directory (os error 2); unpack the whole archive and pass "),
         (dict(location="/nowhere"), 'fmuResourceLocation = "/nowhere" is not a file URI of this machine, such as file:///tmp/fmu/resources'),
     ]:
         name, kind, guid, location, logs = (usual | changed).values()

@@ -35,7 +35,7 @@ mod shown;
 pub mod unit;
 pub mod variables;
 
-use resources::{Contents, frame_bytes};
+use resources::Contents;
 use uuid::Uuid;
 
 #[cfg(not(target_family = "wasm"))]
@@ -48,11 +48,5 @@ pub const BUILD: &str = env!("FLEXIBLE_ROCKING_BUILD");
 /// each other. Hosts take two FMUs of one GUID for the same, so that structures and records must differ in it.
 pub fn guid(contents: &Contents) -> String {
     let build = Uuid::try_parse(BUILD).expect("the build script wrote it");
-    let Contents { structure, records, vertical, fixed } = contents;
-    let bytes = match structure.one() {
-        Some(one) => postcard::to_stdvec(&(one.parameters(), records, vertical, fixed)),
-        None => postcard::to_stdvec(&(frame_bytes(structure), records, vertical, fixed)),
-    };
-    let bytes = bytes.expect("numbers and text can always be written");
-    Uuid::new_v5(&build, &bytes).braced().to_string()
+    Uuid::new_v5(&build, &contents.to_bytes()).braced().to_string()
 }

@@ -1,23 +1,15 @@
 //! The content of the archive's folder `resources`, found through the URI that the host gives: the numbers of the structure, and
 //! the list of the records that were packed.
 
-use rocking::structure::parameters::ParameterError;
 use rocking::structure::quantity::Units;
-use rocking::{Body, Floor, Ground, Mode, Modes, Structure, StructureError};
-use serde::de::DeserializeOwned;
+use rocking::{Body, Floor, Ground, Mode, Modes, Parameters, Structure, StructureError};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::{fs, io};
 
-/// The file with the parameters of one mass, in the archive's folder `resources`.
-pub const PARAMETERS_FILE: &str = "parameters.toml";
-
-/// The file with the numbers of many masses, in the same folder in place of [`PARAMETERS_FILE`].
-pub const FRAME_FILE: &str = "frame.bin";
-
-/// The file with the names of the records, in the same folder; there is none without records that the host may set.
-pub const RECORDS_FILE: &str = "records.toml";
+/// The file with the [`Contents`] of an archive, in its folder `resources`.
+pub const CONTENTS_FILE: &str = "contents.bin";
 
 /// An archive that a host has unpacked.
 #[derive(Clone, Debug)]
@@ -43,40 +35,27 @@ pub struct Contents {
     pub fixed: bool,
 }
 
-/// The numbers from which a structure of many masses is made to the same bits. TOML would take 40 kB of the library.
-pub fn frame_bytes(frame: &Structure) -> Vec<u8> {
-    let floor = |of: &Floor| (of.mass, of.height, of.shape.numbers().to_vec());
-    let floors = Vec::from_iter(frame.floors().iter().map(floor));
-    let ground = frame.foundation().map(|of| &of.ground);
-    let numbers = (frame.units(), frame.body(), frame.modes(), floors, ground);
-    postcard::to_stdvec(&numbers).expect("numbers can always be written")
+/// The numbers from which a structure is made to the same bits.
+#[derive(Serialize, Deserialize)]
+enum Numbers {
+    OneMass(Parameters),
+    /// Each floor with its mass, height and shape.
+    ManyMasses(Units, Body, Vec<Mode>, Vec<(f64, f64, Vec<f64>)>, Option<Ground>),
 }
 
-/// The structure of these [`frame_bytes`].
-pub fn frame(bytes: &[u8]) -> Result<Structure, FrameError> {
-    type Numbers = (Units, Body, Vec<Mode>, Vec<(f64, f64, Vec<f64>)>, Option<Ground>);
-    let numbers = postcard::from_bytes::<Numbers>(bytes);
-    let (units, body, modes, floors, ground) = numbers.map_err(|_| FrameError::NoNumbers)?;
-    let floor =
-        |(mass, height, shape): &(f64, f64, Vec<f64>)| Floor { mass: *mass, height: *height, shape: Modes::new(shape) };
-    let frame = Structure::of_body(body, &modes, &Vec::from_iter(floors.iter().map(floor)))?.measured_in(units);
-    Ok(ground.map_or(Ok(frame.clone()), |ground| frame.on(&ground))?)
-}
-
-/// Why bytes are no structure of many masses.
-#[derive(Debug, PartialEq, thiserror::Error)]
-pub enum FrameError {
-    /// Not the numbers that were exported.
+/// Why bytes are not the contents of an archive.
+#[derive(Debug, thiserror::Error)]
+pub enum ContentsError {
+    /// Not the bytes that were exported.
     #[error("not the numbers that were exported; export it again")]
     NoNumbers,
     /// Numbers that make no structure.
     #[error(transparent)]
-    NoFrame(#[from] StructureError),
+    NoStructure(#[from] StructureError),
 }
 
 /// A record of an archive.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct PackedRecord {
     /// Its file in the folder `resources`.
     pub file: String,
@@ -84,21 +63,37 @@ pub struct PackedRecord {
     pub digest: String,
 }
 
-/// The content of [`RECORDS_FILE`].
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Records {
-    /// The records, the default first.
-    #[serde(default)]
-    pub record: Vec<PackedRecord>,
-    /// The default of the vertical component.
-    pub vertical: Option<PackedRecord>,
-    /// Whether the host can set no other record.
-    #[serde(default)]
-    pub fixed: bool,
-}
-
 impl Contents {
+    /// The bytes of [`CONTENTS_FILE`]. As TOML they would take 100 kB of the library.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let Contents { structure, records, vertical, fixed } = self;
+        let floor = |of: &Floor| (of.mass, of.height, of.shape.numbers().to_vec());
+        let many = || {
+            let (floors, ground) = (structure.floors().iter().map(floor).collect(), structure.foundation());
+            let (body, modes) = (structure.body().clone(), structure.modes().to_vec());
+            Numbers::ManyMasses(structure.units(), body, modes, floors, ground.map(|of| of.ground.clone()))
+        };
+        let numbers = structure.one().map_or_else(many, |one| Numbers::OneMass(*one.parameters()));
+        postcard::to_stdvec(&(numbers, records, vertical, fixed)).expect("numbers and text can always be written")
+    }
+
+    /// The contents of which these are the [`Contents::to_bytes`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Contents, ContentsError> {
+        let read = postcard::from_bytes(bytes).map_err(|_| ContentsError::NoNumbers)?;
+        let (numbers, records, vertical, fixed) = read;
+        let structure = match numbers {
+            Numbers::OneMass(parameters) => Structure::new(parameters).map_err(StructureError::from)?,
+            Numbers::ManyMasses(units, body, modes, floors, ground) => {
+                let floor =
+                    |(mass, height, shape): (f64, f64, Vec<f64>)| Floor { mass, height, shape: Modes::new(&shape) };
+                let floors = Vec::from_iter(floors.into_iter().map(floor));
+                let rigid = Structure::of_body(body, &modes, &floors)?.measured_in(units);
+                ground.map_or(Ok(rigid.clone()), |ground| rigid.on(&ground))?
+            }
+        };
+        Ok(Contents { structure, records, vertical, fixed })
+    }
+
     /// The record that the ground follows unless the host sets another; none if empty.
     pub fn default_record(&self) -> &str {
         self.records.first().map_or("", |packed| &packed.file)
@@ -122,51 +117,27 @@ impl From<Structure> for Contents {
     }
 }
 
-/// Why the parameters could not be read.
+/// Why the contents could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ResourceError {
     /// No such file, or not readable.
     #[error("{file}: {1}; unpack the whole archive and pass its folder \"resources\"", file = .0.display())]
     Unreadable(PathBuf, io::Error),
-    /// Not the TOML that is needed.
+    /// Not the contents of an archive.
     #[error("{file}: {1}", file = .0.display())]
-    Malformed(PathBuf, Box<toml::de::Error>),
-    /// A parameter out of range.
-    #[error("{file}: {1}", file = .0.display())]
-    Refused(PathBuf, ParameterError),
-    /// No structure of many masses.
-    #[error("{file}: {1}", file = .0.display())]
-    NoFrame(PathBuf, Box<FrameError>),
+    NoContents(PathBuf, ContentsError),
 }
 
 impl Archive {
     /// The one whose folder `resources` is `folder`.
     pub fn open(folder: PathBuf) -> Result<Archive, ResourceError> {
-        let (of_many, file) = (folder.join(FRAME_FILE), folder.join(PARAMETERS_FILE));
-        let structure = if of_many.exists() {
-            let bytes = fs::read(&of_many).map_err(|error| ResourceError::Unreadable(of_many.clone(), error))?;
-            frame(&bytes).map_err(|error| ResourceError::NoFrame(of_many, Box::new(error)))?
-        } else {
-            Structure::new(read(&file)?).map_err(|error| ResourceError::Refused(file, error))?
-        };
-        let list = folder.join(RECORDS_FILE);
-        let Records { record: records, vertical, fixed } =
-            if list.exists() { read(&list)? } else { Records::default() };
-        let contents = Contents { structure, records, vertical, fixed };
+        let file = folder.join(CONTENTS_FILE);
+        let bytes = fs::read(&file).map_err(|error| ResourceError::Unreadable(file.clone(), error))?;
+        let contents = Contents::from_bytes(&bytes).map_err(|error| ResourceError::NoContents(file, error))?;
         let bytes = |packed: &PackedRecord| {
             let bytes = rocking_records::read_file(&folder.join(&packed.file)).ok()?; // refused when it is followed
             Some((packed.file.clone(), bytes))
         };
         Ok(Archive { files: contents.packed().filter_map(bytes).collect(), folder, contents })
-    }
-}
-
-/// The content of the TOML file `file`.
-fn read<T: DeserializeOwned>(file: &Path) -> Result<T, ResourceError> {
-    let file = file.to_owned();
-    match fs::read_to_string(&file).map(|text| toml::from_str(&text)) {
-        Ok(Ok(content)) => Ok(content),
-        Ok(Err(error)) => Err(ResourceError::Malformed(file, Box::new(error))),
-        Err(error) => Err(ResourceError::Unreadable(file, error)),
     }
 }

@@ -5,7 +5,7 @@
 mod hostile;
 mod wall;
 
-use FlexibleRocking::resources::{FRAME_FILE, frame_bytes};
+use FlexibleRocking::resources::{CONTENTS_FILE, Contents};
 use FlexibleRocking::unit::{Condition, Course};
 use FlexibleRocking::{fmi2, fmi3};
 use fmi_unit::snapshot::Snapshot;
@@ -46,7 +46,7 @@ fn many_masses() -> Subject {
     let frame = Structure::of_body(body, &[Mode::new(20.0, 0.02, 250.0, 1.4e3)], &[floor(3.5, 2e-3), floor(7.0, 4e-3)])
         .unwrap();
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join(FRAME_FILE), frame_bytes(&frame)).unwrap();
+    fs::write(folder.path().join(CONTENTS_FILE), Contents::from(frame).to_bytes()).unwrap();
     Subject { never_in: &[Stage::Error], ..subject::<Modes>(folder) }
 }
 

@@ -12,9 +12,7 @@ pub use ::model_description::Version;
 use ::model_description::archive::{Entry, archive};
 use FlexibleRocking::ground::GroundRecord;
 pub use FlexibleRocking::resources::Contents;
-use FlexibleRocking::resources::{
-    FRAME_FILE, FrameError, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records, frame, frame_bytes,
-};
+use FlexibleRocking::resources::{CONTENTS_FILE, ContentsError, PackedRecord};
 pub use library::{Library, LibraryError, Platform};
 use rocking::run::record::SamplesError;
 use rocking_records::RecordError;
@@ -77,7 +75,7 @@ pub enum ExportError {
     SamePlatform(Platform),
     /// A structure of many masses without modes.
     #[error("the FMU moves modes: {0}; for a rigid structure set detail = rigid")]
-    Structure(#[from] FrameError),
+    Structure(#[from] ContentsError),
     /// The vertical component does not belong to the record.
     #[error(transparent)]
     NoPair(#[from] SamplesError),
@@ -90,9 +88,6 @@ pub enum ExportError {
     /// Two records of one name.
     #[error("two records are called {0}: rename one of them; capitals and small letters are the same here")]
     SameName(String),
-    /// The parameters, or the names of the records, cannot be written.
-    #[error("resources: {0}")]
-    Resources(#[from] toml::ser::Error),
     /// The archive cannot be made.
     #[error("the archive: {0}")]
     Archive(#[from] zip::result::ZipError),
@@ -118,9 +113,7 @@ pub fn export(
     if let Some(two) = libraries.windows(2).find(|two| two[0].platform == two[1].platform) {
         return Err(ExportError::SamePlatform(two[0].platform));
     }
-    if contents.structure.one().is_none() {
-        frame(&frame_bytes(&contents.structure))?;
-    }
+    Contents::from_bytes(&contents.to_bytes())?;
     let mut files = Vec::new();
     let mut pack = |contents: &Contents, (path, content): RecordFile| {
         let record = GroundRecord::from_bytes(&path, &content, contents.structure.base().g)?;
@@ -162,20 +155,11 @@ fn entries(
     let description = model_description::xml(version, name, contents, experiment);
     let icon = if version == Version::Fmi2 { "model.png" } else { "terminalsAndIcons/icon.png" };
     let mut entries = vec![entry("modelDescription.xml", description.into()), entry(icon, ICON.to_vec())];
-    let (file, numbers) = match contents.structure.one() {
-        Some(one) => (PARAMETERS_FILE, toml::to_string(one.parameters())?.into()),
-        None => (FRAME_FILE, frame_bytes(&contents.structure)),
-    };
     entries.extend([
         entry("documentation/index.html", page.into()),
         entry("documentation/licenses/license.txt", LICENSES.into()),
-        entry(&format!("resources/{file}"), numbers),
+        entry(&format!("resources/{CONTENTS_FILE}"), contents.to_bytes()),
     ]);
-    if !records.is_empty() || contents.fixed {
-        let Contents { records: record, vertical, fixed, .. } = contents.clone();
-        let names = Records { record, vertical, fixed };
-        entries.push(entry(&format!("resources/{RECORDS_FILE}"), toml::to_string(&names)?.into()));
-    }
     let packed = contents.packed().zip(records);
     entries.extend(packed.map(|(packed, file)| entry(&format!("resources/{}", packed.file), file)));
     entries
@@ -228,15 +212,13 @@ mod tests {
             let (binary, other): (Vec<_>, Vec<_>) =
                 entries.iter().partition(|entry| entry.path.starts_with("binaries/"));
             let paths = |entries: &[&Entry]| entries.iter().map(|entry| entry.path.clone()).collect::<Vec<_>>();
-            let common =
-                ["documentation/index.html", "documentation/licenses/license.txt", "resources/parameters.toml"];
+            let common = ["documentation/index.html", "documentation/licenses/license.txt", "resources/contents.bin"];
             assert_eq!(paths(&other), [&["modelDescription.xml"], own, &common].concat());
             let expected = [&binaries[..], &["aarch64-darwin/Pier.dylib"]].concat();
             assert_eq!(paths(&binary), expected.iter().map(|path| format!("binaries/{path}")).collect::<Vec<_>>());
             let libraries: Vec<_> = binary.iter().map(|entry| str::from_utf8(&entry.content).unwrap()).collect();
             assert_eq!(libraries, Platform::ALL.map(Platform::target));
-            let parameters: Parameters = toml::from_slice(&other.last().unwrap().content).unwrap();
-            assert_eq!(parameters, Parameters::EVISON);
+            assert_eq!(Contents::from_bytes(&other.last().unwrap().content).unwrap(), contents);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The FMU of Evison's wall.
 
-use FlexibleRocking::resources::{Contents, PARAMETERS_FILE};
+use FlexibleRocking::resources::{CONTENTS_FILE, Contents};
 use FlexibleRocking::variables::Table;
 use fmi_unit::variables::position;
 use rocking::{Parameters, Structure};
@@ -14,7 +14,7 @@ pub fn contents() -> Contents {
 /// Its folder `resources`.
 pub fn resources() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join(PARAMETERS_FILE), toml::to_string(&Parameters::EVISON).unwrap()).unwrap();
+    std::fs::write(folder.path().join(CONTENTS_FILE), contents().to_bytes()).unwrap();
     folder
 }
 
