@@ -38,7 +38,7 @@ pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
         write_as(file, "written", understood.table()?.as_bytes())?;
     }
     let (record, output) = (&understood.record, args.output.as_deref());
-    let options = RecordOptions { unit: Some(understood.unit), ..args.options.clone() };
+    let options = RecordOptions { unit: Some(understood.units[0]), ..args.options.clone() };
     let asked = RecordArgs { record: Some(args.record.clone()), vertical: VerticalArgs::default(), options };
     let cause = Cause::of_record(&asked, record);
     args.results.print_table(output, (record.title(), G), &cause, &amounts(record))

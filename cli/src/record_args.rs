@@ -7,7 +7,7 @@ use rocking::digits::short;
 use rocking::run::record::Record;
 use rocking_records::{Column, LAYOUTS, Reading, Unit};
 use rocking_report::input;
-use rocking_report::record::{Understood, no_pair, understand};
+use rocking_report::record::{Understood, understand};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -79,10 +79,12 @@ impl RecordArgs {
     /// Reads and scales the record, and reports what it found and assumed. A record's g means `g` (m/s²).
     pub fn load(&self, g: f64) -> anyhow::Result<Option<Record>> {
         let Some(path) = &self.record else { return Ok(None) };
-        let record = self.options.load("record", path, g)?;
-        let Some(vertical) = self.vertical.file(Some(path)) else { return Ok(Some(record)) };
-        let vertical = self.options.with_column(&self.vertical.column_v).load("record_v", vertical, g)?;
-        record.with_vertical(&vertical).map(Some).map_err(|error| no_pair(error, "--column-v"))
+        let mut understood = self.options.load("record", path, g)?;
+        if let Some(vertical) = self.vertical.file(Some(path)) {
+            let up = self.options.with_column(&self.vertical.column_v).load("record_v", vertical, g)?;
+            understood = understood.with_vertical(up, g, "--column-v")?;
+        }
+        Ok(Some(understood.record))
     }
 
     /// The files that are read.
@@ -94,14 +96,14 @@ impl RecordArgs {
 impl RecordOptions {
     /// Reads and scales the record in the file at `path`, in m/s²; a record's g means `g` (m/s²). Reports findings and
     /// assumptions under the name `what`.
-    fn load(&self, what: &str, path: &Path, g: f64) -> anyhow::Result<Record> {
+    fn load(&self, what: &str, path: &Path, g: f64) -> anyhow::Result<Understood> {
         let understood = self.understand(path, g, on_command_line)?;
         say_understood(&format!("{what:<14} "), &understood);
-        let record = understood.record;
+        let record = &understood.record;
         if self.time_scale.is_some() || self.scale.is_some() {
-            say!("scaled         {}, peak {} g", rocking_records::steps(&record), short(record.pga() / g));
+            say!("scaled         {}, peak {} g", rocking_records::steps(record), short(record.pga() / g));
         }
-        Ok(record)
+        Ok(understood)
     }
 
     /// Reads the record at `path`, whose options are `called` so in messages; `g` in m/s².

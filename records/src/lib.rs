@@ -217,8 +217,14 @@ pub fn from_bytes(path: &Path, bytes: &[u8], how: &Reading) -> Result<(Record, S
 
 /// Converts the accelerations of `record` from `unit` to m/s². A record's g means `g` (m/s²).
 pub fn in_m_s2(record: Record, unit: Unit, g: f64) -> Result<Record, OutOfRange> {
+    each_in_m_s2(record, [unit; 2], g)
+}
+
+/// Likewise of components of which each has its own unit, the horizontal one first.
+pub fn each_in_m_s2(record: Record, units: [Unit; 2], g: f64) -> Result<Record, OutOfRange> {
     PARAMETERS.iter().filter(|quantity| quantity.name == "g").try_for_each(|quantity| quantity.check(g))?;
-    Ok(record.multiplied(unit.in_m_s2(g)))
+    let [horizontal, vertical] = units.map(|unit| unit.in_m_s2(g));
+    Ok(record.multiplied_each(horizontal, vertical))
 }
 
 /// A sentence about the peak of `record` (m/s²) if no ground shakes as much under `g` (m/s²).

@@ -6,15 +6,15 @@ use rocking::run::record::{Record, SamplesError};
 use rocking_records::{Reading, RecordError, Remedy, Unit, csv_in};
 use std::path::Path;
 
-/// A record that was read from a file or a stream.
+/// A ground motion that was read from files or streams.
 pub struct Understood {
-    /// The scaled record, in m/s².
+    /// The scaled ground motion, in m/s².
     pub record: Record,
-    /// The record as its file has it.
+    /// The ground motion as its files have it.
     pub in_file_unit: Record,
     factors: [f64; 2],
-    /// Unit of the file.
-    pub unit: Unit,
+    /// Units of the horizontal and of the vertical component.
+    pub units: [Unit; 2],
     /// Findings and assumptions in a sentence, then one sentence for each likely error.
     pub sentences: Vec<String>,
 }
@@ -40,7 +40,7 @@ pub fn understand(
     let record = of_file.clone().scaled(factors[0], factors[1])?;
     let remedy = Remedy::Unit.advice(called);
     let sentences = source.sentences(&input::name(path), [&of_file, &record], g, &remedy);
-    Ok(Understood { record, in_file_unit, factors, unit: source.unit, sentences })
+    Ok(Understood { record, in_file_unit, factors, units: [source.unit; 2], sentences })
 }
 
 /// Why two components are no ground motion, with the `option` that chooses the column of the vertical one at the door.
@@ -52,6 +52,15 @@ pub fn no_pair(error: SamplesError, option: &str) -> anyhow::Error {
 }
 
 impl Understood {
+    /// This ground motion with the vertical component `up`. Like an FMU, which scales a record that it has read, this function first puts
+    /// both at the same times, in the units of their files. `option` as in [`no_pair`], `g` in m/s².
+    pub fn with_vertical(self, up: Understood, g: f64, option: &str) -> anyhow::Result<Understood> {
+        let in_file_unit = self.in_file_unit.with_vertical(&up.in_file_unit).map_err(|error| no_pair(error, option))?;
+        let (units, [time_scale, scale]) = ([self.units[0], up.units[0]], self.factors);
+        let record = rocking_records::each_in_m_s2(in_file_unit.clone(), units, g)?.scaled(time_scale, scale)?;
+        Ok(Understood { record, in_file_unit, units, ..self })
+    }
+
     /// Sentences about assumptions and likely errors.
     pub fn warnings(&self) -> &[String] {
         &self.sentences[1..]
@@ -60,6 +69,6 @@ impl Understood {
     /// The scaled record as a table that needs no options, in s and the unit of the file: a record in g follows a g that is set later.
     pub fn table(&self) -> anyhow::Result<String> {
         let [time_scale, scale] = self.factors;
-        Ok(csv_in(&self.in_file_unit.clone().scaled(time_scale, scale)?, self.unit))
+        Ok(csv_in(&self.in_file_unit.clone().scaled(time_scale, scale)?, self.units[0]))
     }
 }

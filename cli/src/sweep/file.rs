@@ -10,7 +10,7 @@ use rocking::run::record::Record;
 use rocking::structure::natural_quantities::Given;
 use rocking::{Detail, Parameters, Structure, engine::DEFAULT_TOLERANCE};
 use rocking_records::{Column, Unit};
-use rocking_report::{input, output_files::OutputFiles, record::no_pair};
+use rocking_report::{input, output_files::OutputFiles};
 use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map};
 use rocking_sweep::outcome::{Limit, Measure};
 use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population, measure};
@@ -104,44 +104,26 @@ struct PulseGrid {
     dimensionless: bool,
 }
 
-/// Records: a path or a pattern such as `records/*.AT2`, from the folder of the file.
+/// Records: a path or a pattern such as `records/*.AT2`, from the folder of the file, or a table with it.
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "expected a path or pattern, or { file = ..., scale = ... }")]
 enum RecordEntry {
     AsTheyAre(String),
-    /// With a `file` and its options.
-    As(toml::Table),
+    As(RecordTable),
 }
 
-/// A path or pattern, and how its files are read.
-type Described<'a> = (&'a str, RecordOptions);
-
-impl RecordEntry {
-    /// The path of the force on the top floor beside these records, if any.
-    fn force(&self) -> Option<&str> {
-        if let RecordEntry::As(table) = self { table.get("force")?.as_str() } else { None }
-    }
-
-    /// The pattern of the files, the vertical component that goes with the one file, if any, and how each is read.
-    fn pattern_and_options(&self) -> anyhow::Result<(Described<'_>, Option<Described<'_>>)> {
-        match self {
-            RecordEntry::AsTheyAre(pattern) => Ok(((pattern, RecordOptions::default()), None)),
-            RecordEntry::As(table) => {
-                let pattern = table.get("file").and_then(toml::Value::as_str);
-                let pattern = pattern.context("records: a table without file: expected { file = ..., scale = ... }")?;
-                let mut options = table.clone();
-                options.retain(|name, of| !(["file", "vertical"].contains(&name) || name == "force" && of.is_str()));
-                let column_v = options.remove("vertical_column").map(Column::deserialize).transpose()?;
-                let vertical = table.get("vertical").map(|vertical| {
-                    vertical.as_str().with_context(|| format!("records {pattern:?}: vertical is the path of one file"))
-                });
-                let options = RecordOptions::deserialize(options).with_context(|| format!("records {pattern:?}"))?;
-                let vertical = vertical.transpose()?.or(column_v.as_ref().map(|_| pattern));
-                let vertical = vertical.map(|vertical| (vertical, options.with_column(&column_v)));
-                Ok(((pattern, options), vertical))
-            }
-        }
-    }
+#[derive(Deserialize, Default)]
+struct RecordTable {
+    /// Path or pattern.
+    file: String,
+    /// Path of the vertical component of the one file.
+    vertical: Option<String>,
+    vertical_column: Option<Column>,
+    /// Path of the force on the top floor.
+    force: Option<String>,
+    /// Options for reading each file.
+    #[serde(flatten)]
+    options: toml::Table,
 }
 
 /// Structures that count as one population: each has its own fragility curve.
@@ -190,29 +172,35 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let populations =
             grids.iter().zip(bases).map(|(grid, base)| grid.population(base)).collect::<Result<_, _>>()?;
         let (mut records, mut warnings) = (Vec::new(), Vec::new());
-        let mut read_one = |path: &Path, options: &RecordOptions| {
+        let mut understand = |path: &Path, options: &RecordOptions| {
             files.add_input(path);
             let (unit, time_scale) = (options.unit.or(unit), options.time_scale.or(time_scale));
             let options = RecordOptions { unit, time_scale, scale: None, ..options.clone() };
             let understood = options.understand(path, g, str::to_owned)?;
             warnings.extend_from_slice(understood.warnings());
             records.push(understood.sentences[0].clone());
-            Ok::<_, anyhow::Error>(understood.record)
+            Ok::<_, anyhow::Error>(understood)
         };
-        let read = |path: &Path, vertical: Option<&(PathBuf, RecordOptions)>, options: &RecordOptions| {
-            let record = read_one(path, options)?;
-            let Some((vertical, options)) = vertical else { return Ok(record) };
-            record.with_vertical(&read_one(vertical, options)?).map_err(|error| no_pair(error, "vertical_column"))
+        let table = |entry| match entry {
+            RecordEntry::AsTheyAre(file) => RecordTable { file, ..RecordTable::default() },
+            RecordEntry::As(table) => table,
         };
-        let motions = motions(&file.records, folder, read);
-        file.records.iter().filter_map(RecordEntry::force).for_each(|force| files.add_input(&folder.join(force)));
+        let tables: Vec<_> = file.records.into_iter().map(table).collect();
+        let motions = motions(&tables, folder, |path, vertical, options| {
+            let mut understood = understand(path, options)?;
+            if let Some((vertical, of_vertical)) = vertical {
+                understood = understood.with_vertical(understand(vertical, of_vertical)?, g, "vertical_column")?;
+            }
+            Ok(understood.record)
+        });
+        tables.iter().filter_map(|of| of.force.as_ref()).for_each(|force| files.add_input(&folder.join(force)));
         let all_warn = |warnings| few(warnings, "warnings").iter().for_each(|warning| warning!("{warning}"));
         all_warn(warnings);
         let (tolerance, duration) = (file.tolerance.unwrap_or(DEFAULT_TOLERANCE), file.duration);
         let conditions = Conditions { initial: file.initial.state(), detail: file.detail, tolerance, duration };
         let plan = Plan::new(populations, motions?, scales)?.under(conditions)?;
         all_warn(plan.doubts());
-        let limits = file.limits(&plan.measures).context("limits")?;
+        let limits = limits(&file.limits, &plan.measures).context("limits")?;
         let widest = plan.cases().map(|case| case.structure.base().B).fold(0.0, f64::max);
         limits.iter().try_for_each(|limit| limit.check(widest)).context("limits")?;
         Ok(Asked::Records(Box::new(RecordSweep { plan, limits, measure, records })))
@@ -250,19 +238,18 @@ impl MapFile {
     }
 }
 
-impl SweepFile {
-    fn limits(&self, measures: &[Measure]) -> anyhow::Result<Vec<Limit>> {
-        let mut limits = Vec::new();
-        for (name, given) in &self.limits {
-            let values = given.as_array().map_or(from_ref(given), Vec::as_slice);
-            ensure!(!values.is_empty(), "{name} is empty: give one or more");
-            for value in values {
-                let value = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-                limits.push(Limit::read(&format!("{name} >= {value}"), measures)?);
-            }
+/// The limits `asked` for by their names.
+fn limits(asked: &toml::Table, measures: &[Measure]) -> anyhow::Result<Vec<Limit>> {
+    let mut limits = Vec::new();
+    for (name, given) in asked {
+        let values = given.as_array().map_or(from_ref(given), Vec::as_slice);
+        ensure!(!values.is_empty(), "{name} is empty: give one or more");
+        for value in values {
+            let value = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+            limits.push(Limit::read(&format!("{name} >= {value}"), measures)?);
         }
-        Ok(limits)
     }
+    Ok(limits)
 }
 
 /// The one acceleration of gravity of all structures, m/s²: that in which the records are given.
@@ -332,25 +319,23 @@ impl StructureGrid {
 
 /// The records that `sources` name, under their paths from `folder`.
 fn motions(
-    sources: &[RecordEntry],
+    sources: &[RecordTable],
     folder: &Path,
-    mut read: impl FnMut(&Path, Option<&(PathBuf, RecordOptions)>, &RecordOptions) -> anyhow::Result<Record>,
+    mut read: impl FnMut(&Path, Option<(&Path, &RecordOptions)>, &RecordOptions) -> anyhow::Result<Record>,
 ) -> anyhow::Result<Vec<NamedRecord>> {
     let (mut motions, mut bad) = (Vec::new(), Vec::<anyhow::Error>::new());
-    for source in sources {
-        let ((pattern, options), vertical) = source.pattern_and_options()?;
-        let scale = options.scale.unwrap_or(1.0);
+    for RecordTable { file: pattern, vertical, vertical_column, force, options } in sources {
+        let options = RecordOptions::deserialize(options.clone()).with_context(|| format!("records {pattern:?}"))?;
+        let of_vertical = options.with_column(vertical_column);
+        let has_vertical = vertical.is_some() || vertical_column.is_some();
+        let vertical = vertical.as_ref().filter(|up| *up != pattern);
         let column = |options: &RecordOptions| {
             options.column.as_ref().map_or(String::new(), |column| format!(" column {}", column.as_asked()))
         };
-        let up = vertical.as_ref().map(|(up, of_up)| match of_up.column == options.column {
-            true => format!(" with {up}"),
-            false if *up == pattern => format!(" with{}", column(of_up)),
-            false => format!(" with {up}{}", column(of_up)),
-        });
-        let force = source.force();
-        let with = column(&options) + &up.unwrap_or_default() + &force.map_or("".into(), |of| format!(" with {of}"));
-        let force = force.map(|path| folder.join(path));
+        let of_other_column = if of_vertical.column == options.column { String::new() } else { column(&of_vertical) };
+        let up = vertical.map_or(String::new(), |up| format!(" {up}"));
+        let up = if has_vertical { format!(" with{up}{of_other_column}") } else { String::new() };
+        let with = column(&options) + &up + &force.as_ref().map_or(String::new(), |of| format!(" with {of}"));
         let in_folder = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
         let paths = glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))?;
         let mut paths = paths.peekable();
@@ -360,16 +345,17 @@ fn motions(
         for (i, path) in paths.enumerate() {
             let path = path?;
             ensure!(
-                i == 0 || vertical.as_ref().is_none_or(|(up, _)| *up == pattern),
+                i == 0 || vertical.is_none(),
                 "records {pattern:?}: vertical goes with one file, and there are more"
             );
             // The same on every system, so that a sweep can go on on another.
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace(MAIN_SEPARATOR, "/");
-            let file_of = |up: &str| if up == pattern { path.clone() } else { folder.join(up) };
-            let vertical = vertical.as_ref().map(|(up, options)| (file_of(up), options.clone()));
-            let record = read(&path, vertical.as_ref(), &options);
+            let up = vertical.map_or_else(|| path.clone(), |up| folder.join(up));
+            let record = read(&path, has_vertical.then_some((&*up, &of_vertical)), &options);
+            let force = force.as_ref().map(|of| folder.join(of));
             let record = record.and_then(|record| with_force(record, force.as_deref()));
-            match record.and_then(|record| Ok(NamedRecord::new(name + &with, record, scale)?)) {
+            let named = |record| Ok(NamedRecord::new(name + &with, record, options.scale.unwrap_or(1.0))?);
+            match record.and_then(named) {
                 Ok(motion) => motions.push(motion),
                 Err(error) => bad.push(error),
             }

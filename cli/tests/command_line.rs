@@ -4,7 +4,7 @@
 //! There, `$` begins a command, `!` a line on standard error; any other line is on standard output, and `[1]` is an exit
 //! code other than 0. `WRITE_TOUR=1 cargo test -p rocking-cli --test command_line` writes it anew from its commands.
 
-#[path = "../../../records/tests/layouts/mod.rs"]
+#[path = "../../records/tests/layouts/mod.rs"]
 #[allow(dead_code)] // what else is known of each file
 mod layouts;
 
@@ -16,7 +16,7 @@ use std::{env, fs};
 const SAMPLES: usize = 400;
 
 #[test]
-fn every_command_prints_what_it_printed() {
+fn every_command_of_the_tour_prints_what_it_printed() {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tour.txt");
     let expected = fs::read_to_string(&script).unwrap();
     let folder = tempfile::tempdir().unwrap();
