@@ -11,9 +11,9 @@ use rocking::Parameters;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::estimates::response_spectrum;
 use rocking::run::record::Record as Samples;
-use rocking_records::{Column, Reading, Unit, csv_in, doubt_of_peak, doubts, vertical_csv};
+use rocking_records::{Column, Reading, Unit, csv_in, doubt_of_peak, doubts, each_in_m_s2, vertical_csv};
 use rocking_report::output_files::OutputFiles;
-use rocking_report::record::{no_pair, understand};
+use rocking_report::record::{Understood, understand};
 use rocking_report::run::Watcher;
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -51,12 +51,18 @@ fn unit(value: &Bound<'_, PyAny>) -> PyResult<Unit> {
     one_of("unit", value, Unit::NAMES)
 }
 
-/// The `samples` in m/s², or as they are if the g of a structure decides how large their `unit` is.
-fn fixed(samples: Samples, unit: Unit) -> (Samples, Unit) {
-    match unit {
-        Unit::G | Unit::MilliG | Unit::PercentG => (samples, unit),
-        unit => (samples.multiplied(unit.in_m_s2(G)), Unit::MetrePerSecondSquared),
+/// The `samples` in m/s², or as they are if the g of a structure decides how large the `units` of their components are.
+fn fixed(samples: Samples, units: [Unit; 2]) -> PyResult<(Samples, Unit)> {
+    let [unit, vertical] = units;
+    let is_of_g = |unit| matches!(unit, Unit::G | Unit::MilliG | Unit::PercentG);
+    if is_of_g(unit) && unit == vertical {
+        return Ok((samples, unit));
     }
+    if units.into_iter().any(is_of_g) {
+        let needed = "one unit is needed; say unit, or scale one of the files";
+        return Err(PyValueError::new_err(format!("vertical is in {vertical} and file in {unit}: {needed}")));
+    }
+    Ok((each_in_m_s2(samples, units, G).map_err(refused)?, Unit::MetrePerSecondSquared))
 }
 
 impl Record {
@@ -196,7 +202,7 @@ impl Record {
         if let Some(F_t) = F_t {
             samples = samples.with_force(&times, &numbers("F_t", F_t)?).map_err(refused)?;
         }
-        let (given, unit) = fixed(samples, unit);
+        let (given, unit) = fixed(samples, [unit; 2])?;
         Record::new(given, unit, 1.0).scaled(scale, 1.0)
     }
 
@@ -236,24 +242,19 @@ impl Record {
         let [column, column_v] = [column, vertical_column].map(|column| column.map(named).transpose());
         let (column, column_v) = (column?, column_v?);
         let vertical = vertical.or_else(|| column_v.is_some().then(|| file.clone()));
-        let read = |file: PathBuf, column: Option<Column>| -> PyResult<(Samples, Unit)> {
+        let read = |file: PathBuf, column: Option<Column>| -> PyResult<Understood> {
             let how = Reading { unit, dt, column, ignores_count: ignore_npts };
             let understood =
                 interruptible(py, move |_| understand(&file, &how, [time_scale, scale], G, str::to_owned))?;
             warn(py, understood.sentences[1..].iter().cloned(), 1)?;
-            Ok(fixed(understood.in_file_unit, understood.unit))
+            Ok(understood)
         };
-        let (mut given, unit) = read(file, column.clone())?;
+        let mut understood = read(file, column.clone())?;
         if let Some(vertical) = vertical {
-            let (vertical, of_vertical) = read(vertical, column_v.or(column))?;
-            if of_vertical != unit {
-                let needed = "one unit is needed; say unit, or scale one of the files";
-                return Err(PyValueError::new_err(format!(
-                    "vertical is in {of_vertical} and file in {unit}: {needed}"
-                )));
-            }
-            given = given.with_vertical(&vertical).map_err(|error| refused(no_pair(error, "vertical_column")))?;
+            let up = read(vertical, column_v.or(column))?;
+            understood = understood.with_vertical(up, G, "vertical_column").map_err(refused)?;
         }
+        let (given, unit) = fixed(understood.in_file_unit, understood.units)?;
         Record::new(given, unit, 1.0).scaled(scale, time_scale)
     }
 

@@ -8,7 +8,7 @@ use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::engine::{DEFAULT_TOLERANCE, motion::Work};
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::validity::{ASSUMPTIONS, Limits, Worst};
 use rocking::{Detail, Phase};
@@ -22,38 +22,45 @@ use rocking_sweep::plan::Conditions;
 /// has the structure and the record, and runs again. Two runs with the same inputs are equal.
 #[pyclass(frozen, module = "flexible_rocking")]
 pub struct Run {
+    /// The structure.
+    #[pyo3(get)]
     structure: Py<Structure>,
+    /// The ground motion; of free vibration, ground at rest.
+    #[pyo3(get)]
     record: Py<Record>,
     of: Followed,
     found: Found,
+    /// The level of detail.
+    #[pyo3(get)]
+    detail: &'static str,
+    /// The relative tolerance.
+    #[pyo3(get)]
+    tolerance: f64,
+    /// Whether the structure overturned (|theta| = pi/2). None if the structure still rocks 100/p_l after the record.
+    #[pyo3(get)]
+    overturned: Option<bool>,
+    /// Ending of the run: "at rest", "overturned", "at time", "still rocking".
+    #[pyo3(get)]
+    ending: String,
+    /// Start of the run, s.
+    #[pyo3(get)]
+    start: f64,
+    /// End of the run, s.
+    #[pyo3(get)]
+    end: f64,
+    /// Start of the fall, s: |theta| passes the angle of no return for the last time. None if the structure does not fall.
+    #[pyo3(get)]
+    fall: Option<f64>,
+    /// Number of steps of the run.
+    #[pyo3(get)]
+    steps: u64,
+    /// Number of right-hand-side evaluations of the run.
+    #[pyo3(get)]
+    evaluations: u64,
 }
 
 #[pymethods]
 impl Run {
-    /// The structure.
-    #[getter]
-    fn structure(&self, py: Python<'_>) -> Py<Structure> {
-        self.structure.clone_ref(py)
-    }
-
-    /// The ground motion; of free vibration, ground at rest.
-    #[getter]
-    fn record(&self, py: Python<'_>) -> Py<Record> {
-        self.record.clone_ref(py)
-    }
-
-    /// The level of detail.
-    #[getter]
-    fn detail(&self) -> &'static str {
-        self.of.conditions.detail.name()
-    }
-
-    /// The relative tolerance.
-    #[getter]
-    fn tolerance(&self) -> f64 {
-        self.of.conditions.tolerance
-    }
-
     /// The exact largest magnitudes by name, each a Peak (a float with unit and time). Names: a_g (m/s2), theta (rad), u (m),
     /// delta_t (m, Eq 26), uplift (m, Eq 25), a_t (m/s2, Eq 27), V_t (N, Eqs 2, 23), M_t (N.m, Eqs 3, 24). A tendon adds P_t
     /// (N), dissipators F_d1 and F_d2 (N). Many masses: a_g, theta, uplift, V_t, M_t, and of each floor from 1 on u[1], drift[1], delta_t[1], a_t[1], V[1], M[1].
@@ -65,36 +72,6 @@ impl Run {
             named.set_item(name, result(py, "Peak", (*magnitude, *time, *unit))?)?;
         }
         Ok(named)
-    }
-
-    /// Whether the structure overturned (|theta| = pi/2). None if the structure still rocks 100/p_l after the record.
-    #[getter]
-    fn overturned(&self) -> Option<bool> {
-        self.found.overturned
-    }
-
-    /// Ending of the run: "at rest", "overturned", "at time", "still rocking".
-    #[getter]
-    fn ending(&self) -> String {
-        self.found.ending.to_string()
-    }
-
-    /// Start of the run, s.
-    #[getter]
-    fn start(&self) -> f64 {
-        self.found.start
-    }
-
-    /// End of the run, s.
-    #[getter]
-    fn end(&self) -> f64 {
-        self.found.end
-    }
-
-    /// Start of the fall, s: |theta| passes the angle of no return for the last time. None if the structure does not fall.
-    #[getter]
-    fn fall(&self) -> Option<f64> {
-        self.found.fall
     }
 
     /// Every transition in the order of time, each a Transition: a list, with to_pandas().
@@ -110,18 +87,6 @@ impl Run {
         };
         let transitions = self.found.events.iter().map(transition).collect::<PyResult<Vec<_>>>()?;
         result(py, "Transitions", (transitions, &names))
-    }
-
-    /// Number of steps of the run.
-    #[getter]
-    fn steps(&self) -> u64 {
-        self.found.work.steps
-    }
-
-    /// Number of right-hand-side evaluations of the run.
-    #[getter]
-    fn evaluations(&self) -> u64 {
-        self.found.work.evaluations
     }
 
     /// How far the run exceeds the assumptions of the model, exact, each a Worst, within the usual limits. Names:
@@ -261,8 +226,8 @@ impl Run {
     }
 
     fn __repr__(&self) -> String {
-        let (title, end, transitions) = (self.record.get().title(), self.end(), self.found.transitions);
-        format!("<Run under {title:?}: {} at {end} s, {transitions} transitions>", self.ending())
+        let (title, end, transitions) = (self.record.get().title(), self.end, self.found.transitions);
+        format!("<Run under {title:?}: {} at {end} s, {transitions} transitions>", self.ending)
     }
 
     fn __str__(slf: Py<Self>, py: Python<'_>) -> PyResult<String> {
@@ -296,7 +261,7 @@ impl Run {
             if is_one { asked.set_item(of.name, numbers[0]) } else { asked.set_item(of.name, numbers) }?;
         }
         let simulate = py.import("flexible_rocking")?.getattr("simulate")?;
-        let scene = (simulate, self.structure(py), self.record(py));
+        let scene = (simulate, &self.structure, &self.record);
         Ok((py.import("functools")?.getattr("partial")?.call(scene, Some(&asked))?, ()))
     }
 }
@@ -337,5 +302,21 @@ pub fn simulate(
     let ground = record.get().under(structure.get().of.base().g);
     let of = Followed { structure: structure.get().of.clone(), ground, conditions };
     let (of, found) = interruptible(py, move |abandoned| of.found(None, abandoned).map(|found| (of, found)))?;
-    Ok(Run { structure, record, of, found })
+    let (&Found { overturned, start, end, fall, work, .. }, ending) = (&found, found.ending.to_string());
+    let (detail, tolerance, Work { steps, evaluations }) = (detail.name(), tolerance, work);
+    Ok(Run {
+        structure,
+        record,
+        of,
+        found,
+        detail,
+        tolerance,
+        overturned,
+        ending,
+        start,
+        end,
+        fall,
+        steps,
+        evaluations,
+    })
 }

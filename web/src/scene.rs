@@ -9,7 +9,7 @@ use rocking::structure::natural_quantities::{Given, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::quantity::LARGE;
 use rocking::{Detail, Parameters, State, Structure};
-use rocking_records::{Column, Reading, RecordError, Remedy, Source, Unit, csv_in, vertical_csv};
+use rocking_records::{Column, Reading, RecordError, Remedy, Source, Unit, csv_in, each_in_m_s2, vertical_csv};
 use rocking_report::record::no_pair;
 use rocking_sweep::plan::Conditions;
 use rocking_sweep::pulse::{Pulse, Shape};
@@ -113,35 +113,35 @@ pub struct Motion {
     pub record: Record,
     /// The ground motion in the unit of its file.
     in_file_unit: Record,
-    unit: Unit,
+    /// Units of the horizontal and of the vertical component.
+    units: [Unit; 2],
     pub remarks: Vec<String>,
     pub warnings: Vec<String>,
 }
 
 impl Motion {
     fn of(record: Record) -> Motion {
-        let in_file_unit = record.clone();
-        let unit = Unit::MetrePerSecondSquared;
-        Motion { record, in_file_unit, unit, remarks: Vec::new(), warnings: Vec::new() }
+        let (in_file_unit, units) = (record.clone(), [Unit::MetrePerSecondSquared; 2]);
+        Motion { record, in_file_unit, units, remarks: Vec::new(), warnings: Vec::new() }
     }
 
     /// This ground motion with the vertical component `up`, from another column of its file.
-    fn with_vertical(self, up: &Motion) -> Result<Motion, String> {
-        let pair = |own: Record, up: &Record| {
-            own.with_vertical(up).map_err(|error| rocking_report::message(&no_pair(error, "column_v")))
-        };
-        let (record, in_file_unit) = (pair(self.record, &up.record)?, pair(self.in_file_unit, &up.in_file_unit)?);
-        Ok(Motion { record, in_file_unit, ..self })
+    fn with_vertical(self, up: &Motion, g: f64) -> Result<Motion, String> {
+        let pair = self.in_file_unit.with_vertical(&up.in_file_unit);
+        let in_file_unit = pair.map_err(|error| rocking_report::message(&no_pair(error, "column_v")))?;
+        let units = [self.units[0], up.units[0]];
+        let record = each_in_m_s2(in_file_unit.clone(), units, g).map_err(says)?;
+        Ok(Motion { record, in_file_unit, units, ..self })
     }
 
     /// The ground motion as a table that is read without options, in s and the unit of its file.
     pub fn table(&self) -> String {
-        csv_in(&self.in_file_unit, self.unit)
+        csv_in(&self.in_file_unit, self.units[0])
     }
 
     /// Likewise the vertical component, if there is one.
     pub fn vertical_table(&self) -> Option<String> {
-        vertical_csv(&self.in_file_unit, self.unit)
+        vertical_csv(&self.in_file_unit, self.units[1])
     }
 }
 
@@ -281,7 +281,7 @@ impl Fields {
                 let (file, how) = (files.own.as_mut().map_err(|why| why.clone())?, self.reading()?);
                 let Some(column) = self.text("column_v") else { return file.motion(how, g) };
                 let up = file.motion(Reading { column: Some(Column::from(column)), ..how.clone() }, g)?;
-                file.motion(how, g)?.with_vertical(&up)
+                file.motion(how, g)?.with_vertical(&up, g)
             }
             "free" => Ok(Motion::of(Record::at_rest(self.number("duration")?))),
             "synthetic" => {
@@ -415,6 +415,6 @@ impl File {
         let mut remarks = vec![format!("{}, {}", source.format, source.unit)];
         remarks.extend(source.remarks.iter().cloned());
         let warnings = source.assumption(&Remedy::Unit.advice(str::to_owned)).into_iter().collect();
-        Ok(Motion { record, in_file_unit, unit: source.unit, remarks, warnings })
+        Ok(Motion { record, in_file_unit, units: [source.unit; 2], remarks, warnings })
     }
 }

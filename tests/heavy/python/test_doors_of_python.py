@@ -65,7 +65,7 @@ class Doors:
         self.structure = fr.Structure(**tomllib.loads(text), **many)
         time = 0.01 * np.arange(301)
         record = write(folder / "ground.csv", "m/s2", time, 4 * np.sin(9 * time))
-        up = write(folder / "up.csv", "m/s2", time, 3 * np.cos(20 * time)) if case == "vertical" else None
+        up = write(folder / "up.csv", "cm/s2", 0.7 * time, 300 * np.cos(20 * time)) if case == "vertical" else None
         self.ground = fr.Record.read(record, vertical=up)
         push = (0.05 * np.arange(41), 3 * (storeys[-1][0] if storeys else base["m"]) * np.sin(np.arange(41) * np.pi / 8))
         force = write(folder / "force.csv", "", *push, heading="time[s],F_t[N]") if case == "pushed" else None
