@@ -130,7 +130,8 @@ pub fn with_force(record: Record, path: Option<&Path>) -> anyhow::Result<Record>
     let what = || format!("force = {}: a table with the columns time[s] and F_t[N] is needed", path.display());
     let bytes = input::read(path).with_context(what)?;
     let mut table = csv::Reader::from_reader(&*bytes);
-    ensure!(table.headers().with_context(what)? == ["time[s]", "F_t[N]"].as_slice(), what());
+    let headings: Vec<_> = table.headers().with_context(what)?.iter().collect();
+    ensure!(headings == ["time[s]", "F_t[N]"], "{}; its first line is {:?}", what(), headings.join(","));
     let rows = table.into_deserialize::<(f64, f64)>().collect::<Result<_, _>>();
     let (times, F_t): (Vec<_>, Vec<_>) = rows.with_context(what)?;
     record.with_force(&times, &F_t).with_context(|| format!("force = {}", path.display()))

@@ -77,22 +77,14 @@ mod tests {
     /// A file without a whole header is read as a table, whose message names the missing part.
     #[test]
     fn a_refused_at2_file_says_what_was_found_on_which_line() {
-        let problem = |values: &str| {
-            let BadLine { line, problem, .. } = at2("NPTS= 3, DT= .01 SEC", values).unwrap_err();
-            format!("{line}: {problem}")
-        };
-        for (values, expected) in [
-            (".1 .2\n\n", "5: NPTS states 3 samples, and the file has 2"),
-            ("", "1: NPTS states 3 samples, and the file has 0"),
-            (".1\n.2\n.3 .4\n", "7: NPTS states 3 samples, and the file has 4"),
-            (".1-.2\n.3 .4\n", "6: NPTS states 3 samples, and the file has 4"),
-            (".1\n.2-3 .4\n", "6: the acceleration \".2-3\" is not a number: write .2E-3 or .2 -3"),
+        for (values, expected_line, expected) in [
+            (".1 .2\n\n", 5, "NPTS states 3 samples, and the file has 2"),
+            ("", 1, "NPTS states 3 samples, and the file has 0"),
+            (".1-.2\n.3 .4\n", 6, "NPTS states 3 samples, and the file has 4"),
+            (".1\n.2-3 .4\n", 6, "the acceleration \".2-3\" is not a number: write .2E-3 or .2 -3"),
         ] {
-            assert_eq!(problem(values), expected);
-        }
-        for not_a_number in ["x", "1.2.3", "********", "nan", "-inf", "1e999", "1e308", "\u{ff}"] {
-            let expected = format!("6: the acceleration {not_a_number:?} is not a number");
-            assert_eq!(problem(&format!(".1\n {not_a_number}\n.3\n")), expected);
+            let BadLine { line, problem, .. } = at2("NPTS= 3, DT= .01 SEC", values).unwrap_err();
+            assert_eq!((line, &*problem), (expected_line, expected));
         }
     }
 }

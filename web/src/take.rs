@@ -16,7 +16,9 @@ pub const TABLE: &str = "ground.csv";
 pub const VERTICAL: &str = "ground_v.csv";
 
 /// Name of the file of a structure of many masses or on ground that gives.
-const BUILDING: &str = "building.toml";
+fn file_of(fields: &Fields) -> &'static str {
+    if fields.is_frame() { "building.toml" } else { "pier.toml" }
+}
 
 /// Options of one call, by the names that the command line and Python share.
 type Options = Vec<(&'static str, Value)>;
@@ -39,7 +41,7 @@ pub fn taken_along(fields: &Fields, path: Option<&Path>) -> Result<[String; 3], 
     } else {
         options(&mut ["preset"].into_iter().chain(names()).filter(|name| *name != "preset" || fields.has_preset()))?
     };
-    let structure = if fields.is_many() { vec![("parameters", BUILDING.into())] } else { numbers.clone() };
+    let structure = if fields.is_many() { vec![("parameters", file_of(fields).into())] } else { numbers.clone() };
     let (of_file, run) = (options(&mut fields.of_file())?, options(&mut RUN.into_iter())?);
     let file = path.filter(|_| fields.kind() == "record").map_or(TABLE.into(), |path| path.display().to_string());
     let file = if file == "-" { "./-".into() } else { file }; // `-` alone is standard input
@@ -68,11 +70,17 @@ pub fn taken_along(fields: &Fields, path: Option<&Path>) -> Result<[String; 3], 
     let (building, structure) =
         if fields.is_many() { building(fields, &numbers)? } else { (String::new(), arguments(&numbers)) };
     let structure = structure.trim_start_matches(", ");
+    let values_of_fmu = |(name, value): &(&str, Value)| match value.as_array() {
+        Some(floors) => (1..).zip(floors).map(|(i, value)| format!("{name}[{i}]={value}")).collect(),
+        None if *name == "u_0" && fields.is_many() => vec![format!("u_0[1]={value}")],
+        None => vec![format!("{name}={value}")],
+    };
+    let in_host = run.iter().flat_map(values_of_fmu).collect::<Vec<_>>().join(", ");
     let (command, run) = (format!("{building}{command}"), arguments(&run));
     let script = format!(
         "import flexible_rocking as fr\n\nstructure = fr.Structure({structure})\n{record}run = fr.simulate(structure{motion}{run})"
     );
-    Ok([command, script, run.trim_start_matches(", ").to_owned()])
+    Ok([command, script, in_host])
 }
 
 /// A command that writes the file of one mass of these `numbers`, or of storeys on their base, and of ground that gives, and the
@@ -90,7 +98,7 @@ fn building(fields: &Fields, numbers: &Options) -> Result<(String, String), Stri
         file += &format!("\n[ground]\n{}", lines(&ground));
         structure += &format!(", ground=fr.Ground({})", arguments(&ground).trim_start_matches(", "));
     }
-    Ok((format!("cat >{BUILDING} <<'END'\n{file}END\n"), structure))
+    Ok((format!("cat >{} <<'END'\n{file}END\n", file_of(fields)), structure))
 }
 
 /// Storeys as a file with these lines of the `base`, and as arguments of Python.

@@ -199,10 +199,9 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let (tolerance, duration) = (file.tolerance.unwrap_or(DEFAULT_TOLERANCE), file.duration);
         let conditions = Conditions { initial: file.initial.state(), detail: file.detail, tolerance, duration };
         let plan = Plan::new(populations, motions?, scales)?.under(conditions)?;
-        all_warn(plan.doubts());
+        all_warn(plan.doubts.clone());
         let limits = limits(&file.limits, &plan.measures).context("limits")?;
-        let widest = plan.cases().map(|case| case.structure.base().B).fold(0.0, f64::max);
-        limits.iter().try_for_each(|limit| limit.check(widest)).context("limits")?;
+        limits.iter().try_for_each(|limit| limit.check(plan.widest)).context("limits")?;
         Ok(Asked::Records(Box::new(RecordSweep { plan, limits, measure, records })))
     };
     read().with_context(|| format!("sweep in {}", path.display()))

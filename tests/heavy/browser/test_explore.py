@@ -147,7 +147,8 @@ def test_a_scene_is_the_same_by_its_command_and_by_its_script(opened, exporter, 
         folder.mkdir()
         (folder / "ground.csv").write_text(ground)
         (folder / name).write_text(record)
-        (folder / "building.toml").touch()  # the command of a frame writes it
+        for written in ("building", "pier"):  # by the commands of storeys, and of ground that gives
+            (folder / f"{written}.toml").touch()
         files = set(folder.iterdir())
         assert agree(peaks, by_command_line(exporter, folder, page.locator("#command").text_content())), fields
         assert agree(peaks, by_script(folder, page.locator("#python").text_content())), fields
