@@ -134,9 +134,6 @@ class Response(dict[str, "NDArray[Any]"]):
         super().__init__({name: np.asarray(column) for name, column in columns.items()})
         self.units = units
 
-    def __reduce__(self) -> tuple[type["Response"], tuple[dict[str, Any], dict[str, str]]]:
-        return type(self), (dict(self), self.units)
-
     def to_pandas(self) -> "pd.DataFrame":
         """A DataFrame with the first array, the time, as its index and a column a quantity."""
         with extras():
@@ -158,9 +155,6 @@ class Estimate(dict[str, float]):
     def __init__(self, values: dict[str, float], text: str):
         super().__init__(values)
         self.text = text
-
-    def __reduce__(self) -> tuple[type["Estimate"], tuple[dict[str, float], str]]:
-        return Estimate, (dict(self), self.text)
 
     def __repr__(self) -> str:
         return self.text
