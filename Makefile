@@ -6,7 +6,7 @@
 # make evidence  the pages of evidence made anew and compared; with PAGE="modes coupling" these are written (half an hour and more)
 # make docs      the site in out/site; fails at a link, an anchor or a picture that is not there
 # make pages     write anew what README and the pages print (minutes)
-# make pictures  draw anew those of README, of the model and of how to choose numbers (minutes); with PICTURE=explore that of the page, or another alone
+# make pictures  draw anew those of README, of levels and of how to choose numbers (minutes); with PICTURE=explore that of the page, or another alone
 # make explore   out/explore.html: the engine in a browser, one file
 # make dist      out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels    out/wheels: Python packages for these machines with module, command line and archive, and one of the source

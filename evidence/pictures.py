@@ -1,6 +1,5 @@
 """The pictures of README and of pages that are written by hand: python -m evidence.pictures [NAME ...]
 
-    schematic   the structure with its symbols
     motion      a bridge pier under the record of Pacoima Dam
     levels      which level of detail is enough, over frequency and intensity
     tornado     what a wrong number changes, by the script of docs/howto/choose_numbers.md
@@ -20,7 +19,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.colors import ListedColormap
-from matplotlib.patches import Arc, Circle
+from matplotlib.patches import Circle
 from tqdm import tqdm
 
 from . import ROOT
@@ -34,78 +33,20 @@ DRAWN = 12  # the motion is drawn this many times as large
 BEGINS, ENDS, FRAMES_PER_SECOND, ROWS_PER_FRAME = 2.0, 12.5, 12.5, 8  # s; u is below 5 mm at both, so the film loops
 
 
-def placed(points: np.ndarray, theta: float, half_width: float) -> np.ndarray:
-    """Points of the frame that turns with the base, in that of the ground: turned about the edge that is down."""
-    pivot = np.array([np.sign(theta) * half_width, 0.0])
-    turn = np.array([[np.cos(theta), np.sin(theta)], [-np.sin(theta), np.cos(theta)]])
-    return pivot + (points - pivot) @ turn.T
-
-
-def parts(theta: float, u: float, height: float, half_width: float) -> dict[str, np.ndarray]:
-    """Outlines of the structure."""
-    along = np.linspace(0, 1, 40)
-    bent = u * along**2 * (3 - along) / 2  # a cantilever with a force at its end
-    base = half_width * np.array([[-1, 0], [1, 0], [1, 0.3], [-1, 0.3], [-1, 0]])
-    foot = 0.3 * half_width / height
-    strut = np.column_stack([bent, height * along])[along >= foot]
-    return {name: placed(points, theta, half_width) for name, points in
-            {"base": base, "strut": strut, "top": np.array([[u, height]])}.items()}
-
-
-def draw(axis, theta: float, u: float, height: float, half_width: float) -> None:
-    shape = parts(theta, u, height, half_width)
-    axis.axhspan(-0.3 * half_width, 0, color=LIGHT, linewidth=0)
-    axis.fill(*shape["base"].T, color=INK, linewidth=0)
-    axis.plot(*shape["strut"].T, color=INK, linewidth=2.5)
-    axis.add_patch(Circle(shape["top"][0], 0.45 * half_width, color=ROCKING, linewidth=0))
+def draw(axis, theta: float, u: float) -> None:
+    """The pier, turned with its base about the edge that is down."""
+    half, along = PIER.B, np.linspace(0.3 * PIER.B / PIER.H, 1, 40)
+    base = half * np.array([[-1, 0], [1, 0], [1, 0.3], [-1, 0.3]])
+    strut = np.column_stack([u * along**2 * (3 - along) / 2, PIER.H * along])  # a cantilever with a force at its end
+    pivot = np.array([np.sign(theta) * half, 0.0])
+    turn = np.array([[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]])
+    base, strut = (pivot + (points - pivot) @ turn for points in (base, strut))
+    axis.axhspan(-0.3 * half, 0, color=LIGHT, linewidth=0)
+    axis.fill(*base.T, color=INK, linewidth=0)
+    axis.plot(*strut.T, color=INK, linewidth=2.5)
+    axis.add_patch(Circle(strut[-1], 0.45 * half, color=ROCKING, linewidth=0))
     axis.set(aspect="equal")
     axis.axis("off")
-
-
-def arrow(axis, start, end, text: str = "", at=None, style: str = "<->", color: str = INK, **options) -> None:
-    look = {"arrowstyle": style, "color": color, "shrinkA": 0, "shrinkB": 0, "linewidth": 1}
-    axis.annotate("", end, start, arrowprops=look)
-    middle = (np.array(start) + end) / 2 if at is None else at
-    axis.text(*middle, text, color=color, **({"ha": "center", "va": "bottom"} | options))
-
-
-def schematic(path: Path) -> None:
-    figure, axes = subplots(1, 2, 4.0)
-    plt.rcParams.update({"mathtext.fontset": "dejavuserif", "font.size": 13, "axes.titlesize": 12})
-    height, half, u, theta = 2.0, 0.5, 0.32, 0.22
-    titles = ("full contact, $\\theta = 0$", "rocking about the right edge, $\\theta > 0$")
-    for axis, turned, title in zip(axes, (0.0, theta), titles):
-        draw(axis, turned, u, height, half)
-        axis.set_title(title, y=0.96)
-        axis.set(xlim=(-1.35, 1.75), ylim=(-0.62, 2.6))
-        arrow(axis, (-1.2, -0.4), (-0.7, -0.4), "$a_g$", style="->")
-        dashed = placed(np.array([[0, 0.15], [0, height * 1.12]]), turned, half)
-        axis.plot(*dashed.T, color="0.5", linewidth=0.8, linestyle="--")
-        top = placed(np.array([[u, height]]), turned, half)[0]
-        axis.text(*top, "$m$", color="white", ha="center", va="center")
-        ends = placed(np.array([[0, height * 1.12], [u, height * 1.12]]), turned, half)
-        arrow(axis, *ends, "$u$", style="->", color=FIXED)
-    left, right = axes
-    for x, text in ((-half, "$B$"), (half, "$B$")):
-        arrow(left, (0, -0.22), (x, -0.22), text, at=(x / 2, -0.25), va="top")
-    arrow(left, (-0.85, 0), (-0.85, height), "$H$", at=(-0.9, height / 2), ha="right", va="center")
-    left.plot([-0.9, u], [height, height], color="0.5", linewidth=0.6)
-    left.text(half + 0.08, 0.1, "$m_0,\\ J_0$", va="center")
-    left.text(0.28, 0.95, "$k,\\ c$", va="center")
-    arrow(left, (u + 0.28, height), (u + 0.85, height), "$F_t$", style="->")
-    top = placed(np.array([[u, height]]), theta, half)[0]
-    right.plot([0, 0], [0, height * 1.1], color="0.5", linewidth=0.6, linestyle=":")
-    arrow(right, (0, 1.75), (top[0], 1.75), "$\\delta_t$", at=(0.17, 1.78), style="->")
-    right.plot([top[0], top[0]], [1.75, top[1]], color="0.5", linewidth=0.6)
-    right.add_patch(Arc((half, 0), 1.3, 1.3, theta1=180 - np.degrees(theta), theta2=180, color=FIXED))
-    right.text(half - 0.73, 0.07, "$\\theta$", color=FIXED, ha="right", va="center")
-    right.plot(half, 0, "o", color=FIXED, markersize=4)
-    right.text(half + 0.08, 0.12, "edge $s = +1$", color=FIXED, va="center")
-    lifted = placed(np.array([[-half, 0]]), theta, half)[0]
-    arrow(right, (lifted[0] - 0.1, 0), (lifted[0] - 0.1, lifted[1]), "uplift", at=(lifted[0] - 0.15, lifted[1] / 2),
-          ha="right", va="center")
-    save(figure, path, "The structure with its symbols",
-         "Left: full contact, with top mass m, height H, half-width B, foundation m0 and J0. Right: rocking.")
 
 
 def motion(path: Path) -> None:
@@ -127,7 +68,7 @@ def motion(path: Path) -> None:
 
     def frame(i: int) -> None:
         axis.clear()
-        draw(axis, DRAWN * response["theta"][i], DRAWN * response["u"][i], PIER.H, PIER.B)
+        draw(axis, DRAWN * response["theta"][i], DRAWN * response["u"][i])
         axis.set(**limits)
         for mark, values in marks:
             mark.set_data([time[i]], [values[i]])
@@ -218,7 +159,7 @@ def explore(path: Path) -> None:
 
 
 PICTURES = {
-    "img/schematic.svg": schematic, "img/motion.gif": motion, "img/levels.svg": levels,
+    "img/motion.gif": motion, "img/levels.svg": levels,
     "img/tornado.svg": drawn_by("docs/howto/choose_numbers.md", "Change of the peaks for each wrong number",
                                 "Bars: medians of six components of ground motion. Strokes: single components."),
     "img/questions.svg": drawn_by("docs/howto/sweeps.md", "Rotation and probabilities over the peak ground velocity",
