@@ -77,44 +77,15 @@ def prepare(folder: Path, exporter: Path) -> Path:
     return folder
 
 
-OPTION = re.compile(r"^ {2,6}(?P<name>-[-\w].*?|[<\[].*?)(?: {2,}|\n)(?P<meaning>.*\n(?: {10}.*\n|\n)*)", re.MULTILINE)
-EVERYWHERE = ("-h, --help", "--quiet")
-
-
-def options(text: str) -> list[tuple[str, str]]:
-    """Name and meaning of each option in a command's help."""
-    found = ((option["name"], option["meaning"].strip()) for option in OPTION.finditer(text))
-    return [option for option in found if option[0] not in EVERYWHERE]
-
-
-def table(head: list[str], rows: list[list[str]]) -> str:
-    return "".join(f"| {' | '.join(row)} |\n" for row in [head, ["---"] * len(head), *rows])
-
-
-def row(name: str, meaning: str) -> list[str]:
-    plain = re.sub(r"\s+Possible values:", ":", meaning).replace("|", "\\|").replace("<", "&lt;")
-    parts = [" ".join(part.split()) for part in re.split(r"^ +- ", plain, flags=re.MULTILINE)]
-    return [f"`{name}`".replace("|", "\\|"), "<br>".join(parts)]
-
-
 def command_line(exporter: Path) -> str:
-    """The commands and options of `rocking-fmu`, from its help."""
+    """The help of `rocking-fmu` and of its commands."""
     def printed(*arguments: str) -> str:
         text = subprocess.run([exporter, *arguments, "--help"], check=True, capture_output=True, text=True).stdout
-        return "".join(f"{line.rstrip()}\n" for line in text.splitlines())
+        return "".join(f"{line.rstrip()}\n" for line in ["```text", *text.splitlines(), "```"])
 
     whole = printed()
-    listed = re.search(r"^Commands:\n(.*?)\n\n", whole, re.MULTILINE | re.DOTALL)[1]
-    summaries = dict(line.split(maxsplit=1) for line in listed.splitlines() if not line.startswith("  help"))
-    page = table(["command", "does"], [[f"[`{name}`](#{name})", what] for name, what in summaries.items()])
-    page += f"\n{re.search(r'^A structure .*?(?=^Usage)', whole, re.MULTILINE | re.DOTALL)[0]}"
-    page += "Every command has `--help` and `--quiet`, which prints only warnings and errors on standard error.\n"
-    for command in summaries:
-        text, _, examples = printed(command).partition("\nExamples:\n")
-        about, usage = re.match(r"(.*)^Usage: (.*?)$", text, re.MULTILINE | re.DOTALL).groups()
-        page += f"\n## {command}\n\n{about}`{usage}`\n\n{table(['option', 'meaning'], [row(*option) for option in options(text)])}"
-        page += f"\n```text\n{examples.rstrip()}\n```\n"
-    return page
+    commands = re.findall(r"^  (\w+) ", whole.partition("Commands:")[2], re.MULTILINE)
+    return whole + "".join(f"\n## {command}\n\n{printed(command)}" for command in commands if command != "help")
 
 
 ARGUMENT = re.compile(r"^(\w+(?:, \w+)*): ", re.MULTILINE)

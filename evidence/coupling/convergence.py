@@ -15,8 +15,8 @@ from .masters import MASTERS, between_transitions, extrapolate, hold
 STRUCTURES = (reference.MCMANUS, reference.EVISON)
 
 
-def halving(iterated=None):
-    return functools.partial(between_transitions, iterated or MASTERS["iqn-ils"]())
+def halving():
+    return functools.partial(between_transitions, MASTERS["iqn-ils"]())
 
 
 # name: master, guess, whether lines have the moments of the true course, order without transitions

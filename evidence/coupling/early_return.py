@@ -6,19 +6,13 @@ is thus depends on the forces in it, as the forces do: both are found by the sam
 
 import weakref
 
-import monolithic
 import numpy as np
-from tqdm import tqdm
 
-from ..page import table
-from ..scenes import exported, pacoima_dam
-from . import convergence, masters
-from .bridge import PIERS, Bridge, deck, linear, pier
-from .masters import MOST_SWEEPS, TOLERANCE, Diverged, Iterated, extrapolate
+from .bridge import Bridge
+from .masters import MOST_SWEEPS, TOLERANCE, Diverged, Iterated
 from .structure import Structure
 
 SLIVER = 1e-12  # s; what is left of a step that is not worth another
-STEPS = (1, 2, 4, 8)  # per sample of the record
 
 
 class Pier(Structure):
@@ -127,33 +121,3 @@ class EndedAtTransitions:
             w, reach = value, reached
             system.restore(start)
         raise Diverged(f"{MOST_SWEEPS} sweeps over the step of {h} s from {t} s leave a residual of {residual:.1e}")
-
-
-# name: master over an iterated one, pier, version of FMI, the bridge that they stand under
-MASTERS = {
-    "halved (FMI 2.0)": (convergence.halving, pier, 2, Bridge),
-    "early return (FMI 3.0)": (EndedAtTransitions, Pier, 3, EventBridge),
-}
-
-
-def study():
-    """Of every master at each of STEPS per sample: the error, and for how many steps and sweeps."""
-    time, a_g = pacoima_dam()
-    response = monolithic.integrate(convergence.monolithic_bridge(deck()), time, a_g)
-    expected, found = convergence.columns(response), {}
-    for way, (new, new_pier, fmi, Of) in MASTERS.items():
-        for per_sample in tqdm(STEPS, desc=way):
-            iterated = masters.MASTERS["iqn-ils"]()
-            system = Of([new_pier(exported(name.lower(), fmi)) for name in PIERS], deck(), linear(time, a_g))
-            rows = convergence.course(system, new(iterated), extrapolate, time, per_sample)
-            asked = (len(time) - 1) * per_sample
-            found[way, per_sample] = (convergence.error(rows, expected), (iterated.steps - asked) / system.transitions(),
-                                       iterated.sweeps / asked, system.transitions())
-    return time[1], found
-
-
-def errors(step, found) -> str:
-    head = ["", "step", "error", "transitions", "further steps per transition", "sweeps per communication step"]
-    rows = [[name, f"{1e3 * step / n:g} ms", f"{error:.1e}", transitions, f"{further:.1f}", f"{sweeps:.1f}"]
-            for (name, n), (error, further, sweeps, transitions) in found.items()]
-    return table(head, rows)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from ..scenes import exported
-from . import bridge, bridge_model_exchange, building_on_soil, convergence, early_return, no_slopes, stability
+from . import bridge, bridge_model_exchange, building_on_soil, convergence, no_slopes, stability
 
 
 def values(figures: Path) -> dict:
@@ -13,7 +13,7 @@ def values(figures: Path) -> dict:
     building_on_soil.draw(fmus[0], figures / "building_on_soil.png")
     steps, of_variants, transitions = convergence.study(fmus)
     return dict(
-        convergence=convergence.errors_by_step(steps, of_variants), early_return=early_return.errors(*early_return.study()),
+        convergence=convergence.errors_by_step(steps, of_variants),
         frequency=stability.FREQUENCY, one_system=bridge_model_exchange.errors(fmus), transitions=transitions,
         ms=1e3 * steps, halved=of_variants["the same, steps with transitions halved"],
         slow=of_variants["Gauss-Seidel, extrapolated"], held_jacobi=of_variants["Jacobi, held"][-1],
