@@ -8,7 +8,6 @@ one, so that the other systems of a batch go on. One thread; the methods take tu
 import sys
 import time
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import heyoka as hy
 import numpy as np
@@ -19,7 +18,7 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
 sys.path.insert(0, str(ROOT / "study"))
 import reference as model
-from peers import margins, rocking
+from peers import margins
 
 import flexible_rocking as fr
 
@@ -35,14 +34,13 @@ VALUE, SLOPE, SIDE, CONTACT = (hy.par[k] for k in range(4))
 
 
 def equations():
-    u, u_dot, theta, theta_dot = hy.make_vars("u", "u_dot", "theta", "theta_dot")
-    a_g = VALUE + SLOPE * hy.time
-    u_ddot, theta_ddot = rocking(P, SIDE, a_g, u, u_dot, theta, theta_dot)
-    rest = -a_g - 2 * P.zeta_fc * P.omega_fc * u_dot - P.omega_fc**2 * u
-    rocks = 1.0 - CONTACT
-    rates = [(u, u_dot), (u_dot, CONTACT * rest + rocks * u_ddot), (theta, rocks * theta_dot), (theta_dot, rocks * theta_ddot)]
-    lifts = [(CONTACT * margin - rocks, RISE) for _, *pair in margins(P, (u, u_dot)) for margin in pair]
-    return rates, [*lifts, (rocks * SIDE * theta + CONTACT, FALL)]
+    y = hy.make_vars("u", "u_dot", "theta", "theta_dot")
+    a_g, rocks = VALUE + SLOPE * hy.time, 1.0 - CONTACT
+    u_ddot, theta_ddot = model.accelerations(P, SIDE, y, a_g, 0.0, hy)
+    rest, _ = model.accelerations(P, model.FULL_CONTACT, y, a_g, 0.0)
+    rates = [*zip(y, (y[1], CONTACT * rest + rocks * u_ddot, rocks * y[3], rocks * theta_ddot))]
+    lifts = [(CONTACT * margin - rocks, RISE) for _, *pair in margins(P, y) for margin in pair]
+    return rates, [*lifts, (rocks * SIDE * y[2] + CONTACT, FALL)]
 
 
 def transition(which, state, pars):
@@ -70,27 +68,18 @@ def heyoka(lanes, tolerance):
     rates, guards = equations()
 
     def callback(which):
-        if lanes == 1:
-            def apply(solver, _):
-                transition(which, solver.state, solver.pars)
-                return True
-        else:
-            def apply(solver, _, lane):
-                state, pars = solver.state[:, lane].copy(), solver.pars[:, lane].copy()
-                transition(which, state, pars)
-                solver.state[:, lane], solver.pars[:, lane] = state, pars
-                return True
+        def apply(solver, _, *lane):
+            of_system = (slice(None), *lane)
+            transition(which, solver.state[of_system], solver.pars[of_system])
+            return True
+
         return apply
 
-    def cooldown(which):
-        return {} if which < 4 else {"cooldown": 0.0}  # another impact may follow at once
-
-    if lanes == 1:
-        events = [hy.t_event(guard, direction=way, callback=callback(k), **cooldown(k)) for k, (guard, way) in enumerate(guards)]
-        solver = hy.taylor_adaptive(rates, [0.0] * 4, pars=[0.0] * 4, tol=tolerance, t_events=events)
-    else:
-        events = [hy.t_event_batch(guard, direction=way, callback=callback(k), **cooldown(k)) for k, (guard, way) in enumerate(guards)]
-        solver = hy.taylor_adaptive_batch(rates, np.zeros((4, lanes)), pars=np.zeros((4, lanes)), tol=tolerance, t_events=events)
+    new_event, new_solver = (hy.t_event, hy.taylor_adaptive) if lanes == 1 else (hy.t_event_batch, hy.taylor_adaptive_batch)
+    cooldowns = [{}] * 4 + [{"cooldown": 0.0}]  # another impact may follow at once
+    events = [new_event(guard, direction=way, callback=callback(k), **cooldown) for k, ((guard, way), cooldown) in enumerate(zip(guards, cooldowns))]
+    zeros = np.zeros(4 if lanes == 1 else (4, lanes))
+    solver = new_solver(rates, zeros, pars=zeros, tol=tolerance, t_events=events)
 
     def run(times, a_g):
         theta = []
@@ -125,20 +114,6 @@ def calls(lanes, times):
             solver.pars[0], solver.pars[1] = scales * times[k], scales
             solver.propagate_until(times[k + 1])
             kept.append(solver.state[0].copy())
-
-
-def cost_of_rows(path, count=30_000):
-    """Time of trivial runs whose rows go to a new file at `path`, as a multiple of their time without a file."""
-    times = 0.01 * np.arange(5)
-    record, pier = fr.Record(times, 0.3 * np.sin(20 * times + 0.1)), fr.Structure(preset="mcmanus")
-
-    def took(scale, **options):
-        start = time.process_time()
-        fr.sweep(pier, record, scale=scale * np.linspace(1e-6, 2e-6, count), threads=1, **options)
-        return time.process_time() - start
-
-    without = min(took(1) for _ in range(REPETITIONS))
-    return min(took(1 + k, path=path) for k in range(REPETITIONS)) / without
 
 
 def measure():
@@ -190,5 +165,3 @@ if __name__ == "__main__":
     table = measure()
     table.to_csv(ROOT / "docs/evidence/ensembles.csv", index=False, float_format="%.3e")
     print(table.to_string())
-    with TemporaryDirectory() as folder:
-        print(f"trivial runs with their rows in a file: {cost_of_rows(Path(folder) / 'rows.csv'):.2f} times the time without")

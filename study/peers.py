@@ -62,39 +62,23 @@ class Scipy:
         return found.y[:, -1], found.t[-1], hit[0] if hit else None
 
 
-def rocking(p, s, a_g, u, u_dot, theta, theta_dot):
-    """Expressions of ü and θ̈ while the structure rocks about the side s."""
-    m, H, B, g, M = p.m, p.H, p.B, p.g, p.m + p.m0
-    sn, cs, arm = hy.sin(theta), hy.cos(theta), s * B - u
-    force = -p.c_u * u_dot - p.k * u - m * theta_dot**2 * arm - m * a_g * cs + m * g * sn
-    moment = (2 * m * arm * u_dot * theta_dot + m * g * H * sn + m * g * u * cs - s * M * g * B * cs
-              - a_g * (m * H * cs + (s * M * B - m * u) * sn))
-    theta_ddot = (moment - H * force) / (p.J0 + m * arm**2 + p.m0 * B**2)
-    return force / m - H * theta_ddot, theta_ddot
-
-
 class Heyoka:
     """taylor_adaptive with terminal events: one integrator for each phase."""
 
     def __init__(self, p, tolerance):
         self.p, self.work = p, 0
-        u, u_dot, theta, theta_dot = hy.make_vars("u", "u_dot", "theta", "theta_dot")
+        y = hy.make_vars("u", "u_dot", "theta", "theta_dot")
         a_g = hy.par[0] + hy.par[1] * hy.time
-
-        def event(guard, direction):
-            return hy.t_event(guard, direction=direction)
-
-        def system(u_ddot, theta_ddot, events):
-            rates = [(u, u_dot), (u_dot, u_ddot), (theta, theta_dot), (theta_dot, theta_ddot)]
-            return hy.taylor_adaptive(rates, [0.0] * 4, pars=[0.0, 0.0], tol=tolerance, t_events=events)
-
         rise, fall = hy.event_direction.positive, hy.event_direction.negative
-        contact = -a_g - 2 * p.zeta_fc * p.omega_fc * u_dot - p.omega_fc**2 * u
-        guards = [guard for _, *pair in margins(p, (u, u_dot)) for guard in pair]
-        self.of_phase = {model.FULL_CONTACT: system(contact, 0.0 * theta, [event(guard, rise) for guard in guards])}
-        for s in (1, -1):
-            events = [event(s * theta, fall), event(s * theta - math.pi / 2, rise)]
-            self.of_phase[s] = system(*rocking(p, s, a_g, u, u_dot, theta, theta_dot), events)
+        self.of_phase = {}
+        for s in (model.FULL_CONTACT, 1, -1):
+            guards = [(s * y[2], fall), (s * y[2] - math.pi / 2, rise)]
+            if s == model.FULL_CONTACT:
+                guards = [(guard, rise) for _, *pair in margins(p, y) for guard in pair]
+            u_ddot, theta_ddot = model.accelerations(p, s, y, a_g, 0.0, hy)
+            rates = [*zip(y, (y[1], u_ddot, y[3], hy.expression(theta_ddot)))]
+            events = [hy.t_event(guard, direction=direction) for guard, direction in guards]
+            self.of_phase[s] = hy.taylor_adaptive(rates, [0.0] * 4, pars=[0.0, 0.0], tol=tolerance, t_events=events)
 
     def advance(self, s, y, tau, dt, a_g, slope):
         solver = self.of_phase[s]

@@ -122,13 +122,13 @@ class Load:
     F_t_rate: float = 0.0
 
 
-def accelerations(p: Structure, s: int, y, a_g: float, F_t: float) -> tuple[float, float]:
-    """u_ddot and theta_ddot by (1), or by (5, 6) about side s, with a force F_t on the top mass."""
+def accelerations(p: Structure, s: int, y, a_g: float, F_t: float, numbers=math) -> tuple[float, float]:
+    """u_ddot and theta_ddot by (1), or by (5, 6) about side s, with a force F_t on the top mass. `numbers` has sin and cos of theta."""
     u, u_dot, theta, theta_dot = y
     if s == FULL_CONTACT:
         return F_t / p.m - a_g - 2 * p.zeta_fc * p.omega_fc * u_dot - p.omega_fc**2 * u, 0.0
     m, H, B, g, M = p.m, p.H, p.B, p.g, p.m + p.m0
-    sn, cs, arm = math.sin(theta), math.cos(theta), s * B - u
+    sn, cs, arm = numbers.sin(theta), numbers.cos(theta), s * B - u
     force = -p.c_u * u_dot - p.k * u - m * theta_dot**2 * arm - m * a_g * cs + m * g * sn + F_t * cs
     moment = (2 * m * arm * u_dot * theta_dot + m * g * H * sn + m * g * u * cs - s * M * g * B * cs
               - a_g * (m * H * cs + (s * M * B - m * u) * sn) + F_t * (H * cs + arm * sn))
