@@ -41,27 +41,21 @@ class Motion:
     def rates(self, t, s):
         p, n = self.frame, self.n
         u, (theta, y), u_dot, (w, _) = s[:n], s[n:n + 2], s[n + 2:2 * n + 2], s[2 * n + 2:]
-        sn, cs, one = np.sin(theta), np.cos(theta), np.ones(n)
-        # rows of the Jacobians of x = u cos + h sin and z = y + h cos - u sin by u_i, theta, y
-        by_x, by_z = np.array([cs * one, p.h * cs - u * sn, 0 * one]), np.array([-sn * one, -p.h * sn - u * cs, one])
-        ground = [a + slope * (t - self.start) for a, slope in (self.a_g, self.a_v)]
-        x = -2 * sn * w * u_dot - (u * cs + p.h * sn) * w**2 + ground[0]
-        z = -2 * cs * w * u_dot - (p.h * cs - u * sn) * w**2 + ground[1] + p.g
-        mass, force = np.zeros((n + 2, n + 2)), np.zeros(n + 2)
-        mass[:n, :n] = np.diag(p.m * (by_x[0] ** 2 + by_z[0] ** 2))
-        for j, row in ((n, 1), (n + 1, 2)):
-            mass[:n, j] = mass[j, :n] = p.m * (by_x[0] * by_x[row] + by_z[0] * by_z[row])
-        for i, j in ((1, 1), (1, 2), (2, 2)):
-            mass[n + i - 1, n + j - 1] = mass[n + j - 1, n + i - 1] = p.m @ (by_x[i] * by_x[j] + by_z[i] * by_z[j])
-        mass[n, n] += p.J0
-        mass[n + 1, n + 1] += p.m0
-        inertial = p.m * (by_x * x + by_z * z)
-        force[:n] = -inertial[0] - p.K @ u - p.C @ u_dot
+        sn, cs, column, one = np.sin(theta), np.cos(theta), np.zeros((n, 1)), np.eye(n)
+        # Jacobians of x = u cos + h sin and z = y + h cos - u sin by u, theta, y; and what else is in the accelerations of the masses
+        by_x = np.hstack([cs * one, (p.h * cs - u * sn)[:, None], column])
+        by_z = np.hstack([-sn * one, -(p.h * sn + u * cs)[:, None], column + 1])
+        a_g, a_v = (a + slope * (t - self.start) for a, slope in (self.a_g, self.a_v))
+        x = -2 * sn * w * u_dot - (u * cs + p.h * sn) * w**2 + a_g
+        z = -2 * cs * w * u_dot - (p.h * cs - u * sn) * w**2 + a_v + p.g
         e, rate = self.heights(s, self.xi)
         N, (F, *_) = np.where(self.pressed, -(self.k * e + self.c * rate), 0.0), self.pull(s)
         P = self.taut * (self.ties.P_0 + self.ties.k_t * (y - self.rest))
-        force[n] = -inertial[1].sum() - cs * (self.xi @ N - self.xi_d @ F)
-        force[n + 1] = -inertial[2].sum() - p.m0 * (p.g + ground[1]) + N.sum() - F.sum() - P
+        mass = by_x.T * p.m @ by_x + by_z.T * p.m @ by_z + np.diag([0.0] * n + [p.J0, p.m0])
+        force = -by_x.T @ (p.m * x) - by_z.T @ (p.m * z)
+        force[:n] -= p.K @ u + p.C @ u_dot
+        force[n] -= cs * (self.xi @ N - self.xi_d @ F)
+        force[n + 1] += N.sum() - F.sum() - P - p.m0 * (p.g + a_v)
         return np.concatenate([s[n + 2:], np.linalg.solve(mass, force)])
 
     def conditions(self, s):
