@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from frames import FRAMES, cantilever
+from evidence.ground.opensees import solve_with
 from scipy.linalg import eigh
 
 import flexible_rocking as fr
@@ -40,13 +41,8 @@ def beams(EI, times):
         x, y = ops.nodeCoord(node)
         for dof, velocity in enumerate((SPEED * y, -SPEED * x, -SPEED), start=1):
             ops.setNodeVel(node, dof, velocity, "-commit")
-    ops.constraints("Plain")
-    ops.numberer("RCM")
-    ops.system("BandGeneral")
+    solve_with(ops, "Transient", "Newmark", 0.5, 0.25)
     ops.test("NormDispIncr", 1e-12, 20)
-    ops.algorithm("Newton")
-    ops.integrator("Newmark", 0.5, 0.25)
-    ops.analysis("Transient")
     rows = []
     for count in np.diff(np.rint(times / STEP).astype(int), prepend=0).tolist():
         assert ops.analyze(count, STEP) == 0
