@@ -129,67 +129,24 @@ KINDS = {
 }
 
 
-BUILDING = ("zeta = 0.02\n[base]\nm0 = 20e3\nJ0 = 3e4\nB = 1.5\n"
-            "[[storeys]]\nm = 40e3\nh = 3.5\nk = 60e6\n[[storeys]]\nm = 30e3\nh = 7.0\nk = 40e6\n")
-
-
-def building(exporter: Path, folder: Path) -> Path:
-    """The FMU of a building of two floors, written to `folder`."""
-    (folder / "building.toml").write_text(BUILDING)
-    fmu = folder / "building.fmu"
-    subprocess.run([exporter, "export", "--quiet", "--parameters", folder / "building.toml", "-o", fmu], check=True)
-    return fmu
-
-
 OF_PEAKS = " since startTime, exact, also between communication points, without the fall if the structure overturns; NaN unless peaks is true"
 
 
-def with_instants(described: list) -> list[tuple]:
-    """Each variable with its names, units and meaning; a largest or smallest value and its first instant are one row."""
-    instants = {v.name for v in described if v.description.startswith("first instant of")}
-
-    def paired(v) -> tuple:
-        choices = v.declaredType.items if v.declaredType else None
-        listed = ": " + ", ".join(f"{item.value} {item.name}" for item in choices) if choices else ""
-        meaning = v.description.removesuffix(OF_PEAKS).replace("|", "\\|") + listed
-        if f"t_{v.name}" not in instants:
-            return v, f"`{v.name}`", v.unit or "", meaning
-        value, separator, rest = meaning.partition(";")
-        return v, f"`{v.name}`, `t_{v.name}`", f"{v.unit or '–'}, s", f"{value}, and its first instant{separator}{rest}"
-
-    return [paired(v) for v in described if v.name not in instants]
-
-
-def variables(fmu: Path, building: Path) -> str:
-    """The variables of the FMU, from that of one mass and that of a building."""
-    page = ""
-
+def variables(described: list, of: str = "") -> str:
+    """Variables of an FMU in tables, by their kind; i stands for every floor, storey or mode."""
     def number(value: str | None) -> str:
         return "" if value is None else re.sub(r"e([+-])0?", r"e\1", f"{float(value):g}").replace("e+", "e")
 
-    described = read_model_description(fmu).modelVariables
+    page = ""
     for title, is_one in KINDS.items():
-        page += f"\n## {title}\n\n"
-        if title == "Local variables":
-            page += ("The magnitudes from `theta_max` to `P_t_max`, and those of buildings, are the largest since startTime, exact, also between\n"
-                     "communication points. If the structure overturns, they are those before its fall. They are NaN unless `peaks` is true.\n\n")
-        page += "| name | unit | value | range | meaning |\n|---|---|---|---|---|\n"
-        for v, names, units, meaning in with_instants([v for v in described if is_one(v)]):
+        rows = [v for v in described if is_one(v)]
+        page += f"\n## {title}{of}\n\n| name | unit | value | range | meaning |\n|---|---|---|---|---|\n" if rows else ""
+        for v in rows:
             value = number(v.start) if v.type == "Real" else v.start or ""
             limits = f"{number(v.min)} to {number(v.max)}" if v.min and v.max else ""
-            page += f"| {names} | {units} | {value} | {limits} | {meaning} |\n"
-
-    page += ("\n## Buildings\n\nThe FMU of a structure of many masses, `rocking-fmu export --parameters building.toml`, has those of the variables "
-             "above\nthat describe the ground, the base and the run, and the variables below. `i` is a floor or the storey below it, `j` a mode, "
-             "both\nfrom 1 on. The structure's own numbers are fixed: an importer can read them but not set them.\n\n"
-             "| name | unit | kind | meaning |\n|---|---|---|---|\n")
-    known = {v.name for v in described}
-    own = [v for v in read_model_description(building).modelVariables if v.name not in known and "[2]" not in v.name]
-    for v, names, units, meaning in with_instants(own):
-        letter = "j" if "mode" in v.description or v.name.startswith("der(") else "i"
-        meaning = re.sub(r"(floor|storey|mode) 1", rf"\1 {letter}", meaning)
-        kind = {"calculatedParameter": "fixed"}.get(v.causality, v.causality)
-        page += f"| {names} | {units} | {kind} | {meaning} |\n".replace("[1]", f"[{letter}]")
+            choices = ": " + ", ".join(f"{item.value} {item.name}" for item in v.declaredType.items) if v.declaredType else ""
+            meaning = v.description.removesuffix(OF_PEAKS).replace("|", "\\|") + choices
+            page += re.sub(r"(\[|floor |storey |mode )1\b", r"\1i", f"| `{v.name}` | {v.unit or ''} | {value} | {limits} | {meaning} |\n")
     return page
 
 
@@ -205,8 +162,15 @@ def main() -> None:
                 folder = prepare(Path(temporary) / str(number), exporter)
                 page.write_text(rerun(page.read_text(encoding="utf-8"), exporter, folder), encoding="utf-8")
             return
-        fmus = prepare(Path(temporary) / "fmus", exporter) / "out/mcmanus.fmu", building(exporter, Path(temporary))
-        references = {"command_line": command_line(exporter), "python": python(), "variables": variables(*fmus)}
+        import flexible_rocking as fr
+
+        pier = prepare(Path(temporary) / "fmus", exporter) / "out/mcmanus.fmu"
+        storey = fr.Structure(storeys=[dict(m=4e4, h=3.5, k=6e7)], zeta=0.02, m0=2e4, J0=3e4, B=1.5)
+        building = fr.export(pier.with_name("building.fmu"), storey, library=pier)
+        of_one, of_building = (read_model_description(fmu).modelVariables for fmu in (pier, building))
+    own = [v for v in of_building if v.name not in {of.name for of in of_one}]
+    references = {"command_line": command_line(exporter), "python": python(), "variables": variables(of_one),
+                  "variables_of_buildings": variables(own, " of buildings")}
     folder = ROOT / "out/reference"
     folder.mkdir(parents=True, exist_ok=True)
     for name, page in references.items():
