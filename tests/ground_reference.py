@@ -1,17 +1,22 @@
 """An independent integration of a frame of n masses on ground that gives, to compare the engine with.
 
 The state is u, theta, y and their rates. Mass matrix and forces follow from the places of the masses by their Jacobians: no modes,
-no elimination. DOP853 goes from sample to sample and from event to event; Newton's method refines an event by fresh integrations.
+no elimination. DOP853 goes from sample to sample and from event to event; an event is a root of a polynomial over a step, refined by
+fresh integrations.
 """
 
 from __future__ import annotations
 
 import numpy as np
+import reference
 from frames import Frame, Ties
-from scipy.integrate import solve_ivp
+from frames_reference import FIT, NODES
+from numpy.polynomial import polynomial
+from scipy.integrate import DOP853
 
-NEAR = 1e-12  # a condition this small is on its root
-AFTER = 1e-7  # s, an event is not looked for so soon after another
+NEAR = 1e-9  # a condition this small is on its root
+AFTER = 1e-4  # of a step: a condition falls if it is negative so soon after a root
+TOLERANCES = dict(rtol=1e-12, atol=1e-14)
 
 
 class Motion:
@@ -83,44 +88,38 @@ class Motion:
             else:
                 self.yields[j] = np.sign(elastic[j])
 
-    def solve(self, start, end, s, **options):
-        return solve_ivp(self.rates, (start, end), s, "DOP853", rtol=1e-12, atol=1e-14, **options)
-
     def to(self, end):
         """Goes on to `end` under the present acceleration."""
-        time = self.start
-        while time < end:
-            left = min(end, time + AFTER) if self.fresh else end
-            events = []
-            if not self.fresh:
-                for i, value in enumerate(self.conditions(self.s)):
-                    events.append(lambda t, s, i=i: self.conditions(s)[i])
-                    events[-1].terminal, events[-1].direction = True, -1
-            run = self.solve(time, left, self.s, events=events, max_step=self.longest)
-            self.fresh = False
-            if run.status == 0:
-                time, self.s = left, run.y[:, -1]
-            else:
-                i = next(i for i, times in enumerate(run.t_events) if len(times))
-                begin, s = run.t[-2], run.y[:, -2]
-                guess = run.t_events[i][0]
-                for _ in range(3):
-                    at = self.solve(begin, guess, s).y[:, -1]
-                    slope = (self.conditions(at + 1e-7 * self.rates(guess, at))[i] - self.conditions(at)[i]) / 1e-7
-                    guess -= self.conditions(at)[i] / slope
-                time, self.s = guess, self.solve(begin, guess, s).y[:, -1]
-                self.change(i, self.s, time)
-                self.fresh = True
-            # what has changed just after another event
-            for i, value in enumerate(self.conditions(self.s)):
-                if value < -1e3 * NEAR and not self.fresh:
-                    self.change(i, self.s, time)
+        while self.time < end:
+            solver = DOP853(self.rates, self.time, self.s, end, max_step=self.longest, **TOLERANCES)
+            while solver.status == "running":
+                solver.step()
+                assert solver.status != "failed", self.time
+                step = reference._Step(solver)
+                fits = FIT @ [self.conditions(step.at(x)) for x in NODES]
+                falling = [(x, i) for i, c in enumerate(fits.T) for x in reference.unit_roots(c)
+                           if polynomial.polyval(x + AFTER, c) < 0]  # what has just changed begins at 0 and rises
+                if falling:
+                    x, i = min(falling)
+                    self.make(step, x, i, polynomial.polyval(x, polynomial.polyder(fits[:, i])))
+                    break
+                self.time, self.s = solver.t, solver.y
+
+    def make(self, step, x, i, slope):
+        """Makes the change of condition i near x, and what another condition is due for there."""
+        for _ in range(3):
+            self.time = step.t0 + x * step.h
+            self.s = step.integrate_to(self.time, **TOLERANCES)
+            x -= self.conditions(self.s)[i] / slope
+        self.change(i, self.s, self.time)
+        for i in np.flatnonzero(self.conditions(self.s) < -NEAR):
+            self.change(i, self.s, self.time)
 
     def follow(self, dt, a_g, a_v):
         """Rows of theta, y, u and accelerations of the floors at the samples but the first."""
         p, n, rows = self.frame, self.n, []
         stiff = max(p.omega[-1] ** 2, self.k.sum() / p.m_t, self.k @ self.xi**2 / p.J0)
-        self.longest, self.fresh = 0.5 / np.sqrt(stiff), False
+        self.longest, self.time = 0.5 / np.sqrt(stiff), 0.0
         for i in range(len(a_g) - 1):
             self.start = i * dt
             self.a_g, self.a_v = ((a[i], (a[i + 1] - a[i]) / dt) for a in (a_g, a_v))
