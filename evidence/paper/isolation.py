@@ -29,14 +29,9 @@ class Test(NamedTuple):
 
 
 def single_pulse(T_p: float, peak: float) -> fr.Record:
-    """A Mavroeidis-Papageorgiou velocity pulse of one cycle (gamma = 1, nu = 0) with the peak acceleration `peak` (m/s2).
-
-    v = A/2 (1 + cos wt) cos wt, so that a is proportional to sin wt (1 + 2 cos wt), over one period T_p = 2 pi/w.
-    """
-    time = np.linspace(0, T_p, 401)
-    phase = 2 * np.pi * (time / T_p - 0.5)
-    shape = np.sin(phase) * (1 + 2 * np.cos(phase))
-    return fr.Record(time, peak * shape / np.max(np.abs(shape)))
+    """A Mavroeidis-Papageorgiou velocity pulse of one cycle (gamma = 1, nu = 0) with the peak acceleration `peak` (m/s2)."""
+    pulse = fr.pulse("mavroeidis_papageorgiou", amplitude=1, frequency=1 / T_p, cycles=1 + 1e-9)  # the library's gamma exceeds 1
+    return pulse.scaled(peak / pulse.pga)
 
 
 def stand_in() -> tuple[fr.Record, float]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from evidence.paper import isolation, modal_components
+from evidence.paper import modal_components
 from evidence.paper.specimens import half_cycles
 
 
@@ -23,13 +23,3 @@ def test_decomposition_of_a_known_signal():
     assert np.max(np.abs(found_smooth - smooth)[inside]) < 0.03
     assert np.max(np.abs(found_oscillation - oscillation)[inside]) < 0.03
     assert modal_components.dominant_frequency(time, found_oscillation) == pytest.approx(30, rel=2e-3)
-
-
-def test_the_pulse_is_the_derivative_of_its_velocity():
-    pulse = isolation.single_pulse(0.4, 3.0)
-    time, a_g = pulse.time, pulse.a_g
-    phase = 2 * np.pi * (time / 0.4 - 0.5)
-    velocity = (1 + np.cos(phase)) * np.cos(phase)
-    slope = np.gradient(velocity, time)
-    assert np.max(np.abs(a_g)) == pytest.approx(3.0)
-    assert a_g[5:-5] == pytest.approx(-(slope / np.max(np.abs(slope)) * 3.0)[5:-5], abs=5e-3)
