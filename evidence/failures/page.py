@@ -2,11 +2,13 @@
 
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from ..figures import COLOURS, save, subplots
+from ..page import table
+from ..paper.specimens import EVISON, MCMANUS
 from ..study import GUIDE, RIGHT, WRONG, curves, named, scientific, tables
-from . import stability
 
 MARKS = [{"color": color, "linestyle": "", "marker": mark, "markersize": 5} for color, mark in zip((*COLOURS[:1], *COLOURS[2:4], COLOURS[5]), "os^D")]
 CHECKED = {"color": COLOURS[4], "linestyle": "", "marker": "o"}
@@ -46,15 +48,37 @@ def values(figures: Path) -> dict:
     found = {name: named(rows) for name, rows in pd.read_csv(folder / "failures.csv", dtype=str).groupby("failure")}
     for key, (title, description, axes, looks) in EXHIBITS.items():
         of = found[key.replace("-", "_")]
-        figure, axis = subplots(1, 1, 4.4)
-        curves(axis, folder / f"failure-{key}.csv", looks)
-        if axes["ylabel"] == "θ, mrad":
-            axis.axhline(0, **GUIDE)
-        if key == "energy-gain":
-            axis.axvline(of["time"], **GUIDE, label=f"this impact: +{of['gain']:.2f} J")
-        axis.set(title=title.format(**of), **axes)
-        figure.legend(loc="outside lower center", ncols=3)
-        save(figure, folder / f"failure-{key}.svg", axis.get_title(), description)
+        instant = {of["time"]: f"this impact: +{of['gain']:.2f} J"} if key == "energy-gain" else {}
+        draw(folder / f"failure-{key}.csv", looks, title.format(**of), description, axes, instant)
     for name in ("touch", "clear"):
         found["grazing"][name] = scientific(found["grazing"][name])
-    return found | stability.values(folder)
+    return found | stability(folder)
+
+
+def draw(path: Path, looks: list[dict], title: str, description: str, axes: dict, instants: dict[float, str]) -> None:
+    """The picture of a table of curves, with lines at instants that have names."""
+    figure, axis = subplots(1, 1, 4.4)
+    curves(axis, path, looks)
+    if axes["ylabel"] == "θ, mrad":
+        axis.axhline(0, **GUIDE)
+    for instant, name in instants.items():
+        axis.axvline(instant, **GUIDE, label=name)
+    axis.set(title=title, **axes)
+    figure.legend(loc="outside lower center", ncols=3)
+    save(figure, path.with_suffix(".svg"), title, description)
+
+
+def stability(folder: Path) -> dict:
+    """Largest stable steps, and what happens at uplift."""
+    tables("stability", folder)
+    trap = named(pd.read_csv(folder / "stability.csv", dtype=str))
+    draw(folder / "stability-uplift.csv", [WRONG, RIGHT, {"color": COLOURS[3], "linestyle": "--"}],
+         "Stable with the base down, unstable from uplift on",
+         "u over time with steps of 12 ms: the central difference diverges after the first uplift.",
+         {"xlabel": "time, s", "ylabel": "u, mm", "xlim": (0, 4.2), "ylim": (-2, 2)}, {trap["uplift"]: "first uplift"})
+    limits = pd.read_csv(folder / "stability-limits.csv").pivot(index="method", columns="zeta_u", values="limit")
+    shown = {0.0: "0", np.inf: "any"}
+    methods = pd.read_csv(folder / "stability-limits.csv")["method"].unique()
+    rows = [[method, *(shown.get(limit, f"{limit:.3f}") for limit in limits.loc[method])] for method in methods]
+    return dict(trap=trap, evison=EVISON, mcmanus=MCMANUS, ratios=[of.f_u / of.f_fc for of in (EVISON, MCMANUS)],
+                limits=table(["method", *(f"ζ_u = {zeta}" for zeta in limits.columns)], rows))
