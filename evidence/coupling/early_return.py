@@ -9,7 +9,7 @@ import weakref
 import numpy as np
 
 from .bridge import Bridge
-from .masters import MOST_SWEEPS, TOLERANCE, Diverged, Iterated
+from .masters import MOST_SWEEPS, TOLERANCE, Diverged
 from .structure import Structure
 
 SLIVER = 1e-12  # s; what is left of a step that is not worth another
@@ -45,22 +45,12 @@ class Pier(Structure):
         self.is_transition_due = False
 
 
-class TransitionMet(Exception):
-    """A pier came back from a step before its end."""
-
-
 class EventBridge(Bridge):
     """The bridge of such piers."""
 
-    def first(self, t, h, w):
-        y = super().first(t, h, w)
-        if any(pier.time < t + h - SLIVER for pier in self.piers):
-            raise TransitionMet
-        return y
-
     def first_until_transition(self, t, h, reach, w, start):
-        """Advances the piers over at most `h` under forces that are linear from t to t + `reach` and beyond. If another pier comes to a
-    transition before, a pier starts again from `start`. Their lines, and how long the step became."""
+        """Advances the piers over at most `h` under forces that are linear from t to t + `reach` and beyond. If another pier comes
+        to a transition before, a pier starts again from `start`. Their lines, and how long the step became."""
         a_g, ends = self.ground(t, h), w[0] + (w[1] - w[0]) * (h / reach)
         tops = [pier.step(t, h, list(zip(a_g, forces))) for pier, forces in zip(self.piers, np.transpose([w[0], ends]))]
         reached = min(min(pier.time for pier in self.piers) - t, h)
@@ -82,40 +72,31 @@ class EventBridge(Bridge):
 
 
 class EndedAtTransitions:
-    """Iterated steps that end at transitions, where the iteration is for the forces and for the step's length at once."""
+    """Steps that end at transitions, where an iteration finds the forces and the step's length at once."""
 
-    def __init__(self, iterated: Iterated):
-        self.iterated = iterated
+    def __init__(self):
+        self.largest, self.steps = 1.0, 0
 
     def __call__(self, system, t, h, guess):
         end = t + h
         while h > SLIVER:
-            taken = self.part(system, t, h, guess)
+            with system.checkpoint() as start:
+                taken = self.part(system, t, h, guess(system.w), start)
+            if any(pier.is_transition_due for pier in system.piers):
+                system.transit()
             t, h = t + taken, end - t - taken
 
-    def part(self, system, t, h, guess):
+    def part(self, system, t, h, w, start):
         """A step over at most `h`; how long it became."""
-        with system.checkpoint() as start:
-            try:
-                self.iterated(system, t, h, guess)
-                taken = h
-            except TransitionMet:
-                system.restore(start)
-                taken = self.to_transition(system, t, h, guess(system.w), start)
-        if any(pier.is_transition_due for pier in system.piers):
-            system.transit()
-        return taken
-
-    def to_transition(self, system, t, h, w, start):
         reach = h
+        self.steps += 1
         for _ in range(MOST_SWEEPS):
-            self.iterated.sweeps += 1
             y, reached = system.first_until_transition(t, h, reach, w, start)
             if reached == 0:
                 return 0.0
             value = system.second(t, reached, y)
-            residual = np.max(np.abs(value - w))
-            if abs(reached - reach) <= TOLERANCE * h and residual <= TOLERANCE * self.iterated.largest:
+            residual, self.largest = np.max(np.abs(value - w)), max(self.largest, np.max(np.abs(value)))
+            if abs(reached - reach) <= TOLERANCE * h and residual <= TOLERANCE * self.largest:
                 system.y, system.w = y, value
                 return reached
             w, reach = value, reached

@@ -53,20 +53,18 @@ class Iterated:
 
     def __init__(self, columns: int = 0):
         self.residuals, self.values = deque(maxlen=columns), deque(maxlen=columns)
-        self.largest, self.h, self.steps, self.sweeps = 1.0, 0.0, 0, 0
+        self.largest, self.h = 1.0, 0.0
 
     def __call__(self, system, t, h, guess):
         if h != self.h:
             self.residuals.clear(), self.values.clear()
         self.h = h
-        self.steps += 1
         w, before = guess(system.w), None
         with system.checkpoint() as start:
             for _ in range(MOST_SWEEPS):
                 system.y = system.first(t, h, w)
                 value = system.second(t, h, system.y)
                 residual = value - w
-                self.sweeps += 1
                 self.largest = max(self.largest, np.max(np.abs(value)))
                 if np.max(np.abs(residual)) <= TOLERANCE * self.largest:
                     system.w = value
