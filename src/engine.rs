@@ -362,7 +362,7 @@ impl<Q: Coordinates> Engine<Q> {
             return Restraints::default();
         }
         let (second, angles) = (self.sample(load).second(), self.level.subject().angles);
-        let x = Instant::moving(self.structure(), *phase, state, &second, LinearLoad::held(load));
+        let x = Instant::moving(self.structure(), *phase, state, &second, load.into());
         let Restraints { P_t, F_d1, F_d2 } = contact::restraints(&x, angles, dissipators);
         Restraints { P_t: P_t.rate, F_d1: F_d1.rate, F_d2: F_d2.rate }
     }

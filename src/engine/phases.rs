@@ -11,7 +11,6 @@ use crate::engine::yielding::{self, Yielding};
 use crate::levels::level::{Level, Subject};
 use crate::mechanics::impact;
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::load::LinearLoad;
 use crate::mechanics::restraint::Dissipators;
 use crate::mechanics::state::way;
 use crate::series::extremes::off_chord;
@@ -161,7 +160,7 @@ impl<Q: Coordinates> Guard<Q> for Uplift {
 
     fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {
         let Motion { state, dissipators, .. } = &now.motion;
-        let start = now.level.subject().start(*state, dissipators, LinearLoad::held(now.load), ahead);
+        let start = now.level.subject().start(*state, dissipators, now.load.into(), ahead);
         now.level.stays_for(&start)
     }
 

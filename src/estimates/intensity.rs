@@ -1,16 +1,5 @@
 //! Intensity measures of a ground motion: how strong it is, in one number.
 //!
-//! | measure | what | unit |
-//! |---|---|---|
-//! | PGA | largest magnitude of the ground acceleration, max abs(a_g) | g |
-//! | PGV | largest magnitude of the ground velocity, max abs(∫ a_g dt), at rest before the first sample | m/s |
-//! | I_A | Arias intensity, π/(2 g) ∫ a_g² dt | m/s |
-//! | CAV | cumulative absolute velocity, ∫ abs(a_g) dt | m/s |
-//! | D_5_95 | time from 5 % to 95 % of the Arias intensity, the significant duration | s |
-//! | S_a | largest acceleration of the structure on a fixed base, S_a(1/f_fc, ζ_fc) | g |
-//! | S_a(1 s) | S_a at a given period, here 1 s, with 5 % damping or, as in S_a(1 s, 2 %), another | g |
-//! | S_a_avg | geometric mean of S_a at ten periods, evenly spaced from 0.2/f_fc to 3/f_fc | g |
-//!
 //! f_fc and ζ_fc are those of the lowest mode of many masses. All are exact for a record that is linear between its samples.
 
 use crate::digits::short;
@@ -23,22 +12,22 @@ use std::f64::consts::FRAC_PI_2;
 /// An intensity measure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum IntensityMeasure {
-    /// Peak ground acceleration, g.
+    /// Peak ground acceleration PGA, max |a_g|, g.
     #[default]
     Pga,
-    /// Peak ground velocity, m/s.
+    /// Peak ground velocity PGV, max |∫ a_g dt|, at rest before the first sample, m/s.
     Pgv,
-    /// Spectral acceleration of the fixed base (see [`crate::estimates::response_spectrum`]), g.
+    /// Spectral acceleration of the fixed base S_a(1/f_fc, ζ_fc) (see [`crate::estimates::response_spectrum`]), g.
     Sa,
-    /// Cumulative absolute velocity, m/s.
+    /// Cumulative absolute velocity CAV, ∫ |a_g| dt, m/s.
     Cav,
-    /// Arias intensity, m/s.
+    /// Arias intensity I_A, π/(2 g) ∫ a_g² dt, m/s.
     Arias,
-    /// Significant duration, s.
+    /// Significant duration D_5_95, from 5 % to 95 % of the Arias intensity, s.
     Duration,
-    /// Average spectral acceleration of the fixed base, g.
+    /// Average spectral acceleration of the fixed base S_a_avg: geometric mean at ten periods, evenly spaced from 0.2/f_fc to 3/f_fc, g.
     AverageSa,
-    /// Spectral acceleration at this period (s) with this damping ratio, whatever the structure has, g.
+    /// Spectral acceleration at this period (s) with this damping ratio, whatever the structure has, as S_a(1 s, 2 %), g.
     SaAt(f64, f64),
 }
 

@@ -30,20 +30,14 @@ pub struct Modes {
     pub q_r: f64,
     /// Rotation of the vibration mode, rad.
     pub q_u: f64,
-    /// Rate of q_r, rad/s.
-    pub q_r_dot: f64,
-    /// Rate of q_u, rad/s.
-    pub q_u_dot: f64,
 }
 
 impl Modes {
     /// Splits the rotation of `state` (Eq 16) of a structure without ties.
     pub fn of(structure: &OneMass, state: &State) -> Result<Modes, Restrained> {
         Restrained::check(structure)?;
-        let &State { u, u_dot, theta, theta_dot } = state;
-        let ratio = -structure.p_l * structure.p_l / structure.parameters().g;
-        let (q_u, q_u_dot) = (ratio * u, ratio * u_dot);
-        Ok(Modes { q_r: theta - q_u, q_u, q_r_dot: theta_dot - q_u_dot, q_u_dot })
+        let q_u = -structure.p_l * structure.p_l / structure.parameters().g * state.u;
+        Ok(Modes { q_r: state.theta - q_u, q_u })
     }
 }
 

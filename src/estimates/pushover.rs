@@ -212,17 +212,6 @@ mod tests {
         Pushover::new(&(*structure).into()).unwrap()
     }
 
-    #[test]
-    fn the_points_of_each_branch_are_even() {
-        let points = of(&specimens()[0]).curve(5).unwrap();
-        for branch in points.chunks(5) {
-            let step = (branch[4].delta_t - branch[0].delta_t) / 4.0;
-            for pair in branch.windows(2) {
-                assert_relative_eq!(pair[1].delta_t - pair[0].delta_t, step, max_relative = 1e-9);
-            }
-        }
-    }
-
     proptest! {
         /// The force cancels the accelerations of Eqs 5 and 6.
         #[test]

@@ -9,13 +9,8 @@
 //! ζ_u = ζ_fc c_ratio/√(1−χ) of a slender structure need not be small.
 //!
 //! The ground acceleration is a + b τ between two samples. The motion that follows the ground without swinging has
-//! ü + a_g = a + b τ and u̇ = −b/ω². The rest of (u̇, ü + a_g) is free vibration (w, ẇ):
-//!
-//! ```text
-//! w(τ) = (C + ζω S) w₀ + S ẇ₀,   ẇ(τ) = −ω² S w₀ + (C − ζω S) ẇ₀,   C = e^{−ζωτ} cos dτ,  S = e^{−ζωτ} sin(dτ)/d
-//! ```
-//!
-//! with d = ω √(1 − ζ²), hyperbolic functions for ζ > 1 and S = τ e^{−ωτ} for ζ = 1. This is exact for any step and damping. The
+//! ü + a_g = a + b τ and u̇ = −b/ω². The rest of (u̇, ü + a_g) is free vibration (w, ẇ), exact for any step and damping
+//! ([`Oscillator::free`]). The
 //! peak between samples is exact, too. |ü + a_g| is largest at a sample or at a zero of its rate b + ẅ. The zeros of the slope of
 //! this rate have a closed form, and between two of them the rate passes 0 at most once.
 

@@ -4,7 +4,6 @@ use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::Dissipators;
 use crate::mechanics::state::way;
 use crate::mechanics::uplift::{self, Lift, hold, inertia, least_hold};
-use crate::numbers::Number;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Arc, Start};
 use crate::series::terms::Terms;
@@ -22,8 +21,6 @@ pub(crate) struct Liftable<'a> {
     pub lean: f64,
     /// Whether the inertia about a pivot is the inertia of linear equations, which does not change with u.
     pub has_constant_inertia: bool,
-    /// Whether the second condition alone decides.
-    pub turning_decides: bool,
 }
 
 impl Liftable<'_> {
@@ -45,19 +42,8 @@ impl Liftable<'_> {
         self.rest(a_g, a_top)[1] - self.base.S_res * a_g
     }
 
-    /// The moments that lift the base, given the moment of the mass that turns rigidly and the vertical acceleration, and (u, u̇) of each
-    /// mode.
-    #[inline(always)]
-    fn lift<N: Number>(&self, rigid_and_a_v: [N; 2], motion: impl Fn(usize) -> [N; 2]) -> Lift<N> {
-        let lift = Lift::new(self.base, self.modes, self.lean, rigid_and_a_v, motion);
-        if self.turning_decides { lift.with_one_condition() } else { lift }
-    }
-
     /// A bound of the moment of the springs, N·m, given a bound of each displacement.
     fn most_springs(&self, most: impl Fn(usize, &Mode) -> f64) -> f64 {
-        if self.turning_decides {
-            return f64::INFINITY; // however small the displacements are
-        }
         let modes = self.modes.iter().enumerate();
         modes.map(|(j, mode)| (mode.height * mode.stiffness).abs() * most(j, mode)).sum()
     }
@@ -78,7 +64,7 @@ impl Liftable<'_> {
         dissipators: &Dissipators,
     ) -> (f64, Side) {
         let motion = |j| [state.u.of(j), state.u_dot.of(j)];
-        let lift = self.lift([self.moment_of_rest(a_g, a_top), a_v], motion);
+        let lift = Lift::new(self.base, self.modes, self.lean, [self.moment_of_rest(a_g, a_top), a_v], motion);
         uplift::margin(self.base, &lift, a_v, dissipators, |side| match self.has_constant_inertia {
             true => 1.0,
             false => inertia(self.base, self.modes, side, |j| state.u.of(j)),
@@ -119,7 +105,7 @@ impl Liftable<'_> {
         };
         let stays_down = [Side::Right, Side::Left].map(|side| {
             let springs: f64 = self.modes.iter().enumerate().map(|(j, mode)| springs(side, j, mode)).sum();
-            !self.turning_decides && springs < hold_at_least
+            springs < hold_at_least
         });
         if stays_down == [true; 2] {
             return (Crossing::None, Side::Right);
@@ -130,7 +116,7 @@ impl Liftable<'_> {
             self.moment_of_rest(a_g.value, &a_top.value),
             self.moment_of_rest(a_g.slope, &a_top.slope) * arc.span,
         );
-        let lift = self.lift([rigid, a_v_terms], |j| {
+        let lift = Lift::new(self.base, self.modes, self.lean, [rigid, a_v_terms], |j| {
             [&arc.u, &arc.u_dot].map(|series| Terms::from_fn(arc.order, |k| series[k].of(j)))
         });
         let about = |side: Side| {
@@ -155,34 +141,5 @@ impl Liftable<'_> {
             _ => Side::Right,
         };
         (if side == Side::Right { right } else { left }, side)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::levels::nonlinear::accelerations;
-    use crate::{Detail, Load, OneMass, Parameters, Phase};
-    use proptest::prelude::*;
-
-    proptest! {
-        /// The condition on the moment is the condition s θ̈ > 0 of Eqs 5 and 6, for every load.
-        #[test]
-        fn the_moment_condition_is_that_of_equations_5_and_6(
-            u in -0.02..0.02f64, u_dot in -3.0..3.0f64, a_g in -20.0..20.0f64, F_t in -3e3..3e3f64,
-        ) {
-            let structure = OneMass::new(Parameters { zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
-            let state = State { u, u_dot, ..State::default() };
-            let side = Side::of(u);
-            let load = Load { a_g, F_t, a_v: 0.0 };
-            let theta_ddot = accelerations(&structure, side, &state, load, &Dissipators::NEW).unwrap()[1];
-            prop_assume!(theta_ddot.abs() > 1e-6 && (u.abs() - structure.u_cr).abs() > 1e-8);
-            let both = u.abs() >= structure.u_cr && side.sign() * theta_ddot > 0.0;
-            let expected = if both { (Crossing::At(0.0), side) } else { (Crossing::None, Side::Right) };
-            let (level, mut arc) = (Detail::Nonlinear.level_of_one(structure.into(), 1e-15, false).unwrap(), Arc::default());
-            let start = Start { state, interval: 1e-9, local_error: 1e-15, ..Start::default() };
-            level.series(Phase::FullContact, &start, &mut arc);
-            prop_assert_eq!(level.first_uplift(&start, &arc), expected);
-        }
     }
 }

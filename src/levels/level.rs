@@ -152,7 +152,7 @@ pub trait Level<Q: Coordinates = f64>: Send {
 
     /// ü and θ̈ in `phase`, m/s² and rad/s²; not finite where the equations have no solution.
     fn accelerations(&self, phase: Phase, &Now { state, load, dissipators }: &Now<Q>) -> Second<f64, Q> {
-        let [second] = derivatives(self, phase, (state, dissipators, LinearLoad::held(load)), &mut Arc::default());
+        let [second] = derivatives(self, phase, (state, dissipators, load.into()), &mut Arc::default());
         second
     }
 }

@@ -80,7 +80,7 @@ impl LinearSystem {
         let mut forcing = rows.map(|row| row.forcing(a_top.value, side.sign()));
         let mut next_forcing = rows.map(|row| row.forcing(a_top.slope * span, 0.0));
         let mut u_dot = state.u_dot;
-        arc.expand(&state, span, pace.truncation(start, span), |arc, k, per| {
+        arc.expand(&state, span, &pace.truncation(start, span), |arc, k, per| {
             let (u, theta) = (arc.u[k - 1], arc.theta[k - 1]);
             // what the last order of u̇ adds comes last: only that has to be waited for
             let [u_rate, theta_rate] = [0, 1].map(|i| {
@@ -88,8 +88,8 @@ impl LinearSystem {
                 (row.u * u + row.theta * theta + forcing[i]) * per + row.u_dot * per * u_dot
             });
             (forcing, next_forcing) = (next_forcing, [0.0; 2]);
-            u_dot = u_rate;
-            (u_rate, theta_rate)
+            (u_dot, arc.u_dot[k]) = (u_rate, u_rate);
+            theta_rate
         });
     }
 }

@@ -30,7 +30,7 @@ use crate::mechanics::uplift::inertia;
 use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
 use crate::structure::mode::Vibration;
 use crate::{Base, Mode};
-use crate::{LinearLoad, OneMass, Parameters, Phase, Side, State};
+use crate::{OneMass, Parameters, Phase, Side, State};
 use std::cell::RefCell;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
@@ -308,7 +308,7 @@ impl<Q: Coordinates> ManyModes<Q> {
     fn standing(&self) -> Liftable<'_> {
         let ManyModes { base, modes, rigid, .. } = self;
         let has_constant_inertia = self.subject.angles == Angles::Small;
-        Liftable { base, modes, rigid: *rigid, lean: 1.0, has_constant_inertia, turning_decides: false }
+        Liftable { base, modes, rigid: *rigid, lean: 1.0, has_constant_inertia }
     }
 
     /// The root of the mean square of a velocity or an acceleration over all mass, by `of` each mode.
@@ -350,7 +350,7 @@ impl<Q: Coordinates> ManyModes<Q> {
             four.push = [a_top.value.four(j), a_top.slope.four(j) * span];
         }
         let truncation = self.truncation(start, span, false);
-        arc.expand_in_place(state, span, &truncation, |arc, k, per| {
+        arc.expand(state, span, &truncation, |arc, k, per| {
             arc.u_dot[k].count_as(&state.u_dot);
             for four in fours.iter_mut() {
                 let j = four.first;
@@ -403,7 +403,7 @@ impl<Q: Coordinates> ManyModes<Q> {
             sum.reduce_add() + pivot * [on_rest[0], rest_slope[0] * span].get(k).unwrap_or(&0.0)
         };
         let truncation = self.truncation(start, span, true);
-        arc.expand_in_place(state, span, &truncation, |arc, k, per| {
+        arc.expand(state, span, &truncation, |arc, k, per| {
             let n = k - 1;
             let [mut inertia, mut next_offset] = [f64x4::ZERO; 2];
             for four in fours.iter_mut() {
@@ -472,7 +472,7 @@ impl<Q: Coordinates> ManyModes<Q> {
         let (mut theta_dot, mut before) = (state.theta_dot, [0.0; 2]);
         let mut turn = <[f64; 2]>::from(libm::sincos(state.theta));
         let truncation = self.truncation(start, span, true);
-        arc.expand_in_place(state, span, &truncation, |arc, k, per| {
+        arc.expand(state, span, &truncation, |arc, k, per| {
             let [sin, cos] = turn;
             let (newest_left, newest_right) = (row([theta_dot; 6]), row([cos, sin, 0.0, 0.0, 0.0, 0.0]));
             (left[k - 1][0], right[MAX_ORDER + 1 - k][0]) = (newest_left[0], newest_right[0]);
@@ -518,7 +518,7 @@ impl<Q: Coordinates> ManyModes<Q> {
         let rigid = [value, slope * span];
         let mut before = f64x4::ZERO; // Σ Γ u of the order before
         let truncation = self.truncation(start, span, true);
-        arc.expand_in_place(state, span, &truncation, |arc, k, per| {
+        arc.expand(state, span, &truncation, |arc, k, per| {
             let n = k - 1;
             let of_order = |values: [f64; 2]| values.get(n).copied().unwrap_or(0.0);
             let weight = of_order([g, lift]);
@@ -602,8 +602,10 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
             Phase::Rocking(side) => self.rocking(side, start, arc),
             Phase::FullContact | Phase::Overturned(_) | Phase::OnGround(_) if self.is_rigid() => {
                 let nothing = Truncation { u_dot: Q::ZERO, theta_dot: 0.0 };
-                arc.expand(&self.admissible(Phase::FullContact, start.state), start.interval, nothing, |_, _, _| {
-                    (Q::ZERO, 0.0)
+                let rest = self.admissible(Phase::FullContact, start.state);
+                arc.expand(&rest, start.interval, &nothing, |arc, k, _| {
+                    arc.u_dot[k] = Q::ZERO;
+                    0.0
                 });
             }
             Phase::FullContact | Phase::Overturned(_) | Phase::OnGround(_) => self.resting(start, arc),
@@ -611,7 +613,7 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
     }
 
     fn accelerations(&self, phase: Phase, &Now { state, load, dissipators }: &Now<Q>) -> Second<f64, Q> {
-        let given = (state, dissipators, LinearLoad::held(load));
+        let given = (state, dissipators, load.into());
         let [second] = derivatives(self, phase, given, &mut self.first.borrow_mut());
         second
     }
@@ -652,7 +654,7 @@ mod tests {
     use crate::mechanics::gauge::Gauge;
     use crate::mechanics::instant::Instant;
     use crate::mechanics::lateral::{Lateral, Modes};
-    use crate::mechanics::load::{LinearLoad, Load};
+    use crate::mechanics::load::Load;
     use crate::mechanics::reactions::Reactions;
     use crate::{Body, Floor, Structure};
     use approx::assert_relative_eq;
@@ -686,43 +688,6 @@ mod tests {
     fn level(frame: &Structure, detail: Detail) -> ManyModes<Modes> {
         let angles = detail.angles();
         ManyModes::new(Subject { structure: frame.clone(), local_error: 1e-16, is_tied: true, angles }, detail)
-    }
-
-    /// The derivatives of the series are the accelerations along it, under all loads and with all ties.
-    #[test]
-    fn the_series_satisfies_the_equations_of_many_masses() {
-        let (_, frame) = frame(&[1.3, -0.6, 0.4], 1.25);
-        let dissipators = Dissipators { plastic: [2e-3, -1e-3], ..Dissipators::NEW };
-        let modes = |numbers: [f64; 3]| Modes::new(&numbers);
-        let state =
-            State { u: modes([0.01, -0.02, 0.005]), u_dot: modes([0.3, 0.1, -0.2]), theta: -0.2, theta_dot: 0.5 };
-        let load = LinearLoad {
-            value: Load { a_g: 3.0, F_t: modes([100.0, -200.0, 50.0]).and_rest([60.0, -90.0]), a_v: -1.5 },
-            slope: Load { a_g: 200.0, F_t: modes([-3e3, 1e4, 2e4]).and_rest([-1e3, 4e3]), a_v: 80.0 },
-        };
-        for (detail, phase) in [
-            (Detail::Nonlinear, Phase::Rocking(Side::Left)),
-            (Detail::Linear, Phase::Rocking(Side::Left)),
-            (Detail::Nonlinear, Phase::FullContact),
-        ] {
-            let level = level(&frame, detail);
-            let start = level.subject().start(level.admissible(phase, state), &dissipators, load, 3e-3);
-            let mut arc = Arc::default();
-            level.series(phase, &start, &mut arc);
-            assert_eq!(arc.reach, 1.0);
-            for sigma in [0.0, 0.3, 1.0] {
-                let now = Now { state: &arc.at(sigma), load: load.at(sigma * arc.span), dissipators: &dissipators };
-                let Second { u_ddot, theta_ddot } = level.accelerations(phase, &now);
-                let slope = |coefficient: &dyn Fn(usize) -> f64| -> f64 {
-                    (1..=arc.order).map(|k| k as f64 * coefficient(k) * sigma.powi(k as i32 - 1)).sum::<f64>()
-                        / arc.span
-                };
-                assert_relative_eq!(slope(&|k| arc.theta_dot[k]), theta_ddot, epsilon = 1e-9);
-                for j in 0..3 {
-                    assert_relative_eq!(slope(&|k| arc.u_dot[k].of(j)), u_ddot.of(j), epsilon = 1e-9);
-                }
-            }
-        }
     }
 
     /// The distance from uplift is the larger of what (M3) misses and of −s D θ̈, by the equations of rocking, under all loads.
@@ -813,25 +778,6 @@ mod tests {
                     max_relative = 1e-12
                 );
             }
-        }
-    }
-
-    /// The orders of a step follow the velocity that the loads bring within 1/p_l.
-    #[test]
-    fn the_order_follows_the_forcing() {
-        let structure = OneMass::new(Parameters { m0: 0.0, J0: 0.0, H: 0.02, B: 0.005, ..Parameters::EVISON }).unwrap();
-        let rigid = ManyModes::rigid(
-            Subject { structure: structure.into(), local_error: 1e-9, is_tied: false, angles: Angles::Any },
-            &structure,
-        );
-        let (state, mut arc) = (State { theta: 0.01, ..State::default() }, Arc::default());
-        for tenths in 10..25 {
-            let interval = 0.1 * f64::from(tenths) / structure.p_l;
-            let start = Start { state, interval, local_error: 1e-4, ..Start::default() };
-            rigid.series(Phase::Rocking(Side::Right), &start, &mut arc);
-            let most = 1e-4 * structure.p_l * (structure.tan_alpha_cg + 0.01) * (1.0 + 1e-12);
-            let [last, before] = [arc.order, arc.order - 1].map(|k| arc.theta_dot[k].abs());
-            assert!(arc.reach == 1.0 && last <= most && before <= most, "{tenths}: {last:e} {before:e} {most:e}");
         }
     }
 }

@@ -25,7 +25,7 @@ use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::restraint::Dissipators;
 use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation, reciprocal};
-use crate::{Base, Contact, Foundation, LinearLoad, Phase, State};
+use crate::{Base, Contact, Foundation, Phase, State};
 use std::cell::RefCell;
 use wide::{f64x2, f64x4};
 
@@ -284,7 +284,7 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
     }
 
     fn accelerations(&self, phase: Phase, &Now { state, load, dissipators }: &Now<Modes>) -> Second<f64, Modes> {
-        let given = (state, dissipators, LinearLoad::held(load));
+        let given = (state, dissipators, load.into());
         let [second] = derivatives(self, phase, given, &mut self.first.borrow_mut());
         second
     }

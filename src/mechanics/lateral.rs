@@ -79,11 +79,20 @@ pub trait Coordinates:
         Self::each(structure, |_, mode| mode.part(translation))
     }
 
+    /// Combines each coordinate with the one of `other`.
+    fn with(self, other: &Self, combine: impl Fn(f64, f64) -> f64) -> Self;
+
     /// These coordinates plus `factor` times `other`.
-    fn plus(self, other: Self, factor: f64) -> Self;
+    #[inline(always)]
+    fn plus(self, other: Self, factor: f64) -> Self {
+        self.with(&other, |own, other| own + other * factor)
+    }
 
     /// These coordinates times `factor`.
-    fn times(self, factor: f64) -> Self;
+    #[inline(always)]
+    fn times(self, factor: f64) -> Self {
+        self.with(&Self::ZERO, |own, _| own * factor)
+    }
 
     /// Writes the coordinate of mode `j`.
     fn set(&mut self, j: usize, number: f64);
@@ -263,13 +272,8 @@ impl Coordinates for f64 {
     }
 
     #[inline(always)]
-    fn plus(self, other: f64, factor: f64) -> f64 {
-        self + other * factor
-    }
-
-    #[inline(always)]
-    fn times(self, factor: f64) -> f64 {
-        self * factor
+    fn with(self, other: &f64, combine: impl Fn(f64, f64) -> f64) -> f64 {
+        combine(self, *other)
     }
 
     #[inline(always)]
@@ -371,17 +375,6 @@ impl Modes {
     fn fours_mut(&mut self) -> impl Iterator<Item = &mut [f64; 4]> {
         self.of.as_chunks_mut().0.iter_mut().take(self.count.div_ceil(4))
     }
-
-    /// Combines the numbers of each mode.
-    #[inline(always)]
-    fn with(mut self, other: &Modes, combine: impl Fn(f64, f64) -> f64) -> Modes {
-        self.count = self.count.max(other.count);
-        for (own, other) in self.of.iter_mut().zip(&other.of).take(self.count) {
-            *own = combine(*own, *other);
-        }
-        self.rest = [0, 1].map(|i| combine(self.rest[i], other.rest[i]));
-        self
-    }
 }
 
 impl Lateral<f64> for Modes {
@@ -435,14 +428,14 @@ impl Coordinates for Modes {
         self.and_rest(forces.rest)
     }
 
-    #[inline]
-    fn plus(self, other: Modes, factor: f64) -> Modes {
-        self.with(&other, |own, other| own + other * factor)
-    }
-
-    #[inline]
-    fn times(self, factor: f64) -> Modes {
-        self.with(&Modes::ZERO, |own, _| own * factor)
+    #[inline(always)]
+    fn with(mut self, other: &Modes, combine: impl Fn(f64, f64) -> f64) -> Modes {
+        self.count = self.count.max(other.count);
+        for (own, other) in self.of.iter_mut().zip(&other.of).take(self.count) {
+            *own = combine(*own, *other);
+        }
+        self.rest = [0, 1].map(|i| combine(self.rest[i], other.rest[i]));
+        self
     }
 
     #[inline]

@@ -116,11 +116,6 @@ pub struct LinearLoad<Q = f64> {
 }
 
 impl<Q: Coordinates> LinearLoad<Q> {
-    /// Constant loads.
-    pub(crate) fn held(value: Load<Q>) -> LinearLoad<Q> {
-        LinearLoad { value, slope: Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 } }
-    }
-
     /// Loads `tau` seconds after the start of the interval.
     #[inline]
     pub fn at(&self, tau: f64) -> Load<Q> {
@@ -194,7 +189,7 @@ impl LinearLoad {
 /// Constant loads.
 impl<Q: Coordinates> From<Load<Q>> for LinearLoad<Q> {
     fn from(value: Load<Q>) -> LinearLoad<Q> {
-        LinearLoad::held(value)
+        LinearLoad { value, slope: Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 } }
     }
 }
 

@@ -106,37 +106,25 @@ pub(crate) fn reaches(structure: &Structure) -> Vec<Reach> {
             push: weights(&|j| output.of(&Instant { F_t: Mosts(of_mode(j)), ..x })),
         }
     };
+    reached(structure).map(reach).collect()
+}
+
+/// The outputs of `structure` that may be searched for peaks, each at its place among the reaches.
+fn reached(structure: &Structure) -> impl Iterator<Item = Output> {
     let floors = structure.floors().len();
-    let of_floors = [Output::u, Output::drift, Output::delta_t, Output::a_t, Output::V, Output::M]
-        .into_iter()
-        .flat_map(|of| (0..floors).map(of));
+    let of_floors = [Output::u, Output::drift, Output::delta_t, Output::a_t, Output::V, Output::M];
+    let of_floors = of_floors.into_iter().flat_map(move |of| (0..floors).map(of));
     let of_ground = structure.foundation().into_iter().flat_map(|foundation| {
         let ends = [Output::settled, Output::lifted].into_iter().flat_map(|of| [0, 1].map(of));
         ends.chain([Output::P_t]).chain((0..foundation.points.len()).map(Output::N))
     });
-    [Output::theta, Output::V_t, Output::M_t].into_iter().chain(of_floors).chain(of_ground).map(reach).collect()
+    [Output::theta, Output::V_t, Output::M_t].into_iter().chain(of_floors).chain(of_ground)
 }
 
 impl Output {
-    /// The place of an output that is searched for its peak among the reaches of a structure with so many `floors`.
-    pub(crate) fn place(self, floors: usize) -> Option<usize> {
-        let (kind, i) = match self {
-            Output::theta => return Some(0),
-            Output::V_t => return Some(1),
-            Output::M_t => return Some(2),
-            Output::u(i) => (0, i),
-            Output::drift(i) => (1, i),
-            Output::delta_t(i) => (2, i),
-            Output::a_t(i) => (3, i),
-            Output::V(i) => (4, i),
-            Output::M(i) => (5, i),
-            Output::settled(i) => (6, i),
-            Output::lifted(i) => (6, 2 + i),
-            Output::P_t => (6, 4),
-            Output::N(i) => (6, 5 + i),
-            _ => return None,
-        };
-        Some(3 + kind * floors + i)
+    /// The place of an output that is searched for its peak among the reaches of `structure`.
+    pub(crate) fn place(self, structure: &Structure) -> Option<usize> {
+        reached(structure).position(|of| of == self)
     }
 }
 
@@ -248,7 +236,7 @@ mod tests {
             let most = magnitudes(&structure, phase, &loads, arc.most(&ends[1]));
             let off = OffChord::of(&arc, ends.map(|of| of.theta));
             for output in Output::all(&structure) {
-                let Some(place) = output.place(3) else { continue };
+                let Some(place) = output.place(&structure) else { continue };
                 let at = |part: f64| {
                     let F_t = loads[0].F_t.times(1.0 - part).plus(loads[1].F_t, part);
                     output.at(&structure, phase, &arc.at(part * reach), Load { F_t, ..loads[0] })
@@ -284,7 +272,7 @@ mod tests {
                 a_v: 0.0,
             };
             for output in Output::all(&structure) {
-                let Some(place) = output.place(3) else { continue };
+                let Some(place) = output.place(&structure) else { continue };
                 let value = output.at(&structure, phase, &state, Load { a_g: 0.0, F_t, a_v: 0.0 });
                 let bound = structure.reaches()[place].bound(output, &structure, &bounds);
                 prop_assert!(value.abs() <= bound * (1.0 + 1e-12), "{output:?} = {value} beyond {bound}");

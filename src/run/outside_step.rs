@@ -76,7 +76,7 @@ impl<Q: Coordinates> Checkpoint<Q> {
             return Ok(Checked { motion: self.motion, is_corrected: false, was_hidden: false });
         }
         let end = *engine.motion();
-        let now = LinearLoad::held(load);
+        let now: LinearLoad<Q> = load.into();
         let now = ground.map_or(now, |ground| now.on_ground(ground.since(self.elapsed, elapsed)));
         let is_beyond = !engine.event_indicators(now.value).iter().all(|indicator| *indicator > 0.0);
         engine.set_motion(self.motion);

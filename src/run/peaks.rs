@@ -131,7 +131,7 @@ impl Peaks {
         let (&Base { B, ties: Ties { P_0, k_t, .. }, .. }, none) = (structure.base(), Peak { magnitude: 0.0, time });
         let (mut searched, mut with): (Vec<Searched>, Vec<_>) = (Vec::new(), Vec::new());
         let mut search = |output: Output| {
-            let place = output.place(structure.floors().len()).expect("it reaches");
+            let place = output.place(structure).expect("it reaches");
             let same = searched.iter().position(|of| of.output == output);
             same.unwrap_or_else(|| {
                 searched.push(Searched { output, peak: none, place });

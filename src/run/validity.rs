@@ -43,7 +43,7 @@ use crate::{
 pub use assumptions::{
     ASSUMPTIONS, Assumption, EDGE_LOAD, ENERGY, FRICTION, IMPACT_FRICTION, IMPACT_TENSION, Passing, TENSION, WEIGHT,
 };
-use assumptions::{Combination, EdgeLoad, Friction, Impact, OfReactions, Scale, Tension};
+use assumptions::{Combination, Impact, NO_SLIDING, OF_REACTIONS, OfReactions, PRESSED_EDGE, Scale};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -235,35 +235,23 @@ impl Validity {
 
     /// Sees the `reactions` in `phase` at `time` (s).
     fn see_reactions(&mut self, time: f64, phase: Phase, reactions: &Reactions) {
-        self.see::<Tension>(time, phase, reactions);
-        self.see::<EdgeLoad>(time, phase, reactions);
-        self.see::<Friction>(time, phase, reactions);
-    }
-
-    fn see<A: OfReactions>(&mut self, time: f64, phase: Phase, reactions: &Reactions) {
-        if A::holds_in(phase) {
-            self.found.see(A::PLACE, A::value(self.scale(), reactions), time);
+        for of in OF_REACTIONS.iter().filter(|of| (of.holds_in)(phase)) {
+            self.found.see(of.place, (of.value)(self.scale(), reactions), time);
         }
     }
 
     /// Whether reactions within these bounds may hold something worse than what has been seen, or go beyond a limit.
     fn may_matter(&self, phase: Phase, reactions: &Reactions<Extent>) -> bool {
         let Reactions { R_h, R_v, R_m } = reactions;
+        // they break each assumption more than others do
         let worst = Reactions { R_h: R_h.most(), R_v: R_v.least(), R_m: R_m.most() };
-        self.may_break::<EdgeLoad>(phase, &worst)
-            || self.may_break::<Friction>(phase, &worst)
-            || self.may_break::<Tension>(phase, &worst)
-    }
-
-    /// The same of one assumption, given reactions that break it more than others do.
-    #[inline]
-    fn may_break<A: OfReactions>(&self, phase: Phase, reactions: &Reactions) -> bool {
-        let Assumption { limit, passing, .. } = &ASSUMPTIONS[A::PLACE];
-        let (seen, limit) = (self.found.worst[A::PLACE].value, limit(&self.limits));
-        let first = if passing.is_worse(seen, limit) { limit } else { seen };
-        let value = A::value(self.scale(), reactions);
-        let is_better = if *passing == Passing::Above { value < first + MARGIN } else { value > first - MARGIN };
-        A::holds_in(phase) && !is_better
+        OF_REACTIONS.iter().filter(|of| (of.holds_in)(phase)).any(|of| {
+            let Assumption { limit, passing, .. } = &ASSUMPTIONS[of.place];
+            let (seen, limit) = (self.found.worst[of.place].value, limit(&self.limits));
+            let first = if passing.is_worse(seen, limit) { limit } else { seen };
+            let value = (of.value)(self.scale(), &worst);
+            !if *passing == Passing::Above { value < first + MARGIN } else { value > first - MARGIN }
+        })
     }
 
     /// Looks at the motion over a polynomial; `extents` are bounds of its reactions.
@@ -282,46 +270,41 @@ impl Validity {
             }
             self.see_reactions(part.time(0.0), phase, &polynomial.reactions(0.0));
             self.see_reactions(part.time(arc.reach), phase, &last);
-            self.look_for::<Tension, Q>(phase, &polynomial);
-            self.look_for::<EdgeLoad, Q>(phase, &polynomial);
-            self.look_for::<Friction, Q>(phase, &polynomial);
+            OF_REACTIONS.iter().filter(|of| (of.holds_in)(phase)).for_each(|of| self.look_for(of, &polynomial));
             true
         });
     }
 
     /// Looks within `polynomial` for the worst value of an assumption, and for the time beyond its limit.
-    fn look_for<A: OfReactions, Q: Coordinates>(&mut self, phase: Phase, polynomial: &Polynomial<Q>) {
-        if !A::holds_in(phase) {
-            return;
-        }
-        self.search::<A, Q>(polynomial);
-        let beyond = A::worse(self.scale(), (ASSUMPTIONS[A::PLACE].limit)(&self.limits));
+    fn look_for<Q: Coordinates>(&mut self, of: &OfReactions, polynomial: &Polynomial<Q>) {
+        self.search(of, polynomial);
+        let beyond = (of.worse)(self.scale(), (ASSUMPTIONS[of.place].limit)(&self.limits));
         for (start, end) in polynomial.above(beyond) {
-            self.found.see_beyond(A::PLACE, polynomial.of.time(start), (end - start) * polynomial.of.arc.span);
+            self.found.see_beyond(of.place, polynomial.of.time(start), (end - start) * polynomial.of.arc.span);
         }
     }
 
     /// Looks for the worst value of an assumption within `polynomial`.
-    fn search<A: OfReactions, Q: Coordinates>(&mut self, polynomial: &Polynomial<Q>) {
+    fn search<Q: Coordinates>(&mut self, of: &OfReactions, polynomial: &Polynomial<Q>) {
         let (scale, reach) = (self.scale(), polynomial.of.arc.reach);
         loop {
-            let worst = self.found.worst[A::PLACE].value;
+            let worst = self.found.worst[of.place].value;
             if worst.is_infinite() {
                 return;
             }
-            for combination in A::worse(scale, worst).iter().flatten() {
+            for combination in (of.worse)(scale, worst).iter().flatten() {
                 let Some(series) = polynomial.combination(combination, ROUNDING * scale.W) else { continue };
                 let used = series.used();
                 if highest(used, reach) > ROUNDING * scale.W {
                     extremes::stationary_points(used, reach, |sigma| {
-                        let value = A::value(scale, &polynomial.reactions(sigma));
-                        self.found.see(A::PLACE, value, polynomial.of.time(sigma));
+                        let value = (of.value)(scale, &polynomial.reactions(sigma));
+                        self.found.see(of.place, value, polynomial.of.time(sigma));
                     });
                 }
             }
-            let now = self.found.worst[A::PLACE].value;
+            let now = self.found.worst[of.place].value;
             // a ratio is stationary where its combination is, with the ratio found there
-            if A::PLACE != FRICTION || now <= worst * (1.0 + ROUNDING) {
+            if of.place != FRICTION || now <= worst * (1.0 + ROUNDING) {
                 return;
             }
         }
@@ -344,7 +327,7 @@ impl Validity {
     fn see_passing<Q: Coordinates>(&mut self, piece: &Piece<Q>) {
         self.found.duration += piece.duration;
         self.found.held += piece.before.chatter.held.min(piece.duration);
-        if piece.load.is_vertical() && EdgeLoad::holds_in(piece.before.phase) {
+        if piece.load.is_vertical() && (PRESSED_EDGE.holds_in)(piece.before.phase) {
             let g = self.structure.base().g;
             self.found.see_vertical(g, piece.load.upwards(), piece.before.time, piece.duration);
         } else {
@@ -396,7 +379,7 @@ impl<Q: Coordinates> Watch<Q> for Validity {
     fn piece(&mut self, piece: &Piece<Q>) {
         self.see_passing(piece);
         let phase = piece.before.phase;
-        if !Friction::holds_in(phase) {
+        if !(NO_SLIDING.holds_in)(phase) {
             return;
         }
         let (mut arcs, mut count) = (piece.arcs(), 0);
@@ -446,7 +429,7 @@ fn extents_of_vibration<Q: Coordinates>(part: Part<Q>) -> Option<Reactions<Exten
     let (structure, per_bend) = (level.structure(), step.interval * step.interval / 8.0);
     let moved = |of: &Q| Q::sum(structure, |j, mode| mode.gamma.abs() * of.of(j));
     let off = |output: Output, weight: f64| {
-        let reach = &structure.reaches()[output.place(structure.floors().len()).expect("it reaches")];
+        let reach = &structure.reaches()[output.place(structure).expect("it reaches")];
         let of = |u: &Q, u_dot: &Q| reach.elastic(1.0, u, u_dot) + weight * moved(u);
         off_chord(of(&u, &u_dot), [per_bend, of(&u_ddot, &jerk)])
     };

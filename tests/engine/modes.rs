@@ -1,12 +1,12 @@
 //! Structures of many masses: rates, and one mass as a mode. An independent integration of the masses is in `test_frames.py`.
 
-use crate::common::{transitions, transitions_of};
+use crate::common::{engine_of, transitions, transitions_of};
 use rocking::engine::Settings;
 use rocking::engine::piece::Sample;
 use rocking::mechanics::restraint::Restraints;
 use rocking::run::record::Record;
 use rocking::run::validity::Limits;
-use rocking::run::{End, Run};
+use rocking::run::{End, Run, Runs};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Given;
 use rocking::{
@@ -128,7 +128,33 @@ fn a_frame_without_modes_is_the_rigid_limit() {
     }
 }
 
-/// The rates are the slopes along the motion, under all loads, with all modes and with one.
+/// The rates of `engine` under `load`, 1 ms on, are the slopes along its motion.
+fn assert_rates_are_slopes<Q: Runs>(mut engine: Engine<Q>, load: LinearLoad<Q>, of: &str) {
+    let outputs = Output::all(engine.structure());
+    let h = 1e-5;
+    let mut show = |until: f64| {
+        let now = engine.motion().time;
+        engine.advance(until - now, load.from(now), &mut ()).unwrap();
+        let sample = engine.sample(load.at(until));
+        let all = |State { u, u_dot, theta, theta_dot }: State<Q>, Reactions { R_h, R_v, R_m }, outputs: Vec<f64>| {
+            [&outputs, &[R_h, R_v, R_m, theta, theta_dot][..], u.as_slice(), u_dot.as_slice()].concat()
+        };
+        let values = Vec::from_iter(outputs.iter().map(|output| sample.output(*output)));
+        let rates = engine.rates(load.from(until));
+        let slopes = Vec::from_iter(outputs.iter().map(|output| rates.of(*output)));
+        let (state, reactions) = (sample.motion.state, sample.reactions());
+        (all(state, reactions, values), all(sample.state_rates(), rates.reactions(), slopes))
+    };
+    let (before, (_, slopes), (after, _)) = (show(1e-3 - h).0, show(1e-3), show(1e-3 + h));
+    assert_eq!(engine.motion().transitions, 0);
+    for (i, slope) in slopes.into_iter().enumerate() {
+        let (found, size) = ((after[i] - before[i]) / (2.0 * h), after[i].abs() / h);
+        let is_near = (found - slope).abs() <= 1e-5 * slope.abs() + 1e-9 * size + 1e-5;
+        assert!(is_near, "{of} {i}: {found} and not {slope}");
+    }
+}
+
+/// Under all loads, with all modes and with one, and of one mass at every level.
 #[test]
 fn rates_are_the_slopes_of_states_outputs_and_reactions() {
     for (kept, theta) in [(3, -0.02), (1, -0.02), (3, 0.0), (1, 0.0)] {
@@ -137,35 +163,26 @@ fn rates_are_the_slopes_of_states_outputs_and_reactions() {
         let (u, u_dot) = (of([0.3, 0.1, -0.05]), of([5.0, -2.0, 1.0]));
         let initial = State { u, u_dot, theta, theta_dot: if theta == 0.0 { 0.0 } else { -0.4 } };
         let settings = Settings { tolerance: 1e-11, vertical: true, ..Settings::default() };
-        let mut engine = Engine::of_modes(frame.clone(), initial, 0.0, settings).unwrap();
+        let engine = Engine::of_modes(frame.clone(), initial, 0.0, settings).unwrap();
         let load = |a_g, a_v, forces: [f64; 3]| frame.load(a_g, a_v, &forces).unwrap();
         let load = LinearLoad { value: load(1.0, -0.5, [9e3, -4e3, 6e3]), slope: load(40.0, 9.0, [5e5, 8e5, -7e5]) };
-        let outputs = Output::all(&frame);
-        let h = 1e-5;
-        let mut show = |until: f64| {
-            let now = engine.motion().time;
-            engine.advance(until - now, load.from(now), &mut ()).unwrap();
-            let sample = engine.sample(load.at(until));
-            let (State { u, u_dot, theta, theta_dot }, Reactions { R_h, R_v, R_m }) =
-                (sample.motion.state, sample.reactions());
-            let mut values = Vec::from_iter(outputs.iter().map(|output| sample.output(*output)));
-            values.extend([R_h, R_v, R_m, theta, theta_dot].iter().chain(u.numbers()).chain(u_dot.numbers()));
-            let rates = engine.rates(load.from(until));
-            let Reactions { R_h, R_v, R_m } = rates.reactions();
-            let State { u, u_dot, theta, theta_dot } = sample.state_rates();
-            let mut slopes = Vec::from_iter(outputs.iter().map(|output| rates.of(*output)));
-            slopes.extend([R_h, R_v, R_m, theta, theta_dot].iter().chain(u.numbers()).chain(u_dot.numbers()));
-            (values, slopes)
-        };
-        let (before, (_, slopes), (after, _)) = (show(1e-3 - h).0, show(1e-3), show(1e-3 + h));
-        assert_eq!(engine.motion().transitions, 0);
-        for (i, slope) in slopes.into_iter().enumerate() {
-            let (found, size) = ((after[i] - before[i]) / (2.0 * h), after[i].abs() / h);
-            assert!(
-                (found - slope).abs() <= 1e-5 * slope.abs() + 1e-9 * size,
-                "{kept} {theta} {i}: {found} and not {slope}"
-            );
-        }
+        assert_rates_are_slopes(engine, load, &format!("{kept} {theta}"));
+    }
+    let down = State { u: 2e-4, u_dot: 0.01, ..State::default() };
+    let rocking = State { u: 1e-3, u_dot: -0.1, theta: 0.05, theta_dot: 0.4 };
+    let rigid = State { u: 0.0, u_dot: 0.0, ..rocking };
+    for (detail, initial) in [
+        (Detail::Auto, down),
+        (Detail::Auto, rocking),
+        (Detail::Linear, rocking),
+        (Detail::Modal, rocking),
+        (Detail::Rigid, State::default()),
+        (Detail::Rigid, rigid),
+        (Detail::FixedBase, down),
+    ] {
+        let engine = engine_of(OneMass::new(Parameters::EVISON).unwrap(), initial, 1e-11, detail);
+        let (value, slope) = (Load { a_g: 1.2, F_t: 90.0, a_v: 0.0 }, Load { a_g: 40.0, F_t: -700.0, a_v: 0.0 });
+        assert_rates_are_slopes(engine, LinearLoad { value, slope }, detail.name());
     }
 }
 

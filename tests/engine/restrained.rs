@@ -144,25 +144,6 @@ fn uplift_waits_for_the_moment() {
     assert_relative_eq!(turning, ((m + m0) * weight + P_0) * B, max_relative = 1e-10);
 }
 
-/// A load that changes in a straight line is the same in one step and in two.
-#[test]
-fn a_vertical_slope_is_followed_within_a_step() {
-    let load = LinearLoad { slope: Load { a_v: 200.0, ..Load::default() }, ..LinearLoad::default() };
-    for detail in LEVELS {
-        let start = || {
-            let initial = State { theta: 0.03, ..State::default() };
-            let settings = Settings { detail, tolerance: 1e-12, vertical: true, ..Settings::default() };
-            Engine::with(structure(RESTRAINED), initial, 0.0, settings).unwrap()
-        };
-        let (mut at_once, mut cut) = (start(), start());
-        at_once.advance(2e-3, load, &mut ()).unwrap();
-        cut.advance(1e-3, load, &mut ()).unwrap();
-        cut.advance(1e-3, LinearLoad { value: load.at(1e-3), ..load }, &mut ()).unwrap();
-        let off = apart(&[at_once.motion().state], &[cut.motion().state]);
-        assert!(off < 1e-11, "{detail:?}: {off:e}");
-    }
-}
-
 /// The ground falls faster than g: uplift at once where g + a_v passes 0, and validity tells of the instant.
 #[test]
 fn a_free_fall_lifts_the_base_off_and_is_told() {
@@ -340,18 +321,6 @@ fn the_tendon_pulls_by_the_elongation_of_its_level() {
     let (peaks, _) = lifted.peaks().unwrap();
     assert!(peaks.theta().time > 0.0);
     assert_eq!((peaks.P_t().magnitude, peaks.P_t().time), (P_0, 0.0));
-}
-
-/// A vertical component of zeros is none: the same bits, and modes.
-#[test]
-fn zeros_are_no_vertical_motion() {
-    let ground = shaking(6, 0.01, 200, 5.0);
-    let level = with_vertical(&ground, |_| 0.0);
-    for detail in Detail::ALL {
-        let [run, with_zeros] =
-            [&ground, &level].map(|ground| Run { detail, ..Run::new(structure(Parameters::MCMANUS), ground) });
-        assert_eq!(run.follow(&mut ()), with_zeros.follow(&mut ()), "{detail:?}");
-    }
 }
 
 /// Before each transition of structures with ties on ground that moves vertically, it is known that one may come; between two

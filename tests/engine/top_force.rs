@@ -1,12 +1,11 @@
 //! The force on the top mass, against ground motion that does the same and against free vibration.
 
 use crate::common::start;
+use crate::modes::three_storeys;
 use approx::assert_relative_eq;
 use rocking::engine::piece::Sample;
 use rocking::run::record::Record;
 use rocking::run::{End, Ending, RunError, Runs};
-use rocking::structure::description::{Damping, Storey};
-use rocking::structure::natural_quantities::Given;
 use rocking::{Detail, LinearLoad, Load, Modes, OneMass, Parameters, Run, State, Structure};
 
 /// On a foundation without mass −m a_g on the top mass is the same as a_g, at every level of detail.
@@ -61,9 +60,7 @@ fn snaps_back<Q: Runs>(structure: &Structure) {
 #[test]
 fn a_released_force_leaves_free_vibration() {
     snaps_back::<f64>(&OneMass::new(Parameters::MCMANUS).unwrap().into());
-    let base = Given::of(&[("m0", 2e4), ("J0", 3e4), ("B", 1.5)]).unwrap();
-    let storeys = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)].map(|(m, h, k)| Storey { m, h, k });
-    snaps_back::<Modes>(&Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap());
+    snaps_back::<Modes>(&three_storeys(0.02, &[]));
 }
 
 #[test]

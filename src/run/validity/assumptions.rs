@@ -167,80 +167,43 @@ impl Combination {
 }
 
 /// An assumption about the reactions.
-pub(super) trait OfReactions {
+pub(super) struct OfReactions {
     /// Place in [`ASSUMPTIONS`].
-    const PLACE: usize;
-
-    /// Whether `phase` rests on the assumption.
-    fn holds_in(_phase: Phase) -> bool {
-        true
-    }
-
+    pub place: usize,
+    /// Whether a phase rests on the assumption.
+    pub holds_in: fn(Phase) -> bool,
     /// The value that tells of the assumption.
-    fn value(scale: Scale, reactions: &Reactions) -> f64;
-
-    /// The combinations of which one is positive if the value is worse than `than`.
-    fn worse(scale: Scale, than: f64) -> [Option<Combination>; 2];
+    pub value: fn(Scale, &Reactions) -> f64,
+    /// The combinations of which one is positive if the value is worse than another.
+    pub worse: fn(Scale, f64) -> [Option<Combination>; 2],
 }
 
 /// The base stays down in full contact without tension.
-pub(super) struct Tension;
+const NO_TENSION: OfReactions = OfReactions {
+    place: TENSION,
+    holds_in: |phase| phase == Phase::FullContact,
+    value: |Scale { W, B }, Reactions { R_v, R_m, .. }| (R_m.abs() / B - R_v) / W,
+    worse: |Scale { W, B }, than| [1.0, -1.0].map(|s| Some(Combination([0.0, -1.0, s * (1.0 / B), -than * W]))),
+};
 
-impl OfReactions for Tension {
-    const PLACE: usize = TENSION;
+/// The edge of the base presses on the ground. Ground that gives cannot pull.
+pub(super) const PRESSED_EDGE: OfReactions = OfReactions {
+    place: EDGE_LOAD,
+    holds_in: |phase| !matches!(phase, Phase::OnGround(_)),
+    value: |Scale { W, .. }, Reactions { R_v, .. }| R_v / W,
+    worse: |Scale { W, .. }, than| [Some(Combination([0.0, -1.0, 0.0, than * W])), None],
+};
 
-    fn holds_in(phase: Phase) -> bool {
-        phase == Phase::FullContact
-    }
+/// The base does not slide. In flight nothing rubs.
+pub(super) const NO_SLIDING: OfReactions = OfReactions {
+    place: FRICTION,
+    holds_in: |phase| !matches!(phase, Phase::OnGround(Contact { pressed: 0, .. })),
+    value: |_, &Reactions { R_h, R_v, .. }| if R_v > 0.0 { R_h.abs() / R_v } else { f64::INFINITY },
+    worse: |_, than| [1.0, -1.0].map(|s| Some(Combination([s, -than, 0.0, 0.0]))),
+};
 
-    fn value(Scale { W, B }: Scale, &Reactions { R_v, R_m, .. }: &Reactions) -> f64 {
-        (R_m.abs() / B - R_v) / W
-    }
-
-    fn worse(Scale { W, B }: Scale, than: f64) -> [Option<Combination>; 2] {
-        [1.0, -1.0].map(|s| Some(Combination([0.0, -1.0, s * (1.0 / B), -than * W])))
-    }
-}
-
-/// The edge of the base presses on the ground.
-pub(super) struct EdgeLoad;
-
-impl OfReactions for EdgeLoad {
-    const PLACE: usize = EDGE_LOAD;
-
-    /// Ground that gives cannot pull.
-    fn holds_in(phase: Phase) -> bool {
-        !matches!(phase, Phase::OnGround(_))
-    }
-
-    fn value(Scale { W, .. }: Scale, &Reactions { R_v, .. }: &Reactions) -> f64 {
-        R_v / W
-    }
-
-    fn worse(Scale { W, .. }: Scale, than: f64) -> [Option<Combination>; 2] {
-        [Some(Combination([0.0, -1.0, 0.0, than * W])), None]
-    }
-}
-
-/// The base does not slide.
-pub(super) struct Friction;
-
-impl OfReactions for Friction {
-    const PLACE: usize = FRICTION;
-
-    /// In flight nothing rubs.
-    fn holds_in(phase: Phase) -> bool {
-        !matches!(phase, Phase::OnGround(Contact { pressed: 0, .. }))
-    }
-
-    fn value(_: Scale, &Reactions { R_h, R_v, .. }: &Reactions) -> f64 {
-        if R_v > 0.0 { R_h.abs() / R_v } else { f64::INFINITY }
-    }
-
-    fn worse(_: Scale, than: f64) -> [Option<Combination>; 2] {
-        [1.0, -1.0].map(|s| Some(Combination([s, -than, 0.0, 0.0])))
-    }
-}
+/// The assumptions about the reactions.
+pub(super) const OF_REACTIONS: [OfReactions; 3] = [NO_TENSION, PRESSED_EDGE, NO_SLIDING];
 
 /// An impact: its impulse, and the energy that it gains as a fraction of the energy before it.
 pub(super) struct Impact {
