@@ -295,10 +295,11 @@ fn coordinates<Q: Coordinates>(
     if structure.one().is_some() {
         return Ok(Q::each(structure, |_, _| given[0]));
     }
-    let root = |i: usize| floors[i].mass.sqrt();
-    let shapes = DMatrix::from_fn(floors.len(), modes, |i, j| root(i) * floors[i].shape.of(j));
-    let weighed = DVector::from_fn(floors.len(), |i, _| root(i) * given[i]);
-    let solved = (shapes.transpose() * &shapes).cholesky().map(|of| of.solve(&(shapes.transpose() * weighed)));
+    let weighed = |j: usize, by: &dyn Fn(usize) -> f64| {
+        floors.iter().enumerate().map(|(i, floor)| floor.mass * floor.shape.of(j) * by(i)).sum::<f64>()
+    };
+    let mass = DMatrix::from_fn(modes, modes, |j, k| weighed(j, &|i| floors[i].shape.of(k)));
+    let solved = mass.cholesky().map(|of| of.solve(&DVector::from_fn(modes, |j, _| weighed(j, &|i| given[i]))));
     let coordinates = solved.unwrap_or_else(|| DVector::zeros(modes));
     let found = Q::each(structure, |j, _| coordinates.get(j).copied().unwrap_or(0.0));
     let nearest = |i: usize| floors[i].displacement(&found);

@@ -10,9 +10,9 @@
 //! pressed, and y is y_s = −(m_t g + P_0)/Σ k. The points take the place of uplift, impact and restitution.
 
 use crate::digits::with_unit;
+use crate::series::bisection::last_where;
 use crate::structure::quantity::{Quantity, Units};
 use crate::{Base, Body, Mode, Ties};
-use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -146,10 +146,9 @@ impl Ground {
         let ratio = k_r.map(|k_r| k_r / (K_z * B * B)).or(kr_ratio).unwrap_or(if n == 2 { 1.0 } else { 1.0 / 3.0 });
         let least = if n == 2 { 1.0 } else { inner / most };
         ensure(((1.0 - SAME) * least..=1.0 + SAME).contains(&ratio), || {
-            format!(
-                "kr_ratio = {ratio} is not possible with {n} points: it must lie between {least:.3} and 1, so that no stiffness is \
-                 negative; of two points it is 1, and k_r is k_v B^2"
-            )
+            let between = format!("it must lie between {least:.3} and 1, so that no stiffness is negative");
+            let needed = if n == 2 { "of two points it is 1, and k_r is k_v B^2" } else { &between };
+            format!("kr_ratio = {ratio} is not possible with {n} points: {needed}")
         })?;
         let k_int = if n == 2 { 0.0 } else { K_z * B * B * (1.0 - ratio) / (most - inner) };
         let k_end = (K_z - (n - 2) as f64 * k_int) / 2.0;
@@ -213,9 +212,10 @@ impl Foundation {
         (self.sum(0) / base.m_t).sqrt()
     }
 
-    /// The damping ratio of the bounce.
+    /// The damping ratio of the bounce, as it was given or else that of the points.
     pub(crate) fn zeta_v(&self, base: &Base) -> f64 {
-        self.points.iter().map(|point| point.c).sum::<f64>() / (2.0 * base.m_t * self.omega_v(base))
+        let of_points = || self.points.iter().map(|point| point.c).sum::<f64>() / (2.0 * base.m_t * self.omega_v(base));
+        self.ground.zeta_v.filter(|_| self.ground.xi.is_empty()).unwrap_or_else(of_points)
     }
 
     /// The circular frequencies of small motions in full contact without damping, rad/s, lowest first: the bounce √(K_z/m_t), and the
@@ -225,24 +225,23 @@ impl Foundation {
     /// K_r − g S_1 − λ J = Σ (κ_j λ + g Γ_j)²/(ω_j² − λ)          J: inertia about the middle of the base
     /// ```
     ///
-    /// as eigenvalues of the symmetric mass and stiffness of (q, θ).
+    /// The left side minus the right is what is left of K − λM of (q, θ) for θ once q is eliminated: as many roots lie below a λ as
+    /// ω_j² do, and one more if it is negative.
     pub(crate) fn frequencies(&self, base: &Base, body: &Body, modes: &[Mode]) -> Vec<f64> {
-        let (n, mut inertia) = (modes.len(), base.J0);
-        let [mut mass, mut stiffness] = [DMatrix::identity(n + 1, n + 1), DMatrix::zeros(n + 1, n + 1)];
-        stiffness[(n, n)] = self.sum(2) - base.g * body.S_1;
-        for (j, mode) in modes.iter().enumerate() {
-            let (scale, arm) = (mode.mass.sqrt(), mode.mass.sqrt() * mode.height);
-            stiffness[(j, j)] = mode.stiffness / mode.mass;
-            inertia += arm * arm;
-            for at in [(j, n), (n, j)] {
-                (mass[at], stiffness[at]) = (arm, -base.g * mode.gamma / scale);
-            }
-        }
-        mass[(n, n)] = inertia;
-        let inverse = mass.cholesky().expect("the inertia is positive").inverse();
-        let root = inverse.cholesky().expect("the inertia is positive").l();
-        let squares = (root.transpose() * stiffness * &root).symmetric_eigen().eigenvalues;
-        let mut all: Vec<_> = squares.iter().map(|square| square.sqrt()).chain([self.omega_v(base)]).collect();
+        let (g, stiffness) = (base.g, self.sum(2) - base.g * body.S_1);
+        let square = |mode: &Mode| mode.stiffness / mode.mass;
+        let sum = |of: &dyn Fn(&Mode) -> f64| modes.iter().map(of).sum::<f64>();
+        let inertia = base.J0 + sum(&|mode| mode.mass * mode.height * mode.height);
+        let roots_below = |lambda: f64| {
+            let couples = |mode: &Mode| mode.mass * mode.height * lambda + g * mode.gamma;
+            let right = sum(&|mode| couples(mode) * couples(mode) / (mode.stiffness - mode.mass * lambda));
+            let passed = modes.iter().filter(|mode| square(mode) < lambda).count();
+            passed + usize::from(stiffness - lambda * inertia - right < 0.0)
+        };
+        let turned = sum(&|mode| mode.height * (mode.stiffness * mode.height + 2.0 * g * mode.gamma));
+        let beyond = sum(&square) + (stiffness + turned) / base.J0; // the sum of all roots
+        let root = |n: usize| last_where(0.0, beyond, |lambda| roots_below(lambda) <= n).sqrt();
+        let mut all: Vec<_> = (0..=modes.len()).map(root).chain([self.omega_v(base)]).collect();
         all.sort_by(f64::total_cmp);
         all
     }
