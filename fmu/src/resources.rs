@@ -40,7 +40,7 @@ pub struct Contents {
 enum Numbers {
     OneMass(Parameters),
     /// Each floor with its mass, height and shape.
-    ManyMasses(Units, Body, Vec<Mode>, Vec<(f64, f64, Vec<f64>)>, Option<Ground>),
+    ManyMasses(Units, Body, Vec<Mode>, Vec<(f64, f64, Vec<f64>)>, Option<Box<Ground>>),
 }
 
 /// Why bytes are not the contents of an archive.
@@ -64,14 +64,14 @@ pub struct PackedRecord {
 }
 
 impl Contents {
-    /// The bytes of [`CONTENTS_FILE`]. As TOML they would take 100 kB of the library.
+    /// The bytes of [`CONTENTS_FILE`]. As TOML they would take 200 kB of the library.
     pub fn to_bytes(&self) -> Vec<u8> {
         let Contents { structure, records, vertical, fixed } = self;
         let floor = |of: &Floor| (of.mass, of.height, of.shape.numbers().to_vec());
         let many = || {
             let (floors, ground) = (structure.floors().iter().map(floor).collect(), structure.foundation());
-            let (body, modes) = (structure.body().clone(), structure.modes().to_vec());
-            Numbers::ManyMasses(structure.units(), body, modes, floors, ground.map(|of| of.ground.clone()))
+            let (body, modes) = (*structure.body(), structure.modes().to_vec());
+            Numbers::ManyMasses(structure.units(), body, modes, floors, ground.map(|of| of.ground.clone().into()))
         };
         let numbers = structure.one().map_or_else(many, |one| Numbers::OneMass(*one.parameters()));
         postcard::to_stdvec(&(numbers, records, vertical, fixed)).expect("numbers and text can always be written")
@@ -87,8 +87,7 @@ impl Contents {
                 let floor =
                     |(mass, height, shape): (f64, f64, Vec<f64>)| Floor { mass, height, shape: Modes::new(&shape) };
                 let floors = Vec::from_iter(floors.into_iter().map(floor));
-                let rigid = Structure::of_body(body, &modes, &floors)?.measured_in(units);
-                ground.map_or(Ok(rigid.clone()), |ground| rigid.on(&ground))?
+                Structure::of_body(body, &modes, &floors)?.measured_in(units).on(ground.as_deref())?
             }
         };
         Ok(Contents { structure, records, vertical, fixed })
@@ -125,7 +124,7 @@ pub enum ResourceError {
     Unreadable(PathBuf, io::Error),
     /// Not the contents of an archive.
     #[error("{file}: {1}", file = .0.display())]
-    NoContents(PathBuf, ContentsError),
+    NoContents(PathBuf, Box<ContentsError>),
 }
 
 impl Archive {
@@ -133,7 +132,7 @@ impl Archive {
     pub fn open(folder: PathBuf) -> Result<Archive, ResourceError> {
         let file = folder.join(CONTENTS_FILE);
         let bytes = fs::read(&file).map_err(|error| ResourceError::Unreadable(file.clone(), error))?;
-        let contents = Contents::from_bytes(&bytes).map_err(|error| ResourceError::NoContents(file, error))?;
+        let contents = Contents::from_bytes(&bytes).map_err(|error| ResourceError::NoContents(file, error.into()))?;
         let bytes = |packed: &PackedRecord| {
             let bytes = rocking_records::read_file(&folder.join(&packed.file)).ok()?; // refused when it is followed
             Some((packed.file.clone(), bytes))

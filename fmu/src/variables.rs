@@ -196,34 +196,35 @@ impl Table {
 /// The rows of `structure`. One mass has parameters where many masses have fixed numbers, and its locals follow its outputs.
 fn rows(structure: &Structure) -> Vec<Row> {
     let is_one = structure.one().is_some();
-    let of_one = |rows: Vec<Row>| if is_one { rows } else { Vec::new() };
-    let of_many = |rows: fn(&Structure) -> Vec<Row>| if is_one { Vec::new() } else { rows(structure) };
+    let of = |is_so: bool, rows: fn(&Structure) -> Vec<Row>| if is_so { rows(structure) } else { Vec::new() };
+    let (of_one, of_many) = (|rows| of(is_one, rows), |rows| of(!is_one, rows));
     let outputs = Output::all(structure).into_iter().filter(|of| *of != Output::y).map(|of| output(of, structure));
     let (outputs, locals_of_one): (Vec<_>, Vec<_>) =
         outputs.partition(|(variable, _)| !is_one || variable.causality == Causality::Output);
-    inputs(structure)
-        .into_iter()
-        .chain(outputs)
-        .chain(of_many(floor_variables::coordinates))
-        .chain(of_many(floor_variables::state_rates))
-        .chain(of_many(peaks))
-        .chain(of_many(floor_variables::numbers))
-        .chain(forces())
-        .chain(locals_of_one)
-        .chain(locals())
-        .chain(of_one(floor_variables::state_rates(structure)))
-        .chain(event_indicators())
-        .chain(of_one(peaks(structure)))
-        .chain(validity())
-        .chain(of_one(const { &PARAMETERS }.iter().map(|of| fixed(of, Source::Parameter(of))).collect()))
-        .chain([parameter("detail", DETAILS.description, DataType::Enumeration(&DETAILS), Source::Detail)])
-        .chain(initial_values(structure))
-        .chain(records())
-        .chain(const { &PLACEMENT }.iter().map(|of| fixed(of, Source::Placement(of))))
-        .chain(switches())
-        .chain(of_one(calculated_parameters().into()))
-        .chain([record_duration(), (Variable::time(), Source::Time)])
-        .collect()
+    let all = [
+        inputs(structure),
+        outputs,
+        of_many(floor_variables::coordinates),
+        of_many(floor_variables::state_rates),
+        of_many(peaks),
+        of_many(floor_variables::numbers),
+        forces().into(),
+        locals_of_one,
+        locals(),
+        of_one(floor_variables::state_rates),
+        event_indicators().into(),
+        of_one(peaks),
+        validity(),
+        of_one(|_| const { &PARAMETERS }.iter().map(|of| fixed(of, Source::Parameter(of))).collect()),
+        vec![parameter("detail", DETAILS.description, DataType::Enumeration(&DETAILS), Source::Detail)],
+        initial_values(structure),
+        records().into(),
+        const { &PLACEMENT }.iter().map(|of| fixed(of, Source::Placement(of))).collect(),
+        switches().into(),
+        of_one(|_| calculated_parameters().into()),
+        vec![record_duration(), (Variable::time(), Source::Time)],
+    ];
+    all.into_iter().flatten().collect()
 }
 
 /// The initial values, of many masses of each floor.

@@ -19,7 +19,7 @@ const DIFFERENCES: i32 = 12;
 
 /// The derivatives of the values that `shown` gives for a number, at `x`, whose magnitude is `scale`. A derivative that does
 /// not settle is none.
-pub fn by_differences(x: f64, scale: f64, mut shown: impl FnMut(f64) -> Option<Vec<f64>>) -> Option<Vec<Option<f64>>> {
+pub fn by_differences(x: f64, scale: f64, shown: &mut dyn FnMut(f64) -> Option<Vec<f64>>) -> Option<Vec<Option<f64>>> {
     let here = shown(x)?;
     let sides = [-1.0, 1.0].map(|sign| {
         let places = (0..DIFFERENCES).map(|k| x + sign * (FIRST * scale) * 0.5_f64.powi(k));
@@ -94,7 +94,7 @@ pub fn along<M: Model + ?Sized>(
             }
             None => model.set_inputs(&[*reference], &[value]),
         };
-        let found = by_differences(x, scale, |value| {
+        let found = by_differences(x, scale, &mut |value| {
             (is_state || known.data_type.accepts(value)).then_some(())?;
             set(model, value).ok()?;
             model.values(of).ok()
