@@ -94,7 +94,7 @@ impl Record {
         let scaled = self.given.clone().multiplied(self.scale);
         ensure!(
             scaled.force().is_none(),
-            "the record has a force, which its file cannot have; an FMU has the input F_t"
+            "a file or an FMU cannot hold the record's force: write the record without with_force, and set the input F_t of the FMU"
         );
         Ok([csv_in(&scaled, self.unit)].into_iter().chain(vertical_csv(&scaled, self.unit)).collect())
     }

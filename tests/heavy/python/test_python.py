@@ -260,7 +260,7 @@ def test_a_force_goes_with_a_record_and_no_scale_changes_it(tmp_path, ground):
     pier = fr.Structure(preset="mcmanus")
     assert fr.sweep(pier, pushed, scale=[2])["peak_theta[rad]"][0] == fr.simulate(pier, pushed.scaled(2)).peaks["theta"]
     for refuse in (lambda: pushed.write(tmp_path / "a.csv"), lambda: fr.export(tmp_path / "a.fmu", pier, record=pushed)):
-        with pytest.raises(ValueError, match="the record has a force, which its file cannot have; an FMU has the input F_t"):
+        with pytest.raises(ValueError, match="a file or an FMU cannot hold the record's force: write the record without with_force, and set"):
             refuse()
 
 
