@@ -49,6 +49,9 @@ const LEADING_ON: &str = "SetupExperiment EnterInitializationMode ExitInitializa
                           EnterEventMode NewDiscreteStates UpdateDiscreteStates EnterStepMode EnterContinuousTimeMode \
                           SetTime SetContinuousStates CompletedIntegratorStep SetFMUstate SetFMUState";
 
+/// Types that no variable has.
+const NO_VARIABLES: &str = "Float32 Int8 UInt8 Int16 UInt16 UInt32 UInt64 Binary Clock";
+
 /// An instance.
 pub type C = *mut c_void;
 
@@ -242,7 +245,8 @@ impl Tally {
         let stays = Stage::ALL.iter().filter(is_passed).fold(all, |stays, stage| stays & !stage.bit());
         for (name, allowed) in functions {
             let at = version.calls.iter().position(|(called, _)| *called == name);
-            assert!(at.is_some() || allowed == 0, "{name} is not called");
+            let is_of_no_variable = NO_VARIABLES.split(' ').any(|of| *of == name[3..]);
+            assert!(at.is_some() || allowed == 0 || is_of_no_variable, "{name} is not called");
             let Some(at) = at else { continue };
             assert_eq!(self.tried[at], stays, "{name} was not called in every stage");
             assert_ne!(self.done[at], allowed == 0, "{name}");
