@@ -78,17 +78,12 @@ class Response:
 
 def integrate(system, knots, a_g) -> Response:
     """The response from rest to the ground acceleration `a_g` (m/s2) at `knots` (s), linear between them."""
-    def rates(phases, a_g):
-        return lambda t, y: system.rates(phases, y.tolist(), a_g(t))
+    def rates(phases, load):
+        return lambda t, y: system.rates(phases, y.tolist(), load.a_g + load.a_g_rate * (t - load.t0))
 
     start, h = np.zeros(2 + 4 * len(system.structures)), float(knots[1] - knots[0])
     run = reference.Run(system.structures, rates, start, 0.0, h, RTOL, ATOL, system.recoil)
-    rows = [(run.t, run.y, tuple(run.phases))]
-    for t0, t1, a0, a1 in zip(knots[:-1].tolist(), knots[1:].tolist(), a_g[:-1].tolist(), a_g[1:].tolist()):
-        while run.t < t1:
-            run.advance(t1, lambda t: a0 + (a1 - a0) / (t1 - t0) * (t - t0))
-            if run.overturned:
-                raise RuntimeError(f"a structure overturns at {run.t} s")
-        rows.append((run.t, run.y, tuple(run.phases)))
-    t, y, phases = zip(*rows)
-    return Response(np.array(t), np.array(y), np.array(phases), run.transitions)
+    t, y, phases = np.split(reference.follow(run, knots, a_g, 0 * a_g), [1, 1 + len(start)], axis=1)
+    if run.overturned:
+        raise RuntimeError(f"a structure overturns at {run.t} s")
+    return Response(t[:, 0], y, phases, run.transitions)

@@ -298,20 +298,24 @@ def integrate(p: Structure, knots, a_g, initial=(0.0, 0.0, 0.0, 0.0), *, F_t=Non
 
     run = Run([p], rates, np.array(initial, dtype=float), float(knots[0]), float(knots[1] - knots[0]), RTOL, ATOL)
     run.test_uplifts()
-    transitions, rows = run.transitions[0], [run.row()]
-    F_t = np.zeros(len(knots)) if F_t is None else F_t
+    t, u, u_dot, theta, theta_dot, phase = follow(run, knots, a_g, np.zeros(len(knots)) if F_t is None else F_t).T
+    return Response(p, t, u, u_dot, theta, theta_dot, phase.astype(int), run.transitions[0])
+
+
+def follow(run: Run, knots, a_g, F_t) -> np.ndarray:
+    """Rows of the run at the knots, and where a structure overturns, under loads that are linear between the knots."""
+    rows = [run.row()]
     for t0, t1, a0, a1, F0, F1 in zip(knots[:-1], knots[1:], a_g[:-1], a_g[1:], F_t[:-1], F_t[1:]):
         load = Load(*map(float, (t0, a0, (a1 - a0) / (t1 - t0), F0, (F1 - F0) / (t1 - t0))))
-        budget = len(transitions) + TRANSITIONS_PER_SAMPLE
+        budget = len(run.transitions[0]) + TRANSITIONS_PER_SAMPLE
         while run.t < t1 and not run.overturned:
             run.advance(float(t1), load)
-            if len(transitions) > budget:
+            if len(run.transitions[0]) > budget:
                 raise RuntimeError(f"more than {TRANSITIONS_PER_SAMPLE} transitions in the sample from {t0} s")
         rows.append(run.row())
         if run.overturned:
             break
-    t, u, u_dot, theta, theta_dot, phase = np.array(rows).T
-    return Response(p, t, u, u_dot, theta, theta_dot, phase.astype(int), transitions)
+    return np.array(rows)
 
 
 class Run:

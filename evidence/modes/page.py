@@ -47,9 +47,7 @@ def motion(building: Frame, record: fr.Record, detail: str = "auto") -> tuple[fr
 
 def peaks(run: fr.Run) -> dict[str, np.ndarray]:
     """Exact peaks, floor by floor."""
-    count = sum(name.startswith("a_t[") for name in run.peaks)
-    of_floors = {name: np.array([run.peaks[f"{name}[{i + 1}]"] for i in range(count)]) for name in ("u", "V", "a_t")}
-    return {"theta": np.array([run.peaks["theta"]]), **of_floors}
+    return {"theta": np.array([run.peaks["theta"]]), **{name: run.profile[name] for name in ("u", "V", "a_t")}}
 
 
 def errors(found: dict[str, np.ndarray], exact: dict[str, np.ndarray]) -> dict[str, float]:

@@ -50,10 +50,8 @@ def write_demands(file: str | PathLike[str], table: "pd.DataFrame") -> None:
     ended = table[~table["ending"].isin(["overturned", "failed"])].dropna(axis="columns", how="all")
     g, columns = ended["g[m/s2]"], {("1-PFA-0-1", "mps2"): ended["PGA[g]"] * ended["g[m/s2]"]}
     floors = sum(bool(re.fullmatch(r"peak_a_t\[\d+\]\[m/s2\]", str(name))) for name in ended)
-    for i in range(1, floors + 1):
-        columns[f"1-PFA-{i}-1", "mps2"] = ended[f"peak_a_t[{i}][m/s2]"]
-    for i in range(1, floors + 1):
-        columns[f"1-PID-{i}-1", "rad"] = ended[f"peak_drift_ratio[{i}]"]
+    columns |= {(f"1-PFA-{i}-1", "mps2"): ended[f"peak_a_t[{i}][m/s2]"] for i in range(1, floors + 1)}
+    columns |= {(f"1-PID-{i}-1", "rad"): ended[f"peak_drift_ratio[{i}]"] for i in range(1, floors + 1)}
     if not floors:
         columns |= {("1-PFA-1-1", "mps2"): ended["peak_a_t[m/s2]"], ("1-PID-1-1", "rad"): ended["peak_u[m]"] / ended["H[m]"]}
     columns |= {("1-ROT-0-1", "rad"): ended["peak_theta[rad]"], ("1-PGA-0-1", "mps2"): ended["PGA[g]"] * g}
