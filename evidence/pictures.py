@@ -23,7 +23,7 @@ from matplotlib.patches import Circle
 from tqdm import tqdm
 
 from . import ROOT
-from .figures import COLOURS, FIXED, QUIET, ROCKING, plt, save, subplots
+from .figures import COLOURS, QUIET, ROCKING, plt, save, subplots
 from .paper.specimens import MCMANUS
 from .scenes import RECORD, SCALE, TIME_SCALE, G
 

@@ -1,7 +1,5 @@
 """Frames that rock, and ground motions that shake them: the scenes of the comparison with frames_reference.py."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ equations of many masses. DOP853 integrates each phase at a relative tolerance o
 transition to transition. A transition is a root of a polynomial over the step, refined by fresh integrations.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from types import SimpleNamespace

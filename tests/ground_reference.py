@@ -5,8 +5,6 @@ no elimination. DOP853 goes from sample to sample and from event to event; an ev
 fresh integrations.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import reference
 from frames import Frame, Ties

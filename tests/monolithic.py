@@ -5,8 +5,6 @@ bearings, and a structure on a foundation mass that sways on soil. The state is 
 structure. DOP853 restarts at every sample of the ground motion and at every transition of any structure.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
