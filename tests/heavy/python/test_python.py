@@ -486,9 +486,11 @@ def test_a_curve_is_of_one_population_under_one_measure(two_populations):
     assert [named.median, doubled.median / 2] == pytest.approx([over_pgv.median] * 2, rel=1e-9)
 
 
-def test_a_limit_knows_gravity_and_width(two_populations):
+def test_limits_have_usual_units(two_populations):
     alone = two_populations[two_populations["structures"] == "mcmanus"]
-    assert fr.fragility(alone, "a_t >= 0.6 g").bins.equals(fr.fragility(alone, f"a_t >= {0.6 * 9.81!r}").bins)
+    for usual, own in [("theta >= 0.5 deg", np.radians(0.5)), ("uplift >= 1 cm", 0.01), ("a_t >= 0.6 g", 0.6 * 9.81)]:
+        expected = fr.fragility(alone, f"{usual.split()[0]} >= {float(own)!r}")
+        assert fr.fragility(alone, usual).bins.equals(expected.bins)
     with pytest.raises(ValueError, match="stays below 2 B = 0.57 m; use overturned"):
         fr.fragility(alone, "uplift >= 58 cm")
 
