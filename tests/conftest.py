@@ -1,13 +1,15 @@
 """The FMUs under test: exported once per run from the release build."""
 
+import functools
+import itertools
 import os
-import subprocess
 from pathlib import Path
 
 import pacoima
 import pages
 import pytest
-from host import Fmu
+from frames import Frame, Ties, toml
+from host import Fmu, output, write
 
 ROOT = Path(__file__).parents[1]
 
@@ -22,43 +24,41 @@ def exporter() -> Path:
 
 @pytest.fixture(scope="session")
 def export(exporter, tmp_path_factory):
-    """Exports the FMU of a preset, with a record inside if there is one, to a new file and returns its path."""
+    """Exports the FMU of a preset, with a record inside if there is one, or of what other `options` say. The same is made once."""
 
-    def run(preset: str, record: Path | None = None, name: str | None = None, fmi: int = 2) -> Path:
-        path = tmp_path_factory.mktemp("export") / f"{name or preset}.fmu"
-        inside = ["--record", record] if record else []
-        named = ["--name", name] if name else []
-        subprocess.run([exporter, "export", "--fmi", str(fmi), "--preset", preset, *inside, *named, "-o", path], check=True)
-        return path
+    @functools.cache
+    def run(preset: str | None, record: Path | None = None, *options, fmi: int = 2) -> Fmu:
+        path = tmp_path_factory.mktemp("export") / "pier.fmu"
+        chosen = {"--preset": preset, "--record": record}
+        chosen = [text for option, value in chosen.items() if value for text in (option, value)]
+        output(exporter, "--quiet", "export", "--fmi", fmi, *chosen, *options, "-o", path)
+        return Fmu(path)
 
     return run
 
 
 @pytest.fixture(scope="session")
-def mcmanus(export, tmp_path_factory) -> Fmu:
+def mcmanus(export) -> Fmu:
     """The FMU of McManus's specimen."""
-    return Fmu(export("mcmanus"), tmp_path_factory.mktemp("mcmanus"))
+    return export("mcmanus")
 
 
 @pytest.fixture(scope="session")
-def evison(export, tmp_path_factory) -> Fmu:
+def evison(export) -> Fmu:
     """The FMU of Evison's specimen."""
-    return Fmu(export("evison"), tmp_path_factory.mktemp("evison"))
+    return export("evison")
 
 
 @pytest.fixture(scope="session")
 def pacoima_record(tmp_path_factory) -> Path:
     """Pacoima Dam as scaled for McManus's shake table, as a CSV record."""
-    path = tmp_path_factory.mktemp("record") / "pacoima.csv"
-    pacoima.write_record(path)
-    return path
+    return write(tmp_path_factory.mktemp("record") / "pacoima.csv", "m/s2", pacoima.TIME, pacoima.A_G)
 
 
 @pytest.fixture(scope="session")
-def shaken(export, pacoima_record, tmp_path_factory) -> dict[str, Fmu]:
+def shaken(export, pacoima_record) -> dict[str, Fmu]:
     """Both specimens' FMUs with that record inside."""
-    return {preset: Fmu(export(preset, pacoima_record), tmp_path_factory.mktemp("shaken"))
-            for preset in ("mcmanus", "evison")}
+    return {preset: export(preset, pacoima_record) for preset in ("mcmanus", "evison")}
 
 
 @pytest.fixture(scope="session")
@@ -84,62 +84,33 @@ def check_page(exporter, tmp_path):
 
 
 @pytest.fixture
-def wall(evison, tmp_path) -> Fmu:
+def wall(evison) -> Fmu:
     """The FMU of Evison's specimen, unpacked anew: a test may write into its resources."""
-    return Fmu(evison.path, tmp_path / "wall")
-
-
-@pytest.fixture(scope="session")
-def evison3(export) -> Path:
-    return export("evison", fmi=3)
+    return Fmu(evison.path)
 
 
 @pytest.fixture
-def wall3(evison3, tmp_path) -> Fmu:
+def wall3(export) -> Fmu:
     """The same of FMI 3.0."""
-    return Fmu(evison3, tmp_path / "wall3")
+    return Fmu(export("evison", fmi=3).path)
 
 
 # Two floors of which one mode is kept, and dissipators.
-BUILDING = """zeta = 0.02
-keep = 1
-[base]
-m0 = 2e4
-J0 = 3e4
-B = 1.5
-r = 0.93
-xi_d = 1.0
-c_d = 2e4
-k_d = 2e7
-F_y = 4e4
-[[storeys]]
-m = 3.5e4
-h = 3.5
-k = 3e7
-[[storeys]]
-m = 3.5e4
-h = 7.0
-k = 3e7
-"""
+BUILDING = "keep = 1\n" + toml(Frame((3.5e4, 3.5e4), (3.5, 7.0), (3e7, 3e7), m0=2e4, J0=3e4, B=1.5, r=0.93, zeta=0.02),
+                               Ties(xi_d=1.0, c_d=2e4, k_d=2e7, F_y=4e4))
 
 
 @pytest.fixture(scope="session")
-def of_each(evison, evison3, exporter, tmp_path_factory) -> dict[tuple[str, int], Fmu]:
-    """The FMUs of one mass and of a building by the name of a force and the version of FMI."""
-    folder = tmp_path_factory.mktemp("building")
-    (folder / "building.toml").write_text(BUILDING)
-    fmus = {("F_t", 2): evison, ("F_t", 3): Fmu(evison3, folder / "wall3")}
-    for fmi in (2, 3):
-        path = folder / f"building{fmi}.fmu"
-        subprocess.run([exporter, "export", "--fmi", str(fmi), "--parameters", folder / "building.toml", "-o", path], check=True)
-        fmus["F_t[1]", fmi] = Fmu(path, folder / f"building{fmi}")
-    return fmus
+def of_each(export, tmp_path_factory):
+    """The FMU of one mass, or of a building, by the name of a force and the version of FMI."""
+    file = tmp_path_factory.mktemp("building") / "building.toml"
+    file.write_text(BUILDING)
+    return lambda force, fmi: export("evison", fmi=fmi) if force == "F_t" else export(None, None, "--parameters", file, fmi=fmi)
 
 
-@pytest.fixture(params=[(force, fmi, kind) for force in ("F_t", "F_t[1]") for fmi in (2, 3) for kind in ("CoSimulation", "ModelExchange")],
-                ids=lambda of: " ".join(map(str, of)))
+@pytest.fixture(params=itertools.product(("F_t", "F_t[1]"), (2, 3), ("CoSimulation", "ModelExchange")), ids=lambda of: " ".join(map(str, of)))
 def interface(request, of_each, tmp_path):
     """What makes instances of one of the interfaces, for the name of a force, and initial values with a record."""
     force, fmi, kind = request.param
     (tmp_path / "quake.csv").write_text("t (s),a (m/s2)\n0,0.5\n0.1,-3\n0.2,2\n")
-    return lambda: of_each[force, fmi].instance(kind), force, dict(record=str(tmp_path / "quake.csv"))
+    return lambda: of_each(force, fmi).instance(kind), force, dict(record=str(tmp_path / "quake.csv"))

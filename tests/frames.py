@@ -91,6 +91,12 @@ MOTIONS = {  # event, component, first sample, scale of the free and of the tied
 SCENES = [(frame, motion, tied) for motion in (*MOTIONS, "pulse") for tied in (False, True) for frame in FRAMES]
 
 
+def ties_of(frame: Frame, prestress: float) -> Ties:
+    """All ties, of sizes that fit the frame; `prestress` is that of the tendon as a part of the weight."""
+    weight, B = frame.m_t * frame.g, frame.B
+    return Ties(P_0=prestress * weight, k_t=20 * weight / B, xi_d=0.8 * B, c_d=0.02 * weight / B, k_d=50 * weight / B, F_y=0.1 * weight)
+
+
 def scene(name: str, motion: str, tied: bool) -> tuple:
     """The frame, the time step, a_g, a_v and what ties the base down; a record's vertical component acts on tied frames alone."""
     frame, samples = FRAMES[name], 150 if name == "wall" else 250
@@ -101,6 +107,4 @@ def scene(name: str, motion: str, tied: bool) -> tuple:
         event, component, first, scales = MOTIONS[motion]
         along, up = (ground_motion(event, which, first + samples, scale=scales[tied]) for which in (component, "up"))
         time, a_g, a_v = along[0], along[1][first:], up[1][first:]
-    weight, B = frame.m_t * frame.g, frame.B
-    ties = Ties(P_0=0.3 * weight, k_t=20 * weight / B, xi_d=0.8 * B, c_d=0.02 * weight / B, k_d=50 * weight / B, F_y=0.1 * weight)
-    return (frame, time[1], a_g, a_v, ties) if tied else (frame, time[1], a_g, np.zeros(samples), Ties())
+    return (frame, time[1], a_g, a_v, ties_of(frame, 0.3)) if tied else (frame, time[1], a_g, np.zeros(samples), Ties())

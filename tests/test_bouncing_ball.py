@@ -1,15 +1,12 @@
 """The example of a model behind the crate of FMI's interfaces: a ball that bounces, against its closed form."""
 
-import os
-import subprocess
-from pathlib import Path
-
 import numpy as np
 import pytest
+from conftest import ROOT
 from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
+from host import output
 
-ROOT = Path(__file__).parents[1]
 G, E, H, REST = 9.81, 0.7, 1.0, 1e-2
 
 
@@ -18,8 +15,7 @@ def balls(tmp_path_factory):
     """The FMU of the example in FMI 2.0 and 3.0, written as the page says."""
     paths = {version: tmp_path_factory.mktemp("ball") / "BouncingBall.fmu" for version in "23"}
     for version, path in paths.items():
-        command = ["cargo", "run", "--quiet", "--release", "--example", "bouncing_ball", "--", path, version]
-        subprocess.run(command, cwd=ROOT, check=True, env=os.environ)
+        output("cargo", "run", "--quiet", "--release", "--example", "bouncing_ball", "--", path, version, cwd=ROOT)
     return paths
 
 

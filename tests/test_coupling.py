@@ -16,7 +16,6 @@ from evidence.coupling.swaying_mass import SwayingMass
 from evidence.scenes import pacoima_dam
 
 TIME, A_G = pacoima_dam()
-SHORT = slice(700)  # of the record: uplifts, impacts and landings of both piers
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +24,8 @@ def piers(mcmanus, evison):
 
 
 def strong_motion():
-    return TIME[SHORT], A_G[SHORT]
+    """Uplifts, impacts and landings of both piers."""
+    return TIME[:700], A_G[:700]
 
 
 @functools.cache

@@ -1,13 +1,13 @@
 """The model description of the FMU."""
 
 import json
-import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
-from host import OUTPUTS
+from host import OUTPUTS, output
 from pacoima import TIME
 
 PEAKS = ("theta", "u", "delta_t", "uplift", "a_t", "V_t", "M_t")
@@ -28,8 +28,7 @@ def test_simulating_without_a_word_follows_the_record(shaken, mcmanus, exporter,
     sample; without a record, nothing has been said that would move the structure, and its stop time and step are those of a
     free vibration."""
     experiment = shaken["mcmanus"].description.defaultExperiment
-    command = [exporter, "simulate", "--preset", "mcmanus", "--record", pacoima_record, "--format", "json"]
-    ends = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["end"] - TIME[0]
+    ends = json.loads(output(exporter, "--quiet", "simulate", "--preset", "mcmanus", "--record", pacoima_record, "--format", "json"))["end"]
     assert 0 <= float(experiment.stopTime) - ends <= 2 * np.diff(TIME).max()
     assert float(experiment.stepSize) <= np.diff(TIME).min() * (1 + 1e-8)
     result = simulate_fmu(shaken["mcmanus"].path)
@@ -43,10 +42,9 @@ def test_simulating_without_a_word_follows_the_record(shaken, mcmanus, exporter,
 
 
 @pytest.mark.parametrize("preset, version", [("mcmanus", "2"), ("evison", "3")])
-def test_the_demo_has_the_fmu_of_the_command_line(exporter, tmp_path, preset, version):
+def test_the_demo_has_the_fmu_of_the_command_line(exporter, export, tmp_path, preset, version):
     library = exporter.with_name("deps") / "libFlexibleRocking.so"
-    program, demo = tmp_path / "program.fmu", tmp_path / "demo.fmu"
-    command = [exporter, "export", "--preset", preset, "--fmi", version, "--library", library, "-o", program]
-    subprocess.run(command, check=True)
-    subprocess.run([exporter.with_name("fmu-export"), library, preset, version, demo], check=True)
-    assert demo.read_bytes() == program.read_bytes() and validate_fmu(demo) == []
+    demo = tmp_path / "demo.fmu"
+    program = export(preset, None, "--library", library, fmi=version).path
+    output(exporter.with_name("fmu-export"), library, preset, version, demo)
+    assert demo.read_bytes() == Path(program).read_bytes() and validate_fmu(demo) == []

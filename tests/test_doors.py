@@ -2,20 +2,19 @@
 
 docs/reference/runs.md has the rules. Numbers are equal to the bit, but for an FMU's last digits after the record."""
 
-import csv
 import functools
 import json
 import re
-import subprocess
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from random import Random
 
 import fmpy
 import numpy as np
+import pandas as pd
 import pytest
 from evidence.scenes import RECORD
-from host import PHASES, Fmu, simulate
+from host import PHASES, Fmu, output, simulate, write
 from reference import EVISON, MCMANUS, Structure
 
 LEVELS = ("auto", "nonlinear", "linear", "modal", "rigid", "fixed_base")
@@ -52,19 +51,12 @@ def random_structure(random: Random) -> tuple[Structure, dict]:
     changed = {name: changed[name] for name in random.sample(list(changed), random.randrange(5))}
     structure = replace(base, **changed)
     numbers = {"preset": preset} | changed if random.random() < 0.5 else asdict(structure)
+    weight = (structure.m + structure.m0) * structure.g
     if random.random() < 0.4:
-        weight = (structure.m + structure.m0) * structure.g
         numbers |= dict(P_0=random.uniform(0, 0.5) * weight, k_t=random.uniform(0, 20) * weight / structure.B)
     if random.random() < 0.2:
-        weight = (structure.m + structure.m0) * structure.g
         numbers |= dict(xi_d=structure.B, c_d=0.01 * weight / structure.B, k_d=50 * weight / structure.B, F_y=0.1 * weight)
     return structure, numbers
-
-
-def write(path: Path, unit: str, time, a, heading="t (s),a ({})") -> Path:
-    """A table with all digits."""
-    path.write_text(heading.format(unit) + "\n" + "".join(f"{t!r},{a!r}\n" for t, a in zip(time.tolist(), a.tolist())))
-    return path
 
 
 def random_scene(number: int, folder: Path) -> Scene:
@@ -115,11 +107,10 @@ def command_line(exporter: Path, scene: Scene, folder: Path) -> dict:
     ground = options(record=scene.record, **scene.scales) if scene.record else options(free=scene.duration)
     ground += options(**{name: of for name, of in (("record_v", scene.vertical), ("force", scene.force)) if of})
     ground += options(duration=scene.duration) if scene.duration and scene.record else []
-    command = [exporter, "--quiet", "simulate", *ground, *options(**scene.structure, **scene.initial, **scene.how)]
-    told = json.loads(subprocess.run([*command, "--format", "json", "--events", "events.csv"], cwd=folder, check=True,
-                                     capture_output=True, text=True).stdout)
-    with open(folder / "events.csv") as file:
-        transitions = [(float(row["time[s]"]), row["kind"].split()[0]) for row in csv.DictReader(file)]
+    told = json.loads(output(exporter, "--quiet", "simulate", *ground, *options(**scene.structure, **scene.initial, **scene.how),
+                             "--format", "json", "--events", "events.csv", cwd=folder))
+    events = pd.read_csv(folder / "events.csv")
+    transitions = list(zip(events["time[s]"], events["kind"].str.split().str[0]))
     rows = {row["name"]: (float(row.get("peak", row.get("value"))), row["time"]) for row in told["peaks"] + told["validity"]}
     counted = {name: told[name] for name in ("transitions", "end", "ending", "fall", "steps", "evaluations")}
     return rows | numbered(transitions) | at_end(told["end"], counted)
@@ -160,7 +151,7 @@ def check_ground(scene: Scene):
 def export(exporter: Path, scene: Scene, fmi: int, folder: Path) -> Path:
     fmu = folder / f"{fmi}.fmu"
     files = [f"--{name}={path}" for name, path in (("record", scene.record), ("record-v", scene.vertical)) if path]
-    subprocess.run([exporter, "--quiet", "export", f"--fmi={fmi}", *options(**scene.structure), *files, "-o", fmu], check=True)
+    output(exporter, "--quiet", "export", f"--fmi={fmi}", *options(**scene.structure), *files, "-o", fmu)
     return fmu
 
 
@@ -179,7 +170,7 @@ def co_simulation(fmu: Path, scene: Scene) -> dict:
     if scene.force:
         floors = sum(name.startswith("F_t[") for name in names)
         time, F_t = np.append(scene.push[0], until), np.append(scene.push[1], 0.0)
-        with Fmu(fmu, fmu.with_suffix("")).start(tolerance=tolerance, **values) as instance:
+        with Fmu(fmu).start(tolerance=tolerance, **values) as instance:
             instance.follow(time, 0 * time, ["theta"], **{f"F_t[{floors}]" if floors else "F_t": F_t})
             last, messages = dict(zip(asked, instance.get(*asked))) | {"time": until}, instance.messages
     else:

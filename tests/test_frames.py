@@ -1,6 +1,5 @@
 """The physical equations of many masses, against the engine's modes."""
 
-import subprocess
 from pathlib import Path
 
 import frames_reference
@@ -8,12 +7,13 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from frames import SCENES, Frame, Ties, scene
+from host import output
 
 @pytest.fixture(scope="module")
 def program(exporter):
     """The example that moves a frame by its modes, chosen with the packages of `make test`: no other features, no second build."""
     packages = ["--workspace", "--exclude", "flexible-rocking-python", "--exclude", "rocking-web"]
-    subprocess.run(["cargo", "build", "--quiet", "--release", *packages, "--example", "frame_scene"], cwd=ROOT, check=True)
+    output("cargo", "build", "--quiet", "--release", *packages, "--example", "frame_scene", cwd=ROOT)
     return exporter.parent / "examples/frame_scene"
 
 
@@ -25,8 +25,7 @@ def engine(program: Path, frame: Frame, dt: float, a_g, a_v, ties: Ties, detail:
                ties.P_0, ties.k_t, ties.xi_d, ties.c_d, ties.k_d, ties.F_y, len(frame.omega), len(frame.m),
                *frame.omega, *zeta, *M_phi.sum(axis=0), *(frame.h @ M_phi), *np.column_stack([frame.m, frame.h, phi]).ravel(), len(points), *np.ravel(points, order="F"),
                dt, len(a_g), *np.column_stack([a_g, a_v]).ravel()]
-    done = subprocess.run([program], check=True, capture_output=True, text=True, input=" ".join(repr(float(x)) for x in numbers))
-    lines = [line.split() for line in done.stdout.splitlines()]
+    lines = [line.split() for line in output(program, input=" ".join(repr(float(x)) for x in numbers)).splitlines()]
     return ([(float(time), kind) for name, time, kind, *_ in (line for line in lines if line[0] == "T")],
             np.array([line[1:] for line in lines if line[0] == "S"], dtype=float))
 

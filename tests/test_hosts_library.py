@@ -2,7 +2,6 @@
 
 import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
@@ -10,36 +9,28 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from fmpy.fmi3 import FMU3Model, FMU3ScheduledExecution, FMU3Slave
-from pacoima import A_G, OUTPUTS, STEPS, TIME, distance, instants, linear, write_record
+from host import output, write
+from pacoima import A_G, OUTPUTS, STEPS, TIME, distance, instants, linear
 
 HOST = "tests/hosts/load_library/Cargo.toml"
 
-# FMI 2.0: the functions of both interfaces and those of each; FMI 3.0: all that fmpy knows how to call.
-FUNCTIONS = {f"fmi2{name}" for name in """
-    GetTypesPlatform GetVersion SetDebugLogging Instantiate FreeInstance SetupExperiment EnterInitializationMode
-    ExitInitializationMode Terminate Reset
-    GetReal GetInteger GetBoolean GetString SetReal SetInteger SetBoolean SetString
-    GetFMUstate SetFMUstate FreeFMUstate SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate
-    GetDirectionalDerivative SetRealInputDerivatives GetRealOutputDerivatives DoStep CancelStep GetStatus GetRealStatus
-    GetIntegerStatus GetBooleanStatus GetStringStatus
-    EnterEventMode NewDiscreteStates EnterContinuousTimeMode CompletedIntegratorStep SetTime SetContinuousStates
-    GetDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates""".split()} | {
-    name for of in (FMU3Slave, FMU3Model, FMU3ScheduledExecution) for name in dir(of) if name.startswith("fmi3")}
-
 # The C library, its parts of before glibc 2.34, its mathematics and start-up, and the compiler's run time.
 LINUX_RUN_TIME = {"libc.so.6", "libdl.so.2", "libpthread.so.0", "libm.so.6", "libgcc_s.so.1", "ld-linux-x86-64.so.2"}
-
-
-def output(*command, cwd=ROOT, **arguments) -> str:
-    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, cwd=cwd, **arguments).stdout
 
 
 def cargo_build(*arguments, tool="build"):
     """Builds and returns the target folder; `tool` may be one of this environment's."""
     target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    output("cargo", tool, "--locked", "--target-dir", target, *arguments, env=os.environ | {"PATH": path})
+    output("cargo", tool, "--locked", "--target-dir", target, *arguments, cwd=ROOT, env=os.environ | {"PATH": path})
     return target
+
+
+@pytest.fixture(scope="module")
+def functions(mcmanus) -> set[str]:
+    """All that fmpy knows how to call."""
+    of_2 = (mcmanus.instance(kind).slave for kind in ("CoSimulation", "ModelExchange"))
+    return {name for of in (*of_2, FMU3Slave, FMU3Model, FMU3ScheduledExecution) for name in dir(of) if name.startswith(("fmi2", "fmi3"))}
 
 
 @pytest.fixture(scope="module")
@@ -47,12 +38,12 @@ def run(mcmanus, tmp_path_factory):
     """Runs tests/hosts/load_library under a_g of Pacoima Dam, linear between samples, or, at a step, under what an FMU
     has inside, and returns OUTPUTS."""
     scene = tmp_path_factory.mktemp("scene") / "a_g.csv"
-    references = {name: str(variable.valueReference) for name, variable in mcmanus.variables.items()}
+    a_g, *outputs = mcmanus.references(["a_g", *OUTPUTS])
 
     def run(*command, library, fmu=mcmanus, step=None, **arguments) -> np.ndarray:
-        write_record(scene, *(TIME, A_G) if step is None else (instants(step), 0 * instants(step)))
+        write(scene, "m/s2", *(TIME, A_G) if step is None else (instants(step), 0 * instants(step)))
         printed = output(*command, library, fmu.description.guid, f"{fmu.folder}/resources", scene,
-                         references["a_g"], ",".join(references[name] for name in OUTPUTS), **arguments)
+                         a_g, ",".join(map(str, outputs)), **arguments)
         return np.loadtxt(printed.splitlines(), delimiter=",")[:, 1:]
 
     return run
@@ -68,19 +59,14 @@ def linux_host():
     return cargo_build("--release", "--manifest-path", HOST) / "release" / "load-library"
 
 
-@pytest.fixture(scope="module")
-def on_linux(run, linux_host, linux_library):
-    return run(linux_host, library=linux_library)
-
-
-def test_linux_library(linux_library):
-    assert {line.split()[-1] for line in output("nm", "-D", "--defined-only", linux_library).splitlines()} == FUNCTIONS
+def test_linux_library(linux_library, functions):
+    assert {line.split()[-1] for line in output("nm", "-D", "--defined-only", linux_library).splitlines()} == functions
     needed = re.findall(r"NEEDED\s+(\S+)", output("objdump", "-p", linux_library))
     assert set(needed) <= LINUX_RUN_TIME
 
 
-def test_linux_host(on_linux, mcmanus):
-    assert distance(on_linux, linear(mcmanus)) < 1e-12
+def test_linux_host(run, linux_host, linux_library, mcmanus):
+    assert distance(run(linux_host, library=linux_library), linear(mcmanus)) < 1e-12
 
 
 @pytest.mark.parametrize("step", STEPS)

@@ -8,47 +8,15 @@ from reference import EVISON
 SHOWN = ["theta", "u", "a_t", "R_h", "a_g", "F_t"]
 
 
-def follow(name: str, acting: str, host, other, lines):
-    """Steps of different lengths beside a host that sends the lines themselves. Each line is a value and a slope that are set, the
-    step, and the value and the slope that act. Outputs between two steps are those of what acts."""
-    for value, slope, step, (acts, rate) in lines:
-        if value is not None:  # again and again, as a master does that iterates: the last value counts
-            host.set(**{name: 9.0})
-            host.set(**{name: value})
-        if slope is not None:
-            host.slope(name, slope)
-        assert host.get(name, acting) == pytest.approx([acts if value is None else value, acts], rel=1e-13)
-        other.input(name, acts, rate)
-        for one in (host, other):
-            one.step(one.time + step)
-        assert host.reals(SHOWN) == pytest.approx(other.reals(SHOWN), rel=1e-11, abs=1e-15)
-        assert host.rate("R_h") == pytest.approx(other.rate("R_h"), rel=1e-9, abs=1e-9)
-
-
-def test_the_slope_holds_for_one_step_and_its_end_value_from_then_on(wall):
-    """A slope alone starts from the value held."""
-    follow("a_g", "a_ground", wall.start(theta_0=0.01), wall.start(theta_0=0.01), [
+@pytest.mark.parametrize("name, acting, of_host, of_other, lines", [
+    ("a_g", "a_ground", dict(theta_0=0.01), dict(theta_0=0.01), [
         (2.0, 30.0, 0.1, (2.0, 30.0)),
         (None, None, 0.05, (5.0, 0.0)),
         (-1.5, 0.5, 1.0, (-1.5, 0.5)),
         (None, -10.0, 0.1, (-1.0, -10.0)),
         (None, None, 0.1, (-2.0, 0.0)),
-    ])
-
-
-def test_a_slope_may_be_set_before_the_value(wall):
-    first, second = (wall.start() for _ in range(2))
-    first.slope("a_g", 30.0)
-    first.set(a_g=2.0)
-    second.input("a_g", 2.0, 30.0)
-    assert first.bytes() == second.bytes()
-
-
-def test_a_g_is_followed_one_step_late(wall):
-    """From the value at the start on, to what is set, or on where nothing is; a slope that is set wins."""
-    host, other = wall.start(a_g=0.5, a_g_late=True, peaks=True), wall.start(a_g=0.5)
-    assert host.get("a_ground") == 0.5
-    follow("a_g", "a_ground", host, other, [
+    ]),
+    ("a_g", "a_ground", dict(a_g=0.5, a_g_late=True, peaks=True), dict(a_g=0.5), [
         (1.5, None, 0.1, (0.5, 10.0)),
         (0.5, None, 0.05, (1.5, -20.0)),
         (None, None, 0.1, (0.5, 0.0)),
@@ -57,12 +25,8 @@ def test_a_g_is_followed_one_step_late(wall):
         (None, 5.0, 0.1, (-2.0, 5.0)),
         (-1.5, 0.0, 0.1, (-1.5, 0.0)),
         (0.0, None, 0.1, (-1.5, 15.0)),
-    ])
-
-
-def test_F_t_goes_on_with_the_slope_of_its_last_two_values(wall):
-    """From the second step on, of what is set and has no slope of its own."""
-    follow("F_t", "F_t", wall.start(F_t_extrapolated=True), wall.start(), [
+    ]),
+    ("F_t", "F_t", dict(F_t_extrapolated=True), {}, [
         (100.0, None, 0.1, (100.0, 0.0)),
         (200.0, None, 0.05, (200.0, 1000.0)),
         (300.0, None, 0.1, (300.0, 2000.0)),
@@ -70,7 +34,28 @@ def test_F_t_goes_on_with_the_slope_of_its_last_two_values(wall):
         (450.0, -100.0, 0.2, (450.0, -100.0)),
         (-100.0, 0.0, 0.1, (-100.0, 0.0)),
         (-200.0, None, 0.1, (-200.0, -1000.0)),
-    ])
+    ]),
+], ids=["a slope holds for one step", "a_g one step late", "F_t extrapolated"])
+def test_an_input_follows_a_line(wall, name, acting, of_host, of_other, lines):
+    """Steps of different lengths beside a host that sends the lines themselves. Each line is a value and a slope that are set, the
+    step, and the value and the slope that act. Outputs between two steps are those of what acts. A slope holds for one step and its
+    end value from then on; late, a_g is followed from the value at the start on to what is set, or on where nothing is; F_t goes on
+    with the slope of its last two values. A slope that is set wins."""
+    host, other = wall.start(**of_host), wall.start(**of_other)
+    assert host.get(acting) == of_host.get(name, 0.0)
+    for value, slope, step, (acts, rate) in lines:
+        if value is not None:  # again and again, as a master does that iterates: the last value counts
+            host.set(**{name: 9.0})
+            host.set(**{name: value})
+        if slope is not None:
+            host.slope(name, slope)
+        assert host.get(name, acting) == pytest.approx([acts if value is None else value, acts], rel=1e-13)
+        other.slope(name, rate)  # before the value
+        other.set(**{name: acts})
+        for one in (host, other):
+            one.step(one.time + step)
+        assert host.reals(SHOWN) == pytest.approx(other.reals(SHOWN), rel=1e-11, abs=1e-15)
+        assert host.rate("R_h") == pytest.approx(other.rate("R_h"), rel=1e-9, abs=1e-9)
 
 
 def test_what_is_late_does_not_act_at_once(wall):
@@ -90,14 +75,11 @@ def test_what_is_late_does_not_act_at_once(wall):
 def test_a_slope_that_leads_out_of_the_range_is_not_followed(wall):
     """A jump over a tiny step has a slope that leads nowhere: the input is held, and the late one where it was."""
     one = wall.start(a_g_late=True, F_t_extrapolated=True)
-    for F_t, until in ((1.0, 1e-9), (1e8, 0.1)):
-        one.set(F_t=F_t)
-        one.step(until)
-    assert one.get("F_t") == 1e8
-    for a_g in (1e4, -1e4, 1e4):
-        one.set(a_g=a_g, F_t=0.0)
-        one.step(one.time + 1e-6)
-        assert one.get("a_ground") == a_g
+    jumps = [("a_g", "a_ground", a_g, 1e-6) for a_g in (1e4, -1e4, 1e4)]
+    for name, acting, value, step in [("F_t", "F_t", 1.0, 1e-9), ("F_t", "F_t", 1e8, 0.1), *jumps]:
+        one.set(**{name: value})
+        one.step(one.time + step)
+        assert one.get(acting) == value
 
 
 def test_a_host_that_holds_samples_of_a_motion_is_warned_once(wall):
@@ -109,9 +91,7 @@ def test_a_host_that_holds_samples_of_a_motion_is_warned_once(wall):
             if slopes:
                 one.slope("a_g", (a_g(step + 1) - a_g(step)) / 0.01)
             one.slave.doStep(step * 0.01, 0.01)
-        found = [message for message in one.messages if message.status == WARNING]
-        one.messages.clear()
-        return found
+        return [message for message in one.taken() if message.status == WARNING]
 
     quake = lambda step: float(np.sin(0.3 * step))
     for still in (lambda _: 0.0, lambda _: 2.0, lambda step: float(step >= 3), lambda step: -2.0 * (step == 7)):
@@ -133,10 +113,10 @@ def test_rates_are_those_of_the_motion(wall):
     one.input("a_g", 1.0, 20.0)
     one.step(0.05)
     one.input("a_g", 2.0, -15.0)
-    rates, before, state = [one.rate(name) for name in RATES], np.array(one.reals(RATES)), one.slave.getFMUstate()
+    rates, before, state = [one.rate(name) for name in RATES], np.array(one.reals(RATES)), one.slave.getFMUState()
     h, after = 2e-6, []
     for step in (h, 2 * h):
-        one.slave.setFMUstate(state)
+        one.slave.setFMUState(state)
         one.slave.doStep(0.05, step)
         after.append(np.array(one.reals(RATES)))
     assert rates == pytest.approx((4 * after[0] - after[1] - 3 * before) / (2 * h), rel=1e-5)
@@ -145,25 +125,23 @@ def test_rates_are_those_of_the_motion(wall):
 def test_rates_know_the_slope_just_followed(wall):
     """The rate at the end of a ramp is that of the ramp, until the input is set anew or the next step holds it."""
     one = wall.start()
-    of_slope = []
+    of_slope = {}
     for slope in (20.0, 0.0, 7.0):
         other = wall.start()
         other.input("a_g", 0.0, 20.0)
         other.step(0.05)
         other.input("a_g", 1.0, slope)
-        of_slope.append(pytest.approx(other.rate("R_h"), rel=1e-13))
+        of_slope[slope] = pytest.approx(other.rate("R_h"), rel=1e-13)
     one.slope("a_g", 20.0)
     one.step(0.05)
-    assert one.rate("R_h") == of_slope[0] != of_slope[1]
+    assert one.rate("R_h") == of_slope[20.0] != of_slope[0.0]
     one.set(F_t=0.0)  # of which nothing was followed
-    assert one.rate("R_h") == of_slope[0]
-    state = one.slave.getFMUstate()
-    one.set(a_g=one.get("a_g"))
-    assert one.rate("R_h") == of_slope[1]
-    one.slave.setFMUstate(state)
-    one.slope("a_g", 7.0)
-    assert one.rate("R_h") == of_slope[2]
-    one.slave.setFMUstate(state)
+    assert one.rate("R_h") == of_slope[20.0]
+    state = one.slave.getFMUState()
+    for act, slope in ((lambda: one.set(a_g=one.get("a_g")), 0.0), (lambda: one.slope("a_g", 7.0), 7.0)):
+        act()
+        assert one.rate("R_h") == of_slope[slope]
+        one.slave.setFMUState(state)
     one.step(0.06)
     rate = one.rate("R_h")
     one.set(a_g=1.0)
@@ -232,7 +210,6 @@ def test_rigid_outputs_are_those_of_the_present_inputs(wall):
 def test_overturning_discards_the_step_and_ends_the_simulation_at_its_instant(wall):
     one = wall.start(theta_0=1.5, theta_dot_0=1.0)
     assert not one.slave.getBooleanStatus(3)
-    one.messages.clear()
     one.input("a_g", 0.5, 0.25)
     assert status(one.slave.doStep, 0.0, 2.0) == DISCARD
     time = one.slave.getRealStatus(2)

@@ -3,21 +3,17 @@
 import json
 import math
 import re
-import subprocess
 from functools import partial
 
 import pandas as pd
 import pytest
 from evidence.scenes import RECORDS
-
-
-def printed(exporter, folder, *arguments) -> str:
-    return subprocess.run([exporter, *map(str, arguments)], cwd=folder, check=True, capture_output=True, text=True).stdout
+from host import output
 
 
 @pytest.mark.parametrize("pattern", ["*PUL254*", "*ELC180*"])
 def test_simulate_advise_sweep_and_view_have_the_same_peaks(exporter, tmp_path, pattern):
-    record, run = next(RECORDS.glob(f"*/{pattern}.AT2")), partial(printed, exporter, tmp_path)
+    record, run = next(RECORDS.glob(f"*/{pattern}.AT2")), partial(output, exporter, cwd=tmp_path)
     simulated = {of["name"]: of["peak"] for of in json.loads(run("simulate", "--record", record, "--format", "json"))["peaks"]}
     advised = re.search(r"peaks: (.*)", run("advise", "--record", record))[1].split(", ")
     assert len(advised) == 5
@@ -36,14 +32,15 @@ def test_simulate_advise_sweep_and_view_have_the_same_peaks(exporter, tmp_path, 
 
 def test_the_errors_of_advice_are_those_of_the_runs(exporter, tmp_path):
     """Under a sine that lifts and lands the specimen, every 0.2 ms."""
-    printed(exporter, tmp_path, "pulse", "sine", "--amplitude", 0.6, "--period", 0.5, "--preset", "mcmanus", "-o", "sine.csv")
+    run = partial(output, exporter, cwd=tmp_path)
+    run("pulse", "sine", "--amplitude", 0.6, "--period", 0.5, "--preset", "mcmanus", "-o", "sine.csv")
     ground = ["--record", "sine.csv", "--preset", "mcmanus"]
-    table = printed(exporter, tmp_path, "advise", *ground, "--duration", 4)
+    table = run("advise", *ground, "--duration", 4)
     rows = {row[0]: row[1:] for line in table.splitlines() if (row := line.removeprefix(">").split())}
 
     def seen(detail, tolerance):
         scene = ["simulate", *ground, "--duration", 4, "--detail", detail, "--tolerance", tolerance]
-        printed(exporter, tmp_path, *scene, "--interval", 2e-4, "-o", "run.csv")
+        run(*scene, "--interval", 2e-4, "-o", "run.csv")
         return pd.read_csv(tmp_path / "run.csv")[["theta[rad]", "u[m]", "a_t[m/s2]"]]
 
     exact = seen("nonlinear", 1e-12)
@@ -53,11 +50,11 @@ def test_the_errors_of_advice_are_those_of_the_runs(exporter, tmp_path):
         errors = [*((found.abs().max() - largest).abs() / largest), *((found - exact).abs().max() / largest)]
         assert [float(shown) for shown in rows[detail][:6]] == pytest.approx([100 * error for error in errors], rel=5e-3, abs=0.02), detail
         scene = ["simulate", *ground, "--duration", 4, "--detail", detail, "--format", "json", "--quiet"]
-        simulated = json.loads(printed(exporter, tmp_path, *scene))
+        simulated = json.loads(run(*scene))
         assert rows[detail][7:9] == [str(simulated[name]) for name in ("steps", "evaluations")]
-    alpha = float(re.search(r"alpha_cg +(\S+)", printed(exporter, tmp_path, "describe", "--preset", "mcmanus"))[1])
+    alpha = float(re.search(r"alpha_cg +(\S+)", run("describe", "--preset", "mcmanus"))[1])
     amplitude = largest["theta[rad]"] / math.tan(alpha)
-    estimate = printed(exporter, tmp_path, "estimate", *ground, "--amplitudes", amplitude)
+    estimate = run("estimate", *ground, "--amplitudes", amplitude)
     a_t = float(re.search(r"a_t +(\S+) m/s2", estimate)[1])
     assert float(rows["estimate"][2]) == pytest.approx(100 * abs(a_t / largest["a_t[m/s2]"] - 1), rel=2e-3)
     f_r, shown = re.search(r"f_r\S+ +(\S+) Hz", estimate)[1], re.search(r"at that theta: (\S+) Hz", table)[1]

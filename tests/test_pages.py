@@ -1,10 +1,10 @@
 """README and the pages print what the program prints today, and the examples run."""
 
 import re
-import subprocess
 
 import pytest
 from conftest import ROOT
+from host import output
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/tutorial/quickstart.md"])
@@ -31,7 +31,7 @@ def test_every_page_is_in_readme_and_in_the_list_of_the_site():
 def test_sweeps_of_the_examples_run(file, exporter, tmp_path):
     text = file.read_text(encoding="utf-8").replace('"../', f'"{ROOT}/')
     (tmp_path / "few.toml").write_text(re.sub(r"count = \d+", "count = 2", text), encoding="utf-8")
-    subprocess.run([exporter, "--quiet", "sweep", "few.toml", "-o", "rows.csv"], cwd=tmp_path, check=True)
+    output(exporter, "--quiet", "sweep", "few.toml", "-o", "rows.csv", cwd=tmp_path)
     assert len((tmp_path / "rows.csv").read_text(encoding="utf-8").splitlines()) > 4
 
 

@@ -1,12 +1,11 @@
 """What `--picture` draws, read back from the files and compared with the tables that the same commands write."""
 
 import re
-import subprocess
-from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 import pytest
+from host import output
 from lxml import etree
 
 UNITS = 8  # drawing units to a pixel
@@ -14,66 +13,54 @@ GREY, BLUE, GREEN, VERMILLION, INK = "#6E6E6E", "#0072B2", "#009E73", "#D55E00",
 MARKS = {"uplift": GREEN, "impact": VERMILLION, "landing": INK}
 
 
-@dataclass
 class Drawing:
-    """An SVG file, in pixels."""
+    """An SVG file in pixels: lines (colour, points), dots (x, y), words (text, x, y, anchor) and vertical axes (x, top, bottom)."""
 
-    lines: list  # (colour, points)
-    axes: list  # vertical ones: x, top, bottom
-    words: list  # (text, x, y, anchor)
-    dots: list  # (colour, x, y)
-
-    def panels(self):
-        """The vertical axes, from the top."""
-        return sorted(self.axes, key=lambda axis: axis[1])
+    def __init__(self, path):
+        root = etree.parse(path).getroot()
+        size = int(root.get("width")), int(root.get("height"))
+        assert [int(edge) for edge in root.get("viewBox").split()] == [0, 0, *(UNITS * edge for edge in size)]
+        of = {name: root.findall(f"{{*}}{name}") for name in ("polyline", "text", "circle")}
+        pixels = lambda node, *names: tuple(float(node.get(name)) / UNITS for name in names)
+        self.lines = [(node.get("stroke"), np.array([pair.split(",") for pair in node.get("points").split()], float) / UNITS)
+                      for node in of["polyline"]]
+        self.dots = [pixels(node, "cx", "cy") for node in of["circle"]]
+        self.words = [(node.text.strip(), *pixels(node, "x", "y"), node.get("text-anchor")) for node in of["text"]]
+        axes = [points for (colour, points), node in zip(self.lines, of["polyline"])
+                if colour == GREY and len(points) == 2 and node.get("stroke-width") == str(UNITS)]
+        self.panels = sorted(((x, *sorted(ends)) for (x, to), ends in (points.T for points in axes) if x == to and abs(np.ptp(ends)) > 40),
+                             key=lambda axis: axis[1])
 
     def upward(self, panel):
         """Pixels down -> values, by the numbers beside the axis."""
         x, top, bottom = panel
-        beside = [(y, value(text)) for text, at, y, anchor in self.words
-                  if anchor == "end" and x - 40 < at < x and top - 5 <= y <= bottom + 5]
-        return straight(*zip(*beside))
+        return straight([(y, number(text)) for text, at, y, anchor in self.words
+                         if anchor == "end" and x - 40 < at < x and top - 5 <= y <= bottom + 5])
 
     def across(self, panel):
         """Pixels to the right -> values, by the numbers below the axis or below the panels that end with it."""
         x, _, bottom = panel
-        below = [(at, y, value(text)) for text, at, y, anchor in self.words
+        below = [(y, at, number(text)) for text, at, y, anchor in self.words
                  if anchor == "middle" and y > bottom and at >= x - 5 and re.fullmatch(r"[−\d.e]+", text)]
-        row = min(y for _, y, _ in below)
-        return straight(*zip(*[(at, number) for at, y, number in below if abs(y - row) < 2]))
+        return straight([of for y, *of in below if y - min(below)[0] < 2])
 
-    def curves(self, colour, panel):
-        """The data lines of a colour that lie in a panel."""
+    def within(self, panel, colour, least=2):
+        """The lines of a colour of so many points in a panel."""
         _, top, bottom = panel
-        return [points for of, points in self.lines if of == colour and len(points) > 2
+        return [points for of, points in self.lines if of == colour and len(points) >= least
                 and (top - 1 <= points[:, 1]).all() and (points[:, 1] <= bottom + 1).all()]
 
 
-def value(text):
+def number(text):
     return float(text.replace("−", "-"))
 
 
-def straight(x, y):
+def straight(points):
     """The line through points that are on one to within the drawing's unit."""
+    x, y = np.transpose(points)
     slope, start = np.polyfit(x, y, 1)
-    assert np.abs(np.polyval([slope, start], x) - y).max() <= 1.5 / UNITS * abs(slope)
+    assert np.abs(start + slope * x - y).max() <= 1.5 / UNITS * abs(slope)
     return lambda at: start + slope * np.asarray(at)
-
-
-def read(path) -> Drawing:
-    root = etree.parse(path).getroot()
-    size = int(root.get("width")), int(root.get("height"))
-    assert [int(edge) for edge in root.get("viewBox").split()] == [0, 0, *(UNITS * edge for edge in size)]
-    of = {name: [node for node in root if etree.QName(node).localname == name] for name in ("polyline", "text", "circle")}
-    points = [np.array([pair.split(",") for pair in node.get("points").split()], float) for node in of["polyline"]]
-    position = lambda node, x, y: (float(node.get(x)) / UNITS, float(node.get(y)) / UNITS)
-    lines = [(node.get("stroke"), each / UNITS) for node, each in zip(of["polyline"], points)]
-    axes = [each for (colour, each), node in zip(lines, of["polyline"])
-            if colour == GREY and len(each) == 2 and node.get("stroke-width") == str(UNITS)]
-    axes = [(a[0], min(a[1], b[1]), max(a[1], b[1])) for a, b in axes if a[0] == b[0] and abs(a[1] - b[1]) > 40]
-    return Drawing(lines, axes,
-                   [(node.text.strip(), *position(node, "x", "y"), node.get("text-anchor")) for node in of["text"]],
-                   [(node.get("fill"), *position(node, "cx", "cy")) for node in of["circle"]])
 
 
 def is_on(time, values, of_time, of_values, points):
@@ -88,69 +75,48 @@ def is_on(time, values, of_time, of_values, points):
 
 
 @pytest.fixture(scope="module")
-def run(exporter, tmp_path_factory):
-    """Runs the command line in a folder of its own and returns what it printed."""
+def response(exporter, pacoima_record, tmp_path_factory):
+    """The response every 0.1 ms, its transitions, what was printed, and the picture."""
     folder = tmp_path_factory.mktemp("pictures")
-
-    def run(*arguments):
-        command = [exporter, *map(str, arguments)]
-        return subprocess.run(command, cwd=folder, check=True, stdout=subprocess.PIPE, text=True).stdout
-
-    run.folder = folder
-    return run
+    printed = output(exporter, "simulate", "--record", pacoima_record, "--duration", 4, "--interval", "1e-4", "-o", "response.csv",
+                     "--events", "events.csv", "--picture", "response.svg", cwd=folder)
+    return pd.read_csv(folder / "response.csv"), pd.read_csv(folder / "events.csv"), printed, Drawing(folder / "response.svg")
 
 
-SCENE = ["--duration", "4"]
-
-
-@pytest.fixture(scope="module")
-def response(run, pacoima_record):
-    """The response every 0.1 ms, and what was printed; its picture is response.svg."""
-    printed = run("simulate", "--record", pacoima_record, *SCENE, "--interval", "1e-4", "-o", "response.csv",
-                  "--events", "events.csv", "--picture", "response.svg")
-    return pd.read_csv(run.folder / "response.csv"), printed
-
-
-def test_histories_are_the_response(run, response):
-    table, printed = response
-    drawing = read(run.folder / "response.svg")
-    panels = drawing.panels()
-    assert len(panels) == 6  # the last holds the marks
-    time = drawing.across(panels[-1])
+def test_histories_are_the_response(response):
+    table, _, printed, drawing = response
+    assert len(drawing.panels) == 6  # the last holds the marks
+    time = drawing.across(drawing.panels[-1])
     rows = [("a_g[m/s2]", 9.81, "a_g", GREY), ("theta[rad]", 1, "theta", BLUE), ("u[m]", 1e-3, "u", BLUE),
             ("delta_t[m]", 1e-3, "delta_t", BLUE), ("a_t[m/s2]", 9.81, "a_t", BLUE)]
-    for panel, (column, unit, name, colour) in zip(panels, rows):
-        [curve] = drawing.curves(colour, panel)
+    for panel, (column, unit, name, colour) in zip(drawing.panels, rows):
+        [curve] = drawing.within(panel, colour, 3)
         values = drawing.upward(panel)
         is_on(table["time[s]"].to_numpy(), table[column].to_numpy() / unit, time, values, curve)
         assert np.allclose(time(curve[[0, -1], 0]), [0, 4], atol=1e-3)
-        magnitude, instant = re.search(rf"peak \|{name}\| +(\S+) \S+ +at (\S+) s", printed).groups()
-        peak = float(magnitude)
+        peak, instant = map(float, re.search(rf"peak \|{name}\| +(\S+) \S+ +at (\S+) s", printed).groups())
         unit_of_drawing = abs(values(1) - values(0)) / UNITS
         assert abs(np.abs(values(curve[:, 1])).max() - peak) <= 1.5 * unit_of_drawing  # no peak is lost
-        [dot] = [(x, y) for _, x, y in drawing.dots if panel[1] <= y <= panel[2]]
-        assert abs(time(dot[0]) - float(instant)) < 1e-3 and abs(abs(values(dot[1])) - peak) <= unit_of_drawing
+        [dot] = [(x, y) for x, y in drawing.dots if panel[1] <= y <= panel[2]]
+        assert abs(time(dot[0]) - instant) < 1e-3 and abs(abs(values(dot[1])) - peak) <= unit_of_drawing
 
 
-def test_every_transition_has_its_mark(run, response):
-    drawing = read(run.folder / "response.svg")
-    lanes = drawing.panels()[-1]
+def test_every_transition_has_its_mark(response):
+    _, events, _, drawing = response
+    lanes = drawing.panels[-1]
     time = drawing.across(lanes)
-    events = pd.read_csv(run.folder / "events.csv")
     assert len(events) == 31
     for kind, colour in MARKS.items():
         expected = events["time[s]"][events["kind"].str.startswith(kind)]
-        ticks = [points for of, points in drawing.lines
-                 if of == colour and len(points) == 2 and lanes[1] <= points[0, 1] <= lanes[2]]
-        found = np.sort([time(points[0, 0]) for points in ticks])
+        found = np.sort([time(points[0, 0]) for points in drawing.within(lanes, colour)])
         assert len(found) == len(expected) > 0
         assert np.abs(found - expected).max() < 1e-3
 
 
-def test_any_title_can_be_drawn(run):
+def test_any_title_can_be_drawn(exporter, tmp_path):
     title = "</text><script>throw 1</script> & \x01\x1f\uffff " + "long " * 60
     header = f"PEER\n{title}\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 4, DT= .0100 SEC,\n"
-    (run.folder / "title.AT2").write_text(header + " 0 0.1 -0.1 0\n")
-    run("simulate", "--record", "title.AT2", "--picture", "title.svg")
-    shown = read(run.folder / "title.svg").words[0][0]
+    (tmp_path / "title.AT2").write_text(header + " 0 0.1 -0.1 0\n")
+    output(exporter, "simulate", "--record", "title.AT2", "--picture", "title.svg", cwd=tmp_path)
+    shown = Drawing(tmp_path / "title.svg").words[0][0]
     assert shown.startswith("</text><script>throw 1</script> & ") and shown.endswith("…")

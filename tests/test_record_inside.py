@@ -1,24 +1,15 @@
 """The record inside: the same at any steps, where it is placed, what is refused; peaks, and limits that the motion passes."""
 
 import json
-import subprocess
 
 import numpy as np
 import pytest
-from host import OUTPUTS, WARNING, refused
+from host import OUTPUTS, output, refused, write
 from reference import EVISON
 from test_states import at2
 
 SHOWN = ["theta", "u", "a_t", "theta_dot", "u_dot", "R_h"]
 PEAKS = ["theta", "u", "delta_t", "uplift", "a_t", "V_t", "M_t"]
-
-
-def uneven(samples: int) -> tuple[str, np.ndarray]:
-    """A quake in m/s², at uneven times from 3 s on, and these times."""
-    i = np.arange(samples)
-    time = 3.0 + 0.015 * i + 0.006 * np.sin(3.7 * i * i)
-    a_g = 9.0 * (1 - i / samples) * (0.4 * np.sin(3.7 * i * i) + 0.5 * np.cos(0.6 * i))
-    return "".join(f"{t!r},{a!r}\n" for t, a in zip(time.tolist(), a_g.tolist())), time
 
 
 def stepped(one, steps) -> np.ndarray:
@@ -34,10 +25,13 @@ def stepped(one, steps) -> np.ndarray:
 @pytest.mark.parametrize("name", ["even.AT2", "uneven.csv"])
 def test_any_step_meets_every_sample(wall, name, detail):
     """One step over everything, steps of the samples, and steps that miss them all: the same, with the same peaks."""
-    text, time = uneven(400)
     if name == "even.AT2":
-        text, time = at2(600), 0.02 * np.arange(600)
-    wall.write(name, text)
+        time = 0.02 * np.arange(600)
+        wall.write(name, at2(600))
+    else:
+        i = np.arange(400)
+        time = 3.0 + 0.015 * i + 0.006 * np.sin(3.7 * i * i)
+        write(wall.resources / name, "m/s2", time, 9.0 * (1 - i / 400) * (0.4 * np.sin(3.7 * i * i) + 0.5 * np.cos(0.6 * i)))
     following = lambda: wall.start(tolerance=1e-12, detail=detail, record=name, record_time_scale=0.4, record_scale=1.25, peaks=True)
     of_samples, time = following(), 0.4 * time
     shown, names = stepped(of_samples, np.diff(time)), [f"{name}_max" for name in PEAKS]
@@ -60,10 +54,8 @@ def test_a_record_comes_when_it_is_asked_for(wall):
     wall.write("steps.csv", "t (s),a\n5,2\n6,4\n7,1\n")
     shown = []
     for start in (0.0, -7.0, 1048576.0):
-        one = wall.instance().enter(start=start, record="steps.csv", record_scale=-0.5, record_time_scale=0.5, record_start=0.25,
-                                    peaks=True)
+        one = wall.start(start=start, record="steps.csv", record_scale=-0.5, record_time_scale=0.5, record_start=0.25, peaks=True)
         assert one.get("record_duration", "a_ground") == [1.0, 0.0]
-        one.exit()
         shown.append([])
         for step, a_ground, slope in ((0.125, 0.0, 0.0), (0.125, -1.0, -2.0), (0.25, -1.5, -2.0), (0.25, -2.0, 3.0),
                                       (0.375, -0.875, 3.0), (0.125, 0.0, 0.0), (10.0, 0.0, 0.0)):
@@ -148,41 +140,31 @@ LIMITS = ["tension_max", "R_v_min", "mu_required", "mu_impact", "tension_impact"
 
 @pytest.fixture
 def lively(wall):
-    """An instance whose ground is about to quake for 5 s, and the record."""
+    """Makes an instance whose ground is about to quake for 5 s, if it is the record."""
     time = 0.02 * np.arange(251)
-    a_g = 3 * np.sin(9 * time) + 2 * np.sin(31 * time)
-    wall.write("quake.csv", "".join(f"{t!r},{a!r}\n" for t, a in zip(time.tolist(), a_g.tolist())))
-
-    def start(is_watched):
-        one = wall.start(record="quake.csv", validity=is_watched, peaks=is_watched, **LIVELY)
-        one.messages.clear()
-        return one
-
-    return start, wall.resources / "quake.csv"
+    write(wall.resources / "quake.csv", "m/s2", time, 3 * np.sin(9 * time) + 2 * np.sin(31 * time))
+    return lambda is_watched: wall.start(record="quake.csv", validity=is_watched, peaks=is_watched, **LIVELY)
 
 
-def test_what_is_gone_beyond_is_that_of_a_run_and_told_once(lively, exporter):
+def test_what_is_gone_beyond_is_that_of_a_run_and_told_once(lively, wall, exporter):
     """Whatever the steps, the values are those of the command line's run."""
-    start, record = lively
-    command = [exporter, "--quiet", "simulate", "--preset", "evison", "--record", record, "--duration", "5", "--format", "json",
-               *(f"--{name.replace('_', '-')}={value}" for name, value in LIVELY.items())]
-    told = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    options = [f"--{name.replace('_', '-')}={value}" for name, value in LIVELY.items()]
+    told = json.loads(output(exporter, "--quiet", "simulate", "--preset", "evison", "--record", wall.resources / "quake.csv", "--duration", 5,
+                             "--format", "json", *options))
     expected = {row["name"]: row for row in told["validity"]}
     passed = [name for name in LIMITS if expected[name]["first_beyond"] is not None]
     assert passed == ["tension_max", "R_v_min", "mu_required", "energy_gain_max"]
     for steps in ([5.0], [0.1] * 50, [0.013, 1.7, 0.5, 2.787]):
-        one = start(True)
+        one = lively(True)
+        one.taken()
         stepped(one, steps)
         for name in LIMITS:
             row = expected[name]
-            assert one.get(name) == pytest.approx(float(row["value"]), rel=1e-9)
-            assert one.get(f"t_{name}") == pytest.approx(float(row["time"]), rel=1e-9)
+            assert one.get(name, f"t_{name}") == pytest.approx([float(row["value"]), row["time"]], rel=1e-9)
         assert one.get("energy_gains") > 0
-        warnings = [message for message in one.messages if message.status == WARNING]
-        assert len(warnings) == len(passed)
-        for name in passed:
-            (message,) = [message for message in warnings if f" s: {name} is " in message.text]
-            assert float(message.text.split()[2]) == pytest.approx(expected[name]["first_beyond"], rel=5e-6)
+        warnings = one.warnings()
+        instants = {text.split(" is ")[0].split()[-1]: float(text.split()[2]) for text in warnings}
+        assert len(warnings) == len(passed) and instants == pytest.approx({name: expected[name]["first_beyond"] for name in passed}, rel=5e-6)
 
 
 def test_limits_are_known_at_the_start(wall):
@@ -194,10 +176,11 @@ def test_limits_are_known_at_the_start(wall):
 
 def test_what_nobody_asks_for_is_not_watched(lively):
     """And changes no bit."""
-    watched, silent = lively[0](True), lively[0](False)
+    watched, silent = lively(True), lively(False)
+    silent.taken()
     for one in (watched, silent):
-        stepped(one, [5.0])
+        one.step(5.0)
     assert watched.reals(OUTPUTS) == silent.reals(OUTPUTS) and watched.get("transitions") == silent.get("transitions")
     names = [*LIMITS, *(f"{name}_max" for name in PEAKS)]
     assert np.isnan(silent.reals([*names, *(f"t_{name}" for name in names)])).all() and silent.get("energy_gains") == 0
-    assert watched.get("theta_max") > 0 and not [message for message in silent.messages if message.status == WARNING]
+    assert watched.get("theta_max") > 0 and silent.warnings() == []

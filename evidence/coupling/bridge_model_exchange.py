@@ -20,20 +20,10 @@ TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
 SETTINGS = [*((tolerance, 0.0) for tolerance in TOLERANCES), (1e-10, 0.2e-3)]  # the latter the longest step, s; 0: any
 
 
-class Pier(Model):
-    """A pier with the ground motion inside, which feels a force on its top."""
-
-    def __init__(self, fmu: str, tolerance: float):
-        super().__init__(fmu, tolerance, PACOIMA_DAM)
-        self.force = [self.references["F_t"]]
-        self.top = [self.references[name] for name in ("delta_t", "v_t")]
-        self.a_ground = [self.references["a_ground"]]
-
-
 class OneSystem:
     """Piers and deck as the equations that a solver asks for; the state is x, x_dot, then every pier's."""
 
-    def __init__(self, piers: list[Pier], deck: SwayingMass):
+    def __init__(self, piers: list[Model], deck: SwayingMass):
         self.piers, self.deck = piers, deck
         self.evaluations, self.steps = 0, 0
 
@@ -51,23 +41,22 @@ class OneSystem:
         """Gives every pier its bearing's force, where it stands."""
         forces = []
         for pier in self.piers:
-            delta_t, v_t = pier.fmu.getReal(pier.top)
+            delta_t, v_t = pier.reals(("delta_t", "v_t"))
             forces.append((self.deck.k * (y[0] - delta_t) + self.deck.c * (y[1] - v_t)) / len(self.piers))
-            pier.fmu.setReal(pier.force, forces[-1:])
+            pier.set(F_t=forces[-1])
         return forces
 
     def rates(self, t: float, y, rates) -> None:
         self.evaluations += 1
         forces = self.at(t, y)
-        (a_ground,) = self.piers[0].fmu.getReal(self.piers[0].a_ground)
-        rates[:DECK] = y[1], -a_ground - sum(forces) / self.deck.M
+        rates[:DECK] = y[1], -self.piers[0].get("a_ground") - sum(forces) / self.deck.M
         for pier, part, of_pier in zip(self.piers, self.parts(y), self.parts(rates)):
             pier.rates(t, part, of_pier)
 
-    def indicators(self, t: float, y, indicators) -> None:
+    def roots(self, t: float, y, indicators) -> None:
         self.at(t, y)
         for pier, part, of_pier in zip(self.piers, self.parts(y), np.split(indicators, len(self.piers))):
-            pier.indicators(t, part, of_pier)
+            pier.roots(t, part, of_pier)
 
     def nominals(self) -> np.ndarray:
         """The magnitudes of the states; the deck's are like its piers'."""
@@ -78,22 +67,22 @@ class OneSystem:
         """The solver's step to there is complete: whether a pier asks for event mode."""
         self.steps += 1
         self.at(t, y)
-        return any([pier.fmu.completedIntegratorStep()[0] for pier in self.piers])
+        return any([pier.complete()[0] for pier in self.piers])
 
     def enter_event_mode(self) -> None:
         for pier in self.piers:
             pier.enter_event_mode()
 
-    def update(self, y) -> tuple[np.ndarray, bool, float]:
+    def handle(self, y) -> tuple[np.ndarray, bool, float]:
         """Handles an event: the state after it, whether a pier has overturned, and when the next event is."""
         for pier in self.piers:
-            pier.fmu.newDiscreteStates()
+            pier.update()
         self.push(y)  # where a velocity has jumped, so has a dashpot's force
-        states, have_ended, next_events = zip(*(pier.update(y) for pier in self.piers))
+        states, have_ended, next_events = zip(*(pier.handle(y) for pier in self.piers))
         return np.concatenate([y[:DECK], *states]), any(have_ended), min(next_events)
 
     def transitions(self) -> int:
-        return sum(pier.fmu.getInteger([pier.references["transitions"]])[0] for pier in self.piers)
+        return sum(pier.get("transitions") for pier in self.piers)
 
 
 def response(fmus, of_deck, tolerance: float, time, longest_step: float = 0.0) -> tuple[np.ndarray, OneSystem]:
@@ -101,7 +90,7 @@ def response(fmus, of_deck, tolerance: float, time, longest_step: float = 0.0) -
 
     A pier takes its force to be a line over a step with a transition in it: an error of third order in the step.
     """
-    system = OneSystem([Pier(fmu, tolerance) for fmu in fmus], of_deck)
+    system = OneSystem([Model(fmu, tolerance, PACOIMA_DAM) for fmu in fmus], of_deck)
     solver = cvode(system, tolerance, INDICATORS * len(fmus), longest_step)
     rows = np.array([y for _, y in follow(system, np.zeros(DECK + STATES * len(fmus)), *solver, time)])
     if len(rows) < len(time):

@@ -38,7 +38,7 @@ class OnSoil(Coupled):
 
     def first(self, t, h, w):
         R_h, I_h = self.structure.step(t, h, w.tolist())
-        self.added = -self.structure.derivative("R_h", "a_g") if self.solve_loop else 0.0
+        self.added = -self.structure.instance.derivative("R_h", "a_g") if self.solve_loop else 0.0
         return np.array([self.y[1], [R_h + self.added * w[1, 0], I_h]])
 
     def second(self, t, h, y):

@@ -10,7 +10,7 @@ import numpy as np
 
 from .bridge import Bridge
 from .masters import MOST_SWEEPS, TOLERANCE, Diverged
-from .structure import Structure
+from .structure import Structure, unpacked
 
 SLIVER = 1e-12  # s; what is left of a step that is not worth another
 
@@ -23,25 +23,26 @@ class Pier(Structure):
         owner = weakref.proxy(self)  # the instance must not keep its owner
 
         def at_the_end_of_the_step(_environment, _time, *_):
-            owner.instance.setFloat64(owner.inputs, owner.line_end)
+            owner.set(owner.line_end)
 
-        super().__init__(fmu, ["a_g", "F_t"], ["delta_t", "v_t"], updated=("a_g", "F_t"), event_mode_used=True, early_return_allowed=True,
-                         intermediate_update=at_the_end_of_the_step)
-        self.instance.enterStepMode()
+        inputs = ["a_g", "F_t"]
+        super().__init__(fmu, inputs, ["delta_t", "v_t"], eventModeUsed=True, earlyReturnAllowed=True,
+                         intermediateUpdate=at_the_end_of_the_step, requiredIntermediateVariables=unpacked(fmu).references(inputs))
 
-    def step(self, t: float, h: float, line) -> list[float]:
+    def set(self, values) -> None:
+        self.instance.set_reals(**dict(zip(self.inputs, values)))
+
+    def step(self, t: float, h: float, line) -> tuple[float, ...]:
         """The outputs at the end of the step under `line`, the inputs at its start and at its end, or where it came to a
         transition, just before it."""
         start, self.line_end = line
-        self.instance.setFloat64(self.inputs, start)
-        self.is_transition_due, _, _, self.time = self.instance.doStep(t, h)
-        return self.instance.getFloat64(self.outputs)
+        self.set(start)
+        self.is_transition_due, _, _, self.time = self.instance.slave.doStep(t, h)
+        return self.read(*self.outputs)
 
     def transit(self) -> None:
         """Applies the transition that is due."""
-        self.instance.enterEventMode()
-        self.instance.updateDiscreteStates()
-        self.instance.enterStepMode()
+        self.instance.event()
         self.is_transition_due = False
 
 

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from ctypes import POINTER, c_double
 from dataclasses import dataclass
 from functools import cache
 
-import fmpy
 import numpy as np
+from host import PHASES, Instance, simulate
 from scipy.integrate import DOP853
 from sksundae.cvode import CVODE
 
-from ..coupling.structure import opened
+from ..coupling.structure import unpacked
 
 OUTPUTS = ["theta", "u", "phase", "transitions"]
-LEFT, RIGHT = 2, 3  # items of `phase`
 SAMPLES_ARE_EVENTS = 1e-8  # tolerance up to which the FMU foresees the samples of a record as events
 SAME_TIME = 1e-12  # s, closer than solvers tell apart
 
@@ -49,7 +47,7 @@ class Result:
     def depth(self) -> float:
         """How far below the ground it was, rad: theta of the wrong sign while rocking."""
         theta, phase = self.rows["theta"], self.rows["phase"]
-        return max(np.max(np.where(phase == RIGHT, -theta, 0)), np.max(np.where(phase == LEFT, theta, 0)))
+        return max(np.max(np.where(phase == PHASES["rocking right"], -theta, 0)), np.max(np.where(phase == PHASES["rocking left"], theta, 0)))
 
     def error(self, exact: Result) -> float:
         """The largest error of theta and u up to where it ends, each relative to its peak; with the base down of u alone."""
@@ -59,12 +57,9 @@ class Result:
 
 def _simulate(scene: Scene, interval: float | None = None, **arguments) -> Result:
     """By fmpy's own loop."""
-    said = []
     interval = interval or scene.interval
-    rows = fmpy.simulate_fmu(scene.fmu, stop_time=scene.end, output_interval=interval, output=OUTPUTS, record_events=False,
-                             logger=lambda _environment, _name, _status, _category, text: said.append(text.decode()),
-                             debug_logging=True, **arguments)
-    return Result(rows[:: round(scene.interval / interval)], sum("shows nothing of" in text for text in said))
+    rows, messages = simulate(scene.fmu, stop_time=scene.end, output_interval=interval, output=OUTPUTS, record_events=False, **arguments)
+    return Result(rows[:: round(scene.interval / interval)], sum("shows nothing of" in message.text for message in messages))
 
 
 @cache
@@ -84,60 +79,37 @@ def fmpy_euler(scene: Scene, step: float) -> Result:
     return _simulate(scene, step, fmi_type="ModelExchange", solver="Euler", step_size=step, start_values=scene.start_values)
 
 
-class Model:
+class Model(Instance):
     """An instance as the equations that a solver asks for."""
 
     def __init__(self, fmu: str, tolerance: float, start_values: dict[str, str | float]):
-        self.fmu, self.references = opened(self, fmu, "ModelExchange")
-        self.fmu.setupExperiment(tolerance=tolerance, startTime=0.0)
-        for name, value in start_values.items():
-            set_value = self.fmu.setString if isinstance(value, str) else self.fmu.setReal
-            set_value([self.references[name]], [value])
-        self.fmu.enterInitializationMode()
-        self.fmu.exitInitializationMode()
-        self._numbers = np.empty(4)
-        self._pointer = self._numbers.ctypes.data_as(POINTER(c_double))
-
-    def at(self, time: float, states: np.ndarray) -> None:
-        self.fmu.setTime(time)
-        self._numbers[:] = states
-        self.fmu.setContinuousStates(self._pointer, 4)
-
-    def states(self) -> np.ndarray:
-        self.fmu.getContinuousStates(self._pointer, 4)
-        return self._numbers.copy()
+        super().__init__(unpacked(fmu), "ModelExchange", logs=False)
+        self.enter(tolerance, **start_values).slave.exitInitializationMode()
 
     def rates(self, time: float, states: np.ndarray, rates: np.ndarray) -> None:
         self.at(time, states)
-        self.fmu.getDerivatives(self._pointer, 4)
-        rates[:] = self._numbers
+        rates[:] = self.derivatives()
 
-    def indicators(self, time: float, states: np.ndarray, indicators: np.ndarray) -> None:
+    def roots(self, time: float, states: np.ndarray, indicators: np.ndarray) -> None:
         self.at(time, states)
-        self.fmu.getEventIndicators(self._pointer, 2)
-        indicators[:] = self._numbers[:2]
+        indicators[:] = self.indicators()
 
     def nominals(self) -> np.ndarray:
-        self.fmu.getNominalsOfContinuousStates(self._pointer, 4)
-        return self._numbers.copy()
+        return np.array(self.vector("getNominalsOfContinuousStates", 4))
 
     def completed(self, time: float, states: np.ndarray) -> bool:
         """The solver's step to there is complete: whether the FMU asks for event mode."""
         self.at(time, states)
-        return self.fmu.completedIntegratorStep()[0]
+        return self.complete()[0]
 
     def enter_event_mode(self) -> None:
-        self.fmu.enterEventMode()
+        self.slave.enterEventMode()
 
-    def update(self, _states) -> tuple[np.ndarray, bool, float]:
+    def handle(self, _states) -> tuple[np.ndarray, bool, float]:
         """Handles an event: the states after it, whether the structure has overturned, and when the next event is."""
-        _, has_ended, _, _, is_foreseen, next_event = self.fmu.newDiscreteStates()
-        self.fmu.enterContinuousTimeMode()
-        return self.states(), has_ended, next_event if is_foreseen else np.inf
-
-    def row(self, time: float) -> tuple:
-        reals = self.fmu.getReal([self.references[name] for name in ("theta", "u")])
-        return time, *reals, *self.fmu.getInteger([self.references[name] for name in ("phase", "transitions")])
+        has_ended, _, next_event = self.update()
+        self.leave_event()
+        return np.array(self.states()), has_ended, np.inf if next_event is None else next_event
 
 
 @cache
@@ -151,7 +123,7 @@ def sundae(scene: Scene, tolerance: float, told: float | None = None) -> Result:
 def cvode(system, tolerance: float, indicators: int, longest_step: float = 0.0) -> tuple:
     """SUNDIALS' CVODE (Adams) over the equations of a system, as `start` and `step` of `follow`; 0 leaves the steps (s) to it."""
     solver = CVODE(system.rates, method="Adams", rtol=tolerance, atol=tolerance * system.nominals(), max_step=longest_step,
-                   eventsfn=lambda t, y, z: system.indicators(t, y, z), num_events=indicators)
+                   eventsfn=lambda t, y, z: system.roots(t, y, z), num_events=indicators)
 
     def step(stop):
         found = solver.step(stop, method="onestep", tstop=stop)
@@ -167,7 +139,7 @@ def dop853(scene: Scene, tolerance: float) -> Result:
     the FMU, which goes over the step."""
     model = Model(scene.fmu, min(tolerance, SAMPLES_ARE_EVENTS), scene.start_values)
     atol = tolerance * model.nominals()
-    solver, at, length = None, (0.0, model.states()), scene.interval
+    solver, at, length = None, (0.0, np.array(model.states())), scene.interval
 
     def rates(t, x):
         found = np.empty_like(x)
@@ -196,7 +168,7 @@ def follow(system, states, start, step, points):
     """Yields time and states at `points`, up to where the system ends. The solver goes on from where it is to `start`, one `step`
     up to where it is told to stop: time, states, and whether it found a root. `system.hidden` counts other events."""
     system.hidden, time = 0, float(points[0])
-    states, has_ended, next_event = system.update(states)
+    states, has_ended, next_event = system.handle(states)
     start(time, states)
     yield time, states
     for point in points[1:]:
@@ -206,7 +178,7 @@ def follow(system, states, start, step, points):
             if has_event or has_root or time > next_event - SAME_TIME:
                 system.hidden += has_event and not has_root
                 system.enter_event_mode()
-                states, has_ended, next_event = system.update(states)
+                states, has_ended, next_event = system.handle(states)
                 start(time, states)
         if time > point - SAME_TIME:
             yield time, states
@@ -214,5 +186,5 @@ def follow(system, states, start, step, points):
 
 def _result(scene: Scene, model: Model, start, step) -> Result:
     points = scene.interval * np.arange(round(scene.end / scene.interval) + 1)
-    rows = [model.row(time) for time, _ in follow(model, None, start, step, points)]
+    rows = [(time, *model.get(*OUTPUTS)) for time, _ in follow(model, None, start, step, points)]
     return Result(np.array(rows, dtype=[(name, float) for name in ("time", *OUTPUTS)]), model.hidden)

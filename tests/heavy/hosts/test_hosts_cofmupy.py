@@ -1,13 +1,14 @@
 """cofmupy 1.0.0 and the fmpy 0.3.20 that it needs, over Pacoima Dam with the record inside; both are in a folder of their own."""
 
+import json
 import os
-import subprocess
 import sys
 
 import numpy as np
 import pytest
 from conftest import ROOT
-from pacoima import END, OUTPUTS, STEP, distance
+from host import output
+from pacoima import END, OUTPUTS, STEP, distance, rows
 
 PACKAGES = ROOT / "out" / "cofmupy"
 pytestmark = pytest.mark.skipif(not PACKAGES.exists(), reason="cofmupy is missing: `make heavy PARTS=hosts` installs it")
@@ -26,28 +27,20 @@ with open("rows.json", "w") as rows:
 """
 
 
-@pytest.fixture
-def python(tmp_path):
-    """Runs Python with these packages."""
-
-    def run(*arguments):
-        environment = os.environ | {"PYTHONPATH": str(PACKAGES)}
-        subprocess.run([sys.executable, *map(str, arguments)], cwd=tmp_path, env=environment, check=True, capture_output=True)
-
-    return run
+@pytest.fixture(params=[2, 3])
+def run(request, export, pacoima_record, tmp_path):
+    """Runs Python with these packages, `{}` in whose arguments is the FMU."""
+    path = export("mcmanus", pacoima_record, fmi=request.param).path
+    environment = os.environ | {"PYTHONPATH": str(PACKAGES)}
+    return lambda *arguments: output(sys.executable, *(path if of == "{}" else of for of in arguments), cwd=tmp_path, env=environment)
 
 
-@pytest.mark.parametrize("version", [2, 3])
-def test_cofmupy(export, pacoima_record, exact, python, tmp_path, version):
+def test_cofmupy(run, exact, tmp_path):
     expected = exact(STEP)
-    python("-c", COFMUPY, export("mcmanus", pacoima_record, fmi=version), STEP, len(expected) - 1, *OUTPUTS)
-    found = np.transpose(np.loadtxt((tmp_path / "rows.json").read_text().strip("[]").split("], ["), delimiter=","))
-    assert distance(found, expected[1:]) < 1e-9
+    run("-c", COFMUPY, "{}", STEP, len(expected) - 1, *OUTPUTS)
+    assert distance(np.transpose(json.loads((tmp_path / "rows.json").read_text())), expected[1:]) < 1e-9
 
 
-@pytest.mark.parametrize("version", [2, 3])
-def test_older_fmpy(export, pacoima_record, exact, python, tmp_path, version):
-    path = export("mcmanus", pacoima_record, fmi=version)
-    python("-m", "fmpy", "simulate", path, "--output-file", "out.csv", "--stop-time", END, "--output-interval", STEP)
-    table = np.genfromtxt(tmp_path / "out.csv", delimiter=",", names=True)
-    assert distance(np.column_stack([table[name] for name in OUTPUTS]), exact(STEP)) < 1e-9
+def test_older_fmpy(run, exact, tmp_path):
+    run("-m", "fmpy", "simulate", "{}", "--output-file", "out.csv", "--stop-time", END, "--output-interval", STEP)
+    assert distance(rows(np.genfromtxt(tmp_path / "out.csv", delimiter=",", names=True)), exact(STEP)) < 1e-9

@@ -2,12 +2,12 @@
 and their bytes."""
 
 import os
-import subprocess
 
 import numpy as np
 import pytest
 from conftest import ROOT
-from pacoima import A_G, OUTPUTS, STEPS, TIME, distance, held, instants, write_record
+from host import output, write
+from pacoima import A_G, OUTPUTS, STEPS, TIME, distance, held, instants
 
 
 @pytest.fixture(scope="module")
@@ -17,18 +17,17 @@ def run(mcmanus, tmp_path_factory):
 
     folder = ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "fmi_crate"
     # the package libclang brings the library, the C compiler its own headers
-    headers = subprocess.run(["cc", "-print-file-name=include"], check=True, stdout=subprocess.PIPE, text=True).stdout
+    headers = output("cc", "-print-file-name=include")
     libclang = {"LIBCLANG_PATH": clang.native.__path__[0], "BINDGEN_EXTRA_CLANG_ARGS": f"-isystem {headers.strip()}"}
-    subprocess.run(["cargo", "build", "--locked", "--target-dir", folder, "--manifest-path",
-                    ROOT / "tests/hosts/fmi_crate/Cargo.toml"], env=os.environ | libclang, check=True)
+    output("cargo", "build", "--locked", "--target-dir", folder, "--manifest-path", ROOT / "tests/hosts/fmi_crate/Cargo.toml",
+           env=os.environ | libclang)
     record = tmp_path_factory.mktemp("fmi_crate") / "record.csv"
 
     def run(time, a_g, fmu=mcmanus, **start_values) -> np.ndarray:
-        write_record(record, time, a_g)
-        command = [folder / "debug" / "fmi-crate-host", fmu.path, record, ",".join(OUTPUTS)]
-        command += [f"{name}={value}" for name, value in start_values.items()]
-        return np.loadtxt(subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines(),
-                          delimiter=",")
+        write(record, "m/s2", time, a_g)
+        values = [f"{name}={value}" for name, value in start_values.items()]
+        printed = output(folder / "debug" / "fmi-crate-host", fmu.path, record, ",".join(OUTPUTS), *values)
+        return np.loadtxt(printed.splitlines(), delimiter=",")
 
     return run
 

@@ -12,9 +12,8 @@ from fmpy.ssp.simulation import simulate_ssp
 from host import need_libtbb
 from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimObserver import CosimObserver
-from pacoima import A_G, END, OUTPUTS, STEP, STEPS, TIME, distance, held, instants
+from pacoima import A_G, END, OUTPUTS, STEP, STEPS, TIME, distance, held, instants, stepped
 
-SPECIMENS = ("mcmanus", "evison")
 SSP = "http://ssp-standard.org/SSP1/SystemStructure"
 
 
@@ -34,72 +33,57 @@ def system_structure(names, connected: bool) -> str:
 
 
 @pytest.fixture(scope="module")
-def fmus(mcmanus, evison):
-    return dict(zip(SPECIMENS, (mcmanus, evison)))
-
-
-@pytest.fixture(scope="module")
-def ssp(fmus, tmp_path_factory):
+def ssp(tmp_path_factory):
     """Writes the archive, in which a_g may be connected to every specimen's, and returns its path."""
 
-    def write(connected: bool, fmus=fmus):
+    def write(fmus, connected: bool = False) -> str:
         path = tmp_path_factory.mktemp("ssp") / "shake_table.ssp"
         with zipfile.ZipFile(path, "w") as archive:
             archive.writestr("SystemStructure.ssd", system_structure(fmus, connected))
             for name, fmu in fmus.items():
                 archive.write(fmu.path, f"resources/{name}.fmu")
-        return path
+        return str(path)
 
     return write
 
 
-@pytest.mark.parametrize("step", STEPS)
-def test_fmpy_with_the_record_inside(ssp, shaken, exact, step):
-    result = simulate_ssp(str(ssp(False, shaken)), stop_time=END - step / 2, step_size=step)
-    for name in SPECIMENS:
-        found = np.column_stack([result[f"{name}.{output}"] for output in OUTPUTS])
-        assert distance(found, exact(step, name)[1:]) < 1e-9
+def by_fmpy(path, fmus, step):
+    result = simulate_ssp(path, stop_time=END - step / 2, step_size=step)
+    return [[result[f"{name}.{output}"] for output in OUTPUTS] for name in fmus]
 
 
-@pytest.mark.parametrize("step", STEPS)
-def test_libcosim_with_the_record_inside(ssp, shaken, exact, tmp_path, step):
-    with zipfile.ZipFile(ssp(False, shaken)) as archive:
-        archive.extractall(tmp_path)
-    execution = CosimExecution.from_ssp_file(str(tmp_path), step_size=round(step * 1e9))
-    values = CosimObserver.create_last_value()
+def by_libcosim(path, fmus, step):
+    zipfile.ZipFile(path).extractall(f"{path}.unpacked")
+    execution, values = CosimExecution.from_ssp_file(f"{path}.unpacked", step_size=round(step * 1e9)), CosimObserver.create_last_value()
     execution.add_observer(values)
-    samples = {name: [] for name in SPECIMENS}
-    for _ in instants(step)[1:]:
-        assert execution.step()
-        for name, fmu in shaken.items():
-            references = [fmu.variables[output].valueReference for output in OUTPUTS]
-            index = execution.slave_index_from_instance_name(name)
-            samples[name].append(values.last_real_values(index, references))
-    for name in SPECIMENS:
-        assert distance(np.array(samples[name]), exact(step, name)[1:]) < 1e-9
+    indices = {execution.slave_index_from_instance_name(name): fmu.references(OUTPUTS) for name, fmu in fmus.items()}
+    read = lambda: [values.last_real_values(*of) for of in indices.items()]
+    return stepped(read, lambda _: execution.step(), instants(step)[1:])[1:].transpose(1, 2, 0)
 
 
-@pytest.mark.parametrize("step", STEPS)
-def test_ecos_with_the_record_inside(ssp, shaken, exact, step):
+def by_ecos(path, fmus, step):
     need_libtbb()
     from ecospy import EcosSimulation
 
-    with EcosSimulation(ssp_path=str(ssp(False, shaken)), step_size=step) as table:
+    with EcosSimulation(ssp_path=path, step_size=step) as table:
         assert table.init()
-        samples = {name: [] for name in SPECIMENS}
-        for _ in instants(step)[1:]:
-            table.step()
-            for name in SPECIMENS:
-                samples[name].append([table.get_real(f"{name}::{output}") for output in OUTPUTS])
+        read = lambda: [[table.get_real(f"{name}::{output}") for output in OUTPUTS] for name in fmus]
+        found = stepped(read, lambda _: table.step(), instants(step)[1:])[1:]
         table.terminate()
-    for name in SPECIMENS:
-        assert distance(np.array(samples[name]), exact(step, name)[1:]) < 1e-9
+    return found.transpose(1, 2, 0)
 
 
-def test_fmpy(ssp, fmus):
+@pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("host", [by_fmpy, by_libcosim, by_ecos])
+def test_the_record_inside(ssp, shaken, exact, host, step):
+    for name, found in zip(shaken, host(ssp(shaken), shaken, step), strict=True):
+        assert distance(np.transpose(found), exact(step, name)[1:]) < 1e-9
+
+
+def test_fmpy(ssp, mcmanus, evison):
     """It hands a connection's value on after the step, so that the input is a step late."""
-    a_g = dict(zip(np.round(TIME / STEP), A_G))
-    result = simulate_ssp(str(ssp(True)), stop_time=TIME[-1] - STEP / 2, step_size=STEP,
+    fmus, a_g = dict(mcmanus=mcmanus, evison=evison), dict(zip(np.round(TIME / STEP), A_G))
+    result = simulate_ssp(ssp(fmus, True), stop_time=TIME[-1] - STEP / 2, step_size=STEP,
                           input={"a_g": lambda time: a_g[round(time / STEP)]})
     for name, fmu in fmus.items():
         found = np.column_stack([result[f"{name}.{output}"] for output in OUTPUTS])

@@ -3,11 +3,11 @@
 import functools
 import os
 import shutil
-import subprocess
 
 import pytest
+from host import output
 from pacoima import STEPS, distance
-from test_hosts_library import HOST, cargo_build, linux_host, linux_library, on_linux, output, run  # noqa: F401
+from test_hosts_library import HOST, cargo_build, linux_host, linux_library, run  # noqa: F401
 
 WINDOWS, MINGW = "x86_64-pc-windows-gnu", "x86_64-w64-mingw32-gcc"
 
@@ -32,7 +32,7 @@ def wine(windows, run, tmp_path_factory):
     source = folder / "bcryptprimitives.c"
     source.write_text("__declspec(dllexport) int ProcessPrng(unsigned char *data, unsigned long long size) {"
                       "for (unsigned long long i = 0; i < size; i++) data[i] = 37 * i; return 1; }")
-    subprocess.run([MINGW, "-shared", "-nostdlib", "-Wl,--entry=0", "-o", folder / "bcryptprimitives.dll", source], check=True)
+    output(MINGW, "-shared", "-nostdlib", "-Wl,--entry=0", "-o", folder / "bcryptprimitives.dll", source)
     environment = os.environ | {"WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all"}
     host = cargo_build("--release", "--target", WINDOWS, "--manifest-path", HOST) / WINDOWS / "release"
     for file in (windows / "FlexibleRocking.dll", host / "load-library.exe"):
@@ -40,8 +40,8 @@ def wine(windows, run, tmp_path_factory):
     return functools.partial(run, "wine", "load-library.exe", library="FlexibleRocking.dll", cwd=folder, env=environment)
 
 
-def test_windows_gives_the_numbers_of_linux(wine, on_linux):
-    assert distance(wine(), on_linux) < 1e-12
+def test_windows_gives_the_numbers_of_linux(wine, run, linux_host, linux_library):
+    assert distance(wine(), run(linux_host, library=linux_library)) < 1e-12
 
 
 @pytest.mark.parametrize("step", STEPS)

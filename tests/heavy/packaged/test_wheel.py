@@ -4,8 +4,8 @@ of the source takes minutes and needs Rust."""
 import json
 import os
 import re
-import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pages
@@ -13,26 +13,22 @@ import pytest
 from conftest import ROOT
 from fmpy import read_model_description, simulate_fmu
 from packages import package
-from pacoima import write_record
+from host import output, write
+from pacoima import A_G, TIME
 
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory):
-    """Runs a command of a fresh environment with the wheel, and the newest fmpy of requirements.txt."""
-    path = package(os.environ.get("PACKAGE", "*-manylinux*_x86_64.whl"))
+    """Runs a command of a fresh environment with the wheel, and the newest fmpy of requirements.txt, beside the Pacoima Dam record."""
     folder = tmp_path_factory.mktemp("installed")
-    subprocess.run([sys.executable, "-m", "venv", folder / "venv"], check=True)
+    output(sys.executable, "-m", "venv", folder / "venv")
     fmpy = re.search(r"^fmpy==\S+", (ROOT / "requirements.txt").read_text(), re.MULTILINE)[0]
-    command = [folder / "venv/bin/python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", path, fmpy]
-    subprocess.run(command, check=True)
-
-    def run(program, *arguments):
-        environment = {"PATH": f"{folder}/venv/bin:/usr/bin:/bin", "HOME": str(folder)}
-        assert not any(os.access(f"{place}/cargo", os.X_OK) for place in environment["PATH"].split(":"))
-        done = subprocess.run([folder / "venv/bin" / program, *arguments], cwd=folder, env=environment, check=True,
-                              capture_output=True, text=True)
-        return done.stdout
-
+    environment = {"PATH": f"{folder}/venv/bin:/usr/bin:/bin", "HOME": str(folder)}
+    assert not any(os.access(f"{place}/cargo", os.X_OK) for place in environment["PATH"].split(":"))
+    run = lambda program, *arguments: output(folder / "venv/bin" / program, *arguments, cwd=folder, env=environment)
+    output(folder / "venv/bin/python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check",
+           package(os.environ.get("PACKAGE", "*-manylinux*_x86_64.whl")), fmpy)
+    write(folder / "pacoima.csv", "m/s2", TIME, A_G)
     run.folder = folder
     return run
 
@@ -45,30 +41,24 @@ def test_the_script_of_the_page_prints_what_the_page_says(installed):
 
 def test_the_fmu_is_the_one_of_dist(installed):
     path = installed("python", "-c", "import flexible_rocking; print(flexible_rocking.fmu())").strip()
-    with open(path, "rb") as inside, open(ROOT / "out" / "FlexibleRocking.fmu", "rb") as dist:
-        assert inside.read() == dist.read()
+    assert Path(path).read_bytes() == (ROOT / "out" / "FlexibleRocking.fmu").read_bytes()
 
 
-def test_an_own_structure_with_its_record(installed, exporter, tmp_path):
+def test_an_own_structure_with_its_record(installed, export):
     """The same bytes as the exporter writes that was built here, with the same libraries."""
-    write_record(installed.folder / "pacoima.csv")
     pier = dict(m=1000, m0=300, H=4, B=0.6, f_fc=3, zeta_fc=0.02, r=0.95)
     script = f"import flexible_rocking as fr; fr.export('pier.fmu', fr.Structure(**{pier}), record='pacoima.csv', name='Pier1')"
     installed("python", "-c", script)
-    parameters = tmp_path / "pier.toml"
-    parameters.write_text("".join(f"{key} = {value}\n" for key, value in pier.items()))
-    here = tmp_path / "here.fmu"
-    subprocess.run([exporter, "export", "--parameters", parameters, "--record", installed.folder / "pacoima.csv", "--name",
-                    "Pier1", "--library", ROOT / "out" / "FlexibleRocking.fmu", "-o", here], check=True)
-    assert (installed.folder / "pier.fmu").read_bytes() == here.read_bytes()
-    assert read_model_description(here).coSimulation.modelIdentifier == "Pier1"
-    assert np.abs(simulate_fmu(here)["theta"]).max() > 0
+    here = export(None, installed.folder / "pacoima.csv", *(f"--{key.replace('_', '-')}={value}" for key, value in pier.items()),
+                  "--name", "Pier1", "--library", ROOT / "out" / "FlexibleRocking.fmu")
+    assert (installed.folder / "pier.fmu").read_bytes() == Path(here.path).read_bytes()
+    assert here.description.coSimulation.modelIdentifier == "Pier1"
+    assert np.abs(simulate_fmu(here.path)["theta"]).max() > 0
     installed("python", "-c", script.replace("name='Pier1'", "fmi=3"))
     assert read_model_description(installed.folder / "pier.fmu").fmiVersion == "3.0"
 
 
 def test_a_run_needs_numpy_alone_and_is_the_command_lines(installed):
-    write_record(installed.folder / "pacoima.csv")
     script = ("import flexible_rocking as fr; run = fr.simulate(fr.Structure(preset='evison'), fr.Record.read('pacoima.csv'))\n"
               "print(run.peaks['theta'].value, run.at(run.record.time)['a_t'].size)")
     peak, samples = installed("python", "-c", script).split()
@@ -79,5 +69,4 @@ def test_a_run_needs_numpy_alone_and_is_the_command_lines(installed):
 def test_version(installed, exporter):
     """Version, build and platforms, the same as here."""
     printed = installed("rocking-fmu", "--version")
-    here = subprocess.run([exporter, "--version"], check=True, capture_output=True, text=True).stdout
-    assert printed == here and re.search(r"\nbuild \{[0-9a-f-]{36}\}\nfor linux on x86_64; .* aarch64-darwin", printed)
+    assert printed == output(exporter, "--version") and re.search(r"\nbuild \{[0-9a-f-]{36}\}\nfor linux on x86_64; .* aarch64-darwin", printed)

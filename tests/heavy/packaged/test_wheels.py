@@ -1,7 +1,6 @@
 """The packages in out/wheels: which machines each is for, what is in it, and what its module needs."""
 
 import re
-import subprocess
 import sys
 import tarfile
 import tomllib
@@ -11,7 +10,8 @@ import binaries
 import pytest
 from conftest import ROOT
 from packages import package
-from pacoima import write_record
+from host import output, write
+from pacoima import A_G, TIME
 
 TAGS = {
     "linux-x86": "cp310-abi3-manylinux2014_x86_64.manylinux_2_17_x86_64",
@@ -59,15 +59,13 @@ def test_module_and_program_need_no_newer_system(wheel, tmp_path):
     assert content.getinfo(f"{NAME}.data/scripts/{PROGRAMS[machine]}").external_attr >> 16 & 0o111, "it cannot be run"
     for file in (program, module):
         match machine:
-            case "linux-x86":
-                binary = binaries.for_linux(file, "X86_64")
-            case "linux-arm":
-                binary = binaries.for_linux(file, "AARCH64")
             case "windows":
                 binary = binaries.for_windows(file, {"python3.dll"} if file is module else frozenset())
             case "macos":
                 parts = binaries.for_macos(file, {"X86_64", "ARM64"})  # they own their binaries
                 binary = parts.at(0)
+            case _:
+                binary = binaries.for_linux(file, {"linux-x86": "X86_64", "linux-arm": "AARCH64"}[machine])
     assert any(function.name.strip("_") == "PyInit__native" for function in binary.exported_functions)
 
 
@@ -76,15 +74,14 @@ def test_arm_gives_the_bits_of_this_machine(tmp_path):
     pythons = sorted((ROOT / "out/arm_python/usr/bin").glob("python3.*"))
     if not pythons:
         pytest.skip("out/arm_python is missing: `make out/arm_python/usr` fetches it where apt-get can")
-    command = [sys.executable, "-m", "pip", "install", "--quiet", "--target", tmp_path / "arm", "--only-binary=:all:", "--python-version",
-               pythons[0].name.removeprefix("python"), "--platform", "manylinux2014_aarch64"]
-    subprocess.run([*command, package(f"{NAME}-{TAGS['linux-arm']}.whl")], check=True)
-    write_record(tmp_path / "pacoima.csv")
+    output(sys.executable, "-m", "pip", "install", "--quiet", "--target", tmp_path / "arm", "--only-binary=:all:", "--python-version",
+           pythons[0].name.removeprefix("python"), "--platform", "manylinux2014_aarch64", package(f"{NAME}-{TAGS['linux-arm']}.whl"))
+    write(tmp_path / "pacoima.csv", "m/s2", TIME, A_G)
     script = ("import platform, flexible_rocking as fr; run = fr.simulate(fr.Structure(preset='mcmanus'), fr.Record.read('pacoima.csv'))\n"
               "print(platform.machine(), *((peak.value.hex(), peak.time.hex()) for peak in run.peaks.values()))")
     machines = [[sys.executable], ["qemu-aarch64", "-E", f"PYTHONPATH={tmp_path}/arm", "-L", ROOT / "out/arm_python", pythons[0]]]
-    here, arm = (subprocess.run([*of, "-c", script], cwd=tmp_path, check=True, capture_output=True, text=True).stdout for of in machines)
-    assert arm.split()[0] == "aarch64" and arm.split()[1:] == here.split()[1:]
+    here, arm = (output(*of, "-c", script, cwd=tmp_path).split() for of in machines)
+    assert arm[0] == "aarch64" and arm[1:] == here[1:]
 
 
 def test_source():
