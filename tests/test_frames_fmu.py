@@ -47,7 +47,7 @@ def exact_response(tied):
 @pytest.mark.parametrize("fmi, kind, tied, ground", [
     *((*interface, tied, "") for interface in INTERFACES for tied in (False, True)),
     *((*interface, tied, SPRINGS) for interface, tied in zip(INTERFACES, (False, False, True, True))),
-])
+], ids=lambda of: "springs" if of == SPRINGS else str(of))
 def test_the_fmu_moves_as_the_librarys_run_and_as_the_physical_equations_say(exporter, export_frame, fmi, kind, tied, ground):
     """All outputs at the samples to 1e-12 of the peak of each, up to the last sample, at which the ground stops; on rigid ground θ, and u
     and a of every floor, to 1e-9 of the peaks, and peaks to 1e-8. To 1e-4 and 1e-5 with fmpy's integrator."""

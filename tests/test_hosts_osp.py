@@ -1,6 +1,5 @@
 """OSP's libcosim, over Pacoima Dam: a fixed step, with the record inside and with a_g held over each."""
 
-import numpy as np
 import pytest
 from libcosimpy.CosimEnums import CosimExecutionState
 from libcosimpy.CosimExecution import CosimExecution

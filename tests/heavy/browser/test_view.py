@@ -163,7 +163,8 @@ def test_transitions_are_marked_and_stepped_through(opened, view):
     page, (_, _, events) = opened(), view
     for kind in ("uplift", "impact", "landing"):
         expected = events["time[s]"][events["kind"].str.startswith(kind)]
-        ticks = sorted(page.locator(f"line.tick[data-kind={kind}]").evaluate_all("ticks => ticks.map(tick => Number(tick.getAttribute('x1')))"))
+        ticks = page.locator(f"line.tick[data-kind={kind}]").evaluate_all("ticks => ticks.map(tick => Number(tick.getAttribute('x1')))")
+        ticks.sort()
         assert len(ticks) == len(expected) > 0
         # all ticks of all kinds are at one scale: 0 to 4 s over the width of the axis
         assert np.polyval(np.polyfit(expected, ticks, 1), expected) == pytest.approx(ticks, abs=0.1)
