@@ -12,14 +12,15 @@ use crate::engine::phases;
 use crate::engine::piece::{Piece, Watch};
 use crate::levels::detail::Elastic;
 use crate::levels::full_contact::ExactContact;
-use crate::levels::level::{Level, most_of_swing};
-use crate::levels::nonlinear::{Equations, NonlinearRocking, Products, Recurrence};
+use crate::levels::level::{Level, Pace, most_of_swing};
+use crate::levels::nonlinear::{Equations, NonlinearRocking, Products, Recurrence, Rocker};
 use crate::levels::oscillator::{Flow, Oscillator};
 use crate::numbers::Real;
 use crate::numbers::lanes::{Answers, Lanes, MOST};
+use crate::run::MOST_STEPS;
 use crate::series::extremes::OFF_CHORD;
 use crate::series::taylor::{self, Arc, MAX_ORDER, MIN_ORDER, Start, Truncation, reciprocal};
-use crate::{Detail, LinearLoad, Phase, State, Transition};
+use crate::{Detail, LinearLoad, Phase, Ramp, State, Transition};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::FRAC_PI_2;
 
@@ -227,89 +228,171 @@ impl<S: Simd> WithSimd for Leapt<'_, '_, S> {
     }
 }
 
-/// The step of rocking that a run is about to take.
-#[derive(Clone, Copy, Debug, Default)]
-struct RockingStep {
-    equations: Equations<f64>,
-    theta: f64,
-    /// s.
-    side: f64,
-    /// s.
-    span: f64,
-    truncation: Truncation,
-}
-
-/// Steps of rocking of several runs.
+/// Steps of rocking of several runs, from sample to sample.
 #[derive(Debug)]
 #[repr(align(64))]
-pub(crate) struct Rocking<S: Simd> {
+pub(crate) struct Rocking<'a, S: Simd> {
     simd: S,
     sought: Sought,
-    steps: [RockingStep; MOST],
-    /// 1 where there is a run.
-    is_there: Row,
+    samples: [Samples<'a>; MOST],
+    entered: [usize; MOST],
     /// True if the run is new in its lane, or if a watcher has seen a piece or a transition, which may change its limits.
     is_changed: [bool; MOST],
+    /// 1 where there is a run.
+    is_there: Row,
+    rocker: Rocker<Row>,
+    pace: Pace<Row>,
+    local_error: Row,
+    gravity: Row,
+    side: Row,
+    /// Of the next step: u, u̇, θ and θ̇ at its start, the ground acceleration from there on, its time at most (s), and 1 where another
+    /// sample comes after it.
+    state: [Row; 4],
+    a_g: Row,
+    slope: Row,
+    interval: Row,
+    may_go_on: Row,
+    /// The run's age among its transitions and its evaluations until then.
+    age: Row,
+    evaluations: Row,
     products: Products<Lanes<S>>,
-    /// u, u̇, θ and θ̇, order by order.
+    /// Of the last step: u, u̇, θ and θ̇, order by order.
     series: [[Lanes<S>; 4]; MAX_ORDER + 1],
     order: Row,
+    span: Row,
     /// The part of each series' span up to which the series holds.
     reach: Row,
     end: [Row; 4],
-    /// 1 where a series proves that no guard closes, and where the watcher need not see it or a part of it from its start.
+    /// 1 where a series proves that no guard closes, and where the watcher need not see it or a part of it from its start; and where
+    /// the run has gone on to the next sample.
     stays: Row,
     is_passed: Row,
+    has_gone_on: Row,
 }
 
-impl<S: Simd> Rocking<S> {
-    pub(crate) fn new(simd: S) -> Rocking<S> {
+impl<'a, S: Simd> Rocking<'a, S> {
+    pub(crate) fn new(simd: S) -> Rocking<'a, S> {
         let (zero, none) = (Lanes::splat(simd, 0.0), [0.0; MOST]);
         Rocking {
             simd,
             sought: Sought::default(),
-            steps: [RockingStep::default(); MOST],
-            is_there: none,
+            samples: [Samples::default(); MOST],
+            entered: [0; MOST],
             is_changed: [true; MOST],
+            is_there: none,
+            rocker: Rocker::default(),
+            pace: Pace::default(),
+            local_error: none,
+            gravity: none,
+            side: none,
+            state: [none; 4],
+            a_g: none,
+            slope: none,
+            interval: none,
+            may_go_on: none,
+            age: none,
+            evaluations: none,
             products: Products::new(zero),
             series: [[zero; 4]; MAX_ORDER + 1],
             order: none,
+            span: none,
             reach: none,
             end: [none; 4],
             stays: none,
             is_passed: none,
+            has_gone_on: none,
         }
+    }
+
+    /// Puts the run of `engine`, whose `advance` leads to the first of these samples, into `lane`.
+    #[inline]
+    pub(crate) fn enter<W: Passes>(
+        &mut self,
+        lane: usize,
+        engine: &Engine,
+        advance: &Advance<f64>,
+        samples: Samples<'a>,
+        watch: &W,
+    ) {
+        let level = by_equations_5_and_6(&*engine.level).expect(STEPS_ALONE);
+        let (motion, rocking) = (&engine.motion, level.rocking());
+        if std::mem::take(&mut self.is_changed[lane]) {
+            watch.seek(engine, lane, &mut self.sought);
+            let (side, pace, one) = (motion.phase.side(), &rocking.pace, engine.structure().one());
+            let Rocker { H, pivot, weight_offset, foundation, stiffness, damping_u } = rocking.rocker(side);
+            (self.rocker.H[lane], self.rocker.pivot[lane]) = (H, pivot);
+            (self.rocker.weight_offset[lane], self.rocker.foundation[lane]) = (weight_offset, foundation);
+            (self.rocker.stiffness[lane], self.rocker.damping_u[lane]) = (stiffness, damping_u);
+            (self.pace.longest_span[lane], self.pace.longest_response[lane]) =
+                (pace.longest_span, pace.longest_response);
+            (self.pace.omega[lane], self.pace.gravity[lane], self.pace.height[lane]) =
+                (pace.omega, pace.gravity, pace.height);
+            self.local_error[lane] = level.subject().local_error;
+            self.gravity[lane] = one.expect("it is of one mass").parameters().g;
+            (self.side[lane], self.is_there[lane]) = (side.sign(), 1.0);
+        }
+        let Start { state: State { u, u_dot, theta, theta_dot }, a_g, interval, .. } =
+            advance.start(level.subject(), motion);
+        self.state.iter_mut().zip([u, u_dot, theta, theta_dot]).for_each(|(row, number)| row[lane] = number);
+        (self.a_g[lane], self.slope[lane], self.interval[lane]) = (a_g.value, a_g.slope, interval);
+        (self.age[lane], self.evaluations[lane]) = (motion.chatter.age, 0.0);
+        let left = advance.last_step.min(MOST_STEPS).saturating_sub(motion.work.steps) as usize;
+        let last = samples.last.min(samples.next.saturating_add(left));
+        (self.samples[lane], self.entered[lane]) = (Samples { last, ..samples }, samples.next);
+        self.may_go_on[lane] = f64::from(samples.next < last);
+    }
+
+    /// Takes steps as long as all runs go on to their next samples: the bases certainly stay up, and the watchers need not see it.
+    /// Returns how many steps each run has taken.
+    pub(crate) fn step(&mut self) -> u64 {
+        let mut steps = 0;
+        let mut all_go_on = true;
+        while all_go_on {
+            self.simd.vectorize(Taken(self));
+            steps += 1;
+            for lane in (0..S::F64_LANES).filter(|lane| self.is_there[*lane] == 1.0) {
+                if !self.has_gone_on(lane) {
+                    all_go_on = false;
+                    continue;
+                }
+                let Samples { times, a_g, next, last } = &mut self.samples[lane];
+                let duration = times[*next] - times[*next - 1];
+                let Ramp { value, slope } = Ramp::between(a_g[*next - 1], a_g[*next], duration);
+                *next += 1;
+                self.may_go_on[lane] = f64::from(*next < *last);
+                (self.a_g[lane], self.slope[lane], self.interval[lane]) = (value, slope, duration);
+            }
+        }
+        steps
+    }
+
+    /// Whether the run in `lane` has gone on to its next sample.
+    #[inline]
+    pub(crate) fn has_gone_on(&self, lane: usize) -> bool {
+        self.has_gone_on[lane] == 1.0
+    }
+
+    /// Brings `engine` to the sample before the step that the run in `lane` was about to take. Returns the next sample if that is another
+    /// one than that where it was.
+    #[inline]
+    pub(crate) fn catch_up<W: Passes>(&mut self, lane: usize, engine: &mut Engine, watch: &mut W) -> Option<usize> {
+        let (Samples { times, next, .. }, motion) = (self.samples[lane], &mut engine.motion);
+        let passed = next - self.entered[lane];
+        if passed == 0 {
+            return None;
+        }
+        let [u, u_dot, theta, theta_dot] = &self.state;
+        motion.state = State { u: u[lane], u_dot: u_dot[lane], theta: theta[lane], theta_dot: theta_dot[lane] };
+        (motion.chatter.age, motion.time) = (self.age[lane], times[next - 2]);
+        motion.work.steps += passed as u64;
+        motion.work.evaluations += self.evaluations[lane] as u64;
+        watch.pass();
+        Some(next - 1)
     }
 
     /// Takes the run in `lane` out.
     pub(crate) fn leave(&mut self, lane: usize) {
         (self.is_there[lane], self.is_changed[lane]) = (0.0, true);
-    }
-
-    /// Puts the next step of `engine` on its `advance` into `lane`.
-    #[inline]
-    pub(crate) fn put<W: Passes>(&mut self, lane: usize, engine: &Engine, advance: &Advance<f64>, watch: &W) {
-        let level = by_equations_5_and_6(&*engine.level).expect(STEPS_ALONE);
-        if std::mem::take(&mut self.is_changed[lane]) {
-            watch.seek(engine, lane, &mut self.sought);
-            self.is_there[lane] = 1.0;
-        }
-        let (motion, rocking) = (&engine.motion, level.rocking());
-        let start = advance.start(level.subject(), motion);
-        let span = rocking.pace.span(&start);
-        let side = motion.phase.side();
-        self.steps[lane] = RockingStep {
-            equations: rocking.equations::<false>(side, &start, span),
-            theta: motion.state.theta,
-            side: side.sign(),
-            span,
-            truncation: rocking.pace.truncation(&start, span),
-        };
-    }
-
-    /// Takes the steps.
-    pub(crate) fn step(&mut self) {
-        self.simd.vectorize(Taken(self));
     }
 
     /// Writes the series of the run in `lane` into `arc`.
@@ -320,46 +403,53 @@ impl<S: Simd> Rocking<S> {
             (arc.u[k], arc.u_dot[k]) = (u.of(lane), u_dot.of(lane));
             (arc.theta[k], arc.theta_dot[k]) = (theta.of(lane), theta_dot.of(lane));
         }
-        (arc.order, arc.span, arc.reach) = (order, self.steps[lane].span, self.reach[lane]);
+        (arc.order, arc.span, arc.reach) = (order, self.span[lane], self.reach[lane]);
     }
 }
 
 /// Taking steps of rocking.
-struct Taken<'a, S: Simd>(&'a mut Rocking<S>);
+struct Taken<'s, 'a, S: Simd>(&'s mut Rocking<'a, S>);
 
-impl<S: Simd> WithSimd for Taken<'_, S> {
+impl<S: Simd> WithSimd for Taken<'_, '_, S> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<T: Simd>(self, _simd: T) {
-        let Rocking { simd, steps, products, series, reach, .. } = self.0;
-        let simd = *simd;
-        let of = |number: fn(&RockingStep) -> f64| Lanes::load(simd, &steps.each_ref().map(number));
-        let (theta, side, span) = (of(|step| step.theta), of(|step| step.side), of(|step| step.span));
-        let (truncation, truncation_turning) = (of(|step| step.truncation.u_dot), of(|step| step.truncation.theta_dot));
-        let (zero, push) = (theta.like(0.0), [of(|step| step.equations.push[0]), of(|step| step.equations.push[1])]);
-        let equations = Equations {
-            u: of(|step| step.equations.u),
-            u_dot: of(|step| step.equations.u_dot),
-            theta_dot: of(|step| step.equations.theta_dot),
-            sin: of(|step| step.equations.sin),
-            cos: of(|step| step.equations.cos),
-            push,
-            ground: push, // no force acts
-            gravity: [of(|step| step.equations.gravity[0]), zero],
-            H: of(|step| step.equations.H),
-            weight_offset: of(|step| step.equations.weight_offset),
-            lever: of(|step| step.equations.lever),
-            foundation: of(|step| step.equations.foundation),
-            stiffness: of(|step| step.equations.stiffness),
-            damping_u: of(|step| step.equations.damping_u),
+        let Taken(of) = self;
+        let simd = of.simd;
+        let row = |row: &Row| Lanes::load(simd, row);
+        let [u, u_dot, theta, theta_dot] = &of.state;
+        let (u, u_dot, theta, theta_dot) = (row(u), row(u_dot), row(theta), row(theta_dot));
+        let (side, a_g, slope, interval) = (row(&of.side), row(&of.a_g), row(&of.slope), row(&of.interval));
+        let rocker = Rocker {
+            H: row(&of.rocker.H),
+            pivot: row(&of.rocker.pivot),
+            weight_offset: row(&of.rocker.weight_offset),
+            foundation: row(&of.rocker.foundation),
+            stiffness: row(&of.rocker.stiffness),
+            damping_u: row(&of.rocker.damping_u),
         };
-        let (u, u_dot, theta_dot, g) = (equations.u, equations.u_dot, equations.theta_dot, equations.gravity[0]);
-        let (none, one) = (g.like(-0.0), g.like(1.0));
+        let pace = Pace {
+            longest_span: row(&of.pace.longest_span),
+            omega: row(&of.pace.omega),
+            longest_response: row(&of.pace.longest_response),
+            gravity: row(&of.pace.gravity),
+            height: row(&of.pace.height),
+        };
+        let span = pace.span(interval);
+        let [largest, largest_turning] = pace.largest([u, u_dot, theta_dot], [a_g, slope], span);
+        let local_error = row(&of.local_error);
+        let (truncation, truncation_turning) = (local_error * largest, local_error * largest_turning);
+        let (g, push) = (row(&of.gravity), [a_g, slope * span]);
+        let (none, one, zero) = (g.like(-0.0), g.like(1.0), g.like(0.0));
+        // no force acts
+        let equations =
+            Equations { rocker, u, u_dot, theta_dot, turn: theta.sin_cos(), push, ground: push, gravity: [g, zero] };
         let mut recurrence = Recurrence::new(equations);
-        let (mut ended, mut was_small, mut order) =
-            (Lanes::load(simd, &self.0.is_there).is_less(one), one.is_less(zero), zero);
+        let is_there = row(&of.is_there);
+        let (mut ended, mut was_small, mut order) = (is_there.is_less(one), one.is_less(zero), zero);
         let (mut last, mut of_order) = (0, [u, u_dot, theta, theta_dot]);
+        let Rocking { products, series, .. } = &mut *of;
         series[0] = of_order;
         for (k, places) in series.iter_mut().enumerate().skip(1) {
             let [_, u_dot, _, theta_dot] = of_order;
@@ -382,32 +472,33 @@ impl<S: Simd> WithSimd for Taken<'_, S> {
             }
             was_small = is_small;
         }
-        *reach = [1.0; MOST];
+        of.reach = [1.0; MOST];
         let ended = ended.choose(one, zero);
         for lane in (0..S::F64_LANES).filter(|lane| ended.of(*lane) == 0.0) {
-            let velocities = |k: usize| (series[k][1].of(lane), series[k][3].of(lane));
-            reach[lane] = taylor::reach(velocities, &steps[lane].truncation).min(1.0);
+            let truncation = Truncation { u_dot: truncation.of(lane), theta_dot: truncation_turning.of(lane) };
+            let velocities = |k: usize| (of.series[k][1].of(lane), of.series[k][3].of(lane));
+            of.reach[lane] = taylor::reach(velocities, &truncation).min(1.0);
         }
-        let sigma = Lanes::load(simd, reach);
+        let sigma = row(&of.reach);
         let sum = sigma.is_less(one).choose(zero, none);
         let (mut end, mut off, mut excursion) = ([sum; 4], [zero; 4], zero);
         for k in (1..last + 1).rev() {
             let weight = g.like(OFF_CHORD[k]);
-            for (i, number) in series[k].into_iter().enumerate() {
+            for (i, number) in of.series[k].into_iter().enumerate() {
                 end[i] = end[i] * sigma + number;
                 off[i] = (off[i] + weight * number.abs()) * sigma;
             }
-            excursion = (excursion + series[k][2].abs()) * sigma;
+            excursion = (excursion + of.series[k][2].abs()) * sigma;
         }
         let (rounding, mut most) = (g.like(ROUNDING), off);
-        for (i, number) in series[0].into_iter().enumerate() {
+        for (i, number) in of.series[0].into_iter().enumerate() {
             end[i] = end[i] * sigma + number;
             most[i] = number.abs().max(end[i].abs()) + off[i];
-            end[i].store(&mut self.0.end[i]);
+            end[i].store(&mut of.end[i]);
         }
         let (start, a_end) = (side * theta, push[0] + push[1] * sigma);
         // as the run by itself proves that no guard closes
-        let [first, second] = [1, 2].map(|k| side * sigma * series[k][2]);
+        let (first, second) = (side * sigma * of.series[1][2], side * sigma * of.series[2][2]);
         let lead = first.abs().is_at_most(zero).choose(second * sigma, first);
         let leads = start.abs().is_at_most(zero) & (excursion * rounding).is_less(lead + lead);
         let rises = (excursion * rounding).is_less(start) | (off[2] * rounding).is_less(start.min(side * end[2]));
@@ -416,10 +507,21 @@ impl<S: Simd> WithSimd for Taken<'_, S> {
         let stays = stays & size.is_at_most(g.like(f64::MAX));
         let magnitudes = [most[0], most[1], most[2], g.like(0.5) * (most[2] * most[2])];
         let ends = [push[0].abs().max(a_end.abs()) * rounding, end[2].abs()];
-        let is_passed = self.0.sought.are_passed(simd, magnitudes, ends);
-        stays.choose(one, zero).store(&mut self.0.stays);
-        is_passed.choose(one, zero).store(&mut self.0.is_passed);
-        order.store(&mut self.0.order);
+        let is_passed = of.sought.are_passed(simd, magnitudes, ends);
+        let duration = sigma * span;
+        let is_whole = duration.is_at_most(interval) & interval.is_at_most(duration);
+        let goes_on = stays & is_passed & is_whole & one.is_at_most(is_there.min(row(&of.may_go_on)));
+        for (i, number) in of.series[0].into_iter().enumerate() {
+            goes_on.choose(end[i], number).store(&mut of.state[i]);
+        }
+        let (age, evaluations) = (row(&of.age), row(&of.evaluations));
+        goes_on.choose(age + duration, age).store(&mut of.age);
+        goes_on.choose(evaluations + order, evaluations).store(&mut of.evaluations);
+        stays.choose(one, zero).store(&mut of.stays);
+        is_passed.choose(one, zero).store(&mut of.is_passed);
+        goes_on.choose(one, zero).store(&mut of.has_gone_on);
+        order.store(&mut of.order);
+        span.store(&mut of.span);
     }
 }
 
@@ -495,13 +597,13 @@ impl Engine {
     #[inline]
     pub(crate) fn take<S: Simd, W: Passes>(
         &mut self,
-        steps: &mut Rocking<S>,
+        steps: &mut Rocking<'_, S>,
         lane: usize,
         advance: &mut Advance<f64>,
         watch: &mut W,
     ) -> Result<Option<Progress>, AdvanceError> {
         let level = &*self.level;
-        let duration = steps.reach[lane] * steps.steps[lane].span;
+        let duration = steps.reach[lane] * steps.span[lane];
         let is_whole = duration == advance.end - advance.elapsed;
         let is_last = !is_whole && is_at_its_end(level, &self.motion, duration, None);
         let stays = steps.stays[lane] == 1.0 && !is_last && self.motion.work.steps != advance.last_step;

@@ -270,15 +270,16 @@ impl ElasticRocking for FixedBase {
 }
 
 /// The length and the accuracy of steps while a structure with an elastic strut rocks.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Pace {
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Pace<N = f64> {
     /// The longest span that a series is tried over, s.
-    longest_span: f64,
-    /// ω_u, rad/s.
-    omega: f64,
+    pub longest_span: N,
+    /// ω_u, rad/s, and its reciprocal.
+    pub omega: N,
+    pub longest_response: N,
     /// g tan α_cg, m/s².
-    gravity: f64,
-    height: f64,
+    pub gravity: N,
+    pub height: N,
 }
 
 impl Pace {
@@ -286,23 +287,38 @@ impl Pace {
     pub(crate) fn new(structure: &OneMass) -> Pace {
         let &crate::Parameters { H, g, .. } = structure.parameters();
         let &OneMass { rocking_rate, omega_u, tan_alpha_cg, .. } = structure;
-        Pace { longest_span: LONGEST_SPAN / rocking_rate, omega: omega_u, gravity: g * tan_alpha_cg, height: H }
-    }
-
-    /// The span of a series from `start`, s.
-    #[inline]
-    pub(crate) fn span(&self, start: &Start) -> f64 {
-        start.interval.min(self.longest_span)
+        Pace {
+            longest_span: LONGEST_SPAN / rocking_rate,
+            omega: omega_u,
+            longest_response: 1.0 / omega_u,
+            gravity: g * tan_alpha_cg,
+            height: H,
+        }
     }
 
     /// The truncation that `start` requires over a step of `span` s.
     #[inline]
     pub(crate) fn truncation(&self, start: &Start, span: f64) -> Truncation {
         let &Start { state, a_top, local_error, .. } = start;
-        let response_time = span.min(1.0 / self.omega);
-        let forcing = a_top.value.abs() + a_top.slope.abs() * span + self.gravity;
-        let u_dot = state.u_dot.abs() + response_time * (self.omega * self.omega * state.u.abs() + forcing);
-        let theta_dot = state.theta_dot.abs() + u_dot / self.height;
+        let [u_dot, theta_dot] =
+            self.largest([state.u, state.u_dot, state.theta_dot], [a_top.value, a_top.slope], span);
         Truncation { u_dot: local_error * u_dot, theta_dot: local_error * theta_dot }
+    }
+}
+
+impl<N: Real> Pace<N> {
+    /// The span of a series over at most `interval`, s.
+    #[inline(always)]
+    pub(crate) fn span(&self, interval: N) -> N {
+        interval.min(self.longest_span)
+    }
+
+    /// The largest |u̇| and |θ̇| that a step of `span` s from (u, u̇, θ̇) can bring under the load `value` + `slope` τ.
+    #[inline(always)]
+    pub(crate) fn largest(&self, [u, u_dot, theta_dot]: [N; 3], [value, slope]: [N; 2], span: N) -> [N; 2] {
+        let response_time = span.min(self.longest_response);
+        let forcing = value.abs() + slope.abs() * span + self.gravity;
+        let u_dot = u_dot.abs() + response_time * (self.omega * self.omega * u.abs() + forcing);
+        [u_dot, theta_dot.abs() + u_dot / self.height]
     }
 }

@@ -75,7 +75,7 @@ impl LinearSystem {
     /// Writes the motion from `start` about `side` into `arc`.
     fn series(&self, pace: &Pace, side: Side, start: &Start, arc: &mut Arc) {
         let &Start { state, a_top, .. } = start;
-        let span = pace.span(start);
+        let span = pace.span(start.interval);
         let rows = [&self.u_ddot, &self.theta_ddot];
         let mut forcing = rows.map(|row| row.forcing(a_top.value, side.sign()));
         let mut next_forcing = rows.map(|row| row.forcing(a_top.slope * span, 0.0));

@@ -176,35 +176,43 @@ impl Expanded for f64 {
     }
 }
 
-/// The numbers in Eqs 5 and 6 over one step. A load is its value at the start and its gain over the span.
+/// What Eqs 5 and 6 contain of a structure that rocks about one side.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Equations<N> {
-    pub u: N,
-    pub u_dot: N,
-    pub theta_dot: N,
-    pub sin: N,
-    pub cos: N,
-    /// a.
-    pub push: [N; 2],
-    /// a_g.
-    pub ground: [N; 2],
-    /// g + a_v. The gain counts for tied structures alone.
-    pub gravity: [N; 2],
+pub(crate) struct Rocker<N> {
     pub H: N,
+    /// s B.
+    pub pivot: N,
     /// s(γ−1)B.
     pub weight_offset: N,
-    /// w at the start.
-    pub lever: N,
     /// i.
     pub foundation: N,
     pub stiffness: N,
     pub damping_u: N,
 }
 
+/// The numbers in Eqs 5 and 6 over one step. A load is its value at the start and its gain over the span.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Equations<N> {
+    pub rocker: Rocker<N>,
+    pub u: N,
+    pub u_dot: N,
+    pub theta_dot: N,
+    /// sin θ and cos θ.
+    pub turn: [N; 2],
+    /// a.
+    pub push: [N; 2],
+    /// a_g.
+    pub ground: [N; 2],
+    /// g + a_v. The gain counts for tied structures alone.
+    pub gravity: [N; 2],
+}
+
 /// The coefficients of the last order, from which those of the next one follow.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Recurrence<N: Expanded> {
     of: Equations<N>,
+    /// w at the start.
+    lever: N,
     per_inertia: N,
     /// H, s(γ−1)B and w over the inertia, so that few operations stand between one order of θ̇ and the next.
     height: N,
@@ -249,11 +257,14 @@ impl<N: Expanded> Recurrence<N> {
     /// The coefficients of order 0.
     #[inline(always)]
     pub(crate) fn new(of: Equations<N>) -> Recurrence<N> {
-        let Equations { u, u_dot, theta_dot, sin, cos, H, weight_offset, lever, foundation, .. } = of;
+        let Equations { rocker, u, u_dot, theta_dot, turn: [sin, cos], .. } = of;
+        let Rocker { H, pivot, weight_offset, foundation, stiffness, damping_u } = rocker;
         let ([g, _], [a, _], [a_ground, _]) = (of.gravity, of.push, of.ground);
+        let lever = pivot - u;
         let per_inertia = g.like(1.0) / (foundation + lever * lever);
         Recurrence {
             of,
+            lever,
             per_inertia,
             height: H * per_inertia,
             offset: weight_offset * per_inertia,
@@ -263,7 +274,7 @@ impl<N: Expanded> Recurrence<N> {
             weight: g * cos + a * sin,
             weight_below: g * cos + a_ground * sin,
             along: g * sin - a * cos,
-            elastic: of.damping_u * u_dot + of.stiffness * u,
+            elastic: damping_u * u_dot + stiffness * u,
             theta_dot,
             newest_left: N::left(theta_dot, lever * theta_dot, lever),
         }
@@ -280,8 +291,10 @@ impl<N: Expanded> Recurrence<N> {
         per: N,
         pull: impl FnOnce(N) -> N,
     ) -> (N, N) {
-        let &mut Recurrence { of, per_inertia, sin, cos, weight, weight_below, along, elastic, newest_left, .. } = self;
-        let Equations { H, lever, stiffness, damping_u, .. } = of;
+        let &mut Recurrence {
+            of, lever, per_inertia, sin, cos, weight, weight_below, along, elastic, newest_left, ..
+        } = self;
+        let Rocker { H, stiffness, damping_u, .. } = of.rocker;
         let ([g, lift], [a, slope], [a_ground, slope_ground]) = (of.gravity, of.push, of.ground);
         let before = k - 1;
         let newest_right = N::right(cos, sin, -u, self.theta_dot, weight);
@@ -345,30 +358,31 @@ impl ElasticRocking for NonlinearRocking {
 }
 
 impl NonlinearRocking {
+    /// What the equations contain of the structure.
+    #[inline(always)]
+    pub(crate) fn rocker(&self, side: Side) -> Rocker<f64> {
+        let structure = &self.one;
+        let &crate::Parameters { H, B, .. } = structure.parameters();
+        let &OneMass { stiffness, damping_u, foundation, gamma, .. } = structure;
+        let (pivot, weight_offset) = (side.sign() * B, side.sign() * (gamma - 1.0) * B);
+        Rocker { H, pivot, weight_offset, foundation, stiffness, damping_u }
+    }
+
     /// The numbers in the equations over a step of `span` s from `start`. The structure is `TIED` or not throughout a step, and most
     /// are not.
     #[inline(always)]
-    pub(crate) fn equations<const TIED: bool>(&self, side: Side, start: &Start, span: f64) -> Equations<f64> {
+    fn equations<const TIED: bool>(&self, side: Side, start: &Start, span: f64) -> Equations<f64> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_g, a_top, a_v, .. } = start;
-        let structure = &self.one;
-        let &crate::Parameters { H, B, g, .. } = structure.parameters();
-        let &OneMass { stiffness, damping_u, foundation, gamma, .. } = structure;
-        let (sin, cos) = libm::sincos(theta);
+        let (g, (sin, cos)) = (self.one.parameters().g, libm::sincos(theta));
         Equations {
+            rocker: self.rocker(side),
             u,
             u_dot,
             theta_dot,
-            sin,
-            cos,
+            turn: [sin, cos],
             push: [a_top.value, a_top.slope * span],
             ground: [a_g.value, a_g.slope * span],
             gravity: if TIED { [g + a_v.value, a_v.slope * span] } else { [g, 0.0] },
-            H,
-            weight_offset: side.sign() * (gamma - 1.0) * B,
-            lever: side.sign() * B - u,
-            foundation,
-            stiffness,
-            damping_u,
         }
     }
 
@@ -376,7 +390,7 @@ impl NonlinearRocking {
     #[inline(always)]
     fn expand<const TIED: bool>(&self, side: Side, start: &Start, arc: &mut Arc) {
         let structure = &self.one;
-        let span = self.pace.span(start);
+        let span = self.pace.span(start.interval);
         let mut ties = TIED.then(|| {
             let ties = Restraint::about(structure.base(), side, start.dissipators).moments();
             TieSeries::new(ties, Angles::Any, start.state.theta)

@@ -11,6 +11,18 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 /// The most runs that lie side by side.
 pub(crate) const MOST: usize = 8;
 
+/// Coefficients of the polynomials of [`libm::sincos`].
+#[rustfmt::skip]
+const SINE: [f64; 6] = [
+    -1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04,
+    2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10,
+];
+#[rustfmt::skip]
+const COSINE: [f64; 6] = [
+    4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05,
+    -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11,
+];
+
 /// One number of each run. In what begins with a line of the processor's memory, 64 bytes, none of them lies in two lines.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
@@ -46,6 +58,28 @@ impl<S: Simd> Lanes<S> {
     #[inline]
     pub(crate) fn of(&self, lane: usize) -> f64 {
         cast_slice(from_ref(&self.of))[lane]
+    }
+
+    /// Sine and cosine, in the operations of [`libm::sincos`] below π/4, which then has the same bits.
+    #[inline(always)]
+    pub(crate) fn sin_cos(self) -> [Lanes<S>; 2] {
+        let (z, zero, one) = (self * self, self.like(0.0), self.like(1.0));
+        let (w, half) = (z * z, self.like(0.5) * z);
+        let [s1, s2, s3, s4, s5, s6] = SINE;
+        let sine = self.like(s2) + z * (self.like(s3) + z * self.like(s4));
+        let sine = sine + z * w * (self.like(s5) + z * self.like(s6));
+        let sin = self + z * self * (self.like(s1) + z * sine);
+        let [c1, c2, c3, c4, c5, c6] = COSINE;
+        let cosine = z * (self.like(c1) + z * (self.like(c2) + z * self.like(c3)));
+        let cosine = cosine + w * w * (self.like(c4) + z * (self.like(c5) + z * self.like(c6)));
+        let near = one - half;
+        let cos = near + (one - near - half + z * cosine);
+        if self.abs().is_at_most(self.like(0.785)).all() {
+            return [z.is_at_most(zero).choose(self, sin), cos];
+        }
+        let mut turn = [[0.0; MOST]; 2];
+        (0..S::F64_LANES).for_each(|lane| (turn[0][lane], turn[1][lane]) = libm::sincos(self.of(lane)));
+        [Lanes::load(self.simd, &turn[0]), Lanes::load(self.simd, &turn[1])]
     }
 
     #[inline(always)]

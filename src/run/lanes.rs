@@ -138,12 +138,23 @@ const ROCKS: usize = 1;
 const ROCKS_ON: usize = 2;
 
 impl<W: Passes> Lane<'_, W> {
-    /// Takes the step of rocking that was taken in `lane` of `steps`, and goes on.
+    /// Goes on to where the run in `slot` of `steps` has come without a transition.
+    fn catch_up<S: Simd>(&mut self, steps: &mut Rocking<S>, slot: usize) -> Result<(), RunError> {
+        let Lane { follower: Follower { engine, segments, .. }, watch, .. } = self;
+        if let Some(next) = steps.catch_up(slot, engine, watch) {
+            segments.next = next;
+            self.go_on()?; // to the next step
+        }
+        Ok(())
+    }
+
+    /// Takes the step of rocking that was taken in `slot` of `steps`, and goes on.
     #[inline]
-    fn take<S: Simd>(&mut self, steps: &mut Rocking<S>, lane: usize) -> Result<Next, RunError> {
+    fn take<S: Simd>(&mut self, steps: &mut Rocking<S>, slot: usize) -> Result<Next, RunError> {
+        self.catch_up(steps, slot)?;
         let Lane { follower: Follower { engine, .. }, advance, watch, .. } = self;
         let Some(advance) = advance else { return self.go_on() };
-        let taken = engine.take(steps, lane, advance, watch).map_err(|cause| error(engine, cause))?;
+        let taken = engine.take(steps, slot, advance, watch).map_err(|cause| error(engine, cause))?;
         self.arrive(taken).map_or_else(|| self.go_on(), Ok)
     }
 
@@ -198,48 +209,65 @@ impl<W: Passes> Lane<'_, W> {
 struct Together<'a, S: Simd> {
     simd: S,
     contacts: Contacts<'a>,
-    rocking: Rocking<S>,
+    rocking: Rocking<'a, S>,
 }
 
 impl<'a, S: Simd> Together<'a, S> {
-    /// Puts the next step of `lane`, of this `kind`, into a `slot`, which is its first there if it `enters`.
+    /// Puts `lane`, whose next step is of this `kind`, into a `slot`.
     #[inline]
-    fn put<W: Passes>(&mut self, kind: usize, slot: usize, lane: &Lane<'a, W>, enters: bool) {
+    fn enter<W: Passes>(&mut self, kind: usize, slot: usize, lane: &Lane<'a, W>) {
         let Lane { follower: Follower { engine, segments, .. }, advance, watch, .. } = lane;
+        let mut samples = segments.samples().unwrap_or_default();
         if kind != LEAPS {
             let advance = advance.as_ref().expect("it is on its way");
-            return self.rocking.put(slot, engine, advance, watch);
+            return self.rocking.enter(slot, engine, advance, samples, watch);
         }
-        if enters {
-            let mut samples = segments.samples().expect("it may leap");
-            let left = MOST_STEPS + 1 - engine.motion().work.steps;
-            samples.last = samples.last.min(samples.next + left as usize);
-            self.contacts.enter(slot, engine, samples, watch);
+        let left = MOST_STEPS + 1 - engine.motion().work.steps;
+        samples.last = samples.last.min(samples.next + left as usize);
+        self.contacts.enter(slot, engine, samples, watch);
+    }
+
+    /// Takes steps of this `kind`, each of which is of `count` runs. Returns how many.
+    fn step(&mut self, kind: usize, count: usize) -> u64 {
+        if kind == LEAPS {
+            self.contacts.step(self.simd);
+            return 0;
         }
+        self.rocking.step() * count as u64
     }
 
     /// The action of the lane in a `slot` after its step; none if it takes another step of this `kind` there.
     #[inline]
     fn take<W: Passes>(&mut self, kind: usize, slot: usize, lane: &mut Lane<'a, W>) -> Option<Result<Next, RunError>> {
-        if kind == LEAPS && self.contacts.goes_on(slot) {
+        if kind == LEAPS {
+            return (!self.contacts.goes_on(slot)).then(|| {
+                self.leave(kind, slot, lane)?;
+                lane.go_on()
+            });
+        }
+        if self.rocking.has_gone_on(slot) {
             return None;
         }
-        let next = (kind != LEAPS).then(|| lane.take(&mut self.rocking, slot));
-        if matches!(next, Some(Ok(Next::Kind(next))) if next == kind) {
+        let next = lane.take(&mut self.rocking, slot);
+        if matches!(next, Ok(Next::Kind(next)) if next == kind) {
+            self.enter(kind, slot, lane);
             return None;
         }
-        self.leave(kind, slot, lane);
-        Some(next.unwrap_or_else(|| lane.go_on()))
+        self.rocking.leave(slot);
+        Some(next)
     }
 
     /// Takes the lane out of a `slot`.
-    fn leave<W: Passes>(&mut self, kind: usize, slot: usize, lane: &mut Lane<'a, W>) {
+    fn leave<W: Passes>(&mut self, kind: usize, slot: usize, lane: &mut Lane<'a, W>) -> Result<(), RunError> {
         if kind != LEAPS {
-            return self.rocking.leave(slot);
+            let caught_up = lane.catch_up(&mut self.rocking, slot);
+            self.rocking.leave(slot);
+            return caught_up;
         }
         let Follower { engine, segments, .. } = &mut lane.follower;
         segments.next = self.contacts.leave(slot, engine, &mut lane.watch);
         lane.until = engine.motion().time;
+        Ok(())
     }
 }
 
@@ -273,34 +301,28 @@ impl<'a, W: Passes> Lanes<'a, W> {
         loop {
             let mut count = 0;
             for (slot, place) in lanes.iter_mut().enumerate() {
-                let enters = place.is_none();
-                if enters {
+                if place.is_none() {
                     // rather a longer step than none
                     let of_kinds = if kind == LEAPS { [LEAPS; 2] } else { [kind, ROCKS + ROCKS_ON - kind] };
                     *place = of_kinds.into_iter().find_map(|kind| self.of_kind[kind].pop_front());
+                    place.iter().for_each(|lane| steps.enter(kind, slot, lane));
                 }
-                if let Some(lane) = place {
-                    steps.put(kind, slot, lane, enters);
-                    count += 1;
-                }
+                count += usize::from(place.is_some());
             }
             let others = self.of_kind.iter().map(VecDeque::len).max().unwrap_or(0);
             if count < S::F64_LANES && others > count || count == 0 || !self.ended.is_empty() {
                 break;
             }
-            match kind {
-                LEAPS => steps.contacts.step(steps.simd),
-                _ => steps.rocking.step(),
-            }
-            taken += count as u64;
+            taken += steps.step(kind, count);
             for (slot, place) in lanes.iter_mut().enumerate() {
                 let next = place.as_mut().and_then(|lane| steps.take(kind, slot, lane));
                 next.into_iter().for_each(|next| self.goes_on(place.take().expect("it is there"), next));
             }
         }
         for (slot, place) in lanes.iter_mut().enumerate() {
-            place.iter_mut().for_each(|lane| steps.leave(kind, slot, lane));
-            self.of_kind[kind].extend(place.take());
+            let Some(mut lane) = place.take() else { continue };
+            let next = steps.leave(kind, slot, &mut lane).map(|()| Next::Kind(kind));
+            self.goes_on(lane, next);
         }
         taken
     }
@@ -355,8 +377,7 @@ fn follow<S: Simd, W: Passes>(
             return taken;
         }
         let kind = (0..KINDS).max_by_key(|kind| lanes.of_kind[*kind].len()).unwrap_or(LEAPS);
-        let steps = lanes.step(kind, &mut together);
-        taken += if kind == LEAPS { 0 } else { steps };
+        taken += lanes.step(kind, &mut together);
     }
 }
 
