@@ -103,25 +103,35 @@ pub(crate) struct Samples<'a> {
     pub last: usize,
 }
 
+/// A leap of each run.
+#[derive(Debug, Default)]
+struct Leap {
+    /// s.
+    duration: Row,
+    /// The ground acceleration at both its ends.
+    a_g: [Row; 2],
+    flow: Flow<Row>,
+}
+
 /// Leaps in full contact of several runs, from sample to sample.
 #[derive(Debug, Default)]
 #[repr(align(64))]
 pub(crate) struct Contacts<'a> {
     sought: Sought,
     samples: [Samples<'a>; MOST],
-    /// None where there is no run.
-    exact: [Option<ExactContact>; MOST],
     entered: [usize; MOST],
+    is_there: [bool; MOST],
+    /// Of the run that is or was there.
+    exact: [Option<ExactContact>; MOST],
     oscillator: Oscillator<Row>,
     u_cr: Row,
     u: Row,
     u_dot: Row,
     age: Row,
-    /// Of the next leap, s.
-    duration: Row,
-    /// The ground acceleration at both its ends.
-    a_g: [Row; 2],
-    flow: Flow<Row>,
+    /// The next leap, at the place of its parity, and the one after that: what is written number by number is read as a row much later,
+    /// because the processor would wait for it.
+    leaps: [Leap; 2],
+    parity: usize,
     /// 1 where the last leap has been taken.
     is_taken: Row,
 }
@@ -131,26 +141,31 @@ impl<'a> Contacts<'a> {
     pub(crate) fn enter<W: Passes>(&mut self, lane: usize, engine: &Engine, samples: Samples<'a>, watch: &W) {
         let (one, motion) = (engine.structure().one().expect("it is of one mass"), engine.motion());
         watch.seek(engine, lane, &mut self.sought);
-        (self.samples[lane], self.entered[lane]) = (samples, samples.next);
-        (self.oscillator.omega[lane], self.oscillator.zeta[lane]) = (one.omega_fc, one.parameters().zeta_fc);
-        (self.u_cr[lane], self.age[lane], self.duration[lane]) = (one.u_cr, motion.chatter.age, 0.0);
+        (self.samples[lane], self.entered[lane], self.is_there[lane]) = (samples, samples.next, true);
+        (self.u_cr[lane], self.age[lane]) = (one.u_cr, motion.chatter.age);
         (self.u[lane], self.u_dot[lane]) = (motion.state.u, motion.state.u_dot);
         let level = by_equations_5_and_6(&*engine.level).expect(STEPS_ALONE);
-        self.exact[lane] = Some(level.contact().expect("it may leap").clone());
-        self.put(lane);
+        let exact = level.contact().expect("it may leap");
+        if self.exact[lane].as_ref().is_none_or(|kept| kept.oscillator != exact.oscillator) {
+            let Oscillator { omega, zeta } = exact.oscillator;
+            (self.oscillator.omega[lane], self.oscillator.zeta[lane]) = (omega, zeta);
+            self.leaps.iter_mut().for_each(|leap| leap.duration[lane] = 0.0);
+            self.exact[lane] = Some(exact.clone());
+        }
+        self.put(lane, self.parity, samples.next);
     }
 
-    /// Puts the next leap of the run in `lane`.
+    /// Puts the leap of the run in `lane` that ends in sample `next` among those of a parity.
     #[inline]
-    fn put(&mut self, lane: usize) {
-        let (Samples { times, a_g, next, .. }, Some(exact)) = (self.samples[lane], &self.exact[lane]) else { return };
-        let duration = times[next] - times[next - 1];
-        (self.a_g[0][lane], self.a_g[1][lane]) = (a_g[next - 1], a_g[next]);
-        if duration != self.duration[lane] {
+    fn put(&mut self, lane: usize, parity: usize, next: usize) {
+        let (Samples { times, a_g, .. }, Some(exact)) = (self.samples[lane], &self.exact[lane]) else { return };
+        let (duration, leap) = (times[next] - times[next - 1], &mut self.leaps[parity]);
+        (leap.a_g[0][lane], leap.a_g[1][lane]) = (a_g[next - 1], a_g[next]);
+        if duration != leap.duration[lane] {
             let Flow { free, step, ramp } = *exact.flow(duration);
-            self.duration[lane] = duration;
-            (0..4).for_each(|i| self.flow.free[i][lane] = free[i]);
-            (self.flow.step[lane], self.flow.ramp[lane]) = (step, ramp);
+            leap.duration[lane] = duration;
+            (0..4).for_each(|i| leap.flow.free[i][lane] = free[i]);
+            (leap.flow.step[lane], leap.flow.ramp[lane]) = (step, ramp);
         }
     }
 
@@ -158,16 +173,18 @@ impl<'a> Contacts<'a> {
     pub(crate) fn step<S: Simd>(&mut self, simd: S) {
         let mut all_go_on = true;
         while all_go_on {
-            simd.vectorize(Leapt(simd, self));
             for lane in 0..S::F64_LANES {
-                if self.exact[lane].is_none() {
-                    continue;
+                let Samples { next, last, .. } = self.samples[lane];
+                if self.is_there[lane] && next + 1 < last {
+                    self.put(lane, 1 - self.parity, next + 1);
                 }
+            }
+            simd.vectorize(Leapt(simd, self));
+            let is_there = self.is_there;
+            self.parity = 1 - self.parity;
+            for lane in (0..S::F64_LANES).filter(|lane| is_there[*lane]) {
                 self.samples[lane].next += usize::from(self.is_taken[lane] == 1.0);
-                match self.goes_on(lane) {
-                    true => self.put(lane),
-                    false => all_go_on = false,
-                }
+                all_go_on &= self.goes_on(lane);
             }
         }
     }
@@ -180,7 +197,7 @@ impl<'a> Contacts<'a> {
 
     /// Takes the run in `lane` out. Returns the next sample.
     pub(crate) fn leave<W: Passes>(&mut self, lane: usize, engine: &mut Engine, watch: &mut W) -> usize {
-        self.exact[lane] = None;
+        self.is_there[lane] = false;
         let (Samples { times, next, .. }, motion) = (self.samples[lane], &mut engine.motion);
         if next > self.entered[lane] {
             motion.state = State { u: self.u[lane], u_dot: self.u_dot[lane], theta: 0.0, theta_dot: 0.0 };
@@ -203,11 +220,12 @@ impl<S: Simd> WithSimd for Leapt<'_, '_, S> {
         let Leapt(simd, of) = self;
         let row = |row: &Row| Lanes::load(simd, row);
         let oscillator = Oscillator { omega: row(&of.oscillator.omega), zeta: row(&of.oscillator.zeta) };
-        let (u, u_dot, duration) = (row(&of.u), row(&of.u_dot), row(&of.duration));
-        let (a, a_next) = (row(&of.a_g[0]), row(&of.a_g[1]));
+        let Leap { duration, a_g: [a, a_next], flow } = &of.leaps[of.parity];
+        let (u, u_dot, duration) = (row(&of.u), row(&of.u_dot), row(duration));
+        let (a, a_next) = (row(a), row(a_next));
         let slope = (a_next - a) / duration;
         let a_end = a + slope * duration;
-        let Flow { free: [m11, m12, m21, m22], step, ramp } = &of.flow;
+        let Flow { free: [m11, m12, m21, m22], step, ramp } = flow;
         let flow = Flow { free: [row(m11), row(m12), row(m21), row(m22)], step: row(step), ramp: row(ramp) };
         let [u_end, u_dot_end] = flow.driven([u, u_dot], a, slope);
         let swing = oscillator.swing([u, u_dot], a, slope, duration);

@@ -43,7 +43,7 @@ pub(crate) fn series(structure: &OneMass, start: &Start, arc: &mut Arc) {
 /// Exact propagation over intervals during which the base certainly stays down.
 #[derive(Clone, Debug)]
 pub(crate) struct ExactContact {
-    oscillator: Oscillator,
+    pub oscillator: Oscillator,
     flows: Kept<Flow>,
 }
 

@@ -14,7 +14,7 @@ use nalgebra::Matrix2;
 use std::cell::{RefCell, RefMut};
 
 /// An oscillator of circular frequency ω (rad/s) and damping ratio ζ.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Oscillator<N = f64> {
     pub omega: N,
     pub zeta: N,

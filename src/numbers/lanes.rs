@@ -131,8 +131,9 @@ impl<S: Simd> Answers<S> {
     /// Whether all say yes.
     #[inline(always)]
     pub(crate) fn all(self) -> bool {
-        let [zero, one] = [0.0, 1.0].map(|value| Lanes::splat(self.simd, value));
-        self.simd.reduce_sum_f64s(self.choose(zero, one).of) == 0.0
+        let zero = Lanes::splat(self.simd, 0.0);
+        let no = self.simd.xor_m64s(self.of, zero.is_at_most(zero).of);
+        self.simd.first_true_m64s(no) == S::F64_LANES
     }
 }
 
