@@ -231,11 +231,18 @@ impl<Q: Runs> Run<'_, Q> {
             let from = times[next - 1];
             (until, GroundMotion::from(self.ground).ramp(next).at(until - from).a_g)
         });
-        let samples = times[..next].iter().copied().zip(acceleration[..next].iter().copied());
-        let most = |most: Peak, (time, a_g): (f64, f64)| {
-            if a_g.abs() > most.magnitude { Peak { magnitude: a_g.abs(), time } } else { most }
-        };
-        samples.chain(cut).fold(Peak { magnitude: 0.0, time: self.ground.start() }, most)
+        let samples = &acceleration[..next];
+        let (fours, rest) = samples.as_chunks::<4>();
+        // four side by side: a comparison waits for the one before it
+        let most =
+            fours.iter().fold([0.0; 4], |most: [f64; 4], four| std::array::from_fn(|i| most[i].max(four[i].abs())));
+        let magnitude = most.into_iter().chain(rest.iter().map(|a_g| a_g.abs())).fold(0.0, f64::max);
+        let first = samples.iter().position(|a_g| a_g.abs() == magnitude && magnitude > 0.0);
+        let time = first.map_or_else(|| self.ground.start(), |first| times[first]);
+        match cut {
+            Some((time, a_g)) if a_g.abs() > magnitude => Peak { magnitude: a_g.abs(), time },
+            _ => Peak { magnitude, time },
+        }
     }
 }
 

@@ -20,6 +20,8 @@ pub struct PeakWatch<'a, Q: Coordinates = f64> {
     pub(super) peaks: &'a mut Peaks,
     /// Pieces that may hold more than what has been seen.
     kept: Vec<Candidate<Q>>,
+    /// Polynomials and bounds of pieces that are kept no more.
+    spare: (Vec<Box<Arc<Q>>>, Vec<Vec<f64>>),
     /// The level of the kept pieces, and room for their polynomials.
     level: Option<Box<dyn Level<Q>>>,
     room: Room<Q>,
@@ -50,6 +52,7 @@ impl Peaks {
         PeakWatch {
             peaks: self,
             kept: Vec::new(),
+            spare: (Vec::new(), Vec::new()),
             level: None,
             room: Room::default(),
             bounds: Vec::new(),
@@ -76,11 +79,12 @@ impl<Q: Coordinates> PeakWatch<'_, Q> {
     /// Looks at what has been kept, the latest first, which is often the largest.
     fn look_back(&mut self) {
         let Some(level) = &self.level else { return };
-        while let Some(kept) = self.kept.pop() {
+        while let Some(mut kept) = self.kept.pop() {
             if self.peaks.may_change_within(&kept.bounds, kept.before.time) {
                 self.room.left.set(MOST_POLYNOMIALS); // never used up: only short leaps are kept
                 self.peaks.look(&kept.piece(&**level, &self.room), &kept.bounds);
             }
+            kept.put_by(&mut self.spare);
         }
     }
 }
@@ -89,6 +93,12 @@ impl<Q: Coordinates> Candidate<Q> {
     fn piece<'a>(&'a self, level: &'a dyn Level<Q>, room: &'a Room<Q>) -> Piece<'a, Q> {
         let &Candidate { ref before, duration, load, end, ref arc, .. } = self;
         Piece { before, duration, load, end, level, arc: arc.as_deref(), room }
+    }
+
+    /// Puts the polynomial and the bounds by for another piece.
+    fn put_by(&mut self, (arcs, bounds): &mut (Vec<Box<Arc<Q>>>, Vec<Vec<f64>>)) {
+        arcs.extend(self.arc.take());
+        bounds.push(std::mem::take(&mut self.bounds));
     }
 }
 
@@ -123,12 +133,24 @@ impl<Q: Coordinates> Watch<Q> for PeakWatch<'_, Q> {
         }
         self.level.get_or_insert_with(|| level.boxed());
         if self.kept.len() == MOST_CANDIDATES {
-            self.kept.retain(|kept| self.peaks.may_change_within(&kept.bounds, kept.before.time));
+            let (peaks, spare) = (&*self.peaks, &mut self.spare);
+            self.kept.retain_mut(|kept| {
+                let stays = peaks.may_change_within(&kept.bounds, kept.before.time);
+                if !stays {
+                    kept.put_by(spare);
+                }
+                stays
+            });
         }
         if self.kept.len() == MOST_CANDIDATES {
             self.look_back();
         }
-        let (arc, bounds) = (arc.cloned().map(Box::new), std::mem::take(&mut self.bounds));
+        let arc = arc.map(|arc| {
+            let mut own = self.spare.0.pop().unwrap_or_default();
+            own.be(arc);
+            own
+        });
+        let bounds = std::mem::replace(&mut self.bounds, self.spare.1.pop().unwrap_or_default());
         self.kept.push(Candidate { before: *before, duration, load: *load, end: *end, arc, bounds });
     }
 

@@ -130,6 +130,16 @@ impl<Q: Coordinates> Default for Arc<Q> {
 }
 
 impl<Q: Coordinates> Arc<Q> {
+    /// Becomes the motion of `other`.
+    pub(crate) fn be(&mut self, other: &Arc<Q>) {
+        let last = other.order;
+        self.u[..=last].copy_from_slice(&other.u[..=last]);
+        self.u_dot[..=last].copy_from_slice(&other.u_dot[..=last]);
+        self.theta[..=last].copy_from_slice(&other.theta[..=last]);
+        self.theta_dot[..=last].copy_from_slice(&other.theta_dot[..=last]);
+        (self.order, self.span, self.reach) = (other.order, other.span, other.reach);
+    }
+
     /// How long it lasts, s.
     pub fn duration(&self) -> f64 {
         self.reach * self.span
