@@ -248,14 +248,23 @@ impl<S: Simd> WithSimd for Leapt<'_, '_, S> {
 
 /// Steps of rocking of several runs, from sample to sample.
 #[derive(Debug)]
-#[repr(align(64))]
 pub(crate) struct Rocking<'a, S: Simd> {
     simd: S,
+    runs: Runs<'a>,
+    products: Products<Lanes<S>>,
+    /// Of the last step: u, u̇, θ and θ̇, order by order.
+    series: [[Lanes<S>; 4]; MAX_ORDER + 1],
+}
+
+/// What steps of rocking need of several runs, and what becomes of the runs.
+#[derive(Debug, Default)]
+#[repr(align(64))]
+struct Runs<'a> {
     sought: Sought,
     samples: [Samples<'a>; MOST],
     entered: [usize; MOST],
-    /// True if the run is new in its lane, or if a watcher has seen a piece or a transition, which may change its limits.
-    is_changed: [bool; MOST],
+    /// False if the run is new in its lane, or if a watcher has seen a piece or a transition, which may change its limits.
+    is_known: [bool; MOST],
     /// 1 where there is a run.
     is_there: Row,
     rocker: Rocker<Row>,
@@ -270,15 +279,12 @@ pub(crate) struct Rocking<'a, S: Simd> {
     slope: Row,
     interval: Row,
     may_go_on: Row,
-    /// The run's age among its transitions and its evaluations until then.
+    /// The run's age among its transitions, and its evaluations until then.
     age: Row,
     evaluations: Row,
-    products: Products<Lanes<S>>,
-    /// Of the last step: u, u̇, θ and θ̇, order by order.
-    series: [[Lanes<S>; 4]; MAX_ORDER + 1],
+    /// Of the last step: its order, its span (s), the part of the span up to which the series holds, and the state there.
     order: Row,
     span: Row,
-    /// The part of each series' span up to which the series holds.
     reach: Row,
     end: [Row; 4],
     /// 1 where a series proves that no guard closes, and where the watcher need not see it or a part of it from its start; and where
@@ -290,36 +296,9 @@ pub(crate) struct Rocking<'a, S: Simd> {
 
 impl<'a, S: Simd> Rocking<'a, S> {
     pub(crate) fn new(simd: S) -> Rocking<'a, S> {
-        let (zero, none) = (Lanes::splat(simd, 0.0), [0.0; MOST]);
-        Rocking {
-            simd,
-            sought: Sought::default(),
-            samples: [Samples::default(); MOST],
-            entered: [0; MOST],
-            is_changed: [true; MOST],
-            is_there: none,
-            rocker: Rocker::default(),
-            pace: Pace::default(),
-            local_error: none,
-            gravity: none,
-            side: none,
-            state: [none; 4],
-            a_g: none,
-            slope: none,
-            interval: none,
-            may_go_on: none,
-            age: none,
-            evaluations: none,
-            products: Products::new(zero),
-            series: [[zero; 4]; MAX_ORDER + 1],
-            order: none,
-            span: none,
-            reach: none,
-            end: [none; 4],
-            stays: none,
-            is_passed: none,
-            has_gone_on: none,
-        }
+        let zero = Lanes::splat(simd, 0.0);
+        let series = [[zero; 4]; MAX_ORDER + 1];
+        Rocking { simd, runs: Runs::default(), products: Products::new(zero), series }
     }
 
     /// Puts the run of `engine`, whose `advance` leads to the first of these samples, into `lane`.
@@ -332,32 +311,32 @@ impl<'a, S: Simd> Rocking<'a, S> {
         samples: Samples<'a>,
         watch: &W,
     ) {
-        let level = by_equations_5_and_6(&*engine.level).expect(STEPS_ALONE);
+        let (runs, level) = (&mut self.runs, by_equations_5_and_6(&*engine.level).expect(STEPS_ALONE));
         let (motion, rocking) = (&engine.motion, level.rocking());
-        if std::mem::take(&mut self.is_changed[lane]) {
-            watch.seek(engine, lane, &mut self.sought);
+        if !std::mem::replace(&mut runs.is_known[lane], true) {
+            watch.seek(engine, lane, &mut runs.sought);
             let (side, pace, one) = (motion.phase.side(), &rocking.pace, engine.structure().one());
             let Rocker { H, pivot, weight_offset, foundation, stiffness, damping_u } = rocking.rocker(side);
-            (self.rocker.H[lane], self.rocker.pivot[lane]) = (H, pivot);
-            (self.rocker.weight_offset[lane], self.rocker.foundation[lane]) = (weight_offset, foundation);
-            (self.rocker.stiffness[lane], self.rocker.damping_u[lane]) = (stiffness, damping_u);
-            (self.pace.longest_span[lane], self.pace.longest_response[lane]) =
+            (runs.rocker.H[lane], runs.rocker.pivot[lane]) = (H, pivot);
+            (runs.rocker.weight_offset[lane], runs.rocker.foundation[lane]) = (weight_offset, foundation);
+            (runs.rocker.stiffness[lane], runs.rocker.damping_u[lane]) = (stiffness, damping_u);
+            (runs.pace.longest_span[lane], runs.pace.longest_response[lane]) =
                 (pace.longest_span, pace.longest_response);
-            (self.pace.omega[lane], self.pace.gravity[lane], self.pace.height[lane]) =
+            (runs.pace.omega[lane], runs.pace.gravity[lane], runs.pace.height[lane]) =
                 (pace.omega, pace.gravity, pace.height);
-            self.local_error[lane] = level.subject().local_error;
-            self.gravity[lane] = one.expect("it is of one mass").parameters().g;
-            (self.side[lane], self.is_there[lane]) = (side.sign(), 1.0);
+            runs.local_error[lane] = level.subject().local_error;
+            runs.gravity[lane] = one.expect("it is of one mass").parameters().g;
+            (runs.side[lane], runs.is_there[lane]) = (side.sign(), 1.0);
         }
         let Start { state: State { u, u_dot, theta, theta_dot }, a_g, interval, .. } =
             advance.start(level.subject(), motion);
-        self.state.iter_mut().zip([u, u_dot, theta, theta_dot]).for_each(|(row, number)| row[lane] = number);
-        (self.a_g[lane], self.slope[lane], self.interval[lane]) = (a_g.value, a_g.slope, interval);
-        (self.age[lane], self.evaluations[lane]) = (motion.chatter.age, 0.0);
+        runs.state.iter_mut().zip([u, u_dot, theta, theta_dot]).for_each(|(row, number)| row[lane] = number);
+        (runs.a_g[lane], runs.slope[lane], runs.interval[lane]) = (a_g.value, a_g.slope, interval);
+        (runs.age[lane], runs.evaluations[lane]) = (motion.chatter.age, 0.0);
         let left = advance.last_step.min(MOST_STEPS).saturating_sub(motion.work.steps) as usize;
         let last = samples.last.min(samples.next.saturating_add(left));
-        (self.samples[lane], self.entered[lane]) = (Samples { last, ..samples }, samples.next);
-        self.may_go_on[lane] = f64::from(samples.next < last);
+        (runs.samples[lane], runs.entered[lane]) = (Samples { last, ..samples }, samples.next);
+        runs.may_go_on[lane] = f64::from(samples.next < last);
     }
 
     /// Takes steps as long as all runs go on to their next samples: the bases certainly stay up, and the watchers need not see it.
@@ -367,18 +346,19 @@ impl<'a, S: Simd> Rocking<'a, S> {
         let mut all_go_on = true;
         while all_go_on {
             self.simd.vectorize(Taken(self));
+            let runs = &mut self.runs;
             steps += 1;
-            for lane in (0..S::F64_LANES).filter(|lane| self.is_there[*lane] == 1.0) {
-                if !self.has_gone_on(lane) {
+            for lane in (0..S::F64_LANES).filter(|lane| runs.is_there[*lane] == 1.0) {
+                if runs.has_gone_on[lane] == 0.0 {
                     all_go_on = false;
                     continue;
                 }
-                let Samples { times, a_g, next, last } = &mut self.samples[lane];
+                let Samples { times, a_g, next, last } = &mut runs.samples[lane];
                 let duration = times[*next] - times[*next - 1];
                 let Ramp { value, slope } = Ramp::between(a_g[*next - 1], a_g[*next], duration);
                 *next += 1;
-                self.may_go_on[lane] = f64::from(*next < *last);
-                (self.a_g[lane], self.slope[lane], self.interval[lane]) = (value, slope, duration);
+                runs.may_go_on[lane] = f64::from(*next < *last);
+                (runs.a_g[lane], runs.slope[lane], runs.interval[lane]) = (value, slope, duration);
             }
         }
         steps
@@ -387,41 +367,41 @@ impl<'a, S: Simd> Rocking<'a, S> {
     /// Whether the run in `lane` has gone on to its next sample.
     #[inline]
     pub(crate) fn has_gone_on(&self, lane: usize) -> bool {
-        self.has_gone_on[lane] == 1.0
+        self.runs.has_gone_on[lane] == 1.0
     }
 
     /// Brings `engine` to the sample before the step that the run in `lane` was about to take. Returns the next sample if that is another
     /// one than that where it was.
     #[inline]
     pub(crate) fn catch_up<W: Passes>(&mut self, lane: usize, engine: &mut Engine, watch: &mut W) -> Option<usize> {
-        let (Samples { times, next, .. }, motion) = (self.samples[lane], &mut engine.motion);
-        let passed = next - self.entered[lane];
+        let (Samples { times, next, .. }, motion) = (self.runs.samples[lane], &mut engine.motion);
+        let passed = next - self.runs.entered[lane];
         if passed == 0 {
             return None;
         }
-        let [u, u_dot, theta, theta_dot] = &self.state;
+        let [u, u_dot, theta, theta_dot] = &self.runs.state;
         motion.state = State { u: u[lane], u_dot: u_dot[lane], theta: theta[lane], theta_dot: theta_dot[lane] };
-        (motion.chatter.age, motion.time) = (self.age[lane], times[next - 2]);
+        (motion.chatter.age, motion.time) = (self.runs.age[lane], times[next - 2]);
         motion.work.steps += passed as u64;
-        motion.work.evaluations += self.evaluations[lane] as u64;
+        motion.work.evaluations += self.runs.evaluations[lane] as u64;
         watch.pass();
         Some(next - 1)
     }
 
     /// Takes the run in `lane` out.
     pub(crate) fn leave(&mut self, lane: usize) {
-        (self.is_there[lane], self.is_changed[lane]) = (0.0, true);
+        (self.runs.is_there[lane], self.runs.is_known[lane]) = (0.0, false);
     }
 
     /// Writes the series of the run in `lane` into `arc`.
     #[cold]
     fn write(&self, lane: usize, arc: &mut Arc) {
-        let order = self.order[lane] as usize;
+        let order = self.runs.order[lane] as usize;
         for (k, [u, u_dot, theta, theta_dot]) in self.series.iter().enumerate().take(order + 1) {
             (arc.u[k], arc.u_dot[k]) = (u.of(lane), u_dot.of(lane));
             (arc.theta[k], arc.theta_dot[k]) = (theta.of(lane), theta_dot.of(lane));
         }
-        (arc.order, arc.span, arc.reach) = (order, self.span[lane], self.reach[lane]);
+        (arc.order, arc.span, arc.reach) = (order, self.runs.span[lane], self.runs.reach[lane]);
     }
 }
 
@@ -433,8 +413,8 @@ impl<S: Simd> WithSimd for Taken<'_, '_, S> {
 
     #[inline(always)]
     fn with_simd<T: Simd>(self, _simd: T) {
-        let Taken(of) = self;
-        let simd = of.simd;
+        let Taken(Rocking { simd, runs: of, products, series }) = self;
+        let simd = *simd;
         let row = |row: &Row| Lanes::load(simd, row);
         let [u, u_dot, theta, theta_dot] = &of.state;
         let (u, u_dot, theta, theta_dot) = (row(u), row(u_dot), row(theta), row(theta_dot));
@@ -467,7 +447,6 @@ impl<S: Simd> WithSimd for Taken<'_, '_, S> {
         let is_there = row(&of.is_there);
         let (mut ended, mut was_small, mut order) = (is_there.is_less(one), one.is_less(zero), zero);
         let (mut last, mut of_order) = (0, [u, u_dot, theta, theta_dot]);
-        let Rocking { products, series, .. } = &mut *of;
         series[0] = of_order;
         for (k, places) in series.iter_mut().enumerate().skip(1) {
             let [_, u_dot, _, theta_dot] = of_order;
@@ -491,32 +470,34 @@ impl<S: Simd> WithSimd for Taken<'_, '_, S> {
             was_small = is_small;
         }
         of.reach = [1.0; MOST];
-        let ended = ended.choose(one, zero);
-        for lane in (0..S::F64_LANES).filter(|lane| ended.of(*lane) == 0.0) {
-            let truncation = Truncation { u_dot: truncation.of(lane), theta_dot: truncation_turning.of(lane) };
-            let velocities = |k: usize| (of.series[k][1].of(lane), of.series[k][3].of(lane));
-            of.reach[lane] = taylor::reach(velocities, &truncation).min(1.0);
+        if !ended.all() {
+            let ended = ended.choose(one, zero);
+            for lane in (0..S::F64_LANES).filter(|lane| ended.of(*lane) == 0.0) {
+                let truncation = Truncation { u_dot: truncation.of(lane), theta_dot: truncation_turning.of(lane) };
+                let velocities = |k: usize| (series[k][1].of(lane), series[k][3].of(lane));
+                of.reach[lane] = taylor::reach(velocities, &truncation).min(1.0);
+            }
         }
         let sigma = row(&of.reach);
         let sum = sigma.is_less(one).choose(zero, none);
         let (mut end, mut off, mut excursion) = ([sum; 4], [zero; 4], zero);
         for k in (1..last + 1).rev() {
             let weight = g.like(OFF_CHORD[k]);
-            for (i, number) in of.series[k].into_iter().enumerate() {
+            for (i, number) in series[k].into_iter().enumerate() {
                 end[i] = end[i] * sigma + number;
                 off[i] = (off[i] + weight * number.abs()) * sigma;
             }
-            excursion = (excursion + of.series[k][2].abs()) * sigma;
+            excursion = (excursion + series[k][2].abs()) * sigma;
         }
         let (rounding, mut most) = (g.like(ROUNDING), off);
-        for (i, number) in of.series[0].into_iter().enumerate() {
+        for (i, number) in series[0].into_iter().enumerate() {
             end[i] = end[i] * sigma + number;
             most[i] = number.abs().max(end[i].abs()) + off[i];
             end[i].store(&mut of.end[i]);
         }
         let (start, a_end) = (side * theta, push[0] + push[1] * sigma);
         // as the run by itself proves that no guard closes
-        let (first, second) = (side * sigma * of.series[1][2], side * sigma * of.series[2][2]);
+        let (first, second) = (side * sigma * series[1][2], side * sigma * series[2][2]);
         let lead = first.abs().is_at_most(zero).choose(second * sigma, first);
         let leads = start.abs().is_at_most(zero) & (excursion * rounding).is_less(lead + lead);
         let rises = (excursion * rounding).is_less(start) | (off[2] * rounding).is_less(start.min(side * end[2]));
@@ -529,7 +510,7 @@ impl<S: Simd> WithSimd for Taken<'_, '_, S> {
         let duration = sigma * span;
         let is_whole = duration.is_at_most(interval) & interval.is_at_most(duration);
         let goes_on = stays & is_passed & is_whole & one.is_at_most(is_there.min(row(&of.may_go_on)));
-        for (i, number) in of.series[0].into_iter().enumerate() {
+        for (i, number) in series[0].into_iter().enumerate() {
             goes_on.choose(end[i], number).store(&mut of.state[i]);
         }
         let (age, evaluations) = (row(&of.age), row(&of.evaluations));
@@ -620,20 +601,20 @@ impl Engine {
         advance: &mut Advance<f64>,
         watch: &mut W,
     ) -> Result<Option<Progress>, AdvanceError> {
-        let level = &*self.level;
-        let duration = steps.reach[lane] * steps.span[lane];
+        let (level, runs) = (&*self.level, &mut steps.runs);
+        let duration = runs.reach[lane] * runs.span[lane];
         let is_whole = duration == advance.end - advance.elapsed;
         let is_last = !is_whole && is_at_its_end(level, &self.motion, duration, None);
-        let stays = steps.stays[lane] == 1.0 && !is_last && self.motion.work.steps != advance.last_step;
-        let is_passed = steps.is_passed[lane] == 1.0;
-        steps.is_changed[lane] = !(stays && is_passed);
-        if steps.is_changed[lane] {
+        let stays = runs.stays[lane] == 1.0 && !is_last && self.motion.work.steps != advance.last_step;
+        let is_passed = runs.is_passed[lane] == 1.0;
+        runs.is_known[lane] = stays && is_passed;
+        if !runs.is_known[lane] {
             steps.write(lane, &mut self.arc);
         }
         if !stays {
             return self.go_on(advance, true, true, &mut After { watch, passes: is_passed });
         }
-        let [u, u_dot, theta, theta_dot] = &steps.end;
+        let [u, u_dot, theta, theta_dot] = &steps.runs.end;
         let end = State { u: u[lane], u_dot: u_dot[lane], theta: theta[lane], theta_dot: theta_dot[lane] };
         if is_passed {
             watch.pass();
@@ -643,7 +624,7 @@ impl Engine {
         }
         let motion = &mut self.motion;
         motion.work.steps += 1;
-        motion.work.evaluations += steps.order[lane] as u64;
+        motion.work.evaluations += steps.runs.order[lane] as u64;
         motion.state = end;
         motion.chatter.pass(duration);
         motion.time = advance.pass(duration);
