@@ -256,7 +256,7 @@ pub(crate) struct Rocking<'a, S: Simd> {
     series: [[Lanes<S>; 4]; MAX_ORDER + 1],
 }
 
-/// What steps of rocking need of several runs, and what becomes of the runs.
+/// Several runs that rock, before and after the last step.
 #[derive(Debug, Default)]
 #[repr(align(64))]
 struct Runs<'a> {
@@ -287,10 +287,10 @@ struct Runs<'a> {
     span: Row,
     reach: Row,
     end: [Row; 4],
-    /// 1 where a series proves that no guard closes, and where the watcher need not see it or a part of it from its start; and where
-    /// the run has gone on to the next sample.
+    /// 1 where the last step's series proves that no guard closes, and where the watcher need not see the step or a part from its start.
     stays: Row,
     is_passed: Row,
+    /// 1 where the run has gone on to the next sample.
     has_gone_on: Row,
 }
 

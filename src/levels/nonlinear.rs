@@ -176,7 +176,7 @@ impl Expanded for f64 {
     }
 }
 
-/// What Eqs 5 and 6 contain of a structure that rocks about one side.
+/// The numbers of a structure that rocks about one side, as Eqs 5 and 6 contain them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Rocker<N> {
     pub H: N,
@@ -358,7 +358,7 @@ impl ElasticRocking for NonlinearRocking {
 }
 
 impl NonlinearRocking {
-    /// What the equations contain of the structure.
+    /// The numbers of the structure in the equations.
     #[inline(always)]
     pub(crate) fn rocker(&self, side: Side) -> Rocker<f64> {
         let structure = &self.one;
