@@ -1,11 +1,9 @@
 //! `advise`: errors and cost of each level of detail on the user's own scene, and the cheapest level that is good enough.
 
-use crate::cause::Cause;
 use crate::limit_args::LimitArgs;
 use crate::record_args::one_of;
 use crate::results::{FormatArgs, Traced};
-use crate::scene_args::{GroundArgs, InitialArgs, load};
-use crate::structure_args::StructureArgs;
+use crate::scene_args::MotionArgs;
 use anyhow::Context;
 use rocking::run::levels::Criterion;
 use rocking_sweep::plan::Conditions;
@@ -14,11 +12,7 @@ use rocking_sweep::plan::Conditions;
 #[derive(clap::Args)]
 pub struct AdviseArgs {
     #[command(flatten)]
-    structure: StructureArgs,
-    #[command(flatten)]
-    ground: GroundArgs,
-    #[command(flatten)]
-    initial: InitialArgs,
+    motion: MotionArgs,
     #[command(flatten)]
     allowed: AllowedArgs,
     #[command(flatten)]
@@ -54,11 +48,9 @@ fn relative_error(text: &str) -> Result<f64, String> {
 /// Runs the levels and prints the table and the advice.
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let limits = args.limits.limits()?;
-    let (initial, duration) = (args.initial.state(), args.ground.duration());
-    let run = load(&args.structure, &args.ground, Conditions { initial, duration, ..Conditions::default() })?;
-    let cause = Cause::new(run.structure.clone()).under(&args.ground.record, &run.ground);
-    let cause = cause.pushed(args.ground.force.as_ref()).with_initial(&run.conditions.initial);
+    let run = args.motion.load(Conditions::default())?;
+    let cause = args.motion.cause(&run).with_initial(&run.conditions.initial);
     let advice = run.advice(args.allowed.within, &args.allowed.of).context("detail = nonlinear")?;
-    let text = || run.advice_text(&args.ground.title(&run.ground), &advice, &limits);
+    let text = || run.advice_text(&args.motion.ground.title(&run.ground), &advice, &limits);
     args.results.print(text, &Traced { cause: &cause, rows: &advice.rows() })
 }

@@ -34,22 +34,18 @@ fn text((name, of): (&'static str, Option<String>)) -> (&'static str, Part) {
 }
 
 impl Cause {
-    /// The cause of results of a record alone.
-    pub fn of_record(args: &RecordArgs, record: &Record) -> Cause {
-        Cause::of(None).under(args, record)
-    }
-
-    fn of(structure: Option<Part>) -> Cause {
-        let version = text(("version", Some(version())));
-        Cause([version].into_iter().chain(structure.map(|part| ("structure", part))).collect())
+    /// The cause of results of this program alone.
+    pub fn of_program() -> Cause {
+        Cause(vec![text(("version", Some(version())))])
     }
 
     /// The cause of results of `structure`.
     pub fn new(structure: impl Into<Structure>) -> Cause {
-        let structure = structure.into();
+        let (structure, mut cause) = (structure.into(), Cause::of_program());
         let numbers = || describe::numbers(&structure).into_iter().map(|of| (of.name, of.value)).collect();
         let one = structure.one().map(|one| Part::OneMass(*one.parameters()));
-        Cause::of(Some(one.unwrap_or_else(|| Part::Numbers(numbers()))))
+        cause.0.push(("structure", one.unwrap_or_else(|| Part::Numbers(numbers()))));
+        cause
     }
 
     /// This cause under the `record` that `args` ask for.

@@ -40,7 +40,7 @@ pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
     let (record, output) = (&understood.record, args.output.as_deref());
     let options = RecordOptions { unit: Some(understood.units[0]), ..args.options.clone() };
     let asked = RecordArgs { record: Some(args.record.clone()), vertical: VerticalArgs::default(), options };
-    let cause = Cause::of_record(&asked, record);
+    let cause = Cause::of_program().under(&asked, record);
     args.results.print_table(output, (record.title(), G), &cause, &amounts(record))
 }
 

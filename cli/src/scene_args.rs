@@ -1,4 +1,5 @@
 //! The scene that a command simulates: a ground motion record or free vibration, and the initial values.
+use crate::cause::Cause;
 use crate::record_args::{RecordArgs, one_of, with_force};
 use crate::structure_args::StructureArgs;
 use clap::ArgGroup;
@@ -12,7 +13,7 @@ use std::num::ParseFloatError;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A motion to follow: of which structure, under which ground motion, from where, and how it is computed.
+/// A motion to follow: of which structure, under which ground motion, from where.
 #[derive(clap::Args)]
 pub struct MotionArgs {
     #[command(flatten)]
@@ -21,30 +22,28 @@ pub struct MotionArgs {
     pub ground: GroundArgs,
     #[command(flatten)]
     initial: InitialArgs,
-    #[command(flatten)]
-    level: LevelArgs,
-}
-
-/// The run of a structure under a ground motion. Conditions that no run of the structure can have are an error before the record is
-/// read.
-pub fn load(structure: &StructureArgs, ground: &GroundArgs, conditions: Conditions) -> anyhow::Result<Run> {
-    let structure = structure.load_any()?;
-    conditions.check(&structure)?;
-    let ground = Arc::new(ground.load(structure.base().g)?);
-    Ok(Run { structure, ground, conditions })
 }
 
 impl MotionArgs {
-    /// The run.
-    pub fn load(&self) -> anyhow::Result<Run> {
-        let LevelArgs { tolerance, detail } = self.level;
-        let (initial, duration) = (self.initial.state(), self.ground.duration());
-        load(&self.structure, &self.ground, Conditions { initial, detail, tolerance, duration })
+    /// The run, with equations and tolerance as in `how`. Conditions that no run of the structure can have are an error before the record
+    /// is read.
+    pub fn load(&self, how: Conditions) -> anyhow::Result<Run> {
+        let structure = self.structure.load_any()?;
+        let conditions = Conditions { initial: self.initial.state(), duration: self.ground.duration(), ..how };
+        conditions.check(&structure)?;
+        let ground = Arc::new(self.ground.load(structure.base().g)?);
+        Ok(Run { structure, ground, conditions })
     }
 
     /// The files that are read.
     pub fn inputs(&self) -> impl Iterator<Item = &Path> {
         self.structure.input().into_iter().chain(self.ground.record.inputs()).chain(self.ground.force.as_deref())
+    }
+
+    /// The origin of results of `run`.
+    pub fn cause(&self, run: &Run) -> Cause {
+        let cause = Cause::new(run.structure.clone()).under(&self.ground.record, &run.ground);
+        cause.pushed(self.ground.force.as_ref())
     }
 }
 
@@ -114,13 +113,21 @@ fn one_or_more<'de, D: Deserializer<'de>>(of: D) -> Result<Vec<f64>, D::Error> {
 /// How the motion is computed.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Equations")]
-struct LevelArgs {
+pub struct LevelArgs {
     /// Level of detail: the equations that move the structure
     #[arg(long, value_name = "LEVEL", default_value = Detail::default().name(), value_parser = one_of(Detail::ALL.map(|of| (of.name(), of))))]
     detail: Detail,
     /// Relative tolerance
     #[arg(long, default_value = format!("{DEFAULT_TOLERANCE:e}"))]
     tolerance: f64,
+}
+
+impl LevelArgs {
+    /// Level of detail and tolerance among usual conditions.
+    pub fn conditions(&self) -> Conditions {
+        let &LevelArgs { detail, tolerance } = self;
+        Conditions { detail, tolerance, ..Conditions::default() }
+    }
 }
 
 impl GroundArgs {

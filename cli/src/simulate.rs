@@ -2,11 +2,10 @@
 mod picture;
 mod profile;
 
-use crate::cause::Cause;
 use crate::limit_args::LimitArgs;
 use crate::picture::Picture;
 use crate::results::{FormatArgs, csv};
-use crate::scene_args::MotionArgs;
+use crate::scene_args::{LevelArgs, MotionArgs};
 use crate::talk::{say, write_as};
 use anyhow::ensure;
 use rocking::digits::{short, significant};
@@ -25,6 +24,8 @@ use std::path::PathBuf;
 pub struct SimulateArgs {
     #[command(flatten)]
     motion: MotionArgs,
+    #[command(flatten)]
+    level: LevelArgs,
     #[command(flatten)]
     results: ResultArgs,
     #[command(flatten)]
@@ -116,7 +117,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let limits = args.limits.limits()?;
     let output = args.results.output.as_deref();
     args.results.format.check_beside(output)?;
-    let run = args.motion.load()?;
+    let run = args.motion.load(args.level.conditions())?;
     let ResultArgs { picture, profile, events, spectrum, .. } = &args.results;
     let floors = run.structure.floors().len();
     let is_possible = floors > 0 || profile.is_none() && spectrum.is_none();
@@ -124,9 +125,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     if let Some(line) = centring(run.structure.base()) {
         say!("centring       {line}");
     }
-    let ground = &args.motion.ground;
-    let cause = Cause::new(run.structure.clone()).under(&ground.record, &run.ground).pushed(ground.force.as_ref());
-    let cause = cause.computed(&run.conditions);
+    let cause = args.motion.cause(&run).computed(&run.conditions);
     let mut files = OutputFiles::of_inputs(args.motion.inputs());
     let response = output.map(|path| files.create(path)).transpose()?;
     let events = events.as_deref().map(|path| files.create(path)).transpose()?;
