@@ -140,7 +140,7 @@ pub fn with_force(record: Record, path: Option<&Path>) -> anyhow::Result<Record>
 /// Prints findings and assumptions about a record after `label`, and warnings.
 pub fn say_understood(label: &str, understood: &Understood) {
     say!("{label}{}", understood.sentences[0]);
-    understood.warnings().iter().for_each(|warning| warning!("{warning}"));
+    understood.sentences[1..].iter().for_each(|warning| warning!("{warning}"));
 }
 
 /// Takes one of `all` by its name.

@@ -61,11 +61,6 @@ impl Understood {
         Ok(Understood { record, in_file_unit, units, ..self })
     }
 
-    /// Sentences about assumptions and likely errors.
-    pub fn warnings(&self) -> &[String] {
-        &self.sentences[1..]
-    }
-
     /// The scaled record as a table that needs no options, in s and the unit of the file: a record in g follows a g that is set later.
     pub fn table(&self) -> anyhow::Result<String> {
         let [time_scale, scale] = self.factors;

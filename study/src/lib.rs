@@ -1,15 +1,4 @@
 //! Speed against accuracy, limits of stability and a gallery of failures, for the flexible rocking structure.
-//!
-//! | read | for |
-//! |---|---|
-//! | [`scene`] | structures, initial states, ground motions |
-//! | [`equations`], [`guards`], [`hybrid`] | the model as a step-by-step code sees it |
-//! | [`fixed_step`] | textbook methods |
-//! | [`libraries`] | other crates' solvers |
-//! | [`engine`] | this project's engine |
-//! | [`response`] | errors, failures |
-//! | [`precision`], [`stability`], [`failures`], [`validity`] | the commands |
-//! | [`tables`] | the files that they write |
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
 pub mod engine;

@@ -28,17 +28,22 @@ const PACOIMA: &str = "sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2";
 const EL_CENTRO: &str = "imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2";
 
 impl Scene {
+    /// A structure of parameters that are known to be in range, from `initial` on this `ground`.
+    pub fn new(
+        key: &'static str,
+        title: &'static str,
+        parameters: Parameters,
+        initial: State,
+        ground: Record,
+    ) -> Scene {
+        Scene { key, title, structure: structure(parameters), initial, ground }
+    }
+
     /// Evison's specimen, released at rest with θ = 0.04 rad, u = u_cr: 2 s, sampled every 0.01 s.
     pub fn evison_free_vibration() -> Scene {
-        let structure = structure(Parameters::EVISON);
-        let initial = State { theta: 0.04, u: structure.u_cr, ..State::default() };
-        Scene {
-            key: "evison-free-vibration",
-            title: "Evison's specimen, free vibration",
-            structure,
-            initial,
-            ground: ground(0.01, vec![0.0; 201]),
-        }
+        let initial = State { theta: 0.04, u: structure(Parameters::EVISON).u_cr, ..State::default() };
+        let (key, title) = ("evison-free-vibration", "Evison's specimen, free vibration");
+        Scene::new(key, title, Parameters::EVISON, initial, ground(0.01, vec![0.0; 201]))
     }
 
     /// All four, those with a record from rest. Pacoima Dam is shaken as on the table, for 4 s; El Centro lasts 15 s.
@@ -119,13 +124,7 @@ fn from_rest(
     let Some(a_g) = record.acceleration().get(..samples) else {
         bail!("{}: {} samples where {samples} are needed", record.title(), record.acceleration().len());
     };
-    Ok(Scene {
-        key,
-        title,
-        structure: structure(parameters),
-        initial: State::default(),
-        ground: ground(record.times()[1], a_g.to_vec()),
-    })
+    Ok(Scene::new(key, title, parameters, State::default(), ground(record.times()[1], a_g.to_vec())))
 }
 
 /// The record in `file` of the folder `records`.

@@ -1,16 +1,4 @@
 //! Many runs: plans of cases, maps over pulses, what became of each run, how often limits are exceeded.
-//!
-//! | module | what it computes |
-//! |---|---|
-//! | [`plan`] | the cases of a sweep: structures × records × scales |
-//! | [`outcome`] | what is kept of a run |
-//! | [`exceedances`] | how often limits are exceeded over an intensity |
-//! | [`fragility`] | the curve through these, and how sure it is |
-//! | [`pulse`] | the field's standard pulses as ground motions |
-//! | [`synthetic`] | ground motions made of noise |
-//! | [`rows`] | a sweep whose rows are in a file, where it goes on |
-//! | [`row_file`] | that file |
-//! | [`map`] | overturning spectra: the fate under a pulse over its amplitude and frequency |
 
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 

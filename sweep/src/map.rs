@@ -44,7 +44,7 @@ pub struct Map {
     /// The structure.
     pub structure: Structure,
     /// But for its frequency and its amplitude.
-    pulse: Pulse,
+    pub pulse: Pulse,
     /// Frequencies: in Hz, or, where the map is dimensionless, ω/p_l.
     pub frequency: Axis,
     /// Amplitudes: in m/s², or, where the map is dimensionless, a_p/(g tan α_cg).
@@ -241,11 +241,6 @@ impl Map {
     pub fn computed_by(self, detail: Detail, tolerance: f64, finds_condition: bool) -> Result<Map, Refused> {
         Conditions { detail, tolerance, ..Conditions::default() }.check(&self.structure)?;
         Ok(Map { detail, tolerance, finds_condition, ..self })
-    }
-
-    /// Name of the pulses.
-    pub fn pulse_name(&self) -> String {
-        self.pulse.name()
     }
 
     /// The pulse at `place`.

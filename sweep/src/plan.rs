@@ -546,27 +546,6 @@ mod tests {
         Structure::new(parameters).unwrap()
     }
 
-    fn only(base: Parameters, scale: f64) -> Outcome {
-        let plan = Plan::new(vec![Population::new("only", structure(base))], vec![pulse()], vec![scale]).unwrap();
-        assert_eq!(plan.len(), 1);
-        plan.case(0).outcome()
-    }
-
-    /// With the record's last sample it still stands, and overturns in free motion.
-    #[test]
-    fn a_structure_has_until_it_is_at_rest_to_overturn() {
-        let Outcome::Ended(Summary { ending, end, peaks, .. }) = only(Parameters::MCMANUS, 1.5) else { panic!() };
-        let alpha_cg = OneMass::new(Parameters::MCMANUS).unwrap().tan_alpha_cg.atan();
-        assert_eq!(ending, Ending::Overturned);
-        assert!((peaks[0] - alpha_cg).abs() < 1e-12, "before it falls: {peaks:?}");
-        assert!((end - 2.96).abs() < 0.005, "{end}");
-        assert_eq!(peaks[7], peaks[0] / alpha_cg);
-
-        let Outcome::Ended(standing) = only(Parameters::MCMANUS, 1.0) else { panic!() };
-        assert_eq!(standing.ending, Ending::AtRest);
-        assert!(standing.end > 0.5 && standing.transitions > 0);
-    }
-
     /// The bits are those of the library, run by run; a limit on all floors counts the largest of them.
     #[test]
     fn a_building_is_swept_and_counted() {

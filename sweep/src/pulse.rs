@@ -195,11 +195,6 @@ impl Pulse {
         }
     }
 
-    /// The ground acceleration a_g at `time` (s) after the start of the pulse, m/s².
-    pub fn acceleration(&self, time: f64) -> f64 {
-        if (0.0..=self.duration()).contains(&time) { self.curve(time)[0] } else { 0.0 }
-    }
-
     /// The pulse in straight lines, from 0 s on.
     pub fn record(&self) -> Result<Record, Refused> {
         self.check()?;
@@ -349,7 +344,7 @@ mod tests {
                     for part in (0..=100).map(|i| f64::from(i) / 100.0) {
                         let line = a[0] + part * (a[1] - a[0]);
                         let time = (t[0] + part * (t[1] - t[0])).min(pulse.duration());
-                        let excess = (line - pulse.acceleration(time)) / AMPLITUDE;
+                        let excess = (line - pulse.curve(time)[0]) / AMPLITUDE;
                         off = [off[0].min(excess), off[1].max(excess)];
                     }
                 }

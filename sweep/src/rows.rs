@@ -432,12 +432,4 @@ mod tests {
             assert_eq!(String::from_utf8(row).unwrap() + "\n", String::from_utf8(expected).unwrap());
         }
     }
-
-    #[test]
-    fn a_column_has_each_text_once() {
-        let (mut column, mut known) = (Column::of(5), HashMap::new());
-        let cells = [Cell::Empty, Cell::Text("a"), Cell::Text("b"), Cell::Text("a"), Cell::Empty];
-        cells.into_iter().for_each(|cell| column.push(cell, &mut known));
-        assert_eq!(column, Column::Texts(vec!["a".into(), "b".into()], vec![u32::MAX, 0, 1, 0, u32::MAX]));
-    }
 }

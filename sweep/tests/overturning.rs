@@ -160,18 +160,3 @@ fn a_building_has_a_map() {
     let refused = map.computed_by(Detail::Modal, 1e-9, false).unwrap_err().0;
     assert!(refused.starts_with("detail = modal moves structures of one mass alone"), "{refused}");
 }
-
-#[test]
-fn places_are_values_of_the_axes() {
-    let (lin, log) =
-        (Axis { values: vec![1.0, 3.0, 4.0], is_log: false }, Axis { values: vec![1.0, 4.0, 16.0], is_log: true });
-    assert_eq!([0.0, 0.25, 1.0, 1.5, 2.0, 3.0].map(|steps| lin.at(steps)), [1.0, 1.5, 3.0, 3.5, 4.0, 4.0]);
-    for (steps, value) in [(0.0, 1.0), (0.5, 2.0), (1.5, 8.0), (2.0, 16.0)] {
-        assert!((log.at(steps) / value - 1.0_f64).abs() < 1e-15);
-    }
-    let structure = OneMass::new(Parameters::EVISON).unwrap();
-    let map = Map::new(structure, Pulse::new(Shape::Cosine, 1.0, 1.0), [lin, log], true).unwrap();
-    let pulse = map.pulse(Place::of_grid(1, 2));
-    let (amplitude, frequency) = units_of(structure.base());
-    assert_eq!((pulse.amplitude, pulse.frequency), (16.0 * amplitude, 3.0 * frequency));
-}

@@ -177,7 +177,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
             let (unit, time_scale) = (options.unit.or(unit), options.time_scale.or(time_scale));
             let options = RecordOptions { unit, time_scale, scale: None, ..options.clone() };
             let understood = options.understand(path, g, str::to_owned)?;
-            warnings.extend_from_slice(understood.warnings());
+            warnings.extend_from_slice(&understood.sentences[1..]);
             records.push(understood.sentences[0].clone());
             Ok::<_, anyhow::Error>(understood)
         };

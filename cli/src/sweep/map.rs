@@ -158,7 +158,7 @@ fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
         });
         let [x, y] = picture::axis_names(map);
         let refined = points.len() - map.grid().count();
-        writeln!(out, "{name}: {}; {}", map.pulse_name(), map.detail.name())?;
+        writeln!(out, "{name}: {}; {}", map.pulse.name(), map.detail.name())?;
         writeln!(out, "  {x}: {frequency}\n  {y}: {amplitude}")?;
         for Count { class, points, part, .. } in counts.iter().filter(|count| count.structure == name) {
             writeln!(out, "  {class:<28} {points:>9} {:>7.3} %", 100.0 * part)?;

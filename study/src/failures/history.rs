@@ -20,13 +20,7 @@ impl History {
 
 /// A structure on ground at rest for `duration` (s).
 pub fn at_rest(parameters: Parameters, initial: State, duration: f64) -> Scene {
-    Scene {
-        key: "at-rest",
-        title: "ground at rest",
-        structure: structure(parameters),
-        initial,
-        ground: Record::at_rest(duration),
-    }
+    Scene::new("at-rest", "ground at rest", parameters, initial, Record::at_rest(duration))
 }
 
 /// Instants `interval` s apart.

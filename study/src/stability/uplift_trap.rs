@@ -5,7 +5,7 @@ use crate::fixed_step::TEXTBOOK;
 use crate::guards::uplift_excess;
 use crate::hybrid::{self, Grid, Transitions};
 use crate::response::Response;
-use crate::scene::{Scene, ground, structure};
+use crate::scene::{Scene, ground};
 use crate::tables::{save_series, series};
 use anyhow::{Context, Result};
 use rocking::{Detail, Parameters, State, Transition};
@@ -26,13 +26,8 @@ const FREQUENCY: f64 = 1.5;
 pub fn scene() -> Scene {
     let samples = (DURATION / STEP) as usize;
     let a_g = (0..=samples).map(|k| k as f64 * STEP).map(|t| RAMP * t * 9.81 * (TAU * FREQUENCY * t).sin());
-    Scene {
-        key: "uplift-trap",
-        title: "Evison's specimen, ground that sways more and more",
-        structure: structure(Parameters::EVISON),
-        initial: State::default(),
-        ground: ground(STEP, a_g.collect()),
-    }
+    let title = "Evison's specimen, ground that sways more and more";
+    Scene::new("uplift-trap", title, Parameters::EVISON, State::default(), ground(STEP, a_g.collect()))
 }
 
 /// The response of the textbook method number `method` with the step [`STEP`].

@@ -1,6 +1,6 @@
 //! A ground motion made for the tests.
 
-use rocking::{OneMass, Parameters, State};
+use rocking::{Parameters, State};
 use study::scene::{Scene, ground};
 
 /// McManus's specimen under four sines that swell and fade, sampled every 0.01 s for 4 s.
@@ -13,11 +13,6 @@ pub fn scene() -> Scene {
         let sum: f64 = sines.iter().map(|(f, phase)| (std::f64::consts::TAU * f * t + phase).sin()).sum();
         1.6 * swell * sum
     });
-    Scene {
-        key: "synthetic",
-        title: "McManus's specimen, four sines",
-        structure: OneMass::new(Parameters::MCMANUS).unwrap(),
-        initial: State::default(),
-        ground: ground(dt, a_g.collect()),
-    }
+    let title = "McManus's specimen, four sines";
+    Scene::new("synthetic", title, Parameters::MCMANUS, State::default(), ground(dt, a_g.collect()))
 }

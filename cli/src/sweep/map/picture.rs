@@ -104,7 +104,7 @@ pub fn draw(picture: Picture, spectra: &[Spectrum], refinements: u32) -> anyhow:
     let legend = LEGEND_LINE * (legends.iter().map(Vec::len).max().unwrap_or(0) as f64 + 1.0);
     let down = panels.len().div_ceil(across) as u32;
     let size = (across as u32 * width, TITLE + down * height + legend as u32);
-    let title = format!("Overturning spectrum: {}", map.pulse_name());
+    let title = format!("Overturning spectrum: {}", map.pulse.name());
     let about = format!("level of detail {}, tolerance {:e}", map.detail.name(), map.tolerance);
     picture.draw(size, |area| {
         let mut rest = titled(area, &title, &about)?;
