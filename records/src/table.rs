@@ -64,7 +64,10 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
         Some(_) if table.pairs > Some(1) => {
             parsed.remark(format!("{} times a line, each with its sample", table.pairs.unwrap_or_default()));
         }
-        Some(value) => parsed.remark(format!("column {}{}", value + 1, table.name(value))),
+        Some(value) => {
+            let name = table.headings_of(value).next().map_or(String::new(), |(_, name)| format!(" {}", quote(name)));
+            parsed.remark(format!("column {}{name}", value + 1));
+        }
         None if table.count > 1 => parsed.remark(format!("{} samples a line, one after the other", table.count)),
         None => {}
     }
@@ -208,13 +211,10 @@ impl<'a> Table<'a> {
         self.numbers.iter().skip(column).step_by(self.count).copied()
     }
 
-    /// Refuses times that do not grow.
-    fn check_growth(&self, column: usize) -> Result<(), BadLine> {
-        self.check_steps(column, "have the times", |step| step > 0.0)
-    }
-
-    /// Refuses a column that cannot do `what`: one of its steps is not right.
-    fn check_steps(&self, column: usize, what: &str, is_right: impl Fn(f64) -> bool) -> Result<(), BadLine> {
+    /// Refuses a column whose numbers do not grow, or not by `even` steps.
+    fn check_steps(&self, column: usize, even: Option<f64>) -> Result<(), BadLine> {
+        let what = if even.is_some() { "count the samples" } else { "have the times" };
+        let is_right = |step: f64| step > 0.0 && even.is_none_or(|even| step == even);
         let mut steps = self.column(column).zip(self.column(column).skip(1));
         let Some(row) = steps.position(|(before, at)| !is_right(at - before)) else { return Ok(()) };
         let [before, at] = [row, row + 1].map(|row| self.numbers[row * self.count + column]);
@@ -230,7 +230,7 @@ impl<'a> Table<'a> {
                 let problem = format!("column 1 is {}, which is no time in s or ms", quote(name));
                 Err(bad(line, problem).remedied_by(Remedy::StepOrHeading))
             }
-            _ => self.check_growth(0).map_err(|no_times| no_times.remedied_by(Remedy::Column)),
+            _ => self.check_steps(0, None).map_err(|no_times| no_times.remedied_by(Remedy::Column)),
         }
     }
 
@@ -241,11 +241,6 @@ impl<'a> Table<'a> {
     /// All headings of the column, with the numbers of their lines.
     fn headings_of(&self, column: usize) -> impl Iterator<Item = (usize, &'a str)> {
         self.headings.iter().map(move |(line, cells)| (*line, cells[column])).filter(|(_, cell)| !cell.is_empty())
-    }
-
-    /// The heading of the column, as it is said.
-    fn name(&self, column: usize) -> String {
-        self.headings_of(column).next().map_or(String::new(), |(_, name)| format!(" {}", quote(name)))
     }
 
     /// The column of times, if a heading says so, and their unit.
@@ -320,11 +315,11 @@ impl<'a> Table<'a> {
                 let problem = format!("column {} has whole numbers, which may be counts or milliseconds", time + 1);
                 let step = step.ok_or_else(|| bad(self.first, problem).remedied_by(Remedy::StepOrHeading))?;
                 let even = self.column(time).nth(1).unwrap_or_default() - self.numbers[time];
-                self.check_steps(time, "count the samples", |step| step > 0.0 && step == even)?;
+                self.check_steps(time, Some(even))?;
                 Ok(step)
             }
             Some((time, unit)) => {
-                self.check_growth(time)?;
+                self.check_steps(time, None)?;
                 Ok(Times::At(self.column(time).map(|time| time * unit.in_seconds()).collect()))
             }
             None => {
@@ -366,7 +361,9 @@ impl<'a> Table<'a> {
         let texts: Vec<_> = match value {
             Some(value) => {
                 // `#AmplitudeUnit: gal` holds for all columns.
-                let states_all = |(_, text): &(usize, &str)| text.to_lowercase().contains("uni") && is_unit(text);
+                let states_all = |(_, text): &(usize, &str)| {
+                    text.to_lowercase().contains("uni") && matches!(Stated::of(text), Stated::Unit(_))
+                };
                 self.headings_of(value).chain(self.before.iter().copied().filter(states_all)).collect()
             }
             None => self.before.iter().filter(|(_, text)| !is_numbers(text)).flat_map(statements).collect(),
@@ -412,10 +409,6 @@ impl<'a> Table<'a> {
 fn statements<'a>(&(line, text): &(usize, &'a str)) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
     let has_several = Sampling::of(line, text).is_ok_and(|stated| stated != Sampling::default());
     text.split(move |letter| has_several && letter == ',').map(move |statement| (line, statement))
-}
-
-fn is_unit(text: &str) -> bool {
-    matches!(Stated::of(text), Stated::Unit(_))
 }
 
 /// Why a file has no samples.

@@ -62,22 +62,18 @@ impl Unit {
 
     /// The unit that `text` is, as files write it: `cm/s^2`, `cm/sec/sec`, `CM S-2`, `gal`, `g`.
     pub(super) fn named(text: &str) -> Option<Unit> {
+        let unit = |name: &str| Unit::NAMES.iter().find_map(|(of, unit)| (*of == name).then_some(*unit));
         let text = plain(text).replace("sec", "s");
-        let length = match text.as_str() {
-            "g" | "g's" => return Some(Unit::G),
-            "gal" | "gals" => return Some(Unit::CentimetrePerSecondSquared),
-            "mg" | "milli-g" | "millig" => return Some(Unit::MilliG),
-            "%g" => return Some(Unit::PercentG),
-            text => text.strip_suffix("/s2").or(text.strip_suffix("/s/s")).or(text.strip_suffix("/ss")),
-        };
+        let length = text.strip_suffix("/s2").or(text.strip_suffix("/s/s")).or(text.strip_suffix("/ss"));
         let length = length.or(text.strip_suffix("s-2")).or(text.strip_suffix("ps2")).or(text.strip_suffix("s2"));
-        match length? {
-            "m" => Some(Unit::MetrePerSecondSquared),
-            "cm" => Some(Unit::CentimetrePerSecondSquared),
-            "mm" => Some(Unit::MillimetrePerSecondSquared),
-            "in" | "inch" => Some(Unit::InchPerSecondSquared),
-            "ft" | "feet" => Some(Unit::FootPerSecondSquared),
-            _ => None,
+        match (length, text.as_str()) {
+            (Some("inch"), _) => Some(Unit::InchPerSecondSquared),
+            (Some("feet"), _) => Some(Unit::FootPerSecondSquared),
+            (Some(length), _) => unit(&format!("{length}/s2")),
+            (None, "g's") => Some(Unit::G),
+            (None, "gals") => Some(Unit::CentimetrePerSecondSquared),
+            (None, "milli-g" | "millig") => Some(Unit::MilliG),
+            (None, text) => unit(text),
         }
     }
 }
