@@ -6,7 +6,7 @@ use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Given;
 use rocking::{Detail, OneMass, Parameters, Structure};
 use rocking_sweep::map::{Axis, Fate, Map, Place, Point, nearest};
-use rocking_sweep::pulse::{Pulse, Shape, units_of};
+use rocking_sweep::pulse::{Pulse, Shape};
 use std::collections::HashMap;
 
 /// A rigid block of this `slenderness` H/B, all of its mass at the top.
