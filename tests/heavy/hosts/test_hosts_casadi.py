@@ -8,7 +8,7 @@ import pytest
 @pytest.fixture
 def opened(export):
     """The model of an FMU; `options` of the export."""
-    return lambda *options: casadi.DaeBuilder("pier", export("mcmanus", None, *options, fmi=3).folder)
+    return lambda *options: casadi.DaeBuilder("pier", str(export("mcmanus", None, *options, fmi=3).folder))
 
 
 def test_strings_are_not_read(opened):
