@@ -113,7 +113,7 @@ impl<Q: Runs> Scene<Q> {
     }
 
     /// The load that acts now: `inputs` and the record.
-    #[inline(never)] // or else the library is larger
+    #[inline]
     pub fn load(&self, setup: &Setup, inputs: LinearLoad<Q>) -> LinearLoad<Q> {
         let Some(ground) = &self.ground else { return inputs };
         let (ground, elapsed) = (setup.ground_motion(ground), self.elapsed);
