@@ -4,8 +4,8 @@
 use crate::advance::{Told, Watching};
 use crate::failure::Refusal;
 use crate::floor_variables::lateral_states;
-use crate::ground::{Digest, GroundRecord};
-use crate::resources::Contents;
+use crate::ground::{Digest, GroundRecord, Kept};
+use crate::resources::{Archive, Contents};
 use crate::setup::Setup;
 use rocking::engine::Settings;
 use rocking::mechanics::load::{LOADS, VERTICAL};
@@ -74,9 +74,10 @@ impl Setup {
 }
 
 impl<Q: Runs> Scene<Q> {
-    /// At the start that `setup` describes, of an archive with these `contents`, on ground that follows the record of `source`.
-    pub fn new(setup: &Setup, contents: &Contents, source: Option<Arc<GroundRecord>>) -> Result<Scene<Q>, Refusal> {
-        let g = setup.g(contents);
+    /// At the start that `setup` describes, of the `archive`. The record is not parsed if it is `kept`.
+    pub fn new(setup: &Setup, archive: &Archive, kept: &mut Option<Kept>) -> Result<Scene<Q>, Refusal> {
+        let (contents, g) = (&archive.contents, setup.g(&archive.contents));
+        let source = archive.ground(&setup.record, &setup.record_v, g, kept)?;
         let ground = source.as_deref().map(|source| setup.scaled(source, g)).transpose()?;
         let engine = setup.engine::<Q>(contents, setup.may_move_vertically(ground.as_ref()))?;
         let peaks = Falling::since(setup.start_time, engine.structure(), setup.detail);

@@ -87,9 +87,7 @@ impl<Q: Runs> Unit<Q> {
 
     #[cold]
     fn build(&mut self) -> Result<(), Refusal> {
-        let Unit { archive, setup, kept, .. } = self;
-        let ground = archive.ground(&setup.record, &setup.record_v, setup.g(&archive.contents), kept)?;
-        self.scene = Some(Scene::new(setup, &archive.contents, ground)?);
+        self.scene = Some(Scene::new(&self.setup, &self.archive, &mut self.kept)?);
         Ok(())
     }
 
@@ -375,11 +373,7 @@ impl<Q: Runs> Model for Unit<Q> {
             let is_the_same = |scene: &mut Scene<Q>| self.setup == setup && scene.digest() == course.record;
             let mut found = match self.scene.take_if(is_the_same) {
                 Some(scene) => scene,
-                None => {
-                    let Unit { archive, kept, .. } = self;
-                    let ground = archive.ground(&setup.record, &setup.record_v, setup.g(&archive.contents), kept);
-                    Scene::new(&setup, &archive.contents, ground.map_err(Refusal::from)?)?
-                }
+                None => Scene::new(&setup, &self.archive, &mut self.kept)?,
             };
             if found.digest() != course.record {
                 let [record, record_v] = [&setup.record, &setup.record_v].map(|text| text.to_string());
