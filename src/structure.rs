@@ -408,11 +408,6 @@ impl Structure {
         if count > modes { Err(StructureError::Kept { count, modes }) } else { Ok(self.with_lowest(count)) }
     }
 
-    /// This structure without modes: all of its mass turns rigidly with the base.
-    pub fn without_modes(&self) -> Structure {
-        self.with_lowest(0)
-    }
-
     /// This structure as the level `rigid` of one mass shows it: floors and gauges know no mode.
     pub(crate) fn shown_rigid(&self) -> Structure {
         let floors = Vec::from_iter(self.0.floors.iter().map(|floor| Floor { shape: Modes::ZERO, ..*floor }));
@@ -430,7 +425,7 @@ impl Structure {
         self.1
     }
 
-    fn with_lowest(&self, count: usize) -> Structure {
+    pub(crate) fn with_lowest(&self, count: usize) -> Structure {
         let square = |j: &usize| self.0.modes[*j].stiffness / self.0.modes[*j].mass;
         let mut kept = Vec::from_iter(0..self.0.modes.len());
         kept.sort_by(|a, b| square(a).total_cmp(&square(b)));

@@ -13,8 +13,8 @@
 //!
 //! The equations are for a structure that its weight alone turns back. A structure with a tendon or dissipators is an error.
 
-use crate::OneMass;
 use crate::structure::quantity::{OutOfRange, Quantity};
+use crate::{OneMass, Ties};
 
 /// The amplification C of an instant transition, and its largest value.
 pub const INSTANT_TRANSITION: f64 = 2.0;
@@ -33,25 +33,17 @@ pub enum DemandError {
 /// An estimate for a structure with a tendon or dissipators, which the equations do not include.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "Eqs 10 to 24 hold only without tendon and dissipators, but P_0 = {P_0:?} N, k_t = {k_t:?} N/m, \
-     c_d = {c_d:?} N.s/m, k_d = {k_d:?} N/m: simulate the motion instead"
+    "Eqs 10 to 24 hold only without tendon and dissipators, but P_0 = {:?} N, k_t = {:?} N/m, c_d = {:?} N.s/m, \
+     k_d = {:?} N/m: simulate the motion instead",
+    .0.P_0, .0.k_t, .0.c_d, .0.k_d
 )]
-pub struct Restrained {
-    /// Prestress of the tendon, N.
-    pub P_0: f64,
-    /// Stiffness of the tendon, N/m.
-    pub k_t: f64,
-    /// Damping of a viscous dissipator, N·s/m.
-    pub c_d: f64,
-    /// Stiffness of an elastoplastic dissipator, N/m.
-    pub k_d: f64,
-}
+pub struct Restrained(pub Ties);
 
 impl Restrained {
     /// Refuses a `structure` with a tendon or dissipators.
     pub(crate) fn check(structure: &OneMass) -> Result<(), Restrained> {
-        let &crate::Parameters { P_0, k_t, c_d, k_d, .. } = structure.parameters();
-        if structure.is_restrained() { Err(Restrained { P_0, k_t, c_d, k_d }) } else { Ok(()) }
+        let base = structure.base();
+        if base.is_restrained() { Err(Restrained(base.ties)) } else { Ok(()) }
     }
 }
 

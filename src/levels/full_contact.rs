@@ -94,34 +94,3 @@ impl ExactContact {
         self.oscillator.swings(&self.swing(start))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::Parameters;
-    use crate::mechanics::load::Ramp;
-    use proptest::prelude::*;
-
-    proptest! {
-        /// A leap ends where the series does, and is refused wherever the series reaches the limit on its way.
-        #[test]
-        fn a_leap_agrees_with_the_series_and_never_passes_the_limit(
-            u in -1e-3..1e-3f64, u_dot in -0.1..0.1f64, value in -3.0..3.0f64, slope in -300.0..300.0f64,
-            zeta_fc in 0.0..0.99f64, interval in 1e-4..0.02f64,
-        ) {
-            let structure = OneMass::new(Parameters { zeta_fc, ..Parameters::EVISON }).unwrap();
-            let state = State { u, u_dot, ..State::default() };
-            let (a_g, mut arc) = (Ramp { value, slope }, Arc::default());
-            let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15, ..Start::default() };
-            series(&structure, &start, &mut arc);
-            prop_assert_eq!(arc.reach, 1.0);
-            let highest = (0..=1000).map(|i| arc.at(i as f64 / 1000.0).u.abs()).fold(0.0, f64::max);
-            let contact = ExactContact::new(&structure);
-            if let Some(end) = contact.leap(&start, structure.u_cr) {
-                prop_assert!(highest < structure.u_cr);
-                prop_assert!((end.u - arc.end().u).abs() < 1e-16 + 1e-13 * highest);
-                prop_assert!((end.u_dot - arc.end().u_dot).abs() < structure.omega_fc * (1e-16 + 1e-13 * highest));
-            }
-        }
-    }
-}

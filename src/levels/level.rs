@@ -88,12 +88,7 @@ pub trait Level<Q: Coordinates = f64>: Send {
     fn most(&self, phase: Phase, start: &Start<Q>, end: &State<Q>) -> State<Q> {
         match self.swings(phase, start) {
             Some(swings) => most_of_swings(self.structure(), start, end, &swings),
-            None => State {
-                u: Q::each(self.structure(), |_, _| f64::INFINITY),
-                u_dot: Q::each(self.structure(), |_, _| f64::INFINITY),
-                theta: f64::INFINITY,
-                theta_dot: f64::INFINITY,
-            },
+            None => State::unbounded(self.structure()),
         }
     }
 
@@ -243,8 +238,8 @@ pub(crate) trait ElasticRocking {
     }
 
     /// Bounds of the magnitudes of the state over such a leap to `end`.
-    fn most(&self, _side: Side, _start: &Start, _end: &State) -> State {
-        State { u: f64::INFINITY, u_dot: f64::INFINITY, theta: f64::INFINITY, theta_dot: f64::INFINITY }
+    fn most(&self, structure: &Structure, _side: Side, _start: &Start, _end: &State) -> State {
+        State::unbounded(structure)
     }
 
     fn series(&self, side: Side, start: &Start, arc: &mut Arc);

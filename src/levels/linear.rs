@@ -27,7 +27,7 @@
 use crate::levels::level::{ElasticRocking, Pace};
 use crate::levels::oscillator::Kept;
 use crate::series::taylor::{Arc, Start};
-use crate::{OneMass, Side, State};
+use crate::{OneMass, Side, State, Structure};
 use nalgebra::{SMatrix, SVector};
 use std::f64::consts::FRAC_PI_2;
 
@@ -285,7 +285,7 @@ impl ElasticRocking for LinearRocking {
         goes_on.then(|| State { u: end[0], u_dot: end[1], theta: end[2], theta_dot: end[3] })
     }
 
-    fn most(&self, side: Side, start: &Start, end: &State) -> State {
+    fn most(&self, _: &Structure, side: Side, start: &Start, end: &State) -> State {
         self.bounds_of(start, &self.swing(side, start, self.amplification(start.interval))).most(start, end)
     }
 

@@ -49,7 +49,7 @@ pub fn accelerations(
     load: Load,
     dissipators: &Dissipators,
 ) -> Option<Vector2<f64>> {
-    let back = match structure.is_restrained() {
+    let back = match structure.base().is_restrained() {
         true => {
             let chord = Angles::Any.chord(state.theta, state.theta_dot);
             Restraint::about(structure.base(), side, dissipators).moment(&chord)

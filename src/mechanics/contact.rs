@@ -96,8 +96,7 @@ pub(crate) fn restraints<N: Angle, Q: Lateral<N>>(
 ///
 /// A slack tendon has −P_0²/(2 k_t).
 pub fn energy(structure: &Structure, contact: Contact, state: &State<Modes>, dissipators: &Dissipators) -> f64 {
-    let load = Load { a_g: 0.0, F_t: Modes::ZERO, a_v: 0.0 };
-    let x = Instant::<f64, Modes>::of(structure, Phase::OnGround(contact), state, load);
+    let x = Instant::<f64, Modes>::of(structure, Phase::OnGround(contact), state, Load::NONE);
     let Some(Foundation { points, rest, place, .. }) = structure.foundation() else { return mechanical(&x) };
     let (&Base { m_t, g, ties, .. }, S_1) = (structure.base(), structure.body().S_1);
     let [offset, rate] = [x.sum(|j, mode| x.u.of(j) * mode.gamma), x.sum(|j, mode| x.u_dot.of(j) * mode.gamma)];

@@ -14,8 +14,7 @@ use crate::{Base, Phase, State, Structure};
 ///
 /// The sum is over the modes, w = sB Γ/μ − u. One mass has μ = Γ = m and h = H. s does not matter in full contact, where θ = θ̇ = 0.
 pub fn energy<Q: Coordinates>(structure: &Structure, phase: Phase, state: &State<Q>) -> f64 {
-    let load = Load { a_g: 0.0, F_t: Q::each(structure, |_, _| 0.0), a_v: 0.0 };
-    mechanical(&Instant::of(structure, phase, state, load))
+    mechanical(&Instant::of(structure, phase, state, Load::NONE))
 }
 
 /// Energy at the instant `x`, J.

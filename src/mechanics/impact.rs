@@ -76,8 +76,7 @@ pub fn energy_gained<Q: Coordinates>(structure: &Structure, side: Side, before: 
 
 /// Kinetic energy T₋ in the state `before`, which ends rocking about `side`, J.
 pub(crate) fn kinetic_energy<Q: Coordinates>(structure: &Structure, side: Side, before: &State<Q>) -> f64 {
-    let load = Load { a_g: 0.0, F_t: Q::each(structure, |_, _| 0.0), a_v: 0.0 };
-    kinetic(&Instant::of(structure, Phase::Rocking(side), before, load))
+    kinetic(&Instant::of(structure, Phase::Rocking(side), before, Load::NONE))
 }
 
 /// A = J0 + m (H² + u²) and F = (m + m0) B², kg·m²: J₋ is A + F − 2 m B s u.

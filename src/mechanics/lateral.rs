@@ -18,6 +18,9 @@ use wide::f64x4;
 
 /// Lateral coordinates in numbers of the kind `N`.
 pub trait Lateral<N: Number>: Copy {
+    /// The coordinates of a state of the same structures.
+    type Of: Coordinates;
+
     /// The coordinate of mode `j`.
     fn of(&self, j: usize) -> N;
 
@@ -37,13 +40,13 @@ pub trait Lateral<N: Number>: Copy {
     /// The modes of a structure, which has no more than there are coordinates.
     #[inline(always)]
     fn modes(structure: &Structure) -> &[Mode] {
-        structure.modes()
+        if Self::Of::IS_ONE { std::slice::from_ref(&structure.modes()[0]) } else { structure.modes() }
     }
 
     /// The ground that gives under a structure; never under one mass, whose engine is compiled without.
     #[inline(always)]
     fn foundation(structure: &Structure) -> Option<&Foundation> {
-        structure.foundation()
+        if Self::Of::IS_ONE { None } else { structure.foundation() }
     }
 
     /// A sum over the modes of a structure.
@@ -56,10 +59,13 @@ pub trait Lateral<N: Number>: Copy {
 
 /// Lateral coordinates of a state, or anything else that has a value for each mode.
 pub trait Coordinates:
-    Lateral<f64> + Debug + Default + PartialEq + Send + Serialize + DeserializeOwned + 'static
+    Lateral<f64, Of = Self> + Debug + Default + PartialEq + Send + Serialize + DeserializeOwned + 'static
 {
     /// All coordinates are 0.
     const ZERO: Self;
+
+    /// Whether they are those of one mass.
+    const IS_ONE: bool = false;
 
     /// Makes the coordinates of a structure, each from its number and its mode.
     fn each(structure: &Structure, coordinate: impl Fn(usize, &Mode) -> f64) -> Self;
@@ -153,14 +159,11 @@ pub trait Coordinates:
 pub(crate) struct Mosts<Q>(pub Q);
 
 impl<Q: Coordinates> Lateral<Most> for Mosts<Q> {
+    type Of = Q;
+
     #[inline(always)]
     fn of(&self, j: usize) -> Most {
         Most(self.0.of(j))
-    }
-
-    #[inline(always)]
-    fn modes(structure: &Structure) -> &[Mode] {
-        Q::modes(structure)
     }
 }
 
@@ -172,19 +175,11 @@ pub(crate) struct Duals<Q> {
 }
 
 impl<Q: Coordinates> Lateral<Dual<f64>> for Duals<Q> {
+    type Of = Q;
+
     #[inline(always)]
     fn of(&self, j: usize) -> Dual<f64> {
         Dual { value: self.value.of(j), rate: self.rate.of(j) }
-    }
-
-    #[inline(always)]
-    fn modes(structure: &Structure) -> &[Mode] {
-        Q::modes(structure)
-    }
-
-    #[inline(always)]
-    fn foundation(structure: &Structure) -> Option<&Foundation> {
-        Q::foundation(structure)
     }
 
     fn rest(&self) -> Option<[Dual<f64>; 2]> {
@@ -214,6 +209,8 @@ impl<Q: Coordinates> Polynomials<'_, Q> {
 }
 
 impl<Q: Coordinates> Lateral<Terms> for Polynomials<'_, Q> {
+    type Of = Q;
+
     fn of(&self, j: usize) -> Terms {
         self.sum(|of| of.of(j))
     }
@@ -221,17 +218,11 @@ impl<Q: Coordinates> Lateral<Terms> for Polynomials<'_, Q> {
     fn weighed(&self, weights: &Modes) -> Terms {
         self.sum(|of| of.weighed(weights))
     }
-
-    fn modes(structure: &Structure) -> &[Mode] {
-        Q::modes(structure)
-    }
-
-    fn foundation(structure: &Structure) -> Option<&Foundation> {
-        Q::foundation(structure)
-    }
 }
 
 impl<N: Number> Lateral<N> for N {
+    type Of = f64;
+
     #[inline(always)]
     fn of(&self, _: usize) -> N {
         *self
@@ -241,20 +232,12 @@ impl<N: Number> Lateral<N> for N {
     fn weighed(&self, weights: &Modes) -> N {
         *self * weights.of[0]
     }
-
-    #[inline(always)]
-    fn modes(structure: &Structure) -> &[Mode] {
-        std::slice::from_ref(&structure.modes()[0])
-    }
-
-    #[inline(always)]
-    fn foundation(_: &Structure) -> Option<&Foundation> {
-        None
-    }
 }
 
 impl Coordinates for f64 {
     const ZERO: f64 = 0.0;
+
+    const IS_ONE: bool = true;
 
     #[inline(always)]
     fn each(structure: &Structure, coordinate: impl Fn(usize, &Mode) -> f64) -> f64 {
@@ -378,6 +361,8 @@ impl Modes {
 }
 
 impl Lateral<f64> for Modes {
+    type Of = Modes;
+
     #[inline(always)]
     fn of(&self, j: usize) -> f64 {
         self.of[j]

@@ -99,6 +99,9 @@ impl Load {
 }
 
 impl<Q: Coordinates> Load<Q> {
+    /// Nothing acts.
+    pub const NONE: Load<Q> = Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 };
+
     /// The ground acceleration that each mode feels, a_g Γ/μ − F_t/μ, m/s², beside the force on mass that no mode carries.
     #[inline(always)]
     pub(crate) fn on_modes(&self, structure: &Structure) -> Q {
@@ -189,7 +192,7 @@ impl LinearLoad {
 /// Constant loads.
 impl<Q: Coordinates> From<Load<Q>> for LinearLoad<Q> {
     fn from(value: Load<Q>) -> LinearLoad<Q> {
-        LinearLoad { value, slope: Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 } }
+        LinearLoad { value, slope: Load::NONE }
     }
 }
 

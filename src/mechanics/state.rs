@@ -313,6 +313,12 @@ fn coordinates<Q: Coordinates>(
 }
 
 impl<Q: Coordinates> State<Q> {
+    /// No bounds of the state of `structure`.
+    pub(crate) fn unbounded(structure: &Structure) -> State<Q> {
+        let none = Q::each(structure, |_, _| f64::INFINITY);
+        State { u: none, u_dot: none, theta: f64::INFINITY, theta_dot: f64::INFINITY }
+    }
+
     /// Whether all components are finite numbers.
     pub fn is_finite(&self) -> bool {
         // one instruction where f64::is_finite takes a dozen

@@ -140,7 +140,7 @@ impl<Q: Coordinates> Engine<Q> {
 
     /// Takes `state` from another integrator; what does not move in the present phase stays at rest.
     pub fn set_state(&mut self, state: State<Q>) {
-        let Sample { motion, level, .. } = self.sample(Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 });
+        let Sample { motion, level, .. } = self.sample(Load::NONE);
         let state = level.admissible(motion.phase, state);
         self.set_motion(Motion { state, ..motion });
     }

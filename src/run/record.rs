@@ -23,46 +23,23 @@ const FALL: f64 = 1e-9;
 
 /// Why samples, or their scales, are refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // the messages name the fields
 pub enum SamplesError {
     /// Scales that leave no ground motion.
     #[error(
         "time_scale = {time_scale:?} and scale = {scale:?} leave no ground motion of {title:?}: a finite time_scale greater \
          than 0 is needed, and finite accelerations and slopes"
     )]
-    BadScales {
-        /// Title of the record.
-        title: String,
-        /// Refused factor of the times.
-        time_scale: f64,
-        /// Refused factor of the accelerations.
-        scale: f64,
-    },
+    BadScales { title: String, time_scale: f64, scale: f64 },
     /// Samples in memory are no ground motion.
     #[error("{title:?}: {problem}")]
-    BadSamples {
-        /// Title of the record.
-        title: String,
-        /// The problem and its index, counted from 0.
-        problem: String,
-    },
+    BadSamples { title: String, problem: String },
     /// The components of a ground motion, or a force, do not begin together.
     #[error("{other} begins at {begins:?} s and {title:?} at {start:?} s: shift the times of one of them")]
-    Apart {
-        /// Title of the record.
-        title: String,
-        /// Its first sample, s.
-        start: f64,
-        /// The vertical component with its title, or the force.
-        other: String,
-        /// Its first sample, s.
-        begins: f64,
-    },
+    Apart { title: String, start: f64, other: String, begins: f64 },
     /// One component is given twice.
     #[error("the vertical component of {title:?} has the samples of the horizontal one: use another file for it")]
-    Twice {
-        /// Title of the record.
-        title: String,
-    },
+    Twice { title: String },
 }
 
 impl Record {

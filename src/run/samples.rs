@@ -20,7 +20,7 @@ pub(crate) struct Samples<Times: Iterator<Item = f64>, Show, Q> {
 
 impl<Q: Coordinates, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Samples<Times, Show, Q> {
     pub(crate) fn new(times: Times, show: Show) -> Self {
-        Samples { times: times.peekable(), show, last: None, load: Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 } }
+        Samples { times: times.peekable(), show, last: None, load: Load::NONE }
     }
 
     /// Shows the instants before `time` (s) that are left, at the end of the last piece.

@@ -105,11 +105,6 @@ impl OneMass {
         &self.base
     }
 
-    /// Whether a tendon or dissipators restrain the structure.
-    pub fn is_restrained(&self) -> bool {
-        self.base.is_restrained()
-    }
-
     /// The parameters that this structure was derived from.
     pub fn parameters(&self) -> &Parameters {
         &self.parameters
