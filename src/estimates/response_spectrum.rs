@@ -10,9 +10,8 @@
 //!
 //! The ground acceleration is a + b τ between two samples. The motion that follows the ground without swinging has
 //! ü + a_g = a + b τ and u̇ = −b/ω². The rest of (u̇, ü + a_g) is free vibration (w, ẇ), exact for any step and damping
-//! ([`Oscillator::free`]). The
-//! peak between samples is exact, too. |ü + a_g| is largest at a sample or at a zero of its rate b + ẅ. The zeros of the slope of
-//! this rate have a closed form, and between two of them the rate passes 0 at most once.
+//! (`levels::oscillator`). The peak between samples is exact, too. |ü + a_g| is largest at a sample or at a zero of its rate b + ẅ. The
+//! zeros of the slope of this rate have a closed form, and between two of them the rate passes 0 at most once.
 
 use crate::engine::piece::{Sample, Watch};
 use crate::levels::oscillator::Oscillator;
