@@ -1,16 +1,18 @@
-//! FMI 2.0: how its functions are called, how instances are made.
+//! FMI 2.0: how its functions are called, when they may be, how instances are made.
 
 use super::arguments::*;
-use super::{C, ERROR, Told, Version, functions};
+use super::{C, ERROR, Table, Told, Version};
 use crate::fmi2::*;
 use fastrand::Rng;
+use fmi_unit::c_abi::Function as _;
 use fmi_unit::interface::Interface;
+use fmi_unit::state_machine::Stage::*;
 use libc::{c_char, c_int, c_void};
 use std::ptr::null;
 
 pub const VERSION: Version = Version {
     name: "fmi2",
-    functions: functions::<Function>,
+    functions: || Function::ALL.iter().map(|function| &function.name()[4..]).collect(),
     calls: calls! { call: [GetFMUstate SetFMUstate FreeFMUstate SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate] GetDerivatives
         SetupExperiment(
             call.integer(0..2), call.within(1e-14, 0.1), call.within(1e-3, 1.0), call.integer(0..2), call.within(1.0, 1e6)
@@ -40,6 +42,7 @@ pub const VERSION: Version = Version {
         GetStringStatus(call.integer(0..4), call.room(1))
         NewDiscreteStates(call.room(1))
     },
+    table: TABLE,
     first_reference: 0,
     location: |folder| format!("file://{}", folder.display()),
     instantiate,
@@ -48,6 +51,40 @@ pub const VERSION: Version = Version {
     free_state: FreeFMUstate,
     size: SerializedFMUstateSize,
     serialize: SerializeFMUstate,
+};
+
+/// The tables of FMI 2.0.4: section 4.2.4 for a slave, whose steps are synchronous, so that it is never in a step in progress
+/// or canceled, and section 3.2.3 for a model. Some functions are for some variables only, or their values good for
+/// debugging only. Since 2.0.1 time is set at an event of models without continuous states alone, before of all.
+const TABLE: Table = Table {
+    stages: &[
+        ("x", Instantiated),
+        ("x", InitializationMode),
+        ("s", StepComplete),
+        ("s", StepFailed),
+        ("m", EventMode),
+        ("m", ContinuousTimeMode),
+        ("x", Terminated),
+        ("x", Error),
+    ],
+    rows: "\
+        x x x x x x x x  SetDebugLogging Reset GetFMUstate SetFMUstate FreeFMUstate
+        x x x x x x x x  SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate
+        x - - - - - - -  SetupExperiment EnterInitializationMode
+        - x - - - - - -  ExitInitializationMode
+        x x x - x x - -  SetReal
+        x x x - x - - -  SetInteger SetBoolean SetString
+        s s s - - - - -  SetRealInputDerivatives
+        - x x x x x x x  GetReal GetInteger GetBoolean GetString GetDirectionalDerivative
+        - - s s - - s s  GetRealOutputDerivatives
+        - - s - - - - -  DoStep
+        - - s s - - s -  GetStatus GetRealStatus GetIntegerStatus GetBooleanStatus GetStringStatus
+        - - x x x x - -  Terminate
+        m m - - m m m m  GetNominalsOfContinuousStates
+        - m - - m m m m  GetDerivatives GetEventIndicators GetContinuousStates
+        - - - - m - - -  NewDiscreteStates EnterContinuousTimeMode
+        - - - - m m - -  SetTime EnterEventMode
+        - - - - - m - -  CompletedIntegratorStep SetContinuousStates",
 };
 
 fn instantiate(rng: &mut Rng, interface: Interface, [name, guid, location]: [*const c_char; 3], told: &Told) -> C {

@@ -1,16 +1,18 @@
-//! FMI 3.0: how its functions are called, how instances are made.
+//! FMI 3.0: how its functions are called, when they may be, how instances are made.
 
 use super::arguments::*;
-use super::{C, ERROR, Told, Version, functions};
+use super::{C, ERROR, Table, Told, Version};
 use crate::fmi3::*;
 use fastrand::Rng;
+use fmi_unit::c_abi::Function as _;
 use fmi_unit::interface::{Interface, Stepping};
+use fmi_unit::state_machine::Stage::*;
 use libc::{c_char, c_int, c_void};
 use std::ptr::null;
 
 pub const VERSION: Version = Version {
     name: "fmi3",
-    functions: functions::<Function>,
+    functions: || Function::ALL.iter().map(|function| &function.name()[4..]).collect(),
     calls: calls! { call: [GetFMUState SetFMUState FreeFMUState SerializedFMUStateSize SerializeFMUState DeserializeFMUState]
         GetContinuousStateDerivatives
         EnterInitializationMode(
@@ -45,6 +47,7 @@ pub const VERSION: Version = Version {
         GetNumberOfContinuousStates(call.room(1))
         EnterConfigurationMode()
     },
+    table: TABLE,
     first_reference: 1,
     location: |folder| format!("{}/", folder.display()),
     instantiate,
@@ -53,6 +56,46 @@ pub const VERSION: Version = Version {
     free_state: FreeFMUState,
     size: SerializedFMUStateSize,
     serialize: SerializeFMUState,
+};
+
+/// The standard's sections 2.3, 4.2.1 for a slave and 3.2.1 for a model, by the functions that each state names. Step failed,
+/// terminated and error are its "terminated"; after a failed step a simulation has still to be terminated. Within an
+/// intermediate update the host can either set inputs or get all values; a step is no state to keep or to leave. As in the
+/// Reference FMUs, the numbers of states and of event indicators can be had at any time, and time can be set at an event.
+const TABLE: Table = Table {
+    stages: &[
+        ("x", Instantiated),
+        ("x", InitializationMode),
+        ("s", StepComplete),
+        ("s", IntermediateUpdateMode),
+        ("s", IntermediateOutputs),
+        ("s", StepFailed),
+        ("x", EventMode),
+        ("m", ContinuousTimeMode),
+        ("x", Terminated),
+        ("x", Error),
+    ],
+    rows: "\
+        x x x x x x x x x x  SetDebugLogging GetNumberOfEventIndicators GetNumberOfContinuousStates
+        x x x - - x x x x x  Reset GetFMUState SetFMUState FreeFMUState
+        x x x - - x x x x x  SerializedFMUStateSize SerializeFMUState DeserializeFMUState
+        x - - - - - - - - -  EnterInitializationMode
+        - x - - - - - - - -  ExitInitializationMode
+        x x x x - - x x - -  SetFloat64
+        x x x - - - x - - -  SetInt32 SetInt64 SetBoolean SetString
+        x x x - x x x x x x  GetFloat64 GetInt32 GetInt64 GetBoolean GetString
+        - x x - - x x x x x  GetDirectionalDerivative
+        - - s - s s - - s s  GetOutputDerivatives
+        - - s - - - - - - -  DoStep
+        - - s - - - - m - -  EnterEventMode
+        - - x - - x x x - -  Terminate
+        - - - - - - x - - -  EvaluateDiscreteStates UpdateDiscreteStates
+        - - - - - - s - - -  EnterStepMode
+        - m - - - - m m m m  GetContinuousStateDerivatives GetNominalsOfContinuousStates
+        - m - - - - m m m m  GetEventIndicators GetContinuousStates
+        - - - - - - m - - -  EnterContinuousTimeMode
+        - - - - - - m m - -  SetTime
+        - - - - - - - m - -  CompletedIntegratorStep SetContinuousStates",
 };
 
 fn instantiate(rng: &mut Rng, interface: Interface, [name, token, folder]: [*const c_char; 3], told: &Told) -> C {

@@ -1,5 +1,5 @@
 //! Hostile calls: random functions in any order, with arguments from sensible to absurd, of every interface of either
-//! version. From 100,000 on they also meet every function in every stage.
+//! version. From 100,000 on they also meet every function in every stage, and check it against the standard's table.
 //!
 //! `FUZZ_CALLS` says how many calls of each interface to make (`make heavy`: 100,000). Calls come in sequences of a
 //! few hundred. What a call does follows from its number and from the calls before it; of a sequence that fails proptest
@@ -12,7 +12,6 @@ mod fmi3;
 use crate::Model;
 use arguments::Drawn;
 use fastrand::Rng;
-use fmi_unit::c_abi::Function;
 use fmi_unit::interface::{Interface, Stepping};
 use fmi_unit::logger::Status;
 use fmi_unit::snapshot::Snapshot;
@@ -48,9 +47,6 @@ const CALLS_PER_SEQUENCE: usize = 400;
 const LEADING_ON: &str = "SetupExperiment EnterInitializationMode ExitInitializationMode SetReal SetFloat64 DoStep \
                           EnterEventMode NewDiscreteStates UpdateDiscreteStates EnterStepMode EnterContinuousTimeMode \
                           SetTime SetContinuousStates CompletedIntegratorStep SetFMUstate SetFMUState";
-
-/// Types that no variable has.
-const NO_VARIABLES: &str = "Float32 Int8 UInt8 Int16 UInt16 UInt32 UInt64 Binary Clock";
 
 /// An instance.
 pub type C = *mut c_void;
@@ -114,10 +110,11 @@ type Call = fn(C, &mut Sequence) -> c_int;
 struct Version {
     /// The start of the functions' names in C.
     name: &'static str,
-    /// Its functions that take an instance, but for the one that frees it, and the stages that each may be called in.
-    functions: fn(Interface) -> Vec<(&'static str, Stages)>,
+    /// All of its functions that take an instance, but for the one that frees it.
+    functions: fn() -> Vec<&'static str>,
     /// How each is called, but for those that are allowed nowhere, and those of types that no variable has.
     calls: &'static [(&'static str, Call)],
+    table: Table,
     first_reference: c_uint,
     /// The folder `resources` as this version names it.
     location: fn(&Path) -> String,
@@ -130,18 +127,31 @@ struct Version {
     serialize: unsafe extern "C" fn(C, C, *mut u8, usize) -> c_int,
 }
 
-/// The functions of the version that has `F`; see [`Version::functions`].
-fn functions<F: Function>(interface: Interface) -> Vec<(&'static str, Stages)> {
-    F::ALL.iter().map(|function| (&function.name()[4..], F::table(interface)[function.place()])).collect()
+/// The stages of a version, and in which of them functions may be called: x is for both interfaces, s for a slave, m for a
+/// model, - for neither.
+struct Table {
+    stages: &'static [(&'static str, Stage)],
+    /// A mark for each stage, then the names of functions.
+    rows: &'static str,
+}
+
+impl Table {
+    /// The stages of `interface` in which a function with these `marks` may be called.
+    fn marked<'a>(&self, marks: impl Iterator<Item = &'a str>, interface: Interface) -> Vec<Stage> {
+        let own = if interface == Interface::ModelExchange { "m" } else { "s" };
+        let is_one = |mark: &str| mark == "x" || mark == own;
+        let marked = self.stages.iter().zip(marks).filter(|((of, _), mark)| is_one(of) && is_one(mark));
+        marked.map(|((_, stage), _)| *stage).collect()
+    }
+
+    /// The stages of `interface` that `function` may be called in.
+    fn allowed(&self, function: &str, interface: Interface) -> Vec<Stage> {
+        let row = self.rows.lines().find(|row| row.split_whitespace().any(|word| word == function));
+        self.marked(row.unwrap_or_default().split_whitespace(), interface)
+    }
 }
 
 impl Version {
-    /// The stages of `interface` that `function` may be called in.
-    fn allowed(&self, function: &str, interface: Interface) -> Stages {
-        let found = (self.functions)(interface).into_iter().find(|(name, _)| *name == function);
-        found.expect("it is a function of this version").1
-    }
-
     /// All that the future of the instance `c` depends on.
     fn bytes(&self, c: C) -> Vec<u8> {
         let mut state = null_mut();
@@ -239,18 +249,17 @@ struct Tally {
 impl Tally {
     /// Every function was called in every stage in which an instance stays, and every one that may be was done.
     fn check(&self, subject: &Subject, version: &Version, interface: Interface) {
-        let functions = (version.functions)(interface);
-        let all = functions.iter().fold(0, |all, (_, stages)| all | stages);
-        let is_passed = |stage: &&Stage| stage.is_within_step() || subject.never_in.contains(stage);
-        let stays = Stage::ALL.iter().filter(is_passed).fold(all, |stays, stage| stays & !stage.bit());
-        for (name, allowed) in functions {
-            let at = version.calls.iter().position(|(called, _)| *called == name);
-            let is_of_no_variable = NO_VARIABLES.split(' ').any(|of| *of == name[3..]);
-            assert!(at.is_some() || allowed == 0 || is_of_no_variable, "{name} is not called");
-            let Some(at) = at else { continue };
-            assert_eq!(self.tried[at], stays, "{name} was not called in every stage");
-            assert_ne!(self.done[at], allowed == 0, "{name}");
+        let allowed = |name: &str| version.table.allowed(name, interface);
+        let stages = version.table.marked(version.table.stages.iter().map(|(mark, _)| *mark), interface);
+        let stays = stages.iter().filter(|stage| !stage.is_within_step() && !subject.never_in.contains(stage));
+        let all = stays.fold(0, |all, stage| all | 1 << *stage as u8);
+        for (at, (name, _)) in version.calls.iter().enumerate() {
+            assert_eq!(self.tried[at], all, "{name} was not called in every stage");
+            assert_ne!(self.done[at], allowed(name).is_empty(), "{name}");
         }
+        let is_called = |name: &&str| version.calls.iter().any(|(called, _)| called == name);
+        let others = (version.functions)().into_iter().filter(|name| !is_called(name));
+        others.for_each(|name| assert!(allowed(name).is_empty(), "{name} is not called"));
     }
 }
 
@@ -355,10 +364,9 @@ impl Sequence<'_> {
         let mut number = self.rng.usize(..calls.len());
         // few come to an error
         if self.one_in(if stage == Stage::Error { 8 } else { 2 }) {
-            let is_leading_on = |name: &str| {
-                let is_one = LEADING_ON.split(' ').any(|word| word == name);
-                is_one && self.version.allowed(name, before.interface) & stage.bit() != 0
-            };
+            let allowed = |name: &str| self.version.table.allowed(name, before.interface);
+            let is_leading_on =
+                |name: &str| LEADING_ON.split(' ').any(|word| word == name) && allowed(name).contains(&stage);
             let leading_on = (0..calls.len()).filter(|at| is_leading_on(calls[*at].0)).collect::<Vec<_>>();
             number = self.rng.choice(leading_on).unwrap_or(number);
         }
@@ -371,7 +379,7 @@ impl Sequence<'_> {
         self.told.call_back.set(null_mut());
         let messages = self.told.messages.take();
         assert!([OK, DISCARD, ERROR].contains(&status), "{name}: {status} {messages:?}");
-        tally.tried[number] |= stage.bit();
+        tally.tried[number] |= 1 << stage as u8;
         tally.done[number] |= status != ERROR;
         let failures: Vec<_> = messages.into_iter().filter(|(status, _)| *status > WARNING).collect();
         assert_eq!(failures.len(), usize::from(status != OK), "{name}: {status}, {failures:?}");
@@ -396,10 +404,9 @@ impl Sequence<'_> {
     fn check(&self, name: &str, status: c_int, failure: Option<String>, bytes: &[u8]) {
         let before = self.before.as_ref().unwrap();
         let after = self.version.bytes(self.c);
-        let allowed = self.version.allowed(name, before.interface);
-        if allowed & before.stage.bit() == 0 {
-            let allowed = Stage::ALL.iter().filter(|stage| stage.bit() & allowed != 0);
-            let allowed: Vec<_> = allowed.map(Stage::to_string).collect();
+        let allowed = self.version.table.allowed(name, before.interface);
+        if !allowed.contains(&before.stage) {
+            let allowed: Vec<_> = allowed.iter().map(Stage::to_string).collect();
             let allowed = if allowed.is_empty() { "none".to_owned() } else { allowed.join(", ") };
             let (version, stage) = (self.version.name, before.stage);
             let text = format!("{version}{name}: not allowed in the state \"{stage}\"; allowed in: {allowed}");
