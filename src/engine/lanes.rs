@@ -17,7 +17,6 @@ use crate::levels::nonlinear::{Equations, NonlinearRocking, Products, Recurrence
 use crate::levels::oscillator::{Flow, Oscillator};
 use crate::numbers::Real;
 use crate::numbers::lanes::{Answers, Lanes, MOST};
-use crate::run::MOST_STEPS;
 use crate::series::extremes::OFF_CHORD;
 use crate::series::taylor::{self, Arc, MAX_ORDER, MIN_ORDER, Start, Truncation, reciprocal};
 use crate::{Detail, LinearLoad, Phase, Ramp, State, Transition};
@@ -333,7 +332,7 @@ impl<'a, S: Simd> Rocking<'a, S> {
         runs.state.iter_mut().zip([u, u_dot, theta, theta_dot]).for_each(|(row, number)| row[lane] = number);
         (runs.a_g[lane], runs.slope[lane], runs.interval[lane]) = (a_g.value, a_g.slope, interval);
         (runs.age[lane], runs.evaluations[lane]) = (motion.chatter.age, 0.0);
-        let left = advance.last_step.min(MOST_STEPS).saturating_sub(motion.work.steps) as usize;
+        let left = advance.last_step.saturating_sub(motion.work.steps) as usize;
         let last = samples.last.min(samples.next.saturating_add(left));
         (runs.samples[lane], runs.entered[lane]) = (Samples { last, ..samples }, samples.next);
         runs.may_go_on[lane] = f64::from(samples.next < last);

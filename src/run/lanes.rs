@@ -218,12 +218,13 @@ impl<'a, S: Simd> Together<'a, S> {
     fn enter<W: Passes>(&mut self, kind: usize, slot: usize, lane: &Lane<'a, W>) {
         let Lane { follower: Follower { engine, segments, .. }, advance, watch, .. } = lane;
         let mut samples = segments.samples().unwrap_or_default();
+        let most = MOST_STEPS + u64::from(kind == LEAPS);
+        let left = most.saturating_sub(engine.motion().work.steps) as usize;
+        samples.last = samples.last.min(samples.next.saturating_add(left));
         if kind != LEAPS {
             let advance = advance.as_ref().expect("it is on its way");
             return self.rocking.enter(slot, engine, advance, samples, watch);
         }
-        let left = MOST_STEPS + 1 - engine.motion().work.steps;
-        samples.last = samples.last.min(samples.next + left as usize);
         self.contacts.enter(slot, engine, samples, watch);
     }
 
