@@ -4,6 +4,7 @@ use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::Dissipators;
 use crate::mechanics::state::way;
 use crate::mechanics::uplift::{self, Lift, hold, inertia, least_hold};
+use crate::numbers::Number;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Arc, Start};
 use crate::series::terms::Terms;
@@ -21,6 +22,8 @@ pub(crate) struct Liftable<'a> {
     pub lean: f64,
     /// Whether the inertia about a pivot is the inertia of linear equations, which does not change with u.
     pub has_constant_inertia: bool,
+    /// Whether the second condition alone decides, as for u_cr = −∞.
+    pub turning_decides: bool,
 }
 
 impl Liftable<'_> {
@@ -42,8 +45,19 @@ impl Liftable<'_> {
         self.rest(a_g, a_top)[1] - self.base.S_res * a_g
     }
 
+    /// The moments that lift the base, given the moment of the mass that turns rigidly and the vertical acceleration, and (u, u̇) of each
+    /// mode.
+    #[inline(always)]
+    fn lift<N: Number>(&self, rigid_and_a_v: [N; 2], motion: impl Fn(usize) -> [N; 2]) -> Lift<N> {
+        let lift = Lift::new(self.base, self.modes, self.lean, rigid_and_a_v, motion);
+        if self.turning_decides { lift.with_one_condition() } else { lift }
+    }
+
     /// A bound of the moment of the springs, N·m, given a bound of each displacement.
     fn most_springs(&self, most: impl Fn(usize, &Mode) -> f64) -> f64 {
+        if self.turning_decides {
+            return f64::INFINITY; // however small the displacements are
+        }
         let modes = self.modes.iter().enumerate();
         modes.map(|(j, mode)| (mode.height * mode.stiffness).abs() * most(j, mode)).sum()
     }
@@ -64,7 +78,7 @@ impl Liftable<'_> {
         dissipators: &Dissipators,
     ) -> (f64, Side) {
         let motion = |j| [state.u.of(j), state.u_dot.of(j)];
-        let lift = Lift::new(self.base, self.modes, self.lean, [self.moment_of_rest(a_g, a_top), a_v], motion);
+        let lift = self.lift([self.moment_of_rest(a_g, a_top), a_v], motion);
         uplift::margin(self.base, &lift, a_v, dissipators, |side| match self.has_constant_inertia {
             true => 1.0,
             false => inertia(self.base, self.modes, side, |j| state.u.of(j)),
@@ -105,7 +119,7 @@ impl Liftable<'_> {
         };
         let stays_down = [Side::Right, Side::Left].map(|side| {
             let springs: f64 = self.modes.iter().enumerate().map(|(j, mode)| springs(side, j, mode)).sum();
-            springs < hold_at_least
+            !self.turning_decides && springs < hold_at_least
         });
         if stays_down == [true; 2] {
             return (Crossing::None, Side::Right);
@@ -116,7 +130,7 @@ impl Liftable<'_> {
             self.moment_of_rest(a_g.value, &a_top.value),
             self.moment_of_rest(a_g.slope, &a_top.slope) * arc.span,
         );
-        let lift = Lift::new(self.base, self.modes, self.lean, [rigid, a_v_terms], |j| {
+        let lift = self.lift([rigid, a_v_terms], |j| {
             [&arc.u, &arc.u_dot].map(|series| Terms::from_fn(arc.order, |k| series[k].of(j)))
         });
         let about = |side: Side| {
