@@ -3,13 +3,14 @@
 import os
 import re
 import struct
+from pathlib import Path
 
 import pytest
 from fmpy.fmi1 import FMICallException
 from host import Fmu, refusal
 
 RECORDS = {"pulse & 1.csv": "t/s,a\r\n0,1\r\n1,2\r\n", "sine.txt": "t/s,a\n0,1\n1,-1\n", "late.txt": "t/s,a\n1,1\n2,-1\n",
-           "other/Sine.TXT": "t/s,a\n0,2\n1,0\n"}
+           "other/Sine.TXT": "t/s,a\n0,2\n1,0\n", "Contents.BIN": "t/s,a\n0,2\n1,0\n"}
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +38,8 @@ RULE = "must consist of the letters a to z and A to Z, digits and _, and not beg
 
 @pytest.mark.parametrize("options, text", [
     (("--record", "pulse & 1.csv", "--record-v", "late.txt"), 'the vertical component "late" begins at 1.0 s and'),
-    (("--record", "sine.txt", "other/Sine.TXT"), "two records are called Sine.TXT: rename one of them; capitals and small letters"),
+    *((("--record", "sine.txt", name), f"two files called {Path(name).name}: rename the record; capitals and small letters")
+      for name in ("other/Sine.TXT", "Contents.BIN")),
     *((("--name", name), f'the name "{name}" {RULE}') for name in ("", "1Pier", "Pier 1", "../Pier", "Pfahl_ä", "Pier.1")),
 ])
 def test_what_no_archive_can_hold_is_refused(exporter, folder, options, text):

@@ -127,14 +127,15 @@ impl RecordOptions {
 /// The `record` with the force on the top floor in the table at `path`, if there is one.
 pub fn with_force(record: Record, path: Option<&Path>) -> anyhow::Result<Record> {
     let Some(path) = path else { return Ok(record) };
-    let what = || format!("force = {}: a table with the columns time[s] and F_t[N] is needed", path.display());
-    let bytes = input::read(path).with_context(what)?;
+    let name = || format!("force = {}", path.display());
+    let what = || format!("{}: a table with the columns time[s] and F_t[N] is needed", name());
+    let bytes = input::read(path).with_context(name)?;
     let mut table = csv::Reader::from_reader(&*bytes);
     let headings: Vec<_> = table.headers().with_context(what)?.iter().collect();
     ensure!(headings == ["time[s]", "F_t[N]"], "{}; its first line is {:?}", what(), headings.join(","));
     let rows = table.into_deserialize::<(f64, f64)>().collect::<Result<_, _>>();
     let (times, F_t): (Vec<_>, Vec<_>) = rows.with_context(what)?;
-    record.with_force(&times, &F_t).with_context(|| format!("force = {}", path.display()))
+    record.with_force(&times, &F_t).with_context(name)
 }
 
 /// Prints findings and assumptions about a record after `label`, and warnings.

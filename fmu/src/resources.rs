@@ -79,8 +79,9 @@ impl Contents {
 
     /// The contents of which these are the [`Contents::to_bytes`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Contents, ContentsError> {
-        let read = postcard::from_bytes(bytes).map_err(|_| ContentsError::NoNumbers)?;
-        let (numbers, records, vertical, fixed) = read;
+        let Ok(((numbers, records, vertical, fixed), [])) = postcard::take_from_bytes(bytes) else {
+            return Err(ContentsError::NoNumbers);
+        };
         let structure = match numbers {
             Numbers::OneMass(parameters) => Structure::new(parameters).map_err(StructureError::from)?,
             Numbers::ManyMasses(units, body, modes, floors, ground) => {

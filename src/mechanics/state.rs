@@ -186,7 +186,8 @@ pub enum InitialStateError {
     RestrainedModal,
     /// Displacements or velocities of another count than the floors.
     #[error(
-        "{name} = {given:?} {unit}: the structure has {floors} floors, give a number for each from below, or 0 for all"
+        "{name} = {given:?} {unit}: the structure has {floors} floor{}, give a number for each from below, or 0 for all",
+        if *floors == 1 { "" } else { "s" }
     )]
     OtherFloors { name: &'static str, unit: &'static str, given: Vec<f64>, floors: usize },
     /// Displacements or velocities that no modes of the structure have.

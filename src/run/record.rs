@@ -235,7 +235,7 @@ fn check_samples(title: &str, times: &[f64], samples: (&str, &str, &[f64])) -> R
     let refused = |problem| Err(SamplesError::BadSamples { title: title.into(), problem });
     let (name, counts) = (samples.0, (times.len(), samples.2.len()));
     if counts.0 != counts.1 || counts.0 < 2 {
-        let needed = "instead of as many of each, two or more";
+        let needed = "instead of two or more of each, equally many";
         return refused(format!("{} time(s) and {} {name}(s) {needed}", counts.0, counts.1));
     }
     for (name, unit, values) in [("times", "s", times), samples] {
@@ -293,7 +293,7 @@ mod tests {
         assert_eq!(pushed(&[0.0, 9.0], &[0.0; 2]), Ok(own.clone()));
         for (times, F_t, refused) in [
             (&[0.5, 1.0][..], &[1.0; 2][..], "the force begins at 0.5 s and \"own\" at 0.0 s: shift"),
-            (&[0.0, 1.0], &[1.0; 3], "\"force\": 2 time(s) and 3 F_t(s) instead of as many of each"),
+            (&[0.0, 1.0], &[1.0; 3], "\"force\": 2 time(s) and 3 F_t(s) instead of two or more of each"),
             (&[0.0, 1.0], &[1.0, f64::NAN], "\"force\": F_t[1] = NaN N is not finite"),
         ] {
             let error = pushed(times, F_t).unwrap_err().to_string();
@@ -307,9 +307,9 @@ mod tests {
             let error = Record::from_samples("pulse", times.into(), acceleration.into()).unwrap_err();
             assert_eq!(error.to_string(), format!("\"pulse\": {problem}"));
         };
-        refused(&[], &[], "0 time(s) and 0 acceleration(s) instead of as many of each, two or more");
-        refused(&[0.0], &[1.0], "1 time(s) and 1 acceleration(s) instead of as many of each, two or more");
-        refused(&[0.0, 1.0], &[1.0; 3], "2 time(s) and 3 acceleration(s) instead of as many of each, two or more");
+        refused(&[], &[], "0 time(s) and 0 acceleration(s) instead of two or more of each, equally many");
+        refused(&[0.0], &[1.0], "1 time(s) and 1 acceleration(s) instead of two or more of each, equally many");
+        refused(&[0.0, 1.0], &[1.0; 3], "2 time(s) and 3 acceleration(s) instead of two or more of each, equally many");
         refused(&[0.0, f64::NAN], &[1.0; 2], "times[1] = NaN s is not finite");
         refused(&[0.0, 1.0], &[f64::NEG_INFINITY, 1.0], "acceleration[0] = -inf m/s² is not finite");
         refused(&[0.0, 0.5, 0.5], &[1.0; 3], "times[2] = 0.5 s does not come after times[1] = 0.5 s");

@@ -85,8 +85,10 @@ pub enum ExportError {
     /// A file whose name is not text.
     #[error("the record {path} needs a name in UTF-8", path = .0.display())]
     RecordName(PathBuf),
-    /// Two records of one name.
-    #[error("two records are called {0}: rename one of them; capitals and small letters are the same here")]
+    /// A record with the name of another or of the contents.
+    #[error(
+        "the archive would have two files called {0}: rename the record; capitals and small letters are the same here"
+    )]
     SameName(String),
     /// The archive cannot be made.
     #[error("the archive: {0}")]
@@ -119,7 +121,8 @@ pub fn export(
         let record = GroundRecord::from_bytes(&path, &content, contents.structure.base().g)?;
         let name = path.file_name().and_then(|name| name.to_str());
         let file = name.ok_or_else(|| ExportError::RecordName(path.clone()))?.to_owned();
-        if contents.packed().any(|packed| packed.file.to_lowercase() == file.to_lowercase()) {
+        let mut names = contents.packed().map(|packed| packed.file.as_str()).chain([CONTENTS_FILE]);
+        if names.any(|name| name.to_lowercase() == file.to_lowercase()) {
             return Err(ExportError::SameName(file));
         }
         files.push(content);

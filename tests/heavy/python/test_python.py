@@ -137,7 +137,7 @@ def test_what_is_refused_has_the_command_lines_text(said, arguments, options):
 @pytest.mark.parametrize("refused, text", [
     (lambda ground: fr.Record([0, 1], [[0, 1], [1, 0]]), "a_g has the shape [2, 2]: one dimension is needed"),
     (lambda ground: fr.Record([0, 1], [0, float("nan")]), 'acceleration[1] = NaN m/s² is not finite'),
-    (lambda ground: fr.Record([0, 1], [0]), "2 time(s) and 1 acceleration(s) instead of as many of each"),
+    (lambda ground: fr.Record([0, 1], [0]), "2 time(s) and 1 acceleration(s) instead of two or more of each"),
     (lambda ground: fr.Record(0.0, [0, 1]), "dt = 0 is out of range: a finite number greater than 0 is needed"),
     (lambda ground: fr.Record(0.1, ["a", "b"]), "a_g: numbers are needed, not text or other objects"),
     (lambda ground: fr.Record(pd.date_range("2026", periods=2), [0, 1]), "time: these are dates"),
