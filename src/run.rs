@@ -243,7 +243,7 @@ pub trait Runs: Coordinates {
     #[doc(hidden)]
     const START: Start<Self>;
 
-    /// What follows runs, of which the FMU has no use.
+    /// The functions that follow runs, which the FMU does not use.
     #[doc(hidden)]
     fn compiled() -> &'static Compiled<Self>;
 }
@@ -358,7 +358,7 @@ impl<Q: Coordinates, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
     }
 }
 
-/// What may shorten a run with too many steps, whose tendon and dissipators have this `rate` (1/s).
+/// Advice on a run with too many steps, whose tendon and dissipators have this `rate` (1/s).
 fn too_many(rate: f64) -> String {
     match rate > 0.0 {
         true => format!(

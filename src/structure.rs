@@ -118,7 +118,7 @@ struct Whole {
     base: Base,
     body: Body,
     modes: Vec<Mode>,
-    /// What carries the base on ground that gives; none on rigid ground.
+    /// The ground that gives under the base; none on rigid ground.
     foundation: Option<Foundation>,
     /// A mode for each lateral coordinate: on ground that gives, y, sin θ and the energy of the ground take no part in any sum.
     coordinates: Vec<Mode>,
@@ -155,7 +155,7 @@ pub struct NotOneMass {
     pub has: String,
 }
 
-/// What is measured on a structure.
+/// The constants by which the outputs of a structure follow from its modes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gauges {
     /// Shape of the drift of each storey in the modes.
@@ -202,7 +202,7 @@ impl Gauges {
     }
 }
 
-/// What a sum over the modes leaves of the `whole`, if more than this part `rounding` of the whole.
+/// The rest of the `whole` beside a sum over the modes, if more than this part `rounding` of the whole.
 pub(crate) fn rest(whole: f64, of_modes: f64, rounding: f64) -> f64 {
     let rest = whole - of_modes;
     if rest.abs() <= rounding * whole.abs() { 0.0 } else { rest }
@@ -384,13 +384,13 @@ impl Structure {
         structure.on(self.foundation().map(|foundation| &foundation.ground))
     }
 
-    /// What carries the base on ground that gives; none on rigid ground.
+    /// The ground that gives under the base; none on rigid ground.
     #[inline(always)]
     pub fn foundation(&self) -> Option<&Foundation> {
         self.0.foundation.as_ref()
     }
 
-    /// What carries the base of a structure that stands on ground that gives.
+    /// The ground under a structure that stands on ground that gives.
     #[inline(always)]
     pub(crate) fn ground(&self) -> &Foundation {
         self.foundation().expect("it stands on ground that gives")

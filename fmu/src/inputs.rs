@@ -54,7 +54,7 @@ struct Input {
     next: Ramp,
     /// The value that the host has set, or that the last step led to.
     set: f64,
-    /// What was set since the last step.
+    /// The values that the host has set since the last step.
     given: Given,
     /// The value at the end of the last step, and the slope that the step followed.
     followed: Ramp,

@@ -29,7 +29,7 @@ pub(crate) struct Step<'a, Q: Coordinates = f64> {
     pub level: &'a dyn Level<Q>,
     /// The side about which the structure rocks.
     pub side: Side,
-    /// What carries the base on ground that gives.
+    /// The pressed contact points of the ground.
     pub contact: Contact,
     pub start: &'a Start<'a, Q>,
     pub arc: &'a Arc<Q>,

@@ -1,4 +1,4 @@
-//! What ground that gives does to a base: the pressed points, rest, the ties between the base and the ground, energy.
+//! Ground that gives under a base: the pressed points, rest, the ties between the base and the ground, energy.
 
 use crate::mechanics::energy::mechanical;
 use crate::mechanics::instant::Instant;
@@ -32,7 +32,7 @@ impl Foundation {
         begun
     }
 
-    /// What carries the base in `state`.
+    /// The points that carry the base in `state`.
     pub(crate) fn contact<Q: Coordinates>(&self, state: &State<Q>, base: &Base) -> Contact {
         let pressed = margins(self, state).enumerate().map(|(i, margin)| u32::from(margin > 0.0) << i).sum();
         let Ties { P_0, k_t, .. } = base.ties;

@@ -30,7 +30,7 @@ pub struct Gauge {
     stiffness: Modes,
     damping: Modes,
     push: Modes,
-    /// What the modes leave of the sum of the heights, and of the sum of the weights.
+    /// The rest beside the modes of the sum of the heights, and of the sum of the weights.
     left: [f64; 2],
 }
 

@@ -13,7 +13,7 @@ pub(crate) struct Instant<'a, N: Number, Q: Lateral<N> = N> {
     pub structure: &'a Structure,
     /// s: +1 about the right pivot, −1 about the left one; 0 on ground that gives.
     pub s: f64,
-    /// What carries the base on ground that gives.
+    /// The pressed contact points of the ground.
     pub contact: Contact,
     /// Viscous damping as a fraction of the damping in full contact.
     pub damping: f64,

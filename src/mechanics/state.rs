@@ -70,7 +70,7 @@ pub enum Phase {
     OnGround(Contact),
 }
 
-/// What carries the base on ground that gives.
+/// The pressed contact points of the ground, and whether the tendon is slack.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Contact {
     /// A bit for each contact point, the lowest for the left edge: whether the point is pressed.

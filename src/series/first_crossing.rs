@@ -17,7 +17,7 @@ pub struct Gap<'a> {
     offset: f64,
 }
 
-/// What a search over one step found.
+/// The result of a search over one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Crossing {
     /// The gaps do not close over the step.

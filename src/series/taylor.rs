@@ -201,7 +201,7 @@ impl<Q: Coordinates> Arc<Q> {
     }
 }
 
-/// What a step starts from and what is asked of it.
+/// The start of a step: the motion, the loads and the accuracy.
 #[derive(Clone, Copy, Debug)]
 pub struct Start<'a, Q = f64> {
     /// The state there.

@@ -27,7 +27,7 @@ pub struct Base {
     pub p_l: f64,
     /// Slenderness of the centre of gravity m_t B/S_1.
     pub tan_alpha_cg: f64,
-    /// What restrains the base.
+    /// The tendon and the dissipators that restrain the base.
     pub ties: Ties,
 }
 

@@ -4,7 +4,7 @@
 //!
 //! Messages begin with the function that was called and end with the one to call instead: the instance knows neither.
 //!
-//! What C cannot promise is checked: null and misaligned pointers, lengths, numbers of an enumeration, a call from
+//! Each call checks what C cannot promise: null and misaligned pointers, lengths, numbers of an enumeration, a call from
 //! within the logger, and, as far as that can be told, whether a component is one. A panic becomes [`Status::Fatal`]. A call
 //! computes with the floating point control that Rust assumes, whatever the host's is.
 //!
