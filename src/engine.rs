@@ -2,7 +2,7 @@
 //!
 //! A step is a Taylor series of the motion ([`crate::series::taylor`]). A step ends at the first transition, at the end of the
 //! interval, or where its truncation error reaches the tolerance. [`crate::series::first_crossing`] finds the first transition and
-//! cannot step over it. [Phases](phases) say which guards are watched, and what happens when a guard closes.
+//! cannot step over it. Phases say which guards are watched, and what happens when a guard closes.
 //!
 //! The number of steps is bounded because the number of transitions is ([`crate::levels::rules`]). One advance takes at most one
 //! step, plus two steps per transition, plus one step per time 1/Ω. The rate Ω is the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc, p_l

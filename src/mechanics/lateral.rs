@@ -324,7 +324,7 @@ pub struct Modes {
 }
 
 impl Modes {
-    /// One number for each mode. Numbers beyond [`MOST_MODES`] fit no structure and are not kept.
+    /// One number for each mode. Numbers beyond `MOST_MODES` fit no structure and are not kept.
     #[inline]
     pub fn new(numbers: &[f64]) -> Modes {
         let mut modes = Modes { count: numbers.len(), ..Modes::ZERO };

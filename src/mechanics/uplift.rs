@@ -21,7 +21,7 @@
 //! ```
 //!
 //! R is the moment of mass that turns rigidly with the base, and F are the residual forces of the dissipators. The first condition is
-//! s u ≥ u_cr for one mass. Each moment is a function over a number: a value gives the [`margin`], a power series the first instant.
+//! s u ≥ u_cr for one mass. Each moment is a function over a number: a value gives the margin, a power series the first instant.
 //!
 //! The second condition always holds while |u| of one mass grows through u_cr. After a landing with |u| > u_cr it may not hold.
 //! Without this condition contact would open and shut without end.
