@@ -39,8 +39,8 @@ pub struct Unit<Q: Runs = f64> {
     told_of_stairs: bool,
 }
 
-/// All from which an instance goes on to the same bits, its part of an FMU state: the settings before the start, the inputs from
-/// the present time on, and how far the simulation has come once it has started. Until then all follows from the settings.
+/// An instance's part of an FMU state: the settings before the start, the inputs from the present time on, and the course of a
+/// simulation that has started. An instance continues from it to the same bits.
 pub type Condition<Q> = (Setup, Inputs, Option<Course<Q>>);
 
 /// How far a simulation has come.

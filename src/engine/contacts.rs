@@ -2,7 +2,7 @@
 //!
 //! A pressed point is released when f returns to 0. A free point is touched when e < 0 and f > 0 hold together. Both depend on the state
 //! alone, so that nothing is remembered between steps. A gap that starts within rounding of its root is divided by time until its first
-//! coefficient is a number: it is then closed, and closes at once, or it opens and must return. Points that act at one instant, as in
+//! coefficient is a number. The gap then closes at once, or it opens and must return. Points that act at one instant, as in
 //! vertical motion, follow one another in steps without duration.
 
 use crate::engine::motion::Motion;

@@ -102,6 +102,22 @@ pub(crate) struct Samples<'a> {
     pub last: usize,
 }
 
+/// Puts the numbers of the run in `lane` into their rows.
+#[inline(always)]
+fn put<const K: usize>(rows: &mut [Row; K], lane: usize, numbers: [f64; K]) {
+    rows.iter_mut().zip(numbers).for_each(|(row, number)| row[lane] = number);
+}
+
+/// The rows as numbers of all runs.
+#[inline(always)]
+fn load<S: Simd, const K: usize>(simd: S, rows: &[Row; K]) -> [Lanes<S>; K] {
+    let mut numbers = [Lanes::splat(simd, 0.0); K];
+    for (number, row) in numbers.iter_mut().zip(rows) {
+        *number = Lanes::load(simd, row);
+    }
+    numbers
+}
+
 /// A leap of each run.
 #[derive(Debug, Default)]
 struct Leap {
@@ -120,15 +136,15 @@ pub(crate) struct Contacts<'a> {
     samples: [Samples<'a>; MOST],
     entered: [usize; MOST],
     is_there: [bool; MOST],
-    /// Of the run that is or was there.
+    /// The contact of the run that is there, or was there last.
     exact: [Option<ExactContact>; MOST],
     oscillator: Oscillator<Row>,
     u_cr: Row,
     u: Row,
     u_dot: Row,
     age: Row,
-    /// The next leap, at the place of its parity, and the one after that: what is written number by number is read as a row much later,
-    /// because the processor would wait for it.
+    /// The next leap at the place `parity`, and the leap after it at the other. A leap is written number by number a round before it is
+    /// read as rows, since the processor would otherwise wait for the numbers.
     leaps: [Leap; 2],
     parity: usize,
     /// 1 where the last leap has been taken.
@@ -163,7 +179,7 @@ impl<'a> Contacts<'a> {
         if duration != leap.duration[lane] {
             let Flow { free, step, ramp } = *exact.flow(duration);
             leap.duration[lane] = duration;
-            (0..4).for_each(|i| leap.flow.free[i][lane] = free[i]);
+            put(&mut leap.flow.free, lane, free);
             (leap.flow.step[lane], leap.flow.ramp[lane]) = (step, ramp);
         }
     }
@@ -224,8 +240,7 @@ impl<S: Simd> WithSimd for Leapt<'_, '_, S> {
         let (a, a_next) = (row(a), row(a_next));
         let slope = (a_next - a) / duration;
         let a_end = a + slope * duration;
-        let Flow { free: [m11, m12, m21, m22], step, ramp } = flow;
-        let flow = Flow { free: [row(m11), row(m12), row(m21), row(m22)], step: row(step), ramp: row(ramp) };
+        let flow = Flow { free: load(simd, &flow.free), step: row(&flow.step), ramp: row(&flow.ramp) };
         let [u_end, u_dot_end] = flow.driven([u, u_dot], a, slope);
         let swing = oscillator.swing([u, u_dot], a, slope, duration);
         let is_low = oscillator.farthest(&swing, [u, u_end], slope, duration).is_less(row(&of.u_cr));
@@ -266,8 +281,9 @@ struct Runs<'a> {
     is_known: [bool; MOST],
     /// 1 where there is a run.
     is_there: Row,
-    rocker: Rocker<Row>,
-    pace: Pace<Row>,
+    /// The numbers of a [`Rocker`], and of a [`Pace`].
+    rocker: [Row; 6],
+    pace: [Row; 5],
     local_error: Row,
     gravity: Row,
     side: Row,
@@ -314,22 +330,18 @@ impl<'a, S: Simd> Rocking<'a, S> {
         let (motion, rocking) = (&engine.motion, level.rocking());
         if !std::mem::replace(&mut runs.is_known[lane], true) {
             watch.seek(engine, lane, &mut runs.sought);
-            let (side, pace, one) = (motion.phase.side(), &rocking.pace, engine.structure().one());
+            let (side, one) = (motion.phase.side(), engine.structure().one());
             let Rocker { H, pivot, weight_offset, foundation, stiffness, damping_u } = rocking.rocker(side);
-            (runs.rocker.H[lane], runs.rocker.pivot[lane]) = (H, pivot);
-            (runs.rocker.weight_offset[lane], runs.rocker.foundation[lane]) = (weight_offset, foundation);
-            (runs.rocker.stiffness[lane], runs.rocker.damping_u[lane]) = (stiffness, damping_u);
-            (runs.pace.longest_span[lane], runs.pace.longest_response[lane]) =
-                (pace.longest_span, pace.longest_response);
-            (runs.pace.omega[lane], runs.pace.gravity[lane], runs.pace.height[lane]) =
-                (pace.omega, pace.gravity, pace.height);
+            put(&mut runs.rocker, lane, [H, pivot, weight_offset, foundation, stiffness, damping_u]);
+            let Pace { longest_span, omega, longest_response, gravity, height } = rocking.pace;
+            put(&mut runs.pace, lane, [longest_span, omega, longest_response, gravity, height]);
             runs.local_error[lane] = level.subject().local_error;
             runs.gravity[lane] = one.expect("it is of one mass").parameters().g;
             (runs.side[lane], runs.is_there[lane]) = (side.sign(), 1.0);
         }
         let Start { state: State { u, u_dot, theta, theta_dot }, a_g, interval, .. } =
             advance.start(level.subject(), motion);
-        runs.state.iter_mut().zip([u, u_dot, theta, theta_dot]).for_each(|(row, number)| row[lane] = number);
+        put(&mut runs.state, lane, [u, u_dot, theta, theta_dot]);
         (runs.a_g[lane], runs.slope[lane], runs.interval[lane]) = (a_g.value, a_g.slope, interval);
         (runs.age[lane], runs.evaluations[lane]) = (motion.chatter.age, 0.0);
         let left = advance.last_step.saturating_sub(motion.work.steps) as usize;
@@ -415,24 +427,12 @@ impl<S: Simd> WithSimd for Taken<'_, '_, S> {
         let Taken(Rocking { simd, runs: of, products, series }) = self;
         let simd = *simd;
         let row = |row: &Row| Lanes::load(simd, row);
-        let [u, u_dot, theta, theta_dot] = &of.state;
-        let (u, u_dot, theta, theta_dot) = (row(u), row(u_dot), row(theta), row(theta_dot));
+        let [u, u_dot, theta, theta_dot] = load(simd, &of.state);
         let (side, a_g, slope, interval) = (row(&of.side), row(&of.a_g), row(&of.slope), row(&of.interval));
-        let rocker = Rocker {
-            H: row(&of.rocker.H),
-            pivot: row(&of.rocker.pivot),
-            weight_offset: row(&of.rocker.weight_offset),
-            foundation: row(&of.rocker.foundation),
-            stiffness: row(&of.rocker.stiffness),
-            damping_u: row(&of.rocker.damping_u),
-        };
-        let pace = Pace {
-            longest_span: row(&of.pace.longest_span),
-            omega: row(&of.pace.omega),
-            longest_response: row(&of.pace.longest_response),
-            gravity: row(&of.pace.gravity),
-            height: row(&of.pace.height),
-        };
+        let [H, pivot, weight_offset, foundation, stiffness, damping_u] = load(simd, &of.rocker);
+        let rocker = Rocker { H, pivot, weight_offset, foundation, stiffness, damping_u };
+        let [longest_span, omega, longest_response, gravity, height] = load(simd, &of.pace);
+        let pace = Pace { longest_span, omega, longest_response, gravity, height };
         let span = pace.span(interval);
         let [largest, largest_turning] = pace.largest([u, u_dot, theta_dot], [a_g, slope], span);
         let local_error = row(&of.local_error);

@@ -525,7 +525,7 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
         Magnitudes { arc: needs_arc.then(|| (arc, a_g())), ..most }
     }
 
-    /// Shows the series of outputs in σ, each over the polynomial that it belongs to: this one, or parts of it if sin θ and cos θ need
+    /// Shows the series of outputs in σ, each with its polynomial. This polynomial is shown whole, or in parts if sin θ and cos θ need
     /// more terms than it has.
     pub(crate) fn series(&self, outputs: &[Output], show: &mut dyn FnMut(&Expansion<Q>, &[Terms])) {
         self.in_parts(&mut |part, is_finest| {

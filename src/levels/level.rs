@@ -265,7 +265,7 @@ impl ElasticRocking for FixedBase {
 }
 
 /// The length and the accuracy of steps while a structure with an elastic strut rocks.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Pace<N = f64> {
     /// The longest span that a series is tried over, s.
     pub longest_span: N,

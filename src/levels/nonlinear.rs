@@ -177,7 +177,7 @@ impl Expanded for f64 {
 }
 
 /// The numbers of a structure that rocks about one side, as Eqs 5 and 6 contain them.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Rocker<N> {
     pub H: N,
     /// s B.

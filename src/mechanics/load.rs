@@ -99,7 +99,7 @@ impl Load {
 }
 
 impl<Q: Coordinates> Load<Q> {
-    /// Nothing acts.
+    /// The load of ground at rest without any force.
     pub const NONE: Load<Q> = Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 };
 
     /// The ground acceleration that each mode feels, a_g Γ/μ − F_t/μ, m/s², beside the force on mass that no mode carries.
