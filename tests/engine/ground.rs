@@ -42,6 +42,12 @@ fn load(structure: &Structure, a_g: f64, a_v: f64) -> LinearLoad<Modes> {
 }
 
 #[test]
+fn rigid_ground_takes_the_place_of_ground_that_gives() {
+    let rigid = Ground { f_v: Some(0.0), ..Ground::default() };
+    assert_eq!(frame(ground(10.0, 0.2, 2)).on(&rigid).unwrap(), three_storeys(0.0, &[]));
+}
+
+#[test]
 fn evison_on_two_springs_has_its_six_events_and_peaks() {
     let structure = one_mass(EVISON, ground(160.0, 0.2, 2));
     let mut engine = engine(&structure, 0.75246734e-3, 0.04);
