@@ -22,11 +22,10 @@ use crate::digits::with_unit;
 use crate::engine::piece::Sample;
 use crate::engine::{AdvanceError, DEFAULT_TOLERANCE, Settings};
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::restraint;
 use crate::mechanics::state::InitialStateError;
 use crate::run::ground_motion::{Segment, Segments};
 use crate::run::record::Record;
-use crate::{Detail, Dissipators, Engine, LinearLoad, Load, Modes, Motion, Progress, Side, State, Structure, Watch};
+use crate::{Detail, Engine, LinearLoad, Load, Modes, Motion, Progress, State, Structure, Watch};
 use curve::Curve;
 use fall::Found;
 use levels::Comparison;
@@ -326,9 +325,7 @@ impl<Q: Coordinates, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
         let &Motion { time, work, .. } = self.engine.motion();
         let next = self.segments.next().map_or_else(|| self.come_to_rest(), |segment| Ok((segment, None)));
         if next.is_ok() && work.steps > MOST_STEPS {
-            let base = self.engine.structure().base();
-            let ties = restraint::sum(&restraint::ties(base, Side::Right, &Dissipators::NEW), |tie| tie.lever);
-            let rate = (ties.damping / base.J_P).max((ties.stiffness / base.J_P).sqrt());
+            let rate = self.engine.structure().base().rates_of_ties().into_iter().fold(0.0, f64::max);
             return Err(RunError::TooManySteps { time, rate });
         }
         Ok(next)
@@ -411,7 +408,7 @@ mod tests {
     fn a_run_ends_after_its_most_steps() {
         let ground = Record::from_samples("", vec![1.0, 2.0, 3.0], vec![0.0, 1.0, 0.0]).unwrap();
         let pier = OneMass::new(Parameters { xi_d: 2.0, c_d: 1e9, ..Parameters::MCMANUS }).unwrap();
-        let rate = 2e9 * (pier.parameters().B.powi(2) + 4.0) / pier.J_P;
+        let rate = 1e9 * (2.0 * (pier.parameters().B.powi(2) + 4.0) / pier.J_P);
         let run = Run::new(pier, &ground);
         let mut follower = run.course().unwrap();
         assert_eq!(follower.go_on(&mut ()).unwrap(), None);

@@ -65,4 +65,12 @@ impl Base {
     pub fn has_dissipators(&self) -> bool {
         self.ties.c_d > 0.0 || self.ties.k_d > 0.0
     }
+
+    /// The rates at which the tendon, the elastic dissipators and the viscous dissipators move the structure about a pivot, 1/s:
+    /// √(k_t B²/J_P), √(2 k_d (B² + ξ_d²)/J_P) and 2 c_d (B² + ξ_d²)/J_P.
+    pub(crate) fn rates_of_ties(&self) -> [f64; 3] {
+        let &Base { B, J_P, ties: Ties { k_t, xi_d, c_d, k_d, .. }, .. } = self;
+        let of_pair = 2.0 * (B * B + xi_d * xi_d) / J_P;
+        [(k_t * B * B / J_P).sqrt(), (k_d * of_pair).sqrt(), c_d * of_pair]
+    }
 }

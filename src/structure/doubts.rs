@@ -21,8 +21,11 @@ const LIGHT: f64 = 50.0;
 /// Least ratio of the foundation's mass to the mass above, and of the mass above to the foundation's, if both are in one unit.
 const ONE_UNIT: [f64; 2] = [1e-3, 1e-2];
 
+/// Rate of a tie as a multiple of the highest frequency of vibration from which a run takes many steps.
+const FAST: f64 = 1000.0;
+
 /// Names of the numbers that are doubted. A sentence begins with its name.
-pub const DOUBTED: [&str; 9] = ["r", "P_0", "F_y", "xi_d", "m0", "f", "m_t", "zeta", "B"];
+pub const DOUBTED: [&str; 12] = ["r", "P_0", "F_y", "k_t", "k_d", "c_d", "xi_d", "m0", "f", "m_t", "zeta", "B"];
 
 /// Damping ratio of the lowest mode that no structure exceeds without dampers.
 const MOST_DAMPING: f64 = 0.2;
@@ -40,7 +43,7 @@ impl Structure {
     }
 
     fn doubts_in_si(&self) -> Vec<String> {
-        let (&Base { m_t, m0, g, B, tan_alpha_cg, ties: Ties { P_0, xi_d, F_y, .. }, .. }, body) =
+        let (&Base { m_t, m0, g, B, tan_alpha_cg, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y }, .. }, body) =
             (self.base(), self.body());
         let weight = m_t * g;
         let is_small = |(_, force): &(&str, f64)| (0.0..NEXT_TO_NOTHING * weight).contains(force) && *force > 0.0;
@@ -55,6 +58,18 @@ impl Structure {
         });
         let small = [("P_0", P_0), ("F_y", F_y)].into_iter().filter(is_small).map(doubt);
         let mut doubts: Vec<_> = unused.into_iter().chain(small).collect();
+        let ties = [("k_t", k_t, "N/m"), ("k_d", k_d, "N/m"), ("c_d", c_d, "N.s/m")];
+        for ((name, value, unit), rate) in ties.into_iter().zip(self.base().rates_of_ties()) {
+            let highest = self.vibration().rocking[1];
+            if rate > FAST * highest {
+                let [time, slow] = [1.0 / rate, 1.0 / highest].map(short);
+                doubts.push(format!(
+                    "{name} = {} changes the motion of the base within {time} s, the vibration within {slow} s, and a run takes many \
+                     steps: is {name} in {unit}?",
+                    with_unit(value, unit)
+                ));
+            }
+        }
         if xi_d > 2.0 * B {
             doubts.push(format!(
                 "xi_d = {} m is more than the width of the base, {} m: is xi_d in m, not in mm?",
