@@ -321,14 +321,12 @@ impl<Q: Coordinates> Arc<Q> {
 /// The σ up to which the last two terms of a full expansion stay within `truncation`.
 #[cold]
 pub(crate) fn reach<Q: Coordinates>(velocities: impl Fn(usize) -> (Q, f64), truncation: &Truncation<Q>) -> f64 {
-    [MAX_ORDER - 1, MAX_ORDER]
-        .into_iter()
-        .map(|k| {
-            let (u_dot, theta_dot) = velocities(k);
-            let ratios = [u_dot.room(&truncation.u_dot), truncation.theta_dot / theta_dot.abs()];
-            libm::pow(ratios[0].min(ratios[1]), 1.0 / k as f64)
-        })
-        .fold(f64::INFINITY, f64::min)
+    // the logarithms of both, since a power costs three
+    let exponent = |k: usize| {
+        let (u_dot, theta_dot) = velocities(k);
+        libm::log2(u_dot.room(&truncation.u_dot).min(truncation.theta_dot / theta_dot.abs())) / k as f64
+    };
+    libm::exp2(exponent(MAX_ORDER - 1).min(exponent(MAX_ORDER)))
 }
 
 #[cfg(test)]
