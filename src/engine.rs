@@ -32,11 +32,11 @@ use crate::mechanics::lateral::{Coordinates, Duals, Lateral, Modes};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
 use crate::mechanics::restraint::{Dissipators, Restraints};
-use crate::mechanics::state::InitialStateError;
 use crate::numbers::dual::Dual;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, Start};
 use crate::structure::ground::MORE;
+use crate::structure::quantity::{Refused, ensure};
 use crate::{Foundation, Output, Phase, State, Structure};
 use motion::{Chatter, Motion, Work};
 use phases::{Closed, Step, Watched};
@@ -70,8 +70,10 @@ const FAR: f64 = 1000.0;
 const STALLED: f64 = 1e-12;
 
 /// Whether `tolerance` is a relative tolerance of results.
-pub fn check_tolerance(tolerance: f64) -> Result<(), InitialStateError> {
-    if tolerance > 0.0 && tolerance < 1.0 { Ok(()) } else { Err(InitialStateError::Tolerance(tolerance)) }
+pub fn check_tolerance(tolerance: f64) -> Result<(), Refused> {
+    ensure(tolerance > 0.0 && tolerance < 1.0, || {
+        format!("tolerance = {} is out of range: it must be between 0 and 1, such as 1e-9", with_unit(tolerance, "1"))
+    })
 }
 
 /// How far an advance came.
@@ -167,7 +169,7 @@ impl Default for Settings {
 
 impl Settings {
     /// The truncation error that a step may have.
-    fn local_error(&self) -> Result<f64, InitialStateError> {
+    fn local_error(&self) -> Result<f64, Refused> {
         check_tolerance(self.tolerance)?;
         Ok((LOCAL_SHARE * self.tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR))
     }
@@ -175,10 +177,12 @@ impl Settings {
     /// The level of detail at which `structure` moves that is turned by `theta` (rad).
     fn level<Q: Coordinates>(self, kind: &Kind<Q>, structure: Structure, theta: f64) -> LevelOrNot<Q> {
         let level = (kind.level)(self.detail, structure, self.local_error()?, self.vertical)?;
-        match self.detail {
-            Detail::FixedBase if theta != 0.0 => Err(InitialStateError::TurnedFixedBase(theta)),
-            _ => Ok(level),
-        }
+        ensure(self.detail.has_uplift() || theta == 0.0, || {
+            format!(
+                "theta_0 = {theta:?} rad contradicts detail = fixed_base, where the base cannot turn: set theta_0 to 0"
+            )
+        })?;
+        Ok(level)
     }
 }
 
@@ -190,7 +194,7 @@ type GoOn<Q> = fn(
     &mut dyn Watch<Q>,
 ) -> Result<Progress, AdvanceError>;
 
-type LevelOrNot<Q> = Result<Box<dyn Level<Q>>, InitialStateError>;
+type LevelOrNot<Q> = Result<Box<dyn Level<Q>>, Refused>;
 
 /// The functions of structures with the coordinates `Q` that are compiled here alone: a generic function would be compiled again in every
 /// crate that follows runs.
@@ -218,12 +222,7 @@ pub struct Engine<Q: Coordinates = f64> {
 
 impl Engine {
     /// Starts at `time` (s) from `initial`, to a relative `tolerance` of the results, at the level of detail `auto`.
-    pub fn new(
-        structure: impl Into<Structure>,
-        initial: State,
-        time: f64,
-        tolerance: f64,
-    ) -> Result<Engine, InitialStateError> {
+    pub fn new(structure: impl Into<Structure>, initial: State, time: f64, tolerance: f64) -> Result<Engine, Refused> {
         Engine::with(structure, initial, time, Settings { tolerance, ..Settings::default() })
     }
 
@@ -234,13 +233,15 @@ impl Engine {
         initial: State,
         time: f64,
         settings: Settings,
-    ) -> Result<Engine, InitialStateError> {
+    ) -> Result<Engine, Refused> {
         let phase = initial.initial_phase()?;
         let level = settings.level(&ONE, structure.into(), initial.theta)?;
         let State { u, u_dot, .. } = initial;
-        if !settings.detail.has_strut() && (u, u_dot) != (0.0, 0.0) {
-            return Err(InitialStateError::DeformedRigid { u, u_dot });
-        }
+        ensure(settings.detail.has_strut() || (u, u_dot) == (0.0, 0.0), || {
+            format!(
+                "u_0 = {u:?} m, u_dot_0 = {u_dot:?} m/s contradict detail = rigid, where u is always 0: set both to 0"
+            )
+        })?;
         Ok(Engine::start(&ONE, level, settings, time, initial, phase))
     }
 }
@@ -253,7 +254,7 @@ impl Engine<Modes> {
         state: State<Modes>,
         time: f64,
         settings: Settings,
-    ) -> Result<Engine<Modes>, InitialStateError> {
+    ) -> Result<Engine<Modes>, Refused> {
         // coordinates of modes have no limits, but are numbers
         let [u, u_dot] = [&state.u, &state.u_dot].map(|numbers| 0.0 * numbers.total());
         let phase = State { u, u_dot, theta: state.theta, theta_dot: state.theta_dot }.initial_phase()?;
@@ -262,9 +263,11 @@ impl Engine<Modes> {
         let (State { u, u_dot, .. }, modes) = (state, level.structure().modes().len());
         for numbers in [u, u_dot] {
             let given = numbers.count();
-            if given != modes && given != modes + more && !numbers.is_within(&Modes::ZERO) {
-                return Err(InitialStateError::Coordinates { given, modes });
-            }
+            ensure(given == modes || given == modes + more || numbers.is_within(&Modes::ZERO), || {
+                format!(
+                    "the initial state has {given} coordinates, and {modes} modes move: give one coordinate for each, or 0 for all"
+                )
+            })?;
         }
         let of_frame = |numbers: Modes| Modes::each(level.structure(), |j, _| numbers.of(j));
         let state = State { u: of_frame(u), u_dot: of_frame(u_dot), ..state };
@@ -325,7 +328,7 @@ impl<Q: Coordinates> Engine<Q> {
     }
 
     /// The same structure in the same motion, with other `settings`.
-    pub fn remade(&self, settings: Settings) -> Result<Engine<Q>, InitialStateError> {
+    pub fn remade(&self, settings: Settings) -> Result<Engine<Q>, Refused> {
         let (kind, level) = (self.kind, settings.level(self.kind, self.structure().clone(), self.motion.state.theta)?);
         Ok(Engine { kind, level, settings, motion: self.motion, arc: Arc::default(), room: Room::default() })
     }

@@ -55,5 +55,5 @@ pub use structure::ground::{Foundation, Ground};
 pub use structure::mode::{Floor, Mode};
 pub use structure::one_mass::OneMass;
 pub use structure::parameters::Parameters;
-pub use structure::quantity::{OutOfRange, Quantity};
-pub use structure::{Body, Gauges, Structure, StructureError};
+pub use structure::quantity::{OutOfRange, Quantity, Refused};
+pub use structure::{Body, Gauges, Structure};

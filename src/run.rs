@@ -22,9 +22,9 @@ use crate::digits::with_unit;
 use crate::engine::piece::Sample;
 use crate::engine::{AdvanceError, DEFAULT_TOLERANCE, Settings};
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::state::InitialStateError;
 use crate::run::ground_motion::{Segment, Segments};
 use crate::run::record::Record;
+use crate::structure::quantity::{Refused, ensure};
 use crate::{Detail, Engine, LinearLoad, Load, Modes, Motion, Progress, State, Structure, Watch};
 use curve::Curve;
 use fall::Found;
@@ -116,15 +116,7 @@ pub struct Finish<Q = f64> {
 pub enum RunError {
     /// The run cannot start.
     #[error(transparent)]
-    Initial(#[from] InitialStateError),
-    /// There is no floor on which the force of the ground motion may act.
-    #[error("the force on the top floor needs a structure with floors; give masses, heights and shapes")]
-    NoFloor,
-    /// The run ends before it starts, or never.
-    #[error(
-        "the run cannot end at {end:?} s: a finite time after the record's first sample, at {start:?} s, is needed"
-    )]
-    End { end: f64, start: f64 },
+    Refused(#[from] Refused),
     /// It takes more steps than one of its segments may.
     #[error("the steps of the run end by t = {} of {}: give a shorter duration", with_unit(*time, "s"), with_unit(*until, "s"))]
     TooLong { time: f64, until: f64 },
@@ -149,7 +141,7 @@ impl RunError {
             RunError::Advance { time, .. } | RunError::TooLong { time, .. } | RunError::TooManySteps { time, .. } => {
                 Some(*time)
             }
-            RunError::Initial(_) | RunError::NoFloor | RunError::End { .. } | RunError::TooManyPoints { .. } => None,
+            RunError::Refused(_) | RunError::TooManyPoints { .. } => None,
         }
     }
 }
@@ -202,15 +194,19 @@ impl<'a, Q: Runs> Run<'a, Q> {
     /// The structure at the first sample.
     fn start(&self) -> Result<Engine<Q>, RunError> {
         let start = self.ground.start();
-        match self.end {
-            End::At(end) if !(end > start && end.is_finite()) => Err(RunError::End { end, start }),
-            _ if self.ground.force().is_some() && self.structure.floors().is_empty() => Err(RunError::NoFloor),
-            _ => {
-                let &Run { ref structure, ground, initial, detail, tolerance, .. } = self;
-                let settings = Settings { detail, tolerance, vertical: ground.vertical().is_some(), stops: false };
-                Ok(Q::START(structure.clone(), initial, start, settings)?)
-            }
+        if let End::At(end) = self.end {
+            ensure(end > start && end.is_finite(), || {
+                format!(
+                    "the run cannot end at {end:?} s: a finite time after the record's first sample, at {start:?} s, is needed"
+                )
+            })?;
         }
+        ensure(self.ground.force().is_none() || !self.structure.floors().is_empty(), || {
+            "the force on the top floor needs a structure with floors; give masses, heights and shapes".into()
+        })?;
+        let &Run { ref structure, ground, initial, detail, tolerance, .. } = self;
+        let settings = Settings { detail, tolerance, vertical: ground.vertical().is_some(), stops: false };
+        Ok(Q::START(structure.clone(), initial, start, settings)?)
     }
 
     /// Follows the motion to the end and shows it at `times` (s), which rise; those before the start and after the end
@@ -248,7 +244,7 @@ pub trait Runs: Coordinates {
 }
 
 /// Starts a structure at a time (s) from a state.
-type Start<Q> = fn(Structure, State<Q>, f64, Settings) -> Result<Engine<Q>, InitialStateError>;
+type Start<Q> = fn(Structure, State<Q>, f64, Settings) -> Result<Engine<Q>, Refused>;
 
 type Watched<Q, T> = fn(&Run<Q>, &mut dyn Watch<Q>) -> Result<T, RunError>;
 type Judged<Q, T> = fn(&Run<Q>, &mut Validity, &mut dyn Watch<Q>) -> Result<T, RunError>;

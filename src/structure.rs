@@ -22,8 +22,8 @@ use base::{Base, Ties};
 use ground::{Foundation, Ground, MORE};
 use mode::{Floor, Mode, Vibration};
 use one_mass::OneMass;
-use parameters::{ParameterError, Parameters};
-use quantity::{OutOfRange, Quantity, Units, quantity};
+use parameters::Parameters;
+use quantity::{OutOfRange, Quantity, Refused, Units, ensure, quantity};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
@@ -64,7 +64,7 @@ pub struct Body {
 
 impl Body {
     /// Checks the base, its tendon and its dissipators against the limits of one mass.
-    fn check(&self) -> Result<(), ParameterError> {
+    fn check(&self) -> Result<(), Refused> {
         let r = self.r.unwrap_or(1.0);
         Parameters { H: 1.0, r, ..self.over(Parameters::EVISON) }.check()
     }
@@ -142,19 +142,6 @@ impl PartialEq for Reaches {
     }
 }
 
-/// A structure of many masses where one mass is needed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "{task} needs a structure of one mass, because Eqs 10 to 24 have one mode of vibration, and this structure {has}: simulate the \
-     motion instead"
-)]
-pub struct NotOneMass {
-    /// Name of the task.
-    pub task: &'static str,
-    /// The reason why the structure is none.
-    pub has: String,
-}
-
 /// The constants by which the outputs of a structure follow from its modes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gauges {
@@ -208,70 +195,47 @@ pub(crate) fn rest(whole: f64, of_modes: f64, rounding: f64) -> f64 {
     if rest.abs() <= rounding * whole.abs() { 0.0 } else { rest }
 }
 
-/// The reason why modes and floors are no structure.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // the messages name the fields
-pub enum StructureError {
-    /// More modes than a structure may have, or none.
-    #[error("{0} modes are given: a structure has 1 to {MOST_MODES}")]
-    Modes(usize),
-    /// A moment of the mass above the foundation out of its range.
-    #[error(transparent)]
-    OutOfRange(#[from] OutOfRange),
-    /// A number of the base, its tendon or its dissipators out of its range.
-    #[error(transparent)]
-    Base(#[from] ParameterError),
-    /// A number of a mode or of a floor out of its range.
-    #[error("{what} {number}: {cause}")]
-    At { what: &'static str, number: usize, cause: OutOfRange },
-    /// The modes carry more than the structure has.
-    #[error(
-        "the modes carry {of_modes:?} {unit} of the {name} = {whole:?} {unit} above the foundation: check masses, heights and units"
-    )]
-    Beyond { name: &'static str, unit: &'static str, of_modes: f64, whole: f64 },
-    /// A floor whose shape has not one number for each mode.
-    #[error("floor {floor} has {numbers} numbers of its shape: give one for each of the {modes} modes")]
-    Shape { floor: usize, numbers: usize, modes: usize },
-    /// More modes are to be kept than there are.
-    #[error("{count} modes cannot be kept of {modes}: keep 0 to {modes}")]
-    Kept { count: usize, modes: usize },
-    /// Forces that do not match the floors.
-    #[error("{forces} forces are given on {floors} floors: give one for each floor, or none")]
-    Forces { forces: usize, floors: usize },
-    /// Ground that cannot carry the structure.
-    #[error("ground: {0}")]
-    Ground(String),
+/// The refusal of a number of this mode or floor, counted from 1.
+pub(crate) fn of_number(what: &str, number: usize, cause: OutOfRange) -> Refused {
+    Refused(format!("{what} {number}: {cause}"))
+}
+
+/// Refuses more modes than a structure may have, or none.
+pub(crate) fn check_count(modes: usize) -> Result<(), Refused> {
+    let is_possible = (1..=MOST_MODES).contains(&modes);
+    ensure(is_possible, || format!("{modes} modes are given: a structure has 1 to {MOST_MODES}"))
 }
 
 impl Structure {
     /// The structure of one mass with these `parameters`, or the first parameter that is out of range.
-    pub fn new(parameters: Parameters) -> Result<Structure, ParameterError> {
+    pub fn new(parameters: Parameters) -> Result<Structure, Refused> {
         OneMass::new(parameters).map(Structure::from)
     }
 
     /// The structure of this `body` with these `modes`, which shows these `floors`.
-    pub fn of_body(body: Body, modes: &[Mode], floors: &[Floor]) -> Result<Structure, StructureError> {
+    pub fn of_body(body: Body, modes: &[Mode], floors: &[Floor]) -> Result<Structure, Refused> {
         let count = modes.len();
-        if !(1..=MOST_MODES).contains(&count) {
-            return Err(StructureError::Modes(count));
-        }
+        check_count(count)?;
         MOMENTS.iter().try_for_each(|moment| moment.check((moment.get)(&body)))?;
         body.check()?;
         for (number, mode) in (1..).zip(modes) {
             let checked = OF_MODE.iter().try_for_each(|of| of.check((of.get)(mode)));
-            checked.map_err(|cause| StructureError::At { what: "mode", number, cause })?;
+            checked.map_err(|cause| of_number("mode", number, cause))?;
         }
-        for (i, floor @ Floor { shape, .. }) in floors.iter().enumerate() {
+        for (number, floor) in (1..).zip(floors) {
             let checked = OF_FLOOR.iter().try_for_each(|of| of.check((of.get)(floor)));
-            checked.map_err(|cause| StructureError::At { what: "floor", number: i + 1, cause })?;
-            let numbers = shape.count();
-            if numbers != count {
-                return Err(StructureError::Shape { floor: i + 1, numbers, modes: count });
-            }
+            checked.map_err(|cause| of_number("floor", number, cause))?;
+            let numbers = floor.shape.count();
+            ensure(numbers == count, || {
+                format!("floor {number} has {numbers} numbers of its shape: give one for each of the {count} modes")
+            })?;
         }
         let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum::<f64>();
         let whole = |name, unit, whole: f64, of_modes: f64| match rest(whole, of_modes, EXACT) {
-            rest if rest < -EXCESS * whole => Err(StructureError::Beyond { name, unit, of_modes, whole }),
+            rest if rest < -EXCESS * whole => Err(Refused(format!(
+                "the modes carry {of_modes:?} {unit} of the {name} = {whole:?} {unit} above the foundation: check masses, heights \
+                 and units"
+            ))),
             rest => Ok(if rest < 0.0 { of_modes } else { whole }),
         };
         let [mass, inertia] = [of(|mode| mode.gamma * mode.share), of(|mode| mode.mass * mode.height * mode.height)];
@@ -316,44 +280,37 @@ impl Structure {
             tan_alpha_cg: m_t * B / S_1,
             ties,
         };
-        Structure::made(base, body, modes.to_vec(), floors.to_vec(), gauges, vibration(&base, modes), None)
-    }
-
-    /// The structure of these numbers, and of one mass those of `one`.
-    fn made(
-        base: Base,
-        body: Body,
-        modes: Vec<Mode>,
-        floors: Vec<Floor>,
-        gauges: Gauges,
-        vibration: Vibration,
-        one: Option<OneMass>,
-    ) -> Structure {
-        let (reaches, coordinates) = (Reaches::default(), modes.clone());
         let whole = Whole {
+            vibration: vibration(&base, modes),
             base,
             body,
-            modes,
+            modes: modes.to_vec(),
             foundation: None,
-            coordinates,
-            floors,
+            coordinates: modes.to_vec(),
+            floors: floors.to_vec(),
             gauges,
-            vibration,
-            one,
-            of_mode: one,
-            reaches,
+            one: None,
+            of_mode: None,
+            reaches: Reaches::default(),
         };
         Structure(Arc::new(whole), Units::default())
     }
 
+    /// This structure with numbers that `change` writes.
+    fn changed(&self, change: impl FnOnce(&mut Whole)) -> Structure {
+        let mut whole = Whole { reaches: Reaches::default(), ..Whole::clone(&self.0) };
+        change(&mut whole);
+        Structure(Arc::new(whole), self.1)
+    }
+
     /// This structure on `ground` that gives, with at most 21 modes. The structure has no numbers of one mass any more: it is moved as
     /// structures of many masses are. Without `ground`, this structure.
-    pub fn on<'g>(&self, ground: impl Into<Option<&'g Ground>>) -> Result<Structure, StructureError> {
+    pub fn on<'g>(&self, ground: impl Into<Option<&'g Ground>>) -> Result<Structure, Refused> {
         let Some(ground) = ground.into() else { return Ok(self.clone()) };
         let kept =
             if self.modes().len() > MOST_MODES - MORE { self.with_lowest(MOST_MODES - MORE) } else { self.clone() };
-        let foundation =
-            Foundation::new(ground, kept.base(), kept.body(), kept.modes()).map_err(StructureError::Ground)?;
+        let foundation = Foundation::new(ground, kept.base(), kept.body(), kept.modes());
+        let foundation = foundation.map_err(|error| Refused(format!("ground: {error}")))?;
         if foundation.is_none() {
             return Ok(self.on_rigid_ground());
         }
@@ -375,12 +332,14 @@ impl Structure {
 
     /// This structure with these lateral `coordinates`, and without numbers of one mass.
     fn standing(&self, foundation: Option<Foundation>, coordinates: Vec<Mode>) -> Structure {
-        let (whole, reaches) = (Whole::clone(&self.0), Reaches::default());
-        Structure(Arc::new(Whole { foundation, coordinates, one: None, of_mode: None, reaches, ..whole }), self.1)
+        self.changed(|whole| {
+            (whole.foundation, whole.coordinates) = (foundation, coordinates);
+            (whole.one, whole.of_mode) = (None, None);
+        })
     }
 
     /// `structure` on the ground of this one.
-    fn on_own_ground(&self, structure: Structure) -> Result<Structure, StructureError> {
+    fn on_own_ground(&self, structure: Structure) -> Result<Structure, Refused> {
         structure.on(self.foundation().map(|foundation| &foundation.ground))
     }
 
@@ -403,16 +362,17 @@ impl Structure {
     }
 
     /// This structure with its `count` modes of the lowest frequencies, or none. The mass of the others turns rigidly with the base.
-    pub fn keeping(&self, count: usize) -> Result<Structure, StructureError> {
+    pub fn keeping(&self, count: usize) -> Result<Structure, Refused> {
         let modes = self.0.modes.len();
-        if count > modes { Err(StructureError::Kept { count, modes }) } else { Ok(self.with_lowest(count)) }
+        ensure(count <= modes, || format!("{count} modes cannot be kept of {modes}: keep 0 to {modes}"))?;
+        Ok(self.with_lowest(count))
     }
 
     /// This structure as the level `rigid` of one mass shows it: floors and gauges know no mode.
     pub(crate) fn shown_rigid(&self) -> Structure {
         let floors = Vec::from_iter(self.0.floors.iter().map(|floor| Floor { shape: Modes::ZERO, ..*floor }));
-        let (gauges, reaches) = (Gauges::new(self.body(), &[], &floors, ROUNDING), Reaches::default());
-        Structure(Arc::new(Whole { floors, gauges, reaches, ..Whole::clone(&self.0) }), self.1)
+        let gauges = Gauges::new(self.body(), &[], &floors, ROUNDING);
+        self.changed(|whole| (whole.floors, whole.gauges) = (floors, gauges))
     }
 
     /// This structure, whose numbers were given in `units`, in which its doubts name them.
@@ -445,10 +405,11 @@ impl Structure {
     /// ```
     ///
     /// F_res = Σ F (1 − Σ φ Γ/μ) and N_res = Σ F (h − Σ φ κ/μ) act on mass that no mode carries. Both are 0 with all modes.
-    pub fn load(&self, a_g: f64, a_v: f64, forces: &[f64]) -> Result<Load<Modes>, StructureError> {
-        if !forces.is_empty() && forces.len() != self.0.floors.len() {
-            return Err(StructureError::Forces { forces: forces.len(), floors: self.0.floors.len() });
-        }
+    pub fn load(&self, a_g: f64, a_v: f64, forces: &[f64]) -> Result<Load<Modes>, Refused> {
+        let (given, floors) = (forces.len(), self.0.floors.len());
+        ensure(given == 0 || given == floors, || {
+            format!("{given} forces are given on {floors} floors: give one for each floor, or none")
+        })?;
         Ok(Load { a_g, F_t: Modes::of_forces(self, forces.iter().copied()), a_v })
     }
 
@@ -486,9 +447,9 @@ impl Structure {
     }
 
     /// This structure with these `parameters`; of many masses only the parameters of the base are changed.
-    pub fn with(&self, parameters: Parameters) -> Result<Structure, StructureError> {
+    pub fn with(&self, parameters: Parameters) -> Result<Structure, Refused> {
         if self.one().is_some() {
-            return Ok(Structure::new(parameters)?);
+            return Structure::new(parameters);
         }
         let Parameters { m0, J0, B, r, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
         let (r, ties) = (Some(r).filter(|r| !r.is_nan()), Ties { P_0, k_t, xi_d, c_d, k_d, F_y });
@@ -522,27 +483,28 @@ impl Structure {
         let of_mode = OneMass::new(Parameters { m, H, r, ..self.parameters() }).ok()?;
         let floor = |floor: &Floor| Floor { shape: floor.shape.times(share), ..*floor };
         let floors = Vec::from_iter(self.0.floors.iter().map(floor));
-        let Structure(scaled, units) = Structure::of(self.0.body, &[mode], &floors);
-        Some(Structure(Arc::new(Whole { of_mode: Some(of_mode), ..Whole::clone(&scaled) }), units))
+        Some(Structure::of(self.0.body, &[mode], &floors).changed(|whole| whole.of_mode = Some(of_mode)))
     }
 
     /// The numbers of one mass of a structure that engines of one coordinate move.
-    pub(crate) fn of_mode(&self) -> Result<&OneMass, NotOneMass> {
-        let task = "an engine of one coordinate";
-        self.0.of_mode.as_ref().ok_or_else(|| self.is_no_one_mass(task))
+    pub(crate) fn of_mode(&self) -> Result<&OneMass, Refused> {
+        self.0.of_mode.as_ref().ok_or_else(|| self.is_no_one_mass("an engine of one coordinate"))
     }
 
     /// The numbers of one mass, which `task` needs.
-    pub fn one_mass(&self, task: &'static str) -> Result<&OneMass, NotOneMass> {
+    pub fn one_mass(&self, task: &'static str) -> Result<&OneMass, Refused> {
         self.one().ok_or_else(|| self.is_no_one_mass(task))
     }
 
-    fn is_no_one_mass(&self, task: &'static str) -> NotOneMass {
+    fn is_no_one_mass(&self, task: &str) -> Refused {
         let has = match self.foundation() {
             Some(_) => "stands on ground that gives".into(),
             None => format!("has {} modes", self.modes().len()),
         };
-        NotOneMass { task, has }
+        Refused(format!(
+            "{task} needs a structure of one mass, because Eqs 10 to 24 have one mode of vibration, and this structure {has}: \
+             simulate the motion instead"
+        ))
     }
 
     /// Circular frequencies of vibration, rad/s.
@@ -626,13 +588,16 @@ impl Structure {
 
 impl From<OneMass> for Structure {
     fn from(one: OneMass) -> Structure {
-        let (base, mode) = (*one.base(), *one.mode());
         let &Parameters { m, m0, H, B, J0, r, g, c_ratio, .. } = one.parameters();
-        let body = Body { m0, J0, m_s: m, S_1: m * H, I_2: m * H * H, B, r: Some(r), g, c_ratio, ties: base.ties };
-        let (modes, floors) = (vec![mode], vec![Floor { mass: m, height: H, shape: Modes::new(&[1.0]) }]);
-        let gauges = Gauges::new(&body, &modes, &floors, ROUNDING);
-        let vibration = Vibration { contact: one.omega_fc, rocking: [one.omega_u; 2] };
-        Structure::made(base, body, modes, floors, gauges, vibration, Some(one))
+        let ties = one.base.ties;
+        let body = Body { m0, J0, m_s: m, S_1: m * H, I_2: m * H * H, B, r: Some(r), g, c_ratio, ties };
+        let floor = Floor { mass: m, height: H, shape: Modes::new(&[1.0]) };
+        // with the bits of the paper's formulas
+        Structure::of(body, &[one.mode], &[floor]).changed(|whole| {
+            whole.base = one.base;
+            whole.vibration = Vibration { contact: one.omega_fc, rocking: [one.omega_u; 2] };
+            (whole.one, whole.of_mode) = (Some(one), Some(one));
+        })
     }
 }
 

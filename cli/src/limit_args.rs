@@ -1,6 +1,7 @@
 //! Arguments for the limits of the model; a value beyond its limit gives a warning.
 
-use rocking::run::validity::{LimitError, Limits};
+use rocking::Refused;
+use rocking::run::validity::Limits;
 
 /// Limits beyond which a value gives a warning.
 #[derive(clap::Args)]
@@ -23,7 +24,7 @@ pub struct LimitArgs {
 
 impl LimitArgs {
     /// Checks the arguments and returns them as limits.
-    pub fn limits(&self) -> Result<Limits, LimitError> {
+    pub fn limits(&self) -> Result<Limits, Refused> {
         let &LimitArgs { friction, tension, edge_load, energy_gain } = self;
         let limits = Limits { friction, tension, edge_load, energy_gain };
         limits.check().map(|()| limits)

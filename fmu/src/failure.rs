@@ -4,10 +4,8 @@ use crate::ground::GroundError;
 use crate::resources::ResourceError;
 use fmi_unit::Failure;
 use rocking::engine::AdvanceError;
-use rocking::mechanics::state::InitialStateError;
 use rocking::run::record::SamplesError;
-use rocking::structure::parameters::ParameterError;
-use rocking::structure::quantity::OutOfRange;
+use rocking::{OutOfRange, Refused};
 
 /// Why something is refused.
 #[derive(Debug, thiserror::Error)]
@@ -33,12 +31,9 @@ pub enum Refusal {
     /// The input runs out of its range.
     #[error("at the end of the step, {0}")]
     InputRunsOut(Failure),
-    /// Parameters that contradict each other.
+    /// Parameters or initial values that contradict each other.
     #[error(transparent)]
-    Parameters(#[from] ParameterError),
-    /// Initial values that contradict each other.
-    #[error(transparent)]
-    InitialState(#[from] InitialStateError),
+    Numbers(#[from] Refused),
     /// The equations of motion are singular here, and with them the reactions.
     #[error(
         "{name} does not exist at t = {time} s: the top mass is above the pivot of a foundation without inertia (m0, J0 too \

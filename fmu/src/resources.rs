@@ -2,7 +2,7 @@
 //! the list of the records that were packed.
 
 use rocking::structure::quantity::Units;
-use rocking::{Body, Floor, Ground, Mode, Modes, Parameters, Structure, StructureError};
+use rocking::{Body, Floor, Ground, Mode, Modes, Parameters, Refused, Structure};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -51,7 +51,7 @@ pub enum ContentsError {
     NoNumbers,
     /// Numbers that make no structure.
     #[error(transparent)]
-    NoStructure(#[from] StructureError),
+    NoStructure(#[from] Refused),
 }
 
 /// A record of an archive.
@@ -83,7 +83,7 @@ impl Contents {
             return Err(ContentsError::NoNumbers);
         };
         let structure = match numbers {
-            Numbers::OneMass(parameters) => Structure::new(parameters).map_err(StructureError::from)?,
+            Numbers::OneMass(parameters) => Structure::new(parameters)?,
             Numbers::ManyMasses(units, body, modes, floors, ground) => {
                 let floor =
                     |(mass, height, shape): (f64, f64, Vec<f64>)| Floor { mass, height, shape: Modes::new(&shape) };

@@ -1,9 +1,9 @@
 //! The pushover: lateral force and moment against displacement (Fig 1).
 
 use crate::quantities::in_readable_unit;
-use rocking::Phase;
 use rocking::digits::significant;
-use rocking::estimates::pushover::{Equilibrium, Pushover, PushoverError};
+use rocking::estimates::pushover::{Equilibrium, Pushover, too_soft};
+use rocking::{Phase, Refused};
 use serde::Serialize;
 
 /// Headings of the curve.
@@ -20,15 +20,15 @@ pub struct Corner {
 }
 
 /// The corners of the curve, in its order. Refuses a structure that is too soft.
-pub fn corners(pushed: &Pushover) -> Result<[Corner; 3], PushoverError> {
+pub fn corners(pushed: &Pushover) -> Result<[Corner; 3], Refused> {
     let corner = |(name, corner)| {
         let Equilibrium { theta, delta_t, force: P, moment: M, .. } = corner;
         Corner { name, delta_t, theta, P, M }
     };
     let corners = [
         ("uplift", pushed.at_uplift()),
-        ("start of rocking", pushed.at_rotation(0.0).ok_or(PushoverError::TooSoft)?),
-        ("overturning", pushed.at_overturning().ok_or(PushoverError::TooSoft)?),
+        ("start of rocking", pushed.at_rotation(0.0).ok_or_else(too_soft)?),
+        ("overturning", pushed.at_overturning().ok_or_else(too_soft)?),
     ];
     Ok(corners.map(corner))
 }

@@ -13,38 +13,21 @@
 //!
 //! The equations are for a structure that its weight alone turns back. A structure with a tendon or dissipators is an error.
 
-use crate::structure::quantity::{OutOfRange, Quantity};
+use crate::structure::quantity::{Quantity, Refused, ensure};
 use crate::{OneMass, Ties};
 
 /// The amplification C of an instant transition, and its largest value.
 pub const INSTANT_TRANSITION: f64 = 2.0;
 
-/// Why there is no estimate.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum DemandError {
-    /// The amplification is out of range.
-    #[error(transparent)]
-    OutOfRange(#[from] OutOfRange),
-    /// More than the weight turns the structure back.
-    #[error(transparent)]
-    Restrained(#[from] Restrained),
-}
-
-/// An estimate for a structure with a tendon or dissipators, which the equations do not include.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "Eqs 10 to 24 hold only without tendon and dissipators, but P_0 = {:?} N, k_t = {:?} N/m, c_d = {:?} N.s/m, \
-     k_d = {:?} N/m: simulate the motion instead",
-    .0.P_0, .0.k_t, .0.c_d, .0.k_d
-)]
-pub struct Restrained(pub Ties);
-
-impl Restrained {
-    /// Refuses a `structure` with a tendon or dissipators.
-    pub(crate) fn check(structure: &OneMass) -> Result<(), Restrained> {
-        let base = structure.base();
-        if base.is_restrained() { Err(Restrained(base.ties)) } else { Ok(()) }
-    }
+/// Refuses a `structure` with a tendon or dissipators, which the equations do not include.
+pub(crate) fn check_is_free(structure: &OneMass) -> Result<(), Refused> {
+    let Ties { P_0, k_t, c_d, k_d, .. } = structure.base().ties;
+    ensure(!structure.base().is_restrained(), || {
+        format!(
+            "Eqs 10 to 24 hold only without tendon and dissipators, but P_0 = {P_0:?} N, k_t = {k_t:?} N/m, c_d = {c_d:?} N.s/m, \
+             k_d = {k_d:?} N/m: simulate the motion instead"
+        )
+    })
 }
 
 /// The demands on a rocking structure, term by term.
@@ -68,10 +51,10 @@ pub struct Demand {
 
 impl Demand {
     /// The demand from the spectral acceleration `S_a` = S_a(T_u, ζ_u) (m/s²) and the amplification `C`, 0 to 2.
-    pub fn new(structure: &OneMass, S_a: f64, C: f64) -> Result<Demand, DemandError> {
+    pub fn new(structure: &OneMass, S_a: f64, C: f64) -> Result<Demand, Refused> {
         let description = "dynamic amplification at a transition between rocking phases; 2 for an instant one";
         Quantity::limit("C", "1", [0.0, INSTANT_TRANSITION], description).check(C)?;
-        Restrained::check(structure)?;
+        check_is_free(structure)?;
         let &crate::Parameters { m, H, g, .. } = structure.parameters();
         let ground = structure.one_minus_chi * S_a;
         let rocking = structure.chi * g * structure.tan_alpha_cg;

@@ -9,12 +9,12 @@
 //! f_r falls from ∞ at θ_i → 0 to 0 at θ_i = tan α_cg, the unstable equilibrium, from which the structure never comes
 //! down. A real structure does not exceed f_fc: rocking that small is vibration in full contact.
 
-use crate::OneMass;
-use crate::estimates::demand::Restrained;
+use crate::estimates::demand::check_is_free;
+use crate::{OneMass, Refused};
 
 /// Time from release at rest at the rotation `theta` (rad) to impact, s; ∞ from tan α_cg on.
-pub fn time_to_impact(structure: &OneMass, theta: f64) -> Result<f64, Restrained> {
-    Restrained::check(structure)?;
+pub fn time_to_impact(structure: &OneMass, theta: f64) -> Result<f64, Refused> {
+    check_is_free(structure)?;
     let part = theta.abs() / structure.tan_alpha_cg;
     if part >= 1.0 {
         return Ok(f64::INFINITY);
@@ -24,7 +24,7 @@ pub fn time_to_impact(structure: &OneMass, theta: f64) -> Result<f64, Restrained
 }
 
 /// Effective rocking frequency f_r of the amplitude `theta` (rad), Hz (Eq 14), of a structure without ties.
-pub fn effective_frequency(structure: &OneMass, theta: f64) -> Result<f64, Restrained> {
+pub fn effective_frequency(structure: &OneMass, theta: f64) -> Result<f64, Refused> {
     Ok(0.25 / time_to_impact(structure, theta)?)
 }
 

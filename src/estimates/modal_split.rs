@@ -20,8 +20,8 @@
 //! The paper's (13) and (20) are these with q_r → 0. The sum χ g q_r − (c_u u̇ + k u)/m does not depend on a_g. It differs from a_t
 //! of the full equations by g (θ − χ q_r) to first order.
 
-use crate::estimates::demand::Restrained;
-use crate::{OneMass, Side, State};
+use crate::estimates::demand::check_is_free;
+use crate::{OneMass, Refused, Side, State};
 
 /// The rotation of the base, split into the two modes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,8 +34,8 @@ pub struct Modes {
 
 impl Modes {
     /// Splits the rotation of `state` (Eq 16) of a structure without ties.
-    pub fn of(structure: &OneMass, state: &State) -> Result<Modes, Restrained> {
-        Restrained::check(structure)?;
+    pub fn of(structure: &OneMass, state: &State) -> Result<Modes, Refused> {
+        check_is_free(structure)?;
         let q_u = -structure.p_l * structure.p_l / structure.parameters().g * state.u;
         Ok(Modes { q_r: state.theta - q_u, q_u })
     }
@@ -52,7 +52,7 @@ pub struct ModalAccelerations {
 
 impl ModalAccelerations {
     /// The modes' accelerations while rocking about `side` under the ground acceleration `a_g` (m/s²).
-    pub fn of(structure: &OneMass, side: Side, state: &State, a_g: f64) -> Result<ModalAccelerations, Restrained> {
+    pub fn of(structure: &OneMass, side: Side, state: &State, a_g: f64) -> Result<ModalAccelerations, Refused> {
         let &OneMass { chi, one_minus_chi, omega_u, zeta_u, tan_alpha_cg, .. } = structure;
         let g = structure.parameters().g;
         let step = side.sign() * g * tan_alpha_cg;

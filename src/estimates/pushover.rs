@@ -25,6 +25,7 @@ use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
 use crate::numbers::Angle;
 use crate::run::fall::angle_of_no_return;
 use crate::series::bisection::last_where;
+use crate::structure::quantity::{Refused, ensure};
 use crate::{Base, Mode, Phase, Side, Structure};
 use std::f64::consts::FRAC_PI_2;
 
@@ -48,25 +49,10 @@ pub struct Equilibrium {
 /// Most points on each branch of a curve.
 pub const MOST_POINTS: u32 = 1_000_000;
 
-/// Why there is no pushover.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum PushoverError {
-    /// Another number of points than a curve has.
-    #[error("points = {0} is out of range: 2 to {MOST_POINTS} on each branch are possible")]
-    BadPoints(u32),
-    /// The ground gives.
-    #[error(
-        "the pushover is of a base that turns about an edge on rigid ground (Fig 1): leave ground out, or simulate a slow force"
-    )]
-    OnGround,
-    /// Modes alone.
-    #[error("the structure has no floors that take the force: give masses, heights and shapes")]
-    NoFloors,
-    /// The structure gives way before it overturns.
-    #[error(
-        "the structure is too soft to be held all the way to overturning: raise f_fc or its stiffnesses, or lower m0"
-    )]
-    TooSoft,
+/// The refusal of a structure that gives way before it overturns.
+pub fn too_soft() -> Refused {
+    let remedy = "raise f_fc or its stiffnesses, or lower m0";
+    Refused(format!("the structure is too soft to be held all the way to overturning: {remedy}"))
 }
 
 /// A structure under a horizontal force on its floors.
@@ -88,12 +74,14 @@ pub struct Pushover {
 
 impl Pushover {
     /// The pushover of `structure` on rigid ground, which must have floors.
-    pub fn new(structure: &Structure) -> Result<Pushover, PushoverError> {
-        if structure.foundation().is_some() {
-            return Err(PushoverError::OnGround);
-        }
-        let floors = structure.floors();
-        let top = floors.last().ok_or(PushoverError::NoFloors)?;
+    pub fn new(structure: &Structure) -> Result<Pushover, Refused> {
+        ensure(structure.foundation().is_none(), || {
+            "the pushover is of a base that turns about an edge on rigid ground (Fig 1): leave ground out, or simulate a slow force"
+                .into()
+        })?;
+        let (floors, needed) = (structure.floors(), "the structure has no floors that take the force");
+        let refused = || Refused(format!("{needed}: give masses, heights and shapes"));
+        let top = floors.last().ok_or_else(refused)?;
         let whole: f64 = floors.iter().map(|floor| floor.mass * floor.height).sum();
         let mean = |of: &dyn Fn(usize) -> f64| {
             let parts = floors.iter().enumerate().map(|(i, floor)| floor.mass * floor.height / whole * of(i));
@@ -120,18 +108,18 @@ impl Pushover {
 
     /// The curve from rest to overturning, to the right: `points` evenly over the displacements in full contact, then as many
     /// while rocking.
-    pub fn curve(&self, points: u32) -> Result<Vec<Equilibrium>, PushoverError> {
-        if !(2..=MOST_POINTS).contains(&points) {
-            return Err(PushoverError::BadPoints(points));
-        }
-        let end = self.at_overturning().ok_or(PushoverError::TooSoft)?.delta_t;
+    pub fn curve(&self, points: u32) -> Result<Vec<Equilibrium>, Refused> {
+        ensure((2..=MOST_POINTS).contains(&points), || {
+            format!("points = {points} is out of range: 2 to {MOST_POINTS} on each branch are possible")
+        })?;
+        let end = self.at_overturning().ok_or_else(too_soft)?.delta_t;
         let lifts = self.at_uplift().u;
         let evenly = |from: f64, to: f64| {
             let part = move |i| f64::from(i) / f64::from(points - 1);
             (0..points).map(move |i| if i == points - 1 { to } else { from + (to - from) * part(i) })
         };
         let displacements = evenly(0.0, lifts).chain(evenly(lifts.next_up(), end));
-        displacements.map(|delta_t| self.at_displacement(delta_t).ok_or(PushoverError::TooSoft)).collect()
+        displacements.map(|delta_t| self.at_displacement(delta_t).ok_or_else(too_soft)).collect()
     }
 
     /// Full contact, about to lift off to the right.
@@ -311,6 +299,6 @@ mod tests {
         assert_relative_eq!(lifts.force * w.dot(&h), (weight + P_0) * B, max_relative = 1e-12);
         assert_relative_eq!(lifts.u, (stiffness.try_inverse().unwrap() * w * lifts.force)[2], max_relative = 1e-10);
         let bare = Structure::of_body(*structure.body(), structure.modes(), &[]).unwrap();
-        assert_eq!(Pushover::new(&bare).unwrap_err(), PushoverError::NoFloors);
+        assert!(Pushover::new(&bare).unwrap_err().0.starts_with("the structure has no floors"));
     }
 }

@@ -16,10 +16,10 @@
 use crate::engine::piece::{Sample, Watch};
 use crate::levels::oscillator::Oscillator;
 use crate::run::ground_motion::Segment;
-use crate::run::record::{Record, SamplesError};
+use crate::run::record::Record;
 use crate::run::{End, Run, RunError, Runs};
 use crate::series::bisection::last_where;
-use crate::structure::quantity::{OutOfRange, Quantity};
+use crate::structure::quantity::{Quantity, Refused};
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::{PI, TAU};
 
@@ -33,25 +33,6 @@ const SAME: f64 = 1e-3;
 /// The most samples of a floor spectrum.
 const MOST_SAMPLES: usize = 1 << 22;
 
-/// The reason why there is no spectrum of a floor.
-#[derive(Debug, thiserror::Error)]
-pub enum FloorSpectrumError {
-    /// A period or the damping ratio is out of range.
-    #[error(transparent)]
-    OutOfRange(#[from] OutOfRange),
-    /// The run cannot be followed.
-    #[error(transparent)]
-    Run(#[from] RunError),
-    /// The acceleration is no finite number.
-    #[error(transparent)]
-    Record(#[from] SamplesError),
-    /// The values do not settle.
-    #[error(
-        "the spectrum still changes at {MOST_SAMPLES} samples of the floor: give the run a shorter duration, or raise zeta"
-    )]
-    TooFine,
-}
-
 /// The spectrum of an `acceleration` on the structure of `run`, from the start of the run until `end` (s), as [`spectrum`] of a record.
 ///
 /// The acceleration is sampled and linear between samples. The step is at first the mean step of the ground motion. It is halved until
@@ -63,7 +44,7 @@ pub fn floor_spectrum<Q: Runs>(
     periods: &[f64],
     zeta: f64,
     watch: &mut dyn Watch<Q>,
-) -> Result<Vec<f64>, FloorSpectrumError> {
+) -> Result<Vec<f64>, RunError> {
     let (start, ground) = (run.ground.start(), run.ground);
     let run = Run { end: End::At(end), ..run.clone() };
     let mut of = |count: usize| {
@@ -74,8 +55,8 @@ pub fn floor_spectrum<Q: Runs>(
         };
         let instants = (0..count).map(|i| start + (end - start) * (i as f64 / count as f64));
         run.sample(instants, show, watch)?;
-        let record = Record::from_samples("", times, samples)?;
-        Ok::<_, FloorSpectrumError>(spectrum(&record, periods.iter().copied(), zeta)?)
+        let record = Record::from_samples("", times, samples).map_err(Refused::by)?;
+        Ok::<_, RunError>(spectrum(&record, periods.iter().copied(), zeta)?)
     };
     let step = (ground.end() - start) / (ground.times().len() - 1) as f64;
     let mut count = ((end - start) / step).ceil().min(MOST_SAMPLES as f64 / 4.0) as usize;
@@ -88,13 +69,14 @@ pub fn floor_spectrum<Q: Runs>(
         }
         before = now;
     }
-    Err(FloorSpectrumError::TooFine)
+    let remedy = "give the run a shorter duration, or raise zeta";
+    Err(Refused(format!("the spectrum still changes at {MOST_SAMPLES} samples of the floor: {remedy}")).into())
 }
 
 /// The spectrum of `record`: S_a at each of `periods` (s) and the damping ratio `zeta`, m/s².
-pub fn spectrum(record: &Record, periods: impl IntoIterator<Item = f64>, zeta: f64) -> Result<Vec<f64>, OutOfRange> {
+pub fn spectrum(record: &Record, periods: impl IntoIterator<Item = f64>, zeta: f64) -> Result<Vec<f64>, Refused> {
     ZETA.check(zeta)?;
-    let at = |T| PERIOD.check(T).map(|()| spectral_acceleration(record, T, zeta));
+    let at = |T| Ok(PERIOD.check(T).map(|()| spectral_acceleration(record, T, zeta))?);
     periods.into_iter().map(at).collect()
 }
 

@@ -22,9 +22,9 @@ use crate::levels::modes::ManyModes;
 use crate::levels::nonlinear::NonlinearRocking;
 use crate::levels::on_ground::OnGround;
 use crate::mechanics::restraint::Angles;
-use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift::least_hold;
 use crate::series::taylor::{Arc, Start};
+use crate::structure::quantity::{Refused, ensure};
 use crate::{Modes, OneMass, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 use wide::f64x4;
@@ -86,7 +86,7 @@ impl Detail {
         structure: Structure,
         local_error: f64,
         is_vertical: bool,
-    ) -> Result<Box<dyn Level>, InitialStateError> {
+    ) -> Result<Box<dyn Level>, Refused> {
         let one = *structure.of_mode()?;
         let is_tied = structure.base().is_restrained() || is_vertical;
         let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
@@ -98,7 +98,13 @@ impl Detail {
                 Box::new(Elastic { subject, one, contact, rocking })
             }
             Detail::Linear if is_tied => Box::new(ManyModes::<f64>::new(subject, self)),
-            Detail::Modal if is_tied => return Err(InitialStateError::RestrainedModal),
+            Detail::Modal if is_tied => {
+                return Err(Refused(
+                    "detail = modal has no modes of a structure that is restrained or shaken vertically, whose equations change with \
+                     time and with what yields: choose linear, or set P_0, k_t, c_d, k_d and a_v to 0"
+                        .into(),
+                ));
+            }
             Detail::Linear | Detail::Modal => {
                 let rocking =
                     if self == Detail::Linear { LinearRocking::new(&one) } else { LinearRocking::modal(&one) };
@@ -118,12 +124,20 @@ impl Detail {
         structure: Structure,
         local_error: f64,
         is_vertical: bool,
-    ) -> Result<Box<dyn Level<Modes>>, InitialStateError> {
+    ) -> Result<Box<dyn Level<Modes>>, Refused> {
+        ensure(structure.foundation().is_none() || !matches!(self, Detail::Modal | Detail::Linear), || {
+            let name = self.name();
+            format!(
+                "detail = {name} has no ground that gives: choose auto, nonlinear, rigid or fixed_base, or leave [ground] out"
+            )
+        })?;
+        ensure(self != Detail::Modal, || {
+            let name = self.name();
+            format!(
+                "detail = {name} moves structures of one mass alone: choose auto, nonlinear, linear, rigid or fixed_base"
+            )
+        })?;
         let structure = match self {
-            Detail::Modal if structure.foundation().is_some() => {
-                return Err(InitialStateError::OnGround(self.name()));
-            }
-            Detail::Modal => return Err(InitialStateError::OneMass(self.name())),
             Detail::Rigid => structure.with_lowest(0),
             _ => structure.at(self),
         };
@@ -131,7 +145,6 @@ impl Detail {
         let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
         match self {
             _ if subject.structure.foundation().is_none() => Ok(Box::new(ManyModes::<Modes>::new(subject, self))),
-            Detail::Linear => Err(InitialStateError::OnGround(self.name())),
             _ if subject.structure.modes().len() <= 1 => Ok(Box::new(OnGround::<f64>::new(subject))),
             _ => Ok(Box::new(OnGround::<f64x4>::new(subject))),
         }

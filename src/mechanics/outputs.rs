@@ -10,7 +10,7 @@
 //! ([`Gauge`]).
 //!
 //! A formula reads the motion in numbers of any kind: at an instant, as bounds, or as series in time over a polynomial of the
-//! motion. To add an output, write its name in [`Output`], its row in `told`, its place among the outputs and its formula. All
+//! motion. To add an output, write its row in `outputs!`, its place among the outputs and its formula. All
 //! columns, peaks and pictures follow.
 
 use crate::mechanics::gauge::Gauge;
@@ -21,64 +21,58 @@ use crate::numbers::Number;
 use crate::{Base, Foundation, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 
-/// An output of a structure. Floors and storeys count from 0, from below; storey i is below floor i.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[allow(non_camel_case_types)] // the names of the outputs
-pub enum Output {
-    /// Rotation of the base θ, rad.
-    theta,
-    /// Angular velocity θ̇, rad/s.
-    theta_dot,
-    /// Uplift of the free edge of the base δ_u = 2 B sin|θ|, m (Eq 25).
-    uplift,
-    /// Base shear V_t, N (Eqs 2, 23).
-    V_t,
-    /// Overturning moment M_t, N·m (Eqs 3, 24).
-    M_t,
-    /// Elastic displacement of a floor u_i, m.
-    u(usize),
-    /// Elastic velocity of a floor u̇_i, m/s.
-    u_dot(usize),
-    /// Drift of a storey u_i − u_{i−1}, m.
-    drift(usize),
-    /// Drift of a storey over its height, 1.
-    drift_ratio(usize),
-    /// Displacement of a floor relative to the ground δ_i = sB (1 − cos θ) + u_i cos θ + h_i sin θ, m (Eq 26).
-    delta_t(usize),
-    /// Velocity of a floor relative to the ground, the rate of δ_i: u̇_i cos θ + [(sB − u_i) sin θ + h_i cos θ] θ̇, m/s.
-    v_t(usize),
-    /// Acceleration of a floor along the turning e_x a_i, m/s² (Eq 27).
-    a_t(usize),
-    /// Shear of a storey V_i, N.
-    V(usize),
-    /// Overturning moment at the foot of a storey M_i, N·m.
-    M(usize),
-    /// On ground that gives: height of the middle of the base above the unloaded ground, m.
-    y,
-    /// Settlement of the lower one of the outer contact points −min(e), m.
-    settlement,
-    /// Stiffness of the pressed points over the stiffness of all, 1.
-    contact,
-    /// Energy that the ground has taken, J.
-    E_foundation,
-    /// Force of the left outer contact point, N.
-    N_left,
-    /// Force of the right outer contact point, N.
-    N_right,
-    /// Largest force of a contact point over the width that it stands for, N/m.
-    pressure,
-    /// Force of a contact point, N.
-    N(usize),
-    /// Settlement of the left (0) or the right (1) outer point, or 0 above the unloaded ground, m.
-    settled(usize),
-    /// Force of the tendon, N.
-    P_t,
-    /// Force of the dissipators at +ξ_d, N; a [`Sample`](crate::engine::piece::Sample) has it.
-    F_d1,
-    /// Force of the dissipators at −ξ_d, N.
-    F_d2,
-    /// Height of the left (0) or the right (1) edge above the unloaded ground, or 0 below, m.
-    lifted(usize),
+/// Declares [`Output`] by its rows: name, unit, description, where `#` stands for the number of a floor, and what the documentation adds.
+macro_rules! outputs {
+    ($($name:ident $(($i:ident: $number:ty))? [$unit:literal] $description:literal $($more:literal)?;)*) => {
+        /// An output of a structure. Floors and storeys count from 0, from below; storey i is below floor i.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+        #[allow(non_camel_case_types)] // the names of the outputs
+        pub enum Output {
+            $(
+                #[doc = concat!("The ", $description, $(", ", $more,)? ", ", $unit, ".")]
+                $name $(($number))?,
+            )*
+        }
+
+        impl Output {
+            /// The name, unit and description, and the floor if the output is of a floor, which takes the place of `#`.
+            const fn told(self) -> (&'static str, &'static str, &'static str, Option<usize>) {
+                match self {
+                    $(Output::$name $(($i))? => (stringify!($name), $unit, $description, [$(Some($i),)? None][0]),)*
+                }
+            }
+        }
+    };
+}
+
+outputs! {
+    theta ["rad"] "rotation of the base" "θ";
+    theta_dot ["rad/s"] "angular velocity of the base" "θ̇";
+    uplift ["m"] "uplift of the free edge of the base" "δ_u = 2 B sin|θ| (Eq 25)";
+    V_t ["N"] "base shear if all F_t are 0: the sum of m a_t" "V_t (Eqs 2, 23)";
+    M_t ["N.m"] "overturning moment if all F_t are 0: the sum of m h a_t" "M_t (Eqs 3, 24)";
+    u(i: usize) ["m"] "elastic displacement of floor #" "u_i";
+    u_dot(i: usize) ["m/s"] "elastic velocity of floor #" "u̇_i";
+    drift(i: usize) ["m"] "drift of storey #" "u_i − u_{i−1}";
+    drift_ratio(i: usize) ["1"] "drift of storey # over its height";
+    delta_t(i: usize) ["m"] "displacement of floor # relative to the ground" "δ_i = sB (1 − cos θ) + u_i cos θ + h_i sin θ (Eq 26)";
+    v_t(i: usize) ["m/s"] "velocity of floor # relative to the ground" "u̇_i cos θ + [(sB − u_i) sin θ + h_i cos θ] θ̇";
+    a_t(i: usize) ["m/s2"] "lateral acceleration of floor #" "along the turning e_x a_i (Eq 27)";
+    V(i: usize) ["N"] "shear of storey # if all F_t are 0: the sum of m a_t above it" "V_i";
+    M(i: usize) ["N.m"] "overturning moment at the foot of storey # if all F_t are 0" "M_i";
+    y ["m"] "height of the middle of the base above the unloaded ground" "on ground that gives as all that follow but the forces of ties";
+    settlement ["m"] "settlement of the lower outer contact point" "−min(e)";
+    contact ["1"] "stiffness of the pressed contact points over the stiffness of all";
+    E_foundation ["J"] "energy that the ground has taken";
+    N_left ["N"] "force of the left outer contact point";
+    N_right ["N"] "force of the right outer contact point";
+    pressure ["N/m"] "largest force of a contact point over the width that it stands for";
+    N(i: usize) ["N"] "force of contact point # from the left";
+    settled(i: usize) ["m"] "settlement of outer contact point #" "left (0) or right (1), or 0 above the unloaded ground";
+    P_t ["N"] "force of the tendon";
+    F_d1 ["N"] "force of the dissipators at +xi_d" "which a [`Sample`](crate::engine::piece::Sample) has";
+    F_d2 ["N"] "force of the dissipators at -xi_d" "which a sample has";
+    lifted(i: usize) ["m"] "height of edge # above the unloaded ground" "left (0) or right (1), or 0 below";
 }
 
 use Output::{E_foundation, M, M_t, N, N_left, N_right, V, V_t, a_t, contact, delta_t, drift, drift_ratio, lifted};
@@ -136,39 +130,6 @@ impl Output {
                 .into_iter()
                 .filter(|of| !matches!(of, theta_dot | u_dot(_) | v_t(_) | y | contact | E_foundation))
                 .collect(),
-        }
-    }
-
-    /// The name, unit and description, and the floor if the output is of a floor, which takes the place of `#`.
-    const fn told(self) -> (&'static str, &'static str, &'static str, Option<usize>) {
-        match self {
-            theta => ("theta", "rad", "rotation of the base", None),
-            theta_dot => ("theta_dot", "rad/s", "angular velocity of the base", None),
-            Output::uplift => ("uplift", "m", "uplift of the free edge of the base", None),
-            V_t => ("V_t", "N", "base shear if all F_t are 0: the sum of m a_t", None),
-            M_t => ("M_t", "N.m", "overturning moment if all F_t are 0: the sum of m h a_t", None),
-            u(i) => ("u", "m", "elastic displacement of floor #", Some(i)),
-            u_dot(i) => ("u_dot", "m/s", "elastic velocity of floor #", Some(i)),
-            drift(i) => ("drift", "m", "drift of storey #", Some(i)),
-            drift_ratio(i) => ("drift_ratio", "1", "drift of storey # over its height", Some(i)),
-            delta_t(i) => ("delta_t", "m", "displacement of floor # relative to the ground", Some(i)),
-            v_t(i) => ("v_t", "m/s", "velocity of floor # relative to the ground", Some(i)),
-            a_t(i) => ("a_t", "m/s2", "lateral acceleration of floor #", Some(i)),
-            V(i) => ("V", "N", "shear of storey # if all F_t are 0: the sum of m a_t above it", Some(i)),
-            M(i) => ("M", "N.m", "overturning moment at the foot of storey # if all F_t are 0", Some(i)),
-            y => ("y", "m", "height of the middle of the base above the unloaded ground", None),
-            settlement => ("settlement", "m", "settlement of the lower outer contact point", None),
-            contact => ("contact", "1", "stiffness of the pressed contact points over the stiffness of all", None),
-            E_foundation => ("E_foundation", "J", "energy that the ground has taken", None),
-            N_left => ("N_left", "N", "force of the left outer contact point", None),
-            N_right => ("N_right", "N", "force of the right outer contact point", None),
-            pressure => ("pressure", "N/m", "largest force of a contact point over the width that it stands for", None),
-            N(i) => ("N", "N", "force of contact point # from the left", Some(i)),
-            settled(i) => ("settled", "m", "settlement of outer contact point #", Some(i)),
-            P_t => ("P_t", "N", "force of the tendon", None),
-            F_d1 => ("F_d1", "N", "force of the dissipators at +xi_d", None),
-            F_d2 => ("F_d2", "N", "force of the dissipators at -xi_d", None),
-            lifted(i) => ("lifted", "m", "height of edge # above the unloaded ground", Some(i)),
         }
     }
 

@@ -1,10 +1,8 @@
 //! State and phase of the structure.
 
 use crate::Structure;
-use crate::digits::with_unit;
 use crate::mechanics::lateral::{Coordinates, Lateral};
-use crate::structure::NotOneMass;
-use crate::structure::quantity::{OutOfRange, Quantity, quantity};
+use crate::structure::quantity::{Quantity, Refused, ensure, quantity};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use std::slice::{from_mut, from_ref};
@@ -159,64 +157,6 @@ pub const INITIAL_VALUES: [Quantity<State>; 4] = [
     quantity!("u_dot_0", u_dot["m/s"] - 1e4, 1e4, "initial elastic velocity of the top mass"),
 ];
 
-/// Why an initial state is refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // the messages name the fields
-pub enum InitialStateError {
-    /// One value is outside its own range.
-    #[error(transparent)]
-    OutOfRange(#[from] OutOfRange),
-    /// The tolerance of the results is out of range.
-    #[error("tolerance = {} is out of range: it must be between 0 and 1, such as 1e-9", with_unit(*.0, "1"))]
-    Tolerance(f64),
-    /// The base turns although both pivots are down.
-    #[error(
-        "theta_dot_0 = {0:?} rad/s contradicts theta_0 = 0 (full contact, where theta and theta_dot are both 0): \
-         set theta_dot_0 to 0, or theta_0 to an angle with the sign of the pivot that the structure rocks about"
-    )]
-    TurningInFullContact(f64),
-    /// The base is turned although it is fixed.
-    #[error("theta_0 = {0:?} rad contradicts detail = fixed_base, where the base cannot turn: set theta_0 to 0")]
-    TurnedFixedBase(f64),
-    /// A restrained structure has no modes.
-    #[error(
-        "detail = modal has no modes of a structure that is restrained or shaken vertically, whose equations change with \
-         time and with what yields: choose linear, or set P_0, k_t, c_d, k_d and a_v to 0"
-    )]
-    RestrainedModal,
-    /// Displacements or velocities of another count than the floors.
-    #[error(
-        "{name} = {given:?} {unit}: the structure has {floors} floor{}, give a number for each from below, or 0 for all",
-        if *floors == 1 { "" } else { "s" }
-    )]
-    OtherFloors { name: &'static str, unit: &'static str, given: Vec<f64>, floors: usize },
-    /// Displacements or velocities that no modes of the structure have.
-    #[error(
-        "{name}[{floor}] = {given:?} {unit} is out of reach of the {modes} modes, which come as near as {nearest:?} {unit} \
-         there: give a sum of their shapes, or keep all modes"
-    )]
-    NoSuchShape { name: &'static str, unit: &'static str, floor: usize, given: f64, nearest: f64, modes: usize },
-    /// The structure has more than one mass.
-    #[error(transparent)]
-    NotOneMass(#[from] NotOneMass),
-    /// Structures of many masses have no such level.
-    #[error("detail = {0} moves structures of one mass alone: choose auto, nonlinear, linear, rigid or fixed_base")]
-    OneMass(&'static str),
-    /// The level has no equations on ground that gives.
-    #[error(
-        "detail = {0} has no ground that gives: choose auto, nonlinear, rigid or fixed_base, or leave [ground] out"
-    )]
-    OnGround(&'static str),
-    /// Coordinates of modes that the structure does not have.
-    #[error(
-        "the initial state has {given} coordinates, and {modes} modes move: give one coordinate for each, or 0 for all"
-    )]
-    Coordinates { given: usize, modes: usize },
-    /// The top mass is displaced although the strut is rigid.
-    #[error("u_0 = {u:?} m, u_dot_0 = {u_dot:?} m/s contradict detail = rigid, where u is always 0: set both to 0")]
-    DeformedRigid { u: f64, u_dot: f64 },
-}
-
 /// The most by which a quantity with this `rate` changes over `ahead` (s), whatever accelerates it.
 pub(crate) fn way(ahead: f64, rate: f64) -> f64 {
     ahead * (rate.abs() + 1.0)
@@ -234,7 +174,7 @@ impl State {
     }
 
     /// The phase that this state starts in: full contact for θ = 0, otherwise rocking about the side of θ's sign.
-    pub fn initial_phase(&self) -> Result<Phase, InitialStateError> {
+    pub fn initial_phase(&self) -> Result<Phase, Refused> {
         for quantity in &INITIAL_VALUES {
             quantity.check((quantity.get)(self))?;
         }
@@ -266,7 +206,7 @@ impl State<Vec<f64>> {
 
     /// The coordinates q of the modes of `structure` whose floors move as these do. The nearest, weighed by mass, solve
     /// (ΦᵀMΦ) q = ΦᵀM u; refused are floors that stay away from them by more than 1e-6 of the largest.
-    pub fn on<Q: Coordinates>(&self, structure: &Structure) -> Result<State<Q>, InitialStateError> {
+    pub fn on<Q: Coordinates>(&self, structure: &Structure) -> Result<State<Q>, Refused> {
         let &State { ref u, ref u_dot, theta, theta_dot } = self;
         let [of_u, of_rate] = [&INITIAL_VALUES[2], &INITIAL_VALUES[3]];
         Ok(State {
@@ -278,11 +218,7 @@ impl State<Vec<f64>> {
     }
 }
 
-fn coordinates<Q: Coordinates>(
-    structure: &Structure,
-    of: &Quantity<State>,
-    given: &[f64],
-) -> Result<Q, InitialStateError> {
+fn coordinates<Q: Coordinates>(structure: &Structure, of: &Quantity<State>, given: &[f64]) -> Result<Q, Refused> {
     let &Quantity { name, unit, .. } = of;
     given.iter().try_for_each(|number| of.check(*number))?;
     let largest = given.iter().fold(0.0, |most: f64, number| most.max(number.abs()));
@@ -290,9 +226,12 @@ fn coordinates<Q: Coordinates>(
     if largest == 0.0 {
         return Ok(Q::each(structure, |_, _| 0.0));
     }
-    if given.len() != floors.len() {
-        return Err(InitialStateError::OtherFloors { name, unit, given: given.into(), floors: floors.len() });
-    }
+    ensure(given.len() == floors.len(), || {
+        let (count, s) = (floors.len(), if floors.len() == 1 { "" } else { "s" });
+        format!(
+            "{name} = {given:?} {unit}: the structure has {count} floor{s}, give a number for each from below, or 0 for all"
+        )
+    })?;
     if structure.one().is_some() {
         return Ok(Q::each(structure, |_, _| given[0]));
     }
@@ -304,13 +243,17 @@ fn coordinates<Q: Coordinates>(
     let coordinates = solved.unwrap_or_else(|| DVector::zeros(modes));
     let found = Q::each(structure, |j, _| coordinates.get(j).copied().unwrap_or(0.0));
     let nearest = |i: usize| floors[i].displacement(&found);
-    match (0..floors.len()).find(|i| (nearest(*i) - given[*i]).abs() > 1e-6 * largest) {
-        None => Ok(found),
-        Some(i) => {
-            let (floor, given, nearest) = (i + 1, given[i], nearest(i));
-            Err(InitialStateError::NoSuchShape { name, unit, floor, given, nearest, modes })
-        }
+    for (i, given) in given.iter().enumerate() {
+        ensure((nearest(i) - given).abs() <= 1e-6 * largest, || {
+            format!(
+                "{name}[{}] = {given:?} {unit} is out of reach of the {modes} modes, which come as near as {:?} {unit} there: give a \
+                 sum of their shapes, or keep all modes",
+                i + 1,
+                nearest(i)
+            )
+        })?;
     }
+    Ok(found)
 }
 
 impl<Q: Coordinates> State<Q> {
@@ -327,13 +270,14 @@ impl<Q: Coordinates> State<Q> {
     }
 
     /// The phase by θ and θ̇.
-    pub(crate) fn phase(&self) -> Result<Phase, InitialStateError> {
-        if self.theta != 0.0 {
-            Ok(Phase::Rocking(Side::of(self.theta)))
-        } else if self.theta_dot == 0.0 {
-            Ok(Phase::FullContact)
-        } else {
-            Err(InitialStateError::TurningInFullContact(self.theta_dot))
-        }
+    pub(crate) fn phase(&self) -> Result<Phase, Refused> {
+        ensure(self.theta != 0.0 || self.theta_dot == 0.0, || {
+            format!(
+                "theta_dot_0 = {:?} rad/s contradicts theta_0 = 0 (full contact, where theta and theta_dot are both 0): set theta_dot_0 \
+                 to 0, or theta_0 to an angle with the sign of the pivot that the structure rocks about",
+                self.theta_dot
+            )
+        })?;
+        Ok(if self.theta == 0.0 { Phase::FullContact } else { Phase::Rocking(Side::of(self.theta)) })
     }
 }

@@ -36,6 +36,7 @@ use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
+use crate::structure::quantity::{Refused, ensure};
 use crate::{
     Base, Detail, Foundation, Impulse, Mode, Modes, Motion, OneMass, Output, Parameters, Phase, Ramp, Reactions, Side,
     Structure, Transition, TransitionKind,
@@ -91,28 +92,21 @@ impl Default for Limits {
     }
 }
 
-/// A limit that is no finite number of at least 0.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{name} = {value} is out of range: a finite number of at least 0 is needed")]
-pub struct LimitError {
-    name: &'static str,
-    value: f64,
-}
-
 impl Limits {
     /// Whether each of them is a limit.
     ///
     /// # Errors
     ///
     /// A limit that is not a finite number of at least 0.
-    pub fn check(&self) -> Result<(), LimitError> {
+    pub fn check(&self) -> Result<(), Refused> {
         let &Limits { tension, edge_load, friction, energy_gain } = self;
         let named =
             [("friction", friction), ("tension", tension), ("edge_load", edge_load), ("energy_gain", energy_gain)];
-        match named.into_iter().find(|(_, value)| !(*value >= 0.0 && value.is_finite())) {
-            Some((name, value)) => Err(LimitError { name, value }),
-            None => Ok(()),
-        }
+        named.into_iter().try_for_each(|(name, value)| {
+            ensure(value >= 0.0 && value.is_finite(), || {
+                format!("{name} = {value} is out of range: a finite number of at least 0 is needed")
+            })
+        })
     }
 }
 

@@ -9,13 +9,15 @@
 use crate::digits::{short, with_unit};
 use crate::mechanics::lateral::{MOST_MODES, Modes};
 use crate::structure::ground::Ground;
-use crate::structure::natural_quantities::{self, Given, GivenError};
-use crate::structure::parameters::{MAX_DAMPING, MAX_SLENDERNESS, ParameterError};
-use crate::structure::quantity::{OutOfRange, Quantity, Units};
-use crate::{Body, Floor, Mode, Parameters, Structure, StructureError, Ties};
+use crate::structure::natural_quantities::{self, Given};
+use crate::structure::parameters::{MAX_DAMPING, MAX_SLENDERNESS};
+use crate::structure::quantity::{Quantity, Refused, Units, ensure};
+use crate::structure::{check_count, of_number};
+use crate::{Body, Floor, Mode, Parameters, Structure, Ties};
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 use std::f64::consts::TAU;
+use std::fmt::Display;
 
 /// The floor at `h` (m) with the mass `m` (kg), on a storey of the stiffness `k` (N/m).
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
@@ -120,88 +122,6 @@ pub struct Described {
     pub keep: Option<i64>,
 }
 
-/// Why numbers make no structure of many masses.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // the messages have the names
-pub enum DescriptionError {
-    #[error("base: {0}")]
-    Base(#[from] GivenError),
-    #[error("base: {0}")]
-    Parameters(#[from] ParameterError),
-    #[error(transparent)]
-    Structure(#[from] StructureError),
-    #[error("{0}")]
-    InUnits(String),
-    #[error("keep = {count} is out of range: keep 1 to {modes} modes{}", if *count == 0 { ", or use detail = rigid" } else { "" })]
-    Keep { count: i64, modes: usize },
-    #[error("{0} floors are given: a structure has 1 to {MOST_FLOORS}")]
-    Floors(usize),
-    #[error("the centre of the mass above the base is {0:.1} B high: it must not exceed {MAX_SLENDERNESS} B; raise B")]
-    Slender(f64),
-    #[error("{0}")]
-    OutOfRange(#[from] OutOfRange),
-    #[error("{what} {number}: {cause}")]
-    At { what: &'static str, number: usize, cause: OutOfRange },
-    #[error("give the structure in one way: storeys (m, h, k), floors (m, h) with the matrix K, or modes; not {0}")]
-    Ways(&'static str),
-    #[error("{what} has {count} numbers and must have {needed}, one for each {of}")]
-    Length { what: String, count: usize, needed: usize, of: &'static str },
-    #[error(
-        "floor {number} is at h = {h} m and the floor below it at {below} m: h is the height above the base, from the lowest \
-         floor up"
-    )]
-    Order { number: usize, h: f64, below: f64 },
-    #[error("K[{row}][{column}] = {value} N/m and K[{column}][{row}] = {mirrored} N/m: K must be symmetric")]
-    NotSymmetric { row: usize, column: usize, value: f64, mirrored: f64 },
-    #[error(
-        "K is not positive definite: a mode has omega^2 = {omega_2:.3e} 1/s2, in which floor {floor} moves most; K must hold \
-         each floor to a base that cannot move"
-    )]
-    NotDefinite { omega_2: f64, floor: usize },
-    #[error("p_delta = true needs storeys: subtract the geometric stiffness from K, or give modes that contain it")]
-    PDelta,
-    #[error(
-        "storey {number}: k = {} does not exceed P/h = {}, at which the weight P above buckles the storey of height h: raise k, or \
-         leave p_delta out",
-        with_unit(*k, STOREY.unit),
-        with_unit(*least, STOREY.unit)
-    )]
-    Buckles { number: usize, k: f64, least: f64 },
-    #[error("mode {number} needs {one} or {other}, and not both")]
-    Either { number: usize, one: &'static str, other: &'static str },
-    #[error("I_2 (kg.m2) or J_P (kg.m2) is needed, and not both")]
-    EitherTotal,
-    #[error(
-        "modes need the total m_s (kg), S_1 (kg.m) and I_2 (kg.m2) of the mass above the base, or the floors that have it"
-    )]
-    NoTotal,
-    #[error("mode {number} has f = {} Hz and the mode before it {} Hz: give the lowest mode first", short(*f), short(*before))]
-    ModeOrder { number: usize, f: f64, before: f64 },
-    #[error(
-        "S_1 = {S_1} kg.m does not fit m_s and I_2: the mass that the modes leave over would have the first moment \
-         {rest:.3e} kg.m, beyond {limit:.3e} kg.m; check the units of h and the sum of m h"
-    )]
-    Moment { S_1: f64, rest: f64, limit: f64 },
-    #[error(
-        "the shape of mode {number} has the effective mass {found:.5e} kg with the masses of the floors, but mass = {given:.5e} \
-         kg: check the order of the floors and of the modes"
-    )]
-    Shape { number: usize, found: f64, given: f64 },
-    #[error(
-        "the shape of mode {number} has the effective height {found:.5} m with the floors, but the mode has {given:.5} m: check \
-         the order of the floors in the shape"
-    )]
-    ShapeHeight { number: usize, found: f64, given: f64 },
-    #[error(
-        "the modes carry {part:.2} % of m_s = {} kg above the foundation, and {least} % are needed: check the units of the \
-         masses, and that the modes vibrate along the record",
-        short(*m_s),
-        part = 1e2 * of_modes / m_s,
-        least = 1e2 * LEAST_SHARE
-    )]
-    Little { of_modes: f64, m_s: f64 },
-}
-
 const FLOOR_MASS: Quantity<f64> = Quantity::limit("m", "kg", [1e-6, 1e12], "mass of the floor");
 const FLOOR_HEIGHT: Quantity<f64> = Quantity::limit("h", "m", [1e-3, 1e4], "height of the floor above the base");
 const STOREY: Quantity<f64> = Quantity::limit("k", "N/m", [1e-6, 1e18], "stiffness of the storey below the floor");
@@ -242,10 +162,10 @@ fn moments(masses: impl Iterator<Item = (f64, f64)>) -> [f64; 3] {
 
 impl Described {
     /// The structure that is described. Messages name the numbers in their own units.
-    pub fn structure(self) -> Result<Structure, DescriptionError> {
+    pub fn structure(self) -> Result<Structure, Refused> {
         let units = self.units;
         let structure = self.in_si().structure_in_si();
-        Ok(structure.map_err(|error| DescriptionError::InUnits(units.message(error)))?.measured_in(units))
+        Ok(structure.map_err(|error| Refused(units.message(error)))?.measured_in(units))
     }
 
     fn in_si(mut self) -> Described {
@@ -270,25 +190,32 @@ impl Described {
         Described { base: self.base.measured_in(units), ground, ..self }
     }
 
-    fn structure_in_si(&self) -> Result<Structure, DescriptionError> {
+    fn structure_in_si(&self) -> Result<Structure, Refused> {
         let Described { base, zeta, storeys, p_delta, floors, K, modes, total, keep, ground, .. } = self;
         let whole = match [storeys.is_empty(), K.is_empty(), modes.is_empty()] {
             [false, true, true] if floors.is_empty() && total.is_none() => match p_delta {
                 true => Structure::from_storeys(base, zeta, &with_p_delta(base, storeys)?),
                 false => Structure::from_storeys(base, zeta, storeys),
             },
-            _ if *p_delta => Err(DescriptionError::PDelta),
+            _ if *p_delta => Err(Refused(
+                "p_delta = true needs storeys: subtract the geometric stiffness from K, or give modes that contain it"
+                    .into(),
+            )),
             [true, false, true] if total.is_none() => Structure::from_matrices(base, zeta, floors, K),
             [true, true, false] => Structure::from_modes(base, zeta, modes, *total, floors),
-            [true, true, true] => Err(DescriptionError::Ways("none of these")),
-            _ => Err(DescriptionError::Ways("more than one")),
+            ways => {
+                let given = if ways == [true; 3] { "none of these" } else { "more than one" };
+                let ways = "storeys (m, h, k), floors (m, h) with the matrix K, or modes";
+                Err(Refused(format!("give the structure in one way: {ways}; not {given}")))
+            }
         }?;
         let whole = whole.on(ground)?;
         let (Some(count), modes) = (*keep, whole.modes().len()) else { return Ok(whole) };
-        match usize::try_from(count) {
-            Ok(kept @ 1..) if kept <= modes => Ok(whole.keeping(kept)?),
-            _ => Err(DescriptionError::Keep { count, modes }),
-        }
+        ensure((1..=modes as i64).contains(&count), || {
+            let instead = if count == 0 { ", or use detail = rigid" } else { "" };
+            format!("keep = {count} is out of range: keep 1 to {modes} modes{instead}")
+        })?;
+        whole.keeping(count as usize)
     }
 }
 
@@ -300,33 +227,47 @@ impl Described {
 /// ```
 ///
 /// is linear in the drift, and P_i is the weight at rest. An error names a storey whose k does not exceed P_i/(h_i − h_{i−1}).
-pub fn with_p_delta(base: &Given, storeys: &[Storey]) -> Result<Vec<Storey>, DescriptionError> {
-    let (floors, g) = (checked_storeys(storeys)?, base.base()?.0.g);
-    let soften = |(i, &Storey { m, h, k })| {
+pub fn with_p_delta(base: &Given, storeys: &[Storey]) -> Result<Vec<Storey>, Refused> {
+    let (floors, g) = (checked_storeys(storeys)?, given_base(base)?.0.g);
+    let soften = |(i, &Storey { m, h, k }): (usize, &Storey)| {
         let [weight, ..] = moments(floors[i..].iter().map(|floor| (g * floor.m, 0.0)));
         let least = weight / (h - if i == 0 { 0.0 } else { floors[i - 1].h });
-        let buckles = DescriptionError::Buckles { number: i + 1, k, least };
-        if k > least { Ok(Storey { m, h, k: k - least }) } else { Err(buckles) }
+        ensure(k > least, || {
+            let [given, least] = [k, least].map(|k| with_unit(k, STOREY.unit));
+            format!(
+                "storey {}: k = {given} does not exceed P/h = {least}, at which the weight P above buckles the storey of height h: \
+                 raise k, or leave p_delta out",
+                i + 1
+            )
+        })?;
+        Ok(Storey { m, h, k: k - least })
     };
     storeys.iter().enumerate().map(soften).collect()
 }
 
 /// The floors of the `storeys`, whose numbers and order are checked.
-fn checked_storeys(storeys: &[Storey]) -> Result<Vec<Place>, DescriptionError> {
+fn checked_storeys(storeys: &[Storey]) -> Result<Vec<Place>, Refused> {
     for (number, storey) in (1..).zip(storeys) {
-        STOREY.check(storey.k).map_err(|cause| DescriptionError::At { what: "storey", number, cause })?;
+        STOREY.check(storey.k).map_err(|cause| of_number("storey", number, cause))?;
     }
     let floors: Vec<_> = storeys.iter().map(|&Storey { m, h, .. }| Place { m, h }).collect();
     check_floors(&floors, 1)?;
-    match (1..floors.len()).find(|&i| floors[i].h == floors[i - 1].h) {
-        Some(i) => Err(DescriptionError::Order { number: i + 1, h: floors[i].h, below: floors[i - 1].h }),
-        None => Ok(floors),
-    }
+    (1..floors.len()).try_for_each(|i| check_order(i + 1, floors[i].h, floors[i - 1].h, false))?;
+    Ok(floors)
+}
+
+/// Refuses floor `number` at the height `h` (m) below the one before at `below`, and unless `may_be_same` at its height.
+fn check_order(number: usize, h: f64, below: f64, may_be_same: bool) -> Result<(), Refused> {
+    ensure(h > below || may_be_same && h == below, || {
+        format!(
+            "floor {number} is at h = {h} m and the floor below it at {below} m: h is the height above the base, from the lowest floor up"
+        )
+    })
 }
 
 impl Structure {
     /// A shear building, whose storeys resist the drift between its floors.
-    pub fn from_storeys(base: &Given, damping: &Damping, storeys: &[Storey]) -> Result<Structure, DescriptionError> {
+    pub fn from_storeys(base: &Given, damping: &Damping, storeys: &[Storey]) -> Result<Structure, Refused> {
         let floors = checked_storeys(storeys)?;
         let mut K = vec![vec![0.0; storeys.len()]; storeys.len()];
         for (i, &Storey { k, .. }) in storeys.iter().enumerate() {
@@ -346,20 +287,21 @@ impl Structure {
         damping: &Damping,
         floors: &[Place],
         K: &[Vec<f64>],
-    ) -> Result<Structure, DescriptionError> {
+    ) -> Result<Structure, Refused> {
         check_floors(floors, 1)?;
         let n = floors.len();
         length("K", K.len(), n, "floor")?;
         for (i, row) in K.iter().enumerate() {
             length(&format!("K[{}]", i + 1), row.len(), n, "floor")?;
             let checked = row.iter().try_for_each(|entry| ENTRY.check(*entry));
-            checked.map_err(|cause| DescriptionError::At { what: "row", number: i + 1, cause })?;
+            checked.map_err(|cause| of_number("row", i + 1, cause))?;
         }
         for (i, j) in (0..n).flat_map(|i| (0..i).map(move |j| (i, j))) {
             let (value, mirrored) = (K[i][j], K[j][i]);
-            if (value - mirrored).abs() > ASYMMETRY * (K[i][i] * K[j][j]).abs().sqrt() {
-                return Err(DescriptionError::NotSymmetric { row: i + 1, column: j + 1, value, mirrored });
-            }
+            let (off, row, column) = ((value - mirrored).abs(), i + 1, j + 1);
+            ensure(off <= ASYMMETRY * (K[i][i] * K[j][j]).abs().sqrt(), || {
+                format!("K[{row}][{column}] = {value} N/m and K[{column}][{row}] = {mirrored} N/m: K must be symmetric")
+            })?;
         }
         let root = |i: usize| floors[i].m.sqrt();
         let eigen = DMatrix::from_fn(n, n, |i, j| 0.5 * (K[i][j] + K[j][i]) / (root(i) * root(j))).symmetric_eigen();
@@ -367,9 +309,13 @@ impl Structure {
         squares.sort_by(|a, b| a.1.total_cmp(&b.1));
         let shape = |column: usize| DVector::from_fn(n, |i, _| eigen.eigenvectors[(i, column)] / root(i));
         let (lowest, omega_2) = squares[0];
-        if omega_2 <= n as f64 * f64::EPSILON * squares[n - 1].1 {
-            return Err(DescriptionError::NotDefinite { omega_2, floor: shape(lowest).icamax() + 1 });
-        }
+        ensure(omega_2 > n as f64 * f64::EPSILON * squares[n - 1].1, || {
+            let floor = shape(lowest).icamax() + 1;
+            format!(
+                "K is not positive definite: a mode has omega^2 = {omega_2:.3e} 1/s2, in which floor {floor} moves most; K must hold \
+                 each floor to a base that cannot move"
+            )
+        })?;
         squares.truncate(MOST_MODES);
         let omegas: Vec<_> = squares.iter().map(|(_, square)| square.sqrt()).collect();
         let shapes: Vec<_> = squares.iter().map(|(column, _)| shape(*column)).collect();
@@ -389,26 +335,30 @@ impl Structure {
         modes_found: &[FoundMode],
         total: Option<Total>,
         floors: &[Place],
-    ) -> Result<Structure, DescriptionError> {
+    ) -> Result<Structure, Refused> {
         check_floors(floors, 0)?;
         let (mut omegas, mut participations) = (Vec::new(), Vec::new());
         for (number, found) in (1..).zip(modes_found) {
-            let at = |cause| DescriptionError::At { what: "mode", number, cause };
+            let at = |cause| of_number("mode", number, cause);
+            let either =
+                |one: &str, other: &str| Refused(format!("mode {number} needs {one} or {other}, and not both"));
             MASS.check(found.mass).map_err(at)?;
             let f = match (found.f, found.period) {
                 (Some(f), None) => Ok(f),
                 (None, Some(period)) => PERIOD.check(period).map(|()| period.recip()),
-                _ => return Err(DescriptionError::Either { number, one: "f (Hz)", other: "period (s)" }),
+                _ => return Err(either("f (Hz)", "period (s)")),
             };
             let height = match (found.height, found.moment) {
                 (Some(height), None) => HEIGHT.check(height).map(|()| height),
                 (None, Some(moment)) => MOMENT.check(moment).map(|()| moment / found.mass),
-                _ => return Err(DescriptionError::Either { number, one: "height (m)", other: "moment (kg.m)" }),
+                _ => return Err(either("height (m)", "moment (kg.m)")),
             };
             let (omega, root) = (TAU * f.map_err(at)?, found.mass.sqrt());
-            if let Some(before) = omegas.last().filter(|before| **before > omega) {
-                return Err(DescriptionError::ModeOrder { number, f: omega / TAU, before: before / TAU });
-            }
+            let before: f64 = omegas.last().copied().unwrap_or(0.0);
+            ensure(before <= omega, || {
+                let [f, before] = [omega, before].map(|omega| short(omega / TAU));
+                format!("mode {number} has f = {f} Hz and the mode before it {before} Hz: give the lowest mode first")
+            })?;
             let height = height.map_err(at)?;
             omegas.push(omega);
             participations.push((root, root * height));
@@ -416,9 +366,15 @@ impl Structure {
         let modes = modes(&omegas, damping, &participations)?;
         let body = body(base, whole(base, total, floors)?)?;
         let (of_modes, m_s) = (modes_found.iter().map(|mode| mode.mass).sum::<f64>(), body.m_s);
-        if of_modes < LEAST_SHARE * m_s {
-            return Err(DescriptionError::Little { of_modes, m_s });
-        }
+        ensure(of_modes >= LEAST_SHARE * m_s, || {
+            format!(
+                "the modes carry {:.2} % of m_s = {} kg above the foundation, and {} % are needed: check the units of the masses, and \
+                 that the modes vibrate along the record",
+                1e2 * of_modes / m_s,
+                short(m_s),
+                1e2 * LEAST_SHARE
+            )
+        })?;
         let floors = if modes_found.iter().all(|mode| mode.shape.is_empty()) { &[] } else { floors };
         let heights = participations.iter().map(|(gamma, kappa)| kappa / gamma);
         let shapes = (1..).zip(modes_found.iter().zip(heights));
@@ -428,35 +384,49 @@ impl Structure {
         // no mass has a first moment beyond the root of the product of its mass and its second moment
         let [mass, rest, second] = frame.rest();
         let limit = (mass * second).max(0.0).sqrt() + ROUNDING * (body.m_s * body.I_2).sqrt();
-        if rest.abs() > limit {
-            return Err(DescriptionError::Moment { S_1: body.S_1, rest, limit });
-        }
+        ensure(rest.abs() <= limit, || {
+            format!(
+                "S_1 = {} kg.m does not fit m_s and I_2: the mass that the modes leave over would have the first moment {rest:.3e} kg.m, \
+                 beyond {limit:.3e} kg.m; check the units of h and the sum of m h",
+                body.S_1
+            )
+        })?;
         checked(frame)
     }
 }
 
 /// The `frame` unless it is too slender.
-fn checked(frame: Structure) -> Result<Structure, DescriptionError> {
+fn checked(frame: Structure) -> Result<Structure, Refused> {
     let &Body { m_s, S_1, B, .. } = frame.body();
     let slenderness = S_1 / (m_s * B);
-    if slenderness > MAX_SLENDERNESS { Err(DescriptionError::Slender(slenderness)) } else { Ok(frame) }
+    ensure(slenderness <= MAX_SLENDERNESS, || {
+        format!(
+            "the centre of the mass above the base is {slenderness:.1} B high: it must not exceed {MAX_SLENDERNESS} B; raise B"
+        )
+    })?;
+    Ok(frame)
+}
+
+/// The checked numbers of a base.
+fn given_base(given: &Given) -> Result<(Parameters, Option<f64>), Refused> {
+    let of_base = |error: &dyn Display| Refused(format!("base: {error}"));
+    let (parameters, r) = given.base().map_err(|error| of_base(&error))?;
+    parameters.check().map_err(|error| of_base(&error))?;
+    Ok((parameters, r))
 }
 
 /// The base of `given` under mass of these moments m_s, S_1 and I_2.
-fn body(given: &Given, [m_s, S_1, I_2]: [f64; 3]) -> Result<Body, DescriptionError> {
-    let (parameters, r) = given.base()?;
-    parameters.check()?;
+fn body(given: &Given, [m_s, S_1, I_2]: [f64; 3]) -> Result<Body, Refused> {
+    let (parameters, r) = given_base(given)?;
     let Parameters { m0, J0, B, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
     Ok(Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y } })
 }
 
 /// The modes of the frequencies `omegas` (rad/s) with these Γ and κ.
-fn modes(omegas: &[f64], damping: &Damping, participations: &[(f64, f64)]) -> Result<Vec<Mode>, DescriptionError> {
-    if omegas.len() > MOST_MODES {
-        return Err(StructureError::Modes(omegas.len()).into());
-    }
+fn modes(omegas: &[f64], damping: &Damping, participations: &[(f64, f64)]) -> Result<Vec<Mode>, Refused> {
+    check_count(omegas.len())?;
     for (number, omega) in (1..).zip(omegas) {
-        F.check(omega / TAU).map_err(|cause| DescriptionError::At { what: "mode", number, cause })?;
+        F.check(omega / TAU).map_err(|cause| of_number("mode", number, cause))?;
     }
     let modes = omegas.iter().zip(damping.ratios(omegas)?).zip(participations);
     Ok(modes.map(|((omega, zeta), (gamma, kappa))| Mode::new(*omega, zeta, *gamma, *kappa)).collect())
@@ -469,29 +439,28 @@ fn shown(floors: &[Place], shapes: &[DVector<f64>]) -> Vec<Floor> {
 }
 
 /// Checks that there are `least` floors or more, their numbers and their order.
-fn check_floors(floors: &[Place], least: usize) -> Result<(), DescriptionError> {
-    if !(least..=MOST_FLOORS).contains(&floors.len()) {
-        return Err(DescriptionError::Floors(floors.len()));
-    }
+fn check_floors(floors: &[Place], least: usize) -> Result<(), Refused> {
+    let given = floors.len();
+    ensure((least..=MOST_FLOORS).contains(&given), || {
+        format!("{given} floors are given: a structure has 1 to {MOST_FLOORS}")
+    })?;
     let mut below = 0.0;
     for (number, &Place { m, h }) in (1..).zip(floors) {
         let fits = FLOOR_MASS.check(m).and_then(|()| FLOOR_HEIGHT.check(h));
-        fits.map_err(|cause| DescriptionError::At { what: "floor", number, cause })?;
-        if h < below {
-            return Err(DescriptionError::Order { number, h, below });
-        }
+        fits.map_err(|cause| of_number("floor", number, cause))?;
+        check_order(number, h, below, true)?;
         below = h;
     }
     Ok(())
 }
 
-fn length(what: &str, count: usize, needed: usize, of: &'static str) -> Result<(), DescriptionError> {
-    if count == needed { Ok(()) } else { Err(DescriptionError::Length { what: what.into(), count, needed, of }) }
+fn length(what: &str, count: usize, needed: usize, of: &str) -> Result<(), Refused> {
+    ensure(count == needed, || format!("{what} has {count} numbers and must have {needed}, one for each {of}"))
 }
 
 impl Damping {
     /// The ratio of each mode of the frequencies `omegas` (rad/s).
-    fn ratios(&self, omegas: &[f64]) -> Result<Vec<f64>, DescriptionError> {
+    fn ratios(&self, omegas: &[f64]) -> Result<Vec<f64>, Refused> {
         let (ratios, limit) = match self {
             Damping::All(zeta) => (vec![*zeta; omegas.len()], ZETA),
             Damping::Each(zetas) => {
@@ -511,41 +480,48 @@ impl Damping {
 }
 
 /// The moments m_s, S_1 and I_2 of all mass above the base.
-fn whole(base: &Given, total: Option<Total>, floors: &[Place]) -> Result<[f64; 3], DescriptionError> {
+fn whole(base: &Given, total: Option<Total>, floors: &[Place]) -> Result<[f64; 3], Refused> {
     let Some(Total { m_s, S_1, I_2, J_P }) = total else {
-        return match floors {
-            [] => Err(DescriptionError::NoTotal),
-            floors => Ok(moments(floors.iter().map(|&Place { m, h }| (m, h)))),
-        };
+        ensure(!floors.is_empty(), || {
+            "modes need the total m_s (kg), S_1 (kg.m) and I_2 (kg.m2) of the mass above the base, or the floors that have it".into()
+        })?;
+        return Ok(moments(floors.iter().map(|&Place { m, h }| (m, h))));
     };
     let I_2 = match (I_2, J_P) {
         (Some(I_2), None) => I_2,
         (None, Some(J_P)) => {
-            let (Parameters { m0, J0, B, .. }, _) = base.base()?;
+            let (Parameters { m0, J0, B, .. }, _) = given_base(base)?;
             J_P - J0 - (m0 + m_s) * B * B
         }
-        _ => return Err(DescriptionError::EitherTotal),
+        _ => return Err(Refused("I_2 (kg.m2) or J_P (kg.m2) is needed, and not both".into())),
     };
     Ok([m_s, S_1, I_2])
 }
 
 /// The shape of a mode at the `floors`, for the modal mass 1.
-fn shape(number: usize, found: &FoundMode, height: f64, floors: &[Place]) -> Result<DVector<f64>, DescriptionError> {
+fn shape(number: usize, found: &FoundMode, height: f64, floors: &[Place]) -> Result<DVector<f64>, Refused> {
     length(&format!("the shape of mode {number}"), found.shape.len(), floors.len(), "floor")?;
     let checked = found.shape.iter().try_for_each(|phi| SHAPE.check(*phi));
-    checked.map_err(|cause| DescriptionError::At { what: "mode", number, cause })?;
+    checked.map_err(|cause| of_number("mode", number, cause))?;
     let sum = |term: fn(f64, &Place) -> f64| {
         found.shape.iter().zip(floors).map(|(phi, floor)| floor.m * term(*phi, floor)).sum::<f64>()
     };
     let (gamma, modal_mass) = (sum(|phi, _| phi), sum(|phi, _| phi * phi));
     let effective = if modal_mass > 0.0 { gamma * gamma / modal_mass } else { 0.0 };
-    if !floors.is_empty() && (effective - found.mass).abs() > SHAPE_TOLERANCE * found.mass {
-        return Err(DescriptionError::Shape { number, found: effective, given: found.mass });
-    }
+    let given = found.mass;
+    ensure(floors.is_empty() || (effective - given).abs() <= SHAPE_TOLERANCE * given, || {
+        format!(
+            "the shape of mode {number} has the effective mass {effective:.5e} kg with the masses of the floors, but mass = {given:.5e} \
+             kg: check the order of the floors and of the modes"
+        )
+    })?;
     let (of_shape, top) = (sum(|phi, floor| phi * floor.h) / gamma, floors.last().map_or(0.0, |floor| floor.h));
-    if (of_shape - height).abs() > HEIGHT_TOLERANCE * top {
-        return Err(DescriptionError::ShapeHeight { number, found: of_shape, given: height });
-    }
+    ensure(floors.is_empty() || (of_shape - height).abs() <= HEIGHT_TOLERANCE * top, || {
+        format!(
+            "the shape of mode {number} has the effective height {of_shape:.5} m with the floors, but the mode has {height:.5} m: \
+             check the order of the floors in the shape"
+        )
+    })?;
     let scale = modal_mass.sqrt().copysign(gamma);
     Ok(DVector::from_iterator(floors.len(), found.shape.iter().map(|phi| phi / scale)))
 }
@@ -553,7 +529,6 @@ fn shape(number: usize, found: &FoundMode, height: f64, floors: &[Place]) -> Res
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::structure::Base;
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
@@ -570,84 +545,6 @@ pub(crate) mod tests {
     /// Three storeys whose response is known.
     pub(crate) fn three_storeys() -> Structure {
         Structure::from_storeys(&usual(), &Damping::All(0.02), &STOREYS).unwrap()
-    }
-
-    fn places() -> [Place; 3] {
-        STOREYS.map(|Storey { m, h, .. }| Place { m, h })
-    }
-
-    /// The modes as another program prints them, with shapes in its own scale.
-    fn found(frame: &Structure) -> Vec<FoundMode> {
-        let of = |(j, mode): (usize, &Mode)| FoundMode {
-            period: Some(TAU / mode.stiffness.sqrt()),
-            mass: mode.gamma * mode.gamma,
-            height: Some(mode.height / mode.gamma),
-            shape: frame.floors().iter().map(|floor| -3.0 * floor.shape.numbers()[j]).collect(),
-            ..FoundMode::default()
-        };
-        frame.modes().iter().enumerate().map(of).collect()
-    }
-
-    fn assert_same(one: &Structure, other: &Structure) {
-        // what no sign of the shapes changes
-        let numbers = |frame: &Structure| -> Vec<f64> {
-            let of_mode = |(j, mode): (usize, &Mode)| {
-                let &Mode { gamma, height, stiffness, damping, .. } = mode;
-                let floors = frame.floors().iter().map(move |floor| gamma * floor.shape.numbers()[j]);
-                [stiffness, damping, gamma * gamma, height / gamma].into_iter().chain(floors)
-            };
-            let &Base { m_t, J_P, p_l, tan_alpha_cg, .. } = frame.base();
-            let of_modes = frame.modes().iter().enumerate().flat_map(of_mode);
-            [m_t, J_P, p_l, tan_alpha_cg].into_iter().chain(of_modes).collect()
-        };
-        let (one, other) = (numbers(one), numbers(other));
-        assert_eq!(one.len(), other.len());
-        for (one, other) in one.into_iter().zip(other) {
-            assert_relative_eq!(one, other, max_relative = 1e-13);
-        }
-    }
-
-    /// Numbers of an independent calculation.
-    #[test]
-    fn the_storeys_have_the_known_modes() {
-        let frame = three_storeys();
-        let base = frame.base();
-        let known = [
-            (2.79631878, 97782.91, 7.652647, 0.941852),
-            (7.16132844, 9645.66, -1.689684, 0.004529),
-            (10.06584242, 2571.43, 1.166667, 0.000576),
-        ];
-        for (mode, (f, mass, height, chi)) in frame.modes().iter().zip(known) {
-            assert_relative_eq!(mode.omega() / TAU, f, max_relative = 1e-8);
-            assert_relative_eq!(mode.gamma * mode.share, mass, max_relative = 1e-6);
-            assert_relative_eq!(mode.height / mode.share, height, max_relative = 1e-6);
-            assert_relative_eq!(mode.mass * mode.height * mode.height / base.J_P, chi, epsilon = 1e-6);
-        }
-        assert_relative_eq!(base.J_P, 6.08e6, max_relative = 1e-13);
-        assert_relative_eq!(base.p_l, 1.0889962484, max_relative = 1e-10);
-        assert_relative_eq!(base.tan_alpha_cg, 0.2653061224, max_relative = 1e-9);
-        let rocking = frame.rocking_frequencies();
-        for (omega, f) in rocking.into_iter().zip([7.0282052, 9.9751802, 12.4839536]) {
-            assert_relative_eq!(omega / TAU, f, max_relative = 1e-7);
-        }
-    }
-
-    #[test]
-    fn storeys_matrices_and_modes_are_the_same_structure() {
-        let storeys = three_storeys();
-        let K = [vec![110e6, -50e6, 0.0], vec![-50e6, 90e6, -40e6], vec![0.0, -40e6, 40e6]];
-        let damping = Damping::Each(vec![0.02; 3]);
-        assert_same(&storeys, &Structure::from_matrices(&usual(), &damping, &places(), &K).unwrap());
-        assert_same(&storeys, &Structure::from_modes(&usual(), &damping, &found(&storeys), None, &places()).unwrap());
-
-        let total = Total { m_s: 110e3, S_1: 735e3, I_2: None, J_P: Some(6.08e6) };
-        let mut modes = found(&storeys);
-        for mode in &mut modes {
-            let moment = mode.mass * mode.height.take().unwrap();
-            *mode = FoundMode { moment: Some(moment), shape: Vec::new(), ..mode.clone() };
-        }
-        let without_floors = Structure::from_modes(&usual(), &damping, &modes, Some(total), &[]).unwrap();
-        assert_same(&Structure::of_body(*storeys.body(), storeys.modes(), &[]).unwrap(), &without_floors);
     }
 
     /// C = α M + β K through the ratios of its modes.

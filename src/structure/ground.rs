@@ -11,7 +11,7 @@
 
 use crate::digits::with_unit;
 use crate::series::bisection::last_where;
-use crate::structure::quantity::{Quantity, Units};
+use crate::structure::quantity::{Quantity, Refused, Units, ensure};
 use crate::{Base, Body, Mode, Ties};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -86,11 +86,6 @@ const K_V: Quantity<f64> = Quantity::limit("k_v", "N/m", [1e-6, 1e18], OF_GROUND
 const ZETA_V: Quantity<f64> = Quantity::limit("zeta_v", "1", [0.0, 5.0], OF_GROUND);
 const C_V: Quantity<f64> = Quantity::limit("c_v", "N.s/m", [0.0, 1e18], OF_GROUND);
 
-/// Refuses what is not so.
-fn ensure(is_so: bool, message: impl FnOnce() -> String) -> Result<(), String> {
-    if is_so { Ok(()) } else { Err(message()) }
-}
-
 impl Ground {
     /// The same ground with numbers in SI units.
     pub fn in_si(mut self, units: Units) -> Ground {
@@ -107,7 +102,7 @@ impl Ground {
     }
 
     /// The points under a base of half-width `B` (m) that carries `m_t` (kg), none on rigid ground.
-    fn points(&self, m_t: f64, B: f64) -> Result<Vec<Point>, String> {
+    fn points(&self, m_t: f64, B: f64) -> Result<Vec<Point>, Refused> {
         let &Ground { f_v, k_v, zeta_v, c_v, n_points, kr_ratio, k_r, .. } = self;
         let [xi, k, c] = [&self.xi, &self.k, &self.c];
         let list = Some(xi.len() as f64).filter(|points| *points > 0.0);
@@ -121,7 +116,7 @@ impl Ground {
             ensure(both.is_none(), || format!("{one} and {other} are both given: leave one of them out"))?;
         }
         for (limit, value) in [(F_V, f_v.filter(|_| !self.is_rigid())), (K_V, k_v), (ZETA_V, zeta_v), (C_V, c_v)] {
-            value.map_or(Ok(()), |value| limit.check(value)).map_err(|error| error.to_string())?;
+            value.map_or(Ok(()), |value| limit.check(value))?;
         }
         let n = n_points.unwrap_or(2.0);
         ensure((2.0..=MOST_POINTS as f64).contains(&n) && n.fract() == 0.0, || {
@@ -139,7 +134,7 @@ impl Ground {
             return Ok(Vec::new());
         }
         let needed = "neither f_v (Hz) nor k_v (N/m) is given: give one, or leave [ground] out for rigid ground";
-        let K_z = f_v.map(|f_v| m_t * (TAU * f_v) * (TAU * f_v)).or(k_v).ok_or(needed)?;
+        let K_z = f_v.map(|f_v| m_t * (TAU * f_v) * (TAU * f_v)).or(k_v).ok_or_else(|| Refused(needed.into()))?;
         let tau = c_v.map_or(2.0 * zeta_v.unwrap_or(0.2) / (K_z / m_t).sqrt(), |c_v| c_v / K_z);
         let xi = |i: usize| B * (2.0 * i as f64 / (n - 1) as f64 - 1.0);
         let (inner, most) = ((1..n - 1).map(|i| xi(i) * xi(i)).sum::<f64>(), (n - 2) as f64 * B * B);
@@ -159,7 +154,12 @@ impl Ground {
 
 impl Foundation {
     /// The foundation of `ground` under a structure; none on rigid ground.
-    pub(crate) fn new(ground: &Ground, base: &Base, body: &Body, modes: &[Mode]) -> Result<Option<Foundation>, String> {
+    pub(crate) fn new(
+        ground: &Ground,
+        base: &Base,
+        body: &Body,
+        modes: &[Mode],
+    ) -> Result<Option<Foundation>, Refused> {
         let &Base { m_t, J0, B, g, c_ratio, ties: Ties { P_0, .. }, .. } = base;
         let points = ground.points(m_t, B)?;
         if points.is_empty() {

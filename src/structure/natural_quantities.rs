@@ -15,7 +15,7 @@ use crate::digits::with_unit;
 use crate::structure::derived::{DERIVED, Derived};
 use crate::structure::ground::Ground;
 use crate::structure::parameters::{PARAMETERS, Parameters};
-use crate::structure::quantity::{OutOfRange, Quantity, Units};
+use crate::structure::quantity::{Quantity, Refused, Units, ensure};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{self, Error, IntoDeserializer, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -113,55 +113,13 @@ impl<'de> Visitor<'de> for OfEntry {
 
 /// Why numbers determine no structure.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // the messages name the fields
 pub enum GivenError {
-    /// The name is unknown.
-    #[error("{name:?} is unknown; these are known: {}", names().chain(["units", "ground"]).collect::<Vec<_>>().join(", "))]
-    Unknown { name: String },
-    /// No structure, in a message with the units of its numbers.
-    #[error("{0}")]
-    InUnits(String),
-    /// The name is unknown beside `[base]`.
-    #[error(
-        "{name:?} is no number of the base; these are known: {}; other numbers of the structure stand above [base]",
-        names_of_base().collect::<Vec<_>>().join(", ")
-    )]
-    UnknownOfBase { name: String },
-    /// A number is given twice.
-    #[error("{0} is given twice")]
-    Twice(&'static str),
-    /// A number that belongs to a structure of one mass.
-    #[error("{0} is a number of a structure of one mass: leave it out beside storeys, floors and modes")]
-    OfOneMass(&'static str),
-    /// A natural quantity, or the parameter that it determines, is outside its range.
-    #[error(transparent)]
-    OutOfRange(OutOfRange),
-    /// A natural quantity is given beside the parameter that it determines.
-    #[error(
-        "{natural} = {} is given beside {}: {natural} determines {determined}, leave one of them out",
-        with_unit(*value, unit),
-        with.join(" and ")
-    )]
-    OverDetermined {
-        natural: &'static str,
-        value: f64,
-        unit: &'static str,
-        with: Vec<&'static str>,
-        determined: &'static str,
-    },
     /// Parameters that nothing determines.
     #[error("{}", in_words(.0))]
     Missing(Vec<Missing>),
-    /// A natural quantity requires a parameter that is out of range.
-    #[error("{natural} = {} does not fit: {cause}", with_unit(*value, unit))]
-    Impossible { natural: &'static str, value: f64, unit: &'static str, cause: OutOfRange },
-    /// The frequency parameter is higher than the masses allow.
-    #[error(
-        "p_l = {} does not fit: it would take a negative J0; with these masses, H and B it is {} at most",
-        with_unit(*p_l, "rad/s"),
-        with_unit(*largest, "rad/s")
-    )]
-    TooFast { p_l: f64, largest: f64 },
+    /// Numbers that are refused.
+    #[error(transparent)]
+    Refused(#[from] Refused),
 }
 
 /// A parameter that is not determined.
@@ -203,7 +161,10 @@ pub fn names_of_base() -> impl Iterator<Item = &'static str> {
 pub(crate) fn base<'de, D: Deserializer<'de>>(file: D) -> Result<Given, D::Error> {
     let numbers = BTreeMap::<String, f64>::deserialize(file)?;
     if let Some(name) = numbers.keys().find(|name| !names().any(|known| known == *name)) {
-        return Err(D::Error::custom(GivenError::UnknownOfBase { name: name.clone() }));
+        let known = names_of_base().collect::<Vec<_>>().join(", ");
+        return Err(D::Error::custom(format!(
+            "{name:?} is no number of the base; these are known: {known}; other numbers of the structure stand above [base]"
+        )));
     }
     let entries = numbers.into_iter().map(|(name, number)| (name, Entry::Number(number)));
     Given::try_from(BTreeMap::from_iter(entries)).map_err(D::Error::custom)
@@ -228,17 +189,15 @@ impl Natural {
 
 impl Given {
     /// These numbers by their names.
-    pub fn of(numbers: &[(&str, f64)]) -> Result<Given, GivenError> {
+    pub fn of(numbers: &[(&str, f64)]) -> Result<Given, Refused> {
         let mut given = Given::default();
         numbers.iter().try_for_each(|(name, value)| given.give(name, *value)).map(|()| given)
     }
 
     /// Adds the number called `name`.
-    pub fn give(&mut self, name: &str, value: f64) -> Result<(), GivenError> {
-        let name = names().find(|known| *known == name).ok_or_else(|| GivenError::Unknown { name: name.into() })?;
-        if self.get(name).is_some() {
-            return Err(GivenError::Twice(name));
-        }
+    pub fn give(&mut self, name: &str, value: f64) -> Result<(), Refused> {
+        let name = names().find(|known| *known == name).ok_or_else(|| unknown(name))?;
+        ensure(self.get(name).is_none(), || format!("{name} is given twice"))?;
         self.numbers.push((name, value));
         Ok(())
     }
@@ -254,7 +213,7 @@ impl Given {
     /// The structure of one mass of these [`Given::parameters`], or of `base` changed by these numbers. Messages name the numbers as
     /// they were given.
     pub fn structure(&self, base: Option<&Parameters>) -> Result<Structure, GivenError> {
-        let in_units = |error: &dyn Display| GivenError::InUnits(self.units.message(error));
+        let in_units = |error: &dyn Display| Refused(self.units.message(error));
         let gives = self.ground.as_ref().is_some_and(|ground| !ground.is_rigid());
         let needs_no_r = gives && base.is_none() && self.get("r").is_none();
         let alone = || self.solve(|name| default(name).or((needs_no_r && name == "r").then_some(1.0)));
@@ -284,7 +243,8 @@ impl Given {
     /// Parameters with the base that these numbers determine, and r if it is given. The numbers of the one mass mean nothing.
     pub(crate) fn base(&self) -> Result<(Parameters, Option<f64>), GivenError> {
         if let Some(name) = OF_ONE_MASS.into_iter().find(|name| self.get(name).is_some()) {
-            return Err(GivenError::OfOneMass(name));
+            let remedy = "leave it out beside storeys, floors and modes";
+            return Err(Refused(format!("{name} is a number of a structure of one mass: {remedy}")).into());
         }
         let of_mass = |name: &str| ["m", "H", "f_fc", "zeta_fc", "r"].contains(&name).then_some(0.5);
         let parameters = self.solve(|name| default(name).or_else(|| of_mass(name)))?;
@@ -354,12 +314,12 @@ impl Given {
     }
 
     /// Checks that every natural quantity is in its range and that its parameter is not given as well.
-    fn check(&self) -> Result<(), GivenError> {
+    fn check(&self) -> Result<(), Refused> {
         for natural in &NATURAL {
             let Some(value) = self.get(natural.name) else { continue };
             let &Natural { name, min, max, stands_for, .. } = natural;
             let &Derived { unit, description, .. } = natural.derived();
-            Quantity::limit(name, unit, [min, max], description).check(value).map_err(GivenError::OutOfRange)?;
+            Quantity::limit(name, unit, [min, max], description).check(value)?;
             let given = |name: &&'static str| self.get(name).is_some();
             let with: Vec<_> = match name {
                 "alpha_cg" => {
@@ -369,37 +329,49 @@ impl Given {
                 _ => Some(stands_for).filter(given).into_iter().collect(),
             };
             let determined = if name == "alpha_cg" { "the ratio of the two" } else { stands_for };
-            if !with.is_empty() {
-                return Err(GivenError::OverDetermined { natural: name, value, unit, with, determined });
-            }
+            ensure(with.is_empty(), || {
+                let (given, with) = (with_unit(value, unit), with.join(" and "));
+                format!(
+                    "{name} = {given} is given beside {with}: {name} determines {determined}, leave one of them out"
+                )
+            })?;
         }
         Ok(())
     }
 }
 
 /// `value` as the parameter called `name`, which `natural` determines.
-fn parameter_for(natural: &'static str, given: f64, name: &'static str, value: f64) -> Result<f64, GivenError> {
+fn parameter_for(natural: &'static str, given: f64, name: &'static str, value: f64) -> Result<f64, Refused> {
     let parameter = PARAMETERS.iter().find(|parameter| parameter.name == name).expect("it is one of them");
     let impossible = |cause| {
         let natural = NATURAL.iter().find(|known| known.name == natural).expect("it is one of them");
-        GivenError::Impossible { natural: natural.name, value: given, unit: natural.derived().unit, cause }
+        let given = with_unit(given, natural.derived().unit);
+        Refused(format!("{} = {given} does not fit: {cause}", natural.name))
     };
     parameter.check(value).map_err(impossible)?;
     Ok(value)
 }
 
 /// J0 = m g H/p_l² − J_P(J0 = 0) for the frequency parameter `p_l`, kg·m². A result that is negative by rounding is 0.
-fn inertia(p_l: f64, m_g_H: f64, without_J0: f64) -> Result<f64, GivenError> {
+fn inertia(p_l: f64, m_g_H: f64, without_J0: f64) -> Result<f64, Refused> {
     const ROUNDING: f64 = 1e-14;
     let J_P = m_g_H / (p_l * p_l);
     let J0 = J_P - without_J0;
     if J0.abs() <= ROUNDING * J_P {
-        Ok(0.0)
-    } else if J0 < 0.0 {
-        Err(GivenError::TooFast { p_l, largest: (m_g_H / without_J0).sqrt() })
-    } else {
-        parameter_for("p_l", p_l, "J0", J0)
+        return Ok(0.0);
     }
+    ensure(J0 >= 0.0, || {
+        let [p_l, largest] = [p_l, (m_g_H / without_J0).sqrt()].map(|rate| with_unit(rate, "rad/s"));
+        format!(
+            "p_l = {p_l} does not fit: it would take a negative J0; with these masses, H and B it is {largest} at most"
+        )
+    })?;
+    parameter_for("p_l", p_l, "J0", J0)
+}
+
+fn unknown(name: &str) -> Refused {
+    let known = names().chain(["units", "ground"]).collect::<Vec<_>>().join(", ");
+    Refused(format!("{name:?} is unknown; these are known: {known}"))
 }
 
 fn missing(&Quantity { name, unit, description, .. }: &Quantity<Parameters>) -> Missing {
@@ -409,23 +381,23 @@ fn missing(&Quantity { name, unit, description, .. }: &Quantity<Parameters>) -> 
 }
 
 impl TryFrom<BTreeMap<String, Entry>> for Given {
-    type Error = GivenError;
+    type Error = Refused;
 
-    fn try_from(entries: BTreeMap<String, Entry>) -> Result<Given, GivenError> {
+    fn try_from(entries: BTreeMap<String, Entry>) -> Result<Given, Refused> {
         let (mut given, mut units) = (Given::default(), Units::default());
         for (name, entry) in entries {
             match entry {
                 Entry::Number(_) if name == "units" => {
-                    return Err(GivenError::InUnits("units: \"N, m, kg\" or \"kN, m, t\" is needed".into()));
+                    return Err(Refused("units: \"N, m, kg\" or \"kN, m, t\" is needed".into()));
                 }
                 Entry::Number(number) => given.give(&name, number)?,
                 Entry::Units(of_numbers) if name == "units" => units = of_numbers,
                 Entry::Ground(ground) if name == "ground" => given.ground = Some(ground),
                 Entry::Ground(_) if !names().chain(["units"]).any(|known| known == name) => {
-                    return Err(GivenError::Unknown { name });
+                    return Err(unknown(&name));
                 }
                 Entry::Units(_) | Entry::Ground(_) => {
-                    return Err(GivenError::InUnits(format!("{name}: a number is needed")));
+                    return Err(Refused(format!("{name}: a number is needed")));
                 }
             }
         }

@@ -2,7 +2,8 @@
 
 use crate::structure::base::{Base, Ties};
 use crate::structure::mode::Mode;
-use crate::structure::parameters::{ParameterError, Parameters};
+use crate::structure::parameters::Parameters;
+use crate::structure::quantity::Refused;
 use std::f64::consts::TAU;
 
 /// A structure: checked parameters and the constants that the equations use.
@@ -52,7 +53,7 @@ pub struct OneMass {
 
 impl OneMass {
     /// Derives a structure from its parameters, or returns the first parameter that is out of range.
-    pub fn new(parameters: Parameters) -> Result<OneMass, ParameterError> {
+    pub fn new(parameters: Parameters) -> Result<OneMass, Refused> {
         parameters.check()?;
         let Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, r, g, P_0, k_t, xi_d, c_d, k_d, F_y } = parameters;
         let gamma = (m + m0) / m;

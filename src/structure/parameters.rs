@@ -1,7 +1,7 @@
 //! The numbers that a user gives: one structure's parameters, their ranges, and the paper's two specimens.
 
 use crate::digits::short;
-use crate::structure::quantity::{OutOfRange, Quantity, quantity};
+use crate::structure::quantity::{Quantity, Refused, ensure, quantity};
 use serde::{Deserialize, Serialize};
 
 /// Declares [`Parameters`] and their table [`PARAMETERS`]: name, unit, range, description, and `default` if a file may leave it out.
@@ -47,28 +47,8 @@ pub const PRESETS: [(&str, Parameters); 2] = [("mcmanus", Parameters::MCMANUS), 
 /// The largest damping ratio in full contact. A larger number is probably in per cent.
 pub const MAX_DAMPING: f64 = 0.99;
 
-/// A name that is none of [`PRESETS`].
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("preset = {0:?} is unknown; these are known: {known}", known = PRESETS.map(|of| of.0).join(", "))]
-pub struct UnknownPreset(String);
-
 /// The slenderest structure accepted: H/B beyond it leaves 1 − χ (after Eq 13) without significant digits.
 pub const MAX_SLENDERNESS: f64 = 1e3;
-
-/// Why a set of parameters is rejected.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ParameterError {
-    /// One parameter is outside its own range.
-    #[error(transparent)]
-    OutOfRange(#[from] OutOfRange),
-    /// Height and half-width do not fit together.
-    #[error("H/B = {} is out of range: H must not exceed {MAX_SLENDERNESS} B; lower H or raise B", short(*.0))]
-    TooSlender(f64),
-    /// An elastoplastic dissipator takes both a stiffness and a force at which it yields.
-    #[error("k_d = {k_d:?} N/m and F_y = {F_y:?} N are no dissipator: set both above 0, or both to 0")]
-    #[allow(missing_docs)] // the message names the fields
-    HalfDissipator { k_d: f64, F_y: f64 },
-}
 
 impl Parameters {
     /// Evison's shear wall specimen (Table 1).
@@ -106,24 +86,25 @@ impl Parameters {
     };
 
     /// The specimen of this name, one of [`PRESETS`].
-    pub fn preset(name: &str) -> Result<Parameters, UnknownPreset> {
-        let found = PRESETS.iter().find(|(known, _)| *known == name);
-        found.map(|(_, parameters)| *parameters).ok_or_else(|| UnknownPreset(name.to_owned()))
+    pub fn preset(name: &str) -> Result<Parameters, Refused> {
+        let known = || PRESETS.map(|of| of.0).join(", ");
+        let found = PRESETS.iter().find(|(known, _)| *known == name).map(|(_, parameters)| *parameters);
+        found.ok_or_else(|| Refused(format!("preset = {name:?} is unknown; these are known: {}", known())))
     }
 
     /// Checks every parameter against [`PARAMETERS`] and the slenderness against [`MAX_SLENDERNESS`].
-    pub fn check(&self) -> Result<(), ParameterError> {
+    pub fn check(&self) -> Result<(), Refused> {
         for quantity in &PARAMETERS {
             quantity.check((quantity.get)(self))?;
         }
         let slenderness = self.H / self.B;
-        if slenderness > MAX_SLENDERNESS {
-            return Err(ParameterError::TooSlender(slenderness));
-        }
+        ensure(slenderness <= MAX_SLENDERNESS, || {
+            let slenderness = short(slenderness);
+            format!("H/B = {slenderness} is out of range: H must not exceed {MAX_SLENDERNESS} B; lower H or raise B")
+        })?;
         let &Parameters { k_d, F_y, .. } = self;
-        if (k_d > 0.0) != (F_y > 0.0) {
-            return Err(ParameterError::HalfDissipator { k_d, F_y });
-        }
-        Ok(())
+        ensure((k_d > 0.0) == (F_y > 0.0), || {
+            format!("k_d = {k_d:?} N/m and F_y = {F_y:?} N are no dissipator: set both above 0, or both to 0")
+        })
     }
 }

@@ -89,6 +89,29 @@ pub struct OutOfRange {
     pub description: &'static str,
 }
 
+/// Why numbers are refused, in words: the number, its value, the limit and the remedy.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Refused(pub String);
+
+impl Refused {
+    /// The message of another error.
+    pub fn by(error: impl Display) -> Refused {
+        Refused(error.to_string())
+    }
+}
+
+impl From<OutOfRange> for Refused {
+    fn from(error: OutOfRange) -> Refused {
+        Refused::by(error)
+    }
+}
+
+/// Refuses what is not so, with this message.
+pub fn ensure(is_so: bool, message: impl FnOnce() -> String) -> Result<(), Refused> {
+    if is_so { Ok(()) } else { Err(Refused(message())) }
+}
+
 impl Quantity<f64> {
     /// The limits of a number that no field holds.
     pub const fn limit(

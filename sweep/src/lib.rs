@@ -13,18 +13,8 @@ pub mod rows;
 pub mod synthetic;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
-
-/// Why something cannot be run or counted: what is wrong, and what to change.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct Refused(pub String);
-
-impl Refused {
-    /// The message of another error.
-    fn by(error: impl std::error::Error) -> Refused {
-        Refused(error.to_string())
-    }
-}
+pub use rocking::Refused;
+use rocking::structure::quantity::ensure;
 
 /// Most runs at a time.
 const MOST_THREADS: usize = 1024;
@@ -35,9 +25,4 @@ pub fn thread_pool(threads: usize) -> Result<ThreadPool, Refused> {
         format!("threads = {threads} is out of range: 0, which is one per core, to {MOST_THREADS} are possible")
     })?;
     ThreadPoolBuilder::new().num_threads(threads).build().map_err(Refused::by)
-}
-
-/// Refuses, with the reason, what is not so.
-fn ensure(is_so: bool, why: impl FnOnce() -> String) -> Result<(), Refused> {
-    if is_so { Ok(()) } else { Err(Refused(why())) }
 }

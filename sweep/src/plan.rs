@@ -9,7 +9,6 @@ use rocking::estimates::intensity::{
     significant_duration,
 };
 use rocking::estimates::response_spectrum::spectral_acceleration;
-use rocking::mechanics::state::InitialStateError;
 use rocking::run::fall::Found;
 use rocking::run::lanes::found_each;
 use rocking::run::record::Record;
@@ -253,7 +252,7 @@ impl NamedRecord {
 
 impl Conditions {
     /// The run of `structure` under `ground`, which an engine of coordinates `Q` moves.
-    pub fn run<'a, Q: Runs>(&self, structure: Structure, ground: &'a Record) -> Result<Run<'a, Q>, InitialStateError> {
+    pub fn run<'a, Q: Runs>(&self, structure: Structure, ground: &'a Record) -> Result<Run<'a, Q>, Refused> {
         let (initial, &Conditions { detail, tolerance, .. }) = (self.initial.on(&structure)?, self);
         let end = self.duration.map_or(End::AtRest, |duration| End::At(ground.start() + duration));
         Ok(Run { structure, ground, initial, detail, tolerance, end })
@@ -267,10 +266,10 @@ impl Conditions {
         })?;
         let settings = Settings { detail: self.detail, tolerance: self.tolerance, ..Settings::default() };
         let ground = Record::at_rest(1.0);
-        fn start<Q: Runs>(run: Run<Q>, settings: Settings) -> Result<(), InitialStateError> {
+        fn start<Q: Runs>(run: Run<Q>, settings: Settings) -> Result<(), Refused> {
             Q::START(run.structure, run.initial, 0.0, settings).map(|_| ())
         }
-        with_run!(self, structure, &ground, run => start(run, settings)).and_then(|of| of).map_err(Refused::by)
+        with_run!(self, structure, &ground, run => start(run, settings))?
     }
 }
 

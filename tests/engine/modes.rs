@@ -11,8 +11,8 @@ use rocking::run::{End, Run, Runs};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Given;
 use rocking::{
-    Body, Detail, Engine, Floor, LinearLoad, Load, Mode, Modes, OneMass, Output, Parameters, Progress, Reactions,
-    State, Structure, Ties, Transition, TransitionKind,
+    Body, Detail, Engine, LinearLoad, Load, Mode, Modes, OneMass, Output, Parameters, Progress, Reactions, State,
+    Structure, Ties, Transition, TransitionKind,
 };
 use std::f64::consts::TAU;
 
@@ -80,52 +80,6 @@ fn modes_left_out_are_the_limit_of_stiff_modes() {
             off.push((of(storeys(0.0, 0.93, 3, stiffer)) / of(storeys(0.0, 0.93, 1, 1.0)) - 1.0).abs());
         }
         assert!(off[1] < 0.15 * off[0] && off[1] < 1e-3, "{theta}: {off:?}");
-    }
-}
-
-/// Without modes a frame is the rigid limit of one mass: with all ties, a vertical acceleration and a force on the mass, to rest.
-#[test]
-fn a_frame_without_modes_is_the_rigid_limit() {
-    let tied = Parameters { P_0: 200.0, k_t: 3e4, xi_d: 0.1, c_d: 40.0, k_d: 1e5, F_y: 400.0, ..Parameters::MCMANUS };
-    for (parameters, strength, vertical) in [(Parameters::MCMANUS, 0.9, 0.0), (tied, 1.6, 2.0)] {
-        let structure = OneMass::new(Parameters { zeta_fc: 0.05, ..parameters }).unwrap();
-        let Parameters { m, m0, H, B, J0, r, g, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
-        let mode = Mode::new(structure.omega_fc, 0.05, m.sqrt(), m.sqrt() * H);
-        let ties = Ties { P_0, k_t, xi_d, c_d, k_d, F_y };
-        let floor = Floor { mass: m, height: H, shape: Modes::new(&[1.0 / m.sqrt()]) };
-        let body = Body { ties, ..body([m0, J0, B], [m, m * H, m * H * H], r, g) };
-        let frame = Structure::of_body(body, &[mode], &[floor]).unwrap();
-        let settings =
-            Settings { detail: Detail::Rigid, tolerance: 1e-12, vertical: vertical > 0.0, ..Settings::default() };
-        let mut many = Engine::of_modes(frame.clone(), at_rest(0), 0.0, settings).unwrap();
-        let mut one = Engine::with(structure, State::default(), 0.0, settings).unwrap();
-        let (mut theta, mut a_t, mut off) = (0.0_f64, 0.0_f64, [0.0_f64; 2]);
-        for i in 0..1000 {
-            let at = |i| (strength * pulse(i), 0.05 * m * pulse(i / 2), vertical * pulse(2 * i) / G);
-            let [from, to] = [at(i), at(i + 1)].map(|(a_g, F_t, a_v)| Load { a_g, F_t, a_v });
-            let slope = |of: fn(&Load) -> f64| (of(&to) - of(&from)) / 0.01;
-            let slope = Load { a_g: slope(|it| it.a_g), F_t: slope(|it| it.F_t), a_v: slope(|it| it.a_v) };
-            let [value, rate] =
-                [from, slope].map(|Load { a_g, F_t, a_v }| many.structure().load(a_g, a_v, &[F_t]).unwrap());
-            many.advance(0.01, LinearLoad { value, slope: rate }, &mut ()).unwrap();
-            one.advance(0.01, LinearLoad { value: from, slope }, &mut ()).unwrap();
-            let load = many.structure().load(to.a_g, to.a_v, &[to.F_t]).unwrap();
-            let outputs = [one.sample(to).output(Output::a_t(0)), many.sample(load).output(Output::a_t(0))];
-            let (many, one) = (&many.motion().state, &one.motion().state);
-            (theta, a_t) = (theta.max(one.theta.abs()), a_t.max(outputs[0].abs()));
-            off[0] = off[0].max((many.theta - one.theta).abs());
-            off[1] = off[1].max((outputs[1] - outputs[0]).abs());
-        }
-        let [many, one] = [many.motion().transitions, one.motion().transitions];
-        assert!(many == one && one > 6, "{many} {one}");
-        assert!(off[0] <= 1e-13 * theta && off[1] <= 1e-13 * a_t, "{:e} {:e}", off[0] / theta, off[1] / a_t);
-        let record =
-            Record::from_samples("", vec![0.0, 0.1, 0.2, 0.3], [0.0, 4.0, -4.0, 0.0].map(|a| a * strength).into())
-                .unwrap();
-        let one = Run { detail: Detail::Rigid, ..Run::new(structure, &record) }.follow(&mut ()).unwrap();
-        let many =
-            Run { detail: Detail::Rigid, ..Run::of_modes(frame.keeping(0).unwrap(), &record) }.follow(&mut ()).unwrap();
-        assert!((one.motion.time - many.motion.time).abs() < 1e-9 && one.motion.transitions > 0, "{one:?} {many:?}");
     }
 }
 

@@ -25,25 +25,28 @@ fn base(parameters: &Parameters) -> Given {
     Given::of(&[own, ties].concat()).unwrap()
 }
 
-/// Under a force on the top, from rest, and with dissipators from a start beyond their yield.
+/// Under a force on the top, from rest, and with dissipators from a start beyond their yield on ground that moves vertically, too.
 #[test]
 fn one_mode_is_one_mass() {
     let tied = Parameters { P_0: 400.0, k_t: 2e4, xi_d: 0.2, c_d: 150.0, k_d: 2e5, F_y: 120.0, ..Parameters::MCMANUS };
     for (parameters, theta, F_t) in [(Parameters::MCMANUS, 0.0, 60.0), (Parameters::EVISON, 0.0, 0.0), (tied, 0.1, 0.0)]
     {
         let ground = ground().with_force(&[0.0, 1.0, 3.5], &[0.0, F_t, -F_t]).unwrap();
+        let upwards = sampled(301, 0.01, |t| 2.0 * theta * (TAU * 3.0 * t).sin());
+        let ground = ground.with_vertical(&upwards).unwrap();
         let (tolerance, structure) = (1e-11, OneMass::new(parameters).unwrap());
         let Parameters { m, H, zeta_fc, .. } = parameters;
         let storey = Storey { m, h: H, k: structure.k };
         let frame = Structure::from_storeys(&base(&parameters), &Damping::All(zeta_fc), &[storey]).unwrap();
-        for detail in [Detail::Auto, Detail::Nonlinear, Detail::Linear, Detail::FixedBase] {
+        for detail in [Detail::Auto, Detail::Nonlinear, Detail::Linear, Detail::Rigid, Detail::FixedBase] {
             let theta = if detail.has_uplift() { theta } else { 0.0 };
             let one = Run { detail, tolerance, ..Run::new(structure, &ground) };
             let one = Run { initial: State { theta, ..one.initial }, ..one };
             let many = Run { detail, tolerance, ..Run::of_modes(frame.clone(), &ground) };
             let many = Run { initial: State { theta, ..many.initial }, ..many };
             let of_one = Run { structure: frame.of_one_mode().unwrap(), ..one.clone() };
-            let ((expected, _), (found, finish)) = (one.peaks().unwrap(), many.peaks().unwrap());
+            let ((expected, of_one_finish), (found, finish)) = (one.peaks().unwrap(), many.peaks().unwrap());
+            assert!((finish.motion.time - of_one_finish.motion.time).abs() < 1e-9, "{finish:?} {of_one_finish:?}");
             let [findings, of_one_findings] = [&one, &of_one].map(|run| run.validity(Limits::default()).unwrap().0);
             assert_same_findings(&findings, &many.validity(Limits::default()).unwrap().0);
             assert_same_findings(&findings, &of_one_findings);

@@ -5,7 +5,7 @@ use crate::modes::three_storeys;
 use rocking::engine::piece::Sample;
 use rocking::run::levels::Criterion;
 use rocking::run::record::Record;
-use rocking::run::{End, Run, RunError, levels};
+use rocking::run::{End, Run, levels};
 use rocking::{Detail, OneMass, Parameters, Structure, Transition};
 
 /// However finely a record is sampled, the histories of two levels are as far apart.
@@ -110,7 +110,8 @@ fn an_end_that_is_none_is_refused() {
     let ground = Record::from_samples("x", vec![2.0, 3.0], vec![5.0, -3.0]).unwrap();
     let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     for end in [1.0, 2.0, f64::NAN, f64::INFINITY] {
-        let refused = Run { end: End::At(end), ..Run::new(structure, &ground) }.peaks();
-        assert!(matches!(refused, Err(RunError::End { start: 2.0, .. })), "{refused:?}");
+        let refused = Run { end: End::At(end), ..Run::new(structure, &ground) }.peaks().unwrap_err().to_string();
+        let expected = "a finite time after the record's first sample, at 2.0 s, is needed";
+        assert_eq!(refused, format!("the run cannot end at {end:?} s: {expected}"));
     }
 }
