@@ -182,12 +182,14 @@ libraries: packages .venv/dist
 		$(ZIGBUILD) --package flexible-rocking-fmu --target $$target || exit; done
 
 # Module and program of a wheel are for one machine, the module for every Python from 3.10 on; the archive is for all machines.
+# They have a folder of their own: with them cargo builds the library of the archive anew, with further features.
+OF_WHEEL := CARGO_TARGET_DIR=$(TARGET)/wheel
 WHEELS := $(ZIG) $(WINDOWS)
 define build_wheel
-	$(if $(filter $(WINDOWS),$(1)),cargo build --profile dist --locked,$(ZIGBUILD)) --package rocking-cli --target $(call with_glibc,$(1))
+	$(OF_WHEEL) $(if $(filter $(WINDOWS),$(1)),cargo build --profile dist --locked,$(ZIGBUILD)) --package rocking-cli --target $(call with_glibc,$(1))
 	rm -rf out/wheel/scripts && mkdir out/wheel/scripts
-	cp $(TARGET)/$(1)/dist/rocking-fmu$(if $(filter $(WINDOWS),$(1)),.exe) out/wheel/scripts/
-	$(NATIVE_UNTRACED) $(MATURIN) build --profile dist --locked --out out/wheels --target $(1) \
+	cp $(TARGET)/wheel/$(1)/dist/rocking-fmu$(if $(filter $(WINDOWS),$(1)),.exe) out/wheel/scripts/
+	$(OF_WHEEL) $(NATIVE_UNTRACED) $(MATURIN) build --profile dist --locked --out out/wheels --target $(1) \
 		$(if $(filter $(ZIG),$(1)),--zig) $(if $(findstring linux,$(1)),--compatibility manylinux2014)
 
 endef

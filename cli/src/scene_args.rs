@@ -9,7 +9,6 @@ use rocking::{Detail, State, engine::DEFAULT_TOLERANCE};
 use rocking_report::run::Run;
 use rocking_sweep::plan::Conditions;
 use serde::{Deserialize, Deserializer, Serialize};
-use std::num::ParseFloatError;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -82,17 +81,18 @@ pub struct InitialArgs {
     #[arg(long, value_name = "RAD/S", default_value_t = 0.0, allow_hyphen_values = true)]
     theta_dot_0: f64,
     /// Initial elastic displacement of the top mass, or of each floor from below, with commas between them
-    #[arg(long, value_name = "M", default_value = "0", value_parser = trimmed, value_delimiter = ',', allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", default_value = "0", value_parser = of_floors, allow_hyphen_values = true)]
     #[serde(deserialize_with = "one_or_more")]
-    u_0: Vec<f64>,
+    u_0: std::vec::Vec<f64>, // by its full name, a type that clap gives no meaning of its own
     /// Initial elastic velocity of the top mass, or of each floor like --u-0
-    #[arg(long, value_name = "M/S", default_value = "0", value_parser = trimmed, value_delimiter = ',', allow_hyphen_values = true)]
+    #[arg(long, value_name = "M/S", default_value = "0", value_parser = of_floors, allow_hyphen_values = true)]
     #[serde(deserialize_with = "one_or_more")]
-    u_dot_0: Vec<f64>,
+    u_dot_0: std::vec::Vec<f64>,
 }
 
-fn trimmed(number: &str) -> Result<f64, ParseFloatError> {
-    number.trim().parse()
+fn of_floors(numbers: &str) -> Result<Vec<f64>, String> {
+    let number = |(at, text): (usize, &str)| text.trim().parse().map_err(|error| format!("number {}: {error}", at + 1));
+    numbers.split(',').enumerate().map(number).collect()
 }
 
 /// A number, or one for each floor.
