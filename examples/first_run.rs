@@ -6,7 +6,7 @@ use rocking::{Output, Parameters, Run, Structure};
 use rocking_records::Reading;
 use rocking_sweep::fragility::{FragilityCurve, Trials};
 use rocking_sweep::outcome::Limit;
-use rocking_sweep::plan::{Case, NamedRecord, Plan, Population};
+use rocking_sweep::plan::{Case, Conditions, NamedRecord, Plan, Population};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (ground, source) = rocking_records::read("examples/pulse.csv".as_ref(), &Reading::default(), 9.81)?;
@@ -19,7 +19,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let verdicts = levels::compare(&run)?.verdicts;
     verdicts.iter().for_each(|level| println!("{:?}: {:?}", level.response.choice.detail, level.errors));
     let piers = Population::new("piers", run.structure).vary("f_fc", vec![3.0, 4.0, 5.0, 6.0])?;
-    let plan = Plan::new(vec![piers], vec![NamedRecord::new("pulse", ground, 1.0)?], vec![1.1, 1.15, 1.2, 1.25, 1.3])?;
+    let (pulse, scales) = (NamedRecord::new("pulse", ground, 1.0)?, vec![1.1, 1.15, 1.2, 1.25, 1.3]);
+    let plan = Plan::new(vec![piers], vec![pulse], scales, Conditions::default())?;
     let overturns = |case: Case| (case.group, case.intensity(Pga), case.outcome().exceeds(&Limit::Overturning, 9.81));
     println!("{:?}", FragilityCurve::fit(&Trials::count(plan.cases().map(overturns)))?);
     Ok(())

@@ -74,7 +74,7 @@ pub fn sweep<'py>(
     };
     let motions = records.iter().map(motion).collect::<PyResult<_>>()?;
     let conditions = conditions(detail, tolerance, duration, Some(initial))?;
-    let plan = py.detach(|| Plan::new(populations, motions, scales)?.under(conditions)).map_err(refused)?;
+    let plan = py.detach(|| Plan::new(populations, motions, scales, conditions)).map_err(refused)?;
 
     let (program, done, stopped) = (program(), AtomicUsize::new(0), AtomicBool::new(false));
     let sweep = py.detach(|| Sweep::open(&plan, validity, &program, path.as_deref())).map_err(refused)?;

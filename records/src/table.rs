@@ -499,20 +499,6 @@ mod tests {
     }
 
     #[test]
-    fn a_unit_that_is_given_overrides_the_heading() {
-        let cm = Unit::CentimetrePerSecondSquared;
-        let asked = Reading { unit: Some(Unit::G), ..AS_IT_IS };
-        assert_eq!(read("t,a (north)\n0,1\n.5,2\n", &asked).unwrap().1.unit, Unit::G);
-        for (heading, from) in
-            [("a (km/s2)", UnitFrom::User), ("acc (cm/seg2)", UnitFrom::User), ("a (gal)", UnitFrom::Overridden(cm))]
-        {
-            let source = read(&format!("t (s),{heading}\n0,1\n1,2\n"), &asked).unwrap().1;
-            assert_eq!((source.unit, source.unit_from), (Unit::G, from), "{heading}");
-            assert_eq!(source.assumption("").is_some(), from != UnitFrom::User, "{heading}");
-        }
-    }
-
-    #[test]
     fn one_column_needs_a_step_and_several_a_choice() {
         let step = Reading { dt: Some(0.5), ..AS_IT_IS };
         for text in ["acc (g)\n1\n-2,\n3\n", "1.0\n-2.0\n3\n", "  1\n -2\n  3\n", "0,1\n1,-2\n2,3\n"] {

@@ -35,7 +35,13 @@ fn what_contradicts_a_file_is_refused() {
         let read = |how: &Reading| rocking_records::from_bytes(&path, &bytes, how);
         assert!(read(&Reading { unit: Some(unit), ..how.clone() }).is_ok());
         match read(&Reading { unit: Some(Unit::MillimetrePerSecondSquared), ..how.clone() }) {
-            Ok((_, source)) => assert_eq!((source.format, source.unit_from), ("table", UnitFrom::Overridden(unit))),
+            Ok((_, source)) => {
+                assert_eq!((source.format, source.unit_from), ("table", UnitFrom::Overridden(unit)));
+                assert_eq!(
+                    source.assumption(""),
+                    Some(format!("the heading states {unit}, and the given unit is mm/s2"))
+                );
+            }
             Err(refused) => {
                 let expected = format!("the file states accelerations in {unit}, but the given unit is mm/s2");
                 assert!(format != "table" && refused.to_string().ends_with(&expected), "{refused}");

@@ -114,7 +114,7 @@ pub struct Plan {
     /// The ground motions.
     pub motions: Vec<NamedRecord>,
     scales: Vec<f64>,
-    /// Conditions of all runs, which [`Plan::under`] checks.
+    /// Conditions of all runs, which have been checked.
     pub(crate) conditions: Conditions,
     /// Measures of all structures, each once.
     pub measures: Vec<Measure>,
@@ -274,16 +274,25 @@ impl Conditions {
 }
 
 impl Plan {
-    /// Every structure of `populations` under each of `motions` times each of `scales`.
-    pub fn new(populations: Vec<Population>, motions: Vec<NamedRecord>, scales: Vec<f64>) -> Result<Plan, Refused> {
+    /// Every structure of `populations` under each of `motions` times each of `scales`, all under these `conditions`. Each structure is
+    /// made once here.
+    pub fn new(
+        mut populations: Vec<Population>,
+        motions: Vec<NamedRecord>,
+        scales: Vec<f64>,
+        conditions: Conditions,
+    ) -> Result<Plan, Refused> {
         check_list("scale", &scales)?;
         ensure(!scales.contains(&0.0), || "scale = 0 leaves no ground motion: leave it out".into())?;
         ensure(!populations.is_empty(), || is_empty("structures"))?;
         ensure(!motions.is_empty(), || is_empty("records"))?;
         check_names("populations", populations.iter().map(|of| &of.name))?;
         check_names("ground motions", motions.iter().map(|of| &of.name))?;
-        let (conditions, measures, layouts, spectral) = (Conditions::default(), Vec::new(), Vec::new(), Vec::new());
-        let (doubts, widest) = (Vec::new(), 0.0);
+        for base in populations.iter_mut().flat_map(|of| &mut of.bases) {
+            conditions.check(base)?;
+            *base = base.at(conditions.detail);
+        }
+        let (measures, layouts, spectral, doubts, widest) = (Vec::new(), Vec::new(), Vec::new(), Vec::new(), 0.0);
         let mut plan = Plan { populations, motions, scales, conditions, measures, layouts, doubts, widest, spectral };
         let [structures, motions, scales] = plan.size();
         ensure(structures.saturating_mul(motions).saturating_mul(scales) <= MAX_RUNS, || {
@@ -292,39 +301,20 @@ impl Plan {
             )
         })?;
         plan.spectral = vec![Spectral::default(); structures * motions];
-        plan.laid_out()
-    }
-
-    /// These runs under other `conditions`, with the measures of their level.
-    pub fn under(mut self, conditions: Conditions) -> Result<Plan, Refused> {
-        self.populations.iter().flat_map(|of| &of.bases).try_for_each(|base| conditions.check(base))?;
-        let mut is_other = false;
-        for base in self.populations.iter_mut().flat_map(|of| &mut of.bases) {
-            let at_level = base.at(conditions.detail);
-            is_other |= at_level != *base;
-            *base = at_level;
-        }
-        let plan = Plan { conditions, ..self };
-        if is_other { plan.laid_out() } else { Ok(plan) }
-    }
-
-    /// This plan with what it says of its structures, each of which is made once for this.
-    fn laid_out(mut self) -> Result<Plan, Refused> {
-        (self.measures, self.layouts, self.doubts) = (Vec::new(), Vec::new(), Vec::new());
         let mut said = HashSet::new();
-        for (population, name) in self.populations.iter().map(|of| (of, &of.name)) {
+        for (population, name) in plan.populations.iter().map(|of| (of, &of.name)) {
             for member in 0..population.len() {
                 let structure = population.structure(member)?;
-                if self.layouts.iter().all(|layout| !layout.is_of(&structure)) {
-                    self.layouts.push(Layout::new(&structure, &mut self.measures));
+                if plan.layouts.iter().all(|layout| !layout.is_of(&structure)) {
+                    plan.layouts.push(Layout::new(&structure, &mut plan.measures));
                 }
                 let doubts = structure.doubts().into_iter();
                 let news = doubts.filter(|doubt| said.insert((name, doubted(doubt).to_owned())));
-                self.doubts.extend(news.map(|doubt| format!("{name}: {doubt}")));
-                self.widest = self.widest.max(structure.base().B);
+                plan.doubts.extend(news.map(|doubt| format!("{name}: {doubt}")));
+                plan.widest = plan.widest.max(structure.base().B);
             }
         }
-        Ok(self)
+        Ok(plan)
     }
 
     /// Numbers of structures, ground motions and scale factors.
@@ -541,6 +531,11 @@ mod tests {
         NamedRecord::new("pulse", Record::from_samples("", times, acceleration).unwrap(), 1.0).unwrap()
     }
 
+    /// A plan under the usual conditions.
+    fn usual(populations: Vec<Population>, motions: Vec<NamedRecord>, scales: Vec<f64>) -> Plan {
+        Plan::new(populations, motions, scales, Conditions::default()).unwrap()
+    }
+
     fn structure(parameters: Parameters) -> Structure {
         Structure::new(parameters).unwrap()
     }
@@ -556,7 +551,7 @@ mod tests {
         let cores = Population::new("cores", core(0.0)).vary("k_t", vec![0.0, 1e6]).unwrap();
         let pier = Population::new("pier", structure(Parameters::MCMANUS));
         let slow = NamedRecord::new("slow", pulse().record.scaled(2.0, 1.0).unwrap(), 1.0).unwrap();
-        let plan = Plan::new(vec![cores, pier], vec![pulse(), slow], vec![0.3, 0.6, 0.9, 1.2]).unwrap();
+        let plan = usual(vec![cores, pier], vec![pulse(), slow], vec![0.3, 0.6, 0.9, 1.2]);
         let (outcomes, mut largest) = (Vec::from_iter(plan.cases().map(|case| case.outcome())), Vec::new());
         for (case, outcome) in plan.cases().zip(&outcomes).take(16) {
             let ground = case.motion.record.clone().multiplied(case.scale);
@@ -584,7 +579,7 @@ mod tests {
         let weak = Population::new("weak", cores).vary("P_0", vec![100.0, 200.0]).unwrap();
         let weight = 130.0 * 9.81;
         assert_eq!(
-            Plan::new(vec![weak], vec![pulse()], vec![1.0]).unwrap().doubts,
+            usual(vec![weak], vec![pulse()], vec![1.0]).doubts,
             [format!(
                 "weak: P_0 = 0.1 kN changes next to nothing under the weight of the structure, {} kN: is P_0 in kN?",
                 short(weight)
@@ -601,7 +596,7 @@ mod tests {
         let piers = piers.vary("B", vec![0.3, 0.2, 0.1]).unwrap();
         let wall = Population::new("wall", structure(Parameters::EVISON));
         let halved = NamedRecord::new("half", pulse().record, 0.5).unwrap();
-        let plan = Plan::new(vec![piers, wall], vec![pulse(), halved], vec![1.0, -2.0]).unwrap();
+        let plan = usual(vec![piers, wall], vec![pulse(), halved], vec![1.0, -2.0]);
         assert_eq!((plan.size(), plan.len()), ([7, 2, 2], 28));
         let [axis_B, slenderness] =
             ["B", "slenderness"].map(|name| *AXES.iter().find(|axis| axis.name == name).unwrap());
@@ -614,7 +609,7 @@ mod tests {
         assert_eq!(column(|case, [_, slenderness]| case.value(slenderness), 4)[..3], [4.0, 6.3, 4.0]);
         assert_eq!(column(|case, _| case.structure.parameters().H, 4)[1], 6.3 * 0.3);
         let both = Population::of("both", [Parameters::EVISON, Parameters::MCMANUS].map(structure).into()).unwrap();
-        let both = Plan::new(vec![both.vary("r", vec![0.9, 0.8]).unwrap()], vec![pulse()], vec![1.0]).unwrap();
+        let both = usual(vec![both.vary("r", vec![0.9, 0.8]).unwrap()], vec![pulse()], vec![1.0]);
         let numbers = both.cases().map(|case| (case.structure.parameters().m, case.structure.parameters().r));
         assert_eq!(numbers.collect::<Vec<_>>(), [(125.8, 0.9), (125.8, 0.8), (130.1, 0.9), (130.1, 0.8)]);
         assert!(Population::of("none", Vec::new()).unwrap_err().0.starts_with("structures \"none\" is empty"));
@@ -634,7 +629,7 @@ mod tests {
         let initial = State { theta: 0.05, u: vec![1e-3], ..State::default() };
         let conditions = Conditions { initial, detail: Detail::Linear, tolerance: 1e-6, duration: Some(0.7) };
         let pier = Population::new("pier", structure(Parameters::MCMANUS));
-        let plan = Plan::new(vec![pier], vec![pulse()], vec![0.5]).unwrap().under(conditions.clone()).unwrap();
+        let plan = Plan::new(vec![pier], vec![pulse()], vec![0.5], conditions.clone()).unwrap();
         let ground = pulse().record.multiplied(0.5);
         let Conditions { detail, tolerance, .. } = conditions;
         let usual = Run::new(OneMass::new(Parameters::MCMANUS).unwrap(), &ground);
@@ -654,7 +649,7 @@ mod tests {
         let piers = || Population::new("piers", structure(Parameters::MCMANUS)).vary("f_fc", vec![2.0, 5.0]).unwrap();
         let own = NamedRecord::new("own", pulse().record, -0.5).unwrap();
         let multiplied = NamedRecord::new("multiplied", pulse().record.multiplied(-0.5), 1.0).unwrap();
-        let plan = Plan::new(vec![piers()], vec![pulse(), own, multiplied], vec![2.0]).unwrap();
+        let plan = usual(vec![piers()], vec![pulse(), own, multiplied], vec![2.0]);
         for structure in [0, 3] {
             let [whole, own, multiplied] = [0, 1, 2].map(|motion| plan.case(structure + motion));
             assert_eq!(own.outcome(), multiplied.outcome());
@@ -682,7 +677,7 @@ mod tests {
         let expected = |T| 2.0 * spectral_acceleration(&pulse().record, T, 0.02) / 9.81;
         assert_eq!([f_2, f_5], [0.5, 0.2].map(expected));
         assert_eq!([0, 1, 2, 3, 4, 5].map(|index| plan.case(index).group), [0, 1, 2, 0, 1, 2]);
-        let alone = Plan::new(vec![piers()], vec![pulse()], vec![1.0, 2.0]).unwrap();
+        let alone = usual(vec![piers()], vec![pulse()], vec![1.0, 2.0]);
         assert_eq!([0, 1, 2, 3].map(|index| alone.case(index).group), [0, 0, 1, 1]);
     }
 }

@@ -385,7 +385,7 @@ mod tests {
             let motion = |(name, scale, factor)| NamedRecord::new(name, record.clone().multiplied(factor), scale);
             let motions = copies.map(|copy| motion(copy).unwrap());
             let only = Population::new("only", Structure::new(Parameters::EVISON).unwrap());
-            let plan = Plan::new(vec![only], motions.into(), vec![1.0]).unwrap();
+            let plan = Plan::new(vec![only], motions.into(), vec![1.0], Conditions::default()).unwrap();
             Sweep::open(&plan, false, &program, None).map(|_| ()).map_err(|error| error.to_string())
         };
         let refused = "the ground motions \"one\" and \"two\" are the same and would count twice: leave one out";
@@ -404,10 +404,10 @@ mod tests {
             let wall = Structure::new(Parameters { J0: 1.2, ..Parameters::EVISON }).unwrap().on(&ground).unwrap();
             let only = Population::new("only", wall);
             let record = Record::from_samples("", vec![0.0, 1.0], vec![0.0, 1.0]).unwrap();
-            let plan =
-                Plan::new(vec![only], vec![NamedRecord::new("one", record, 2.0).unwrap()], vec![1.0, 3.0]).unwrap();
+            let (motion, conditions) = (NamedRecord::new("one", record, 2.0).unwrap(), Conditions::default());
+            let plan = Plan::new(vec![only], vec![motion], vec![1.0, 3.0], conditions.clone()).unwrap();
             let Sweep { keys, .. } = Sweep::open(&plan, false, &program, None).unwrap();
-            let (case, conditions) = (plan.case(1), Conditions::default());
+            let case = plan.case(1);
             let motion = (digest_of(&case.motion.record).into_bytes(), 2.0, 3.0);
             let all = (("only", "one"), case.structure.numbers(), motion, conditions, false);
             assert_eq!(keys[1], Uuid::new_v5(&program.build, &postcard::to_allocvec(&all).unwrap()));

@@ -198,7 +198,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         all_warn(warnings);
         let (tolerance, duration) = (file.tolerance.unwrap_or(DEFAULT_TOLERANCE), file.duration);
         let conditions = Conditions { initial: file.initial.state(), detail: file.detail, tolerance, duration };
-        let plan = Plan::new(populations, motions?, scales)?.under(conditions)?;
+        let plan = Plan::new(populations, motions?, scales, conditions)?;
         all_warn(plan.doubts.clone());
         let limits = limits(&file.limits, &plan.measures).context("limits")?;
         limits.iter().try_for_each(|limit| limit.check(plan.widest)).context("limits")?;
