@@ -29,6 +29,9 @@ const ROUNDING: f64 = 1.0 + 1e-13;
 /// The most quantities whose peaks a watcher seeks.
 pub(crate) const MOST_SOUGHT: usize = 4;
 
+/// How many leaps are looked at to find the two durations of most of them.
+const LOOKED_AHEAD: usize = 4;
+
 /// A number of each run.
 pub(crate) type Row = [f64; MOST];
 
@@ -118,16 +121,6 @@ fn load<S: Simd, const K: usize>(simd: S, rows: &[Row; K]) -> [Lanes<S>; K] {
     numbers
 }
 
-/// A leap of each run.
-#[derive(Debug, Default)]
-struct Leap {
-    /// s.
-    duration: Row,
-    /// The ground acceleration at both its ends.
-    a_g: [Row; 2],
-    flow: Flow<Row>,
-}
-
 /// Leaps in full contact of several runs, from sample to sample.
 #[derive(Debug, Default)]
 #[repr(align(64))]
@@ -135,7 +128,8 @@ pub(crate) struct Contacts<'a> {
     sought: Sought,
     samples: [Samples<'a>; MOST],
     entered: [usize; MOST],
-    is_there: [bool; MOST],
+    /// 1 where there is a run.
+    is_there: Row,
     /// The contact of the run that is there, or was there last.
     exact: [Option<ExactContact>; MOST],
     oscillator: Oscillator<Row>,
@@ -143,10 +137,13 @@ pub(crate) struct Contacts<'a> {
     u: Row,
     u_dot: Row,
     age: Row,
-    /// The next leap at the place `parity`, and the leap after it at the other. A leap is written number by number a round before it is
-    /// read as rows, since the processor would otherwise wait for the numbers.
-    leaps: [Leap; 2],
-    parity: usize,
+    /// Two durations (s) with the numbers of the [`Flow`] over each, and which of them is the newer one. Between two powers of 2 the times
+    /// i dt of a record differ by one of two numbers.
+    flows: [[Row; 7]; 2],
+    newer: [usize; MOST],
+    /// The time of a sample and the ground acceleration there. A sample is written number by number a leap before it is read as rows,
+    /// since the processor would otherwise wait for the numbers.
+    ends: [[Row; 2]; 2],
     /// 1 where the last leap has been taken.
     is_taken: Row,
 }
@@ -156,7 +153,7 @@ impl<'a> Contacts<'a> {
     pub(crate) fn enter<W: Passes>(&mut self, lane: usize, engine: &Engine, samples: Samples<'a>, watch: &W) {
         let (one, motion) = (engine.structure().one().expect("it is of one mass"), engine.motion());
         watch.seek(engine, lane, &mut self.sought);
-        (self.samples[lane], self.entered[lane], self.is_there[lane]) = (samples, samples.next, true);
+        (self.samples[lane], self.entered[lane], self.is_there[lane]) = (samples, samples.next, 1.0);
         (self.u_cr[lane], self.age[lane]) = (one.u_cr, motion.chatter.age);
         (self.u[lane], self.u_dot[lane]) = (motion.state.u, motion.state.u_dot);
         let level = by_equations_5_and_6(&*engine.level).expect(STEPS_ALONE);
@@ -164,43 +161,38 @@ impl<'a> Contacts<'a> {
         if self.exact[lane].as_ref().is_none_or(|kept| kept.oscillator != exact.oscillator) {
             let Oscillator { omega, zeta } = exact.oscillator;
             (self.oscillator.omega[lane], self.oscillator.zeta[lane]) = (omega, zeta);
-            self.leaps.iter_mut().for_each(|leap| leap.duration[lane] = 0.0);
+            self.flows.iter_mut().for_each(|[duration, ..]| duration[lane] = 0.0);
             self.exact[lane] = Some(exact.clone());
         }
-        self.put(lane, self.parity, samples.next);
+        self.prepare(lane);
     }
 
-    /// Puts the leap of the run in `lane` that ends in sample `next` among those of a parity.
+    /// Keeps the flows of the next leaps of the run in `lane`.
     #[inline]
-    fn put(&mut self, lane: usize, parity: usize, next: usize) {
-        let (Samples { times, a_g, .. }, Some(exact)) = (self.samples[lane], &self.exact[lane]) else { return };
-        let (duration, leap) = (times[next] - times[next - 1], &mut self.leaps[parity]);
-        (leap.a_g[0][lane], leap.a_g[1][lane]) = (a_g[next - 1], a_g[next]);
-        if duration != leap.duration[lane] {
-            let Flow { free, step, ramp } = *exact.flow(duration);
-            leap.duration[lane] = duration;
-            put(&mut leap.flow.free, lane, free);
-            (leap.flow.step[lane], leap.flow.ramp[lane]) = (step, ramp);
+    fn prepare(&mut self, lane: usize) {
+        let (Samples { times, next, last, .. }, Some(exact)) = (self.samples[lane], &self.exact[lane]) else { return };
+        for ends in times[next - 1..last.min(next + LOOKED_AHEAD)].windows(2).rev() {
+            let duration = ends[1] - ends[0];
+            if self.flows.iter().all(|[kept, ..]| kept[lane] != duration) {
+                self.newer[lane] = 1 - self.newer[lane];
+                let Flow { free: [m11, m12, m21, m22], step, ramp } = *exact.flow(duration);
+                put(&mut self.flows[self.newer[lane]], lane, [duration, m11, m12, m21, m22, step, ramp]);
+            }
         }
     }
 
     /// Leaps as often as all runs do: while the bases certainly stay down and the watchers need not see it.
     pub(crate) fn step<S: Simd>(&mut self, simd: S) {
-        let mut all_go_on = true;
-        while all_go_on {
-            for lane in 0..S::F64_LANES {
-                let Samples { next, last, .. } = self.samples[lane];
-                if self.is_there[lane] && next + 1 < last {
-                    self.put(lane, 1 - self.parity, next + 1);
-                }
+        let is_there = self.is_there;
+        let lanes = || (0..S::F64_LANES).filter(|lane| is_there[*lane] == 1.0);
+        let left = |samples: &Samples| samples.last.saturating_sub(samples.next);
+        loop {
+            let most = lanes().map(|lane| left(&self.samples[lane])).min();
+            simd.vectorize(Leapt(simd, self, most.unwrap_or(0)));
+            if !lanes().all(|lane| self.goes_on(lane)) {
+                return;
             }
-            simd.vectorize(Leapt(simd, self));
-            let is_there = self.is_there;
-            self.parity = 1 - self.parity;
-            for lane in (0..S::F64_LANES).filter(|lane| is_there[*lane]) {
-                self.samples[lane].next += usize::from(self.is_taken[lane] == 1.0);
-                all_go_on &= self.goes_on(lane);
-            }
+            lanes().for_each(|lane| self.prepare(lane)); // a duration is new
         }
     }
 
@@ -212,7 +204,7 @@ impl<'a> Contacts<'a> {
 
     /// Takes the run in `lane` out. Returns the next sample.
     pub(crate) fn leave<W: Passes>(&mut self, lane: usize, engine: &mut Engine, watch: &mut W) -> usize {
-        self.is_there[lane] = false;
+        self.is_there[lane] = 0.0;
         let (Samples { times, next, .. }, motion) = (self.samples[lane], &mut engine.motion);
         if next > self.entered[lane] {
             motion.state = State { u: self.u[lane], u_dot: self.u_dot[lane], theta: 0.0, theta_dot: 0.0 };
@@ -222,41 +214,79 @@ impl<'a> Contacts<'a> {
         }
         next
     }
+
+    /// Writes the sample that is `ahead` of the next one of each run.
+    #[inline(always)]
+    fn write(&mut self, ahead: usize) {
+        let [time, a] = &mut self.ends[ahead % 2];
+        for (lane, Samples { times, a_g, next, .. }) in self.samples.iter().enumerate() {
+            let sample = (next + ahead).wrapping_sub(1);
+            if let (Some(next_time), Some(next_a)) = (times.get(sample), a_g.get(sample)) {
+                (time[lane], a[lane]) = (*next_time, *next_a);
+            }
+        }
+    }
 }
 
-/// Leaping.
-struct Leapt<'c, 'a, S: Simd>(S, &'c mut Contacts<'a>);
+/// Leaping, at most as often as this.
+struct Leapt<'c, 'a, S: Simd>(S, &'c mut Contacts<'a>, usize);
 
 impl<S: Simd> WithSimd for Leapt<'_, '_, S> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<T: Simd>(self, _simd: T) {
-        let Leapt(simd, of) = self;
+        let Leapt(simd, of, left) = self;
         let row = |row: &Row| Lanes::load(simd, row);
         let oscillator = Oscillator { omega: row(&of.oscillator.omega), zeta: row(&of.oscillator.zeta) };
-        let Leap { duration, a_g: [a, a_next], flow } = &of.leaps[of.parity];
-        let (u, u_dot, duration) = (row(&of.u), row(&of.u_dot), row(duration));
-        let (a, a_next) = (row(a), row(a_next));
-        let slope = (a_next - a) / duration;
-        let a_end = a + slope * duration;
-        let flow = Flow { free: load(simd, &flow.free), step: row(&flow.step), ramp: row(&flow.ramp) };
-        let [u_end, u_dot_end] = flow.driven([u, u_dot], a, slope);
-        let swing = oscillator.swing([u, u_dot], a, slope, duration);
-        let is_low = oscillator.farthest(&swing, [u, u_end], slope, duration).is_less(row(&of.u_cr));
-        let [swing_u, swing_u_dot, u_ddot, jerk] = oscillator.swings(&swing);
-        let per_bend = duration * duration / u.like(8.0);
-        let most_u = most_of_swing([u, u_end], swing_u, [u_ddot, per_bend]);
-        let most_u_dot = most_of_swing([u_dot, u_dot_end], swing_u_dot, [jerk, per_bend]);
-        let (most_a, none, largest) = (a.abs().max(a_end.abs()), u.like(0.0), u.like(f64::MAX));
-        let is_finite = (u_end + u_dot_end).abs().is_at_most(largest) & a_end.abs().is_at_most(largest);
-        let is_passed = of.sought.are_passed(simd, [most_u, most_u_dot, most_a, none], [most_a, none]);
-        let is_taken = is_low & is_finite & is_passed;
-        is_taken.choose(u_end, u).store(&mut of.u);
-        is_taken.choose(u_dot_end, u_dot).store(&mut of.u_dot);
-        let age = row(&of.age);
-        is_taken.choose(age + duration, age).store(&mut of.age);
-        is_taken.choose(u.like(1.0), none).store(&mut of.is_taken);
+        let (mut u, mut u_dot, mut age, u_cr) = (row(&of.u), row(&of.u_dot), row(&of.age), row(&of.u_cr));
+        let (one, none, largest) = (u.like(1.0), u.like(0.0), u.like(f64::MAX));
+        let is_absent = row(&of.is_there).is_less(one);
+        let (mut is_taken, mut leaps) = (none.is_less(one), 0);
+        of.write(0);
+        of.write(1);
+        let [mut time, mut a] = load(simd, &of.ends[0]);
+        while leaps < left {
+            of.write(leaps + 2);
+            let [time_next, a_next] = load(simd, &of.ends[(leaps + 1) % 2]);
+            let duration = time_next - time;
+            let is_first = duration.is_equal(row(&of.flows[0][0]));
+            let mut flow = [none; 7];
+            for ((number, first), second) in flow.iter_mut().zip(&of.flows[0]).zip(&of.flows[1]) {
+                *number = is_first.choose(row(first), row(second));
+            }
+            let [kept, m11, m12, m21, m22, step, ramp] = flow;
+            if !(duration.is_equal(kept) | is_absent).all() {
+                break;
+            }
+            let slope = (a_next - a) / duration;
+            let a_end = a + slope * duration;
+            let [u_end, u_dot_end] = Flow { free: [m11, m12, m21, m22], step, ramp }.driven([u, u_dot], a, slope);
+            let swing = oscillator.swing([u, u_dot], a, slope, duration);
+            let is_low = oscillator.farthest(&swing, [u, u_end], slope, duration).is_less(u_cr);
+            let [swing_u, swing_u_dot, u_ddot, jerk] = oscillator.swings(&swing);
+            let per_bend = duration * duration / u.like(8.0);
+            let most_u = most_of_swing([u, u_end], swing_u, [u_ddot, per_bend]);
+            let most_u_dot = most_of_swing([u_dot, u_dot_end], swing_u_dot, [jerk, per_bend]);
+            let most_a = a.abs().max(a_end.abs());
+            let is_finite = (u_end + u_dot_end).abs().is_at_most(largest) & a_end.abs().is_at_most(largest);
+            let is_passed = of.sought.are_passed(simd, [most_u, most_u_dot, most_a, none], [most_a, none]);
+            is_taken = is_low & is_finite & is_passed;
+            leaps += 1;
+            if !(is_taken | is_absent).all() {
+                (u, u_dot) = (is_taken.choose(u_end, u), is_taken.choose(u_dot_end, u_dot));
+                age = is_taken.choose(age + duration, age);
+                break;
+            }
+            (u, u_dot, age, time, a) = (u_end, u_dot_end, age + duration, time_next, a_next);
+        }
+        is_taken.choose(one, none).store(&mut of.is_taken);
+        for (number, row) in [(u, &mut of.u), (u_dot, &mut of.u_dot), (age, &mut of.age)] {
+            number.store(row);
+        }
+        for (Samples { next, .. }, is_taken) in of.samples.iter_mut().zip(of.is_taken) {
+            *next += leaps - usize::from(is_taken == 0.0);
+        }
     }
 }
 

@@ -88,6 +88,11 @@ impl<S: Simd> Lanes<S> {
     }
 
     #[inline(always)]
+    pub(crate) fn is_equal(self, other: Lanes<S>) -> Answers<S> {
+        Answers { simd: self.simd, of: self.simd.equal_f64s(self.of, other.of) }
+    }
+
+    #[inline(always)]
     pub(crate) fn is_less(self, other: Lanes<S>) -> Answers<S> {
         Answers { simd: self.simd, of: self.simd.less_than_f64s(self.of, other.of) }
     }
