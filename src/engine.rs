@@ -36,7 +36,7 @@ use crate::numbers::dual::Dual;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, Start};
 use crate::structure::ground::MORE;
-use crate::structure::quantity::{Refused, ensure};
+use crate::structure::quantity::{Quantity, Refused, ensure};
 use crate::{Foundation, Output, Phase, State, Structure};
 use motion::{Chatter, Motion, Work};
 use phases::{Closed, Step, Watched};
@@ -91,24 +91,9 @@ pub enum Progress {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // the messages name the fields
 pub enum AdvanceError {
-    /// The interval is not positive and finite.
-    #[error(
-        "cannot advance from t = {} over {}: a finite time greater than 0 is needed",
-        with_unit(*from, "s"),
-        with_unit(*interval, "s")
-    )]
-    NotAhead { from: f64, interval: f64 },
-    /// The load is not finite over the interval.
-    #[error(
-        "{name} = {} with slope {}/s is not finite over {}: give finite loads",
-        with_unit(*value, unit),
-        with_unit(*slope, unit),
-        with_unit(*interval, "s")
-    )]
-    Load { name: &'static str, unit: &'static str, value: f64, slope: f64, interval: f64 },
-    /// The ground moves vertically, and the engine was made without ([`Settings::vertical`]).
-    #[error("a_v = {} with slope {slope:?} m/s3: this structure was to be shaken horizontally alone", with_unit(*value, "m/s2"))]
-    Vertical { value: f64, slope: f64 },
+    /// An interval or a load that no motion can follow.
+    #[error(transparent)]
+    Refused(#[from] Refused),
     /// Too many steps for one call.
     #[error(
         "the {MAX_STEPS_PER_ADVANCE} steps of an advance end by t = {} of {}: advance in shorter intervals",
@@ -142,7 +127,7 @@ impl AdvanceError {
             AdvanceError::TooLong { time, .. }
             | AdvanceError::TooManyPolynomials { time, .. }
             | AdvanceError::Singular { time, .. } => Some(time),
-            AdvanceError::NotAhead { .. } | AdvanceError::Load { .. } | AdvanceError::Vertical { .. } => None,
+            AdvanceError::Refused(_) => None,
         }
     }
 }
@@ -494,21 +479,28 @@ impl<Q: Coordinates> Engine<Q> {
     /// The reason why `load` cannot act over `interval` (s).
     #[cold]
     fn refusal(&self, interval: f64, load: &LinearLoad<Q>) -> Result<(), AdvanceError> {
-        if !(interval > 0.0 && interval <= f64::MAX) {
-            return Err(AdvanceError::NotAhead { from: self.motion.time, interval });
-        }
+        let over = with_unit(interval, "s");
+        ensure(interval > 0.0 && interval <= f64::MAX, || {
+            let from = with_unit(self.motion.time, "s");
+            format!("cannot advance from t = {from} over {over}: a finite time greater than 0 is needed")
+        })?;
         let Ramp { value, slope } = load.upwards();
-        if !self.settings.vertical && (value, slope) != (0.0, 0.0) {
-            return Err(AdvanceError::Vertical { value, slope });
-        }
+        ensure(self.settings.vertical || (value, slope) == (0.0, 0.0), || {
+            let value = with_unit(value, "m/s2");
+            format!("a_v = {value} with slope {slope:?} m/s3: this structure was to be shaken horizontally alone")
+        })?;
         let [end, value, slope] = [load.at(interval), load.value, load.slope].map(|load| Load {
             a_g: load.a_g,
             F_t: load.F_t.total(),
             a_v: load.a_v,
         });
-        let Some(bad) = LOADS.iter().find(|quantity| !(quantity.get)(&end).is_finite()) else { return Ok(()) };
-        let [value, slope] = [&value, &slope].map(bad.get);
-        Err(AdvanceError::Load { name: bad.name, unit: bad.unit, value, slope, interval })
+        for &Quantity { name, unit, get, .. } in &LOADS {
+            ensure(get(&end).is_finite(), || {
+                let [value, slope] = [&value, &slope].map(|load| with_unit(get(load), unit));
+                format!("{name} = {value} with slope {slope}/s is not finite over {over}: give finite loads")
+            })?;
+        }
+        Ok(())
     }
 }
 
@@ -717,8 +709,8 @@ where
             self.arc.reach = reach;
             let duration = self.arc.duration();
             if !self.arc.is_finite() || reach < 1.0 && is_at_its_end(level, motion, duration, closed) {
-                let State { u, theta, .. } = motion.state;
-                let u = u.middle(level.structure());
+                let (State { u, theta, .. }, structure) = (motion.state, level.structure());
+                let u = Q::sum(structure, |j, mode| mode.gamma * u.of(j)) / structure.body().m_s;
                 return Err(AdvanceError::Singular { time: motion.time, u, theta });
             }
             if motion.work.steps == last_step {

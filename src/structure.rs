@@ -69,6 +69,12 @@ impl Body {
         Parameters { H: 1.0, r, ..self.over(Parameters::EVISON) }.check()
     }
 
+    /// The base of these `parameters`, with the coefficient of restitution `r`, under mass of these moments m_s, S_1 and I_2.
+    pub(crate) fn of(parameters: &Parameters, r: Option<f64>, [m_s, S_1, I_2]: [f64; 3]) -> Body {
+        let &Parameters { m0, J0, B, g, c_ratio, .. } = parameters;
+        Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties: Ties::of(parameters) }
+    }
+
     /// The parameters of the base, and the others from `rest`; r is NaN without a coefficient.
     fn over(&self, rest: Parameters) -> Parameters {
         let &Body { m0, J0, B, r, g, c_ratio, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y }, .. } = self;
@@ -451,13 +457,9 @@ impl Structure {
         if self.one().is_some() {
             return Structure::new(parameters);
         }
-        let Parameters { m0, J0, B, r, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
-        let (r, ties) = (Some(r).filter(|r| !r.is_nan()), Ties { P_0, k_t, xi_d, c_d, k_d, F_y });
-        self.on_own_ground(Structure::of_body(
-            Body { m0, J0, B, r, g, c_ratio, ties, ..self.0.body },
-            &self.0.modes,
-            &self.0.floors,
-        )?)
+        let Body { m_s, S_1, I_2, .. } = self.0.body;
+        let body = Body::of(&parameters, Some(parameters.r).filter(|r| !r.is_nan()), [m_s, S_1, I_2]);
+        self.on_own_ground(Structure::of_body(body, &self.0.modes, &self.0.floors)?)
     }
 
     /// This structure as engines of one coordinate move it, if one mode is all of it: the coordinate is scaled so that the mode takes the
@@ -588,9 +590,8 @@ impl Structure {
 
 impl From<OneMass> for Structure {
     fn from(one: OneMass) -> Structure {
-        let &Parameters { m, m0, H, B, J0, r, g, c_ratio, .. } = one.parameters();
-        let ties = one.base.ties;
-        let body = Body { m0, J0, m_s: m, S_1: m * H, I_2: m * H * H, B, r: Some(r), g, c_ratio, ties };
+        let &Parameters { m, H, r, .. } = one.parameters();
+        let body = Body::of(one.parameters(), Some(r), [m, m * H, m * H * H]);
         let floor = Floor { mass: m, height: H, shape: Modes::new(&[1.0]) };
         // with the bits of the paper's formulas
         Structure::of(body, &[one.mode], &[floor]).changed(|whole| {

@@ -21,6 +21,7 @@ use crate::levels::linear::LinearRocking;
 use crate::levels::modes::ManyModes;
 use crate::levels::nonlinear::NonlinearRocking;
 use crate::levels::on_ground::OnGround;
+use crate::levels::oscillator::Oscillator;
 use crate::mechanics::restraint::Angles;
 use crate::mechanics::uplift::least_hold;
 use crate::series::taylor::{Arc, Start};
@@ -90,7 +91,7 @@ impl Detail {
         let one = *structure.of_mode()?;
         let is_tied = structure.base().is_restrained() || is_vertical;
         let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
-        let contact = ExactContact::new(&one);
+        let contact = ExactContact::new(Oscillator { omega: one.omega_fc, zeta: one.parameters().zeta_fc });
         Ok(match self {
             Detail::Auto | Detail::Nonlinear => {
                 let contact = (self == Detail::Auto).then_some(contact);

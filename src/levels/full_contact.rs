@@ -48,18 +48,18 @@ pub(crate) struct ExactContact {
 }
 
 impl ExactContact {
-    /// For `structure`.
-    pub(crate) fn new(structure: &OneMass) -> ExactContact {
-        let oscillator = Oscillator { omega: structure.omega_fc, zeta: structure.parameters().zeta_fc };
+    pub(crate) fn new(oscillator: Oscillator) -> ExactContact {
         ExactContact { oscillator, flows: Kept::new(Flow::NONE) }
     }
 
     /// The state after the interval of `start` if |u| certainly stays below `limit` (m) until then.
     #[inline]
     pub(crate) fn leap(&self, start: &Start, limit: f64) -> Option<State> {
-        let end = self.end(start);
-        let goes_on = limit == f64::INFINITY || self.is_low(start, &end, &self.swing(start), limit);
-        goes_on.then_some(end)
+        let &Start { state, a_top, interval, .. } = start;
+        let [u, u_dot] = self.flow(interval).driven([state.u, state.u_dot], a_top.value, a_top.slope);
+        let farthest = || self.oscillator.farthest(&self.swing(start), [state.u, u], a_top.slope, interval);
+        let is_low = limit == f64::INFINITY || farthest() < limit;
+        is_low.then_some(State { u, u_dot, theta: 0.0, theta_dot: 0.0 })
     }
 
     /// The flow over `duration` (s).
@@ -68,24 +68,10 @@ impl ExactContact {
         self.flows.over(duration, || self.oscillator.flow(duration))
     }
 
-    /// The state after the interval of `start`.
-    #[inline(always)]
-    fn end(&self, start: &Start) -> State {
-        let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
-        let [u, u_dot] = self.flow(interval).driven([u, u_dot], a_top.value, a_top.slope);
-        State { u, u_dot, theta: 0.0, theta_dot: 0.0 }
-    }
-
     #[inline(always)]
     fn swing(&self, start: &Start) -> Swing {
         let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
         self.oscillator.swing([u, u_dot], a_top.value, a_top.slope, interval)
-    }
-
-    /// Whether |u| certainly stays below `limit` (m) from `start` to `end`.
-    #[inline(always)]
-    fn is_low(&self, start: &Start, end: &State, swing: &Swing, limit: f64) -> bool {
-        self.oscillator.farthest(swing, [start.state.u, end.u], start.a_top.slope, start.interval) < limit
     }
 
     /// Bounds of |u|, |u̇|, |ü| and |u⃛| of the vibration over the interval of `start`.

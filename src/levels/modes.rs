@@ -17,9 +17,10 @@
 
 use crate::levels::detail::Detail;
 use crate::levels::first_uplift::Liftable;
+use crate::levels::full_contact::ExactContact;
 use crate::levels::level::{Level, Now, Subject, derivatives};
 use crate::levels::nonlinear::{Factors, LEAST_INERTIA, NO_ROW, products, row};
-use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
+use crate::levels::oscillator::{Oscillator, Swing};
 use crate::levels::rules::{ChatterLimit, after_rigid_impact};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::impact;
@@ -50,7 +51,7 @@ pub(crate) struct ManyModes<Q: Coordinates> {
     rigid: Option<[f64; 2]>,
     vibration: Vibration,
     /// The oscillators of full contact, if their exact flow is used.
-    contact: Option<Vec<(Oscillator, Kept<Flow>)>>,
+    contact: Option<Vec<ExactContact>>,
     /// Radius of gyration about a pivot √(J_P/m_t), m.
     radius: f64,
     /// Inertia about a pivot that the modes leave, kg·m².
@@ -269,9 +270,9 @@ impl<Q: Coordinates> ManyModes<Q> {
         rigid: Option<[f64; 2]>,
         vibration: Vibration,
     ) -> ManyModes<Q> {
-        let oscillator = |mode: &Mode| {
+        let exact = |mode: &Mode| {
             let omega = mode.omega();
-            (Oscillator { omega, zeta: mode.damping / (2.0 * mode.mass * omega) }, Kept::new(Flow::NONE))
+            ExactContact::new(Oscillator { omega, zeta: mode.damping / (2.0 * mode.mass * omega) })
         };
         let left = inertia(&base, modes, Side::Right, |_| 0.0);
         let ties = restraint::sum(&restraint::ties(&base, Side::Right, &Dissipators::NEW), |tie| tie.lever);
@@ -279,7 +280,7 @@ impl<Q: Coordinates> ManyModes<Q> {
         let fastest = (highest * highest + ties.stiffness / left).sqrt().max(base.p_l).max(ties.damping / left);
         let has_flow = detail != Detail::Nonlinear && rigid.is_none();
         ManyModes {
-            contact: has_flow.then(|| modes.iter().map(oscillator).collect()),
+            contact: has_flow.then(|| modes.iter().map(exact).collect()),
             radius: (base.J_P / base.m_t).sqrt(),
             left,
             quickening: base.J_P / left,
@@ -566,9 +567,9 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
         let &Start { ref state, ref a_top, interval, .. } = start;
         let (mut end, mut farthest, mut bend) = (State { theta: 0.0, theta_dot: 0.0, ..*state }, 0.0, 0.0);
         let mut springs = [0.0; 2];
-        for (j, (mode, (oscillator, flows))) in self.modes.iter().zip(contact).enumerate() {
+        for (j, (mode, exact)) in self.modes.iter().zip(contact).enumerate() {
             let (from, value, slope) = ([state.u.of(j), state.u_dot.of(j)], a_top.value.of(j), a_top.slope.of(j));
-            let to = flows.over(interval, || oscillator.flow(interval)).driven(from, value, slope);
+            let (oscillator, to) = (&exact.oscillator, exact.flow(interval).driven(from, value, slope));
             let swing: Swing = oscillator.swing(from, value, slope, interval);
             let moment = (mode.height * mode.stiffness).abs();
             farthest += moment * swing.farthest();
@@ -587,7 +588,7 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
         let (Phase::FullContact, Some(contact)) = (phase, &self.contact) else { return None };
         let &Start { ref state, ref a_top, interval, .. } = start;
         let mut bounds = [Q::parts(&self.subject.structure, 0.0); 4];
-        for (j, (oscillator, _)) in contact.iter().enumerate() {
+        for (j, ExactContact { oscillator, .. }) in contact.iter().enumerate() {
             let from = [state.u.of(j), state.u_dot.of(j)];
             let swing = oscillator.swing(from, a_top.value.of(j), a_top.slope.of(j), interval);
             bounds.iter_mut().zip(oscillator.swings(&swing)).for_each(|(of, most)| of.set(j, most));

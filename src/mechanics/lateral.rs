@@ -121,14 +121,8 @@ pub trait Coordinates:
     /// How far the polynomials with these coefficients leave the chords between their ends, up to σ = `reach`.
     fn off_chord(coefficients: &[Self], reach: f64) -> Self;
 
-    /// Bounds of the magnitudes of a motion between these ends that leaves its chords by this much.
-    fn beyond(ends: [&Self; 2], off_chord: Self) -> Self;
-
     /// Bounds of the magnitudes of the polynomials with these coefficients, which end in `end`, up to σ = `reach`.
-    #[inline(always)]
-    fn most(coefficients: &[Self], end: &Self, reach: f64) -> Self {
-        Self::beyond([&coefficients[0], end], Self::off_chord(coefficients, reach))
-    }
+    fn most(coefficients: &[Self], end: &Self, reach: f64) -> Self;
 
     /// The coordinates in their order.
     fn as_slice(&self) -> &[f64];
@@ -147,11 +141,6 @@ pub trait Coordinates:
 
     /// The sum of the coordinates: finite if all of them are.
     fn total(&self) -> f64;
-
-    /// Displacement of the centre of the mass that moves, m.
-    fn middle(&self, structure: &Structure) -> f64 {
-        Self::sum(structure, |j, mode| mode.gamma * self.of(j)) / structure.body().m_s
-    }
 }
 
 /// Bounds of the magnitudes of coordinates.
@@ -295,8 +284,8 @@ impl Coordinates for f64 {
     }
 
     #[inline(always)]
-    fn beyond([first, last]: [&f64; 2], off_chord: f64) -> f64 {
-        first.abs().max(last.abs()) + off_chord
+    fn most(coefficients: &[f64], end: &f64, reach: f64) -> f64 {
+        coefficients[0].abs().max(end.abs()) + off_chord(coefficients, reach)
     }
 
     #[inline(always)]
@@ -475,11 +464,13 @@ impl Coordinates for Modes {
         off
     }
 
-    fn beyond([first, last]: [&Modes; 2], mut off_chord: Modes) -> Modes {
-        for ((off, first), last) in off_chord.fours_mut().zip(first.fours()).zip(last.fours()) {
+    #[inline(always)]
+    fn most(coefficients: &[Modes], end: &Modes, reach: f64) -> Modes {
+        let mut most = Modes::off_chord(coefficients, reach);
+        for ((off, first), last) in most.fours_mut().zip(coefficients[0].fours()).zip(end.fours()) {
             (0..4).for_each(|i| off[i] += first[i].abs().max(last[i].abs()));
         }
-        off_chord
+        most
     }
 
     #[inline]

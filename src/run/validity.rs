@@ -44,7 +44,7 @@ use crate::{
 pub use assumptions::{
     ASSUMPTIONS, Assumption, EDGE_LOAD, ENERGY, FRICTION, IMPACT_FRICTION, IMPACT_TENSION, Passing, TENSION, WEIGHT,
 };
-use assumptions::{Combination, Impact, NO_SLIDING, OF_REACTIONS, OfReactions, PRESSED_EDGE, Scale};
+use assumptions::{Combination, NO_SLIDING, OF_REACTIONS, OfReactions, PRESSED_EDGE, Scale, of_impact};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -304,19 +304,6 @@ impl Validity {
         }
     }
 
-    /// Sees an impact at `time` (s).
-    fn see_impact(&mut self, time: f64, impact: &Impact) {
-        self.found.impacts += 1;
-        self.found.gains += u64::from(impact.gain > 0.0);
-        for (which, value) in impact.values(self.scale().B) {
-            self.found.see(which, value, time);
-            let Assumption { limit, passing, .. } = &ASSUMPTIONS[which];
-            if passing.passes(value, limit(&self.limits)) {
-                self.found.see_beyond(which, time, 1.0);
-            }
-        }
-    }
-
     /// Sees that `piece` passes, whatever its reactions are.
     fn see_passing<Q: Coordinates>(&mut self, piece: &Piece<Q>) {
         self.found.duration += piece.duration;
@@ -365,7 +352,15 @@ impl Validity {
             _ => 0.0, // a landing always loses
         };
         let impulse = Impulse::of::<Q>(structure, (Phase::Rocking(side), &before), (phase, &after));
-        self.see_impact(time, &Impact { impulse, gain: gained / kinetic });
+        self.found.impacts += 1;
+        self.found.gains += u64::from(gained / kinetic > 0.0);
+        for (which, value) in of_impact(&impulse, gained / kinetic, structure.base().B) {
+            self.found.see(which, value, time);
+            let Assumption { limit, passing, .. } = &ASSUMPTIONS[which];
+            if passing.passes(value, limit(&self.limits)) {
+                self.found.see_beyond(which, time, 1.0);
+            }
+        }
     }
 }
 

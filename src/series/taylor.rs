@@ -58,17 +58,10 @@ pub(crate) fn weighed_sum(weights: &[f64], coefficients: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + of_rest
 }
 
-/// Σ |c_k|, in four sums side by side.
+/// Σ |c_k|.
 #[inline]
 pub(crate) fn sum_of_magnitudes(coefficients: &[f64]) -> f64 {
-    let (fours, rest) = coefficients.as_chunks::<4>();
-    let mut sums = [0.0; 4];
-    for four in fours {
-        for i in 0..4 {
-            sums[i] += four[i].abs();
-        }
-    }
-    sums.iter().sum::<f64>() + rest.iter().map(|c| c.abs()).sum::<f64>()
+    weighed_sum(&[1.0; MAX_ORDER + 2], coefficients)
 }
 
 /// The orders, as weights of [`weighed_sum`].

@@ -1,5 +1,6 @@
 //! The rigid base of a structure and the ties between the base and the ground, by their numbers.
 
+use crate::Parameters;
 use serde::{Deserialize, Serialize};
 
 /// The rigid base of a structure, with all mass that no mode carries.
@@ -46,6 +47,13 @@ pub struct Ties {
     pub k_d: f64,
     /// Force at which it yields, N.
     pub F_y: f64,
+}
+
+impl Ties {
+    /// The ties among these parameters.
+    pub(crate) fn of(&Parameters { P_0, k_t, xi_d, c_d, k_d, F_y, .. }: &Parameters) -> Ties {
+        Ties { P_0, k_t, xi_d, c_d, k_d, F_y }
+    }
 }
 
 impl Base {

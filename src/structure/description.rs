@@ -13,7 +13,7 @@ use crate::structure::natural_quantities::{self, Given};
 use crate::structure::parameters::{MAX_DAMPING, MAX_SLENDERNESS};
 use crate::structure::quantity::{Quantity, Refused, Units, ensure};
 use crate::structure::{check_count, of_number};
-use crate::{Body, Floor, Mode, Parameters, Structure, Ties};
+use crate::{Body, Floor, Mode, Parameters, Structure};
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 use std::f64::consts::TAU;
@@ -416,10 +416,9 @@ fn given_base(given: &Given) -> Result<(Parameters, Option<f64>), Refused> {
 }
 
 /// The base of `given` under mass of these moments m_s, S_1 and I_2.
-fn body(given: &Given, [m_s, S_1, I_2]: [f64; 3]) -> Result<Body, Refused> {
+fn body(given: &Given, moments: [f64; 3]) -> Result<Body, Refused> {
     let (parameters, r) = given_base(given)?;
-    let Parameters { m0, J0, B, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
-    Ok(Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y } })
+    Ok(Body::of(&parameters, r, moments))
 }
 
 /// The modes of the frequencies `omegas` (rad/s) with these Γ and κ.

@@ -55,7 +55,8 @@ impl OneMass {
     /// Derives a structure from its parameters, or returns the first parameter that is out of range.
     pub fn new(parameters: Parameters) -> Result<OneMass, Refused> {
         parameters.check()?;
-        let Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, r, g, P_0, k_t, xi_d, c_d, k_d, F_y } = parameters;
+        let Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, r, g, .. } = parameters;
+        let ties @ Ties { P_0, k_t, xi_d, c_d, k_d, .. } = Ties::of(&parameters);
         let gamma = (m + m0) / m;
         let omega_fc = TAU * f_fc;
         let k = m * omega_fc * omega_fc;
@@ -70,7 +71,6 @@ impl OneMass {
         let foundation = (J0 + m0 * B * B) / m;
         let (inertia, pair) = (m * (foundation + B * B), 2.0 * (B * B + xi_d * xi_d));
         let held = k_t * B * B + k_d * pair;
-        let ties = Ties { P_0, k_t, xi_d, c_d, k_d, F_y };
         let rocking_rate = (omega_u * omega_u + held / inertia).sqrt().max(p_l).max(c_d * pair / inertia);
         Ok(OneMass {
             parameters,

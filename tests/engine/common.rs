@@ -1,4 +1,4 @@
-//! Shared by several tests: a ground motion, random numbers, transitions of an advance, peaks beside samples.
+//! Shared by several tests: a ground motion, random numbers, transitions of an advance, peaks beside samples, momenta.
 
 use fastrand::Rng;
 use rocking::engine::piece::Sample;
@@ -6,7 +6,7 @@ use rocking::engine::{DEFAULT_TOLERANCE, Settings};
 use rocking::run::peaks::{Peak, Peaks};
 use rocking::run::record::Record;
 use rocking::run::{Run, Runs};
-use rocking::{Detail, Engine, LinearLoad, OneMass, Output, Parameters, State, Transition};
+use rocking::{Detail, Engine, LinearLoad, OneMass, Output, Parameters, Phase, State, Transition};
 
 /// `count` samples of `a_g` (m/s²), `dt` (s) apart.
 pub fn sampled(count: usize, dt: f64, a_g: impl Fn(f64) -> f64) -> Record {
@@ -88,4 +88,34 @@ pub fn peaks_beside_samples<Q: Runs>(
         assert!((least..=most).contains(&peak.magnitude), "{:?}, {of:?}: {peak:?}, {sampled:?}", run.detail);
     }
     peaks
+}
+
+/// One mass as the geometry stands: places of the top mass and of the middle of the base, their momenta to the right and upwards, the
+/// angular momentum about the origin, and the kinetic energy.
+pub struct Balance {
+    pub x: [f64; 2],
+    pub y: [f64; 2],
+    pub right: f64,
+    pub up: f64,
+    pub turning: f64,
+    pub kinetic: f64,
+}
+
+pub fn balance(&Parameters { m, m0, H, B, J0, .. }: &Parameters, phase: Phase, state: &State) -> Balance {
+    let &State { u, u_dot, theta, theta_dot } = state;
+    let pivot = phase.side().sign() * B;
+    let (sin, cos) = theta.sin_cos();
+    let x = [pivot * (1.0 - cos) + u * cos + H * sin, pivot * (1.0 - cos)];
+    let y = [(pivot - u) * sin + H * cos, pivot * sin];
+    let v = [u_dot * cos + y[0] * theta_dot, y[1] * theta_dot];
+    let w = [(pivot - x[0]) * theta_dot - u_dot * sin, (pivot - x[1]) * theta_dot];
+    let sum = |of: &dyn Fn(usize) -> f64| m * of(0) + m0 * of(1);
+    Balance {
+        x,
+        y,
+        right: sum(&|i| v[i]),
+        up: sum(&|i| w[i]),
+        turning: sum(&|i| y[i] * v[i] - x[i] * w[i]) + J0 * theta_dot,
+        kinetic: 0.5 * (sum(&|i| v[i] * v[i] + w[i] * w[i]) + J0 * theta_dot * theta_dot),
+    }
 }

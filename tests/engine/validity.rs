@@ -1,7 +1,7 @@
 //! Validity at impacts, against the momenta and the kinetic energy before and after. `missed_peaks.rs` compares the motion
 //! between impacts with dense sampling, and `reactions.rs` the reactions with the balance of momentum.
 
-use crate::common::{shaking, transitions_of};
+use crate::common::{Balance, balance, shaking, transitions_of};
 use rocking::run::record::Record;
 use rocking::run::validity::{
     ASSUMPTIONS, EDGE_LOAD, ENERGY, IMPACT_FRICTION, IMPACT_TENSION, Limits, TENSION, WEIGHT,
@@ -26,21 +26,6 @@ fn scenes() -> Vec<(Parameters, State, Detail, Record)> {
     ]
 }
 
-/// Momentum to the right, downwards and about the middle of the base, and kinetic energy, of a structure that touches the
-/// ground.
-fn at_the_ground(structure: &OneMass, phase: Phase, state: &State) -> [f64; 4] {
-    let &Parameters { m, m0, H, B, J0, .. } = structure.parameters();
-    let &State { u, u_dot, theta_dot, .. } = state;
-    let pivot = phase.side().sign() * B;
-    let (top, base) = ([u_dot + H * theta_dot, (pivot - u) * theta_dot], [0.0, pivot * theta_dot]);
-    [
-        m * top[0] + m0 * base[0],
-        -m * top[1] - m0 * base[1],
-        m * (H * top[0] - u * top[1]) + J0 * theta_dot,
-        0.5 * (m * (top[0].powi(2) + top[1].powi(2)) + m0 * base[1].powi(2) + J0 * theta_dot * theta_dot),
-    ]
-}
-
 #[test]
 fn impacts_go_beyond_what_momenta_say() {
     let mut tried = [0; ASSUMPTIONS.len()];
@@ -59,8 +44,10 @@ fn impacts_go_beyond_what_momenta_say() {
                 TransitionKind::Landing if detail != Detail::Rigid => (Side::of(-before.theta_dot), Phase::FullContact),
                 _ => continue,
             };
-            let [before, after] = [(Phase::Rocking(side), before), (next, after)]
-                .map(|(phase, state)| at_the_ground(&structure, phase, state));
+            let [before, after] = [(Phase::Rocking(side), before), (next, after)].map(|(phase, state)| {
+                let Balance { right, up, turning, kinetic, .. } = balance(&parameters, phase, state);
+                [right, -up, turning, kinetic]
+            });
             let [I_h, I_v, I_m] = [0, 1, 2].map(|i| before[i] - after[i]);
             let gain = (after[3] - before[3]) / before[3];
             for (k, value) in [I_h.abs() / I_v, I_m.abs() / parameters.B / I_v - 1.0, gain].into_iter().enumerate() {

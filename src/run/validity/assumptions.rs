@@ -205,21 +205,9 @@ pub(super) const NO_SLIDING: OfReactions = OfReactions {
 /// The assumptions about the reactions.
 pub(super) const OF_REACTIONS: [OfReactions; 3] = [NO_TENSION, PRESSED_EDGE, NO_SLIDING];
 
-/// An impact: its impulse, and the energy that it gains as a fraction of the energy before it.
-pub(super) struct Impact {
-    pub impulse: Impulse,
-    pub gain: f64,
-}
-
-impl Impact {
-    /// The values that tell of the assumptions about impacts, each with its place in [`ASSUMPTIONS`]; `B` is half the width of the base.
-    pub fn values(&self, B: f64) -> [(usize, f64); 3] {
-        let &Impulse { I_h, I_v, I_m } = &self.impulse;
-        let per_impulse = |force: f64| if I_v > 0.0 { force / I_v } else { f64::INFINITY };
-        [
-            (IMPACT_FRICTION, per_impulse(I_h.abs())),
-            (IMPACT_TENSION, per_impulse(I_m.abs() / B - I_v)),
-            (ENERGY, self.gain),
-        ]
-    }
+/// The values that tell of the assumptions about impacts, each with its place in [`ASSUMPTIONS`], of an impact with this `impulse` that
+/// gains this part of the kinetic energy before it; `B` is half the width of the base.
+pub(super) fn of_impact(&Impulse { I_h, I_v, I_m }: &Impulse, gain: f64, B: f64) -> [(usize, f64); 3] {
+    let per_impulse = |force: f64| if I_v > 0.0 { force / I_v } else { f64::INFINITY };
+    [(IMPACT_FRICTION, per_impulse(I_h.abs())), (IMPACT_TENSION, per_impulse(I_m.abs() / B - I_v)), (ENERGY, gain)]
 }
