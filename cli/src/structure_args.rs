@@ -4,14 +4,14 @@ use crate::{
     record_args::one_of,
     talk::{say, warning},
 };
-use anyhow::{Context, anyhow, bail};
+use anyhow::{Context, bail};
 use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource};
 use rocking::digits::short;
 use rocking::structure::derived::Derived;
 use rocking::structure::description::Described;
 use rocking::structure::doubts::{DOUBTED, doubted};
 use rocking::structure::ground;
-use rocking::structure::natural_quantities::{Given, GivenError, NATURAL, names};
+use rocking::structure::natural_quantities::{Given, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::quantity::Quantity;
 use rocking::{Parameters, Structure};
@@ -78,7 +78,7 @@ impl StructureArgs {
                 say!("structure      mcmanus, the default: choose another with --preset or --parameters");
                 Structure::new(Parameters::MCMANUS)?
             }
-            (None, None) => Structure::new(numbers.parameters().map_err(with_options)?)?,
+            (None, None) => Structure::new(numbers.parameters(on_command_line)?)?,
         })
     }
 }
@@ -90,13 +90,6 @@ pub fn of_file(text: &str) -> anyhow::Result<Structure> {
         return Ok(toml::from_str::<Described>(text)?.structure()?);
     }
     Ok(toml::from_str::<Given>(text)?.structure(None)?)
-}
-
-/// The error with the options that help.
-fn with_options(error: GivenError) -> anyhow::Error {
-    let GivenError::Missing(missing) = &error else { return error.into() };
-    let advice = missing.iter().map(|missing| missing.advice(on_command_line));
-    anyhow!(advice.collect::<Vec<_>>().join("; "))
 }
 
 /// The option of the number called `name`: `--f-fc` of f_fc.

@@ -80,7 +80,7 @@ fn first<const N: usize>(gaps: [Option<Gap>; N], reach: f64) -> Crossing {
 }
 
 /// Takes `crossing` if it comes before the one that is `found`.
-fn see(found: &mut (Crossing, Way), crossing: Crossing, which: usize, sign: i8) {
+pub(super) fn see(found: &mut (Crossing, Way), crossing: Crossing, which: usize, sign: i8) {
     if crossing.sigma() < found.0.sigma() {
         *found = (crossing, Way { which: which as u8, sign });
     }

@@ -5,6 +5,7 @@
 //! The zeros of θ̇ at the start are therefore divided out, like the zeros of θ at an uplift.
 
 use crate::Side;
+use crate::engine::contacts::see;
 use crate::engine::motion::Motion;
 use crate::engine::phases::{BAND, Guard, Step, Way};
 use crate::engine::piece::Sample;
@@ -33,11 +34,6 @@ impl<Q: Coordinates> Guard<Q> for Yielding {
         let mut found = (Crossing::None, Way::default());
         let theta_dot = arc.used(&arc.theta_dot);
         let Some(zeros) = theta_dot.iter().position(|c| c.is_normal()) else { return found };
-        let mut see = |crossing: Crossing, j: usize, sign: i8| {
-            if crossing.sigma() < found.0.sigma() {
-                found = (crossing, Way { which: j as u8, sign });
-            }
-        };
         for (j, lever) in moving(base, side) {
             // positive while the elongation moves that way
             let moves = |way: f64| Gap::new(&theta_dot[zeros..], (way * lever).signum(), 0.0);
@@ -53,10 +49,10 @@ impl<Q: Coordinates> Guard<Q> for Yielding {
                         }
                         let is_less = Gap::new(arc.used(&arc.theta), -towards, towards * theta);
                         let moves_back = moves(-f64::from(way));
-                        see(first_time_all_closed([is_less, moves_back], reach), j, way);
+                        see(&mut found, first_time_all_closed([is_less, moves_back], reach), j, way);
                     }
                 }
-                way => see(first_time_all_closed([moves(f64::from(way))], reach), j, 0),
+                way => see(&mut found, first_time_all_closed([moves(f64::from(way))], reach), j, 0),
             }
         }
         found

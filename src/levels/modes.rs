@@ -650,41 +650,14 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::OneMass;
-    use crate::Ties;
     use crate::mechanics::gauge::Gauge;
     use crate::mechanics::instant::Instant;
     use crate::mechanics::lateral::{Lateral, Modes};
     use crate::mechanics::load::Load;
     use crate::mechanics::reactions::Reactions;
-    use crate::{Body, Floor, Structure};
+    use crate::structure::description::tests::three_storeys;
+    use crate::{Body, Structure};
     use approx::assert_relative_eq;
-
-    /// A restrained structure whose modes have these shares and carry the whole mass, or less of `more` mass.
-    fn frame(shares: &[f64], more: f64) -> (OneMass, Structure) {
-        let restrained =
-            Parameters { P_0: 200.0, k_t: 3e4, xi_d: 0.1, c_d: 40.0, k_d: 1e5, F_y: 400.0, ..Parameters::MCMANUS };
-        let structure = OneMass::new(Parameters { zeta_fc: 0.1, c_ratio: 1.3, ..restrained }).unwrap();
-        let mode = |(j, share): (usize, &f64)| {
-            let Mode { mass, height, stiffness, damping, .. } = structure.mode;
-            let (mass, stiffer) = (mass / shares.len() as f64 / (share * share), (1 + j) as f64);
-            Mode {
-                mass,
-                gamma: mass * share,
-                share: *share,
-                height: height * share / stiffer,
-                stiffness: mass * stiffer * stiffness / structure.mode.mass,
-                damping: mass * damping / structure.mode.mass,
-            }
-        };
-        let modes: Vec<_> = shares.iter().enumerate().map(mode).collect();
-        let Parameters { m0, J0, B, r, g, c_ratio, .. } = *structure.parameters();
-        let of = |part: fn(&Mode) -> f64| more * modes.iter().map(part).sum::<f64>();
-        let (m_s, S_1) = (of(|mode| mode.gamma * mode.share), of(|mode| mode.gamma * mode.height));
-        let (I_2, ties) = (of(|mode| mode.mass * mode.height * mode.height), structure.base().ties);
-        let body = Body { m0, J0, m_s, S_1, I_2, B, r: Some(r), g, c_ratio, ties };
-        (structure, Structure::of_body(body, &modes, &[]).unwrap())
-    }
 
     fn level(frame: &Structure, detail: Detail) -> ManyModes<Modes> {
         let angles = detail.angles();
@@ -694,18 +667,19 @@ mod tests {
     /// The distance from uplift is the larger of what (M3) misses and of −s D θ̈, by the equations of rocking, under all loads.
     #[test]
     fn the_uplift_margin_follows_from_the_equations_of_rocking() {
-        let (_, frame) = frame(&[1.3, -0.6, 0.4], 1.25);
+        let frame = three_storeys().keeping(2).unwrap();
+        let tied = Parameters { P_0: 2e5, k_t: 1e6, xi_d: 0.5, c_d: 1e4, k_d: 1e7, F_y: 4e4, ..frame.parameters() };
+        let frame = frame.with(Parameters { c_ratio: 1.3, ..tied }).unwrap();
         let &Base { m_t, S_res, B, g, .. } = frame.base();
         let dissipators = Dissipators { plastic: [2e-3, -1e-3], ..Dissipators::NEW };
         let level = level(&frame, Detail::Nonlinear);
         let weight = (m_t * g + frame.base().ties.P_0) * B;
         for (scale, a_v) in [(1.0, -1.5), (-1.0, 2.5), (0.2, 4.0)] {
-            let [u, u_dot] = [[0.004, -0.003, 0.002], [0.3, 0.1, -0.2]].map(|of| Modes::new(&of.map(|it| scale * it)));
+            let [u, u_dot] = [[2.5, -1.5], [200.0, 50.0]].map(|of| Modes::new(&of.map(|it| scale * it)));
             let state = State { u, u_dot, theta: 0.0, theta_dot: 0.0 };
-            let load = Load { a_g: 0.7, F_t: Modes::new(&[9.0, 5.0, -7.0]).and_rest([60.0, -90.0]), a_v };
+            let load = Load { a_g: 0.7, F_t: Modes::new(&[90.0, 50.0]).and_rest([6e4, -9e4]), a_v };
             let now = Now { state: &state, load, dissipators: &dissipators };
-            let springs =
-                Modes::sum(&frame, |j, mode| mode.height * mode.stiffness * u.of(j)) - S_res * load.a_g - 90.0;
+            let springs = Modes::sum(&frame, |j, mode| mode.height * mode.stiffness * u.of(j)) - S_res * load.a_g - 9e4;
             let expected = [Side::Right, Side::Left].map(|side| {
                 let [tendon, pair @ ..] = restraint::ties(frame.base(), side, &dissipators);
                 let residual: f64 = pair.iter().map(|tie| tie.lever * tie.force).sum();
@@ -725,19 +699,18 @@ mod tests {
     /// with modes whose rounding leaves next to none.
     #[test]
     fn gauges_and_reactions_follow_from_the_motion() {
-        [1.25, 1.0 + 3e-10].into_iter().for_each(gauges_and_reactions_follow);
+        let (frame, more) = (three_storeys(), 1.0 + 3e-10);
+        let &Body { m_s, S_1, I_2, .. } = frame.body();
+        let body = Body { m_s: more * m_s, S_1: more * S_1, I_2: more * I_2, ..*frame.body() };
+        let rounded = Structure::of_body(body, frame.modes(), frame.floors()).unwrap();
+        [frame.keeping(2).unwrap(), rounded].into_iter().for_each(gauges_and_reactions_follow);
     }
 
-    fn gauges_and_reactions_follow(more: f64) {
-        let (structure, frame) = frame(&[1.3, -0.6, 0.4], more);
-        let base = Base { ties: Ties::default(), ..*structure.base() };
-        let floor = |mass, height, shape: [f64; 3]| Floor { mass, height, shape: Modes::new(&shape) };
-        let floors = [floor(3.0, 1.1, [0.2, 0.5, -0.3]), floor(2.0, 2.3, [0.9, -0.4, 0.1])];
-        let frame = Structure::of_body(Body { ties: base.ties, ..*frame.body() }, frame.modes(), &floors).unwrap();
-        let level = level(&frame, Detail::Nonlinear);
-        let modes = |numbers: [f64; 3]| Modes::new(&numbers);
-        let (u, u_dot) = (modes([0.01, -0.02, 0.005]), modes([0.3, 0.1, -0.2]));
-        let forces = [70.0, -40.0];
+    fn gauges_and_reactions_follow(frame: Structure) {
+        let (level, floors) = (level(&frame, Detail::Nonlinear), frame.floors());
+        let modes = |numbers: [f64; 3]| Modes::new(&numbers[..frame.modes().len()]);
+        let (u, u_dot) = (modes([3.0, -2.0, 0.5]), modes([90.0, 30.0, -20.0]));
+        let forces = [70e3, -40e3, 20e3];
         let load = frame.load(3.0, -1.5, &forces).unwrap();
         let turned = State { u, u_dot, theta: -0.2, theta_dot: 0.5 };
         for (phase, state) in
@@ -770,9 +743,9 @@ mod tests {
                 });
                 assert_relative_eq!(reactions.R_m, turns + rigid, max_relative = 1e-12);
                 // the foundation carries its own a_g, and the masses carry the base shear
-                let carried = value(&gauges.V_t) + frame.body().m0 * a_g - forces[0] - forces[1];
+                let carried = value(&gauges.V_t) + frame.body().m0 * a_g - forces.iter().sum::<f64>();
                 assert_relative_eq!(reactions.R_h, -carried, max_relative = 1e-12);
-                let pushed: f64 = forces.iter().zip(&floors).map(|(force, floor)| force * floor.height).sum();
+                let pushed: f64 = forces.iter().zip(floors).map(|(force, floor)| force * floor.height).sum();
                 assert_relative_eq!(
                     value(&gauges.M_t),
                     -(reactions.R_m - weight * x.sum(|j, mode| mode.gamma * u.of(j)) - pushed),

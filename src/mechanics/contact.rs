@@ -3,7 +3,7 @@
 use crate::mechanics::energy::mechanical;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
-use crate::mechanics::restraint::{Angles, Dissipators, Restraint, Restraints, Tie};
+use crate::mechanics::restraint::{Angles, Dissipators, Restraint, Restraints, Tie, pair};
 use crate::numbers::{Angle, Number};
 use crate::structure::ground::Point;
 use crate::{Base, Contact, Foundation, Load, Phase, Side, State, Structure, Ties};
@@ -54,16 +54,10 @@ impl Foundation {
 /// The tendon and both dissipators of `base` on ground that gives, at ξ in the place of a lever: a tie elongates by y − y_s − ξ sin θ and
 /// pulls with F_0 + k (y − ξ sin θ) + c (ẏ − ξ θ̇ cos θ). `rest` is y_s.
 pub(crate) fn ties_on_ground(base: &Base, rest: f64, dissipators: &Dissipators, contact: Contact) -> [Tie; 3] {
-    let Ties { P_0, k_t, xi_d, c_d, k_d, F_y, .. } = base.ties;
-    let dissipator = |j: usize| {
-        let (force, stiffness) = match dissipators.yields[j] {
-            0 => (-k_d * (dissipators.plastic[j] + rest), k_d),
-            way => (f64::from(way) * F_y, 0.0),
-        };
-        Tie { lever: [xi_d, -xi_d][j], force, stiffness, damping: c_d }
-    };
+    let Ties { P_0, k_t, xi_d, .. } = base.ties;
+    let [first, second] = pair(base, dissipators, [xi_d, -xi_d], dissipators.plastic.map(|plastic| plastic + rest));
     let [force, stiffness] = if contact.is_slack { [0.0; 2] } else { [P_0 - k_t * rest, k_t] };
-    [Tie { lever: 0.0, force, stiffness, damping: 0.0 }, dissipator(0), dissipator(1)]
+    [Tie { lever: 0.0, force, stiffness, damping: 0.0 }, first, second]
 }
 
 /// The forces of `ties` on ground that gives, given y and sin θ with their rates, N.

@@ -117,17 +117,23 @@ pub(crate) fn levers(base: &Base, side: Side) -> [f64; 2] {
 /// The tendon and both dissipators of `base` about `side`, with the dissipators in this state.
 #[inline]
 pub(crate) fn ties(base: &Base, side: Side, dissipators: &Dissipators) -> [Tie; 3] {
-    let &Base { B, ties: Ties { P_0, k_t, c_d, k_d, F_y, .. }, .. } = base;
-    let levers = levers(base, side);
-    let dissipator = |j: usize| {
+    let &Base { B, ties: Ties { P_0, k_t, .. }, .. } = base;
+    let tendon = Tie { lever: side.sign() * B, force: P_0, stiffness: k_t, damping: 0.0 };
+    let [first, second] = pair(base, dissipators, levers(base, side), dissipators.plastic);
+    [tendon, first, second]
+}
+
+/// Both dissipators of `base` with these levers, whose elongations beyond `plastic` (m) are elastic.
+#[inline]
+pub(crate) fn pair(base: &Base, dissipators: &Dissipators, levers: [f64; 2], plastic: [f64; 2]) -> [Tie; 2] {
+    let Ties { c_d, k_d, F_y, .. } = base.ties;
+    [0, 1].map(|j| {
         let (force, stiffness) = match dissipators.yields[j] {
-            0 => (-k_d * dissipators.plastic[j], k_d),
+            0 => (-k_d * plastic[j], k_d),
             way => (f64::from(way) * F_y, 0.0),
         };
         Tie { lever: levers[j], force, stiffness, damping: c_d }
-    };
-    let tendon = Tie { lever: side.sign() * B, force: P_0, stiffness: k_t, damping: 0.0 };
-    [tendon, dissipator(0), dissipator(1)]
+    })
 }
 
 /// One tie with the lever 1 in place of all `ties`, each with this weight.

@@ -525,16 +525,30 @@ impl<Q: Runs> Run<'_, Q> {
 
 /// The warnings that follow from a structure at the level `detail`, before anything moves.
 pub fn of_structure(structure: &Structure, detail: Detail) -> Vec<String> {
-    structure.one().map_or_else(|| of_many(structure, detail), |one| of_one(one, detail))
+    let base @ &Base { J_P, m_t, B, r, .. } = structure.base();
+    match (structure.foundation(), structure.one()) {
+        _ if !detail.has_uplift() => Vec::new(),
+        (Some(foundation), _) => on_ground(structure, foundation),
+        (None, Some(one)) => of_one(one, detail),
+        (None, None) => {
+            let at_rest = impact::restitution(structure, Side::Right, &State::<Modes>::default());
+            let mut warnings = Vec::from_iter(r.and_then(|r| pulling(r, base, "m_t")));
+            if r.is_none() && at_rest <= 0.0 {
+                let [at_rest, J_P, least] = [at_rest, J_P, 2.0 * m_t * B * B].map(short);
+                warnings.push(format!(
+                    "r = {at_rest} by momentum: J_P = {J_P} kg.m2 is not above 2 m_t B^2 = {least} kg.m2, and an impact with u = 0 \
+                     ends rocking; are masses in kg, heights in m, and is B half of the base's width?"
+                ));
+            }
+            warnings
+        }
+    }
 }
 
 fn of_one(structure: &OneMass, detail: Detail) -> Vec<String> {
     let &Parameters { m, B, H, g, r, P_0, .. } = structure.parameters();
     let &OneMass { gamma, omega_fc, u_cr, .. } = structure;
     let mut warnings = Vec::new();
-    if !detail.has_uplift() {
-        return warnings;
-    }
     if detail.has_strut() && u_cr > B {
         let balanced = (gamma * g * B + P_0 * B / m) / (H * omega_fc * omega_fc + g);
         let held = if P_0 > 0.0 { "gamma g + P_0/m" } else { "gamma g" };
@@ -547,7 +561,7 @@ fn of_one(structure: &OneMass, detail: Detail) -> Vec<String> {
             short(balanced)
         ));
     }
-    warnings.extend(pulling(r, impact::pulling_restitution(structure.base()), "(m + m0)"));
+    warnings.extend(pulling(r, structure.base(), "(m + m0)"));
     if detail.has_strut() && impact::greatest_gain(structure, u_cr) > 0.0 {
         let range = match impact::lossless_restitution(structure, u_cr) {
             Some(range) => {
@@ -560,26 +574,6 @@ fn of_one(structure: &OneMass, detail: Detail) -> Vec<String> {
             "r = {} can raise the energy at an impact with |u| = u_cr: {range}, see docs/explain/failures.md, section 7",
             short(r)
         ));
-    }
-    warnings
-}
-
-fn of_many(frame: &Structure, detail: Detail) -> Vec<String> {
-    let base @ &Base { J_P, m_t, B, r, .. } = frame.base();
-    let at_rest = impact::restitution(frame, Side::Right, &State::<Modes>::default());
-    let mut warnings = Vec::new();
-    if let Some(foundation) = frame.foundation().filter(|_| detail.has_uplift()) {
-        return on_ground(frame, foundation);
-    }
-    if detail.has_uplift() {
-        warnings.extend(r.and_then(|r| pulling(r, impact::pulling_restitution(base), "m_t")));
-        if r.is_none() && at_rest <= 0.0 {
-            let [at_rest, J_P, least] = [at_rest, J_P, 2.0 * m_t * B * B].map(short);
-            warnings.push(format!(
-                "r = {at_rest} by momentum: J_P = {J_P} kg.m2 is not above 2 m_t B^2 = {least} kg.m2, and an impact with u = 0 ends \
-                 rocking; are masses in kg, heights in m, and is B half of the base's width?"
-            ));
-        }
     }
     warnings
 }
@@ -612,7 +606,8 @@ fn on_ground(frame: &Structure, foundation: &Foundation) -> Vec<String> {
 }
 
 /// The warning about a coefficient of restitution `r` that requires a pull.
-fn pulling(r: f64, limit: f64, mass: &str) -> Option<String> {
+fn pulling(r: f64, base: &Base, mass: &str) -> Option<String> {
+    let limit = impact::pulling_restitution(base);
     (r < limit).then(|| {
         let [r, limit] = [r, limit].map(short);
         format!(

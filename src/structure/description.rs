@@ -17,7 +17,6 @@ use crate::{Body, Floor, Mode, Parameters, Structure};
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 use std::f64::consts::TAU;
-use std::fmt::Display;
 
 /// The floor at `h` (m) with the mass `m` (kg), on a storey of the stiffness `k` (N/m).
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
@@ -409,10 +408,8 @@ fn checked(frame: Structure) -> Result<Structure, Refused> {
 
 /// The checked numbers of a base.
 fn given_base(given: &Given) -> Result<(Parameters, Option<f64>), Refused> {
-    let of_base = |error: &dyn Display| Refused(format!("base: {error}"));
-    let (parameters, r) = given.base().map_err(|error| of_base(&error))?;
-    parameters.check().map_err(|error| of_base(&error))?;
-    Ok((parameters, r))
+    let base = given.base().and_then(|(parameters, r)| parameters.check().map(|()| (parameters, r)));
+    base.map_err(|error| Refused(format!("base: {error}")))
 }
 
 /// The base of `given` under mass of these moments m_s, S_1 and I_2.

@@ -20,7 +20,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{self, Error, IntoDeserializer, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
-use std::fmt::{self, Display};
+use std::fmt;
 
 /// A derived quantity that may be given in the place of a parameter.
 #[derive(Debug)]
@@ -111,44 +111,6 @@ impl<'de> Visitor<'de> for OfEntry {
     }
 }
 
-/// Why numbers determine no structure.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum GivenError {
-    /// Parameters that nothing determines.
-    #[error("{}", in_words(.0))]
-    Missing(Vec<Missing>),
-    /// Numbers that are refused.
-    #[error(transparent)]
-    Refused(#[from] Refused),
-}
-
-/// A parameter that is not determined.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Missing {
-    /// The parameter.
-    pub name: &'static str,
-    /// Description.
-    pub description: &'static str,
-    /// Names and units of the numbers that determine the parameter.
-    pub ways: Vec<(&'static str, &'static str)>,
-}
-
-impl Missing {
-    /// The missing parameter and the numbers to give for it, each name as it is `called` in the input.
-    pub fn advice(&self, called: impl Fn(&str) -> String) -> String {
-        let way = |&(name, unit): &(&str, &str)| match unit {
-            "1" => called(name),
-            _ => format!("{} ({unit})", called(name)),
-        };
-        let ways = self.ways.iter().map(way).collect::<Vec<_>>().join(" or ");
-        format!("{} ({}) is missing: give {ways}", self.name, self.description)
-    }
-}
-
-fn in_words(missing: &[Missing]) -> String {
-    missing.iter().map(|missing| missing.advice(str::to_owned)).collect::<Vec<_>>().join("; ")
-}
-
 /// Numbers that a structure of many masses has not.
 const OF_ONE_MASS: [&str; 8] = ["m", "weight", "H", "alpha_cg", "f_fc", "period_fc", "zeta_fc", "p_l"];
 
@@ -212,17 +174,17 @@ impl Given {
 
     /// The structure of one mass of these [`Given::parameters`], or of `base` changed by these numbers. Messages name the numbers as
     /// they were given.
-    pub fn structure(&self, base: Option<&Parameters>) -> Result<Structure, GivenError> {
-        let in_units = |error: &dyn Display| Refused(self.units.message(error));
+    pub fn structure(&self, base: Option<&Parameters>) -> Result<Structure, Refused> {
+        let in_units = |error: Refused| Refused(self.units.message(error));
         let gives = self.ground.as_ref().is_some_and(|ground| !ground.is_rigid());
         let needs_no_r = gives && base.is_none() && self.get("r").is_none();
-        let alone = || self.solve(|name| default(name).or((needs_no_r && name == "r").then_some(1.0)));
-        let parameters = base.map_or_else(alone, |base| self.over(base)).map_err(|error| in_units(&error))?;
-        let structure = Structure::new(parameters).map_err(|error| in_units(&error))?;
+        let alone = || self.solve(&str::to_owned, |name| default(name).or((needs_no_r && name == "r").then_some(1.0)));
+        let parameters = base.map_or_else(alone, |base| self.over(base)).map_err(in_units)?;
+        let structure = Structure::new(parameters).map_err(in_units)?;
         let on_ground = structure.on(&self.ground);
         let without_r = |of: Structure| of.with(Parameters { r: f64::NAN, ..of.parameters() });
         let on_ground = if needs_no_r { on_ground.and_then(without_r) } else { on_ground };
-        Ok(on_ground.map_err(|error| in_units(&error))?.measured_in(self.units))
+        Ok(on_ground.map_err(in_units)?.measured_in(self.units))
     }
 
     /// These numbers on `ground` that gives.
@@ -230,24 +192,26 @@ impl Given {
         Given { ground: Some(ground), ..self }
     }
 
-    /// The parameters that these numbers determine on rigid ground, with default values for the rest.
-    pub fn parameters(&self) -> Result<Parameters, GivenError> {
-        self.solve(default)
+    /// The parameters that these numbers determine on rigid ground, with default values for the rest. If some are missing, each number to
+    /// give has the name by which it is `called` in the input.
+    pub fn parameters(&self, called: impl Fn(&str) -> String) -> Result<Parameters, Refused> {
+        self.solve(&called, default)
     }
 
     /// The parameters `base` changed by these numbers. α_cg changes H, or B if H is given.
-    pub fn over(&self, base: &Parameters) -> Result<Parameters, GivenError> {
-        self.solve(|name| PARAMETERS.iter().find(|parameter| parameter.name == name).map(|of| (of.get)(base)))
+    pub fn over(&self, base: &Parameters) -> Result<Parameters, Refused> {
+        let of_base = |name: &str| PARAMETERS.iter().find(|of| of.name == name).map(|of| (of.get)(base));
+        self.solve(&str::to_owned, of_base)
     }
 
     /// Parameters with the base that these numbers determine, and r if it is given. The numbers of the one mass mean nothing.
-    pub(crate) fn base(&self) -> Result<(Parameters, Option<f64>), GivenError> {
+    pub(crate) fn base(&self) -> Result<(Parameters, Option<f64>), Refused> {
         if let Some(name) = OF_ONE_MASS.into_iter().find(|name| self.get(name).is_some()) {
             let remedy = "leave it out beside storeys, floors and modes";
-            return Err(Refused(format!("{name} is a number of a structure of one mass: {remedy}")).into());
+            return Err(Refused(format!("{name} is a number of a structure of one mass: {remedy}")));
         }
         let of_mass = |name: &str| ["m", "H", "f_fc", "zeta_fc", "r"].contains(&name).then_some(0.5);
-        let parameters = self.solve(|name| default(name).or_else(|| of_mass(name)))?;
+        let parameters = self.solve(&str::to_owned, |name| default(name).or_else(|| of_mass(name)))?;
         Ok((parameters, self.get("r")))
     }
 
@@ -275,14 +239,16 @@ impl Given {
         self.numbers.iter().find(|(given, _)| *given == name).map(|(_, value)| *value)
     }
 
-    /// The parameters, with `otherwise` for the numbers that are not given.
-    fn solve(&self, otherwise: impl Fn(&str) -> Option<f64>) -> Result<Parameters, GivenError> {
+    /// The parameters, with `otherwise` for the numbers that are not given. Messages about missing numbers name them as they are `called`.
+    fn solve(
+        &self,
+        called: &dyn Fn(&str) -> String,
+        otherwise: impl Fn(&str) -> Option<f64>,
+    ) -> Result<Parameters, Refused> {
         self.check()?;
         let is_missing = |name: &&Quantity<Parameters>| !self.determine(name.name) && otherwise(name.name).is_none();
-        let missing: Vec<_> = PARAMETERS.iter().filter(is_missing).map(missing).collect();
-        if !missing.is_empty() {
-            return Err(GivenError::Missing(missing));
-        }
+        let missing: Vec<_> = PARAMETERS.iter().filter(is_missing).map(|of| missing(of, called)).collect();
+        ensure(missing.is_empty(), || missing.join("; "))?;
         let own = |name| self.get(name).or_else(|| otherwise(name)).expect("nothing is missing");
         let or = |name: &'static str, natural: &'static str, from: &dyn Fn(f64) -> f64| match self.get(natural) {
             Some(value) => parameter_for(natural, value, name, from(value)),
@@ -374,10 +340,14 @@ fn unknown(name: &str) -> Refused {
     Refused(format!("{name:?} is unknown; these are known: {known}"))
 }
 
-fn missing(&Quantity { name, unit, description, .. }: &Quantity<Parameters>) -> Missing {
+/// The sentence about a missing parameter, with the numbers to give for it.
+fn missing(of: &Quantity<Parameters>, called: &dyn Fn(&str) -> String) -> String {
+    let &Quantity { name, unit, description, .. } = of;
     let stand_ins = NATURAL.iter().filter(|natural| natural.stands_for == name).map(Natural::derived);
     let ways = [(name, unit)].into_iter().chain(stand_ins.map(|derived| (derived.name, derived.unit)));
-    Missing { name, description, ways: ways.collect() }
+    let way = |(name, unit)| if unit == "1" { called(name) } else { format!("{} ({unit})", called(name)) };
+    let ways = ways.map(way).collect::<Vec<_>>().join(" or ");
+    format!("{name} ({description}) is missing: give {ways}")
 }
 
 impl TryFrom<BTreeMap<String, Entry>> for Given {
@@ -445,7 +415,7 @@ mod tests {
             let original = Parameters { m, m0: mass_ratio * m, H, B, J0, f_fc, ..Parameters::MCMANUS };
             let natural = NATURAL.iter().map(|natural| (natural.name, derived(original, natural.name)));
             let every: Vec<_> = natural.chain([("zeta_fc", original.zeta_fc), ("r", original.r)]).collect();
-            let found = given(&every).parameters().unwrap();
+            let found = given(&every).parameters(str::to_owned).unwrap();
             let J_P = derived(original, "J_P");
             for parameter in &PARAMETERS {
                 let (found, expected) = ((parameter.get)(&found), (parameter.get)(&original));

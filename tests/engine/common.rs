@@ -33,6 +33,12 @@ pub fn log_between(rng: &mut Rng, low: f64, high: f64) -> f64 {
     between(rng, low.ln(), high.ln()).exp()
 }
 
+/// max |a − b|/max |b|
+pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let most = b.iter().fold(f64::MIN_POSITIVE, |most, b| most.max(b.abs()));
+    a.iter().zip(b).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / most
+}
+
 /// One mass at the default tolerance.
 pub fn start(parameters: Parameters, initial: State, detail: Detail) -> Engine {
     engine_of(OneMass::new(parameters).unwrap(), initial, DEFAULT_TOLERANCE, detail)

@@ -42,12 +42,6 @@ fn at_rest(modes: usize) -> State<Modes> {
     State { u: none, u_dot: none, theta: 0.0, theta_dot: 0.0 }
 }
 
-fn ground(modes: usize, from: f64, to: f64, dt: f64) -> LinearLoad<Modes> {
-    let F_t = Modes::new(&vec![0.0; modes]);
-    let [value, slope] = [from, (to - from) / dt].map(|a_g| Load { a_g, F_t, a_v: 0.0 });
-    LinearLoad { value, slope }
-}
-
 /// A full sine of 0.8 s at 0.3 g, in samples of 10 ms.
 fn pulse(i: usize) -> f64 {
     let t = 0.01 * i as f64;
@@ -273,11 +267,11 @@ fn a_base_that_dampers_held_lifts_off_smoothly() {
     let u = -1.2 * frame.base().m_t * G * frame.base().B / of(0);
     let initial = State { u: Modes::new(&[u, 0.0]), u_dot: Modes::new(&[-30.0 * u, 0.0]), ..at_rest(2) };
     let mut engine = Engine::of_modes(frame, initial, 0.0, Settings { stops: true, ..Settings::default() }).unwrap();
-    let load = ground(2, 12.0, 12.0, 1.0);
+    let load = Load { a_g: 12.0, ..Load::NONE };
     assert_eq!(engine.advance(0.2, load, &mut ()), Ok(Progress::Transition));
     engine.transit(&mut ());
     let (time, after) = (engine.motion().time, 1e-4);
-    let theta_ddot = |engine: &Engine<Modes>| engine.sample(load.value).state_rates().theta_dot;
+    let theta_ddot = |engine: &Engine<Modes>| engine.sample(load).state_rates().theta_dot;
     let at_once = theta_ddot(&engine);
     assert_eq!(engine.advance(after, load, &mut ()), Ok(Progress::Complete));
     let (then, theta) = (theta_ddot(&engine), engine.motion().state.theta);
@@ -293,13 +287,13 @@ fn dissipators_that_yield_together_keep_the_energy() {
     let start = State { theta: 0.05, ..at_rest(2) };
     let mut engine = Engine::of_modes(frame, start, 0.0, Settings::default()).unwrap();
     let total = |engine: &Engine<Modes>| {
-        let Restraints { F_d1, F_d2, .. } = engine.sample(ground(2, 0.0, 0.0, 0.01).value).restraints();
+        let Restraints { F_d1, F_d2, .. } = engine.sample(Load::NONE).restraints();
         engine.energy() + (F_d1 * F_d1 + F_d2 * F_d2) / (2.0 * ties.k_d) + engine.motion().dissipators.hysteretic
     };
     let (mut yielded, mut last, mut kept) = ([Vec::new(), Vec::new()], total(&engine), 0);
     for _ in 0..400 {
         let mut impacts = 0;
-        for transition in transitions(&mut engine, 0.01, ground(2, 0.0, 0.0, 0.01)) {
+        for transition in transitions(&mut engine, 0.01, Load::NONE) {
             match transition.kind {
                 TransitionKind::Yielding(j) | TransitionKind::Unloading(j) => yielded[j].push(transition.time),
                 _ => impacts += 1,

@@ -1,7 +1,7 @@
 //! An integrator of its own on the equations of the library: never below the floor, and nearer to the engine the smaller
 //! its steps. Bad integrators are in `test_model_exchange.py`.
 
-use crate::common::{engine_of, sampled, transitions};
+use crate::common::{distance, engine_of, sampled, transitions};
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::outside_step::{BAND, Checked, Checkpoint};
 use rocking::run::record::Record;
@@ -107,11 +107,6 @@ fn own(detail: Detail, record: &Record) -> (Vec<f64>, Vec<Transition>) {
 fn sway(engine: &Engine) -> f64 {
     let State { u, theta, .. } = engine.motion().state;
     u + engine.structure().floors()[0].height * theta
-}
-
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    let peak = b.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    a.iter().zip(b).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / peak
 }
 
 /// Of fourth order through all transitions, which are the engine's own in kind and, nearly, in time.

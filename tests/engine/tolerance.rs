@@ -1,6 +1,6 @@
 //! The promise of a tolerance: random structures, records and initial states at all levels that rock.
 
-use crate::common::{between, engine_of, log_between};
+use crate::common::{between, distance, engine_of, log_between};
 use fastrand::Rng;
 use rocking::{Detail, OneMass, Parameters, Progress, Ramp, State};
 use std::f64::consts::TAU;
@@ -77,12 +77,6 @@ impl Scene {
         }
         (rotation, engine.motion().work.evaluations)
     }
-}
-
-/// max |Δθ|/max |θ|
-fn distance(rotation: &[f64], exact: &[f64]) -> f64 {
-    let differences = rotation.iter().zip(exact).map(|(a, b)| (a - b).abs());
-    differences.fold(0.0, f64::max) / exact.iter().fold(f64::MIN_POSITIVE, |most, theta| most.max(theta.abs()))
 }
 
 /// The answer, of `auto` that of `nonlinear`, is within the tolerance asked for wherever a change of 1e-12 in the input moves
