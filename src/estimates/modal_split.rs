@@ -97,15 +97,4 @@ mod tests {
             assert_relative_eq!(modal.a_u, structure.one_minus_chi * accelerations[0] + a_g, max_relative = 1e-12);
         }
     }
-
-    /// Eq 13: the step of the rocking mode, 0.34 g in the paper with χ = 0.92, and its sign.
-    #[test]
-    fn a_small_rotation_leaves_the_step_of_equation_13() {
-        let structure = OneMass::new(Parameters::EVISON).unwrap();
-        let g = structure.parameters().g;
-        let step = |side, a_g| ModalAccelerations::of(&structure, side, &State::default(), a_g).unwrap().a_r / g;
-        assert_relative_eq!(step(Side::Left, 0.0), 0.33326, max_relative = 1e-4);
-        assert_relative_eq!(step(Side::Right, 0.0), -0.33326, max_relative = 1e-4);
-        assert_relative_eq!(step(Side::Right, g), -0.33326 - structure.chi, max_relative = 1e-4);
-    }
 }

@@ -159,59 +159,47 @@ pub(super) fn compare_levels<Q: Runs>(run: &Run<Q>) -> Result<Comparison, RunErr
     let since = |run: &Run<Q>| Falling::since(run.ground.start(), &run.structure, run.detail);
     let of_all = |detail| Choice { detail, modes: all_modes(&run.structure) };
     let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..run.clone() };
-    let (choices, level_ground) = (choices(run), run.ground.clone().without_vertical());
+    let (level_ground, is_vertical) = (run.ground.clone().without_vertical(), run.ground.vertical().is_some());
     let level = Run { detail: Detail::Auto, ground: &level_ground, ..run.clone() };
-    let (mut exact_peaks, mut level_peaks) = (since(&exact), since(&level));
-    let mut peaks: Vec<_> = choices.iter().map(|(_, run)| since(run)).collect();
+    let mut runs = choices(run);
+    runs.extend(is_vertical.then(|| (of_all(level.detail), level)));
+    let (mut exact_peaks, mut peaks) = (since(&exact), Vec::from_iter(runs.iter().map(|(_, run)| since(run))));
     let mut reference = start(&exact, of_all(exact.detail), &mut exact_peaks)?;
-    let (mut trials, mut refused, mut without_vertical) = (Vec::new(), Vec::new(), None);
-    for ((choice, run), peaks) in choices.iter().zip(&mut peaks) {
-        match start(run, *choice, peaks) {
-            Ok(trial) => trials.push(trial),
+    let trials = runs.iter().zip(&mut peaks).map(|((choice, run), peaks)| start(run, *choice, peaks));
+    let mut trials = Vec::from_iter(trials);
+    while reference.ending.is_none() || trials.iter().flatten().any(|trial| trial.ending.is_none()) {
+        reference.go_on()?;
+        for trial in &mut trials {
+            if let Some(error) = trial.as_mut().ok().and_then(|trial| trial.go_on().err()) {
+                *trial = Err(error);
+            }
+        }
+        trials.iter_mut().flatten().for_each(|trial| trial.compare(&reference));
+        let known = reference.history.sections.len();
+        let done = trials.iter().flatten().map(|trial| trial.compared).min().unwrap_or(known);
+        reference.history.sections.drain(..done);
+        trials.iter_mut().flatten().for_each(|trial| trial.compared -= done);
+    }
+    let (reference, all, _) = reference.response();
+    let found = trials.into_iter().map(|trial| {
+        let (response, _, distance) = trial?.response();
+        Ok(Verdict::new(&run.structure, response, &distance, &reference, &all))
+    });
+    let mut found: Vec<Result<Verdict, RunError>> = found.collect();
+    let without_vertical = is_vertical.then(|| found.pop()).flatten();
+    let (mut verdicts, mut refused) = (Vec::new(), Vec::new());
+    for (found, (choice, _)) in found.into_iter().zip(&runs) {
+        match found {
+            Ok(verdict) => verdicts.push(verdict),
             Err(error) => refused.push((*choice, error)),
         }
     }
-    if run.ground.vertical().is_some() {
-        trials.push(Trial { is_level: true, ..start(&level, of_all(level.detail), &mut level_peaks)? });
-    }
-    while reference.ending.is_none() || trials.iter().any(|trial| trial.ending.is_none()) {
-        reference.go_on()?;
-        trials.retain_mut(|trial| {
-            let Err(error) = trial.go_on() else { return true };
-            if trial.is_level {
-                without_vertical = Some(Err(error));
-            } else {
-                refused.push((trial.choice, error));
-            }
-            false
-        });
-        trials.iter_mut().for_each(|trial| trial.compare(&reference));
-        let known = reference.history.sections.len();
-        let done = trials.iter().map(|trial| trial.compared).min().unwrap_or(known);
-        reference.history.sections.drain(..done);
-        trials.iter_mut().for_each(|trial| trial.compared -= done);
-    }
-    let (reference, all, _) = reference.response();
-    let mut verdicts = Vec::new();
-    for trial in trials {
-        let is_level = trial.is_level;
-        let (response, _, distance) = trial.response();
-        let verdict = Verdict::new(&run.structure, response, &distance, &reference, &all);
-        if is_level {
-            without_vertical = Some(Ok(verdict));
-        } else {
-            verdicts.push(verdict);
-        }
-    }
-    refused.sort_by_key(|(refused, _)| choices.iter().position(|(choice, _)| choice == refused));
     Ok(Comparison { verdicts, reference, without_vertical, refused })
 }
 
 /// A level on its way.
 struct Trial<'a, Q: Coordinates, Segments> {
     choice: Choice,
-    /// Whether its ground moves horizontally alone and the reference's does not.
-    is_level: bool,
     course: Follower<Q, Segments>,
     peaks: FallWatch<'a, Q>,
     /// The part of the motion that is still to be compared with the reference.
@@ -236,7 +224,6 @@ fn start<'a, Q: Runs>(
     let segments = segments.flat_map(move |segment| cut(segment, LONGEST_STRETCH / fastest));
     Ok(Trial {
         choice,
-        is_level: false,
         course: Follower { engine, segments, end, rest },
         peaks: peaks.watch(),
         distance: Distance::new(slowest, lines.len()),
