@@ -105,7 +105,7 @@ fn record(options: &RecordOptions, path: &Path, g: f64) -> anyhow::Result<(PathB
     if *options == RecordOptions::default() && !input::is_stream(path) {
         return Ok((path.into(), rocking_records::read_file(path)?));
     }
-    Ok(((input::stem(path) + ".csv").into(), understood.table()?.into_bytes()))
+    Ok(((input::stem(path) + ".csv").into(), understood.tables()?.0.into_bytes()))
 }
 
 /// The shared libraries that were built with `program`, at most one for each platform.

@@ -35,7 +35,7 @@ pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
     say_understood("record         ", &understood);
     if let Some(output) = &args.output {
         let file = OutputFiles::of_inputs([args.record.as_path()]).create(output)?;
-        write_as(file, "written", understood.table()?.as_bytes())?;
+        write_as(file, "written", understood.tables()?.0.as_bytes())?;
     }
     let (record, output) = (&understood.record, args.output.as_deref());
     let options = RecordOptions { unit: Some(understood.units[0]), ..args.options.clone() };

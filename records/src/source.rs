@@ -2,7 +2,7 @@
 
 use super::text::quote;
 use super::unit::Stated;
-use super::{BadLine, Record, Remedy, Unit, bad, doubts};
+use super::{BadLine, Record, Remedy, Unit, bad};
 use rocking::digits::short;
 use serde::{Deserialize, Deserializer, de::Error};
 use std::fmt;
@@ -72,14 +72,6 @@ impl Source {
             }
             UnitFrom::File | UnitFrom::User => None,
         }
-    }
-
-    /// The [findings](Source::findings) about a record, then a sentence for an [assumption](Source::assumption) and for each
-    /// of the [`doubts`] about the `scaled` record.
-    pub fn sentences(&self, name: &str, [record, scaled]: [&Record; 2], g: f64, remedy: &str) -> Vec<String> {
-        let warnings = self.assumption(remedy).into_iter().chain(doubts(scaled, g));
-        let warnings = warnings.map(|warning| format!("{name}: {warning}"));
-        [self.findings(name, record, g)].into_iter().chain(warnings).collect()
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::input;
 use anyhow::anyhow;
 use rocking::run::record::{Record, SamplesError};
-use rocking_records::{Reading, RecordError, Remedy, Unit, csv_in};
+use rocking_records::{Reading, RecordError, Remedy, Source, Unit, csv_in, doubt_of_peak, doubts, vertical_csv};
 use std::path::Path;
 
 /// A ground motion that was read from files or streams.
@@ -15,7 +15,9 @@ pub struct Understood {
     factors: [f64; 2],
     /// Units of the horizontal and of the vertical component.
     pub units: [Unit; 2],
-    /// Findings and assumptions in a sentence, then one sentence for each likely error.
+    /// What its file said, if it is of one.
+    pub source: Option<Source>,
+    /// Findings in a sentence, then one sentence for each assumption and for each likely error.
     pub sentences: Vec<String>,
 }
 
@@ -32,15 +34,15 @@ pub fn understand(
         true => rocking_records::from_bytes(Path::new(&input::name(path)), &input::read(path)?, how),
         false => rocking_records::read_raw(path, how),
     };
-    let (in_file_unit, source) = read.map_err(|error| match error {
+    Understood::new(&input::name(path), advised(read, called)?, factors, g, called)
+}
+
+/// What was `read`, or else why not, with the option that would help.
+pub fn advised<T>(read: Result<T, RecordError>, called: fn(&str) -> String) -> anyhow::Result<T> {
+    read.map_err(|error| match error {
         RecordError::Malformed { remedy: Some(remedy), .. } => anyhow!("{error}; {}", remedy.advice(called)),
         _ => error.into(),
-    })?;
-    let of_file = rocking_records::in_m_s2(in_file_unit.clone(), source.unit, g)?;
-    let record = of_file.clone().scaled(factors[0], factors[1])?;
-    let remedy = Remedy::Unit.advice(called);
-    let sentences = source.sentences(&input::name(path), [&of_file, &record], g, &remedy);
-    Ok(Understood { record, in_file_unit, factors, units: [source.unit; 2], sentences })
+    })
 }
 
 /// Why two components are no ground motion, with the `option` that chooses the column of the vertical one at the door.
@@ -52,6 +54,31 @@ pub fn no_pair(error: SamplesError, option: &str) -> anyhow::Error {
 }
 
 impl Understood {
+    /// What was read from the file called `name`; the rest as in [`understand`].
+    pub fn new(
+        name: &str,
+        (in_file_unit, source): (Record, Source),
+        factors: [f64; 2],
+        g: f64,
+        called: fn(&str) -> String,
+    ) -> anyhow::Result<Understood> {
+        let of_file = rocking_records::in_m_s2(in_file_unit.clone(), source.unit, g)?;
+        let record = of_file.clone().scaled(factors[0], factors[1])?;
+        let warnings = source.assumption(&Remedy::Unit.advice(called)).into_iter().chain(doubts(&record, g));
+        let warnings = warnings.map(|warning| format!("{name}: {warning}"));
+        let sentences = [source.findings(name, &of_file, g)].into_iter().chain(warnings).collect();
+        let units = [source.unit; 2];
+        Ok(Understood { record, in_file_unit, factors, units, source: Some(source), sentences })
+    }
+
+    /// A ground motion in m/s² that is of no file, multiplied by `factors`.
+    pub fn made(in_file_unit: Record, factors: [f64; 2], g: f64) -> anyhow::Result<Understood> {
+        let record = in_file_unit.clone().scaled(factors[0], factors[1])?;
+        let sentences = [record.title().to_owned()].into_iter().chain(doubt_of_peak(&record, g)).collect();
+        let units = [Unit::MetrePerSecondSquared; 2];
+        Ok(Understood { record, in_file_unit, factors, units, source: None, sentences })
+    }
+
     /// This ground motion with the vertical component `up`. Like an FMU, which scales a record that it has read, this function first puts
     /// both at the same times, in the units of their files. `option` as in [`no_pair`], `g` in m/s².
     pub fn with_vertical(self, up: Understood, g: f64, option: &str) -> anyhow::Result<Understood> {
@@ -61,9 +88,11 @@ impl Understood {
         Ok(Understood { record, in_file_unit, units, ..self })
     }
 
-    /// The scaled record as a table that needs no options, in s and the unit of the file: a record in g follows a g that is set later.
-    pub fn table(&self) -> anyhow::Result<String> {
-        let [time_scale, scale] = self.factors;
-        Ok(csv_in(&self.in_file_unit.clone().scaled(time_scale, scale)?, self.units[0]))
+    /// The scaled record as tables that need no options, in s and the unit of the file: a record in g follows a g that is set later. The
+    /// first is of the horizontal component, the other of the vertical one, if there is one.
+    pub fn tables(&self) -> anyhow::Result<(String, Option<String>)> {
+        let ([time_scale, scale], [unit, vertical]) = (self.factors, self.units);
+        let scaled = self.in_file_unit.clone().scaled(time_scale, scale)?;
+        Ok((csv_in(&scaled, unit), vertical_csv(&scaled, vertical)))
     }
 }

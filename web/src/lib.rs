@@ -13,14 +13,15 @@ use rocking::run::levels::{Choice, Criterion, RULE, relative};
 use rocking::run::validity::{ASSUMPTIONS, Assumption, Limits, Worst};
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking_records::Unit;
+use rocking_records::{Source, Unit};
 use rocking_report::{
     advice::Level,
     describe,
+    record::Understood,
     run::{Run, usual_periods},
 };
 use rocking_sweep::{map::CLASSES, pulse::Shape};
-use scene::{Fields, File, Files, MOTIONS, Motion, NUMBERS, OF_GROUND, READING, numbers_of};
+use scene::{Fields, File, Files, MOTIONS, NUMBERS, OF_GROUND, READING, numbers_of};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
@@ -101,7 +102,7 @@ impl Explorer {
     }
 
     /// The run of the scene, with remarks on its ground motion.
-    fn load(&mut self, fields: &str) -> Result<(Fields, Run, Motion), String> {
+    fn load(&mut self, fields: &str) -> Result<(Fields, Run, Understood), String> {
         let fields = Fields::read(fields)?;
         let structure = fields.structure()?;
         let motion = fields.motion(&mut self.files, structure.base().g)?;
@@ -129,9 +130,11 @@ impl Explorer {
 
     /// Derived quantities of the structure, remarks on the record's file, and warnings about the parameters.
     pub fn about(&mut self, fields: &str) -> Result<String, String> {
-        let (fields, run, Motion { record, remarks, mut warnings, .. }) = self.load(fields)?;
-        warnings.extend(run.structure.doubts());
-        warnings.extend(run.warnings());
+        let (fields, run, Understood { record, source, sentences, .. }) = self.load(fields)?;
+        let warnings: Vec<_> =
+            sentences.into_iter().skip(1).chain(run.structure.doubts()).chain(run.warnings()).collect();
+        let of_file = |of: Source| [format!("{}, {}", of.format, of.unit)].into_iter().chain(of.remarks);
+        let remarks: Vec<_> = source.into_iter().flat_map(of_file).collect();
         let structure = &run.structure;
         let mut parameters = structure.parameters(); // of many masses those of the base
         if let (false, [mass]) = (fields.is_frame(), structure.floors()) {
@@ -194,7 +197,7 @@ impl Explorer {
     pub fn record_file(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
         let g = fields.structure()?.base().g;
-        Ok(fields.unscaled(&mut self.files, g)?.table())
+        Ok(fields.multiplied(&mut self.files, [1.0; 2], g)?.tables().map_err(|error| error.to_string())?.0)
     }
 
     /// The scene as commands, as a script in Python, and as values that a host must set in its FMU.
@@ -209,13 +212,14 @@ impl Explorer {
         let (fields, Run { structure, .. }, motion) = self.load(fields)?;
         let version = if fmi == 3 { Version::Fmi3 } else { Version::Fmi2 };
         let is_as_read = fields.of_file().all(|key| fields.text(key).is_none());
+        let (table, vertical) = motion.tables().map_err(|error| error.to_string())?;
         let record = match (fields.kind(), &self.files.own) {
             ("free", _) => Vec::new(),
             ("record", Ok(file)) if is_as_read => vec![(file.path.clone(), file.bytes.clone())],
-            ("record", Ok(file)) => vec![(file.path.with_extension("csv"), motion.table().into_bytes())],
-            _ => vec![(TABLE.into(), motion.table().into_bytes())],
+            ("record", Ok(file)) => vec![(file.path.with_extension("csv"), table.into_bytes())],
+            _ => vec![(TABLE.into(), table.into_bytes())],
         };
-        let vertical = motion.vertical_table().map(|table| (VERTICAL.into(), table.into_bytes()));
+        let vertical = vertical.map(|table| (VERTICAL.into(), table.into_bytes()));
         let exported =
             fmu_export::export(version, &ModelName::default(), structure.into(), record, vertical, &self.libraries);
         Ok(exported.map_err(says)?.1)

@@ -9,8 +9,8 @@ use rocking::structure::natural_quantities::{Given, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::quantity::LARGE;
 use rocking::{Detail, Parameters, State, Structure};
-use rocking_records::{Column, Reading, RecordError, Remedy, Source, Unit, csv_in, each_in_m_s2, vertical_csv};
-use rocking_report::record::no_pair;
+use rocking_records::{Column, Reading, Source};
+use rocking_report::record::{Understood, advised};
 use rocking_sweep::plan::Conditions;
 use rocking_sweep::pulse::{Pulse, Shape};
 use rocking_sweep::synthetic;
@@ -104,45 +104,7 @@ impl Default for Files {
 pub struct File {
     pub path: PathBuf,
     pub bytes: Vec<u8>,
-    read: Vec<(Reading, Record, Source)>,
-}
-
-/// A ground motion, with remarks on its file and warnings about it.
-pub struct Motion {
-    /// The ground motion in m/s².
-    pub record: Record,
-    /// The ground motion in the unit of its file.
-    in_file_unit: Record,
-    /// Units of the horizontal and of the vertical component.
-    units: [Unit; 2],
-    pub remarks: Vec<String>,
-    pub warnings: Vec<String>,
-}
-
-impl Motion {
-    fn of(record: Record) -> Motion {
-        let (in_file_unit, units) = (record.clone(), [Unit::MetrePerSecondSquared; 2]);
-        Motion { record, in_file_unit, units, remarks: Vec::new(), warnings: Vec::new() }
-    }
-
-    /// This ground motion with the vertical component `up`, from another column of its file.
-    fn with_vertical(self, up: &Motion, g: f64) -> Result<Motion, String> {
-        let pair = self.in_file_unit.with_vertical(&up.in_file_unit);
-        let in_file_unit = pair.map_err(|error| rocking_report::message(&no_pair(error, "column_v")))?;
-        let units = [self.units[0], up.units[0]];
-        let record = each_in_m_s2(in_file_unit.clone(), units, g).map_err(says)?;
-        Ok(Motion { record, in_file_unit, units, ..self })
-    }
-
-    /// The ground motion as a table that is read without options, in s and the unit of its file.
-    pub fn table(&self) -> String {
-        csv_in(&self.in_file_unit, self.units[0])
-    }
-
-    /// Likewise the vertical component, if there is one.
-    pub fn vertical_table(&self) -> Option<String> {
-        vertical_csv(&self.in_file_unit, self.units[1])
-    }
+    read: Vec<(Reading, (Record, Source))>,
 }
 
 impl Fields {
@@ -273,45 +235,42 @@ impl Fields {
         }
     }
 
-    /// The ground motion before it is scaled; `g` in m/s².
-    pub fn unscaled(&self, files: &mut Files, g: f64) -> Result<Motion, String> {
+    /// The ground motion, scaled; `g` in m/s².
+    pub fn motion(&self, files: &mut Files, g: f64) -> Result<Understood, String> {
+        self.multiplied(files, [self.number("time_scale")?, self.number("scale")?], g)
+    }
+
+    /// The ground motion, its times and its accelerations multiplied by `factors`; `g` in m/s².
+    pub fn multiplied(&self, files: &mut Files, factors: [f64; 2], g: f64) -> Result<Understood, String> {
+        let made = |record| Understood::made(record, factors, g).map_err(|error| rocking_report::message(&error));
         match self.kind() {
-            EL_CENTRO => files.el_centro.as_mut().map_err(|why| why.clone())?.motion(Reading::default(), g),
+            EL_CENTRO => files.el_centro.as_mut().map_err(|why| why.clone())?.motion(Reading::default(), factors, g),
             "record" => {
                 let (file, how) = (files.own.as_mut().map_err(|why| why.clone())?, self.reading()?);
-                let Some(column) = self.text("column_v") else { return file.motion(how, g) };
-                let up = file.motion(Reading { column: Some(Column::from(column)), ..how.clone() }, g)?;
-                file.motion(how, g)?.with_vertical(&up, g)
+                let along = file.motion(how.clone(), factors, g)?;
+                let Some(column) = self.text("column_v") else { return Ok(along) };
+                let up = file.motion(Reading { column: Some(Column::from(column)), ..how }, factors, g)?;
+                let others = up.sentences[1..].iter().filter(|warning| !along.sentences.contains(warning));
+                let others: Vec<_> = others.cloned().collect();
+                let mut both =
+                    along.with_vertical(up, g, "column_v").map_err(|error| rocking_report::message(&error))?;
+                both.sentences.extend(others);
+                Ok(both)
             }
-            "free" => Ok(Motion::of(Record::at_rest(self.number("duration")?))),
+            "free" => made(Record::at_rest(self.number("duration")?)),
             "synthetic" => {
                 let pga = g * self.number("amplitude")?;
                 let (duration, seed) = (self.number("duration")?, self.number("seed")?);
                 if seed as u64 as f64 != seed {
                     return Err(format!("seed = {seed} is out of range: a whole number of at least 0 is needed"));
                 }
-                synthetic::record(pga, duration, seed as u64).map(Motion::of).map_err(says)
+                made(synthetic::record(pga, duration, seed as u64).map_err(says)?)
             }
             shape => {
                 let title = format!("{shape} pulse, {} g, {} Hz", self.number("amplitude")?, self.number("frequency")?);
-                self.pulse(g)?.record().map(|record| Motion::of(record.titled(title))).map_err(says)
+                made(self.pulse(g)?.record().map_err(says)?.titled(title))
             }
         }
-    }
-
-    /// The ground motion, scaled; `g` in m/s².
-    pub fn motion(&self, files: &mut Files, g: f64) -> Result<Motion, String> {
-        let motion = self.unscaled(files, g)?;
-        let (time_scale, scale) = (self.number("time_scale")?, self.number("scale")?);
-        let scaled = |record: Record| record.scaled(time_scale, scale).map_err(says);
-        let (record, in_file_unit, mut warnings) =
-            (scaled(motion.record)?, scaled(motion.in_file_unit)?, motion.warnings);
-        if matches!(self.kind(), EL_CENTRO | "record") {
-            warnings.extend(rocking_records::doubts(&record, g));
-        } else {
-            warnings.extend(rocking_records::doubt_of_peak(&record, g));
-        }
-        Ok(Motion { record, in_file_unit, warnings, ..motion })
     }
 
     /// The pulse of the scene; `g` in m/s².
@@ -397,24 +356,15 @@ impl File {
         File { path: Path::new(name).into(), bytes, read: Vec::new() }
     }
 
-    fn motion(&mut self, how: Reading, g: f64) -> Result<Motion, String> {
-        if self.read.iter().all(|(before, ..)| *before != how) {
-            let read = rocking_records::from_bytes(&self.path, &self.bytes, &how);
-            let (record, source) = read.map_err(|error| match error {
-                RecordError::Malformed { remedy: Some(remedy), .. } => {
-                    format!("{error}; {}", remedy.advice(str::to_owned))
-                }
-                _ => says(error),
-            })?;
+    fn motion(&mut self, how: Reading, factors: [f64; 2], g: f64) -> Result<Understood, String> {
+        let told = |error| rocking_report::message(&error);
+        if self.read.iter().all(|(before, _)| *before != how) {
+            let read =
+                advised(rocking_records::from_bytes(&self.path, &self.bytes, &how), str::to_owned).map_err(told)?;
             self.read.truncate(1);
-            self.read.insert(0, (how.clone(), record, source));
+            self.read.insert(0, (how.clone(), read));
         }
-        let known = self.read.iter().find(|(before, ..)| *before == how).expect("it has been read");
-        let (_, in_file_unit, source) = known.clone();
-        let record = rocking_records::in_m_s2(in_file_unit.clone(), source.unit, g).map_err(says)?;
-        let mut remarks = vec![format!("{}, {}", source.format, source.unit)];
-        remarks.extend(source.remarks.iter().cloned());
-        let warnings = source.assumption(&Remedy::Unit.advice(str::to_owned)).into_iter().collect();
-        Ok(Motion { record, in_file_unit, units: [source.unit; 2], remarks, warnings })
+        let (_, known) = self.read.iter().find(|(before, _)| *before == how).expect("it has been read");
+        Understood::new(&self.path.display().to_string(), known.clone(), factors, g, str::to_owned).map_err(told)
     }
 }
