@@ -120,7 +120,7 @@ pub enum RunError {
     /// It takes more steps than one of its segments may.
     #[error("the steps of the run end by t = {} of {}: give a shorter duration", with_unit(*time, "s"), with_unit(*until, "s"))]
     TooLong { time: f64, until: f64 },
-    /// The run takes more than [`MOST_STEPS`]; the rate of the tendon and the dissipators is in 1/s, 0 without any.
+    /// The run takes more than [`MOST_STEPS`]; the fastest rate of tendon, dissipators and ground is in 1/s, 0 without any.
     #[error("the run used up its {MOST_STEPS} steps at t = {}{}", with_unit(*time, "s"), too_many(*rate))]
     TooManySteps { time: f64, rate: f64 },
     /// It takes more points than a curve may have.
@@ -321,7 +321,9 @@ impl<Q: Coordinates, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
         let &Motion { time, work, .. } = self.engine.motion();
         let next = self.segments.next().map_or_else(|| self.come_to_rest(), |segment| Ok((segment, None)));
         if next.is_ok() && work.steps > MOST_STEPS {
-            let rate = self.engine.structure().base().rates_of_ties().into_iter().fold(0.0, f64::max);
+            let structure = self.engine.structure();
+            let ground = structure.foundation().map(|of| of.fastest(&structure.frequencies_on_ground()));
+            let rate = structure.base().rates_of_ties().into_iter().chain(ground).fold(0.0, f64::max);
             return Err(RunError::TooManySteps { time, rate });
         }
         Ok(next)
@@ -351,11 +353,12 @@ impl<Q: Coordinates, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
     }
 }
 
-/// Advice on a run with too many steps, whose tendon and dissipators have this `rate` (1/s).
+/// Advice on a run with too many steps, whose tendon, dissipators or ground have this `rate` (1/s).
 fn too_many(rate: f64) -> String {
     match rate > 0.0 {
         true => format!(
-            ". The rate of tendon and dissipators is {}: are k_t, k_d, c_d and xi_d in the right units? Otherwise give a shorter duration",
+            ". Tendon, dissipators or ground react at {}: are k_t, k_d, c_d, xi_d, J0 and the numbers of the ground in the right units? \
+             Otherwise give a shorter duration",
             with_unit(rate, "1/s")
         ),
         false => ": give a shorter duration".into(),
@@ -413,6 +416,9 @@ mod tests {
         follower.engine.set_motion(motion);
         let error = follower.finish(&mut ()).unwrap_err();
         assert_eq!(error, RunError::TooManySteps { time: 2.0, rate });
-        assert!(error.to_string().starts_with("the run used up its 5000000 steps at t = 2 s. The rate of"), "{error}");
+        assert!(
+            error.to_string().starts_with("the run used up its 5000000 steps at t = 2 s. Tendon, dissipators or"),
+            "{error}"
+        );
     }
 }

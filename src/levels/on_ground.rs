@@ -78,10 +78,8 @@ impl<V: Abreast> OnGround<V> {
         let (base, body, modes) = (structure.base(), structure.body(), structure.modes());
         let foundation = structure.ground();
         let frequencies = foundation.frequencies(base, body, modes);
-        let (highest, point) = (frequencies[frequencies.len() - 1], foundation.points[0]);
-        let fastest = highest.max(point.c / point.k * highest * highest);
         OnGround {
-            longest_span: LONGEST_SPAN / fastest,
+            longest_span: LONGEST_SPAN / foundation.fastest(&frequencies),
             lowest: frequencies[0],
             radius: (base.J_P / base.m_t).sqrt(),
             least_lift: foundation.least_lift(base, body, modes),

@@ -1,6 +1,7 @@
 //! Numbers that a structure may have, but that are usual in another unit.
 
 use crate::digits::{short, with_unit};
+use crate::series::taylor::LONGEST_SPAN;
 use crate::{Base, Structure, Ties};
 use std::f64::consts::TAU;
 
@@ -21,11 +22,11 @@ const LIGHT: f64 = 50.0;
 /// Least ratio of the foundation's mass to the mass above, and of the mass above to the foundation's, if both are in one unit.
 const ONE_UNIT: [f64; 2] = [1e-3, 1e-2];
 
-/// Rate of a tie as a multiple of the highest frequency of vibration from which a run takes many steps.
-const FAST: f64 = 1000.0;
+/// Steps for each second of a motion from which a run of a minute takes several seconds of computing.
+const MANY_STEPS: f64 = 1e4;
 
 /// Names of the numbers that are doubted. A sentence begins with its name.
-pub const DOUBTED: [&str; 12] = ["r", "P_0", "F_y", "k_t", "k_d", "c_d", "xi_d", "m0", "f", "m_t", "zeta", "B"];
+pub const DOUBTED: [&str; 13] = ["r", "P_0", "F_y", "k_t", "k_d", "c_d", "f_v", "xi_d", "m0", "f", "m_t", "zeta", "B"];
 
 /// Damping ratio of the lowest mode that no structure exceeds without dampers.
 const MOST_DAMPING: f64 = 0.2;
@@ -60,15 +61,20 @@ impl Structure {
         let mut doubts: Vec<_> = unused.into_iter().chain(small).collect();
         let ties = [("k_t", k_t, "N/m"), ("k_d", k_d, "N/m"), ("c_d", c_d, "N.s/m")];
         for ((name, value, unit), rate) in ties.into_iter().zip(self.base().rates_of_ties()) {
-            let highest = self.vibration().rocking[1];
-            if rate > FAST * highest {
-                let [time, slow] = [1.0 / rate, 1.0 / highest].map(short);
-                doubts.push(format!(
-                    "{name} = {} changes the motion of the base within {time} s, the vibration within {slow} s, and a run takes many \
-                     steps: is {name} in {unit}?",
-                    with_unit(value, unit)
-                ));
-            }
+            doubts.extend(
+                many_steps(rate)
+                    .map(|many| format!("{name} = {} {many}: is {name} in {unit}?", with_unit(value, unit))),
+            );
+        }
+        if let Some(ground) = self.foundation() {
+            let [f_v, zeta_v] = [ground.omega_v(self.base()) / TAU, ground.zeta_v(self.base())].map(short);
+            let rate = ground.fastest(&self.frequencies_on_ground());
+            doubts.extend(many_steps(rate).map(|many| {
+                format!(
+                    "f_v = {f_v} Hz with zeta_v = {zeta_v} and J0 = {} kg.m2 {many}: lower f_v or zeta_v, or raise J0",
+                    short(body.J0)
+                )
+            }));
         }
         if xi_d > 2.0 * B {
             doubts.push(format!(
@@ -112,4 +118,10 @@ impl Structure {
         }
         doubts
     }
+}
+
+/// The number of steps that a structure with this `rate` (1/s) takes for each second of a motion, if they are many.
+fn many_steps(rate: f64) -> Option<String> {
+    let steps = rate / LONGEST_SPAN;
+    (steps > MANY_STEPS).then(|| format!("takes some {steps:.0e} steps of computing for each second of a motion"))
 }

@@ -218,6 +218,12 @@ impl Foundation {
         self.ground.zeta_v.filter(|_| self.ground.xi.is_empty()).unwrap_or_else(of_points)
     }
 
+    /// The fastest rate of small motions with these `frequencies` (rad/s), 1/s: of the highest frequency, or of the dashpots.
+    pub(crate) fn fastest(&self, frequencies: &[f64]) -> f64 {
+        let (highest, point) = (frequencies[frequencies.len() - 1], &self.points[0]);
+        highest.max(point.c / point.k * highest * highest)
+    }
+
     /// The circular frequencies of small motions in full contact without damping, rad/s, lowest first: the bounce √(K_z/m_t), and the
     /// roots λ = ω² of
     ///
