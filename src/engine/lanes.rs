@@ -526,9 +526,12 @@ impl<S: Simd> WithSimd for Taken<'_, '_, S> {
         }
         let (start, a_end) = (side * theta, push[0] + push[1] * sigma);
         // as the run by itself proves that no guard closes
-        let (first, second) = (side * sigma * series[1][2], side * sigma * series[2][2]);
-        let lead = first.abs().is_at_most(zero).choose(second * sigma, first);
-        let leads = start.abs().is_at_most(zero) & (excursion * rounding).is_less(lead + lead);
+        let mut lead = zero;
+        for [_, _, theta, _] in series[1..4].iter().rev() {
+            let term = side * *theta;
+            lead = term.is_less(zero).choose(zero, lead * sigma + term);
+        }
+        let leads = zero.is_at_most(start) & (excursion * rounding).is_less(sigma * (lead + lead));
         let rises = (excursion * rounding).is_less(start) | (off[2] * rounding).is_less(start.min(side * end[2]));
         let stays = (rises | leads) & ((excursion + start) * rounding).is_less(g.like(FRAC_PI_2));
         let size = end[0].abs() + end[1].abs() + end[2].abs() + end[3].abs();

@@ -255,8 +255,8 @@ impl<Q: Coordinates> Guard<Q> for Impact {
     }
 }
 
-/// Whether the magnitudes of the terms of θ prove that s θ stays between 0 and π/2 on `arc`. A motion that starts at θ = 0 stays above
-/// if the first term that is not 0 exceeds the sum of all others.
+/// Whether the magnitudes of the terms of θ prove that s θ stays between 0 and π/2 on `arc`. A motion stays above its start if the
+/// terms of the first orders, none of which lowers it, exceed the sum of all others.
 fn stays_about<Q: Coordinates>(arc: &Arc<Q>, side: Side) -> bool {
     let start = side.sign() * arc.theta[0];
     let terms = &arc.theta[1..=arc.order];
@@ -266,14 +266,15 @@ fn stays_about<Q: Coordinates>(arc: &Arc<Q>, side: Side) -> bool {
         sum_of_magnitudes(terms)
     };
     let leads = || {
-        let lead = if arc.theta[1] == 0.0 { arc.reach * arc.theta[2] } else { arc.theta[1] };
-        excursion < 2.0 * (side.sign() * arc.reach * lead)
+        let first = arc.theta[1..4].iter().rev().map(|c| side.sign() * c);
+        let lead = first.fold(0.0, |lead, c| if c < 0.0 { 0.0 } else { lead * arc.reach + c });
+        start >= 0.0 && excursion < 2.0 * (arc.reach * lead)
     };
     let ends_above = || {
         let end = side.sign() * evaluate(arc.used(&arc.theta), arc.reach);
         off_chord(arc.used(&arc.theta), arc.reach) < start.min(end)
     };
-    excursion + start < FRAC_PI_2 && (excursion < start || if start == 0.0 { leads() } else { ends_above() })
+    excursion + start < FRAC_PI_2 && (excursion < start || leads() || ends_above())
 }
 
 #[cfg(test)]
