@@ -6,7 +6,7 @@ use crate::mechanics::state::way;
 use crate::mechanics::uplift::{self, Lift, hold, inertia, least_hold};
 use crate::numbers::Number;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
-use crate::series::taylor::{Arc, Start};
+use crate::series::taylor::{Arc, Start, ZERO};
 use crate::series::terms::Terms;
 use crate::{Base, Mode};
 use crate::{Ramp, Side, State};
@@ -110,33 +110,41 @@ impl Liftable<'_> {
         if self.most_springs(|j, _| farthest(j)) < hold_at_least {
             return (Crossing::None, Side::Right);
         }
-        let end = arc.end().u;
-        let most = Q::most(arc.used(&arc.u), &end, arc.reach);
-        // about a side the springs leave the larger of their ends by no more than the displacements leave their chords
-        let springs = |side: Side, j: usize, mode: &Mode| {
-            let (first, last, per_u) = (arc.u[0].of(j), end.of(j), side.sign() * mode.height * mode.stiffness);
-            (per_u * first).max(per_u * last) + per_u.abs() * (most.of(j) - first.abs().max(last.abs()))
-        };
-        let stays_down = [Side::Right, Side::Left].map(|side| {
-            let springs: f64 = self.modes.iter().enumerate().map(|(j, mode)| springs(side, j, mode)).sum();
-            !self.turning_decides && springs < hold_at_least
-        });
-        if stays_down == [true; 2] {
-            return (Crossing::None, Side::Right);
-        }
         let &Start { a_g, a_top, a_v, dissipators, .. } = start;
-        let a_v_terms = Terms::ramp(a_v.value, a_v.slope * arc.span);
-        let rigid = Terms::ramp(
-            self.moment_of_rest(a_g.value, &a_top.value),
-            self.moment_of_rest(a_g.slope, &a_top.slope) * arc.span,
-        );
-        let lift = self.lift([rigid, a_v_terms], |j| {
-            [&arc.u, &arc.u_dot].map(|series| Terms::from_fn(arc.order, |k| series[k].of(j)))
-        });
+        let mut springs = ZERO;
+        for (springs, u) in springs.iter_mut().zip(arc.used(&arc.u)) {
+            *springs = self.modes.iter().enumerate().map(|(j, mode)| mode.height * mode.stiffness * u.of(j)).sum();
+        }
+        springs[0] += self.moment_of_rest(a_g.value, &a_top.value);
+        springs[1] += self.moment_of_rest(a_g.slope, &a_top.slope) * arc.span;
+        // when the springs are due to lift the base, the moment that turns it mostly is, too; none if it is not
+        let by_springs = |side: Side| {
+            let hold = hold(self.base, side, a_v.value, dissipators);
+            let crossing = first_time_all_closed([Gap::new(arc.used(&springs), -side.sign(), hold)], arc.reach);
+            let is_due = match crossing {
+                Crossing::At(sigma) => {
+                    let (State { u, u_dot, .. }, tau) = (arc.at(sigma), sigma * arc.span);
+                    let rigid = self.moment_of_rest(a_g.at(tau), &a_top.at(tau));
+                    let lift = self.lift([rigid, a_v.value], |j| [u.of(j), u_dot.of(j)]);
+                    lift.missing(self.base, side, hold)[1] <= 0.0
+                }
+                crossing => crossing == Crossing::None,
+            };
+            is_due.then_some(crossing)
+        };
+        let is_held = hold_at_least > 0.0 && a_v.slope == 0.0 && !self.turning_decides;
         let about = |side: Side| {
-            if stays_down[usize::from(side == Side::Left)] {
-                return Crossing::None;
+            if is_held && let Some(crossing) = by_springs(side) {
+                return crossing;
             }
+            let a_v_terms = Terms::ramp(a_v.value, a_v.slope * arc.span);
+            let rigid = Terms::ramp(
+                self.moment_of_rest(a_g.value, &a_top.value),
+                self.moment_of_rest(a_g.slope, &a_top.slope) * arc.span,
+            );
+            let lift = self.lift([rigid, a_v_terms], |j| {
+                [&arc.u, &arc.u_dot].map(|series| Terms::from_fn(arc.order, |k| series[k].of(j)))
+            });
             let hold = hold(self.base, side, a_v_terms, dissipators);
             let [rule, turns] = lift.missing(self.base, side, hold);
             let [rule, turns, hold] = [&rule, &turns, &hold].map(|gap| Gap::new(gap.used(), 1.0, 0.0));
