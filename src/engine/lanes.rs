@@ -377,7 +377,8 @@ impl<'a, S: Simd> Rocking<'a, S> {
         let left = advance.last_step.saturating_sub(motion.work.steps) as usize;
         let last = samples.last.min(samples.next.saturating_add(left));
         (runs.samples[lane], runs.entered[lane]) = (Samples { last, ..samples }, samples.next);
-        runs.may_go_on[lane] = f64::from(samples.next < last);
+        // the end of a part is no sample
+        runs.may_go_on[lane] = f64::from(samples.next < last && advance.end == advance.interval);
     }
 
     /// Takes steps as long as all runs go on to their next samples: the bases certainly stay up, and the watchers need not see it.

@@ -464,6 +464,21 @@ mod tests {
         }
     }
 
+    /// A stiff structure takes several parts of an advance from one of these samples to the next.
+    #[test]
+    fn the_end_of_a_part_is_no_sample() {
+        let (random, times) = (&mut fastrand::Rng::with_seed(1), (0..40).map(|i| 3.0 * f64::from(i)));
+        let mut ground = || {
+            let acceleration = (0..40).map(|_| 4.0 * (random.f64() - 0.5)).collect();
+            Record::from_samples("", times.clone().collect(), acceleration).unwrap()
+        };
+        let grounds: Vec<_> = (0..200).map(|_| ground()).collect();
+        let stiff = OneMass::new(Parameters { H: 3.0, f_fc: 60.0, ..Parameters::MCMANUS }).unwrap();
+        let runs: Vec<_> = grounds.iter().map(|ground| Run::new(stiff, ground)).collect();
+        let alone: Vec<_> = runs.iter().map(|run| format!("{:?}", run.found(&mut ()))).collect();
+        assert!(together(pulp::Scalar256b, &runs) == alone);
+    }
+
     /// Counts steps of rocking.
     struct Rocking(u64);
 
