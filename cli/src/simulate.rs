@@ -49,7 +49,7 @@ struct ResultArgs {
     /// Draw ground acceleration, rotation, displacements and acceleration over time, with marks at transitions; of many masses those of the top floor
     #[arg(long, value_name = "FILE.svg")]
     picture: Option<PathBuf>,
-    /// Response spectrum S_a of the acceleration of each floor as CSV, at 100 periods from 0.02 to 4 s
+    /// Response spectrum S_a of the acceleration of each floor as CSV, at 100 periods from 0.02 to 4 s; takes hundreds of times as long as the run
     #[arg(long, value_name = "FILE.csv")]
     spectrum: Option<PathBuf>,
     /// Damping ratio of --spectrum

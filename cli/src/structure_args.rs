@@ -30,7 +30,7 @@ pub struct StructureArgs {
     parameters: Option<PathBuf>,
     #[command(flatten)]
     numbers: Numbers,
-    /// Numbers whose warnings to leave out
+    /// Names of numbers; their warnings are left out
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = one_of(DOUBTED.map(|name| (name, name))))]
     allow: Vec<&'static str>,
 }
