@@ -113,7 +113,7 @@ impl Detail {
             }
             Detail::Rigid => {
                 let structure = subject.structure.shown_rigid();
-                Box::new(ManyModes::<f64>::rigid(Subject { structure, ..subject }, &one))
+                Box::new(ManyModes::<f64>::new(Subject { structure, ..subject }, self))
             }
             Detail::FixedBase => Box::new(Elastic { subject, one, contact: Some(contact), rocking: FixedBase }),
         })

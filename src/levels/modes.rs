@@ -31,7 +31,7 @@ use crate::mechanics::uplift::inertia;
 use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
 use crate::structure::mode::Vibration;
 use crate::{Base, Mode};
-use crate::{OneMass, Parameters, Phase, Side, State};
+use crate::{Phase, Side, State};
 use std::cell::RefCell;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
@@ -244,37 +244,23 @@ impl<V: Abreast> Four<V> {
     }
 }
 
-impl ManyModes<f64> {
-    /// One mass without modes: the level `rigid`.
-    pub(crate) fn rigid(subject: Subject, one: &OneMass) -> ManyModes<f64> {
-        let &Parameters { m, m0, H, J0, .. } = one.parameters();
-        let base = Base { m0: m + m0, S_res: m * H, J0: J0 + m * H * H, ..*one.base() };
-        let vibration = Vibration { contact: base.p_l, rocking: [base.p_l; 2] };
-        ManyModes::of(subject, Detail::Rigid, base, &[], Some([m, H]), vibration)
-    }
-}
-
 impl<Q: Coordinates> ManyModes<Q> {
-    /// The structure of `subject` with all its modes, at a level of this `detail`.
+    /// The structure of `subject` at a level of this `detail`; at the level `rigid` the one mass turns rigidly with the base.
     pub(crate) fn new(subject: Subject, detail: Detail) -> ManyModes<Q> {
-        let (structure, base) = (subject.structure.clone(), *subject.structure.base());
-        let vibration = structure.vibration();
-        ManyModes::of(subject, detail, base, Q::modes(&structure), None, vibration)
-    }
-
-    fn of(
-        subject: Subject,
-        detail: Detail,
-        base: Base,
-        modes: &[Mode],
-        rigid: Option<[f64; 2]>,
-        vibration: Vibration,
-    ) -> ManyModes<Q> {
+        let structure = &subject.structure;
+        let (mut base, mut modes, mut vibration) = (*structure.base(), Q::modes(structure), structure.vibration());
+        let mut rigid = None;
+        if let (Detail::Rigid, &[Mode { mass: m, height: H, .. }]) = (detail, modes) {
+            base = Base { m0: m + base.m0, S_res: m * H, J0: base.J0 + m * H * H, ..base };
+            (modes, vibration) = (&[], Vibration { contact: base.p_l, rocking: [base.p_l; 2] });
+            rigid = Some([m, H]);
+        }
+        let modes = modes.to_vec();
         let exact = |mode: &Mode| {
             let omega = mode.omega();
             ExactContact::new(Oscillator { omega, zeta: mode.damping / (2.0 * mode.mass * omega) })
         };
-        let left = inertia(&base, modes, Side::Right, |_| 0.0);
+        let left = inertia(&base, &modes, Side::Right, |_| 0.0);
         let ties = restraint::sum(&restraint::ties(&base, Side::Right, &Dissipators::NEW), |tie| tie.lever);
         let [_, highest] = vibration.rocking;
         let fastest = (highest * highest + ties.stiffness / left).sqrt().max(base.p_l).max(ties.damping / left);
@@ -286,12 +272,12 @@ impl<Q: Coordinates> ManyModes<Q> {
             quickening: base.J_P / left,
             longest_span: LONGEST_SPAN / fastest,
             scratch: RefCell::new(Box::new(Scratch {
-                fours: f64x4::groups(modes),
+                fours: f64x4::groups(&modes),
                 factors: [[NO_ROW; MAX_ORDER + 1]; 2],
                 square: [f64x4::ZERO; MAX_ORDER + 1],
             })),
             first: RefCell::default(),
-            modes: modes.to_vec(),
+            modes,
             subject,
             detail,
             base,
@@ -656,7 +642,7 @@ mod tests {
     use crate::mechanics::load::Load;
     use crate::mechanics::reactions::Reactions;
     use crate::structure::description::tests::three_storeys;
-    use crate::{Body, Structure};
+    use crate::{Body, Parameters, Structure};
     use approx::assert_relative_eq;
 
     fn level(frame: &Structure, detail: Detail) -> ManyModes<Modes> {

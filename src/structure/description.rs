@@ -154,9 +154,10 @@ const LEAST_SHARE: f64 = 0.01;
 /// Part of its diagonal by which K may differ from its transpose.
 const ASYMMETRY: f64 = 1e-6;
 
-/// Mass, first and second moment of the masses `m` (kg) at the heights `h` (m).
-fn moments(masses: impl Iterator<Item = (f64, f64)>) -> [f64; 3] {
-    masses.fold([0.0; 3], |[mass, first, second], (m, h)| [mass + m, first + m * h, second + m * h * h])
+/// Mass, first and second moment of the masses of `floors`.
+fn moments(floors: &[Place]) -> [f64; 3] {
+    let add = |[mass, first, second]: [f64; 3], &Place { m, h }: &Place| [mass + m, first + m * h, second + m * h * h];
+    floors.iter().fold([0.0; 3], add)
 }
 
 impl Described {
@@ -229,7 +230,7 @@ impl Described {
 pub fn with_p_delta(base: &Given, storeys: &[Storey]) -> Result<Vec<Storey>, Refused> {
     let (floors, g) = (checked_storeys(storeys)?, given_base(base)?.0.g);
     let soften = |(i, &Storey { m, h, k }): (usize, &Storey)| {
-        let [weight, ..] = moments(floors[i..].iter().map(|floor| (g * floor.m, 0.0)));
+        let weight: f64 = floors[i..].iter().map(|floor| g * floor.m).sum();
         let least = weight / (h - if i == 0 { 0.0 } else { floors[i - 1].h });
         ensure(k > least, || {
             let [given, least] = [k, least].map(|k| with_unit(k, STOREY.unit));
@@ -323,8 +324,7 @@ impl Structure {
         };
         let participation = |shape| (part(shape, |floor| floor.m), part(shape, |floor| floor.m * floor.h));
         let modes = modes(&omegas, damping, &shapes.iter().map(participation).collect::<Vec<_>>())?;
-        let moments = moments(floors.iter().map(|&Place { m, h }| (m, h)));
-        checked(Structure::of_body(body(base, moments)?, &modes, &shown(floors, &shapes))?)
+        checked(Structure::of_body(body(base, moments(floors))?, &modes, &shown(floors, &shapes))?)
     }
 
     /// The modes of a fixed base that another program found. Without a `total`, the floors have all mass.
@@ -481,7 +481,7 @@ fn whole(base: &Given, total: Option<Total>, floors: &[Place]) -> Result<[f64; 3
         ensure(!floors.is_empty(), || {
             "modes need the total m_s (kg), S_1 (kg.m) and I_2 (kg.m2) of the mass above the base, or the floors that have it".into()
         })?;
-        return Ok(moments(floors.iter().map(|&Place { m, h }| (m, h))));
+        return Ok(moments(floors));
     };
     let I_2 = match (I_2, J_P) {
         (Some(I_2), None) => I_2,
