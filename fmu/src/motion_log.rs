@@ -7,7 +7,8 @@ use rocking::{Side, Transition, TransitionKind};
 
 /// Warns of the limits that `found` is beyond and `known`, found before, was not.
 pub(crate) fn warn(logger: &Logger, known: &Findings, found: &Findings) {
-    let is_new = |which: &usize| known.worst[*which].first_beyond.is_none();
+    let is_new =
+        |which: &usize| found.worst[*which].first_beyond.is_some() && known.worst[*which].first_beyond.is_none();
     (0..ASSUMPTIONS.len())
         .filter(is_new)
         .filter_map(|which| found.warning(which, &Limits::default()))

@@ -64,9 +64,11 @@ impl Liftable<'_> {
 
     /// The least moment that holds the base down over the interval of `start`, less the most that mass that turns rigidly takes of it.
     pub(crate) fn least_hold<Q: Coordinates>(&self, start: &Start<Q>) -> f64 {
-        let rigid = |tau: f64| self.moment_of_rest(start.a_g.at(tau), &start.a_top.at(tau)).abs();
-        let taken = rigid(0.0).max(rigid(start.interval));
-        least_hold(self.base, start.a_v, start.interval, start.dissipators) - taken
+        let &Start { a_g, ref a_top, a_v, dissipators, interval, .. } = start;
+        let [first, slope] =
+            [(a_g.value, &a_top.value), (a_g.slope, &a_top.slope)].map(|(a_g, a_top)| self.moment_of_rest(a_g, a_top));
+        let taken = first.abs().max((first + slope * interval).abs());
+        least_hold(self.base, a_v, interval, dissipators) - taken
     }
 
     /// Distance of the structure from uplift, and its side, as in [`uplift::margin`].

@@ -31,10 +31,10 @@ pub(crate) fn series(structure: &OneMass, start: &Start, arc: &mut Arc) {
     // a structure that comes to rest must not require terms that underflow
     let u_dot = u_dot.max(NEGLIGIBLE * omega_fc * structure.u_cr);
     let truncation = Truncation { u_dot: local_error * u_dot, theta_dot: 0.0 };
-    let mut u_dot = state.u_dot;
+    let (mut u_dot, mut forces) = (state.u_dot, [a_top.value, a_top.slope * span]);
     arc.expand(&state, span, &truncation, |arc, k, per| {
-        let u_ddot = -a_top.coefficient(k - 1, span) - damping_fc * u_dot - stiffness * arc.u[k - 1];
-        u_dot = u_ddot * per;
+        let u_ddot = -forces[0] - damping_fc * u_dot - stiffness * arc.u[k - 1];
+        (u_dot, forces) = (u_ddot * per, [forces[1], 0.0]);
         arc.u_dot[k] = u_dot;
         0.0
     });

@@ -44,16 +44,6 @@ impl<Q: Coordinates> Ramp<Q> {
     pub fn from(self, tau: f64) -> Ramp<Q> {
         Ramp { value: self.at(tau), slope: self.slope }
     }
-
-    /// Coefficient `k` of the power series over a step of `span` s.
-    #[inline]
-    pub(crate) fn coefficient(self, k: usize, span: f64) -> Q {
-        match k {
-            0 => self.value,
-            1 => self.slope.times(span),
-            _ => Q::ZERO,
-        }
-    }
 }
 
 /// All loads, with units and ranges.
@@ -174,9 +164,12 @@ impl<Q: Coordinates> LinearLoad<Q> {
     }
 
     /// These loads with the accelerations of `ground` added.
-    pub fn on_ground(self, ground: LinearLoad) -> LinearLoad<Q> {
-        let and = |own: Load<Q>, ground: Load| Load { a_g: own.a_g + ground.a_g, a_v: own.a_v + ground.a_v, ..own };
-        LinearLoad { value: and(self.value, ground.value), slope: and(self.slope, ground.slope) }
+    pub fn on_ground(mut self, ground: LinearLoad) -> LinearLoad<Q> {
+        for (own, ground) in [(&mut self.value, ground.value), (&mut self.slope, ground.slope)] {
+            own.a_g += ground.a_g;
+            own.a_v += ground.a_v;
+        }
+        self
     }
 }
 

@@ -63,11 +63,8 @@ impl Terms {
 
     #[inline(never)]
     fn plus(&self, other: &Terms) -> Terms {
-        let (degree, order) = (self.degree.max(other.degree), self.order.min(other.order));
-        Terms::by_fours(degree, order, |i| {
-            let (a, b) = (self.four(i), other.four(i));
-            std::array::from_fn(|lane| a[lane] + b[lane])
-        })
+        let coefficients = std::array::from_fn(|k| self.coefficients[k] + other.coefficients[k]);
+        Terms { coefficients, degree: self.degree.max(other.degree), order: self.order.min(other.order) }
     }
 
     /// The product row by row, so that the sums of four orders run side by side.
@@ -77,7 +74,8 @@ impl Terms {
         let (short, long) = if self.degree <= other.degree { (self, other) } else { (other, self) };
         let degree = (short.degree + long.degree).min(order);
         let factor = short.coefficients[0];
-        let mut product = Terms::by_fours(degree, order, |i| long.four(i).map(|c| factor * c));
+        let mut product = long.map(|c| factor * c);
+        (product.degree, product.order) = (degree, order);
         for i in 1..=short.degree.min(degree) {
             let (factor, fours) = (short.coefficients[i], long.degree.min(degree - i) / 4 + 1);
             let sums = product.coefficients[i..].as_chunks_mut::<4>().0;
@@ -93,23 +91,7 @@ impl Terms {
 
     #[inline(never)]
     fn map(&self, linear: impl Fn(f64) -> f64) -> Terms {
-        Terms::by_fours(self.degree, self.order, |i| self.four(i).map(&linear))
-    }
-
-    /// Four coefficients.
-    #[inline(always)]
-    fn four(&self, i: usize) -> [f64; 4] {
-        self.coefficients.as_chunks::<4>().0[i]
-    }
-
-    /// The series of this `degree` whose coefficients come by fours.
-    #[inline(always)]
-    fn by_fours(degree: usize, order: usize, four: impl Fn(usize) -> [f64; 4]) -> Terms {
-        let mut terms = Terms { coefficients: [0.0; LENGTH], degree, order };
-        for (i, place) in terms.coefficients.as_chunks_mut::<4>().0.iter_mut().enumerate().take(degree / 4 + 1) {
-            *place = four(i);
-        }
-        terms
+        Terms { coefficients: std::array::from_fn(|k| linear(self.coefficients[k])), ..*self }
     }
 }
 
