@@ -92,7 +92,7 @@ OF_FMI_3 = [
     ("fmi3GetFloat64: nValues = 2 is not 1", lambda one: raw(one, "GetFloat64", (c_uint * 1)(2), 1, (c_double * 2)(), 2)),
     ("fmi3GetDirectionalDerivative: nSeed = 2 is not 1", lambda one: one.slave.getDirectionalDerivative([2], [1], [1.0] * 2)),
     ("fmi3GetUInt8: this FMU has no variables of this type", lambda one: one.slave.getUInt8([1])),
-    ('fmi3GetAdjointDerivative: not allowed in the state "step complete"; allowed in: none',
+    ('fmi3GetAdjointDerivative: not allowed in the state "step complete"; allowed in: no state: this instance does not provide',
      lambda one: one.slave.getAdjointDerivative([2], [1], [1.0])),
     ("fmi3EnterEventMode: there is no event mode: the instance was made with eventModeUsed = false",
      lambda one: one.slave.enterEventMode()),

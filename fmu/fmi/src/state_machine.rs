@@ -79,7 +79,7 @@ pub type Table = [Stages; 128];
 pub(crate) fn names(stages: Stages) -> String {
     let listed = Stage::ALL.iter().filter(|stage| stage.bit() & stages != 0);
     let names: Vec<_> = listed.map(|stage| stage.to_string()).collect();
-    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+    if names.is_empty() { "no state: this instance does not provide the function".to_owned() } else { names.join(", ") }
 }
 
 /// The tables of a version's two interfaces: the stages, and a row for the functions of the version's `Function` that may

@@ -407,7 +407,11 @@ impl Sequence<'_> {
         let allowed = self.version.table.allowed(name, before.interface);
         if !allowed.contains(&before.stage) {
             let allowed: Vec<_> = allowed.iter().map(Stage::to_string).collect();
-            let allowed = if allowed.is_empty() { "none".to_owned() } else { allowed.join(", ") };
+            let allowed = if allowed.is_empty() {
+                "no state: this instance does not provide the function".to_owned()
+            } else {
+                allowed.join(", ")
+            };
             let (version, stage) = (self.version.name, before.stage);
             let text = format!("{version}{name}: not allowed in the state \"{stage}\"; allowed in: {allowed}");
             assert_eq!((status, failure), (ERROR, Some(text)));
