@@ -473,15 +473,15 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
         self.piece.shown(self.from + sigma * self.arc.span, &self.arc.at(sigma))
     }
 
-    /// The structure over the polynomial in power series.
-    pub(crate) fn over(&self) -> Instant<'a, Terms, Polynomials<'a, Q>> {
+    /// The structure over the polynomial in power series, without sine and cosine unless it `turns`: only components are then known.
+    pub(crate) fn over(&self, turns: bool) -> Instant<'a, Terms, Polynomials<'a, Q>> {
         let &Expansion { piece: &Piece { before, level, load, .. }, from, arc } = self;
         let (structure, phase, LinearLoad { value, slope }) = (level.structure(), before.phase, load.from(from));
         let (theta, theta_dot, turn) = match phase {
             Phase::FullContact => (Terms::constant(0.0), Terms::constant(0.0), Turn::none()),
             Phase::Rocking(_) | Phase::Overturned(_) | Phase::OnGround(_) => {
                 let [theta, theta_dot] = [&arc.theta, &arc.theta_dot].map(|of| Terms::of(of, arc.order));
-                (theta, theta_dot, theta.turn())
+                (theta, theta_dot, if turns { theta.turn() } else { Turn::none() })
             }
         };
         let [u, u_dot] = [&arc.u, &arc.u_dot].map(|of| Polynomials::Motion(arc.used(of)));
@@ -529,7 +529,7 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
     /// more terms than it has.
     pub(crate) fn series(&self, outputs: &[Output], show: &mut dyn FnMut(&Expansion<Q>, &[Terms])) {
         self.in_parts(&mut |part, is_finest| {
-            let (over, end) = (part.over(), part.shown(part.arc.reach));
+            let (over, end) = (part.over(true), part.shown(part.arc.reach));
             let series = |output: &Output| {
                 let series = output.of(&over);
                 let is_whole = is_finest || output.is_component();

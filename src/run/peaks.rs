@@ -350,7 +350,7 @@ impl Peaks {
         while let Some(expansion) = arcs.next() {
             expansion.in_parts(&mut |part, is_finest| {
                 let reach = part.arc.reach;
-                let series = of_pair(restraints(&part.over(), angles, &before.dissipators));
+                let series = of_pair(restraints(&part.over(true), angles, &before.dissipators));
                 let mut ends = series.iter().zip(forces(&part.arc.at(reach)));
                 if !is_finest && !ends.all(|(series, last)| part.has_converged(series, last, CONVERGED)) {
                     return false;
@@ -367,6 +367,7 @@ impl Peaks {
 
     /// Looks at a polynomial.
     fn look_over<Q: Coordinates>(&mut self, expansion: &Expansion<Q>, bounds: &[f64]) {
+        let turns = self.searched.iter().any(|of| !of.output.is_component());
         expansion.in_parts(&mut |part, is_finest| {
             let (structure, most) = (part.piece.level.structure(), part.most());
             let (reach, start) = (part.arc.reach, part.time(0.0));
@@ -388,7 +389,7 @@ impl Peaks {
                 if !peak.may_change(bound, start) {
                     continue;
                 }
-                let series = output.of(over.get_or_insert_with(|| part.over()));
+                let series = output.of(over.get_or_insert_with(|| part.over(turns)));
                 if !is_finest && !output.is_component() && !part.has_converged(&series, at_end, CONVERGED) {
                     return false;
                 }

@@ -16,7 +16,7 @@ use crate::{Base, Motion, Phase, Reactions};
 /// The reactions of the edges over a polynomial. The moment is given in full contact only; while rocking it is sB R_v.
 pub(crate) fn over<Q: Coordinates>(expansion: &Expansion<Q>) -> Reactions<Terms> {
     let &Expansion { piece, from, arc } = expansion;
-    let (structure, load, over) = (piece.level.structure(), piece.load.from(from), expansion.over());
+    let (structure, load, over) = (piece.level.structure(), piece.load.from(from), expansion.over(true));
     let &Motion { phase, ref dissipators, .. } = piece.before;
     let (base, gauges) = (structure.base(), structure.gauges());
     let ramp = |of: &dyn Fn(&Load<Q>) -> f64| Terms::ramp(of(&load.value), of(&load.slope) * arc.span);
