@@ -126,7 +126,7 @@ impl<'a> Gap<'a> {
             let step = newton * (1.0 - newton * (bend - newton * (2.0 * bend * bend - jerk / (6.0 * slope))));
             sigma += step;
             // each step is in proportion to the fourth power of the one before
-            if step.abs() * (step / last).powi(4) <= f64::EPSILON * sigma {
+            if step.abs().powi(5) <= f64::EPSILON * sigma * f64::powi(last, 4) {
                 return Some(sigma).filter(|root| (from..=end).contains(root));
             }
             (last, derivatives) = (step, self.derivatives(sigma));
@@ -183,13 +183,13 @@ fn march(gap: &Gap, mut sigma: f64, reach: f64) -> Crossing {
         if value <= 0.0 {
             return Crossing::At(sigma);
         }
-        let falls_until = sigma - 2.0 * value / slope;
-        if slope < 0.0
-            && 4.0 * curvature * value <= slope * slope
-            && falls_until <= reach
-            && let Some(root) = gap.root(sigma, derivatives, falls_until)
-        {
-            return Crossing::At(root);
+        if slope < 0.0 && 4.0 * curvature * value <= slope * slope {
+            let falls_until = sigma - 2.0 * value / slope;
+            if falls_until <= reach
+                && let Some(root) = gap.root(sigma, derivatives, falls_until)
+            {
+                return Crossing::At(root);
+            }
         }
         let root = (slope * slope + 2.0 * curvature * value).sqrt();
         let open: f64 = match slope {
