@@ -247,11 +247,12 @@ impl Structure {
         let [mass, inertia] = [of(|mode| mode.gamma * mode.share), of(|mode| mode.mass * mode.height * mode.height)];
         let m_s = whole("m_s", "kg", body.m_s, mass)?;
         let I_2 = whole("I_2", "kg.m2", body.I_2, inertia)?;
-        Ok(Structure::of(Body { m_s, I_2, ..body }, modes, floors))
+        Ok(Structure::of(Body { m_s, I_2, ..body }, modes, floors, None))
     }
 
-    /// The structure of checked numbers. The modes are all of it if they leave no more of any of its sums than their rounding.
-    fn of(body: Body, modes: &[Mode], floors: &[Floor]) -> Structure {
+    /// The structure of checked numbers, of one mass with the bits of the paper's formulas. The modes are all of it if they leave no more of
+    /// any of its sums than their rounding.
+    fn of(body: Body, modes: &[Mode], floors: &[Floor], one: Option<OneMass>) -> Structure {
         let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum::<f64>();
         let (mass, first) = (of(|mode| mode.gamma * mode.share), of(|mode| mode.gamma * mode.height));
         let second = of(|mode| mode.mass * mode.height * mode.height);
@@ -287,16 +288,19 @@ impl Structure {
             ties,
         };
         let whole = Whole {
-            vibration: vibration(&base, modes),
-            base,
+            vibration: match one {
+                Some(one) => Vibration { contact: one.omega_fc, rocking: [one.omega_u; 2] },
+                None => vibration(&base, modes),
+            },
+            base: one.map_or(base, |one| one.base),
             body,
             modes: modes.to_vec(),
             foundation: None,
             coordinates: modes.to_vec(),
             floors: floors.to_vec(),
             gauges,
-            one: None,
-            of_mode: None,
+            one,
+            of_mode: one,
             reaches: Reaches::default(),
         };
         Structure(Arc::new(whole), Units::default())
@@ -399,7 +403,7 @@ impl Structure {
         kept.sort_unstable();
         let shape = |floor: &Floor| Modes::new(&Vec::from_iter(kept.iter().map(|j| floor.shape.of(*j))));
         let floors = Vec::from_iter(self.0.floors.iter().map(|floor| Floor { shape: shape(floor), ..*floor }));
-        let kept = Structure::of(self.0.body, &Vec::from_iter(kept.iter().map(|j| self.0.modes[*j])), &floors);
+        let kept = Structure::of(self.0.body, &Vec::from_iter(kept.iter().map(|j| self.0.modes[*j])), &floors, None);
         self.on_own_ground(kept).expect("the rest of the modes rides rigidly, which makes the base heavier and stiffer")
     }
 
@@ -485,7 +489,7 @@ impl Structure {
         let of_mode = OneMass::new(Parameters { m, H, r, ..self.parameters() }).ok()?;
         let floor = |floor: &Floor| Floor { shape: floor.shape.times(share), ..*floor };
         let floors = Vec::from_iter(self.0.floors.iter().map(floor));
-        Some(Structure::of(self.0.body, &[mode], &floors).changed(|whole| whole.of_mode = Some(of_mode)))
+        Some(Structure::of(self.0.body, &[mode], &floors, None).changed(|whole| whole.of_mode = Some(of_mode)))
     }
 
     /// The numbers of one mass of a structure that engines of one coordinate move.
@@ -593,12 +597,7 @@ impl From<OneMass> for Structure {
         let &Parameters { m, H, r, .. } = one.parameters();
         let body = Body::of(one.parameters(), Some(r), [m, m * H, m * H * H]);
         let floor = Floor { mass: m, height: H, shape: Modes::new(&[1.0]) };
-        // with the bits of the paper's formulas
-        Structure::of(body, &[one.mode], &[floor]).changed(|whole| {
-            whole.base = one.base;
-            whole.vibration = Vibration { contact: one.omega_fc, rocking: [one.omega_u; 2] };
-            (whole.one, whole.of_mode) = (Some(one), Some(one));
-        })
+        Structure::of(body, &[one.mode], &[floor], Some(one))
     }
 }
 
