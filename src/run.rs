@@ -322,8 +322,8 @@ impl<Q: Coordinates, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
         let next = self.segments.next().map_or_else(|| self.come_to_rest(), |segment| Ok((segment, None)));
         if next.is_ok() && work.steps > MOST_STEPS {
             let structure = self.engine.structure();
-            let ground = structure.foundation().map(|of| of.fastest(&structure.frequencies_on_ground()));
-            let rate = structure.base().rates_of_ties().into_iter().chain(ground).fold(0.0, f64::max);
+            let rates = structure.base().rates_of_ties().into_iter().chain(structure.fastest_on_ground());
+            let rate = rates.fold(0.0, f64::max);
             return Err(RunError::TooManySteps { time, rate });
         }
         Ok(next)
@@ -407,7 +407,7 @@ mod tests {
     fn a_run_ends_after_its_most_steps() {
         let ground = Record::from_samples("", vec![1.0, 2.0, 3.0], vec![0.0, 1.0, 0.0]).unwrap();
         let pier = OneMass::new(Parameters { xi_d: 2.0, c_d: 1e9, ..Parameters::MCMANUS }).unwrap();
-        let rate = 1e9 * (2.0 * (pier.parameters().B.powi(2) + 4.0) / pier.J_P);
+        let rate = 1e9 * (2.0 * (pier.parameters().B.powi(2) + 4.0)) / pier.J_P;
         let run = Run::new(pier, &ground);
         let mut follower = run.course().unwrap();
         assert_eq!(follower.go_on(&mut ()).unwrap(), None);

@@ -569,6 +569,11 @@ impl Structure {
         self.foundation().map_or(Vec::new(), frequencies)
     }
 
+    /// The fastest rate of small motions on ground that gives, 1/s.
+    pub(crate) fn fastest_on_ground(&self) -> Option<f64> {
+        self.foundation().map(|of| of.fastest(&self.frequencies_on_ground()))
+    }
+
     /// Usual magnitudes in a motion: of each mode, as if the mode had all mass, where the base is about to lift off statically; the
     /// angle at which the structure falls; and the rates that belong to them.
     pub fn usual<Q: Coordinates>(&self) -> State<Q> {

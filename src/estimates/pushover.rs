@@ -79,9 +79,10 @@ impl Pushover {
             "the pushover is of a base that turns about an edge on rigid ground (Fig 1): leave ground out, or simulate a slow force"
                 .into()
         })?;
-        let (floors, needed) = (structure.floors(), "the structure has no floors that take the force");
-        let refused = || Refused(format!("{needed}: give masses, heights and shapes"));
-        let top = floors.last().ok_or_else(refused)?;
+        let floors = structure.floors();
+        let none =
+            || Refused("the structure has no floors that take the force: give masses, heights and shapes".into());
+        let top = floors.last().ok_or_else(none)?;
         let whole: f64 = floors.iter().map(|floor| floor.mass * floor.height).sum();
         let mean = |of: &dyn Fn(usize) -> f64| {
             let parts = floors.iter().enumerate().map(|(i, floor)| floor.mass * floor.height / whole * of(i));

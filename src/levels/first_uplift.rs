@@ -45,6 +45,13 @@ impl Liftable<'_> {
         self.rest(a_g, a_top)[1] - self.base.S_res * a_g
     }
 
+    /// This moment over the step from `start`.
+    fn moment_of_rest_over<Q: Coordinates>(&self, &Start { a_g, ref a_top, .. }: &Start<Q>) -> Ramp {
+        let [value, slope] =
+            [(a_g.value, &a_top.value), (a_g.slope, &a_top.slope)].map(|(a_g, a_top)| self.moment_of_rest(a_g, a_top));
+        Ramp { value, slope }
+    }
+
     /// The moments that lift the base, given the moment of the mass that turns rigidly and the vertical acceleration, and (u, u̇) of each
     /// mode.
     #[inline(always)]
@@ -64,10 +71,9 @@ impl Liftable<'_> {
 
     /// The least moment that holds the base down over the interval of `start`, less the most that mass that turns rigidly takes of it.
     pub(crate) fn least_hold<Q: Coordinates>(&self, start: &Start<Q>) -> f64 {
-        let &Start { a_g, ref a_top, a_v, dissipators, interval, .. } = start;
-        let [first, slope] =
-            [(a_g.value, &a_top.value), (a_g.slope, &a_top.slope)].map(|(a_g, a_top)| self.moment_of_rest(a_g, a_top));
-        let taken = first.abs().max((first + slope * interval).abs());
+        let &Start { a_v, dissipators, interval, .. } = start;
+        let rest = self.moment_of_rest_over(start);
+        let taken = rest.value.abs().max(rest.at(interval).abs());
         least_hold(self.base, a_v, interval, dissipators) - taken
     }
 
@@ -117,8 +123,9 @@ impl Liftable<'_> {
         for (springs, u) in springs.iter_mut().zip(arc.used(&arc.u)) {
             *springs = self.modes.iter().enumerate().map(|(j, mode)| mode.height * mode.stiffness * u.of(j)).sum();
         }
-        springs[0] += self.moment_of_rest(a_g.value, &a_top.value);
-        springs[1] += self.moment_of_rest(a_g.slope, &a_top.slope) * arc.span;
+        let rest = self.moment_of_rest_over(start);
+        springs[0] += rest.value;
+        springs[1] += rest.slope * arc.span;
         // when the springs are due to lift the base, the moment that turns it mostly is, too; none if it is not
         let by_springs = |side: Side| {
             let hold = hold(self.base, side, a_v.value, dissipators);
@@ -126,8 +133,7 @@ impl Liftable<'_> {
             let is_due = match crossing {
                 Crossing::At(sigma) => {
                     let (State { u, u_dot, .. }, tau) = (arc.at(sigma), sigma * arc.span);
-                    let rigid = self.moment_of_rest(a_g.at(tau), &a_top.at(tau));
-                    let lift = self.lift([rigid, a_v.value], |j| [u.of(j), u_dot.of(j)]);
+                    let lift = self.lift([rest.at(tau), a_v.value], |j| [u.of(j), u_dot.of(j)]);
                     lift.missing(self.base, side, hold)[1] <= 0.0
                 }
                 crossing => crossing == Crossing::None,
@@ -140,11 +146,8 @@ impl Liftable<'_> {
                 return crossing;
             }
             let a_v_terms = Terms::ramp(a_v.value, a_v.slope * arc.span);
-            let rigid = Terms::ramp(
-                self.moment_of_rest(a_g.value, &a_top.value),
-                self.moment_of_rest(a_g.slope, &a_top.slope) * arc.span,
-            );
-            let lift = self.lift([rigid, a_v_terms], |j| {
+            let rest = Terms::ramp(rest.value, rest.slope * arc.span);
+            let lift = self.lift([rest, a_v_terms], |j| {
                 [&arc.u, &arc.u_dot].map(|series| Terms::from_fn(arc.order, |k| series[k].of(j)))
             });
             let hold = hold(self.base, side, a_v_terms, dissipators);

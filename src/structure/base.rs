@@ -54,6 +54,14 @@ impl Ties {
     pub(crate) fn of(&Parameters { P_0, k_t, xi_d, c_d, k_d, F_y, .. }: &Parameters) -> Ties {
         Ties { P_0, k_t, xi_d, c_d, k_d, F_y }
     }
+
+    /// About a pivot of a base of half-width `B` (m): the stiffness of the tendon and of the elastic dissipators, N·m/rad, and the damping of
+    /// the viscous dissipators, N·m·s/rad.
+    pub(crate) fn about_pivot(&self, B: f64) -> [f64; 3] {
+        let &Ties { k_t, xi_d, c_d, k_d, .. } = self;
+        let pair = 2.0 * (B * B + xi_d * xi_d);
+        [k_t * B * B, k_d * pair, c_d * pair]
+    }
 }
 
 impl Base {
@@ -74,11 +82,9 @@ impl Base {
         self.ties.c_d > 0.0 || self.ties.k_d > 0.0
     }
 
-    /// The rates at which the tendon, the elastic dissipators and the viscous dissipators move the structure about a pivot, 1/s:
-    /// √(k_t B²/J_P), √(2 k_d (B² + ξ_d²)/J_P) and 2 c_d (B² + ξ_d²)/J_P.
+    /// The rates at which the tendon, the elastic dissipators and the viscous dissipators move the structure about a pivot, 1/s.
     pub(crate) fn rates_of_ties(&self) -> [f64; 3] {
-        let &Base { B, J_P, ties: Ties { k_t, xi_d, c_d, k_d, .. }, .. } = self;
-        let of_pair = 2.0 * (B * B + xi_d * xi_d) / J_P;
-        [(k_t * B * B / J_P).sqrt(), (k_d * of_pair).sqrt(), c_d * of_pair]
+        let [tendon, elastic, viscous] = self.ties.about_pivot(self.B).map(|of| of / self.J_P);
+        [tendon.sqrt(), elastic.sqrt(), viscous]
     }
 }

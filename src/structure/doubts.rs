@@ -66,9 +66,8 @@ impl Structure {
                     .map(|many| format!("{name} = {} {many}: is {name} in {unit}?", with_unit(value, unit))),
             );
         }
-        if let Some(ground) = self.foundation() {
+        if let Some((ground, rate)) = self.foundation().zip(self.fastest_on_ground()) {
             let [f_v, zeta_v] = [ground.omega_v(self.base()) / TAU, ground.zeta_v(self.base())].map(short);
-            let rate = ground.fastest(&self.frequencies_on_ground());
             doubts.extend(many_steps(rate).map(|many| {
                 format!(
                     "f_v = {f_v} Hz with zeta_v = {zeta_v} and J0 = {} kg.m2 {many}: lower f_v or zeta_v, or raise J0",

@@ -56,7 +56,7 @@ impl OneMass {
     pub fn new(parameters: Parameters) -> Result<OneMass, Refused> {
         parameters.check()?;
         let Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, r, g, .. } = parameters;
-        let ties @ Ties { P_0, k_t, xi_d, c_d, k_d, .. } = Ties::of(&parameters);
+        let ties @ Ties { P_0, .. } = Ties::of(&parameters);
         let gamma = (m + m0) / m;
         let omega_fc = TAU * f_fc;
         let k = m * omega_fc * omega_fc;
@@ -69,9 +69,9 @@ impl OneMass {
         let tan_alpha_cg = gamma * B / H;
         let (p_l, omega_u) = ((m * g * H / J_P).sqrt(), omega_fc / one_minus_chi.sqrt());
         let foundation = (J0 + m0 * B * B) / m;
-        let (inertia, pair) = (m * (foundation + B * B), 2.0 * (B * B + xi_d * xi_d));
-        let held = k_t * B * B + k_d * pair;
-        let rocking_rate = (omega_u * omega_u + held / inertia).sqrt().max(p_l).max(c_d * pair / inertia);
+        let (inertia, [tendon, elastic, viscous]) = (m * (foundation + B * B), ties.about_pivot(B));
+        let held = tendon + elastic;
+        let rocking_rate = (omega_u * omega_u + held / inertia).sqrt().max(p_l).max(viscous / inertia);
         Ok(OneMass {
             parameters,
             base: Base { m_t: m + m0, m0, S_res: 0.0, B, J0, J_P, r: Some(r), g, c_ratio, p_l, tan_alpha_cg, ties },
