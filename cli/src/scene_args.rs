@@ -64,7 +64,7 @@ pub struct GroundArgs {
         conflicts_with_all = ["record_v", "unit", "dt", "column", "ignore_npts", "time_scale", "scale", "duration"]
     )]
     pub free: Option<f64>,
-    /// Horizontal force on the top floor, positive to the right, beside the ground motion: a table with the columns time[s] and F_t[N], linear between them. --scale and --time-scale do not change the force
+    /// Table of a horizontal force on the top floor, with the columns time[s] and F_t[N]. The force is positive to the right and linear between rows; --scale and --time-scale do not change it
     #[arg(long, value_name = "FILE.csv")]
     pub force: Option<PathBuf>,
 }

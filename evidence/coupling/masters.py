@@ -47,8 +47,8 @@ def gauss_seidel(system, t, h, guess):
 class Iterated:
     """Repeats the sweep over a step, each time from the same state, until its w is the w that it was given.
 
-    With `columns` = 0 the next w is the result of the sweep (fixed point). Otherwise the method is IQN-ILS: it takes the residual as
-    linear in w, by least squares over the last differences of this step and the steps before, and returns the w of the least residual.
+    The next w is the result of the sweep if `columns` is 0 (fixed point). Otherwise the method is IQN-ILS. It fits a linear residual
+    to the last differences of this step and the steps before, by least squares, and returns the w of the least residual.
     """
 
     def __init__(self, columns: int = 0):

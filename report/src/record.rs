@@ -15,7 +15,7 @@ pub struct Understood {
     factors: [f64; 2],
     /// Units of the horizontal and of the vertical component.
     pub units: [Unit; 2],
-    /// What its file said, if it is of one.
+    /// Statements of the file, if the ground motion is of a file.
     pub source: Option<Source>,
     /// Findings in a sentence, then one sentence for each assumption and for each likely error.
     pub sentences: Vec<String>,
@@ -37,7 +37,7 @@ pub fn understand(
     Understood::new(&input::name(path), advised(read, called)?, factors, g, called)
 }
 
-/// What was `read`, or else why not, with the option that would help.
+/// The result of reading a file; an error names the option that would help.
 pub fn advised<T>(read: Result<T, RecordError>, called: fn(&str) -> String) -> anyhow::Result<T> {
     read.map_err(|error| match error {
         RecordError::Malformed { remedy: Some(remedy), .. } => anyhow!("{error}; {}", remedy.advice(called)),
@@ -54,7 +54,7 @@ pub fn no_pair(error: SamplesError, option: &str) -> anyhow::Error {
 }
 
 impl Understood {
-    /// What was read from the file called `name`; the rest as in [`understand`].
+    /// The ground motion of the file called `name`; the other arguments are those of [`understand`].
     pub fn new(
         name: &str,
         (in_file_unit, source): (Record, Source),

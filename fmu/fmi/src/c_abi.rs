@@ -4,8 +4,8 @@
 //!
 //! Messages begin with the function that was called and end with the one to call instead: the instance knows neither.
 //!
-//! Each call checks what C cannot promise: null and misaligned pointers, lengths, numbers of an enumeration, a call from
-//! within the logger, and, as far as that can be told, whether a component is one. A panic becomes [`Status::Fatal`]. A call
+//! C makes no promise about arguments. Each call therefore checks null and misaligned pointers, lengths, numbers of an enumeration
+//! and calls from within the logger. It also checks, as far as it can, whether a component is one. A panic becomes [`Status::Fatal`]. A call
 //! computes with the floating point control that Rust assumes, whatever the host's is.
 //!
 //! # Safety

@@ -1,5 +1,5 @@
-//! The states of an instance, as the standard has them, and what tables of the functions that may be called in them are
-//! made of: one table for each interface of each version.
+//! The states of an instance, as in the standard, and the parts of the tables of the functions that may be called in them. Each
+//! interface of each version has a table.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;

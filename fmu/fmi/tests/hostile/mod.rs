@@ -2,8 +2,8 @@
 //! version. From 100,000 on they also meet every function in every stage, and check it against the standard's table.
 //!
 //! `FUZZ_CALLS` says how many calls of each interface to make (`make heavy`: 100,000). Calls come in sequences of a
-//! few hundred. What a call does follows from its number and from the calls before it; of a sequence that fails proptest
-//! leaves out all calls that need not be there.
+//! few hundred. The number of a call and the calls before it determine what it does. proptest shortens a sequence that
+//! fails to the calls that it needs.
 
 mod arguments;
 mod fmi2;
