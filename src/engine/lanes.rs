@@ -2,7 +2,7 @@
 //!
 //! A register of the processor has one number of each run. The operations on the numbers of a run are those of the run by itself,
 //! in the same order, so that all results have the same bits. The bounds for watchers are a little wider: what they prove, the run
-//! by itself proves too.
+//! by itself proves too. A step that may hold a peak is put off: the steps after it mostly hold larger values.
 
 use super::{
     Advance, AdvanceError, Engine, Loop, MAX_STEPS_PER_ADVANCE, Progress, Settings, is_at_its_end, leap_under, leapt,
@@ -12,13 +12,13 @@ use crate::engine::phases;
 use crate::engine::piece::{Piece, Watch};
 use crate::levels::detail::Elastic;
 use crate::levels::full_contact::ExactContact;
-use crate::levels::level::{Level, Pace, most_of_swing};
+use crate::levels::level::{Level, Pace, off_chord};
 use crate::levels::nonlinear::{Equations, NonlinearRocking, Products, Recurrence, Rocker};
 use crate::levels::oscillator::{Flow, Oscillator};
 use crate::numbers::Real;
 use crate::numbers::lanes::{Answers, Lanes, MOST};
 use crate::series::extremes::OFF_CHORD;
-use crate::series::taylor::{self, Arc, MAX_ORDER, MIN_ORDER, Start, Truncation, reciprocal};
+use crate::series::taylor::{self, Arc, LONGEST_SPAN, MAX_ORDER, MIN_ORDER, Start, Truncation, reciprocal};
 use crate::{Detail, LinearLoad, Phase, Ramp, State, Transition};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::FRAC_PI_2;
@@ -29,22 +29,52 @@ const ROUNDING: f64 = 1.0 + 1e-13;
 /// The most quantities whose peaks a watcher seeks.
 pub(crate) const MOST_SOUGHT: usize = 4;
 
+/// How many steps of a run are put off before those that have been beaten are dropped, and how many at most.
+const PUT_OFF: usize = 16;
+const MOST_PUT_OFF: usize = 256;
+
+/// Part of a bound from below that is not used, so that rounding and [peaks that are the same](crate::run::peaks) never matter.
+const SLACK: f64 = 1e-9;
+
 /// How many leaps are looked at to find the two durations of most of them.
 const LOOKED_AHEAD: usize = 4;
 
 /// A number of each run.
 pub(crate) type Row = [f64; MOST];
 
-/// Limits beyond which the watchers of several runs must see a piece. Places with weights of 0 seek nothing.
+/// What the watchers of several runs seek.
 #[derive(Debug, Default)]
 pub(crate) struct Sought {
-    /// Of each quantity: the weights of four magnitudes in its bound. These are |u|, |u̇|, and while rocking |θ| and θ²/2, in full
-    /// contact |a_g| and nothing.
-    pub weights: [[Row; 4]; MOST_SOUGHT],
+    /// How many quantities.
+    pub count: usize,
+    /// The [weights](crate::mechanics::reach::Reach::of_one) of each quantity.
+    pub weights: [[Row; 5]; MOST_SOUGHT],
     /// The least magnitude of each quantity that must be seen.
     pub least: [Row; MOST_SOUGHT],
-    /// The least |a_g| at an end of a piece, and |θ| at its last end, that must be seen.
-    pub ends: [Row; 2],
+    /// A piece must be seen at once if |θ| may be no more than the first, or is at least the second at its end.
+    pub turned: [Row; 2],
+    /// Steps that may hold a peak, in order of time.
+    put_off: [Vec<PutOff>; MOST],
+}
+
+/// A step that is shown to a watcher after others.
+#[derive(Debug)]
+struct PutOff {
+    /// The sample that ends it.
+    sample: usize,
+    /// s.
+    duration: f64,
+    a_g: Ramp,
+    start: State,
+    end: State,
+    /// Bounds of what is sought.
+    bounds: [f64; MOST_SOUGHT],
+}
+
+/// A step of several runs: u, u̇ and θ at both ends, and how far each leaves its chord.
+struct Stretch<S: Simd> {
+    ends: [[Lanes<S>; 3]; 2],
+    off: [Lanes<S>; 3],
 }
 
 /// A watcher of a motion whose steps are taken among others.
@@ -54,6 +84,9 @@ pub(crate) trait Passes: Watch {
 
     /// Passes a piece that the watcher need not see.
     fn pass(&mut self);
+
+    /// Sees a piece whose quantities are within these `bounds`, when it may look at the motion within the piece later.
+    fn put_off(&mut self, piece: &Piece, bounds: &[f64; MOST_SOUGHT]);
 }
 
 /// Watches a motion after the piece under way, which it `passes` if the watcher need not see it.
@@ -73,22 +106,87 @@ impl<W: Passes> Watch for After<'_, W> {
     }
 }
 
-impl Sought {
-    /// Whether pieces within these `magnitudes` and `ends` certainly need not be seen.
+impl<S: Simd> Stretch<S> {
+    /// Bounds of the magnitudes.
     #[inline(always)]
-    fn are_passed<S: Simd>(&self, simd: S, magnitudes: [Lanes<S>; 4], ends: [Lanes<S>; 2]) -> Answers<S> {
-        let mut passed = ends[0].is_less(Lanes::load(simd, &self.ends[0]));
-        passed = passed & ends[1].is_less(Lanes::load(simd, &self.ends[1]));
+    fn most(&self) -> [Lanes<S>; 3] {
+        let [start, end] = &self.ends;
+        let mut most = self.off;
+        for ((most, start), end) in most.iter_mut().zip(start).zip(end) {
+            *most = start.abs().max(end.abs()) + *most;
+        }
+        most
+    }
+}
+
+impl Sought {
+    /// Whether steps within these magnitudes of u, u̇ and θ certainly hold no peak.
+    #[inline(always)]
+    fn are_passed<S: Simd>(&self, simd: S, [u, u_dot, theta]: [Lanes<S>; 3]) -> Answers<S> {
         let zero = Lanes::splat(simd, 0.0);
-        for (weights, least) in self.weights.iter().zip(&self.least) {
-            let mut bound = zero;
-            for (weight, magnitude) in weights.iter().zip(magnitudes) {
-                bound = bound + Lanes::load(simd, weight) * magnitude;
-            }
-            bound = bound * zero.like(ROUNDING);
+        let (mut passed, versine) = (zero.is_at_most(zero), zero.like(0.5) * theta * theta);
+        for (weights, least) in self.weights[..self.count].iter().zip(&self.least) {
+            let [of_u, of_u_dot, of_theta, _, of_versine] = load(simd, weights);
+            let bound = of_u.abs() * u + of_u_dot.abs() * u_dot + of_theta.abs() * theta + of_versine * versine;
+            let bound = bound * zero.like(ROUNDING);
             passed = passed & (bound.is_less(Lanes::load(simd, least)) | bound.is_at_most(zero));
         }
         passed
+    }
+
+    /// Bounds of what is sought over a step of `stretch`. Raises the least magnitudes `where_so` by values at the ends of the step.
+    #[inline(always)]
+    fn bounds<S: Simd>(&mut self, simd: S, stretch: &Stretch<S>, where_so: Answers<S>) -> [Row; MOST_SOUGHT] {
+        let (mut bounds, most @ [.., theta]) = ([[0.0; MOST]; MOST_SOUGHT], stretch.most());
+        let (one, versine) = (theta.like(1.0), theta.like(0.5) * theta * theta);
+        let cubic = versine * theta / theta.like(3.0);
+        for i in 0..self.count {
+            let [of_u, of_u_dot, of_theta, of_cubic, of_versine] = load(simd, &self.weights[i]);
+            let linear = |[u, u_dot, theta]: [Lanes<S>; 3]| of_u * u + of_u_dot * u_dot + of_theta * theta;
+            let elastic = |[u, u_dot, _]: [Lanes<S>; 3]| of_u.abs() * u + of_u_dot.abs() * u_dot;
+            let largest = linear(stretch.ends[0]).abs().max(linear(stretch.ends[1]).abs());
+            let curved = (elastic(most) + of_versine) * versine + of_cubic * cubic;
+            let off = elastic(stretch.off) + of_theta.abs() * stretch.off[2];
+            ((largest + off + curved) * one.like(ROUNDING)).store(&mut bounds[i]);
+            let least = Lanes::load(simd, &self.least[i]);
+            where_so.choose(least.max((largest - curved) * one.like(1.0 - SLACK)), least).store(&mut self.least[i]);
+        }
+        bounds
+    }
+
+    /// Whether a step within these bounds of the run in `lane` may hold a peak.
+    fn may_hold(&self, lane: usize, bounds: &[f64; MOST_SOUGHT]) -> bool {
+        bounds[..self.count].iter().zip(&self.least).any(|(bound, least)| *bound > 0.0 && *bound >= least[lane])
+    }
+
+    /// Puts off a step of the run in `lane`. Returns whether it may put off another one.
+    fn put_off(&mut self, lane: usize, step: PutOff) -> bool {
+        self.put_off[lane].push(step);
+        if self.put_off[lane].len().is_multiple_of(PUT_OFF) {
+            let mut steps = std::mem::take(&mut self.put_off[lane]);
+            steps.retain(|step| self.may_hold(lane, &step.bounds));
+            self.put_off[lane] = steps;
+        }
+        self.put_off[lane].len() < MOST_PUT_OFF
+    }
+
+    /// Shows what has been put off of the run of `engine` in `lane`, which `entered` at this one of the samples at `times`.
+    fn show<W: Passes>(&mut self, lane: usize, (times, entered): (&[f64], usize), engine: &Engine, watch: &mut W) {
+        let Engine { level, motion, room, .. } = engine;
+        let mut steps = std::mem::take(&mut self.put_off[lane]);
+        for PutOff { sample, duration, a_g, start, end, bounds } in steps.drain(..) {
+            let is_later = sample > entered;
+            if is_later {
+                watch.pass();
+            }
+            if self.may_hold(lane, &bounds) {
+                let time = if is_later { times[sample - 1] } else { motion.time };
+                let before = &Motion { time, state: start, ..*motion };
+                let piece = Piece { before, duration, load: a_g.into(), end, level: &**level, arc: None, room };
+                watch.put_off(&piece, &bounds);
+            }
+        }
+        self.put_off[lane] = steps;
     }
 }
 
@@ -134,6 +232,8 @@ pub(crate) struct Contacts<'a> {
     exact: [Option<ExactContact>; MOST],
     oscillator: Oscillator<Row>,
     u_cr: Row,
+    /// The longest leap that may be put off, s: a watcher looks at a longer one piece by piece.
+    longest: Row,
     u: Row,
     u_dot: Row,
     age: Row,
@@ -155,6 +255,7 @@ impl<'a> Contacts<'a> {
         watch.seek(engine, lane, &mut self.sought);
         (self.samples[lane], self.entered[lane], self.is_there[lane]) = (samples, samples.next, 1.0);
         (self.u_cr[lane], self.age[lane]) = (one.u_cr, motion.chatter.age);
+        self.longest[lane] = LONGEST_SPAN / engine.structure().vibration().rocking[1];
         (self.u[lane], self.u_dot[lane]) = (motion.state.u, motion.state.u_dot);
         let level = by_equations_5_and_6(&*engine.level).expect(STEPS_ALONE);
         let exact = level.contact().expect("it may leap");
@@ -205,14 +306,43 @@ impl<'a> Contacts<'a> {
     /// Takes the run in `lane` out. Returns the next sample.
     pub(crate) fn leave<W: Passes>(&mut self, lane: usize, engine: &mut Engine, watch: &mut W) -> usize {
         self.is_there[lane] = 0.0;
-        let (Samples { times, next, .. }, motion) = (self.samples[lane], &mut engine.motion);
+        let Samples { times, next, .. } = self.samples[lane];
         if next > self.entered[lane] {
+            self.sought.show(lane, (times, self.entered[lane]), engine, watch);
+            let motion = &mut engine.motion;
             motion.state = State { u: self.u[lane], u_dot: self.u_dot[lane], theta: 0.0, theta_dot: 0.0 };
             (motion.chatter.age, motion.time) = (self.age[lane], times[next - 1]);
             motion.work.steps += (next - self.entered[lane]) as u64;
             watch.pass();
         }
         next
+    }
+
+    /// Puts off the leap over a `stretch` that is `ahead` of the next one of each run, where it is taken and not passed.
+    #[inline(always)]
+    fn put_off<S: Simd>(
+        &mut self,
+        simd: S,
+        stretch: &Stretch<S>,
+        ahead: usize,
+        is_taken: Answers<S>,
+        is_passed: Answers<S>,
+    ) {
+        let bounds = self.sought.bounds(simd, stretch, is_taken);
+        let (one, zero) = (Lanes::splat(simd, 1.0), Lanes::splat(simd, 0.0));
+        let is_put_off = is_passed.choose(zero, is_taken.choose(one, zero));
+        for lane in (0..S::F64_LANES).filter(|lane| self.is_there[*lane] == 1.0 && is_put_off.of(*lane) == 1.0) {
+            let Samples { times, a_g, next, last } = &mut self.samples[lane];
+            let sample = *next + ahead;
+            let duration = times[sample] - times[sample - 1];
+            let a_g = Ramp::between(a_g[sample - 1], a_g[sample], duration);
+            let [start, end] =
+                stretch.ends.map(|[u, u_dot, _]| State { u: u.of(lane), u_dot: u_dot.of(lane), ..State::default() });
+            let bounds = bounds.map(|of| of[lane]);
+            if !self.sought.put_off(lane, PutOff { sample, duration, a_g, start, end, bounds }) {
+                *last = (*last).min(sample + 1);
+            }
+        }
     }
 
     /// Writes the sample that is `ahead` of the next one of each run.
@@ -260,18 +390,21 @@ impl<S: Simd> WithSimd for Leapt<'_, '_, S> {
                 break;
             }
             let slope = (a_next - a) / duration;
-            let a_end = a + slope * duration;
             let [u_end, u_dot_end] = Flow { free: [m11, m12, m21, m22], step, ramp }.driven([u, u_dot], a, slope);
             let swing = oscillator.swing([u, u_dot], a, slope, duration);
             let is_low = oscillator.farthest(&swing, [u, u_end], slope, duration).is_less(u_cr);
             let [swing_u, swing_u_dot, u_ddot, jerk] = oscillator.swings(&swing);
             let per_bend = duration * duration / u.like(8.0);
-            let most_u = most_of_swing([u, u_end], swing_u, [u_ddot, per_bend]);
-            let most_u_dot = most_of_swing([u_dot, u_dot_end], swing_u_dot, [jerk, per_bend]);
-            let most_a = a.abs().max(a_end.abs());
-            let is_finite = (u_end + u_dot_end).abs().is_at_most(largest) & a_end.abs().is_at_most(largest);
-            let is_passed = of.sought.are_passed(simd, [most_u, most_u_dot, most_a, none], [most_a, none]);
-            is_taken = is_low & is_finite & is_passed;
+            let off = [off_chord(swing_u, [u_ddot, per_bend]), off_chord(swing_u_dot, [jerk, per_bend]), none];
+            let stretch = Stretch { ends: [[u, u_dot, none], [u_end, u_dot_end, none]], off };
+            let is_finite =
+                (u_end + u_dot_end).abs().is_at_most(largest) & (a + slope * duration).abs().is_at_most(largest);
+            is_taken = is_low & is_finite;
+            let is_passed = of.sought.are_passed(simd, stretch.most());
+            if !(is_passed | is_absent).all() {
+                is_taken = is_taken & (is_passed | duration.is_at_most(row(&of.longest)));
+                of.put_off(simd, &stretch, leaps, is_taken, is_passed);
+            }
             leaps += 1;
             if !(is_taken | is_absent).all() {
                 (u, u_dot) = (is_taken.choose(u_end, u), is_taken.choose(u_dot_end, u_dot));
@@ -416,11 +549,13 @@ impl<'a, S: Simd> Rocking<'a, S> {
     /// one than that where it was.
     #[inline]
     pub(crate) fn catch_up<W: Passes>(&mut self, lane: usize, engine: &mut Engine, watch: &mut W) -> Option<usize> {
-        let (Samples { times, next, .. }, motion) = (self.runs.samples[lane], &mut engine.motion);
-        let passed = next - self.runs.entered[lane];
+        let (Samples { times, next, .. }, entered) = (self.runs.samples[lane], self.runs.entered[lane]);
+        let passed = next - entered;
         if passed == 0 {
             return None;
         }
+        self.runs.sought.show(lane, (times, entered - 1), engine, watch);
+        let motion = &mut engine.motion;
         let [u, u_dot, theta, theta_dot] = &self.runs.state;
         motion.state = State { u: u[lane], u_dot: u_dot[lane], theta: theta[lane], theta_dot: theta_dot[lane] };
         (motion.chatter.age, motion.time) = (self.runs.age[lane], times[next - 2]);
@@ -444,6 +579,23 @@ impl<'a, S: Simd> Rocking<'a, S> {
             (arc.theta[k], arc.theta_dot[k]) = (theta.of(lane), theta_dot.of(lane));
         }
         (arc.order, arc.span, arc.reach) = (order, self.runs.span[lane], self.runs.reach[lane]);
+    }
+}
+
+impl Runs<'_> {
+    /// Puts off the last step of the run in `lane`.
+    fn put_off(&mut self, lane: usize, bounds: &[Row; MOST_SOUGHT]) {
+        let Samples { next, last, .. } = &mut self.samples[lane];
+        let (sample, duration) = (*next - 1, self.interval[lane]);
+        let a_g = Ramp { value: self.a_g[lane], slope: self.slope[lane] };
+        let [start, end] = [&self.state, &self.end].map(|of| {
+            let [u, u_dot, theta, theta_dot] = of;
+            State { u: u[lane], u_dot: u_dot[lane], theta: theta[lane], theta_dot: theta_dot[lane] }
+        });
+        let bounds = bounds.map(|of| of[lane]);
+        if !self.sought.put_off(lane, PutOff { sample, duration, a_g, start, end, bounds }) {
+            *last = (*last).min(*next);
+        }
     }
 }
 
@@ -519,13 +671,12 @@ impl<S: Simd> WithSimd for Taken<'_, '_, S> {
             }
             excursion = (excursion + series[k][2].abs()) * sigma;
         }
-        let (rounding, mut most) = (g.like(ROUNDING), off);
+        let rounding = g.like(ROUNDING);
         for (i, number) in series[0].into_iter().enumerate() {
             end[i] = end[i] * sigma + number;
-            most[i] = number.abs().max(end[i].abs()) + off[i];
             end[i].store(&mut of.end[i]);
         }
-        let (start, a_end) = (side * theta, push[0] + push[1] * sigma);
+        let start = side * theta;
         // as the run by itself proves that no guard closes
         let mut lead = zero;
         for [_, _, theta, _] in series[1..4].iter().rev() {
@@ -537,12 +688,20 @@ impl<S: Simd> WithSimd for Taken<'_, '_, S> {
         let stays = (rises | leads) & ((excursion + start) * rounding).is_less(g.like(FRAC_PI_2));
         let size = end[0].abs() + end[1].abs() + end[2].abs() + end[3].abs();
         let stays = stays & size.is_at_most(g.like(f64::MAX));
-        let magnitudes = [most[0], most[1], most[2], g.like(0.5) * (most[2] * most[2])];
-        let ends = [push[0].abs().max(a_end.abs()) * rounding, end[2].abs()];
-        let is_passed = of.sought.are_passed(simd, magnitudes, ends);
+        let stretch = Stretch { ends: [[u, u_dot, theta], [end[0], end[1], end[2]]], off: [off[0], off[1], off[2]] };
+        let least = start.abs().min(end[2].abs()) - off[2] * rounding;
+        let [above, below] = load(simd, &of.sought.turned);
+        let is_free = above.is_less(least) & end[2].abs().is_less(below);
+        let is_passed = of.sought.are_passed(simd, stretch.most());
         let duration = sigma * span;
         let is_whole = duration.is_at_most(interval) & interval.is_at_most(duration);
-        let goes_on = stays & is_passed & is_whole & one.is_at_most(is_there.min(row(&of.may_go_on)));
+        let goes_on = stays & is_free & is_whole & one.is_at_most(is_there.min(row(&of.may_go_on)));
+        let is_put_off = is_passed.choose(zero, goes_on.choose(one, zero));
+        let is_passed = is_passed & is_free;
+        if !is_put_off.is_at_most(zero).all() {
+            let bounds = of.sought.bounds(simd, &stretch, goes_on);
+            (0..S::F64_LANES).filter(|lane| is_put_off.of(*lane) == 1.0).for_each(|lane| of.put_off(lane, &bounds));
+        }
         for (i, number) in series[0].into_iter().enumerate() {
             goes_on.choose(end[i], number).store(&mut of.state[i]);
         }
@@ -640,7 +799,7 @@ impl Engine {
         let is_last = !is_whole && is_at_its_end(level, &self.motion, duration, None);
         let stays = runs.stays[lane] == 1.0 && !is_last && self.motion.work.steps != advance.last_step;
         let is_passed = runs.is_passed[lane] == 1.0;
-        runs.is_known[lane] = stays && is_passed;
+        runs.is_known[lane] &= stays && is_passed;
         if !runs.is_known[lane] {
             steps.write(lane, &mut self.arc);
         }

@@ -135,16 +135,17 @@ impl Reach {
         u.weighed(&self.u) + damping * u_dot.weighed(&self.u_dot)
     }
 
-    /// Four weights in the bound of the output of one mass without force in `phase`: of |u|, of |u̇|, and while rocking of |θ| and of
-    /// θ²/2. In full contact the third is of |a_g| and the fourth is 0. The bound is infinite where [`Reach::bound`] requires a polynomial.
+    /// Weights of this `output` of one mass without force in `phase`: of u, of u̇, of θ and, without a sign, of |θ|³/6 and of θ²/2.
+    /// The first three add up to the output but for the other two and for θ²/2 of the elastic part.
     #[cfg(feature = "lanes")]
-    pub(crate) fn of_one(&self, structure: &Structure, phase: Phase) -> [f64; 4] {
+    pub(crate) fn of_one(&self, output: Output, structure: &Structure, phase: Phase) -> [f64; 5] {
         let damping = structure.base().damping(phase);
         let [u, u_dot] = [self.elastic(damping, &1.0, &0.0), self.elastic(damping, &0.0, &1.0)];
-        match (phase, self.a_g) {
-            (Phase::FullContact, a_g) => [u, u_dot, a_g.unwrap_or(0.0), 0.0],
-            (_, None) => [u, u_dot, self.turn[0], self.turn[1]],
-            (_, Some(_)) => [f64::INFINITY; 4],
+        let [sin, versine] = self.turn;
+        match output {
+            Output::theta => [0.0, 0.0, 1.0, 0.0, 0.0],
+            Output::a_t(_) => [-u, -u_dot, sin, sin, versine], // the strut pulls the mass back
+            _ => [u, u_dot, sin, sin, versine],
         }
     }
 

@@ -88,7 +88,7 @@ impl<Q: Runs> Run<'_, Q> {
 
 pub(super) fn trace<Q: Runs>(run: &Run<Q>, part: f64) -> Result<Curve<Q>, RunError> {
     let (found, peaks) = (Q::compiled().found)(run, &mut ())?;
-    let (mut lines, drawn, a_g) = (lines(&run.structure), drawn(run), peaks.a_g());
+    let (mut lines, drawn, a_g) = (lines(&run.structure), drawn(run), found.ground);
     lines.extend(OF_GROUND[..2].iter().filter(|of| drawn.contains(of)));
     let peaks = Vec::from_iter(peaks_of(&lines, &peaks));
     let mut tracer = Tracer {

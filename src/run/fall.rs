@@ -16,7 +16,7 @@ use crate::{Base, Detail, Piece, Side, Structure, Transition, TransitionKind, Wa
 #[cfg(feature = "lanes")]
 use crate::{
     Engine,
-    engine::lanes::{Passes, Sought},
+    engine::lanes::{MOST_SOUGHT, Passes, Sought},
 };
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
@@ -132,14 +132,19 @@ impl<Q: Coordinates> Watch<Q> for FallWatch<'_, Q> {
 #[cfg(feature = "lanes")]
 impl Passes for FallWatch<'_> {
     fn seek(&self, engine: &Engine, lane: usize, sought: &mut Sought) {
-        self.all.peaks.seek(engine, lane, sought);
-        sought.ends[1][lane] = self.no_return.unwrap_or(f64::INFINITY);
+        self.all.seek(engine, lane, sought);
+        let angle = self.no_return.unwrap_or(f64::INFINITY);
+        let turned = if self.fall.is_some() { [angle, f64::INFINITY] } else { [-1.0, angle] };
+        sought.turned.iter_mut().zip(turned).for_each(|(row, angle)| row[lane] = angle);
     }
 
     #[inline(always)]
     fn pass(&mut self) {
-        *self.fall = None;
         self.all.pass();
+    }
+
+    fn put_off(&mut self, piece: &Piece, bounds: &[f64; MOST_SOUGHT]) {
+        self.all.put_off(piece, bounds);
     }
 }
 
@@ -148,6 +153,18 @@ impl<Q: Coordinates> FallWatch<'_, Q> {
     pub(crate) fn end(mut self) -> Falling {
         let (all, no_return) = (self.all.so_far().clone(), self.no_return);
         Falling { all, no_return, fall: self.fall.clone(), has_overturned: *self.has_overturned }
+    }
+
+    /// The peaks, those before a fall, and the start of the fall, once the motion has been watched.
+    #[cfg(feature = "lanes")]
+    pub(super) fn found(mut self) -> (Peaks, Option<f64>) {
+        match self.fall.take().filter(|_| *self.has_overturned) {
+            Some((instant, before)) => {
+                self.all.forget();
+                (before, Some(instant))
+            }
+            None => (self.all.so_far().clone(), None),
+        }
     }
 
     /// Keeps the peaks up to the last passing of `angle` (rad) in a `piece` that ends beyond.
@@ -160,7 +177,6 @@ impl<Q: Coordinates> FallWatch<'_, Q> {
         if tau > 0.0 {
             before.watch().piece(&until);
         } else {
-            before.see_ground(piece.load.value.a_g, instant);
             before.see(&piece.shown(0.0, &piece.before.state), instant);
         }
         *self.fall = Some((instant, before));

@@ -3,12 +3,18 @@
 //! A bound of a piece tells most of the time that it holds nothing larger than what has been seen. A piece that may hold more is
 //! first kept, since most are soon beaten by the end of another.
 
+#[cfg(feature = "lanes")]
+use super::peaks::Peak;
 use super::peaks::Peaks;
 use crate::engine::MOST_POLYNOMIALS;
+#[cfg(feature = "lanes")]
+use crate::engine::lanes::{MOST_SOUGHT, Passes, Sought};
 use crate::engine::piece::{Piece, Room, Watch};
 use crate::levels::level::Level;
 use crate::mechanics::lateral::Coordinates;
 use crate::series::taylor::{Arc, LONGEST_SPAN};
+#[cfg(feature = "lanes")]
+use crate::{Engine, Phase};
 use crate::{LinearLoad, Motion, State, Transition};
 
 /// How many pieces are kept at most.
@@ -60,6 +66,13 @@ impl Peaks {
             is_first,
         }
     }
+
+    /// The watcher that searches for the peak of θ only.
+    #[cfg(feature = "lanes")]
+    pub fn watch_theta<Q: Coordinates>(&mut self) -> ThetaWatch<'_, Q> {
+        self.of_theta_alone();
+        ThetaWatch { all: self.watch(), impacts: 0 }
+    }
 }
 
 impl<Q: Coordinates> PeakWatch<'_, Q> {
@@ -69,11 +82,32 @@ impl<Q: Coordinates> PeakWatch<'_, Q> {
         self.peaks
     }
 
-    /// Passes a piece that holds no peak.
+    /// Sees all of a `piece` but the forces of dissipators.
+    fn see(&mut self, piece: &Piece<Q>) {
+        let &Piece { duration, ref load, level, arc, .. } = piece;
+        let (loads, structure) = ([load.value, load.at(duration)], level.structure());
+        let [is_torn, is_first] = [&mut self.is_torn, &mut self.is_first].map(std::mem::take);
+        let most = piece.whole().most_under(structure, &loads);
+        if !self.peaks.may_be_same(structure, &most) {
+            return;
+        }
+        let is_long = arc.is_none() && duration * structure.vibration().rocking[1] > LONGEST_SPAN;
+        let is_now = is_first || is_long;
+        self.bounds.clear();
+        if !self.peaks.see_ends(piece, is_torn, &most, (!is_now).then_some(&mut self.bounds)) {
+            return;
+        }
+        if is_now {
+            return self.peaks.look(piece, &[]);
+        }
+        let bounds = std::mem::replace(&mut self.bounds, self.spare.1.pop().unwrap_or_default());
+        self.keep(piece, bounds);
+    }
+
+    /// Leaves pieces that have been kept unseen.
     #[cfg(feature = "lanes")]
-    #[inline]
-    pub(super) fn pass(&mut self) {
-        (self.is_torn, self.is_first) = (false, false);
+    pub(super) fn forget(&mut self) {
+        self.kept.clear();
     }
 
     /// Looks at what has been kept, the latest first, which is often the largest.
@@ -86,6 +120,31 @@ impl<Q: Coordinates> PeakWatch<'_, Q> {
             }
             kept.put_by(&mut self.spare);
         }
+    }
+
+    /// Keeps a piece that may change a peak within these `bounds`.
+    fn keep(&mut self, piece: &Piece<Q>, bounds: Vec<f64>) {
+        let &Piece { before, duration, load, end, level, arc, .. } = piece;
+        self.level.get_or_insert_with(|| level.boxed());
+        if self.kept.len() == MOST_CANDIDATES {
+            let (peaks, spare) = (&*self.peaks, &mut self.spare);
+            self.kept.retain_mut(|kept| {
+                let stays = peaks.may_change_within(&kept.bounds, kept.before.time);
+                if !stays {
+                    kept.put_by(spare);
+                }
+                stays
+            });
+        }
+        if self.kept.len() == MOST_CANDIDATES {
+            self.look_back();
+        }
+        let arc = arc.map(|arc| {
+            let mut own = self.spare.0.pop().unwrap_or_default();
+            own.be(arc);
+            own
+        });
+        self.kept.push(Candidate { before: *before, duration, load, end, arc, bounds });
     }
 }
 
@@ -110,51 +169,91 @@ impl<Q: Coordinates> Drop for PeakWatch<'_, Q> {
 
 impl<Q: Coordinates> Watch<Q> for PeakWatch<'_, Q> {
     fn piece(&mut self, piece: &Piece<Q>) {
-        let &Piece { before, duration, ref load, ref end, level, arc, .. } = piece;
-        let (until, loads, structure) = (before.time + duration, [load.value, load.at(duration)], level.structure());
-        self.peaks.see_ground(loads[0].a_g, before.time);
-        self.peaks.see_ground(loads[1].a_g, until);
-        if structure.base().has_dissipators() {
+        if piece.level.structure().base().has_dissipators() {
             self.peaks.look_at_dissipators(piece);
         }
-        let [is_torn, is_first] = [&mut self.is_torn, &mut self.is_first].map(std::mem::take);
-        let most = piece.whole().most_under(structure, &loads);
-        if !self.peaks.may_be_same(structure, &most) {
-            return;
-        }
-        let is_long = arc.is_none() && duration * structure.vibration().rocking[1] > LONGEST_SPAN;
-        let is_now = is_first || is_long;
-        self.bounds.clear();
-        if !self.peaks.see_ends(piece, is_torn, &most, (!is_now).then_some(&mut self.bounds)) {
-            return;
-        }
-        if is_now {
-            return self.peaks.look(piece, &[]);
-        }
-        self.level.get_or_insert_with(|| level.boxed());
-        if self.kept.len() == MOST_CANDIDATES {
-            let (peaks, spare) = (&*self.peaks, &mut self.spare);
-            self.kept.retain_mut(|kept| {
-                let stays = peaks.may_change_within(&kept.bounds, kept.before.time);
-                if !stays {
-                    kept.put_by(spare);
-                }
-                stays
-            });
-        }
-        if self.kept.len() == MOST_CANDIDATES {
-            self.look_back();
-        }
-        let arc = arc.map(|arc| {
-            let mut own = self.spare.0.pop().unwrap_or_default();
-            own.be(arc);
-            own
-        });
-        let bounds = std::mem::replace(&mut self.bounds, self.spare.1.pop().unwrap_or_default());
-        self.kept.push(Candidate { before: *before, duration, load: *load, end: *end, arc, bounds });
+        self.see(piece);
     }
 
     fn transition(&mut self, _transition: &Transition<Q>) {
         self.is_torn = true;
+    }
+}
+
+#[cfg(feature = "lanes")]
+impl PeakWatch<'_> {
+    /// Puts the limits of what it must see into a `lane` of `sought`.
+    pub(super) fn seek(&self, engine: &Engine, lane: usize, sought: &mut Sought) {
+        self.peaks.seek(engine, lane, sought);
+    }
+
+    /// Passes a piece that holds no peak.
+    #[inline]
+    pub(super) fn pass(&mut self) {
+        (self.is_torn, self.is_first) = (false, false);
+    }
+
+    /// Sees the ends of a piece, and keeps the piece if it may hold a peak within these `bounds`.
+    pub(super) fn put_off(&mut self, piece: &Piece, bounds: &[f64; MOST_SOUGHT]) {
+        let &Piece { before, duration, ref end, .. } = piece;
+        if self.is_torn {
+            self.peaks.see(&piece.shown(0.0, &before.state), before.time);
+        }
+        self.pass();
+        self.peaks.see(&piece.shown(duration, end), before.time + duration);
+        if self.peaks.may_change_within(bounds, before.time) {
+            let mut own = self.spare.1.pop().unwrap_or_default();
+            own.clear();
+            own.extend(bounds);
+            self.keep(piece, own);
+        }
+    }
+}
+
+/// Looks for the peak of θ alone in the pieces of a motion, and counts impacts.
+#[cfg(feature = "lanes")]
+#[derive(Debug)]
+pub struct ThetaWatch<'a, Q: Coordinates = f64> {
+    all: PeakWatch<'a, Q>,
+    /// Number of impacts and landings.
+    pub(super) impacts: u64,
+}
+
+#[cfg(feature = "lanes")]
+impl<Q: Coordinates> ThetaWatch<'_, Q> {
+    /// The peak so far.
+    pub(super) fn theta(&mut self) -> Peak {
+        self.all.so_far().theta()
+    }
+}
+
+#[cfg(feature = "lanes")]
+impl<Q: Coordinates> Watch<Q> for ThetaWatch<'_, Q> {
+    fn piece(&mut self, piece: &Piece<Q>) {
+        if piece.before.phase != Phase::FullContact {
+            self.all.see(piece);
+        }
+    }
+
+    fn transition(&mut self, transition: &Transition<Q>) {
+        self.impacts += u64::from(transition.kind.is_impact());
+        self.all.transition(transition);
+    }
+}
+
+#[cfg(feature = "lanes")]
+impl Passes for ThetaWatch<'_> {
+    fn seek(&self, engine: &Engine, lane: usize, sought: &mut Sought) {
+        self.all.seek(engine, lane, sought);
+        (sought.turned[0][lane], sought.turned[1][lane]) = (-1.0, f64::INFINITY);
+    }
+
+    #[inline(always)]
+    fn pass(&mut self) {
+        self.all.pass();
+    }
+
+    fn put_off(&mut self, piece: &Piece, bounds: &[f64; MOST_SOUGHT]) {
+        self.all.put_off(piece, bounds);
     }
 }

@@ -6,9 +6,7 @@
 //! the instant; the value there comes from the state.
 
 #[cfg(feature = "lanes")]
-use crate::engine::lanes::{MOST_SOUGHT, Passes, Sought};
-#[cfg(feature = "lanes")]
-use crate::engine::piece::Watch;
+use crate::engine::lanes::{MOST_SOUGHT, Sought};
 use crate::engine::piece::{CONVERGED, Expansion, Piece};
 use crate::mechanics::contact::restraints;
 use crate::mechanics::instant::Instant;
@@ -17,8 +15,6 @@ use crate::mechanics::reach::{Magnitudes, OffChord, Reach};
 use crate::mechanics::restraint::{Angles, Restraint, Restraints};
 use crate::series::extremes;
 use crate::{Base, Detail, Output, State, Structure, Ties};
-#[cfg(feature = "lanes")]
-use crate::{Engine, Phase, Transition};
 use serde::{Deserialize, Serialize};
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
@@ -70,7 +66,6 @@ impl Peak {
 pub struct Peaks {
     /// Half-width of the base, m.
     B: f64,
-    ground: Peak,
     /// The peaks that are searched.
     searched: Vec<Searched>,
     /// Outputs whose peaks come with one of these: its place, and the multiple that they are of it.
@@ -79,7 +74,7 @@ pub struct Peaks {
     /// Peaks of the forces of the dissipators.
     pair: [Peak; 2],
     /// Right-hand-side evaluations that the search took.
-    evaluations: u64,
+    pub(super) evaluations: u64,
 }
 
 /// A peak that is searched.
@@ -158,7 +153,7 @@ impl Peaks {
             search(Output::P_t);
         }
         let tendon = Tendon { P_0, k_t, angles: detail.angles(), start: time };
-        Peaks { B, ground: none, searched, with, tendon, pair: [none; 2], evaluations: 0 }
+        Peaks { B, searched, with, tendon, pair: [none; 2], evaluations: 0 }
     }
 
     /// Peak of an output that has one.
@@ -198,32 +193,21 @@ impl Peaks {
         Peak { magnitude, time: if k_t > 0.0 { theta.time } else { start } }
     }
 
-    /// Peak of the ground acceleration |a_g|, m/s², which is linear in a piece.
-    pub fn a_g(&self) -> Peak {
-        self.ground
-    }
-
     /// Right-hand-side evaluations that the search took beside those of the motion.
     pub fn evaluations(&self) -> u64 {
         self.evaluations
     }
 
-    /// The watcher that searches for the peak of θ only.
+    /// Leaves the peak of θ only.
     #[cfg(feature = "lanes")]
-    pub fn watch_theta(&mut self) -> ThetaWatch<'_> {
+    pub(super) fn of_theta_alone(&mut self) {
         self.searched.truncate(1);
         self.with.clear();
-        ThetaWatch { peaks: self, impacts: 0 }
     }
 
     /// Whether the peaks are of a motion that has begun.
     pub(super) fn goes_on(&self) -> bool {
         self.searched.iter().any(|of| of.peak.magnitude > 0.0)
-    }
-
-    /// Sees the ground acceleration `a_g` (m/s²) at `time` (s).
-    pub(super) fn see_ground(&mut self, a_g: f64, time: f64) {
-        self.ground.see(a_g, time);
     }
 
     /// Sees the values at the instant `x`, at `time` (s).
@@ -287,16 +271,15 @@ impl Peaks {
 
     /// Puts what may equal or exceed a peak of the structure of `engine` in its present phase into a `lane` of `sought`.
     #[cfg(feature = "lanes")]
-    pub(super) fn seek(&self, engine: &Engine, lane: usize, sought: &mut Sought) {
+    pub(super) fn seek(&self, engine: &crate::Engine, lane: usize, sought: &mut Sought) {
         let (structure, phase) = (engine.structure(), engine.motion().phase);
         assert!(self.searched.len() <= MOST_SOUGHT, "one mass has no more");
-        for i in 0..MOST_SOUGHT {
-            let weights =
-                self.searched.get(i).map_or([0.0; 4], |of| structure.reaches()[of.place].of_one(structure, phase));
-            (0..4).for_each(|j| sought.weights[i][j][lane] = weights[j]);
-            sought.least[i][lane] = self.searched.get(i).map_or(0.0, |of| of.peak.least());
+        sought.count = self.searched.len();
+        for (i, of) in self.searched.iter().enumerate() {
+            let weights = structure.reaches()[of.place].of_one(of.output, structure, phase);
+            sought.weights[i].iter_mut().zip(weights).for_each(|(row, weight)| row[lane] = weight);
+            sought.least[i][lane] = of.peak.least();
         }
-        (sought.ends[0][lane], sought.ends[1][lane]) = (self.ground.least(), f64::INFINITY);
     }
 
     /// Whether magnitudes of `structure` within `bounds` at `time` (s) or later may change a peak.
@@ -407,57 +390,4 @@ impl Peaks {
 /// The forces of the dissipators.
 fn of_pair<N>(Restraints { F_d1, F_d2, .. }: Restraints<N>) -> [N; 2] {
     [F_d1, F_d2]
-}
-
-#[cfg(feature = "lanes")]
-impl Passes for ThetaWatch<'_> {
-    fn seek(&self, engine: &Engine, lane: usize, sought: &mut Sought) {
-        self.peaks.seek(engine, lane, sought);
-        sought.ends[0][lane] = f64::INFINITY;
-    }
-
-    #[inline(always)]
-    fn pass(&mut self) {}
-}
-
-/// Looks for the peak of θ alone in the pieces of a motion, and counts impacts.
-#[cfg(feature = "lanes")]
-#[derive(Debug)]
-pub struct ThetaWatch<'a> {
-    pub(super) peaks: &'a mut Peaks,
-    /// Number of impacts and landings.
-    pub(super) impacts: u64,
-}
-
-#[cfg(feature = "lanes")]
-impl ThetaWatch<'_> {
-    /// Whether a rotation of at most `bound` (rad) may equal or exceed the peak.
-    #[inline]
-    fn may_hold(&self, bound: f64) -> bool {
-        bound > 0.0 && self.peaks.searched[0].peak.may_be_same(bound)
-    }
-}
-
-#[cfg(feature = "lanes")]
-impl<Q: Coordinates> Watch<Q> for ThetaWatch<'_> {
-    #[inline]
-    fn piece(&mut self, piece: &Piece<Q>) {
-        let before = piece.before;
-        if before.phase == Phase::FullContact {
-            return;
-        }
-        if let Some(arc) = piece.arc {
-            if !self.may_hold(arc.most(&piece.end).theta) {
-                return;
-            }
-            for (tau, state) in [(0.0, before.state), (piece.duration, piece.end)] {
-                self.peaks.searched[0].peak.see(state.theta, before.time + tau);
-            }
-        }
-        self.peaks.look(piece, &[]);
-    }
-
-    fn transition(&mut self, transition: &Transition<Q>) {
-        self.impacts += u64::from(transition.kind.is_impact());
-    }
 }

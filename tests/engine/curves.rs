@@ -31,7 +31,7 @@ fn near_the_motion<Q: Runs>(run: &Run<Q>, part: f64, count: usize, see: impl Fn(
     assert_eq!(*found, run.found(&mut ()).unwrap());
     let outputs = &drawn(run)[..count];
     let largest = Vec::from_iter(outputs.iter().map(|of| found.peaks.of(*of).unwrap().magnitude));
-    let of_ground = found.peaks.a_g().magnitude;
+    let of_ground = found.ground.magnitude;
     let most = |of: &dyn Fn(&Point) -> f64| points.iter().map(|point| of(point).abs()).fold(0.0, f64::max);
     assert_relative_eq!(most(&|point| point.a_g), of_ground, max_relative = 1e-9);
     for (i, largest) in largest.iter().enumerate() {
