@@ -657,7 +657,7 @@ impl<S: Simd> WithSimd for Taken<'_, '_, S> {
             for lane in (0..S::F64_LANES).filter(|lane| ended.of(*lane) == 0.0) {
                 let truncation = Truncation { u_dot: truncation.of(lane), theta_dot: truncation_turning.of(lane) };
                 let velocities = |k: usize| (series[k][1].of(lane), series[k][3].of(lane));
-                of.reach[lane] = taylor::reach(velocities, &truncation).min(1.0);
+                of.reach[lane] = taylor::reach(velocities, &truncation);
             }
         }
         let sigma = row(&of.reach);

@@ -17,8 +17,9 @@ use crate::series::taylor::{Arc, LONGEST_SPAN};
 use crate::{Engine, Phase};
 use crate::{LinearLoad, Motion, State, Transition};
 
-/// How many pieces are kept at most.
-const MOST_CANDIDATES: usize = 32;
+/// How many pieces are kept before those that have been beaten are dropped, and how many at most.
+const CANDIDATES: usize = 32;
+const MOST_CANDIDATES: usize = 256;
 
 /// Looks for peaks in the pieces of a motion.
 #[derive(Debug)]
@@ -126,7 +127,7 @@ impl<Q: Coordinates> PeakWatch<'_, Q> {
     fn keep(&mut self, piece: &Piece<Q>, bounds: Vec<f64>) {
         let &Piece { before, duration, load, end, level, arc, .. } = piece;
         self.level.get_or_insert_with(|| level.boxed());
-        if self.kept.len() == MOST_CANDIDATES {
+        if !self.kept.is_empty() && self.kept.len().is_multiple_of(CANDIDATES) {
             let (peaks, spare) = (&*self.peaks, &mut self.spare);
             self.kept.retain_mut(|kept| {
                 let stays = peaks.may_change_within(&kept.bounds, kept.before.time);

@@ -307,19 +307,26 @@ impl<Q: Coordinates> Arc<Q> {
     /// Cuts a full expansion to where its last two terms stay within `truncation`.
     #[inline(always)]
     pub(crate) fn cut(&mut self, truncation: &Truncation<Q>) {
-        self.reach = reach(|k| (self.u_dot[k], self.theta_dot[k]), truncation).min(1.0);
+        self.reach = reach(|k| (self.u_dot[k], self.theta_dot[k]), truncation);
     }
 }
 
-/// The σ up to which the last two terms of a full expansion stay within `truncation`.
+/// The σ ≤ 1, or slightly less, up to which the last two terms of a full expansion stay within `truncation`.
 #[cold]
 pub(crate) fn reach<Q: Coordinates>(velocities: impl Fn(usize) -> (Q, f64), truncation: &Truncation<Q>) -> f64 {
-    // the logarithms of both, since a power costs three
     let exponent = |k: usize| {
         let (u_dot, theta_dot) = velocities(k);
-        libm::log2(u_dot.room(&truncation.u_dot).min(truncation.theta_dot / theta_dot.abs())) / k as f64
+        logarithm(u_dot.room(&truncation.u_dot).min(truncation.theta_dot / theta_dot.abs())) / k as f64
     };
-    libm::exp2(exponent(MAX_ORDER - 1).min(exponent(MAX_ORDER)))
+    let x = 0.25 * exponent(MAX_ORDER - 1).min(exponent(MAX_ORDER)).min(0.0);
+    // e^x
+    let (even, odd) = (120.0 + 12.0 * x * x, x * (60.0 + x * x));
+    ((even + odd) / (even - odd)).powi(4)
+}
+
+/// The natural logarithm of a positive `number`, or up to 0.06 less: its exponent and its mantissa, read as one integer.
+fn logarithm(number: f64) -> f64 {
+    (number.to_bits() as i64 - 1_f64.to_bits() as i64) as f64 * (std::f64::consts::LN_2 * f64::EPSILON)
 }
 
 #[cfg(test)]
