@@ -135,6 +135,31 @@ impl Reach {
         u.weighed(&self.u) + damping * u_dot.weighed(&self.u_dot)
     }
 
+    /// A reach whose [elastic bound](Reach::bound_together) is below 1 only where the bounds of all these outputs are below these magnitudes.
+    /// None if an output reads the ground acceleration or the height of the base.
+    pub(crate) fn together<'a>(structure: &Structure, outputs: impl Iterator<Item = (&'a Reach, f64)>) -> Option<Reach> {
+        let nothing = Modes::parts(structure, 0.0);
+        let mut all = Reach { turn: [0.0; 2], a_g: None, u: nothing, u_dot: nothing, push: nothing };
+        for (Reach { turn, a_g, u, u_dot, push }, least) in outputs {
+            if a_g.is_some() || structure.foundation().is_some() || least == 0.0 {
+                return None;
+            }
+            let largest = |all: f64, weight: f64| all.max(weight / least);
+            all.turn = [0, 1].map(|i| largest(all.turn[i], turn[i]));
+            for (all, of) in [(&mut all.u, u), (&mut all.u_dot, u_dot), (&mut all.push, push)] {
+                of.numbers().iter().enumerate().for_each(|(j, weight)| all.set(j, largest(all.numbers()[j], *weight)));
+            }
+        }
+        Some(all)
+    }
+
+    /// The bound of a reach of outputs together, given bounds of the motion.
+    pub(crate) fn bound_together<Q: Coordinates>(&self, most: &Magnitudes<Q>) -> f64 {
+        let [sin, versine] = self.turn;
+        let elastic = self.elastic(most.damping, &most.u, &most.u_dot) + most.F_t.weighed(&self.push);
+        elastic + sin * most.theta + versine * (0.5 * most.theta * most.theta)
+    }
+
     /// Weights of this `output` of one mass without force in `phase`: of u, of u̇, of θ and, without a sign, of |θ|³/6 and of θ²/2.
     /// The first three add up to the output but for the other two and for θ²/2 of the elastic part.
     #[cfg(feature = "lanes")]

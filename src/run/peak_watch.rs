@@ -12,6 +12,7 @@ use crate::engine::lanes::{MOST_SOUGHT, Passes, Sought};
 use crate::engine::piece::{Piece, Room, Watch};
 use crate::levels::level::Level;
 use crate::mechanics::lateral::Coordinates;
+use crate::mechanics::reach::Reach;
 use crate::series::taylor::{Arc, LONGEST_SPAN};
 #[cfg(feature = "lanes")]
 use crate::{Engine, Phase};
@@ -36,6 +37,8 @@ pub struct PeakWatch<'a, Q: Coordinates = f64> {
     is_torn: bool,
     /// Room for the bounds of a piece.
     bounds: Vec<f64>,
+    /// Of many masses: how far all that is searched reaches, until a peak may have changed.
+    reach: Option<Option<Reach>>,
     /// Whether the next piece is the first since other peaks: the step of a host is often no more, and not put off.
     is_first: bool,
 }
@@ -63,6 +66,7 @@ impl Peaks {
             level: None,
             room: Room::default(),
             bounds: Vec::new(),
+            reach: None,
             is_torn: true,
             is_first,
         }
@@ -89,9 +93,17 @@ impl<Q: Coordinates> PeakWatch<'_, Q> {
         let (loads, structure) = ([load.value, load.at(duration)], level.structure());
         let [is_torn, is_first] = [&mut self.is_torn, &mut self.is_first].map(std::mem::take);
         let most = piece.whole().most_under(structure, &loads);
+        let reach = || self.peaks.reach(structure);
+        if !Q::IS_ONE
+            && let Some(reach) = self.reach.get_or_insert_with(reach)
+            && reach.bound_together(&most) < 1.0
+        {
+            return;
+        }
         if !self.peaks.may_be_same(structure, &most) {
             return;
         }
+        self.reach = None;
         let is_long = arc.is_none() && duration * structure.vibration().rocking[1] > LONGEST_SPAN;
         let is_now = is_first || is_long;
         self.bounds.clear();
