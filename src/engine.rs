@@ -14,9 +14,13 @@
 pub(crate) mod contacts;
 #[cfg(feature = "lanes")]
 pub(crate) mod lanes;
+#[cfg(feature = "lanes")]
+pub(crate) mod leaps;
 pub mod motion;
 pub(crate) mod phases;
 pub mod piece;
+#[cfg(feature = "lanes")]
+pub(crate) mod sought;
 pub mod transition;
 pub(crate) mod yielding;
 

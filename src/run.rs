@@ -259,6 +259,10 @@ pub struct Compiled<Q: Coordinates> {
     judge: Judged<Q, Finish<Q>>,
     curve: fn(&Run<Q>, f64) -> Result<Curve<Q>, RunError>,
     compare: fn(&Run<Q>) -> Result<Comparison, RunError>,
+    #[cfg(feature = "lanes")]
+    found_each: lanes::Each<Q, Result<Found<Q>, RunError>>,
+    #[cfg(feature = "lanes")]
+    rocked_each: lanes::Each<Q, (Result<Finish<Q>, RunError>, lanes::Rocked)>,
 }
 
 macro_rules! compiled {
@@ -274,6 +278,10 @@ macro_rules! compiled {
                     judge: |run, validity, watch| run.follow(&mut (validity, watch)),
                     curve: curve::trace,
                     compare: levels::compare_levels,
+                    #[cfg(feature = "lanes")]
+                    found_each: lanes::find_each,
+                    #[cfg(feature = "lanes")]
+                    rocked_each: lanes::rock_each,
                 };
                 &ALL
             }
@@ -381,6 +389,14 @@ fn on_top<Q: Coordinates>(structure: &Structure, F_t: f64) -> Q {
     Q::of_forces(structure, repeat_n(0.0, below).chain([F_t]))
 }
 
+/// The load of the `ground`, and of the force on the top floor, on `structure`.
+#[inline(always)]
+fn load_of<Q: Coordinates>(structure: &Structure, ground: LinearLoad) -> LinearLoad<Q> {
+    let on_top = |F_t| if F_t == 0.0 { Q::ZERO } else { on_top(structure, F_t) };
+    let [value, slope] = [ground.value, ground.slope].map(|Load { a_g, F_t, a_v }| Load { a_g, F_t: on_top(F_t), a_v });
+    LinearLoad { value, slope }
+}
+
 /// Follows a structure over `segment`.
 #[inline]
 fn over<Q: Coordinates, W: Watch<Q>>(
@@ -388,10 +404,8 @@ fn over<Q: Coordinates, W: Watch<Q>>(
     segment: Segment,
     watch: &mut W,
 ) -> Result<Progress, AdvanceError> {
-    let on_top = |F_t| if F_t == 0.0 { Q::ZERO } else { on_top(engine.structure(), F_t) };
-    let [value, slope] =
-        [segment.ground.value, segment.ground.slope].map(|Load { a_g, F_t, a_v }| Load { a_g, F_t: on_top(F_t), a_v });
-    let progress = engine.advance(segment.duration, LinearLoad { value, slope }, watch)?;
+    let load = load_of(engine.structure(), segment.ground);
+    let progress = engine.advance(segment.duration, load, watch)?;
     if progress != Progress::Overturned {
         engine.set_time(segment.until);
     }

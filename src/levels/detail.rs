@@ -162,12 +162,6 @@ pub(crate) struct Elastic<Rocking> {
 }
 
 impl<Rocking: ElasticRocking> Elastic<Rocking> {
-    /// Full contact by its exact flow.
-    #[cfg(feature = "lanes")]
-    pub(crate) fn contact(&self) -> Option<&ExactContact> {
-        self.contact.as_ref()
-    }
-
     /// The equations of rocking.
     #[cfg(feature = "lanes")]
     pub(crate) fn rocking(&self) -> &Rocking {
@@ -209,6 +203,12 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
             Phase::Rocking(side) => self.rocking.leap(side, start),
             Phase::Overturned(_) | Phase::OnGround(_) => None,
         }
+    }
+
+    #[cfg(feature = "lanes")]
+    fn leaping(&self, _motion: &crate::Motion) -> Option<crate::levels::level::Leaping<'_>> {
+        let modes = std::slice::from_ref(self.contact.as_ref()?);
+        Some(crate::levels::level::Leaping { modes, moment: |_| 1.0, hold: self.one.u_cr })
     }
 
     fn swings(&self, phase: Phase, start: &Start) -> Option<[f64; 4]> {

@@ -1,6 +1,12 @@
 //! A level of detail as the engine uses it: equations, uplift, impact, and exact leaps where there are any.
 
+#[cfg(feature = "lanes")]
+use crate::Mode;
+#[cfg(feature = "lanes")]
+use crate::engine::motion::Motion;
 use crate::levels::first_uplift::Liftable;
+#[cfg(feature = "lanes")]
+use crate::levels::full_contact::ExactContact;
 use crate::levels::rules::ChatterLimit;
 use crate::mechanics::contact::restraints;
 use crate::mechanics::impact;
@@ -50,6 +56,14 @@ impl Subject {
     }
 }
 
+/// How leaps in full contact are found: see [`Level::leaping`].
+#[cfg(feature = "lanes")]
+pub(crate) struct Leaping<'a> {
+    pub modes: &'a [ExactContact],
+    pub moment: fn(&Mode) -> f64,
+    pub hold: f64,
+}
+
 /// The level of detail of a structure. The provided methods are those of an elastic strut. A level without a
 /// [liftable](Level::liftable) structure has a fixed base.
 #[allow(private_interfaces)] // the coordinates name the trait, and nobody else can use it
@@ -71,6 +85,13 @@ pub trait Level<Q: Coordinates = f64>: Send {
 
     /// The state at the end of `start`, if it is known exactly and no transition can happen until then.
     fn leap(&self, _phase: Phase, _start: &Start<Q>) -> Option<State<Q>> {
+        None
+    }
+
+    /// How such leaps in full contact from `motion` are found, if they are found like this: while Σ |M_j| |u_j| stays below `hold`, the M_j
+    /// the moments of the modes for a unit of u, or while |Σ M_j u_j| certainly does.
+    #[cfg(feature = "lanes")]
+    fn leaping(&self, _motion: &Motion<Q>) -> Option<Leaping<'_>> {
         None
     }
 

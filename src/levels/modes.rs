@@ -15,9 +15,13 @@
 //! moment of this force ([`Structure::load`](crate::Structure::load)). A structure without modes is rigid: Housner's block with the paper's
 //! impact rule, which comes to rest by a rule of its own ([`rules`](crate::levels::rules)).
 
+#[cfg(feature = "lanes")]
+use crate::Motion;
 use crate::levels::detail::Detail;
 use crate::levels::first_uplift::Liftable;
 use crate::levels::full_contact::ExactContact;
+#[cfg(feature = "lanes")]
+use crate::levels::level::Leaping;
 use crate::levels::level::{Level, Now, Subject, derivatives};
 use crate::levels::nonlinear::{Factors, LEAST_INERTIA, NO_ROW, products, row};
 use crate::levels::oscillator::{Oscillator, Swing};
@@ -568,6 +572,16 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
         let hold = self.liftable().map_or(f64::INFINITY, |liftable| liftable.least_hold(start));
         let near = springs[0].abs().max(springs[1].abs()) + bend * interval * interval / 8.0;
         (farthest < hold || near < hold).then_some(end)
+    }
+
+    #[cfg(feature = "lanes")]
+    fn leaping(&self, &Motion { state, ref dissipators, .. }: &Motion<Q>) -> Option<Leaping<'_>> {
+        let (structure, modes) = (&self.subject.structure, self.contact.as_ref()?);
+        let has_rest = self.rigid.is_some() || self.base.S_res != 0.0 || structure.gauges().has_feedthrough;
+        let start = Start { state, dissipators, ..Start::default() };
+        let hold = self.liftable()?.least_hold(&start);
+        let moment = |mode: &Mode| mode.height * mode.stiffness;
+        (!has_rest && structure.foundation().is_none()).then_some(Leaping { modes, moment, hold })
     }
 
     fn swings(&self, phase: Phase, start: &Start<Q>) -> Option<[Q; 4]> {

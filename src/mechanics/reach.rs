@@ -1,14 +1,16 @@
 //! How far outputs reach: bounds of their magnitudes, which spare most pieces of a motion the search for peaks.
 
-#[cfg(feature = "lanes")]
-use crate::Phase;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Modes, Mosts};
+#[cfg(feature = "lanes")]
+use crate::mechanics::load::Load;
 use crate::numbers::Turn;
 use crate::numbers::most::Most;
 use crate::series::extremes::off_chord;
 use crate::series::taylor::{Arc, ZERO, evaluate};
 use crate::{Contact, Output, Ramp, Structure};
+#[cfg(feature = "lanes")]
+use crate::{Phase, State};
 
 /// Bounds of the magnitudes of a motion.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +56,7 @@ impl<Q: Coordinates> OffChord<Q> {
 }
 
 /// How far an output reaches: the weights of the magnitudes of the motion in the bound of its magnitude.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Reach {
     /// Of |sin θ| and of 1 − cos θ.
     turn: [f64; 2],
@@ -64,6 +66,9 @@ pub(crate) struct Reach {
     u: Modes,
     u_dot: Modes,
     push: Modes,
+    /// Of each u, and of each u̇ times the part of the damping, in the output itself while the base is flat.
+    #[cfg(feature = "lanes")]
+    signed: [Modes; 2],
 }
 
 /// The reaches of the outputs of `structure` that may be searched for peaks, each at its place. The formula of an output in bounds of
@@ -87,6 +92,8 @@ pub(crate) fn reaches(structure: &Structure) -> Vec<Reach> {
         F_t: Mosts(nothing),
         a_v: none,
     };
+    #[cfg(feature = "lanes")]
+    let flat = Instant::<f64, Modes>::of(structure, Phase::FullContact, &State::default(), Load::default());
     // nothing is weighed if all weights are 0
     let weights = |of: &dyn Fn(usize) -> Most| {
         let weights = Modes::each(structure, |j, _| of(j).0);
@@ -104,6 +111,11 @@ pub(crate) fn reaches(structure: &Structure) -> Vec<Reach> {
             u: weights(&|j| output.of(&Instant { u: Mosts(of_mode(j)), ..x })),
             u_dot: weights(&|j| output.of(&Instant { u_dot: Mosts(of_mode(j)), ..x })),
             push: weights(&|j| output.of(&Instant { F_t: Mosts(of_mode(j)), ..x })),
+            #[cfg(feature = "lanes")]
+            signed: [0.0, 1.0].map(|u_dot| {
+                let of = |j: usize| [of_mode(j).times(1.0 - u_dot), of_mode(j).times(u_dot)];
+                Modes::each(structure, |j, _| output.of(&Instant { u: of(j)[0], u_dot: of(j)[1], ..flat }))
+            }),
         }
     };
     reached(structure).map(reach).collect()
@@ -137,10 +149,13 @@ impl Reach {
 
     /// A reach whose [elastic bound](Reach::bound_together) is below 1 only where the bounds of all these outputs are below these magnitudes.
     /// None if an output reads the ground acceleration or the height of the base.
-    pub(crate) fn together<'a>(structure: &Structure, outputs: impl Iterator<Item = (&'a Reach, f64)>) -> Option<Reach> {
+    pub(crate) fn together<'a>(
+        structure: &Structure,
+        outputs: impl Iterator<Item = (&'a Reach, f64)>,
+    ) -> Option<Reach> {
         let nothing = Modes::parts(structure, 0.0);
-        let mut all = Reach { turn: [0.0; 2], a_g: None, u: nothing, u_dot: nothing, push: nothing };
-        for (Reach { turn, a_g, u, u_dot, push }, least) in outputs {
+        let mut all = Reach { u: nothing, u_dot: nothing, push: nothing, ..Reach::default() };
+        for (Reach { turn, a_g, u, u_dot, push, .. }, least) in outputs {
             if a_g.is_some() || structure.foundation().is_some() || least == 0.0 {
                 return None;
             }
@@ -160,18 +175,18 @@ impl Reach {
         elastic + sin * most.theta + versine * (0.5 * most.theta * most.theta)
     }
 
-    /// Weights of this `output` of one mass without force in `phase`: of u, of u̇, of θ and, without a sign, of |θ|³/6 and of θ²/2.
-    /// The first three add up to the output but for the other two and for θ²/2 of the elastic part.
+    /// Weights in `phase` without force of θ, of |θ|³/6 and of θ²/2, the last two without a sign, and of u and u̇. Those of θ, u and u̇ add up
+    /// to this `output` but for the other two and for θ²/2 of the elastic part.
     #[cfg(feature = "lanes")]
-    pub(crate) fn of_one(&self, output: Output, structure: &Structure, phase: Phase) -> [f64; 5] {
-        let damping = structure.base().damping(phase);
-        let [u, u_dot] = [self.elastic(damping, &1.0, &0.0), self.elastic(damping, &0.0, &1.0)];
-        let [sin, versine] = self.turn;
-        match output {
-            Output::theta => [0.0, 0.0, 1.0, 0.0, 0.0],
-            Output::a_t(_) => [-u, -u_dot, sin, sin, versine], // the strut pulls the mass back
-            _ => [u, u_dot, sin, sin, versine],
-        }
+    pub(crate) fn weights(
+        &self,
+        output: Output,
+        structure: &Structure,
+        phase: Phase,
+    ) -> ([f64; 3], impl Fn(usize) -> [f64; 2]) {
+        let ([sin, versine], damping, [u, u_dot]) = (self.turn, structure.base().damping(phase), &self.signed);
+        let turn = if output == Output::theta { [1.0, 0.0, 0.0] } else { [sin, sin, versine] };
+        (turn, move |j| [u.numbers()[j], damping * u_dot.numbers()[j]])
     }
 
     /// Bound of the magnitude of this `output` of `structure`, given bounds of the motion.

@@ -11,6 +11,25 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 /// The most runs that lie side by side.
 pub(crate) const MOST: usize = 8;
 
+/// A number of each run.
+pub(crate) type Row = [f64; MOST];
+
+/// Puts the numbers of the run in `lane` into their rows.
+#[inline(always)]
+pub(crate) fn put<const K: usize>(rows: &mut [Row; K], lane: usize, numbers: [f64; K]) {
+    rows.iter_mut().zip(numbers).for_each(|(row, number)| row[lane] = number);
+}
+
+/// The rows as numbers of all runs.
+#[inline(always)]
+pub(crate) fn load<S: Simd, const K: usize>(simd: S, rows: &[Row; K]) -> [Lanes<S>; K] {
+    let mut numbers = [Lanes::splat(simd, 0.0); K];
+    for (number, row) in numbers.iter_mut().zip(rows) {
+        *number = Lanes::load(simd, row);
+    }
+    numbers
+}
+
 /// Coefficients of the polynomials of [`libm::sincos`].
 #[rustfmt::skip]
 const SINE: [f64; 6] = [

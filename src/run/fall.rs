@@ -16,7 +16,7 @@ use crate::{Base, Detail, Piece, Side, Structure, Transition, TransitionKind, Wa
 #[cfg(feature = "lanes")]
 use crate::{
     Engine,
-    engine::lanes::{MOST_SOUGHT, Passes, Sought},
+    engine::{lanes::Passes, sought::Sought},
 };
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
@@ -130,8 +130,8 @@ impl<Q: Coordinates> Watch<Q> for FallWatch<'_, Q> {
 }
 
 #[cfg(feature = "lanes")]
-impl Passes for FallWatch<'_> {
-    fn seek(&self, engine: &Engine, lane: usize, sought: &mut Sought) {
+impl<Q: Coordinates> Passes<Q> for FallWatch<'_, Q> {
+    fn seek(&self, engine: &Engine<Q>, lane: usize, sought: &mut Sought<Q>) {
         self.all.seek(engine, lane, sought);
         let angle = self.no_return.unwrap_or(f64::INFINITY);
         let turned = if self.fall.is_some() { [angle, f64::INFINITY] } else { [-1.0, angle] };
@@ -143,7 +143,7 @@ impl Passes for FallWatch<'_> {
         self.all.pass();
     }
 
-    fn put_off(&mut self, piece: &Piece, bounds: &[f64; MOST_SOUGHT]) {
+    fn put_off(&mut self, piece: &Piece<Q>, bounds: &[f64]) {
         self.all.put_off(piece, bounds);
     }
 }

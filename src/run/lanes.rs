@@ -9,10 +9,12 @@ use super::fall::{FallWatch, Falling, Found};
 use super::ground_motion::{Segment, Segments};
 use super::peak_watch::ThetaWatch;
 use super::peaks::Peaks;
-use super::{Ending, Finish, Follower, LONGEST_REST, MOST_STEPS, Run, RunError, Runs, error};
+use super::{Ending, Finish, Follower, LONGEST_REST, MOST_STEPS, Run, RunError, Runs, error, load_of};
 use crate::Progress;
 use crate::engine::Advance;
-use crate::engine::lanes::{Contacts, Passes, Rocking};
+use crate::engine::lanes::{Passes, Rocking};
+use crate::engine::leaps::Contacts;
+use crate::mechanics::lateral::Coordinates;
 use crate::numbers::lanes::MOST;
 use pulp::{Arch, Simd, WithSimd};
 use std::collections::VecDeque;
@@ -25,7 +27,17 @@ const LEAST: usize = 3;
 
 /// Follows `runs` to their ends and finds the exact peaks of each, as [`Run::found`] does. Tells `done` each result, with the
 /// run's position, as the run ends; once `done` says no, the rest is left undone.
-pub fn found_each(runs: &[Run], done: &mut dyn FnMut(usize, Result<Found, RunError>) -> bool) {
+pub fn found_each<Q: Runs>(runs: &[Run<Q>], done: Done<Result<Found<Q>, RunError>>) {
+    (Q::compiled().found_each)(runs, done);
+}
+
+/// Sees the result of a run, with the run's position, and says whether to go on.
+pub type Done<'a, T> = &'a mut dyn FnMut(usize, T) -> bool;
+
+/// Follows runs and shows the result of each.
+pub(super) type Each<Q, T> = fn(&[Run<Q>], Done<T>);
+
+pub(super) fn find_each<Q: Runs>(runs: &[Run<Q>], done: Done<Result<Found<Q>, RunError>>) {
     let mut peaks = peaks_of(runs);
     let watches = peaks.iter_mut().map(Falling::watch);
     follow_each(runs, watches, |number, finish, watch| done(number, found(&runs[number], finish, watch)));
@@ -41,11 +53,15 @@ pub struct Rocked {
 }
 
 /// Follows `runs` to their ends like [`found_each`], and tells `done` of each how it ended and how far it has rocked by then.
-pub fn rocked_each(runs: &[Run], done: &mut dyn FnMut(usize, Result<Finish, RunError>, Rocked) -> bool) {
-    let since = |run: &Run| Peaks::since(run.ground.start(), &run.structure, run.detail);
+pub fn rocked_each<Q: Runs>(runs: &[Run<Q>], done: Done<(Result<Finish<Q>, RunError>, Rocked)>) {
+    (Q::compiled().rocked_each)(runs, done);
+}
+
+pub(super) fn rock_each<Q: Runs>(runs: &[Run<Q>], done: Done<(Result<Finish<Q>, RunError>, Rocked)>) {
+    let since = |run: &Run<Q>| Peaks::since(run.ground.start(), &run.structure, run.detail);
     let mut peaks: Vec<_> = runs.iter().map(since).collect();
     follow_each(runs, peaks.iter_mut().map(Peaks::watch_theta), |number, finish, watch| {
-        done(number, finish, rocked(watch))
+        done(number, (finish, rocked(watch)))
     });
 }
 
@@ -65,36 +81,40 @@ fn rocked<Q: Runs>(mut watch: ThetaWatch<Q>) -> Rocked {
 }
 
 /// The peaks of `runs` before any motion.
-fn peaks_of(runs: &[Run]) -> Vec<Falling> {
+fn peaks_of<Q: Runs>(runs: &[Run<Q>]) -> Vec<Falling> {
     runs.iter().map(|run| Falling::since(run.ground.start(), &run.structure, run.detail)).collect()
 }
 
 /// Result of a `run` with this `finish`, all of which `watch` has seen.
-fn found(run: &Run, finish: Result<Finish, RunError>, watch: FallWatch) -> Result<Found, RunError> {
+fn found<Q: Runs>(
+    run: &Run<Q>,
+    finish: Result<Finish<Q>, RunError>,
+    watch: FallWatch<Q>,
+) -> Result<Found<Q>, RunError> {
     let (peaks, fall) = watch.found();
     finish.map(|finish| run.found_of(peaks, fall, finish))
 }
 
 /// Follows `runs` to their ends, each seen by one of `watches`. Tells `done` of each how it ended, as [`found_each`] does.
-fn follow_each<W: Passes>(
-    runs: &[Run],
+fn follow_each<Q: Runs, W: Passes<Q>>(
+    runs: &[Run<Q>],
     watches: impl Iterator<Item = W>,
-    done: impl FnMut(usize, Result<Finish, RunError>, W) -> bool,
+    done: impl FnMut(usize, Result<Finish<Q>, RunError>, W) -> bool,
 ) {
     Arch::new().dispatch(FollowEach { runs, watches, done });
 }
 
 /// The runs of [`follow_each`].
-struct FollowEach<'a, Watches, Done> {
-    runs: &'a [Run<'a>],
+struct FollowEach<'a, Q: Coordinates, Watches, Done> {
+    runs: &'a [Run<'a, Q>],
     watches: Watches,
     done: Done,
 }
 
-impl<W: Passes, Watches, Done> WithSimd for FollowEach<'_, Watches, Done>
+impl<Q: Runs, W: Passes<Q>, Watches, Done> WithSimd for FollowEach<'_, Q, Watches, Done>
 where
     Watches: Iterator<Item = W>,
-    Done: FnMut(usize, Result<Finish, RunError>, W) -> bool,
+    Done: FnMut(usize, Result<Finish<Q>, RunError>, W) -> bool,
 {
     type Output = ();
 
@@ -113,15 +133,15 @@ where
 }
 
 /// A run on its way.
-struct Lane<'a, W> {
+struct Lane<'a, Q: Coordinates, W> {
     number: usize,
-    follower: Follower<f64, Segments<'a>>,
+    follower: Follower<Q, Segments<'a>>,
     watch: W,
     /// The end of the present segment, s, and the ending of the run there, if the run ends there.
     until: f64,
     ending: Option<Ending>,
     /// The advance over the segment, until the segment is over.
-    advance: Option<Advance<f64>>,
+    advance: Option<Advance<Q>>,
 }
 
 /// The next action of a run.
@@ -138,9 +158,9 @@ const LEAPS: usize = 0;
 const ROCKS: usize = 1;
 const ROCKS_ON: usize = 2;
 
-impl<W: Passes> Lane<'_, W> {
+impl<Q: Runs, W: Passes<Q>> Lane<'_, Q, W> {
     /// Goes on to where the run in `slot` of `steps` has come without a transition.
-    fn catch_up<S: Simd>(&mut self, steps: &mut Rocking<S>, slot: usize) -> Result<(), RunError> {
+    fn catch_up<S: Simd>(&mut self, steps: &mut Rocking<S, Q>, slot: usize) -> Result<(), RunError> {
         let Lane { follower: Follower { engine, segments, .. }, watch, .. } = self;
         if let Some(next) = steps.catch_up(slot, engine, watch) {
             segments.next = next;
@@ -151,7 +171,7 @@ impl<W: Passes> Lane<'_, W> {
 
     /// Takes the step of rocking that was taken in `slot` of `steps`, and goes on.
     #[inline]
-    fn take<S: Simd>(&mut self, steps: &mut Rocking<S>, slot: usize) -> Result<Next, RunError> {
+    fn take<S: Simd>(&mut self, steps: &mut Rocking<S, Q>, slot: usize) -> Result<Next, RunError> {
         self.catch_up(steps, slot)?;
         let Lane { follower: Follower { engine, .. }, advance, watch, .. } = self;
         let Some(advance) = advance else { return self.go_on() };
@@ -168,7 +188,8 @@ impl<W: Passes> Lane<'_, W> {
             };
             (self.until, self.ending) = (until, ending);
             let Lane { follower: Follower { engine, .. }, advance, watch, .. } = self;
-            let made = engine.begin(duration, ground, advance, watch).map_err(|cause| error(engine, cause))?;
+            let load = load_of(engine.structure(), ground);
+            let made = engine.begin(duration, load, advance, watch).map_err(|cause| error(engine, cause))?;
             if let Some(next) = self.arrive(made) {
                 return Ok(next);
             }
@@ -207,16 +228,16 @@ impl<W: Passes> Lane<'_, W> {
 }
 
 /// Steps of several runs, each in a slot, that are taken together.
-struct Together<'a, S: Simd> {
+struct Together<'a, S: Simd, Q> {
     simd: S,
-    contacts: Contacts<'a>,
-    rocking: Rocking<'a, S>,
+    contacts: Contacts<'a, Q>,
+    rocking: Rocking<'a, S, Q>,
 }
 
-impl<'a, S: Simd> Together<'a, S> {
+impl<'a, S: Simd, Q: Runs> Together<'a, S, Q> {
     /// Puts `lane`, whose next step is of this `kind`, into a `slot`.
     #[inline]
-    fn enter<W: Passes>(&mut self, kind: usize, slot: usize, lane: &Lane<'a, W>) {
+    fn enter<W: Passes<Q>>(&mut self, kind: usize, slot: usize, lane: &Lane<'a, Q, W>) {
         let Lane { follower: Follower { engine, segments, .. }, advance, watch, .. } = lane;
         let mut samples = segments.samples().unwrap_or_default();
         let most = MOST_STEPS + u64::from(kind == LEAPS);
@@ -240,7 +261,12 @@ impl<'a, S: Simd> Together<'a, S> {
 
     /// The action of the lane in a `slot` after its step; none if it takes another step of this `kind` there.
     #[inline]
-    fn take<W: Passes>(&mut self, kind: usize, slot: usize, lane: &mut Lane<'a, W>) -> Option<Result<Next, RunError>> {
+    fn take<W: Passes<Q>>(
+        &mut self,
+        kind: usize,
+        slot: usize,
+        lane: &mut Lane<'a, Q, W>,
+    ) -> Option<Result<Next, RunError>> {
         if kind == LEAPS {
             return (!self.contacts.goes_on(slot)).then(|| {
                 self.leave(kind, slot, lane)?;
@@ -260,7 +286,7 @@ impl<'a, S: Simd> Together<'a, S> {
     }
 
     /// Takes the lane out of a `slot`.
-    fn leave<W: Passes>(&mut self, kind: usize, slot: usize, lane: &mut Lane<'a, W>) -> Result<(), RunError> {
+    fn leave<W: Passes<Q>>(&mut self, kind: usize, slot: usize, lane: &mut Lane<'a, Q, W>) -> Result<(), RunError> {
         if kind != LEAPS {
             let caught_up = lane.catch_up(&mut self.rocking, slot);
             self.rocking.leave(slot);
@@ -273,21 +299,21 @@ impl<'a, S: Simd> Together<'a, S> {
     }
 }
 
-type Ended<'a, W> = (Box<Lane<'a, W>>, Result<Ending, RunError>);
+type Ended<'a, Q, W> = (Box<Lane<'a, Q, W>>, Result<Ending, RunError>);
 
 /// The runs on their way, by what they do next, and those that have ended.
-struct Lanes<'a, W> {
-    of_kind: [VecDeque<Box<Lane<'a, W>>>; KINDS],
-    ended: Vec<Ended<'a, W>>,
+struct Lanes<'a, Q: Coordinates, W> {
+    of_kind: [VecDeque<Box<Lane<'a, Q, W>>>; KINDS],
+    ended: Vec<Ended<'a, Q, W>>,
 }
 
-impl<'a, W: Passes> Lanes<'a, W> {
+impl<'a, Q: Runs, W: Passes<Q>> Lanes<'a, Q, W> {
     fn count(&self) -> usize {
         self.of_kind.iter().map(VecDeque::len).sum()
     }
 
     /// Sorts a lane by what it does next.
-    fn goes_on(&mut self, lane: Box<Lane<'a, W>>, next: Result<Next, RunError>) {
+    fn goes_on(&mut self, lane: Box<Lane<'a, Q, W>>, next: Result<Next, RunError>) {
         match next {
             Ok(Next::Kind(kind)) => self.of_kind[kind].push_back(lane),
             Ok(Next::End(ending)) => self.ended.push((lane, Ok(ending))),
@@ -296,9 +322,9 @@ impl<'a, W: Passes> Lanes<'a, W> {
     }
 
     /// Takes steps of this `kind` until a run ends or another kind has more to do. Returns how many.
-    fn step<S: Simd>(&mut self, kind: usize, steps: &mut Together<'a, S>) -> u64 {
+    fn step<S: Simd>(&mut self, kind: usize, steps: &mut Together<'a, S, Q>) -> u64 {
         let mut taken = 0;
-        let mut lanes: [Option<Box<Lane<'a, W>>>; MOST] = [const { None }; MOST];
+        let mut lanes: [Option<Box<Lane<'a, Q, W>>>; MOST] = [const { None }; MOST];
         let lanes = &mut lanes[..S::F64_LANES];
         loop {
             let mut count = 0;
@@ -332,11 +358,11 @@ impl<'a, W: Passes> Lanes<'a, W> {
 
 /// Follows the `runs` of [`follow_each`]. Returns how many steps of rocking have been taken together.
 #[inline(never)] // what is of one run alone needs no wide registers
-fn follow<S: Simd, W: Passes>(
+fn follow<S: Simd, Q: Runs, W: Passes<Q>>(
     simd: S,
-    runs: &[Run],
+    runs: &[Run<Q>],
     watches: impl Iterator<Item = W>,
-    mut done: impl FnMut(usize, Result<Finish, RunError>, W) -> bool,
+    mut done: impl FnMut(usize, Result<Finish<Q>, RunError>, W) -> bool,
 ) -> u64 {
     let mut taken = 0;
     let mut waiting = runs.iter().zip(watches).enumerate();
@@ -388,7 +414,9 @@ mod tests {
     use super::*;
     use crate::run::End;
     use crate::run::record::Record;
-    use crate::{Detail, OneMass, Parameters, Phase, Piece, Watch};
+    use crate::structure::description::tests::usual;
+    use crate::structure::description::{Damping, Storey};
+    use crate::{Detail, OneMass, Parameters, Phase, Piece, Structure, Watch};
     use std::f64::consts::PI;
 
     /// A ground motion of filtered noise.
@@ -422,12 +450,12 @@ mod tests {
     }
 
     /// A result in words, all but the work of the search for peaks, in which runs that step together put more off.
-    fn told(mut result: Result<Found, RunError>) -> String {
+    fn told<Q: Runs>(mut result: Result<Found<Q>, RunError>) -> String {
         result.iter_mut().for_each(|found| found.peaks.evaluations = 0);
         format!("{result:?}")
     }
 
-    fn together<S: Simd>(simd: S, runs: &[Run]) -> Vec<String> {
+    fn together<S: Simd, Q: Runs>(simd: S, runs: &[Run<Q>]) -> Vec<String> {
         let mut results = vec![String::new(); runs.len()];
         let mut peaks = peaks_of(runs);
         follow(simd, runs, peaks.iter_mut().map(Falling::watch), |number, finish, watch| {
@@ -457,18 +485,51 @@ mod tests {
         let steps: u64 = alone.iter().flatten().map(|found| found.finish.motion.work.steps).sum();
         let failed = alone.iter().filter(|found| found.is_err()).count();
         assert!(overturned > 400 && rocked > 800 && failed > 20 && steps > 700_000);
-        let alone: Vec<_> = alone.into_iter().map(told).collect();
+        assert_same(&runs, &alone.into_iter().map(told).collect::<Vec<_>>());
+    }
+
+    /// Whether `runs` together have the results of each `alone`, in as many lanes as this processor has and in those that every
+    /// processor imitates.
+    fn assert_same<Q: Runs>(runs: &[Run<Q>], alone: &[String]) {
         let same = |found: Vec<String>| {
             let other = (0..runs.len()).find(|i| found[*i] != alone[*i]);
             assert!(other.is_none(), "{other:?}: {} instead of {}", found[other.unwrap()], alone[other.unwrap()]);
         };
-        same(together(pulp::Scalar256b, &runs));
+        same(together(pulp::Scalar256b, runs));
         #[cfg(target_arch = "x86_64")]
         {
             use pulp::x86::{V3, V4};
-            V3::try_new().into_iter().for_each(|simd| same(together(simd, &runs)));
-            V4::try_new().into_iter().for_each(|simd| same(together(simd, &runs)));
+            V3::try_new().into_iter().for_each(|simd| same(together(simd, runs)));
+            V4::try_new().into_iter().for_each(|simd| same(together(simd, runs)));
         }
+    }
+
+    /// Buildings of two to nine storeys, each beside others: with all modes or fewer, so that mass is left that no mode carries.
+    #[test]
+    fn each_building_has_the_bits_that_it_has_by_itself() {
+        let random = &mut fastrand::Rng::with_seed(1);
+        let made: Vec<_> = (0..300)
+            .map(|_| {
+                let storeys: Vec<_> = (1..=random.usize(2..10))
+                    .map(|i| Storey { m: 2e4, h: 3.0 * i as f64, k: 4e7 * (0.5 + random.f64()) })
+                    .collect();
+                let building = Structure::from_storeys(&usual(), &Damping::All(0.05 * random.f64()), &storeys).unwrap();
+                let kept = building.modes().len() - usize::from(random.u8(..) < 32);
+                (building.keeping(kept).unwrap(), ground(random).multiplied(0.2 + random.f64()))
+            })
+            .collect();
+        let runs: Vec<_> = made.iter().map(|(building, ground)| Run::of_modes(building.clone(), ground)).collect();
+        let alone: Vec<_> = runs.iter().map(|run| run.found(&mut ())).collect();
+        let rocked = alone.iter().flatten().filter(|found| found.finish.motion.transitions > 9).count();
+        let for_lanes = runs.iter().filter(|run| run.course().unwrap().engine.is_for_lanes()).count();
+        assert!(rocked > 50 && for_lanes > 150, "{rocked} {for_lanes}");
+        let alone: Vec<_> = alone.into_iter().map(told).collect();
+        assert_same(&runs, &alone);
+        // without any of many modes among them
+        let of_few = |run: &Run<_>| run.structure.modes().len() < 4;
+        let few = runs.iter().zip(alone).filter(|(run, _)| of_few(run)).map(|(run, alone)| (run.clone(), alone));
+        let (runs, alone): (Vec<_>, Vec<_>) = few.unzip();
+        assert_same(&runs, &alone);
     }
 
     /// A stiff structure takes several parts of an advance from one of these samples to the next.

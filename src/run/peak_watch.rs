@@ -7,9 +7,9 @@
 use super::peaks::Peak;
 use super::peaks::Peaks;
 use crate::engine::MOST_POLYNOMIALS;
-#[cfg(feature = "lanes")]
-use crate::engine::lanes::{MOST_SOUGHT, Passes, Sought};
 use crate::engine::piece::{Piece, Room, Watch};
+#[cfg(feature = "lanes")]
+use crate::engine::{lanes::Passes, sought::Sought};
 use crate::levels::level::Level;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::reach::Reach;
@@ -37,7 +37,7 @@ pub struct PeakWatch<'a, Q: Coordinates = f64> {
     is_torn: bool,
     /// Room for the bounds of a piece.
     bounds: Vec<f64>,
-    /// Of many masses: how far all that is searched reaches, until a peak may have changed.
+    /// Of many masses: how far all that is searched reaches, in these or earlier peaks.
     reach: Option<Option<Reach>>,
     /// Whether the next piece is the first since other peaks: the step of a host is often no more, and not put off.
     is_first: bool,
@@ -101,9 +101,9 @@ impl<Q: Coordinates> PeakWatch<'_, Q> {
             return;
         }
         if !self.peaks.may_be_same(structure, &most) {
+            self.reach = None; // peaks have grown meanwhile
             return;
         }
-        self.reach = None;
         let is_long = arc.is_none() && duration * structure.vibration().rocking[1] > LONGEST_SPAN;
         let is_now = is_first || is_long;
         self.bounds.clear();
@@ -123,9 +123,10 @@ impl<Q: Coordinates> PeakWatch<'_, Q> {
         self.kept.clear();
     }
 
-    /// Looks at what has been kept, the latest first, which is often the largest.
+    /// Looks at what has been kept, first where most may be more than its peak.
     fn look_back(&mut self) {
         let Some(level) = &self.level else { return };
+        self.kept.sort_by_cached_key(|kept| self.peaks.over(&kept.bounds).to_bits());
         while let Some(mut kept) = self.kept.pop() {
             if self.peaks.may_change_within(&kept.bounds, kept.before.time) {
                 self.room.left.set(MOST_POLYNOMIALS); // never used up: only short leaps are kept
@@ -194,9 +195,9 @@ impl<Q: Coordinates> Watch<Q> for PeakWatch<'_, Q> {
 }
 
 #[cfg(feature = "lanes")]
-impl PeakWatch<'_> {
+impl<Q: Coordinates> PeakWatch<'_, Q> {
     /// Puts the limits of what it must see into a `lane` of `sought`.
-    pub(super) fn seek(&self, engine: &Engine, lane: usize, sought: &mut Sought) {
+    pub(super) fn seek(&self, engine: &Engine<Q>, lane: usize, sought: &mut Sought<Q>) {
         self.peaks.seek(engine, lane, sought);
     }
 
@@ -207,7 +208,7 @@ impl PeakWatch<'_> {
     }
 
     /// Sees the ends of a piece, and keeps the piece if it may hold a peak within these `bounds`.
-    pub(super) fn put_off(&mut self, piece: &Piece, bounds: &[f64; MOST_SOUGHT]) {
+    pub(super) fn put_off(&mut self, piece: &Piece<Q>, bounds: &[f64]) {
         let &Piece { before, duration, ref end, .. } = piece;
         if self.is_torn {
             self.peaks.see(&piece.shown(0.0, &before.state), before.time);
@@ -255,8 +256,8 @@ impl<Q: Coordinates> Watch<Q> for ThetaWatch<'_, Q> {
 }
 
 #[cfg(feature = "lanes")]
-impl Passes for ThetaWatch<'_> {
-    fn seek(&self, engine: &Engine, lane: usize, sought: &mut Sought) {
+impl<Q: Coordinates> Passes<Q> for ThetaWatch<'_, Q> {
+    fn seek(&self, engine: &Engine<Q>, lane: usize, sought: &mut Sought<Q>) {
         self.all.seek(engine, lane, sought);
         (sought.turned[0][lane], sought.turned[1][lane]) = (-1.0, f64::INFINITY);
     }
@@ -266,7 +267,7 @@ impl Passes for ThetaWatch<'_> {
         self.all.pass();
     }
 
-    fn put_off(&mut self, piece: &Piece, bounds: &[f64; MOST_SOUGHT]) {
+    fn put_off(&mut self, piece: &Piece<Q>, bounds: &[f64]) {
         self.all.put_off(piece, bounds);
     }
 }

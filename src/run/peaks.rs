@@ -5,9 +5,9 @@
 //! (`extremes`) a series only rises or falls, so that the largest magnitude is at a stationary point or at an end. The series tells
 //! the instant; the value there comes from the state.
 
-#[cfg(feature = "lanes")]
-use crate::engine::lanes::{MOST_SOUGHT, Sought};
 use crate::engine::piece::{CONVERGED, Expansion, Piece};
+#[cfg(feature = "lanes")]
+use crate::engine::sought::Sought;
 use crate::mechanics::contact::restraints;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::Coordinates;
@@ -277,21 +277,26 @@ impl Peaks {
 
     /// Puts what may equal or exceed a peak of the structure of `engine` in its present phase into a `lane` of `sought`.
     #[cfg(feature = "lanes")]
-    pub(super) fn seek(&self, engine: &crate::Engine, lane: usize, sought: &mut Sought) {
+    pub(super) fn seek<Q: Coordinates>(&self, engine: &crate::Engine<Q>, lane: usize, sought: &mut Sought<Q>) {
         let (structure, phase) = (engine.structure(), engine.motion().phase);
-        assert!(self.searched.len() <= MOST_SOUGHT, "one mass has no more");
-        sought.count = self.searched.len();
-        for (i, of) in self.searched.iter().enumerate() {
-            let weights = structure.reaches()[of.place].of_one(of.output, structure, phase);
-            sought.weights[i].iter_mut().zip(weights).for_each(|(row, weight)| row[lane] = weight);
-            sought.least[i][lane] = of.peak.least();
-        }
+        let quantity = |of: &Searched| {
+            let (turn, elastic) = structure.reaches()[of.place].weights(of.output, structure, phase);
+            (of.peak.least(), turn, elastic)
+        };
+        sought.seek((lane, structure.modes().len()), self.searched.iter().map(quantity));
     }
 
     /// Whether magnitudes of `structure` within `bounds` at `time` (s) or later may change a peak.
     pub(super) fn may_change<Q: Coordinates>(&self, structure: &Structure, bounds: &Magnitudes<Q>, time: f64) -> bool {
         let reaches = structure.reaches();
         self.searched.iter().any(|of| of.peak.may_change(of.bound((structure, reaches), bounds), time))
+    }
+
+    /// The largest of these `bounds` of what is searched, in the peaks so far.
+    pub(super) fn over(&self, bounds: &[f64]) -> f64 {
+        let over =
+            |(of, bound): (&Searched, &f64)| if of.peak.magnitude > 0.0 { bound / of.peak.magnitude } else { *bound };
+        self.searched.iter().zip(bounds).map(over).fold(0.0, f64::max)
     }
 
     /// Whether what is searched may change a peak within these `bounds` at `time` (s) or later.

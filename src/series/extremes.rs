@@ -45,7 +45,7 @@ pub fn bound(coefficients: &[f64], reach: f64) -> f64 {
 }
 
 /// max |σᵏ − its cubic| over 0 ≤ σ ≤ 1 is at most this times k.
-const OFF_CUBIC: f64 = 0.1295;
+pub(crate) const OFF_CUBIC: f64 = 0.1295;
 
 /// The largest magnitude over 0 ≤ σ ≤ 1 of the cubic with these values and slopes at the ends.
 fn largest_of_cubic([start, end]: [f64; 2], [from, to]: [f64; 2]) -> f64 {

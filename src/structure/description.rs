@@ -528,7 +528,7 @@ pub(crate) mod tests {
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
-    fn usual() -> Given {
+    pub(crate) fn usual() -> Given {
         Given::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("r", 0.93)]).unwrap()
     }
 

@@ -307,23 +307,11 @@ impl Map {
     }
 
     /// Runs the structure under `grounds` and tells `see` each point with its number.
-    fn points(&self, grounds: &[Record], mut see: impl FnMut(usize, Point) -> bool) {
-        const AT_REST: &str = "it starts at rest";
+    fn points(&self, grounds: &[Record], see: impl FnMut(usize, Point) -> bool) {
         let conditions = Conditions { detail: self.detail, tolerance: self.tolerance, ..Conditions::default() };
         match self.structure.of_one_mode() {
-            Some(structure) => {
-                let run = |ground| conditions.run(structure.clone(), ground).expect(AT_REST);
-                let runs: Vec<_> = grounds.iter().map(run).collect();
-                rocked_each(&runs, &mut |number, finish, rocked| see(number, Point::of(&runs[number], finish, rocked)));
-            }
-            None => {
-                let point = |ground| {
-                    let run: Run<Modes> = conditions.run(self.structure.clone(), ground).expect(AT_REST);
-                    let (finish, rocked) = run.rocked();
-                    Point::of(&run, finish, rocked)
-                };
-                grounds.iter().map(point).enumerate().all(|(number, point)| see(number, point));
-            }
+            Some(structure) => points_of::<f64>(&conditions, &structure, grounds, see),
+            None => points_of::<Modes>(&conditions, &self.structure, grounds, see),
         }
     }
 
@@ -391,4 +379,15 @@ pub fn nearest(known: &HashMap<Place, Point>, place: Place, levels: u32) -> Opti
 /// The places of a map refined `levels` times from one to the next.
 pub fn finest_step(levels: u32) -> u32 {
     PARTS >> levels
+}
+/// Runs `structure` under `grounds` and tells `see` each point with its number.
+fn points_of<Q: Runs>(
+    conditions: &Conditions,
+    structure: &Structure,
+    grounds: &[Record],
+    mut see: impl FnMut(usize, Point) -> bool,
+) {
+    let run = |ground| conditions.run::<Q>(structure.clone(), ground).expect("it starts at rest");
+    let runs: Vec<_> = grounds.iter().map(run).collect();
+    rocked_each(&runs, &mut |number, (finish, rocked)| see(number, Point::of(&runs[number], finish, rocked)));
 }

@@ -16,7 +16,7 @@ use rocking::run::validity::{Findings, Limits};
 use rocking::run::{End, Run, RunError, Runs};
 use rocking::structure::doubts::doubted;
 use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
-use rocking::{Detail, Parameters, Quantity, State, Structure};
+use rocking::{Detail, Modes, Parameters, Quantity, State, Structure};
 use serde::Serialize;
 use std::array;
 use std::collections::HashSet;
@@ -367,7 +367,7 @@ impl Plan {
         (population, number, structure, layout)
     }
 
-    /// Does the runs `indices` on one thread, several at a time if all are of one mass, and tells `done` the outcome of each as it ends.
+    /// Does the runs `indices` on one thread, several at a time, and tells `done` the outcome of each as it ends.
     /// With `validity` each is by itself, and its findings say how far it breaks the assumptions of the model. Once `done` says no,
     /// the rest is left undone.
     pub fn each_outcome(
@@ -377,18 +377,38 @@ impl Plan {
         mut done: impl FnMut(&Case, Outcome, Option<Findings>) -> bool,
     ) {
         let cases: Vec<_> = self.cases_of(indices.iter().copied()).collect();
-        if validity || cases.iter().any(|case| case.structure.one().is_none()) {
+        if validity {
             cases.iter().all(|case| {
                 let (outcome, findings) = case.follow(validity);
                 done(case, outcome, findings)
             });
             return;
         }
-        let grounds: Vec<_> = cases.iter().map(Case::ground).collect();
-        let run = |(case, ground): (&Case, _)| self.conditions.run(case.structure.clone(), ground).expect(CHECKED);
-        let runs: Vec<_> = cases.iter().zip(&grounds).map(run).collect();
-        found_each(&runs, &mut |at, found| done(&cases[at], cases[at].outcome_of(&runs[at], found), None));
+        let of_one = cases.iter().filter_map(|case| Some((case, case.structure.of_one_mode()?))).collect();
+        if together::<f64>(self, of_one, &mut done) {
+            let is_of_many = |case: &&Case| case.structure.of_one_mode().is_none();
+            let of_many = cases.iter().filter(is_of_many).map(|case| (case, case.structure.clone())).collect();
+            together::<Modes>(self, of_many, &mut done);
+        }
     }
+}
+
+/// Does these cases of `plan` together, and tells `done` the outcome of each as it ends. Returns whether to go on.
+fn together<Q: Runs>(
+    plan: &Plan,
+    cases: Vec<(&Case, Structure)>,
+    done: &mut impl FnMut(&Case, Outcome, Option<Findings>) -> bool,
+) -> bool {
+    let grounds: Vec<_> = cases.iter().map(|(case, _)| case.ground()).collect();
+    let (cases, structures): (Vec<_>, Vec<_>) = cases.into_iter().unzip();
+    let run = |(structure, ground)| plan.conditions.run::<Q>(structure, ground).expect(CHECKED);
+    let runs: Vec<_> = structures.into_iter().zip(&grounds).map(run).collect();
+    let mut goes_on = true;
+    found_each(&runs, &mut |at, found| {
+        goes_on = done(cases[at], cases[at].outcome_of(&runs[at], found), None);
+        goes_on
+    });
+    goes_on
 }
 
 impl Case<'_> {

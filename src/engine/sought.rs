@@ -1,0 +1,264 @@
+//! What watchers of several runs seek in steps that are taken together: limits, bounds of the quantities, and the steps that are shown
+//! later. A step that may hold a peak is put off, since the steps after it mostly hold larger values.
+
+use super::Engine;
+use super::lanes::Passes;
+use crate::engine::motion::Motion;
+use crate::engine::piece::Piece;
+use crate::mechanics::lateral::Coordinates;
+use crate::numbers::Real;
+use crate::numbers::lanes::{Answers, Lanes, MOST, Row, load, put};
+use crate::{LinearLoad, Load, Ramp, State};
+use pulp::Simd;
+
+/// The most modes of structures that leap together.
+pub(super) const MOST_MODES: usize = 8;
+
+/// Factor by which rounding may raise a bound that is summed in another order.
+pub(super) const ROUNDING: f64 = 1.0 + 1e-13;
+
+/// How many steps of a run are put off before those that have been beaten are dropped, and how many at most.
+const PUT_OFF: usize = 16;
+const MOST_PUT_OFF: usize = 256;
+
+/// Part of a bound from below that is not used, so that rounding and [peaks that are the same](crate::run::peaks) never matter.
+const SLACK: f64 = 1e-9;
+
+/// What the watchers of several runs seek.
+#[derive(Debug, Default)]
+pub(crate) struct Sought<Q> {
+    quantities: Vec<Quantity>,
+    /// A piece must be seen at once if |θ| may be no more than the first, or is at least the second at its end.
+    pub turned: [Row; 2],
+    /// Steps that may hold a peak, in order of time.
+    put_off: [Vec<PutOff<Q>>; MOST],
+    /// Bounds of the quantities over the last step.
+    bounds: Vec<Row>,
+    /// Room for bounds of steps.
+    spare: Vec<Vec<f64>>,
+}
+
+/// A quantity of each run.
+#[derive(Clone, Debug, Default)]
+#[repr(align(64))]
+struct Quantity {
+    /// The least magnitude that must be seen.
+    least: Row,
+    /// [Weights](crate::mechanics::reach::Reach::weights) of θ and of each u and u̇.
+    turn: [Row; 3],
+    elastic: [[Row; 2]; MOST_MODES],
+}
+
+/// A step that is shown to a watcher after others.
+#[derive(Debug)]
+struct PutOff<Q> {
+    /// The sample that ends it.
+    sample: usize,
+    /// s.
+    duration: f64,
+    a_g: Ramp,
+    start: State<Q>,
+    end: State<Q>,
+    /// Bounds of what is sought.
+    bounds: Vec<f64>,
+}
+
+/// u and u̇ of each of N modes, and θ, or magnitudes of these.
+#[derive(Clone, Copy)]
+pub(super) struct Turned<S: Simd, const N: usize> {
+    pub u: [Lanes<S>; N],
+    pub u_dot: [Lanes<S>; N],
+    pub theta: Lanes<S>,
+}
+
+/// A step of several runs: the motion at both ends, and how far it leaves its chord.
+pub(super) struct Stretch<S: Simd, const N: usize> {
+    pub ends: [Turned<S, N>; 2],
+    pub off: Turned<S, N>,
+}
+
+/// How a step bends: the changes over the step that the slopes at both ends would bring, and how far the motion leaves the cubics with
+/// these slopes.
+pub(super) struct Bend<S: Simd, const N: usize> {
+    pub slopes: [Turned<S, N>; 2],
+    pub off_cubic: Turned<S, N>,
+}
+
+impl<S: Simd, const N: usize> Stretch<S, N> {
+    /// Bounds of the magnitudes.
+    #[inline(always)]
+    pub(super) fn most(&self) -> Turned<S, N> {
+        let ([start, end], mut most) = (&self.ends, self.off);
+        for j in 0..N {
+            most.u[j] = start.u[j].abs().max(end.u[j].abs()) + most.u[j];
+            most.u_dot[j] = start.u_dot[j].abs().max(end.u_dot[j].abs()) + most.u_dot[j];
+        }
+        Turned { theta: start.theta.abs().max(end.theta.abs()) + most.theta, ..most }
+    }
+}
+
+impl Quantity {
+    /// The weighed sum of u and u̇ in `of`, and the part of θ: with the signs of the weights, or with their magnitudes.
+    #[inline(always)]
+    fn weigh<S: Simd, const N: usize, const SIGNED: bool>(&self, simd: S, of: &Turned<S, N>) -> [Lanes<S>; 2] {
+        let (mut elastic, mut turning) = (Lanes::splat(simd, 0.0), Lanes::load(simd, &self.turn[0]));
+        for j in 0..N {
+            let [mut u, mut u_dot] = load(simd, &self.elastic[j]);
+            if !SIGNED {
+                (u, u_dot) = (u.abs(), u_dot.abs());
+            }
+            elastic = elastic + u * of.u[j] + u_dot * of.u_dot[j];
+        }
+        if !SIGNED {
+            turning = turning.abs();
+        }
+        [elastic, turning * of.theta]
+    }
+}
+
+impl<Q: Coordinates> Sought<Q> {
+    /// Seeks `quantities` in `lane`. Of each: the least magnitude that must be seen, and the weights of θ and of each of so many modes.
+    pub(crate) fn seek<Elastic: Fn(usize) -> [f64; 2]>(
+        &mut self,
+        (lane, modes): (usize, usize),
+        quantities: impl Iterator<Item = (f64, [f64; 3], Elastic)>,
+    ) {
+        let mut count = 0;
+        for (i, (least, turn, elastic)) in quantities.enumerate() {
+            if i == self.quantities.len() {
+                self.quantities.push(Quantity::default());
+            }
+            let of = &mut self.quantities[i];
+            of.least[lane] = least;
+            put(&mut of.turn, lane, turn);
+            of.elastic.iter_mut().take(modes).enumerate().for_each(|(j, rows)| put(rows, lane, elastic(j)));
+            count = i + 1;
+        }
+        for of in &mut self.quantities[count..] {
+            of.turn.iter_mut().chain(of.elastic.iter_mut().flatten()).for_each(|row| row[lane] = 0.0);
+        }
+    }
+
+    /// Whether steps within these magnitudes certainly hold no peak.
+    #[inline(always)]
+    pub(super) fn are_passed<S: Simd, const N: usize>(&self, simd: S, most: &Turned<S, N>) -> Answers<S> {
+        let zero = Lanes::splat(simd, 0.0);
+        let (mut passed, versine) = (zero.is_at_most(zero), zero.like(0.5) * most.theta * most.theta);
+        for of in &self.quantities {
+            let [elastic, turning] = of.weigh::<S, N, false>(simd, most);
+            let bound = elastic + turning + Lanes::load(simd, &of.turn[2]) * versine;
+            let bound = bound * zero.like(ROUNDING);
+            passed = passed & (bound.is_less(Lanes::load(simd, &of.least)) | bound.is_at_most(zero));
+        }
+        passed
+    }
+
+    /// Finds bounds of what is sought over a step of this `stretch` and `bend`. Raises the least magnitudes `where_so` by values at the
+    /// ends and in the middle of the step.
+    #[inline(always)]
+    pub(super) fn bound<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        (stretch, bend): (&Stretch<S, N>, &Bend<S, N>),
+        where_so: Answers<S>,
+    ) {
+        let most = stretch.most();
+        let (theta, one, zero) = (most.theta, most.theta.like(1.0), most.theta.like(0.0));
+        let versine = one.like(0.5) * theta * theta;
+        let cubic = versine * theta / one.like(3.0);
+        self.bounds.resize(self.quantities.len(), [0.0; MOST]);
+        for (of, bound) in self.quantities.iter_mut().zip(&mut self.bounds) {
+            let [elastic, turning] = of.weigh::<S, N, false>(simd, &most);
+            let [_, of_cubic, of_versine] = load(simd, &of.turn);
+            let least = Lanes::load(simd, &of.least);
+            let simple = (elastic + turning + of_versine * versine) * one.like(ROUNDING);
+            simple.store(bound);
+            if (simple.is_less(least) | simple.is_at_most(zero)).all() {
+                continue;
+            }
+            let curved = (elastic + of_versine) * versine + of_cubic * cubic;
+            let [off, off_turning] = of.weigh::<S, N, false>(simd, &bend.off_cubic);
+            let off = off + off_turning;
+            // the cubic of the linear part lies among the control points of its halves
+            let mut ends = [[one; 2]; 2];
+            for (i, [value, slope]) in ends.iter_mut().enumerate() {
+                let [elastic, turning] = of.weigh::<S, N, true>(simd, &stretch.ends[i]);
+                let [elastic_slope, turning_slope] = of.weigh::<S, N, true>(simd, &bend.slopes[i]);
+                (*value, *slope) = (elastic + turning, (elastic_slope + turning_slope) / one.like(3.0));
+            }
+            let ([[start, rise], [end, fall]], half) = (ends, one.like(0.5));
+            let [second, third] = [start + rise, end - fall];
+            let [first, middle, last] = [half * (start + second), half * (second + third), half * (third + end)];
+            let [before, after] = [half * (first + middle), half * (middle + last)];
+            let (largest, middle) = (start.abs().max(end.abs()), (half * (before + after)).abs());
+            let among = first.abs().max(before.abs()).max(after.abs()).max(last.abs()).max(middle);
+            simple.min((largest.max(among + off) + curved) * one.like(ROUNDING)).store(bound);
+            let known = (largest.max(middle - off) - curved) * one.like(1.0 - SLACK);
+            where_so.choose(least.max(known), least).store(&mut of.least);
+        }
+    }
+
+    /// Whether a step within these bounds of the run in `lane` may hold a peak.
+    fn may_hold(&self, lane: usize, bounds: &[f64]) -> bool {
+        let may_hold = |(bound, of): (&f64, &Quantity)| *bound > 0.0 && *bound >= of.least[lane];
+        bounds.iter().zip(&self.quantities).any(may_hold)
+    }
+
+    /// Puts off a step of the run in `lane`, the last one that has bounds. Returns whether it may put off another one.
+    pub(super) fn put_off(
+        &mut self,
+        lane: usize,
+        (sample, duration, a_g): (usize, f64, Ramp),
+        [start, end]: [State<Q>; 2],
+    ) -> bool {
+        let mut bounds = self.spare.pop().unwrap_or_default();
+        bounds.extend(self.bounds.iter().map(|of| of[lane]));
+        self.put_off[lane].push(PutOff { sample, duration, a_g, start, end, bounds });
+        if self.put_off[lane].len().is_multiple_of(PUT_OFF) {
+            let mut steps = std::mem::take(&mut self.put_off[lane]);
+            steps.retain_mut(|step| {
+                let stays = self.may_hold(lane, &step.bounds);
+                if !stays {
+                    self.put_by(std::mem::take(&mut step.bounds));
+                }
+                stays
+            });
+            self.put_off[lane] = steps;
+        }
+        self.put_off[lane].len() < MOST_PUT_OFF
+    }
+
+    /// Shows what has been put off of the run of `engine` in `lane`, which `entered` at this one of the samples at `times`.
+    pub(super) fn show<W: Passes<Q>>(
+        &mut self,
+        lane: usize,
+        (times, entered): (&[f64], usize),
+        engine: &Engine<Q>,
+        watch: &mut W,
+    ) {
+        let Engine { level, motion, room, .. } = engine;
+        let mut steps = std::mem::take(&mut self.put_off[lane]);
+        for PutOff { sample, duration, a_g, start, end, bounds } in steps.drain(..) {
+            let is_later = sample > entered;
+            if is_later {
+                watch.pass();
+            }
+            if self.may_hold(lane, &bounds) {
+                let time = if is_later { times[sample - 1] } else { motion.time };
+                let before = &Motion { time, state: start, ..*motion };
+                let ground = |a_g| Load { a_g, ..Load::default() };
+                let load = LinearLoad { value: ground(a_g.value), slope: ground(a_g.slope) };
+                let piece = Piece { before, duration, load, end, level: &**level, arc: None, room };
+                watch.put_off(&piece, &bounds);
+            }
+            self.put_by(bounds);
+        }
+        self.put_off[lane] = steps;
+    }
+
+    /// Puts the room for bounds by for another step.
+    fn put_by(&mut self, mut bounds: Vec<f64>) {
+        bounds.clear();
+        self.spare.push(bounds);
+    }
+}
