@@ -22,6 +22,9 @@ use crate::{LinearLoad, Motion, State, Transition};
 const CANDIDATES: usize = 32;
 const MOST_CANDIDATES: usize = 256;
 
+/// After so many pieces whose bounds were found in vain the common reach is found again, which takes about as long as one of them.
+const IN_VAIN: u32 = 4;
+
 /// Looks for peaks in the pieces of a motion.
 #[derive(Debug)]
 pub struct PeakWatch<'a, Q: Coordinates = f64> {
@@ -37,8 +40,10 @@ pub struct PeakWatch<'a, Q: Coordinates = f64> {
     is_torn: bool,
     /// Room for the bounds of a piece.
     bounds: Vec<f64>,
-    /// Of many masses: how far all that is searched reaches, in these or earlier peaks.
-    reach: Option<Option<Reach>>,
+    /// Of many masses: how far all that is searched reaches, in these or earlier peaks, and how many pieces needed the bounds of all
+    /// outputs in vain.
+    reach: Option<Box<Reach>>,
+    in_vain: u32,
     /// Whether the next piece is the first since other peaks: the step of a host is often no more, and not put off.
     is_first: bool,
 }
@@ -67,6 +72,7 @@ impl Peaks {
             room: Room::default(),
             bounds: Vec::new(),
             reach: None,
+            in_vain: 0,
             is_torn: true,
             is_first,
         }
@@ -93,15 +99,14 @@ impl<Q: Coordinates> PeakWatch<'_, Q> {
         let (loads, structure) = ([load.value, load.at(duration)], level.structure());
         let [is_torn, is_first] = [&mut self.is_torn, &mut self.is_first].map(std::mem::take);
         let most = piece.whole().most_under(structure, &loads);
-        let reach = || self.peaks.reach(structure);
-        if !Q::IS_ONE
-            && let Some(reach) = self.reach.get_or_insert_with(reach)
-            && reach.bound_together(&most) < 1.0
-        {
+        if self.reach.as_ref().is_some_and(|reach| reach.bound_together(&most) < 1.0) {
             return;
         }
         if !self.peaks.may_be_same(structure, &most) {
-            self.reach = None; // peaks have grown meanwhile
+            self.in_vain += 1;
+            if !Q::IS_ONE && self.in_vain.is_multiple_of(IN_VAIN) {
+                self.reach = self.peaks.reach(structure).map(Box::new);
+            }
             return;
         }
         let is_long = arc.is_none() && duration * structure.vibration().rocking[1] > LONGEST_SPAN;
