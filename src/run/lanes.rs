@@ -1,9 +1,9 @@
 //! Many runs, several of which step together: a register of the processor has one number of each.
 //!
-//! Runs leap in full contact together, from sample to sample, each at its own place in its record. Runs that rock by Eqs 5 and 6
-//! expand their motion order by order together, each as far as it would go by itself ([`engine::lanes`](crate::engine)). If the
-//! bounds of a leap or a step prove that no guard closes and that it holds no peak, that is all. Otherwise the run goes on by itself,
-//! with transitions and searches, until it does again what others do.
+//! Runs leap in full contact together, from sample to sample, each at its own place in its record. Runs of one mass that rock by Eqs 5
+//! and 6 expand their motion order by order together, each as far as it would go by itself ([`engine::lanes`](crate::engine)). If the
+//! bounds of a leap or a step prove that no guard closes, that is all: a step that may hold a peak is put off. Otherwise the run goes
+//! on by itself, with transitions and searches, until it does again what others do.
 
 use super::fall::{FallWatch, Falling, Found};
 use super::ground_motion::{Segment, Segments};
