@@ -502,6 +502,10 @@ mod tests {
             V3::try_new().into_iter().for_each(|simd| same(together(simd, runs)));
             V4::try_new().into_iter().for_each(|simd| same(together(simd, runs)));
         }
+        rocked_each(runs, &mut |number, rocked| {
+            assert_eq!(format!("{rocked:?}"), format!("{:?}", runs[number].rocked()));
+            true
+        });
     }
 
     /// Buildings of two to nine storeys, each beside others: with all modes or fewer, so that mass is left that no mode carries.
