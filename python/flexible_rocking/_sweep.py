@@ -319,7 +319,9 @@ def intensity_at(
 
     def runs(factors: dict[str, float], scale: "ArrayLike") -> "tuple[pd.DataFrame, list[bool | None]]":
         table = sweep(structure, {name: motions[name].scaled(factor) for name, factor in factors.items()}, scale=scale, **options)
-        table["scale"] *= table["record"].map(factors)
+        of_rows = table["record"].map(factors)
+        table["scale"] *= of_rows
+        table["record_scale"] /= of_rows
         return table, _exceeds(table, limit)
 
     reached = np.array(runs(unit, stripes)[1], object).reshape(len(motions), -1)

@@ -42,7 +42,7 @@ pub struct Record {
     /// Of what was given: m/s², or a unit of g.
     unit: Unit,
     /// Multiplies the accelerations once they are in m/s².
-    scale: f64,
+    pub scale: f64,
     /// In m/s², under [`G`].
     usual: Arc<Samples>,
 }
@@ -81,7 +81,12 @@ impl Record {
         if g == G || !self.is_in_g() {
             return Arc::clone(&self.usual);
         }
-        Arc::new(self.given.clone().multiplied(self.unit.in_m_s2(g)).multiplied(self.scale))
+        Arc::new(self.unscaled(g).multiplied(self.scale))
+    }
+
+    /// The record in m/s² under `g` (m/s²), before `scale` multiplies the accelerations.
+    pub fn unscaled(&self, g: f64) -> Samples {
+        self.given.clone().multiplied(self.unit.in_m_s2(g))
     }
 
     /// Whether the g of a structure decides how strong it is.

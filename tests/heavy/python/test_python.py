@@ -226,7 +226,9 @@ def test_a_unit_of_g_is_that_of_the_structure(said, tmp_path, unit, per_g):
     run, expected = (fr.simulate(moon, of) for of in (ground, in_si))
     assert run.peaks == expected.peaks and np.array_equal(run.at(time_)["a_g"], expected.at(time_)["a_g"])
     assert pickle.loads(pickle.dumps(run)).peaks == run.peaks and ground.pga == pytest.approx(9.81 * 1.1 * 0.9, rel=2e-3)
-    assert fr.sweep(moon, ground)["peak_theta[rad]"].tolist() == [run.peaks["theta"]]
+    swept = fr.sweep(moon, ground, scale=[1, 0.815])
+    assert swept["peak_theta[rad]"].tolist() == [run.peaks["theta"], fr.simulate(moon, ground.scaled(0.815)).peaks["theta"]]
+    assert swept["record_scale"].tolist() == [1.1, 1.1]
     assert fr.estimate(moon, ground)["a_t"] == fr.estimate(moon, in_si)["a_t"]
     with pytest.raises(ValueError, match="g = 9.81 m/s2 and g = 1.62 m/s2: a sweep has one g"):
         fr.sweep([moon, fr.Structure(preset="mcmanus")], ground)
@@ -539,14 +541,14 @@ def test_curve_and_band_are_those_of_statsmodels(two_populations):
 
 def test_the_weakest_motion_that_reaches_a_limit_is_found():
     pier = fr.Structure(preset="mcmanus")
-    pulses = {f"{f} Hz": fr.pulse("sine", amplitude=0.3, frequency=f) for f in (0.8, 1.5, 2.5)}
+    pulses = {f"{f} Hz": fr.pulse("sine", amplitude=0.3, frequency=f).scaled(0.7) for f in (0.8, 1.5, 2.5)}
     limit = "theta/alpha_cg >= 0.3"
     found = fr.intensity_at(pier, pulses, limit, accuracy=1e-6).set_index("record")
     for name, pulse in pulses.items():
         scale = found["scale"][name]
         below, at = (fr.simulate(pier, pulse.scaled(scale * factor)).peaks["theta"] / pier.alpha_cg for factor in (1 - 2e-6, 1))
         assert below < 0.3 <= at == found["peak_theta/alpha_cg"][name]
-        assert found["PGA[g]"][name] == pytest.approx(scale * pulse.pga / pier.g, rel=1e-12)
+        assert [found["PGA[g]"][name], found["record_scale"][name]] == pytest.approx([scale * pulse.pga / pier.g, 0.7], rel=1e-12)
         weaker = fr.sweep(pier, pulse, scale=np.linspace(0.1, 0.999, 200) * scale)
         assert (weaker["peak_theta/alpha_cg"] < 0.3).all()
 
