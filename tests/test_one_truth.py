@@ -5,26 +5,30 @@ import math
 import re
 from functools import partial
 
+import numpy as np
 import pandas as pd
 import pytest
 from evidence.scenes import RECORDS
-from host import output
+from host import output, write
 
 
-@pytest.mark.parametrize("pattern", ["*PUL254*", "*ELC180*"])
-def test_simulate_advise_sweep_and_view_have_the_same_peaks(exporter, tmp_path, pattern):
+@pytest.mark.parametrize("pattern, scale", [("*PUL254*", 1.0), ("*ELC180*", 1.461)])
+def test_simulate_advise_sweep_and_view_have_the_same_peaks(exporter, tmp_path, pattern, scale):
     record, run = next(RECORDS.glob(f"*/{pattern}.AT2")), partial(output, exporter, cwd=tmp_path)
-    simulated = {of["name"]: of["peak"] for of in json.loads(run("simulate", "--record", record, "--format", "json"))["peaks"]}
-    advised = re.search(r"peaks: (.*)", run("advise", "--record", record))[1].split(", ")
+    write(tmp_path / "push.csv", "", time := 0.0973 * np.arange(80), 100 * np.sin(time), heading="time[s],F_t[N]")
+    ground = ["--record", record, "--force", "push.csv", "--scale", scale]
+    simulated = {of["name"]: of["peak"] for of in json.loads(run("simulate", *ground, "--format", "json"))["peaks"]}
+    advised = re.search(r"peaks: (.*)", run("advise", *ground))[1].split(", ")
     assert len(advised) == 5
     for name, number, unit in map(str.split, advised):
         size = {"mm": 1e-3, "g": 9.81, "kN": 1e3, "kN.m": 1e3}.get(unit, 1.0)
         assert float(number) * size == pytest.approx(simulated[name], rel=5e-6)
-    (tmp_path / "one.toml").write_text(f'records = ["{record}"]\nscale = [1.0]\n[[structures]]\nname = "one"\npreset = "mcmanus"\n')
+    (tmp_path / "one.toml").write_text(f'scale = [{scale}]\n[[records]]\nfile = "{record}"\nforce = "push.csv"\n'
+                                       '[[structures]]\nname = "one"\npreset = "mcmanus"\n')
     run("sweep", "one.toml", "-o", "rows.csv")
     swept = pd.read_csv(tmp_path / "rows.csv").filter(like="peak_").rename(columns=lambda name: re.sub(r"peak_|\[.*", "", name)).iloc[0]
     assert len(swept) > 7 and swept[swept.index.intersection(simulated)].to_dict().items() <= simulated.items()
-    run("view", "--record", record, "-o", "view.html")
+    run("view", *ground, "-o", "view.html")
     scene = json.loads(re.search(r'<script[^>]*id="data"[^>]*>(.*?)</script>', (tmp_path / "view.html").read_text(), re.DOTALL)[1])
     viewed = {name: magnitude for name, magnitude, _ in scene["peaks"]}
     assert len(viewed) > 7 and viewed.items() <= simulated.items()

@@ -36,7 +36,7 @@ pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
         bail!("amplitudes = {part} is out of range: parts above 0 and below 1 are needed");
     }
     let structure = *args.structure.load_any()?.one_mass("estimate")?;
-    let record = args.ground.load(structure.parameters().g)?;
+    let record = args.ground.load(structure.parameters().g)?.map(|understood| understood.record);
     let Estimate { terms: mut lines, .. } = Estimate::new(&structure, record.as_ref(), args.amplification)?;
     for part in &args.amplitudes {
         lines.push(NamedValue {

@@ -77,14 +77,14 @@ impl VerticalArgs {
 
 impl RecordArgs {
     /// Reads and scales the record, and reports what it found and assumed. A record's g means `g` (m/s²).
-    pub fn load(&self, g: f64) -> anyhow::Result<Option<Record>> {
+    pub fn load(&self, g: f64) -> anyhow::Result<Option<Understood>> {
         let Some(path) = &self.record else { return Ok(None) };
         let mut understood = self.options.load("record", path, g)?;
         if let Some(vertical) = self.vertical.file(Some(path)) {
             let up = self.options.with_column(&self.vertical.column_v).load("record_v", vertical, g)?;
             understood = understood.with_vertical(up, g, "--column-v")?;
         }
-        Ok(Some(understood.record))
+        Ok(Some(understood))
     }
 
     /// The files that are read.
@@ -124,9 +124,10 @@ impl RecordOptions {
     }
 }
 
-/// The `record` with the force on the top floor in the table at `path`, if there is one.
-pub fn with_force(record: Record, path: Option<&Path>) -> anyhow::Result<Record> {
-    let Some(path) = path else { return Ok(record) };
+/// The scaled record that is `understood`, with the force on the top floor in the table at `path`, if there is one; `g` in m/s². The
+/// force, whose times no scale changes, is put beside the accelerations in m/s² before these are multiplied, as a sweep needs it.
+pub fn with_force(understood: Understood, path: Option<&Path>, g: f64) -> anyhow::Result<Record> {
+    let Some(path) = path else { return Ok(understood.record) };
     let name = || format!("force = {}", path.display());
     let what = || format!("{}: a table with the columns time[s] and F_t[N] is needed", name());
     let bytes = input::read(path).with_context(name)?;
@@ -135,7 +136,9 @@ pub fn with_force(record: Record, path: Option<&Path>) -> anyhow::Result<Record>
     ensure!(headings == ["time[s]", "F_t[N]"], "{}; its first line is {:?}", what(), headings.join(","));
     let rows = table.into_deserialize::<(f64, f64)>().collect::<Result<_, _>>();
     let (times, F_t): (Vec<_>, Vec<_>) = rows.with_context(what)?;
-    record.with_force(&times, &F_t).with_context(name)
+    let Understood { in_file_unit, units, factors: [time_scale, scale], .. } = understood;
+    let record = rocking_records::each_in_m_s2(in_file_unit, units, g)?.scaled(time_scale, 1.0)?;
+    Ok(record.with_force(&times, &F_t).with_context(name)?.multiplied(scale))
 }
 
 /// Prints findings and assumptions about a record after `label`, and warnings.

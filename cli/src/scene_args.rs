@@ -6,7 +6,7 @@ use clap::ArgGroup;
 use rocking::digits::short;
 use rocking::run::record::Record;
 use rocking::{Detail, State, engine::DEFAULT_TOLERANCE};
-use rocking_report::run::Run;
+use rocking_report::{record::Understood, run::Run};
 use rocking_sweep::plan::Conditions;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::path::{Path, PathBuf};
@@ -133,8 +133,9 @@ impl LevelArgs {
 impl GroundArgs {
     /// The ground motion; a record's g means `g` (m/s²).
     pub fn load(&self, g: f64) -> anyhow::Result<Record> {
-        let free = || Record::at_rest(self.free.expect("clap asks for --record or --free"));
-        with_force(self.record.load(g)?.unwrap_or_else(free), self.force.as_deref())
+        let rest = || Record::at_rest(self.free.expect("clap asks for --record or --free"));
+        let understood = self.record.load(g)?.map_or_else(|| Understood::made(rest(), [1.0; 2], g), Ok)?;
+        with_force(understood, self.force.as_deref(), g)
     }
 
     /// From the start to the end of the run, s, where that is asked for.

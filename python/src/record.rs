@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use rocking::Parameters;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::estimates::response_spectrum;
-use rocking::run::record::Record as Samples;
+use rocking::run::record::{Record as Samples, SamplesError};
 use rocking_records::{Column, Reading, Unit, csv_in, doubt_of_peak, doubts, each_in_m_s2, vertical_csv};
 use rocking_report::output_files::OutputFiles;
 use rocking_report::record::{Understood, understand};
@@ -38,7 +38,10 @@ pub const G: f64 = Parameters::EVISON.g;
 #[pyclass(frozen, eq, module = "flexible_rocking")]
 #[derive(PartialEq)]
 pub struct Record {
+    /// Without the force.
     given: Samples,
+    /// Times (s) and sizes (N) of the force on the top floor.
+    force: Option<[Vec<f64>; 2]>,
     /// Of what was given: m/s², or a unit of g.
     unit: Unit,
     /// Multiplies the accelerations once they are in m/s².
@@ -66,14 +69,15 @@ fn fixed(samples: Samples, units: [Unit; 2]) -> PyResult<(Samples, Unit)> {
 }
 
 impl Record {
-    fn new(given: Samples, unit: Unit, scale: f64) -> Record {
-        let usual = Arc::new(given.clone().multiplied(unit.in_m_s2(G)).multiplied(scale));
-        Record { given, unit, scale, usual }
+    fn new(given: Samples, force: Option<[Vec<f64>; 2]>, unit: Unit, scale: f64) -> PyResult<Record> {
+        let record = Record { usual: Arc::new(given.clone()), given, force, unit, scale };
+        let usual = Arc::new(record.unscaled(G).map_err(refused)?.multiplied(scale));
+        Ok(Record { force: record.force.filter(|_| usual.force().is_some()), usual, ..record })
     }
 
     /// Of `samples` in m/s².
-    pub fn in_si(samples: Samples) -> Record {
-        Record::new(samples, Unit::MetrePerSecondSquared, 1.0)
+    pub fn in_si(samples: Samples) -> PyResult<Record> {
+        Record::new(samples, None, Unit::MetrePerSecondSquared, 1.0)
     }
 
     /// The record in m/s² as it shakes a structure under `g` (m/s²).
@@ -81,12 +85,16 @@ impl Record {
         if g == G || !self.is_in_g() {
             return Arc::clone(&self.usual);
         }
-        Arc::new(self.unscaled(g).multiplied(self.scale))
+        Arc::new(self.unscaled(g).expect("the force begins with the record under every g").multiplied(self.scale))
     }
 
-    /// The record in m/s² under `g` (m/s²), before `scale` multiplies the accelerations.
-    pub fn unscaled(&self, g: f64) -> Samples {
-        self.given.clone().multiplied(self.unit.in_m_s2(g))
+    /// The record in m/s² under `g` (m/s²) with its force, before `scale` multiplies the accelerations.
+    pub fn unscaled(&self, g: f64) -> Result<Samples, SamplesError> {
+        let ground = self.given.clone().multiplied(self.unit.in_m_s2(g));
+        match &self.force {
+            Some([times, F_t]) => ground.with_force(times, F_t),
+            None => Ok(ground),
+        }
     }
 
     /// Whether the g of a structure decides how strong it is.
@@ -98,7 +106,7 @@ impl Record {
     pub fn tables(&self) -> anyhow::Result<Vec<String>> {
         let scaled = self.given.clone().multiplied(self.scale);
         ensure!(
-            scaled.force().is_none(),
+            self.usual.force().is_none(),
             "a file or an FMU cannot hold the record's force: write the record without with_force, and set the input F_t of the FMU"
         );
         Ok([csv_in(&scaled, self.unit)].into_iter().chain(vertical_csv(&scaled, self.unit)).collect())
@@ -188,7 +196,7 @@ impl Record {
         #[pyo3(from_py_with = unit)] unit: Unit,
         scale: f64,
         title: &str,
-        F_t: Option<&Bound<'_, PyAny>>,
+        force: Option<[Vec<f64>; 2]>,
     ) -> PyResult<Record> {
         let a_g = numbers("a_g", a_g)?;
         let times: Vec<f64> = match number("dt", time) {
@@ -204,19 +212,16 @@ impl Record {
         if let Some(a_v) = a_v {
             samples = samples.with_vertical(&component(numbers("a_v", a_v)?)?).map_err(refused)?;
         }
-        if let Some(F_t) = F_t {
-            samples = samples.with_force(&times, &numbers("F_t", F_t)?).map_err(refused)?;
-        }
         let (given, unit) = fixed(samples, [unit; 2])?;
-        Record::new(given, unit, 1.0).scaled(scale, 1.0)
+        Record::new(given, force, unit, 1.0)?.scaled(scale, 1.0)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Parts<'py>)> {
         let (of, array) = (slf.get(), |of| PyArray1::from_slice(slf.py(), of));
         let [times, a_g] = [of.given.times(), of.given.acceleration()].map(array);
         let (unit, title) = (of.unit.to_string(), of.title().to_owned());
-        let [a_v, F_t] = [of.given.vertical(), of.given.force()].map(|of| of.map(array));
-        Ok((slf.getattr("_of")?, (times, a_g, a_v, unit, of.scale, title, F_t)))
+        let (a_v, force) = (of.given.vertical().map(array), of.force.clone());
+        Ok((slf.getattr("_of")?, (times, a_g, a_v, unit, of.scale, title, force)))
     }
 
     /// Reads the record in `file`, in one of the layouts Record.LAYOUTS, known by its content.
@@ -260,7 +265,7 @@ impl Record {
             understood = understood.with_vertical(up, G, "vertical_column").map_err(refused)?;
         }
         let (given, unit) = fixed(understood.in_file_unit, understood.units)?;
-        Record::new(given, unit, 1.0).scaled(scale, time_scale)
+        Record::new(given, None, unit, 1.0)?.scaled(scale, time_scale)
     }
 
     /// Times of the samples, s: an array (n,), a copy.
@@ -317,8 +322,8 @@ impl Record {
     /// The samples are then at the times of both. A sweep and `scaled` multiply accelerations, not the force. Raises ValueError for other
     /// shapes, NaN and infinity, times that do not increase, and another start. A structure without floors cannot be pushed.
     fn with_force(&self, time: &Bound<'_, PyAny>, F_t: &Bound<'_, PyAny>) -> PyResult<Record> {
-        let (time, F_t) = (numbers("time", time)?, numbers("F_t", F_t)?);
-        Ok(Record::new(self.given.clone().with_force(&time, &F_t).map_err(refused)?, self.unit, self.scale))
+        let force = [numbers("time", time)?, numbers("F_t", F_t)?];
+        Record::new(self.given.clone(), Some(force), self.unit, self.scale)
     }
 
     /// This ground motion with its times multiplied by time_scale, its accelerations by scale.
@@ -330,7 +335,8 @@ impl Record {
     ) -> PyResult<Record> {
         Samples::clone(&self.usual).scaled(time_scale, scale).map_err(refused)?;
         let given = self.given.clone().scaled(time_scale, 1.0).map_err(refused)?;
-        Ok(Record::new(given, self.unit, self.scale * scale))
+        let later = |[times, F_t]: &[Vec<f64>; 2]| [times.iter().map(|time| time * time_scale).collect(), F_t.clone()];
+        Record::new(given, self.force.as_ref().map(later), self.unit, self.scale * scale)
     }
 
     /// Absolute spectral accelerations S_a, m/s2, at `periods` (s), a number or an array (n,), with the damping ratio zeta: an
@@ -384,7 +390,7 @@ impl Record {
 }
 
 /// Arguments of [`Record::_of`].
-type Parts<'py> = (Array<'py>, Array<'py>, Option<Array<'py>>, String, f64, String, Option<Array<'py>>);
+type Parts<'py> = (Array<'py>, Array<'py>, Option<Array<'py>>, String, f64, String, Option<[Vec<f64>; 2]>);
 type Array<'py> = Bound<'py, PyArray1<f64>>;
 
 /// The pulse of this shape as a Record: "half_sine", "sine", "cosine", "ricker", "antisymmetric_ricker",
@@ -422,5 +428,5 @@ pub fn pulse(
     let record = pulse.record().map_err(refused)?;
     let g = structure.map_or(g, |structure| structure.of.base().g);
     warn(py, doubt_of_peak(&record, g).map(|doubt| format!("{}: {doubt}", record.title())), 1)?;
-    Ok(Record::in_si(record))
+    Record::in_si(record)
 }

@@ -294,7 +294,7 @@ pub fn simulate(
     conditions.check(&structure.get().of).map_err(refused)?;
     let record = match (record, conditions.duration) {
         (Some(Ground(record)), _) => record,
-        (None, Some(duration)) => Py::new(py, Record::in_si(rocking::run::record::Record::at_rest(duration)))?,
+        (None, Some(duration)) => Py::new(py, Record::in_si(rocking::run::record::Record::at_rest(duration))?)?,
         (None, None) => {
             return Err(PyValueError::new_err("record and duration are missing: free vibration needs a duration"));
         }

@@ -70,7 +70,7 @@ pub fn sweep<'py>(
             let needed = "a sweep has one g, in which its records are given";
             return Err(PyValueError::new_err(format!("g = {other} m/s2 and g = {g} m/s2: {needed}")));
         }
-        NamedRecord::new(name, record.unscaled(g), record.scale).map_err(refused)
+        NamedRecord::new(name, record.unscaled(g).map_err(refused)?, record.scale).map_err(refused)
     };
     let motions = records.iter().map(motion).collect::<PyResult<_>>()?;
     let conditions = conditions(detail, tolerance, duration, Some(initial))?;

@@ -12,7 +12,8 @@ pub struct Understood {
     pub record: Record,
     /// The ground motion as its files have it.
     pub in_file_unit: Record,
-    factors: [f64; 2],
+    /// Factors on the times and on the accelerations.
+    pub factors: [f64; 2],
     /// Units of the horizontal and of the vertical component.
     pub units: [Unit; 2],
     /// Statements of the file, if the ground motion is of a file.

@@ -186,12 +186,12 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
             RecordEntry::As(table) => table,
         };
         let tables: Vec<_> = file.records.into_iter().map(table).collect();
-        let motions = motions(&tables, folder, |path, vertical, options| {
+        let motions = motions(&tables, folder, |path, vertical, force, options| {
             let mut understood = understand(path, options)?;
             if let Some((vertical, of_vertical)) = vertical {
                 understood = understood.with_vertical(understand(vertical, of_vertical)?, g, "vertical_column")?;
             }
-            Ok(understood.record)
+            with_force(understood, force, g)
         });
         tables.iter().filter_map(|of| of.force.as_ref()).for_each(|force| files.add_input(&folder.join(force)));
         let all_warn = |warnings| few(warnings, "warnings").iter().for_each(|warning| warning!("{warning}"));
@@ -320,7 +320,7 @@ impl StructureGrid {
 fn motions(
     sources: &[RecordTable],
     folder: &Path,
-    mut read: impl FnMut(&Path, Option<(&Path, &RecordOptions)>, &RecordOptions) -> anyhow::Result<Record>,
+    mut read: impl FnMut(&Path, Option<(&Path, &RecordOptions)>, Option<&Path>, &RecordOptions) -> anyhow::Result<Record>,
 ) -> anyhow::Result<Vec<NamedRecord>> {
     let (mut motions, mut bad) = (Vec::new(), Vec::<anyhow::Error>::new());
     for RecordTable { file: pattern, vertical, vertical_column, force, options } in sources {
@@ -350,9 +350,8 @@ fn motions(
             // The same on every system, so that a sweep can go on on another.
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace(MAIN_SEPARATOR, "/");
             let up = vertical.map_or_else(|| path.clone(), |up| folder.join(up));
-            let record = read(&path, has_vertical.then_some((&*up, &of_vertical)), &options);
             let force = force.as_ref().map(|of| folder.join(of));
-            let record = record.and_then(|record| with_force(record, force.as_deref()));
+            let record = read(&path, has_vertical.then_some((&*up, &of_vertical)), force.as_deref(), &options);
             let named = |record| Ok(NamedRecord::new(name + &with, record, options.scale.unwrap_or(1.0))?);
             match record.and_then(named) {
                 Ok(motion) => motions.push(motion),

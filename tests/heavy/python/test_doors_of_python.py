@@ -64,16 +64,18 @@ class Doors:
         many = dict(zeta=0.02, storeys=[dict(m=m, h=h, k=k) for m, h, k in storeys]) if storeys else {}
         self.structure = fr.Structure(**tomllib.loads(text), **many)
         time = 0.01 * np.arange(301)
-        record = write(folder / "ground.csv", "m/s2", time, 4 * np.sin(9 * time))
+        unit, peak = ("g", 0.4) if case == "pushed" else ("m/s2", 4)
+        record = write(folder / "ground.csv", unit, time, peak * np.sin(9 * time))
         up = write(folder / "up.csv", "cm/s2", 0.7 * time, 300 * np.cos(20 * time)) if case == "vertical" else None
-        self.ground = fr.Record.read(record, vertical=up)
-        push = (0.05 * np.arange(41), 3 * (storeys[-1][0] if storeys else base["m"]) * np.sin(np.arange(41) * np.pi / 8))
+        scales = dict(scale=1.1)
+        self.ground = fr.Record.read(record, vertical=up, **scales)
+        push = (0.0497 * np.arange(41), 3 * (storeys[-1][0] if storeys else base["m"]) * np.sin(np.arange(41) * np.pi / 8))
         force = write(folder / "force.csv", "", *push, heading="time[s],F_t[N]") if case == "pushed" else None
         self.ground = self.ground.with_force(*push) if force else self.ground
         initial = self.initial() if case == "free" and not how else {}
         self.how = how | initial
-        self.scene = Scene(dict(parameters=self.file), "CSV", record=record, vertical=up, force=force, push=push, how=how, initial=initial, duration=2.5, record_end=3.0)
-        self.motion = options(record=record, **(dict(record_v=up) if up else {}), **(dict(force=force) if force else {}))
+        self.scene = Scene(dict(parameters=self.file), "CSV", record=record, vertical=up, force=force, push=push, scales=scales, how=how, initial=initial, duration=2.5, record_end=3.0)
+        self.motion = options(record=record, **scales, **(dict(record_v=up) if up else {}), **(dict(force=force) if force else {}))
         self.run = fr.simulate(self.structure, self.ground, duration=2.5, **self.how)
 
     def initial(self) -> dict:
@@ -148,8 +150,8 @@ CAPABILITIES = {
     "pushover": (pushed, lambda door: [of.tolist() for of in door.structure.pushover(5).values()]),
     "restoring": (lambda door: [of["moment"] for of in door.told("describe", "--restoring", 0.02)],
                   lambda door: door.structure.restoring(0.02)["moment"].tolist()),
-    "sweep": (lambda door: door.swept(f"records = [{{ file = 'ground.csv'{beside(door)} }}]\nscale = [0.8, 1.2]", **door.scene.initial).filter(like="peak_").to_dict("list"),
-              lambda door: fr.sweep(door.structure, door.ground, scale=[0.8, 1.2], **door.scene.initial).filter(like="peak_").to_dict("list")),
+    "sweep": (lambda door: door.swept(f"records = [{{ file = 'ground.csv', scale = 1.1{beside(door)} }}]\nscale = [0.8, 1.2]", **door.scene.initial).filter(regex="peak_|scale").to_dict("list"),
+              lambda door: fr.sweep(door.structure, door.ground, scale=[0.8, 1.2], **door.scene.initial).filter(regex="peak_|scale").to_dict("list")),
     "map": (lambda door: door.swept(PULSES).sort_values(["amplitude[m/s2]", "frequency[Hz]"])[MAPPED].to_dict("list"),
             lambda door: fr.overturning_map(door.structure, frequency=[2, 5], amplitude=[1.5, 6])[MAPPED].to_dict("list")),
 }
