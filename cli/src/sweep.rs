@@ -39,7 +39,7 @@ pub struct SweepArgs {
     picture: Option<PathBuf>,
     /// Runs at a time; 0 is one per core
     #[arg(long, value_name = "N", default_value_t = 0)]
-    threads: usize,
+    threads: i64,
     /// Find, too, how far each run exceeds the model's limits: tension, load of the edge, friction, energy gained at impacts
     #[arg(long)]
     validity: bool,

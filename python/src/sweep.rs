@@ -52,7 +52,7 @@ pub fn sweep<'py>(
     duration: Option<&Bound<'_, PyAny>>,
     initial: &Bound<'_, PyDict>,
     validity: bool,
-    threads: usize,
+    threads: i64,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Table<'py>> {
     let scales = numbers("scale", scale)?;
@@ -138,7 +138,7 @@ pub fn overturning_map(
     condition: bool,
     #[pyo3(from_py_with = argument::detail)] detail: Detail,
     #[pyo3(from_py_with = argument::tolerance)] tolerance: f64,
-    threads: usize,
+    threads: i64,
 ) -> PyResult<String> {
     let shape = one_of("shape", shape, Shape::ALL.map(|of| (of.name(), of)))?;
     let structure = structure.of.clone();

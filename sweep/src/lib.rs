@@ -17,12 +17,12 @@ pub use rocking::Refused;
 use rocking::structure::quantity::ensure;
 
 /// Most runs at a time.
-const MOST_THREADS: usize = 1024;
+const MOST_THREADS: i64 = 1024;
 
 /// The threads that do `threads` runs at a time; 0 is one per core.
-pub fn thread_pool(threads: usize) -> Result<ThreadPool, Refused> {
-    ensure(threads <= MOST_THREADS, || {
+pub fn thread_pool(threads: i64) -> Result<ThreadPool, Refused> {
+    ensure((0..=MOST_THREADS).contains(&threads), || {
         format!("threads = {threads} is out of range: 0, which is one per core, to {MOST_THREADS} are possible")
     })?;
-    ThreadPoolBuilder::new().num_threads(threads).build().map_err(Refused::by)
+    ThreadPoolBuilder::new().num_threads(threads as usize).build().map_err(Refused::by)
 }
