@@ -159,7 +159,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
     let mut read = || -> anyhow::Result<_> {
         let (text, folder) = (input::text(path)?, path.parent().unwrap_or(Path::new("")));
         let table: toml::Table = toml::from_str(&text)?;
-        if table.contains_key("pulses") {
+        if table.keys().any(|key| key.starts_with("pulse")) {
             return Ok(Asked::Pulses(toml::from_str::<MapFile>(&text)?.sweep(folder, files)?));
         }
         let file: SweepFile = toml::from_str(&text)?;

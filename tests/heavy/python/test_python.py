@@ -159,6 +159,8 @@ def test_what_is_refused_has_the_command_lines_text(said, arguments, options):
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground, detail="fine"), 'detail = "fine" is unknown; these'),
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground).at([0, -1]), "times[1] = -1 s is out of range"),
     (lambda ground: fr.sweep(fr.Structure(preset="mcmanus"), ground, path="/dev/full"), "/dev/full: rows need a file"),
+    (lambda ground: fr.sweep(fr.Structure(preset="mcmanus"), ground, threads=-1), "threads = -1 is out of range: 0, which is one per core"),
+    (lambda ground: fr.sweep([fr.Structure(preset="mcmanus")] * 2, ground), "two runs are the same: structures 1 and 2 differ by rounding at most"),
     (lambda ground: fr.Structure(preset="mcmanus", P_0=500).effective_frequency(0.04), "hold only without tendon"),
     (lambda ground: fr.Structure(preset="mcmanus", P_0=500).modes(fr.simulate(fr.Structure(preset="mcmanus"), ground).at(0)), "hold only without tendon"),
 ])
