@@ -364,16 +364,16 @@ impl<S: Simd, Q: Coordinates> WithSimd for Taken<'_, '_, S, Q> {
         let is_put_off = is_passed.choose(zero, goes_on.choose(one, zero));
         let is_passed = is_passed & is_free;
         if !is_put_off.is_at_most(zero).all() {
-            let (mut off_cubic, mut u_ddot) = ([zero; 4], zero);
+            let (mut off_cubic, mut slope) = ([zero; 4], [zero; 4]);
             for (k, numbers) in series.iter().enumerate().take(last + 1).skip(1) {
-                u_ddot = u_ddot + g.like(k as f64) * numbers[1];
-                let weight = g.like(if k > 3 { OFF_CUBIC * k as f64 } else { 0.0 });
-                for (off, number) in off_cubic.iter_mut().zip(numbers) {
-                    *off = *off + weight * number.abs();
+                let (order, weight) = (g.like(k as f64), g.like(if k > 3 { OFF_CUBIC * k as f64 } else { 0.0 }));
+                for (i, number) in numbers.iter().enumerate() {
+                    slope[i] = slope[i] + order * *number;
+                    off_cubic[i] = off_cubic[i] + weight * number.abs();
                 }
             }
             let from = Turned { u: [u_dot * span], u_dot: [series[1][1]], theta: theta_dot * span };
-            let to = Turned { u: [end[1] * span], u_dot: [u_ddot], theta: end[3] * span };
+            let to = Turned { u: [slope[0]], u_dot: [slope[1]], theta: slope[2] };
             let [u, u_dot, theta, _] = off_cubic;
             let bend = Bend { slopes: [from, to], off_cubic: Turned { u: [u], u_dot: [u_dot], theta } };
             of.sought.bound(simd, (&stretch, &bend), goes_on);

@@ -154,7 +154,8 @@ impl<'a, Q: Coordinates> Contacts<'a, Q> {
         state
     }
 
-    /// Puts off the leap over a `stretch` that is `ahead` of the next one of each run, where it is taken and not passed.
+    /// Puts off the leap over a `stretch` that is `ahead` of the next one of each run, where it is taken and not passed. Returns whether
+    /// all runs may put off another one.
     #[inline(always)]
     fn put_off<S: Simd, const N: usize>(
         &mut self,
@@ -163,10 +164,11 @@ impl<'a, Q: Coordinates> Contacts<'a, Q> {
         ahead: usize,
         is_taken: Answers<S>,
         is_passed: Answers<S>,
-    ) {
+    ) -> bool {
         self.sought.bound(simd, (stretch, bend), is_taken);
         let (one, zero) = (Lanes::splat(simd, 1.0), Lanes::splat(simd, 0.0));
         let is_put_off = is_passed.choose(zero, is_taken.choose(one, zero));
+        let mut may_go_on = true;
         for lane in (0..S::F64_LANES).filter(|lane| self.is_there[*lane] == 1.0 && is_put_off.of(*lane) == 1.0) {
             let Samples { times, a_g, next, .. } = self.samples[lane];
             let sample = next + ahead;
@@ -175,8 +177,10 @@ impl<'a, Q: Coordinates> Contacts<'a, Q> {
             let states = stretch.ends.map(|of| self.state_of(lane, |j| [of.u[j].of(lane), of.u_dot[j].of(lane)]));
             if !self.sought.put_off(lane, (sample, duration, a_g), states) {
                 self.samples[lane].last = self.samples[lane].last.min(sample + 1);
+                may_go_on = false;
             }
         }
+        may_go_on
     }
 
     /// Writes the sample that is `ahead` of the next one of each run.
@@ -215,7 +219,8 @@ impl<S: Simd, Q: Coordinates, const N: usize> WithSimd for Leapt<'_, '_, S, Q, N
         of.write(0);
         of.write(1);
         let [mut time, mut a] = load(simd, &of.ends[0]);
-        while leaps < left {
+        let mut may_go_on = true;
+        while leaps < left && may_go_on {
             of.write(leaps + 2);
             let [time_next, a_next] = load(simd, &of.ends[(leaps + 1) % 2]);
             let duration = time_next - time;
@@ -269,7 +274,7 @@ impl<S: Simd, Q: Coordinates, const N: usize> WithSimd for Leapt<'_, '_, S, Q, N
                     (bend.off_cubic.u[j], bend.off_cubic.u_dot[j]) =
                         (fourth * per, (damping * fourth + stiffness * jerk) * per);
                 }
-                of.put_off(simd, (&stretch, &bend), leaps, is_taken, is_passed);
+                may_go_on = of.put_off(simd, (&stretch, &bend), leaps, is_taken, is_passed);
             }
             leaps += 1;
             if !(is_taken | is_absent).all() {

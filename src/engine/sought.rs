@@ -173,7 +173,8 @@ impl<Q: Coordinates> Sought<Q> {
             let least = Lanes::load(simd, &of.least);
             let simple = (elastic + turning + of_versine * versine) * one.like(ROUNDING);
             simple.store(bound);
-            if (simple.is_less(least) | simple.is_at_most(zero)).all() {
+            let seen = where_so.choose(simple, zero);
+            if (seen.is_less(least) | seen.is_at_most(zero)).all() {
                 continue;
             }
             let curved = (elastic + of_versine) * versine + of_cubic * cubic;
@@ -192,8 +193,9 @@ impl<Q: Coordinates> Sought<Q> {
             let [before, after] = [half * (first + middle), half * (middle + last)];
             let (largest, middle) = (start.abs().max(end.abs()), (half * (before + after)).abs());
             let among = first.abs().max(before.abs()).max(after.abs()).max(last.abs()).max(middle);
-            simple.min((largest.max(among + off) + curved) * one.like(ROUNDING)).store(bound);
-            let known = (largest.max(middle - off) - curved) * one.like(1.0 - SLACK);
+            // what is rounded is of the size of the sum of all magnitudes
+            simple.min(largest.max(among + off) + curved + simple * one.like(ROUNDING - 1.0)).store(bound);
+            let known = largest.max(middle - off) - curved - simple * one.like(SLACK);
             where_so.choose(least.max(known), least).store(&mut of.least);
         }
     }

@@ -140,6 +140,9 @@ impl Output {
     }
 }
 
+/// A magnitude that stands for 0 among those that a weight is divided by.
+const NEGLIGIBLE: f64 = 1e-200;
+
 impl Reach {
     /// The part of the bound of magnitudes of u and u̇, with this part `damping` of the damping in full contact.
     #[inline(always)]
@@ -156,7 +159,8 @@ impl Reach {
         let nothing = Modes::parts(structure, 0.0);
         let mut all = Reach { u: nothing, u_dot: nothing, push: nothing, ..Reach::default() };
         for (Reach { turn, a_g, u, u_dot, push, .. }, least) in outputs {
-            if a_g.is_some() || structure.foundation().is_some() || least == 0.0 {
+            let least = least.max(NEGLIGIBLE);
+            if a_g.is_some() || structure.foundation().is_some() {
                 return None;
             }
             let largest = |all: f64, weight: f64| all.max(weight / least);

@@ -417,7 +417,7 @@ mod tests {
     use crate::structure::description::tests::usual;
     use crate::structure::description::{Damping, Storey};
     use crate::{Detail, OneMass, Parameters, Phase, Piece, Structure, Watch};
-    use std::f64::consts::PI;
+    use std::f64::consts::{PI, TAU};
 
     /// A ground motion of filtered noise.
     fn ground(random: &mut fastrand::Rng) -> Record {
@@ -534,6 +534,23 @@ mod tests {
         let few = runs.iter().zip(alone).filter(|(run, _)| of_few(run)).map(|(run, alone)| (run.clone(), alone));
         let (runs, alone): (Vec<_>, Vec<_>) = few.unzip();
         assert_same(&runs, &alone);
+    }
+
+    /// Near a steady state each cycle is larger than the one before by a part that vanishes: the same cycle has the peak.
+    #[test]
+    fn piers_at_resonance_have_the_peaks_that_they_have_by_themselves() {
+        let random = &mut fastrand::Rng::with_seed(1);
+        let mut made = || {
+            let (zeta_fc, per, phase) =
+                ([0.01, 0.05, 0.3][random.usize(..3)], [8.0, 9.7, 16.0][random.usize(..3)], random.f64());
+            let ground = |i| 0.5 * zeta_fc * f64::sin(TAU * (f64::from(i) / per + phase));
+            let times = (0..10_000).map(|i| f64::from(i) * 0.01).collect();
+            let ground = Record::from_samples("", times, (0..10_000).map(ground).collect()).unwrap();
+            (OneMass::new(Parameters { f_fc: 100.0 / per, zeta_fc, ..Parameters::MCMANUS }).unwrap(), ground)
+        };
+        let made: Vec<_> = (0..50).map(|_| made()).collect();
+        let runs: Vec<_> = made.iter().map(|(pier, ground)| Run::new(*pier, ground)).collect();
+        assert_same(&runs, &runs.iter().map(|run| told(run.found(&mut ()))).collect::<Vec<_>>());
     }
 
     /// A stiff structure takes several parts of an advance from one of these samples to the next.

@@ -20,8 +20,9 @@ use serde::{Deserialize, Serialize};
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
 const ROUNDING: f64 = 1e-14;
 
-/// Magnitudes that differ by no more than this part are the same but for what rounding adds up to in many steps.
-const SAME: f64 = 1e-12;
+/// Magnitudes that agree in all bits but these, 2e-10 of them, are the same but for what rounding adds up to in many steps. Which of them
+/// are the same does not depend on the order in which they are seen.
+const SAME: u64 = 0xF_FFFF;
 
 /// The largest magnitude of a quantity, and its instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -38,8 +39,8 @@ impl Peak {
         if !self.may_be_same(magnitude) {
             return;
         }
-        let is_more = magnitude > self.magnitude * (1.0 + SAME);
-        let time = if is_more { time } else { time.min(self.time) };
+        let seen = Peak { magnitude, time };
+        let time = if seen.least() > self.least() { time } else { time.min(self.time) };
         *self = Peak { magnitude: magnitude.max(self.magnitude), time };
     }
 
@@ -52,12 +53,12 @@ impl Peak {
     /// The least magnitude that may equal or exceed the peak.
     #[inline]
     fn least(&self) -> f64 {
-        self.magnitude * (1.0 - SAME)
+        f64::from_bits(self.magnitude.to_bits() & !SAME)
     }
 
     /// Whether a magnitude of at most `bound` at `time` (s) or later may be more than it, or the same and sooner.
     fn may_change(&self, bound: f64, time: f64) -> bool {
-        bound > self.magnitude * if time < self.time { 1.0 - SAME } else { 1.0 + ROUNDING }
+        bound > self.magnitude * (1.0 + ROUNDING) || time < self.time && self.may_be_same(bound)
     }
 }
 

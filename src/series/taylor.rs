@@ -318,8 +318,12 @@ pub(crate) fn reach<Q: Coordinates>(velocities: impl Fn(usize) -> (Q, f64), trun
         let (u_dot, theta_dot) = velocities(k);
         logarithm(u_dot.room(&truncation.u_dot).min(truncation.theta_dot / theta_dot.abs())) / k as f64
     };
-    let x = 0.25 * exponent(MAX_ORDER - 1).min(exponent(MAX_ORDER)).min(0.0);
-    // e^x
+    let exponent = exponent(MAX_ORDER - 1).min(exponent(MAX_ORDER)).min(0.0);
+    if exponent < -8.0 {
+        return libm::exp(exponent);
+    }
+    // e^4x
+    let x = 0.25 * exponent;
     let (even, odd) = (120.0 + 12.0 * x * x, x * (60.0 + x * x));
     ((even + odd) / (even - odd)).powi(4)
 }

@@ -380,6 +380,7 @@ pub fn nearest(known: &HashMap<Place, Point>, place: Place, levels: u32) -> Opti
 pub fn finest_step(levels: u32) -> u32 {
     PARTS >> levels
 }
+
 /// Runs `structure` under `grounds` and tells `see` each point with its number.
 fn points_of<Q: Runs>(
     conditions: &Conditions,
