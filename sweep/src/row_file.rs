@@ -23,7 +23,7 @@ use uuid::{Builder, Uuid};
 
 /// Runs that a thread does together: enough for full lanes to the end, and few enough to share them out and to stop soon.
 const FEWEST_TOGETHER: usize = 16;
-const MOST_TOGETHER: usize = 256;
+const MOST_TOGETHER: usize = 128;
 
 /// How often each thread takes runs, if there are few.
 const SHARES: usize = 4;
