@@ -256,7 +256,8 @@ impl<'a, S: Simd, Q: Runs> Together<'a, S, Q> {
             self.contacts.step(self.simd);
             return 0;
         }
-        self.rocking.step() * count as u64
+        // buildings rock one by one
+        if Q::IS_ONE { self.rocking.step() * count as u64 } else { 0 }
     }
 
     /// The action of the lane in a `slot` after its step; none if it takes another step of this `kind` there.
