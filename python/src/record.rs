@@ -68,11 +68,19 @@ fn fixed(samples: Samples, units: [Unit; 2]) -> PyResult<(Samples, Unit)> {
     Ok((each_in_m_s2(samples, units, G).map_err(refused)?, Unit::MetrePerSecondSquared))
 }
 
+/// What is `given` in this `unit`, in m/s² under `g` (m/s²), with the `force`.
+fn unscaled(given: &Samples, force: Option<&[Vec<f64>; 2]>, unit: Unit, g: f64) -> Result<Samples, SamplesError> {
+    let ground = given.clone().multiplied(unit.in_m_s2(g));
+    match force {
+        Some([times, F_t]) => ground.with_force(times, F_t),
+        None => Ok(ground),
+    }
+}
+
 impl Record {
     fn new(given: Samples, force: Option<[Vec<f64>; 2]>, unit: Unit, scale: f64) -> PyResult<Record> {
-        let record = Record { usual: Arc::new(given.clone()), given, force, unit, scale };
-        let usual = Arc::new(record.unscaled(G).map_err(refused)?.multiplied(scale));
-        Ok(Record { force: record.force.filter(|_| usual.force().is_some()), usual, ..record })
+        let usual = Arc::new(unscaled(&given, force.as_ref(), unit, G).map_err(refused)?.multiplied(scale));
+        Ok(Record { given, force: force.filter(|_| usual.force().is_some()), unit, scale, usual })
     }
 
     /// Of `samples` in m/s².
@@ -90,11 +98,7 @@ impl Record {
 
     /// The record in m/s² under `g` (m/s²) with its force, before `scale` multiplies the accelerations.
     pub fn unscaled(&self, g: f64) -> Result<Samples, SamplesError> {
-        let ground = self.given.clone().multiplied(self.unit.in_m_s2(g));
-        match &self.force {
-            Some([times, F_t]) => ground.with_force(times, F_t),
-            None => Ok(ground),
-        }
+        unscaled(&self.given, self.force.as_ref(), self.unit, g)
     }
 
     /// Whether the g of a structure decides how strong it is.

@@ -64,6 +64,14 @@ pub(crate) struct Samples<'a> {
     pub last: usize,
 }
 
+impl Samples<'_> {
+    /// Time and ground acceleration of a `sample`, if there is one.
+    #[inline(always)]
+    pub(super) fn at(&self, sample: usize) -> Option<[f64; 2]> {
+        Some([*self.times.get(sample)?, *self.a_g.get(sample)?])
+    }
+}
+
 /// Steps of rocking of several runs, from sample to sample.
 #[derive(Debug)]
 pub(crate) struct Rocking<'a, S: Simd, Q> {
@@ -245,10 +253,7 @@ impl<Q: Coordinates> Runs<'_, Q> {
     /// Writes a `sample` of the run in `lane`, if there is one.
     #[inline]
     fn write(&mut self, end: usize, lane: usize, sample: usize) {
-        let Samples { times, a_g, .. } = self.samples[lane];
-        if let (Some(time), Some(a_g)) = (times.get(sample), a_g.get(sample)) {
-            put(&mut self.ends[end], lane, [*time, *a_g]);
-        }
+        self.samples[lane].at(sample).into_iter().for_each(|at| put(&mut self.ends[end], lane, at));
     }
 
     /// Puts off the last step of the run in `lane`.

@@ -186,12 +186,9 @@ impl<'a, Q: Coordinates> Contacts<'a, Q> {
     /// Writes the sample that is `ahead` of the next one of each run.
     #[inline(always)]
     fn write(&mut self, ahead: usize) {
-        let [time, a] = &mut self.ends[ahead % 2];
-        for (lane, Samples { times, a_g, next, .. }) in self.samples.iter().enumerate() {
-            let sample = (next + ahead).wrapping_sub(1);
-            if let (Some(next_time), Some(next_a)) = (times.get(sample), a_g.get(sample)) {
-                (time[lane], a[lane]) = (*next_time, *next_a);
-            }
+        let end = &mut self.ends[ahead % 2];
+        for (lane, samples) in self.samples.iter().enumerate() {
+            samples.at((samples.next + ahead).wrapping_sub(1)).into_iter().for_each(|at| put(end, lane, at));
         }
     }
 }

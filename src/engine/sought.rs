@@ -8,7 +8,7 @@ use crate::engine::piece::Piece;
 use crate::mechanics::lateral::Coordinates;
 use crate::numbers::Real;
 use crate::numbers::lanes::{Answers, Lanes, MOST, Row, load, put};
-use crate::{LinearLoad, Load, Ramp, State};
+use crate::{LinearLoad, Ramp, State};
 use pulp::Simd;
 
 /// The most modes of structures that leap together.
@@ -248,8 +248,7 @@ impl<Q: Coordinates> Sought<Q> {
             if self.may_hold(lane, &bounds) {
                 let time = if is_later { times[sample - 1] } else { motion.time };
                 let before = &Motion { time, state: start, ..*motion };
-                let ground = |a_g| Load { a_g, ..Load::default() };
-                let load = LinearLoad { value: ground(a_g.value), slope: ground(a_g.slope) };
+                let load = LinearLoad::default().on_ground(a_g.into());
                 let piece = Piece { before, duration, load, end, level: &**level, arc: None, room };
                 watch.put_off(&piece, &bounds);
             }

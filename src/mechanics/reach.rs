@@ -112,10 +112,10 @@ pub(crate) fn reaches(structure: &Structure) -> Vec<Reach> {
             u_dot: weights(&|j| output.of(&Instant { u_dot: Mosts(of_mode(j)), ..x })),
             push: weights(&|j| output.of(&Instant { F_t: Mosts(of_mode(j)), ..x })),
             #[cfg(feature = "lanes")]
-            signed: [0.0, 1.0].map(|u_dot| {
-                let of = |j: usize| [of_mode(j).times(1.0 - u_dot), of_mode(j).times(u_dot)];
-                Modes::each(structure, |j, _| output.of(&Instant { u: of(j)[0], u_dot: of(j)[1], ..flat }))
-            }),
+            signed: [
+                Modes::each(structure, |j, _| output.of(&Instant { u: of_mode(j), ..flat })),
+                Modes::each(structure, |j, _| output.of(&Instant { u_dot: of_mode(j), ..flat })),
+            ],
         }
     };
     reached(structure).map(reach).collect()
@@ -172,7 +172,9 @@ impl Reach {
         Some(all)
     }
 
-    /// The bound of a reach of outputs together, given bounds of the motion.
+    /// Bound of the magnitude of an output that does not read the ground acceleration, or of [outputs together](Reach::together), given
+    /// bounds of the motion.
+    #[inline(always)]
     pub(crate) fn bound_together<Q: Coordinates>(&self, most: &Magnitudes<Q>) -> f64 {
         let [sin, versine] = self.turn;
         let elastic = self.elastic(most.damping, &most.u, &most.u_dot) + most.F_t.weighed(&self.push);
@@ -196,22 +198,22 @@ impl Reach {
     /// Bound of the magnitude of this `output` of `structure`, given bounds of the motion.
     #[inline(always)]
     pub(crate) fn bound<Q: Coordinates>(&self, output: Output, structure: &Structure, most: &Magnitudes<Q>) -> f64 {
-        let Reach { turn: [sin, versine], a_g, push, .. } = self;
+        let Reach { a_g, push, .. } = self;
         if let (Some((arc, _)), Some(foundation)) = (most.arc, Q::foundation(structure))
             && let Some(parts) = output.of_height(structure.base(), foundation)
         {
             return most_of_height(arc, foundation.place, parts);
         }
-        let elastic = self.elastic(most.damping, &most.u, &most.u_dot) + most.F_t.weighed(push);
+        let elastic = || self.elastic(most.damping, &most.u, &most.u_dot) + most.F_t.weighed(push);
         match (a_g, most.arc) {
             _ if most.theta == f64::INFINITY => f64::INFINITY,
             (Some(_), _) if Q::foundation(structure).is_some() => f64::INFINITY, // the base accelerates
-            (None, _) => elastic + sin * most.theta + versine * (0.5 * most.theta * most.theta),
+            (None, _) => self.bound_together(most),
             (Some(_), Some(arc)) => {
                 let gauge = output.gauge(structure).expect("a gauge alone reads the ground acceleration");
-                elastic + gauge.turning(structure.base(), arc, most)
+                elastic() + gauge.turning(structure.base(), arc, most)
             }
-            (Some(a_g), None) if most.theta == 0.0 => elastic + a_g * most.a_g,
+            (Some(a_g), None) if most.theta == 0.0 => elastic() + a_g * most.a_g,
             _ => f64::INFINITY,
         }
     }

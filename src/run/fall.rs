@@ -17,6 +17,7 @@ use crate::{Base, Detail, Piece, Side, Structure, Transition, TransitionKind, Wa
 use crate::{
     Engine,
     engine::{lanes::Passes, sought::Sought},
+    numbers::lanes::put,
 };
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
@@ -132,10 +133,9 @@ impl<Q: Coordinates> Watch<Q> for FallWatch<'_, Q> {
 #[cfg(feature = "lanes")]
 impl<Q: Coordinates> Passes<Q> for FallWatch<'_, Q> {
     fn seek(&self, engine: &Engine<Q>, lane: usize, sought: &mut Sought<Q>) {
-        self.all.seek(engine, lane, sought);
+        self.all.peaks.seek(engine, lane, sought);
         let angle = self.no_return.unwrap_or(f64::INFINITY);
-        let turned = if self.fall.is_some() { [angle, f64::INFINITY] } else { [-1.0, angle] };
-        sought.turned.iter_mut().zip(turned).for_each(|(row, angle)| row[lane] = angle);
+        put(&mut sought.turned, lane, if self.fall.is_some() { [angle, f64::INFINITY] } else { [-1.0, angle] });
     }
 
     #[inline(always)]

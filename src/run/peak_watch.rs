@@ -13,6 +13,8 @@ use crate::engine::{lanes::Passes, sought::Sought};
 use crate::levels::level::Level;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::reach::Reach;
+#[cfg(feature = "lanes")]
+use crate::numbers::lanes::put;
 use crate::series::taylor::{Arc, LONGEST_SPAN};
 #[cfg(feature = "lanes")]
 use crate::{Engine, Phase};
@@ -201,11 +203,6 @@ impl<Q: Coordinates> Watch<Q> for PeakWatch<'_, Q> {
 
 #[cfg(feature = "lanes")]
 impl<Q: Coordinates> PeakWatch<'_, Q> {
-    /// Puts the limits of what it must see into a `lane` of `sought`.
-    pub(super) fn seek(&self, engine: &Engine<Q>, lane: usize, sought: &mut Sought<Q>) {
-        self.peaks.seek(engine, lane, sought);
-    }
-
     /// Passes a piece that holds no peak.
     #[inline]
     pub(super) fn pass(&mut self) {
@@ -263,8 +260,8 @@ impl<Q: Coordinates> Watch<Q> for ThetaWatch<'_, Q> {
 #[cfg(feature = "lanes")]
 impl<Q: Coordinates> Passes<Q> for ThetaWatch<'_, Q> {
     fn seek(&self, engine: &Engine<Q>, lane: usize, sought: &mut Sought<Q>) {
-        self.all.seek(engine, lane, sought);
-        (sought.turned[0][lane], sought.turned[1][lane]) = (-1.0, f64::INFINITY);
+        self.all.peaks.seek(engine, lane, sought);
+        put(&mut sought.turned, lane, [-1.0, f64::INFINITY]);
     }
 
     #[inline(always)]

@@ -384,10 +384,14 @@ impl Plan {
             });
             return;
         }
-        let of_one = cases.iter().filter_map(|case| Some((case, case.structure.of_one_mode()?))).collect();
+        let (mut of_one, mut of_many) = (Vec::new(), Vec::new());
+        for case in &cases {
+            match case.structure.of_one_mode() {
+                Some(structure) => of_one.push((case, structure)),
+                None => of_many.push((case, case.structure.clone())),
+            }
+        }
         if together::<f64>(self, of_one, &mut done) {
-            let is_of_many = |case: &&Case| case.structure.of_one_mode().is_none();
-            let of_many = cases.iter().filter(is_of_many).map(|case| (case, case.structure.clone())).collect();
             together::<Modes>(self, of_many, &mut done);
         }
     }
