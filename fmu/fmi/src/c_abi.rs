@@ -10,10 +10,10 @@
 //!
 //! # Safety
 //!
-//! The rest is the host's, for every function: a component is null or what the same version's function for
-//! instantiation returned, not freed before nor while it is called; other pointers are null or point to as many values,
-//! or to a text, as the standard says. A call while another one is under way, from the logger or another thread, is an
-//! error.
+//! The host keeps these rules, for every function. A component is null, or an instance that the same version's function for
+//! instantiation returned. No instance is freed before it is called or while it is called. Other pointers are null or point
+//! to as many values, or to a text, as the standard says. A call while another one is under way, from the logger or another
+//! thread, is an error.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // the section above
 
 use crate::failure::Failure;
