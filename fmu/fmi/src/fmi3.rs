@@ -96,6 +96,12 @@ unsafe fn with_positions(
     result
 }
 
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+compile_error!(
+    "functions of FMI 3.0 are declared here without arguments at their end that they do not read. This is right only where the caller \
+     removes the arguments, as on x86-64 and 64-bit ARM"
+);
+
 const WORDS: Words = Words {
     version: "fmi3",
     magic: 0x466d_6955_6e69_7433,
@@ -108,8 +114,7 @@ const WORDS: Words = Words {
 };
 
 /// Adds to the functions of this version those that take value references with values, those of types that no variable has,
-/// and those that are never allowed. Arguments that are not read are not declared: on all platforms that there are
-/// libraries for, the caller removes them.
+/// and those that are never allowed. Arguments that are not read are not declared.
 macro_rules! with_lists {
     (
         values: {$(

@@ -12,8 +12,8 @@ use uuid::Uuid;
 /// A model behind the interfaces of FMI. One value of the type is one instance.
 ///
 /// The unit checks a call before the model sees it: stage, references, types, ranges, counts. A call that the model refuses
-/// must leave the model as it was.
-pub trait Model: 'static {
+/// must leave the model as it was. A host may call an instance from any thread, one call after another.
+pub trait Model: Send + 'static {
     /// The model of the FMU whose folder `resources` is this one; the error is a message to the user.
     fn open(resources: &Path) -> Result<Box<dyn Model>, Failure>
     where
