@@ -5,11 +5,14 @@ use FlexibleRocking::BUILD;
 use memchr::memmem;
 use object::read::macho::{FatArch, MachOFatFile32};
 use object::{Architecture, BinaryFormat, FileKind, Object};
-use std::fs;
+use std::fs::File;
 use std::io::{self, Cursor, Read};
 use std::path::{Path, PathBuf};
 use zip::ZipArchive;
 use zip::result::ZipError;
+
+/// Most bytes that are read of a file, and of all libraries of an archive together. A library has a few million.
+const MOST: u64 = 1 << 28;
 
 /// A platform for which an archive can have a shared library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -105,6 +108,9 @@ pub enum LibraryError {
     /// An archive that cannot be read.
     #[error("cannot read the libraries in {path}: {1}", path = .0.display())]
     Archive(PathBuf, ZipError),
+    /// An archive without a library where an FMU has it, and a file that it holds instead.
+    #[error("{path} has no shared library in a folder such as binaries/x86_64-linux, but {1}: give an FMU as this build exported it", path = .0.display())]
+    NoneInside(PathBuf, String),
     /// Something else, or for another platform.
     #[error("{} is neither an FMU nor a shared library for one of {}", .0.display(), Platform::ALL.map(Platform::tuple).join(", "))]
     NoLibrary(PathBuf),
@@ -116,8 +122,8 @@ pub enum LibraryError {
 impl Library {
     /// The shared library at `path`, or those of the FMU there.
     pub fn read(path: &Path) -> Result<Vec<Library>, LibraryError> {
-        let content = fs::read(path).map_err(|error| LibraryError::Unreadable(path.to_owned(), error))?;
-        Library::from_bytes(path, content)
+        let content = File::open(path).and_then(|file| within(MOST, file));
+        Library::from_bytes(path, content.map_err(|error| LibraryError::Unreadable(path.to_owned(), error))?)
     }
 
     /// The shared library in `content`, the content of the file at `path`, or the libraries of an FMU.
@@ -127,15 +133,21 @@ impl Library {
         }
         let broken = |error| LibraryError::Archive(path.to_owned(), error);
         let mut archive = ZipArchive::new(Cursor::new(content)).map_err(broken)?;
-        let mut libraries = Vec::new();
+        let (mut libraries, mut other, mut left) = (Vec::new(), None, MOST);
         for at in 0..archive.len() {
-            let mut file = archive.by_index(at).map_err(broken)?;
-            if file.is_file() && file.name().is_ok_and(|name| name.starts_with("binaries/")) {
-                let mut library = Vec::new();
-                let unreadable = |error| LibraryError::Unreadable(path.to_owned(), error);
-                file.read_to_end(&mut library).map_err(unreadable)?;
-                libraries.push(Library::new(path, library)?);
+            let file = archive.by_index(at).map_err(broken)?;
+            let name = file.name().map_err(broken)?.into_owned();
+            if !(file.is_file() && name.starts_with("binaries/")) {
+                other = other.filter(|other: &String| other.to_lowercase().contains("binaries")).or(Some(name));
+                continue;
             }
+            let path = path.join(name);
+            let library = within(left, file).map_err(|error| LibraryError::Unreadable(path.clone(), error))?;
+            left -= library.len() as u64;
+            libraries.push(Library::new(&path, library)?);
+        }
+        if libraries.is_empty() {
+            return Err(LibraryError::NoneInside(path.to_owned(), other.unwrap_or_else(|| "nothing".into())));
         }
         Ok(libraries)
     }
@@ -150,9 +162,18 @@ impl Library {
     }
 }
 
+/// All that `from` gives, at most `most` bytes.
+fn within(most: u64, from: impl Read) -> io::Result<Vec<u8>> {
+    let mut content = Vec::new();
+    from.take(most + 1).read_to_end(&mut content)?;
+    let is_all = content.len() as u64 <= most;
+    if is_all { Ok(content) } else { Err(io::Error::other(format!("it has more than {most} bytes"))) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ::model_description::archive::{Entry, archive};
 
     /// The header alone of a shared library of 64 bits, little-endian.
     fn elf(machine: u8) -> Vec<u8> {
@@ -186,5 +207,20 @@ mod tests {
         assert_eq!(Platform::of(&elf(243)), None, "RISC-V");
         assert_eq!(Platform::of(b"PK, MZ"), None);
         assert_eq!(Platform::of(b""), None);
+    }
+
+    #[test]
+    fn an_archive_without_libraries_where_an_fmu_has_them_is_refused() {
+        let content = [&elf(62), BUILD.as_bytes()].concat();
+        let found = |path: &str| {
+            let entries = ["model.xml", path].map(|path| Entry { path: path.into(), content: content.clone() });
+            Library::from_bytes(Path::new("a.fmu"), archive(&entries).unwrap())
+        };
+        assert_eq!(found("binaries/linux64/A.so").unwrap()[0].platform, Platform::Linux64);
+        for path in ["A/binaries/A.so", "./binaries/A.so", "binaries\\A.so", "Binaries/A.so", ""] {
+            let why = found(path).unwrap_err().to_string();
+            assert!(why.starts_with("a.fmu has no shared library") && why.contains(path), "{why}");
+        }
+        assert!(within(3, b"abcd".as_slice()).is_err() && within(4, b"abcd".as_slice()).is_ok());
     }
 }
