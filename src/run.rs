@@ -226,9 +226,9 @@ impl<'a, Q: Runs> Run<'a, Q> {
 
     /// The exact peaks of all of the run, a fall too, and how it ended; those that are shown are [`Run::found`]'s.
     pub fn peaks(&self) -> Result<(Peaks, Finish<Q>), RunError> {
-        let mut peaks = Peaks::since(self.ground.start(), &self.structure, self.detail);
-        let finish = self.follow(&mut peaks.watch())?;
-        Ok((peaks, finish))
+        let mut watch = Peaks::since(self.ground.start(), &self.structure, self.detail).watch();
+        let finish = self.follow(&mut watch)?;
+        Ok((watch.end(), finish))
     }
 }
 

@@ -16,7 +16,7 @@ pub type Told<'a, Q> = dyn FnMut(&Transition<Q>) + 'a;
 
 /// Watches peaks and limits, if they are asked for. One type for all cases keeps the library small.
 pub struct Watching<'a, 'b, Q: Runs> {
-    pub peaks: Option<FallWatch<'a, Q>>,
+    pub peaks: Option<FallWatch<Q>>,
     pub validity: Option<&'a mut Validity>,
     pub told: &'a mut Told<'b, Q>,
 }
@@ -97,12 +97,12 @@ impl<Q: Runs> Scene<Q> {
         inputs: &LinearLoad<Q>,
         told: &mut Told<Q>,
     ) -> Result<Progress, AdvanceError> {
-        let (mut peaks, mut validity) = (self.peaks.clone(), self.watch_validity());
+        let mut validity = self.watch_validity();
         let of_limits = setup.validity.then_some(&mut validity);
-        let mut watch = Watching { peaks: setup.peaks.then(|| peaks.watch()), validity: of_limits, told };
+        let mut watch = Watching { peaks: setup.peaks.then(|| self.peaks.clone().watch()), validity: of_limits, told };
         let progress = self.follow(setup, step, inputs, &mut watch)?;
-        drop(watch);
-        (self.peaks, self.validity) = (peaks, *validity.found());
+        watch.peaks.into_iter().for_each(|peaks| self.peaks = peaks.end());
+        self.validity = *validity.found();
         Ok(progress)
     }
 

@@ -95,34 +95,34 @@ impl Falling {
         self.all.see(&sample.shown(), sample.motion.time);
     }
 
-    /// Looks for peaks in the pieces of a motion. The peaks are complete when the watch is dropped.
-    pub fn watch<Q: Coordinates>(&mut self) -> FallWatch<'_, Q> {
+    /// The watcher that looks for peaks in the pieces of a motion; [`FallWatch::end`] gives the peaks back.
+    pub fn watch<Q: Coordinates>(self) -> FallWatch<Q> {
         let Falling { all, no_return, fall, has_overturned } = self;
-        FallWatch { all: all.watch(), no_return: *no_return, fall, has_overturned }
+        FallWatch { all: all.watch(), no_return, fall, has_overturned }
     }
 }
 
 /// Looks for the peaks of a motion that may end in a fall.
 #[derive(Debug)]
-pub struct FallWatch<'a, Q: Coordinates = f64> {
-    all: PeakWatch<'a, Q>,
+pub struct FallWatch<Q: Coordinates = f64> {
+    all: PeakWatch<Q>,
     no_return: Option<f64>,
-    fall: &'a mut Option<(f64, Peaks)>,
-    has_overturned: &'a mut bool,
+    fall: Option<(f64, Peaks)>,
+    has_overturned: bool,
 }
 
-impl<Q: Coordinates> Watch<Q> for FallWatch<'_, Q> {
+impl<Q: Coordinates> Watch<Q> for FallWatch<Q> {
     fn piece(&mut self, piece: &Piece<Q>) {
         match self.no_return {
             Some(angle) if piece.end.theta.abs() >= angle => self.beyond(piece, angle),
-            _ => *self.fall = None,
+            _ => self.fall = None,
         }
         self.all.piece(piece);
     }
 
     fn transition(&mut self, transition: &Transition<Q>) {
         if let TransitionKind::Overturning(_) = transition.kind {
-            *self.has_overturned = true;
+            self.has_overturned = true;
             let all = &mut self.all;
             self.fall.get_or_insert_with(|| (transition.time, all.so_far().clone()));
         }
@@ -131,7 +131,7 @@ impl<Q: Coordinates> Watch<Q> for FallWatch<'_, Q> {
 }
 
 #[cfg(feature = "lanes")]
-impl<Q: Coordinates> Passes<Q> for FallWatch<'_, Q> {
+impl<Q: Coordinates> Passes<Q> for FallWatch<Q> {
     fn seek(&self, engine: &Engine<Q>, lane: usize, sought: &mut Sought<Q>) {
         self.all.peaks.seek(engine, lane, sought);
         let angle = self.no_return.unwrap_or(f64::INFINITY);
@@ -148,22 +148,19 @@ impl<Q: Coordinates> Passes<Q> for FallWatch<'_, Q> {
     }
 }
 
-impl<Q: Coordinates> FallWatch<'_, Q> {
+impl<Q: Coordinates> FallWatch<Q> {
     /// The peaks, once the motion has been watched.
-    pub(crate) fn end(mut self) -> Falling {
-        let (all, no_return) = (self.all.so_far().clone(), self.no_return);
-        Falling { all, no_return, fall: self.fall.clone(), has_overturned: *self.has_overturned }
+    pub fn end(self) -> Falling {
+        let FallWatch { all, no_return, fall, has_overturned } = self;
+        Falling { all: all.end(), no_return, fall, has_overturned }
     }
 
     /// The peaks, those before a fall, and the start of the fall, once the motion has been watched.
     #[cfg(feature = "lanes")]
-    pub(super) fn found(mut self) -> (Peaks, Option<f64>) {
-        match self.fall.take().filter(|_| *self.has_overturned) {
-            Some((instant, before)) => {
-                self.all.forget();
-                (before, Some(instant))
-            }
-            None => (self.all.so_far().clone(), None),
+    pub(super) fn found(self) -> (Peaks, Option<f64>) {
+        match self.fall.filter(|_| self.has_overturned) {
+            Some((instant, before)) => (before, Some(instant)),
+            None => (self.all.end(), None),
         }
     }
 
@@ -175,11 +172,13 @@ impl<Q: Coordinates> FallWatch<'_, Q> {
         let arc = piece.arc.map(|arc| Arc { reach: tau / arc.span, ..arc.clone() });
         let until = Piece { duration: tau, end: piece.state_at(tau), arc: arc.as_ref(), ..*piece };
         if tau > 0.0 {
-            before.watch().piece(&until);
+            let mut watch = before.watch();
+            watch.piece(&until);
+            before = watch.end();
         } else {
             before.see(&piece.shown(0.0, &piece.before.state), instant);
         }
-        *self.fall = Some((instant, before));
+        self.fall = Some((instant, before));
     }
 }
 
@@ -233,6 +232,11 @@ impl<Q: Runs> Run<'_, Q> {
         (Q::compiled().judged)(self, validity, watch)
     }
 
+    /// The watcher of the peaks of the run, before any motion.
+    pub(super) fn watch_falling(&self) -> FallWatch<Q> {
+        Falling::since(self.ground.start(), &self.structure, self.detail).watch()
+    }
+
     /// Result of the run with these `peaks`, the start of the `fall` and the `finish`.
     pub(super) fn found_of(&self, peaks: Peaks, fall: Option<f64>, finish: Finish<Q>) -> Found<Q> {
         let ground = self.peak_of_ground(finish.motion.time);
@@ -264,13 +268,12 @@ impl<Q: Runs> Run<'_, Q> {
 
 /// Result of `run`, which `watch` sees, and the peaks of all its motion, including a fall.
 pub(super) fn find<Q: Runs>(run: &Run<Q>, watch: &mut dyn Watch<Q>) -> Result<(Found<Q>, Peaks), RunError> {
-    let mut peaks = Falling::since(run.ground.start(), &run.structure, run.detail);
-    let (course, mut own) = (run.course()?, peaks.watch());
+    let (course, mut own) = (run.course()?, run.watch_falling());
     let (ending, engine) = match watch.sees_pieces() {
         true => course.finish(&mut (&mut own, watch))?,
         false => course.finish(&mut (&mut own, &mut |transition: &Transition<Q>| watch.transition(transition)))?,
     };
-    drop(own);
+    let peaks = own.end();
     let finish = Finish { ending, motion: *engine.motion() };
     Ok((run.found_of(peaks.peaks().clone(), peaks.fall(), finish), peaks.all))
 }
@@ -297,8 +300,9 @@ mod tests {
             let shown = [Output::theta, Output::u(0), Output::delta_t(0), Output::a_t(0)];
             let mut seen = Vec::new();
             let dense = (0..40_000).map(|i| f64::from(i) * 1e-4);
-            let mut watched = Falling::since(0.0, &structure.into(), Detail::Auto);
-            run.sample(dense, |at| seen.push((at.motion.time, shown.map(at.outputs()))), &mut watched.watch()).unwrap();
+            let mut watch = Falling::since(0.0, &structure.into(), Detail::Auto).watch();
+            run.sample(dense, |at| seen.push((at.motion.time, shown.map(at.outputs()))), &mut watch).unwrap();
+            let watched = watch.end();
             let instant = watched.fall().unwrap();
             let last = seen.iter().rposition(|(_, outputs)| outputs[0].abs() < alpha_cg).unwrap();
             assert!(seen[last].0 <= instant && instant <= seen[last + 1].0, "{detail:?}: {instant}");
@@ -333,10 +337,10 @@ mod tests {
             for beyond in (0..40).map(|i| 1e-4 * f64::from(i)) {
                 let initial = State { theta: -alpha_cg * (1.0 + beyond), ..State::default() };
                 let run = Run { detail, initial, ..Run::new(structure, &ground) };
-                let (mut watched, mut seen) = (Falling::since(0.0, &structure.into(), Detail::Auto), Vec::new());
+                let (mut watch, mut seen) = (Falling::since(0.0, &structure.into(), Detail::Auto).watch(), Vec::new());
                 let times = (0..100_000).map(|i| f64::from(i) * 2e-4);
                 let show = |at: &crate::engine::piece::Sample| seen.push((at.motion.time, at.motion.state.theta.abs()));
-                let ending = run.sample(times, show, &mut watched.watch()).unwrap().ending;
+                let (ending, watched) = (run.sample(times, show, &mut watch).unwrap().ending, watch.end());
                 assert_eq!(watched.fall().is_some(), ending == Ending::Overturned);
                 let Some(instant) = watched.fall() else { continue };
                 let Some(last) = seen.iter().rposition(|(_, theta)| *theta < alpha_cg) else {
@@ -363,10 +367,10 @@ mod tests {
         assert_eq!(angle_of_no_return(&stiff.base), None);
         let ground = Record::at_rest(60.0);
         let falls = |structure: OneMass, theta_dot: f64| {
-            let mut peaks = Falling::since(0.0, &structure.into(), Detail::Auto);
+            let mut watch = Falling::since(0.0, &structure.into(), Detail::Auto).watch();
             let initial = State { theta: 1e-3, theta_dot, ..State::default() };
-            let ending = Run { initial, ..Run::new(structure, &ground) }.follow(&mut peaks.watch()).unwrap().ending;
-            (ending == Ending::Overturned, peaks)
+            let ending = Run { initial, ..Run::new(structure, &ground) }.follow(&mut watch).unwrap().ending;
+            (ending == Ending::Overturned, watch.end())
         };
         for tied in [tied, Parameters { k_t: 1e4, P_0: 500.0, ..tied }] {
             let structure = OneMass::new(tied).unwrap();

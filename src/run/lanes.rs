@@ -5,7 +5,7 @@
 //! bounds of a leap or a step prove that no guard closes, that is all: a step that may hold a peak is put off. Otherwise the run goes
 //! on by itself, with transitions and searches, until it does again what others do.
 
-use super::fall::{FallWatch, Falling, Found};
+use super::fall::{FallWatch, Found};
 use super::ground_motion::{Segment, Segments};
 use super::peak_watch::ThetaWatch;
 use super::peaks::Peaks;
@@ -38,9 +38,9 @@ pub type Done<'a, T> = &'a mut dyn FnMut(usize, T) -> bool;
 pub(super) type Each<Q, T> = fn(&[Run<Q>], Done<T>);
 
 pub(super) fn find_each<Q: Runs>(runs: &[Run<Q>], done: Done<Result<Found<Q>, RunError>>) {
-    let mut peaks = peaks_of(runs);
-    let watches = peaks.iter_mut().map(Falling::watch);
-    follow_each(runs, watches, |number, finish, watch| done(number, found(&runs[number], finish, watch)));
+    follow_each(runs, runs.iter().map(Run::watch_falling), |number, finish, watch| {
+        done(number, found(&runs[number], finish, watch))
+    });
 }
 
 /// The rotation of a run.
@@ -58,31 +58,26 @@ pub fn rocked_each<Q: Runs>(runs: &[Run<Q>], done: Done<(Result<Finish<Q>, RunEr
 }
 
 pub(super) fn rock_each<Q: Runs>(runs: &[Run<Q>], done: Done<(Result<Finish<Q>, RunError>, Rocked)>) {
-    let since = |run: &Run<Q>| Peaks::since(run.ground.start(), &run.structure, run.detail);
-    let mut peaks: Vec<_> = runs.iter().map(since).collect();
-    follow_each(runs, peaks.iter_mut().map(Peaks::watch_theta), |number, finish, watch| {
-        done(number, (finish, rocked(watch)))
-    });
+    follow_each(runs, runs.iter().map(watch_theta), |number, finish, watch| done(number, (finish, rocked(watch))));
 }
 
 impl<Q: Runs> Run<'_, Q> {
     /// Follows the motion to its end, and finds how it ended and how far it has rocked by then.
     pub fn rocked(&self) -> (Result<Finish<Q>, RunError>, Rocked) {
-        let mut peaks = Peaks::since(self.ground.start(), &self.structure, self.detail);
-        let mut watch = peaks.watch_theta();
+        let mut watch = watch_theta(self);
         let finish = self.follow(&mut watch);
         (finish, rocked(watch))
     }
 }
 
 /// The rotation that `watch` has seen.
-fn rocked<Q: Runs>(mut watch: ThetaWatch<Q>) -> Rocked {
-    Rocked { theta: watch.theta().magnitude, impacts: watch.impacts }
+fn rocked<Q: Runs>(watch: ThetaWatch<Q>) -> Rocked {
+    Rocked { impacts: watch.impacts, theta: watch.end().theta().magnitude }
 }
 
-/// The peaks of `runs` before any motion.
-fn peaks_of<Q: Runs>(runs: &[Run<Q>]) -> Vec<Falling> {
-    runs.iter().map(|run| Falling::since(run.ground.start(), &run.structure, run.detail)).collect()
+/// The watcher of the rotation of `run`, before any motion.
+fn watch_theta<Q: Runs>(run: &Run<Q>) -> ThetaWatch<Q> {
+    Peaks::since(run.ground.start(), &run.structure, run.detail).watch_theta()
 }
 
 /// Result of a `run` with this `finish`, all of which `watch` has seen.
@@ -458,8 +453,7 @@ mod tests {
 
     fn together<S: Simd, Q: Runs>(simd: S, runs: &[Run<Q>]) -> Vec<String> {
         let mut results = vec![String::new(); runs.len()];
-        let mut peaks = peaks_of(runs);
-        follow(simd, runs, peaks.iter_mut().map(Falling::watch), |number, finish, watch| {
+        follow(simd, runs, runs.iter().map(Run::watch_falling), |number, finish, watch| {
             results[number] = told(found(&runs[number], finish, watch));
             true
         });
@@ -594,8 +588,7 @@ mod tests {
         let mut alone: Vec<_> = runs.iter().map(count).collect();
         alone.sort_unstable();
         let (all, of_last): (u64, u64) = (alone.iter().sum(), alone[runs.len() + 1 - LEAST..].iter().sum());
-        let mut peaks = peaks_of(&runs);
-        let taken = follow(pulp::Scalar256b, &runs, peaks.iter_mut().map(Falling::watch), |_, _, _| true);
+        let taken = follow(pulp::Scalar256b, &runs, runs.iter().map(Run::watch_falling), |_, _, _| true);
         assert!(all > 4000 && (all - of_last..=all).contains(&taken), "{taken} of {all}, {of_last}");
     }
 }

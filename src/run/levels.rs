@@ -3,7 +3,7 @@
 //! A level of a structure of many masses is also the number of modes that are kept ([`Structure::keeping`]).
 
 use super::curve::{lines, peaks_of};
-use super::fall::{FallWatch, Falling};
+use super::fall::FallWatch;
 use super::history::{Distance, History};
 use super::peaks::Peaks;
 use super::{Ending, Follower, Run, RunError, Runs};
@@ -156,17 +156,14 @@ pub fn compare<Q: Runs>(run: &Run<Q>) -> Result<Comparison, RunError> {
 }
 
 pub(super) fn compare_levels<Q: Runs>(run: &Run<Q>) -> Result<Comparison, RunError> {
-    let since = |run: &Run<Q>| Falling::since(run.ground.start(), &run.structure, run.detail);
     let of_all = |detail| Choice { detail, modes: all_modes(&run.structure) };
     let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..run.clone() };
     let (level_ground, is_vertical) = (run.ground.clone().without_vertical(), run.ground.vertical().is_some());
     let level = Run { detail: Detail::Auto, ground: &level_ground, ..run.clone() };
     let mut runs = choices(run);
     runs.extend(is_vertical.then(|| (of_all(level.detail), level)));
-    let (mut exact_peaks, mut peaks) = (since(&exact), Vec::from_iter(runs.iter().map(|(_, run)| since(run))));
-    let mut reference = start(&exact, of_all(exact.detail), &mut exact_peaks)?;
-    let trials = runs.iter().zip(&mut peaks).map(|((choice, run), peaks)| start(run, *choice, peaks));
-    let mut trials = Vec::from_iter(trials);
+    let mut reference = start(&exact, of_all(exact.detail))?;
+    let mut trials = Vec::from_iter(runs.iter().map(|(choice, run)| start(run, *choice)));
     while reference.ending.is_none() || trials.iter().flatten().any(|trial| trial.ending.is_none()) {
         reference.go_on()?;
         for trial in &mut trials {
@@ -198,10 +195,10 @@ pub(super) fn compare_levels<Q: Runs>(run: &Run<Q>) -> Result<Comparison, RunErr
 }
 
 /// A level on its way.
-struct Trial<'a, Q: Coordinates, Segments> {
+struct Trial<Q: Coordinates, Segments> {
     choice: Choice,
     course: Follower<Q, Segments>,
-    peaks: FallWatch<'a, Q>,
+    peaks: FallWatch<Q>,
     /// The part of the motion that is still to be compared with the reference.
     history: History,
     /// From the reference.
@@ -212,12 +209,11 @@ struct Trial<'a, Q: Coordinates, Segments> {
     ending: Option<Ending>,
 }
 
-/// Of `run`, whose `peaks` will be there.
+/// Of `run`.
 fn start<'a, Q: Runs>(
     run: &Run<'a, Q>,
     choice: Choice,
-    peaks: &'a mut Falling,
-) -> Result<Trial<'a, Q, impl Iterator<Item = Segment> + use<'a, Q>>, RunError> {
+) -> Result<Trial<Q, impl Iterator<Item = Segment> + use<'a, Q>>, RunError> {
     let lines = lines(&run.structure);
     let [slowest, fastest] = run.structure.vibration().rocking;
     let Follower { engine, segments, end, rest } = run.course()?;
@@ -225,7 +221,7 @@ fn start<'a, Q: Runs>(
     Ok(Trial {
         choice,
         course: Follower { engine, segments, end, rest },
-        peaks: peaks.watch(),
+        peaks: run.watch_falling(),
         distance: Distance::new(slowest, lines.len()),
         history: History { lines, sections: Vec::new() },
         compared: 0,
@@ -244,7 +240,7 @@ fn cut(segment: Segment, longest: f64) -> impl Iterator<Item = Segment> {
     })
 }
 
-impl<Q: Runs, Segments: Iterator<Item = Segment>> Trial<'_, Q, Segments> {
+impl<Q: Runs, Segments: Iterator<Item = Segment>> Trial<Q, Segments> {
     /// Follows the motion over the next segment unless the run has ended.
     fn go_on(&mut self) -> Result<(), RunError> {
         if self.ending.is_none() {

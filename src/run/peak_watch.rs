@@ -3,8 +3,6 @@
 //! A bound of a piece tells most of the time that it holds nothing larger than what has been seen. A piece that may hold more is
 //! first kept, since most are soon beaten by the end of another.
 
-#[cfg(feature = "lanes")]
-use super::peaks::Peak;
 use super::peaks::Peaks;
 use crate::engine::MOST_POLYNOMIALS;
 use crate::engine::piece::{Piece, Room, Watch};
@@ -29,8 +27,8 @@ const IN_VAIN: u32 = 4;
 
 /// Looks for peaks in the pieces of a motion.
 #[derive(Debug)]
-pub struct PeakWatch<'a, Q: Coordinates = f64> {
-    pub(super) peaks: &'a mut Peaks,
+pub struct PeakWatch<Q: Coordinates = f64> {
+    pub(super) peaks: Peaks,
     /// Pieces that may hold more than what has been seen.
     kept: Vec<Candidate<Q>>,
     /// Polynomials and bounds of pieces that are kept no more.
@@ -63,8 +61,8 @@ struct Candidate<Q: Coordinates> {
 }
 
 impl Peaks {
-    /// The watcher that searches the pieces of a motion for larger peaks. The peaks are complete once the watcher is dropped.
-    pub fn watch<Q: Coordinates>(&mut self) -> PeakWatch<'_, Q> {
+    /// The watcher that searches the pieces of a motion for larger peaks; [`PeakWatch::end`] gives the peaks back.
+    pub fn watch<Q: Coordinates>(self) -> PeakWatch<Q> {
         let is_first = self.goes_on();
         PeakWatch {
             peaks: self,
@@ -82,15 +80,21 @@ impl Peaks {
 
     /// The watcher that searches for the peak of θ only.
     #[cfg(feature = "lanes")]
-    pub fn watch_theta<Q: Coordinates>(&mut self) -> ThetaWatch<'_, Q> {
+    pub fn watch_theta<Q: Coordinates>(mut self) -> ThetaWatch<Q> {
         self.of_theta_alone();
         ThetaWatch { all: self.watch(), impacts: 0 }
     }
 }
 
-impl<Q: Coordinates> PeakWatch<'_, Q> {
+impl<Q: Coordinates> PeakWatch<Q> {
     /// Peaks of the pieces so far.
     pub(super) fn so_far(&mut self) -> &Peaks {
+        self.look_back();
+        &self.peaks
+    }
+
+    /// The peaks, once the motion has been watched.
+    pub fn end(mut self) -> Peaks {
         self.look_back();
         self.peaks
     }
@@ -124,12 +128,6 @@ impl<Q: Coordinates> PeakWatch<'_, Q> {
         self.keep(piece, bounds);
     }
 
-    /// Leaves pieces that have been kept unseen.
-    #[cfg(feature = "lanes")]
-    pub(super) fn forget(&mut self) {
-        self.kept.clear();
-    }
-
     /// Looks at what has been kept, first where most may be more than its peak.
     fn look_back(&mut self) {
         let Some(level) = &self.level else { return };
@@ -148,7 +146,7 @@ impl<Q: Coordinates> PeakWatch<'_, Q> {
         let &Piece { before, duration, load, end, level, arc, .. } = piece;
         self.level.get_or_insert_with(|| level.boxed());
         if !self.kept.is_empty() && self.kept.len().is_multiple_of(CANDIDATES) {
-            let (peaks, spare) = (&*self.peaks, &mut self.spare);
+            let (peaks, spare) = (&self.peaks, &mut self.spare);
             self.kept.retain_mut(|kept| {
                 let stays = peaks.may_change_within(&kept.bounds, kept.before.time);
                 if !stays {
@@ -182,13 +180,7 @@ impl<Q: Coordinates> Candidate<Q> {
     }
 }
 
-impl<Q: Coordinates> Drop for PeakWatch<'_, Q> {
-    fn drop(&mut self) {
-        self.look_back();
-    }
-}
-
-impl<Q: Coordinates> Watch<Q> for PeakWatch<'_, Q> {
+impl<Q: Coordinates> Watch<Q> for PeakWatch<Q> {
     fn piece(&mut self, piece: &Piece<Q>) {
         if piece.level.structure().base().has_dissipators() {
             self.peaks.look_at_dissipators(piece);
@@ -202,7 +194,7 @@ impl<Q: Coordinates> Watch<Q> for PeakWatch<'_, Q> {
 }
 
 #[cfg(feature = "lanes")]
-impl<Q: Coordinates> PeakWatch<'_, Q> {
+impl<Q: Coordinates> PeakWatch<Q> {
     /// Passes a piece that holds no peak.
     #[inline]
     pub(super) fn pass(&mut self) {
@@ -229,22 +221,22 @@ impl<Q: Coordinates> PeakWatch<'_, Q> {
 /// Looks for the peak of θ alone in the pieces of a motion, and counts impacts.
 #[cfg(feature = "lanes")]
 #[derive(Debug)]
-pub struct ThetaWatch<'a, Q: Coordinates = f64> {
-    all: PeakWatch<'a, Q>,
+pub struct ThetaWatch<Q: Coordinates = f64> {
+    all: PeakWatch<Q>,
     /// Number of impacts and landings.
     pub(super) impacts: u64,
 }
 
 #[cfg(feature = "lanes")]
-impl<Q: Coordinates> ThetaWatch<'_, Q> {
-    /// The peak so far.
-    pub(super) fn theta(&mut self) -> Peak {
-        self.all.so_far().theta()
+impl<Q: Coordinates> ThetaWatch<Q> {
+    /// The peaks, of which that of θ has been sought, once the motion has been watched.
+    pub fn end(self) -> Peaks {
+        self.all.end()
     }
 }
 
 #[cfg(feature = "lanes")]
-impl<Q: Coordinates> Watch<Q> for ThetaWatch<'_, Q> {
+impl<Q: Coordinates> Watch<Q> for ThetaWatch<Q> {
     fn piece(&mut self, piece: &Piece<Q>) {
         if piece.before.phase != Phase::FullContact {
             self.all.see(piece);
@@ -258,7 +250,7 @@ impl<Q: Coordinates> Watch<Q> for ThetaWatch<'_, Q> {
 }
 
 #[cfg(feature = "lanes")]
-impl<Q: Coordinates> Passes<Q> for ThetaWatch<'_, Q> {
+impl<Q: Coordinates> Passes<Q> for ThetaWatch<Q> {
     fn seek(&self, engine: &Engine<Q>, lane: usize, sought: &mut Sought<Q>) {
         self.all.peaks.seek(engine, lane, sought);
         put(&mut sought.turned, lane, [-1.0, f64::INFINITY]);

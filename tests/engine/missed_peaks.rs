@@ -143,10 +143,11 @@ fn no_peak_is_missed() {
             let per_second = |of: fn(&Load) -> f64| (of(&target) - of(&load)) / h;
             let slope =
                 Load { a_g: per_second(|of| of.a_g), F_t: per_second(|of| of.F_t), a_v: per_second(|of| of.a_v) };
-            let (all, theta) = (&mut peaks.watch(), &mut alone.watch_theta());
-            let watch = &mut (&mut dense, &mut (&mut (all, theta), &mut validity));
+            let (mut all, mut theta) = (peaks.watch(), alone.watch_theta());
+            let watch = &mut (&mut dense, &mut (&mut (&mut all, &mut theta), &mut validity));
             advances.push((h, LinearLoad { value: load, slope }));
             let progress = engine.advance(h, LinearLoad { value: load, slope }, watch);
+            (peaks, alone) = (all.end(), theta.end());
             fastest = fastest.max(h * structure.omega_u);
             if progress != Ok(Progress::Complete) || dense.pieces > 4000 {
                 break;

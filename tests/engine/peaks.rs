@@ -85,7 +85,9 @@ fn the_first_of_equal_peaks_counts() {
             let mut engine = Engine::new(structure, State { u, u_dot, ..State::default() }, 0.0, 1e-9).unwrap();
             let (mut peaks, mut highest) = (Peaks::since(0.0, &structure.into(), Detail::Auto), u.abs());
             for _ in 0..f64::ceil(100.0 / step).max(2.0) as u32 {
-                engine.advance(step, Ramp::default(), &mut peaks.watch()).unwrap();
+                let mut watch = peaks.watch();
+                engine.advance(step, Ramp::default(), &mut watch).unwrap();
+                peaks = watch.end();
                 highest = highest.max(engine.motion().state.u.abs());
             }
             let peak = peaks.of(Output::u(0)).unwrap();

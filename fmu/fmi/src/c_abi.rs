@@ -90,6 +90,7 @@ impl Words {
             Failure::StepBack { .. } => format!("; to go back, call {version}Set{state}"),
             Failure::PastStop { .. } => format!(" given to {version}{set_up}: shorten it"),
             Failure::WrongSize { .. } => format!(" ({version}Serialized{state}Size)"),
+            Failure::Panicked(_) => "; the instance can only be freed".into(),
             _ => String::new(),
         }
     }
@@ -126,8 +127,8 @@ const MAX_LENGTH: usize = 1 << 24;
 /// The parts of an instance: model, interface, the host that is called back, and whether the log categories are on.
 pub(crate) type Parts = (Box<dyn Model>, Interface, Option<IntermediateUpdate>, bool);
 
-/// A component with the instance of the `parts`, which switches the log `categories`. If `function` finds no parts, the result
-/// is null and the log has the reason; if it panics, null.
+/// A component with the instance of the `parts`, which switches the log `categories`. If `function` finds no parts or panics, the
+/// result is null and the log has the reason.
 pub(crate) fn instantiate<F: Function>(
     function: &str,
     categories: &[Category],
@@ -136,24 +137,25 @@ pub(crate) fn instantiate<F: Function>(
 ) -> *mut c_void {
     let _control = Control::usual();
     let mut logger = Logger::new(sink);
-    let create = || match parts() {
-        Ok((model, interface, host, on)) => {
-            logger.switch(categories, on);
-            Some((Instance::new(model, F::WORDS.first, interface, logger, host), F::table(interface)))
-        }
-        Err(failure) => {
-            logger.failure(failure.status(), &format!("{}{function}: {failure}", F::WORDS.version));
-            None
-        }
+    let create = || {
+        let (model, interface, host, on) = parts()?;
+        Ok((Instance::of(model, F::WORDS.first, interface, host), F::table(interface), on))
     };
-    let created = catch_unwind(AssertUnwindSafe(create)).ok().flatten();
-    let Some((instance, allowed_in)) = created else { return ptr::null_mut() };
+    let (instance, allowed_in, on) =
+        match catch_unwind(AssertUnwindSafe(create)).unwrap_or_else(|panic| Err(panicked(panic))) {
+            Ok(created) => created,
+            Err(failure) => {
+                send(&logger, failure.status(), &format!("{}{function}: {failure}", F::WORDS.version));
+                return ptr::null_mut();
+            }
+        };
+    logger.switch(categories, on);
     let component = Component::<F> {
         magic: Cell::new(F::WORDS.magic),
         availability: AtomicU8::new(READY),
         calls_back: AtomicBool::new(false),
         allowed_in,
-        instance: UnsafeCell::new(instance),
+        instance: UnsafeCell::new(instance(logger)),
         version: PhantomData,
     };
     Box::into_raw(Box::new(component)).cast()
@@ -232,7 +234,7 @@ pub(crate) unsafe fn call<F: Function>(
             status as c_int
         }
         Err(panic) => {
-            broken(&instance.logger, function, panic);
+            report(&instance.logger, function, panicked(panic));
             component.availability.store(BROKEN, Ordering::Release);
             Status::Fatal as c_int
         }
@@ -318,25 +320,21 @@ fn wrong_stage(stage: Stage, stages: Stages) -> Failure {
 #[cold]
 #[inline(never)]
 fn report<F: Function>(logger: &Logger, function: F, failure: Failure) -> Status {
-    logger.failure(failure.status(), &format!("{}: {failure}{}", function.name(), F::WORDS.remedy(&failure)));
+    send(logger, failure.status(), &format!("{}: {failure}{}", function.name(), F::WORDS.remedy(&failure)));
     failure.status()
 }
 
-/// Logs that `function` has panicked.
-#[cold]
-#[inline(never)]
-fn broken<F: Function>(logger: &Logger, function: F, panic: Box<dyn Any + Send>) {
-    let failure = Failure::Panicked(panic_message(&*panic).to_owned());
-    // The logger may panic, too; the status is known without it.
-    let _ = catch_unwind(AssertUnwindSafe(|| report(logger, function, failure)));
+/// Logs why a call returns `status`, which is known even if the logger panics.
+fn send(logger: &Logger, status: Status, message: &str) {
+    let _ = catch_unwind(AssertUnwindSafe(|| logger.failure(status, message)));
 }
 
-fn panic_message(panic: &(dyn Any + Send)) -> &str {
-    match (panic.downcast_ref::<&str>(), panic.downcast_ref::<String>()) {
-        (Some(message), _) => message,
-        (_, Some(message)) => message,
-        _ => "panic",
-    }
+fn panicked(panic: Box<dyn Any + Send>) -> Failure {
+    Failure::Panicked(match (panic.downcast_ref::<&str>(), panic.downcast_ref::<String>()) {
+        (Some(message), _) => message.to_string(),
+        (_, Some(message)) => message.clone(),
+        _ => "panic".into(),
+    })
 }
 
 /// The `length` values at `pointer`.
@@ -665,12 +663,9 @@ mod tests {
 
     #[test]
     fn the_message_of_a_panic_is_found() {
-        let message = |panic: fn()| {
-            let panic = catch_unwind(panic).unwrap_err();
-            panic_message(&*panic).to_owned()
-        };
-        assert_eq!(message(|| panic!("plain")), "plain");
-        assert_eq!(message(|| panic!("{} formatted", 1)), "1 formatted");
-        assert_eq!(message(|| std::panic::panic_any(1)), "panic");
+        let message = |panic: fn()| panicked(catch_unwind(panic).unwrap_err()).to_string();
+        assert!(message(|| panic!("plain")).ends_with(": plain"));
+        assert!(message(|| panic!("{} formatted", 1)).ends_with(": 1 formatted"));
+        assert!(message(|| std::panic::panic_any(1)).ends_with(": panic"));
     }
 }

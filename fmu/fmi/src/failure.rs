@@ -114,7 +114,7 @@ pub enum Failure {
     WrongSize { given: usize, needed: usize },
     #[error("serializedState is not a serialized state of this FMU: {0}")]
     BadBytes(&'static str),
-    #[error("internal failure, please report it: {0}; the instance can only be freed")]
+    #[error("internal failure, please report it: {0}")]
     Panicked(String),
 }
 

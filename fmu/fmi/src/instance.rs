@@ -74,18 +74,18 @@ fn range(variable: &Variable) -> (f64, f64) {
 }
 
 impl Instance {
-    /// An instance of `model`, just instantiated, with the value references `first` and more.
-    pub(crate) fn new(
+    /// What makes an instance of `model`, just instantiated, of its logger, without calling the model. Its value references are
+    /// `first` and more.
+    pub(crate) fn of(
         model: Box<dyn Model>,
         first: u32,
         interface: Interface,
-        logger: Logger,
         host: Option<IntermediateUpdate>,
-    ) -> Instance {
+    ) -> impl FnOnce(Logger) -> Instance {
         let variables = model.variables();
         let mut at_start = Vec::new();
         model.state(&mut at_start);
-        Instance {
+        move |logger| Instance {
             model,
             first,
             are_real: variables.iter().map(|variable| variable.data_type.limits().is_some()).collect(),

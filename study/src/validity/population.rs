@@ -107,9 +107,9 @@ pub fn both(run: &Run) -> Result<Pair, RunError> {
 
 fn respond(run: &Run) -> Result<Response, RunError> {
     let start = run.ground.start();
-    let mut peaks = Peaks::since(start, &run.structure, run.detail);
+    let mut peaks = Peaks::since(start, &run.structure, run.detail).watch();
     let mut validity = Validity::new(&run.structure, Limits::default(), Findings::since(start));
-    let finish = run.follow(&mut (&mut peaks.watch(), &mut validity))?;
+    let finish = run.follow(&mut (&mut peaks, &mut validity))?;
     let overturns = finish.ending == Ending::Overturned;
-    Ok(Response { peaks, found: *validity.found(), transitions: finish.motion.transitions, overturns })
+    Ok(Response { peaks: peaks.end(), found: *validity.found(), transitions: finish.motion.transitions, overturns })
 }
