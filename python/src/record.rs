@@ -106,6 +106,12 @@ impl Record {
         self.unit != Unit::MetrePerSecondSquared
     }
 
+    /// An array of a component, with 0 for each time after its last sample.
+    fn at_all_times<'py>(&self, py: Python<'py>, samples: &[f64]) -> Bound<'py, PyArray1<f64>> {
+        let sample = |i| samples.get(i).copied().unwrap_or_default();
+        PyArray1::from_vec(py, (0..self.usual.times().len()).map(sample).collect())
+    }
+
     /// Its components, the horizontal one first, as tables that are read without options.
     pub fn tables(&self) -> anyhow::Result<Vec<String>> {
         let scaled = self.given.clone().multiplied(self.scale);
@@ -186,46 +192,49 @@ impl Record {
             None => of_trace(time, unit)?,
         };
         let title = title.unwrap_or(&name);
+        let a_v = a_v.map(|a_v| (time.clone(), a_v.clone()));
         let record = Record::_of(&time, &a_g, a_v, unit, scale, title, None)?.scaled(1.0, time_scale)?;
         warn(py, doubts(&record.usual, G).into_iter().map(|doubt| format!("{title}: {doubt}")), 1)?;
         Ok(record)
     }
 
-    /// Makes a record from a pickle, without warnings.
+    /// Makes a record from a pickle, without warnings. a_v comes with its own times: one component may end before the other.
     #[staticmethod]
     fn _of(
         time: &Bound<'_, PyAny>,
         a_g: &Bound<'_, PyAny>,
-        a_v: Option<&Bound<'_, PyAny>>,
+        a_v: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>,
         #[pyo3(from_py_with = unit)] unit: Unit,
         scale: f64,
         title: &str,
         force: Option<[Vec<f64>; 2]>,
     ) -> PyResult<Record> {
-        let a_g = numbers("a_g", a_g)?;
-        let times: Vec<f64> = match number("dt", time) {
-            Ok(dt) if dt > 0.0 && dt.is_finite() => (0..a_g.len()).map(|i| i as f64 * dt).collect(),
-            Ok(dt) => {
-                let needed = "a finite number greater than 0 is needed";
-                return Err(PyValueError::new_err(format!("dt = {dt} is out of range: {needed}")));
-            }
-            Err(_) => numbers("time", time)?,
+        let component = |time: &Bound<'_, PyAny>, name, samples: &Bound<'_, PyAny>| {
+            let samples = numbers(name, samples)?;
+            let times: Vec<f64> = match number("dt", time) {
+                Ok(dt) if dt > 0.0 && dt.is_finite() => (0..samples.len()).map(|i| i as f64 * dt).collect(),
+                Ok(dt) => {
+                    let needed = "a finite number greater than 0 is needed";
+                    return Err(PyValueError::new_err(format!("dt = {dt} is out of range: {needed}")));
+                }
+                Err(_) => numbers("time", time)?,
+            };
+            Samples::from_samples(title, times, samples).map_err(refused)
         };
-        let component = |samples| Samples::from_samples(title, times.clone(), samples).map_err(refused);
-        let mut samples = component(a_g)?;
-        if let Some(a_v) = a_v {
-            samples = samples.with_vertical(&component(numbers("a_v", a_v)?)?).map_err(refused)?;
+        let mut samples = component(time, "a_g", a_g)?;
+        if let Some((time, a_v)) = a_v {
+            samples = samples.with_vertical(&component(&time, "a_v", &a_v)?).map_err(refused)?;
         }
         let (given, unit) = fixed(samples, [unit; 2])?;
         Record::new(given, force, unit, 1.0)?.scaled(scale, 1.0)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Parts<'py>)> {
-        let (of, array) = (slf.get(), |of| PyArray1::from_slice(slf.py(), of));
-        let [times, a_g] = [of.given.times(), of.given.acceleration()].map(array);
+        let (of, array) = (slf.get(), |of: &[f64]| PyArray1::from_slice(slf.py(), of));
+        let timed = |component: &[f64]| (array(&of.given.times()[..component.len()]), array(component));
         let (unit, title) = (of.unit.to_string(), of.title().to_owned());
-        let (a_v, force) = (of.given.vertical().map(array), of.force.clone());
-        Ok((slf.getattr("_of")?, (times, a_g, a_v, unit, of.scale, title, force)))
+        let ((times, a_g), a_v) = (timed(of.given.acceleration()), of.given.vertical().map(timed));
+        Ok((slf.getattr("_of")?, (times, a_g, a_v, unit, of.scale, title, of.force.clone())))
     }
 
     /// Reads the record in `file`, in one of the layouts Record.LAYOUTS, known by its content.
@@ -281,19 +290,19 @@ impl Record {
     /// Horizontal ground accelerations of the samples, m/s2: an array (n,), a copy.
     #[getter]
     fn a_g<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.usual.acceleration())
+        self.at_all_times(py, self.usual.acceleration())
     }
 
     /// Vertical ground accelerations of the samples, m/s2, positive upwards: an array (n,), a copy; None without them.
     #[getter]
     fn a_v<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.usual.vertical().map(|a_v| PyArray1::from_slice(py, a_v))
+        self.usual.vertical().map(|a_v| self.at_all_times(py, a_v))
     }
 
     /// Horizontal forces on the top floor at the samples, N, to the right: an array (n,), a copy; None without them.
     #[getter]
     fn F_t<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.usual.force().map(|F_t| PyArray1::from_slice(py, F_t))
+        self.usual.force().map(|F_t| self.at_all_times(py, F_t))
     }
 
     /// Title of the record.
@@ -394,7 +403,8 @@ impl Record {
 }
 
 /// Arguments of [`Record::_of`].
-type Parts<'py> = (Array<'py>, Array<'py>, Option<Array<'py>>, String, f64, String, Option<[Vec<f64>; 2]>);
+type Parts<'py> =
+    (Array<'py>, Array<'py>, Option<(Array<'py>, Array<'py>)>, String, f64, String, Option<[Vec<f64>; 2]>);
 type Array<'py> = Bound<'py, PyArray1<f64>>;
 
 /// The pulse of this shape as a Record: "half_sine", "sine", "cosine", "ricker", "antisymmetric_ricker",

@@ -251,7 +251,7 @@ impl<Q: Runs> Run<'_, Q> {
             let from = times[next - 1];
             (until, GroundMotion::from(self.ground).ramp(next).at(until - from).a_g)
         });
-        let samples = &acceleration[..next];
+        let samples = &acceleration[..next.min(acceleration.len())];
         let (fours, rest) = samples.as_chunks::<4>();
         // four side by side: a comparison waits for the one before it
         let most =

@@ -112,11 +112,10 @@ impl<'a> GroundMotion<'a> {
         sample.map_or(elapsed, |i| Elapsed::default().and(self.instant(i)))
     }
 
-    /// The next instant after `elapsed` at which the ground acceleration jumps, s after the start. The ground acceleration jumps
-    /// at a first or last sample that is not 0.
+    /// The next instant after `elapsed` at which the ground acceleration or the force jumps, s after the start.
     pub fn next_jump(&self, elapsed: Elapsed) -> Option<f64> {
-        let ends = [0, self.record.times().len() - 1].into_iter().filter(|i| self.is_moved(*i));
-        self.first_ahead(ends, elapsed)
+        let ends = self.components().flat_map(|of| [0, of.len() - 1]).filter(|i| self.jumps(*i));
+        ends.filter_map(|i| self.first_ahead([i].into_iter(), elapsed)).reduce(f64::min)
     }
 
     /// The instant of the next sample after `elapsed`, where the ground acceleration has a kink, s after the start.
@@ -182,10 +181,14 @@ impl<'a> GroundMotion<'a> {
         (elapsed.sum - self.start + elapsed.rounding) + self.record.start()
     }
 
-    /// Whether the ground accelerates, or a force acts, at sample `i`.
-    fn is_moved(&self, i: usize) -> bool {
-        let others = [self.record.vertical(), self.record.force()];
-        self.record.acceleration()[i] != 0.0 || others.into_iter().flatten().any(|of| of[i] != 0.0)
+    /// Accelerations and force, each of which may end before the record.
+    fn components(&self) -> impl Iterator<Item = &'a [f64]> {
+        [Some(self.record.acceleration()), self.record.vertical(), self.record.force()].into_iter().flatten()
+    }
+
+    /// Whether an acceleration or the force jumps at sample `i`: its first or last sample, and not 0.
+    fn jumps(&self, i: usize) -> bool {
+        self.components().any(|of| (i == 0 || i + 1 == of.len()) && of[i] != 0.0)
     }
 
     /// Instant of sample `i`, s after the start.
@@ -211,10 +214,10 @@ impl<'a> GroundMotion<'a> {
     #[inline]
     fn uncut(&self, i: usize, elapsed: Elapsed) -> f64 {
         let times = self.record.times();
-        let beyond = |end: usize| if self.is_moved(end) { 0.0 } else { f64::INFINITY };
-        let before = if i == 0 { beyond(0) } else { times[i] - times[i - 1] };
-        let after = if i + 1 == times.len() { beyond(i) } else { times[i + 1] - times[i] };
-        (SAME_INSTANT * before.min(after)).max(self.rounding(i, elapsed))
+        let before = if i == 0 { f64::INFINITY } else { times[i] - times[i - 1] };
+        let after = if i + 1 == times.len() { f64::INFINITY } else { times[i + 1] - times[i] };
+        let kink = if self.jumps(i) { 0.0 } else { SAME_INSTANT * before.min(after) };
+        kink.max(self.rounding(i, elapsed))
     }
 
     /// The time by which rounding alone may miss sample `i`, s.
@@ -247,7 +250,7 @@ impl<'a> GroundMotion<'a> {
         }
         let last = reached - 1;
         let step = times[reached] - times[last];
-        let ramp = |of: &[f64]| Ramp::between(of[last], of[reached], step);
+        let ramp = |of: &[f64]| of.get(reached).map_or(Ramp::default(), |next| Ramp::between(of[last], *next, step));
         let ground: LinearLoad = ramp(record.acceleration()).into();
         match (record.force(), record.vertical()) {
             (None, None) => ground,
@@ -317,7 +320,8 @@ impl<'a> Segments<'a> {
     #[inline]
     pub(super) fn samples(&self) -> Option<Samples<'a>> {
         let &Segments { motion: GroundMotion { record, .. }, next, last, .. } = self;
-        let samples = Samples { times: record.times(), a_g: record.acceleration(), next, last };
+        let (a_g, last) = (record.acceleration(), last.min(record.acceleration().len()));
+        let samples = Samples { times: record.times(), a_g, next, last };
         (next < last && record.vertical().is_none()).then_some(samples)
     }
 
@@ -432,10 +436,15 @@ mod tests {
         let even: Vec<_> = (0..=200).map(|i| f64::from(i) * 0.01).collect();
         let steep = [vec![0.0; 100], vec![5.0; 101]].concat();
         let uneven: Vec<_> = even.iter().map(|t| if *t < 0.995 { *t } else { t - 0.01 + 1e-13 }).collect();
-        for record in [record(&even, &shaken), record(&uneven, &steep)] {
+        let longer = record(&[0.0, 2.05], &[0.0, 1.0]);
+        let ends_first = record(&even, &shaken).with_vertical(&longer).unwrap();
+        for record in [record(&even, &shaken), record(&uneven, &steep), ends_first] {
             let ground = GroundMotion::from(&record);
+            let end = record.times()[record.acceleration().len() - 1];
+            assert_eq!(ground.next_jump(after([1.5])), Some(end));
             let after = |miss: f64| {
-                let settings = Settings { detail: Detail::FixedBase, ..Settings::default() };
+                let vertical = record.vertical().is_some();
+                let settings = Settings { detail: Detail::FixedBase, vertical, ..Settings::default() };
                 let mut engine = Engine::with(structure, State::default(), 0.0, settings).unwrap();
                 let mut elapsed = Elapsed::default();
                 let first = record.times()[1] + miss;

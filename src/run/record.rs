@@ -11,15 +11,13 @@ pub struct Record {
     /// Shared with the copies of the record, as the samples are until they are scaled.
     title: Arc<str>,
     times: Arc<[f64]>,
+    /// At the first of the times, as the others: a component of fewer samples than times is 0 after its last sample.
     acceleration: Arc<[f64]>,
-    /// At the same times; none where the ground moves horizontally alone.
+    /// None where the ground moves horizontally alone.
     vertical: Option<Arc<[f64]>>,
-    /// On the top floor at the same times, N; none without a force.
+    /// On the top floor, N; none without a force.
     force: Option<Arc<[f64]>>,
 }
-
-/// Duration of the fall to 0 of a component that ends before the other one, as a part of its last step.
-const FALL: f64 = 1e-9;
 
 /// Why samples, or their scales, are refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -64,8 +62,7 @@ impl Record {
 
     /// This ground motion with the vertical component `vertical`, positive upwards, whose first sample comes with its own. The
     /// samples are then at the times of both. After the last sample of the shorter component the ground rests in that
-    /// direction: it comes to rest within 1e-9 of the last step, where it has not. A component of zeros is no vertical motion:
-    /// the ground motion stays as it is.
+    /// direction: its acceleration jumps to 0. A component of zeros is no vertical motion: the ground motion stays as it is.
     pub fn with_vertical(self, vertical: &Record) -> Result<Record, SamplesError> {
         self.check_start(vertical.start(), || format!("the vertical component {:?}", vertical.title))?;
         if vertical.acceleration.iter().all(|a_v| *a_v == 0.0) {
@@ -99,14 +96,12 @@ impl Record {
 
     /// This ground motion, and `other` at `times` (s), all at the times of both.
     fn beside(self, times: &[f64], other: &[f64]) -> (Record, Arc<[f64]>) {
-        let end = self.end().max(times[times.len() - 1]);
-        let [own, others] = [&self.times, times].map(|times| until(end, times.to_vec(), vec![0.0; times.len()]).0);
-        let mut all = [own, others].concat();
+        let mut all = [&self.times, times].concat();
         all.sort_by(f64::total_cmp);
         all.dedup();
         let at_all = |times: &[f64], values: &[f64]| -> Arc<[f64]> {
-            let (times, values) = until(end, times.to_vec(), values.to_vec());
-            all.iter().map(|time| at(&times, &values, *time)).collect()
+            let last = times[values.len() - 1];
+            all.iter().take_while(|time| **time <= last).map(|time| at(times, values, *time)).collect()
         };
         let own = |of: Arc<[f64]>| at_all(&self.times, &of);
         let (acceleration, vertical, force) = (own(self.acceleration), self.vertical.map(own), self.force.map(own));
@@ -160,17 +155,17 @@ impl Record {
         &self.times
     }
 
-    /// Ground accelerations of the samples, m/s².
+    /// Ground accelerations of the samples, m/s²: fewer than times if another component or the force lasts longer, and then 0.
     pub fn acceleration(&self) -> &[f64] {
         &self.acceleration
     }
 
-    /// Vertical ground accelerations of the samples, m/s², positive upwards, if there are any.
+    /// Vertical ground accelerations of the samples, m/s², positive upwards, if there are any; 0 after the last.
     pub fn vertical(&self) -> Option<&[f64]> {
         self.vertical.as_deref()
     }
 
-    /// Forces on the top floor at the samples, N, positive to the right, if there are any.
+    /// Forces on the top floor at the samples, N, positive to the right, if there are any; 0 after the last.
     pub fn force(&self) -> Option<&[f64]> {
         self.force.as_deref()
     }
@@ -198,7 +193,7 @@ impl Record {
     /// Velocity (m/s) and displacement (m) of the ground at each sample, at rest before the first one: exact, as the
     /// acceleration is linear between samples.
     pub fn velocities_and_displacements(&self) -> impl Iterator<Item = [f64; 2]> {
-        let steps = self.times.windows(2).zip(self.acceleration.windows(2));
+        let steps = self.times.windows(2).zip(self.acceleration.windows(2).chain(std::iter::repeat(&[0.0; 2][..])));
         let after = |[velocity, displacement]: &mut [f64; 2], (times, a): (&[f64], &[f64])| {
             let step = times[1] - times[0];
             *displacement += step * (*velocity + step * (2.0 * a[0] + a[1]) / 6.0);
@@ -207,17 +202,6 @@ impl Record {
         };
         [[0.0; 2]].into_iter().chain(steps.scan([0.0; 2], after))
     }
-}
-
-/// These samples with those that bring them to rest until `end` (s), where they end before.
-fn until(end: f64, mut times: Vec<f64>, mut acceleration: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
-    let [before, last] = [times[times.len() - 2], times[times.len() - 1]];
-    let at_rest = (last + FALL * (last - before)).max(last.next_up());
-    for time in [at_rest, end].into_iter().filter(|time| last < end && *time <= end) {
-        times.push(time);
-        acceleration.push(0.0);
-    }
-    (times, acceleration)
 }
 
 /// The acceleration at `time` (s), which is not after the last of `times`.
@@ -267,11 +251,10 @@ mod tests {
         let own = Record::from_samples("own", vec![0.0, 1.0], vec![2.0, 4.0]).unwrap();
         let vertical = Record::from_samples("up", vec![0.0, 0.5, 1.0, 1.5], vec![0.0, -8.0, 1.0, 3.0]).unwrap();
         let both = own.clone().with_vertical(&vertical).unwrap();
-        assert_eq!(both.times(), [0.0, 0.5, 1.0, 1.0 + FALL, 1.5]);
-        assert_eq!(both.acceleration(), [2.0, 3.0, 4.0, 0.0, 0.0]);
-        let up = both.vertical().unwrap();
-        assert_eq!(up[..3], [0.0, -8.0, 1.0]);
-        assert!((up[3] - 1.0 - 4.0 * FALL).abs() < 1e-15 && up[4] == 3.0);
+        assert_eq!(both.times(), [0.0, 0.5, 1.0, 1.5]);
+        assert_eq!(both.acceleration(), [2.0, 3.0, 4.0]);
+        assert_eq!(both.vertical().unwrap(), [0.0, -8.0, 1.0, 3.0]);
+        assert_eq!(both.velocities_and_displacements().last().unwrap(), [3.0, 17.0 / 6.0]);
         let scaled = both.scaled(0.5, 10.0).unwrap();
         assert_eq!((scaled.end(), scaled.acceleration()[1], scaled.vertical().unwrap()[1]), (0.75, 30.0, -80.0));
         let late = Record::from_samples("late", vec![0.1, 1.0], vec![0.0, 1.0]).unwrap();
@@ -286,8 +269,8 @@ mod tests {
         let own = Record::from_samples("own", vec![0.0, 1.0, 2.0], vec![2.0, 4.0, -2.0]).unwrap();
         let pushed = |times: &[f64], F_t: &[f64]| own.clone().with_force(times, F_t);
         let both = pushed(&[0.0, 0.5], &[3.0, 5.0]).unwrap().with_vertical(&own.clone().multiplied(2.0)).unwrap();
-        assert_eq!((both.times(), both.acceleration()[1]), (&[0.0, 0.5, 0.5 + 0.5 * FALL, 1.0, 2.0][..], 3.0));
-        assert_eq!(both.force().unwrap(), [3.0, 5.0, 0.0, 0.0, 0.0]);
+        assert_eq!((both.times(), both.acceleration()[1]), (&[0.0, 0.5, 1.0, 2.0][..], 3.0));
+        assert_eq!(both.force().unwrap(), [3.0, 5.0]);
         let scaled = both.scaled(0.5, 10.0).unwrap();
         assert_eq!((scaled.times()[1], scaled.acceleration()[1], scaled.force().unwrap()[1]), (0.25, 30.0, 5.0));
         assert_eq!(pushed(&[0.0, 9.0], &[0.0; 2]), Ok(own.clone()));

@@ -261,6 +261,8 @@ def test_a_force_goes_with_a_record_and_no_scale_changes_it(tmp_path, ground):
     pushed = ground.with_force([0, 1, 60], [0, 300, 0])
     assert pushed != ground and pushed.F_t.max() == pushed.scaled(2).F_t.max() == 300 and ground.F_t is None
     assert pickle.loads(pickle.dumps(pushed.scaled(2, time_scale=0.5))) == copy.copy(pushed).scaled(2, time_scale=0.5)
+    released = ground.with_force([0, 0.125], [300, 300])
+    assert released.F_t.shape == released.time.shape and np.all((released.F_t == 300) == (released.time <= 0.125))
     pier = fr.Structure(preset="mcmanus")
     assert fr.sweep(pier, pushed, scale=[2])["peak_theta[rad]"][0] == fr.simulate(pier, pushed.scaled(2)).peaks["theta"]
     for refuse in (lambda: pushed.write(tmp_path / "a.csv"), lambda: fr.export(tmp_path / "a.fmu", pier, record=pushed)):
