@@ -56,7 +56,7 @@ pub struct Elapsed {
 impl Elapsed {
     /// The time after another `step` (s).
     pub fn and(self, step: f64) -> Elapsed {
-        let sum = (self.sum + step).min(f64::MAX);
+        let sum = (self.sum + step).clamp(-f64::MAX, f64::MAX); // unlike `min`, it keeps NaN
         let part = sum - self.sum;
         Elapsed { sum, rounding: self.rounding + ((self.sum - (sum - part)) + (step - part)), ..self }
     }
@@ -372,6 +372,7 @@ mod tests {
         let elapsed = after((0..1_000_000).map(|_| 0.01));
         assert_eq!(elapsed.sum + elapsed.rounding, 1e6 * 0.01);
         assert!((elapsed.sum - 1e4).abs() > 1e-9, "there was nothing to compensate");
+        assert!(after([f64::NAN]).sum.is_nan());
     }
 
     #[test]
