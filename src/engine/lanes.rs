@@ -12,12 +12,12 @@ use crate::engine::phases;
 use crate::engine::piece::{Piece, Watch};
 use crate::levels::detail::Elastic;
 use crate::levels::level::{Level, Pace};
-use crate::levels::nonlinear::{Equations, NonlinearRocking, Products, Recurrence, Rocker};
+use crate::levels::nonlinear::{Equations, Expanded, NonlinearRocking, Products, Recurrence, Rocker};
 use crate::mechanics::lateral::Coordinates;
 use crate::numbers::Real;
 use crate::numbers::lanes::{Lanes, MOST, Row, load, put};
 use crate::series::extremes::{OFF_CHORD, OFF_CUBIC};
-use crate::series::taylor::{self, Arc, MAX_ORDER, MIN_ORDER, Start, Truncation, reciprocal};
+use crate::series::taylor::{self, Arc, MAX_ORDER, MIN_ORDER, Start, Truncation, add_each_product, reciprocal};
 use crate::{Detail, LinearLoad, Phase, Ramp, State, Transition};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::FRAC_PI_2;
@@ -519,4 +519,45 @@ impl<Q: Coordinates> Engine<Q> {
         }
         self.go_on(advance, false, true, watch)
     }
+}
+
+impl<S: Simd> Expanded for Lanes<S> {
+    /// θ̇, w θ̇, w.
+    type Left = [Lanes<S>; 3];
+    /// cos θ, sin θ, w, θ̇, G.
+    type Right = [Lanes<S>; 5];
+
+    #[inline(always)]
+    fn left(turning: Self, lever_turning: Self, lever: Self) -> Self::Left {
+        [turning, lever_turning, lever]
+    }
+
+    #[inline(always)]
+    fn right(cos: Self, sin: Self, next_lever: Self, turning: Self, weight: Self) -> Self::Right {
+        [cos, sin, next_lever, turning, weight]
+    }
+
+    #[inline(always)]
+    fn products(
+        left: &[Self::Left; MAX_ORDER + 1],
+        right: &[Self::Right; MAX_ORDER + 1],
+        newest: (&Self::Left, &Self::Right),
+        n: usize,
+    ) -> [Self; 6] {
+        let mut sum = [newest.0[0].like(0.0); 6];
+        add_each_product!(add_products, &mut sum, left, right, newest, n);
+        sum
+    }
+}
+
+#[inline(always)]
+fn add_products<S: Simd>(sum: &mut [Lanes<S>; 6], left: &[Lanes<S>; 3], right: &[Lanes<S>; 5]) {
+    let &[turning, lever_turning, lever] = left;
+    let &[cos, sin, next_lever, right_turning, weight] = right;
+    sum[0] = sum[0] + turning * cos;
+    sum[1] = sum[1] + turning * sin;
+    sum[2] = sum[2] + turning * next_lever;
+    sum[3] = sum[3] + lever_turning * next_lever;
+    sum[4] = sum[4] + lever_turning * right_turning;
+    sum[5] = sum[5] + lever * weight;
 }

@@ -19,12 +19,12 @@
 
 use crate::levels::level::{Level, Now, Subject, derivatives};
 use crate::levels::modes::{Abreast, Four, FourSeries};
-use crate::levels::nonlinear::{add_each_product, add_product};
+use crate::levels::nonlinear::add_product;
 use crate::mechanics::contact::{energy, ties_on_ground};
 use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::restraint::Dissipators;
-use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation, reciprocal};
+use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation, add_each_product, reciprocal};
 use crate::{Base, Contact, Foundation, Phase, State};
 use std::cell::RefCell;
 use wide::{f64x2, f64x4};

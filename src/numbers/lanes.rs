@@ -1,8 +1,6 @@
 //! A number of several runs side by side, in one register of the processor.
 
-use crate::levels::nonlinear::{Expanded, add_each_product};
 use crate::numbers::Real;
-use crate::series::taylor::MAX_ORDER;
 use pulp::Simd;
 use pulp::bytemuck::cast_slice;
 use std::array::from_ref;
@@ -189,45 +187,4 @@ impl<S: Simd> Neg for Lanes<S> {
     fn neg(self) -> Self {
         Lanes { of: self.simd.xor_f64s(self.of, self.simd.splat_f64s(-0.0)), ..self }
     }
-}
-
-impl<S: Simd> Expanded for Lanes<S> {
-    /// θ̇, w θ̇, w.
-    type Left = [Lanes<S>; 3];
-    /// cos θ, sin θ, w, θ̇, G.
-    type Right = [Lanes<S>; 5];
-
-    #[inline(always)]
-    fn left(turning: Self, lever_turning: Self, lever: Self) -> Self::Left {
-        [turning, lever_turning, lever]
-    }
-
-    #[inline(always)]
-    fn right(cos: Self, sin: Self, next_lever: Self, turning: Self, weight: Self) -> Self::Right {
-        [cos, sin, next_lever, turning, weight]
-    }
-
-    #[inline(always)]
-    fn products(
-        left: &[Self::Left; MAX_ORDER + 1],
-        right: &[Self::Right; MAX_ORDER + 1],
-        newest: (&Self::Left, &Self::Right),
-        n: usize,
-    ) -> [Self; 6] {
-        let mut sum = [newest.0[0].like(0.0); 6];
-        add_each_product!(add_products, &mut sum, left, right, newest, n);
-        sum
-    }
-}
-
-#[inline(always)]
-fn add_products<S: Simd>(sum: &mut [Lanes<S>; 6], left: &[Lanes<S>; 3], right: &[Lanes<S>; 5]) {
-    let &[turning, lever_turning, lever] = left;
-    let &[cos, sin, next_lever, right_turning, weight] = right;
-    sum[0] = sum[0] + turning * cos;
-    sum[1] = sum[1] + turning * sin;
-    sum[2] = sum[2] + turning * next_lever;
-    sum[3] = sum[3] + lever_turning * next_lever;
-    sum[4] = sum[4] + lever_turning * right_turning;
-    sum[5] = sum[5] + lever * weight;
 }

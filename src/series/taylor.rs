@@ -35,6 +35,28 @@ pub(crate) fn product(a: &Series, b: &Series, n: usize) -> f64 {
     a[..=n].iter().zip(b[..=n].iter().rev()).map(|(a, b)| a * b).sum()
 }
 
+/// Adds to `$sum` the products of `$left` and `$right` factors whose orders sum to `$n`. The right ones are kept backwards, so that
+/// both are read in one direction. The `$newest`, of order n, come last and not from memory: the processor can sum the others before
+/// it knows them. A macro, because a closure called in wide registers would not be compiled for them.
+macro_rules! add_each_product {
+    ($add:expr, $sum:expr, $left:expr, $right:expr, $newest:expr, $n:expr) => {
+        if $n > 0 {
+            let (lefts, last_left) = $left[1..$n].as_chunks::<2>();
+            let (rights, last_right) = $right[MAX_ORDER - $n + 1..MAX_ORDER].as_chunks::<2>();
+            for (left, right) in lefts.iter().zip(rights) {
+                $add($sum, &left[0], &right[0]);
+                $add($sum, &left[1], &right[1]);
+            }
+            if let ([left], [right]) = (last_left, last_right) {
+                $add($sum, left, right);
+            }
+            $add($sum, $newest.0, &$right[MAX_ORDER]);
+        }
+        $add($sum, &$left[0], $newest.1);
+    };
+}
+pub(crate) use add_each_product;
+
 /// Value at `sigma` of the polynomial with these coefficients.
 #[inline]
 pub fn evaluate(coefficients: &[f64], sigma: f64) -> f64 {
