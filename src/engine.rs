@@ -29,6 +29,8 @@ use crate::levels::detail::Detail;
 #[cfg(feature = "lanes")]
 use crate::levels::level::Subject;
 use crate::levels::level::{Level, derivatives};
+use crate::levels::start::Start;
+use crate::mechanics::arc::Arc;
 use crate::mechanics::contact;
 use crate::mechanics::energy::energy;
 use crate::mechanics::instant::{Instant, Second};
@@ -38,7 +40,6 @@ use crate::mechanics::reactions::{Impulse, Reactions};
 use crate::mechanics::restraint::{Dissipators, Restraints};
 use crate::numbers::dual::Dual;
 use crate::series::first_crossing::Crossing;
-use crate::series::taylor::{Arc, Start};
 use crate::structure::ground::MORE;
 use crate::structure::quantity::{Quantity, Refused, ensure};
 use crate::{Foundation, Output, Phase, State, Structure};

@@ -10,4 +10,5 @@ pub mod nonlinear;
 pub(crate) mod on_ground;
 pub(crate) mod oscillator;
 pub mod rules;
+pub(crate) mod start;
 pub(crate) mod ties;

@@ -1,5 +1,6 @@
 //! The paper's equations, without a solver: state, loads, outputs, reactions, energy, what starts and what follows an impact.
 
+pub(crate) mod arc;
 pub mod contact;
 pub mod energy;
 pub mod gauge;

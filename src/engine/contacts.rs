@@ -11,11 +11,12 @@ use crate::engine::piece::Sample;
 use crate::engine::transition::TransitionKind;
 use crate::engine::yielding::square_integral;
 use crate::levels::level::Level;
+use crate::mechanics::arc::Arc;
 use crate::mechanics::contact::margins;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::Dissipators;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
-use crate::series::taylor::{Arc, Series, ZERO, evaluate};
+use crate::series::taylor::{Series, ZERO, evaluate};
 use crate::structure::ground::Point;
 use crate::{Foundation, Phase, Ties};
 

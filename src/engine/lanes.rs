@@ -13,11 +13,13 @@ use crate::engine::piece::{Piece, Watch};
 use crate::levels::detail::Elastic;
 use crate::levels::level::{Level, Pace};
 use crate::levels::nonlinear::{Equations, Expanded, NonlinearRocking, Products, Recurrence, Rocker};
+use crate::levels::start::{self, MIN_ORDER, Start, Truncation};
+use crate::mechanics::arc::Arc;
 use crate::mechanics::lateral::Coordinates;
 use crate::numbers::Real;
 use crate::numbers::lanes::{Lanes, MOST, Row, load, put};
 use crate::series::extremes::{OFF_CHORD, OFF_CUBIC};
-use crate::series::taylor::{self, Arc, MAX_ORDER, MIN_ORDER, Start, Truncation, add_each_product, reciprocal};
+use crate::series::taylor::{MAX_ORDER, add_each_product, reciprocal};
 use crate::{Detail, LinearLoad, Phase, Ramp, State, Transition};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::FRAC_PI_2;
@@ -325,7 +327,7 @@ impl<S: Simd, Q: Coordinates> WithSimd for Taken<'_, '_, S, Q> {
             for lane in (0..S::F64_LANES).filter(|lane| ended.of(*lane) == 0.0) {
                 let truncation = Truncation { u_dot: truncation.of(lane), theta_dot: truncation_turning.of(lane) };
                 let velocities = |k: usize| (series[k][1].of(lane), series[k][3].of(lane));
-                of.reach[lane] = taylor::reach(velocities, &truncation);
+                of.reach[lane] = start::reach(velocities, &truncation);
             }
         }
         let sigma = row(&of.reach);

@@ -1,12 +1,14 @@
 //! [Uplift](crate::mechanics::uplift) of a structure in full contact: its first instant, and the distance from it.
 
+use crate::levels::start::Start;
+use crate::mechanics::arc::Arc;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::Dissipators;
 use crate::mechanics::state::way;
 use crate::mechanics::uplift::{self, Lift, hold, inertia, least_hold};
 use crate::numbers::Number;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
-use crate::series::taylor::{Arc, Start, ZERO};
+use crate::series::taylor::ZERO;
 use crate::series::terms::Terms;
 use crate::{Base, Mode};
 use crate::{Ramp, Side, State};

@@ -5,8 +5,10 @@
 //! ```
 
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
+use crate::levels::start::{Start, Truncation};
+use crate::mechanics::arc::Arc;
 use crate::mechanics::load::Load;
-use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
+use crate::series::taylor::LONGEST_SPAN;
 use crate::{OneMass, State};
 use std::cell::RefMut;
 

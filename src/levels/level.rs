@@ -8,6 +8,8 @@ use crate::levels::first_uplift::Liftable;
 #[cfg(feature = "lanes")]
 use crate::levels::full_contact::ExactContact;
 use crate::levels::rules::ChatterLimit;
+use crate::levels::start::{Start, Truncation};
+use crate::mechanics::arc::Arc;
 use crate::mechanics::contact::restraints;
 use crate::mechanics::impact;
 use crate::mechanics::instant::{Instant, Second};
@@ -17,7 +19,7 @@ use crate::mechanics::reactions::Reactions;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint, Restraints};
 use crate::numbers::{Angle, Real};
 use crate::series::first_crossing::Crossing;
-use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
+use crate::series::taylor::LONGEST_SPAN;
 use crate::{OneMass, Phase, Side, State, Structure};
 use std::fmt::{self, Debug};
 

@@ -26,7 +26,8 @@
 
 use crate::levels::level::{ElasticRocking, Pace};
 use crate::levels::oscillator::Kept;
-use crate::series::taylor::{Arc, Start};
+use crate::levels::start::Start;
+use crate::mechanics::arc::Arc;
 use crate::{OneMass, Side, State, Structure};
 use nalgebra::{SMatrix, SVector};
 use std::f64::consts::FRAC_PI_2;

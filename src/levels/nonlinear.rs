@@ -29,11 +29,13 @@
 //! ([`restraint`](crate::mechanics::restraint)) over m is taken from L̇.
 
 use crate::levels::level::{ElasticRocking, Pace};
+use crate::levels::start::Start;
 use crate::levels::ties::TieSeries;
+use crate::mechanics::arc::Arc;
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
 use crate::numbers::Real;
-use crate::series::taylor::{Arc, MAX_ORDER, Start, add_each_product};
+use crate::series::taylor::{MAX_ORDER, add_each_product};
 use crate::{OneMass, Side, State};
 use nalgebra::{Matrix2, Vector2};
 use std::cell::RefCell;

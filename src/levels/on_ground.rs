@@ -20,11 +20,13 @@
 use crate::levels::level::{Level, Now, Subject, derivatives};
 use crate::levels::modes::{Abreast, Four, FourSeries};
 use crate::levels::nonlinear::add_product;
+use crate::levels::start::{Start, Truncation};
+use crate::mechanics::arc::Arc;
 use crate::mechanics::contact::{energy, ties_on_ground};
 use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::restraint::Dissipators;
-use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation, add_each_product, reciprocal};
+use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER, add_each_product, reciprocal};
 use crate::{Base, Contact, Foundation, Phase, State};
 use std::cell::RefCell;
 use wide::{f64x2, f64x4};

@@ -9,11 +9,12 @@
 //!
 //! The last two terms vanish if the modes carry the whole mass. Then no output depends on the ground acceleration directly.
 
+use crate::mechanics::arc::Arc;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
 use crate::mechanics::reach::Magnitudes;
 use crate::numbers::Number;
-use crate::series::taylor::{Arc, ORDERS, ZERO, evaluate};
+use crate::series::taylor::{ORDERS, ZERO, evaluate};
 use crate::structure::rest;
 use crate::{Base, Mode, Ramp};
 

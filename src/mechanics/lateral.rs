@@ -8,9 +8,8 @@ use crate::numbers::dual::Dual;
 use crate::numbers::most::Most;
 use crate::series::extremes::{OFF_CHORD, off_chord};
 use crate::series::taylor::evaluate;
-use crate::series::terms::Terms;
 use crate::structure::mode::Mode;
-use crate::{Foundation, Ramp, Structure};
+use crate::{Foundation, Structure};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
@@ -175,37 +174,6 @@ impl<Q: Coordinates> Lateral<Dual<f64>> for Duals<Q> {
         let rests = [self.value.rest(), self.rate.rest()];
         let [value, rate] = rests.map(Option::unwrap_or_default);
         (rests != [None; 2]).then(|| [0, 1].map(|i| Dual { value: value[i], rate: rate[i] }))
-    }
-}
-
-/// Coordinates over a step as power series.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Polynomials<'a, Q> {
-    /// The coefficients of a motion.
-    Motion(&'a [Q]),
-    /// Forces that are linear in time, and the span (s).
-    Load(Ramp<Q>, f64),
-}
-
-impl<Q: Coordinates> Polynomials<'_, Q> {
-    /// A sum of coordinates, which is `linear` in them.
-    fn sum(&self, linear: impl Fn(&Q) -> f64) -> Terms {
-        match self {
-            Polynomials::Motion(coefficients) => Terms::from_fn(coefficients.len() - 1, |k| linear(&coefficients[k])),
-            Polynomials::Load(Ramp { value, slope }, span) => Terms::ramp(linear(value), linear(slope) * span),
-        }
-    }
-}
-
-impl<Q: Coordinates> Lateral<Terms> for Polynomials<'_, Q> {
-    type Of = Q;
-
-    fn of(&self, j: usize) -> Terms {
-        self.sum(|of| of.of(j))
-    }
-
-    fn weighed(&self, weights: &Modes) -> Terms {
-        self.sum(|of| of.weighed(weights))
     }
 }
 

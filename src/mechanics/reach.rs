@@ -1,5 +1,6 @@
 //! How far outputs reach: bounds of their magnitudes, which spare most pieces of a motion the search for peaks.
 
+use crate::mechanics::arc::Arc;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Modes, Mosts};
 #[cfg(feature = "lanes")]
@@ -7,7 +8,7 @@ use crate::mechanics::load::Load;
 use crate::numbers::Turn;
 use crate::numbers::most::Most;
 use crate::series::extremes::off_chord;
-use crate::series::taylor::{Arc, ZERO, evaluate};
+use crate::series::taylor::{ZERO, evaluate};
 use crate::{Contact, Output, Ramp, Structure};
 #[cfg(feature = "lanes")]
 use crate::{Phase, State};

@@ -7,6 +7,7 @@ use super::fall::Found;
 use super::peaks::{Peak, Peaks};
 use super::{Run, RunError, Runs};
 use crate::engine::piece::{Piece, Sample, Watch};
+use crate::mechanics::arc::stretch;
 use crate::mechanics::lateral::Coordinates;
 use crate::series::terms::Terms;
 use crate::series::{extremes, taylor};
@@ -196,7 +197,7 @@ fn divide(lines: &[Terms], within: &[f64], [from, to]: [f64; 2], divisions: u32,
         let coefficients = line.used();
         let mut series = taylor::series(coefficients);
         let over = &mut series[..coefficients.len()];
-        taylor::stretch(over, from, to - from);
+        stretch(over, from, to - from);
         let off = extremes::off_chord(over, 1.0);
         if off > 0.0 { off / within } else { 0.0 }
     };

@@ -5,13 +5,14 @@ use super::peak_watch::PeakWatch;
 use super::peaks::{Peak, Peaks};
 use super::{Finish, Run, RunError, Runs};
 use crate::engine::piece::{Expansion, Sample};
+use crate::mechanics::arc::{Arc, stretch};
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::{Dissipators, Restraint};
 use crate::run::ground_motion::GroundMotion;
 use crate::run::validity::Validity;
 use crate::series::bisection::last_where;
 use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
-use crate::series::taylor::{self, Arc, sum_of_magnitudes};
+use crate::series::taylor::sum_of_magnitudes;
 use crate::{Base, Detail, Piece, Side, Structure, Transition, TransitionKind, Watch};
 #[cfg(feature = "lanes")]
 use crate::{
@@ -206,7 +207,7 @@ fn last_passing<Q: Coordinates>(angle: f64, side: f64, expansion: &Expansion<Q>)
     let arc = expansion.arc;
     let mut theta = arc.theta;
     let back = &mut theta[..=arc.order];
-    taylor::stretch(back, arc.reach, -arc.reach);
+    stretch(back, arc.reach, -arc.reach);
     let beyond = Gap::new(back, side, -angle);
     let mut sigma = 0.0;
     loop {

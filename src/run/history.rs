@@ -4,6 +4,7 @@
 
 use crate::Output;
 use crate::engine::piece::{Piece, Watch};
+use crate::mechanics::arc::stretch;
 use crate::mechanics::lateral::Coordinates;
 use crate::series::extremes;
 use crate::series::taylor::{self, Series};
@@ -92,7 +93,7 @@ impl Section {
     fn over(&self, i: usize, from: f64, to: f64) -> Series {
         let mut series = self.series[i];
         let order = series.iter().rposition(|c| *c != 0.0).unwrap_or(0);
-        taylor::stretch(&mut series[..=order], (from - self.start) / self.span, (to - from) / self.span);
+        stretch(&mut series[..=order], (from - self.start) / self.span, (to - from) / self.span);
         series
     }
 }

@@ -9,11 +9,12 @@ use crate::engine::piece::{Piece, Room, Watch};
 #[cfg(feature = "lanes")]
 use crate::engine::{lanes::Passes, sought::Sought};
 use crate::levels::level::Level;
+use crate::mechanics::arc::Arc;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::reach::Reach;
 #[cfg(feature = "lanes")]
 use crate::numbers::lanes::put;
-use crate::series::taylor::{Arc, LONGEST_SPAN};
+use crate::series::taylor::LONGEST_SPAN;
 #[cfg(feature = "lanes")]
 use crate::{Engine, Phase};
 use crate::{LinearLoad, Motion, State, Transition};
