@@ -34,13 +34,14 @@ use crate::mechanics::arc::Arc;
 use crate::mechanics::contact;
 use crate::mechanics::energy::energy;
 use crate::mechanics::instant::{Instant, Second};
-use crate::mechanics::lateral::{Coordinates, Duals, Lateral, Modes};
+use crate::mechanics::lateral::{Coordinates, Duals, Lateral};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
 use crate::mechanics::restraint::{Dissipators, Restraints};
 use crate::numbers::dual::Dual;
 use crate::series::first_crossing::Crossing;
 use crate::structure::ground::MORE;
+use crate::structure::mode::Modes;
 use crate::structure::quantity::{Quantity, Refused, ensure};
 use crate::{Foundation, Output, Phase, State, Structure};
 use motion::{Chatter, Motion, Work};
@@ -252,7 +253,7 @@ impl Engine<Modes> {
         let level = settings.level(&MANY, frame, state.theta)?;
         let (State { u, u_dot, .. }, modes) = (state, level.structure().modes().len());
         for numbers in [u, u_dot] {
-            let given = numbers.count();
+            let given = numbers.count;
             ensure(given == modes || given == modes + more || numbers.is_within(&Modes::ZERO), || {
                 format!(
                     "the initial state has {given} coordinates, and {modes} modes move: give one coordinate for each, or 0 for all"

@@ -3,7 +3,7 @@
 pub(crate) mod arc;
 pub mod contact;
 pub mod energy;
-pub mod gauge;
+mod gauge;
 pub mod impact;
 pub(crate) mod instant;
 pub(crate) mod lateral;

@@ -6,6 +6,7 @@ pub mod base;
 pub mod derived;
 pub mod description;
 pub mod doubts;
+pub mod gauge;
 pub mod ground;
 pub mod mode;
 pub mod natural_quantities;
@@ -13,18 +14,15 @@ pub mod one_mass;
 pub mod parameters;
 pub mod quantity;
 
-use crate::mechanics::gauge::Gauge;
-use crate::mechanics::lateral::{Coordinates, Lateral, MOST_MODES, Modes};
-use crate::mechanics::reach::{Reach, reaches};
 use crate::series::bisection::last_where;
-use crate::{Detail, Load, State};
-use base::{Base, Ties};
+use base::{Base, Body};
+use gauge::{Gauges, Reach, rest};
 use ground::{Foundation, Ground, MORE};
-use mode::{Floor, Mode, Vibration};
+use mode::{Floor, MOST_MODES, Mode, Modes, Vibration};
 use one_mass::OneMass;
 use parameters::Parameters;
 use quantity::{OutOfRange, Quantity, Refused, Units, ensure, quantity};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
@@ -36,52 +34,6 @@ const EXACT: f64 = 1e-13;
 
 /// The most that rounded modes may carry beyond the whole, as a fraction of the whole; the modes are then the whole.
 const EXCESS: f64 = 5e-3;
-
-/// A structure as a rigid body: its foundation, and the moments of all mass above the foundation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Body {
-    /// Mass of the foundation m0, at the height of the pivots, kg.
-    pub m0: f64,
-    /// Inertia of the foundation about the middle of the base J0, kg·m².
-    pub J0: f64,
-    /// Mass above the foundation m_s, kg.
-    pub m_s: f64,
-    /// First moment of this mass about the height of the pivots S_1, kg·m.
-    pub S_1: f64,
-    /// Second moment of this mass about the height of the pivots I_2, kg·m².
-    pub I_2: f64,
-    /// Half-width of the base B, m.
-    pub B: f64,
-    /// Coefficient of restitution; without one, momentum with the shape frozen gives a coefficient for each impact (M19).
-    pub r: Option<f64>,
-    /// Acceleration of gravity, m/s².
-    pub g: f64,
-    /// Viscous damping while rocking as a fraction of the damping in full contact.
-    pub c_ratio: f64,
-    /// The tendon and the dissipators between the base and the ground.
-    pub ties: Ties,
-}
-
-impl Body {
-    /// Checks the base, its tendon and its dissipators against the limits of one mass.
-    fn check(&self) -> Result<(), Refused> {
-        let r = self.r.unwrap_or(1.0);
-        Parameters { H: 1.0, r, ..self.over(Parameters::EVISON) }.check()
-    }
-
-    /// The base of these `parameters`, with the coefficient of restitution `r`, under mass of these moments m_s, S_1 and I_2.
-    pub(crate) fn of(parameters: &Parameters, r: Option<f64>, [m_s, S_1, I_2]: [f64; 3]) -> Body {
-        let &Parameters { m0, J0, B, g, c_ratio, .. } = parameters;
-        Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties: Ties::of(parameters) }
-    }
-
-    /// The parameters of the base, and the others from `rest`; r is NaN without a coefficient.
-    fn over(&self, rest: Parameters) -> Parameters {
-        let &Body { m0, J0, B, r, g, c_ratio, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y }, .. } = self;
-        let r = r.unwrap_or(f64::NAN);
-        Parameters { m0, J0, B, c_ratio, r, g, P_0, k_t, xi_d, c_d, k_d, F_y, ..rest }
-    }
-}
 
 /// Limits of the moments of the mass above the foundation.
 const MOMENTS: [Quantity<Body>; 3] = [
@@ -148,59 +100,6 @@ impl PartialEq for Reaches {
     }
 }
 
-/// The constants by which the outputs of a structure follow from its modes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Gauges {
-    /// Shape of the drift of each storey in the modes.
-    pub(crate) drift: Vec<Modes>,
-    /// Acceleration of each floor along the turning e_x a_i, m/s².
-    pub a: Vec<Gauge>,
-    /// Shear of the storey below each floor V_k, from the given floors, N.
-    pub V: Vec<Gauge>,
-    /// Overturning moment at the foot of each storey M_k, from the given floors, N·m.
-    pub M: Vec<Gauge>,
-    /// Base shear V_t, N.
-    pub V_t: Gauge,
-    /// Overturning moment M_t, N·m.
-    pub M_t: Gauge,
-    /// Whether a value depends on the ground acceleration directly.
-    pub has_feedthrough: bool,
-}
-
-impl Gauges {
-    fn new(&Body { m_s, S_1, I_2, .. }: &Body, modes: &[Mode], floors: &[Floor], rounding: f64) -> Gauges {
-        let shape = |of: fn(&Mode) -> f64| Modes::new(&Vec::from_iter(modes.iter().map(of)));
-        let sum = |floors: &[Floor], part: &dyn Fn(&Floor) -> f64| {
-            let (mut weight, mut height, mut sum) = (0.0, 0.0, shape(|_| 0.0));
-            for floor in floors {
-                let part = part(floor);
-                (weight, height) = (weight + part, height + part * floor.height);
-                sum = sum.plus(floor.shape, part);
-            }
-            Gauge::new(modes, weight, sum, height, rounding)
-        };
-        let moment = |k: usize| {
-            let foot = if k == 0 { 0.0 } else { floors[k - 1].height };
-            sum(&floors[k..], &|floor| floor.mass * (floor.height - foot))
-        };
-        let a = Vec::from_iter(floors.iter().map(|floor| Gauge::new(modes, 1.0, floor.shape, floor.height, rounding)));
-        let V = Vec::from_iter((0..floors.len()).map(|k| sum(&floors[k..], &|floor| floor.mass)));
-        let M = Vec::from_iter((0..floors.len()).map(moment));
-        let V_t = Gauge::new(modes, m_s, shape(|mode| mode.gamma), S_1, rounding);
-        let M_t = Gauge::new(modes, S_1, shape(|mode| mode.mass * mode.height), I_2, rounding);
-        let has_feedthrough = [&V_t, &M_t].into_iter().chain(&a).chain(&V).chain(&M).any(Gauge::has_feedthrough);
-        let below = |i: usize| i.checked_sub(1).map_or(Modes::ZERO, |below| floors[below].shape);
-        let drift = floors.iter().enumerate().map(|(i, floor)| floor.shape.plus(below(i), -1.0)).collect();
-        Gauges { drift, a, V, M, V_t, M_t, has_feedthrough }
-    }
-}
-
-/// The rest of the `whole` beside a sum over the modes, if more than this part `rounding` of the whole.
-pub(crate) fn rest(whole: f64, of_modes: f64, rounding: f64) -> f64 {
-    let rest = whole - of_modes;
-    if rest.abs() <= rounding * whole.abs() { 0.0 } else { rest }
-}
-
 /// The refusal of a number of this mode or floor, counted from 1.
 pub(crate) fn of_number(what: &str, number: usize, cause: OutOfRange) -> Refused {
     Refused(format!("{what} {number}: {cause}"))
@@ -231,7 +130,7 @@ impl Structure {
         for (number, floor) in (1..).zip(floors) {
             let checked = OF_FLOOR.iter().try_for_each(|of| of.check((of.get)(floor)));
             checked.map_err(|cause| of_number("floor", number, cause))?;
-            let numbers = floor.shape.count();
+            let numbers = floor.shape.count;
             ensure(numbers == count, || {
                 format!("floor {number} has {numbers} numbers of its shape: give one for each of the {count} modes")
             })?;
@@ -328,12 +227,8 @@ impl Structure {
         Ok(kept.standing(foundation, coordinates))
     }
 
-    /// This structure as the level `detail` moves it: a fixed base stands on no ground that gives, and has no outputs of such ground.
-    pub fn at(&self, detail: Detail) -> Structure {
-        if detail.has_uplift() { self.clone() } else { self.on_rigid_ground() }
-    }
-
-    fn on_rigid_ground(&self) -> Structure {
+    /// This structure without ground that gives.
+    pub(crate) fn on_rigid_ground(&self) -> Structure {
         match self.foundation() {
             Some(_) => self.standing(None, self.modes().to_vec()),
             None => self.clone(),
@@ -380,7 +275,7 @@ impl Structure {
 
     /// This structure as the level `rigid` of one mass shows it: floors and gauges know no mode.
     pub(crate) fn shown_rigid(&self) -> Structure {
-        let floors = Vec::from_iter(self.0.floors.iter().map(|floor| Floor { shape: Modes::ZERO, ..*floor }));
+        let floors = Vec::from_iter(self.0.floors.iter().map(|floor| Floor { shape: Modes::default(), ..*floor }));
         let gauges = Gauges::new(self.body(), &[], &floors, ROUNDING);
         self.changed(|whole| (whole.floors, whole.gauges) = (floors, gauges))
     }
@@ -401,26 +296,10 @@ impl Structure {
         kept.sort_by(|a, b| square(a).total_cmp(&square(b)));
         kept.truncate(count);
         kept.sort_unstable();
-        let shape = |floor: &Floor| Modes::new(&Vec::from_iter(kept.iter().map(|j| floor.shape.of(*j))));
+        let shape = |floor: &Floor| Modes::new(&Vec::from_iter(kept.iter().map(|j| floor.shape.of[*j])));
         let floors = Vec::from_iter(self.0.floors.iter().map(|floor| Floor { shape: shape(floor), ..*floor }));
         let kept = Structure::of(self.0.body, &Vec::from_iter(kept.iter().map(|j| self.0.modes[*j])), &floors, None);
         self.on_own_ground(kept).expect("the rest of the modes rides rigidly, which makes the base heavier and stiffer")
-    }
-
-    /// The load of the ground accelerations `a_g` and `a_v` (m/s²) and of a horizontal force on each floor (N, to the right), or of
-    /// none. On the right, the forces F add to
-    ///
-    /// ```text
-    /// (M1, M8)  φᵀF cos θ       (M9)  Σ φᵀF w sin θ + F_res sB sin θ + N_res cos θ       (M2, M3)  N_res
-    /// ```
-    ///
-    /// F_res = Σ F (1 − Σ φ Γ/μ) and N_res = Σ F (h − Σ φ κ/μ) act on mass that no mode carries. Both are 0 with all modes.
-    pub fn load(&self, a_g: f64, a_v: f64, forces: &[f64]) -> Result<Load<Modes>, Refused> {
-        let (given, floors) = (forces.len(), self.0.floors.len());
-        ensure(given == 0 || given == floors, || {
-            format!("{given} forces are given on {floors} floors: give one for each floor, or none")
-        })?;
-        Ok(Load { a_g, F_t: Modes::of_forces(self, forces.iter().copied()), a_v })
     }
 
     /// All numbers by which its motion differs from that of another structure.
@@ -431,13 +310,6 @@ impl Structure {
     /// The structure as a rigid body.
     pub fn body(&self) -> &Body {
         &self.0.body
-    }
-
-    /// The sum of the horizontal forces of `load` (N), and the sum of their moments in full contact (N·m).
-    pub(crate) fn pushes<Q: Coordinates>(&self, load: &Load<Q>) -> [f64; 2] {
-        let [force, moment] = load.F_t.rest().unwrap_or_default();
-        let on_modes = |part: fn(&Mode) -> f64| Q::sum(self, |j, mode| part(mode) * load.F_t.of(j));
-        [force + on_modes(|mode| mode.share), moment + on_modes(|mode| mode.height)]
     }
 
     /// The numbers of one mass, if the structure was made of them.
@@ -487,7 +359,8 @@ impl Structure {
         };
         let (m, H, r) = (mode.mass, mode.height, self.0.body.r.unwrap_or(1.0));
         let of_mode = OneMass::new(Parameters { m, H, r, ..self.parameters() }).ok()?;
-        let floor = |floor: &Floor| Floor { shape: floor.shape.times(share), ..*floor };
+        let floor =
+            |floor: &Floor| Floor { shape: floor.shape.with(&Modes::default(), |own, _| own * share), ..*floor };
         let floors = Vec::from_iter(self.0.floors.iter().map(floor));
         Some(Structure::of(self.0.body, &[mode], &floors, None).changed(|whole| whole.of_mode = Some(of_mode)))
     }
@@ -541,10 +414,10 @@ impl Structure {
         &self.0.gauges
     }
 
-    /// How far each output reaches that may have a peak.
+    /// The reaches of outputs, which `find` finds once.
     #[inline(always)]
-    pub(crate) fn reaches(&self) -> &[Reach] {
-        self.0.reaches.0.get_or_init(|| reaches(self))
+    pub(crate) fn reaches_by(&self, find: fn(&Structure) -> Vec<Reach>) -> &[Reach] {
+        self.0.reaches.0.get_or_init(|| find(self))
     }
 
     /// Whether no mode moves what is shown of the structure.
@@ -572,23 +445,6 @@ impl Structure {
     /// The fastest rate of small motions on ground that gives, 1/s.
     pub(crate) fn fastest_on_ground(&self) -> Option<f64> {
         self.foundation().map(|of| of.fastest(&self.frequencies_on_ground()))
-    }
-
-    /// Usual magnitudes in a motion: of each mode, as if the mode had all mass, where the base is about to lift off statically; the
-    /// angle at which the structure falls; and the rates that belong to them.
-    pub fn usual<Q: Coordinates>(&self) -> State<Q> {
-        let reach = self.0.body.m_s.sqrt() * self.0.base.hold_at_rest() / self.0.body.S_1;
-        let u = |mode: &Mode| reach * mode.mass.sqrt() / mode.stiffness;
-        let u_dot = |_: usize, mode: &Mode| u(mode) * mode.omega();
-        let theta = libm::atan(self.0.base.tan_alpha_cg);
-        let theta_dot = self.0.base.p_l * theta;
-        let mut usual = State { u: Q::each(self, |_, mode| u(mode)), u_dot: Q::each(self, u_dot), theta, theta_dot };
-        if let Some(foundation) = self.foundation() {
-            let settled = foundation.rest.abs();
-            usual.u.set(foundation.place, settled);
-            usual.u_dot.set(foundation.place, (self.0.base.g * settled).sqrt());
-        }
-        usual
     }
 
     /// Mass (kg), first (kg·m) and second moment (kg·m²) that no mode carries.

@@ -153,6 +153,13 @@ impl Detail {
     }
 }
 
+impl Structure {
+    /// This structure as the level `detail` moves it: a fixed base stands on no ground that gives, and has no outputs of such ground.
+    pub fn at(&self, detail: Detail) -> Structure {
+        if detail.has_uplift() { self.clone() } else { self.on_rigid_ground() }
+    }
+}
+
 /// A level with an elastic strut: by exact flow in full contact where there is one, otherwise by series.
 #[derive(Clone, Debug)]
 pub(crate) struct Elastic<Rocking> {

@@ -31,10 +31,11 @@ use crate::levels::ties::TieSeries;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::impact;
 use crate::mechanics::instant::Second;
-use crate::mechanics::lateral::{Coordinates, Modes};
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::{self, Angles, Dissipators};
 use crate::mechanics::uplift::inertia;
 use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER};
+use crate::structure::mode::Modes;
 use crate::structure::mode::Vibration;
 use crate::{Base, Mode};
 use crate::{Phase, Side, State};
@@ -652,12 +653,13 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::gauge::Gauge;
     use crate::mechanics::instant::Instant;
-    use crate::mechanics::lateral::{Lateral, Modes};
+    use crate::mechanics::lateral::Lateral;
     use crate::mechanics::load::Load;
     use crate::mechanics::reactions::Reactions;
     use crate::structure::description::tests::three_storeys;
+    use crate::structure::gauge::Gauge;
+    use crate::structure::mode::Modes;
     use crate::{Body, Parameters, Structure};
     use approx::assert_relative_eq;
 

@@ -1,10 +1,11 @@
 //! The motion over one step, as polynomials in time.
 
-use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
+use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::Ramp;
 use crate::mechanics::state::State;
 use crate::series::taylor::{MAX_ORDER, Series, ZERO, evaluate};
 use crate::series::terms::Terms;
+use crate::structure::mode::Modes;
 
 /// Coefficients of the same polynomial about `by`.
 fn shift<Q: Coordinates>(coefficients: &mut [Q], by: f64) {

@@ -2,10 +2,11 @@
 
 use crate::mechanics::energy::mechanical;
 use crate::mechanics::instant::Instant;
-use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
+use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint, Restraints, Tie, pair};
 use crate::numbers::{Angle, Number};
 use crate::structure::ground::Point;
+use crate::structure::mode::Modes;
 use crate::{Base, Contact, Foundation, Load, Phase, Side, State, Structure, Ties};
 
 /// min(−e, f/k) of each point, m: positive if the point is pressed.

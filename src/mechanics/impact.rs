@@ -27,18 +27,12 @@ pub fn angular_momentum<Q: Coordinates>(structure: &Structure, before: &State<Q>
     along - (across + m0 * B * B - J0) * theta_dot
 }
 
-/// The coefficient of restitution at an impact that ends rocking about `side` in the state `before`. Without a given one, momentum
-/// with the shape frozen gives (M19)
-///
-/// ```text
-/// r = (J_P − 2 m_t B² + Σ μ u²)/(J_P + 2 sB Σ Γ u + Σ μ u²)
-/// ```
+/// The coefficient of restitution at an impact that ends rocking about `side` in the state `before`.
 pub fn restitution<Q: Coordinates>(structure: &Structure, side: Side, before: &State<Q>) -> f64 {
-    let &Base { m_t, B, J_P, r, .. } = structure.base();
-    r.unwrap_or_else(|| {
+    structure.base().restitution(|| {
         let square = Q::sum(structure, |j, mode| mode.mass * before.u.of(j) * before.u.of(j));
         let offset = Q::sum(structure, |j, mode| mode.gamma * before.u.of(j));
-        (J_P - 2.0 * m_t * B * B + square) / (J_P + 2.0 * side.sign() * B * offset + square)
+        [square, side.sign() * offset]
     })
 }
 

@@ -8,10 +8,10 @@ use crate::numbers::dual::Dual;
 use crate::numbers::most::Most;
 use crate::series::extremes::{OFF_CHORD, off_chord};
 use crate::series::taylor::evaluate;
-use crate::structure::mode::Mode;
+use crate::structure::mode::{Floor, MOST_MODES, Mode, Modes};
 use crate::{Foundation, Structure};
+use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 use wide::f64x4;
 
@@ -267,56 +267,6 @@ impl Coordinates for f64 {
     }
 }
 
-/// The most modes of a structure.
-pub const MOST_MODES: usize = 24;
-
-/// A coordinate for each mode of a structure of many masses; or a force on each mode, beside the force on mass that no mode carries.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Modes {
-    /// Numbers that were given; a structure refuses another count than that of its modes.
-    count: usize,
-    of: [f64; MOST_MODES],
-    /// Of forces, the force on mass that no mode carries, and its moment; otherwise 0.
-    rest: [f64; 2],
-}
-
-impl Modes {
-    /// One number for each mode. Numbers beyond `MOST_MODES` fit no structure and are not kept.
-    #[inline]
-    pub fn new(numbers: &[f64]) -> Modes {
-        let mut modes = Modes { count: numbers.len(), ..Modes::ZERO };
-        modes.of.iter_mut().zip(numbers).for_each(|(of, number)| *of = *number);
-        modes
-    }
-
-    /// One number for each mode.
-    #[inline]
-    pub fn numbers(&self) -> &[f64] {
-        &self.of[..self.count.min(MOST_MODES)]
-    }
-
-    /// How many numbers were given.
-    pub(crate) fn count(&self) -> usize {
-        self.count
-    }
-
-    /// These forces on the modes, and the force and the moment of what acts on mass that no mode carries.
-    pub(crate) fn and_rest(self, rest: [f64; 2]) -> Modes {
-        Modes { rest, ..self }
-    }
-
-    /// The numbers in fours, with 0 for modes that are none.
-    #[inline(always)]
-    fn fours(&self) -> impl Iterator<Item = &[f64; 4]> {
-        self.of.as_chunks().0.iter().take(self.count.div_ceil(4))
-    }
-
-    #[inline(always)]
-    fn fours_mut(&mut self) -> impl Iterator<Item = &mut [f64; 4]> {
-        self.of.as_chunks_mut().0.iter_mut().take(self.count.div_ceil(4))
-    }
-}
-
 impl Lateral<f64> for Modes {
     type Of = Modes;
 
@@ -371,13 +321,8 @@ impl Coordinates for Modes {
     }
 
     #[inline(always)]
-    fn with(mut self, other: &Modes, combine: impl Fn(f64, f64) -> f64) -> Modes {
-        self.count = self.count.max(other.count);
-        for (own, other) in self.of.iter_mut().zip(&other.of).take(self.count) {
-            *own = combine(*own, *other);
-        }
-        self.rest = [0, 1].map(|i| combine(self.rest[i], other.rest[i]));
-        self
+    fn with(self, other: &Modes, combine: impl Fn(f64, f64) -> f64) -> Modes {
+        Modes::with(self, other, combine)
     }
 
     #[inline]
@@ -452,11 +397,10 @@ impl Coordinates for Modes {
     }
 }
 
-impl Mode {
-    /// The part that the mode takes in a translation of the base.
-    #[inline(always)]
-    pub(crate) fn part<N: Number>(&self, translation: N) -> N {
-        if self.share == 1.0 { translation } else { translation * self.share } // one mass spares the product
+impl Floor {
+    /// Elastic displacement of the floor at the coordinates `u`, m.
+    pub fn displacement<Q: Coordinates>(&self, u: &Q) -> f64 {
+        u.weighed(&self.shape)
     }
 }
 

@@ -12,9 +12,9 @@
 //!
 //! The vertical ground acceleration a_v replaces g by g + a_v in every weight.
 
-use crate::Structure;
 use crate::mechanics::lateral::Coordinates;
-use crate::structure::quantity::{OutOfRange, Quantity, quantity};
+use crate::structure::quantity::{OutOfRange, Quantity, Refused, ensure, quantity};
+use crate::{Mode, Modes, Structure};
 use serde::{Deserialize, Serialize};
 
 /// An acceleration (m/s²) or a force (N) over one interval, positive to the right: `value + slope·(t − start of the interval)`.
@@ -96,6 +96,31 @@ impl<Q: Coordinates> Load<Q> {
     #[inline(always)]
     pub(crate) fn on_modes(&self, structure: &Structure) -> Q {
         Q::each(structure, |j, mode| mode.part(self.a_g) - self.F_t.of(j) / mode.mass).beside(&self.F_t)
+    }
+}
+
+impl Structure {
+    /// The load of the ground accelerations `a_g` and `a_v` (m/s²) and of a horizontal force on each floor (N, to the right), or of
+    /// none. On the right, the forces F add to
+    ///
+    /// ```text
+    /// (M1, M8)  φᵀF cos θ       (M9)  Σ φᵀF w sin θ + F_res sB sin θ + N_res cos θ       (M2, M3)  N_res
+    /// ```
+    ///
+    /// F_res = Σ F (1 − Σ φ Γ/μ) and N_res = Σ F (h − Σ φ κ/μ) act on mass that no mode carries. Both are 0 with all modes.
+    pub fn load(&self, a_g: f64, a_v: f64, forces: &[f64]) -> Result<Load<Modes>, Refused> {
+        let (given, floors) = (forces.len(), self.floors().len());
+        ensure(given == 0 || given == floors, || {
+            format!("{given} forces are given on {floors} floors: give one for each floor, or none")
+        })?;
+        Ok(Load { a_g, F_t: Modes::of_forces(self, forces.iter().copied()), a_v })
+    }
+
+    /// The sum of the horizontal forces of `load` (N), and the sum of their moments in full contact (N·m).
+    pub(crate) fn pushes<Q: Coordinates>(&self, load: &Load<Q>) -> [f64; 2] {
+        let [force, moment] = load.F_t.rest().unwrap_or_default();
+        let on_modes = |part: fn(&Mode) -> f64| Q::sum(self, |j, mode| part(mode) * load.F_t.of(j));
+        [force + on_modes(|mode| mode.share), moment + on_modes(|mode| mode.height)]
     }
 }
 

@@ -13,11 +13,12 @@
 //! motion. To add an output, write its row in `outputs!`, its place among the outputs and its formula. All
 //! columns, peaks and pictures follow.
 
-use crate::mechanics::gauge::Gauge;
 use crate::mechanics::instant::{Instant, Place, uplift};
-use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
+use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::Load;
 use crate::numbers::Number;
+use crate::structure::gauge::Gauge;
+use crate::structure::mode::Modes;
 use crate::{Base, Foundation, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 

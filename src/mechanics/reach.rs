@@ -2,14 +2,16 @@
 
 use crate::mechanics::arc::Arc;
 use crate::mechanics::instant::Instant;
-use crate::mechanics::lateral::{Coordinates, Modes, Mosts};
+use crate::mechanics::lateral::{Coordinates, Mosts};
 #[cfg(feature = "lanes")]
 use crate::mechanics::load::Load;
 use crate::numbers::Turn;
 use crate::numbers::most::Most;
 use crate::series::extremes::off_chord;
-use crate::series::taylor::{ZERO, evaluate};
-use crate::{Contact, Output, Ramp, Structure};
+use crate::series::taylor::{ORDERS, ZERO, evaluate};
+use crate::structure::gauge::Reach;
+use crate::structure::mode::Modes;
+use crate::{Base, Contact, Gauge, Output, Ramp, Structure};
 #[cfg(feature = "lanes")]
 use crate::{Phase, State};
 
@@ -56,25 +58,9 @@ impl<Q: Coordinates> OffChord<Q> {
     }
 }
 
-/// How far an output reaches: the weights of the magnitudes of the motion in the bound of its magnitude.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Reach {
-    /// Of |sin θ| and of 1 − cos θ.
-    turn: [f64; 2],
-    /// Of |a_g| in full contact, if the output depends on the ground acceleration directly.
-    a_g: Option<f64>,
-    /// Of each |u|, of each |u̇| times the part of the damping, and of each |F_t|.
-    u: Modes,
-    u_dot: Modes,
-    push: Modes,
-    /// Of each u, and of each u̇ times the part of the damping, in the output itself while the base is flat.
-    #[cfg(feature = "lanes")]
-    signed: [Modes; 2],
-}
-
 /// The reaches of the outputs of `structure` that may be searched for peaks, each at its place. The formula of an output in bounds of
 /// magnitudes is linear in what the weights are of, so that one magnitude of 1 among others of 0 shows its weight.
-pub(crate) fn reaches(structure: &Structure) -> Vec<Reach> {
+fn reaches(structure: &Structure) -> Vec<Reach> {
     let [none, one] = [0.0, 1.0].map(Most);
     let nothing = Modes::parts(structure, 0.0);
     let of_mode = |j: usize| Modes::each(structure, |i, _| f64::from(i == j));
@@ -120,6 +106,14 @@ pub(crate) fn reaches(structure: &Structure) -> Vec<Reach> {
         }
     };
     reached(structure).map(reach).collect()
+}
+
+impl Structure {
+    /// How far each output reaches that may have a peak.
+    #[inline(always)]
+    pub(crate) fn reaches(&self) -> &[Reach] {
+        self.reaches_by(reaches)
+    }
 }
 
 /// The outputs of `structure` that may be searched for peaks, each at its place among the reaches.
@@ -238,6 +232,31 @@ impl Reach {
         let [sin, versine] = self.turn;
         let elastic = self.elastic(most.damping, &most.u, &most.u_dot) + most.F_t.weighed(&self.push);
         self.elastic(most.damping, &off.u, &off.u_dot) + (sin + versine) * off.turn + elastic * off.product
+    }
+}
+
+impl Gauge {
+    /// Bound of the magnitude of the terms of [`Gauge::at`] in θ and in the ground acceleration over a polynomial, within `most`.
+    /// They are added up before they are bounded, because θ̈ opposes the ground acceleration.
+    pub(crate) fn turning<Q: Coordinates>(
+        &self,
+        base: &Base,
+        (arc, a_g): (&Arc<Q>, Ramp),
+        most: &Magnitudes<Q>,
+    ) -> f64 {
+        let ([height, share], mut linear) = (self.left, ZERO);
+        let tilt = base.g * (self.weight - share);
+        for k in 0..=arc.order {
+            let theta_ddot = if k < arc.order { ORDERS[k + 1] * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
+            linear[k] = height * theta_ddot + tilt * arc.theta[k];
+        }
+        linear[0] += share * a_g.value;
+        linear[1] += share * a_g.slope * arc.span;
+        let linear = arc.used(&linear);
+        let &Magnitudes { theta, theta_dot, a_g, a_v, .. } = most;
+        let ground = base.B * theta_dot * theta_dot + a_g * theta * theta / 2.0 + a_v * theta;
+        let rest = share.abs() * ground + tilt.abs() * theta * theta * theta / 6.0;
+        f64::most(linear, &evaluate(linear, arc.reach), arc.reach) + rest
     }
 }
 

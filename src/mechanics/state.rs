@@ -1,8 +1,8 @@
 //! State and phase of the structure.
 
-use crate::Structure;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::structure::quantity::{Quantity, Refused, ensure, quantity};
+use crate::{Mode, Structure};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use std::slice::{from_mut, from_ref};
@@ -254,6 +254,25 @@ fn coordinates<Q: Coordinates>(structure: &Structure, of: &Quantity<State>, give
         })?;
     }
     Ok(found)
+}
+
+impl Structure {
+    /// Usual magnitudes in a motion: of each mode, as if the mode had all mass, where the base is about to lift off statically; the
+    /// angle at which the structure falls; and the rates that belong to them.
+    pub fn usual<Q: Coordinates>(&self) -> State<Q> {
+        let reach = self.body().m_s.sqrt() * self.base().hold_at_rest() / self.body().S_1;
+        let u = |mode: &Mode| reach * mode.mass.sqrt() / mode.stiffness;
+        let u_dot = |_: usize, mode: &Mode| u(mode) * mode.omega();
+        let theta = libm::atan(self.base().tan_alpha_cg);
+        let theta_dot = self.base().p_l * theta;
+        let mut usual = State { u: Q::each(self, |_, mode| u(mode)), u_dot: Q::each(self, u_dot), theta, theta_dot };
+        if let Some(foundation) = self.foundation() {
+            let settled = foundation.rest.abs();
+            usual.u.set(foundation.place, settled);
+            usual.u_dot.set(foundation.place, (self.base().g * settled).sqrt());
+        }
+        usual
+    }
 }
 
 impl<Q: Coordinates> State<Q> {

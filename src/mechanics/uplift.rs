@@ -37,13 +37,6 @@ use crate::{Base, Mode, OneMass, Ramp, Side, State};
 /// the base therefore moves away from the ground.
 const LEAST_EXCESS: f64 = 1e-12;
 
-impl Base {
-    /// The moment of the weight and of the tendon that holds the base at rest down, N·m.
-    pub(crate) fn hold_at_rest(&self) -> f64 {
-        (self.m_t * self.g + self.ties.P_0) * self.B
-    }
-}
-
 /// The moment that holds the base down about `side` under the vertical acceleration `a_v`, N·m.
 pub(crate) fn hold<N: Number>(base: &Base, side: Side, a_v: N, dissipators: &Dissipators) -> N {
     let [_, pair @ ..] = ties(base, side, dissipators);

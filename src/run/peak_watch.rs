@@ -11,10 +11,10 @@ use crate::engine::{lanes::Passes, sought::Sought};
 use crate::levels::level::Level;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::reach::Reach;
 #[cfg(feature = "lanes")]
 use crate::numbers::lanes::put;
 use crate::series::taylor::LONGEST_SPAN;
+use crate::structure::gauge::Reach;
 #[cfg(feature = "lanes")]
 use crate::{Engine, Phase};
 use crate::{LinearLoad, Motion, State, Transition};

@@ -11,9 +11,10 @@ use crate::engine::sought::Sought;
 use crate::mechanics::contact::restraints;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::reach::{Magnitudes, OffChord, Reach};
+use crate::mechanics::reach::{Magnitudes, OffChord};
 use crate::mechanics::restraint::{Angles, Restraint, Restraints};
 use crate::series::extremes;
+use crate::structure::gauge::Reach;
 use crate::{Base, Detail, Output, State, Structure, Ties};
 use serde::{Deserialize, Serialize};
 

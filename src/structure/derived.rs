@@ -1,9 +1,8 @@
 //! The numbers that follow from a structure and are shown: of one mass (before Eq 11, after 4, 8 and 13, before 18), of any
 //! structure, and of each mode.
 
-use crate::mechanics::impact::restitution;
 use crate::structure::ROUNDING;
-use crate::{Mode, Modes, OneMass, Side, State, Structure};
+use crate::{Mode, OneMass, Structure};
 use std::f64::consts::TAU;
 
 /// A derived quantity of a `T`, for `describe` and the FMU.
@@ -79,10 +78,7 @@ const OF_STRUCTURE: [Derived<Structure>; 15] = [
     derived!("J_P" ["kg.m2"] "inertia about a pivot", "", |of| of.base().J_P),
     derived!("p_l" ["rad/s"] "frequency parameter", "", |of| of.base().p_l),
     derived!("alpha_cg" ["rad"] "slenderness of the centre of gravity", "", |of| libm::atan(of.base().tan_alpha_cg)),
-    derived!("r" ["1"] "coefficient of restitution without displacement", "", |of| {
-        let undeformed = State { u: Modes::default(), u_dot: Modes::default(), theta: 0.0, theta_dot: 0.0 };
-        restitution(of, Side::Right, &undeformed)
-    }),
+    derived!("r" ["1"] "coefficient of restitution without displacement", "", |of| of.base().restitution(|| [0.0; 2])),
     derived!("g" ["m/s2"] "acceleration of gravity", "", |of| of.base().g),
     derived!("P_0" ["N"] "prestress of the tendon with the base down", "", |of| of.base().ties.P_0),
     derived!("k_t" ["N/m"] "stiffness of the tendon", "", |of| of.base().ties.k_t),

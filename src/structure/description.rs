@@ -7,8 +7,8 @@
 //! ```
 
 use crate::digits::{short, with_unit};
-use crate::mechanics::lateral::{MOST_MODES, Modes};
 use crate::structure::ground::Ground;
+use crate::structure::mode::{MOST_MODES, Modes};
 use crate::structure::natural_quantities::{self, Given};
 use crate::structure::parameters::{MAX_DAMPING, MAX_SLENDERNESS};
 use crate::structure::quantity::{Quantity, Refused, Units, ensure};

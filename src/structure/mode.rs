@@ -1,7 +1,6 @@
 //! The modes of vibration of a structure in full contact, and the floors that show their motion.
 
-use crate::Modes;
-use crate::mechanics::lateral::Coordinates;
+use crate::numbers::Number;
 use serde::{Deserialize, Serialize};
 
 /// A mode of vibration in full contact: an oscillator on the base. One mass is one mode with the shape 1.
@@ -58,11 +57,66 @@ impl Mode {
     pub fn zeta(&self) -> f64 {
         self.damping / (2.0 * (self.stiffness * self.mass).sqrt())
     }
+
+    /// The part that the mode takes in a translation of the base.
+    #[inline(always)]
+    pub(crate) fn part<N: Number>(&self, translation: N) -> N {
+        if self.share == 1.0 { translation } else { translation * self.share } // one mass spares the product
+    }
 }
 
-impl Floor {
-    /// Elastic displacement of the floor at the coordinates `u`, m.
-    pub fn displacement<Q: Coordinates>(&self, u: &Q) -> f64 {
-        u.weighed(&self.shape)
+/// The most modes of a structure.
+pub const MOST_MODES: usize = 24;
+
+/// A coordinate for each mode of a structure of many masses; or a force on each mode, beside the force on mass that no mode carries.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Modes {
+    /// Numbers that were given; a structure refuses another count than that of its modes.
+    pub(crate) count: usize,
+    pub(crate) of: [f64; MOST_MODES],
+    /// Of forces, the force on mass that no mode carries, and its moment; otherwise 0.
+    pub(crate) rest: [f64; 2],
+}
+
+impl Modes {
+    /// One number for each mode. Numbers beyond `MOST_MODES` fit no structure and are not kept.
+    #[inline]
+    pub fn new(numbers: &[f64]) -> Modes {
+        let mut modes = Modes { count: numbers.len(), ..Modes::default() };
+        modes.of.iter_mut().zip(numbers).for_each(|(of, number)| *of = *number);
+        modes
+    }
+
+    /// One number for each mode.
+    #[inline]
+    pub fn numbers(&self) -> &[f64] {
+        &self.of[..self.count.min(MOST_MODES)]
+    }
+
+    /// These forces on the modes, and the force and the moment of what acts on mass that no mode carries.
+    pub(crate) fn and_rest(self, rest: [f64; 2]) -> Modes {
+        Modes { rest, ..self }
+    }
+
+    /// Combines each number with the one of `other`.
+    #[inline(always)]
+    pub(crate) fn with(mut self, other: &Modes, combine: impl Fn(f64, f64) -> f64) -> Modes {
+        self.count = self.count.max(other.count);
+        for (own, other) in self.of.iter_mut().zip(&other.of).take(self.count) {
+            *own = combine(*own, *other);
+        }
+        self.rest = [0, 1].map(|i| combine(self.rest[i], other.rest[i]));
+        self
+    }
+
+    /// The numbers in fours, with 0 for modes that are none.
+    #[inline(always)]
+    pub(crate) fn fours(&self) -> impl Iterator<Item = &[f64; 4]> {
+        self.of.as_chunks().0.iter().take(self.count.div_ceil(4))
+    }
+
+    #[inline(always)]
+    pub(crate) fn fours_mut(&mut self) -> impl Iterator<Item = &mut [f64; 4]> {
+        self.of.as_chunks_mut().0.iter_mut().take(self.count.div_ceil(4))
     }
 }
