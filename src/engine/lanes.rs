@@ -10,7 +10,7 @@ use super::{
 use crate::engine::motion::Motion;
 use crate::engine::phases;
 use crate::engine::piece::{Piece, Watch};
-use crate::levels::detail::Elastic;
+use crate::levels::elastic::Elastic;
 use crate::levels::level::{Level, Pace};
 use crate::levels::nonlinear::{Equations, Expanded, NonlinearRocking, Products, Recurrence, Rocker};
 use crate::levels::start::{self, MIN_ORDER, Start, Truncation};
@@ -144,7 +144,7 @@ impl<'a, S: Simd, Q: Coordinates> Rocking<'a, S, Q> {
         watch: &W,
     ) {
         let (runs, level) = (&mut self.runs, by_equations_5_and_6(&*engine.level).expect(STEPS_ALONE));
-        let (motion, rocking) = (&engine.motion, level.rocking());
+        let (motion, rocking) = (&engine.motion, &level.rocking);
         if !std::mem::replace(&mut runs.is_known[lane], true) {
             watch.seek(engine, lane, &mut runs.sought);
             let (side, one) = (motion.phase.side(), engine.structure().one());
@@ -422,7 +422,7 @@ impl<Q: Coordinates> Engine<Q> {
         let steps = if Q::IS_ONE {
             by_equations_5_and_6(&*self.level).is_some()
         } else {
-            self.structure().modes().len() <= MOST_MODES && self.level.leaping(&self.motion).is_some()
+            self.structure().modes().len() <= MOST_MODES && self.level.leaping(&self.motion.dissipators).is_some()
         };
         steps && !self.level.subject().is_tied
     }

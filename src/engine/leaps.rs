@@ -64,7 +64,7 @@ impl<'a, Q: Coordinates> Contacts<'a, Q> {
         watch.seek(engine, lane, &mut self.sought);
         (self.samples[lane], self.entered[lane], self.is_there[lane]) = (samples, samples.next, 1.0);
         (self.state[lane], self.age[lane]) = (motion.state, motion.chatter.age);
-        let Leaping { modes, moment, hold } = engine.level.leaping(motion).expect("it may leap");
+        let Leaping { modes, moment, hold } = engine.level.leaping(&motion.dissipators).expect("it may leap");
         (self.hold[lane], self.longest[lane]) = (hold, LONGEST_SPAN / structure.vibration().rocking[1]);
         let of = |exact: &ExactContact| exact.oscillator;
         let is_other = !self.exact[lane].iter().map(of).eq(modes.iter().map(of));

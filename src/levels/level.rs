@@ -2,8 +2,6 @@
 
 #[cfg(feature = "lanes")]
 use crate::Mode;
-#[cfg(feature = "lanes")]
-use crate::engine::motion::Motion;
 use crate::levels::first_uplift::Liftable;
 #[cfg(feature = "lanes")]
 use crate::levels::full_contact::ExactContact;
@@ -90,10 +88,10 @@ pub trait Level<Q: Coordinates = f64>: Send {
         None
     }
 
-    /// How such leaps in full contact from `motion` are found, if they are found like this: while Σ |M_j| |u_j| stays below `hold`, the M_j
+    /// How such leaps in full contact with these `dissipators` are found, if they are found like this: while Σ |M_j| |u_j| stays below `hold`, the M_j
     /// the moments of the modes for a unit of u, or while |Σ M_j u_j| certainly does.
     #[cfg(feature = "lanes")]
-    fn leaping(&self, _motion: &Motion<Q>) -> Option<Leaping<'_>> {
+    fn leaping(&self, _dissipators: &Dissipators) -> Option<Leaping<'_>> {
         None
     }
 

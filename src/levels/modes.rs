@@ -15,8 +15,6 @@
 //! moment of this force ([`Structure::load`](crate::Structure::load)). A structure without modes is rigid: Housner's block with the paper's
 //! impact rule, which comes to rest by a rule of its own ([`rules`](crate::levels::rules)).
 
-#[cfg(feature = "lanes")]
-use crate::Motion;
 use crate::levels::detail::Detail;
 use crate::levels::first_uplift::Liftable;
 use crate::levels::full_contact::ExactContact;
@@ -578,10 +576,10 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
     }
 
     #[cfg(feature = "lanes")]
-    fn leaping(&self, &Motion { state, ref dissipators, .. }: &Motion<Q>) -> Option<Leaping<'_>> {
+    fn leaping(&self, dissipators: &Dissipators) -> Option<Leaping<'_>> {
         let (structure, modes) = (&self.subject.structure, self.contact.as_ref()?);
         let has_rest = self.rigid.is_some() || self.base.S_res != 0.0 || structure.gauges().has_feedthrough;
-        let start = Start { state, dissipators, ..Start::default() };
+        let start = Start::<Q> { dissipators, ..Start::default() };
         let hold = self.liftable()?.least_hold(&start);
         let moment = |mode: &Mode| mode.height * mode.stiffness;
         (!has_rest && structure.foundation().is_none()).then_some(Leaping { modes, moment, hold })
