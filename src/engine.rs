@@ -12,6 +12,7 @@
 //! with an exact flow of full contact, one step covers the rest of a long interval once the base stays down for good.
 
 pub(crate) mod contacts;
+pub(crate) mod guard;
 #[cfg(feature = "lanes")]
 pub(crate) mod lanes;
 #[cfg(feature = "lanes")]
@@ -19,8 +20,10 @@ pub(crate) mod leaps;
 pub mod motion;
 pub(crate) mod phases;
 pub mod piece;
+pub(crate) mod sample;
 #[cfg(feature = "lanes")]
 pub(crate) mod sought;
+pub(crate) mod step;
 pub mod transition;
 pub(crate) mod yielding;
 
@@ -45,8 +48,10 @@ use crate::structure::mode::Modes;
 use crate::structure::quantity::{Quantity, Refused, ensure};
 use crate::{Foundation, Output, Phase, State, Structure};
 use motion::{Chatter, Motion, Work};
-use phases::{Closed, Step, Watched};
-use piece::{Piece, Room, Sample, Watch, shown};
+use phases::Watched;
+use piece::{Piece, Room, Watch};
+use sample::{Sample, shown};
+use step::{Closed, Step};
 use transition::Transition;
 
 /// The default relative tolerance of the results.
@@ -786,8 +791,9 @@ mod tests {
     use crate::series::first_crossing::{Gap, first_time_all_closed};
     use crate::{Parameters, TransitionKind};
     use approx::assert_relative_eq;
-    use phases::{Guard, Way};
+    use guard::Guard;
     use std::f64::consts::PI;
+    use step::Way;
 
     /// Amplitude of the vibration, m.
     const AMPLITUDE: f64 = 1e-3;

@@ -38,6 +38,7 @@ pub mod structure;
 
 pub use engine::motion::Motion;
 pub use engine::piece::{Piece, Watch};
+pub use engine::sample::Sample;
 pub use engine::transition::{Transition, TransitionKind};
 pub use engine::{Engine, Progress};
 pub use levels::detail::Detail;

@@ -19,7 +19,7 @@ mod samples;
 pub mod validity;
 
 use crate::digits::with_unit;
-use crate::engine::piece::Sample;
+use crate::engine::sample::Sample;
 use crate::engine::{AdvanceError, DEFAULT_TOLERANCE, Settings};
 use crate::mechanics::lateral::Coordinates;
 use crate::run::ground_motion::{Segment, Segments};

@@ -3,10 +3,9 @@
 use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::variables::Source;
-use rocking::engine::piece::Sample;
 use rocking::run::Runs;
 use rocking::run::peaks::Peak;
-use rocking::{Load, Output, Reactions, State};
+use rocking::{Load, Output, Reactions, Sample, State};
 use std::cell::OnceCell;
 
 /// The values of a scene under a load.

@@ -1,9 +1,8 @@
 //! The tables of a run: the response and its transitions.
 use crate::run::{Event, Line, Named, Run};
-use rocking::engine::piece::Sample;
 use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::run::Runs;
-use rocking::{Impulse, Output, Reactions};
+use rocking::{Impulse, Output, Reactions, Sample};
 use serde::Serialize;
 
 /// Names and units of the columns after the outputs: reactions, impulses, vertical ground acceleration, ties and dissipators.

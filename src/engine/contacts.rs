@@ -5,9 +5,10 @@
 //! coefficient is a number. The gap then closes at once, or it opens and must return. Points that act at one instant, as in
 //! vertical motion, follow one another in steps without duration.
 
+use crate::engine::guard::{BAND, Guard};
 use crate::engine::motion::Motion;
-use crate::engine::phases::{BAND, Guard, Step, Way};
-use crate::engine::piece::Sample;
+use crate::engine::sample::Sample;
+use crate::engine::step::{Step, Way, see};
 use crate::engine::transition::TransitionKind;
 use crate::engine::yielding::square_integral;
 use crate::levels::level::Level;
@@ -77,13 +78,6 @@ fn first<const N: usize>(gaps: [Option<Gap>; N], reach: f64) -> Crossing {
     match gaps.iter().all(Option::is_some) {
         true => first_time_all_closed(gaps.map(|gap| gap.expect("all are there")), reach),
         false => Crossing::None,
-    }
-}
-
-/// Takes `crossing` if it comes before the one that is `found`.
-pub(super) fn see(found: &mut (Crossing, Way), crossing: Crossing, which: usize, sign: i8) {
-    if crossing.sigma() < found.0.sigma() {
-        *found = (crossing, Way { which: which as u8, sign });
     }
 }
 

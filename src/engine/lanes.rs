@@ -5,7 +5,7 @@
 
 use super::{
     Advance, AdvanceError, Engine, Loop, MAX_STEPS_PER_ADVANCE, Progress, Settings, is_at_its_end, leap_under, leapt,
-    sought::{Bend, MOST_MODES, ROUNDING, Sought, Stretch, Turned},
+    sought::{Bend, MOST_MODES, Passes, ROUNDING, Sought, Stretch, Turned},
 };
 use crate::engine::motion::Motion;
 use crate::engine::phases;
@@ -23,18 +23,6 @@ use crate::series::taylor::{MAX_ORDER, add_each_product, reciprocal};
 use crate::{Detail, LinearLoad, Phase, Ramp, State, Transition};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::FRAC_PI_2;
-
-/// A watcher of a motion whose steps are taken among others.
-pub(crate) trait Passes<Q: Coordinates = f64>: Watch<Q> {
-    /// Puts what the watcher must see of the structure of `engine` in its present phase into a `lane` of `sought`.
-    fn seek(&self, engine: &Engine<Q>, lane: usize, sought: &mut Sought<Q>);
-
-    /// Passes a piece that the watcher need not see.
-    fn pass(&mut self);
-
-    /// Sees a piece whose quantities are within these `bounds`, when it may look at the motion within the piece later.
-    fn put_off(&mut self, piece: &Piece<Q>, bounds: &[f64]);
-}
 
 /// Watches a motion after the piece under way, which it `passes` if the watcher need not see it.
 struct After<'a, W> {

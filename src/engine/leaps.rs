@@ -2,8 +2,8 @@
 //! same order.
 
 use super::Engine;
-use super::lanes::{Passes, Samples};
-use super::sought::{Bend, MOST_MODES, Sought, Stretch, Turned};
+use super::lanes::Samples;
+use super::sought::{Bend, MOST_MODES, Passes, Sought, Stretch, Turned};
 use crate::levels::full_contact::ExactContact;
 use crate::levels::level::{Leaping, off_chord};
 use crate::levels::oscillator::{Flow, Oscillator};

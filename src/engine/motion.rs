@@ -1,6 +1,6 @@
 //! Everything about a structure that changes with time, in a few dozen numbers.
 
-use crate::engine::phases::Closed;
+use crate::engine::step::Closed;
 use crate::levels::level::Now;
 use crate::levels::rules::ChatterLimit;
 use crate::mechanics::lateral::Coordinates;

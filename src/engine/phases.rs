@@ -4,12 +4,13 @@
 //! A new kind of contact is one more [`Watched`] here, with its guards.
 
 use crate::engine::contacts::{self, Points, Tied};
+use crate::engine::guard::{BAND, Guard};
 use crate::engine::motion::Motion;
-use crate::engine::piece::Sample;
+use crate::engine::sample::Sample;
+use crate::engine::step::{Step, Way};
 use crate::engine::transition::{TransitionKind, enter};
 use crate::engine::yielding::{self, Yielding};
 use crate::levels::level::{Level, Subject};
-use crate::levels::start::Start;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::impact;
 use crate::mechanics::lateral::Coordinates;
@@ -18,68 +19,8 @@ use crate::mechanics::state::way;
 use crate::series::extremes::off_chord;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{evaluate, sum_of_magnitudes};
-use crate::{Contact, Phase, Side, Structure};
-use serde::{Deserialize, Serialize};
+use crate::{Phase, Side, Structure};
 use std::f64::consts::FRAC_PI_2;
-
-/// Event indicators are shifted by this part of α_cg or of the demand for uplift. No integration then starts on a root, and no
-/// rounding makes one.
-pub const BAND: f64 = 1e-9;
-
-/// One expanded step in one phase.
-pub(crate) struct Step<'a, Q: Coordinates = f64> {
-    pub level: &'a dyn Level<Q>,
-    /// The side about which the structure rocks.
-    pub side: Side,
-    /// The pressed contact points of the ground.
-    pub contact: Contact,
-    pub start: &'a Start<'a, Q>,
-    pub arc: &'a Arc<Q>,
-    /// The σ up to which no guard is known to close.
-    pub reach: f64,
-}
-
-/// Which of several conditions of a guard closes: a number and a sign, with the meaning that the guard gives them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Way {
-    pub which: u8,
-    pub sign: i8,
-}
-
-/// A guard of the present phase that has closed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Closed {
-    /// Place of the guard in [`Watched::guards`].
-    pub guard: u8,
-    pub way: Way,
-}
-
-/// A condition that ends a phase, or changes the equations within it.
-pub(crate) trait Guard<Q: Coordinates = f64>: Sync {
-    /// The first instant of `step` at which the guard closes.
-    fn first(&self, step: &Step<Q>) -> (Crossing, Way);
-
-    /// Applies the transition to `motion`, which has reached the instant at which the guard closes.
-    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind;
-
-    /// Whether the guard certainly stays open for `ahead` (s), a tiny time.
-    fn stays_open(&self, _now: &Sample<Q>, _ahead: f64) -> bool {
-        false
-    }
-
-    /// Place and value of the event indicator: continuous, of order one, positive while the guard is open.
-    fn indicator(&self, now: &Sample<Q>) -> (usize, f64);
-
-    /// The way in which the guard is closed from the start, after a transition or a jump of the load.
-    fn closed(&self, _now: &Sample<Q>) -> Option<Way> {
-        None
-    }
-
-    /// Whether an engine that stops at transitions stops before this one.
-    fn is_stop(&self) -> bool {
-        true
-    }
-}
 
 /// A phase as the loop knows it.
 pub(crate) struct Watched<Q: Coordinates = f64> {

@@ -4,23 +4,23 @@
 //! the engine leapt by an exact flow, the piece has bounds, and makes polynomials on request.
 
 use crate::engine::motion::Motion;
-use crate::engine::phases::{self, Step};
+use crate::engine::phases;
+use crate::engine::sample::{Sample, shown};
+use crate::engine::step::Step;
 use crate::engine::transition::Transition;
-use crate::levels::level::{Level, Now, edges, off_chord};
+use crate::levels::level::{Level, Now, off_chord};
 use crate::levels::start::Start;
-use crate::mechanics::arc::Arc;
-use crate::mechanics::arc::Polynomials;
-use crate::mechanics::contact;
-use crate::mechanics::instant::{Instant, Second};
+use crate::mechanics::arc::{Arc, Polynomials};
+use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::{LinearLoad, Load};
-use crate::mechanics::reach::{Magnitudes, OffChord};
-use crate::mechanics::restraint::{Dissipators, Restraints};
+use crate::mechanics::reach::{Magnitudes, OffChord, magnitudes};
+use crate::mechanics::restraint::Dissipators;
 use crate::numbers::{Angle, Number, Turn};
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
-use crate::{Output, Phase, Ramp, Reactions, State, Structure};
-use std::cell::{Cell, OnceCell, RefCell};
+use crate::{Output, Phase, Ramp, State, Structure};
+use std::cell::{Cell, RefCell};
 use std::f64::consts::TAU;
 
 /// Watches a motion go by.
@@ -72,87 +72,6 @@ impl<Q: Coordinates, A: Watch<Q> + ?Sized, B: Watch<Q> + ?Sized> Watch<Q> for (&
         self.0.transition(transition);
         self.1.transition(transition);
     }
-}
-
-/// A motion at one instant; at a transition, just after it.
-#[derive(Clone, Copy, Debug)]
-pub struct Sample<'a, Q: Coordinates = f64> {
-    /// Time, state and phase, transitions and impulses so far.
-    pub motion: Motion<Q>,
-    /// Load at the instant.
-    pub load: Load<Q>,
-    pub(crate) level: &'a dyn Level<Q>,
-}
-
-impl<Q: Coordinates> Sample<'_, Q> {
-    /// ü and θ̈; once overturned, those of the instant before.
-    pub(crate) fn second(&self) -> Second<f64, Q> {
-        let Sample { motion, load, level } = self;
-        level.accelerations(motion.phase.in_motion(level.structure()), &motion.under(*load))
-    }
-
-    /// The structure at the instant, without θ̈.
-    fn instant(&self) -> Instant<'_, f64, Q> {
-        Instant::of(
-            self.level.structure(),
-            self.motion.phase.in_motion(self.level.structure()),
-            &self.motion.state,
-            self.load,
-        )
-    }
-
-    /// The reactions; once overturned, those of the instant before.
-    pub fn reactions(&self) -> Reactions {
-        Reactions::at(&self.instant(), &self.second())
-    }
-
-    /// The part of the reactions that the edges of the base carry: all of it, unless the structure is restrained.
-    pub fn edges(&self) -> Reactions {
-        let x = self.instant();
-        edges(&x, self.level.subject(), &self.motion.dissipators, Reactions::at(&x, &self.second()))
-    }
-
-    /// The forces of the restraints.
-    pub fn restraints(&self) -> Restraints {
-        contact::restraints(&self.instant(), self.level.subject().angles, &self.motion.dissipators)
-    }
-
-    /// The value of `output`; once overturned, the value of the instant before.
-    pub fn output(&self, output: Output) -> f64 {
-        self.outputs()(output)
-    }
-
-    /// The values of outputs, of which each costs less than by [`Sample::output`].
-    pub fn outputs(&self) -> impl Fn(Output) -> f64 {
-        let (shown, ties) = (self.shown(), OnceCell::new());
-        move |output| {
-            let ties = || ties.get_or_init(|| self.restraints());
-            match output {
-                Output::P_t => ties().P_t,
-                Output::F_d1 => ties().F_d1,
-                Output::F_d2 => ties().F_d2,
-                _ => output.of(&shown),
-            }
-        }
-    }
-
-    pub(crate) fn shown(&self) -> Instant<'_, f64, Q> {
-        let Sample { motion, load, level } = self;
-        shown::<Q>(*level, motion.phase.in_motion(level.structure()), &motion.under(*load))
-    }
-}
-
-/// The structure of `level` as outputs read it, with θ̈ if one of them needs it.
-#[inline]
-pub(crate) fn shown<'a, Q: Coordinates>(level: &'a dyn Level<Q>, phase: Phase, now: &Now<Q>) -> Instant<'a, f64, Q> {
-    let structure = level.structure();
-    let x = Instant::of(structure, phase, now.state, now.load);
-    if !structure.gauges().has_feedthrough {
-        return x;
-    }
-    let Second { u_ddot, theta_ddot } = level.accelerations(phase, now);
-    let lift = Q::foundation(structure).map_or(0.0, |foundation| u_ddot.of(foundation.place));
-    Instant { theta_ddot, a_v: x.a_v + lift, ..x }
 }
 
 /// A series of an output that is off by less than this part of its terms at its end has converged.
@@ -319,31 +238,6 @@ impl<'a, Q: Coordinates> Part<'a, Q> {
             load: load.at(tau),
             level,
         })
-    }
-}
-
-/// Bounds of the magnitudes between two instants with these `loads`, given bounds of the state.
-#[inline(always)]
-pub(crate) fn magnitudes<Q: Coordinates>(
-    structure: &Structure,
-    phase: Phase,
-    loads: &[Load<Q>; 2],
-    State { u, u_dot, theta, theta_dot }: State<Q>,
-) -> Magnitudes<'static, Q> {
-    let ([first, last], largest) = (loads, |a: f64, b: f64| a.abs().max(b.abs()));
-    Magnitudes {
-        arc: None,
-        damping: structure.base().damping(phase),
-        u,
-        u_dot,
-        theta,
-        theta_dot,
-        a_g: largest(first.a_g, last.a_g),
-        F_t: match loads.iter().all(|load| load.F_t.is_within(&Q::ZERO)) {
-            true => Q::ZERO, // with no numbers to weigh
-            false => Q::each(structure, |j, _| largest(first.F_t.of(j), last.F_t.of(j))),
-        },
-        a_v: largest(first.a_v, last.a_v),
     }
 }
 

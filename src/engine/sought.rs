@@ -2,9 +2,8 @@
 //! later. A step that may hold a peak is put off, since the steps after it mostly hold larger values.
 
 use super::Engine;
-use super::lanes::Passes;
 use crate::engine::motion::Motion;
-use crate::engine::piece::Piece;
+use crate::engine::piece::{Piece, Watch};
 use crate::mechanics::lateral::Coordinates;
 use crate::numbers::Real;
 use crate::numbers::lanes::{Answers, Lanes, MOST, Row, load, put};
@@ -23,6 +22,18 @@ const MOST_PUT_OFF: usize = 256;
 
 /// Part of a bound from below that is not used, so that rounding and [peaks that are the same](crate::run::peaks) never matter.
 const SLACK: f64 = 1e-9;
+
+/// A watcher of a motion whose steps are taken among others.
+pub(crate) trait Passes<Q: Coordinates = f64>: Watch<Q> {
+    /// Puts what the watcher must see of the structure of `engine` in its present phase into a `lane` of `sought`.
+    fn seek(&self, engine: &Engine<Q>, lane: usize, sought: &mut Sought<Q>);
+
+    /// Passes a piece that the watcher need not see.
+    fn pass(&mut self);
+
+    /// Sees a piece whose quantities are within these `bounds`, when it may look at the motion within the piece later.
+    fn put_off(&mut self, piece: &Piece<Q>, bounds: &[f64]);
+}
 
 /// What the watchers of several runs seek.
 #[derive(Debug, Default)]

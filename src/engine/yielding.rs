@@ -5,10 +5,10 @@
 //! The zeros of θ̇ at the start are therefore divided out, like the zeros of θ at an uplift.
 
 use crate::Side;
-use crate::engine::contacts::see;
+use crate::engine::guard::{BAND, Guard};
 use crate::engine::motion::Motion;
-use crate::engine::phases::{BAND, Guard, Step, Way};
-use crate::engine::piece::Sample;
+use crate::engine::sample::Sample;
+use crate::engine::step::{Step, Way, see};
 use crate::engine::transition::TransitionKind;
 use crate::levels::level::Level;
 use crate::mechanics::lateral::Coordinates;

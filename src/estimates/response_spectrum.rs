@@ -13,7 +13,8 @@
 //! (`levels::oscillator`). The peak between samples is exact, too. |ü + a_g| is largest at a sample or at a zero of its rate b + ẅ. The
 //! zeros of the slope of this rate have a closed form, and between two of them the rate passes 0 at most once.
 
-use crate::engine::piece::{Sample, Watch};
+use crate::engine::piece::Watch;
+use crate::engine::sample::Sample;
 use crate::levels::oscillator::Oscillator;
 use crate::run::ground_motion::Segment;
 use crate::run::record::Record;

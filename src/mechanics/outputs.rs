@@ -71,7 +71,7 @@ outputs! {
     N(i: usize) ["N"] "force of contact point # from the left";
     settled(i: usize) ["m"] "settlement of outer contact point #" "left (0) or right (1), or 0 above the unloaded ground";
     P_t ["N"] "force of the tendon";
-    F_d1 ["N"] "force of the dissipators at +xi_d" "which a [`Sample`](crate::engine::piece::Sample) has";
+    F_d1 ["N"] "force of the dissipators at +xi_d" "which a sample has";
     F_d2 ["N"] "force of the dissipators at -xi_d" "which a sample has";
     lifted(i: usize) ["m"] "height of edge # above the unloaded ground" "left (0) or right (1), or 0 below";
 }

@@ -3,7 +3,6 @@
 use crate::mechanics::arc::Arc;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Mosts};
-#[cfg(feature = "lanes")]
 use crate::mechanics::load::Load;
 use crate::numbers::Turn;
 use crate::numbers::most::Most;
@@ -11,9 +10,7 @@ use crate::series::extremes::off_chord;
 use crate::series::taylor::{ORDERS, ZERO, evaluate};
 use crate::structure::gauge::Reach;
 use crate::structure::mode::Modes;
-use crate::{Base, Contact, Gauge, Output, Ramp, Structure};
-#[cfg(feature = "lanes")]
-use crate::{Phase, State};
+use crate::{Base, Contact, Gauge, Output, Phase, Ramp, State, Structure};
 
 /// Bounds of the magnitudes of a motion.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +26,31 @@ pub(crate) struct Magnitudes<'a, Q> {
     pub a_g: f64,
     pub F_t: Q,
     pub a_v: f64,
+}
+
+/// Bounds of the magnitudes between two instants with these `loads`, given bounds of the state.
+#[inline(always)]
+pub(crate) fn magnitudes<Q: Coordinates>(
+    structure: &Structure,
+    phase: Phase,
+    loads: &[Load<Q>; 2],
+    State { u, u_dot, theta, theta_dot }: State<Q>,
+) -> Magnitudes<'static, Q> {
+    let ([first, last], largest) = (loads, |a: f64, b: f64| a.abs().max(b.abs()));
+    Magnitudes {
+        arc: None,
+        damping: structure.base().damping(phase),
+        u,
+        u_dot,
+        theta,
+        theta_dot,
+        a_g: largest(first.a_g, last.a_g),
+        F_t: match loads.iter().all(|load| load.F_t.is_within(&Q::ZERO)) {
+            true => Q::ZERO, // with no numbers to weigh
+            false => Q::each(structure, |j, _| largest(first.F_t.of(j), last.F_t.of(j))),
+        },
+        a_v: largest(first.a_v, last.a_v),
+    }
 }
 
 /// How far a motion leaves the chords between its ends.
@@ -277,7 +299,6 @@ fn most_of_height<Q: Coordinates>(arc: &Arc<Q>, place: usize, [xi, k, c, offset]
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::piece::magnitudes;
     use crate::mechanics::lateral::Lateral;
     use crate::mechanics::load::Load;
     use crate::structure::description::tests::three_storeys;

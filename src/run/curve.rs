@@ -6,7 +6,8 @@
 use super::fall::Found;
 use super::peaks::{Peak, Peaks};
 use super::{Run, RunError, Runs};
-use crate::engine::piece::{Piece, Sample, Watch};
+use crate::engine::piece::{Piece, Watch};
+use crate::engine::sample::Sample;
 use crate::mechanics::arc::stretch;
 use crate::mechanics::lateral::Coordinates;
 use crate::series::terms::Terms;

@@ -4,7 +4,8 @@
 use super::peak_watch::PeakWatch;
 use super::peaks::{Peak, Peaks};
 use super::{Finish, Run, RunError, Runs};
-use crate::engine::piece::{Expansion, Sample};
+use crate::engine::piece::Expansion;
+use crate::engine::sample::Sample;
 use crate::mechanics::arc::{Arc, stretch};
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::{Dissipators, Restraint};
@@ -17,7 +18,7 @@ use crate::{Base, Detail, Piece, Side, Structure, Transition, TransitionKind, Wa
 #[cfg(feature = "lanes")]
 use crate::{
     Engine,
-    engine::{lanes::Passes, sought::Sought},
+    engine::sought::{Passes, Sought},
     numbers::lanes::put,
 };
 use serde::{Deserialize, Serialize};
@@ -340,7 +341,7 @@ mod tests {
                 let run = Run { detail, initial, ..Run::new(structure, &ground) };
                 let (mut watch, mut seen) = (Falling::since(0.0, &structure.into(), Detail::Auto).watch(), Vec::new());
                 let times = (0..100_000).map(|i| f64::from(i) * 2e-4);
-                let show = |at: &crate::engine::piece::Sample| seen.push((at.motion.time, at.motion.state.theta.abs()));
+                let show = |at: &Sample| seen.push((at.motion.time, at.motion.state.theta.abs()));
                 let (ending, watched) = (run.sample(times, show, &mut watch).unwrap().ending, watch.end());
                 assert_eq!(watched.fall().is_some(), ending == Ending::Overturned);
                 let Some(instant) = watched.fall() else { continue };

@@ -8,8 +8,9 @@
 //! the engine's own motion from the start of the step counts.
 
 use crate::engine::AdvanceError;
-use crate::engine::phases::Closed;
-use crate::engine::piece::{Sample, Watch};
+use crate::engine::piece::Watch;
+use crate::engine::sample::Sample;
+use crate::engine::step::Closed;
 use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::{LinearLoad, Load};
@@ -20,7 +21,7 @@ use serde::{Deserialize, Serialize};
 /// How many event indicators there are.
 pub const INDICATORS: usize = 2;
 
-pub use crate::engine::phases::BAND;
+pub use crate::engine::guard::BAND;
 
 impl<Q: Coordinates> Sample<'_, Q> {
     /// (u̇, ü, θ̇, θ̈) by the equations of the level and the phase; not numbers where these have no solution.

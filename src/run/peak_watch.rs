@@ -7,7 +7,7 @@ use super::peaks::Peaks;
 use crate::engine::MOST_POLYNOMIALS;
 use crate::engine::piece::{Piece, Room, Watch};
 #[cfg(feature = "lanes")]
-use crate::engine::{lanes::Passes, sought::Sought};
+use crate::engine::sought::{Passes, Sought};
 use crate::levels::level::Level;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::lateral::Coordinates;

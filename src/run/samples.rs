@@ -2,7 +2,8 @@
 
 use crate::Engine;
 use crate::Motion;
-use crate::engine::piece::{Piece, Sample, Watch};
+use crate::engine::piece::{Piece, Watch};
+use crate::engine::sample::Sample;
 use crate::levels::level::Level;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;

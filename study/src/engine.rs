@@ -13,7 +13,7 @@ pub const REFERENCE_TOLERANCE: f64 = 1e-14;
 pub fn run(scene: &Scene, detail: Detail, tolerance: f64, watch: &mut impl Watch) -> Response {
     let mut samples = Vec::with_capacity(scene.intervals());
     let times = scene.ground.times()[1..].iter().copied();
-    let show = |sample: &rocking::engine::piece::Sample| samples.push(Sample::of(sample.outputs()));
+    let show = |sample: &rocking::Sample| samples.push(Sample::of(sample.outputs()));
     match scene.run(detail, tolerance).sample(times, show, watch) {
         Ok(Finish { ending, motion }) => {
             let failure = (ending == Ending::Overturned).then_some(Failure::Overturned { time: motion.time });

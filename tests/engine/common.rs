@@ -1,12 +1,11 @@
 //! Shared by several tests: a ground motion, random numbers, transitions of an advance, peaks beside samples, momenta.
 
 use fastrand::Rng;
-use rocking::engine::piece::Sample;
 use rocking::engine::{DEFAULT_TOLERANCE, Settings};
 use rocking::run::peaks::{Peak, Peaks};
 use rocking::run::record::Record;
 use rocking::run::{Run, Runs};
-use rocking::{Detail, Engine, LinearLoad, OneMass, Output, Parameters, Phase, State, Transition};
+use rocking::{Detail, Engine, LinearLoad, OneMass, Output, Parameters, Phase, Sample, State, Transition};
 
 /// `count` samples of `a_g` (m/s²), `dt` (s) apart.
 pub fn sampled(count: usize, dt: f64, a_g: impl Fn(f64) -> f64) -> Record {

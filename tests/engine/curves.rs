@@ -3,11 +3,10 @@
 use crate::common::sampled;
 use crate::modes::three_storeys;
 use approx::assert_relative_eq;
-use rocking::engine::piece::Sample;
 use rocking::run::curve::{Curve, Point, drawn};
 use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError, Runs};
-use rocking::{Detail, OneMass, Output, Parameters, Phase, State, TransitionKind};
+use rocking::{Detail, OneMass, Output, Parameters, Phase, Sample, State, TransitionKind};
 
 /// Lifts, bounces and lands the McManus specimen at every level: two sines that die away.
 fn ground() -> Record {

@@ -3,7 +3,6 @@
 use crate::common::{peaks_beside_samples, transitions};
 use crate::modes::three_storeys;
 use approx::assert_relative_eq;
-use rocking::engine::piece::{Piece, Sample};
 use rocking::engine::{Progress, Settings};
 use rocking::run::record::Record;
 use rocking::run::validity::{FRICTION, Limits, of_structure};
@@ -11,8 +10,8 @@ use rocking::run::{End, Ending, Run};
 use rocking::structure::doubts::doubted;
 use rocking::structure::natural_quantities::Given;
 use rocking::{
-    Detail, Engine, Ground, LinearLoad, Modes, Output, Parameters, Reactions, State, Structure, Transition,
-    TransitionKind, Watch,
+    Detail, Engine, Ground, LinearLoad, Modes, Output, Parameters, Piece, Reactions, Sample, State, Structure,
+    Transition, TransitionKind, Watch,
 };
 use std::f64::consts::TAU;
 

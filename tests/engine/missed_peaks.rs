@@ -4,10 +4,11 @@
 use crate::common::{between, log_between};
 use fastrand::Rng;
 use rocking::engine::Settings;
-use rocking::engine::piece::Sample;
 use rocking::run::peaks::Peaks;
 use rocking::run::validity::{Findings, Limits, Validity};
-use rocking::{Detail, Engine, LinearLoad, Load, OneMass, Output, Parameters, Phase, Piece, Progress, State, Watch};
+use rocking::{
+    Detail, Engine, LinearLoad, Load, OneMass, Output, Parameters, Phase, Piece, Progress, Sample, State, Watch,
+};
 
 /// From -1 to 1.
 fn either_way(rng: &mut Rng) -> f64 {

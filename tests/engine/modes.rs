@@ -3,7 +3,6 @@
 use crate::common::{engine_of, transitions, transitions_of};
 use approx::assert_relative_eq;
 use rocking::engine::Settings;
-use rocking::engine::piece::Sample;
 use rocking::mechanics::restraint::Restraints;
 use rocking::run::record::Record;
 use rocking::run::validity::Limits;
@@ -11,8 +10,8 @@ use rocking::run::{End, Run, Runs};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Given;
 use rocking::{
-    Body, Detail, Engine, LinearLoad, Load, Mode, Modes, OneMass, Output, Parameters, Progress, Reactions, State,
-    Structure, Ties, Transition, TransitionKind,
+    Body, Detail, Engine, LinearLoad, Load, Mode, Modes, OneMass, Output, Parameters, Progress, Reactions, Sample,
+    State, Structure, Ties, Transition, TransitionKind,
 };
 use std::f64::consts::TAU;
 

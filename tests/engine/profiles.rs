@@ -2,14 +2,13 @@
 
 use crate::common::{peaks_beside_samples, sampled};
 use rocking::engine::AdvanceError;
-use rocking::engine::piece::Sample;
 use rocking::run::peaks::Peaks;
 use rocking::run::record::Record;
 use rocking::run::validity::{ASSUMPTIONS, EDGE_LOAD, FRICTION, Findings, Limits, TENSION};
 use rocking::run::{End, Run, RunError};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Given;
-use rocking::{Detail, Modes, OneMass, Output, Parameters, Phase, Reactions, State, Structure};
+use rocking::{Detail, Modes, OneMass, Output, Parameters, Phase, Reactions, Sample, State, Structure};
 use std::f64::consts::TAU;
 
 /// A wavelet of 3 s that rocks the specimens, in samples of 10 ms.

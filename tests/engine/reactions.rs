@@ -1,9 +1,8 @@
 //! Reactions on the ground and impulses of impacts: the balance of momentum.
 
 use crate::common::{Balance, balance, sampled, transitions_of};
-use rocking::engine::piece::Sample;
 use rocking::run::{End, Run};
-use rocking::{Detail, Load, OneMass, Parameters, Reactions};
+use rocking::{Detail, Load, OneMass, Parameters, Reactions, Sample};
 
 /// Nodes and weights of Gauss and Legendre on [0, 1].
 const GAUSS: [(f64, f64); 4] = [

@@ -3,14 +3,13 @@
 use crate::common::{engine_of, peaks_beside_samples, shaking, transitions, transitions_of};
 use approx::assert_relative_eq;
 use rocking::engine::Settings;
-use rocking::engine::piece::Sample;
 use rocking::mechanics::restraint::centring_moments;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::record::Record;
 use rocking::run::validity::{Limits, WEIGHT, of_structure};
 use rocking::run::{End, Run};
 use rocking::{
-    Detail, Engine, GroundMotion, LinearLoad, Load, Motion, OneMass, Output, Parameters, Phase, Side, State,
+    Detail, Engine, GroundMotion, LinearLoad, Load, Motion, OneMass, Output, Parameters, Phase, Sample, Side, State,
     Transition, TransitionKind,
 };
 use std::mem::discriminant;

@@ -2,11 +2,10 @@
 
 use crate::common::{sampled, transitions_of};
 use crate::modes::three_storeys;
-use rocking::engine::piece::Sample;
 use rocking::run::levels::Criterion;
 use rocking::run::record::Record;
 use rocking::run::{End, Run, levels};
-use rocking::{Detail, OneMass, Parameters, Structure, Transition};
+use rocking::{Detail, OneMass, Parameters, Sample, Structure, Transition};
 
 /// However finely a record is sampled, the histories of two levels are as far apart.
 #[test]

@@ -3,10 +3,9 @@
 use crate::common::start;
 use crate::modes::three_storeys;
 use approx::assert_relative_eq;
-use rocking::engine::piece::Sample;
 use rocking::run::record::Record;
 use rocking::run::{End, Ending, Runs};
-use rocking::{Detail, LinearLoad, Load, Modes, OneMass, Parameters, Run, State, Structure};
+use rocking::{Detail, LinearLoad, Load, Modes, OneMass, Parameters, Run, Sample, State, Structure};
 
 /// On a foundation without mass −m a_g on the top mass is the same as a_g, at every level of detail.
 #[test]

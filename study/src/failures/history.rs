@@ -31,7 +31,7 @@ pub fn every(interval: f64) -> impl Iterator<Item = f64> {
 /// The exact response at the level `detail`, seen at `times` (s), to its end.
 pub fn exact(scene: &Scene, detail: Detail, times: impl IntoIterator<Item = f64>) -> Result<History, RunError> {
     let (mut motions, mut transitions) = (Vec::new(), Vec::new());
-    let show = |sample: &rocking::engine::piece::Sample| motions.push(sample.motion);
+    let show = |sample: &rocking::Sample| motions.push(sample.motion);
     let watch = &mut |transition: &Transition| transitions.push(*transition);
     scene.run(detail, REFERENCE_TOLERANCE).sample(times, show, watch)?;
     Ok(History { motions, transitions })

@@ -1,0 +1,92 @@
+//! A motion at one instant.
+
+use crate::engine::motion::Motion;
+use crate::levels::level::{Level, Now, edges};
+use crate::mechanics::contact;
+use crate::mechanics::instant::{Instant, Second};
+use crate::mechanics::lateral::Coordinates;
+use crate::mechanics::load::Load;
+use crate::mechanics::restraint::Restraints;
+use crate::{Output, Phase, Reactions};
+use std::cell::OnceCell;
+
+/// A motion at one instant; at a transition, just after it.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample<'a, Q: Coordinates = f64> {
+    /// Time, state and phase, transitions and impulses so far.
+    pub motion: Motion<Q>,
+    /// Load at the instant.
+    pub load: Load<Q>,
+    pub(crate) level: &'a dyn Level<Q>,
+}
+
+impl<Q: Coordinates> Sample<'_, Q> {
+    /// ü and θ̈; once overturned, those of the instant before.
+    pub(crate) fn second(&self) -> Second<f64, Q> {
+        let Sample { motion, load, level } = self;
+        level.accelerations(motion.phase.in_motion(level.structure()), &motion.under(*load))
+    }
+
+    /// The structure at the instant, without θ̈.
+    fn instant(&self) -> Instant<'_, f64, Q> {
+        Instant::of(
+            self.level.structure(),
+            self.motion.phase.in_motion(self.level.structure()),
+            &self.motion.state,
+            self.load,
+        )
+    }
+
+    /// The reactions; once overturned, those of the instant before.
+    pub fn reactions(&self) -> Reactions {
+        Reactions::at(&self.instant(), &self.second())
+    }
+
+    /// The part of the reactions that the edges of the base carry: all of it, unless the structure is restrained.
+    pub fn edges(&self) -> Reactions {
+        let x = self.instant();
+        edges(&x, self.level.subject(), &self.motion.dissipators, Reactions::at(&x, &self.second()))
+    }
+
+    /// The forces of the restraints.
+    pub fn restraints(&self) -> Restraints {
+        contact::restraints(&self.instant(), self.level.subject().angles, &self.motion.dissipators)
+    }
+
+    /// The value of `output`; once overturned, the value of the instant before.
+    pub fn output(&self, output: Output) -> f64 {
+        self.outputs()(output)
+    }
+
+    /// The values of outputs, of which each costs less than by [`Sample::output`].
+    pub fn outputs(&self) -> impl Fn(Output) -> f64 {
+        let (shown, ties) = (self.shown(), OnceCell::new());
+        move |output| {
+            let ties = || ties.get_or_init(|| self.restraints());
+            match output {
+                Output::P_t => ties().P_t,
+                Output::F_d1 => ties().F_d1,
+                Output::F_d2 => ties().F_d2,
+                _ => output.of(&shown),
+            }
+        }
+    }
+
+    pub(crate) fn shown(&self) -> Instant<'_, f64, Q> {
+        let Sample { motion, load, level } = self;
+        shown::<Q>(*level, motion.phase.in_motion(level.structure()), &motion.under(*load))
+    }
+}
+
+/// The structure of `level` as outputs read it, with θ̈ if one of them needs it.
+#[inline]
+pub(crate) fn shown<'a, Q: Coordinates>(level: &'a dyn Level<Q>, phase: Phase, now: &Now<Q>) -> Instant<'a, f64, Q> {
+    let structure = level.structure();
+    let x = Instant::of(structure, phase, now.state, now.load);
+    if !structure.gauges().has_feedthrough {
+        return x;
+    }
+    let Second { u_ddot, theta_ddot } = level.accelerations(phase, now);
+    let lift = Q::foundation(structure).map_or(0.0, |foundation| u_ddot.of(foundation.place));
+    Instant { theta_ddot, a_v: x.a_v + lift, ..x }
+}

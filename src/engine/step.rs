@@ -1,0 +1,45 @@
+//! One step of a motion in one phase, and the guard that ends it.
+
+use crate::Contact;
+use crate::levels::level::Level;
+use crate::levels::start::Start;
+use crate::mechanics::arc::Arc;
+use crate::mechanics::lateral::Coordinates;
+use crate::mechanics::state::Side;
+use crate::series::first_crossing::Crossing;
+use serde::{Deserialize, Serialize};
+
+/// One expanded step in one phase.
+pub(crate) struct Step<'a, Q: Coordinates = f64> {
+    pub level: &'a dyn Level<Q>,
+    /// The side about which the structure rocks.
+    pub side: Side,
+    /// The pressed contact points of the ground.
+    pub contact: Contact,
+    pub start: &'a Start<'a, Q>,
+    pub arc: &'a Arc<Q>,
+    /// The σ up to which no guard is known to close.
+    pub reach: f64,
+}
+
+/// Which of several conditions of a guard closes: a number and a sign, with the meaning that the guard gives them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Way {
+    pub which: u8,
+    pub sign: i8,
+}
+
+/// A guard of the present phase that has closed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Closed {
+    /// Place of the guard in [`Watched::guards`](crate::engine::phases::Watched::guards).
+    pub guard: u8,
+    pub way: Way,
+}
+
+/// Takes `crossing` if it comes before the one that is `found`.
+pub(crate) fn see(found: &mut (Crossing, Way), crossing: Crossing, which: usize, sign: i8) {
+    if crossing.sigma() < found.0.sigma() {
+        *found = (crossing, Way { which: which as u8, sign });
+    }
+}
