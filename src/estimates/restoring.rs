@@ -32,9 +32,13 @@ pub fn flag(base: &Base, theta: f64, steps: u32) -> Vec<FlagPoint> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::OneMass;
-    use crate::Parameters;
     use crate::mechanics::restraint::centring_moments;
+    use crate::run::Ending;
+    use crate::run::fall::{Falling, angle_of_no_return};
+    use crate::run::record::Record;
+    use crate::series::bisection::last_where;
+    use crate::{Detail, OneMass, Parameters, Run, State};
+    use std::f64::consts::FRAC_PI_2;
 
     const RESTRAINED: Parameters =
         Parameters { P_0: 500.0, k_t: 2e5, xi_d: 0.2, k_d: 1e6, F_y: 400.0, ..Parameters::MCMANUS };
@@ -64,5 +68,38 @@ mod tests {
         let [restoring, residual] = centring_moments(structure.base());
         assert!((points[20].moment - (restoring - residual)).abs() < 1e-9 * restoring);
         assert!((residual - F_y * ((B - xi_d) + (B + xi_d))).abs() < 1e-12 * residual);
+    }
+
+    /// Beyond α_cg a tied structure comes back. Once it falls, its peak is the angle at which the static moment of weight, tendon
+    /// and dissipators vanishes. A tendon of 4e4 N/m turns McManus back from everywhere: it falls where it overturns.
+    #[test]
+    fn a_tied_structure_falls_from_where_its_own_moment_vanishes() {
+        let tied = Parameters { k_t: 2e4, xi_d: 0.2, k_d: 1e5, F_y: 300.0, ..Parameters::MCMANUS };
+        let stiff = OneMass::new(Parameters { k_t: 4e4, ..tied }).unwrap();
+        assert_eq!(angle_of_no_return(stiff.base()), None);
+        let ground = Record::at_rest(60.0);
+        let falls = |structure: OneMass, theta_dot: f64| {
+            let mut watch = Falling::since(0.0, &structure.into(), Detail::Auto).watch();
+            let initial = State { theta: 1e-3, theta_dot, ..State::default() };
+            let ending = Run { initial, ..Run::new(structure, &ground) }.follow(&mut watch).unwrap().ending;
+            (ending == Ending::Overturned, watch.end())
+        };
+        for tied in [tied, Parameters { k_t: 1e4, P_0: 500.0, ..tied }] {
+            let structure = OneMass::new(tied).unwrap();
+            let no_return = angle_of_no_return(structure.base()).unwrap();
+            let alpha_cg = structure.tan_alpha_cg.atan();
+            assert!(no_return > 1.5 * alpha_cg, "{no_return}");
+            let loop_there = flag(structure.base(), no_return, 1000)[1000];
+            assert!(loop_there.moment.abs() < 1e-9 * flag(structure.base(), 0.0, 1)[0].moment);
+            let least = last_where(0.0, 20.0, |theta_dot| !falls(structure, theta_dot).0);
+            let (_, stands) = falls(structure, least);
+            assert!(stands.peaks().theta().magnitude > alpha_cg && stands.fall().is_none());
+            assert_eq!(stands.peaks(), stands.all());
+            let (_, falls) = falls(structure, least * 1.001);
+            assert!((falls.peaks().theta().magnitude - no_return).abs() < 1e-12);
+        }
+        let (overturns, falls) = falls(stiff, 20.0);
+        assert!(overturns && falls.peaks() == falls.all());
+        assert!((falls.peaks().theta().magnitude - FRAC_PI_2).abs() < 1e-12);
     }
 }

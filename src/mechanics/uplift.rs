@@ -134,37 +134,3 @@ pub fn distance(one: &OneMass, state: &State) -> f64 {
 pub fn least_push(base: &Base) -> f64 {
     (1.0 + LEAST_EXCESS) * base.hold_at_rest() * base.tan_alpha_cg / (base.m_t * base.B)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::levels::nonlinear::accelerations;
-    use crate::{Load, Parameters};
-
-    /// The ground falls faster than the structure could. By Eqs 5 and 6 the side of the larger s θ̈ is not the side of the larger
-    /// moment. The base lifts off about the former.
-    #[test]
-    fn the_structure_lifts_off_about_the_side_that_turns_faster() {
-        let structure = OneMass::new(Parameters { zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
-        let Parameters { m, H, g, .. } = *structure.parameters();
-        let [by_u, by_rate] = [H * structure.k + m * (g - 60.0), H * structure.c_u];
-        let load = Load { a_v: -60.0, ..Load::default() };
-        for side in [Side::Right, Side::Left] {
-            let s = side.sign();
-            let u = s * 2e-3;
-            let u_dot = -by_u * u / by_rate - s * 0.005;
-            let state = State { u, u_dot, ..State::default() };
-            let faster = |side: Side| {
-                let theta_ddot = accelerations(&structure, side, &state, load, &Dissipators::NEW).unwrap()[1];
-                side.sign() * theta_ddot
-            };
-            assert!(faster(side) > faster(side.opposite()) && faster(side.opposite()) > 0.0);
-            assert!(s * (by_u * u + by_rate * u_dot) < 0.0);
-            let (base, modes) = (structure.base(), std::slice::from_ref(structure.mode()));
-            let lift = Lift::new(base, modes, 1.0, [0.0, load.a_v], |_| [u, u_dot]);
-            let inertia = |side| inertia(base, modes, side, |_| u);
-            let (distance, found) = margin(base, &lift, load.a_v, &Dissipators::NEW, inertia);
-            assert!(distance <= 0.0 && found == side, "{distance} {found:?}");
-        }
-    }
-}
