@@ -1,11 +1,13 @@
 //! The origin of a result: program, structure, ground motion, and the conditions of the computation.
 use crate::record_args::RecordArgs;
 use crate::scene_args::OneOrMore;
+use FlexibleRocking::BUILD;
 use rocking::run::record::Record;
 use rocking::{Parameters, State, Structure};
 use rocking_records::Column;
-use rocking_report::{describe, program::version};
+use rocking_report::describe;
 use rocking_sweep::plan::Conditions;
+use rocking_sweep::row_file::Program;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -36,7 +38,7 @@ fn text((name, of): (&'static str, Option<String>)) -> (&'static str, Part) {
 impl Cause {
     /// The cause of results of this program alone.
     pub fn of_program() -> Cause {
-        Cause(vec![text(("version", Some(version())))])
+        Cause(vec![text(("version", Some(Program::of(BUILD).version)))])
     }
 
     /// The cause of results of `structure`.

@@ -9,16 +9,17 @@ mod table;
 use crate::picture::Picture;
 use crate::results::FormatArgs;
 use crate::talk::{few, is_quiet, say};
+use FlexibleRocking::BUILD;
 use anyhow::{bail, ensure};
 use file::{Asked, RecordSweep};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPool;
 use rocking::digits::with_unit;
-use rocking_report::{input, output_files::OutputFiles, program::program};
+use rocking_report::{input, output_files::OutputFiles};
 use rocking_sweep::exceedances;
 use rocking_sweep::outcome::Outcome;
 use rocking_sweep::plan::{Case, Plan};
-use rocking_sweep::row_file;
+use rocking_sweep::row_file::{self, Program};
 use rocking_sweep::rows::Sweep;
 use rocking_sweep::thread_pool;
 use std::path::{Path, PathBuf};
@@ -76,7 +77,7 @@ fn run_records(
     picture: Picture,
 ) -> anyhow::Result<()> {
     let RecordSweep { plan, limits, measure, records } = sweep;
-    let program = program();
+    let program = Program::of(BUILD);
     let runs = Sweep::open(&plan, args.validity, &program, Some(output))?;
     let missing = runs.missing();
     let done = plan.len() - missing.len();

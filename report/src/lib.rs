@@ -8,7 +8,6 @@ pub mod estimate;
 pub mod input;
 pub mod output_files;
 pub mod page;
-pub mod program;
 pub mod pushover;
 pub mod quantities;
 pub mod record;

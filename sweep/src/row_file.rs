@@ -44,8 +44,16 @@ pub type Known<T> = HashMap<Uuid, T>;
 pub struct Program {
     /// Identifies all of the program that a run depends on.
     pub build: Uuid,
-    /// Version in the rows.
+    /// Version in the rows: of the packages, with the first digits of the build.
     pub version: String,
+}
+
+impl Program {
+    /// The program of this `build`, a GUID in braces.
+    pub fn of(build: &str) -> Program {
+        let version = format!("{}+{}", env!("CARGO_PKG_VERSION"), &build[1..9]);
+        Program { build: Uuid::try_parse(build).expect("a build script wrote it"), version }
+    }
 }
 
 /// Becomes a number that identifies all that was added in this order: a UUID of version 5.

@@ -8,15 +8,15 @@ mod picture;
 use super::{SweepArgs, file::MapSweep, progress};
 use crate::picture::Picture;
 use crate::talk::{say, warning};
+use FlexibleRocking::BUILD;
 use anyhow::{bail, ensure};
 use csv::StringRecord;
 use rayon::{ThreadPool, prelude::*};
 use rocking::digits::short;
 use rocking::run::{LONGEST_REST, validity};
-use rocking_report::program::{program, version};
 use rocking_sweep::map::{CLASSES, Class, Fate, HEADINGS, Map, Place, Point};
 use rocking_sweep::plan::AXES;
-use rocking_sweep::row_file::{self, Digest, Known, RowFile, fixed, heading};
+use rocking_sweep::row_file::{self, Digest, Known, Program, RowFile, fixed, heading};
 use serde::Serialize;
 use std::{collections::HashMap, fmt::Write, path::Path, sync::Mutex};
 use uuid::Uuid;
@@ -114,7 +114,7 @@ fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Point>)> {
 /// The key of a point of the map of the structure called `name`.
 fn key_at(name: &str, map: &Map, place: Place) -> Uuid {
     let of_map = (map.detail, map.tolerance, map.finds_condition);
-    Digest::new(&program().build).and(&(name, map.structure.numbers(), map.pulse(place), of_map)).uuid()
+    Digest::new(&Program::of(BUILD).build).and(&(name, map.structure.numbers(), map.pulse(place), of_map)).uuid()
 }
 
 fn headings() -> Vec<String> {
@@ -132,7 +132,7 @@ fn row(key: &Uuid, name: &str, map: &Map, (level, place): (u32, Place), point: &
     let pulse = map.pulse(place);
     let of_structure = AXES.map(|axis| (axis.get)(&map.structure.parameters()));
     let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail.name(), map.tolerance);
-    let of_program = (key.to_string(), name, version());
+    let of_program = (key.to_string(), name, Program::of(BUILD).version);
     row_file::line(&(of_program, of_structure, of_map, map.row(level, place, point)))
 }
 
