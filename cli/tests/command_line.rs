@@ -3,6 +3,7 @@
 //!
 //! There, `$` begins a command, `!` a line on standard error; any other line is on standard output, and `[1]` is an exit
 //! code other than 0. `WRITE_TOUR=1 cargo test -p rocking-cli --test command_line` writes it anew from its commands.
+//! `columns NAME ...` prints the columns of the table on standard input by their headings; `FIRST..LAST` is a range.
 
 #[path = "../../records/tests/layouts/mod.rs"]
 #[allow(dead_code)] // what else is known of each file
@@ -14,6 +15,13 @@ use std::process::{Command, Output};
 use std::{env, fs};
 
 const SAMPLES: usize = 400;
+
+const COLUMNS: &str = r#"columns() {
+    local heading name fields; IFS= read -r heading
+    number() { tr , '\n' <<< "$heading" | grep -nxF "$1" | cut -d: -f1 | grep . || echo "no column $1" >&2; }
+    for name; do fields+=,$(number "${name%%..*}")-$(number "${name##*..}"); done
+    (echo "$heading"; cat) | cut -d, -f"${fields#,}"
+}"#;
 
 #[test]
 fn every_command_of_the_tour_prints_what_it_printed() {
@@ -65,8 +73,9 @@ fn install(bin: &Path) {
 /// The command in `line`, and what it prints in `folder`, without what differs between machines.
 fn transcript(folder: &Path, bin: &Path, line: &str) -> String {
     let path = format!("{}:{}", bin.display(), env::var("PATH").unwrap());
+    let command = format!("{COLUMNS}\n{}", line.trim_start_matches("$ "));
     let mut shell = Command::new("bash");
-    shell.arg("-c").arg(line.trim_start_matches("$ ")).current_dir(folder).env("PATH", path).env("LC_ALL", "C");
+    shell.arg("-c").arg(command).current_dir(folder).env("PATH", path).env("LC_ALL", "C");
     let Output { status, stdout, stderr } = shell.output().unwrap();
     let plain = |bytes: Vec<u8>| {
         let text = String::from_utf8(bytes).unwrap().replace(&folder.display().to_string(), "[FOLDER]");
