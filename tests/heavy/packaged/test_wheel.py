@@ -12,17 +12,17 @@ import pages
 import pytest
 from conftest import ROOT
 from fmpy import read_model_description, simulate_fmu
-from packages import package
 from host import output, write
+from packages import package
 from pacoima import A_G, TIME
 
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory):
-    """Runs a command of a fresh environment with the wheel, and the newest fmpy of requirements.txt, beside the Pacoima Dam record."""
+    """Runs a command of a fresh environment with the wheel, and the fmpy of `make demo`, beside the Pacoima Dam record."""
     folder = tmp_path_factory.mktemp("installed")
     output(sys.executable, "-m", "venv", folder / "venv")
-    fmpy = re.search(r"^fmpy==\S+", (ROOT / "requirements.txt").read_text(), re.MULTILINE)[0]
+    fmpy = re.search(r"fmpy==[\d.]+", (ROOT / "pyproject.toml").read_text())[0]
     environment = {"PATH": f"{folder}/venv/bin:/usr/bin:/bin", "HOME": str(folder)}
     assert not any(os.access(f"{place}/cargo", os.X_OK) for place in environment["PATH"].split(":"))
     run = lambda program, *arguments: output(folder / "venv/bin" / program, *arguments, cwd=folder, env=environment)
