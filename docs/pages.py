@@ -17,9 +17,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from fmpy import read_model_description
-
 from evidence.scenes import RECORD
+from fmpy import read_model_description
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*/*.md"))]

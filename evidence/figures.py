@@ -6,7 +6,7 @@ from pathlib import Path
 import matplotlib
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.pyplot as plt
 
 ROCKING, FIXED, SMOOTH, QUIET = "#1f5fa8", "#c0392b", "#d98200", "0.45"
 # Okabe and Ito's, where they are too light darkened: all have a contrast of 3 to 1 on white and on pale grey.

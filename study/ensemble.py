@@ -17,10 +17,9 @@ from tqdm import tqdm
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
 sys.path.insert(0, str(ROOT / "study"))
+import flexible_rocking as fr
 import reference as model
 from peers import margins
-
-import flexible_rocking as fr
 
 ALONE, LANES = "this engine, one by one", "this engine, lanes"
 SCALES = np.linspace(0.5, 1.0, 64)

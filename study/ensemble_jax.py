@@ -32,9 +32,8 @@ from scipy.signal import StateSpace, lsim
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
-import reference as model
-
 import flexible_rocking as fr
+import reference as model
 
 jax.config.update("jax_enable_x64", True)
 STEPS = [2, 3, 4, 6]  # in a sample, while the pier rocks

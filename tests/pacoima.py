@@ -3,9 +3,8 @@
 import functools
 
 import numpy as np
-from host import Fmu, output
-
 from evidence.scenes import pacoima_dam
+from host import Fmu, output
 
 OUTPUTS = ("theta", "u", "a_t")
 STEPS = (0.5e-3, 2e-3, 10e-3)  # s, communication steps of the hosts

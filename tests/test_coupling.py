@@ -5,15 +5,13 @@ import functools
 import monolithic
 import numpy as np
 import pytest
-from reference import MCMANUS
-
 from evidence.coupling import building_on_soil, convergence, stability
 from evidence.coupling.bridge import Bridge, deck, linear, pier, simulate
 from evidence.coupling.building_on_soil import OnSoil
-from evidence.coupling.masters import MASTERS, Diverged, Iterated, between_transitions
-from evidence.coupling.masters import extrapolate, gauss_seidel, hold, jacobi
+from evidence.coupling.masters import MASTERS, Diverged, Iterated, between_transitions, extrapolate, gauss_seidel, hold, jacobi
 from evidence.coupling.swaying_mass import SwayingMass
 from evidence.scenes import pacoima_dam
+from reference import MCMANUS
 
 TIME, A_G = pacoima_dam()
 

@@ -9,6 +9,7 @@ from conftest import ROOT
 from frames import SCENES, Frame, Ties, scene
 from host import output
 
+
 @pytest.fixture(scope="module")
 def program(exporter):
     """The example that moves a frame by its modes, chosen with the packages of `make test`: no other features, no second build."""

@@ -7,7 +7,9 @@ import pytest
 from frames import FRAMES, Frame, Ties, ties_of
 from ground_reference import Motion
 from host import G, ground_motion, output, refusal, write
-from test_frames import engine, program  # noqa: F401
+from test_frames import engine
+
+pytest_plugins = ["test_frames"]  # for its fixture
 
 MCMANUS = Frame((130.1,), (1.84,), (130.1 * (2 * np.pi * 5) ** 2,), m0=65.4, J0=10.7, B=0.285, zeta=0.02)
 STOREYS = Frame((40e3,) * 5, tuple(3.2 * i for i in range(1, 6)), tuple(5e6 * (25 - 3 * i) for i in range(1, 6)),
@@ -39,7 +41,7 @@ SCENES = {
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_the_engine_moves_as_the_masses_do(name, program):  # noqa: F811
+def test_the_engine_moves_as_the_masses_do(name, program):
     """Every touch and release, and theta, y, u and a of every floor at every sample, to 1e-9 of the peak and 100 times conditioning."""
     frame, f_v, zeta_v, n, scale, is_tied = SCENES[name]
     dt, a_g, a_v = record("imperialValley_elCentro_1940", 150, 150, scale)

@@ -4,8 +4,8 @@ docs/evidence/model_exchange.md has three records and all tolerances; these are 
 
 import numpy as np
 import pytest
-from evidence.scenes import PACOIMA_DAM
 from evidence.model_exchange.hosts import Scene, co_simulation, dop853, fmpy_cvode, sundae
+from evidence.scenes import PACOIMA_DAM
 
 BAND = 1e-9 * 0.23  # rad, of alpha_cg
 

@@ -4,7 +4,7 @@ import ctypes
 from ctypes import POINTER, c_char_p, c_double, c_uint, c_void_p, cast
 
 import numpy as np
-from host import DISCARD, ERROR, _callbacks, _LOGS, refused, status
+from host import _LOGS, DISCARD, ERROR, _callbacks, refused, status
 
 NAN, INF = float("nan"), float("inf")
 

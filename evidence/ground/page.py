@@ -9,7 +9,7 @@ import numpy as np
 
 from ..figures import COLOURS, FIXED, QUIET, ROCKING, SMOOTH, save, subplots
 from ..page import table
-from ..scenes import G, RECORDS
+from ..scenes import RECORDS, G
 from .opensees import shaken
 
 J0 = {"evison": 1.1918415, "mcmanus": 10.7}  # m0 B²/3, which is assumed, and of the paper, kg·m²

@@ -24,8 +24,8 @@ from os import PathLike
 from pathlib import Path
 
 from . import _native
-from ._native import Curve, Record, Run, Structure, __version__, advise, estimate, pulse, simulate
 from ._ground import Ground
+from ._native import Curve, Record, Run, Structure, __version__, advise, estimate, pulse, simulate
 from ._results import Advice, Estimate, Peak, Profile, Response, Transition, Transitions, Worst
 from ._sweep import Fragility, fragility, intensity_at, overturning_map, sweep
 

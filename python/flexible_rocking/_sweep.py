@@ -327,10 +327,10 @@ def intensity_at(
     reached = np.array(runs(unit, stripes)[1], object).reshape(len(motions), -1)
     notes, low, high = {}, {}, {}
     for (name, factor), at_stripes in zip(unit.items(), reached):
-        over = np.flatnonzero(at_stripes == True)  # noqa: E712
+        over = np.flatnonzero(at_stripes == True)
         below = np.arange(len(stripes)) < (over[0] if len(over) else len(stripes))
-        said = {"unknown at scale": factor * stripes[(at_stripes == None) & below],  # noqa: E711
-                "within the limit again at scale": factor * stripes[(at_stripes == False) & ~below]}  # noqa: E712
+        said = {"unknown at scale": factor * stripes[(at_stripes == None) & below],
+                "within the limit again at scale": factor * stripes[(at_stripes == False) & ~below]}
         notes[name] = "; ".join(f"{what} {', '.join(f'{at:.4g}' for at in scales)}" for what, scales in said.items() if len(scales))
         if not len(over):
             notes[name] = "; ".join(filter(None, [f"not reached up to scale {factor * stripes[-1]:.4g}", notes[name]]))

@@ -240,7 +240,7 @@ function motionView() {
     }
     const options = at("exaggeration");
     if (options.length !== exaggerations.length) {
-      options.replaceChildren(...exaggerations.map((factor) => new Option(`${factor} ×`, factor)));
+      options.replaceChildren(...exaggerations.map((factor) => new Option(`${factor} ×`, `${factor}`)));
     }
     options.value = exaggeration;
   }
@@ -373,7 +373,7 @@ function motionView() {
     at("choice").hidden = at("heights").hidden = count <= 1;
     if (!(floor >= 1 && floor <= count) || floor === at("floor").length) floor = count; // the top stays the top
     if (at("floor").length !== count) {
-      at("floor").replaceChildren(...Array.from({ length: count }, (_, i) => new Option(i + 1 === count ? `${count}, the top` : i + 1, i + 1)).reverse());
+      at("floor").replaceChildren(...Array.from({ length: count }, (_, i) => new Option(i + 1 === count ? `${count}, the top` : `${i + 1}`, `${i + 1}`)).reverse());
     }
     at("floor").value = floor;
     const cell = (content, of) => Object.assign(document.createElement(of), { textContent: content });
@@ -453,7 +453,7 @@ function motionView() {
     ].filter(({ name }) => peakOf(name))
       .map((panel) => ({ ...panel, meaning: meaningOf(panel.name), largest: most(panel.name) }))
       .filter(({ name, largest }) => ["theta", "a_t"].includes(name) || largest > 0);
-    document.body.style.setProperty("--panels", panels.length);
+    document.body.style.setProperty("--panels", `${panels.length}`);
     lanes = kinds
       .map((kind) => ({ ...kind, times: motion.transitions.filter((each) => kind.is(each.kind)).map((each) => each.instant) }))
       .filter((lane) => lane.times.length > 0);
@@ -687,7 +687,7 @@ function motionView() {
   }
   prefersDark.addEventListener("change", showTheme);
 
-  for (const factor of speeds) at("speed").append(new Option(`${factor} ×`, factor));
+  for (const factor of speeds) at("speed").append(new Option(`${factor} ×`, `${factor}`));
   at("exaggeration").addEventListener("change", (event) => choose(Number(event.target.value)));
   at("floor").addEventListener("change", (event) => {
     floor = Number(event.target.value);

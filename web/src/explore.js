@@ -71,7 +71,8 @@
 
   const text = () => JSON.stringify(fields);
   const record = () => fields.record ?? "el_centro";
-  /** Structures to start from: their names and their fields. */
+  /** Structures to start from: their names and their fields.
+   *  @type {Object<string, any[]>} */
   const structures = {
     pier: ["bridge pier of 22 m", { preset: "none", m: "1.2e6", m0: "4e5", H: "22", B: "3.5", f_fc: "0.8", zeta_fc: "0.03", r: "0.95" }],
     mcmanus: ["McManus's bridge pier", { preset: "mcmanus" }],
@@ -158,7 +159,7 @@
     made.dataset.name = name;
     made.innerHTML =
       '<label></label><input type="text" spellcheck="false"><small></small><input type="range" min="0" max="1" step="any"><output></output>';
-    const [label, number, small, range, note] = made.children;
+    const [label, number, small, range, note] = /** @type {any} */ (made.children);
     let limits; // of the slider; they stay the same while it is held
     label.append(`${description} `, symbol(name));
     label.htmlFor = number.id = `field-${name}`;
@@ -398,6 +399,7 @@
   // ---- The run: shown to 1/100 of a peak while a control moves, and to 1/10000 when it rests
 
   let pinned;
+  /** @type {Map<string, { detail: string, modes?: number }>} */
   const beside = new Map([["fixed_base", { detail: "fixed_base" }]]);
   const colours = { fixed_base: "--orange", rigid: "--grey", modal: "--purple", linear: "--green", nonlinear: "--ink", auto: "--blue" };
 

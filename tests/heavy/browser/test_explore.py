@@ -15,13 +15,15 @@ from urllib.parse import urlencode
 
 import numpy as np
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from conftest import ROOT
 from evidence.scenes import RECORD, SCALE, TIME_SCALE
 from host import output, refusal
-from axe_playwright_python.sync_playwright import Axe
 from PIL import Image
-from test_doors import SCENES, at_end, scene_of  # noqa: F401
-from test_view import SCALES, browser, clock, new_page, number, reading, wait  # noqa: F401
+from test_doors import SCENES, at_end
+from test_view import SCALES, clock, number, reading, wait
+
+pytest_plugins = ["test_doors", "test_view"]  # for their fixtures
 
 PAGE = ROOT / "out" / "explore.html"
 EL_CENTRO = next(RECORD.parents[1].glob("*/*ELC180*.AT2"))
@@ -154,7 +156,7 @@ def random_scenes(count: int):
     some = lambda fields: {name: random.choice(texts) for name, texts in fields.items() if random.random() < 0.3}
     shapes = [{"record": "half_sine"}, {"record": "cosine", "cycles": "1.5", "phase": "-0.3"}, {"record": "sine", "frequency": "1"},
               {"record": "mavroeidis_papageorgiou", "phase": ".4"}, {"record": "antisymmetric_ricker", "amplitude": "1e0"}]
-    for number in range(count):
+    for _ in range(count):
         structure = some({"preset": ["evison"], "g": ["3.71", "9.8"], "H": ["3.", "+2.25"], "weight": ["2.5e6"], "r": ["0.85"],
                           "zeta_fc": ["01e-2"], "P_0": ["300"], "k_t": ["4e4"]})
         run = some({"theta_0": ["-0.01", "0.02"], "u_0": ["1e-3"], "detail": ["nonlinear", "linear", "rigid"], "tolerance": ["1E-6"]})
@@ -180,13 +182,13 @@ def test_a_scene_is_the_same_by_its_command_and_by_its_script(opened, exporter, 
     shaken = PIER | {"m": "1200 t", "k_t": "20000 kN/m", "record": "record", "column": "2", "column_v": "3"}
     on_ground = [(fields | {"record": "ricker", "amplitude": "1"}, "-", "") for fields in ON_GROUND]
     pulled = FRAME | {"record": "free", "duration": "2", "theta_0": "0.01", "u_0": "1e-3, 2e-3,-3e-3"}
-    for number, (fields, name, record) in enumerate([(frame, "-", ""), (pier, "-", ""), (pulled, "-", ""), (shaken, "up.csv", table), *on_ground, *random_scenes(40)]):
+    for case, (fields, name, record) in enumerate([(frame, "-", ""), (pier, "-", ""), (pulled, "-", ""), (shaken, "up.csv", table), *on_ground, *random_scenes(40)]):
         follow(page, urlencode(fields | {"tab": "export"}))
         if fields.get("record") == "record":
             drop(page, Path(name), record.encode())
         assert problem(page) == "", (fields, record)
         told, ground = page.evaluate(COMPUTED, [fields, name, record])
-        folder = tmp_path / str(number)
+        folder = tmp_path / str(case)
         folder.mkdir()
         (folder / "ground.csv").write_text(ground)
         (folder / name).write_text(record)
@@ -198,7 +200,7 @@ def test_a_scene_is_the_same_by_its_command_and_by_its_script(opened, exporter, 
             found = {name: of for name, *of in told["peaks"]}
             assert found == {name: peaks[name] for name in found} and [told["transitions"], told["end"]] == ends, fields
         assert set(folder.iterdir()) == files
-        if number == 0:
+        if case == 0:
             periods, spectra = json.loads(page.evaluate("fields => new wasm_bindgen.Explorer().spectra(JSON.stringify(fields))", fields))
             by_command_line(exporter, folder, text(page, "#command") + " --spectrum=floors.csv")
             assert np.loadtxt(folder / "floors.csv", delimiter=",", skiprows=1).T.tolist() == [periods, *spectra]
@@ -297,8 +299,8 @@ def test_what_is_refused_is_said_as_everywhere_and_the_page_stays_alive(opened, 
         assert faulty(page) == ["m"] and page.locator("#field-m").evaluate("field => getComputedStyle(field).boxShadow") != "none"
     put(page, "#reset")
     assert problem(page) == ""
-    for number, content in enumerate([b"", b"\x00\xff\xfe", b"0,1\n1,?\n", b"PEER\nx\nVELOCITY\nNPTS= 9, DT= .01\n1 2"]):
-        path = tmp_path / f"bad{number}.csv"
+    for case, content in enumerate([b"", b"\x00\xff\xfe", b"0,1\n1,?\n", b"PEER\nx\nVELOCITY\nNPTS= 9, DT= .01\n1 2"]):
+        path = tmp_path / f"bad{case}.csv"
         path.write_bytes(content)
         drop(page, path)
         refused = refusal(exporter, "--quiet", "simulate", "--record", path.name, cwd=tmp_path)

@@ -3,10 +3,9 @@
 import subprocess
 import sys
 
+import evidence
 import pytest
 from conftest import ROOT
-
-import evidence
 from host import need_opensees
 
 

@@ -11,7 +11,9 @@ from conftest import ROOT
 from fmpy import read_model_description
 from host import Fmu
 from pacoima import distance
-from test_hosts_library import HOST, cargo_build, functions, linux_host, run  # noqa: F401
+from test_hosts_library import HOST, cargo_build
+
+pytest_plugins = ["test_hosts_library"]  # for its fixtures
 
 X86 = "x86_64-unknown-linux-gnu"
 ARM = "aarch64-unknown-linux-gnu"
@@ -78,7 +80,7 @@ def test_no_library_tells_where_it_was_built(library, folder):
     assert binaries.tells_no_place(library(folder).read_bytes())
 
 
-def test_an_old_system(run, shaken, library):  # noqa: F811
+def test_an_old_system(run, shaken, library):
     """Linux's library and its host with the C library of Debian 11, glibc 2.31."""
     if not OLD_LOADER.exists():
         pytest.skip(f"{OLD_LOADER} is missing: `make out/debian11/lib` fetches it where apt-get can")
@@ -89,7 +91,7 @@ def test_an_old_system(run, shaken, library):  # noqa: F811
     assert distance(found, expected) < 1e-12
 
 
-def test_arm_gives_the_numbers_of_x86(run, linux_host, shaken, mcmanus, library):  # noqa: F811
+def test_arm_gives_the_numbers_of_x86(run, linux_host, shaken, mcmanus, library):
     if shutil.which("qemu-aarch64") is None or not (ARM_SYSTEM / "lib/ld-linux-aarch64.so.1").exists():
         pytest.skip("qemu-aarch64 or the C library for it is missing: packages qemu-user, libc6-arm64-cross")
     arm = cargo_build("--release", "--target", ARM, "--manifest-path", HOST, tool="zigbuild") / ARM / "release" / "load-library"

@@ -7,7 +7,9 @@ import shutil
 import pytest
 from host import output
 from pacoima import STEPS, distance
-from test_hosts_library import HOST, cargo_build, linux_host, linux_library, run  # noqa: F401
+from test_hosts_library import HOST, cargo_build
+
+pytest_plugins = ["test_hosts_library"]  # for its fixtures
 
 WINDOWS, MINGW = "x86_64-pc-windows-gnu", "x86_64-w64-mingw32-gcc"
 

@@ -4,8 +4,8 @@ import frames
 import pytest
 import test_doors
 import test_frames
-from test_doors import scene_of  # noqa: F401
-from test_frames import program  # noqa: F401
+
+pytest_plugins = ["test_doors", "test_frames"]  # for their fixtures
 
 
 @pytest.mark.parametrize("number", test_doors.SCENES[25:])

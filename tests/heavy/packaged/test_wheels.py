@@ -9,8 +9,8 @@ import zipfile
 import binaries
 import pytest
 from conftest import ROOT
-from packages import package
 from host import output, write
+from packages import package
 from pacoima import A_G, TIME
 
 TAGS = {

@@ -9,7 +9,9 @@ import flexible_rocking as fr
 import numpy as np
 import pandas as pd
 import pytest
-from test_doors import SCENES, TIES, Scene, at_end, co_simulation, command_line, export, numbered, options, scene_of, write  # noqa: F401
+from test_doors import SCENES, TIES, Scene, at_end, co_simulation, command_line, export, numbered, options, write
+
+pytest_plugins = ["test_doors"]  # for its fixture
 
 STOREYS = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)]
 MANY = [(2e4, float(i), 4e8) for i in range(1, 31)]  # 24 modes; the mass of the other six turns with the base

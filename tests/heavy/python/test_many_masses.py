@@ -7,13 +7,12 @@ import pickle
 import re
 import subprocess
 
+import flexible_rocking as fr
 import numpy as np
 import pandas as pd
 import pytest
 from frames import FRAMES, Frame, toml
 from scipy.linalg import eigh
-
-import flexible_rocking as fr
 
 FRAME = FRAMES["frame"]
 BASE = {"m0": FRAME.m0, "J0": FRAME.J0, "B": FRAME.B, "r": FRAME.r}

@@ -2,17 +2,16 @@
 
 import math
 
+import flexible_rocking as fr
 import numpy as np
 import pytest
-from frames import FRAMES, cantilever
 from evidence.ground.opensees import solve_with
+from frames import FRAMES, cantilever
+from host import need_opensees
 from scipy.linalg import eigh
 
-import flexible_rocking as fr
-from host import need_opensees
-
 need_opensees()
-import openseespy.opensees as ops  # noqa: E402
+import openseespy.opensees as ops
 
 FRAME = FRAMES["frame"]
 M, H, B, G = FRAME.m, FRAME.h, FRAME.B, 9.81

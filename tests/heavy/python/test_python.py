@@ -19,6 +19,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from xml.etree import ElementTree
 
+import flexible_rocking as fr
 import numpy as np
 import pages
 import pandas as pd
@@ -26,11 +27,9 @@ import pytest
 import statsmodels.api as api
 from conftest import ROOT
 from evidence.scenes import RECORD
+from flexible_rocking import formats
 from fmpy import simulate_fmu
 from scipy import stats
-
-import flexible_rocking as fr
-from flexible_rocking import formats
 
 PACOIMA = {"time_scale": 0.2, "scale": 1.45}
 OPTIONS = [part for name, value in PACOIMA.items() for part in (f"--{name.replace('_', '-')}", str(value))]

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from evidence.paper import modal_components
 from evidence.paper.specimens import half_cycles
 
