@@ -101,7 +101,7 @@ out/npm: Makefile
 	touch $@
 
 # The parts, what each needs, and Debian's packages for it: without these its tests are skipped and say so.
-ALL_PARTS := long study python hosts browser foreign packaged docs
+ALL_PARTS := long study counted python hosts browser foreign packaged docs
 PARTS := $(ALL_PARTS)
 NEEDS_python := module
 NEEDS_hosts := out/cofmupy
@@ -109,6 +109,7 @@ NEEDS_browser := module explore
 NEEDS_foreign := dist out/debian11/lib
 NEEDS_packaged := wheels
 NEEDS_docs := docs
+DEBIAN_counted := valgrind
 DEBIAN_python := libblas3 liblapack3 libgfortran5
 DEBIAN_hosts := gcc-mingw-w64-x86-64-win32 wine libtbb12
 DEBIAN_browser := chromium firefox-esr
