@@ -53,7 +53,7 @@ install = test -z "$(strip $(1))" || dpkg --status $(1) >/dev/null 2>&1 || { $(s
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $$package; done; }
 
 .PHONY: demo test check lint heavy evidence docs pages pictures explore dist wheels release measure \
-	packages targets module library exporter libraries python scripts
+	packages targets module library exporter libraries collect python scripts
 
 # pip while cargo compiles.
 demo:
@@ -226,6 +226,9 @@ release:
 	$(MAKE) test evidence
 	$(MAKE) heavy NEEDS_packaged=
 	PACKAGE='*.tar.gz' $(PYTHON) -m pytest tests/heavy/packaged/test_wheel.py
+	$(MAKE) collect
+
+collect:
 	rm -rf out/release && mkdir -p out/release
 	cp out/FlexibleRocking.fmu out/explore.html out/wheels/* out/release/
 	awk '/^## /{is_meant = $$2 == "$(VERSION)"} is_meant' CHANGELOG.md >out/release/CHANGES.md
