@@ -1,7 +1,6 @@
 //! A record is read and run, the levels of detail are compared on it, and piers of four stiffnesses are swept.
 
 use rocking::estimates::intensity::IntensityMeasure::Pga;
-use rocking::run::levels;
 use rocking::{Output, Parameters, Run, Structure};
 use rocking_records::Reading;
 use rocking_sweep::fragility::{FragilityCurve, Trials};
@@ -16,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let show = |of: &Output| println!("{} in {}: {:?}", of.symbol(), of.unit(), peaks.of(*of));
     Output::with_peak(&run.structure).iter().for_each(show);
     println!("{:?} at {} s", finish.ending, finish.motion.time);
-    let verdicts = levels::compare(&run)?.verdicts;
+    let verdicts = run.compare()?.verdicts;
     verdicts.iter().for_each(|level| println!("{:?}: {:?}", level.response.choice.detail, level.errors));
     let piers = Population::new("piers", run.structure).vary("f_fc", vec![3.0, 4.0, 5.0, 6.0])?;
     let (pulse, scales) = (NamedRecord::new("pulse", ground, 1.0)?, vec![1.1, 1.15, 1.2, 1.25, 1.3]);

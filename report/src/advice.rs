@@ -68,7 +68,7 @@ pub struct Level {
 
 /// All levels of detail on `run`, each beside the reference.
 fn compare<Q: Runs>(run: &rocking::Run<Q>, (within, criteria): (f64, &[Criterion])) -> Result<Advice, RunError> {
-    let all = levels::compare(run)?;
+    let all = run.compare()?;
     let advised = all.recommended(within, criteria).map(|verdict| verdict.response.choice);
     let level = |level, response: &Response, errors, is_right_about_overturning, is_allowed| Level {
         level,

@@ -3,9 +3,9 @@
 //! Nothing is sampled at an interval. Each polynomial is divided until a bound says that its series stay as close to the
 //! straight lines as is allowed. Two points of the same instant have a transition, or the end of the record, between them.
 
-use super::fall::Found;
+use super::course::{Run, RunError, Starts};
+use super::fall::{Found, find};
 use super::peaks::{Peak, Peaks};
-use super::{Run, RunError, Runs};
 use crate::engine::piece::{Piece, Watch};
 use crate::engine::sample::Sample;
 use crate::mechanics::arc::stretch;
@@ -42,7 +42,7 @@ const OF_GROUND: [Output; 5] = [Output::N_left, Output::N_right, Output::y, Outp
 
 /// The outputs of `run` at the points of a picture: its lines, those on ground that gives, the displacement of one mass, and the
 /// forces of ties.
-pub fn drawn<Q: Runs>(run: &Run<Q>) -> Vec<Output> {
+pub fn drawn<Q: Coordinates>(run: &Run<Q>) -> Vec<Output> {
     let structure = &run.structure.at(run.detail);
     let mut drawn = lines(structure);
     drawn.extend(structure.foundation().iter().flat_map(|_| OF_GROUND));
@@ -80,16 +80,8 @@ pub struct Curve<Q: Coordinates = f64> {
     pub found: Found<Q>,
 }
 
-impl<Q: Runs> Run<'_, Q> {
-    /// The run as points between which θ, u and a_t of each floor leave straight lines by at most `part` of their peaks; the
-    /// ground acceleration does not leave them at all. Refuses a run that takes more points than fit in 130 MB.
-    pub fn curve(&self, part: f64) -> Result<Curve<Q>, RunError> {
-        (Q::compiled().curve)(self, part)
-    }
-}
-
-pub(super) fn trace<Q: Runs>(run: &Run<Q>, part: f64) -> Result<Curve<Q>, RunError> {
-    let (found, peaks) = (Q::compiled().found)(run, &mut ())?;
+pub(super) fn trace<Q: Starts>(run: &Run<Q>, part: f64) -> Result<Curve<Q>, RunError> {
+    let (found, peaks) = find(run, &mut ())?;
     let (mut lines, drawn, a_g) = (lines(&run.structure), drawn(run), found.ground);
     lines.extend(OF_GROUND[..2].iter().filter(|of| drawn.contains(of)));
     let peaks = Vec::from_iter(peaks_of(&lines, &peaks));
@@ -104,7 +96,7 @@ pub(super) fn trace<Q: Runs>(run: &Run<Q>, part: f64) -> Result<Curve<Q>, RunErr
         transitions: Vec::new(),
         is_torn: true,
     };
-    run.follow(&mut tracer)?;
+    run.end(&mut tracer)?;
     let Tracer { points, transitions, most, .. } = tracer;
     if points.len() > most {
         return Err(RunError::TooManyPoints { most, time: points[most - 1].time });

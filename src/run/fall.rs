@@ -1,16 +1,15 @@
 //! The fall of a structure that overturns: it begins when |θ| passes the angle of no return for the last time. The peaks of
 //! such a structure are those before the fall.
 
+use super::course::{Finish, Run, RunError, Starts};
 use super::peak_watch::PeakWatch;
 use super::peaks::{Peak, Peaks};
-use super::{Finish, Run, RunError, Runs};
 use crate::engine::piece::Expansion;
 use crate::engine::sample::Sample;
 use crate::mechanics::arc::{Arc, stretch};
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::{Dissipators, Restraint};
 use crate::run::ground_motion::GroundMotion;
-use crate::run::validity::Validity;
 use crate::series::bisection::last_where;
 use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
 use crate::series::taylor::sum_of_magnitudes;
@@ -223,17 +222,7 @@ fn last_passing<Q: Coordinates>(angle: f64, side: f64, expansion: &Expansion<Q>)
     }
 }
 
-impl<Q: Runs> Run<'_, Q> {
-    /// Follows the motion to the end, which `watch` sees, too, and finds its exact peaks.
-    pub fn found(&self, watch: &mut dyn Watch<Q>) -> Result<Found<Q>, RunError> {
-        Ok((Q::compiled().found)(self, watch)?.0)
-    }
-
-    /// Like [`Run::found`]; `validity` sees the motion, too.
-    pub fn judged(&self, validity: &mut Validity, watch: &mut dyn Watch<Q>) -> Result<Found<Q>, RunError> {
-        (Q::compiled().judged)(self, validity, watch)
-    }
-
+impl<Q: Coordinates> Run<'_, Q> {
     /// The watcher of the peaks of the run, before any motion.
     pub(super) fn watch_falling(&self) -> FallWatch<Q> {
         Falling::since(self.ground.start(), &self.structure, self.detail).watch()
@@ -269,7 +258,7 @@ impl<Q: Runs> Run<'_, Q> {
 }
 
 /// Result of `run`, which `watch` sees, and the peaks of all its motion, including a fall.
-pub(super) fn find<Q: Runs>(run: &Run<Q>, watch: &mut dyn Watch<Q>) -> Result<(Found<Q>, Peaks), RunError> {
+pub(super) fn find<Q: Starts>(run: &Run<Q>, watch: &mut dyn Watch<Q>) -> Result<(Found<Q>, Peaks), RunError> {
     let (course, mut own) = (run.course()?, run.watch_falling());
     let (ending, engine) = match watch.sees_pieces() {
         true => course.finish(&mut (&mut own, watch))?,
@@ -283,8 +272,8 @@ pub(super) fn find<Q: Runs>(run: &Run<Q>, watch: &mut dyn Watch<Q>) -> Result<(F
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::course::{End, Ending};
     use crate::run::record::Record;
-    use crate::run::{End, Ending};
     use crate::{OneMass, Output, Parameters, State};
     use std::f64::consts::TAU;
 

@@ -5,18 +5,18 @@
 //! bounds of a leap or a step prove that no guard closes, that is all: a step that may hold a peak is put off. Otherwise the run goes
 //! on by itself, with transitions and searches, until it does again what others do.
 
+use super::course::{Ending, Finish, Follower, LONGEST_REST, MOST_STEPS, Run, RunError, Starts, error, load_of};
 use super::fall::{FallWatch, Found};
 use super::ground_motion::{Segment, Segments};
 use super::peak_watch::ThetaWatch;
 use super::peaks::Peaks;
-use super::{Ending, Finish, Follower, LONGEST_REST, MOST_STEPS, Run, RunError, Runs, error, load_of};
-use crate::Progress;
 use crate::engine::Advance;
 use crate::engine::lanes::Rocking;
 use crate::engine::leaps::Contacts;
 use crate::engine::sought::Passes;
 use crate::mechanics::lateral::Coordinates;
 use crate::numbers::lanes::MOST;
+use crate::{Progress, Watch};
 use pulp::{Arch, Simd, WithSimd};
 use std::collections::VecDeque;
 
@@ -26,19 +26,13 @@ const ON_THE_WAY: usize = 4 * MOST;
 /// Fewer runs than these are faster one by one.
 const LEAST: usize = 3;
 
-/// Follows `runs` to their ends and finds the exact peaks of each, as [`Run::found`] does. Tells `done` each result, with the
-/// run's position, as the run ends; once `done` says no, the rest is left undone.
-pub fn found_each<Q: Runs>(runs: &[Run<Q>], done: Done<Result<Found<Q>, RunError>>) {
-    (Q::compiled().found_each)(runs, done);
-}
-
 /// Sees the result of a run, with the run's position, and says whether to go on.
 pub type Done<'a, T> = &'a mut dyn FnMut(usize, T) -> bool;
 
 /// Follows runs and shows the result of each.
 pub(super) type Each<Q, T> = fn(&[Run<Q>], Done<T>);
 
-pub(super) fn find_each<Q: Runs>(runs: &[Run<Q>], done: Done<Result<Found<Q>, RunError>>) {
+pub(super) fn find_each<Q: Starts>(runs: &[Run<Q>], done: Done<Result<Found<Q>, RunError>>) {
     follow_each(runs, runs.iter().map(Run::watch_falling), |number, finish, watch| {
         done(number, found(&runs[number], finish, watch))
     });
@@ -53,36 +47,22 @@ pub struct Rocked {
     pub impacts: u64,
 }
 
-/// Follows `runs` to their ends like [`found_each`], and tells `done` of each how it ended and how far it has rocked by then.
-pub fn rocked_each<Q: Runs>(runs: &[Run<Q>], done: Done<(Result<Finish<Q>, RunError>, Rocked)>) {
-    (Q::compiled().rocked_each)(runs, done);
-}
-
-pub(super) fn rock_each<Q: Runs>(runs: &[Run<Q>], done: Done<(Result<Finish<Q>, RunError>, Rocked)>) {
+pub(super) fn rock_each<Q: Starts>(runs: &[Run<Q>], done: Done<(Result<Finish<Q>, RunError>, Rocked)>) {
     follow_each(runs, runs.iter().map(watch_theta), |number, finish, watch| done(number, (finish, rocked(watch))));
 }
 
-impl<Q: Runs> Run<'_, Q> {
-    /// Follows the motion to its end, and finds how it ended and how far it has rocked by then.
-    pub fn rocked(&self) -> (Result<Finish<Q>, RunError>, Rocked) {
-        let mut watch = watch_theta(self);
-        let finish = self.follow(&mut watch);
-        (finish, rocked(watch))
-    }
-}
-
 /// The rotation that `watch` has seen.
-fn rocked<Q: Runs>(watch: ThetaWatch<Q>) -> Rocked {
+fn rocked<Q: Starts>(watch: ThetaWatch<Q>) -> Rocked {
     Rocked { impacts: watch.impacts, theta: watch.end().theta().magnitude }
 }
 
 /// The watcher of the rotation of `run`, before any motion.
-fn watch_theta<Q: Runs>(run: &Run<Q>) -> ThetaWatch<Q> {
+fn watch_theta<Q: Starts>(run: &Run<Q>) -> ThetaWatch<Q> {
     Peaks::since(run.ground.start(), &run.structure, run.detail).watch_theta()
 }
 
 /// Result of a `run` with this `finish`, all of which `watch` has seen.
-fn found<Q: Runs>(
+fn found<Q: Starts>(
     run: &Run<Q>,
     finish: Result<Finish<Q>, RunError>,
     watch: FallWatch<Q>,
@@ -91,8 +71,13 @@ fn found<Q: Runs>(
     finish.map(|finish| run.found_of(peaks, fall, finish))
 }
 
-/// Follows `runs` to their ends, each seen by one of `watches`. Tells `done` of each how it ended, as [`found_each`] does.
-fn follow_each<Q: Runs, W: Passes<Q>>(
+/// Follows `run` by itself, which `watch` sees.
+fn follow_alone<Q: Starts>(run: &Run<Q>, watch: &mut dyn Watch<Q>) -> Result<Finish<Q>, RunError> {
+    run.end(watch).map(|(ending, engine)| Finish { ending, motion: *engine.motion() })
+}
+
+/// Follows `runs` to their ends, each seen by one of `watches`. Tells `done` of each how it ended, as [`find_each`] does.
+fn follow_each<Q: Starts, W: Passes<Q>>(
     runs: &[Run<Q>],
     watches: impl Iterator<Item = W>,
     done: impl FnMut(usize, Result<Finish<Q>, RunError>, W) -> bool,
@@ -107,7 +92,7 @@ struct FollowEach<'a, Q: Coordinates, Watches, Done> {
     done: Done,
 }
 
-impl<Q: Runs, W: Passes<Q>, Watches, Done> WithSimd for FollowEach<'_, Q, Watches, Done>
+impl<Q: Starts, W: Passes<Q>, Watches, Done> WithSimd for FollowEach<'_, Q, Watches, Done>
 where
     Watches: Iterator<Item = W>,
     Done: FnMut(usize, Result<Finish<Q>, RunError>, W) -> bool,
@@ -119,7 +104,7 @@ where
         let FollowEach { runs, watches, mut done } = self;
         if S::F64_LANES < LEAST || runs.len() < LEAST {
             runs.iter().zip(watches).enumerate().all(|(number, (run, mut watch))| {
-                let finish = run.follow(&mut watch);
+                let finish = follow_alone(run, &mut watch);
                 done(number, finish, watch)
             });
         } else {
@@ -154,7 +139,7 @@ const LEAPS: usize = 0;
 const ROCKS: usize = 1;
 const ROCKS_ON: usize = 2;
 
-impl<Q: Runs, W: Passes<Q>> Lane<'_, Q, W> {
+impl<Q: Starts, W: Passes<Q>> Lane<'_, Q, W> {
     /// Goes on to where the run in `slot` of `steps` has come without a transition.
     fn catch_up<S: Simd>(&mut self, steps: &mut Rocking<S, Q>, slot: usize) -> Result<(), RunError> {
         let Lane { follower: Follower { engine, segments, .. }, watch, .. } = self;
@@ -230,7 +215,7 @@ struct Together<'a, S: Simd, Q> {
     rocking: Rocking<'a, S, Q>,
 }
 
-impl<'a, S: Simd, Q: Runs> Together<'a, S, Q> {
+impl<'a, S: Simd, Q: Starts> Together<'a, S, Q> {
     /// Puts `lane`, whose next step is of this `kind`, into a `slot`.
     #[inline]
     fn enter<W: Passes<Q>>(&mut self, kind: usize, slot: usize, lane: &Lane<'a, Q, W>) {
@@ -304,7 +289,7 @@ struct Lanes<'a, Q: Coordinates, W> {
     ended: Vec<Ended<'a, Q, W>>,
 }
 
-impl<'a, Q: Runs, W: Passes<Q>> Lanes<'a, Q, W> {
+impl<'a, Q: Starts, W: Passes<Q>> Lanes<'a, Q, W> {
     fn count(&self) -> usize {
         self.of_kind.iter().map(VecDeque::len).sum()
     }
@@ -355,7 +340,7 @@ impl<'a, Q: Runs, W: Passes<Q>> Lanes<'a, Q, W> {
 
 /// Follows the `runs` of [`follow_each`]. Returns how many steps of rocking have been taken together.
 #[inline(never)] // what is of one run alone needs no wide registers
-fn follow<S: Simd, Q: Runs, W: Passes<Q>>(
+fn follow<S: Simd, Q: Starts, W: Passes<Q>>(
     simd: S,
     runs: &[Run<Q>],
     watches: impl Iterator<Item = W>,
@@ -409,11 +394,11 @@ fn follow<S: Simd, Q: Runs, W: Passes<Q>>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::End;
+    use crate::run::course::End;
     use crate::run::record::Record;
     use crate::structure::description::tests::usual;
     use crate::structure::description::{Damping, Storey};
-    use crate::{Detail, OneMass, Parameters, Phase, Piece, Structure, Watch};
+    use crate::{Detail, OneMass, Parameters, Phase, Piece, Structure};
     use std::f64::consts::{PI, TAU};
 
     /// A ground motion of filtered noise.
@@ -447,12 +432,12 @@ mod tests {
     }
 
     /// A result in words, all but the work of the search for peaks, in which runs that step together put more off.
-    fn told<Q: Runs>(mut result: Result<Found<Q>, RunError>) -> String {
+    fn told<Q: Starts>(mut result: Result<Found<Q>, RunError>) -> String {
         result.iter_mut().for_each(|found| found.peaks.evaluations = 0);
         format!("{result:?}")
     }
 
-    fn together<S: Simd, Q: Runs>(simd: S, runs: &[Run<Q>]) -> Vec<String> {
+    fn together<S: Simd, Q: Starts>(simd: S, runs: &[Run<Q>]) -> Vec<String> {
         let mut results = vec![String::new(); runs.len()];
         follow(simd, runs, runs.iter().map(Run::watch_falling), |number, finish, watch| {
             results[number] = told(found(&runs[number], finish, watch));
@@ -486,7 +471,7 @@ mod tests {
 
     /// Whether `runs` together have the results of each `alone`, in as many lanes as this processor has and in those that every
     /// processor imitates.
-    fn assert_same<Q: Runs>(runs: &[Run<Q>], alone: &[String]) {
+    fn assert_same<Q: Starts>(runs: &[Run<Q>], alone: &[String]) {
         let same = |found: Vec<String>| {
             let other = (0..runs.len()).find(|i| found[*i] != alone[*i]);
             assert!(other.is_none(), "{other:?}: {} instead of {}", found[other.unwrap()], alone[other.unwrap()]);
@@ -498,8 +483,12 @@ mod tests {
             V3::try_new().into_iter().for_each(|simd| same(together(simd, runs)));
             V4::try_new().into_iter().for_each(|simd| same(together(simd, runs)));
         }
-        rocked_each(runs, &mut |number, rocked| {
-            assert_eq!(format!("{rocked:?}"), format!("{:?}", runs[number].rocked()));
+        rock_each(runs, &mut |number, rocked| {
+            let run = &runs[number];
+            let peaks = Peaks::since(run.ground.start(), &run.structure, run.detail);
+            let mut watch = peaks.watch_theta();
+            let finish = follow_alone(run, &mut watch);
+            assert_eq!(format!("{rocked:?}"), format!("{:?}", (finish, super::rocked(watch))));
             true
         });
     }

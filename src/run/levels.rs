@@ -2,11 +2,11 @@
 //!
 //! A level of a structure of many masses is also the number of modes that are kept ([`Structure::keeping`]).
 
+use super::course::{Ending, Follower, Run, RunError, Starts};
 use super::curve::{lines, peaks_of};
 use super::fall::FallWatch;
 use super::history::{Distance, History};
 use super::peaks::Peaks;
-use super::{Ending, Follower, Run, RunError, Runs};
 use crate::engine::motion::Work;
 use crate::mechanics::lateral::Coordinates;
 use crate::run::ground_motion::Segment;
@@ -92,7 +92,7 @@ fn all_modes(structure: &Structure) -> Option<[usize; 2]> {
 }
 
 /// The levels to compare on `run`, the one of the fewest equations first.
-fn choices<'a, Q: Runs>(run: &Run<'a, Q>) -> Vec<(Choice, Run<'a, Q>)> {
+fn choices<'a, Q: Starts>(run: &Run<'a, Q>) -> Vec<(Choice, Run<'a, Q>)> {
     let Some([all, _]) = all_modes(&run.structure) else {
         let of = |detail| (Choice { detail, modes: None }, Run { detail, ..run.clone() });
         return SIMPLEST_FIRST.map(of).into();
@@ -150,12 +150,7 @@ pub struct Comparison {
     pub refused: Vec<(Choice, RunError)>,
 }
 
-/// Does `run` at every level.
-pub fn compare<Q: Runs>(run: &Run<Q>) -> Result<Comparison, RunError> {
-    (Q::compiled().compare)(run)
-}
-
-pub(super) fn compare_levels<Q: Runs>(run: &Run<Q>) -> Result<Comparison, RunError> {
+pub(super) fn compare<Q: Starts>(run: &Run<Q>) -> Result<Comparison, RunError> {
     let of_all = |detail| Choice { detail, modes: all_modes(&run.structure) };
     let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..run.clone() };
     let (level_ground, is_vertical) = (run.ground.clone().without_vertical(), run.ground.vertical().is_some());
@@ -210,7 +205,7 @@ struct Trial<Q: Coordinates, Segments> {
 }
 
 /// Of `run`.
-fn start<'a, Q: Runs>(
+fn start<'a, Q: Starts>(
     run: &Run<'a, Q>,
     choice: Choice,
 ) -> Result<Trial<Q, impl Iterator<Item = Segment> + use<'a, Q>>, RunError> {
@@ -240,7 +235,7 @@ fn cut(segment: Segment, longest: f64) -> impl Iterator<Item = Segment> {
     })
 }
 
-impl<Q: Runs, Segments: Iterator<Item = Segment>> Trial<Q, Segments> {
+impl<Q: Starts, Segments: Iterator<Item = Segment>> Trial<Q, Segments> {
     /// Follows the motion over the next segment unless the run has ended.
     fn go_on(&mut self) -> Result<(), RunError> {
         if self.ending.is_none() {

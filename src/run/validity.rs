@@ -25,7 +25,6 @@
 mod assumptions;
 
 use super::reaction_series::{self, Extent};
-use super::{Finish, Run, RunError, Runs};
 use crate::digits::short;
 use crate::engine::piece::{Expansion, Part, Piece, Watch};
 use crate::engine::sample::Sample;
@@ -37,13 +36,13 @@ use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
-use crate::structure::quantity::{Refused, ensure};
 use crate::{
     Base, Detail, Foundation, Impulse, Mode, Modes, Motion, OneMass, Output, Parameters, Phase, Ramp, Reactions, Side,
     Structure, Transition, TransitionKind,
 };
 pub use assumptions::{
-    ASSUMPTIONS, Assumption, EDGE_LOAD, ENERGY, FRICTION, IMPACT_FRICTION, IMPACT_TENSION, Passing, TENSION, WEIGHT,
+    ASSUMPTIONS, Assumption, EDGE_LOAD, ENERGY, FRICTION, IMPACT_FRICTION, IMPACT_TENSION, Limits, Passing, TENSION,
+    WEIGHT,
 };
 use assumptions::{Combination, NO_SLIDING, OF_REACTIONS, OfReactions, PRESSED_EDGE, Scale, of_impact};
 use serde::{Deserialize, Serialize};
@@ -71,45 +70,6 @@ const UNBOUNDED: Reactions<Extent> = Reactions { R_h: Extent::ANY, R_v: Extent::
 /// The largest number of arcs of a leap that are all looked at. Of a longer leap only the first arcs and the last period are: the
 /// rest is no worse, but its time beyond a limit is not counted.
 const MOST_ARCS: u32 = 1000;
-
-/// The limits: a value beyond one gives a warning.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
-    /// Of `tension_max` and `tension_impact`, parts of the weight and of the impulse.
-    pub tension: f64,
-    /// Of `R_v_min`, part of the weight.
-    pub edge_load: f64,
-    /// Of `mu_required` and `mu_impact`.
-    pub friction: f64,
-    /// Of `energy_gain_max`.
-    pub energy_gain: f64,
-}
-
-impl Default for Limits {
-    /// Friction: 0.5, of concrete on concrete cast against smooth formwork (EN 1992-1-1:2004, 6.2.5(2), "very smooth").
-    /// Tension: 0.05, since any uplift at u_cr takes g/(H ω_fc²) or so, and damping adds to it. Edge load and gain: 0.
-    fn default() -> Limits {
-        Limits { tension: 0.05, edge_load: 0.0, friction: 0.5, energy_gain: 0.0 }
-    }
-}
-
-impl Limits {
-    /// Whether each of them is a limit.
-    ///
-    /// # Errors
-    ///
-    /// A limit that is not a finite number of at least 0.
-    pub fn check(&self) -> Result<(), Refused> {
-        let &Limits { tension, edge_load, friction, energy_gain } = self;
-        let named =
-            [("friction", friction), ("tension", tension), ("edge_load", edge_load), ("energy_gain", energy_gain)];
-        named.into_iter().try_for_each(|(name, value)| {
-            ensure(value >= 0.0 && value.is_finite(), || {
-                format!("{name} = {value} is out of range: a finite number of at least 0 is needed")
-            })
-        })
-    }
-}
 
 /// The findings about one of [`ASSUMPTIONS`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -503,25 +463,6 @@ fn positive(coefficients: &[f64], reach: f64, found: &mut Vec<(f64, f64)>) {
     };
     extremes::stationary_points(coefficients, reach, &mut look);
     look(reach);
-}
-
-impl<Q: Runs> Run<'_, Q> {
-    /// The watcher of the assumptions that the run breaks.
-    pub fn validity_watch(&self, limits: Limits) -> Result<Validity, RunError> {
-        Ok(Validity::new(self.start()?.structure(), limits, Findings::since(self.ground.start())))
-    }
-
-    /// The assumptions that the run breaks, and its end.
-    pub fn validity(&self, limits: Limits) -> Result<(Findings, Finish<Q>), RunError> {
-        let mut validity = self.validity_watch(limits)?;
-        let finish = self.judge(&mut validity, &mut ())?;
-        Ok((validity.found, finish))
-    }
-
-    /// Follows the motion to the end, which `validity` and `watch` see.
-    pub fn judge(&self, validity: &mut Validity, watch: &mut dyn Watch<Q>) -> Result<Finish<Q>, RunError> {
-        (Q::compiled().judge)(self, validity, watch)
-    }
 }
 
 /// The warnings that follow from a structure at the level `detail`, before anything moves.

@@ -10,10 +10,9 @@ use rocking::estimates::intensity::{
 };
 use rocking::estimates::response_spectrum::spectral_acceleration;
 use rocking::run::fall::Found;
-use rocking::run::lanes::found_each;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits};
-use rocking::run::{End, Run, RunError, Runs};
+use rocking::run::{End, Run, RunError, Runs, found_each};
 use rocking::structure::doubts::doubted;
 use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
 use rocking::{Detail, Modes, Parameters, Quantity, State, Structure};

@@ -20,7 +20,7 @@ fn histories_do_not_depend_on_how_finely_a_record_is_sampled() {
         };
         let ground = Record::from_samples("sine", times, (0..=300 * parts).map(linear).collect()).unwrap();
         let run = Run { end: End::At(3.0), ..Run::new(structure, &ground) };
-        levels::compare(&run).unwrap().verdicts.into_iter().map(|verdict| verdict.errors).collect::<Vec<_>>()
+        run.compare().unwrap().verdicts.into_iter().map(|verdict| verdict.errors).collect::<Vec<_>>()
     });
     for (coarse, fine) in errors[0].iter().zip(&errors[1]) {
         for (coarse, fine) in coarse.iter().zip(fine) {
@@ -38,7 +38,7 @@ fn comparing_levels_takes_no_more_memory_for_more_of_them() {
     let most = |dt: f64, samples: usize| {
         let ground = sampled(samples, dt, |t| 2.0 * (0.09 * t / dt).sin());
         let run = Run { end: End::At(ground.end()), ..Run::new(structure, &ground) };
-        allocation_counter::measure(|| drop(levels::compare(&run).unwrap())).bytes_max
+        allocation_counter::measure(|| drop(run.compare().unwrap())).bytes_max
     };
     let short = most(0.01, 1000);
     for (dt, samples) in [(0.01, 10_000), (100.0, 11)] {
@@ -58,7 +58,7 @@ fn a_level_of_a_frame_is_also_how_many_modes_are_kept() {
     let storeys = three_storeys(0.02, &[("r", 0.93)]);
     let frame = Structure::of_body(*storeys.body(), storeys.modes(), &[]).unwrap();
     let ground = growing(4.0);
-    let comparison = levels::compare(&Run::of_modes(frame, &ground)).unwrap();
+    let comparison = Run::of_modes(frame, &ground).compare().unwrap();
     let errors = |detail, kept| {
         let is_it = |of: &&levels::Verdict| of.response.choice == levels::Choice { detail, modes: Some([kept, 3]) };
         let verdict = comparison.verdicts.iter().find(is_it).unwrap();

@@ -1,11 +1,50 @@
 //! The assumptions of the model: one type each, with the value that tells of it, and a row of the table.
 
-use super::Limits;
 use crate::numbers::Number;
 use crate::run::reaction_series::Extent;
 use crate::series::terms::Terms;
+use crate::structure::quantity::{Refused, ensure};
 use crate::{Contact, Impulse, Phase, Reactions};
 use std::fmt;
+
+/// The limits: a value beyond one gives a warning.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Of `tension_max` and `tension_impact`, parts of the weight and of the impulse.
+    pub tension: f64,
+    /// Of `R_v_min`, part of the weight.
+    pub edge_load: f64,
+    /// Of `mu_required` and `mu_impact`.
+    pub friction: f64,
+    /// Of `energy_gain_max`.
+    pub energy_gain: f64,
+}
+
+impl Default for Limits {
+    /// Friction: 0.5, of concrete on concrete cast against smooth formwork (EN 1992-1-1:2004, 6.2.5(2), "very smooth").
+    /// Tension: 0.05, since any uplift at u_cr takes g/(H ω_fc²) or so, and damping adds to it. Edge load and gain: 0.
+    fn default() -> Limits {
+        Limits { tension: 0.05, edge_load: 0.0, friction: 0.5, energy_gain: 0.0 }
+    }
+}
+
+impl Limits {
+    /// Whether each of them is a limit.
+    ///
+    /// # Errors
+    ///
+    /// A limit that is not a finite number of at least 0.
+    pub fn check(&self) -> Result<(), Refused> {
+        let &Limits { tension, edge_load, friction, energy_gain } = self;
+        let named =
+            [("friction", friction), ("tension", tension), ("edge_load", edge_load), ("energy_gain", energy_gain)];
+        named.into_iter().try_for_each(|(name, value)| {
+            ensure(value >= 0.0 && value.is_finite(), || {
+                format!("{name} = {value} is out of range: a finite number of at least 0 is needed")
+            })
+        })
+    }
+}
 
 /// Values that pass a limit: those on this side of the limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
