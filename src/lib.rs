@@ -6,18 +6,20 @@
 //!
 //! | room | what is in it |
 //! |---|---|
-//! | [`structure`] | the structure's numbers, their ranges, the two specimens; what follows from them (before Eq 11, after 13, before 18) |
 //! | [`digits`] | how numbers are rounded for tables and sentences |
-//! | numbers | value, rate, bounds and power series: the numbers in which each formula is evaluated |
-//! | [`mechanics`] | state, loads, uplift, impact, outputs (Eqs 2, 3, 23–27), reactions, energy |
+//! | numbers | value, rate and bounds of one run, or of several side by side: the numbers in which each formula is evaluated |
 //! | [`series`] | Taylor series in time, first crossings, extremes |
+//! | [`structure`] | the structure's numbers, their ranges, the two specimens; what follows from them (before Eq 11, after 13, before 18) |
+//! | [`mechanics`] | state, loads, uplift, impact, outputs (Eqs 2, 3, 23–27), reactions, energy |
 //! | [`levels`] | full contact (Eq 1), nonlinear (5, 6), linear (7–9), modal (11, 16, 18), rigid (6 with u = 0) |
 //! | [`engine`] | the hybrid engine: steps, transitions, what it shows to whoever watches |
 //! | [`run`] | a ground motion followed: exact peaks, validity, histories, levels compared |
 //! | [`estimates`] | demands without a time history (Eqs 14, 21–24), rocking and vibration mode (10–20), pushover (Fig 1), intensity |
 //!
-//! Each room uses those above it, and none below. Sines, exponentials and the like are those of the crate `libm`: each system's
-//! own round their last bit differently, and a run has the same bits on all of them.
+//! Each room uses those above it, and none below. No two files use each other. A test reads the imports (`tests/engine/rooms.rs`).
+//!
+//! Sines, exponentials and the like are those of the crate `libm`: each system's own round their last bit differently, and a run has
+//! the same bits on all of them.
 //!
 //! In short, `examples/first_run.rs`:
 //!
@@ -47,7 +49,7 @@ pub use mechanics::outputs::Output;
 pub use mechanics::reactions::{Impulse, Reactions};
 pub use mechanics::restraint::{Dissipators, Restraint, Restraints};
 pub use mechanics::state::{Contact, Phase, Side, State};
-pub use run::Run;
+pub use run::course::Run;
 pub use run::ground_motion::GroundMotion;
 pub use structure::Structure;
 pub use structure::base::{Base, Body, Ties};

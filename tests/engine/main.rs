@@ -13,6 +13,7 @@ mod peaks;
 mod profiles;
 mod reactions;
 mod restrained;
+mod rooms;
 mod runs;
 mod tolerance;
 mod top_force;
