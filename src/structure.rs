@@ -422,7 +422,7 @@ impl Structure {
 
     /// Whether no mode moves what is shown of the structure.
     pub(crate) fn is_rigid(&self) -> bool {
-        self.0.gauges.V_t.is_rigid()
+        self.0.gauges.V_t.shape.count == 0
     }
 
     /// The floors, from below.

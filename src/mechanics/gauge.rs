@@ -15,18 +15,6 @@ use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::numbers::Number;
 
 impl Gauge {
-    /// Σ φ (c u̇ + k u)/μ, with the part `damping` of the damping in full contact: linear in `u` and `u_dot`.
-    #[inline]
-    pub(crate) fn elastic<N: Number, Q: Lateral<N>>(&self, damping: f64, u: &Q, u_dot: &Q) -> N {
-        u_dot.weighed(&self.damping) * damping + u.weighed(&self.stiffness)
-    }
-
-    /// Σ φ φᵀF/μ: linear in the forces.
-    #[inline]
-    pub(crate) fn push<N: Number, Q: Lateral<N>>(&self, F_t: &Q) -> N {
-        F_t.weighed(&self.push)
-    }
-
     /// Σ φ u.
     pub(crate) fn displacement<Q: Coordinates>(&self, u: &Q) -> f64 {
         u.weighed(&self.shape)
@@ -36,8 +24,8 @@ impl Gauge {
     #[inline]
     pub(crate) fn at<N: Number, Q: Lateral<N>>(&self, x: &Instant<N, Q>) -> N {
         let (base, [height, share]) = (x.base(), self.left);
-        let elastic = self.elastic(x.damping, &x.u, &x.u_dot);
-        let value = x.turn.sin * (base.g * (self.weight - share)) + self.push(&x.F_t) * x.turn.cos - elastic;
+        let elastic = x.u_dot.weighed(&self.damping) * x.damping + x.u.weighed(&self.stiffness);
+        let value = x.turn.sin * (base.g * (self.weight - share)) + x.F_t.weighed(&self.push) * x.turn.cos - elastic;
         if !self.has_feedthrough() {
             return value;
         }

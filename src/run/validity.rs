@@ -31,13 +31,12 @@ use crate::engine::sample::Sample;
 use crate::levels::level::off_chord;
 use crate::mechanics::impact;
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::state::State;
 use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
 use crate::{
-    Base, Detail, Foundation, Impulse, Mode, Modes, Motion, OneMass, Output, Parameters, Phase, Ramp, Reactions, Side,
+    Base, Detail, Foundation, Impulse, Mode, Motion, OneMass, Output, Parameters, Phase, Ramp, Reactions, Side,
     Structure, Transition, TransitionKind,
 };
 pub use assumptions::{
@@ -473,7 +472,7 @@ pub fn of_structure(structure: &Structure, detail: Detail) -> Vec<String> {
         (Some(foundation), _) => on_ground(structure, foundation),
         (None, Some(one)) => of_one(one, detail),
         (None, None) => {
-            let at_rest = impact::restitution(structure, Side::Right, &State::<Modes>::default());
+            let at_rest = base.restitution(|| [0.0; 2]);
             let mut warnings = Vec::from_iter(r.and_then(|r| pulling(r, base, "m_t")));
             if r.is_none() && at_rest <= 0.0 {
                 let [at_rest, J_P, least] = [at_rest, J_P, 2.0 * m_t * B * B].map(short);

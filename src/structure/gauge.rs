@@ -39,11 +39,6 @@ impl Gauge {
         self.left != [0.0; 2]
     }
 
-    /// Whether no mode moves what is measured.
-    pub(crate) fn is_rigid(&self) -> bool {
-        self.shape.numbers().is_empty()
-    }
-
     /// The value as a multiple of the value of `other`, if all weights are in this proportion.
     pub(crate) fn over(&self, other: &Gauge) -> Option<f64> {
         let ratio = self.weight / other.weight;
