@@ -787,9 +787,8 @@ fn first<Q: Coordinates>(watched: &Watched<Q>, step: &mut Step<Q>) -> Option<Clo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::OneMass;
     use crate::series::first_crossing::{Gap, first_time_all_closed};
-    use crate::{Parameters, TransitionKind};
+    use crate::{OneMass, Parameters, TransitionKind};
     use approx::assert_relative_eq;
     use guard::Guard;
     use std::f64::consts::PI;

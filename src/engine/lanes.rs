@@ -10,7 +10,7 @@ use super::{
 use crate::engine::motion::Motion;
 use crate::engine::phases;
 use crate::engine::piece::{Piece, Watch};
-use crate::levels::elastic::Elastic;
+use crate::levels::Elastic;
 use crate::levels::level::{Level, Pace};
 use crate::levels::nonlinear::{Equations, Expanded, NonlinearRocking, Products, Recurrence, Rocker};
 use crate::levels::start::{self, MIN_ORDER, Start, Truncation};

@@ -4,7 +4,6 @@
 //! turns round, at a zero of θ̇. Its force is then still ±F_y, and yielding resumes only after the elongation moves that way again.
 //! The zeros of θ̇ at the start are therefore divided out, like the zeros of θ at an uplift.
 
-use crate::Side;
 use crate::engine::guard::{BAND, Guard};
 use crate::engine::motion::Motion;
 use crate::engine::sample::Sample;
@@ -17,7 +16,7 @@ use crate::mechanics::state::way;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{ZERO, evaluate};
 use crate::series::terms::Terms;
-use crate::{Base, Ties};
+use crate::{Base, Side, Ties};
 
 /// The smallest rotation at which a dissipator begins to yield as the base comes down, as a fraction of the rotation from 0 to F_y.
 /// Below this rotation the impact comes first. A dissipator that has yielded up to an impact returns to F_y exactly at the next

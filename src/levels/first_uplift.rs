@@ -10,8 +10,7 @@ use crate::numbers::Number;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::ZERO;
 use crate::series::terms::Terms;
-use crate::{Base, Mode};
-use crate::{Ramp, Side, State};
+use crate::{Base, Mode, Ramp, Side, State};
 
 /// The structure whose base can lift off, as a level of detail sees it.
 #[derive(Clone, Copy, Debug)]

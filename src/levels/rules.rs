@@ -12,11 +12,10 @@
 //! for overturning at small angles. Any other impact leaves r θ̇ about the other pivot, however squat the structure is. The momentum
 //! rule of elastic structures would depend on the shape alone.
 
-use crate::Base;
 use crate::mechanics::impact::restitution;
 use crate::mechanics::lateral::Coordinates;
 use crate::structure::mode::Vibration;
-use crate::{Phase, Side, State, Structure};
+use crate::{Base, Phase, Side, State, Structure};
 use std::f64::consts::TAU;
 
 /// Transitions within one period of the vibration mode (2π/ω_u) after which contact is held.

@@ -4,8 +4,7 @@ use crate::mechanics::lateral::{Coordinates, Duals, Lateral};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
-use crate::{Base, Mode, Structure};
-use crate::{Contact, Phase, State};
+use crate::{Base, Contact, Mode, Phase, State, Structure};
 
 /// The structure at an instant, with lateral coordinates `Q`.
 #[derive(Clone, Copy, Debug)]

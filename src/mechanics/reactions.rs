@@ -35,8 +35,7 @@ use crate::mechanics::instant::{Instant, Place, Second};
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
-use crate::{Base, Mode, Structure};
-use crate::{Phase, State};
+use crate::{Base, Mode, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 
 /// Forces on the ground; from [`crate::Engine::rates`], their time derivatives in the same fields.

@@ -350,10 +350,9 @@ impl Comparison {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::OneMass;
-    use crate::Parameters;
     use crate::run::peaks::Peaks;
     use crate::run::record::Record;
+    use crate::{OneMass, Parameters};
 
     fn verdict(detail: Detail, errors: [f64; 6], cost: u64) -> Verdict {
         let structure = OneMass::new(Parameters::MCMANUS).unwrap();

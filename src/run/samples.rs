@@ -1,12 +1,11 @@
 //! A motion at given instants, read from its pieces.
 
-use crate::Engine;
-use crate::Motion;
 use crate::engine::piece::{Piece, Watch};
 use crate::engine::sample::Sample;
 use crate::levels::level::Level;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
+use crate::{Engine, Motion};
 use std::iter::Peekable;
 
 /// Shows a motion at given instants, none of which is before the start. A piece lasts until the next one begins: its own end, start
