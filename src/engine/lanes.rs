@@ -135,13 +135,13 @@ impl<'a, S: Simd, Q: Coordinates> Rocking<'a, S, Q> {
         let (motion, rocking) = (&engine.motion, &level.rocking);
         if !std::mem::replace(&mut runs.is_known[lane], true) {
             watch.seek(engine, lane, &mut runs.sought);
-            let (side, one) = (motion.phase.side(), engine.structure().one());
+            let side = motion.phase.side();
             let Rocker { H, pivot, weight_offset, foundation, stiffness, damping_u } = rocking.rocker(side);
             put(&mut runs.rocker, lane, [H, pivot, weight_offset, foundation, stiffness, damping_u]);
             let Pace { longest_span, omega, longest_response, gravity, height } = rocking.pace;
             put(&mut runs.pace, lane, [longest_span, omega, longest_response, gravity, height]);
             runs.local_error[lane] = level.subject().local_error;
-            runs.gravity[lane] = one.expect("it is of one mass").parameters().g;
+            runs.gravity[lane] = engine.structure().base().g;
             (runs.side[lane], runs.is_there[lane]) = (side.sign(), 1.0);
         }
         let Start { state: State { u, u_dot, theta, theta_dot }, a_g, interval, .. } =

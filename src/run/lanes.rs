@@ -398,7 +398,7 @@ mod tests {
     use crate::run::record::Record;
     use crate::structure::description::tests::usual;
     use crate::structure::description::{Damping, Storey};
-    use crate::{Detail, OneMass, Parameters, Phase, Piece, Structure};
+    use crate::{Body, Detail, OneMass, Parameters, Phase, Piece, Structure};
     use std::f64::consts::{PI, TAU};
 
     /// A ground motion of filtered noise.
@@ -417,18 +417,24 @@ mod tests {
         if random.u8(..) < 16 { record.clone().with_vertical(&record.multiplied(0.3)).unwrap() } else { record }
     }
 
-    /// A structure about as slender as a specimen, now and then with a tendon or without a foundation's inertia.
-    fn structure(random: &mut fastrand::Rng) -> OneMass {
-        let usual = [Parameters::MCMANUS, Parameters::EVISON][random.usize(..2)];
+    /// A structure about as slender as a specimen, now and then with a tendon or without a foundation's inertia, or made of one storey,
+    /// or of one mode without floors and r.
+    fn structure(random: &mut fastrand::Rng) -> Structure {
+        let specimen = [Parameters::MCMANUS, Parameters::EVISON][random.usize(..2)];
         let mut vary = |number: f64| number * (0.5 + random.f64());
-        let [H, B, f_fc, zeta_fc] = [usual.H, usual.B, usual.f_fc, usual.zeta_fc].map(&mut vary);
-        let varied = Parameters { H, B, f_fc, zeta_fc, ..usual };
-        OneMass::new(match random.u8(..) {
+        let [H, B, f_fc, zeta_fc] = [specimen.H, specimen.B, specimen.f_fc, specimen.zeta_fc].map(&mut vary);
+        let (varied, storey) =
+            (Parameters { H, B, f_fc, zeta_fc, ..specimen }, Storey { m: 4e4, h: 7.0, k: vary(4e7) });
+        let building = Structure::from_storeys(&usual(), &Damping::All(zeta_fc), &[storey]).unwrap();
+        let of_mode = |of: &Structure| Structure::of_body(Body { r: None, ..*of.body() }, of.modes(), &[]).unwrap();
+        let parameters = match random.u8(..) {
             0..16 => Parameters { k_t: 1e4, P_0: 300.0, ..varied },
             16..32 => Parameters { m0: 0.0, J0: 0.0, f_fc: 0.2, ..varied },
+            32..48 => return building.of_one_mode().unwrap(),
+            48..64 => return of_mode(&building).of_one_mode().unwrap(),
             _ => varied,
-        })
-        .unwrap()
+        };
+        Structure::new(parameters).unwrap()
     }
 
     /// A result in words, all but the work of the search for peaks, in which runs that step together put more off.
@@ -457,7 +463,7 @@ mod tests {
             let detail = if random.u8(..) < 224 { Detail::Auto } else { Detail::ALL[random.usize(..6)] };
             let tolerance = [1e-9, 1e-9, 1e-6, 1e-12][random.usize(..4)];
             let end = if random.bool() { End::AtRest } else { End::At(3.0 * random.f64()) };
-            runs.push(Run { detail, tolerance, end, ..Run::new(*structure, ground) });
+            runs.push(Run { detail, tolerance, end, ..Run::new(structure.clone(), ground) });
         }
         let alone: Vec<_> = runs.iter().map(|run| run.found(&mut ())).collect();
         let count = |is_so: fn(&Found) -> bool| alone.iter().flatten().filter(|found| is_so(found)).count();
