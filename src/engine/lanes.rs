@@ -431,8 +431,8 @@ impl<Q: Coordinates> Engine<Q> {
         watch: &mut W,
     ) -> Result<Option<Progress>, AdvanceError> {
         self.check(interval, &load)?;
-        let (may_leap, level, motion) = (self.may_leap(), &*self.level, &mut self.motion);
-        if may_leap && let Some(end) = leap_under(level, motion, interval, load) {
+        let (level, motion) = (&*self.level, &mut self.motion);
+        if let Some(end) = leap_under(level, motion, interval, load) {
             leapt((level, &self.room), motion, interval, load, end, watch)?;
             return Ok(Some(Progress::Complete));
         }

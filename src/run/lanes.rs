@@ -499,7 +499,8 @@ mod tests {
         });
     }
 
-    /// Buildings of two to nine storeys, each beside others: with all modes or fewer, so that mass is left that no mode carries.
+    /// Buildings of two to nine storeys, each beside others, at all levels of detail: with all modes or fewer, so that mass is left that no
+    /// mode carries.
     #[test]
     fn each_building_has_the_bits_that_it_has_by_itself() {
         let random = &mut fastrand::Rng::with_seed(1);
@@ -513,10 +514,12 @@ mod tests {
                 (building.keeping(kept).unwrap(), ground(random).multiplied(0.2 + random.f64()))
             })
             .collect();
-        let runs: Vec<_> = made.iter().map(|(building, ground)| Run::of_modes(building.clone(), ground)).collect();
+        let runs = made.iter().map(|(building, ground)| Run::of_modes(building.clone(), ground));
+        let detail = |i: usize| Detail::ALL[(i % 18).saturating_sub(12)];
+        let runs: Vec<_> = runs.enumerate().map(|(i, run)| Run { detail: detail(i), ..run }).collect();
         let alone: Vec<_> = runs.iter().map(|run| run.found(&mut ())).collect();
         let rocked = alone.iter().flatten().filter(|found| found.finish.motion.transitions > 9).count();
-        let for_lanes = runs.iter().filter(|run| run.course().unwrap().engine.is_for_lanes()).count();
+        let for_lanes = runs.iter().filter(|run| run.course().is_ok_and(|of| of.engine.is_for_lanes())).count();
         assert!(rocked > 50 && for_lanes > 150, "{rocked} {for_lanes}");
         let alone: Vec<_> = alone.into_iter().map(told).collect();
         assert_same(&runs, &alone);
