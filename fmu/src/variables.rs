@@ -322,7 +322,7 @@ fn output(of: Output, structure: &Structure) -> Row {
         Output::u(_) | Output::drift(_) | Output::drift_ratio(_) => ("", &["u"]),
         Output::u_dot(_) => ("", &["u_dot"]),
         Output::y | Output::P_t | Output::settlement | Output::settled(_) | Output::lifted(_) => ("", &["y", "theta"]),
-        Output::N_left | Output::N_right | Output::N(_) | Output::pressure => {
+        Output::N_left | Output::N_right | Output::N(_) | Output::pressure | Output::edge(_) => {
             ("", &["y", "y_dot", "theta", "theta_dot"])
         }
         _ => ("", &[]),

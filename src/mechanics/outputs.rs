@@ -62,21 +62,24 @@ outputs! {
     V(i: usize) ["N"] "shear of storey # if all F_t are 0: the sum of m a_t above it" "V_i";
     M(i: usize) ["N.m"] "overturning moment at the foot of storey # if all F_t are 0" "M_i";
     y ["m"] "height of the middle of the base above the unloaded ground" "on ground that gives as all that follow but the forces of ties";
-    settlement ["m"] "settlement of the lower outer contact point" "−min(e)";
+    settlement ["m"] "settlement of the lower outer contact point" "rotation included, −min(e); the middle of the base settles by −y";
     contact ["1"] "stiffness of the pressed contact points over the stiffness of all";
     E_foundation ["J"] "energy that the ground has taken";
     N_left ["N"] "force of the left outer contact point";
     N_right ["N"] "force of the right outer contact point";
-    pressure ["N/m"] "largest force of a contact point over the width that it stands for";
+    pressure ["N/m"] "largest pressure under the base: the mean over the outer sixth at each edge, or of an inner point over its strip";
     N(i: usize) ["N"] "force of contact point # from the left";
     settled(i: usize) ["m"] "settlement of outer contact point #" "left (0) or right (1), or 0 above the unloaded ground";
     P_t ["N"] "force of the tendon";
     F_d1 ["N"] "force of the dissipators at +xi_d" "which a sample has";
     F_d2 ["N"] "force of the dissipators at -xi_d" "which a sample has";
     lifted(i: usize) ["m"] "height of edge # above the unloaded ground" "left (0) or right (1), or 0 below";
+    edge(i: usize) ["N/m"] "mean pressure over the outer sixth of the base at edge #" "left (0) or right (1)";
 }
 
-use Output::{E_foundation, M, M_t, N, N_left, N_right, V, V_t, a_t, contact, delta_t, drift, drift_ratio, lifted};
+use Output::{
+    E_foundation, M, M_t, N, N_left, N_right, V, V_t, a_t, contact, delta_t, drift, drift_ratio, edge, lifted,
+};
 use Output::{F_d1, F_d2, P_t, pressure, settled, settlement, theta, theta_dot, u, u_dot, v_t, y};
 
 impl Output {
@@ -165,21 +168,24 @@ impl Output {
 
     /// Whether the output is linear in the components of the motion.
     pub(crate) fn is_component(self) -> bool {
-        let of_ground = matches!(self, y | E_foundation | N_left | N_right | N(_) | P_t | settled(_) | lifted(_));
+        let of_ground =
+            matches!(self, y | E_foundation | N_left | N_right | N(_) | P_t | settled(_) | lifted(_) | edge(_));
         of_ground || matches!(self, theta | theta_dot | u(_) | u_dot(_) | drift(_) | drift_ratio(_))
     }
 
     /// The outputs of `structure` on ground that gives of whose peaks the largest is the peak of this one, each with its factor.
     pub(crate) fn parts(self, structure: &Structure) -> Vec<(Output, f64)> {
-        let Some(Foundation { points, .. }) = structure.foundation() else { return Vec::new() };
-        let last = points.len() - 1;
-        let width = |i: usize| (points[last.min(i + 1)].xi - points[i.saturating_sub(1)].xi) / 2.0;
+        let (Some(foundation), B) = (structure.foundation(), structure.base().B) else { return Vec::new() };
+        let (last, width) = (foundation.points.len() - 1, |[from, to]: [f64; 2]| to - from);
         match self {
             Output::uplift => vec![(lifted(0), 1.0), (lifted(1), 1.0)],
             settlement => vec![(settled(0), 1.0), (settled(1), 1.0)],
             N_left => vec![(N(0), 1.0)],
             N_right => vec![(N(last), 1.0)],
-            pressure => (0..=last).map(|i| (N(i), 1.0 / width(i))).collect(),
+            pressure => {
+                let inner = (1..last).map(|i| (N(i), 1.0 / width(foundation.strip(i, B))));
+                [0, 1].map(|side| (edge(side), 1.0)).into_iter().chain(inner).collect()
+            }
             _ => Vec::new(),
         }
     }
@@ -251,6 +257,11 @@ impl Output {
             N(i) if x.contact.is_pressed(i) => {
                 let [e, rate] = x.height(*place, points[i].xi);
                 -(e * points[i].k + rate * points[i].c)
+            }
+            edge(side) => {
+                let each = foundation.of_edge(side, x.base().B).into_iter();
+                let each = each.map(|(i, factor)| N(i).on_ground(x, foundation) * factor);
+                each.reduce(|sum, of| sum + of).expect("a strip is at the edge")
             }
             contact => {
                 let pressed = points.iter().enumerate().filter(|(i, _)| x.contact.is_pressed(*i));

@@ -144,7 +144,7 @@ fn reached(structure: &Structure) -> impl Iterator<Item = Output> {
     let of_floors = [Output::u, Output::drift, Output::delta_t, Output::a_t, Output::V, Output::M];
     let of_floors = of_floors.into_iter().flat_map(move |of| (0..floors).map(of));
     let of_ground = structure.foundation().into_iter().flat_map(|foundation| {
-        let ends = [Output::settled, Output::lifted].into_iter().flat_map(|of| [0, 1].map(of));
+        let ends = [Output::settled, Output::lifted, Output::edge].into_iter().flat_map(|of| [0, 1].map(of));
         ends.chain([Output::P_t]).chain((0..foundation.points.len()).map(Output::N))
     });
     [Output::theta, Output::V_t, Output::M_t].into_iter().chain(of_floors).chain(of_ground)
@@ -216,10 +216,14 @@ impl Reach {
     #[inline(always)]
     pub(crate) fn bound<Q: Coordinates>(&self, output: Output, structure: &Structure, most: &Magnitudes<Q>) -> f64 {
         let Reach { a_g, push, .. } = self;
-        if let (Some((arc, _)), Some(foundation)) = (most.arc, Q::foundation(structure))
-            && let Some(parts) = output.of_height(structure.base(), foundation)
-        {
-            return most_of_height(arc, foundation.place, parts);
+        if let (Some((arc, _)), Some(foundation)) = (most.arc, Q::foundation(structure)) {
+            let base = structure.base();
+            let bound = |of: Output| Some(most_of_height(arc, foundation.place, of.of_height(base, foundation)?));
+            let and = |sum: Option<f64>, (i, factor)| Some(sum.unwrap_or(0.0) + bound(Output::N(i))? * factor);
+            let edge = if let Output::edge(side) = output { foundation.of_edge(side, base.B) } else { Vec::new() };
+            if let Some(bound) = edge.into_iter().fold(bound(output), and) {
+                return bound;
+            }
         }
         let elastic = || self.elastic(most.damping, &most.u, &most.u_dot) + most.F_t.weighed(push);
         match (a_g, most.arc) {

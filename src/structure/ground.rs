@@ -202,6 +202,21 @@ impl Foundation {
         Ok(Some(foundation))
     }
 
+    /// Both ends of the strip of a base of half-width `B` (m) that point `i` stands for, m: halfway to the next points, or an edge.
+    pub(crate) fn strip(&self, i: usize, B: f64) -> [f64; 2] {
+        let halfway = |left: usize| Some((self.points.get(left)?.xi + self.points.get(left + 1)?.xi) / 2.0);
+        [i.checked_sub(1).and_then(halfway).unwrap_or(-B), halfway(i).unwrap_or(B)]
+    }
+
+    /// The points whose strips reach into the outer sixth of a base of half-width `B` (m), or into the outer strip if this is wider, at the
+    /// left (0) or right (1) edge. The sum of their forces times these factors (1/m) is the mean pressure there, N/m.
+    pub(crate) fn of_edge(&self, side: usize, B: f64) -> Vec<(usize, f64)> {
+        let end = (self.strip(0, B)[1] + B).max(B / 3.0) - B;
+        let inside = (0..self.points.len()).map(|i| (i, self.strip(i, B))).filter(|(_, [from, _])| *from < end);
+        let place = |i| if side == 0 { i } else { self.points.len() - 1 - i };
+        inside.map(|(i, [from, to])| (place(i), (to.min(end) - from) / (to - from) / (end + B))).collect()
+    }
+
     /// The sum of the stiffnesses of all points times this power of their places.
     pub fn sum(&self, power: i32) -> f64 {
         self.points.iter().map(|point| point.k * point.xi.powi(power)).sum()

@@ -1,6 +1,6 @@
 //! Ground that gives: printed numbers, closed forms, energy. An independent integration is in `test_ground.py`.
 
-use crate::common::{peaks_beside_samples, transitions};
+use crate::common::{peaks_beside_samples, sampled, transitions};
 use crate::modes::three_storeys;
 use approx::assert_relative_eq;
 use rocking::engine::{Progress, Settings};
@@ -213,6 +213,28 @@ fn a_structure_at_rest_is_carried_and_comes_to_rest() {
     assert!(found.value >= friction && (found.beyond - beyond).abs() < 1e-3, "{found:?} {friction} {beyond}");
     let refusal = Run { detail: Detail::Linear, ..run }.peaks().unwrap_err().to_string();
     assert!(refusal.contains("choose auto, nonlinear, rigid or fixed_base"), "{refusal}");
+}
+
+/// Most of the stiffness of the how-to's footing is in the outer points. Nine points have strips of B/4, the outer ones of B/8.
+#[test]
+fn the_pressure_does_not_depend_on_the_number_of_points() {
+    let pier = Parameters { m: 1.2e6, m0: 0.4e6, J0: 1.7e6, H: 22.0, B: 3.5, f_fc: 0.8, ..Parameters::MCMANUS };
+    let pulse = sampled(201, 0.01, |t| 3.0 * (TAU * t / 2.0).sin());
+    let peaks = [(0.82, 5), (0.82, 9), (0.82, 15), (0.82, 21), (0.5, 9), (0.5, 21)].map(|(kr_ratio, n)| {
+        let ground = Ground { f_v: None, k_v: Some(1.52e9), kr_ratio: Some(kr_ratio), ..ground(0.0, 0.2, n) };
+        let run = Run { end: End::At(4.0), ..Run::of_modes(one_mass(pier, ground), &pulse) };
+        let times = (0..40_000).map(|i| 1e-4 * f64::from(i));
+        let peaks = peaks_beside_samples(&run, times, &[Output::pressure], 1e-3, |sample| {
+            let N = |i| sample.output(Output::N(i));
+            let edge = |outer, next| (N(outer) + N(next) * (1.0 / 3.0 - 0.125) / 0.25) / (pier.B / 3.0);
+            let inner = (1..8).map(|i| N(i) / (pier.B / 4.0)).fold(0.0, f64::max);
+            let expected = edge(0, 1).max(edge(8, 7)).max(inner);
+            assert!(n != 9 || (sample.output(Output::pressure) - expected).abs() <= 1e-12 * expected);
+        });
+        peaks.of(Output::pressure).unwrap().magnitude
+    });
+    let are_near = |peaks: &[f64]| peaks.iter().all(|peak| (peak / peaks[0] - 1.0).abs() < 0.1);
+    assert!(are_near(&peaks[..4]) && are_near(&peaks[4..]), "{peaks:?}");
 }
 
 /// The forces of the points carry the momentum balance, with forces on floors, vertical motion and mass that turns rigidly.

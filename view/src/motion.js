@@ -128,7 +128,7 @@ function motionView() {
     a_t: { symbol: "a_t", meaning: "acceleration of the top", unit: "g" },
     V_t: { symbol: "V_t", meaning: "base shear", unit: "kN", per: 1e3 },
     M_t: { symbol: "M_t", meaning: "overturning moment", unit: "kN m", per: 1e3 },
-    settlement: { symbol: "s", meaning: "settlement", unit: "mm", per: 1e-3 },
+    settlement: { symbol: "s", meaning: "settlement of the lower edge", unit: "mm", per: 1e-3 },
     N_left: { symbol: "N_left", meaning: "force of the left edge", unit: "kN", per: 1e3 },
     N_right: { symbol: "N_right", meaning: "force of the right edge", unit: "kN", per: 1e3 },
   };
