@@ -214,13 +214,14 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, by: str | Non
     limit: "overturned", or a peak such as "theta/alpha_cg >= 0.5", "theta >= 3 deg", "uplift >= 1 cm", "a_t >= 0.3 g" (the
     structure's own g). Of a building, "a_t[3] >= 0.3 g" is of a floor, and "a_t >= 0.3 g" of all floors: the largest counts. A run
     that overturned has exceeded every limit. Another table needs a column of an intensity and a column of a demand: limit is then
-    "COLUMN >= VALUE". Its records, if it has a column "record", or else its rows are independent of each other. intensity: a measure of `sweep` or a column of the table; by default the measure of the
-    sweep. by: a column, such as "structures" or "f_fc[Hz]". With by, the result is a dict with the curve of each value of the column.
+    "COLUMN >= VALUE", and the demand of a collapsed structure is inf. Its records, if it has a column "record", or else its rows are
+    independent of each other. intensity: a measure of `sweep` or a column of the table; by default the measure of the sweep.
+    by: a column, such as "structures" or "f_fc[Hz]". With by, the result is a dict with the curve of each value of the column.
     Runs that failed are not counted. The uncertainty of the curve treats records as independent of each other, or, if there is one
     record, structures.
     Several structures that `sweep` ran under one name are one population. Raises ValueError with the reason if there is no
     curve (never exceeded, always exceeded, no overlap). A table with several populations or conditions, with a run twice, with
-    peaks that are NaN, or without the measure of its sweep raises ValueError, too.
+    peaks or demands that are NaN, with text in place of numbers, or without the measure of its sweep raises ValueError, too.
     """
     import pandas
 
@@ -258,7 +259,7 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, by: str | Non
     of_structure = table.columns[:table.columns.get_loc("record")].drop("run", errors="ignore")
     varying = ["record"] if ended["record"].nunique() > 1 else list(of_structure)
     groups = ended.groupby(varying, sort=False, dropna=False).ngroup()
-    curve, bins = _native.fragility(groups.tolist(), ended[column].tolist(), _exceeds(ended, limit))
+    curve, bins = _native.fragility(groups.tolist(), _numbers(ended[column]), _exceeds(ended, limit))
     return Fragility(limit, column, curve, pandas.DataFrame(bins, columns=_BINS))
 
 
@@ -268,19 +269,29 @@ def _of_own(table: "pd.DataFrame", limit: str, column: str) -> Fragility:
 
     name, _, value = (part.strip() for part in limit.partition(">="))
     try:
-        exceeds = (table[name] >= float(value)).where(table[name].notna())
+        demands, least = table[name], float(value)
     except (KeyError, ValueError):
         raise ValueError(f"limit = {limit!r}: COLUMN >= VALUE is needed, with a column of {', '.join(map(str, table.columns))} and a number"
                          ) from None
+    exceeds = [of >= least for of in _numbers(demands)]
+    if missing := int(demands.isna().sum()):
+        raise ValueError(f"{name} is NaN in {missing} rows: write inf where the structure collapsed, or leave the rows out by table.dropna()")
     groups = pandas.factorize(table["record"])[0] if "record" in table else range(len(table))
-    known: list[bool | None] = [None if pandas.isna(of) else bool(of) for of in exceeds]
-    curve, bins = _native.fragility(list(groups), table[column].tolist(), known)
+    curve, bins = _native.fragility(list(groups), _numbers(table[column]), exceeds)
     return Fragility(limit, column, curve, pandas.DataFrame(bins, columns=_BINS))
+
+
+def _numbers(column: "pd.Series[Any]") -> list[float]:
+    """The numbers of a column, which has no text."""
+    if text := [of for of in column if isinstance(of, str)]:
+        raise ValueError(f"{column.name} has text in {len(text)} rows, such as {text[0]!r}: give numbers")
+    return column.astype(float).tolist()
 
 
 def _exceeds(table: "pd.DataFrame", limit: str) -> list[bool | None]:
     """Whether each run of a sweep's table exceeds the limit; None where that is unknown."""
     columns = _native.columns_of(limit, list(table.columns.astype(str)))
+    table[columns].apply(_numbers)
     peaks = table[columns].max(axis=1)
     if columns and (missing := int((peaks.isna() & (table["ending"] != "failed")).sum())):
         raise ValueError(f"{', '.join(columns)} is NaN in {missing} rows of runs that ended: choose a limit that their structures "

@@ -668,6 +668,10 @@ def test_statistics_of_the_page_of_sweeps_are_those_of_statsmodels(tmp_path, mon
         assert curve.curve.median_range == own.curve.median_range
     with pytest.raises(ValueError, match="COLUMN >= VALUE is needed, with a column of S, PID, record and a number"):
         fr.fragility(table, "drift >= 0.004", intensity="S")
+    for column, value, refused in [("PID", np.nan, "PID is NaN in 1 rows: write inf where the structure collapsed"),
+                                   ("S", "0,5", "S has text in 1 rows, such as '0,5': give numbers")]:
+        with pytest.raises(ValueError, match=re.escape(refused)):
+            fr.fragility(table.assign(**{column: [value, *table[column][1:]]}), "PID >= 0.004", intensity="S")
     formats.write_demands("demands.csv", runs)
     demands = pd.read_csv("demands.csv", index_col=0)
     stands = runs[runs["ending"] != "overturned"]
