@@ -376,14 +376,14 @@ impl Structure {
     }
 
     fn is_no_one_mass(&self, task: &str) -> Refused {
-        let has = match self.foundation() {
-            Some(_) => "stands on ground that gives".into(),
-            None => format!("has {} modes", self.modes().len()),
+        let (needed, has) = match self.foundation() {
+            Some(_) => ("rigid ground, because Eqs 10 to 24 rock on it", "stands on ground that gives".into()),
+            None => (
+                "a structure of one mass, because Eqs 10 to 24 have one mode of vibration",
+                format!("has {} modes", self.modes().len()),
+            ),
         };
-        Refused(format!(
-            "{task} needs a structure of one mass, because Eqs 10 to 24 have one mode of vibration, and this structure {has}: \
-             simulate the motion instead"
-        ))
+        Refused(format!("{task} needs {needed}, and this structure {has}: simulate the motion instead"))
     }
 
     /// Circular frequencies of vibration, rad/s.

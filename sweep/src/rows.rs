@@ -119,7 +119,7 @@ impl<'a> Sweep<'a> {
                 bail!("two runs are the same: structures {first} and {number} differ by rounding at most");
             }
         }
-        let (file, mut others) = match path.map(|path| open(path, &plan.measures)).transpose()? {
+        let (file, mut others) = match path.map(|path| open(path, &plan.measures, validity)).transpose()? {
             Some((file, known)) => (Some(file), known),
             None => (None, Known::default()),
         };
@@ -176,8 +176,8 @@ impl<'a> Sweep<'a> {
         let done = || (0..self.plan.len()).filter(|index| self.done[*index].get().is_some());
         let rows = done().count();
         let added = Some(measure).filter(|measure| !IntensityMeasure::COLUMNS.contains(measure));
-        let headings =
-            headings(&self.plan.measures).into_iter().skip(1).chain(added.map(|of| heading(&of.name(), of.unit())));
+        let headings = headings(&self.plan.measures, self.validity).into_iter().skip(1);
+        let headings = headings.chain(added.map(|of| heading(&of.name(), of.unit())));
         let mut columns: Vec<_> = headings.map(|heading| (heading, Column::of(rows))).collect();
         let mut texts = vec![HashMap::new(); columns.len()];
         let (mut structure, mut of_structure) = (usize::MAX, Vec::new());
@@ -227,9 +227,11 @@ impl<'a> Sweep<'a> {
                 Cell::Text(reason)
             }
         };
-        let with_beyond = row.len() + BEYOND;
-        row.extend(beyond.iter().copied().map(Cell::Number));
-        row.resize(with_beyond, Cell::Empty);
+        if self.validity {
+            let with_beyond = row.len() + BEYOND;
+            row.extend(beyond.iter().copied().map(Cell::Number));
+            row.resize(with_beyond, Cell::Empty);
+        }
         row.push(reason);
         row
     }
@@ -332,8 +334,8 @@ fn keys(plan: &Plan, digests: &[Uuid], validity: bool, program: &Program) -> Vec
 }
 
 /// Opens the file at `path`, or begins it, and reads what its rows say.
-fn open(path: &Path, measures: &[Measure]) -> anyhow::Result<(RowFile, Known<Done>)> {
-    let headings = headings(measures);
+fn open(path: &Path, measures: &[Measure], validity: bool) -> anyhow::Result<(RowFile, Known<Done>)> {
+    let headings = headings(measures, validity);
     let at = |heading: &str| headings.iter().position(|found| found == heading).expect("it is one of them");
     let (ending, counts, after, reason) = (at("ending"), at("transitions"), at("evaluations") + 1, at("reason"));
     RowFile::open(path, &headings, |row| {
@@ -350,12 +352,14 @@ fn open(path: &Path, measures: &[Measure]) -> anyhow::Result<(RowFile, Known<Don
     })
 }
 
-/// Headings of the rows.
-fn headings(measures: &[Measure]) -> Vec<String> {
+/// Headings of the rows, with those of the check of validity if it is asked for.
+fn headings(measures: &[Measure], validity: bool) -> Vec<String> {
     let quantities = AXES.map(|axis| heading(axis.name, axis.unit));
     let intensities = IntensityMeasure::COLUMNS.map(|measure| heading(&measure.name(), measure.unit()));
     let initial = INITIAL_VALUES.each_ref().map(|quantity| heading(quantity.name, quantity.unit));
     let peaks = measures.iter().map(|(name, unit)| heading(&format!("peak_{name}"), unit)).collect();
+    let beyond = ASSUMPTIONS.iter().flat_map(|of| [of.name.to_owned(), heading(of.time_name, "s")]);
+    let beyond = beyond.chain(fixed(&["energy_gains", "settlings"]));
     [
         fixed(&["run", "structures", "version"]),
         quantities.into(),
@@ -366,8 +370,8 @@ fn headings(measures: &[Measure]) -> Vec<String> {
         fixed(&["ending", "end[s]"]),
         peaks,
         fixed(&["transitions", "steps", "evaluations"]),
-        ASSUMPTIONS.iter().flat_map(|of| [of.name.to_owned(), heading(of.time_name, "s")]).collect(),
-        fixed(&["energy_gains", "settlings", "reason"]),
+        beyond.filter(|_| validity).collect(),
+        fixed(&["reason"]),
     ]
     .concat()
 }

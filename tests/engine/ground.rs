@@ -213,6 +213,8 @@ fn a_structure_at_rest_is_carried_and_comes_to_rest() {
     assert!(found.value >= friction && (found.beyond - beyond).abs() < 1e-3, "{found:?} {friction} {beyond}");
     let refusal = Run { detail: Detail::Linear, ..run }.peaks().unwrap_err().to_string();
     assert!(refusal.contains("choose auto, nonlinear, rigid or fixed_base"), "{refusal}");
+    let refusal = structure.one_mass("estimate").unwrap_err().to_string();
+    assert!(refusal.starts_with("estimate needs rigid ground, because"), "{refusal}");
 }
 
 /// Most of the stiffness of the how-to's footing is in the outer points. Nine points have strips of B/4, the outer ones of B/8.

@@ -401,6 +401,7 @@ def test_a_table_in_memory_is_that_of_the_file_of_rows(tmp_path):
         by_pandas = by_pandas.set_index("run").loc[in_memory["run"]].reset_index()
         for table in (written, read, by_pandas):
             pd.testing.assert_frame_equal(in_memory, table)
+        assert ("energy_gains" in in_memory) == ("validity" in options)
         assert set(in_memory["ending"]) >= ({"failed"} if "soft" in structures else {"overturned"})
 
 
