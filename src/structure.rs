@@ -290,12 +290,18 @@ impl Structure {
         self.1
     }
 
-    pub(crate) fn with_lowest(&self, count: usize) -> Structure {
+    /// The places of the `count` modes of the lowest frequencies.
+    pub(crate) fn lowest_places(&self, count: usize) -> Vec<usize> {
         let square = |j: &usize| self.0.modes[*j].stiffness / self.0.modes[*j].mass;
         let mut kept = Vec::from_iter(0..self.0.modes.len());
         kept.sort_by(|a, b| square(a).total_cmp(&square(b)));
         kept.truncate(count);
         kept.sort_unstable();
+        kept
+    }
+
+    pub(crate) fn with_lowest(&self, count: usize) -> Structure {
+        let kept = self.lowest_places(count);
         let shape = |floor: &Floor| Modes::new(&Vec::from_iter(kept.iter().map(|j| floor.shape.of[*j])));
         let floors = Vec::from_iter(self.0.floors.iter().map(|floor| Floor { shape: shape(floor), ..*floor }));
         let kept = Structure::of(self.0.body, &Vec::from_iter(kept.iter().map(|j| self.0.modes[*j])), &floors, None);

@@ -10,7 +10,7 @@ use super::peaks::Peaks;
 use crate::engine::motion::Work;
 use crate::mechanics::lateral::Coordinates;
 use crate::run::ground_motion::Segment;
-use crate::{Detail, Mode, Output, State, Structure};
+use crate::{Detail, Output, State, Structure};
 use std::fmt;
 
 /// Tolerance of the run that all others are measured by.
@@ -98,10 +98,9 @@ fn choices<'a, Q: Starts>(run: &Run<'a, Q>) -> Vec<(Choice, Run<'a, Q>)> {
         return SIMPLEST_FIRST.map(of).into();
     };
     let of = |(detail, kept): (Detail, usize)| {
-        let (structure, modes) =
-            (run.structure.keeping(kept).expect("not more modes than there are"), run.structure.modes());
-        let of_mode = |of: &Q, kept: &Mode| modes.iter().position(|mode| mode == kept).map_or(0.0, |j| of.of(j));
-        let part = |of: &Q| Q::each(&structure, |_, mode| of_mode(of, mode));
+        let (structure, places) =
+            (run.structure.keeping(kept).expect("not more modes than there are"), run.structure.lowest_places(kept));
+        let part = |of: &Q| Q::each(&structure, |j, _| places.get(j).map_or(0.0, |place| of.of(*place)));
         let initial = State { u: part(&run.initial.u), u_dot: part(&run.initial.u_dot), ..run.initial };
         (Choice { detail, modes: Some([kept, all]) }, Run { structure, initial, detail, ..run.clone() })
     };
@@ -352,7 +351,8 @@ mod tests {
     use super::*;
     use crate::run::peaks::Peaks;
     use crate::run::record::Record;
-    use crate::{OneMass, Parameters};
+    use crate::structure::description::tests::three_storeys;
+    use crate::{Modes, OneMass, Parameters};
 
     fn verdict(detail: Detail, errors: [f64; 6], cost: u64) -> Verdict {
         let structure = OneMass::new(Parameters::MCMANUS).unwrap();
@@ -381,6 +381,17 @@ mod tests {
         let refused: Vec<_> = comparison.refused.iter().map(|(choice, _)| choice.detail).collect();
         assert_eq!((refused, comparison.reference.ending), (vec![Detail::Modal], Ending::Overturned));
         assert!(matches!(comparison.without_vertical, Some(Err(RunError::Advance { .. }))));
+    }
+
+    #[test]
+    fn each_of_two_equal_modes_keeps_its_initial_value() {
+        let (frame, ground) = (three_storeys(), Record::from_samples("", vec![0.0, 1.0], vec![0.0, 1.0]).unwrap());
+        let modes = [frame.modes()[2]; 2];
+        let run = Run::of_modes(Structure::of_body(*frame.body(), &modes, &[]).unwrap(), &ground);
+        let u = [1e-3, 2e-3];
+        for (_, run) in choices(&Run { initial: State { u: Modes::new(&u), ..run.initial }, ..run }) {
+            assert_eq!(run.initial.u.numbers(), &u[..run.structure.modes().len()]);
+        }
     }
 
     #[test]
