@@ -8,7 +8,7 @@ use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::levels::start::{Start, Truncation};
 use crate::mechanics::arc::Arc;
 use crate::mechanics::load::Load;
-use crate::series::taylor::LONGEST_SPAN;
+use crate::series::taylor::{LONGEST_SPAN, NEGLIGIBLE};
 use crate::{OneMass, State};
 use std::cell::RefMut;
 
@@ -19,9 +19,6 @@ pub fn acceleration(structure: &OneMass, state: &State, load: Load) -> f64 {
         - structure.stiffness * state.u
 }
 
-/// Part of the velocity at uplift, ω_fc u_cr, below which motion is as good as none.
-const NEGLIGIBLE: f64 = 1e-30;
-
 /// Writes the motion from `start` into `arc`.
 pub(crate) fn series(structure: &OneMass, start: &Start, arc: &mut Arc) {
     let &Start { state, a_top, interval, local_error, .. } = start;
@@ -30,7 +27,6 @@ pub(crate) fn series(structure: &OneMass, start: &Start, arc: &mut Arc) {
     let forcing = a_top.value.abs() + a_top.slope.abs() * span;
     let response_time = span.min(1.0 / omega_fc);
     let u_dot = state.u_dot.abs() + response_time * (stiffness * state.u.abs() + forcing);
-    // a structure that comes to rest must not require terms that underflow
     let u_dot = u_dot.max(NEGLIGIBLE * omega_fc * structure.u_cr);
     let truncation = Truncation { u_dot: local_error * u_dot, theta_dot: 0.0 };
     let (mut u_dot, mut forces) = (state.u_dot, [a_top.value, a_top.slope * span]);

@@ -32,16 +32,13 @@ use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::{self, Angles, Dissipators};
 use crate::mechanics::uplift::inertia;
-use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER};
+use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER, NEGLIGIBLE};
 use crate::structure::mode::{Modes, Vibration};
 use crate::{Base, Mode, Phase, Side, State};
 use std::cell::RefCell;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 use wide::f64x4;
-
-/// Part of the acceleration of gravity by which a motion is as good as none.
-const NEGLIGIBLE: f64 = 1e-30;
 
 /// Motion of a base with modes.
 #[derive(Clone, Debug)]

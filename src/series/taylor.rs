@@ -12,6 +12,10 @@ pub const MAX_ORDER: usize = 28;
 /// The longest span, as ω·h in rad, that an expansion is tried over: more than [`MAX_ORDER`] ever reaches.
 pub const LONGEST_SPAN: f64 = 8.0;
 
+/// Part of the motion at uplift below which a motion in full contact is as good as none: squares underflow below it. A structure that
+/// comes to rest must not require terms that underflow. Smaller peaks are rounding.
+pub(crate) const NEGLIGIBLE: f64 = 1e-150;
+
 /// Coefficients c_k of Σ c_k σ^k.
 pub type Series<Q = f64> = [Q; MAX_ORDER + 2];
 

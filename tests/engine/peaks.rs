@@ -2,9 +2,10 @@
 //! is in `missed_peaks.rs`.
 
 use crate::common::{peaks_beside_samples, sampled, shaking};
+use crate::modes::three_storeys;
 use rocking::run::peaks::Peaks;
 use rocking::run::record::Record;
-use rocking::run::{End, Run};
+use rocking::run::{End, Run, Runs};
 use rocking::{Detail, Engine, OneMass, Output, Parameters, Ramp, State};
 
 /// A leap over many vibrations, which takes many polynomials: what is read of it is as if it had been cut.
@@ -34,6 +35,23 @@ fn a_long_leap_is_read_to_its_end() {
         for (whole, cut) in read_at_once.iter().zip(read_cut) {
             assert!((whole - cut).abs() <= 1e-10 * largest, "{detail:?}: {whole} {cut}");
         }
+    }
+}
+
+/// Full contact is linear, and a power of 2 keeps all digits.
+#[test]
+fn peaks_in_contact_are_in_proportion_to_the_ground_motion_however_small() {
+    fn peaks<Q: Runs>(run: Run<Q>) -> Vec<f64> {
+        let peaks = Run { end: End::At(20.0), ..run.clone() }.peaks().unwrap().0;
+        Output::with_peak(&run.structure).into_iter().map(|of| peaks.of(of).unwrap().magnitude).collect()
+    }
+    let part = 2.0_f64.powi(-400);
+    let [whole, tiny] = [1e-3, 1e-3 * part].map(|peak| shaking(1, 0.02, 200, peak));
+    for detail in [Detail::Auto, Detail::Nonlinear] {
+        let of_one = |ground| peaks(Run { detail, ..Run::new(OneMass::new(Parameters::MCMANUS).unwrap(), ground) });
+        let of_many = |ground| peaks(Run { detail, ..Run::of_modes(three_storeys(0.02, &[]), ground) });
+        let [whole, tiny] = [&whole, &tiny].map(|ground| [of_one(ground), of_many(ground)].concat());
+        assert_eq!(Vec::from_iter(whole.iter().map(|of| part * of)), tiny, "{detail:?}");
     }
 }
 
