@@ -453,6 +453,14 @@ impl Structure {
         self.foundation().map(|of| of.fastest(&self.frequencies_on_ground()))
     }
 
+    /// The fastest rate of small motions while the structure rocks on rigid ground, 1/s: the highest frequency, or the rate Σ c h²/(J0 + m_t B²)
+    /// at which the dampers turn the base.
+    pub(crate) fn fastest_rocking(&self) -> f64 {
+        let &Base { m_t, J0, B, c_ratio, .. } = self.base();
+        let damping: f64 = self.modes().iter().map(|mode| mode.damping * mode.height * mode.height).sum();
+        (c_ratio * damping / (J0 + m_t * B * B)).max(self.vibration().rocking[1])
+    }
+
     /// Mass (kg), first (kg·m) and second moment (kg·m²) that no mode carries.
     pub fn rest(&self) -> [f64; 3] {
         [self.0.base.m0 - self.0.body.m0, self.0.base.S_res, self.0.base.J0 - self.0.body.J0]

@@ -93,11 +93,11 @@ pub enum RunError {
     #[error(transparent)]
     Refused(#[from] Refused),
     /// It takes more steps than one of its segments may.
-    #[error("the steps of the run end by t = {} of {}: give a shorter duration", with_unit(*time, "s"), with_unit(*until, "s"))]
-    TooLong { time: f64, until: f64 },
-    /// The run takes more than [`MOST_STEPS`]; the fastest rate of tendon, dissipators and ground is in 1/s, 0 without any.
-    #[error("the run used up its {MOST_STEPS} steps at t = {}{}", with_unit(*time, "s"), too_many(*rate))]
-    TooManySteps { time: f64, rate: f64 },
+    #[error("the steps of the run end by t = {} of {}: {advice}", with_unit(*time, "s"), with_unit(*until, "s"))]
+    TooLong { time: f64, until: f64, advice: String },
+    /// The run takes more than [`MOST_STEPS`].
+    #[error("the run used up its {MOST_STEPS} steps at t = {}: {advice}", with_unit(*time, "s"))]
+    TooManySteps { time: f64, advice: String },
     /// It takes more points than a curve may have.
     #[error(
         "a picture of the run needs more than {most} points, which end at t = {}; give it a shorter duration",
@@ -243,10 +243,7 @@ impl<Q: Coordinates, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
         let &Motion { time, work, .. } = self.engine.motion();
         let next = self.segments.next().map_or_else(|| self.come_to_rest(), |segment| Ok((segment, None)));
         if next.is_ok() && work.steps > MOST_STEPS {
-            let structure = self.engine.structure();
-            let rates = structure.base().rates_of_ties().into_iter().chain(structure.fastest_on_ground());
-            let rate = rates.fold(0.0, f64::max);
-            return Err(RunError::TooManySteps { time, rate });
+            return Err(RunError::TooManySteps { time, advice: shorter(self.engine.structure()) });
         }
         Ok(next)
     }
@@ -275,23 +272,17 @@ impl<Q: Coordinates, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
     }
 }
 
-/// Advice on a run with too many steps, whose tendon, dissipators or ground have this `rate` (1/s).
-fn too_many(rate: f64) -> String {
-    match rate > 0.0 {
-        true => format!(
-            ". Tendon, dissipators or ground react at {}: are k_t, k_d, c_d, xi_d, J0 and the numbers of the ground in the right units? \
-             Otherwise give a shorter duration",
-            with_unit(rate, "1/s")
-        ),
-        false => ": give a shorter duration".into(),
-    }
+/// Advice on a run of `structure` with too many steps: the numbers that make them, if there are such.
+fn shorter(structure: &Structure) -> String {
+    let causes = structure.many_steps().into_iter().map(|cause| structure.units().message(cause));
+    causes.chain(["give a shorter duration".into()]).collect::<Vec<_>>().join("; ")
 }
 
 /// Why a run of `engine` cannot go on.
 #[cold]
 pub(super) fn error<Q: Coordinates>(engine: &Engine<Q>, cause: AdvanceError) -> RunError {
     match cause {
-        AdvanceError::TooLong { time, until } => RunError::TooLong { time, until },
+        AdvanceError::TooLong { time, until } => RunError::TooLong { time, until, advice: shorter(engine.structure()) },
         cause => RunError::Advance { time: cause.time().unwrap_or(engine.motion().time), cause },
     }
 }
@@ -329,24 +320,26 @@ fn over<Q: Coordinates, W: Watch<Q>>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{OneMass, Parameters};
+    use crate::structure::description::{Damping, Storey};
+    use crate::structure::natural_quantities::Given;
 
+    /// A base with little inertia under damped modes.
     #[test]
-    fn a_run_ends_after_its_most_steps() {
-        let ground = Record::from_samples("", vec![1.0, 2.0, 3.0], vec![0.0, 1.0, 0.0]).unwrap();
-        let pier = OneMass::new(Parameters { xi_d: 2.0, c_d: 1e9, ..Parameters::MCMANUS }).unwrap();
-        let rate = 1e9 * (2.0 * (pier.parameters().B.powi(2) + 4.0)) / pier.J_P;
-        let run = Run::new(pier, &ground);
-        let mut follower = run.course().unwrap();
+    fn a_run_ends_after_its_most_steps_with_their_cause() {
+        let ground = Record::from_samples("", vec![1.0, 1.01, 1.02], vec![0.0, 1.0, 0.0]).unwrap();
+        let base = Given::of(&[("m0", 2.95e6), ("J0", 1150.0), ("B", 0.1355), ("r", 0.5)]).unwrap();
+        let storeys = [[2.5e5, 38.0, 1.6e10], [5.3e5, 94.0, 2.3e10]].map(|[m, h, k]| Storey { m, h, k });
+        let slender = Structure::from_storeys(&base, &Damping::All(0.5), &storeys).unwrap();
+        let cause = "B = 0.1355 m with J0 = 1150 kg.m2 takes some 1e6 steps of computing for each second of a motion";
+        assert!(slender.doubts().iter().any(|doubt| doubt.starts_with(cause)), "{:?}", slender.doubts());
+        let run = Run::of_modes(slender, &ground);
+        let mut follower = Run { initial: State { theta: 1e-3, ..run.initial }, ..run }.course().unwrap();
         assert_eq!(follower.go_on(&mut ()).unwrap(), None);
         let mut motion = *follower.engine.motion();
+        assert!((5_000..20_000).contains(&motion.work.steps), "{}", motion.work.steps);
         motion.work.steps = MOST_STEPS + 1;
         follower.engine.set_motion(motion);
-        let error = follower.finish(&mut ()).unwrap_err();
-        assert_eq!(error, RunError::TooManySteps { time: 2.0, rate });
-        assert!(
-            error.to_string().starts_with("the run used up its 5000000 steps at t = 2 s. Tendon, dissipators or"),
-            "{error}"
-        );
+        let error = follower.finish(&mut ()).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("the run used up its 5000000 steps at t = 1.01 s: {cause}")), "{error}");
     }
 }

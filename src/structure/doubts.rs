@@ -2,7 +2,7 @@
 
 use crate::digits::{short, with_unit};
 use crate::series::taylor::LONGEST_SPAN;
-use crate::{Base, Structure, Ties};
+use crate::{Base, Body, Structure, Ties};
 use std::f64::consts::TAU;
 
 /// Frequency times height of buildings, m/s: the mean of 163 (Ellis 1980, not read; as quoted by others).
@@ -43,8 +43,34 @@ impl Structure {
         self.doubts_in_si().into_iter().map(|doubt| self.units().message(doubt)).collect()
     }
 
+    /// A sentence for each number of which a run takes very many steps.
+    pub(crate) fn many_steps(&self) -> Vec<String> {
+        let (base, &Body { B, J0, ties: Ties { k_t, c_d, k_d, .. }, .. }) = (self.base(), self.body());
+        let [B, J0] = [B, J0].map(short);
+        let ties = [("k_t", k_t, "N/m"), ("k_d", k_d, "N/m"), ("c_d", c_d, "N.s/m")];
+        let of_ties = ties.into_iter().zip(base.rates_of_ties()).map(|((name, value, unit), rate)| {
+            (rate, format!("{name} = {}", with_unit(value, unit)), format!("is {name} in {unit}?"))
+        });
+        let (rate, named, remedy) = match self.foundation().zip(self.fastest_on_ground()) {
+            Some((ground, rate)) => {
+                let [f_v, zeta_v] = [ground.omega_v(base) / TAU, ground.zeta_v(base)].map(short);
+                let named = format!("f_v = {f_v} Hz with zeta_v = {zeta_v} and J0 = {J0} kg.m2");
+                (rate, named, "lower f_v or zeta_v, or raise J0")
+            }
+            None => {
+                (self.fastest_rocking(), format!("B = {B} m with J0 = {J0} kg.m2"), "raise B or J0, lower f or zeta")
+            }
+        };
+        let costs = of_ties.chain([(rate, named, remedy.into())]);
+        let many = costs.map(|(rate, named, remedy)| (rate / LONGEST_SPAN, named, remedy));
+        let many = many.filter(|(steps, ..)| *steps > MANY_STEPS).map(|(steps, named, remedy)| {
+            format!("{named} takes some {steps:.0e} steps of computing for each second of a motion: {remedy}")
+        });
+        many.collect()
+    }
+
     fn doubts_in_si(&self) -> Vec<String> {
-        let (&Base { m_t, m0, g, B, tan_alpha_cg, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y }, .. }, body) =
+        let (&Base { m_t, m0, g, B, tan_alpha_cg, ties: Ties { P_0, xi_d, F_y, .. }, .. }, body) =
             (self.base(), self.body());
         let weight = m_t * g;
         let is_small = |(_, force): &(&str, f64)| (0.0..NEXT_TO_NOTHING * weight).contains(force) && *force > 0.0;
@@ -58,23 +84,7 @@ impl Structure {
             format!("r = {} is not used on ground that gives, where no impact needs it: leave r out", short(r))
         });
         let small = [("P_0", P_0), ("F_y", F_y)].into_iter().filter(is_small).map(doubt);
-        let mut doubts: Vec<_> = unused.into_iter().chain(small).collect();
-        let ties = [("k_t", k_t, "N/m"), ("k_d", k_d, "N/m"), ("c_d", c_d, "N.s/m")];
-        for ((name, value, unit), rate) in ties.into_iter().zip(self.base().rates_of_ties()) {
-            doubts.extend(
-                many_steps(rate)
-                    .map(|many| format!("{name} = {} {many}: is {name} in {unit}?", with_unit(value, unit))),
-            );
-        }
-        if let Some((ground, rate)) = self.foundation().zip(self.fastest_on_ground()) {
-            let [f_v, zeta_v] = [ground.omega_v(self.base()) / TAU, ground.zeta_v(self.base())].map(short);
-            doubts.extend(many_steps(rate).map(|many| {
-                format!(
-                    "f_v = {f_v} Hz with zeta_v = {zeta_v} and J0 = {} kg.m2 {many}: lower f_v or zeta_v, or raise J0",
-                    short(body.J0)
-                )
-            }));
-        }
+        let mut doubts: Vec<_> = unused.into_iter().chain(small).chain(self.many_steps()).collect();
         if xi_d > 2.0 * B {
             doubts.push(format!(
                 "xi_d = {} m is more than the width of the base, {} m: is xi_d in m, not in mm?",
@@ -117,10 +127,4 @@ impl Structure {
         }
         doubts
     }
-}
-
-/// The number of steps that a structure with this `rate` (1/s) takes for each second of a motion, if they are many.
-fn many_steps(rate: f64) -> Option<String> {
-    let steps = rate / LONGEST_SPAN;
-    (steps > MANY_STEPS).then(|| format!("takes some {steps:.0e} steps of computing for each second of a motion"))
 }
