@@ -17,7 +17,7 @@ fn header(text: &str) -> Option<(usize, usize, f64, &str)> {
     lines.windows(3).find_map(|lines| {
         let [(_, title), (_, unit), (line, counts)] = lines.try_into().ok()?;
         let is_header = states_g(unit) && counts.to_uppercase().contains("NPTS");
-        let counts = is_header.then(|| Sampling::of(line, counts).ok())??;
+        let counts = is_header.then(|| Sampling::of(line, counts, &Reading::default()).ok())??;
         Some((line, counts.npts?, counts.dt?, title))
     })
 }

@@ -67,11 +67,12 @@ formats! {
     "CSMIP V2", "the line before the data", "the line before the data", true, cosmos::is_csmip, cosmos::parse;
 }
 
-/// Layouts that a package for Python reads: their names, and what stands on which line, counted from 0.
-const OF_GMPROCESS: [(&str, usize, &str); 3] = [
-    ("GeoNet V1A or V2A", 0, "gns science"),
-    ("CSMIP V1", 0, "uncorrected accelerogram data"),
-    ("RENADIC", 7, "universidad de chile - renadic"),
+/// Layouts that a package for Python reads: their names, what stands on which line, counted from 0, and the package.
+const OF_PYTHON: [(&str, usize, &str, Remedy); 4] = [
+    ("GeoNet V1A or V2A", 0, "gns science", GMPROCESS),
+    ("CSMIP V1", 0, "uncorrected accelerogram data", GMPROCESS),
+    ("RENADIC", 7, "universidad de chile - renadic", GMPROCESS),
+    ("SAC in letters", 13, "-12345", OBSPY), // of numbers that SAC does not use
 ];
 
 const GMPROCESS: Remedy =
@@ -285,10 +286,10 @@ fn rounded(times: &[f64]) -> Option<[f64; 2]> {
 /// The record in `text`, whose content decides its layout.
 fn parse(text: &str, how: &Reading) -> Result<(Record, Source), BadLine> {
     let states = |line: usize, mark| text.lines().nth(line).is_some_and(|line| line.to_lowercase().contains(mark));
-    let foreign = OF_GMPROCESS.iter().find(|(_, line, mark)| states(*line, mark));
-    if let Some((name, line, _)) = foreign.filter(|_| !text.to_lowercase().contains("accel data equally spaced")) {
+    let foreign = OF_PYTHON.iter().find(|(_, line, mark, _)| states(*line, mark));
+    if let Some((name, line, _, by)) = foreign.filter(|_| !text.to_lowercase().contains("accel data equally spaced")) {
         let problem = format!("the file is one of {name}, which is not read here");
-        return Err(bad(line + 1, problem).remedied_by(GMPROCESS));
+        return Err(bad(line + 1, problem).remedied_by(*by));
     }
     let Some(format) = FORMATS.iter().find(|format| (format.is_its)(text)) else {
         return table::parse(text, how)?.record(how, TABLE);

@@ -42,9 +42,9 @@ struct Samples {
     value: Option<usize>,
 }
 
-/// The samples of a table as `how` says; `#`, `%`, `!` or `/&` begins a comment line.
+/// The samples of a table as `how` says; `#`, `%`, `!`, `$` or `/&` begins a comment line.
 pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
-    let table = Table::read(text)?;
+    let table = Table::read(text, how)?;
     let Samples { time, value } = table.samples(how)?;
     let (stated, line) = table.stated_unit(value, how)?;
     let (unit, unit_from) = of_heading(stated, how.unit, line)?;
@@ -86,10 +86,10 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
 
 impl<'a> Table<'a> {
     /// The table in `text`, whose first line of numbers may state the number of samples and the step instead.
-    fn read(text: &'a str) -> Result<Table<'a>, BadLine> {
-        let mut table = Table::after(text, None)?;
+    fn read(text: &'a str, how: &Reading) -> Result<Table<'a>, BadLine> {
+        let mut table = Table::after(text, None, how)?;
         if let Some(counts) = table.counts() {
-            table = Table::after(text, Some((table.first, counts)))?;
+            table = Table::after(text, Some((table.first, counts)), how)?;
         }
         table.pairs = table.pairs();
         if table.pairs.is_some() {
@@ -99,7 +99,7 @@ impl<'a> Table<'a> {
     }
 
     /// The table after the line `counts`, if any, which is counted from 1.
-    fn after(text: &'a str, counts: Option<(usize, Sampling)>) -> Result<Table<'a>, BadLine> {
+    fn after(text: &'a str, counts: Option<(usize, Sampling)>, how: &Reading) -> Result<Table<'a>, BadLine> {
         let start = counts.map_or(0, |(line, _)| line);
         let is_sample = |(line, text): &(usize, &str)| *line > start && !is_comment(text) && is_numbers(text);
         let Some((first, sample)) = numbered(text).find(is_sample) else {
@@ -116,7 +116,7 @@ impl<'a> Table<'a> {
         };
         for (line, text) in numbered(text).take(first - 1).filter(|(_, line)| !line.trim().is_empty()) {
             before.push((line, text));
-            match if line == start { stated } else { Sampling::of(line, text)? } {
+            match if line == start { stated } else { Sampling::of(line, text, how)? } {
                 Sampling { npts: None, dt: None } if is_damaged(text) => {
                     let problem =
                         format!("{} is neither numbers nor text: correct it, or write # before it", quote(text));
@@ -140,7 +140,9 @@ impl<'a> Table<'a> {
             }
             for (column, field) in fields.into_iter().enumerate() {
                 let number = number(&layout.plain(field));
-                let remedy = if sample.contains(char::is_numeric) { "" } else { ": write # before a line of text" };
+                let is_text =
+                    column == 0 && !field.starts_with(|letter: char| letter.is_numeric() || "+-.".contains(letter));
+                let remedy = if is_text { ": write # before a line of text" } else { "" };
                 let no_number = || bad(line, table.no_number(column, field) + remedy);
                 table.numbers.push(number.ok_or_else(no_number)?);
             }
@@ -360,11 +362,14 @@ impl<'a> Table<'a> {
     fn stated_unit(&self, value: Option<usize>, how: &Reading) -> Result<(Stated, usize), BadLine> {
         let texts: Vec<_> = match value {
             Some(value) => {
-                // `#AmplitudeUnit: gal` holds for all columns.
-                let states_all = |(_, text): &(usize, &str)| {
-                    text.to_lowercase().contains("uni") && matches!(Stated::of(text), Stated::Unit(_))
+                // `#AmplitudeUnit: gal` holds for all columns, and so does `RAW PGA VALUES (gal) : (N-S) 314`.
+                let of_all = |&(line, text): &(usize, &'a str)| {
+                    let lower = text.to_lowercase();
+                    let text = if lower.contains("pga values") { text.split(':').next()? } else { text };
+                    let states = lower.contains("uni") || lower.contains("pga values");
+                    (states && matches!(Stated::of(text), Stated::Unit(_))).then_some((line, text))
                 };
-                self.headings_of(value).chain(self.before.iter().copied().filter(states_all)).collect()
+                self.headings_of(value).chain(self.before.iter().filter_map(of_all)).collect()
             }
             None => self.before.iter().filter(|(_, text)| !is_numbers(text)).flat_map(statements).collect(),
         };
@@ -405,10 +410,13 @@ impl<'a> Table<'a> {
     }
 }
 
-/// The statements of a line before samples alone: `NPTS= 3, DT= .01 SEC, UNITS=G` has three.
+/// The statements of a line before samples alone, after their numbers: `NPTS= 3, DT= .01 SEC, UNITS=G` has three.
 fn statements<'a>(&(line, text): &(usize, &'a str)) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
-    let has_several = Sampling::of(line, text).is_ok_and(|stated| stated != Sampling::default());
-    text.split(move |letter| has_several && letter == ',').map(move |statement| (line, statement))
+    let has_several = Sampling::of(line, text, &Reading::default()).is_ok_and(|stated| stated != Sampling::default());
+    text.split(move |letter| has_several && matches!(letter, ',' | ';')).map(move |statement| {
+        let last = statement.rsplit([' ', '=', ':', '\t']).find(|word| has_several && is_number(word));
+        (line, last.and_then(|last| statement.rsplit_once(last)).map_or(statement, |(_, after)| after))
+    })
 }
 
 /// Why a file has no samples.
@@ -683,7 +691,7 @@ mod tests {
         let gal = Unit::CentimetrePerSecondSquared;
         let step = "SAMPLING INTERVAL (sec) : 0.005";
         for (before, remedy) in [
-            (format!("NUMBER OF DATA : 2\n{step}\nPGA VALUES (gal) : (N-S) 314\nN-S  E-W  U-D"), Remedy::ColumnAndUnit),
+            (format!("NUMBER OF DATA : 2\n{step}\nPeak (gal) : (N-S) 314\nN-S  E-W  U-D"), Remedy::ColumnAndUnit),
             ("INTERVALO DE MUESTREO, C1-C6 (s) : /.005/.005\nUNIDADES DE LOS DATOS : gal".into(), Remedy::Column),
             ("#SampleRate(Hz): 200\n#AmplitudeUnit:  gal. DCoffset(corr)\n#MAX. U: 4.09~ -4.3".into(), Remedy::Column),
         ] {
@@ -719,8 +727,8 @@ mod tests {
             ("", "1: the file is empty"),
             ("\n \n", "2: the file is empty"),
             ("t,a\n\n.5,1\n", "3: the file ends after 1 sample(s); two or more are needed"),
-            ("# c\n0.1,1\nx,2\n", "3: the time \"x\" is not a number"),
-            ("0,1\ninf,2\n", "2: the time \"inf\" is not a number"),
+            ("# c\n0.1,1\nx,2\n", "3: the time \"x\" is not a number: write # before a line of text"),
+            ("0,1\ninf,2\n", "2: the time \"inf\" is not a number: write # before a line of text"),
             (
                 "t,a\n",
                 "1: 1 line(s) of text and no samples: lines of numbers alone are needed, without columns of text",

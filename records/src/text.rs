@@ -59,7 +59,7 @@ pub(super) fn value_of<'a>(lines: impl Iterator<Item = (usize, &'a str)>, key: &
 
 /// Whether a mark says that `line` is a comment.
 pub(super) fn is_comment(line: &str) -> bool {
-    line.trim_start().starts_with(['#', '%', '!']) || line.trim_start().starts_with("/&")
+    ["#", "%", "!", "$", "/&", "*END"].iter().any(|mark| line.trim_start().starts_with(mark))
 }
 
 /// The lines of data from `lines` without comments, of which none is blank but at the end, where something may have been lost.

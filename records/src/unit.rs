@@ -60,10 +60,10 @@ impl Unit {
         }
     }
 
-    /// The unit that `text` is, as files write it: `cm/s^2`, `cm/sec/sec`, `CM S-2`, `gal`, `g`.
+    /// The unit that `text` is, as files write it: `cm/s^2`, `cm/sec/sec`, `CM S-2`, `gal`, `gal (cm/s/s`, `g`.
     pub(super) fn named(text: &str) -> Option<Unit> {
         let unit = |name: &str| Unit::NAMES.iter().find_map(|(of, unit)| (*of == name).then_some(*unit));
-        let text = plain(text).replace("sec", "s");
+        let text = plain(text).replace("sec", "s").replace("galcm", "cm").replace("s2gal", "s2");
         let length = text.strip_suffix("/s2").or(text.strip_suffix("/s/s")).or(text.strip_suffix("/ss"));
         let length = length.or(text.strip_suffix("s-2")).or(text.strip_suffix("ps2")).or(text.strip_suffix("s2"));
         match (length, text.as_str()) {
@@ -129,7 +129,7 @@ impl TimeUnit {
 /// Small letters, with powers as plain digits and without what units may have between them.
 fn plain(text: &str) -> String {
     let plain =
-        text.chars().filter(|letter| !letter.is_whitespace() && !"^*.()_\u{b7}\u{22c5}\u{d7}".contains(*letter));
+        text.chars().filter(|letter| !letter.is_whitespace() && !"^*.()[_\u{b7}\u{22c5}\u{d7}".contains(*letter));
     let plain = plain.map(|letter| match letter {
         '\u{b2}' => '2',
         '\u{207b}' | '\u{2212}' => '-',
@@ -148,7 +148,7 @@ pub(super) fn mentions_unit(line: &str) -> bool {
 }
 
 /// Words beside the unit in a heading: what has the unit, in which direction, and where.
-const WORDS: &str = " a ac acc accel acceleration accelerations accelerogram aceleracion aceleraci\u{f3}n accelerazione \
+const WORDS: &str = " a ac raw pga acc accel acceleration accelerations accelerogram aceleracion aceleraci\u{f3}n accelerazione \
     acc\u{e9}l\u{e9}ration beschleunigung ivme ag av ax ay az value values data series time times history record ground \
     floor base motion horizontal vertical longitudinal transverse radial north south east west up down component comp \
     channel chan ch no corrected uncorrected filtered scaled multiplied factor by unit units amplitudeunit unidades in of de los datos the dcoffset corr deg along across n \
@@ -161,7 +161,7 @@ fn words(text: &str) -> Vec<String> {
 }
 
 /// Whether `word` is one of [`WORDS`], with a number or without, or a bearing such as n90e.
-fn is_known(word: &str) -> bool {
+pub(super) fn is_known(word: &str) -> bool {
     let is_digit = |letter: char| letter.is_ascii_digit();
     let bearing = word.strip_prefix(['n', 's']).and_then(|rest| rest.strip_suffix(['e', 'w']));
     let name = word.trim_end_matches(is_digit);

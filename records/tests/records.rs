@@ -66,6 +66,14 @@ fn the_page_lists_every_layout() {
     }
 }
 
+/// Of SAC, in the numbers that it does not use.
+#[test]
+fn the_package_that_reads_a_file_is_named() {
+    let sac = "-12345.00 -12345.00 -12345.00 -12345.00 -12345.00\n".repeat(14);
+    let refused = rocking_records::from_bytes(Path::new("a.sac"), sac.as_bytes(), &Reading::default()).unwrap_err();
+    assert!(matches!(line_of(&refused), (14, Some(Remedy::Python("obspy", _)))), "{refused}");
+}
+
 fn line_of(error: &RecordError) -> (usize, Option<Remedy>) {
     match error {
         RecordError::Malformed { line, remedy, .. } => (*line, *remedy),

@@ -99,7 +99,22 @@ pub fn all(count: usize) -> Vec<Layout> {
         let text = before.to_owned() + &lines(&cm, columns, |value| format!(" {value:11.5}"));
         layout("values.out", "table", gal, text)
     };
+    let of_three = |before: &str| {
+        let row = |value: &f64| format!(" {},{value},{}\n", -2.0 * value, 0.5 * value);
+        let text = before.to_owned() + &cm.iter().map(row).collect::<String>();
+        let how = Reading { column: Some(Column::Number(2)), ..Reading::default() };
+        read_as(how, layout("components.csv", "table", gal, text))
+    };
     all.extend([
+        of_three("SITE CODE= 47401,45.4\r\n SAMPLING RATE= 200Hz,,\r\n UNIT  = gal(cm/s/s),,\r\n NS,EW,UD\r\n"),
+        of_three(&format!(
+            "SAMPLING INTERVAL (sec) : {DT}\nRAW PGA VALUES (gal) : (N-S) 625 (E-W) 312.5\nN-S    E-W    U-D\n"
+        )),
+        several(&format!("UNIT: CM/SEC/SEC\nNO. OF POINTS: {count}  EQUALLY SPACED INTERVALS OF:  {DT}  SEC\n\n"), 8),
+        several(&format!("NPTS= {count} DT= 0,0050 ACC IN GAL\n"), 8),
+        table("*TITLE, El Centro\n*X-AXIS, Time (sec)\n*Y-AXIS, Ground Accel. (gal)\n*FLAGS, 0, 0\n*DATA", |i| {
+            format!("{:.3}", i as f64 * DT)
+        }),
         layout("record.cor", "ESD ASCII", gal, esd(&cm)),
         layout("record.smc", "USGS SMC", gal, smc(&cm)),
         table("# peak in g: 0.3\nt/ms,a/gal", |i| (5 * i).to_string()),
