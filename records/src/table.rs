@@ -182,9 +182,8 @@ impl<'a> Table<'a> {
             && self.uneven.as_ref().is_none_or(is_short)
             && (0..self.count).step_by(2).all(is_time)
             && rises(times());
-        let (count, step) = (times().count(), self.numbers.get(2)? - self.numbers[0]);
-        let is_even = || times().zip(times().skip(1)).all(|(before, at)| is_near(at - before, step));
-        (is_known && count > 3 && (count > MANY || is_even())).then_some(self.count / 2)
+        let count = times().count();
+        (is_known && count > 3 && (count > MANY || is_even(times()))).then_some(self.count / 2)
     }
 
     /// The line of samples after so many others.
@@ -252,13 +251,13 @@ impl<'a> Table<'a> {
     }
 
     fn samples(&self, how: &Reading) -> Result<Samples, BadLine> {
+        self.check_headings(how)?;
         let are_all = match &how.column {
             Some(column) => *column == Column::All,
             None => self.stated.npts == Some(self.numbers.len()),
         };
         let are_all = are_all && self.headed_time().is_none() && self.pairs.is_none();
         if are_all || self.count == 1 && self.uneven.is_none() {
-            self.check_count(how)?;
             return Ok(Samples { time: None, value: None });
         }
         if let Some(uneven) = &self.uneven {
@@ -295,18 +294,41 @@ impl<'a> Table<'a> {
         Ok(Samples { time, value: Some(value) })
     }
 
-    /// Refuses a bare count of the samples or a bare step before samples alone.
-    fn check_count(&self, how: &Reading) -> Result<(), BadLine> {
-        let (first, count) = (self.numbers[0], self.numbers.len());
-        let is_count = first > 1.0 && [first + 1.0, first + 2.0].contains(&(count as f64));
-        let (what, name) = match () {
-            () if self.stated.npts.is_some() => return Ok(()),
-            () if is_count => ("number of samples after it", "NPTS="),
-            () if self.count == 1 && how.dt == Some(first) => ("given step", "DT="),
-            () => return Ok(()),
-        };
-        let remedy = format!("in a line of its own, or NPTS= {count} before it if it is a sample");
-        Err(bad(self.first, format!("{first} is the {what}: write {name} {first} {remedy}")))
+    /// Refuses headings of numbers alone on the first lines: times begin after them, or they have the number of samples, the
+    /// given step or its rate. One of these that comes again is a sample, but not on the first line.
+    fn check_headings(&self, how: &Reading) -> Result<(), BadLine> {
+        const MOST: usize = 5;
+        if self.stated.npts.is_some() || self.headed_time().is_some() || self.pairs.is_some() {
+            return Ok(());
+        }
+        let (mut start, all) = (0, self.numbers.len());
+        for (line, of_line) in (0..MOST).map_while(|after| self.line(after)) {
+            let of_line = self.layout.fields(of_line).len();
+            let (numbers, after) = self.numbers[start..].split_at(of_line);
+            let times = || self.numbers[start..].iter().step_by(of_line).copied();
+            let are_rows = of_line > 1 && after.len().is_multiple_of(of_line) && after.len() > of_line;
+            if are_rows && start == 0 && rises(times()) {
+                return Ok(());
+            } else if are_rows && start > 0 && is_even(times()) {
+                return Err(bad(line, "column 1 has even times from here on: write # before the numbers above"));
+            }
+            let (is_alone, count) = (start + of_line == 1, after.len() as f64);
+            let counts = [count, count - 1.0, count / self.count as f64];
+            for number in numbers {
+                let is_large = *number > if is_alone { 1.0 } else { 10.0 };
+                let is_rare = || is_alone || !after.contains(number);
+                let what = match how.dt {
+                    _ if is_large && counts.contains(number) => "number of samples after it",
+                    Some(dt) if *number == dt && is_rare() => "given step",
+                    Some(dt) if is_large && *number * dt == 1.0 && is_rare() => "rate of the given step",
+                    _ => continue,
+                };
+                let remedy = format!("write # before it and the numbers above, or NPTS= {all} if it is a sample");
+                return Err(bad(line, format!("{number} is the {what}: {remedy}")));
+            }
+            start += of_line;
+        }
+        Ok(())
     }
 
     /// The instants of the samples, which are in the column `time`, if any.
@@ -441,6 +463,13 @@ fn is_no_acceleration(text: &str) -> bool {
 
 fn rises(numbers: impl Iterator<Item = f64> + Clone) -> bool {
     numbers.clone().zip(numbers.skip(1)).all(|(before, at)| at > before)
+}
+
+/// Whether numbers grow by even steps, but for rounding.
+fn is_even(numbers: impl Iterator<Item = f64> + Clone) -> bool {
+    let mut steps = numbers.clone().zip(numbers.skip(1)).map(|(before, at)| at - before);
+    let first = steps.next().unwrap_or_default();
+    first > 0.0 && steps.all(|step| is_near(step, first))
 }
 
 /// Whether a step of times, which may have few digits, is `step`.
@@ -769,11 +798,11 @@ mod tests {
         for (text, expected) in [
             (
                 "4\n1\n2\n3\n2\n",
-                "1: 4 is the number of samples after it: write NPTS= 4 in a line of its own, or NPTS= 5 before it if it is a sample",
+                "1: 4 is the number of samples after it: write # before it and the numbers above, or NPTS= 5 if it is a sample",
             ),
             (
                 ".01\n1\n2\n",
-                "1: 0.01 is the given step: write DT= 0.01 in a line of its own, or NPTS= 3 before it if it is a sample",
+                "1: 0.01 is the given step: write # before it and the numbers above, or NPTS= 3 if it is a sample",
             ),
             ("t,a\n0,1\n.5,2\n", "2: the given column is all, but one has times"),
             ("0 .1\n.01 .2\n.02 .3\n.03 .1\n", "1: the given column is all, but one has times"),
@@ -781,9 +810,17 @@ mod tests {
             assert_eq!(problem(text, &all), expected, "{text}");
         }
         let step = Reading { dt: Some(0.01), ..AS_IT_IS };
+        assert_eq!(read("DT=1/100\n1\n2\n", &step).unwrap().0.times()[1], 0.01);
+        let from = |line| format!("{line}: column 1 has even times from here on: write # before the numbers above");
         for (text, expected) in [
             ("n,a\n1,.1\n2,.2\n4,.3\n", "4: column 1 cannot count the samples: 4.0 comes after 2.0"),
             ("f (Hz),a\n.1,1\n.2,2\n", "2: cannot tell which of 2 columns (\"f (Hz)\", \"a\") has the accelerations"),
+            ("400 0\n0 .1\n.01 .2\n.02 .3\n", &from(2)),
+            ("*DEFINE_CURVE\n$# lcid sidr\n1 0 1.0 0\n$# a1 o1\n0 .1\n.01 .2\n.02 .3\n*END\n", &from(5)),
+            (
+                "9.81\n0.01\n.1\n.2\n-.3\n",
+                "2: 0.01 is the given step: write # before it and the numbers above, or NPTS= 5 if it is a sample",
+            ),
         ] {
             assert_eq!(problem(text, &step), expected, "{text}");
         }
