@@ -224,9 +224,24 @@ impl<'a> Table<'a> {
     }
 
     /// Refuses a first column that has no times: its heading says something else, or they do not grow. Whole numbers may
-    /// count the samples, whatever their heading.
+    /// count the samples, whatever their heading. Steps of many lengths are those of the periods of a spectrum, which is refused
+    /// whatever the options.
     fn check_first(&self) -> Result<(), BadLine> {
+        const UNLESS: &str = ", unless you head column 1 time (s)";
+        let steps = self.column(0).zip(self.column(0).skip(1)).map(|(before, at)| at - before);
+        let least = steps.clone().fold(f64::INFINITY, f64::min);
+        let is_uneven = least > 0.0 && steps.fold(0.0, f64::max) > 2.1 * least;
+        let is_positive = self.numbers[0] > 0.0 && self.numbers.iter().all(|number| *number >= 0.0);
+        let is_period = |name: &str| ["period", "freq", "hz"].iter().any(|word| name.to_lowercase().contains(word));
         match self.headings_of(0).next() {
+            Some((line, name)) if is_uneven || is_period(name) => {
+                let problem = format!("column 1 is {}, which is no time: this is no record of a_g(t)", quote(name));
+                Err(bad(line, problem + UNLESS))
+            }
+            None if is_uneven && is_positive => {
+                let problem = "uneven steps and no number below 0: this is a spectrum, no record of a_g(t)".to_owned();
+                Err(bad(self.first, problem + UNLESS))
+            }
             Some((line, name)) if !self.is_whole(0) => {
                 let problem = format!("column 1 is {}, which is no time in s or ms", quote(name));
                 Err(bad(line, problem).remedied_by(Remedy::StepOrHeading))
@@ -266,7 +281,7 @@ impl<'a> Table<'a> {
         let time = match self.headed_time() {
             None => match self.check_first() {
                 Ok(()) => Some((0, TimeUnit::Unstated)),
-                Err(_) if how.dt.or(self.stated.dt).is_some() => None,
+                Err(no_times) if no_times.remedy.is_some() && how.dt.or(self.stated.dt).is_some() => None,
                 Err(no_times) => return Err(no_times),
             },
             headed => headed,
@@ -455,10 +470,11 @@ fn without_samples(text: &str) -> BadLine {
 
 /// Whether `text` says velocity or displacement, as the other files of PEER do, or spectral, and not acceleration.
 fn is_no_acceleration(text: &str) -> bool {
-    let lower = text.to_lowercase();
+    let lower = text.to_lowercase().replace("s_a", "sa");
     let mut words = lower.split(|letter: char| !letter.is_alphabetic());
     words.any(|word| matches!(word, "vel" | "velocity" | "disp" | "displacement" | "sa" | "psa"))
         && !lower.contains("acc")
+        || lower.contains("spectral acc")
 }
 
 fn rises(numbers: impl Iterator<Item = f64> + Clone) -> bool {
@@ -814,7 +830,14 @@ mod tests {
         let from = |line| format!("{line}: column 1 has even times from here on: write # before the numbers above");
         for (text, expected) in [
             ("n,a\n1,.1\n2,.2\n4,.3\n", "4: column 1 cannot count the samples: 4.0 comes after 2.0"),
-            ("f (Hz),a\n.1,1\n.2,2\n", "2: cannot tell which of 2 columns (\"f (Hz)\", \"a\") has the accelerations"),
+            (
+                "Period (sec)    Response Acceleration (g)\n.02 .3\n.04 .4\n.06 .3\n",
+                "1: column 1 is \"Period (sec)\", which is no time: this is no record of a_g(t), unless you head column 1 time (s)",
+            ),
+            (
+                ".02 .3\n.04 .4\n.1 .3\n",
+                "1: uneven steps and no number below 0: this is a spectrum, no record of a_g(t), unless you head column 1 time (s)",
+            ),
             ("400 0\n0 .1\n.01 .2\n.02 .3\n", &from(2)),
             ("*DEFINE_CURVE\n$# lcid sidr\n1 0 1.0 0\n$# a1 o1\n0 .1\n.01 .2\n.02 .3\n*END\n", &from(5)),
             (
