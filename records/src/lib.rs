@@ -291,6 +291,7 @@ fn parse(text: &str, how: &Reading) -> Result<(Record, Source), BadLine> {
         let problem = format!("the file is one of {name}, which is not read here");
         return Err(bad(line + 1, problem).remedied_by(*by));
     }
+    check_headings(text)?;
     let Some(format) = FORMATS.iter().find(|format| (format.is_its)(text)) else {
         return table::parse(text, how)?.record(how, TABLE);
     };
@@ -298,6 +299,17 @@ fn parse(text: &str, how: &Reading) -> Result<(Record, Source), BadLine> {
         return Err(bad(1, format!("the given column is {asked}, but a file of {} has none", format.name)));
     }
     (format.parse)(text, how)?.record(how, format.name)
+}
+
+/// Refuses long text before the second line of numbers, after which all layouts have their data: the first may state a count.
+fn check_headings(text: &str) -> Result<(), BadLine> {
+    const MOST: usize = 500;
+    let mut lines = text::numbered(text).filter(|(_, line)| !line.trim().is_empty());
+    let is_data = |(_, line): &(usize, &str)| !text::is_comment(line) && fields::is_numbers(line);
+    match (lines.by_ref().take(MOST).filter(is_data).count(), lines.next()) {
+        (0 | 1, Some((line, _))) => Err(bad(line, format!("no data after {MOST} lines: shorten the text before"))),
+        _ => Ok(()),
+    }
 }
 
 /// The bytes of the file of a record. The function opens regular files only, because opening a pipe can block for ever.

@@ -66,6 +66,15 @@ fn the_page_lists_every_layout() {
     }
 }
 
+#[test]
+fn long_text_before_the_data_is_refused_in_every_layout() {
+    for Layout { path, bytes, how, .. } in all(40) {
+        let long = ["# no data\n".repeat(500).into_bytes(), bytes].concat();
+        let refused = rocking_records::from_bytes(&path, &long, &how).unwrap_err().to_string();
+        assert!(refused.ends_with(", line 501: no data after 500 lines: shorten the text before"), "{refused}");
+    }
+}
+
 /// Of SAC, in the numbers that it does not use.
 #[test]
 fn the_package_that_reads_a_file_is_named() {
