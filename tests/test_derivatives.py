@@ -59,6 +59,15 @@ def test_where_the_equations_are_singular_neither_they_nor_the_reactions_exist(w
     assert status(one.slave.doStep, 0.0, 0.1) == ERROR and one.get("theta") == 0.01
 
 
+def test_a_value_with_a_kink_has_no_derivative(wall):
+    """At theta_0 = 0 the side about which the structure rocks changes."""
+    one = wall.instance().enter(u_0=2e-4)
+    for name in ("R_h", "R_m", "uplift"):
+        with refused(one, f"fmi2GetDirectionalDerivative: the derivative of {name} does not exist at t = 0 s"):
+            one.derive([name], ("theta_0", 1.0))
+    assert one.derivative("delta_t", "theta_0") == pytest.approx(EVISON.H, rel=1e-9)
+
+
 @pytest.mark.parametrize("theta_0", [0.0, 0.02])
 def test_what_is_listed_has_a_derivative(interface, theta_0):
     """A variable that the model description lists as depending on a real number has a derivative by it."""

@@ -86,9 +86,9 @@ impl Contact {
         self.pressed >> i & 1 == 1
     }
 
-    /// Whether all points are pressed.
+    /// Whether there are points and all are pressed.
     pub fn is_full(self) -> bool {
-        self.pressed.count_ones() == u32::from(self.points)
+        self.pressed != 0 && self.pressed.count_ones() == u32::from(self.points)
     }
 }
 
@@ -298,5 +298,24 @@ impl<Q: Coordinates> State<Q> {
             )
         })?;
         Ok(if self.theta == 0.0 { Phase::FullContact } else { Phase::Rocking(Side::of(self.theta)) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shown_phase_is_shown_as_it_is() {
+        let on = |pressed, points| Phase::OnGround(Contact { pressed, points, is_slack: false });
+        let sides =
+            [Side::Left, Side::Right].into_iter().flat_map(|side| [Phase::Rocking(side), Phase::Overturned(side)]);
+        for phase in sides.chain([Phase::FullContact, Phase::FLIGHT, on(0, 2), on(1, 2), on(2, 2), on(3, 2)]) {
+            for theta in [-0.1, 0.0, 0.1] {
+                let shown = phase.shown(theta);
+                assert_eq!(shown.shown(theta), shown);
+                assert_eq!(shown == Phase::FLIGHT, phase.name() == "flight");
+            }
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! Derivatives by differences, for quantities that have no formula.
 //!
 //! Differences to either side are extrapolated to the limit of no difference (Neville's scheme, its entry of least change). A
-//! limit that has not settled to 1e-4 ([`LARGEST_CHANGE`]) is refused; tests find it right to 1e-6.
+//! limit that has not settled to 1e-4 ([`LARGEST_CHANGE`]) is refused, and so are limits of both sides that differ by more: the
+//! value has a kink there. Tests find the limit right to 1e-6.
 
 use crate::failure::Failure;
 use crate::model::Model;
@@ -26,12 +27,19 @@ pub fn by_differences(x: f64, scale: f64, shown: &mut dyn FnMut(f64) -> Option<V
         places.filter(|place| *place != x).filter_map(|place| Some((place - x, shown(place)?))).collect::<Vec<_>>()
     });
     let derivative = |(at, here): (usize, &f64)| {
-        let of_side = |side: &Vec<_>| {
-            limit(side.iter().map(|(step, values): &(f64, Vec<f64>)| (*step, (values[at] - here) / step)))
+        let settled = |side: &Vec<(f64, Vec<f64>)>| {
+            let found = limit(side.iter().map(|(step, values)| (*step, (values[at] - here) / step)))?;
+            let (limit, change) = found;
+            (change <= LARGEST_CHANGE * limit.abs().max(here.abs() / scale)).then_some(found)
         };
-        let best = sides.iter().filter_map(of_side).min_by(|(_, a), (_, b)| a.total_cmp(b));
-        let is_settled = |(limit, change): &(f64, f64)| *change <= LARGEST_CHANGE * limit.abs().max(here.abs() / scale);
-        best.filter(is_settled).map(|(limit, _)| limit)
+        // a side along which a kink lies nearby settles not, and the other one alone tells
+        let [below, above] = sides.each_ref().map(settled);
+        let are_same = |((a, _), (b, _)): ((f64, f64), (f64, f64))| {
+            (a - b).abs() <= LARGEST_CHANGE * a.abs().max(b.abs()).max(here.abs() / scale)
+        };
+        let is_kink = below.zip(above).is_some_and(|both| !are_same(both));
+        let best = below.into_iter().chain(above).filter(|_| !is_kink).min_by(|(_, a), (_, b)| a.total_cmp(b));
+        best.map(|(limit, _)| limit)
     };
     Some(here.iter().enumerate().map(derivative).collect())
 }
