@@ -769,7 +769,7 @@ fn is_at_its_end<Q: Coordinates>(
 
 /// The first guard of `watched` that closes on `step`, which is cut there.
 #[inline]
-fn first<Q: Coordinates>(watched: &Watched<Q>, step: &mut Step<Q>) -> Option<Closed> {
+pub(crate) fn first<Q: Coordinates>(watched: &Watched<Q>, step: &mut Step<Q>) -> Option<Closed> {
     if watched.stays.is_some_and(|stays| stays(step)) {
         return None;
     }

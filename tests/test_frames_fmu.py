@@ -2,6 +2,7 @@
 
 import functools
 import json
+import re
 from pathlib import Path
 
 import fmpy
@@ -11,8 +12,9 @@ import pandas as pd
 import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
-from frames import FRAMES, Ties, scene, toml
-from host import output, write
+from frames import FRAMES, Ties, scene, ties_of, toml
+from host import output, simulate, write
+from test_ground import MCMANUS, record
 
 FRAME, N = FRAMES["frame"], 3
 
@@ -132,3 +134,47 @@ def test_modes_left_out_and_what_is_fixed_are_told(export_frame):
     assert fmu.description.variableNamingConvention == "structured"
     (of_a,) = [unknown for unknown in fmu.description.outputs if unknown.variable.name == "a_t[2]"]
     assert {known.name for known in of_a.dependencies} >= {"a_g", *floors("F_t", "q", "q_dot"), "theta"}
+
+
+# Structure, what ties it down, scales of El Centro along and up, ground.
+KINDS = {
+    "one mass": (MCMANUS, Ties(), 0.7, 0, "f_v = 40\nzeta_v = 0.2"),
+    "one mass on a bed": (MCMANUS, Ties(), 0.35, 0, "f_v = 40\nzeta_v = 0\nn_points = 5"),
+    "tied": (MCMANUS, ties_of(MCMANUS, 0.1), 1.4, 0, "f_v = 40\nzeta_v = 0.2"),
+    "thrown up": (MCMANUS, Ties(), 0, 8, "f_v = 20\nzeta_v = 0.2"),
+    "storeys": (FRAME, Ties(), 1.6, 0, "f_v = 12\nzeta_v = 0.1"),
+    "storeys on a bed": (FRAME, Ties(), 1.6, 0, "f_v = 12\nzeta_v = 0.1\nn_points = 5"),
+    "storeys, tied, on rigid ground": (FRAME, ties_of(FRAME, 0.1), 1.6, 0, ""),
+}
+EVENTS, MODEL = dict(use_event_mode=True, early_return_allowed=True), dict(fmi_type="ModelExchange")
+EULER = MODEL | dict(solver="Euler", step_size=1e-4, output_interval=1e-4)
+
+
+def told(fmu, names, **asked):
+    """Instants and kinds of the transitions in the log, and a function: the values of `names` that a host has from an instant on."""
+    rows, log = simulate(fmu, output=names, **asked)
+    found = [re.match(r"t = (\S+) s: ([^;]+); .*theta_dot", message.text) for message in log]
+    times, kinds = zip(*((float(of[1]), of[2]) for of in found if of))
+    values = np.column_stack([rows[name] for name in names])
+    return np.array(times), kinds, lambda instants: values[np.searchsorted(rows["time"], instants + 1e-9, side="right") - 1]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_interface_tells_the_same_transitions(export_frame, kind):
+    """Kinds, instants, and phase and contact at the samples. After event mode the host sees the transitions of that instant, all of them."""
+    frame, ties, along, up, ground = KINDS[kind]
+    dt, a_g, a_v = record("imperialValley_elCentro_1940", 150, 150, 1)
+    time = dt * np.arange(len(a_g))
+    two, three = (export_frame(frame, ties, time, along * a_g, up * a_v, fmi, ground)[0] for fmi in (2, 3))
+    names = ["transitions", "phase", *["contact"] * bool(ground)]
+    asked = dict(names=names, stop_time=time[-1], output_interval=dt)
+    times, kinds, seen = told(two, **asked)
+    assert len(kinds) == seen(time)[-1, 0] > 3
+    for fmu, how, limit in [(three, {}, 1e-12), (three, EVENTS, 1e-12), (three, EVENTS | dict(output_interval=0.37 * dt), 1e-12),
+                            (two, MODEL, 1e-6), (three, MODEL, 1e-6), (two, EULER, 1e-2)]:
+        found, found_kinds, found_seen = told(fmu, **asked | how)
+        assert found_kinds == kinds, how
+        np.testing.assert_allclose(found, times, rtol=0, atol=limit)
+        assert how is EULER or np.array_equal(found_seen(time), seen(time)), how
+        if "use_event_mode" in how:
+            np.testing.assert_array_equal(found_seen(found)[:, 0], np.searchsorted(found, found + 1e-9))

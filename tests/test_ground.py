@@ -11,7 +11,7 @@ from test_frames import engine
 
 pytest_plugins = ["test_frames"]  # for its fixture
 
-MCMANUS = Frame((130.1,), (1.84,), (130.1 * (2 * np.pi * 5) ** 2,), m0=65.4, J0=10.7, B=0.285, zeta=0.02)
+MCMANUS = Frame((130.1,), (1.84,), (130.1 * (2 * np.pi * 5) ** 2,), m0=65.4, J0=10.7, B=0.285, r=0.99, zeta=0.02)
 STOREYS = Frame((40e3,) * 5, tuple(3.2 * i for i in range(1, 6)), tuple(5e6 * (25 - 3 * i) for i in range(1, 6)),
                 m0=60e3, J0=2e5, B=2.5, zeta=0.02)
 

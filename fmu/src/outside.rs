@@ -121,7 +121,7 @@ impl<Q: Runs> Scene<Q> {
         }
     }
 
-    /// Applies the transitions up to where the host is, and the uplift that is due there under the inputs `load`.
+    /// Applies the transitions up to where the host is, and all that are due there under the inputs `load`.
     pub fn catch_up(&mut self, setup: &Setup, load: Load<Q>, logger: &Logger) -> Result<Update, Failure> {
         let Some(outside) = self.outside else { return Ok(Update::default()) };
         let from = outside.known.motion.time;
@@ -142,7 +142,7 @@ impl<Q: Runs> Scene<Q> {
         self.engine.set_motion(motion);
         let acting = self.acting(setup, load);
         let told: &mut Told<Q> = &mut |transition| log(logger, is_one_mass, transition);
-        self.engine.lift_off_if_due(acting, &mut &mut *told);
+        self.engine.transit_at_once(acting, &mut &mut *told);
         let motion = *self.engine.motion();
         let known = Checkpoint { motion, elapsed: self.elapsed, load };
         self.outside = Some(Outside { known, arrived: load, event: outside.event });

@@ -124,9 +124,9 @@ impl<Q: Runs> Scene<Q> {
         })
     }
 
-    /// Whether no step has been made, and the first phase lasts: under `load` the structure does not uplift at once.
+    /// Whether no step has been made, and the first phase lasts: under `load` no transition is due at once.
     pub fn is_at_start(&self, load: Load<Q>) -> bool {
-        self.engine.motion().work.steps == 0 && !self.engine.is_uplift_due(load)
+        self.engine.motion().work.steps == 0 && !self.engine.is_due(load)
     }
 
     /// From the first to the last sample of the record, s; 0 without one.
@@ -164,14 +164,14 @@ impl<Q: Runs> Scene<Q> {
         Validity::new(self.engine.structure(), Limits::default(), self.validity)
     }
 
-    /// Applies the transition that is due, if there is one, and the uplift that is due at once then, or since the
-    /// inputs `load` have jumped.
+    /// Applies the transition that is due, if there is one, and all that are due at once then, or since the inputs `load` have
+    /// jumped.
     pub fn transit(&mut self, setup: &Setup, load: Load<Q>, told: &mut Told<Q>) {
         let acting = self.acting(setup, load);
         let mut validity = self.watch_validity();
         let mut watch = Watching { peaks: None, validity: setup.validity.then_some(&mut validity), told };
         self.engine.transit(&mut watch);
-        self.engine.lift_off_if_due(acting, &mut watch);
+        self.engine.transit_at_once(acting, &mut watch);
         drop(watch);
         self.validity = *validity.found();
     }

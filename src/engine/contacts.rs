@@ -31,18 +31,22 @@ struct Rises {
     order: usize,
     /// |y_s| + |y| at the start.
     scale: f64,
+    /// Duration of the step over the longest one.
+    part: f64,
 }
 
 impl Rises {
     #[inline]
-    fn new<Q: Coordinates>(foundation: &Foundation, arc: &Arc<Q>) -> Rises {
+    fn new<Q: Coordinates>(level: &dyn Level<Q>, arc: &Arc<Q>) -> Rises {
+        let foundation = level.structure().ground();
         let (mut y, mut sin) = ([ZERO; 2], [ZERO; 2]);
         for (i, series) in [&arc.u, &arc.u_dot].into_iter().enumerate() {
             for (k, of) in arc.used(series).iter().enumerate() {
                 (y[i][k], sin[i][k]) = (of.of(foundation.place), of.of(foundation.place + 1));
             }
         }
-        Rises { y, sin, order: arc.order, scale: foundation.rest.abs() + y[0][0].abs() }
+        let (scale, part) = (foundation.rest.abs() + y[0][0].abs(), arc.span / level.longest_step());
+        Rises { y, sin, order: arc.order, scale, part }
     }
 
     /// The height over the step at ξ plus τ times its rate, and what counts as 0 of it.
@@ -64,11 +68,16 @@ impl Rises {
         (rate, ROUNDING * (y[1][0].abs() + (xi * sin[1][0]).abs()))
     }
 
-    /// The gap of `sign` times a series, divided by time while its first coefficients are no more than `rounding`; none if all are.
+    /// The gap of `sign` times a series, divided by time while its first coefficients are no more than `rounding`, as they would be
+    /// over the longest step; none if all are.
     #[inline]
     fn gap<'b>(&self, (series, rounding): &'b (Series, f64), sign: f64) -> Option<Gap<'b>> {
-        let used = &series[..=self.order];
-        let zeros = used.iter().position(|c| c.abs() > *rounding)?;
+        let (used, mut limit) = (&series[..=self.order], rounding / self.part);
+        let is_more = |c: &f64| {
+            limit *= self.part;
+            c.abs() > limit
+        };
+        let zeros = used.iter().position(is_more)?;
         Some(Gap::new(&used[zeros..], sign, 0.0))
     }
 }
@@ -87,7 +96,7 @@ pub(crate) struct Points;
 impl<Q: Coordinates> Guard<Q> for Points {
     fn first(&self, &Step { level, contact, arc, reach, .. }: &Step<Q>) -> (Crossing, Way) {
         let foundation = level.structure().ground();
-        let (rises, mut found) = (Rises::new(foundation, arc), (Crossing::None, Way::default()));
+        let (rises, mut found) = (Rises::new(level, arc), (Crossing::None, Way::default()));
         for (i, point) in foundation.points.iter().enumerate() {
             let pushes = || rises.at(point.xi, point.c / point.k);
             let reach = found.0.sigma().min(reach);
@@ -123,13 +132,6 @@ impl<Q: Coordinates> Guard<Q> for Points {
         let least = margins(foundation, &now.motion.state).enumerate().map(of).fold(f64::INFINITY, f64::min);
         (0, least / foundation.rest.abs() + BAND)
     }
-
-    fn closed(&self, now: &Sample<Q>) -> Option<Way> {
-        let (contact, foundation) = (now.motion.phase.contact(), now.level.structure().ground());
-        let is_closed = |(i, margin): &(usize, f64)| (*margin > 0.0) != contact.is_pressed(*i);
-        let (i, _) = margins(foundation, &now.motion.state).enumerate().find(is_closed)?;
-        Some(Way { which: i as u8, sign: if contact.is_pressed(i) { -1 } else { 1 } })
-    }
 }
 
 /// Number of the tendon among the ties.
@@ -141,7 +143,7 @@ pub(crate) struct Tied;
 impl<Q: Coordinates> Guard<Q> for Tied {
     fn first(&self, &Step { level, contact, start, arc, reach, .. }: &Step<Q>) -> (Crossing, Way) {
         let foundation = level.structure().ground();
-        let (rises, mut found) = (Rises::new(foundation, arc), (Crossing::None, Way::default()));
+        let (rises, mut found) = (Rises::new(level, arc), (Crossing::None, Way::default()));
         let Ties { P_0, k_t, xi_d, k_d, F_y, .. } = level.structure().base().ties;
         if k_t > 0.0 {
             let ((height, rounding), slack) = (rises.at(0.0, 0.0), P_0 / k_t - foundation.rest);
@@ -150,16 +152,18 @@ impl<Q: Coordinates> Guard<Q> for Tied {
             see(&mut found, first_time_all_closed([gap], reach), usize::from(TENDON), way);
         }
         for (j, xi) in [xi_d, -xi_d].into_iter().enumerate().filter(|_| F_y > 0.0) {
+            let rate = rises.rate(xi);
             match start.dissipators.yields[j] {
                 0 => {
                     for way in [1_i8, -1] {
                         let mut height = rises.at(xi, 0.0);
                         height.0[0] -= foundation.rest + start.dissipators.plastic[j] + f64::from(way) * F_y / k_d;
                         height.1 += ROUNDING * F_y / k_d;
-                        see(&mut found, first([rises.gap(&height, -f64::from(way))], reach), j, way);
+                        let gaps = [&height, &rate].map(|of| rises.gap(of, -f64::from(way)));
+                        see(&mut found, first(gaps, reach), j, way);
                     }
                 }
-                way => see(&mut found, first([rises.gap(&rises.rate(xi), f64::from(way))], reach), j, 0),
+                way => see(&mut found, first([rises.gap(&rate, f64::from(way))], reach), j, 0),
             }
         }
         found
@@ -180,41 +184,30 @@ impl<Q: Coordinates> Guard<Q> for Tied {
     }
 
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
-        (1, tied_margins(now).map(|(margin, _)| margin).fold(f64::INFINITY, f64::min) + BAND)
-    }
-
-    fn closed(&self, now: &Sample<Q>) -> Option<Way> {
-        // a dissipator that unloads has F_y still, and a host's rate of its elongation need not be 0
-        tied_margins(now).find(|(margin, _)| *margin < -BAND).map(|(_, way)| way)
+        (1, tied_margins(now).fold(f64::INFINITY, f64::min) + BAND)
     }
 }
 
-/// How far the ties are from their next change, of order one, and the ways of the changes.
-fn tied_margins<'a, Q: Coordinates>(now: &'a Sample<Q>) -> impl Iterator<Item = (f64, Way)> + 'a {
+/// How far the ties are from their next change, of order one.
+fn tied_margins<'a, Q: Coordinates>(now: &'a Sample<Q>) -> impl Iterator<Item = f64> + 'a {
     let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
     let Ties { P_0, k_t, xi_d, k_d, F_y, .. } = structure.base().ties;
     let &Foundation { rest, place, .. } = structure.ground();
     let of = move |i: usize, xi: f64| [state.u, state.u_dot].map(|q| q.of(place) - xi * q.of(place + 1))[i];
-    let is_slack = phase.contact().is_slack;
-    let of_tendon = (of(0, 0.0) - rest + P_0 / k_t) / rest.abs() * if is_slack { -1.0 } else { 1.0 };
-    let tendon = (of_tendon, Way { which: TENDON, sign: if is_slack { 1 } else { -1 } });
-    let of_pair = [(0, xi_d), (1, -xi_d)].into_iter().map(move |(j, xi)| {
-        let way = dissipators.yields[j];
-        let force = k_d * (of(0, xi) - rest - dissipators.plastic[j]);
-        let (margin, sign) = match way {
-            0 => (1.0 - force.abs() / F_y, if force > 0.0 { 1 } else { -1 }),
-            way => (f64::from(way) * of(1, xi) / (rest.abs() * structure.vibration().contact), 0),
-        };
-        (margin, Way { which: j as u8, sign })
+    let sign = if phase.contact().is_slack { -1.0 } else { 1.0 };
+    let of_tendon = (of(0, 0.0) - rest + P_0 / k_t) / rest.abs() * sign;
+    let of_pair = [(0, xi_d), (1, -xi_d)].into_iter().map(move |(j, xi)| match dissipators.yields[j] {
+        0 => 1.0 - (k_d * (of(0, xi) - rest - dissipators.plastic[j])).abs() / F_y,
+        way => f64::from(way) * of(1, xi) / (rest.abs() * structure.vibration().contact),
     });
-    Some(tendon).filter(|_| k_t > 0.0).into_iter().chain(of_pair.filter(move |_| F_y > 0.0))
+    Some(of_tendon).filter(|_| k_t > 0.0).into_iter().chain(of_pair.filter(move |_| F_y > 0.0))
 }
 
 /// The dissipators at the reach of a step.
 pub(crate) fn moved<Q: Coordinates>(&Step { level, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
     let mut moved = *start.dissipators;
     let foundation = level.structure().ground();
-    let (rises, Ties { xi_d, c_d, k_d, F_y, .. }) = (Rises::new(foundation, arc), level.structure().base().ties);
+    let (rises, Ties { xi_d, c_d, k_d, F_y, .. }) = (Rises::new(level, arc), level.structure().base().ties);
     for (j, xi) in [xi_d, -xi_d].into_iter().enumerate() {
         let way = f64::from(moved.yields[j]);
         if way != 0.0 {

@@ -28,7 +28,7 @@ pub(crate) trait Guard<Q: Coordinates = f64>: Sync {
     /// Place and value of the event indicator: continuous, of order one, positive while the guard is open.
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64);
 
-    /// The way in which the guard is closed from the start, after a transition or a jump of the load.
+    /// The way in which the guard is closed from the start, after a transition or a jump of the load, on rigid ground.
     fn closed(&self, _now: &Sample<Q>) -> Option<Way> {
         None
     }

@@ -37,9 +37,12 @@ pub(crate) struct Closed {
     pub way: Way,
 }
 
-/// Takes `crossing` if it comes before the one that is `found`.
+/// Part by which the first of two crossings at one instant may come earlier by rounding.
+const SAME: f64 = 1e-14;
+
+/// Takes `crossing` if it comes before the one that is `found`. Of crossings at one instant, the first that is found counts.
 pub(crate) fn see(found: &mut (Crossing, Way), crossing: Crossing, which: usize, sign: i8) {
-    if crossing.sigma() < found.0.sigma() {
+    if crossing.sigma() < (1.0 - SAME) * found.0.sigma() {
         *found = (crossing, Way { which: which as u8, sign });
     }
 }

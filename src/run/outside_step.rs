@@ -7,10 +7,11 @@
 //! passes nothing over. If the engine finds a transition on the way, or if the integrator ended beyond a guard without one,
 //! the engine's own motion from the start of the step counts.
 
-use crate::engine::AdvanceError;
 use crate::engine::piece::Watch;
 use crate::engine::sample::Sample;
-use crate::engine::step::Closed;
+use crate::engine::step::{Closed, Step};
+use crate::engine::{AdvanceError, first};
+use crate::mechanics::arc::Arc;
 use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::{LinearLoad, Load};
@@ -22,6 +23,9 @@ use serde::{Deserialize, Serialize};
 pub const INDICATORS: usize = 2;
 
 pub use crate::engine::guard::BAND;
+
+/// The most transitions that are applied at one instant. Points, ties and uplift are fewer.
+const MOST_AT_ONCE: usize = 100;
 
 impl<Q: Coordinates> Sample<'_, Q> {
     /// (u̇, ü, θ̇, θ̈) by the equations of the level and the phase; not numbers where these have no solution.
@@ -146,23 +150,33 @@ impl<Q: Coordinates> Engine<Q> {
         self.set_motion(Motion { state, ..motion });
     }
 
-    /// Lifts the base off if that is due at once under `load`: after a landing, at the start, or when a load jumps.
-    pub fn lift_off_if_due<W: Watch<Q>>(&mut self, load: Load<Q>, watch: &mut W) {
-        if let Some(closed) = self.due_at_once(load) {
+    /// Applies what is due at once under `load`: after a landing, at the start, or when a load jumps.
+    pub fn transit_at_once<W: Watch<Q>>(&mut self, load: Load<Q>, watch: &mut W) {
+        for _ in 0..MOST_AT_ONCE {
+            let Some(closed) = self.due_at_once(load) else { return };
             self.set_motion(Motion { due: Some(closed), ..*self.motion() });
             self.transit(watch);
         }
     }
 
-    /// Whether the base lifts off at once under `load`.
-    pub fn is_uplift_due(&self, load: Load<Q>) -> bool {
+    /// Whether a transition is due at once under `load`.
+    pub fn is_due(&self, load: Load<Q>) -> bool {
         self.due_at_once(load).is_some()
     }
 
-    /// The guard that is closed from the start under `load`.
+    /// The guard that is closed from the start under `load`. On ground that gives, the search of a step decides that: within rounding of
+    /// its root a guard goes where its rate points, and has to open first once its transition has been applied.
     fn due_at_once(&self, load: Load<Q>) -> Option<Closed> {
-        let now = self.sample(load);
-        let mut guards = self.watched()?.guards.iter().enumerate();
+        let (now, watched) = (self.sample(load), self.watched()?);
+        let Sample { motion: Motion { phase, state, dissipators, .. }, level, .. } = &now;
+        if let Phase::OnGround(contact) = *phase {
+            let start = level.subject().start(*state, dissipators, load.into(), level.longest_step());
+            let mut arc = Arc::default();
+            level.series(*phase, &start, &mut arc);
+            let side = now.motion.side();
+            return first(watched, &mut Step { level: *level, side, contact, start: &start, arc: &arc, reach: 0.0 });
+        }
+        let mut guards = watched.guards.iter().enumerate();
         guards.find_map(|(guard, of)| Some(Closed { guard: guard as u8, way: of.closed(&now)? }))
     }
 }

@@ -78,6 +78,39 @@ fn evison_on_two_springs_has_its_six_events_and_peaks() {
     assert_relative_eq!(of(Output::N_right).magnitude, 10765.40, max_relative = 5e-7);
 }
 
+/// The next step, however short, has a transition that this one missed, and once it has been applied nothing is due. A dissipator
+/// that has turned round does not yield again where another integrator elongates it by 1e-10 of the settlement at rest.
+#[test]
+fn a_transition_within_rounding_of_the_end_of_a_step_happens_once() {
+    let tied = Parameters { P_0: 50.0, k_t: 4e4, xi_d: 0.2, k_d: 1e5, F_y: 150.0, ..EVISON };
+    let structure = one_mass(tied, ground(160.0, 0.2, 2));
+    let no_load = load(&structure, 0.0, 0.0);
+    let begin = || engine(&structure, 0.75246734e-3, 0.04);
+    let expected = transitions(&mut begin(), 0.5, no_load);
+    for (i, transition) in expected.iter().enumerate().filter(|(_, transition)| transition.time > 0.0) {
+        for places in -4..=4 {
+            let mut engine = begin();
+            let until = transition.time * (1.0 + f64::from(places) * f64::EPSILON);
+            let mut found = transitions(&mut engine, until, no_load);
+            found.extend(transitions(&mut engine, 16.0 * f64::EPSILON, no_load));
+            let kinds = |of: &[Transition<Modes>]| Vec::from_iter(of.iter().map(|transition| transition.kind));
+            assert_eq!(kinds(&found), kinds(&expected[..=i]), "{places}");
+            assert!(!engine.is_due(no_load.value), "{transition:?} {places}");
+            if let TransitionKind::Unloading(_) = transition.kind {
+                for way in [-1e-10, 1e-10] {
+                    let state = engine.motion().state;
+                    let mut numbers = state.u.numbers().to_vec();
+                    numbers[1] += way * structure.foundation().unwrap().rest;
+                    engine.set_state(State { u: Modes::new(&numbers), ..state });
+                    assert_eq!(transitions(&mut engine, 1e-7, no_load), [], "{transition:?}");
+                    engine.set_state(state);
+                }
+            }
+        }
+    }
+    assert!(expected.iter().any(|transition| matches!(transition.kind, TransitionKind::Unloading(_))));
+}
+
 /// Energy, with what dissipators and dashpots have taken, of a bed, all ties, any number of modes.
 #[test]
 fn energy_is_kept() {

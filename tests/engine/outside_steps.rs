@@ -27,7 +27,7 @@ impl<'a> Outside<'a> {
         let mut engine = engine_of(structure, State::default(), 1e-12, detail);
         let (mut transitions, ground) = (Vec::new(), GroundMotion::from(record));
         let a_g = LinearLoad::default().on_ground(ground.at(Elapsed::default())).value;
-        engine.lift_off_if_due(a_g, &mut |transition: &Transition| transitions.push(*transition));
+        engine.transit_at_once(a_g, &mut |transition: &Transition| transitions.push(*transition));
         let known = Checkpoint { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
         Outside { engine, ground, known, transitions }
     }
@@ -62,7 +62,7 @@ impl<'a> Outside<'a> {
             self.known.check(&mut self.engine, Some(&self.ground), elapsed, Load::default(), &mut watch).unwrap();
         assert!(is_corrected || motion.state == self.engine.motion().state, "the integrator's own state is lost");
         self.engine.set_motion(motion);
-        self.engine.lift_off_if_due(load, &mut watch);
+        self.engine.transit_at_once(load, &mut watch);
         self.known = Checkpoint { motion: *self.engine.motion(), elapsed, load: Load::default() };
         assert!(self.height() >= -BAND || self.has_overturned(), "below the floor at t = {}", t + h);
     }
