@@ -29,12 +29,14 @@ pub trait Number:
 {
     /// The number that does not change with time.
     fn constant(value: f64) -> Self;
+}
 
+/// A kind of number that has a sign. A bound and a power series have none.
+pub trait Ordered: Number {
     /// The value by which numbers are compared.
     fn value(&self) -> f64;
 
-    /// The number, or 0 if it is negative. A bound and a power series stay what they are: the value of the part is not beyond them, and
-    /// changes where they do.
+    /// The number, or 0 if it is negative.
     #[inline]
     fn positive(self) -> Self {
         if self.value() > 0.0 { self } else { Self::constant(0.0) }
@@ -52,7 +54,9 @@ impl Number for f64 {
     fn constant(value: f64) -> f64 {
         value
     }
+}
 
+impl Ordered for f64 {
     #[inline]
     fn value(&self) -> f64 {
         *self

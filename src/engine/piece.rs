@@ -428,9 +428,9 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
         self.in_parts(&mut |part, is_finest| {
             let (over, end) = (part.over(true), part.shown(part.arc.reach));
             let series = |output: &Output| {
-                let series = output.of(&over);
+                let series = output.smooth(&over);
                 let is_whole = is_finest || output.is_component();
-                (is_whole || part.has_converged(&series, output.of(&end), CONVERGED)).then_some(series)
+                (is_whole || part.has_converged(&series, output.smooth(&end), CONVERGED)).then_some(series)
             };
             let Some(series) = outputs.iter().map(series).collect::<Option<Vec<_>>>() else { return false };
             show(part, &series);

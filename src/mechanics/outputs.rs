@@ -16,7 +16,7 @@
 use crate::mechanics::instant::{Instant, Place, uplift};
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::Load;
-use crate::numbers::Number;
+use crate::numbers::{Number, Ordered};
 use crate::structure::gauge::Gauge;
 use crate::structure::mode::Modes;
 use crate::{Base, Foundation, Phase, State, Structure};
@@ -252,7 +252,7 @@ impl Output {
             E_foundation => x.coordinate(place + 2)[0],
             lifted(_) | settled(_) | P_t => {
                 let [xi, k, _, offset] = self.of_height(x.base(), foundation).expect("it is of a height");
-                (x.height(*place, xi)[0] * k + K::constant(offset)).positive()
+                x.height(*place, xi)[0] * k + K::constant(offset)
             }
             N(i) if x.contact.is_pressed(i) => {
                 let [e, rate] = x.height(*place, points[i].xi);
@@ -267,18 +267,31 @@ impl Output {
                 let pressed = points.iter().enumerate().filter(|(i, _)| x.contact.is_pressed(*i));
                 K::constant(pressed.map(|(_, point)| point.k).sum::<f64>() / foundation.sum(0))
             }
-            Output::uplift | settlement | N_left | N_right | pressure => {
-                let parts = self.parts(x.structure).into_iter();
-                let each = parts.map(|(of, factor)| of.on_ground(x, foundation) * factor);
-                each.reduce(K::larger).expect("it has parts")
-            }
+            N_left => N(0).on_ground(x, foundation),
+            N_right => N(points.len() - 1).on_ground(x, foundation),
+            Output::uplift | settlement | pressure => K::constant(f64::NAN),
             _ => K::constant(0.0),
         }
     }
 
     /// The output in the motion `x`, NaN if the structure does not have it.
     #[inline]
-    pub(crate) fn of<K: Number, Q: Lateral<K>>(self, x: &Instant<K, Q>) -> K {
+    pub(crate) fn of<K: Ordered, Q: Lateral<K>>(self, x: &Instant<K, Q>) -> K {
+        match self {
+            _ if Q::foundation(x.structure).is_none() => self.smooth(x),
+            lifted(_) | settled(_) | P_t => self.smooth(x).positive(),
+            Output::uplift | settlement | pressure => {
+                let parts = self.parts(x.structure).into_iter();
+                parts.map(|(part, factor)| part.of(x) * factor).reduce(K::larger).expect("it has parts")
+            }
+            _ => self.smooth(x),
+        }
+    }
+
+    /// The output in numbers without a sign, such as series: not the positive part but that of which it is one, and NaN if the output is the
+    /// largest of its [parts](Output::parts).
+    #[inline]
+    pub(crate) fn smooth<K: Number, Q: Lateral<K>>(self, x: &Instant<K, Q>) -> K {
         let floor = |i: usize| &x.structure.floors()[i];
         let place = |i| Place { share: 1.0, height: floor(i).height, u: x.u.weighed(&floor(i).shape) };
         match self {

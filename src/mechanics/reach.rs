@@ -109,7 +109,7 @@ fn reaches(structure: &Structure) -> Vec<Reach> {
         if weights.is_within(&Modes::ZERO) { Modes::ZERO } else { weights }
     };
     let reach = |output: Output| {
-        let of = |x: &Instant<Most, Mosts<Modes>>| output.of(x).0;
+        let of = |x: &Instant<Most, Mosts<Modes>>| output.smooth(x).0;
         let sin = Turn { sin: one, ..x.turn };
         Reach {
             turn: [
@@ -117,13 +117,13 @@ fn reaches(structure: &Structure) -> Vec<Reach> {
                 of(&Instant { turn: Turn { versine: one, ..x.turn }, ..x }),
             ],
             a_g: output.has_feedthrough(structure).then(|| of(&Instant { a_g: one, ..x })),
-            u: weights(&|j| output.of(&Instant { u: Mosts(of_mode(j)), ..x })),
-            u_dot: weights(&|j| output.of(&Instant { u_dot: Mosts(of_mode(j)), ..x })),
-            push: weights(&|j| output.of(&Instant { F_t: Mosts(of_mode(j)), ..x })),
+            u: weights(&|j| output.smooth(&Instant { u: Mosts(of_mode(j)), ..x })),
+            u_dot: weights(&|j| output.smooth(&Instant { u_dot: Mosts(of_mode(j)), ..x })),
+            push: weights(&|j| output.smooth(&Instant { F_t: Mosts(of_mode(j)), ..x })),
             #[cfg(feature = "lanes")]
             signed: [
-                Modes::each(structure, |j, _| output.of(&Instant { u: of_mode(j), ..flat })),
-                Modes::each(structure, |j, _| output.of(&Instant { u_dot: of_mode(j), ..flat })),
+                Modes::each(structure, |j, _| output.smooth(&Instant { u: of_mode(j), ..flat })),
+                Modes::each(structure, |j, _| output.smooth(&Instant { u_dot: of_mode(j), ..flat })),
             ],
         }
     };

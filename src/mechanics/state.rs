@@ -157,7 +157,8 @@ pub const INITIAL_VALUES: [Quantity<State>; 4] = [
     quantity!("u_dot_0", u_dot["m/s"] - 1e4, 1e4, "initial elastic velocity of the top mass"),
 ];
 
-/// The most by which a quantity with this `rate` changes over `ahead` (s), whatever accelerates it.
+/// The most by which a quantity with this `rate` changes over `ahead` (s): an acceleration below 2/`ahead`, which is 1e8 in SI units and more
+/// for the tiny times in question, adds less than `ahead` times 1.
 pub(crate) fn way(ahead: f64, rate: f64) -> f64 {
     ahead * (rate.abs() + 1.0)
 }

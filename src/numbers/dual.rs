@@ -1,6 +1,6 @@
 //! A value with its rate, by the rules of differentiation.
 
-use super::{Angle, Number, Turn, operators};
+use super::{Angle, Number, Ordered, Turn, operators};
 
 /// A value and its time derivative. The parts may be any number: the rate of a rate is a second derivative.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +32,9 @@ impl<T: Number> Number for Dual<T> {
     fn constant(value: f64) -> Self {
         Dual { value: T::constant(value), rate: T::constant(0.0) }
     }
+}
 
+impl<T: Ordered> Ordered for Dual<T> {
     #[inline]
     fn value(&self) -> f64 {
         self.value.value()

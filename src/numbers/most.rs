@@ -26,14 +26,6 @@ impl Most {
 operators!([] Most);
 
 impl Number for Most {
-    fn value(&self) -> f64 {
-        self.0
-    }
-
-    fn positive(self) -> Most {
-        self
-    }
-
     #[inline]
     fn constant(value: f64) -> Self {
         Most(value.abs())

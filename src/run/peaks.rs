@@ -385,7 +385,7 @@ impl Peaks {
                 if !peak.may_change(bound, start) {
                     continue;
                 }
-                let series = output.of(over.get_or_insert_with(|| part.over(turns)));
+                let series = output.smooth(over.get_or_insert_with(|| part.over(turns)));
                 if !is_finest && !output.is_component() && !part.has_converged(&series, at_end, CONVERGED) {
                     return false;
                 }

@@ -1,6 +1,6 @@
 //! A quantity over a step as a power series.
 
-use super::taylor::{MAX_ORDER, Series, evaluate, reciprocal};
+use super::taylor::{MAX_ORDER, Series, reciprocal};
 use crate::numbers::{Angle, Number, Turn, operators};
 use wide::f64x2;
 
@@ -103,15 +103,6 @@ impl Number for Terms {
         let mut coefficients = [0.0; LENGTH];
         coefficients[0] = value;
         Terms { coefficients, degree: 0, order: MAX_ORDER + 1 }
-    }
-
-    /// The value in the middle.
-    fn value(&self) -> f64 {
-        evaluate(self.used(), 0.5)
-    }
-
-    fn positive(self) -> Terms {
-        self
     }
 }
 
