@@ -46,12 +46,13 @@ fn unquoted(field: &str) -> &str {
 }
 
 /// The `count` cells of a line of headings, which may be a comment: however it is divided, and without numbers among them.
-/// Single blanks divide headings of one word each, of which one has times. `*X-AXIS, Time (sec)` heads one of two columns.
+/// Single blanks divide headings of one word each, of which one has times. `*X-AXIS, Time (sec)` heads one of two columns, `*TITLE, …` none.
 pub(super) fn cells<'a>(line: &'a str, count: usize) -> Option<Vec<&'a str>> {
     let line = line.trim_start_matches(|mark| " \t#%!/$*".contains(mark)).trim_end_matches([' ', '\t', ',', ';']);
     match line.split_once([',', ':', '=']).map(|(axis, heading)| (axis.trim().to_lowercase(), heading.trim())) {
         Some((axis, heading)) if count == 2 && axis == "x-axis" => return Some(vec![heading, ""]),
         Some((axis, heading)) if count == 2 && axis == "y-axis" => return Some(vec!["", heading]),
+        Some((title, _)) if title == "title" => return None,
         _ => {}
     }
     let is_time = |word: &&str| TimeUnit::of(word).is_some();

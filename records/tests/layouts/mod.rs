@@ -106,6 +106,13 @@ pub fn all(count: usize) -> Vec<Layout> {
         read_as(how, layout("components.csv", "table", gal, text))
     };
     all.extend([
+        layout("record.cor", "ESD ASCII", gal, esd(&cm)),
+        layout("record.smc", "USGS SMC", gal, smc(&cm)),
+        table("# peak in g: 0.3\nt/ms,a/gal", |i| (5 * i).to_string()),
+        table("Time,Acceleration\n(sec),(cm/sec^2)", |i| format!("{:.3}", i as f64 * DT)),
+        read_as(with_step(None), table("n,acc (gal)", |i| (i + 1).to_string())),
+        read_as(Reading { column: Some(Column::All), ..with_step(Some(gal)) }, several("", 8)),
+        several(&format!("ACCELERATION TIME HISTORY IN UNITS OF CM/SEC^2\nNPTS= {count}, DT= {DT} SEC\n"), 5),
         of_three("SITE CODE= 47401,45.4\r\n SAMPLING RATE= 200Hz,,\r\n UNIT  = gal(cm/s/s),,\r\n NS,EW,UD\r\n"),
         of_three(&format!(
             "SAMPLING INTERVAL (sec) : {DT}\nRAW PGA VALUES (gal) : (N-S) 625 (E-W) 312.5\nN-S    E-W    U-D\n"
@@ -115,13 +122,6 @@ pub fn all(count: usize) -> Vec<Layout> {
         table("*TITLE, El Centro\n*X-AXIS, Time (sec)\n*Y-AXIS, Ground Accel. (gal)\n*FLAGS, 0, 0\n*DATA", |i| {
             format!("{:.3}", i as f64 * DT)
         }),
-        layout("record.cor", "ESD ASCII", gal, esd(&cm)),
-        layout("record.smc", "USGS SMC", gal, smc(&cm)),
-        table("# peak in g: 0.3\nt/ms,a/gal", |i| (5 * i).to_string()),
-        table("Time,Acceleration\n(sec),(cm/sec^2)", |i| format!("{:.3}", i as f64 * DT)),
-        read_as(with_step(None), table("n,acc (gal)", |i| (i + 1).to_string())),
-        read_as(Reading { column: Some(Column::All), ..with_step(Some(gal)) }, several("", 8)),
-        several(&format!("ACCELERATION TIME HISTORY IN UNITS OF CM/SEC^2\nNPTS= {count}, DT= {DT} SEC\n"), 5),
     ]);
     all
 }
