@@ -392,6 +392,17 @@ impl<Q: Coordinates> Engine<Q> {
         &self.motion
     }
 
+    /// Whether the structure has the phase of this `motion`, which may come from bytes.
+    pub fn admits(&self, motion: &Motion<Q>) -> bool {
+        let points = Q::foundation(self.structure()).map(|ground| ground.points.len());
+        match motion.phase {
+            Phase::OnGround(of) => points == Some(of.points.into()) && of.pressed >> of.points == 0,
+            Phase::Rocking(_) => points.is_none() && self.settings.detail.has_uplift(),
+            Phase::FullContact => points.is_none(),
+            Phase::Overturned(_) => true,
+        }
+    }
+
     /// Puts the structure in this `motion`.
     pub fn set_motion(&mut self, motion: Motion<Q>) {
         self.motion = motion;
@@ -550,7 +561,7 @@ fn transit<Q: Coordinates>(
     motion: &mut Motion<Q>,
 ) -> Option<Transition<Q>> {
     let (Closed { guard, way }, before) = (motion.due.take()?, motion.state);
-    let kind = watched?.guards.get(usize::from(guard))?.apply(level, motion, way);
+    let kind = watched?.guards.get(usize::from(guard))?.apply(level, motion, way)?;
     motion.transitions += 1;
     Some(Transition { time: motion.time, kind, before, after: motion.state })
 }
@@ -807,9 +818,9 @@ mod tests {
             (first_time_all_closed([is_there, moves_on], reach), Way::default())
         }
 
-        fn apply(&self, _level: &dyn Level, motion: &mut Motion, _way: Way) -> TransitionKind {
+        fn apply(&self, _level: &dyn Level, motion: &mut Motion, _way: Way) -> Option<TransitionKind> {
             motion.state.u_dot *= -1.0;
-            TransitionKind::Landing
+            Some(TransitionKind::Landing)
         }
 
         fn stays_open(&self, _now: &Sample, _ahead: f64) -> bool {

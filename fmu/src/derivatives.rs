@@ -71,7 +71,7 @@ impl<Q: Runs> Unit<Q> {
             let mut before = Vec::new();
             self.state(&mut before);
             let by_others = sensitivity::along(self, of, &others, has_started);
-            self.restore(&before)?;
+            self.restore(&before, has_started)?;
             found = by_others?;
         }
         let (scene, setup, inputs) = self.parts()?;

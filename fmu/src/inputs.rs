@@ -48,6 +48,7 @@ const STAIRS: u8 = 3;
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Input {
     /// Its place in [`LOADS`].
+    #[serde(skip)]
     load: usize,
     between: Between,
     /// The value that acts now, and the slope of the next step, unless the input is late.
@@ -154,6 +155,12 @@ impl Inputs {
     pub fn new(structure: &Structure) -> Inputs {
         let each = loads(structure).into_iter().map(|load| Input { load, ..Input::default() }).collect();
         Inputs { each, since: 0.0, ended_early: false, stairs: 0 }
+    }
+
+    /// These inputs, read from bytes, in the places of the `present` ones; none if they are not as many.
+    pub fn in_place_of(mut self, present: &Inputs) -> Option<Inputs> {
+        self.each.iter_mut().zip(&present.each).for_each(|(input, of)| input.load = of.load);
+        (self.each.len() == present.each.len() && self.stairs <= STAIRS).then_some(self)
     }
 
     /// Makes the inputs act as the setup says, in the order of [`LOADS`]. Until then, and where no steps are made, they act at once.

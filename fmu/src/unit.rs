@@ -11,12 +11,12 @@ use crate::setup::Setup;
 use crate::shown::Shown;
 use crate::variables::{Source, Table, phase_number};
 use crate::{BUILD, guid};
-use fmi_unit::snapshot::write_state;
+use fmi_unit::snapshot::{read_state, write_state};
 use fmi_unit::variables::state_references;
 use fmi_unit::{Completed, Experiment, Failure, Interface, Logger, Model, Progress, Step, Update, Value, Variable};
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::Runs;
-use rocking::run::fall::Falling;
+use rocking::run::fall::Numbers;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::validity::{Findings, of_structure};
 use rocking::{Modes, Motion, OutOfRange, State};
@@ -54,7 +54,7 @@ pub struct Course<Q: Runs = f64> {
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     /// Peaks so far, if they are watched.
-    pub peaks: Falling,
+    pub peaks: Numbers,
     /// Which limits of the model have been passed so far, if they are watched.
     pub validity: Findings,
     /// Names the record that the ground follows.
@@ -356,7 +356,7 @@ impl<Q: Runs> Model for Unit<Q> {
             motion: *scene.engine.motion(),
             outside: scene.outside,
             elapsed: scene.elapsed,
-            peaks: scene.peaks.clone(),
+            peaks: scene.peaks.numbers(),
             validity: scene.validity,
             record: scene.digest(),
         });
@@ -364,28 +364,32 @@ impl<Q: Runs> Model for Unit<Q> {
     }
 
     /// The scene is built anew only for another setup.
-    fn restore(&mut self, bytes: &[u8]) -> Result<(), Failure> {
-        let read = postcard::from_bytes(bytes);
-        let (setup, inputs, course): Condition<Q> =
-            read.map_err(|_| Failure::BadBytes("its content cannot be read"))?;
-        let (mut scene, has_started) = (None, course.is_some());
+    fn restore(&mut self, bytes: &[u8], has_started: bool) -> Result<(), Failure> {
+        let (setup, inputs, course): Condition<Q> = read_state(bytes)?;
+        let other = || Failure::BadBytes("it is of another structure");
+        let sizes = |of: &Setup| (of.parameters.is_some(), of.initial.u.len(), of.initial.u_dot.len());
+        let is_its = course.is_some() == has_started && sizes(&setup) == sizes(&self.setup);
+        let inputs = inputs.in_place_of(&self.inputs).filter(|_| is_its).ok_or_else(other)?;
+        let mut scene = None;
         if let Some(course) = course {
-            let is_the_same = |scene: &mut Scene<Q>| self.setup == setup && scene.digest() == course.record;
-            let mut found = match self.scene.take_if(is_the_same) {
+            let is_the_same = |scene: &&mut Scene<Q>| self.setup == setup && scene.digest() == course.record;
+            let found = match self.scene.as_mut().filter(is_the_same) {
                 Some(scene) => scene,
-                None => Scene::new(&setup, &self.archive, &mut self.kept)?,
+                None => scene.insert(Scene::new(&setup, &self.archive, &mut self.kept)?),
             };
             if found.digest() != course.record {
                 let [record, record_v] = [&setup.record, &setup.record_v].map(|text| text.to_string());
                 return Err(Refusal::OtherRecord { record, record_v }.into());
             }
+            let known = course.outside.map(|outside| outside.known.motion);
+            let is_its = known.iter().chain([&course.motion]).all(|motion| found.engine.admits(motion));
+            found.peaks = found.peaks.with_numbers(course.peaks).filter(|_| is_its).ok_or_else(other)?;
             found.engine.set_motion(course.motion);
-            (found.elapsed, found.outside) = (course.elapsed, course.outside);
-            (found.peaks, found.validity) = (course.peaks, course.validity);
-            scene = Some(found);
+            (found.elapsed, found.outside, found.validity) = (course.elapsed, course.outside, course.validity);
+            scene = scene.or_else(|| self.scene.take());
         }
         self.has_started = has_started;
-        self.told_of_stairs &= self.has_started;
+        self.told_of_stairs &= has_started;
         (self.setup, self.inputs, self.scene) = (setup, inputs, scene);
         Ok(())
     }

@@ -113,17 +113,17 @@ impl<Q: Coordinates> Guard<Q> for Points {
         found
     }
 
-    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind {
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> Option<TransitionKind> {
         let (i, state) = (usize::from(way.which), &mut motion.state);
         if let Phase::OnGround(contact) = &mut motion.phase {
             let &Foundation { ref points, place, .. } = level.structure().ground();
-            let Point { xi, k, .. } = points[i];
+            let Point { xi, k, .. } = *points.get(i)?;
             let e = state.u.of(place) - xi * state.u.of(place + 1);
             contact.pressed ^= 1 << i;
             let taken = state.u.of(place + 2) - f64::from(way.sign) * 0.5 * k * e * e;
             state.u.set(place + 2, taken);
         }
-        if way.sign > 0 { TransitionKind::Touch(i) } else { TransitionKind::Release(i) }
+        Some(if way.sign > 0 { TransitionKind::Touch(i) } else { TransitionKind::Release(i) })
     }
 
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
@@ -169,18 +169,18 @@ impl<Q: Coordinates> Guard<Q> for Tied {
         found
     }
 
-    fn apply(&self, _level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind {
+    fn apply(&self, _level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> Option<TransitionKind> {
         let which = usize::from(way.which);
-        match (&mut motion.phase, way) {
+        Some(match (&mut motion.phase, way) {
             (Phase::OnGround(contact), Way { which: TENDON, sign }) => {
                 contact.is_slack = sign < 0;
                 if sign < 0 { TransitionKind::Slack } else { TransitionKind::Taut }
             }
             (_, Way { sign, .. }) => {
-                motion.dissipators.yields[which] = sign;
+                *motion.dissipators.yields.get_mut(which)? = sign;
                 if sign == 0 { TransitionKind::Unloading(which) } else { TransitionKind::Yielding(which) }
             }
-        }
+        })
     }
 
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {

@@ -17,8 +17,8 @@ pub(crate) trait Guard<Q: Coordinates = f64>: Sync {
     /// The first instant of `step` at which the guard closes.
     fn first(&self, step: &Step<Q>) -> (Crossing, Way);
 
-    /// Applies the transition to `motion`, which has reached the instant at which the guard closes.
-    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind;
+    /// Applies the transition to `motion`, which has reached the instant at which the guard closes; none for a way that it has not.
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> Option<TransitionKind>;
 
     /// Whether the guard certainly stays open for `ahead` (s), a tiny time.
     fn stays_open(&self, _now: &Sample<Q>, _ahead: f64) -> bool {

@@ -95,10 +95,10 @@ impl<Q: Coordinates> Guard<Q> for Uplift {
         (crossing, about(side))
     }
 
-    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind {
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> Option<TransitionKind> {
         let side = Side::of(way.sign.into());
         enter(level, motion, Phase::Rocking(side), motion.state);
-        TransitionKind::Uplift(side)
+        Some(TransitionKind::Uplift(side))
     }
 
     fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {
@@ -131,10 +131,10 @@ impl<Q: Coordinates> Guard<Q> for Overturning {
         (first_time_all_closed([falls], step.reach), Way::default())
     }
 
-    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, _way: Way) -> TransitionKind {
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, _way: Way) -> Option<TransitionKind> {
         let side = motion.side();
         enter(level, motion, Phase::Overturned(side), motion.state);
-        TransitionKind::Overturning(side)
+        Some(TransitionKind::Overturning(side))
     }
 
     fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {
@@ -170,7 +170,7 @@ impl<Q: Coordinates> Guard<Q> for Impact {
         (crossing, Way::default())
     }
 
-    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, _way: Way) -> TransitionKind {
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, _way: Way) -> Option<TransitionKind> {
         let (before, limit) = (motion.state, level.chatter_limit());
         let (kind, phase, after) = if motion.chatter.is_too_much(limit) {
             motion.chatter.hold(limit);
@@ -183,7 +183,7 @@ impl<Q: Coordinates> Guard<Q> for Impact {
             }
         };
         enter(level, motion, phase, after);
-        kind
+        Some(kind)
     }
 
     fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {

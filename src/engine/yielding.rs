@@ -57,14 +57,14 @@ impl<Q: Coordinates> Guard<Q> for Yielding {
         found
     }
 
-    fn apply(&self, _level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind {
+    fn apply(&self, _level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> Option<TransitionKind> {
         let which = usize::from(way.which);
-        motion.dissipators.yields[which] = way.sign;
+        *motion.dissipators.yields.get_mut(which)? = way.sign;
         if way.sign != 0 {
-            return TransitionKind::Yielding(which);
+            return Some(TransitionKind::Yielding(which));
         }
         motion.state.theta_dot = 0.0; // the elongation turns round
-        TransitionKind::Unloading(which)
+        Some(TransitionKind::Unloading(which))
     }
 
     fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {

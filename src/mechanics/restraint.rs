@@ -43,7 +43,7 @@ pub struct Restraints<N = f64> {
 }
 
 /// Size of the rotations that the equations are for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Angles {
     Any,
     Small,

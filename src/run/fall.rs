@@ -20,7 +20,6 @@ use crate::{
     engine::sought::{Passes, Sought},
     numbers::lanes::put,
 };
-use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
 /// Result of a run.
@@ -39,7 +38,7 @@ pub struct Found<Q: Coordinates = f64> {
 }
 
 /// Exact peaks of a motion that may end in a fall: those of all the motion, and those before the fall.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Falling {
     all: Peaks,
     /// Angle of no return, rad; none below π/2 if the tendon turns the structure back from everywhere.
@@ -48,6 +47,9 @@ pub struct Falling {
     fall: Option<(f64, Peaks)>,
     has_overturned: bool,
 }
+
+/// What changes of [`Falling`] with the motion: all peaks, instant and peaks of a fall, and whether the structure has overturned.
+pub type Numbers = (Vec<Peak>, Option<(f64, Vec<Peak>)>, bool);
 
 /// Rotation beyond which nothing turns the structure on `base` back, rad: α_cg without ties. With ties the static moment of weight,
 /// tendon and dissipators vanishes at this rotation, the dissipators moved there slowly from rest. None if the ties turn the
@@ -70,6 +72,19 @@ impl Falling {
     pub fn since(time: f64, structure: &Structure, detail: Detail) -> Falling {
         let (all, no_return) = (Peaks::since(time, structure, detail), angle_of_no_return(structure.base()));
         Falling { all, no_return, fall: None, has_overturned: false }
+    }
+
+    /// The numbers alone.
+    pub fn numbers(&self) -> Numbers {
+        let fall = self.fall.as_ref().map(|(instant, before)| (*instant, before.numbers()));
+        (self.all.numbers(), fall, self.has_overturned)
+    }
+
+    /// The same with other [`Falling::numbers`]; none if they are not of as many peaks.
+    pub fn with_numbers(&self, (all, fall, has_overturned): Numbers) -> Option<Falling> {
+        let before = |(instant, before): (f64, Vec<_>)| Some((instant, self.all.with_numbers(&before)?));
+        let fall = if let Some(fall) = fall { Some(before(fall)?) } else { None };
+        Some(Falling { all: self.all.with_numbers(&all)?, fall, has_overturned, no_return: self.no_return })
     }
 
     /// Peaks of all the motion, including a fall.

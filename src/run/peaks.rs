@@ -64,7 +64,7 @@ impl Peak {
 }
 
 /// Peaks of the motion that has been watched.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Peaks {
     /// Half-width of the base, m.
     B: f64,
@@ -80,7 +80,7 @@ pub struct Peaks {
 }
 
 /// A peak that is searched.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Searched {
     output: Output,
     peak: Peak,
@@ -110,7 +110,7 @@ impl Searched {
 }
 
 /// The tendon of a base, as far as the peak of its force needs it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Tendon {
     /// Prestress and stiffness.
     P_0: f64,
@@ -198,6 +198,18 @@ impl Peaks {
     /// Right-hand-side evaluations that the search took beside those of the motion.
     pub fn evaluations(&self) -> u64 {
         self.evaluations
+    }
+
+    /// The peaks alone: of all outputs that are searched, and of the forces of the dissipators.
+    pub(super) fn numbers(&self) -> Vec<Peak> {
+        self.searched.iter().map(|of| of.peak).chain(self.pair).collect()
+    }
+
+    /// The same with other [`Peaks::numbers`]; none if they are not as many.
+    pub(super) fn with_numbers(&self, numbers: &[Peak]) -> Option<Peaks> {
+        let (mut peaks, (searched, pair)) = (self.clone(), numbers.split_last_chunk()?);
+        peaks.searched.iter_mut().zip(searched).for_each(|(of, peak)| of.peak = *peak);
+        (peaks.searched.len() == searched.len()).then_some(Peaks { pair: *pair, ..peaks })
     }
 
     /// Leaves the peak of θ only.

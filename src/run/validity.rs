@@ -258,7 +258,7 @@ impl Validity {
             }
             let now = self.found.worst[of.place].value;
             // a ratio is stationary where its combination is, with the ratio found there
-            if of.place != FRICTION || now <= worst * (1.0 + ROUNDING) {
+            if of.place != FRICTION || now <= worst * (1.0 + ROUNDING) || now.total_cmp(&worst).is_le() {
                 return;
             }
         }

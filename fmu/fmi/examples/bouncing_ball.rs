@@ -24,7 +24,7 @@ impl Ball {
         while !self.rests {
             let [h, v, g, e, t] = self.known;
             let fall = (v + (v * v + 2.0 * g * h).sqrt()) / g; // the first root of h + v τ - g τ²/2
-            if t + fall > until {
+            if !fall.is_finite() || t + fall > until {
                 break;
             }
             self.known = [0.0, v - g * fall, g, e, t + fall];

@@ -567,7 +567,9 @@ macro_rules! shared_functions {
                 write(stringify!($state), $state, ptr::without_provenance_mut(handle))
             }
 
-            $set($state: *mut c_void) |instance| { instance.set_fmu_state($state.addr()) }
+            $set($state: *mut c_void) |instance| {
+                instance.set_fmu_state($state.addr(), stages::table(instance.interface)[Function::$get as usize])
+            }
 
             /// Ignored for null.
             $free($state: *mut *mut c_void) |instance| {
@@ -659,6 +661,14 @@ mod tests {
     fn a_message_is_a_format_that_prints_itself() {
         assert_eq!(escaped("100 % of #5\0 ü", &['%', '#']).to_str().unwrap(), "100 %% of ##5\u{fffd} ü");
         assert_eq!(escaped("100 % of #5", &['#']).to_str().unwrap(), "100 % of ##5");
+    }
+
+    #[test]
+    fn a_panic_while_an_instance_is_made_is_logged() {
+        let (tell, told) = std::sync::mpsc::channel();
+        let sink: Sink = Box::new(move |_, _, text| tell.send(text.to_owned()).unwrap());
+        assert!(instantiate::<crate::fmi3::Function>("Instantiate", &[], sink, || panic!("on purpose")).is_null());
+        assert_eq!(told.recv().unwrap(), "fmi3Instantiate: internal failure, please report it: on purpose");
     }
 
     #[test]

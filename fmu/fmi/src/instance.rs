@@ -6,7 +6,7 @@ use crate::interface::{Interface, IntermediateUpdate, Stepping};
 use crate::logger::Logger;
 use crate::model::{Completed, Experiment, Model, Progress, Step, Update};
 use crate::snapshot::{Snapshot, Snapshots};
-use crate::state_machine::Stage;
+use crate::state_machine::{Stage, Stages};
 use crate::variables::{Causality, DataType, Role, Value, Variable, find, state_references};
 use std::ffi::{CString, c_char};
 use std::sync::Arc;
@@ -178,7 +178,7 @@ impl Instance {
 
     /// Makes the instance as it was instantiated. FMU states stay the host's until it frees them.
     pub(crate) fn reset(&mut self) -> Result<(), Failure> {
-        self.model.restore(&self.at_start)?;
+        self.model.restore(&self.at_start, false)?;
         (self.experiment, self.handling) = Default::default();
         self.logger.on = self.on_at_start;
         self.enter(Stage::Instantiated)
@@ -198,13 +198,13 @@ impl Instance {
         self.snapshots.keep(handle, Snapshot { interface, stage, experiment, model })
     }
 
-    /// Goes back to the FMU state `handle`.
-    pub(crate) fn set_fmu_state(&mut self, handle: usize) -> Result<(), Failure> {
+    /// Goes back to the FMU state `handle`, of one of the stages that such an instance keeps states `in_stages`.
+    pub(crate) fn set_fmu_state(&mut self, handle: usize, in_stages: Stages) -> Result<(), Failure> {
         let Snapshot { interface, stage, experiment, model } = self.snapshots.find(handle)?;
-        if *interface != self.interface {
+        if *interface != self.interface || stage.bit() & in_stages == 0 {
             return Err(Failure::OtherInterface);
         }
-        self.model.restore(model)?;
+        self.model.restore(model, stage.has_started())?;
         (self.stage, self.experiment) = (*stage, *experiment);
         (self.handling.awaits_event, self.handling.trials) = (false, 0);
         Ok(())
@@ -336,7 +336,7 @@ impl Instance {
         }
         let result = self.apply(references, values, states);
         if result.is_err() && !before.is_empty() {
-            self.model.restore(&before)?;
+            self.model.restore(&before, self.stage.has_started())?;
         }
         result
     }

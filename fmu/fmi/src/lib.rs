@@ -46,8 +46,6 @@ pub use interface::Interface;
 pub use libc;
 pub use logger::Logger;
 pub use model::{Completed, Experiment, Model, Progress, Step, Update};
-#[doc(hidden)]
-pub use postcard;
 pub use variables::{Causality, DataType, Enumeration, Role, Value, Variable};
 
 /// The functions [`Model::state`] and [`Model::restore`] of a model that is all of its state and implements serde's traits.
@@ -58,9 +56,8 @@ macro_rules! state_by_serde {
             $crate::snapshot::write_state(self, bytes);
         }
 
-        fn restore(&mut self, bytes: &[u8]) -> ::std::result::Result<(), $crate::Failure> {
-            *self = $crate::postcard::from_bytes(bytes)
-                .map_err(|_| $crate::Failure::BadBytes("its content cannot be read"))?;
+        fn restore(&mut self, bytes: &[u8], _has_started: bool) -> ::std::result::Result<(), $crate::Failure> {
+            *self = $crate::snapshot::read_state(bytes)?;
             Ok(())
         }
     };

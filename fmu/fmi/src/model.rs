@@ -105,8 +105,8 @@ pub trait Model: Send + 'static {
     /// Writes all that the future of the simulation depends on at the end of `bytes`.
     fn state(&self, bytes: &mut Vec<u8>);
 
-    /// Goes to a state of [`Model::state`].
-    fn restore(&mut self, bytes: &[u8]) -> Result<(), Failure>;
+    /// Goes to a state of [`Model::state`], of a simulation that `has_started` or not. The bytes may be anybody's.
+    fn restore(&mut self, bytes: &[u8], has_started: bool) -> Result<(), Failure>;
 
     /// Rates of real variables by time.
     fn rates(&mut self, references: &[u32], _rates: &mut [f64]) -> Result<(), Failure> {

@@ -86,7 +86,7 @@ impl Snapshot {
         };
         let whole = rest.split_last_chunk().filter(|(_, sum)| checksum(&bytes[..bytes.len() - sum.len()]) == **sum);
         let Some((payload, _)) = whole else { return Err(Failure::BadBytes("its checksum is wrong")) };
-        postcard::from_bytes(payload).map_err(|_| Failure::BadBytes("its content cannot be read"))
+        read_state(payload)
     }
 }
 
@@ -94,6 +94,12 @@ impl Snapshot {
 pub fn write_state(state: &impl Serialize, bytes: &mut Vec<u8>) {
     let written = postcard::to_extend(state, std::mem::take(bytes));
     *bytes = written.expect("numbers, text and lists can always be written");
+}
+
+/// The state of which [`write_state`] wrote these `bytes`.
+pub fn read_state<S: for<'a> Deserialize<'a>>(bytes: &[u8]) -> Result<S, Failure> {
+    let read = postcard::take_from_bytes(bytes).ok().filter(|(_, rest)| rest.is_empty());
+    read.map(|(state, _)| state).ok_or(Failure::BadBytes("its content cannot be read"))
 }
 
 fn checksum(bytes: &[u8]) -> [u8; 16] {

@@ -73,6 +73,8 @@ pub struct Drawn {
     /// An FMU state, and where one is read and written.
     pub state: C,
     pub place: Option<Vec<C>>,
+    /// Whether the bytes of an FMU state are forged.
+    pub is_forged: bool,
     /// Room for the bytes of an FMU state.
     pub serialized: Option<Vec<u8>>,
     pub rooms: Vec<Room>,
@@ -131,7 +133,7 @@ impl Sequence<'_> {
     /// Room for `count` real numbers, which are finite.
     pub fn finite(&mut self, count: usize) -> *mut f64 {
         let place = self.room(count);
-        self.drawn.rooms.last_mut().unwrap().is_finite = true;
+        self.drawn.rooms.last_mut().unwrap().is_finite = !self.is_forged;
         place
     }
 
@@ -156,7 +158,7 @@ impl Sequence<'_> {
         let subject = self.subject;
         let may_be_infinite = |variable: &Variable| (subject.may_be_infinite)(&variable.name);
         let named = self.drawn.references.iter().filter_map(|reference| subject.variables.get(*reference as usize));
-        let is_finite = !named.into_iter().any(may_be_infinite);
+        let is_finite = !self.is_forged && !named.into_iter().any(may_be_infinite);
         let place = self.values();
         self.drawn.rooms.last_mut().unwrap().is_finite = is_finite;
         place
@@ -311,18 +313,27 @@ impl Sequence<'_> {
         self.spoilt(pointer)
     }
 
-    /// Bytes of a state, mostly damaged.
+    /// Bytes of a state, mostly forged, with the right checksum, or damaged.
     pub fn serialized(&mut self) -> *const u8 {
-        let mut bytes = self.rng.choice(&self.bytes).cloned().unwrap_or_else(|| vec![7; 200]);
-        let at = self.rng.usize(..bytes.len());
-        match self.rng.u8(..4) {
-            0 => (),
-            1 => bytes.truncate(at),
-            2 => bytes.push(0),
-            _ => bytes[at] ^= 1 << self.rng.u8(..8),
-        }
+        let kept = self.rng.choice(&self.bytes).cloned().unwrap_or_else(|| self.version.bytes(self.c));
+        let mut state = self.subject.read(&kept);
+        (0..self.rng.u8(..4)).filter(|_| self.subject.checks).for_each(|_| self.damage(&mut state.model));
+        let any = *self.rng.choice(Stage::ALL).unwrap();
+        state.stage = if self.one_in(4) { any } else { state.stage };
+        let mut bytes = state.serialize(&self.subject.build);
+        self.drawn.is_forged = bytes != kept;
+        (0..self.rng.u8(..16) / 15).for_each(|_| self.damage(&mut bytes));
         self.drawn.n = bytes.len();
         self.hold(bytes)
+    }
+
+    fn damage(&mut self, bytes: &mut Vec<u8>) {
+        let at = self.rng.usize(..bytes.len().max(1));
+        match self.rng.u8(..16) {
+            0 => bytes.truncate(at),
+            1 => bytes.push(0),
+            _ => bytes.iter_mut().skip(at).take(1).for_each(|byte| *byte ^= 1 << self.rng.u8(..8)),
+        }
     }
 
     /// A buffer of the size that the FMU state has, or of another.
