@@ -450,7 +450,7 @@ impl Structure {
 
     /// The fastest rate of small motions on ground that gives, 1/s.
     pub(crate) fn fastest_on_ground(&self) -> Option<f64> {
-        self.foundation().map(|of| of.fastest(&self.frequencies_on_ground()))
+        self.foundation().map(|of| of.fastest(&self.frequencies_on_ground(), self.base(), self.modes()))
     }
 
     /// The fastest rate of small motions while the structure rocks on rigid ground, 1/s: the highest frequency, or the rate Σ c h²/(J0 + m_t B²)

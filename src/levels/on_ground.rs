@@ -82,7 +82,7 @@ impl<V: Abreast> OnGround<V> {
         let foundation = structure.ground();
         let frequencies = foundation.frequencies(base, body, modes);
         OnGround {
-            longest_span: LONGEST_SPAN / foundation.fastest(&frequencies),
+            longest_span: LONGEST_SPAN / foundation.fastest(&frequencies, base, modes),
             lowest: frequencies[0],
             radius: (base.J_P / base.m_t).sqrt(),
             least_lift: foundation.least_lift(base, body, modes),

@@ -233,10 +233,13 @@ impl Foundation {
         self.ground.zeta_v.filter(|_| self.ground.xi.is_empty()).unwrap_or_else(of_points)
     }
 
-    /// The fastest rate of small motions with these `frequencies` (rad/s), 1/s: of the highest frequency, or of the dashpots.
-    pub(crate) fn fastest(&self, frequencies: &[f64]) -> f64 {
-        let (highest, point) = (frequencies[frequencies.len() - 1], &self.points[0]);
-        highest.max(point.c / point.k * highest * highest)
+    /// A bound of the rates of small motions with these `frequencies` (rad/s), 1/s: the highest frequency, C_z/m_t of the bounce, and of
+    /// rocking and the modes (C_r + Σ c h²)/J + max c/m, where C_z = Σ c and C_r = Σ c ξ² of the dashpots, and c of each mode is its own.
+    pub(crate) fn fastest(&self, frequencies: &[f64], base: &Base, modes: &[Mode]) -> f64 {
+        let dashpots = |power: i32| self.points.iter().map(|point| point.c * point.xi.powi(power)).sum::<f64>();
+        let turning = dashpots(2) + modes.iter().map(|mode| mode.damping * mode.height * mode.height).sum::<f64>();
+        let of_modes = modes.iter().map(|mode| mode.damping / mode.mass).fold(0.0, f64::max);
+        frequencies[frequencies.len() - 1].max(dashpots(0) / base.m_t).max(turning / base.J0 + of_modes)
     }
 
     /// The circular frequencies of small motions in full contact without damping, rad/s, lowest first: the bounce √(K_z/m_t), and the
