@@ -252,7 +252,7 @@ out/%.fmu: library
 
 # The first pip that knows groups is 25.1.
 .venv/ready: pyproject.toml
-	python3 -m venv .venv || { { $(call install,python3-venv); } && python3 -m venv --clear .venv; }
+	$(PYTHON) -m pip --version >/dev/null 2>&1 || python3 -m venv .venv || { { $(call install,python3-venv); } && python3 -m venv --clear .venv; }
 	$(PYTHON) -m pip install --quiet --disable-pip-version-check pip==26.3
 	$(PIP) demo
 	touch $@
