@@ -206,7 +206,6 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
             rigid: None,
             lean: self.rocking.lean(),
             has_constant_inertia: self.subject().angles == Angles::Small,
-            turning_decides: one.u_cr == f64::NEG_INFINITY,
         })
     }
 }

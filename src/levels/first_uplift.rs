@@ -23,8 +23,6 @@ pub(crate) struct Liftable<'a> {
     pub lean: f64,
     /// Whether the inertia about a pivot is the inertia of linear equations, which does not change with u.
     pub has_constant_inertia: bool,
-    /// Whether the second condition alone decides, as for u_cr = −∞.
-    pub turning_decides: bool,
 }
 
 impl Liftable<'_> {
@@ -57,15 +55,11 @@ impl Liftable<'_> {
     /// mode.
     #[inline(always)]
     fn lift<N: Number>(&self, rigid_and_a_v: [N; 2], motion: impl Fn(usize) -> [N; 2]) -> Lift<N> {
-        let lift = Lift::new(self.base, self.modes, self.lean, rigid_and_a_v, motion);
-        if self.turning_decides { lift.with_one_condition() } else { lift }
+        Lift::new(self.base, self.modes, self.lean, rigid_and_a_v, motion)
     }
 
     /// A bound of the moment of the springs, N·m, given a bound of each displacement.
     fn most_springs(&self, most: impl Fn(usize, &Mode) -> f64) -> f64 {
-        if self.turning_decides {
-            return f64::INFINITY; // however small the displacements are
-        }
         let modes = self.modes.iter().enumerate();
         modes.map(|(j, mode)| (mode.height * mode.stiffness).abs() * most(j, mode)).sum()
     }
@@ -141,7 +135,7 @@ impl Liftable<'_> {
             };
             is_due.then_some(crossing)
         };
-        let is_held = hold_at_least > 0.0 && a_v.slope == 0.0 && !self.turning_decides;
+        let is_held = hold_at_least > 0.0 && a_v.slope == 0.0;
         let about = |side: Side| {
             if is_held && let Some(crossing) = by_springs(side) {
                 return crossing;

@@ -295,7 +295,7 @@ impl<Q: Coordinates> ManyModes<Q> {
     fn standing(&self) -> Liftable<'_> {
         let ManyModes { base, modes, rigid, .. } = self;
         let has_constant_inertia = self.subject.angles == Angles::Small;
-        Liftable { base, modes, rigid: *rigid, lean: 1.0, has_constant_inertia, turning_decides: false }
+        Liftable { base, modes, rigid: *rigid, lean: 1.0, has_constant_inertia }
     }
 
     /// The root of the mean square of a velocity or an acceleration over all mass, by `of` each mode.

@@ -89,11 +89,6 @@ impl<N: Number> Lift<N> {
         Lift { springs, turning: springs + others }
     }
 
-    /// These moments where the second condition alone decides: the first then follows from it.
-    pub(crate) fn with_one_condition(self) -> Lift<N> {
-        Lift { springs: self.turning, ..self }
-    }
-
     /// The moments that miss of both conditions of uplift about `side` with this `hold`; not above 0 once there.
     #[inline(always)]
     pub(crate) fn missing(&self, base: &Base, side: Side, hold: N) -> [N; 2] {

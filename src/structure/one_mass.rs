@@ -30,8 +30,7 @@ pub struct OneMass {
     pub chi: f64,
     /// 1 − χ = (J_P − m H²)/J_P, free of cancellation.
     pub one_minus_chi: f64,
-    /// Critical displacement u_cr = (g tan α_cg + P_0 B/(m H))/ω_fc², m (after Eq 4): uplift of a base at rest. With −∞ the
-    /// moment that turns the base (s θ̈ > 0) decides alone, of a structure without ties in a run to a given end.
+    /// Critical displacement u_cr = (g tan α_cg + P_0 B/(m H))/ω_fc², m (after Eq 4): uplift of a base at rest.
     pub u_cr: f64,
     /// Circular frequency of the vibration mode while rocking ω_u = ω_fc/√(1−χ), rad/s (before Eq 18).
     pub omega_u: f64,

@@ -1,16 +1,11 @@
-//! Structures of every kind under records, and what becomes of them by the model's rule of uplift and by the repaired one.
-//!
-//! The model lifts the base off at |u| = u_cr. The simplest consistent rule lifts it off when the weight can no longer carry
-//! the moment, |R_m| = B R_v. With c_u = c_fc this is s θ̈ = 0, the second condition of the model. Only this condition remains
-//! with u_cr = −∞.
+//! Structures of every kind under records.
 
 use crate::scene::{read_record, structure};
 use anyhow::Result;
 use rayon::prelude::*;
-use rocking::run::peaks::Peaks;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits, Validity};
-use rocking::run::{End, Ending, RunError};
+use rocking::run::{End, RunError};
 use rocking::{OneMass, Parameters, Run};
 use std::path::Path;
 
@@ -37,21 +32,11 @@ const STRENGTH: (f64, f64) = (1.0, 4.0);
 /// Part of the structures that has r = 1.
 const PART_ELASTIC: f64 = 0.25;
 
-/// Response of a structure with one rule of uplift.
+/// A structure, and how far its response breaks the assumptions of the model.
 #[derive(Clone, Debug)]
 pub struct Response {
-    pub peaks: Peaks,
-    pub found: Findings, // what it goes beyond
-    pub transitions: u64,
-    pub overturns: bool,
-}
-
-/// Responses with both rules.
-#[derive(Clone, Debug)]
-pub struct Pair {
     pub structure: OneMass,
-    pub model: Response,
-    pub repaired: Response,
+    pub found: Findings,
 }
 
 /// The fractional part of k times the powers of the root of xᵈ⁺¹ = x + 1: points that fill a cube of d dimensions evenly.
@@ -84,32 +69,20 @@ fn case(k: usize, records: &[Record]) -> (OneMass, Record) {
 }
 
 /// All of them, which end with their records.
-pub fn all(folder: &Path) -> Result<Vec<Pair>> {
+pub fn all(folder: &Path) -> Result<Vec<Response>> {
     let records = RECORDS.map(|file| read_record(folder, file)).into_iter().collect::<Result<Vec<_>>>()?;
     let respond = |k| {
         let (structure, ground) = case(k, &records);
         let run = Run { end: End::At(ground.end()), ..Run::new(structure, &ground) };
-        Ok(both(&run)?)
+        Ok(respond(&run)?)
     };
     (0..STRUCTURES).into_par_iter().map(respond).collect()
 }
 
-/// Responses to `run` with both rules.
-pub fn both(run: &Run) -> Result<Pair, RunError> {
-    let model = respond(run)?;
-    let mut repaired = run.clone();
+/// The response to `run`.
+pub fn respond(run: &Run) -> Result<Response, RunError> {
+    let mut validity = Validity::new(&run.structure, Limits::default(), Findings::since(run.ground.start()));
+    run.follow(&mut validity)?;
     let structure = *run.structure.one().expect("the population is of one mass");
-    let mut without_rule = structure;
-    without_rule.u_cr = f64::NEG_INFINITY;
-    repaired.structure = without_rule.into();
-    Ok(Pair { structure, model, repaired: respond(&repaired)? })
-}
-
-fn respond(run: &Run) -> Result<Response, RunError> {
-    let start = run.ground.start();
-    let mut peaks = Peaks::since(start, &run.structure, run.detail).watch();
-    let mut validity = Validity::new(&run.structure, Limits::default(), Findings::since(start));
-    let finish = run.follow(&mut (&mut peaks, &mut validity))?;
-    let overturns = finish.ending == Ending::Overturned;
-    Ok(Response { peaks: peaks.end(), found: *validity.found(), transitions: finish.motion.transitions, overturns })
+    Ok(Response { structure, found: *validity.found() })
 }
