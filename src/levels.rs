@@ -67,10 +67,9 @@ impl Detail {
             }
             Detail::Linear if is_tied => Box::new(ManyModes::<f64>::new(subject, self)),
             Detail::Modal if is_tied => {
-                return Err(Refused(
+                return Err(Refused::by(
                     "detail = modal has no modes of a structure that is restrained or shaken vertically, whose equations change with \
-                     time and with what yields: choose linear, or set P_0, k_t, c_d, k_d and a_v to 0"
-                        .into(),
+                     time and with what yields: choose linear, or set P_0, k_t, c_d, k_d and a_v to 0",
                 ));
             }
             Detail::Linear | Detail::Modal => {

@@ -102,7 +102,7 @@ impl PartialEq for Reaches {
 
 /// The refusal of a number of this mode or floor, counted from 1.
 pub(crate) fn of_number(what: &str, number: usize, cause: OutOfRange) -> Refused {
-    Refused(format!("{what} {number}: {cause}"))
+    Refused::from(cause).of(&format!("{what} {number}"))
 }
 
 /// Refuses more modes than a structure may have, or none.
@@ -137,10 +137,12 @@ impl Structure {
         }
         let of = |part: fn(&Mode) -> f64| modes.iter().map(part).sum::<f64>();
         let whole = |name, unit, whole: f64, of_modes: f64| match rest(whole, of_modes, EXACT) {
-            rest if rest < -EXCESS * whole => Err(Refused(format!(
-                "the modes carry {of_modes:?} {unit} of the {name} = {whole:?} {unit} above the foundation: check masses, heights \
-                 and units"
-            ))),
+            rest if rest < -EXCESS * whole => Err(Refused::shown(|units| {
+                let [of_modes, whole] = [of_modes, whole].map(|of| units.show_by(|of| format!("{of:?}"), of, unit));
+                format!(
+                    "the modes carry {of_modes} of the {name} = {whole} above the foundation: check masses, heights and units"
+                )
+            })),
             rest => Ok(if rest < 0.0 { of_modes } else { whole }),
         };
         let [mass, inertia] = [of(|mode| mode.gamma * mode.share), of(|mode| mode.mass * mode.height * mode.height)];
@@ -219,7 +221,7 @@ impl Structure {
         let kept =
             if self.modes().len() > MOST_MODES - MORE { self.with_lowest(MOST_MODES - MORE) } else { self.clone() };
         let foundation = Foundation::new(ground, kept.base(), kept.body(), kept.modes());
-        let foundation = foundation.map_err(|error| Refused(format!("ground: {error}")))?;
+        let foundation = foundation.map_err(|error| error.of("ground"))?;
         if foundation.is_none() {
             return Ok(self.on_rigid_ground());
         }
@@ -389,7 +391,7 @@ impl Structure {
                 format!("has {} modes", self.modes().len()),
             ),
         };
-        Refused(format!("{task} needs {needed}, and this structure {has}: simulate the motion instead"))
+        Refused::by(format!("{task} needs {needed}, and this structure {has}: simulate the motion instead"))
     }
 
     /// Circular frequencies of vibration, rad/s.

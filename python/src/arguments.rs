@@ -8,6 +8,7 @@ use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyTuple};
 use rocking::mechanics::state::INITIAL_VALUES;
+use rocking::names::unknown;
 use rocking::{Detail, State};
 use rocking_sweep::plan::Conditions;
 use std::ffi::CString;
@@ -136,8 +137,8 @@ pub fn one_of<'n, T>(name: &str, asked: &Bound<'_, PyAny>, all: impl IntoIterato
     let asked = asked.str()?.to_string();
     let (known, all): (Vec<_>, Vec<_>) = all.into_iter().unzip();
     let found = known.iter().zip(all).find_map(|(known, of)| (*known == asked).then_some(of));
-    let known = known.join(", ");
-    found.ok_or_else(|| refused(anyhow!("{name} = {asked:?} is unknown; these are known: {known}")))
+    let is_unknown = || unknown(format_args!("{name} = {asked:?} is unknown"), &asked, &known);
+    found.ok_or_else(|| refused(anyhow!(is_unknown())))
 }
 
 /// The conditions that runs have in common, with `initial` values by their names.

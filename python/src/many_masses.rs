@@ -5,6 +5,7 @@ use anyhow::anyhow;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use rocking::names::unknown;
 use rocking::structure::description::{Damping, Described, FoundMode, Place, Storey, Total};
 use rocking::structure::ground::NAMES;
 use rocking::structure::natural_quantities::{Given, names, names_of_base};
@@ -94,8 +95,8 @@ pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Structure> {
     let units = keywords.take("units")?.map_or(Ok(Units::default()), |of| units(&of))?;
     let is_unknown = |name: &String| name == "zeta_fc" || !names().any(|known| known == name);
     if let Some(name) = keywords.left.keys().extract::<Vec<String>>()?.into_iter().find(is_unknown) {
-        let known = [keywords.known.take(), names_of_base().collect()].concat().join(", ");
-        return Err(refused(anyhow!("{name:?} is unknown; these are known: {known}")));
+        let known = [keywords.known.take(), names_of_base().collect()].concat();
+        return Err(refused(anyhow!(unknown(format_args!("{name:?} is unknown"), &name, &known))));
     }
     let zeta = damping(&zeta.ok_or_else(|| missing("zeta (damping ratio in full contact)"))?)?;
     let base = given(&keywords.left)?;
@@ -143,7 +144,7 @@ fn ground(value: &Bound<'_, PyAny>) -> PyResult<Ground> {
             "k" => ground.k = numbers(&name, &value)?,
             "c" => ground.c = numbers(&name, &value)?,
             _ => {
-                return Err(refused(anyhow!("ground: {name:?} is unknown; these are known: {}", NAMES.join(", "))));
+                return Err(refused(anyhow!(unknown(format_args!("ground: {name:?} is unknown"), &name, &NAMES))));
             }
         }
     }

@@ -16,6 +16,8 @@ pub mod summary;
 pub mod tables;
 pub mod validity;
 
+use rocking::names::did_you_mean;
+
 /// Message of `error`: each cause once, even if a cause repeats the next one.
 pub fn message(error: &anyhow::Error) -> String {
     let mut message = String::new();
@@ -26,29 +28,13 @@ pub fn message(error: &anyhow::Error) -> String {
             message = format!("{message}: {cause}");
         }
     }
-    with_nearest(message)
-}
-
-/// The `message`, with the known name that is nearest to the unknown one, if the message lists the known names.
-pub fn with_nearest(message: String) -> String {
-    let of_library = message.split_once("these are known: ").and_then(|(before, known)| {
-        Some((before.rsplit('"').nth(1)?, known.split(['\n', ';']).next()?.split(", ").collect::<Vec<_>>()))
+    // serde's own words about an unknown key
+    let hint = message.rsplit_once("unknown ").and_then(|(_, names)| {
+        let mut quoted = names.split('`').skip(1).step_by(2);
+        Some(did_you_mean(quoted.next()?, &Vec::from_iter(quoted)))
     });
-    let of_serde = || {
-        let mut quoted = message.rsplit_once("unknown ")?.1.split('`').skip(1).step_by(2);
-        Some((quoted.next()?, quoted.collect()))
-    };
-    let Some((name, known)) = of_library.or_else(of_serde) else { return message };
-    let [plain, lower] = [|name: &str| name.to_lowercase().replace('_', ""), |name: &str| name.to_lowercase()];
-    let likeness = |known: &&str| match plain(known) == plain(name) {
-        true => 1.0,
-        false => strsim::jaro(&lower(known), &lower(name)),
-    };
-    match known.into_iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b))).filter(|best| likeness(best) > ALIKE) {
-        Some(nearest) => format!("{}; did you mean {nearest}?", message.trim_end()),
+    match hint.filter(|hint| !hint.is_empty()) {
+        Some(hint) => message.trim_end().to_owned() + &hint,
         None => message,
     }
 }
-
-/// Similarity of Jaro, from 0 to 1, from which on one name may be meant by another.
-const ALIKE: f64 = 0.75;

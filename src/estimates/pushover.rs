@@ -52,7 +52,7 @@ pub const MOST_POINTS: u32 = 1_000_000;
 /// The refusal of a structure that gives way before it overturns.
 pub fn too_soft() -> Refused {
     let remedy = "raise f_fc or its stiffnesses, or lower m0";
-    Refused(format!("the structure is too soft to be held all the way to overturning: {remedy}"))
+    Refused::by(format!("the structure is too soft to be held all the way to overturning: {remedy}"))
 }
 
 /// A structure under a horizontal force on its floors.
@@ -80,8 +80,7 @@ impl Pushover {
                 .into()
         })?;
         let floors = structure.floors();
-        let none =
-            || Refused("the structure has no floors that take the force: give masses, heights and shapes".into());
+        let none = || Refused::by("the structure has no floors that take the force: give masses, heights and shapes");
         let top = floors.last().ok_or_else(none)?;
         let whole: f64 = floors.iter().map(|floor| floor.mass * floor.height).sum();
         let mean = |of: &dyn Fn(usize) -> f64| {

@@ -71,7 +71,7 @@ pub fn floor_spectrum<Q: Runs>(
         before = now;
     }
     let remedy = "give the run a shorter duration, or raise zeta";
-    Err(Refused(format!("the spectrum still changes at {MOST_SAMPLES} samples of the floor: {remedy}")).into())
+    Err(Refused::by(format!("the spectrum still changes at {MOST_SAMPLES} samples of the floor: {remedy}")).into())
 }
 
 /// The spectrum of `record`: S_a at each of `periods` (s) and the damping ratio `zeta`, m/s².

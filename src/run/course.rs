@@ -274,8 +274,7 @@ impl<Q: Coordinates, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
 
 /// Advice on a run of `structure` with too many steps: the numbers that make them, if there are such.
 fn shorter(structure: &Structure) -> String {
-    let causes = structure.many_steps().into_iter().map(|cause| structure.units().message(cause));
-    causes.chain(["give a shorter duration".into()]).collect::<Vec<_>>().join("; ")
+    structure.many_steps().into_iter().chain(["give a shorter duration".into()]).collect::<Vec<_>>().join("; ")
 }
 
 /// Why a run of `engine` cannot go on.

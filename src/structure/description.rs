@@ -6,12 +6,12 @@
 //! ω² = φᵀKφ,   effective mass Γ² with Γ = φᵀM1,   effective height κ/Γ with κ = φᵀMh
 //! ```
 
-use crate::digits::{short, with_unit};
+use crate::digits::short;
 use crate::structure::ground::Ground;
 use crate::structure::mode::{MOST_MODES, Modes};
 use crate::structure::natural_quantities::{self, Given};
 use crate::structure::parameters::{MAX_DAMPING, MAX_SLENDERNESS};
-use crate::structure::quantity::{Quantity, Refused, Units, ensure};
+use crate::structure::quantity::{Quantity, Refused, Units, ensure, ensure_in};
 use crate::structure::{check_count, of_number};
 use crate::{Body, Floor, Mode, Parameters, Structure};
 use nalgebra::{DMatrix, DVector};
@@ -165,7 +165,7 @@ impl Described {
     pub fn structure(self) -> Result<Structure, Refused> {
         let units = self.units;
         let structure = self.in_si().structure_in_si();
-        Ok(structure.map_err(|error| Refused(units.message(error)))?.measured_in(units))
+        Ok(structure.map_err(|error| error.in_units(units))?.measured_in(units))
     }
 
     fn in_si(mut self) -> Described {
@@ -197,16 +197,15 @@ impl Described {
                 true => Structure::from_storeys(base, zeta, &with_p_delta(base, storeys)?),
                 false => Structure::from_storeys(base, zeta, storeys),
             },
-            _ if *p_delta => Err(Refused(
-                "p_delta = true needs storeys: subtract the geometric stiffness from K, or give modes that contain it"
-                    .into(),
+            _ if *p_delta => Err(Refused::by(
+                "p_delta = true needs storeys: subtract the geometric stiffness from K, or give modes that contain it",
             )),
             [true, false, true] if total.is_none() => Structure::from_matrices(base, zeta, floors, K),
             [true, true, false] => Structure::from_modes(base, zeta, modes, *total, floors),
             ways => {
                 let given = if ways == [true; 3] { "none of these" } else { "more than one" };
                 let ways = "storeys (m, h, k), floors (m, h) with the matrix K, or modes";
-                Err(Refused(format!("give the structure in one way: {ways}; not {given}")))
+                Err(Refused::by(format!("give the structure in one way: {ways}; not {given}")))
             }
         }?;
         let whole = whole.on(ground)?;
@@ -232,8 +231,8 @@ pub fn with_p_delta(base: &Given, storeys: &[Storey]) -> Result<Vec<Storey>, Ref
     let soften = |(i, &Storey { m, h, k }): (usize, &Storey)| {
         let weight: f64 = floors[i..].iter().map(|floor| g * floor.m).sum();
         let least = weight / (h - if i == 0 { 0.0 } else { floors[i - 1].h });
-        ensure(k > least, || {
-            let [given, least] = [k, least].map(|k| with_unit(k, STOREY.unit));
+        ensure_in(k > least, |units| {
+            let [given, least] = [k, least].map(|k| units.show(k, STOREY.unit));
             format!(
                 "storey {}: k = {given} does not exceed P/h = {least}, at which the weight P above buckles the storey of height h: \
                  raise k, or leave p_delta out",
@@ -299,8 +298,9 @@ impl Structure {
         for (i, j) in (0..n).flat_map(|i| (0..i).map(move |j| (i, j))) {
             let (value, mirrored) = (K[i][j], K[j][i]);
             let (off, row, column) = ((value - mirrored).abs(), i + 1, j + 1);
-            ensure(off <= ASYMMETRY * (K[i][i] * K[j][j]).abs().sqrt(), || {
-                format!("K[{row}][{column}] = {value} N/m and K[{column}][{row}] = {mirrored} N/m: K must be symmetric")
+            ensure_in(off <= ASYMMETRY * (K[i][i] * K[j][j]).abs().sqrt(), |units| {
+                let [value, mirrored] = [value, mirrored].map(|k| units.show_by(|k| k.to_string(), k, ENTRY.unit));
+                format!("K[{row}][{column}] = {value} and K[{column}][{row}] = {mirrored}: K must be symmetric")
             })?;
         }
         let root = |i: usize| floors[i].m.sqrt();
@@ -339,18 +339,22 @@ impl Structure {
         let (mut omegas, mut participations) = (Vec::new(), Vec::new());
         for (number, found) in (1..).zip(modes_found) {
             let at = |cause| of_number("mode", number, cause);
-            let either =
-                |one: &str, other: &str| Refused(format!("mode {number} needs {one} or {other}, and not both"));
+            let either = |one: &str, other: &str, unit: &str| {
+                Refused::shown(|units| {
+                    let unit = units.name(unit);
+                    format!("mode {number} needs {one} or {other} ({unit}), and not both")
+                })
+            };
             MASS.check(found.mass).map_err(at)?;
             let f = match (found.f, found.period) {
                 (Some(f), None) => Ok(f),
                 (None, Some(period)) => PERIOD.check(period).map(|()| period.recip()),
-                _ => return Err(either("f (Hz)", "period (s)")),
+                _ => return Err(either("f (Hz)", "period", "s")),
             };
             let height = match (found.height, found.moment) {
                 (Some(height), None) => HEIGHT.check(height).map(|()| height),
                 (None, Some(moment)) => MOMENT.check(moment).map(|()| moment / found.mass),
-                _ => return Err(either("height (m)", "moment (kg.m)")),
+                _ => return Err(either("height (m)", "moment", MOMENT.unit)),
             };
             let (omega, root) = (TAU * f.map_err(at)?, found.mass.sqrt());
             let before: f64 = omegas.last().copied().unwrap_or(0.0);
@@ -365,12 +369,12 @@ impl Structure {
         let modes = modes(&omegas, damping, &participations)?;
         let body = body(base, whole(base, total, floors)?)?;
         let (of_modes, m_s) = (modes_found.iter().map(|mode| mode.mass).sum::<f64>(), body.m_s);
-        ensure(of_modes >= LEAST_SHARE * m_s, || {
+        ensure_in(of_modes >= LEAST_SHARE * m_s, |units| {
             format!(
-                "the modes carry {:.2} % of m_s = {} kg above the foundation, and {} % are needed: check the units of the masses, and \
-                 that the modes vibrate along the record",
+                "the modes carry {:.2} % of m_s = {} above the foundation, and {} % are needed: check the units of the masses, \
+                 and that the modes vibrate along the record",
                 1e2 * of_modes / m_s,
-                short(m_s),
+                units.show(m_s, "kg"),
                 1e2 * LEAST_SHARE
             )
         })?;
@@ -383,11 +387,12 @@ impl Structure {
         // no mass has a first moment beyond the root of the product of its mass and its second moment
         let [mass, rest, second] = frame.rest();
         let limit = (mass * second).max(0.0).sqrt() + ROUNDING * (body.m_s * body.I_2).sqrt();
-        ensure(rest.abs() <= limit, || {
+        ensure_in(rest.abs() <= limit, |units| {
+            let S_1 = units.show_by(|of| of.to_string(), body.S_1, MOMENT.unit);
+            let [rest, limit] = [rest, limit].map(|of| units.show_by(|of| format!("{of:.3e}"), of, MOMENT.unit));
             format!(
-                "S_1 = {} kg.m does not fit m_s and I_2: the mass that the modes leave over would have the first moment {rest:.3e} kg.m, \
-                 beyond {limit:.3e} kg.m; check the units of h and the sum of m h",
-                body.S_1
+                "S_1 = {S_1} does not fit m_s and I_2: the mass that the modes leave over would have the first moment {rest}, \
+                 beyond {limit}; check the units of h and the sum of m h"
             )
         })?;
         checked(frame)
@@ -409,7 +414,7 @@ fn checked(frame: Structure) -> Result<Structure, Refused> {
 /// The checked numbers of a base.
 fn given_base(given: &Given) -> Result<(Parameters, Option<f64>), Refused> {
     let base = given.base().and_then(|(parameters, r)| parameters.check().map(|()| (parameters, r)));
-    base.map_err(|error| Refused(format!("base: {error}")))
+    base.map_err(|error| error.of("base"))
 }
 
 /// The base of `given` under mass of these moments m_s, S_1 and I_2.
@@ -478,8 +483,11 @@ impl Damping {
 /// The moments m_s, S_1 and I_2 of all mass above the base.
 fn whole(base: &Given, total: Option<Total>, floors: &[Place]) -> Result<[f64; 3], Refused> {
     let Some(Total { m_s, S_1, I_2, J_P }) = total else {
-        ensure(!floors.is_empty(), || {
-            "modes need the total m_s (kg), S_1 (kg.m) and I_2 (kg.m2) of the mass above the base, or the floors that have it".into()
+        ensure_in(!floors.is_empty(), |units| {
+            let [kg, kg_m, kg_m2] = ["kg", "kg.m", "kg.m2"].map(|unit| units.name(unit));
+            format!(
+                "modes need the total m_s ({kg}), S_1 ({kg_m}) and I_2 ({kg_m2}) of the mass above the base, or the floors that have it"
+            )
         })?;
         return Ok(moments(floors));
     };
@@ -489,7 +497,12 @@ fn whole(base: &Given, total: Option<Total>, floors: &[Place]) -> Result<[f64; 3
             let (Parameters { m0, J0, B, .. }, _) = given_base(base)?;
             J_P - J0 - (m0 + m_s) * B * B
         }
-        _ => return Err(Refused("I_2 (kg.m2) or J_P (kg.m2) is needed, and not both".into())),
+        _ => {
+            return Err(Refused::shown(|units| {
+                let unit = units.name("kg.m2");
+                format!("I_2 ({unit}) or J_P ({unit}) is needed, and not both")
+            }));
+        }
     };
     Ok([m_s, S_1, I_2])
 }
@@ -505,10 +518,11 @@ fn shape(number: usize, found: &FoundMode, height: f64, floors: &[Place]) -> Res
     let (gamma, modal_mass) = (sum(|phi, _| phi), sum(|phi, _| phi * phi));
     let effective = if modal_mass > 0.0 { gamma * gamma / modal_mass } else { 0.0 };
     let given = found.mass;
-    ensure(floors.is_empty() || (effective - given).abs() <= SHAPE_TOLERANCE * given, || {
+    ensure_in(floors.is_empty() || (effective - given).abs() <= SHAPE_TOLERANCE * given, |units| {
+        let [effective, given] = [effective, given].map(|m| units.show_by(|m| format!("{m:.5e}"), m, MASS.unit));
         format!(
-            "the shape of mode {number} has the effective mass {effective:.5e} kg with the masses of the floors, but mass = {given:.5e} \
-             kg: check the order of the floors and of the modes"
+            "the shape of mode {number} has the effective mass {effective} with the masses of the floors, but mass = {given}: \
+             check the order of the floors and of the modes"
         )
     })?;
     let (of_shape, top) = (sum(|phi, floor| phi * floor.h) / gamma, floors.last().map_or(0.0, |floor| floor.h));

@@ -1,6 +1,6 @@
 //! Numbers that a structure may have, but that are usual in another unit.
 
-use crate::digits::{short, with_unit};
+use crate::digits::short;
 use crate::series::taylor::LONGEST_SPAN;
 use crate::{Base, Body, Structure, Ties};
 use std::f64::consts::TAU;
@@ -37,29 +37,22 @@ pub fn doubted(doubt: &str) -> &str {
 }
 
 impl Structure {
-    /// A sentence for each number that is usual in another unit or has no effect, before anything moves. It begins with the name of the number, whose
-    /// units are those in which it was given.
-    pub fn doubts(&self) -> Vec<String> {
-        self.doubts_in_si().into_iter().map(|doubt| self.units().message(doubt)).collect()
-    }
-
     /// A sentence for each number of which a run takes very many steps.
     pub(crate) fn many_steps(&self) -> Vec<String> {
         let (base, &Body { B, J0, ties: Ties { k_t, c_d, k_d, .. }, .. }) = (self.base(), self.body());
-        let [B, J0] = [B, J0].map(short);
+        let (units, show) = (self.units(), |value: f64, unit: &str| self.units().show(value, unit));
+        let (B, J0) = (short(B), show(J0, "kg.m2"));
         let ties = [("k_t", k_t, "N/m"), ("k_d", k_d, "N/m"), ("c_d", c_d, "N.s/m")];
         let of_ties = ties.into_iter().zip(base.rates_of_ties()).map(|((name, value, unit), rate)| {
-            (rate, format!("{name} = {}", with_unit(value, unit)), format!("is {name} in {unit}?"))
+            (rate, format!("{name} = {}", show(value, unit)), format!("is {name} in {}?", units.name(unit)))
         });
         let (rate, named, remedy) = match self.foundation().zip(self.fastest_on_ground()) {
             Some((ground, rate)) => {
                 let [f_v, zeta_v] = [ground.omega_v(base) / TAU, ground.zeta_v(base)].map(short);
-                let named = format!("f_v = {f_v} Hz with zeta_v = {zeta_v} and J0 = {J0} kg.m2");
+                let named = format!("f_v = {f_v} Hz with zeta_v = {zeta_v} and J0 = {J0}");
                 (rate, named, "lower f_v or zeta_v, or raise J0")
             }
-            None => {
-                (self.fastest_rocking(), format!("B = {B} m with J0 = {J0} kg.m2"), "raise B or J0, lower f or zeta")
-            }
+            None => (self.fastest_rocking(), format!("B = {B} m with J0 = {J0}"), "raise B or J0, lower f or zeta"),
         };
         let costs = of_ties.chain([(rate, named, remedy.into())]);
         let many = costs.map(|(rate, named, remedy)| (rate / LONGEST_SPAN, named, remedy));
@@ -69,15 +62,18 @@ impl Structure {
         many.collect()
     }
 
-    fn doubts_in_si(&self) -> Vec<String> {
+    /// A sentence for each number that is usual in another unit or has no effect, before anything moves. It begins with the name of the number, whose
+    /// units are those in which it was given.
+    pub fn doubts(&self) -> Vec<String> {
+        let (units, show) = (self.units(), |value: f64, unit: &str| self.units().show(value, unit));
         let (&Base { m_t, m0, g, B, tan_alpha_cg, ties: Ties { P_0, xi_d, F_y, .. }, .. }, body) =
             (self.base(), self.body());
         let weight = m_t * g;
         let is_small = |(_, force): &(&str, f64)| (0.0..NEXT_TO_NOTHING * weight).contains(force) && *force > 0.0;
         let doubt = |(name, force)| {
-            let [force, weight] = [force, weight].map(|force| with_unit(force, "N"));
+            let ([force, weight], unit) = ([force, weight].map(|force| show(force, "N")), units.name("N"));
             format!(
-                "{name} = {force} changes next to nothing under the weight of the structure, {weight}: is {name} in N?"
+                "{name} = {force} changes next to nothing under the weight of the structure, {weight}: is {name} in {unit}?"
             )
         };
         let unused = self.foundation().and(self.base().r).map(|r| {
@@ -93,8 +89,8 @@ impl Structure {
             ));
         }
         if m0 > 0.0 && (m0 < ONE_UNIT[0] * body.m_s || body.m_s < ONE_UNIT[1] * m0) {
-            let [m0, m_s] = [m0, body.m_s].map(short);
-            doubts.push(format!("m0 = {m0} kg of the foundation does not fit {m_s} kg above it: are both in kg?"));
+            let ([m0, m_s], unit) = ([m0, body.m_s].map(|m| show(m, "kg")), units.name("kg"));
+            doubts.push(format!("m0 = {m0} of the foundation does not fit {m_s} above it: are both in {unit}?"));
         }
         // of mass that is spread evenly over the height
         let of_floors = self.floors().iter().map(|floor| floor.height).reduce(f64::max);
@@ -105,14 +101,17 @@ impl Structure {
         if (f / usual).max(usual / f) > UNUSUAL[usize::from(self.one().is_some())] {
             doubts.push(format!(
                 "f = {f:.2} Hz of the lowest mode is far from the usual frequency of a structure {height} m high, about {usual:.2} Hz: \
-                 are masses in kg, heights in m, stiffnesses in N/m, and f in Hz?"
+                 are masses in {}, heights in m, stiffnesses in {}, and f in Hz?",
+                units.name("kg"),
+                units.name("N/m")
             ));
         }
         if m_t < LIGHT * area {
             doubts.push(format!(
-                "m_t = {} kg is little for a structure {} m wide and {height} m high: are masses in kg?",
-                short(m_t),
-                short(2.0 * B)
+                "m_t = {} is little for a structure {} m wide and {height} m high: are masses in {}?",
+                show(m_t, "kg"),
+                short(2.0 * B),
+                units.name("kg")
             ));
         }
         let zeta = mode.zeta();

@@ -9,9 +9,8 @@
 //! y is the height of the middle of the base above the unloaded ground. The middle moves vertically only. At rest all points are
 //! pressed, and y is y_s = −(m_t g + P_0)/Σ k. The points take the place of uplift, impact and restitution.
 
-use crate::digits::with_unit;
 use crate::series::bisection::last_where;
-use crate::structure::quantity::{Quantity, Refused, Units, ensure};
+use crate::structure::quantity::{Quantity, Refused, Units, ensure, ensure_in};
 use crate::{Base, Body, Mode, Ties};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -133,8 +132,11 @@ impl Ground {
         if self.is_rigid() {
             return Ok(Vec::new());
         }
-        let needed = "neither f_v (Hz) nor k_v (N/m) is given: give one, or leave [ground] out for rigid ground";
-        let K_z = f_v.map(|f_v| m_t * (TAU * f_v) * (TAU * f_v)).or(k_v).ok_or_else(|| Refused(needed.into()))?;
+        let needed = |units: Units| {
+            let unit = units.name(K_V.unit);
+            format!("neither f_v (Hz) nor k_v ({unit}) is given: give one, or leave [ground] out for rigid ground")
+        };
+        let K_z = f_v.map(|f_v| m_t * (TAU * f_v) * (TAU * f_v)).or(k_v).ok_or_else(|| Refused::shown(needed))?;
         let tau = c_v.map_or(2.0 * zeta_v.unwrap_or(0.2) / (K_z / m_t).sqrt(), |c_v| c_v / K_z);
         let xi = |i: usize| B * (2.0 * i as f64 / (n - 1) as f64 - 1.0);
         let (inner, most) = ((1..n - 1).map(|i| xi(i) * xi(i)).sum::<f64>(), (n - 2) as f64 * B * B);
@@ -176,7 +178,11 @@ impl Foundation {
                 (is_ordered, "give the points from left to right"),
                 (is_symmetric, "the points must be symmetric about the middle: xi, -xi with the same k and c"),
             ] {
-                ensure(is_so, || format!("xi[{}] = {xi:?} m, k = {k:?} N/m, c = {c:?} N.s/m: {needed}", i + 1))?;
+                ensure_in(is_so, |units| {
+                    let [k, c] =
+                        [(k, "N/m"), (c, "N.s/m")].map(|(of, unit)| units.show_by(|of| format!("{of:?}"), of, unit));
+                    format!("xi[{}] = {xi:?} m, k = {k}, c = {c}: {needed}", i + 1)
+                })?;
             }
         }
         ensure(c_ratio == 1.0, || {
@@ -187,16 +193,16 @@ impl Foundation {
         let mut foundation = Foundation { points, ground: ground.clone(), rest: 0.0, place: modes.len() };
         foundation.rest = -(m_t * g + P_0) / foundation.sum(0);
         let [K_r, least] = [foundation.sum(2), least_stiffness(base, body, modes)];
-        ensure(K_r > least, || {
-            let [K_r, least] = [K_r, least].map(|of| with_unit(of, "N.m/rad"));
+        ensure_in(K_r > least, |units| {
+            let [K_r, least] = [K_r, least].map(|of| units.show(of, "N.m/rad"));
             format!(
                 "it cannot stand: the ground holds the rotation with K_r = {K_r}, and K_r = {least} is needed; raise f_v, k_v or kr_ratio"
             )
         })?;
-        ensure(J0 >= LEAST_INERTIA * m_t * B * B, || {
+        ensure_in(J0 >= LEAST_INERTIA * m_t * B * B, |units| {
             format!(
                 "J0 = {} is too small, because the base turns about the middle of its lower side: give J0, for a block m0 (B^2 + t^2)/3 of the thickness t",
-                with_unit(body.J0, "kg.m2")
+                units.show(body.J0, "kg.m2")
             )
         })?;
         Ok(Some(foundation))

@@ -12,10 +12,11 @@
 
 use crate::Structure;
 use crate::digits::with_unit;
+use crate::names::{did_you_mean, unknown};
 use crate::structure::derived::{DERIVED, Derived};
 use crate::structure::ground::Ground;
 use crate::structure::parameters::{PARAMETERS, Parameters};
-use crate::structure::quantity::{Quantity, Refused, Units, ensure};
+use crate::structure::quantity::{OutOfRange, Quantity, Refused, Units, ensure, ensure_in};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{self, Error, IntoDeserializer, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -123,9 +124,11 @@ pub fn names_of_base() -> impl Iterator<Item = &'static str> {
 pub(crate) fn base<'de, D: Deserializer<'de>>(file: D) -> Result<Given, D::Error> {
     let numbers = BTreeMap::<String, f64>::deserialize(file)?;
     if let Some(name) = numbers.keys().find(|name| !names().any(|known| known == *name)) {
-        let known = names_of_base().collect::<Vec<_>>().join(", ");
+        let known = Vec::from_iter(names_of_base());
         return Err(D::Error::custom(format!(
-            "{name:?} is no number of the base; these are known: {known}; other numbers of the structure stand above [base]"
+            "{name:?} is no number of the base; these are known: {}; other numbers of the structure stand above [base]{}",
+            known.join(", "),
+            did_you_mean(name, &known)
         )));
     }
     let entries = numbers.into_iter().map(|(name, number)| (name, Entry::Number(number)));
@@ -158,7 +161,7 @@ impl Given {
 
     /// Adds the number called `name`.
     pub fn give(&mut self, name: &str, value: f64) -> Result<(), Refused> {
-        let name = names().find(|known| *known == name).ok_or_else(|| unknown(name))?;
+        let name = names().find(|known| *known == name).ok_or_else(|| is_unknown(name))?;
         ensure(self.get(name).is_none(), || format!("{name} is given twice"))?;
         self.numbers.push((name, value));
         Ok(())
@@ -175,7 +178,7 @@ impl Given {
     /// The structure of one mass of these [`Given::parameters`], or of `base` changed by these numbers. Messages name the numbers as
     /// they were given.
     pub fn structure(&self, base: Option<&Parameters>) -> Result<Structure, Refused> {
-        let in_units = |error: Refused| Refused(self.units.message(error));
+        let in_units = |error: Refused| error.in_units(self.units);
         let gives = self.ground.as_ref().is_some_and(|ground| !ground.is_rigid());
         let needs_no_r = gives && base.is_none() && self.get("r").is_none();
         let alone = || self.solve(&str::to_owned, |name| default(name).or((needs_no_r && name == "r").then_some(1.0)));
@@ -208,7 +211,7 @@ impl Given {
     pub(crate) fn base(&self) -> Result<(Parameters, Option<f64>), Refused> {
         if let Some(name) = OF_ONE_MASS.into_iter().find(|name| self.get(name).is_some()) {
             let remedy = "leave it out beside storeys, floors and modes";
-            return Err(Refused(format!("{name} is a number of a structure of one mass: {remedy}")));
+            return Err(Refused::by(format!("{name} is a number of a structure of one mass: {remedy}")));
         }
         let of_mass = |name: &str| ["m", "H", "f_fc", "zeta_fc", "r"].contains(&name).then_some(0.5);
         let parameters = self.solve(&str::to_owned, |name| default(name).or_else(|| of_mass(name)))?;
@@ -246,9 +249,10 @@ impl Given {
         otherwise: impl Fn(&str) -> Option<f64>,
     ) -> Result<Parameters, Refused> {
         self.check()?;
-        let is_missing = |name: &&Quantity<Parameters>| !self.determine(name.name) && otherwise(name.name).is_none();
-        let missing: Vec<_> = PARAMETERS.iter().filter(is_missing).map(|of| missing(of, called)).collect();
-        ensure(missing.is_empty(), || missing.join("; "))?;
+        let is_missing = |of: &&Quantity<Parameters>| !self.determine(of.name) && otherwise(of.name).is_none();
+        ensure_in(!PARAMETERS.iter().any(|of| is_missing(&of)), |units| {
+            Vec::from_iter(PARAMETERS.iter().filter(is_missing).map(|of| missing(of, called, units))).join("; ")
+        })?;
         let own = |name| self.get(name).or_else(|| otherwise(name)).expect("nothing is missing");
         let or = |name: &'static str, natural: &'static str, from: &dyn Fn(f64) -> f64| match self.get(natural) {
             Some(value) => parameter_for(natural, value, name, from(value)),
@@ -295,8 +299,8 @@ impl Given {
                 _ => Some(stands_for).filter(given).into_iter().collect(),
             };
             let determined = if name == "alpha_cg" { "the ratio of the two" } else { stands_for };
-            ensure(with.is_empty(), || {
-                let (given, with) = (with_unit(value, unit), with.join(" and "));
+            ensure_in(with.is_empty(), |units| {
+                let (given, with) = (units.show(value, unit), with.join(" and "));
                 format!(
                     "{name} = {given} is given beside {with}: {name} determines {determined}, leave one of them out"
                 )
@@ -309,10 +313,12 @@ impl Given {
 /// `value` as the parameter called `name`, which `natural` determines.
 fn parameter_for(natural: &'static str, given: f64, name: &'static str, value: f64) -> Result<f64, Refused> {
     let parameter = PARAMETERS.iter().find(|parameter| parameter.name == name).expect("it is one of them");
-    let impossible = |cause| {
+    let impossible = |cause: OutOfRange| {
         let natural = NATURAL.iter().find(|known| known.name == natural).expect("it is one of them");
-        let given = with_unit(given, natural.derived().unit);
-        Refused(format!("{} = {given} does not fit: {cause}", natural.name))
+        Refused::shown(|units| {
+            let given = units.show(given, natural.derived().unit);
+            format!("{} = {given} does not fit: {}", natural.name, cause.shown(units))
+        })
     };
     parameter.check(value).map_err(impossible)?;
     Ok(value)
@@ -335,17 +341,18 @@ fn inertia(p_l: f64, m_g_H: f64, without_J0: f64) -> Result<f64, Refused> {
     parameter_for("p_l", p_l, "J0", J0)
 }
 
-fn unknown(name: &str) -> Refused {
-    let known = names().chain(["units", "ground"]).collect::<Vec<_>>().join(", ");
-    Refused(format!("{name:?} is unknown; these are known: {known}"))
+fn is_unknown(name: &str) -> Refused {
+    let known = Vec::from_iter(names().chain(["units", "ground"]));
+    Refused::by(unknown(format_args!("{name:?} is unknown"), name, &known))
 }
 
 /// The sentence about a missing parameter, with the numbers to give for it.
-fn missing(of: &Quantity<Parameters>, called: &dyn Fn(&str) -> String) -> String {
+fn missing(of: &Quantity<Parameters>, called: &dyn Fn(&str) -> String, units: Units) -> String {
     let &Quantity { name, unit, description, .. } = of;
     let stand_ins = NATURAL.iter().filter(|natural| natural.stands_for == name).map(Natural::derived);
     let ways = [(name, unit)].into_iter().chain(stand_ins.map(|derived| (derived.name, derived.unit)));
-    let way = |(name, unit)| if unit == "1" { called(name) } else { format!("{} ({unit})", called(name)) };
+    let way =
+        |(name, unit)| if unit == "1" { called(name) } else { format!("{} ({})", called(name), units.name(unit)) };
     let ways = ways.map(way).collect::<Vec<_>>().join(" or ");
     format!("{name} ({description}) is missing: give {ways}")
 }
@@ -358,16 +365,16 @@ impl TryFrom<BTreeMap<String, Entry>> for Given {
         for (name, entry) in entries {
             match entry {
                 Entry::Number(_) if name == "units" => {
-                    return Err(Refused("units: \"N, m, kg\" or \"kN, m, t\" is needed".into()));
+                    return Err(Refused::by("units: \"N, m, kg\" or \"kN, m, t\" is needed"));
                 }
                 Entry::Number(number) => given.give(&name, number)?,
                 Entry::Units(of_numbers) if name == "units" => units = of_numbers,
                 Entry::Ground(ground) if name == "ground" => given.ground = Some(ground),
                 Entry::Ground(_) if !names().chain(["units"]).any(|known| known == name) => {
-                    return Err(unknown(&name));
+                    return Err(is_unknown(&name));
                 }
                 Entry::Units(_) | Entry::Ground(_) => {
-                    return Err(Refused(format!("{name}: a number is needed")));
+                    return Err(Refused::by(format!("{name}: a number is needed")));
                 }
             }
         }

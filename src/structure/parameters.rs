@@ -1,7 +1,8 @@
 //! The numbers that a user gives: one structure's parameters, their ranges, and the paper's two specimens.
 
 use crate::digits::short;
-use crate::structure::quantity::{Quantity, Refused, ensure, quantity};
+use crate::names::unknown;
+use crate::structure::quantity::{Quantity, Refused, ensure, ensure_in, quantity};
 use serde::{Deserialize, Serialize};
 
 /// Declares [`Parameters`] and their table [`PARAMETERS`]: name, unit, range, description, and `default` if a file may leave it out.
@@ -87,9 +88,9 @@ impl Parameters {
 
     /// The specimen of this name, one of [`PRESETS`].
     pub fn preset(name: &str) -> Result<Parameters, Refused> {
-        let known = || PRESETS.map(|of| of.0).join(", ");
         let found = PRESETS.iter().find(|(known, _)| *known == name).map(|(_, parameters)| *parameters);
-        found.ok_or_else(|| Refused(format!("preset = {name:?} is unknown; these are known: {}", known())))
+        let is_unknown = || unknown(format_args!("preset = {name:?} is unknown"), name, &PRESETS.map(|of| of.0));
+        found.ok_or_else(|| Refused::by(is_unknown()))
     }
 
     /// Checks every parameter against [`PARAMETERS`] and the slenderness against [`MAX_SLENDERNESS`].
@@ -103,8 +104,10 @@ impl Parameters {
             format!("H/B = {slenderness} is out of range: H must not exceed {MAX_SLENDERNESS} B; lower H or raise B")
         })?;
         let &Parameters { k_d, F_y, .. } = self;
-        ensure((k_d > 0.0) == (F_y > 0.0), || {
-            format!("k_d = {k_d:?} N/m and F_y = {F_y:?} N are no dissipator: set both above 0, or both to 0")
+        ensure_in((k_d > 0.0) == (F_y > 0.0), |units| {
+            let [k_d, F_y] =
+                [(k_d, "N/m"), (F_y, "N")].map(|(of, unit)| units.show_by(|of| format!("{of:?}"), of, unit));
+            format!("k_d = {k_d} and F_y = {F_y} are no dissipator: set both above 0, or both to 0")
         })
     }
 }

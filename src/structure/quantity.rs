@@ -28,27 +28,31 @@ pub const LARGE: [(&str, &str); 7] = [
 ];
 
 impl Units {
-    /// The `value` of a number whose SI unit is `unit`, in SI units.
-    pub fn in_si(self, value: f64, unit: &str) -> f64 {
-        let is_large = self == Units::Kilonewtons && LARGE.iter().any(|(si, _)| *si == unit);
-        if is_large { 1e3 * value } else { value }
+    /// The size (SI) and the name of the unit among these that stands for the SI `unit`.
+    fn of<'u>(self, unit: &'u str) -> (f64, &'u str) {
+        let large = LARGE.iter().find(|(si, _)| self == Units::Kilonewtons && *si == unit);
+        large.map_or((1.0, unit), |(_, large)| (1e3, large))
     }
 
-    /// The `message` about numbers in SI units, with these numbers as they were given: before a unit, and before "and" and a number.
-    pub fn message(self, message: impl Display) -> String {
-        let message = message.to_string();
-        let mut words: Vec<String> = message.split(' ').map(str::to_owned).collect();
-        for i in (0..words.len()).filter(|_| self == Units::Kilonewtons) {
-            let is_mark = |letter| "(),;:?".contains(letter);
-            let Some((si, large)) = LARGE.iter().find(|(si, _)| *si == words[i].trim_matches(is_mark)) else {
-                continue;
-            };
-            words[i] = words[i].replace(si, large);
-            let before = if i > 2 && words[i - 2] == "and" { vec![i - 1, i - 3] } else { vec![i.saturating_sub(1)] };
-            let numbers = before.into_iter().map_while(|j| Some((j, words[j].parse::<f64>().ok()?)));
-            numbers.collect::<Vec<_>>().into_iter().for_each(|(j, number)| words[j] = short(number / 1e3));
-        }
-        words.join(" ")
+    /// The `value` of a number whose SI unit is `unit`, in SI units.
+    pub fn in_si(self, value: f64, unit: &str) -> f64 {
+        self.of(unit).0 * value
+    }
+
+    /// The name of the unit among these that stands for the SI `unit`.
+    pub fn name(self, unit: &str) -> &str {
+        self.of(unit).1
+    }
+
+    /// `value`, in the SI `unit`, for a sentence in these units.
+    pub fn show(self, value: f64, unit: &str) -> String {
+        let (size, name) = self.of(unit);
+        with_unit(value / size, name)
+    }
+
+    /// As [`Units::show`], but with these `digits` of a number in an SI unit.
+    pub fn show_by(self, digits: impl Fn(f64) -> String, value: f64, unit: &str) -> String {
+        if self.name(unit) == unit { format!("{} {unit}", digits(value)) } else { self.show(value, unit) }
     }
 }
 
@@ -73,12 +77,7 @@ pub struct Quantity<T> {
 
 /// A number outside the range of its quantity (or not a number at all).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "{name} = {} is out of range: it must lie between {} and {} ({description})",
-    with_unit(*value, unit),
-    with_unit(*min, "1"),
-    with_unit(*max, unit)
-)]
+#[error("{}", self.shown(Units::Newtons))]
 #[allow(missing_docs)] // as in [`Quantity`]
 pub struct OutOfRange {
     pub name: &'static str,
@@ -89,27 +88,57 @@ pub struct OutOfRange {
     pub description: &'static str,
 }
 
-/// Why numbers are refused, in words: the number, its value, the limit and the remedy.
+impl OutOfRange {
+    /// The message with its numbers in `units`.
+    pub fn shown(&self, units: Units) -> String {
+        let &OutOfRange { name, value, unit, min, max, description } = self;
+        let ([value, max], min) = ([value, max].map(|of| units.show(of, unit)), short(min / units.of(unit).0));
+        format!("{name} = {value} is out of range: it must lie between {min} and {max} ({description})")
+    }
+}
+
+/// Why numbers are refused, in words: the number, its value, the limit and the remedy. It has the words in all [`Units`], and displays
+/// those in SI units.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct Refused(pub String);
+#[error("{}", .0[0])]
+pub struct Refused(Box<[String; 2]>);
 
 impl Refused {
-    /// The message of another error.
+    /// The message of another error, the same in all units.
     pub fn by(error: impl Display) -> Refused {
-        Refused(error.to_string())
+        Refused::shown(|_| error.to_string())
+    }
+
+    /// This `message`, which shows its numbers in the units that it is given.
+    pub fn shown(message: impl Fn(Units) -> String) -> Refused {
+        Refused(Box::new([Units::Newtons, Units::Kilonewtons].map(message)))
+    }
+
+    /// This message with its numbers in `units`.
+    pub fn in_units(&self, units: Units) -> Refused {
+        Refused::by(&self.0[units as usize])
+    }
+
+    /// This message about a part of the whole, which it names first.
+    pub fn of(&self, part: &str) -> Refused {
+        Refused::shown(|units| format!("{part}: {}", self.0[units as usize]))
     }
 }
 
 impl From<OutOfRange> for Refused {
     fn from(error: OutOfRange) -> Refused {
-        Refused::by(error)
+        Refused::shown(|units| error.shown(units))
     }
 }
 
 /// Refuses what is not so, with this message.
 pub fn ensure(is_so: bool, message: impl FnOnce() -> String) -> Result<(), Refused> {
-    if is_so { Ok(()) } else { Err(Refused(message())) }
+    if is_so { Ok(()) } else { Err(Refused::by(message())) }
+}
+
+/// Refuses what is not so, with this message as of [`Refused::shown`].
+pub(crate) fn ensure_in(is_so: bool, message: impl Fn(Units) -> String) -> Result<(), Refused> {
+    if is_so { Ok(()) } else { Err(Refused::shown(message)) }
 }
 
 impl Quantity<f64> {

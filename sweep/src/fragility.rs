@@ -160,8 +160,8 @@ fn check_overlap(trials: &[Trials]) -> Result<(), Refused> {
         let intensities = || trials.iter().filter(|at| has(at)).map(|at| at.intensity);
         intensities().reduce(f64::min).zip(intensities().reduce(f64::max))
     };
-    let with = range(|at| at.exceedances > 0).ok_or(Refused("never exceeded: raise the intensity".into()))?;
-    let without = range(|at| at.exceedances < at.runs).ok_or(Refused("always exceeded: lower the intensity".into()))?;
+    let with = range(|at| at.exceedances > 0).ok_or(Refused::by("never exceeded: raise the intensity"))?;
+    let without = range(|at| at.exceedances < at.runs).ok_or(Refused::by("always exceeded: lower the intensity"))?;
     ensure(without.1 > with.0, || {
         let [highest_without, lowest_with] = [without.1, with.0].map(short);
         format!(

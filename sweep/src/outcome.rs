@@ -2,6 +2,7 @@
 
 use crate::{Refused, ensure};
 use rocking::digits::{short, with_unit};
+use rocking::names::unknown;
 use rocking::run::fall::Found;
 use rocking::run::{Ending, Run, RunError, Runs};
 use rocking::{Output, Structure};
@@ -169,16 +170,17 @@ impl Limit {
         if text == Limit::Overturning.to_string() {
             return Ok(Limit::Overturning);
         }
-        let known = || measures.iter().map(|(name, _)| &**name).collect::<Vec<_>>().join(", ");
+        let known = || Vec::from_iter(measures.iter().map(|(name, _)| &**name));
         let (name, given) = text.split_once(">=").map_or((text, ""), |(name, given)| (name.trim(), given.trim()));
         if given.is_empty() {
-            let needed = format!("overturned or MEASURE >= VALUE is needed, with a measure of {}", known());
-            return Err(Refused(format!("limit = {text:?}: {needed}")));
+            let needed = format!("overturned or MEASURE >= VALUE is needed, with a measure of {}", known().join(", "));
+            return Err(Refused::by(format!("limit = {text:?}: {needed}")));
         }
         let is_meant = |of: &str| of == name || of.split_once('[').is_some_and(|(of_floors, _)| of_floors == name);
         let meant: Vec<_> = (0..measures.len()).filter(|at| is_meant(&measures[*at].0)).collect();
         let own = meant.first().map(|at| &*measures[*at].1);
-        let own = own.ok_or_else(|| Refused(format!("{name:?} is unknown; these are known: {}", known())))?;
+        let is_unknown = || Refused::by(unknown(format_args!("{name:?} is unknown"), name, &known()));
+        let own = own.ok_or_else(is_unknown)?;
         let usual = USUAL_UNITS.into_iter().filter_map(|(usual, of, _)| (of == own).then_some(usual));
         let units: Vec<_> = [own].into_iter().chain(usual).collect();
         let in_unit = |unit| Some((given.strip_suffix(unit)?.trim_end().parse().ok()?, unit));
@@ -186,7 +188,7 @@ impl Limit {
         let (value, unit): (f64, _) = value.ok_or_else(|| {
             let possible = units.iter().map(|unit| if *unit == "1" { "no unit" } else { unit });
             let possible = Vec::from_iter(possible).join(", ");
-            Refused(format!("limit = {text:?}: a number is needed, in {possible}"))
+            Refused::by(format!("limit = {text:?}: a number is needed, in {possible}"))
         })?;
         ensure(value > 0.0 && value.is_finite(), || {
             format!("{name} = {} is out of range: a finite number greater than 0 is needed", with_unit(value, unit))

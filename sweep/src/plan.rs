@@ -9,6 +9,7 @@ use rocking::estimates::intensity::{
     significant_duration,
 };
 use rocking::estimates::response_spectrum::spectral_acceleration;
+use rocking::names::unknown;
 use rocking::run::fall::Found;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits};
@@ -18,6 +19,7 @@ use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
 use rocking::{Detail, Modes, Parameters, Quantity, State, Structure};
 use serde::Serialize;
 use std::array;
+use std::borrow::Cow;
 use std::collections::HashSet;
 use std::sync::{LazyLock, OnceLock};
 
@@ -179,7 +181,7 @@ impl Population {
         let axis = axis.ok_or_else(|| {
             let known = AXES.iter().map(|axis| axis.name).filter(|name| can_vary(name)).collect::<Vec<_>>().join(", ");
             let why = if can_vary(name) { "" } else { " in a building, whose modes determine it" };
-            Refused(format!("{name:?} cannot vary{why}: these can: {known}"))
+            Refused::by(format!("{name:?} cannot vary{why}: these can: {known}"))
         })?;
         check_list(name, &values)?;
         let varies = |name| self.varying.iter().any(|(axis, _)| AXES[*axis].name == name);
@@ -215,7 +217,7 @@ impl Population {
         let mut parameters = base.parameters();
         self.values(member).for_each(|(axis, value)| (axis.set)(&mut parameters, value));
         let structure =
-            base.with(parameters).map_err(|problem| Refused(format!("structures {:?}: {problem}", self.name)));
+            base.with(parameters).map_err(|problem| Refused::by(format!("structures {:?}: {problem}", self.name)));
         Ok(structure?.measured_in(base.units()))
     }
 }
@@ -497,9 +499,12 @@ impl Case<'_> {
 
 /// The intensity measure called `name`.
 pub fn measure(name: &str) -> Result<IntensityMeasure, Refused> {
-    let known = || IntensityMeasure::ALL.map(IntensityMeasure::name).join(", ") + ", S_a(1 s), S_a(1 s, 2 %)";
-    let unknown = || Refused(format!("intensity = {name:?} is unknown; these are known: {}", known()));
-    IntensityMeasure::read(name).ok_or_else(unknown)
+    let is_unknown = || {
+        let spectral = ["S_a(1 s)", "S_a(1 s, 2 %)"].map(Cow::from);
+        let known = [&IntensityMeasure::ALL.map(IntensityMeasure::name)[..], &spectral].concat();
+        Refused::by(unknown(format_args!("intensity = {name:?} is unknown"), name, &known))
+    };
+    IntensityMeasure::read(name).ok_or_else(is_unknown)
 }
 
 fn is_empty(name: &str) -> String {
@@ -522,13 +527,13 @@ fn check_names<'a>(kind: &str, names: impl Iterator<Item = &'a String>) -> Resul
 /// Finite numbers, one or more, each of them once.
 fn check_list(name: &str, values: &[f64]) -> Result<(), Refused> {
     if let Some(value) = values.iter().find(|value| !value.is_finite()) {
-        return Err(Refused(format!("{name} = {value} is not a finite number")));
+        return Err(Refused::by(format!("{name} = {value} is not a finite number")));
     }
     ensure(!values.is_empty(), || is_empty(name))?;
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     match sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(Refused(is_there_twice(&format!("{name} = {}", with_unit(pair[0], "1"))))),
+        Some(pair) => Err(Refused::by(is_there_twice(&format!("{name} = {}", with_unit(pair[0], "1"))))),
         None => Ok(()),
     }
 }
@@ -595,7 +600,7 @@ mod tests {
         let own = largest.iter().filter(|a_t| **a_t >= 0.5 * 9.81).count();
         assert!((1..16).contains(&own), "{largest:?}");
         assert_eq!(exceeding(1), own);
-        assert_eq!(pier.fragilities[2].curve, Err(Refused("no run is counted".into())));
+        assert_eq!(pier.fragilities[2].curve, Err(Refused::by("no run is counted")));
         let refused = limit("drift[4] >= 15 mm").unwrap_err().0;
         assert!(refused.starts_with("\"drift[4]\" is unknown; these are known: theta, uplift, V_t, M_t, u[1], u[2]"));
         let cores = core(0.0).measured_in(Units::Kilonewtons);

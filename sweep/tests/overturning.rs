@@ -88,6 +88,6 @@ fn a_building_has_a_map() {
         classes.insert(point.class());
     }
     assert!(classes.len() >= 3, "{classes:?}");
-    let refused = map.computed_by(Detail::Modal, 1e-9, false).unwrap_err().0;
+    let refused = map.computed_by(Detail::Modal, 1e-9, false).unwrap_err().to_string();
     assert!(refused.starts_with("detail = modal moves structures of one mass alone"), "{refused}");
 }

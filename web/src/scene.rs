@@ -2,6 +2,7 @@
 
 use crate::says;
 use rocking::engine::{DEFAULT_TOLERANCE, check_tolerance};
+use rocking::names::unknown;
 use rocking::run::record::Record;
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::ground::Ground;
@@ -115,7 +116,7 @@ impl Fields {
         let kind = fields.kind();
         let numbers = numbers_of(kind).ok_or_else(|| {
             let known = Shape::ALL.map(Shape::name).into_iter().chain(MOTIONS.map(|(name, _)| name));
-            format!("record = {kind:?} is unknown; these are known: {}", known.collect::<Vec<_>>().join(", "))
+            unknown(format_args!("record = {kind:?} is unknown"), kind, &Vec::from_iter(known))
         })?;
         let of_structure = if fields.is_frame() { [&["storeys"], &OF_STRUCTURE[..]].concat() } else { vec!["preset"] };
         let of_ground = OF_GROUND.map(|number| number.0);
@@ -124,11 +125,7 @@ impl Fields {
         let others = fields.of_file().chain(RUN).filter(|name| !known.contains(name)).collect::<Vec<_>>();
         known.extend(others);
         match fields.0.keys().find(|key| !known.contains(&key.as_str())) {
-            Some(key) => {
-                let known = known.join(", ");
-                let refused = format!("{key:?} of the link is unknown with record = {kind}; these are known: {known}");
-                Err(rocking_report::with_nearest(refused))
-            }
+            Some(key) => Err(unknown(format_args!("{key:?} of the link is unknown with record = {kind}"), key, &known)),
             None => Ok(fields),
         }
     }
