@@ -1,7 +1,8 @@
 //! `advise`: errors and cost of each level of detail on the user's own scene, and the cheapest level that is good enough.
 
+use crate::cause::Cause;
 use crate::limit_args::LimitArgs;
-use crate::record_args::one_of;
+use crate::options::one_of;
 use crate::results::{FormatArgs, Traced};
 use crate::scene_args::MotionArgs;
 use anyhow::Context;
@@ -49,7 +50,7 @@ fn relative_error(text: &str) -> Result<f64, String> {
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let limits = args.limits.limits()?;
     let run = args.motion.load(Conditions::default())?;
-    let cause = args.motion.cause(&run).with_initial(&run.conditions.initial);
+    let cause = Cause::of(&args.motion, &run).with_initial(&run.conditions.initial);
     let advice = run.advice(args.allowed.within, &args.allowed.of).context("detail = nonlinear")?;
     let text = || run.advice_text(&args.motion.ground.title(&run.ground), &advice, &limits);
     args.results.print(text, &Traced { cause: &cause, rows: &advice.rows() })

@@ -1,11 +1,11 @@
 //! The origin of a result: program, structure, ground motion, and the conditions of the computation.
 use crate::record_args::RecordArgs;
-use crate::scene_args::OneOrMore;
+use crate::scene_args::{MotionArgs, OneOrMore};
 use FlexibleRocking::BUILD;
 use rocking::run::record::Record;
 use rocking::{Parameters, State, Structure};
 use rocking_records::Column;
-use rocking_report::describe;
+use rocking_report::{describe, run::Run};
 use rocking_sweep::plan::Conditions;
 use rocking_sweep::row_file::Program;
 use serde::{Serialize, Serializer};
@@ -69,10 +69,11 @@ impl Cause {
         self
     }
 
-    /// This cause with the force in the table at `path`, if there is one.
-    pub fn pushed(mut self, path: Option<&PathBuf>) -> Cause {
-        self.0.extend(path.map(|path| text(("force", Some(path.display().to_string())))));
-        self
+    /// The cause of results of `run`, which `args` ask for.
+    pub fn of(args: &MotionArgs, run: &Run) -> Cause {
+        let mut cause = Cause::new(run.structure.clone()).under(&args.ground.record, &run.ground);
+        cause.0.extend(args.ground.force.iter().map(|path| text(("force", Some(path.display().to_string())))));
+        cause
     }
 
     /// This cause of a run under these `conditions`.

@@ -1,7 +1,8 @@
 //! `export`: packs the shared libraries, with all that describes them, into an FMU.
 
-use crate::record_args::{RecordOptions, VerticalArgs, one_of, say_understood};
-use crate::structure_args::{StructureArgs, on_command_line};
+use crate::options::{on_command_line, one_of};
+use crate::record_args::{RecordOptions, VerticalArgs, say_understood};
+use crate::structure_args::StructureArgs;
 use crate::talk::{say, warning};
 use FlexibleRocking::{guid, resources::Contents};
 use anyhow::{Context, bail};

@@ -7,6 +7,7 @@ mod describe;
 mod estimate;
 mod export;
 mod limit_args;
+mod options;
 mod picture;
 mod pulse;
 mod pushover;

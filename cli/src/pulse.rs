@@ -1,6 +1,6 @@
 //! `pulse`: one of the field's standard ground motions as a CSV file that every other command reads.
 use crate::talk::{warning, write_as};
-use crate::{cause::Cause, record_args::one_of, results::FormatArgs, structure_args::StructureArgs};
+use crate::{cause::Cause, options::one_of, results::FormatArgs, structure_args::StructureArgs};
 use clap::{ArgGroup, builder::PossibleValue};
 use rocking::Base;
 use rocking::estimates::intensity::peak_velocity;

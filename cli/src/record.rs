@@ -1,8 +1,8 @@
 //! `record`: what is understood of a record, and the same as a table that is read without options.
 use crate::cause::Cause;
+use crate::options::on_command_line;
 use crate::record_args::{RecordArgs, RecordOptions, VerticalArgs, help_of_record, say_understood};
 use crate::results::FormatArgs;
-use crate::structure_args::on_command_line;
 use crate::talk::write_as;
 use rocking::Parameters;
 use rocking::estimates::intensity::{arias_intensity, peak_velocity, significant_duration};

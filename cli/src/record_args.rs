@@ -1,8 +1,7 @@
 //! Which ground motion record a command works on, how it is read, and how it is scaled.
-use crate::structure_args::on_command_line;
+use crate::options::{on_command_line, one_of};
 use crate::talk::{say, warning};
 use anyhow::{Context, ensure};
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rocking::digits::short;
 use rocking::run::record::Record;
 use rocking_records::{Column, LAYOUTS, Reading, Unit};
@@ -145,15 +144,4 @@ pub fn with_force(understood: Understood, path: Option<&Path>, g: f64) -> anyhow
 pub fn say_understood(label: &str, understood: &Understood) {
     say!("{label}{}", understood.sentences[0]);
     understood.sentences[1..].iter().for_each(|warning| warning!("{warning}"));
-}
-
-/// Takes one of `all` by its name.
-pub fn one_of<T: Copy + Send + Sync + 'static>(
-    all: impl IntoIterator<Item = (impl Into<PossibleValue>, T)>,
-) -> impl TypedValueParser<Value = T> {
-    let (names, values): (Vec<PossibleValue>, Vec<T>) = all.into_iter().map(|(name, of)| (name.into(), of)).unzip();
-    PossibleValuesParser::new(names.clone()).map(move |asked| {
-        let found = names.iter().position(|name| name.matches(&asked, false));
-        values[found.expect("clap accepts these names alone")]
-    })
 }

@@ -1,6 +1,6 @@
 //! The scene that a command simulates: a ground motion record or free vibration, and the initial values.
-use crate::cause::Cause;
-use crate::record_args::{RecordArgs, one_of, with_force};
+use crate::options::one_of;
+use crate::record_args::{RecordArgs, with_force};
 use crate::structure_args::StructureArgs;
 use clap::ArgGroup;
 use rocking::digits::short;
@@ -37,12 +37,6 @@ impl MotionArgs {
     /// The files that are read.
     pub fn inputs(&self) -> impl Iterator<Item = &Path> {
         self.structure.input().into_iter().chain(self.ground.record.inputs()).chain(self.ground.force.as_deref())
-    }
-
-    /// The origin of results of `run`.
-    pub fn cause(&self, run: &Run) -> Cause {
-        let cause = Cause::new(run.structure.clone()).under(&self.ground.record, &run.ground);
-        cause.pushed(self.ground.force.as_ref())
     }
 }
 

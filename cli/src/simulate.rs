@@ -2,6 +2,7 @@
 mod picture;
 mod profile;
 
+use crate::cause::Cause;
 use crate::limit_args::LimitArgs;
 use crate::picture::Picture;
 use crate::results::{FormatArgs, csv};
@@ -14,9 +15,9 @@ use rocking::run::record::Record;
 use rocking::{Base, Output};
 use rocking_report::output_files::{OutputFile, OutputFiles};
 use rocking_report::quantities::in_readable_unit;
-use rocking_report::run::{Line, Run, usual_periods};
+use rocking_report::run::{Run, event_line, usual_periods};
 use rocking_report::summary::instant;
-use rocking_report::tables::event_line;
+use rocking_report::tables::Line;
 use std::path::PathBuf;
 
 /// Arguments of `simulate`.
@@ -125,7 +126,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     if let Some(line) = centring(run.structure.base()) {
         say!("centring       {line}");
     }
-    let cause = args.motion.cause(&run).computed(&run.conditions);
+    let cause = Cause::of(&args.motion, &run).computed(&run.conditions);
     let mut files = OutputFiles::of_inputs(args.motion.inputs());
     let response = output.map(|path| files.create(path)).transpose()?;
     let events = events.as_deref().map(|path| files.create(path)).transpose()?;

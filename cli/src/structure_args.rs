@@ -1,9 +1,7 @@
 //! Which structure a command works on: one of the paper's specimens, or parameters from a file, with single numbers in
 //! the place of theirs, or numbers that are all of it.
-use crate::{
-    record_args::one_of,
-    talk::{say, warning},
-};
+use crate::options::{on_command_line, one_of, option_name};
+use crate::talk::{say, warning};
 use anyhow::{Context, bail};
 use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource};
 use rocking::digits::short;
@@ -90,15 +88,6 @@ pub fn of_file(text: &str) -> anyhow::Result<Structure> {
         return Ok(toml::from_str::<Described>(text)?.structure()?);
     }
     Ok(toml::from_str::<Given>(text)?.structure(None)?)
-}
-
-/// The option of the number called `name`: `--f-fc` of f_fc.
-pub fn on_command_line(name: &str) -> String {
-    format!("--{}", option_name(name))
-}
-
-fn option_name(name: &str) -> String {
-    name.replace('_', "-")
 }
 
 fn option(name: &'static str, unit: &'static str, help: String) -> Arg {

@@ -8,11 +8,10 @@ mod table;
 
 use crate::picture::Picture;
 use crate::results::FormatArgs;
-use crate::talk::{few, is_quiet, say};
+use crate::talk::{few, progress, say};
 use FlexibleRocking::BUILD;
 use anyhow::{bail, ensure};
 use file::{Asked, RecordSweep};
-use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPool;
 use rocking::digits::with_unit;
 use rocking_report::{input, output_files::OutputFiles};
@@ -64,7 +63,10 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let picture = Picture::create(&picture, &mut files)?;
     match asked {
         Asked::Records(sweep) => run_records(args, *sweep, &pool, &output, picture),
-        Asked::Pulses(sweep) => map::run(args, sweep, &pool, &output, picture),
+        Asked::Pulses(sweep) => {
+            ensure!(!args.validity, "--validity is for records: `simulate` a pulse that `pulse` writes");
+            map::run(sweep, args.results, &pool, &output, picture)
+        }
     }
 }
 
@@ -108,13 +110,6 @@ fn run_records(
     say!("rows           {}", output.display());
     picture::draw(picture, &populations, measure)?;
     report_failures(&plan, &keys, &outcomes)
-}
-
-/// A bar for the progress of many runs, which are called `what`; none where standard error is no terminal.
-fn progress(runs: usize, what: &str) -> anyhow::Result<ProgressBar> {
-    let template = format!("{{elapsed_precise}} {{bar:40}} {{pos}}/{{len}} {what}, {{per_sec}}, {{eta}} left");
-    let bar = if is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(runs as u64) };
-    Ok(bar.with_style(ProgressStyle::with_template(&template)?))
 }
 
 /// Says how many runs failed, and which the first is.

@@ -1,5 +1,6 @@
 //! Messages of a command, on standard error: a program that reads the results does not see them.
 
+use indicatif::{ProgressBar, ProgressStyle};
 use rocking_report::{input, output_files::OutputFile};
 use std::fmt;
 use std::io::{Write, stderr};
@@ -48,6 +49,13 @@ pub fn be_quiet() {
 /// Whether nothing is to be said but warnings and errors.
 pub fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
+}
+
+/// A bar for the progress of many runs, which are called `what`; none where standard error is no terminal.
+pub fn progress(runs: usize, what: &str) -> anyhow::Result<ProgressBar> {
+    let template = format!("{{elapsed_precise}} {{bar:40}} {{pos}}/{{len}} {what}, {{per_sec}}, {{eta}} left");
+    let bar = if is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(runs as u64) };
+    Ok(bar.with_style(ProgressStyle::with_template(&template)?))
 }
 
 /// Writes `content` to `file`, and says the path of the file as that of `what`.

@@ -1,38 +1,13 @@
 //! How the structure on its ground is taken over one step of a co-simulation.
 
-use crate::scene::Scene;
+use crate::scene::{Scene, Told, Watching};
 use crate::setup::Setup;
 use rocking::engine::{AdvanceError, Progress};
 use rocking::run::Runs;
-use rocking::run::fall::FallWatch;
-use rocking::run::validity::Validity;
-use rocking::{LinearLoad, Piece, Transition, Watch};
+use rocking::{LinearLoad, Watch};
 
 /// Part of the time, or of 1/p_l if that is more, that rounding can shift a transition by.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-
-/// Hears of transitions. One type for all listeners keeps the library small.
-pub type Told<'a, Q> = dyn FnMut(&Transition<Q>) + 'a;
-
-/// Watches peaks and limits, if they are asked for. One type for all cases keeps the library small.
-pub struct Watching<'a, 'b, Q: Runs> {
-    pub peaks: Option<FallWatch<Q>>,
-    pub validity: Option<&'a mut Validity>,
-    pub told: &'a mut Told<'b, Q>,
-}
-
-impl<Q: Runs> Watch<Q> for Watching<'_, '_, Q> {
-    fn piece(&mut self, piece: &Piece<Q>) {
-        self.peaks.iter_mut().for_each(|peaks| peaks.piece(piece));
-        self.validity.iter_mut().for_each(|validity| validity.piece(piece));
-    }
-
-    fn transition(&mut self, transition: &Transition<Q>) {
-        self.peaks.iter_mut().for_each(|peaks| peaks.transition(transition));
-        self.validity.iter_mut().for_each(|validity| validity.transition(transition));
-        (self.told)(transition);
-    }
-}
 
 impl<Q: Runs> Scene<Q> {
     /// [`Scene::advance`] up to the first transition. One within rounding of the end of the step counts as at its end: a

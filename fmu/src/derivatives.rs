@@ -2,8 +2,8 @@
 
 use crate::inputs::Inputs;
 use crate::shown::Shown;
+use crate::source::Source;
 use crate::unit::Unit;
-use crate::variables::Source;
 use fmi_unit::{Failure, Model, sensitivity};
 use rocking::run::Runs;
 use rocking::{LinearLoad, Load, Reactions};

@@ -1,6 +1,6 @@
 //! The variables of modes and floors, and the derivatives of all states.
 
-use crate::variables::{ACCELERATION, Row, Source};
+use crate::source::{ACCELERATION, Row, Source};
 use fmi_unit::variables::Text;
 use fmi_unit::{Causality, Variable};
 use rocking::Structure;

@@ -12,7 +12,7 @@
 //! | `scene` | the structure on its ground, from its start on |
 //! | `motion_log` | the messages about transitions and limits |
 //! | `failure` | every message about what is refused |
-//! | [`variables`], `floor_variables` | the table of variables |
+//! | [`variables`], `floor_variables`, `source` | the table of variables |
 //! | `setup`, `inputs` | what is set before the start and during the simulation |
 //! | [`ground`], [`resources`] | records; what the archive carries |
 //!
@@ -32,6 +32,7 @@ pub mod resources;
 mod scene;
 mod setup;
 mod shown;
+mod source;
 pub mod unit;
 pub mod variables;
 

@@ -2,10 +2,9 @@
 //!
 //! The engine stands at the time and state of the host; [`Checkpoint`] keeps the last motion that was right.
 
-use crate::advance::Told;
 use crate::failure::Refusal;
 use crate::motion_log::log;
-use crate::scene::{Outside, Scene};
+use crate::scene::{Outside, Scene, Told};
 use crate::setup::Setup;
 use fmi_unit::{Completed, Failure, Logger, Update};
 use rocking::run::Runs;
@@ -29,11 +28,6 @@ impl<Q: Runs> Scene<Q> {
         let elapsed = Elapsed::default().and(time - setup.start_time);
         let resolution = 2.0 * f64::EPSILON * time.abs().max(setup.start_time.abs());
         self.ground.as_ref().map_or(elapsed, |ground| setup.ground_motion(ground).by_clock(elapsed, resolution))
-    }
-
-    /// The load that acts now under the inputs `load`.
-    pub fn acting(&self, setup: &Setup, load: Load<Q>) -> Load<Q> {
-        self.load(setup, load.into()).value
     }
 
     /// Checks the step from where the motion was last known to where the host is, with the inputs `load` there.

@@ -1,7 +1,6 @@
 //! The structure on its ground: how a simulation starts from its setup, and what acts on the structure and has been
 //! found out about it since.
 
-use crate::advance::{Told, Watching};
 use crate::failure::Refusal;
 use crate::floor_variables::lateral_states;
 use crate::ground::{Digest, GroundRecord, Kept};
@@ -10,12 +9,12 @@ use crate::setup::Setup;
 use rocking::engine::Settings;
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::Runs;
-use rocking::run::fall::Falling;
+use rocking::run::fall::{FallWatch, Falling};
 use rocking::run::ground_motion::{Elapsed, Placement};
 use rocking::run::outside_step::Checkpoint;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits, Validity};
-use rocking::{Engine, LinearLoad, Load, Phase, State, Structure};
+use rocking::{Engine, LinearLoad, Load, Phase, Piece, State, Structure, Transition, Watch};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -46,6 +45,29 @@ pub struct Outside<Q = f64> {
     pub arrived: Load<Q>,
     /// When event mode was entered last: where the record jumps later, it does so once event mode is entered there.
     pub event: Elapsed,
+}
+
+/// Hears of transitions. One type for all listeners keeps the library small.
+pub type Told<'a, Q> = dyn FnMut(&Transition<Q>) + 'a;
+
+/// Watches peaks and limits, if they are asked for. One type for all cases keeps the library small.
+pub struct Watching<'a, 'b, Q: Runs> {
+    pub peaks: Option<FallWatch<Q>>,
+    pub validity: Option<&'a mut Validity>,
+    pub told: &'a mut Told<'b, Q>,
+}
+
+impl<Q: Runs> Watch<Q> for Watching<'_, '_, Q> {
+    fn piece(&mut self, piece: &Piece<Q>) {
+        self.peaks.iter_mut().for_each(|peaks| peaks.piece(piece));
+        self.validity.iter_mut().for_each(|validity| validity.piece(piece));
+    }
+
+    fn transition(&mut self, transition: &Transition<Q>) {
+        self.peaks.iter_mut().for_each(|peaks| peaks.transition(transition));
+        self.validity.iter_mut().for_each(|validity| validity.transition(transition));
+        (self.told)(transition);
+    }
 }
 
 impl Setup {
@@ -122,6 +144,11 @@ impl<Q: Runs> Scene<Q> {
             Some(outside) => ground.since(outside.event, elapsed),
             None => ground.at(elapsed),
         })
+    }
+
+    /// The load that acts now under the inputs `load`.
+    pub fn acting(&self, setup: &Setup, load: Load<Q>) -> Load<Q> {
+        self.load(setup, load.into()).value
     }
 
     /// Whether no step has been made, and the first phase lasts: under `load` no transition is due at once.

@@ -2,7 +2,7 @@
 
 use crate::scene::Scene;
 use crate::setup::Setup;
-use crate::variables::Source;
+use crate::source::Source;
 use rocking::run::Runs;
 use rocking::run::peaks::Peak;
 use rocking::{Load, Output, Reactions, Sample, State};

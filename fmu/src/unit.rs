@@ -1,15 +1,15 @@
 //! The structure on its ground as a model for FMI: how values are read and set, and how a simulation goes.
 
-use crate::advance::Told;
 use crate::failure::Refusal;
 use crate::ground::{Digest, Kept};
 use crate::inputs::Inputs;
 use crate::motion_log::{log, warn, warn_of_stairs};
 use crate::resources::{Archive, Contents};
-use crate::scene::{Outside, Scene};
+use crate::scene::{Outside, Scene, Told};
 use crate::setup::Setup;
 use crate::shown::Shown;
-use crate::variables::{Source, Table, phase_number};
+use crate::source::{Source, phase_number};
+use crate::variables::Table;
 use crate::{BUILD, guid};
 use fmi_unit::snapshot::{read_state, write_state};
 use fmi_unit::variables::state_references;

@@ -5,156 +5,21 @@ use crate::floor_variables;
 use crate::inputs::{FORCE, loads};
 use crate::resources::Contents;
 use crate::setup::Setup;
-use fmi_unit::{Causality, DataType, Enumeration, Value, Variable};
+use crate::source::{ACCELERATION, DETAILS, PHASES, Row, Source};
+use fmi_unit::{Causality, DataType, Variable};
 use rocking::mechanics::load::LOADS;
-use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::mechanics::state::INITIAL_VALUES;
-use rocking::run::ground_motion::{PLACEMENT, Placement};
+use rocking::run::ground_motion::PLACEMENT;
 use rocking::run::outside_step::INDICATORS;
 use rocking::run::validity::{ASSUMPTIONS, Assumption};
-use rocking::structure::derived::{DERIVED, Derived};
+use rocking::structure::derived::DERIVED;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::Quantity;
-use rocking::{Detail, Impulse, Output, Parameters, Phase, Reactions, Side, Structure};
+use rocking::{Output, Structure};
 use rocking_records::LAYOUTS;
 use std::borrow::Cow;
 use std::collections::HashSet;
 use std::sync::{Arc, LazyLock};
-
-/// The source of the value of a variable.
-#[derive(Clone, Copy, Debug)]
-#[allow(missing_docs)] // the types name what is not said
-pub enum Source {
-    /// By its place among the inputs.
-    Input(usize),
-    Output(Output),
-    Reaction(fn(&Reactions) -> f64),
-    /// A state of many masses, by its place.
-    Coordinate(usize),
-    /// The derivative of a state, by its place.
-    StateRate(usize),
-    /// An event indicator, by its place.
-    Indicator(usize),
-    Impulse(fn(&Impulse) -> f64),
-    Restraint(fn(&Restraints) -> f64),
-    Dissipator(fn(&Dissipators) -> f64),
-    Phase,
-    /// Transitions so far.
-    Transitions,
-    Overturned,
-    Parameter(&'static Quantity<Parameters>),
-    /// An initial value by its place among [`INITIAL_VALUES`], and the floor that has it.
-    InitialValue(usize, usize),
-    Derived(&'static Derived),
-    /// A number of many masses, which nothing changes.
-    Known(f64),
-    Detail,
-    /// A ground acceleration, the input and the record; whether it is the vertical one.
-    Ground(bool),
-    Peak(Output),
-    PeakInstant(Output),
-    /// The worst value of one of [`ASSUMPTIONS`].
-    Worst(usize),
-    /// The instant of the worst value of one of [`ASSUMPTIONS`].
-    WorstInstant(usize),
-    /// Impacts that raise the energy.
-    Gains,
-    /// The instant of overturning.
-    Overturning,
-    /// A parameter that is text: which record.
-    Text(fn(&mut Setup) -> &mut Arc<str>),
-    RecordDuration,
-    Time,
-    Placement(&'static Quantity<Placement>),
-    /// A Boolean parameter.
-    Switch(fn(&mut Setup) -> &mut bool),
-}
-
-impl Source {
-    /// Whether the host sets the value, a real number.
-    pub fn is_set(self) -> bool {
-        use Source::{InitialValue, Input, Parameter, Placement};
-        matches!(self, Input(_) | Parameter(_) | InitialValue(..) | Placement(_))
-    }
-
-    /// The value of a Real parameter or an initial value.
-    pub fn setting(&self, setup: &Setup) -> Option<f64> {
-        match self {
-            Source::Parameter(quantity) => Some((quantity.get)(setup.parameters.as_ref()?)),
-            Source::InitialValue(which, floor) => Some(setup.initial.numbers()[*which][*floor]),
-            Source::Placement(quantity) => Some((quantity.get)(&setup.placement)),
-            _ => None,
-        }
-    }
-
-    /// The value of what is set: of a parameter or an input.
-    pub fn set_value(&self, setup: &Setup) -> Option<Value> {
-        match self {
-            Source::Input(_) => Some(Value::Real(0.0)),
-            Source::Detail => Some(Value::Integer(setup.detail as i32 + 1)),
-            Source::Text(of) => Some(Value::String(of(&mut setup.clone()).to_string())),
-            Source::Switch(of) => Some(Value::Boolean(*of(&mut setup.clone()))),
-            _ => self.setting(setup).map(Value::Real),
-        }
-    }
-
-    /// Sets a parameter or an initial value.
-    pub fn set_to(&self, setup: &mut Setup, value: Value) {
-        match (self, value) {
-            (Source::Detail, Value::Integer(number)) => setup.detail = Detail::ALL[number as usize - 1],
-            (Source::Text(of), Value::String(value)) => *of(setup) = value.into(),
-            (Source::Switch(of), Value::Boolean(on)) => *of(setup) = on,
-            (Source::Parameter(quantity), Value::Real(value)) => {
-                setup.parameters.iter_mut().for_each(|of| (quantity.set)(of, value));
-            }
-            (Source::InitialValue(which, floor), Value::Real(value)) => {
-                setup.initial.numbers_mut()[*which][*floor] = value;
-            }
-            (Source::Placement(quantity), Value::Real(value)) => (quantity.set)(&mut setup.placement, value),
-            _ => (),
-        }
-    }
-}
-
-/// The phases, as [`phase_number`] numbers them.
-pub static PHASES: Enumeration = Enumeration {
-    name: "Phase",
-    description: "phase of the motion",
-    items: &[
-        Phase::FullContact.name(),
-        Phase::Rocking(Side::Left).name(),
-        Phase::Rocking(Side::Right).name(),
-        Phase::Overturned(Side::Right).name(),
-        Phase::FLIGHT.name(),
-    ],
-};
-
-/// The levels of detail, in the order of [`Detail::ALL`].
-pub static DETAILS: Enumeration = Enumeration {
-    name: "Detail",
-    description: "level of detail: the equations that move the structure",
-    items: &[
-        Detail::Auto.name(),
-        Detail::Nonlinear.name(),
-        Detail::Linear.name(),
-        Detail::Modal.name(),
-        Detail::Rigid.name(),
-        Detail::FixedBase.name(),
-    ],
-};
-
-pub(crate) fn phase_number(phase: Phase) -> i32 {
-    match phase {
-        Phase::FullContact => 1,
-        Phase::Rocking(Side::Left) => 2,
-        Phase::Rocking(Side::Right) => 3,
-        Phase::Overturned(_) => 4,
-        Phase::OnGround(_) => 5,
-    }
-}
-
-/// A variable, and where its value is.
-pub(crate) type Row = (Variable, Source);
 
 /// All variables.
 #[derive(Clone, Debug)]
@@ -269,13 +134,6 @@ fn inputs(structure: &Structure) -> Vec<Row> {
     };
     loads(structure).into_iter().enumerate().map(row).collect()
 }
-
-/// The variables that accelerations follow from.
-#[rustfmt::skip]
-pub(crate) const ACCELERATION: &[&str] = &[
-    "a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "theta_dot", "m", "m0", "H", "B", "J0", "f_fc", "zeta_fc", "c_ratio",
-    "g", "detail", "P_0", "k_t", "xi_d", "c_d", "k_d", "F_y",
-];
 
 /// A continuous real number, and what it follows from.
 fn real(

@@ -1,10 +1,9 @@
 //! Arguments of Python, and their errors with name, value and limit in the words of the library.
 
-use crate::structure::Structure;
 use anyhow::anyhow;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::call::PyCallArgs;
-use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
+use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyTuple};
 use rocking::mechanics::state::INITIAL_VALUES;
@@ -37,7 +36,7 @@ pub fn integer(name: &str, value: &Bound<'_, PyAny>) -> PyResult<i64> {
 
 /// Readers of an argument of their name, whose messages have that name.
 pub mod argument {
-    use super::{Bound, Detail, Py, PyAny, PyResult, PyTypeError, Structure, integer, number, one_of};
+    use super::{Bound, Detail, PyAny, PyResult, integer, number, one_of};
 
     macro_rules! numbers {
         ($($name:ident)*) => {$(
@@ -51,12 +50,6 @@ pub mod argument {
     }
 
     numbers!(amplification amplitude error frequency g phase scale time_scale tolerance within zeta);
-
-    pub fn structure(value: &Bound<'_, PyAny>) -> PyResult<Py<Structure>> {
-        let needed =
-            || PyTypeError::new_err(format!("structure = {value:?} is no Structure: Structure(m=...) makes one"));
-        Ok(value.cast::<Structure>().map_err(|_| needed())?.clone().unbind())
-    }
 
     pub fn detail(value: &Bound<'_, PyAny>) -> PyResult<Detail> {
         one_of("detail", value, Detail::ALL.map(|of| (of.name(), of)))

@@ -3,7 +3,7 @@
 use crate::arguments::{argument, conditions, numbers, refused, result};
 use crate::interruptible::interruptible;
 use crate::record::{Ground, Record};
-use crate::structure::Structure;
+use crate::structure::{self, Structure};
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -283,7 +283,7 @@ impl Run {
 #[pyo3(text_signature = "(structure, record=None, *, duration=None, detail='auto', tolerance=1e-09, **initial)")]
 pub fn simulate(
     py: Python<'_>,
-    #[pyo3(from_py_with = argument::structure)] structure: Py<Structure>,
+    #[pyo3(from_py_with = structure::argument)] structure: Py<Structure>,
     record: Option<Ground>,
     duration: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = argument::detail)] detail: Detail,

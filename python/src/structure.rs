@@ -4,7 +4,7 @@ use crate::arguments::{numbers, one_of, refused, warn};
 use crate::interruptible::interruptible;
 use crate::many_masses::{INSTEAD, OF_MANY, frame, given};
 use numpy::PyArray1;
-use pyo3::exceptions::{PyAttributeError, PyValueError};
+use pyo3::exceptions::{PyAttributeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rocking::estimates::effective_frequency::effective_frequency;
@@ -46,6 +46,12 @@ pub struct Structure {
     pub of: rocking::Structure,
     /// The keywords that make a structure of many masses.
     keywords: Option<Py<PyDict>>,
+}
+
+/// Reads the argument `structure`.
+pub fn argument(value: &Bound<'_, PyAny>) -> PyResult<Py<Structure>> {
+    let needed = || PyTypeError::new_err(format!("structure = {value:?} is no Structure: Structure(m=...) makes one"));
+    Ok(value.cast::<Structure>().map_err(|_| needed())?.clone().unbind())
 }
 
 impl PartialEq for Structure {

@@ -1,6 +1,6 @@
 //! A run of a structure of one mass or of many: what every door prints, writes and draws comes from here.
 
-use crate::tables::line;
+use crate::tables::{AFTER, Line, line};
 use anyhow::ensure;
 use rocking::engine::motion::Work;
 use rocking::estimates::response_spectrum::floor_spectrum;
@@ -115,10 +115,6 @@ pub struct Event {
     pub states: [Vec<f64>; 2],
 }
 
-/// A line of the response: the numbers in the order of [`Run::columns`], the phase, and the number of transitions so far.
-#[derive(Serialize)]
-pub struct Line(pub Vec<f64>, pub &'static str, pub u64);
-
 /// The phases by their numbers among the [`Samples`].
 pub const PHASES: [Phase; 5] = [
     Phase::Overturned(Side::Left),
@@ -148,6 +144,11 @@ pub struct Curve {
     pub phases: Vec<Phase>,
     /// a_g and the drawn outputs by name.
     pub columns: Vec<(String, Vec<f64>)>,
+}
+
+/// A line of the transitions.
+pub fn event_line(event: &Event) -> impl Serialize {
+    (event.time, event.kind.name(), &event.states)
 }
 
 /// A watcher of any run.
@@ -257,6 +258,26 @@ impl Run {
     pub fn outputs(&self) -> Vec<Named> {
         let structure = self.structure.at(self.conditions.detail);
         Output::all(&structure).into_iter().map(|of| (of.name(&structure), of.unit())).collect()
+    }
+
+    /// Names and units of the numbers of a line of the response: ground acceleration, outputs, reactions and restraints.
+    pub fn columns(&self) -> Vec<Named> {
+        let named = |(name, unit): (&str, &'static str)| (name.to_owned(), unit);
+        let before = [("time", "s"), ("a_g", "m/s2")].map(named);
+        before.into_iter().chain(self.outputs()).chain(AFTER.map(named)).collect()
+    }
+
+    /// Headings of the response; phase and number of transitions are last.
+    pub fn headings(&self) -> Vec<String> {
+        let numbers = self.columns().into_iter().map(|(name, unit)| format!("{name}[{unit}]"));
+        numbers.chain(["phase", "transitions"].map(str::to_owned)).collect()
+    }
+
+    /// Headings of the transitions: instant, kind, and the state before and after.
+    pub fn event_headings(&self) -> Vec<String> {
+        let components = self.components();
+        let state = |when| components.iter().map(move |(name, unit)| format!("{name}_{when}[{unit}]"));
+        ["time[s]", "kind"].map(str::to_owned).into_iter().chain(state("before")).chain(state("after")).collect()
     }
 
     /// The components of a state: elastic displacements and velocities, then rotation and angular velocity.

@@ -1,12 +1,16 @@
-//! The tables of a run: the response and its transitions.
-use crate::run::{Event, Line, Named, Run};
+//! A line of the response.
 use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::run::Runs;
 use rocking::{Impulse, Output, Reactions, Sample};
 use serde::Serialize;
 
+/// A line of the response: the numbers in the order of [`Run::columns`](crate::run::Run::columns), the phase, and the number of
+/// transitions so far.
+#[derive(Serialize)]
+pub struct Line(pub Vec<f64>, pub &'static str, pub u64);
+
 /// Names and units of the columns after the outputs: reactions, impulses, vertical ground acceleration, ties and dissipators.
-const AFTER: [(&str, &str); 14] = [
+pub(crate) const AFTER: [(&str, &str); 14] = [
     ("R_h", "N"),
     ("R_v", "N"),
     ("R_m", "N.m"),
@@ -23,7 +27,7 @@ const AFTER: [(&str, &str); 14] = [
     ("E_hysteretic", "J"),
 ];
 
-/// A line of the response, in the order of [`Run::headings`], with these values of the `outputs`.
+/// A line of the response, with these values of the `outputs`.
 pub(crate) fn line<Q: Runs>(sample: &Sample<Q>, outputs: Vec<f64>) -> Line {
     let Sample { motion, load, .. } = sample;
     let Reactions { R_h, R_v, R_m } = sample.reactions();
@@ -36,31 +40,4 @@ pub(crate) fn line<Q: Runs>(sample: &Sample<Q>, outputs: Vec<f64>) -> Line {
         motion.phase.shown(motion.state.theta).name(),
         motion.transitions,
     )
-}
-
-impl Run {
-    /// Names and units of the numbers of a line of the response: ground acceleration, outputs, reactions and restraints.
-    pub fn columns(&self) -> Vec<Named> {
-        let named = |(name, unit): (&str, &'static str)| (name.to_owned(), unit);
-        let before = [("time", "s"), ("a_g", "m/s2")].map(named);
-        before.into_iter().chain(self.outputs()).chain(AFTER.map(named)).collect()
-    }
-
-    /// Headings of the response; phase and number of transitions are last.
-    pub fn headings(&self) -> Vec<String> {
-        let numbers = self.columns().into_iter().map(|(name, unit)| format!("{name}[{unit}]"));
-        numbers.chain(["phase", "transitions"].map(str::to_owned)).collect()
-    }
-
-    /// Headings of the transitions: instant, kind, and the state before and after.
-    pub fn event_headings(&self) -> Vec<String> {
-        let components = self.components();
-        let state = |when| components.iter().map(move |(name, unit)| format!("{name}_{when}[{unit}]"));
-        ["time[s]", "kind"].map(str::to_owned).into_iter().chain(state("before")).chain(state("after")).collect()
-    }
-}
-
-/// A line of the transitions.
-pub fn event_line(event: &Event) -> impl Serialize {
-    (event.time, event.kind.name(), &event.states)
 }

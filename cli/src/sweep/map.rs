@@ -5,12 +5,14 @@
 //! the key, so another grid through the same point has the same key.
 mod picture;
 
-use super::{SweepArgs, file::MapSweep, progress};
+use super::file::MapSweep;
 use crate::picture::Picture;
-use crate::talk::{say, warning};
+use crate::results::FormatArgs;
+use crate::talk::{progress, say, warning};
 use FlexibleRocking::BUILD;
-use anyhow::{bail, ensure};
+use anyhow::bail;
 use csv::StringRecord;
+use picture::Spectrum;
 use rayon::{ThreadPool, prelude::*};
 use rocking::digits::short;
 use rocking::run::{LONGEST_REST, validity};
@@ -20,16 +22,6 @@ use rocking_sweep::row_file::{self, Digest, Known, Program, RowFile, fixed, head
 use serde::Serialize;
 use std::{collections::HashMap, fmt::Write, path::Path, sync::Mutex};
 use uuid::Uuid;
-
-/// A map, and what is known of it.
-pub struct Spectrum {
-    /// Name of the structure.
-    pub name: String,
-    /// The map.
-    pub map: Map,
-    /// Every point that has been run.
-    pub points: HashMap<Place, Point>,
-}
 
 /// How many points of a map's grid are of a class.
 #[derive(Serialize)]
@@ -42,13 +34,12 @@ struct Count<'a> {
 
 /// Does the runs that are not in the file at `output` yet, then prints and draws the maps.
 pub fn run(
-    args: &SweepArgs,
     (maps, refinements): MapSweep,
+    results: FormatArgs,
     pool: &ThreadPool,
     output: &Path,
     picture: Picture,
 ) -> anyhow::Result<()> {
-    ensure!(!args.validity, "--validity is for records: `simulate` a pulse that `pulse` writes");
     let (file, mut known) = open(output)?;
     for (name, map) in &maps {
         let structure = &map.structure;
@@ -65,7 +56,7 @@ pub fn run(
     }
     row_file::others(known.len(), output, "points that are not in these maps").iter().for_each(|line| say!("{line}"));
     let counts: Vec<_> = spectra.iter().flat_map(count).collect();
-    args.results.print(|| text(&spectra, &counts), &counts)?;
+    results.print(|| text(&spectra, &counts), &counts)?;
     say!("rows           {}", output.display());
     picture::draw(picture, &spectra, refinements)?;
     report_failures(&spectra)

@@ -11,13 +11,13 @@ mod stages;
 
 use crate::c_abi::{self, *};
 use crate::failure::Failure;
-use crate::instance::Instance;
+use crate::instance::{Instance, find};
 pub use crate::interface::IntermediateUpdateCallback;
 use crate::interface::{Interface, IntermediateUpdate, Stepping};
 use crate::logger::{Category, Sink};
 use crate::model::{Completed, Experiment, Model, Progress, Update};
 use crate::state_machine::Stage;
-use crate::variables::{Causality, DataType, Role, find};
+use crate::variables::{Causality, DataType, Role};
 use libc::{c_char, c_int, c_uint, c_void, size_t};
 use std::path::Path;
 use std::ptr;

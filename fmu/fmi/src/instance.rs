@@ -7,7 +7,7 @@ use crate::logger::Logger;
 use crate::model::{Completed, Experiment, Model, Progress, Step, Update};
 use crate::snapshot::{Snapshot, Snapshots};
 use crate::state_machine::{Stage, Stages};
-use crate::variables::{Causality, DataType, Role, Value, Variable, find, state_references};
+use crate::variables::{Causality, DataType, Role, Value, Variable, state_references};
 use std::ffi::{CString, c_char};
 use std::sync::Arc;
 
@@ -66,6 +66,14 @@ struct EventHandling {
     /// Whether the host has completed a step or entered event mode.
     has_begun: bool,
     is_warned: bool,
+}
+
+/// The variable at the `position`, if the value reference of the variable at position 0 is `first`.
+#[inline]
+pub(crate) fn find(variables: &[Variable], position: u32, first: u32) -> Result<&Variable, Failure> {
+    let last = variables.len() - 1 + first as usize;
+    let reference = position.wrapping_add(first);
+    variables.get(position as usize).ok_or(Failure::UnknownReference { reference, first, last })
 }
 
 fn range(variable: &Variable) -> (f64, f64) {

@@ -1,7 +1,6 @@
 //! The table of variables of a model: names, types, who sets what, and what depends on what. A value reference is a position
 //! in the table, which is made at run time; in FMI 3.0 the first position is 1.
 
-use crate::failure::Failure;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
@@ -200,14 +199,6 @@ impl Variable {
 pub fn position(variables: &[Variable], name: &str) -> usize {
     let found = variables.iter().position(|variable| variable.name == name);
     found.unwrap_or_else(|| panic!("no variable is called {name}"))
-}
-
-/// The variable at the `position`, if the value reference of the variable at position 0 is `first`.
-#[inline]
-pub fn find(variables: &[Variable], position: u32, first: u32) -> Result<&Variable, Failure> {
-    let last = variables.len() - 1 + first as usize;
-    let reference = position.wrapping_add(first);
-    variables.get(position as usize).ok_or(Failure::UnknownReference { reference, first, last })
 }
 
 /// The references of the variables whose role is one, in their order.

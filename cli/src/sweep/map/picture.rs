@@ -1,11 +1,20 @@
 //! The picture of maps: classes and rotations as cells, and beside them, where it is known, the condition.
-use super::Spectrum;
 use crate::picture::{
     Area, Picture, SMALL, TEXT, TITLE, axes, chart, colour, log_axis, px, shortened, stroke, titled, words,
 };
 use plotters::prelude::*;
 use rocking_sweep::map::{Axis, Fate, Map, Place, Point, finest_step, nearest};
-use std::ops::Range;
+use std::{collections::HashMap, ops::Range};
+
+/// A map, and what is known of it.
+pub struct Spectrum {
+    /// Name of the structure.
+    pub name: String,
+    /// The map.
+    pub map: Map,
+    /// Every point that has been run.
+    pub points: HashMap<Place, Point>,
+}
 
 /// Sizes in pixels: of a panel with its axes, of a panel's name, of a line of the legend.
 const PANEL: (u32, u32) = (440, 400);
