@@ -239,16 +239,17 @@ measure: $(if $(filter-out record,$(WHAT)),.venv/peers module,.venv/ready)
 	$(if $(filter precision,$(WHAT)),cargo run --release --manifest-path study/Cargo.toml -- precision && $(PYTHON) -m evidence accuracy)
 	$(if $(filter ensembles,$(WHAT)),OMP_NUM_THREADS=1 $(PYTHON) study/ensemble.py && $(PYTHON) study/ensemble_jax.py && $(PYTHON) -m evidence.pictures ensembles)
 
-# What the demo takes: what packs the shared library, and that, in the folder `deps`, which it is linked to.
+# What the demo takes: the example that packs the shared library, and the library, in the folder `deps`, which the example is linked to.
 library:
-	cargo build --release $(PACKAGES) --bin fmu-export
+	cargo build --release $(PACKAGES) --example specimen
 
+# With an example the packages have the features that the tests give them: nothing is built twice.
 exporter:
-	cargo build --release $(PACKAGES)
+	cargo build --release $(PACKAGES) --lib --bins --example specimen
 
 out/%.fmu: library
 	mkdir -p out
-	$(TARGET)/release/fmu-export $(TARGET)/release/deps/libFlexibleRocking.so $* 2 $@
+	$(TARGET)/release/examples/specimen $(TARGET)/release/deps/libFlexibleRocking.so $* $@
 
 # The first pip that knows groups is 25.1.
 .venv/ready: pyproject.toml

@@ -19,7 +19,7 @@ use rocking_records::RecordError;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// Licences of all that the shared library is made of, on every [`Platform`]; `WRITE_LICENSES=1 cargo test --release -p fmu-export --test licenses` writes it.
+/// Licences of all that the shared library is made of, on every [`Platform`]; `WRITE_LICENSES=1 cargo test --release -p flexible-rocking-fmu --test licenses` writes it.
 const LICENSES: &str = include_str!("../resources/licenses.txt");
 
 const ICON: &[u8] = include_bytes!("../resources/model.png");

@@ -1,4 +1,4 @@
-//! Keeps resources/licenses.txt true: the licences of everything that is linked into the shared library, as one text.
+//! Keeps export/resources/licenses.txt true: the licences of everything that is linked into the shared library, as one text.
 
 use cargo_metadata::{MetadataCommand, Package};
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,7 +22,7 @@ const LICENSE_FILES: [&str; 5] = ["LICENSE", "LICENCE", "UNLICENSE", "COPYING", 
 #[test]
 fn the_file_has_the_licenses_of_the_library() {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let (file, licenses) = (manifest.join("resources/licenses.txt"), licenses(&manifest.join("../..")));
+    let (file, licenses) = (manifest.join("export/resources/licenses.txt"), licenses(&manifest.join("..")));
     if env::var_os("WRITE_LICENSES").is_some() {
         fs::write(&file, &licenses).unwrap();
     }
@@ -31,7 +31,7 @@ fn the_file_has_the_licenses_of_the_library() {
     let (old, new) = (lines(&written), lines(&licenses));
     assert!(
         written == licenses,
-        "fmu/export/resources/licenses.txt is not what the shared library is made of: `WRITE_LICENSES=1 cargo test --release -p fmu-export --test licenses` writes it anew. \
+        "fmu/export/resources/licenses.txt is not what the shared library is made of: `WRITE_LICENSES=1 cargo test --release -p flexible-rocking-fmu --test licenses` writes it anew. \
          Missing: {:#?}. Too much: {:#?}",
         new.difference(&old).collect::<Vec<_>>(),
         old.difference(&new).collect::<Vec<_>>()
