@@ -140,10 +140,11 @@ impl<'a> Table<'a> {
             }
             for (column, field) in fields.into_iter().enumerate() {
                 let number = number(&layout.plain(field));
-                let is_text =
-                    column == 0 && !field.starts_with(|letter: char| letter.is_numeric() || "+-.".contains(letter));
-                let remedy = if is_text { ": write # before a line of text" } else { "" };
-                let no_number = || bad(line, table.no_number(column, field) + remedy);
+                let no_number = || {
+                    let is_text = column == 0 && !field.starts_with(|c: char| c.is_numeric() || "+-.".contains(c));
+                    let remedy = if is_text { ": write # before a line of text" } else { "" };
+                    bad(line, table.no_number(column, field) + remedy)
+                };
                 table.numbers.push(number.ok_or_else(no_number)?);
             }
         }

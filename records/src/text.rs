@@ -59,7 +59,8 @@ pub(super) fn value_of<'a>(lines: impl Iterator<Item = (usize, &'a str)>, key: &
 
 /// Whether a mark says that `line` is a comment.
 pub(super) fn is_comment(line: &str) -> bool {
-    ["#", "%", "!", "$", "/&", "*END"].iter().any(|mark| line.trim_start().starts_with(mark))
+    let line = line.trim_start();
+    line.starts_with(['#', '%', '!', '$']) || line.starts_with("/&") || line.starts_with("*END")
 }
 
 /// The lines of data from `lines` without comments, of which none is blank but at the end, where something may have been lost.

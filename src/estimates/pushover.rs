@@ -299,6 +299,6 @@ mod tests {
         assert_relative_eq!(lifts.force * w.dot(&h), (weight + P_0) * B, max_relative = 1e-12);
         assert_relative_eq!(lifts.u, (stiffness.try_inverse().unwrap() * w * lifts.force)[2], max_relative = 1e-10);
         let bare = Structure::of_body(*structure.body(), structure.modes(), &[]).unwrap();
-        assert!(Pushover::new(&bare).unwrap_err().0.starts_with("the structure has no floors"));
+        assert!(Pushover::new(&bare).unwrap_err().to_string().starts_with("the structure has no floors"));
     }
 }

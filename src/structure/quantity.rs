@@ -29,7 +29,7 @@ pub const LARGE: [(&str, &str); 7] = [
 
 impl Units {
     /// The size (SI) and the name of the unit among these that stands for the SI `unit`.
-    fn of<'u>(self, unit: &'u str) -> (f64, &'u str) {
+    fn of(self, unit: &str) -> (f64, &str) {
         let large = LARGE.iter().find(|(si, _)| self == Units::Kilonewtons && *si == unit);
         large.map_or((1.0, unit), |(_, large)| (1e3, large))
     }
