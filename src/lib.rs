@@ -6,7 +6,8 @@
 //!
 //! | room | what is in it |
 //! |---|---|
-//! | [`digits`], [`names`] | how numbers are rounded for tables and sentences; what an unknown name may mean |
+//! | [`digits`] | how numbers are rounded for tables and sentences |
+//! | [`names`] | what an unknown name may mean |
 //! | numbers | value, rate and bounds of one run, or of several side by side: the numbers in which each formula is evaluated |
 //! | [`series`] | Taylor series in time, first crossings, extremes |
 //! | [`structure`] | the structure's numbers, their ranges, the two specimens; what follows from them (before Eq 11, after 13, before 18) |
