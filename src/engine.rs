@@ -43,10 +43,10 @@ use crate::mechanics::reactions::{Impulse, Reactions};
 use crate::mechanics::restraint::{Dissipators, Restraints};
 use crate::numbers::dual::Dual;
 use crate::series::first_crossing::Crossing;
-use crate::structure::ground::MORE;
+use crate::structure::ground::FOOTING;
 use crate::structure::mode::Modes;
 use crate::structure::quantity::{Quantity, Refused, ensure};
-use crate::{Foundation, Output, Phase, State, Structure};
+use crate::{Output, Phase, State, Structure};
 use motion::{Chatter, Motion, Work};
 use phases::Watched;
 use piece::{Piece, Room, Watch};
@@ -254,7 +254,7 @@ impl Engine<Modes> {
         // coordinates of modes have no limits, but are numbers
         let [u, u_dot] = [&state.u, &state.u_dot].map(|numbers| 0.0 * numbers.total());
         let phase = State { u, u_dot, theta: state.theta, theta_dot: state.theta_dot }.initial_phase()?;
-        let more = frame.foundation().map_or(0, |_| MORE);
+        let more = frame.foundation().map_or(0, |_| FOOTING);
         let level = settings.level(&MANY, frame, state.theta)?;
         let (State { u, u_dot, .. }, modes) = (state, level.structure().modes().len());
         for numbers in [u, u_dot] {
@@ -317,7 +317,7 @@ impl<Q: Coordinates> Engine<Q> {
     /// (ü, θ̈) and (u⃛, θ⃛) now under `load`, from the first terms of the series; 0 once overturned.
     fn derivatives(&self, load: LinearLoad<Q>) -> [Second<f64, Q>; 2] {
         let Engine { level, motion: Motion { phase, state, dissipators, .. }, .. } = self;
-        if let Phase::Overturned(_) = phase {
+        if phase.properties().is_over {
             return [Second { u_ddot: Q::each(level.structure(), |_, _| 0.0), theta_ddot: 0.0 }; 2];
         }
         derivatives(&**level, *phase, (state, dissipators, load), &mut Arc::default())
@@ -351,13 +351,13 @@ impl<Q: Coordinates> Engine<Q> {
         let x = Instant::moving(self.structure(), *phase, state, &second, load);
         let u_ddot = Duals { value: second.u_ddot, rate: third.u_ddot };
         let theta_ddot = Dual { value: second.theta_ddot, rate: third.theta_ddot };
-        Rates { x, second: Second { u_ddot, theta_ddot }, is_over: matches!(phase, Phase::Overturned(_)) }
+        Rates { x, second: Second { u_ddot, theta_ddot }, is_over: phase.properties().is_over }
     }
 
     /// Rates of the forces of the restraints now under `load`, N/s; 0 once overturned.
     pub fn restraint_rates(&self, load: Load<Q>) -> Restraints {
         let Motion { phase, state, dissipators, .. } = &self.motion;
-        if let Phase::Overturned(_) = phase {
+        if phase.properties().is_over {
             return Restraints::default();
         }
         let (second, angles) = (self.sample(load).second(), self.level.subject().angles);
@@ -374,7 +374,7 @@ impl<Q: Coordinates> Engine<Q> {
     /// Whether the structure, in full contact now, stays there while nothing acts on it.
     pub fn stays_down(&self) -> bool {
         let Motion { phase, state, dissipators, .. } = &self.motion;
-        matches!(phase, Phase::FullContact | Phase::OnGround(_)) && self.level.stays_down(state, dissipators)
+        !phase.properties().rotates && self.level.stays_down(state, dissipators)
     }
 
     /// The motion now, under `load`.
@@ -540,7 +540,7 @@ impl<Q: Coordinates> Rates<'_, Q> {
     #[inline(never)]
     pub fn of(&self, output: Output) -> f64 {
         let Rates { x, second: Second { u_ddot, theta_ddot }, is_over } = *self;
-        let lift = Q::foundation(x.structure).map(|Foundation { place, .. }| u_ddot.of(*place));
+        let lift = Q::foundation(x.structure).map(|ground| u_ddot.footing(ground).y);
         let x = Instant { theta_ddot, a_v: lift.map_or(x.a_v, |lift| x.a_v + lift), ..x };
         if is_over { 0.0 } else { output.of(&x).rate }
     }
@@ -575,7 +575,7 @@ fn leap_under<Q: Coordinates>(
     load: LinearLoad<Q>,
 ) -> Option<State<Q>> {
     // no level leaps on ground that gives, where a step need not be made ready in vain
-    if motion.chatter.held > 0.0 || matches!(motion.phase, Phase::OnGround(_)) {
+    if motion.chatter.held > 0.0 || !motion.phase.properties().may_leap {
         return None;
     }
     let start = level.subject().start(motion.state, &motion.dissipators, load, interval);

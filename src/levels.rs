@@ -172,7 +172,7 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
     }
 
     fn swings(&self, phase: Phase, start: &Start) -> Option<[f64; 4]> {
-        self.contact.as_ref().filter(|_| phase == Phase::FullContact).map(|contact| contact.swings(start))
+        self.contact.as_ref().filter(|_| phase.properties().is_down).map(|contact| contact.swings(start))
     }
 
     fn most(&self, phase: Phase, start: &Start, end: &State) -> State {

@@ -17,7 +17,7 @@ pub mod quantity;
 use crate::series::bisection::last_where;
 use base::{Base, Body};
 use gauge::{Gauges, Reach, rest};
-use ground::{Foundation, Ground, MORE};
+use ground::{FOOTING, Foundation, Ground};
 use mode::{Floor, MOST_MODES, Mode, Modes, Vibration};
 use one_mass::OneMass;
 use parameters::Parameters;
@@ -218,14 +218,17 @@ impl Structure {
     /// structures of many masses are. Without `ground`, this structure.
     pub fn on<'g>(&self, ground: impl Into<Option<&'g Ground>>) -> Result<Structure, Refused> {
         let Some(ground) = ground.into() else { return Ok(self.clone()) };
-        let kept =
-            if self.modes().len() > MOST_MODES - MORE { self.with_lowest(MOST_MODES - MORE) } else { self.clone() };
+        let kept = if self.modes().len() > MOST_MODES - FOOTING {
+            self.with_lowest(MOST_MODES - FOOTING)
+        } else {
+            self.clone()
+        };
         let foundation = Foundation::new(ground, kept.base(), kept.body(), kept.modes());
         let foundation = foundation.map_err(|error| error.of("ground"))?;
         if foundation.is_none() {
             return Ok(self.on_rigid_ground());
         }
-        let coordinates = [kept.modes(), &[Mode { mass: 1.0, ..Mode::default() }; MORE]].concat();
+        let coordinates = [kept.modes(), &[Mode { mass: 1.0, ..Mode::default() }; FOOTING]].concat();
         Ok(kept.standing(foundation, coordinates))
     }
 

@@ -14,7 +14,7 @@ use rocking::run::ground_motion::{Elapsed, Placement};
 use rocking::run::outside_step::Checkpoint;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits, Validity};
-use rocking::{Engine, LinearLoad, Load, Phase, Piece, State, Structure, Transition, Watch};
+use rocking::{Engine, LinearLoad, Load, Piece, State, Structure, Transition, Watch};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -168,7 +168,7 @@ impl<Q: Runs> Scene<Q> {
 
     /// Whether the structure has overturned, which ends the simulation.
     pub fn has_overturned(&self) -> bool {
-        matches!(self.engine.motion().phase, Phase::Overturned(_))
+        self.engine.motion().phase.properties().is_over
     }
 
     /// The instant of overturning, s.

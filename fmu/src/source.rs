@@ -6,7 +6,7 @@ use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::run::ground_motion::Placement;
 use rocking::structure::derived::Derived;
 use rocking::structure::quantity::Quantity;
-use rocking::{Detail, Impulse, Output, Parameters, Phase, Reactions, Side};
+use rocking::{Detail, Impulse, Output, Parameters, Phase, Reactions};
 use std::sync::Arc;
 
 /// The source of the value of a variable.
@@ -104,18 +104,8 @@ impl Source {
     }
 }
 
-/// The phases, as [`phase_number`] numbers them.
-pub static PHASES: Enumeration = Enumeration {
-    name: "Phase",
-    description: "phase of the motion",
-    items: &[
-        Phase::FullContact.name(),
-        Phase::Rocking(Side::Left).name(),
-        Phase::Rocking(Side::Right).name(),
-        Phase::Overturned(Side::Right).name(),
-        Phase::FLIGHT.name(),
-    ],
-};
+/// The phases, numbered from 1.
+pub static PHASES: Enumeration = Enumeration { name: "Phase", description: "phase of the motion", items: &NAMES };
 
 /// The levels of detail, in the order of [`Detail::ALL`].
 pub static DETAILS: Enumeration = Enumeration {
@@ -131,15 +121,14 @@ pub static DETAILS: Enumeration = Enumeration {
     ],
 };
 
-pub(crate) fn phase_number(phase: Phase) -> i32 {
-    match phase {
-        Phase::FullContact => 1,
-        Phase::Rocking(Side::Left) => 2,
-        Phase::Rocking(Side::Right) => 3,
-        Phase::Overturned(_) => 4,
-        Phase::OnGround(_) => 5,
+const NAMES: [&str; Phase::SHOWN.len()] = {
+    let (mut names, mut i) = ([""; Phase::SHOWN.len()], 0);
+    while i < names.len() {
+        names[i] = Phase::SHOWN[i].name();
+        i += 1;
     }
-}
+    names
+};
 
 /// A variable, and where its value is.
 pub(crate) type Row = (Variable, Source);

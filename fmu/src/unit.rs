@@ -8,7 +8,7 @@ use crate::resources::{Archive, Contents};
 use crate::scene::{Outside, Scene, Told};
 use crate::setup::Setup;
 use crate::shown::Shown;
-use crate::source::{Source, phase_number};
+use crate::source::Source;
 use crate::variables::Table;
 use crate::{BUILD, guid};
 use fmi_unit::snapshot::{read_state, write_state};
@@ -171,7 +171,7 @@ impl<Q: Runs> Model for Unit<Q> {
         Ok(match source {
             Source::Phase => {
                 let motion = self.scene()?.engine.motion();
-                Value::Integer(phase_number(motion.phase.shown(motion.state.theta)))
+                Value::Integer(1 + motion.phase.shown(motion.state.theta).number() as i32)
             }
             Source::Transitions => integer(self.scene()?.engine.motion().transitions),
             Source::Overturned => Value::Boolean(self.scene()?.has_overturned()),

@@ -12,7 +12,7 @@ use rocking::engine::{DEFAULT_TOLERANCE, motion::Work};
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::validity::{ASSUMPTIONS, Limits, Worst};
 use rocking::{Detail, Phase};
-use rocking_report::run::{Event, Found, NamedPeak, OF_FLOOR, PHASES, Run as Followed, Samples, usual_periods};
+use rocking_report::run::{Event, Found, NamedPeak, OF_FLOOR, Run as Followed, Samples, usual_periods};
 use rocking_sweep::plan::Conditions;
 
 /// A structure that has been followed through a ground motion: what `simulate` returns.
@@ -150,7 +150,7 @@ impl Run {
             response.set_item(&name, PyArray1::from_vec(py, column))?;
             units.set_item(name, unit)?;
         }
-        let names = py.import("numpy")?.call_method1("array", (PHASES.map(Phase::name).to_vec(),))?;
+        let names = py.import("numpy")?.call_method1("array", (Phase::SHOWN.map(Phase::name).to_vec(),))?;
         response.set_item("phase", names.get_item(PyArray1::from_vec(py, phases))?)?;
         response.set_item("transitions", PyArray1::from_vec(py, transitions))?;
         result(py, "Response", (response, units))

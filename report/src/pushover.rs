@@ -1,9 +1,9 @@
 //! The pushover: lateral force and moment against displacement (Fig 1).
 
 use crate::quantities::in_readable_unit;
+use rocking::Refused;
 use rocking::digits::significant;
 use rocking::estimates::pushover::{Equilibrium, Pushover, too_soft};
-use rocking::{Phase, Refused};
 use serde::Serialize;
 
 /// Headings of the curve.
@@ -48,6 +48,5 @@ impl Corner {
 /// A line of the curve.
 pub fn line(at: &Equilibrium) -> impl Serialize + use<> {
     let &Equilibrium { phase, theta, u, delta_t, force, moment } = at;
-    let phase = if phase == Phase::FullContact { "full contact" } else { "rocking right" };
-    (phase, theta, u, delta_t, force, moment)
+    (phase.name(), theta, u, delta_t, force, moment)
 }

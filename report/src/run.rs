@@ -10,7 +10,7 @@ use rocking::run::peaks::{Peak, Peaks};
 use rocking::run::record::Record;
 use rocking::run::validity::{self, Findings, Limits};
 use rocking::run::{End, Ending, Finish, RunError, Runs, fall};
-use rocking::{Modes, Output, Phase, Run as Follow, Side, State, Structure, Transition, TransitionKind, Watch};
+use rocking::{Modes, Output, Phase, Run as Follow, State, Structure, Transition, TransitionKind, Watch};
 use rocking_sweep::{plan::Conditions, with_run};
 use serde::Serialize;
 use std::sync::Arc;
@@ -115,20 +115,11 @@ pub struct Event {
     pub states: [Vec<f64>; 2],
 }
 
-/// The phases by their numbers among the [`Samples`].
-pub const PHASES: [Phase; 5] = [
-    Phase::Overturned(Side::Left),
-    Phase::FullContact,
-    Phase::Rocking(Side::Left),
-    Phase::Rocking(Side::Right),
-    Phase::FLIGHT,
-];
-
 /// A motion at instants.
 pub struct Samples {
     /// The numbers, in the order of [`Run::columns`].
     pub columns: Vec<Vec<f64>>,
-    /// Positions in [`PHASES`].
+    /// Positions in [`Phase::SHOWN`].
     pub phases: Vec<u8>,
     /// Numbers of transitions so far.
     pub transitions: Vec<u64>,
@@ -222,7 +213,7 @@ impl Run {
                 waiting.check();
                 let at = order[next];
                 columns.iter_mut().zip(&numbers).for_each(|(column, number)| column[at] = *number);
-                phases[at] = PHASES.iter().position(|of| of.name() == phase).unwrap_or(0) as u8;
+                phases[at] = Phase::SHOWN.iter().position(|of| of.name() == phase).expect("it is shown") as u8;
                 transitions[at] = count;
                 next += 1;
             }

@@ -18,8 +18,8 @@ use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::Dissipators;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Series, ZERO, evaluate};
-use crate::structure::ground::Point;
-use crate::{Foundation, Phase, Ties};
+use crate::structure::ground::{Footing, Point};
+use crate::{Phase, Ties};
 
 /// Part of its terms by which a gap may miss its root.
 const ROUNDING: f64 = 1e-13;
@@ -42,7 +42,8 @@ impl Rises {
         let (mut y, mut sin) = ([ZERO; 2], [ZERO; 2]);
         for (i, series) in [&arc.u, &arc.u_dot].into_iter().enumerate() {
             for (k, of) in arc.used(series).iter().enumerate() {
-                (y[i][k], sin[i][k]) = (of.of(foundation.place), of.of(foundation.place + 1));
+                let footing = of.footing(foundation);
+                (y[i][k], sin[i][k]) = (footing.y, footing.sin);
             }
         }
         let (scale, part) = (foundation.rest.abs() + y[0][0].abs(), arc.span / level.longest_step());
@@ -116,12 +117,13 @@ impl<Q: Coordinates> Guard<Q> for Points {
     fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> Option<TransitionKind> {
         let (i, state) = (usize::from(way.which), &mut motion.state);
         if let Phase::OnGround(contact) = &mut motion.phase {
-            let &Foundation { ref points, place, .. } = level.structure().ground();
-            let Point { xi, k, .. } = *points.get(i)?;
-            let e = state.u.of(place) - xi * state.u.of(place + 1);
+            let ground = level.structure().ground();
+            let Point { xi, k, .. } = *ground.points.get(i)?;
+            let footing = state.u.footing(ground);
+            let e = footing.height(xi);
             contact.pressed ^= 1 << i;
-            let taken = state.u.of(place + 2) - f64::from(way.sign) * 0.5 * k * e * e;
-            state.u.set(place + 2, taken);
+            let taken = footing.taken - f64::from(way.sign) * 0.5 * k * e * e;
+            state.u.set_footing(ground, Footing { taken, ..footing });
         }
         Some(if way.sign > 0 { TransitionKind::Touch(i) } else { TransitionKind::Release(i) })
     }
@@ -192,8 +194,8 @@ impl<Q: Coordinates> Guard<Q> for Tied {
 fn tied_margins<'a, Q: Coordinates>(now: &'a Sample<Q>) -> impl Iterator<Item = f64> + 'a {
     let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
     let Ties { P_0, k_t, xi_d, k_d, F_y, .. } = structure.base().ties;
-    let &Foundation { rest, place, .. } = structure.ground();
-    let of = move |i: usize, xi: f64| [state.u, state.u_dot].map(|q| q.of(place) - xi * q.of(place + 1))[i];
+    let (ground, rest) = (structure.ground(), structure.ground().rest);
+    let of = move |i: usize, xi: f64| [state.u, state.u_dot][i].footing(ground).height(xi);
     let sign = if phase.contact().is_slack { -1.0 } else { 1.0 };
     let of_tendon = (of(0, 0.0) - rest + P_0 / k_t) / rest.abs() * sign;
     let of_pair = [(0, xi_d), (1, -xi_d)].into_iter().map(move |(j, xi)| match dissipators.yields[j] {

@@ -419,7 +419,7 @@ impl<Q: Coordinates> Engine<Q> {
     #[inline]
     pub(crate) fn may_leap(&self) -> bool {
         let Motion { phase, chatter, .. } = &self.motion;
-        *phase == Phase::FullContact && chatter.held <= 0.0 && self.settings.detail == Detail::Auto
+        phase.properties().is_down && chatter.held <= 0.0 && self.settings.detail == Detail::Auto
     }
 
     /// Advances such a structure by `interval` (s) under `load` like [`Engine::go_on`], on `advance` unless one leap is all of it.
@@ -453,7 +453,7 @@ impl<Q: Coordinates> Engine<Q> {
     ) -> Result<Option<Progress>, AdvanceError> {
         let Engine { level, motion, arc, room, settings: Settings { stops: at_transitions, .. }, .. } = self;
         let level = &**level;
-        let is_next = |phase: Phase| stops && Q::IS_ONE && matches!(phase, Phase::Rocking(_));
+        let is_next = |phase: Phase| stops && Q::IS_ONE && phase.properties().rotates;
         if !is_expanded && is_next(motion.phase) && advance.elapsed < advance.end {
             return Ok(None);
         }

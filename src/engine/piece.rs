@@ -300,7 +300,7 @@ impl<'a, Q: Coordinates> Arcs<'a, Q> {
         let &Piece { level, before: &Motion { phase, .. }, .. } = part.piece;
         let periods = 2.0 * TAU / level.structure().vibration().contact;
         let (passed, until) = (part.start.0, part.piece.duration);
-        if phase != Phase::FullContact
+        if !phase.properties().is_down
             || level.structure().modes().len() != 1
             || passed - self.begin < periods
             || until - passed <= 2.0 * periods
@@ -385,7 +385,7 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
         let a_v = Terms::ramp(value.a_v, slope.a_v * arc.span);
         Instant {
             structure,
-            s: phase.pivot(),
+            s: phase.properties().pivot,
             contact: phase.contact(),
             damping: structure.base().damping(phase),
             u,

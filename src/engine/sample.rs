@@ -87,6 +87,6 @@ pub(crate) fn shown<'a, Q: Coordinates>(level: &'a dyn Level<Q>, phase: Phase, n
         return x;
     }
     let Second { u_ddot, theta_ddot } = level.accelerations(phase, now);
-    let lift = Q::foundation(structure).map_or(0.0, |foundation| u_ddot.of(foundation.place));
+    let lift = Q::foundation(structure).map_or(0.0, |ground| u_ddot.footing(ground).y);
     Instant { theta_ddot, a_v: x.a_v + lift, ..x }
 }

@@ -160,10 +160,7 @@ pub trait Level<Q: Coordinates = f64>: Send {
 
     /// `state`, with 0 for all that cannot move in `phase`.
     fn admissible(&self, phase: Phase, state: State<Q>) -> State<Q> {
-        match phase {
-            Phase::FullContact => State { theta: 0.0, theta_dot: 0.0, ..state },
-            Phase::Rocking(_) | Phase::Overturned(_) | Phase::OnGround(_) => state,
-        }
+        if phase.properties().is_down { State { theta: 0.0, theta_dot: 0.0, ..state } } else { state }
     }
 
     /// ü and θ̈ in `phase`, m/s² and rad/s²; not finite where the equations have no solution.

@@ -638,7 +638,7 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
     }
 
     fn admissible(&self, phase: Phase, state: State<Q>) -> State<Q> {
-        let state = if phase == Phase::FullContact { State { theta: 0.0, theta_dot: 0.0, ..state } } else { state };
+        let state = if phase.properties().is_down { State { theta: 0.0, theta_dot: 0.0, ..state } } else { state };
         if self.is_rigid() { State { u: Q::ZERO, u_dot: Q::ZERO, ..state } } else { state }
     }
 }

@@ -27,6 +27,7 @@ use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::restraint::Dissipators;
 use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER, add_each_product, reciprocal};
+use crate::structure::ground::Footing;
 use crate::structure::mode::Modes;
 use crate::{Base, Contact, Foundation, Phase, State};
 use std::cell::RefCell;
@@ -102,19 +103,19 @@ impl<V: Abreast> OnGround<V> {
     /// The truncation that `start` requires over a step of `span` s.
     fn truncation(&self, start: &Start<Modes>, span: f64) -> Truncation<Modes> {
         let (structure, state) = (&self.subject.structure, &start.state);
-        let (&Base { m_t, g, tan_alpha_cg, .. }, place) = (structure.base(), structure.ground().place);
+        let (&Base { m_t, g, tan_alpha_cg, .. }, ground) = (structure.base(), structure.ground());
         let size = |of: &dyn Fn(usize, f64) -> f64| {
             let modes = structure.modes().iter().enumerate();
             (modes.map(|(j, mode)| mode.mass * of(j, mode.stiffness / mode.mass).powi(2)).sum::<f64>() / m_t).sqrt()
         };
         let load = size(&|j, _| start.a_top.value.of(j)) + span * size(&|j, _| start.a_top.slope.of(j));
         let forcing = size(&|j, square| square * state.u.of(j)) + load + g * tan_alpha_cg;
-        let lift = start.a_v.value.abs() + span * start.a_v.slope.abs() + state.u_dot.of(place).abs();
+        let lift = start.a_v.value.abs() + span * start.a_v.slope.abs() + state.u_dot.footing(ground).y.abs();
         let velocity = size(&|j, _| state.u_dot.of(j)) + lift + span.min(1.0 / self.lowest) * forcing;
         let theta_dot = start.local_error * (state.theta_dot.abs() + velocity / self.radius);
         let velocity = start.local_error * velocity;
         let mut u_dot = Modes::each(structure, |_, mode| velocity * (m_t / mode.mass).sqrt());
-        [velocity, theta_dot, f64::INFINITY].iter().enumerate().for_each(|(i, limit)| u_dot.set(place + i, *limit));
+        u_dot.set_footing(ground, Footing { y: velocity, sin: theta_dot, taken: f64::INFINITY });
         Truncation { u_dot, theta_dot }
     }
 
@@ -123,7 +124,8 @@ impl<V: Abreast> OnGround<V> {
         let Start { state, a_g, a_top, a_v, .. } = start;
         let structure = &self.subject.structure;
         let &Base { m_t, J0, S_res, g, .. } = structure.base();
-        let &Foundation { ref points, rest, place: at, .. } = structure.ground();
+        let (under, modes) = (structure.ground(), structure.modes().len());
+        let &Foundation { ref points, rest, .. } = under;
         let span = start.interval.min(self.longest_span);
         // Σ N = push − k y + k ξ sin θ − c ẏ + c ξ θ̇ cos θ, and Σ ξ N
         let (mut k, mut taken, mut push) = ([0.0; 3], [0.0; 3], [0.0; 2]);
@@ -151,7 +153,7 @@ impl<V: Abreast> OnGround<V> {
         let fours = fours.as_mut();
         let (mut inertia, mut offset, mut carried, mut is_pushed) = (V::default(), V::default(), V::default(), false);
         for four in fours.iter_mut() {
-            let of = |q: &Modes| V::each(|i| if four.first + i < at { q.of(four.first + i) } else { 0.0 });
+            let of = |q: &Modes| V::each(|i| if four.first + i < modes { q.of(four.first + i) } else { 0.0 });
             let heavy = four.share * four.mass;
             (four.motion, four.push) = ([of(&state.u), of(&state.u_dot)], [of(&a_top.value), of(&a_top.slope)]);
             four.push = [four.share * a_g.value - four.push[0], (four.share * a_g.slope - four.push[1]) * span];
@@ -172,10 +174,11 @@ impl<V: Abreast> OnGround<V> {
         let (mut theta_dot, mut turning, mut turning_sin) =
             (state.theta_dot, state.theta_dot * cos_0, state.theta_dot * sin_0);
         let (mut sin, mut cos, [mut sin_before, mut cos_before]) = (sin_0, cos_0, [0.0; 2]);
-        let (mut y, mut y_dot, mut gamma, mut offset) = (state.u.of(at), state.u_dot.of(at), 0.0, offset_0);
+        let (mut y, mut y_dot, mut gamma, mut offset) =
+            (state.u.footing(under).y, state.u_dot.footing(under).y, 0.0, offset_0);
         let mut state = *state;
-        state.u.set(at + 1, sin_0);
-        state.u_dot.set(at + 1, turning);
+        state.u.set_footing(under, Footing { sin: sin_0, ..state.u.footing(under) });
+        state.u_dot.set_footing(under, Footing { sin: turning, ..state.u_dot.footing(under) });
         let truncation = self.truncation(start, span);
         let per_span = 1.0 / span;
         arc.begin(&state, span);
@@ -209,7 +212,8 @@ impl<V: Abreast> OnGround<V> {
             let [turning_square, of_middle, of_turning, _] = squares.to_array();
             square[MAX_ORDER - n] = V::each(|_| turning_square);
             let power = taken[0] * of_middle + left_for_turning * of_turning;
-            arc.u_dot[n].set(at + 2, power);
+            let rates = arc.u_dot[n].footing(under);
+            arc.u_dot[n].set_footing(under, Footing { taken: power, ..rates });
             let [N, M] = (f64x2::new(push) + by[0] * y + by[1] * sin + by[2] * y_dot + by[3] * turning).to_array();
             let fall = fall - (ground[0] * cos + ground[1] * cos_before);
             let hang = hang + ground[0] * sin + ground[1] * sin_before;
@@ -255,8 +259,8 @@ impl<V: Abreast> OnGround<V> {
             }
             (turning, turning_sin) = (turning_cos + theta_dot * cos_0, sin_turning + theta_dot * sin_0);
             (sin_before, cos_before, sin, cos, offset) = (sin, cos, next_sin, next_cos, next_offset);
-            [y, sin, power * per].iter().enumerate().for_each(|(i, of)| new.set(at + i, *of));
-            [y_dot, turning, 0.0].iter().enumerate().for_each(|(i, of)| new_rate.set(at + i, *of));
+            new.set_footing(under, Footing { y, sin, taken: power * per });
+            new_rate.set_footing(under, Footing { y: y_dot, sin: turning, taken: 0.0 });
             (arc.theta[order], arc.theta_dot[order]) = (arc.theta_dot[n] * per, theta_dot);
             if arc.ends_at(order, &truncation, &mut previous_is_small) {
                 return;
@@ -292,9 +296,9 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
 
     /// `state` with the sine of its rotation.
     fn admissible(&self, _phase: Phase, mut state: State<Modes>) -> State<Modes> {
-        let ((sin, cos), place) = (libm::sincos(state.theta), self.subject.structure.ground().place + 1);
-        state.u.set(place, sin);
-        state.u_dot.set(place, state.theta_dot * cos);
+        let ((sin, cos), ground) = (libm::sincos(state.theta), self.subject.structure.ground());
+        state.u.set_footing(ground, Footing { sin, ..state.u.footing(ground) });
+        state.u_dot.set_footing(ground, Footing { sin: state.theta_dot * cos, ..state.u_dot.footing(ground) });
         state
     }
 

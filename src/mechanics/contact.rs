@@ -5,16 +5,15 @@ use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint, Restraints, Tie, pair};
 use crate::numbers::{Angle, Number};
-use crate::structure::ground::Point;
+use crate::structure::ground::{Footing, Point};
 use crate::structure::mode::Modes;
 use crate::{Base, Contact, Foundation, Load, Phase, Side, State, Structure, Ties};
 
 /// min(−e, f/k) of each point, m: positive if the point is pressed.
 pub(crate) fn margins<Q: Coordinates>(foundation: &Foundation, state: &State<Q>) -> impl Iterator<Item = f64> {
-    let of = |place: usize| [state.u.of(place), state.u_dot.of(place)];
-    let [y, sin] = [of(foundation.place), of(foundation.place + 1)];
+    let footing = [state.u, state.u_dot].map(|q| q.footing(foundation));
     foundation.points.iter().map(move |&Point { xi, k, c }| {
-        let [e, rate] = [0, 1].map(|i| y[i] - xi * sin[i]);
+        let [e, rate] = footing.map(|of| of.height(xi));
         (-e).min(-(e + c / k * rate))
     })
 }
@@ -26,10 +25,8 @@ impl Foundation {
         let (sin, cos) = libm::sincos(state.theta);
         let [y, slope] = if sin == 0.0 { [self.rest, 0.0] } else { self.held_at(sin, base) };
         let (mut begun, turning) = (*state, state.theta_dot * cos);
-        for (i, [u, u_dot]) in [[y, slope * turning], [sin, turning], [0.0; 2]].into_iter().enumerate() {
-            begun.u.set(self.place + i, u);
-            begun.u_dot.set(self.place + i, u_dot);
-        }
+        begun.u.set_footing(self, Footing { y, sin, taken: 0.0 });
+        begun.u_dot.set_footing(self, Footing { y: slope * turning, sin: turning, taken: 0.0 });
         begun
     }
 
@@ -37,7 +34,7 @@ impl Foundation {
     pub(crate) fn contact<Q: Coordinates>(&self, state: &State<Q>, base: &Base) -> Contact {
         let pressed = margins(self, state).enumerate().map(|(i, margin)| u32::from(margin > 0.0) << i).sum();
         let Ties { P_0, k_t, .. } = base.ties;
-        let is_slack = k_t > 0.0 && P_0 + k_t * (state.u.of(self.place) - self.rest) < 0.0;
+        let is_slack = k_t > 0.0 && P_0 + k_t * (state.u.footing(self).y - self.rest) < 0.0;
         Contact { pressed, points: self.points.len() as u8, is_slack }
     }
 
@@ -45,7 +42,7 @@ impl Foundation {
     pub(crate) fn moved<Q: Coordinates>(&self, state: &State<Q>, base: &Base) -> Dissipators {
         let (Ties { xi_d, k_d, F_y, .. }, mut moved) = (base.ties, Dissipators::NEW);
         for (j, xi) in [xi_d, -xi_d].into_iter().enumerate().filter(|_| k_d > 0.0) {
-            let elongation = state.u.of(self.place) - self.rest - xi * state.u.of(self.place + 1);
+            let elongation = state.u.footing(self).y - self.rest - xi * state.u.footing(self).sin;
             moved.plastic[j] = elongation - elongation.clamp(-F_y / k_d, F_y / k_d);
         }
         moved
@@ -61,10 +58,10 @@ pub(crate) fn ties_on_ground(base: &Base, rest: f64, dissipators: &Dissipators, 
     [Tie { lever: 0.0, force, stiffness, damping: 0.0 }, first, second]
 }
 
-/// The forces of `ties` on ground that gives, given y and sin θ with their rates, N.
-fn forces_on_ground<N: Number>(ties: &[Tie; 3], [y, sin]: [[N; 2]; 2]) -> Restraints<N> {
+/// The forces of `ties` on ground that gives, given the footing and its rates, N.
+fn forces_on_ground<N: Number>(ties: &[Tie; 3], [footing, rates]: [Footing<N>; 2]) -> Restraints<N> {
     let [P_t, F_d1, F_d2] = ties.map(|Tie { lever, force, stiffness, damping }| {
-        N::constant(force) + (y[0] - sin[0] * lever) * stiffness + (y[1] - sin[1] * lever) * damping
+        N::constant(force) + footing.height(lever) * stiffness + rates.height(lever) * damping
     });
     Restraints { P_t, F_d1, F_d2 }
 }
@@ -75,9 +72,9 @@ pub(crate) fn restraints<N: Angle, Q: Lateral<N>>(
     angles: Angles,
     dissipators: &Dissipators,
 ) -> Restraints<N> {
-    if let Some(&Foundation { rest, place, .. }) = Q::foundation(x.structure) {
-        let ties = ties_on_ground(x.base(), rest, dissipators, x.contact);
-        return forces_on_ground(&ties, [place, place + 1].map(|at| x.coordinate(at)));
+    if let Some(ground) = Q::foundation(x.structure) {
+        let ties = ties_on_ground(x.base(), ground.rest, dissipators, x.contact);
+        return forces_on_ground(&ties, x.footing(ground));
     }
     Restraint::about(x.base(), Side::of(x.s), dissipators).forces(&angles.chord(x.theta, x.theta_dot))
 }
@@ -92,10 +89,10 @@ pub(crate) fn restraints<N: Angle, Q: Lateral<N>>(
 /// A slack tendon has −P_0²/(2 k_t).
 pub fn energy(structure: &Structure, contact: Contact, state: &State<Modes>, dissipators: &Dissipators) -> f64 {
     let x = Instant::<f64, Modes>::of(structure, Phase::OnGround(contact), state, Load::NONE);
-    let Some(Foundation { points, rest, place, .. }) = structure.foundation() else { return mechanical(&x) };
+    let Some(ground @ Foundation { points, rest, .. }) = structure.foundation() else { return mechanical(&x) };
     let (&Base { m_t, g, ties, .. }, S_1) = (structure.base(), structure.body().S_1);
     let [offset, rate] = [x.sum(|j, mode| x.u.of(j) * mode.gamma), x.sum(|j, mode| x.u_dot.of(j) * mode.gamma)];
-    let (y, y_dot, turn) = (state.u.of(*place), state.u_dot.of(*place), x.turn);
+    let (y, y_dot, turn) = (state.u.footing(ground).y, state.u_dot.footing(ground).y, x.turn);
     let across = turn.sin * (rate + S_1 * x.theta_dot) + offset * x.theta_dot * turn.cos;
     let pressed = points.iter().enumerate().filter(|(i, _)| contact.is_pressed(*i));
     let of_points: f64 = pressed.map(|(_, point)| 0.5 * point.k * (y - point.xi * turn.sin).powi(2)).sum();

@@ -4,7 +4,8 @@ use crate::mechanics::lateral::{Coordinates, Duals, Lateral};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
-use crate::{Base, Contact, Mode, Phase, State, Structure};
+use crate::structure::ground::Footing;
+use crate::{Base, Contact, Foundation, Mode, Phase, State, Structure};
 
 /// The structure at an instant, with lateral coordinates `Q`.
 #[derive(Clone, Copy, Debug)]
@@ -59,10 +60,7 @@ impl Base {
     /// The damping in `phase` as a fraction of the damping in full contact.
     #[inline]
     pub(crate) fn damping(&self, phase: Phase) -> f64 {
-        match phase {
-            Phase::FullContact | Phase::OnGround(_) => 1.0,
-            Phase::Rocking(_) | Phase::Overturned(_) => self.c_ratio,
-        }
+        if phase.properties().rotates { self.c_ratio } else { 1.0 }
     }
 }
 
@@ -72,7 +70,7 @@ impl<'a, Q: Coordinates> Instant<'a, f64, Q> {
     pub(crate) fn of(structure: &'a Structure, phase: Phase, state: &State<Q>, load: Load<Q>) -> Self {
         let &State { u, u_dot, theta, theta_dot } = state;
         let Load { a_g, F_t, a_v } = load;
-        let (s, damping, turn) = (phase.pivot(), structure.base().damping(phase), theta.turn());
+        let (s, damping, turn) = (phase.properties().pivot, structure.base().damping(phase), theta.turn());
         let contact = phase.contact();
         Instant { structure, s, contact, damping, u, u_dot, theta, theta_dot, theta_ddot: 0.0, turn, a_g, F_t, a_v }
     }
@@ -90,7 +88,7 @@ impl<'a, Q: Coordinates> Instant<'a, Dual<f64>, Duals<Q>> {
     ) -> Self {
         let Instant { s, u, u_dot, theta, theta_dot, turn, .. } =
             Instant::<f64, Q>::of(structure, phase, state, load.value);
-        let moves = if let Phase::Overturned(_) = phase { 0.0 } else { 1.0 };
+        let moves = if phase.properties().is_over { 0.0 } else { 1.0 };
         let dual = |value, rate: f64| Dual { value, rate: moves * rate };
         let lateral = |value: Q, rate: Q| Duals { value, rate: rate.times(moves) };
         let LinearLoad { value, slope } = load;
@@ -125,16 +123,10 @@ impl<N: Number, Q: Lateral<N>> Instant<'_, N, Q> {
         self.s * self.base().B
     }
 
-    /// A lateral coordinate and its rate.
+    /// The coordinates of the base on this `ground`, and their rates.
     #[inline(always)]
-    pub(crate) fn coordinate(&self, place: usize) -> [N; 2] {
-        [self.u.of(place), self.u_dot.of(place)]
-    }
-
-    /// The height of the base at `xi` (m) above the unloaded ground that gives (m), and its rate (F1).
-    pub(crate) fn height(&self, place: usize, xi: f64) -> [N; 2] {
-        let [middle, sin] = [place, place + 1].map(|place| self.coordinate(place));
-        [0, 1].map(|i| middle[i] - sin[i] * xi)
+    pub(crate) fn footing(&self, ground: &Foundation) -> [Footing<N>; 2] {
+        [self.u.footing(ground), self.u_dot.footing(ground)]
     }
 
     /// A sum over the modes.

@@ -8,6 +8,7 @@ use crate::numbers::dual::Dual;
 use crate::numbers::most::Most;
 use crate::series::extremes::{OFF_CHORD, off_chord};
 use crate::series::taylor::evaluate;
+use crate::structure::ground::Footing;
 use crate::structure::mode::{Floor, MOST_MODES, Mode, Modes};
 use crate::{Foundation, Structure};
 use serde::Serialize;
@@ -22,6 +23,12 @@ pub trait Lateral<N: Number>: Copy {
 
     /// The coordinate of mode `j`.
     fn of(&self, j: usize) -> N;
+
+    /// The coordinates of the base on this `ground`.
+    #[inline(always)]
+    fn footing(&self, ground: &Foundation) -> Footing<N> {
+        Footing::of(std::array::from_fn(|i| self.of(ground.place + i)))
+    }
 
     /// Of forces, what acts on mass that no mode carries, if there is such: the force, and its moment about the height of the pivots.
     #[inline(always)]
@@ -101,6 +108,12 @@ pub trait Coordinates:
 
     /// Writes the coordinate of mode `j`.
     fn set(&mut self, j: usize, number: f64);
+
+    /// Writes the coordinates of the base on this `ground`.
+    #[inline(always)]
+    fn set_footing(&mut self, ground: &Foundation, footing: Footing) {
+        footing.numbers().into_iter().enumerate().for_each(|(i, number)| self.set(ground.place + i, number));
+    }
 
     /// The coordinates of four modes from `j` on; 0 of a mode that is none.
     fn four(&self, j: usize) -> f64x4;

@@ -246,16 +246,16 @@ impl Output {
 
     /// The output in the motion `x` on ground that gives (F1, F2).
     fn on_ground<K: Number, Q: Lateral<K>>(self, x: &Instant<K, Q>, foundation: &Foundation) -> K {
-        let Foundation { points, place, .. } = foundation;
+        let (points, [footing, rates]) = (&foundation.points, x.footing(foundation));
         match self {
-            y => x.coordinate(*place)[0],
-            E_foundation => x.coordinate(place + 2)[0],
+            y => footing.y,
+            E_foundation => footing.taken,
             lifted(_) | settled(_) | P_t => {
                 let [xi, k, _, offset] = self.of_height(x.base(), foundation).expect("it is of a height");
-                x.height(*place, xi)[0] * k + K::constant(offset)
+                footing.height(xi) * k + K::constant(offset)
             }
             N(i) if x.contact.is_pressed(i) => {
-                let [e, rate] = x.height(*place, points[i].xi);
+                let [e, rate] = [footing, rates].map(|of| of.height(points[i].xi));
                 -(e * points[i].k + rate * points[i].c)
             }
             edge(side) => {

@@ -10,7 +10,7 @@ use crate::series::extremes::off_chord;
 use crate::series::taylor::{ORDERS, ZERO, evaluate};
 use crate::structure::gauge::Reach;
 use crate::structure::mode::Modes;
-use crate::{Base, Contact, Gauge, Output, Phase, Ramp, State, Structure};
+use crate::{Base, Contact, Foundation, Gauge, Output, Phase, Ramp, State, Structure};
 
 /// Bounds of the magnitudes of a motion.
 #[derive(Clone, Copy, Debug)]
@@ -218,7 +218,7 @@ impl Reach {
         let Reach { a_g, push, .. } = self;
         if let (Some((arc, _)), Some(foundation)) = (most.arc, Q::foundation(structure)) {
             let base = structure.base();
-            let bound = |of: Output| Some(most_of_height(arc, foundation.place, of.of_height(base, foundation)?));
+            let bound = |of: Output| Some(most_of_height(arc, foundation, of.of_height(base, foundation)?));
             let and = |sum: Option<f64>, (i, factor)| Some(sum.unwrap_or(0.0) + bound(Output::N(i))? * factor);
             let edge = if let Output::edge(side) = output { foundation.of_edge(side, base.B) } else { Vec::new() };
             if let Some(bound) = edge.into_iter().fold(bound(output), and) {
@@ -288,9 +288,9 @@ impl Gauge {
 
 /// Bound of the positive part of offset + k e + c ė of the height e at ξ, on ground that gives. y and ξ sin θ cancel in e: their series
 /// are added before they are bounded.
-fn most_of_height<Q: Coordinates>(arc: &Arc<Q>, place: usize, [xi, k, c, offset]: [f64; 4]) -> f64 {
+fn most_of_height<Q: Coordinates>(arc: &Arc<Q>, ground: &Foundation, [xi, k, c, offset]: [f64; 4]) -> f64 {
     let mut series = ZERO;
-    let height = |q: &Q| q.of(place) - xi * q.of(place + 1);
+    let height = |q: &Q| q.footing(ground).height(xi);
     series.iter_mut().zip(arc.used(&arc.u)).for_each(|(of, u)| *of = k * height(u));
     if c != 0.0 {
         series.iter_mut().zip(arc.used(&arc.u_dot)).for_each(|(of, u_dot)| *of += c * height(u_dot));

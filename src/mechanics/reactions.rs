@@ -33,6 +33,7 @@
 
 use crate::mechanics::instant::{Instant, Place, Second};
 use crate::mechanics::lateral::{Coordinates, Lateral};
+use crate::mechanics::state::Properties;
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
 use crate::{Base, Mode, Phase, State, Structure};
@@ -97,7 +98,7 @@ impl<N: Number> Acceleration<N> {
 #[inline(always)]
 fn weight<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> N {
     let weight = x.a_v + N::constant(x.base().g);
-    Q::foundation(x.structure).map_or(weight, |foundation| weight + second.u_ddot.of(foundation.place))
+    Q::foundation(x.structure).map_or(weight, |ground| weight + second.u_ddot.footing(ground).y)
 }
 
 /// R_h and R_v, N.
@@ -203,8 +204,9 @@ impl Impulse {
 /// the rates of the places.
 fn momentum<Q: Coordinates>(structure: &Structure, phase: Phase, state: &State<Q>) -> Impulse {
     let &Base { m0, S_res, B, J0, .. } = structure.base();
-    let (pivot, moves) = (phase.pivot() * B, !matches!(phase, Phase::Overturned(_)));
-    let rate = |rate: f64| if moves { rate } else { 0.0 };
+    let Properties { pivot, is_over, .. } = phase.properties();
+    let pivot = pivot * B;
+    let rate = |rate: f64| if is_over { 0.0 } else { rate };
     let turn = state.theta.turn().at_rate(rate(state.theta_dot));
     let about = |right: Dual<f64>, up: Dual<f64>| up.value * right.rate - right.value * up.rate;
     let (right, up) = (turn.versine * pivot, turn.sin * pivot);

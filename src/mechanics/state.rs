@@ -1,6 +1,7 @@
 //! State and phase of the structure.
 
 use crate::mechanics::lateral::{Coordinates, Lateral};
+use crate::structure::ground::Footing;
 use crate::structure::quantity::{Quantity, Refused, ensure, quantity};
 use crate::{Mode, Structure};
 use nalgebra::{DMatrix, DVector};
@@ -34,7 +35,7 @@ pub enum Side {
 
 impl Side {
     /// s: +1 right, −1 left.
-    pub fn sign(self) -> f64 {
+    pub const fn sign(self) -> f64 {
         match self {
             Side::Left => -1.0,
             Side::Right => 1.0,
@@ -92,34 +93,83 @@ impl Contact {
     }
 }
 
+/// All that is asked of a phase.
+#[derive(Clone, Copy, Debug)]
+pub struct Properties {
+    /// Name.
+    pub name: &'static str,
+    /// The pivot; the right one where no pivot matters.
+    pub side: Side,
+    /// The place of the pivot over B: the sign s, or 0 where the middle of the base is held.
+    pub pivot: f64,
+    /// Whether both edges are down, so that θ = θ̇ = 0.
+    pub is_down: bool,
+    /// Whether the base turns about a pivot, or has done so until it overturned.
+    pub rotates: bool,
+    /// Whether the simulation is over.
+    pub is_over: bool,
+    /// Whether a level may know the end of a step without an expansion.
+    pub may_leap: bool,
+    /// Whether the base touches nothing.
+    pub is_free: bool,
+}
+
 impl Phase {
     /// No point of ground that gives is pressed.
     pub const FLIGHT: Phase = Phase::OnGround(Contact { pressed: 0, points: 0, is_slack: false });
 
+    /// The phases that are [shown](Phase::shown), in the order in which the FMU numbers them; both sides of overturning are one.
+    pub const SHOWN: [Phase; 5] = [
+        Phase::FullContact,
+        Phase::Rocking(Side::Left),
+        Phase::Rocking(Side::Right),
+        Phase::Overturned(Side::Right),
+        Phase::FLIGHT,
+    ];
+
+    /// The properties of the phase.
+    #[inline(always)]
+    pub const fn properties(self) -> Properties {
+        let still = Properties {
+            name: "",
+            side: Side::Right,
+            pivot: 1.0,
+            is_down: false,
+            rotates: false,
+            is_over: false,
+            may_leap: false,
+            is_free: false,
+        };
+        match self {
+            Phase::FullContact => Properties { name: "full contact", is_down: true, may_leap: true, ..still },
+            Phase::Rocking(side) => {
+                let name = if let Side::Left = side { "rocking left" } else { "rocking right" };
+                Properties { name, side, pivot: side.sign(), rotates: true, may_leap: true, ..still }
+            }
+            Phase::Overturned(side) => {
+                Properties { name: "overturned", side, pivot: side.sign(), rotates: true, is_over: true, ..still }
+            }
+            Phase::OnGround(Contact { pressed: 0, .. }) => {
+                Properties { name: "flight", pivot: 0.0, is_free: true, ..still }
+            }
+            Phase::OnGround(_) => Properties { name: "on ground that gives", pivot: 0.0, ..still },
+        }
+    }
+
     /// Name of the phase.
     pub const fn name(self) -> &'static str {
-        match self {
-            Phase::FullContact => "full contact",
-            Phase::Rocking(Side::Left) => "rocking left",
-            Phase::Rocking(Side::Right) => "rocking right",
-            Phase::Overturned(_) => "overturned",
-            Phase::OnGround(Contact { pressed: 0, .. }) => "flight",
-            Phase::OnGround(_) => "on ground that gives",
-        }
+        self.properties().name
     }
 
-    /// The pivot; the right one in full contact, where it does not matter.
-    pub fn side(self) -> Side {
-        match self {
-            Phase::FullContact | Phase::OnGround(_) => Side::Right,
-            Phase::Rocking(side) | Phase::Overturned(side) => side,
-        }
+    /// The place of a phase among [`Phase::SHOWN`], which has it.
+    pub fn number(self) -> usize {
+        Phase::SHOWN.iter().position(|of| of.name() == self.name()).expect("it is shown")
     }
 
-    /// The place of the pivot over B: the sign s, or 0 on ground that gives, where the middle of the base is held.
+    /// The pivot; the right one where no pivot matters.
     #[inline]
-    pub(crate) fn pivot(self) -> f64 {
-        if let Phase::OnGround(_) = self { 0.0 } else { self.side().sign() }
+    pub const fn side(self) -> Side {
+        self.properties().side
     }
 
     /// The points that carry the base on ground that gives; otherwise none.
@@ -269,8 +319,10 @@ impl Structure {
         let mut usual = State { u: Q::each(self, |_, mode| u(mode)), u_dot: Q::each(self, u_dot), theta, theta_dot };
         if let Some(foundation) = self.foundation() {
             let settled = foundation.rest.abs();
-            usual.u.set(foundation.place, settled);
-            usual.u_dot.set(foundation.place, (self.base().g * settled).sqrt());
+            let rate = (self.base().g * settled).sqrt();
+            for (of, y) in [(&mut usual.u, settled), (&mut usual.u_dot, rate)] {
+                of.set_footing(foundation, Footing { y, ..of.footing(foundation) });
+            }
         }
         usual
     }

@@ -567,7 +567,7 @@ mod tests {
 
     impl Watch for Rocking {
         fn piece(&mut self, piece: &Piece) {
-            self.0 += u64::from(matches!(piece.before.phase, Phase::Rocking(_)));
+            self.0 += u64::from(piece.before.phase.properties().rotates);
         }
     }
 

@@ -16,7 +16,8 @@ use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::run::ground_motion::Elapsed;
-use crate::{Engine, Foundation, GroundMotion, Motion, Phase, State};
+use crate::structure::ground::Footing;
+use crate::{Engine, GroundMotion, Motion, Phase, State};
 use serde::{Deserialize, Serialize};
 
 /// How many event indicators there are.
@@ -32,15 +33,11 @@ impl<Q: Coordinates> Sample<'_, Q> {
     pub fn state_rates(&self) -> State<Q> {
         let State { u_dot, theta_dot, .. } = self.level.admissible(self.motion.phase, self.motion.state);
         let Second { u_ddot, theta_ddot } = self.second();
-        match self.motion.phase {
-            Phase::Overturned(_) => {
-                let none = Q::each(self.level.structure(), |_, _| 0.0);
-                State { u: none, u_dot: none, theta: 0.0, theta_dot: 0.0 }
-            }
-            Phase::FullContact | Phase::Rocking(_) | Phase::OnGround(_) => {
-                State { u: u_dot, u_dot: u_ddot, theta: theta_dot, theta_dot: theta_ddot }
-            }
+        if self.motion.phase.properties().is_over {
+            let none = Q::each(self.level.structure(), |_, _| 0.0);
+            return State { u: none, u_dot: none, theta: 0.0, theta_dot: 0.0 };
         }
+        State { u: u_dot, u_dot: u_ddot, theta: theta_dot, theta_dot: theta_ddot }
     }
 }
 
@@ -77,7 +74,7 @@ impl<Q: Coordinates> Checkpoint<Q> {
         load: Load<Q>,
         watch: &mut dyn Watch<Q>,
     ) -> Result<Checked<Q>, AdvanceError> {
-        if let Phase::Overturned(_) = self.motion.phase {
+        if self.motion.phase.properties().is_over {
             return Ok(Checked { motion: self.motion, is_corrected: false, was_hidden: false });
         }
         let end = *engine.motion();
@@ -91,10 +88,11 @@ impl<Q: Coordinates> Checkpoint<Q> {
         let own = own?;
         let has_changed = own.transitions != self.motion.transitions;
         let is_corrected = has_changed || is_beyond;
-        let time = if let Phase::Overturned(_) = own.phase { own.time } else { end.time };
+        let time = if own.phase.properties().is_over { own.time } else { end.time };
         let mut state = if is_corrected { own.state } else { end.state };
-        if let Some(Foundation { place, .. }) = Q::foundation(engine.structure()) {
-            state.u.set(place + 2, own.state.u.of(place + 2)); // the host does not integrate what the ground takes
+        if let Some(ground) = Q::foundation(engine.structure()) {
+            let taken = own.state.u.footing(ground).taken; // the host does not integrate what the ground takes
+            state.u.set_footing(ground, Footing { taken, ..state.u.footing(ground) });
         }
         Ok(Checked { motion: Motion { time, state, ..own }, is_corrected, was_hidden: has_changed && !is_beyond })
     }

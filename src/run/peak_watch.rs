@@ -4,6 +4,8 @@
 //! first kept, since most are soon beaten by the end of another.
 
 use super::peaks::Peaks;
+#[cfg(feature = "lanes")]
+use crate::Engine;
 use crate::engine::MOST_POLYNOMIALS;
 use crate::engine::piece::{Piece, Room, Watch};
 #[cfg(feature = "lanes")]
@@ -15,8 +17,6 @@ use crate::mechanics::lateral::Coordinates;
 use crate::numbers::lanes::put;
 use crate::series::taylor::LONGEST_SPAN;
 use crate::structure::gauge::Reach;
-#[cfg(feature = "lanes")]
-use crate::{Engine, Phase};
 use crate::{LinearLoad, Motion, State, Transition};
 
 /// How many pieces are kept before those that have been beaten are dropped, and how many at most.
@@ -239,7 +239,7 @@ impl<Q: Coordinates> ThetaWatch<Q> {
 #[cfg(feature = "lanes")]
 impl<Q: Coordinates> Watch<Q> for ThetaWatch<Q> {
     fn piece(&mut self, piece: &Piece<Q>) {
-        if piece.before.phase != Phase::FullContact {
+        if !piece.before.phase.properties().is_down {
             self.all.see(piece);
         }
     }

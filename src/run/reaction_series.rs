@@ -11,7 +11,7 @@ use crate::numbers::Number;
 use crate::series::extremes;
 use crate::series::taylor::{ORDERS, Series, ZERO, evaluate};
 use crate::series::terms::Terms;
-use crate::{Base, Motion, Phase, Reactions};
+use crate::{Base, Motion, Reactions};
 
 /// The reactions of the edges over a polynomial. The moment is given in full contact only; while rocking it is sB R_v.
 pub(crate) fn over<Q: Coordinates>(expansion: &Expansion<Q>) -> Reactions<Terms> {
@@ -30,9 +30,9 @@ pub(crate) fn over<Q: Coordinates>(expansion: &Expansion<Q>) -> Reactions<Terms>
     let push = ramp(&|load| structure.pushes(load)[0] - base.m_t * load.a_g);
     let forces = [push, weight * base.m_t];
     let [R_h, R_v] = less_momentum(forces, [along, across], &over.turn, |momentum| momentum.slope(arc.span));
-    let R_m = match phase {
-        Phase::FullContact => ramp(&|load| structure.pushes(load)[1]) - gauges.M_t.at(&over) + weight * offset,
-        _ => Terms::constant(0.0),
+    let R_m = match phase.properties().is_down {
+        true => ramp(&|load| structure.pushes(load)[1]) - gauges.M_t.at(&over) + weight * offset,
+        false => Terms::constant(0.0),
     };
     edges(&over, piece.level.subject(), dissipators, Reactions { R_h, R_v, R_m })
 }
@@ -45,7 +45,7 @@ pub(crate) fn bounds<Q: Coordinates>(expansion: &Expansion<Q>) -> Option<Reactio
     let &Expansion { piece, from, arc } = expansion;
     let (level, phase, load) = (piece.level.subject(), piece.before.phase, piece.load.from(from));
     let structure = &level.structure;
-    if phase == Phase::FullContact || level.is_tied || structure.foundation().is_some() {
+    if phase.properties().is_down || level.is_tied || structure.foundation().is_some() {
         return None;
     }
     let most = expansion.most();

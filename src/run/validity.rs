@@ -294,7 +294,7 @@ impl Validity {
             | TransitionKind::Slack => return,
         };
         self.found.settlings += u64::from(kind == TransitionKind::Settling);
-        let is_landing = phase == Phase::FullContact;
+        let is_landing = phase.properties().is_down;
         // the rigid limit that bounces has come to rest: what is left below the tolerance is no impact
         let is_no_impact = match structure.is_rigid() {
             true => impact::restitution::<Q>(structure, side, &before) > 0.0,
@@ -307,9 +307,9 @@ impl Validity {
         if kinetic == 0.0 {
             return;
         }
-        let gained = match phase {
-            Phase::Rocking(_) => impact::energy_gained::<Q>(structure, side, &before),
-            _ => 0.0, // a landing always loses
+        let gained = match is_landing {
+            false => impact::energy_gained::<Q>(structure, side, &before),
+            true => 0.0, // a landing always loses
         };
         let impulse = Impulse::of::<Q>(structure, (Phase::Rocking(side), &before), (phase, &after));
         self.found.impacts += 1;

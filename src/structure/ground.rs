@@ -9,6 +9,7 @@
 //! y is the height of the middle of the base above the unloaded ground. The middle moves vertically only. At rest all points are
 //! pressed, and y is y_s = −(m_t g + P_0)/Σ k. The points take the place of uplift, impact and restitution.
 
+use crate::numbers::Number;
 use crate::series::bisection::last_where;
 use crate::structure::quantity::{Quantity, Refused, Units, ensure, ensure_in};
 use crate::{Base, Body, Mode, Ties};
@@ -60,15 +61,46 @@ pub struct Foundation {
     pub ground: Ground,
     /// y at rest y_s, m.
     pub rest: f64,
-    /// The place of y among the lateral coordinates, after the modes; sin θ and the energy that the ground has taken follow.
+    /// The place of the [`Footing`] among the lateral coordinates, after the modes.
     pub(crate) place: usize,
+}
+
+/// Number of the coordinates of a [`Footing`].
+pub(crate) const FOOTING: usize = 3;
+
+/// The coordinates of a base on ground that gives beside those of the modes, or their rates.
+#[derive(Clone, Copy, Debug)]
+pub struct Footing<N = f64> {
+    /// Height of the middle of the base above the unloaded ground, m.
+    pub y: N,
+    /// sin θ.
+    pub sin: N,
+    /// Energy that the ground has taken, J.
+    pub taken: N,
+}
+
+impl<N> Footing<N> {
+    /// The coordinates with these numbers, in the order in which they stand.
+    pub fn of([y, sin, taken]: [N; FOOTING]) -> Footing<N> {
+        Footing { y, sin, taken }
+    }
+
+    /// The numbers in that order.
+    pub fn numbers(self) -> [N; FOOTING] {
+        [self.y, self.sin, self.taken]
+    }
+}
+
+impl<N: Number> Footing<N> {
+    /// The height of the base at `xi` (m) above the unloaded ground (m), or its rate (F1).
+    #[inline(always)]
+    pub fn height(&self, xi: f64) -> N {
+        self.y - self.sin * xi
+    }
 }
 
 /// The names of the numbers of [`Ground`].
 pub const NAMES: [&str; 10] = ["f_v", "k_v", "zeta_v", "c_v", "n_points", "kr_ratio", "k_r", "xi", "k", "c"];
-
-/// Coordinates after those of the modes on ground that gives.
-pub(crate) const MORE: usize = 3;
 
 /// The most contact points.
 pub const MOST_POINTS: usize = 21;

@@ -4,7 +4,7 @@ use crate::numbers::Number;
 use crate::run::reaction_series::Extent;
 use crate::series::terms::Terms;
 use crate::structure::quantity::{Refused, ensure};
-use crate::{Contact, Impulse, Phase, Reactions};
+use crate::{Impulse, Phase, Reactions};
 use std::fmt;
 
 /// The limits: a value beyond one gives a warning.
@@ -220,7 +220,7 @@ pub(super) struct OfReactions {
 /// The base stays down in full contact without tension.
 const NO_TENSION: OfReactions = OfReactions {
     place: TENSION,
-    holds_in: |phase| phase == Phase::FullContact,
+    holds_in: |phase| phase.properties().is_down,
     value: |Scale { W, B }, Reactions { R_v, R_m, .. }| (R_m.abs() / B - R_v) / W,
     worse: |Scale { W, B }, than| [1.0, -1.0].map(|s| Some(Combination([0.0, -1.0, s * (1.0 / B), -than * W]))),
 };
@@ -228,7 +228,7 @@ const NO_TENSION: OfReactions = OfReactions {
 /// The edge of the base presses on the ground. Ground that gives cannot pull.
 pub(super) const PRESSED_EDGE: OfReactions = OfReactions {
     place: EDGE_LOAD,
-    holds_in: |phase| !matches!(phase, Phase::OnGround(_)),
+    holds_in: |phase| phase.properties().pivot != 0.0,
     value: |Scale { W, .. }, Reactions { R_v, .. }| R_v / W,
     worse: |Scale { W, .. }, than| [Some(Combination([0.0, -1.0, 0.0, than * W])), None],
 };
@@ -236,7 +236,7 @@ pub(super) const PRESSED_EDGE: OfReactions = OfReactions {
 /// The base does not slide. In flight nothing rubs.
 pub(super) const NO_SLIDING: OfReactions = OfReactions {
     place: FRICTION,
-    holds_in: |phase| !matches!(phase, Phase::OnGround(Contact { pressed: 0, .. })),
+    holds_in: |phase| !phase.properties().is_free,
     value: |_, &Reactions { R_h, R_v, .. }| if R_v > 0.0 { R_h.abs() / R_v } else { f64::INFINITY },
     worse: |_, than| [1.0, -1.0].map(|s| Some(Combination([s, -than, 0.0, 0.0]))),
 };
