@@ -398,7 +398,7 @@ mod tests {
     use crate::run::record::Record;
     use crate::structure::description::tests::usual;
     use crate::structure::description::{Damping, Storey};
-    use crate::{Body, Detail, OneMass, Parameters, Phase, Piece, Structure};
+    use crate::{Body, Detail, OneMass, Parameters, Piece, Structure};
     use std::f64::consts::{PI, TAU};
 
     /// A ground motion of filtered noise.
