@@ -17,7 +17,7 @@ use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::reach::{Magnitudes, OffChord, magnitudes};
 use crate::mechanics::restraint::Dissipators;
 use crate::numbers::{Angle, Number, Turn};
-use crate::series::taylor::evaluate;
+use crate::series::taylor::{evaluate, sum_of_magnitudes};
 use crate::series::terms::Terms;
 use crate::{Output, Phase, Ramp, State, Structure};
 use std::cell::{Cell, RefCell};
@@ -418,8 +418,11 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
         let &Expansion { piece, arc, .. } = self;
         let most = magnitudes(structure, piece.before.phase, loads, arc.most(end));
         let a_g = || Ramp { value: loads[0].a_g, slope: piece.load.slope.a_g };
-        let needs_arc = structure.gauges().has_feedthrough || Q::foundation(structure).is_some();
-        Magnitudes { arc: needs_arc.then(|| (arc, a_g())), ..most }
+        let has_feedthrough = structure.gauges().has_feedthrough;
+        let needs_arc = has_feedthrough || Q::foundation(structure).is_some();
+        let lift = if has_feedthrough { self.lift() } else { None };
+        let lift = lift.map_or(0.0, |lift| sum_of_magnitudes(lift.used()));
+        Magnitudes { arc: needs_arc.then(|| (arc, a_g())), a_v: most.a_v + lift, ..most }
     }
 
     /// Shows the series of outputs in σ, each with its polynomial. This polynomial is shown whole, or in parts if sin θ and cos θ need

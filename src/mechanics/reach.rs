@@ -25,6 +25,7 @@ pub(crate) struct Magnitudes<'a, Q> {
     pub theta_dot: f64,
     pub a_g: f64,
     pub F_t: Q,
+    /// With ÿ on ground that gives, if an output depends on ÿ.
     pub a_v: f64,
 }
 
@@ -228,7 +229,6 @@ impl Reach {
         let elastic = || self.elastic(most.damping, &most.u, &most.u_dot) + most.F_t.weighed(push);
         match (a_g, most.arc) {
             _ if most.theta == f64::INFINITY => f64::INFINITY,
-            (Some(_), _) if Q::foundation(structure).is_some() => f64::INFINITY, // the base accelerates
             (None, _) => self.bound_together(most),
             (Some(_), Some(arc)) => {
                 let gauge = output.gauge(structure).expect("a gauge alone reads the ground acceleration");
@@ -263,7 +263,8 @@ impl Reach {
 
 impl Gauge {
     /// Bound of the magnitude of the terms of [`Gauge::at`] in θ and in the ground acceleration over a polynomial, within `most`.
-    /// They are added up before they are bounded, because θ̈ opposes the ground acceleration.
+    /// They are added up before they are bounded, because θ̈ opposes the ground acceleration. What is left of b is at most
+    /// B θ̇² + |a_g| θ²/2 + |a_v| |θ|, on ground that gives without B θ̇².
     pub(crate) fn turning<Q: Coordinates>(
         &self,
         base: &Base,

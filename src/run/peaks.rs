@@ -354,13 +354,14 @@ impl Peaks {
         if !pair.iter().zip(bounds).any(|(peak, bound)| peak.may_change(bound, before.time)) {
             return;
         }
+        let is_linear = Q::foundation(structure).is_some(); // in y, sin θ and their rates, of which there are series
         let mut arcs = piece.arcs();
         while let Some(expansion) = arcs.next() {
             expansion.in_parts(&mut |part, is_finest| {
                 let reach = part.arc.reach;
-                let series = of_pair(restraints(&part.over(true), angles, &before.dissipators));
+                let series = of_pair(restraints(&part.over(!is_linear), angles, &before.dissipators));
                 let mut ends = series.iter().zip(forces(&part.arc.at(reach)));
-                if !is_finest && !ends.all(|(series, last)| part.has_converged(series, last, CONVERGED)) {
+                if !is_linear && !is_finest && !ends.all(|(series, last)| part.has_converged(series, last, CONVERGED)) {
                     return false;
                 }
                 for (which, series) in series.iter().enumerate() {
