@@ -403,10 +403,14 @@ impl<Q: Coordinates> Polynomial<'_, Q> {
         self.of.sample(sigma).edges()
     }
 
-    /// Whether the series of R_h and R_v end in the reactions `last` of the state.
+    /// Whether the series of R_h and R_v end in the reactions `last` of the state, but for rounding of the weight, below which
+    /// nothing is looked for.
     fn has_converged(&self, last: &Reactions) -> bool {
+        let &Base { m_t, g, .. } = self.of.piece.level.structure().base();
+        let is_same =
+            |series: &Terms, last: f64| (evaluate(series.used(), self.of.arc.reach) - last).abs() <= ROUNDING * m_t * g;
         let pairs = [(&self.series.R_h, last.R_h), (&self.series.R_v, last.R_v)];
-        pairs.into_iter().all(|(series, last)| self.of.has_converged(series, last, CONVERGED))
+        pairs.into_iter().all(|(series, last)| is_same(series, last) || self.of.has_converged(series, last, CONVERGED))
     }
 
     /// The series of a combination that may exceed `least`.
