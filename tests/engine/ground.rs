@@ -7,6 +7,7 @@ use rocking::engine::{Progress, Settings};
 use rocking::run::record::Record;
 use rocking::run::validity::{FRICTION, Limits, of_structure};
 use rocking::run::{End, Ending, Run};
+use rocking::structure::description::{Damping, Storey};
 use rocking::structure::doubts::doubted;
 use rocking::structure::natural_quantities::Given;
 use rocking::{
@@ -76,6 +77,23 @@ fn evison_on_two_springs_has_its_six_events_and_peaks() {
     assert!((of(Output::a_t(0)).time - 0.176901).abs() < 5e-7);
     assert_relative_eq!(of(Output::settlement).magnitude, 0.113399e-3, max_relative = 5e-6);
     assert_relative_eq!(of(Output::N_right).magnitude, 10765.40, max_relative = 5e-7);
+}
+
+/// Storeys are stiffer than the ground, so that their frequencies do not tell how fast the base relaxes on its dashpots.
+#[test]
+fn dashpots_under_stiff_storeys_take_no_more_steps_than_their_rates_need() {
+    let steps = |J0: f64, count: usize, k: f64, ground: Ground, until: f64| {
+        let base = Given::of(&[("m0", 1e5), ("J0", J0), ("B", 6.0)]).unwrap();
+        let storeys = Vec::from_iter((1..=count).map(|i| Storey { m: 5e4, h: 3.0 * i as f64, k }));
+        let structure = Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap().on(&ground).unwrap();
+        let mut engine = engine(&structure, 0.0, 1e-3);
+        transitions(&mut engine, until, load(&structure, 0.0, 0.0));
+        engine.motion().work.steps
+    };
+    let of_six = [0.0, 0.1, 0.4, 1.0].map(|zeta| steps(1e6, 6, 1e9, ground(2.0, zeta, 2), 1.0));
+    assert!(of_six[0] < 100 && of_six.iter().all(|steps| *steps <= of_six[0]), "{of_six:?}");
+    let of_two = steps(1e3, 2, 1e11, ground(0.45, 1.0, 2), 1e-3);
+    assert!(of_two < 20, "{of_two}");
 }
 
 /// The next step, however short, has a transition that this one missed, and once it has been applied nothing is due. A dissipator
@@ -330,6 +348,18 @@ fn a_step_without_end_is_refused_early() {
     assert!(error.to_string().starts_with("the 2000000 steps of an advance end by t = "), "{error}");
     assert!(error.time().unwrap() < 1e6 && engine.motion().time == 0.0 && pieces.0 < 100_000, "{}", pieces.0);
     assert_eq!(engine.advance(1e9, load(&structure, 6.0, 0.0), &mut ()).unwrap(), Progress::Overturned);
+}
+
+/// The acceleration of the base adds to that of mass that no mode carries.
+#[test]
+fn no_sample_exceeds_the_peaks_of_a_structure_with_modes_left_out() {
+    let shaken = sampled(301, 0.01, |t| 6.0 * ((6.0 * t).sin() + 0.6 * (20.0 * t).cos()));
+    let outputs = [Output::V_t, Output::M_t, Output::a_t(1), Output::V(0), Output::M(0), Output::M(1)];
+    for kept in 0..3 {
+        let structure = frame(ground(8.0, 0.0, 2)).keeping(kept).unwrap();
+        let run = Run { end: End::At(4.0), ..Run::of_modes(structure, &shaken) };
+        peaks_beside_samples(&run, (0..40_000).map(|i| 1e-4 * f64::from(i)), &outputs, 1e-3, |_| ());
+    }
 }
 
 /// A change of the base changes the points as a new description does, and nothing needs r.
