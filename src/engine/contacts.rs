@@ -140,6 +140,9 @@ impl<Q: Coordinates> Guard<Q> for Points {
 const TENDON: u8 = 2;
 
 /// The tendon becomes slack or taut, or a dissipator begins or ceases to yield.
+///
+/// A tendon rests on its guard if P_0 is 0. A taut one therefore pushes by up to 2e-13 k_t |y_s|, which is rounding, before it counts as
+/// slack; its peak has pulls alone, and stays 0 then.
 pub(crate) struct Tied;
 
 impl<Q: Coordinates> Guard<Q> for Tied {
