@@ -499,8 +499,7 @@ mod tests {
         });
     }
 
-    /// Buildings of two to nine storeys, each beside others, at all levels of detail: with all modes or fewer, so that mass is left that no
-    /// mode carries.
+    /// Buildings of two to nine storeys at all levels, each beside others: with all modes or fewer, so that mass is left that no mode carries.
     #[test]
     fn each_building_has_the_bits_that_it_has_by_itself() {
         let random = &mut fastrand::Rng::with_seed(1);

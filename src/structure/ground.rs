@@ -251,8 +251,8 @@ impl Foundation {
     pub(crate) fn of_edge(&self, side: usize, B: f64) -> Vec<(usize, f64)> {
         let end = (self.strip(0, B)[1] + B).max(B / 3.0) - B;
         let inside = (0..self.points.len()).map(|i| (i, self.strip(i, B))).filter(|(_, [from, _])| *from < end);
-        let place = |i| if side == 0 { i } else { self.points.len() - 1 - i };
-        inside.map(|(i, [from, to])| (place(i), (to.min(end) - from) / (to - from) / (end + B))).collect()
+        let last = side * (self.points.len() - 1);
+        inside.map(|(i, [from, to])| (last.abs_diff(i), (to.min(end) - from) / (to - from) / (end + B))).collect()
     }
 
     /// The sum of the stiffnesses of all points times this power of their places.
