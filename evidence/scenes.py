@@ -32,8 +32,8 @@ def pacoima_dam() -> tuple[np.ndarray, np.ndarray]:
 
 
 @functools.cache
-def exported(preset: str, fmi: int = 2, record: Path | None = None) -> str:
-    """The FMU of a specimen, with a record inside if there is one. It lasts as long as this process."""
-    fmu, inside = Path(FMUS.name, f"{preset}{fmi}{record.stem if record else ''}.fmu"), ["--record", record] if record else []
-    subprocess.run([PROGRAM, "--quiet", "export", "--fmi", str(fmi), "--preset", preset, *inside, "-o", fmu], check=True)
-    return str(fmu)
+def exported(preset: str) -> str:
+    """The FMU of a specimen. It lasts as long as this process."""
+    fmu = f"{FMUS.name}/{preset}.fmu"
+    subprocess.run([PROGRAM, "--quiet", "export", "--preset", preset, "-o", fmu], check=True)
+    return fmu

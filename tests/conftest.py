@@ -16,7 +16,6 @@ ROOT = Path(__file__).parents[1]
 
 @pytest.fixture(scope="session")
 def exporter() -> Path:
-    """The exporter's executable."""
     path = ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "release" / "rocking-fmu"
     assert path.is_file(), f"{path} is not there: run `cargo build --release` first"
     return path
@@ -39,13 +38,11 @@ def export(exporter, tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def mcmanus(export) -> Fmu:
-    """The FMU of McManus's specimen."""
     return export("mcmanus")
 
 
 @pytest.fixture(scope="session")
 def evison(export) -> Fmu:
-    """The FMU of Evison's specimen."""
     return export("evison")
 
 

@@ -29,22 +29,17 @@ class Motion:
         self.frame, self.ties, self.n, self.y = frame, ties, len(frame.masses), np.zeros(2 * len(frame.masses) + 2)
         self.tolerances, self.t, self.h, self.s = dict(rtol=1e-13, atol=1e-16), 0.0, 1e-4, FULL_CONTACT
         self.zeros, self.plastic, self.yields, self.released = 0, [0.0, 0.0], [0, 0], [0, 0]  # zeros of theta(t) at this instant
-        self.transitions, self.peaks = [], np.abs(self.outputs(self.y)[0])
+        self.transitions = []
         self.viscous, self.hysteretic = 0.0, 0.0  # energies that the dissipators took
         self.burst, self.count, self.held_until, self.overturned = -math.inf, 0, -math.inf, False
 
-    def outputs(self, y):
-        """u, absolute accelerations a, theta, V_t and M_t of states y, a row each."""
-        p, y = self.frame, np.atleast_2d(y)
-        a = p.g * np.sin(y[:, -2:-1]) - y[:, :-2] @ p.elastic.T
-        return np.column_stack([y[:, : self.n], a, y[:, -2], a @ p.m, a @ (p.m * p.h)])
-
     def row(self):
         ties, (theta, theta_dot) = self.ties, self.y[-2:]
+        a = self.frame.g * math.sin(theta) - self.frame.elastic @ self.y[:-2]
         forces, levers = self.forces(theta, self.s or 1)
         F_d = [F + ties.c_d * lever * math.cos(theta / 2) * theta_dot for F, lever in zip(forces, levers)]
         P_t = ties.P_0 + 2 * ties.k_t * self.frame.B * math.sin(abs(theta) / 2)
-        return [self.t, *self.outputs(self.y)[0], *self.y[self.n : -2], theta_dot, P_t, *F_d, *self.plastic, self.viscous,
+        return [self.t, *self.y[: self.n], *a, theta, *self.y[self.n : -2], theta_dot, P_t, *F_d, *self.plastic, self.viscous,
                 self.hysteretic]
 
     def gravity(self, t):
@@ -192,21 +187,15 @@ class Motion:
                 self.hysteretic += way * self.ties.F_y * (self.plastic[j] - before)
 
     def see(self, step, end):
-        """Takes the largest absolute values over the step up to x = end, and adds what the viscous dissipators take."""
+        """Adds what the viscous dissipators take over the step up to x = end."""
         y = np.vander(end * NODES, 8, increasing=True) @ step.powers
         power = self.ties.c_d * (2 * self.frame.B**2 + 2 * self.ties.xi_d**2) * (np.cos(y[:, -2] / 2) * y[:, -1]) ** 2
         self.viscous += step.h * end * np.sum(FIT @ power / np.arange(1, 9))
-        values = self.outputs(y)
-        self.peaks = np.maximum(self.peaks, np.abs(values).max(axis=0))
-        for i in np.flatnonzero(np.abs(values).max(axis=0) > 0.98 * self.peaks):
-            c = FIT @ values[:, i]
-            extrema = reference.unit_roots(polynomial.polyder(c))
-            self.peaks[i] = max([self.peaks[i], *np.abs(polynomial.polyval(np.array(extrema), c))])
 
 
 def simulate(frame: Frame, dt: float, a_g, a_v, ties: Ties):
     """The response from rest to accelerations (m/s2) linear between samples every dt (s), at the samples: motion, forces, energies.
-    `transitions` have the states before and after; `peaks` has u, a, theta, V_t and M_t in one row."""
+    `transitions` have the states before and after."""
     n, time = len(frame.masses), dt * np.arange(len(a_g))
     motion = Motion(frame, ties)
     rows = [motion.row()]
@@ -216,7 +205,7 @@ def simulate(frame: Frame, dt: float, a_g, a_v, ties: Ties):
         while motion.t < end and not motion.overturned:
             motion.advance(end)
         rows += [] if motion.overturned else [motion.row()]
-    names = dict(time=0, u=slice(1, n + 1), a=slice(n + 1, 2 * n + 1), theta=2 * n + 1, V_t=2 * n + 2, M_t=2 * n + 3,
-                 u_dot=slice(2 * n + 4, -8), theta_dot=-8, P_t=-7, F_d1=-6, F_d2=-5, e_p1=-4, e_p2=-3, E_viscous=-2, E_hysteretic=-1)
+    names = dict(time=0, u=slice(1, n + 1), a=slice(n + 1, 2 * n + 1), theta=2 * n + 1, u_dot=slice(2 * n + 2, -8), theta_dot=-8,
+                 P_t=-7, F_d1=-6, F_d2=-5, e_p1=-4, e_p2=-3, E_viscous=-2, E_hysteretic=-1)
     columns = {name: np.array(rows)[:, at] for name, at in names.items()}
-    return SimpleNamespace(**columns, transitions=motion.transitions, peaks=motion.peaks)
+    return SimpleNamespace(**columns, transitions=motion.transitions)

@@ -71,7 +71,6 @@ class Motion:
         return np.concatenate([points, [slack if t.k_t else 1.0], held])
 
     def change(self, i, s, time):
-        """Applies the change of condition i."""
         points = len(self.xi)
         if i < points:
             self.pressed[i] = not self.pressed[i]

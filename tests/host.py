@@ -160,7 +160,6 @@ class Fmu:
         return self.instance(kind).initialize(tolerance, start, stop, **start_values)
 
     def write(self, name: str, text: str):
-        """Writes a file of the archive's resources."""
         (self.resources / name).write_text(text)
 
     def references(self, names) -> list[int]:
@@ -350,7 +349,6 @@ class Instance:
 
     @property
     def events(self) -> list[Event]:
-        """The transitions so far."""
         return events(self.messages)
 
     def taken(self) -> list[Message]:
@@ -365,7 +363,6 @@ class Instance:
 
 
 def status(call, *arguments) -> int:
-    """The status of a call of fmpy."""
     try:
         call(*arguments)
     except FMICallException as error:

@@ -22,7 +22,6 @@ class Bridge:
     c: float
 
     def bearing_forces(self, phases, y) -> list[float]:
-        """The force of each bearing on its pier."""
         tops = [top(p, s, part) for p, s, part in zip(self.structures, phases, _parts(y))]
         return [self.k * (y[0] - delta) + self.c * (y[1] - v) for delta, v in tops]
 

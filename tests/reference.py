@@ -49,11 +49,9 @@ class Structure:
         tan_alpha_cg = (self.m + self.m0) / self.m * self.B / self.H
         p_l = math.sqrt(self.m * self.g * self.H / J_P)
         chi = self.H * p_l**2 / self.g
-        derived = dict(omega_fc=omega_fc, k=k, c_fc=c_fc, c_u=self.c_ratio * c_fc, J_P=J_P, tan_alpha_cg=tan_alpha_cg,
-                       alpha_cg=math.atan(tan_alpha_cg), p_l=p_l, chi=chi, u_cr=self.g * tan_alpha_cg / omega_fc**2,
-                       f_u=self.f_fc / math.sqrt(1 - chi))
-        for name, value in derived.items():
-            object.__setattr__(self, name, value)
+        vars(self).update(omega_fc=omega_fc, k=k, c_fc=c_fc, c_u=self.c_ratio * c_fc, J_P=J_P, tan_alpha_cg=tan_alpha_cg,
+                          alpha_cg=math.atan(tan_alpha_cg), p_l=p_l, chi=chi, u_cr=self.g * tan_alpha_cg / omega_fc**2,
+                          f_u=self.f_fc / math.sqrt(1 - chi))
 
 
 EVISON = Structure(m=125.8, m0=44.02, H=1.05, B=0.285, J0=0.0, f_fc=11.0, zeta_fc=0.015, r=0.96)

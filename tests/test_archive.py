@@ -15,7 +15,6 @@ RECORDS = {"pulse & 1.csv": "t/s,a\r\n0,1\r\n1,2\r\n", "sine.txt": "t/s,a\n0,1\n
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """RECORDS in a folder."""
     path = tmp_path_factory.mktemp("records")
     (path / "other").mkdir()
     for name, text in RECORDS.items():

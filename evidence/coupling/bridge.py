@@ -6,7 +6,6 @@ velocity of the pier's top come back as delta_t and v_t.
 """
 
 import contextlib
-import functools
 import math
 from pathlib import Path
 
@@ -14,7 +13,7 @@ import numpy as np
 
 from ..figures import FIXED, QUIET, ROCKING, save, subplots
 from ..scenes import G, pacoima_dam
-from .masters import MASTERS, between_transitions, extrapolate
+from .masters import MASTERS, extrapolate
 from .structure import Structure
 from .swaying_mass import SwayingMass
 
@@ -125,7 +124,6 @@ def histories(path: Path, title: str, time, labels: list[str], *curves: list[tup
 
 
 def draw(fmus, path: Path) -> None:
-    """The bridge under Pacoima Dam."""
     time, a_g = pacoima_dam()
     bridge = Bridge([pier(fmu) for fmu in fmus], deck(), linear(time, a_g))
 
@@ -134,8 +132,7 @@ def draw(fmus, path: Path) -> None:
         forces = (bridge.deck.k * (bridge.deck.x - tops) + bridge.deck.c * (bridge.deck.v - rates)) / len(bridge.piers)
         return [bridge.deck.x, *tops, *uplifts, *forces]
 
-    master = functools.partial(between_transitions, MASTERS["iqn-ils"]())
-    x, top_1, top_2, *others = simulate(bridge, master, extrapolate, time, 1, row).T
+    x, top_1, top_2, *others = simulate(bridge, MASTERS["halving"](), extrapolate, time, 1, row).T
     colors = (ROCKING, FIXED)
     uplifts, forces = ([*zip(of, colors, PIERS)] for of in (1e3 * np.array(others[:2]), others[2:]))
     histories(path, "Two piers under one deck rock out of step", time,

@@ -99,7 +99,6 @@ def response(fmus, of_deck, tolerance: float, time, longest_step: float = 0.0) -
 
 
 def errors(fmus) -> str:
-    """Errors and work of each pier."""
     time, a_g = pacoima_dam()
     expected = convergence.columns(monolithic.integrate(convergence.monolithic_bridge(deck()), time, a_g))
     rows = []

@@ -1,7 +1,5 @@
 """How fast each master's error falls with the communication step, against the bridge integrated as one system."""
 
-import functools
-
 import monolithic
 import numpy as np
 import reference
@@ -10,13 +8,9 @@ from tqdm import tqdm
 from ..page import table
 from ..scenes import pacoima_dam
 from .bridge import Bridge, deck, linear, pier, simulate
-from .masters import MASTERS, between_transitions, extrapolate, hold
+from .masters import MASTERS, extrapolate, hold
 
 STRUCTURES = (reference.MCMANUS, reference.EVISON)
-
-
-def halving():
-    return functools.partial(between_transitions, MASTERS["iqn-ils"]())
 
 
 # name: master, guess, whether lines have the moments of the true course, order without transitions
@@ -27,7 +21,7 @@ VARIANTS = {
     "Gauss-Seidel, extrapolated": (MASTERS["gauss-seidel"], extrapolate, False, 2),
     "iterated, lines between end values": (MASTERS["iqn-ils"], extrapolate, False, 2),
     "iterated, lines of same moments": (MASTERS["iqn-ils"], extrapolate, True, 4),
-    "the same, steps with transitions halved": (halving, extrapolate, True, 4),
+    "the same, steps with transitions halved": (MASTERS["halving"], extrapolate, True, 4),
 }
 PARTS = (1, 2, 4, 8, 16)  # steps per sample
 
@@ -78,6 +72,5 @@ def study(fmus):
 
 
 def errors_by_step(steps, errors) -> str:
-    """Errors of every variant at every step."""
     rows = [[name, *(f"{value:.1e}" for value in values)] for name, values in errors.items()]
     return table(["Pacoima Dam, step", *(f"{1e3 * h:g} ms" for h in steps)], rows)

@@ -11,6 +11,7 @@ them is a line in time: an array of two rows, at the start and at the end of the
 """
 
 from collections import deque
+from functools import partial
 
 import numpy as np
 
@@ -104,4 +105,5 @@ MASTERS = {
     "jacobi": lambda: jacobi,
     "gauss-seidel": lambda: gauss_seidel,
     "iqn-ils": lambda: Iterated(columns=8),
+    "halving": lambda: partial(between_transitions, Iterated(columns=8)),
 }

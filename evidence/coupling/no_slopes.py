@@ -45,7 +45,6 @@ def errors(fmu: str, dt: float, a_g: np.ndarray) -> list[float]:
 
 
 def tables(fmu: str) -> dict:
-    """The table and the counts of the page."""
     found = {}
     for station, path in horizontal_records().items():
         record, (scale, time_scale) = GroundMotion.from_at2(path), next(of for name, of in SCALES.items() if station.startswith(name))

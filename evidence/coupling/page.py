@@ -7,7 +7,6 @@ from . import bridge, bridge_model_exchange, building_on_soil, convergence, no_s
 
 
 def values(figures: Path) -> dict:
-    """Errors and limits of stability."""
     fmus = tuple(exported(name.lower()) for name in bridge.PIERS)
     bridge.draw(fmus, figures / "bridge.png")
     building_on_soil.draw(fmus[0], figures / "building_on_soil.png")

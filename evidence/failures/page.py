@@ -42,7 +42,6 @@ EXHIBITS = {  # title, description, axes, looks of the curves
 
 
 def values(figures: Path) -> dict:
-    """Numbers of each failure."""
     folder = figures.parent
     tables("failures", folder)
     found = {name: named(rows) for name, rows in pd.read_csv(folder / "failures.csv", dtype=str).groupby("failure")}

@@ -135,5 +135,4 @@ def limits() -> dict:
 
 
 def values(figures: Path) -> dict:
-    """Numbers of the page."""
     return compared(figures) | wall() | limits()

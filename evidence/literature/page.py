@@ -94,7 +94,6 @@ def draw(cases: list[Case], path: Path) -> None:
 
 
 def values(figures: Path) -> dict:
-    """Pulses that overturn a rigid block."""
     cases = [Case(pulse, omega, of) for pulse, omega in tqdm(CASES) for of in boundaries(pulse, omega, R, MOST)]
     draw(cases, figures / "overturning.svg")
     return dict(

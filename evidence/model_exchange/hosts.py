@@ -34,8 +34,6 @@ class Scene:
 
 @dataclass(frozen=True)
 class Result:
-    """Result of a host."""
-
     rows: np.ndarray  # OUTPUTS over time
     hidden: int  # events of which the host's own step showed nothing
 

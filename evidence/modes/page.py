@@ -22,7 +22,6 @@ LIMIT = 0.05
 QUESTIONS = {"theta": "θ", "u": "u of each floor", "V": "V of each storey", "a_t": "a of each floor"}
 MODES = (("mode 1", 1, 1), ("mode 2", 2, 2), ("mode 3", 3, 3), ("mode 4", 4, 4), ("modes 5 to 12", 5, 12))
 
-
 WALL, PIER = (3.0, 6.0, 9.0, 12.0), (4.0, 8.0, 12.0, 16.0, 20.0, 24.0)  # heights of the masses
 BUILDINGS = {
     "stiff: a wall of 4 storeys": Frame((90e3,) * 4, WALL, cantilever(WALL, 2.5e10), m0=60e3, J0=2e5, B=2.0, zeta=0.03),
@@ -95,7 +94,6 @@ def scene(name: str, path: str) -> tuple[list[dict[str, object]], list[dict[str,
 
 
 def values(figures: Path) -> dict:
-    """Errors of fewer modes, and what rocking does to each mode."""
     figures.mkdir(exist_ok=True)
     scenes = {(name, path): scene(name, path) for name in tqdm(BUILDINGS) for path in RECORDS}
     wrong = pd.DataFrame([row for rows, _, _ in scenes.values() for row in rows])

@@ -57,7 +57,6 @@ def beyond(point) -> pd.Series:
 
 
 def values(figures: Path) -> dict:
-    """Maps of pulses, and the limits of the model at random points."""
     figures.mkdir(exist_ok=True)
     with TemporaryDirectory() as folder:
         scenes = {name: maps(name, figures.resolve() / f"{name}.svg", Path(folder)) for name in tqdm(SCENES)}

@@ -53,7 +53,6 @@ def rigid_rotation(theta: float) -> float:
 
 
 def rows(of: Release) -> list[Row]:
-    """Statements of the text about the test."""
     return [
         Row("peak a_t of the first three rocking cycles", "0.85", of.first_peak, ".3f", "g",
             "measured; conservative, as the paper says of its simulation: the transition is instant (section 4)"),

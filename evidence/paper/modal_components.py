@@ -46,7 +46,6 @@ def dominant_frequency(time: np.ndarray, signal: np.ndarray) -> float:
 
 
 def rows(of: Release, c: SimpleNamespace) -> list[Row]:
-    """Statements of the text about Fig 6."""
     second_cycle = of.peak("a_t", 0) / G
     return [
         Row("step of the rocking mode, χ tan α_cg (Eq 13)", "0.34", STEP, ".4f", "g",

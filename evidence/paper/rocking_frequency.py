@@ -72,7 +72,6 @@ def draw(cycles: HalfCycles, estimated: np.ndarray, path: Path) -> None:
 
 
 def section(folder: Path) -> tuple[list[Row], dict]:
-    """The rows."""
     of = decay()
     draw(*of, folder / "rocking_frequency.png")
     return rows(*of), {"amplitude": AMPLITUDE}

@@ -7,8 +7,6 @@ from ..page import table
 
 @dataclass(frozen=True)
 class Row:
-    """One number of the paper beside ours."""
-
     quantity: str
     paper: str | None  # as printed; None where the paper gives no number
     computed: float
@@ -23,7 +21,6 @@ class Row:
         return self.paper is None or round(self.computed, len(self.paper.partition(".")[2])) == float(self.paper)
 
     def cells(self) -> list[str]:
-        """Its cells in the table."""
         unit = f" {self.unit}" if self.unit else ""
         paper, difference = f"{self.paper}{unit}", "agrees"
         if self.paper is None:
@@ -36,7 +33,6 @@ class Row:
 
 
 def comparison(rows: list[Row]) -> str:
-    """The table of a section's rows."""
     source = "paper" if any(row.is_printed for row in rows) else "formula"
     return table(["quantity", source, "computed", "difference", "remark"], [row.cells() for row in rows], texts=(0, 4))
 

@@ -90,7 +90,6 @@ def median_percent(values) -> str:
 
 
 def vertical(structures, alone, both, picture: Path) -> dict:
-    """Effect of the vertical component."""
     bare, shaken, larger = sweep(structures, alone), sweep(structures, both), sweep(structures, alone, LARGER)
     rocks = (bare["theta"] > 0) | (shaken["theta"] > 0)
     stands = pd.concat([rows["ending"] == "at rest" for rows in (bare, shaken, larger)], axis=1).all(axis=1)
@@ -141,7 +140,6 @@ def draw_vertical(path: Path, changes: pd.DataFrame) -> None:
 
 
 def restraints(structures, both, picture: Path) -> dict:
-    """Effect of a tendon and dissipators on rotation and overturning."""
     found = {name: sweep({number: s.replace(**ties(s)) for number, s in structures.items()}, both)
              for name, ties in RESTRAINTS.items()}
     bare = found["none"]
@@ -181,7 +179,6 @@ def draw_restraints(path: Path, sizes: dict[str, np.ndarray]) -> None:
 
 
 def values(figures: Path) -> dict:
-    """Effects of the vertical component, a tendon and dissipators."""
     structures, (alone, both) = population(), records()
     return dict(
         structures=STRUCTURES, scales=", ".join(f"{scale:g}" for scale in SCALES), components=len(both),

@@ -10,7 +10,6 @@ from ..study import tables
 
 
 def values(figures: Path) -> dict:
-    """The paper's scenes, and many structures."""
     folder = figures.parent
     tables("validity", folder)
     rows, limits = pd.read_csv(folder / "validity.csv"), pd.read_csv(folder / "validity-limits.csv")

@@ -1,5 +1,5 @@
 //! An integrator of its own on the equations of the library: never below the floor, and nearer to the engine the smaller
-//! its steps. Bad integrators are in `test_model_exchange.py`.
+//! its steps. Bad integrators are in `evidence/model_exchange`.
 
 use crate::common::{distance, engine_of, sampled, transitions};
 use rocking::run::ground_motion::Elapsed;

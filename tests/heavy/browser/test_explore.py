@@ -50,7 +50,6 @@ HOSTILE = ["-", "--help", "a b.csv", "it's; touch pwned; '.csv", 'a"; touch pwne
 
 @pytest.fixture
 def opened(new_page):
-    """Opens the page at rest."""
     def opened(scene=None, **options):
         page = new_page(f"{PAGE.as_uri()}#{urlencode(scene or {})}", **{"reduced_motion": "reduce"} | options)
         page.locator("body[data-ready]").wait_for()

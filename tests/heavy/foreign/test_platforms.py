@@ -29,7 +29,6 @@ MACOS_LEFT = {"___isPlatformVersionAtLeast", "___isOSVersionAtLeast", "_rust_eh_
 
 @pytest.fixture(scope="module")
 def fmu(export):
-    """The archive of this build."""
     path, fresh = ROOT / "out" / "FlexibleRocking.fmu", export(None, ROOT / "examples/pulse.csv")
     if not path.exists() or read_model_description(path).guid != fresh.description.guid:
         pytest.skip("out/FlexibleRocking.fmu is not of this build: `make dist` writes it")

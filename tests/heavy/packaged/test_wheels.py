@@ -27,7 +27,6 @@ NAME = f"flexible_rocking-{VERSION}"
 
 @pytest.fixture(scope="module", params=TAGS)
 def wheel(request):
-    """Machine and wheel."""
     with zipfile.ZipFile(package(f"{NAME}-{TAGS[request.param]}.whl")) as content:
         yield request.param, content
 

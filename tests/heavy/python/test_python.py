@@ -7,7 +7,6 @@ import importlib.metadata
 import inspect
 import io
 import json
-import multiprocessing
 import os
 import pickle
 import re
@@ -16,7 +15,6 @@ import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import ThreadPoolExecutor
 from xml.etree import ElementTree
 
 import flexible_rocking as fr
@@ -92,16 +90,6 @@ def test_a_run_prints_what_the_command_line_prints(run, said):
     assert run.validity_within(friction=0.7)["mu_required"].limit == 0.7
 
 
-def test_the_modes_are_those_of_the_state(run):
-    """Eq 16: together they are the rotation, and the vibration mode is the share chi of the strut's."""
-    response = run.at(np.linspace(run.start, run.end, 1000))
-    modes, structure = run.structure.modes(response), run.structure
-    rocks = np.char.startswith(np.array(response["phase"], dtype=str), "rocking")
-    assert 100 < rocks.sum() < 1000 and all(np.array_equal(np.isfinite(mode), rocks) for mode in modes.values())
-    assert (modes["q_r"] + modes["q_u"])[rocks] == pytest.approx(response["theta"][rocks], rel=1e-14)
-    assert structure.H * modes["q_u"][rocks] == pytest.approx(-structure.chi * response["u"][rocks], rel=1e-14)
-
-
 def test_weights_are_in_newtons_and_a_tendon_in_kilonewtons_is_doubted():
     pier = fr.Structure(preset="mcmanus")
     assert (pier.weight, pier.weight0) == (pier.m * pier.g, pier.m0 * pier.g)
@@ -141,7 +129,6 @@ def test_what_is_refused_has_the_command_lines_text(said, arguments, options):
     (lambda ground: fr.Record(0.1, ["a", "b"]), "a_g: numbers are needed, not text or other objects"),
     (lambda ground: fr.Record(pd.date_range("2026", periods=2), [0, 1]), "time: these are dates"),
     (lambda ground: fr.Record(pd.to_timedelta([0, 5], unit="ms"), [0, 1]), "time: these are durations: numbers are needed, in s"),
-    (lambda ground: fr.Record(0.1, np.ma.masked_equal([0.0, -999.0, 1.0], -999)), "a_g: some of it is masked"),
     (lambda ground: fr.Record(0.1, np.array(["1", 2.0], object)), "a_g: numbers are needed"),
     (lambda ground: fr.Record(0.1, [True, 1.0]), "a_g: these are bools"),
     (lambda ground: fr.Record(0.1, np.array([0.0, np.True_], object)), "a_g: these are bools"),
@@ -177,8 +164,6 @@ def test_a_file_says_what_would_help(tmp_path):
     assumed, doubted = (str(warning.message) for warning in warned)
     assert "the file states no unit of acceleration: m/s2 is assumed" in assumed and "a step of 0.5 s: is the time in another unit" in doubted
     assert {warning.filename for warning in warned} == {__file__}
-    with pytest.warns(UserWarning, match="a peak of 20 g: is the unit right"):
-        fr.Record.read(tmp_path / "column.txt", dt=0.01, unit="g", scale=100)
     (tmp_path / "table.txt").write_text("0 1\n0.01 2\n0.02 0\n")
     with pytest.warns(UserWarning, match="table.txt: .*m/s2 is assumed"):
         fr.export(tmp_path / "table.fmu", fr.Structure(preset="mcmanus"), record=tmp_path / "table.txt")
@@ -351,19 +336,6 @@ def test_pip_installs_a_fresh_clone(tmp_path):
     assert (tmp_path / "packed.fmu").stat().st_size > 500_000
 
 
-def test_threads_and_processes_give_the_same_bits(run, ground):
-    structures = [run.structure.replace(f_fc=f) for f in (2, 4, 8, 16)]
-    expected = [pickle.dumps(fr.simulate(structure, ground).at(ground.time)["theta"]) for structure in structures]
-    with ThreadPoolExecutor() as threads:
-        assert list(threads.map(_history, structures, [ground] * 4)) == expected
-    with multiprocessing.get_context("spawn").Pool(2) as processes:
-        assert processes.starmap(_history, [(structure, ground) for structure in structures]) == expected
-
-
-def _history(structure, ground):
-    return pickle.dumps(pickle.loads(pickle.dumps(fr.simulate(structure, ground))).at(ground.time)["theta"])
-
-
 def test_a_table_in_memory_is_that_of_the_file_of_rows(tmp_path):
     with pytest.warns(UserWarning, match="far from the usual frequency"):
         soft = fr.Structure(preset="mcmanus", m0=0, J0=0, f_fc=0.2)  # some runs fail
@@ -425,7 +397,7 @@ def test_a_sweep_and_its_fragility_go_on_where_the_command_line_was(exporter, tm
         fr.pulse("cosine", amplitude=0.5, frequency=frequency).write(tmp_path / f"{frequency}.csv")
     scales = np.linspace(0.3, 3, 10).tolist()
     (tmp_path / "sweep.toml").write_text(f"records = ['*.csv']\nscale = {scales}\nintensity = 'S_a'\n"
-                                         "[limits]\n'theta/alpha_cg' = [0.1]\n"
+                                         "[limits]\n'theta/alpha_cg' = [0.1]\ntheta = '1 deg'\nuplift = '1 cm'\na_t = '0.5 g'\n"
                                          "[[structures]]\nname = 'piers'\npreset = 'mcmanus'\nvary.f_fc = [4, 8]\n")
     command = [exporter, "sweep", "sweep.toml", "-o", "rows", "--quiet", "--format", "json"]
     printed = json.loads(subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout)
@@ -470,22 +442,11 @@ def test_a_curve_is_of_one_population_under_one_measure(two_populations):
     assert [named.median, doubled.median / 2] == pytest.approx([over_pgv.median] * 2, rel=1e-9)
 
 
-def test_limits_have_usual_units(two_populations):
-    alone = two_populations[two_populations["structures"] == "mcmanus"]
-    for usual, own in [("theta >= 0.5 deg", np.radians(0.5)), ("uplift >= 1 cm", 0.01), ("a_t >= 0.6 g", 0.6 * 9.81)]:
-        expected = fr.fragility(alone, f"{usual.split()[0]} >= {float(own)!r}")
-        assert fr.fragility(alone, usual).bins.equals(expected.bins)
-    with pytest.raises(ValueError, match="stays below 2 B = 0.57 m; use overturned"):
-        fr.fragility(alone, "uplift >= 58 cm")
-
-
 def test_curves_by_a_column_are_those_of_its_rows(two_populations):
     limit = "theta/alpha_cg >= 0.3"
     curves = fr.fragility(two_populations, limit, by="structures")
-    assert list(curves) == ["mcmanus", "evison"]
-    for name, curve in curves.items():
-        alone = fr.fragility(two_populations[two_populations["structures"] == name], limit)
-        assert (curve.median, curve.dispersion) == (alone.median, alone.dispersion)
+    medians = {name: fr.fragility(rows, limit).median for name, rows in two_populations.groupby("structures", sort=False)}
+    assert {name: curve.median for name, curve in curves.items()} == medians
     low = two_populations["PGV[m/s]"] < two_populations["PGV[m/s]"].min() * 1.01
     for refused, options in [("structures = 'mcmanus': never exceeded: raise", {"table": two_populations[low], "by": "structures"}),
                              ("by = 'period' is no column of the table: give one of run, ", {"table": two_populations, "by": "period"}),
@@ -535,16 +496,10 @@ def test_the_weakest_motion_that_reaches_a_limit_is_found():
         assert (weaker["peak_theta/alpha_cg"] < 0.3).all()
 
 
-def test_what_has_no_weakest_motion_is_said():
+def test_stripes_that_begin_too_high_or_do_not_rise_are_told():
+    """The page of sweeps prints the other notes."""
     pier, pulse = fr.Structure(preset="mcmanus"), {"pulse": fr.pulse("cosine", amplitude=0.5, frequency=1)}
-    note = lambda **options: fr.intensity_at(pier, pulse, **options)["note"][0]
-    runs = fr.sweep(pier, pulse, scale=np.linspace(0.5, 8, 31))
-    over = runs["ending"] == "overturned"
-    again = runs["scale"][~over & (over.cumsum() > 0)]
-    assert len(again) and note(scale=runs["scale"]) == f"within the limit again at scale {', '.join(f'{at:.4g}' for at in again)}"
-    assert note(scale=[0.1, 0.2]) == "not reached up to scale 0.2"
-    assert note(scale=[7.5, 8]) == "reached at the weakest stripe, scale 7.5: begin lower"
-    assert np.isnan(fr.intensity_at(pier, pulse, scale=[0.1, 0.2])["PGA[g]"][0])
+    assert fr.intensity_at(pier, pulse, scale=[7.5, 8])["note"][0] == "reached at the weakest stripe, scale 7.5: begin lower"
     with pytest.raises(ValueError, match="increasing factors greater than 0 are needed"):
         fr.intensity_at(pier, pulse, scale=[2, 1])
 
