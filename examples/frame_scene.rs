@@ -3,6 +3,7 @@
 #![allow(non_snake_case)] // the letters of the equations
 
 use rocking::engine::Settings;
+use rocking::structure::parameters::TIES;
 use rocking::{Body, Detail, Engine, Floor, Ground, LinearLoad, Load, Modes, Output, State, Structure, Transition};
 use rocking::{Mode, Ties};
 use std::array::from_fn;
@@ -12,8 +13,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut numbers = text.split_whitespace().map(|word| word.parse::<f64>().expect("a number"));
     let mut next = || numbers.next().expect("one more number");
     let [is_auto, tolerance, m0, J0, m_s, S_1, I_2, B, r, g] = from_fn(|_| next());
-    let [P_0, k_t, xi_d, c_d, k_d, F_y] = from_fn(|_| next());
-    let (r, ties) = ((r > 0.0).then_some(r), Ties { P_0, k_t, xi_d, c_d, k_d, F_y });
+    let (r, mut ties) = ((r > 0.0).then_some(r), Ties::default());
+    TIES.iter().take(next() as usize).for_each(|of| (of.set)(&mut ties, next()));
     let body = Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio: 1.0, ties };
     let [modes, floors] = from_fn(|_| next() as usize);
     let read = [(); 4].map(|()| Modes::new(&Vec::from_iter((0..modes).map(|_| next()))));

@@ -40,7 +40,7 @@ use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::{Coordinates, Duals, Lateral};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
-use crate::mechanics::restraint::{Dissipators, Restraints};
+use crate::mechanics::restraint::{Dissipators, Restraints, levers, restraints};
 use crate::numbers::dual::Dual;
 use crate::series::first_crossing::Crossing;
 use crate::structure::ground::FOOTING;
@@ -298,8 +298,8 @@ impl<Q: Coordinates> Engine<Q> {
         phase: Phase,
     ) -> Engine<Q> {
         let subject = level.subject();
-        let chord = subject.angles.chord(state.theta, 0.0);
-        let moved = Dissipators::NEW.moved_by(subject.structure.base(), phase.side(), chord);
+        let (base, chord) = (subject.structure.base(), subject.angles.chord(state.theta, 0.0).length);
+        let moved = Dissipators::NEW.moved_to(base, |j| levers(base, phase.side())[j] * chord);
         let motion = Motion {
             time,
             state,
@@ -362,7 +362,7 @@ impl<Q: Coordinates> Engine<Q> {
         }
         let (second, angles) = (self.sample(load).second(), self.level.subject().angles);
         let x = Instant::moving(self.structure(), *phase, state, &second, load.into());
-        let Restraints { P_t, F_d1, F_d2 } = contact::restraints(&x, angles, dissipators);
+        let Restraints { P_t, F_d1, F_d2 } = restraints(&x, angles, dissipators);
         Restraints { P_t: P_t.rate, F_d1: F_d1.rate, F_d2: F_d2.rate }
     }
 

@@ -25,7 +25,6 @@ pub(crate) mod on_ground;
 pub(crate) mod oscillator;
 pub mod rules;
 pub(crate) mod start;
-pub(crate) mod ties;
 
 use crate::levels::first_uplift::Liftable;
 use crate::levels::full_contact::ExactContact;
@@ -69,7 +68,7 @@ impl Detail {
             Detail::Modal if is_tied => {
                 return Err(Refused::by(
                     "detail = modal has no modes of a structure that is restrained or shaken vertically, whose equations change with \
-                     time and with what yields: choose linear, or set P_0, k_t, c_d, k_d and a_v to 0",
+                     time and with what yields: choose linear, or set a_v and the numbers of tendon and dissipators to 0",
                 ));
             }
             Detail::Linear | Detail::Modal => {

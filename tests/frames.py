@@ -22,6 +22,16 @@ class Ties:
     def levers(self, p, s: int) -> tuple[float, float]:
         return s * p.B - self.xi_d, s * p.B + self.xi_d
 
+    def moment(self, p, s: int, theta: float, theta_dot: float, forces) -> float:
+        """About the pivot of side s of `p`, with these forces of the elastoplastic dissipators."""
+        half = math.cos(theta / 2)
+        return (-s * self.P_0 * p.B * half - self.k_t * p.B**2 * math.sin(theta) - half * np.dot(forces, self.levers(p, s))
+                - self.c_d * (2 * p.B**2 + 2 * self.xi_d**2) * half**2 * theta_dot)
+
+    def power(self, p, theta, theta_dot):
+        """Of the viscous dissipators."""
+        return self.c_d * (2 * p.B**2 + 2 * self.xi_d**2) * (np.cos(theta / 2) * theta_dot) ** 2
+
 
 @dataclass(frozen=True)
 class Frame:

@@ -52,14 +52,13 @@ class Motion:
                 for lever, way, plastic in zip(levers, self.yields, self.plastic)], levers
 
     def rates(self, t, y):
-        p, ties, s, n = self.frame, self.ties, self.s, self.n
+        p, s, n = self.frame, self.s, self.n
         u, u_dot, theta, theta_dot = y[:n], y[n:-2], y[-2], y[-1]
         a_g, f = self.a_g[0] + self.a_g[1] * (t - self.start), p.elastic @ y[:-2]  # f = M^-1 (K u + C u_dot)
         if s == FULL_CONTACT:
             return np.concatenate([u_dot, -f - a_g, [0.0, 0.0]])  # (M1)
-        sn, cs, half, g, d = math.sin(theta), math.cos(theta), math.cos(theta / 2), self.gravity(t), s * p.B - u
-        tied = (-s * ties.P_0 * p.B * half - ties.k_t * p.B**2 * sn - half * np.dot(*self.forces(theta, s))
-                - ties.c_d * (2 * p.B**2 + 2 * ties.xi_d**2) * half**2 * theta_dot)
+        sn, cs, g, d = math.sin(theta), math.cos(theta), self.gravity(t), s * p.B - u
+        tied = self.ties.moment(p, s, theta, theta_dot, self.forces(theta, s)[0])
         moment = (p.m * p.h @ f + theta_dot**2 * (s * p.B * p.S_1 - p.m * p.h @ u) + 2 * theta_dot * (p.m * d @ u_dot)
                   - (s * p.m_t * p.B - p.m @ u) * (g * cs + a_g * sn) + tied)
         theta_ddot = moment / (p.J0 + p.m0 * p.B**2 + p.m @ d**2)  # (M7)
@@ -189,7 +188,7 @@ class Motion:
     def see(self, step, end):
         """Adds what the viscous dissipators take over the step up to x = end."""
         y = np.vander(end * NODES, 8, increasing=True) @ step.powers
-        power = self.ties.c_d * (2 * self.frame.B**2 + 2 * self.ties.xi_d**2) * (np.cos(y[:, -2] / 2) * y[:, -1]) ** 2
+        power = self.ties.power(self.frame, y[:, -2], y[:, -1])
         self.viscous += step.h * end * np.sum(FIT @ power / np.arange(1, 9))
 
 

@@ -23,7 +23,7 @@ def engine(program: Path, frame: Frame, dt: float, a_g, a_v, ties: Ties, detail:
     phi, M_phi = frame.phi, frame.m[:, None] * frame.phi
     zeta = np.diag(phi.T @ frame.C @ phi) / (2 * frame.omega)
     numbers = [detail == "auto", 1e-11, frame.m0, frame.J0, frame.m.sum(), frame.S_1, frame.I_2, frame.B, frame.r or -1, frame.g,
-               ties.P_0, ties.k_t, ties.xi_d, ties.c_d, ties.k_d, ties.F_y, len(frame.omega), len(frame.m),
+               len(vars(ties)), *vars(ties).values(), len(frame.omega), len(frame.m),
                *frame.omega, *zeta, *M_phi.sum(axis=0), *(frame.h @ M_phi), *np.column_stack([frame.m, frame.h, phi]).ravel(), len(points), *np.ravel(points, order="F"),
                dt, len(a_g), *np.column_stack([a_g, a_v]).ravel()]
     lines = [line.split() for line in output(program, input=" ".join(repr(float(x)) for x in numbers)).splitlines()]

@@ -7,7 +7,7 @@ use rocking::digits::{short, significant};
 use rocking::estimates::restoring::FlagPoint;
 use rocking::structure::derived::Derived;
 use rocking::structure::natural_quantities::{NATURAL, Natural};
-use rocking::structure::parameters::PARAMETERS;
+use rocking::structure::parameters::{PARAMETERS, Parameters};
 use rocking::{OneMass, Quantity};
 use rocking_report::describe;
 use std::fmt::{self, Write};
@@ -54,11 +54,12 @@ fn text_of_loop(rows: &[FlagPoint]) -> String {
 fn template(structure: &OneMass) -> Result<String, fmt::Error> {
     let mut out = String::new();
     out += "# A structure, for rocking-fmu ... --parameters FILE.toml. SI units; # begins a comment.\n\
-            # A line that begins with # may replace the line above it. You may leave out J0 (default 0), c_ratio (1), g (9.81 m/s2),\n\
-            # and the numbers of tendon and dissipators (0).\n";
-    for &Quantity { name, unit, description, min, max, get, .. } in &PARAMETERS {
+            # A line that begins with # may replace the line above it. You may leave out what has a default.\n";
+    for &Quantity { name, unit, description, min, max, get, .. } in PARAMETERS {
         let of = if unit == "1" { String::new() } else { format!(" {unit},") };
-        writeln!(out, "\n# {description},{of} {} to {}", short(min), short(max))?;
+        let default = Some(get(&Parameters::DEFAULTS)).filter(|default| !default.is_nan());
+        let default = default.map_or(String::new(), |default| format!(", default {}", short(default)));
+        writeln!(out, "\n# {description},{of} {} to {}{default}", short(min), short(max))?;
         writeln!(out, "{name} = {}", shortest(get(structure.parameters())))?;
         for natural in NATURAL.iter().filter(|natural| natural.stands_for == name) {
             let &Natural { min, max, in_place_of, .. } = natural;

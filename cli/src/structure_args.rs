@@ -7,7 +7,7 @@ use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource};
 use rocking::digits::short;
 use rocking::structure::derived::Derived;
 use rocking::structure::description::Described;
-use rocking::structure::doubts::{DOUBTED, doubted};
+use rocking::structure::doubts::{all_doubted, doubted};
 use rocking::structure::ground;
 use rocking::structure::natural_quantities::{Given, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
@@ -29,7 +29,7 @@ pub struct StructureArgs {
     #[command(flatten)]
     numbers: Numbers,
     /// Names of numbers; their warnings are left out
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = one_of(DOUBTED.map(|name| (name, name))))]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = one_of(all_doubted().map(|name| (name, name))))]
     allow: Vec<&'static str>,
 }
 

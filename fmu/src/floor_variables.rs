@@ -65,12 +65,12 @@ pub(crate) fn state_rates(structure: &Structure) -> Vec<Row> {
     let rate = |place: usize| {
         let (unit, is_velocity) =
             [("m/s", true), ("m/s2", false), ("rad/s", true), ("rad/s2", false)][kind(structure, place).0];
-        let of = if is_velocity { Vec::new() } else { ACCELERATION.to_vec() };
+        let of = if is_velocity { &[][..] } else { &ACCELERATION };
         let own = is_velocity.then(|| name(structure, if place < n { place + n } else { place + 1 }));
         let (name, by) = (name(structure, place), ", by the equations of the level of detail");
         let description = format!("rate of {name}{}", if is_one && is_velocity { "" } else { by });
         let variable = Variable::real(Causality::Local, format!("der({name})"), unit, description);
-        (variable.from(of).from(own).rate_of(name), Source::StateRate(place))
+        (variable.from(of.iter().copied()).from(own).rate_of(name), Source::StateRate(place))
     };
     (0..2 * n + 2).map(rate).collect()
 }
@@ -80,7 +80,9 @@ pub(crate) fn numbers(frame: &Structure) -> Vec<Row> {
     let known = |name: String, unit, description: String, value| {
         (Variable::real(Causality::CalculatedParameter, name, unit, description), Source::Known(value))
     };
-    let of_base = frame.derived().map(|of| known(of.name.into(), of.unit, of.description.into(), (of.value)(frame)));
+    let number = |([name, unit, description], value): ([&'static str; 3], f64)| {
+        known(name.into(), unit, description.into(), value)
+    };
     let of_modes = OF_MODE.iter().flat_map(|of| {
         (1..).zip(frame.mode_table()).map(move |(j, mode)| {
             known(format!("{}[{j}]", of.name), of.unit, format!("mode {j}: {}", of.description), (of.value)(&mode))
@@ -92,5 +94,5 @@ pub(crate) fn numbers(frame: &Structure) -> Vec<Row> {
             known(format!("h[{i}]"), "m", format!("height of floor {i} above the base"), floor.height),
         ]
     });
-    of_base.chain(of_modes).chain(of_floors).collect()
+    frame.derived().map(number).chain(of_modes).chain(of_floors).collect()
 }

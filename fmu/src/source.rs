@@ -5,9 +5,10 @@ use fmi_unit::{Enumeration, Value, Variable};
 use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::run::ground_motion::Placement;
 use rocking::structure::derived::Derived;
+use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::Quantity;
 use rocking::{Detail, Impulse, Output, Parameters, Phase, Reactions};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 /// The source of the value of a variable.
 #[derive(Clone, Copy, Debug)]
@@ -134,8 +135,7 @@ const NAMES: [&str; Phase::SHOWN.len()] = {
 pub(crate) type Row = (Variable, Source);
 
 /// The variables that accelerations follow from.
-#[rustfmt::skip]
-pub(crate) const ACCELERATION: &[&str] = &[
-    "a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "theta_dot", "m", "m0", "H", "B", "J0", "f_fc", "zeta_fc", "c_ratio",
-    "g", "detail", "P_0", "k_t", "xi_d", "c_d", "k_d", "F_y",
-];
+pub(crate) static ACCELERATION: LazyLock<Vec<&str>> = LazyLock::new(|| {
+    let motion = ["a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "theta_dot", "detail"];
+    motion.into_iter().chain(PARAMETERS.iter().map(|of| of.name).filter(|name| *name != "r")).collect()
+});

@@ -80,7 +80,7 @@ fn rows(structure: &Structure) -> Vec<Row> {
         event_indicators().into(),
         of_one(peaks),
         validity(),
-        of_one(|_| const { &PARAMETERS }.iter().map(|of| fixed(of, Source::Parameter(of))).collect()),
+        of_one(|_| PARAMETERS.iter().map(|of| fixed(of, Source::Parameter(of))).collect()),
         vec![parameter("detail", DETAILS.description, DataType::Enumeration(&DETAILS), Source::Detail)],
         initial_values(structure),
         records().into(),
@@ -169,14 +169,14 @@ fn output(of: Output, structure: &Structure) -> Row {
         }
         Output::u_dot(_) if is_one => ("elastic velocity of the top mass", &["u_dot_0"]),
         Output::uplift => ("height of the free edge of the base (Eq 25)", &["theta", "B", "y"]),
-        Output::V_t => ("m a_t, the base shear if F_t is 0 (Eqs 2, 23)", ACCELERATION),
-        Output::M_t => ("m H a_t, the overturning moment if F_t is 0 (Eqs 3, 24)", ACCELERATION),
-        Output::a_t(_) => ("acceleration of the top mass, ground included (Eq 27)", ACCELERATION),
+        Output::V_t => ("m a_t, the base shear if F_t is 0 (Eqs 2, 23)", &ACCELERATION),
+        Output::M_t => ("m H a_t, the overturning moment if F_t is 0 (Eqs 3, 24)", &ACCELERATION),
+        Output::a_t(_) => ("acceleration of the top mass, ground included (Eq 27)", &ACCELERATION),
         Output::delta_t(_) => ("lateral displacement of the top mass (Eq 26)", &["u", "theta", "H", "B"]),
         Output::v_t(_) => {
             ("lateral velocity of the top mass relative to the ground", &["u", "u_dot", "theta", "theta_dot", "H", "B"])
         }
-        Output::V(_) | Output::M(_) => ("", ACCELERATION),
+        Output::V(_) | Output::M(_) => ("", &ACCELERATION),
         Output::u(_) | Output::drift(_) | Output::drift_ratio(_) => ("", &["u"]),
         Output::u_dot(_) => ("", &["u_dot"]),
         Output::y | Output::P_t | Output::settlement | Output::settled(_) | Output::lifted(_) => ("", &["y", "theta"]),
@@ -198,7 +198,7 @@ fn output(of: Output, structure: &Structure) -> Row {
 /// Reactions, forces of the ties, and impulses.
 fn forces() -> [Row; 9] {
     let force = |texts, source, of: &_| real(Causality::Output, texts, source, of);
-    let reaction = |name, unit, description, of| force([name, unit, description], Source::Reaction(of), ACCELERATION);
+    let reaction = |name, unit, description, of| force([name, unit, description], Source::Reaction(of), &ACCELERATION);
     let impulse = |name, unit, description, of| {
         (Variable::of_type(number(unit), Causality::Output, name, description), Source::Impulse(of))
     };

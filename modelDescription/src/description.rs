@@ -1,7 +1,7 @@
 //! `modelDescription.xml` from a table of variables.
 
 use crate::element::{Element, digits};
-use crate::{DefaultExperiment, Unit, Version};
+use crate::{DefaultExperiment, Version};
 use fmi_unit::logger::Category;
 use fmi_unit::variables::{dependencies, position};
 use fmi_unit::{Causality, DataType, Enumeration, Role, Value, Variable};
@@ -25,8 +25,8 @@ pub struct Description<'a> {
     pub events: &'a str,
     /// Whether inputs have slopes and outputs have rates in co-simulation.
     pub has_slopes: bool,
-    /// Units of the variables.
-    pub units: Vec<Unit>,
+    /// Units, what hosts may show in the place of each, and the factor of a value then.
+    pub display_units: Vec<(&'static str, &'static str, f64)>,
     /// The variables; a value reference is a position, in FMI 3.0 counted from 1.
     pub variables: &'a [Variable],
     /// Settings of a simulation for which the user sets nothing else.
@@ -43,7 +43,7 @@ impl Description<'_> {
             Version::Fmi3 => ("3.0", "instantiationToken", None),
         };
         let has_numbers = self.variables.iter().any(|variable| variable.name.contains('['));
-        let units = self.all_units().into_iter().map(unit);
+        let units = self.units().into_iter().map(|name| self.unit(name));
         let types = self.enumerations().into_iter().map(|of| enumeration(version, of));
         let variables = (0..).zip(self.variables);
         let is_row = |variable: &Variable| version == Version::Fmi3 || variable.causality != Causality::Independent;
@@ -99,18 +99,30 @@ impl Description<'_> {
         }
     }
 
-    /// The units, and those that variables have beside them, of which nothing but the name is known.
-    fn all_units(&self) -> Vec<Unit> {
-        let mut units = self.units.clone();
+    /// The units that variables have, each once.
+    fn units(&self) -> Vec<&'static str> {
+        let mut units = Vec::new();
         for variable in self.variables {
             match variable.data_type {
-                DataType::Real { unit: name, .. } if name != "1" && units.iter().all(|known| known.name != name) => {
-                    units.push(Unit { name, base: None, display: None });
-                }
+                DataType::Real { unit, .. } if unit != "1" && !units.contains(&unit) => units.push(unit),
                 _ => (),
             }
         }
         units
+    }
+
+    /// The definition of a unit, of which nothing but the name may be known.
+    fn unit(&self, name: &'static str) -> Element {
+        let base = exponents(name).map(|exponents| {
+            let exponents = ["kg", "m", "s", "rad"].into_iter().zip(exponents);
+            exponents.fold(Element::new("BaseUnit"), |base, (of, exponent)| {
+                base.with_any(of, (exponent != 0).then_some(exponent))
+            })
+        });
+        let display = self.display_units.iter().find(|(of, ..)| *of == name);
+        let display = display
+            .map(|(_, name, factor)| Element::new("DisplayUnit").with("name", name).with("factor", digits(*factor)));
+        Element::new("Unit").with("name", name).holding(base).holding(display)
     }
 
     /// The enumerations that variables have, each once.
@@ -222,16 +234,27 @@ fn index(at: usize) -> usize {
     at + 1
 }
 
-fn unit(Unit { name, base, display }: Unit) -> Element {
-    let base = base.map(|exponents| {
-        let exponents = ["kg", "m", "s", "rad"].into_iter().zip(exponents);
-        exponents.fold(Element::new("BaseUnit"), |base, (of, exponent)| {
-            base.with_any(of, (exponent != 0).then_some(exponent))
-        })
-    });
-    let display =
-        display.map(|(name, factor)| Element::new("DisplayUnit").with("name", name).with("factor", digits(factor)));
-    Element::new("Unit").with("name", name).holding(base).holding(display)
+/// The exponents of kg, m, s and rad of a unit of SI, such as `N.s/m`.
+fn exponents(unit: &str) -> Option<[i32; 4]> {
+    let mut sum = [0; 4];
+    for (part, sign) in unit.split('/').zip([1, -1]) {
+        for factor in part.split('.') {
+            let symbol = factor.trim_end_matches(|c: char| c.is_ascii_digit());
+            let power = sign * factor[symbol.len()..].parse().unwrap_or(1);
+            let of = match symbol {
+                "kg" => [1, 0, 0, 0],
+                "m" => [0, 1, 0, 0],
+                "s" => [0, 0, 1, 0],
+                "rad" => [0, 0, 0, 1],
+                "Hz" => [0, 0, -1, 0],
+                "N" => [1, 1, -2, 0],
+                "J" => [1, 2, -2, 0],
+                _ => return None,
+            };
+            sum.iter_mut().zip(of).for_each(|(sum, of)| *sum += power * of);
+        }
+    }
+    Some(sum)
 }
 
 fn enumeration(version: Version, of: &Enumeration) -> Element {

@@ -18,17 +18,6 @@ pub enum Version {
     Fmi3,
 }
 
-/// A unit of variables.
-#[derive(Clone, Debug)]
-pub struct Unit {
-    /// Name by which variables refer to the unit.
-    pub name: &'static str,
-    /// The unit in SI, if that is known: exponents of kg, m, s and rad.
-    pub base: Option<[i32; 4]>,
-    /// The unit that hosts may show instead, and the factor of a value in that unit.
-    pub display: Option<(&'static str, f64)>,
-}
-
 /// Settings of a simulation for which the user sets nothing else.
 #[derive(Clone, Copy, Debug)]
 pub struct DefaultExperiment {

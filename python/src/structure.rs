@@ -20,12 +20,14 @@ use rocking_report::describe;
 /// Structure(m=4e5, m0=1e5, H=9, B=1.5, J0=1e5, f_fc=2.5, zeta_fc=0.03, r=0.95)
 /// Structure(preset="mcmanus", f_fc=8)
 ///
-/// Every number is a keyword and an attribute, in SI units. Parameters: m, m0 (kg), H, B (m), J0 (kg.m2, 0), f_fc (Hz),
-/// zeta_fc, c_ratio (1), r, g (m/s2, 9.81); the numbers in brackets are defaults. These replace parameters: period_fc (s) for
+/// Every number is a keyword and an attribute, in SI units. Parameters, with unit and default:
+///
+#[doc = rocking::parameters_in_lines!()]
+///
+/// These replace parameters: period_fc (s) for
 /// f_fc, weight and weight0 (N) for m and m0, width (m) for B. p_l (rad/s) replaces J0. alpha_cg (rad) replaces H, or B if H
-/// is given. units="kN, m, t": masses in t, forces in kN, J0 in t.m2, k in kN/m. Tendon: P_0 (N), k_t (N/m). Pair of dissipators: distance xi_d (m) from the middle, viscous c_d (N.s/m), or
-/// elastoplastic k_d (N/m) and F_y (N). With preset, "mcmanus" or "evison", the specimen of the paper with these numbers in
-/// the place of its own.
+/// is given. units="kN, m, t": masses in t, forces in kN, J0 in t.m2, k in kN/m. With preset, "mcmanus" or "evison", the specimen of
+/// the paper with these numbers in the place of its own.
 ///
 /// Derived quantities are attributes, too: alpha_cg, p_l, chi, u_cr, f_u, ... `parameters` and `derived` have all of them,
 /// and print(structure) shows them with units and equation numbers. A structure cannot be changed; `replace` makes another.

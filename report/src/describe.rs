@@ -15,13 +15,18 @@ use std::fmt::{self, Write};
 /// The parameters of one mass.
 pub fn given(structure: &Structure) -> Vec<NamedValue> {
     let Some(one) = structure.one() else { return Vec::new() };
-    let all = PARAMETERS.iter();
-    all.map(|of| NamedValue::new(of.name, (of.get)(one.parameters()), of.unit, "", of.description)).collect()
+    PARAMETERS
+        .iter()
+        .map(|of| NamedValue::new(of.name, (of.get)(one.parameters()), of.unit, "", of.description))
+        .collect()
 }
 
 /// The derived quantities of one mass; the numbers of a structure of many masses.
 pub fn derived(structure: &Structure) -> Vec<NamedValue> {
-    structure.one().map_or_else(|| named(structure.derived(), structure), |one| named(&DERIVED, one))
+    let number = |([name, unit, description], value): ([&'static str; 3], f64)| {
+        NamedValue::new(name, value, unit, "", description)
+    };
+    structure.one().map_or_else(|| structure.derived().map(number).collect(), |one| named(&DERIVED, one))
 }
 
 /// The numbers of each mode of a structure of many masses, lowest frequency first.

@@ -3,7 +3,7 @@
 use crate::run::{Curve, Found, Run};
 use rocking::run::RunError;
 use rocking::structure::derived::OF_MODE;
-use rocking::{Body, Detail, Structure, Ties};
+use rocking::{Body, Detail, Output, Structure};
 pub use rocking_view::Sizes;
 use rocking_view::{Column, Peak, Scene, quanta};
 
@@ -61,11 +61,13 @@ impl Run {
 
 /// The structure as it is drawn.
 pub fn sizes(structure: &Structure) -> Sizes {
-    let (base, &Ties { P_0, k_t, xi_d, c_d, k_d, .. }) = (structure.base(), &structure.base().ties);
+    let (base, shown) = (structure.base(), Output::with_peak(structure));
+    let ties = Output::OF_TIES.into_iter().zip([0.0, base.ties.xi_d, -base.ties.xi_d]);
+    let ties = ties.filter(|(of, _)| shown.contains(of)).map(|(of, along)| (of.symbol(), along)).collect();
     let (&Body { m_s: m, m0, S_1, .. }, floors) = (structure.body(), structure.floors());
     let H = floors.last().map_or(S_1 / m, |floor| floor.height);
     let f_fc = structure.mode_table().next().map_or(0.0, |first| (OF_MODE[0].value)(&first));
     let floors = structure.one().is_none().then(|| floors.iter().map(|floor| [floor.mass, floor.height]).collect());
     let points = structure.foundation().map_or(Vec::new(), |of| of.points.iter().map(|point| point.xi).collect());
-    Sizes { m, m0, H, B: base.B, f_fc, g: base.g, P_0, k_t, xi_d, c_d, k_d, points, floors }
+    Sizes { m, m0, H, B: base.B, f_fc, g: base.g, ties, points, floors }
 }

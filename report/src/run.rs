@@ -355,7 +355,7 @@ fn results<Q: Runs>(structure: &Structure, found: &fall::Found<Q>, transitions: 
         overturned: ending.overturned(),
         fall,
         peaks: [NamedPeak::new("a_g", "m/s2", ground)].into_iter().chain(NamedPeak::all(structure, peaks)).collect(),
-        taken: structure.base().has_dissipators().then_some(taken),
+        taken: structure.base().takes_energy().then_some(taken),
         first_uplift: first(|kind| matches!(kind, TransitionKind::Uplift(_) | TransitionKind::Release(_))),
         first_impact: first(|kind| kind.is_impact()),
         transitions: motion.transitions,

@@ -15,9 +15,10 @@ use crate::levels::level::Level;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::contact::margins;
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::restraint::Dissipators;
+use crate::mechanics::restraint::{Dissipators, dampers_on_ground, places};
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Series, ZERO, evaluate};
+use crate::series::terms::Terms;
 use crate::structure::ground::{Footing, Point};
 use crate::{Phase, Ties};
 
@@ -149,14 +150,15 @@ impl<Q: Coordinates> Guard<Q> for Tied {
     fn first(&self, &Step { level, contact, start, arc, reach, .. }: &Step<Q>) -> (Crossing, Way) {
         let foundation = level.structure().ground();
         let (rises, mut found) = (Rises::new(level, arc), (Crossing::None, Way::default()));
-        let Ties { P_0, k_t, xi_d, k_d, F_y, .. } = level.structure().base().ties;
+        let base = level.structure().base();
+        let Ties { P_0, k_t, k_d, F_y, .. } = base.ties;
         if k_t > 0.0 {
             let ((height, rounding), slack) = (rises.at(0.0, 0.0), P_0 / k_t - foundation.rest);
             let (sign, way) = if contact.is_slack { (-1.0, 1) } else { (1.0, -1) };
             let gap = Gap::new(&height[..=rises.order], sign, sign * slack + rounding);
             see(&mut found, first_time_all_closed([gap], reach), usize::from(TENDON), way);
         }
-        for (j, xi) in [xi_d, -xi_d].into_iter().enumerate().filter(|_| F_y > 0.0) {
+        for (j, xi) in places(base).into_iter().enumerate().filter(|_| F_y > 0.0) {
             let rate = rises.rate(xi);
             match start.dissipators.yields[j] {
                 0 => {
@@ -196,12 +198,12 @@ impl<Q: Coordinates> Guard<Q> for Tied {
 /// How far the ties are from their next change, of order one.
 fn tied_margins<'a, Q: Coordinates>(now: &'a Sample<Q>) -> impl Iterator<Item = f64> + 'a {
     let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
-    let Ties { P_0, k_t, xi_d, k_d, F_y, .. } = structure.base().ties;
+    let Ties { P_0, k_t, k_d, F_y, .. } = structure.base().ties;
     let (ground, rest) = (structure.ground(), structure.ground().rest);
     let of = move |i: usize, xi: f64| [state.u, state.u_dot][i].footing(ground).height(xi);
     let sign = if phase.contact().is_slack { -1.0 } else { 1.0 };
     let of_tendon = (of(0, 0.0) - rest + P_0 / k_t) / rest.abs() * sign;
-    let of_pair = [(0, xi_d), (1, -xi_d)].into_iter().map(move |(j, xi)| match dissipators.yields[j] {
+    let of_pair = places(structure.base()).into_iter().enumerate().map(move |(j, xi)| match dissipators.yields[j] {
         0 => 1.0 - (k_d * (of(0, xi) - rest - dissipators.plastic[j])).abs() / F_y,
         way => f64::from(way) * of(1, xi) / (rest.abs() * structure.vibration().contact),
     });
@@ -210,19 +212,8 @@ fn tied_margins<'a, Q: Coordinates>(now: &'a Sample<Q>) -> impl Iterator<Item = 
 
 /// The dissipators at the reach of a step.
 pub(crate) fn moved<Q: Coordinates>(&Step { level, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
-    let mut moved = *start.dissipators;
-    let foundation = level.structure().ground();
-    let (rises, Ties { xi_d, c_d, k_d, F_y, .. }) = (Rises::new(level, arc), level.structure().base().ties);
-    for (j, xi) in [xi_d, -xi_d].into_iter().enumerate() {
-        let way = f64::from(moved.yields[j]);
-        if way != 0.0 {
-            let plastic = evaluate(&rises.at(xi, 0.0).0[..=arc.order], reach) - foundation.rest - way * F_y / k_d;
-            moved.hysteretic += way * F_y * (plastic - moved.plastic[j]);
-            moved.plastic[j] = plastic;
-        }
-        if c_d > 0.0 {
-            moved.viscous += c_d * arc.span * square_integral(&rises.rate(xi).0[..=arc.order], reach);
-        }
-    }
-    moved
+    let (foundation, base, rises) = (level.structure().ground(), level.structure().base(), Rises::new(level, arc));
+    let height = |j: usize| evaluate(&rises.at(places(base)[j], 0.0).0[..=arc.order], reach) - foundation.rest;
+    let power = |(c, rate): (f64, Terms)| c * arc.span * square_integral(rate.used(), reach);
+    start.dissipators.stepped(base, height, dampers_on_ground(base, arc, foundation).map(power))
 }

@@ -2,11 +2,10 @@
 
 use crate::engine::motion::Motion;
 use crate::levels::level::{Level, Now, edges};
-use crate::mechanics::contact;
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
-use crate::mechanics::restraint::Restraints;
+use crate::mechanics::restraint::{Restraints, restraints};
 use crate::{Output, Phase, Reactions};
 use std::cell::OnceCell;
 
@@ -50,7 +49,7 @@ impl<Q: Coordinates> Sample<'_, Q> {
 
     /// The forces of the restraints.
     pub fn restraints(&self) -> Restraints {
-        contact::restraints(&self.instant(), self.level.subject().angles, &self.motion.dissipators)
+        restraints(&self.instant(), self.level.subject().angles, &self.motion.dissipators)
     }
 
     /// The value of `output`; once overturned, the value of the instant before.

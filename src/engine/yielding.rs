@@ -11,7 +11,7 @@ use crate::engine::step::{Step, Way, see};
 use crate::engine::transition::TransitionKind;
 use crate::levels::level::Level;
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::restraint::{Dissipators, levers};
+use crate::mechanics::restraint::{Dissipators, dampers, levers};
 use crate::mechanics::state::way;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{ZERO, evaluate};
@@ -102,24 +102,10 @@ fn least_margin<Q: Coordinates>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
 
 /// The dissipators at the reach of a step.
 pub(crate) fn moved<Q: Coordinates>(&Step { level, side, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
-    let (base, angles, dissipators) = (level.structure().base(), level.subject().angles, start.dissipators);
-    let &Base { B, ties: Ties { xi_d, c_d, k_d, F_y, .. }, .. } = base;
-    let (mut moved, theta) = (*dissipators, evaluate(arc.used(&arc.theta), reach));
-    for (j, lever) in levers(base, side).into_iter().enumerate() {
-        let way = f64::from(dissipators.yields[j]);
-        if way != 0.0 {
-            let plastic = lever * angles.chord(theta, 0.0).length - way * F_y / k_d;
-            moved.hysteretic += way * F_y * (plastic - moved.plastic[j]);
-            moved.plastic[j] = plastic;
-        }
-    }
-    if c_d > 0.0 {
-        let [theta, theta_dot] = [&arc.theta, &arc.theta_dot].map(|series| Terms::of(series, arc.order));
-        let rate = angles.chord(theta, theta_dot).rate;
-        let squared = square_integral(rate.used(), reach) * arc.span;
-        moved.viscous += 2.0 * c_d * (B * B + xi_d * xi_d) * squared;
-    }
-    moved
+    let (base, angles) = (level.structure().base(), level.subject().angles);
+    let chord = || angles.chord(evaluate(arc.used(&arc.theta), reach), 0.0).length;
+    let power = |(c, rate): (f64, Terms)| c * (square_integral(rate.used(), reach) * arc.span);
+    start.dissipators.stepped(base, |j| levers(base, side)[j] * chord(), dampers(base, angles, arc).map(power))
 }
 
 /// ∫ (Σ c_k σᵏ)² dσ from 0 to `reach`.

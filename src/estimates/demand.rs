@@ -13,20 +13,20 @@
 //!
 //! The equations are for a structure that its weight alone turns back. A structure with a tendon or dissipators is an error.
 
+use crate::OneMass;
+use crate::structure::parameters::TIES;
 use crate::structure::quantity::{Quantity, Refused, ensure};
-use crate::{OneMass, Ties};
 
 /// The amplification C of an instant transition, and its largest value.
 pub const INSTANT_TRANSITION: f64 = 2.0;
 
 /// Refuses a `structure` with a tendon or dissipators, which the equations do not include.
 pub(crate) fn check_is_free(structure: &OneMass) -> Result<(), Refused> {
-    let Ties { P_0, k_t, c_d, k_d, .. } = structure.base().ties;
     ensure(!structure.base().is_restrained(), || {
-        format!(
-            "Eqs 10 to 24 hold only without tendon and dissipators, but P_0 = {P_0:?} N, k_t = {k_t:?} N/m, c_d = {c_d:?} N.s/m, \
-             k_d = {k_d:?} N/m: simulate the motion instead"
-        )
+        let ties = TIES.iter().map(|of| (of, (of.get)(&structure.base().ties))).filter(|(_, value)| *value > 0.0);
+        let ties =
+            ties.map(|(of, value)| format!("{} = {value:?} {}", of.name, of.unit)).collect::<Vec<_>>().join(", ");
+        format!("Eqs 10 to 24 hold only without tendon and dissipators, but {ties}: simulate the motion instead")
     })
 }
 

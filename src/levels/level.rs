@@ -8,13 +8,12 @@ use crate::levels::full_contact::ExactContact;
 use crate::levels::rules::ChatterLimit;
 use crate::levels::start::{Start, Truncation};
 use crate::mechanics::arc::Arc;
-use crate::mechanics::contact::restraints;
 use crate::mechanics::impact;
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::reactions::Reactions;
-use crate::mechanics::restraint::{Angles, Dissipators, Restraint, Restraints};
+use crate::mechanics::restraint::{Angles, Dissipators, pulls};
 use crate::numbers::{Angle, Real};
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::LONGEST_SPAN;
@@ -186,13 +185,7 @@ pub(crate) fn edges<N: Angle, Q: Lateral<N>>(
     if !is_tied {
         return reactions;
     }
-    if Q::foundation(x.structure).is_some() {
-        let Restraints { P_t, F_d1, F_d2 } = restraints(x, angles, dissipators);
-        let moment = (F_d1 - F_d2) * x.base().ties.xi_d * x.turn.cos;
-        return reactions.of_edges(P_t + F_d1 + F_d2, N::constant(0.0), moment);
-    }
-    let restraint = Restraint::about(x.base(), Side::of(x.s), dissipators);
-    let [up, right, moment] = restraint.pulls(&angles.chord(x.theta, x.theta_dot));
+    let [up, right, moment] = pulls(x, angles, dissipators);
     reactions.of_edges(up, right, moment)
 }
 

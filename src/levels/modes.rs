@@ -25,12 +25,11 @@ use crate::levels::nonlinear::{Factors, LEAST_INERTIA, NO_ROW, products, row};
 use crate::levels::oscillator::{Oscillator, Swing};
 use crate::levels::rules::{ChatterLimit, after_rigid_impact};
 use crate::levels::start::{Start, Truncation};
-use crate::levels::ties::TieSeries;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::impact;
 use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::restraint::{self, Angles, Dissipators};
+use crate::mechanics::restraint::{Angles, Dissipators, MomentSeries, Restraint};
 use crate::mechanics::uplift::inertia;
 use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER, NEGLIGIBLE};
 use crate::structure::mode::{Modes, Vibration};
@@ -261,9 +260,9 @@ impl<Q: Coordinates> ManyModes<Q> {
             ExactContact::new(Oscillator { omega, zeta: mode.damping / (2.0 * mode.mass * omega) })
         };
         let left = inertia(&base, &modes, Side::Right, |_| 0.0);
-        let ties = restraint::sum(&restraint::ties(&base, Side::Right, &Dissipators::NEW), |tie| tie.lever);
+        let [springs, dampers] = Restraint::about(&base, Side::Right, &Dissipators::NEW).rates(left);
         let [_, highest] = vibration.rocking;
-        let fastest = (highest * highest + ties.stiffness / left).sqrt().max(base.p_l).max(ties.damping / left);
+        let fastest = (highest * highest + springs).sqrt().max(base.p_l).max(dampers);
         let has_flow = detail != Detail::Nonlinear && rigid.is_none();
         ManyModes {
             contact: has_flow.then(|| modes.iter().map(exact).collect()),
@@ -475,12 +474,9 @@ impl<Q: Coordinates> ManyModes<Q> {
     }
 
     /// The moment of the ties about `side` as a series, if there are ties.
-    fn ties(&self, side: Side, start: &Start<Q>) -> Option<TieSeries> {
+    fn ties(&self, side: Side, start: &Start<Q>) -> Option<MomentSeries> {
         let &Subject { is_tied, angles, .. } = &self.subject;
-        is_tied.then(|| {
-            let ties = restraint::sum(&restraint::ties(&self.base, side, start.dissipators), |tie| tie.lever);
-            TieSeries::new(ties, angles, start.state.theta)
-        })
+        is_tied.then(|| Restraint::about(&self.base, side, start.dissipators).series(angles, start.state.theta))
     }
 
     /// Writes the motion while rocking about `side` by small angles into `arc`. From (M10) and (M11), with e = (c u̇ + k u)/μ,
@@ -678,9 +674,9 @@ mod tests {
             let now = Now { state: &state, load, dissipators: &dissipators };
             let springs = Modes::sum(&frame, |j, mode| mode.height * mode.stiffness * u.of(j)) - S_res * load.a_g - 9e4;
             let expected = [Side::Right, Side::Left].map(|side| {
-                let [tendon, pair @ ..] = restraint::ties(frame.base(), side, &dissipators);
-                let residual: f64 = pair.iter().map(|tie| tie.lever * tie.force).sum();
-                let held = m_t * (g + a_v) * B + tendon.force * B + side.sign() * residual;
+                let residual = |(xi, e_p): (f64, f64)| -1e7 * e_p * (side.sign() * B - xi);
+                let residual: f64 = [(0.5, 2e-3), (-0.5, -1e-3)].map(residual).iter().sum();
+                let held = m_t * (g + a_v) * B + 2e5 * B + side.sign() * residual;
                 let inertia = inertia(frame.base(), frame.modes(), side, |j| u.of(j));
                 let turns = level.accelerations(Phase::Rocking(side), &now).theta_ddot * inertia;
                 ((held - side.sign() * springs) / weight).max(-side.sign() * turns / weight)

@@ -30,7 +30,6 @@
 
 use crate::levels::level::{ElasticRocking, Pace};
 use crate::levels::start::Start;
-use crate::levels::ties::TieSeries;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
@@ -371,10 +370,8 @@ impl NonlinearRocking {
     fn expand<const TIED: bool>(&self, side: Side, start: &Start, arc: &mut Arc) {
         let structure = &self.one;
         let span = self.pace.span(start.interval);
-        let mut ties = TIED.then(|| {
-            let ties = Restraint::about(structure.base(), side, start.dissipators).moments();
-            TieSeries::new(ties, Angles::Any, start.state.theta)
-        });
+        let restraint = || Restraint::about(structure.base(), side, start.dissipators);
+        let mut ties = TIED.then(|| restraint().series(Angles::Any, start.state.theta));
         let m = structure.parameters().m;
         let products = &mut *self.products.borrow_mut();
         let mut recurrence = Recurrence::new(self.equations::<TIED>(side, start, span));

@@ -22,10 +22,10 @@ use crate::levels::modes::{Abreast, Four, FourSeries};
 use crate::levels::nonlinear::add_product;
 use crate::levels::start::{Start, Truncation};
 use crate::mechanics::arc::Arc;
-use crate::mechanics::contact::{energy, ties_on_ground};
+use crate::mechanics::contact::energy;
 use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::{Coordinates, Lateral};
-use crate::mechanics::restraint::Dissipators;
+use crate::mechanics::restraint::{Dissipators, ties};
 use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER, add_each_product, reciprocal};
 use crate::structure::ground::Footing;
 use crate::structure::mode::Modes;
@@ -137,7 +137,7 @@ impl<V: Abreast> OnGround<V> {
         }
         let mut c = taken;
         if self.subject.is_tied {
-            for tie in ties_on_ground(structure.base(), rest, start.dissipators, contact) {
+            for tie in ties(structure.base(), start.dissipators, rest, contact.is_slack) {
                 moments(&mut k, tie.lever, tie.stiffness);
                 moments(&mut c, tie.lever, tie.damping);
                 push = [push[0] - tie.force, push[1] - tie.lever * tie.force];

@@ -1,13 +1,12 @@
-//! Ground that gives under a base: the pressed points, rest, the ties between the base and the ground, energy.
+//! Ground that gives under a base: the pressed points, rest, energy.
 
 use crate::mechanics::energy::mechanical;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral};
-use crate::mechanics::restraint::{Angles, Dissipators, Restraint, Restraints, Tie, pair};
-use crate::numbers::{Angle, Number};
+use crate::mechanics::restraint::{self, Dissipators, Tie, places};
 use crate::structure::ground::{Footing, Point};
 use crate::structure::mode::Modes;
-use crate::{Base, Contact, Foundation, Load, Phase, Side, State, Structure, Ties};
+use crate::{Base, Contact, Foundation, Load, Phase, State, Structure, Ties};
 
 /// min(−e, f/k) of each point, m: positive if the point is pressed.
 pub(crate) fn margins<Q: Coordinates>(foundation: &Foundation, state: &State<Q>) -> impl Iterator<Item = f64> {
@@ -40,43 +39,10 @@ impl Foundation {
 
     /// The dissipators of a structure that was moved slowly to `state`.
     pub(crate) fn moved<Q: Coordinates>(&self, state: &State<Q>, base: &Base) -> Dissipators {
-        let (Ties { xi_d, k_d, F_y, .. }, mut moved) = (base.ties, Dissipators::NEW);
-        for (j, xi) in [xi_d, -xi_d].into_iter().enumerate().filter(|_| k_d > 0.0) {
-            let elongation = state.u.footing(self).y - self.rest - xi * state.u.footing(self).sin;
-            moved.plastic[j] = elongation - elongation.clamp(-F_y / k_d, F_y / k_d);
-        }
-        moved
+        let Footing { y, sin, .. } = state.u.footing(self);
+        let moved = Dissipators::NEW.moved_to(base, |j| y - self.rest - places(base)[j] * sin);
+        Dissipators { hysteretic: 0.0, ..moved }
     }
-}
-
-/// The tendon and both dissipators of `base` on ground that gives, at ξ in the place of a lever: a tie elongates by y − y_s − ξ sin θ and
-/// pulls with F_0 + k (y − ξ sin θ) + c (ẏ − ξ θ̇ cos θ). `rest` is y_s.
-pub(crate) fn ties_on_ground(base: &Base, rest: f64, dissipators: &Dissipators, contact: Contact) -> [Tie; 3] {
-    let Ties { P_0, k_t, xi_d, .. } = base.ties;
-    let [first, second] = pair(base, dissipators, [xi_d, -xi_d], dissipators.plastic.map(|plastic| plastic + rest));
-    let [force, stiffness] = if contact.is_slack { [0.0; 2] } else { [P_0 - k_t * rest, k_t] };
-    [Tie { lever: 0.0, force, stiffness, damping: 0.0 }, first, second]
-}
-
-/// The forces of `ties` on ground that gives, given the footing and its rates, N.
-fn forces_on_ground<N: Number>(ties: &[Tie; 3], [footing, rates]: [Footing<N>; 2]) -> Restraints<N> {
-    let [P_t, F_d1, F_d2] = ties.map(|Tie { lever, force, stiffness, damping }| {
-        N::constant(force) + footing.height(lever) * stiffness + rates.height(lever) * damping
-    });
-    Restraints { P_t, F_d1, F_d2 }
-}
-
-/// The forces of the restraints at the instant `x`, N, at the `angles` of its level with the dissipators in this state.
-pub(crate) fn restraints<N: Angle, Q: Lateral<N>>(
-    x: &Instant<N, Q>,
-    angles: Angles,
-    dissipators: &Dissipators,
-) -> Restraints<N> {
-    if let Some(ground) = Q::foundation(x.structure) {
-        let ties = ties_on_ground(x.base(), ground.rest, dissipators, x.contact);
-        return forces_on_ground(&ties, x.footing(ground));
-    }
-    Restraint::about(x.base(), Side::of(x.s), dissipators).forces(&angles.chord(x.theta, x.theta_dot))
 }
 
 /// Energy on ground that gives with these points pressed, J, zero at height zero of the unloaded ground (F8):
@@ -96,7 +62,7 @@ pub fn energy(structure: &Structure, contact: Contact, state: &State<Modes>, dis
     let across = turn.sin * (rate + S_1 * x.theta_dot) + offset * x.theta_dot * turn.cos;
     let pressed = points.iter().enumerate().filter(|(i, _)| contact.is_pressed(*i));
     let of_points: f64 = pressed.map(|(_, point)| 0.5 * point.k * (y - point.xi * turn.sin).powi(2)).sum();
-    let [_, pair @ ..] = ties_on_ground(structure.base(), *rest, dissipators, contact);
+    let [_, pair @ ..] = restraint::ties(structure.base(), dissipators, *rest, contact.is_slack);
     let pulled = |tie: &Tie| (tie.force + tie.stiffness * (y - tie.lever * turn.sin)).powi(2) / (2.0 * ties.k_d);
     let of_pair: f64 = if ties.k_d > 0.0 { pair.iter().map(pulled).sum() } else { 0.0 };
     let e = if contact.is_slack { -ties.P_0 / ties.k_t } else { y - rest };

@@ -12,10 +12,15 @@
 //!
 //! Every tie is therefore a force, a stiffness and a damper. A yielding tie is a force alone, and e_p follows from the rotation
 //! at the end. The equations for small angles have e = l θ instead. All elongations are 0 at θ = 0. An elastoplastic dissipator
-//! then pulls with its residual force − k_d e_p. Impacts leave e_p unchanged.
+//! then pulls with its residual force − k_d e_p. Impacts leave e_p unchanged. On ground that gives e = y − y_s − ξ sin θ.
 
+use crate::mechanics::arc::Arc;
+use crate::mechanics::instant::Instant;
+use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::numbers::{Angle, Number, Turn};
-use crate::{Base, Side, Ties};
+use crate::series::taylor::{Series, ZERO, product};
+use crate::series::terms::Terms;
+use crate::{Base, Foundation, Side, Ties};
 use serde::{Deserialize, Serialize};
 
 /// The state of the dissipators and the energy they have taken. The first is at +ξ_d, the second at −ξ_d.
@@ -97,48 +102,40 @@ pub(crate) struct Tie {
 impl Tie {
     /// The force F = F_0 + l (k · chord + c · rate of the chord), N.
     #[inline]
-    pub(crate) fn force<N: Number>(&self, length: N, rate: N) -> N {
+    fn force<N: Number>(&self, length: N, rate: N) -> N {
         N::constant(self.force) + (length * self.stiffness + rate * self.damping) * self.lever
     }
+}
 
-    /// The moment by which the tie that stands for all ties turns the base back at this `chord`, N·m.
-    #[inline]
-    pub(crate) fn moment<N: Number>(&self, chord: &Chord<N>) -> N {
-        self.force(chord.length, chord.rate) * chord.half.cos
-    }
+/// The places ξ of the dissipators from the middle of the base, m.
+pub(crate) fn places(base: &Base) -> [f64; 2] {
+    [base.ties.xi_d, -base.ties.xi_d]
 }
 
 /// The levers of the dissipators while rocking about `side`, m.
 pub(crate) fn levers(base: &Base, side: Side) -> [f64; 2] {
-    let &Base { B, ties: Ties { xi_d, .. }, .. } = base;
-    [side.sign() * B - xi_d, side.sign() * B + xi_d]
+    places(base).map(|xi| side.sign() * base.B - xi)
 }
 
-/// The tendon and both dissipators of `base` about `side`, with the dissipators in this state.
+/// The tendon and both dissipators of `base`, with the dissipators in this state. Each has its place ξ for a lever, and its elongation is
+/// its height above `rest`: 0 on rigid ground, and y_s on ground that gives, where it pulls with F_0 + k (y − ξ sin θ) + c (ẏ − ξ θ̇ cos θ).
 #[inline]
-pub(crate) fn ties(base: &Base, side: Side, dissipators: &Dissipators) -> [Tie; 3] {
-    let &Base { B, ties: Ties { P_0, k_t, .. }, .. } = base;
-    let tendon = Tie { lever: side.sign() * B, force: P_0, stiffness: k_t, damping: 0.0 };
-    let [first, second] = pair(base, dissipators, levers(base, side), dissipators.plastic);
-    [tendon, first, second]
-}
-
-/// Both dissipators of `base` with these levers, whose elongations beyond `plastic` (m) are elastic.
-#[inline]
-pub(crate) fn pair(base: &Base, dissipators: &Dissipators, levers: [f64; 2], plastic: [f64; 2]) -> [Tie; 2] {
-    let Ties { c_d, k_d, F_y, .. } = base.ties;
-    [0, 1].map(|j| {
+pub(crate) fn ties(base: &Base, dissipators: &Dissipators, rest: f64, is_slack: bool) -> [Tie; 3] {
+    let Ties { P_0, k_t, xi_d, c_d, k_d, F_y, .. } = base.ties;
+    let dissipator = |j: usize, lever: f64| {
         let (force, stiffness) = match dissipators.yields[j] {
-            0 => (-k_d * plastic[j], k_d),
+            0 => (-k_d * (dissipators.plastic[j] + rest), k_d),
             way => (f64::from(way) * F_y, 0.0),
         };
-        Tie { lever: levers[j], force, stiffness, damping: c_d }
-    })
+        Tie { lever, force, stiffness, damping: c_d }
+    };
+    let [force, stiffness] = if is_slack { [0.0; 2] } else { [P_0 - k_t * rest, k_t] };
+    [Tie { lever: 0.0, force, stiffness, damping: 0.0 }, dissipator(0, xi_d), dissipator(1, -xi_d)]
 }
 
 /// One tie with the lever 1 in place of all `ties`, each with this weight.
 #[inline]
-pub(crate) fn sum(ties: &[Tie; 3], weight: impl Fn(&Tie) -> f64) -> Tie {
+fn sum(ties: &[Tie; 3], weight: impl Fn(&Tie) -> f64) -> Tie {
     ties.iter().fold(Tie { lever: 1.0, force: 0.0, stiffness: 0.0, damping: 0.0 }, |sum, tie| {
         let of_elongation = weight(tie) * tie.lever;
         Tie {
@@ -148,6 +145,55 @@ pub(crate) fn sum(ties: &[Tie; 3], weight: impl Fn(&Tie) -> f64) -> Tie {
             ..sum
         }
     })
+}
+
+/// The dampers in a motion `arc` about a pivot: c (N·m·s/rad) and the rate (rad/s) of each, whose power is c times the square of the rate.
+pub(crate) fn dampers<Q>(base: &Base, angles: Angles, arc: &Arc<Q>) -> impl Iterator<Item = (f64, Terms)> {
+    let c = base.ties.c_d * base.ties.pair(base.B);
+    let motion = || [&arc.theta, &arc.theta_dot].map(|series| Terms::of(series, arc.order));
+    let rate = |[theta, theta_dot]: [Terms; 2]| angles.chord(theta, theta_dot).rate;
+    (c > 0.0).then(|| (c, rate(motion()))).into_iter()
+}
+
+/// The same on this `ground` that gives, with c (N·s/m) and the rate (m/s).
+pub(crate) fn dampers_on_ground<Q: Coordinates>(
+    base: &Base,
+    arc: &Arc<Q>,
+    ground: &Foundation,
+) -> impl Iterator<Item = (f64, Terms)> {
+    let rate = move |xi: f64| Terms::from_fn(arc.order, |k| arc.u_dot[k].footing(ground).height(xi));
+    let c_d = base.ties.c_d;
+    places(base).into_iter().filter(move |_| c_d > 0.0).map(move |xi| (c_d, rate(xi)))
+}
+
+/// The moment of the ties about a pivot over a step, order by order: cos(θ/2) and sin(θ/2) have derivatives that follow from the derivative
+/// of θ.
+#[derive(Clone, Debug)]
+pub(crate) struct MomentSeries {
+    tie: Tie,
+    /// cos(θ/2), sin(θ/2) and 2 sin(θ/2); for small angles 1, 0 and θ.
+    cos: Series,
+    sin: Series,
+    chord: Series,
+    /// The force along the tie.
+    force: Series,
+    angles: Angles,
+}
+
+impl MomentSeries {
+    /// Coefficient `n` of the series, from θ̇ to that order and the orders before; `per` is the span over n + 1.
+    pub(crate) fn next(&mut self, theta_dot: &Series, n: usize, per: f64) -> f64 {
+        let MomentSeries { tie, cos, sin, chord, force, angles } = self;
+        let rate = product(cos, theta_dot, n);
+        force[n] = tie.force(chord[n], rate);
+        tie.force = 0.0; // a constant has only the order 0
+        chord[n + 1] = rate * per;
+        if *angles == Angles::Any {
+            sin[n + 1] = 0.5 * chord[n + 1];
+            cos[n + 1] = -0.5 * product(sin, theta_dot, n) * per;
+        }
+        product(cos, force, n)
+    }
 }
 
 /// Tendon and dissipators of a structure that rocks, or is about to lift off, about a side.
@@ -163,13 +209,9 @@ impl<'a> Restraint<'a> {
     /// The restraint of `base` about `side`, with the dissipators in this state.
     #[inline]
     pub fn about(base: &'a Base, side: Side, dissipators: &Dissipators) -> Restraint<'a> {
-        Restraint { base, side, ties: ties(base, side, dissipators) }
-    }
-
-    /// The forces of the ties at this `chord`.
-    pub(crate) fn forces<N: Number>(&self, chord: &Chord<N>) -> Restraints<N> {
-        let [P_t, F_d1, F_d2] = self.ties.map(|tie| tie.force(chord.length, chord.rate));
-        Restraints { P_t, F_d1, F_d2 }
+        let mut ties = ties(base, dissipators, 0.0, false);
+        ties.iter_mut().for_each(|tie| tie.lever = side.sign() * base.B - tie.lever);
+        Restraint { base, side, ties }
     }
 
     /// Bounds of the forces of the dissipators while |θ| and |θ̇| stay within `theta` (rad) and `theta_dot` (rad/s), N.
@@ -180,23 +222,35 @@ impl<'a> Restraint<'a> {
 
     /// The tie that turns the base back about the pivot like all ties together: its force times cos(θ/2) is their moment, N·m.
     #[inline]
-    pub(crate) fn moments(&self) -> Tie {
+    fn moments(&self) -> Tie {
         sum(&self.ties, |tie| tie.lever)
     }
 
     /// The moment Σ F l cos(θ/2) about the pivot by which the ties turn the base back, N·m.
     #[inline]
     pub(crate) fn moment<N: Number>(&self, chord: &Chord<N>) -> N {
-        self.moments().moment(chord)
+        let tie = self.moments();
+        tie.force(chord.length, chord.rate) * chord.half.cos
     }
 
-    /// Pulls of the ties on the ground, up and to the right, N, and their moment about the place of the middle of the base in
-    /// full contact, N·m. The moment holds in full contact.
-    pub(crate) fn pulls<N: Number>(&self, chord: &Chord<N>) -> [N; 3] {
-        let middle = self.side.sign() * self.base.B;
-        let force = |tie: Tie| tie.force(chord.length, chord.rate);
-        let (pull, moment) = (force(sum(&self.ties, |_| 1.0)), force(sum(&self.ties, |tie| middle - tie.lever)));
-        [pull * chord.half.cos, pull * chord.half.sin, moment * chord.half.cos]
+    /// This moment as a series from the rotation `theta` (rad) on.
+    pub(crate) fn series(&self, angles: Angles, theta: f64) -> MomentSeries {
+        let [mut cos, mut sin, mut chord] = [ZERO; 3];
+        (sin[0], cos[0]) = if angles == Angles::Any { libm::sincos(theta / 2.0) } else { (0.0, 1.0) };
+        chord[0] = angles.chord(theta, 0.0).length;
+        MomentSeries { tie: self.moments(), cos, sin, chord, force: ZERO, angles }
+    }
+
+    /// The square of the rate that the springs of the ties give to an `inertia` (kg·m²) about the pivot, 1/s², and the rate that their
+    /// dampers give to it, 1/s.
+    pub(crate) fn rates(&self, inertia: f64) -> [f64; 2] {
+        let Tie { stiffness, damping, .. } = self.moments();
+        [stiffness / inertia, damping / inertia]
+    }
+
+    /// The moment Σ F l of the dissipators with the base down and at rest, N·m.
+    pub(crate) fn residual(&self) -> f64 {
+        self.ties[1..].iter().map(|tie| tie.lever * tie.force).sum()
     }
 
     /// Moment that turns the base back about the pivot at the rotation `theta` (rad), at rest and with u = 0, N·m:
@@ -210,6 +264,43 @@ impl<'a> Restraint<'a> {
         let (sin, cos) = libm::sincos(theta);
         m_t * g * B * (self.side.sign() * cos - sin / tan_alpha_cg) + of_ties
     }
+}
+
+/// The forces of the restraints at the instant `x`, N, at the `angles` of its level with the dissipators in this state.
+pub(crate) fn restraints<N: Angle, Q: Lateral<N>>(
+    x: &Instant<N, Q>,
+    angles: Angles,
+    dissipators: &Dissipators,
+) -> Restraints<N> {
+    let [P_t, F_d1, F_d2] = match Q::foundation(x.structure) {
+        Some(ground) => {
+            let [footing, rates] = x.footing(ground);
+            let force = |Tie { lever, force, stiffness, damping }| {
+                N::constant(force) + footing.height(lever) * stiffness + rates.height(lever) * damping
+            };
+            ties(x.base(), dissipators, ground.rest, x.contact.is_slack).map(force)
+        }
+        None => {
+            let chord = angles.chord(x.theta, x.theta_dot);
+            let ties = Restraint::about(x.base(), Side::of(x.s), dissipators).ties;
+            ties.map(|tie| tie.force(chord.length, chord.rate))
+        }
+    };
+    Restraints { P_t, F_d1, F_d2 }
+}
+
+/// Pulls of the ties on the ground at the instant `x`, up and to the right, N, and their moment about the place of the middle of the base in
+/// full contact, N·m. The moment holds in full contact.
+pub(crate) fn pulls<N: Angle, Q: Lateral<N>>(x: &Instant<N, Q>, angles: Angles, dissipators: &Dissipators) -> [N; 3] {
+    if Q::foundation(x.structure).is_some() {
+        let Restraints { P_t, F_d1, F_d2 } = restraints(x, angles, dissipators);
+        return [P_t + F_d1 + F_d2, N::constant(0.0), (F_d1 - F_d2) * x.base().ties.xi_d * x.turn.cos];
+    }
+    let Restraint { base, side, ties } = Restraint::about(x.base(), Side::of(x.s), dissipators);
+    let (middle, chord) = (side.sign() * base.B, angles.chord(x.theta, x.theta_dot));
+    let force = |tie: Tie| tie.force(chord.length, chord.rate);
+    let (pull, moment) = (force(sum(&ties, |_| 1.0)), force(sum(&ties, |tie| middle - tie.lever)));
+    [pull * chord.half.cos, pull * chord.half.sin, moment * chord.half.cos]
 }
 
 /// The two moments that decide whether a structure centres itself after rocking, N·m. The first turns the base back at the ground,
@@ -236,22 +327,43 @@ impl Dissipators {
         self
     }
 
-    /// The dissipators of `base` after a slow rotation to `theta` (rad) about `side` that does not turn back on its way.
-    pub fn moved(&self, base: &Base, side: Side, theta: f64) -> Dissipators {
-        self.moved_by(base, side, Angles::Any.chord(theta, 0.0))
+    /// The dissipators after a step. At its end those that yield have these elongations `e` (m), and each damper has `taken` an energy (J).
+    pub(crate) fn stepped(
+        &self,
+        base: &Base,
+        e: impl Fn(usize) -> f64,
+        taken: impl Iterator<Item = f64>,
+    ) -> Dissipators {
+        let (Ties { k_d, F_y, .. }, mut moved) = (base.ties, *self);
+        for j in 0..2 {
+            let way = f64::from(self.yields[j]);
+            if way != 0.0 {
+                let plastic = e(j) - way * F_y / k_d;
+                moved.hysteretic += way * F_y * (plastic - moved.plastic[j]);
+                moved.plastic[j] = plastic;
+            }
+        }
+        moved.viscous = taken.fold(moved.viscous, |sum, of| sum + of);
+        moved
     }
 
-    /// [`Dissipators::moved`] to a rotation of this `chord`.
-    pub(crate) fn moved_by(&self, base: &Base, side: Side, chord: Chord) -> Dissipators {
+    /// The dissipators of `base` after a slow rotation to `theta` (rad) about `side` that does not turn back on its way.
+    pub fn moved(&self, base: &Base, side: Side, theta: f64) -> Dissipators {
+        let chord = Angles::Any.chord(theta, 0.0).length;
+        self.moved_to(base, |j| levers(base, side)[j] * chord)
+    }
+
+    /// The dissipators of `base` after a slow motion to the elongations `e` (m) that does not turn back on its way.
+    pub(crate) fn moved_to(&self, base: &Base, e: impl Fn(usize) -> f64) -> Dissipators {
         let Ties { k_d, F_y, .. } = base.ties;
         let mut moved = Dissipators { yields: [0; 2], ..*self };
         if k_d == 0.0 {
             return moved; // not even on a path that a compiler takes beforehand is F_y divided by 0
         }
-        for (j, lever) in levers(base, side).into_iter().enumerate() {
-            let force = k_d * (lever * chord.length - moved.plastic[j]);
+        for j in 0..2 {
+            let force = k_d * (e(j) - moved.plastic[j]);
             if force.abs() > F_y {
-                let plastic = lever * chord.length - F_y.copysign(force) / k_d;
+                let plastic = e(j) - F_y.copysign(force) / k_d;
                 moved.hysteretic += F_y * (plastic - moved.plastic[j]).abs();
                 moved.plastic[j] = plastic;
             }

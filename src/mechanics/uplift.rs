@@ -29,7 +29,7 @@
 //! If hold is not above 0, the second condition decides alone. If both conditions hold on both sides, the structure lifts off about
 //! the side with the larger s θ̈. "> hold" means more than 1e-12 of the hold at rest, which is far above rounding.
 
-use crate::mechanics::restraint::{Dissipators, ties};
+use crate::mechanics::restraint::{Dissipators, Restraint};
 use crate::numbers::Number;
 use crate::{Base, Mode, OneMass, Ramp, Side, State};
 
@@ -39,8 +39,7 @@ const LEAST_EXCESS: f64 = 1e-12;
 
 /// The moment that holds the base down about `side` under the vertical acceleration `a_v`, N·m.
 pub(crate) fn hold<N: Number>(base: &Base, side: Side, a_v: N, dissipators: &Dissipators) -> N {
-    let [_, pair @ ..] = ties(base, side, dissipators);
-    let residual: f64 = pair.iter().map(|tie| tie.lever * tie.force).sum();
+    let residual = Restraint::about(base, side, dissipators).residual();
     a_v * (base.m_t * base.B) + N::constant(base.hold_at_rest() + side.sign() * residual)
 }
 

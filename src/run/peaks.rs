@@ -8,11 +8,10 @@
 use crate::engine::piece::{CONVERGED, Expansion, Piece};
 #[cfg(feature = "lanes")]
 use crate::engine::sought::Sought;
-use crate::mechanics::contact::restraints;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::reach::{Magnitudes, OffChord};
-use crate::mechanics::restraint::{Angles, Restraint, Restraints};
+use crate::mechanics::restraint::{Angles, Restraint, Restraints, restraints};
 use crate::series::extremes;
 use crate::structure::gauge::Reach;
 use crate::{Base, Detail, Output, State, Structure, Ties};

@@ -1,6 +1,6 @@
-//! The rigid base of a structure, the structure as a rigid body, and the ties between the base and the ground, by their numbers.
+//! The rigid base of a structure, and the structure as a rigid body, by their numbers.
 
-use crate::structure::parameters::Parameters;
+use crate::structure::parameters::{Parameters, Ties};
 use crate::structure::quantity::Refused;
 use serde::{Deserialize, Serialize};
 
@@ -73,49 +73,21 @@ impl Body {
 
     /// The parameters of the base, and the others from `rest`; r is NaN without a coefficient.
     pub(crate) fn over(&self, rest: Parameters) -> Parameters {
-        let &Body { m0, J0, B, r, g, c_ratio, ties: Ties { P_0, k_t, xi_d, c_d, k_d, F_y }, .. } = self;
-        let r = r.unwrap_or(f64::NAN);
-        Parameters { m0, J0, B, c_ratio, r, g, P_0, k_t, xi_d, c_d, k_d, F_y, ..rest }
-    }
-}
-
-/// The tendon and the dissipators between the base and the ground, by their parameters.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Ties {
-    /// Prestress of the tendon with the base down, N.
-    pub P_0: f64,
-    /// Stiffness of the tendon, N/m.
-    pub k_t: f64,
-    /// Distance of both dissipators from the middle of the base, m.
-    pub xi_d: f64,
-    /// Damping of each viscous dissipator, N·s/m.
-    pub c_d: f64,
-    /// Elastic stiffness of each elastoplastic dissipator, N/m.
-    pub k_d: f64,
-    /// Force at which it yields, N.
-    pub F_y: f64,
-}
-
-impl Ties {
-    /// The ties among these parameters.
-    pub(crate) fn of(&Parameters { P_0, k_t, xi_d, c_d, k_d, F_y, .. }: &Parameters) -> Ties {
-        Ties { P_0, k_t, xi_d, c_d, k_d, F_y }
-    }
-
-    /// About a pivot of a base of half-width `B` (m): the stiffness of the tendon and of the elastic dissipators, N·m/rad, and the damping of
-    /// the viscous dissipators, N·m·s/rad.
-    pub(crate) fn about_pivot(&self, B: f64) -> [f64; 3] {
-        let &Ties { k_t, xi_d, c_d, k_d, .. } = self;
-        let pair = 2.0 * (B * B + xi_d * xi_d);
-        [k_t * B * B, k_d * pair, c_d * pair]
+        let &Body { m0, J0, B, r, g, c_ratio, ties, .. } = self;
+        ties.over(Parameters { m0, J0, B, c_ratio, r: r.unwrap_or(f64::NAN), g, ..rest })
     }
 }
 
 impl Base {
-    /// Whether a tendon or dissipators restrain the structure.
+    /// Whether ties restrain the structure.
     #[inline]
     pub fn is_restrained(&self) -> bool {
-        self.has_tendon() || self.has_dissipators()
+        self.ties.P_0 > 0.0 || self.ties.about_pivot(1.0).iter().any(|(_, of)| *of != [0.0; 2])
+    }
+
+    /// Whether ties take energy out of its motion.
+    pub fn takes_energy(&self) -> bool {
+        self.ties.F_y > 0.0 || self.ties.about_pivot(1.0).iter().any(|(_, [_, damper])| *damper > 0.0)
     }
 
     /// Whether the base has a tendon.
@@ -127,12 +99,6 @@ impl Base {
     #[inline(always)]
     pub fn has_dissipators(&self) -> bool {
         self.ties.c_d > 0.0 || self.ties.k_d > 0.0
-    }
-
-    /// The rates at which the tendon, the elastic dissipators and the viscous dissipators move the structure about a pivot, 1/s.
-    pub(crate) fn rates_of_ties(&self) -> [f64; 3] {
-        let [tendon, elastic, viscous] = self.ties.about_pivot(self.B).map(|of| of / self.J_P);
-        [tendon.sqrt(), elastic.sqrt(), viscous]
     }
 
     /// The moment of the weight and of the tendon that holds the base at rest down, N·m.

@@ -2,6 +2,7 @@
 //! structure, and of each mode.
 
 use crate::structure::ROUNDING;
+use crate::structure::parameters::TIES;
 use crate::{Mode, OneMass, Structure};
 use std::f64::consts::TAU;
 
@@ -69,8 +70,8 @@ pub const OF_MODE: [Derived<ModeOf>; 7] = [
     derived!("f_u" ["Hz"] "frequency while rocking", "", |of| of.omega_u / TAU),
 ];
 
-/// The numbers of any structure.
-const OF_STRUCTURE: [Derived<Structure>; 15] = [
+/// The numbers of any structure, without its ties.
+static OF_STRUCTURE: [Derived<Structure>; 9] = [
     derived!("m_s" ["kg"] "mass above the base", "", |of| of.body().m_s),
     derived!("m_t" ["kg"] "mass of the whole structure", "", |of| of.base().m_t),
     derived!("S_1" ["kg.m"] "first moment of the mass above the base", "", |of| of.body().S_1),
@@ -80,16 +81,10 @@ const OF_STRUCTURE: [Derived<Structure>; 15] = [
     derived!("alpha_cg" ["rad"] "slenderness of the centre of gravity", "", |of| libm::atan(of.base().tan_alpha_cg)),
     derived!("r" ["1"] "coefficient of restitution without displacement", "", |of| of.base().restitution(|| [0.0; 2])),
     derived!("g" ["m/s2"] "acceleration of gravity", "", |of| of.base().g),
-    derived!("P_0" ["N"] "prestress of the tendon with the base down", "", |of| of.base().ties.P_0),
-    derived!("k_t" ["N/m"] "stiffness of the tendon", "", |of| of.base().ties.k_t),
-    derived!("xi_d" ["m"] "distance of each dissipator from the middle of the base", "", |of| of.base().ties.xi_d),
-    derived!("c_d" ["N.s/m"] "damping of each viscous dissipator", "", |of| of.base().ties.c_d),
-    derived!("k_d" ["N/m"] "elastic stiffness of each elastoplastic dissipator", "", |of| of.base().ties.k_d),
-    derived!("F_y" ["N"] "force at which an elastoplastic dissipator yields", "", |of| of.base().ties.F_y),
 ];
 
 /// The numbers of ground that gives, of a structure that stands there.
-const OF_GROUND: [Derived<Structure>; 6] = [
+static OF_GROUND: [Derived<Structure>; 6] = [
     derived!("k_v" ["N/m"] "vertical stiffness of the ground", "", |of| of.ground().sum(0)),
     derived!("k_r" ["N.m/rad"] "rotational stiffness of the ground", "", |of| of.ground().sum(2)),
     derived!("f_v" ["Hz"] "frequency of the bounce on the ground", "", |of| of.ground().omega_v(of.base()) / TAU),
@@ -101,10 +96,13 @@ const OF_GROUND: [Derived<Structure>; 6] = [
 ];
 
 impl Structure {
-    /// The numbers that are shown, apart from the numbers of the modes; on ground that gives, the numbers of the ground last.
-    pub fn derived(&self) -> impl Iterator<Item = &'static Derived<Structure>> {
-        let of_ground = const { &OF_GROUND }.iter().filter(|_| self.foundation().is_some());
-        const { &OF_STRUCTURE }.iter().chain(of_ground)
+    /// Name, unit, description and value of the numbers that are shown, apart from the numbers of the modes; on ground that gives, the
+    /// numbers of the ground last.
+    pub fn derived(&self) -> impl Iterator<Item = ([&'static str; 3], f64)> {
+        let of = |of: &Derived<Structure>| ([of.name, of.unit, of.description], (of.value)(self));
+        let ties = TIES.iter().map(|of| ([of.name, of.unit, of.description], (of.get)(&self.base().ties)));
+        let of_ground = OF_GROUND.iter().filter(|_| self.foundation().is_some());
+        OF_STRUCTURE.iter().map(of).chain(ties).chain(of_ground.map(of))
     }
 
     /// The numbers of each mode, lowest frequency first.

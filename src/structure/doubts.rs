@@ -2,7 +2,8 @@
 
 use crate::digits::short;
 use crate::series::taylor::LONGEST_SPAN;
-use crate::{Base, Body, Structure, Ties};
+use crate::structure::parameters::TIES;
+use crate::{Base, Body, Quantity, Structure};
 use std::f64::consts::TAU;
 
 /// Frequency times height of buildings, m/s: the mean of 163 (Ellis 1980, not read; as quoted by others).
@@ -26,12 +27,14 @@ const ONE_UNIT: [f64; 2] = [1e-3, 1e-2];
 const MANY_STEPS: f64 = 1e4;
 
 /// Names of the numbers that are doubted. A sentence begins with its name.
-pub const DOUBTED: [&str; 13] = ["r", "P_0", "F_y", "k_t", "k_d", "c_d", "f_v", "xi_d", "m0", "f", "m_t", "zeta", "B"];
+pub fn all_doubted() -> impl Iterator<Item = &'static str> {
+    ["r", "f_v", "m0", "f", "m_t", "zeta", "B"].into_iter().chain(TIES.iter().map(|of| of.name))
+}
 
 /// Damping ratio of the lowest mode that no structure exceeds without dampers.
 const MOST_DAMPING: f64 = 0.2;
 
-/// The name of the number that a `doubt` begins with, one of [`DOUBTED`].
+/// The name of the number that a `doubt` begins with.
 pub fn doubted(doubt: &str) -> &str {
     doubt.split(" = ").next().unwrap_or(doubt)
 }
@@ -39,12 +42,13 @@ pub fn doubted(doubt: &str) -> &str {
 impl Structure {
     /// A sentence for each number of which a run takes very many steps.
     pub(crate) fn many_steps(&self) -> Vec<String> {
-        let (base, &Body { B, J0, ties: Ties { k_t, c_d, k_d, .. }, .. }) = (self.base(), self.body());
+        let (base, &Body { B, J0, .. }) = (self.base(), self.body());
         let (units, show) = (self.units(), |value: f64, unit: &str| self.units().show(value, unit));
         let (B, J0) = (short(B), show(J0, "kg.m2"));
-        let ties = [("k_t", k_t, "N/m"), ("k_d", k_d, "N/m"), ("c_d", c_d, "N.s/m")];
-        let of_ties = ties.into_iter().zip(base.rates_of_ties()).map(|((name, value, unit), rate)| {
-            (rate, format!("{name} = {}", show(value, unit)), format!("is {name} in {}?", units.name(unit)))
+        let of_ties = base.ties.about_pivot(base.B).map(|(tie, [spring, damper])| {
+            let &Quantity { name, unit, get, .. } = TIES.iter().find(|of| of.name == tie).expect("it is one of them");
+            let (rate, value) = ((spring / base.J_P).sqrt().max(damper / base.J_P), show(get(&base.ties), unit));
+            (rate, format!("{name} = {value}"), format!("is {name} in {}?", units.name(unit)))
         });
         let (rate, named, remedy) = match self.foundation().zip(self.fastest_on_ground()) {
             Some((ground, rate)) => {
@@ -54,7 +58,7 @@ impl Structure {
             }
             None => (self.fastest_rocking(), format!("B = {B} m with J0 = {J0}"), "raise B or J0, lower f or zeta"),
         };
-        let costs = of_ties.chain([(rate, named, remedy.into())]);
+        let costs = of_ties.into_iter().chain([(rate, named, remedy.into())]);
         let many = costs.map(|(rate, named, remedy)| (rate / LONGEST_SPAN, named, remedy));
         let many = many.filter(|(steps, ..)| *steps > MANY_STEPS).map(|(steps, named, remedy)| {
             format!("{named} takes some {steps:.0e} steps of computing for each second of a motion: {remedy}")
@@ -66,10 +70,10 @@ impl Structure {
     /// units are those in which it was given.
     pub fn doubts(&self) -> Vec<String> {
         let (units, show) = (self.units(), |value: f64, unit: &str| self.units().show(value, unit));
-        let (&Base { m_t, m0, g, B, tan_alpha_cg, ties: Ties { P_0, xi_d, F_y, .. }, .. }, body) =
-            (self.base(), self.body());
+        let (&Base { m_t, m0, g, B, tan_alpha_cg, ties, .. }, body) = (self.base(), self.body());
         let weight = m_t * g;
         let is_small = |(_, force): &(&str, f64)| (0.0..NEXT_TO_NOTHING * weight).contains(force) && *force > 0.0;
+        let forces = TIES.iter().filter(|of| of.unit == "N").map(|of| (of.name, (of.get)(&ties)));
         let doubt = |(name, force)| {
             let ([force, weight], unit) = ([force, weight].map(|force| show(force, "N")), units.name("N"));
             format!(
@@ -79,12 +83,12 @@ impl Structure {
         let unused = self.foundation().and(self.base().r).map(|r| {
             format!("r = {} is not used on ground that gives, where no impact needs it: leave r out", short(r))
         });
-        let small = [("P_0", P_0), ("F_y", F_y)].into_iter().filter(is_small).map(doubt);
+        let small = forces.filter(is_small).map(doubt);
         let mut doubts: Vec<_> = unused.into_iter().chain(small).chain(self.many_steps()).collect();
-        if xi_d > 2.0 * B {
+        if ties.xi_d > 2.0 * B {
             doubts.push(format!(
                 "xi_d = {} m is more than the width of the base, {} m: is xi_d in m, not in mm?",
-                short(xi_d),
+                short(ties.xi_d),
                 short(2.0 * B)
             ));
         }

@@ -15,7 +15,7 @@ use crate::digits::with_unit;
 use crate::names::{did_you_mean, unknown};
 use crate::structure::derived::{DERIVED, Derived};
 use crate::structure::ground::Ground;
-use crate::structure::parameters::{PARAMETERS, Parameters};
+use crate::structure::parameters::{OF_ONE_MASS, PARAMETERS, Parameters};
 use crate::structure::quantity::{OutOfRange, Quantity, Refused, Units, ensure, ensure_in};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{self, Error, IntoDeserializer, MapAccess, Unexpected, Visitor};
@@ -47,16 +47,6 @@ pub const NATURAL: [Natural; 6] = [
     Natural { name: "alpha_cg", min: 1e-3, max: 1.57, stands_for: "H", in_place_of: "H, or B if H is given" },
     Natural { name: "p_l", min: 1e-4, max: 1e3, stands_for: "J0", in_place_of: "J0" },
 ];
-
-/// Default value of the parameter called `name`, if it may be left out.
-fn default(name: &str) -> Option<f64> {
-    match name {
-        "c_ratio" => Some(1.0),
-        "g" => Some(9.81),
-        "J0" | "P_0" | "k_t" | "xi_d" | "c_d" | "k_d" | "F_y" => Some(0.0),
-        _ => None,
-    }
-}
 
 /// Numbers that are given for a structure, by name: parameters and natural quantities.
 ///
@@ -112,12 +102,15 @@ impl<'de> Visitor<'de> for OfEntry {
     }
 }
 
-/// Numbers that a structure of many masses has not.
-const OF_ONE_MASS: [&str; 8] = ["m", "weight", "H", "alpha_cg", "f_fc", "period_fc", "zeta_fc", "p_l"];
+/// Whether a structure of many masses does not have the number called `name`.
+fn is_of_one_mass(name: &str) -> bool {
+    let stands_for = NATURAL.iter().find(|natural| natural.name == name).map_or(name, |natural| natural.stands_for);
+    name == "p_l" || OF_ONE_MASS.contains(&stands_for)
+}
 
 /// Names of the numbers of a base.
 pub fn names_of_base() -> impl Iterator<Item = &'static str> {
-    names().filter(|name| !OF_ONE_MASS.contains(name))
+    names().filter(|name| !is_of_one_mass(name))
 }
 
 /// Reads the base of a structure of many masses.
@@ -181,7 +174,8 @@ impl Given {
         let in_units = |error: Refused| error.in_units(self.units);
         let gives = self.ground.as_ref().is_some_and(|ground| !ground.is_rigid());
         let needs_no_r = gives && base.is_none() && self.get("r").is_none();
-        let alone = || self.solve(&str::to_owned, |name| default(name).or((needs_no_r && name == "r").then_some(1.0)));
+        let r = if needs_no_r { 1.0 } else { f64::NAN };
+        let alone = || self.solve(&str::to_owned, &Parameters { r, ..Parameters::DEFAULTS });
         let parameters = base.map_or_else(alone, |base| self.over(base)).map_err(in_units)?;
         let structure = Structure::new(parameters).map_err(in_units)?;
         let on_ground = structure.on(&self.ground);
@@ -198,24 +192,22 @@ impl Given {
     /// The parameters that these numbers determine on rigid ground, with default values for the rest. If some are missing, each number to
     /// give has the name by which it is `called` in the input.
     pub fn parameters(&self, called: impl Fn(&str) -> String) -> Result<Parameters, Refused> {
-        self.solve(&called, default)
+        self.solve(&called, &Parameters::DEFAULTS)
     }
 
     /// The parameters `base` changed by these numbers. α_cg changes H, or B if H is given.
     pub fn over(&self, base: &Parameters) -> Result<Parameters, Refused> {
-        let of_base = |name: &str| PARAMETERS.iter().find(|of| of.name == name).map(|of| (of.get)(base));
-        self.solve(&str::to_owned, of_base)
+        self.solve(&str::to_owned, base)
     }
 
     /// Parameters with the base that these numbers determine, and r if it is given. The numbers of the one mass mean nothing.
     pub(crate) fn base(&self) -> Result<(Parameters, Option<f64>), Refused> {
-        if let Some(name) = OF_ONE_MASS.into_iter().find(|name| self.get(name).is_some()) {
+        if let Some(name) = self.names().find(|name| is_of_one_mass(name)) {
             let remedy = "leave it out beside storeys, floors and modes";
             return Err(Refused::by(format!("{name} is a number of a structure of one mass: {remedy}")));
         }
-        let of_mass = |name: &str| ["m", "H", "f_fc", "zeta_fc", "r"].contains(&name).then_some(0.5);
-        let parameters = self.solve(&str::to_owned, |name| default(name).or_else(|| of_mass(name)))?;
-        Ok((parameters, self.get("r")))
+        let of_mass = Parameters { m: 0.5, H: 0.5, f_fc: 0.5, zeta_fc: 0.5, r: 0.5, ..Parameters::DEFAULTS };
+        Ok((self.solve(&str::to_owned, &of_mass)?, self.get("r")))
     }
 
     /// Names of the numbers that are given.
@@ -242,27 +234,26 @@ impl Given {
         self.numbers.iter().find(|(given, _)| *given == name).map(|(_, value)| *value)
     }
 
-    /// The parameters, with `otherwise` for the numbers that are not given. Messages about missing numbers name them as they are `called`.
-    fn solve(
-        &self,
-        called: &dyn Fn(&str) -> String,
-        otherwise: impl Fn(&str) -> Option<f64>,
-    ) -> Result<Parameters, Refused> {
+    /// The parameters, those of `otherwise` for the numbers that are not given; NaN there is none. Messages about missing numbers name them
+    /// as they are `called`.
+    fn solve(&self, called: &dyn Fn(&str) -> String, otherwise: &Parameters) -> Result<Parameters, Refused> {
         self.check()?;
-        let is_missing = |of: &&Quantity<Parameters>| !self.determine(of.name) && otherwise(of.name).is_none();
+        let is_missing = |of: &&Quantity<Parameters>| !self.determine(of.name) && (of.get)(otherwise).is_nan();
         ensure_in(!PARAMETERS.iter().any(|of| is_missing(&of)), |units| {
             Vec::from_iter(PARAMETERS.iter().filter(is_missing).map(|of| missing(of, called, units))).join("; ")
         })?;
-        let own = |name| self.get(name).or_else(|| otherwise(name)).expect("nothing is missing");
-        let or = |name: &'static str, natural: &'static str, from: &dyn Fn(f64) -> f64| match self.get(natural) {
+        let mut own = *otherwise;
+        let given = PARAMETERS.iter().filter_map(|of| Some((of, self.get(of.name)?)));
+        given.for_each(|(of, value)| (of.set)(&mut own, value));
+        let or = |own, name, natural, from: &dyn Fn(f64) -> f64| match self.get(natural) {
             Some(value) => parameter_for(natural, value, name, from(value)),
-            None => Ok(own(name)),
+            None => Ok(own),
         };
-        let g = own("g");
-        let m = or("m", "weight", &|weight| weight / g)?;
-        let m0 = or("m0", "weight0", &|weight0| weight0 / g)?;
-        let f_fc = or("f_fc", "period_fc", &|period_fc| period_fc.recip())?;
-        let B = || or("B", "width", &|width| width / 2.0);
+        let g = own.g;
+        let m = or(own.m, "m", "weight", &|weight| weight / g)?;
+        let m0 = or(own.m0, "m0", "weight0", &|weight0| weight0 / g)?;
+        let f_fc = or(own.f_fc, "f_fc", "period_fc", &|period_fc| period_fc.recip())?;
+        let B = || or(own.B, "B", "width", &|width| width / 2.0);
         let gamma = (m + m0) / m;
         let (H, B) = match (self.get("alpha_cg"), self.get("H")) {
             (Some(alpha_cg), Some(H)) => {
@@ -272,15 +263,13 @@ impl Given {
                 let B = B()?;
                 (parameter_for("alpha_cg", alpha_cg, "H", gamma * B / libm::tan(alpha_cg))?, B)
             }
-            (None, _) => (own("H"), B()?),
+            (None, _) => (own.H, B()?),
         };
         let J0 = match self.get("p_l") {
             Some(p_l) => inertia(p_l, m * g * H, m * H * H + (m + m0) * B * B)?,
-            None => own("J0"),
+            None => own.J0,
         };
-        let (zeta_fc, c_ratio, r) = (own("zeta_fc"), own("c_ratio"), own("r"));
-        let [P_0, k_t, xi_d, c_d, k_d, F_y] = ["P_0", "k_t", "xi_d", "c_d", "k_d", "F_y"].map(own);
-        Ok(Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, r, g, P_0, k_t, xi_d, c_d, k_d, F_y })
+        Ok(Parameters { m, m0, H, B, J0, f_fc, ..own })
     }
 
     /// Checks that every natural quantity is in its range and that its parameter is not given as well.
@@ -424,7 +413,7 @@ mod tests {
             let every: Vec<_> = natural.chain([("zeta_fc", original.zeta_fc), ("r", original.r)]).collect();
             let found = given(&every).parameters(str::to_owned).unwrap();
             let J_P = derived(original, "J_P");
-            for parameter in &PARAMETERS {
+            for parameter in PARAMETERS {
                 let (found, expected) = ((parameter.get)(&found), (parameter.get)(&original));
                 let size = if parameter.name == "J0" { J_P } else { expected };
                 prop_assert!((found - expected).abs() <= 1e-13 * size, "{}: {found}, {expected}", parameter.name);

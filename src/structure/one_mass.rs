@@ -1,8 +1,8 @@
 //! A structure of one mass: its parameters and the constants that follow from them (before Eq 11, after 4, 8 and 13, before 18).
 
-use crate::structure::base::{Base, Ties};
+use crate::structure::base::Base;
 use crate::structure::mode::Mode;
-use crate::structure::parameters::Parameters;
+use crate::structure::parameters::{Parameters, Ties};
 use crate::structure::quantity::Refused;
 use std::f64::consts::TAU;
 
@@ -68,9 +68,9 @@ impl OneMass {
         let tan_alpha_cg = gamma * B / H;
         let (p_l, omega_u) = ((m * g * H / J_P).sqrt(), omega_fc / one_minus_chi.sqrt());
         let foundation = (J0 + m0 * B * B) / m;
-        let (inertia, [tendon, elastic, viscous]) = (m * (foundation + B * B), ties.about_pivot(B));
-        let held = tendon + elastic;
-        let rocking_rate = (omega_u * omega_u + held / inertia).sqrt().max(p_l).max(viscous / inertia);
+        let inertia = m * (foundation + B * B);
+        let [springs, dampers] = [0, 1].map(|i| ties.about_pivot(B).iter().map(|(_, of)| of[i]).sum::<f64>());
+        let rocking_rate = (omega_u * omega_u + springs / inertia).sqrt().max(p_l).max(dampers / inertia);
         Ok(OneMass {
             parameters,
             base: Base { m_t: m + m0, m0, S_res: 0.0, B, J0, J_P, r: Some(r), g, c_ratio, p_l, tan_alpha_cg, ties },

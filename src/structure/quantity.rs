@@ -2,6 +2,7 @@
 
 use crate::digits::{short, with_unit};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::fmt::Display;
 
 /// The units in which a description gives masses and forces; lengths are in m and times in s.
@@ -11,43 +12,34 @@ pub enum Units {
     #[default]
     #[serde(rename = "N, m, kg")]
     Newtons,
-    /// 1000 times the SI unit of each number in [`LARGE`].
+    /// 1000 times the SI unit of each number that contains a mass or a force.
     #[serde(rename = "kN, m, t")]
     Kilonewtons,
 }
 
-/// Each SI unit that contains a mass or a force, and 1000 times this unit.
-pub const LARGE: [(&str, &str); 7] = [
-    ("kg", "t"),
-    ("kg.m", "t.m"),
-    ("kg.m2", "t.m2"),
-    ("N", "kN"),
-    ("N/m", "kN/m"),
-    ("N.s/m", "kN.s/m"),
-    ("N.m/rad", "kN.m/rad"),
-];
-
 impl Units {
-    /// The size (SI) and the name of the unit among these that stands for the SI `unit`.
-    fn of(self, unit: &str) -> (f64, &str) {
-        let large = LARGE.iter().find(|(si, _)| self == Units::Kilonewtons && *si == unit);
-        large.map_or((1.0, unit), |(_, large)| (1e3, large))
+    /// The size (SI) of the unit among these that stands for the SI `unit`.
+    fn size(self, unit: &str) -> f64 {
+        if self.name(unit) == unit { 1.0 } else { 1e3 }
     }
 
     /// The `value` of a number whose SI unit is `unit`, in SI units.
     pub fn in_si(self, value: f64, unit: &str) -> f64 {
-        self.of(unit).0 * value
+        self.size(unit) * value
     }
 
     /// The name of the unit among these that stands for the SI `unit`.
-    pub fn name(self, unit: &str) -> &str {
-        self.of(unit).1
+    pub fn name(self, unit: &str) -> Cow<'_, str> {
+        match (self, unit.strip_prefix("kg"), unit.strip_prefix('N')) {
+            (Units::Kilonewtons, Some(rest), _) => format!("t{rest}").into(),
+            (Units::Kilonewtons, _, Some(rest)) => format!("kN{rest}").into(),
+            _ => unit.into(),
+        }
     }
 
     /// `value`, in the SI `unit`, for a sentence in these units.
     pub fn show(self, value: f64, unit: &str) -> String {
-        let (size, name) = self.of(unit);
-        with_unit(value / size, name)
+        with_unit(value / self.size(unit), &self.name(unit))
     }
 
     /// As [`Units::show`], but with these `digits` of a number in an SI unit.
@@ -92,7 +84,7 @@ impl OutOfRange {
     /// The message with its numbers in `units`.
     pub fn shown(&self, units: Units) -> String {
         let &OutOfRange { name, value, unit, min, max, description } = self;
-        let ([value, max], min) = ([value, max].map(|of| units.show(of, unit)), short(min / units.of(unit).0));
+        let ([value, max], min) = ([value, max].map(|of| units.show(of, unit)), short(min / units.size(unit)));
         format!("{name} = {value} is out of range: it must lie between {min} and {max} ({description})")
     }
 }

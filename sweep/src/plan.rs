@@ -15,7 +15,7 @@ use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits};
 use rocking::run::{End, Run, RunError, Runs, found_each};
 use rocking::structure::doubts::doubted;
-use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
+use rocking::structure::parameters::{MAX_SLENDERNESS, OF_ONE_MASS, PARAMETERS};
 use rocking::{Detail, Modes, Parameters, Quantity, State, Structure};
 use serde::Serialize;
 use std::array;
@@ -41,7 +41,7 @@ const SLENDERNESS: Quantity<Parameters> = Quantity {
 
 /// Quantities that can vary. The slenderness is last and therefore uses the B of the same structure.
 pub static AXES: LazyLock<[&Quantity<Parameters>; PARAMETERS.len() + 1]> =
-    LazyLock::new(|| array::from_fn(|i| const { &PARAMETERS }.get(i).unwrap_or(&SLENDERNESS)));
+    LazyLock::new(|| array::from_fn(|i| PARAMETERS.get(i).unwrap_or(&SLENDERNESS)));
 
 /// Structures that count together: one in which some numbers vary, in every combination, or several.
 #[derive(Clone, Debug)]
@@ -176,7 +176,7 @@ impl Population {
     /// which is H/B: H = slenderness × B, while B, m, m0, J0 and f_fc stay. Of a building, parameters of the base can vary.
     pub fn vary(mut self, name: &str, values: Vec<f64>) -> Result<Population, Refused> {
         let is_building = self.bases.iter().any(|base| base.one().is_none());
-        let can_vary = |name: &str| !is_building || !["m", "H", "f_fc", "zeta_fc", SLENDERNESS.name].contains(&name);
+        let can_vary = |name: &str| !is_building || !(OF_ONE_MASS.contains(&name) || name == SLENDERNESS.name);
         let axis = AXES.iter().position(|axis| axis.name == name && can_vary(name));
         let axis = axis.ok_or_else(|| {
             let known = AXES.iter().map(|axis| axis.name).filter(|name| can_vary(name)).collect::<Vec<_>>().join(", ");

@@ -8,6 +8,7 @@ use rocking::run::validity::{ASSUMPTIONS, EDGE_LOAD, FRICTION, Findings, Limits,
 use rocking::run::{End, Run, RunError};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Given;
+use rocking::structure::parameters::{OF_ONE_MASS, PARAMETERS};
 use rocking::{Detail, Modes, OneMass, Output, Parameters, Phase, Reactions, Sample, State, Structure};
 use std::f64::consts::TAU;
 
@@ -18,10 +19,8 @@ fn ground() -> Record {
 
 /// The base of `parameters` without the top mass.
 fn base(parameters: &Parameters) -> Given {
-    let &Parameters { m0, B, J0, r, g, c_ratio, P_0, k_t, xi_d, c_d, k_d, F_y, .. } = parameters;
-    let own = [("m0", m0), ("B", B), ("J0", J0), ("r", r), ("g", g), ("c_ratio", c_ratio)];
-    let ties = [("P_0", P_0), ("k_t", k_t), ("xi_d", xi_d), ("c_d", c_d), ("k_d", k_d), ("F_y", F_y)];
-    Given::of(&[own, ties].concat()).unwrap()
+    let of_base = PARAMETERS.iter().filter(|of| !OF_ONE_MASS.contains(&of.name));
+    Given::of(&Vec::from_iter(of_base.map(|of| (of.name, (of.get)(parameters))))).unwrap()
 }
 
 /// Under a force on the top, from rest, and with dissipators from a start beyond their yield on ground that moves vertically, too.

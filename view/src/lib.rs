@@ -62,11 +62,8 @@ pub struct Sizes {
     /// Lowest frequency in full contact.
     pub f_fc: f64,
     pub g: f64,
-    pub P_0: f64,
-    pub k_t: f64,
-    pub xi_d: f64,
-    pub c_d: f64,
-    pub k_d: f64,
+    /// The name of each tie's force, and its place along the base.
+    pub ties: Vec<(&'static str, f64)>,
     /// Places of the contact points on ground that gives.
     pub points: Vec<f64>,
     /// Mass and height of each floor from below, of many masses.

@@ -166,7 +166,7 @@ function motionView() {
     const { width, height } = block();
     parent.replaceChildren();
     const line = element(parent, "path", { class: "strut" });
-    const tendon = ties().some(({ name }) => name === "P_t") ? element(parent, "path", { class: "tendon" }) : null;
+    const tendon = motion.parameters.ties.some(([name]) => name === "P_t") ? element(parent, "path", { class: "tendon" }) : null;
     element(parent, "rect", { class: "mass", x: -B, y: -foundation, width: 2 * B, height: foundation });
     const masses = places().map(() => element(parent, "rect", { class: "mass", x: -width / 2, y: -height / 2, width, height }));
     if (floors()) {
@@ -189,17 +189,6 @@ function motionView() {
   /** Displacements of these masses in a `state`, or any of its kind. */
   const displacements = (state) => places().map((_, i) => (floors() ? (state[`u[${i + 1}]`] ?? 0) : state.u));
   const largestDisplacement = () => Math.max(...displacements(motion.largest));
-  /** What ties the base to the ground: the name of its force, and where along the base it is. */
-  function ties() {
-    const { P_0, k_t, xi_d, c_d, k_d } = motion.parameters;
-    return [
-      ...(P_0 > 0 || k_t > 0 ? [{ name: "P_t", kind: "tendon", along: 0 }] : []),
-      ...(c_d > 0 || k_d > 0
-        ? [{ name: "F_d1", kind: "dissipator", along: xi_d }, { name: "F_d2", kind: "dissipator", along: -xi_d }]
-        : []),
-    ];
-  }
-
   /** The ties as lines from the ground to the base, and their forces below, from left to right. */
   function drawTies(state, place) {
     const { x, y } = stage;
@@ -207,9 +196,9 @@ function motionView() {
     lines.replaceChildren();
     forces.replaceChildren();
     const text = element(forces, "text", { x, y: y + 56, "text-anchor": "middle" });
-    for (const { name, kind, along } of ties().sort((one, other) => one.along - other.along)) {
+    for (const [name, along] of [...motion.parameters.ties].sort((one, other) => one[1] - other[1])) {
       const top = place(along);
-      element(lines, "line", { class: kind, x1: along, y1: 0, x2: top.x, y2: top.y });
+      element(lines, "line", { class: name === "P_t" ? "tendon" : "dissipator", x1: along, y1: 0, x2: top.x, y2: top.y });
       element(text, "tspan", { dx: 10, "data-name": name }, `${name} ${significant(state[name] / 1e3)} kN`);
     }
     // a spring of the ground ends at the base, or at the surface if the base is above it
@@ -258,7 +247,7 @@ function motionView() {
     const u = exaggeration * largestDisplacement();
     const reach = B * (1 - Math.cos(theta)) + (H + block().height) * Math.sin(theta) + u + block().width / 2;
     const tall = Math.hypot(H + block().height, theta > 0.5 ? 2 * B : 0);
-    const [left, right, top, below] = [64, 40, 64, ties().length > 0 ? 74 : 58];
+    const [left, right, top, below] = [64, 40, 64, motion.parameters.ties.length > 0 ? 74 : 58];
     const scale = Math.min((width - left - right) / (2 * Math.max(1.25 * B, reach)), (height - top - below) / tall);
     stage = { x: (width + left - right) / 2, y: height - below, scale, width };
     const { x, y } = stage;

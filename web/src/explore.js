@@ -199,9 +199,8 @@
     rows[name].element = made;
   }
 
-  const restraints = ["P_0", "k_t", "xi_d", "c_d", "k_d", "F_y"];
   for (const of of tables.parameters) {
-    const parent = restraints.includes(of.name) ? "restraint" : "structure";
+    const parent = tables.ties.includes(of.name) ? "restraint" : "structure";
     row(parent, { ...of, slider: () => reach(of) }, (value) => give(of.name, value));
   }
   for (const of of tables.natural) {
@@ -328,7 +327,7 @@
     at("record").value = record();
     at("detail").value = fields.detail ?? "auto";
     at("reading").hidden = record() !== "record";
-    at("restraints").open ||= restraints.some((name) => name in fields);
+    at("restraints").open ||= tables.ties.some((name) => name in fields);
     at("ignore_npts").checked = "ignore_npts" in fields;
     for (const id of ["unit", "dt", "column", "column_v"]) if (document.activeElement !== at(id)) at(id).value = fields[id] ?? "";
     const own = [...numbersOf(record()), "tolerance", ...(isFrame() ? ["zeta", "modes"] : [])];

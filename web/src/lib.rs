@@ -12,7 +12,7 @@ use rocking::run::RunError;
 use rocking::run::levels::{Choice, Criterion, RULE, relative};
 use rocking::run::validity::{ASSUMPTIONS, Assumption, Limits, Worst};
 use rocking::structure::natural_quantities::NATURAL;
-use rocking::structure::parameters::{PARAMETERS, PRESETS};
+use rocking::structure::parameters::{PARAMETERS, PRESETS, TIES};
 use rocking_records::{Source, Unit};
 use rocking_report::{
     advice::Level,
@@ -50,6 +50,7 @@ pub fn tables() -> String {
     let preset = |(name, parameters): &(&str, Parameters)| json!({ "name": name, "parameters": parameters });
     json!({
         "parameters": PARAMETERS.iter().map(parameter).collect::<Vec<_>>(),
+        "ties": TIES.iter().map(|of| of.name).collect::<Vec<_>>(),
         "natural": NATURAL.iter().map(natural).collect::<Vec<_>>(),
         "presets": PRESETS.iter().map(preset).collect::<Vec<_>>(),
         "shapes": Shape::ALL.map(shape),

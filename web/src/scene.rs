@@ -8,7 +8,7 @@ use rocking::structure::description::{Damping, Storey};
 use rocking::structure::ground::Ground;
 use rocking::structure::natural_quantities::{Given, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
-use rocking::structure::quantity::LARGE;
+use rocking::structure::quantity::Units;
 use rocking::{Detail, Parameters, State, Structure};
 use rocking_records::{Column, Reading, Source};
 use rocking_report::record::{Understood, advised};
@@ -321,7 +321,7 @@ pub fn unit_of(name: &str) -> &'static str {
 /// The number in `text`, which has the `name` and the `unit`. A number of the structure may have its unit behind it, or 1000 times
 /// this unit: 1200 t, 45 kN/m.
 pub fn number_of(name: &str, unit: &str, text: &str) -> Result<f64, String> {
-    let large = LARGE.iter().find(|(si, _)| *si == unit).map(|(_, large)| *large);
+    let large = Some(&*Units::Kilonewtons.name(unit)).filter(|large| *large != unit).map(str::to_owned);
     let is_of_structure = unit != "1" && NUMBERS.iter().all(|of| of.0 != name) && name != "dt";
     let units = [Some((unit, 1.0)), large.map(|large| (large, 1e3))].into_iter().flatten().filter(|_| is_of_structure);
     let in_unit = |(unit, factor)| Some(factor * text.strip_suffix(unit)?.trim_end().parse::<f64>().ok()?);

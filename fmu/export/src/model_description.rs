@@ -32,7 +32,7 @@ pub fn xml(version: Version, name: &str, contents: &Contents, default_experiment
         generation_tool: concat!("rocking-fmu ", env!("CARGO_PKG_VERSION")),
         events: EVENTS,
         has_slopes: true,
-        units: units::definitions(structure),
+        display_units: units::display_units(structure),
         variables: &variables,
         default_experiment,
     };

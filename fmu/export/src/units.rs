@@ -1,50 +1,15 @@
-//! Units: what each is in SI, what hosts show it in, and magnitudes that are usual.
+//! Units that hosts show, and magnitudes that are usual.
 
 use fmi_unit::{DataType, Variable};
-use model_description::Unit;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{Base, Body, Modes, Structure, Ties};
 
-/// The units of the variables, as exponents of kg, m, s, rad.
-pub const UNITS: [(&str, [i32; 4]); 17] = [
-    ("kg", [1, 0, 0, 0]),
-    ("m", [0, 1, 0, 0]),
-    ("s", [0, 0, 1, 0]),
-    ("Hz", [0, 0, -1, 0]),
-    ("rad", [0, 0, 0, 1]),
-    ("rad/s", [0, 0, -1, 1]),
-    ("rad/s2", [0, 0, -2, 1]),
-    ("m/s", [0, 1, -1, 0]),
-    ("m/s2", [0, 1, -2, 0]),
-    ("N", [1, 1, -2, 0]),
-    ("N/m", [1, 0, -2, 0]),
-    ("N.s/m", [1, 0, -1, 0]),
-    ("N.m", [1, 2, -2, 0]),
-    ("J", [1, 2, -2, 0]),
-    ("N.s", [1, 1, -1, 0]),
-    ("N.m.s", [1, 2, -1, 0]),
-    ("kg.m2", [1, 2, 0, 0]),
-];
-
-/// Definitions of the units; the display unit g is that of `structure`.
-pub fn definitions(structure: &Structure) -> Vec<Unit> {
-    let of_many = structure.one().is_none().then_some(("kg.m", [1, 1, 0, 0]));
-    let definition = |(name, base)| Unit { name, base: Some(base), display: shown_in(name, structure) };
-    UNITS.into_iter().chain(of_many).map(definition).collect()
-}
-
-/// The unit that hosts can show a unit in, and the factor of a value in that unit. The g of an acceleration is the structure's own,
-/// as in a record.
-fn shown_in(unit: &str, structure: &Structure) -> Option<(&'static str, f64)> {
-    match unit {
-        "rad" => Some(("deg", 1f64.to_degrees())),
-        "m" => Some(("mm", 1e3)),
-        "s" => Some(("ms", 1e3)),
-        "m/s2" => Some(("g", 1.0 / structure.base().g)),
-        "N" => Some(("kN", 1e-3)),
-        "N.m" => Some(("kN.m", 1e-3)),
-        _ => None,
-    }
+/// Units, what hosts can show in the place of each, and the factor of a value then. The g of an acceleration is the structure's own, as in
+/// a record.
+pub fn display_units(structure: &Structure) -> Vec<(&'static str, &'static str, f64)> {
+    let g = 1.0 / structure.base().g;
+    let angle = ("rad", "deg", 1f64.to_degrees());
+    vec![angle, ("m", "mm", 1e3), ("s", "ms", 1e3), ("m/s2", "g", g), ("N", "kN", 1e-3), ("N.m", "kN.m", 1e-3)]
 }
 
 /// The unit that `variable` is shown in, if that is another than its own. The structure's own parameters are in SI, as in its file, and
@@ -52,7 +17,7 @@ fn shown_in(unit: &str, structure: &Structure) -> Option<(&'static str, f64)> {
 pub fn display_unit(variable: &Variable, structure: &Structure) -> Option<&'static str> {
     let DataType::Real { unit, .. } = variable.data_type else { return None };
     let is_parameter = PARAMETERS.iter().any(|parameter| parameter.name == variable.name);
-    let shown = shown_in(unit, structure).map(|(name, _)| name);
+    let shown = display_units(structure).into_iter().find(|(of, ..)| *of == unit).map(|(_, shown, _)| shown);
     shown.filter(|_| unit != "s" && !is_parameter)
 }
 
