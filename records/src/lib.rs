@@ -292,6 +292,7 @@ fn parse(text: &str, how: &Reading) -> Result<(Record, Source), BadLine> {
         return Err(bad(line + 1, problem).remedied_by(*by));
     }
     check_headings(text)?;
+    check_end(text)?;
     let Some(format) = FORMATS.iter().find(|format| (format.is_its)(text)) else {
         return table::parse(text, how)?.record(how, TABLE);
     };
@@ -307,9 +308,26 @@ fn check_headings(text: &str) -> Result<(), BadLine> {
     let mut lines = text::numbered(text).filter(|(_, line)| !line.trim().is_empty());
     let is_data = |(_, line): &(usize, &str)| !text::is_comment(line) && fields::is_numbers(line);
     match (lines.by_ref().take(MOST).filter(is_data).take(2).count(), lines.next()) {
-        (0 | 1, Some((line, _))) => Err(bad(line, format!("no data after {MOST} lines: shorten the text before"))),
+        (0 | 1, Some((line, _))) => {
+            Err(bad(line, format!("no data after {MOST} lines: shorten the text before lines of numbers alone")))
+        }
         _ => Ok(()),
     }
+}
+
+/// Refuses a file of numbers with as many decimals that ends within a number: with fewer decimals and no end of line.
+fn check_end(text: &str) -> Result<(), BadLine> {
+    let decimals = |word: &str| word.find('.').map_or(0, |point| word.len() - point);
+    let mut last = text.lines().rev().map(fields::words);
+    let (Some(end), Some(before), false) = (last.next(), last.next(), text.ends_with('\n')) else { return Ok(()) };
+    let (Some(cut), [first, _, _, ..]) = (end.last(), &before[..]) else { return Ok(()) };
+    let are_alike = before.iter().all(|word| decimals(word) == decimals(first));
+    if are_alike && decimals(cut) < decimals(first) && fields::is_numbers(cut) {
+        let problem =
+            format!("the file ends within the number {cut}: it was cut, or end the line if the number is whole");
+        return Err(bad(text.lines().count(), problem));
+    }
+    Ok(())
 }
 
 /// The bytes of the file of a record. The function opens regular files only, because opening a pipe can block for ever.

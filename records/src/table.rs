@@ -251,6 +251,25 @@ impl<'a> Table<'a> {
         }
     }
 
+    /// Refuses a spectrum: many rows of which none has a number below 0, from a period above 0 on. A heading says time and no text
+    /// says spectrum, where it is a record.
+    fn check_signs(&self) -> Result<(), BadLine> {
+        const MANY: usize = 10;
+        let first = |name: &'a str| name.split(|letter: char| !letter.is_alphabetic()).next().unwrap_or_default();
+        let is_time = |word: &str| word == "t" || ["time", "times", "zeit"].contains(&&*word.to_lowercase());
+        let says_time = self.headings_of(0).any(|(_, name)| is_time(first(name)));
+        let says_spectrum = self.before.iter().any(|(_, text)| text.to_lowercase().contains("spectr"));
+        let is_positive = self.numbers[0] > 0.0 && self.numbers.iter().all(|number| *number >= 0.0);
+        if is_positive && self.numbers.len() >= MANY * self.count && (says_spectrum || !says_time) {
+            let problem = "no number below 0, and the first line is not at 0: this is a spectrum, no record of a_g(t)";
+            return Err(bad(
+                self.first,
+                format!("{problem}, unless you head column 1 time (s) without a line on spectra"),
+            ));
+        }
+        Ok(())
+    }
+
     fn is_whole(&self, column: usize) -> bool {
         self.column(column).all(|number| number.fract() == 0.0)
     }
@@ -279,6 +298,7 @@ impl<'a> Table<'a> {
         if let Some(uneven) = &self.uneven {
             return Err(uneven.clone());
         }
+        self.check_signs()?;
         let time = match self.headed_time() {
             None => match self.check_first() {
                 Ok(()) => Some((0, TimeUnit::Unstated)),
@@ -436,7 +456,12 @@ impl<'a> Table<'a> {
             *unit = Stated::Unclear((*text).to_owned());
         }
         let stated = stated.into_iter().nth(other.unwrap_or_default()).map(|(unit, line, _)| (unit, line));
+        let other = self.before.iter().find(|(_, text)| is_no_acceleration(text)).filter(|_| how.unit.is_none());
         match (stated, self.before.iter().find(|(_, text)| mentions_unit(text))) {
+            (None, _) if let Some((line, text)) = other => {
+                let problem = format!("{} is said, and no unit of accelerations", quote(text));
+                Err(bad(*line, problem).remedied_by(Remedy::Unit))
+            }
             (None, Some((line, text))) if how.unit.is_none() => {
                 let text = quote(text);
                 let problem =

@@ -4,7 +4,7 @@ use crate::Version;
 use FlexibleRocking::BUILD;
 use memchr::memmem;
 use object::read::macho::{FatArch, MachOFatFile32};
-use object::{Architecture, BinaryFormat, FileKind, Object};
+use object::{Architecture, BinaryFormat, FileKind, Object, ObjectKind};
 use std::fs;
 use std::io::{self, Cursor, Read};
 use std::path::{Path, PathBuf};
@@ -80,7 +80,10 @@ impl Platform {
             return (has(Architecture::X86_64) && has(Architecture::Aarch64)).then_some(Platform::Darwin64);
         }
         let file = object::File::parse(library).ok()?;
+        let is_program =
+            file.kind() == ObjectKind::Executable || file.format() == BinaryFormat::Elf && file.entry() != 0;
         match (file.format(), file.architecture()) {
+            _ if is_program => None,
             (BinaryFormat::Elf, Architecture::X86_64) => Some(Platform::Linux64),
             (BinaryFormat::Elf, Architecture::Aarch64) => Some(Platform::LinuxArm64),
             (BinaryFormat::Pe, Architecture::X86_64) => Some(Platform::Windows64),
