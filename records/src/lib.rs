@@ -308,9 +308,7 @@ fn check_headings(text: &str) -> Result<(), BadLine> {
     let mut lines = text::numbered(text).filter(|(_, line)| !line.trim().is_empty());
     let is_data = |(_, line): &(usize, &str)| !text::is_comment(line) && fields::is_numbers(line);
     match (lines.by_ref().take(MOST).filter(is_data).take(2).count(), lines.next()) {
-        (0 | 1, Some((line, _))) => {
-            Err(bad(line, format!("no data after {MOST} lines: shorten the text before lines of numbers alone")))
-        }
+        (0 | 1, Some((line, _))) => Err(bad(line, format!("no data after {MOST} lines: shorten the text before"))),
         _ => Ok(()),
     }
 }

@@ -260,7 +260,8 @@ impl<'a> Table<'a> {
         let says_time = self.headings_of(0).any(|(_, name)| is_time(first(name)));
         let says_spectrum = self.before.iter().any(|(_, text)| text.to_lowercase().contains("spectr"));
         let is_positive = self.numbers[0] > 0.0 && self.numbers.iter().all(|number| *number >= 0.0);
-        if is_positive && self.numbers.len() >= MANY * self.count && (says_spectrum || !says_time) {
+        if is_positive && self.numbers.len() >= MANY * self.count && !self.is_whole(0) && (says_spectrum || !says_time)
+        {
             let problem = "no number below 0, and the first line is not at 0: this is a spectrum, no record of a_g(t)";
             return Err(bad(
                 self.first,
@@ -863,6 +864,15 @@ mod tests {
             (
                 ".02 .3\n.04 .4\n.1 .3\n",
                 "1: uneven steps and no number below 0: this is a spectrum, no record of a_g(t), unless you head column 1 time (s)",
+            ),
+            (
+                &format!("Periyot (s),Ivme (g)\n{}", ".1,.2\n.2,.3\n".repeat(5)),
+                "2: no number below 0, and the first line is not at 0: this is a spectrum, no record of a_g(t), unless you head column 1 time (s) without a line on spectra",
+            ),
+            ("# displacement in m\n0 .1\n.01 .2\n", "1: \"# displacement in m\" is said, and no unit of accelerations"),
+            (
+                "-.1 .1 .2\n.01 .2",
+                "2: the file ends within the number .2: it was cut, or end the line if the number is whole",
             ),
             ("400 0\n0 .1\n.01 .2\n.02 .3\n", &from(2)),
             ("*DEFINE_CURVE\n$# lcid sidr\n1 0 1.0 0\n$# a1 o1\n0 .1\n.01 .2\n.02 .3\n*END\n", &from(5)),
