@@ -1,9 +1,10 @@
 //! The variables of modes and floors, and the derivatives of all states.
 
-use crate::source::{ACCELERATION, Row, Source};
+use crate::source::{Row, Source};
 use fmi_unit::variables::Text;
 use fmi_unit::{Causality, Variable};
 use rocking::Structure;
+use rocking::mechanics::outputs::ACCELERATION;
 use rocking::mechanics::state::COMPONENTS;
 use rocking::structure::derived::OF_MODE;
 use std::collections::HashSet;
@@ -65,7 +66,7 @@ pub(crate) fn state_rates(structure: &Structure) -> Vec<Row> {
     let rate = |place: usize| {
         let (unit, is_velocity) =
             [("m/s", true), ("m/s2", false), ("rad/s", true), ("rad/s2", false)][kind(structure, place).0];
-        let of = if is_velocity { &[][..] } else { &ACCELERATION };
+        let of = if is_velocity { &[][..] } else { ACCELERATION };
         let own = is_velocity.then(|| name(structure, if place < n { place + n } else { place + 1 }));
         let (name, by) = (name(structure, place), ", by the equations of the level of detail");
         let description = format!("rate of {name}{}", if is_one && is_velocity { "" } else { by });

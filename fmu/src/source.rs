@@ -5,10 +5,9 @@ use fmi_unit::{Enumeration, Value, Variable};
 use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::run::ground_motion::Placement;
 use rocking::structure::derived::Derived;
-use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::Quantity;
 use rocking::{Detail, Impulse, Output, Parameters, Phase, Reactions};
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 
 /// The source of the value of a variable.
 #[derive(Clone, Copy, Debug)]
@@ -133,9 +132,3 @@ const NAMES: [&str; Phase::SHOWN.len()] = {
 
 /// A variable, and where its value is.
 pub(crate) type Row = (Variable, Source);
-
-/// The variables that accelerations follow from.
-pub(crate) static ACCELERATION: LazyLock<Vec<&str>> = LazyLock::new(|| {
-    let motion = ["a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "theta_dot", "detail"];
-    motion.into_iter().chain(PARAMETERS.iter().map(|of| of.name).filter(|name| *name != "r")).collect()
-});

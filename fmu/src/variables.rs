@@ -5,10 +5,11 @@ use crate::floor_variables;
 use crate::inputs::{FORCE, loads};
 use crate::resources::Contents;
 use crate::setup::Setup;
-use crate::source::{ACCELERATION, DETAILS, PHASES, Row, Source};
+use crate::source::{DETAILS, PHASES, Row, Source};
 use fmi_unit::{Causality, DataType, Variable};
 use rocking::mechanics::load::LOADS;
-use rocking::mechanics::state::INITIAL_VALUES;
+use rocking::mechanics::outputs::ACCELERATION;
+use rocking::mechanics::state::{COMPONENTS, INITIAL_VALUES};
 use rocking::run::ground_motion::PLACEMENT;
 use rocking::run::outside_step::INDICATORS;
 use rocking::run::validity::{ASSUMPTIONS, Assumption};
@@ -160,45 +161,21 @@ const fn number(unit: &'static str) -> DataType {
 
 /// An output of the library, with the variables that it follows from, of which many masses have some.
 fn output(of: Output, structure: &Structure) -> Row {
-    let is_one = structure.one().is_some();
-    let (of_one, depends_on): (_, &[&str]) = match of {
-        Output::theta => ("rotation of the base, positive about the right edge", &["theta_0"]),
-        Output::theta_dot => ("angular velocity of the base", &["theta_dot_0"]),
-        Output::u(_) if is_one => {
-            ("elastic displacement of the top mass in the frame that turns with the base", &["u_0"])
-        }
-        Output::u_dot(_) if is_one => ("elastic velocity of the top mass", &["u_dot_0"]),
-        Output::uplift => ("height of the free edge of the base (Eq 25)", &["theta", "B", "y"]),
-        Output::V_t => ("m a_t, the base shear if F_t is 0 (Eqs 2, 23)", &ACCELERATION),
-        Output::M_t => ("m H a_t, the overturning moment if F_t is 0 (Eqs 3, 24)", &ACCELERATION),
-        Output::a_t(_) => ("acceleration of the top mass, ground included (Eq 27)", &ACCELERATION),
-        Output::delta_t(_) => ("lateral displacement of the top mass (Eq 26)", &["u", "theta", "H", "B"]),
-        Output::v_t(_) => {
-            ("lateral velocity of the top mass relative to the ground", &["u", "u_dot", "theta", "theta_dot", "H", "B"])
-        }
-        Output::V(_) | Output::M(_) => ("", &ACCELERATION),
-        Output::u(_) | Output::drift(_) | Output::drift_ratio(_) => ("", &["u"]),
-        Output::u_dot(_) => ("", &["u_dot"]),
-        Output::y | Output::P_t | Output::settlement | Output::settled(_) | Output::lifted(_) => ("", &["y", "theta"]),
-        Output::N_left | Output::N_right | Output::N(_) | Output::pressure | Output::edge(_) => {
-            ("", &["y", "y_dot", "theta", "theta_dot"])
-        }
-        _ => ("", &[]),
-    };
     let is_local = matches!(of, Output::theta_dot | Output::u_dot(_));
     let causality = if is_local { Causality::Local } else { Causality::Output };
-    let description = if is_one { of_one.into() } else { of.description() };
-    let variable =
-        Variable::real(causality, of.name(structure), of.unit(), description).from(depends_on.iter().copied());
-    let is_state =
-        matches!(of, Output::theta | Output::theta_dot) || is_one && matches!(of, Output::u(_) | Output::u_dot(_));
-    (if is_state { variable.state() } else { variable }, Source::Output(of))
+    let name = of.name(structure);
+    let variable = Variable::real(causality, name.clone(), of.unit(), of.description(structure));
+    let variable = match COMPONENTS.contains(&&*name) {
+        true => variable.from([format!("{name}_0")]).state(),
+        false => variable.from(of.follows_from().iter().copied()),
+    };
+    (variable, Source::Output(of))
 }
 
 /// Reactions, forces of the ties, and impulses.
 fn forces() -> [Row; 9] {
     let force = |texts, source, of: &_| real(Causality::Output, texts, source, of);
-    let reaction = |name, unit, description, of| force([name, unit, description], Source::Reaction(of), &ACCELERATION);
+    let reaction = |name, unit, description, of| force([name, unit, description], Source::Reaction(of), ACCELERATION);
     let impulse = |name, unit, description, of| {
         (Variable::of_type(number(unit), Causality::Output, name, description), Source::Impulse(of))
     };

@@ -352,7 +352,7 @@ impl<S: Simd, Q: Coordinates> WithSimd for Taken<'_, '_, S, Q> {
         let least = start.abs().min(end[2].abs()) - off[2] * rounding;
         let [above, below] = load(simd, &of.sought.turned);
         let is_free = above.is_less(least) & end[2].abs().is_less(below);
-        let is_passed = of.sought.are_passed(simd, &stretch.most());
+        let is_passed = of.sought.are_passed(simd, &stretch.most(), theta_dot.abs().max(end[3].abs()) + off[3]);
         let duration = sigma * span;
         let is_whole = duration.is_at_most(interval) & interval.is_at_most(duration);
         let goes_on = stays & is_free & is_whole & one.is_at_most(is_there.min(row(&of.may_go_on)));

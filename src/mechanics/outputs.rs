@@ -10,8 +10,7 @@
 //! ([`Gauge`]).
 //!
 //! A formula reads the motion in numbers of any kind: at an instant, as bounds, or as series in time over a polynomial of the
-//! motion. To add an output, write its row in `outputs!`, its place among the outputs and its formula. All
-//! columns, peaks and pictures follow.
+//! motion. All else that is known of an output is its row in `outputs!`. Columns, peaks, bounds and variables follow from both.
 
 use crate::mechanics::instant::{Instant, Place, uplift};
 use crate::mechanics::lateral::{Coordinates, Lateral};
@@ -19,12 +18,56 @@ use crate::mechanics::load::Load;
 use crate::numbers::{Number, Ordered};
 use crate::structure::gauge::Gauge;
 use crate::structure::mode::Modes;
+use crate::structure::parameters::PARAMETERS;
 use crate::{Base, Foundation, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 
-/// Declares [`Output`] by its rows: name, unit, description, where `#` stands for the number of a floor, and what the documentation adds.
+/// What an output is of, on ground that gives but for the first two. Contact points are shown if there are more than the outer ones, edges
+/// as parts of other outputs, and ties beside the outputs.
+#[derive(Clone, Copy, PartialEq)]
+enum Of {
+    Base,
+    Floor,
+    Ground,
+    Points,
+    Point,
+    Edge,
+    Tie,
+}
+
+/// How the largest magnitude of an output is searched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Search {
+    /// Not at all, or with those of all ties.
+    None,
+    /// It is the largest of its [parts](Output::parts).
+    Parts,
+    /// The output is linear in components of the motion.
+    Component,
+    /// The output is linear in magnitudes: of u, u̇, F_t, sin θ and 1 − cos θ.
+    Linear,
+    /// The output is none of these: its bound is the formula itself in bounds of the magnitudes.
+    Curved,
+}
+
+/// What is known of an output beside its formula.
+struct Row {
+    name: &'static str,
+    unit: &'static str,
+    /// `#` stands for the number of a floor.
+    description: &'static str,
+    of: Of,
+    /// If one mass has it, its place among the columns and, if it has a peak, among the peaks.
+    of_one: &'static [usize],
+    search: Search,
+    /// The variables of an FMU that it follows from directly; a state follows from what it starts from.
+    from: &'static [&'static str],
+}
+
+/// Declares [`Output`] by its rows: name, unit, description, what the documentation adds, and the rest of [`Row`] in its order.
 macro_rules! outputs {
-    ($($name:ident $(($i:ident: $number:ty))? [$unit:literal] $description:literal $($more:literal)?;)*) => {
+    ($($name:ident $(($i:ident: $number:ty))? [$unit:literal] $description:literal $($more:literal)?,
+        $of:ident $of_one:tt $search:ident, $from:expr;)*) => {
         /// An output of a structure. Floors and storeys count from 0, from below; storey i is below floor i.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
         #[allow(non_camel_case_types)] // the names of the outputs
@@ -35,46 +78,103 @@ macro_rules! outputs {
             )*
         }
 
+        /// The first of each output.
+        const EACH: &[Output] = &[$(Output::$name $(({ let $i: $number = 0; $i }))?),*];
+
+        /// How many columns and peaks one mass has.
+        const OF_ONE: [usize; 2] = [0 $(+ (<[usize]>::len(&$of_one) > 0) as usize)*, 0 $(+ (<[usize]>::len(&$of_one) > 1) as usize)*];
+
         impl Output {
-            /// The name, unit and description, and the floor if the output is of a floor, which takes the place of `#`.
-            const fn told(self) -> (&'static str, &'static str, &'static str, Option<usize>) {
+            const fn row(self) -> &'static Row {
                 match self {
-                    $(Output::$name $(($i))? => (stringify!($name), $unit, $description, [$(Some($i),)? None][0]),)*
+                    $(Output::$name { .. } => const { &Row {
+                        name: stringify!($name), unit: $unit, description: $description, of: Of::$of, of_one: &$of_one,
+                        search: Search::$search, from: $from,
+                    } },)*
+                }
+            }
+
+            /// The number of the floor, point or edge that has it.
+            fn number(self) -> Option<usize> {
+                match self {
+                    $(Output::$name $(($i))? => [$(Some($i),)? None][0],)*
+                }
+            }
+
+            /// The same output of the floor, point or edge of another `number`.
+            fn numbered(self, number: usize) -> Output {
+                match self {
+                    $(Output::$name { .. } => Output::$name $(({ let $i: $number = number; $i }))?,)*
                 }
             }
         }
     };
 }
 
+/// The variables of an FMU that accelerations follow from: the load, the motion, the level, and all parameters but r.
+pub const ACCELERATION: &[&str] = &{
+    const OTHERS: [&str; 8] = ["a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "theta_dot", "detail"];
+    let (mut names, mut i) = ([OTHERS[0]; OTHERS.len() + PARAMETERS.len() - 1], 0);
+    let mut of_parameter = OTHERS.len();
+    while i < PARAMETERS.len() {
+        if i < OTHERS.len() {
+            names[i] = OTHERS[i];
+        }
+        if !matches!(PARAMETERS[i].name.as_bytes(), b"r") {
+            names[of_parameter] = PARAMETERS[i].name;
+            of_parameter += 1;
+        }
+        i += 1;
+    }
+    names
+};
+
+/// The variables of an FMU that forces of contact points follow from.
+const CONTACT: &[&str] = &["y", "y_dot", "theta", "theta_dot"];
+
 outputs! {
-    theta ["rad"] "rotation of the base" "θ";
-    theta_dot ["rad/s"] "angular velocity of the base" "θ̇";
-    uplift ["m"] "uplift of the free edge of the base" "δ_u = 2 B sin|θ| (Eq 25)";
-    V_t ["N"] "base shear if all F_t are 0: the sum of m a_t" "V_t (Eqs 2, 23)";
-    M_t ["N.m"] "overturning moment if all F_t are 0: the sum of m h a_t" "M_t (Eqs 3, 24)";
-    u(i: usize) ["m"] "elastic displacement of floor #" "u_i";
-    u_dot(i: usize) ["m/s"] "elastic velocity of floor #" "u̇_i";
-    drift(i: usize) ["m"] "drift of storey #" "u_i − u_{i−1}";
-    drift_ratio(i: usize) ["1"] "drift of storey # over its height";
-    delta_t(i: usize) ["m"] "displacement of floor # relative to the ground" "δ_i = sB (1 − cos θ) + u_i cos θ + h_i sin θ (Eq 26)";
-    v_t(i: usize) ["m/s"] "velocity of floor # relative to the ground" "u̇_i cos θ + [(sB − u_i) sin θ + h_i cos θ] θ̇";
-    a_t(i: usize) ["m/s2"] "lateral acceleration of floor #" "along the turning e_x a_i (Eq 27)";
-    V(i: usize) ["N"] "shear of storey # if all F_t are 0: the sum of m a_t above it" "V_i";
-    M(i: usize) ["N.m"] "overturning moment at the foot of storey # if all F_t are 0" "M_i";
-    y ["m"] "height of the middle of the base above the unloaded ground" "on ground that gives as all that follow but the forces of ties";
-    settlement ["m"] "settlement of the lower outer contact point" "rotation included, −min(e); the middle of the base settles by −y";
-    contact ["1"] "stiffness of the pressed contact points over the stiffness of all";
-    E_foundation ["J"] "energy that the ground has taken";
-    N_left ["N"] "force of the left outer contact point";
-    N_right ["N"] "force of the right outer contact point";
-    pressure ["N/m"] "largest pressure under the base: the mean over the outer sixth at each edge, or of an inner point over its strip";
-    N(i: usize) ["N"] "force of contact point # from the left";
-    settled(i: usize) ["m"] "settlement of outer contact point #" "left (0) or right (1), or 0 above the unloaded ground";
-    P_t ["N"] "force of the tendon";
-    F_d1 ["N"] "force of the dissipators at +xi_d" "which a sample has";
-    F_d2 ["N"] "force of the dissipators at -xi_d" "which a sample has";
-    lifted(i: usize) ["m"] "height of edge # above the unloaded ground" "left (0) or right (1), or 0 below";
-    edge(i: usize) ["N/m"] "mean pressure over the outer sixth of the base at edge #" "left (0) or right (1)";
+    theta ["rad"] "rotation of the base, positive about the right edge" "θ", Base [0, 0] Component, &[];
+    theta_dot ["rad/s"] "angular velocity of the base" "θ̇", Base [5] None, &[];
+    uplift ["m"] "uplift of the free edge of the base (Eq 25)" "δ_u = 2 B sin|θ|",
+        Base [7, 3] Parts, &["theta", "B", "y"];
+    V_t ["N"] "base shear if all F_t are 0: the sum of m a_t (Eqs 2, 23)" "V_t", Base [3, 5] Linear, ACCELERATION;
+    M_t ["N.m"] "overturning moment if all F_t are 0: the sum of m h a_t (Eqs 3, 24)" "M_t",
+        Base [4, 6] Linear, ACCELERATION;
+    y ["m"] "height of the middle of the base above the unloaded ground" "on ground that gives as all that follow but those of floors and ties",
+        Ground [] None, &[];
+    settlement ["m"] "settlement of the lower outer contact point" "rotation included, −min(e); the middle of the base settles by −y",
+        Ground [] Parts, &["y", "theta"];
+    contact ["1"] "stiffness of the pressed contact points over the stiffness of all", Ground [] None, &[];
+    E_foundation ["J"] "energy that the ground has taken", Ground [] None, &[];
+    N_left ["N"] "force of the left outer contact point", Ground [] Parts, CONTACT;
+    N_right ["N"] "force of the right outer contact point", Ground [] Parts, CONTACT;
+    pressure ["N/m"] "largest pressure under the base: the mean over the outer sixth at each edge, or of an inner point over its strip",
+        Points [] Parts, CONTACT;
+    N(i: usize) ["N"] "force of contact point # from the left", Point [] Component, CONTACT;
+    u(i: usize) ["m"] "elastic displacement of floor # in the frame that turns with the base" "u_i",
+        Floor [1, 1] Component, &["u"];
+    u_dot(i: usize) ["m/s"] "elastic velocity of floor #" "u̇_i", Floor [6] None, &["u_dot"];
+    drift(i: usize) ["m"] "drift of storey #" "u_i − u_{i−1}", Floor [] Component, &["u"];
+    drift_ratio(i: usize) ["1"] "drift of storey # over its height", Floor [] Component, &["u"];
+    delta_t(i: usize) ["m"] "lateral displacement of floor # relative to the ground (Eq 26)" "δ_i = sB (1 − cos θ) + u_i cos θ + h_i sin θ",
+        Floor [8, 2] Linear, &["u", "theta", "H", "B"];
+    v_t(i: usize) ["m/s"] "lateral velocity of floor # relative to the ground" "u̇_i cos θ + [(sB − u_i) sin θ + h_i cos θ] θ̇",
+        Floor [9] None, &["u", "u_dot", "theta", "theta_dot", "H", "B"];
+    a_t(i: usize) ["m/s2"] "lateral acceleration of floor #, ground included (Eq 27)" "along the turning e_x a_i",
+        Floor [2, 4] Linear, ACCELERATION;
+    V(i: usize) ["N"] "shear of storey # if all F_t are 0: the sum of m a_t above it" "V_i",
+        Floor [] Linear, ACCELERATION;
+    M(i: usize) ["N.m"] "overturning moment at the foot of storey # if all F_t are 0" "M_i",
+        Floor [] Linear, ACCELERATION;
+    settled(i: usize) ["m"] "settlement of outer contact point #" "left (0) or right (1), or 0 above the unloaded ground",
+        Edge [] Component, &[];
+    lifted(i: usize) ["m"] "height of edge # above the unloaded ground" "left (0) or right (1), or 0 below",
+        Edge [] Component, &[];
+    edge(i: usize) ["N/m"] "mean pressure over the outer sixth of the base at edge #" "left (0) or right (1)",
+        Edge [] Component, &[];
+    P_t ["N"] "force of the tendon", Tie [] Component, &[];
+    F_d1 ["N"] "force of the dissipators at +xi_d" "which a sample has", Tie [] None, &[];
+    F_d2 ["N"] "force of the dissipators at -xi_d" "which a sample has", Tie [] None, &[];
 }
 
 use Output::{
@@ -82,25 +182,44 @@ use Output::{
 };
 use Output::{F_d1, F_d2, P_t, pressure, settled, settlement, theta, theta_dot, u, u_dot, v_t, y};
 
+/// The outputs of one mass, each at its place among the columns (0) or peaks (1).
+const fn of_one<const N: usize>(which: usize) -> [Output; N] {
+    let (mut all, mut i) = ([theta; N], 0);
+    while i < EACH.len() {
+        let &Row { of_one: places, search, .. } = EACH[i].row();
+        if which < places.len() {
+            assert!((places.len() == 1) == matches!(search, Search::None), "one mass has the peaks of many masses");
+            all[places[which]] = EACH[i];
+        }
+        i += 1;
+    }
+    all
+}
+
 impl Output {
     /// The outputs of one mass, in the order of their columns.
-    const OF_ONE: [Output; 10] =
-        [theta, u(0), a_t(0), V_t, M_t, theta_dot, u_dot(0), Output::uplift, delta_t(0), v_t(0)];
+    const OF_ONE: [Output; OF_ONE[0]] = of_one(0);
 
     /// The outputs of one mass that have a peak, in the order of their peaks.
-    pub const PEAKS_OF_ONE: [Output; 7] = [theta, u(0), delta_t(0), Output::uplift, a_t(0), V_t, M_t];
+    pub const PEAKS_OF_ONE: [Output; OF_ONE[1]] = of_one(1);
 
     /// The forces of a tendon and of dissipators.
     pub const OF_TIES: [Output; 3] = [P_t, F_d1, F_d2];
 
-    /// The outputs of a base.
-    const OF_BASE: [Output; 5] = [theta, theta_dot, Output::uplift, V_t, M_t];
-
-    /// The outputs of a base on ground that gives.
-    const OF_GROUND: [Output; 6] = [y, settlement, contact, E_foundation, N_left, N_right];
-
-    /// The outputs of a floor and of the storey below the floor.
-    const OF_FLOOR: [fn(usize) -> Output; 9] = [u, u_dot, drift, drift_ratio, delta_t, v_t, a_t, V, M];
+    /// The outputs of `structure` that are meant, in the order of their rows.
+    fn meant(structure: &Structure, is_meant: impl Fn(&Row) -> bool) -> impl Iterator<Item = Output> {
+        let points = structure.foundation().map_or(0, |foundation| foundation.points.len());
+        let count = move |of: Of| match of {
+            Of::Base => 1,
+            Of::Floor => structure.floors().len(),
+            Of::Ground | Of::Points | Of::Tie => points.min(1),
+            Of::Point => points,
+            Of::Edge => points.min(2),
+        };
+        let is_one = structure.one().is_some();
+        let meant = EACH.iter().filter(move |of| is_meant(of.row()) && !(is_one && of.row().of_one.is_empty()));
+        meant.flat_map(move |of| (0..count(of.row().of)).map(|number| of.numbered(number)))
+    }
 
     /// All outputs of `structure` in the order of their columns: of many masses those of the base, then each output of the floors
     /// from below.
@@ -108,69 +227,87 @@ impl Output {
         if structure.one().is_some() {
             return Output::OF_ONE.into();
         }
-        let floors = structure.floors().len();
-        let of_floors = Output::OF_FLOOR.iter().flat_map(|of| (0..floors).map(of));
         // two floors at the same height have a drift and no storey
         let is_one = |of: &Output| of.displaced(structure).is_none_or(|(_, factor)| factor.is_finite());
-        let points = structure.foundation().map(|foundation| foundation.points.len());
-        let of_ground = points.iter().flat_map(|_| Output::OF_GROUND);
-        // two points are the outer ones
-        let of_points = points.into_iter().filter(|n| *n > 2).flat_map(|n| [pressure].into_iter().chain((0..n).map(N)));
-        Output::OF_BASE.into_iter().chain(of_ground).chain(of_points).chain(of_floors).filter(is_one).collect()
+        let has_inner = structure.foundation().is_some_and(|foundation| foundation.points.len() > 2);
+        let is_column = |row: &Row| match row.of {
+            Of::Base | Of::Floor | Of::Ground => true,
+            Of::Points | Of::Point => has_inner,
+            Of::Edge | Of::Tie => false,
+        };
+        Output::meant(structure, is_column).filter(is_one).collect()
     }
 
     /// The outputs of `structure` that have a peak, in the order of their peaks; the forces of its tendon and of its dissipators last.
     pub fn with_peak(structure: &Structure) -> Vec<Output> {
         let base = structure.base();
-        let is_there = |of: &Output| if *of == P_t { base.has_tendon() } else { base.has_dissipators() };
-        Output::searched(structure).into_iter().chain(Output::OF_TIES.into_iter().filter(is_there)).collect()
+        let mut all = match structure.one() {
+            Some(_) => Output::PEAKS_OF_ONE.into(),
+            None => Output::all(structure),
+        };
+        all.retain(|of| of.search() != Search::None);
+        all.extend(
+            Output::OF_TIES.iter().filter(|of| if **of == P_t { base.has_tendon() } else { base.has_dissipators() }),
+        );
+        all
     }
 
-    /// The outputs with a peak, without the forces of tendon and dissipators.
-    pub(crate) fn searched(structure: &Structure) -> Vec<Output> {
-        match structure.one() {
-            Some(_) => Output::PEAKS_OF_ONE.into(),
-            None => Output::all(structure)
-                .into_iter()
-                .filter(|of| !matches!(of, theta_dot | u_dot(_) | v_t(_) | y | contact | E_foundation))
-                .collect(),
-        }
+    /// The outputs of `structure` whose bounds are found for a search of their own.
+    pub(crate) fn bounded(structure: &Structure) -> impl Iterator<Item = Output> {
+        Output::meant(structure, |row| !matches!(row.search, Search::None | Search::Parts))
+    }
+
+    /// How its largest magnitude is searched.
+    pub(crate) fn search(self) -> Search {
+        self.row().search
+    }
+
+    /// Whether the output is linear in components of the motion.
+    pub(crate) fn is_component(self) -> bool {
+        self.search() == Search::Component
+    }
+
+    /// Whether it is of ground that gives or of ties.
+    pub fn is_of_ground(self) -> bool {
+        !matches!(self.row().of, Of::Base | Of::Floor)
     }
 
     /// The name of an output of `structure`, of many masses with the number of the floor or storey from 1: `a_t[3]`.
     pub fn name(self, structure: &Structure) -> String {
-        match self.told() {
-            (name, .., Some(floor)) if structure.one().is_none() => format!("{name}[{}]", floor + 1),
-            (name, ..) => name.into(),
+        match self.number() {
+            Some(number) if structure.one().is_none() => format!("{}[{}]", self.symbol(), number + 1),
+            _ => self.symbol().into(),
         }
     }
 
     /// The symbol without a number, the same for all floors.
     pub const fn symbol(self) -> &'static str {
-        self.told().0
+        self.row().name
     }
 
     /// The unit.
     pub const fn unit(self) -> &'static str {
-        self.told().1
+        self.row().unit
     }
 
-    /// The description.
-    pub fn description(self) -> String {
-        let (_, _, description, floor) = self.told();
-        floor.map_or(description.into(), |floor| description.replace('#', &(floor + 1).to_string()))
+    /// The description of an output of `structure`.
+    pub fn description(self, structure: &Structure) -> String {
+        let Row { description, .. } = self.row();
+        match self.number() {
+            Some(_) if structure.one().is_some() => description.replace("floor #", "the top mass"),
+            Some(number) => description.replace('#', &(number + 1).to_string()),
+            None => (*description).into(),
+        }
+    }
+
+    /// The names of the variables of an FMU that it follows from directly.
+    pub fn follows_from(self) -> &'static [&'static str] {
+        self.row().from
     }
 
     /// Whether the output of `structure` depends on the ground acceleration directly.
     pub fn has_feedthrough(self, structure: &Structure) -> bool {
         self.gauge(structure).is_some_and(Gauge::has_feedthrough)
-    }
-
-    /// Whether the output is linear in the components of the motion.
-    pub(crate) fn is_component(self) -> bool {
-        let of_ground =
-            matches!(self, y | E_foundation | N_left | N_right | N(_) | P_t | settled(_) | lifted(_) | edge(_));
-        of_ground || matches!(self, theta | theta_dot | u(_) | u_dot(_) | drift(_) | drift_ratio(_))
     }
 
     /// The outputs of `structure` on ground that gives of whose peaks the largest is the peak of this one, each with its factor.
@@ -263,14 +400,15 @@ impl Output {
                 let each = each.map(|(i, factor)| N(i).on_ground(x, foundation) * factor);
                 each.reduce(|sum, of| sum + of).expect("a strip is at the edge")
             }
+            N(_) => K::constant(0.0),
             contact => {
                 let pressed = points.iter().enumerate().filter(|(i, _)| x.contact.is_pressed(*i));
                 K::constant(pressed.map(|(_, point)| point.k).sum::<f64>() / foundation.sum(0))
             }
             N_left => N(0).on_ground(x, foundation),
             N_right => N(points.len() - 1).on_ground(x, foundation),
-            Output::uplift | settlement | pressure => K::constant(f64::NAN),
-            _ => K::constant(0.0),
+            Output::uplift | settlement | pressure | F_d1 | F_d2 => K::constant(f64::NAN),
+            _ => unreachable!("{self:?} has the same formula on all ground"),
         }
     }
 
@@ -280,7 +418,7 @@ impl Output {
         match self {
             _ if Q::foundation(x.structure).is_none() => self.smooth(x),
             lifted(_) | settled(_) | P_t => self.smooth(x).positive(),
-            Output::uplift | settlement | pressure => {
+            _ if self.search() == Search::Parts => {
                 let parts = self.parts(x.structure).into_iter();
                 parts.map(|(part, factor)| part.of(x) * factor).reduce(K::larger).expect("it has parts")
             }
@@ -308,7 +446,23 @@ impl Output {
             V_t | M_t | a_t(_) | V(_) | M(_) => {
                 self.gauge(x.structure).expect("a gauge measures accelerations and forces").at(x)
             }
-            _ => Q::foundation(x.structure).map_or(K::constant(f64::NAN), |foundation| self.on_ground(x, foundation)),
+            Output::uplift
+            | y
+            | settlement
+            | contact
+            | E_foundation
+            | N_left
+            | N_right
+            | pressure
+            | N(_)
+            | settled(_)
+            | lifted(_)
+            | edge(_)
+            | P_t
+            | F_d1
+            | F_d2 => {
+                Q::foundation(x.structure).map_or(K::constant(f64::NAN), |foundation| self.on_ground(x, foundation))
+            }
         }
     }
 }

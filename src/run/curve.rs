@@ -82,8 +82,8 @@ pub struct Curve<Q: Coordinates = f64> {
 
 pub(super) fn trace<Q: Starts>(run: &Run<Q>, part: f64) -> Result<Curve<Q>, RunError> {
     let (found, peaks) = find(run, &mut ())?;
-    let (mut lines, drawn, a_g) = (lines(&run.structure), drawn(run), found.ground);
-    lines.extend(OF_GROUND[..2].iter().filter(|of| drawn.contains(of)));
+    let (mut lines, structure, a_g) = (lines(&run.structure), &run.structure.at(run.detail), found.ground);
+    lines.extend(OF_GROUND[..2].iter().flat_map(|of| of.parts(structure)).map(|(part, _)| part));
     let peaks = Vec::from_iter(peaks_of(&lines, &peaks));
     let mut tracer = Tracer {
         within: peaks.iter().map(|peak| part * peak.magnitude).collect(),
@@ -91,7 +91,7 @@ pub(super) fn trace<Q: Starts>(run: &Run<Q>, part: f64) -> Result<Curve<Q>, RunE
         pga: a_g.magnitude,
         most: 10 * MOST_POINTS / (7 + peaks.len()),
         lines,
-        drawn,
+        drawn: drawn(run),
         points: Vec::new(),
         transitions: Vec::new(),
         is_torn: true,

@@ -7,9 +7,10 @@
 
 use crate::engine::piece::{CONVERGED, Expansion, Piece};
 #[cfg(feature = "lanes")]
-use crate::engine::sought::Sought;
+use crate::engine::sought::{Curved, Sought};
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::Coordinates;
+use crate::mechanics::outputs::Search;
 use crate::mechanics::reach::{Magnitudes, OffChord};
 use crate::mechanics::restraint::{Angles, Restraint, Restraints, restraints};
 use crate::series::extremes;
@@ -126,32 +127,26 @@ impl Peaks {
         let structure = &structure.at(detail);
         let (&Base { B, ties: Ties { P_0, k_t, .. }, .. }, none) = (structure.base(), Peak { magnitude: 0.0, time });
         let (mut searched, mut with): (Vec<Searched>, Vec<_>) = (Vec::new(), Vec::new());
+        let places = Vec::from_iter(Output::bounded(structure));
         let mut search = |output: Output| {
-            let place = output.place(structure).expect("it reaches");
             let same = searched.iter().position(|of| of.output == output);
-            same.unwrap_or_else(|| {
+            same.or_else(|| {
+                let place = places.iter().position(|of| *of == output)?; // on rigid ground ties have none
                 searched.push(Searched { output, peak: none, place });
-                searched.len() - 1
+                Some(searched.len() - 1)
             })
         };
-        let is_on_ground = structure.foundation().is_some();
         let mut alone: Vec<Output> = Vec::new();
-        for output in Output::searched(structure).into_iter().filter(|of| is_on_ground || *of != Output::uplift) {
-            let parts = output.parts(structure);
+        for output in Output::with_peak(structure) {
             let over = |other: &Output| Some((*other, output.over(*other, structure)?));
             match alone.iter().find_map(over) {
-                _ if !parts.is_empty() => {
-                    with.extend(parts.into_iter().map(|(part, factor)| (output, search(part), factor)));
+                _ if output.search() == Search::Parts => {
+                    let parts = output.parts(structure).into_iter();
+                    with.extend(parts.filter_map(|(part, factor)| Some((output, search(part)?, factor))));
                 }
-                Some((other, factor)) => with.push((output, search(other), factor)),
-                None => {
-                    search(output);
-                    alone.push(output);
-                }
+                Some((other, factor)) => with.extend(search(other).map(|place| (output, place, factor))),
+                None => alone.extend(search(output).map(|_| output)),
             }
-        }
-        if is_on_ground && structure.base().has_tendon() {
-            search(Output::P_t);
         }
         let tendon = Tendon { P_0, k_t, angles: detail.angles(), start: time };
         Peaks { B, searched, with, tendon, pair: [none; 2], evaluations: 0 }
@@ -296,7 +291,16 @@ impl Peaks {
             let (turn, elastic) = structure.reaches()[of.place].weights(of.output, structure, phase);
             (of.peak.least(), turn, elastic)
         };
-        sought.seek((lane, structure.modes().len()), self.searched.iter().map(quantity));
+        let is_curved = |(_, of): &(usize, &Searched)| structure.reaches()[of.place].is_curved;
+        let curved = |(place, of): (usize, &Searched)| Curved {
+            output: of.output,
+            place,
+            lane,
+            structure: structure.clone(),
+            phase,
+        };
+        let curved = self.searched.iter().enumerate().filter(is_curved).map(curved);
+        sought.seek((lane, structure.modes().len()), self.searched.iter().map(quantity), curved);
     }
 
     /// Whether magnitudes of `structure` within `bounds` at `time` (s) or later may change a peak.

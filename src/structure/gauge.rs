@@ -109,6 +109,8 @@ impl Gauges {
 /// How far an output reaches: the weights of the magnitudes of the motion in the bound of its magnitude.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reach {
+    /// Whether the output is not linear in these, so that the weights are none.
+    pub(crate) is_curved: bool,
     /// Of |sin θ| and of 1 − cos θ.
     pub(crate) turn: [f64; 2],
     /// Of |a_g| in full contact, if the output depends on the ground acceleration directly.

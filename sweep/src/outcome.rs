@@ -118,7 +118,7 @@ impl Outcome {
         Outcome::Ended(Summary {
             ending,
             end: 1.0,
-            peaks: smallvec![peak; 8],
+            peaks: smallvec![peak; Output::PEAKS_OF_ONE.len() + 1],
             transitions: 0,
             steps: 0,
             evaluations: 0,

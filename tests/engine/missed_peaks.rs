@@ -25,11 +25,15 @@ struct Dense {
     pieces: usize,
 }
 
-const PEAKS: [Output; 7] = Output::PEAKS_OF_ONE;
+const PEAKS: [Output; Output::PEAKS_OF_ONE.len()] = Output::PEAKS_OF_ONE;
 const SHOWN: usize = PEAKS.len() + 3;
 
 /// The shown numbers before any sample.
-const NOTHING: [f64; SHOWN] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0];
+const NOTHING: [f64; SHOWN] = {
+    let mut all = [0.0; SHOWN];
+    (all[SHOWN - 3], all[SHOWN - 2]) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+    all
+};
 
 /// The magnitudes in the order of [`PEAKS`], then (|R_m|/B − R_v)/W in full contact, −R_v/W, and |R_h|/R_v while R_v > 0,
 /// otherwise ∞.

@@ -2,7 +2,7 @@
 
 use fmi_unit::{DataType, Variable};
 use rocking::structure::parameters::PARAMETERS;
-use rocking::{Base, Body, Modes, Structure, Ties};
+use rocking::{Base, Body, Modes, Output, Structure};
 
 /// Units, what hosts can show in the place of each, and the factor of a value then. The g of an acceleration is the structure's own, as in
 /// a record.
@@ -21,36 +21,27 @@ pub fn display_unit(variable: &Variable, structure: &Structure) -> Option<&'stat
     shown.filter(|_| unit != "s" && !is_parameter)
 }
 
-/// The magnitude that is usual for `variable` in a motion, to three digits.
-///
-/// The structure is about to fall at the rotation α_cg. Its base lifts off at u_cr, and statically under the acceleration
-/// g tan α_cg without a tendon (Eqs 2 to 4).
+/// The magnitude that is usual for `variable` in a motion, to three digits: under the acceleration g tan α_cg, which lifts the base off
+/// statically without a tendon (Eqs 2 to 4), and at the [usual magnitudes](Structure::usual) of the state.
 pub fn nominal(variable: &Variable, structure: &Structure) -> Option<f64> {
-    let &Base { m_t, B, g, p_l, tan_alpha_cg, ties: Ties { P_0, .. }, .. } = structure.base();
-    let acceleration = g * tan_alpha_cg;
-    let &Body { m_s: m, S_1, .. } = structure.body();
-    let (height, lowest, lifting) = (S_1 / m, structure.vibration().contact, acceleration + P_0 * B / S_1);
-    let (u, u_dot) = (lifting / (lowest * lowest), lifting / lowest);
-    let (alpha, name) = (tan_alpha_cg.atan(), &*variable.name);
-    let (name, number) = symbol_and_number(name);
-    let coordinates = || number.map(|number| (number, structure.usual::<Modes>()));
-    let name = ["_max", "_0"].iter().find_map(|ending| name.strip_suffix(ending)).unwrap_or(&name);
-    let magnitude = match name {
-        "theta" => Some(alpha),
-        "theta_dot" | "der(theta)" => Some(p_l * alpha),
-        "q" => coordinates().map(|(j, usual)| usual.u.numbers()[j]),
-        "q_dot" | "der(q)" => coordinates().map(|(j, usual)| usual.u_dot.numbers()[j]),
-        "u" | "drift" => Some(u),
-        "u_dot" | "der(u)" => Some(u_dot),
-        "uplift" => Some(2.0 * B * alpha.sin()),
-        "delta_t" => Some(height * alpha.sin()),
-        "v_t" => Some(height * p_l * alpha),
-        "a_g" | "a_ground" | "a_v" | "a_v_ground" | "a_t" | "der(u_dot)" => Some(acceleration),
-        "der(theta_dot)" => Some(p_l * p_l * alpha),
-        "F_t" | "V_t" | "V" | "R_h" => Some(m * acceleration),
-        "M_t" | "M" | "R_m" => Some(m * height * acceleration),
+    let (&Base { m_t, g, tan_alpha_cg, .. }, &Body { m_s, S_1, .. }) = (structure.base(), structure.body());
+    let (usual, a_g, (name, number)) =
+        (structure.usual::<Modes>(), g * tan_alpha_cg, symbol_and_number(&variable.name));
+    let number = number.unwrap_or(0);
+    let magnitude = match ["_max", "_0"].iter().find_map(|ending| name.strip_suffix(ending)).unwrap_or(&name) {
+        "q" => Some(usual.u.numbers()[number]),
+        "q_dot" | "der(q)" => Some(usual.u_dot.numbers()[number]),
+        "der(theta)" => Some(usual.theta_dot),
+        "der(theta_dot)" => Some(structure.base().p_l * usual.theta_dot),
+        "a_g" | "a_ground" | "a_v" | "a_v_ground" | "der(u_dot)" => Some(a_g),
+        "F_t" | "R_h" => Some(m_s * a_g),
+        "R_m" => Some(S_1 * a_g),
         "R_v" | "P_t" | "F_d1" | "F_d2" => Some(m_t * g),
-        _ => None, // impulses add up over a motion
+        symbol => {
+            let symbol = if symbol == "der(u)" { "u_dot" } else { symbol };
+            let mut all = Output::all(structure).into_iter().filter(|of| of.symbol() == symbol);
+            all.nth(number)?.usual(structure) // impulses add up over a motion
+        }
     };
     magnitude.map(|magnitude| format!("{magnitude:.2e}").parse().expect("a number in Rust's own notation"))
 }
