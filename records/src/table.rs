@@ -870,10 +870,6 @@ mod tests {
                 "2: no number below 0, and the first line is not at 0: this is a spectrum, no record of a_g(t), unless you head column 1 time (s) without a line on spectra",
             ),
             ("# displacement in m\n0 .1\n.02 .2\n", "1: \"# displacement in m\" is said, and no unit of accelerations"),
-            (
-                "-.1 .1 .2\n.01 .2",
-                "2: the file ends within the number .2: it was cut, or end the line if the number is whole",
-            ),
             ("400 0\n0 .1\n.01 .2\n.02 .3\n", &from(2)),
             ("*DEFINE_CURVE\n$# lcid sidr\n1 0 1.0 0\n$# a1 o1\n0 .1\n.01 .2\n.02 .3\n*END\n", &from(5)),
             (

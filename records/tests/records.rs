@@ -176,6 +176,11 @@ fn what_is_no_acceleration_is_refused() {
             "the accelerations are in \"counts\", which is none of g, m/s2, cm/s2, gal, mm/s2, in/s2, ft/s2, mg, %g",
         ),
         ("vel.ASC", velocity, "DATA_TYPE is \"VELOCITY\", and accelerations are needed"),
+        (
+            "cut.txt",
+            "-.10 .11 .20\n.33 .2".into(),
+            "ends within the number .2: it was cut, or end the line if the number is whole",
+        ),
     ] {
         let refused = rocking_records::from_bytes(Path::new(name), text.as_bytes(), &Reading::default()).unwrap_err();
         assert!(refused.to_string().ends_with(expected), "{refused}");
