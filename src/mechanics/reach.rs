@@ -178,11 +178,45 @@ impl Output {
     }
 }
 
+/// A magnitude that stands for 0 among those that a weight is divided by.
+const NEGLIGIBLE: f64 = 1e-200;
+
 impl Reach {
     /// The part of the bound of magnitudes of u and u̇, with this part `damping` of the damping in full contact.
     #[inline(always)]
     pub(crate) fn elastic<Q: Coordinates>(&self, damping: f64, u: &Q, u_dot: &Q) -> f64 {
         u.weighed(&self.u) + damping * u_dot.weighed(&self.u_dot)
+    }
+
+    /// A reach whose [elastic bound](Reach::bound_together) is below 1 only where the bounds of all these outputs are below these magnitudes.
+    /// None if an output is not linear, or reads the ground acceleration or the height of the base.
+    pub(crate) fn together<'a>(
+        structure: &Structure,
+        outputs: impl Iterator<Item = (&'a Reach, f64)>,
+    ) -> Option<Reach> {
+        let nothing = Modes::parts(structure, 0.0);
+        let mut all = Reach { u: nothing, u_dot: nothing, push: nothing, ..Reach::default() };
+        for (Reach { is_curved, turn, a_g, u, u_dot, push, .. }, least) in outputs {
+            let least = least.max(NEGLIGIBLE);
+            if *is_curved || a_g.is_some() || structure.foundation().is_some() {
+                return None;
+            }
+            let largest = |all: f64, weight: f64| all.max(weight / least);
+            all.turn = [0, 1].map(|i| largest(all.turn[i], turn[i]));
+            for (all, of) in [(&mut all.u, u), (&mut all.u_dot, u_dot), (&mut all.push, push)] {
+                of.numbers().iter().enumerate().for_each(|(j, weight)| all.set(j, largest(all.numbers()[j], *weight)));
+            }
+        }
+        Some(all)
+    }
+
+    /// Bound of the magnitude of an output that does not read the ground acceleration, or of [outputs together](Reach::together), given
+    /// bounds of the motion.
+    #[inline(always)]
+    pub(crate) fn bound_together<Q: Coordinates>(&self, most: &Magnitudes<Q>) -> f64 {
+        let [sin, versine] = self.turn;
+        let elastic = self.elastic(most.damping, &most.u, &most.u_dot) + most.F_t.weighed(&self.push);
+        elastic + sin * most.theta + versine * (0.5 * most.theta * most.theta)
     }
 
     /// Weights in `phase` without force of θ, of |θ|³/6 and of θ²/2, the last two without a sign, and of u and u̇. Those of θ, u and u̇ add up
@@ -202,7 +236,7 @@ impl Reach {
     /// Bound of the magnitude of this `output` of `structure`, given bounds of the motion.
     #[inline(always)]
     pub(crate) fn bound<Q: Coordinates>(&self, output: Output, structure: &Structure, most: &Magnitudes<Q>) -> f64 {
-        let Reach { turn: [sin, versine], a_g, push, .. } = self;
+        let Reach { a_g, push, .. } = self;
         if let (Some((arc, _)), Some(foundation)) = (most.arc, Q::foundation(structure)) {
             let base = structure.base();
             let bound = |of: Output| Some(most_of_height(arc, foundation, of.of_height(base, foundation)?));
@@ -216,7 +250,7 @@ impl Reach {
         match (a_g, most.arc) {
             _ if most.theta == f64::INFINITY => f64::INFINITY,
             _ if self.is_curved => most.bound(output, structure),
-            (None, _) => elastic() + sin * most.theta + versine * (0.5 * most.theta * most.theta),
+            (None, _) => self.bound_together(most),
             (Some(_), Some(arc)) => {
                 let gauge = output.gauge(structure).expect("a gauge alone reads the ground acceleration");
                 elastic() + gauge.turning(structure.base(), arc, most)

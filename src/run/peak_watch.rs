@@ -16,11 +16,15 @@ use crate::mechanics::lateral::Coordinates;
 #[cfg(feature = "lanes")]
 use crate::numbers::lanes::put;
 use crate::series::taylor::LONGEST_SPAN;
+use crate::structure::gauge::Reach;
 use crate::{LinearLoad, Motion, State, Transition};
 
 /// How many pieces are kept before those that have been beaten are dropped, and how many at most.
 const CANDIDATES: usize = 32;
 const MOST_CANDIDATES: usize = 256;
+
+/// After so many pieces whose bounds were found in vain the common reach is found again, which takes about as long as one of them.
+const IN_VAIN: u32 = 4;
 
 /// Looks for peaks in the pieces of a motion.
 #[derive(Debug)]
@@ -37,6 +41,10 @@ pub struct PeakWatch<Q: Coordinates = f64> {
     is_torn: bool,
     /// Room for the bounds of a piece.
     bounds: Vec<f64>,
+    /// Of many masses: how far all that is searched reaches, in these or earlier peaks, and how many pieces needed the bounds of all
+    /// outputs in vain.
+    reach: Option<Box<Reach>>,
+    in_vain: u32,
     /// Whether the next piece is the first since other peaks: the step of a host is often no more, and not put off.
     is_first: bool,
 }
@@ -64,6 +72,8 @@ impl Peaks {
             level: None,
             room: Room::default(),
             bounds: Vec::new(),
+            reach: None,
+            in_vain: 0,
             is_torn: true,
             is_first,
         }
@@ -96,7 +106,14 @@ impl<Q: Coordinates> PeakWatch<Q> {
         let (loads, structure) = ([load.value, load.at(duration)], level.structure());
         let [is_torn, is_first] = [&mut self.is_torn, &mut self.is_first].map(std::mem::take);
         let most = piece.whole().most_under(structure, &loads);
+        if self.reach.as_ref().is_some_and(|reach| reach.bound_together(&most) < 1.0) {
+            return;
+        }
         if !self.peaks.may_be_same(structure, &most) {
+            self.in_vain += 1;
+            if !Q::IS_ONE && self.in_vain.is_multiple_of(IN_VAIN) {
+                self.reach = self.peaks.reach(structure).map(Box::new);
+            }
             return;
         }
         let is_long = arc.is_none() && duration * structure.vibration().rocking[1] > LONGEST_SPAN;

@@ -266,6 +266,12 @@ impl Peaks {
         may_change
     }
 
+    /// How far all that is searched reaches, in the least magnitudes that may equal or exceed the peaks.
+    pub(super) fn reach(&self, structure: &Structure) -> Option<Reach> {
+        let reaches = structure.reaches();
+        Reach::together(structure, self.searched.iter().map(|of| (&reaches[of.place], of.peak.least())))
+    }
+
     /// Whether magnitudes of `structure` within `bounds` may equal or exceed a peak.
     #[inline(always)]
     pub(super) fn may_be_same<Q: Coordinates>(&self, structure: &Structure, bounds: &Magnitudes<Q>) -> bool {
