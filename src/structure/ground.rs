@@ -271,13 +271,16 @@ impl Foundation {
         self.ground.zeta_v.filter(|_| self.ground.xi.is_empty()).unwrap_or_else(of_points)
     }
 
-    /// A bound of the rates of small motions with these `frequencies` (rad/s), 1/s: the highest frequency, C_z/m_t of the bounce, and of
-    /// rocking and the modes (C_r + Σ c h²)/J + max c/m, where C_z = Σ c and C_r = Σ c ξ² of the dashpots, and c of each mode is its own.
+    /// A bound of the rates of small motions with these `frequencies` (rad/s), 1/s: the highest frequency ω, or if more the least of two
+    /// bounds of what dashpots relax at: max(c/k) ω² of the points; and C_z/m_t of the bounce and (C_r + Σ c h²)/J + max c/m of rocking and
+    /// the modes, where C_z = Σ c and C_r = Σ c ξ² of the dashpots, and c of each mode is its own.
     pub(crate) fn fastest(&self, frequencies: &[f64], base: &Base, modes: &[Mode]) -> f64 {
         let dashpots = |power: i32| self.points.iter().map(|point| point.c * point.xi.powi(power)).sum::<f64>();
         let turning = dashpots(2) + modes.iter().map(|mode| mode.damping * mode.height * mode.height).sum::<f64>();
         let of_modes = modes.iter().map(|mode| mode.damping / mode.mass).fold(0.0, f64::max);
-        frequencies[frequencies.len() - 1].max(dashpots(0) / base.m_t).max(turning / base.J0 + of_modes)
+        let highest = frequencies[frequencies.len() - 1];
+        let of_points = self.points.iter().map(|point| point.c / point.k).fold(0.0, f64::max) * highest * highest;
+        highest.max(of_points.min((dashpots(0) / base.m_t).max(turning / base.J0 + of_modes)))
     }
 
     /// The circular frequencies of small motions in full contact without damping, rad/s, lowest first: the bounce √(K_z/m_t), and the
