@@ -23,11 +23,9 @@ use rocking_report::describe;
 /// Every number is a keyword and an attribute, in SI units. Parameters, with unit and default:
 ///
 #[doc = rocking::parameters_in_lines!()]
-///
-/// These replace parameters: period_fc (s) for
-/// f_fc, weight and weight0 (N) for m and m0, width (m) for B. p_l (rad/s) replaces J0. alpha_cg (rad) replaces H, or B if H
-/// is given. units="kN, m, t": masses in t, forces in kN, J0 in t.m2, k in kN/m. With preset, "mcmanus" or "evison", the specimen of
-/// the paper with these numbers in the place of its own.
+/// These replace parameters: period_fc (s) for f_fc, weight and weight0 (N) for m and m0, width (m) for B. p_l (rad/s) replaces J0.
+/// alpha_cg (rad) replaces H, or B if H is given. units="kN, m, t": masses in t, forces in kN, J0 in t.m2, k in kN/m. With preset,
+/// "mcmanus" or "evison", the specimen of the paper with these numbers in the place of its own.
 ///
 /// Derived quantities are attributes, too: alpha_cg, p_l, chi, u_cr, f_u, ... `parameters` and `derived` have all of them,
 /// and print(structure) shows them with units and equation numbers. A structure cannot be changed; `replace` makes another.

@@ -321,7 +321,8 @@ pub fn unit_of(name: &str) -> &'static str {
 /// The number in `text`, which has the `name` and the `unit`. A number of the structure may have its unit behind it, or 1000 times
 /// this unit: 1200 t, 45 kN/m.
 pub fn number_of(name: &str, unit: &str, text: &str) -> Result<f64, String> {
-    let large = Some(&*Units::Kilonewtons.name(unit)).filter(|large| *large != unit).map(str::to_owned);
+    let large = Units::Kilonewtons.name(unit);
+    let large = Some(&*large).filter(|large| *large != unit);
     let is_of_structure = unit != "1" && NUMBERS.iter().all(|of| of.0 != name) && name != "dt";
     let units = [Some((unit, 1.0)), large.map(|large| (large, 1e3))].into_iter().flatten().filter(|_| is_of_structure);
     let in_unit = |(unit, factor)| Some(factor * text.strip_suffix(unit)?.trim_end().parse::<f64>().ok()?);
