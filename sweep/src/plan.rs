@@ -602,7 +602,7 @@ mod tests {
         assert_eq!(exceeding(1), own);
         assert_eq!(pier.fragilities[2].curve, Err(Refused::by("no run is counted")));
         let refused = limit("drift[4] >= 15 mm").unwrap_err().to_string();
-        assert!(refused.starts_with("\"drift[4]\" is unknown; these are known: theta, uplift, V_t, M_t, u[1], u[2]"));
+        assert!(refused.starts_with("\"drift[4]\" is unknown; these are known: theta, uplift, V_t"));
         let cores = core(0.0).measured_in(Units::Kilonewtons);
         let weak = Population::new("weak", cores).vary("P_0", vec![100.0, 200.0]).unwrap();
         let weight = 130.0 * 9.81;
