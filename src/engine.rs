@@ -209,6 +209,8 @@ static MANY: Kind<Modes> = Kind { level: Detail::level_of_modes, watched: phases
 pub struct Engine<Q: Coordinates = f64> {
     kind: &'static Kind<Q>,
     level: Box<dyn Level<Q>>,
+    /// The structure that the level moves, at hand without a call.
+    structure: Structure,
     settings: Settings,
     motion: Motion<Q>,
     /// The step in hand.
@@ -311,7 +313,12 @@ impl<Q: Coordinates> Engine<Q> {
             chatter: Chatter::NONE,
             due: None,
         };
-        Engine { kind, level, settings, motion, arc: Arc::default(), room: Room::default() }
+        Engine::of(kind, level, settings, motion)
+    }
+
+    fn of(kind: &'static Kind<Q>, level: Box<dyn Level<Q>>, settings: Settings, motion: Motion<Q>) -> Engine<Q> {
+        let structure = level.structure().clone();
+        Engine { kind, level, structure, settings, motion, arc: Arc::default(), room: Room::default() }
     }
 
     /// (ü, θ̈) and (u⃛, θ⃛) now under `load`, from the first terms of the series; 0 once overturned.
@@ -325,8 +332,8 @@ impl<Q: Coordinates> Engine<Q> {
 
     /// The same structure in the same motion, with other `settings`.
     pub fn remade(&self, settings: Settings) -> Result<Engine<Q>, Refused> {
-        let (kind, level) = (self.kind, settings.level(self.kind, self.structure().clone(), self.motion.state.theta)?);
-        Ok(Engine { kind, level, settings, motion: self.motion, arc: Arc::default(), room: Room::default() })
+        let level = settings.level(self.kind, self.structure.clone(), self.motion.state.theta)?;
+        Ok(Engine::of(self.kind, level, settings, self.motion))
     }
 
     /// Whether certainly no transition comes within `ahead` (s), a tiny time, under `load`.
@@ -368,7 +375,7 @@ impl<Q: Coordinates> Engine<Q> {
 
     /// The structure.
     pub fn structure(&self) -> &Structure {
-        self.level.structure()
+        &self.structure
     }
 
     /// Whether the structure, in full contact now, stays there while nothing acts on it.
@@ -456,10 +463,13 @@ impl<Q: Coordinates> Engine<Q> {
         let level = &**level;
         let end = (motion.work.steps != last_step).then(|| leap_under(level, motion, interval, load)).flatten();
         let result = match end {
-            Some(end) => leapt((level, room), motion, interval, load, end, watch).map(|()| {
-                motion.time += interval;
-                Progress::Complete
-            }),
+            Some(end) => match leapt((level, room), motion, interval, load, end, watch) {
+                Ok(()) => {
+                    motion.time += interval;
+                    return Ok(Progress::Complete);
+                }
+                Err(error) => Err(error),
+            },
             None => {
                 let from = (interval, load, last_step);
                 (kind.advance)(self, &mut before, from, watch)

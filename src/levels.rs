@@ -44,6 +44,7 @@ use crate::mechanics::restraint::Dissipators;
 use crate::mechanics::uplift::least_hold;
 use crate::structure::quantity::{Refused, ensure};
 use crate::{Detail, Modes, OneMass, Phase, State, Structure};
+use std::cell::RefCell;
 use wide::f64x4;
 
 impl Detail {
@@ -58,11 +59,12 @@ impl Detail {
         let is_tied = structure.base().is_restrained() || is_vertical;
         let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
         let contact = ExactContact::new(Oscillator { omega: one.omega_fc, zeta: one.parameters().zeta_fc });
+        let first = RefCell::default();
         Ok(match self {
             Detail::Auto | Detail::Nonlinear => {
                 let contact = (self == Detail::Auto).then_some(contact);
                 let rocking = NonlinearRocking::new(one, is_tied);
-                Box::new(Elastic { subject, one, contact, rocking })
+                Box::new(Elastic { subject, one, contact, rocking, first })
             }
             Detail::Linear if is_tied => Box::new(ManyModes::<f64>::new(subject, self)),
             Detail::Modal if is_tied => {
@@ -74,13 +76,13 @@ impl Detail {
             Detail::Linear | Detail::Modal => {
                 let rocking =
                     if self == Detail::Linear { LinearRocking::new(&one) } else { LinearRocking::modal(&one) };
-                Box::new(Elastic { subject, one, contact: Some(contact), rocking })
+                Box::new(Elastic { subject, one, contact: Some(contact), rocking, first })
             }
             Detail::Rigid => {
                 let structure = subject.structure.shown_rigid();
                 Box::new(ManyModes::<f64>::new(Subject { structure, ..subject }, self))
             }
-            Detail::FixedBase => Box::new(Elastic { subject, one, contact: Some(contact), rocking: FixedBase }),
+            Detail::FixedBase => Box::new(Elastic { subject, one, contact: Some(contact), rocking: FixedBase, first }),
         })
     }
 
@@ -124,6 +126,7 @@ pub(crate) struct Elastic<Rocking> {
     one: OneMass,
     contact: Option<ExactContact>,
     pub rocking: Rocking,
+    first: RefCell<Box<Arc>>,
 }
 
 impl<Rocking: ElasticRocking> Elastic<Rocking> {
@@ -193,6 +196,10 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
 
     fn is_singular(&self, phase: Phase, state: &State) -> bool {
         matches!(phase, Phase::Rocking(side) if self.rocking.is_singular(side, state))
+    }
+
+    fn first(&self) -> &RefCell<Box<Arc>> {
+        &self.first
     }
 
     #[inline(always)]

@@ -186,6 +186,9 @@ pub(crate) trait Angle: Number {
 impl Angle for f64 {
     #[inline]
     fn turn(self) -> Turn<f64> {
+        if self.to_bits() == 0 {
+            return Turn::none(); // in full contact
+        }
         let (sin, cos) = libm::sincos(self);
         Turn { sin, cos, versine: sin * sin / (1.0 + cos) } // without cancellation: cos θ ≥ 0
     }

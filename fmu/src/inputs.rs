@@ -4,6 +4,7 @@ use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::Runs;
 use rocking::{LinearLoad, Load, OutOfRange, Ramp, Structure};
 use serde::{Deserialize, Serialize};
+use std::slice;
 
 /// The place of F_t in [`LOADS`].
 pub(crate) const FORCE: usize = 1;
@@ -64,6 +65,9 @@ struct Input {
     /// The line over the present step.
     #[serde(skip)]
     line: Ramp,
+    /// Whether the last step has left it as it was, as most inputs of most hosts: until it is set, steps have the same line.
+    #[serde(skip)]
+    rests: bool,
 }
 
 /// The setting of an input.
@@ -85,7 +89,7 @@ impl Input {
 
     #[inline]
     fn set(&mut self, value: f64, since: f64, ended_early: bool) {
-        self.set = value;
+        (self.set, self.rests) = (value, false);
         let mut acts = value;
         if self.given != Given::Slope {
             self.given = Given::Value;
@@ -116,7 +120,7 @@ impl Input {
         } else {
             self.next.value = self.set;
         }
-        (self.next.slope, self.given) = (slope, Given::Slope);
+        (self.next.slope, self.given, self.rests) = (slope, Given::Slope, false);
     }
 
     /// The line over a step of `duration` (s). An input of which only the value is set is held if its line would lead out of its
@@ -209,11 +213,14 @@ impl Inputs {
     }
 
     /// The load on `structure`, given the value `of` each input.
-    #[inline]
+    #[inline(always)] // several times at each step
     fn load<Q: Runs>(&self, structure: &Structure, of: impl Fn(&Input) -> f64) -> Load<Q> {
-        let all = |load: usize| self.each.iter().filter(move |input| input.load == load).map(&of);
-        let [a_g, a_v] = [0, VERTICAL].map(|load| all(load).next().unwrap_or(0.0));
-        Load { a_g, F_t: Q::of_forces(structure, all(FORCE)), a_v }
+        let (a_g, forces, a_v) = match self.each.as_slice() {
+            [a_g, force, a_v] if Q::IS_ONE => (a_g, slice::from_ref(force), a_v),
+            [a_g, a_v, forces @ ..] => (a_g, forces, a_v),
+            _ => unreachable!("every structure has these inputs"),
+        };
+        Load { a_g: of(a_g), F_t: Q::of_forces(structure, forces.iter().map(&of)), a_v: of(a_v) }
     }
 
     /// The loads that act now on `structure`.
@@ -231,37 +238,44 @@ impl Inputs {
         LinearLoad { value: self.values(structure), slope: self.load(structure, slope) }
     }
 
-    /// Puts every input on its line over a step of `duration` (s), and returns the loads on `structure` along the lines.
+    /// Puts every input on its line over a step of `duration` (s), and returns the loads on `structure` along the lines. If a line leads
+    /// out of its range, returns the place of the input.
     #[inline]
-    pub fn over<Q: Runs>(&mut self, duration: f64, structure: &Structure) -> LinearLoad<Q> {
-        self.each.iter_mut().for_each(|input| input.line = input.over(duration));
+    pub fn over<Q: Runs>(
+        &mut self,
+        duration: f64,
+        structure: &Structure,
+    ) -> Result<LinearLoad<Q>, (usize, OutOfRange)> {
+        for (which, input) in self.each.iter_mut().enumerate().filter(|(_, input)| !input.rests) {
+            input.line = input.over(duration);
+            LOADS[input.load].check(input.line.at(duration)).map_err(|out_of_range| (which, out_of_range))?;
+        }
         let value = self.load(structure, |input| input.line.value);
-        LinearLoad { value, slope: self.load(structure, |input| input.line.slope) }
-    }
-
-    /// Checks that the lines lead to values in range after `duration` (s). Returns the place of the input that does not.
-    #[inline]
-    pub fn check(&self, duration: f64) -> Result<(), (usize, OutOfRange)> {
-        self.each.iter().enumerate().try_for_each(|(which, input)| {
-            LOADS[input.load].check(input.line.at(duration)).map_err(|out_of_range| (which, out_of_range))
-        })
+        Ok(LinearLoad { value, slope: self.load(structure, |input| input.line.slope) })
     }
 
     /// Goes on after `duration` (s) of a step along the lines, which ended early or at the next communication point.
     #[inline]
     pub fn pass(&mut self, duration: f64, ended_early: bool) {
-        if !self.ended_early {
-            let is_stair = |input: &Input| {
-                let is_held = input.given == Given::Value && input.between == Between::Held;
-                [0, VERTICAL].contains(&input.load) && is_held && input.line.value != input.before
-            };
-            self.stairs = if self.each.iter().any(is_stair) { (self.stairs + 1).min(STAIRS) } else { 0 };
+        let (begins, mut is_stair) = (!self.ended_early, false);
+        for input in self.each.iter_mut().filter(|input| !input.rests) {
+            let &mut Input { load, between, given, line, before, .. } = input;
+            if begins {
+                let (is_held, is_same) = (between == Between::Held, line == Ramp { value: before, slope: 0.0 });
+                is_stair |= is_held && given == Given::Value && line.value != before && load != FORCE;
+                (input.rests, input.before) = (is_held && given == Given::Nothing && is_same, line.value);
+            }
+            input.pass(duration, ended_early);
+            if input.rests {
+                input.line = input.next;
+            }
+        }
+        if begins {
+            self.stairs = if is_stair { (self.stairs + 1).min(STAIRS) } else { 0 };
             self.since = 0.0;
-            self.each.iter_mut().for_each(|input| input.before = input.line.value);
         }
         self.since += duration;
         self.ended_early = ended_early;
-        self.each.iter_mut().for_each(|input| input.pass(duration, ended_early));
     }
 
     /// Whether the values of a ground acceleration come as samples of a motion and are held from step to step.

@@ -119,7 +119,7 @@ impl<Q: Runs> Scene<Q> {
 
     /// Whether the structure has the names of one mass.
     pub fn is_one_mass(&self) -> bool {
-        self.engine.structure().one().is_some()
+        Q::IS_ONE
     }
 
     /// The numbers of a `state`, in the order of the table.

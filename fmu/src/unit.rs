@@ -288,11 +288,10 @@ impl<Q: Runs> Model for Unit<Q> {
     fn advance(&mut self, step: Step, logger: &Logger) -> Result<Progress, Failure> {
         let Step { start: point, duration: step, stops_at_events: stops } = step;
         let (scene, setup, inputs) = self.parts()?;
-        let load = &inputs.over(step, scene.engine.structure());
-        if let Err((which, of)) = inputs.check(step) {
-            return Err(self.runs_out(which, &of));
-        }
-
+        let load = match inputs.over(step, scene.engine.structure()) {
+            Ok(load) => load,
+            Err((which, of)) => return Err(self.runs_out(which, &of)),
+        };
         let time = scene.engine.motion().time;
         scene.engine.set_time(point);
         if scene.engine.settings().stops != stops {
@@ -302,9 +301,9 @@ impl<Q: Runs> Model for Unit<Q> {
         let is_one_mass = scene.is_one_mass();
         let told: &mut Told<Q> = &mut |transition| log(logger, is_one_mass, transition);
         let result = if stops {
-            scene.advance_to_transition(setup, step, load, told)
+            scene.advance_to_transition(setup, step, &load, told)
         } else {
-            scene.advance(setup, step, load, told)
+            scene.advance(setup, step, &load, told)
         };
         let progress = result.map_err(|error| {
             scene.engine.set_time(time);

@@ -55,8 +55,11 @@ impl ExactContact {
     pub(crate) fn leap(&self, start: &Start, limit: f64) -> Option<State> {
         let &Start { state, a_top, interval, .. } = start;
         let [u, u_dot] = self.flow(interval).driven([state.u, state.u_dot], a_top.value, a_top.slope);
-        let farthest = || self.oscillator.farthest(&self.swing(start), [state.u, u], a_top.slope, interval);
-        let is_low = limit == f64::INFINITY || farthest() < limit;
+        let is_low = limit == f64::INFINITY || {
+            let swing = self.swing(start);
+            let about_chord = || self.oscillator.about_chord(&swing, [state.u, u], a_top.slope, interval);
+            swing.farthest() < limit || about_chord() < limit
+        };
         is_low.then_some(State { u, u_dot, theta: 0.0, theta_dot: 0.0 })
     }
 

@@ -18,6 +18,7 @@ use crate::numbers::{Angle, Real};
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::LONGEST_SPAN;
 use crate::{OneMass, Phase, Side, State, Structure};
+use std::cell::RefCell;
 use std::fmt::{self, Debug};
 
 /// A structure at one instant.
@@ -162,9 +163,12 @@ pub trait Level<Q: Coordinates = f64>: Send {
         if phase.properties().is_down { State { theta: 0.0, theta_dot: 0.0, ..state } } else { state }
     }
 
+    /// Room for a series of which only the first terms count.
+    fn first(&self) -> &RefCell<Box<Arc<Q>>>;
+
     /// ü and θ̈ in `phase`, m/s² and rad/s²; not finite where the equations have no solution.
     fn accelerations(&self, phase: Phase, &Now { state, load, dissipators }: &Now<Q>) -> Second<f64, Q> {
-        let [second] = derivatives(self, phase, (state, dissipators, load.into()), &mut Arc::default());
+        let [second] = derivatives(self, phase, (state, dissipators, load.into()), &mut self.first().borrow_mut());
         second
     }
 }
@@ -230,6 +234,7 @@ pub(crate) fn derivatives<Q: Coordinates, const K: usize>(
     arc: &mut Arc<Q>,
 ) -> [Second<f64, Q>; K] {
     let start = level.subject().start(*state, dissipators, load, 1.0);
+    arc.fewest = K;
     level.series(phase, &Start { local_error: 1e100, ..start }, arc);
     std::array::from_fn(|i| {
         let (k, factorial) = (i + 1, [1.0, 2.0][i]);

@@ -20,14 +20,13 @@ use crate::levels::first_uplift::Liftable;
 use crate::levels::full_contact::ExactContact;
 #[cfg(feature = "lanes")]
 use crate::levels::level::Leaping;
-use crate::levels::level::{Level, Now, Subject, derivatives};
+use crate::levels::level::{Level, Subject};
 use crate::levels::nonlinear::{Factors, LEAST_INERTIA, NO_ROW, products, row};
 use crate::levels::oscillator::{Oscillator, Swing};
 use crate::levels::rules::{ChatterLimit, after_rigid_impact};
 use crate::levels::start::{Start, Truncation};
 use crate::mechanics::arc::Arc;
 use crate::mechanics::impact;
-use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::{Angles, Dissipators, MomentSeries, Restraint};
 use crate::mechanics::uplift::inertia;
@@ -605,10 +604,8 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
         }
     }
 
-    fn accelerations(&self, phase: Phase, &Now { state, load, dissipators }: &Now<Q>) -> Second<f64, Q> {
-        let given = (state, dissipators, load.into());
-        let [second] = derivatives(self, phase, given, &mut self.first.borrow_mut());
-        second
+    fn first(&self) -> &RefCell<Box<Arc<Q>>> {
+        &self.first
     }
 
     fn is_singular(&self, phase: Phase, state: &State<Q>) -> bool {
@@ -642,6 +639,7 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::levels::level::Now;
     use crate::mechanics::instant::Instant;
     use crate::mechanics::lateral::Lateral;
     use crate::mechanics::load::Load;

@@ -17,13 +17,12 @@
 //! | −E   m_t − m* sin² θ    | | γ |
 //! ```
 
-use crate::levels::level::{Level, Now, Subject, derivatives};
+use crate::levels::level::{Level, Subject};
 use crate::levels::modes::{Abreast, Four, FourSeries};
 use crate::levels::nonlinear::add_product;
 use crate::levels::start::{Start, Truncation};
 use crate::mechanics::arc::Arc;
 use crate::mechanics::contact::energy;
-use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::restraint::{Dissipators, ties};
 use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER, add_each_product, reciprocal};
@@ -288,10 +287,8 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
         self.motion(phase.contact(), start, arc);
     }
 
-    fn accelerations(&self, phase: Phase, &Now { state, load, dissipators }: &Now<Modes>) -> Second<f64, Modes> {
-        let given = (state, dissipators, load.into());
-        let [second] = derivatives(self, phase, given, &mut self.first.borrow_mut());
-        second
+    fn first(&self) -> &RefCell<Box<Arc<Modes>>> {
+        &self.first
     }
 
     /// `state` with the sine of its rotation.

@@ -154,13 +154,12 @@ impl<N: Real> Oscillator<N> {
         [velocity + slope.abs() / (omega * omega), acceleration, jerk]
     }
 
-    /// Bound of |w| from `first` to `last`, `tau` seconds later, over a `swing` under a load of this `slope`: the whole swing, or the
-    /// larger end with the most by which w leaves its chord, |ẅ| τ²/8.
+    /// Bound of |w| from `first` to `last`, `tau` seconds later, over a `swing` under a load of this `slope`: the larger end with the
+    /// most by which w leaves its chord, |ẅ| τ²/8.
     #[inline(always)]
-    pub(crate) fn farthest(&self, swing: &Swing<N>, [first, last]: [N; 2], slope: N, tau: N) -> N {
+    pub(crate) fn about_chord(&self, swing: &Swing<N>, [first, last]: [N; 2], slope: N, tau: N) -> N {
         let [_, acceleration, _] = self.bounds(swing, slope);
-        let off_chord = acceleration * tau * tau / tau.like(8.0);
-        swing.farthest().min(first.abs().max(last.abs()) + off_chord)
+        first.abs().max(last.abs()) + acceleration * tau * tau / tau.like(8.0)
     }
 }
 

@@ -6,9 +6,6 @@ use crate::mechanics::restraint::Dissipators;
 use crate::series::taylor::{MAX_ORDER, reciprocal};
 use crate::{Ramp, State};
 
-/// Fewest orders in an expansion, so that terms that vanish at rest cannot end it early.
-pub(crate) const MIN_ORDER: usize = 5;
-
 /// The start of a step: the motion, the loads and the accuracy.
 #[derive(Clone, Copy, Debug)]
 pub struct Start<'a, Q = f64> {
@@ -94,17 +91,19 @@ impl<Q: Coordinates> Arc<Q> {
     /// Whether the expansion ends with order `k`, whose velocities are written.
     #[inline(always)]
     pub(crate) fn ends_at(&mut self, k: usize, truncation: &Truncation<Q>, previous_is_small: &mut bool) -> bool {
-        self.order = k;
         let is_small = self.u_dot[k].is_within(&truncation.u_dot) && self.theta_dot[k].abs() <= truncation.theta_dot;
-        let ends = is_small && *previous_is_small && k >= MIN_ORDER;
+        let ends = is_small && *previous_is_small && k >= self.fewest;
         *previous_is_small = is_small;
+        if ends {
+            self.order = k; // not at every order: the next one would read its numbers from memory
+        }
         ends
     }
 
     /// Cuts a full expansion to where its last two terms stay within `truncation`.
     #[inline(always)]
     pub(crate) fn cut(&mut self, truncation: &Truncation<Q>) {
-        self.reach = reach(|k| (self.u_dot[k], self.theta_dot[k]), truncation);
+        (self.order, self.reach) = (MAX_ORDER, reach(|k| (self.u_dot[k], self.theta_dot[k]), truncation));
     }
 }
 

@@ -28,6 +28,9 @@ pub fn stretch<Q: Coordinates>(coefficients: &mut [Q], from: f64, scale: f64) {
     });
 }
 
+/// Fewest orders of a step, so that terms that vanish at rest cannot end it early.
+pub(crate) const MIN_ORDER: usize = 5;
+
 /// The motion over one step: a polynomial in time for each component of the state.
 #[derive(Clone, Debug)]
 pub struct Arc<Q = f64> {
@@ -41,6 +44,7 @@ pub struct Arc<Q = f64> {
     pub theta_dot: Series,
     /// Highest order in use.
     pub order: usize,
+    pub(crate) fewest: usize,
     /// Duration of σ = 1, s.
     pub span: f64,
     /// The σ up to which the truncation error is within the tolerance; at most 1.
@@ -49,8 +53,8 @@ pub struct Arc<Q = f64> {
 
 impl<Q: Coordinates> Default for Arc<Q> {
     fn default() -> Arc<Q> {
-        let none = [Q::ZERO; MAX_ORDER + 2];
-        Arc { u: none, u_dot: none, theta: ZERO, theta_dot: ZERO, order: 0, span: 0.0, reach: 0.0 }
+        let (none, fewest) = ([Q::ZERO; MAX_ORDER + 2], MIN_ORDER);
+        Arc { u: none, u_dot: none, theta: ZERO, theta_dot: ZERO, order: 0, fewest, span: 0.0, reach: 0.0 }
     }
 }
 

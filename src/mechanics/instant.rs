@@ -71,7 +71,7 @@ impl<'a, Q: Coordinates> Instant<'a, f64, Q> {
         let &State { u, u_dot, theta, theta_dot } = state;
         let Load { a_g, F_t, a_v } = load;
         let (s, damping, turn) = (phase.properties().pivot, structure.base().damping(phase), theta.turn());
-        let contact = phase.contact();
+        let contact = if Q::IS_ONE { Contact::default() } else { phase.contact() };
         Instant { structure, s, contact, damping, u, u_dot, theta, theta_dot, theta_ddot: 0.0, turn, a_g, F_t, a_v }
     }
 }

@@ -436,7 +436,8 @@ impl Output {
             theta => x.theta,
             theta_dot => x.theta_dot,
             Output::uplift if Q::foundation(x.structure).is_none() => uplift(x.pivot(), &x.turn),
-            u(_) | drift(_) | drift_ratio(_) => {
+            u(i) => x.u.weighed(&floor(i).shape),
+            drift(_) | drift_ratio(_) => {
                 let (shape, factor) = self.displaced(x.structure).expect("it is a displacement");
                 x.u.weighed(shape) * factor
             }

@@ -40,13 +40,14 @@ pub(crate) fn product(a: &Series, b: &Series, n: usize) -> f64 {
 macro_rules! add_each_product {
     ($add:expr, $sum:expr, $left:expr, $right:expr, $newest:expr, $n:expr) => {
         if $n > 0 {
-            let (lefts, last_left) = $left[1..$n].as_chunks::<2>();
-            let (rights, last_right) = $right[MAX_ORDER - $n + 1..MAX_ORDER].as_chunks::<2>();
+            let (lefts, last_lefts) = $left[1..$n].as_chunks::<4>();
+            let (rights, last_rights) = $right[MAX_ORDER - $n + 1..MAX_ORDER].as_chunks::<4>();
             for (left, right) in lefts.iter().zip(rights) {
-                $add($sum, &left[0], &right[0]);
-                $add($sum, &left[1], &right[1]);
+                for i in 0..4 {
+                    $add($sum, &left[i], &right[i]);
+                }
             }
-            if let ([left], [right]) = (last_left, last_right) {
+            for (left, right) in last_lefts.iter().zip(last_rights) {
                 $add($sum, left, right);
             }
             $add($sum, $newest.0, &$right[MAX_ORDER]);

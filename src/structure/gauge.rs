@@ -35,6 +35,7 @@ impl Gauge {
     }
 
     /// Whether the value depends on the ground acceleration directly.
+    #[inline]
     pub fn has_feedthrough(&self) -> bool {
         self.left != [0.0; 2]
     }

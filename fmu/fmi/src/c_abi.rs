@@ -252,14 +252,15 @@ pub(crate) unsafe fn call_seldom<F: Function>(
 }
 
 /// The host's floating point control, which comes back at the end of a call: rounding, traps, and whether tiny numbers count as 0.
-struct Control(usize);
+/// A number of 32 bits, as wide as what the register is written to: a wider one would wait for the memory.
+struct Control(u32);
 
 impl Control {
     /// Rounding to nearest, no traps, tiny numbers as they are.
-    const USUAL: usize = if cfg!(target_arch = "x86_64") { 0x1f80 } else { 0 };
+    const USUAL: u32 = if cfg!(target_arch = "x86_64") { 0x1f80 } else { 0 };
 
     /// The sticky flags of the register, which are no control.
-    const FLAGS: usize = if cfg!(target_arch = "x86_64") { 0x3f } else { 0 };
+    const FLAGS: u32 = if cfg!(target_arch = "x86_64") { 0x3f } else { 0 };
 
     /// Takes the usual control until the value is dropped.
     #[inline]
@@ -271,35 +272,35 @@ impl Control {
 
     /// Sets the control to `to` and keeps the flags, if the control is another one.
     #[inline]
-    fn exchange(&self, to: usize) {
+    fn exchange(&self, to: u32) {
         if self.0 != Control::USUAL {
             Control::write(to | Control::read() & Control::FLAGS);
         }
     }
 
     #[inline]
-    fn read() -> usize {
-        let mut _register: usize = 0;
+    fn read() -> u32 {
+        let mut _register: u32 = 0;
         #[cfg(target_arch = "x86_64")]
         unsafe {
             asm!("stmxcsr [{}]", in(reg) &raw mut _register, options(nostack, preserves_flags))
         };
         #[cfg(target_arch = "aarch64")]
         unsafe {
-            asm!("mrs {}, fpcr", out(reg) _register, options(nostack, preserves_flags))
+            asm!("mrs {:x}, fpcr", out(reg) _register, options(nostack, preserves_flags))
         };
         _register
     }
 
     #[inline]
-    fn write(_register: usize) {
+    fn write(_register: u32) {
         #[cfg(target_arch = "x86_64")]
         unsafe {
             asm!("ldmxcsr [{}]", in(reg) &raw const _register, options(nostack, preserves_flags))
         };
         #[cfg(target_arch = "aarch64")]
         unsafe {
-            asm!("msr fpcr, {}", in(reg) _register, options(nostack, preserves_flags))
+            asm!("msr fpcr, {}", in(reg) u64::from(_register), options(nostack, preserves_flags))
         };
     }
 }
@@ -375,11 +376,11 @@ pub(crate) unsafe fn write_all<T: From<V>, V>(
     Ok(())
 }
 
-/// Writes `numbers` to `places`, of which there are as many.
+/// Writes `numbers` to `places`, of which there are as many: one by one, since a wider copy would wait for numbers just computed.
 #[inline]
 pub(crate) fn fill<T: Copy>(places: &mut [MaybeUninit<T>], numbers: &[T]) {
     assert_eq!(places.len(), numbers.len());
-    unsafe { ptr::copy_nonoverlapping(numbers.as_ptr(), places.as_mut_ptr().cast(), numbers.len()) };
+    places.iter_mut().zip(numbers).for_each(|(place, number)| unsafe { place.as_mut_ptr().write_volatile(*number) });
 }
 
 /// Refuses a number of values, given as `name`, that is not the right one.

@@ -546,9 +546,8 @@ impl Instance {
             self.asked = None;
             self.stage = Stage::StepComplete;
         }
-        self.check_step(point, step)?;
+        let time = self.check_step(point, step)?;
         let stops_at_events = self.interface.stepping().hands_over();
-        let time = self.model.time()?;
         let (start, duration) =
             if is_rounding(point, time, step) { (point, step) } else { (time, point + step - time) };
         let step = Step { start, duration, stops_at_events };
@@ -574,9 +573,9 @@ impl Instance {
         self.stage = self.led_to.take().unwrap_or(self.stage);
     }
 
-    /// Refuses a step that cannot be made from `point` (s) over `step` (s).
+    /// The model's time, s. Refuses a step that cannot be made from `point` (s) over `step` (s).
     #[inline(always)]
-    fn check_step(&mut self, point: f64, step: f64) -> Result<(), Failure> {
+    fn check_step(&mut self, point: f64, step: f64) -> Result<f64, Failure> {
         let time = self.model.time()?;
         let until = point + step;
         if step.is_nan() || step <= 0.0 {
@@ -590,7 +589,7 @@ impl Instance {
         }
         match self.experiment.stop_time {
             Some(stop) if until > stop && !is_same_time(until, stop, step) => Err(Failure::PastStop { until, stop }),
-            _ => Ok(()),
+            _ => Ok(time),
         }
     }
 }
