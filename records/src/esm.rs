@@ -25,12 +25,10 @@ const ESD: Keys = [
 /// Begins the line before each series of ESD: `-> corrected acceleration time histories`.
 const SERIES: &str = "->";
 
-/// Whether `text` is one of ESM.
 pub(super) fn is_its(text: &str) -> bool {
     value_of(numbered(text).take(LONGEST_HEADER).filter(|(_, line)| line.contains(':')), ESM[0]).is_some()
 }
 
-/// Whether `text` is one of ESD.
 pub(super) fn is_esd(text: &str) -> bool {
     numbered(text).take(LONGEST_HEADER).any(|(_, line)| is_series(line)) && value_of(numbered(text), ESD[0]).is_some()
 }

@@ -6,7 +6,6 @@ use super::{BadLine, Reading, bad};
 
 const HEADER_LINES: usize = 17;
 
-/// Whether `text` is one of these files.
 pub(super) fn is_its(text: &str) -> bool {
     text.starts_with("Origin Time")
 }

@@ -40,6 +40,7 @@ pub struct Format {
     pub step: &'static str,
     /// Whether a file may have several channels, of which one is chosen as if it were a column.
     pub has_channels: bool,
+    /// Whether a text is one of its files.
     is_its: fn(&str) -> bool,
     parse: fn(&str, &Reading) -> Result<Parsed, BadLine>,
 }
@@ -241,23 +242,18 @@ pub fn doubts(record: &Record, g: f64) -> Vec<String> {
     let step = nine_digits(duration / (record.times().len() - 1) as f64);
     let gaps = record.times().windows(2).map(|pair| (pair[1] - pair[0], pair[0]));
     let (longest, gap) = gaps.fold((0.0, 0.0), |most: (f64, f64), gap| if gap.0 > most.0 { gap } else { most });
-    let velocity = last.unwrap_or_default()[0];
-    let is_drift = velocity.abs() > LARGEST_USUAL_VELOCITY;
+    let gap = nine_digits(gap);
+    let drift = last.unwrap_or_default()[0];
     let is_usual = record.pga() == 0.0 || USUAL_STEPS.contains(&step);
     let doubts = [
         doubt_of_peak(record, g),
         (!is_usual).then(|| format!("a step of {step} s: is the time in another unit?")),
         (longest > LONGEST_GAP * step).then(|| {
-            format!(
-                "no sample for {} s after t = {} s, on average one in {step} s: is something missing?",
-                nine_digits(longest),
-                nine_digits(gap)
-            )
+            let longest = nine_digits(longest);
+            format!("no sample for {longest} s after t = {gap} s, on average one in {step} s: is something missing?")
         }),
-        is_drift.then(|| {
-            format!(
-                "the ground moves on at {velocity:.1} m/s after the record: is an offset left, or the column wrong?"
-            )
+        (drift.abs() > LARGEST_USUAL_VELOCITY).then(|| {
+            format!("the ground moves on at {drift:.1} m/s after the record: is an offset left, or the column wrong?")
         }),
         rounded(record.times()).map(|[least, most]| {
             let [least, most] = [least, most].map(nine_digits);
@@ -265,7 +261,6 @@ pub fn doubts(record: &Record, g: f64) -> Vec<String> {
             if most < 1.9 * least {
                 return format!("{steps}: are the times rounded? Give the right step");
             }
-            let gap = nine_digits(gap);
             format!("{steps}: is a sample missing after t = {gap} s, or are the times rounded? Complete the file, or give the right step")
         }),
     ];

@@ -33,15 +33,13 @@ impl Times {
     /// These times, which must have the step `dt` (s), or the first sample that contradicts and what they have. Times of
     /// few digits are made even.
     pub fn with_step(self, dt: f64) -> Result<Times, (usize, String)> {
-        let (times, step) = match self {
+        let times = match self {
             Times::Every(step) if (step - dt).abs() <= SAME_STEP * dt => return Ok(self),
             Times::Every(step) => return Err((0, format!("a sample every {step:?} s"))),
             Times::At(times) if times.len() < 2 => return Ok(Times::At(times)),
-            Times::At(times) => {
-                let step = nine_digits((times[times.len() - 1] - times[0]) / (times.len() - 1) as f64);
-                (times, step)
-            }
+            Times::At(times) => times,
         };
+        let step = nine_digits((times[times.len() - 1] - times[0]) / (times.len() - 1) as f64);
         let even = |i: usize| times[0] + i as f64 * dt;
         let off = (0..times.len()).map(|i| (times[i] - even(i)).abs()).fold(0.0, f64::max);
         let is_whole = |unit: f64| times.iter().all(|time| (time / unit - (time / unit).round()).abs() < SAME_STEP);

@@ -4,7 +4,6 @@ use super::parsed::{Parsed, published};
 use super::text::{columns, no_number, number, numbered};
 use super::{BadLine, GMPROCESS, Reading, bad};
 
-/// Whether `text` is one of these files.
 pub(super) fn is_its(text: &str) -> bool {
     let first = text.lines().next().unwrap_or_default().trim().to_lowercase();
     ["1 uncorrected accelerogram", "2 corrected accelerogram"].contains(&first.as_str())

@@ -220,8 +220,7 @@ impl<'a> Table<'a> {
         let mut steps = self.column(column).zip(self.column(column).skip(1));
         let Some(row) = steps.position(|(before, at)| !is_right(at - before)) else { return Ok(()) };
         let [before, at] = [row, row + 1].map(|row| self.numbers[row * self.count + column]);
-        let line = self.line(row + 1).map_or(self.last, |(line, _)| line);
-        Err(bad(line, format!("column {} cannot {what}: {at:?} comes after {before:?}", column + 1)))
+        Err(self.bad(row + 1, format!("column {} cannot {what}: {at:?} comes after {before:?}", column + 1)))
     }
 
     /// Refuses a first column that has no times: its heading says something else, or they do not grow. Whole numbers may
@@ -263,10 +262,8 @@ impl<'a> Table<'a> {
         if is_positive && self.numbers.len() >= MANY * self.count && !self.is_whole(0) && (says_spectrum || !says_time)
         {
             let problem = "no number below 0, and the first line is not at 0: this is a spectrum, no record of a_g(t)";
-            return Err(bad(
-                self.first,
-                format!("{problem}, unless you head column 1 time (s) without a line on spectra"),
-            ));
+            let remedy = "unless you head column 1 time (s) without a line on spectra";
+            return Err(bad(self.first, format!("{problem}, {remedy}")));
         }
         Ok(())
     }
@@ -318,10 +315,8 @@ impl<'a> Table<'a> {
             (Some(asked), _) => asked,
             (None, [one]) => *one,
             (None, _) => {
-                let (count, names) =
-                    (self.count, self.headings.first().map(|(_, names)| format!(" ({})", listed(names))));
-                let names = names.unwrap_or_default();
-                let problem = format!("cannot tell which of {count} columns{names} has the accelerations");
+                let names = self.headings.first().map_or(String::new(), |(_, names)| format!(" ({})", listed(names)));
+                let problem = format!("cannot tell which of {} columns{names} has the accelerations", self.count);
                 let unit =
                     self.stated_unit(Some(left[0]), how).and_then(|(unit, line)| of_heading(unit, how.unit, line));
                 let remedy = if unit.is_err() { Remedy::ColumnAndUnit } else { Remedy::Column };
@@ -458,16 +453,13 @@ impl<'a> Table<'a> {
         }
         let stated = stated.into_iter().nth(other.unwrap_or_default()).map(|(unit, line, _)| (unit, line));
         let other = self.before.iter().find(|(_, text)| is_no_acceleration(text)).filter(|_| how.unit.is_none());
+        let refused = |(line, text): &(usize, &str), why: &str| {
+            Err(bad(*line, format!("{} {why}", quote(text))).remedied_by(Remedy::Unit))
+        };
         match (stated, self.before.iter().find(|(_, text)| mentions_unit(text))) {
-            (None, _) if let Some((line, text)) = other => {
-                let problem = format!("{} is said, and no unit of accelerations", quote(text));
-                Err(bad(*line, problem).remedied_by(Remedy::Unit))
-            }
-            (None, Some((line, text))) if how.unit.is_none() => {
-                let text = quote(text);
-                let problem =
-                    format!("{text} has a unit, and no heading says that it is the unit of the accelerations");
-                Err(bad(*line, problem).remedied_by(Remedy::Unit))
+            (None, _) if let Some(other) = other => refused(other, "is said, and no unit of accelerations"),
+            (None, Some(unit)) if how.unit.is_none() => {
+                refused(unit, "has a unit, and no heading says that it is the unit of the accelerations")
             }
             (stated, _) => Ok(stated.unwrap_or((Stated::Nothing, self.first))),
         }
@@ -489,10 +481,8 @@ fn without_samples(text: &str) -> BadLine {
     if text.trim().is_empty() {
         return bad(lines.max(1), "the file is empty");
     }
-    bad(
-        lines,
-        format!("{lines} line(s) of text and no samples: lines of numbers alone are needed, without columns of text"),
-    )
+    let remedy = "lines of numbers alone are needed, without columns of text";
+    bad(lines, format!("{lines} line(s) of text and no samples: {remedy}"))
 }
 
 /// Whether `text` says velocity or displacement, as the other files of PEER do, or spectral, and not acceleration.
@@ -524,11 +514,8 @@ fn is_near(found: f64, step: f64) -> bool {
 /// The first of `headings`, as many as a message can show.
 fn listed(headings: &[&str]) -> String {
     const SHOWN: usize = 8;
-    let mut names = headings.iter().take(SHOWN).map(|heading| quote(heading)).collect::<Vec<_>>().join(", ");
-    if headings.len() > SHOWN {
-        names += ", ...";
-    }
-    names
+    let names: Vec<_> = headings.iter().take(SHOWN).map(|heading| quote(heading)).collect();
+    names.join(", ") + if headings.len() > SHOWN { ", ..." } else { "" }
 }
 
 #[cfg(test)]
