@@ -524,12 +524,18 @@ mod tests {
     use crate::{Record, Source, Unit, UnitFrom};
 
     fn read(text: &str, how: &Reading) -> Result<(Record, Source), BadLine> {
-        parse(text, how)?.record(how, "table")
+        parse(&crate::text::decode(text.as_bytes())?, how)?.record(how, "table")
     }
 
     fn problem(text: &str, how: &Reading) -> String {
         let BadLine { line, problem, .. } = read(text, how).unwrap_err();
         format!("{line}: {problem}")
+    }
+
+    /// The times and the accelerations in a file of `text`.
+    fn samples(text: &str, how: &Reading) -> [Vec<f64>; 2] {
+        let (record, _) = read(text, how).unwrap_or_else(|error| panic!("{text}: {error:?}"));
+        [record.times().to_vec(), record.acceleration().to_vec()]
     }
 
     /// Reading without options.
@@ -548,18 +554,18 @@ mod tests {
             "0,0\t0,25\n0,02\t-1,0E-3\n0,05\t3\n",
             "\"t\",\"a\"\n\"0.0\",\"0.25\"\n\"0.02\",\"-0.001\"\n\"0.05\",\"3\"\n",
             "Shake table 3\n17 March, run 4\ntime  acceleration\n0 0.25\n0.02 -0.001\n0.05 3\n",
+            "Kocaeli 1999 08 17\n17 March, run 4, north\n4 5 6 (gauges)\n0 0.25\n0.02 -0.001\n0.05 3\n",
+            "0.0E-02+2.5E-01\n2.0E-02-1.0E-03\n5.0E-02+3.0E-00\n! end\n",
+            "0 2.5E-01\r\r\n.02 \u{2212}1.0E-03\r\r\n.05 3\r\r\n/&\r\r\n",
+            "\"0,0\",\"0,25\"\n\"0,02\",\"-1,0E-03\"\n\"0,05\",\"3,0E+00\"\n",
             "acc,time (s)\n0.25,0\n-0.001,0.02\n3,0.05\n",
             "time (ms),a\n0,0.25\n20,-0.001\n50,3\n",
             "0, 0.25,\n0.02, -0.001,\n0.05, 3.0,\n",
             "% MATLAB\n% t a\n0 0.25\n0.02 -0.001\n0.05 3\n",
             "a;t\nm/s2;ms\n0,25;0\n-0,001;20\n3;50\n",
         ] {
-            let (record, source) = read(text, &AS_IT_IS).unwrap_or_else(|error| panic!("{text}: {error:?}"));
-            assert_eq!(
-                (record.times(), record.acceleration()),
-                (&[0.0, 0.02, 0.05][..], &[0.25, -1e-3, 3.0][..]),
-                "{text}"
-            );
+            assert_eq!(samples(text, &AS_IT_IS), [[0.0, 0.02, 0.05], [0.25, -1e-3, 3.0]], "{text}");
+            let source = read(text, &AS_IT_IS).unwrap().1;
             let from = if text.contains("m/s2") { UnitFrom::File } else { UnitFrom::Assumed };
             assert_eq!((source.unit, source.unit_from), (Unit::MetrePerSecondSquared, from), "{text}");
         }
@@ -569,19 +575,15 @@ mod tests {
     fn one_column_needs_a_step_and_several_a_choice() {
         let step = Reading { dt: Some(0.5), ..AS_IT_IS };
         for text in ["acc (g)\n1\n-2,\n3\n", "1.0\n-2.0\n3\n", "  1\n -2\n  3\n", "0,1\n1,-2\n2,3\n"] {
-            let (record, _) = read(text, &step).unwrap();
-            assert_eq!(
-                (record.times(), record.acceleration()),
-                (&[0.0, 0.5, 1.0][..], &[1.0, -2.0, 3.0][..]),
-                "{text}"
-            );
+            assert_eq!(samples(text, &step), [[0.0, 0.5, 1.0], [1.0, -2.0, 3.0]], "{text}");
         }
         assert_eq!(read("1\n2\n", &AS_IT_IS).unwrap_err().remedy, Some(Remedy::Step));
 
         let three = "time (s),N-S (gal),E-W (g)\n0,1,5\n1,2,6\n";
         let unclear = read(three, &AS_IT_IS).unwrap_err();
         assert_eq!(unclear.remedy, Some(Remedy::Column));
-        assert!(unclear.problem.contains("3 columns (\"time (s)\", \"N-S (gal)\", \"E-W (g)\")"), "{unclear:?}");
+        let names = "\"time (s)\", \"N-S (gal)\", \"E-W (g)\"";
+        assert!(unclear.problem.contains(&format!("3 columns ({names})")), "{unclear:?}");
         let chosen = |column, dt| read(three, &Reading { column: Some(column), dt, ..AS_IT_IS });
         let heading = |name: &str| Column::Heading(name.into());
         for column in [Column::Number(3), heading("e-w"), heading("E-W (g)")] {
@@ -593,10 +595,7 @@ mod tests {
         for (column, expected) in [
             (Column::Number(4), "the given column is 4, but there are 3"),
             (Column::Number(1), "column 1 has the times, and cannot have the accelerations"),
-            (
-                heading("U-D"),
-                "the given column is \"U-D\", but the headings are \"time (s)\", \"N-S (gal)\", \"E-W (g)\"",
-            ),
+            (heading("U-D"), &format!("the given column is \"U-D\", but the headings are {names}")),
         ] {
             assert_eq!(chosen(column, None).unwrap_err().problem, expected);
         }
@@ -636,51 +635,40 @@ mod tests {
             ("t a t a t a\n0 .1 .01 .2 .02 .3\n.03 .4\n", Column::Number(2)),
         ] {
             let how = Reading { column: Some(column), dt: Some(0.01), ..AS_IT_IS };
-            let (record, _) = read(text, &how).unwrap_or_else(|error| panic!("{text}: {error:?}"));
-            assert_eq!(record.times(), [0.0, 0.01, 0.02, 0.03], "{text}");
-            assert_eq!(record.acceleration(), [0.1, 0.2, 0.3, 0.4], "{text}");
+            assert_eq!(samples(text, &how), [[0.0, 0.01, 0.02, 0.03], [0.1, 0.2, 0.3, 0.4]], "{text}");
         }
         assert_eq!(read("4 .01\n5 .1\n6 .2\n7 .3\n8.5 .4\n", &AS_IT_IS).unwrap().0.times().len(), 5);
     }
 
-    /// 2.5 ms, printed to 1 ms.
+    /// The times are 2.5 ms apart, printed to 1 ms, or 10 ms but for one line.
     #[test]
-    fn times_of_few_digits_are_made_even_by_a_given_step() {
-        let [time, a] = [|i: usize| (2.5 * i as f64).round() / 1e3, |i: usize| i as f64];
-        let rows: String = (0..40).map(|i| format!("{},{}\n", time(i), a(i))).collect();
-        let (rounded, _) = read(&rows, &AS_IT_IS).unwrap();
-        let doubt = "steps of 0.002 to 0.003 s beside even times: are the times rounded? Give the right step";
-        assert_eq!(crate::doubts(&rounded, 9.81), [doubt]);
-        for (text, dt) in [(rows.clone(), Some(0.0025)), ("DT=0.0025\n".to_owned() + &rows, None)] {
+    fn times_beside_even_ones_are_doubted_and_a_missing_line_is_named() {
+        let rows = |time: fn(usize) -> f64| (0..40).map(|i| format!("{},{}\n", time(i), i % 2)).collect::<String>();
+        let rounded = rows(|i| (2.5 * i as f64).round() / 1e3);
+        let missing = rows(|i| i as f64 / 100.0).replace("0.2,0\n", "");
+        for (text, dt, doubt, found) in [
+            (
+                &rounded,
+                0.003,
+                "steps of 0.002 to 0.003 s beside even times: are the times rounded? Give the right step",
+                "1: the times have a sample every 0.00251282051 s",
+            ),
+            (
+                &missing,
+                0.01,
+                "steps of 0.01 to 0.02 s beside even times: is a sample missing after t = 0.19 s, or are the times rounded? \
+                 Complete the file, or give the right step",
+                "21: the times have no sample between 0.19 and 0.21 s",
+            ),
+        ] {
+            assert_eq!(crate::doubts(&read(text, &AS_IT_IS).unwrap().0, 9.81), [doubt]);
+            let how = Reading { dt: Some(dt), ..AS_IT_IS };
+            assert_eq!(problem(text, &how), format!("{found}, but the given step is {dt} s"));
+        }
+        for (text, dt) in [(rounded.clone(), Some(0.0025)), ("DT=0.0025\n".to_owned() + &rounded, None)] {
             let (even, _) = read(&text, &Reading { dt, ..AS_IT_IS }).unwrap();
             assert_eq!(even.times()[39], 39.0 * 0.0025);
             assert!(crate::doubts(&even, 9.81).is_empty());
-        }
-        let refused = problem(&rows, &Reading { dt: Some(0.003), ..AS_IT_IS });
-        assert_eq!(refused, "1: the times have a sample every 0.00251282051 s, but the given step is 0.003 s");
-    }
-
-    #[test]
-    fn a_missing_line_is_named() {
-        let rows: String =
-            (0..40).filter(|i| *i != 20).map(|i| format!("{},{}\n", f64::from(i) / 100.0, i % 2)).collect();
-        let refused = problem(&rows, &Reading { dt: Some(0.01), ..AS_IT_IS });
-        assert_eq!(refused, "21: the times have no sample between 0.19 and 0.21 s, but the given step is 0.01 s");
-        let doubt = "steps of 0.01 to 0.02 s beside even times: is a sample missing after t = 0.19 s, or are the times rounded? \
-                     Complete the file, or give the right step";
-        assert_eq!(crate::doubts(&read(&rows, &AS_IT_IS).unwrap().0, 9.81), [doubt]);
-    }
-
-    #[test]
-    fn numbers_and_lines_of_other_programs_are_read() {
-        for text in [
-            "0 1.25E-06-5.5E-06\n.01 2.5E-06-1.5E-06\n! end\n",
-            "0 1.25E-06 \u{2212}5.5E-06\r\r\n.01 2.5E-06 -1.5E-06\r\r\n/&\r\r\n",
-            "\"0,0\",\"1,25E-06\",\"-5,5E-06\"\n\"0,01\",\"2,5E-06\",\"-1,5E-06\"\n",
-        ] {
-            let third = Reading { column: Some(Column::Number(3)), ..AS_IT_IS };
-            let (record, _) = read(&crate::text::decode(text.as_bytes()).unwrap(), &third).unwrap();
-            assert_eq!((record.times(), record.acceleration()), (&[0.0, 0.01][..], &[-5.5e-6, -1.5e-6][..]), "{text}");
         }
     }
 
@@ -700,14 +688,6 @@ mod tests {
             assert_eq!(read(&text, &AS_IT_IS).unwrap().0.times(), [0.0, 0.01, 0.02], "{line}");
             let refused = problem(&text, &Reading { dt: Some(0.02), ..AS_IT_IS });
             assert!(refused.ends_with("a sample every 0.01 s, but the given step is 0.02 s"), "{refused}");
-        }
-    }
-
-    #[test]
-    fn velocities_and_displacements_are_refused() {
-        for heading in ["velocity", "Displacement", "disp (cm)", "vel_x", "Sa (g)"] {
-            let expected = format!("1: column 2 is {heading:?}: accelerations are needed");
-            assert_eq!(problem(&format!("time,{heading}\n0,1\n.5,2\n"), &AS_IT_IS), expected);
         }
     }
 
@@ -763,14 +743,6 @@ mod tests {
     }
 
     #[test]
-    fn text_is_no_data() {
-        for title in ["Kocaeli 1999 08 17", "17 March, run 4, north", "4 5 6 (gauges)"] {
-            let (record, _) = read(&format!("{title}\n0.0 0.1\n0.5 0.2\n"), &AS_IT_IS).unwrap();
-            assert_eq!((record.times(), record.acceleration()), (&[0.0, 0.5][..], &[0.1, 0.2][..]), "{title}");
-        }
-    }
-
-    #[test]
     fn a_message_does_not_grow_with_the_table() {
         let row = |cell: &str| vec![cell; 20_001].join(";");
         let text = format!("{}\n{}\n{}\n", row("heading"), row("1"), row("2"));
@@ -782,16 +754,21 @@ mod tests {
 
     #[test]
     fn a_refused_table_says_what_was_found_on_which_line() {
-        for (text, expected) in [
+        let step = Reading { dt: Some(0.01), ..AS_IT_IS };
+        let all = Reading { column: Some(Column::All), ..step.clone() };
+        let spectrum = |why| format!("{why} no record of a_g(t), unless you head column 1 time (s)");
+        let count =
+            |what, npts| format!("{what}: write # before it and the numbers above, or NPTS= {npts} if it is a sample");
+        let from = |line| format!("{line}: column 1 has even times from here on: write # before the numbers above");
+        let other = |heading| format!("1: column 2 is \"{heading}\": accelerations are needed");
+        let no_samples = "lines of numbers alone are needed, without columns of text";
+        let as_it_is = [
             ("", "1: the file is empty"),
             ("\n \n", "2: the file is empty"),
             ("t,a\n\n.5,1\n", "3: the file ends after 1 sample(s); two or more are needed"),
             ("# c\n0.1,1\nx,2\n", "3: the time \"x\" is not a number: write # before a line of text"),
             ("0,1\ninf,2\n", "2: the time \"inf\" is not a number: write # before a line of text"),
-            (
-                "t,a\n",
-                "1: 1 line(s) of text and no samples: lines of numbers alone are needed, without columns of text",
-            ),
+            ("t,a\n", &format!("1: 1 line(s) of text and no samples: {no_samples}")),
             ("0,1\n1,NaN\n", "2: the acceleration \"NaN\" is not a number"),
             ("0,1\n1,\n", "2: 1 column(s) instead of 2 as on line 1"),
             ("1D-3 2D-3\n3D-3 4D-\n", "2: the acceleration \"4D-\" is not a number: its exponent is cut off"),
@@ -806,10 +783,7 @@ mod tests {
             ("0 1\n1 2\nend data\n", "3: the time \"end\" is not a number: write # before a line of text"),
             ("5,NPTS,DT\n1\n2\n", "2: no column has times: the time between samples is unknown"),
             ("NPTS= 3.5\n1\n2\n", "1: NPTS = \"3.5\" must be a whole number, 2 to 10000000"),
-            (
-                "NPTS=2, DT=.01 SEC, DT=.02 SEC\n1\n2\n",
-                "1: two steps are stated, 0.01 s and 0.02 s: correct one of them",
-            ),
+            ("DT=.01 SEC, DT=.02\n1\n2\n", "1: two steps are stated, 0.01 s and 0.02 s: correct one of them"),
             ("DT=1/100\n1\n2\n", "1: DT = \"1/100\" must be a number of seconds greater than 0"),
             ("Sampling rate: 100/s\n1\n2\n", "1: SAMPLING RATE = \"100/S\" must be a rate in Hz"),
             ("Sampling rate: 0 Hz\n1\n2\n", "1: SAMPLING RATE = \"0 HZ\" must be a rate in Hz"),
@@ -821,50 +795,40 @@ mod tests {
             ("NPTS=4\nt,a\n0,1\n.5,2\n", "4: NPTS states 4 samples, and the file has 2"),
             ("t (min),a (g)\n0,1\n.5,2\n", "1: column 1 is \"t (min)\", which is no time in s or ms"),
             ("t,a\n0,1\n5,-2\n10,3\n", "2: column 1 has whole numbers, which may be counts or milliseconds"),
-        ] {
-            assert_eq!(problem(text, &AS_IT_IS), expected, "{text}");
-        }
-        let all = Reading { column: Some(Column::All), dt: Some(0.01), ..AS_IT_IS };
-        for (text, expected) in [
-            (
-                "4\n1\n2\n3\n2\n",
-                "1: 4 is the number of samples after it: write # before it and the numbers above, or NPTS= 5 if it is a sample",
-            ),
-            (
-                ".01\n1\n2\n",
-                "1: 0.01 is the given step: write # before it and the numbers above, or NPTS= 3 if it is a sample",
-            ),
+            ("time,velocity\n0,1\n.5,2\n", &other("velocity")),
+            ("time,Displacement\n0,1\n.5,2\n", &other("Displacement")),
+            ("time,disp (cm)\n0,1\n.5,2\n", &other("disp (cm)")),
+            ("time,vel_x\n0,1\n.5,2\n", &other("vel_x")),
+            ("time,Sa (g)\n0,1\n.5,2\n", &other("Sa (g)")),
+        ];
+        let of_all = [
+            ("4\n1\n2\n3\n2\n", &*count("1: 4 is the number of samples after it", 5)),
+            (".01\n1\n2\n", &count("1: 0.01 is the given step", 3)),
             ("t,a\n0,1\n.5,2\n", "2: the given column is all, but one has times"),
             ("0 .1\n.01 .2\n.02 .3\n.03 .1\n", "1: the given column is all, but one has times"),
-        ] {
-            assert_eq!(problem(text, &all), expected, "{text}");
-        }
-        let step = Reading { dt: Some(0.01), ..AS_IT_IS };
-        assert_eq!(read("DT=1/100\n1\n2\n", &step).unwrap().0.times()[1], 0.01);
-        let from = |line| format!("{line}: column 1 has even times from here on: write # before the numbers above");
-        for (text, expected) in [
+        ];
+        let steps = [
             ("n,a\n1,.1\n2,.2\n4,.3\n", "4: column 1 cannot count the samples: 4.0 comes after 2.0"),
             (
                 "Period (sec)    Response Acceleration (g)\n.02 .3\n.04 .4\n.06 .3\n",
-                "1: column 1 is \"Period (sec)\", which is no time: this is no record of a_g(t), unless you head column 1 time (s)",
+                &spectrum("1: column 1 is \"Period (sec)\", which is no time: this is"),
             ),
-            (
-                ".02 .3\n.04 .4\n.1 .3\n",
-                "1: uneven steps and no number below 0: this is a spectrum, no record of a_g(t), unless you head column 1 time (s)",
-            ),
+            (".02 .3\n.04 .4\n.1 .3\n", &spectrum("1: uneven steps and no number below 0: this is a spectrum,")),
             (
                 &format!("Periyot (s),Ivme (g)\n{}", ".1,.2\n.2,.3\n".repeat(5)),
-                "2: no number below 0, and the first line is not at 0: this is a spectrum, no record of a_g(t), unless you head column 1 time (s) without a line on spectra",
+                &(spectrum("2: no number below 0, and the first line is not at 0: this is a spectrum,")
+                    + " without a line on spectra"),
             ),
             ("# displacement in m\n0 .1\n.02 .2\n", "1: \"# displacement in m\" is said, and no unit of accelerations"),
             ("400 0\n0 .1\n.01 .2\n.02 .3\n", &from(2)),
             ("*DEFINE_CURVE\n$# lcid sidr\n1 0 1.0 0\n$# a1 o1\n0 .1\n.01 .2\n.02 .3\n*END\n", &from(5)),
-            (
-                "9.81\n0.01\n.1\n.2\n-.3\n",
-                "2: 0.01 is the given step: write # before it and the numbers above, or NPTS= 5 if it is a sample",
-            ),
-        ] {
-            assert_eq!(problem(text, &step), expected, "{text}");
+            ("9.81\n0.01\n.1\n.2\n-.3\n", &count("2: 0.01 is the given step", 5)),
+        ];
+        for (how, cases) in [(AS_IT_IS, &as_it_is[..]), (all, &of_all), (step.clone(), &steps)] {
+            for (text, expected) in cases {
+                assert_eq!(problem(text, &how), *expected, "{text}");
+            }
         }
+        assert_eq!(read("DT=1/100\n1\n2\n", &step).unwrap().0.times()[1], 0.01);
     }
 }
