@@ -54,6 +54,7 @@ pub fn all(count: usize) -> Vec<Layout> {
         let text = header + counts + "\n" + &lines(&cm, 5, |value| format!("{value:15.7E}"));
         layout("record.AT2", "PEER AT2", Unit::G, text)
     };
+    let (counts, expected) = knet(&cm);
     let mut all = vec![
         at2(
             "PEER STRONG MOTION DATABASE RECORD. PROCESSING BY CHARLES MUELLER.",
@@ -61,7 +62,7 @@ pub fn all(count: usize) -> Vec<Layout> {
         ),
         at2("PEER NGA STRONG MOTION DATABASE RECORD", &format!("NPTS=  {count:4}, DT=   .0050 SEC,")),
         layout("record.ASC", "ESM and ITACA ASCII", gal, esm(&cm)),
-        knet(&cm),
+        Layout { expected, ..layout("MYG0041103111446.NS", "K-NET and KiK-net ASCII", gal, counts) },
         layout("record.V1", "COSMOS V1 and V2", gal, cosmos("Uncorrected acceleration", &cm, false)),
         layout("record.V2c", "COSMOS V1 and V2", gal, cosmos("Corrected acceleration", &cm, true)),
         layout("record.V2", "CSMIP V2", gal, csmip(&cm)),
@@ -87,9 +88,9 @@ pub fn all(count: usize) -> Vec<Layout> {
     all.push(read_as(with_step(Some(gal)), layout("column.txt", "table", gal, column)));
     let array = |(i, value): (usize, &f64)| format!("{},{},\"{value}\",{i}\r\n", i as f64 * DT, -2.0 * value);
     let array = "Time (s),N-S (gal),E-W (gal),n\r\n".to_owned() + &cm.iter().enumerate().map(array).collect::<String>();
-    let mut chosen = layout("array.csv", "table", gal, array);
-    chosen.how = Reading { column: Some(Column::Heading("E-W".into())), ..Reading::default() };
-    all.push(chosen);
+    let chosen = Reading { column: Some(Column::Heading("E-W".into())), ..Reading::default() };
+    all.push(read_as(chosen, layout("array.csv", "table", gal, array)));
+    let seconds = |i: usize| format!("{:.3}", i as f64 * DT);
     let table = |heading: &str, time: fn(usize) -> String| {
         let line = |(i, value): (usize, &f64)| format!("{},{value}\n", time(i));
         let text = format!("{heading}\n") + &cm.iter().enumerate().map(line).collect::<String>();
@@ -109,7 +110,7 @@ pub fn all(count: usize) -> Vec<Layout> {
         layout("record.cor", "ESD ASCII", gal, esd(&cm)),
         layout("record.smc", "USGS SMC", gal, smc(&cm)),
         table("# peak in g: 0.3\nt/ms,a/gal", |i| (5 * i).to_string()),
-        table("Time,Acceleration\n(sec),(cm/sec^2)", |i| format!("{:.3}", i as f64 * DT)),
+        table("Time,Acceleration\n(sec),(cm/sec^2)", seconds),
         read_as(with_step(None), table("n,acc (gal)", |i| (i + 1).to_string())),
         read_as(Reading { column: Some(Column::All), ..with_step(Some(gal)) }, several("", 8)),
         several(&format!("ACCELERATION TIME HISTORY IN UNITS OF CM/SEC^2\nNPTS= {count}, DT= {DT} SEC\n"), 5),
@@ -119,9 +120,7 @@ pub fn all(count: usize) -> Vec<Layout> {
         )),
         several(&format!("UNIT: CM/SEC/SEC\nNO. OF POINTS: {count}  EQUALLY SPACED INTERVALS OF:  {DT}  SEC\n\n"), 8),
         several(&format!("NPTS= {count} DT= 0,0050 ACC IN GAL\n"), 8),
-        table("*TITLE, El Centro\n*X-AXIS, Time (sec)\n*Y-AXIS, Ground Accel. (gal)\n*FLAGS, 0, 0\n*DATA", |i| {
-            format!("{:.3}", i as f64 * DT)
-        }),
+        table("*TITLE, El Centro\n*X-AXIS, Time (sec)\n*Y-AXIS, Ground Accel. (gal)\n*FLAGS, 0, 0\n*DATA", seconds),
     ]);
     all
 }
@@ -156,8 +155,8 @@ fn smc(values: &[f64]) -> String {
     text + "| one comment\n" + &lines(values, 8, |value| format!("{value:10.5}"))
 }
 
-/// Counts of a recorder that shows 8000 at rest.
-fn knet(cm: &[f64]) -> Layout {
+/// Counts of a recorder that shows 8000 at rest, and the accelerations that they are.
+fn knet(cm: &[f64]) -> (String, Vec<f64>) {
     const GAL: f64 = 3920.0 / 6182761.0;
     let counts: Vec<i64> = cm.iter().map(|value| 8000 + (value / GAL).round() as i64).collect();
     let mean = counts.iter().sum::<i64>() as f64 / counts.len() as f64;
@@ -172,15 +171,7 @@ fn knet(cm: &[f64]) -> Layout {
         counts.len() as f64 * DT
     );
     let values: Vec<_> = counts.iter().map(|count| *count as f64).collect();
-    let text = header + &lines(&values, 8, |count| format!("{count:9}"));
-    Layout {
-        path: "MYG0041103111446.NS".into(),
-        bytes: text.into_bytes(),
-        how: Reading::default(),
-        format: "K-NET and KiK-net ASCII",
-        unit: Unit::CentimetrePerSecondSquared,
-        expected,
-    }
+    (header + &lines(&values, 8, |count| format!("{count:9}")), expected)
 }
 
 /// One channel; in volume 2 with its velocities and displacements.
@@ -204,15 +195,12 @@ pub fn cosmos(kind: &str, values: &[f64], is_volume_2: bool) -> String {
     text += "   1 Comment line(s) follow, each starting with a \"|\":\n| pts units=none acc\n";
     let what = if is_volume_2 { "acceleration pts" } else { "uncor. accel. pts" };
     writeln!(text, "{count:8} {what}, approx   2 secs, units=cm/sec2(04),Format=(8F10.5)").unwrap();
-    let columns = |value| format!("{value:10.5}");
-    text += &lines(values, 8, columns);
+    let columns = lines(values, 8, |value| format!("{value:10.5}"));
+    text += &columns;
     if is_volume_2 {
-        for what in [
-            "velocity     pts, approx   2 secs, units=cm/s  (05)",
-            "displacement pts, approx   2 secs, units=cm    (06)",
-        ] {
-            writeln!(text, "{count:8} {what},Format=(8F10.5)").unwrap();
-            text += &lines(values, 8, columns);
+        for (what, unit) in [("velocity    ", "cm/s  (05)"), ("displacement", "cm    (06)")] {
+            let before = format!("{count:8} {what} pts, approx   2 secs, units={unit},Format=(8F10.5)\n");
+            text += &(before + &columns);
         }
     }
     text + "End-of-data for Chan  1 acceleration\n"
