@@ -1,6 +1,6 @@
 //! Vertical ground motion, tendon and dissipators: against structures that they make another, and statics by hand.
 
-use crate::common::{engine_of, peaks_beside_samples, shaking, transitions, transitions_of};
+use crate::common::{distance, engine_of, peaks_beside_samples, shaking, transitions, transitions_of};
 use approx::assert_relative_eq;
 use rocking::engine::Settings;
 use rocking::mechanics::restraint::centring_moments;
@@ -42,13 +42,9 @@ fn course(run: &Run) -> (Vec<State>, u64) {
 
 /// The largest difference of the components of two courses, each over the largest that the second has.
 fn apart(a: &[State], b: &[State]) -> f64 {
-    let most = |of: &dyn Fn(usize) -> f64| (0..a.len()).map(of).fold(0.0, f64::max);
-    let relative = |c: usize| {
-        let off = most(&|i| (a[i].components()[c] - b[i].components()[c]).abs());
-        if off == 0.0 { 0.0 } else { off / most(&|i| b[i].components()[c].abs()) }
-    };
     assert_eq!(a.len(), b.len());
-    (0..4).map(relative).fold(0.0, f64::max)
+    let all = |of: &[State], c: usize| Vec::from_iter(of.iter().map(|state| state.components()[c]));
+    (0..4).map(|c| distance(&all(a, c), &all(b, c))).fold(0.0, f64::max)
 }
 
 fn with_vertical(ground: &Record, a_v: impl Fn(f64) -> f64) -> Record {
