@@ -164,30 +164,19 @@ fn no_peak_is_missed() {
         let is_same = is_near(alone.magnitude, theta.magnitude) && is_near(alone.time, theta.time);
         assert!(is_same, "scene {seed}, theta watched alone: {alone:?} {theta:?}");
         let found = validity.found().worst;
+        let scene = format!("scene {seed}, {}", detail.name());
         for (i, sign) in [1.0, -1.0, 1.0].into_iter().enumerate() {
             let (worst, sampled) = (sign * found[i].value, dense.largest[PEAKS.len() + i]);
             let slack = 1e-9 * (1.0 + sampled.abs());
-            assert!(
-                worst == sampled || worst >= sampled - slack,
-                "scene {seed}, {}: {i}: {worst} < {sampled}",
-                detail.name()
-            );
+            assert!(worst == sampled || worst >= sampled - slack, "{scene}: {i}: {worst} < {sampled}");
             if let Some(first) = dense.first[i] {
                 let found = found[i].first_beyond.unwrap_or(f64::INFINITY);
-                assert!(
-                    found <= first * (1.0 + 1e-9),
-                    "scene {seed}, {}: {i}: {found} s, not {first} s",
-                    detail.name()
-                );
+                assert!(found <= first * (1.0 + 1e-9), "{scene}: {i}: {found} s, not {first} s");
             }
             let off = (found[i].beyond - dense.beyond[i]).abs();
             let all = validity.found().duration;
             // samples tell how long where they are dense enough to see each vibration
-            assert!(
-                fastest > 100.0 || off <= 0.01 * all,
-                "scene {seed}, {}: {i}: beyond for {off} of {all} s",
-                detail.name()
-            );
+            assert!(fastest > 100.0 || off <= 0.01 * all, "{scene}: {i}: beyond for {off} of {all} s");
         }
         let times =
             PEAKS.map(|output| peaks.of(output).unwrap().time).into_iter().chain([0, 1, 2].map(|i| found[i].time));
@@ -199,13 +188,13 @@ fn no_peak_is_missed() {
         }
         for ((output, sampled), (time, shown)) in PEAKS.iter().zip(dense.largest).zip(there.at) {
             let peak = peaks.of(*output).unwrap().magnitude;
-            let name = format!("scene {seed}, {}: {} = {peak} at {time} s", detail.name(), output.symbol());
+            let name = format!("{scene}: {} = {peak} at {time} s", output.symbol());
             assert!(peak >= sampled * (1.0 - 1e-9), "{name} < {sampled}");
             assert!((peak - shown).abs() <= 1e-9 * peak, "{name}, where it is {shown}");
         }
         for (i, (time, shown)) in there.at.into_iter().skip(PEAKS.len()).enumerate() {
             let value = if i == 1 { -found[i].value } else { found[i].value };
-            let name = format!("scene {seed}, {}: {i}: {value} at {time} s", detail.name());
+            let name = format!("{scene}: {i}: {value} at {time} s");
             if value == f64::INFINITY {
                 assert_eq!(Some(time), found[1].first_beyond, "{name}");
             } else if value != NOTHING[PEAKS.len() + i] {

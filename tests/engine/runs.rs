@@ -47,17 +47,12 @@ fn comparing_levels_takes_no_more_memory_for_more_of_them() {
     }
 }
 
-/// A wave that grows to `amplitude` (m/s²) over 3 s.
-fn growing(amplitude: f64) -> Record {
-    sampled(301, 0.01, |t| amplitude * t / 3.0 * (9.0 * t).sin())
-}
-
 /// Fewer modes cost less and err more. Advice names how many of them are enough.
 #[test]
 fn a_level_of_a_frame_is_also_how_many_modes_are_kept() {
     let storeys = three_storeys(0.02, &[("r", 0.93)]);
     let frame = Structure::of_body(*storeys.body(), storeys.modes(), &[]).unwrap();
-    let ground = growing(4.0);
+    let ground = sampled(301, 0.01, |t| 4.0 * t / 3.0 * (9.0 * t).sin());
     let comparison = Run::of_modes(frame, &ground).compare().unwrap();
     let errors = |detail, kept| {
         let is_it = |of: &&levels::Verdict| of.response.choice == levels::Choice { detail, modes: Some([kept, 3]) };
