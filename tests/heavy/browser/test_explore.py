@@ -303,7 +303,7 @@ def test_what_is_refused_is_said_as_everywhere_and_the_page_stays_alive(opened, 
         path.write_bytes(content)
         drop(page, path)
         refused = refusal(exporter, "--quiet", "simulate", "--record", path.name, cwd=tmp_path)
-        assert refused.strip().replace("--ignore-npts", "ignore_npts") == f"error: {problem(page)}"
+        assert refused.strip().replace("--ignore-npts", "ignore_npts").replace("as --unit", "as unit") == f"error: {problem(page)}"
         put(page, "#record", "sine")
         assert problem(page) == ""
 
