@@ -104,30 +104,29 @@ impl Source {
     }
 }
 
-/// The phases, numbered from 1.
-pub static PHASES: Enumeration = Enumeration { name: "Phase", description: "phase of the motion", items: &NAMES };
+/// The names of `all`, in their order.
+macro_rules! names {
+    ($all:expr) => {
+        &{
+            let (all, mut names, mut i) = ($all, [""; $all.len()], 0);
+            while i < names.len() {
+                names[i] = all[i].name();
+                i += 1;
+            }
+            names
+        }
+    };
+}
+
+/// The phases, in the order of [`Phase::SHOWN`].
+pub static PHASES: Enumeration =
+    Enumeration { name: "Phase", description: "phase of the motion", items: names!(Phase::SHOWN) };
 
 /// The levels of detail, in the order of [`Detail::ALL`].
 pub static DETAILS: Enumeration = Enumeration {
     name: "Detail",
     description: "level of detail: the equations that move the structure",
-    items: &[
-        Detail::Auto.name(),
-        Detail::Nonlinear.name(),
-        Detail::Linear.name(),
-        Detail::Modal.name(),
-        Detail::Rigid.name(),
-        Detail::FixedBase.name(),
-    ],
-};
-
-const NAMES: [&str; Phase::SHOWN.len()] = {
-    let (mut names, mut i) = ([""; Phase::SHOWN.len()], 0);
-    while i < names.len() {
-        names[i] = Phase::SHOWN[i].name();
-        i += 1;
-    }
-    names
+    items: names!(Detail::ALL),
 };
 
 /// A variable, and where its value is.

@@ -231,14 +231,13 @@ impl<'a> Table<'a> {
         let steps = self.column(0).zip(self.column(0).skip(1)).map(|(before, at)| at - before);
         let least = steps.clone().fold(f64::INFINITY, f64::min);
         let is_uneven = least > 0.0 && steps.fold(0.0, f64::max) > 2.1 * least;
-        let is_positive = self.numbers[0] > 0.0 && self.numbers.iter().all(|number| *number >= 0.0);
         let is_period = |name: &str| ["period", "freq", "hz"].iter().any(|word| name.to_lowercase().contains(word));
         match self.headings_of(0).next() {
             Some((line, name)) if is_uneven || is_period(name) => {
                 let problem = format!("column 1 is {}, which is no time: this is no record of a_g(t)", quote(name));
                 Err(bad(line, problem + UNLESS))
             }
-            None if is_uneven && is_positive => {
+            None if is_uneven && self.is_positive() => {
                 let problem = "uneven steps and no number below 0: this is a spectrum, no record of a_g(t)".to_owned();
                 Err(bad(self.first, problem + UNLESS))
             }
@@ -258,14 +257,18 @@ impl<'a> Table<'a> {
         let is_time = |word: &str| word == "t" || ["time", "times", "zeit"].contains(&&*word.to_lowercase());
         let says_time = self.headings_of(0).any(|(_, name)| is_time(first(name)));
         let says_spectrum = self.before.iter().any(|(_, text)| text.to_lowercase().contains("spectr"));
-        let is_positive = self.numbers[0] > 0.0 && self.numbers.iter().all(|number| *number >= 0.0);
-        if is_positive && self.numbers.len() >= MANY * self.count && !self.is_whole(0) && (says_spectrum || !says_time)
-        {
+        let is_spectrum = (says_spectrum || !says_time) && self.is_positive() && !self.is_whole(0);
+        if is_spectrum && self.numbers.len() >= MANY * self.count {
             let problem = "no number below 0, and the first line is not at 0: this is a spectrum, no record of a_g(t)";
             let remedy = "unless you head column 1 time (s) without a line on spectra";
             return Err(bad(self.first, format!("{problem}, {remedy}")));
         }
         Ok(())
+    }
+
+    /// Whether no number is below 0, from a first one above 0 on, as in a spectrum.
+    fn is_positive(&self) -> bool {
+        self.numbers[0] > 0.0 && self.numbers.iter().all(|number| *number >= 0.0)
     }
 
     fn is_whole(&self, column: usize) -> bool {

@@ -213,7 +213,7 @@ impl Run {
                 waiting.check();
                 let at = order[next];
                 columns.iter_mut().zip(&numbers).for_each(|(column, number)| column[at] = *number);
-                phases[at] = Phase::SHOWN.iter().position(|of| of.name() == phase).expect("it is shown") as u8;
+                phases[at] = phase.number() as u8;
                 transitions[at] = count;
                 next += 1;
             }

@@ -1,13 +1,17 @@
 //! A line of the response.
 use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::run::Runs;
-use rocking::{Impulse, Output, Reactions, Sample};
-use serde::Serialize;
+use rocking::{Impulse, Output, Phase, Reactions, Sample};
+use serde::{Serialize, Serializer};
 
 /// A line of the response: the numbers in the order of [`Run::columns`](crate::run::Run::columns), the phase, and the number of
 /// transitions so far.
 #[derive(Serialize)]
-pub struct Line(pub Vec<f64>, pub &'static str, pub u64);
+pub struct Line(pub Vec<f64>, #[serde(serialize_with = "by_name")] pub Phase, pub u64);
+
+fn by_name<S: Serializer>(phase: &Phase, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(phase.name())
+}
 
 /// Names and units of the columns after the outputs: reactions, impulses, vertical ground acceleration, ties and dissipators.
 pub(crate) const AFTER: [(&str, &str); 14] = [
@@ -37,7 +41,7 @@ pub(crate) fn line<Q: Runs>(sample: &Sample<Q>, outputs: Vec<f64>) -> Line {
     let after = [R_h, R_v, R_m, I_h, I_v, I_m, load.a_v, P_t, F_d1, F_d2, e_p1, e_p2, viscous, hysteretic];
     Line(
         [&[motion.time, load.a_g], &outputs[..], &after].concat(),
-        motion.phase.shown(motion.state.theta).name(),
+        motion.phase.shown(motion.state.theta),
         motion.transitions,
     )
 }

@@ -253,7 +253,7 @@ impl<S: Simd, Q: Coordinates, const N: usize> WithSimd for Leapt<'_, '_, S, Q, N
             let is_low = farthest.is_less(hold) | near.is_less(hold);
             let stretch = Stretch { ends: [start, end], off };
             is_taken = is_low & sum.abs().is_at_most(largest) & (a + slope * duration).abs().is_at_most(largest);
-            let is_passed = of.sought.are_passed(simd, &stretch.most(), none);
+            let is_passed = of.sought.are_passed(simd, &stretch.most());
             if !(is_passed | is_absent).all() {
                 is_taken = is_taken & (is_passed | duration.is_at_most(row(&of.longest)));
                 let mut bend = Bend { slopes: [start, end], off_cubic: start };

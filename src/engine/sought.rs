@@ -1,14 +1,13 @@
-//! What watchers of several runs seek in steps that are taken together: limits, bounds of the quantities, and the steps that are shown
+//! Watchers of several runs seek this in steps that are taken together: limits, bounds of the quantities, and the steps that are shown
 //! later. A step that may hold a peak is put off, since the steps after it mostly hold larger values.
 
 use super::Engine;
 use crate::engine::motion::Motion;
 use crate::engine::piece::{Piece, Watch};
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::reach::magnitudes;
 use crate::numbers::Real;
 use crate::numbers::lanes::{Answers, Lanes, MOST, Row, load, put};
-use crate::{LinearLoad, Load, Output, Phase, Ramp, State, Structure};
+use crate::{LinearLoad, Ramp, State};
 use pulp::Simd;
 
 /// The most modes of structures that leap together.
@@ -36,11 +35,10 @@ pub(crate) trait Passes<Q: Coordinates = f64>: Watch<Q> {
     fn put_off(&mut self, piece: &Piece<Q>, bounds: &[f64]);
 }
 
-/// What the watchers of several runs seek.
+/// Limits, bounds and steps for the watchers of several runs.
 #[derive(Debug, Default)]
 pub(crate) struct Sought<Q> {
     quantities: Vec<Quantity>,
-    curved: Vec<Curved>,
     /// A piece must be seen at once if |θ| may be no more than the first, or is at least the second at its end.
     pub turned: [Row; 2],
     /// Steps that may hold a peak, in order of time.
@@ -60,19 +58,8 @@ struct Quantity {
     /// [Weights](crate::mechanics::reach::Reach::weights) of θ and of each u and u̇.
     turn: [Row; 3],
     elastic: [[Row; 2]; MOST_MODES],
-    /// Bound over the last step of a quantity that no weights bound.
-    curved: Row,
-}
-
-/// An output that no weights bound.
-#[derive(Debug)]
-pub(crate) struct Curved {
-    pub output: Output,
-    /// Its place among the quantities, and its lane.
-    pub place: usize,
-    pub lane: usize,
-    pub structure: Structure,
-    pub phase: Phase,
+    /// Bound of what no weights bound: infinite if there are no weights, so that every step is shown.
+    rest: Row,
 }
 
 /// A step that is shown to a watcher after others.
@@ -143,53 +130,38 @@ impl Quantity {
 }
 
 impl<Q: Coordinates> Sought<Q> {
-    /// Seeks `quantities` in `lane`. Of each: the least magnitude that must be seen, and the weights of θ and of each of so many modes.
-    /// Those that are `curved` have no weights.
+    /// Seeks `quantities` in `lane`. Of each: the least magnitude that must be seen, the weights of θ, a bound of the rest, and the weights
+    /// of each of so many modes.
     pub(crate) fn seek<Elastic: Fn(usize) -> [f64; 2]>(
         &mut self,
         (lane, modes): (usize, usize),
-        quantities: impl Iterator<Item = (f64, [f64; 3], Elastic)>,
-        curved: impl Iterator<Item = Curved>,
+        quantities: impl Iterator<Item = (f64, [f64; 3], f64, Elastic)>,
     ) {
-        self.curved.retain(|of| of.lane != lane);
-        self.curved.extend(curved);
         let mut count = 0;
-        for (i, (least, turn, elastic)) in quantities.enumerate() {
+        for (i, (least, turn, rest, elastic)) in quantities.enumerate() {
             if i == self.quantities.len() {
                 self.quantities.push(Quantity::default());
             }
             let of = &mut self.quantities[i];
-            (of.least[lane], of.curved[lane]) = (least, 0.0);
+            (of.least[lane], of.rest[lane]) = (least, rest);
             put(&mut of.turn, lane, turn);
             of.elastic.iter_mut().take(modes).enumerate().for_each(|(j, rows)| put(rows, lane, elastic(j)));
             count = i + 1;
         }
         for of in &mut self.quantities[count..] {
             let rows = of.turn.iter_mut().chain(of.elastic.iter_mut().flatten());
-            rows.chain([&mut of.curved]).for_each(|row| row[lane] = 0.0);
+            rows.chain([&mut of.rest]).for_each(|row| row[lane] = 0.0);
         }
     }
 
-    /// Whether steps within these magnitudes, the last of which is that of θ̇, certainly hold no peak.
+    /// Whether steps within these magnitudes certainly hold no peak.
     #[inline(always)]
-    pub(super) fn are_passed<S: Simd, const N: usize>(
-        &mut self,
-        simd: S,
-        most: &Turned<S, N>,
-        theta_dot: Lanes<S>,
-    ) -> Answers<S> {
-        for &Curved { output, place, lane, ref structure, phase } in &self.curved {
-            let [u, u_dot] = [&most.u, &most.u_dot].map(|of| Q::each(structure, |j, _| of[j].of(lane)));
-            let state = State { u, u_dot, theta: most.theta.of(lane), theta_dot: theta_dot.of(lane) };
-            let load = Load { a_g: f64::INFINITY, ..Load::default() }; // nothing is known of it here
-            self.quantities[place].curved[lane] =
-                magnitudes(structure, phase, &[load; 2], state).bound(output, structure);
-        }
+    pub(super) fn are_passed<S: Simd, const N: usize>(&self, simd: S, most: &Turned<S, N>) -> Answers<S> {
         let zero = Lanes::splat(simd, 0.0);
         let (mut passed, versine) = (zero.is_at_most(zero), zero.like(0.5) * most.theta * most.theta);
         for of in &self.quantities {
             let [elastic, turning] = of.weigh::<S, N, false>(simd, most);
-            let bound = elastic + turning + Lanes::load(simd, &of.turn[2]) * versine + Lanes::load(simd, &of.curved);
+            let bound = elastic + turning + Lanes::load(simd, &of.turn[2]) * versine + Lanes::load(simd, &of.rest);
             let bound = bound * zero.like(ROUNDING);
             passed = passed & (bound.is_less(Lanes::load(simd, &of.least)) | bound.is_at_most(zero));
         }
@@ -213,14 +185,14 @@ impl<Q: Coordinates> Sought<Q> {
         for (of, bound) in self.quantities.iter_mut().zip(&mut self.bounds) {
             let [elastic, turning] = of.weigh::<S, N, false>(simd, &most);
             let [_, of_cubic, of_versine] = load(simd, &of.turn);
-            let [least, whole] = [&of.least, &of.curved].map(|row| Lanes::load(simd, row));
-            let simple = (elastic + turning + of_versine * versine + whole) * one.like(ROUNDING);
+            let [least, rest] = [&of.least, &of.rest].map(|row| Lanes::load(simd, row));
+            let simple = (elastic + turning + of_versine * versine + rest) * one.like(ROUNDING);
             simple.store(bound);
             let seen = where_so.choose(simple, zero);
             if (seen.is_less(least) | seen.is_at_most(zero)).all() {
                 continue;
             }
-            let curved = (elastic + of_versine) * versine + of_cubic * cubic + whole;
+            let curved = (elastic + of_versine) * versine + of_cubic * cubic + rest;
             let [off, off_turning] = of.weigh::<S, N, false>(simd, &bend.off_cubic);
             let off = off + off_turning;
             // the cubic of the linear part lies among the control points of its halves

@@ -6,7 +6,7 @@ use crate::levels::first_uplift::Liftable;
 #[cfg(feature = "lanes")]
 use crate::levels::full_contact::ExactContact;
 use crate::levels::rules::ChatterLimit;
-use crate::levels::start::{Start, Truncation};
+use crate::levels::start::{MIN_ORDER, Start, Truncation};
 use crate::mechanics::arc::Arc;
 use crate::mechanics::impact;
 use crate::mechanics::instant::{Instant, Second};
@@ -234,7 +234,7 @@ pub(crate) fn derivatives<Q: Coordinates, const K: usize>(
     arc: &mut Arc<Q>,
 ) -> [Second<f64, Q>; K] {
     let start = level.subject().start(*state, dissipators, load, 1.0);
-    arc.fewest = K;
+    arc.spared = MIN_ORDER - K;
     level.series(phase, &Start { local_error: 1e100, ..start }, arc);
     std::array::from_fn(|i| {
         let (k, factorial) = (i + 1, [1.0, 2.0][i]);

@@ -6,6 +6,9 @@ use crate::mechanics::restraint::Dissipators;
 use crate::series::taylor::{MAX_ORDER, reciprocal};
 use crate::{Ramp, State};
 
+/// Fewest orders of a step, so that terms that vanish at rest cannot end it early.
+pub(crate) const MIN_ORDER: usize = 5;
+
 /// The start of a step: the motion, the loads and the accuracy.
 #[derive(Clone, Copy, Debug)]
 pub struct Start<'a, Q = f64> {
@@ -92,7 +95,7 @@ impl<Q: Coordinates> Arc<Q> {
     #[inline(always)]
     pub(crate) fn ends_at(&mut self, k: usize, truncation: &Truncation<Q>, previous_is_small: &mut bool) -> bool {
         let is_small = self.u_dot[k].is_within(&truncation.u_dot) && self.theta_dot[k].abs() <= truncation.theta_dot;
-        let ends = is_small && *previous_is_small && k >= self.fewest;
+        let ends = is_small && *previous_is_small && k + self.spared >= MIN_ORDER;
         *previous_is_small = is_small;
         if ends {
             self.order = k; // not at every order: the next one would read its numbers from memory

@@ -28,9 +28,6 @@ pub fn stretch<Q: Coordinates>(coefficients: &mut [Q], from: f64, scale: f64) {
     });
 }
 
-/// Fewest orders of a step, so that terms that vanish at rest cannot end it early.
-pub(crate) const MIN_ORDER: usize = 5;
-
 /// The motion over one step: a polynomial in time for each component of the state.
 #[derive(Clone, Debug)]
 pub struct Arc<Q = f64> {
@@ -44,7 +41,8 @@ pub struct Arc<Q = f64> {
     pub theta_dot: Series,
     /// Highest order in use.
     pub order: usize,
-    pub(crate) fewest: usize,
+    /// How many of the fewest orders of a step are not needed.
+    pub(crate) spared: usize,
     /// Duration of σ = 1, s.
     pub span: f64,
     /// The σ up to which the truncation error is within the tolerance; at most 1.
@@ -53,8 +51,8 @@ pub struct Arc<Q = f64> {
 
 impl<Q: Coordinates> Default for Arc<Q> {
     fn default() -> Arc<Q> {
-        let (none, fewest) = ([Q::ZERO; MAX_ORDER + 2], MIN_ORDER);
-        Arc { u: none, u_dot: none, theta: ZERO, theta_dot: ZERO, order: 0, fewest, span: 0.0, reach: 0.0 }
+        let none = [Q::ZERO; MAX_ORDER + 2]; // as all else: rooms of zeros cost nothing
+        Arc { u: none, u_dot: none, theta: ZERO, theta_dot: ZERO, order: 0, spared: 0, span: 0.0, reach: 0.0 }
     }
 }
 

@@ -22,7 +22,7 @@ use crate::structure::parameters::PARAMETERS;
 use crate::{Base, Foundation, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 
-/// What an output is of, on ground that gives but for the first two. Contact points are shown if there are more than the outer ones, edges
+/// The part of a structure that has an output, on ground that gives but for the first two. Contact points are shown if there are more than the outer ones, edges
 /// as parts of other outputs, and ties beside the outputs.
 #[derive(Clone, Copy, PartialEq)]
 enum Of {
@@ -50,7 +50,7 @@ pub(crate) enum Search {
     Curved,
 }
 
-/// What is known of an output beside its formula.
+/// All that is known of an output beside its formula.
 struct Row {
     name: &'static str,
     unit: &'static str,
@@ -114,15 +114,12 @@ macro_rules! outputs {
 /// The variables of an FMU that accelerations follow from: the load, the motion, the level, and all parameters but r.
 pub const ACCELERATION: &[&str] = &{
     const OTHERS: [&str; 8] = ["a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "theta_dot", "detail"];
-    let (mut names, mut i) = ([OTHERS[0]; OTHERS.len() + PARAMETERS.len() - 1], 0);
-    let mut of_parameter = OTHERS.len();
+    let (mut names, mut count, mut i) = ([""; OTHERS.len() + PARAMETERS.len() - 1], OTHERS.len(), 0);
+    names.split_at_mut(count).0.copy_from_slice(&OTHERS);
     while i < PARAMETERS.len() {
-        if i < OTHERS.len() {
-            names[i] = OTHERS[i];
-        }
         if !matches!(PARAMETERS[i].name.as_bytes(), b"r") {
-            names[of_parameter] = PARAMETERS[i].name;
-            of_parameter += 1;
+            names[count] = PARAMETERS[i].name;
+            count += 1;
         }
         i += 1;
     }

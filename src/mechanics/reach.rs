@@ -83,7 +83,7 @@ impl<Q: Coordinates> OffChord<Q> {
 }
 
 impl<Q: Coordinates> Magnitudes<'_, Q> {
-    /// The motion of `structure` in bounds of its magnitudes. Nothing bounds θ̈.
+    /// The motion of `structure` in bounds of its magnitudes. θ̈ has no bound.
     fn instant<'a>(&self, structure: &'a Structure) -> Instant<'a, Most, Mosts<Q>> {
         let &Magnitudes { damping, u, u_dot, theta, theta_dot, a_g, F_t, a_v, .. } = self;
         let [cos, theta_ddot] = [1.0, f64::INFINITY].map(Most);
@@ -284,7 +284,7 @@ impl Reach {
 
 impl Gauge {
     /// Bound of the magnitude of the terms of [`Gauge::at`] in θ and in the ground acceleration over a polynomial, within `most`.
-    /// They are added up before they are bounded, because θ̈ opposes the ground acceleration. What is left of b is at most
+    /// They are added up before they are bounded, because θ̈ opposes the ground acceleration. The rest of b is at most
     /// B θ̇² + |a_g| θ²/2 + |a_v| |θ|, on ground that gives without B θ̇².
     pub(crate) fn turning<Q: Coordinates>(
         &self,

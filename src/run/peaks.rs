@@ -7,7 +7,7 @@
 
 use crate::engine::piece::{CONVERGED, Expansion, Piece};
 #[cfg(feature = "lanes")]
-use crate::engine::sought::{Curved, Sought};
+use crate::engine::sought::Sought;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::outputs::Search;
@@ -288,19 +288,11 @@ impl Peaks {
     pub(super) fn seek<Q: Coordinates>(&self, engine: &crate::Engine<Q>, lane: usize, sought: &mut Sought<Q>) {
         let (structure, phase) = (engine.structure(), engine.motion().phase);
         let quantity = |of: &Searched| {
-            let (turn, elastic) = structure.reaches()[of.place].weights(of.output, structure, phase);
-            (of.peak.least(), turn, elastic)
+            let reach = &structure.reaches()[of.place];
+            let (turn, elastic) = reach.weights(of.output, structure, phase);
+            (of.peak.least(), turn, if reach.is_curved { f64::INFINITY } else { 0.0 }, elastic)
         };
-        let is_curved = |(_, of): &(usize, &Searched)| structure.reaches()[of.place].is_curved;
-        let curved = |(place, of): (usize, &Searched)| Curved {
-            output: of.output,
-            place,
-            lane,
-            structure: structure.clone(),
-            phase,
-        };
-        let curved = self.searched.iter().enumerate().filter(is_curved).map(curved);
-        sought.seek((lane, structure.modes().len()), self.searched.iter().map(quantity), curved);
+        sought.seek((lane, structure.modes().len()), self.searched.iter().map(quantity));
     }
 
     /// Whether magnitudes of `structure` within `bounds` at `time` (s) or later may change a peak.
