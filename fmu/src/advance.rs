@@ -9,6 +9,9 @@ use rocking::{LinearLoad, Watch};
 /// Part of the time, or of 1/p_l if that is more, that rounding can shift a transition by.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// How an advance has ended.
+type Advanced = Result<Progress, AdvanceError>;
+
 impl<Q: Runs> Scene<Q> {
     /// [`Scene::advance`] up to the first transition. One within rounding of the end of the step counts as at its end: a
     /// host that goes back and steps to the instant that it was told meets it again. One at the very start, where an
@@ -20,7 +23,7 @@ impl<Q: Runs> Scene<Q> {
         step: f64,
         inputs: &LinearLoad<Q>,
         told: &mut Told<Q>,
-    ) -> Result<Progress, AdvanceError> {
+    ) -> Advanced {
         let (from, elapsed) = (self.engine.motion().time, self.elapsed);
         let until = from + step;
         let mut progress = self.advance(setup, step, inputs, told)?;
@@ -50,13 +53,7 @@ impl<Q: Runs> Scene<Q> {
     /// Advances by `step` (s) under `inputs` and the record, with peaks and validity watched as `setup` says. If it
     /// fails, nothing has changed.
     #[inline(always)]
-    pub fn advance(
-        &mut self,
-        setup: &Setup,
-        step: f64,
-        inputs: &LinearLoad<Q>,
-        told: &mut Told<Q>,
-    ) -> Result<Progress, AdvanceError> {
+    pub fn advance(&mut self, setup: &Setup, step: f64, inputs: &LinearLoad<Q>, told: &mut Told<Q>) -> Advanced {
         if setup.peaks || setup.validity {
             self.advance_watched(setup, step, inputs, told)
         } else {
@@ -65,13 +62,7 @@ impl<Q: Runs> Scene<Q> {
     }
 
     #[inline(never)]
-    fn advance_watched(
-        &mut self,
-        setup: &Setup,
-        step: f64,
-        inputs: &LinearLoad<Q>,
-        told: &mut Told<Q>,
-    ) -> Result<Progress, AdvanceError> {
+    fn advance_watched(&mut self, setup: &Setup, step: f64, inputs: &LinearLoad<Q>, told: &mut Told<Q>) -> Advanced {
         let mut validity = self.watch_validity();
         let of_limits = setup.validity.then_some(&mut validity);
         let mut watch = Watching { peaks: setup.peaks.then(|| self.peaks.clone().watch()), validity: of_limits, told };
@@ -82,13 +73,7 @@ impl<Q: Runs> Scene<Q> {
     }
 
     #[inline(always)]
-    fn follow<W: Watch<Q>>(
-        &mut self,
-        setup: &Setup,
-        step: f64,
-        inputs: &LinearLoad<Q>,
-        watch: &mut W,
-    ) -> Result<Progress, AdvanceError> {
+    fn follow<W: Watch<Q>>(&mut self, setup: &Setup, step: f64, inputs: &LinearLoad<Q>, watch: &mut W) -> Advanced {
         let Scene { engine, ground, elapsed, .. } = self;
         let Some(ground) = ground else { return engine.advance(step, *inputs, watch) };
         setup.ground_motion(ground).advance(engine, elapsed, step, *inputs, watch)

@@ -10,7 +10,7 @@ use fmi_unit::{Completed, Failure, Logger, Update};
 use rocking::run::Runs;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::outside_step::{Checked, Checkpoint};
-use rocking::{Load, State, Transition};
+use rocking::{GroundMotion, Load, State, Transition};
 
 /// The relative tolerance up to which samples of the record are events.
 ///
@@ -52,14 +52,8 @@ impl<Q: Runs> Scene<Q> {
     fn next_event(&self, setup: &Setup) -> Option<f64> {
         let motion = self.engine.motion();
         let released = Some(motion.held()).filter(|held| *held > 0.0).map(|held| motion.time + held);
-        let ground = self.ground.as_ref().map(|ground| setup.ground_motion(ground));
-        let of_ground = ground.and_then(|ground| {
-            if setup.tolerance <= KINKS_MATTER {
-                ground.next_sample(self.elapsed)
-            } else {
-                ground.next_jump(self.elapsed)
-            }
-        });
+        let next = if setup.tolerance <= KINKS_MATTER { GroundMotion::next_sample } else { GroundMotion::next_jump };
+        let of_ground = self.ground.as_ref().and_then(|ground| next(&setup.ground_motion(ground), self.elapsed));
         let of_ground = of_ground.map(|instant| setup.start_time + instant);
         let next = released.into_iter().chain(of_ground).reduce(f64::min)?;
         Some(next).filter(|next| *next > motion.time && next.is_finite())

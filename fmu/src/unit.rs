@@ -65,9 +65,8 @@ impl<Q: Runs> Unit<Q> {
     /// An instance just instantiated from `archive`.
     pub fn new(archive: Archive) -> Unit<Q> {
         let (table, setup) = (Table::new(&archive.contents), Setup::new(&archive.contents));
-        let (inputs, has_started, kept, told_of_stairs) =
-            (Inputs::new(&archive.contents.structure), false, None, false);
-        Unit { table, archive, setup, inputs, scene: None, has_started, kept, told_of_stairs }
+        let inputs = Inputs::new(&archive.contents.structure);
+        Unit { table, archive, setup, inputs, scene: None, has_started: false, kept: None, told_of_stairs: false }
     }
 
     /// The structure in motion, or at its start with what has been set so far; its record is in the archive, or on disk.
