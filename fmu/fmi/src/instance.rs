@@ -444,24 +444,21 @@ impl Instance {
         for ((reference, &order), &value) in references.iter().zip(orders).zip(values) {
             let is_input = self.ranges.get(*reference as usize).is_some_and(|(min, max)| min <= max);
             if !(is_input && order == 1 && value.abs() <= f64::MAX) {
-                return Err(self.no_slope(*reference, order, value));
+                return self.no_slope(*reference, order, value);
             }
         }
         self.model.set_slopes(references, values)
     }
 
     #[cold]
-    fn no_slope(&self, reference: u32, order: i32, value: f64) -> Failure {
-        let variable = match self.find(reference) {
-            Ok(variable) => variable,
-            Err(failure) => return failure,
-        };
+    fn no_slope(&self, reference: u32, order: i32, value: f64) -> Result<(), Failure> {
+        let variable = self.find(reference)?;
         let name = variable.name.to_string();
-        match variable.causality {
+        Err(match variable.causality {
             Causality::Input if order != 1 => Failure::WrongOrder { name, order },
             Causality::Input => Failure::BadSlope { name, value },
             _ => Failure::NoInput { name },
-        }
+        })
     }
 
     /// Rates of outputs by time.
