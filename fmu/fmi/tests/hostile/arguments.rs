@@ -58,7 +58,7 @@ pub const TEXT: Meant = |variable| variable.data_type == DataType::String;
 pub const NUMBER_TO_SET: Meant = |variable| NUMBER(variable) && variable.causality == Causality::Parameter;
 pub const SWITCH: Meant = |variable| BOOLEAN(variable) && variable.causality == Causality::Parameter;
 pub const OUTPUT: Meant = |variable| variable.causality == Causality::Output && variable.is_continuous;
-const INPUT: Meant = |variable| variable.causality == Causality::Input;
+pub const INPUT: Meant = |variable| variable.causality == Causality::Input;
 const STATE: Meant = |variable| variable.role == Role::State;
 
 /// The arguments of one call.
@@ -386,10 +386,6 @@ impl Sequence<'_> {
         let unknowns = self.references(|variable| OUTPUT(variable) || matches!(variable.role, Role::RateOf(_)));
         self.drawn.unknowns = self.drawn.n;
         unknowns
-    }
-
-    pub fn knowns(&mut self) -> *const c_uint {
-        self.references(INPUT)
     }
 
     /// Changes of the knowns.

@@ -27,7 +27,7 @@ pub const VERSION: Version = Version {
         SetBoolean(call.references(SWITCH), call.count(), call.integers(0..2))
         SetString(call.references(TEXT), call.count(), call.texts(&call.subject.texts))
         GetDirectionalDerivative(
-            call.unknowns(), call.count(), call.knowns(), call.count(), call.seed(), call.derivatives()
+            call.unknowns(), call.count(), call.references(INPUT), call.count(), call.seed(), call.derivatives()
         )
         SetRealInputDerivatives(call.references_to_set(), call.count(), call.integers(1..2), call.reals_to_set())
         GetRealOutputDerivatives(

@@ -29,7 +29,7 @@ pub const VERSION: Version = Version {
         SetBoolean(call.references(SWITCH), call.count(), call.integers(0..2), call.count_of_values())
         SetString(call.references(TEXT), call.count(), call.texts(&call.subject.texts), call.count_of_values())
         GetDirectionalDerivative(
-            call.unknowns(), call.count(), call.knowns(), call.count(), call.seed(), call.count_of_values(),
+            call.unknowns(), call.count(), call.references(INPUT), call.count(), call.seed(), call.count_of_values(),
             call.derivatives(), call.count_of_values()
         )
         EvaluateDiscreteStates()

@@ -207,7 +207,7 @@ pub fn no_call_does_harm(subject: &Subject, version: u8, is_model: bool) {
     };
     let calls = env::var("FUZZ_CALLS").map_or(CALLS, |calls| calls.parse().expect("FUZZ_CALLS is a number"));
     let location = CString::new((version.location)(subject.resources.path())).unwrap();
-    let tally = RefCell::new(Tally { tried: vec![0; version.calls.len()], done: vec![false; version.calls.len()] });
+    let tally = RefCell::new(Tally(vec![(0, false); version.calls.len()]));
     let config = Config {
         cases: calls.div_ceil(CALLS_PER_SEQUENCE as u64) as u32,
         failure_persistence: None,
@@ -240,13 +240,8 @@ pub fn no_call_does_harm(subject: &Subject, version: u8, is_model: bool) {
     }
 }
 
-/// The results of the calls, by the place of each function in [`Version::calls`].
-struct Tally {
-    /// The stages that it was called in.
-    tried: Vec<Stages>,
-    /// Whether it did what it is for.
-    done: Vec<bool>,
-}
+/// The stages that each function was called in, by its place in [`Version::calls`], and whether it did what it is for.
+struct Tally(Vec<(Stages, bool)>);
 
 impl Tally {
     /// Every function was called in every stage in which an instance stays, and every one that may be was done.
@@ -255,9 +250,9 @@ impl Tally {
         let stages = version.table.marked(version.table.stages.iter().map(|(mark, _)| *mark), interface);
         let stays = stages.iter().filter(|stage| !stage.is_within_step());
         let all = stays.fold(0, |all, stage| all | 1 << *stage as u8);
-        for (at, (name, _)) in version.calls.iter().enumerate() {
-            assert_eq!(self.tried[at], all, "{name} was not called in every stage");
-            assert_ne!(self.done[at], allowed(name).is_empty(), "{name}");
+        for ((name, _), (tried, is_done)) in version.calls.iter().zip(&self.0) {
+            assert_eq!(*tried, all, "{name} was not called in every stage");
+            assert_ne!(*is_done, allowed(name).is_empty(), "{name}");
         }
         let is_called = |name: &&str| version.calls.iter().any(|(called, _)| called == name);
         let others = (version.functions)().into_iter().filter(|name| !is_called(name));
@@ -382,8 +377,8 @@ impl Sequence<'_> {
         self.told.call_back.set(null_mut());
         let messages = self.told.messages.take();
         assert!([OK, DISCARD, ERROR].contains(&status), "{name}: {status} {messages:?}");
-        tally.tried[number] |= 1 << stage as u8;
-        tally.done[number] |= status != ERROR;
+        let (tried, is_done) = &mut tally.0[number];
+        (*tried, *is_done) = (*tried | 1 << stage as u8, *is_done || status != ERROR);
         let failures: Vec<_> = messages.into_iter().filter(|(status, _)| *status > WARNING).collect();
         assert_eq!(failures.len(), usize::from(status != OK), "{name}: {status}, {failures:?}");
         let failure = failures.into_iter().next().map(|(told, text)| {
