@@ -43,8 +43,10 @@ impl Description<'_> {
             Version::Fmi3 => ("3.0", "instantiationToken", None),
         };
         let has_numbers = self.variables.iter().any(|variable| variable.name.contains('['));
-        let units = self.units().into_iter().map(|name| self.unit(name));
-        let types = self.enumerations().into_iter().map(|of| enumeration(version, of));
+        let unit = |of: &DataType| if let DataType::Real { unit, .. } = *of { Some(unit) } else { None };
+        let item = |of: &DataType| if let DataType::Enumeration(of) = *of { Some(of) } else { None };
+        let units = self.each(unit).filter(|name| *name != "1").map(|name| self.unit(name));
+        let types = self.each(item).map(|of| enumeration(version, of));
         let variables = (0..).zip(self.variables);
         let is_row = |variable: &Variable| version == Version::Fmi3 || variable.causality != Causality::Independent;
         let rows = variables.filter(|(_, variable)| is_row(variable));
@@ -99,16 +101,13 @@ impl Description<'_> {
         }
     }
 
-    /// The units that variables have, each once.
-    fn units(&self) -> Vec<&'static str> {
-        let mut units = Vec::new();
-        for variable in self.variables {
-            match variable.data_type {
-                DataType::Real { unit, .. } if unit != "1" && !units.contains(&unit) => units.push(unit),
-                _ => (),
-            }
+    /// What the types of variables have, each once.
+    fn each<T: PartialEq>(&self, of: impl Fn(&DataType) -> Option<T>) -> impl Iterator<Item = T> {
+        let mut found = Vec::new();
+        for one in self.variables.iter().filter_map(|variable| of(&variable.data_type)) {
+            found.extend((!found.contains(&one)).then_some(one));
         }
-        units
+        found.into_iter()
     }
 
     /// The definition of a unit, of which nothing but the name may be known.
@@ -123,18 +122,6 @@ impl Description<'_> {
         let display = display
             .map(|(_, name, factor)| Element::new("DisplayUnit").with("name", name).with("factor", digits(*factor)));
         Element::new("Unit").with("name", name).holding(base).holding(display)
-    }
-
-    /// The enumerations that variables have, each once.
-    fn enumerations(&self) -> Vec<&'static Enumeration> {
-        let mut found: Vec<&Enumeration> = Vec::new();
-        for variable in self.variables {
-            match variable.data_type {
-                DataType::Enumeration(of) if !found.contains(&of) => found.push(of),
-                _ => (),
-            }
-        }
-        found
     }
 
     fn log_categories(&self) -> Element {
