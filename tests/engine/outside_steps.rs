@@ -154,29 +154,3 @@ fn a_step_that_hides_a_hop_or_ends_below_the_floor_is_put_right() {
         }
     }
 }
-
-#[test]
-fn indicators_vanish_where_the_engine_sees_transitions() {
-    let record = burst();
-    for detail in [Detail::Auto, Detail::Linear, Detail::Modal, Detail::Rigid] {
-        let (_, transitions) = own(detail, &record);
-        let Outside { mut engine, ground, .. } = Outside::new(detail, &record);
-        let mut elapsed = Elapsed::default();
-        for transition in transitions.iter().take(12) {
-            let step = transition.time - engine.motion().time;
-            // to just before it
-            let before = 0.999_999 * step;
-            if before > 0.0 {
-                ground.advance(&mut engine, &mut elapsed, before, LinearLoad::default(), &mut ()).unwrap();
-            }
-            let load = LinearLoad::default().on_ground(ground.at(elapsed));
-            let indicators = engine.event_indicators(load.value);
-            assert!(
-                (0.0..2e-3).contains(&indicators[0]) && indicators[1] > 0.0,
-                "{detail:?} {transition:?} {indicators:?}"
-            );
-            ground.advance(&mut engine, &mut elapsed, step - before + 1e-9, LinearLoad::default(), &mut ()).unwrap();
-            assert!(engine.event_indicators(load.value).iter().all(|indicator| *indicator > 0.0));
-        }
-    }
-}
