@@ -400,12 +400,14 @@ mod tests {
     use crate::logger::{Logger, Status};
     use crate::model::Step;
     use crate::variables::{Value, Variable};
+    use std::cell::Cell;
     use std::ffi::CString;
     use std::sync::Arc;
-    use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-    /// How many models have been dropped.
-    static DROPPED: AtomicU32 = AtomicU32::new(0);
+    thread_local! {
+        /// How many models this thread has dropped.
+        static DROPPED: Cell<u32> = const { Cell::new(0) };
+    }
 
     /// A model with a variable whose value panics.
     #[derive(serde::Serialize, serde::Deserialize)]
@@ -413,7 +415,7 @@ mod tests {
 
     impl Drop for Touchy {
         fn drop(&mut self) {
-            DROPPED.fetch_add(1, Relaxed);
+            DROPPED.set(DROPPED.get() + 1);
         }
     }
 
@@ -450,7 +452,7 @@ mod tests {
             let c = *c.cast::<*mut c_void>();
             assert_eq!(GetFloat64(c, &1, 1, &mut 0.0, 1), Status::Fatal as c_int);
             FreeInstance::<Touchy>(c);
-            assert_eq!(DROPPED.load(Relaxed), 0);
+            assert_eq!(DROPPED.get(), 0);
         }
     }
 
@@ -459,6 +461,7 @@ mod tests {
         let mut c: *mut c_void = ptr::null_mut();
         let token = CString::new(Touchy.token()).unwrap();
         let environment = (&raw mut c).cast();
+        DROPPED.set(0);
         unsafe {
             let [name, token, folder] = [c"a".as_ptr(), token.as_ptr(), c"/".as_ptr()];
             let instantiate = InstantiateCoSimulation::<Touchy>;
@@ -470,6 +473,6 @@ mod tests {
             assert_eq!(Reset(c), Status::Fatal as c_int);
             FreeInstance::<Touchy>(c);
         }
-        assert_eq!(DROPPED.load(Relaxed), 1);
+        assert_eq!(DROPPED.get(), 1);
     }
 }
