@@ -68,7 +68,7 @@ fn template(structure: &OneMass) -> Result<String, fmt::Error> {
             writeln!(out, "# {name} = {value} # {description}, {unit}, {min} to {max}: instead of {in_place_of}")?;
         }
     }
-    out += "\n# Without their #, these lines put the structure on ground that gives, which needs J0 and no r.\n# [ground]\n\
+    out += "\n# Without their #, these lines put the structure on ground that gives (Winkler springs), which needs J0 and no r.\n# [ground]\n\
             # f_v = 10 # frequency of the bounce on the ground, Hz: or k_v, the vertical stiffness, N/m\n\
             # zeta_v = 0.2 # damping ratio of the bounce\n# n_points = 2 # contact points from edge to edge\n";
     Ok(out)

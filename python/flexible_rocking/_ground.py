@@ -23,7 +23,7 @@ class _Numbers(TypedDict, total=False):
 
 
 class Ground(dict[str, Any]):
-    """Contact points under the base that push and never pull, each a spring and a dashpot: Ground(f_v=40, zeta_v=0.2).
+    """Soil-structure interaction by Winkler springs under the base, compression-only, with dashpots: Ground(f_v=40, zeta_v=0.2).
 
     f_v: frequency of the bounce, Hz, or else k_v: stiffness of all points, N/m. f_v=0 is rigid ground.
     zeta_v: damping ratio of the bounce, by default 0.2, or else c_v: damping of all points, N.s/m.

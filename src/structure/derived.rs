@@ -85,7 +85,7 @@ static OF_STRUCTURE: [Derived<Structure>; 9] = [
 
 /// The numbers of ground that gives, of a structure that stands there.
 static OF_GROUND: [Derived<Structure>; 6] = [
-    derived!("k_v" ["N/m"] "vertical stiffness of the ground", "", |of| of.ground().sum(0)),
+    derived!("k_v" ["N/m"] "vertical stiffness of the ground (Winkler springs)", "", |of| of.ground().sum(0)),
     derived!("k_r" ["N.m/rad"] "rotational stiffness of the ground", "", |of| of.ground().sum(2)),
     derived!("f_v" ["Hz"] "frequency of the bounce on the ground", "", |of| of.ground().omega_v(of.base()) / TAU),
     derived!("zeta_v" ["1"] "damping ratio of the bounce on the ground", "", |of| of.ground().zeta_v(of.base())),

@@ -1,4 +1,5 @@
-//! Ground that gives: contact points under the base, each a spring and a dashpot that push and never pull.
+//! Ground that gives, for soil-structure interaction: Winkler springs under the base. Each contact point is a compression-only spring with a
+//! dashpot, which push and never pull.
 //!
 //! A point at ξ from the middle of the base is compressed by −e and pushes with N:
 //!

@@ -44,7 +44,7 @@ pub const NUMBERS: [Number; 13] = [
 /// The numbers of ground that gives, as [`Ground`] has them; without all of them the ground is rigid.
 pub const OF_GROUND: [Number; 4] = [
     ("f_v", "Hz", "frequency of the bounce on the ground", 10.0, [0.5, 200.0]),
-    ("k_v", "N/m", "vertical stiffness of the ground", f64::NAN, [1e6, 1e12]),
+    ("k_v", "N/m", "vertical stiffness of the ground (Winkler springs)", f64::NAN, [1e6, 1e12]),
     ("zeta_v", "1", "damping ratio of the bounce", 0.2, [0.0, 1.0]),
     ("n_points", "1", "contact points from edge to edge", 2.0, [2.0, 21.0]),
 ];
