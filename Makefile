@@ -1,5 +1,5 @@
-# make demo      run the FMU on a real earthquake and draw docs/img/pacoima_mcmanus.png (1 to 2 minutes)
-# make test      all that a contributor needs: the tests but those of tests/heavy, and whether what is not built compiles (3 minutes more)
+# make demo      run the FMU on a real earthquake and draw docs/img/pacoima_mcmanus.png (70 s)
+# make test      all that a contributor needs: the tests but those of tests/heavy, and whether what is not built compiles (5 minutes)
 # make check     format, linters and the tests of what differs from origin/main: the loop of whoever changes a line (minutes)
 # make lint      format and linters of everything, warnings denied
 # make heavy     what takes longer or needs more (half an hour and more), or parts of it: make heavy PARTS="python hosts"
@@ -57,7 +57,7 @@ install = test -z "$(strip $(1))" || dpkg --status $(1) >/dev/null 2>&1 || { $(s
 
 # pip while cargo compiles.
 demo:
-	@echo "Building the FMU and shaking it with a real earthquake: one to two minutes the first time, on two cores."
+	@echo "Building the FMU and shaking it with a real earthquake: 70 s the first time, on two cores."
 	$(MAKE) --no-print-directory .venv/ready & $(MAKE) --no-print-directory out/mcmanus.fmu out/evison.fmu && wait $$!
 	cp $(RECORDS)/$(PACOIMA) $(RECORDS)/$(EL_CENTRO) out/
 	$(PYTHON) examples/first_run.py out/mcmanus.fmu

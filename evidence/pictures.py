@@ -3,7 +3,7 @@
     motion      a bridge pier under the record of Pacoima Dam
     levels      which level of detail is enough, over frequency and intensity
     tornado     what a wrong number changes, by the script of docs/howto/choose_numbers.md
-    questions   rotation and probabilities over PGV, by the script of docs/howto/sweeps.md
+    questions   rotation and probabilities over PGV, by the script of docs/howto/fragility_study.md
     profile     peaks over the height of a building, by the script of docs/howto/frames.md
     ensembles   many runs at once, of the numbers that `make measure WHAT=ensembles` has left in docs/evidence
     explore     the page of `make explore` on the record of Pacoima Dam; only if it is named
@@ -121,7 +121,7 @@ def levels(path: Path) -> None:
         named.update(np.ravel(found))
         full = np.mean(np.array(found) == list(LEVELS).index("auto"))
         axis.set(xscale="log", yscale="log", xlabel="$f_{fc}$ (Hz)",
-                 title=f"{title}:\n{full:.0%} of the scenes need the full equations")
+                 title=f"{title}:\n{full:.0%} of the scenes need auto")
         axis.grid(False)
     axes[0].set_ylabel(r"PGA / (g tan $\alpha_{cg}$)")
     shown = [level for k, level in enumerate(LEVELS) if k in named]
@@ -162,7 +162,7 @@ PICTURES = {
     "img/motion.gif": motion, "img/levels.svg": levels,
     "img/tornado.svg": drawn_by("docs/howto/choose_numbers.md", "Change of the peaks for each wrong number",
                                 "Bars: medians of six components of ground motion. Strokes: single components."),
-    "img/questions.svg": drawn_by("docs/howto/sweeps.md", "Rotation and probabilities over the peak ground velocity",
+    "img/questions.svg": drawn_by("docs/howto/fragility_study.md", "Rotation and probabilities over the peak ground velocity",
                                   "Left: one line per record, without the runs that overturn. Right: fragility curves of two piers."),
     "img/profile.svg": drawn_by("docs/howto/frames.md", "Peaks over the height of a building of ten storeys",
                                 "Solid: the building rocks. Dashed: its base is fixed."),

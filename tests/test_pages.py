@@ -2,7 +2,9 @@
 
 import re
 
+import frames
 import pytest
+import test_against_reference as scenes
 from conftest import ROOT
 from host import output
 
@@ -25,6 +27,11 @@ def test_every_page_is_in_readme_and_in_the_list_of_the_site():
     for page in sorted((ROOT / "docs").glob("*/*.md")):
         name = str(page.relative_to(ROOT))
         assert f"]({name})" in readme and f"file: {name.removesuffix('.md')}\n" in site, name
+
+
+def test_readme_counts_the_scenes_that_are_compared_with_an_independent_integration():
+    of = [*scenes.FREE, *scenes.RESTRAINED, *frames.SCENES]
+    assert f"to 1e-9 of the peak in {len(of)} scenes." in (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("file", sorted((ROOT / "examples").glob("*.toml")), ids=lambda file: file.name)

@@ -120,17 +120,20 @@ def draw(runs: pd.DataFrame, scene, path: Path) -> None:
         axis.axhspan(MEANINGLESS, TOP, color="0.9", linewidth=0)
         methods = [method for method in runs["method"][runs["group"] == group].unique() if method != AUTO]
         looks = zip(COLOURS * 2, "os^Dos^Dos^D")
-        for method, (color, marker) in [(AUTO, ("black", "o")), *zip(methods, looks)]:
+        for method, (color, marker) in zip(methods, looks):
             of = runs[runs["method"] == method]
-            name = "this engine" if method == AUTO else method.removeprefix("this project, ").removesuffix(AT_STEP_ENDS)
+            name = method.removeprefix("this project, ").removesuffix(AT_STEP_ENDS)
             good = of[of["error_theta"].notna()]
             axis.plot(good["microseconds_per_sample"], good["error_theta"].clip(bottom, MEANINGLESS), color=color, marker=marker, markersize=4,
-                      linestyle="" if method == AUTO else "-", fillstyle="full" if marker == "o" else "none", label=name.replace(", ", ",\n"))
+                      fillstyle="full" if marker == "o" else "none", label=name.replace(", ", ",\n"))
             failed = of["microseconds_per_sample"][of["error_theta"].isna()]
             axis.plot(failed, np.full(len(failed), FAILED), "x", color=color, markersize=5)
+        x, y = cost[runs["method"] == AUTO], errors[runs["method"] == AUTO].clip(bottom)
+        axis.plot(x, y, "*", color="black", markersize=13, zorder=1.9, clip_on=False)
+        axis.annotate("this engine", (x.max(), y.min()), (7, 3), textcoords="offset points", weight="bold")
         axis.plot([], [], "x", color="black", label="fails")
         axis.set(title=title, xscale="log", yscale="log", xlim=across, ylim=(bottom, TOP), ylabel="largest error of θ\nover its peak")
         axis.legend(loc="center left", bbox_to_anchor=(1, 0.5))
     axes[-1].set_xlabel("computing time per sample of the record, µs")
-    figure.suptitle(finding(scene, runs).replace(": ", ":\n"))
+    figure.suptitle(finding(scene, runs).replace(": ", ":\n"), fontsize=9)
     save(figure, path, finding(scene, runs), "Error of θ against computing time per sample, one curve a method, one mark a run.")

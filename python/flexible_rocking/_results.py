@@ -217,10 +217,11 @@ def plot_history(run: "Run") -> "Figure":
         symbol, unit, size = LABELS[label]
         size = size or run.structure.g
         axis.plot(response["time"], response[name] / size, linewidth=0.8)
-        axis.plot(instants, run.at(instants)[name] / size, ".", markersize=3)
+        axis.plot(instants, run.at(instants)[name] / size, ".", markersize=3, label="transitions")
         axis.set(ylabel=f"{symbol}{name.removeprefix(label)} ({unit})", xlim=(run.start, run.end))
         if run.fall is not None:
-            axis.axvline(run.fall, color="tab:purple", linestyle="--", linewidth=0.8)
+            axis.axvline(run.fall, color="tab:purple", linestyle="--", linewidth=0.8, label="falls")
+    axes[0].legend(loc="upper right", fontsize="small")
     axes[-1].set(xlabel="time (s)")
     figure.suptitle(run.record.title if run.fall is None else f"{run.record.title}, falls from {run.fall:.6g} s on")
     return figure

@@ -134,7 +134,7 @@ fn draw_legend<'a>(
     };
     let notes = [
         format!("{dots}; one that overturns exceeds every limit."),
-        "Bands and ranges: 95 %, with records as independent (under one record: structures).".into(),
+        "Bands and ranges: 95 % for the curves, not for the dots; records are independent (under one record: structures).".into(),
     ];
     for (i, note) in notes.into_iter().enumerate() {
         area.draw(&Text::new(note, (swatch - px(14.0), height(lines + i)), words(SMALL, colour::GREY)))?;

@@ -497,7 +497,7 @@ def test_the_weakest_motion_that_reaches_a_limit_is_found():
 
 
 def test_stripes_that_begin_too_high_or_do_not_rise_are_told():
-    """The page of sweeps prints the other notes."""
+    """The page of the study prints the other notes."""
     pier, pulse = fr.Structure(preset="mcmanus"), {"pulse": fr.pulse("cosine", amplitude=0.5, frequency=1)}
     assert fr.intensity_at(pier, pulse, scale=[7.5, 8])["note"][0] == "reached at the weakest stripe, scale 7.5: begin lower"
     with pytest.raises(ValueError, match="increasing factors greater than 0 are needed"):
@@ -578,8 +578,8 @@ def test_formats_read_back(tmp_path):
     assert not (tmp_path / "none").exists()
 
 
-def test_statistics_of_the_page_of_sweeps_are_those_of_statsmodels(tmp_path, monkeypatch):
-    text = (ROOT / "docs" / "howto" / "sweeps.md").read_text(encoding="utf-8")
+def test_statistics_of_the_page_of_the_study_are_those_of_statsmodels(tmp_path, monkeypatch):
+    text = (ROOT / "docs" / "howto" / "fragility_study.md").read_text(encoding="utf-8")
     monkeypatch.setenv("MPLBACKEND", "agg")
     monkeypatch.chdir(tmp_path)
     of = {}
@@ -612,4 +612,4 @@ def test_statistics_of_the_page_of_sweeps_are_those_of_statsmodels(tmp_path, mon
     assert demands.loc["Units", ["1-PFA-0-1", "1-PFA-6-1", "1-PID-6-1", "1-IM-0-1"]].tolist() == ["mps2", "mps2", "rad", "g"]
     found = demands.drop("Units").astype(float)
     assert found["1-PFA-6-1"].tolist() == stands["peak_a_t[6][m/s2]"].tolist() and found["1-PID-1-1"].tolist() == stands["peak_drift_ratio[1]"].tolist()
-    assert found["1-ROT-0-1"].tolist() == stands["peak_theta[rad]"].tolist() and found.index[0] == "I-ELC180 x 0.2"
+    assert found["1-ROT-0-1"].tolist() == stands["peak_theta[rad]"].tolist() and found.index[0] == "El Centro 180 x 0.2"
