@@ -4,7 +4,7 @@
 //! interval, or where its truncation error reaches the tolerance. [`crate::series::first_crossing`] finds the first transition and
 //! cannot step over it. Phases say which guards are watched, and what happens when a guard closes.
 //!
-//! The number of steps is bounded because the number of transitions is ([`crate::levels::rules`]). One advance takes at most one
+//! The number of steps is bounded because the number of transitions is ([`crate::mechanics::impact`]). One advance takes at most one
 //! step, plus two steps per transition, plus one step per time 1/Ω. The rate Ω is the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc, p_l
 //! and the rates that restraints add. A violent motion takes up to four steps per 1/Ω, and Ω is then the largest of these rates and
 //! |θ̇|, |u̇|/ρ and √(|ü|/ρ), where ρ² = (J0 + m0 B²)/m + (sB − u)². Of many masses, ω_u is the highest frequency while rocking, and
@@ -36,6 +36,7 @@ use crate::levels::start::Start;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::contact;
 use crate::mechanics::energy::energy;
+use crate::mechanics::impact::Chatter;
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::{Coordinates, Duals, Lateral};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
@@ -47,7 +48,7 @@ use crate::structure::ground::FOOTING;
 use crate::structure::mode::Modes;
 use crate::structure::quantity::{Quantity, Refused, ensure};
 use crate::{Output, Phase, State, Structure};
-use motion::{Chatter, Motion, Work};
+use motion::{Motion, Work};
 use phases::Watched;
 use piece::{Piece, Room, Watch};
 use sample::{Sample, shown};

@@ -1,6 +1,5 @@
 //! Levels of detail: the equations by which a structure moves, and what they make of it. The same code finds and applies transitions
-//! at all levels, with the same condition of uplift. A rigid structure, which is a base without modes, comes to rest by a rule of its
-//! own. A fixed base has no uplift.
+//! at all levels, with the same condition of uplift. A fixed base has no uplift.
 //!
 //! | level | equations | solved by |
 //! |---|---|---|
@@ -15,7 +14,6 @@
 //! alone, `linear` by those of a base with one mode, and there is no level `modal`.
 
 pub mod detail;
-pub(crate) mod first_uplift;
 pub mod full_contact;
 pub(crate) mod level;
 mod linear;
@@ -23,10 +21,9 @@ pub(crate) mod modes;
 pub mod nonlinear;
 pub(crate) mod on_ground;
 pub(crate) mod oscillator;
-pub mod rules;
 pub(crate) mod start;
+pub mod uplift;
 
-use crate::levels::first_uplift::Liftable;
 use crate::levels::full_contact::ExactContact;
 #[cfg(feature = "lanes")]
 use crate::levels::level::Leaping;
@@ -37,11 +34,11 @@ use crate::levels::nonlinear::NonlinearRocking;
 use crate::levels::on_ground::OnGround;
 use crate::levels::oscillator::Oscillator;
 use crate::levels::start::Start;
+use crate::levels::uplift::Liftable;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::restraint::Angles;
 #[cfg(feature = "lanes")]
 use crate::mechanics::restraint::Dissipators;
-use crate::mechanics::uplift::least_hold;
 use crate::structure::quantity::{Refused, ensure};
 use crate::{Detail, Modes, OneMass, Phase, State, Structure};
 use std::cell::RefCell;
@@ -129,22 +126,6 @@ pub(crate) struct Elastic<Rocking> {
     first: RefCell<Box<Arc>>,
 }
 
-impl<Rocking: ElasticRocking> Elastic<Rocking> {
-    /// The |u| (m) below which the base stays down over the interval of `start`, whatever pushes the top mass.
-    #[inline(always)]
-    fn least_displacement(&self, start: &Start) -> f64 {
-        let one = &self.one;
-        match self.subject.is_tied {
-            _ if !Rocking::IS_POSSIBLE => f64::INFINITY,
-            false => one.u_cr, // every leap asks
-            true => {
-                let hold = least_hold(one.base(), start.a_v, start.interval, start.dissipators);
-                hold / (one.parameters().H * one.k)
-            }
-        }
-    }
-}
-
 impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking> {
     fn subject(&self) -> &Subject {
         &self.subject
@@ -161,7 +142,15 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
 
     fn leap(&self, phase: Phase, start: &Start) -> Option<State> {
         match phase {
-            Phase::FullContact => self.contact.as_ref()?.leap(start, self.least_displacement(start)),
+            Phase::FullContact => {
+                let (contact, one) = (self.contact()?, &self.one);
+                let hold = match self.liftable() {
+                    None => f64::INFINITY,
+                    Some(_) if !self.subject.is_tied => one.u_cr, // every leap asks
+                    Some(liftable) => liftable.least_hold(start) / (one.parameters().H * one.k),
+                };
+                full_contact::leap(contact, start, hold, |_| 1.0)
+            }
             Phase::Rocking(side) => self.rocking.leap(side, start),
             Phase::Overturned(_) | Phase::OnGround(_) => None,
         }
@@ -169,20 +158,18 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
 
     #[cfg(feature = "lanes")]
     fn leaping(&self, _dissipators: &Dissipators) -> Option<Leaping<'_>> {
-        let modes = std::slice::from_ref(self.contact.as_ref()?);
-        Some(Leaping { modes, moment: |_| 1.0, hold: self.one.u_cr })
+        Some(Leaping { modes: self.contact()?, moment: |_| 1.0, hold: self.one.u_cr })
     }
 
-    fn swings(&self, phase: Phase, start: &Start) -> Option<[f64; 4]> {
-        self.contact.as_ref().filter(|_| phase.properties().is_down).map(|contact| contact.swings(start))
+    #[inline(always)]
+    fn contact(&self) -> Option<&[ExactContact]> {
+        self.contact.as_ref().map(std::slice::from_ref)
     }
 
     fn most(&self, phase: Phase, start: &Start, end: &State) -> State {
-        match (phase, &self.contact) {
-            (Phase::FullContact, Some(contact)) => {
-                most_of_swings(&self.subject.structure, start, end, &contact.swings(start))
-            }
-            _ => self.rocking.most(&self.subject.structure, phase.side(), start, end),
+        match self.swings(phase, start) {
+            Some(swings) => most_of_swings(&self.subject.structure, start, end, &swings),
+            None => self.rocking.most(&self.subject.structure, phase.side(), start, end),
         }
     }
 
@@ -204,14 +191,8 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
 
     #[inline(always)]
     fn liftable(&self) -> Option<Liftable<'_>> {
-        let one = &self.one;
-        Rocking::IS_POSSIBLE.then(|| Liftable {
-            base: one.base(),
-            modes: std::slice::from_ref(one.mode()),
-            rigid: None,
-            lean: self.rocking.lean(),
-            has_constant_inertia: self.subject().angles == Angles::Small,
-        })
+        let has_constant_inertia = self.subject.angles == Angles::Small;
+        Rocking::IS_POSSIBLE.then(|| Liftable::of_one(&self.one, self.rocking.lean(), has_constant_inertia))
     }
 }
 

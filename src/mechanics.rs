@@ -1,4 +1,4 @@
-//! The paper's equations, without a solver: state, loads, outputs, reactions, energy, what starts and what follows an impact.
+//! The paper's equations, without a solver: state, loads, outputs, reactions, energy, impact.
 
 pub(crate) mod arc;
 pub mod contact;
@@ -13,7 +13,6 @@ pub(crate) mod reach;
 pub mod reactions;
 pub mod restraint;
 pub mod state;
-pub mod uplift;
 
 #[cfg(test)]
 mod tests {
@@ -108,7 +107,7 @@ mod tests {
             assert_relative_eq!(restitution(&momentum, side, &before), (height - rest) / after, max_relative = 1e-12);
             // (M16)
             let going = State { u_dot: modal(&frame, &(-s * u_dot)), ..before };
-            let (phase, after) = resolve(&frame, side, &going);
+            let (phase, after) = resolve(&frame, 0.0, side, &going);
             assert_eq!((phase, after.theta_dot), (Phase::Rocking(side.opposite()), r.unwrap() * theta_dot));
             let gained = of(phase, &after) - of(Phase::Rocking(side), &going);
             assert_relative_eq!(energy_gained(&frame, side, &going), gained, max_relative = 1e-9);

@@ -52,10 +52,10 @@ const OF_MODE: [Quantity<Mode>; 6] = [
     quantity!(damping ["N.s/m"] 0.0, 1e48, "modal damping"),
 ];
 
-/// Limits of a floor.
-const OF_FLOOR: [Quantity<Floor>; 2] = [
-    quantity!(mass ["kg"] 1e-6, 1e12, "mass of the floor"),
-    quantity!(height ["m"] 1e-3, 1e4, "height of the floor above the base"),
+/// Limits of a floor, by the names that files have.
+pub(crate) const OF_FLOOR: [Quantity<Floor>; 2] = [
+    quantity!("m", mass ["kg"] 1e-6, 1e12, "mass of the floor"),
+    quantity!("h", height ["m"] 1e-3, 1e4, "height of the floor above the base"),
 ];
 
 /// A rigid base that carries modes. The mass above the foundation that the modes do not carry turns rigidly with the base. Copies share

@@ -9,30 +9,22 @@ use anyhow::Context;
 use rocking::run::levels::Criterion;
 use rocking_sweep::plan::Conditions;
 
-/// Arguments of `advise`.
 #[derive(clap::Args)]
 pub struct AdviseArgs {
     #[command(flatten)]
     motion: MotionArgs,
-    #[command(flatten)]
-    allowed: AllowedArgs,
-    #[command(flatten)]
-    limits: LimitArgs,
-    #[command(flatten)]
-    results: FormatArgs,
-}
-
-#[derive(clap::Args)]
-#[command(next_help_heading = "What is allowed")]
-struct AllowedArgs {
     /// Largest relative error allowed, such as 5% or 0.05
-    #[arg(long, value_name = "ERROR", default_value = "5%", value_parser = relative_error)]
+    #[arg(long, help_heading = "What is allowed", value_name = "ERROR", default_value = "5%", value_parser = relative_error)]
     within: f64,
     /// Results whose errors must not exceed --within. `theta`, `u` and `a_t` are the peaks of rotation, elastic displacement
     /// and acceleration of the top mass, or of the floor where the error is largest; a_t includes the peaks of V_t and M_t. The error of a history is
     /// the largest difference as a fraction of the largest value. Overturning must be predicted right in any case
-    #[arg(long, value_name = "LIST", value_parser = one_of(Criterion::ALL.map(|of| (of.name(), of))), num_args = 1.., value_delimiter = ',', default_values = Criterion::ALL.map(Criterion::name))]
+    #[arg(long, help_heading = "What is allowed", value_name = "LIST", value_parser = one_of(Criterion::ALL.map(|of| (of.name(), of))), num_args = 1.., value_delimiter = ',', default_values = Criterion::ALL.map(Criterion::name))]
     of: Vec<Criterion>,
+    #[command(flatten)]
+    limits: LimitArgs,
+    #[command(flatten)]
+    results: FormatArgs,
 }
 
 fn relative_error(text: &str) -> Result<f64, String> {
@@ -46,12 +38,11 @@ fn relative_error(text: &str) -> Result<f64, String> {
     })
 }
 
-/// Runs the levels and prints the table and the advice.
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let limits = args.limits.limits()?;
     let run = args.motion.load(Conditions::default())?;
     let cause = Cause::of(&args.motion, &run).with_initial(&run.conditions.initial);
-    let advice = run.advice(args.allowed.within, &args.allowed.of).context("detail = nonlinear")?;
+    let advice = run.advice(args.within, &args.of).context("detail = nonlinear")?;
     let text = || run.advice_text(&args.motion.ground.title(&run.ground), &advice, &limits);
     args.results.print(text, &Traced { cause: &cause, rows: &advice.rows() })
 }

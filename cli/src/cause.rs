@@ -36,12 +36,10 @@ fn text((name, of): (&'static str, Option<String>)) -> (&'static str, Part) {
 }
 
 impl Cause {
-    /// The cause of results of this program alone.
     pub fn of_program() -> Cause {
         Cause(vec![text(("version", Some(Program::of(BUILD).version)))])
     }
 
-    /// The cause of results of `structure`.
     pub fn new(structure: impl Into<Structure>) -> Cause {
         let (structure, mut cause) = (structure.into(), Cause::of_program());
         let numbers = || describe::numbers(&structure).into_iter().map(|of| (of.name, of.value)).collect();
@@ -50,7 +48,6 @@ impl Cause {
         cause
     }
 
-    /// This cause under the `record` that `args` ask for.
     pub fn under(mut self, args: &RecordArgs, record: &Record) -> Cause {
         let RecordArgs { record: file, vertical, options } = args;
         let path = |file: Option<&PathBuf>| file.map(|path| path.display().to_string());
@@ -69,21 +66,18 @@ impl Cause {
         self
     }
 
-    /// The cause of results of `run`, which `args` ask for.
     pub fn of(args: &MotionArgs, run: &Run) -> Cause {
         let mut cause = Cause::new(run.structure.clone()).under(&args.ground.record, &run.ground);
         cause.0.extend(args.ground.force.iter().map(|path| text(("force", Some(path.display().to_string())))));
         cause
     }
 
-    /// This cause of a run under these `conditions`.
     pub fn computed(mut self, conditions: &Conditions) -> Cause {
         let &Conditions { detail, tolerance, ref initial, .. } = conditions;
         self.0.extend([("detail", Part::Text(Some(detail.name().into()))), ("tolerance", Part::Number(tolerance))]);
         self.with_initial(initial)
     }
 
-    /// This cause of runs from `initial`.
     pub fn with_initial(mut self, initial: &State<Vec<f64>>) -> Cause {
         let [u, u_dot] = [&initial.u, &initial.u_dot].map(|of| match of[..] {
             [] => OneOrMore::One(0.0),

@@ -12,7 +12,6 @@ use rocking::{OneMass, Quantity};
 use rocking_report::describe;
 use std::fmt::{self, Write};
 
-/// Arguments of `describe`.
 #[derive(clap::Args)]
 pub struct DescribeArgs {
     #[command(flatten)]
@@ -27,7 +26,6 @@ pub struct DescribeArgs {
     restoring: Option<f64>,
 }
 
-/// Prints the parameters as they were given and the derived quantities with the equations that define them.
 pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     let structure = args.structure.load_any()?;
     if args.template {

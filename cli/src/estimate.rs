@@ -6,7 +6,6 @@ use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking_report::{estimate::Estimate, quantities::NamedValue};
 
-/// Arguments of `estimate`.
 #[derive(clap::Args)]
 pub struct EstimateArgs {
     #[command(flatten)]
@@ -30,7 +29,6 @@ pub struct EstimateArgs {
     results: FormatArgs,
 }
 
-/// Prints the demands, term by term, and the effective frequencies.
 pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     if let Some(part) = args.amplitudes.iter().find(|part| !(**part > 0.0 && **part < 1.0)) {
         bail!("amplitudes = {part} is out of range: parts above 0 and below 1 are needed");
@@ -41,7 +39,7 @@ pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     for part in &args.amplitudes {
         lines.push(NamedValue {
             name: format!("f_r({part})"),
-            value: effective_frequency(&structure, part * structure.tan_alpha_cg)?,
+            value: effective_frequency(&structure, part * structure.base().tan_alpha_cg)?,
             unit: "Hz",
             equation: "Eq 14",
             description: format!("effective frequency of rocking at theta = {part} tan(alpha_cg)"),

@@ -16,12 +16,10 @@ use std::path::{Path, PathBuf};
 /// Path of the archive with the libraries for every platform, in the folder `share` of an installation.
 const INSTALLED: &str = "flexible-rocking/FlexibleRocking.fmu";
 
-/// Arguments of `export`.
 #[derive(clap::Args)]
 pub struct ExportArgs {
     #[command(flatten)]
     structure: StructureArgs,
-    /// Ground motion records to pack
     #[arg(long, value_name = "FILE", num_args = 1.., help_heading = "Ground motion", help = format!(
         "Ground motion records to pack: {LAYOUTS}; the FMU follows the first, and each other one by its name. A record \
          read with options, or from standard input, `-`, is packed as a CSV file"
@@ -49,13 +47,6 @@ pub struct ExportArgs {
     library: Vec<PathBuf>,
 }
 
-impl ExportArgs {
-    /// The files of the records, the vertical component last.
-    fn records(&self) -> impl Iterator<Item = &PathBuf> {
-        self.record.iter().chain(&self.vertical.record_v)
-    }
-}
-
 /// Writes the FMU and reports its content; the libraries are beside `program`.
 pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     let structure = args.structure.load_any()?;
@@ -64,7 +55,8 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
         libraries.extend(Library::read(path)?);
     }
     let output = args.output.clone().unwrap_or_else(|| format!("{}.fmu", args.name.as_str()).into());
-    let inputs = args.structure.input().into_iter().chain(args.records().chain(&args.library).map(PathBuf::as_path));
+    let inputs = args.record.iter().chain(&args.vertical.record_v).chain(&args.library);
+    let inputs = args.structure.input().into_iter().chain(inputs.map(PathBuf::as_path));
     let file = OutputFiles::of_inputs(inputs).create(&output)?;
     if !input::is_stream(&output) {
         fmu_export::check_target(&output)?;

@@ -3,7 +3,6 @@
 use rocking::Refused;
 use rocking::run::validity::Limits;
 
-/// Limits beyond which a value gives a warning.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Limits of the model")]
 pub struct LimitArgs {
@@ -23,7 +22,6 @@ pub struct LimitArgs {
 }
 
 impl LimitArgs {
-    /// Checks the arguments and returns them as limits.
     pub fn limits(&self) -> Result<Limits, Refused> {
         let &LimitArgs { friction, tension, edge_load, energy_gain } = self;
         let limits = Limits { friction, tension, edge_load, energy_gain };

@@ -26,7 +26,7 @@ use clap_complete::Shell;
 use fmu_export::Platform;
 use rocking_report::message;
 use std::env::consts::{ARCH, OS};
-use std::{env, io, process::ExitCode};
+use std::{env, io, process::ExitCode, sync::atomic::Ordering};
 
 /// A flexible structure that rocks on its foundation: FMU exporter and simulator.
 ///
@@ -186,9 +186,7 @@ fn long_version() -> String {
 
 fn main() -> ExitCode {
     let CommandLine { command, quiet } = CommandLine::parse();
-    if quiet {
-        talk::be_quiet();
-    }
+    talk::IS_QUIET.store(quiet, Ordering::Relaxed);
     let result = match command {
         Command::Export(args) => export::run(&args, &env::current_exe().unwrap_or_default()),
         Command::Simulate(args) => simulate::run(&args),
@@ -211,7 +209,6 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints the completions for a shell.
 fn completions(shell: Shell) -> anyhow::Result<()> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut CommandLine::command(), "rocking-fmu", &mut script);

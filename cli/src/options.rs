@@ -7,7 +7,6 @@ pub fn on_command_line(name: &str) -> String {
     format!("--{}", option_name(name))
 }
 
-/// This name without its dashes.
 pub fn option_name(name: &str) -> String {
     name.replace('_', "-")
 }

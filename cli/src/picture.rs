@@ -46,15 +46,12 @@ const LONGEST_ABOUT: usize = 140;
 /// Height of a title, pixels.
 pub const TITLE: u32 = 52;
 
-/// `pixels` in drawing units.
 pub fn px(pixels: f64) -> i32 {
     (pixels * f64::from(UNITS)).round() as i32
 }
 
-/// Area to draw on.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// A picture that is being made.
 pub struct Picture(OutputFile);
 
 impl Picture {
@@ -83,20 +80,16 @@ impl Picture {
     }
 }
 
-/// A line that shows data.
 pub fn line(colour: RGBColor) -> ShapeStyle {
     stroke(colour, LINE)
 }
 
-/// A line `pixels` wide.
 pub fn stroke(colour: RGBColor, pixels: f64) -> ShapeStyle {
     colour.stroke_width(px(pixels) as u32)
 }
 
-/// A chart of two linear axes.
 pub type Plot<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// Draws a dashed line through `points`.
 pub fn dashed(plot: &mut Plot, points: &[(f64, f64)], colour: RGBColor) -> anyhow::Result<()> {
     let [length, gap] = [5.0, 4.0].map(|pixels| px(pixels) as u32);
     plot.draw_series(DashedLineSeries::new(points.iter().copied(), length, gap, line(colour)))?;
@@ -116,11 +109,6 @@ pub fn words_before(size: f64, colour: RGBColor) -> TextStyle<'static> {
     words(size, colour).pos(Pos::new(HPos::Right, VPos::Center))
 }
 
-/// A dot of this radius in pixels.
-pub fn dot<T>(at: T, radius: f64, colour: RGBColor) -> Circle<T, i32> {
-    Circle::new(at, px(radius), colour.filled())
-}
-
 /// Writes the title of a picture, and what it is about in a line below; returns what is left below them.
 pub fn titled<'a>(area: &Area<'a>, title: &str, about: &str) -> anyhow::Result<Area<'a>> {
     let bold = words(LARGE, colour::INK);
@@ -131,7 +119,6 @@ pub fn titled<'a>(area: &Area<'a>, title: &str, about: &str) -> anyhow::Result<A
     Ok(area.split_vertically(px(f64::from(TITLE))).1)
 }
 
-/// The first characters of `text`.
 pub fn shortened(text: &str, most: usize) -> String {
     match text.char_indices().nth(most) {
         Some((end, _)) => format!("{}…", &text[..end]),

@@ -10,7 +10,6 @@ use rocking_report::{output_files::OutputFiles, quantities::NamedValue};
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::path::PathBuf;
 
-/// Which pulse.
 #[derive(clap::Args)]
 #[command(group(ArgGroup::new("how strong").args(["amplitude", "amplitude_ratio"]).required(true)))]
 #[command(group(ArgGroup::new("how fast").args(["frequency", "period", "frequency_ratio"]).required(true)))]
@@ -72,7 +71,6 @@ impl OfPulse {
     }
 }
 
-/// Writes the pulse and prints what it amounts to.
 pub fn run(args: &PulseArgs) -> anyhow::Result<()> {
     args.results.check_beside(Some(&args.output))?;
     let structure = args.structure.load_any()?;
@@ -80,7 +78,7 @@ pub fn run(args: &PulseArgs) -> anyhow::Result<()> {
     let record = pulse.record()?;
     doubt_of_peak(&record, structure.base().g).iter().for_each(|doubt| warning!("{}: {doubt}", record.title()));
     let file = OutputFiles::of_inputs(args.structure.input()).create(&args.output)?;
-    write_as(file, "pulse", csv_in(&record, Unit::MetrePerSecondSquared).as_bytes())?;
+    write_as(file, "pulse", csv_in(&record, [Unit::MetrePerSecondSquared; 2]).0.as_bytes())?;
     let (title, cause) = ((record.title(), structure.base().g), Cause::new(structure.clone()));
     args.results.print_table(Some(&args.output), title, &cause, &amounts(&pulse, &record, structure.base()))
 }

@@ -9,7 +9,6 @@ use rocking_report::output_files::OutputFiles;
 use rocking_report::pushover::{Corner, HEADINGS, corners, line};
 use std::path::PathBuf;
 
-/// Arguments of `pushover`.
 #[derive(clap::Args)]
 pub struct PushoverArgs {
     #[command(flatten)]
@@ -24,7 +23,6 @@ pub struct PushoverArgs {
     results: FormatArgs,
 }
 
-/// Writes the curve from 0 to overturning, to the right, and prints its corners.
 pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     args.results.check_beside(args.output.as_deref())?;
     let structure = args.structure.load_any()?;

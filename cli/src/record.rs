@@ -13,10 +13,8 @@ use std::path::PathBuf;
 /// Gravity of a record whose unit is g, m/s².
 const G: f64 = Parameters::MCMANUS.g;
 
-/// Which record, and what to make of it.
 #[derive(clap::Args)]
 pub struct RecordCommand {
-    /// Ground motion record
     #[arg(value_name = "FILE", help = help_of_record())]
     record: PathBuf,
     #[command(flatten)]
@@ -28,7 +26,6 @@ pub struct RecordCommand {
     results: FormatArgs,
 }
 
-/// Prints what was understood, and writes it.
 pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
     args.results.check_beside(args.output.as_deref())?;
     let understood = args.options.understand(&args.record, G, on_command_line)?;
@@ -44,7 +41,6 @@ pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
     args.results.print_table(output, (record.title(), G), &cause, &amounts(record))
 }
 
-/// Measures of the record.
 fn amounts(record: &Record) -> Vec<NamedValue> {
     let [velocity, displacement] = record.velocities_and_displacements().last().expect("a record has samples");
     let steps = || record.times().windows(2).map(|pair| pair[1] - pair[0]);

@@ -10,17 +10,13 @@ use rocking_report::record::{Understood, understand};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
-/// The record asked for, if any.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Ground motion")]
 pub struct RecordArgs {
-    /// Ground motion record
     #[arg(long, value_name = "FILE", help = help_of_record())]
     pub record: Option<PathBuf>,
-    /// Its vertical component.
     #[command(flatten)]
     pub vertical: VerticalArgs,
-    /// How it is read and scaled.
     #[command(flatten)]
     pub options: RecordOptions,
 }
@@ -30,7 +26,6 @@ pub fn help_of_record() -> String {
     format!("Ground motion record, `-` for standard input: {LAYOUTS}")
 }
 
-/// The vertical component of a record, if any.
 #[derive(clap::Args, Default)]
 #[command(next_help_heading = "Ground motion")]
 pub struct VerticalArgs {
@@ -86,7 +81,6 @@ impl RecordArgs {
         Ok(Some(understood))
     }
 
-    /// The files that are read.
     pub fn inputs(&self) -> impl Iterator<Item = &Path> {
         self.record.iter().chain(&self.vertical.record_v).map(PathBuf::as_path)
     }

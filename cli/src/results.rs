@@ -4,12 +4,11 @@ use crate::cause::Cause;
 use crate::talk::say;
 use anyhow::ensure;
 use clap::ValueEnum;
-use rocking_report::quantities::{NamedValue, write_columns};
+use rocking_report::quantities::{NamedValue, columns};
 use rocking_report::{input, output_files::OutputFile};
 use serde::Serialize;
 use std::path::Path;
 
-/// How results are printed.
 #[derive(clap::Args, Clone, Copy)]
 pub struct FormatArgs {
     /// How the results are printed
@@ -17,7 +16,6 @@ pub struct FormatArgs {
     format: Format,
 }
 
-/// Format of printed results.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Format {
     /// Tables to read, six digits
@@ -27,7 +25,6 @@ enum Format {
 }
 
 impl FormatArgs {
-    /// Prints what `text` makes, or `result` as JSON.
     pub fn print(self, text: impl FnOnce() -> anyhow::Result<String>, result: &impl Serialize) -> anyhow::Result<()> {
         self.print_beside(None, text, result)
     }
@@ -66,11 +63,7 @@ impl FormatArgs {
         cause: &Cause,
         lines: &[NamedValue],
     ) -> anyhow::Result<()> {
-        let text = || {
-            let mut text = format!("{title}\n");
-            write_columns(&mut text, lines, g)?;
-            Ok(text)
-        };
+        let text = || Ok(format!("{title}\n{}", columns(lines, g)));
         self.print_beside(output, text, &Traced { cause, rows: lines })
     }
 }
@@ -88,10 +81,8 @@ pub fn csv(headings: impl Serialize, lines: impl Iterator<Item = impl Serialize>
 /// Rows and their origin.
 #[derive(Serialize)]
 pub struct Traced<'a, R> {
-    /// Origin of the rows.
     #[serde(flatten)]
     pub cause: &'a Cause,
-    /// The rows.
     pub rows: &'a [R],
 }
 

@@ -34,13 +34,11 @@ impl MotionArgs {
         Ok(Run { structure, ground, conditions })
     }
 
-    /// The files that are read.
     pub fn inputs(&self) -> impl Iterator<Item = &Path> {
         self.structure.input().into_iter().chain(self.ground.record.inputs()).chain(self.ground.force.as_deref())
     }
 }
 
-/// The ground motion, and how long it is followed.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Ground motion")]
 #[command(group(ArgGroup::new("ground motion").args(["record", "free"]).required(true)))]
@@ -63,7 +61,6 @@ pub struct GroundArgs {
     pub force: Option<PathBuf>,
 }
 
-/// The state at the start.
 #[derive(clap::Args, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[command(next_help_heading = "Initial values")]
@@ -104,7 +101,6 @@ fn one_or_more<'de, D: Deserializer<'de>>(of: D) -> Result<Vec<f64>, D::Error> {
     })
 }
 
-/// How the motion is computed.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Equations")]
 pub struct LevelArgs {
@@ -137,7 +133,6 @@ impl GroundArgs {
         self.duration.or(self.free)
     }
 
-    /// The ground motion in a line.
     pub fn title(&self, ground: &Record) -> String {
         match self.free {
             Some(duration) => format!("none, free vibration over {} s", short(duration)),
@@ -147,7 +142,6 @@ impl GroundArgs {
 }
 
 impl InitialArgs {
-    /// The initial state.
     pub fn state(&self) -> State<Vec<f64>> {
         let InitialArgs { theta_0, theta_dot_0, u_0, u_dot_0 } = self;
         State { u: u_0.clone(), u_dot: u_dot_0.clone(), theta: *theta_0, theta_dot: *theta_dot_0 }

@@ -20,7 +20,6 @@ use rocking_report::summary::instant;
 use rocking_report::tables::Line;
 use std::path::PathBuf;
 
-/// Arguments of `simulate`.
 #[derive(clap::Args)]
 pub struct SimulateArgs {
     #[command(flatten)]
@@ -72,7 +71,6 @@ impl SimulateArgs {
         }
     }
 
-    /// Writes the response of `run` at the instants asked for.
     fn write_response(&self, run: &Run, file: OutputFile) -> anyhow::Result<()> {
         let (samples, interval) = self.samples_and_interval(&run.ground);
         let (start, from) = (samples[0], samples[samples.len() - 1]);
@@ -113,7 +111,6 @@ fn centring(base: &Base) -> Option<String> {
     })
 }
 
-/// Prints the summary of the response, and writes what is asked for.
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let limits = args.limits.limits()?;
     let output = args.results.output.as_deref();

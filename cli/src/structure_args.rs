@@ -16,7 +16,6 @@ use rocking::{Parameters, Structure};
 use rocking_report::input;
 use std::path::{Path, PathBuf};
 
-/// The structure asked for.
 #[derive(clap::Args, Debug)]
 pub struct StructureArgs {
     /// Specimen of the paper: a bridge pier (Table 2) or a shear wall (Table 1) [default: mcmanus, if no
@@ -38,7 +37,6 @@ pub struct StructureArgs {
 struct Numbers(Given);
 
 impl StructureArgs {
-    /// The file that is read, if any.
     pub fn input(&self) -> Option<&Path> {
         self.parameters.as_deref()
     }

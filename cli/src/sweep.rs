@@ -24,7 +24,6 @@ use rocking_sweep::thread_pool;
 use std::path::{Path, PathBuf};
 use uuid::Uuid;
 
-/// Arguments of `sweep`.
 #[derive(clap::Args)]
 pub struct SweepArgs {
     /// Records, scale factors, structures and limits; or pulses and structures
@@ -70,7 +69,6 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     }
 }
 
-/// Every record at every scale factor on every structure.
 fn run_records(
     args: &SweepArgs,
     sweep: RecordSweep,
@@ -112,7 +110,6 @@ fn run_records(
     report_failures(&plan, &keys, &outcomes)
 }
 
-/// Says how many runs failed, and which the first is.
 fn report_failures(plan: &Plan, keys: &[Uuid], outcomes: &[Outcome]) -> anyhow::Result<()> {
     let failed = || (0..plan.len()).filter(|index| matches!(outcomes[*index], Outcome::Failed { .. }));
     let Some(first) = failed().next() else { return Ok(()) };

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Says a line on standard error, unless the user wants quiet.
 macro_rules! say {
     ($($text:tt)*) => {
-        if !$crate::talk::is_quiet() {
+        if !$crate::talk::IS_QUIET.load(std::sync::atomic::Ordering::Relaxed) {
             $crate::talk::write_line(format_args!($($text)*));
         }
     };
@@ -39,22 +39,13 @@ pub fn few(mut lines: Vec<String>, what: &str) -> Vec<String> {
     lines
 }
 
-static QUIET: AtomicBool = AtomicBool::new(false);
-
-/// Suppresses all messages except warnings and errors.
-pub fn be_quiet() {
-    QUIET.store(true, Ordering::Relaxed);
-}
-
 /// Whether nothing is to be said but warnings and errors.
-pub fn is_quiet() -> bool {
-    QUIET.load(Ordering::Relaxed)
-}
+pub static IS_QUIET: AtomicBool = AtomicBool::new(false);
 
 /// A bar for the progress of many runs, which are called `what`; none where standard error is no terminal.
 pub fn progress(runs: usize, what: &str) -> anyhow::Result<ProgressBar> {
     let template = format!("{{elapsed_precise}} {{bar:40}} {{pos}}/{{len}} {what}, {{per_sec}}, {{eta}} left");
-    let bar = if is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(runs as u64) };
+    let bar = if IS_QUIET.load(Ordering::Relaxed) { ProgressBar::hidden() } else { ProgressBar::new(runs as u64) };
     Ok(bar.with_style(ProgressStyle::with_template(&template)?))
 }
 

@@ -5,7 +5,6 @@ use anyhow::ensure;
 use rocking_report::{input, output_files::OutputFiles};
 use std::path::PathBuf;
 
-/// Arguments of `view`.
 #[derive(clap::Args)]
 pub struct ViewArgs {
     #[command(flatten)]
@@ -17,7 +16,6 @@ pub struct ViewArgs {
     output: Option<PathBuf>,
 }
 
-/// Follows the motion and writes the page.
 pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
     let output = match (&args.output, &args.motion.ground.record.record) {
         (Some(path), _) => path.clone(),

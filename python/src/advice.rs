@@ -6,7 +6,7 @@ use crate::record::Ground;
 use crate::structure::Structure;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
+use pyo3::types::{IntoPyDict, PyDict, PyString};
 use rocking::Detail;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::estimates::demand::INSTANT_TRANSITION;
@@ -14,7 +14,7 @@ use rocking::run::levels::Criterion;
 use rocking::run::validity::Limits;
 use rocking_report::advice::Level;
 use rocking_report::estimate as estimates;
-use rocking_report::quantities::write_columns;
+use rocking_report::quantities::columns;
 use rocking_report::run::Run;
 
 /// The criteria that `value` names: one name, or several.
@@ -96,9 +96,6 @@ pub fn estimate<'py>(
     let g = structure.parameters().g;
     let record = record.map(|Ground(record)| record.get().under(g));
     let estimated = interruptible(py, move |_| estimates::Estimate::new(&structure, record.as_deref(), amplification))?;
-    let mut text = String::new();
-    write_columns(&mut text, &estimated.terms, g).map_err(refused)?;
-    let values = PyDict::new(py);
-    estimated.terms.iter().try_for_each(|line| values.set_item(&line.name, line.value))?;
-    result(py, "Estimate", (values, text))
+    let values = estimated.terms.iter().map(|line| (&line.name, line.value)).into_py_dict(py)?;
+    result(py, "Estimate", (values, columns(&estimated.terms, g)))
 }

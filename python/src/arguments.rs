@@ -29,7 +29,6 @@ pub fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
     numbers.map(|of| of[0]).ok_or_else(|| PyValueError::new_err(format!("{name} = {value:?}: it is no number")))
 }
 
-/// The integer `value`, which messages call `name`.
 pub fn integer(name: &str, value: &Bound<'_, PyAny>) -> PyResult<i64> {
     value.extract().map_err(|_| PyValueError::new_err(format!("{name} = {value:?}: a whole number is needed")))
 }

@@ -151,7 +151,6 @@ fn ground(value: &Bound<'_, PyAny>) -> PyResult<Ground> {
     Ok(ground)
 }
 
-/// The units that `value` names.
 fn units(value: &Bound<'_, PyAny>) -> PyResult<Units> {
     let units = Units::deserialize(value.str()?.to_str()?.into_deserializer());
     units.map_err(|error: serde::de::value::Error| PyValueError::new_err(format!("units: {error}")))

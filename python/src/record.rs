@@ -11,7 +11,7 @@ use rocking::Parameters;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::estimates::response_spectrum;
 use rocking::run::record::{Record as Samples, SamplesError};
-use rocking_records::{Column, Reading, Unit, csv_in, doubt_of_peak, doubts, each_in_m_s2, vertical_csv};
+use rocking_records::{Column, Reading, Unit, csv_in, doubt_of_peak, doubts, each_in_m_s2};
 use rocking_report::output_files::OutputFiles;
 use rocking_report::record::{Understood, understand};
 use rocking_report::run::Watcher;
@@ -114,12 +114,12 @@ impl Record {
 
     /// Its components, the horizontal one first, as tables that are read without options.
     pub fn tables(&self) -> anyhow::Result<Vec<String>> {
-        let scaled = self.given.clone().multiplied(self.scale);
         ensure!(
             self.usual.force().is_none(),
             "a file or an FMU cannot hold the record's force: write the record without with_force, and set the input F_t of the FMU"
         );
-        Ok([csv_in(&scaled, self.unit)].into_iter().chain(vertical_csv(&scaled, self.unit)).collect())
+        let (table, vertical) = csv_in(&self.given.clone().multiplied(self.scale), [self.unit; 2]);
+        Ok([table].into_iter().chain(vertical).collect())
     }
 }
 
@@ -148,7 +148,6 @@ fn of_trace<'py>(
     Ok((stats.getattr("delta")?, data, unit, title))
 }
 
-/// The names of traces.
 fn ids(traces: &Bound<'_, PyAny>) -> PyResult<String> {
     let id = |trace: PyResult<Bound<'_, PyAny>>| Ok(trace?.getattr("id")?.str()?.to_string());
     Ok(traces.try_iter()?.map(id).collect::<PyResult<Vec<_>>>()?.join(", "))
@@ -402,7 +401,6 @@ impl Record {
     }
 }
 
-/// Arguments of [`Record::_of`].
 type Parts<'py> =
     (Array<'py>, Array<'py>, Option<(Array<'py>, Array<'py>)>, String, f64, String, Option<[Vec<f64>; 2]>);
 type Array<'py> = Bound<'py, PyArray1<f64>>;

@@ -7,12 +7,14 @@ use crate::structure::{self, Structure};
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict, PyDict};
 use rocking::engine::{DEFAULT_TOLERANCE, motion::Work};
 use rocking::mechanics::state::INITIAL_VALUES;
-use rocking::run::validity::{ASSUMPTIONS, Limits, Worst};
+use rocking::run::validity::Limits;
 use rocking::{Detail, Phase};
+use rocking_report::quantities::Number;
 use rocking_report::run::{Event, Found, NamedPeak, OF_FLOOR, Run as Followed, Samples, usual_periods};
+use rocking_report::validity::{Beyond, rows};
 use rocking_sweep::plan::Conditions;
 
 /// A structure that has been followed through a ground motion: what `simulate` returns.
@@ -33,9 +35,6 @@ pub struct Run {
     /// The level of detail.
     #[pyo3(get)]
     detail: &'static str,
-    /// The relative tolerance.
-    #[pyo3(get)]
-    tolerance: f64,
     /// Whether the structure overturned (|theta| = pi/2). None if the structure still rocks 100/p_l after the record.
     #[pyo3(get)]
     overturned: Option<bool>,
@@ -61,6 +60,12 @@ pub struct Run {
 
 #[pymethods]
 impl Run {
+    /// The relative tolerance.
+    #[getter]
+    fn tolerance(&self) -> f64 {
+        self.of.conditions.tolerance
+    }
+
     /// The exact largest magnitudes by name, each a Peak (a float with unit and time). Names: a_g (m/s2), theta (rad), u (m),
     /// delta_t (m, Eq 26), uplift (m, Eq 25), a_t (m/s2, Eq 27), V_t (N, Eqs 2, 23), M_t (N.m, Eqs 3, 24). A tendon adds P_t
     /// (N), dissipators F_d1 and F_d2 (N). Many masses: a_g, theta, uplift, V_t, M_t, and of each floor from 1 on u[1], drift[1], delta_t[1], a_t[1], V[1], M[1].
@@ -79,10 +84,7 @@ impl Run {
     fn transitions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let names: Vec<_> = self.of.components().into_iter().map(|(name, _)| name).collect();
         let transition = |Event { time, kind, states }: &Event| {
-            let [before, after] = states.each_ref().map(|values| {
-                let state = PyDict::new(py);
-                names.iter().zip(values).try_for_each(|(name, value)| state.set_item(name, value)).map(|()| state)
-            });
+            let [before, after] = states.each_ref().map(|values| names.iter().zip(values).into_py_dict(py));
             result(py, "Transition", (*time, kind.name(), before?, after?))
         };
         let transitions = self.found.events.iter().map(transition).collect::<PyResult<Vec<_>>>()?;
@@ -118,10 +120,8 @@ impl Run {
         limits.check().map_err(refused)?;
         let found = interruptible(py, move |abandoned| slf.get().of.validity(limits, abandoned))?;
         let named = PyDict::new(py);
-        for (assumption, worst) in ASSUMPTIONS.iter().zip(&found.worst) {
-            let Worst { value, time, first_beyond, beyond } = *worst;
-            let parts = (value, time, (assumption.limit)(&limits), first_beyond, beyond);
-            named.set_item(assumption.name, result(py, "Worst", parts)?)?;
+        for Beyond { name, value: Number(value), time, limit, first_beyond, beyond } in rows(&found, &limits) {
+            named.set_item(name, result(py, "Worst", (value, time, limit, first_beyond, beyond))?)?;
         }
         Ok(named)
     }
@@ -197,14 +197,12 @@ impl Run {
             return Err(PyValueError::new_err(format!("floor = {floor} is out of range: the structure has {has}")));
         };
         let periods = periods.map_or_else(|| Ok(usual_periods()), |periods| numbers("periods", periods))?;
-        let named = PyDict::new(py);
-        named.set_item("period", PyArray1::from_slice(py, &periods))?;
+        let period = PyArray1::from_slice(py, &periods);
         let S_a = interruptible(py, move |abandoned| {
             let Run { of, found, .. } = slf.get();
             of.spectrum(found, below, &periods, zeta, abandoned)
         })?;
-        named.set_item("S_a", PyArray1::from_vec(py, S_a))?;
-        Ok(named)
+        [("period", period), ("S_a", PyArray1::from_vec(py, S_a))].into_py_dict(py)
     }
 
     /// Draws the run with matplotlib and returns the figure. "history": a_g, theta, u and a_t over time, with marks at
@@ -303,20 +301,6 @@ pub fn simulate(
     let of = Followed { structure: structure.get().of.clone(), ground, conditions };
     let (of, found) = interruptible(py, move |abandoned| of.found(None, abandoned).map(|found| (of, found)))?;
     let (&Found { overturned, start, end, fall, work, .. }, ending) = (&found, found.ending.to_string());
-    let (detail, tolerance, Work { steps, evaluations }) = (detail.name(), tolerance, work);
-    Ok(Run {
-        structure,
-        record,
-        of,
-        found,
-        detail,
-        tolerance,
-        overturned,
-        ending,
-        start,
-        end,
-        fall,
-        steps,
-        evaluations,
-    })
+    let (detail, Work { steps, evaluations }) = (detail.name(), work);
+    Ok(Run { structure, record, of, found, detail, overturned, ending, start, end, fall, steps, evaluations })
 }

@@ -6,10 +6,11 @@ use crate::many_masses::{INSTEAD, OF_MANY, frame, given};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyAttributeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict, PyDict};
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::estimates::modal_split::{ModalAccelerations, Modes};
 use rocking::estimates::pushover::{Equilibrium, Pushover};
+use rocking::estimates::restoring::FlagPoint;
 use rocking::structure::derived::{Derived, OF_MODE};
 use rocking::structure::parameters::PRESETS;
 use rocking::{OneMass, Parameters, Side, State};
@@ -48,7 +49,6 @@ pub struct Structure {
     keywords: Option<Py<PyDict>>,
 }
 
-/// Reads the argument `structure`.
 pub fn argument(value: &Bound<'_, PyAny>) -> PyResult<Py<Structure>> {
     let needed = || PyTypeError::new_err(format!("structure = {value:?} is no Structure: Structure(m=...) makes one"));
     Ok(value.cast::<Structure>().map_err(|_| needed())?.clone().unbind())
@@ -190,18 +190,16 @@ impl Structure {
         if let Some(keywords) = &self.keywords {
             return copied(keywords.bind(py));
         }
-        let all = PyDict::new(py);
-        self.named()[0].iter().try_for_each(|(name, value)| all.set_item(name, value))?;
-        Ok(all)
+        let [parameters, _] = self.named();
+        parameters.into_py_dict(py)
     }
 
     /// The derived quantities by name: gamma, omega_fc (rad/s), k (N/m), u_cr (m), J_P (kg.m2), p_l (rad/s), alpha_cg (rad),
     /// chi, f_u (Hz), weight (N), ... Of many masses: m_s, m_t (kg), S_1 (kg.m), J_P, p_l, alpha_cg, r, ...
     #[getter]
     fn derived<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let all = PyDict::new(py);
-        self.named()[1].iter().try_for_each(|(name, value)| all.set_item(name, value))?;
-        Ok(all)
+        let [_, derived] = self.named();
+        derived.into_py_dict(py)
     }
 
     /// The modes of many masses, lowest first. A dict of arrays (modes,): f (Hz) and zeta in full contact, mass (effective, kg),
@@ -216,11 +214,9 @@ impl Structure {
                 "mode_table needs a structure of many masses; see f_fc, zeta_fc, chi, f_u",
             ));
         }
-        let all = PyDict::new(py);
-        for Derived { name, value, .. } in &OF_MODE {
-            all.set_item(name, PyArray1::from_iter(py, frame.mode_table().map(|mode| value(&mode))))?;
-        }
-        Ok(all)
+        let column =
+            |of: &Derived<_>| (of.name, PyArray1::from_iter(py, frame.mode_table().map(|mode| (of.value)(&mode))));
+        OF_MODE.iter().map(column).into_py_dict(py)
     }
 
     /// The effective frequency of rocking with the amplitude theta (rad), Hz (Eq 14); 0 from tan(alpha_cg) on.
@@ -252,10 +248,9 @@ impl Structure {
     /// The moment that weight, tendon and dissipators turn the base back with, while the base is turned slowly from rest to theta (rad,
     /// above 0 and below pi/2) and back in 20 steps each. Returns a dict of arrays (41,): theta (rad), moment (N.m).
     fn restoring<'py>(&self, py: Python<'py>, theta: f64) -> PyResult<Bound<'py, PyDict>> {
-        let (points, named) = (describe::restoring(&self.of, theta).map_err(refused)?, PyDict::new(py));
-        named.set_item("theta", PyArray1::from_iter(py, points.iter().map(|at| at.theta)))?;
-        named.set_item("moment", PyArray1::from_iter(py, points.iter().map(|at| at.moment)))?;
-        Ok(named)
+        let points = describe::restoring(&self.of, theta).map_err(refused)?;
+        let column = |of: fn(&FlagPoint) -> f64| PyArray1::from_iter(py, points.iter().map(of));
+        [("theta", column(|at| at.theta)), ("moment", column(|at| at.moment))].into_py_dict(py)
     }
 
     /// Splits the `response` of Run.at into the rocking and the vibration mode. Returns a dict of arrays (n,): q_r, q_u (rad,
@@ -285,10 +280,8 @@ impl Structure {
             };
             modes.iter_mut().zip(split).for_each(|(column, number)| column.push(number));
         }
-        let named = PyDict::new(response.py());
-        let mut columns = ["q_r", "q_u", "a_r", "a_u"].into_iter().zip(modes);
-        columns.try_for_each(|(name, column)| named.set_item(name, PyArray1::from_vec(response.py(), column)))?;
-        Ok(named)
+        let columns = modes.map(|column| PyArray1::from_vec(response.py(), column));
+        ["q_r", "q_u", "a_r", "a_u"].into_iter().zip(columns).into_py_dict(response.py())
     }
 
     fn __getattr__(&self, name: &str) -> PyResult<f64> {

@@ -33,35 +33,3 @@ fn states_g(line: &str) -> bool {
     let unit = upper.split_once("UNITS OF").and_then(|(_, rest)| rest.split_whitespace().next());
     upper.contains("ACCELERATION") && unit.is_some_and(|unit| unit.trim_end_matches(['.', ',', ';']) == "G")
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The step of 3 samples, as each header variant states it.
-    const COUNTS: [(&str, f64); 6] = [
-        ("NPTS=     3  DT=  0.0050 SEC,", 0.005),
-        ("NPTS= 3 DT= 0.0050000", 0.005),
-        ("NPTS=3,DT=.02SEC", 0.02),
-        ("3, .5 NPTS, DT", 0.5),
-        ("npts=   3, dt=   5.0e-3 sec", 0.005),
-        ("\tNPTS =\t3 ,\tDT =\t1D-2\tSEC", 0.01),
-    ];
-
-    const TITLE: &str = "San Fernando, 2/9/1971, Pacoima Dam (upper left abut), 164";
-
-    #[test]
-    fn every_header_variant_gives_the_same_samples() {
-        for (counts, dt) in COUNTS {
-            let first = "PEER NGA STRONG MOTION DATABASE RECORD";
-            let values = " .1297983E-02\t-.4E-03\n1.2d-03  \n\n \n";
-            let text = format!("{first}\n{TITLE}\nACCELERATION TIME SERIES IN UNITS OF G\n{counts}\n{values}");
-            let read = |text: &str| crate::parse(text, &Reading::default()).unwrap().0;
-            let record = read(&text);
-            assert_eq!(read(&format!("a line more\n{text}")), record, "the header may start later");
-            assert_eq!(record.title(), TITLE);
-            assert_eq!(record.times(), [0.0, dt, 2.0 * dt], "{counts}");
-            assert_eq!(record.acceleration(), [0.1297983e-2, -0.4e-3, 1.2e-3], "{counts}");
-        }
-    }
-}

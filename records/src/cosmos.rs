@@ -7,12 +7,10 @@ use super::parsed::{Parsed, published};
 use super::text::{columns, number, numbered, quote};
 use super::{BadLine, Column, Reading, Remedy, bad};
 
-/// Whether the first line of `text` is that of COSMOS.
 pub(super) fn is_its(text: &str) -> bool {
     text.lines().next().is_some_and(|line| line.to_ascii_lowercase().contains("(format v"))
 }
 
-/// Whether the first line of `text` is that of CSMIP.
 pub(super) fn is_csmip(text: &str) -> bool {
     text.lines().next().is_some_and(|line| line.to_ascii_lowercase().contains("corrected accelerogram"))
 }

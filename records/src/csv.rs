@@ -3,18 +3,14 @@
 use super::Unit;
 use rocking::run::record::Record;
 
-/// The horizontal component of `record` as CSV; the accelerations are in `unit`, which the heading states.
-pub fn csv_in(record: &Record, unit: Unit) -> String {
-    table(record, &format!("a_g[{unit}]"), record.acceleration())
-}
-
-/// The vertical component, if there is one, likewise.
-pub fn vertical_csv(record: &Record, unit: Unit) -> Option<String> {
-    record.vertical().map(|a_v| table(record, &format!("a_v[{unit}]"), a_v))
-}
-
-fn table(record: &Record, heading: &str, accelerations: &[f64]) -> String {
-    let samples = record.times().iter().zip(accelerations);
-    let lines: String = samples.map(|(time, a)| format!("{time:?},{a:?}\n")).collect();
-    format!("time[s],{heading}\n{lines}")
+/// The components of `record` as CSV, the horizontal one first and the vertical one if there is one. The accelerations are in
+/// `units`, which the headings state.
+pub fn csv_in(record: &Record, [unit, vertical]: [Unit; 2]) -> (String, Option<String>) {
+    let table = |heading: String, accelerations: &[f64]| {
+        let samples = record.times().iter().zip(accelerations);
+        let lines: String = samples.map(|(time, a)| format!("{time:?},{a:?}\n")).collect();
+        format!("time[s],{heading}\n{lines}")
+    };
+    let a_v = record.vertical().map(|a_v| table(format!("a_v[{vertical}]"), a_v));
+    (table(format!("a_g[{unit}]"), record.acceleration()), a_v)
 }

@@ -18,7 +18,7 @@ mod table;
 mod text;
 mod unit;
 
-pub use csv::{csv_in, vertical_csv};
+pub use csv::csv_in;
 use parsed::Parsed;
 use rocking::run::record::{MAX_SAMPLES, Record};
 use rocking::structure::parameters::PARAMETERS;
@@ -125,22 +125,16 @@ pub enum RecordError {
     },
 }
 
-/// The option of [`Reading`] that makes a file readable.
+/// The option of [`Reading`] that makes a file readable, which [`Remedy::advice`] says in words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
 pub enum Remedy {
-    /// Ignore the stated number of samples.
     IgnoreCount,
-    /// The time between samples.
     Step,
-    /// The time between samples, or a heading of the column of times.
     StepOrHeading,
-    /// The column, the channel, or that every number is a sample.
     Column,
-    /// That every number is a sample, unless the line is wrong.
     All,
-    /// The unit.
     Unit,
-    /// The column or the channel, and the unit.
     ColumnAndUnit,
     /// This module for Python reads the file, by this call in the place of the arguments of a Record.
     Python(&'static str, &'static str),

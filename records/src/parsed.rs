@@ -20,7 +20,6 @@ pub(super) struct Parsed {
     last_line: usize,
 }
 
-/// Times of the samples.
 #[derive(Debug)]
 pub(super) enum Times {
     /// One sample every so many seconds.
@@ -82,7 +81,6 @@ pub(super) fn published<'a>(
 }
 
 impl Parsed {
-    /// Starts without samples.
     pub fn new(title: impl Into<String>, unit: Unit, unit_from: UnitFrom, times: Times) -> Parsed {
         let source = Source { format: TABLE, unit, unit_from, remarks: Vec::new() };
         Parsed { title: title.into(), times, values: Vec::new(), source, last_line: 1 }
@@ -98,7 +96,6 @@ impl Parsed {
         Ok(())
     }
 
-    /// Adds a finding or an assumption.
     pub fn remark(&mut self, remark: impl Into<String>) {
         self.source.remarks.push(remark.into());
     }

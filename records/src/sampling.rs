@@ -7,9 +7,7 @@ use super::{BadLine, MAX_SAMPLES, Reading, Remedy, bad};
 /// Number of samples and step, as far as a line states them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Sampling {
-    /// NPTS, the number of samples.
     pub npts: Option<usize>,
-    /// DT, the time between samples, s.
     pub dt: Option<f64>,
 }
 
@@ -17,7 +15,6 @@ pub(super) struct Sampling {
 const STEPS: &str = "DT|SPACED INTERVALS OF|SPACED INTERVAL OF|SPACED AT|TIME STEP|TIME INTERVAL|SAMPLE INTERVAL|SAMPLING INTERVAL|SAMPLING PERIOD|INTERVALO DE MUESTREO|INTERVALO DE MUESTREO , C1-C6|\
     SAMPLING_INTERVAL_S|SAMPLERATE|SAMPLE RATE|SAMPLING RATE|SAMPLING FREQ|SAMPLING FREQUENCY";
 
-/// The words that state the number of samples.
 const COUNTS: [&str; 5] = ["NPTS", "NDATA", "NUMBER OF SAMPLES", "NUMBER OF DATA", "NUMBER OF POINTS"];
 
 impl Sampling {

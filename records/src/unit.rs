@@ -5,29 +5,22 @@ use std::{fmt, iter};
 
 /// Unit of the accelerations of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[allow(missing_docs)] // the names say what they are
 pub enum Unit {
-    /// Multiples of the acceleration of gravity, as an AT2 file always has them.
     #[serde(rename = "g")]
     G,
-    /// m/s².
     #[serde(rename = "m/s2")]
     MetrePerSecondSquared,
-    /// cm/s², which is also called gal.
     #[serde(rename = "cm/s2", alias = "gal")]
     CentimetrePerSecondSquared,
-    /// mm/s².
     #[serde(rename = "mm/s2")]
     MillimetrePerSecondSquared,
-    /// in/s², 0.0254 m/s².
     #[serde(rename = "in/s2")]
     InchPerSecondSquared,
-    /// ft/s², 0.3048 m/s².
     #[serde(rename = "ft/s2")]
     FootPerSecondSquared,
-    /// Thousandths of g.
     #[serde(rename = "mg")]
     MilliG,
-    /// Hundredths of g.
     #[serde(rename = "%g")]
     PercentG,
 }
@@ -154,7 +147,6 @@ const WORDS: &str = " a ac raw pga acc accel acceleration accelerations accelero
     channel chan ch no corrected uncorrected filtered scaled multiplied factor by unit units amplitudeunit unidades in of de los datos the dcoffset corr deg along across n \
     s e w u d z v h l t r x y ns ew ud sn we du ne nw se sw en hne hnn hnz hn1 hn2 ";
 
-/// The words of `text` in small letters.
 fn words(text: &str) -> Vec<String> {
     let text = text.to_lowercase().replace("a_g", "ag");
     text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_owned).collect()

@@ -2,7 +2,7 @@
 
 use crate::estimate::Estimate;
 use crate::quantities::{Number, of_motion};
-use crate::run::{NamedPeak, Run, symbol, with};
+use crate::run::{NamedPeak, Run, symbol};
 use rocking::Detail;
 use rocking::digits::{short, significant};
 use rocking::engine::{DEFAULT_TOLERANCE, motion::Work};
@@ -107,7 +107,7 @@ fn compare<Q: Runs>(run: &rocking::Run<Q>, (within, criteria): (f64, &[Criterion
 impl Run {
     /// Follows the motion at every level of detail, and advises the cheapest level whose errors of `criteria` stay `within` a part.
     pub fn advice(&self, within: f64, criteria: &[Criterion]) -> Result<Advice, RunError> {
-        with!(self, run => compare(&run, (within, criteria)))
+        with_run!(self.conditions, self.structure, &self.ground, run => compare(&run, (within, criteria)))?
     }
 
     /// The table and the `advice` on this run under the ground motion that `title` names, for people.

@@ -23,37 +23,36 @@ impl Estimate {
         let spectral = |record| spectral_acceleration(record, TAU / structure.omega_u, structure.zeta_u);
         let S_a = record.map_or(0.0, spectral);
         let demand = Demand::new(structure, S_a, C)?;
-        let mut terms = record.map_or(Vec::new(), |record| on_fixed_base(structure, record));
-        terms.extend(while_rocking(structure, S_a, C, &demand));
+        let &Demand { u_ddot_gr, ground, rocking, impact, a_t, V_t, M_t } = &demand;
+        let term = NamedValue::new;
+        let mut terms = Vec::new();
+        if let Some(record) = record {
+            let S_a = spectral_acceleration(record, TAU / structure.omega_fc, structure.parameters().zeta_fc);
+            terms.extend([
+                term("PGA", record.pga(), "m/s2", "", "peak ground acceleration"),
+                term("S_a(T_fc, zeta_fc)", S_a, "m/s2", "Eq 4", "lateral acceleration on a fixed base"),
+                term("V_fc", structure.parameters().m * S_a, "N", "Eq 4", "base shear on a fixed base"),
+            ]);
+        }
+        terms.extend([
+            term("T_u", TAU / structure.omega_u, "s", "before Eq 18", "period of the vibration mode while rocking"),
+            term("zeta_u", structure.zeta_u, "1", "before Eq 18", "damping ratio of the vibration mode while rocking"),
+            term("S_a(T_u, zeta_u)", S_a, "m/s2", "after Eq 20", "absolute spectral acceleration at T_u and zeta_u"),
+            term("C", C, "1", "Eq 21", "dynamic amplification at a transition between rocking phases"),
+            term(
+                "u_ddot_gr",
+                u_ddot_gr,
+                "m/s2",
+                "Eq 21",
+                "elastic acceleration at a transition between rocking phases",
+            ),
+            term("(1-chi) S_a", ground, "m/s2", "Eq 22", "vibration that the ground excites"),
+            term("chi g tan", rocking, "m/s2", "Eq 22", "rocking mode, chi g tan(alpha_cg)"),
+            term("C chi g tan", impact, "m/s2", "Eq 22", "vibration that the transition excites"),
+            term("a_t", a_t, "m/s2", "Eq 22", "lateral acceleration: (1-chi) S_a + (1+C) chi g tan"),
+            term("V_t", V_t, "N", "Eq 23", "base shear m a_t"),
+            term("M_t", M_t, "N.m", "Eq 24", "overturning moment m H a_t"),
+        ]);
         Ok(Estimate { demand, terms })
     }
-}
-
-/// The ground motion, and what it asks of the structure on a fixed base.
-fn on_fixed_base(structure: &OneMass, record: &Record) -> Vec<NamedValue> {
-    let S_a = spectral_acceleration(record, TAU / structure.omega_fc, structure.parameters().zeta_fc);
-    vec![
-        NamedValue::new("PGA", record.pga(), "m/s2", "", "peak ground acceleration"),
-        NamedValue::new("S_a(T_fc, zeta_fc)", S_a, "m/s2", "Eq 4", "lateral acceleration on a fixed base"),
-        NamedValue::new("V_fc", structure.parameters().m * S_a, "N", "Eq 4", "base shear on a fixed base"),
-    ]
-}
-
-/// The demand while rocking, term by term, and what it comes from.
-fn while_rocking(structure: &OneMass, S_a: f64, C: f64, demand: &Demand) -> Vec<NamedValue> {
-    let &Demand { u_ddot_gr, ground, rocking, impact, a_t, V_t, M_t } = demand;
-    let term = NamedValue::new;
-    vec![
-        term("T_u", TAU / structure.omega_u, "s", "before Eq 18", "period of the vibration mode while rocking"),
-        term("zeta_u", structure.zeta_u, "1", "before Eq 18", "damping ratio of the vibration mode while rocking"),
-        term("S_a(T_u, zeta_u)", S_a, "m/s2", "after Eq 20", "absolute spectral acceleration at T_u and zeta_u"),
-        term("C", C, "1", "Eq 21", "dynamic amplification at a transition between rocking phases"),
-        term("u_ddot_gr", u_ddot_gr, "m/s2", "Eq 21", "elastic acceleration at a transition between rocking phases"),
-        term("(1-chi) S_a", ground, "m/s2", "Eq 22", "vibration that the ground excites"),
-        term("chi g tan", rocking, "m/s2", "Eq 22", "rocking mode, chi g tan(alpha_cg)"),
-        term("C chi g tan", impact, "m/s2", "Eq 22", "vibration that the transition excites"),
-        term("a_t", a_t, "m/s2", "Eq 22", "lateral acceleration: (1-chi) S_a + (1+C) chi g tan"),
-        term("V_t", V_t, "N", "Eq 23", "base shear m a_t"),
-        term("M_t", M_t, "N.m", "Eq 24", "overturning moment m H a_t"),
-    ]
 }

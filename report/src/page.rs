@@ -17,18 +17,13 @@ const MOST_VALUES: usize = 1_000_000;
 impl Run {
     /// The page that shows the run.
     pub fn page(&self) -> Result<String, RunError> {
-        let [finest, coarser @ ..] = PARTS;
-        let mut scene = self.scene(finest);
-        for part in coarser {
-            let takes_too_many = match &scene {
-                Ok(scene) => scene.values() > MOST_VALUES,
-                Err(error) => matches!(error, RunError::TooManyPoints { .. }),
-            };
-            if takes_too_many {
-                scene = self.scene(part);
-            }
-        }
-        Ok(scene?.page())
+        let is_small = |scene: &Result<Scene, RunError>| match scene {
+            Ok(scene) => scene.values() <= MOST_VALUES,
+            Err(error) => !matches!(error, RunError::TooManyPoints { .. }),
+        };
+        let [finer @ .., coarsest] = PARTS;
+        let small = finer.into_iter().map(|part| self.scene(part)).find(is_small);
+        Ok(small.unwrap_or_else(|| self.scene(coarsest))?.page())
     }
 
     /// The content of a page about the run, with lines that leave the motion by at most this `part` of its peaks.

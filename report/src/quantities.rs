@@ -1,20 +1,15 @@
 //! Named values for people and for programs.
 use rocking::digits::significant;
 use serde::{Serialize, Serializer};
-use std::fmt::{self, Write};
 
-/// One value.
+/// One value, its unit (`1` for a ratio) and the equation of the paper that defines it.
 #[derive(Serialize)]
+#[allow(missing_docs)]
 pub struct NamedValue {
-    /// Symbol of the value.
     pub name: String,
-    /// The value.
     pub value: f64,
-    /// Unit of the value; `1` for a ratio.
     pub unit: &'static str,
-    /// Equation of the paper that defines the value.
     pub equation: &'static str,
-    /// Description of the value.
     pub description: String,
 }
 
@@ -50,15 +45,15 @@ pub fn in_readable_unit(value: f64, unit: &str, digits: fn(f64) -> String) -> St
     format!("{} {unit}", digits(value / per_unit))
 }
 
-/// Writes `lines` in columns; accelerations also in multiples of `g` (m/s²).
-pub fn write_columns(out: &mut impl Write, lines: &[NamedValue], g: f64) -> fmt::Result {
-    for NamedValue { name, value, unit, equation, description } in lines {
+/// `lines` in columns; accelerations also in multiples of `g` (m/s²).
+pub fn columns(lines: &[NamedValue], g: f64) -> String {
+    let line = |NamedValue { name, value, unit, equation, description }: &NamedValue| {
         let in_g = if *unit == "m/s2" { format!("{:.4} g", value / g) } else { String::new() };
         let (per_unit, unit) = readable(*value, if *unit == "1" { "-" } else { unit });
         let value = significant(*value / per_unit);
-        writeln!(out, "  {name:<20} {value:>12} {unit:<6} {in_g:>10}  {equation:<13} {description}")?;
-    }
-    Ok(())
+        format!("  {name:<20} {value:>12} {unit:<6} {in_g:>10}  {equation:<13} {description}\n")
+    };
+    lines.iter().map(line).collect()
 }
 
 /// A number that may be infinite, for which JSON has no number: it is the text "inf" there, as in a table.

@@ -3,7 +3,7 @@
 use crate::input;
 use anyhow::anyhow;
 use rocking::run::record::{Record, SamplesError};
-use rocking_records::{Reading, RecordError, Remedy, Source, Unit, csv_in, doubt_of_peak, doubts, vertical_csv};
+use rocking_records::{Reading, RecordError, Remedy, Source, Unit, csv_in, doubt_of_peak, doubts};
 use std::path::Path;
 
 /// A ground motion that was read from files or streams.
@@ -92,8 +92,7 @@ impl Understood {
     /// The scaled record as tables that need no options, in s and the unit of the file: a record in g follows a g that is set later. The
     /// first is of the horizontal component, the other of the vertical one, if there is one.
     pub fn tables(&self) -> anyhow::Result<(String, Option<String>)> {
-        let ([time_scale, scale], [unit, vertical]) = (self.factors, self.units);
-        let scaled = self.in_file_unit.clone().scaled(time_scale, scale)?;
-        Ok((csv_in(&scaled, unit), vertical_csv(&scaled, vertical)))
+        let [time_scale, scale] = self.factors;
+        Ok(csv_in(&self.in_file_unit.clone().scaled(time_scale, scale)?, self.units))
     }
 }

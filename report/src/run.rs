@@ -8,7 +8,7 @@ use rocking::mechanics::restraint::Dissipators;
 use rocking::run::curve;
 use rocking::run::peaks::{Peak, Peaks};
 use rocking::run::record::Record;
-use rocking::run::validity::{self, Findings, Limits};
+use rocking::run::validity::{Findings, Limits};
 use rocking::run::{End, Ending, Finish, RunError, Runs, fall};
 use rocking::{Modes, Output, Phase, Run as Follow, State, Structure, Transition, TransitionKind, Watch};
 use rocking_sweep::{plan::Conditions, with_run};
@@ -38,31 +38,26 @@ pub struct Run {
     pub conditions: Conditions,
 }
 
-/// The results of a run; for programs, instants are in s.
+/// The results of a run; instants are in s.
 #[derive(Clone, Serialize)]
+#[allow(missing_docs)]
 pub struct Found {
-    /// Start of the run, s.
     pub start: f64,
-    /// End of the run, s.
     pub end: f64,
-    /// How the run ended.
     pub ending: Ending,
-    /// Whether the structure overturned; None if it still rocks at the end.
+    /// None if the structure still rocks at the end.
     pub overturned: Option<bool>,
-    /// Start of the fall of a structure that overturns, s.
+    /// Start of the fall of a structure that overturns.
     pub fall: Option<f64>,
     /// All peaks, the peak of the ground first; if the structure overturns, those before it falls.
     pub peaks: Vec<NamedPeak>,
     /// Of a structure with dissipators.
     #[serde(flatten)]
     pub(crate) taken: Option<Taken>,
-    /// Instant of the first uplift, s.
     pub(crate) first_uplift: Option<f64>,
-    /// Instant of the first impact, s.
     pub(crate) first_impact: Option<f64>,
     /// Number of transitions.
     pub transitions: u64,
-    /// Steps and right-hand-side evaluations.
     #[serde(flatten)]
     pub work: Work,
     /// Every transition in the order of time.
@@ -79,37 +74,30 @@ pub struct Found {
     pub findings: Option<Findings>,
 }
 
-/// A peak.
+/// The largest magnitude of a quantity, and the first instant that has it, s.
 #[derive(Clone, Serialize)]
+#[allow(missing_docs)]
 pub struct NamedPeak {
-    /// Symbol of the quantity.
     pub name: String,
-    /// Largest magnitude.
     #[serde(rename = "peak")]
     pub magnitude: f64,
-    /// Unit of the quantity.
     pub unit: &'static str,
-    /// The first instant that has it, s.
     pub time: f64,
 }
 
-/// Work of the dissipators until the end of a run.
+/// Energy (J) that the dissipators took until the end of a run, and the rotation (rad) that is left.
 #[derive(Clone, Copy, Serialize)]
 pub(crate) struct Taken {
-    /// Energy, J.
     pub E_viscous: f64,
-    /// J.
     pub E_hysteretic: f64,
-    /// Rotation that is left, rad.
     pub theta_end: f64,
 }
 
-/// A transition.
+/// A transition at a time, s.
 #[derive(Clone)]
+#[allow(missing_docs)]
 pub struct Event {
-    /// Instant, s.
     pub time: f64,
-    /// Kind.
     pub kind: TransitionKind,
     /// The state before and after, in the order of [`Run::components`].
     pub states: [Vec<f64>; 2],
@@ -125,13 +113,11 @@ pub struct Samples {
     pub transitions: Vec<u64>,
 }
 
-/// A motion as points that straight lines join.
+/// A run as points that straight lines join, at times in s.
+#[allow(missing_docs)]
 pub struct Curve {
-    /// The results of the run.
     pub found: Found,
-    /// Instants, s.
     pub times: Vec<f64>,
-    /// The phase of each point.
     pub phases: Vec<Phase>,
     /// a_g and the drawn outputs by name.
     pub columns: Vec<(String, Vec<f64>)>,
@@ -150,32 +136,24 @@ pub trait Watcher: Watch<f64> + Watch<Modes> + Clone {
 
 impl Watcher for () {}
 
-/// `$do` with `$follow`, the library's run of one mass or of many.
-macro_rules! with {
-    ($run:expr, $follow:ident => $do:expr) => {
-        with_run!($run.conditions, $run.structure, &$run.ground, $follow => $do)?
-    };
-}
-pub(crate) use with;
-
 impl Run {
     /// Follows the motion to its end, and finds its exact peaks; with `limits`, how far it breaks the assumptions of the model, too.
     pub fn found(&self, limits: Option<Limits>, watch: &mut impl Watcher) -> Result<Found, RunError> {
-        with!(self, run => found(&run, limits, watch))
+        with_run!(self.conditions, self.structure, &self.ground, run => found(&run, limits, watch))?
     }
 
     /// The results of the same structure on a fixed base, from rest under the same ground motion until `end` (s).
     pub fn on_fixed_base(&self, end: f64) -> Result<Found, RunError> {
-        with!(self, run => found(&run.on_fixed_base(end), None, &mut ()))
+        with_run!(self.conditions, self.structure, &self.ground, run => found(&run.on_fixed_base(end), None, &mut ()))?
     }
 
     /// The findings about the model within `limits`.
     pub fn validity(&self, limits: Limits, watch: &mut impl Watcher) -> Result<Findings, RunError> {
-        with!(self, run => {
+        with_run!(self.conditions, self.structure, &self.ground, run => {
             let mut validity = run.validity_watch(limits)?;
             run.judge(&mut validity, watch)?;
             Ok(*validity.found())
-        })
+        })?
     }
 
     /// Shows the motion at `times` (s), which rise; those before the start and after the end are left out, and the end itself is
@@ -187,10 +165,10 @@ impl Run {
         mut show: impl FnMut(Line),
         watch: &mut impl Watcher,
     ) -> Result<(), RunError> {
-        with!(self, run => {
+        with_run!(self.conditions, self.structure, &self.ground, run => {
             let (outputs, run) = (Output::all(&run.structure.at(run.detail)), Follow { end: end.map_or(run.end, End::At), ..run });
             run.sample(times, |sample| show(line(sample, outputs.iter().copied().map(sample.outputs()).collect())), watch).map(|_| ())
-        })
+        })?
     }
 
     /// The motion at `times` (s) in any order, none of which is before the start. After the end the ground is at rest and the motion
@@ -235,14 +213,14 @@ impl Run {
     ) -> anyhow::Result<Vec<f64>> {
         let end = found.fall.unwrap_or(found.end);
         ensure!(end > found.start, "the structure falls from its start on: its floors have no spectrum");
-        with!(self, run => {
+        with_run!(self.conditions, self.structure, &self.ground, run => {
             Ok(floor_spectrum(&run, end, |sample| sample.output(Output::a_t(floor)), periods, zeta, watch)?)
-        })
+        })?
     }
 
     /// The run as points between which θ, u and a_t of each floor leave straight lines by at most `part` of their peaks.
     pub fn curve(&self, part: f64) -> Result<Curve, RunError> {
-        with!(self, run => curve(&run, part))
+        with_run!(self.conditions, self.structure, &self.ground, run => curve(&run, part))?
     }
 
     /// The outputs at the level of detail.
@@ -293,11 +271,6 @@ impl Run {
                 (1..).zip(self.structure.floors().iter().map(|floor| floor.height)).map(of).collect()
             }
         }
-    }
-
-    /// The warnings that follow from the structure at the level of detail, before anything moves.
-    pub fn warnings(&self) -> Vec<String> {
-        validity::of_structure(&self.structure, self.conditions.detail)
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::quantities::Number;
 use crate::run::Run;
 use rocking::digits::significant;
-use rocking::run::validity::{ASSUMPTIONS, Assumption, Findings, Limits, WEIGHT, Worst};
+use rocking::run::validity::{ASSUMPTIONS, Assumption, Findings, Limits, WEIGHT, Worst, of_structure};
 use serde::Serialize;
 
 /// Label of each of [`ASSUMPTIONS`].
@@ -17,20 +17,18 @@ const LABELS: [&str; ASSUMPTIONS.len()] = [
     "weight, (g + a_v)/g",
 ];
 
-/// Result for one of the [`ASSUMPTIONS`], for programs.
+/// The worst value in a run of one of the [`ASSUMPTIONS`], and its instant (s), for programs.
 #[derive(Serialize)]
+#[allow(missing_docs)]
 pub struct Beyond {
-    /// Name of the assumption.
     pub name: &'static str,
-    /// Worst value.
     pub value: Number,
-    /// Instant of the worst value, s.
     pub time: f64,
-    limit: f64,
+    pub limit: f64,
     /// When the limit was passed first, s.
-    first_beyond: Option<f64>,
+    pub first_beyond: Option<f64>,
     /// For how long, s, or at how many impacts.
-    beyond: f64,
+    pub beyond: f64,
 }
 
 /// Results for all assumptions, in a run in which this was `found`.
@@ -53,7 +51,8 @@ impl Run {
     /// The limits of the model in this run, in which this was `found`, line by line.
     pub fn section(&self, found: &Findings, limits: &Limits) -> Vec<String> {
         let mut lines = vec!["limits of the model".to_owned()];
-        lines.extend(self.warnings().into_iter().map(|warning| format!("  {warning}")));
+        let warnings = of_structure(&self.structure, self.conditions.detail);
+        lines.extend(warnings.into_iter().map(|warning| format!("  {warning}")));
         let is_level = found.worst[WEIGHT].value == 1.0;
         let shown = (0..ASSUMPTIONS.len()).filter(|which| *which != WEIGHT || !is_level);
         lines.extend(shown.map(|which| line(which, found, limits)));

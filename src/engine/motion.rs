@@ -2,7 +2,7 @@
 
 use crate::engine::step::Closed;
 use crate::levels::level::Now;
-use crate::levels::rules::ChatterLimit;
+use crate::mechanics::impact::Chatter;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
 use crate::mechanics::reactions::Impulse;
@@ -57,48 +57,5 @@ impl<Q: Coordinates> Motion<Q> {
     /// Duration from now on, s, over which contact is held because too many transitions came before.
     pub fn held(&self) -> f64 {
         self.chatter.held
-    }
-}
-
-/// Transitions in the present period, for the guarantee of progress.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Chatter {
-    /// Time since the first of them, s.
-    pub age: f64,
-    /// Number of transitions since then.
-    transitions: u32,
-    /// Duration over which contact is held from now on, s.
-    pub held: f64,
-}
-
-impl Chatter {
-    /// The state of a motion that has had no transition.
-    pub(crate) const NONE: Chatter = Chatter { age: f64::MAX, transitions: 0, held: 0.0 };
-
-    /// Passes `duration` seconds.
-    #[inline]
-    pub(crate) fn pass(&mut self, duration: f64) {
-        self.age += duration;
-        if self.held > 0.0 {
-            self.held = (self.held - duration).max(0.0);
-        }
-    }
-
-    /// Holds contact to the end of the period.
-    pub(crate) fn hold(&mut self, limit: ChatterLimit) {
-        self.held = limit.period - self.age;
-    }
-
-    /// Counts one more transition.
-    pub(crate) fn count(&mut self, limit: ChatterLimit) {
-        if self.age >= limit.period {
-            (self.age, self.transitions) = (0.0, 0);
-        }
-        self.transitions += 1;
-    }
-
-    /// Whether the period may see no more transitions.
-    pub(crate) fn is_too_much(&self, limit: ChatterLimit) -> bool {
-        self.transitions >= limit.transitions && self.age < limit.period
     }
 }

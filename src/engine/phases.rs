@@ -91,7 +91,8 @@ struct Uplift;
 
 impl<Q: Coordinates> Guard<Q> for Uplift {
     fn first(&self, step: &Step<Q>) -> (Crossing, Way) {
-        let (crossing, side) = step.level.first_uplift(step.start, step.arc);
+        let Some(liftable) = step.level.liftable() else { return (Crossing::None, Way::default()) };
+        let (crossing, side) = liftable.first(step.start, step.arc);
         (crossing, about(side))
     }
 
@@ -104,7 +105,7 @@ impl<Q: Coordinates> Guard<Q> for Uplift {
     fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {
         let Motion { state, dissipators, .. } = &now.motion;
         let start = now.level.subject().start(*state, dissipators, now.load.into(), ahead);
-        now.level.stays_for(&start)
+        now.level.liftable().is_none_or(|liftable| liftable.stays_for(&start))
     }
 
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
@@ -171,18 +172,16 @@ impl<Q: Coordinates> Guard<Q> for Impact {
     }
 
     fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, _way: Way) -> Option<TransitionKind> {
-        let (before, limit) = (motion.state, level.chatter_limit());
-        let (kind, phase, after) = if motion.chatter.is_too_much(limit) {
-            motion.chatter.hold(limit);
-            let landed = level.admissible(Phase::FullContact, impact::land::<Q>(level.structure(), &before));
-            (TransitionKind::Settling, Phase::FullContact, landed)
+        let (before, &Subject { ref structure, local_error, .. }) = (motion.state, level.subject());
+        let (kind, phase, after) = if motion.chatter.settles(structure) {
+            (TransitionKind::Settling, Phase::FullContact, impact::land::<Q>(structure, &before))
         } else {
-            match level.after_impact(motion.phase.side(), &before) {
+            match impact::resolve::<Q>(structure, local_error, motion.phase.side(), &before) {
                 (Phase::Rocking(side), after) => (TransitionKind::Impact(side), Phase::Rocking(side), after),
                 (phase, after) => (TransitionKind::Landing, phase, after),
             }
         };
-        enter(level, motion, phase, after);
+        enter(level, motion, phase, level.admissible(phase, after));
         Some(kind)
     }
 

@@ -86,7 +86,7 @@ impl<Q> Transition<Q> {
 /// Takes `motion` into `phase` with the state `after`, and counts the transition.
 pub(crate) fn enter<Q: Coordinates>(level: &dyn Level<Q>, motion: &mut Motion<Q>, phase: Phase, after: State<Q>) {
     let structure = level.structure();
-    motion.chatter.count(level.chatter_limit());
+    motion.chatter.count(structure);
     motion.impulse = motion.impulse.and(Impulse::of::<Q>(structure, (motion.phase, &motion.state), (phase, &after)));
     let rocking = if let Phase::Rocking(side) = phase { Some((side, after.theta_dot)) } else { None };
     motion.dissipators = motion.dissipators.after(structure.base(), rocking);

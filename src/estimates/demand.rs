@@ -57,7 +57,7 @@ impl Demand {
         check_is_free(structure)?;
         let &crate::Parameters { m, H, g, .. } = structure.parameters();
         let ground = structure.one_minus_chi * S_a;
-        let rocking = structure.chi * g * structure.tan_alpha_cg;
+        let rocking = structure.chi * g * structure.base().tan_alpha_cg;
         let impact = C * rocking;
         let a_t = ground + rocking + impact;
         Ok(Demand {
@@ -90,7 +90,7 @@ mod tests {
         };
         assert_eq!(in_g(Parameters::MCMANUS, 2.0), "0.6585");
         assert_eq!(in_g(Parameters::EVISON, 0.0), "0.3333");
-        let tan_alpha_cg = OneMass::new(Parameters::EVISON).unwrap().tan_alpha_cg;
+        let tan_alpha_cg = OneMass::new(Parameters::EVISON).unwrap().base().tan_alpha_cg;
         assert_eq!(format!("{:.2}", 0.92 * tan_alpha_cg), "0.34");
     }
 

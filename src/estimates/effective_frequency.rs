@@ -15,12 +15,12 @@ use crate::{OneMass, Refused};
 /// Time from release at rest at the rotation `theta` (rad) to impact, s; ∞ from tan α_cg on.
 pub fn time_to_impact(structure: &OneMass, theta: f64) -> Result<f64, Refused> {
     check_is_free(structure)?;
-    let part = theta.abs() / structure.tan_alpha_cg;
+    let part = theta.abs() / structure.base().tan_alpha_cg;
     if part >= 1.0 {
         return Ok(f64::INFINITY);
     }
     let x = part / (1.0 - part); // acosh(1 + x), with every digit of a small x
-    Ok(libm::log1p(x + (x * (x + 2.0)).sqrt()) / structure.p_l)
+    Ok(libm::log1p(x + (x * (x + 2.0)).sqrt()) / structure.base().p_l)
 }
 
 /// Effective rocking frequency f_r of the amplitude `theta` (rad), Hz (Eq 14), of a structure without ties.
@@ -43,10 +43,10 @@ mod tests {
     fn the_rocking_mode_is_back_at_zero() {
         let structure = evison();
         for part in [1e-12, 1e-6, 0.1, 0.5, 0.9, 0.999_999] {
-            let theta = part * structure.tan_alpha_cg;
-            let half = 0.5 * structure.p_l * time_to_impact(&structure, theta).unwrap();
+            let theta = part * structure.base().tan_alpha_cg;
+            let half = 0.5 * structure.base().p_l * time_to_impact(&structure, theta).unwrap();
             // cosh − 1 = 2 sinh²(half argument)
-            let dropped = (structure.tan_alpha_cg - theta) * 2.0 * half.sinh().powi(2);
+            let dropped = (structure.base().tan_alpha_cg - theta) * 2.0 * half.sinh().powi(2);
             assert_relative_eq!(dropped, theta, max_relative = 1e-13 / (1.0 - part));
         }
     }
@@ -55,7 +55,7 @@ mod tests {
     fn the_limits_are_those_of_no_rotation_and_of_the_unstable_equilibrium() {
         let structure = evison();
         assert_eq!(effective_frequency(&structure, 0.0), Ok(f64::INFINITY));
-        assert_eq!(effective_frequency(&structure, -structure.tan_alpha_cg), Ok(0.0));
+        assert_eq!(effective_frequency(&structure, -structure.base().tan_alpha_cg), Ok(0.0));
         assert_eq!(effective_frequency(&structure, 1.0), Ok(0.0));
     }
 }

@@ -1,15 +1,8 @@
 //! Rocking and vibration mode of a rocking state (Eqs 10–20).
 //!
-//! The linearised equations (7, 8) are uncoupled, but for small geometric stiffness terms, by the shapes (u, θ) = (0,
-//! 1) of the rocking mode and (1, −p_l²/g) of the vibration mode:
-//!
-//! ```text
-//! θ = q_r + q_u,      q_u = −(p_l²/g) u                                                                (16)
-//! q̈_r − p_l² q_r = −p_l² a_g/g − s p_l² tan α_cg                                                       (11)
-//! ü + 2 ζ_u ω_u u̇ + ω_u² u = −a_g + s (χ/(1−χ)) g tan α_cg                                             (18)
-//! ```
-//!
-//! The lateral accelerations at the height of the top mass that belong to them, and their sum:
+//! The linearised equations (7, 8) are uncoupled, but for small geometric stiffness terms, by the shapes (u, θ) = (0, 1) of the
+//! rocking mode and (1, −p_l²/g) of the vibration mode. Eqs 11, 16 and 18 of the modes stand in `levels/linear.rs`. The lateral
+//! accelerations at the height of the top mass that belong to the modes, and their sum:
 //!
 //! ```text
 //! a_r = H q̈_r = χ g q_r − χ a_g − s χ g tan α_cg                                                       (12)
@@ -21,7 +14,7 @@
 //! of the full equations by g (θ − χ q_r) to first order.
 
 use crate::estimates::demand::check_is_free;
-use crate::{OneMass, Refused, Side, State};
+use crate::{Base, OneMass, Refused, Side, State};
 
 /// The rotation of the base, split into the two modes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +29,7 @@ impl Modes {
     /// Splits the rotation of `state` (Eq 16) of a structure without ties.
     pub fn of(structure: &OneMass, state: &State) -> Result<Modes, Refused> {
         check_is_free(structure)?;
-        let q_u = -structure.p_l * structure.p_l / structure.parameters().g * state.u;
+        let q_u = -structure.base().p_l * structure.base().p_l / structure.parameters().g * state.u;
         Ok(Modes { q_r: state.theta - q_u, q_u })
     }
 }
@@ -53,8 +46,8 @@ pub struct ModalAccelerations {
 impl ModalAccelerations {
     /// The modes' accelerations while rocking about `side` under the ground acceleration `a_g` (m/s²).
     pub fn of(structure: &OneMass, side: Side, state: &State, a_g: f64) -> Result<ModalAccelerations, Refused> {
-        let &OneMass { chi, one_minus_chi, omega_u, zeta_u, tan_alpha_cg, .. } = structure;
-        let g = structure.parameters().g;
+        let &OneMass { chi, one_minus_chi, omega_u, zeta_u, .. } = structure;
+        let &Base { g, tan_alpha_cg, .. } = structure.base();
         let step = side.sign() * g * tan_alpha_cg;
         let a_r = chi * (g * Modes::of(structure, state)?.q_r - a_g - step);
         let u_ddot =
@@ -85,7 +78,7 @@ mod tests {
         let &Parameters { m, H, B, g, .. } = structure.parameters();
         for (side, a_g) in [(Side::Right, 2.0), (Side::Left, -15.0)] {
             let q_r = Modes::of(&structure, &STATE).unwrap().q_r;
-            let mass = Matrix2::new(1.0, H, H, structure.J_P / m);
+            let mass = Matrix2::new(1.0, H, H, structure.base().J_P / m);
             let force = Vector2::new(
                 structure.chi * g * q_r - (structure.c_u * STATE.u_dot + structure.k * STATE.u) / m - a_g,
                 g * H * q_r - H * a_g - side.sign() * structure.gamma * g * B,

@@ -1,7 +1,7 @@
 //! Displacement-controlled pushover (Fig 1): a horizontal force P on the floors, slow enough for equilibrium.
 //!
 //! Floor i takes the part w_i = m_i h_i/Σ m h of P (EN 1998-1, Eq 4.11), and one mass takes all of it. In full contact
-//! P = u_w/C up to uplift at P h_w = hold ([`uplift`](crate::mechanics::uplift)), which is u_cr of one mass. Beyond it, the
+//! P = u_w/C up to uplift at P h_w = hold ([`uplift`](crate::levels::uplift)), which is u_cr of one mass. Beyond it, the
 //! equations without inertia, damping and ground motion, P in the direction of each coordinate on the other side, are
 //!
 //! ```text
@@ -254,8 +254,8 @@ mod tests {
             let end = of(&structure).at_overturning().unwrap();
             let weight = structure.gamma * structure.parameters().m * structure.parameters().g;
             assert!(end.force >= 0.0 && end.force < 1e-13 * weight);
-            assert_relative_eq!(end.theta, libm::atan(structure.tan_alpha_cg), max_relative = 6e-3);
-            assert!(end.theta < libm::atan(structure.tan_alpha_cg));
+            assert_relative_eq!(end.theta, libm::atan(structure.base().tan_alpha_cg), max_relative = 6e-3);
+            assert!(end.theta < libm::atan(structure.base().tan_alpha_cg));
             let forces: Vec<_> = (0..=50)
                 .map(|i| of(&structure).at_rotation(f64::from(i) / 50.0 * end.theta).unwrap())
                 .map(|there| (there.force, there.moment))

@@ -87,7 +87,7 @@ mod tests {
         for tied in [tied, Parameters { k_t: 1e4, P_0: 500.0, ..tied }] {
             let structure = OneMass::new(tied).unwrap();
             let no_return = angle_of_no_return(structure.base()).unwrap();
-            let alpha_cg = structure.tan_alpha_cg.atan();
+            let alpha_cg = structure.base().tan_alpha_cg.atan();
             assert!(no_return > 1.5 * alpha_cg, "{no_return}");
             let loop_there = flag(structure.base(), no_return, 1000)[1000];
             assert!(loop_there.moment.abs() < 1e-9 * flag(structure.base(), 0.0, 1)[0].moment);

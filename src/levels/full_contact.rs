@@ -4,12 +4,12 @@
 //! ü + 2 ζ_fc ω_fc u̇ + ω_fc² u = −a_g + F_t/m,      θ = θ̇ = 0                                    (1)
 //! ```
 
-use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
-use crate::levels::start::{Start, Truncation};
+use crate::levels::oscillator::{Flow, Kept, Oscillator};
+use crate::levels::start::{Pace, Start};
 use crate::mechanics::arc::Arc;
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
-use crate::series::taylor::{LONGEST_SPAN, NEGLIGIBLE};
-use crate::{OneMass, State};
+use crate::{OneMass, State, Structure};
 use std::cell::RefMut;
 
 /// Elastic acceleration ü (m/s²) under the `load` by Eq 1.
@@ -21,16 +21,11 @@ pub fn acceleration(structure: &OneMass, state: &State, load: Load) -> f64 {
 
 /// Writes the motion from `start` into `arc`.
 pub(crate) fn series(structure: &OneMass, start: &Start, arc: &mut Arc) {
-    let &Start { state, a_top, interval, local_error, .. } = start;
-    let &OneMass { stiffness, damping_fc, omega_fc, .. } = structure;
-    let span = interval.min(LONGEST_SPAN / omega_fc);
-    let forcing = a_top.value.abs() + a_top.slope.abs() * span;
-    let response_time = span.min(1.0 / omega_fc);
-    let u_dot = state.u_dot.abs() + response_time * (stiffness * state.u.abs() + forcing);
-    let u_dot = u_dot.max(NEGLIGIBLE * omega_fc * structure.u_cr);
-    let truncation = Truncation { u_dot: local_error * u_dot, theta_dot: 0.0 };
+    let (&Start { state, a_top, interval, .. }, pace) = (start, Pace::down(structure));
+    let &OneMass { stiffness, damping_fc, .. } = structure;
+    let span = pace.span(interval);
     let (mut u_dot, mut forces) = (state.u_dot, [a_top.value, a_top.slope * span]);
-    arc.expand(&state, span, &truncation, |arc, k, per| {
+    arc.expand(&state, span, &pace.truncation(start, span), |arc, k, per| {
         let u_ddot = -forces[0] - damping_fc * u_dot - stiffness * arc.u[k - 1];
         (u_dot, forces) = (u_ddot * per, [forces[1], 0.0]);
         arc.u_dot[k] = u_dot;
@@ -38,7 +33,7 @@ pub(crate) fn series(structure: &OneMass, start: &Start, arc: &mut Arc) {
     });
 }
 
-/// Exact propagation over intervals during which the base certainly stays down.
+/// A mode with its exact flow, while the base stays down.
 #[derive(Clone, Debug)]
 pub(crate) struct ExactContact {
     pub oscillator: Oscillator,
@@ -47,20 +42,7 @@ pub(crate) struct ExactContact {
 
 impl ExactContact {
     pub(crate) fn new(oscillator: Oscillator) -> ExactContact {
-        ExactContact { oscillator, flows: Kept::new(Flow::NONE) }
-    }
-
-    /// The state after the interval of `start` if |u| certainly stays below `limit` (m) until then.
-    #[inline]
-    pub(crate) fn leap(&self, start: &Start, limit: f64) -> Option<State> {
-        let &Start { state, a_top, interval, .. } = start;
-        let [u, u_dot] = self.flow(interval).driven([state.u, state.u_dot], a_top.value, a_top.slope);
-        let is_low = limit == f64::INFINITY || {
-            let swing = self.swing(start);
-            let about_chord = || self.oscillator.about_chord(&swing, [state.u, u], a_top.slope, interval);
-            swing.farthest() < limit || about_chord() < limit
-        };
-        is_low.then_some(State { u, u_dot, theta: 0.0, theta_dot: 0.0 })
+        ExactContact { oscillator, flows: Kept::new(Flow::default()) }
     }
 
     /// The flow over `duration` (s).
@@ -68,16 +50,43 @@ impl ExactContact {
     pub(crate) fn flow(&self, duration: f64) -> RefMut<'_, Flow> {
         self.flows.over(duration, || self.oscillator.flow(duration))
     }
+}
 
-    #[inline(always)]
-    fn swing(&self, start: &Start) -> Swing {
-        let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
-        self.oscillator.swing([u, u_dot], a_top.value, a_top.slope, interval)
+/// The state after the interval of `start` by the exact flows of these `modes`, if the moment of their springs certainly stays below
+/// `hold` until then. A mode has this `moment` for a unit of its coordinate.
+#[inline(always)]
+pub(crate) fn leap<Q: Coordinates>(
+    modes: &[ExactContact],
+    start: &Start<Q>,
+    hold: f64,
+    moment: impl Fn(usize) -> f64,
+) -> Option<State<Q>> {
+    let &Start { ref state, ref a_top, interval, .. } = start;
+    let mut end = State { theta: 0.0, theta_dot: 0.0, ..*state };
+    let (mut farthest, mut bend, mut springs) = (0.0, 0.0, [0.0; 2]);
+    for (j, exact) in modes.iter().enumerate() {
+        let (from, value, slope) = ([state.u.of(j), state.u_dot.of(j)], a_top.value.of(j), a_top.slope.of(j));
+        let (moment, to) = (moment(j), exact.flow(interval).driven(from, value, slope));
+        let swing = exact.oscillator.swing(from, value, slope, interval);
+        farthest += moment.abs() * swing.farthest();
+        bend += moment.abs() * exact.oscillator.swings(&swing)[2];
+        springs = [springs[0] + moment * from[0], springs[1] + moment * to[0]];
+        end.u.set(j, to[0]);
+        end.u_dot.set(j, to[1]);
     }
+    let near = springs[0].abs().max(springs[1].abs()) + bend * interval * interval / 8.0;
+    (farthest < hold || near < hold).then_some(end)
+}
 
-    /// Bounds of |u|, |u̇|, |ü| and |u⃛| of the vibration over the interval of `start`.
-    #[inline(always)]
-    pub(crate) fn swings(&self, start: &Start) -> [f64; 4] {
-        self.oscillator.swings(&self.swing(start))
+/// Bounds of |u|, |u̇|, |ü| and |u⃛| of the vibration of these `modes` over the interval of `start`.
+#[inline(always)]
+pub(crate) fn swings<Q: Coordinates>(structure: &Structure, modes: &[ExactContact], start: &Start<Q>) -> [Q; 4] {
+    let &Start { ref state, ref a_top, interval, .. } = start;
+    let mut bounds = [Q::parts(structure, 0.0); 4];
+    for (j, ExactContact { oscillator, .. }) in modes.iter().enumerate() {
+        let from = [state.u.of(j), state.u_dot.of(j)];
+        let swing = oscillator.swing(from, a_top.value.of(j), a_top.slope.of(j), interval);
+        bounds.iter_mut().zip(oscillator.swings(&swing)).for_each(|(of, most)| of.set(j, most));
     }
+    bounds
 }

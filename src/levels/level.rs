@@ -1,23 +1,18 @@
-//! A level of detail as the engine uses it: equations, uplift, impact, and exact leaps where there are any.
+//! A level of detail as the engine uses it: equations, uplift, and exact leaps where there are any.
 
 #[cfg(feature = "lanes")]
 use crate::Mode;
-use crate::levels::first_uplift::Liftable;
-#[cfg(feature = "lanes")]
-use crate::levels::full_contact::ExactContact;
-use crate::levels::rules::ChatterLimit;
-use crate::levels::start::{MIN_ORDER, Start, Truncation};
+use crate::levels::full_contact::{self, ExactContact};
+use crate::levels::start::{MIN_ORDER, Start};
+use crate::levels::uplift::Liftable;
 use crate::mechanics::arc::Arc;
-use crate::mechanics::impact;
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::reactions::Reactions;
 use crate::mechanics::restraint::{Angles, Dissipators, pulls};
 use crate::numbers::{Angle, Real};
-use crate::series::first_crossing::Crossing;
-use crate::series::taylor::LONGEST_SPAN;
-use crate::{OneMass, Phase, Side, State, Structure};
+use crate::{Phase, Side, State, Structure};
 use std::cell::RefCell;
 use std::fmt::{self, Debug};
 
@@ -100,9 +95,15 @@ pub trait Level<Q: Coordinates = f64>: Send {
         f64::INFINITY
     }
 
-    /// Bounds of |u|, |u̇|, |ü| and |u⃛| of the vibration about the motion that follows the load, over a leap in full contact.
-    fn swings(&self, _phase: Phase, _start: &Start<Q>) -> Option<[Q; 4]> {
+    /// The modes in full contact, if their exact flows are used.
+    fn contact(&self) -> Option<&[ExactContact]> {
         None
+    }
+
+    /// Bounds of |u|, |u̇|, |ü| and |u⃛| of the vibration about the motion that follows the load, over a leap in full contact.
+    fn swings(&self, phase: Phase, start: &Start<Q>) -> Option<[Q; 4]> {
+        let modes = self.contact().filter(|_| phase.properties().is_down)?;
+        Some(full_contact::swings(self.structure(), modes, start))
     }
 
     /// Bounds of the magnitudes of the state over a leap from `start` to `end`.
@@ -126,18 +127,7 @@ pub trait Level<Q: Coordinates = f64>: Send {
         None
     }
 
-    /// The first instant of `arc`, a motion in full contact from `start`, at which uplift is due, and about which side.
-    fn first_uplift(&self, start: &Start<Q>, arc: &Arc<Q>) -> (Crossing, Side) {
-        self.liftable().map_or((Crossing::None, Side::Right), |liftable| liftable.first(start, arc))
-    }
-
-    /// Whether the base certainly stays down for the interval of `start`, a tiny time, whatever accelerates the modes.
-    fn stays_for(&self, start: &Start<Q>) -> bool {
-        self.liftable().is_none_or(|liftable| liftable.stays_for(start))
-    }
-
-    /// Distance of a structure in full contact from uplift, as a fraction of the demand for uplift, and the side of that uplift.
-    /// The distance is continuous, and uplift is due if it is not positive.
+    /// Distance of a structure in full contact from uplift, and its side, as in [`Liftable::margin`].
     fn uplift_margin(&self, &Now { state, load, dissipators }: &Now<Q>) -> (f64, Side) {
         let a_top = load.on_modes(self.structure());
         self.liftable().map_or((1.0, Side::Right), |of| of.margin(state, [load.a_g, load.a_v], &a_top, dissipators))
@@ -146,16 +136,6 @@ pub trait Level<Q: Coordinates = f64>: Send {
     /// Whether a structure in full contact in `state` stays there while nothing acts on it.
     fn stays_down(&self, state: &State<Q>, dissipators: &Dissipators) -> bool {
         self.liftable().is_none_or(|liftable| liftable.stays_down(state, dissipators))
-    }
-
-    /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
-    fn after_impact(&self, side: Side, before: &State<Q>) -> (Phase, State<Q>) {
-        impact::resolve::<Q>(self.structure(), side, before)
-    }
-
-    /// The most transitions that may happen within a period.
-    fn chatter_limit(&self) -> ChatterLimit {
-        ChatterLimit::of(self.structure().vibration())
     }
 
     /// `state`, with 0 for all that cannot move in `phase`.
@@ -190,7 +170,7 @@ pub(crate) fn edges<N: Angle, Q: Lateral<N>>(
         return reactions;
     }
     let [up, right, moment] = pulls(x, angles, dissipators);
-    reactions.of_edges(up, right, moment)
+    Reactions { R_h: reactions.R_h - right, R_v: reactions.R_v + up, R_m: reactions.R_m + moment }
 }
 
 /// How far a motion leaves its chord. A vibration about a line leaves it by at most twice the `vibration`. A motion whose second
@@ -278,58 +258,4 @@ impl ElasticRocking for FixedBase {
     const IS_POSSIBLE: bool = false;
 
     fn series(&self, _side: Side, _start: &Start, _arc: &mut Arc) {}
-}
-
-/// The length and the accuracy of steps while a structure with an elastic strut rocks.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Pace<N = f64> {
-    /// The longest span that a series is tried over, s.
-    pub longest_span: N,
-    /// ω_u, rad/s, and its reciprocal.
-    pub omega: N,
-    pub longest_response: N,
-    /// g tan α_cg, m/s².
-    pub gravity: N,
-    pub height: N,
-}
-
-impl Pace {
-    /// The pace of `structure`.
-    pub(crate) fn new(structure: &OneMass) -> Pace {
-        let &crate::Parameters { H, g, .. } = structure.parameters();
-        let &OneMass { rocking_rate, omega_u, tan_alpha_cg, .. } = structure;
-        Pace {
-            longest_span: LONGEST_SPAN / rocking_rate,
-            omega: omega_u,
-            longest_response: 1.0 / omega_u,
-            gravity: g * tan_alpha_cg,
-            height: H,
-        }
-    }
-
-    /// The truncation that `start` requires over a step of `span` s.
-    #[inline]
-    pub(crate) fn truncation(&self, start: &Start, span: f64) -> Truncation {
-        let &Start { state, a_top, local_error, .. } = start;
-        let [u_dot, theta_dot] =
-            self.largest([state.u, state.u_dot, state.theta_dot], [a_top.value, a_top.slope], span);
-        Truncation { u_dot: local_error * u_dot, theta_dot: local_error * theta_dot }
-    }
-}
-
-impl<N: Real> Pace<N> {
-    /// The span of a series over at most `interval`, s.
-    #[inline(always)]
-    pub(crate) fn span(&self, interval: N) -> N {
-        interval.min(self.longest_span)
-    }
-
-    /// The largest |u̇| and |θ̇| that a step of `span` s from (u, u̇, θ̇) can bring under the load `value` + `slope` τ.
-    #[inline(always)]
-    pub(crate) fn largest(&self, [u, u_dot, theta_dot]: [N; 3], [value, slope]: [N; 2], span: N) -> [N; 2] {
-        let response_time = span.min(self.longest_response);
-        let forcing = value.abs() + slope.abs() * span + self.gravity;
-        let u_dot = u_dot.abs() + response_time * (self.omega * self.omega * u.abs() + forcing);
-        [u_dot, theta_dot.abs() + u_dot / self.height]
-    }
 }

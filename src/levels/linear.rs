@@ -24,11 +24,11 @@
 //! A force F_t on the top mass makes a_g − F_t/m of a_g. Under loads that are linear in time the exact solution is a
 //! matrix exponential, kept for the step lengths used last; series serve the steps on which a transition may happen.
 
-use crate::levels::level::{ElasticRocking, Pace};
+use crate::levels::level::ElasticRocking;
 use crate::levels::oscillator::Kept;
-use crate::levels::start::Start;
+use crate::levels::start::{Pace, Start};
 use crate::mechanics::arc::Arc;
-use crate::{OneMass, Side, State, Structure};
+use crate::{Base, OneMass, Side, State, Structure};
 use nalgebra::{SMatrix, SVector};
 use std::f64::consts::FRAC_PI_2;
 
@@ -62,37 +62,6 @@ struct Row {
 struct LinearSystem {
     u_ddot: Row,
     theta_ddot: Row,
-}
-
-impl Row {
-    /// The terms of the loads.
-    #[inline]
-    fn forcing(&self, a_top: f64, side: f64) -> f64 {
-        self.a_top * a_top + self.side * side
-    }
-}
-
-impl LinearSystem {
-    /// Writes the motion from `start` about `side` into `arc`.
-    fn series(&self, pace: &Pace, side: Side, start: &Start, arc: &mut Arc) {
-        let &Start { state, a_top, .. } = start;
-        let span = pace.span(start.interval);
-        let rows = [&self.u_ddot, &self.theta_ddot];
-        let mut forcing = rows.map(|row| row.forcing(a_top.value, side.sign()));
-        let mut next_forcing = rows.map(|row| row.forcing(a_top.slope * span, 0.0));
-        let mut u_dot = state.u_dot;
-        arc.expand(&state, span, &pace.truncation(start, span), |arc, k, per| {
-            let (u, theta) = (arc.u[k - 1], arc.theta[k - 1]);
-            // what the last order of u̇ adds comes last: only that has to be waited for
-            let [u_rate, theta_rate] = [0, 1].map(|i| {
-                let row = rows[i];
-                (row.u * u + row.theta * theta + forcing[i]) * per + row.u_dot * per * u_dot
-            });
-            (forcing, next_forcing) = (next_forcing, [0.0; 2]);
-            (u_dot, arc.u_dot[k]) = (u_rate, u_rate);
-            theta_rate
-        });
-    }
 }
 
 /// Exact propagation by a linear system.
@@ -137,8 +106,8 @@ impl LinearRocking {
 
     /// Eqs 11, 16 and 18. The two modes leave χ (1−χ) of the moment g u.
     pub(crate) fn modal(one: &OneMass) -> LinearRocking {
-        let &OneMass { p_l, omega_u, zeta_u, tan_alpha_cg, chi, one_minus_chi, .. } = one;
-        let g = one.parameters().g;
+        let &OneMass { omega_u, zeta_u, chi, one_minus_chi, .. } = one;
+        let &Base { g, p_l, tan_alpha_cg, .. } = one.base();
         let (side, rocking) = (chi / one_minus_chi * g * tan_alpha_cg, p_l * p_l);
         let [u, u_dot] = [-omega_u * omega_u, -2.0 * zeta_u * omega_u];
         let u_ddot = Row { u, u_dot, theta: 0.0, a_top: -1.0, side };
@@ -156,7 +125,7 @@ impl LinearRocking {
     fn of(one: &OneMass, system: LinearSystem, lean: f64) -> LinearRocking {
         let omega = (-system.u_ddot.u).sqrt();
         LinearRocking {
-            pace: Pace::new(one),
+            pace: Pace::rocking(one),
             flows: Kept::new((Flow::zeros(), 1.0)),
             omega,
             compliance: 1.0 / (omega * omega),
@@ -197,13 +166,14 @@ impl LinearRocking {
     /// How far θ can leave the cubic with its values and slopes at both ends of a leap from `start` that swings so: |θ⁗| h⁴/384.
     #[inline(never)] // few leaps ask
     fn off_cubic(&self, start: &Start, swing: &Swing) -> f64 {
-        let (Row { u, u_dot, theta, .. }, bounds) = (&self.system.theta_ddot, self.bounds_of(start, swing));
-        let fourth = u.abs() * bounds.u_ddot + u_dot.abs() * bounds.u_dddot + theta.abs() * bounds.theta_ddot;
+        let (Row { u, u_dot, theta, .. }, (_, [u_ddot, u_dddot, theta_ddot])) =
+            (&self.system.theta_ddot, self.bounds_of(start, swing));
+        let fourth = u.abs() * u_ddot + u_dot.abs() * u_dddot + theta.abs() * theta_ddot;
         fourth * start.interval.powi(4) / 384.0
     }
 
-    /// Bounds of what changes on a leap from `start` that swings so.
-    fn bounds_of(&self, start: &Start, swing: &Swing) -> Bounds {
+    /// Bounds of the magnitudes of the state on a leap from `start` that swings so, and of |ü|, |u⃛| and |θ̈|.
+    fn bounds_of(&self, start: &Start, swing: &Swing) -> (State, [f64; 3]) {
         let &Start { state: State { theta, theta_dot, .. }, a_top, interval: h, .. } = start;
         let &Swing { following, speed, turning } = swing;
         let u_ddot = &self.system.u_ddot;
@@ -211,42 +181,9 @@ impl LinearRocking {
         let theta_dot = theta_dot.abs() + turning * h;
         let force_rate = a_top.slope.abs() + u_ddot.theta * theta_dot;
         let elastic = (self.omega - u_ddot.u_dot) * speed + h * force_rate;
-        Bounds {
-            u: following.abs() + speed / self.omega,
-            u_dot: speed,
-            u_ddot: elastic,
-            u_dddot: self.omega * self.omega * speed - u_ddot.u_dot * elastic + force_rate,
-            theta: theta.abs() + theta_dot * h,
-            theta_dot,
-            theta_ddot: turning,
-        }
-    }
-}
-
-/// Bounds of |u|, |θ| and their derivatives over an exact leap.
-#[derive(Clone, Copy, Debug)]
-struct Bounds {
-    u: f64,
-    u_dot: f64,
-    u_ddot: f64,
-    u_dddot: f64,
-    theta: f64,
-    theta_dot: f64,
-    theta_ddot: f64,
-}
-
-impl Bounds {
-    /// Bounds of the magnitudes of the state over the leap from `start` to `end`.
-    #[inline]
-    fn most(&self, start: &Start, end: &State) -> State {
-        let off_chord = start.interval * start.interval / 8.0;
-        let bound = |most: f64, from: f64, to: f64, bend: f64| most.min(from.abs().max(to.abs()) + bend * off_chord);
-        State {
-            u: bound(self.u, start.state.u, end.u, self.u_ddot),
-            u_dot: bound(self.u_dot, start.state.u_dot, end.u_dot, self.u_dddot),
-            theta: bound(self.theta, start.state.theta, end.theta, self.theta_ddot),
-            theta_dot: self.theta_dot,
-        }
+        let jerk = self.omega * self.omega * speed - u_ddot.u_dot * elastic + force_rate;
+        let (u, theta) = (following.abs() + speed / self.omega, theta.abs() + theta_dot * h);
+        (State { u, u_dot: speed, theta, theta_dot }, [elastic, jerk, turning])
     }
 }
 
@@ -287,11 +224,36 @@ impl ElasticRocking for LinearRocking {
     }
 
     fn most(&self, _: &Structure, side: Side, start: &Start, end: &State) -> State {
-        self.bounds_of(start, &self.swing(side, start, self.amplification(start.interval))).most(start, end)
+        let swing = self.swing(side, start, self.amplification(start.interval));
+        let (most, [u_ddot, u_dddot, theta_ddot]) = self.bounds_of(start, &swing);
+        let off_chord = start.interval * start.interval / 8.0;
+        let bound = |most: f64, from: f64, to: f64, bend: f64| most.min(from.abs().max(to.abs()) + bend * off_chord);
+        State {
+            u: bound(most.u, start.state.u, end.u, u_ddot),
+            u_dot: bound(most.u_dot, start.state.u_dot, end.u_dot, u_dddot),
+            theta: bound(most.theta, start.state.theta, end.theta, theta_ddot),
+            theta_dot: most.theta_dot,
+        }
     }
 
     fn series(&self, side: Side, start: &Start, arc: &mut Arc) {
-        self.system.series(&self.pace, side, start, arc);
+        let (&Start { state, a_top, .. }, LinearRocking { pace, system, .. }) = (start, self);
+        let span = pace.span(start.interval);
+        let rows = [&system.u_ddot, &system.theta_ddot];
+        let load = |a_top: f64, side: f64| rows.map(|row| row.a_top * a_top + row.side * side);
+        let (mut forcing, mut next_forcing) = (load(a_top.value, side.sign()), load(a_top.slope * span, 0.0));
+        let mut u_dot = state.u_dot;
+        arc.expand(&state, span, &pace.truncation(start, span), |arc, k, per| {
+            let (u, theta) = (arc.u[k - 1], arc.theta[k - 1]);
+            // what the last order of u̇ adds comes last: only that has to be waited for
+            let [u_rate, theta_rate] = [0, 1].map(|i| {
+                let row = rows[i];
+                (row.u * u + row.theta * theta + forcing[i]) * per + row.u_dot * per * u_dot
+            });
+            (forcing, next_forcing) = (next_forcing, [0.0; 2]);
+            (u_dot, arc.u_dot[k]) = (u_rate, u_rate);
+            theta_rate
+        });
     }
 
     fn lean(&self) -> f64 {

@@ -12,24 +12,21 @@
 //!
 //! The angular momentum D θ̇ has no Coriolis term. An order takes five products and one more for each mode. g is g + a_v. m0 and J0
 //! include the mass that no mode carries, and S_res is the first moment of this mass. F_res and N_res are the force on it and the
-//! moment of this force ([`Structure::load`](crate::Structure::load)). A structure without modes is rigid: Housner's block with the paper's
-//! impact rule, which comes to rest by a rule of its own ([`rules`](crate::levels::rules)).
+//! moment of this force ([`Structure::load`](crate::Structure::load)). A structure without modes is rigid: Housner's block with a
+//! rule of [impact](crate::mechanics::impact) of its own.
 
 use crate::levels::detail::Detail;
-use crate::levels::first_uplift::Liftable;
-use crate::levels::full_contact::ExactContact;
+use crate::levels::full_contact::{self, ExactContact};
 #[cfg(feature = "lanes")]
 use crate::levels::level::Leaping;
 use crate::levels::level::{Level, Subject};
 use crate::levels::nonlinear::{Factors, LEAST_INERTIA, NO_ROW, products, row};
-use crate::levels::oscillator::{Oscillator, Swing};
-use crate::levels::rules::{ChatterLimit, after_rigid_impact};
+use crate::levels::oscillator::Oscillator;
 use crate::levels::start::{Start, Truncation};
+use crate::levels::uplift::{Liftable, inertia};
 use crate::mechanics::arc::Arc;
-use crate::mechanics::impact;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::{Angles, Dissipators, MomentSeries, Restraint};
-use crate::mechanics::uplift::inertia;
 use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER, NEGLIGIBLE};
 use crate::structure::mode::{Modes, Vibration};
 use crate::{Base, Mode, Phase, Side, State};
@@ -336,7 +333,6 @@ impl<Q: Coordinates> ManyModes<Q> {
         }
         let truncation = self.truncation(start, span, false);
         arc.expand(state, span, &truncation, |arc, k, per| {
-            arc.u_dot[k].count_as(&state.u_dot);
             for four in fours.iter_mut() {
                 let j = four.first;
                 let [u, u_dot] = four.motion;
@@ -421,7 +417,6 @@ impl<Q: Coordinates> ManyModes<Q> {
                 moment -= ties.next(&arc.theta_dot, n, per);
             }
             theta_dot = per_inertia * (moment * per - known);
-            arc.u_dot[k].count_as(&state.u_dot);
             for four in fours.iter_mut() {
                 let j = four.first;
                 let mut along = four.share * fall - four.resistance;
@@ -467,7 +462,6 @@ impl<Q: Coordinates> ManyModes<Q> {
                 theta_ddot -= per_inertia * ties.next(&arc.theta_dot, k - 1, per);
             }
             (theta_dot, before, turn) = (theta_ddot * per, turn, [sin_rate * per, -minus_cos_rate * per]);
-            arc.u_dot[k].count_as(&state.u_dot);
             theta_dot
         });
     }
@@ -484,7 +478,7 @@ impl<Q: Coordinates> ManyModes<Q> {
     /// ü + h θ̈ = −e + S g θ − a,      (J_P − Σ μ h²) θ̈ = Σ (μ h e + Γ g u) − s m_t g B + S_res (g θ − a_g) − ties
     /// ```
     fn rocking_little(&self, side: Side, start: &Start<Q>, arc: &mut Arc<Q>) {
-        let Start { state, a_g, a_top, a_v, .. } = start;
+        let Start { state, a_top, a_v, .. } = start;
         let &Base { m_t, S_res, B, g, c_ratio, .. } = &self.base;
         let span = start.interval.min(self.longest_span);
         let mut ties = self.ties(side, start);
@@ -495,9 +489,8 @@ impl<Q: Coordinates> ManyModes<Q> {
             four.motion = [state.u.four(j), state.u_dot.four(j)];
             four.push = [a_top.value.four(j), a_top.slope.four(j) * span];
         }
-        let [value, slope] = [(a_g.value, a_top.value), (a_g.slope, a_top.slope)]
-            .map(|(a_g, a_top)| self.standing().moment_of_rest(a_g, &a_top));
-        let rigid = [value, slope * span];
+        let rest = self.standing().moment_of_rest_over(start);
+        let rigid = [rest.value, rest.slope * span];
         let mut before = f64x4::ZERO; // Σ Γ u of the order before
         let truncation = self.truncation(start, span, true);
         arc.expand(state, span, &truncation, |arc, k, per| {
@@ -519,7 +512,6 @@ impl<Q: Coordinates> ManyModes<Q> {
                 moment -= ties.next(&arc.theta_dot, n, per);
             }
             let theta_dot = moment / self.left * per;
-            arc.u_dot[k].count_as(&state.u_dot);
             for four in fours.iter_mut() {
                 let mut along = four.share * lean - four.resistance;
                 if let Some(load) = four.push.get(n) {
@@ -542,27 +534,10 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
         Box::new(self.clone())
     }
 
-    /// The exact flow of every mode, if the moment of the springs certainly stays below what holds the base.
     fn leap(&self, phase: Phase, start: &Start<Q>) -> Option<State<Q>> {
         let (Phase::FullContact, Some(contact)) = (phase, &self.contact) else { return None };
-        let &Start { ref state, ref a_top, interval, .. } = start;
-        let (mut end, mut farthest, mut bend) = (State { theta: 0.0, theta_dot: 0.0, ..*state }, 0.0, 0.0);
-        let mut springs = [0.0; 2];
-        for (j, (mode, exact)) in self.modes.iter().zip(contact).enumerate() {
-            let (from, value, slope) = ([state.u.of(j), state.u_dot.of(j)], a_top.value.of(j), a_top.slope.of(j));
-            let (oscillator, to) = (&exact.oscillator, exact.flow(interval).driven(from, value, slope));
-            let swing: Swing = oscillator.swing(from, value, slope, interval);
-            let moment = (mode.height * mode.stiffness).abs();
-            farthest += moment * swing.farthest();
-            bend += moment * oscillator.bounds(&swing, slope)[1];
-            springs[0] += mode.height * mode.stiffness * from[0];
-            springs[1] += mode.height * mode.stiffness * to[0];
-            end.u.set(j, to[0]);
-            end.u_dot.set(j, to[1]);
-        }
         let hold = self.liftable().map_or(f64::INFINITY, |liftable| liftable.least_hold(start));
-        let near = springs[0].abs().max(springs[1].abs()) + bend * interval * interval / 8.0;
-        (farthest < hold || near < hold).then_some(end)
+        full_contact::leap(contact, start, hold, |j| self.modes[j].height * self.modes[j].stiffness)
     }
 
     #[cfg(feature = "lanes")]
@@ -575,16 +550,8 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
         (!has_rest && structure.foundation().is_none()).then_some(Leaping { modes, moment, hold })
     }
 
-    fn swings(&self, phase: Phase, start: &Start<Q>) -> Option<[Q; 4]> {
-        let (Phase::FullContact, Some(contact)) = (phase, &self.contact) else { return None };
-        let &Start { ref state, ref a_top, interval, .. } = start;
-        let mut bounds = [Q::parts(&self.subject.structure, 0.0); 4];
-        for (j, ExactContact { oscillator, .. }) in contact.iter().enumerate() {
-            let from = [state.u.of(j), state.u_dot.of(j)];
-            let swing = oscillator.swing(from, a_top.value.of(j), a_top.slope.of(j), interval);
-            bounds.iter_mut().zip(oscillator.swings(&swing)).for_each(|(of, most)| of.set(j, most));
-        }
-        Some(bounds)
+    fn contact(&self) -> Option<&[ExactContact]> {
+        self.contact.as_deref()
     }
 
     fn series(&self, phase: Phase, start: &Start<Q>, arc: &mut Arc<Q>) {
@@ -595,10 +562,7 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
             Phase::FullContact | Phase::Overturned(_) | Phase::OnGround(_) if self.is_rigid() => {
                 let nothing = Truncation { u_dot: Q::ZERO, theta_dot: 0.0 };
                 let rest = self.admissible(Phase::FullContact, start.state);
-                arc.expand(&rest, start.interval, &nothing, |arc, k, _| {
-                    arc.u_dot[k] = Q::ZERO;
-                    0.0
-                });
+                arc.expand(&rest, start.interval, &nothing, |_, _, _| 0.0);
             }
             Phase::FullContact | Phase::Overturned(_) | Phase::OnGround(_) => self.resting(start, arc),
         }
@@ -616,18 +580,6 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
 
     fn liftable(&self) -> Option<Liftable<'_>> {
         (self.detail != Detail::FixedBase).then(|| self.standing())
-    }
-
-    fn after_impact(&self, side: Side, before: &State<Q>) -> (Phase, State<Q>) {
-        let &Subject { ref structure, local_error, .. } = &self.subject;
-        match self.modes[..] {
-            [] => after_rigid_impact::<Q>(structure, local_error, side, before),
-            _ => impact::resolve::<Q>(structure, side, before),
-        }
-    }
-
-    fn chatter_limit(&self) -> ChatterLimit {
-        if self.is_rigid() { ChatterLimit::of_rigid(&self.base) } else { ChatterLimit::of(self.vibration) }
     }
 
     fn admissible(&self, phase: Phase, state: State<Q>) -> State<Q> {
@@ -668,7 +620,7 @@ mod tests {
         for (scale, a_v) in [(1.0, -1.5), (-1.0, 2.5), (0.2, 4.0)] {
             let [u, u_dot] = [[2.5, -1.5], [200.0, 50.0]].map(|of| Modes::new(&of.map(|it| scale * it)));
             let state = State { u, u_dot, theta: 0.0, theta_dot: 0.0 };
-            let load = Load { a_g: 0.7, F_t: Modes::new(&[90.0, 50.0]).and_rest([6e4, -9e4]), a_v };
+            let load = Load { a_g: 0.7, F_t: Modes { rest: [6e4, -9e4], ..Modes::new(&[90.0, 50.0]) }, a_v };
             let now = Now { state: &state, load, dissipators: &dissipators };
             let springs = Modes::sum(&frame, |j, mode| mode.height * mode.stiffness * u.of(j)) - S_res * load.a_g - 9e4;
             let expected = [Side::Right, Side::Left].map(|side| {
@@ -739,7 +691,7 @@ mod tests {
                 let pushed: f64 = forces.iter().zip(floors).map(|(force, floor)| force * floor.height).sum();
                 assert_relative_eq!(
                     value(&gauges.M_t),
-                    -(reactions.R_m - weight * x.sum(|j, mode| mode.gamma * u.of(j)) - pushed),
+                    -(reactions.R_m - weight * Modes::sum(&frame, |j, mode| mode.gamma * u.of(j)) - pushed),
                     max_relative = 1e-12
                 );
             }

@@ -28,8 +28,8 @@
 //! Of a restrained structure, or one shaken vertically, g is g + a_v, linear in time, and the moment of the ties
 //! ([`restraint`](crate::mechanics::restraint)) over m is taken from L̇.
 
-use crate::levels::level::{ElasticRocking, Pace};
-use crate::levels::start::Start;
+use crate::levels::level::ElasticRocking;
+use crate::levels::start::{Pace, Start};
 use crate::mechanics::arc::Arc;
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
@@ -318,7 +318,7 @@ pub(crate) struct NonlinearRocking {
 
 impl NonlinearRocking {
     pub(crate) fn new(one: OneMass, is_tied: bool) -> NonlinearRocking {
-        NonlinearRocking { one, is_tied, pace: Pace::new(&one), products: RefCell::new(Products::new(0.0)) }
+        NonlinearRocking { one, is_tied, pace: Pace::rocking(&one), products: RefCell::new(Products::new(0.0)) }
     }
 }
 
@@ -366,7 +366,7 @@ impl NonlinearRocking {
     }
 
     /// Writes the motion into `arc`.
-    #[inline(always)]
+    #[inline(never)] // an order is then compiled in its place, and not called
     fn expand<const TIED: bool>(&self, side: Side, start: &Start, arc: &mut Arc) {
         let structure = &self.one;
         let span = self.pace.span(start.interval);
@@ -375,22 +375,15 @@ impl NonlinearRocking {
         let m = structure.parameters().m;
         let products = &mut *self.products.borrow_mut();
         let mut recurrence = Recurrence::new(self.equations::<TIED>(side, start, span));
-        let truncation = self.pace.truncation(start, span);
-        // not a closure of `Arc::expand`, which is called order by order
-        arc.begin(&start.state, span);
-        let mut previous_is_small = false;
-        for k in 1..MAX_ORDER + 1 {
-            let per = arc.integrate(k);
+        arc.expand(&start.state, span, &self.pace.truncation(start, span), |arc, k, per| {
             let ties = |per_inertia: f64| {
                 let ties = ties.as_mut().map_or(0.0, |ties| ties.next(&arc.theta_dot, k - 1, per));
                 per_inertia / m * ties
             };
-            (arc.u_dot[k], arc.theta_dot[k]) = recurrence.next::<TIED>(products, k, arc.u[k], per, ties);
-            if arc.ends_at(k, &truncation, &mut previous_is_small) {
-                return;
-            }
-        }
-        arc.cut(&truncation);
+            let (u_dot, theta_dot) = recurrence.next::<TIED>(products, k, arc.u[k], per, ties);
+            arc.u_dot[k] = u_dot;
+            theta_dot
+        });
     }
 }
 
@@ -398,7 +391,7 @@ impl NonlinearRocking {
 mod tests {
     use super::*;
     use crate::Parameters;
-    use crate::mechanics::uplift::{Lift, inertia, margin};
+    use crate::levels::uplift::Liftable;
 
     #[test]
     fn the_mass_matrix_is_singular_with_the_top_mass_above_the_pivot_of_a_massless_foundation() {
@@ -427,10 +420,8 @@ mod tests {
             };
             assert!(faster(side) > faster(side.opposite()) && faster(side.opposite()) > 0.0);
             assert!(s * (by_u * u + by_rate * u_dot) < 0.0);
-            let (base, modes) = (structure.base(), std::slice::from_ref(structure.mode()));
-            let lift = Lift::new(base, modes, 1.0, [0.0, load.a_v], |_| [u, u_dot]);
-            let inertia = |side| inertia(base, modes, side, |_| u);
-            let (distance, found) = margin(base, &lift, load.a_v, &Dissipators::NEW, inertia);
+            let liftable = Liftable::of_one(&structure, 1.0, false);
+            let (distance, found) = liftable.margin(&state, [0.0, load.a_v], &0.0, &Dissipators::NEW);
             assert!(distance <= 0.0 && found == side, "{distance} {found:?}");
         }
     }

@@ -25,7 +25,7 @@ use crate::mechanics::arc::Arc;
 use crate::mechanics::contact::energy;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::restraint::{Dissipators, ties};
-use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER, add_each_product, reciprocal};
+use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER, add_each_product};
 use crate::structure::ground::Footing;
 use crate::structure::mode::Modes;
 use crate::{Base, Contact, Foundation, Phase, State};
@@ -161,7 +161,7 @@ impl<V: Abreast> OnGround<V> {
             offset += heavy * four.motion[0];
             carried += heavy * four.share;
         }
-        let on_rest = [a_top.value, a_top.slope].map(|a_top| a_top.rest().unwrap_or_default()[1]);
+        let on_rest = [a_top.value, a_top.slope].map(|a_top| a_top.rest[1]);
         is_pushed |= on_rest != [0.0; 2];
         let on_rest = [on_rest[0], on_rest[1] * span];
         let (sin_0, cos_0) = libm::sincos(state.theta);
@@ -180,10 +180,7 @@ impl<V: Abreast> OnGround<V> {
         state.u_dot.set_footing(under, Footing { sin: turning, ..state.u_dot.footing(under) });
         let truncation = self.truncation(start, span);
         let per_span = 1.0 / span;
-        arc.begin(&state, span);
-        let mut previous_is_small = false;
-        for order in 1..=MAX_ORDER {
-            let per = span * reciprocal(order);
+        arc.expand(&state, span, &truncation, |arc, order, per| {
             let (n, rate) = (order - 1, order as f64 * per_span);
             let (next_sin, next_cos) = (turning * per, -turning_sin * per);
             let [mut inertia, mut next_offset] = [V::default(); 2];
@@ -248,24 +245,17 @@ impl<V: Abreast> OnGround<V> {
             (y, y_dot) = (y_dot * per, (gamma - weight[0]) * per);
             (push, weight) = ([0.0; 2], [weight[1], 0.0]); // of the next order
             let (new, new_rate) = (&mut arc.u[order], &mut arc.u_dot[order]);
-            new.count_as(&state.u);
-            new_rate.count_as(&state.u_dot);
             for four in fours.iter_mut() {
                 let along = four.resistance + four.share * (sin_0 * gamma) - four.height * theta_ddot;
                 four.motion = [four.motion[1] * per, along * per];
-                four.motion[0].put(new, four.first);
                 four.motion[1].put(new_rate, four.first);
             }
             (turning, turning_sin) = (turning_cos + theta_dot * cos_0, sin_turning + theta_dot * sin_0);
             (sin_before, cos_before, sin, cos, offset) = (sin, cos, next_sin, next_cos, next_offset);
             new.set_footing(under, Footing { y, sin, taken: power * per });
             new_rate.set_footing(under, Footing { y: y_dot, sin: turning, taken: 0.0 });
-            (arc.theta[order], arc.theta_dot[order]) = (arc.theta_dot[n] * per, theta_dot);
-            if arc.ends_at(order, &truncation, &mut previous_is_small) {
-                return;
-            }
-        }
-        arc.cut(&truncation);
+            theta_dot
+        });
     }
 }
 

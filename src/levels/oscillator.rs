@@ -31,11 +31,6 @@ pub(crate) struct Flow<N = f64> {
     pub ramp: N,
 }
 
-impl Flow {
-    /// Over no time at all.
-    pub(crate) const NONE: Flow = Flow { free: [1.0, 0.0, 0.0, 1.0], step: 0.0, ramp: 0.0 };
-}
-
 impl<N: Real> Flow<N> {
     /// (w, ẇ) at the end, from `start` under the load a + b τ: `value` = a in m/s², `slope` = b in m/s³.
     #[inline(always)]
@@ -139,27 +134,12 @@ impl<N: Real> Oscillator<N> {
     /// Bounds of the vibration of a `swing` about the motion that follows the load, and of its three derivatives.
     #[inline(always)]
     pub(crate) fn swings(&self, swing: &Swing<N>) -> [N; 4] {
-        let [velocity, acceleration, jerk] = self.bounds(swing, self.omega.like(0.0));
-        [swing.amplitude, velocity, acceleration, jerk]
-    }
-
-    /// Bounds of |ẇ|, |ẅ| and |w⃛| of a `swing` of this oscillator under a load of this `slope`.
-    #[inline(always)]
-    pub(crate) fn bounds(&self, swing: &Swing<N>, slope: N) -> [N; 3] {
         let &Oscillator { omega, zeta } = self;
         let two_zeta = omega.like(2.0) * zeta;
         let velocity = omega * swing.amplitude;
         let acceleration = omega * velocity * (omega.like(1.0) + two_zeta);
         let jerk = omega * (omega * velocity + two_zeta * acceleration);
-        [velocity + slope.abs() / (omega * omega), acceleration, jerk]
-    }
-
-    /// Bound of |w| from `first` to `last`, `tau` seconds later, over a `swing` under a load of this `slope`: the larger end with the
-    /// most by which w leaves its chord, |ẅ| τ²/8.
-    #[inline(always)]
-    pub(crate) fn about_chord(&self, swing: &Swing<N>, [first, last]: [N; 2], slope: N, tau: N) -> N {
-        let [_, acceleration, _] = self.bounds(swing, slope);
-        first.abs().max(last.abs()) + acceleration * tau * tau / tau.like(8.0)
+        [swing.amplitude, velocity, acceleration, jerk]
     }
 }
 

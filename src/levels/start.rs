@@ -1,10 +1,11 @@
-//! The start of a step, and the expansion of the motion from there, order by order, until its truncation is small enough.
+//! The start of a step, how far it may go and how exact it must be, and the expansion of the motion from there, order by order.
 
 use crate::mechanics::arc::Arc;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::Dissipators;
-use crate::series::taylor::{MAX_ORDER, reciprocal};
-use crate::{Ramp, State};
+use crate::numbers::Real;
+use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER, NEGLIGIBLE, reciprocal};
+use crate::{Base, OneMass, Ramp, State};
 
 /// Fewest orders of a step, so that terms that vanish at rest cannot end it early.
 pub(crate) const MIN_ORDER: usize = 5;
@@ -31,10 +32,8 @@ pub struct Start<'a, Q = f64> {
 /// At rest on ground at rest, over no time.
 impl<Q: Coordinates> Default for Start<'_, Q> {
     fn default() -> Self {
-        let state = State { u: Q::ZERO, u_dot: Q::ZERO, theta: 0.0, theta_dot: 0.0 };
-        let (rest, a_top) = (Ramp::default(), Ramp { value: Q::ZERO, slope: Q::ZERO });
-        let dissipators = &Dissipators::NEW;
-        Start { state, a_g: rest, a_top, a_v: rest, dissipators, interval: 0.0, local_error: 0.0 }
+        let (state, a_g, a_top, a_v) = Default::default();
+        Start { state, a_g, a_top, a_v, dissipators: &Dissipators::NEW, interval: 0.0, local_error: 0.0 }
     }
 }
 
@@ -45,6 +44,65 @@ pub struct Truncation<Q = f64> {
     pub u_dot: Q,
     /// Of θ̇, rad/s.
     pub theta_dot: f64,
+}
+
+/// The length and the accuracy of steps of a structure with an elastic strut.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pace<N = f64> {
+    /// The longest span that a series is tried over, s.
+    pub longest_span: N,
+    /// ω_u or ω_fc, rad/s, and its reciprocal.
+    pub omega: N,
+    pub longest_response: N,
+    /// g tan α_cg, or next to nothing, m/s².
+    pub gravity: N,
+    /// Height from which a velocity turns the base, m.
+    pub height: N,
+}
+
+impl Pace {
+    /// While `structure` rocks.
+    pub(crate) fn rocking(structure: &OneMass) -> Pace {
+        let (H, &Base { g, tan_alpha_cg, .. }) = (structure.parameters().H, structure.base());
+        Pace::new(structure.rocking_rate, structure.omega_u, g * tan_alpha_cg, H)
+    }
+
+    /// In full contact, with so much gravity that no term of a structure at rest underflows.
+    #[inline(always)]
+    pub(crate) fn down(&OneMass { omega_fc, stiffness, u_cr, .. }: &OneMass) -> Pace {
+        Pace::new(omega_fc, omega_fc, NEGLIGIBLE * stiffness * u_cr, f64::INFINITY)
+    }
+
+    #[inline(always)]
+    fn new(rate: f64, omega: f64, gravity: f64, height: f64) -> Pace {
+        Pace { longest_span: LONGEST_SPAN / rate, omega, longest_response: 1.0 / omega, gravity, height }
+    }
+
+    /// The truncation that `start` requires over a step of `span` s.
+    #[inline]
+    pub(crate) fn truncation(&self, start: &Start, span: f64) -> Truncation {
+        let &Start { state, a_top, local_error, .. } = start;
+        let [u_dot, theta_dot] =
+            self.largest([state.u, state.u_dot, state.theta_dot], [a_top.value, a_top.slope], span);
+        Truncation { u_dot: local_error * u_dot, theta_dot: local_error * theta_dot }
+    }
+}
+
+impl<N: Real> Pace<N> {
+    /// The span of a series over at most `interval`, s.
+    #[inline(always)]
+    pub(crate) fn span(&self, interval: N) -> N {
+        interval.min(self.longest_span)
+    }
+
+    /// The largest |u̇| and |θ̇| that a step of `span` s from (u, u̇, θ̇) can bring under the load `value` + `slope` τ.
+    #[inline(always)]
+    pub(crate) fn largest(&self, [u, u_dot, theta_dot]: [N; 3], [value, slope]: [N; 2], span: N) -> [N; 2] {
+        let response_time = span.min(self.longest_response);
+        let forcing = value.abs() + slope.abs() * span + self.gravity;
+        let u_dot = u_dot.abs() + response_time * (self.omega * self.omega * u.abs() + forcing);
+        [u_dot, theta_dot.abs() + u_dot / self.height]
+    }
 }
 
 impl<Q: Coordinates> Arc<Q> {
@@ -62,50 +120,24 @@ impl<Q: Coordinates> Arc<Q> {
         truncation: &Truncation<Q>,
         mut velocities: impl FnMut(&mut Arc<Q>, usize, f64) -> f64,
     ) {
-        self.begin(state, span);
-        let mut previous_is_small = false;
-        for k in 1..MAX_ORDER + 1 {
-            let per = self.integrate(k);
-            self.theta_dot[k] = velocities(self, k, per);
-            if self.ends_at(k, truncation, &mut previous_is_small) {
-                return;
-            }
-        }
-        self.cut(truncation);
-    }
-
-    /// Begins the expansion from `state` over `span` (s).
-    #[inline(always)]
-    pub(crate) fn begin(&mut self, state: &State<Q>, span: f64) {
         (self.span, self.reach) = (span, 1.0);
         (self.u[0], self.u_dot[0]) = (state.u, state.u_dot);
         (self.theta[0], self.theta_dot[0]) = (state.theta, state.theta_dot);
-    }
-
-    /// Writes u and θ of order `k`, and returns span/k.
-    #[inline(always)]
-    pub(crate) fn integrate(&mut self, k: usize) -> f64 {
-        let per = self.span * reciprocal(k);
-        self.u[k].be(&self.u_dot[k - 1], per);
-        self.theta[k] = self.theta_dot[k - 1] * per;
-        per
-    }
-
-    /// Whether the expansion ends with order `k`, whose velocities are written.
-    #[inline(always)]
-    pub(crate) fn ends_at(&mut self, k: usize, truncation: &Truncation<Q>, previous_is_small: &mut bool) -> bool {
-        let is_small = self.u_dot[k].is_within(&truncation.u_dot) && self.theta_dot[k].abs() <= truncation.theta_dot;
-        let ends = is_small && *previous_is_small && k + self.spared >= MIN_ORDER;
-        *previous_is_small = is_small;
-        if ends {
-            self.order = k; // not at every order: the next one would read its numbers from memory
+        let mut previous_is_small = false;
+        for k in 1..MAX_ORDER + 1 {
+            let per = span * reciprocal(k);
+            self.u[k].be(&self.u_dot[k - 1], per);
+            self.theta[k] = self.theta_dot[k - 1] * per;
+            self.u_dot[k].count_as(&state.u_dot);
+            self.theta_dot[k] = velocities(self, k, per);
+            let is_small =
+                self.u_dot[k].is_within(&truncation.u_dot) && self.theta_dot[k].abs() <= truncation.theta_dot;
+            if is_small && previous_is_small && k + self.spared >= MIN_ORDER {
+                self.order = k; // not at every order: the next one would read its numbers from memory
+                return;
+            }
+            previous_is_small = is_small;
         }
-        ends
-    }
-
-    /// Cuts a full expansion to where its last two terms stay within `truncation`.
-    #[inline(always)]
-    pub(crate) fn cut(&mut self, truncation: &Truncation<Q>) {
         (self.order, self.reach) = (MAX_ORDER, reach(|k| (self.u_dot[k], self.theta_dot[k]), truncation));
     }
 }
@@ -115,7 +147,8 @@ impl<Q: Coordinates> Arc<Q> {
 pub(crate) fn reach<Q: Coordinates>(velocities: impl Fn(usize) -> (Q, f64), truncation: &Truncation<Q>) -> f64 {
     let exponent = |k: usize| {
         let (u_dot, theta_dot) = velocities(k);
-        logarithm(u_dot.room(&truncation.u_dot).min(truncation.theta_dot / theta_dot.abs())) / k as f64
+        let of_modes = u_dot.as_slice().iter().enumerate().map(|(j, u_dot)| truncation.u_dot.of(j) / u_dot.abs());
+        logarithm(of_modes.fold(f64::INFINITY, f64::min).min(truncation.theta_dot / theta_dot.abs())) / k as f64
     };
     let exponent = exponent(MAX_ORDER - 1).min(exponent(MAX_ORDER)).min(0.0);
     if exponent < -8.0 {

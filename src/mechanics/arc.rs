@@ -7,20 +7,13 @@ use crate::series::taylor::{MAX_ORDER, Series, ZERO, evaluate};
 use crate::series::terms::Terms;
 use crate::structure::mode::Modes;
 
-/// Coefficients of the same polynomial about `by`.
-fn shift<Q: Coordinates>(coefficients: &mut [Q], by: f64) {
-    let last = coefficients.len().saturating_sub(1);
-    for start in 0..last {
-        for k in (start..last).rev() {
-            coefficients[k] = coefficients[k].plus(coefficients[k + 1], by);
-        }
-    }
-}
-
 /// Coefficients of the same polynomial over `scale` from `from` on: 0 is then what `from` was, and 1 what lay `scale` beyond.
 pub fn stretch<Q: Coordinates>(coefficients: &mut [Q], from: f64, scale: f64) {
-    if from != 0.0 {
-        shift(coefficients, from);
+    let shifted = if from == 0.0 { 0 } else { coefficients.len().saturating_sub(1) };
+    for start in 0..shifted {
+        for k in (start..shifted).rev() {
+            coefficients[k] = coefficients[k].plus(coefficients[k + 1], from);
+        }
     }
     coefficients.iter_mut().fold(1.0, |power, c| {
         *c = c.times(power);

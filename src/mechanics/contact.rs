@@ -57,7 +57,7 @@ pub fn energy(structure: &Structure, contact: Contact, state: &State<Modes>, dis
     let x = Instant::<f64, Modes>::of(structure, Phase::OnGround(contact), state, Load::NONE);
     let Some(ground @ Foundation { points, rest, .. }) = structure.foundation() else { return mechanical(&x) };
     let (&Base { m_t, g, ties, .. }, S_1) = (structure.base(), structure.body().S_1);
-    let [offset, rate] = [x.sum(|j, mode| x.u.of(j) * mode.gamma), x.sum(|j, mode| x.u_dot.of(j) * mode.gamma)];
+    let [offset, rate] = [&x.u, &x.u_dot].map(|of| Modes::sum(structure, |j, mode| of.of(j) * mode.gamma));
     let (y, y_dot, turn) = (state.u.footing(ground).y, state.u_dot.footing(ground).y, x.turn);
     let across = turn.sin * (rate + S_1 * x.theta_dot) + offset * x.theta_dot * turn.cos;
     let pressed = points.iter().enumerate().filter(|(i, _)| contact.is_pressed(*i));

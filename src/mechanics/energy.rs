@@ -19,13 +19,13 @@ pub fn energy<Q: Coordinates>(structure: &Structure, phase: Phase, state: &State
 
 /// Energy at the instant `x`, J.
 pub(super) fn mechanical<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>) -> N {
-    kinetic(x) + x.sum(|j, mode| x.u.of(j) * (0.5 * mode.stiffness) * x.u.of(j)) + potential(x)
+    kinetic(x) + Q::sum(x.structure, |j, mode| x.u.of(j) * (0.5 * mode.stiffness) * x.u.of(j)) + potential(x)
 }
 
 /// Kinetic energy, J.
 pub(crate) fn kinetic<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>) -> N {
     let &Base { m0, J0, .. } = x.base();
-    let of_modes = x.sum(|j, mode| {
+    let of_modes = Q::sum(x.structure, |j, mode| {
         let along = x.u_dot.of(j) + x.theta_dot * mode.height;
         let across = x.place(j, mode).lever(x.pivot()) * x.theta_dot;
         (along * along + across * across) * (0.5 * mode.mass)
@@ -36,7 +36,7 @@ pub(crate) fn kinetic<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>) -> N {
 /// Potential energy of the weights, J.
 fn potential<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>) -> N {
     let &Base { m0, S_res, g, .. } = x.base();
-    let of_modes = x.sum(|j, mode| x.place(j, mode).up(x.pivot(), &x.turn) * (mode.gamma * g));
+    let of_modes = Q::sum(x.structure, |j, mode| x.place(j, mode).up(x.pivot(), &x.turn) * (mode.gamma * g));
     let of_base = of_modes + x.turn.sin * (m0 * g * x.pivot());
     if S_res == 0.0 { of_base } else { of_base + x.turn.cos * (S_res * g) }
 }

@@ -11,15 +11,10 @@
 
 use crate::Gauge;
 use crate::mechanics::instant::Instant;
-use crate::mechanics::lateral::{Coordinates, Lateral};
+use crate::mechanics::lateral::Lateral;
 use crate::numbers::Number;
 
 impl Gauge {
-    /// Σ φ u.
-    pub(crate) fn displacement<Q: Coordinates>(&self, u: &Q) -> f64 {
-        u.weighed(&self.shape)
-    }
-
     /// The value at the instant `x` while rocking about the pivot s, or at rest if s = 0.
     #[inline]
     pub(crate) fn at<N: Number, Q: Lateral<N>>(&self, x: &Instant<N, Q>) -> N {

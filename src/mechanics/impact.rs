@@ -8,12 +8,83 @@
 //!
 //! - L θ̇ > 0: rocking goes on about the other pivot: s ← −s, θ̇ ← r θ̇, u and u̇ unchanged;
 //! - otherwise full contact: u̇ ← u̇ + H θ̇ (horizontal momentum is kept), θ = θ̇ = 0.
+//!
+//! With r < 1 a rigid structure comes to rest by infinitely many impacts in finite time. It is at rest after the first impact that
+//! leaves |θ̇| ≤ ε p_l tan α_cg, where ε is the error that a step may have. Later impacts amplify the error of this rest like the
+//! error of a step. The kinetic energy that is left out, ½ J_P θ̇², is at most the part ε² of ½ m g H tan² α_cg, the energy for
+//! overturning at small angles. After any other impact rocking goes on, however squat the structure is. The momentum rule of elastic
+//! structures would depend on the shape alone.
+//!
+//! Transitions are counted from the first of them on for a vibration period 2π/ω_u, then from 0 again. After
+//! [`MAX_TRANSITIONS_PER_PERIOD`] the next impact is a landing whatever its momentum, and contact is held to the end of
+//! the period ([`Settling`](crate::TransitionKind::Settling)): it sees two more at most. Bounces that fast are the start of infinitely
+//! many in finite time, which end in contact; neither specimen comes near them. A rigid structure, which has no vibration
+//! and does come to rest by ever faster impacts, has [`MAX_RIGID_TRANSITIONS_PER_PERIOD`] for each 1/p_l instead.
 
 use crate::mechanics::energy::kinetic;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
 use crate::{Base, Mode, OneMass, Phase, Side, State, Structure};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// Transitions within one period of the vibration mode (2π/ω_u) after which contact is held.
+pub const MAX_TRANSITIONS_PER_PERIOD: u32 = 1000;
+
+/// Transitions within 1/p_l after which contact of a rigid structure is held: coming to rest with r = 0.9997 takes as many.
+pub const MAX_RIGID_TRANSITIONS_PER_PERIOD: u32 = 100_000;
+
+/// Transitions in the present period, for the guarantee of progress.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Chatter {
+    /// Time since the first of them, s.
+    pub age: f64,
+    /// Number of transitions since then.
+    transitions: u32,
+    /// Duration over which contact is held from now on, s.
+    pub held: f64,
+}
+
+impl Chatter {
+    /// The state of a motion that has had no transition.
+    pub(crate) const NONE: Chatter = Chatter { age: f64::MAX, transitions: 0, held: 0.0 };
+
+    /// The period (s) of `structure`, and how many transitions it may see.
+    fn limit(structure: &Structure) -> (f64, u32) {
+        match structure.is_rigid() {
+            true => (1.0 / structure.base().p_l, MAX_RIGID_TRANSITIONS_PER_PERIOD),
+            false => (TAU / structure.vibration().rocking[0], MAX_TRANSITIONS_PER_PERIOD),
+        }
+    }
+
+    /// Passes `duration` seconds.
+    #[inline]
+    pub(crate) fn pass(&mut self, duration: f64) {
+        self.age += duration;
+        if self.held > 0.0 {
+            self.held = (self.held - duration).max(0.0);
+        }
+    }
+
+    /// Counts one more transition.
+    pub(crate) fn count(&mut self, structure: &Structure) {
+        if self.age >= Chatter::limit(structure).0 {
+            (self.age, self.transitions) = (0.0, 0);
+        }
+        self.transitions += 1;
+    }
+
+    /// Whether the period may see no more transitions; contact is then held to its end.
+    pub(crate) fn settles(&mut self, structure: &Structure) -> bool {
+        let (period, most) = Chatter::limit(structure);
+        let settles = self.transitions >= most && self.age < period;
+        if settles {
+            self.held = period - self.age;
+        }
+        settles
+    }
+}
 
 /// Angular momentum L about the pivot that comes down, kg·m²/s, of a structure that touches the ground (θ = 0).
 pub fn angular_momentum<Q: Coordinates>(structure: &Structure, before: &State<Q>) -> f64 {
@@ -36,10 +107,19 @@ pub fn restitution<Q: Coordinates>(structure: &Structure, side: Side, before: &S
     })
 }
 
-/// Phase and state just after an impact that ends rocking about `side` in the state `before`.
-pub fn resolve<Q: Coordinates>(structure: &Structure, side: Side, before: &State<Q>) -> (Phase, State<Q>) {
-    let r = restitution(structure, side, before);
-    if angular_momentum(structure, before) * before.theta_dot > 0.0 && r > 0.0 {
+/// Phase and state just after an impact that ends rocking about `side` in the state `before`, by steps of this `local_error`.
+pub fn resolve<Q: Coordinates>(
+    structure: &Structure,
+    local_error: f64,
+    side: Side,
+    before: &State<Q>,
+) -> (Phase, State<Q>) {
+    let (r, &Base { p_l, tan_alpha_cg, .. }) = (restitution(structure, side, before), structure.base());
+    let goes_on = match structure.is_rigid() {
+        true => r * before.theta_dot.abs() > local_error * p_l * tan_alpha_cg,
+        false => angular_momentum(structure, before) * before.theta_dot > 0.0 && r > 0.0,
+    };
+    if goes_on {
         (Phase::Rocking(side.opposite()), State { theta: 0.0, theta_dot: r * before.theta_dot, ..*before })
     } else {
         (Phase::FullContact, land(structure, before))
@@ -152,7 +232,7 @@ mod tests {
                 let bound = ((m + m0) * B * B - J0 - m * H * H - m * u * u) / (m * H);
                 let theta_dot = -0.3;
                 let before = State { u, u_dot: theta_dot * (bound + 1e-9), theta: 0.0, theta_dot };
-                let (phase, after) = resolve(&structure.into(), Side::Right, &before);
+                let (phase, after) = resolve(&structure.into(), 0.0, Side::Right, &before);
                 assert_eq!(phase, Phase::Rocking(Side::Left));
                 let gain = energy(&structure.into(), phase, &after)
                     - energy(&structure.into(), Phase::Rocking(Side::Right), &before);
@@ -169,7 +249,7 @@ mod tests {
             for (r, pulls) in [(limit - 1e-6, true), (limit + 1e-6, false)] {
                 let structure = OneMass::new(Parameters { r, ..parameters }).unwrap();
                 let before = State { u: 0.0, u_dot: 0.0, theta: 0.0, theta_dot: -0.3 };
-                let (phase, after) = resolve(&structure.into(), Side::Right, &before);
+                let (phase, after) = resolve(&structure.into(), 0.0, Side::Right, &before);
                 // about the right edge, which lifts off, only the impulse at the left one has a moment, 2B I_left
                 let Impulse { I_v, I_m, .. } =
                     Impulse::of(&structure.into(), (Phase::Rocking(Side::Right), &before), (phase, &after));

@@ -129,12 +129,6 @@ impl<N: Number, Q: Lateral<N>> Instant<'_, N, Q> {
         [self.u.footing(ground), self.u_dot.footing(ground)]
     }
 
-    /// A sum over the modes.
-    #[inline(always)]
-    pub(crate) fn sum(&self, term: impl Fn(usize, &Mode) -> N) -> N {
-        Q::sum(self.structure, term)
-    }
-
     /// The place that stands for mode `j`.
     #[inline(always)]
     pub(crate) fn place(&self, j: usize, mode: &Mode) -> Place<N> {

@@ -39,6 +39,9 @@ pub trait Lateral<N: Number>: Copy {
     /// The sum of the coordinates times their `weights`.
     #[inline(always)]
     fn weighed(&self, weights: &Modes) -> N {
+        if Self::Of::IS_ONE {
+            return self.of(0) * weights.of[0];
+        }
         let terms = weights.numbers().iter().enumerate().map(|(j, weight)| self.of(j) * *weight);
         terms.reduce(|sum, term| sum + term).unwrap_or(N::constant(0.0))
     }
@@ -125,7 +128,13 @@ pub trait Coordinates:
     fn count_as(&mut self, other: &Self);
 
     /// Writes `factor` times `other` here.
-    fn be(&mut self, other: &Self, factor: f64);
+    #[inline(always)]
+    fn be(&mut self, other: &Self, factor: f64) {
+        self.count_as(other);
+        for j in (0..other.as_slice().len()).step_by(4) {
+            self.set_four(j, other.four(j) * factor);
+        }
+    }
 
     /// The values at `sigma` of the polynomials with these coefficients.
     fn evaluate(coefficients: &[Self], sigma: f64) -> Self;
@@ -145,14 +154,12 @@ pub trait Coordinates:
         self.as_slice().iter().enumerate().all(|(j, own)| own.abs() <= limits.of(j)) && self.rest().is_none()
     }
 
-    /// The least ratio of a limit to the magnitude of its coordinate.
-    #[inline(always)]
-    fn room(&self, limits: &Self) -> f64 {
-        self.as_slice().iter().enumerate().map(|(j, own)| limits.of(j) / own.abs()).fold(f64::INFINITY, f64::min)
-    }
-
     /// The sum of the coordinates: finite if all of them are.
-    fn total(&self) -> f64;
+    #[inline]
+    fn total(&self) -> f64 {
+        let [force, moment] = self.rest().unwrap_or_default();
+        self.as_slice().iter().sum::<f64>() + force + moment
+    }
 }
 
 /// Bounds of the magnitudes of coordinates.
@@ -196,11 +203,6 @@ impl<N: Number> Lateral<N> for N {
     #[inline(always)]
     fn of(&self, _: usize) -> N {
         *self
-    }
-
-    #[inline(always)]
-    fn weighed(&self, weights: &Modes) -> N {
-        *self * weights.of[0]
     }
 }
 
@@ -250,11 +252,6 @@ impl Coordinates for f64 {
     }
 
     #[inline(always)]
-    fn be(&mut self, other: &f64, factor: f64) {
-        *self = other * factor;
-    }
-
-    #[inline(always)]
     fn evaluate(coefficients: &[f64], sigma: f64) -> f64 {
         evaluate(coefficients, sigma)
     }
@@ -267,11 +264,6 @@ impl Coordinates for f64 {
     #[inline(always)]
     fn most(coefficients: &[f64], end: &f64, reach: f64) -> f64 {
         coefficients[0].abs().max(end.abs()) + off_chord(coefficients, reach)
-    }
-
-    #[inline(always)]
-    fn total(&self) -> f64 {
-        *self
     }
 
     #[inline(always)]
@@ -325,12 +317,12 @@ impl Coordinates for Modes {
             on_modes = on_modes.plus(floor.shape, force);
             rest = std::array::from_fn(|i| rest[i] + gauge.on_rest(force)[i]);
         }
-        on_modes.and_rest(rest)
+        Modes { rest, ..on_modes }
     }
 
     #[inline]
     fn beside(self, forces: &Modes) -> Modes {
-        self.and_rest(forces.rest)
+        Modes { rest: forces.rest, ..self }
     }
 
     #[inline(always)]
@@ -356,14 +348,6 @@ impl Coordinates for Modes {
     #[inline(always)]
     fn count_as(&mut self, other: &Modes) {
         self.count = other.count;
-    }
-
-    #[inline]
-    fn be(&mut self, other: &Modes, factor: f64) {
-        self.count = other.count;
-        for (own, other) in self.fours_mut().zip(other.fours()) {
-            *own = other.map(|other| other * factor);
-        }
     }
 
     fn evaluate(coefficients: &[Modes], sigma: f64) -> Modes {
@@ -397,11 +381,6 @@ impl Coordinates for Modes {
             (0..4).for_each(|i| off[i] += first[i].abs().max(last[i].abs()));
         }
         most
-    }
-
-    #[inline]
-    fn total(&self) -> f64 {
-        self.numbers().iter().chain(&self.rest).sum()
     }
 
     #[inline(always)]

@@ -115,10 +115,8 @@ impl<Q: Coordinates> Magnitudes<'_, Q> {
 /// magnitudes is linear in what the weights are of, so that one magnitude of 1 among others of 0 shows its weight.
 fn reaches(structure: &Structure) -> Vec<Reach> {
     let [none, one] = [0.0, 1.0].map(Most);
-    let nothing = Modes::parts(structure, 0.0);
     let of_mode = |j: usize| Modes::each(structure, |i, _| f64::from(i == j));
-    let at_rest = State { u: nothing, u_dot: nothing, ..State::default() };
-    let most = magnitudes(structure, Phase::FullContact, &[Load::default(); 2], at_rest);
+    let most = magnitudes::<Modes>(structure, Phase::FullContact, &[Load::default(); 2], State::default());
     let x = Instant { theta_ddot: none, ..most.instant(structure) };
     #[cfg(feature = "lanes")]
     let flat = Instant::<f64, Modes>::of(structure, Phase::FullContact, &State::default(), Load::default());
@@ -194,8 +192,7 @@ impl Reach {
         structure: &Structure,
         outputs: impl Iterator<Item = (&'a Reach, f64)>,
     ) -> Option<Reach> {
-        let nothing = Modes::parts(structure, 0.0);
-        let mut all = Reach { u: nothing, u_dot: nothing, push: nothing, ..Reach::default() };
+        let mut all = Reach::default();
         for (Reach { is_curved, turn, a_g, u, u_dot, push, .. }, least) in outputs {
             let least = least.max(NEGLIGIBLE);
             if *is_curved || a_g.is_some() || structure.foundation().is_some() {
@@ -204,7 +201,7 @@ impl Reach {
             let largest = |all: f64, weight: f64| all.max(weight / least);
             all.turn = [0, 1].map(|i| largest(all.turn[i], turn[i]));
             for (all, of) in [(&mut all.u, u), (&mut all.u_dot, u_dot), (&mut all.push, push)] {
-                of.numbers().iter().enumerate().for_each(|(j, weight)| all.set(j, largest(all.numbers()[j], *weight)));
+                *all = all.with(of, largest);
             }
         }
         Some(all)

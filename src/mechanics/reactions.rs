@@ -174,13 +174,6 @@ impl<N: Number> Reactions<N> {
         let [R_h, R_v] = forces(x, second);
         Reactions { R_h, R_v, R_m: moment(x, second) }
     }
-
-    /// The reactions that the edges of the base carry if ties pull by `up` and `right` (N). The ties turn the base by `moment`
-    /// (N·m) about its middle.
-    #[inline]
-    pub(crate) fn of_edges(self, up: N, right: N, moment: N) -> Reactions<N> {
-        Reactions { R_h: self.R_h - right, R_v: self.R_v + up, R_m: self.R_m + moment }
-    }
 }
 
 impl Impulse {

@@ -278,7 +278,8 @@ pub(crate) fn restraints<N: Angle, Q: Lateral<N>>(
             let force = |Tie { lever, force, stiffness, damping }| {
                 N::constant(force) + footing.height(lever) * stiffness + rates.height(lever) * damping
             };
-            ties(x.base(), dissipators, ground.rest, x.contact.is_slack).map(force)
+            let [tendon, first, second] = ties(x.base(), dissipators, ground.rest, x.contact.is_slack);
+            [force(tendon), force(first), force(second)] // a map would copy series
         }
         None => {
             let chord = angles.chord(x.theta, x.theta_dot);

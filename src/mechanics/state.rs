@@ -291,8 +291,7 @@ fn coordinates<Q: Coordinates>(structure: &Structure, of: &Quantity<State>, give
     };
     let mass = DMatrix::from_fn(modes, modes, |j, k| weighed(j, &|i| floors[i].shape.of(k)));
     let solved = mass.cholesky().map(|of| of.solve(&DVector::from_fn(modes, |j, _| weighed(j, &|i| given[i]))));
-    let coordinates = solved.unwrap_or_else(|| DVector::zeros(modes));
-    let found = Q::each(structure, |j, _| coordinates.get(j).copied().unwrap_or(0.0));
+    let found = Q::each(structure, |j, _| solved.as_ref().and_then(|of| of.get(j)).copied().unwrap_or(0.0));
     let nearest = |i: usize| floors[i].displacement(&found);
     for (i, given) in given.iter().enumerate() {
         ensure((nearest(i) - given).abs() <= 1e-6 * largest, || {

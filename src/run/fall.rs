@@ -296,7 +296,7 @@ mod tests {
     #[test]
     fn the_fall_begins_where_the_rotation_passes_alpha_cg_for_the_last_time() {
         let structure = OneMass::new(Parameters::MCMANUS).unwrap();
-        let alpha_cg = structure.tan_alpha_cg.atan();
+        let alpha_cg = structure.base().tan_alpha_cg.atan();
         let times: Vec<_> = (0..=50).map(|i| f64::from(i) * 0.01).collect();
         let acceleration = times.iter().map(|time| 0.9 * 9.81 * (TAU * time / 0.5).sin()).collect();
         let ground = Record::from_samples("", times, acceleration).unwrap();
@@ -336,7 +336,7 @@ mod tests {
     #[test]
     fn a_fall_after_a_return_is_found_exactly() {
         let structure = OneMass::new(Parameters::MCMANUS).unwrap();
-        let alpha_cg = structure.tan_alpha_cg.atan();
+        let alpha_cg = structure.base().tan_alpha_cg.atan();
         let (ground, mut returned) = (Record::at_rest(60.0), 0);
         for detail in [Detail::Auto, Detail::Linear, Detail::Modal, Detail::Rigid] {
             for beyond in (0..40).map(|i| 1e-4 * f64::from(i)) {

@@ -20,7 +20,7 @@ pub(crate) fn over<Q: Coordinates>(expansion: &Expansion<Q>) -> Reactions<Terms>
     let &Motion { phase, ref dissipators, .. } = piece.before;
     let (base, gauges) = (structure.base(), structure.gauges());
     let ramp = |of: &dyn Fn(&Load<Q>) -> f64| Terms::ramp(of(&load.value), of(&load.slope) * arc.span);
-    let sum = |of: &Series<Q>| Terms::from_fn(arc.order, |k| gauges.V_t.displacement(&of[k]));
+    let sum = |of: &Series<Q>| Terms::from_fn(arc.order, |k| of[k].weighed(&gauges.V_t.shape));
     let (offset, mut weight) = (sum(&arc.u), ramp(&|load| load.a_v) + Terms::constant(base.g));
     if let Some(lift) = expansion.lift() {
         weight = weight + lift;
@@ -55,7 +55,7 @@ pub(crate) fn bounds<Q: Coordinates>(expansion: &Expansion<Q>) -> Option<Reactio
     for k in 0..arc.order {
         let rate = ORDERS[k + 1] / arc.span;
         turning[k] = rate * arc.theta_dot[k + 1];
-        along[k] = rate * structure.gauges().V_t.displacement(&arc.u_dot[k + 1]) + S_1 * turning[k];
+        along[k] = rate * arc.u_dot[k + 1].weighed(&structure.gauges().V_t.shape) + S_1 * turning[k];
         across[k] = phase.side().sign() * B * m_t * turning[k];
         (right[k], down[k]) = (-along[k] * cos - across[k] * sin, across[k] * cos - along[k] * sin);
     }

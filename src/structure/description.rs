@@ -12,7 +12,7 @@ use crate::structure::mode::{MOST_MODES, Modes};
 use crate::structure::natural_quantities::{self, Given};
 use crate::structure::parameters::{MAX_DAMPING, MAX_SLENDERNESS};
 use crate::structure::quantity::{Quantity, Refused, Units, ensure, ensure_in};
-use crate::structure::{check_count, of_number};
+use crate::structure::{OF_FLOOR, check_count, of_number};
 use crate::{Body, Floor, Mode, Parameters, Structure};
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
@@ -121,8 +121,6 @@ pub struct Described {
     pub keep: Option<i64>,
 }
 
-const FLOOR_MASS: Quantity<f64> = Quantity::limit("m", "kg", [1e-6, 1e12], "mass of the floor");
-const FLOOR_HEIGHT: Quantity<f64> = Quantity::limit("h", "m", [1e-3, 1e4], "height of the floor above the base");
 const STOREY: Quantity<f64> = Quantity::limit("k", "N/m", [1e-6, 1e18], "stiffness of the storey below the floor");
 const ENTRY: Quantity<f64> = Quantity::limit("K", "N/m", [-1e18, 1e18], "stiffness");
 const ZETA: Quantity<f64> = Quantity::limit("zeta", "1", [0.0, MAX_DAMPING], "damping ratio in full contact");
@@ -172,17 +170,17 @@ impl Described {
         let units = self.units;
         let to_si = |of: &Quantity<f64>, value: &mut f64| *value = units.in_si(*value, of.unit);
         for Storey { m, k, .. } in &mut self.storeys {
-            to_si(&FLOOR_MASS, m);
+            to_si(&MASS, m);
             to_si(&STOREY, k);
         }
-        self.floors.iter_mut().for_each(|floor| to_si(&FLOOR_MASS, &mut floor.m));
+        self.floors.iter_mut().for_each(|floor| to_si(&MASS, &mut floor.m));
         self.K.iter_mut().flatten().for_each(|entry| to_si(&ENTRY, entry));
         for FoundMode { mass, moment, .. } in &mut self.modes {
             to_si(&MASS, mass);
             moment.iter_mut().for_each(|moment| to_si(&MOMENT, moment));
         }
         if let Some(Total { m_s, S_1, I_2, J_P }) = &mut self.total {
-            to_si(&FLOOR_MASS, m_s);
+            to_si(&MASS, m_s);
             to_si(&MOMENT, S_1);
             [I_2, J_P].into_iter().flatten().for_each(|second| *second = units.in_si(*second, "kg.m2"));
         }
@@ -447,7 +445,7 @@ fn check_floors(floors: &[Place], least: usize) -> Result<(), Refused> {
     })?;
     let mut below = 0.0;
     for (number, &Place { m, h }) in (1..).zip(floors) {
-        let fits = FLOOR_MASS.check(m).and_then(|()| FLOOR_HEIGHT.check(h));
+        let fits = OF_FLOOR[0].check(m).and_then(|()| OF_FLOOR[1].check(h));
         fits.map_err(|cause| of_number("floor", number, cause))?;
         check_order(number, h, below, true)?;
         below = h;

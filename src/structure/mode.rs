@@ -93,11 +93,6 @@ impl Modes {
         &self.of[..self.count.min(MOST_MODES)]
     }
 
-    /// These forces on the modes, and the force and the moment of what acts on mass that no mode carries.
-    pub(crate) fn and_rest(self, rest: [f64; 2]) -> Modes {
-        Modes { rest, ..self }
-    }
-
     /// Combines each number with the one of `other`.
     #[inline(always)]
     pub(crate) fn with(mut self, other: &Modes, combine: impl Fn(f64, f64) -> f64) -> Modes {

@@ -20,12 +20,6 @@ pub struct OneMass {
     pub c_fc: f64,
     /// Viscous damping while rocking c_u, N·s/m.
     pub c_u: f64,
-    /// Inertia about a pivot J_P = J0 + m (H² + B²) + m0 B², kg·m² (after Eq 8).
-    pub J_P: f64,
-    /// Frequency parameter p_l = √(m g H/J_P), rad/s (before Eq 11).
-    pub p_l: f64,
-    /// Slenderness of the centre of gravity: tan α_cg = γ B/H (before Eq 11).
-    pub tan_alpha_cg: f64,
     /// Modal participation χ = H p_l²/g (after Eq 13).
     pub chi: f64,
     /// 1 − χ = (J_P − m H²)/J_P, free of cancellation.
@@ -80,9 +74,6 @@ impl OneMass {
             k,
             c_fc,
             c_u,
-            J_P,
-            p_l,
-            tan_alpha_cg,
             chi,
             one_minus_chi,
             u_cr: (g * tan_alpha_cg + P_0 * B / (m * H)) / (omega_fc * omega_fc),

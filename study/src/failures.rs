@@ -15,7 +15,7 @@ use crate::fixed_step::{Method, Point};
 use crate::guards::{displacement_excess, uplift_excess};
 use crate::hybrid::{self, Grid, Transitions};
 use crate::scene::{Scene, structure};
-use crate::tables::{self, Series, series};
+use crate::tables::{self, Series, Values, series, values};
 use anyhow::{Context, Result};
 use history::{History, at_rest, every, exact, is_impact, milli};
 use rayon::prelude::*;
@@ -24,11 +24,10 @@ use rocking::{Detail, Motion, Parameters, Phase, Ramp, Side, State, Transition, 
 use std::cell::Cell;
 use std::path::Path;
 
-/// One failure.
 pub struct Exhibit {
-    pub key: &'static str,                   // name in file names
-    pub values: Vec<(&'static str, String)>, // of the page's words
-    pub series: Vec<Series>,                 // of its picture
+    pub key: &'static str, // name in file names
+    pub values: Values,
+    pub series: Vec<Series>, // of its picture
 }
 
 /// Writes the curves of each failure, and the values of all, into `folder`; some failures happen under Pacoima Dam and El Centro.

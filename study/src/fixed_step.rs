@@ -40,12 +40,10 @@ impl Point {
         }
     }
 
-    /// Its state.
     pub fn state(&self) -> State {
         state(self.position, self.velocity)
     }
 
-    /// Whether all its numbers are finite.
     pub fn is_finite(&self) -> bool {
         self.position.iter().chain(self.velocity.iter()).all(|x| x.is_finite())
     }
@@ -70,7 +68,6 @@ pub struct Textbook {
 /// The α of HHT-α.
 const ALPHA: f64 = -0.1;
 
-/// All of them.
 pub static TEXTBOOK: [Textbook; 6] = [
     Textbook { name: "explicit Euler", order: 1, method: Method::ExplicitEuler },
     Textbook { name: "semi-implicit Euler", order: 1, method: Method::SemiImplicitEuler },

@@ -2,7 +2,8 @@
 //! and impact are the engine's own.
 
 use crate::equations::RIGID;
-use rocking::mechanics::{impact, uplift};
+use rocking::levels::uplift;
+use rocking::mechanics::impact;
 use rocking::{OneMass, Phase, Side, State};
 use std::f64::consts::FRAC_PI_2;
 
@@ -19,7 +20,6 @@ pub fn displacement_excess(structure: &OneMass, state: &State) -> f64 {
 /// A rule for uplift: negative before it is due.
 pub type UpliftRule = fn(&OneMass, &State) -> f64;
 
-/// The end of a phase.
 pub struct PhaseEnd<'a> {
     pub structure: &'a OneMass,
     pub uplift: UpliftRule,
@@ -36,7 +36,6 @@ impl PhaseEnd<'_> {
         }
     }
 
-    /// Whether the phase is over in `state`.
     pub fn is_over(&self, state: &State) -> bool {
         match self.phase {
             Phase::FullContact => self.guard(state) <= 0.0,
@@ -53,7 +52,7 @@ impl PhaseEnd<'_> {
         match self.phase {
             Phase::FullContact => (Phase::Rocking(Side::of(before.u)), before),
             Phase::Rocking(side) if side.sign() * before.theta >= FRAC_PI_2 => (Phase::Overturned(side), before),
-            Phase::Rocking(side) => impact::resolve(&(*self.structure).into(), side, &before),
+            Phase::Rocking(side) => impact::resolve(&(*self.structure).into(), 0.0, side, &before),
             Phase::Overturned(_) | Phase::OnGround(_) => (self.phase, before),
         }
     }

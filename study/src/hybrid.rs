@@ -9,7 +9,6 @@ use rocking::{Load, Phase, Structure};
 use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
 
-/// When a transition is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Transitions {
     Located, // at the instant at which its guard closes; the step ends there

@@ -16,7 +16,6 @@ fn numbers(point: &Point) -> [f64; 4] {
     [point.position[0], point.position[1], point.velocity[0], point.velocity[1]]
 }
 
-/// The point of these numbers.
 fn point(y: &[f64]) -> Point {
     Point::start(&state(Vector2::new(y[0], y[1]), Vector2::new(y[2], y[3])))
 }

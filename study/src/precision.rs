@@ -25,7 +25,6 @@ pub struct Curve {
     pub points: Vec<Point>, // from coarse to fine
 }
 
-/// One run.
 #[derive(Debug)]
 pub struct Point {
     pub setting: f64,                    // step in s, or tolerance
@@ -50,7 +49,6 @@ pub struct Limits {
     pub points: usize, // no fewer points than these on a curve
 }
 
-/// Limits of the full study.
 pub const FULL: Limits = Limits { run: 0.25, points: 5 };
 
 /// Every curve on `scene`, those of Python's libraries by the interpreter `python`. Runs are timed: nothing else may run
@@ -60,17 +58,16 @@ pub fn measure(scene: &Scene, limits: Limits, python: Option<&Path>, progress: &
     let conditioning = conditioning(scene, &exact)?;
     let methods = curves::methods(scene);
     progress.inc_length(methods.len() as u64);
-    let curves = methods
-        .into_iter()
-        .map(|method| {
-            progress.set_message(format!("{}: {}", scene.title, method.name));
-            let points = sweep(&method, scene, &exact, conditioning.theta, limits);
-            progress.inc(1);
-            Curve { name: method.name, setting: method.setting.into(), points }
-        })
-        .collect::<Vec<_>>();
-    let peers = python.map(|python| peers::curves(scene, &exact, conditioning.theta, limits, python));
-    let curves = curves.into_iter().chain(peers.transpose()?.unwrap_or_default()).collect();
+    let mut curves = Vec::new();
+    for method in methods {
+        progress.set_message(format!("{}: {}", scene.title, method.name));
+        let points = sweep(&method, scene, &exact, conditioning.theta, limits);
+        progress.inc(1);
+        curves.push(Curve { name: method.name, setting: method.setting.into(), points });
+    }
+    if let Some(python) = python {
+        curves.extend(peers::curves(scene, &exact, conditioning.theta, limits, python)?);
+    }
     Ok(Diagram { conditioning, curves })
 }
 
@@ -106,7 +103,6 @@ fn sweep(method: &Method, scene: &Scene, exact: &Response, conditioning: f64, li
 /// Runs are repeated until they have taken this long, and the fastest counts.
 const LEAST: Duration = Duration::from_millis(30);
 
-/// The largest number of repetitions.
 const MOST_REPEATS: usize = 1000;
 
 /// The result of `run`, and the shortest processor time, s.

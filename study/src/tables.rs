@@ -6,12 +6,18 @@ use std::path::Path;
 /// A curve: its name, and its points.
 pub type Series = (String, Vec<(f64, f64)>);
 
-/// The curve `name` through `points`.
 pub fn series(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Series {
     (name.into(), points.into_iter().collect())
 }
 
-/// Writes the points of all curves.
+/// Values of a page's words, by their names.
+pub type Values = Vec<(&'static str, String)>;
+
+/// The values of this name each.
+pub fn values<const N: usize>(all: [(&'static str, &dyn ToString); N]) -> Values {
+    all.map(|(name, value)| (name, value.to_string())).into()
+}
+
 pub fn save_series(path: &Path, all: &[Series]) -> Result<()> {
     let rows = all.iter().flat_map(|(name, points)| points.iter().map(move |(x, y)| (name, x, y)));
     save(path, "series,x,y", rows.map(|(name, x, y)| [name.clone(), format!("{x:.6e}"), format!("{y:.6e}")]))

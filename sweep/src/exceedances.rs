@@ -30,16 +30,13 @@ pub struct Exceedances {
     pub still_rocking: usize,
 }
 
-/// Runs of about the same intensity.
+/// Runs of about the same intensity: the smallest, the geometric mean and the largest of their intensities, and how many there are.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[allow(missing_docs)]
 pub struct Bin {
-    /// Smallest intensity among them.
     pub lowest: f64,
-    /// Geometric mean of their intensities.
     pub mean: f64,
-    /// Largest intensity among them.
     pub highest: f64,
-    /// Number of runs.
     pub runs: usize,
 }
 
@@ -91,17 +88,17 @@ pub fn count(plan: &Plan, measure: IntensityMeasure, limits: &[Limit], outcomes:
 }
 
 fn of_population(name: &str, limits: &[Limit], runs: &[Counted<Of>]) -> Exceedances {
-    let still_rocking =
-        |outcome: &Outcome| matches!(outcome, Outcome::Ended(summary) if summary.ending == Ending::StillRocking);
-    let number = |is: &dyn Fn(&Outcome) -> bool| runs.iter().filter(|(_, _, (outcome, _))| is(outcome)).count();
-    let ended = runs.iter().filter(|(_, _, (outcome, _))| matches!(outcome, Outcome::Ended(_))).copied();
-    let bins = bins(ended.collect());
+    let (ended, failed): (Vec<_>, Vec<_>) =
+        runs.iter().copied().partition(|(.., of)| matches!(of.0, Outcome::Ended(_)));
+    let still_rocks = |run: &&Counted<Of>| matches!(run.2.0, Outcome::Ended(of) if of.ending == Ending::StillRocking);
+    let still_rocking = ended.iter().filter(still_rocks).count();
+    let bins = bins(ended);
     Exceedances {
         population: name.into(),
         fragilities: [Limit::Overturning].iter().chain(limits).map(|limit| fragility(limit.clone(), &bins)).collect(),
         bins: bins.iter().map(|runs| Bin::of(runs)).collect(),
-        failed: number(&|outcome| matches!(outcome, Outcome::Failed { .. })),
-        still_rocking: number(&still_rocking),
+        failed: failed.len(),
+        still_rocking,
     }
 }
 

@@ -241,22 +241,6 @@ mod tests {
     }
 
     #[test]
-    fn runs_are_counted_by_group_and_intensity() {
-        let runs = [
-            (0, 2.0, Some(true)),
-            (0, 0.5, Some(false)),
-            (1, 2.0, Some(true)),
-            (0, 2.0, Some(false)),
-            (0, 0.5, None),
-            (0, 4.0, None),
-            (0, 2.0, Some(true)),
-        ];
-        let mut expected = trials(&[(0.5, 1, 0), (2.0, 3, 2), (2.0, 1, 1)]);
-        expected[2].group = 1;
-        assert_eq!(Trials::count(runs), expected);
-    }
-
-    #[test]
     fn counts_without_a_curve_are_refused_with_the_reason() {
         for (counts, reason) in [
             (&[][..], "no run is counted"),

@@ -9,7 +9,7 @@ use crate::plan::Conditions;
 use crate::pulse::{Pulse, units_of};
 use crate::{Refused, ensure};
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::mechanics::uplift::least_push;
+use rocking::levels::uplift::least_push;
 use rocking::run::lanes::Rocked;
 use rocking::run::record::Record;
 use rocking::run::{Ending, Finish, Run, RunError, Runs, rocked_each};
@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
 
 /// Parts of the grid's steps that a place can have.
-const PARTS: u32 = 1 << MAX_REFINEMENTS;
+pub const PARTS: u32 = 1 << MAX_REFINEMENTS;
 
 /// How often a grid's steps can be halved.
 pub const MAX_REFINEMENTS: u32 = 8;
@@ -40,8 +40,8 @@ pub struct Axis {
 
 /// One structure under one shape of pulse, at every point of which there is such a pulse.
 #[derive(Clone, Debug)]
+#[allow(missing_docs)]
 pub struct Map {
-    /// The structure.
     pub structure: Structure,
     /// But for its frequency and its amplitude.
     pub pulse: Pulse,
@@ -51,7 +51,6 @@ pub struct Map {
     pub amplitude: Axis,
     /// Whether the axes are in units of the structure.
     pub is_dimensionless: bool,
-    /// Level of detail.
     pub detail: Detail,
     /// Relative tolerance of the results.
     pub tolerance: f64,
@@ -59,12 +58,11 @@ pub struct Map {
     pub finds_condition: bool,
 }
 
-/// Position of a point, in 1/256 of the steps of the grid.
+/// Position of a point along amplitudes and frequencies, in 1/256 of the steps of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[allow(missing_docs)]
 pub struct Place {
-    /// Along the amplitudes.
     pub amplitude: u32,
-    /// Along the frequencies.
     pub frequency: u32,
 }
 
@@ -303,16 +301,18 @@ impl Map {
             let (point, other) = if number == at { (point, other) } else { (other, point) };
             done(at, Point { condition: Some(point.condition(&other)), ..point })
         };
-        self.points(&grounds, see);
+        match self.structure.of_one_mode() {
+            Some(structure) => self.points::<f64>(&structure, &grounds, see),
+            None => self.points::<Modes>(&self.structure, &grounds, see),
+        }
     }
 
-    /// Runs the structure under `grounds` and tells `see` each point with its number.
-    fn points(&self, grounds: &[Record], see: impl FnMut(usize, Point) -> bool) {
+    /// Runs `structure` under `grounds` and tells `see` each point with its number.
+    fn points<Q: Runs>(&self, structure: &Structure, grounds: &[Record], mut see: impl FnMut(usize, Point) -> bool) {
         let conditions = Conditions { detail: self.detail, tolerance: self.tolerance, ..Conditions::default() };
-        match self.structure.of_one_mode() {
-            Some(structure) => points_of::<f64>(&conditions, &structure, grounds, see),
-            None => points_of::<Modes>(&conditions, &self.structure, grounds, see),
-        }
+        let run = |ground| conditions.run::<Q>(structure.clone(), ground).expect("it starts at rest");
+        let runs: Vec<_> = grounds.iter().map(run).collect();
+        rocked_each(&runs, &mut |number, (finish, rocked)| see(number, Point::of(&runs[number], finish, rocked)));
     }
 
     /// The points of the grid, amplitudes changing last.
@@ -374,21 +374,4 @@ pub fn nearest(known: &HashMap<Place, Point>, place: Place, levels: u32) -> Opti
         Place { amplitude: place.amplitude / step * step, frequency: place.frequency / step * step }
     };
     (0..=levels).rev().find_map(|level| known.get(&corner(level)))
-}
-
-/// The places of a map refined `levels` times from one to the next.
-pub fn finest_step(levels: u32) -> u32 {
-    PARTS >> levels
-}
-
-/// Runs `structure` under `grounds` and tells `see` each point with its number.
-fn points_of<Q: Runs>(
-    conditions: &Conditions,
-    structure: &Structure,
-    grounds: &[Record],
-    mut see: impl FnMut(usize, Point) -> bool,
-) {
-    let run = |ground| conditions.run::<Q>(structure.clone(), ground).expect("it starts at rest");
-    let runs: Vec<_> = grounds.iter().map(run).collect();
-    rocked_each(&runs, &mut |number, (finish, rocked)| see(number, Point::of(&runs[number], finish, rocked)));
 }

@@ -119,10 +119,8 @@ impl<'a> Sweep<'a> {
                 bail!("two runs are the same: structures {first} and {number} differ by rounding at most");
             }
         }
-        let (file, mut others) = match path.map(|path| open(path, &plan.measures, validity)).transpose()? {
-            Some((file, known)) => (Some(file), known),
-            None => (None, Known::default()),
-        };
+        let (file, known) = path.map(|path| open(path, &plan.measures, validity)).transpose()?.unzip();
+        let mut others: Known<Done> = known.unwrap_or_default();
         let known = |key| others.remove(key).map_or_else(OnceLock::new, OnceLock::from);
         let done = keys.iter().map(known).collect();
         Ok(Sweep { plan, program, validity, keys, digests, done, file, others: others.len() })
@@ -139,7 +137,8 @@ impl<'a> Sweep<'a> {
         let run = |indices: &[usize], hand_out: &mut dyn FnMut(_, &[u8]) -> bool| {
             let (mut structure, mut of_structure, mut row) = (usize::MAX, Vec::new(), Vec::new());
             self.plan.each_outcome(indices, self.validity, |case, outcome, findings| {
-                let done = Done::new(outcome, findings);
+                let findings = findings.filter(|_| matches!(outcome, Outcome::Ended(_)));
+                let done = Done { beyond: findings.map_or_else(Box::default, beyond), outcome };
                 if self.file.is_some() {
                     if structure != case.structure_number() {
                         structure = case.structure_number();
@@ -178,7 +177,7 @@ impl<'a> Sweep<'a> {
         let added = Some(measure).filter(|measure| !IntensityMeasure::COLUMNS.contains(measure));
         let headings = headings(&self.plan.measures, self.validity).into_iter().skip(1);
         let headings = headings.chain(added.map(|of| heading(&of.name(), of.unit())));
-        let mut columns: Vec<_> = headings.map(|heading| (heading, Column::of(rows))).collect();
+        let mut columns: Vec<_> = headings.map(|of| (of, Column::Counts(Vec::with_capacity(rows)))).collect();
         let mut texts = vec![HashMap::new(); columns.len()];
         let (mut structure, mut of_structure) = (usize::MAX, Vec::new());
         for case in self.plan.cases_of(done()) {
@@ -237,24 +236,13 @@ impl<'a> Sweep<'a> {
     }
 }
 
-impl Done {
-    /// A run with this `outcome`; the `findings` count if it did not fail.
-    fn new(outcome: Outcome, findings: Option<Findings>) -> Done {
-        let numbers = |Findings { worst, gains, settlings, .. }: Findings| {
-            let worst = worst.iter().flat_map(|worst| [worst.value, worst.time]);
-            worst.chain([gains as f64, settlings as f64]).collect()
-        };
-        let findings = findings.filter(|_| matches!(outcome, Outcome::Ended(_)));
-        Done { beyond: findings.map_or_else(Box::default, numbers), outcome }
-    }
+/// The numbers of a row that say how far a run breaks the assumptions of the model.
+fn beyond(Findings { worst, gains, settlings, .. }: Findings) -> Box<[f64]> {
+    let worst = worst.iter().flat_map(|worst| [worst.value, worst.time]);
+    worst.chain([gains as f64, settlings as f64]).collect()
 }
 
 impl Column {
-    /// A column without rows, and with memory for `rows`.
-    fn of(rows: usize) -> Column {
-        Column::Counts(Vec::with_capacity(rows))
-    }
-
     /// Adds the value of the next row. The values decide whether the column has counts, numbers or texts. The positions of its
     /// texts are kept in `known`.
     fn push(&mut self, cell: Cell, known: &mut HashMap<String, u32>) {

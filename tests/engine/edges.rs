@@ -148,8 +148,8 @@ prop_compose! {
 }
 
 fn initial(structure: &OneMass, detail: Detail, over: State) -> State {
-    let theta = (over.theta * structure.tan_alpha_cg).clamp(-1.5, 1.5);
-    let theta_dot = (over.theta_dot * structure.tan_alpha_cg * structure.p_l).clamp(-1e3, 1e3);
+    let theta = (over.theta * structure.base().tan_alpha_cg).clamp(-1.5, 1.5);
+    let theta_dot = (over.theta_dot * structure.base().tan_alpha_cg * structure.base().p_l).clamp(-1e3, 1e3);
     State {
         u: if detail == Detail::Rigid { 0.0 } else { (over.u * structure.u_cr).clamp(-1e4, 1e4) },
         u_dot: if detail == Detail::Rigid {
@@ -200,7 +200,7 @@ proptest! {
         let Ok(structure) = OneMass::new(parameters) else { return Ok(()) };
         let start = initial(&structure, detail, over);
         let mut engine = engine_of(structure, start, 1e-10, detail);
-        let fastest = structure.omega_u.max(2.0 * structure.zeta_u * structure.omega_u).max(structure.p_l);
+        let fastest = structure.omega_u.max(2.0 * structure.zeta_u * structure.omega_u).max(structure.base().p_l);
         let (mut phase, mut last, mut scale) = (engine.motion().phase, start, energy_scale(&structure, &start));
         for (a_g, F_t, part) in samples {
             let time = engine.motion().time;

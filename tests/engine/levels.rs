@@ -3,7 +3,7 @@
 
 use crate::common::{engine_of, shaking, start, transitions};
 use approx::assert_abs_diff_eq;
-use rocking::levels::rules::MAX_RIGID_TRANSITIONS_PER_PERIOD;
+use rocking::mechanics::impact::MAX_RIGID_TRANSITIONS_PER_PERIOD;
 use rocking::{Detail, OneMass, Parameters, Phase, Progress, Ramp, Side, State, Transition, TransitionKind};
 
 const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };
@@ -21,12 +21,13 @@ fn rigid_comes_to_rest_with_less_energy_than_the_tolerance() {
         assert_eq!(landing.kind, TransitionKind::Landing);
         assert_eq!(engine.motion().phase, Phase::FullContact);
         let theta_dot = structure.parameters().r * landing.before.theta_dot;
-        let overturning_energy = 0.5 * m * g * H * structure.tan_alpha_cg.powi(2);
+        let overturning_energy = 0.5 * m * g * H * structure.base().tan_alpha_cg.powi(2);
         let left = (1e-5 * tolerance).min(1e-11);
-        assert!(0.5 * structure.J_P * theta_dot * theta_dot <= left * left * overturning_energy);
+        assert!(0.5 * structure.base().J_P * theta_dot * theta_dot <= left * left * overturning_energy);
         // each impact keeps r of the velocity: as many of them as it takes
         let first = transitions[0].before.theta_dot;
-        let enough = ((left * structure.p_l * structure.tan_alpha_cg / first.abs()).ln() / 0.9f64.ln()).ceil();
+        let enough =
+            ((left * structure.base().p_l * structure.base().tan_alpha_cg / first.abs()).ln() / 0.9f64.ln()).ceil();
         assert_eq!(transitions.len() as f64, enough);
     }
 }
@@ -35,7 +36,7 @@ fn rigid_comes_to_rest_with_less_energy_than_the_tolerance() {
 #[test]
 fn too_many_impacts_end_in_contact() {
     let structure = OneMass::new(Parameters { r: 0.9999, ..Parameters::MCMANUS }).unwrap();
-    let period = 1.0 / structure.p_l;
+    let period = 1.0 / structure.base().p_l;
     let released = State { theta: 1e-11, ..State::default() };
     let mut engine = engine_of(structure, released, 1e-9, Detail::Rigid);
     let mut advance = |interval, value| transitions(&mut engine, interval, Ramp { value, slope: 0.0 });

@@ -110,7 +110,7 @@ fn scene(rng: &mut Rng) -> (OneMass, State, Detail) {
     }
     if detail != Detail::FixedBase && rng.f64() < 0.6 {
         state.theta = either_way(rng) * [1e-4, 0.1, 1.0, 1.5][rng.usize(0..4)];
-        state.theta_dot = either_way(rng) * structure.p_l * [0.0, 0.1, 1.0, 1.0][rng.usize(0..4)];
+        state.theta_dot = either_way(rng) * structure.base().p_l * [0.0, 0.1, 1.0, 1.0][rng.usize(0..4)];
     }
     (structure, state, detail)
 }
@@ -132,7 +132,7 @@ fn no_peak_is_missed() {
         let [mut peaks, mut alone] = [(); 2].map(|()| Peaks::since(0.0, &structure.into(), detail));
         let mut validity = Validity::new(&structure.into(), Limits::default(), Findings::since(0.0));
         let mut dense = Dense { parameters, largest: NOTHING, beyond: [0.0; 3], first: [None; 3], pieces: 0 };
-        let weight = 9.81 * structure.tan_alpha_cg;
+        let weight = 9.81 * structure.base().tan_alpha_cg;
         let amplitude = weight * [0.0, 0.3, 1.0, 3.0][rng.usize(0..4)];
         let force = parameters.m * weight * [0.0, 0.3, 1.0][rng.usize(0..3)];
         let longest = log_between(rng, 1e-4, 3.0) * if rng.f64() < 0.1 { 30.0 } else { 1.0 };

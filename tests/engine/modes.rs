@@ -158,7 +158,7 @@ fn what_fits_no_frame_is_refused_with_the_remedy() {
         without_moment.unwrap_err().to_string(),
         "S_1 = 0 kg.m is out of range: it must lie between 1e-9 and 1e16 kg.m (first moment of the mass above the base)"
     );
-    let [mode, floor] = ["mode 2: stiffness = -1 N/m is", "floor 3: mass = NaN kg is"];
+    let [mode, floor] = ["mode 2: stiffness = -1 N/m is", "floor 3: m = NaN kg is"];
     let (mut modes, mut floors) = (frame.modes().to_vec(), frame.floors().to_vec());
     (modes[1].stiffness, floors[2].mass) = (-1.0, f64::NAN);
     for (body, modes, floors, refused) in [

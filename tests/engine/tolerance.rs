@@ -35,7 +35,7 @@ impl Scene {
         .unwrap();
         let mut initial = State::default();
         if rng.bool() {
-            initial.theta = 0.8 * structure.tan_alpha_cg.atan() * between(rng, -1.0, 1.0);
+            initial.theta = 0.8 * structure.base().tan_alpha_cg.atan() * between(rng, -1.0, 1.0);
             initial.u = if detail == Detail::Rigid { 0.0 } else { structure.u_cr * between(rng, -1.0, 1.0) };
         }
         let dt = log_between(rng, 0.002, 0.02);
@@ -49,7 +49,7 @@ impl Scene {
             })
             .collect();
         let peak = ground.iter().fold(0.0, |peak: f64, a_g| peak.max(a_g.abs()));
-        let scale = log_between(rng, 0.5, 4.0) * 9.81 * structure.tan_alpha_cg / peak;
+        let scale = log_between(rng, 0.5, 4.0) * 9.81 * structure.base().tan_alpha_cg / peak;
         ground.iter_mut().for_each(|a_g| *a_g *= scale);
         Scene { structure, initial, dt, ground }
     }

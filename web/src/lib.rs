@@ -10,7 +10,7 @@ use rocking::Parameters;
 use rocking::levels::detail::Detail;
 use rocking::run::RunError;
 use rocking::run::levels::{Choice, Criterion, RULE, relative};
-use rocking::run::validity::{ASSUMPTIONS, Assumption, Limits, Worst};
+use rocking::run::validity::{ASSUMPTIONS, Assumption, Limits, Worst, of_structure};
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::{PARAMETERS, PRESETS, TIES};
 use rocking_records::{Source, Unit};
@@ -132,8 +132,12 @@ impl Explorer {
     /// Derived quantities of the structure, remarks on the record's file, and warnings about the parameters.
     pub fn about(&mut self, fields: &str) -> Result<String, String> {
         let (fields, run, Understood { record, source, sentences, .. }) = self.load(fields)?;
-        let warnings: Vec<_> =
-            sentences.into_iter().skip(1).chain(run.structure.doubts()).chain(run.warnings()).collect();
+        let warnings: Vec<_> = sentences
+            .into_iter()
+            .skip(1)
+            .chain(run.structure.doubts())
+            .chain(of_structure(&run.structure, run.conditions.detail))
+            .collect();
         let of_file = |of: Source| [format!("{}, {}", of.format, of.unit)].into_iter().chain(of.remarks);
         let remarks: Vec<_> = source.into_iter().flat_map(of_file).collect();
         let structure = &run.structure;

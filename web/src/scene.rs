@@ -24,7 +24,6 @@ use std::path::{Path, PathBuf};
 /// hold a number outside the slider's range.
 pub type Number = (&'static str, &'static str, &'static str, f64, [f64; 2]);
 
-/// The numbers of ground motions and runs.
 pub const NUMBERS: [Number; 13] = [
     ("amplitude", "g", "peak ground acceleration", 0.6, [0.02, 4.0]),
     ("frequency", "Hz", "frequency of the pulse", 2.0, [0.1, 20.0]),
@@ -130,7 +129,6 @@ impl Fields {
         }
     }
 
-    /// Name of the ground motion.
     pub fn kind(&self) -> &str {
         self.text("record").unwrap_or(EL_CENTRO)
     }
@@ -270,7 +268,6 @@ impl Fields {
         }
     }
 
-    /// The pulse of the scene; `g` in m/s².
     pub fn pulse(&self, g: f64) -> Result<Pulse, String> {
         let shape = self.named("record", Shape::Sine.name())?;
         let pulse = Pulse::new(shape, g * self.number("amplitude")?, self.number("frequency")?);
@@ -298,19 +295,16 @@ impl Fields {
         Ok(Conditions { initial, detail: self.detail()?, tolerance: self.tolerance()?, duration })
     }
 
-    /// The level of detail.
     pub fn detail(&self) -> Result<Detail, String> {
         self.named("detail", Detail::default().name())
     }
 
-    /// The relative tolerance of the results.
     pub fn tolerance(&self) -> Result<f64, String> {
         let tolerance = self.number("tolerance")?;
         check_tolerance(tolerance).map(|()| tolerance).map_err(|error| error.to_string())
     }
 }
 
-/// The unit of the number called `name`.
 pub fn unit_of(name: &str) -> &'static str {
     let of_structure = PARAMETERS.iter().find(|of| of.name == name).map(|of| of.unit);
     let of_natural = || NATURAL.iter().find(|of| of.name == name).map(|of| of.derived().unit);

@@ -1,7 +1,6 @@
 //! The picture of a run: ground, rotation, displacements and acceleration over time, marks at the transitions.
 use crate::picture::{
-    Area, Picture, SMALL, TITLE, axes, chart, colour, dashed, dot, line, px, rounded, stroke, titled, words,
-    words_before,
+    Area, Picture, SMALL, TITLE, axes, chart, colour, dashed, line, px, rounded, stroke, titled, words, words_before,
 };
 use plotters::prelude::*;
 use rocking::Structure;
@@ -38,9 +37,7 @@ const MARKS: [Mark; 4] = [
     ("overturning", colour::PURPLE, |kind| matches!(kind, TransitionKind::Overturning(_))),
 ];
 
-/// One history.
 struct Panel {
-    /// Name and unit of the history.
     name: String,
     colour: RGBColor,
     /// Time (s) and value.
@@ -72,14 +69,20 @@ pub fn draw(picture: Picture, run: &Run) -> anyhow::Result<()> {
 fn panels(run: &Run, curve: &Curve) -> Vec<Panel> {
     let g = run.structure.base().g;
     let peak = |name: &str| curve.found.peak(name).unwrap_or_default();
-    let panel = |(label, unit, name, more): (&str, _, &str, Option<String>)| {
+    // `unit` is how many SI units it has, and what it is called
+    let panel = |(label, (per_unit, unit), name, more): (&str, (f64, &str), &str, Option<String>)| {
         let (_, values) = curve.columns.iter().find(|(of, _)| of == name)?;
+        let points: Vec<_> = curve.times.iter().zip(values).map(|(time, value)| (*time, value / per_unit)).collect();
+        let Peak { magnitude, time } = peak(name);
+        let after = curve.times.partition_point(|before| *before < time);
+        let beside = points[after.saturating_sub(1)..points.len().min(after + 2)].iter();
+        // of the points beside the peak the largest has its sign
+        let sign = beside.map(|point| point.1).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(1.0).signum();
+        let words = format!("{} {unit}", rounded(magnitude / per_unit))
+            + &more.map_or(String::new(), |more| format!(", {more}"));
+        let peak = (magnitude > 0.0).then_some((time, sign * magnitude / per_unit, words));
         let colour = if name == "a_g" { colour::GREY } else { colour::BLUE };
-        let mut panel = Panel::of(label, unit, colour, (&curve.times, values), peak(name));
-        if let (Some((_, _, words)), Some(more)) = (&mut panel.peak, more) {
-            *words += &format!(", {more}");
-        }
-        Some(panel)
+        Some(Panel { name: format!("{label} ({unit})"), colour, points, peak })
     };
     let (mm, rad, in_g) = ((1e-3, "mm"), (1.0, "rad"), (g, "g"));
     if run.structure.one().is_none() {
@@ -117,25 +120,6 @@ fn about(structure: &Structure, found: &Found) -> String {
 }
 
 impl Panel {
-    /// A panel with its peak marked if there is one; `unit` is how many SI units its own has, and what it is called.
-    fn of(
-        name: &str,
-        (per_unit, unit): (f64, &str),
-        colour: RGBColor,
-        (times, values): (&[f64], &[f64]),
-        peak: Peak,
-    ) -> Panel {
-        let points: Vec<_> = times.iter().zip(values).map(|(time, value)| (*time, value / per_unit)).collect();
-        let magnitude = peak.magnitude / per_unit;
-        let after = times.partition_point(|time| *time < peak.time);
-        let beside = points[after.saturating_sub(1)..points.len().min(after + 2)].iter();
-        // of the points beside the peak the largest has its sign
-        let sign = beside.map(|point| point.1).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(1.0).signum();
-        let words = format!("{} {unit}", rounded(magnitude));
-        let peak = (magnitude > 0.0).then_some((peak.time, sign * magnitude, words));
-        Panel { name: format!("{name} ({unit})"), colour, points, peak }
-    }
-
     /// Draws the history on `area`, its peak, and a dashed line at the instant from which the structure falls.
     fn draw(&self, area: &Area, &Found { start, end, fall, .. }: &Found) -> anyhow::Result<()> {
         let Panel { name, colour, points, peak } = self;
@@ -149,7 +133,7 @@ impl Panel {
             dashed(&mut chart, &[(fall, -up), (fall, up)], colour::PURPLE)?;
         }
         if let Some((time, value, peak)) = peak {
-            chart.draw_series([dot((*time, *value), 3.0, colour::INK)])?;
+            chart.draw_series([Circle::new((*time, *value), px(3.0), colour::INK.filled())])?;
             let is_late = *time > start + 0.85 * (end - start);
             let (style, aside) =
                 if is_late { (words_before(SMALL, colour::INK), -7.0) } else { (words(SMALL, colour::INK), 7.0) };

@@ -22,11 +22,9 @@ use std::slice::from_ref;
 
 /// Records on structures.
 pub struct RecordSweep {
-    /// Runs of the sweep.
     pub plan: Plan,
     /// Limits to count beside overturning.
     pub limits: Vec<Limit>,
-    /// Measure of the intensity of a run's ground motion.
     pub measure: IntensityMeasure,
     /// Findings and assumptions of each record, in a line.
     pub records: Vec<String>,
@@ -35,11 +33,9 @@ pub struct RecordSweep {
 /// Maps by the names of their structures, and how often their grids are refined along boundaries.
 pub type MapSweep = (Vec<(String, Map)>, u32);
 
-/// Content of a file.
 pub enum Asked {
     /// Records on structures.
     Records(Box<RecordSweep>),
-    /// Pulses on structures.
     Pulses(MapSweep),
 }
 
@@ -50,9 +46,7 @@ struct SweepFile {
     records: Vec<RecordEntry>,
     /// Unit of records that do not state theirs.
     unit: Option<Unit>,
-    /// Multiplies the records' times.
     time_scale: Option<f64>,
-    /// Multiply the records' accelerations.
     scale: Values,
     structures: Vec<StructureGrid>,
     #[serde(default)]
@@ -62,7 +56,6 @@ struct SweepFile {
     duration: Option<f64>,
     #[serde(default)]
     initial: InitialArgs,
-    /// Name of the intensity measure.
     intensity: Option<String>,
     /// One or several by the name of a measure, in its own unit or with a usual one.
     #[serde(default)]
@@ -81,12 +74,10 @@ struct MapFile {
     /// Times that the grid's steps are halved along the boundaries.
     #[serde(default)]
     refine: u32,
-    /// Whether each point's condition is found.
     #[serde(default)]
     condition: bool,
 }
 
-/// Pulses of one shape.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PulseGrid {
@@ -99,7 +90,6 @@ struct PulseGrid {
     frequency: Values,
     /// In g, or over g tan(alpha_cg).
     amplitude: Values,
-    /// Whether they are over p_l and g tan(alpha_cg).
     #[serde(default)]
     dimensionless: bool,
 }
@@ -114,7 +104,6 @@ enum RecordEntry {
 
 #[derive(Deserialize, Default)]
 struct RecordTable {
-    /// Path or pattern.
     file: String,
     /// Path of the vertical component of the one file.
     vertical: Option<String>,
@@ -237,7 +226,6 @@ impl MapFile {
     }
 }
 
-/// The limits `asked` for by their names.
 fn limits(asked: &toml::Table, measures: &[Measure]) -> anyhow::Result<Vec<Limit>> {
     let mut limits = Vec::new();
     for (name, given) in asked {
@@ -282,7 +270,6 @@ impl Values {
         }
     }
 
-    /// The values as an axis of a map, in `unit`.
     fn axis(&self, unit: f64) -> anyhow::Result<Axis> {
         let is_log = matches!(self, Values::Even { log: true, .. });
         let values: Vec<_> = self.list()?.into_iter().map(|value| value * unit).collect();

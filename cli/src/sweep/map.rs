@@ -97,25 +97,20 @@ fn do_points(
 
 /// Opens the file at `path`, or begins it, and reads the points of its rows.
 fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Point>)> {
-    let headings = headings();
-    let fate = headings.iter().position(|heading| heading == "fate").expect("it is one of them");
-    RowFile::open(path, &headings, |row| Ok(row.iter().skip(fate).collect::<StringRecord>().deserialize(None)?))
-}
-
-/// The key of a point of the map of the structure called `name`.
-fn key_at(name: &str, map: &Map, place: Place) -> Uuid {
-    let of_map = (map.detail, map.tolerance, map.finds_condition);
-    Digest::new(&Program::of(BUILD).build).and(&(name, map.structure.numbers(), map.pulse(place), of_map)).uuid()
-}
-
-fn headings() -> Vec<String> {
-    [
+    let headings = [
         fixed(&["run", "structures", "version"]),
         AXES.map(|axis| heading(axis.name, axis.unit)).into(),
         fixed(&["shape", "cycles", "phase[rad]", "error", "detail", "tolerance"]),
         fixed(&HEADINGS),
     ]
-    .concat()
+    .concat();
+    let fate = headings.iter().position(|heading| heading == "fate").expect("it is one of them");
+    RowFile::open(path, &headings, |row| Ok(row.iter().skip(fate).collect::<StringRecord>().deserialize(None)?))
+}
+
+fn key_at(name: &str, map: &Map, place: Place) -> Uuid {
+    let of_map = (map.detail, map.tolerance, map.finds_condition);
+    Digest::new(&Program::of(BUILD).build).and(&(name, map.structure.numbers(), map.pulse(place), of_map)).uuid()
 }
 
 /// The row of a point, which the refinement of this level has asked for; 0 is the grid.
@@ -169,7 +164,6 @@ fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
     Ok(out)
 }
 
-/// Says how many points failed, and why the first did.
 fn report_failures(spectra: &[Spectrum]) -> anyhow::Result<()> {
     let failed = || spectra.iter().flat_map(|of| of.points.iter()).filter(|(_, point)| point.fate == Fate::Failed);
     match failed().min_by_key(|(place, _)| **place) {

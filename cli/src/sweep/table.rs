@@ -11,7 +11,6 @@ use std::fmt::{self, Write};
 /// Columns of a limit are this wide, or as wide as its name.
 const WIDTH: usize = 18;
 
-/// Remark on a median beyond the intensities of all runs.
 pub const BEYOND_THE_RUNS: &str = "beyond the runs";
 
 /// Whether the median of `fragility` is weaker or stronger than the ground motion of every run `of` its population.
@@ -21,7 +20,6 @@ pub fn is_beyond_the_runs(of: &Exceedances, fragility: &Fragility) -> bool {
     fragility.curve.as_ref().is_ok_and(|curve| !(lowest..=highest).contains(&curve.median))
 }
 
-/// Writes one population, its intensities in `measure`.
 pub fn write(out: &mut impl Write, of: &Exceedances, measure: IntensityMeasure) -> fmt::Result {
     let Exceedances { population, bins, fragilities, failed, still_rocking } = of;
     let (name, unit) = (measure.name(), measure.unit());
@@ -92,16 +90,13 @@ pub struct Fitted {
     unit: &'static str,
     median: Option<Number>,
     median_is_beyond_the_runs: Option<bool>,
-    /// Of the 95 % band of the median.
     median_from: Option<Number>,
     median_to: Option<Number>,
     dispersion: Option<Number>,
-    /// Why there is no curve.
     reason: Option<String>,
     bins: Vec<Counted>,
 }
 
-/// Runs of neighbouring intensities.
 #[derive(Serialize)]
 struct Counted {
     #[serde(flatten)]
@@ -110,7 +105,6 @@ struct Counted {
     tally: Tally,
 }
 
-/// Every curve of `populations`, whose intensities are in `measure`.
 pub fn curves(populations: &[Exceedances], measure: IntensityMeasure) -> Vec<Fitted> {
     let all = populations.iter().flat_map(|of| of.fragilities.iter().map(move |fragility| (of, fragility)));
     all.map(|(of, fragility)| {

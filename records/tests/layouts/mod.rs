@@ -7,13 +7,10 @@ use std::path::PathBuf;
 /// Time between samples, s.
 pub const DT: f64 = 0.005;
 
-/// A file, and what it holds.
 #[derive(Clone, Debug)]
 pub struct Layout {
-    /// Name of the file.
     pub path: PathBuf,
     pub bytes: Vec<u8>,
-    /// Options for reading the file.
     pub how: Reading,
     pub format: &'static str,
     pub unit: Unit,
@@ -57,7 +54,7 @@ pub fn all(count: usize) -> Vec<Layout> {
     let (counts, expected) = knet(&cm);
     let mut all = vec![
         at2(
-            "PEER STRONG MOTION DATABASE RECORD. PROCESSING BY CHARLES MUELLER.",
+            "a line more\nPEER STRONG MOTION DATABASE RECORD. PROCESSING BY CHARLES MUELLER.",
             &format!("{count:5}    {DT:.4}    NPTS, DT"),
         ),
         at2("PEER NGA STRONG MOTION DATABASE RECORD", &format!("NPTS=  {count:4}, DT=   .0050 SEC,")),

@@ -26,13 +26,13 @@ pub fn show(scene: &Scene) -> Result<Exhibit> {
     let all: Vec<_> = right.iter().map(|transition| transition.time).collect();
     Ok(Exhibit {
         key: "chatter",
-        values: vec![
-            ("all", all.len().to_string()),
-            ("before", before.to_string()),
-            ("duration", scene.ground.end().to_string()),
-            ("held", held.to_string()),
-            ("stuck", stuck.to_string()),
-        ],
+        values: values([
+            ("all", &all.len()),
+            ("before", &before),
+            ("duration", &scene.ground.end()),
+            ("held", &held),
+            ("stuck", &stuck),
+        ]),
         series: vec![series("this engine: both conditions", count(&all)), series("|u| ≥ u_cr alone", count(&times))],
     })
 }

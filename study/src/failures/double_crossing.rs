@@ -5,8 +5,7 @@ use super::*;
 /// A state from which θ dips below 0 for some milliseconds.
 const START: State = State { theta: 0.6e-3, theta_dot: -0.043, u: -6.5e-3, u_dot: 0.98 };
 
-/// A solver looks at its guards at the end of steps of this length, s.
-const LOOK: f64 = 0.02;
+const LOOK: f64 = 0.02; // steps of a solver that looks at its guards at their ends, s
 
 /// Time between points of its path, s.
 const CLOSE: f64 = LOOK / 50.0;
@@ -34,7 +33,7 @@ pub fn show() -> Result<Exhibit> {
     let looks = [Some((0.0, 1e3 * START.theta)), look].into_iter().flatten();
     Ok(Exhibit {
         key: "double-crossing",
-        values: vec![("first", (1e3 * first).to_string()), ("begins", begins.to_string()), ("ends", ends.to_string())],
+        values: values([("first", &(1e3 * first)), ("begins", &begins), ("ends", &ends)]),
         series: vec![
             series("checked here", looks),
             series("this engine", milli(&right.theta(), 0.0)),

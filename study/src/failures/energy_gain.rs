@@ -7,11 +7,8 @@ use rocking::mechanics::impact;
 /// A structure that gains: McManus's specimen, softer, with little restitution.
 const GAINER: Parameters = Parameters { r: 0.5, f_fc: 2.0, ..Parameters::MCMANUS };
 
-/// Rotation at the release, from rest.
-const RELEASE: f64 = 0.02;
-
-/// How long it is followed, s.
-const DURATION: f64 = 0.5;
+const RELEASE: f64 = 0.02; // rotation from rest, rad
+const DURATION: f64 = 0.5; // s
 
 /// The energy of an example over time, on ground at rest.
 pub fn show() -> Result<Exhibit> {
@@ -34,17 +31,17 @@ pub fn show() -> Result<Exhibit> {
     let range = |parameters| {
         lossless(parameters, 1.0).map_or("no r".into(), |[least, most]| format!("{least:.3} ≤ r ≤ {most:.4}"))
     };
-    let limit = |parameters| lossless(parameters, 0.0).map_or(0.0, |[least, _]| least).to_string();
+    let limit = |parameters| lossless(parameters, 0.0).map_or(0.0, |[least, _]| least);
     Ok(Exhibit {
         key: "energy-gain",
-        values: vec![
-            ("time", time.to_string()),
-            ("gain", gain.to_string()),
-            ("evison", limit(Parameters::EVISON)),
-            ("mcmanus", limit(Parameters::MCMANUS)),
-            ("evison_at_u_cr", range(Parameters::EVISON)),
-            ("mcmanus_at_u_cr", range(Parameters::MCMANUS)),
-        ],
+        values: values([
+            ("time", &time),
+            ("gain", &gain),
+            ("evison", &limit(Parameters::EVISON)),
+            ("mcmanus", &limit(Parameters::MCMANUS)),
+            ("evison_at_u_cr", &range(Parameters::EVISON)),
+            ("mcmanus_at_u_cr", &range(Parameters::MCMANUS)),
+        ]),
         series: vec![series("McManus's geometry, 2 Hz, r = 0.5", path)],
     })
 }

@@ -31,11 +31,7 @@ pub fn show(scene: &Scene) -> Result<Exhibit> {
     let right = exact(scene, Detail::Nonlinear, every(CLOSE).map(|t| start - 4e-3 + t).take(600))?;
     Ok(Exhibit {
         key: "fall",
-        values: vec![
-            ("failure", failure.to_string()),
-            ("length", (1e6 * length(&hop)).to_string()),
-            ("start", start.to_string()),
-        ],
+        values: values([("failure", &failure), ("length", &(1e6 * length(&hop))), ("start", &start)]),
         series: vec![
             series("this engine", milli(&right.theta(), start)),
             series("diffsol ESDIRK34, its root finding", milli(&fall.collect::<Vec<_>>(), start)),

@@ -2,8 +2,7 @@
 
 use super::*;
 
-/// How long the structure is followed, s.
-const DURATION: f64 = 1.0;
+const DURATION: f64 = 1.0; // s
 
 /// McManus's specimen shortly before an impact; what is varied is how fast it vibrates.
 fn released(theta_dot: f64, u_dot: f64) -> History {
@@ -62,12 +61,12 @@ pub fn show() -> Result<Exhibit> {
     let impact = released(momentum.theta_dot, momentum.critical()).transitions[0];
     Ok(Exhibit {
         key: "grazing",
-        values: vec![
-            ("impact", (1e3 * impact.time).to_string()),
-            ("jump", (100.0 * jump).to_string()),
-            ("touch", touch.to_string()),
-            ("clear", clear.to_string()),
-        ],
+        values: values([
+            ("impact", &(1e3 * impact.time)),
+            ("jump", &(100.0 * jump)),
+            ("touch", &touch),
+            ("clear", &clear),
+        ]),
         series: curves.into(),
     })
 }

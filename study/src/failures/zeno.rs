@@ -5,7 +5,6 @@ use super::*;
 /// Evison's specimen with a coefficient of restitution low enough to come to rest soon.
 pub const STRUCTURE: Parameters = Parameters { r: 0.9, ..Parameters::EVISON };
 
-/// Natural frequencies, Hz.
 const FREQUENCIES: [f64; 4] = [11.0, 50.0, 200.0, 1000.0];
 
 /// Times (s) between successive impacts before the first landing, by number.
@@ -31,7 +30,7 @@ pub fn show() -> Result<Exhibit> {
     }
     Ok(Exhibit {
         key: "zeno",
-        values: vec![("number", number.to_string()), ("last", last.to_string()), ("counts", counts.join(", "))],
+        values: values([("number", &number), ("last", &last), ("counts", &counts.join(", "))]),
         series: curves,
     })
 }

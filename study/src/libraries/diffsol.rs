@@ -7,7 +7,6 @@ use crate::guards::PhaseEnd;
 use crate::hybrid::{Integrator, Span, Stretch};
 use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeEquationsImplicit, OdeSolverMethod, OdeSolverStopReason};
 
-/// Which method.
 #[derive(Clone, Copy, Debug)]
 pub enum Method {
     Bdf,      // backward differences of variable order

@@ -12,7 +12,6 @@ use crate::hybrid::{Integrator, Span, Stretch};
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, Dopri5, SVector, System};
 
-/// Which pair.
 #[derive(Clone, Copy, Debug)]
 pub enum Pair {
     Dopri5, // orders 5(4)

@@ -11,10 +11,8 @@ use crate::response::Response;
 use crate::scene::Scene;
 use rocking::Detail;
 
-/// A run of a whole scene.
 type Runs<'a> = Box<dyn Fn() -> Response + 'a>;
 
-/// One method.
 pub struct Method<'a> {
     pub name: String,                   // name on charts
     pub setting: &'static str,          // what its setting is, with unit

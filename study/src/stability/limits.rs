@@ -3,7 +3,6 @@
 use super::vibration::Vibration;
 use crate::fixed_step::Method;
 
-/// Steps of one trial.
 const STEPS: usize = 8192;
 
 /// The energy grows if its maximum over the last quarter of a trial exceeds the maximum over the second by this part.

@@ -6,7 +6,7 @@ use crate::guards::uplift_excess;
 use crate::hybrid::{self, Grid, Transitions};
 use crate::response::Response;
 use crate::scene::{Scene, ground};
-use crate::tables::{save_series, series};
+use crate::tables::{Values, save_series, series, values};
 use anyhow::{Context, Result};
 use rocking::{Detail, Parameters, State, Transition};
 use std::f64::consts::TAU;
@@ -37,7 +37,7 @@ pub fn response(scene: &Scene, method: usize) -> Response {
 }
 
 /// Writes the responses into `folder`, and returns the values of the page.
-pub fn save(folder: &Path) -> Result<Vec<(&'static str, String)>> {
+pub fn save(folder: &Path) -> Result<Values> {
     const CENTRAL_DIFFERENCE: usize = 2;
     const NEWMARK: usize = 4;
     let scene = scene();
@@ -56,11 +56,6 @@ pub fn save(folder: &Path) -> Result<Vec<(&'static str, String)>> {
         series("Newmark average acceleration, 12 ms", u(&response(&scene, NEWMARK))),
     ];
     save_series(&folder.join("stability-uplift.csv"), &curves)?;
-    Ok(vec![
-        ("step", (1e3 * STEP).to_string()),
-        ("down", (scene.structure.omega_fc * STEP).to_string()),
-        ("up", (scene.structure.omega_u * STEP).to_string()),
-        ("uplift", uplift.to_string()),
-        ("failure", failure.to_string()),
-    ])
+    let [down, up] = [scene.structure.omega_fc, scene.structure.omega_u].map(|omega| omega * STEP);
+    Ok(values([("step", &(1e3 * STEP)), ("down", &down), ("up", &up), ("uplift", &uplift), ("failure", &failure)]))
 }

