@@ -15,22 +15,16 @@ pub(crate) mod contacts;
 pub(crate) mod guard;
 #[cfg(feature = "lanes")]
 pub(crate) mod lanes;
-#[cfg(feature = "lanes")]
-pub(crate) mod leaps;
 pub mod motion;
 pub(crate) mod phases;
 pub mod piece;
 pub(crate) mod sample;
-#[cfg(feature = "lanes")]
-pub(crate) mod sought;
 pub(crate) mod step;
 pub mod transition;
 pub(crate) mod yielding;
 
 use crate::digits::with_unit;
 use crate::levels::detail::Detail;
-#[cfg(feature = "lanes")]
-use crate::levels::level::Subject;
 use crate::levels::level::{Level, derivatives};
 use crate::levels::start::Start;
 use crate::mechanics::arc::Arc;
@@ -460,26 +454,32 @@ impl<Q: Coordinates> Engine<Q> {
             self.transit(watch);
         }
         // most advances are one leap
-        let Engine { kind, level, motion, room, .. } = &mut *self;
-        let level = &**level;
-        let end = (motion.work.steps != last_step).then(|| leap_under(level, motion, interval, load)).flatten();
-        let result = match end {
-            Some(end) => match leapt((level, room), motion, interval, load, end, watch) {
-                Ok(()) => {
-                    motion.time += interval;
-                    return Ok(Progress::Complete);
-                }
-                Err(error) => Err(error),
-            },
-            None => {
-                let from = (interval, load, last_step);
-                (kind.advance)(self, &mut before, from, watch)
+        let leapt = (self.motion.work.steps != last_step).then(|| self.leap(interval, load, watch)).flatten();
+        let result = match leapt {
+            Some(Ok(())) => {
+                self.motion.time += interval;
+                return Ok(Progress::Complete);
             }
+            Some(Err(error)) => Err(error),
+            None => (self.kind.advance)(self, &mut before, (interval, load, last_step), watch),
         };
         if let (Err(_), Some(before)) = (&result, before) {
             self.motion = before;
         }
         result
+    }
+
+    /// Takes the motion, all but its time, over `interval` (s) in one leap, if there is such a leap.
+    #[inline(always)]
+    fn leap<W: Watch<Q>>(
+        &mut self,
+        interval: f64,
+        load: LinearLoad<Q>,
+        watch: &mut W,
+    ) -> Option<Result<(), AdvanceError>> {
+        let Engine { level, motion, room, .. } = self;
+        let end = leap_under(&**level, motion, interval, load)?;
+        Some(leapt((&**level, room), motion, interval, load, end, watch))
     }
 
     /// Advances step by step.
@@ -641,16 +641,6 @@ impl<Q: Coordinates> Advance<Q> {
         Advance { start, until: start + interval, interval, load, last_step, elapsed: 0.0, end, part }
     }
 
-    /// The step that is left of the present part of it, from `motion`.
-    #[cfg(feature = "lanes")]
-    #[inline]
-    fn start<'a>(&self, subject: &Subject, motion: &'a Motion<Q>) -> Start<'a, Q> {
-        let &Advance { load, elapsed, end, .. } = self;
-        let start = subject.start(motion.state, &motion.dissipators, load, end - elapsed);
-        let Start { a_g, a_top, a_v, .. } = start;
-        Start { a_g: a_g.from(elapsed), a_top: a_top.from(elapsed), a_v: a_v.from(elapsed), ..start }
-    }
-
     /// Passes `duration` (s) and returns the time.
     #[inline(always)]
     fn pass(&mut self, duration: f64) -> f64 {
@@ -741,7 +731,9 @@ where
             let (reach, moved) = (step.reach, watched.moved(level.subject(), &step));
             self.arc.reach = reach;
             let duration = self.arc.duration();
-            if !self.arc.is_finite() || reach < 1.0 && is_at_its_end(level, motion, duration, closed) {
+            let has_stalled = || closed.is_none() && duration <= STALLED / level.structure().vibration().rocking[1];
+            let is_at_its_end = || has_stalled() || level.is_singular(motion.phase, &motion.state);
+            if !self.arc.is_finite() || reach < 1.0 && is_at_its_end() {
                 let (State { u, theta, .. }, structure) = (motion.state, level.structure());
                 let u = Q::sum(structure, |j, mode| mode.gamma * u.of(j)) / structure.body().m_s;
                 return Err(AdvanceError::Singular { time: motion.time, u, theta });
@@ -776,17 +768,6 @@ where
             }
         }
     }
-}
-
-/// Whether a step of this `duration` (s), which goes from `motion` to less than the requested end, is the last that there can be.
-fn is_at_its_end<Q: Coordinates>(
-    level: &dyn Level<Q>,
-    motion: &Motion<Q>,
-    duration: f64,
-    closed: Option<Closed>,
-) -> bool {
-    let has_stalled = duration <= STALLED / level.structure().vibration().rocking[1];
-    has_stalled && closed.is_none() || level.is_singular(motion.phase, &motion.state)
 }
 
 /// The first guard of `watched` that closes on `step`, which is cut there.

@@ -25,8 +25,6 @@ pub(crate) mod start;
 pub mod uplift;
 
 use crate::levels::full_contact::ExactContact;
-#[cfg(feature = "lanes")]
-use crate::levels::level::Leaping;
 use crate::levels::level::{ElasticRocking, FixedBase, Level, Subject, most_of_swings};
 use crate::levels::linear::LinearRocking;
 use crate::levels::modes::ManyModes;
@@ -37,8 +35,6 @@ use crate::levels::start::Start;
 use crate::levels::uplift::Liftable;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::restraint::Angles;
-#[cfg(feature = "lanes")]
-use crate::mechanics::restraint::Dissipators;
 use crate::structure::quantity::{Refused, ensure};
 use crate::{Detail, Modes, OneMass, Phase, State, Structure};
 use std::cell::RefCell;
@@ -120,8 +116,8 @@ impl Detail {
 #[derive(Clone, Debug)]
 pub(crate) struct Elastic<Rocking> {
     subject: Subject,
-    one: OneMass,
-    contact: Option<ExactContact>,
+    pub one: OneMass,
+    pub contact: Option<ExactContact>,
     pub rocking: Rocking,
     first: RefCell<Box<Arc>>,
 }
@@ -133,11 +129,6 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
 
     fn boxed(&self) -> Box<dyn Level> {
         Box::new(self.clone())
-    }
-
-    #[cfg(feature = "lanes")]
-    fn as_any(&self) -> Option<&dyn std::any::Any> {
-        Some(self)
     }
 
     fn leap(&self, phase: Phase, start: &Start) -> Option<State> {
@@ -154,11 +145,6 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
             Phase::Rocking(side) => self.rocking.leap(side, start),
             Phase::Overturned(_) | Phase::OnGround(_) => None,
         }
-    }
-
-    #[cfg(feature = "lanes")]
-    fn leaping(&self, _dissipators: &Dissipators) -> Option<Leaping<'_>> {
-        Some(Leaping { modes: self.contact()?, moment: |_| 1.0, hold: self.one.u_cr })
     }
 
     #[inline(always)]

@@ -8,12 +8,12 @@
 //! |---|---|
 //! | [`digits`] | how numbers are rounded for tables and sentences |
 //! | [`names`] | what an unknown name may mean |
-//! | numbers | value, rate and bounds of one run, or of several side by side: the numbers in which each formula is evaluated |
+//! | numbers | value, rate and bounds: the numbers in which each formula is evaluated |
 //! | [`series`] | Taylor series in time, first crossings, extremes |
 //! | [`structure`] | the structure's numbers, their ranges, the two specimens; what follows from them (before Eq 11, after 13, before 18) |
 //! | [`mechanics`] | state, loads, impact, outputs (Eqs 2, 3, 23–27), reactions, energy |
 //! | [`levels`] | full contact (Eq 1), uplift, nonlinear (5, 6), linear (7–9), modal (11, 16, 18), rigid (6 with u = 0) |
-//! | [`engine`] | the hybrid engine: steps, transitions, what it shows to whoever watches |
+//! | [`engine`] | the hybrid engine: steps, transitions, what it shows to whoever watches; several runs side by side |
 //! | [`run`] | a ground motion followed: exact peaks, validity, histories, levels compared |
 //! | [`estimates`] | demands without a time history (Eqs 14, 21–24), rocking and vibration mode (10–20), pushover (Fig 1), intensity |
 //!

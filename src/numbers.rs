@@ -11,8 +11,6 @@
 //! never stands in a formula, because each number has its own rule for it: the formula reads [`Turn`].
 
 pub(crate) mod dual;
-#[cfg(feature = "lanes")]
-pub(crate) mod lanes;
 pub(crate) mod most;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};

@@ -118,9 +118,7 @@ pub struct Compiled<Q: Coordinates> {
     curve: fn(&Run<Q>, f64) -> Result<Curve<Q>, RunError>,
     compare: fn(&Run<Q>) -> Result<Comparison, RunError>,
     #[cfg(feature = "lanes")]
-    found_each: lanes::Each<Q, Result<Found<Q>, RunError>>,
-    #[cfg(feature = "lanes")]
-    rocked_each: lanes::Each<Q, (Result<Finish<Q>, RunError>, lanes::Rocked)>,
+    each: lanes::Each<Q>,
 }
 
 macro_rules! compiled {
@@ -135,9 +133,7 @@ macro_rules! compiled {
                     curve: curve::trace,
                     compare: levels::compare,
                     #[cfg(feature = "lanes")]
-                    found_each: lanes::find_each,
-                    #[cfg(feature = "lanes")]
-                    rocked_each: lanes::rock_each,
+                    each: (lanes::find_each, lanes::rock_each),
                 };
                 &ALL
             }
@@ -150,11 +146,11 @@ compiled!(f64, Modes);
 /// run's position, as the run ends; once `done` says no, the rest is left undone.
 #[cfg(feature = "lanes")]
 pub fn found_each<Q: Runs>(runs: &[Run<Q>], done: lanes::Done<Result<Found<Q>, RunError>>) {
-    (Q::compiled().found_each)(runs, done);
+    (Q::compiled().each.0)(runs, done);
 }
 
 /// Follows `runs` to their ends like [`found_each`], and tells `done` of each how it ended and how far it has rocked by then.
 #[cfg(feature = "lanes")]
 pub fn rocked_each<Q: Runs>(runs: &[Run<Q>], done: lanes::Done<(Result<Finish<Q>, RunError>, lanes::Rocked)>) {
-    (Q::compiled().rocked_each)(runs, done);
+    (Q::compiled().each.1)(runs, done);
 }

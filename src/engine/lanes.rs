@@ -1,28 +1,25 @@
-//! Engines whose steps are taken together: leaps in full contact ([`leaps`](super::leaps)), and steps of rocking by Eqs 5 and 6.
+//! Engines whose steps are taken together: leaps in full contact ([`leaps`]), and steps of rocking by Eqs 5 and 6 ([`rocking`]).
 //!
 //! A register of the processor has one number of each run. The operations on the numbers of a run are those of the run by itself,
 //! in the same order, so that all results have the same bits.
 
-use super::{
-    Advance, AdvanceError, Engine, Loop, MAX_STEPS_PER_ADVANCE, Progress, Settings, is_at_its_end, leap_under, leapt,
-    sought::{Bend, MOST_MODES, Passes, ROUNDING, Sought, Stretch, Turned},
-};
+pub(crate) mod leaps;
+pub(crate) mod number;
+pub(crate) mod rocking;
+pub(crate) mod sought;
+
+use super::{Advance, AdvanceError, Engine, Loop, MAX_STEPS_PER_ADVANCE, Progress, Settings};
 use crate::engine::motion::Motion;
 use crate::engine::phases;
 use crate::engine::piece::{Piece, Watch};
-use crate::levels::Elastic;
-use crate::levels::level::Level;
-use crate::levels::nonlinear::{Equations, Expanded, NonlinearRocking, Products, Recurrence, Rocker};
-use crate::levels::start::{self, MIN_ORDER, Pace, Start, Truncation};
+use crate::levels::start::Start;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::lateral::Coordinates;
-use crate::numbers::Real;
-use crate::numbers::lanes::{Lanes, MOST, Row, load, put};
-use crate::series::extremes::{OFF_CHORD, OFF_CUBIC};
-use crate::series::taylor::{MAX_ORDER, add_each_product, reciprocal};
-use crate::{Detail, LinearLoad, Phase, Ramp, State, Transition};
-use pulp::{Simd, WithSimd};
-use std::f64::consts::FRAC_PI_2;
+use crate::{Detail, LinearLoad, Phase, Transition};
+use leaps::leaping;
+use pulp::Simd;
+use rocking::{Rocking, by_equations_5_and_6};
+use sought::{MOST_MODES, Passes};
 
 /// Watches a motion after the piece under way, which it `passes` if the watcher need not see it.
 struct After<'a, W> {
@@ -41,376 +38,19 @@ impl<Q: Coordinates, W: Passes<Q>> Watch<Q> for After<'_, W> {
     }
 }
 
-/// The samples of a record that end whole segments of a run.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Samples<'a> {
-    /// s.
-    pub times: &'a [f64],
-    /// m/s².
-    pub a_g: &'a [f64],
-    /// The sample that ends the next segment.
-    pub next: usize,
-    /// The first sample that ends none.
-    pub last: usize,
-}
-
-impl Samples<'_> {
-    /// Time and ground acceleration of a `sample`, if there is one.
-    #[inline(always)]
-    pub(super) fn at(&self, sample: usize) -> Option<[f64; 2]> {
-        Some([*self.times.get(sample)?, *self.a_g.get(sample)?])
-    }
-}
-
-/// Steps of rocking of several runs, from sample to sample.
-#[derive(Debug)]
-pub(crate) struct Rocking<'a, S: Simd, Q> {
-    simd: S,
-    runs: Runs<'a, Q>,
-    products: Products<Lanes<S>>,
-    /// Of the last step: u, u̇, θ and θ̇, order by order.
-    series: [[Lanes<S>; 4]; MAX_ORDER + 1],
-}
-
-/// Several runs that rock, before and after the last step.
-#[derive(Debug, Default)]
-#[repr(align(64))]
-struct Runs<'a, Q> {
-    sought: Sought<Q>,
-    samples: [Samples<'a>; MOST],
-    entered: [usize; MOST],
-    /// False if the run is new in its lane, or if a watcher has seen a piece or a transition, which may change its limits.
-    is_known: [bool; MOST],
-    /// 1 where there is a run.
-    is_there: Row,
-    /// The numbers of a [`Rocker`], and of a [`Pace`].
-    rocker: [Row; 6],
-    pace: [Row; 5],
-    local_error: Row,
-    gravity: Row,
-    side: Row,
-    /// Of the next step: u, u̇, θ and θ̇ at its start, the ground acceleration from there on, its time at most (s), and 1 where another
-    /// sample comes after it.
-    state: [Row; 4],
-    a_g: Row,
-    slope: Row,
-    interval: Row,
-    may_go_on: Row,
-    /// Time and ground acceleration of the sample that ends that step, and of the sample after it, which is written number by number a
-    /// step before it is read.
-    ends: [[Row; 2]; 2],
-    /// The run's age among its transitions, and its evaluations until then.
-    age: Row,
-    evaluations: Row,
-    /// Of the last step: its order, its span (s), the part of the span up to which the series holds, and the state there.
-    order: Row,
-    span: Row,
-    reach: Row,
-    end: [Row; 4],
-    /// 1 where the last step's series proves that no guard closes, and where the watcher need not see the step or a part from its start.
-    stays: Row,
-    is_passed: Row,
-    /// 1 where the run has gone on to the next sample.
-    has_gone_on: Row,
-}
-
-impl<'a, S: Simd, Q: Coordinates> Rocking<'a, S, Q> {
-    pub(crate) fn new(simd: S) -> Rocking<'a, S, Q> {
-        let zero = Lanes::splat(simd, 0.0);
-        let series = [[zero; 4]; MAX_ORDER + 1];
-        Rocking { simd, runs: Runs::default(), products: Products::new(zero), series }
-    }
-
-    /// Puts the run of `engine`, whose `advance` leads to the first of these samples, into `lane`.
-    #[inline]
-    pub(crate) fn enter<W: Passes<Q>>(
-        &mut self,
-        lane: usize,
-        engine: &Engine<Q>,
-        advance: &Advance<Q>,
-        samples: Samples<'a>,
-        watch: &W,
-    ) {
-        let (runs, level) = (&mut self.runs, by_equations_5_and_6(&*engine.level).expect(STEPS_ALONE));
-        let (motion, rocking) = (&engine.motion, &level.rocking);
-        if !std::mem::replace(&mut runs.is_known[lane], true) {
-            watch.seek(engine, lane, &mut runs.sought);
-            let side = motion.phase.side();
-            let Rocker { H, pivot, weight_offset, foundation, stiffness, damping_u } = rocking.rocker(side);
-            put(&mut runs.rocker, lane, [H, pivot, weight_offset, foundation, stiffness, damping_u]);
-            let Pace { longest_span, omega, longest_response, gravity, height } = rocking.pace;
-            put(&mut runs.pace, lane, [longest_span, omega, longest_response, gravity, height]);
-            runs.local_error[lane] = level.subject().local_error;
-            runs.gravity[lane] = engine.structure().base().g;
-            (runs.side[lane], runs.is_there[lane]) = (side.sign(), 1.0);
-        }
-        let Start { state: State { u, u_dot, theta, theta_dot }, a_g, interval, .. } =
-            advance.start(engine.level.subject(), motion);
-        put(&mut runs.state, lane, [u.of(0), u_dot.of(0), theta, theta_dot]);
-        (runs.a_g[lane], runs.slope[lane], runs.interval[lane]) = (a_g.value, a_g.slope, interval);
-        (runs.age[lane], runs.evaluations[lane]) = (motion.chatter.age, 0.0);
-        let left = advance.last_step.saturating_sub(motion.work.steps) as usize;
-        let last = samples.last.min(samples.next.saturating_add(left));
-        (runs.samples[lane], runs.entered[lane]) = (Samples { last, ..samples }, samples.next);
-        // the end of a part is no sample
-        runs.may_go_on[lane] = f64::from(samples.next < last && advance.end == advance.interval);
-        runs.write(0, lane, samples.next - 1);
-        runs.write(1, lane, samples.next);
-    }
-
-    /// Takes steps as long as all runs go on to their next samples: the bases certainly stay up, and the watchers need not see it.
-    /// Returns how many steps each run has taken.
-    pub(crate) fn step(&mut self) -> u64 {
-        let mut steps = 0;
-        let mut all_go_on = true;
-        while all_go_on {
-            self.simd.vectorize(Taken(self));
-            let runs = &mut self.runs;
-            let is_there = runs.is_there;
-            steps += 1;
-            for lane in (0..S::F64_LANES).filter(|lane| is_there[*lane] == 1.0) {
-                if runs.has_gone_on[lane] == 0.0 {
-                    all_go_on = false;
-                    continue;
-                }
-                let Samples { next, last, .. } = &mut runs.samples[lane];
-                *next += 1;
-                runs.may_go_on[lane] = f64::from(*next < *last);
-                runs.write(1, lane, runs.samples[lane].next);
-            }
-        }
-        steps
-    }
-
-    /// Whether the run in `lane` has gone on to its next sample.
-    #[inline]
-    pub(crate) fn has_gone_on(&self, lane: usize) -> bool {
-        self.runs.has_gone_on[lane] == 1.0
-    }
-
-    /// Brings `engine` to the sample before the step that the run in `lane` was about to take. Returns the next sample if that is another
-    /// one than that where it was.
-    #[inline]
-    pub(crate) fn catch_up<W: Passes<Q>>(
-        &mut self,
-        lane: usize,
-        engine: &mut Engine<Q>,
-        watch: &mut W,
-    ) -> Option<usize> {
-        let (Samples { times, next, .. }, entered) = (self.runs.samples[lane], self.runs.entered[lane]);
-        let passed = next - entered;
-        if passed == 0 {
-            return None;
-        }
-        self.runs.sought.show(lane, (times, entered - 1), engine, watch);
-        let motion = &mut engine.motion;
-        motion.state = state_of(&self.runs.state, lane);
-        (motion.chatter.age, motion.time) = (self.runs.age[lane], times[next - 2]);
-        motion.work.steps += passed as u64;
-        motion.work.evaluations += self.runs.evaluations[lane] as u64;
-        watch.pass();
-        Some(next - 1)
-    }
-
-    /// Takes the run in `lane` out.
-    pub(crate) fn leave(&mut self, lane: usize) {
-        (self.runs.is_there[lane], self.runs.is_known[lane]) = (0.0, false);
-    }
-
-    /// Writes the series of the run in `lane` into `arc`.
-    #[cold]
-    fn write(&self, lane: usize, arc: &mut Arc<Q>) {
-        let order = self.runs.order[lane] as usize;
-        for (k, [u, u_dot, theta, theta_dot]) in self.series.iter().enumerate().take(order + 1) {
-            arc.u[k].set(0, u.of(lane));
-            arc.u_dot[k].set(0, u_dot.of(lane));
-            (arc.theta[k], arc.theta_dot[k]) = (theta.of(lane), theta_dot.of(lane));
-        }
-        (arc.order, arc.span, arc.reach) = (order, self.runs.span[lane], self.runs.reach[lane]);
-    }
-}
-
-/// The state of the run in `lane`, which has one mode.
-fn state_of<Q: Coordinates>(rows: &[Row; 4], lane: usize) -> State<Q> {
-    let [u, u_dot, theta, theta_dot] = rows.map(|row| row[lane]);
-    let mut state = State::<Q> { theta, theta_dot, ..State::default() };
-    state.u.set(0, u);
-    state.u_dot.set(0, u_dot);
-    state
-}
-
-impl<Q: Coordinates> Runs<'_, Q> {
-    /// Writes a `sample` of the run in `lane`, if there is one.
-    #[inline]
-    fn write(&mut self, end: usize, lane: usize, sample: usize) {
-        self.samples[lane].at(sample).into_iter().for_each(|at| put(&mut self.ends[end], lane, at));
-    }
-
-    /// Puts off the last step of the run in `lane`.
-    fn put_off(&mut self, lane: usize) {
-        let Samples { next, last, .. } = &mut self.samples[lane];
-        let a_g = Ramp { value: self.a_g[lane], slope: self.slope[lane] };
-        let states = [&self.state, &self.end].map(|of| state_of(of, lane));
-        if !self.sought.put_off(lane, (*next - 1, self.interval[lane], a_g), states) {
-            *last = (*last).min(*next);
-        }
-    }
-}
-
-/// Taking steps of rocking.
-struct Taken<'s, 'a, S: Simd, Q>(&'s mut Rocking<'a, S, Q>);
-
-impl<S: Simd, Q: Coordinates> WithSimd for Taken<'_, '_, S, Q> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<T: Simd>(self, _simd: T) {
-        let Taken(Rocking { simd, runs: of, products, series }) = self;
-        let simd = *simd;
-        let row = |row: &Row| Lanes::load(simd, row);
-        let [u, u_dot, theta, theta_dot] = load(simd, &of.state);
-        let (side, a_g, slope, interval) = (row(&of.side), row(&of.a_g), row(&of.slope), row(&of.interval));
-        let [H, pivot, weight_offset, foundation, stiffness, damping_u] = load(simd, &of.rocker);
-        let rocker = Rocker { H, pivot, weight_offset, foundation, stiffness, damping_u };
-        let [longest_span, omega, longest_response, gravity, height] = load(simd, &of.pace);
-        let pace = Pace { longest_span, omega, longest_response, gravity, height };
-        let span = pace.span(interval);
-        let [largest, largest_turning] = pace.largest([u, u_dot, theta_dot], [a_g, slope], span);
-        let local_error = row(&of.local_error);
-        let (truncation, truncation_turning) = (local_error * largest, local_error * largest_turning);
-        let (g, push) = (row(&of.gravity), [a_g, slope * span]);
-        let (none, one, zero) = (g.like(-0.0), g.like(1.0), g.like(0.0));
-        // no force acts
-        let equations =
-            Equations { rocker, u, u_dot, theta_dot, turn: theta.sin_cos(), push, ground: push, gravity: [g, zero] };
-        let mut recurrence = Recurrence::new(equations);
-        let is_there = row(&of.is_there);
-        let (mut ended, mut was_small, mut order) = (is_there.is_less(one), one.is_less(zero), zero);
-        let (mut last, mut of_order) = (0, [u, u_dot, theta, theta_dot]);
-        series[0] = of_order;
-        for (k, places) in series.iter_mut().enumerate().skip(1) {
-            let [_, u_dot, _, theta_dot] = of_order;
-            let per = span * g.like(reciprocal(k));
-            let (u, theta) = (u_dot * per, theta_dot * per);
-            let (u_dot, theta_dot) = recurrence.next::<false>(products, k, u, per, |none| none);
-            of_order = [u, u_dot, theta, theta_dot];
-            // what has ended adds nothing
-            for (place, number) in places.iter_mut().zip(of_order) {
-                *place = ended.choose(none, number);
-            }
-            order = order + ended.choose(zero, one);
-            last = k;
-            let is_small = u_dot.abs().is_at_most(truncation) & theta_dot.abs().is_at_most(truncation_turning);
-            if k >= MIN_ORDER {
-                ended = ended | is_small & was_small;
-                if ended.all() {
-                    break;
-                }
-            }
-            was_small = is_small;
-        }
-        of.reach = [1.0; MOST];
-        if !ended.all() {
-            let ended = ended.choose(one, zero);
-            for lane in (0..S::F64_LANES).filter(|lane| ended.of(*lane) == 0.0) {
-                let truncation = Truncation { u_dot: truncation.of(lane), theta_dot: truncation_turning.of(lane) };
-                let velocities = |k: usize| (series[k][1].of(lane), series[k][3].of(lane));
-                of.reach[lane] = start::reach(velocities, &truncation);
-            }
-        }
-        let sigma = row(&of.reach);
-        let sum = sigma.is_less(one).choose(zero, none);
-        let (mut end, mut off, mut excursion) = ([sum; 4], [zero; 4], zero);
-        for k in (1..last + 1).rev() {
-            let weight = g.like(OFF_CHORD[k]);
-            for (i, number) in series[k].into_iter().enumerate() {
-                end[i] = end[i] * sigma + number;
-                off[i] = (off[i] + weight * number.abs()) * sigma;
-            }
-            excursion = (excursion + series[k][2].abs()) * sigma;
-        }
-        let rounding = g.like(ROUNDING);
-        for (i, number) in series[0].into_iter().enumerate() {
-            end[i] = end[i] * sigma + number;
-            end[i].store(&mut of.end[i]);
-        }
-        let start = side * theta;
-        // as the run by itself proves that no guard closes
-        let mut lead = zero;
-        for [_, _, theta, _] in series[1..4].iter().rev() {
-            let term = side * *theta;
-            lead = term.is_less(zero).choose(zero, lead * sigma + term);
-        }
-        let leads = zero.is_at_most(start) & (excursion * rounding).is_less(sigma * (lead + lead));
-        let rises = (excursion * rounding).is_less(start) | (off[2] * rounding).is_less(start.min(side * end[2]));
-        let stays = (rises | leads) & ((excursion + start) * rounding).is_less(g.like(FRAC_PI_2));
-        let size = end[0].abs() + end[1].abs() + end[2].abs() + end[3].abs();
-        let stays = stays & size.is_at_most(g.like(f64::MAX));
-        let before = Turned { u: [u], u_dot: [u_dot], theta };
-        let after = Turned { u: [end[0]], u_dot: [end[1]], theta: end[2] };
-        let stretch = Stretch { ends: [before, after], off: Turned { u: [off[0]], u_dot: [off[1]], theta: off[2] } };
-        let least = start.abs().min(end[2].abs()) - off[2] * rounding;
-        let [above, below] = load(simd, &of.sought.turned);
-        let is_free = above.is_less(least) & end[2].abs().is_less(below);
-        let is_passed = of.sought.are_passed(simd, &stretch.most());
-        let duration = sigma * span;
-        let is_whole = duration.is_at_most(interval) & interval.is_at_most(duration);
-        let goes_on = stays & is_free & is_whole & one.is_at_most(is_there.min(row(&of.may_go_on)));
-        let is_put_off = is_passed.choose(zero, goes_on.choose(one, zero));
-        let is_passed = is_passed & is_free;
-        if !is_put_off.is_at_most(zero).all() {
-            let (mut off_cubic, mut slope) = ([zero; 4], [zero; 4]);
-            for (k, numbers) in series.iter().enumerate().take(last + 1).skip(1) {
-                let (order, weight) = (g.like(k as f64), g.like(if k > 3 { OFF_CUBIC * k as f64 } else { 0.0 }));
-                for (i, number) in numbers.iter().enumerate() {
-                    slope[i] = slope[i] + order * *number;
-                    off_cubic[i] = off_cubic[i] + weight * number.abs();
-                }
-            }
-            let from = Turned { u: [u_dot * span], u_dot: [series[1][1]], theta: theta_dot * span };
-            let to = Turned { u: [slope[0]], u_dot: [slope[1]], theta: slope[2] };
-            let [u, u_dot, theta, _] = off_cubic;
-            let bend = Bend { slopes: [from, to], off_cubic: Turned { u: [u], u_dot: [u_dot], theta } };
-            of.sought.bound(simd, (&stretch, &bend), goes_on);
-            (0..S::F64_LANES).filter(|lane| is_put_off.of(*lane) == 1.0).for_each(|lane| of.put_off(lane));
-        }
-        for (i, number) in series[0].into_iter().enumerate() {
-            goes_on.choose(end[i], number).store(&mut of.state[i]);
-        }
-        let ([time, a], [time_next, a_next]) = (load(simd, &of.ends[0]), load(simd, &of.ends[1]));
-        let interval_next = time_next - time;
-        goes_on.choose(a, a_g).store(&mut of.a_g);
-        goes_on.choose((a_next - a) / interval_next, slope).store(&mut of.slope);
-        goes_on.choose(interval_next, interval).store(&mut of.interval);
-        goes_on.choose(time_next, time).store(&mut of.ends[0][0]);
-        goes_on.choose(a_next, a).store(&mut of.ends[0][1]);
-        let (age, evaluations) = (row(&of.age), row(&of.evaluations));
-        goes_on.choose(age + duration, age).store(&mut of.age);
-        goes_on.choose(evaluations + order, evaluations).store(&mut of.evaluations);
-        stays.choose(one, zero).store(&mut of.stays);
-        is_passed.choose(one, zero).store(&mut of.is_passed);
-        goes_on.choose(one, zero).store(&mut of.has_gone_on);
-        order.store(&mut of.order);
-        span.store(&mut of.span);
-    }
-}
-
-const STEPS_ALONE: &str = "another level steps alone";
-
-/// The `level` by its type, if it is Eqs 5 and 6.
-#[inline(always)]
-fn by_equations_5_and_6<Q: Coordinates>(level: &dyn Level<Q>) -> Option<&Elastic<NonlinearRocking>> {
-    level.as_any()?.downcast_ref()
-}
-
 impl<Q: Coordinates> Engine<Q> {
+    /// Comes to `elapsed` (s) since the start of `advance`.
+    pub(crate) fn come_to(&mut self, elapsed: f64, advance: &mut Advance<Q>) {
+        (advance.elapsed, self.motion.time) = (elapsed, advance.start + elapsed);
+    }
+
     /// Whether steps of the structure can be taken among others: its leaps in full contact, and if it has one mass its rocking by
     /// Eqs 5 and 6. It has no ties.
     pub(crate) fn is_for_lanes(&self) -> bool {
         let steps = if Q::IS_ONE {
             by_equations_5_and_6(&*self.level).is_some()
         } else {
-            self.structure().modes().len() <= MOST_MODES && self.level.leaping(&self.motion.dissipators).is_some()
+            self.structure().modes().len() <= MOST_MODES && leaping(&*self.level, &self.motion.dissipators).is_some()
         };
         steps && !self.level.subject().is_tied
     }
@@ -431,13 +71,11 @@ impl<Q: Coordinates> Engine<Q> {
         watch: &mut W,
     ) -> Result<Option<Progress>, AdvanceError> {
         self.check(interval, &load)?;
-        let (level, motion) = (&*self.level, &mut self.motion);
-        if let Some(end) = leap_under(level, motion, interval, load) {
-            leapt((level, &self.room), motion, interval, load, end, watch)?;
-            return Ok(Some(Progress::Complete));
+        if let Some(leapt) = self.leap(interval, load, watch) {
+            return leapt.map(|()| Some(Progress::Complete));
         }
-        let last_step = motion.work.steps + MAX_STEPS_PER_ADVANCE;
-        let advance = advance.insert(Advance::new(level.structure(), motion.time, interval, load, last_step));
+        let (time, last_step) = (self.motion.time, self.motion.work.steps + MAX_STEPS_PER_ADVANCE);
+        let advance = advance.insert(Advance::new(self.structure(), time, interval, load, last_step));
         self.go_on(advance, false, true, watch)
     }
 
@@ -473,81 +111,12 @@ impl<Q: Coordinates> Engine<Q> {
     #[inline]
     pub(crate) fn take<S: Simd, W: Passes<Q>>(
         &mut self,
-        steps: &mut Rocking<'_, S, Q>,
+        steps: &Rocking<'_, S, Q>,
         lane: usize,
         advance: &mut Advance<Q>,
         watch: &mut W,
     ) -> Result<Option<Progress>, AdvanceError> {
-        let (level, runs) = (&*self.level, &mut steps.runs);
-        let duration = runs.reach[lane] * runs.span[lane];
-        let is_whole = duration == advance.end - advance.elapsed;
-        let is_last = !is_whole && is_at_its_end(level, &self.motion, duration, None);
-        let stays = runs.stays[lane] == 1.0 && !is_last && self.motion.work.steps != advance.last_step;
-        let is_passed = runs.is_passed[lane] == 1.0;
-        runs.is_known[lane] &= stays && is_passed;
-        if !runs.is_known[lane] {
-            steps.write(lane, &mut self.arc);
-        }
-        if !stays {
-            return self.go_on(advance, true, true, &mut After { watch, passes: is_passed });
-        }
-        let end = state_of(&steps.runs.end, lane);
-        if is_passed {
-            watch.pass();
-        } else {
-            let (Engine { level, motion, arc, room, .. }, load) = (&*self, advance.load.from(advance.elapsed));
-            watch.piece(&Piece { before: motion, duration, load, end, level: &**level, arc: Some(arc), room });
-        }
-        let motion = &mut self.motion;
-        motion.work.steps += 1;
-        motion.work.evaluations += steps.runs.order[lane] as u64;
-        motion.state = end;
-        motion.chatter.pass(duration);
-        motion.time = advance.pass(duration);
-        if advance.elapsed >= advance.interval {
-            return Ok(Some(Progress::Complete));
-        }
-        self.go_on(advance, false, true, watch)
+        let passes = steps.write(lane, &mut self.arc);
+        self.go_on(advance, true, true, &mut After { watch, passes })
     }
-}
-
-impl<S: Simd> Expanded for Lanes<S> {
-    /// θ̇, w θ̇, w.
-    type Left = [Lanes<S>; 3];
-    /// cos θ, sin θ, w, θ̇, G.
-    type Right = [Lanes<S>; 5];
-
-    #[inline(always)]
-    fn left(turning: Self, lever_turning: Self, lever: Self) -> Self::Left {
-        [turning, lever_turning, lever]
-    }
-
-    #[inline(always)]
-    fn right(cos: Self, sin: Self, next_lever: Self, turning: Self, weight: Self) -> Self::Right {
-        [cos, sin, next_lever, turning, weight]
-    }
-
-    #[inline(always)]
-    fn products(
-        left: &[Self::Left; MAX_ORDER + 1],
-        right: &[Self::Right; MAX_ORDER + 1],
-        newest: (&Self::Left, &Self::Right),
-        n: usize,
-    ) -> [Self; 6] {
-        let mut sum = [newest.0[0].like(0.0); 6];
-        add_each_product!(add_products, &mut sum, left, right, newest, n);
-        sum
-    }
-}
-
-#[inline(always)]
-fn add_products<S: Simd>(sum: &mut [Lanes<S>; 6], left: &[Lanes<S>; 3], right: &[Lanes<S>; 5]) {
-    let &[turning, lever_turning, lever] = left;
-    let &[cos, sin, next_lever, right_turning, weight] = right;
-    sum[0] = sum[0] + turning * cos;
-    sum[1] = sum[1] + turning * sin;
-    sum[2] = sum[2] + turning * next_lever;
-    sum[3] = sum[3] + lever_turning * next_lever;
-    sum[4] = sum[4] + lever_turning * right_turning;
-    sum[5] = sum[5] + lever * weight;
 }

@@ -16,6 +16,7 @@ use crate::mechanics::impact;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::Dissipators;
 use crate::mechanics::state::way;
+use crate::numbers::Real;
 use crate::series::extremes::off_chord;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{evaluate, sum_of_magnitudes};
@@ -197,26 +198,31 @@ impl<Q: Coordinates> Guard<Q> for Impact {
     }
 }
 
-/// Whether the magnitudes of the terms of θ prove that s θ stays between 0 and π/2 on `arc`. A motion stays above its start if the
-/// terms of the first orders, none of which lowers it, exceed the sum of all others.
+/// Whether the magnitudes of the terms of θ prove that s θ stays between 0 and π/2 on `arc`.
 fn stays_about<Q: Coordinates>(arc: &Arc<Q>, side: Side) -> bool {
-    let start = side.sign() * arc.theta[0];
-    let terms = &arc.theta[1..=arc.order];
-    let excursion = if arc.reach < 1.0 {
-        arc.reach * terms.iter().rev().fold(0.0, |sum, c| sum * arc.reach + c.abs())
+    let (theta, reach, s) = (arc.used(&arc.theta), arc.reach, side.sign());
+    let excursion = if reach < 1.0 {
+        reach * theta[1..].iter().rev().fold(0.0, |sum, c| sum * reach + c.abs())
     } else {
-        sum_of_magnitudes(terms)
+        sum_of_magnitudes(&theta[1..])
     };
-    let leads = || {
-        let first = arc.theta[1..4].iter().rev().map(|c| side.sign() * c);
-        let lead = first.fold(0.0, |lead, c| if c < 0.0 { 0.0 } else { lead * arc.reach + c });
-        start >= 0.0 && excursion < 2.0 * (arc.reach * lead)
+    let first = arc.theta[1..4].iter().rev().map(|c| s * c);
+    let lead = reach * first.fold(0.0, |lead, c| if c < 0.0 { 0.0 } else { lead * reach + c });
+    let start = s * theta[0];
+    let (end, off) = match excursion < start {
+        true => (start, excursion), // most steps need no more
+        false => (s * evaluate(theta, reach), off_chord(theta, reach)),
     };
-    let ends_above = || {
-        let end = side.sign() * evaluate(arc.used(&arc.theta), arc.reach);
-        off_chord(arc.used(&arc.theta), arc.reach) < start.min(end)
-    };
-    excursion + start < FRAC_PI_2 && (excursion < start || leads() || ends_above())
+    room([start, end], [excursion, if start < 0.0 { 0.0 } else { lead }, off]) > 0.0
+}
+
+/// The room that s θ keeps to 0 and π/2 over a step from `start` to `end`, by bounds of how far it leaves its start (`excursion`) and its
+/// chord (`off`). A motion stays above its start if the terms of the first orders, none of which lowers it, add up to a `lead` that
+/// exceeds the sum of all others.
+#[inline(always)]
+pub(crate) fn room<N: Real>([start, end]: [N; 2], [excursion, lead, off]: [N; 3]) -> N {
+    let above = (start - excursion).max(lead + lead - excursion).max(start.min(end) - off);
+    above.min(start.like(FRAC_PI_2) - (excursion + start))
 }
 
 #[cfg(test)]

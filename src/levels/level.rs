@@ -1,7 +1,5 @@
 //! A level of detail as the engine uses it: equations, uplift, and exact leaps where there are any.
 
-#[cfg(feature = "lanes")]
-use crate::Mode;
 use crate::levels::full_contact::{self, ExactContact};
 use crate::levels::start::{MIN_ORDER, Start};
 use crate::levels::uplift::Liftable;
@@ -13,6 +11,7 @@ use crate::mechanics::reactions::Reactions;
 use crate::mechanics::restraint::{Angles, Dissipators, pulls};
 use crate::numbers::{Angle, Real};
 use crate::{Phase, Side, State, Structure};
+use std::any::Any;
 use std::cell::RefCell;
 use std::fmt::{self, Debug};
 
@@ -51,18 +50,10 @@ impl Subject {
     }
 }
 
-/// How leaps in full contact are found: see [`Level::leaping`].
-#[cfg(feature = "lanes")]
-pub(crate) struct Leaping<'a> {
-    pub modes: &'a [ExactContact],
-    pub moment: fn(&Mode) -> f64,
-    pub hold: f64,
-}
-
 /// The level of detail of a structure. The provided methods are those of an elastic strut. A level without a
 /// [liftable](Level::liftable) structure has a fixed base.
 #[allow(private_interfaces)] // the coordinates name the trait, and nobody else can use it
-pub trait Level<Q: Coordinates = f64>: Send {
+pub trait Level<Q: Coordinates = f64>: Send + Any {
     fn subject(&self) -> &Subject;
 
     /// The same level again.
@@ -72,21 +63,8 @@ pub trait Level<Q: Coordinates = f64>: Send {
         &self.subject().structure
     }
 
-    /// The level by its type, for those who take steps of one of them among others.
-    #[cfg(feature = "lanes")]
-    fn as_any(&self) -> Option<&dyn std::any::Any> {
-        None
-    }
-
     /// The state at the end of `start`, if it is known exactly and no transition can happen until then.
     fn leap(&self, _phase: Phase, _start: &Start<Q>) -> Option<State<Q>> {
-        None
-    }
-
-    /// How such leaps in full contact with these `dissipators` are found, if they are found like this: while Σ |M_j| |u_j| stays below `hold`, the M_j
-    /// the moments of the modes for a unit of u, or while |Σ M_j u_j| certainly does.
-    #[cfg(feature = "lanes")]
-    fn leaping(&self, _dissipators: &Dissipators) -> Option<Leaping<'_>> {
         None
     }
 

@@ -17,8 +17,6 @@
 
 use crate::levels::detail::Detail;
 use crate::levels::full_contact::{self, ExactContact};
-#[cfg(feature = "lanes")]
-use crate::levels::level::Leaping;
 use crate::levels::level::{Level, Subject};
 use crate::levels::nonlinear::{Factors, LEAST_INERTIA, NO_ROW, products, row};
 use crate::levels::oscillator::Oscillator;
@@ -40,13 +38,13 @@ use wide::f64x4;
 pub(crate) struct ManyModes<Q: Coordinates> {
     subject: Subject,
     detail: Detail,
-    base: Base,
+    pub base: Base,
     modes: Vec<Mode>,
     /// Mass (kg) and height (m) of a top mass that turns rigidly with the base.
-    rigid: Option<[f64; 2]>,
+    pub rigid: Option<[f64; 2]>,
     vibration: Vibration,
     /// The oscillators of full contact, if their exact flow is used.
-    contact: Option<Vec<ExactContact>>,
+    pub contact: Option<Vec<ExactContact>>,
     /// Radius of gyration about a pivot √(J_P/m_t), m.
     radius: f64,
     /// Inertia about a pivot that the modes leave, kg·m².
@@ -538,16 +536,6 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
         let (Phase::FullContact, Some(contact)) = (phase, &self.contact) else { return None };
         let hold = self.liftable().map_or(f64::INFINITY, |liftable| liftable.least_hold(start));
         full_contact::leap(contact, start, hold, |j| self.modes[j].height * self.modes[j].stiffness)
-    }
-
-    #[cfg(feature = "lanes")]
-    fn leaping(&self, dissipators: &Dissipators) -> Option<Leaping<'_>> {
-        let (structure, modes) = (&self.subject.structure, self.contact.as_ref()?);
-        let has_rest = self.rigid.is_some() || self.base.S_res != 0.0 || structure.gauges().has_feedthrough;
-        let start = Start::<Q> { dissipators, ..Start::default() };
-        let hold = self.liftable()?.least_hold(&start);
-        let moment = |mode: &Mode| mode.height * mode.stiffness;
-        (!has_rest && structure.foundation().is_none()).then_some(Leaping { modes, moment, hold })
     }
 
     fn contact(&self) -> Option<&[ExactContact]> {

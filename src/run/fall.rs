@@ -14,12 +14,6 @@ use crate::series::bisection::last_where;
 use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
 use crate::series::taylor::sum_of_magnitudes;
 use crate::{Base, Detail, Piece, Side, Structure, Transition, TransitionKind, Watch};
-#[cfg(feature = "lanes")]
-use crate::{
-    Engine,
-    engine::sought::{Passes, Sought},
-    numbers::lanes::put,
-};
 use std::f64::consts::FRAC_PI_2;
 
 /// Result of a run.
@@ -39,13 +33,15 @@ pub struct Found<Q: Coordinates = f64> {
 
 /// Exact peaks of a motion that may end in a fall: those of all the motion, and those before the fall.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Falling {
-    all: Peaks,
+pub struct Falling<All = Peaks> {
+    pub(super) all: All,
     /// Angle of no return, rad; none below π/2 if the tendon turns the structure back from everywhere.
-    no_return: Option<f64>,
+    pub(super) no_return: Option<f64>,
     /// The last passing of the angle of no return, while |θ| is beyond: its instant (s), and the peaks until then.
-    fall: Option<(f64, Peaks)>,
-    has_overturned: bool,
+    pub(super) fall: Option<(f64, Peaks)>,
+    pub(super) has_overturned: bool,
+    /// How often a watcher has seen the base come down.
+    pub impacts: u64,
 }
 
 /// What changes of [`Falling`] with the motion: all peaks, instant and peaks of a fall, and whether the structure has overturned.
@@ -71,7 +67,7 @@ impl Falling {
     /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion.
     pub fn since(time: f64, structure: &Structure, detail: Detail) -> Falling {
         let (all, no_return) = (Peaks::since(time, structure, detail), angle_of_no_return(structure.base()));
-        Falling { all, no_return, fall: None, has_overturned: false }
+        Falling { all, no_return, fall: None, has_overturned: false, impacts: 0 }
     }
 
     /// The numbers alone.
@@ -84,7 +80,7 @@ impl Falling {
     pub fn with_numbers(&self, (all, fall, has_overturned): Numbers) -> Option<Falling> {
         let before = |(instant, before): (f64, Vec<_>)| Some((instant, self.all.with_numbers(&before)?));
         let fall = if let Some(fall) = fall { Some(before(fall)?) } else { None };
-        Some(Falling { all: self.all.with_numbers(&all)?, fall, has_overturned, no_return: self.no_return })
+        Some(Falling { all: self.all.with_numbers(&all)?, fall, has_overturned, ..*self })
     }
 
     /// Peaks of all the motion, including a fall.
@@ -113,19 +109,13 @@ impl Falling {
 
     /// The watcher that looks for peaks in the pieces of a motion; [`FallWatch::end`] gives the peaks back.
     pub fn watch<Q: Coordinates>(self) -> FallWatch<Q> {
-        let Falling { all, no_return, fall, has_overturned } = self;
-        FallWatch { all: all.watch(), no_return, fall, has_overturned }
+        let Falling { all, no_return, fall, has_overturned, impacts } = self;
+        Falling { all: all.watch(), no_return, fall, has_overturned, impacts }
     }
 }
 
 /// Looks for the peaks of a motion that may end in a fall.
-#[derive(Debug)]
-pub struct FallWatch<Q: Coordinates = f64> {
-    all: PeakWatch<Q>,
-    no_return: Option<f64>,
-    fall: Option<(f64, Peaks)>,
-    has_overturned: bool,
-}
+pub type FallWatch<Q = f64> = Falling<PeakWatch<Q>>;
 
 impl<Q: Coordinates> Watch<Q> for FallWatch<Q> {
     fn piece(&mut self, piece: &Piece<Q>) {
@@ -137,6 +127,7 @@ impl<Q: Coordinates> Watch<Q> for FallWatch<Q> {
     }
 
     fn transition(&mut self, transition: &Transition<Q>) {
+        self.impacts += u64::from(transition.kind.is_impact());
         if let TransitionKind::Overturning(_) = transition.kind {
             self.has_overturned = true;
             let all = &mut self.all;
@@ -146,38 +137,11 @@ impl<Q: Coordinates> Watch<Q> for FallWatch<Q> {
     }
 }
 
-#[cfg(feature = "lanes")]
-impl<Q: Coordinates> Passes<Q> for FallWatch<Q> {
-    fn seek(&self, engine: &Engine<Q>, lane: usize, sought: &mut Sought<Q>) {
-        self.all.peaks.seek(engine, lane, sought);
-        let angle = self.no_return.unwrap_or(f64::INFINITY);
-        put(&mut sought.turned, lane, if self.fall.is_some() { [angle, f64::INFINITY] } else { [-1.0, angle] });
-    }
-
-    #[inline(always)]
-    fn pass(&mut self) {
-        self.all.pass();
-    }
-
-    fn put_off(&mut self, piece: &Piece<Q>, bounds: &[f64]) {
-        self.all.put_off(piece, bounds);
-    }
-}
-
 impl<Q: Coordinates> FallWatch<Q> {
     /// The peaks, once the motion has been watched.
     pub fn end(self) -> Falling {
-        let FallWatch { all, no_return, fall, has_overturned } = self;
-        Falling { all: all.end(), no_return, fall, has_overturned }
-    }
-
-    /// The peaks, those before a fall, and the start of the fall, once the motion has been watched.
-    #[cfg(feature = "lanes")]
-    pub(super) fn found(self) -> (Peaks, Option<f64>) {
-        match self.fall.filter(|_| self.has_overturned) {
-            Some((instant, before)) => (before, Some(instant)),
-            None => (self.all.end(), None),
-        }
+        let Falling { all, no_return, fall, has_overturned, impacts } = self;
+        Falling { all: all.end(), no_return, fall, has_overturned, impacts }
     }
 
     /// Keeps the peaks up to the last passing of `angle` (rad) in a `piece` that ends beyond.

@@ -4,8 +4,6 @@
 //! a clock, so that the same steps give the same bits at every start time. A host whose steps are those of the record meets
 //! the samples only up to rounding. A step that ends as close to a sample as that is not cut there.
 
-#[cfg(feature = "lanes")]
-use crate::engine::lanes::Samples;
 use crate::engine::{AdvanceError, MAX_STEPS_PER_ADVANCE};
 use crate::mechanics::lateral::Coordinates;
 use crate::run::record::Record;
@@ -283,7 +281,7 @@ impl<'a> From<&'a Record> for GroundMotion<'a> {
 /// The segments of an interval, one after the other ([`GroundMotion::segments`]).
 #[derive(Clone, Debug)]
 pub struct Segments<'a> {
-    motion: GroundMotion<'a>,
+    pub(super) motion: GroundMotion<'a>,
     /// Start of the interval.
     elapsed: Elapsed,
     /// Duration of the interval, s.
@@ -295,7 +293,7 @@ pub struct Segments<'a> {
     /// The sample that ends the next segment.
     pub(super) next: usize,
     /// The last sample within the interval, once a segment has ended before the end of the interval.
-    last: usize,
+    pub(super) last: usize,
 }
 
 impl Iterator for Segments<'_> {
@@ -315,16 +313,6 @@ impl Iterator for Segments<'_> {
 }
 
 impl<'a> Segments<'a> {
-    /// The samples that end whole segments, and those before them, unless the ground moves vertically.
-    #[cfg(feature = "lanes")]
-    #[inline]
-    pub(super) fn samples(&self) -> Option<Samples<'a>> {
-        let &Segments { motion: GroundMotion { record, .. }, next, last, .. } = self;
-        let (a_g, last) = (record.acceleration(), last.min(record.acceleration().len()));
-        let samples = Samples { times: record.times(), a_g, next, last };
-        (next < last && record.vertical().is_none()).then_some(samples)
-    }
-
     /// The first segment of the interval, or a segment after which no whole one comes.
     #[cold]
     fn first_or_last(&mut self) -> Option<Segment> {

@@ -5,18 +5,18 @@
 //! bounds of a leap or a step prove that no guard closes, that is all: a step that may hold a peak is put off. Otherwise the run goes
 //! on by itself, with transitions and searches, until it does again what others do.
 
+mod watches;
+
 use super::course::{Ending, Finish, Follower, LONGEST_REST, MOST_STEPS, Run, RunError, Starts, error, load_of};
 use super::fall::{FallWatch, Found};
 use super::ground_motion::{Segment, Segments};
-use super::peak_watch::ThetaWatch;
 use super::peaks::Peaks;
+use crate::Progress;
 use crate::engine::Advance;
-use crate::engine::lanes::Rocking;
-use crate::engine::leaps::Contacts;
-use crate::engine::sought::Passes;
+use crate::engine::lanes::leaps::Contacts;
+use crate::engine::lanes::number::MOST;
+use crate::engine::lanes::rocking::Rocking;
 use crate::mechanics::lateral::Coordinates;
-use crate::numbers::lanes::MOST;
-use crate::{Progress, Watch};
 use pulp::{Arch, Simd, WithSimd};
 use std::collections::VecDeque;
 
@@ -30,12 +30,14 @@ const LEAST: usize = 3;
 pub type Done<'a, T> = &'a mut dyn FnMut(usize, T) -> bool;
 
 /// Follows runs and shows the result of each.
-pub(super) type Each<Q, T> = fn(&[Run<Q>], Done<T>);
+type Shown<Q, T> = fn(&[Run<Q>], Done<T>);
+
+/// How runs are followed to their peaks, and to their rotation alone.
+pub(super) type Each<Q> = (Shown<Q, Result<Found<Q>, RunError>>, Shown<Q, (Result<Finish<Q>, RunError>, Rocked)>);
 
 pub(super) fn find_each<Q: Starts>(runs: &[Run<Q>], done: Done<Result<Found<Q>, RunError>>) {
-    follow_each(runs, runs.iter().map(Run::watch_falling), |number, finish, watch| {
-        done(number, found(&runs[number], finish, watch))
-    });
+    let done = &mut |number: usize, finish, watch| done(number, found(&runs[number], finish, watch));
+    Arch::new().dispatch(Following { runs, watch: Run::watch_falling, done });
 }
 
 /// The rotation of a run.
@@ -48,17 +50,19 @@ pub struct Rocked {
 }
 
 pub(super) fn rock_each<Q: Starts>(runs: &[Run<Q>], done: Done<(Result<Finish<Q>, RunError>, Rocked)>) {
-    follow_each(runs, runs.iter().map(watch_theta), |number, finish, watch| done(number, (finish, rocked(watch))));
+    let done = &mut |number, finish, watch| done(number, (finish, rocked(watch)));
+    Arch::new().dispatch(Following { runs, watch: watch_rocking, done });
 }
 
 /// The rotation that `watch` has seen.
-fn rocked<Q: Starts>(watch: ThetaWatch<Q>) -> Rocked {
-    Rocked { impacts: watch.impacts, theta: watch.end().theta().magnitude }
+fn rocked<Q: Starts>(watch: FallWatch<Q>) -> Rocked {
+    Rocked { impacts: watch.impacts, theta: watch.end().all().theta().magnitude }
 }
 
-/// The watcher of the rotation of `run`, before any motion.
-fn watch_theta<Q: Starts>(run: &Run<Q>) -> ThetaWatch<Q> {
-    Peaks::since(run.ground.start(), &run.structure, run.detail).watch_theta()
+/// The watcher of the peak of θ alone of `run`, before any motion.
+fn watch_rocking<Q: Starts>(run: &Run<Q>) -> FallWatch<Q> {
+    let all = Peaks::since(run.ground.start(), &run.structure, run.detail).of_theta().watch();
+    FallWatch { all, no_return: None, fall: None, has_overturned: false, impacts: 0 }
 }
 
 /// Result of a `run` with this `finish`, all of which `watch` has seen.
@@ -67,57 +71,38 @@ fn found<Q: Starts>(
     finish: Result<Finish<Q>, RunError>,
     watch: FallWatch<Q>,
 ) -> Result<Found<Q>, RunError> {
-    let (peaks, fall) = watch.found();
+    // the peaks of a fall are not looked for
+    let (peaks, fall) = match watch.fall.filter(|_| watch.has_overturned) {
+        Some((instant, before)) => (before, Some(instant)),
+        None => (watch.all.end(), None),
+    };
     finish.map(|finish| run.found_of(peaks, fall, finish))
 }
 
-/// Follows `run` by itself, which `watch` sees.
-fn follow_alone<Q: Starts>(run: &Run<Q>, watch: &mut dyn Watch<Q>) -> Result<Finish<Q>, RunError> {
-    run.end(watch).map(|(ending, engine)| Finish { ending, motion: *engine.motion() })
-}
+/// Sees how a run ended, with the run's position and its watcher, and says whether to go on.
+type Seen<'a, Q> = &'a mut dyn FnMut(usize, Result<Finish<Q>, RunError>, FallWatch<Q>) -> bool;
 
-/// Follows `runs` to their ends, each seen by one of `watches`. Tells `done` of each how it ended, as [`find_each`] does.
-fn follow_each<Q: Starts, W: Passes<Q>>(
-    runs: &[Run<Q>],
-    watches: impl Iterator<Item = W>,
-    done: impl FnMut(usize, Result<Finish<Q>, RunError>, W) -> bool,
-) {
-    Arch::new().dispatch(FollowEach { runs, watches, done });
-}
-
-/// The runs of [`follow_each`].
-struct FollowEach<'a, Q: Coordinates, Watches, Done> {
+/// Following runs to their ends, each seen by a watcher of its own.
+struct Following<'a, Q: Coordinates> {
     runs: &'a [Run<'a, Q>],
-    watches: Watches,
-    done: Done,
+    watch: fn(&Run<'a, Q>) -> FallWatch<Q>,
+    done: Seen<'a, Q>,
 }
 
-impl<Q: Starts, W: Passes<Q>, Watches, Done> WithSimd for FollowEach<'_, Q, Watches, Done>
-where
-    Watches: Iterator<Item = W>,
-    Done: FnMut(usize, Result<Finish<Q>, RunError>, W) -> bool,
-{
+impl<Q: Starts> WithSimd for Following<'_, Q> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let FollowEach { runs, watches, mut done } = self;
-        if S::F64_LANES < LEAST || runs.len() < LEAST {
-            runs.iter().zip(watches).enumerate().all(|(number, (run, mut watch))| {
-                let finish = follow_alone(run, &mut watch);
-                done(number, finish, watch)
-            });
-        } else {
-            follow(simd, runs, watches, done);
-        }
+        self.follow(simd);
     }
 }
 
 /// A run on its way.
-struct Lane<'a, Q: Coordinates, W> {
+struct Lane<'a, Q: Coordinates> {
     number: usize,
     follower: Follower<Q, Segments<'a>>,
-    watch: W,
+    watch: FallWatch<Q>,
     /// The end of the present segment, s, and the ending of the run there, if the run ends there.
     until: f64,
     ending: Option<Ending>,
@@ -139,14 +124,17 @@ const LEAPS: usize = 0;
 const ROCKS: usize = 1;
 const ROCKS_ON: usize = 2;
 
-impl<Q: Starts, W: Passes<Q>> Lane<'_, Q, W> {
+impl<Q: Starts> Lane<'_, Q> {
     /// Goes on to where the run in `slot` of `steps` has come without a transition.
     fn catch_up<S: Simd>(&mut self, steps: &mut Rocking<S, Q>, slot: usize) -> Result<(), RunError> {
         let Lane { follower: Follower { engine, segments, .. }, watch, .. } = self;
-        if let Some(next) = steps.catch_up(slot, engine, watch) {
+        let Some((next, elapsed)) = steps.catch_up(slot, engine, watch) else { return Ok(()) };
+        if let Some(next) = next {
             segments.next = next;
             self.go_on()?; // to the next step
         }
+        let Lane { follower: Follower { engine, .. }, advance, .. } = self;
+        advance.iter_mut().for_each(|advance| engine.come_to(elapsed, advance));
         Ok(())
     }
 
@@ -218,16 +206,15 @@ struct Together<'a, S: Simd, Q> {
 impl<'a, S: Simd, Q: Starts> Together<'a, S, Q> {
     /// Puts `lane`, whose next step is of this `kind`, into a `slot`.
     #[inline]
-    fn enter<W: Passes<Q>>(&mut self, kind: usize, slot: usize, lane: &Lane<'a, Q, W>) {
+    fn enter(&mut self, kind: usize, slot: usize, lane: &Lane<'a, Q>) {
         let Lane { follower: Follower { engine, segments, .. }, advance, watch, .. } = lane;
         let mut samples = segments.samples().unwrap_or_default();
-        let most = MOST_STEPS + u64::from(kind == LEAPS);
-        let left = most.saturating_sub(engine.motion().work.steps) as usize;
-        samples.last = samples.last.min(samples.next.saturating_add(left));
         if kind != LEAPS {
             let advance = advance.as_ref().expect("it is on its way");
-            return self.rocking.enter(slot, engine, advance, samples, watch);
+            return self.rocking.enter((slot, MOST_STEPS), engine, advance, samples, watch);
         }
+        let left = (MOST_STEPS + 1).saturating_sub(engine.motion().work.steps) as usize;
+        samples.last = samples.last.min(samples.next.saturating_add(left));
         self.contacts.enter(slot, engine, samples, watch);
     }
 
@@ -243,12 +230,7 @@ impl<'a, S: Simd, Q: Starts> Together<'a, S, Q> {
 
     /// The action of the lane in a `slot` after its step; none if it takes another step of this `kind` there.
     #[inline]
-    fn take<W: Passes<Q>>(
-        &mut self,
-        kind: usize,
-        slot: usize,
-        lane: &mut Lane<'a, Q, W>,
-    ) -> Option<Result<Next, RunError>> {
+    fn take(&mut self, kind: usize, slot: usize, lane: &mut Lane<'a, Q>) -> Option<Result<Next, RunError>> {
         if kind == LEAPS {
             return (!self.contacts.goes_on(slot)).then(|| {
                 self.leave(kind, slot, lane)?;
@@ -268,7 +250,7 @@ impl<'a, S: Simd, Q: Starts> Together<'a, S, Q> {
     }
 
     /// Takes the lane out of a `slot`.
-    fn leave<W: Passes<Q>>(&mut self, kind: usize, slot: usize, lane: &mut Lane<'a, Q, W>) -> Result<(), RunError> {
+    fn leave(&mut self, kind: usize, slot: usize, lane: &mut Lane<'a, Q>) -> Result<(), RunError> {
         if kind != LEAPS {
             let caught_up = lane.catch_up(&mut self.rocking, slot);
             self.rocking.leave(slot);
@@ -281,21 +263,21 @@ impl<'a, S: Simd, Q: Starts> Together<'a, S, Q> {
     }
 }
 
-type Ended<'a, Q, W> = (Box<Lane<'a, Q, W>>, Result<Ending, RunError>);
+type Ended<'a, Q> = (Box<Lane<'a, Q>>, Result<Ending, RunError>);
 
 /// The runs on their way, by what they do next, and those that have ended.
-struct Lanes<'a, Q: Coordinates, W> {
-    of_kind: [VecDeque<Box<Lane<'a, Q, W>>>; KINDS],
-    ended: Vec<Ended<'a, Q, W>>,
+struct Lanes<'a, Q: Coordinates> {
+    of_kind: [VecDeque<Box<Lane<'a, Q>>>; KINDS],
+    ended: Vec<Ended<'a, Q>>,
 }
 
-impl<'a, Q: Starts, W: Passes<Q>> Lanes<'a, Q, W> {
+impl<'a, Q: Starts> Lanes<'a, Q> {
     fn count(&self) -> usize {
         self.of_kind.iter().map(VecDeque::len).sum()
     }
 
     /// Sorts a lane by what it does next.
-    fn goes_on(&mut self, lane: Box<Lane<'a, Q, W>>, next: Result<Next, RunError>) {
+    fn goes_on(&mut self, lane: Box<Lane<'a, Q>>, next: Result<Next, RunError>) {
         match next {
             Ok(Next::Kind(kind)) => self.of_kind[kind].push_back(lane),
             Ok(Next::End(ending)) => self.ended.push((lane, Ok(ending))),
@@ -306,7 +288,7 @@ impl<'a, Q: Starts, W: Passes<Q>> Lanes<'a, Q, W> {
     /// Takes steps of this `kind` until a run ends or another kind has more to do. Returns how many.
     fn step<S: Simd>(&mut self, kind: usize, steps: &mut Together<'a, S, Q>) -> u64 {
         let mut taken = 0;
-        let mut lanes: [Option<Box<Lane<'a, Q, W>>>; MOST] = [const { None }; MOST];
+        let mut lanes: [Option<Box<Lane<'a, Q>>>; MOST] = [const { None }; MOST];
         let lanes = &mut lanes[..S::F64_LANES];
         loop {
             let mut count = 0;
@@ -338,56 +320,55 @@ impl<'a, Q: Starts, W: Passes<Q>> Lanes<'a, Q, W> {
     }
 }
 
-/// Follows the `runs` of [`follow_each`]. Returns how many steps of rocking have been taken together.
-#[inline(never)] // what is of one run alone needs no wide registers
-fn follow<S: Simd, Q: Starts, W: Passes<Q>>(
-    simd: S,
-    runs: &[Run<Q>],
-    watches: impl Iterator<Item = W>,
-    mut done: impl FnMut(usize, Result<Finish<Q>, RunError>, W) -> bool,
-) -> u64 {
-    let mut taken = 0;
-    let mut waiting = runs.iter().zip(watches).enumerate();
-    let mut lanes = Lanes { of_kind: [const { VecDeque::new() }; KINDS], ended: Vec::new() };
-    let mut together = Together { simd, contacts: Contacts::default(), rocking: Rocking::new(simd) };
-    loop {
-        while lanes.count() < ON_THE_WAY
-            && let Some((number, (run, mut watch))) = waiting.next()
-        {
-            match run.course() {
-                Ok(follower) if follower.engine.is_for_lanes() && run.ground.force().is_none() => {
-                    let until = follower.engine.motion().time;
-                    let mut lane = Box::new(Lane { number, follower, watch, until, ending: None, advance: None });
-                    let next = lane.go_on();
-                    lanes.goes_on(lane, next);
-                }
-                course => {
-                    let finish = course.and_then(|follower| follower.finish(&mut watch));
-                    let finish = finish.map(|(ending, engine)| Finish { ending, motion: *engine.motion() });
-                    if !done(number, finish, watch) {
-                        return taken;
+impl<Q: Starts> Following<'_, Q> {
+    /// Follows the runs. Returns how many steps of rocking have been taken together.
+    #[inline(never)] // what is of one run alone needs no wide registers
+    fn follow<S: Simd>(self, simd: S) -> u64 {
+        let Following { runs, watch, done } = self;
+        let (mut taken, has_lanes) = (0, S::F64_LANES.min(runs.len()) >= LEAST);
+        let mut waiting = runs.iter().enumerate();
+        let mut lanes = Lanes { of_kind: [const { VecDeque::new() }; KINDS], ended: Vec::new() };
+        let mut together = Together { simd, contacts: Contacts::default(), rocking: Rocking::new(simd) };
+        loop {
+            while lanes.count() < ON_THE_WAY
+                && let Some((number, run)) = waiting.next()
+            {
+                let mut watch = watch(run);
+                match run.course() {
+                    Ok(follower) if has_lanes && follower.engine.is_for_lanes() && run.ground.force().is_none() => {
+                        let until = follower.engine.motion().time;
+                        let mut lane = Box::new(Lane { number, follower, watch, until, ending: None, advance: None });
+                        let next = lane.go_on();
+                        lanes.goes_on(lane, next);
+                    }
+                    course => {
+                        let finish = course.and_then(|follower| follower.finish(&mut watch));
+                        let finish = finish.map(|(ending, engine)| Finish { ending, motion: *engine.motion() });
+                        if !done(number, finish, watch) {
+                            return taken;
+                        }
                     }
                 }
             }
-        }
-        if lanes.count() < LEAST {
-            for mut lane in lanes.of_kind.iter_mut().flat_map(std::mem::take) {
-                let ending = lane.finish();
-                lanes.ended.push((lane, ending));
+            if lanes.count() < LEAST {
+                for mut lane in lanes.of_kind.iter_mut().flat_map(std::mem::take) {
+                    let ending = lane.finish();
+                    lanes.ended.push((lane, ending));
+                }
             }
-        }
-        for (lane, ending) in lanes.ended.drain(..) {
-            let Lane { number, follower, watch, .. } = *lane;
-            let finish = ending.map(|ending| Finish { ending, motion: *follower.engine.motion() });
-            if !done(number, finish, watch) {
+            for (lane, ending) in lanes.ended.drain(..) {
+                let Lane { number, follower, watch, .. } = *lane;
+                let finish = ending.map(|ending| Finish { ending, motion: *follower.engine.motion() });
+                if !done(number, finish, watch) {
+                    return taken;
+                }
+            }
+            if lanes.count() == 0 {
                 return taken;
             }
+            let kind = (0..KINDS).max_by_key(|kind| lanes.of_kind[*kind].len()).unwrap_or(LEAPS);
+            taken += lanes.step(kind, &mut together);
         }
-        if lanes.count() == 0 {
-            return taken;
-        }
-        let kind = (0..KINDS).max_by_key(|kind| lanes.of_kind[*kind].len()).unwrap_or(LEAPS);
-        taken += lanes.step(kind, &mut together);
     }
 }
 
@@ -398,7 +379,7 @@ mod tests {
     use crate::run::record::Record;
     use crate::structure::description::tests::usual;
     use crate::structure::description::{Damping, Storey};
-    use crate::{Body, Detail, OneMass, Parameters, Piece, Structure};
+    use crate::{Body, Detail, OneMass, Parameters, Piece, Structure, Watch};
     use std::f64::consts::{PI, TAU};
 
     /// A ground motion of filtered noise.
@@ -445,10 +426,11 @@ mod tests {
 
     fn together<S: Simd, Q: Starts>(simd: S, runs: &[Run<Q>]) -> Vec<String> {
         let mut results = vec![String::new(); runs.len()];
-        follow(simd, runs, runs.iter().map(Run::watch_falling), |number, finish, watch| {
+        let done = &mut |number: usize, finish, watch| {
             results[number] = told(found(&runs[number], finish, watch));
             true
-        });
+        };
+        Following { runs, watch: Run::watch_falling, done }.follow(simd);
         results
     }
 
@@ -491,9 +473,8 @@ mod tests {
         }
         rock_each(runs, &mut |number, rocked| {
             let run = &runs[number];
-            let peaks = Peaks::since(run.ground.start(), &run.structure, run.detail);
-            let mut watch = peaks.watch_theta();
-            let finish = follow_alone(run, &mut watch);
+            let mut watch = watch_rocking(run);
+            let finish = run.end(&mut watch).map(|(ending, engine)| Finish { ending, motion: *engine.motion() });
             assert_eq!(format!("{rocked:?}"), format!("{:?}", (finish, super::rocked(watch))));
             true
         });
@@ -586,7 +567,8 @@ mod tests {
         let mut alone: Vec<_> = runs.iter().map(count).collect();
         alone.sort_unstable();
         let (all, of_last): (u64, u64) = (alone.iter().sum(), alone[runs.len() + 1 - LEAST..].iter().sum());
-        let taken = follow(pulp::Scalar256b, &runs, runs.iter().map(Run::watch_falling), |_, _, _| true);
+        let taken =
+            Following { runs: &runs, watch: Run::watch_falling, done: &mut |_, _, _| true }.follow(pulp::Scalar256b);
         assert!(all > 4000 && (all - of_last..=all).contains(&taken), "{taken} of {all}, {of_last}");
     }
 }

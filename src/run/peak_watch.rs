@@ -4,17 +4,11 @@
 //! first kept, since most are soon beaten by the end of another.
 
 use super::peaks::Peaks;
-#[cfg(feature = "lanes")]
-use crate::Engine;
 use crate::engine::MOST_POLYNOMIALS;
 use crate::engine::piece::{Piece, Room, Watch};
-#[cfg(feature = "lanes")]
-use crate::engine::sought::{Passes, Sought};
 use crate::levels::level::Level;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::lateral::Coordinates;
-#[cfg(feature = "lanes")]
-use crate::numbers::lanes::put;
 use crate::series::taylor::LONGEST_SPAN;
 use crate::structure::gauge::Reach;
 use crate::{LinearLoad, Motion, State, Transition};
@@ -33,12 +27,12 @@ pub struct PeakWatch<Q: Coordinates = f64> {
     /// Pieces that may hold more than what has been seen.
     kept: Vec<Candidate<Q>>,
     /// Polynomials and bounds of pieces that are kept no more.
-    spare: (Vec<Box<Arc<Q>>>, Vec<Vec<f64>>),
+    pub(super) spare: (Vec<Box<Arc<Q>>>, Vec<Vec<f64>>),
     /// The level of the kept pieces, and room for their polynomials.
     level: Option<Box<dyn Level<Q>>>,
     room: Room<Q>,
     /// Whether the next piece may begin with other outputs than the last one ended with.
-    is_torn: bool,
+    pub(super) is_torn: bool,
     /// Room for the bounds of a piece.
     bounds: Vec<f64>,
     /// Of many masses: how far all that is searched reaches, in these or earlier peaks, and how many pieces needed the bounds of all
@@ -46,7 +40,7 @@ pub struct PeakWatch<Q: Coordinates = f64> {
     reach: Option<Box<Reach>>,
     in_vain: u32,
     /// Whether the next piece is the first since other peaks: the step of a host is often no more, and not put off.
-    is_first: bool,
+    pub(super) is_first: bool,
 }
 
 /// A piece that is looked at after others have been shown.
@@ -78,13 +72,6 @@ impl Peaks {
             is_first,
         }
     }
-
-    /// The watcher that searches for the peak of θ only.
-    #[cfg(feature = "lanes")]
-    pub fn watch_theta<Q: Coordinates>(mut self) -> ThetaWatch<Q> {
-        self.of_theta_alone();
-        ThetaWatch { all: self.watch(), impacts: 0 }
-    }
 }
 
 impl<Q: Coordinates> PeakWatch<Q> {
@@ -101,7 +88,7 @@ impl<Q: Coordinates> PeakWatch<Q> {
     }
 
     /// Sees all of a `piece` but the forces of dissipators.
-    fn see(&mut self, piece: &Piece<Q>) {
+    pub(super) fn see(&mut self, piece: &Piece<Q>) {
         let &Piece { duration, ref load, level, arc, .. } = piece;
         let (loads, structure) = ([load.value, load.at(duration)], level.structure());
         let [is_torn, is_first] = [&mut self.is_torn, &mut self.is_first].map(std::mem::take);
@@ -143,7 +130,7 @@ impl<Q: Coordinates> PeakWatch<Q> {
     }
 
     /// Keeps a piece that may change a peak within these `bounds`.
-    fn keep(&mut self, piece: &Piece<Q>, bounds: Vec<f64>) {
+    pub(super) fn keep(&mut self, piece: &Piece<Q>, bounds: Vec<f64>) {
         let &Piece { before, duration, load, end, level, arc, .. } = piece;
         self.level.get_or_insert_with(|| level.boxed());
         if !self.kept.is_empty() && self.kept.len().is_multiple_of(CANDIDATES) {
@@ -186,83 +173,12 @@ impl<Q: Coordinates> Watch<Q> for PeakWatch<Q> {
         if piece.level.structure().base().has_dissipators() {
             self.peaks.look_at_dissipators(piece);
         }
-        self.see(piece);
+        if !(self.peaks.is_of_theta() && piece.before.phase.properties().is_down) {
+            self.see(piece);
+        }
     }
 
     fn transition(&mut self, _transition: &Transition<Q>) {
         self.is_torn = true;
-    }
-}
-
-#[cfg(feature = "lanes")]
-impl<Q: Coordinates> PeakWatch<Q> {
-    /// Passes a piece that holds no peak.
-    #[inline]
-    pub(super) fn pass(&mut self) {
-        (self.is_torn, self.is_first) = (false, false);
-    }
-
-    /// Sees the ends of a piece, and keeps the piece if it may hold a peak within these `bounds`.
-    pub(super) fn put_off(&mut self, piece: &Piece<Q>, bounds: &[f64]) {
-        let &Piece { before, duration, ref end, .. } = piece;
-        if self.is_torn {
-            self.peaks.see(&piece.shown(0.0, &before.state), before.time);
-        }
-        self.pass();
-        self.peaks.see(&piece.shown(duration, end), before.time + duration);
-        if self.peaks.may_change_within(bounds, before.time) {
-            let mut own = self.spare.1.pop().unwrap_or_default();
-            own.clear();
-            own.extend(bounds);
-            self.keep(piece, own);
-        }
-    }
-}
-
-/// Looks for the peak of θ alone in the pieces of a motion, and counts impacts.
-#[cfg(feature = "lanes")]
-#[derive(Debug)]
-pub struct ThetaWatch<Q: Coordinates = f64> {
-    all: PeakWatch<Q>,
-    /// Number of impacts and landings.
-    pub(super) impacts: u64,
-}
-
-#[cfg(feature = "lanes")]
-impl<Q: Coordinates> ThetaWatch<Q> {
-    /// The peaks, of which that of θ has been sought, once the motion has been watched.
-    pub fn end(self) -> Peaks {
-        self.all.end()
-    }
-}
-
-#[cfg(feature = "lanes")]
-impl<Q: Coordinates> Watch<Q> for ThetaWatch<Q> {
-    fn piece(&mut self, piece: &Piece<Q>) {
-        if !piece.before.phase.properties().is_down {
-            self.all.see(piece);
-        }
-    }
-
-    fn transition(&mut self, transition: &Transition<Q>) {
-        self.impacts += u64::from(transition.kind.is_impact());
-        self.all.transition(transition);
-    }
-}
-
-#[cfg(feature = "lanes")]
-impl<Q: Coordinates> Passes<Q> for ThetaWatch<Q> {
-    fn seek(&self, engine: &Engine<Q>, lane: usize, sought: &mut Sought<Q>) {
-        self.all.peaks.seek(engine, lane, sought);
-        put(&mut sought.turned, lane, [-1.0, f64::INFINITY]);
-    }
-
-    #[inline(always)]
-    fn pass(&mut self) {
-        self.all.pass();
-    }
-
-    fn put_off(&mut self, piece: &Piece<Q>, bounds: &[f64]) {
-        self.all.put_off(piece, bounds);
     }
 }

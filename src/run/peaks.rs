@@ -6,12 +6,10 @@
 //! the instant; the value there comes from the state.
 
 use crate::engine::piece::{CONVERGED, Expansion, Piece};
-#[cfg(feature = "lanes")]
-use crate::engine::sought::Sought;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::outputs::Search;
-use crate::mechanics::reach::{Magnitudes, OffChord};
+use crate::mechanics::reach::Magnitudes;
 use crate::mechanics::restraint::{Angles, Restraint, Restraints, restraints};
 use crate::series::extremes;
 use crate::structure::gauge::Reach;
@@ -53,7 +51,7 @@ impl Peak {
 
     /// The least magnitude that may equal or exceed the peak.
     #[inline]
-    fn least(&self) -> f64 {
+    pub(super) fn least(&self) -> f64 {
         f64::from_bits(self.magnitude.to_bits() & !SAME)
     }
 
@@ -69,23 +67,23 @@ pub struct Peaks {
     /// Half-width of the base, m.
     B: f64,
     /// The peaks that are searched.
-    searched: Vec<Searched>,
+    pub(super) searched: Vec<Searched>,
     /// Outputs whose peaks come with one of these: its place, and the multiple that they are of it.
     with: Vec<(Output, usize, f64)>,
     tendon: Tendon,
-    /// Peaks of the forces of the dissipators.
-    pair: [Peak; 2],
+    /// Peaks of the forces of the dissipators, unless θ alone is searched.
+    pair: Option<[Peak; 2]>,
     /// Right-hand-side evaluations that the search took.
     pub(super) evaluations: u64,
 }
 
 /// A peak that is searched.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Searched {
-    output: Output,
-    peak: Peak,
+pub(super) struct Searched {
+    pub output: Output,
+    pub peak: Peak,
     /// The place of the output among the reaches.
-    place: usize,
+    pub place: usize,
 }
 
 impl Searched {
@@ -100,12 +98,6 @@ impl Searched {
         let value = self.output.of(x);
         self.peak.see(value, time);
         value
-    }
-
-    /// How far the output leaves its chord over a stretch of motion within `most` that leaves its chords by `off`.
-    fn off_chord<Q: Coordinates>(&self, structure: &Structure, most: &Magnitudes<Q>, off: Option<&OffChord<Q>>) -> f64 {
-        let of = |off| structure.reaches()[self.place].off_chord(self.output, structure, most, off);
-        off.map_or(f64::INFINITY, of)
     }
 }
 
@@ -149,7 +141,7 @@ impl Peaks {
             }
         }
         let tendon = Tendon { P_0, k_t, angles: detail.angles(), start: time };
-        Peaks { B, searched, with, tendon, pair: [none; 2], evaluations: 0 }
+        Peaks { B, searched, with, tendon, pair: Some([none; 2]), evaluations: 0 }
     }
 
     /// Peak of an output that has one.
@@ -161,8 +153,8 @@ impl Peaks {
         }
         let searched = match output {
             Output::P_t => Some(self.P_t()),
-            Output::F_d1 => Some(self.pair[0]),
-            Output::F_d2 => Some(self.pair[1]),
+            Output::F_d1 => self.pair.map(|pair| pair[0]),
+            Output::F_d2 => self.pair.map(|pair| pair[1]),
             _ => self.searched.iter().find(|of| of.output == output).map(|of| of.peak),
         };
         searched.or_else(|| {
@@ -196,21 +188,26 @@ impl Peaks {
 
     /// The peaks alone: of all outputs that are searched, and of the forces of the dissipators.
     pub(super) fn numbers(&self) -> Vec<Peak> {
-        self.searched.iter().map(|of| of.peak).chain(self.pair).collect()
+        self.searched.iter().map(|of| of.peak).chain(self.pair.into_iter().flatten()).collect()
     }
 
     /// The same with other [`Peaks::numbers`]; none if they are not as many.
     pub(super) fn with_numbers(&self, numbers: &[Peak]) -> Option<Peaks> {
         let (mut peaks, (searched, pair)) = (self.clone(), numbers.split_last_chunk()?);
         peaks.searched.iter_mut().zip(searched).for_each(|(of, peak)| of.peak = *peak);
-        (peaks.searched.len() == searched.len()).then_some(Peaks { pair: *pair, ..peaks })
+        (peaks.searched.len() == searched.len()).then_some(Peaks { pair: Some(*pair), ..peaks })
     }
 
-    /// Leaves the peak of θ only.
-    #[cfg(feature = "lanes")]
-    pub(super) fn of_theta_alone(&mut self) {
+    /// The peak of θ alone.
+    pub fn of_theta(mut self) -> Peaks {
         self.searched.truncate(1);
-        self.with.clear();
+        Peaks { with: Vec::new(), pair: None, ..self }
+    }
+
+    /// Whether θ alone is searched, which rests in full contact.
+    #[inline]
+    pub(super) fn is_of_theta(&self) -> bool {
+        self.pair.is_none()
     }
 
     /// Whether the peaks are of a motion that has begun.
@@ -252,7 +249,9 @@ impl Peaks {
                 }
                 if of.peak.may_change(bound, times[0]) {
                     let off = off.get_or_insert_with(|| piece.whole().off_chord());
-                    let off = of.off_chord(structure, most, off.as_ref());
+                    let reach = &structure.reaches()[of.place];
+                    let off =
+                        off.as_ref().map_or(f64::INFINITY, |off| reach.off_chord(of.output, structure, most, off));
                     if off < f64::INFINITY {
                         bound = bound.min(see_first(of).abs().max(last.abs()) + off);
                     }
@@ -281,18 +280,6 @@ impl Peaks {
             bound > 0.0 && of.peak.may_be_same(bound)
         };
         self.searched.iter().any(may_be_same)
-    }
-
-    /// Puts what may equal or exceed a peak of the structure of `engine` in its present phase into a `lane` of `sought`.
-    #[cfg(feature = "lanes")]
-    pub(super) fn seek<Q: Coordinates>(&self, engine: &crate::Engine<Q>, lane: usize, sought: &mut Sought<Q>) {
-        let (structure, phase) = (engine.structure(), engine.motion().phase);
-        let quantity = |of: &Searched| {
-            let reach = &structure.reaches()[of.place];
-            let (turn, elastic) = reach.weights(of.output, structure, phase);
-            (of.peak.least(), turn, if reach.is_curved { f64::INFINITY } else { 0.0 }, elastic)
-        };
-        sought.seek((lane, structure.modes().len()), self.searched.iter().map(quantity));
     }
 
     /// Whether magnitudes of `structure` within `bounds` at `time` (s) or later may change a peak.
@@ -330,7 +317,7 @@ impl Peaks {
     /// Looks for larger forces of the dissipators in `piece`. They depend on θ and θ̇ alone, and on y on ground that gives.
     pub(super) fn look_at_dissipators<Q: Coordinates>(&mut self, piece: &Piece<Q>) {
         let (structure, before) = (piece.level.structure(), piece.before);
-        let (angles, pair) = (self.tendon.angles, &mut self.pair);
+        let (angles, Some(pair)) = (self.tendon.angles, &mut self.pair) else { return };
         let forces = |state: &State<Q>| {
             let x = Instant::of(structure, before.phase, state, piece.load.value);
             of_pair(restraints(&x, angles, &before.dissipators))
@@ -375,7 +362,7 @@ impl Peaks {
         expansion.in_parts(&mut |part, is_finest| {
             let (structure, most) = (part.piece.level.structure(), part.most());
             let (reach, start) = (part.arc.reach, part.time(0.0));
-            let (mut ends, mut off, mut over) = (None, None, None);
+            let (mut ends, mut over) = (None, None);
             let bounds = bounds.iter().copied().chain(std::iter::repeat(f64::INFINITY));
             for (of, bound) in self.searched.iter_mut().zip(bounds) {
                 if !of.peak.may_change(bound, start) {
@@ -386,22 +373,16 @@ impl Peaks {
                     continue;
                 }
                 let ends = ends.get_or_insert_with(|| [part.shown(0.0), part.shown(reach)]);
-                let [at_start, at_end] = [of.see(&ends[0], start), of.see(&ends[1], part.time(reach))];
-                let off = off.get_or_insert_with(|| OffChord::of(part.arc, [0, 1].map(|i| ends[i].theta)));
-                let bound = bound.min(at_start.abs().max(at_end.abs()) + of.off_chord(structure, &most, Some(off)));
+                of.see(&ends[0], start);
+                let at_end = of.see(&ends[1], part.time(reach));
                 let Searched { output, peak, .. } = of;
-                if !peak.may_change(bound, start) {
-                    continue;
-                }
                 let series = output.smooth(over.get_or_insert_with(|| part.over(turns)));
                 if !is_finest && !output.is_component() && !part.has_converged(&series, at_end, CONVERGED) {
                     return false;
                 }
-                if peak.may_change(extremes::bound(series.used(), reach), start) {
-                    extremes::stationary_points(series.used(), reach, |sigma| {
-                        peak.see(output.of(&part.shown(sigma)), part.time(sigma));
-                    });
-                }
+                extremes::stationary_points(series.used(), reach, |sigma| {
+                    peak.see(output.of(&part.shown(sigma)), part.time(sigma));
+                });
             }
             true
         });

@@ -148,7 +148,7 @@ fn no_peak_is_missed() {
             let per_second = |of: fn(&Load) -> f64| (of(&target) - of(&load)) / h;
             let slope =
                 Load { a_g: per_second(|of| of.a_g), F_t: per_second(|of| of.F_t), a_v: per_second(|of| of.a_v) };
-            let (mut all, mut theta) = (peaks.watch(), alone.watch_theta());
+            let (mut all, mut theta) = (peaks.watch(), alone.of_theta().watch());
             let watch = &mut (&mut dense, &mut (&mut (&mut all, &mut theta), &mut validity));
             advances.push((h, LinearLoad { value: load, slope }));
             let progress = engine.advance(h, LinearLoad { value: load, slope }, watch);

@@ -1,14 +1,15 @@
 //! Watchers of several runs seek this in steps that are taken together: limits, bounds of the quantities, and the steps that are shown
 //! later. A step that may hold a peak is put off, since the steps after it mostly hold larger values.
 
-use super::Engine;
+use super::number::{Answers, Lanes, MOST, Row, load, put};
+use crate::engine::Engine;
 use crate::engine::motion::Motion;
 use crate::engine::piece::{Piece, Watch};
 use crate::mechanics::lateral::Coordinates;
 use crate::numbers::Real;
-use crate::numbers::lanes::{Answers, Lanes, MOST, Row, load, put};
 use crate::{LinearLoad, Ramp, State};
 use pulp::Simd;
+use std::ops::Range;
 
 /// The most modes of structures that leap together.
 pub(super) const MOST_MODES: usize = 8;
@@ -16,9 +17,8 @@ pub(super) const MOST_MODES: usize = 8;
 /// Factor by which rounding may raise a bound that is summed in another order.
 pub(super) const ROUNDING: f64 = 1.0 + 1e-13;
 
-/// How many steps of a run are put off before those that have been beaten are dropped, and how many at most.
-const PUT_OFF: usize = 16;
-const MOST_PUT_OFF: usize = 256;
+/// How many steps of a run are put off at most, but for those that have been beaten.
+const MOST_PUT_OFF: usize = 64;
 
 /// Part of a bound from below that is not used, so that rounding and [peaks that are the same](crate::run::peaks) never matter.
 const SLACK: f64 = 1e-9;
@@ -41,12 +41,8 @@ pub(crate) struct Sought<Q> {
     quantities: Vec<Quantity>,
     /// A piece must be seen at once if |θ| may be no more than the first, or is at least the second at its end.
     pub turned: [Row; 2],
-    /// Steps that may hold a peak, in order of time.
-    put_off: [Vec<PutOff<Q>>; MOST],
-    /// Bounds of the quantities over the last step.
-    bounds: Vec<Row>,
-    /// Room for bounds of steps.
-    spare: Vec<Vec<f64>>,
+    /// Steps that may hold a peak, in order of time, and bounds of the quantities over them.
+    put_off: [(Vec<PutOff<Q>>, Vec<f64>); MOST],
 }
 
 /// A quantity of each run.
@@ -60,20 +56,21 @@ struct Quantity {
     elastic: [[Row; 2]; MOST_MODES],
     /// Bound of what no weights bound: infinite if there are no weights, so that every step is shown.
     rest: Row,
+    /// Bound over the last step.
+    bound: Row,
 }
 
 /// A step that is shown to a watcher after others.
 #[derive(Debug)]
 struct PutOff<Q> {
-    /// The sample that ends it.
-    sample: usize,
     /// s.
+    time: f64,
     duration: f64,
     a_g: Ramp,
     start: State<Q>,
     end: State<Q>,
-    /// Bounds of what is sought.
-    bounds: Vec<f64>,
+    /// The place of its bounds.
+    bounds: Range<usize>,
 }
 
 /// u and u̇ of each of N modes, and θ, or magnitudes of these.
@@ -127,6 +124,14 @@ impl Quantity {
         }
         [elastic, turning * of.theta]
     }
+
+    /// Bounds of the part of u and u̇ and of all of the quantity, given those of the motion and of 1 − cos θ.
+    #[inline(always)]
+    fn most<S: Simd, const N: usize>(&self, simd: S, of: &Turned<S, N>, versine: Lanes<S>) -> [Lanes<S>; 2] {
+        let [elastic, turning] = self.weigh::<S, N, false>(simd, of);
+        let [of_versine, rest] = [&self.turn[2], &self.rest].map(|row| Lanes::load(simd, row));
+        [elastic, (elastic + turning + of_versine * versine + rest) * versine.like(ROUNDING)]
+    }
 }
 
 impl<Q: Coordinates> Sought<Q> {
@@ -160,9 +165,7 @@ impl<Q: Coordinates> Sought<Q> {
         let zero = Lanes::splat(simd, 0.0);
         let (mut passed, versine) = (zero.is_at_most(zero), zero.like(0.5) * most.theta * most.theta);
         for of in &self.quantities {
-            let [elastic, turning] = of.weigh::<S, N, false>(simd, most);
-            let bound = elastic + turning + Lanes::load(simd, &of.turn[2]) * versine + Lanes::load(simd, &of.rest);
-            let bound = bound * zero.like(ROUNDING);
+            let [_, bound] = of.most(simd, most, versine);
             passed = passed & (bound.is_less(Lanes::load(simd, &of.least)) | bound.is_at_most(zero));
         }
         passed
@@ -181,13 +184,11 @@ impl<Q: Coordinates> Sought<Q> {
         let (theta, one, zero) = (most.theta, most.theta.like(1.0), most.theta.like(0.0));
         let versine = one.like(0.5) * theta * theta;
         let cubic = versine * theta / one.like(3.0);
-        self.bounds.resize(self.quantities.len(), [0.0; MOST]);
-        for (of, bound) in self.quantities.iter_mut().zip(&mut self.bounds) {
-            let [elastic, turning] = of.weigh::<S, N, false>(simd, &most);
+        for of in &mut self.quantities {
+            let [elastic, simple] = of.most(simd, &most, versine);
             let [_, of_cubic, of_versine] = load(simd, &of.turn);
             let [least, rest] = [&of.least, &of.rest].map(|row| Lanes::load(simd, row));
-            let simple = (elastic + turning + of_versine * versine + rest) * one.like(ROUNDING);
-            simple.store(bound);
+            simple.store(&mut of.bound);
             let seen = where_so.choose(simple, zero);
             if (seen.is_less(least) | seen.is_at_most(zero)).all() {
                 continue;
@@ -209,7 +210,8 @@ impl<Q: Coordinates> Sought<Q> {
             let (largest, middle) = (start.abs().max(end.abs()), (half * (before + after)).abs());
             let among = first.abs().max(before.abs()).max(after.abs()).max(last.abs()).max(middle);
             // what is rounded is of the size of the sum of all magnitudes
-            simple.min(largest.max(among + off) + curved + simple * one.like(ROUNDING - 1.0)).store(bound);
+            let bound = largest.max(among + off) + curved + simple * one.like(ROUNDING - 1.0);
+            simple.min(bound).store(&mut of.bound);
             let known = largest.max(middle - off) - curved - simple * one.like(SLACK);
             where_so.choose(least.max(known), least).store(&mut of.least);
         }
@@ -225,56 +227,38 @@ impl<Q: Coordinates> Sought<Q> {
     pub(super) fn put_off(
         &mut self,
         lane: usize,
-        (sample, duration, a_g): (usize, f64, Ramp),
+        (time, duration, a_g): (f64, f64, Ramp),
         [start, end]: [State<Q>; 2],
     ) -> bool {
-        let mut bounds = self.spare.pop().unwrap_or_default();
-        bounds.extend(self.bounds.iter().map(|of| of[lane]));
-        self.put_off[lane].push(PutOff { sample, duration, a_g, start, end, bounds });
-        if self.put_off[lane].len().is_multiple_of(PUT_OFF) {
-            let mut steps = std::mem::take(&mut self.put_off[lane]);
-            steps.retain_mut(|step| {
-                let stays = self.may_hold(lane, &step.bounds);
-                if !stays {
-                    self.put_by(std::mem::take(&mut step.bounds));
-                }
-                stays
-            });
-            self.put_off[lane] = steps;
+        let (mut steps, mut all) = std::mem::take(&mut self.put_off[lane]);
+        let bounds = all.len()..all.len() + self.quantities.len();
+        all.extend(self.quantities.iter().map(|of| of.bound[lane]));
+        steps.push(PutOff { time, duration, a_g, start, end, bounds });
+        if steps.len() == MOST_PUT_OFF {
+            steps.retain(|step| self.may_hold(lane, &all[step.bounds.clone()]));
         }
-        self.put_off[lane].len() < MOST_PUT_OFF
+        let may_go_on = steps.len() < MOST_PUT_OFF;
+        self.put_off[lane] = (steps, all);
+        may_go_on
     }
 
-    /// Shows what has been put off of the run of `engine` in `lane`, which `entered` at this one of the samples at `times`.
-    pub(super) fn show<W: Passes<Q>>(
-        &mut self,
-        lane: usize,
-        (times, entered): (&[f64], usize),
-        engine: &Engine<Q>,
-        watch: &mut W,
-    ) {
+    /// Shows what has been put off of the run of `engine` in `lane`, which entered with the motion of `engine`.
+    pub(super) fn show<W: Passes<Q>>(&mut self, lane: usize, engine: &Engine<Q>, watch: &mut W) {
         let Engine { level, motion, room, .. } = engine;
-        let mut steps = std::mem::take(&mut self.put_off[lane]);
-        for PutOff { sample, duration, a_g, start, end, bounds } in steps.drain(..) {
-            let is_later = sample > entered;
-            if is_later {
+        let (mut steps, mut all) = std::mem::take(&mut self.put_off[lane]);
+        for PutOff { time, duration, a_g, start, end, bounds } in &steps {
+            if *time > motion.time {
                 watch.pass();
             }
-            if self.may_hold(lane, &bounds) {
-                let time = if is_later { times[sample - 1] } else { motion.time };
-                let before = &Motion { time, state: start, ..*motion };
-                let load = LinearLoad::default().on_ground(a_g.into());
-                let piece = Piece { before, duration, load, end, level: &**level, arc: None, room };
-                watch.put_off(&piece, &bounds);
+            let bounds = &all[bounds.clone()];
+            if self.may_hold(lane, bounds) {
+                let before = &Motion { time: *time, state: *start, ..*motion };
+                let load = LinearLoad::default().on_ground((*a_g).into());
+                let piece = Piece { before, duration: *duration, load, end: *end, level: &**level, arc: None, room };
+                watch.put_off(&piece, bounds);
             }
-            self.put_by(bounds);
         }
-        self.put_off[lane] = steps;
-    }
-
-    /// Puts the room for bounds by for another step.
-    fn put_by(&mut self, mut bounds: Vec<f64>) {
-        bounds.clear();
-        self.spare.push(bounds);
+        (steps.clear(), all.clear());
+        self.put_off[lane] = (steps, all);
     }
 }

@@ -1,18 +1,45 @@
 //! Leaps in full contact of several runs, from sample to sample. The operations on the numbers of a run are those of its level, in the
 //! same order.
 
-use super::Engine;
-use super::lanes::Samples;
+use super::number::{Answers, Lanes, MOST, Row, load, put};
+use super::rocking::{Samples, by_equations_5_and_6};
 use super::sought::{Bend, MOST_MODES, Passes, Sought, Stretch, Turned};
+use crate::engine::Engine;
+use crate::levels::Elastic;
 use crate::levels::full_contact::ExactContact;
-use crate::levels::level::{Leaping, off_chord};
+use crate::levels::level::{Level, off_chord};
+use crate::levels::modes::ManyModes;
 use crate::levels::oscillator::{Flow, Oscillator};
+use crate::levels::start::Start;
 use crate::mechanics::lateral::Coordinates;
+use crate::mechanics::restraint::Dissipators;
 use crate::numbers::Real;
-use crate::numbers::lanes::{Answers, Lanes, MOST, Row, load, put};
 use crate::series::taylor::LONGEST_SPAN;
-use crate::{Ramp, State};
+use crate::{Mode, Ramp, State};
 use pulp::{Simd, WithSimd};
+use std::any::Any;
+use std::slice::from_ref;
+
+/// How leaps in full contact are found: while Σ |M_j| |u_j| stays below `hold`, the M_j the moments of the modes for a unit of u, or
+/// while |Σ M_j u_j| certainly does.
+pub(super) struct Leaping<'a> {
+    modes: &'a [ExactContact],
+    moment: fn(&Mode) -> f64,
+    hold: f64,
+}
+
+/// How leaps of this `level` with these `dissipators` are found, if they are found like this.
+pub(super) fn leaping<'a, Q: Coordinates>(level: &'a dyn Level<Q>, dissipators: &Dissipators) -> Option<Leaping<'a>> {
+    if let Some(Elastic { one, contact, .. }) = by_equations_5_and_6(level) {
+        return Some(Leaping { modes: from_ref(contact.as_ref()?), moment: |_| 1.0, hold: one.u_cr });
+    }
+    let of: &ManyModes<Q> = (level as &dyn Any).downcast_ref()?;
+    let (structure, modes) = (level.structure(), of.contact.as_ref()?);
+    let has_rest = of.rigid.is_some() || of.base.S_res != 0.0 || structure.gauges().has_feedthrough;
+    let hold = level.liftable()?.least_hold(&Start::<Q> { dissipators, ..Start::default() });
+    let moment = |mode: &Mode| mode.height * mode.stiffness;
+    (!has_rest && structure.foundation().is_none()).then_some(Leaping { modes, moment, hold })
+}
 
 /// How many leaps are looked at to find the two durations of most of them.
 const LOOKED_AHEAD: usize = 4;
@@ -64,7 +91,7 @@ impl<'a, Q: Coordinates> Contacts<'a, Q> {
         watch.seek(engine, lane, &mut self.sought);
         (self.samples[lane], self.entered[lane], self.is_there[lane]) = (samples, samples.next, 1.0);
         (self.state[lane], self.age[lane]) = (motion.state, motion.chatter.age);
-        let Leaping { modes, moment, hold } = engine.level.leaping(&motion.dissipators).expect("it may leap");
+        let Leaping { modes, moment, hold } = leaping(&*engine.level, &motion.dissipators).expect("it may leap");
         (self.hold[lane], self.longest[lane]) = (hold, LONGEST_SPAN / structure.vibration().rocking[1]);
         let of = |exact: &ExactContact| exact.oscillator;
         let is_other = !self.exact[lane].iter().map(of).eq(modes.iter().map(of));
@@ -133,7 +160,7 @@ impl<'a, Q: Coordinates> Contacts<'a, Q> {
         self.is_there[lane] = 0.0;
         let Samples { times, next, .. } = self.samples[lane];
         if next > self.entered[lane] {
-            self.sought.show(lane, (times, self.entered[lane]), engine, watch);
+            self.sought.show(lane, engine, watch);
             let motion = &mut engine.motion;
             motion.state = self.state_of(lane, |j| self.modes[j].motion.map(|of| of[lane]));
             (motion.chatter.age, motion.time) = (self.age[lane], times[next - 1]);
@@ -175,7 +202,7 @@ impl<'a, Q: Coordinates> Contacts<'a, Q> {
             let duration = times[sample] - times[sample - 1];
             let a_g = Ramp::between(a_g[sample - 1], a_g[sample], duration);
             let states = stretch.ends.map(|of| self.state_of(lane, |j| [of.u[j].of(lane), of.u_dot[j].of(lane)]));
-            if !self.sought.put_off(lane, (sample, duration, a_g), states) {
+            if !self.sought.put_off(lane, (times[sample - 1], duration, a_g), states) {
                 self.samples[lane].last = self.samples[lane].last.min(sample + 1);
                 may_go_on = false;
             }
