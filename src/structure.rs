@@ -16,6 +16,7 @@ pub mod quantity;
 
 use crate::series::bisection::last_where;
 use base::{Base, Body};
+use description::{Description, ManyMasses};
 use gauge::{Gauges, Reach, rest};
 use ground::{FOOTING, Foundation, Ground};
 use mode::{Floor, MOST_MODES, Mode, Modes, Vibration};
@@ -61,9 +62,16 @@ pub(crate) const OF_FLOOR: [Quantity<Floor>; 2] = [
 /// A rigid base that carries modes. The mass above the foundation that the modes do not carry turns rigidly with the base. Copies share
 /// their numbers.
 #[derive(Clone, Debug)]
-pub struct Structure(Arc<Whole>, Units);
+pub struct Structure(Arc<Whole>, Provenance);
 
-/// Units are no part of what is compared.
+/// How the numbers of a structure were given.
+#[derive(Clone, Debug, Default)]
+struct Provenance {
+    units: Units,
+    description: Option<Arc<Description>>,
+}
+
+/// How the numbers were given is no part of what is compared.
 impl PartialEq for Structure {
     fn eq(&self, other: &Structure) -> bool {
         self.0 == other.0
@@ -204,14 +212,14 @@ impl Structure {
             of_mode: one,
             reaches: Reaches::default(),
         };
-        Structure(Arc::new(whole), Units::default())
+        Structure(Arc::new(whole), Provenance::default())
     }
 
     /// This structure with numbers that `change` writes.
     fn changed(&self, change: impl FnOnce(&mut Whole)) -> Structure {
         let mut whole = Whole { reaches: Reaches::default(), ..Whole::clone(&self.0) };
         change(&mut whole);
-        Structure(Arc::new(whole), self.1)
+        Structure(Arc::new(whole), self.1.clone())
     }
 
     /// This structure on `ground` that gives, with at most 21 modes. The structure has no numbers of one mass any more: it is moved as
@@ -229,13 +237,13 @@ impl Structure {
             return Ok(self.on_rigid_ground());
         }
         let coordinates = [kept.modes(), &[Mode { mass: 1.0, ..Mode::default() }; FOOTING]].concat();
-        Ok(kept.standing(foundation, coordinates))
+        Ok(kept.standing(foundation, coordinates).redescribed(|description| description.ground = Some(ground.clone())))
     }
 
     /// This structure without ground that gives.
     pub(crate) fn on_rigid_ground(&self) -> Structure {
         match self.foundation() {
-            Some(_) => self.standing(None, self.modes().to_vec()),
+            Some(_) => self.standing(None, self.modes().to_vec()).redescribed(|description| description.ground = None),
             None => self.clone(),
         }
     }
@@ -275,7 +283,8 @@ impl Structure {
     pub fn keeping(&self, count: usize) -> Result<Structure, Refused> {
         let modes = self.0.modes.len();
         ensure(count <= modes, || format!("{count} modes cannot be kept of {modes}: keep 0 to {modes}"))?;
-        Ok(self.with_lowest(count))
+        let keep = |many: &mut ManyMasses| many.keep = Some(count as i64);
+        Ok(self.with_lowest(count).redescribed(|description| description.many.iter_mut().for_each(keep)))
     }
 
     /// This structure as the level `rigid` of one mass shows it: floors and gauges know no mode.
@@ -287,12 +296,35 @@ impl Structure {
 
     /// This structure, whose numbers were given in `units`, in which its doubts name them.
     pub fn measured_in(self, units: Units) -> Structure {
-        Structure(self.0, units)
+        Structure(self.0, Provenance { units, ..self.1 })
+    }
+
+    /// This structure, of which the numbers of `description` were given.
+    fn described_as(self, description: &Description) -> Structure {
+        Structure(self.0, Provenance { description: Some(Arc::new(description.clone())), ..self.1 })
+    }
+
+    /// This structure with what `change` makes of the numbers that were given.
+    fn redescribed(self, change: impl FnOnce(&mut Description)) -> Structure {
+        let Some(mut description) = self.1.description.as_deref().cloned() else { return self };
+        change(&mut description);
+        self.described_as(&description)
+    }
+
+    /// The numbers that it was made of; none of a structure of a body and modes.
+    pub fn description(&self) -> Option<&Description> {
+        self.1.description.as_deref()
+    }
+
+    /// Whether it was described as one mass, on whatever ground: its outputs have the names of one mass.
+    #[inline]
+    pub fn is_one_mass(&self) -> bool {
+        self.description().is_some_and(|description| description.many.is_none())
     }
 
     /// The units in which the numbers were given.
     pub fn units(&self) -> Units {
-        self.1
+        self.1.units
     }
 
     /// The places of the `count` modes of the lowest frequencies.
@@ -310,7 +342,8 @@ impl Structure {
         let shape = |floor: &Floor| Modes::new(&Vec::from_iter(kept.iter().map(|j| floor.shape.of[*j])));
         let floors = Vec::from_iter(self.0.floors.iter().map(|floor| Floor { shape: shape(floor), ..*floor }));
         let kept = Structure::of(self.0.body, &Vec::from_iter(kept.iter().map(|j| self.0.modes[*j])), &floors, None);
-        self.on_own_ground(kept).expect("the rest of the modes rides rigidly, which makes the base heavier and stiffer")
+        self.on_own_ground(Structure(kept.0, self.1.clone()))
+            .expect("the rest of the modes rides rigidly, which makes the base heavier and stiffer")
     }
 
     /// All numbers by which its motion differs from that of another structure.
@@ -332,8 +365,8 @@ impl Structure {
     /// The parameters of one mass. Many masses have those of the base, and the lowest mode gives f_fc and zeta_fc. m and H are NaN, and
     /// so is r if no coefficient is given.
     pub fn parameters(&self) -> Parameters {
-        if let Some(one) = self.one() {
-            return *one.parameters();
+        if let Some(Description { parameters, many: None, .. }) = self.description() {
+            return *parameters;
         }
         let [f_fc, zeta_fc] = self.lowest().map_or([f64::NAN; 2], |mode| [mode.omega() / TAU, mode.zeta()]);
         self.0.body.over(Parameters { m: f64::NAN, H: f64::NAN, f_fc, zeta_fc, ..Parameters::EVISON })
@@ -341,12 +374,15 @@ impl Structure {
 
     /// This structure with these `parameters`; of many masses only the parameters of the base are changed.
     pub fn with(&self, parameters: Parameters) -> Result<Structure, Refused> {
-        if self.one().is_some() {
-            return Structure::new(parameters);
+        if let Some(of @ Description { many: None, .. }) = self.description() {
+            return Description { parameters, ..of.clone() }.structure();
         }
         let Body { m_s, S_1, I_2, .. } = self.0.body;
         let body = Body::of(&parameters, Some(parameters.r).filter(|r| !r.is_nan()), [m_s, S_1, I_2]);
-        self.on_own_ground(Structure::of_body(body, &self.0.modes, &self.0.floors)?)
+        let of_body = Structure::of_body(body, &self.0.modes, &self.0.floors)?;
+        let of_body =
+            Structure(of_body.0, self.1.clone()).redescribed(|description| description.parameters = parameters);
+        self.on_own_ground(of_body)
     }
 
     /// This structure as engines of one coordinate move it, if one mode is all of it: the coordinate is scaled so that the mode takes the
@@ -373,7 +409,8 @@ impl Structure {
         let floor =
             |floor: &Floor| Floor { shape: floor.shape.with(&Modes::default(), |own, _| own * share), ..*floor };
         let floors = Vec::from_iter(self.0.floors.iter().map(floor));
-        Some(Structure::of(self.0.body, &[mode], &floors, None).changed(|whole| whole.of_mode = Some(of_mode)))
+        let of_one = Structure::of(self.0.body, &[mode], &floors, None).changed(|whole| whole.of_mode = Some(of_mode));
+        Some(Structure(of_one.0, self.1.clone()))
     }
 
     /// The numbers of one mass of a structure that engines of one coordinate move.
@@ -477,7 +514,8 @@ impl From<OneMass> for Structure {
         let &Parameters { m, H, r, .. } = one.parameters();
         let body = Body::of(one.parameters(), Some(r), [m, m * H, m * H * H]);
         let floor = Floor { mass: m, height: H, shape: Modes::new(&[1.0]) };
-        Structure::of(body, &[one.mode], &[floor], Some(one))
+        let description = Description { parameters: *one.parameters(), many: None, ground: None };
+        Structure::of(body, &[one.mode], &[floor], Some(one)).described_as(&description)
     }
 }
 

@@ -3,6 +3,7 @@
 import functools
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import fmpy
@@ -13,7 +14,7 @@ import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
 from frames import FRAMES, Ties, scene, ties_of, toml
-from host import output, simulate, write
+from host import Fmu, output, simulate, write
 from test_ground import MCMANUS, record
 
 FRAME, N = FRAMES["frame"], 3
@@ -98,6 +99,50 @@ def test_ground_is_known_and_a_fixed_base_has_no_outputs_of_it(export_frame):
         assert fixed.get("theta", "y", "uplift") == [0, 0, 0] and fixed.get("a_t_max[3]") > 1
     host = fmpy.simulate_fmu(fmu.path, fmi_type="ModelExchange", stop_time=0.2, start_values={"detail": 6}, output=["y", "N_left"])
     assert (host["y"] == 0).all() and np.isnan(host["N_left"]).all()
+
+
+@pytest.mark.parametrize("fmi", (2, 3))
+def test_numbers_that_a_host_sets_are_those_that_an_export_has(export_frame, fmi):
+    """To the last bit: the motion and all that is calculated. A refusal names the number."""
+    springs, stiff = "k_v = 5e8\nzeta_v = 0.1\nn_points = 3", FRAME.stiffness
+    softer, taller = replace(FRAME, stiffness=(stiff[0], 3e7, stiff[2])), replace(FRAME, masses=(5e4, *FRAME.masses[1:]), heights=(*FRAME.heights[:2], 11.5), zeta=0.03)
+    cases = [({"B": 1.7}, (replace(FRAME, B=1.7), Ties(), springs)), ({"k[2]": 3e7}, (softer, Ties(), springs)),
+             ({"m[1]": 5e4, "h[3]": 11.5, "zeta": 0.03}, (taller, Ties(), springs)),
+             ({"k_v": 7e8, "zeta_v": 0.3, "kr_ratio": 0.5}, (FRAME, Ties(), "k_v = 7e8\nzeta_v = 0.3\nkr_ratio = 0.5\nn_points = 3")),
+             ({"P_0": 4e5, "k_t": 1e6}, (FRAME, Ties(P_0=4e5, k_t=1e6), springs))]
+    base, _ = export_frame(ground=springs, fmi=fmi)
+    calculated = [of.name for of in base.description.modelVariables if of.causality == "calculatedParameter"]
+    names = [*calculated, "theta", "y", "P_t", "V_t", *floors("u", "a_t"), "P_t_max", "N_left"]
+
+    def moved(instance):
+        instance.set(a_g=6.0)
+        instance.step(0.1)
+        instance.set(a_g=-5.0)
+        instance.step(0.4)
+        return instance.get(*names)
+
+    for values, (frame, ties, ground) in cases:
+        exported, _ = export_frame(frame, ties, ground=ground, fmi=fmi)
+        with base.start(peaks=True, **values) as one, exported.start(peaks=True) as other:
+            np.testing.assert_array_equal(moved(one), moved(other), err_msg=str(values))
+    with base.instance() as instance:
+        with pytest.raises(FMICallException):
+            instance.initialize(**{"h[2]": 3.0})
+        assert "floor 2 is at h = 3 m and the floor below it at 3.5 m" in instance.messages[-1].text
+
+
+def test_a_pier_has_its_names_and_its_parameters_on_springs(export, tmp_path):
+    (tmp_path / "pier.toml").write_text("m = 130.1\nm0 = 65.4\nH = 1.84\nB = 0.285\nJ0 = 10.7\nf_fc = 5\nzeta_fc = 0.02\n[ground]\nf_v = 12\n")
+    for fmi in 2, 3:
+        fmu = Fmu(export(None, None, "--parameters", tmp_path / "pier.toml", fmi=fmi).path)
+        states = [of.derivative.name for of in fmu.description.modelVariables if of.derivative]
+        assert states == ["u", "y", "u_dot", "y_dot", "theta", "theta_dot"]
+        with fmu.start(H=1.9, f_fc=4.0, f_v=20.0) as instance:
+            instance.set(a_g=4.0)
+            instance.step(0.2)
+            theta, u, a_t, V_t, M_t, N_left, N_right = instance.get("theta", "u", "a_t", "V_t", "M_t", "N_left", "N_right")
+            assert abs(theta) > 1e-3 and abs(u) > 1e-4 and N_left * N_right == 0
+            assert (V_t, M_t) == pytest.approx((130.1 * a_t, 130.1 * 1.9 * a_t), rel=1e-12)
 
 
 def test_forces_on_floors_accelerate_as_the_physical_equations_say(export_frame):

@@ -6,14 +6,13 @@ use anyhow::{Context, bail};
 use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource};
 use rocking::digits::short;
 use rocking::structure::derived::Derived;
-use rocking::structure::description::Described;
 use rocking::structure::doubts::{all_doubted, doubted};
 use rocking::structure::ground;
 use rocking::structure::natural_quantities::{Given, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::quantity::Quantity;
 use rocking::{Parameters, Structure};
-use rocking_report::input;
+use rocking_report::{input, structure_file};
 use std::path::{Path, PathBuf};
 
 #[derive(clap::Args, Debug)]
@@ -57,7 +56,7 @@ impl StructureArgs {
         let numbers = &self.numbers.0;
         Ok(match (&self.parameters, self.preset) {
             (Some(path), _) => {
-                let read = || of_file(&input::text(path)?);
+                let read = || structure_file::read(&input::text(path)?);
                 let structure = read().with_context(|| format!("parameters in {}", input::name(path)))?;
                 match structure.one() {
                     Some(one) => numbers.structure(Some(one.parameters()))?.measured_in(structure.units()),
@@ -77,15 +76,6 @@ impl StructureArgs {
             (None, None) => Structure::new(numbers.parameters(on_command_line)?)?,
         })
     }
-}
-
-/// The structure that the TOML `text` describes, of many masses if there are tables of them.
-pub fn of_file(text: &str) -> anyhow::Result<Structure> {
-    let keys: toml::Table = toml::from_str(text)?;
-    if ["base", "storeys", "floors", "modes"].iter().any(|key| keys.contains_key(*key)) {
-        return Ok(toml::from_str::<Described>(text)?.structure()?);
-    }
-    Ok(toml::from_str::<Given>(text)?.structure(None)?)
 }
 
 fn option(name: &'static str, unit: &'static str, help: String) -> Arg {

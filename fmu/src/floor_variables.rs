@@ -7,17 +7,22 @@ use rocking::Structure;
 use rocking::mechanics::outputs::ACCELERATION;
 use rocking::mechanics::state::COMPONENTS;
 use rocking::structure::derived::OF_MODE;
+use rocking::structure::description::Description;
 use std::collections::HashSet;
 
-/// The names among `names` that many masses have for `of`, a name of one mass. On ground that gives y moves like a mode.
-pub(crate) fn all_of(of: &str, names: &HashSet<Text>) -> Vec<Text> {
-    let (symbol, y) = match of {
-        "u" => ("q", "y"),
-        "u_dot" => ("q_dot", "y_dot"),
-        of => (of, ""),
+/// The names among the `knowns` that a structure has for `of`, a name of one mass. On ground that gives y moves like a mode.
+pub(crate) fn all_of(of: &str, knowns: &HashSet<Text>) -> Vec<Text> {
+    let named: &[&str] = match of {
+        "u" => &["q", "y"],
+        "u_dot" => &["q_dot", "y_dot"],
+        "H" => &["h"],
+        "f_fc" => &["k"],
+        "zeta_fc" => &["zeta"],
+        "f_v" => &["f_v", "k_v", "zeta_v", "c_v", "kr_ratio", "k_r"],
+        of => &[of],
     };
-    let is_one = |name: &&Text| name.split('[').next() == Some(symbol) || **name == y;
-    names.iter().filter(is_one).cloned().collect()
+    let is_meant = |name: &str| name == of || name.split('[').next().is_some_and(|symbol| named.contains(&symbol));
+    knowns.iter().filter(|name| is_meant(name)).cloned().collect()
 }
 
 /// Number of lateral coordinates that are states: of the modes, and on ground that gives y.
@@ -36,13 +41,14 @@ fn kind(structure: &Structure, place: usize) -> (usize, usize, bool) {
 fn name(structure: &Structure, place: usize) -> String {
     match kind(structure, place) {
         (kind, _, true) => ["y", "y_dot"][kind].to_owned(),
-        (kind @ 0..2, number, _) if structure.one().is_none() => format!("{}[{number}]", ["q", "q_dot"][kind]),
+        (kind @ 0..2, number, _) if !structure.is_one_mass() => format!("{}[{number}]", ["q", "q_dot"][kind]),
         (kind, ..) => COMPONENTS[kind].to_owned(),
     }
 }
 
-/// The coordinates of the modes.
+/// The states that are no outputs: the coordinates of the modes of many masses, and y on ground that gives.
 pub(crate) fn coordinates(frame: &Structure) -> Vec<Row> {
+    let is_one = frame.is_one_mass();
     let coordinate = |place: usize| {
         let (unit, description) = match kind(frame, place) {
             (0, _, true) => ("m", "height of the middle of the base above the unloaded ground".into()),
@@ -57,12 +63,12 @@ pub(crate) fn coordinates(frame: &Structure) -> Vec<Row> {
         let variable = Variable::real(Causality::Local, name(frame, place), unit, description).from(from);
         (variable.state(), Source::Coordinate(place))
     };
-    (0..2 * lateral_states(frame)).map(coordinate).collect()
+    (0..2 * lateral_states(frame)).filter(|place| !is_one || kind(frame, *place).2).map(coordinate).collect()
 }
 
 /// The derivatives of all states.
 pub(crate) fn state_rates(structure: &Structure) -> Vec<Row> {
-    let (n, is_one) = (lateral_states(structure), structure.one().is_some());
+    let (n, is_one) = (lateral_states(structure), structure.is_one_mass());
     let rate = |place: usize| {
         let (unit, is_velocity) =
             [("m/s", true), ("m/s2", false), ("rad/s", true), ("rad/s2", false)][kind(structure, place).0];
@@ -76,24 +82,27 @@ pub(crate) fn state_rates(structure: &Structure) -> Vec<Row> {
     (0..2 * n + 2).map(rate).collect()
 }
 
-/// Fixed numbers of the base, the modes and the floors.
-pub(crate) fn numbers(frame: &Structure) -> Vec<Row> {
-    let known = |name: String, unit, description: String, value| {
-        (Variable::real(Causality::CalculatedParameter, name, unit, description), Source::Known(value))
+/// The numbers of the base, the modes and the floors that follow from those that the host sets, and their values.
+pub(crate) fn numbers(structure: &Structure) -> Vec<(Variable, f64)> {
+    let calculated = |name: String, unit, description: String, value| {
+        (Variable::real(Causality::CalculatedParameter, name, unit, description), value)
     };
     let number = |([name, unit, description], value): ([&'static str; 3], f64)| {
-        known(name.into(), unit, description.into(), value)
+        calculated(name.into(), unit, description.into(), value)
     };
     let of_modes = OF_MODE.iter().flat_map(|of| {
-        (1..).zip(frame.mode_table()).map(move |(j, mode)| {
-            known(format!("{}[{j}]", of.name), of.unit, format!("mode {j}: {}", of.description), (of.value)(&mode))
+        (1..).zip(structure.mode_table()).map(move |(j, mode)| {
+            calculated(format!("{}[{j}]", of.name), of.unit, format!("mode {j}: {}", of.description), (of.value)(&mode))
         })
     });
-    let of_floors = (1..).zip(frame.floors()).flat_map(|(i, floor): (usize, _)| {
+    let of_floors = (1..).zip(structure.floors()).flat_map(|(i, floor): (usize, _)| {
         [
-            known(format!("m[{i}]"), "kg", format!("mass of floor {i}"), floor.mass),
-            known(format!("h[{i}]"), "m", format!("height of floor {i} above the base"), floor.height),
+            calculated(format!("m[{i}]"), "kg", format!("mass of floor {i}"), floor.mass),
+            calculated(format!("h[{i}]"), "m", format!("height of floor {i} above the base"), floor.height),
         ]
     });
-    frame.derived().map(number).chain(of_modes).chain(of_floors).collect()
+    let of_many = of_modes.chain(of_floors).filter(|_| !structure.is_one_mass());
+    let given = structure.description().map_or(Vec::new(), Description::numbers);
+    let all = structure.derived().map(number).chain(of_many);
+    all.filter(|(variable, _)| given.iter().all(|of| of.name != variable.name)).collect()
 }

@@ -11,9 +11,9 @@ pub(crate) const FORCE: usize = 1;
 
 /// The places in [`LOADS`] of the inputs of `structure`: a_g, F_t and a_v of one mass, or a_g, a_v and a force on each floor.
 pub(crate) fn loads(structure: &Structure) -> Vec<usize> {
-    match structure.one() {
-        Some(_) => (0..LOADS.len()).collect(),
-        None => [0, VERTICAL].into_iter().chain(structure.floors().iter().map(|_| FORCE)).collect(),
+    match structure.is_one_mass() {
+        true => (0..LOADS.len()).collect(),
+        false => [0, VERTICAL].into_iter().chain(structure.floors().iter().map(|_| FORCE)).collect(),
     }
 }
 
@@ -216,7 +216,7 @@ impl Inputs {
     #[inline(always)] // several times at each step
     fn load<Q: Runs>(&self, structure: &Structure, of: impl Fn(&Input) -> f64) -> Load<Q> {
         let (a_g, forces, a_v) = match self.each.as_slice() {
-            [a_g, force, a_v] if Q::IS_ONE => (a_g, slice::from_ref(force), a_v),
+            [a_g, force, a_v] if Q::IS_ONE || force.load == FORCE => (a_g, slice::from_ref(force), a_v),
             [a_g, a_v, forces @ ..] => (a_g, forces, a_v),
             _ => unreachable!("every structure has these inputs"),
         };

@@ -1,8 +1,8 @@
 //! The content of the archive's folder `resources`, found through the URI that the host gives: the numbers of the structure, and
 //! the list of the records that were packed.
 
-use rocking::structure::quantity::Units;
-use rocking::{Body, Floor, Ground, Mode, Modes, Parameters, Refused, Structure};
+use rocking::structure::description::Description;
+use rocking::{Refused, Structure};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -35,14 +35,6 @@ pub struct Contents {
     pub fixed: bool,
 }
 
-/// The numbers from which a structure is made to the same bits.
-#[derive(Serialize, Deserialize)]
-enum Numbers {
-    OneMass(Parameters),
-    /// Each floor with its mass, height and shape.
-    ManyMasses(Units, Body, Vec<Mode>, Vec<(f64, f64, Vec<f64>)>, Option<Box<Ground>>),
-}
-
 /// Why bytes are not the contents of an archive.
 #[derive(Debug, thiserror::Error)]
 pub enum ContentsError {
@@ -64,33 +56,24 @@ pub struct PackedRecord {
 }
 
 impl Contents {
+    /// The numbers that the structure was made of.
+    pub fn description(&self) -> &Description {
+        self.structure.description().expect("an FMU is of a structure that was described")
+    }
+
     /// The bytes of [`CONTENTS_FILE`]. As TOML they would take 200 kB of the library.
     pub fn to_bytes(&self) -> Vec<u8> {
         let Contents { structure, records, vertical, fixed } = self;
-        let floor = |of: &Floor| (of.mass, of.height, of.shape.numbers().to_vec());
-        let many = || {
-            let (floors, ground) = (structure.floors().iter().map(floor).collect(), structure.foundation());
-            let (body, modes) = (*structure.body(), structure.modes().to_vec());
-            Numbers::ManyMasses(structure.units(), body, modes, floors, ground.map(|of| of.ground.clone().into()))
-        };
-        let numbers = structure.one().map_or_else(many, |one| Numbers::OneMass(*one.parameters()));
-        postcard::to_stdvec(&(numbers, records, vertical, fixed)).expect("numbers and text can always be written")
+        let contents = (self.description(), structure.units(), records, vertical, fixed);
+        postcard::to_stdvec(&contents).expect("numbers and text can always be written")
     }
 
     /// The contents of which these are the [`Contents::to_bytes`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Contents, ContentsError> {
-        let Ok(((numbers, records, vertical, fixed), [])) = postcard::take_from_bytes(bytes) else {
+        let Ok(((description, units, records, vertical, fixed), [])) = postcard::take_from_bytes(bytes) else {
             return Err(ContentsError::NoNumbers);
         };
-        let structure = match numbers {
-            Numbers::OneMass(parameters) => Structure::new(parameters)?,
-            Numbers::ManyMasses(units, body, modes, floors, ground) => {
-                let floor =
-                    |(mass, height, shape): (f64, f64, Vec<f64>)| Floor { mass, height, shape: Modes::new(&shape) };
-                let floors = Vec::from_iter(floors.into_iter().map(floor));
-                Structure::of_body(body, &modes, &floors)?.measured_in(units).on(ground.as_deref())?
-            }
-        };
+        let structure = Description::structure(&description)?.measured_in(units);
         Ok(Contents { structure, records, vertical, fixed })
     }
 

@@ -2,9 +2,9 @@
 //! found out about it since.
 
 use crate::failure::Refusal;
-use crate::floor_variables::lateral_states;
+use crate::floor_variables::{lateral_states, numbers};
 use crate::ground::{Digest, GroundRecord, Kept};
-use crate::resources::{Archive, Contents};
+use crate::resources::Archive;
 use crate::setup::Setup;
 use rocking::engine::Settings;
 use rocking::mechanics::load::{LOADS, VERTICAL};
@@ -17,6 +17,7 @@ use rocking::run::validity::{Findings, Limits, Validity};
 use rocking::{Engine, LinearLoad, Load, Piece, State, Structure, Transition, Watch};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
+use std::cell::OnceCell;
 use std::sync::Arc;
 
 /// The structure on its ground.
@@ -34,6 +35,10 @@ pub struct Scene<Q: Runs = f64> {
     pub validity: Findings,
     /// How many lateral coordinates the table has.
     pub lateral: usize,
+    /// The structure at full detail.
+    structure: Structure,
+    /// The numbers that follow from its own, once they are asked for.
+    known: OnceCell<Vec<f64>>,
 }
 
 /// The knowledge of an instance beside the present of a motion that the host integrates.
@@ -76,11 +81,10 @@ impl Setup {
         self.vertical || ground.is_some_and(|record| record.vertical().is_some())
     }
 
-    /// The structure at the start time, on ground that may move vertically if `vertical`.
-    fn engine<Q: Runs>(&self, contents: &Contents, vertical: bool) -> Result<Engine<Q>, Refusal> {
+    /// `structure` at the start time, on ground that may move vertically if `vertical`.
+    fn engine<Q: Runs>(&self, structure: Structure, vertical: bool) -> Result<Engine<Q>, Refusal> {
         let &Setup { detail, tolerance, start_time, .. } = self;
         let settings = Settings { detail, tolerance, vertical, stops: false };
-        let structure = self.parameters.map_or_else(|| Ok(contents.structure.clone()), Structure::new)?;
         let initial = self.initial.on(&structure)?;
         Ok(Q::START(structure, initial, start_time, settings)?)
     }
@@ -101,10 +105,22 @@ impl<Q: Runs> Scene<Q> {
         let (contents, g) = (&archive.contents, setup.g(&archive.contents));
         let source = archive.ground(&setup.record, &setup.record_v, g, kept)?;
         let ground = source.as_deref().map(|source| setup.scaled(source, g)).transpose()?;
-        let engine = setup.engine::<Q>(contents, setup.may_move_vertically(ground.as_ref()))?;
+        let structure = contents.description().with(&setup.numbers).structure()?;
+        let engine = setup.engine::<Q>(structure.clone(), setup.may_move_vertically(ground.as_ref()))?;
         let peaks = Falling::since(setup.start_time, engine.structure(), setup.detail);
         let (validity, lateral) = (Findings::since(setup.start_time), lateral_states(&contents.structure));
-        Ok(Scene { engine, source, ground, elapsed: Elapsed::default(), outside: None, peaks, validity, lateral })
+        Ok(Scene {
+            engine,
+            source,
+            ground,
+            elapsed: Elapsed::default(),
+            outside: None,
+            peaks,
+            validity,
+            lateral,
+            structure,
+            known: OnceCell::new(),
+        })
     }
 
     /// Lets the engine do what `change` makes of its settings.
@@ -119,7 +135,12 @@ impl<Q: Runs> Scene<Q> {
 
     /// Whether the structure has the names of one mass.
     pub fn is_one_mass(&self) -> bool {
-        Q::IS_ONE
+        self.engine.structure().is_one_mass()
+    }
+
+    /// The numbers that follow from those of the structure.
+    pub fn known(&self) -> &[f64] {
+        self.known.get_or_init(|| numbers(&self.structure).into_iter().map(|(_, value)| value).collect())
     }
 
     /// The numbers of a `state`, in the order of the table.

@@ -6,15 +6,15 @@ use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::load::LOADS;
 use rocking::run::ground_motion::Placement;
 use rocking::run::record::Record;
-use rocking::{Detail, GroundMotion, Parameters, State};
+use rocking::{Detail, GroundMotion, State};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The settings before a simulation starts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Setup {
-    /// The parameters of one mass; a host cannot change the numbers of many masses.
-    pub(crate) parameters: Option<Parameters>,
+    /// The numbers of the structure's description that have variables.
+    pub(crate) numbers: Vec<f64>,
     /// With u and u̇ of each floor.
     pub(crate) initial: State<Vec<f64>>,
     pub(crate) detail: Detail,
@@ -43,7 +43,7 @@ impl Setup {
         let at_rest = vec![0.0; contents.structure.floors().len()];
         Setup {
             initial: State { u: at_rest.clone(), u_dot: at_rest, ..State::default() },
-            parameters: contents.structure.one().map(|one| *one.parameters()),
+            numbers: contents.description().numbers().into_iter().map(|of| of.value).collect(),
             tolerance: DEFAULT_TOLERANCE,
             record: contents.default_record().into(),
             record_v: contents.default_vertical().into(),
@@ -53,7 +53,7 @@ impl Setup {
 
     /// The acceleration of gravity, m/s².
     pub(crate) fn g(&self, contents: &Contents) -> f64 {
-        self.parameters.map_or_else(|| contents.structure.base().g, |parameters| parameters.g)
+        contents.description().with(&self.numbers).parameters.g
     }
 
     /// How the inputs act between communication points.

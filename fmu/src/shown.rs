@@ -84,7 +84,7 @@ impl<'a, Q: Runs> Shown<'a, Q> {
             Source::Peak(of) => peak(of).magnitude,
             Source::PeakInstant(of) => peak(of).time,
             Source::Derived(derived) => (derived.value)(structure.one()?),
-            Source::Known(value) => value,
+            Source::Known(which) => *scene.known().get(which)?,
             _ => return None,
         })
     }

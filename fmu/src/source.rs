@@ -6,7 +6,7 @@ use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::run::ground_motion::Placement;
 use rocking::structure::derived::Derived;
 use rocking::structure::quantity::Quantity;
-use rocking::{Detail, Impulse, Output, Parameters, Phase, Reactions};
+use rocking::{Detail, Impulse, Output, Phase, Reactions};
 use std::sync::Arc;
 
 /// The source of the value of a variable.
@@ -30,12 +30,13 @@ pub enum Source {
     /// Transitions so far.
     Transitions,
     Overturned,
-    Parameter(&'static Quantity<Parameters>),
+    /// A number of the structure, by its place among [`Setup::numbers`].
+    Parameter(usize),
     /// An initial value by its place among [`INITIAL_VALUES`], and the floor that has it.
     InitialValue(usize, usize),
     Derived(&'static Derived),
-    /// A number of many masses, which nothing changes.
-    Known(f64),
+    /// A number that follows from those of the structure, by its place among [`Scene::known`](crate::scene::Scene::known).
+    Known(usize),
     Detail,
     /// A ground acceleration, the input and the record; whether it is the vertical one.
     Ground(bool),
@@ -68,7 +69,7 @@ impl Source {
     /// The value of a Real parameter or an initial value.
     pub fn setting(&self, setup: &Setup) -> Option<f64> {
         match self {
-            Source::Parameter(quantity) => Some((quantity.get)(setup.parameters.as_ref()?)),
+            Source::Parameter(which) => setup.numbers.get(*which).copied(),
             Source::InitialValue(which, floor) => Some(setup.initial.numbers()[*which][*floor]),
             Source::Placement(quantity) => Some((quantity.get)(&setup.placement)),
             _ => None,
@@ -92,9 +93,7 @@ impl Source {
             (Source::Detail, Value::Integer(number)) => setup.detail = Detail::ALL[number as usize - 1],
             (Source::Text(of), Value::String(value)) => *of(setup) = value.into(),
             (Source::Switch(of), Value::Boolean(on)) => *of(setup) = on,
-            (Source::Parameter(quantity), Value::Real(value)) => {
-                setup.parameters.iter_mut().for_each(|of| (quantity.set)(of, value));
-            }
+            (Source::Parameter(which), Value::Real(value)) => setup.numbers[*which] = value,
             (Source::InitialValue(which, floor), Value::Real(value)) => {
                 setup.initial.numbers_mut()[*which][*floor] = value;
             }

@@ -365,7 +365,7 @@ impl<Q: Runs> Model for Unit<Q> {
     fn restore(&mut self, bytes: &[u8], has_started: bool) -> Result<(), Failure> {
         let (setup, inputs, course): Condition<Q> = read_state(bytes)?;
         let other = || Failure::BadBytes("it is of another structure");
-        let sizes = |of: &Setup| (of.parameters.is_some(), of.initial.u.len(), of.initial.u_dot.len());
+        let sizes = |of: &Setup| (of.numbers.len(), of.initial.u.len(), of.initial.u_dot.len());
         let is_its = course.is_some() == has_started && sizes(&setup) == sizes(&self.setup);
         let inputs = inputs.in_place_of(&self.inputs).filter(|_| is_its).ok_or_else(other)?;
         let mut scene = None;

@@ -14,7 +14,7 @@ use rocking::run::ground_motion::PLACEMENT;
 use rocking::run::outside_step::INDICATORS;
 use rocking::run::validity::{ASSUMPTIONS, Assumption};
 use rocking::structure::derived::DERIVED;
-use rocking::structure::parameters::PARAMETERS;
+use rocking::structure::description::{DescribedNumber, Description};
 use rocking::structure::quantity::Quantity;
 use rocking::{Output, Structure};
 use rocking_records::LAYOUTS;
@@ -36,14 +36,9 @@ impl Table {
     pub fn new(contents: &Contents) -> Table {
         let (setup, mut rows) = (Setup::new(contents), rows(&contents.structure));
         rows.retain(|(variable, _)| !contents.fixed || variable.data_type != DataType::String);
-        let names: HashSet<_> = rows.iter().map(|(variable, _)| variable.name.clone()).collect();
-        let known = |name: &Cow<'static, str>| match &**name {
-            // on ground that gives all accelerations depend on y
-            of @ ("u" | "u_dot" | "F_t" | "u_0" | "u_dot_0") if contents.structure.one().is_none() => {
-                floor_variables::all_of(of, &names)
-            }
-            _ => names.get(name).cloned().into_iter().collect(),
-        };
+        let is_known = |(variable, _): &&Row| variable.causality != Causality::CalculatedParameter;
+        let knowns: HashSet<_> = rows.iter().filter(is_known).map(|(variable, _)| variable.name.clone()).collect();
+        let known = |name: &Cow<'static, str>| floor_variables::all_of(name, &knowns);
         let started = rows.into_iter().map(|(variable, source)| {
             let depends_on = variable.depends_on.iter().flat_map(known).collect();
             (Variable { start: source.set_value(&setup), depends_on, ..variable }, source)
@@ -51,17 +46,11 @@ impl Table {
         let (variables, sources): (Vec<_>, Vec<_>) = started.unzip();
         Table { variables: variables.into(), sources: sources.into() }
     }
-
-    /// The value of the variable `name`, if nothing can change it.
-    pub fn known(&self, name: &str) -> Option<f64> {
-        let mut rows = self.variables.iter().zip(&*self.sources).filter(|(variable, _)| variable.name == name);
-        rows.find_map(|(_, source)| if let Source::Known(value) = source { Some(*value) } else { None })
-    }
 }
 
 /// The rows of `structure`. One mass has parameters where many masses have fixed numbers, and its locals follow its outputs.
 fn rows(structure: &Structure) -> Vec<Row> {
-    let is_one = structure.one().is_some();
+    let is_one = structure.is_one_mass();
     let of = |is_so: bool, rows: fn(&Structure) -> Vec<Row>| if is_so { rows(structure) } else { Vec::new() };
     let (of_one, of_many) = (|rows| of(is_one, rows), |rows| of(!is_one, rows));
     let outputs = Output::all(structure).into_iter().filter(|of| *of != Output::y).map(|of| output(of, structure));
@@ -70,10 +59,10 @@ fn rows(structure: &Structure) -> Vec<Row> {
     let all = [
         inputs(structure),
         outputs,
-        of_many(floor_variables::coordinates),
+        of(structure.one().is_none(), floor_variables::coordinates),
         of_many(floor_variables::state_rates),
         of_many(peaks),
-        of_many(floor_variables::numbers),
+        of(structure.one().is_none(), calculated_numbers),
         forces().into(),
         locals_of_one,
         locals(),
@@ -81,13 +70,13 @@ fn rows(structure: &Structure) -> Vec<Row> {
         event_indicators().into(),
         of_one(peaks),
         validity(),
-        of_one(|_| PARAMETERS.iter().map(|of| fixed(of, Source::Parameter(of))).collect()),
+        structure.description().map_or(Vec::new(), parameters),
         vec![parameter("detail", DETAILS.description, DataType::Enumeration(&DETAILS), Source::Detail)],
         initial_values(structure),
         records().into(),
         const { &PLACEMENT }.iter().map(|of| fixed(of, Source::Placement(of))).collect(),
         switches().into(),
-        of_one(|_| calculated_parameters().into()),
+        of(structure.one().is_some(), |_| calculated_parameters().into()),
         vec![record_duration(), (Variable::time(), Source::Time)],
     ];
     all.into_iter().flatten().collect()
@@ -97,7 +86,7 @@ fn rows(structure: &Structure) -> Vec<Row> {
 fn initial_values(structure: &Structure) -> Vec<Row> {
     let row = |which: usize, floor: usize| {
         let (mut variable, source) = fixed(&INITIAL_VALUES[which], Source::InitialValue(which, floor));
-        if which > 1 && structure.one().is_none() {
+        if which > 1 && !structure.is_one_mass() {
             variable.name = format!("{}[{}]", variable.name, floor + 1).into();
             variable.description = variable.description.replace("the top mass", &format!("floor {}", floor + 1)).into();
         }
@@ -126,7 +115,7 @@ fn records() -> [Row; 2] {
 fn inputs(structure: &Structure) -> Vec<Row> {
     let row = |(which, load): (usize, usize)| {
         let (mut variable, source) = fixed(&LOADS[load], Source::Input(which));
-        if load == FORCE && structure.one().is_none() {
+        if load == FORCE && !structure.is_one_mass() {
             let floor = which - 1; // after a_g and a_v
             variable.name = format!("{}[{floor}]", variable.name).into();
             variable.description = format!("external horizontal force on floor {floor}, positive to the right").into();
@@ -248,10 +237,10 @@ fn event_indicators() -> [Row; INDICATORS] {
     ]
 }
 
-/// Largest magnitudes and their instants. One mass may have a tendon and dissipators.
+/// Largest magnitudes and their instants. A host may add a tendon and dissipators.
 fn peaks(structure: &Structure) -> Vec<Row> {
     let mut all = Output::with_peak(structure);
-    let missing = Output::OF_TIES.into_iter().filter(|of| structure.one().is_some() && !all.contains(of));
+    let missing = Output::OF_TIES.into_iter().filter(|of| !all.contains(of));
     all.extend(Vec::from_iter(missing));
     let rows = all.into_iter().flat_map(|of| {
         let (symbol, name) = (of.symbol(), of.name(structure));
@@ -301,6 +290,21 @@ fn switches() -> [Row; 4] {
         switch("peaks", peaks, |setup| &mut setup.peaks),
         switch("validity", validity, |setup| &mut setup.validity),
     ]
+}
+
+/// The numbers that the structure was made of.
+fn parameters(description: &Description) -> Vec<Row> {
+    let row = |(which, of): (usize, DescribedNumber)| {
+        let data_type = DataType::Real { unit: of.unit, range: Some((of.min, of.max)) };
+        (Variable::of_type(data_type, Causality::Parameter, of.name, of.description), Source::Parameter(which))
+    };
+    description.numbers().into_iter().enumerate().map(row).collect()
+}
+
+/// The numbers of a structure that follow from these, but for those of one mass on rigid ground.
+fn calculated_numbers(structure: &Structure) -> Vec<Row> {
+    let row = |(which, (variable, _))| (variable, Source::Known(which));
+    floor_variables::numbers(structure).into_iter().enumerate().map(row).collect()
 }
 
 fn calculated_parameters() -> [Row; 5] {

@@ -13,7 +13,9 @@ use hostile::{Subject, hostile_calls};
 use rocking::engine::MAX_STEPS_PER_ADVANCE;
 use rocking::run::Runs;
 use rocking::run::validity::ASSUMPTIONS;
-use rocking::{Body, Floor, Ground, Mode, Modes, Parameters, Refused, Structure, Ties};
+use rocking::structure::description::{Damping, Storey};
+use rocking::structure::natural_quantities::Given;
+use rocking::{Ground, Modes, Parameters, Refused, Structure};
 use std::ffi::CString;
 use std::fs;
 use std::path::Path;
@@ -43,11 +45,10 @@ fn structure() -> Subject {
 
 /// Two floors, with a mode left out, and dissipators; the foundation has inertia.
 fn many_masses() -> Subject {
-    let ties = Ties { xi_d: 1.0, c_d: 2e4, k_d: 2e7, F_y: 4e4, ..Ties::default() };
-    let r = Some(0.93);
-    let body = Body { m0: 2e4, J0: 3e4, m_s: 7e4, S_1: 3.5e5, I_2: 2e6, B: 1.5, r, g: 9.81, c_ratio: 1.0, ties };
-    let floor = |height, shape| Floor { mass: 3.5e4, height, shape: Modes::new(&[shape]) };
-    of_modes(Structure::of_body(body, &[Mode::new(20.0, 0.02, 250.0, 1.4e3)], &[floor(3.5, 2e-3), floor(7.0, 4e-3)]))
+    let ties = [("xi_d", 1.0), ("c_d", 2e4), ("k_d", 2e7), ("F_y", 4e4)];
+    let base = Given::of(&[&[("m0", 2e4), ("J0", 3e4), ("B", 1.5), ("r", 0.93)][..], &ties].concat()).unwrap();
+    let storey = |h| Storey { m: 3.5e4, h, k: 4e7 };
+    of_modes(Structure::from_storeys(&base, &Damping::All(0.02), &[storey(3.5), storey(7.0)]).unwrap().keeping(1))
 }
 
 /// A pier with a tendon and dissipators, on ground of three points.

@@ -14,11 +14,10 @@ use std::fmt::{self, Write};
 
 /// The parameters of one mass.
 pub fn given(structure: &Structure) -> Vec<NamedValue> {
-    let Some(one) = structure.one() else { return Vec::new() };
-    PARAMETERS
-        .iter()
-        .map(|of| NamedValue::new(of.name, (of.get)(one.parameters()), of.unit, "", of.description))
-        .collect()
+    let parameters = Some(structure.parameters()).filter(|_| structure.is_one_mass());
+    let each = parameters.iter().flat_map(|parameters| PARAMETERS.iter().map(move |of| (of, (of.get)(parameters))));
+    let given = each.filter(|(_, value)| !value.is_nan()); // r on ground that gives
+    given.map(|(of, value)| NamedValue::new(of.name, value, of.unit, "", of.description)).collect()
 }
 
 /// The derived quantities of one mass; the numbers of a structure of many masses.
@@ -26,12 +25,14 @@ pub fn derived(structure: &Structure) -> Vec<NamedValue> {
     let number = |([name, unit, description], value): ([&'static str; 3], f64)| {
         NamedValue::new(name, value, unit, "", description)
     };
-    structure.one().map_or_else(|| structure.derived().map(number).collect(), |one| named(&DERIVED, one))
+    let is_given = |name: &str| structure.is_one_mass() && PARAMETERS.iter().any(|of| of.name == name);
+    let of_any = || structure.derived().filter(|([name, ..], _)| !is_given(name)).map(number).collect();
+    structure.one().map_or_else(of_any, |one| named(&DERIVED, one))
 }
 
 /// The numbers of each mode of a structure of many masses, lowest frequency first.
 pub fn modes(structure: &Structure) -> Vec<Vec<NamedValue>> {
-    let modes = [structure].into_iter().filter(|of| of.one().is_none()).flat_map(Structure::mode_table);
+    let modes = [structure].into_iter().filter(|of| !of.is_one_mass()).flat_map(Structure::mode_table);
     modes.map(|mode| named(&OF_MODE, &mode)).collect()
 }
 
@@ -40,13 +41,9 @@ const STEPS: u32 = 20;
 
 /// The moment that turns the base back, while it is turned slowly to the rotation `theta` (rad, 0 to π/2) and back.
 pub fn restoring(structure: &Structure, theta: f64) -> anyhow::Result<Vec<FlagPoint>> {
-    ensure!(
-        structure.foundation().is_none(),
-        "the restoring moment is of a base that turns about an edge on rigid ground: leave ground out, or simulate the motion"
-    );
     let is_in_range = theta > 0.0 && theta < FRAC_PI_2;
     ensure!(is_in_range, "restoring = {theta} rad is out of range: a rotation above 0 and below pi/2 is needed");
-    Ok(flag(structure.base(), theta, STEPS))
+    Ok(flag(structure, theta, STEPS)?)
 }
 
 fn named<'a, T: 'a>(all: impl IntoIterator<Item = &'a Derived<T>>, of: &T) -> Vec<NamedValue> {
@@ -70,7 +67,7 @@ fn counted((name, count): (&str, usize)) -> String {
 
 /// The parameters of one mass in one line; how many floors and modes many masses have.
 pub fn in_one_line(structure: &Structure) -> String {
-    if structure.one().is_none() {
+    if !structure.is_one_mass() {
         let [floors, modes] = [("floor", structure.floors().len()), ("mode", structure.modes().len())].map(counted);
         return format!("{floors}, {modes}");
     }
@@ -83,7 +80,7 @@ pub fn text(structure: &Structure) -> Result<String, fmt::Error> {
     let mut out = String::new();
     let unit = |unit| if unit == "1" { "-" } else { unit };
     let derived = derived(structure);
-    if structure.one().is_none() {
+    if !structure.is_one_mass() {
         let masses = if structure.floors().len() == 1 { "one mass" } else { "many masses" };
         let ground = if structure.foundation().is_some() { " on ground that gives" } else { "" };
         writeln!(out, "Structure of {masses}{ground}")?;

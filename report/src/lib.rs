@@ -12,6 +12,7 @@ pub mod pushover;
 pub mod quantities;
 pub mod record;
 pub mod run;
+pub mod structure_file;
 pub mod summary;
 pub mod tables;
 pub mod validity;

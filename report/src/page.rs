@@ -35,7 +35,7 @@ impl Run {
         let peaks = |found: &Found| -> Vec<Peak> {
             found.peaks.iter().map(|peak| (peak.name.clone(), peak.magnitude, peak.time)).collect()
         };
-        let has_fixed = self.structure.one().is_none() && self.conditions.detail != Detail::FixedBase;
+        let has_fixed = !self.structure.is_one_mass() && self.conditions.detail != Detail::FixedBase;
         let fixed = has_fixed.then(|| self.on_fixed_base(found.end).ok()).flatten();
         Ok(Scene {
             title: self.ground.title().into(),
@@ -62,7 +62,7 @@ pub fn sizes(structure: &Structure) -> Sizes {
     let (&Body { m_s: m, m0, S_1, .. }, floors) = (structure.body(), structure.floors());
     let H = floors.last().map_or(S_1 / m, |floor| floor.height);
     let f_fc = structure.mode_table().next().map_or(0.0, |first| (OF_MODE[0].value)(&first));
-    let floors = structure.one().is_none().then(|| floors.iter().map(|floor| [floor.mass, floor.height]).collect());
+    let floors = (!structure.is_one_mass()).then(|| floors.iter().map(|floor| [floor.mass, floor.height]).collect());
     let points = structure.foundation().map_or(Vec::new(), |of| of.points.iter().map(|point| point.xi).collect());
     Sizes { m, m0, H, B: base.B, f_fc, g: base.g, ties, points, floors }
 }

@@ -19,18 +19,17 @@ pub struct Corner {
     M: f64,
 }
 
-/// The corners of the curve, in its order. Refuses a structure that is too soft.
-pub fn corners(pushed: &Pushover) -> Result<[Corner; 3], Refused> {
+/// The corners of the curve, in its order; on ground that gives rocking starts where the first point leaves it. Refuses a structure that is
+/// too soft.
+pub fn corners(pushed: &Pushover) -> Result<Vec<Corner>, Refused> {
     let corner = |(name, corner)| {
         let Equilibrium { theta, delta_t, force: P, moment: M, .. } = corner;
         Corner { name, delta_t, theta, P, M }
     };
-    let corners = [
-        ("uplift", pushed.at_uplift()),
-        ("start of rocking", pushed.at_rotation(0.0).ok_or_else(too_soft)?),
-        ("overturning", pushed.at_overturning().ok_or_else(too_soft)?),
-    ];
-    Ok(corners.map(corner))
+    let start = pushed.at_rotation(0.0).ok_or_else(too_soft)?;
+    let start = Some(("start of rocking", start)).filter(|(_, start)| start.force > 0.0);
+    let end = ("overturning", pushed.at_overturning().ok_or_else(too_soft)?);
+    Ok([("uplift", pushed.at_uplift())].into_iter().chain(start).chain([end]).map(corner).collect())
 }
 
 impl Corner {

@@ -259,12 +259,12 @@ impl Run {
     /// The peaks of each floor from below, in the order of [`OF_FLOOR`]. One mass is a floor.
     pub fn floors(&self, found: &Found) -> Vec<[f64; OF_FLOOR.len()]> {
         let peak = |name: &str| found.peak(name).map_or(f64::NAN, |peak| peak.magnitude);
-        match self.structure.one() {
-            Some(one) => {
+        match self.structure.is_one_mass() {
+            true => {
                 let [u, delta_t, a_t, V, M] = ["u", "delta_t", "a_t", "V_t", "M_t"].map(peak);
-                vec![[one.parameters().H, u, u, delta_t, a_t, V, M]]
+                vec![[self.structure.parameters().H, u, u, delta_t, a_t, V, M]]
             }
-            None => {
+            false => {
                 let of = |(number, height): (usize, f64)| {
                     OF_FLOOR.map(|(name, _)| if name == "h" { height } else { peak(&format!("{name}[{number}]")) })
                 };

@@ -37,7 +37,7 @@ impl Run {
             let (magnitude, time) = (significant(magnitude / per_unit), instant(*time));
             writeln!(out, "{:<14} {magnitude:>12} {unit:<4} at {time} s", format!("peak |{name}|"))?;
         }
-        let floors = if self.structure.one().is_none() { self.floors(found) } else { Vec::new() };
+        let floors = if self.structure.is_one_mass() { Vec::new() } else { self.floors(found) };
         if !floors.is_empty() {
             let largest = |i: usize| floors.iter().fold(0.0_f64, |most, floor| most.max(floor[i]));
             let columns = OF_FLOOR.iter().enumerate().map(|(i, (name, unit))| match i {

@@ -17,6 +17,9 @@
 //! C = Σ f²/k,   A = Σ f Γ/k,   G = Σ Γ²/k
 //! ```
 //!
+//! On ground that gives the base turns about its middle: B is 0 in these equations, T is Σ ξ N cos θ of the points, whose pressed ones and y
+//! follow from the vertical balance ([`Foundation`](crate::Foundation)), and the first points leave the ground at sin θ = y_s/ξ.
+//!
 //! As the base lifts off, the force drops because uplift leaves out the moment of the displaced weights: of one mass by
 //! 1/(1 + g/(ω_fc² H)) (2e-3 for Evison, 5e-3 for McManus).
 
@@ -55,12 +58,18 @@ pub fn too_soft() -> Refused {
     Refused::by(format!("the structure is too soft to be held all the way to overturning: {remedy}"))
 }
 
+/// Refuses dissipators on ground that gives, whose plastic elongation follows from the way there.
+pub fn check_ties(structure: &Structure) -> Result<(), Refused> {
+    ensure(structure.foundation().is_none() || structure.base().ties.k_d == 0.0, || {
+        "k_d: on ground that gives the static moment of dissipators depends on the way there: leave k_d and F_y out, or simulate a slow force"
+            .into()
+    })
+}
+
 /// A structure under a horizontal force on its floors.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Pushover {
-    base: Base,
-    /// S_1, kg·m.
-    first: f64,
+    structure: Structure,
     /// Heights of the force h_w and of the top floor, m.
     height: f64,
     top: f64,
@@ -73,12 +82,9 @@ pub struct Pushover {
 }
 
 impl Pushover {
-    /// The pushover of `structure` on rigid ground, which must have floors.
+    /// The pushover of `structure`, which must have floors, and on ground that gives no dissipators.
     pub fn new(structure: &Structure) -> Result<Pushover, Refused> {
-        ensure(structure.foundation().is_none(), || {
-            "the pushover is of a base that turns about an edge on rigid ground (Fig 1): leave ground out, or simulate a slow force"
-                .into()
-        })?;
+        check_ties(structure)?;
         let floors = structure.floors();
         let none = || Refused::by("the structure has no floors that take the force: give masses, heights and shapes");
         let top = floors.last().ok_or_else(none)?;
@@ -95,8 +101,7 @@ impl Pushover {
         };
         let at_top = |j: usize| top.shape.numbers()[j];
         Ok(Pushover {
-            base: *structure.base(),
-            first: structure.body().S_1,
+            structure: structure.clone(),
             height: mean(&|i| floors[i].height),
             top: top.height,
             C: under(&force, &force),
@@ -107,13 +112,13 @@ impl Pushover {
     }
 
     /// The curve from rest to overturning, to the right: `points` evenly over the displacements in full contact, then as many
-    /// while rocking.
+    /// while rocking, or from the first point that leaves the ground.
     pub fn curve(&self, points: u32) -> Result<Vec<Equilibrium>, Refused> {
         ensure((2..=MOST_POINTS).contains(&points), || {
             format!("points = {points} is out of range: 2 to {MOST_POINTS} on each branch are possible")
         })?;
         let end = self.at_overturning().ok_or_else(too_soft)?.delta_t;
-        let lifts = self.at_uplift().u;
+        let lifts = self.at_uplift().delta_t;
         let evenly = |from: f64, to: f64| {
             let part = move |i| f64::from(i) / f64::from(points - 1);
             (0..points).map(move |i| if i == points - 1 { to } else { from + (to - from) * part(i) })
@@ -124,7 +129,10 @@ impl Pushover {
 
     /// Full contact, about to lift off to the right.
     pub fn at_uplift(&self) -> Equilibrium {
-        self.in_full_contact(self.base.hold_at_rest() / self.height * self.of_top[0])
+        if let Some(release) = self.structure.foundation().and_then(|of| self.at_rotation(of.first_release())) {
+            return release;
+        }
+        self.in_full_contact(self.structure.base().hold_at_rest() / self.height * self.of_top[0])
     }
 
     /// Full contact with the top floor displaced by `u` (m).
@@ -136,13 +144,11 @@ impl Pushover {
     /// Rocking at the rotation `theta` (rad), |θ| ≤ π/2; 0 is the start of rocking to the right. `None` for a structure too
     /// soft to be held there. The dissipators have been moved there from rest.
     pub fn at_rotation(&self, theta: f64) -> Option<Equilibrium> {
-        let &Pushover { ref base, first, height, top, C, A, G, of_top } = self;
-        let &Base { m_t, B, g, .. } = base;
-        let side = Side::of(theta);
+        let &Pushover { ref structure, height, top, C, A, G, of_top } = self;
+        let (&Base { m_t, g, .. }, first, side) = (structure.base(), structure.body().S_1, Side::of(theta));
         let s = side.sign();
         let (sin, cos) = libm::sincos(theta.abs());
-        let dissipators = Dissipators::NEW.moved(base, side, theta);
-        let held = s * Restraint::about(base, side, &dissipators).moment(&Angles::Any.chord(theta, 0.0));
+        let (B, held, phase) = self.held(theta, [sin, cos]);
         let (quadratic, linear) = (C * sin * cos, B * sin + height * cos + g * A * (cos * cos - sin * sin));
         let constant = g * ((m_t * B - g * G * sin) * cos - first * sin) + held;
         let discriminant = linear * linear - 4.0 * quadratic * constant;
@@ -153,15 +159,30 @@ impl Pushover {
         let [u, of_force] = [of_top, [C, A]].map(|[push, weight]| force * cos * push + g * sin * weight);
         let moment = force * (height * cos + (B - of_force) * sin);
         let delta_t = Place { share: 1.0, height: top, u: s * u }.right(s * B, &theta.turn());
-        let phase = Phase::Rocking(side);
         Some(Equilibrium { phase, theta, u: s * u, delta_t, force: s * force, moment: s * moment })
+    }
+
+    /// The half-width of the base about whose edge it turns, 0 if it turns about its middle; the moment of ties and of ground that gives, to
+    /// the right; and the phase, of the base turned to `theta` (rad).
+    fn held(&self, theta: f64, [sin, cos]: [f64; 2]) -> (f64, f64, Phase) {
+        let (base, side) = (self.structure.base(), Side::of(theta));
+        let Some(foundation) = self.structure.foundation() else {
+            let dissipators = Dissipators::NEW.moved(base, side, theta);
+            let held = side.sign() * Restraint::about(base, side, &dissipators).moment(&Angles::Any.chord(theta, 0.0));
+            return (base.B, held, Phase::Rocking(side));
+        };
+        let is_full = theta.abs() <= foundation.first_release();
+        (0.0, foundation.restoring(base, [sin, cos]), if is_full { Phase::FullContact } else { Phase::Rocking(side) })
     }
 
     /// The structure with its top floor displaced by `delta_t` (m): full contact up to uplift, rocking beyond. `None` where rocking
     /// does not reach, B and the height of the floor at most.
     pub fn at_displacement(&self, delta_t: f64) -> Option<Equilibrium> {
-        if delta_t.abs() <= self.at_uplift().u {
+        if delta_t.abs() <= self.at_uplift().u && self.structure.foundation().is_none() {
             return Some(self.in_full_contact(delta_t));
+        }
+        if delta_t == 0.0 {
+            return self.at_rotation(0.0);
         }
         let reaches = |theta| self.at_rotation(theta).is_some_and(|there| there.delta_t >= delta_t.abs());
         if !reaches(FRAC_PI_2) {
@@ -174,7 +195,8 @@ impl Pushover {
     /// The unstable equilibrium without a force, beyond which the structure overturns (to the right); at π/2 of one that its
     /// tendon turns back from everywhere. `None` for a structure too soft to be held on the way there.
     pub fn at_overturning(&self) -> Option<Equilibrium> {
-        let farthest = angle_of_no_return(&self.base).unwrap_or(FRAC_PI_2); // an elastic structure overturns before
+        let of_base = angle_of_no_return(self.structure.base()).filter(|_| self.structure.foundation().is_none());
+        let farthest = of_base.unwrap_or(FRAC_PI_2); // an elastic structure overturns before
         let restores = |theta| self.at_rotation(theta).is_some_and(|there| there.force >= 0.0);
         self.at_rotation(last_where(0.0, farthest, restores))
     }
@@ -187,7 +209,7 @@ mod tests {
     use crate::mechanics::load::Load;
     use crate::structure::description::{Damping, Storey};
     use crate::structure::natural_quantities::Given;
-    use crate::{OneMass, Parameters, State};
+    use crate::{Ground, OneMass, Parameters, State};
     use approx::assert_relative_eq;
     use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
     use proptest::prelude::*;
@@ -294,6 +316,23 @@ mod tests {
             assert_relative_eq!(moment, restoring, max_relative = 1e-10);
             let about = (0..3).map(|i| w[i] * ((B - displaced[i]) * sin + h[i] * cos)).sum::<f64>();
             assert_relative_eq!(moment, force * about, max_relative = 1e-10);
+        }
+        let ground = Ground { f_v: Some(6.0), n_points: Some(5.0), ..Ground::default() };
+        let bedded =
+            structure.with(Parameters { k_t: 0.0, P_0: 0.0, ..structure.parameters() }).unwrap().on(&ground).unwrap();
+        let (points, on_bed) = (&bedded.foundation().unwrap().points, Pushover::new(&bedded).unwrap());
+        for theta in [1e-5, 2e-3, 0.02, 0.2] {
+            let (Equilibrium { u, force, moment, .. }, (sin, cos)) =
+                (on_bed.at_rotation(theta).unwrap(), theta.sin_cos());
+            let displaced = stiffness.try_inverse().unwrap() * (w * force * cos + m * g * sin);
+            assert_relative_eq!(u, displaced[2], max_relative = 1e-10);
+            let carried = |y: f64| points.iter().map(|of| of.k * (of.xi * sin - y).max(0.0)).sum::<f64>() > weight;
+            let y = last_where(-1.0, 1.0, carried);
+            let held: f64 = points.iter().map(|of| of.k * (of.xi * sin - y).max(0.0) * of.xi * cos).sum();
+            let restoring = held - m.dot(&displaced) * g * cos - m.dot(&h) * g * sin;
+            assert_relative_eq!(moment, restoring, max_relative = 1e-8);
+            let about = (0..3).map(|i| w[i] * (h[i] * cos - displaced[i] * sin)).sum::<f64>();
+            assert_relative_eq!(moment, force * about, max_relative = 1e-9);
         }
         let lifts = pushed.at_uplift();
         assert_relative_eq!(lifts.force * w.dot(&h), (weight + P_0) * B, max_relative = 1e-12);

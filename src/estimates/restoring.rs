@@ -2,10 +2,13 @@
 //! the base is turned slowly.
 //!
 //! The moment is [`Restraint::restoring_moment`]: Eq 6 at rest with a strut that is not deformed. The forces of the elastoplastic
-//! dissipators change sign on the way back, so that the loop is a flag of the height Σ_j 2 F_y |sB − ξ_j| cos(θ/2).
+//! dissipators change sign on the way back, so that the loop is a flag of the height Σ_j 2 F_y |sB − ξ_j| cos(θ/2). On ground that gives
+//! it is Σ ξ N cos θ − g S_1 sin θ about the middle of the base, the same there and back.
 
+use crate::estimates::pushover::check_ties;
 use crate::mechanics::restraint::{Dissipators, Restraint};
-use crate::{Base, Side};
+use crate::structure::quantity::Refused;
+use crate::{Side, Structure};
 use serde::Serialize;
 
 /// A point of the static loop.
@@ -17,16 +20,25 @@ pub struct FlagPoint {
     pub moment: f64,
 }
 
-/// The moments while the `base` is turned slowly from rest to the rotation `theta` (rad, 0 to π/2) and back to 0, in
-/// this many equal `steps` each way.
-pub fn flag(base: &Base, theta: f64, steps: u32) -> Vec<FlagPoint> {
+/// The moments while the base of `structure` is turned slowly from rest to the rotation `theta` (rad, 0 to π/2) and back to 0, in
+/// this many equal `steps` each way. Refuses dissipators on ground that gives.
+pub fn flag(structure: &Structure, theta: f64, steps: u32) -> Result<Vec<FlagPoint>, Refused> {
+    check_ties(structure)?;
+    let base = structure.base();
     let there = (0..=steps).map(|i| theta * f64::from(i) / f64::from(steps));
     let mut dissipators = Dissipators::NEW;
     let at = |theta: f64| {
+        if let Some(foundation) = structure.foundation() {
+            let (sin, cos) = libm::sincos(theta);
+            return FlagPoint {
+                theta,
+                moment: foundation.restoring(base, [sin, cos]) - base.g * structure.body().S_1 * sin,
+            };
+        }
         dissipators = dissipators.moved(base, Side::Right, theta);
         FlagPoint { theta, moment: Restraint::about(base, Side::Right, &dissipators).restoring_moment(theta) }
     };
-    there.clone().chain(there.rev().skip(1)).map(at).collect()
+    Ok(there.clone().chain(there.rev().skip(1)).map(at).collect())
 }
 
 #[cfg(test)]
@@ -37,7 +49,8 @@ mod tests {
     use crate::run::fall::{Falling, angle_of_no_return};
     use crate::run::record::Record;
     use crate::series::bisection::last_where;
-    use crate::{Detail, OneMass, Parameters, Run, State};
+    use crate::{Detail, Ground, OneMass, Parameters, Run, State};
+    use approx::assert_relative_eq;
     use std::f64::consts::FRAC_PI_2;
 
     const RESTRAINED: Parameters =
@@ -48,7 +61,7 @@ mod tests {
     fn the_flag_is_that_of_the_calculation_by_hand() {
         let structure = OneMass::new(RESTRAINED).unwrap();
         let Parameters { m, m0, H, B, g, P_0, k_t, xi_d, F_y, .. } = RESTRAINED;
-        let points = flag(structure.base(), 0.05, 10);
+        let points = flag(&structure.into(), 0.05, 10).unwrap();
         assert_eq!(points.len(), 21);
         let elastic = |theta: f64| {
             let by_weight = (m + m0) * g * B * theta.cos() - m * g * H * theta.sin();
@@ -70,6 +83,32 @@ mod tests {
         assert!((residual - F_y * ((B - xi_d) + (B + xi_d))).abs() < 1e-12 * residual);
     }
 
+    /// GROUND.md's static moments about the middle, W B at most: of two springs, and of a bed, which eleven and twenty-one points come near.
+    #[test]
+    fn springs_and_beds_have_their_closed_forms() {
+        let on = |n_points: f64| {
+            let ground = Ground { k_v: Some(1e7), n_points: Some(n_points), ..Ground::default() };
+            Structure::new(Parameters::MCMANUS).unwrap().on(&ground).unwrap()
+        };
+        let (Parameters { m, m0, H, B, g, .. }, W) = (Parameters::MCMANUS, 195.5 * 9.81);
+        let (theta_u, by_weight) = (W / (1e7 * B), |theta: f64| m * g * H * theta.sin());
+        let held = |of: &Structure, theta: f64| flag(of, theta, 1).unwrap()[1].moment + by_weight(theta);
+        for (times, of_pair) in [(0.5, 0.5), (1.0, 1.0), (4.0, 1.0), (50.0, 1.0)] {
+            assert_relative_eq!(
+                held(&on(2.0), times * theta_u),
+                of_pair * (m + m0) * g * B,
+                max_relative = 2e-6 * times * times
+            );
+        }
+        for (points, most) in [(11.0, [7e-3, 9e-3, 5.8e-2]), (21.0, [2e-3, 2e-3, 1.5e-2])] {
+            for (times, most) in [4.0, 10.0, 100.0].into_iter().zip(most) {
+                let of_bed = W * B * (1.0 - 2.0 / 3.0 * f64::sqrt(1.0 / times));
+                let above = held(&on(points), times * theta_u) / of_bed - 1.0;
+                assert!((0.5 * most..1.1 * most).contains(&above), "{points} {times}: {above}");
+            }
+        }
+    }
+
     /// Beyond α_cg a tied structure comes back. Once it falls, its peak is the angle at which the static moment of weight, tendon
     /// and dissipators vanishes. A tendon of 4e4 N/m turns McManus back from everywhere: it falls where it overturns.
     #[test]
@@ -89,8 +128,8 @@ mod tests {
             let no_return = angle_of_no_return(structure.base()).unwrap();
             let alpha_cg = structure.base().tan_alpha_cg.atan();
             assert!(no_return > 1.5 * alpha_cg, "{no_return}");
-            let loop_there = flag(structure.base(), no_return, 1000)[1000];
-            assert!(loop_there.moment.abs() < 1e-9 * flag(structure.base(), 0.0, 1)[0].moment);
+            let loop_there = flag(&structure.into(), no_return, 1000).unwrap();
+            assert!(loop_there[1000].moment.abs() < 1e-9 * loop_there[0].moment);
             let least = last_where(0.0, 20.0, |theta_dot| !falls(structure, theta_dot).0);
             let (_, stands) = falls(structure, least);
             assert!(stands.peaks().theta().magnitude > alpha_cg && stands.fall().is_none());

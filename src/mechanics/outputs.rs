@@ -193,6 +193,11 @@ const fn of_one<const N: usize>(which: usize) -> [Output; N] {
     all
 }
 
+/// These outputs `of_one` mass, and those among `all` of ground that gives.
+fn with_ground(of_one: &[Output], all: impl Iterator<Item = Output>) -> Vec<Output> {
+    of_one.iter().copied().chain(all.filter(|of| of.is_of_ground())).collect()
+}
+
 impl Output {
     /// The outputs of one mass, in the order of their columns.
     const OF_ONE: [Output; OF_ONE[0]] = of_one(0);
@@ -213,17 +218,15 @@ impl Output {
             Of::Point => points,
             Of::Edge => points.min(2),
         };
-        let is_one = structure.one().is_some();
-        let meant = EACH.iter().filter(move |of| is_meant(of.row()) && !(is_one && of.row().of_one.is_empty()));
+        let is_one = structure.is_one_mass();
+        let is_of_many = move |row: &Row| is_one && row.of_one.is_empty() && matches!(row.of, Of::Base | Of::Floor);
+        let meant = EACH.iter().filter(move |of| is_meant(of.row()) && !is_of_many(of.row()));
         meant.flat_map(move |of| (0..count(of.row().of)).map(|number| of.numbered(number)))
     }
 
-    /// All outputs of `structure` in the order of their columns: of many masses those of the base, then each output of the floors
-    /// from below.
+    /// All outputs of `structure` in the order of their columns: of one mass its own and those of ground that gives; of many masses those
+    /// of the base, of the ground, then each output of the floors from below.
     pub fn all(structure: &Structure) -> Vec<Output> {
-        if structure.one().is_some() {
-            return Output::OF_ONE.into();
-        }
         // two floors at the same height have a drift and no storey
         let is_one = |of: &Output| of.displaced(structure).is_none_or(|(_, factor)| factor.is_finite());
         let has_inner = structure.foundation().is_some_and(|foundation| foundation.points.len() > 2);
@@ -232,16 +235,15 @@ impl Output {
             Of::Points | Of::Point => has_inner,
             Of::Edge | Of::Tie => false,
         };
-        Output::meant(structure, is_column).filter(is_one).collect()
+        let all = Output::meant(structure, is_column).filter(is_one);
+        if structure.is_one_mass() { with_ground(&Output::OF_ONE, all) } else { all.collect() }
     }
 
     /// The outputs of `structure` that have a peak, in the order of their peaks; the forces of its tendon and of its dissipators last.
     pub fn with_peak(structure: &Structure) -> Vec<Output> {
         let base = structure.base();
-        let mut all = match structure.one() {
-            Some(_) => Output::PEAKS_OF_ONE.into(),
-            None => Output::all(structure),
-        };
+        let all = Output::all(structure);
+        let mut all = if structure.is_one_mass() { with_ground(&Output::PEAKS_OF_ONE, all.into_iter()) } else { all };
         all.retain(|of| of.search() != Search::None);
         all.extend(
             Output::OF_TIES.iter().filter(|of| if **of == P_t { base.has_tendon() } else { base.has_dissipators() }),
@@ -272,7 +274,9 @@ impl Output {
     /// The name of an output of `structure`, of many masses with the number of the floor or storey from 1: `a_t[3]`.
     pub fn name(self, structure: &Structure) -> String {
         match self.number() {
-            Some(number) if structure.one().is_none() => format!("{}[{}]", self.symbol(), number + 1),
+            Some(number) if !structure.is_one_mass() || self.is_of_ground() => {
+                format!("{}[{}]", self.symbol(), number + 1)
+            }
             _ => self.symbol().into(),
         }
     }
@@ -291,7 +295,9 @@ impl Output {
     pub fn description(self, structure: &Structure) -> String {
         let Row { description, .. } = self.row();
         match self.number() {
-            Some(_) if structure.one().is_some() => description.replace("floor #", "the top mass"),
+            Some(_) if structure.is_one_mass() && !self.is_of_ground() => {
+                description.replace("floor #", "the top mass")
+            }
             Some(number) => description.replace('#', &(number + 1).to_string()),
             None => (*description).into(),
         }

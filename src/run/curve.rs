@@ -29,10 +29,8 @@ const ROUNDING: f64 = 1e-9;
 
 /// The outputs of `structure` that a picture follows and that levels are compared by: of its base, then u and a_t of each floor.
 pub(super) fn lines(structure: &Structure) -> Vec<Output> {
-    let of_base: &[Output] = match structure.one() {
-        Some(_) => &[Output::theta],
-        None => &[Output::theta, Output::V_t, Output::M_t],
-    };
+    let of_base: &[Output] =
+        if structure.is_one_mass() { &[Output::theta] } else { &[Output::theta, Output::V_t, Output::M_t] };
     let of_floors = (0..structure.floors().len()).flat_map(|i| [Output::u(i), Output::a_t(i)]);
     of_base.iter().copied().chain(of_floors).collect()
 }
@@ -46,7 +44,7 @@ pub fn drawn<Q: Coordinates>(run: &Run<Q>) -> Vec<Output> {
     let structure = &run.structure.at(run.detail);
     let mut drawn = lines(structure);
     drawn.extend(structure.foundation().iter().flat_map(|_| OF_GROUND));
-    drawn.extend(structure.one().map(|_| Output::delta_t(0)));
+    drawn.extend(structure.is_one_mass().then_some(Output::delta_t(0)));
     drawn.extend(Output::OF_TIES.into_iter().filter(|_| structure.base().is_restrained()));
     drawn
 }

@@ -10,16 +10,16 @@ use crate::digits::short;
 use crate::structure::ground::Ground;
 use crate::structure::mode::{MOST_MODES, Modes};
 use crate::structure::natural_quantities::{self, Given};
-use crate::structure::parameters::{MAX_DAMPING, MAX_SLENDERNESS};
+use crate::structure::parameters::{MAX_DAMPING, MAX_SLENDERNESS, OF_ONE_MASS, PARAMETERS};
 use crate::structure::quantity::{Quantity, Refused, Units, ensure, ensure_in};
 use crate::structure::{OF_FLOOR, check_count, of_number};
 use crate::{Body, Floor, Mode, Parameters, Structure};
 use nalgebra::{DMatrix, DVector};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// The floor at `h` (m) with the mass `m` (kg), on a storey of the stiffness `k` (N/m).
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
 pub struct Storey {
@@ -29,7 +29,7 @@ pub struct Storey {
 }
 
 /// The floor at the height `h` (m) with the mass `m` (kg).
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
 pub struct Place {
@@ -38,7 +38,7 @@ pub struct Place {
 }
 
 /// A mode in full contact as a finite element program prints it.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FoundMode {
     /// Frequency, Hz; or else the period.
@@ -57,7 +57,7 @@ pub struct FoundMode {
 }
 
 /// All mass above the base, which the modes must not exceed.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Total {
     /// Mass m_s, kg.
@@ -71,11 +71,7 @@ pub struct Total {
 }
 
 /// Damping in full contact.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(
-    untagged,
-    expecting = "zeta is one number, a list with a number for each mode, or {f = [Hz, Hz], zeta = number} for Rayleigh damping"
-)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Damping {
     /// The same ratio in all modes.
     All(f64),
@@ -84,6 +80,44 @@ pub enum Damping {
     /// Rayleigh damping, which has the ratio `zeta` at both frequencies `f` (Hz).
     #[allow(missing_docs)]
     Rayleigh { f: [f64; 2], zeta: f64 },
+}
+
+/// [`Damping`] as a file has it.
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    remote = "Damping",
+    expecting = "zeta is one number, a list with a number for each mode, or {f = [Hz, Hz], zeta = number} for Rayleigh damping"
+)]
+enum DampingOfFile {
+    All(f64),
+    Each(Vec<f64>),
+    Rayleigh { f: [f64; 2], zeta: f64 },
+}
+
+/// The numbers that a structure was made of, in SI units.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Description {
+    /// The parameters of one mass; of many masses those of the base count. r is NaN if momentum gives it.
+    pub parameters: Parameters,
+    /// Storeys, floors or modes; none of one mass.
+    pub many: Option<ManyMasses>,
+    /// Ground that gives; without it rigid ground.
+    pub ground: Option<Ground>,
+}
+
+/// The numbers of a structure of many masses in SI units, as [`Described`] has them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub struct ManyMasses {
+    pub zeta: Damping,
+    pub storeys: Vec<Storey>,
+    pub p_delta: bool,
+    pub floors: Vec<Place>,
+    pub K: Vec<Vec<f64>>,
+    pub modes: Vec<FoundMode>,
+    pub total: Option<Total>,
+    pub keep: Option<i64>,
 }
 
 /// A structure of many masses as a file has it, in one of three ways.
@@ -97,6 +131,7 @@ pub struct Described {
     #[serde(deserialize_with = "natural_quantities::base")]
     pub base: Given,
     /// Damping in full contact.
+    #[serde(with = "DampingOfFile")]
     pub zeta: Damping,
     /// The storeys from the base up.
     #[serde(default)]
@@ -162,57 +197,156 @@ impl Described {
     /// The structure that is described. Messages name the numbers in their own units.
     pub fn structure(self) -> Result<Structure, Refused> {
         let units = self.units;
-        let structure = self.in_si().structure_in_si();
+        let structure = self.in_si().and_then(|description| description.structure());
         Ok(structure.map_err(|error| error.in_units(units))?.measured_in(units))
     }
 
-    fn in_si(mut self) -> Described {
-        let units = self.units;
+    fn in_si(self) -> Result<Description, Refused> {
+        let Described {
+            units,
+            base,
+            zeta,
+            mut storeys,
+            p_delta,
+            mut floors,
+            mut K,
+            mut modes,
+            mut total,
+            ground,
+            keep,
+        } = self;
         let to_si = |of: &Quantity<f64>, value: &mut f64| *value = units.in_si(*value, of.unit);
-        for Storey { m, k, .. } in &mut self.storeys {
+        for Storey { m, k, .. } in &mut storeys {
             to_si(&MASS, m);
             to_si(&STOREY, k);
         }
-        self.floors.iter_mut().for_each(|floor| to_si(&MASS, &mut floor.m));
-        self.K.iter_mut().flatten().for_each(|entry| to_si(&ENTRY, entry));
-        for FoundMode { mass, moment, .. } in &mut self.modes {
+        floors.iter_mut().for_each(|floor| to_si(&MASS, &mut floor.m));
+        K.iter_mut().flatten().for_each(|entry| to_si(&ENTRY, entry));
+        for FoundMode { mass, moment, .. } in &mut modes {
             to_si(&MASS, mass);
             moment.iter_mut().for_each(|moment| to_si(&MOMENT, moment));
         }
-        if let Some(Total { m_s, S_1, I_2, J_P }) = &mut self.total {
+        if let Some(Total { m_s, S_1, I_2, J_P }) = &mut total {
             to_si(&MASS, m_s);
             to_si(&MOMENT, S_1);
             [I_2, J_P].into_iter().flatten().for_each(|second| *second = units.in_si(*second, "kg.m2"));
         }
-        let ground = self.ground.map(|ground| ground.in_si(units));
-        Described { base: self.base.measured_in(units), ground, ..self }
+        let many = ManyMasses { zeta, storeys, p_delta, floors, K, modes, total, keep };
+        let ground = ground.map(|ground| ground.in_si(units));
+        Ok(Description { ground, ..Description::of_many(&base.measured_in(units), many)? })
+    }
+}
+
+/// A number of a [`Description`].
+#[derive(Clone, Debug)]
+#[allow(missing_docs)] // as in [`Quantity`]
+pub struct DescribedNumber {
+    pub name: String,
+    pub unit: &'static str,
+    pub description: String,
+    pub min: f64,
+    pub max: f64,
+    pub value: f64,
+}
+
+impl Description {
+    /// Many masses on the `base` on rigid ground.
+    fn of_many(base: &Given, many: ManyMasses) -> Result<Description, Refused> {
+        let (parameters, r) = base.base().map_err(|error| error.of("base"))?;
+        let parameters = Parameters { r: r.unwrap_or(f64::NAN), ..parameters };
+        Ok(Description { parameters, many: Some(many), ground: None })
     }
 
-    fn structure_in_si(&self) -> Result<Structure, Refused> {
-        let Described { base, zeta, storeys, p_delta, floors, K, modes, total, keep, ground, .. } = self;
+    /// Shows each number that can have another value, and takes the value that is left there. The storeys' number, the modes that another
+    /// program found, and lists of contact points stay as they are.
+    fn each(&mut self, mut see: impl FnMut(DescribedNumber, &mut f64)) {
+        let Description { parameters, many, ground } = self;
+        let is_many = many.is_some();
+        for of in PARAMETERS.iter().filter(|of| !(is_many && OF_ONE_MASS.contains(&of.name))) {
+            let mut value = (of.get)(parameters);
+            if !value.is_nan() {
+                see(DescribedNumber::new(of, value), &mut value);
+                (of.set)(parameters, value);
+            }
+        }
+        if let Some(ManyMasses { zeta, storeys, .. }) = many.as_mut().filter(|many| !many.storeys.is_empty()) {
+            for (i, Storey { m, h, k }) in (1..).zip(storeys) {
+                let mut see_of = |of: DescribedNumber, value: &mut f64| {
+                    let description = of.description.replace("the floor", &format!("floor {i}"));
+                    see(DescribedNumber { name: format!("{}[{i}]", of.name), description, ..of }, value);
+                };
+                see_of(DescribedNumber::new(&OF_FLOOR[0], *m), m);
+                see_of(DescribedNumber::new(&OF_FLOOR[1], *h), h);
+                see_of(DescribedNumber::new(&STOREY, *k), k);
+            }
+            match zeta {
+                Damping::All(zeta) | Damping::Rayleigh { zeta, .. } => {
+                    see(DescribedNumber::new(&ZETA, *zeta), zeta);
+                }
+                Damping::Each(_) => (),
+            }
+        }
+        if let Some(ground) = ground {
+            ground.each(|of, value| see(DescribedNumber::new(of, *value), value));
+        }
+    }
+
+    /// Each number that can have another value.
+    pub fn numbers(&self) -> Vec<DescribedNumber> {
+        let mut all = Vec::new();
+        self.clone().each(|number, _| all.push(number));
+        all
+    }
+
+    /// The same with these values of its [`Description::numbers`].
+    pub fn with(&self, values: &[f64]) -> Description {
+        let (mut changed, mut values) = (self.clone(), values.iter());
+        changed.each(|_, value| values.next().into_iter().for_each(|new| *value = *new));
+        changed
+    }
+
+    /// The structure of these numbers.
+    pub fn structure(&self) -> Result<Structure, Refused> {
+        let Some(many) = &self.many else {
+            let needs_no_r =
+                self.parameters.r.is_nan() && self.ground.as_ref().is_some_and(|ground| !ground.is_rigid());
+            let r = if needs_no_r { 1.0 } else { self.parameters.r };
+            let one = Structure::new(Parameters { r, ..self.parameters })?;
+            let body = Body { r: None, ..*one.body() };
+            let one = if needs_no_r { Structure::of_body(body, one.modes(), one.floors())? } else { one };
+            return one.described_as(self).on(&self.ground);
+        };
+        let ManyMasses { zeta, storeys, p_delta, floors, K, modes, total, keep } = many;
+        let base = &self.parameters;
         let whole = match [storeys.is_empty(), K.is_empty(), modes.is_empty()] {
             [false, true, true] if floors.is_empty() && total.is_none() => match p_delta {
-                true => Structure::from_storeys(base, zeta, &with_p_delta(base, storeys)?),
-                false => Structure::from_storeys(base, zeta, storeys),
+                true => of_storeys(base, zeta, &with_p_delta(base, storeys)?),
+                false => of_storeys(base, zeta, storeys),
             },
             _ if *p_delta => Err(Refused::by(
                 "p_delta = true needs storeys: subtract the geometric stiffness from K, or give modes that contain it",
             )),
-            [true, false, true] if total.is_none() => Structure::from_matrices(base, zeta, floors, K),
-            [true, true, false] => Structure::from_modes(base, zeta, modes, *total, floors),
+            [true, false, true] if total.is_none() => of_matrices(base, zeta, floors, K),
+            [true, true, false] => of_modes(base, zeta, modes, *total, floors),
             ways => {
                 let given = if ways == [true; 3] { "none of these" } else { "more than one" };
                 let ways = "storeys (m, h, k), floors (m, h) with the matrix K, or modes";
                 Err(Refused::by(format!("give the structure in one way: {ways}; not {given}")))
             }
         }?;
-        let whole = whole.on(ground)?;
+        let whole = whole.described_as(self).on(&self.ground)?;
         let (Some(count), modes) = (*keep, whole.modes().len()) else { return Ok(whole) };
         ensure((1..=modes as i64).contains(&count), || {
             let instead = if count == 0 { ", or use detail = rigid" } else { "" };
             format!("keep = {count} is out of range: keep 1 to {modes} modes{instead}")
         })?;
         whole.keeping(count as usize)
+    }
+}
+
+impl DescribedNumber {
+    fn new<T>(&Quantity { name, unit, description, min, max, .. }: &Quantity<T>, value: f64) -> DescribedNumber {
+        DescribedNumber { name: name.into(), unit, description: description.into(), min, max, value }
     }
 }
 
@@ -224,8 +358,8 @@ impl Described {
 /// ```
 ///
 /// is linear in the drift, and P_i is the weight at rest. An error names a storey whose k does not exceed P_i/(h_i − h_{i−1}).
-pub fn with_p_delta(base: &Given, storeys: &[Storey]) -> Result<Vec<Storey>, Refused> {
-    let (floors, g) = (checked_storeys(storeys)?, given_base(base)?.0.g);
+pub fn with_p_delta(base: &Parameters, storeys: &[Storey]) -> Result<Vec<Storey>, Refused> {
+    let (floors, g) = (checked_storeys(storeys)?, base.g);
     let soften = |(i, &Storey { m, h, k }): (usize, &Storey)| {
         let weight: f64 = floors[i..].iter().map(|floor| g * floor.m).sum();
         let least = weight / (h - if i == 0 { 0.0 } else { floors[i - 1].h });
@@ -263,138 +397,149 @@ fn check_order(number: usize, h: f64, below: f64, may_be_same: bool) -> Result<(
 }
 
 impl Structure {
-    /// A shear building, whose storeys resist the drift between its floors.
-    pub fn from_storeys(base: &Given, damping: &Damping, storeys: &[Storey]) -> Result<Structure, Refused> {
-        let floors = checked_storeys(storeys)?;
-        let mut K = vec![vec![0.0; storeys.len()]; storeys.len()];
-        for (i, &Storey { k, .. }) in storeys.iter().enumerate() {
-            K[i][i] += k;
-            if let Some(below) = i.checked_sub(1) {
-                K[below][below] += k;
-                K[below][i] -= k;
-                K[i][below] -= k;
-            }
-        }
-        Structure::from_matrices(base, damping, &floors, &K)
-    }
-
-    /// Floors that the stiffness matrix `K` (N/m) of a fixed base connects.
-    pub fn from_matrices(
-        base: &Given,
-        damping: &Damping,
-        floors: &[Place],
-        K: &[Vec<f64>],
-    ) -> Result<Structure, Refused> {
-        check_floors(floors, 1)?;
-        let n = floors.len();
-        length("K", K.len(), n, "floor")?;
-        for (i, row) in K.iter().enumerate() {
-            length(&format!("K[{}]", i + 1), row.len(), n, "floor")?;
-            let checked = row.iter().try_for_each(|entry| ENTRY.check(*entry));
-            checked.map_err(|cause| of_number("row", i + 1, cause))?;
-        }
-        for (i, j) in (0..n).flat_map(|i| (0..i).map(move |j| (i, j))) {
-            let (value, mirrored) = (K[i][j], K[j][i]);
-            let (off, row, column) = ((value - mirrored).abs(), i + 1, j + 1);
-            ensure_in(off <= ASYMMETRY * (K[i][i] * K[j][j]).abs().sqrt(), |units| {
-                let [value, mirrored] = [value, mirrored].map(|k| units.show_by(|k| k.to_string(), k, ENTRY.unit));
-                format!("K[{row}][{column}] = {value} and K[{column}][{row}] = {mirrored}: K must be symmetric")
-            })?;
-        }
-        let root = |i: usize| floors[i].m.sqrt();
-        let eigen = DMatrix::from_fn(n, n, |i, j| 0.5 * (K[i][j] + K[j][i]) / (root(i) * root(j))).symmetric_eigen();
-        let mut squares: Vec<_> = eigen.eigenvalues.iter().copied().enumerate().collect();
-        squares.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let shape = |column: usize| DVector::from_fn(n, |i, _| eigen.eigenvectors[(i, column)] / root(i));
-        let (lowest, omega_2) = squares[0];
-        ensure(omega_2 > n as f64 * f64::EPSILON * squares[n - 1].1, || {
-            let floor = shape(lowest).icamax() + 1;
-            format!(
-                "K is not positive definite: a mode has omega^2 = {omega_2:.3e} 1/s2, in which floor {floor} moves most; K must hold \
-                 each floor to a base that cannot move"
-            )
-        })?;
-        squares.truncate(MOST_MODES);
-        let omegas: Vec<_> = squares.iter().map(|(_, square)| square.sqrt()).collect();
-        let shapes: Vec<_> = squares.iter().map(|(column, _)| shape(*column)).collect();
-        let part = |shape: &DVector<f64>, with: fn(&Place) -> f64| -> f64 {
-            shape.iter().zip(floors).map(|(phi, floor)| phi * with(floor)).sum()
+    /// A shear building of these `storeys` on rigid ground.
+    pub fn from_storeys(base: &Given, zeta: &Damping, storeys: &[Storey]) -> Result<Structure, Refused> {
+        let (zeta, storeys) = (zeta.clone(), storeys.to_vec());
+        let many = ManyMasses {
+            zeta,
+            storeys,
+            p_delta: false,
+            floors: vec![],
+            K: vec![],
+            modes: vec![],
+            total: None,
+            keep: None,
         };
-        let participation = |shape| (part(shape, |floor| floor.m), part(shape, |floor| floor.m * floor.h));
-        let modes = modes(&omegas, damping, &shapes.iter().map(participation).collect::<Vec<_>>())?;
-        checked(Structure::of_body(body(base, moments(floors))?, &modes, &shown(floors, &shapes))?)
+        Description::of_many(base, many)?.structure()
     }
+}
 
-    /// The modes of a fixed base that another program found. Without a `total`, the floors have all mass.
-    pub fn from_modes(
-        base: &Given,
-        damping: &Damping,
-        modes_found: &[FoundMode],
-        total: Option<Total>,
-        floors: &[Place],
-    ) -> Result<Structure, Refused> {
-        check_floors(floors, 0)?;
-        let (mut omegas, mut participations) = (Vec::new(), Vec::new());
-        for (number, found) in (1..).zip(modes_found) {
-            let at = |cause| of_number("mode", number, cause);
-            let either = |one: &str, other: &str, unit: &str| {
-                Refused::shown(|units| {
-                    let unit = units.name(unit);
-                    format!("mode {number} needs {one} or {other} ({unit}), and not both")
-                })
-            };
-            MASS.check(found.mass).map_err(at)?;
-            let f = match (found.f, found.period) {
-                (Some(f), None) => Ok(f),
-                (None, Some(period)) => PERIOD.check(period).map(|()| period.recip()),
-                _ => return Err(either("f (Hz)", "period", "s")),
-            };
-            let height = match (found.height, found.moment) {
-                (Some(height), None) => HEIGHT.check(height).map(|()| height),
-                (None, Some(moment)) => MOMENT.check(moment).map(|()| moment / found.mass),
-                _ => return Err(either("height (m)", "moment", MOMENT.unit)),
-            };
-            let (omega, root) = (TAU * f.map_err(at)?, found.mass.sqrt());
-            let before: f64 = omegas.last().copied().unwrap_or(0.0);
-            ensure(before <= omega, || {
-                let [f, before] = [omega, before].map(|omega| short(omega / TAU));
-                format!("mode {number} has f = {f} Hz and the mode before it {before} Hz: give the lowest mode first")
-            })?;
-            let height = height.map_err(at)?;
-            omegas.push(omega);
-            participations.push((root, root * height));
+/// A shear building, whose storeys resist the drift between its floors.
+fn of_storeys(base: &Parameters, damping: &Damping, storeys: &[Storey]) -> Result<Structure, Refused> {
+    let floors = checked_storeys(storeys)?;
+    let mut K = vec![vec![0.0; storeys.len()]; storeys.len()];
+    for (i, &Storey { k, .. }) in storeys.iter().enumerate() {
+        K[i][i] += k;
+        if let Some(below) = i.checked_sub(1) {
+            K[below][below] += k;
+            K[below][i] -= k;
+            K[i][below] -= k;
         }
-        let modes = modes(&omegas, damping, &participations)?;
-        let body = body(base, whole(base, total, floors)?)?;
-        let (of_modes, m_s) = (modes_found.iter().map(|mode| mode.mass).sum::<f64>(), body.m_s);
-        ensure_in(of_modes >= LEAST_SHARE * m_s, |units| {
-            format!(
-                "the modes carry {:.2} % of m_s = {} above the foundation, and {} % are needed: check the units of the masses, \
-                 and that the modes vibrate along the record",
-                1e2 * of_modes / m_s,
-                units.show(m_s, "kg"),
-                1e2 * LEAST_SHARE
-            )
-        })?;
-        let floors = if modes_found.iter().all(|mode| mode.shape.is_empty()) { &[] } else { floors };
-        let heights = participations.iter().map(|(gamma, kappa)| kappa / gamma);
-        let shapes = (1..).zip(modes_found.iter().zip(heights));
-        let shapes = shapes.map(|(number, (found, height))| shape(number, found, height, floors));
-        let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
-        let frame = Structure::of_body(body, &modes, &shown(floors, &shapes))?;
-        // no mass has a first moment beyond the root of the product of its mass and its second moment
-        let [mass, rest, second] = frame.rest();
-        let limit = (mass * second).max(0.0).sqrt() + ROUNDING * (body.m_s * body.I_2).sqrt();
-        ensure_in(rest.abs() <= limit, |units| {
-            let S_1 = units.show_by(|of| of.to_string(), body.S_1, MOMENT.unit);
-            let [rest, limit] = [rest, limit].map(|of| units.show_by(|of| format!("{of:.3e}"), of, MOMENT.unit));
-            format!(
-                "S_1 = {S_1} does not fit m_s and I_2: the mass that the modes leave over would have the first moment {rest}, \
-                 beyond {limit}; check the units of h and the sum of m h"
-            )
-        })?;
-        checked(frame)
     }
+    of_matrices(base, damping, &floors, &K)
+}
+
+/// Floors that the stiffness matrix `K` (N/m) of a fixed base connects.
+fn of_matrices(base: &Parameters, damping: &Damping, floors: &[Place], K: &[Vec<f64>]) -> Result<Structure, Refused> {
+    check_floors(floors, 1)?;
+    let n = floors.len();
+    length("K", K.len(), n, "floor")?;
+    for (i, row) in K.iter().enumerate() {
+        length(&format!("K[{}]", i + 1), row.len(), n, "floor")?;
+        let checked = row.iter().try_for_each(|entry| ENTRY.check(*entry));
+        checked.map_err(|cause| of_number("row", i + 1, cause))?;
+    }
+    for (i, j) in (0..n).flat_map(|i| (0..i).map(move |j| (i, j))) {
+        let (value, mirrored) = (K[i][j], K[j][i]);
+        let (off, row, column) = ((value - mirrored).abs(), i + 1, j + 1);
+        ensure_in(off <= ASYMMETRY * (K[i][i] * K[j][j]).abs().sqrt(), |units| {
+            let [value, mirrored] = [value, mirrored].map(|k| units.show_by(|k| k.to_string(), k, ENTRY.unit));
+            format!("K[{row}][{column}] = {value} and K[{column}][{row}] = {mirrored}: K must be symmetric")
+        })?;
+    }
+    let root = |i: usize| floors[i].m.sqrt();
+    let eigen = DMatrix::from_fn(n, n, |i, j| 0.5 * (K[i][j] + K[j][i]) / (root(i) * root(j))).symmetric_eigen();
+    let mut squares: Vec<_> = eigen.eigenvalues.iter().copied().enumerate().collect();
+    squares.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let shape = |column: usize| DVector::from_fn(n, |i, _| eigen.eigenvectors[(i, column)] / root(i));
+    let (lowest, omega_2) = squares[0];
+    ensure(omega_2 > n as f64 * f64::EPSILON * squares[n - 1].1, || {
+        let floor = shape(lowest).icamax() + 1;
+        format!(
+            "K is not positive definite: a mode has omega^2 = {omega_2:.3e} 1/s2, in which floor {floor} moves most; K must hold \
+                 each floor to a base that cannot move"
+        )
+    })?;
+    squares.truncate(MOST_MODES);
+    let omegas: Vec<_> = squares.iter().map(|(_, square)| square.sqrt()).collect();
+    let shapes: Vec<_> = squares.iter().map(|(column, _)| shape(*column)).collect();
+    let part = |shape: &DVector<f64>, with: fn(&Place) -> f64| -> f64 {
+        shape.iter().zip(floors).map(|(phi, floor)| phi * with(floor)).sum()
+    };
+    let participation = |shape| (part(shape, |floor| floor.m), part(shape, |floor| floor.m * floor.h));
+    let modes = modes(&omegas, damping, &shapes.iter().map(participation).collect::<Vec<_>>())?;
+    checked(Structure::of_body(body(base, moments(floors))?, &modes, &shown(floors, &shapes))?)
+}
+
+/// The modes of a fixed base that another program found. Without a `total`, the floors have all mass.
+fn of_modes(
+    base: &Parameters,
+    damping: &Damping,
+    modes_found: &[FoundMode],
+    total: Option<Total>,
+    floors: &[Place],
+) -> Result<Structure, Refused> {
+    check_floors(floors, 0)?;
+    let (mut omegas, mut participations) = (Vec::new(), Vec::new());
+    for (number, found) in (1..).zip(modes_found) {
+        let at = |cause| of_number("mode", number, cause);
+        let either = |one: &str, other: &str, unit: &str| {
+            Refused::shown(|units| {
+                let unit = units.name(unit);
+                format!("mode {number} needs {one} or {other} ({unit}), and not both")
+            })
+        };
+        MASS.check(found.mass).map_err(at)?;
+        let f = match (found.f, found.period) {
+            (Some(f), None) => Ok(f),
+            (None, Some(period)) => PERIOD.check(period).map(|()| period.recip()),
+            _ => return Err(either("f (Hz)", "period", "s")),
+        };
+        let height = match (found.height, found.moment) {
+            (Some(height), None) => HEIGHT.check(height).map(|()| height),
+            (None, Some(moment)) => MOMENT.check(moment).map(|()| moment / found.mass),
+            _ => return Err(either("height (m)", "moment", MOMENT.unit)),
+        };
+        let (omega, root) = (TAU * f.map_err(at)?, found.mass.sqrt());
+        let before: f64 = omegas.last().copied().unwrap_or(0.0);
+        ensure(before <= omega, || {
+            let [f, before] = [omega, before].map(|omega| short(omega / TAU));
+            format!("mode {number} has f = {f} Hz and the mode before it {before} Hz: give the lowest mode first")
+        })?;
+        let height = height.map_err(at)?;
+        omegas.push(omega);
+        participations.push((root, root * height));
+    }
+    let modes = modes(&omegas, damping, &participations)?;
+    let body = body(base, whole(base, total, floors)?)?;
+    let (of_modes, m_s) = (modes_found.iter().map(|mode| mode.mass).sum::<f64>(), body.m_s);
+    ensure_in(of_modes >= LEAST_SHARE * m_s, |units| {
+        format!(
+            "the modes carry {:.2} % of m_s = {} above the foundation, and {} % are needed: check the units of the masses, \
+                 and that the modes vibrate along the record",
+            1e2 * of_modes / m_s,
+            units.show(m_s, "kg"),
+            1e2 * LEAST_SHARE
+        )
+    })?;
+    let floors = if modes_found.iter().all(|mode| mode.shape.is_empty()) { &[] } else { floors };
+    let heights = participations.iter().map(|(gamma, kappa)| kappa / gamma);
+    let shapes = (1..).zip(modes_found.iter().zip(heights));
+    let shapes = shapes.map(|(number, (found, height))| shape(number, found, height, floors));
+    let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
+    let frame = Structure::of_body(body, &modes, &shown(floors, &shapes))?;
+    // no mass has a first moment beyond the root of the product of its mass and its second moment
+    let [mass, rest, second] = frame.rest();
+    let limit = (mass * second).max(0.0).sqrt() + ROUNDING * (body.m_s * body.I_2).sqrt();
+    ensure_in(rest.abs() <= limit, |units| {
+        let S_1 = units.show_by(|of| of.to_string(), body.S_1, MOMENT.unit);
+        let [rest, limit] = [rest, limit].map(|of| units.show_by(|of| format!("{of:.3e}"), of, MOMENT.unit));
+        format!(
+            "S_1 = {S_1} does not fit m_s and I_2: the mass that the modes leave over would have the first moment {rest}, \
+                 beyond {limit}; check the units of h and the sum of m h"
+        )
+    })?;
+    checked(frame)
 }
 
 /// The `frame` unless it is too slender.
@@ -409,16 +554,12 @@ fn checked(frame: Structure) -> Result<Structure, Refused> {
     Ok(frame)
 }
 
-/// The checked numbers of a base.
-fn given_base(given: &Given) -> Result<(Parameters, Option<f64>), Refused> {
-    let base = given.base().and_then(|(parameters, r)| parameters.check().map(|()| (parameters, r)));
-    base.map_err(|error| error.of("base"))
-}
-
-/// The base of `given` under mass of these moments m_s, S_1 and I_2.
-fn body(given: &Given, moments: [f64; 3]) -> Result<Body, Refused> {
-    let (parameters, r) = given_base(given)?;
-    Ok(Body::of(&parameters, r, moments))
+/// The base with these `parameters` under mass of these moments m_s, S_1 and I_2.
+fn body(parameters: &Parameters, moments: [f64; 3]) -> Result<Body, Refused> {
+    let r = Some(parameters.r).filter(|r| !r.is_nan());
+    let checked = Parameters { r: r.unwrap_or(1.0), ..*parameters }.check();
+    checked.map_err(|error| error.of("base"))?;
+    Ok(Body::of(parameters, r, moments))
 }
 
 /// The modes of the frequencies `omegas` (rad/s) with these Γ and κ.
@@ -479,7 +620,7 @@ impl Damping {
 }
 
 /// The moments m_s, S_1 and I_2 of all mass above the base.
-fn whole(base: &Given, total: Option<Total>, floors: &[Place]) -> Result<[f64; 3], Refused> {
+fn whole(base: &Parameters, total: Option<Total>, floors: &[Place]) -> Result<[f64; 3], Refused> {
     let Some(Total { m_s, S_1, I_2, J_P }) = total else {
         ensure_in(!floors.is_empty(), |units| {
             let [kg, kg_m, kg_m2] = ["kg", "kg.m", "kg.m2"].map(|unit| units.name(unit));
@@ -492,7 +633,7 @@ fn whole(base: &Given, total: Option<Total>, floors: &[Place]) -> Result<[f64; 3
     let I_2 = match (I_2, J_P) {
         (Some(I_2), None) => I_2,
         (None, Some(J_P)) => {
-            let (Parameters { m0, J0, B, .. }, _) = given_base(base)?;
+            let &Parameters { m0, J0, B, .. } = base;
             J_P - J0 - (m0 + m_s) * B * B
         }
         _ => {

@@ -102,7 +102,7 @@ impl Structure {
         let Some((mode, f)) = self.lowest().map(|mode| (mode, mode.omega() / TAU)) else { return doubts };
         let usual = USUAL_SPEED / height;
         let (height, area) = (short(height), 2.0 * B * height);
-        if (f / usual).max(usual / f) > UNUSUAL[usize::from(self.one().is_some())] {
+        if (f / usual).max(usual / f) > UNUSUAL[usize::from(self.is_one_mass())] {
             doubts.push(format!(
                 "f = {f:.2} Hz of the lowest mode is far from the usual frequency of a structure {height} m high, about {usual:.2} Hz: \
                  are masses in {}, heights in m, stiffnesses in {}, and f in Hz?",

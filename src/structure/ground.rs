@@ -106,17 +106,22 @@ pub const NAMES: [&str; 10] = ["f_v", "k_v", "zeta_v", "c_v", "n_points", "kr_ra
 /// The most contact points.
 pub const MOST_POINTS: usize = 21;
 
+/// Damping ratio of the bounce unless it is given.
+const ZETA: f64 = 0.2;
+
 /// Least inertia about the middle of the base as a fraction of m_t B².
 const LEAST_INERTIA: f64 = 1e-4;
 
 /// Part by which two numbers that must be equal may differ.
 const SAME: f64 = 1e-9;
 
-const OF_GROUND: &str = "of ground that gives";
-const F_V: Quantity<f64> = Quantity::limit("f_v", "Hz", [0.1, 1e3], OF_GROUND);
-const K_V: Quantity<f64> = Quantity::limit("k_v", "N/m", [1e-6, 1e18], OF_GROUND);
-const ZETA_V: Quantity<f64> = Quantity::limit("zeta_v", "1", [0.0, 5.0], OF_GROUND);
-const C_V: Quantity<f64> = Quantity::limit("c_v", "N.s/m", [0.0, 1e18], OF_GROUND);
+const F_V: Quantity<f64> = Quantity::limit("f_v", "Hz", [0.1, 1e3], "frequency of the bounce on the ground");
+const K_V: Quantity<f64> = Quantity::limit("k_v", "N/m", [1e-6, 1e18], "vertical stiffness of the ground");
+const ZETA_V: Quantity<f64> = Quantity::limit("zeta_v", "1", [0.0, 5.0], "damping ratio of the bounce on the ground");
+const C_V: Quantity<f64> = Quantity::limit("c_v", "N.s/m", [0.0, 1e18], "vertical damping of the ground");
+const KR_RATIO: Quantity<f64> =
+    Quantity::limit("kr_ratio", "1", [0.0, 1.0], "rotational stiffness of the ground over k_v B^2, with two points 1");
+const K_R: Quantity<f64> = Quantity::limit("k_r", "N.m/rad", [1e-6, 1e22], "rotational stiffness of the ground");
 
 impl Ground {
     /// The same ground with numbers in SI units.
@@ -126,6 +131,29 @@ impl Ground {
         self.c_v.iter_mut().chain(&mut self.c).for_each(to_si("N.s/m"));
         self.k_r.iter_mut().for_each(to_si("N.m/rad"));
         self
+    }
+
+    /// Shows each number of evenly spaced points that can have another value, defaults too, and takes the value that is left there.
+    pub(crate) fn each(&mut self, mut see: impl FnMut(&Quantity<f64>, &mut f64)) {
+        if !self.xi.is_empty() || self.is_rigid() {
+            return;
+        }
+        let mut one_of =
+            |of: &Quantity<f64>, value: &mut Option<f64>| value.iter_mut().for_each(|value| see(of, value));
+        one_of(&F_V, &mut self.f_v);
+        one_of(&K_V, &mut self.k_v);
+        if self.c_v.is_none() {
+            self.zeta_v.get_or_insert(ZETA);
+        }
+        one_of(&ZETA_V, &mut self.zeta_v);
+        one_of(&C_V, &mut self.c_v);
+        if self.n_points.is_some_and(|n| n > 2.0) {
+            if self.k_r.is_none() {
+                self.kr_ratio.get_or_insert(1.0 / 3.0);
+            }
+            one_of(&KR_RATIO, &mut self.kr_ratio);
+            one_of(&K_R, &mut self.k_r);
+        }
     }
 
     /// Whether this ground does not give.
@@ -170,7 +198,7 @@ impl Ground {
             format!("neither f_v (Hz) nor k_v ({unit}) is given: give one, or leave [ground] out for rigid ground")
         };
         let K_z = f_v.map(|f_v| m_t * (TAU * f_v) * (TAU * f_v)).or(k_v).ok_or_else(|| Refused::shown(needed))?;
-        let tau = c_v.map_or(2.0 * zeta_v.unwrap_or(0.2) / (K_z / m_t).sqrt(), |c_v| c_v / K_z);
+        let tau = c_v.map_or(2.0 * zeta_v.unwrap_or(ZETA) / (K_z / m_t).sqrt(), |c_v| c_v / K_z);
         let xi = |i: usize| B * (2.0 * i as f64 / (n - 1) as f64 - 1.0);
         let (inner, most) = ((1..n - 1).map(|i| xi(i) * xi(i)).sum::<f64>(), (n - 2) as f64 * B * B);
         let ratio = k_r.map(|k_r| k_r / (K_z * B * B)).or(kr_ratio).unwrap_or(if n == 2 { 1.0 } else { 1.0 / 3.0 });
@@ -344,6 +372,23 @@ impl Foundation {
             y = next;
         }
         [y, slope]
+    }
+}
+
+impl Foundation {
+    /// The moment about its middle by which the ground turns back the `base` of a structure that is held at the rotation of this sine and
+    /// cosine: Σ ξ N cos θ, N·m, with N = k max(0, ξ sin θ − y) and y of the vertical balance.
+    pub(crate) fn restoring(&self, base: &Base, [sin, cos]: [f64; 2]) -> f64 {
+        let y = if sin == 0.0 { self.rest } else { self.held_at(sin, base)[0] };
+        // as many points lie on the other side: at rest nothing is left of rounding
+        let moment =
+            |point: &Point| point.k * point.xi * ((point.xi * sin - y).max(0.0) - (-point.xi * sin - y).max(0.0));
+        0.5 * self.points.iter().map(moment).sum::<f64>() * cos
+    }
+
+    /// The rotation at which the first points leave the ground while all others stay pressed, rad; π/2 if it is beyond.
+    pub(crate) fn first_release(&self) -> f64 {
+        libm::asin((self.rest / self.points[0].xi).min(1.0))
     }
 }
 

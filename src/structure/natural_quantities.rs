@@ -14,6 +14,7 @@ use crate::Structure;
 use crate::digits::with_unit;
 use crate::names::{did_you_mean, unknown};
 use crate::structure::derived::{DERIVED, Derived};
+use crate::structure::description::Description;
 use crate::structure::ground::Ground;
 use crate::structure::parameters::{OF_ONE_MASS, PARAMETERS, Parameters};
 use crate::structure::quantity::{OutOfRange, Quantity, Refused, Units, ensure, ensure_in};
@@ -171,17 +172,20 @@ impl Given {
     /// The structure of one mass of these [`Given::parameters`], or of `base` changed by these numbers. Messages name the numbers as
     /// they were given.
     pub fn structure(&self, base: Option<&Parameters>) -> Result<Structure, Refused> {
-        let in_units = |error: Refused| error.in_units(self.units);
         let gives = self.ground.as_ref().is_some_and(|ground| !ground.is_rigid());
         let needs_no_r = gives && base.is_none() && self.get("r").is_none();
-        let r = if needs_no_r { 1.0 } else { f64::NAN };
-        let alone = || self.solve(&str::to_owned, &Parameters { r, ..Parameters::DEFAULTS });
-        let parameters = base.map_or_else(alone, |base| self.over(base)).map_err(in_units)?;
-        let structure = Structure::new(parameters).map_err(in_units)?;
-        let on_ground = structure.on(&self.ground);
-        let without_r = |of: Structure| of.with(Parameters { r: f64::NAN, ..of.parameters() });
-        let on_ground = if needs_no_r { on_ground.and_then(without_r) } else { on_ground };
-        Ok(on_ground.map_err(in_units)?.measured_in(self.units))
+        let solved = match base {
+            Some(base) => self.over(base),
+            None => self.solve(
+                &str::to_owned,
+                &Parameters { r: if needs_no_r { 1.0 } else { f64::NAN }, ..Parameters::DEFAULTS },
+            ),
+        };
+        let structure = solved.and_then(|parameters| {
+            let parameters = Parameters { r: if needs_no_r { f64::NAN } else { parameters.r }, ..parameters };
+            Description { parameters, many: None, ground: self.ground.clone() }.structure()
+        });
+        Ok(structure.map_err(|error| error.in_units(self.units))?.measured_in(self.units))
     }
 
     /// These numbers on `ground` that gives.

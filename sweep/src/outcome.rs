@@ -69,12 +69,12 @@ impl Layout {
         let added: Vec<_> = own.iter().filter(|measure| !all.contains(measure)).cloned().collect();
         all.extend(added);
         let places = own.iter().filter_map(|own| all.iter().position(|of| of == own)).collect();
-        Layout { outputs: Output::with_peak(structure), is_of_one: structure.one().is_some(), places }
+        Layout { outputs: Output::with_peak(structure), is_of_one: structure.is_one_mass(), places }
     }
 
     /// Whether the measures of `structure` are these.
     pub(crate) fn is_of(&self, structure: &Structure) -> bool {
-        self.is_of_one == structure.one().is_some() && self.outputs == Output::with_peak(structure)
+        self.is_of_one == structure.is_one_mass() && self.outputs == Output::with_peak(structure)
     }
 }
 

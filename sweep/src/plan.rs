@@ -175,7 +175,7 @@ impl Population {
     /// Every structure that there is so far with each of `values` of the parameter called `name`, or of `slenderness`,
     /// which is H/B: H = slenderness × B, while B, m, m0, J0 and f_fc stay. Of a building, parameters of the base can vary.
     pub fn vary(mut self, name: &str, values: Vec<f64>) -> Result<Population, Refused> {
-        let is_building = self.bases.iter().any(|base| base.one().is_none());
+        let is_building = self.bases.iter().any(|base| !base.is_one_mass());
         let can_vary = |name: &str| !is_building || !(OF_ONE_MASS.contains(&name) || name == SLENDERNESS.name);
         let axis = AXES.iter().position(|axis| axis.name == name && can_vary(name));
         let axis = axis.ok_or_else(|| {

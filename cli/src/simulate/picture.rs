@@ -85,7 +85,7 @@ fn panels(run: &Run, curve: &Curve) -> Vec<Panel> {
         Some(Panel { name: format!("{label} ({unit})"), colour, points, peak })
     };
     let (mm, rad, in_g) = ((1e-3, "mm"), (1.0, "rad"), (g, "g"));
-    if run.structure.one().is_none() {
+    if !run.structure.is_one_mass() {
         let [u, a_t] = ["u", "a_t"].map(|of| format!("{of}[{}]", run.structure.floors().len()));
         let base = [("ground a_g", in_g, "a_g", None), ("rotation θ", rad, "theta", None)];
         return base.into_iter().chain([(&*u, mm, &*u, None), (&*a_t, in_g, &*a_t, None)]).filter_map(panel).collect();

@@ -2,7 +2,6 @@
 //! and amplitude.
 use crate::record_args::{RecordOptions, with_force};
 use crate::scene_args::InitialArgs;
-use crate::structure_args::of_file;
 use crate::talk::{few, warning};
 use anyhow::{Context, anyhow, bail, ensure};
 use rocking::estimates::intensity::IntensityMeasure;
@@ -10,7 +9,7 @@ use rocking::run::record::Record;
 use rocking::structure::natural_quantities::Given;
 use rocking::{Detail, Parameters, Structure, engine::DEFAULT_TOLERANCE};
 use rocking_records::{Column, Unit};
-use rocking_report::{input, output_files::OutputFiles};
+use rocking_report::{input, output_files::OutputFiles, structure_file};
 use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map};
 use rocking_sweep::outcome::{Limit, Measure};
 use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population, measure};
@@ -286,7 +285,9 @@ impl StructureGrid {
             (None, None, Some(file)) => {
                 let path = folder.join(file);
                 files.add_input(&path);
-                input::text(&path).and_then(|text| of_file(&text)).with_context(|| path.display().to_string())
+                input::text(&path)
+                    .and_then(|text| structure_file::read(&text))
+                    .with_context(|| path.display().to_string())
             }
             _ => bail!("give one of preset, parameters and file"),
         };
