@@ -43,8 +43,8 @@ use crate::structure::mode::Modes;
 use crate::structure::quantity::{Quantity, Refused, ensure};
 use crate::{Output, Phase, State, Structure};
 use motion::{Motion, Work};
-use phases::Watched;
-use piece::{Piece, Room, Watch};
+use phases::Rules;
+use piece::{LeapRoom, Piece, Watch};
 use sample::{Sample, shown};
 use step::{Closed, Step};
 use transition::Transition;
@@ -192,7 +192,7 @@ type LevelOrNot<Q> = Result<Box<dyn Level<Q>>, Refused>;
 #[derive(Debug)]
 struct Kind<Q: Coordinates> {
     level: fn(Detail, Structure, f64, bool) -> LevelOrNot<Q>,
-    watched: fn(&Structure, &Motion<Q>) -> Option<&'static Watched<Q>>,
+    watched: fn(&Structure, &Motion<Q>) -> Option<&'static Rules<Q>>,
     advance: GoOn<Q>,
 }
 
@@ -210,7 +210,7 @@ pub struct Engine<Q: Coordinates = f64> {
     motion: Motion<Q>,
     /// The step in hand.
     arc: Arc<Q>,
-    room: Room<Q>,
+    room: LeapRoom<Q>,
 }
 
 impl Engine {
@@ -313,7 +313,7 @@ impl<Q: Coordinates> Engine<Q> {
 
     fn of(kind: &'static Kind<Q>, level: Box<dyn Level<Q>>, settings: Settings, motion: Motion<Q>) -> Engine<Q> {
         let structure = level.structure().clone();
-        Engine { kind, level, structure, settings, motion, arc: Arc::default(), room: Room::default() }
+        Engine { kind, level, structure, settings, motion, arc: Arc::default(), room: LeapRoom::default() }
     }
 
     /// (ü, θ̈) and (u⃛, θ⃛) now under `load`, from the first terms of the series; 0 once overturned.
@@ -416,7 +416,7 @@ impl<Q: Coordinates> Engine<Q> {
     }
 
     /// The guards of the present phase; none once the structure has overturned.
-    pub(crate) fn watched(&self) -> Option<&'static Watched<Q>> {
+    pub(crate) fn watched(&self) -> Option<&'static Rules<Q>> {
         (self.kind.watched)(self.structure(), &self.motion)
     }
 
@@ -568,11 +568,11 @@ impl<Q: Coordinates> Rates<'_, Q> {
 /// Applies the transition that is due in `motion`, if there is one, in the phase that is `watched`.
 fn transit<Q: Coordinates>(
     level: &dyn Level<Q>,
-    watched: Option<&Watched<Q>>,
+    watched: Option<&Rules<Q>>,
     motion: &mut Motion<Q>,
 ) -> Option<Transition<Q>> {
-    let (Closed { guard, way }, before) = (motion.due.take()?, motion.state);
-    let kind = watched?.guards.get(usize::from(guard))?.apply(level, motion, way)?;
+    let (Closed { guard, branch }, before) = (motion.due.take()?, motion.state);
+    let kind = watched?.guards.get(usize::from(guard))?.apply(level, motion, branch)?;
     motion.transitions += 1;
     Some(Transition { time: motion.time, kind, before, after: motion.state })
 }
@@ -596,7 +596,7 @@ fn leap_under<Q: Coordinates>(
 /// Takes `motion`, all but its time, over a leap to the state `end`. Fails if watchers need too many polynomials of the leap.
 #[inline(always)]
 fn leapt<Q: Coordinates, W: Watch<Q> + ?Sized>(
-    (level, room): (&dyn Level<Q>, &Room<Q>),
+    (level, room): (&dyn Level<Q>, &LeapRoom<Q>),
     motion: &mut Motion<Q>,
     duration: f64,
     load: LinearLoad<Q>,
@@ -659,7 +659,7 @@ struct Loop<'a, Q: Coordinates, P, E> {
     expand: E,
     /// The step.
     arc: &'a mut Arc<Q>,
-    room: &'a Room<Q>,
+    room: &'a LeapRoom<Q>,
     /// Whether the advance ends where a transition is due.
     stops: bool,
 }
@@ -667,7 +667,7 @@ struct Loop<'a, Q: Coordinates, P, E> {
 impl<Q, P, E> Loop<'_, Q, P, E>
 where
     Q: Coordinates,
-    P: Fn(&Motion<Q>) -> Option<&'static Watched<Q>>,
+    P: Fn(&Motion<Q>) -> Option<&'static Rules<Q>>,
     E: FnMut(Phase, &Start<Q>, &mut Arc<Q>) -> bool,
 {
     /// Goes on with `advance` step by step: expands the motion, finds the first guard that closes, applies its transition. A long
@@ -772,16 +772,16 @@ where
 
 /// The first guard of `watched` that closes on `step`, which is cut there.
 #[inline]
-pub(crate) fn first<Q: Coordinates>(watched: &Watched<Q>, step: &mut Step<Q>) -> Option<Closed> {
+pub(crate) fn first<Q: Coordinates>(watched: &Rules<Q>, step: &mut Step<Q>) -> Option<Closed> {
     if watched.stays.is_some_and(|stays| stays(step)) {
         return None;
     }
     let mut closed = None;
     for (place, guard) in watched.guards.iter().enumerate() {
-        let (crossing, way) = guard.first(step);
+        let (crossing, branch) = guard.first(step);
         if crossing != Crossing::None {
             step.reach = crossing.sigma();
-            closed = matches!(crossing, Crossing::At(_)).then_some(Closed { guard: place as u8, way });
+            closed = matches!(crossing, Crossing::At(_)).then_some(Closed { guard: place as u8, branch });
         }
     }
     closed
@@ -795,7 +795,7 @@ mod tests {
     use approx::assert_relative_eq;
     use guard::Guard;
     use std::f64::consts::PI;
-    use step::Way;
+    use step::Branch;
 
     /// Amplitude of the vibration, m.
     const AMPLITUDE: f64 = 1e-3;
@@ -804,13 +804,13 @@ mod tests {
     struct Wall;
 
     impl Guard for Wall {
-        fn first(&self, &Step { arc, reach, .. }: &Step) -> (Crossing, Way) {
+        fn first(&self, &Step { arc, reach, .. }: &Step) -> (Crossing, Branch) {
             let is_there = Gap::new(arc.used(&arc.u), -1.0, 0.5 * AMPLITUDE);
             let moves_on = Gap::new(arc.used(&arc.u_dot), -1.0, 0.0);
-            (first_time_all_closed([is_there, moves_on], reach), Way::default())
+            (first_time_all_closed([is_there, moves_on], reach), Branch::default())
         }
 
-        fn apply(&self, _level: &dyn Level, motion: &mut Motion, _way: Way) -> Option<TransitionKind> {
+        fn apply(&self, _level: &dyn Level, motion: &mut Motion, _branch: Branch) -> Option<TransitionKind> {
             motion.state.u_dot *= -1.0;
             Some(TransitionKind::Landing)
         }
@@ -836,7 +836,7 @@ mod tests {
     /// Vibration without damping between the wall and its far end takes 2/3 of a period.
     #[test]
     fn a_new_phase_is_one_more_list_of_guards() {
-        static WALLED: Watched = Watched { guards: &[&Wall], ..Watched::RESTING };
+        static WALLED: Rules = Rules { guards: &[&Wall], ..Rules::RESTING };
         let structure = OneMass::new(Parameters { zeta_fc: 0.0, ..Parameters::EVISON }).unwrap();
         let settings = Settings { detail: Detail::Nonlinear, tolerance: 1e-12, ..Settings::default() };
         let released = State { u: -AMPLITUDE, ..State::default() };

@@ -25,7 +25,7 @@ pub(crate) mod start;
 pub mod uplift;
 
 use crate::levels::full_contact::ExactContact;
-use crate::levels::level::{ElasticRocking, FixedBase, Level, Subject, most_of_swings};
+use crate::levels::level::{ElasticRocking, FixedBase, Level, LevelSubject, most_of_swings};
 use crate::levels::linear::LinearRocking;
 use crate::levels::modes::ManyModes;
 use crate::levels::nonlinear::NonlinearRocking;
@@ -50,7 +50,7 @@ impl Detail {
     ) -> Result<Box<dyn Level>, Refused> {
         let one = *structure.of_mode()?;
         let is_tied = structure.base().is_restrained() || is_vertical;
-        let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
+        let subject = LevelSubject { structure, local_error, is_tied, angles: self.angles() };
         let contact = ExactContact::new(Oscillator { omega: one.omega_fc, zeta: one.parameters().zeta_fc });
         let first = RefCell::default();
         Ok(match self {
@@ -73,7 +73,7 @@ impl Detail {
             }
             Detail::Rigid => {
                 let structure = subject.structure.shown_rigid();
-                Box::new(ManyModes::<f64>::new(Subject { structure, ..subject }, self))
+                Box::new(ManyModes::<f64>::new(LevelSubject { structure, ..subject }, self))
             }
             Detail::FixedBase => Box::new(Elastic { subject, one, contact: Some(contact), rocking: FixedBase, first }),
         })
@@ -103,7 +103,7 @@ impl Detail {
             _ => structure.at(self),
         };
         let is_tied = structure.base().is_restrained() || is_vertical;
-        let subject = Subject { structure, local_error, is_tied, angles: self.angles() };
+        let subject = LevelSubject { structure, local_error, is_tied, angles: self.angles() };
         match self {
             _ if subject.structure.foundation().is_none() => Ok(Box::new(ManyModes::<Modes>::new(subject, self))),
             _ if subject.structure.modes().len() <= 1 => Ok(Box::new(OnGround::<f64>::new(subject))),
@@ -115,7 +115,7 @@ impl Detail {
 /// A level with an elastic strut: by exact flow in full contact where there is one, otherwise by series.
 #[derive(Clone, Debug)]
 pub(crate) struct Elastic<Rocking> {
-    subject: Subject,
+    subject: LevelSubject,
     pub one: OneMass,
     pub contact: Option<ExactContact>,
     pub rocking: Rocking,
@@ -123,7 +123,7 @@ pub(crate) struct Elastic<Rocking> {
 }
 
 impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking> {
-    fn subject(&self) -> &Subject {
+    fn subject(&self) -> &LevelSubject {
         &self.subject
     }
 

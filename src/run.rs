@@ -8,10 +8,10 @@ pub mod curve;
 pub mod fall;
 pub mod ground_motion;
 mod history;
+pub mod host_step;
 #[cfg(feature = "lanes")]
 pub mod lanes;
 pub mod levels;
-pub mod outside_step;
 pub mod peak_watch;
 pub mod peaks;
 mod reaction_series;
@@ -22,11 +22,11 @@ pub mod validity;
 use crate::mechanics::lateral::Coordinates;
 use crate::{Engine, Modes, Sample, Watch};
 pub use course::{End, Ending, Finish, LONGEST_REST, MOST_STEPS, Run, RunError, Starts};
-use curve::Curve;
-use fall::Found;
+use curve::RunCurve;
+use fall::RunResult;
 use levels::Comparison;
 use peaks::Peaks;
-use samples::Samples;
+use samples::Sampler;
 use validity::{Findings, Limits, Validity};
 
 impl<'a, Q: Runs> Run<'a, Q> {
@@ -45,7 +45,7 @@ impl<'a, Q: Runs> Run<'a, Q> {
         watch: &mut dyn Watch<Q>,
     ) -> Result<Finish<Q>, RunError> {
         let start = self.ground.start();
-        let mut samples = Samples::new(times.into_iter().filter(|time| *time >= start), show);
+        let mut samples = Sampler::new(times.into_iter().filter(|time| *time >= start), show);
         let (ending, engine) = (Q::compiled().finish)(self, &mut (watch, &mut samples))?;
         samples.end(&engine);
         Ok(Finish { ending, motion: *engine.motion() })
@@ -59,18 +59,18 @@ impl<'a, Q: Runs> Run<'a, Q> {
     }
 
     /// Follows the motion to the end, which `watch` sees, too, and finds its exact peaks.
-    pub fn found(&self, watch: &mut dyn Watch<Q>) -> Result<Found<Q>, RunError> {
+    pub fn found(&self, watch: &mut dyn Watch<Q>) -> Result<RunResult<Q>, RunError> {
         Ok((Q::compiled().found)(self, watch)?.0)
     }
 
     /// Like [`Run::found`]; `validity` sees the motion, too.
-    pub fn judged(&self, validity: &mut Validity, watch: &mut dyn Watch<Q>) -> Result<Found<Q>, RunError> {
+    pub fn judged(&self, validity: &mut Validity, watch: &mut dyn Watch<Q>) -> Result<RunResult<Q>, RunError> {
         (Q::compiled().judged)(self, validity, watch)
     }
 
     /// The run as points between which θ, u and a_t of each floor leave straight lines by at most `part` of their peaks; the
     /// ground acceleration does not leave them at all. Refuses a run that takes more points than fit in 130 MB.
-    pub fn curve(&self, part: f64) -> Result<Curve<Q>, RunError> {
+    pub fn curve(&self, part: f64) -> Result<RunCurve<Q>, RunError> {
         (Q::compiled().curve)(self, part)
     }
 
@@ -104,18 +104,18 @@ pub trait Runs: Starts {
     fn compiled() -> &'static Compiled<Self>;
 }
 
-type Watched<Q, T> = fn(&Run<Q>, &mut dyn Watch<Q>) -> Result<T, RunError>;
-type Judged<Q, T> = fn(&Run<Q>, &mut Validity, &mut dyn Watch<Q>) -> Result<T, RunError>;
+type FollowRun<Q, T> = fn(&Run<Q>, &mut dyn Watch<Q>) -> Result<T, RunError>;
+type JudgeRun<Q, T> = fn(&Run<Q>, &mut Validity, &mut dyn Watch<Q>) -> Result<T, RunError>;
 
 /// The functions that follow runs.
 #[doc(hidden)]
 pub struct Compiled<Q: Coordinates> {
-    finish: Watched<Q, (Ending, Engine<Q>)>,
+    finish: FollowRun<Q, (Ending, Engine<Q>)>,
     /// See [`Run::found`]; also the peaks of all the motion, including a fall.
-    found: Watched<Q, (Found<Q>, Peaks)>,
-    judged: Judged<Q, Found<Q>>,
-    judge: Judged<Q, Finish<Q>>,
-    curve: fn(&Run<Q>, f64) -> Result<Curve<Q>, RunError>,
+    found: FollowRun<Q, (RunResult<Q>, Peaks)>,
+    judged: JudgeRun<Q, RunResult<Q>>,
+    judge: JudgeRun<Q, Finish<Q>>,
+    curve: fn(&Run<Q>, f64) -> Result<RunCurve<Q>, RunError>,
     compare: fn(&Run<Q>) -> Result<Comparison, RunError>,
     #[cfg(feature = "lanes")]
     each: lanes::Each<Q>,
@@ -145,12 +145,12 @@ compiled!(f64, Modes);
 /// Follows `runs` to their ends and finds the exact peaks of each, as [`Run::found`] does. Tells `done` each result, with the
 /// run's position, as the run ends; once `done` says no, the rest is left undone.
 #[cfg(feature = "lanes")]
-pub fn found_each<Q: Runs>(runs: &[Run<Q>], done: lanes::Done<Result<Found<Q>, RunError>>) {
+pub fn found_each<Q: Runs>(runs: &[Run<Q>], done: lanes::OnResult<Result<RunResult<Q>, RunError>>) {
     (Q::compiled().each.0)(runs, done);
 }
 
 /// Follows `runs` to their ends like [`found_each`], and tells `done` of each how it ended and how far it has rocked by then.
 #[cfg(feature = "lanes")]
-pub fn rocked_each<Q: Runs>(runs: &[Run<Q>], done: lanes::Done<(Result<Finish<Q>, RunError>, lanes::Rocked)>) {
+pub fn rocked_each<Q: Runs>(runs: &[Run<Q>], done: lanes::OnResult<(Result<Finish<Q>, RunError>, lanes::Rocked)>) {
     (Q::compiled().each.1)(runs, done);
 }

@@ -62,7 +62,7 @@ pub(crate) const OF_FLOOR: [Quantity<Floor>; 2] = [
 /// A rigid base that carries modes. The mass above the foundation that the modes do not carry turns rigidly with the base. Copies share
 /// their numbers.
 #[derive(Clone, Debug)]
-pub struct Structure(Arc<Whole>, Provenance);
+pub struct Structure(Arc<SharedNumbers>, Provenance);
 
 /// How the numbers of a structure were given.
 #[derive(Clone, Debug, Default)]
@@ -80,7 +80,7 @@ impl PartialEq for Structure {
 
 /// The numbers of a structure.
 #[derive(Clone, Debug, PartialEq)]
-struct Whole {
+struct SharedNumbers {
     base: Base,
     body: Body,
     modes: Vec<Mode>,
@@ -196,7 +196,7 @@ impl Structure {
             tan_alpha_cg: m_t * B / S_1,
             ties,
         };
-        let whole = Whole {
+        let whole = SharedNumbers {
             vibration: match one {
                 Some(one) => Vibration { contact: one.omega_fc, rocking: [one.omega_u; 2] },
                 None => vibration(&base, modes),
@@ -216,8 +216,8 @@ impl Structure {
     }
 
     /// This structure with numbers that `change` writes.
-    fn changed(&self, change: impl FnOnce(&mut Whole)) -> Structure {
-        let mut whole = Whole { reaches: Reaches::default(), ..Whole::clone(&self.0) };
+    fn changed(&self, change: impl FnOnce(&mut SharedNumbers)) -> Structure {
+        let mut whole = SharedNumbers { reaches: Reaches::default(), ..SharedNumbers::clone(&self.0) };
         change(&mut whole);
         Structure(Arc::new(whole), self.1.clone())
     }

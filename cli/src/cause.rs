@@ -5,7 +5,7 @@ use FlexibleRocking::BUILD;
 use rocking::run::record::Record;
 use rocking::{Parameters, State, Structure};
 use rocking_records::Column;
-use rocking_report::{describe, run::Run};
+use rocking_report::{describe, run::RunSetup};
 use rocking_sweep::plan::Conditions;
 use rocking_sweep::row_file::Program;
 use serde::{Serialize, Serializer};
@@ -13,11 +13,11 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// The origin of a result, part by part under its name; a part without influence on the result is left out.
-pub struct Cause(Vec<(&'static str, Part)>);
+pub struct Cause(Vec<(&'static str, CausePart)>);
 
 #[derive(Serialize)]
 #[serde(untagged)]
-enum Part {
+enum CausePart {
     Text(Option<String>),
     Number(f64),
     OneMass(Parameters),
@@ -31,8 +31,8 @@ impl Serialize for Cause {
     }
 }
 
-fn text((name, of): (&'static str, Option<String>)) -> (&'static str, Part) {
-    (name, Part::Text(of))
+fn text((name, of): (&'static str, Option<String>)) -> (&'static str, CausePart) {
+    (name, CausePart::Text(of))
 }
 
 impl Cause {
@@ -43,8 +43,8 @@ impl Cause {
     pub fn new(structure: impl Into<Structure>) -> Cause {
         let (structure, mut cause) = (structure.into(), Cause::of_program());
         let numbers = || describe::numbers(&structure).into_iter().map(|of| (of.name, of.value)).collect();
-        let one = structure.one().map(|one| Part::OneMass(*one.parameters()));
-        cause.0.push(("structure", one.unwrap_or_else(|| Part::Numbers(numbers()))));
+        let one = structure.one().map(|one| CausePart::OneMass(*one.parameters()));
+        cause.0.push(("structure", one.unwrap_or_else(|| CausePart::Numbers(numbers()))));
         cause
     }
 
@@ -60,13 +60,13 @@ impl Cause {
             ("record_column_v", column(&vertical.column_v)),
         ];
         self.0.extend(asked.into_iter().filter(|(_, of)| of.is_some()).map(text));
-        self.0.extend(options.dt.map(|dt| ("record_dt", Part::Number(dt))));
-        let [time_scale, scale] = options.factors().map(Part::Number);
+        self.0.extend(options.dt.map(|dt| ("record_dt", CausePart::Number(dt))));
+        let [time_scale, scale] = options.factors().map(CausePart::Number);
         self.0.extend([("time_scale", time_scale), ("scale", scale)]);
         self
     }
 
-    pub fn of(args: &MotionArgs, run: &Run) -> Cause {
+    pub fn of(args: &MotionArgs, run: &RunSetup) -> Cause {
         let mut cause = Cause::new(run.structure.clone()).under(&args.ground.record, &run.ground);
         cause.0.extend(args.ground.force.iter().map(|path| text(("force", Some(path.display().to_string())))));
         cause
@@ -74,7 +74,10 @@ impl Cause {
 
     pub fn computed(mut self, conditions: &Conditions) -> Cause {
         let &Conditions { detail, tolerance, ref initial, .. } = conditions;
-        self.0.extend([("detail", Part::Text(Some(detail.name().into()))), ("tolerance", Part::Number(tolerance))]);
+        self.0.extend([
+            ("detail", CausePart::Text(Some(detail.name().into()))),
+            ("tolerance", CausePart::Number(tolerance)),
+        ]);
         self.with_initial(initial)
     }
 
@@ -85,7 +88,7 @@ impl Cause {
             _ => OneOrMore::More(of.clone()),
         });
         let &State { theta, theta_dot, .. } = initial;
-        self.0.push(("initial", Part::State(State { u, u_dot, theta, theta_dot })));
+        self.0.push(("initial", CausePart::State(State { u, u_dot, theta, theta_dot })));
         self
     }
 }

@@ -12,12 +12,12 @@ use std::path::Path;
 #[derive(clap::Args, Clone, Copy)]
 pub struct FormatArgs {
     /// How the results are printed
-    #[arg(long, value_name = "FORMAT", value_enum, default_value_t = Format::Text, display_order = 999)]
-    format: Format,
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t = ResultFormat::Text, display_order = 999)]
+    format: ResultFormat,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum Format {
+enum ResultFormat {
     /// Tables to read, six digits
     Text,
     /// JSON in SI units, all digits
@@ -32,7 +32,7 @@ impl FormatArgs {
     /// Refuses JSON where standard output has the table that is written to `output`.
     pub fn check_beside(self, output: Option<&Path>) -> anyhow::Result<()> {
         let is_taken = output.is_some_and(input::is_standard);
-        ensure!(!(is_taken && self.format == Format::Json), "-o - and --format json: both go to standard output");
+        ensure!(!(is_taken && self.format == ResultFormat::Json), "-o - and --format json: both go to standard output");
         Ok(())
     }
 
@@ -44,8 +44,8 @@ impl FormatArgs {
         result: &impl Serialize,
     ) -> anyhow::Result<()> {
         let printed = match self.format {
-            Format::Text => text()?,
-            Format::Json => serde_json::to_string_pretty(result)? + "\n",
+            ResultFormat::Text => text()?,
+            ResultFormat::Json => serde_json::to_string_pretty(result)? + "\n",
         };
         if !output.is_some_and(input::is_standard) {
             return print(&printed);

@@ -6,7 +6,7 @@ use clap::ArgGroup;
 use rocking::digits::short;
 use rocking::run::record::Record;
 use rocking::{Detail, State, engine::DEFAULT_TOLERANCE};
-use rocking_report::{record::Understood, run::Run};
+use rocking_report::{record::Understood, run::RunSetup};
 use rocking_sweep::plan::Conditions;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::path::{Path, PathBuf};
@@ -26,12 +26,12 @@ pub struct MotionArgs {
 impl MotionArgs {
     /// The run, with equations and tolerance as in `how`. Conditions that no run of the structure can have are an error before the record
     /// is read.
-    pub fn load(&self, how: Conditions) -> anyhow::Result<Run> {
+    pub fn load(&self, how: Conditions) -> anyhow::Result<RunSetup> {
         let structure = self.structure.load_any()?;
         let conditions = Conditions { initial: self.initial.state(), duration: self.ground.duration(), ..how };
         conditions.check(&structure)?;
         let ground = Arc::new(self.ground.load(structure.base().g)?);
-        Ok(Run { structure, ground, conditions })
+        Ok(RunSetup { structure, ground, conditions })
     }
 
     pub fn inputs(&self) -> impl Iterator<Item = &Path> {

@@ -15,7 +15,7 @@ use rocking::run::record::Record;
 use rocking::{Base, Output};
 use rocking_report::output_files::{OutputFile, OutputFiles};
 use rocking_report::quantities::in_readable_unit;
-use rocking_report::run::{Run, event_line, usual_periods};
+use rocking_report::run::{RunSetup, event_line, usual_periods};
 use rocking_report::summary::instant;
 use rocking_report::tables::Line;
 use std::path::PathBuf;
@@ -71,7 +71,7 @@ impl SimulateArgs {
         }
     }
 
-    fn write_response(&self, run: &Run, file: OutputFile) -> anyhow::Result<()> {
+    fn write_response(&self, run: &RunSetup, file: OutputFile) -> anyhow::Result<()> {
         let (samples, interval) = self.samples_and_interval(&run.ground);
         let (start, from) = (samples[0], samples[samples.len() - 1]);
         let times = samples.iter().copied().chain((1_u64..).map(|i| from + i as f64 * interval));

@@ -8,7 +8,7 @@ use rocking::digits::short;
 use rocking::structure::derived::Derived;
 use rocking::structure::doubts::{all_doubted, doubted};
 use rocking::structure::ground;
-use rocking::structure::natural_quantities::{Given, NATURAL, names};
+use rocking::structure::natural_quantities::{NATURAL, Numbers, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::quantity::Quantity;
 use rocking::{Parameters, Structure};
@@ -25,7 +25,7 @@ pub struct StructureArgs {
     #[arg(long, value_name = "FILE.toml")]
     parameters: Option<PathBuf>,
     #[command(flatten)]
-    numbers: Numbers,
+    numbers: NumberOptions,
     /// Names of numbers; their warnings are left out
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = one_of(all_doubted().map(|name| (name, name))))]
     allow: Vec<&'static str>,
@@ -33,7 +33,7 @@ pub struct StructureArgs {
 
 /// Numbers in the place of the specimen's or the file's, or alone: an option for every parameter and natural quantity.
 #[derive(Debug)]
-struct Numbers(Given);
+struct NumberOptions(Numbers);
 
 impl StructureArgs {
     pub fn input(&self) -> Option<&Path> {
@@ -94,7 +94,7 @@ fn option(name: &'static str, unit: &'static str, help: String) -> Arg {
         .value_parser(number)
 }
 
-impl clap::Args for Numbers {
+impl clap::Args for NumberOptions {
     fn augment_args(command: Command) -> Command {
         let parameters = PARAMETERS.iter().map(|&Quantity { name, unit, description, min, max, .. }| {
             option(name, unit, format!("{description}, {} to {}", short(min), short(max)))
@@ -111,22 +111,22 @@ impl clap::Args for Numbers {
     }
 
     fn augment_args_for_update(command: Command) -> Command {
-        Numbers::augment_args(command)
+        NumberOptions::augment_args(command)
     }
 }
 
-impl FromArgMatches for Numbers {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Numbers, clap::Error> {
-        let mut given = Given::default();
+impl FromArgMatches for NumberOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<NumberOptions, clap::Error> {
+        let mut given = Numbers::default();
         for name in names().filter(|name| matches.value_source(name) == Some(ValueSource::CommandLine)) {
             let value = matches.get_one(name).copied().expect("it is there");
             given.give(name, value).expect("clap knows these names, and each once");
         }
-        Ok(Numbers(given))
+        Ok(NumberOptions(given))
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = Numbers::from_arg_matches(matches)?;
+        *self = NumberOptions::from_arg_matches(matches)?;
         Ok(())
     }
 }

@@ -11,7 +11,7 @@ use crate::results::FormatArgs;
 use crate::talk::{few, progress, say};
 use FlexibleRocking::BUILD;
 use anyhow::{bail, ensure};
-use file::{Asked, RecordSweep};
+use file::{RecordSweep, SweepContent};
 use rayon::ThreadPool;
 use rocking::digits::with_unit;
 use rocking_report::{input, output_files::OutputFiles};
@@ -61,8 +61,8 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let picture = args.picture.clone().unwrap_or(output.with_extension("svg"));
     let picture = Picture::create(&picture, &mut files)?;
     match asked {
-        Asked::Records(sweep) => run_records(args, *sweep, &pool, &output, picture),
-        Asked::Pulses(sweep) => {
+        SweepContent::Records(sweep) => run_records(args, *sweep, &pool, &output, picture),
+        SweepContent::Pulses(sweep) => {
             ensure!(!args.validity, "--validity is for records: `simulate` a pulse that `pulse` writes");
             map::run(sweep, args.results, &pool, &output, picture)
         }

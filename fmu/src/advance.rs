@@ -1,6 +1,6 @@
 //! How the structure on its ground is taken over one step of a co-simulation.
 
-use crate::scene::{Scene, Told, Watching};
+use crate::scene::{Scene, Tell, Watching};
 use crate::setup::Setup;
 use rocking::engine::{AdvanceError, Progress};
 use rocking::run::Runs;
@@ -10,7 +10,7 @@ use rocking::{LinearLoad, Watch};
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// How an advance has ended.
-type Advanced = Result<Progress, AdvanceError>;
+type Stop = Result<Progress, AdvanceError>;
 
 impl<Q: Runs> Scene<Q> {
     /// [`Scene::advance`] up to the first transition. One within rounding of the end of the step counts as at its end: a
@@ -22,8 +22,8 @@ impl<Q: Runs> Scene<Q> {
         setup: &Setup,
         step: f64,
         inputs: &LinearLoad<Q>,
-        told: &mut Told<Q>,
-    ) -> Advanced {
+        told: &mut Tell<Q>,
+    ) -> Stop {
         let (from, elapsed) = (self.engine.motion().time, self.elapsed);
         let until = from + step;
         let mut progress = self.advance(setup, step, inputs, told)?;
@@ -53,7 +53,7 @@ impl<Q: Runs> Scene<Q> {
     /// Advances by `step` (s) under `inputs` and the record, with peaks and validity watched as `setup` says. If it
     /// fails, nothing has changed.
     #[inline(always)]
-    pub fn advance(&mut self, setup: &Setup, step: f64, inputs: &LinearLoad<Q>, told: &mut Told<Q>) -> Advanced {
+    pub fn advance(&mut self, setup: &Setup, step: f64, inputs: &LinearLoad<Q>, told: &mut Tell<Q>) -> Stop {
         if setup.peaks || setup.validity {
             self.advance_watched(setup, step, inputs, told)
         } else {
@@ -62,7 +62,7 @@ impl<Q: Runs> Scene<Q> {
     }
 
     #[inline(never)]
-    fn advance_watched(&mut self, setup: &Setup, step: f64, inputs: &LinearLoad<Q>, told: &mut Told<Q>) -> Advanced {
+    fn advance_watched(&mut self, setup: &Setup, step: f64, inputs: &LinearLoad<Q>, told: &mut Tell<Q>) -> Stop {
         let mut validity = self.watch_validity();
         let of_limits = setup.validity.then_some(&mut validity);
         let mut watch = Watching { peaks: setup.peaks.then(|| self.peaks.clone().watch()), validity: of_limits, told };
@@ -73,7 +73,7 @@ impl<Q: Runs> Scene<Q> {
     }
 
     #[inline(always)]
-    fn follow<W: Watch<Q>>(&mut self, setup: &Setup, step: f64, inputs: &LinearLoad<Q>, watch: &mut W) -> Advanced {
+    fn follow<W: Watch<Q>>(&mut self, setup: &Setup, step: f64, inputs: &LinearLoad<Q>, watch: &mut W) -> Stop {
         let Scene { engine, ground, elapsed, .. } = self;
         let Some(ground) = ground else { return engine.advance(step, *inputs, watch) };
         setup.ground_motion(ground).advance(engine, elapsed, step, *inputs, watch)

@@ -1,14 +1,14 @@
 //! Derivatives of outputs: by time, and by what the host sets.
 
 use crate::inputs::Inputs;
+use crate::rocking_model::RockingModel;
 use crate::shown::Shown;
 use crate::source::Source;
-use crate::unit::Unit;
 use fmi_unit::{Failure, Model, sensitivity};
 use rocking::run::Runs;
 use rocking::{LinearLoad, Load, Reactions};
 
-impl<Q: Runs> Unit<Q> {
+impl<Q: Runs> RockingModel<Q> {
     /// Rates of outputs by the equations of motion, under the present inputs and their slopes: those set for the next
     /// step, or else those that the last step followed.
     pub(crate) fn output_rates(&mut self, references: &[u32], rates: &mut [f64]) -> Result<(), Failure> {

@@ -1,6 +1,6 @@
 //! The variables of modes and floors, and the derivatives of all states.
 
-use crate::source::{Row, Source};
+use crate::source::{Source, VariableRow};
 use fmi_unit::variables::Text;
 use fmi_unit::{Causality, Variable};
 use rocking::Structure;
@@ -47,7 +47,7 @@ fn name(structure: &Structure, place: usize) -> String {
 }
 
 /// The states that are no outputs: the coordinates of the modes of many masses, and y on ground that gives.
-pub(crate) fn coordinates(frame: &Structure) -> Vec<Row> {
+pub(crate) fn coordinates(frame: &Structure) -> Vec<VariableRow> {
     let is_one = frame.is_one_mass();
     let coordinate = |place: usize| {
         let (unit, description) = match kind(frame, place) {
@@ -67,7 +67,7 @@ pub(crate) fn coordinates(frame: &Structure) -> Vec<Row> {
 }
 
 /// The derivatives of all states.
-pub(crate) fn state_rates(structure: &Structure) -> Vec<Row> {
+pub(crate) fn state_rates(structure: &Structure) -> Vec<VariableRow> {
     let (n, is_one) = (lateral_states(structure), structure.is_one_mass());
     let rate = |place: usize| {
         let (unit, is_velocity) =

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use uuid::Uuid;
 
 /// Names the samples of a record, and their unit.
-pub type Digest = [u8; 16];
+pub type RecordDigest = [u8; 16];
 
 /// A record that the ground can follow.
 #[derive(Debug)]
@@ -21,13 +21,13 @@ pub struct GroundRecord {
     /// The units of its accelerations, and of the vertical ones.
     pub units: [Unit; 2],
     /// Names all of it.
-    pub digest: Digest,
+    pub digest: RecordDigest,
     /// Sentences about each file: first the content, then an assumption.
     pub sentences: Vec<Vec<String>>,
 }
 
 /// A record, and the name of the texts and the files that it was read from.
-pub(crate) type Kept = (Uuid, Arc<GroundRecord>);
+pub(crate) type CachedRecord = (Uuid, Arc<GroundRecord>);
 
 /// Why a record cannot be had. Each names the parameter that asks for it.
 #[derive(Debug, thiserror::Error)]
@@ -73,7 +73,7 @@ impl GroundRecord {
         let (up, unit) = (&vertical.record, vertical.units[0]);
         let (record, units, of_horizontal, mut sentences) = match horizontal {
             Some(along) => (along.record, [along.units[0], unit], along.digest, along.sentences),
-            None => (up.clone().multiplied(0.0), [unit; 2], Digest::default(), Vec::new()),
+            None => (up.clone().multiplied(0.0), [unit; 2], RecordDigest::default(), Vec::new()),
         };
         sentences.extend(vertical.sentences.iter().cloned());
         let digest = Uuid::new_v5(&Uuid::from_bytes(of_horizontal), &vertical.digest).into_bytes();
@@ -93,7 +93,7 @@ impl GroundRecord {
 }
 
 /// The file that one of the parameters names.
-struct Asked<'a> {
+struct NamedFile<'a> {
     parameter: &'static str,
     text: &'a str,
     path: PathBuf,
@@ -110,7 +110,7 @@ impl Archive {
         record: &str,
         record_v: &str,
         g: f64,
-        kept: &mut Option<Kept>,
+        kept: &mut Option<CachedRecord>,
     ) -> Result<Option<Arc<GroundRecord>>, GroundError> {
         let (along, up) = (self.read("record", record)?, self.read("record_v", record_v)?);
         if along.is_none() && up.is_none() {
@@ -134,7 +134,7 @@ impl Archive {
     }
 
     /// The file that `text`, the value of `parameter`, asks for.
-    fn read<'a>(&'a self, parameter: &'static str, text: &'a str) -> Result<Option<Asked<'a>>, GroundError> {
+    fn read<'a>(&'a self, parameter: &'static str, text: &'a str) -> Result<Option<NamedFile<'a>>, GroundError> {
         if text.is_empty() {
             return Ok(None);
         }
@@ -154,11 +154,15 @@ impl Archive {
             Some(bytes) => Cow::Borrowed(bytes.as_slice()),
             None => rocking_records::read_file(&path).map_err(|error| GroundError::NoRecord(parameter, error))?.into(),
         };
-        Ok(Some(Asked { parameter, text, path, bytes }))
+        Ok(Some(NamedFile { parameter, text, path, bytes }))
     }
 
     /// The record in that file; one that was packed must be as it was.
-    fn parse(&self, Asked { parameter, text, path, bytes }: Asked, g: f64) -> Result<GroundRecord, GroundError> {
+    fn parse(
+        &self,
+        NamedFile { parameter, text, path, bytes }: NamedFile,
+        g: f64,
+    ) -> Result<GroundRecord, GroundError> {
         let record =
             GroundRecord::from_bytes(&path, &bytes, g).map_err(|error| GroundError::NoRecord(parameter, error))?;
         match self.contents.packed().find(|packed| packed.file == text) {

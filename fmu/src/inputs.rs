@@ -57,7 +57,7 @@ struct Input {
     /// The value that the host has set, or that the last step led to.
     set: f64,
     /// The values that the host has set since the last step.
-    given: Given,
+    given: InputSetting,
     /// The value at the end of the last step, and the slope that the step followed.
     followed: Ramp,
     /// The value at the last communication point that a step began at.
@@ -72,7 +72,7 @@ struct Input {
 
 /// The setting of an input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-enum Given {
+enum InputSetting {
     /// Nothing, or what was set before a step that ended early.
     #[default]
     Nothing,
@@ -84,15 +84,15 @@ enum Given {
 
 impl Input {
     fn acts_at_once(&self) -> bool {
-        self.between != Between::Late || self.given == Given::Slope
+        self.between != Between::Late || self.given == InputSetting::Slope
     }
 
     #[inline]
     fn set(&mut self, value: f64, since: f64, ended_early: bool) {
         (self.set, self.rests) = (value, false);
         let mut acts = value;
-        if self.given != Given::Slope {
-            self.given = Given::Value;
+        if self.given != InputSetting::Slope {
+            self.given = InputSetting::Value;
             (acts, self.next.slope) = match self.between {
                 Between::Held => (value, 0.0),
                 Between::Late => return,
@@ -106,7 +106,7 @@ impl Input {
     #[cold]
     fn extrapolated(&mut self, value: f64, since: f64, ended_early: bool) -> (f64, f64) {
         if ended_early && value == self.before {
-            self.given = Given::Nothing;
+            self.given = InputSetting::Nothing;
             return (self.followed.value, self.followed.slope);
         }
         let slope = if since > 0.0 { (value - self.before) / since } else { 0.0 };
@@ -115,12 +115,12 @@ impl Input {
 
     #[inline]
     fn set_slope(&mut self, slope: f64) {
-        if self.given == Given::Nothing {
+        if self.given == InputSetting::Nothing {
             self.set = self.next.value;
         } else {
             self.next.value = self.set;
         }
-        (self.next.slope, self.given, self.rests) = (slope, Given::Slope, false);
+        (self.next.slope, self.given, self.rests) = (slope, InputSetting::Slope, false);
     }
 
     /// The line over a step of `duration` (s). An input of which only the value is set is held if its line would lead out of its
@@ -128,7 +128,7 @@ impl Input {
     #[inline]
     fn over(&self, duration: f64) -> Ramp {
         let Ramp { value, mut slope } = self.next;
-        if self.between == Between::Held || self.given == Given::Slope {
+        if self.between == Between::Held || self.given == InputSetting::Slope {
             return self.next;
         }
         if self.between == Between::Late {
@@ -150,7 +150,7 @@ impl Input {
             self.next.value = self.set;
         }
         self.followed = Ramp { value: self.next.value, slope };
-        self.given = Given::Nothing;
+        self.given = InputSetting::Nothing;
     }
 }
 
@@ -232,7 +232,7 @@ impl Inputs {
     /// The loads that act now on `structure`, with the slopes of the next step, or of the last step if none are set.
     pub fn now<Q: Runs>(&self, structure: &Structure) -> LinearLoad<Q> {
         let slope = |input: &Input| {
-            let is_old = input.given == Given::Nothing || !input.acts_at_once();
+            let is_old = input.given == InputSetting::Nothing || !input.acts_at_once();
             if is_old { input.followed.slope } else { input.next.slope }
         };
         LinearLoad { value: self.values(structure), slope: self.load(structure, slope) }
@@ -262,8 +262,8 @@ impl Inputs {
             let &mut Input { load, between, given, line, before, .. } = input;
             if begins {
                 let (is_held, is_same) = (between == Between::Held, line == Ramp { value: before, slope: 0.0 });
-                is_stair |= is_held && given == Given::Value && line.value != before && load != FORCE;
-                (input.rests, input.before) = (is_held && given == Given::Nothing && is_same, line.value);
+                is_stair |= is_held && given == InputSetting::Value && line.value != before && load != FORCE;
+                (input.rests, input.before) = (is_held && given == InputSetting::Nothing && is_same, line.value);
             }
             input.pass(duration, ended_early);
             if input.rests {

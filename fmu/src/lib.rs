@@ -26,21 +26,21 @@ mod failure;
 mod floor_variables;
 pub mod ground;
 mod inputs;
+mod model_exchange;
 mod motion_log;
-mod outside;
 pub mod resources;
+pub mod rocking_model;
 mod scene;
 mod setup;
 mod shown;
 mod source;
-pub mod unit;
 pub mod variables;
 
 use resources::Contents;
 use uuid::Uuid;
 
 #[cfg(not(target_family = "wasm"))]
-fmi_unit::export_fmu!(unit::Unit);
+fmi_unit::export_fmu!(rocking_model::RockingModel);
 
 /// Names the build: all that enters the library.
 pub const BUILD: &str = env!("FLEXIBLE_ROCKING_BUILD");

@@ -3,15 +3,15 @@
 
 use crate::failure::Refusal;
 use crate::floor_variables::{lateral_states, numbers};
-use crate::ground::{Digest, GroundRecord, Kept};
+use crate::ground::{CachedRecord, GroundRecord, RecordDigest};
 use crate::resources::Archive;
 use crate::setup::Setup;
 use rocking::engine::Settings;
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::Runs;
-use rocking::run::fall::{FallWatch, Falling};
+use rocking::run::fall::{FallPeaks, FallWatch};
 use rocking::run::ground_motion::{Elapsed, Placement};
-use rocking::run::outside_step::Checkpoint;
+use rocking::run::host_step::Checkpoint;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits, Validity};
 use rocking::{Engine, LinearLoad, Load, Piece, State, Structure, Transition, Watch};
@@ -30,8 +30,8 @@ pub struct Scene<Q: Runs = f64> {
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     /// If the host integrates: the engine is then where the host is, and the motion between its steps is not the engine's to watch.
-    pub outside: Option<Outside<Q>>,
-    pub peaks: Falling,
+    pub outside: Option<HostMotion<Q>>,
+    pub peaks: FallPeaks,
     pub validity: Findings,
     /// How many lateral coordinates the table has.
     pub lateral: usize,
@@ -43,7 +43,7 @@ pub struct Scene<Q: Runs = f64> {
 
 /// The knowledge of an instance beside the present of a motion that the host integrates.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub struct Outside<Q = f64> {
+pub struct HostMotion<Q = f64> {
     /// The last motion that was known.
     pub known: Checkpoint<Q>,
     /// The inputs when event mode was entered: what is set there has not acted before.
@@ -53,13 +53,13 @@ pub struct Outside<Q = f64> {
 }
 
 /// Hears of transitions. One type for all listeners keeps the library small.
-pub type Told<'a, Q> = dyn FnMut(&Transition<Q>) + 'a;
+pub type Tell<'a, Q> = dyn FnMut(&Transition<Q>) + 'a;
 
 /// Watches peaks and limits, if they are asked for. One type for all cases keeps the library small.
 pub struct Watching<'a, 'b, Q: Runs> {
     pub peaks: Option<FallWatch<Q>>,
     pub validity: Option<&'a mut Validity>,
-    pub told: &'a mut Told<'b, Q>,
+    pub told: &'a mut Tell<'b, Q>,
 }
 
 impl<Q: Runs> Watch<Q> for Watching<'_, '_, Q> {
@@ -101,13 +101,13 @@ impl Setup {
 
 impl<Q: Runs> Scene<Q> {
     /// At the start that `setup` describes, of the `archive`. The record is not parsed if it is `kept`.
-    pub fn new(setup: &Setup, archive: &Archive, kept: &mut Option<Kept>) -> Result<Scene<Q>, Refusal> {
+    pub fn new(setup: &Setup, archive: &Archive, kept: &mut Option<CachedRecord>) -> Result<Scene<Q>, Refusal> {
         let (contents, g) = (&archive.contents, setup.g(&archive.contents));
         let source = archive.ground(&setup.record, &setup.record_v, g, kept)?;
         let ground = source.as_deref().map(|source| setup.scaled(source, g)).transpose()?;
         let structure = contents.description().with(&setup.numbers).structure()?;
         let engine = setup.engine::<Q>(structure.clone(), setup.may_move_vertically(ground.as_ref()))?;
-        let peaks = Falling::since(setup.start_time, engine.structure(), setup.detail);
+        let peaks = FallPeaks::since(setup.start_time, engine.structure(), setup.detail);
         let (validity, lateral) = (Findings::since(setup.start_time), lateral_states(&contents.structure));
         Ok(Scene {
             engine,
@@ -183,7 +183,7 @@ impl<Q: Runs> Scene<Q> {
     }
 
     /// Names the record that the ground follows.
-    pub fn digest(&self) -> Option<Digest> {
+    pub fn digest(&self) -> Option<RecordDigest> {
         self.source.as_ref().map(|source| source.digest)
     }
 
@@ -214,7 +214,7 @@ impl<Q: Runs> Scene<Q> {
 
     /// Applies the transition that is due, if there is one, and all that are due at once then, or since the inputs `load` have
     /// jumped.
-    pub fn transit(&mut self, setup: &Setup, load: Load<Q>, told: &mut Told<Q>) {
+    pub fn transit(&mut self, setup: &Setup, load: Load<Q>, told: &mut Tell<Q>) {
         let acting = self.acting(setup, load);
         let mut validity = self.watch_validity();
         let mut watch = Watching { peaks: None, validity: setup.validity.then_some(&mut validity), told };
@@ -226,7 +226,7 @@ impl<Q: Runs> Scene<Q> {
 
     /// The peaks since the start, of a structure that has overturned those before it fell; before the first step, the
     /// values under `load`.
-    pub fn peaks(&self, load: Load<Q>) -> Cow<'_, Falling> {
+    pub fn peaks(&self, load: Load<Q>) -> Cow<'_, FallPeaks> {
         let mut peaks = Cow::Borrowed(&self.peaks);
         if self.is_at_start(load) {
             peaks.to_mut().see_instant(&self.engine.sample(load));

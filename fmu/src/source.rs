@@ -129,4 +129,4 @@ pub static DETAILS: Enumeration = Enumeration {
 };
 
 /// A variable, and where its value is.
-pub(crate) type Row = (Variable, Source);
+pub(crate) type VariableRow = (Variable, Source);

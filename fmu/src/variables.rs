@@ -5,13 +5,13 @@ use crate::floor_variables;
 use crate::inputs::{FORCE, loads};
 use crate::resources::Contents;
 use crate::setup::Setup;
-use crate::source::{DETAILS, PHASES, Row, Source};
+use crate::source::{DETAILS, PHASES, Source, VariableRow};
 use fmi_unit::{Causality, DataType, Variable};
 use rocking::mechanics::load::LOADS;
 use rocking::mechanics::outputs::ACCELERATION;
 use rocking::mechanics::state::{COMPONENTS, INITIAL_VALUES};
 use rocking::run::ground_motion::PLACEMENT;
-use rocking::run::outside_step::INDICATORS;
+use rocking::run::host_step::INDICATORS;
 use rocking::run::validity::{ASSUMPTIONS, Assumption};
 use rocking::structure::derived::DERIVED;
 use rocking::structure::description::{DescribedNumber, Description};
@@ -24,19 +24,19 @@ use std::sync::{Arc, LazyLock};
 
 /// All variables.
 #[derive(Clone, Debug)]
-pub struct Table {
+pub struct VariableTable {
     /// The variables, in the order of the model description.
     pub variables: Arc<[Variable]>,
     /// The sources of their values.
     pub(crate) sources: Arc<[Source]>,
 }
 
-impl Table {
+impl VariableTable {
     /// The table of an FMU with these `contents`, which give start values.
-    pub fn new(contents: &Contents) -> Table {
+    pub fn new(contents: &Contents) -> VariableTable {
         let (setup, mut rows) = (Setup::new(contents), rows(&contents.structure));
         rows.retain(|(variable, _)| !contents.fixed || variable.data_type != DataType::String);
-        let is_known = |(variable, _): &&Row| variable.causality != Causality::CalculatedParameter;
+        let is_known = |(variable, _): &&VariableRow| variable.causality != Causality::CalculatedParameter;
         let knowns: HashSet<_> = rows.iter().filter(is_known).map(|(variable, _)| variable.name.clone()).collect();
         let known = |name: &Cow<'static, str>| floor_variables::all_of(name, &knowns);
         let started = rows.into_iter().map(|(variable, source)| {
@@ -44,14 +44,14 @@ impl Table {
             (Variable { start: source.set_value(&setup), depends_on, ..variable }, source)
         });
         let (variables, sources): (Vec<_>, Vec<_>) = started.unzip();
-        Table { variables: variables.into(), sources: sources.into() }
+        VariableTable { variables: variables.into(), sources: sources.into() }
     }
 }
 
 /// The rows of `structure`. One mass has parameters where many masses have fixed numbers, and its locals follow its outputs.
-fn rows(structure: &Structure) -> Vec<Row> {
+fn rows(structure: &Structure) -> Vec<VariableRow> {
     let is_one = structure.is_one_mass();
-    let of = |is_so: bool, rows: fn(&Structure) -> Vec<Row>| if is_so { rows(structure) } else { Vec::new() };
+    let of = |is_so: bool, rows: fn(&Structure) -> Vec<VariableRow>| if is_so { rows(structure) } else { Vec::new() };
     let (of_one, of_many) = (|rows| of(is_one, rows), |rows| of(!is_one, rows));
     let outputs = Output::all(structure).into_iter().filter(|of| *of != Output::y).map(|of| output(of, structure));
     let (outputs, locals_of_one): (Vec<_>, Vec<_>) =
@@ -83,7 +83,7 @@ fn rows(structure: &Structure) -> Vec<Row> {
 }
 
 /// The initial values, of many masses of each floor.
-fn initial_values(structure: &Structure) -> Vec<Row> {
+fn initial_values(structure: &Structure) -> Vec<VariableRow> {
     let row = |which: usize, floor: usize| {
         let (mut variable, source) = fixed(&INITIAL_VALUES[which], Source::InitialValue(which, floor));
         if which > 1 && !structure.is_one_mass() {
@@ -96,7 +96,7 @@ fn initial_values(structure: &Structure) -> Vec<Row> {
     (0..INITIAL_VALUES.len()).flat_map(|which| (0..count(which)).map(move |floor| row(which, floor))).collect()
 }
 
-fn records() -> [Row; 2] {
+fn records() -> [VariableRow; 2] {
     static OF_HORIZONTAL: LazyLock<String> = LazyLock::new(|| {
         format!(
             "ground motion record, which is added to a_g: the name of a file in the archive's resources, or the path or \
@@ -112,7 +112,7 @@ fn records() -> [Row; 2] {
 }
 
 /// The loads, of many masses a force on each floor.
-fn inputs(structure: &Structure) -> Vec<Row> {
+fn inputs(structure: &Structure) -> Vec<VariableRow> {
     let row = |(which, load): (usize, usize)| {
         let (mut variable, source) = fixed(&LOADS[load], Source::Input(which));
         if load == FORCE && !structure.is_one_mass() {
@@ -131,16 +131,16 @@ fn real(
     [name, unit, description]: [&'static str; 3],
     source: Source,
     of: &[&'static str],
-) -> Row {
+) -> VariableRow {
     (Variable::real(causality, name, unit, description).from(of.iter().copied()), source)
 }
 
-fn local(texts: [&'static str; 3], source: Source, of: &[&'static str]) -> Row {
+fn local(texts: [&'static str; 3], source: Source, of: &[&'static str]) -> VariableRow {
     real(Causality::Local, texts, source, of)
 }
 
 /// A local variable that events alone change.
-fn counted(name: &'static str, description: &'static str, data_type: DataType, source: Source) -> Row {
+fn counted(name: &'static str, description: &'static str, data_type: DataType, source: Source) -> VariableRow {
     (Variable::of_type(data_type, Causality::Local, name, description), source)
 }
 
@@ -149,7 +149,7 @@ const fn number(unit: &'static str) -> DataType {
 }
 
 /// An output of the library, with the variables that it follows from, of which many masses have some.
-fn output(of: Output, structure: &Structure) -> Row {
+fn output(of: Output, structure: &Structure) -> VariableRow {
     let is_local = matches!(of, Output::theta_dot | Output::u_dot(_));
     let causality = if is_local { Causality::Local } else { Causality::Output };
     let name = of.name(structure);
@@ -162,7 +162,7 @@ fn output(of: Output, structure: &Structure) -> Row {
 }
 
 /// Reactions, forces of the ties, and impulses.
-fn forces() -> [Row; 9] {
+fn forces() -> [VariableRow; 9] {
     let force = |texts, source, of: &_| real(Causality::Output, texts, source, of);
     let reaction = |name, unit, description, of| force([name, unit, description], Source::Reaction(of), ACCELERATION);
     let impulse = |name, unit, description, of| {
@@ -185,7 +185,7 @@ fn forces() -> [Row; 9] {
 }
 
 /// Variables for display: no other model needs them.
-fn locals() -> Vec<Row> {
+fn locals() -> Vec<VariableRow> {
     const PLASTIC: &[&str] = &["B", "theta_0", "xi_d", "k_d", "F_y"];
     let kept = |name, unit, description, of, from| local([name, unit, description], Source::Dissipator(of), from);
     let ground = |name, description, is_vertical, input, record| {
@@ -218,7 +218,7 @@ fn locals() -> Vec<Row> {
 }
 
 /// The event indicators, in their order: they tell a host that integrates that a phase ends.
-fn event_indicators() -> [Row; INDICATORS] {
+fn event_indicators() -> [VariableRow; INDICATORS] {
     #[rustfmt::skip]
     const PHASE: &[&str] = &[
         "a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "m", "m0", "H", "B", "f_fc", "zeta_fc", "c_ratio", "g", "detail", "P_0",
@@ -238,7 +238,7 @@ fn event_indicators() -> [Row; INDICATORS] {
 }
 
 /// Largest magnitudes and their instants. A host may add a tendon and dissipators.
-fn peaks(structure: &Structure) -> Vec<Row> {
+fn peaks(structure: &Structure) -> Vec<VariableRow> {
     let mut all = Output::with_peak(structure);
     let missing = Output::OF_TIES.into_iter().filter(|of| !all.contains(of));
     all.extend(Vec::from_iter(missing));
@@ -259,7 +259,7 @@ fn peaks(structure: &Structure) -> Vec<Row> {
 }
 
 /// The limits that the motion passes.
-fn validity() -> Vec<Row> {
+fn validity() -> Vec<VariableRow> {
     let of_assumption = |(which, assumption): (usize, &'static Assumption)| {
         let Assumption { name, time_name, description, time_description, is_of_impacts, .. } = *assumption;
         let worst = |name, unit, description, source| {
@@ -275,7 +275,7 @@ fn validity() -> Vec<Row> {
     const { &ASSUMPTIONS }.iter().enumerate().flat_map(of_assumption).chain([gains]).collect()
 }
 
-fn switches() -> [Row; 4] {
+fn switches() -> [VariableRow; 4] {
     let switch = |name, description, of| parameter(name, description, DataType::Boolean, Source::Switch(of));
     let peaks = "true computes the largest magnitudes theta_max, u_max, ... and their instants";
     let validity = "true checks the limits of the model (tension, load of the edge, friction, energy gain) and logs the first \
@@ -293,7 +293,7 @@ fn switches() -> [Row; 4] {
 }
 
 /// The numbers that the structure was made of.
-fn parameters(description: &Description) -> Vec<Row> {
+fn parameters(description: &Description) -> Vec<VariableRow> {
     let row = |(which, of): (usize, DescribedNumber)| {
         let data_type = DataType::Real { unit: of.unit, range: Some((of.min, of.max)) };
         (Variable::of_type(data_type, Causality::Parameter, of.name, of.description), Source::Parameter(which))
@@ -302,12 +302,12 @@ fn parameters(description: &Description) -> Vec<Row> {
 }
 
 /// The numbers of a structure that follow from these, but for those of one mass on rigid ground.
-fn calculated_numbers(structure: &Structure) -> Vec<Row> {
+fn calculated_numbers(structure: &Structure) -> Vec<VariableRow> {
     let row = |(which, (variable, _))| (variable, Source::Known(which));
     floor_variables::numbers(structure).into_iter().enumerate().map(row).collect()
 }
 
-fn calculated_parameters() -> [Row; 5] {
+fn calculated_parameters() -> [VariableRow; 5] {
     let calculated = |name, of: &[&'static str]| {
         let derived = const { &DERIVED }.iter().find(|derived| derived.name == name);
         let derived = derived.unwrap_or_else(|| panic!("no derived quantity is called {name}"));
@@ -322,17 +322,17 @@ fn calculated_parameters() -> [Row; 5] {
     ]
 }
 
-fn record_duration() -> Row {
+fn record_duration() -> VariableRow {
     let duration = "time from the first to the last sample of the record, of either component; 0 without a record";
     let texts = ["record_duration", "s", duration];
     real(Causality::CalculatedParameter, texts, Source::RecordDuration, &["record", "record_v", "record_time_scale"])
 }
 
-fn parameter(name: &'static str, description: &'static str, data_type: DataType, source: Source) -> Row {
+fn parameter(name: &'static str, description: &'static str, data_type: DataType, source: Source) -> VariableRow {
     (Variable::of_type(data_type, Causality::Parameter, name, description), source)
 }
 
-fn fixed<T>(quantity: &'static Quantity<T>, source: Source) -> Row {
+fn fixed<T>(quantity: &'static Quantity<T>, source: Source) -> VariableRow {
     let &Quantity { name, unit, description, min, max, .. } = quantity;
     parameter(name, description, DataType::Real { unit, range: Some((min, max)) }, source)
 }

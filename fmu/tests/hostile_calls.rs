@@ -6,22 +6,24 @@ mod hostile;
 mod wall;
 
 use FlexibleRocking::resources::{CONTENTS_FILE, Contents};
-use FlexibleRocking::unit::{Condition, Course};
+use FlexibleRocking::rocking_model::RockingModel;
+use FlexibleRocking::rocking_model::{Condition, Course};
 use FlexibleRocking::{fmi2, fmi3};
 use fmi_unit::snapshot::Snapshot;
-use hostile::{Subject, hostile_calls};
+use hostile::{Target, hostile_calls};
 use rocking::engine::MAX_STEPS_PER_ADVANCE;
 use rocking::run::Runs;
 use rocking::run::validity::ASSUMPTIONS;
 use rocking::structure::description::{Damping, Storey};
-use rocking::structure::natural_quantities::Given;
+use rocking::structure::natural_quantities::Numbers;
 use rocking::{Ground, Modes, Parameters, Refused, Structure};
 use std::ffi::CString;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-type Model = FlexibleRocking::unit::Unit;
+/// As the calls name it.
+type Model = RockingModel;
 
 hostile_calls!(structure);
 
@@ -36,37 +38,37 @@ hostile_calls! { on_ground:
     no_call_of_model_exchange_on_ground_does_harm(3, true)
 }
 
-fn structure() -> Subject {
+fn structure() -> Target {
     // the top mass above the pivot of a foundation without inertia
     let sticks = [("m0", 0.0), ("J0", 0.0), ("B", 0.3), ("theta_0", 0.1), ("u_0", 0.3)];
     let sticks = sticks.map(|(name, value)| (wall::reference(name), value)).into();
-    Subject { sticks, ..subject::<f64>(wall::resources()) }
+    Target { sticks, ..subject::<f64>(wall::resources()) }
 }
 
 /// Two floors, with a mode left out, and dissipators; the foundation has inertia.
-fn many_masses() -> Subject {
+fn many_masses() -> Target {
     let ties = [("xi_d", 1.0), ("c_d", 2e4), ("k_d", 2e7), ("F_y", 4e4)];
-    let base = Given::of(&[&[("m0", 2e4), ("J0", 3e4), ("B", 1.5), ("r", 0.93)][..], &ties].concat()).unwrap();
+    let base = Numbers::of(&[&[("m0", 2e4), ("J0", 3e4), ("B", 1.5), ("r", 0.93)][..], &ties].concat()).unwrap();
     let storey = |h| Storey { m: 3.5e4, h, k: 4e7 };
     of_modes(Structure::from_storeys(&base, &Damping::All(0.02), &[storey(3.5), storey(7.0)]).unwrap().keeping(1))
 }
 
 /// A pier with a tendon and dissipators, on ground of three points.
-fn on_ground() -> Subject {
+fn on_ground() -> Target {
     let ties = Parameters { P_0: 100.0, k_t: 2e4, xi_d: 0.2, c_d: 50.0, k_d: 1e5, F_y: 300.0, ..Parameters::MCMANUS };
     let ground = Ground { f_v: Some(6.0), n_points: Some(3.0), ..Ground::default() };
     of_modes(Structure::new(ties).unwrap().on(&ground))
 }
 
-fn of_modes(structure: Result<Structure, Refused>) -> Subject {
+fn of_modes(structure: Result<Structure, Refused>) -> Target {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join(CONTENTS_FILE), Contents::from(structure.unwrap()).to_bytes()).unwrap();
     subject::<Modes>(folder)
 }
 
-fn subject<Q: Runs>(resources: TempDir) -> Subject {
+fn subject<Q: Runs>(resources: TempDir) -> Target {
     let texts = records(resources.path());
-    Subject { texts, may_be_infinite, checks: true, check_step: check_step::<Q>, ..Subject::of(resources, time::<Q>) }
+    Target { texts, may_be_infinite, checks: true, check_step: check_step::<Q>, ..Target::of(resources, time::<Q>) }
 }
 
 /// How far the simulation had come that `snapshot` is of, once it had started.

@@ -1,6 +1,6 @@
 //! Archives that depend on nothing but what is in them: the same entries give the same bytes.
 
-use crate::{Description, Version};
+use crate::{ModelDescription, Version};
 use fmi_unit::Model;
 use std::error::Error;
 use std::io::{Cursor, Write};
@@ -49,7 +49,7 @@ pub fn folder(version: Version, tuple: &str) -> &str {
 /// platform.
 pub fn write_fmu(
     path: &Path,
-    description: &Description,
+    description: &ModelDescription,
     version: Version,
     library: &Path,
 ) -> Result<(), Box<dyn Error>> {
@@ -72,7 +72,7 @@ pub fn write_example(name: &str, model: &dyn Model, library: &str) -> Result<(),
     let path = arguments.first().ok_or("call it with the path of the FMU to write")?;
     let version = if arguments.get(1).is_some_and(|version| version == "3") { Version::Fmi3 } else { Version::Fmi2 };
     let (token, variables) = (model.token(), &*model.variables());
-    let description = Description { name, token, variables, ..Description::default() };
+    let description = ModelDescription { name, token, variables, ..ModelDescription::default() };
     write_fmu(Path::new(path), &description, version, &example(library)?)
 }
 

@@ -8,7 +8,7 @@ use fmi_unit::{Causality, DataType, Enumeration, Role, Value, Variable};
 
 /// The content of a model description.
 #[derive(Clone, Debug, Default)]
-pub struct Description<'a> {
+pub struct ModelDescription<'a> {
     /// Name of the model, and of its libraries' files.
     pub name: &'a str,
     /// The model's GUID.
@@ -33,7 +33,7 @@ pub struct Description<'a> {
     pub default_experiment: DefaultExperiment,
 }
 
-impl Description<'_> {
+impl ModelDescription<'_> {
     /// The text of `modelDescription.xml` for hosts of `version`.
     pub fn to_xml(&self, version: Version) -> String {
         let (number, token, indicators) = match version {

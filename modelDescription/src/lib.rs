@@ -1,12 +1,12 @@
 //! The model description of a unit for model exchange and co-simulation, from its table of variables, and the archive.
 //!
-//! [`Description::to_xml`] writes `modelDescription.xml` for a [`Version`] of the standard.
+//! [`ModelDescription::to_xml`] writes `modelDescription.xml` for a [`Version`] of the standard.
 
 pub mod archive;
 mod description;
 mod element;
 
-pub use description::Description;
+pub use description::ModelDescription;
 
 /// A version of the standard.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -12,10 +12,10 @@ use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::run::levels::Criterion;
 use rocking::run::validity::Limits;
-use rocking_report::advice::Level;
+use rocking_report::advice::LevelAdvice;
 use rocking_report::estimate as estimates;
 use rocking_report::quantities::columns;
-use rocking_report::run::Run;
+use rocking_report::run::RunSetup;
 
 /// The criteria that `value` names: one name, or several.
 fn criteria(value: &Bound<'_, PyAny>) -> PyResult<Vec<Criterion>> {
@@ -51,13 +51,13 @@ pub fn advise<'py>(
     let conditions = conditions(Detail::Auto, DEFAULT_TOLERANCE, duration, initial)?;
     conditions.check(&structure.of).map_err(refused)?;
     let ground = record.0.get().under(structure.of.base().g);
-    let run = Run { structure: structure.of.clone(), ground, conditions };
+    let run = RunSetup { structure: structure.of.clone(), ground, conditions };
     let (text, advice) = interruptible(py, move |_| -> anyhow::Result<_> {
         let advice = run.advice(within, &criteria)?;
         let title = format!("{}, {} samples", run.ground.title(), run.ground.times().len());
         Ok((run.advice_text(&title, &advice, &Limits::default())?, advice))
     })?;
-    let level = |Level { choice, errors, overturned, work, cost, .. }: &Level| {
+    let level = |LevelAdvice { choice, errors, overturned, work, cost, .. }: &LevelAdvice| {
         let level = PyDict::new(py);
         level.set_item("level", choice.detail.name())?;
         if let Some([kept, _]) = choice.modes {

@@ -46,7 +46,7 @@ mod _native {
 
 /// A ground motion to pack: a record, under its title, or a file.
 #[derive(FromPyObject)]
-enum Packed {
+enum ToPack {
     Record(Py<record::Record>),
     File(PathBuf),
 }
@@ -58,7 +58,7 @@ fn export(
     py: Python<'_>,
     target: PathBuf,
     structure: &structure::Structure,
-    records: Vec<Packed>,
+    records: Vec<ToPack>,
     name: String,
     fmi: &Bound<'_, PyAny>,
     library: PathBuf,
@@ -68,7 +68,7 @@ fn export(
     let version = one_of("fmi", fmi, [("2", Version::Fmi2), ("3", Version::Fmi3)])?;
     let mut files = OutputFiles::of_inputs([library.as_path()]);
     for packed in &records {
-        if let Packed::File(path) = packed {
+        if let ToPack::File(path) = packed {
             files.add_input(path);
         }
     }
@@ -76,15 +76,15 @@ fn export(
     fmu_export::check_target(&target).map_err(refused)?;
     let is_plain = |letter: char| letter.is_alphanumeric() || letter == '-';
     // the file, or the tables of the record, the vertical component last
-    let contents = |packed: &Packed| -> PyResult<Vec<(PathBuf, Vec<u8>)>> {
+    let contents = |packed: &ToPack| -> PyResult<Vec<(PathBuf, Vec<u8>)>> {
         let path = match packed {
-            Packed::Record(record) => {
+            ToPack::Record(record) => {
                 let tables = record.get().tables().map_err(refused)?;
                 let name = record.get().title().replace(|letter| !is_plain(letter), "_");
                 let files = ["", "_v"].map(|ending| PathBuf::from(format!("{name}{ending}.csv")));
                 return Ok(files.into_iter().zip(tables.into_iter().map(String::into_bytes)).collect());
             }
-            Packed::File(path) => path,
+            ToPack::File(path) => path,
         };
         let understood = understand(path, &Reading::default(), [1.0; 2], structure.base().g, str::to_owned);
         warn(py, understood.map_err(refused)?.sentences[1..].to_vec(), 2)?;

@@ -6,9 +6,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rocking::names::unknown;
-use rocking::structure::description::{Damping, Described, FoundMode, Place, Storey, Total};
+use rocking::structure::description::{Damping, Described, FloorAt, FoundMode, Storey, Total};
 use rocking::structure::ground::NAMES;
-use rocking::structure::natural_quantities::{Given, names, names_of_base};
+use rocking::structure::natural_quantities::{Numbers, names, names_of_base};
 use rocking::structure::quantity::Units;
 use rocking::{Ground, Structure};
 use serde::{Deserialize, de::IntoDeserializer};
@@ -72,7 +72,7 @@ pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Structure> {
     };
     let masses = keywords.take("masses")?.map(|masses| numbers("masses", &masses)).transpose()?.unwrap_or_default();
     let heights = keywords.column("heights", masses.len(), "mass")?;
-    let floor = |(m, h): (f64, Option<f64>)| Ok(Place { m, h: h.ok_or_else(|| missing("heights"))? });
+    let floor = |(m, h): (f64, Option<f64>)| Ok(FloorAt { m, h: h.ok_or_else(|| missing("heights"))? });
     let floors = masses.into_iter().zip(heights).map(floor).collect::<PyResult<Vec<_>>>()?;
     let K = keywords.take("K")?.map(|K| matrix("K", &K)).transpose()?.unwrap_or_default();
     let modes = modes(&keywords)?;
@@ -105,8 +105,8 @@ pub fn frame(keywords: Bound<'_, PyDict>) -> PyResult<Structure> {
 }
 
 /// The numbers of one mass, or of a base, by their names, in the keyword `units`.
-pub fn given(keywords: &Bound<'_, PyDict>) -> PyResult<Given> {
-    let (mut given, mut units) = (Given::default(), Units::default());
+pub fn given(keywords: &Bound<'_, PyDict>) -> PyResult<Numbers> {
+    let (mut given, mut units) = (Numbers::default(), Units::default());
     for (name, value) in keywords {
         match name.extract::<String>()?.as_str() {
             "units" => units = self::units(&value)?,

@@ -228,7 +228,7 @@ impl Record {
         Record::new(given, force, unit, 1.0)?.scaled(scale, 1.0)
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Parts<'py>)> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, RecordParts<'py>)> {
         let (of, array) = (slf.get(), |of: &[f64]| PyArray1::from_slice(slf.py(), of));
         let timed = |component: &[f64]| (array(&of.given.times()[..component.len()]), array(component));
         let (unit, title) = (of.unit.to_string(), of.title().to_owned());
@@ -401,7 +401,7 @@ impl Record {
     }
 }
 
-type Parts<'py> =
+type RecordParts<'py> =
     (Array<'py>, Array<'py>, Option<(Array<'py>, Array<'py>)>, String, f64, String, Option<[Vec<f64>; 2]>);
 type Array<'py> = Bound<'py, PyArray1<f64>>;
 

@@ -12,8 +12,8 @@ use rocking::engine::{DEFAULT_TOLERANCE, motion::Work};
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::validity::Limits;
 use rocking::{Detail, Phase};
-use rocking_report::quantities::Number;
-use rocking_report::run::{Event, Found, NamedPeak, OF_FLOOR, Run as Followed, Samples, usual_periods};
+use rocking_report::quantities::PrintedNumber;
+use rocking_report::run::{Event, NamedPeak, OF_FLOOR, RunReport, RunSetup as Followed, SampledMotion, usual_periods};
 use rocking_report::validity::{Beyond, rows};
 use rocking_sweep::plan::Conditions;
 
@@ -31,7 +31,7 @@ pub struct Run {
     #[pyo3(get)]
     record: Py<Record>,
     of: Followed,
-    found: Found,
+    found: RunReport,
     /// The level of detail.
     #[pyo3(get)]
     detail: &'static str,
@@ -120,7 +120,7 @@ impl Run {
         limits.check().map_err(refused)?;
         let found = interruptible(py, move |abandoned| slf.get().of.validity(limits, abandoned))?;
         let named = PyDict::new(py);
-        for Beyond { name, value: Number(value), time, limit, first_beyond, beyond } in rows(&found, &limits) {
+        for Beyond { name, value: PrintedNumber(value), time, limit, first_beyond, beyond } in rows(&found, &limits) {
             named.set_item(name, result(py, "Worst", (value, time, limit, first_beyond, beyond))?)?;
         }
         Ok(named)
@@ -140,7 +140,7 @@ impl Run {
             let needed = format!("a finite time from the start of the run on, {start} s, is needed");
             return Err(PyValueError::new_err(format!("times[{i}] = {} s is out of range: {needed}", times[i])));
         }
-        let Samples { columns, phases, transitions } = {
+        let SampledMotion { columns, phases, transitions } = {
             let slf = slf.clone_ref(py);
             interruptible(py, move |abandoned| slf.get().of.at(&slf.get().found, &times, abandoned))?
         };
@@ -300,7 +300,7 @@ pub fn simulate(
     let ground = record.get().under(structure.get().of.base().g);
     let of = Followed { structure: structure.get().of.clone(), ground, conditions };
     let (of, found) = interruptible(py, move |abandoned| of.found(None, abandoned).map(|found| (of, found)))?;
-    let (&Found { overturned, start, end, fall, work, .. }, ending) = (&found, found.ending.to_string());
+    let (&RunReport { overturned, start, end, fall, work, .. }, ending) = (&found, found.ending.to_string());
     let (detail, Work { steps, evaluations }) = (detail.name(), work);
     Ok(Run { structure, record, of, found, detail, overturned, ending, start, end, fall, steps, evaluations })
 }

@@ -8,7 +8,7 @@ use pyo3::exceptions::{PyAttributeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use rocking::estimates::effective_frequency::effective_frequency;
-use rocking::estimates::modal_split::{ModalAccelerations, Modes};
+use rocking::estimates::modal_split::{ModalAccelerations, ModalRotations};
 use rocking::estimates::pushover::{Equilibrium, Pushover};
 use rocking::estimates::restoring::FlagPoint;
 use rocking::structure::derived::{Derived, OF_MODE};
@@ -268,7 +268,7 @@ impl Structure {
         for (phase, (((theta, u), u_dot), a_g)) in of("phase")?.try_iter()?.zip(motion) {
             response.py().check_signals()?;
             let state = State { u, u_dot, theta, theta_dot: 0.0 }; // whose rate the split does not need
-            let of = Modes::of(&structure, &state).map_err(refused)?;
+            let of = ModalRotations::of(&structure, &state).map_err(refused)?;
             let split = |side| {
                 let accelerations = ModalAccelerations::of(&structure, side, &state, a_g).map_err(refused)?;
                 PyResult::Ok([of.q_r, of.q_u, accelerations.a_r, accelerations.a_u])

@@ -15,12 +15,12 @@ use rocking::run::Ending;
 use rocking_report::run::Watcher;
 use rocking_sweep::exceedances::{self, Bin, Tally};
 use rocking_sweep::fragility::{Certainty, FragilityCurve};
-use rocking_sweep::map::{Axis, HEADINGS, MAX_REFINEMENTS, Map, Place, Point};
+use rocking_sweep::map::{Axis, GridPlace, HEADINGS, MAX_REFINEMENTS, Map, MapPoint};
 use rocking_sweep::outcome::{Limit, Measure};
 use rocking_sweep::plan::{NamedRecord, Plan, Population, measure};
 use rocking_sweep::pulse::{Pulse, Shape};
 use rocking_sweep::row_file::{Program, do_runs, heading, line, name_and_unit};
-use rocking_sweep::rows::{Column, FAILED, Sweep};
+use rocking_sweep::rows::{FAILED, RowColumn, Sweep};
 use rocking_sweep::thread_pool;
 use serde::Deserialize;
 use serde::de::IntoDeserializer;
@@ -33,7 +33,7 @@ use std::thread;
 
 /// A table: the keys of its rows, its columns with their headings, and the error that stopped the sweep before its end, if one
 /// did.
-type Table<'py> = (Bound<'py, PyList>, Vec<(String, Bound<'py, PyAny>)>, Option<PyErr>);
+type Columns<'py> = (Bound<'py, PyList>, Vec<(String, Bound<'py, PyAny>)>, Option<PyErr>);
 
 /// Does every one of the populations of structures under every record at every scale, but for the runs whose rows are in the
 /// file at `path`. Returns the rows in that order, with a column of the measure `intensity`. `progress` is called with how
@@ -54,7 +54,7 @@ pub fn sweep<'py>(
     validity: bool,
     threads: i64,
     progress: Option<Bound<'_, PyAny>>,
-) -> PyResult<Table<'py>> {
+) -> PyResult<Columns<'py>> {
     let scales = numbers("scale", scale)?;
     let intensity = measure(intensity).map_err(refused)?;
     let population = |(name, of): &(String, Vec<Py<Structure>>)| {
@@ -155,10 +155,10 @@ pub fn overturning_map(
         let (pool, rows) = (thread_pool(threads)?, Mutex::new(Vec::new()));
         map.complete(refine, &mut HashMap::new(), |level, lacking, points| {
             let (waiting, points) = (abandoned.clone(), Mutex::new(points));
-            let run = |places: &[Place], done: &mut dyn FnMut(_, &[u8]) -> bool| {
+            let run = |places: &[GridPlace], done: &mut dyn FnMut(_, &[u8]) -> bool| {
                 map.run_each(places, |at, point| done((places[at], point), &[]));
             };
-            let keep = |(place, point): (Place, Point)| {
+            let keep = |(place, point): (GridPlace, MapPoint)| {
                 waiting.check();
                 points.lock().expect("no thread panics with them").insert(place, point.clone());
                 rows.lock().expect("no thread panics with them").push((level, place, point));
@@ -174,11 +174,11 @@ pub fn overturning_map(
 }
 
 /// An array of the numbers of a column; of texts, each once, and the array of their positions.
-fn values(py: Python<'_>, column: Column) -> PyResult<Bound<'_, PyAny>> {
+fn values(py: Python<'_>, column: RowColumn) -> PyResult<Bound<'_, PyAny>> {
     Ok(match column {
-        Column::Numbers(of) => PyArray1::from_vec(py, of).into_any(),
-        Column::Counts(of) => PyArray1::from_vec(py, of).into_any(),
-        Column::Texts(texts, of) => (texts, PyArray1::from_vec(py, of)).into_pyobject(py)?.into_any(),
+        RowColumn::Numbers(of) => PyArray1::from_vec(py, of).into_any(),
+        RowColumn::Counts(of) => PyArray1::from_vec(py, of).into_any(),
+        RowColumn::Texts(texts, of) => (texts, PyArray1::from_vec(py, of)).into_pyobject(py)?.into_any(),
     })
 }
 
@@ -245,7 +245,7 @@ impl Curve {
 
 /// Runs of about the same intensity: the lowest, mean and highest of these, how many there are, of how many the answer is
 /// known, and how many exceed the limit.
-type Counted = (f64, f64, f64, usize, usize, usize);
+type BinRow = (f64, f64, f64, usize, usize, usize);
 
 /// The measures of the peaks among the columns of a sweep's table, and these columns.
 fn measures(columns: Vec<String>) -> (Vec<Measure>, Vec<String>) {
@@ -287,7 +287,7 @@ pub fn fragility(
     groups: Vec<usize>,
     intensities: Vec<f64>,
     exceeds: Vec<Option<bool>>,
-) -> PyResult<(Curve, Vec<Counted>)> {
+) -> PyResult<(Curve, Vec<BinRow>)> {
     let runs = groups.into_iter().zip(intensities).zip(exceeds);
     let runs: Vec<_> = runs.map(|((group, at), exceeds)| (group, at, exceeds)).collect();
     let (curve, bins) = py.detach(|| exceedances::of_runs(runs)).map_err(refused)?;

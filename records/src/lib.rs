@@ -23,7 +23,7 @@ use parsed::Parsed;
 use rocking::run::record::{MAX_SAMPLES, Record};
 use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::OutOfRange;
-pub use source::{Column, Reading, Source, UnitFrom, steps};
+pub use source::{Column, Origin, Reading, UnitFrom, steps};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -184,19 +184,19 @@ impl BadLine {
 }
 
 /// Reads the record in the file at `path` as `how` says, with accelerations in m/s². A record's g means `g` (m/s²).
-pub fn read(path: &Path, how: &Reading, g: f64) -> Result<(Record, Source), RecordError> {
+pub fn read(path: &Path, how: &Reading, g: f64) -> Result<(Record, Origin), RecordError> {
     let (record, source) = read_raw(path, how)?;
     let record = in_m_s2(record, source.unit, g).map_err(|error| RecordError::Refused(error.to_string()))?;
     Ok((record, source))
 }
 
 /// Reads the record in the file at `path` with its accelerations as the file gives them; their unit is the source's.
-pub fn read_raw(path: &Path, how: &Reading) -> Result<(Record, Source), RecordError> {
+pub fn read_raw(path: &Path, how: &Reading) -> Result<(Record, Origin), RecordError> {
     from_bytes(path, &read_file(path)?, how)
 }
 
 /// The record in `bytes`, the content of the file at `path`, with its accelerations as the file gives them.
-pub fn from_bytes(path: &Path, bytes: &[u8], how: &Reading) -> Result<(Record, Source), RecordError> {
+pub fn from_bytes(path: &Path, bytes: &[u8], how: &Reading) -> Result<(Record, Origin), RecordError> {
     let malformed =
         |BadLine { line, problem, remedy }| RecordError::Malformed { path: path.into(), line, problem, remedy };
     if let Some(dt) = how.dt.filter(|dt| !(*dt > 0.0 && dt.is_finite())) {
@@ -273,7 +273,7 @@ fn rounded(times: &[f64]) -> Option<[f64; 2]> {
 }
 
 /// The record in `text`, whose content decides its layout.
-fn parse(text: &str, how: &Reading) -> Result<(Record, Source), BadLine> {
+fn parse(text: &str, how: &Reading) -> Result<(Record, Origin), BadLine> {
     let states = |line: usize, mark| text.lines().nth(line).is_some_and(|line| line.to_lowercase().contains(mark));
     let foreign = OF_PYTHON.iter().find(|(_, line, mark, _)| states(*line, mark));
     if let Some((name, line, _, by)) = foreign.filter(|_| !text.to_lowercase().contains("accel data equally spaced")) {

@@ -1,7 +1,7 @@
 //! Result of the parsers of all layouts: samples as the file gives them.
 
 use super::text::{columns, nine_digits, no_number, number, without_blanks};
-use super::{BadLine, MAX_SAMPLES, Reading, Record, Remedy, Source, TABLE, Unit, UnitFrom, bad, source::of_file};
+use super::{BadLine, MAX_SAMPLES, Origin, Reading, Record, Remedy, TABLE, Unit, UnitFrom, bad, source::of_file};
 
 /// Steps that differ by no more than this part are the same.
 const SAME_STEP: f64 = 1e-6;
@@ -16,7 +16,7 @@ pub(super) struct Parsed {
     pub title: String,
     pub times: Times,
     pub values: Vec<f64>,
-    pub source: Source,
+    pub source: Origin,
     last_line: usize,
 }
 
@@ -82,7 +82,7 @@ pub(super) fn published<'a>(
 
 impl Parsed {
     pub fn new(title: impl Into<String>, unit: Unit, unit_from: UnitFrom, times: Times) -> Parsed {
-        let source = Source { format: TABLE, unit, unit_from, remarks: Vec::new() };
+        let source = Origin { format: TABLE, unit, unit_from, remarks: Vec::new() };
         Parsed { title: title.into(), times, values: Vec::new(), source, last_line: 1 }
     }
 
@@ -115,7 +115,7 @@ impl Parsed {
     }
 
     /// The record, once all of the file in the layout `format` is read.
-    pub fn record(self, how: &Reading, format: &'static str) -> Result<(Record, Source), BadLine> {
+    pub fn record(self, how: &Reading, format: &'static str) -> Result<(Record, Origin), BadLine> {
         let Parsed { title, mut times, values: acceleration, source, last_line } = self;
         if let Some(asked) = how.dt {
             let contradicted =
@@ -131,6 +131,6 @@ impl Parsed {
             Times::Every(dt) => (0..count).map(|i| i as f64 * dt).collect(),
         };
         let record = Record::from_samples(title, times, acceleration);
-        record.map(|record| (record, Source { format, ..source })).map_err(|error| bad(last_line, error.to_string()))
+        record.map(|record| (record, Origin { format, ..source })).map_err(|error| bad(last_line, error.to_string()))
     }
 }

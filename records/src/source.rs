@@ -1,7 +1,7 @@
 //! Options for reading a record's file, and the findings and assumptions about the file.
 
 use super::text::quote;
-use super::unit::Stated;
+use super::unit::HeadingUnit;
 use super::{BadLine, Record, Remedy, Unit, bad};
 use rocking::digits::short;
 use serde::{Deserialize, Deserializer, de::Error};
@@ -35,7 +35,7 @@ pub enum Column {
 
 /// Origin of a record: statements of its file, and assumptions about missing statements.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Source {
+pub struct Origin {
     /// Name of its layout: one of [`FORMATS`](crate::FORMATS), or `table`.
     pub format: &'static str,
     /// Unit of the accelerations in the file.
@@ -46,7 +46,7 @@ pub struct Source {
     pub remarks: Vec<String>,
 }
 
-impl Source {
+impl Origin {
     /// Findings and assumptions in a sentence, for `record` (m/s²), which was read from the file called `name`. The peak is
     /// reported in units of `g` (m/s²).
     pub fn findings(&self, name: &str, record: &Record, g: f64) -> String {
@@ -150,13 +150,13 @@ pub(super) fn of_file(stated: &str, asked: Option<Unit>, line: usize) -> Result<
 }
 
 /// The unit of the user, else the one that the headings of a table state, the last on `line`, else m/s².
-pub(super) fn of_heading(stated: Stated, asked: Option<Unit>, line: usize) -> Result<(Unit, UnitFrom), BadLine> {
+pub(super) fn of_heading(stated: HeadingUnit, asked: Option<Unit>, line: usize) -> Result<(Unit, UnitFrom), BadLine> {
     match (stated, asked) {
-        (Stated::Unit(unit), Some(asked)) if unit != asked => Ok((asked, UnitFrom::Overridden(unit))),
-        (Stated::Unit(unit), _) => Ok((unit, UnitFrom::File)),
+        (HeadingUnit::Unit(unit), Some(asked)) if unit != asked => Ok((asked, UnitFrom::Overridden(unit))),
+        (HeadingUnit::Unit(unit), _) => Ok((unit, UnitFrom::File)),
         (_, Some(asked)) => Ok((asked, UnitFrom::User)),
-        (Stated::Nothing, None) => Ok((Unit::MetrePerSecondSquared, UnitFrom::Assumed)),
-        (Stated::Unclear(text), None) => {
+        (HeadingUnit::Nothing, None) => Ok((Unit::MetrePerSecondSquared, UnitFrom::Assumed)),
+        (HeadingUnit::Unclear(text), None) => {
             let problem = format!("{} does not say clearly in which unit the accelerations are", quote(&text));
             Err(bad(line, problem).remedied_by(Remedy::Unit))
         }

@@ -8,11 +8,11 @@ use super::fields::{Layout, cells, is_numbers};
 use super::parsed::{Parsed, Times};
 use super::sampling::Sampling;
 use super::text::{is_comment, is_number, no_number, number, numbered, quote, without_blanks};
-use super::unit::{Stated, TimeUnit, is_prose, mentions_unit};
+use super::unit::{HeadingUnit, TimeUnit, is_prose, mentions_unit};
 use super::{BadLine, Column, Reading, Remedy, bad, source::of_heading};
 
 /// The numbers of a file, and the text before them.
-struct Table<'a> {
+struct NumberTable<'a> {
     text: &'a str,
     /// The lines of text before the numbers, with their numbers.
     before: Vec<(usize, &'a str)>,
@@ -38,7 +38,7 @@ type TimeColumn = (usize, TimeUnit);
 
 /// The samples of a table as `how` says; `#`, `%`, `!`, `$` or `/&` begins a comment line.
 pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
-    let table = Table::read(text, how)?;
+    let table = NumberTable::read(text, how)?;
     let (time, value) = table.samples(how)?;
     let (stated, line) = table.stated_unit(value, how)?;
     let (unit, unit_from) = of_heading(stated, how.unit, line)?;
@@ -78,12 +78,12 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     Ok(parsed)
 }
 
-impl<'a> Table<'a> {
+impl<'a> NumberTable<'a> {
     /// The table in `text`, whose first line of numbers may state the number of samples and the step instead.
-    fn read(text: &'a str, how: &Reading) -> Result<Table<'a>, BadLine> {
-        let mut table = Table::after(text, None, how)?;
+    fn read(text: &'a str, how: &Reading) -> Result<NumberTable<'a>, BadLine> {
+        let mut table = NumberTable::after(text, None, how)?;
         if let Some(counts) = table.counts() {
-            table = Table::after(text, Some((table.first, counts)), how)?;
+            table = NumberTable::after(text, Some((table.first, counts)), how)?;
         }
         table.pairs = table.pairs();
         if table.pairs.is_some() {
@@ -93,7 +93,7 @@ impl<'a> Table<'a> {
     }
 
     /// The table after the line `counts`, if any, which is counted from 1.
-    fn after(text: &'a str, counts: Option<(usize, Sampling)>, how: &Reading) -> Result<Table<'a>, BadLine> {
+    fn after(text: &'a str, counts: Option<(usize, Sampling)>, how: &Reading) -> Result<NumberTable<'a>, BadLine> {
         let start = counts.map_or(0, |(line, _)| line);
         let is_sample = |(line, text): &(usize, &str)| *line > start && !is_comment(text) && is_numbers(text);
         let Some((first, sample)) = numbered(text).find(is_sample) else {
@@ -123,7 +123,8 @@ impl<'a> Table<'a> {
             }
         }
         let (last, numbers, pairs, uneven) = (first, Vec::new(), None, None);
-        let mut table = Table { text, before, headings, stated, first, last, layout, count, pairs, numbers, uneven };
+        let mut table =
+            NumberTable { text, before, headings, stated, first, last, layout, count, pairs, numbers, uneven };
         for line in without_blanks(samples()) {
             let (line, sample) = line?;
             let fields = layout.fields(sample);
@@ -410,7 +411,7 @@ impl<'a> Table<'a> {
 
     /// The unit that text before the data states for the column `value`, or for all numbers, and the number of its line. Refuses
     /// a unit in another place unless `how` has the unit: it may be the unit of a peak.
-    fn stated_unit(&self, value: Option<usize>, how: &Reading) -> Result<(Stated, usize), BadLine> {
+    fn stated_unit(&self, value: Option<usize>, how: &Reading) -> Result<(HeadingUnit, usize), BadLine> {
         let texts: Vec<_> = match value {
             Some(value) => {
                 // `#AmplitudeUnit: gal` holds for all columns, and so does `RAW PGA VALUES (gal) : (N-S) 314`.
@@ -418,7 +419,7 @@ impl<'a> Table<'a> {
                     let lower = text.to_lowercase();
                     let text = if lower.contains("pga values") { text.split(':').next()? } else { text };
                     let states = lower.contains("uni") || lower.contains("pga values");
-                    (states && matches!(Stated::of(text), Stated::Unit(_))).then_some((line, text))
+                    (states && matches!(HeadingUnit::of(text), HeadingUnit::Unit(_))).then_some((line, text))
                 };
                 self.headings_of(value).chain(self.before.iter().filter_map(of_all)).collect()
             }
@@ -436,17 +437,17 @@ impl<'a> Table<'a> {
             with_times.contains(&line)
                 || text.contains(['(', '[']) && words.any(|word| word.to_lowercase().starts_with("acc"))
         };
-        let stated = |(line, text): (usize, &'a str)| match Stated::of(text) {
-            Stated::Unclear(_) if !heads(line, text) && is_prose(text) => None,
-            Stated::Nothing => None,
+        let stated = |(line, text): (usize, &'a str)| match HeadingUnit::of(text) {
+            HeadingUnit::Unclear(_) if !heads(line, text) && is_prose(text) => None,
+            HeadingUnit::Nothing => None,
             stated => Some((stated, line, text)),
         };
         let mut stated: Vec<_> = texts.into_iter().filter_map(stated).collect();
         // An unclear one, or one that contradicts the first, or the first.
-        let unclear = stated.iter().position(|(unit, ..)| matches!(unit, Stated::Unclear(_)));
+        let unclear = stated.iter().position(|(unit, ..)| matches!(unit, HeadingUnit::Unclear(_)));
         let other = unclear.or(stated.iter().position(|(unit, ..)| *unit != stated[0].0));
         if let Some((unit, _, text)) = other.map(|at| &mut stated[at]) {
-            *unit = Stated::Unclear((*text).to_owned());
+            *unit = HeadingUnit::Unclear((*text).to_owned());
         }
         let stated = stated.into_iter().nth(other.unwrap_or_default()).map(|(unit, line, _)| (unit, line));
         let other = self.before.iter().find(|(_, text)| is_no_acceleration(text)).filter(|_| how.unit.is_none());
@@ -458,7 +459,7 @@ impl<'a> Table<'a> {
             (None, Some(unit)) if how.unit.is_none() => {
                 refused(unit, "has a unit, and no heading says that it is the unit of the accelerations")
             }
-            (stated, _) => Ok(stated.unwrap_or((Stated::Nothing, self.first))),
+            (stated, _) => Ok(stated.unwrap_or((HeadingUnit::Nothing, self.first))),
         }
     }
 }
@@ -517,9 +518,9 @@ fn listed(headings: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Record, Source, Unit, UnitFrom};
+    use crate::{Origin, Record, Unit, UnitFrom};
 
-    fn read(text: &str, how: &Reading) -> Result<(Record, Source), BadLine> {
+    fn read(text: &str, how: &Reading) -> Result<(Record, Origin), BadLine> {
         parse(&crate::text::decode(text.as_bytes())?, how)?.record(how, "table")
     }
 

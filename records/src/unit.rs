@@ -181,22 +181,22 @@ fn is_understood(text: &str) -> bool {
 
 /// Unit of a column, as the heading states it.
 #[derive(Debug, PartialEq)]
-pub(super) enum Stated {
+pub(super) enum HeadingUnit {
     Nothing,
     Unit(Unit),
     /// The unit is not clear: all of this heading, or a unit that is not known here.
     Unclear(String),
 }
 
-impl Stated {
+impl HeadingUnit {
     /// The unit that `heading` states, the heading of a column of accelerations or a line before samples alone:
     /// [words](is_understood), then the unit in brackets or after a blank, a slash, an underscore or the like, then words or a
     /// filter. `a_g` is the ground acceleration, whatever its unit. Words alone state nothing; all else is unclear.
-    pub(super) fn of(heading: &str) -> Stated {
+    pub(super) fn of(heading: &str) -> HeadingUnit {
         const DIVIDERS: &[char] = &[' ', '\t', ',', ':', '=', '/', '_', '(', '[', '{', '#'];
         const LONGEST: usize = 200;
         if heading.len() > LONGEST {
-            return Stated::Nothing;
+            return HeadingUnit::Nothing;
         }
         let until = |start: usize, mark: &str| {
             let found = heading[start..].find(|letter| mark.contains(letter));
@@ -211,9 +211,9 @@ impl Stated {
             (is_understood(&heading[..start]) && is_understood(after)).then_some(unit)
         };
         match starts.flat_map(|start| [until(start, ")]}"), until(start, ".")]).find_map(named) {
-            Some(unit) => Stated::Unit(unit),
-            None if is_understood(heading) => Stated::Nothing,
-            None => Stated::Unclear(heading.to_owned()),
+            Some(unit) => HeadingUnit::Unit(unit),
+            None if is_understood(heading) => HeadingUnit::Nothing,
+            None => HeadingUnit::Unclear(heading.to_owned()),
         }
     }
 }
@@ -239,10 +239,12 @@ mod tests {
             (&["ACC (mg)"], Unit::MilliG),
             (&["acc, %g"], Unit::PercentG),
         ] {
-            headings.iter().for_each(|heading| assert_eq!(Stated::of(heading), Stated::Unit(unit), "{heading}"));
+            headings
+                .iter()
+                .for_each(|heading| assert_eq!(HeadingUnit::of(heading), HeadingUnit::Unit(unit), "{heading}"));
         }
         for nothing in ["a_g", "acc", "acceleration", "ground motion", "", "a_G", "ag", "EW", "# a_g", "a (north)"] {
-            assert_eq!(Stated::of(nothing), Stated::Nothing, "{nothing}");
+            assert_eq!(HeadingUnit::of(nothing), HeadingUnit::Nothing, "{nothing}");
         }
         let unclear = "acc (10^-3 g);acc (10-3 g);a [10\u{207b}\u{b3} g];acc (x0.1 g);acc (1000 x g);acc*1000 (g);acc x 1000 [m/s^2];\
             acc (g/1000);acc (g\u{b7}10^-3);acc (g) x 10;acc (g x10);acc (1/1000 g);acc (1e-3 g);acc*1000;acc [% of g];\
@@ -250,7 +252,7 @@ mod tests {
             acc (gal, not g);acc (m/s^2)*g;acc (cm/s/s) g;acc (kN);acc (foo);acc (cm/seg2);acc (cm/s);acc cm/s;acc (counts);\
             acc counts;acc (km/s2);acc (nm/s^2);peak 0.3 g;in g: 0.3;acc x10 (g);x 1000;acc 1000 (g);response";
         for unclear in unclear.split(';') {
-            assert_eq!(Stated::of(unclear), Stated::Unclear(unclear.into()));
+            assert_eq!(HeadingUnit::of(unclear), HeadingUnit::Unclear(unclear.into()));
         }
     }
 

@@ -4,7 +4,7 @@
 
 mod layouts;
 
-use layouts::{DT, Layout, all, cosmos, samples};
+use layouts::{DT, LayoutCase, all, cosmos, samples};
 use proptest::prelude::*;
 use rocking_records::{Column, FORMATS, Format, Reading, RecordError, Remedy, Unit, UnitFrom, from_bytes};
 use std::env;
@@ -12,7 +12,7 @@ use std::path::Path;
 
 #[test]
 fn every_layout_gives_its_samples_in_its_unit() {
-    for Layout { path, bytes, how, format, unit, expected } in all(403) {
+    for LayoutCase { path, bytes, how, format, unit, expected } in all(403) {
         let text = String::from_utf8_lossy(&bytes[..bytes.len().min(200)]).into_owned();
         let (record, source) = from_bytes(&path, &bytes, &how).unwrap_or_else(|error| panic!("{error}: {text}"));
         assert_eq!((source.format, source.unit), (format, unit), "{text}");
@@ -29,7 +29,8 @@ fn every_layout_gives_its_samples_in_its_unit() {
 /// A unit or a step that contradicts the file is refused in every layout that states one; a unit overrides a heading.
 #[test]
 fn what_contradicts_a_file_is_refused() {
-    for Layout { path, bytes, how, format, unit, .. } in all(40).into_iter().filter(|layout| layout.how.unit.is_none())
+    for LayoutCase { path, bytes, how, format, unit, .. } in
+        all(40).into_iter().filter(|layout| layout.how.unit.is_none())
     {
         let read = |how: &Reading| from_bytes(&path, &bytes, how);
         assert!(read(&Reading { unit: Some(unit), ..how.clone() }).is_ok());
@@ -63,7 +64,7 @@ fn the_page_lists_every_layout() {
 
 #[test]
 fn long_text_before_the_data_is_refused_in_every_layout() {
-    for Layout { path, bytes, how, .. } in all(40) {
+    for LayoutCase { path, bytes, how, .. } in all(40) {
         let long = ["# no data\n".repeat(500).into_bytes(), bytes].concat();
         let refused = from_bytes(&path, &long, &how).unwrap_err().to_string();
         assert!(refused.ends_with(", line 501: no data after 500 lines: shorten the text before"), "{refused}");
@@ -88,7 +89,7 @@ fn line_of(error: &RecordError) -> (usize, Option<Remedy>) {
 /// One sample less, or a blank line in the middle, is noticed wherever a file states how many there are, or where they are.
 #[test]
 fn what_is_missing_is_noticed() {
-    for Layout { path, bytes, how, format, .. } in all(80) {
+    for LayoutCase { path, bytes, how, format, .. } in all(80) {
         let text = String::from_utf8(bytes).unwrap().replace("\r\n", "\n");
         let lines: Vec<_> = text.lines().collect();
         let end = lines.iter().position(|line| line.contains("velocity") || line.contains("veloc data"));
@@ -205,7 +206,7 @@ proptest! {
         ignores_count in prop::bool::weighted(0.1),
         is_named in prop::bool::weighted(0.9),
     ) {
-        let Layout { path, mut bytes, how, .. } = layout;
+        let LayoutCase { path, mut bytes, how, .. } = layout;
         for (at, removed, inserted) in changes {
             let at = at.index(bytes.len() + 1);
             bytes.splice(at..bytes.len().min(at + removed), inserted);
@@ -233,7 +234,7 @@ proptest! {
 #[test]
 fn a_large_file_of_anything_stays_in_bounds() {
     const SIZE: usize = 1 << 18;
-    for Layout { path, bytes, how, .. } in all(10) {
+    for LayoutCase { path, bytes, how, .. } in all(10) {
         for word in WORDS.split('|') {
             let hostile = [&bytes[..bytes.len() * 2 / 3], word.repeat(SIZE / word.len()).as_bytes()].concat();
             let counted = allocation_counter::measure(|| drop(from_bytes(&path, &hostile, &how)));

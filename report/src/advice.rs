@@ -1,14 +1,14 @@
 //! The levels of detail on one scene, their errors and their cost, and the level that is advised.
 
 use crate::estimate::Estimate;
-use crate::quantities::{Number, of_motion};
-use crate::run::{NamedPeak, Run, symbol};
+use crate::quantities::{PrintedNumber, of_motion};
+use crate::run::{NamedPeak, RunSetup, symbol};
 use rocking::Detail;
 use rocking::digits::{short, significant};
 use rocking::engine::{DEFAULT_TOLERANCE, motion::Work};
 use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::estimates::effective_frequency::effective_frequency;
-use rocking::run::levels::{self, Choice, Criterion, REFERENCE_TOLERANCE, RULE, Response, Verdict};
+use rocking::run::levels::{self, Choice, Criterion, LevelResult, REFERENCE_TOLERANCE, RULE, Verdict};
 use rocking::run::{LONGEST_REST, RunError, Runs, validity::Limits};
 use rocking_sweep::with_run;
 use serde::{Serialize, Serializer};
@@ -20,11 +20,11 @@ pub struct Advice {
     /// The error that is allowed, and the criteria to which it applies.
     allowed: (f64, Vec<Criterion>),
     /// Eqs 1, 5, 6 to [`REFERENCE_TOLERANCE`].
-    reference: Level,
+    reference: LevelAdvice,
     /// The simplest first.
-    pub levels: Vec<Level>,
+    pub levels: Vec<LevelAdvice>,
     /// The level `auto` without the vertical ground acceleration, if the run has one.
-    without_vertical: Option<Result<Level, RunError>>,
+    without_vertical: Option<Result<LevelAdvice, RunError>>,
     /// Levels that cannot do the run, and why.
     pub refused: Vec<(Choice, RunError)>,
     /// The cheapest level with errors that are allowed.
@@ -33,7 +33,7 @@ pub struct Advice {
 
 /// A level of detail on a run, beside the reference; for programs, errors are ratios and peaks in SI units.
 #[derive(Serialize)]
-pub struct Level {
+pub struct LevelAdvice {
     level: &'static str,
     /// Modes that are kept, of a structure of many masses.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -70,7 +70,7 @@ pub struct Level {
 fn compare<Q: Runs>(run: &rocking::Run<Q>, (within, criteria): (f64, &[Criterion])) -> Result<Advice, RunError> {
     let all = run.compare()?;
     let advised = all.recommended(within, criteria).map(|verdict| verdict.response.choice);
-    let level = |level, response: &Response, errors, is_right_about_overturning, is_allowed| Level {
+    let level = |level, response: &LevelResult, errors, is_right_about_overturning, is_allowed| LevelAdvice {
         level,
         modes: response.choice.modes.map(|[kept, _]| kept),
         errors,
@@ -89,7 +89,7 @@ fn compare<Q: Runs>(run: &rocking::Run<Q>, (within, criteria): (f64, &[Criterion
     };
     let of = |verdict: &Verdict| {
         let choice = verdict.response.choice;
-        Level { advised: advised == Some(choice), ..beside(choice.detail.name(), verdict) }
+        LevelAdvice { advised: advised == Some(choice), ..beside(choice.detail.name(), verdict) }
     };
     let is_right = all.reference.ending.overturned().map(|_| true);
     let without_vertical = all.without_vertical.as_ref().map(Result::as_ref);
@@ -104,7 +104,7 @@ fn compare<Q: Runs>(run: &rocking::Run<Q>, (within, criteria): (f64, &[Criterion
     })
 }
 
-impl Run {
+impl RunSetup {
     /// Follows the motion at every level of detail, and advises the cheapest level whose errors of `criteria` stay `within` a part.
     pub fn advice(&self, within: f64, criteria: &[Criterion]) -> Result<Advice, RunError> {
         with_run!(self.conditions, self.structure, &self.ground, run => compare(&run, (within, criteria)))?
@@ -138,7 +138,7 @@ impl Run {
         Ok(out)
     }
 
-    fn print_reference(&self, out: &mut impl Write, reference: &Level) -> fmt::Result {
+    fn print_reference(&self, out: &mut impl Write, reference: &LevelAdvice) -> fmt::Result {
         let (base, of_many) = (self.structure.base(), reference.choice.modes.is_some());
         let peaks = ["theta", "u", "a_t", "V_t", "M_t"].iter().filter_map(|symbol| largest(&reference.peaks, symbol));
         let shown = |NamedPeak { name, magnitude, unit, .. }: &NamedPeak| {
@@ -186,7 +186,8 @@ fn largest<'a>(peaks: &'a [NamedPeak], of: &str) -> Option<&'a NamedPeak> {
 }
 
 fn by_criterion<S: Serializer>(errors: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
-    let named = Criterion::ALL.iter().zip(errors).map(|(of, error)| (format!("error_{}", of.name()), Number(*error)));
+    let named =
+        Criterion::ALL.iter().zip(errors).map(|(of, error)| (format!("error_{}", of.name()), PrintedNumber(*error)));
     serializer.collect_map(BTreeMap::from_iter(named))
 }
 
@@ -196,7 +197,7 @@ fn by_name<S: Serializer>(peaks: &[NamedPeak], serializer: S) -> Result<S::Ok, S
 
 impl Advice {
     /// The reference, then the levels, for programs.
-    pub fn rows(&self) -> Vec<&Level> {
+    pub fn rows(&self) -> Vec<&LevelAdvice> {
         [&self.reference].into_iter().chain(&self.levels).chain(self.without_vertical.iter().flatten()).collect()
     }
 
@@ -214,7 +215,7 @@ impl Advice {
         let headings =
             ["theta", "u", "a_t, V_t, M_t", "theta", "u", "a_t", "overturns", "steps", "evaluations", "of auto"];
         row(' ', "level", &headings.map(str::to_owned))?;
-        for Level { choice, errors, overturned, is_right_about_overturning, work, cost, .. } in &self.levels {
+        for LevelAdvice { choice, errors, overturned, is_right_about_overturning, work, cost, .. } in &self.levels {
             let mark = if self.advised == Some(*choice) { '>' } else { ' ' };
             let name = match overturned {
                 Some(true) => "yes",
@@ -243,7 +244,7 @@ impl Advice {
                 out,
                 "\nno level stays {limit}: use detail = nonlinear with a tolerance below {DEFAULT_TOLERANCE:e}"
             )?,
-            Some(&Level { choice, cost, .. }) => {
+            Some(&LevelAdvice { choice, cost, .. }) => {
                 let modes = match choice.modes {
                     Some([kept, all]) if kept < all => format!(" and keep = {kept} of {all} modes"),
                     Some([_, 1]) => " with its one mode".to_owned(),

@@ -1,11 +1,11 @@
 //! The page that shows a run, and its content.
 
-use crate::run::{Curve, Found, Run};
+use crate::run::{MotionCurve, RunReport, RunSetup};
 use rocking::run::RunError;
 use rocking::structure::derived::OF_MODE;
 use rocking::{Body, Detail, Output, Structure};
 pub use rocking_view::Sizes;
-use rocking_view::{Column, Peak, Scene, quanta};
+use rocking_view::{DrawnPeak, Quanta, ShownScene, quanta};
 
 /// Parts of a peak by which what is shown may miss the motion: units of the last digit of its numbers. The first is taken
 /// that needs no more than [`MOST_VALUES`].
@@ -14,10 +14,10 @@ const PARTS: [f64; 3] = [1e-4, 1e-3, 1e-2];
 /// The largest number of values: about 5 MB.
 const MOST_VALUES: usize = 1_000_000;
 
-impl Run {
+impl RunSetup {
     /// The page that shows the run.
     pub fn page(&self) -> Result<String, RunError> {
-        let is_small = |scene: &Result<Scene, RunError>| match scene {
+        let is_small = |scene: &Result<ShownScene, RunError>| match scene {
             Ok(scene) => scene.values() <= MOST_VALUES,
             Err(error) => !matches!(error, RunError::TooManyPoints { .. }),
         };
@@ -27,25 +27,25 @@ impl Run {
     }
 
     /// The content of a page about the run, with lines that leave the motion by at most this `part` of its peaks.
-    pub fn scene(&self, part: f64) -> Result<Scene, RunError> {
-        let Curve { found, times, phases, columns } = self.curve(part)?;
+    pub fn scene(&self, part: f64) -> Result<ShownScene, RunError> {
+        let MotionCurve { found, times, phases, columns } = self.curve(part)?;
         let mut phases: Vec<_> = phases.iter().map(|phase| phase.name()).enumerate().collect();
         phases.dedup_by_key(|(_, phase)| *phase);
         let columns = columns.into_iter().filter(|(name, _)| name != "delta_t");
-        let peaks = |found: &Found| -> Vec<Peak> {
+        let peaks = |found: &RunReport| -> Vec<DrawnPeak> {
             found.peaks.iter().map(|peak| (peak.name.clone(), peak.magnitude, peak.time)).collect()
         };
         let has_fixed = !self.structure.is_one_mass() && self.conditions.detail != Detail::FixedBase;
         let fixed = has_fixed.then(|| self.on_fixed_base(found.end).ok()).flatten();
-        Ok(Scene {
+        Ok(ShownScene {
             title: self.ground.title().into(),
             parameters: sizes(&self.structure.at(self.conditions.detail)),
             start: found.start,
             ending: found.ending,
             fall: found.fall,
             part,
-            time: Column::of_time(&times, found.start),
-            columns: columns.map(|(name, values)| (name, Column::new(&values))).collect(),
+            time: Quanta::of_time(&times, found.start),
+            columns: columns.map(|(name, values)| (name, Quanta::new(&values))).collect(),
             phases,
             transitions: found.events.iter().map(|at| (quanta(at.time - found.start), at.kind.name())).collect(),
             peaks: peaks(&found),

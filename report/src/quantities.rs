@@ -57,11 +57,11 @@ pub fn columns(lines: &[NamedValue], g: f64) -> String {
 }
 
 /// A number that may be infinite, for which JSON has no number: it is the text "inf" there, as in a table.
-pub struct Number(pub f64);
+pub struct PrintedNumber(pub f64);
 
-impl Serialize for Number {
+impl Serialize for PrintedNumber {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Number(value) = *self;
+        let PrintedNumber(value) = *self;
         if value.is_finite() { serializer.serialize_f64(value) } else { serializer.collect_str(&value) }
     }
 }

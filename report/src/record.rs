@@ -3,7 +3,7 @@
 use crate::input;
 use anyhow::anyhow;
 use rocking::run::record::{Record, SamplesError};
-use rocking_records::{Reading, RecordError, Remedy, Source, Unit, csv_in, doubt_of_peak, doubts};
+use rocking_records::{Origin, Reading, RecordError, Remedy, Unit, csv_in, doubt_of_peak, doubts};
 use std::path::Path;
 
 /// A ground motion that was read from files or streams.
@@ -17,7 +17,7 @@ pub struct Understood {
     /// Units of the horizontal and of the vertical component.
     pub units: [Unit; 2],
     /// Statements of the file, if the ground motion is of a file.
-    pub source: Option<Source>,
+    pub source: Option<Origin>,
     /// Findings in a sentence, then one sentence for each assumption and for each likely error.
     pub sentences: Vec<String>,
 }
@@ -58,7 +58,7 @@ impl Understood {
     /// The ground motion of the file called `name`; the other arguments are those of [`understand`].
     pub fn new(
         name: &str,
-        (in_file_unit, source): (Record, Source),
+        (in_file_unit, source): (Record, Origin),
         factors: [f64; 2],
         g: f64,
         called: fn(&str) -> String,

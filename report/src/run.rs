@@ -10,7 +10,7 @@ use rocking::run::peaks::{Peak, Peaks};
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits};
 use rocking::run::{End, Ending, Finish, RunError, Runs, fall};
-use rocking::{Modes, Output, Phase, Run as Follow, State, Structure, Transition, TransitionKind, Watch};
+use rocking::{Modes, Output, Phase, Run, State, Structure, Transition, TransitionKind, Watch};
 use rocking_sweep::{plan::Conditions, with_run};
 use serde::Serialize;
 use std::sync::Arc;
@@ -29,7 +29,7 @@ pub fn usual_periods() -> Vec<f64> {
 
 /// A structure under a ground motion, and how the engine follows it.
 #[derive(Clone)]
-pub struct Run {
+pub struct RunSetup {
     /// The structure.
     pub structure: Structure,
     /// The record as it shakes the structure.
@@ -41,7 +41,7 @@ pub struct Run {
 /// The results of a run; instants are in s.
 #[derive(Clone, Serialize)]
 #[allow(missing_docs)]
-pub struct Found {
+pub struct RunReport {
     pub start: f64,
     pub end: f64,
     pub ending: Ending,
@@ -53,7 +53,7 @@ pub struct Found {
     pub peaks: Vec<NamedPeak>,
     /// Of a structure with dissipators.
     #[serde(flatten)]
-    pub(crate) taken: Option<Taken>,
+    pub(crate) taken: Option<Dissipated>,
     pub(crate) first_uplift: Option<f64>,
     pub(crate) first_impact: Option<f64>,
     /// Number of transitions.
@@ -87,7 +87,7 @@ pub struct NamedPeak {
 
 /// Energy (J) that the dissipators took until the end of a run, and the rotation (rad) that is left.
 #[derive(Clone, Copy, Serialize)]
-pub(crate) struct Taken {
+pub(crate) struct Dissipated {
     pub E_viscous: f64,
     pub E_hysteretic: f64,
     pub theta_end: f64,
@@ -99,13 +99,13 @@ pub(crate) struct Taken {
 pub struct Event {
     pub time: f64,
     pub kind: TransitionKind,
-    /// The state before and after, in the order of [`Run::components`].
+    /// The state before and after, in the order of [`RunSetup::components`].
     pub states: [Vec<f64>; 2],
 }
 
 /// A motion at instants.
-pub struct Samples {
-    /// The numbers, in the order of [`Run::columns`].
+pub struct SampledMotion {
+    /// The numbers, in the order of [`RunSetup::columns`].
     pub columns: Vec<Vec<f64>>,
     /// Positions in [`Phase::SHOWN`].
     pub phases: Vec<u8>,
@@ -115,8 +115,8 @@ pub struct Samples {
 
 /// A run as points that straight lines join, at times in s.
 #[allow(missing_docs)]
-pub struct Curve {
-    pub found: Found,
+pub struct MotionCurve {
+    pub found: RunReport,
     pub times: Vec<f64>,
     pub phases: Vec<Phase>,
     /// a_g and the drawn outputs by name.
@@ -136,14 +136,14 @@ pub trait Watcher: Watch<f64> + Watch<Modes> + Clone {
 
 impl Watcher for () {}
 
-impl Run {
+impl RunSetup {
     /// Follows the motion to its end, and finds its exact peaks; with `limits`, how far it breaks the assumptions of the model, too.
-    pub fn found(&self, limits: Option<Limits>, watch: &mut impl Watcher) -> Result<Found, RunError> {
+    pub fn found(&self, limits: Option<Limits>, watch: &mut impl Watcher) -> Result<RunReport, RunError> {
         with_run!(self.conditions, self.structure, &self.ground, run => found(&run, limits, watch))?
     }
 
     /// The results of the same structure on a fixed base, from rest under the same ground motion until `end` (s).
-    pub fn on_fixed_base(&self, end: f64) -> Result<Found, RunError> {
+    pub fn on_fixed_base(&self, end: f64) -> Result<RunReport, RunError> {
         with_run!(self.conditions, self.structure, &self.ground, run => found(&run.on_fixed_base(end), None, &mut ()))?
     }
 
@@ -166,14 +166,14 @@ impl Run {
         watch: &mut impl Watcher,
     ) -> Result<(), RunError> {
         with_run!(self.conditions, self.structure, &self.ground, run => {
-            let (outputs, run) = (Output::all(&run.structure.at(run.detail)), Follow { end: end.map_or(run.end, End::At), ..run });
+            let (outputs, run) = (Output::all(&run.structure.at(run.detail)), Run { end: end.map_or(run.end, End::At), ..run });
             run.sample(times, |sample| show(line(sample, outputs.iter().copied().map(sample.outputs()).collect())), watch).map(|_| ())
         })?
     }
 
     /// The motion at `times` (s) in any order, none of which is before the start. After the end the ground is at rest and the motion
     /// continues; after overturning all values are NaN.
-    pub fn at(&self, found: &Found, times: &[f64], watch: &mut impl Watcher) -> Result<Samples, RunError> {
+    pub fn at(&self, found: &RunReport, times: &[f64], watch: &mut impl Watcher) -> Result<SampledMotion, RunError> {
         let mut order: Vec<usize> = (0..times.len()).collect();
         order.sort_by(|a, b| times[*a].total_cmp(&times[*b]));
         let last = order.last().map_or(found.start, |last| times[*last]);
@@ -199,13 +199,13 @@ impl Run {
         self.sample(order.iter().map(|index| times[*index]), end, see, watch)?;
         columns[0].copy_from_slice(times);
         order[next..].iter().for_each(|index| transitions[*index] = found.transitions);
-        Ok(Samples { columns, phases, transitions })
+        Ok(SampledMotion { columns, phases, transitions })
     }
 
     /// The spectrum of the acceleration of a `floor`, from 0 on, until the end of the run or the start of the fall.
     pub fn spectrum(
         &self,
-        found: &Found,
+        found: &RunReport,
         floor: usize,
         periods: &[f64],
         zeta: f64,
@@ -219,7 +219,7 @@ impl Run {
     }
 
     /// The run as points between which θ, u and a_t of each floor leave straight lines by at most `part` of their peaks.
-    pub fn curve(&self, part: f64) -> Result<Curve, RunError> {
+    pub fn curve(&self, part: f64) -> Result<MotionCurve, RunError> {
         with_run!(self.conditions, self.structure, &self.ground, run => curve(&run, part))?
     }
 
@@ -257,7 +257,7 @@ impl Run {
     }
 
     /// The peaks of each floor from below, in the order of [`OF_FLOOR`]. One mass is a floor.
-    pub fn floors(&self, found: &Found) -> Vec<[f64; OF_FLOOR.len()]> {
+    pub fn floors(&self, found: &RunReport) -> Vec<[f64; OF_FLOOR.len()]> {
         let peak = |name: &str| found.peak(name).map_or(f64::NAN, |peak| peak.magnitude);
         match self.structure.is_one_mass() {
             true => {
@@ -274,7 +274,7 @@ impl Run {
     }
 }
 
-impl Found {
+impl RunReport {
     /// The peak of the quantity called `name`.
     pub fn peak(&self, name: &str) -> Option<Peak> {
         let peak = self.peaks.iter().find(|peak| peak.name == name)?;
@@ -300,7 +300,7 @@ pub(crate) fn symbol(name: &str) -> &str {
 }
 
 /// The results of `run`.
-fn found<Q: Runs>(run: &Follow<Q>, limits: Option<Limits>, watch: &mut dyn Watch<Q>) -> Result<Found, RunError> {
+fn found<Q: Runs>(run: &Run<Q>, limits: Option<Limits>, watch: &mut dyn Watch<Q>) -> Result<RunReport, RunError> {
     let mut transitions = Vec::new();
     let mut see = |transition: &Transition<Q>| transitions.push(*transition);
     let mut validity = limits.map(|limits| run.validity_watch(limits)).transpose()?;
@@ -308,11 +308,11 @@ fn found<Q: Runs>(run: &Follow<Q>, limits: Option<Limits>, watch: &mut dyn Watch
         Some(validity) => run.judged(validity, &mut (watch, &mut see))?,
         None => run.found(&mut (watch, &mut see))?,
     };
-    Ok(Found { findings: validity.map(|of| *of.found()), ..results(&run.structure, &found, &transitions) })
+    Ok(RunReport { findings: validity.map(|of| *of.found()), ..results(&run.structure, &found, &transitions) })
 }
 
-fn results<Q: Runs>(structure: &Structure, found: &fall::Found<Q>, transitions: &[Transition<Q>]) -> Found {
-    let &fall::Found { ground, ref peaks, fall, start, finish: Finish { ending, ref motion } } = found;
+fn results<Q: Runs>(structure: &Structure, found: &fall::RunResult<Q>, transitions: &[Transition<Q>]) -> RunReport {
+    let &fall::RunResult { ground, ref peaks, fall, start, finish: Finish { ending, ref motion } } = found;
     let floors = |of: &Q| Vec::from_iter(structure.floors().iter().map(|floor| floor.displacement(of)));
     let state = |of: &State<Q>| [floors(&of.u), floors(&of.u_dot), vec![of.theta, of.theta_dot]].concat();
     let event = |of: &Transition<Q>| Event { time: of.time, kind: of.kind, states: [&of.before, &of.after].map(state) };
@@ -320,8 +320,8 @@ fn results<Q: Runs>(structure: &Structure, found: &fall::Found<Q>, transitions: 
         transitions.iter().find(|transition| is_meant(&transition.kind)).map(|transition| transition.time)
     };
     let Dissipators { viscous: E_viscous, hysteretic: E_hysteretic, .. } = motion.dissipators;
-    let taken = Taken { E_viscous, E_hysteretic, theta_end: motion.state.theta };
-    Found {
+    let taken = Dissipated { E_viscous, E_hysteretic, theta_end: motion.state.theta };
+    RunReport {
         start,
         end: motion.time,
         ending,
@@ -340,12 +340,12 @@ fn results<Q: Runs>(structure: &Structure, found: &fall::Found<Q>, transitions: 
     }
 }
 
-fn curve<Q: Runs>(run: &Follow<Q>, part: f64) -> Result<Curve, RunError> {
-    let curve::Curve { points, transitions, found } = run.curve(part)?;
+fn curve<Q: Runs>(run: &Run<Q>, part: f64) -> Result<MotionCurve, RunError> {
+    let curve::RunCurve { points, transitions, found } = run.curve(part)?;
     let mut columns = vec![("a_g".to_owned(), points.iter().map(|at| at.a_g).collect())];
     for (i, output) in curve::drawn(run).into_iter().enumerate() {
         columns.push((output.name(&run.structure), points.iter().map(|at| at.outputs[i]).collect()));
     }
     let (times, phases) = points.iter().map(|at| (at.time, at.phase)).unzip();
-    Ok(Curve { found: results(&run.structure, &found, &transitions), times, phases, columns })
+    Ok(MotionCurve { found: results(&run.structure, &found, &transitions), times, phases, columns })
 }

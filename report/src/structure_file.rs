@@ -4,7 +4,7 @@ use anyhow::Context;
 use rocking::digits::short;
 use rocking::structure::derived::Derived;
 use rocking::structure::description::{Damping, Described, Description, ManyMasses};
-use rocking::structure::natural_quantities::{Given, NATURAL, Natural};
+use rocking::structure::natural_quantities::{NATURAL, Natural, Numbers};
 use rocking::structure::parameters::{OF_ONE_MASS, PARAMETERS, Parameters};
 use rocking::{OneMass, Quantity, Structure};
 use serde::Serialize;
@@ -17,7 +17,7 @@ pub fn read(text: &str) -> anyhow::Result<Structure> {
     if ["base", "storeys", "floors", "modes"].iter().any(|key| keys.contains_key(*key)) {
         return Ok(toml::from_str::<Described>(text)?.structure()?);
     }
-    Ok(toml::from_str::<Given>(text)?.structure(None)?)
+    Ok(toml::from_str::<Numbers>(text)?.structure(None)?)
 }
 
 /// The file of `structure`, from which [`read`] makes it again to the same bits: each number with its unit and its range, and the numbers

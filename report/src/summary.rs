@@ -1,6 +1,6 @@
 //! The summary of a run.
 use crate::quantities::of_motion;
-use crate::run::{Found, NamedPeak, OF_FLOOR, Run, Taken};
+use crate::run::{Dissipated, NamedPeak, OF_FLOOR, RunReport, RunSetup};
 use crate::validity;
 use rocking::digits::significant;
 use rocking::run::validity::Limits;
@@ -11,25 +11,25 @@ use std::fmt::{self, Write};
 
 /// The summary for programs.
 #[derive(Serialize)]
-pub struct Whole<'a, Cause> {
+pub struct ProgramSummary<'a, Cause> {
     #[serde(flatten)]
     cause: &'a Cause,
     #[serde(flatten)]
-    found: &'a Found,
+    found: &'a RunReport,
     validity: Vec<validity::Beyond>,
 }
 
-impl Found {
+impl RunReport {
     /// The results for programs, with the `cause` of the run, and the validity within `limits`.
-    pub fn whole<'a, C>(&'a self, cause: &'a C, limits: &Limits) -> Whole<'a, C> {
+    pub fn whole<'a, C>(&'a self, cause: &'a C, limits: &Limits) -> ProgramSummary<'a, C> {
         let rows = self.findings.iter().flat_map(|findings| validity::rows(findings, limits));
-        Whole { cause, found: self, validity: rows.collect() }
+        ProgramSummary { cause, found: self, validity: rows.collect() }
     }
 }
 
-impl Run {
+impl RunSetup {
     /// The summary in lines for people, then the limits of the model, if `found` has findings.
-    pub fn text(&self, found: &Found, limits: &Limits) -> Result<String, fmt::Error> {
+    pub fn text(&self, found: &RunReport, limits: &Limits) -> Result<String, fmt::Error> {
         let mut out = String::new();
         let base = self.structure.base();
         for NamedPeak { name, magnitude, unit, time } in found.peaks.iter().filter(|peak| !peak.name.ends_with(']')) {
@@ -62,7 +62,7 @@ impl Run {
             let start = instant(fall);
             writeln!(out, "fall           starts at {start} s, beyond {angle}; peaks are those before the fall")?;
         }
-        if let Some(Taken { E_viscous, E_hysteretic, theta_end }) = found.taken {
+        if let Some(Dissipated { E_viscous, E_hysteretic, theta_end }) = found.taken {
             let [E_viscous, E_hysteretic, theta_end] = [E_viscous, E_hysteretic, theta_end].map(significant);
             writeln!(out, "dissipated     {E_viscous} J viscous, {E_hysteretic} J elastoplastic")?;
             writeln!(out, "theta at end   {theta_end} rad")?;

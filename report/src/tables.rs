@@ -4,7 +4,7 @@ use rocking::run::Runs;
 use rocking::{Impulse, Output, Phase, Reactions, Sample};
 use serde::{Serialize, Serializer};
 
-/// A line of the response: the numbers in the order of [`Run::columns`](crate::run::Run::columns), the phase, and the number of
+/// A line of the response: the numbers in the order of [`RunSetup::columns`](crate::run::Run::columns), the phase, and the number of
 /// transitions so far.
 #[derive(Serialize)]
 pub struct Line(pub Vec<f64>, #[serde(serialize_with = "by_name")] pub Phase, pub u64);

@@ -1,7 +1,7 @@
 //! Validity of a run: the limits of the model, in words and for programs.
 
-use crate::quantities::Number;
-use crate::run::Run;
+use crate::quantities::PrintedNumber;
+use crate::run::RunSetup;
 use rocking::digits::significant;
 use rocking::run::validity::{ASSUMPTIONS, Assumption, Findings, Limits, WEIGHT, Worst, of_structure};
 use serde::Serialize;
@@ -22,7 +22,7 @@ const LABELS: [&str; ASSUMPTIONS.len()] = [
 #[allow(missing_docs)]
 pub struct Beyond {
     pub name: &'static str,
-    pub value: Number,
+    pub value: PrintedNumber,
     pub time: f64,
     pub limit: f64,
     /// When the limit was passed first, s.
@@ -37,7 +37,7 @@ pub fn rows(found: &Findings, limits: &Limits) -> Vec<Beyond> {
         let Worst { value, time, first_beyond, beyond } = *worst;
         Beyond {
             name: assumption.name,
-            value: Number(value),
+            value: PrintedNumber(value),
             time,
             limit: (assumption.limit)(limits),
             first_beyond,
@@ -47,7 +47,7 @@ pub fn rows(found: &Findings, limits: &Limits) -> Vec<Beyond> {
     ASSUMPTIONS.iter().zip(&found.worst).map(row).collect()
 }
 
-impl Run {
+impl RunSetup {
     /// The limits of the model in this run, in which this was `found`, line by line.
     pub fn section(&self, found: &Findings, limits: &Limits) -> Vec<String> {
         let mut lines = vec!["limits of the model".to_owned()];

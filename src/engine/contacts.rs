@@ -8,7 +8,7 @@
 use crate::engine::guard::{BAND, Guard};
 use crate::engine::motion::Motion;
 use crate::engine::sample::Sample;
-use crate::engine::step::{Step, Way, see};
+use crate::engine::step::{Branch, Step, see};
 use crate::engine::transition::TransitionKind;
 use crate::engine::yielding::square_integral;
 use crate::levels::level::Level;
@@ -19,7 +19,7 @@ use crate::mechanics::restraint::{Dissipators, dampers_on_ground, places};
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Series, ZERO, evaluate};
 use crate::series::terms::Terms;
-use crate::structure::ground::{Footing, Point};
+use crate::structure::ground::{ContactPoint, Footing};
 use crate::{Phase, Ties};
 
 /// Part of its terms by which a gap may miss its root.
@@ -47,7 +47,7 @@ impl Rises {
                 (y[i][k], sin[i][k]) = (footing.y, footing.sin);
             }
         }
-        let (scale, part) = (foundation.rest.abs() + y[0][0].abs(), arc.span / level.longest_step());
+        let (scale, part) = (foundation.y_s.abs() + y[0][0].abs(), arc.span / level.longest_step());
         Rises { y, sin, order: arc.order, scale, part }
     }
 
@@ -96,9 +96,9 @@ fn first<const N: usize>(gaps: [Option<Gap>; N], reach: f64) -> Crossing {
 pub(crate) struct Points;
 
 impl<Q: Coordinates> Guard<Q> for Points {
-    fn first(&self, &Step { level, contact, arc, reach, .. }: &Step<Q>) -> (Crossing, Way) {
+    fn first(&self, &Step { level, contact, arc, reach, .. }: &Step<Q>) -> (Crossing, Branch) {
         let foundation = level.structure().ground();
-        let (rises, mut found) = (Rises::new(level, arc), (Crossing::None, Way::default()));
+        let (rises, mut found) = (Rises::new(level, arc), (Crossing::None, Branch::default()));
         for (i, point) in foundation.points.iter().enumerate() {
             let pushes = || rises.at(point.xi, point.c / point.k);
             let reach = found.0.sigma().min(reach);
@@ -115,25 +115,25 @@ impl<Q: Coordinates> Guard<Q> for Points {
         found
     }
 
-    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> Option<TransitionKind> {
-        let (i, state) = (usize::from(way.which), &mut motion.state);
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, branch: Branch) -> Option<TransitionKind> {
+        let (i, state) = (usize::from(branch.which), &mut motion.state);
         if let Phase::OnGround(contact) = &mut motion.phase {
             let ground = level.structure().ground();
-            let Point { xi, k, .. } = *ground.points.get(i)?;
+            let ContactPoint { xi, k, .. } = *ground.points.get(i)?;
             let footing = state.u.footing(ground);
             let e = footing.height(xi);
             contact.pressed ^= 1 << i;
-            let taken = footing.taken - f64::from(way.sign) * 0.5 * k * e * e;
+            let taken = footing.taken - f64::from(branch.sign) * 0.5 * k * e * e;
             state.u.set_footing(ground, Footing { taken, ..footing });
         }
-        Some(if way.sign > 0 { TransitionKind::Touch(i) } else { TransitionKind::Release(i) })
+        Some(if branch.sign > 0 { TransitionKind::Touch(i) } else { TransitionKind::Release(i) })
     }
 
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
         let (contact, foundation) = (now.motion.phase.contact(), now.level.structure().ground());
         let of = |(i, margin): (usize, f64)| if contact.is_pressed(i) { margin } else { -margin };
         let least = margins(foundation, &now.motion.state).enumerate().map(of).fold(f64::INFINITY, f64::min);
-        (0, least / foundation.rest.abs() + BAND)
+        (0, least / foundation.y_s.abs() + BAND)
     }
 }
 
@@ -147,43 +147,43 @@ const TENDON: u8 = 2;
 pub(crate) struct Tied;
 
 impl<Q: Coordinates> Guard<Q> for Tied {
-    fn first(&self, &Step { level, contact, start, arc, reach, .. }: &Step<Q>) -> (Crossing, Way) {
+    fn first(&self, &Step { level, contact, start, arc, reach, .. }: &Step<Q>) -> (Crossing, Branch) {
         let foundation = level.structure().ground();
-        let (rises, mut found) = (Rises::new(level, arc), (Crossing::None, Way::default()));
+        let (rises, mut found) = (Rises::new(level, arc), (Crossing::None, Branch::default()));
         let base = level.structure().base();
         let Ties { P_0, k_t, k_d, F_y, .. } = base.ties;
         if k_t > 0.0 {
-            let ((height, rounding), slack) = (rises.at(0.0, 0.0), P_0 / k_t - foundation.rest);
-            let (sign, way) = if contact.is_slack { (-1.0, 1) } else { (1.0, -1) };
-            let gap = Gap::new(&height[..=rises.order], sign, sign * slack + rounding);
-            see(&mut found, first_time_all_closed([gap], reach), usize::from(TENDON), way);
+            let ((height, rounding), slack) = (rises.at(0.0, 0.0), P_0 / k_t - foundation.y_s);
+            let (opens, sign) = if contact.is_slack { (-1.0, 1) } else { (1.0, -1) };
+            let gap = Gap::new(&height[..=rises.order], opens, opens * slack + rounding);
+            see(&mut found, first_time_all_closed([gap], reach), usize::from(TENDON), sign);
         }
         for (j, xi) in places(base).into_iter().enumerate().filter(|_| F_y > 0.0) {
             let rate = rises.rate(xi);
             match start.dissipators.yields[j] {
                 0 => {
-                    for way in [1_i8, -1] {
+                    for sign in [1_i8, -1] {
                         let mut height = rises.at(xi, 0.0);
-                        height.0[0] -= foundation.rest + start.dissipators.plastic[j] + f64::from(way) * F_y / k_d;
+                        height.0[0] -= foundation.y_s + start.dissipators.plastic[j] + f64::from(sign) * F_y / k_d;
                         height.1 += ROUNDING * F_y / k_d;
-                        let gaps = [&height, &rate].map(|of| rises.gap(of, -f64::from(way)));
-                        see(&mut found, first(gaps, reach), j, way);
+                        let gaps = [&height, &rate].map(|of| rises.gap(of, -f64::from(sign)));
+                        see(&mut found, first(gaps, reach), j, sign);
                     }
                 }
-                way => see(&mut found, first([rises.gap(&rate, f64::from(way))], reach), j, 0),
+                sign => see(&mut found, first([rises.gap(&rate, f64::from(sign))], reach), j, 0),
             }
         }
         found
     }
 
-    fn apply(&self, _level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> Option<TransitionKind> {
-        let which = usize::from(way.which);
-        Some(match (&mut motion.phase, way) {
-            (Phase::OnGround(contact), Way { which: TENDON, sign }) => {
+    fn apply(&self, _level: &dyn Level<Q>, motion: &mut Motion<Q>, branch: Branch) -> Option<TransitionKind> {
+        let which = usize::from(branch.which);
+        Some(match (&mut motion.phase, branch) {
+            (Phase::OnGround(contact), Branch { which: TENDON, sign }) => {
                 contact.is_slack = sign < 0;
                 if sign < 0 { TransitionKind::Slack } else { TransitionKind::Taut }
             }
-            (_, Way { sign, .. }) => {
+            (_, Branch { sign, .. }) => {
                 *motion.dissipators.yields.get_mut(which)? = sign;
                 if sign == 0 { TransitionKind::Unloading(which) } else { TransitionKind::Yielding(which) }
             }
@@ -199,13 +199,13 @@ impl<Q: Coordinates> Guard<Q> for Tied {
 fn tied_margins<'a, Q: Coordinates>(now: &'a Sample<Q>) -> impl Iterator<Item = f64> + 'a {
     let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
     let Ties { P_0, k_t, k_d, F_y, .. } = structure.base().ties;
-    let (ground, rest) = (structure.ground(), structure.ground().rest);
+    let (ground, y_s) = (structure.ground(), structure.ground().y_s);
     let of = move |i: usize, xi: f64| [state.u, state.u_dot][i].footing(ground).height(xi);
     let sign = if phase.contact().is_slack { -1.0 } else { 1.0 };
-    let of_tendon = (of(0, 0.0) - rest + P_0 / k_t) / rest.abs() * sign;
+    let of_tendon = (of(0, 0.0) - y_s + P_0 / k_t) / y_s.abs() * sign;
     let of_pair = places(structure.base()).into_iter().enumerate().map(move |(j, xi)| match dissipators.yields[j] {
-        0 => 1.0 - (k_d * (of(0, xi) - rest - dissipators.plastic[j])).abs() / F_y,
-        way => f64::from(way) * of(1, xi) / (rest.abs() * structure.vibration().contact),
+        0 => 1.0 - (k_d * (of(0, xi) - y_s - dissipators.plastic[j])).abs() / F_y,
+        sign => f64::from(sign) * of(1, xi) / (y_s.abs() * structure.vibration().contact),
     });
     Some(of_tendon).filter(|_| k_t > 0.0).into_iter().chain(of_pair.filter(move |_| F_y > 0.0))
 }
@@ -213,7 +213,7 @@ fn tied_margins<'a, Q: Coordinates>(now: &'a Sample<Q>) -> impl Iterator<Item = 
 /// The dissipators at the reach of a step.
 pub(crate) fn moved<Q: Coordinates>(&Step { level, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
     let (foundation, base, rises) = (level.structure().ground(), level.structure().base(), Rises::new(level, arc));
-    let height = |j: usize| evaluate(&rises.at(places(base)[j], 0.0).0[..=arc.order], reach) - foundation.rest;
+    let height = |j: usize| evaluate(&rises.at(places(base)[j], 0.0).0[..=arc.order], reach) - foundation.y_s;
     let power = |(c, rate): (f64, Terms)| c * arc.span * square_integral(rate.used(), reach);
     start.dissipators.stepped(base, height, dampers_on_ground(base, arc, foundation).map(power))
 }

@@ -2,7 +2,7 @@
 
 use crate::engine::motion::Motion;
 use crate::engine::sample::Sample;
-use crate::engine::step::{Step, Way};
+use crate::engine::step::{Branch, Step};
 use crate::engine::transition::TransitionKind;
 use crate::levels::level::Level;
 use crate::mechanics::lateral::Coordinates;
@@ -15,10 +15,10 @@ pub const BAND: f64 = 1e-9;
 /// A condition that ends a phase, or changes the equations within it.
 pub(crate) trait Guard<Q: Coordinates = f64>: Sync {
     /// The first instant of `step` at which the guard closes.
-    fn first(&self, step: &Step<Q>) -> (Crossing, Way);
+    fn first(&self, step: &Step<Q>) -> (Crossing, Branch);
 
     /// Applies the transition to `motion`, which has reached the instant at which the guard closes; none for a way that it has not.
-    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> Option<TransitionKind>;
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, branch: Branch) -> Option<TransitionKind>;
 
     /// Whether the guard certainly stays open for `ahead` (s), a tiny time.
     fn stays_open(&self, _now: &Sample<Q>, _ahead: f64) -> bool {
@@ -29,7 +29,7 @@ pub(crate) trait Guard<Q: Coordinates = f64>: Sync {
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64);
 
     /// The way in which the guard is closed from the start, after a transition or a jump of the load, on rigid ground.
-    fn closed(&self, _now: &Sample<Q>) -> Option<Way> {
+    fn closed(&self, _now: &Sample<Q>) -> Option<Branch> {
         None
     }
 

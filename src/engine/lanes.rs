@@ -18,7 +18,7 @@ use crate::mechanics::lateral::Coordinates;
 use crate::{Detail, LinearLoad, Phase, Transition};
 use leaps::leaping;
 use pulp::Simd;
-use rocking::{Rocking, by_equations_5_and_6};
+use rocking::{RockingLanes, by_equations_5_and_6};
 use sought::{MOST_MODES, Passes};
 
 /// Watches a motion after the piece under way, which it `passes` if the watcher need not see it.
@@ -111,7 +111,7 @@ impl<Q: Coordinates> Engine<Q> {
     #[inline]
     pub(crate) fn take<S: Simd, W: Passes<Q>>(
         &mut self,
-        steps: &Rocking<'_, S, Q>,
+        steps: &RockingLanes<'_, S, Q>,
         lane: usize,
         advance: &mut Advance<Q>,
         watch: &mut W,

@@ -1,21 +1,21 @@
 //! The phases of a motion as data: which guards are watched, and what happens when each of them closes.
 //!
 //! The loop of the [engine](crate::engine) expands the motion, finds the first guard that closes, and applies the guard's transition.
-//! A new kind of contact is one more [`Watched`] here, with its guards.
+//! A new kind of contact is one more [`Rules`] here, with its guards.
 
 use crate::engine::contacts::{self, Points, Tied};
 use crate::engine::guard::{BAND, Guard};
 use crate::engine::motion::Motion;
 use crate::engine::sample::Sample;
-use crate::engine::step::{Step, Way};
+use crate::engine::step::{Branch, Step};
 use crate::engine::transition::{TransitionKind, enter};
 use crate::engine::yielding::{self, Yielding};
-use crate::levels::level::{Level, Subject};
+use crate::levels::level::{Level, LevelSubject};
 use crate::mechanics::arc::Arc;
 use crate::mechanics::impact;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::Dissipators;
-use crate::mechanics::state::way;
+use crate::mechanics::state::most_change;
 use crate::numbers::Real;
 use crate::series::extremes::off_chord;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
@@ -24,7 +24,7 @@ use crate::{Phase, Side, Structure};
 use std::f64::consts::FRAC_PI_2;
 
 /// A phase as the loop knows it.
-pub(crate) struct Watched<Q: Coordinates = f64> {
+pub(crate) struct Rules<Q: Coordinates = f64> {
     /// Duration of the phase at most, s.
     pub lasts: Option<fn(&Motion<Q>) -> f64>,
     /// A cheap proof that no guard closes over a step.
@@ -34,38 +34,38 @@ pub(crate) struct Watched<Q: Coordinates = f64> {
     pub moved: Option<fn(&Step<Q>) -> Dissipators>,
 }
 
-impl<Q: Coordinates> Watched<Q> {
+impl<Q: Coordinates> Rules<Q> {
     /// A phase in which the base does not move, without guards.
-    pub(super) const RESTING: Watched<Q> = Watched { lasts: None, stays: None, guards: &[], moved: None };
+    pub(super) const RESTING: Rules<Q> = Rules { lasts: None, stays: None, guards: &[], moved: None };
 
     /// Full contact that is held after too many transitions.
-    const HELD: &'static Watched<Q> = &Watched { lasts: Some(Motion::held), ..Watched::RESTING };
+    const HELD: &'static Rules<Q> = &Rules { lasts: Some(Motion::held), ..Rules::RESTING };
 
     /// Full contact.
-    const CONTACT: &'static Watched<Q> = &Watched { guards: &[&Uplift], ..Watched::RESTING };
+    const CONTACT: &'static Rules<Q> = &Rules { guards: &[&Uplift], ..Rules::RESTING };
 
     /// Rocking about either side.
-    const ROCKING: &'static Watched<Q> = &Watched {
+    const ROCKING: &'static Rules<Q> = &Rules {
         stays: Some(|step| stays_about(step.arc, step.side)),
         guards: &[&Overturning, &Impact],
         moved: Some(yielding::moved),
-        ..Watched::RESTING
+        ..Rules::RESTING
     };
 
     /// Rocking with dissipators that may yield.
-    const ROCKING_YIELDING: &'static Watched<Q> =
-        &Watched { guards: &[&Yielding, &Overturning, &Impact], moved: Some(yielding::moved), ..Watched::RESTING };
+    const ROCKING_YIELDING: &'static Rules<Q> =
+        &Rules { guards: &[&Yielding, &Overturning, &Impact], moved: Some(yielding::moved), ..Rules::RESTING };
 
     /// Ground that gives.
-    const ON_GROUND: &'static Watched<Q> = &Watched { guards: &[&Overturning, &Points], ..Watched::RESTING };
+    const ON_GROUND: &'static Rules<Q> = &Rules { guards: &[&Overturning, &Points], ..Rules::RESTING };
 
     /// Ground that gives, with a tendon or dissipators.
-    const ON_GROUND_TIED: &'static Watched<Q> =
-        &Watched { guards: &[&Overturning, &Points, &Tied], moved: Some(contacts::moved), ..Watched::RESTING };
+    const ON_GROUND_TIED: &'static Rules<Q> =
+        &Rules { guards: &[&Overturning, &Points, &Tied], moved: Some(contacts::moved), ..Rules::RESTING };
 
     /// The dissipators at the reach of `step`, if it moves them.
     #[inline]
-    pub(crate) fn moved(&self, subject: &Subject, step: &Step<Q>) -> Option<Dissipators> {
+    pub(crate) fn moved(&self, subject: &LevelSubject, step: &Step<Q>) -> Option<Dissipators> {
         let is_restrained = || subject.is_tied && subject.structure.base().is_restrained();
         self.moved.filter(|_| is_restrained()).map(|moved| moved(step))
     }
@@ -73,15 +73,15 @@ impl<Q: Coordinates> Watched<Q> {
 
 /// The phase of `motion` of `structure`; none once the structure has overturned.
 #[inline]
-pub(crate) fn of<Q: Coordinates>(structure: &Structure, motion: &Motion<Q>) -> Option<&'static Watched<Q>> {
+pub(crate) fn of<Q: Coordinates>(structure: &Structure, motion: &Motion<Q>) -> Option<&'static Rules<Q>> {
     match motion.phase {
-        Phase::FullContact if motion.held() > 0.0 => Some(Watched::HELD),
-        Phase::FullContact => Some(Watched::CONTACT),
-        Phase::Rocking(_) if structure.base().ties.F_y > 0.0 => Some(Watched::ROCKING_YIELDING),
-        Phase::Rocking(_) => Some(Watched::ROCKING),
+        Phase::FullContact if motion.held() > 0.0 => Some(Rules::HELD),
+        Phase::FullContact => Some(Rules::CONTACT),
+        Phase::Rocking(_) if structure.base().ties.F_y > 0.0 => Some(Rules::ROCKING_YIELDING),
+        Phase::Rocking(_) => Some(Rules::ROCKING),
         Phase::OnGround(_) => Q::foundation(structure).map(|_| match structure.base().is_restrained() {
-            true => Watched::ON_GROUND_TIED,
-            false => Watched::ON_GROUND,
+            true => Rules::ON_GROUND_TIED,
+            false => Rules::ON_GROUND,
         }),
         Phase::Overturned(_) => None,
     }
@@ -91,14 +91,14 @@ pub(crate) fn of<Q: Coordinates>(structure: &Structure, motion: &Motion<Q>) -> O
 struct Uplift;
 
 impl<Q: Coordinates> Guard<Q> for Uplift {
-    fn first(&self, step: &Step<Q>) -> (Crossing, Way) {
-        let Some(liftable) = step.level.liftable() else { return (Crossing::None, Way::default()) };
+    fn first(&self, step: &Step<Q>) -> (Crossing, Branch) {
+        let Some(liftable) = step.level.liftable() else { return (Crossing::None, Branch::default()) };
         let (crossing, side) = liftable.first(step.start, step.arc);
         (crossing, about(side))
     }
 
-    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> Option<TransitionKind> {
-        let side = Side::of(way.sign.into());
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, branch: Branch) -> Option<TransitionKind> {
+        let side = Side::of(branch.sign.into());
         enter(level, motion, Phase::Rocking(side), motion.state);
         Some(TransitionKind::Uplift(side))
     }
@@ -113,27 +113,27 @@ impl<Q: Coordinates> Guard<Q> for Uplift {
         (0, now.level.uplift_margin(&now.motion.under(now.load)).0 + BAND)
     }
 
-    fn closed(&self, now: &Sample<Q>) -> Option<Way> {
+    fn closed(&self, now: &Sample<Q>) -> Option<Branch> {
         let (margin, side) = now.level.uplift_margin(&now.motion.under(now.load));
         (margin <= 0.0).then_some(about(side))
     }
 }
 
-fn about(side: Side) -> Way {
-    Way { which: 0, sign: if side == Side::Right { 1 } else { -1 } }
+fn about(side: Side) -> Branch {
+    Branch { which: 0, sign: if side == Side::Right { 1 } else { -1 } }
 }
 
 /// |θ| reaches π/2.
 struct Overturning;
 
 impl<Q: Coordinates> Guard<Q> for Overturning {
-    fn first(&self, step: &Step<Q>) -> (Crossing, Way) {
+    fn first(&self, step: &Step<Q>) -> (Crossing, Branch) {
         let theta = step.arc.used(&step.arc.theta);
         let falls = Gap::new(theta, -step.side.sign(), FRAC_PI_2);
-        (first_time_all_closed([falls], step.reach), Way::default())
+        (first_time_all_closed([falls], step.reach), Branch::default())
     }
 
-    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, _way: Way) -> Option<TransitionKind> {
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, _branch: Branch) -> Option<TransitionKind> {
         let side = motion.side();
         enter(level, motion, Phase::Overturned(side), motion.state);
         Some(TransitionKind::Overturning(side))
@@ -141,7 +141,7 @@ impl<Q: Coordinates> Guard<Q> for Overturning {
 
     fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {
         let state = &now.motion.state;
-        state.theta.abs() < FRAC_PI_2 - way(ahead, state.theta_dot)
+        state.theta.abs() < FRAC_PI_2 - most_change(ahead, state.theta_dot)
     }
 
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
@@ -160,7 +160,7 @@ impl<Q: Coordinates> Guard<Q> for Impact {
     /// A start at θ = 0 is a root of θ. With z leading zeros the polynomial that is searched is therefore s θ/σ^z. The start is then
     /// no return, and a return right after the start is found. A coefficient that underflows counts as zero. If θ is zero
     /// throughout, over a step of 1e-200 s say, there is no return.
-    fn first(&self, step: &Step<Q>) -> (Crossing, Way) {
+    fn first(&self, step: &Step<Q>) -> (Crossing, Branch) {
         let theta = step.arc.used(&step.arc.theta);
         let crossing = match theta.iter().position(|c| c.is_normal()) {
             Some(zeros) => {
@@ -169,11 +169,11 @@ impl<Q: Coordinates> Guard<Q> for Impact {
             }
             None => Crossing::None,
         };
-        (crossing, Way::default())
+        (crossing, Branch::default())
     }
 
-    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, _way: Way) -> Option<TransitionKind> {
-        let (before, &Subject { ref structure, local_error, .. }) = (motion.state, level.subject());
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, _branch: Branch) -> Option<TransitionKind> {
+        let (before, &LevelSubject { ref structure, local_error, .. }) = (motion.state, level.subject());
         let (kind, phase, after) = if motion.chatter.settles(structure) {
             (TransitionKind::Settling, Phase::FullContact, impact::land::<Q>(structure, &before))
         } else {
@@ -188,7 +188,7 @@ impl<Q: Coordinates> Guard<Q> for Impact {
 
     fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {
         let state = &now.motion.state;
-        state.theta.abs() >= way(ahead, state.theta_dot)
+        state.theta.abs() >= most_change(ahead, state.theta_dot)
     }
 
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {

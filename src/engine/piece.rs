@@ -94,29 +94,29 @@ pub struct Piece<'a, Q: Coordinates = f64> {
     pub(crate) level: &'a dyn Level<Q>,
     /// Polynomial of the piece; none if the engine leapt over the piece.
     pub(crate) arc: Option<&'a Arc<Q>>,
-    pub(crate) room: &'a Room<Q>,
+    pub(crate) room: &'a LeapRoom<Q>,
 }
 
 /// The part of an engine that watchers use when they ask for the polynomials of a leap.
 #[derive(Debug)]
-pub(crate) struct Room<Q> {
+pub(crate) struct LeapRoom<Q> {
     /// Polynomials that they may still ask for.
     pub left: Cell<u64>,
     /// The polynomial that they asked for last.
     arc: RefCell<Option<Box<Arc<Q>>>>,
 }
 
-impl<Q> Default for Room<Q> {
-    fn default() -> Room<Q> {
-        Room { left: Cell::new(0), arc: RefCell::new(None) }
+impl<Q> Default for LeapRoom<Q> {
+    fn default() -> LeapRoom<Q> {
+        LeapRoom { left: Cell::new(0), arc: RefCell::new(None) }
     }
 }
 
 impl<'p, Q: Coordinates> Piece<'p, Q> {
     /// The whole piece as a part.
     #[inline]
-    pub(crate) fn whole(&self) -> Part<'_, Q> {
-        Part { piece: self, start: (0.0, self.before.state) }
+    pub(crate) fn whole(&self) -> PiecePart<'_, Q> {
+        PiecePart { piece: self, start: (0.0, self.before.state) }
     }
 
     /// The motion of the piece as polynomials, in order of time.
@@ -177,17 +177,17 @@ impl<'p, Q: Coordinates> Piece<'p, Q> {
 
 /// A part of a piece.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Part<'a, Q: Coordinates = f64> {
+pub(crate) struct PiecePart<'a, Q: Coordinates = f64> {
     pub piece: &'a Piece<'a, Q>,
     /// Seconds from the piece's start to its own, and the state there.
     pub start: (f64, State<Q>),
 }
 
-impl<'a, Q: Coordinates> Part<'a, Q> {
+impl<'a, Q: Coordinates> PiecePart<'a, Q> {
     /// The part as a step.
     #[inline]
     pub(crate) fn step(&self) -> Start<'a, Q> {
-        let Part { piece, start: (passed, state) } = *self;
+        let PiecePart { piece, start: (passed, state) } = *self;
         piece.level.subject().start(state, &piece.before.dissipators, piece.load.from(passed), piece.duration - passed)
     }
 
@@ -205,7 +205,7 @@ impl<'a, Q: Coordinates> Part<'a, Q> {
     /// Bounds of the magnitudes over this part, with these `loads` at its ends.
     #[inline(always)]
     pub(crate) fn most_under(&self, structure: &Structure, loads: &[Load<Q>; 2]) -> Magnitudes<'a, Q> {
-        let &Part { piece, start: (from, _) } = self;
+        let &PiecePart { piece, start: (from, _) } = self;
         match piece.arc {
             Some(arc) => Expansion { piece, from, arc }.most_under(structure, loads, &piece.end),
             None => {
@@ -217,7 +217,7 @@ impl<'a, Q: Coordinates> Part<'a, Q> {
 
     /// How far the motion of the part leaves the chords between its ends; none where no bound is known.
     pub(crate) fn off_chord(&self) -> Option<OffChord<Q>> {
-        let &Part { piece: &Piece { level, before, arc, ref end, .. }, start: (_, ref start) } = self;
+        let &PiecePart { piece: &Piece { level, before, arc, ref end, .. }, start: (_, ref start) } = self;
         let thetas = [start.theta, end.theta];
         let Some(arc) = arc else {
             let step = self.step();
@@ -246,10 +246,10 @@ impl<'a, Q: Coordinates> Part<'a, Q> {
 pub(crate) struct Arcs<'a, Q: Coordinates = f64> {
     /// Start of the part, s after the start of the piece.
     begin: f64,
-    left: Option<Part<'a, Q>>,
+    left: Option<PiecePart<'a, Q>>,
     /// Of a leap: the polynomial in hand.
     arc: Option<Box<Arc<Q>>>,
-    room: &'a Room<Q>,
+    room: &'a LeapRoom<Q>,
     /// Right-hand-side evaluations that the polynomials took.
     pub evaluations: u64,
 }
@@ -258,19 +258,19 @@ impl<Q: Coordinates> Arcs<'_, Q> {
     /// The motion from where the last one ends on, as far as one polynomial reaches.
     pub(crate) fn next(&mut self) -> Option<Expansion<'_, Q>> {
         let part = self.left.take()?;
-        let Part { piece, start: (from, _) } = part;
+        let PiecePart { piece, start: (from, _) } = part;
         let until = piece.duration;
         if let Some(arc) = piece.arc {
             return Some(Expansion { piece, from, arc });
         }
-        let Room { left, arc: spare } = piece.room;
+        let LeapRoom { left, arc: spare } = piece.room;
         left.set(left.get().checked_sub(1)?);
         let arc = self.arc.get_or_insert_with(|| spare.take().unwrap_or_default());
         piece.level.series(piece.before.phase, &part.step(), arc);
         self.evaluations += arc.order as u64;
         let covered = arc.duration();
         if covered < until - from && from + covered > from {
-            self.left = Some(Part { piece, start: (from + covered, arc.end()) });
+            self.left = Some(PiecePart { piece, start: (from + covered, arc.end()) });
         }
         Some(Expansion { piece, from, arc })
     }
@@ -286,7 +286,7 @@ impl<Q: Coordinates> Drop for Arcs<'_, Q> {
 
 impl<'a, Q: Coordinates> Arcs<'a, Q> {
     /// The part that is left.
-    pub(crate) fn left(&self) -> Option<Part<'a, Q>> {
+    pub(crate) fn left(&self) -> Option<PiecePart<'a, Q>> {
         self.left
     }
 

@@ -1,6 +1,6 @@
 //! One step of a motion in one phase, and the guard that ends it.
 
-use crate::Contact;
+use crate::PressedPoints;
 use crate::levels::level::Level;
 use crate::levels::start::Start;
 use crate::mechanics::arc::Arc;
@@ -15,7 +15,7 @@ pub(crate) struct Step<'a, Q: Coordinates = f64> {
     /// The side about which the structure rocks.
     pub side: Side,
     /// The pressed contact points of the ground.
-    pub contact: Contact,
+    pub contact: PressedPoints,
     pub start: &'a Start<'a, Q>,
     pub arc: &'a Arc<Q>,
     /// The σ up to which no guard is known to close.
@@ -24,7 +24,7 @@ pub(crate) struct Step<'a, Q: Coordinates = f64> {
 
 /// Which of several conditions of a guard closes: a number and a sign, with the meaning that the guard gives them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Way {
+pub(crate) struct Branch {
     pub which: u8,
     pub sign: i8,
 }
@@ -32,17 +32,17 @@ pub(crate) struct Way {
 /// A guard of the present phase that has closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Closed {
-    /// Place of the guard in [`Watched::guards`](crate::engine::phases::Watched::guards).
+    /// Place of the guard in [`Rules::guards`](crate::engine::phases::Watched::guards).
     pub guard: u8,
-    pub way: Way,
+    pub branch: Branch,
 }
 
 /// Part by which the first of two crossings at one instant may come earlier by rounding.
 const SAME: f64 = 1e-14;
 
 /// Takes `crossing` if it comes before the one that is `found`. Of crossings at one instant, the first that is found counts.
-pub(crate) fn see(found: &mut (Crossing, Way), crossing: Crossing, which: usize, sign: i8) {
+pub(crate) fn see(found: &mut (Crossing, Branch), crossing: Crossing, which: usize, sign: i8) {
     if crossing.sigma() < (1.0 - SAME) * found.0.sigma() {
-        *found = (crossing, Way { which: which as u8, sign });
+        *found = (crossing, Branch { which: which as u8, sign });
     }
 }

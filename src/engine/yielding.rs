@@ -1,18 +1,18 @@
 //! Elastoplastic dissipators while the base rocks: when they begin and cease to yield, and the energy that they have taken.
 //!
 //! An elastic dissipator reaches ±F_y at a rotation θ that follows from its e_p. A dissipator ceases to yield when its elongation
-//! turns round, at a zero of θ̇. Its force is then still ±F_y, and yielding resumes only after the elongation moves that way again.
+//! turns round, at a zero of θ̇. Its force is then still ±F_y, and yielding resumes only after the elongation moves that sign again.
 //! The zeros of θ̇ at the start are therefore divided out, like the zeros of θ at an uplift.
 
 use crate::engine::guard::{BAND, Guard};
 use crate::engine::motion::Motion;
 use crate::engine::sample::Sample;
-use crate::engine::step::{Step, Way, see};
+use crate::engine::step::{Branch, Step, see};
 use crate::engine::transition::TransitionKind;
 use crate::levels::level::Level;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::{Dissipators, dampers, levers};
-use crate::mechanics::state::way;
+use crate::mechanics::state::most_change;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{ZERO, evaluate};
 use crate::series::terms::Terms;
@@ -27,40 +27,40 @@ const AT_CONTACT: f64 = 1e-10;
 pub(crate) struct Yielding;
 
 impl<Q: Coordinates> Guard<Q> for Yielding {
-    fn first(&self, &Step { level, side, start, arc, reach, .. }: &Step<Q>) -> (Crossing, Way) {
+    fn first(&self, &Step { level, side, start, arc, reach, .. }: &Step<Q>) -> (Crossing, Branch) {
         let (base, dissipators) = (level.structure().base(), start.dissipators);
         let Ties { k_d, F_y, .. } = base.ties;
-        let mut found = (Crossing::None, Way::default());
+        let mut found = (Crossing::None, Branch::default());
         let theta_dot = arc.used(&arc.theta_dot);
         let Some(zeros) = theta_dot.iter().position(|c| c.is_normal()) else { return found };
         for (j, lever) in moving(base, side) {
-            // positive while the elongation moves that way
-            let moves = |way: f64| Gap::new(&theta_dot[zeros..], (way * lever).signum(), 0.0);
+            // positive while the elongation moves that sign
+            let moves = |sign: f64| Gap::new(&theta_dot[zeros..], (sign * lever).signum(), 0.0);
             match dissipators.yields[j] {
                 0 => {
-                    for way in [1_i8, -1] {
-                        let elongation = dissipators.plastic[j] + f64::from(way) * F_y / k_d;
+                    for sign in [1_i8, -1] {
+                        let elongation = dissipators.plastic[j] + f64::from(sign) * F_y / k_d;
                         let Some(theta) = level.subject().angles.rotation(elongation / lever) else { continue };
-                        let towards = (f64::from(way) * lever).signum();
+                        let towards = (f64::from(sign) * lever).signum();
                         let is_at_contact = theta.abs() <= AT_CONTACT * (F_y / (k_d * lever)).abs();
                         if is_at_contact && towards != side.sign() {
                             continue;
                         }
                         let is_less = Gap::new(arc.used(&arc.theta), -towards, towards * theta);
-                        let moves_back = moves(-f64::from(way));
-                        see(&mut found, first_time_all_closed([is_less, moves_back], reach), j, way);
+                        let moves_back = moves(-f64::from(sign));
+                        see(&mut found, first_time_all_closed([is_less, moves_back], reach), j, sign);
                     }
                 }
-                way => see(&mut found, first_time_all_closed([moves(f64::from(way))], reach), j, 0),
+                sign => see(&mut found, first_time_all_closed([moves(f64::from(sign))], reach), j, 0),
             }
         }
         found
     }
 
-    fn apply(&self, _level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> Option<TransitionKind> {
-        let which = usize::from(way.which);
-        *motion.dissipators.yields.get_mut(which)? = way.sign;
-        if way.sign != 0 {
+    fn apply(&self, _level: &dyn Level<Q>, motion: &mut Motion<Q>, branch: Branch) -> Option<TransitionKind> {
+        let which = usize::from(branch.which);
+        *motion.dissipators.yields.get_mut(which)? = branch.sign;
+        if branch.sign != 0 {
             return Some(TransitionKind::Yielding(which));
         }
         motion.state.theta_dot = 0.0; // the elongation turns round
@@ -69,7 +69,7 @@ impl<Q: Coordinates> Guard<Q> for Yielding {
 
     fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {
         let theta_ddot = now.second().theta_ddot;
-        let changes = [now.motion.state.theta_dot, 2.0 * theta_ddot].map(|rate| way(ahead, rate));
+        let changes = [now.motion.state.theta_dot, 2.0 * theta_ddot].map(|rate| most_change(ahead, rate));
         least_margin(now, changes) > 0.0
     }
 
@@ -92,9 +92,9 @@ fn least_margin<Q: Coordinates>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
     let chord = angles.chord(state.theta, 0.0).length;
     let of = |(j, lever): (usize, f64)| match f64::from(dissipators.yields[j]) {
         0.0 => 1.0 - k_d * ((lever * chord - dissipators.plastic[j]).abs() + lever.abs() * changes[0]) / F_y,
-        way => {
+        sign => {
             let natural = base.p_l * libm::atan(base.tan_alpha_cg);
-            (way * lever.signum() * state.theta_dot - changes[1]) / natural
+            (sign * lever.signum() * state.theta_dot - changes[1]) / natural
         }
     };
     moving(base, side).map(of).fold(1.0, f64::min)

@@ -18,19 +18,19 @@ use crate::{Base, OneMass, Refused, Side, State};
 
 /// The rotation of the base, split into the two modes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Modes {
+pub struct ModalRotations {
     /// Rotation of the rocking mode, rad.
     pub q_r: f64,
     /// Rotation of the vibration mode, rad.
     pub q_u: f64,
 }
 
-impl Modes {
+impl ModalRotations {
     /// Splits the rotation of `state` (Eq 16) of a structure without ties.
-    pub fn of(structure: &OneMass, state: &State) -> Result<Modes, Refused> {
+    pub fn of(structure: &OneMass, state: &State) -> Result<ModalRotations, Refused> {
         check_is_free(structure)?;
         let q_u = -structure.base().p_l * structure.base().p_l / structure.parameters().g * state.u;
-        Ok(Modes { q_r: state.theta - q_u, q_u })
+        Ok(ModalRotations { q_r: state.theta - q_u, q_u })
     }
 }
 
@@ -49,7 +49,7 @@ impl ModalAccelerations {
         let &OneMass { chi, one_minus_chi, omega_u, zeta_u, .. } = structure;
         let &Base { g, tan_alpha_cg, .. } = structure.base();
         let step = side.sign() * g * tan_alpha_cg;
-        let a_r = chi * (g * Modes::of(structure, state)?.q_r - a_g - step);
+        let a_r = chi * (g * ModalRotations::of(structure, state)?.q_r - a_g - step);
         let u_ddot =
             chi / one_minus_chi * step - a_g - 2.0 * zeta_u * omega_u * state.u_dot - omega_u * omega_u * state.u;
         Ok(ModalAccelerations { a_r, a_u: one_minus_chi * u_ddot + a_g })
@@ -77,7 +77,7 @@ mod tests {
         let structure = OneMass::new(Parameters::EVISON).unwrap();
         let &Parameters { m, H, B, g, .. } = structure.parameters();
         for (side, a_g) in [(Side::Right, 2.0), (Side::Left, -15.0)] {
-            let q_r = Modes::of(&structure, &STATE).unwrap().q_r;
+            let q_r = ModalRotations::of(&structure, &STATE).unwrap().q_r;
             let mass = Matrix2::new(1.0, H, H, structure.base().J_P / m);
             let force = Vector2::new(
                 structure.chi * g * q_r - (structure.c_u * STATE.u_dot + structure.k * STATE.u) / m - a_g,

@@ -23,7 +23,7 @@
 //! As the base lifts off, the force drops because uplift leaves out the moment of the displaced weights: of one mass by
 //! 1/(1 + g/(ω_fc² H)) (2e-3 for Evison, 5e-3 for McManus).
 
-use crate::mechanics::instant::Place;
+use crate::mechanics::instant::MassPoint;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
 use crate::numbers::Angle;
 use crate::run::fall::angle_of_no_return;
@@ -158,7 +158,7 @@ impl Pushover {
         let force = 2.0 * constant / (linear + discriminant.sqrt());
         let [u, of_force] = [of_top, [C, A]].map(|[push, weight]| force * cos * push + g * sin * weight);
         let moment = force * (height * cos + (B - of_force) * sin);
-        let delta_t = Place { share: 1.0, height: top, u: s * u }.right(s * B, &theta.turn());
+        let delta_t = MassPoint { share: 1.0, height: top, u: s * u }.right(s * B, &theta.turn());
         Some(Equilibrium { phase, theta, u: s * u, delta_t, force: s * force, moment: s * moment })
     }
 
@@ -208,7 +208,7 @@ mod tests {
     use crate::levels::nonlinear::accelerations;
     use crate::mechanics::load::Load;
     use crate::structure::description::{Damping, Storey};
-    use crate::structure::natural_quantities::Given;
+    use crate::structure::natural_quantities::Numbers;
     use crate::{Ground, OneMass, Parameters, State};
     use approx::assert_relative_eq;
     use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
@@ -298,7 +298,7 @@ mod tests {
     fn three_storeys_are_in_balance() {
         let (m, h) = (Vector3::new(4e4, 4e4, 3e4), Vector3::new(3.5, 7.0, 10.5));
         let [B, m0, P_0, k_t] = [1.5, 2e4, 3e4, 2e5];
-        let base = Given::of(&[("m0", m0), ("J0", 3e4), ("B", B), ("P_0", P_0), ("k_t", k_t)]).unwrap();
+        let base = Numbers::of(&[("m0", m0), ("J0", 3e4), ("B", B), ("P_0", P_0), ("k_t", k_t)]).unwrap();
         let [a, b, c] = [6e6, 5e6, 4e6];
         let storeys: Vec<_> = [a, b, c].iter().zip(m.iter().zip(&h)).map(|(&k, (&m, &h))| Storey { m, h, k }).collect();
         let structure = Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap();

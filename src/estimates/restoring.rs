@@ -46,7 +46,7 @@ mod tests {
     use super::*;
     use crate::mechanics::restraint::centring_moments;
     use crate::run::Ending;
-    use crate::run::fall::{Falling, angle_of_no_return};
+    use crate::run::fall::{FallPeaks, angle_of_no_return};
     use crate::run::record::Record;
     use crate::series::bisection::last_where;
     use crate::{Detail, Ground, OneMass, Parameters, Run, State};
@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(angle_of_no_return(stiff.base()), None);
         let ground = Record::at_rest(60.0);
         let falls = |structure: OneMass, theta_dot: f64| {
-            let mut watch = Falling::since(0.0, &structure.into(), Detail::Auto).watch();
+            let mut watch = FallPeaks::since(0.0, &structure.into(), Detail::Auto).watch();
             let initial = State { theta: 1e-3, theta_dot, ..State::default() };
             let ending = Run { initial, ..Run::new(structure, &ground) }.follow(&mut watch).unwrap().ending;
             (ending == Ending::Overturned, watch.end())

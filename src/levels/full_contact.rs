@@ -4,7 +4,7 @@
 //! ü + 2 ζ_fc ω_fc u̇ + ω_fc² u = −a_g + F_t/m,      θ = θ̇ = 0                                    (1)
 //! ```
 
-use crate::levels::oscillator::{Flow, Kept, Oscillator};
+use crate::levels::oscillator::{Flow, FlowCache, Oscillator};
 use crate::levels::start::{Pace, Start};
 use crate::mechanics::arc::Arc;
 use crate::mechanics::lateral::Coordinates;
@@ -37,12 +37,12 @@ pub(crate) fn series(structure: &OneMass, start: &Start, arc: &mut Arc) {
 #[derive(Clone, Debug)]
 pub(crate) struct ExactContact {
     pub oscillator: Oscillator,
-    flows: Kept<Flow>,
+    flows: FlowCache<Flow>,
 }
 
 impl ExactContact {
     pub(crate) fn new(oscillator: Oscillator) -> ExactContact {
-        ExactContact { oscillator, flows: Kept::new(Flow::default()) }
+        ExactContact { oscillator, flows: FlowCache::new(Flow::default()) }
     }
 
     /// The flow over `duration` (s).

@@ -25,7 +25,7 @@ pub(crate) struct Now<'a, Q = f64> {
 
 /// The structure that a level moves, and how it is moved.
 #[derive(Clone, Debug)]
-pub(crate) struct Subject {
+pub(crate) struct LevelSubject {
     pub structure: Structure,
     /// Truncation error that a step may have.
     pub local_error: f64,
@@ -35,7 +35,7 @@ pub(crate) struct Subject {
     pub angles: Angles,
 }
 
-impl Subject {
+impl LevelSubject {
     /// The step of `interval` (s) from `state` under `load`.
     #[inline]
     pub(crate) fn start<'a, Q: Coordinates>(
@@ -54,7 +54,7 @@ impl Subject {
 /// [liftable](Level::liftable) structure has a fixed base.
 #[allow(private_interfaces)] // the coordinates name the trait, and nobody else can use it
 pub trait Level<Q: Coordinates = f64>: Send + Any {
-    fn subject(&self) -> &Subject;
+    fn subject(&self) -> &LevelSubject;
 
     /// The same level again.
     fn boxed(&self) -> Box<dyn Level<Q>>;
@@ -140,7 +140,7 @@ impl<Q: Coordinates> Debug for dyn Level<Q> + '_ {
 /// The part of `reactions` that the edges of the base carry at the instant `x`: all of it, unless the structure is restrained.
 pub(crate) fn edges<N: Angle, Q: Lateral<N>>(
     x: &Instant<N, Q>,
-    &Subject { is_tied, angles, .. }: &Subject,
+    &LevelSubject { is_tied, angles, .. }: &LevelSubject,
     dissipators: &Dissipators,
     reactions: Reactions<N>,
 ) -> Reactions<N> {

@@ -25,7 +25,7 @@
 //! matrix exponential, kept for the step lengths used last; series serve the steps on which a transition may happen.
 
 use crate::levels::level::ElasticRocking;
-use crate::levels::oscillator::Kept;
+use crate::levels::oscillator::FlowCache;
 use crate::levels::start::{Pace, Start};
 use crate::mechanics::arc::Arc;
 use crate::{Base, OneMass, Side, State, Structure};
@@ -40,11 +40,11 @@ const SHORT: f64 = 0.25;
 const TERMS: u8 = 15;
 
 /// Takes (u, u̇, θ, θ̇, a_g, ȧ_g, s) from the start of a step to the change of the state over it, by columns.
-type Flow = SMatrix<f64, 4, 7>;
+type RockingFlow = SMatrix<f64, 4, 7>;
 
 /// Coefficients of u, u̇, θ, a_g − F_t/m and s in one equation.
 #[derive(Clone, Copy, Debug)]
-struct Row {
+struct Coefficients {
     u: f64,
     u_dot: f64,
     theta: f64,
@@ -60,8 +60,8 @@ struct Row {
 /// ```
 #[derive(Clone, Copy, Debug)]
 struct LinearSystem {
-    u_ddot: Row,
-    theta_ddot: Row,
+    u_ddot: Coefficients,
+    theta_ddot: Coefficients,
 }
 
 /// Exact propagation by a linear system.
@@ -70,7 +70,7 @@ pub(crate) struct LinearRocking {
     pace: Pace,
     system: LinearSystem,
     /// Flows, and the amplification of |θ̈| over the same time.
-    flows: Kept<(Flow, f64)>,
+    flows: FlowCache<(RockingFlow, f64)>,
     /// Circular frequency Ω of u at a constant θ, rad/s.
     omega: f64,
     /// 1/Ω², s².
@@ -87,14 +87,14 @@ impl LinearRocking {
         let &crate::Parameters { H, B, g, .. } = one.parameters();
         let &OneMass { stiffness, damping_u, foundation, gamma, .. } = one;
         let inertia = foundation + B * B;
-        let theta_ddot = Row {
+        let theta_ddot = Coefficients {
             u: (H * stiffness + g) / inertia,
             u_dot: H * damping_u / inertia,
             theta: 0.0,
             a_top: 0.0,
             side: -gamma * g * B / inertia,
         };
-        let u_ddot = Row {
+        let u_ddot = Coefficients {
             u: -stiffness - H * theta_ddot.u,
             u_dot: -damping_u - H * theta_ddot.u_dot,
             theta: g,
@@ -110,9 +110,9 @@ impl LinearRocking {
         let &Base { g, p_l, tan_alpha_cg, .. } = one.base();
         let (side, rocking) = (chi / one_minus_chi * g * tan_alpha_cg, p_l * p_l);
         let [u, u_dot] = [-omega_u * omega_u, -2.0 * zeta_u * omega_u];
-        let u_ddot = Row { u, u_dot, theta: 0.0, a_top: -1.0, side };
+        let u_ddot = Coefficients { u, u_dot, theta: 0.0, a_top: -1.0, side };
         let shape = rocking / g; // −q_u/u
-        let theta_ddot = Row {
+        let theta_ddot = Coefficients {
             u: shape * (rocking - u),
             u_dot: -shape * u_dot,
             theta: rocking,
@@ -126,7 +126,7 @@ impl LinearRocking {
         let omega = (-system.u_ddot.u).sqrt();
         LinearRocking {
             pace: Pace::rocking(one),
-            flows: Kept::new((Flow::zeros(), 1.0)),
+            flows: FlowCache::new((RockingFlow::zeros(), 1.0)),
             omega,
             compliance: 1.0 / (omega * omega),
             turning_per_speed: system.theta_ddot.u / omega + system.theta_ddot.u_dot,
@@ -150,7 +150,7 @@ impl LinearRocking {
     /// With f = U_θ θ − a_top + s U_s, the energy of the vibration about f/Ω² grows only by the change of f. The energy bounds the
     /// speed v, and v bounds |θ̈|. The change of f depends in turn on θ̈.
     #[inline(always)]
-    fn swing(&self, side: Side, start: &Start, amplification: f64) -> Swing {
+    fn swing(&self, side: Side, start: &Start, amplification: f64) -> LeapBounds {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
         let LinearSystem { u_ddot, theta_ddot } = &self.system;
         let s = side.sign();
@@ -160,22 +160,22 @@ impl LinearRocking {
             (u_dot * u_dot + swing * swing).sqrt() + h * h * (a_top.slope.abs() + u_ddot.theta * theta_dot.abs());
         let steady = (theta_ddot.u * following + theta_ddot.theta * theta + s * theta_ddot.side).abs()
             + theta_ddot.theta * h * theta_dot.abs();
-        Swing { following, speed, turning: (steady + self.turning_per_speed * speed) * amplification }
+        LeapBounds { following, speed, turning: (steady + self.turning_per_speed * speed) * amplification }
     }
 
     /// How far θ can leave the cubic with its values and slopes at both ends of a leap from `start` that swings so: |θ⁗| h⁴/384.
     #[inline(never)] // few leaps ask
-    fn off_cubic(&self, start: &Start, swing: &Swing) -> f64 {
-        let (Row { u, u_dot, theta, .. }, (_, [u_ddot, u_dddot, theta_ddot])) =
+    fn off_cubic(&self, start: &Start, swing: &LeapBounds) -> f64 {
+        let (Coefficients { u, u_dot, theta, .. }, (_, [u_ddot, u_dddot, theta_ddot])) =
             (&self.system.theta_ddot, self.bounds_of(start, swing));
         let fourth = u.abs() * u_ddot + u_dot.abs() * u_dddot + theta.abs() * theta_ddot;
         fourth * start.interval.powi(4) / 384.0
     }
 
     /// Bounds of the magnitudes of the state on a leap from `start` that swings so, and of |ü|, |u⃛| and |θ̈|.
-    fn bounds_of(&self, start: &Start, swing: &Swing) -> (State, [f64; 3]) {
+    fn bounds_of(&self, start: &Start, swing: &LeapBounds) -> (State, [f64; 3]) {
         let &Start { state: State { theta, theta_dot, .. }, a_top, interval: h, .. } = start;
-        let &Swing { following, speed, turning } = swing;
+        let &LeapBounds { following, speed, turning } = swing;
         let u_ddot = &self.system.u_ddot;
         let speed = speed + u_ddot.theta * h * h * h / 2.0 * turning;
         let theta_dot = theta_dot.abs() + turning * h;
@@ -188,7 +188,7 @@ impl LinearRocking {
 }
 
 /// Bounds of a leap, from [`LinearRocking::swing`].
-struct Swing {
+struct LeapBounds {
     following: f64,
     /// But for what θ̈ adds.
     speed: f64,
@@ -267,7 +267,7 @@ impl ElasticRocking for LinearRocking {
 /// ```text
 /// E(h) = A h (1 + A h/2 (1 + A h/3 (…))),      E(2 h) = 2 E(h) + E(h)²
 /// ```
-fn flow(system: &LinearSystem, rate: f64, duration: f64) -> Flow {
+fn flow(system: &LinearSystem, rate: f64, duration: f64) -> RockingFlow {
     let mut rates = SMatrix::<f64, 7, 7>::zeros();
     rates[(0, 1)] = 1.0;
     rates[(2, 3)] = 1.0;

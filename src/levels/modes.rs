@@ -17,7 +17,7 @@
 
 use crate::levels::detail::Detail;
 use crate::levels::full_contact::{self, ExactContact};
-use crate::levels::level::{Level, Subject};
+use crate::levels::level::{Level, LevelSubject};
 use crate::levels::nonlinear::{Factors, LEAST_INERTIA, NO_ROW, products, row};
 use crate::levels::oscillator::Oscillator;
 use crate::levels::start::{Start, Truncation};
@@ -36,7 +36,7 @@ use wide::f64x4;
 /// Motion of a base with modes.
 #[derive(Clone, Debug)]
 pub(crate) struct ManyModes<Q: Coordinates> {
-    subject: Subject,
+    subject: LevelSubject,
     detail: Detail,
     pub base: Base,
     modes: Vec<Mode>,
@@ -61,7 +61,7 @@ pub(crate) struct ManyModes<Q: Coordinates> {
 /// Room for the series of one step.
 #[derive(Clone, Debug)]
 struct Scratch {
-    fours: Vec<Four>,
+    fours: Vec<ModeGroup>,
     /// Row i of the left factors, and of the right ones counted from their end, of six products of order i ("next": of order i + 1):
     ///
     /// ```text
@@ -70,7 +70,7 @@ struct Scratch {
     /// ```
     factors: [Factors; 2],
     /// θ̇² for the modes of a four, from the end.
-    square: FourSeries,
+    square: GroupSeries,
 }
 
 /// Numbers of modes side by side: of four, or of one.
@@ -93,7 +93,7 @@ pub(crate) trait Abreast:
     const COUNT: usize;
 
     /// Modes of a structure: an array if their number is known, which spares loops.
-    type Groups: AsMut<[Four<Self>]> + Clone + Debug + Send;
+    type Groups: AsMut<[ModeGroup<Self>]> + Clone + Debug + Send;
 
     fn groups(modes: &[Mode]) -> Self::Groups;
 
@@ -109,10 +109,10 @@ pub(crate) trait Abreast:
 impl Abreast for f64 {
     const COUNT: usize = 1;
 
-    type Groups = [Four<f64>; 1];
+    type Groups = [ModeGroup<f64>; 1];
 
-    fn groups(modes: &[Mode]) -> [Four<f64>; 1] {
-        [Four::new((0, modes))]
+    fn groups(modes: &[Mode]) -> [ModeGroup<f64>; 1] {
+        [ModeGroup::new((0, modes))]
     }
 
     #[inline(always)]
@@ -134,10 +134,10 @@ impl Abreast for f64 {
 impl Abreast for f64x4 {
     const COUNT: usize = 4;
 
-    type Groups = Vec<Four>;
+    type Groups = Vec<ModeGroup>;
 
-    fn groups(modes: &[Mode]) -> Vec<Four> {
-        modes.chunks(4).enumerate().map(Four::new).collect()
+    fn groups(modes: &[Mode]) -> Vec<ModeGroup> {
+        modes.chunks(4).enumerate().map(ModeGroup::new).collect()
     }
 
     #[inline(always)]
@@ -157,11 +157,11 @@ impl Abreast for f64x4 {
 }
 
 /// Coefficients for modes side by side.
-pub(super) type FourSeries<V = f64x4> = [V; MAX_ORDER + 1];
+pub(super) type GroupSeries<V = f64x4> = [V; MAX_ORDER + 1];
 
 /// Four modes side by side, or one; modes that are none have no mass and stay at rest.
 #[derive(Clone, Debug)]
-pub(crate) struct Four<V = f64x4> {
+pub(crate) struct ModeGroup<V = f64x4> {
     /// The number of the first mode.
     pub first: usize,
     pub mass: V,
@@ -180,15 +180,15 @@ pub(crate) struct Four<V = f64x4> {
     /// e + w θ̇² of the newest order.
     pub resistance: V,
     /// w.
-    pub lever: FourSeries<V>,
+    pub lever: GroupSeries<V>,
     /// μ w, from the end.
-    heavy: FourSeries<V>,
+    heavy: GroupSeries<V>,
 }
 
-impl<V: Abreast> Four<V> {
-    pub fn new((place, modes): (usize, &[Mode])) -> Four<V> {
+impl<V: Abreast> ModeGroup<V> {
+    pub fn new((place, modes): (usize, &[Mode])) -> ModeGroup<V> {
         let both = |of: fn(&Mode) -> f64| V::each(|i| modes.get(i).map_or(0.0, of));
-        Four {
+        ModeGroup {
             first: V::COUNT * place,
             mass: both(|mode| mode.mass),
             share: both(|mode| mode.share),
@@ -223,12 +223,12 @@ impl<V: Abreast> Four<V> {
     /// Puts −u in order `k` of w, and returns that order of μ w² and μ w.
     #[inline(always)]
     pub fn next(&mut self, k: usize, per: f64) -> [V; 2] {
-        let Four { lever, heavy, .. } = self;
+        let ModeGroup { lever, heavy, .. } = self;
         lever[k] = self.motion[1] * -per;
         heavy[MAX_ORDER - k] = self.mass * lever[k];
         // both halves of Σ w_i μ w_{k−i} are the same
         let half = k.div_ceil(2);
-        let mut square = Four::product(&lever[..half], &heavy[MAX_ORDER - k..]);
+        let mut square = ModeGroup::product(&lever[..half], &heavy[MAX_ORDER - k..]);
         square += square;
         if k.is_multiple_of(2) {
             square += lever[half] * heavy[MAX_ORDER - half];
@@ -239,7 +239,7 @@ impl<V: Abreast> Four<V> {
 
 impl<Q: Coordinates> ManyModes<Q> {
     /// The structure of `subject` at a level of this `detail`; at the level `rigid` the one mass turns rigidly with the base.
-    pub(crate) fn new(subject: Subject, detail: Detail) -> ManyModes<Q> {
+    pub(crate) fn new(subject: LevelSubject, detail: Detail) -> ManyModes<Q> {
         let structure = &subject.structure;
         let (mut base, mut modes, mut vibration) = (*structure.base(), Q::modes(structure), structure.vibration());
         let mut rigid = None;
@@ -374,9 +374,9 @@ impl<Q: Coordinates> ManyModes<Q> {
             [(a_g.value, a_top.value), (a_g.slope, a_top.slope)].map(|(a_g, a_top)| self.standing().rest(a_g, &a_top));
         is_pushed |= [on_rest, rest_slope] != [[0.0; 2]; 2];
         // Σ φᵀF w + sB F_res
-        let pushes = |fours: &[Four], k: usize| {
+        let pushes = |fours: &[ModeGroup], k: usize| {
             let mut sum = f64x4::ZERO;
-            for Four { mass, push, lever, .. } in fours {
+            for ModeGroup { mass, push, lever, .. } in fours {
                 sum += mass * (push[0] * lever[k] + if k > 0 { push[1] * lever[k - 1] } else { f64x4::ZERO });
             }
             sum.reduce_add() + pivot * [on_rest[0], rest_slope[0] * span].get(k).unwrap_or(&0.0)
@@ -404,7 +404,7 @@ impl<Q: Coordinates> ManyModes<Q> {
             for four in fours.iter_mut() {
                 let [u, u_dot] = four.motion;
                 let elastic = four.stiffness * u + four.damping * c_ratio * u_dot;
-                four.resistance = Four::product(&four.lever[..k], &square[MAX_ORDER - n..]) + elastic;
+                four.resistance = ModeGroup::product(&four.lever[..k], &square[MAX_ORDER - n..]) + elastic;
                 moment += four.arm * four.resistance;
             }
             let mut moment = moment.reduce_add() - weight_moment + push_moment + S_res * fall;
@@ -466,7 +466,7 @@ impl<Q: Coordinates> ManyModes<Q> {
 
     /// The moment of the ties about `side` as a series, if there are ties.
     fn ties(&self, side: Side, start: &Start<Q>) -> Option<MomentSeries> {
-        let &Subject { is_tied, angles, .. } = &self.subject;
+        let &LevelSubject { is_tied, angles, .. } = &self.subject;
         is_tied.then(|| Restraint::about(&self.base, side, start.dissipators).series(angles, start.state.theta))
     }
 
@@ -524,7 +524,7 @@ impl<Q: Coordinates> ManyModes<Q> {
 }
 
 impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
-    fn subject(&self) -> &Subject {
+    fn subject(&self) -> &LevelSubject {
         &self.subject
     }
 
@@ -592,7 +592,7 @@ mod tests {
 
     fn level(frame: &Structure, detail: Detail) -> ManyModes<Modes> {
         let angles = detail.angles();
-        ManyModes::new(Subject { structure: frame.clone(), local_error: 1e-16, is_tied: true, angles }, detail)
+        ManyModes::new(LevelSubject { structure: frame.clone(), local_error: 1e-16, is_tied: true, angles }, detail)
     }
 
     /// The distance from uplift is the larger of what (M3) misses and of −s D θ̈, by the equations of rocking, under all loads.

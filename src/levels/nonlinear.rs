@@ -83,15 +83,15 @@ pub fn accelerations(
 pub(crate) const LEAST_INERTIA: f64 = 1e-6;
 
 /// One order of the factors of six products.
-pub(super) type Row = [f64x2; 3];
+pub(super) type SixRow = [f64x2; 3];
 
-pub(super) const NO_ROW: Row = [f64x2::ZERO; 3];
+pub(super) const NO_ROW: SixRow = [f64x2::ZERO; 3];
 
 /// Factors of six products, one row per order.
-pub(super) type Factors = [Row; MAX_ORDER + 1];
+pub(super) type Factors = [SixRow; MAX_ORDER + 1];
 
 #[inline(always)]
-pub(super) fn row(columns: [f64; 6]) -> Row {
+pub(super) fn row(columns: [f64; 6]) -> SixRow {
     [f64x2::new([columns[0], columns[1]]), f64x2::new([columns[2], columns[3]]), f64x2::new([columns[4], columns[5]])]
 }
 
@@ -108,7 +108,7 @@ pub(super) fn add_product<const FIRST: usize, const ALL: usize, V: Copy + Mul<Ou
 
 /// Coefficient `n` of the products in each column of the first `PAIRS` pairs: six Cauchy products at once.
 #[inline(always)]
-pub(super) fn products<const PAIRS: usize>(a: &Factors, b: &Factors, newest: (&Row, &Row), n: usize) -> [f64; 6] {
+pub(super) fn products<const PAIRS: usize>(a: &Factors, b: &Factors, newest: (&SixRow, &SixRow), n: usize) -> [f64; 6] {
     let mut sum = NO_ROW;
     add_each_product!(add_product::<PAIRS, 3, _>, &mut sum, a, b, newest, n);
     let [first, second, third] = sum.map(f64x2::to_array);
@@ -136,21 +136,21 @@ pub(crate) trait Expanded: Real {
 }
 
 impl Expanded for f64 {
-    type Left = Row;
-    type Right = Row;
+    type Left = SixRow;
+    type Right = SixRow;
 
     #[inline(always)]
-    fn left(turning: f64, lever_turning: f64, lever: f64) -> Row {
+    fn left(turning: f64, lever_turning: f64, lever: f64) -> SixRow {
         row([turning, turning, turning, lever_turning, lever_turning, lever])
     }
 
     #[inline(always)]
-    fn right(cos: f64, sin: f64, next_lever: f64, turning: f64, weight: f64) -> Row {
+    fn right(cos: f64, sin: f64, next_lever: f64, turning: f64, weight: f64) -> SixRow {
         row([cos, sin, next_lever, next_lever, turning, weight])
     }
 
     #[inline(always)]
-    fn products(left: &Factors, right: &Factors, newest: (&Row, &Row), n: usize) -> [f64; 6] {
+    fn products(left: &Factors, right: &Factors, newest: (&SixRow, &SixRow), n: usize) -> [f64; 6] {
         products::<3>(left, right, newest, n)
     }
 }

@@ -17,8 +17,8 @@
 //! | −E   m_t − m* sin² θ    | | γ |
 //! ```
 
-use crate::levels::level::{Level, Subject};
-use crate::levels::modes::{Abreast, Four, FourSeries};
+use crate::levels::level::{Level, LevelSubject};
+use crate::levels::modes::{Abreast, GroupSeries, ModeGroup};
 use crate::levels::nonlinear::add_product;
 use crate::levels::start::{Start, Truncation};
 use crate::mechanics::arc::Arc;
@@ -28,7 +28,7 @@ use crate::mechanics::restraint::{Dissipators, ties};
 use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER, add_each_product};
 use crate::structure::ground::Footing;
 use crate::structure::mode::Modes;
-use crate::{Base, Contact, Foundation, Phase, State};
+use crate::{Base, Foundation, Phase, PressedPoints, State};
 use std::cell::RefCell;
 use wide::{f64x2, f64x4};
 
@@ -38,7 +38,7 @@ const AT_REST: f64 = 0.9;
 /// A structure on ground that gives.
 #[derive(Clone, Debug)]
 pub(crate) struct OnGround<V: Abreast> {
-    subject: Subject,
+    subject: LevelSubject,
     /// The longest span of a series, s.
     longest_span: f64,
     /// The lowest frequency, rad/s, and the radius of gyration √(J_P/m_t), m.
@@ -46,17 +46,17 @@ pub(crate) struct OnGround<V: Abreast> {
     radius: f64,
     /// Energy above rest below which no point leaves the ground, J.
     least_lift: f64,
-    scratch: RefCell<Box<Scratch<V>>>,
+    scratch: RefCell<Box<GroundScratch<V>>>,
     /// Room for the series of which only the first terms count.
     first: RefCell<Box<Arc<Modes>>>,
 }
 
 /// Two rows of four factors of an order.
-type Row = [f64x4; 2];
+type EightRow = [f64x4; 2];
 
 /// Room for the series of one step.
 #[derive(Clone, Debug)]
-struct Scratch<V: Abreast> {
+struct GroundScratch<V: Abreast> {
     fours: V::Groups,
     /// Row i of the left factors, and row j of the right ones counted from their end, of eight products of order i + j:
     ///
@@ -64,19 +64,19 @@ struct Scratch<V: Abreast> {
     /// left   θ̇, θ̇, θ̇, μ of i + 1                  from i = 1 on   γ of i − 1, γ of i − 1, μ, cos θ
     /// right  cos θ, sin θ, Σ m u², sin θ of j + 1                  sin θ of j + 1, cos θ of j + 1, G, Σ ξ N
     /// ```
-    left: [Row; MAX_ORDER + 1],
-    right: [Row; MAX_ORDER + 1],
+    left: [EightRow; MAX_ORDER + 1],
+    right: [EightRow; MAX_ORDER + 1],
     /// θ̇, the rate at the middle of the pressed dashpots, and θ̇ cos θ, to be squared.
     squared: [f64x4; MAX_ORDER + 1],
     /// Σ u φᵀF, if there are forces.
     pushed: [f64; MAX_ORDER + 1],
     /// θ̇² for the modes of a four, from the end.
-    square: FourSeries<V>,
+    square: GroupSeries<V>,
 }
 
 impl<V: Abreast> OnGround<V> {
     /// The structure of `subject`, which stands on ground that gives.
-    pub(crate) fn new(subject: Subject) -> OnGround<V> {
+    pub(crate) fn new(subject: LevelSubject) -> OnGround<V> {
         let structure = &subject.structure;
         let (base, body, modes) = (structure.base(), structure.body(), structure.modes());
         let foundation = structure.ground();
@@ -86,7 +86,7 @@ impl<V: Abreast> OnGround<V> {
             lowest: frequencies[0],
             radius: (base.J_P / base.m_t).sqrt(),
             least_lift: foundation.least_lift(base, body, modes),
-            scratch: RefCell::new(Box::new(Scratch {
+            scratch: RefCell::new(Box::new(GroundScratch {
                 fours: V::groups(modes),
                 left: [[f64x4::ZERO; 2]; MAX_ORDER + 1],
                 right: [[f64x4::ZERO; 2]; MAX_ORDER + 1],
@@ -119,12 +119,12 @@ impl<V: Abreast> OnGround<V> {
     }
 
     /// Writes the motion with these pressed points into `arc` (F4–F7).
-    fn motion(&self, contact: Contact, start: &Start<Modes>, arc: &mut Arc<Modes>) {
+    fn motion(&self, contact: PressedPoints, start: &Start<Modes>, arc: &mut Arc<Modes>) {
         let Start { state, a_g, a_top, a_v, .. } = start;
         let structure = &self.subject.structure;
         let &Base { m_t, J0, S_res, g, .. } = structure.base();
         let (under, modes) = (structure.ground(), structure.modes().len());
-        let &Foundation { ref points, rest, .. } = under;
+        let &Foundation { ref points, y_s, .. } = under;
         let span = start.interval.min(self.longest_span);
         // Σ N = push − k y + k ξ sin θ − c ẏ + c ξ θ̇ cos θ, and Σ ξ N
         let (mut k, mut taken, mut push) = ([0.0; 3], [0.0; 3], [0.0; 2]);
@@ -136,7 +136,7 @@ impl<V: Abreast> OnGround<V> {
         }
         let mut c = taken;
         if self.subject.is_tied {
-            for tie in ties(structure.base(), start.dissipators, rest, contact.is_slack) {
+            for tie in ties(structure.base(), start.dissipators, y_s, contact.is_slack) {
                 moments(&mut k, tie.lever, tie.stiffness);
                 moments(&mut c, tie.lever, tie.damping);
                 push = [push[0] - tie.force, push[1] - tie.lever * tie.force];
@@ -148,7 +148,7 @@ impl<V: Abreast> OnGround<V> {
         // the power of the dashpots is c (ẏ − lever θ̇ cos θ)² and what is left for (θ̇ cos θ)²
         let lever = if taken[0] > 0.0 { taken[1] / taken[0] } else { 0.0 };
         let left_for_turning = taken[2] - lever * taken[1];
-        let Scratch { fours, left, right, squared, pushed, square } = &mut **self.scratch.borrow_mut();
+        let GroundScratch { fours, left, right, squared, pushed, square } = &mut **self.scratch.borrow_mut();
         let fours = fours.as_mut();
         let (mut inertia, mut offset, mut carried, mut is_pushed) = (V::default(), V::default(), V::default(), false);
         for four in fours.iter_mut() {
@@ -217,7 +217,7 @@ impl<V: Abreast> OnGround<V> {
             for four in fours.iter_mut() {
                 let [u, u_dot] = four.motion;
                 let elastic = four.stiffness * u + four.damping * u_dot;
-                four.resistance = Four::product(&four.lever[..order], &square[MAX_ORDER - n..]) + elastic;
+                four.resistance = ModeGroup::product(&four.lever[..order], &square[MAX_ORDER - n..]) + elastic;
                 moment += four.arm * four.resistance;
                 four.resistance = four.share * fall - four.resistance;
                 if is_pushed {
@@ -261,7 +261,7 @@ impl<V: Abreast> OnGround<V> {
 
 impl<V: Abreast> Level<Modes> for OnGround<V> {
     #[inline(always)]
-    fn subject(&self) -> &Subject {
+    fn subject(&self) -> &LevelSubject {
         &self.subject
     }
 
@@ -293,8 +293,8 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
     fn stays_down(&self, state: &State<Modes>, dissipators: &Dissipators) -> bool {
         let structure = &self.subject.structure;
         let (ground, base, still) = (structure.ground(), structure.base(), Modes::parts(structure, 0.0));
-        let rest = ground.begin(&State { u: still, u_dot: still, theta: 0.0, theta_dot: 0.0 }, base);
+        let resting = ground.begin(&State { u: still, u_dot: still, theta: 0.0, theta_dot: 0.0 }, base);
         let of = |state: &State<Modes>| energy(structure, ground.contact(state, base), state, dissipators);
-        of(state) - of(&rest) < AT_REST * self.least_lift
+        of(state) - of(&resting) < AT_REST * self.least_lift
     }
 }

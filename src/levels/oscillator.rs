@@ -166,14 +166,14 @@ const KEPT: usize = 16;
 /// The flows used last, by the exact length of time. A flow that is not kept is computed again, so that results do not depend on
 /// which flows are kept.
 #[derive(Clone, Debug)]
-pub(crate) struct Kept<Flow> {
+pub(crate) struct FlowCache<Flow> {
     flows: RefCell<[(f64, Flow); KEPT]>,
 }
 
-impl<Flow: Copy> Kept<Flow> {
+impl<Flow: Copy> FlowCache<Flow> {
     /// Nothing kept yet; `unused` fills the places.
-    pub(crate) fn new(unused: Flow) -> Kept<Flow> {
-        Kept { flows: RefCell::new([(f64::NAN, unused); KEPT]) }
+    pub(crate) fn new(unused: Flow) -> FlowCache<Flow> {
+        FlowCache { flows: RefCell::new([(f64::NAN, unused); KEPT]) }
     }
 
     /// The flow over `duration` (s), by `compute` where it is not kept.

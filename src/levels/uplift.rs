@@ -34,7 +34,7 @@ use crate::levels::start::Start;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::{Dissipators, Restraint};
-use crate::mechanics::state::way;
+use crate::mechanics::state::most_change;
 use crate::numbers::Number;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::ZERO;
@@ -182,7 +182,7 @@ impl<'a> Liftable<'a> {
     /// rigidly may lift the base at once.
     pub(crate) fn stays_for<Q: Coordinates>(&self, start: &Start<Q>) -> bool {
         let Start { state, interval, .. } = start;
-        let most = |j: usize| state.u.of(j).abs() + way(*interval, state.u_dot.of(j));
+        let most = |j: usize| state.u.of(j).abs() + most_change(*interval, state.u_dot.of(j));
         self.base.S_res == 0.0 && self.most_springs(|j, _| most(j)) < self.least_hold(start)
     }
 

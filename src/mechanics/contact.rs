@@ -4,14 +4,14 @@ use crate::mechanics::energy::mechanical;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::restraint::{self, Dissipators, Tie, places};
-use crate::structure::ground::{Footing, Point};
+use crate::structure::ground::{ContactPoint, Footing};
 use crate::structure::mode::Modes;
-use crate::{Base, Contact, Foundation, Load, Phase, State, Structure, Ties};
+use crate::{Base, Foundation, Load, Phase, PressedPoints, State, Structure, Ties};
 
 /// min(−e, f/k) of each point, m: positive if the point is pressed.
 pub(crate) fn margins<Q: Coordinates>(foundation: &Foundation, state: &State<Q>) -> impl Iterator<Item = f64> {
     let footing = [state.u, state.u_dot].map(|q| q.footing(foundation));
-    foundation.points.iter().map(move |&Point { xi, k, c }| {
+    foundation.points.iter().map(move |&ContactPoint { xi, k, c }| {
         let [e, rate] = footing.map(|of| of.height(xi));
         (-e).min(-(e + c / k * rate))
     })
@@ -22,7 +22,7 @@ impl Foundation {
     /// springs start without a rate of their sum.
     pub(crate) fn begin<Q: Coordinates>(&self, state: &State<Q>, base: &Base) -> State<Q> {
         let (sin, cos) = libm::sincos(state.theta);
-        let [y, slope] = if sin == 0.0 { [self.rest, 0.0] } else { self.held_at(sin, base) };
+        let [y, slope] = if sin == 0.0 { [self.y_s, 0.0] } else { self.held_at(sin, base) };
         let (mut begun, turning) = (*state, state.theta_dot * cos);
         begun.u.set_footing(self, Footing { y, sin, taken: 0.0 });
         begun.u_dot.set_footing(self, Footing { y: slope * turning, sin: turning, taken: 0.0 });
@@ -30,17 +30,17 @@ impl Foundation {
     }
 
     /// The points that carry the base in `state`.
-    pub(crate) fn contact<Q: Coordinates>(&self, state: &State<Q>, base: &Base) -> Contact {
+    pub(crate) fn contact<Q: Coordinates>(&self, state: &State<Q>, base: &Base) -> PressedPoints {
         let pressed = margins(self, state).enumerate().map(|(i, margin)| u32::from(margin > 0.0) << i).sum();
         let Ties { P_0, k_t, .. } = base.ties;
-        let is_slack = k_t > 0.0 && P_0 + k_t * (state.u.footing(self).y - self.rest) < 0.0;
-        Contact { pressed, points: self.points.len() as u8, is_slack }
+        let is_slack = k_t > 0.0 && P_0 + k_t * (state.u.footing(self).y - self.y_s) < 0.0;
+        PressedPoints { pressed, points: self.points.len() as u8, is_slack }
     }
 
     /// The dissipators of a structure that was moved slowly to `state`.
     pub(crate) fn moved<Q: Coordinates>(&self, state: &State<Q>, base: &Base) -> Dissipators {
         let Footing { y, sin, .. } = state.u.footing(self);
-        let moved = Dissipators::NEW.moved_to(base, |j| y - self.rest - places(base)[j] * sin);
+        let moved = Dissipators::NEW.moved_to(base, |j| y - self.y_s - places(base)[j] * sin);
         Dissipators { hysteretic: 0.0, ..moved }
     }
 }
@@ -53,19 +53,19 @@ impl Foundation {
 /// ```
 ///
 /// A slack tendon has −P_0²/(2 k_t).
-pub fn energy(structure: &Structure, contact: Contact, state: &State<Modes>, dissipators: &Dissipators) -> f64 {
+pub fn energy(structure: &Structure, contact: PressedPoints, state: &State<Modes>, dissipators: &Dissipators) -> f64 {
     let x = Instant::<f64, Modes>::of(structure, Phase::OnGround(contact), state, Load::NONE);
-    let Some(ground @ Foundation { points, rest, .. }) = structure.foundation() else { return mechanical(&x) };
+    let Some(ground @ Foundation { points, y_s, .. }) = structure.foundation() else { return mechanical(&x) };
     let (&Base { m_t, g, ties, .. }, S_1) = (structure.base(), structure.body().S_1);
     let [offset, rate] = [&x.u, &x.u_dot].map(|of| Modes::sum(structure, |j, mode| of.of(j) * mode.gamma));
     let (y, y_dot, turn) = (state.u.footing(ground).y, state.u_dot.footing(ground).y, x.turn);
     let across = turn.sin * (rate + S_1 * x.theta_dot) + offset * x.theta_dot * turn.cos;
     let pressed = points.iter().enumerate().filter(|(i, _)| contact.is_pressed(*i));
     let of_points: f64 = pressed.map(|(_, point)| 0.5 * point.k * (y - point.xi * turn.sin).powi(2)).sum();
-    let [_, pair @ ..] = restraint::ties(structure.base(), dissipators, *rest, contact.is_slack);
+    let [_, pair @ ..] = restraint::ties(structure.base(), dissipators, *y_s, contact.is_slack);
     let pulled = |tie: &Tie| (tie.force + tie.stiffness * (y - tie.lever * turn.sin)).powi(2) / (2.0 * ties.k_d);
     let of_pair: f64 = if ties.k_d > 0.0 { pair.iter().map(pulled).sum() } else { 0.0 };
-    let e = if contact.is_slack { -ties.P_0 / ties.k_t } else { y - rest };
+    let e = if contact.is_slack { -ties.P_0 / ties.k_t } else { y - y_s };
     let of_tendon = e * (ties.P_0 + 0.5 * ties.k_t * e);
     mechanical(&x) + y_dot * (0.5 * m_t * y_dot - across) + m_t * g * y + of_points + of_tendon + of_pair
 }

@@ -5,7 +5,7 @@ use crate::mechanics::load::{LinearLoad, Load};
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
 use crate::structure::ground::Footing;
-use crate::{Base, Contact, Foundation, Mode, Phase, State, Structure};
+use crate::{Base, Foundation, Mode, Phase, PressedPoints, State, Structure};
 
 /// The structure at an instant, with lateral coordinates `Q`.
 #[derive(Clone, Copy, Debug)]
@@ -14,7 +14,7 @@ pub(crate) struct Instant<'a, N: Number, Q: Lateral<N> = N> {
     /// s: +1 about the right pivot, −1 about the left one; 0 on ground that gives.
     pub s: f64,
     /// The pressed contact points of the ground.
-    pub contact: Contact,
+    pub contact: PressedPoints,
     /// Viscous damping as a fraction of the damping in full contact.
     pub damping: f64,
     /// u, m.
@@ -47,7 +47,7 @@ pub(crate) struct Second<N, Q = N> {
 
 /// A place on the structure: a mass, or what stands for it in a sum over the modes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place<N> {
+pub(crate) struct MassPoint<N> {
     /// Part that the place takes in a translation of the base; 1 of a mass.
     pub share: f64,
     /// Height above the base, m.
@@ -71,7 +71,7 @@ impl<'a, Q: Coordinates> Instant<'a, f64, Q> {
         let &State { u, u_dot, theta, theta_dot } = state;
         let Load { a_g, F_t, a_v } = load;
         let (s, damping, turn) = (phase.properties().pivot, structure.base().damping(phase), theta.turn());
-        let contact = if Q::IS_ONE { Contact::default() } else { phase.contact() };
+        let contact = if Q::IS_ONE { PressedPoints::default() } else { phase.contact() };
         Instant { structure, s, contact, damping, u, u_dot, theta, theta_dot, theta_ddot: 0.0, turn, a_g, F_t, a_v }
     }
 }
@@ -131,12 +131,12 @@ impl<N: Number, Q: Lateral<N>> Instant<'_, N, Q> {
 
     /// The place that stands for mode `j`.
     #[inline(always)]
-    pub(crate) fn place(&self, j: usize, mode: &Mode) -> Place<N> {
-        Place { share: mode.share, height: mode.height, u: self.u.of(j) }
+    pub(crate) fn place(&self, j: usize, mode: &Mode) -> MassPoint<N> {
+        MassPoint { share: mode.share, height: mode.height, u: self.u.of(j) }
     }
 }
 
-impl<N: Number> Place<N> {
+impl<N: Number> MassPoint<N> {
     /// w = sB − u, m: distance from the plane of the pivot, which is at sB.
     #[inline(always)]
     pub(crate) fn lever(&self, pivot: f64) -> N {

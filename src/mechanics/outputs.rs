@@ -12,7 +12,7 @@
 //! A formula reads the motion in numbers of any kind: at an instant, as bounds, or as series in time over a polynomial of the
 //! motion. All else that is known of an output is its row in `outputs!`. Columns, peaks, bounds and variables follow from both.
 
-use crate::mechanics::instant::{Instant, Place, uplift};
+use crate::mechanics::instant::{Instant, MassPoint, uplift};
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::Load;
 use crate::numbers::{Number, Ordered};
@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 /// The part of a structure that has an output, on ground that gives but for the first two. Contact points are shown if there are more than the outer ones, edges
 /// as parts of other outputs, and ties beside the outputs.
 #[derive(Clone, Copy, PartialEq)]
-enum Of {
+enum Owner {
     Base,
     Floor,
     Ground,
@@ -51,12 +51,12 @@ pub(crate) enum Search {
 }
 
 /// All that is known of an output beside its formula.
-struct Row {
+struct OutputRow {
     name: &'static str,
     unit: &'static str,
     /// `#` stands for the number of a floor.
     description: &'static str,
-    of: Of,
+    of: Owner,
     /// If one mass has it, its place among the columns and, if it has a peak, among the peaks.
     of_one: &'static [usize],
     search: Search,
@@ -64,7 +64,7 @@ struct Row {
     from: &'static [&'static str],
 }
 
-/// Declares [`Output`] by its rows: name, unit, description, what the documentation adds, and the rest of [`Row`] in its order.
+/// Declares [`Output`] by its rows: name, unit, description, what the documentation adds, and the rest of [`OutputRow`] in its order.
 macro_rules! outputs {
     ($($name:ident $(($i:ident: $number:ty))? [$unit:literal] $description:literal $($more:literal)?,
         $of:ident $of_one:tt $search:ident, $from:expr;)*) => {
@@ -85,10 +85,10 @@ macro_rules! outputs {
         const OF_ONE: [usize; 2] = [0 $(+ (<[usize]>::len(&$of_one) > 0) as usize)*, 0 $(+ (<[usize]>::len(&$of_one) > 1) as usize)*];
 
         impl Output {
-            const fn row(self) -> &'static Row {
+            const fn row(self) -> &'static OutputRow {
                 match self {
-                    $(Output::$name { .. } => const { &Row {
-                        name: stringify!($name), unit: $unit, description: $description, of: Of::$of, of_one: &$of_one,
+                    $(Output::$name { .. } => const { &OutputRow {
+                        name: stringify!($name), unit: $unit, description: $description, of: Owner::$of, of_one: &$of_one,
                         search: Search::$search, from: $from,
                     } },)*
                 }
@@ -183,7 +183,7 @@ use Output::{F_d1, F_d2, P_t, pressure, settled, settlement, theta, theta_dot, u
 const fn of_one<const N: usize>(which: usize) -> [Output; N] {
     let (mut all, mut i) = ([theta; N], 0);
     while i < EACH.len() {
-        let &Row { of_one: places, search, .. } = EACH[i].row();
+        let &OutputRow { of_one: places, search, .. } = EACH[i].row();
         if which < places.len() {
             assert!((places.len() == 1) == matches!(search, Search::None), "one mass has the peaks of many masses");
             all[places[which]] = EACH[i];
@@ -209,17 +209,18 @@ impl Output {
     pub const OF_TIES: [Output; 3] = [P_t, F_d1, F_d2];
 
     /// The outputs of `structure` that are meant, in the order of their rows.
-    fn meant(structure: &Structure, is_meant: impl Fn(&Row) -> bool) -> impl Iterator<Item = Output> {
+    fn meant(structure: &Structure, is_meant: impl Fn(&OutputRow) -> bool) -> impl Iterator<Item = Output> {
         let points = structure.foundation().map_or(0, |foundation| foundation.points.len());
-        let count = move |of: Of| match of {
-            Of::Base => 1,
-            Of::Floor => structure.floors().len(),
-            Of::Ground | Of::Points | Of::Tie => points.min(1),
-            Of::Point => points,
-            Of::Edge => points.min(2),
+        let count = move |of: Owner| match of {
+            Owner::Base => 1,
+            Owner::Floor => structure.floors().len(),
+            Owner::Ground | Owner::Points | Owner::Tie => points.min(1),
+            Owner::Point => points,
+            Owner::Edge => points.min(2),
         };
         let is_one = structure.is_one_mass();
-        let is_of_many = move |row: &Row| is_one && row.of_one.is_empty() && matches!(row.of, Of::Base | Of::Floor);
+        let is_of_many =
+            move |row: &OutputRow| is_one && row.of_one.is_empty() && matches!(row.of, Owner::Base | Owner::Floor);
         let meant = EACH.iter().filter(move |of| is_meant(of.row()) && !is_of_many(of.row()));
         meant.flat_map(move |of| (0..count(of.row().of)).map(|number| of.numbered(number)))
     }
@@ -230,10 +231,10 @@ impl Output {
         // two floors at the same height have a drift and no storey
         let is_one = |of: &Output| of.displaced(structure).is_none_or(|(_, factor)| factor.is_finite());
         let has_inner = structure.foundation().is_some_and(|foundation| foundation.points.len() > 2);
-        let is_column = |row: &Row| match row.of {
-            Of::Base | Of::Floor | Of::Ground => true,
-            Of::Points | Of::Point => has_inner,
-            Of::Edge | Of::Tie => false,
+        let is_column = |row: &OutputRow| match row.of {
+            Owner::Base | Owner::Floor | Owner::Ground => true,
+            Owner::Points | Owner::Point => has_inner,
+            Owner::Edge | Owner::Tie => false,
         };
         let all = Output::meant(structure, is_column).filter(is_one);
         if structure.is_one_mass() { with_ground(&Output::OF_ONE, all) } else { all.collect() }
@@ -268,7 +269,7 @@ impl Output {
 
     /// Whether it is of ground that gives or of ties.
     pub fn is_of_ground(self) -> bool {
-        !matches!(self.row().of, Of::Base | Of::Floor)
+        !matches!(self.row().of, Owner::Base | Owner::Floor)
     }
 
     /// The name of an output of `structure`, of many masses with the number of the floor or storey from 1: `a_t[3]`.
@@ -293,7 +294,7 @@ impl Output {
 
     /// The description of an output of `structure`.
     pub fn description(self, structure: &Structure) -> String {
-        let Row { description, .. } = self.row();
+        let OutputRow { description, .. } = self.row();
         match self.number() {
             Some(_) if structure.is_one_mass() && !self.is_of_ground() => {
                 description.replace("floor #", "the top mass")
@@ -374,12 +375,12 @@ impl Output {
     }
 
     /// ξ, k, c and offset of an output that is the positive part of offset + k e + c ė of the height e at ξ, or 0.
-    pub(crate) fn of_height(self, base: &Base, Foundation { points, rest, .. }: &Foundation) -> Option<[f64; 4]> {
+    pub(crate) fn of_height(self, base: &Base, Foundation { points, y_s, .. }: &Foundation) -> Option<[f64; 4]> {
         match self {
             N(i) => points.get(i).map(|point| [point.xi, -point.k, -point.c, 0.0]),
             settled(i) => Some([points[i * (points.len() - 1)].xi, -1.0, 0.0, 0.0]),
             lifted(i) => Some([[-base.B, base.B][i], 1.0, 0.0, 0.0]),
-            P_t => Some([0.0, base.ties.k_t, 0.0, base.ties.P_0 - base.ties.k_t * rest]),
+            P_t => Some([0.0, base.ties.k_t, 0.0, base.ties.P_0 - base.ties.k_t * y_s]),
             _ => None,
         }
     }
@@ -434,7 +435,7 @@ impl Output {
     #[inline]
     pub(crate) fn smooth<K: Number, Q: Lateral<K>>(self, x: &Instant<K, Q>) -> K {
         let floor = |i: usize| &x.structure.floors()[i];
-        let place = |i| Place { share: 1.0, height: floor(i).height, u: x.u.weighed(&floor(i).shape) };
+        let place = |i| MassPoint { share: 1.0, height: floor(i).height, u: x.u.weighed(&floor(i).shape) };
         match self {
             theta => x.theta,
             theta_dot => x.theta_dot,

@@ -11,7 +11,7 @@ use crate::series::extremes::off_chord;
 use crate::series::taylor::{ORDERS, ZERO, evaluate};
 use crate::structure::gauge::Reach;
 use crate::structure::mode::Modes;
-use crate::{Base, Contact, Foundation, Gauge, Output, Phase, Ramp, Side, State, Structure};
+use crate::{Base, Foundation, Gauge, Output, Phase, PressedPoints, Ramp, Side, State, Structure};
 
 /// Bounds of the magnitudes of a motion.
 #[derive(Clone, Copy, Debug)]
@@ -90,7 +90,7 @@ impl<Q: Coordinates> Magnitudes<'_, Q> {
         Instant {
             structure,
             s: 1.0,
-            contact: Contact { pressed: u32::MAX, ..Contact::default() },
+            contact: PressedPoints { pressed: u32::MAX, ..PressedPoints::default() },
             damping,
             u: Mosts(u),
             u_dot: Mosts(u_dot),

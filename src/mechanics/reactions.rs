@@ -31,7 +31,7 @@
 //! P_h = m ẋ + m0 ẋ₀,   P_v = −m ẏ − m0 ẏ₀,   P_m = m (y ẋ − x ẏ) + m0 (y₀ ẋ₀ − x₀ ẏ₀) + J0 θ̇
 //! ```
 
-use crate::mechanics::instant::{Instant, Place, Second};
+use crate::mechanics::instant::{Instant, MassPoint, Second};
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::state::Properties;
 use crate::numbers::dual::Dual;
@@ -211,7 +211,7 @@ fn momentum<Q: Coordinates>(structure: &Structure, phase: Phase, state: &State<Q
     }
     for (j, mode) in Q::modes(structure).iter().enumerate() {
         let u = Dual { value: state.u.of(j), rate: rate(state.u_dot.of(j)) };
-        let place = Place { share: mode.share, height: mode.height, u };
+        let place = MassPoint { share: mode.share, height: mode.height, u };
         let (right, up) = (place.right(pivot, &turn), place.up(pivot, &turn));
         to_right += mode.gamma * right.rate;
         upwards += mode.gamma * up.rate;

@@ -7,7 +7,7 @@
 //!
 //! tendon         ξ = 0         F = P_0 + k_t e
 //! viscous        ξ = ±ξ_d      F = c_d ė
-//! elastoplastic  ξ = ±ξ_d      F = k_d (e − e_p),  |F| ≤ F_y,   ė_p = ė while |F| = F_y and e moves on that way, or else 0
+//! elastoplastic  ξ = ±ξ_d      F = k_d (e − e_p),  |F| ≤ F_y,   ė_p = ė while |F| = F_y and e moves on that sign, or else 0
 //! ```
 //!
 //! Every tie is therefore a force, a stiffness and a damper. A yielding tie is a force alone, and e_p follows from the rotation
@@ -120,16 +120,16 @@ pub(crate) fn levers(base: &Base, side: Side) -> [f64; 2] {
 /// The tendon and both dissipators of `base`, with the dissipators in this state. Each has its place ξ for a lever, and its elongation is
 /// its height above `rest`: 0 on rigid ground, and y_s on ground that gives, where it pulls with F_0 + k (y − ξ sin θ) + c (ẏ − ξ θ̇ cos θ).
 #[inline]
-pub(crate) fn ties(base: &Base, dissipators: &Dissipators, rest: f64, is_slack: bool) -> [Tie; 3] {
+pub(crate) fn ties(base: &Base, dissipators: &Dissipators, y_s: f64, is_slack: bool) -> [Tie; 3] {
     let Ties { P_0, k_t, xi_d, c_d, k_d, F_y, .. } = base.ties;
     let dissipator = |j: usize, lever: f64| {
         let (force, stiffness) = match dissipators.yields[j] {
-            0 => (-k_d * (dissipators.plastic[j] + rest), k_d),
-            way => (f64::from(way) * F_y, 0.0),
+            0 => (-k_d * (dissipators.plastic[j] + y_s), k_d),
+            sign => (f64::from(sign) * F_y, 0.0),
         };
         Tie { lever, force, stiffness, damping: c_d }
     };
-    let [force, stiffness] = if is_slack { [0.0; 2] } else { [P_0 - k_t * rest, k_t] };
+    let [force, stiffness] = if is_slack { [0.0; 2] } else { [P_0 - k_t * y_s, k_t] };
     [Tie { lever: 0.0, force, stiffness, damping: 0.0 }, dissipator(0, xi_d), dissipator(1, -xi_d)]
 }
 
@@ -278,7 +278,7 @@ pub(crate) fn restraints<N: Angle, Q: Lateral<N>>(
             let force = |Tie { lever, force, stiffness, damping }| {
                 N::constant(force) + footing.height(lever) * stiffness + rates.height(lever) * damping
             };
-            let [tendon, first, second] = ties(x.base(), dissipators, ground.rest, x.contact.is_slack);
+            let [tendon, first, second] = ties(x.base(), dissipators, ground.y_s, x.contact.is_slack);
             [force(tendon), force(first), force(second)] // a map would copy series
         }
         None => {
@@ -317,7 +317,7 @@ impl Dissipators {
     pub const NEW: Dissipators = Dissipators { plastic: [0.0; 2], yields: [0; 2], viscous: 0.0, hysteretic: 0.0 };
 
     /// The dissipators after a transition to rocking about a side at a rate θ̇ (rad/s), or to rest in contact (none). A dissipator
-    /// that keeps moving the way it yielded keeps yielding.
+    /// that keeps moving the sign it yielded keeps yielding.
     pub(crate) fn after(mut self, base: &Base, rocking: Option<(Side, f64)>) -> Dissipators {
         for j in 0..2 {
             let on = |(side, theta_dot)| f64::from(self.yields[j]) * levers(base, side)[j] * theta_dot > 0.0;
@@ -337,10 +337,10 @@ impl Dissipators {
     ) -> Dissipators {
         let (Ties { k_d, F_y, .. }, mut moved) = (base.ties, *self);
         for j in 0..2 {
-            let way = f64::from(self.yields[j]);
-            if way != 0.0 {
-                let plastic = e(j) - way * F_y / k_d;
-                moved.hysteretic += way * F_y * (plastic - moved.plastic[j]);
+            let sign = f64::from(self.yields[j]);
+            if sign != 0.0 {
+                let plastic = e(j) - sign * F_y / k_d;
+                moved.hysteretic += sign * F_y * (plastic - moved.plastic[j]);
                 moved.plastic[j] = plastic;
             }
         }
@@ -348,13 +348,13 @@ impl Dissipators {
         moved
     }
 
-    /// The dissipators of `base` after a slow rotation to `theta` (rad) about `side` that does not turn back on its way.
+    /// The dissipators of `base` after a slow rotation to `theta` (rad) about `side` that does not turn back on its sign.
     pub fn moved(&self, base: &Base, side: Side, theta: f64) -> Dissipators {
         let chord = Angles::Any.chord(theta, 0.0).length;
         self.moved_to(base, |j| levers(base, side)[j] * chord)
     }
 
-    /// The dissipators of `base` after a slow motion to the elongations `e` (m) that does not turn back on its way.
+    /// The dissipators of `base` after a slow motion to the elongations `e` (m) that does not turn back on its sign.
     pub(crate) fn moved_to(&self, base: &Base, e: impl Fn(usize) -> f64) -> Dissipators {
         let Ties { k_d, F_y, .. } = base.ties;
         let mut moved = Dissipators { yields: [0; 2], ..*self };

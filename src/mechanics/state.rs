@@ -66,12 +66,12 @@ pub enum Phase {
     /// |θ| has reached π/2; the simulation is over.
     Overturned(Side),
     /// On ground that gives, with these points pressed.
-    OnGround(Contact),
+    OnGround(PressedPoints),
 }
 
 /// The pressed contact points of the ground, and whether the tendon is slack.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Contact {
+pub struct PressedPoints {
     /// A bit for each contact point, the lowest for the left edge: whether the point is pressed.
     pub pressed: u32,
     /// Number of contact points.
@@ -80,7 +80,7 @@ pub struct Contact {
     pub is_slack: bool,
 }
 
-impl Contact {
+impl PressedPoints {
     /// Whether point `i` is pressed.
     #[inline]
     pub fn is_pressed(self, i: usize) -> bool {
@@ -116,7 +116,7 @@ pub struct Properties {
 
 impl Phase {
     /// No point of ground that gives is pressed.
-    pub const FLIGHT: Phase = Phase::OnGround(Contact { pressed: 0, points: 0, is_slack: false });
+    pub const FLIGHT: Phase = Phase::OnGround(PressedPoints { pressed: 0, points: 0, is_slack: false });
 
     /// The phases that are [shown](Phase::shown), in the order in which the FMU numbers them; both sides of overturning are one.
     pub const SHOWN: [Phase; 5] = [
@@ -149,7 +149,7 @@ impl Phase {
             Phase::Overturned(side) => {
                 Properties { name: "overturned", side, pivot: side.sign(), rotates: true, is_over: true, ..still }
             }
-            Phase::OnGround(Contact { pressed: 0, .. }) => {
+            Phase::OnGround(PressedPoints { pressed: 0, .. }) => {
                 Properties { name: "flight", pivot: 0.0, is_free: true, ..still }
             }
             Phase::OnGround(_) => Properties { name: "on ground that gives", pivot: 0.0, ..still },
@@ -174,8 +174,8 @@ impl Phase {
 
     /// The points that carry the base on ground that gives; otherwise none.
     #[inline]
-    pub(crate) fn contact(self) -> Contact {
-        if let Phase::OnGround(contact) = self { contact } else { Contact::default() }
+    pub(crate) fn contact(self) -> PressedPoints {
+        if let Phase::OnGround(contact) = self { contact } else { PressedPoints::default() }
     }
 
     /// This phase as it is shown at the rotation `theta` (rad). On ground that gives, this is full contact if all points are pressed,
@@ -183,7 +183,7 @@ impl Phase {
     pub fn shown(self, theta: f64) -> Phase {
         match self {
             Phase::OnGround(contact) if contact.is_full() => Phase::FullContact,
-            Phase::OnGround(Contact { pressed: 0, .. }) => Phase::FLIGHT,
+            Phase::OnGround(PressedPoints { pressed: 0, .. }) => Phase::FLIGHT,
             Phase::OnGround(_) => Phase::Rocking(Side::of(theta)),
             phase => phase,
         }
@@ -209,7 +209,7 @@ pub const INITIAL_VALUES: [Quantity<State>; 4] = [
 
 /// The most by which a quantity with this `rate` changes over `ahead` (s): an acceleration below 2/`ahead`, which is 1e8 in SI units and more
 /// for the tiny times in question, adds less than `ahead` times 1.
-pub(crate) fn way(ahead: f64, rate: f64) -> f64 {
+pub(crate) fn most_change(ahead: f64, rate: f64) -> f64 {
     ahead * (rate.abs() + 1.0)
 }
 
@@ -317,7 +317,7 @@ impl Structure {
         let theta_dot = self.base().p_l * theta;
         let mut usual = State { u: Q::each(self, |_, mode| u(mode)), u_dot: Q::each(self, u_dot), theta, theta_dot };
         if let Some(foundation) = self.foundation() {
-            let settled = foundation.rest.abs();
+            let settled = foundation.y_s.abs();
             let rate = (self.base().g * settled).sqrt();
             for (of, y) in [(&mut usual.u, settled), (&mut usual.u_dot, rate)] {
                 of.set_footing(foundation, Footing { y, ..of.footing(foundation) });
@@ -359,7 +359,7 @@ mod tests {
 
     #[test]
     fn a_shown_phase_is_shown_as_it_is() {
-        let on = |pressed, points| Phase::OnGround(Contact { pressed, points, is_slack: false });
+        let on = |pressed, points| Phase::OnGround(PressedPoints { pressed, points, is_slack: false });
         let sides =
             [Side::Left, Side::Right].into_iter().flat_map(|side| [Phase::Rocking(side), Phase::Overturned(side)]);
         for phase in sides.chain([Phase::FullContact, Phase::FLIGHT, on(0, 2), on(1, 2), on(2, 2), on(3, 2)]) {

@@ -155,19 +155,19 @@ impl<'a, Q: Coordinates> Run<'a, Q> {
 pub trait Starts: Coordinates {
     /// Starts an engine.
     #[doc(hidden)]
-    const START: Start<Self>;
+    const START: Starter<Self>;
 }
 
 impl Starts for f64 {
-    const START: Start<f64> = Engine::with;
+    const START: Starter<f64> = Engine::with;
 }
 
 impl Starts for Modes {
-    const START: Start<Modes> = Engine::of_modes;
+    const START: Starter<Modes> = Engine::of_modes;
 }
 
 /// Starts a structure at a time (s) from a state.
-type Start<Q> = fn(Structure, State<Q>, f64, Settings) -> Result<Engine<Q>, Refused>;
+type Starter<Q> = fn(Structure, State<Q>, f64, Settings) -> Result<Engine<Q>, Refused>;
 
 impl<'a, Q: Starts> Run<'a, Q> {
     /// The run before its start.
@@ -320,13 +320,13 @@ fn over<Q: Coordinates, W: Watch<Q>>(
 mod tests {
     use super::*;
     use crate::structure::description::{Damping, Storey};
-    use crate::structure::natural_quantities::Given;
+    use crate::structure::natural_quantities::Numbers;
 
     /// A base with little inertia under damped modes.
     #[test]
     fn a_run_ends_after_its_most_steps_with_their_cause() {
         let ground = Record::from_samples("", vec![1.0, 1.01, 1.02], vec![0.0, 1.0, 0.0]).unwrap();
-        let base = Given::of(&[("m0", 2.95e6), ("J0", 1150.0), ("B", 0.1355), ("r", 0.5)]).unwrap();
+        let base = Numbers::of(&[("m0", 2.95e6), ("J0", 1150.0), ("B", 0.1355), ("r", 0.5)]).unwrap();
         let storeys = [[2.5e5, 38.0, 1.6e10], [5.3e5, 94.0, 2.3e10]].map(|[m, h, k]| Storey { m, h, k });
         let slender = Structure::from_storeys(&base, &Damping::All(0.5), &storeys).unwrap();
         let cause = "B = 0.1355 m with J0 = 1150 kg.m2 takes some 1e6 steps of computing for each second of a motion";

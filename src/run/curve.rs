@@ -4,7 +4,7 @@
 //! straight lines as is allowed. Two points of the same instant have a transition, or the end of the record, between them.
 
 use super::course::{Run, RunError, Starts};
-use super::fall::{Found, find};
+use super::fall::{RunResult, find};
 use super::peaks::{Peak, Peaks};
 use crate::engine::piece::{Piece, Watch};
 use crate::engine::sample::Sample;
@@ -56,7 +56,7 @@ pub(super) fn peaks_of<'a>(lines: &'a [Output], peaks: &'a Peaks) -> impl Iterat
 
 /// The motion at one instant.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Point {
+pub struct CurvePoint {
     /// Its time, s.
     pub time: f64,
     /// The phase that it belongs to; of two points at a transition the first is just before it.
@@ -69,16 +69,16 @@ pub struct Point {
 
 /// A run as it is drawn.
 #[derive(Clone, Debug)]
-pub struct Curve<Q: Coordinates = f64> {
+pub struct RunCurve<Q: Coordinates = f64> {
     /// In the order of time; straight lines join them. The largest a_g and the largest of each line are among them.
-    pub points: Vec<Point>,
+    pub points: Vec<CurvePoint>,
     /// In the order of time, too.
     pub transitions: Vec<Transition<Q>>,
     /// Exact peaks, and how the run ended.
-    pub found: Found<Q>,
+    pub found: RunResult<Q>,
 }
 
-pub(super) fn trace<Q: Starts>(run: &Run<Q>, part: f64) -> Result<Curve<Q>, RunError> {
+pub(super) fn trace<Q: Starts>(run: &Run<Q>, part: f64) -> Result<RunCurve<Q>, RunError> {
     let (found, peaks) = find(run, &mut ())?;
     let (mut lines, structure, a_g) = (lines(&run.structure), &run.structure.at(run.detail), found.ground);
     lines.extend(OF_GROUND[..2].iter().flat_map(|of| of.parts(structure)).map(|(part, _)| part));
@@ -99,7 +99,7 @@ pub(super) fn trace<Q: Starts>(run: &Run<Q>, part: f64) -> Result<Curve<Q>, RunE
     if points.len() > most {
         return Err(RunError::TooManyPoints { most, time: points[most - 1].time });
     }
-    Ok(Curve { points, transitions, found })
+    Ok(RunCurve { points, transitions, found })
 }
 
 /// Gathers the points of a motion as it goes by.
@@ -115,7 +115,7 @@ struct Tracer<Q: Coordinates> {
     pga: f64,
     /// The largest number of points.
     most: usize,
-    points: Vec<Point>,
+    points: Vec<CurvePoint>,
     transitions: Vec<Transition<Q>>,
     /// Whether the next piece begins with a point of its own.
     is_torn: bool,
@@ -129,7 +129,7 @@ impl<Q: Coordinates> Tracer<Q> {
     fn see(&mut self, sample: &Sample<Q>) {
         let Sample { motion, load, .. } = sample;
         let (outputs, a_g) = (self.drawn.iter().copied().map(sample.outputs()).collect(), load.a_g);
-        self.points.push(Point { time: motion.time, phase: motion.phase.shown(motion.state.theta), a_g, outputs });
+        self.points.push(CurvePoint { time: motion.time, phase: motion.phase.shown(motion.state.theta), a_g, outputs });
     }
 }
 

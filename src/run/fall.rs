@@ -18,7 +18,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Result of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found<Q: Coordinates = f64> {
+pub struct RunResult<Q: Coordinates = f64> {
     /// Peak of the ground acceleration until the run ended, m/s².
     pub ground: Peak,
     /// Peaks of the structure; if it overturns, those before it falls.
@@ -33,7 +33,7 @@ pub struct Found<Q: Coordinates = f64> {
 
 /// Exact peaks of a motion that may end in a fall: those of all the motion, and those before the fall.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Falling<All = Peaks> {
+pub struct FallPeaks<All = Peaks> {
     pub(super) all: All,
     /// Angle of no return, rad; none below π/2 if the tendon turns the structure back from everywhere.
     pub(super) no_return: Option<f64>,
@@ -44,8 +44,8 @@ pub struct Falling<All = Peaks> {
     pub impacts: u64,
 }
 
-/// What changes of [`Falling`] with the motion: all peaks, instant and peaks of a fall, and whether the structure has overturned.
-pub type Numbers = (Vec<Peak>, Option<(f64, Vec<Peak>)>, bool);
+/// What changes of [`FallPeaks`] with the motion: all peaks, instant and peaks of a fall, and whether the structure has overturned.
+pub type FallNumbers = (Vec<Peak>, Option<(f64, Vec<Peak>)>, bool);
 
 /// Rotation beyond which nothing turns the structure on `base` back, rad: α_cg without ties. With ties the static moment of weight,
 /// tendon and dissipators vanishes at this rotation, the dissipators moved there slowly from rest. None if the ties turn the
@@ -63,24 +63,24 @@ pub fn angle_of_no_return(base: &Base) -> Option<f64> {
     (!restores(FRAC_PI_2)).then(|| last_where(0.0, FRAC_PI_2, restores))
 }
 
-impl Falling {
+impl FallPeaks {
     /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion.
-    pub fn since(time: f64, structure: &Structure, detail: Detail) -> Falling {
+    pub fn since(time: f64, structure: &Structure, detail: Detail) -> FallPeaks {
         let (all, no_return) = (Peaks::since(time, structure, detail), angle_of_no_return(structure.base()));
-        Falling { all, no_return, fall: None, has_overturned: false, impacts: 0 }
+        FallPeaks { all, no_return, fall: None, has_overturned: false, impacts: 0 }
     }
 
     /// The numbers alone.
-    pub fn numbers(&self) -> Numbers {
+    pub fn numbers(&self) -> FallNumbers {
         let fall = self.fall.as_ref().map(|(instant, before)| (*instant, before.numbers()));
         (self.all.numbers(), fall, self.has_overturned)
     }
 
-    /// The same with other [`Falling::numbers`]; none if they are not of as many peaks.
-    pub fn with_numbers(&self, (all, fall, has_overturned): Numbers) -> Option<Falling> {
+    /// The same with other [`FallPeaks::numbers`]; none if they are not of as many peaks.
+    pub fn with_numbers(&self, (all, fall, has_overturned): FallNumbers) -> Option<FallPeaks> {
         let before = |(instant, before): (f64, Vec<_>)| Some((instant, self.all.with_numbers(&before)?));
         let fall = if let Some(fall) = fall { Some(before(fall)?) } else { None };
-        Some(Falling { all: self.all.with_numbers(&all)?, fall, has_overturned, ..*self })
+        Some(FallPeaks { all: self.all.with_numbers(&all)?, fall, has_overturned, ..*self })
     }
 
     /// Peaks of all the motion, including a fall.
@@ -109,13 +109,13 @@ impl Falling {
 
     /// The watcher that looks for peaks in the pieces of a motion; [`FallWatch::end`] gives the peaks back.
     pub fn watch<Q: Coordinates>(self) -> FallWatch<Q> {
-        let Falling { all, no_return, fall, has_overturned, impacts } = self;
-        Falling { all: all.watch(), no_return, fall, has_overturned, impacts }
+        let FallPeaks { all, no_return, fall, has_overturned, impacts } = self;
+        FallPeaks { all: all.watch(), no_return, fall, has_overturned, impacts }
     }
 }
 
 /// Looks for the peaks of a motion that may end in a fall.
-pub type FallWatch<Q = f64> = Falling<PeakWatch<Q>>;
+pub type FallWatch<Q = f64> = FallPeaks<PeakWatch<Q>>;
 
 impl<Q: Coordinates> Watch<Q> for FallWatch<Q> {
     fn piece(&mut self, piece: &Piece<Q>) {
@@ -139,9 +139,9 @@ impl<Q: Coordinates> Watch<Q> for FallWatch<Q> {
 
 impl<Q: Coordinates> FallWatch<Q> {
     /// The peaks, once the motion has been watched.
-    pub fn end(self) -> Falling {
-        let Falling { all, no_return, fall, has_overturned, impacts } = self;
-        Falling { all: all.end(), no_return, fall, has_overturned, impacts }
+    pub fn end(self) -> FallPeaks {
+        let FallPeaks { all, no_return, fall, has_overturned, impacts } = self;
+        FallPeaks { all: all.end(), no_return, fall, has_overturned, impacts }
     }
 
     /// Keeps the peaks up to the last passing of `angle` (rad) in a `piece` that ends beyond.
@@ -204,13 +204,13 @@ fn last_passing<Q: Coordinates>(angle: f64, side: f64, expansion: &Expansion<Q>)
 impl<Q: Coordinates> Run<'_, Q> {
     /// The watcher of the peaks of the run, before any motion.
     pub(super) fn watch_falling(&self) -> FallWatch<Q> {
-        Falling::since(self.ground.start(), &self.structure, self.detail).watch()
+        FallPeaks::since(self.ground.start(), &self.structure, self.detail).watch()
     }
 
     /// Result of the run with these `peaks`, the start of the `fall` and the `finish`.
-    pub(super) fn found_of(&self, peaks: Peaks, fall: Option<f64>, finish: Finish<Q>) -> Found<Q> {
+    pub(super) fn found_of(&self, peaks: Peaks, fall: Option<f64>, finish: Finish<Q>) -> RunResult<Q> {
         let ground = self.peak_of_ground(finish.motion.time);
-        Found { ground, peaks, fall, start: self.ground.start(), finish }
+        RunResult { ground, peaks, fall, start: self.ground.start(), finish }
     }
 
     /// Peak of the ground acceleration until the time `until` (s), m/s².
@@ -237,7 +237,7 @@ impl<Q: Coordinates> Run<'_, Q> {
 }
 
 /// Result of `run`, which `watch` sees, and the peaks of all its motion, including a fall.
-pub(super) fn find<Q: Starts>(run: &Run<Q>, watch: &mut dyn Watch<Q>) -> Result<(Found<Q>, Peaks), RunError> {
+pub(super) fn find<Q: Starts>(run: &Run<Q>, watch: &mut dyn Watch<Q>) -> Result<(RunResult<Q>, Peaks), RunError> {
     let (course, mut own) = (run.course()?, run.watch_falling());
     let (ending, engine) = match watch.sees_pieces() {
         true => course.finish(&mut (&mut own, watch))?,
@@ -269,7 +269,7 @@ mod tests {
             let shown = [Output::theta, Output::u(0), Output::delta_t(0), Output::a_t(0)];
             let mut seen = Vec::new();
             let dense = (0..40_000).map(|i| f64::from(i) * 1e-4);
-            let mut watch = Falling::since(0.0, &structure.into(), Detail::Auto).watch();
+            let mut watch = FallPeaks::since(0.0, &structure.into(), Detail::Auto).watch();
             run.sample(dense, |at| seen.push((at.motion.time, shown.map(at.outputs()))), &mut watch).unwrap();
             let watched = watch.end();
             let instant = watched.fall().unwrap();
@@ -306,7 +306,8 @@ mod tests {
             for beyond in (0..40).map(|i| 1e-4 * f64::from(i)) {
                 let initial = State { theta: -alpha_cg * (1.0 + beyond), ..State::default() };
                 let run = Run { detail, initial, ..Run::new(structure, &ground) };
-                let (mut watch, mut seen) = (Falling::since(0.0, &structure.into(), Detail::Auto).watch(), Vec::new());
+                let (mut watch, mut seen) =
+                    (FallPeaks::since(0.0, &structure.into(), Detail::Auto).watch(), Vec::new());
                 let times = (0..100_000).map(|i| f64::from(i) * 2e-4);
                 let show = |at: &Sample| seen.push((at.motion.time, at.motion.state.theta.abs()));
                 let (ending, watched) = (run.sample(times, show, &mut watch).unwrap().ending, watch.end());

@@ -8,14 +8,14 @@
 mod watches;
 
 use super::course::{Ending, Finish, Follower, LONGEST_REST, MOST_STEPS, Run, RunError, Starts, error, load_of};
-use super::fall::{FallWatch, Found};
+use super::fall::{FallWatch, RunResult};
 use super::ground_motion::{Segment, Segments};
 use super::peaks::Peaks;
 use crate::Progress;
 use crate::engine::Advance;
-use crate::engine::lanes::leaps::Contacts;
+use crate::engine::lanes::leaps::ContactLeaps;
 use crate::engine::lanes::number::MOST;
-use crate::engine::lanes::rocking::Rocking;
+use crate::engine::lanes::rocking::RockingLanes;
 use crate::mechanics::lateral::Coordinates;
 use pulp::{Arch, Simd, WithSimd};
 use std::collections::VecDeque;
@@ -27,15 +27,16 @@ const ON_THE_WAY: usize = 4 * MOST;
 const LEAST: usize = 3;
 
 /// Sees the result of a run, with the run's position, and says whether to go on.
-pub type Done<'a, T> = &'a mut dyn FnMut(usize, T) -> bool;
+pub type OnResult<'a, T> = &'a mut dyn FnMut(usize, T) -> bool;
 
 /// Follows runs and shows the result of each.
-type Shown<Q, T> = fn(&[Run<Q>], Done<T>);
+type ShowEach<Q, T> = fn(&[Run<Q>], OnResult<T>);
 
 /// How runs are followed to their peaks, and to their rotation alone.
-pub(super) type Each<Q> = (Shown<Q, Result<Found<Q>, RunError>>, Shown<Q, (Result<Finish<Q>, RunError>, Rocked)>);
+pub(super) type Each<Q> =
+    (ShowEach<Q, Result<RunResult<Q>, RunError>>, ShowEach<Q, (Result<Finish<Q>, RunError>, Rocked)>);
 
-pub(super) fn find_each<Q: Starts>(runs: &[Run<Q>], done: Done<Result<Found<Q>, RunError>>) {
+pub(super) fn find_each<Q: Starts>(runs: &[Run<Q>], done: OnResult<Result<RunResult<Q>, RunError>>) {
     let done = &mut |number: usize, finish, watch| done(number, found(&runs[number], finish, watch));
     Arch::new().dispatch(Following { runs, watch: Run::watch_falling, done });
 }
@@ -49,7 +50,7 @@ pub struct Rocked {
     pub impacts: u64,
 }
 
-pub(super) fn rock_each<Q: Starts>(runs: &[Run<Q>], done: Done<(Result<Finish<Q>, RunError>, Rocked)>) {
+pub(super) fn rock_each<Q: Starts>(runs: &[Run<Q>], done: OnResult<(Result<Finish<Q>, RunError>, Rocked)>) {
     let done = &mut |number, finish, watch| done(number, (finish, rocked(watch)));
     Arch::new().dispatch(Following { runs, watch: watch_rocking, done });
 }
@@ -70,7 +71,7 @@ fn found<Q: Starts>(
     run: &Run<Q>,
     finish: Result<Finish<Q>, RunError>,
     watch: FallWatch<Q>,
-) -> Result<Found<Q>, RunError> {
+) -> Result<RunResult<Q>, RunError> {
     // the peaks of a fall are not looked for
     let (peaks, fall) = match watch.fall.filter(|_| watch.has_overturned) {
         Some((instant, before)) => (before, Some(instant)),
@@ -126,7 +127,7 @@ const ROCKS_ON: usize = 2;
 
 impl<Q: Starts> Lane<'_, Q> {
     /// Goes on to where the run in `slot` of `steps` has come without a transition.
-    fn catch_up<S: Simd>(&mut self, steps: &mut Rocking<S, Q>, slot: usize) -> Result<(), RunError> {
+    fn catch_up<S: Simd>(&mut self, steps: &mut RockingLanes<S, Q>, slot: usize) -> Result<(), RunError> {
         let Lane { follower: Follower { engine, segments, .. }, watch, .. } = self;
         let Some((next, elapsed)) = steps.catch_up(slot, engine, watch) else { return Ok(()) };
         if let Some(next) = next {
@@ -140,7 +141,7 @@ impl<Q: Starts> Lane<'_, Q> {
 
     /// Takes the step of rocking that was taken in `slot` of `steps`, and goes on.
     #[inline]
-    fn take<S: Simd>(&mut self, steps: &mut Rocking<S, Q>, slot: usize) -> Result<Next, RunError> {
+    fn take<S: Simd>(&mut self, steps: &mut RockingLanes<S, Q>, slot: usize) -> Result<Next, RunError> {
         self.catch_up(steps, slot)?;
         let Lane { follower: Follower { engine, .. }, advance, watch, .. } = self;
         let Some(advance) = advance else { return self.go_on() };
@@ -199,8 +200,8 @@ impl<Q: Starts> Lane<'_, Q> {
 /// Steps of several runs, each in a slot, that are taken together.
 struct Together<'a, S: Simd, Q> {
     simd: S,
-    contacts: Contacts<'a, Q>,
-    rocking: Rocking<'a, S, Q>,
+    contacts: ContactLeaps<'a, Q>,
+    rocking: RockingLanes<'a, S, Q>,
 }
 
 impl<'a, S: Simd, Q: Starts> Together<'a, S, Q> {
@@ -266,12 +267,12 @@ impl<'a, S: Simd, Q: Starts> Together<'a, S, Q> {
 type Ended<'a, Q> = (Box<Lane<'a, Q>>, Result<Ending, RunError>);
 
 /// The runs on their way, by what they do next, and those that have ended.
-struct Lanes<'a, Q: Coordinates> {
+struct RunQueues<'a, Q: Coordinates> {
     of_kind: [VecDeque<Box<Lane<'a, Q>>>; KINDS],
     ended: Vec<Ended<'a, Q>>,
 }
 
-impl<'a, Q: Starts> Lanes<'a, Q> {
+impl<'a, Q: Starts> RunQueues<'a, Q> {
     fn count(&self) -> usize {
         self.of_kind.iter().map(VecDeque::len).sum()
     }
@@ -327,8 +328,8 @@ impl<Q: Starts> Following<'_, Q> {
         let Following { runs, watch, done } = self;
         let (mut taken, has_lanes) = (0, S::F64_LANES.min(runs.len()) >= LEAST);
         let mut waiting = runs.iter().enumerate();
-        let mut lanes = Lanes { of_kind: [const { VecDeque::new() }; KINDS], ended: Vec::new() };
-        let mut together = Together { simd, contacts: Contacts::default(), rocking: Rocking::new(simd) };
+        let mut lanes = RunQueues { of_kind: [const { VecDeque::new() }; KINDS], ended: Vec::new() };
+        let mut together = Together { simd, contacts: ContactLeaps::default(), rocking: RockingLanes::new(simd) };
         loop {
             while lanes.count() < ON_THE_WAY
                 && let Some((number, run)) = waiting.next()
@@ -419,7 +420,7 @@ mod tests {
     }
 
     /// A result in words, all but the work of the search for peaks, in which runs that step together put more off.
-    fn told<Q: Starts>(mut result: Result<Found<Q>, RunError>) -> String {
+    fn told<Q: Starts>(mut result: Result<RunResult<Q>, RunError>) -> String {
         result.iter_mut().for_each(|found| found.peaks.evaluations = 0);
         format!("{result:?}")
     }
@@ -448,7 +449,7 @@ mod tests {
             runs.push(Run { detail, tolerance, end, ..Run::new(structure.clone(), ground) });
         }
         let alone: Vec<_> = runs.iter().map(|run| run.found(&mut ())).collect();
-        let count = |is_so: fn(&Found) -> bool| alone.iter().flatten().filter(|found| is_so(found)).count();
+        let count = |is_so: fn(&RunResult) -> bool| alone.iter().flatten().filter(|found| is_so(found)).count();
         let overturned = count(|found| found.finish.ending == Ending::Overturned);
         let rocked = count(|found| found.finish.motion.transitions > 9);
         let steps: u64 = alone.iter().flatten().map(|found| found.finish.motion.work.steps).sum();
@@ -543,9 +544,9 @@ mod tests {
     }
 
     /// Counts steps of rocking.
-    struct Rocking(u64);
+    struct RockingLanes(u64);
 
-    impl Watch for Rocking {
+    impl Watch for RockingLanes {
         fn piece(&mut self, piece: &Piece) {
             self.0 += u64::from(piece.before.phase.properties().rotates);
         }
@@ -560,7 +561,7 @@ mod tests {
         let pier = |i| OneMass::new(Parameters { H: 1.2 + 0.01 * f64::from(i), ..Parameters::MCMANUS }).unwrap();
         let runs: Vec<_> = (0..40).map(|i| Run::new(pier(i), &ground)).collect();
         let count = |run: &Run| {
-            let mut rocking = Rocking(0);
+            let mut rocking = RockingLanes(0);
             run.follow(&mut rocking).unwrap();
             rocking.0
         };

@@ -112,7 +112,7 @@ fn choices<'a, Q: Starts>(run: &Run<'a, Q>) -> Vec<(Choice, Run<'a, Q>)> {
 
 /// Result of a level on a run.
 #[derive(Clone, Debug)]
-pub struct Response {
+pub struct LevelResult {
     /// The level.
     pub choice: Choice,
     /// Its peaks: of a structure that overturns, those before it falls.
@@ -129,7 +129,7 @@ pub struct Response {
 #[derive(Clone, Debug)]
 pub struct Verdict {
     /// Result of the level.
-    pub response: Response,
+    pub response: LevelResult,
     /// Relative errors, in the order of [`Criterion::ALL`]: of several floors the largest.
     pub errors: [f64; 6],
     /// Whether it predicts overturning, or none, as the reference does; None if the reference leaves it open.
@@ -140,7 +140,7 @@ pub struct Verdict {
 #[derive(Clone, Debug)]
 pub struct Comparison {
     /// Eqs 1, 5, 6 to [`REFERENCE_TOLERANCE`].
-    pub reference: Response,
+    pub reference: LevelResult,
     /// The simplest first, each to the tolerance of the run.
     pub verdicts: Vec<Verdict>,
     /// The level `auto` without the vertical ground acceleration, if the run has one.
@@ -259,13 +259,13 @@ impl<Q: Starts, Segments: Iterator<Item = Segment>> Trial<Q, Segments> {
     }
 
     /// The response, the peaks of all the motion, and the distance from the reference.
-    fn response(self) -> (Response, Peaks, Distance) {
+    fn response(self) -> (LevelResult, Peaks, Distance) {
         let motion = self.course.engine.motion();
         let ending = self.ending.expect("it has been followed to its end");
         let (transitions, work) = (motion.transitions, motion.work);
         let seen = self.peaks.end();
         let (peaks, all) = (seen.peaks().clone(), seen.all().clone());
-        (Response { choice: self.choice, peaks, ending, transitions, work }, all, self.distance)
+        (LevelResult { choice: self.choice, peaks, ending, transitions, work }, all, self.distance)
     }
 }
 
@@ -274,7 +274,7 @@ pub fn relative((difference, expected): (f64, f64)) -> f64 {
     if difference == 0.0 { 0.0 } else { difference / expected }
 }
 
-impl Response {
+impl LevelResult {
     /// Steps and evaluations together: an exact leap costs about as much as an evaluation.
     pub fn cost(&self) -> u64 {
         self.work.steps + self.work.evaluations
@@ -300,9 +300,9 @@ impl Verdict {
     /// Of a `response` that has been this far from the `reference`, whose peaks are these with a fall, `all` of it.
     fn new(
         structure: &Structure,
-        response: Response,
+        response: LevelResult,
         distance: &Distance,
-        reference: &Response,
+        reference: &LevelResult,
         all: &Peaks,
     ) -> Verdict {
         let lines = &lines(structure);
@@ -332,7 +332,7 @@ impl Verdict {
 
 impl Comparison {
     /// Cost of `response` as a multiple of the cost of the level `auto` with all modes; None if `auto` cannot do the run.
-    pub fn cost_over_auto(&self, response: &Response) -> Option<f64> {
+    pub fn cost_over_auto(&self, response: &LevelResult) -> Option<f64> {
         let auto = Choice { detail: Detail::Auto, ..self.reference.choice };
         let auto = self.verdicts.iter().find(|verdict| verdict.response.choice == auto);
         auto.map(|auto| response.cost() as f64 / auto.response.cost() as f64)
@@ -357,7 +357,7 @@ mod tests {
     fn verdict(detail: Detail, errors: [f64; 6], cost: u64) -> Verdict {
         let structure = OneMass::new(Parameters::MCMANUS).unwrap();
         let work = Work { steps: 0, evaluations: cost };
-        let response = Response {
+        let response = LevelResult {
             choice: Choice { detail, modes: None },
             peaks: Peaks::since(0.0, &structure.into(), detail),
             ending: Ending::AtRest,

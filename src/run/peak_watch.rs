@@ -5,7 +5,7 @@
 
 use super::peaks::Peaks;
 use crate::engine::MOST_POLYNOMIALS;
-use crate::engine::piece::{Piece, Room, Watch};
+use crate::engine::piece::{LeapRoom, Piece, Watch};
 use crate::levels::level::Level;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::lateral::Coordinates;
@@ -30,7 +30,7 @@ pub struct PeakWatch<Q: Coordinates = f64> {
     pub(super) spare: (Vec<Box<Arc<Q>>>, Vec<Vec<f64>>),
     /// The level of the kept pieces, and room for their polynomials.
     level: Option<Box<dyn Level<Q>>>,
-    room: Room<Q>,
+    room: LeapRoom<Q>,
     /// Whether the next piece may begin with other outputs than the last one ended with.
     pub(super) is_torn: bool,
     /// Room for the bounds of a piece.
@@ -64,7 +64,7 @@ impl Peaks {
             kept: Vec::new(),
             spare: (Vec::new(), Vec::new()),
             level: None,
-            room: Room::default(),
+            room: LeapRoom::default(),
             bounds: Vec::new(),
             reach: None,
             in_vain: 0,
@@ -156,7 +156,7 @@ impl<Q: Coordinates> PeakWatch<Q> {
 }
 
 impl<Q: Coordinates> Candidate<Q> {
-    fn piece<'a>(&'a self, level: &'a dyn Level<Q>, room: &'a Room<Q>) -> Piece<'a, Q> {
+    fn piece<'a>(&'a self, level: &'a dyn Level<Q>, room: &'a LeapRoom<Q>) -> Piece<'a, Q> {
         let &Candidate { ref before, duration, load, end, ref arc, .. } = self;
         Piece { before, duration, load, end, level, arc: arc.as_deref(), room }
     }

@@ -10,7 +10,7 @@ use std::iter::Peekable;
 
 /// Shows a motion at given instants, none of which is before the start. A piece lasts until the next one begins: its own end, start
 /// plus duration, misses this instant by the rounding of the clock.
-pub(crate) struct Samples<Times: Iterator<Item = f64>, Show, Q> {
+pub(crate) struct Sampler<Times: Iterator<Item = f64>, Show, Q> {
     times: Peekable<Times>,
     show: Show,
     /// Motion and load at the end of the last piece.
@@ -18,9 +18,9 @@ pub(crate) struct Samples<Times: Iterator<Item = f64>, Show, Q> {
     load: Load<Q>,
 }
 
-impl<Q: Coordinates, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Samples<Times, Show, Q> {
+impl<Q: Coordinates, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Sampler<Times, Show, Q> {
     pub(crate) fn new(times: Times, show: Show) -> Self {
-        Samples { times: times.peekable(), show, last: None, load: Load::NONE }
+        Sampler { times: times.peekable(), show, last: None, load: Load::NONE }
     }
 
     /// Shows the instants before `time` (s) that are left, at the end of the last piece.
@@ -39,7 +39,7 @@ impl<Q: Coordinates, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Sampl
     }
 }
 
-impl<Q: Coordinates, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Watch<Q> for Samples<Times, Show, Q> {
+impl<Q: Coordinates, Times: Iterator<Item = f64>, Show: FnMut(&Sample<Q>)> Watch<Q> for Sampler<Times, Show, Q> {
     fn piece(&mut self, piece: &Piece<Q>) {
         self.until(piece.before.time, piece.level);
         let end = piece.before.time + piece.duration;

@@ -26,7 +26,7 @@ mod assumptions;
 
 use super::reaction_series::{self, Extent};
 use crate::digits::short;
-use crate::engine::piece::{Expansion, Part, Piece, Watch};
+use crate::engine::piece::{Expansion, Piece, PiecePart, Watch};
 use crate::engine::sample::Sample;
 use crate::levels::level::off_chord;
 use crate::mechanics::impact;
@@ -368,7 +368,7 @@ fn extents<Q: Coordinates>(expansion: &Expansion<Q>) -> Reactions<Extent> {
 
 /// Bounds of the reactions of the edges over a part in full contact, if the ground does not move vertically. The reactions of the motion
 /// that follows the load are linear in time, so that the vibration alone leaves the chord.
-fn extents_of_vibration<Q: Coordinates>(part: Part<Q>) -> Option<Reactions<Extent>> {
+fn extents_of_vibration<Q: Coordinates>(part: PiecePart<Q>) -> Option<Reactions<Extent>> {
     let &Piece { level, before: &Motion { phase, .. }, load, .. } = part.piece;
     let step = part.step();
     let [u, u_dot, u_ddot, jerk] = level.swings(phase, &step)?;
@@ -525,7 +525,7 @@ fn of_one(structure: &OneMass, detail: Detail) -> Vec<String> {
 
 /// The warnings that follow from ground that gives.
 fn on_ground(frame: &Structure, foundation: &Foundation) -> Vec<String> {
-    let (base, settled) = (frame.base(), -foundation.rest);
+    let (base, settled) = (frame.base(), -foundation.y_s);
     let [omega_v, zeta_v] = [foundation.omega_v(base), foundation.zeta_v(base)];
     let highest = frame.modes().iter().map(Mode::omega).fold(0.0, f64::max);
     let mut warnings = Vec::new();

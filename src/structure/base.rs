@@ -71,10 +71,10 @@ impl Body {
         Body { m0, J0, m_s, S_1, I_2, B, r, g, c_ratio, ties: Ties::of(parameters) }
     }
 
-    /// The parameters of the base, and the others from `rest`; r is NaN without a coefficient.
-    pub(crate) fn over(&self, rest: Parameters) -> Parameters {
+    /// The parameters of the base, and `others`; r is NaN without a coefficient.
+    pub(crate) fn over(&self, others: Parameters) -> Parameters {
         let &Body { m0, J0, B, r, g, c_ratio, ties, .. } = self;
-        ties.over(Parameters { m0, J0, B, c_ratio, r: r.unwrap_or(f64::NAN), g, ..rest })
+        ties.over(Parameters { m0, J0, B, c_ratio, r: r.unwrap_or(f64::NAN), g, ..others })
     }
 }
 

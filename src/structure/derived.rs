@@ -92,7 +92,7 @@ static OF_GROUND: [Derived<Structure>; 6] = [
     derived!("f_g" ["Hz"] "lowest frequency on the ground with all points pressed", "", |of| {
         of.frequencies_on_ground()[0] / TAU
     }),
-    derived!("y_s" ["m"] "height of the base at rest above the unloaded ground", "", |of| of.ground().rest),
+    derived!("y_s" ["m"] "height of the base at rest above the unloaded ground", "", |of| of.ground().y_s),
 ];
 
 impl Structure {

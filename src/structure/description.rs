@@ -9,7 +9,7 @@
 use crate::digits::short;
 use crate::structure::ground::Ground;
 use crate::structure::mode::{MOST_MODES, Modes};
-use crate::structure::natural_quantities::{self, Given};
+use crate::structure::natural_quantities::{self, Numbers};
 use crate::structure::parameters::{MAX_DAMPING, MAX_SLENDERNESS, OF_ONE_MASS, PARAMETERS};
 use crate::structure::quantity::{Quantity, Refused, Units, ensure, ensure_in};
 use crate::structure::{OF_FLOOR, check_count, of_number};
@@ -32,7 +32,7 @@ pub struct Storey {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
-pub struct Place {
+pub struct FloorAt {
     pub m: f64,
     pub h: f64,
 }
@@ -113,7 +113,7 @@ pub struct ManyMasses {
     pub zeta: Damping,
     pub storeys: Vec<Storey>,
     pub p_delta: bool,
-    pub floors: Vec<Place>,
+    pub floors: Vec<FloorAt>,
     pub K: Vec<Vec<f64>>,
     pub modes: Vec<FoundMode>,
     pub total: Option<Total>,
@@ -129,7 +129,7 @@ pub struct Described {
     pub units: Units,
     /// The base: m0, B, J0, r, g, c_ratio, the tendon and the dissipators.
     #[serde(deserialize_with = "natural_quantities::base")]
-    pub base: Given,
+    pub base: Numbers,
     /// Damping in full contact.
     #[serde(with = "DampingOfFile")]
     pub zeta: Damping,
@@ -141,7 +141,7 @@ pub struct Described {
     pub p_delta: bool,
     /// The floors from the base up, with the matrix K or with modes.
     #[serde(default)]
-    pub floors: Vec<Place>,
+    pub floors: Vec<FloorAt>,
     /// Stiffness matrix by rows, N/m.
     #[serde(default)]
     pub K: Vec<Vec<f64>>,
@@ -188,8 +188,9 @@ const LEAST_SHARE: f64 = 0.01;
 const ASYMMETRY: f64 = 1e-6;
 
 /// Mass, first and second moment of the masses of `floors`.
-fn moments(floors: &[Place]) -> [f64; 3] {
-    let add = |[mass, first, second]: [f64; 3], &Place { m, h }: &Place| [mass + m, first + m * h, second + m * h * h];
+fn moments(floors: &[FloorAt]) -> [f64; 3] {
+    let add =
+        |[mass, first, second]: [f64; 3], &FloorAt { m, h }: &FloorAt| [mass + m, first + m * h, second + m * h * h];
     floors.iter().fold([0.0; 3], add)
 }
 
@@ -251,7 +252,7 @@ pub struct DescribedNumber {
 
 impl Description {
     /// Many masses on the `base` on rigid ground.
-    fn of_many(base: &Given, many: ManyMasses) -> Result<Description, Refused> {
+    fn of_many(base: &Numbers, many: ManyMasses) -> Result<Description, Refused> {
         let (parameters, r) = base.base().map_err(|error| error.of("base"))?;
         let parameters = Parameters { r: r.unwrap_or(f64::NAN), ..parameters };
         Ok(Description { parameters, many: Some(many), ground: None })
@@ -377,11 +378,11 @@ pub fn with_p_delta(base: &Parameters, storeys: &[Storey]) -> Result<Vec<Storey>
 }
 
 /// The floors of the `storeys`, whose numbers and order are checked.
-fn checked_storeys(storeys: &[Storey]) -> Result<Vec<Place>, Refused> {
+fn checked_storeys(storeys: &[Storey]) -> Result<Vec<FloorAt>, Refused> {
     for (number, storey) in (1..).zip(storeys) {
         STOREY.check(storey.k).map_err(|cause| of_number("storey", number, cause))?;
     }
-    let floors: Vec<_> = storeys.iter().map(|&Storey { m, h, .. }| Place { m, h }).collect();
+    let floors: Vec<_> = storeys.iter().map(|&Storey { m, h, .. }| FloorAt { m, h }).collect();
     check_floors(&floors, 1)?;
     (1..floors.len()).try_for_each(|i| check_order(i + 1, floors[i].h, floors[i - 1].h, false))?;
     Ok(floors)
@@ -398,7 +399,7 @@ fn check_order(number: usize, h: f64, below: f64, may_be_same: bool) -> Result<(
 
 impl Structure {
     /// A shear building of these `storeys` on rigid ground.
-    pub fn from_storeys(base: &Given, zeta: &Damping, storeys: &[Storey]) -> Result<Structure, Refused> {
+    pub fn from_storeys(base: &Numbers, zeta: &Damping, storeys: &[Storey]) -> Result<Structure, Refused> {
         let (zeta, storeys) = (zeta.clone(), storeys.to_vec());
         let many = ManyMasses {
             zeta,
@@ -430,7 +431,7 @@ fn of_storeys(base: &Parameters, damping: &Damping, storeys: &[Storey]) -> Resul
 }
 
 /// Floors that the stiffness matrix `K` (N/m) of a fixed base connects.
-fn of_matrices(base: &Parameters, damping: &Damping, floors: &[Place], K: &[Vec<f64>]) -> Result<Structure, Refused> {
+fn of_matrices(base: &Parameters, damping: &Damping, floors: &[FloorAt], K: &[Vec<f64>]) -> Result<Structure, Refused> {
     check_floors(floors, 1)?;
     let n = floors.len();
     length("K", K.len(), n, "floor")?;
@@ -463,7 +464,7 @@ fn of_matrices(base: &Parameters, damping: &Damping, floors: &[Place], K: &[Vec<
     squares.truncate(MOST_MODES);
     let omegas: Vec<_> = squares.iter().map(|(_, square)| square.sqrt()).collect();
     let shapes: Vec<_> = squares.iter().map(|(column, _)| shape(*column)).collect();
-    let part = |shape: &DVector<f64>, with: fn(&Place) -> f64| -> f64 {
+    let part = |shape: &DVector<f64>, with: fn(&FloorAt) -> f64| -> f64 {
         shape.iter().zip(floors).map(|(phi, floor)| phi * with(floor)).sum()
     };
     let participation = |shape| (part(shape, |floor| floor.m), part(shape, |floor| floor.m * floor.h));
@@ -477,7 +478,7 @@ fn of_modes(
     damping: &Damping,
     modes_found: &[FoundMode],
     total: Option<Total>,
-    floors: &[Place],
+    floors: &[FloorAt],
 ) -> Result<Structure, Refused> {
     check_floors(floors, 0)?;
     let (mut omegas, mut participations) = (Vec::new(), Vec::new());
@@ -573,19 +574,19 @@ fn modes(omegas: &[f64], damping: &Damping, participations: &[(f64, f64)]) -> Re
 }
 
 /// The `floors` with a shape of each mode.
-fn shown(floors: &[Place], shapes: &[DVector<f64>]) -> Vec<Floor> {
+fn shown(floors: &[FloorAt], shapes: &[DVector<f64>]) -> Vec<Floor> {
     let of_floor = |i: usize| Modes::new(&shapes.iter().map(|shape| shape[i]).collect::<Vec<_>>());
-    floors.iter().enumerate().map(|(i, &Place { m, h })| Floor { mass: m, height: h, shape: of_floor(i) }).collect()
+    floors.iter().enumerate().map(|(i, &FloorAt { m, h })| Floor { mass: m, height: h, shape: of_floor(i) }).collect()
 }
 
 /// Checks that there are `least` floors or more, their numbers and their order.
-fn check_floors(floors: &[Place], least: usize) -> Result<(), Refused> {
+fn check_floors(floors: &[FloorAt], least: usize) -> Result<(), Refused> {
     let given = floors.len();
     ensure((least..=MOST_FLOORS).contains(&given), || {
         format!("{given} floors are given: a structure has 1 to {MOST_FLOORS}")
     })?;
     let mut below = 0.0;
-    for (number, &Place { m, h }) in (1..).zip(floors) {
+    for (number, &FloorAt { m, h }) in (1..).zip(floors) {
         let fits = OF_FLOOR[0].check(m).and_then(|()| OF_FLOOR[1].check(h));
         fits.map_err(|cause| of_number("floor", number, cause))?;
         check_order(number, h, below, true)?;
@@ -620,7 +621,7 @@ impl Damping {
 }
 
 /// The moments m_s, S_1 and I_2 of all mass above the base.
-fn whole(base: &Parameters, total: Option<Total>, floors: &[Place]) -> Result<[f64; 3], Refused> {
+fn whole(base: &Parameters, total: Option<Total>, floors: &[FloorAt]) -> Result<[f64; 3], Refused> {
     let Some(Total { m_s, S_1, I_2, J_P }) = total else {
         ensure_in(!floors.is_empty(), |units| {
             let [kg, kg_m, kg_m2] = ["kg", "kg.m", "kg.m2"].map(|unit| units.name(unit));
@@ -647,11 +648,11 @@ fn whole(base: &Parameters, total: Option<Total>, floors: &[Place]) -> Result<[f
 }
 
 /// The shape of a mode at the `floors`, for the modal mass 1.
-fn shape(number: usize, found: &FoundMode, height: f64, floors: &[Place]) -> Result<DVector<f64>, Refused> {
+fn shape(number: usize, found: &FoundMode, height: f64, floors: &[FloorAt]) -> Result<DVector<f64>, Refused> {
     length(&format!("the shape of mode {number}"), found.shape.len(), floors.len(), "floor")?;
     let checked = found.shape.iter().try_for_each(|phi| SHAPE.check(*phi));
     checked.map_err(|cause| of_number("mode", number, cause))?;
-    let sum = |term: fn(f64, &Place) -> f64| {
+    let sum = |term: fn(f64, &FloorAt) -> f64| {
         found.shape.iter().zip(floors).map(|(phi, floor)| floor.m * term(*phi, floor)).sum::<f64>()
     };
     let (gamma, modal_mass) = (sum(|phi, _| phi), sum(|phi, _| phi * phi));
@@ -681,8 +682,8 @@ pub(crate) mod tests {
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
-    pub(crate) fn usual() -> Given {
-        Given::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("r", 0.93)]).unwrap()
+    pub(crate) fn usual() -> Numbers {
+        Numbers::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("r", 0.93)]).unwrap()
     }
 
     pub(crate) const STOREYS: [Storey; 3] = [

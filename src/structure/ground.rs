@@ -46,7 +46,7 @@ pub struct Ground {
 /// A contact point: its place from the middle of the base to the right (m), its stiffness (N/m) and its damping (N·s/m).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
-pub struct Point {
+pub struct ContactPoint {
     pub xi: f64,
     pub k: f64,
     pub c: f64,
@@ -56,12 +56,12 @@ pub struct Point {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Foundation {
     /// The points, from left to right.
-    pub points: Vec<Point>,
+    pub points: Vec<ContactPoint>,
     /// The numbers that the points follow from, under another base too.
     #[serde(skip)]
     pub ground: Ground,
     /// y at rest y_s, m.
-    pub rest: f64,
+    pub y_s: f64,
     /// The place of the [`Footing`] among the lateral coordinates, after the modes.
     pub(crate) place: usize,
 }
@@ -162,7 +162,7 @@ impl Ground {
     }
 
     /// The points under a base of half-width `B` (m) that carries `m_t` (kg), none on rigid ground.
-    fn points(&self, m_t: f64, B: f64) -> Result<Vec<Point>, Refused> {
+    fn points(&self, m_t: f64, B: f64) -> Result<Vec<ContactPoint>, Refused> {
         let &Ground { f_v, k_v, zeta_v, c_v, n_points, kr_ratio, k_r, .. } = self;
         let [xi, k, c] = [&self.xi, &self.k, &self.c];
         let list = Some(xi.len() as f64).filter(|points| *points > 0.0);
@@ -188,7 +188,7 @@ impl Ground {
             ensure(counts == [counts[0]; 3] && (2..=MOST_POINTS).contains(&counts[0]), || {
                 format!("xi, k and c have {counts:?} numbers: give 2 to {MOST_POINTS} of each, one for each point")
             })?;
-            return Ok((0..xi.len()).map(|i| Point { xi: xi[i], k: k[i], c: c[i] }).collect());
+            return Ok((0..xi.len()).map(|i| ContactPoint { xi: xi[i], k: k[i], c: c[i] }).collect());
         }
         if self.is_rigid() {
             return Ok(Vec::new());
@@ -211,7 +211,7 @@ impl Ground {
         let k_int = if n == 2 { 0.0 } else { K_z * B * B * (1.0 - ratio) / (most - inner) };
         let k_end = (K_z - (n - 2) as f64 * k_int) / 2.0;
         let k = |i: usize| if i == 0 || i == n - 1 { k_end } else { k_int };
-        Ok((0..n).map(|i| Point { xi: xi(i), k: k(i), c: tau * k(i) }).filter(|point| point.k > 0.0).collect())
+        Ok((0..n).map(|i| ContactPoint { xi: xi(i), k: k(i), c: tau * k(i) }).filter(|point| point.k > 0.0).collect())
     }
 }
 
@@ -229,7 +229,7 @@ impl Foundation {
             return Ok(None);
         }
         let is_close = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
-        for (i, (&Point { xi, k, c }, mirrored)) in points.iter().zip(points.iter().rev()).enumerate() {
+        for (i, (&ContactPoint { xi, k, c }, mirrored)) in points.iter().zip(points.iter().rev()).enumerate() {
             let (is_ordered, is_under) = (i == 0 || points[i - 1].xi < xi, xi.abs() <= B * (1.0 + SAME));
             let is_symmetric =
                 (xi + mirrored.xi).abs() <= SAME * B && is_close(k, mirrored.k) && is_close(c, mirrored.c);
@@ -251,8 +251,8 @@ impl Foundation {
                 "c_ratio = {c_ratio} has no meaning on ground that gives, where nothing rocks about an edge: set c_ratio to 1"
             )
         })?;
-        let mut foundation = Foundation { points, ground: ground.clone(), rest: 0.0, place: modes.len() };
-        foundation.rest = -(m_t * g + P_0) / foundation.sum(0);
+        let mut foundation = Foundation { points, ground: ground.clone(), y_s: 0.0, place: modes.len() };
+        foundation.y_s = -(m_t * g + P_0) / foundation.sum(0);
         let [K_r, least] = [foundation.sum(2), least_stiffness(base, body, modes)];
         ensure_in(K_r > least, |units| {
             let [K_r, least] = [K_r, least].map(|of| units.show(of, "N.m/rad"));
@@ -344,7 +344,7 @@ impl Foundation {
     pub(crate) fn least_lift(&self, base: &Base, body: &Body, modes: &[Mode]) -> f64 {
         let [K_z, K_r] = [0, 2].map(|power| self.sum(power));
         let outer = self.points[0].xi;
-        0.5 * self.rest * self.rest / (1.0 / K_z + outer * outer / (K_r - least_stiffness(base, body, modes)))
+        0.5 * self.y_s * self.y_s / (1.0 / K_z + outer * outer / (K_r - least_stiffness(base, body, modes)))
     }
 
     /// y of a structure that is held at the rotation of this sine, whose tendon has the prestress P_0 at y_s and the stiffness k_t:
@@ -356,12 +356,12 @@ impl Foundation {
     /// and the slope of y over sin θ there.
     pub(crate) fn held_at(&self, sin: f64, base: &Base) -> [f64; 2] {
         let &Base { m_t, g, ties: Ties { P_0, k_t, .. }, .. } = base;
-        let mut y = self.rest - self.points[0].xi.abs() * sin.abs();
+        let mut y = self.y_s - self.points[0].xi.abs() * sin.abs();
         let mut slope = 0.0;
         // a step of Newton's method is exact once the pressed points are known
         for _ in 0..2 * MOST_POINTS {
-            let is_taut = P_0 + k_t * (y - self.rest) > 0.0;
-            let [pull, hold] = if is_taut { [P_0 - k_t * self.rest, k_t] } else { [0.0; 2] };
+            let is_taut = P_0 + k_t * (y - self.y_s) > 0.0;
+            let [pull, hold] = if is_taut { [P_0 - k_t * self.y_s, k_t] } else { [0.0; 2] };
             let pressed = || self.points.iter().filter(|point| point.xi * sin > y);
             let [K_0, K_1] = pressed().fold([hold, 0.0], |[a, b], point| [a + point.k, b + point.k * point.xi]);
             let next = (K_1 * sin - m_t * g - pull) / K_0;
@@ -379,16 +379,17 @@ impl Foundation {
     /// The moment about its middle by which the ground turns back the `base` of a structure that is held at the rotation of this sine and
     /// cosine: Σ ξ N cos θ, N·m, with N = k max(0, ξ sin θ − y) and y of the vertical balance.
     pub(crate) fn restoring(&self, base: &Base, [sin, cos]: [f64; 2]) -> f64 {
-        let y = if sin == 0.0 { self.rest } else { self.held_at(sin, base)[0] };
+        let y = if sin == 0.0 { self.y_s } else { self.held_at(sin, base)[0] };
         // as many points lie on the other side: at rest nothing is left of rounding
-        let moment =
-            |point: &Point| point.k * point.xi * ((point.xi * sin - y).max(0.0) - (-point.xi * sin - y).max(0.0));
+        let moment = |point: &ContactPoint| {
+            point.k * point.xi * ((point.xi * sin - y).max(0.0) - (-point.xi * sin - y).max(0.0))
+        };
         0.5 * self.points.iter().map(moment).sum::<f64>() * cos
     }
 
     /// The rotation at which the first points leave the ground while all others stay pressed, rad; π/2 if it is beyond.
     pub(crate) fn first_release(&self) -> f64 {
-        libm::asin((self.rest / self.points[0].xi).min(1.0))
+        libm::asin((self.y_s / self.points[0].xi).min(1.0))
     }
 }
 

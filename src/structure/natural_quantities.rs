@@ -53,8 +53,8 @@ pub const NATURAL: [Natural; 6] = [
 ///
 /// As a file: `name = value`, and perhaps `units`; an unknown name is an error.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(try_from = "BTreeMap<String, Entry>")]
-pub struct Given {
+#[serde(try_from = "BTreeMap<String, InputEntry>")]
+pub struct Numbers {
     /// In SI units.
     numbers: Vec<(&'static str, f64)>,
     /// The units of the numbers in messages.
@@ -63,14 +63,14 @@ pub struct Given {
     ground: Option<Ground>,
 }
 
-enum Entry {
+enum InputEntry {
     Number(f64),
     Units(Units),
     Ground(Ground),
 }
 
-impl<'de> Deserialize<'de> for Entry {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Entry, D::Error> {
+impl<'de> Deserialize<'de> for InputEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<InputEntry, D::Error> {
         deserializer.deserialize_any(OfEntry)
     }
 }
@@ -79,27 +79,27 @@ impl<'de> Deserialize<'de> for Entry {
 struct OfEntry;
 
 impl<'de> Visitor<'de> for OfEntry {
-    type Value = Entry;
+    type Value = InputEntry;
 
     fn expecting(&self, out: &mut fmt::Formatter) -> fmt::Result {
         out.write_str("a number, units = \"N, m, kg\" or \"kN, m, t\", or [ground] with its numbers")
     }
 
-    fn visit_f64<E: de::Error>(self, number: f64) -> Result<Entry, E> {
-        Ok(Entry::Number(number))
+    fn visit_f64<E: de::Error>(self, number: f64) -> Result<InputEntry, E> {
+        Ok(InputEntry::Number(number))
     }
 
-    fn visit_i64<E: de::Error>(self, number: i64) -> Result<Entry, E> {
-        Ok(Entry::Number(number as f64))
+    fn visit_i64<E: de::Error>(self, number: i64) -> Result<InputEntry, E> {
+        Ok(InputEntry::Number(number as f64))
     }
 
-    fn visit_str<E: de::Error>(self, text: &str) -> Result<Entry, E> {
-        let units = Units::deserialize(text.into_deserializer()).map(Entry::Units);
+    fn visit_str<E: de::Error>(self, text: &str) -> Result<InputEntry, E> {
+        let units = Units::deserialize(text.into_deserializer()).map(InputEntry::Units);
         units.map_err(|_: E| E::invalid_value(Unexpected::Str(text), &self))
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Entry, A::Error> {
-        Ground::deserialize(MapAccessDeserializer::new(map)).map(Entry::Ground)
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<InputEntry, A::Error> {
+        Ground::deserialize(MapAccessDeserializer::new(map)).map(InputEntry::Ground)
     }
 }
 
@@ -115,7 +115,7 @@ pub fn names_of_base() -> impl Iterator<Item = &'static str> {
 }
 
 /// Reads the base of a structure of many masses.
-pub(crate) fn base<'de, D: Deserializer<'de>>(file: D) -> Result<Given, D::Error> {
+pub(crate) fn base<'de, D: Deserializer<'de>>(file: D) -> Result<Numbers, D::Error> {
     let numbers = BTreeMap::<String, f64>::deserialize(file)?;
     if let Some(name) = numbers.keys().find(|name| !names().any(|known| known == *name)) {
         let known = Vec::from_iter(names_of_base());
@@ -125,8 +125,8 @@ pub(crate) fn base<'de, D: Deserializer<'de>>(file: D) -> Result<Given, D::Error
             did_you_mean(name, &known)
         )));
     }
-    let entries = numbers.into_iter().map(|(name, number)| (name, Entry::Number(number)));
-    Given::try_from(BTreeMap::from_iter(entries)).map_err(D::Error::custom)
+    let entries = numbers.into_iter().map(|(name, number)| (name, InputEntry::Number(number)));
+    Numbers::try_from(BTreeMap::from_iter(entries)).map_err(D::Error::custom)
 }
 
 /// Names of all numbers that may be given.
@@ -146,10 +146,10 @@ impl Natural {
     }
 }
 
-impl Given {
+impl Numbers {
     /// These numbers by their names.
-    pub fn of(numbers: &[(&str, f64)]) -> Result<Given, Refused> {
-        let mut given = Given::default();
+    pub fn of(numbers: &[(&str, f64)]) -> Result<Numbers, Refused> {
+        let mut given = Numbers::default();
         numbers.iter().try_for_each(|(name, value)| given.give(name, *value)).map(|()| given)
     }
 
@@ -162,14 +162,14 @@ impl Given {
     }
 
     /// These numbers, which were given in `units`.
-    pub fn measured_in(mut self, units: Units) -> Given {
+    pub fn measured_in(mut self, units: Units) -> Numbers {
         let unit_of = |name| names_and_units().find_map(|(known, unit)| (known == name).then_some(unit));
         self.numbers.iter_mut().for_each(|(name, value)| *value = units.in_si(*value, unit_of(*name).unwrap_or("1")));
         let ground = self.ground.map(|ground| ground.in_si(units));
-        Given { units, ground, ..self }
+        Numbers { units, ground, ..self }
     }
 
-    /// The structure of one mass of these [`Given::parameters`], or of `base` changed by these numbers. Messages name the numbers as
+    /// The structure of one mass of these [`Numbers::parameters`], or of `base` changed by these numbers. Messages name the numbers as
     /// they were given.
     pub fn structure(&self, base: Option<&Parameters>) -> Result<Structure, Refused> {
         let gives = self.ground.as_ref().is_some_and(|ground| !ground.is_rigid());
@@ -189,8 +189,8 @@ impl Given {
     }
 
     /// These numbers on `ground` that gives.
-    pub fn on(self, ground: Ground) -> Given {
-        Given { ground: Some(ground), ..self }
+    pub fn on(self, ground: Ground) -> Numbers {
+        Numbers { ground: Some(ground), ..self }
     }
 
     /// The parameters that these numbers determine on rigid ground, with default values for the rest. If some are missing, each number to
@@ -350,23 +350,23 @@ fn missing(of: &Quantity<Parameters>, called: &dyn Fn(&str) -> String, units: Un
     format!("{name} ({description}) is missing: give {ways}")
 }
 
-impl TryFrom<BTreeMap<String, Entry>> for Given {
+impl TryFrom<BTreeMap<String, InputEntry>> for Numbers {
     type Error = Refused;
 
-    fn try_from(entries: BTreeMap<String, Entry>) -> Result<Given, Refused> {
-        let (mut given, mut units) = (Given::default(), Units::default());
+    fn try_from(entries: BTreeMap<String, InputEntry>) -> Result<Numbers, Refused> {
+        let (mut given, mut units) = (Numbers::default(), Units::default());
         for (name, entry) in entries {
             match entry {
-                Entry::Number(_) if name == "units" => {
+                InputEntry::Number(_) if name == "units" => {
                     return Err(Refused::by("units: \"N, m, kg\" or \"kN, m, t\" is needed"));
                 }
-                Entry::Number(number) => given.give(&name, number)?,
-                Entry::Units(of_numbers) if name == "units" => units = of_numbers,
-                Entry::Ground(ground) if name == "ground" => given.ground = Some(ground),
-                Entry::Ground(_) if !names().chain(["units"]).any(|known| known == name) => {
+                InputEntry::Number(number) => given.give(&name, number)?,
+                InputEntry::Units(of_numbers) if name == "units" => units = of_numbers,
+                InputEntry::Ground(ground) if name == "ground" => given.ground = Some(ground),
+                InputEntry::Ground(_) if !names().chain(["units"]).any(|known| known == name) => {
                     return Err(is_unknown(&name));
                 }
-                Entry::Units(_) | Entry::Ground(_) => {
+                InputEntry::Units(_) | InputEntry::Ground(_) => {
                     return Err(Refused::by(format!("{name}: a number is needed")));
                 }
             }
@@ -381,8 +381,8 @@ mod tests {
     use crate::OneMass;
     use proptest::prelude::*;
 
-    fn given(numbers: &[(&str, f64)]) -> Given {
-        Given::of(numbers).unwrap()
+    fn given(numbers: &[(&str, f64)]) -> Numbers {
+        Numbers::of(numbers).unwrap()
     }
 
     fn derived(parameters: Parameters, name: &str) -> f64 {

@@ -62,9 +62,9 @@ macro_rules! parameters {
                 Ties { $($tie),* }
             }
 
-            /// The parameters of these ties, and the others from `rest`.
-            pub(crate) fn over(self, rest: Parameters) -> Parameters {
-                Parameters { $($tie: self.$tie,)* ..rest }
+            /// The parameters of these ties, and `others`.
+            pub(crate) fn over(self, others: Parameters) -> Parameters {
+                Parameters { $($tie: self.$tie,)* ..others }
             }
         }
 

@@ -1,7 +1,7 @@
 //! This project's engine.
 
-use crate::response::{Failure, Response, Sample};
-use crate::scene::Scene;
+use crate::response::{MotionSample, Response, RunFailure};
+use crate::scene::StudyScene;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::{Ending, Finish};
 use rocking::{Detail, Engine, Load, Motion, Ramp, Watch};
@@ -10,17 +10,17 @@ use rocking::{Detail, Engine, Load, Motion, Ramp, Watch};
 pub const REFERENCE_TOLERANCE: f64 = 1e-14;
 
 /// The response of `scene` at the level `detail`, to `tolerance`; pieces and transitions are shown to `watch`.
-pub fn run(scene: &Scene, detail: Detail, tolerance: f64, watch: &mut impl Watch) -> Response {
+pub fn run(scene: &StudyScene, detail: Detail, tolerance: f64, watch: &mut impl Watch) -> Response {
     let mut samples = Vec::with_capacity(scene.intervals());
     let times = scene.ground.times()[1..].iter().copied();
-    let show = |sample: &rocking::Sample| samples.push(Sample::of(sample.outputs()));
+    let show = |sample: &rocking::Sample| samples.push(MotionSample::of(sample.outputs()));
     match scene.run(detail, tolerance).sample(times, show, watch) {
         Ok(Finish { ending, motion }) => {
-            let failure = (ending == Ending::Overturned).then_some(Failure::Overturned { time: motion.time });
+            let failure = (ending == Ending::Overturned).then_some(RunFailure::Overturned { time: motion.time });
             Response { samples, evaluations: motion.work.evaluations, transitions: motion.transitions, failure }
         }
         Err(error) => {
-            let failure = Failure::GaveUp { time: samples.len() as f64 * scene.dt(), message: error.to_string() };
+            let failure = RunFailure::GaveUp { time: samples.len() as f64 * scene.dt(), message: error.to_string() };
             Response { samples, evaluations: 0, transitions: 0, failure: Some(failure) }
         }
     }
@@ -28,7 +28,7 @@ pub fn run(scene: &Scene, detail: Detail, tolerance: f64, watch: &mut impl Watch
 
 /// The response of `auto` at the default tolerance where a host holds the ground acceleration over communication steps,
 /// `cuts` to a sample.
-pub fn held(scene: &Scene, cuts: usize) -> Response {
+pub fn held(scene: &StudyScene, cuts: usize) -> Response {
     let mut engine = Engine::new(scene.structure, scene.initial, 0.0, DEFAULT_TOLERANCE).expect("the scene can start");
     let h = scene.dt() / cuts as f64;
     let sample = |k: usize| {
@@ -36,7 +36,7 @@ pub fn held(scene: &Scene, cuts: usize) -> Response {
             let a_g = Ramp { value: scene.ramp(k).at(j as f64 * h), slope: 0.0 };
             engine.advance(h, a_g, &mut ()).expect("the scene has an answer");
         }
-        Sample::of(engine.outputs(Load::default()))
+        MotionSample::of(engine.outputs(Load::default()))
     };
     let samples = (0..scene.intervals()).map(sample).collect();
     let &Motion { work, transitions, .. } = engine.motion();
@@ -44,6 +44,6 @@ pub fn held(scene: &Scene, cuts: usize) -> Response {
 }
 
 /// The response against which all others are measured.
-pub fn reference(scene: &Scene) -> Response {
+pub fn reference(scene: &StudyScene) -> Response {
     run(scene, Detail::Nonlinear, REFERENCE_TOLERANCE, &mut ())
 }

@@ -7,7 +7,7 @@ use rocking::{Dissipators, Load, OneMass, Phase, Ramp, State};
 use std::cell::Cell;
 
 /// Two second-order equations for the positions (u, θ).
-pub trait Equations {
+pub trait LateralEquations {
     /// (ü, θ̈) at `tau` s after the start of the interval.
     fn acceleration(&self, tau: f64, position: Vector2<f64>, velocity: Vector2<f64>) -> Vector2<f64>;
 }
@@ -20,7 +20,7 @@ pub struct PhaseEquations<'a> {
     pub evaluations: &'a Cell<u64>,
 }
 
-impl Equations for PhaseEquations<'_> {
+impl LateralEquations for PhaseEquations<'_> {
     fn acceleration(&self, tau: f64, position: Vector2<f64>, velocity: Vector2<f64>) -> Vector2<f64> {
         self.evaluations.set(self.evaluations.get() + 1);
         let state = state(position, velocity);

@@ -11,13 +11,13 @@ pub mod zeno;
 
 // The modules of the failures share these names.
 use crate::equations::PhaseEquations;
-use crate::fixed_step::{Method, Point};
+use crate::fixed_step::{FixedStep, MovingPoint};
 use crate::guards::{displacement_excess, uplift_excess};
 use crate::hybrid::{self, Grid, Transitions};
-use crate::scene::{Scene, structure};
-use crate::tables::{self, Series, Values, series, values};
+use crate::scene::{StudyScene, structure};
+use crate::tables::{self, ChartLine, PageValues, series, values};
 use anyhow::{Context, Result};
-use history::{History, at_rest, every, exact, is_impact, milli};
+use history::{ReferenceHistory, at_rest, every, exact, is_impact, milli};
 use rayon::prelude::*;
 use rocking::series::bisection::last_where;
 use rocking::{Detail, Motion, Parameters, Phase, Ramp, Side, State, Transition, TransitionKind};
@@ -26,12 +26,12 @@ use std::path::Path;
 
 pub struct Exhibit {
     pub key: &'static str, // name in file names
-    pub values: Values,
-    pub series: Vec<Series>, // of its picture
+    pub values: PageValues,
+    pub series: Vec<ChartLine>, // of its picture
 }
 
 /// Writes the curves of each failure, and the values of all, into `folder`; some failures happen under Pacoima Dam and El Centro.
-pub fn write(pacoima: &Scene, el_centro: &Scene, folder: &Path) -> Result<()> {
+pub fn write(pacoima: &StudyScene, el_centro: &StudyScene, folder: &Path) -> Result<()> {
     let exhibits: [&(dyn Fn() -> Result<Exhibit> + Sync); 7] = [
         &|| fall::show(pacoima),
         &double_crossing::show,

@@ -17,23 +17,23 @@
 //! The central difference takes x_{n+1} from the past alone; its velocity is implicit where forces depend on it. With α the
 //! method has an acceleration of its own, which it carries from step to step and which starts anew after a transition.
 
-use crate::equations::{Equations, state};
+use crate::equations::{LateralEquations, state};
 use nalgebra::{Matrix2, Vector2};
 use rocking::State;
 
 /// Positions (u, θ), velocities, and what a method carries over from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct MovingPoint {
     pub position: Vector2<f64>, // (u, θ), m and rad
     pub velocity: Vector2<f64>, // (u̇, θ̇), m/s and rad/s
     /// The method's own acceleration; none after a transition.
     pub acceleration: Option<Vector2<f64>>,
 }
 
-impl Point {
+impl MovingPoint {
     /// Start of a phase in `state`.
-    pub fn start(state: &State) -> Point {
-        Point {
+    pub fn start(state: &State) -> MovingPoint {
+        MovingPoint {
             position: Vector2::new(state.u, state.theta),
             velocity: Vector2::new(state.u_dot, state.theta_dot),
             acceleration: None,
@@ -51,7 +51,7 @@ impl Point {
 
 /// A method that takes one step of any length.
 #[derive(Clone, Copy, Debug)]
-pub enum Method {
+pub enum FixedStep {
     ExplicitEuler,
     SemiImplicitEuler,
     RungeKutta4,
@@ -62,41 +62,43 @@ pub enum Method {
 pub struct Textbook {
     pub name: &'static str, // name on charts
     pub order: u32,         // order of its global error
-    pub method: Method,
+    pub method: FixedStep,
 }
 
 /// The α of HHT-α.
 const ALPHA: f64 = -0.1;
 
 pub static TEXTBOOK: [Textbook; 6] = [
-    Textbook { name: "explicit Euler", order: 1, method: Method::ExplicitEuler },
-    Textbook { name: "semi-implicit Euler", order: 1, method: Method::SemiImplicitEuler },
-    Textbook { name: "central difference", order: 2, method: Method::Newmark { alpha: 0.0, beta: 0.0, gamma: 0.5 } },
-    Textbook { name: "RK4", order: 4, method: Method::RungeKutta4 },
+    Textbook { name: "explicit Euler", order: 1, method: FixedStep::ExplicitEuler },
+    Textbook { name: "semi-implicit Euler", order: 1, method: FixedStep::SemiImplicitEuler },
+    Textbook { name: "central difference", order: 2, method: FixedStep::Newmark { alpha: 0.0, beta: 0.0, gamma: 0.5 } },
+    Textbook { name: "RK4", order: 4, method: FixedStep::RungeKutta4 },
     Textbook {
         name: "Newmark average acceleration",
         order: 2,
-        method: Method::Newmark { alpha: 0.0, beta: 0.25, gamma: 0.5 },
+        method: FixedStep::Newmark { alpha: 0.0, beta: 0.25, gamma: 0.5 },
     },
     Textbook {
         name: "HHT-α",
         order: 2,
-        method: Method::Newmark { alpha: ALPHA, beta: (1.0 - ALPHA) * (1.0 - ALPHA) / 4.0, gamma: 0.5 - ALPHA },
+        method: FixedStep::Newmark { alpha: ALPHA, beta: (1.0 - ALPHA) * (1.0 - ALPHA) / 4.0, gamma: 0.5 - ALPHA },
     },
 ];
 
-impl Method {
+impl FixedStep {
     /// From `from`, `tau` s into the interval, over `h` s.
-    pub fn step(self, equations: &dyn Equations, tau: f64, from: &Point, h: f64) -> Point {
-        let Point { position: x, velocity: v, acceleration } = *from;
+    pub fn step(self, equations: &dyn LateralEquations, tau: f64, from: &MovingPoint, h: f64) -> MovingPoint {
+        let MovingPoint { position: x, velocity: v, acceleration } = *from;
         let a = |tau, x, v| equations.acceleration(tau, x, v);
         match self {
-            Method::ExplicitEuler => Point { position: x + h * v, velocity: v + h * a(tau, x, v), acceleration: None },
-            Method::SemiImplicitEuler => {
-                let velocity = v + h * a(tau, x, v);
-                Point { position: x + h * velocity, velocity, acceleration: None }
+            FixedStep::ExplicitEuler => {
+                MovingPoint { position: x + h * v, velocity: v + h * a(tau, x, v), acceleration: None }
             }
-            Method::RungeKutta4 => {
+            FixedStep::SemiImplicitEuler => {
+                let velocity = v + h * a(tau, x, v);
+                MovingPoint { position: x + h * velocity, velocity, acceleration: None }
+            }
+            FixedStep::RungeKutta4 => {
                 let slope = |c: f64, (dx, dv): (Vector2<f64>, Vector2<f64>)| {
                     let v = v + c * h * dv;
                     (v, a(tau + c * h, x + c * h * dx, v))
@@ -105,20 +107,20 @@ impl Method {
                 let k2 = slope(0.5, k1);
                 let k3 = slope(0.5, k2);
                 let k4 = slope(1.0, k3);
-                Point {
+                MovingPoint {
                     position: x + h / 6.0 * (k1.0 + 2.0 * (k2.0 + k3.0) + k4.0),
                     velocity: v + h / 6.0 * (k1.1 + 2.0 * (k2.1 + k3.1) + k4.1),
                     acceleration: None,
                 }
             }
-            Method::Newmark { alpha, beta, gamma } => {
+            FixedStep::Newmark { alpha, beta, gamma } => {
                 // Without α the carried acceleration is that of the equations.
                 let there = acceleration.filter(|_| alpha == 0.0).unwrap_or_else(|| a(tau, x, v));
                 let start = acceleration.unwrap_or(there);
                 let position = |end| x + h * v + h * h * ((0.5 - beta) * start + beta * end);
                 let velocity = |end| v + h * ((1.0 - gamma) * start + gamma * end);
                 let end = solve(start, |end| (1.0 + alpha) * a(tau + h, position(end), velocity(end)) - alpha * there);
-                Point { position: position(end), velocity: velocity(end), acceleration: Some(end) }
+                MovingPoint { position: position(end), velocity: velocity(end), acceleration: Some(end) }
             }
         }
     }

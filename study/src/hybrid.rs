@@ -1,10 +1,10 @@
 //! From phase to phase: any integrator of smooth motion, made to obey the model's transitions.
 
-use crate::equations::{Equations, PhaseEquations};
-use crate::fixed_step::{Method, Point};
+use crate::equations::{LateralEquations, PhaseEquations};
+use crate::fixed_step::{FixedStep, MovingPoint};
 use crate::guards::{PhaseEnd, UpliftRule};
-use crate::response::{Failure, Response, Sample};
-use crate::scene::Scene;
+use crate::response::{MotionSample, Response, RunFailure};
+use crate::scene::StudyScene;
 use rocking::{Load, Phase, Structure};
 use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
@@ -20,26 +20,26 @@ pub enum Transitions {
 pub struct Span<'a> {
     pub equations: &'a PhaseEquations<'a>,
     pub tau: f64,
-    pub from: Point,
+    pub from: MovingPoint,
     pub until: f64,
 }
 
 /// A part of smooth motion: times are counted from the start of the interval.
-pub struct Stretch {
+pub struct SmoothPart {
     pub start: f64, // its start, s
     pub end: f64,   // its end, s
-    pub from: Point,
-    pub to: Point,
+    pub from: MovingPoint,
+    pub to: MovingPoint,
     pub is_over: bool,
 }
 
 /// An integrator of the motion between transitions.
 pub trait Integrator {
     /// Steps over `span`, or to where `end` says that the phase is over; yields the last step.
-    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String>;
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<SmoothPart, String>;
 
     /// The point `h` s after `from`, which is `tau` s into the interval.
-    fn flow(&self, equations: &PhaseEquations, tau: f64, from: &Point, h: f64) -> Result<Point, String> {
+    fn flow(&self, equations: &PhaseEquations, tau: f64, from: &MovingPoint, h: f64) -> Result<MovingPoint, String> {
         Ok(self.advance(&Span { equations, tau, from: *from, until: tau + h }, None)?.to)
     }
 }
@@ -47,7 +47,7 @@ pub trait Integrator {
 /// A textbook method on a grid of steps of `h` s from the start of each interval. After a transition the first step ends at
 /// the next point of the grid.
 pub struct Grid {
-    pub method: Method,
+    pub method: FixedStep,
     pub h: f64, // the step, s
 }
 
@@ -55,17 +55,17 @@ pub struct Grid {
 const SLIVER: f64 = 1e-9;
 
 impl Integrator for Grid {
-    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<SmoothPart, String> {
         let &Span { equations, tau, ref from, until } = span;
         let next = ((tau / self.h + SLIVER).floor() + 1.0) * self.h;
         let next = if next > until - SLIVER * self.h { until } else { next };
         let to = self.method.step(equations, tau, from, next - tau);
         let is_over = end.is_some_and(|end| end.is_over(&to.state()));
-        Ok(Stretch { start: tau, end: next, from: *from, to, is_over })
+        Ok(SmoothPart { start: tau, end: next, from: *from, to, is_over })
     }
 
     /// One step, so that nothing is rounded to the grid.
-    fn flow(&self, equations: &PhaseEquations, tau: f64, from: &Point, h: f64) -> Result<Point, String> {
+    fn flow(&self, equations: &PhaseEquations, tau: f64, from: &MovingPoint, h: f64) -> Result<MovingPoint, String> {
         Ok(self.method.step(equations, tau, from, h))
     }
 }
@@ -78,17 +78,17 @@ const THROUGH_THE_FLOOR: f64 = 1e-3;
 
 /// The response of `scene`; each transition's instant (s) and the phase after it are shown to `observe`.
 pub fn run(
-    scene: &Scene,
+    scene: &StudyScene,
     integrator: &dyn Integrator,
     transitions: Transitions,
     uplift: UpliftRule,
     observe: &mut dyn FnMut(f64, Phase),
 ) -> Response {
-    let mut motion = Motion {
+    let mut motion = SceneMotion {
         scene,
         uplift,
         phase: scene.initial.initial_phase().expect("the study's own initial states are in range"),
-        point: Point::start(&scene.initial),
+        point: MovingPoint::start(&scene.initial),
         transitions: 0,
         evaluations: Cell::new(0),
     };
@@ -100,22 +100,22 @@ pub fn run(
             break;
         }
         let state = motion.point.state();
-        samples.push(Sample::of(|output| output.at(&structure, motion.phase, &state, Load::default())));
+        samples.push(MotionSample::of(|output| output.at(&structure, motion.phase, &state, Load::default())));
     }
     Response { samples, evaluations: motion.evaluations.get(), transitions: motion.transitions, failure }
 }
 
 /// A structure on its way through a scene.
-struct Motion<'a> {
-    scene: &'a Scene,
+struct SceneMotion<'a> {
+    scene: &'a StudyScene,
     uplift: UpliftRule,
     phase: Phase,
-    point: Point,
+    point: MovingPoint,
     transitions: u64,
     evaluations: Cell<u64>,
 }
 
-impl Motion<'_> {
+impl SceneMotion<'_> {
     /// Over the interval `k` between samples.
     fn advance(
         &mut self,
@@ -123,7 +123,7 @@ impl Motion<'_> {
         integrator: &dyn Integrator,
         transitions: Transitions,
         observe: &mut dyn FnMut(f64, Phase),
-    ) -> Result<(), Failure> {
+    ) -> Result<(), RunFailure> {
         let (structure, dt) = (&self.scene.structure, self.scene.dt());
         let start = k as f64 * dt;
         let most = self.transitions + MAX_TRANSITIONS_PER_INTERVAL;
@@ -133,7 +133,7 @@ impl Motion<'_> {
             let phase = self.phase;
             let equations = PhaseEquations { structure, phase, a_g, evaluations: &self.evaluations };
             let end = PhaseEnd { structure, uplift: self.uplift, phase };
-            let gave_up = |message| Failure::GaveUp { time: start + tau, message };
+            let gave_up = |message| RunFailure::GaveUp { time: start + tau, message };
             let span = Span { equations: &equations, tau, from: self.point, until: dt };
             let stretch = integrator.advance(&span, Some(&end)).map_err(gave_up)?;
             let is_over = stretch.is_over;
@@ -143,30 +143,30 @@ impl Motion<'_> {
             };
             let time = start + tau;
             if !self.point.is_finite() {
-                return Err(Failure::Diverged { time });
+                return Err(RunFailure::Diverged { time });
             }
             if is_over {
                 self.enter_next_phases(time, observe)?;
             } else if phase != Phase::FullContact && end.guard(&self.point.state()) < -THROUGH_THE_FLOOR {
-                return Err(Failure::ThroughTheFloor { time });
+                return Err(RunFailure::ThroughTheFloor { time });
             }
             if self.transitions > most {
-                return Err(Failure::Chatter { time });
+                return Err(RunFailure::Chatter { time });
             }
         }
         Ok(())
     }
 
     /// The phase that follows the present one at `time` (s), and the one after that where a landing leaves uplift due.
-    fn enter_next_phases(&mut self, time: f64, observe: &mut dyn FnMut(f64, Phase)) -> Result<(), Failure> {
+    fn enter_next_phases(&mut self, time: f64, observe: &mut dyn FnMut(f64, Phase)) -> Result<(), RunFailure> {
         loop {
             let end = PhaseEnd { structure: &self.scene.structure, uplift: self.uplift, phase: self.phase };
             let (phase, state) = end.next(self.point.state());
-            (self.phase, self.point) = (phase, Point::start(&state));
+            (self.phase, self.point) = (phase, MovingPoint::start(&state));
             self.transitions += 1;
             observe(time, phase);
             match phase {
-                Phase::Overturned(_) => return Err(Failure::Overturned { time }),
+                Phase::Overturned(_) => return Err(RunFailure::Overturned { time }),
                 Phase::FullContact if (PhaseEnd { phase, ..end }).is_over(&state) => (),
                 _ => return Ok(()),
             }
@@ -179,8 +179,8 @@ fn locate(
     equations: &PhaseEquations,
     integrator: &dyn Integrator,
     end: &PhaseEnd,
-    stretch: &Stretch,
-) -> Result<(f64, Point), String> {
+    stretch: &SmoothPart,
+) -> Result<(f64, MovingPoint), String> {
     const CONVERGED: f64 = 1e-12; // the last move, as a part of the stretch: what is left is smaller by orders of magnitude
     const MAX_ITERATIONS: usize = 100; // halvings that reach rounding from anywhere
     let from = stretch.from.state();

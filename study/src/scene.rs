@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// A structure on moving ground, whose samples are evenly spaced from t = 0 on.
 #[derive(Clone, Debug)]
-pub struct Scene {
+pub struct StudyScene {
     pub key: &'static str,   // name in file names
     pub title: &'static str, // name on charts
     pub structure: OneMass,
@@ -27,7 +27,7 @@ const PACOIMA_SCALE: f64 = 5.0 * 0.29;
 const PACOIMA: &str = "sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2";
 const EL_CENTRO: &str = "imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2";
 
-impl Scene {
+impl StudyScene {
     /// A structure of parameters that are known to be in range, from `initial` on this `ground`.
     pub fn new(
         key: &'static str,
@@ -35,25 +35,25 @@ impl Scene {
         parameters: Parameters,
         initial: State,
         ground: Record,
-    ) -> Scene {
-        Scene { key, title, structure: structure(parameters), initial, ground }
+    ) -> StudyScene {
+        StudyScene { key, title, structure: structure(parameters), initial, ground }
     }
 
     /// Evison's specimen, released at rest with θ = 0.04 rad, u = u_cr: 2 s, sampled every 0.01 s.
-    pub fn evison_free_vibration() -> Scene {
+    pub fn evison_free_vibration() -> StudyScene {
         let initial = State { theta: 0.04, u: structure(Parameters::EVISON).u_cr, ..State::default() };
         let (key, title) = ("evison-free-vibration", "Evison's specimen, free vibration");
-        Scene::new(key, title, Parameters::EVISON, initial, ground(0.01, vec![0.0; 201]))
+        StudyScene::new(key, title, Parameters::EVISON, initial, ground(0.01, vec![0.0; 201]))
     }
 
     /// All four, those with a record from rest. Pacoima Dam is shaken as on the table, for 4 s; El Centro lasts 15 s.
-    pub fn all(records: &Path) -> Result<[Scene; 4]> {
+    pub fn all(records: &Path) -> Result<[StudyScene; 4]> {
         let pacoima = read_record(records, PACOIMA)?.scaled(PACOIMA_TIME_SCALE, PACOIMA_SCALE)?;
         let el_centro = read_record(records, EL_CENTRO)?;
         let (mcmanus, stiff) = (Parameters::MCMANUS, Parameters { f_fc: 30.0, ..Parameters::MCMANUS });
         let title = "McManus's specimen, El Centro 1940 (180)";
         Ok([
-            Scene::evison_free_vibration(),
+            StudyScene::evison_free_vibration(),
             from_rest("mcmanus-pacoima", "McManus's specimen, Pacoima Dam 1971 (164)", mcmanus, &pacoima, 2000)?,
             from_rest("mcmanus-el-centro", title, mcmanus, &el_centro, 1500)?,
             from_rest("stiff-el-centro", "Stiff structure (30 Hz), El Centro 1940 (180)", stiff, &el_centro, 1500)?,
@@ -61,11 +61,15 @@ impl Scene {
     }
 
     /// The same scene with its ground motion and its initial state multiplied by `factor`.
-    pub fn scaled(&self, factor: f64) -> Scene {
+    pub fn scaled(&self, factor: f64) -> StudyScene {
         let State { u, u_dot, theta, theta_dot } = self.initial;
         let initial =
             State { u: factor * u, u_dot: factor * u_dot, theta: factor * theta, theta_dot: factor * theta_dot };
-        Scene { initial, ground: self.ground.clone().scaled(1.0, factor).expect("a finite factor"), ..self.clone() }
+        StudyScene {
+            initial,
+            ground: self.ground.clone().scaled(1.0, factor).expect("a finite factor"),
+            ..self.clone()
+        }
     }
 
     /// The engine's run of it at the level `detail`, to `tolerance`. A rigid structure starts without elastic motion.
@@ -95,11 +99,11 @@ impl Scene {
     }
 
     /// The same scene with results at `cuts` instants between two samples.
-    pub fn resampled(&self, cuts: usize) -> Scene {
+    pub fn resampled(&self, cuts: usize) -> StudyScene {
         let h = self.dt() / cuts as f64;
         let a_g = |j: usize| self.ramp(j / cuts).at((j % cuts) as f64 * h);
         let last = self.ground.acceleration()[self.intervals()];
-        Scene { ground: ground(h, (0..self.intervals() * cuts).map(a_g).chain([last]).collect()), ..self.clone() }
+        StudyScene { ground: ground(h, (0..self.intervals() * cuts).map(a_g).chain([last]).collect()), ..self.clone() }
     }
 }
 
@@ -120,11 +124,11 @@ fn from_rest(
     parameters: Parameters,
     record: &Record,
     samples: usize,
-) -> Result<Scene> {
+) -> Result<StudyScene> {
     let Some(a_g) = record.acceleration().get(..samples) else {
         bail!("{}: {} samples where {samples} are needed", record.title(), record.acceleration().len());
     };
-    Ok(Scene::new(key, title, parameters, State::default(), ground(record.times()[1], a_g.to_vec())))
+    Ok(StudyScene::new(key, title, parameters, State::default(), ground(record.times()[1], a_g.to_vec())))
 }
 
 /// The record in `file` of the folder `records`.

@@ -10,7 +10,7 @@ use crate::tables;
 use anyhow::Result;
 use limits::measure;
 use std::path::Path;
-use vibration::Vibration;
+use vibration::FreeVibration;
 
 /// Damping ratios ζ_u of the table of limits.
 const DAMPING: [f64; 4] = [0.0, 0.05, 0.2, 1.0];
@@ -21,7 +21,7 @@ pub fn write(folder: &Path) -> Result<()> {
     tables::save(&folder.join("stability.csv"), "name,value", values)?;
     let limits = TEXTBOOK.iter().flat_map(|textbook| {
         DAMPING.map(|zeta| {
-            let limit = measure(textbook.method, &Vibration { chi: 0.0, zeta_fc: zeta });
+            let limit = measure(textbook.method, &FreeVibration { chi: 0.0, zeta_fc: zeta });
             [textbook.name.to_string(), zeta.to_string(), limit.to_string()]
         })
     });

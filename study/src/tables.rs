@@ -4,21 +4,21 @@ use anyhow::Result;
 use std::path::Path;
 
 /// A curve: its name, and its points.
-pub type Series = (String, Vec<(f64, f64)>);
+pub type ChartLine = (String, Vec<(f64, f64)>);
 
-pub fn series(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Series {
+pub fn series(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> ChartLine {
     (name.into(), points.into_iter().collect())
 }
 
 /// Values of a page's words, by their names.
-pub type Values = Vec<(&'static str, String)>;
+pub type PageValues = Vec<(&'static str, String)>;
 
 /// The values of this name each.
-pub fn values<const N: usize>(all: [(&'static str, &dyn ToString); N]) -> Values {
+pub fn values<const N: usize>(all: [(&'static str, &dyn ToString); N]) -> PageValues {
     all.map(|(name, value)| (name, value.to_string())).into()
 }
 
-pub fn save_series(path: &Path, all: &[Series]) -> Result<()> {
+pub fn save_series(path: &Path, all: &[ChartLine]) -> Result<()> {
     let rows = all.iter().flat_map(|(name, points)| points.iter().map(move |(x, y)| (name, x, y)));
     save(path, "series,x,y", rows.map(|(name, x, y)| [name.clone(), format!("{x:.6e}"), format!("{y:.6e}")]))
 }

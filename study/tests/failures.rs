@@ -6,10 +6,10 @@ mod synthetic;
 use approx::assert_relative_eq;
 use rocking::{Detail, State};
 use study::failures::{Exhibit, double_crossing, grazing, history, overturning, zeno};
-use study::fixed_step::Method;
+use study::fixed_step::FixedStep;
 use study::guards::{displacement_excess, uplift_excess};
 use study::hybrid::{Grid, Transitions, run};
-use study::response::Failure;
+use study::response::RunFailure;
 
 fn series<'a>(exhibit: &'a Exhibit, name: &str) -> &'a [(f64, f64)] {
     &exhibit.series.iter().find(|(of, _)| of == name).unwrap().1
@@ -30,13 +30,13 @@ fn a_dip_between_two_checks_is_missed_and_the_engine_sees_it() {
 #[test]
 fn the_displacement_alone_makes_contact_chatter() {
     let scene = synthetic::scene().scaled(1.5);
-    let grid = Grid { method: Method::RungeKutta4, h: scene.dt() / 16.0 };
+    let grid = Grid { method: FixedStep::RungeKutta4, h: scene.dt() / 16.0 };
     let complete = run(&scene, &grid, Transitions::Located, uplift_excess, &mut |_, _| ());
     let mut phases = Vec::new();
     let naive = run(&scene, &grid, Transitions::Located, displacement_excess, &mut |time, phase| {
         phases.push((time, phase));
     });
-    let Some(Failure::Chatter { time }) = naive.failure else { panic!("{:?}", naive.failure) };
+    let Some(RunFailure::Chatter { time }) = naive.failure else { panic!("{:?}", naive.failure) };
     assert_eq!((complete.failure, complete.transitions), (None, study::engine::reference(&scene).transitions));
     let at_once = phases.iter().filter(|(at, _)| (at - time).abs() < 1e-9).count();
     assert!(at_once > 900, "{at_once} transitions at one instant");

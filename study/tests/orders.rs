@@ -1,14 +1,14 @@
 //! Observed orders of convergence, through transitions.
 
 use study::engine;
-use study::fixed_step::{Method, TEXTBOOK};
+use study::fixed_step::{FixedStep, TEXTBOOK};
 use study::guards::uplift_excess;
 use study::hybrid::{self, Grid, Transitions};
-use study::scene::Scene;
+use study::scene::StudyScene;
 
 /// The error in θ of Evison's free vibration, with its eight impacts, by `steps` steps between samples.
-fn error(method: Method, steps: u32) -> f64 {
-    let scene = Scene::evison_free_vibration();
+fn error(method: FixedStep, steps: u32) -> f64 {
+    let scene = StudyScene::evison_free_vibration();
     let grid = Grid { method, h: scene.dt() / f64::from(steps) };
     let response = hybrid::run(&scene, &grid, Transitions::Located, uplift_excess, &mut |_, _| ());
     response.errors(&engine::reference(&scene)).unwrap().theta

@@ -4,13 +4,13 @@ mod synthetic;
 
 use indicatif::ProgressBar;
 use study::engine;
-use study::precision::{Curve, Limits, measure, write};
-use study::response::Failure;
+use study::precision::{MethodCurve, StudyLimits, measure, write};
+use study::response::RunFailure;
 
 /// Five points to each curve, whatever a run takes.
-const SMALL: Limits = Limits { run: 0.0, points: 5 };
+const SMALL: StudyLimits = StudyLimits { run: 0.0, points: 5 };
 
-fn errors(curve: &Curve) -> Vec<f64> {
+fn errors(curve: &MethodCurve) -> Vec<f64> {
     curve.points.iter().map(|point| point.errors.as_ref().unwrap().theta).collect()
 }
 
@@ -38,7 +38,8 @@ fn the_curves_are_what_the_methods_are_known_for() {
         assert!(errors(curve(name))[4] < 1e-2, "{name}");
     }
     let own_events = curve("differential-equations DOP853, its events");
-    let falls = own_events.points.iter().filter(|point| matches!(point.errors, Err(Failure::ThroughTheFloor { .. })));
+    let falls =
+        own_events.points.iter().filter(|point| matches!(point.errors, Err(RunFailure::ThroughTheFloor { .. })));
     assert!(falls.count() >= 3, "{own_events:?}");
 }
 

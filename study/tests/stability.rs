@@ -1,10 +1,10 @@
 //! Measured limits of stability against theory, and the trap of uplift.
 
 use study::fixed_step::TEXTBOOK;
-use study::response::Failure;
+use study::response::RunFailure;
 use study::stability::limits::measure;
 use study::stability::uplift_trap;
-use study::stability::vibration::Vibration;
+use study::stability::vibration::FreeVibration;
 
 /// Limits of ω_u h by theory, as functions of ζ_u; infinite where there is no limit. The limit of RK4 is a root of its polynomial.
 static THEORY: [fn(f64) -> f64; TEXTBOOK.len()] = [
@@ -23,7 +23,7 @@ fn measured_limits_are_those_of_theory() {
             if textbook.name == "RK4" && ![0.0, 1.0].contains(&zeta_u) {
                 continue;
             }
-            let limit = measure(textbook.method, &Vibration { chi, zeta_fc: zeta_u * f64::sqrt(1.0 - chi) });
+            let limit = measure(textbook.method, &FreeVibration { chi, zeta_fc: zeta_u * f64::sqrt(1.0 - chi) });
             let (expected, name) = (theory(zeta_u), textbook.name);
             let is_near = limit == expected || (limit - expected).abs() < 0.02 * expected;
             assert!(is_near, "{name}, χ = {chi}, ζ_u = {zeta_u}: {limit} {expected}");
@@ -39,7 +39,7 @@ fn a_step_that_is_stable_down_is_unstable_up() {
     assert!(omega_fc * uplift_trap::STEP < 2.0 && omega_u * uplift_trap::STEP > 2.0);
     let exact = study::engine::reference(&scene);
     let unstable = uplift_trap::response(&scene, 2);
-    let Some(Failure::Diverged { time }) = unstable.failure else { panic!("{:?}", unstable.failure) };
+    let Some(RunFailure::Diverged { time }) = unstable.failure else { panic!("{:?}", unstable.failure) };
     let uplift = exact.samples.iter().position(|sample| sample.theta != 0.0).unwrap();
     assert!(time > uplift as f64 * uplift_trap::STEP);
     for (sample, exact) in unstable.samples.iter().zip(&exact.samples).take(uplift) {

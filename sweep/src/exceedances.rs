@@ -68,10 +68,10 @@ impl Tally {
 }
 
 /// A run's group, its intensity, and what it came to: an outcome, or whether a limit was exceeded, if that is known.
-type Counted<T> = (usize, f64, T);
+type CountedRun<T> = (usize, f64, T);
 
 /// The outcome of a run under g (m/s²).
-type Of<'a> = (&'a Outcome, f64);
+type RunOutcome<'a> = (&'a Outcome, f64);
 
 /// Counts the `outcomes` of all runs of `plan`, in their order, population by population: against intensities in
 /// `measure`, how many overturn and how many exceed each of `limits`.
@@ -87,10 +87,11 @@ pub fn count(plan: &Plan, measure: IntensityMeasure, limits: &[Limit], outcomes:
     plan.populations.iter().map(of).collect()
 }
 
-fn of_population(name: &str, limits: &[Limit], runs: &[Counted<Of>]) -> Exceedances {
+fn of_population(name: &str, limits: &[Limit], runs: &[CountedRun<RunOutcome>]) -> Exceedances {
     let (ended, failed): (Vec<_>, Vec<_>) =
         runs.iter().copied().partition(|(.., of)| matches!(of.0, Outcome::Ended(_)));
-    let still_rocks = |run: &&Counted<Of>| matches!(run.2.0, Outcome::Ended(of) if of.ending == Ending::StillRocking);
+    let still_rocks =
+        |run: &&CountedRun<RunOutcome>| matches!(run.2.0, Outcome::Ended(of) if of.ending == Ending::StillRocking);
     let still_rocking = ended.iter().filter(still_rocks).count();
     let bins = bins(ended);
     Exceedances {
@@ -102,16 +103,17 @@ fn of_population(name: &str, limits: &[Limit], runs: &[Counted<Of>]) -> Exceedan
     }
 }
 
-fn fragility(limit: Limit, bins: &[Vec<Counted<Of>>]) -> Fragility {
-    let exceeds = |&(group, intensity, (outcome, g)): &Counted<Of>| (group, intensity, outcome.exceeds(&limit, g));
+fn fragility(limit: Limit, bins: &[Vec<CountedRun<RunOutcome>>]) -> Fragility {
+    let exceeds =
+        |&(group, intensity, (outcome, g)): &CountedRun<RunOutcome>| (group, intensity, outcome.exceeds(&limit, g));
     let bins: Vec<Vec<_>> = bins.iter().map(|runs| runs.iter().map(exceeds).collect()).collect();
     let (tallies, curve) = fit(&bins);
     Fragility { limit, tallies, curve }
 }
 
 /// Counts how often the runs in each of `bins` exceed a limit, and fits the curve to the single runs.
-fn fit(bins: &[Vec<Counted<Option<bool>>>]) -> (Vec<Tally>, Result<FragilityCurve, Refused>) {
-    let tally = |runs: &Vec<Counted<Option<bool>>>| {
+fn fit(bins: &[Vec<CountedRun<Option<bool>>>]) -> (Vec<Tally>, Result<FragilityCurve, Refused>) {
+    let tally = |runs: &Vec<CountedRun<Option<bool>>>| {
         runs.iter().filter_map(|run| run.2).fold(Tally::default(), |Tally { known, exceedances }, exceeds| Tally {
             known: known + 1,
             exceedances: exceedances + usize::from(exceeds),
@@ -130,7 +132,7 @@ pub fn of_runs(runs: Vec<(usize, f64, Option<bool>)>) -> Result<(FragilityCurve,
 
 /// `runs` in bins of about the same number, by intensity: √n of them, at most [`MOST_BINS`]. Runs of the same intensity
 /// are in the same bin; where there are few intensities with many runs each, each has a bin of its own.
-fn bins<T: Copy>(mut runs: Vec<Counted<T>>) -> Vec<Vec<Counted<T>>> {
+fn bins<T: Copy>(mut runs: Vec<CountedRun<T>>) -> Vec<Vec<CountedRun<T>>> {
     let all = runs.len();
     runs.sort_by(|a, b| a.1.total_cmp(&b.1));
     let of_one_intensity: Vec<_> = runs.chunk_by(|a, b| a.1 == b.1).collect();
@@ -150,7 +152,7 @@ fn bins<T: Copy>(mut runs: Vec<Counted<T>>) -> Vec<Vec<Counted<T>>> {
 
 impl Bin {
     /// Of `runs`, one or more, by intensity.
-    fn of<T>(runs: &[Counted<T>]) -> Bin {
+    fn of<T>(runs: &[CountedRun<T>]) -> Bin {
         let logarithms: f64 = runs.iter().map(|(_, intensity, _)| intensity.ln()).sum();
         let [lowest, highest] = [runs[0].1, runs[runs.len() - 1].1];
         let mean = (logarithms / runs.len() as f64).exp();

@@ -61,7 +61,7 @@ pub struct Map {
 /// Position of a point along amplitudes and frequencies, in 1/256 of the steps of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs)]
-pub struct Place {
+pub struct GridPlace {
     pub amplitude: u32,
     pub frequency: u32,
 }
@@ -116,7 +116,7 @@ pub const HEADINGS: [&str; 12] = [
 
 /// A point that has been run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Point {
+pub struct MapPoint {
     /// Fate of the structure.
     pub fate: Fate,
     /// Number of impacts and landings.
@@ -155,10 +155,10 @@ impl Axis {
     }
 }
 
-impl Place {
+impl GridPlace {
     /// Point (`frequency`, `amplitude`) of the grid, counted from 0.
-    pub fn of_grid(frequency: usize, amplitude: usize) -> Place {
-        Place { amplitude: amplitude as u32 * PARTS, frequency: frequency as u32 * PARTS }
+    pub fn of_grid(frequency: usize, amplitude: usize) -> GridPlace {
+        GridPlace { amplitude: amplitude as u32 * PARTS, frequency: frequency as u32 * PARTS }
     }
 
     /// Steps of the grid from its first point, along frequencies and amplitudes.
@@ -167,13 +167,13 @@ impl Place {
     }
 }
 
-impl Point {
+impl MapPoint {
     /// Class of the point.
     pub fn class(&self) -> Class {
         (self.fate, if self.fate == Fate::Overturns { self.impacts.min(2) } else { 0 })
     }
 
-    fn of<Q: Runs>(run: &Run<Q>, finish: Result<Finish<Q>, RunError>, Rocked { theta, impacts }: Rocked) -> Point {
+    fn of<Q: Runs>(run: &Run<Q>, finish: Result<Finish<Q>, RunError>, Rocked { theta, impacts }: Rocked) -> MapPoint {
         let theta = theta / libm::atan(run.structure.base().tan_alpha_cg);
         let (fate, transitions, end, reason) = match finish {
             Ok(finish) => {
@@ -187,12 +187,12 @@ impl Point {
             }
             Err(error) => (Fate::Failed, 0, error.time().unwrap_or(run.ground.start()), error.to_string()),
         };
-        Point { fate, impacts, theta, transitions, end, condition: None, reason }
+        MapPoint { fate, impacts, theta, transitions, end, condition: None, reason }
     }
 
     /// How much it differs from `other`, whose amplitude is larger by [`PERTURBATION`].
-    fn condition(&self, other: &Point) -> f64 {
-        let change = |of: fn(&Point) -> f64| (of(other) - of(self)).abs() / of(self) / PERTURBATION;
+    fn condition(&self, other: &MapPoint) -> f64 {
+        let change = |of: fn(&MapPoint) -> f64| (of(other) - of(self)).abs() / of(self) / PERTURBATION;
         match self.fate {
             _ if self.class() != other.class() => f64::INFINITY,
             Fate::NoUplift | Fate::Failed => 0.0,
@@ -220,7 +220,7 @@ impl Map {
         let (detail, tolerance) = (Detail::default(), DEFAULT_TOLERANCE);
         let (structure, finds_condition) = (structure.into(), false);
         let map = Map { structure, pulse, frequency, amplitude, is_dimensionless, detail, tolerance, finds_condition };
-        for place in [Place::of_grid(0, 0), Place::of_grid(frequencies - 1, amplitudes - 1)] {
+        for place in [GridPlace::of_grid(0, 0), GridPlace::of_grid(frequencies - 1, amplitudes - 1)] {
             map.pulse(place).check()?;
         }
         Ok(map)
@@ -242,7 +242,7 @@ impl Map {
     }
 
     /// The pulse at `place`.
-    pub fn pulse(&self, place: Place) -> Pulse {
+    pub fn pulse(&self, place: GridPlace) -> Pulse {
         let [frequency, amplitude] = place.steps();
         let (frequency, amplitude) = (self.frequency.at(frequency), self.amplitude.at(amplitude));
         let (of_amplitude, of_frequency) =
@@ -251,7 +251,7 @@ impl Map {
     }
 
     /// The row of a `point` at `place`, which the refinement of this `level` has asked for; 0 is the grid.
-    pub fn row<'a>(&self, level: u32, place: Place, point: &'a Point) -> impl Serialize + use<'a> {
+    pub fn row<'a>(&self, level: u32, place: GridPlace, point: &'a MapPoint) -> impl Serialize + use<'a> {
         let Pulse { frequency, amplitude, .. } = self.pulse(place);
         let (of_amplitude, of_frequency) = units_of(self.structure.base());
         (level, frequency, amplitude, frequency / of_frequency, amplitude / of_amplitude, point)
@@ -259,7 +259,7 @@ impl Map {
 
     /// The pulse at `place` in straight lines. Their corners stand a little outside the curve; where the curve does not push
     /// hard enough to lift a rigid structure off, nor do they.
-    fn ground(&self, place: Place) -> Record {
+    fn ground(&self, place: GridPlace) -> Record {
         let pulse = self.pulse(place);
         let ground = pulse.record().expect("the map's corners have been checked");
         let (least, pga) = (least_push(self.structure.base()), ground.pga());
@@ -270,7 +270,7 @@ impl Map {
     }
 
     /// Runs the structure under the pulse at `place`.
-    pub fn run(&self, place: Place) -> Point {
+    pub fn run(&self, place: GridPlace) -> MapPoint {
         let mut run = None;
         self.run_each(&[place], |_, point| {
             run = Some(point);
@@ -281,7 +281,7 @@ impl Map {
 
     /// Runs the structure under the pulses at `places`, several at a time on one thread, and tells `done` each point with the
     /// place's position. Once `done` says no, the rest is left undone.
-    pub fn run_each(&self, places: &[Place], mut done: impl FnMut(usize, Point) -> bool) {
+    pub fn run_each(&self, places: &[GridPlace], mut done: impl FnMut(usize, MapPoint) -> bool) {
         let mut grounds: Vec<_> = places.iter().map(|place| self.ground(*place)).collect();
         if self.finds_condition {
             grounds.extend_from_within(..);
@@ -299,7 +299,7 @@ impl Map {
                 return true;
             };
             let (point, other) = if number == at { (point, other) } else { (other, point) };
-            done(at, Point { condition: Some(point.condition(&other)), ..point })
+            done(at, MapPoint { condition: Some(point.condition(&other)), ..point })
         };
         match self.structure.of_one_mode() {
             Some(structure) => self.points::<f64>(&structure, &grounds, see),
@@ -308,26 +308,26 @@ impl Map {
     }
 
     /// Runs `structure` under `grounds` and tells `see` each point with its number.
-    fn points<Q: Runs>(&self, structure: &Structure, grounds: &[Record], mut see: impl FnMut(usize, Point) -> bool) {
+    fn points<Q: Runs>(&self, structure: &Structure, grounds: &[Record], mut see: impl FnMut(usize, MapPoint) -> bool) {
         let conditions = Conditions { detail: self.detail, tolerance: self.tolerance, ..Conditions::default() };
         let run = |ground| conditions.run::<Q>(structure.clone(), ground).expect("it starts at rest");
         let runs: Vec<_> = grounds.iter().map(run).collect();
-        rocked_each(&runs, &mut |number, (finish, rocked)| see(number, Point::of(&runs[number], finish, rocked)));
+        rocked_each(&runs, &mut |number, (finish, rocked)| see(number, MapPoint::of(&runs[number], finish, rocked)));
     }
 
     /// The points of the grid, amplitudes changing last.
-    pub fn grid(&self) -> impl Iterator<Item = Place> {
+    pub fn grid(&self) -> impl Iterator<Item = GridPlace> {
         let frequencies = self.frequency.values.len();
         (0..self.amplitude.values.len())
-            .flat_map(move |amplitude| (0..frequencies).map(move |frequency| Place::of_grid(frequency, amplitude)))
+            .flat_map(move |amplitude| (0..frequencies).map(move |frequency| GridPlace::of_grid(frequency, amplitude)))
     }
 
     /// Completes the `known` points of the map, refined so many times: `run` adds the places that a refinement needs, 0 for the grid.
     pub fn complete<E>(
         &self,
         refinements: u32,
-        known: &mut HashMap<Place, Point>,
-        mut run: impl FnMut(u32, Vec<Place>, &mut HashMap<Place, Point>) -> Result<(), E>,
+        known: &mut HashMap<GridPlace, MapPoint>,
+        mut run: impl FnMut(u32, Vec<GridPlace>, &mut HashMap<GridPlace, MapPoint>) -> Result<(), E>,
     ) -> Result<(), E> {
         let mut lacking = Vec::from_iter(self.grid().filter(|place| !known.contains_key(place)));
         for level in 0..=refinements {
@@ -343,9 +343,9 @@ impl Map {
     /// Points that the `level`th refinement, 1 to [`MAX_REFINEMENTS`], of the `known` points still needs. Each square of the
     /// coarser grid with different classes gets its middle and the middles of its edges. New points can make more squares
     /// differ: the refinement is complete when no point is needed.
-    pub fn refinement(&self, level: u32, known: &HashMap<Place, Point>) -> Vec<Place> {
+    pub fn refinement(&self, level: u32, known: &HashMap<GridPlace, MapPoint>) -> Vec<GridPlace> {
         let half = PARTS >> level;
-        let at = |of: Place, [frequency, amplitude]: [u32; 2]| Place {
+        let at = |of: GridPlace, [frequency, amplitude]: [u32; 2]| GridPlace {
             amplitude: of.amplitude + amplitude * half,
             frequency: of.frequency + frequency * half,
         };
@@ -368,10 +368,10 @@ impl Map {
 
 /// The point of `known` that stands for `place`, one of a map refined `levels` times: itself, or a corner of the square
 /// that needed no refinement.
-pub fn nearest(known: &HashMap<Place, Point>, place: Place, levels: u32) -> Option<&Point> {
+pub fn nearest(known: &HashMap<GridPlace, MapPoint>, place: GridPlace, levels: u32) -> Option<&MapPoint> {
     let corner = |level: u32| {
         let step = PARTS >> level;
-        Place { amplitude: place.amplitude / step * step, frequency: place.frequency / step * step }
+        GridPlace { amplitude: place.amplitude / step * step, frequency: place.frequency / step * step }
     };
     (0..=levels).rev().find_map(|level| known.get(&corner(level)))
 }

@@ -3,7 +3,7 @@
 use crate::{Refused, ensure};
 use rocking::digits::{short, with_unit};
 use rocking::names::unknown;
-use rocking::run::fall::Found;
+use rocking::run::fall::RunResult;
 use rocking::run::{Ending, Run, RunError, Runs};
 use rocking::{Output, Structure};
 use smallvec::{SmallVec, smallvec};
@@ -32,7 +32,7 @@ pub struct Summary {
     /// Time of the end, s.
     pub end: f64,
     /// Largest magnitude of each measure, NaN if the structure does not have it; of a structure that overturns, before it falls.
-    pub peaks: Magnitudes,
+    pub peaks: PeakMagnitudes,
     pub transitions: u64,
     pub steps: u64,
     /// Right-hand-side evaluations.
@@ -40,7 +40,7 @@ pub struct Summary {
 }
 
 /// Magnitudes in place if they are of one mass without ties: blocks of memory that outlive a run slow the next runs down.
-pub type Magnitudes = SmallVec<[f64; Output::PEAKS_OF_ONE.len() + 1]>;
+pub type PeakMagnitudes = SmallVec<[f64; Output::PEAKS_OF_ONE.len() + 1]>;
 
 /// Name and unit of a peak.
 pub type Measure = (String, String);
@@ -54,7 +54,7 @@ pub fn measures(structure: &Structure) -> Vec<Measure> {
 
 /// Places of the measures of one kind of structures among the measures of a plan.
 #[derive(Clone, Debug)]
-pub(crate) struct Layout {
+pub(crate) struct MeasurePlaces {
     /// Outputs with a peak; those of one mass have other names.
     outputs: Vec<Output>,
     is_of_one: bool,
@@ -62,14 +62,14 @@ pub(crate) struct Layout {
     places: Vec<usize>,
 }
 
-impl Layout {
+impl MeasurePlaces {
     /// Layout of structures like `structure`, whose measures are added to `all` if they are not there.
-    pub(crate) fn new(structure: &Structure, all: &mut Vec<Measure>) -> Layout {
+    pub(crate) fn new(structure: &Structure, all: &mut Vec<Measure>) -> MeasurePlaces {
         let own = measures(structure);
         let added: Vec<_> = own.iter().filter(|measure| !all.contains(measure)).cloned().collect();
         all.extend(added);
         let places = own.iter().filter_map(|own| all.iter().position(|of| of == own)).collect();
-        Layout { outputs: Output::with_peak(structure), is_of_one: structure.is_one_mass(), places }
+        MeasurePlaces { outputs: Output::with_peak(structure), is_of_one: structure.is_one_mass(), places }
     }
 
     /// Whether the measures of `structure` are these.
@@ -118,9 +118,13 @@ impl Outcome {
     }
 
     /// Outcome of a `run` with this result: its peaks are at the places of `layout` among so many `measures`.
-    pub(crate) fn found<Q: Runs>(run: &Run<Q>, of: (&Layout, usize), found: Result<Found<Q>, RunError>) -> Outcome {
+    pub(crate) fn found<Q: Runs>(
+        run: &Run<Q>,
+        of: (&MeasurePlaces, usize),
+        found: Result<RunResult<Q>, RunError>,
+    ) -> Outcome {
         let (layout, measures) = of;
-        let Found { peaks, finish, .. } = match found {
+        let RunResult { peaks, finish, .. } = match found {
             Ok(found) => found,
             Err(error) => {
                 let time = error.time().unwrap_or(run.ground.start());

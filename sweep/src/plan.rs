@@ -1,6 +1,6 @@
 //! Many runs: every structure of some populations under every ground motion at every scale factor.
 
-use crate::outcome::{Layout, Measure, Outcome};
+use crate::outcome::{Measure, MeasurePlaces, Outcome};
 use crate::{Refused, ensure};
 use rocking::digits::with_unit;
 use rocking::engine::{DEFAULT_TOLERANCE, Settings};
@@ -10,7 +10,7 @@ use rocking::estimates::intensity::{
 };
 use rocking::estimates::response_spectrum::spectral_acceleration;
 use rocking::names::unknown;
-use rocking::run::fall::Found;
+use rocking::run::fall::RunResult;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits};
 use rocking::run::{End, Run, RunError, Runs, found_each};
@@ -119,7 +119,7 @@ pub struct Plan {
     pub(crate) conditions: Conditions,
     /// Measures of all structures, each once.
     pub measures: Vec<Measure>,
-    layouts: Vec<Layout>,
+    layouts: Vec<MeasurePlaces>,
     /// A sentence for each number that is usual in another unit, once for each population.
     pub doubts: Vec<String>,
     /// The largest half-width of a base, m.
@@ -149,7 +149,7 @@ pub struct Case<'a> {
     member: usize,
     /// The structure.
     pub structure: Structure,
-    layout: &'a Layout,
+    layout: &'a MeasurePlaces,
     /// The ground motion before it is scaled.
     pub motion: &'a NamedRecord,
     /// Factor on its acceleration, beside its own.
@@ -307,7 +307,7 @@ impl Plan {
             for member in 0..population.len() {
                 let structure = population.structure(member)?;
                 if plan.layouts.iter().all(|layout| !layout.is_of(&structure)) {
-                    plan.layouts.push(Layout::new(&structure, &mut plan.measures));
+                    plan.layouts.push(MeasurePlaces::new(&structure, &mut plan.measures));
                 }
                 let doubts = structure.doubts().into_iter();
                 let news = doubts.filter(|doubt| said.insert((name, doubted(doubt).to_owned())));
@@ -355,7 +355,7 @@ impl Plan {
     }
 
     /// The structure of this `number` in the plan: its population, its number there, itself, and the layout of its measures.
-    fn member(&self, mut number: usize) -> (&Population, usize, Structure, &Layout) {
+    fn member(&self, mut number: usize) -> (&Population, usize, Structure, &MeasurePlaces) {
         let mut populations = self.populations.iter();
         let population = populations.find(|population| {
             let is_of_it = number < population.len();
@@ -432,7 +432,7 @@ impl Case<'_> {
         judged.expect(CHECKED)
     }
 
-    fn outcome_of<Q: Runs>(&self, run: &Run<Q>, found: Result<Found<Q>, RunError>) -> Outcome {
+    fn outcome_of<Q: Runs>(&self, run: &Run<Q>, found: Result<RunResult<Q>, RunError>) -> Outcome {
         Outcome::found(run, (self.layout, self.plan.measures.len()), found)
     }
 
@@ -536,7 +536,7 @@ mod tests {
     use crate::outcome::{Limit, Summary};
     use rocking::run::{End, Ending};
     use rocking::structure::description::{Damping, Storey};
-    use rocking::structure::natural_quantities::Given;
+    use rocking::structure::natural_quantities::Numbers;
     use rocking::{OneMass, Output};
     use std::collections::BTreeMap;
     use std::f64::consts::TAU;
@@ -562,7 +562,7 @@ mod tests {
     fn a_building_is_swept_and_counted() {
         let storeys = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)].map(|(m, h, k)| Storey { m, h, k });
         let core = |k_t| {
-            let base = Given::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("k_t", k_t)]).unwrap();
+            let base = Numbers::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5), ("k_t", k_t)]).unwrap();
             Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap()
         };
         let cores = Population::new("cores", core(0.0)).vary("k_t", vec![0.0, 1e6]).unwrap();

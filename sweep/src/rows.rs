@@ -35,7 +35,7 @@ pub struct Sweep<'a> {
     keys: Vec<Uuid>,
     /// Digest of the samples of each ground motion, whatever its file is called.
     digests: Vec<String>,
-    done: Vec<OnceLock<Done>>,
+    done: Vec<OnceLock<RunDone>>,
     file: Option<RowFile>,
     /// Number of rows of the file that are not of this sweep.
     pub others: usize,
@@ -43,7 +43,7 @@ pub struct Sweep<'a> {
 
 /// A run that is done.
 #[derive(Debug)]
-struct Done {
+struct RunDone {
     outcome: Outcome,
     /// Results of the check of validity, in the order of the headings; none if these were not asked for.
     beyond: Box<[f64]>,
@@ -89,7 +89,7 @@ impl Cell<'_> {
 
 /// The values of one column, row by row.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Column {
+pub enum RowColumn {
     /// Numbers; NaN where a row has nothing.
     Numbers(Vec<f64>),
     /// Counts, of which every row has one.
@@ -120,7 +120,7 @@ impl<'a> Sweep<'a> {
             }
         }
         let (file, known) = path.map(|path| open(path, &plan.measures, validity)).transpose()?.unzip();
-        let mut others: Known<Done> = known.unwrap_or_default();
+        let mut others: Known<RunDone> = known.unwrap_or_default();
         let known = |key| others.remove(key).map_or_else(OnceLock::new, OnceLock::from);
         let done = keys.iter().map(known).collect();
         Ok(Sweep { plan, program, validity, keys, digests, done, file, others: others.len() })
@@ -138,7 +138,7 @@ impl<'a> Sweep<'a> {
             let (mut structure, mut of_structure, mut row) = (usize::MAX, Vec::new(), Vec::new());
             self.plan.each_outcome(indices, self.validity, |case, outcome, findings| {
                 let findings = findings.filter(|_| matches!(outcome, Outcome::Ended(_)));
-                let done = Done { beyond: findings.map_or_else(Box::default, beyond), outcome };
+                let done = RunDone { beyond: findings.map_or_else(Box::default, beyond), outcome };
                 if self.file.is_some() {
                     if structure != case.structure_number() {
                         structure = case.structure_number();
@@ -155,7 +155,7 @@ impl<'a> Sweep<'a> {
                 hand_out((case.index, done), &row)
             });
         };
-        let keep = |(index, done): (usize, Done)| {
+        let keep = |(index, done): (usize, RunDone)| {
             self.done[index].set(done).expect("each run is done once");
             ensure!(goes_on(), "stopped: the runs that are finished are kept");
             Ok(())
@@ -171,13 +171,13 @@ impl<'a> Sweep<'a> {
 
     /// The rows of the runs that are done, in the order of the plan: their keys, and the columns with their headings. The
     /// column of `measure` is among them.
-    pub fn table(self, measure: IntensityMeasure) -> (Vec<Uuid>, Vec<(String, Column)>) {
+    pub fn table(self, measure: IntensityMeasure) -> (Vec<Uuid>, Vec<(String, RowColumn)>) {
         let done = || (0..self.plan.len()).filter(|index| self.done[*index].get().is_some());
         let rows = done().count();
         let added = Some(measure).filter(|measure| !IntensityMeasure::COLUMNS.contains(measure));
         let headings = headings(&self.plan.measures, self.validity).into_iter().skip(1);
         let headings = headings.chain(added.map(|of| heading(&of.name(), of.unit())));
-        let mut columns: Vec<_> = headings.map(|of| (of, Column::Counts(Vec::with_capacity(rows)))).collect();
+        let mut columns: Vec<_> = headings.map(|of| (of, RowColumn::Counts(Vec::with_capacity(rows)))).collect();
         let mut texts = vec![HashMap::new(); columns.len()];
         let (mut structure, mut of_structure) = (usize::MAX, Vec::new());
         for case in self.plan.cases_of(done()) {
@@ -201,7 +201,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// The other cells of the row of a run that is done.
-    fn of_run<'b>(&'b self, case: &Case<'b>, Done { outcome, beyond }: &'b Done) -> Vec<Cell<'b>> {
+    fn of_run<'b>(&'b self, case: &Case<'b>, RunDone { outcome, beyond }: &'b RunDone) -> Vec<Cell<'b>> {
         let Conditions { initial, detail, tolerance, duration } = &self.plan.conditions;
         let mut row = Vec::with_capacity(64);
         row.extend([&case.motion.name, &self.digests[case.motion_number()]].map(|text| Cell::Text(text)));
@@ -242,16 +242,16 @@ fn beyond(Findings { worst, gains, settlings, .. }: Findings) -> Box<[f64]> {
     worst.chain([gains as f64, settlings as f64]).collect()
 }
 
-impl Column {
+impl RowColumn {
     /// Adds the value of the next row. The values decide whether the column has counts, numbers or texts. The positions of its
     /// texts are kept in `known`.
     fn push(&mut self, cell: Cell, known: &mut HashMap<String, u32>) {
         match (&mut *self, cell) {
-            (Column::Counts(of), Cell::Count(count)) => of.push(count),
-            (Column::Numbers(of), Cell::Count(count)) => of.push(count as f64),
-            (Column::Numbers(of), Cell::Number(number)) => of.push(number),
-            (Column::Numbers(of), Cell::Empty) => of.push(f64::NAN),
-            (Column::Texts(texts, of), Cell::Text(text)) => {
+            (RowColumn::Counts(of), Cell::Count(count)) => of.push(count),
+            (RowColumn::Numbers(of), Cell::Count(count)) => of.push(count as f64),
+            (RowColumn::Numbers(of), Cell::Number(number)) => of.push(number),
+            (RowColumn::Numbers(of), Cell::Empty) => of.push(f64::NAN),
+            (RowColumn::Texts(texts, of), Cell::Text(text)) => {
                 let last = of.last().copied().filter(|last| texts.get(*last as usize).is_some_and(|of| of == text));
                 of.push(last.or_else(|| known.get(text).copied()).unwrap_or(texts.len() as u32));
                 if of.last() == Some(&(texts.len() as u32)) {
@@ -259,23 +259,23 @@ impl Column {
                     texts.push(text.into());
                 }
             }
-            (Column::Texts(_, of), Cell::Empty) => of.push(u32::MAX),
+            (RowColumn::Texts(_, of), Cell::Empty) => of.push(u32::MAX),
             (_, Cell::Floors(of)) => self.push(Cell::Text(&spaced(of)), known),
             (_, Cell::Ending(ending)) => self.push(Cell::Text(&ending.to_string()), known),
-            (Column::Numbers(of), Cell::Text(_)) => {
+            (RowColumn::Numbers(of), Cell::Text(_)) => {
                 // nothing so far
                 let mut positions = Vec::with_capacity(of.capacity());
                 positions.resize(of.len(), u32::MAX);
-                *self = Column::Texts(Vec::new(), positions);
+                *self = RowColumn::Texts(Vec::new(), positions);
                 self.push(cell, known);
             }
-            (Column::Counts(of), cell) => {
+            (RowColumn::Counts(of), cell) => {
                 let mut numbers = Vec::with_capacity(of.capacity());
                 numbers.extend(of.iter().map(|count| *count as f64));
-                *self = Column::Numbers(numbers);
+                *self = RowColumn::Numbers(numbers);
                 self.push(cell, known);
             }
-            (Column::Texts(..), cell) => unreachable!("a column of texts has {cell:?}"),
+            (RowColumn::Texts(..), cell) => unreachable!("a column of texts has {cell:?}"),
         }
     }
 }
@@ -322,21 +322,21 @@ fn keys(plan: &Plan, digests: &[Uuid], validity: bool, program: &Program) -> Vec
 }
 
 /// Opens the file at `path`, or begins it, and reads what its rows say.
-fn open(path: &Path, measures: &[Measure], validity: bool) -> anyhow::Result<(RowFile, Known<Done>)> {
+fn open(path: &Path, measures: &[Measure], validity: bool) -> anyhow::Result<(RowFile, Known<RunDone>)> {
     let headings = headings(measures, validity);
     let at = |heading: &str| headings.iter().position(|found| found == heading).expect("it is one of them");
     let (ending, counts, after, reason) = (at("ending"), at("transitions"), at("evaluations") + 1, at("reason"));
     RowFile::open(path, &headings, |row| {
         if &row[ending] == FAILED {
             let outcome = Outcome::Failed { time: row[ending + 1].parse()?, reason: row[reason].into() };
-            return Ok(Done { outcome, beyond: Box::default() });
+            return Ok(RunDone { outcome, beyond: Box::default() });
         }
         let peaks = row.iter().take(counts).skip(ending + 2).map(str::parse).collect::<Result<_, _>>()?;
         let others: StringRecord = row.iter().skip(ending).take(2).chain(row.iter().take(after).skip(counts)).collect();
         let (ending, end, transitions, steps, evaluations) = others.deserialize(None)?;
         let summary = Summary { ending, end, peaks, transitions, steps, evaluations };
         let beyond = row.iter().take(reason).skip(after).filter(|number| !number.is_empty()).map(str::parse);
-        Ok(Done { outcome: Outcome::Ended(summary), beyond: beyond.collect::<Result<_, _>>()? })
+        Ok(RunDone { outcome: Outcome::Ended(summary), beyond: beyond.collect::<Result<_, _>>()? })
     })
 }
 

@@ -2,9 +2,9 @@
 
 use rocking::run::Run;
 use rocking::structure::description::{Damping, Storey};
-use rocking::structure::natural_quantities::Given;
+use rocking::structure::natural_quantities::Numbers;
 use rocking::{Detail, OneMass, Parameters, Structure};
-use rocking_sweep::map::{Axis, Fate, Map, Place, Point, nearest};
+use rocking_sweep::map::{Axis, Fate, GridPlace, Map, MapPoint, nearest};
 use rocking_sweep::pulse::{Pulse, Shape};
 use std::collections::HashMap;
 
@@ -21,9 +21,9 @@ fn map(count: usize, finds_condition: bool) -> Map {
 }
 
 /// All points of `map`, refined so many times.
-fn complete(map: &Map, refinements: u32) -> HashMap<Place, Point> {
+fn complete(map: &Map, refinements: u32) -> HashMap<GridPlace, MapPoint> {
     let mut all = HashMap::new();
-    let add = |_, lacking: Vec<Place>, all: &mut HashMap<_, _>| {
+    let add = |_, lacking: Vec<GridPlace>, all: &mut HashMap<_, _>| {
         all.extend(lacking.into_iter().map(|place| (place, map.run(place))));
         Ok::<_, ()>(())
     };
@@ -38,11 +38,11 @@ fn a_refined_map_has_the_boundary_of_a_fine_grid() {
     let (coarse, fine) = (map(17, false), map(33, false));
     let (refined, all) = (complete(&coarse, 1), complete(&fine, 0));
     assert!(refined.len() < all.len() * 3 / 4, "{} of {}", refined.len(), all.len());
-    let classes: std::collections::BTreeSet<_> = all.values().map(Point::class).collect();
+    let classes: std::collections::BTreeSet<_> = all.values().map(MapPoint::class).collect();
     assert!(classes.len() >= 4, "{classes:?}");
     let mut differing = 0;
     for (place, point) in &all {
-        let on_coarse = Place { amplitude: place.amplitude / 2, frequency: place.frequency / 2 };
+        let on_coarse = GridPlace { amplitude: place.amplitude / 2, frequency: place.frequency / 2 };
         if let Some(known) = refined.get(&on_coarse) {
             assert_eq!(known, point, "{place:?}");
         }
@@ -71,7 +71,7 @@ fn conditions_are_of_the_order_of_the_change() {
 /// Each point of a map of three storeys is the run of its pulse.
 #[test]
 fn a_building_has_a_map() {
-    let base = Given::of(&[("m0", 2e4), ("J0", 0.0), ("B", 1.5)]).unwrap();
+    let base = Numbers::of(&[("m0", 2e4), ("J0", 0.0), ("B", 1.5)]).unwrap();
     let storeys = [3.5, 7.0, 10.5].map(|h| Storey { m: 4e4, h, k: 6e7 });
     let structure = Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap();
     let axis = |values: [f64; 4]| Axis { values: values.into(), is_log: false };

@@ -3,7 +3,7 @@
 use crate::common::sampled;
 use crate::modes::three_storeys;
 use approx::assert_relative_eq;
-use rocking::run::curve::{Curve, Point, drawn};
+use rocking::run::curve::{CurvePoint, RunCurve, drawn};
 use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError, Runs};
 use rocking::{Detail, OneMass, Output, Parameters, Phase, Sample, State, TransitionKind};
@@ -14,7 +14,7 @@ fn ground() -> Record {
 }
 
 /// Values at `time` of the line through `points`, after a transition at that instant: the outputs, then a_g.
-fn on_the_line(points: &[Point], time: f64) -> Vec<f64> {
+fn on_the_line(points: &[CurvePoint], time: f64) -> Vec<f64> {
     let after = points.partition_point(|point| point.time <= time).clamp(1, points.len() - 1);
     let (from, to) = (&points[after - 1], &points[after]);
     let part = if to.time > from.time { (time - from.time) / (to.time - from.time) } else { 1.0 };
@@ -24,14 +24,14 @@ fn on_the_line(points: &[Point], time: f64) -> Vec<f64> {
 
 /// The curve of `run` to `part` of each largest value. Its lines pass through the peaks of the first `count` drawn outputs and of
 /// the ground. They stay as close to samples every 0.1 ms; `see` gets each sample and the lines there.
-fn near_the_motion<Q: Runs>(run: &Run<Q>, part: f64, count: usize, see: impl Fn(&Sample<Q>, &[f64])) -> Curve<Q> {
+fn near_the_motion<Q: Runs>(run: &Run<Q>, part: f64, count: usize, see: impl Fn(&Sample<Q>, &[f64])) -> RunCurve<Q> {
     let curve = run.curve(part).unwrap();
     let (found, points) = (&curve.found, &curve.points);
     assert_eq!(*found, run.found(&mut ()).unwrap());
     let outputs = &drawn(run)[..count];
     let largest = Vec::from_iter(outputs.iter().map(|of| found.peaks.of(*of).unwrap().magnitude));
     let of_ground = found.ground.magnitude;
-    let most = |of: &dyn Fn(&Point) -> f64| points.iter().map(|point| of(point).abs()).fold(0.0, f64::max);
+    let most = |of: &dyn Fn(&CurvePoint) -> f64| points.iter().map(|point| of(point).abs()).fold(0.0, f64::max);
     assert_relative_eq!(most(&|point| point.a_g), of_ground, max_relative = 1e-9);
     for (i, largest) in largest.iter().enumerate() {
         assert_relative_eq!(most(&|point| point.outputs[i]), *largest, max_relative = 1e-9);

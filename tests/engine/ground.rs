@@ -9,7 +9,7 @@ use rocking::run::validity::{FRICTION, Limits, of_structure};
 use rocking::run::{End, Ending, Run};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::doubts::doubted;
-use rocking::structure::natural_quantities::Given;
+use rocking::structure::natural_quantities::Numbers;
 use rocking::{
     Detail, Engine, Ground, LinearLoad, Modes, Output, Parameters, Piece, Reactions, Sample, State, Structure,
     Transition, TransitionKind, Watch,
@@ -51,7 +51,7 @@ fn rigid_ground_takes_the_place_of_ground_that_gives() {
 fn evison_on_two_springs_has_its_six_events_and_peaks() {
     let structure = one_mass(EVISON, ground(160.0, 0.2, 2));
     let mut engine = engine(&structure, 0.75246734e-3, 0.04);
-    assert_relative_eq!(structure.foundation().unwrap().rest, -9.70664855e-6, max_relative = 1e-9);
+    assert_relative_eq!(structure.foundation().unwrap().y_s, -9.70664855e-6, max_relative = 1e-9);
     let no_load = structure.load(0.0, 0.0, &[]).unwrap();
     assert_relative_eq!(engine.sample(no_load).output(Output::y), 11.37754695e-3, max_relative = 1e-9);
     let events = transitions(&mut engine, 0.5, no_load);
@@ -83,7 +83,7 @@ fn evison_on_two_springs_has_its_six_events_and_peaks() {
 #[test]
 fn dashpots_under_stiff_storeys_take_no_more_steps_than_their_rates_need() {
     let steps = |J0: f64, count: usize, k: f64, ground: Ground, until: f64| {
-        let base = Given::of(&[("m0", 1e5), ("J0", J0), ("B", 6.0)]).unwrap();
+        let base = Numbers::of(&[("m0", 1e5), ("J0", J0), ("B", 6.0)]).unwrap();
         let storeys = Vec::from_iter((1..=count).map(|i| Storey { m: 5e4, h: 3.0 * i as f64, k }));
         let structure = Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap().on(&ground).unwrap();
         let mut engine = engine(&structure, 0.0, 1e-3);
@@ -118,7 +118,7 @@ fn a_transition_within_rounding_of_the_end_of_a_step_happens_once() {
                 for way in [-1e-10, 1e-10] {
                     let state = engine.motion().state;
                     let mut numbers = state.u.numbers().to_vec();
-                    numbers[1] += way * structure.foundation().unwrap().rest;
+                    numbers[1] += way * structure.foundation().unwrap().y_s;
                     engine.set_state(State { u: Modes::new(&numbers), ..state });
                     assert_eq!(transitions(&mut engine, 1e-7, no_load), [], "{transition:?}");
                     engine.set_state(state);
@@ -361,7 +361,7 @@ fn the_points_follow_the_base() {
         for on in [ground(5.0, 0.3, points), Ground { k_v: Some(6.5e8), f_v: None, ..ground(5.0, 0.3, points) }] {
             let described = |B, m0| {
                 let one = [("m", 1.2e6), ("H", 22.0), ("J0", 2e6), ("f_fc", 0.8), ("zeta_fc", 0.03)];
-                let given = Given::of(&[&one[..], &[("B", B), ("m0", m0)]].concat()).unwrap();
+                let given = Numbers::of(&[&one[..], &[("B", B), ("m0", m0)]].concat()).unwrap();
                 given.on(on.clone()).structure(None).unwrap()
             };
             let narrow = described(3.0, 1.2e5);

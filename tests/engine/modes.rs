@@ -8,7 +8,7 @@ use rocking::run::record::Record;
 use rocking::run::validity::Limits;
 use rocking::run::{End, Run, Runs};
 use rocking::structure::description::{Damping, Storey};
-use rocking::structure::natural_quantities::Given;
+use rocking::structure::natural_quantities::Numbers;
 use rocking::{
     Body, Detail, Engine, LinearLoad, Load, Mode, Modes, OneMass, Output, Parameters, Progress, Reactions, Sample,
     State, Structure, Ties, Transition, TransitionKind,
@@ -19,7 +19,7 @@ const G: f64 = 9.81;
 
 /// Three storeys whose response is known, with `more` numbers of their base.
 pub fn three_storeys(zeta: f64, more: &[(&str, f64)]) -> Structure {
-    let base = Given::of(&[&[("m0", 20e3), ("J0", 3e4), ("B", 1.5)], more].concat()).unwrap();
+    let base = Numbers::of(&[&[("m0", 20e3), ("J0", 3e4), ("B", 1.5)], more].concat()).unwrap();
     let storeys = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)].map(|(m, h, k)| Storey { m, h, k });
     Structure::from_storeys(&base, &Damping::All(zeta), &storeys).unwrap()
 }

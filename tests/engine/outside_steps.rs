@@ -3,7 +3,7 @@
 
 use crate::common::{distance, engine_of, sampled, transitions};
 use rocking::run::ground_motion::Elapsed;
-use rocking::run::outside_step::{BAND, Checked, Checkpoint};
+use rocking::run::host_step::{BAND, Checked, Checkpoint};
 use rocking::run::record::Record;
 use rocking::{Detail, Engine, GroundMotion, LinearLoad, Load, OneMass, Parameters, Phase, State, Transition};
 
@@ -13,23 +13,23 @@ fn burst() -> Record {
 }
 
 /// An integrator on an engine's equations.
-struct Outside<'a> {
+struct HostedEngine<'a> {
     engine: Engine,
     ground: GroundMotion<'a>,
     known: Checkpoint,
     transitions: Vec<Transition>,
 }
 
-impl<'a> Outside<'a> {
+impl<'a> HostedEngine<'a> {
     /// From rest.
-    fn new(detail: Detail, record: &'a Record) -> Outside<'a> {
+    fn new(detail: Detail, record: &'a Record) -> HostedEngine<'a> {
         let structure = OneMass::new(Parameters::MCMANUS).unwrap();
         let mut engine = engine_of(structure, State::default(), 1e-12, detail);
         let (mut transitions, ground) = (Vec::new(), GroundMotion::from(record));
         let a_g = LinearLoad::default().on_ground(ground.at(Elapsed::default())).value;
         engine.transit_at_once(a_g, &mut |transition: &Transition| transitions.push(*transition));
         let known = Checkpoint { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
-        Outside { engine, ground, known, transitions }
+        HostedEngine { engine, ground, known, transitions }
     }
 
     fn load(&self) -> Load {
@@ -82,8 +82,8 @@ impl<'a> Outside<'a> {
 }
 
 /// The sway u + H θ at every hundredth of a second, by steps of `h`.
-fn outside(detail: Detail, record: &Record, h: f64) -> (Vec<f64>, Outside<'_>) {
-    let mut outside = Outside::new(detail, record);
+fn outside(detail: Detail, record: &Record, h: f64) -> (Vec<f64>, HostedEngine<'_>) {
+    let mut outside = HostedEngine::new(detail, record);
     let steps = (0.01 / h).round() as usize;
     let row = |_| {
         (0..steps).for_each(|_| outside.step(h));
@@ -94,7 +94,7 @@ fn outside(detail: Detail, record: &Record, h: f64) -> (Vec<f64>, Outside<'_>) {
 
 /// The same by the engine, and its transitions.
 fn own(detail: Detail, record: &Record) -> (Vec<f64>, Vec<Transition>) {
-    let Outside { mut engine, ground, mut transitions, .. } = Outside::new(detail, record);
+    let HostedEngine { mut engine, ground, mut transitions, .. } = HostedEngine::new(detail, record);
     let mut elapsed = Elapsed::default();
     let row = |_| {
         let mut watch = |transition: &Transition| transitions.push(*transition);

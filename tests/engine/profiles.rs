@@ -7,7 +7,7 @@ use rocking::run::record::Record;
 use rocking::run::validity::{ASSUMPTIONS, EDGE_LOAD, FRICTION, Findings, Limits, TENSION};
 use rocking::run::{End, Run, RunError};
 use rocking::structure::description::{Damping, Storey};
-use rocking::structure::natural_quantities::Given;
+use rocking::structure::natural_quantities::Numbers;
 use rocking::structure::parameters::{OF_ONE_MASS, PARAMETERS};
 use rocking::{Detail, Modes, OneMass, Output, Parameters, Phase, Reactions, Sample, State, Structure};
 use std::f64::consts::TAU;
@@ -18,9 +18,9 @@ fn ground() -> Record {
 }
 
 /// The base of `parameters` without the top mass.
-fn base(parameters: &Parameters) -> Given {
+fn base(parameters: &Parameters) -> Numbers {
     let of_base = PARAMETERS.iter().filter(|of| !OF_ONE_MASS.contains(&of.name));
-    Given::of(&Vec::from_iter(of_base.map(|of| (of.name, (of.get)(parameters))))).unwrap()
+    Numbers::of(&Vec::from_iter(of_base.map(|of| (of.name, (of.get)(parameters))))).unwrap()
 }
 
 /// Under a force on the top, from rest, and with dissipators from a start beyond their yield on ground that moves vertically, too.
@@ -184,7 +184,7 @@ fn a_rest_without_damping_ends() {
 #[test]
 fn the_hard_landing_of_a_squat_structure_without_modes_is_an_impact() {
     let storeys = [(40e3, 3.5, 60e6), (40e3, 7.0, 50e6)].map(|(m, h, k)| Storey { m, h, k });
-    let squat = Given::of(&[("m0", 20e3), ("B", 7.5), ("J0", 3e4)]).unwrap();
+    let squat = Numbers::of(&[("m0", 20e3), ("B", 7.5), ("J0", 3e4)]).unwrap();
     let frame = Structure::from_storeys(&squat, &Damping::All(0.02), &storeys).unwrap();
     let ground = Record::at_rest(2.0);
     let run = Run { detail: Detail::Rigid, end: End::At(2.0), ..Run::of_modes(frame, &ground) };

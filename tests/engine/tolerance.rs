@@ -7,17 +7,17 @@ use std::f64::consts::TAU;
 
 /// A structure that starts from `initial` under ground accelerations, m/s², `dt` seconds apart and linear in between.
 #[derive(Clone)]
-struct Scene {
+struct ToleranceScene {
     structure: OneMass,
     initial: State,
     dt: f64,
     ground: Vec<f64>,
 }
 
-impl Scene {
+impl ToleranceScene {
     /// From a lab specimen to a bridge pier, released or at rest, under sines that grow and fade, half of them with noise;
     /// their peak is 0.5 to 4 times what lifts a rigid structure off.
-    fn random(seed: u64, detail: Detail) -> Scene {
+    fn random(seed: u64, detail: Detail) -> ToleranceScene {
         let rng = &mut Rng::with_seed(seed);
         let B = log_between(rng, 0.1, 3.0);
         let m = 1000.0;
@@ -51,15 +51,15 @@ impl Scene {
         let peak = ground.iter().fold(0.0, |peak: f64, a_g| peak.max(a_g.abs()));
         let scale = log_between(rng, 0.5, 4.0) * 9.81 * structure.base().tan_alpha_cg / peak;
         ground.iter_mut().for_each(|a_g| *a_g *= scale);
-        Scene { structure, initial, dt, ground }
+        ToleranceScene { structure, initial, dt, ground }
     }
 
     /// The same with every number of its motion changed by up to 1e-12 of itself.
-    fn changed(&self, rng: &mut Rng) -> Scene {
+    fn changed(&self, rng: &mut Rng) -> ToleranceScene {
         let mut change = |value: f64| value * (1.0 + 1e-12 * between(rng, -1.0, 1.0));
         let State { u, u_dot, theta, theta_dot } = self.initial;
         let initial = State { u: change(u), theta: change(theta), u_dot, theta_dot };
-        Scene { initial, ground: self.ground.iter().map(|a_g| change(*a_g)).collect(), ..self.clone() }
+        ToleranceScene { initial, ground: self.ground.iter().map(|a_g| change(*a_g)).collect(), ..self.clone() }
     }
 
     /// θ at its samples, and the evaluations that these take.
@@ -97,7 +97,7 @@ fn an_answer_is_within_its_tolerance() {
         let seeds = count.map_or(hard.to_vec(), |count| (1..=count).collect());
         let mut table = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-9].map(|tolerance| (tolerance, 0, 0, 0.0_f64));
         for seed in seeds {
-            let scene = Scene::random(seed, detail);
+            let scene = ToleranceScene::random(seed, detail);
             let (exact, _) = scene.run(by_series, 1e-13);
             let rng = &mut Rng::with_seed(seed);
             let moved = (0..4).map(|_| distance(&scene.changed(rng).run(by_series, 1e-13).0, &exact));

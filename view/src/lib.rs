@@ -10,7 +10,7 @@ pub const STYLE: &str = include_str!("view.css");
 /// The elements of a page that show a motion: the last in its `main`, and those after it.
 pub const MOTION: &str = include_str!("motion.html");
 
-/// The script that shows a [`Scene`] in them: the function `motionView`.
+/// The script that shows a [`ShownScene`] in them: the function `motionView`.
 pub const SCRIPT: &str = include_str!("motion.js");
 
 /// Part of the largest that a value on the page is rounded to, and the same of time, s.
@@ -19,7 +19,7 @@ const QUANTUM_OF_TIME: f64 = 1e-7;
 
 /// The content of a page about a run.
 #[derive(Serialize)]
-pub struct Scene {
+pub struct ShownScene {
     /// Title of the ground motion.
     pub title: String,
     /// The structure as it is drawn.
@@ -33,21 +33,21 @@ pub struct Scene {
     /// Part of its peak by which a column may leave the motion.
     pub part: f64,
     /// Time of each point.
-    pub time: Column,
+    pub time: Quanta,
     /// By name; of a restrained structure also the forces of the tendon and of the dissipators.
-    pub columns: Vec<(String, Column)>,
+    pub columns: Vec<(String, Quanta)>,
     /// Index of the first point of each phase, and the phase.
     pub phases: Vec<(usize, &'static str)>,
     /// Quanta of time from the start, and the kind.
     pub transitions: Vec<(i64, &'static str)>,
     /// The peaks of the ground and of the structure.
-    pub peaks: Vec<Peak>,
+    pub peaks: Vec<DrawnPeak>,
     /// The peaks on a fixed base, of many masses.
-    pub fixed: Vec<Peak>,
+    pub fixed: Vec<DrawnPeak>,
 }
 
 /// Name, magnitude in SI units, instant (s).
-pub type Peak = (String, f64, f64);
+pub type DrawnPeak = (String, f64, f64);
 
 /// A structure as it is drawn, in SI units.
 #[derive(Serialize)]
@@ -72,25 +72,25 @@ pub struct Sizes {
 
 /// Whole multiples of a quantum.
 #[derive(Serialize)]
-pub struct Column {
+pub struct Quanta {
     quantum: f64,
     /// Of time the differences.
     values: Vec<i64>,
 }
 
-impl Column {
+impl Quanta {
     /// Of the `values` of the points.
-    pub fn new(values: &[f64]) -> Column {
+    pub fn new(values: &[f64]) -> Quanta {
         let most = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         let quantum = if most > 0.0 { QUANTUM * most } else { 1.0 };
-        Column { quantum, values: values.iter().map(|value| (value / quantum).round() as i64).collect() }
+        Quanta { quantum, values: values.iter().map(|value| (value / quantum).round() as i64).collect() }
     }
 
     /// Of the `times` of the points since `start` (s).
-    pub fn of_time(times: &[f64], start: f64) -> Column {
+    pub fn of_time(times: &[f64], start: f64) -> Quanta {
         let instants = times.iter().map(|time| quanta(time - start));
         let differences = instants.scan(0, |before, instant| Some(instant - std::mem::replace(before, instant)));
-        Column { quantum: QUANTUM_OF_TIME, values: differences.collect() }
+        Quanta { quantum: QUANTUM_OF_TIME, values: differences.collect() }
     }
 }
 
@@ -99,7 +99,7 @@ pub fn quanta(duration: f64) -> i64 {
     (duration / QUANTUM_OF_TIME).round() as i64
 }
 
-impl Scene {
+impl ShownScene {
     /// The number of its values.
     pub fn values(&self) -> usize {
         self.time.values.len() * (1 + self.columns.len())

@@ -13,12 +13,12 @@ use rocking::run::levels::{Choice, Criterion, RULE, relative};
 use rocking::run::validity::{ASSUMPTIONS, Assumption, Limits, Worst, of_structure};
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::{PARAMETERS, PRESETS, TIES};
-use rocking_records::{Source, Unit};
+use rocking_records::{Origin, Unit};
 use rocking_report::{
-    advice::Level,
+    advice::LevelAdvice,
     describe,
     record::Understood,
-    run::{Run, usual_periods},
+    run::{RunSetup, usual_periods},
 };
 use rocking_sweep::{map::CLASSES, pulse::Shape};
 use scene::{Fields, File, Files, MOTIONS, NUMBERS, OF_GROUND, READING, numbers_of};
@@ -103,11 +103,11 @@ impl Explorer {
     }
 
     /// The run of the scene, with remarks on its ground motion.
-    fn load(&mut self, fields: &str) -> Result<(Fields, Run, Understood), String> {
+    fn load(&mut self, fields: &str) -> Result<(Fields, RunSetup, Understood), String> {
         let fields = Fields::read(fields)?;
         let structure = fields.structure()?;
         let motion = fields.motion(&mut self.files, structure.base().g)?;
-        let run = Run { structure, ground: Arc::new(motion.record.clone()), conditions: fields.conditions()? };
+        let run = RunSetup { structure, ground: Arc::new(motion.record.clone()), conditions: fields.conditions()? };
         Ok((fields, run, motion))
     }
 
@@ -138,7 +138,7 @@ impl Explorer {
             .chain(run.structure.doubts())
             .chain(of_structure(&run.structure, run.conditions.detail))
             .collect();
-        let of_file = |of: Source| [format!("{}, {}", of.format, of.unit)].into_iter().chain(of.remarks);
+        let of_file = |of: Origin| [format!("{}, {}", of.format, of.unit)].into_iter().chain(of.remarks);
         let remarks: Vec<_> = source.into_iter().flat_map(of_file).collect();
         let structure = &run.structure;
         let mut parameters = structure.parameters(); // of many masses those of the base
@@ -182,7 +182,7 @@ impl Explorer {
     pub fn compare(&mut self, fields: &str) -> Result<String, String> {
         let (_, run, _) = self.load(fields)?;
         let advice = run.advice(WITHIN, &Criterion::ALL).map_err(says)?;
-        let row = |level: &Level| {
+        let row = |level: &LevelAdvice| {
             json!({
                 "level": level.choice.to_string(), "detail": level.choice.detail.name(),
                 "modes": level.choice.modes.filter(|[kept, all]| *kept > 0 && kept < all).map(|[kept, _]| kept.to_string()), "errors": level.errors.map(|error| error.to_string()),
@@ -214,7 +214,7 @@ impl Explorer {
 
     /// The FMU of this structure under this ground motion, for FMI 2.0, or 3.0 if `fmi` is 3.
     pub fn export(&mut self, fields: &str, fmi: u32) -> Result<Vec<u8>, String> {
-        let (fields, Run { structure, .. }, motion) = self.load(fields)?;
+        let (fields, RunSetup { structure, .. }, motion) = self.load(fields)?;
         let version = if fmi == 3 { Version::Fmi3 } else { Version::Fmi2 };
         let is_as_read = fields.of_file().all(|key| fields.text(key).is_none());
         let (table, vertical) = motion.tables().map_err(|error| error.to_string())?;

@@ -1,7 +1,7 @@
 //! An overturning spectrum that the page draws while it is computed, from coarse to fine.
 
 use crate::scene::Fields;
-use rocking_sweep::map::{Axis, CLASSES, Map, Place, Point};
+use rocking_sweep::map::{Axis, CLASSES, GridPlace, Map, MapPoint};
 use rocking_sweep::pulse::units_of;
 use serde_json::json;
 use std::collections::{HashMap, VecDeque};
@@ -16,18 +16,18 @@ const RANGES: [(f64, f64); 2] = [(0.5, 16.0), (0.8, 16.0)];
 
 /// A map that is being computed.
 #[wasm_bindgen]
-pub struct Spectrum {
+pub struct MapComputation {
     map: Map,
-    known: HashMap<Place, Point>,
-    queue: VecDeque<Place>,
+    known: HashMap<GridPlace, MapPoint>,
+    queue: VecDeque<GridPlace>,
     level: u32,
 }
 
 #[wasm_bindgen]
-impl Spectrum {
+impl MapComputation {
     /// The map of the scene's structure under pulses of the scene's shape.
     #[wasm_bindgen(constructor)]
-    pub fn new(fields: &str) -> Result<Spectrum, String> {
+    pub fn new(fields: &str) -> Result<MapComputation, String> {
         let fields = Fields::read(fields)?;
         let structure = fields.structure()?;
         let axis = |(from, to): (f64, f64)| {
@@ -40,7 +40,7 @@ impl Spectrum {
             .map_err(|refused| refused.to_string())?;
         let mut queue: Vec<_> = map.grid().collect();
         queue.sort_by(|a, b| size(*b).total_cmp(&size(*a)));
-        Ok(Spectrum { map, known: HashMap::new(), queue: queue.into(), level: 0 })
+        Ok(MapComputation { map, known: HashMap::new(), queue: queue.into(), level: 0 })
     }
 
     /// The ranges of the axes in units of the structure, these units in Hz and m/s², and the names of the classes.
@@ -72,7 +72,7 @@ impl Spectrum {
         done
     }
 
-    fn next_place(&mut self) -> Option<Place> {
+    fn next_place(&mut self) -> Option<GridPlace> {
         while self.queue.is_empty() {
             if self.level > 0 {
                 self.queue = self.map.refinement(self.level, &self.known).into();
@@ -87,7 +87,7 @@ impl Spectrum {
 }
 
 /// Size of the point's square, in steps of the grid, until its neighbours are known.
-fn size(place: Place) -> f64 {
+fn size(place: GridPlace) -> f64 {
     let is_on = |step: &f64| place.steps().iter().all(|at| at % step == 0.0);
     [4.0, 2.0].into_iter().find(is_on).unwrap_or(1.0)
 }

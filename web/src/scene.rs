@@ -6,11 +6,11 @@ use rocking::names::unknown;
 use rocking::run::record::Record;
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::ground::Ground;
-use rocking::structure::natural_quantities::{Given, NATURAL, names};
+use rocking::structure::natural_quantities::{NATURAL, Numbers, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::quantity::Units;
 use rocking::{Detail, Parameters, State, Structure};
-use rocking_records::{Column, Reading, Source};
+use rocking_records::{Column, Origin, Reading};
 use rocking_report::record::{Understood, advised};
 use rocking_sweep::plan::Conditions;
 use rocking_sweep::pulse::{Pulse, Shape};
@@ -22,9 +22,9 @@ use std::path::{Path, PathBuf};
 
 /// A number of the ground motion or of the run: name, unit, meaning, usual value, and the range of its slider. A field may
 /// hold a number outside the slider's range.
-pub type Number = (&'static str, &'static str, &'static str, f64, [f64; 2]);
+pub type FieldRow = (&'static str, &'static str, &'static str, f64, [f64; 2]);
 
-pub const NUMBERS: [Number; 13] = [
+pub const NUMBERS: [FieldRow; 13] = [
     ("amplitude", "g", "peak ground acceleration", 0.6, [0.02, 4.0]),
     ("frequency", "Hz", "frequency of the pulse", 2.0, [0.1, 20.0]),
     ("cycles", "1", "periods of the pulse", f64::NAN, [0.25, 10.0]),
@@ -41,7 +41,7 @@ pub const NUMBERS: [Number; 13] = [
 ];
 
 /// The numbers of ground that gives, as [`Ground`] has them; without all of them the ground is rigid.
-pub const OF_GROUND: [Number; 4] = [
+pub const OF_GROUND: [FieldRow; 4] = [
     ("f_v", "Hz", "frequency of the bounce on the ground", 10.0, [0.5, 200.0]),
     ("k_v", "N/m", "vertical stiffness of the ground (Winkler springs)", f64::NAN, [1e6, 1e12]),
     ("zeta_v", "1", "damping ratio of the bounce", 0.2, [0.0, 1.0]),
@@ -104,7 +104,7 @@ impl Default for Files {
 pub struct File {
     pub path: PathBuf,
     pub bytes: Vec<u8>,
-    read: Vec<(Reading, (Record, Source))>,
+    read: Vec<(Reading, (Record, Origin))>,
 }
 
 impl Fields {
@@ -182,7 +182,7 @@ impl Fields {
         let given = names().filter_map(|name| Some(self.given(name)?.map(|value| (name, value))));
         let given = given.collect::<Result<Vec<_>, _>>()?;
         let Some(preset) = self.preset()?.filter(|_| self.is_many()) else { return Ok(given) };
-        let all = Given::of(&given).and_then(|given| given.over(&preset)).map_err(says)?;
+        let all = Numbers::of(&given).and_then(|given| given.over(&preset)).map_err(says)?;
         let needed = PARAMETERS.iter().filter(|of| of.name != "r" || self.text("r").is_some());
         Ok(needed.map(|of| (of.name, (of.get)(&all))).collect())
     }
@@ -201,7 +201,7 @@ impl Fields {
 
     /// The structure: storeys on a base, a specimen with the given numbers in place of its own, or these numbers alone.
     pub fn structure(&self) -> Result<Structure, String> {
-        let given = Given::of(&self.numbers()?).map_err(says)?;
+        let given = Numbers::of(&self.numbers()?).map_err(says)?;
         let ground = self.ground()?;
         match (self.text("storeys"), ground) {
             (Some(storeys), ground) => self.frame(&given, storeys, ground),
@@ -210,7 +210,7 @@ impl Fields {
         }
     }
 
-    fn frame(&self, base: &Given, storeys: &str, ground: Option<Ground>) -> Result<Structure, String> {
+    fn frame(&self, base: &Numbers, storeys: &str, ground: Option<Ground>) -> Result<Structure, String> {
         let storeys = (1..).zip(storeys.split_whitespace()).map(|(number, row)| storey(number, row));
         let storeys = storeys.collect::<Result<Vec<_>, _>>()?;
         let frame = Structure::from_storeys(base, &Damping::All(self.number("zeta")?), &storeys).map_err(says)?;

@@ -9,7 +9,7 @@ use rocking::run::{Ending, RunError};
 use rocking::{TransitionKind, run::peaks::Peak};
 use rocking_report::page::{Sizes, sizes};
 use rocking_report::quantities::in_readable_unit;
-use rocking_report::run::{Curve, Found, Run};
+use rocking_report::run::{MotionCurve, RunReport, RunSetup};
 use rocking_report::summary::instant;
 
 /// Part of a peak by which a line may miss the motion: less than its width, or than three times its width if the run takes too many
@@ -47,7 +47,7 @@ struct Panel {
 }
 
 /// Runs `run` once more and draws it with its peaks.
-pub fn draw(picture: Picture, run: &Run) -> anyhow::Result<()> {
+pub fn draw(picture: Picture, run: &RunSetup) -> anyhow::Result<()> {
     let curve = match run.curve(PARTS[0]) {
         Err(RunError::TooManyPoints { .. }) => run.curve(PARTS[1])?,
         curve => curve?,
@@ -66,7 +66,7 @@ pub fn draw(picture: Picture, run: &Run) -> anyhow::Result<()> {
 }
 
 /// Ground acceleration, rotation, displacements and acceleration; of many masses those of the top floor.
-fn panels(run: &Run, curve: &Curve) -> Vec<Panel> {
+fn panels(run: &RunSetup, curve: &MotionCurve) -> Vec<Panel> {
     let g = run.structure.base().g;
     let peak = |name: &str| curve.found.peak(name).unwrap_or_default();
     // `unit` is how many SI units it has, and what it is called
@@ -103,7 +103,7 @@ fn panels(run: &Run, curve: &Curve) -> Vec<Panel> {
 }
 
 /// The structure and what became of it, in a line.
-fn about(structure: &Structure, found: &Found) -> String {
+fn about(structure: &Structure, found: &RunReport) -> String {
     let Sizes { m, H, B, f_fc, floors, .. } = sizes(structure);
     let [kg, t, H, base, f_fc] = [m, 1e-3 * m, H, 2.0 * B, f_fc].map(short);
     let masses = match floors {
@@ -121,7 +121,7 @@ fn about(structure: &Structure, found: &Found) -> String {
 
 impl Panel {
     /// Draws the history on `area`, its peak, and a dashed line at the instant from which the structure falls.
-    fn draw(&self, area: &Area, &Found { start, end, fall, .. }: &Found) -> anyhow::Result<()> {
+    fn draw(&self, area: &Area, &RunReport { start, end, fall, .. }: &RunReport) -> anyhow::Result<()> {
         let Panel { name, colour, points, peak } = self;
         let values = points.iter().map(|point| point.1).chain(peak.iter().map(|(_, value, _)| *value));
         let largest = values.map(f64::abs).fold(0.0, f64::max);
@@ -146,7 +146,7 @@ impl Panel {
 }
 
 /// A lane of ticks for each kind of mark, its name before it.
-fn draw_marks(area: &Area, Found { start, end, events, .. }: &Found) -> anyhow::Result<()> {
+fn draw_marks(area: &Area, RunReport { start, end, events, .. }: &RunReport) -> anyhow::Result<()> {
     let lanes = MARKS.len() as f64;
     let mut chart = chart(area, f64::from(BELOW)).margin_top(0).build_cartesian_2d(*start..*end, lanes..0.0)?;
     axes(&mut chart, ["time (s)", ""], [10, 0])?;

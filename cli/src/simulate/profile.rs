@@ -2,7 +2,7 @@
 use crate::picture::{Picture, TITLE, axes, chart, colour, dashed, line, titled};
 use plotters::prelude::*;
 use rocking_report::quantities::of_motion;
-use rocking_report::run::{Found, OF_FLOOR, Run};
+use rocking_report::run::{OF_FLOOR, RunReport, RunSetup};
 
 const WIDTH: u32 = 1000;
 const PLOT: u32 = 420;
@@ -24,7 +24,7 @@ enum At {
 }
 
 /// Draws the peaks `found` in `run` over the height, and those of the same run on a fixed base.
-pub fn draw(picture: Picture, run: &Run, found: &Found) -> anyhow::Result<()> {
+pub fn draw(picture: Picture, run: &RunSetup, found: &RunReport) -> anyhow::Result<()> {
     let on_fixed_base = run.on_fixed_base(found.end)?;
     let [floors, fixed] = [found, &on_fixed_base].map(|found| run.floors(found));
     let (height, g) = (floors[floors.len() - 1][0], run.structure.base().g);

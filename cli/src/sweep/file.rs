@@ -6,7 +6,7 @@ use crate::talk::{few, warning};
 use anyhow::{Context, anyhow, bail, ensure};
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::record::Record;
-use rocking::structure::natural_quantities::Given;
+use rocking::structure::natural_quantities::Numbers;
 use rocking::{Detail, Parameters, Structure, engine::DEFAULT_TOLERANCE};
 use rocking_records::{Column, Unit};
 use rocking_report::{input, output_files::OutputFiles, structure_file};
@@ -32,7 +32,7 @@ pub struct RecordSweep {
 /// Maps by the names of their structures, and how often their grids are refined along boundaries.
 pub type MapSweep = (Vec<(String, Map)>, u32);
 
-pub enum Asked {
+pub enum SweepContent {
     /// Records on structures.
     Records(Box<RecordSweep>),
     Pulses(MapSweep),
@@ -120,7 +120,7 @@ struct RecordTable {
 struct StructureGrid {
     name: String,
     preset: Option<String>,
-    parameters: Option<Given>,
+    parameters: Option<Numbers>,
     /// Of any structure, from the folder of the TOML file.
     file: Option<PathBuf>,
     /// By the name of a parameter, or `slenderness`; every combination is run.
@@ -143,12 +143,12 @@ enum Values {
 }
 
 /// Reads the sweep in the TOML file at `path`, and its records, each of which is an input of `files`.
-pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
+pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<SweepContent> {
     let mut read = || -> anyhow::Result<_> {
         let (text, folder) = (input::text(path)?, path.parent().unwrap_or(Path::new("")));
         let table: toml::Table = toml::from_str(&text)?;
         if table.keys().any(|key| key.starts_with("pulse")) {
-            return Ok(Asked::Pulses(toml::from_str::<MapFile>(&text)?.sweep(folder, files)?));
+            return Ok(SweepContent::Pulses(toml::from_str::<MapFile>(&text)?.sweep(folder, files)?));
         }
         let file: SweepFile = toml::from_str(&text)?;
         let (unit, time_scale) = (file.unit, file.time_scale);
@@ -190,7 +190,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         all_warn(plan.doubts.clone());
         let limits = limits(&file.limits, &plan.measures).context("limits")?;
         limits.iter().try_for_each(|limit| limit.check(plan.widest)).context("limits")?;
-        Ok(Asked::Records(Box::new(RecordSweep { plan, limits, measure, records })))
+        Ok(SweepContent::Records(Box::new(RecordSweep { plan, limits, measure, records })))
     };
     read().with_context(|| format!("sweep in {}", path.display()))
 }

@@ -12,11 +12,11 @@ use crate::talk::{progress, say, warning};
 use FlexibleRocking::BUILD;
 use anyhow::bail;
 use csv::StringRecord;
-use picture::Spectrum;
+use picture::PulseSpectrum;
 use rayon::{ThreadPool, prelude::*};
 use rocking::digits::short;
 use rocking::run::{LONGEST_REST, validity};
-use rocking_sweep::map::{CLASSES, Class, Fate, HEADINGS, Map, Place, Point};
+use rocking_sweep::map::{CLASSES, Class, Fate, GridPlace, HEADINGS, Map, MapPoint};
 use rocking_sweep::plan::AXES;
 use rocking_sweep::row_file::{self, Digest, Known, Program, RowFile, fixed, heading};
 use serde::Serialize;
@@ -52,7 +52,7 @@ pub fn run(
         map.complete(refinements, &mut points, |level, lacking, points| {
             pool.install(|| do_points((&name, &map, points), level, lacking, &mut known, &file))
         })?;
-        spectra.push(Spectrum { name, map, points });
+        spectra.push(PulseSpectrum { name, map, points });
     }
     row_file::others(known.len(), output, "points that are not in these maps").iter().for_each(|line| say!("{line}"));
     let counts: Vec<_> = spectra.iter().flat_map(count).collect();
@@ -64,10 +64,10 @@ pub fn run(
 
 /// Finds `places` of a map among the points that are `known`, or runs the structure there and adds the row.
 fn do_points(
-    (name, map, points): (&str, &Map, &mut HashMap<Place, Point>),
+    (name, map, points): (&str, &Map, &mut HashMap<GridPlace, MapPoint>),
     level: u32,
-    places: Vec<Place>,
-    known: &mut Known<Point>,
+    places: Vec<GridPlace>,
+    known: &mut Known<MapPoint>,
     file: &RowFile,
 ) -> anyhow::Result<()> {
     let keys: Vec<_> = places.par_iter().map(|place| key_at(name, map, *place)).collect();
@@ -78,7 +78,7 @@ fn do_points(
             None => lacking.push((place, key)),
         }
     }
-    let run = |lacking: &[(Place, Uuid)], done: &mut dyn FnMut(_, &[u8]) -> bool| {
+    let run = |lacking: &[(GridPlace, Uuid)], done: &mut dyn FnMut(_, &[u8]) -> bool| {
         let places: Vec<_> = lacking.iter().map(|(place, _)| *place).collect();
         map.run_each(&places, |at, point| {
             let row = row(&lacking[at].1, name, map, (level, places[at]), &point);
@@ -96,7 +96,7 @@ fn do_points(
 }
 
 /// Opens the file at `path`, or begins it, and reads the points of its rows.
-fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Point>)> {
+fn open(path: &Path) -> anyhow::Result<(RowFile, Known<MapPoint>)> {
     let headings = [
         fixed(&["run", "structures", "version"]),
         AXES.map(|axis| heading(axis.name, axis.unit)).into(),
@@ -108,13 +108,13 @@ fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Point>)> {
     RowFile::open(path, &headings, |row| Ok(row.iter().skip(fate).collect::<StringRecord>().deserialize(None)?))
 }
 
-fn key_at(name: &str, map: &Map, place: Place) -> Uuid {
+fn key_at(name: &str, map: &Map, place: GridPlace) -> Uuid {
     let of_map = (map.detail, map.tolerance, map.finds_condition);
     Digest::new(&Program::of(BUILD).build).and(&(name, map.structure.numbers(), map.pulse(place), of_map)).uuid()
 }
 
 /// The row of a point, which the refinement of this level has asked for; 0 is the grid.
-fn row(key: &Uuid, name: &str, map: &Map, (level, place): (u32, Place), point: &Point) -> Vec<u8> {
+fn row(key: &Uuid, name: &str, map: &Map, (level, place): (u32, GridPlace), point: &MapPoint) -> Vec<u8> {
     let pulse = map.pulse(place);
     let of_structure = AXES.map(|axis| (axis.get)(&map.structure.parameters()));
     let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail.name(), map.tolerance);
@@ -123,8 +123,8 @@ fn row(key: &Uuid, name: &str, map: &Map, (level, place): (u32, Place), point: &
 }
 
 /// How many points of the grid there are of each class that there are any of.
-fn count(spectrum: &Spectrum) -> Vec<Count<'_>> {
-    let Spectrum { name, map, points } = spectrum;
+fn count(spectrum: &PulseSpectrum) -> Vec<Count<'_>> {
+    let PulseSpectrum { name, map, points } = spectrum;
     let total = map.grid().count();
     let of = |(class, what): (Class, &'static str)| {
         let points = map.grid().filter(|place| points[place].class() == class).count();
@@ -135,9 +135,9 @@ fn count(spectrum: &Spectrum) -> Vec<Count<'_>> {
 }
 
 /// The counts for people, with what the maps are of.
-fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
+fn text(spectra: &[PulseSpectrum], counts: &[Count]) -> anyhow::Result<String> {
     let mut out = String::new();
-    for Spectrum { name, map, points } in spectra {
+    for PulseSpectrum { name, map, points } in spectra {
         let [frequency, amplitude] = picture::shown(map).map(|axis| {
             let range = picture::range(&axis);
             format!("{} from {} to {}", axis.values.len(), short(range.start), short(range.end))
@@ -164,7 +164,7 @@ fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
     Ok(out)
 }
 
-fn report_failures(spectra: &[Spectrum]) -> anyhow::Result<()> {
+fn report_failures(spectra: &[PulseSpectrum]) -> anyhow::Result<()> {
     let failed = || spectra.iter().flat_map(|of| of.points.iter()).filter(|(_, point)| point.fate == Fate::Failed);
     match failed().min_by_key(|(place, _)| **place) {
         Some((_, first)) => bail!("{} point(s) failed; one of them: {}", failed().count(), first.reason),

@@ -2,7 +2,7 @@
 use rocking::digits::significant;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::LONGEST_REST;
-use rocking_report::quantities::Number;
+use rocking_report::quantities::PrintedNumber;
 use rocking_sweep::exceedances::{Bin, Exceedances, Fragility, Tally};
 use rocking_sweep::fragility::{FEWEST_GROUPS, FragilityCurve};
 use serde::Serialize;
@@ -88,17 +88,17 @@ pub struct Fitted {
     limit: String,
     measure: String,
     unit: &'static str,
-    median: Option<Number>,
+    median: Option<PrintedNumber>,
     median_is_beyond_the_runs: Option<bool>,
-    median_from: Option<Number>,
-    median_to: Option<Number>,
-    dispersion: Option<Number>,
+    median_from: Option<PrintedNumber>,
+    median_to: Option<PrintedNumber>,
+    dispersion: Option<PrintedNumber>,
     reason: Option<String>,
-    bins: Vec<Counted>,
+    bins: Vec<CountedBin>,
 }
 
 #[derive(Serialize)]
-struct Counted {
+struct CountedBin {
     #[serde(flatten)]
     bin: Bin,
     #[serde(flatten)]
@@ -111,17 +111,17 @@ pub fn curves(populations: &[Exceedances], measure: IntensityMeasure) -> Vec<Fit
         let Fragility { limit, curve, tallies, .. } = fragility;
         let fitted = curve.as_ref().ok();
         let range = fitted.and_then(FragilityCurve::median_range);
-        let bins = of.bins.iter().zip(tallies).map(|(&bin, &tally)| Counted { bin, tally });
+        let bins = of.bins.iter().zip(tallies).map(|(&bin, &tally)| CountedBin { bin, tally });
         Fitted {
             structures: of.population.clone(),
             limit: limit.to_string(),
             measure: measure.name().into(),
             unit: measure.unit(),
-            median: fitted.map(|curve| Number(curve.median)),
+            median: fitted.map(|curve| PrintedNumber(curve.median)),
             median_is_beyond_the_runs: fitted.map(|_| is_beyond_the_runs(of, fragility)),
-            median_from: range.map(|(from, _)| Number(from)),
-            median_to: range.map(|(_, to)| Number(to)),
-            dispersion: fitted.map(|curve| Number(curve.dispersion)),
+            median_from: range.map(|(from, _)| PrintedNumber(from)),
+            median_to: range.map(|(_, to)| PrintedNumber(to)),
+            dispersion: fitted.map(|curve| PrintedNumber(curve.dispersion)),
             reason: curve.as_ref().err().map(ToString::to_string),
             bins: bins.collect(),
         }

@@ -2,9 +2,9 @@
 
 use crate::{Version, units};
 use FlexibleRocking::resources::Contents;
-use FlexibleRocking::variables::Table;
+use FlexibleRocking::variables::VariableTable;
 use fmi_unit::Variable;
-use model_description::{DefaultExperiment, Description};
+use model_description::{DefaultExperiment, ModelDescription};
 
 /// The model in one line.
 pub const DESCRIPTION: &str = "A flexible structure that rocks on its foundation under earthquake ground motion";
@@ -14,7 +14,7 @@ pub const EVENTS: &str = "uplift, impact, landing and overturning, as they happe
 
 /// The text of the description of the FMU `name` with these `contents`.
 pub fn xml(version: Version, name: &str, contents: &Contents, default_experiment: DefaultExperiment) -> String {
-    let (structure, variables) = (&contents.structure, Table::new(contents).variables);
+    let (structure, variables) = (&contents.structure, VariableTable::new(contents).variables);
     let variables: Vec<_> = variables
         .iter()
         .map(|variable| Variable {
@@ -23,7 +23,7 @@ pub fn xml(version: Version, name: &str, contents: &Contents, default_experiment
             ..variable.clone()
         })
         .collect();
-    let description = Description {
+    let description = ModelDescription {
         name,
         token: FlexibleRocking::guid(contents),
         description: DESCRIPTION,

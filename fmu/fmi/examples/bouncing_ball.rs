@@ -19,7 +19,7 @@ fmi_unit::export_fmu!(Ball);
 
 impl Ball {
     /// The exact motion until `until`, s, or, if it `stops`, up to the first contact on the way.
-    fn follow(&mut self, until: f64, stops: bool) -> Progress {
+    fn follow(&mut self, until: f64, stops: bool) -> StepEnd {
         let until = until.max(self.known[4]); // no host turns back
         while !self.rests {
             let [h, v, g, e, t] = self.known;
@@ -30,7 +30,7 @@ impl Ball {
             self.known = [0.0, v - g * fall, g, e, t + fall];
             if stops && fall > 0.0 {
                 self.here = self.known;
-                return Progress::Event;
+                return StepEnd::Event;
             }
             let speed = e * (g * fall - v);
             (self.rests, self.bounces) = (speed < REST, self.bounces + 1);
@@ -40,7 +40,7 @@ impl Ball {
         let (a, tau) = (if self.rests { 0.0 } else { -g }, until - t);
         self.known = [h + v * tau + a * tau * tau / 2.0, v + a * tau, g, e, until];
         self.here = self.known;
-        Progress::Complete
+        StepEnd::Complete
     }
 }
 
@@ -78,11 +78,11 @@ impl Model for Ball {
         self.known = self.here;
         Ok(())
     }
-    fn advance(&mut self, step: Step, _log: &Logger) -> Result<Progress, Failure> {
+    fn advance(&mut self, step: StepRequest, _log: &Logger) -> Result<StepEnd, Failure> {
         Ok(self.follow(step.start + step.duration, step.stops_at_events))
     }
     fn complete_step(&mut self, _log: &Logger) -> Result<Completed, Failure> {
-        let needs_event_mode = { *self }.follow(self.here[4], true) == Progress::Event;
+        let needs_event_mode = { *self }.follow(self.here[4], true) == StepEnd::Event;
         Ok(Completed { needs_event_mode, has_ended: false })
     }
     fn update(&mut self, _log: &Logger) -> Result<Update, Failure> {

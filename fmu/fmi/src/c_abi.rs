@@ -21,7 +21,7 @@ use crate::instance::Instance;
 use crate::interface::{Interface, IntermediateUpdate};
 use crate::logger::{Category, Logger, Sink, Status};
 use crate::model::Model;
-use crate::state_machine::{Stage, Stages, Table, names};
+use crate::state_machine::{LegalStages, Stage, Stages, names};
 use crate::variables::DataType;
 use libc::{c_char, c_int, c_void, size_t};
 use std::any::Any;
@@ -51,7 +51,7 @@ pub trait Function: Copy + Sized + 'static {
     fn name(self) -> &'static str;
 
     /// The stages in which an instance for `interface` accepts each function.
-    fn table(interface: Interface) -> &'static Table;
+    fn table(interface: Interface) -> &'static LegalStages;
 }
 
 /// The words of a version in the names of its functions, and its first value reference.
@@ -105,7 +105,7 @@ struct Component<F> {
     /// Whether a step is under way in which the host is called back, and which goes on with the instance.
     calls_back: AtomicBool,
     /// The stages in which the instance accepts each function.
-    allowed_in: &'static Table,
+    allowed_in: &'static LegalStages,
     instance: UnsafeCell<Instance>,
     version: PhantomData<F>,
 }
@@ -488,7 +488,7 @@ macro_rules! functions {
                 }
             }
 
-            fn table(interface: Interface) -> &'static $crate::state_machine::Table {
+            fn table(interface: Interface) -> &'static $crate::state_machine::LegalStages {
                 stages::table(interface)
             }
         }

@@ -8,7 +8,7 @@ use crate::c_abi::{self, *};
 use crate::failure::Failure;
 use crate::interface::{Interface, Stepping};
 use crate::logger::{Category, Sink};
-use crate::model::{Completed, Experiment, Progress, Update};
+use crate::model::{Completed, Experiment, StepEnd, Update};
 use crate::state_machine::Stage;
 use crate::uri;
 use crate::variables::{DataType, Role};
@@ -209,7 +209,7 @@ shared_functions! {
         currentCommunicationPoint: c_double, communicationStepSize: c_double, _noSetFMUStatePriorToCurrentPoint: c_int,
     ) [often] |instance| {
         let progress = instance.do_step(currentCommunicationPoint, communicationStepSize)?;
-        if progress == Progress::Ended { instance.ending()?.map_or(Ok(()), Err) } else { Ok(()) }
+        if progress == StepEnd::Ended { instance.ending()?.map_or(Ok(()), Err) } else { Ok(()) }
     }
 
     /// Never allowed: no step is ever pending.

@@ -15,7 +15,7 @@ use crate::instance::{Instance, find};
 pub use crate::interface::IntermediateUpdateCallback;
 use crate::interface::{Interface, IntermediateUpdate, Stepping};
 use crate::logger::{Category, Sink};
-use crate::model::{Completed, Experiment, Model, Progress, Update};
+use crate::model::{Completed, Experiment, Model, StepEnd, Update};
 use crate::state_machine::Stage;
 use crate::variables::{Causality, DataType, Role};
 use libc::{c_char, c_int, c_uint, c_void, size_t};
@@ -287,12 +287,12 @@ with_lists! {
         let mut compute = |instance: &mut Instance| unsafe {
             let progress = instance.do_step(point, step)?;
             let (time, may_return_early) = (instance.model.time()?, instance.interface.stepping().early_return);
-            if let (Progress::Ended, Some(ending)) = (progress, instance.ending()?) {
+            if let (StepEnd::Ended, Some(ending)) = (progress, instance.ending()?) {
                 instance.logger.warning(&format!("fmi3DoStep: {ending}"));
             }
-            write("eventHandlingNeeded", eventHandlingNeeded, u8::from(progress == Progress::Event))?;
-            write("terminateSimulation", terminateSimulation, u8::from(progress == Progress::Ended))?;
-            let is_early = may_return_early && progress != Progress::Complete && time < point + step;
+            write("eventHandlingNeeded", eventHandlingNeeded, u8::from(progress == StepEnd::Event))?;
+            write("terminateSimulation", terminateSimulation, u8::from(progress == StepEnd::Ended))?;
+            let is_early = may_return_early && progress != StepEnd::Complete && time < point + step;
             write("earlyReturn", earlyReturn, is_early.into())?;
             write("lastSuccessfulTime", lastSuccessfulTime, time)?;
             told = instance.show_step().map(|host| (host, time));
@@ -398,7 +398,7 @@ with_lists! {
 mod tests {
     use super::*;
     use crate::logger::{Logger, Status};
-    use crate::model::Step;
+    use crate::model::StepRequest;
     use crate::variables::{Value, Variable};
     use std::cell::Cell;
     use std::ffi::CString;
@@ -435,8 +435,8 @@ mod tests {
 
         fn set(&mut self, _: u32, _: Value) {}
 
-        fn advance(&mut self, _: Step, _: &Logger) -> Result<Progress, Failure> {
-            Ok(Progress::Complete)
+        fn advance(&mut self, _: StepRequest, _: &Logger) -> Result<StepEnd, Failure> {
+            Ok(StepEnd::Complete)
         }
 
         fn update(&mut self, _: &Logger) -> Result<Update, Failure> {

@@ -4,7 +4,7 @@
 use crate::failure::Failure;
 use crate::interface::{Interface, IntermediateUpdate, Stepping};
 use crate::logger::Logger;
-use crate::model::{Completed, Experiment, Model, Progress, Step, Update};
+use crate::model::{Completed, Experiment, Model, StepEnd, StepRequest, Update};
 use crate::snapshot::{Snapshot, Snapshots};
 use crate::state_machine::{Stage, Stages};
 use crate::variables::{Causality, DataType, Role, Value, Variable, state_references};
@@ -538,7 +538,7 @@ impl Instance {
     /// Steps to `point` + `step` (s), or to the first event if that is handed over. If `point` differs from the instance's time by
     /// rounding alone, the instance takes over the host's clock, and `step` is the duration.
     #[inline(always)]
-    pub(crate) fn do_step(&mut self, point: f64, step: f64) -> Result<Progress, Failure> {
+    pub(crate) fn do_step(&mut self, point: f64, step: f64) -> Result<StepEnd, Failure> {
         if self.asked.is_some() {
             self.asked = None;
             self.stage = Stage::StepComplete;
@@ -547,10 +547,10 @@ impl Instance {
         let stops_at_events = self.interface.stepping().hands_over();
         let (start, duration) =
             if is_rounding(point, time, step) { (point, step) } else { (time, point + step - time) };
-        let step = Step { start, duration, stops_at_events };
+        let step = StepRequest { start, duration, stops_at_events };
         let progress = self.model.advance(step, &self.logger);
         let progress = self.stop_if_stuck(progress)?;
-        if progress == Progress::Ended {
+        if progress == StepEnd::Ended {
             self.stage = Stage::StepFailed;
         }
         Ok(progress)

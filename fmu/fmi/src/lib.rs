@@ -45,7 +45,7 @@ pub use interface::Interface;
 #[doc(hidden)]
 pub use libc;
 pub use logger::Logger;
-pub use model::{Completed, Experiment, Model, Progress, Step, Update};
+pub use model::{Completed, Experiment, Model, StepEnd, StepRequest, Update};
 pub use variables::{Causality, DataType, Enumeration, Role, Value, Variable};
 
 /// The functions [`Model::state`] and [`Model::restore`] of a model that is all of its state and implements serde's traits.

@@ -92,7 +92,7 @@ pub trait Model: Send + 'static {
     }
 
     /// Advances over a step of a co-simulation, which begins at `step.start` but for rounding of [`Model::time`].
-    fn advance(&mut self, step: Step, log: &Logger) -> Result<Progress, Failure>;
+    fn advance(&mut self, step: StepRequest, log: &Logger) -> Result<StepEnd, Failure>;
 
     /// Applies what an event brings: the one that a step has ended at, or those up to where the host's integrator is.
     fn update(&mut self, log: &Logger) -> Result<Update, Failure>;
@@ -183,7 +183,7 @@ pub struct Experiment {
 
 /// A step of a co-simulation.
 #[derive(Clone, Copy, Debug)]
-pub struct Step {
+pub struct StepRequest {
     /// The start of the step by the host's clock, s.
     pub start: f64,
     /// The duration of the step, s.
@@ -194,7 +194,7 @@ pub struct Step {
 
 /// How a step has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Progress {
+pub enum StepEnd {
     /// At its end.
     Complete,
     /// With the simulation: [`Model::ending`] says why.

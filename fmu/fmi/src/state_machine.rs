@@ -73,7 +73,7 @@ impl Stage {
 pub type Stages = u16;
 
 /// The stages that each function of a version may be called in, by its place in the version's `Function`.
-pub type Table = [Stages; 128];
+pub type LegalStages = [Stages; 128];
 
 /// The names of `stages`, for a message.
 pub(crate) fn names(stages: Stages) -> String {
@@ -89,18 +89,18 @@ pub(crate) fn names(stages: Stages) -> String {
 macro_rules! tables {
     ([$($of:tt $stage:ident),*] $($($function:ident)+ [$($mark:tt)+])*) => {
         use $crate::interface::Interface;
-        use $crate::state_machine::{Stage, Table, is_for};
+        use $crate::state_machine::{Stage, LegalStages, is_for};
 
         /// The stages in which an instance for `interface` accepts each function.
-        pub(crate) fn table(interface: Interface) -> &'static Table {
-            static CO_SIMULATION: Table = of("s");
-            static MODEL_EXCHANGE: Table = of("m");
+        pub(crate) fn table(interface: Interface) -> &'static LegalStages {
+            static CO_SIMULATION: LegalStages = of("s");
+            static MODEL_EXCHANGE: LegalStages = of("m");
             if interface == Interface::ModelExchange { &MODEL_EXCHANGE } else { &CO_SIMULATION }
         }
 
-        const fn of(interface: &str) -> Table {
+        const fn of(interface: &str) -> LegalStages {
             let stages = [$((Stage::$stage, is_for(stringify!($of), interface))),*];
-            let mut table: Table = [0; 128];
+            let mut table: LegalStages = [0; 128];
             $({
                 let marks = [$(is_for(stringify!($mark), interface)),+];
                 let mut at = 0;

@@ -10,13 +10,13 @@ use bouncing_ball::{Ball as Model, fmi2, fmi3};
 use fmi_unit::snapshot::Snapshot;
 use fmi_unit::variables::{dependencies, position};
 use fmi_unit::{Experiment, Model as _};
-use hostile::{Subject, hostile_calls};
+use hostile::{Target, hostile_calls};
 use std::path::Path;
 
 hostile_calls!(ball);
 
-fn ball() -> Subject {
-    Subject::of(tempfile::tempdir().unwrap(), time)
+fn ball() -> Target {
+    Target::of(tempfile::tempdir().unwrap(), time)
 }
 
 fn time(snapshot: &Snapshot) -> f64 {

@@ -1,7 +1,7 @@
 //! The FMU of Evison's wall.
 
 use FlexibleRocking::resources::{CONTENTS_FILE, Contents};
-use FlexibleRocking::variables::Table;
+use FlexibleRocking::variables::VariableTable;
 use fmi_unit::variables::position;
 use rocking::{Parameters, Structure};
 use tempfile::TempDir;
@@ -20,5 +20,5 @@ pub fn resources() -> TempDir {
 
 /// The value reference of a variable in FMI 2.0.
 pub fn reference(name: &str) -> u32 {
-    position(&Table::new(&contents()).variables, name) as u32
+    position(&VariableTable::new(&contents()).variables, name) as u32
 }

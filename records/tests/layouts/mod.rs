@@ -8,7 +8,7 @@ use std::path::PathBuf;
 pub const DT: f64 = 0.005;
 
 #[derive(Clone, Debug)]
-pub struct Layout {
+pub struct LayoutCase {
     pub path: PathBuf,
     pub bytes: Vec<u8>,
     pub how: Reading,
@@ -34,9 +34,9 @@ fn lines(values: &[f64], columns: usize, write: impl Fn(f64) -> String) -> Strin
 }
 
 /// Every layout, with `count` samples.
-pub fn all(count: usize) -> Vec<Layout> {
+pub fn all(count: usize) -> Vec<LayoutCase> {
     let cm = samples(count);
-    let layout = |name: &str, format, unit, text: String| Layout {
+    let layout = |name: &str, format, unit, text: String| LayoutCase {
         path: name.into(),
         bytes: text.into_bytes(),
         how: Reading::default(),
@@ -59,7 +59,7 @@ pub fn all(count: usize) -> Vec<Layout> {
         ),
         at2("PEER NGA STRONG MOTION DATABASE RECORD", &format!("NPTS=  {count:4}, DT=   .0050 SEC,")),
         layout("record.ASC", "ESM and ITACA ASCII", gal, esm(&cm)),
-        Layout { expected, ..layout("MYG0041103111446.NS", "K-NET and KiK-net ASCII", gal, counts) },
+        LayoutCase { expected, ..layout("MYG0041103111446.NS", "K-NET and KiK-net ASCII", gal, counts) },
         layout("record.V1", "COSMOS V1 and V2", gal, cosmos("Uncorrected acceleration", &cm, false)),
         layout("record.V2c", "COSMOS V1 and V2", gal, cosmos("Corrected acceleration", &cm, true)),
         layout("record.V2", "CSMIP V2", gal, csmip(&cm)),
@@ -81,7 +81,7 @@ pub fn all(count: usize) -> Vec<Layout> {
     }
     let column = cm.iter().map(|value| format!("{value}\n")).collect::<String>();
     let with_step = |unit| Reading { dt: Some(DT), unit, ..Reading::default() };
-    let read_as = |how: Reading, layout: Layout| Layout { how, ..layout };
+    let read_as = |how: Reading, layout: LayoutCase| LayoutCase { how, ..layout };
     all.push(read_as(with_step(Some(gal)), layout("column.txt", "table", gal, column)));
     let array = |(i, value): (usize, &f64)| format!("{},{},\"{value}\",{i}\r\n", i as f64 * DT, -2.0 * value);
     let array = "Time (s),N-S (gal),E-W (gal),n\r\n".to_owned() + &cm.iter().enumerate().map(array).collect::<String>();

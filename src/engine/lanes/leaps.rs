@@ -1,9 +1,9 @@
 //! Leaps in full contact of several runs, from sample to sample. The operations on the numbers of a run are those of its level, in the
 //! same order.
 
-use super::number::{Answers, Lanes, MOST, Row, load, put};
-use super::rocking::{Samples, by_equations_5_and_6};
-use super::sought::{Bend, MOST_MODES, Passes, Sought, Stretch, Turned};
+use super::number::{Answers, Lanes, MOST, PerRun, load, put};
+use super::rocking::{SegmentEnds, by_equations_5_and_6};
+use super::sought::{Bend, MOST_MODES, Passes, Sought, StepOfRuns, Turned};
 use crate::engine::Engine;
 use crate::levels::Elastic;
 use crate::levels::full_contact::ExactContact;
@@ -47,46 +47,46 @@ const LOOKED_AHEAD: usize = 4;
 /// Leaps in full contact of several runs, from sample to sample.
 #[derive(Debug, Default)]
 #[repr(align(64))]
-pub(crate) struct Contacts<'a, Q> {
+pub(crate) struct ContactLeaps<'a, Q> {
     sought: Sought<Q>,
-    samples: [Samples<'a>; MOST],
+    samples: [SegmentEnds<'a>; MOST],
     entered: [usize; MOST],
     /// 1 where there is a run.
-    is_there: Row,
+    is_there: PerRun,
     /// The modes of the run that is there, or was there last.
     exact: [Vec<ExactContact>; MOST],
     /// A state of the run that is there, for the count of its modes.
     state: [State<Q>; MOST],
-    modes: Vec<Contact>,
+    modes: Vec<ModeOfRuns>,
     /// The moment that holds the base down, in the unit of the moments of the modes.
-    hold: Row,
+    hold: PerRun,
     /// The longest leap that may be put off, s: a watcher looks at a longer one piece by piece.
-    longest: Row,
-    age: Row,
+    longest: PerRun,
+    age: PerRun,
     /// Two durations (s), which each mode has the [`Flow`] over, and which of them is the newer one. Between two powers of 2 the times
     /// i dt of a record differ by one of two numbers.
-    durations: [Row; 2],
+    durations: [PerRun; 2],
     newer: [usize; MOST],
     /// The time of a sample and the ground acceleration there. A sample is written number by number a leap before it is read as rows,
     /// since the processor would otherwise wait for the numbers.
-    ends: [[Row; 2]; 2],
+    ends: [[PerRun; 2]; 2],
     /// 1 where the last leap has been taken.
-    is_taken: Row,
+    is_taken: PerRun,
 }
 
 /// A mode of each run in full contact. A run with fewer modes has modes without motion.
 #[derive(Debug, Default)]
 #[repr(align(64))]
-struct Contact {
+struct ModeOfRuns {
     /// ω, ζ, the part of the ground acceleration that the mode feels, and the moment on the base for a unit of u.
-    numbers: [Row; 4],
-    motion: [Row; 2],
-    flows: [[Row; 6]; 2],
+    numbers: [PerRun; 4],
+    motion: [PerRun; 2],
+    flows: [[PerRun; 6]; 2],
 }
 
-impl<'a, Q: Coordinates> Contacts<'a, Q> {
+impl<'a, Q: Coordinates> ContactLeaps<'a, Q> {
     /// Puts the run of `engine`, which has come to these samples, into `lane`.
-    pub(crate) fn enter<W: Passes<Q>>(&mut self, lane: usize, engine: &Engine<Q>, samples: Samples<'a>, watch: &W) {
+    pub(crate) fn enter<W: Passes<Q>>(&mut self, lane: usize, engine: &Engine<Q>, samples: SegmentEnds<'a>, watch: &W) {
         let (structure, motion) = (engine.structure(), engine.motion());
         watch.seek(engine, lane, &mut self.sought);
         (self.samples[lane], self.entered[lane], self.is_there[lane]) = (samples, samples.next, 1.0);
@@ -98,7 +98,7 @@ impl<'a, Q: Coordinates> Contacts<'a, Q> {
         if is_other {
             self.durations.iter_mut().for_each(|duration| duration[lane] = 0.0);
             self.exact[lane] = modes.to_vec();
-            self.modes.resize_with(self.modes.len().max(modes.len()), Contact::default);
+            self.modes.resize_with(self.modes.len().max(modes.len()), ModeOfRuns::default);
         }
         for (j, mode) in self.modes.iter_mut().enumerate() {
             let (numbers, motion) = match structure.modes().get(j).zip(modes.get(j)) {
@@ -116,7 +116,7 @@ impl<'a, Q: Coordinates> Contacts<'a, Q> {
     /// Keeps the flows of the next leaps of the run in `lane`.
     #[inline]
     fn prepare(&mut self, lane: usize) {
-        let Samples { times, next, last, .. } = self.samples[lane];
+        let SegmentEnds { times, next, last, .. } = self.samples[lane];
         for ends in times[next - 1..last.min(next + LOOKED_AHEAD)].windows(2).rev() {
             let duration = ends[1] - ends[0];
             if self.durations.iter().all(|kept| kept[lane] != duration) {
@@ -135,7 +135,7 @@ impl<'a, Q: Coordinates> Contacts<'a, Q> {
     pub(crate) fn step<S: Simd>(&mut self, simd: S) {
         let is_there = self.is_there;
         let lanes = || (0..S::F64_LANES).filter(|lane| is_there[*lane] == 1.0);
-        let left = |samples: &Samples| samples.last.saturating_sub(samples.next);
+        let left = |samples: &SegmentEnds| samples.last.saturating_sub(samples.next);
         loop {
             let most = lanes().map(|lane| left(&self.samples[lane])).min().unwrap_or(0);
             match Q::IS_ONE {
@@ -158,7 +158,7 @@ impl<'a, Q: Coordinates> Contacts<'a, Q> {
     /// Takes the run in `lane` out. Returns the next sample.
     pub(crate) fn leave<W: Passes<Q>>(&mut self, lane: usize, engine: &mut Engine<Q>, watch: &mut W) -> usize {
         self.is_there[lane] = 0.0;
-        let Samples { times, next, .. } = self.samples[lane];
+        let SegmentEnds { times, next, .. } = self.samples[lane];
         if next > self.entered[lane] {
             self.sought.show(lane, engine, watch);
             let motion = &mut engine.motion;
@@ -187,7 +187,7 @@ impl<'a, Q: Coordinates> Contacts<'a, Q> {
     fn put_off<S: Simd, const N: usize>(
         &mut self,
         simd: S,
-        (stretch, bend): (&Stretch<S, N>, &Bend<S, N>),
+        (stretch, bend): (&StepOfRuns<S, N>, &Bend<S, N>),
         ahead: usize,
         is_taken: Answers<S>,
         is_passed: Answers<S>,
@@ -197,7 +197,7 @@ impl<'a, Q: Coordinates> Contacts<'a, Q> {
         let is_put_off = is_passed.choose(zero, is_taken.choose(one, zero));
         let mut may_go_on = true;
         for lane in (0..S::F64_LANES).filter(|lane| self.is_there[*lane] == 1.0 && is_put_off.of(*lane) == 1.0) {
-            let Samples { times, a_g, next, .. } = self.samples[lane];
+            let SegmentEnds { times, a_g, next, .. } = self.samples[lane];
             let sample = next + ahead;
             let duration = times[sample] - times[sample - 1];
             let a_g = Ramp::between(a_g[sample - 1], a_g[sample], duration);
@@ -221,7 +221,7 @@ impl<'a, Q: Coordinates> Contacts<'a, Q> {
 }
 
 /// Leaping, at most as often as this.
-struct Leapt<'c, 'a, S: Simd, Q, const N: usize>(S, &'c mut Contacts<'a, Q>, usize);
+struct Leapt<'c, 'a, S: Simd, Q, const N: usize>(S, &'c mut ContactLeaps<'a, Q>, usize);
 
 impl<S: Simd, Q: Coordinates, const N: usize> WithSimd for Leapt<'_, '_, S, Q, N> {
     type Output = ();
@@ -229,7 +229,7 @@ impl<S: Simd, Q: Coordinates, const N: usize> WithSimd for Leapt<'_, '_, S, Q, N
     #[inline(always)]
     fn with_simd<T: Simd>(self, _simd: T) {
         let Leapt(simd, of, left) = self;
-        let row = |row: &Row| Lanes::load(simd, row);
+        let row = |row: &PerRun| Lanes::load(simd, row);
         let (mut age, hold, none) = (row(&of.age), row(&of.hold), Lanes::splat(simd, 0.0));
         let (one, largest) = (none.like(1.0), none.like(f64::MAX));
         let mut start = Turned { u: [none; N], u_dot: [none; N], theta: none };
@@ -278,7 +278,7 @@ impl<S: Simd, Q: Coordinates, const N: usize> WithSimd for Leapt<'_, '_, S, Q, N
             }
             let near = springs[0].abs().max(springs[1].abs()) + bend * duration * duration / none.like(8.0);
             let is_low = farthest.is_less(hold) | near.is_less(hold);
-            let stretch = Stretch { ends: [start, end], off };
+            let stretch = StepOfRuns { ends: [start, end], off };
             is_taken = is_low & sum.abs().is_at_most(largest) & (a + slope * duration).abs().is_at_most(largest);
             let is_passed = of.sought.are_passed(simd, &stretch.most());
             if !(is_passed | is_absent).all() {
@@ -317,7 +317,7 @@ impl<S: Simd, Q: Coordinates, const N: usize> WithSimd for Leapt<'_, '_, S, Q, N
             start.u[j].store(&mut mode.motion[0]);
             start.u_dot[j].store(&mut mode.motion[1]);
         }
-        for (Samples { next, .. }, is_taken) in of.samples.iter_mut().zip(of.is_taken) {
+        for (SegmentEnds { next, .. }, is_taken) in of.samples.iter_mut().zip(of.is_taken) {
             *next += leaps - usize::from(is_taken == 0.0);
         }
     }

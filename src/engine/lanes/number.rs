@@ -10,17 +10,17 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 pub(crate) const MOST: usize = 8;
 
 /// A number of each run.
-pub(crate) type Row = [f64; MOST];
+pub(crate) type PerRun = [f64; MOST];
 
 /// Puts the numbers of the run in `lane` into their rows.
 #[inline(always)]
-pub(crate) fn put<const K: usize>(rows: &mut [Row; K], lane: usize, numbers: [f64; K]) {
+pub(crate) fn put<const K: usize>(rows: &mut [PerRun; K], lane: usize, numbers: [f64; K]) {
     rows.iter_mut().zip(numbers).for_each(|(row, number)| row[lane] = number);
 }
 
 /// The rows as numbers of all runs.
 #[inline(always)]
-pub(crate) fn load<S: Simd, const K: usize>(simd: S, rows: &[Row; K]) -> [Lanes<S>; K] {
+pub(crate) fn load<S: Simd, const K: usize>(simd: S, rows: &[PerRun; K]) -> [Lanes<S>; K] {
     let mut numbers = [Lanes::splat(simd, 0.0); K];
     for (number, row) in numbers.iter_mut().zip(rows) {
         *number = Lanes::load(simd, row);

@@ -1,7 +1,7 @@
 //! Steps of rocking of several runs, from sample to sample.
 
-use super::number::{Lanes, MOST, Row, load, put};
-use super::sought::{Bend, Passes, ROUNDING, Sought, Stretch, Turned};
+use super::number::{Lanes, MOST, PerRun, load, put};
+use super::sought::{Bend, Passes, ROUNDING, Sought, StepOfRuns, Turned};
 use crate::engine::motion::{Motion, Work};
 use crate::engine::phases::room;
 use crate::engine::{Advance, Engine, FAR, STALLED};
@@ -20,7 +20,7 @@ use std::any::Any;
 
 /// The samples of a record that end whole segments of a run.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Samples<'a> {
+pub(crate) struct SegmentEnds<'a> {
     /// s.
     pub times: &'a [f64],
     /// m/s².
@@ -31,7 +31,7 @@ pub(crate) struct Samples<'a> {
     pub last: usize,
 }
 
-impl Samples<'_> {
+impl SegmentEnds<'_> {
     /// Time and ground acceleration of a `sample`, if there is one.
     #[inline(always)]
     pub(super) fn at(&self, sample: usize) -> Option<[f64; 2]> {
@@ -41,9 +41,9 @@ impl Samples<'_> {
 
 /// Steps of rocking of several runs, from sample to sample.
 #[derive(Debug)]
-pub(crate) struct Rocking<'a, S: Simd, Q> {
+pub(crate) struct RockingLanes<'a, S: Simd, Q> {
     simd: S,
-    runs: Runs<'a, Q>,
+    runs: LaneRuns<'a, Q>,
     products: Products<Lanes<S>>,
     /// Of the last step: u, u̇, θ and θ̇, order by order.
     series: [[Lanes<S>; 4]; MAX_ORDER + 1],
@@ -52,54 +52,54 @@ pub(crate) struct Rocking<'a, S: Simd, Q> {
 /// Several runs that rock, before and after the last step.
 #[derive(Debug, Default)]
 #[repr(align(64))]
-struct Runs<'a, Q> {
+struct LaneRuns<'a, Q> {
     sought: Sought<Q>,
-    samples: [Samples<'a>; MOST],
+    samples: [SegmentEnds<'a>; MOST],
     entered: [usize; MOST],
     /// 1 where there is a run.
-    is_there: Row,
+    is_there: PerRun,
     /// The numbers of a [`Rocker`], and of a [`Pace`].
-    rocker: [Row; 6],
-    pace: [Row; 5],
-    local_error: Row,
-    gravity: Row,
-    side: Row,
+    rocker: [PerRun; 6],
+    pace: [PerRun; 5],
+    local_error: PerRun,
+    gravity: PerRun,
+    side: PerRun,
     /// u, u̇, θ and θ̇ at the start of the next step.
-    state: [Row; 4],
+    state: [PerRun; 4],
     /// Of the present segment: its start (s), the ground acceleration from there on, its duration, the time that has passed (s), and 1 where
     /// another sample comes after it.
-    start: Row,
-    a_g: Row,
-    slope: Row,
-    interval: Row,
-    elapsed: Row,
-    may_go_on: Row,
+    start: PerRun,
+    a_g: PerRun,
+    slope: PerRun,
+    interval: PerRun,
+    elapsed: PerRun,
+    may_go_on: PerRun,
     /// The longest segment that is not taken in parts, s.
-    part: Row,
+    part: PerRun,
     /// Time and ground acceleration of the sample that ends the segment, and of the sample after it, which is written number by number a
     /// step before it is read.
-    ends: [[Row; 2]; 2],
+    ends: [[PerRun; 2]; 2],
     /// The run's age among its transitions, its steps and evaluations until then, and the most steps.
-    age: Row,
-    steps: Row,
-    evaluations: Row,
-    most_steps: Row,
+    age: PerRun,
+    steps: PerRun,
+    evaluations: PerRun,
+    most_steps: PerRun,
     /// Of the last step: its order, its span (s), the part of the span up to which the series holds, and the state there.
-    order: Row,
-    span: Row,
-    reach: Row,
-    end: [Row; 4],
+    order: PerRun,
+    span: PerRun,
+    reach: PerRun,
+    end: [PerRun; 4],
     /// 1 where the watcher need not see the last step or a part from its start.
-    is_passed: Row,
+    is_passed: PerRun,
     /// 1 where the run has gone on.
-    has_gone_on: Row,
+    has_gone_on: PerRun,
 }
 
-impl<'a, S: Simd, Q: Coordinates> Rocking<'a, S, Q> {
-    pub(crate) fn new(simd: S) -> Rocking<'a, S, Q> {
+impl<'a, S: Simd, Q: Coordinates> RockingLanes<'a, S, Q> {
+    pub(crate) fn new(simd: S) -> RockingLanes<'a, S, Q> {
         let zero = Lanes::splat(simd, 0.0);
         let series = [[zero; 4]; MAX_ORDER + 1];
-        Rocking { simd, runs: Runs::default(), products: Products::new(zero), series }
+        RockingLanes { simd, runs: LaneRuns::default(), products: Products::new(zero), series }
     }
 
     /// Puts the run of `engine`, whose `advance` leads to the first of these samples, into `lane`, for at most so many steps since its start.
@@ -109,7 +109,7 @@ impl<'a, S: Simd, Q: Coordinates> Rocking<'a, S, Q> {
         (lane, most_steps): (usize, u64),
         engine: &Engine<Q>,
         advance: &Advance<Q>,
-        samples: Samples<'a>,
+        samples: SegmentEnds<'a>,
         watch: &W,
     ) {
         let (runs, level) = (&mut self.runs, by_equations_5_and_6(&*engine.level).expect("another level steps alone"));
@@ -145,7 +145,7 @@ impl<'a, S: Simd, Q: Coordinates> Rocking<'a, S, Q> {
         let mut steps = 0;
         let mut all_go_on = true;
         while all_go_on {
-            self.simd.vectorize(Taken(self));
+            self.simd.vectorize(StepRocking(self));
             let runs = &mut self.runs;
             let is_there = runs.is_there;
             steps += 1;
@@ -153,7 +153,7 @@ impl<'a, S: Simd, Q: Coordinates> Rocking<'a, S, Q> {
                 if runs.has_gone_on[lane] == 0.0 {
                     all_go_on = false;
                 } else if runs.elapsed[lane] == 0.0 {
-                    let Samples { times, next, last, .. } = &mut runs.samples[lane];
+                    let SegmentEnds { times, next, last, .. } = &mut runs.samples[lane];
                     runs.start[lane] = times[*next - 1];
                     *next += 1;
                     runs.may_go_on[lane] = f64::from(*next < *last);
@@ -213,7 +213,7 @@ impl<'a, S: Simd, Q: Coordinates> Rocking<'a, S, Q> {
 }
 
 /// The state of the run in `lane`, which has one mode.
-fn state_of<Q: Coordinates>(rows: &[Row; 4], lane: usize) -> State<Q> {
+fn state_of<Q: Coordinates>(rows: &[PerRun; 4], lane: usize) -> State<Q> {
     let [u, u_dot, theta, theta_dot] = rows.map(|row| row[lane]);
     let mut state = State::<Q> { theta, theta_dot, ..State::default() };
     state.u.set(0, u);
@@ -221,7 +221,7 @@ fn state_of<Q: Coordinates>(rows: &[Row; 4], lane: usize) -> State<Q> {
     state
 }
 
-impl<Q: Coordinates> Runs<'_, Q> {
+impl<Q: Coordinates> LaneRuns<'_, Q> {
     /// Writes a `sample` of the run in `lane`, if there is one.
     #[inline]
     fn write(&mut self, end: usize, lane: usize, sample: usize) {
@@ -230,7 +230,7 @@ impl<Q: Coordinates> Runs<'_, Q> {
 
     /// Puts off the last step of the run in `lane`.
     fn put_off(&mut self, lane: usize) {
-        let (Samples { next, last, .. }, elapsed) = (&mut self.samples[lane], self.elapsed[lane]);
+        let (SegmentEnds { next, last, .. }, elapsed) = (&mut self.samples[lane], self.elapsed[lane]);
         let step = (self.start[lane] + elapsed, self.interval[lane] - elapsed);
         let a_g = Ramp { value: self.a_g[lane], slope: self.slope[lane] }.from(elapsed);
         let states = [&self.state, &self.end].map(|of| state_of(of, lane));
@@ -247,16 +247,16 @@ pub(super) fn by_equations_5_and_6<Q: Coordinates>(level: &dyn Level<Q>) -> Opti
 }
 
 /// Taking steps of rocking.
-struct Taken<'s, 'a, S: Simd, Q>(&'s mut Rocking<'a, S, Q>);
+struct StepRocking<'s, 'a, S: Simd, Q>(&'s mut RockingLanes<'a, S, Q>);
 
-impl<S: Simd, Q: Coordinates> WithSimd for Taken<'_, '_, S, Q> {
+impl<S: Simd, Q: Coordinates> WithSimd for StepRocking<'_, '_, S, Q> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<T: Simd>(self, _simd: T) {
-        let Taken(Rocking { simd, runs: of, products, series }) = self;
+        let StepRocking(RockingLanes { simd, runs: of, products, series }) = self;
         let simd = *simd;
-        let row = |row: &Row| Lanes::load(simd, row);
+        let row = |row: &PerRun| Lanes::load(simd, row);
         let [u, u_dot, theta, theta_dot] = load(simd, &of.state);
         let (side, slope, elapsed) = (row(&of.side), row(&of.slope), row(&of.elapsed));
         let (a_g, interval) = (row(&of.a_g) + slope * elapsed, row(&of.interval) - elapsed);
@@ -336,7 +336,7 @@ impl<S: Simd, Q: Coordinates> WithSimd for Taken<'_, '_, S, Q> {
         let stays = stays & size.is_at_most(g.like(f64::MAX));
         let before = Turned { u: [u], u_dot: [u_dot], theta };
         let after = Turned { u: [end[0]], u_dot: [end[1]], theta: end[2] };
-        let stretch = Stretch { ends: [before, after], off: Turned { u: [off[0]], u_dot: [off[1]], theta: off[2] } };
+        let stretch = StepOfRuns { ends: [before, after], off: Turned { u: [off[0]], u_dot: [off[1]], theta: off[2] } };
         let least = start.abs().min(end[2].abs()) - off[2] * rounding;
         let [above, below] = load(simd, &of.sought.turned);
         let is_free = above.is_less(least) & end[2].abs().is_less(below);

@@ -1,7 +1,7 @@
 //! Watchers of several runs seek this in steps that are taken together: limits, bounds of the quantities, and the steps that are shown
 //! later. A step that may hold a peak is put off, since the steps after it mostly hold larger values.
 
-use super::number::{Answers, Lanes, MOST, Row, load, put};
+use super::number::{Answers, Lanes, MOST, PerRun, load, put};
 use crate::engine::Engine;
 use crate::engine::motion::Motion;
 use crate::engine::piece::{Piece, Watch};
@@ -38,9 +38,9 @@ pub(crate) trait Passes<Q: Coordinates = f64>: Watch<Q> {
 /// Limits, bounds and steps for the watchers of several runs.
 #[derive(Debug, Default)]
 pub(crate) struct Sought<Q> {
-    quantities: Vec<Quantity>,
+    quantities: Vec<PeakOfRuns>,
     /// A piece must be seen at once if |θ| may be no more than the first, or is at least the second at its end.
-    pub turned: [Row; 2],
+    pub turned: [PerRun; 2],
     /// Steps that may hold a peak, in order of time, and bounds of the quantities over them.
     put_off: [(Vec<PutOff<Q>>, Vec<f64>); MOST],
 }
@@ -48,16 +48,16 @@ pub(crate) struct Sought<Q> {
 /// A quantity of each run.
 #[derive(Clone, Debug, Default)]
 #[repr(align(64))]
-struct Quantity {
+struct PeakOfRuns {
     /// The least magnitude that must be seen.
-    least: Row,
+    least: PerRun,
     /// [Weights](crate::mechanics::reach::Reach::weights) of θ and of each u and u̇.
-    turn: [Row; 3],
-    elastic: [[Row; 2]; MOST_MODES],
+    turn: [PerRun; 3],
+    elastic: [[PerRun; 2]; MOST_MODES],
     /// Bound of what no weights bound: infinite if there are no weights, so that every step is shown.
-    rest: Row,
+    rest: PerRun,
     /// Bound over the last step.
-    bound: Row,
+    bound: PerRun,
 }
 
 /// A step that is shown to a watcher after others.
@@ -82,7 +82,7 @@ pub(super) struct Turned<S: Simd, const N: usize> {
 }
 
 /// A step of several runs: the motion at both ends, and how far it leaves its chord.
-pub(super) struct Stretch<S: Simd, const N: usize> {
+pub(super) struct StepOfRuns<S: Simd, const N: usize> {
     pub ends: [Turned<S, N>; 2],
     pub off: Turned<S, N>,
 }
@@ -94,7 +94,7 @@ pub(super) struct Bend<S: Simd, const N: usize> {
     pub off_cubic: Turned<S, N>,
 }
 
-impl<S: Simd, const N: usize> Stretch<S, N> {
+impl<S: Simd, const N: usize> StepOfRuns<S, N> {
     /// Bounds of the magnitudes.
     #[inline(always)]
     pub(super) fn most(&self) -> Turned<S, N> {
@@ -107,7 +107,7 @@ impl<S: Simd, const N: usize> Stretch<S, N> {
     }
 }
 
-impl Quantity {
+impl PeakOfRuns {
     /// The weighed sum of u and u̇ in `of`, and the part of θ: with the signs of the weights, or with their magnitudes.
     #[inline(always)]
     fn weigh<S: Simd, const N: usize, const SIGNED: bool>(&self, simd: S, of: &Turned<S, N>) -> [Lanes<S>; 2] {
@@ -145,7 +145,7 @@ impl<Q: Coordinates> Sought<Q> {
         let mut count = 0;
         for (i, (least, turn, rest, elastic)) in quantities.enumerate() {
             if i == self.quantities.len() {
-                self.quantities.push(Quantity::default());
+                self.quantities.push(PeakOfRuns::default());
             }
             let of = &mut self.quantities[i];
             (of.least[lane], of.rest[lane]) = (least, rest);
@@ -177,7 +177,7 @@ impl<Q: Coordinates> Sought<Q> {
     pub(super) fn bound<S: Simd, const N: usize>(
         &mut self,
         simd: S,
-        (stretch, bend): (&Stretch<S, N>, &Bend<S, N>),
+        (stretch, bend): (&StepOfRuns<S, N>, &Bend<S, N>),
         where_so: Answers<S>,
     ) {
         let most = stretch.most();
@@ -219,7 +219,7 @@ impl<Q: Coordinates> Sought<Q> {
 
     /// Whether a step within these bounds of the run in `lane` may hold a peak.
     fn may_hold(&self, lane: usize, bounds: &[f64]) -> bool {
-        let may_hold = |(bound, of): (&f64, &Quantity)| *bound > 0.0 && *bound >= of.least[lane];
+        let may_hold = |(bound, of): (&f64, &PeakOfRuns)| *bound > 0.0 && *bound >= of.least[lane];
         bounds.iter().zip(&self.quantities).any(may_hold)
     }
 

@@ -1,7 +1,7 @@
 //! What watchers of runs that step together seek, and the samples that these runs go through.
 
 use crate::engine::lanes::number::put;
-use crate::engine::lanes::rocking::Samples;
+use crate::engine::lanes::rocking::SegmentEnds;
 use crate::engine::lanes::sought::{Passes, Sought};
 use crate::mechanics::lateral::Coordinates;
 use crate::run::fall::FallWatch;
@@ -12,10 +12,10 @@ use crate::{Engine, Piece};
 impl<'a> Segments<'a> {
     /// The samples that end whole segments, and those before them, unless the ground moves vertically.
     #[inline]
-    pub(super) fn samples(&self) -> Option<Samples<'a>> {
+    pub(super) fn samples(&self) -> Option<SegmentEnds<'a>> {
         let &Segments { motion: GroundMotion { record, .. }, next, last, .. } = self;
         let (a_g, last) = (record.acceleration(), last.min(record.acceleration().len()));
-        let samples = Samples { times: record.times(), a_g, next, last };
+        let samples = SegmentEnds { times: record.times(), a_g, next, last };
         (next < last && record.vertical().is_none()).then_some(samples)
     }
 }

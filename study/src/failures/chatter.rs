@@ -6,8 +6,8 @@ use super::*;
 const STEPS: f64 = 64.0;
 
 /// The uplift rule |u| ≥ u_cr alone, against the complete one.
-pub fn show(scene: &Scene) -> Result<Exhibit> {
-    let grid = Grid { method: Method::RungeKutta4, h: scene.dt() / STEPS };
+pub fn show(scene: &StudyScene) -> Result<Exhibit> {
+    let grid = Grid { method: FixedStep::RungeKutta4, h: scene.dt() / STEPS };
     let mut times = Vec::new();
     let naive = hybrid::run(scene, &grid, Transitions::Located, displacement_excess, &mut |time, _| times.push(time));
     naive.failure.context("the incomplete rule gets through")?;

@@ -21,8 +21,8 @@ pub fn show() -> Result<Exhibit> {
         a_g: Ramp::default(),
         evaluations: &Cell::new(0),
     };
-    let path = every(CLOSE).take(75).scan(Point::start(&START), |point, t| {
-        *point = Method::RungeKutta4.step(&equations, t - CLOSE, point, CLOSE);
+    let path = every(CLOSE).take(75).scan(MovingPoint::start(&START), |point, t| {
+        *point = FixedStep::RungeKutta4.step(&equations, t - CLOSE, point, CLOSE);
         Some((t, point.position[1]))
     });
     let path: Vec<_> = path.collect();

@@ -1,7 +1,7 @@
 //! Falling through the ground.
 
 use super::*;
-use crate::libraries::diffsol::{Diffsol, Method};
+use crate::libraries::diffsol::{Diffsol, DiffsolMethod};
 
 /// Results between two samples of the record of the library's run, which starts anew at each.
 const CUTS: usize = 20;
@@ -10,10 +10,10 @@ const CUTS: usize = 20;
 const CLOSE: f64 = 2e-5;
 
 /// The library's run: ESDIRK34 with its own root finding.
-const LIBRARY: Diffsol = Diffsol { method: Method::Esdirk34, tolerance: 1e-6 };
+const LIBRARY: Diffsol = Diffsol { method: DiffsolMethod::Esdirk34, tolerance: 1e-6 };
 
 /// Under Pacoima Dam there is an impact after which θ is positive for 45 µs only.
-pub fn show(scene: &Scene) -> Result<Exhibit> {
+pub fn show(scene: &StudyScene) -> Result<Exhibit> {
     let transitions = exact(scene, Detail::Nonlinear, [])?.transitions;
     let length = |pair: &&[Transition]| match (pair[0].kind, pair[1].kind) {
         (TransitionKind::Impact(_), TransitionKind::Landing) => pair[1].time - pair[0].time,

@@ -5,7 +5,7 @@ use super::*;
 const DURATION: f64 = 1.0; // s
 
 /// McManus's specimen shortly before an impact; what is varied is how fast it vibrates.
-fn released(theta_dot: f64, u_dot: f64) -> History {
+fn released(theta_dot: f64, u_dot: f64) -> ReferenceHistory {
     let initial = State { theta: 0.002, theta_dot, u_dot, ..State::default() };
     let scene = at_rest(Parameters::MCMANUS, initial, DURATION);
     exact(&scene, Detail::Nonlinear, every(1e-3)).expect("a release has an answer")

@@ -6,12 +6,12 @@ use rocking::run::RunError;
 use rocking::run::record::Record;
 
 /// A response over time, and its transitions.
-pub struct History {
+pub struct ReferenceHistory {
     pub motions: Vec<Motion>,         // at the instants asked for, and at the end
     pub transitions: Vec<Transition>, // all of them, in order
 }
 
-impl History {
+impl ReferenceHistory {
     /// (t, θ), s and rad.
     pub fn theta(&self) -> Vec<(f64, f64)> {
         self.motions.iter().map(|motion| (motion.time, motion.state.theta)).collect()
@@ -19,8 +19,8 @@ impl History {
 }
 
 /// A structure on ground at rest for `duration` (s).
-pub fn at_rest(parameters: Parameters, initial: State, duration: f64) -> Scene {
-    Scene::new("at-rest", "ground at rest", parameters, initial, Record::at_rest(duration))
+pub fn at_rest(parameters: Parameters, initial: State, duration: f64) -> StudyScene {
+    StudyScene::new("at-rest", "ground at rest", parameters, initial, Record::at_rest(duration))
 }
 
 /// Instants `interval` s apart.
@@ -29,12 +29,16 @@ pub fn every(interval: f64) -> impl Iterator<Item = f64> {
 }
 
 /// The exact response at the level `detail`, seen at `times` (s), to its end.
-pub fn exact(scene: &Scene, detail: Detail, times: impl IntoIterator<Item = f64>) -> Result<History, RunError> {
+pub fn exact(
+    scene: &StudyScene,
+    detail: Detail,
+    times: impl IntoIterator<Item = f64>,
+) -> Result<ReferenceHistory, RunError> {
     let (mut motions, mut transitions) = (Vec::new(), Vec::new());
     let show = |sample: &rocking::Sample| motions.push(sample.motion);
     let watch = &mut |transition: &Transition| transitions.push(*transition);
     scene.run(detail, REFERENCE_TOLERANCE).sample(times, show, watch)?;
-    Ok(History { motions, transitions })
+    Ok(ReferenceHistory { motions, transitions })
 }
 
 /// `points` with x in milliseconds from `origin` and y in thousandths.

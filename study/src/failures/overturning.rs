@@ -7,7 +7,7 @@ const SAMPLE: f64 = 0.02; // time between results, s
 const CHANGE: f64 = 1e-12; // relative distance of the two release angles from the one that balances
 
 /// McManus's specimen released at rest, to where it overturns.
-fn released(theta: f64) -> History {
+fn released(theta: f64) -> ReferenceHistory {
     let scene = at_rest(Parameters::MCMANUS, State { theta, ..State::default() }, DURATION);
     exact(&scene, Detail::Auto, every(SAMPLE)).expect("a release has an answer")
 }

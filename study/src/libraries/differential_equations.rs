@@ -3,7 +3,7 @@
 use super::{ABSOLUTE, numbers, point, rates};
 use crate::equations::PhaseEquations;
 use crate::guards::PhaseEnd;
-use crate::hybrid::{Integrator, Span, Stretch};
+use crate::hybrid::{Integrator, SmoothPart, Span};
 use differential_equations::methods::ExplicitRungeKutta;
 use differential_equations::prelude::*;
 use differential_equations::status::Status;
@@ -15,19 +15,19 @@ pub struct DifferentialEquations {
     pub own_events: bool,
 }
 
-struct Motion<'a, 'b>(&'a PhaseEquations<'b>);
+struct RatesOfPhase<'a, 'b>(&'a PhaseEquations<'b>);
 
 type Y = [f64; 4];
 
-impl ODE<f64, Y> for Motion<'_, '_> {
+impl ODE<f64, Y> for RatesOfPhase<'_, '_> {
     fn diff(&self, tau: f64, y: &Y, dydt: &mut Y) {
         *dydt = rates(self.0, tau, y);
     }
 }
 
-struct Guard<'a, 'b>(&'a PhaseEnd<'b>);
+struct PhaseGuard<'a, 'b>(&'a PhaseEnd<'b>);
 
-impl Event<f64, Y> for Guard<'_, '_> {
+impl Event<f64, Y> for PhaseGuard<'_, '_> {
     fn config(&self) -> EventConfig {
         EventConfig::new(CrossingDirection::Negative, Some(1))
     }
@@ -60,20 +60,20 @@ impl Solout<f64, Y> for StopBeyond<'_, '_> {
 }
 
 impl Integrator for DifferentialEquations {
-    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<SmoothPart, String> {
         let &Span { equations, tau, ref from, until } = span;
-        let motion = Motion(equations);
+        let motion = RatesOfPhase(equations);
         let problem = IVP::ode(&motion, tau, until, numbers(from));
         let method = ExplicitRungeKutta::dop853().rtol(self.tolerance).atol(ABSOLUTE * self.tolerance);
         let solution = match end {
-            Some(end) if self.own_events => problem.event(&Guard(end)).method(method).solve(),
+            Some(end) if self.own_events => problem.event(&PhaseGuard(end)).method(method).solve(),
             _ => problem.solout(StopBeyond(end)).method(method).solve(),
         };
         let solution = solution.map_err(|error| format!("{error:?}"))?;
         let last = solution.t.len() - 1;
         let is_over = matches!(solution.status, Status::Interrupted);
         let before = last.saturating_sub(1);
-        Ok(Stretch {
+        Ok(SmoothPart {
             start: solution.t[before],
             end: if is_over { solution.t[last] } else { until },
             from: point(&solution.y[before]),

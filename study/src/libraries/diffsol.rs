@@ -4,18 +4,18 @@
 use super::{ABSOLUTE, numbers, point, rates};
 use crate::equations::PhaseEquations;
 use crate::guards::PhaseEnd;
-use crate::hybrid::{Integrator, Span, Stretch};
+use crate::hybrid::{Integrator, SmoothPart, Span};
 use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeEquationsImplicit, OdeSolverMethod, OdeSolverStopReason};
 
 #[derive(Clone, Copy, Debug)]
-pub enum Method {
+pub enum DiffsolMethod {
     Bdf,      // backward differences of variable order
     Esdirk34, // an ESDIRK pair of orders 3(4)
 }
 
 /// A solver of diffsol with a relative tolerance.
 pub struct Diffsol {
-    pub method: Method,
+    pub method: DiffsolMethod,
     pub tolerance: f64,
 }
 
@@ -36,7 +36,7 @@ fn derivative(equations: &PhaseEquations, tau: f64, y: &[f64], v: &[f64], jv: &m
 }
 
 impl Integrator for Diffsol {
-    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<SmoothPart, String> {
         let &Span { equations, tau, ref from, until } = span;
         let start = numbers(from);
         let problem = OdeBuilder::<M>::new()
@@ -56,15 +56,18 @@ impl Integrator for Diffsol {
             .build()
             .map_err(|error| error.to_string())?;
         let stretch = match self.method {
-            Method::Bdf => steps(&mut problem.bdf::<Lu>().map_err(|error| error.to_string())?, until),
-            Method::Esdirk34 => steps(&mut problem.esdirk34::<Lu>().map_err(|error| error.to_string())?, until),
+            DiffsolMethod::Bdf => steps(&mut problem.bdf::<Lu>().map_err(|error| error.to_string())?, until),
+            DiffsolMethod::Esdirk34 => steps(&mut problem.esdirk34::<Lu>().map_err(|error| error.to_string())?, until),
         };
         stretch.map_err(|error| error.to_string())
     }
 }
 
 /// Steps to `until` or to the end of the phase.
-fn steps<'a, E>(solver: &mut impl OdeSolverMethod<'a, E>, until: f64) -> Result<Stretch, diffsol::error::DiffsolError>
+fn steps<'a, E>(
+    solver: &mut impl OdeSolverMethod<'a, E>,
+    until: f64,
+) -> Result<SmoothPart, diffsol::error::DiffsolError>
 where
     E: OdeEquationsImplicit<T = f64, V = diffsol::NalgebraVec<f64>> + 'a,
 {
@@ -73,7 +76,7 @@ where
         let (start, from) = (solver.state().t, point(solver.state().y.batch_as_slice(0)));
         let reason = solver.step()?;
         let to = point(solver.state().y.batch_as_slice(0));
-        let stretch = |end, to, is_over| Stretch { start, end, from, to, is_over };
+        let stretch = |end, to, is_over| SmoothPart { start, end, from, to, is_over };
         match reason {
             OdeSolverStopReason::RootFound(root, _) => {
                 let there = solver.interpolate(root)?;

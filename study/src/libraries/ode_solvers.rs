@@ -8,7 +8,7 @@
 use super::{ABSOLUTE, numbers, point, rates};
 use crate::equations::PhaseEquations;
 use crate::guards::PhaseEnd;
-use crate::hybrid::{Integrator, Span, Stretch};
+use crate::hybrid::{Integrator, SmoothPart, Span};
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, Dopri5, SVector, System};
 
@@ -25,33 +25,33 @@ pub struct OdeSolvers {
 }
 
 /// u, θ, u̇, θ̇ and the time from the start of the run times `clock`.
-type Y = SVector<f64, 5>;
+type Extended = SVector<f64, 5>;
 
-struct Motion<'a, 'b> {
+struct ScaledRates<'a, 'b> {
     equations: &'a PhaseEquations<'b>,
     end: Option<&'a PhaseEnd<'b>>,
     start: f64,
     clock: f64,
 }
 
-impl System<f64, Y> for Motion<'_, '_> {
-    fn system(&self, _: f64, y: &Y, dy: &mut Y) {
+impl System<f64, Extended> for ScaledRates<'_, '_> {
+    fn system(&self, _: f64, y: &Extended, dy: &mut Extended) {
         let [a, b, c, d] = rates(self.equations, self.start + y[4] / self.clock, y.as_slice());
-        *dy = Y::from([a, b, c, d, self.clock]);
+        *dy = Extended::from([a, b, c, d, self.clock]);
     }
 
-    fn solout(&mut self, _: f64, y: &Y, _: &Y) -> bool {
+    fn solout(&mut self, _: f64, y: &Extended, _: &Extended) -> bool {
         self.end.is_some_and(|end| end.is_over(&point(y.as_slice()).state()))
     }
 }
 
 impl Integrator for OdeSolvers {
-    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<SmoothPart, String> {
         let &Span { equations, tau, ref from, until } = span;
         let (relative, absolute) = (self.tolerance, ABSOLUTE * self.tolerance);
-        let motion = Motion { equations, end, start: tau, clock: absolute * ABSOLUTE };
+        let motion = ScaledRates { equations, end, start: tau, clock: absolute * ABSOLUTE };
         let [a, b, c, d] = numbers(from);
-        let y = Y::from([a, b, c, d, 0.0]);
+        let y = Extended::from([a, b, c, d, 0.0]);
         macro_rules! last_step {
             ($solver:ident) => {{
                 let mut solver = $solver::new(motion, tau, until, 0.0, y, relative, absolute);
@@ -66,6 +66,6 @@ impl Integrator for OdeSolvers {
             Pair::Dop853 => last_step!(Dop853),
         };
         let is_over = end.is_some_and(|end| end.is_over(&to.state()));
-        Ok(Stretch { start, end: if is_over { last } else { until }, from, to, is_over })
+        Ok(SmoothPart { start, end: if is_over { last } else { until }, from, to, is_over })
     }
 }

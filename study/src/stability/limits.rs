@@ -1,7 +1,7 @@
 //! The largest stable step, measured.
 
-use super::vibration::Vibration;
-use crate::fixed_step::Method;
+use super::vibration::FreeVibration;
+use crate::fixed_step::FixedStep;
 
 const STEPS: usize = 8192;
 
@@ -15,7 +15,7 @@ const RANGE: (f64, f64) = (3e-3, 1e3);
 const RESOLUTION: f64 = 1e-4;
 
 /// Whether the energy grows over a trial with the step `h`, in units of 1/ω_u.
-fn grows(method: Method, vibration: &Vibration, h: f64) -> bool {
+fn grows(method: FixedStep, vibration: &FreeVibration, h: f64) -> bool {
     const QUARTER: usize = STEPS / 4;
     let mut point = vibration.start();
     let start = vibration.energy(&point);
@@ -32,7 +32,7 @@ fn grows(method: Method, vibration: &Vibration, h: f64) -> bool {
 }
 
 /// The largest stable ω_u h, by bisection: 0 if none is stable, infinite if all are.
-pub fn measure(method: Method, vibration: &Vibration) -> f64 {
+pub fn measure(method: FixedStep, vibration: &FreeVibration) -> f64 {
     let (mut low, mut high) = RANGE;
     if !grows(method, vibration, high) {
         return f64::INFINITY;

@@ -5,8 +5,8 @@ use crate::fixed_step::TEXTBOOK;
 use crate::guards::uplift_excess;
 use crate::hybrid::{self, Grid, Transitions};
 use crate::response::Response;
-use crate::scene::{Scene, ground};
-use crate::tables::{Values, save_series, series, values};
+use crate::scene::{StudyScene, ground};
+use crate::tables::{PageValues, save_series, series, values};
 use anyhow::{Context, Result};
 use rocking::{Detail, Parameters, State, Transition};
 use std::f64::consts::TAU;
@@ -23,21 +23,21 @@ const RAMP: f64 = 0.15;
 const FREQUENCY: f64 = 1.5;
 
 /// Evison's specimen from rest, on ground that sways more and more.
-pub fn scene() -> Scene {
+pub fn scene() -> StudyScene {
     let samples = (DURATION / STEP) as usize;
     let a_g = (0..=samples).map(|k| k as f64 * STEP).map(|t| RAMP * t * 9.81 * (TAU * FREQUENCY * t).sin());
     let title = "Evison's specimen, ground that sways more and more";
-    Scene::new("uplift-trap", title, Parameters::EVISON, State::default(), ground(STEP, a_g.collect()))
+    StudyScene::new("uplift-trap", title, Parameters::EVISON, State::default(), ground(STEP, a_g.collect()))
 }
 
 /// The response of the textbook method number `method` with the step [`STEP`].
-pub fn response(scene: &Scene, method: usize) -> Response {
+pub fn response(scene: &StudyScene, method: usize) -> Response {
     let grid = Grid { method: TEXTBOOK[method].method, h: STEP };
     hybrid::run(scene, &grid, Transitions::Located, uplift_excess, &mut |_, _| ())
 }
 
 /// Writes the responses into `folder`, and returns the values of the page.
-pub fn save(folder: &Path) -> Result<Values> {
+pub fn save(folder: &Path) -> Result<PageValues> {
     const CENTRAL_DIFFERENCE: usize = 2;
     const NEWMARK: usize = 4;
     let scene = scene();

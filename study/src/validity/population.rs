@@ -32,7 +32,7 @@ const PART_ELASTIC: f64 = 0.25;
 
 /// A structure, and how far its response breaks the assumptions of the model.
 #[derive(Clone, Debug)]
-pub struct Response {
+pub struct MemberResult {
     pub structure: OneMass,
     pub found: Findings,
 }
@@ -67,7 +67,7 @@ fn case(k: usize, records: &[Record]) -> (OneMass, Record) {
 }
 
 /// All of them, which end with their records.
-pub fn all(folder: &Path) -> Result<Vec<Response>> {
+pub fn all(folder: &Path) -> Result<Vec<MemberResult>> {
     let records = RECORDS.map(|file| read_record(folder, file)).into_iter().collect::<Result<Vec<_>>>()?;
     let respond = |k| {
         let (structure, ground) = case(k, &records);
@@ -77,9 +77,9 @@ pub fn all(folder: &Path) -> Result<Vec<Response>> {
     (0..STRUCTURES).into_par_iter().map(respond).collect()
 }
 
-pub fn respond(run: &Run) -> Result<Response, RunError> {
+pub fn respond(run: &Run) -> Result<MemberResult, RunError> {
     let mut validity = Validity::new(&run.structure, Limits::default(), Findings::since(run.ground.start()));
     run.follow(&mut validity)?;
     let structure = *run.structure.one().expect("the population is of one mass");
-    Ok(Response { structure, found: *validity.found() })
+    Ok(MemberResult { structure, found: *validity.found() })
 }

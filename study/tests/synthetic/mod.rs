@@ -1,10 +1,10 @@
 //! A ground motion made for the tests.
 
 use rocking::{Parameters, State};
-use study::scene::{Scene, ground};
+use study::scene::{StudyScene, ground};
 
 /// McManus's specimen under four sines that swell and fade, sampled every 0.01 s for 4 s.
-pub fn scene() -> Scene {
+pub fn scene() -> StudyScene {
     const SAMPLES: usize = 401;
     let dt = 0.01;
     let sines = [(0.9, 0.3), (1.7, 1.1), (3.1, 2.9), (5.3, 0.2)];
@@ -14,5 +14,5 @@ pub fn scene() -> Scene {
         1.6 * swell * sum
     });
     let title = "McManus's specimen, four sines";
-    Scene::new("synthetic", title, Parameters::MCMANUS, State::default(), ground(dt, a_g.collect()))
+    StudyScene::new("synthetic", title, Parameters::MCMANUS, State::default(), ground(dt, a_g.collect()))
 }

@@ -3,14 +3,14 @@ use crate::picture::{
     Area, Picture, SMALL, TEXT, TITLE, axes, chart, colour, log_axis, px, shortened, stroke, titled, words,
 };
 use plotters::prelude::*;
-use rocking_sweep::map::{Axis, Fate, Map, PARTS, Place, Point, nearest};
+use rocking_sweep::map::{Axis, Fate, GridPlace, Map, MapPoint, PARTS, nearest};
 use std::{collections::HashMap, ops::Range};
 
 /// A map, and what is known of it.
-pub struct Spectrum {
+pub struct PulseSpectrum {
     pub name: String,
     pub map: Map,
-    pub points: HashMap<Place, Point>,
+    pub points: HashMap<GridPlace, MapPoint>,
 }
 
 /// Sizes in pixels: of a panel with its axes, of a panel's name, of a line of the legend.
@@ -57,7 +57,7 @@ const CONDITIONS: [Swatch; 6] = [
 #[derive(Clone, Copy)]
 struct Key {
     /// The number of a point's swatch.
-    of: fn(&Point) -> usize,
+    of: fn(&MapPoint) -> usize,
     swatches: &'static [Swatch],
     /// Title of the picture, after the structure's name.
     suffix: &'static str,
@@ -70,7 +70,7 @@ pub fn axis_names(map: &Map) -> [&'static str; 2] {
     if map.is_dimensionless { ["omega/p_l", "a_p/(g tan alpha_cg)"] } else { ["frequency (Hz)", "amplitude a_p (g)"] }
 }
 
-fn class_of(point: &Point) -> usize {
+fn class_of(point: &MapPoint) -> usize {
     match (point.fate, point.impacts) {
         (Fate::NoUplift, _) => 0,
         (Fate::Stands, _) => 1 + (4.0 * point.theta).clamp(0.0, 3.0) as usize,
@@ -82,7 +82,7 @@ fn class_of(point: &Point) -> usize {
     }
 }
 
-fn condition_of(point: &Point) -> usize {
+fn condition_of(point: &MapPoint) -> usize {
     match point.condition {
         Some(f64::INFINITY) => 5,
         Some(1e10..) => 4,
@@ -94,8 +94,8 @@ fn condition_of(point: &Point) -> usize {
 }
 
 /// Draws `spectra`, refined so many times: each with its condition beside it, or about as many across as down.
-pub fn draw(picture: Picture, spectra: &[Spectrum], refinements: u32) -> anyhow::Result<()> {
-    let Some(Spectrum { map, .. }) = spectra.first() else { return Ok(()) };
+pub fn draw(picture: Picture, spectra: &[PulseSpectrum], refinements: u32) -> anyhow::Result<()> {
+    let Some(PulseSpectrum { map, .. }) = spectra.first() else { return Ok(()) };
     let (width, height) = (PANEL.0, PANEL.1 + NAME as u32);
     let across = (spectra.len() as f64 * f64::from(height) / f64::from(width)).sqrt().ceil() as usize;
     let (keys, across) =
@@ -155,7 +155,7 @@ pub fn range(axis: &Axis) -> Range<f64> {
 }
 
 /// A map in the colours of `key` on an area of the whole picture.
-fn panel((whole, area): (&Area, &Area), spectrum: &Spectrum, refinements: u32, key: Key) -> anyhow::Result<()> {
+fn panel((whole, area): (&Area, &Area), spectrum: &PulseSpectrum, refinements: u32, key: Key) -> anyhow::Result<()> {
     let map = &spectrum.map;
     let [x, y] = shown(map);
     let mut builder = chart(area, 46.0);
@@ -181,7 +181,7 @@ fn cells(
     whole: &Area,
     at: &dyn Fn((f64, f64)) -> (i32, i32),
     [x, y]: [&Axis; 2],
-    spectrum: &Spectrum,
+    spectrum: &PulseSpectrum,
     refinements: u32,
     key: Key,
 ) -> anyhow::Result<()> {
@@ -190,7 +190,7 @@ fn cells(
     // the edge before cell i, in steps of the grid
     let edge = |i: usize| (i as f64 - 0.5) / parts as f64;
     let swatch = |column: usize, row: usize| {
-        let place = Place { frequency: column as u32 * step, amplitude: row as u32 * step };
+        let place = GridPlace { frequency: column as u32 * step, amplitude: row as u32 * step };
         nearest(&spectrum.points, place, refinements).map(key.of)
     };
     let runs = |row: usize| {

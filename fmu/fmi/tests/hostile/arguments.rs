@@ -63,7 +63,7 @@ const STATE: Meant = |variable| variable.role == Role::State;
 
 /// The arguments of one call.
 #[derive(Default)]
-pub struct Drawn {
+pub struct CallData {
     pub references: Vec<c_uint>,
     /// Values to set, where they belong to the references.
     reals: Vec<f64>,
@@ -77,13 +77,13 @@ pub struct Drawn {
     pub is_forged: bool,
     /// Room for the bytes of an FMU state.
     pub serialized: Option<Vec<u8>>,
-    pub rooms: Vec<Room>,
+    pub rooms: Vec<Buffer>,
     held: Vec<Box<dyn Any>>,
 }
 
 /// Room for `count` values of `size` bytes each.
 #[derive(Debug)]
-pub struct Room {
+pub struct Buffer {
     pub words: Vec<u64>,
     size: usize,
     count: usize,
@@ -91,7 +91,7 @@ pub struct Room {
     is_finite: bool,
 }
 
-impl Room {
+impl Buffer {
     /// Whether it is as it was, or, where the call `is_done`, has as many values in it, and no more.
     pub fn is_right(&self, is_done: bool) -> bool {
         let bytes: Vec<_> = self.words.iter().flat_map(|word| word.to_le_bytes()).collect();
@@ -126,7 +126,7 @@ impl Sequence<'_> {
         let size = size_of::<T>();
         let mut words = vec![u64::MAX; (count * size).div_ceil(8) + 1];
         let place = words.as_mut_ptr().cast();
-        self.drawn.rooms.push(Room { words, size, count, is_finite: false });
+        self.drawn.rooms.push(Buffer { words, size, count, is_finite: false });
         self.spoilt(place)
     }
 

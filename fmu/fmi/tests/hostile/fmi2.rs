@@ -1,7 +1,7 @@
 //! FMI 2.0: how its functions are called, when they may be, how instances are made.
 
 use super::arguments::*;
-use super::{C, ERROR, Table, Told, Version};
+use super::{C, ERROR, FunctionTable, HostLog, TestedVersion};
 use crate::fmi2::*;
 use fastrand::Rng;
 use fmi_unit::c_abi::Function as _;
@@ -10,7 +10,7 @@ use fmi_unit::state_machine::Stage::*;
 use libc::{c_char, c_int, c_void};
 use std::ptr::null;
 
-pub const VERSION: Version = Version {
+pub const VERSION: TestedVersion = TestedVersion {
     name: "fmi2",
     functions: || Function::ALL.iter().map(|function| &function.name()[4..]).collect(),
     calls: calls! { call: [GetFMUstate SetFMUstate FreeFMUstate SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate] GetDerivatives
@@ -56,7 +56,7 @@ pub const VERSION: Version = Version {
 /// The tables of FMI 2.0.4: section 4.2.4 for a slave, whose steps are synchronous, so that it is never in a step in progress
 /// or canceled, and section 3.2.3 for a model. Some functions are for some variables only, or their values good for
 /// debugging only. Since 2.0.1 time is set at an event of models without continuous states alone, before of all.
-const TABLE: Table = Table {
+const TABLE: FunctionTable = FunctionTable {
     stages: &[
         ("x", Instantiated),
         ("x", InitializationMode),
@@ -87,7 +87,7 @@ const TABLE: Table = Table {
         - - - - - m - -  CompletedIntegratorStep SetContinuousStates",
 };
 
-fn instantiate(rng: &mut Rng, interface: Interface, [name, guid, location]: [*const c_char; 3], told: &Told) -> C {
+fn instantiate(rng: &mut Rng, interface: Interface, [name, guid, location]: [*const c_char; 3], told: &HostLog) -> C {
     // the logger has no further arguments to read, so that it may be declared without them
     let logger: unsafe extern "C" fn(_, _, _, _, _) = tell;
     let functions = CallbackFunctions {
@@ -101,11 +101,11 @@ fn instantiate(rng: &mut Rng, interface: Interface, [name, guid, location]: [*co
     unsafe { Instantiate(name, kind, guid, location, &functions, 0, rng.i32(0..2)) }
 }
 
-type Text = *const c_char;
+type TextPointer = *const c_char;
 
-unsafe extern "C" fn tell(told: *mut c_void, _: Text, status: c_int, _: Text, text: Text) {
+unsafe extern "C" fn tell(told: *mut c_void, _: TextPointer, status: c_int, _: TextPointer, text: TextPointer) {
     unsafe {
-        (*told.cast::<Told>()).tell(status, text, |c| {
+        (*told.cast::<HostLog>()).tell(status, text, |c| {
             FreeInstance(c);
             assert_eq!((DoStep(c, 0.0, 1.0, 0), Reset(c)), (ERROR, ERROR));
         });

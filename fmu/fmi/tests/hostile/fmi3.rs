@@ -1,7 +1,7 @@
 //! FMI 3.0: how its functions are called, when they may be, how instances are made.
 
 use super::arguments::*;
-use super::{C, ERROR, Table, Told, Version};
+use super::{C, ERROR, FunctionTable, HostLog, TestedVersion};
 use crate::fmi3::*;
 use fastrand::Rng;
 use fmi_unit::c_abi::Function as _;
@@ -10,7 +10,7 @@ use fmi_unit::state_machine::Stage::*;
 use libc::{c_char, c_int, c_void};
 use std::ptr::null;
 
-pub const VERSION: Version = Version {
+pub const VERSION: TestedVersion = TestedVersion {
     name: "fmi3",
     functions: || Function::ALL.iter().map(|function| &function.name()[4..]).collect(),
     calls: calls! { call: [GetFMUState SetFMUState FreeFMUState SerializedFMUStateSize SerializeFMUState DeserializeFMUState]
@@ -62,7 +62,7 @@ pub const VERSION: Version = Version {
 /// terminated and error are its "terminated"; after a failed step a simulation has still to be terminated. Within an
 /// intermediate update the host can either set inputs or get all values; a step is no state to keep or to leave. As in the
 /// Reference FMUs, the numbers of states and of event indicators can be had at any time, and time can be set at an event.
-const TABLE: Table = Table {
+const TABLE: FunctionTable = FunctionTable {
     stages: &[
         ("x", Instantiated),
         ("x", InitializationMode),
@@ -98,7 +98,7 @@ const TABLE: Table = Table {
         - - - - - - - m - -  CompletedIntegratorStep SetContinuousStates",
 };
 
-fn instantiate(rng: &mut Rng, interface: Interface, [name, token, folder]: [*const c_char; 3], told: &Told) -> C {
+fn instantiate(rng: &mut Rng, interface: Interface, [name, token, folder]: [*const c_char; 3], told: &HostLog) -> C {
     let (told, tell) = ((&raw const *told).cast_mut().cast(), Some(tell as LogMessageCallback));
     let (events, required, count, update) = (rng.u8(0..2), null(), 0, None);
     unsafe {
@@ -116,7 +116,7 @@ fn instantiate(rng: &mut Rng, interface: Interface, [name, token, folder]: [*con
 
 unsafe extern "C" fn tell(environment: *mut c_void, status: c_int, _: *const c_char, text: *const c_char) {
     unsafe {
-        (*environment.cast::<Told>()).tell(status, text, |c| {
+        (*environment.cast::<HostLog>()).tell(status, text, |c| {
             FreeInstance(c);
             assert_eq!((Terminate(c), Reset(c)), (ERROR, ERROR));
         });

@@ -10,7 +10,7 @@ mod fmi2;
 mod fmi3;
 
 use crate::Model;
-use arguments::Drawn;
+use arguments::CallData;
 use fastrand::Rng;
 use fmi_unit::interface::{Interface, Stepping};
 use fmi_unit::logger::Status;
@@ -53,7 +53,7 @@ const LEADING_ON: &str = "SetupExperiment EnterInitializationMode ExitInitializa
 pub type C = *mut c_void;
 
 /// The model that is called.
-pub struct Subject {
+pub struct Target {
     /// Its folder `resources`.
     pub resources: TempDir,
     pub variables: Arc<[Variable]>,
@@ -73,11 +73,11 @@ pub struct Subject {
     pub check_step: fn(&Snapshot, &Snapshot),
 }
 
-impl Subject {
+impl Target {
     /// A model that does nothing out of the ordinary, opened in the folder `resources`.
-    pub fn of(resources: TempDir, time: fn(&Snapshot) -> f64) -> Subject {
+    pub fn of(resources: TempDir, time: fn(&Snapshot) -> f64) -> Target {
         let model = Model::open(resources.path()).unwrap();
-        Subject {
+        Target {
             variables: model.variables(),
             token: CString::new(model.token()).unwrap(),
             build: model.build(),
@@ -108,19 +108,19 @@ impl Subject {
 type Call = fn(C, &mut Sequence) -> c_int;
 
 /// A version of the standard.
-struct Version {
+struct TestedVersion {
     /// The start of the functions' names in C.
     name: &'static str,
     /// All of its functions that take an instance, but for the one that frees it.
     functions: fn() -> Vec<&'static str>,
     /// How each is called, but for those that are allowed nowhere, and those of types that no variable has.
     calls: &'static [(&'static str, Call)],
-    table: Table,
+    table: FunctionTable,
     first_reference: c_uint,
     /// The folder `resources` as this version names it.
     location: fn(&Path) -> String,
     /// Makes an instance, which tells what it logs, of a name, a token and a location.
-    instantiate: fn(&mut Rng, Interface, [*const c_char; 3], &Told) -> C,
+    instantiate: fn(&mut Rng, Interface, [*const c_char; 3], &HostLog) -> C,
     free: unsafe extern "C" fn(C),
     get_state: unsafe extern "C" fn(C, *mut C) -> c_int,
     free_state: unsafe extern "C" fn(C, *mut C) -> c_int,
@@ -130,13 +130,13 @@ struct Version {
 
 /// The stages of a version, and in which of them functions may be called: x is for both interfaces, s for a slave, m for a
 /// model, - for neither.
-struct Table {
+struct FunctionTable {
     stages: &'static [(&'static str, Stage)],
     /// A mark for each stage, then the names of functions.
     rows: &'static str,
 }
 
-impl Table {
+impl FunctionTable {
     /// The stages of `interface` in which a function with these `marks` may be called.
     fn marked<'a>(&self, marks: impl Iterator<Item = &'a str>, interface: Interface) -> Vec<Stage> {
         let own = if interface == Interface::ModelExchange { "m" } else { "s" };
@@ -152,7 +152,7 @@ impl Table {
     }
 }
 
-impl Version {
+impl TestedVersion {
     /// All that the future of the instance `c` depends on.
     fn bytes(&self, c: C) -> Vec<u8> {
         let mut state = null_mut();
@@ -196,7 +196,7 @@ macro_rules! hostile_calls {
 pub(crate) use hostile_calls;
 
 /// No crash, no panic, and what [`Sequence::check`] asks of every call.
-pub fn no_call_does_harm(subject: &Subject, version: u8, is_model: bool) {
+pub fn no_call_does_harm(subject: &Target, version: u8, is_model: bool) {
     let (version, interface): (_, fn(&mut Rng) -> Interface) = match (version, is_model) {
         (2, false) => (&fmi2::VERSION, |_| Interface::CoSimulation(Stepping::default())),
         (2, true) => (&fmi2::VERSION, |_| Interface::ModelExchange),
@@ -207,7 +207,7 @@ pub fn no_call_does_harm(subject: &Subject, version: u8, is_model: bool) {
     };
     let calls = env::var("FUZZ_CALLS").map_or(CALLS, |calls| calls.parse().expect("FUZZ_CALLS is a number"));
     let location = CString::new((version.location)(subject.resources.path())).unwrap();
-    let tally = RefCell::new(Tally(vec![(0, false); version.calls.len()]));
+    let tally = RefCell::new(CallTally(vec![(0, false); version.calls.len()]));
     let config = Config {
         cases: calls.div_ceil(CALLS_PER_SEQUENCE as u64) as u32,
         failure_persistence: None,
@@ -222,14 +222,14 @@ pub fn no_call_does_harm(subject: &Subject, version: u8, is_model: bool) {
             interface,
             location: &location,
             c: null_mut(),
-            told: Told::default(),
+            told: HostLog::default(),
             states: Vec::new(),
             is_forged: false,
             freed: null_mut(),
             new: Vec::new(),
             before: None,
             bytes: Vec::new(),
-            drawn: Drawn::default(),
+            drawn: CallData::default(),
         };
         sequence.run(&numbers, &mut tally.borrow_mut());
         Ok(())
@@ -240,12 +240,12 @@ pub fn no_call_does_harm(subject: &Subject, version: u8, is_model: bool) {
     }
 }
 
-/// The stages that each function was called in, by its place in [`Version::calls`], and whether it did what it is for.
-struct Tally(Vec<(Stages, bool)>);
+/// The stages that each function was called in, by its place in [`TestedVersion::calls`], and whether it did what it is for.
+struct CallTally(Vec<(Stages, bool)>);
 
-impl Tally {
+impl CallTally {
     /// Every function was called in every stage in which an instance stays, and every one that may be was done.
-    fn check(&self, version: &Version, interface: Interface) {
+    fn check(&self, version: &TestedVersion, interface: Interface) {
         let allowed = |name: &str| version.table.allowed(name, interface);
         let stages = version.table.marked(version.table.stages.iter().map(|(mark, _)| *mark), interface);
         let stays = stages.iter().filter(|stage| !stage.is_within_step());
@@ -262,13 +262,13 @@ impl Tally {
 
 /// The log of an instance.
 #[derive(Default)]
-struct Told {
+struct HostLog {
     messages: RefCell<Vec<(c_int, String)>>,
     /// Called from within the logger, unless null.
     call_back: Cell<C>,
 }
 
-impl Told {
+impl HostLog {
     /// Takes a message, and calls `harm`, of which nothing may come, with the instance.
     unsafe fn tell(&self, status: c_int, text: *const c_char, harm: impl FnOnce(C)) {
         let text = unsafe { CStr::from_ptr(text) }.to_str().unwrap();
@@ -286,13 +286,13 @@ impl Told {
 /// A run of calls on one instance after the other.
 struct Sequence<'a> {
     rng: Rng,
-    subject: &'a Subject,
-    version: &'static Version,
+    subject: &'a Target,
+    version: &'static TestedVersion,
     interface: fn(&mut Rng) -> Interface,
     location: &'a CStr,
     /// The instance; null if there is none.
     c: C,
-    told: Told,
+    told: HostLog,
     /// The FMU states that it has handed out, and whether one of them may be forged.
     states: Vec<C>,
     is_forged: bool,
@@ -303,11 +303,11 @@ struct Sequence<'a> {
     before: Option<Snapshot>,
     /// Serialized states.
     bytes: Vec<Vec<u8>>,
-    drawn: Drawn,
+    drawn: CallData,
 }
 
 impl Sequence<'_> {
-    fn run(mut self, numbers: &[u64], tally: &mut Tally) {
+    fn run(mut self, numbers: &[u64], tally: &mut CallTally) {
         for number in numbers {
             self.rng.seed(*number);
             if self.c.is_null() {
@@ -355,7 +355,7 @@ impl Sequence<'_> {
     }
 
     /// Calls any function, or one that leads on.
-    fn call(&mut self, tally: &mut Tally) {
+    fn call(&mut self, tally: &mut CallTally) {
         let bytes = self.version.bytes(self.c);
         let before = self.subject.read(&bytes);
         let (calls, stage) = (self.version.calls, before.stage);
@@ -369,7 +369,7 @@ impl Sequence<'_> {
             number = self.rng.choice(leading_on).unwrap_or(number);
         }
         let (name, call) = calls[number];
-        (self.before, self.drawn) = (Some(before), Drawn::default());
+        (self.before, self.drawn) = (Some(before), CallData::default());
         let is_calling_back = self.one_in(64);
         self.told.call_back.set(if is_calling_back { self.c } else { null_mut() });
         self.told.messages.take();

@@ -4,12 +4,12 @@
 
 use crate::failure::Refusal;
 use crate::motion_log::log;
-use crate::scene::{Outside, Scene, Told};
+use crate::scene::{HostMotion, Scene, Tell};
 use crate::setup::Setup;
 use fmi_unit::{Completed, Failure, Logger, Update};
 use rocking::run::Runs;
 use rocking::run::ground_motion::Elapsed;
-use rocking::run::outside_step::{Checked, Checkpoint};
+use rocking::run::host_step::{Checked, Checkpoint};
 use rocking::{GroundMotion, Load, State, Transition};
 
 /// The relative tolerance up to which samples of the record are events.
@@ -36,7 +36,7 @@ impl<Q: Runs> Scene<Q> {
         setup: &Setup,
         known: &Checkpoint<Q>,
         load: Load<Q>,
-        told: &mut Told<Q>,
+        told: &mut Tell<Q>,
     ) -> Result<Checked<Q>, Failure> {
         let (from, to) = (known.motion.time, self.engine.motion().time);
         if to < from && !self.has_overturned() {
@@ -62,7 +62,7 @@ impl<Q: Runs> Scene<Q> {
     /// Leaves the motion to the host's integrator, with the inputs `load`.
     pub fn leave_to_host(&mut self, load: Load<Q>) {
         let (motion, elapsed) = (*self.engine.motion(), self.elapsed);
-        self.outside = Some(Outside { known: Checkpoint { motion, elapsed, load }, arrived: load, event: elapsed });
+        self.outside = Some(HostMotion { known: Checkpoint { motion, elapsed, load }, arrived: load, event: elapsed });
     }
 
     /// Goes to the host's `time` (s).
@@ -129,11 +129,11 @@ impl<Q: Runs> Scene<Q> {
         }
         self.engine.set_motion(motion);
         let acting = self.acting(setup, load);
-        let told: &mut Told<Q> = &mut |transition| log(logger, is_one_mass, transition);
+        let told: &mut Tell<Q> = &mut |transition| log(logger, is_one_mass, transition);
         self.engine.transit_at_once(acting, &mut &mut *told);
         let motion = *self.engine.motion();
         let known = Checkpoint { motion, elapsed: self.elapsed, load };
-        self.outside = Some(Outside { known, arrived: load, event: outside.event });
+        self.outside = Some(HostMotion { known, arrived: load, event: outside.event });
         self.engine.set_time(host.time);
         Ok(Update {
             has_ended: self.has_overturned(),

@@ -1,22 +1,24 @@
 //! The structure on its ground as a model for FMI: how values are read and set, and how a simulation goes.
 
 use crate::failure::Refusal;
-use crate::ground::{Digest, Kept};
+use crate::ground::{CachedRecord, RecordDigest};
 use crate::inputs::Inputs;
 use crate::motion_log::{log, warn, warn_of_stairs};
 use crate::resources::{Archive, Contents};
-use crate::scene::{Outside, Scene, Told};
+use crate::scene::{HostMotion, Scene, Tell};
 use crate::setup::Setup;
 use crate::shown::Shown;
 use crate::source::Source;
-use crate::variables::Table;
+use crate::variables::VariableTable;
 use crate::{BUILD, guid};
 use fmi_unit::snapshot::{read_state, write_state};
 use fmi_unit::variables::state_references;
-use fmi_unit::{Completed, Experiment, Failure, Interface, Logger, Model, Progress, Step, Update, Value, Variable};
+use fmi_unit::{
+    Completed, Experiment, Failure, Interface, Logger, Model, StepEnd, StepRequest, Update, Value, Variable,
+};
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::Runs;
-use rocking::run::fall::Numbers;
+use rocking::run::fall::FallNumbers;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::validity::{Findings, of_structure};
 use rocking::{Modes, Motion, OutOfRange, State};
@@ -25,8 +27,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// An instance between two calls, whose structure has the lateral coordinates `Q`.
-pub struct Unit<Q: Runs = f64> {
-    pub(crate) table: Table,
+pub struct RockingModel<Q: Runs = f64> {
+    pub(crate) table: VariableTable,
     archive: Archive,
     pub(crate) setup: Setup,
     pub(crate) inputs: Inputs,
@@ -34,7 +36,7 @@ pub struct Unit<Q: Runs = f64> {
     scene: Option<Scene<Q>>,
     has_started: bool,
     /// The record that was followed last, which is not parsed anew for another run.
-    kept: Option<Kept>,
+    kept: Option<CachedRecord>,
     /// Whether the host has been warned that it holds a ground acceleration from sample to sample.
     told_of_stairs: bool,
 }
@@ -50,23 +52,32 @@ pub struct Course<Q: Runs = f64> {
     /// The motion; the host's, if the host integrates.
     pub motion: Motion<Q>,
     /// The knowledge beside the motion, if the host integrates.
-    pub outside: Option<Outside<Q>>,
+    pub outside: Option<HostMotion<Q>>,
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     /// Peaks so far, if they are watched.
-    pub peaks: Numbers,
+    pub peaks: FallNumbers,
     /// Which limits of the model have been passed so far, if they are watched.
     pub validity: Findings,
     /// Names the record that the ground follows.
-    pub record: Option<Digest>,
+    pub record: Option<RecordDigest>,
 }
 
-impl<Q: Runs> Unit<Q> {
+impl<Q: Runs> RockingModel<Q> {
     /// An instance just instantiated from `archive`.
-    pub fn new(archive: Archive) -> Unit<Q> {
-        let (table, setup) = (Table::new(&archive.contents), Setup::new(&archive.contents));
+    pub fn new(archive: Archive) -> RockingModel<Q> {
+        let (table, setup) = (VariableTable::new(&archive.contents), Setup::new(&archive.contents));
         let inputs = Inputs::new(&archive.contents.structure);
-        Unit { table, archive, setup, inputs, scene: None, has_started: false, kept: None, told_of_stairs: false }
+        RockingModel {
+            table,
+            archive,
+            setup,
+            inputs,
+            scene: None,
+            has_started: false,
+            kept: None,
+            told_of_stairs: false,
+        }
     }
 
     /// The structure in motion, or at its start with what has been set so far; its record is in the archive, or on disk.
@@ -80,7 +91,7 @@ impl<Q: Runs> Unit<Q> {
         if self.scene.is_none() {
             self.build()?;
         }
-        let Unit { setup, inputs, scene, .. } = self;
+        let RockingModel { setup, inputs, scene, .. } = self;
         Ok((scene.as_mut().expect("it is built"), setup, inputs))
     }
 
@@ -142,12 +153,12 @@ fn setting(setup: &Setup, inputs: &Inputs, source: Source) -> f64 {
     }
 }
 
-impl<Q: Runs> Model for Unit<Q> {
+impl<Q: Runs> Model for RockingModel<Q> {
     fn open(resources: &Path) -> Result<Box<dyn Model>, Failure> {
         let archive = Archive::open(resources.to_owned()).map_err(Refusal::from)?;
         Ok(match archive.contents.structure.one() {
-            Some(_) => Box::new(Unit::<f64>::new(archive)),
-            None => Box::new(Unit::<Modes>::new(archive)),
+            Some(_) => Box::new(RockingModel::<f64>::new(archive)),
+            None => Box::new(RockingModel::<Modes>::new(archive)),
         })
     }
 
@@ -195,7 +206,7 @@ impl<Q: Runs> Model for Unit<Q> {
             }
             self.build()?;
         }
-        let Unit { table: Table { sources, .. }, setup, inputs, scene: Some(scene), .. } = self else {
+        let RockingModel { table: VariableTable { sources, .. }, setup, inputs, scene: Some(scene), .. } = self else {
             unreachable!("it is built")
         };
         let load = scene.load(setup, inputs.values::<Q>(scene.engine.structure()).into()).value;
@@ -284,8 +295,8 @@ impl<Q: Runs> Model for Unit<Q> {
     }
 
     #[inline(always)]
-    fn advance(&mut self, step: Step, logger: &Logger) -> Result<Progress, Failure> {
-        let Step { start: point, duration: step, stops_at_events: stops } = step;
+    fn advance(&mut self, step: StepRequest, logger: &Logger) -> Result<StepEnd, Failure> {
+        let StepRequest { start: point, duration: step, stops_at_events: stops } = step;
         let (scene, setup, inputs) = self.parts()?;
         let load = match inputs.over(step, scene.engine.structure()) {
             Ok(load) => load,
@@ -298,7 +309,7 @@ impl<Q: Runs> Model for Unit<Q> {
         }
         let known = setup.validity.then_some(scene.validity);
         let is_one_mass = scene.is_one_mass();
-        let told: &mut Told<Q> = &mut |transition| log(logger, is_one_mass, transition);
+        let told: &mut Tell<Q> = &mut |transition| log(logger, is_one_mass, transition);
         let result = if stops {
             scene.advance_to_transition(setup, step, &load, told)
         } else {
@@ -321,9 +332,9 @@ impl<Q: Runs> Model for Unit<Q> {
             warn_of_stairs(logger, reached);
         }
         Ok(match progress {
-            rocking::Progress::Complete => Progress::Complete,
-            rocking::Progress::Transition => Progress::Event,
-            rocking::Progress::Overturned => Progress::Ended,
+            rocking::Progress::Complete => StepEnd::Complete,
+            rocking::Progress::Transition => StepEnd::Event,
+            rocking::Progress::Overturned => StepEnd::Ended,
         })
     }
 
@@ -349,7 +360,7 @@ impl<Q: Runs> Model for Unit<Q> {
     }
 
     fn state(&self, bytes: &mut Vec<u8>) {
-        let Unit { setup, inputs, scene, has_started, .. } = self;
+        let RockingModel { setup, inputs, scene, has_started, .. } = self;
         let course = scene.as_ref().filter(|_| *has_started).map(|scene| Course {
             motion: *scene.engine.motion(),
             outside: scene.outside,
@@ -401,7 +412,7 @@ impl<Q: Runs> Model for Unit<Q> {
     }
 
     fn set_time(&mut self, time: f64, is_at_event: bool) {
-        let Unit { setup, scene: Some(scene), .. } = self else { return };
+        let RockingModel { setup, scene: Some(scene), .. } = self else { return };
         scene.go_to(setup, time, is_at_event);
     }
 

@@ -175,6 +175,6 @@ impl<Q: Coordinates> Engine<Q> {
             return first(watched, &mut Step { level: *level, side, contact, start: &start, arc: &arc, reach: 0.0 });
         }
         let mut guards = watched.guards.iter().enumerate();
-        guards.find_map(|(guard, of)| Some(Closed { guard: guard as u8, way: of.closed(&now)? }))
+        guards.find_map(|(guard, of)| Some(Closed { guard: guard as u8, branch: of.closed(&now)? }))
     }
 }
