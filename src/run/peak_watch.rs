@@ -88,7 +88,7 @@ impl<Q: Coordinates> PeakWatch<Q> {
     }
 
     /// Sees all of a `piece` but the forces of dissipators.
-    pub(super) fn see(&mut self, piece: &Piece<Q>) {
+    fn see(&mut self, piece: &Piece<Q>) {
         let &Piece { duration, ref load, level, arc, .. } = piece;
         let (loads, structure) = ([load.value, load.at(duration)], level.structure());
         let [is_torn, is_first] = [&mut self.is_torn, &mut self.is_first].map(std::mem::take);

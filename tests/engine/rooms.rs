@@ -110,3 +110,38 @@ fn no_files_import_from_each_other_in_a_circle() {
     }
     assert!(left.is_empty(), "in circles, or above one: {left:#?}");
 }
+
+/// Of all crates that are shipped.
+#[test]
+fn no_two_types_share_a_name() {
+    let crates = [
+        "",
+        "records",
+        "sweep",
+        "report",
+        "modelDescription",
+        "fmu",
+        "fmu/fmi",
+        "fmu/export",
+        "cli",
+        "python",
+        "web",
+        "view",
+    ];
+    let mut homes = BTreeMap::<String, Vec<String>>::new();
+    for part in crates {
+        for (module, text) in files(&Path::new(env!("CARGO_MANIFEST_DIR")).join(part).join("src"), "") {
+            for line in text.lines() {
+                let mut words = line.split(' ').skip_while(|word| word.starts_with("pub"));
+                let keyword = words.next().unwrap_or_default();
+                if ["struct", "enum", "trait", "type"].contains(&keyword) {
+                    let name = words.next().unwrap().split(['<', '(', ';', ':']).next().unwrap();
+                    homes.entry(name.to_owned()).or_default().push(format!("{part}: {module}"));
+                }
+            }
+        }
+    }
+    assert!(homes.len() > 300, "{}", homes.len());
+    homes.retain(|_, homes| homes.len() > 1);
+    assert!(homes.is_empty(), "{homes:#?}");
+}

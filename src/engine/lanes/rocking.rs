@@ -231,10 +231,10 @@ impl<Q: Coordinates> LaneRuns<'_, Q> {
     /// Puts off the last step of the run in `lane`.
     fn put_off(&mut self, lane: usize) {
         let (SegmentEnds { next, last, .. }, elapsed) = (&mut self.samples[lane], self.elapsed[lane]);
-        let step = (self.start[lane] + elapsed, self.interval[lane] - elapsed);
+        let (time, duration) = (self.start[lane] + elapsed, self.interval[lane] - elapsed);
         let a_g = Ramp { value: self.a_g[lane], slope: self.slope[lane] }.from(elapsed);
         let states = [&self.state, &self.end].map(|of| state_of(of, lane));
-        if !self.sought.put_off(lane, (step.0, step.1, a_g), states) {
+        if !self.sought.put_off(lane, (time, duration, a_g), states) {
             *last = (*last).min(*next);
         }
     }
@@ -351,7 +351,8 @@ impl<S: Simd, Q: Coordinates> WithSimd for StepRocking<'_, '_, S, Q> {
         let is_part = is_part & (longest_response * g.like(2.0 * STALLED)).is_less(duration);
         let goes_on = is_whole & one.is_at_most(row(&of.may_go_on)) | is_part;
         let goes_on = goes_on & stays & is_free & one.is_at_most(is_there) & steps.is_less(row(&of.most_steps));
-        let is_put_off = is_passed.choose(zero, goes_on.choose(one, zero));
+        let passes = goes_on & is_whole;
+        let is_put_off = is_passed.choose(zero, passes.choose(one, zero));
         let is_passed = is_passed & is_free;
         if !is_put_off.is_at_most(zero).all() {
             let (mut off_cubic, mut slope) = ([zero; 4], [zero; 4]);
@@ -366,7 +367,7 @@ impl<S: Simd, Q: Coordinates> WithSimd for StepRocking<'_, '_, S, Q> {
             let to = Turned { u: [slope[0]], u_dot: [slope[1]], theta: slope[2] };
             let [u, u_dot, theta, _] = off_cubic;
             let bend = Bend { slopes: [from, to], off_cubic: Turned { u: [u], u_dot: [u_dot], theta } };
-            of.sought.bound(simd, (&stretch, &bend), goes_on);
+            of.sought.bound(simd, (&stretch, &bend), passes);
             (0..S::F64_LANES).filter(|lane| is_put_off.of(*lane) == 1.0).for_each(|lane| of.put_off(lane));
         }
         for (i, number) in series[0].into_iter().enumerate() {
@@ -374,7 +375,6 @@ impl<S: Simd, Q: Coordinates> WithSimd for StepRocking<'_, '_, S, Q> {
         }
         let ([time, a], [time_next, a_next]) = (load(simd, &of.ends[0]), load(simd, &of.ends[1]));
         let interval_next = time_next - time;
-        let passes = goes_on & is_whole;
         passes.choose(a, row(&of.a_g)).store(&mut of.a_g);
         passes.choose((a_next - a) / interval_next, slope).store(&mut of.slope);
         passes.choose(interval_next, row(&of.interval)).store(&mut of.interval);

@@ -258,7 +258,8 @@ impl<Q: Coordinates> Sought<Q> {
                 watch.put_off(&piece, bounds);
             }
         }
-        (steps.clear(), all.clear());
+        steps.clear();
+        all.clear();
         self.put_off[lane] = (steps, all);
     }
 }
