@@ -4,6 +4,7 @@
 
 pub mod base;
 pub mod derived;
+pub mod described;
 pub mod description;
 pub mod doubts;
 pub mod gauge;
@@ -16,10 +17,10 @@ pub mod quantity;
 
 use crate::series::bisection::last_where;
 use base::{Base, Body};
-use description::{Description, ManyMasses};
+use described::{Description, ManyMasses};
 use gauge::{Gauges, Reach, rest};
 use ground::{FOOTING, Foundation, Ground};
-use mode::{Floor, MOST_MODES, Mode, Modes, Vibration};
+use mode::{Floor, MOST_MODES, Mode, Modes, OF_FLOOR, Vibration};
 use one_mass::OneMass;
 use parameters::Parameters;
 use quantity::{OutOfRange, Quantity, Refused, Units, ensure, quantity};
@@ -51,12 +52,6 @@ const OF_MODE: [Quantity<Mode>; 6] = [
     quantity!(height ["m"] f64::MIN, f64::MAX, "height of a mode"),
     quantity!(stiffness ["N/m"] 1e-36, 1e48, "modal stiffness"),
     quantity!(damping ["N.s/m"] 0.0, 1e48, "modal damping"),
-];
-
-/// Limits of a floor, by the names that files have.
-pub(crate) const OF_FLOOR: [Quantity<Floor>; 2] = [
-    quantity!("m", mass ["kg"] 1e-6, 1e12, "mass of the floor"),
-    quantity!("h", height ["m"] 1e-3, 1e4, "height of the floor above the base"),
 ];
 
 /// A rigid base that carries modes. The mass above the foundation that the modes do not carry turns rigidly with the base. Copies share

@@ -1,6 +1,7 @@
 //! The modes of vibration of a structure in full contact, and the floors that show their motion.
 
 use crate::numbers::Number;
+use crate::structure::quantity::{Quantity, quantity};
 use serde::{Deserialize, Serialize};
 
 /// A mode of vibration in full contact: an oscillator on the base. One mass is one mode with the shape 1.
@@ -39,6 +40,12 @@ pub struct Floor {
     /// Displacement of the floor per coordinate of each mode.
     pub shape: Modes,
 }
+
+/// Limits of a floor, by the names that files have.
+pub(crate) const OF_FLOOR: [Quantity<Floor>; 2] = [
+    quantity!("m", mass ["kg"] 1e-6, 1e12, "mass of the floor"),
+    quantity!("h", height ["m"] 1e-3, 1e4, "height of the floor above the base"),
+];
 
 impl Mode {
     /// The mode of circular frequency `omega` (rad/s) and damping ratio `zeta`, of modal mass 1: Γ² is its effective mass (kg), and

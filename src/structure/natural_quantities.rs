@@ -14,7 +14,7 @@ use crate::Structure;
 use crate::digits::with_unit;
 use crate::names::{did_you_mean, unknown};
 use crate::structure::derived::{DERIVED, Derived};
-use crate::structure::description::Description;
+use crate::structure::described::Description;
 use crate::structure::ground::Ground;
 use crate::structure::parameters::{OF_ONE_MASS, PARAMETERS, Parameters};
 use crate::structure::quantity::{OutOfRange, Quantity, Refused, Units, ensure, ensure_in};
