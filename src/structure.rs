@@ -420,6 +420,9 @@ impl Structure {
 
     fn is_no_one_mass(&self, task: &str) -> Refused {
         let (needed, has) = match self.foundation() {
+            None if self.is_one_mass() => {
+                ("a number r, because Eqs 10 to 24 have one", "takes it from momentum".into())
+            }
             Some(_) => ("rigid ground, because Eqs 10 to 24 rock on it", "stands on ground that gives".into()),
             None => (
                 "a structure of one mass, because Eqs 10 to 24 have one mode of vibration",

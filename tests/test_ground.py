@@ -62,7 +62,6 @@ def test_the_engine_moves_as_the_masses_do(name, program):
 @pytest.mark.parametrize("command, ground, told", [
     (["pushover"], "f_v = 40\n", "k_d: on ground that gives the static moment of dissipators depends on the way there"),
     (["describe", "--restoring", "0.03"], "f_v = 40\n", "k_d: on ground that gives the static moment of dissipators depends on the way there"),
-    (["describe"], "f_v = 0\n", "is missing: give r"),
 ])
 def test_what_needs_rigid_ground_says_so(command, ground, told, exporter, tmp_path):
     file = tmp_path / "pier.toml"

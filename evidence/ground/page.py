@@ -54,7 +54,7 @@ def compared(figures: Path) -> dict:
     for name, (n, zeta_v, scale, axial) in scenes.items():
         ground = bed(n, zeta_v)
         runs[name] = run = fr.simulate(MCMANUS.replace(ground=ground), record(scale), duration=8, tolerance=1e-12)
-        exact = np.array([run.peaks["theta"].value, run.peaks["a_t[1]"].value])
+        exact = np.array([run.peaks["theta"].value, run.peaks["a_t"].value])
         errors[name] = [shaken(MCMANUS, ground, record(scale), 8.0, step, axial) / exact - 1 for step in STEPS]
     lines = [[f"{1e3 * step:g} ms", round(8 / step), *(signed(part) for name, of in told.items() for part, _ in zip(errors[name][i], of))]
              for i, step in enumerate(STEPS)]
@@ -69,7 +69,7 @@ def compared(figures: Path) -> dict:
     at |= {f"{name.replace(' ', '_')}_{of}": signed(errors[name][-1][j]) for name in scenes for j, of in enumerate(("theta", "a_t"))}
     run = runs["springs"]
     headings = ["step", "steps", *(f"{name}: {of}" for name, all_told in told.items() for of in all_told)]
-    return dict(steps=run.steps, events=len(run.transitions), theta=f"{1e3 * run.peaks['theta'].value:.4f}", a_t=f"{run.peaks['a_t[1]'].value / G:.4f}",
+    return dict(steps=run.steps, events=len(run.transitions), theta=f"{1e3 * run.peaks['theta'].value:.4f}", a_t=f"{run.peaks['a_t'].value / G:.4f}",
                 bed_steps=runs["bed"].steps, bed_events=len(runs["bed"].transitions), opensees=table(headings, lines), **at)
 
 
@@ -81,7 +81,7 @@ def on_springs(s: fr.Structure, f_v: float, zeta_v: float) -> fr.Structure:
     return s.replace(f_fc=f_fc, ground=fr.Ground(f_v=f_v, zeta_v=zeta_v))
 
 
-def released(s: fr.Structure, theta_0: float, alpha: float, detail: str = "auto", u_0: float = 0.0, a_t: str = "a_t[1]") -> tuple[float, float]:
+def released(s: fr.Structure, theta_0: float, alpha: float, detail: str = "auto", u_0: float = 0.0) -> tuple[float, float]:
     """The largest |a_t| (m/s²) of the half cycle after the first return of θ, which lasts at least 0.1 s, and the ratio r_eq of its peak to the
     release at `theta_0`."""
     time = np.arange(12_001) * 5e-5
@@ -92,7 +92,7 @@ def released(s: fr.Structure, theta_0: float, alpha: float, detail: str = "auto"
     back = np.flatnonzero((theta > 0) & (time > time[first] + 0.1))
     cycle = slice(first, back[0] if len(back) else None)
     energy = [1 - (1 - size / alpha) ** 2 for size in (np.abs(theta[cycle]).max(), theta_0)]
-    return np.abs(response[a_t][cycle]).max(), math.sqrt(energy[0] / energy[1])
+    return np.abs(response["a_t"][cycle]).max(), math.sqrt(energy[0] / energy[1])
 
 
 def wall() -> dict:
@@ -101,12 +101,12 @@ def wall() -> dict:
     tangent = math.tan(rigid.alpha_cg)
     step = rigid.chi * G * tangent
 
-    def of(s: fr.Structure, name: str = "a_t[1]") -> tuple[float, float]:
-        a_t, r_eq = released(s, THETA_0, tangent, u_0=rigid.u_cr, a_t=name)
+    def of(s: fr.Structure) -> tuple[float, float]:
+        a_t, r_eq = released(s, THETA_0, tangent, u_0=rigid.u_cr)
         return a_t / step - 1, r_eq
 
     found = [of(on_springs(EVISON, f_v, 0.2)) for f_v in F_VS]
-    C, r_eq = of(rigid, "a_t")
+    C, r_eq = of(rigid)
     middle = dict(zip(F_VS, found, strict=True))
     band = [middle[f_v] for f_v in (160, 200, 250)]
     return dict(rigid_C=f"{C:.2f}", rigid_r=f"{r_eq:.3f}", stiff_C=f"{min(C for C, _ in band):.2f} to {max(C for C, _ in band):.2f}",
@@ -127,10 +127,10 @@ def block(slenderness: float, f_v: float = 800.0) -> str:
 def limits() -> dict:
     """McManus's pier on ever stiffer springs, beside rigid ground."""
     lines, whole = [], fr.Record.read(EL_CENTRO)
-    for name, s, a_t in (*((f"two springs, {f_v} Hz", MCMANUS.replace(ground=fr.Ground(f_v=f_v, zeta_v=1)), "a_t[1]") for f_v in STIFF),
-                         (f"rigid ground, r = {MCMANUS.r:g}", MCMANUS, "a_t")):
+    for name, s in (*((f"two springs, {f_v} Hz", MCMANUS.replace(ground=fr.Ground(f_v=f_v, zeta_v=1))) for f_v in STIFF),
+                    (f"rigid ground, r = {MCMANUS.r:g}", MCMANUS)):
         run = fr.simulate(s, whole, duration=15)
-        lines.append([name, f"{1e3 * run.peaks['theta'].value:.2f}", f"{run.peaks[a_t].value / G:.3f}", run.steps])
+        lines.append([name, f"{1e3 * run.peaks['theta'].value:.2f}", f"{run.peaks['a_t'].value / G:.3f}", run.steps])
     return dict(limits=table(["ground", "θ_max (mrad)", "a_t,max (g)", "steps"], lines), slender=block(4), stocky=block(2))
 
 

@@ -39,7 +39,7 @@ def records() -> tuple[dict[str, fr.Record], dict[str, fr.Record]]:
     alone, both = {}, {}
     for path in horizontal_records().values():
         vertical = next(file for file in path.parent.glob("*.AT2") if file.stem.lower().endswith("-up"))
-        alone[path.stem], both[path.stem] = fr.Record.read(path), fr.Record.read(path, vertical=vertical)
+        alone[path.stem], both[path.stem] = fr.Record.read(path), fr.Record.read(path, record_v=vertical)
     return alone, both
 
 

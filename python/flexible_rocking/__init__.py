@@ -14,14 +14,15 @@ intensity_at finds how strong each record must be to reach a limit. export write
 an FMU; fmu is the path of one. help() of each has units, shapes, equation numbers of the paper, and errors. docs/howto/python.md is
 the page of the module.
 
-SI units and radians throughout. Invalid input raises ValueError with the name, the value and the limit. Tables need pandas,
+SI units and radians throughout. Invalid input raises ValueError with the name, the value and the limit, a missing file
+FileNotFoundError. A path stands for the Record of its file. Structure.read and write share files with the command line. Tables need pandas,
 pictures matplotlib, and notebooks IPython.
 """
 
-from collections.abc import Iterable
-from importlib.metadata import distribution
-from os import PathLike
-from pathlib import Path
+from collections.abc import Iterable as _Iterable
+from importlib.metadata import distribution as _distribution
+from os import PathLike as _PathLike
+from pathlib import Path as _Path
 
 from . import _native
 from ._ground import Ground
@@ -34,22 +35,22 @@ __all__ = ["Advice", "Curve", "Estimate", "Fragility", "Ground", "Peak", "Profil
            "simulate", "sweep"]
 
 
-def fmu() -> Path:
+def fmu() -> _Path:
     """The FMU of McManus's bridge pier, for every platform, with a pulse as its ground motion until `record` names another."""
-    files = distribution("flexible-rocking").files or []
-    return next(Path(str(file.locate())).resolve() for file in files if file.name == "FlexibleRocking.fmu")
+    files = _distribution("flexible-rocking").files or []
+    return next(_Path(str(file.locate())).resolve() for file in files if file.name == "FlexibleRocking.fmu")
 
 
 def export(
-    target: str | PathLike[str],
+    target: str | _PathLike[str],
     structure: Structure,
     *,
-    record: Record | str | PathLike[str] | Iterable[Record | str | PathLike[str]] = (),
+    record: Record | str | _PathLike[str] | _Iterable[Record | str | _PathLike[str]] = (),
     name: str = "FlexibleRocking",
     fmi: int = 2,
-    library: str | PathLike[str] | None = None,
+    library: str | _PathLike[str] | None = None,
     strings: bool = True,
-) -> Path:
+) -> _Path:
     """Writes the FMU of a structure to `target` and returns its path.
 
     record: a Record or a file, or several. The FMU follows the first and has the others inside, each Record under its title.
@@ -58,6 +59,7 @@ def export(
     library: an FMU or a shared library with the code; by default `fmu()`. A Python warning names an assumption about a file, or a likely fault. Raises
     ValueError with the reason.
     """
-    records = [record] if isinstance(record, (Record, str, PathLike)) else list(record)
+    is_one = isinstance(record, (Record, str)) or not isinstance(record, _Iterable)
+    records = [record] if is_one else list(record)  # type: ignore[arg-type]
     _native.export(target, structure, records, name, fmi, fmu() if library is None else library, strings)
-    return Path(target).absolute()
+    return _Path(target).absolute()

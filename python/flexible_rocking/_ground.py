@@ -30,7 +30,7 @@ class Ground(dict[str, Any]):
     n_points: 2 (the edges) to 21, equally spaced. kr_ratio: K_r/(k_v B^2), by default 1 for two points and 1/3 (a uniform bed) for
     more, or else k_r: rotational stiffness, N.m/rad.
     xi, k, c: the points themselves in the place of all these, from left to right: places (m), stiffnesses (N/m), dampings (N.s/m).
-    The points take the place of impacts: r has no effect. The structure then has the names of many masses, such as a_t[1].
+    The points take the place of impacts: r has no effect. The names of the structure stay the same.
     Raises ValueError for an unknown name.
     """
 

@@ -13,34 +13,35 @@ __version__: str
 
 _Array = NDArray[np.float64]
 _Path = str | PathLike[str]
+_Rows = Any  # of storeys, floors or modes: dicts, or a DataFrame
 _Detail = Literal["auto", "nonlinear", "linear", "modal", "rigid", "fixed_base"]
 _Unit = Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "in/s2", "ft/s2", "mg", "%g"]
 _Shape = Literal["half_sine", "sine", "cosine", "ricker", "antisymmetric_ricker", "mavroeidis_papageorgiou"]
 _Criterion = Literal["theta", "u", "a_t", "theta_history", "u_history", "a_t_history"]
 
 class _Numbers(TypedDict, total=False):
-    m: float
-    m0: float
-    H: float
-    B: float
-    J0: float
-    f_fc: float
-    zeta_fc: float
-    c_ratio: float
-    r: float
-    g: float
-    P_0: float
-    k_t: float
-    xi_d: float
-    c_d: float
-    k_d: float
-    F_y: float
-    period_fc: float
-    weight: float
-    weight0: float
-    width: float
-    alpha_cg: float
-    p_l: float
+    m: float; "kg"
+    m0: float; "kg"
+    H: float; "m"
+    B: float; "m"
+    J0: float; "kg.m2"
+    f_fc: float; "Hz"
+    zeta_fc: float; "1"
+    c_ratio: float; "1"
+    r: float; "1"
+    g: float; "m/s2"
+    P_0: float; "N"
+    k_t: float; "N/m"
+    xi_d: float; "m"
+    c_d: float; "N.s/m"
+    k_d: float; "N/m"
+    F_y: float; "N"
+    period_fc: float; "s"
+    weight: float; "N"
+    weight0: float; "N"
+    width: float; "m"
+    alpha_cg: float; "rad"
+    p_l: float; "rad/s"
     units: Literal["N, m, kg", "kN, m, t"]
     ground: Ground
 
@@ -49,17 +50,23 @@ class _Rayleigh(TypedDict):
     zeta: float
 
 class _InitialValues(TypedDict, total=False):
-    theta_0: float
-    theta_dot_0: float
-    u_0: ArrayLike
-    u_dot_0: ArrayLike
+    theta_0: float; "rad"
+    theta_dot_0: float; "rad/s"
+    u_0: ArrayLike; "m"
+    u_dot_0: ArrayLike; "m/s"
 
 @final
 class Structure:
     @overload
     def __new__(cls, *, preset: Literal["mcmanus", "evison"] | None = None, **numbers: Unpack[_Numbers]) -> Structure: ...
     @overload
-    def __new__(cls, *, storeys: Sequence[Mapping[str, float]], zeta: ArrayLike | _Rayleigh, **base: float | str | Ground) -> Structure: ...
+    def __new__(
+        cls, *, zeta: ArrayLike | _Rayleigh, storeys: _Rows = ..., floors: _Rows = ..., K: ArrayLike = ..., modes: _Rows = ...,
+        total: Mapping[str, float] = ..., p_delta: bool = ..., keep: int = ..., **base: Any,
+    ) -> Structure: ...
+    @staticmethod
+    def read(file: _Path) -> Structure: ...
+    def write(self, file: _Path) -> None: ...
     @staticmethod
     def from_matrices(
         masses: ArrayLike, heights: ArrayLike, K: ArrayLike, *, zeta: ArrayLike | _Rayleigh, **base: float | str | Ground
@@ -87,12 +94,12 @@ class Structure:
     @overload
     def replace(self, **numbers: Any) -> Structure: ...
     parameters: Final[dict[str, Any]]
-    derived: Final[dict[str, float]]
-    mode_table: Final[dict[str, _Array]]
-    def effective_frequency(self, theta: float) -> float: ...
-    def pushover(self, points: int = 100) -> dict[str, _Array]: ...
-    def restoring(self, theta: float) -> dict[str, _Array]: ...
-    def modes(self, response: Response) -> dict[str, _Array]: ...
+    derived: Final[dict[str, float]]; "in SI units"
+    mode_table: Final[dict[str, _Array]]; "f, f_u (Hz), mass (kg), height (m), zeta, share, chi"
+    def effective_frequency(self, theta: float) -> float: "Hz, of theta in rad"
+    def pushover(self, points: int = 100) -> Response: "theta (rad), u, delta_t (m), P (N), M (N.m)"
+    def restoring(self, theta: float) -> Response: "theta (rad), moment (N.m)"
+    def modes(self, response: Response) -> dict[str, _Array]: "q_r, q_u (rad), a_r, a_u (m/s2)"
     def __getattr__(self, name: str) -> float: ...
     def __hash__(self) -> int: ...
     def __eq__(self, other: object) -> bool: ...
@@ -102,7 +109,7 @@ class Record:
     LAYOUTS: str
     def __new__(
         cls,
-        time: Any,  # numbers, or a Trace or Stream of ObsPy
+        time: Any,  # numbers in s, a Series of pandas, or a Trace or Stream of ObsPy
         a_g: ArrayLike | None = None,
         a_v: ArrayLike | None = None,
         *,
@@ -115,27 +122,31 @@ class Record:
     def read(
         file: _Path,
         *,
-        vertical: _Path | None = None,
+        record_v: _Path | None = None,
         unit: _Unit | None = None,
         dt: float | None = None,
         column: int | str | None = None,
-        vertical_column: int | str | None = None,
+        column_v: int | str | None = None,
         ignore_npts: bool = False,
         time_scale: float = 1.0,
         scale: float = 1.0,
     ) -> Record: ...
-    time: Final[_Array]
-    a_g: Final[_Array]
-    a_v: Final[_Array | None]
-    F_t: Final[_Array | None]
+    time: Final[_Array]; "s"
+    a_g: Final[_Array]; "m/s2"
+    a_v: Final[_Array | None]; "m/s2"
+    F_t: Final[_Array | None]; "N"
     title: Final[str]
-    pga: Final[float]
-    pgv: Final[float]
-    duration: Final[float]
-    def with_force(self, time: ArrayLike, F_t: ArrayLike) -> Record: ...
+    pga: Final[float]; "m/s2"
+    pgv: Final[float]; "m/s"
+    duration: Final[float]; "s"
+    def with_force(self, time: ArrayLike, F_t: ArrayLike) -> Record: "time in s, F_t in N"
     def scaled(self, scale: float = 1.0, *, time_scale: float = 1.0) -> Record: ...
-    def spectrum(self, periods: ArrayLike, zeta: float = 0.05) -> _Array: ...
-    def write(self, file: _Path, *, vertical: _Path | None = None) -> None: ...
+    @overload
+    def spectrum(self, periods: float, zeta: float = 0.05) -> float: "S_a in m/s2, periods in s"
+    @overload
+    def spectrum(self, periods: ArrayLike, zeta: float = 0.05) -> _Array: "S_a in m/s2, periods in s"
+    def write(self, file: _Path, *, record_v: _Path | None = None) -> None: ...
+    def plot(self) -> Any: ...
     def __len__(self) -> int: ...
     def __hash__(self) -> int: ...
     def __eq__(self, other: object) -> bool: ...
@@ -149,9 +160,9 @@ class Run:
     peaks: Final[dict[str, Peak]]
     overturned: Final[bool | None]
     ending: Final[str]
-    start: Final[float]
-    end: Final[float]
-    fall: Final[float | None]
+    start: Final[float]; "s"
+    end: Final[float]; "s"
+    fall: Final[float | None]; "s"
     transitions: Final[Transitions]
     steps: Final[int]
     evaluations: Final[int]
@@ -164,9 +175,9 @@ class Run:
         edge_load: float | None = None,
         energy_gain: float | None = None,
     ) -> dict[str, Worst]: ...
-    def at(self, times: ArrayLike) -> Response: ...
+    def at(self, times: ArrayLike) -> Response: "times in s; Response.units has the units"
     profile: Final[Profile]
-    def spectrum(self, floor: int, periods: ArrayLike | None = None, zeta: float = 0.05) -> dict[str, _Array]: ...
+    def spectrum(self, floor: int, periods: ArrayLike | None = None, zeta: float = 0.05) -> Response: "period (s), S_a (m/s2)"
     def plot(self, kind: Literal["history", "profile"] = "history") -> Any: ...
     def page(self) -> str: ...
 
@@ -183,7 +194,7 @@ class Curve:
 
 def simulate(
     structure: Structure,
-    record: Record | None = None,
+    record: Record | _Path | None = None,
     *,
     duration: float | None = None,
     detail: _Detail = "auto",
@@ -192,14 +203,14 @@ def simulate(
 ) -> Run: ...
 def advise(
     structure: Structure,
-    record: Record,
+    record: Record | _Path,
     *,
     within: float = 0.05,
     of: _Criterion | Sequence[_Criterion] | None = None,
     duration: float | None = None,
     **initial: Unpack[_InitialValues],
 ) -> Advice: ...
-def estimate(structure: Structure, record: Record | None = None, *, amplification: float = 2.0) -> Estimate: ...
+def estimate(structure: Structure, record: Record | _Path | None = None, *, amplification: float = 2.0) -> Estimate: ...
 def pulse(
     shape: _Shape,
     *,

@@ -3,14 +3,14 @@
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, SupportsIndex, overload
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from ._native import Run
+    from ._native import Record, Run
 
 # Of each quantity in a picture: what it is called, the unit, and how much of its SI unit that is; accelerations are in g.
 LABELS = {"a_g": ("$a_g$", "g", 0.0), "theta": (r"$\theta$", "rad", 1.0), "u": ("$u$", "mm", 1e-3), "a_t": ("$a_t$", "g", 0.0)}
@@ -71,20 +71,30 @@ class Transition(NamedTuple):
 
 
 class Transitions(list[Transition]):
-    """The transitions of a run in the order of time. components: names of the numbers of a state."""
+    """The transitions of a run in the order of time. components: names of the numbers of a state, with their units."""
 
-    def __init__(self, transitions: Iterable[Transition] = (), components: Iterable[str] = ("u", "u_dot", "theta", "theta_dot")):
+    def __init__(self, transitions: Iterable[Transition] = (), components: "dict[str, str] | None" = None):
         super().__init__(transitions)
-        self.components = list(components)
+        self.components = components or {"u": "m", "u_dot": "m/s", "theta": "rad", "theta_dot": "rad/s"}
+
+    @overload
+    def __getitem__(self, at: SupportsIndex) -> Transition: ...
+    @overload
+    def __getitem__(self, at: slice) -> "Transitions": ...
+    def __getitem__(self, at: Any) -> Any:
+        found: Any = super().__getitem__(at)
+        return Transitions(found, self.components) if isinstance(at, slice) else found
 
     def to_pandas(self) -> "pd.DataFrame":
-        """A DataFrame with the time as its index, the kind, and the state before and after: a row per transition."""
+        """A DataFrame with the time as its index, the kind, and the state before and after: a row per transition. attrs has units."""
         with extras():
             import pandas
 
-        states = [f"{name}_{when}" for when in ("before", "after") for name in self.components]
+        states = {f"{name}_{when}": unit for when in ("before", "after") for name, unit in self.components.items()}
         rows = [(of.time, of.kind, *of.before.values(), *of.after.values()) for of in self]
-        return pandas.DataFrame(rows, columns=["time", "kind", *states]).set_index("time")
+        table = pandas.DataFrame(rows, columns=["time", "kind", *states]).set_index("time")
+        table.attrs["units"] = {"time": "s", **states}
+        return table
 
 
 class Worst(NamedTuple):
@@ -110,13 +120,13 @@ class Worst(NamedTuple):
 class Advice:
     """Every level of detail on one scene, and which is the cheapest that will do: what `advise` returns.
 
-    detail: the recommended level, or None if no level is good enough. modes: how many modes to keep, or None for one mass.
-    text: the printed form. levels: a dict each, with level, modes (only of many masses), relative errors by criterion, overturned (None if it still rocks), steps, evaluations,
+    detail: the recommended level, or None if no level is good enough. keep: how many modes to keep, or None for one mass.
+    text: the printed form. levels: a dict each, with level, keep (only of many masses), relative errors by criterion, overturned (None if it still rocks), steps, evaluations,
     cost_of_auto (steps and evaluations as a multiple of those of auto).
     """
 
     detail: str | None
-    modes: int | None
+    keep: int | None
     levels: list[dict[str, Any]]
     text: str
 
@@ -125,7 +135,7 @@ class Advice:
 
 
 class Response(dict[str, "NDArray[Any]"]):
-    """The motion of a run at instants: arrays by name, all of one length; `units` has theirs."""
+    """The motion of a run at instants, or a curve: arrays by name, all of one length; `units` has theirs."""
 
     def __init__(self, columns: dict[str, Any], units: dict[str, str]):
         import numpy as np
@@ -134,11 +144,13 @@ class Response(dict[str, "NDArray[Any]"]):
         self.units = units
 
     def to_pandas(self) -> "pd.DataFrame":
-        """A DataFrame with the first array, the time, as its index and a column a quantity."""
+        """A DataFrame with the first array, such as the time, as its index and a column a quantity. attrs["units"] has the units."""
         with extras():
             import pandas
 
-        return pandas.DataFrame(dict(self)).set_index(next(iter(self)))
+        table = pandas.DataFrame(dict(self)).set_index(next(iter(self)))
+        table.attrs["units"] = dict(self.units)
+        return table
 
 
 class Profile(Response):
@@ -197,6 +209,20 @@ def plot_profile(run: "Run") -> "Figure":
     axes[0].set(ylabel="height (m)")
     axes[0].legend()
     figure.suptitle(run.record.title)
+    return figure
+
+
+def plot_record(record: "Record") -> "Figure":
+    """The accelerations of a record over time."""
+    with extras():
+        from matplotlib import pyplot
+
+    figure, axis = pyplot.subplots(figsize=(8, 3), layout="constrained")
+    for label, of in (("$a_g$", record.a_g), ("$a_v$", record.a_v)):
+        if of is not None:
+            axis.plot(record.time, of / 9.81, linewidth=0.8, label=label)
+    axis.set(xlabel="time (s)", ylabel="acceleration (g)", title=record.title)
+    axis.legend()
     return figure
 
 

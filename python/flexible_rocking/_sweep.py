@@ -17,10 +17,13 @@ if TYPE_CHECKING:
 
     from ._native import Curve, Record, Structure
 
+    _Motion = Record | str | PathLike[str]
+    _Records = _Motion | Sequence[_Motion] | Mapping[str, _Motion]
+
 
 def sweep(
     structures: "Structure | Sequence[Structure] | Mapping[str, Structure | Sequence[Structure]]",
-    records: "Record | Sequence[Record] | Mapping[str, Record]",
+    records: "_Records",
     *,
     scale: "float | ArrayLike" = 1.0,
     intensity: str = "PGA",
@@ -36,7 +39,7 @@ def sweep(
     """Runs every structure under every record at every scale on all cores: a DataFrame with a row per run.
 
     structures: one, several, or populations by name, each one or several. Each has one mass or many. records: one, several, or by
-    name. scale: factors on the accelerations. detail, tolerance, duration and initial values: as in `simulate`.
+    name, each a Record or the path of a file. scale: factors on the accelerations. detail, tolerance, duration and initial values: as in `simulate`.
     validity: whether the rows have how far each run exceeds the model's limits. threads: 0 is one per core.
 
     intensity: the measure for `fragility`, "PGA" (g), "PGV" (m/s), "S_a" (g, at f_fc and zeta_fc, a building's lowest mode), "CAV"
@@ -105,13 +108,16 @@ def overturning_map(
     return pandas.read_csv(io.StringIO(rows))
 
 
-def _named(records: "Record | Sequence[Record] | Mapping[str, Record]") -> "list[tuple[str, Record]]":
-    """Records with their names."""
+def _named(records: "_Records") -> "list[tuple[str, Record]]":
+    """Records with their names; a path stands for the record of its file."""
+    def read(of: Any) -> Any:
+        return _native.Record.read(of) if isinstance(of, (str, PathLike)) else of
+
     if isinstance(records, Mapping):
-        return list(records.items())
+        return [(name, read(of)) for name, of in records.items()]
     given: Any = [records] if isinstance(records, (_native.Record, str, PathLike)) else records
     # all but a Record is refused by name
-    return [(of.title if isinstance(of, _native.Record) else "", of) for of in given]
+    return [(of.title if isinstance(of, _native.Record) else "", of) for of in map(read, given)]
 
 
 def _values(column: Any) -> Any:
@@ -302,7 +308,7 @@ def _exceeds(table: "pd.DataFrame", limit: str) -> list[bool | None]:
 
 def intensity_at(
     structure: "Structure",
-    records: "Record | Sequence[Record] | Mapping[str, Record]",
+    records: "_Records",
     limit: str = "overturned",
     *,
     scale: "ArrayLike | None" = None,

@@ -61,7 +61,7 @@ pub fn advise<'py>(
         let level = PyDict::new(py);
         level.set_item("level", choice.detail.name())?;
         if let Some([kept, _]) = choice.modes {
-            level.set_item("modes", kept)?;
+            level.set_item("keep", kept)?;
         }
         for (criterion, error) in Criterion::ALL.iter().zip(errors) {
             level.set_item(criterion.name(), error)?;
@@ -74,8 +74,8 @@ pub fn advise<'py>(
     };
     let levels = advice.levels.iter().map(level).collect::<PyResult<Vec<_>>>()?;
     let detail = advice.advised.map(|choice| choice.detail.name());
-    let modes = advice.advised.and_then(|choice| choice.modes).map(|[kept, _]| kept);
-    result(py, "Advice", (detail, modes, levels, text))
+    let keep = advice.advised.and_then(|choice| choice.modes).map(|[kept, _]| kept);
+    result(py, "Advice", (detail, keep, levels, text))
 }
 
 /// The demands without a time history (Eqs 4, 21 to 24), a dict of numbers by name in SI units; printed, with units and

@@ -1,7 +1,7 @@
 //! Arguments of Python, and their errors with name, value and limit in the words of the library.
 
 use anyhow::anyhow;
-use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::call::PyCallArgs;
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
@@ -11,12 +11,19 @@ use rocking::names::unknown;
 use rocking::{Detail, State};
 use rocking_sweep::plan::Conditions;
 use std::ffi::CString;
+use std::io;
 
 const BOOLS: &str = "these are bools: numbers are needed";
 
-/// The `ValueError` that says why.
+/// The `ValueError` that says why, or, if a file cannot be opened, what Python raises then.
 pub fn refused(error: impl Into<anyhow::Error>) -> PyErr {
-    PyValueError::new_err(rocking_report::message(&error.into()))
+    let error = error.into();
+    let message = rocking_report::message(&error);
+    let kind = error.chain().find_map(|cause| cause.downcast_ref::<io::Error>()).map(io::Error::kind);
+    match kind.filter(|kind| matches!(kind, io::ErrorKind::NotFound | io::ErrorKind::PermissionDenied)) {
+        Some(kind) => io::Error::new(kind, message).into(),
+        None => PyValueError::new_err(message),
+    }
 }
 
 /// The number `value`, which messages call `name`: a float, an int, or a scalar of numpy.
@@ -122,6 +129,19 @@ pub fn warn(py: Python<'_>, sentences: impl IntoIterator<Item = String>, above: 
 /// An object of the class `name` of `_results.py`, made of `parts`.
 pub fn result<'py>(py: Python<'py>, name: &str, parts: impl PyCallArgs<'py>) -> PyResult<Bound<'py, PyAny>> {
     py.import("flexible_rocking._results")?.call_method1(name, parts)
+}
+
+/// A Response of columns, each with its name and its unit.
+pub fn response<'py, const N: usize>(
+    py: Python<'py>,
+    columns: [(&str, &str, Vec<f64>); N],
+) -> PyResult<Bound<'py, PyAny>> {
+    let (named, units) = (PyDict::new(py), PyDict::new(py));
+    for (name, unit, column) in columns {
+        named.set_item(name, PyArray1::from_vec(py, column))?;
+        units.set_item(name, unit)?;
+    }
+    result(py, "Response", (named, units))
 }
 
 /// The one of `all` that `asked` names; a message calls the argument `name`.

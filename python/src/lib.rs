@@ -5,11 +5,11 @@
 mod advice;
 mod arguments;
 mod interruptible;
-mod many_masses;
 mod record;
 mod run;
 mod structure;
 mod sweep;
+mod tables;
 
 use arguments::{one_of, refused, warn};
 use fmu_export::{Contents, Library, Version};
@@ -29,8 +29,6 @@ mod _native {
     #[pymodule_export]
     use super::export;
     #[pymodule_export]
-    use super::many_masses::check_ground;
-    #[pymodule_export]
     use super::record::{Record, pulse};
     #[pymodule_export]
     use super::run::{Run, simulate};
@@ -38,6 +36,8 @@ mod _native {
     use super::structure::Structure;
     #[pymodule_export]
     use super::sweep::{Curve, columns_of, exceeds, fragility, heading_of, overturning_map, sweep};
+    #[pymodule_export]
+    use super::tables::check_ground;
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "as Python has it")]
@@ -45,10 +45,20 @@ mod _native {
 }
 
 /// A ground motion to pack: a record, under its title, or a file.
-#[derive(FromPyObject)]
 enum ToPack {
     Record(Py<record::Record>),
     File(PathBuf),
+}
+
+impl<'a, 'py> FromPyObject<'a, 'py> for ToPack {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'a, 'py, PyAny>) -> PyResult<ToPack> {
+        match value.cast::<record::Record>() {
+            Ok(of) => Ok(ToPack::Record(of.to_owned().unbind())),
+            Err(_) => value.extract().map(ToPack::File).map_err(|_| record::no_record(&value)),
+        }
+    }
 }
 
 /// Writes the FMU to `target`: of `structure`, with `records` inside, of which it follows the first, with its vertical component.

@@ -11,7 +11,7 @@ use rocking::Parameters;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::estimates::response_spectrum;
 use rocking::run::record::{Record as Samples, SamplesError};
-use rocking_records::{Column, Reading, Unit, csv_in, doubt_of_peak, doubts, each_in_m_s2};
+use rocking_records::{Column, Reading, TITLE, Unit, csv_in, doubt_of_peak, doubts, each_in_m_s2};
 use rocking_report::output_files::OutputFiles;
 use rocking_report::record::{Understood, understand};
 use rocking_report::run::Watcher;
@@ -28,6 +28,7 @@ pub const G: f64 = Parameters::EVISON.g;
 /// Record(time, a_g): arrays of one shape (n,), n >= 2, time in s, strictly increasing; a_g, horizontal, in `unit`.
 /// Record(dt, a_g): samples every dt seconds from 0 on.
 /// Record(time, a_g, a_v): with the vertical component, positive upwards, of the same shape and unit.
+/// Record(series): a pandas Series, whose index is the time in s.
 /// Record(trace, unit="m/s2"): the samples of an ObsPy Trace, or of a Stream of one, once they are accelerations.
 /// Record.read(file): a file as the archives publish it.
 ///
@@ -36,7 +37,6 @@ pub const G: f64 = Parameters::EVISON.g;
 /// multiplies the times and scale the accelerations. Tables call the record by its title. The samples are copied. A Python
 /// warning names a likely fault. Raises ValueError for other shapes, NaN and infinity, and times that do not increase.
 #[pyclass(frozen, eq, module = "flexible_rocking")]
-#[derive(PartialEq)]
 pub struct Record {
     /// Without the force.
     given: Samples,
@@ -63,7 +63,7 @@ fn fixed(samples: Samples, units: [Unit; 2]) -> PyResult<(Samples, Unit)> {
     }
     if units.into_iter().any(is_of_g) {
         let needed = "one unit is needed; say unit, or scale one of the files";
-        return Err(PyValueError::new_err(format!("vertical is in {vertical} and file in {unit}: {needed}")));
+        return Err(PyValueError::new_err(format!("record_v is in {vertical} and file in {unit}: {needed}")));
     }
     Ok((each_in_m_s2(samples, units, G).map_err(refused)?, Unit::MetrePerSecondSquared))
 }
@@ -74,6 +74,13 @@ fn unscaled(given: &Samples, force: Option<&[Vec<f64>; 2]>, unit: Unit, g: f64) 
     match force {
         Some([times, F_t]) => ground.with_force(times, F_t),
         None => Ok(ground),
+    }
+}
+
+/// Two records are equal if their files are.
+impl PartialEq for Record {
+    fn eq(&self, other: &Record) -> bool {
+        self.unit == other.unit && self.force == other.force && self.multiplied() == other.multiplied()
     }
 }
 
@@ -101,6 +108,11 @@ impl Record {
         unscaled(&self.given, self.force.as_ref(), self.unit, g)
     }
 
+    /// The accelerations in its unit, as a file has them.
+    fn multiplied(&self) -> Samples {
+        self.given.clone().multiplied(self.scale)
+    }
+
     /// Whether the g of a structure decides how strong it is.
     pub fn is_in_g(&self) -> bool {
         self.unit != Unit::MetrePerSecondSquared
@@ -118,7 +130,7 @@ impl Record {
             self.usual.force().is_none(),
             "a file or an FMU cannot hold the record's force: write the record without with_force, and set the input F_t of the FMU"
         );
-        let (table, vertical) = csv_in(&self.given.clone().multiplied(self.scale), [self.unit; 2]);
+        let (table, vertical) = csv_in(&self.multiplied(), [self.unit; 2]);
         Ok([table].into_iter().chain(vertical).collect())
     }
 }
@@ -153,16 +165,23 @@ fn ids(traces: &Bound<'_, PyAny>) -> PyResult<String> {
     Ok(traces.try_iter()?.map(id).collect::<PyResult<Vec<_>>>()?.join(", "))
 }
 
-/// A Record that is asked for, as `record`.
+/// A Record that is asked for, as `record`, or the path of its file.
 pub struct Ground(pub Py<Record>);
+
+pub fn no_record(value: &Bound<'_, PyAny>) -> PyErr {
+    let needed = "is no Record and no path of a file: Record(time, a_g) makes one";
+    PyTypeError::new_err(format!("record = {value:?} {needed}"))
+}
 
 impl<'a, 'py> FromPyObject<'a, 'py> for Ground {
     type Error = PyErr;
 
     fn extract(value: Borrowed<'a, 'py, PyAny>) -> PyResult<Ground> {
-        let needed =
-            || format!("record = {value:?} is no Record: Record.read(file) reads one, Record(time, a_g) makes one");
-        value.cast::<Record>().map(|of| Ground(of.to_owned().unbind())).map_err(|_| PyTypeError::new_err(needed()))
+        if let Ok(of) = value.cast::<Record>() {
+            return Ok(Ground(of.to_owned().unbind()));
+        }
+        let (py, path) = (value.py(), value.extract().map_err(|_| no_record(&value))?);
+        Ok(Ground(Py::new(py, Record::read(py, path, None, None, None, None, None, false, 1.0, 1.0)?)?))
     }
 }
 
@@ -188,6 +207,11 @@ impl Record {
         let unit = unit.map(self::unit).transpose()?;
         let (time, a_g, unit, name) = match a_g {
             Some(a_g) => (time.clone(), a_g.clone(), unit.unwrap_or(Unit::MetrePerSecondSquared), "record".into()),
+            None if time.hasattr("index")? && time.hasattr("to_numpy")? => {
+                let name = time.getattr("name")?;
+                let name = if name.is_none() { "record".to_owned() } else { name.str()?.to_string() };
+                (time.getattr("index")?, time.clone(), unit.unwrap_or(Unit::MetrePerSecondSquared), name)
+            }
             None => of_trace(time, unit)?,
         };
         let title = title.unwrap_or(&name);
@@ -240,20 +264,20 @@ impl Record {
     ///
     /// The options replace statements that the file lacks: unit (of the accelerations), dt (s between samples), column (a
     /// number from 1, a heading, or "all"). unit overrides a heading. ignore_npts reads all samples, even if the file states
-    /// another number. vertical: the file of the vertical component, read by the same options, vertical_column: its column,
-    /// in `file` without vertical. time_scale and scale multiply. A Python warning names an
+    /// another number. record_v: the file of the vertical component, read by the same options, column_v: its column,
+    /// in `file` without record_v. time_scale and scale multiply. A Python warning names an
     /// assumption about the file, or a likely fault. Raises ValueError with the line and what would help.
     #[staticmethod]
-    #[pyo3(signature = (file, *, vertical=None, unit=None, dt=None, column=None, vertical_column=None, ignore_npts=false, time_scale=1.0, scale=1.0))]
+    #[pyo3(signature = (file, *, record_v=None, unit=None, dt=None, column=None, column_v=None, ignore_npts=false, time_scale=1.0, scale=1.0))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn read(
         py: Python<'_>,
         file: PathBuf,
-        vertical: Option<PathBuf>,
+        record_v: Option<PathBuf>,
         unit: Option<&Bound<'_, PyAny>>,
         dt: Option<&Bound<'_, PyAny>>,
         column: Option<Bound<'_, PyAny>>,
-        vertical_column: Option<Bound<'_, PyAny>>,
+        column_v: Option<Bound<'_, PyAny>>,
         ignore_npts: bool,
         #[pyo3(from_py_with = argument::time_scale)] time_scale: f64,
         #[pyo3(from_py_with = argument::scale)] scale: f64,
@@ -261,9 +285,9 @@ impl Record {
         let unit = unit.map(self::unit).transpose()?;
         let dt = dt.map(|dt| number("dt", dt)).transpose()?;
         let named = |column: Bound<'_, PyAny>| -> PyResult<_> { Ok(Column::from(column.str()?.to_str()?)) };
-        let [column, column_v] = [column, vertical_column].map(|column| column.map(named).transpose());
+        let [column, column_v] = [column, column_v].map(|column| column.map(named).transpose());
         let (column, column_v) = (column?, column_v?);
-        let vertical = vertical.or_else(|| column_v.is_some().then(|| file.clone()));
+        let record_v = record_v.or_else(|| column_v.is_some().then(|| file.clone()));
         let read = |file: PathBuf, column: Option<Column>| -> PyResult<Understood> {
             let how = Reading { unit, dt, column, ignores_count: ignore_npts };
             let understood =
@@ -272,9 +296,9 @@ impl Record {
             Ok(understood)
         };
         let mut understood = read(file, column.clone())?;
-        if let Some(vertical) = vertical {
-            let up = read(vertical, column_v.or(column))?;
-            understood = understood.with_vertical(up, G, "vertical_column").map_err(refused)?;
+        if let Some(record_v) = record_v {
+            let up = read(record_v, column_v.or(column))?;
+            understood = understood.with_vertical(up, G, "column_v").map_err(refused)?;
         }
         let (given, unit) = fixed(understood.in_file_unit, understood.units)?;
         Record::new(given, None, unit, 1.0)?.scaled(scale, time_scale)
@@ -351,7 +375,7 @@ impl Record {
         Record::new(given, self.force.as_ref().map(later), self.unit, self.scale * scale)
     }
 
-    /// Absolute spectral accelerations S_a, m/s2, at `periods` (s), a number or an array (n,), with the damping ratio zeta: an
+    /// Absolute spectral accelerations S_a, m/s2, at `periods` (s), with the damping ratio zeta: a number, or of an array (n,) an
     /// array (n,).
     #[pyo3(signature = (periods, zeta=0.05))]
     fn spectrum<'py>(
@@ -359,25 +383,32 @@ impl Record {
         py: Python<'py>,
         periods: &Bound<'py, PyAny>,
         #[pyo3(from_py_with = argument::zeta)] zeta: f64,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let is_one = number("periods", periods).is_ok();
         let (record, periods) = (Arc::clone(&self.usual), numbers("periods", periods)?);
         let spectrum = interruptible(py, move |abandoned| {
             response_spectrum::spectrum(&record, periods.into_iter().inspect(|_| abandoned.check()), zeta)
         })?;
-        Ok(PyArray1::from_vec(py, spectrum))
+        Ok(if is_one { spectrum[0].into_pyobject(py)?.into_any() } else { PyArray1::from_vec(py, spectrum).into_any() })
     }
 
-    /// Writes the record to `file` as a table that is read without options: time[s], a_g in its unit, all digits; likewise the
-    /// vertical component, if there is one, to the file `vertical`.
-    #[pyo3(signature = (file, *, vertical=None))]
-    fn write(&self, file: PathBuf, vertical: Option<PathBuf>) -> PyResult<()> {
+    /// Draws the accelerations over time with matplotlib, in g, and returns the figure.
+    fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("flexible_rocking._results")?.call_method1("plot_record", (&slf,))
+    }
+
+    /// Writes the record to `file` as a table that is read without options: the title, time[s], a_g in its unit, all digits; likewise the
+    /// vertical component, if there is one, to the file `record_v`. `read` makes it again to the same bits.
+    #[pyo3(signature = (file, *, record_v=None))]
+    fn write(&self, file: PathBuf, record_v: Option<PathBuf>) -> PyResult<()> {
         let write = || -> anyhow::Result<()> {
-            let (paths, tables) = ([Some(&file), vertical.as_ref()].into_iter().flatten(), self.tables()?);
+            let (paths, mut tables) = ([Some(&file), record_v.as_ref()].into_iter().flatten(), self.tables()?);
             ensure!(
                 paths.clone().count() >= tables.len(),
-                "the record has a vertical component: give its file as vertical"
+                "the record has a vertical component: give its file as record_v"
             );
-            ensure!(paths.clone().count() <= tables.len(), "the record has no vertical component: leave vertical out");
+            ensure!(paths.clone().count() <= tables.len(), "the record has no vertical component: leave record_v out");
+            tables[0].insert_str(0, &format!("{TITLE}{}\n", self.title().replace(['\r', '\n'], " ")));
             let mut files = OutputFiles::default();
             let files = paths.map(|path| files.create(path)).collect::<Result<Vec<_>, _>>()?;
             files.into_iter().zip(tables).try_for_each(|(file, table)| file.write(table.as_bytes()))
@@ -396,7 +427,7 @@ impl Record {
 
     pub fn __hash__(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
-        (self.title(), self.usual.times().len(), self.usual.pga().to_bits()).hash(&mut hasher);
+        (self.title(), self.usual.times().len(), (self.given.pga() * self.scale).to_bits()).hash(&mut hasher);
         hasher.finish()
     }
 }

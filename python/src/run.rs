@@ -1,6 +1,6 @@
 //! `simulate` and `Run`: one structure under one ground motion.
 
-use crate::arguments::{argument, conditions, numbers, refused, result};
+use crate::arguments::{argument, conditions, numbers, refused, response, result};
 use crate::interruptible::interruptible;
 use crate::record::{Ground, Record};
 use crate::structure::{self, Structure};
@@ -82,13 +82,14 @@ impl Run {
     /// Every transition in the order of time, each a Transition: a list, with to_pandas().
     #[getter]
     fn transitions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let names: Vec<_> = self.of.components().into_iter().map(|(name, _)| name).collect();
+        let units = self.of.components();
         let transition = |Event { time, kind, states }: &Event| {
-            let [before, after] = states.each_ref().map(|values| names.iter().zip(values).into_py_dict(py));
+            let named = |values| units.iter().map(|(name, _)| name).zip(values).into_py_dict(py);
+            let [before, after] = states.each_ref().map(named);
             result(py, "Transition", (*time, kind.name(), before?, after?))
         };
         let transitions = self.found.events.iter().map(transition).collect::<PyResult<Vec<_>>>()?;
-        result(py, "Transitions", (transitions, &names))
+        result(py, "Transitions", (transitions, units.into_py_dict(py)?))
     }
 
     /// How far the run exceeds the assumptions of the model, exact, each a Worst, within the usual limits. Names:
@@ -172,7 +173,7 @@ impl Run {
     }
 
     /// The response spectrum of the acceleration a_t of a floor (from 1 on; one mass is floor 1) until the run ends or the
-    /// structure falls. Returns a dict of arrays (n,): period (s) and S_a (m/s2), the largest absolute acceleration of an oscillator
+    /// structure falls. Returns a Response, a dict of arrays (n,): period (s) and S_a (m/s2), the largest absolute acceleration of an oscillator
     /// of the damping ratio zeta on the floor. periods: numbers (s), by default 100 from 0.02 to 4 s.
     ///
     /// a_t is sampled at a step that is halved until no S_a changes by more than 0.1 % of itself. Raises ValueError for a floor that
@@ -184,7 +185,7 @@ impl Run {
         #[pyo3(from_py_with = argument::floor)] floor: i64,
         periods: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = argument::zeta)] zeta: f64,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         let floors = slf.get().of.floors(&slf.get().found).len();
         let Some(below) =
             floor.checked_sub(1).and_then(|floor| usize::try_from(floor).ok()).filter(|below| *below < floors)
@@ -197,12 +198,12 @@ impl Run {
             return Err(PyValueError::new_err(format!("floor = {floor} is out of range: the structure has {has}")));
         };
         let periods = periods.map_or_else(|| Ok(usual_periods()), |periods| numbers("periods", periods))?;
-        let period = PyArray1::from_slice(py, &periods);
+        let period = periods.clone();
         let S_a = interruptible(py, move |abandoned| {
             let Run { of, found, .. } = slf.get();
             of.spectrum(found, below, &periods, zeta, abandoned)
         })?;
-        [("period", period), ("S_a", PyArray1::from_vec(py, S_a))].into_py_dict(py)
+        response(py, [("period", "s", period), ("S_a", "m/s2", S_a)])
     }
 
     /// Draws the run with matplotlib and returns the figure. "history": a_g, theta, u and a_t over time, with marks at
@@ -239,12 +240,12 @@ impl Run {
 
     /// Whether both have the same inputs, and therefore the same results.
     fn __eq__(&self, other: &Run) -> bool {
-        let are_same = self.structure.get() == other.structure.get() && self.record.get() == other.record.get();
+        let are_same = self.structure.get() == other.structure.get() && self.of.ground == other.of.ground;
         are_same && self.of.conditions == other.of.conditions
     }
 
     fn __hash__(&self) -> u64 {
-        self.structure.get().__hash__() ^ self.record.get().__hash__()
+        self.structure.get().__hash__() ^ self.of.ground.pga().to_bits()
     }
 
     /// A pickle is the call of `simulate`.

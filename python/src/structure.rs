@@ -1,8 +1,9 @@
 //! `Structure`: parameters and what follows from them, by the names in the library's tables.
 
-use crate::arguments::{numbers, one_of, refused, warn};
+use crate::arguments::{matrix, numbers, one_of, refused, response, warn};
 use crate::interruptible::interruptible;
-use crate::many_masses::{INSTEAD, OF_MANY, frame, given};
+use crate::tables::{dict, keywords, known, rows, with_base};
+use anyhow::Context;
 use numpy::PyArray1;
 use pyo3::exceptions::{PyAttributeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -12,9 +13,13 @@ use rocking::estimates::modal_split::{ModalAccelerations, ModalRotations};
 use rocking::estimates::pushover::{Equilibrium, Pushover};
 use rocking::estimates::restoring::FlagPoint;
 use rocking::structure::derived::{Derived, OF_MODE};
+use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::PRESETS;
-use rocking::{OneMass, Parameters, Side, State};
-use rocking_report::describe;
+use rocking::{OneMass, Side, State};
+use rocking_report::structure_file::{self, OF_MANY, of_table};
+use rocking_report::{describe, input};
+use std::path::PathBuf;
+use toml::Table;
 
 /// A flexible structure on a base that may lift off (Fig 2 of the paper).
 ///
@@ -24,7 +29,7 @@ use rocking_report::describe;
 /// Every number is a keyword and an attribute, in SI units. Parameters, with unit and default:
 ///
 #[doc = rocking::parameters_in_lines!()]
-/// These replace parameters: period_fc (s) for f_fc, weight and weight0 (N) for m and m0, width (m) for B. p_l (rad/s) replaces J0.
+/// These replace parameters: period_fc (s) for f_fc, weight (N) for m, weight0 (N) for m0, width (m) for B. p_l (rad/s) replaces J0.
 /// alpha_cg (rad) replaces H, or B if H is given. units="kN, m, t": masses in t, forces in kN, J0 in t.m2, k in kN/m. With preset,
 /// "mcmanus" or "evison", the specimen of the paper with these numbers in the place of its own.
 ///
@@ -35,9 +40,9 @@ use rocking_report::describe;
 ///
 /// A shear building of many masses. Each storey has the stiffness k (N/m), and the mass m (kg) and height h (m) above the base
 /// of its floor. zeta: one damping ratio, one for each mode, or dict(f=(Hz, Hz), zeta=...) for Rayleigh damping. The numbers of
-/// the base are those above. Without r, momentum gives a coefficient for each impact. keep: how many modes are kept; the rest of
+/// the base are those above, or base=dict(...). Without r, momentum gives a coefficient for each impact. keep: how many modes are kept; the rest of
 /// the mass turns rigidly with the base. p_delta=True subtracts the weight above each storey, over the storey's height, from its k.
-/// See also from_matrices and from_modes. ground=Ground(f_v=40, zeta_v=0.2) puts either on contact points that push and never pull.
+/// storeys may be a DataFrame. See also from_matrices, from_modes and read. ground=Ground(f_v=40, zeta_v=0.2) puts either on contact points that push and never pull.
 ///
 /// A Python warning begins with the name of a number that is usual in another unit: warnings.filterwarnings("ignore", "m_t = ")
 /// silences it. Raises ValueError where a number is unknown, missing, given twice in
@@ -45,8 +50,6 @@ use rocking_report::describe;
 #[pyclass(frozen, eq, module = "flexible_rocking")]
 pub struct Structure {
     pub of: rocking::Structure,
-    /// The keywords that make a structure of many masses.
-    keywords: Option<Py<PyDict>>,
 }
 
 pub fn argument(value: &Bound<'_, PyAny>) -> PyResult<Py<Structure>> {
@@ -60,39 +63,16 @@ impl PartialEq for Structure {
     }
 }
 
-/// The keywords and all that they hold, so that nobody else can change them.
-fn copied<'py>(keywords: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
-    Ok(keywords.py().import("copy")?.call_method1("deepcopy", (keywords,))?.cast_into()?)
-}
-
 impl Structure {
     /// The structure, with a Python warning for each doubtful number.
-    fn of(py: Python<'_>, of: rocking::Structure, keywords: Option<Py<PyDict>>) -> PyResult<Structure> {
+    fn of(py: Python<'_>, of: anyhow::Result<rocking::Structure>) -> PyResult<Structure> {
+        let of = of.map_err(refused)?;
         warn(py, of.doubts(), 1)?;
-        Ok(Structure { of, keywords })
+        Ok(Structure { of })
     }
 
-    fn many(keywords: &Bound<'_, PyDict>) -> PyResult<Structure> {
-        let kept = copied(keywords)?;
-        for (name, _) in keywords.iter().filter(|(_, value)| value.is_none()) {
-            kept.del_item(name)?;
-        }
-        Structure::of(keywords.py(), frame(kept.copy()?)?, Some(kept.unbind()))
-    }
-
-    /// One mass of the parameters `base`, changed by `numbers`; on ground that gives, without the r of `base`.
-    fn over(base: &Parameters, numbers: &Bound<'_, PyDict>) -> PyResult<Structure> {
-        let (on_rigid, py) = (numbers.copy()?, numbers.py());
-        let ground = on_rigid.get_item("ground")?;
-        ground.iter().try_for_each(|_| on_rigid.del_item("ground"))?;
-        let of = given(&on_rigid)?.structure(Some(base)).map_err(refused)?;
-        let Some(ground) = ground.filter(|ground| !ground.is_none()) else { return Structure::of(py, of, None) };
-        let keywords = Structure { of, keywords: None }.parameters(py)?;
-        keywords.set_item("ground", ground)?;
-        if !numbers.contains("r")? {
-            keywords.del_item("r")?;
-        }
-        Structure::many(&keywords)
+    fn of_many(py: Python<'_>, keywords: Table) -> PyResult<Structure> {
+        Structure::of(py, of_table(with_base(keywords), None))
     }
 
     /// The structure of one mass, which `task` needs.
@@ -118,16 +98,45 @@ impl Structure {
     ) -> PyResult<Structure> {
         let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
         let of_many = OF_MANY.iter().find(|name| numbers.contains(name).unwrap_or(false));
-        match preset {
-            None if of_many.is_some() || numbers.contains("ground")? => Structure::many(&numbers),
-            None => Structure::of(py, given(&numbers)?.structure(None).map_err(refused)?, None),
-            Some(_) if let Some(name) = of_many => {
+        let keywords = keywords(&numbers, of_many.is_some())?;
+        match (preset, of_many) {
+            (None, Some(_)) => Structure::of_many(py, keywords),
+            (Some(_), Some(name)) => {
                 let message =
                     format!("preset is a structure of one mass, and {name} makes one of many: leave out one of them");
                 Err(PyValueError::new_err(message))
             }
-            Some(preset) => Structure::over(&one_of("preset", preset, PRESETS)?, &numbers),
+            (preset, None) => {
+                let base = preset.map(|preset| one_of("preset", preset, PRESETS)).transpose()?;
+                Structure::of(py, of_table(keywords, base.as_ref()))
+            }
         }
+    }
+
+    /// Every keyword of both kinds of structures, for those who complete it.
+    #[classattr]
+    fn __signature__(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        let mut names = [vec!["preset".to_owned()], known(false), known(true)].concat();
+        names = (0..names.len()).filter(|i| !names[..*i].contains(&names[*i])).map(|i| names[i].clone()).collect();
+        let named =
+            [("inspect", py.import("inspect")?.into_any()), ("names", names.into_pyobject(py)?)].into_py_dict(py)?;
+        let signature = c"inspect.Signature([inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None) for name in names])";
+        py.eval(signature, Some(&named), None)
+    }
+
+    /// Reads the structure in `file`, the TOML that `rocking-fmu` reads and writes.
+    ///
+    /// Raises FileNotFoundError, and ValueError with the line.
+    #[staticmethod]
+    fn read(py: Python<'_>, file: PathBuf) -> PyResult<Structure> {
+        let read = input::text(&file).and_then(|text| structure_file::read(&text));
+        Structure::of(py, read.with_context(|| input::name(&file)))
+    }
+
+    /// Writes the structure to `file`: TOML, each number with its unit and its range. `read` makes it again to the same bits.
+    fn write(&self, file: PathBuf) -> PyResult<()> {
+        let text = structure_file::write(&self.of).map_err(refused)?;
+        std::fs::write(&file, text).with_context(|| input::name(&file)).map_err(refused)
     }
 
     /// The structure of these masses (kg) at these heights (m) above the base, lowest first. K (N/m) is the stiffness matrix on
@@ -140,11 +149,12 @@ impl Structure {
         K: Bound<'py, PyAny>,
         numbers: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Structure> {
-        let keywords = numbers.map_or_else(|| Ok(PyDict::new(masses.py())), |numbers| numbers.copy())?;
-        for (name, value) in [("masses", &masses), ("heights", &heights), ("K", &K)] {
-            keywords.set_item(name, value)?;
-        }
-        Structure::many(&keywords)
+        let py = masses.py();
+        let floors = rows(&[("m", "masses", Some(masses)), ("h", "heights", Some(heights))], "mass")?;
+        let mut keywords = keywords(&numbers.map_or_else(|| PyDict::new(py), Bound::clone), true)?;
+        let K = toml::Value::try_from(matrix("K", &K)?).map_err(refused)?;
+        keywords.extend([("floors".to_owned(), floors.into()), ("K".to_owned(), K)]);
+        Structure::of_many(py, keywords)
     }
 
     /// The structure of the modes of a fixed base that another program found, lowest first. Arrays with a number for each mode: f
@@ -159,39 +169,66 @@ impl Structure {
                              J_P=None, masses=None, heights=None, shapes=None, **base)"
     )]
     fn from_modes<'py>(mass: Bound<'py, PyAny>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<Structure> {
-        let keywords = numbers.map_or_else(|| Ok(PyDict::new(mass.py())), |numbers| numbers.copy())?;
-        keywords.set_item("mass", mass)?;
-        Structure::many(&keywords)
+        let py = mass.py();
+        let left = numbers.map_or_else(|| Ok(PyDict::new(py)), |numbers| numbers.copy())?;
+        let take = |name: &'static str| {
+            let value = left.get_item(name)?;
+            value.iter().try_for_each(|_| left.del_item(name))?;
+            PyResult::Ok((name, name, value.filter(|value| !value.is_none())))
+        };
+        let columns = [("mass", "mass", Some(mass)), take("f")?, take("period")?, take("height")?, take("moment")?];
+        let mut modes = rows(&columns, "mode")?;
+        let (_, _, shapes) = take("shapes")?;
+        for row in shapes.map_or(Ok(Vec::new()), |shapes| matrix("shapes", &shapes))? {
+            if row.len() != modes.len() {
+                let (columns, needed) = (row.len(), modes.len());
+                let message = format!("shapes has {columns} columns and must have {needed}, one for each mode");
+                return Err(PyValueError::new_err(message));
+            }
+            for (mode, phi) in modes.iter_mut().zip(row) {
+                let shape = mode.entry("shape").or_insert_with(|| Vec::<f64>::new().into());
+                shape.as_array_mut().into_iter().for_each(|shape| shape.push(phi.into()));
+            }
+        }
+        let [(.., masses), (.., heights)] = [take("masses")?, take("heights")?];
+        let floors = rows(&[("m", "masses", masses), ("h", "heights", heights)], "mass")?;
+        let total = rows(&[take("m_s")?, take("S_1")?, take("I_2")?, take("J_P")?], "structure")?;
+        let mut keywords = keywords(&left, true)?;
+        keywords.extend([("modes".to_owned(), modes.into()), ("floors".to_owned(), floors.into())]);
+        keywords.extend(total.into_iter().map(|total| ("total".to_owned(), total.into())));
+        Structure::of_many(py, keywords)
     }
 
-    /// This structure with other numbers in the place of its own, by the same names as in Structure(...). Of many masses None takes
-    /// a number away: without r, momentum gives a coefficient again.
+    /// This structure with other numbers in the place of its own, by the same names as in Structure(...). None takes a number away:
+    /// without r, momentum gives a coefficient; without ground, it is rigid.
     #[pyo3(signature = (**numbers))]
     fn replace<'py>(&self, py: Python<'py>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<Structure> {
         let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
-        if let Some(structure) = self.of.one() {
-            return Structure::over(structure.parameters(), &numbers);
+        let mut own = structure_file::table(&self.of).map_err(refused)?;
+        let new = keywords(&numbers, !self.of.is_one_mass())?;
+        if self.of.is_one_mass() {
+            own.retain(|name, _| name == "ground" && !numbers.contains(name).unwrap_or(false));
+            own.extend(new);
+            let mut base = self.of.parameters();
+            base.r = if numbers.contains("r")? { f64::NAN } else { base.r };
+            return Structure::of(py, of_table(own, Some(&base)));
         }
-        let keywords = self.parameters(py)?;
-        for [one, other] in INSTEAD {
-            for [new, old] in [[one, other], [other, one]] {
-                if numbers.contains(new)? && keywords.contains(old)? {
-                    keywords.del_item(old)?;
-                }
-            }
+        if new.contains_key("units") {
+            return Err(PyValueError::new_err("units: replace takes SI units, in which the other numbers are"));
         }
-        keywords.update(numbers.as_mapping())?;
-        Structure::many(&keywords)
+        own.remove("base").and_then(|base| base.try_into::<Table>().ok()).into_iter().for_each(|base| own.extend(base));
+        for name in numbers.keys().extract::<Vec<String>>()? {
+            let natural = NATURAL.iter().find(|natural| natural.name == name);
+            own.remove(natural.map_or(&*name, |natural| natural.stands_for));
+        }
+        own.extend(new);
+        Structure::of_many(py, own)
     }
 
-    /// The parameters by name, in SI units; of many masses the keywords that make the structure.
+    /// The numbers that make the structure, Structure(**parameters), in SI units: the tables of its file.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        if let Some(keywords) = &self.keywords {
-            return copied(keywords.bind(py));
-        }
-        let [parameters, _] = self.named();
-        parameters.into_py_dict(py)
+        dict(py, &structure_file::table(&self.of).map_err(refused)?)
     }
 
     /// The derived quantities by name: gamma, omega_fc (rad/s), k (N/m), u_cr (m), J_P (kg.m2), p_l (rad/s), alpha_cg (rad),
@@ -226,31 +263,34 @@ impl Structure {
         effective_frequency(&self.one("effective_frequency")?, theta).map_err(refused)
     }
 
-    /// The static pushover of Fig 1 to the right, from rest to overturning (Eqs 5 and 6 without inertia). Returns a dict of
-    /// arrays (2 points,): theta (rad), u, delta_t (m) of the top floor, P (N), M (N.m). `points` of them are in full contact, and
+    /// The static pushover of Fig 1 to the right, from rest to overturning (Eqs 5 and 6 without inertia). Returns a Response, a dict
+    /// of arrays (2 points,): theta (rad), u, delta_t (m) of the top floor, P (N), M (N.m). `points` of them are in full contact, and
     /// as many rock. Floors take parts of P in proportion to mass times height.
     ///
     /// Raises ValueError where the structure is too soft to be held, and for other than 2 to 1,000,000 points.
     #[pyo3(signature = (points=100))]
-    fn pushover<'py>(&self, py: Python<'py>, points: u32) -> PyResult<Bound<'py, PyDict>> {
+    fn pushover<'py>(&self, py: Python<'py>, points: u32) -> PyResult<Bound<'py, PyAny>> {
         let structure = self.of.clone();
         let curve = interruptible(py, move |_| Pushover::new(&structure)?.curve(points))?;
-        let column = |of: fn(&Equilibrium) -> f64| PyArray1::from_iter(py, curve.iter().map(of));
-        let named = PyDict::new(py);
-        named.set_item("theta", column(|at| at.theta))?;
-        named.set_item("u", column(|at| at.u))?;
-        named.set_item("delta_t", column(|at| at.delta_t))?;
-        named.set_item("P", column(|at| at.force))?;
-        named.set_item("M", column(|at| at.moment))?;
-        Ok(named)
+        let column = |name, unit, of: fn(&Equilibrium) -> f64| (name, unit, curve.iter().map(of).collect());
+        response(
+            py,
+            [
+                column("theta", "rad", |at| at.theta),
+                column("u", "m", |at| at.u),
+                column("delta_t", "m", |at| at.delta_t),
+                column("P", "N", |at| at.force),
+                column("M", "N.m", |at| at.moment),
+            ],
+        )
     }
 
     /// The moment that weight, tendon and dissipators turn the base back with, while the base is turned slowly from rest to theta (rad,
-    /// above 0 and below pi/2) and back in 20 steps each. Returns a dict of arrays (41,): theta (rad), moment (N.m).
-    fn restoring<'py>(&self, py: Python<'py>, theta: f64) -> PyResult<Bound<'py, PyDict>> {
+    /// above 0 and below pi/2) and back in 20 steps each. Returns a Response, a dict of arrays (41,): theta (rad), moment (N.m).
+    fn restoring<'py>(&self, py: Python<'py>, theta: f64) -> PyResult<Bound<'py, PyAny>> {
         let points = describe::restoring(&self.of, theta).map_err(refused)?;
-        let column = |of: fn(&FlagPoint) -> f64| PyArray1::from_iter(py, points.iter().map(of));
-        [("theta", column(|at| at.theta)), ("moment", column(|at| at.moment))].into_py_dict(py)
+        let column = |of: fn(&FlagPoint) -> f64| points.iter().map(of).collect();
+        response(py, [("theta", "rad", column(|at| at.theta)), ("moment", "N.m", column(|at| at.moment))])
     }
 
     /// Splits the `response` of Run.at into the rocking and the vibration mode. Returns a dict of arrays (n,): q_r, q_u (rad,
@@ -287,6 +327,12 @@ impl Structure {
     fn __getattr__(&self, name: &str) -> PyResult<f64> {
         let value = self.named().concat().into_iter().find_map(|(known, value)| (known == name).then_some(value));
         value.ok_or_else(|| PyAttributeError::new_err(format!("a Structure has no {name:?}")))
+    }
+
+    fn __setattr__(&self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        Err(PyAttributeError::new_err(format!(
+            "{name} is read-only: use replace({name}={value:?}), which makes another structure"
+        )))
     }
 
     fn __dir__(slf: Bound<'_, Self>) -> PyResult<Vec<String>> {

@@ -183,6 +183,9 @@ impl BadLine {
     }
 }
 
+/// What begins the first line of a table that has a title.
+pub const TITLE: &str = "# title: ";
+
 /// Reads the record in the file at `path` as `how` says, with accelerations in m/s². A record's g means `g` (m/s²).
 pub fn read(path: &Path, how: &Reading, g: f64) -> Result<(Record, Origin), RecordError> {
     let (record, source) = read_raw(path, how)?;
@@ -204,9 +207,13 @@ pub fn from_bytes(path: &Path, bytes: &[u8], how: &Reading) -> Result<(Record, O
         return Err(RecordError::Refused(problem));
     }
     let text = text::decode(bytes).map_err(malformed)?;
-    let (record, source) = parse(&text, how).map_err(malformed)?;
-    match record.title() {
-        "" => Ok((record.titled(path.file_stem().unwrap_or_default().to_string_lossy()), source)),
+    // the line stays, without its words, so that other lines keep their numbers
+    let titled = text.strip_prefix(TITLE).map(|rest| rest.split_at(rest.find(['\r', '\n']).unwrap_or(rest.len())));
+    let (title, rest) = titled.map_or((None, &*text), |(title, rest)| (Some(title), rest));
+    let (record, source) = parse(rest, how).map_err(malformed)?;
+    match (record.title(), title) {
+        (_, Some(title)) => Ok((record.titled(title), source)),
+        ("", None) => Ok((record.titled(path.file_stem().unwrap_or_default().to_string_lossy()), source)),
         _ => Ok((record, source)),
     }
 }

@@ -37,7 +37,7 @@ pub struct LevelAdvice {
     level: &'static str,
     /// Modes that are kept, of a structure of many masses.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub modes: Option<usize>,
+    pub keep: Option<usize>,
     /// Relative errors, in the order of [`Criterion::ALL`].
     #[serde(flatten, serialize_with = "by_criterion")]
     pub errors: [f64; Criterion::ALL.len()],
@@ -72,7 +72,7 @@ fn compare<Q: Runs>(run: &rocking::Run<Q>, (within, criteria): (f64, &[Criterion
     let advised = all.recommended(within, criteria).map(|verdict| verdict.response.choice);
     let level = |level, response: &LevelResult, errors, is_right_about_overturning, is_allowed| LevelAdvice {
         level,
-        modes: response.choice.modes.map(|[kept, _]| kept),
+        keep: response.choice.modes.map(|[kept, _]| kept),
         errors,
         overturned: response.ending.overturned(),
         is_right_about_overturning,

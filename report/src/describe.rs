@@ -94,6 +94,7 @@ pub fn text(structure: &Structure) -> Result<String, fmt::Error> {
     for NamedValue { name, value, unit: of, description, .. } in given(structure) {
         writeln!(out, "  {name:<10} {:>12} {:<6} {description}", short(value), unit(of))?;
     }
+    print_rule_of_impact(&mut out, structure)?;
     writeln!(out, "\nDerived quantities")?;
     for NamedValue { name, value, unit: of, equation, description } in derived {
         writeln!(out, "  {name:<10} {:>12} {:<6} {equation:<13} {description}", significant(value), unit(of))?;
@@ -101,10 +102,15 @@ pub fn text(structure: &Structure) -> Result<String, fmt::Error> {
     Ok(out)
 }
 
-fn print_modes(out: &mut String, frame: &Structure, table: &[Vec<NamedValue>]) -> fmt::Result {
-    if frame.base().r.is_none() && frame.foundation().is_none() {
+fn print_rule_of_impact(out: &mut String, structure: &Structure) -> fmt::Result {
+    if structure.base().r.is_none() && structure.foundation().is_none() {
         writeln!(out, "  r is not given: momentum with the shape frozen gives it for each impact")?;
     }
+    Ok(())
+}
+
+fn print_modes(out: &mut String, frame: &Structure, table: &[Vec<NamedValue>]) -> fmt::Result {
+    print_rule_of_impact(out, frame)?;
     for warning in validity::of_structure(frame, Detail::Auto) {
         writeln!(out, "  {warning}")?;
     }

@@ -1,66 +1,120 @@
 //! The file of a structure, in TOML: read and written.
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use rocking::digits::short;
 use rocking::structure::derived::Derived;
-use rocking::structure::description::{Damping, Described, Description, ManyMasses};
+use rocking::structure::description::{Damping, Described, Description};
 use rocking::structure::natural_quantities::{NATURAL, Natural, Numbers};
 use rocking::structure::parameters::{OF_ONE_MASS, PARAMETERS, Parameters};
 use rocking::{OneMass, Quantity, Structure};
-use serde::Serialize;
+use serde::{Deserialize, Deserializer};
 use std::fmt::Write;
-use toml::{Table, Value};
+use toml::{Deserializer as OfText, Table, Value};
+
+/// What only the file of a structure of many masses has.
+pub const OF_MANY: [&str; 5] = ["base", "storeys", "floors", "K", "modes"];
 
 /// The structure that the TOML `text` describes, of many masses if there are tables of them. An error names the line and the key.
 pub fn read(text: &str) -> anyhow::Result<Structure> {
-    let keys: Table = toml::from_str(text)?;
-    if ["base", "storeys", "floors", "modes"].iter().any(|key| keys.contains_key(*key)) {
-        return Ok(toml::from_str::<Described>(text)?.structure()?);
+    of(is_of_many(&toml::from_str(text)?), OfText::parse(text)?, None)
+}
+
+/// The structure that the tables of a file describe, of one mass in the place of the numbers of `base` if there is one.
+pub fn of_table(table: Table, base: Option<&Parameters>) -> anyhow::Result<Structure> {
+    let structure = of(base.is_none() && is_of_many(&table), table, base);
+    structure.map_err(|error| match error.downcast::<toml::de::Error>() {
+        Ok(error) => anyhow!("{}", error.to_string().trim_end().replace('\n', "; ")),
+        Err(error) => error,
+    })
+}
+
+fn is_of_many(table: &Table) -> bool {
+    OF_MANY.iter().any(|key| table.contains_key(*key))
+}
+
+fn of<'de, D>(is_of_many: bool, file: D, base: Option<&Parameters>) -> anyhow::Result<Structure>
+where
+    D: Deserializer<'de, Error = toml::de::Error>,
+{
+    Ok(if is_of_many {
+        Described::deserialize(file)?.structure()?
+    } else {
+        Numbers::deserialize(file)?.structure(base)?
+    })
+}
+
+/// The names at the top of the file of a structure of many masses, as serde lists them of what has none of them.
+pub fn names_of_many() -> Vec<String> {
+    let nameless = Table::from_iter([(String::new(), Value::Boolean(true))]);
+    let refused = Described::deserialize(nameless).map(drop).map_or_else(|error| error.to_string(), |()| String::new());
+    refused.split('`').skip(1).step_by(2).filter(|name| !name.is_empty()).map(str::to_owned).collect()
+}
+
+/// The tables of the file of `structure`, from which [`of_table`] makes it again to the same bits.
+pub fn table(structure: &Structure) -> anyhow::Result<Table> {
+    let of_body = "the structure was made of a body and modes: make it of numbers that a file has";
+    let Description { parameters, many, ground } = structure.description().context(of_body)?;
+    let numbers = PARAMETERS.iter().map(|of| (of.name, (of.get)(parameters)));
+    let numbers = numbers.filter(|(name, value)| !(value.is_nan() || many.is_some() && OF_ONE_MASS.contains(name)));
+    let numbers = Table::from_iter(numbers.map(|(name, value)| (name.to_owned(), value.into())));
+    let mut table = match many {
+        None => numbers,
+        Some(many) => {
+            let mut table = Table::try_from(many)?;
+            let zeta = match &many.zeta {
+                Damping::All(zeta) => Value::from(*zeta),
+                Damping::Each(zetas) => zetas.clone().into(),
+                Damping::Rayleigh { f, zeta } => {
+                    Table::from_iter([("f".to_owned(), f.to_vec().into()), ("zeta".into(), (*zeta).into())]).into()
+                }
+            };
+            table.insert("zeta".into(), zeta);
+            table.insert("base".into(), numbers.into());
+            table
+        }
+    };
+    let has_content = |value: &Value| *value != Value::Boolean(false) && *value != Value::Array(Vec::new());
+    if let Some(ground) = ground {
+        let mut ground = Table::try_from(ground)?;
+        ground.retain(|_, value| has_content(value));
+        table.insert("ground".into(), ground.into());
     }
-    Ok(toml::from_str::<Numbers>(text)?.structure(None)?)
+    table.retain(|_, value| has_content(value));
+    Ok(table)
 }
 
 /// The file of `structure`, from which [`read`] makes it again to the same bits: each number with its unit and its range, and the numbers
 /// that may take its place.
 pub fn write(structure: &Structure) -> anyhow::Result<String> {
-    let of_body = "the structure was made of a body and modes: make it of numbers that a file has";
-    let Description { parameters, many, ground } = structure.description().context(of_body)?;
+    let mut table = table(structure)?;
+    let is_many = is_of_many(&table);
     let mut out =
         "# A structure, for rocking-fmu ... --parameters FILE.toml. SI units; # begins a comment.\n".to_owned();
-    if let Some(ManyMasses { zeta, p_delta, keep, K, .. }) = many {
-        let zeta = match zeta {
-            Damping::All(zeta) => format!("{zeta:?}"),
-            Damping::Each(zetas) => format!("{zetas:?}"),
-            Damping::Rayleigh { f, zeta } => format!("{{ f = {f:?}, zeta = {zeta:?} }}"),
-        };
-        writeln!(out, "\nzeta = {zeta} # damping ratio in full contact")?;
-        keep.iter().try_for_each(|keep| writeln!(out, "keep = {keep} # modes that are kept"))?;
-        Some("p_delta = true # the weights above soften each storey\n")
-            .filter(|_| *p_delta)
-            .iter()
-            .for_each(|line| out += line);
-        if !K.is_empty() {
-            let rows = K.iter().map(|row| format!("\n    {row:?},")).collect::<String>();
-            writeln!(out, "# stiffness matrix, N/m\nK = [{rows}\n]")?;
-        }
-        out += "\n[base]";
+    let [zeta, keep, p_delta] = ["zeta", "keep", "p_delta"].map(|key| table.remove(key));
+    zeta.iter().try_for_each(|zeta| writeln!(out, "\nzeta = {zeta} # damping ratio in full contact"))?;
+    keep.iter().try_for_each(|keep| writeln!(out, "keep = {keep} # modes that are kept"))?;
+    p_delta.iter().try_for_each(|_| writeln!(out, "p_delta = true # the weights above soften each storey"))?;
+    if let Some(Value::Array(K)) = table.remove("K") {
+        let rows = K.iter().map(|row| format!("\n    {row},")).collect::<String>();
+        writeln!(out, "# stiffness matrix, N/m\nK = [{rows}\n]")?;
+    }
+    out += if is_many {
+        "\n[base]"
     } else {
-        out += "# A line that begins with # may replace the line above it. You may leave out what has a default.\n";
+        "# A line that begins with # may replace the line above it. You may leave out what has a default.\n"
+    };
+    let of = structure.description().map(|of| &of.parameters);
+    of.into_iter().try_for_each(|of| parameters_of(&mut out, of, structure.one(), is_many))?;
+    let is_table = |value: &Value| value.is_table() || value.is_array();
+    table.retain(|key, value| key != "base" && is_table(value));
+    if !is_many && table.is_empty() {
+        out += "\n# Without their #, these lines put the structure on ground that gives (Winkler springs), which needs J0 and no r.\n# [ground]\n\
+                # f_v = 10 # frequency of the bounce on the ground, Hz: or k_v, the vertical stiffness, N/m\n\
+                # zeta_v = 0.2 # damping ratio of the bounce\n# n_points = 2 # contact points from edge to edge\n";
     }
-    parameters_of(&mut out, parameters, structure.one(), many.is_some())?;
-    match ground {
-        Some(ground) => out += &tables("ground", ground)?,
-        None if many.is_none() => {
-            out += "\n# Without their #, these lines put the structure on ground that gives (Winkler springs), which needs J0 and no r.\n# [ground]\n\
-                    # f_v = 10 # frequency of the bounce on the ground, Hz: or k_v, the vertical stiffness, N/m\n\
-                    # zeta_v = 0.2 # damping ratio of the bounce\n# n_points = 2 # contact points from edge to edge\n";
-        }
-        None => (),
-    }
-    if let Some(ManyMasses { storeys, floors, modes, total, .. }) = many {
-        total.iter().try_for_each(|total| anyhow::Ok(out += &tables("total", total)?))?;
-        out += &[tables("storeys", storeys)?, tables("floors", floors)?, tables("modes", modes)?].concat();
-    }
+    table.iter().try_for_each(|(key, value)| {
+        anyhow::Ok(out += &format!("\n{}", toml::to_string(&Table::from_iter([(key.clone(), value.clone())]))?))
+    })?;
     Ok(out)
 }
 
@@ -97,15 +151,6 @@ fn shortest(value: f64) -> f64 {
     format!("{value:.*e}", f64::DIGITS as usize - 1).parse().expect("a number in Rust's own notation")
 }
 
-/// The TOML of the table, or of the tables, called `name`, without empty lists.
-fn tables(name: &str, of: impl Serialize) -> anyhow::Result<String> {
-    let mut value = Value::try_from(of)?;
-    let has_content = |value: &Value| value.as_array().is_none_or(|list| !list.is_empty());
-    value.as_table_mut().into_iter().for_each(|table| table.retain(|_, value| has_content(value)));
-    let named = Table::from_iter([(name.to_owned(), value)]);
-    Ok(if has_content(&named[name]) { format!("\n{}", toml::to_string(&named)?) } else { String::new() })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -137,6 +182,7 @@ mod tests {
         for file in files {
             let structure = read(&file).unwrap_or_else(|error| panic!("{error:#}\n{file}"));
             let written = write(&structure).unwrap();
+            assert!(of_table(table(&structure).unwrap(), None).unwrap() == structure, "{file}");
             let again = read(&written).unwrap_or_else(|error| panic!("{error:#}\n{written}"));
             assert!(again == structure && write(&again).unwrap() == written, "{file}\n{written}");
         }

@@ -150,12 +150,11 @@ impl Description {
     /// The structure of these numbers.
     pub fn structure(&self) -> Result<Structure, Refused> {
         let Some(many) = &self.many else {
-            let needs_no_r =
-                self.parameters.r.is_nan() && self.ground.as_ref().is_some_and(|ground| !ground.is_rigid());
-            let r = if needs_no_r { 1.0 } else { self.parameters.r };
+            let by_momentum = self.parameters.r.is_nan();
+            let r = if by_momentum { 1.0 } else { self.parameters.r };
             let one = Structure::new(Parameters { r, ..self.parameters })?;
             let body = Body { r: None, ..*one.body() };
-            let one = if needs_no_r { Structure::of_body(body, one.modes(), one.floors())? } else { one };
+            let one = if by_momentum { Structure::of_body(body, one.modes(), one.floors())? } else { one };
             return one.described_as(self).on(&self.ground);
         };
         let ManyMasses { zeta, storeys, p_delta, floors, K, modes, total, keep } = many;

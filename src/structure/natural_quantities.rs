@@ -169,20 +169,14 @@ impl Numbers {
         Numbers { units, ground, ..self }
     }
 
-    /// The structure of one mass of these [`Numbers::parameters`], or of `base` changed by these numbers. Messages name the numbers as
-    /// they were given.
+    /// The structure of one mass of these numbers, or of `base` changed by them. Without r, and on ground that gives without an r of these
+    /// numbers, momentum gives a coefficient for each impact. Messages name the numbers as they were given.
     pub fn structure(&self, base: Option<&Parameters>) -> Result<Structure, Refused> {
         let gives = self.ground.as_ref().is_some_and(|ground| !ground.is_rigid());
-        let needs_no_r = gives && base.is_none() && self.get("r").is_none();
-        let solved = match base {
-            Some(base) => self.over(base),
-            None => self.solve(
-                &str::to_owned,
-                &Parameters { r: if needs_no_r { 1.0 } else { f64::NAN }, ..Parameters::DEFAULTS },
-            ),
-        };
+        let r = self.get("r").or(base.filter(|_| !gives).map(|base| base.r)).unwrap_or(f64::NAN);
+        let solved = self.over(&Parameters { r: 1.0, ..*base.unwrap_or(&Parameters::DEFAULTS) });
         let structure = solved.and_then(|parameters| {
-            let parameters = Parameters { r: if needs_no_r { f64::NAN } else { parameters.r }, ..parameters };
+            let parameters = Parameters { r, ..parameters };
             Description { parameters, many: None, ground: self.ground.clone() }.structure()
         });
         Ok(structure.map_err(|error| error.in_units(self.units))?.measured_in(self.units))

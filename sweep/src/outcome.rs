@@ -79,9 +79,10 @@ impl MeasurePlaces {
 }
 
 /// Usual units of limits: name, unit of the measure, and how many of that one it is; g is the structure's own.
-const USUAL_UNITS: [(&str, &str, Option<f64>); 9] = [
+const USUAL_UNITS: [(&str, &str, Option<f64>); 10] = [
     ("deg", "rad", Some(PI / 180.0)),
     ("mrad", "rad", Some(1e-3)),
+    ("%", "rad", Some(1e-2)),
     ("cm", "m", Some(1e-2)),
     ("mm", "m", Some(1e-3)),
     ("g", "m/s2", None),

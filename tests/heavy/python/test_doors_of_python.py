@@ -70,7 +70,7 @@ class Doors:
         record = write(folder / "ground.csv", unit, time, peak * np.sin(9 * time))
         up = write(folder / "up.csv", "cm/s2", 0.7 * time, 300 * np.cos(20 * time)) if case == "vertical" else None
         scales = dict(scale=1.1)
-        self.ground = fr.Record.read(record, vertical=up, **scales)
+        self.ground = fr.Record.read(record, record_v=up, **scales)
         push = (0.0497 * np.arange(41), 3 * (storeys[-1][0] if storeys else base["m"]) * np.sin(np.arange(41) * np.pi / 8))
         force = write(folder / "force.csv", "", *push, heading="time[s],F_t[N]") if case == "pushed" else None
         self.ground = self.ground.with_force(*push) if force else self.ground
@@ -129,7 +129,7 @@ def pushed(door):
 
 def advised(door):
     rows = [row for row in door.told("advise", *door.motion, *options(duration=2.5, **door.scene.initial))["rows"] if row["level"] not in ("reference", "auto without a_v")]
-    return [(row["level"], row.get("modes"), float(row["error_theta"]), float(row["error_a_t"]), row["steps"]) for row in rows]
+    return [(row["level"], row.get("keep"), float(row["error_theta"]), float(row["error_a_t"]), row["steps"]) for row in rows]
 
 
 def beside(door):
@@ -145,7 +145,7 @@ CAPABILITIES = {
                  lambda door: found_in(door.run)),
     "response": (response, lambda door: {name: of.tolist() for name, of in door.run.at(WHEN).items()}),
     "floor spectrum": (spectra, lambda door: [door.run.spectrum(i + 1)["S_a"].tolist() for i in range(len(door.run.profile["h"]))]),
-    "advise": (advised, lambda door: [(of["level"], of.get("modes"), of["theta"], of["a_t"], of["steps"])
+    "advise": (advised, lambda door: [(of["level"], of.get("keep"), of["theta"], of["a_t"], of["steps"])
                                       for of in fr.advise(door.structure, door.ground, duration=2.5, **door.scene.initial).levels]),
     "estimate": (lambda door: {of["name"]: of["value"] for of in door.told("estimate", *door.motion)["rows"] if "f_r" not in of["name"]},
                  lambda door: dict(fr.estimate(door.structure, door.ground))),

@@ -6,6 +6,7 @@ import math
 import pickle
 import re
 import subprocess
+import tomllib
 
 import flexible_rocking as fr
 import numpy as np
@@ -24,11 +25,12 @@ def of_storeys(**changes):
     return fr.Structure(**{"storeys": STOREYS, "zeta": 0.02, **BASE, **changes})
 
 
-def of_modes(kept=3, **changes):
-    gamma, kappa = FRAME.m @ FRAME.phi, FRAME.m * FRAME.h @ FRAME.phi
-    modes = {"period": 2 * math.pi / FRAME.omega, "mass": gamma**2, "moment": gamma * kappa, "shapes": (5 * FRAME.phi).T}
-    modes = {name: np.asarray(values)[:kept].T for name, values in modes.items()}
-    return fr.Structure.from_modes(**{**modes, "masses": FRAME.m, "heights": FRAME.h, "zeta": 0.02, **BASE, **changes})
+GAMMA, KAPPA = FRAME.m @ FRAME.phi, FRAME.m * FRAME.h @ FRAME.phi
+MODES = {"period": 2 * math.pi / FRAME.omega, "mass": GAMMA**2, "moment": GAMMA * KAPPA, "shapes": 5 * FRAME.phi}
+
+
+def of_modes(**changes):
+    return fr.Structure.from_modes(**{**MODES, "masses": FRAME.m, "heights": FRAME.h, "zeta": 0.02, **BASE, **changes})
 
 
 @pytest.mark.parametrize("name", FRAMES)
@@ -78,11 +80,11 @@ def test_three_ways_and_a_file_are_one_structure(exporter, tmp_path):
         soft = storeys.replace(ground=fr.Ground(f_v=12))
     assert soft.derived == on_ground and {"k_v", "f_g", "y_s"} <= {*on_ground}
     large = {**BASE, "m0": FRAME.m0 / 1e3, "J0": FRAME.J0 / 1e3, "units": "kN, m, t"}
-    tonnes, modes = FRAME.m / 1e3, of_modes().parameters
-    modes |= {name: modes[name] / 1e3 for name in ("mass", "moment", "masses")}
+    tonnes = FRAME.m / 1e3
+    modes = {"masses": tonnes, **{name: MODES[name] / 1e3 for name in ("mass", "moment")}}
     for of, same in ((fr.Structure(storeys=[of | {"m": of["m"] / 1e3, "k": of["k"] / 1e3} for of in STOREYS], zeta=0.02, **large), storeys),
                      (fr.Structure.from_matrices(tonnes, FRAME.heights, FRAME.K / 1e3, zeta=[0.02] * 3, **large), matrices),
-                     (fr.Structure.from_modes(**modes | large), of_modes()),
+                     (of_modes(**modes | large), of_modes()),
                      (fr.Structure(preset="mcmanus", m=0.2, P_0=3, k_t=5, units="kN, m, t"), fr.Structure(preset="mcmanus", m=200, P_0=3e3, k_t=5e3))):
         assert of.derived == pytest.approx(same.derived, rel=1e-15, abs=0)
 
@@ -95,13 +97,41 @@ def test_an_fmu_is_the_one_of_the_command_line(exporter, tmp_path):
         assert (tmp_path / "a.fmu").read_bytes() == (tmp_path / "b.fmu").read_bytes()
 
 
+@pytest.mark.parametrize("structure", [
+    lambda: of_storeys(p_delta=True, keep=2), lambda: of_modes(r=None), lambda: of_storeys(zeta={"f": (2, 9), "zeta": 0.05}, ground=fr.Ground(f_v=12), r=None),
+    lambda: fr.Structure.from_matrices(FRAME.m, FRAME.h, FRAME.K, zeta=[0.02] * 3, **BASE), lambda: fr.Structure(preset="mcmanus", P_0=500),
+    lambda: fr.Structure(preset="mcmanus", ground=fr.Ground(f_v=12)), lambda: of_pier(r=None), lambda: fr.Structure(storeys=pd.DataFrame(STOREYS), zeta=0.02, **BASE),
+])
+def test_a_file_and_a_pickle_are_the_same_structure(structure, exporter, tmp_path):
+    structure, file = structure(), tmp_path / "file.toml"
+    structure.write(file)
+    assert fr.Structure.read(file) == structure == pickle.loads(pickle.dumps(structure)) == eval(repr(structure), vars(fr))
+    assert fr.Structure(**tomllib.loads(file.read_text())) == structure == structure.replace(g=9.81)
+    assert subprocess.check_output([exporter, "describe", "--parameters", file], text=True) == str(structure)
+
+
+def of_pier(**changes):
+    return fr.Structure(**{"m": 4e5, "m0": 1e5, "H": 9, "B": 1.5, "J0": 1e5, "f_fc": 2.5, "zeta_fc": 0.03, **changes})
+
+
+def test_one_mass_without_r_is_a_storey_without_r():
+    pier = of_pier()
+    storey = fr.Structure(storeys=[{"m": 4e5, "h": 9, "k": 4e5 * (2 * math.pi * 2.5) ** 2}], zeta=0.03, m0=1e5, J0=1e5, B=1.5)
+    one, other = (fr.simulate(of, wavelet()) for of in (pier, storey))
+    assert len(one.transitions) > 5 and "a_t" in one.peaks and "r is not given: momentum" in str(pier)
+    for name in ("theta", "uplift", "u", "a_t"):
+        assert one.peaks[name] == pytest.approx(other.peaks[name if name in other.peaks else f"{name}[1]"], rel=1e-9)
+    with pytest.raises(ValueError, match="estimate needs a number r, because Eqs 10 to 24 have one"):
+        fr.estimate(pier)
+
+
 def test_a_structure_of_many_masses_is_a_value():
     structure = of_modes()
     assert pickle.loads(pickle.dumps(structure)) == copy.copy(structure) == structure != of_storeys()
     assert hash(of_storeys()) == hash(of_storeys())
     wide = of_storeys().replace(B=2.0)
     assert wide.B == 2 and wide == of_storeys(B=2.0)
-    by_width = fr.Structure(**{name: value for name, value in wide.parameters.items() if name != "B"}, width=4)
+    by_width = of_storeys(B=None, width=4)
     assert by_width.replace(B=1.5) == of_storeys(B=1.5) == wide.replace(width=3)
     pier = fr.Structure(preset="mcmanus", J0=10).replace(ground=fr.Ground(f_v=40))
     assert pickle.loads(pickle.dumps(pier)) == pier == fr.Structure(preset="mcmanus", J0=10, ground={"f_v": 40}) and "r" not in pier.parameters
@@ -113,13 +143,13 @@ def test_a_structure_of_many_masses_is_a_value():
 
 
 @pytest.mark.parametrize("refused, text", [
-    (lambda: of_storeys(storeys=[{"m": 1, "h": 2}]), "storey 1 = {'m': 1, 'h': 2}: dict(m=..., h=..., k=...) is needed"),
-    (lambda: of_storeys(storeys=[{"m": 1, "h": 2, "k": "stiff"}]), "storey 1: k = 'stiff': it is no number"),
-    (lambda: of_storeys(zeta={"f": [1], "zeta": 1}), "dict(f=(Hz, Hz), zeta=...) is needed"),
+    (lambda: of_storeys(storeys=[{"m": 1, "h": 2}]), "missing field `k`; in `storeys`"),
+    (lambda: of_storeys(storeys=[{"m": 1, "h": 2, "k": "stiff"}]), "storeys[1].k = 'stiff': it is no number"),
+    (lambda: of_storeys(zeta={"f": [1], "zeta": 1}), "{f = [Hz, Hz], zeta = number} for Rayleigh damping"),
     (lambda: of_modes(f=[1, 2, 3]), "mode 1 needs f (Hz) or period (s), and not both"),
-    (lambda: of_modes(zeta=None), "zeta (damping ratio in full contact) is missing"),
+    (lambda: of_modes(zeta=None), "missing field `zeta`"),
     (lambda: of_modes(masses=FRAME.m[:2]), "heights has 3 numbers and must have 2, one for each mass"),
-    (lambda: of_modes(m_s=110e3), "S_1 (kg.m) is missing"),
+    (lambda: of_modes(m_s=110e3), "missing field `S_1`; in `total`"),
     (lambda: of_modes(shapes=FRAME.phi[:, :2]), "shapes has 2 columns and must have 3, one for each mode"),
     (lambda: fr.Structure.from_matrices([1], [1], [1, 2], zeta=0), "K has the shape [2]: two dimensions are needed"),
     (lambda: of_storeys(kep=2), "did you mean keep?"),
@@ -132,7 +162,9 @@ def test_a_structure_of_many_masses_is_a_value():
     (lambda: of_modes(p_delta=True), "p_delta = true needs storeys"),
     (lambda: of_storeys(keep=2.5), "keep = 2.5: a whole number is needed"),
     (lambda: of_storeys(preset="mcmanus"), "preset is a structure of one mass, and storeys makes one of many"),
-    (lambda: of_storeys(storeys=pd.DataFrame(STOREYS)), 'storeys=table.to_dict("records")'),
+    (lambda: of_storeys(storeys=3), "expected a sequence; in `storeys`"),
+    (lambda: of_storeys().replace(m0=20, units="kN, m, t"), "units: replace takes SI units"),
+    (lambda: fr.Structure(preset="mcmanus", ground=40), "ground = 40: flexible_rocking.Ground(f_v=...) is needed"),
     (lambda: of_storeys().effective_frequency(0.1), "effective_frequency needs a structure of one mass, because Eqs 10 to 24 have one mode"),
     (lambda: fr.Structure(preset="mcmanus").mode_table, "mode_table needs a structure of many masses"),
     (lambda: fr.simulate(of_storeys(), wavelet()).spectrum(4), "floor = 4 is out of range: the structure has floors 1 to 3"),
@@ -221,8 +253,8 @@ def test_pictures_of_a_building_show_its_top_and_its_height(run, monkeypatch):
 
 def test_the_command_line_shows_a_building_as_the_module_does(run, exporter, tmp_path):
     (tmp_path / "building.toml").write_text(toml(TALL))
-    run.record.write(tmp_path / "record.csv", vertical=tmp_path / "v.csv")
-    record = fr.Record.read(tmp_path / "record.csv", vertical=tmp_path / "v.csv")
+    run.record.write(tmp_path / "record.csv", record_v=tmp_path / "v.csv")
+    record = fr.Record.read(tmp_path / "record.csv", record_v=tmp_path / "v.csv")
     run = fr.simulate(run.structure, record)
     simulate = [exporter, "simulate", "--parameters", "building.toml", "--record", "record.csv", "--record-v", "v.csv"]
 

@@ -71,8 +71,13 @@ def test_the_stub_has_the_names_and_defaults_of_the_module():
     with pytest.raises(ValueError) as refused:
         fr.simulate(fr.Structure(preset="evison"), duration=1, none=1)
     assert [*typed["_InitialValues"], "detail", "tolerance", "duration"] == known(refused)
+    units = {of.target.id: unit.value.value for each in stub if isinstance(each, ast.ClassDef) for of, unit in zip(each.body, each.body[1:])
+             if isinstance(of, ast.AnnAssign) and isinstance(unit, ast.Expr) and isinstance(unit.value, ast.Constant)}
     for names, documented in (("_Numbers", fr.Structure), ("_InitialValues", fr.simulate)):
         assert all(re.search(rf"\b{name}\b", documented.__doc__) for name in typed[names])
+        assert all(re.search(rf"\b{name} \({re.escape(units[name])}[,)]", documented.__doc__) for name in typed[names] if units.get(name, "1") != "1"), names
+    assert {*typed["_Numbers"], "preset", "storeys", "modes", "K"} < {*inspect.signature(fr.Structure).parameters}
+    assert not {"Iterable", "Path", "PathLike", "distribution"} & {*dir(fr)}
     defaults = {of.name: dict(zip((each.arg for each in of.args.kwonlyargs), of.args.kw_defaults)) for of in stub if isinstance(of, ast.FunctionDef)}
     for function in (fr.simulate, fr.advise, fr.estimate, fr.pulse):
         for name, shown in inspect.signature(function).parameters.items():
@@ -212,21 +217,23 @@ def test_a_unit_of_g_is_that_of_the_structure(said, tmp_path, unit, per_g):
     assert {of["name"]: of["peak"] for of in printed["peaks"]} == run.peaks
 
 
-def test_both_components_are_written(tmp_path):
-    both = fr.Record(0.01, [0, 2, 0], [1, 0, 3], unit="g", title="both")
-    with pytest.raises(ValueError, match="the record has a vertical component: give its file as vertical"):
+def test_a_record_that_is_written_is_the_same_again(tmp_path, ground):
+    both = fr.Record(0.01, [0, 2, 0], [1, 0, 3], unit="g", title="acceleration in m/s2 of both")
+    with pytest.raises(ValueError, match="the record has a vertical component: give its file as record_v"):
         both.write(tmp_path / "h.csv")
-    both.write(tmp_path / "h.csv", vertical=tmp_path / "v.csv")
-    read = fr.Record.read(tmp_path / "h.csv", vertical=tmp_path / "v.csv")
-    assert np.array_equal(read.a_g, both.a_g) and np.array_equal(read.a_v, both.a_v)
-    with pytest.raises(ValueError, match="the record has no vertical component: leave vertical out"):
-        fr.Record(0.01, [0, 2, 0]).write(tmp_path / "h.csv", vertical=tmp_path / "v.csv")
+    both.write(tmp_path / "h.csv", record_v=tmp_path / "v.csv")
+    read = fr.Record.read(tmp_path / "h.csv", record_v=tmp_path / "v.csv")
+    assert read == both and np.array_equal(read.a_g, both.a_g) and np.array_equal(read.a_v, both.a_v)
+    ground.write(tmp_path / "ground.csv")
+    assert fr.Record.read(tmp_path / "ground.csv") == ground and hash(fr.Record.read(tmp_path / "ground.csv")) == hash(ground)
+    with pytest.raises(ValueError, match="the record has no vertical component: leave record_v out"):
+        fr.Record(0.01, [0, 2, 0]).write(tmp_path / "h.csv", record_v=tmp_path / "v.csv")
     file = tmp_path / "array.csv"
     file.write_text("t (s),north (g),up (g)\n0,0,1\n.01,2,0\n.02,0,3\n")
-    assert np.array_equal(fr.Record.read(file, column=2, vertical=file, vertical_column="up").a_v, both.a_v)
-    assert np.array_equal(fr.Record.read(file, column=2, vertical_column="up").a_v, both.a_v)
-    for same in ({"vertical": file}, {"vertical_column": 2}):
-        with pytest.raises(ValueError, match='"array" has the samples of the horizontal one: use another file for it, or another column, vertical_column'):
+    assert np.array_equal(fr.Record.read(file, column=2, record_v=file, column_v="up").a_v, both.a_v)
+    assert np.array_equal(fr.Record.read(file, column=2, column_v="up").a_v, both.a_v)
+    for same in ({"record_v": file}, {"column_v": 2}):
+        with pytest.raises(ValueError, match='"array" has the samples of the horizontal one: use another file for it, or another column, column_v'):
             fr.Record.read(file, column=2, **same)
 
 
@@ -295,14 +302,32 @@ def test_a_peak_is_a_float(run):
     assert json.dumps(peak) == str(peak.value) and np.sqrt([peak]).dtype == float and str(peak).endswith(" s")
 
 
-def test_what_is_asked_for_in_another_form_is_taken_or_refused_by_name(run, ground):
+def test_a_table_has_its_units(run, monkeypatch):
+    some, curve = run.transitions[:2], {"theta": "rad", "u": "m", "delta_t": "m", "P": "N", "M": "N.m"}
+    assert len(some) == 2 and some.to_pandas().attrs["units"]["u_dot_before"] == "m/s"
+    for table, units in ((run.structure.pushover(3), curve), (run.spectrum(1, [0.1]), {"period": "s", "S_a": "m/s2"}), (run.at(1.0), run.at(1.0).units)):
+        assert table.to_pandas().attrs["units"] == units
+    assert run.record.spectrum(1.1) == run.record.spectrum([1.1])[0]
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    assert run.record.plot().axes[0].get_ylabel() == "acceleration (g)"
+
+
+def test_what_is_asked_for_in_another_form_is_taken_or_refused_by_name(run, ground, tmp_path):
     pier = run.structure
     assert fr.advise(pier, ground, of="theta").detail == fr.advise(pier, ground, of=["theta"]).detail
     assert run.at(1.0)["theta"].tolist() == run.at([1.0])["theta"].tolist()
-    for wrong in (lambda: fr.simulate(pier, "a.AT2"), lambda: fr.advise(pier, "a.AT2"), lambda: fr.sweep(pier, "a.AT2"),
-                  lambda: fr.sweep(pier, ["a.AT2"]), lambda: fr.estimate(pier, "a.AT2")):
-        with pytest.raises(TypeError, match="record = 'a.AT2' is no Record: Record.read"):
-            wrong()
+    for ask in (fr.simulate, fr.advise, fr.sweep, fr.estimate, lambda pier, path: fr.sweep(pier, [path]), lambda pier, path: fr.sweep(pier, {"a": path}),
+                lambda _, path: fr.Record.read(path), lambda pier, path: fr.export(tmp_path / "a.fmu", pier, record=path), lambda _, path: fr.Structure.read(path)):
+        with pytest.raises(FileNotFoundError, match="none.AT2"):
+            ask(pier, "none.AT2")
+    for ask in (fr.simulate, lambda pier, record: fr.export(tmp_path / "a.fmu", pier, record=record), lambda pier, record: fr.sweep(pier, [record])):
+        with pytest.raises(TypeError, match="record = 3 is no Record and no path of a file"):
+            ask(pier, 3)
+    assert fr.simulate(pier, RECORD) == fr.simulate(pier, fr.Record.read(RECORD)) != fr.simulate(pier, ground)
+    series = pd.Series(ground.a_g, index=ground.time, name=ground.title)
+    assert fr.Record(series) == fr.Record(ground.time, ground.a_g, title=ground.title)
+    with pytest.raises(AttributeError, match=re.escape("H is read-only: use replace(H=3)")):
+        pier.H = 3
     with pytest.raises(TypeError, match="structure = .* is no Structure"):
         fr.simulate(ground, pier)
     assert hash(ground) == hash(copy.copy(ground)) and len({ground, ground.scaled(2)}) == 2
@@ -447,6 +472,8 @@ def test_curves_by_a_column_are_those_of_its_rows(two_populations):
     curves = fr.fragility(two_populations, limit, by="structures")
     medians = {name: fr.fragility(rows, limit).median for name, rows in two_populations.groupby("structures", sort=False)}
     assert {name: curve.median for name, curve in curves.items()} == medians
+    alone = two_populations[two_populations["structures"] == "mcmanus"]
+    assert fr.fragility(alone, "theta >= 0.5 %").median == fr.fragility(alone, "theta >= 0.005").median
     low = two_populations["PGV[m/s]"] < two_populations["PGV[m/s]"].min() * 1.01
     for refused, options in [("structures = 'mcmanus': never exceeded: raise", {"table": two_populations[low], "by": "structures"}),
                              ("by = 'period' is no column of the table: give one of run, ", {"table": two_populations, "by": "period"}),
@@ -547,7 +574,7 @@ def test_the_sweep_on_dask_comes_to_the_same(tmp_path):
 def test_formats_read_back(tmp_path):
     pulses = {f"{f} Hz": fr.pulse("sine", amplitude=0.3 + 0.1 * f, frequency=f) for f in (1.0, 1.5, 2.0, 3.0)}
     runs = fr.sweep(fr.Structure(preset="mcmanus"), pulses, scale=np.linspace(0.2, 3, 15), intensity="S_a(0.2 s)")
-    runs["SA(0.20)"] = runs["record"].map({name: of.spectrum(0.2)[0] / 9.81 for name, of in pulses.items()}) * runs["scale"]
+    runs["SA(0.20)"] = runs["record"].map({name: of.spectrum(0.2) / 9.81 for name, of in pulses.items()}) * runs["scale"]
     assert runs["S_a(0.2 s)[g]"].tolist() == pytest.approx(runs["SA(0.20)"].tolist())
     over = lambda measure: {name: fr.fragility(runs, limit, intensity=measure)
                             for name, limit in (("slight", "theta/alpha_cg >= 0.3"), ("fallen", "overturned"))}
