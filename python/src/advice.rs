@@ -2,8 +2,8 @@
 
 use crate::arguments::{argument, conditions, one_of, refused, result};
 use crate::interruptible::interruptible;
-use crate::record::Ground;
-use crate::structure::Structure;
+use crate::record::RecordArgument;
+use crate::structure::PyStructure;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict, PyString};
@@ -36,8 +36,8 @@ fn criteria(value: &Bound<'_, PyAny>) -> PyResult<Vec<Criterion>> {
 #[pyo3(signature = (structure, record, *, within=0.05, of=None, duration=None, **initial))]
 pub fn advise<'py>(
     py: Python<'py>,
-    structure: &Structure,
-    record: Ground,
+    structure: &PyStructure,
+    record: RecordArgument,
     #[pyo3(from_py_with = argument::within)] within: f64,
     of: Option<&Bound<'_, PyAny>>,
     duration: Option<&Bound<'_, PyAny>>,
@@ -88,13 +88,13 @@ pub fn advise<'py>(
 #[pyo3(text_signature = "(structure, record=None, *, amplification=2.0)")]
 pub fn estimate<'py>(
     py: Python<'py>,
-    structure: &Structure,
-    record: Option<Ground>,
+    structure: &PyStructure,
+    record: Option<RecordArgument>,
     #[pyo3(from_py_with = argument::amplification)] amplification: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
     let structure = structure.one("estimate")?;
     let g = structure.parameters().g;
-    let record = record.map(|Ground(record)| record.get().under(g));
+    let record = record.map(|RecordArgument(record)| record.get().under(g));
     let estimated = interruptible(py, move |_| estimates::Estimate::new(&structure, record.as_deref(), amplification))?;
     let values = estimated.terms.iter().map(|line| (&line.name, line.value)).into_py_dict(py)?;
     result(py, "Estimate", (values, columns(&estimated.terms, g)))

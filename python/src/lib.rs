@@ -29,13 +29,13 @@ mod _native {
     #[pymodule_export]
     use super::export;
     #[pymodule_export]
-    use super::record::{Record, pulse};
+    use super::record::{PyRecord, pulse};
     #[pymodule_export]
-    use super::run::{Run, simulate};
+    use super::run::{PyRun, simulate};
     #[pymodule_export]
-    use super::structure::Structure;
+    use super::structure::PyStructure;
     #[pymodule_export]
-    use super::sweep::{Curve, columns_of, exceeds, fragility, heading_of, overturning_map, sweep};
+    use super::sweep::{PyCurve, columns_of, exceeds, fragility, heading_of, overturning_map, sweep};
     #[pymodule_export]
     use super::tables::check_ground;
 
@@ -46,7 +46,7 @@ mod _native {
 
 /// A ground motion to pack: a record, under its title, or a file.
 enum ToPack {
-    Record(Py<record::Record>),
+    Record(Py<record::PyRecord>),
     File(PathBuf),
 }
 
@@ -54,7 +54,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for ToPack {
     type Error = PyErr;
 
     fn extract(value: Borrowed<'a, 'py, PyAny>) -> PyResult<ToPack> {
-        match value.cast::<record::Record>() {
+        match value.cast::<record::PyRecord>() {
             Ok(of) => Ok(ToPack::Record(of.to_owned().unbind())),
             Err(_) => value.extract().map(ToPack::File).map_err(|_| record::no_record(&value)),
         }
@@ -67,7 +67,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for ToPack {
 fn export(
     py: Python<'_>,
     target: PathBuf,
-    structure: &structure::Structure,
+    structure: &structure::PyStructure,
     records: Vec<ToPack>,
     name: String,
     fmi: &Bound<'_, PyAny>,

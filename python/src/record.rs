@@ -2,7 +2,7 @@
 
 use crate::arguments::{argument, number, numbers, one_of, refused, warn};
 use crate::interruptible::interruptible;
-use crate::structure::Structure;
+use crate::structure::PyStructure;
 use anyhow::ensure;
 use numpy::PyArray1;
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use rocking::Parameters;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::estimates::response_spectrum;
-use rocking::run::record::{Record as Samples, SamplesError};
+use rocking::run::record::{Record, SamplesError};
 use rocking_records::{Column, Reading, TITLE, Unit, csv_in, doubt_of_peak, doubts, each_in_m_s2};
 use rocking_report::output_files::OutputFiles;
 use rocking_report::record::{Understood, understand};
@@ -36,10 +36,10 @@ pub const G: f64 = Parameters::EVISON.g;
 /// g of the structure that the record shakes. The attributes of the record are in m/s2, with 9.81 m/s2 for g. time_scale
 /// multiplies the times and scale the accelerations. Tables call the record by its title. The samples are copied. A Python
 /// warning names a likely fault. Raises ValueError for other shapes, NaN and infinity, and times that do not increase.
-#[pyclass(frozen, eq, module = "flexible_rocking")]
-pub struct Record {
+#[pyclass(frozen, eq, name = "Record", module = "flexible_rocking")]
+pub struct PyRecord {
     /// Without the force.
-    given: Samples,
+    given: Record,
     /// Times (s) and sizes (N) of the force on the top floor.
     force: Option<[Vec<f64>; 2]>,
     /// Of what was given: m/s², or a unit of g.
@@ -47,7 +47,7 @@ pub struct Record {
     /// Multiplies the accelerations once they are in m/s².
     pub scale: f64,
     /// In m/s², under [`G`].
-    usual: Arc<Samples>,
+    usual: Arc<Record>,
 }
 
 fn unit(value: &Bound<'_, PyAny>) -> PyResult<Unit> {
@@ -55,7 +55,7 @@ fn unit(value: &Bound<'_, PyAny>) -> PyResult<Unit> {
 }
 
 /// The `samples` in m/s², or as they are if the g of a structure decides how large the `units` of their components are.
-fn fixed(samples: Samples, units: [Unit; 2]) -> PyResult<(Samples, Unit)> {
+fn fixed(samples: Record, units: [Unit; 2]) -> PyResult<(Record, Unit)> {
     let [unit, vertical] = units;
     let is_of_g = |unit| matches!(unit, Unit::G | Unit::MilliG | Unit::PercentG);
     if is_of_g(unit) && unit == vertical {
@@ -69,7 +69,7 @@ fn fixed(samples: Samples, units: [Unit; 2]) -> PyResult<(Samples, Unit)> {
 }
 
 /// What is `given` in this `unit`, in m/s² under `g` (m/s²), with the `force`.
-fn unscaled(given: &Samples, force: Option<&[Vec<f64>; 2]>, unit: Unit, g: f64) -> Result<Samples, SamplesError> {
+fn unscaled(given: &Record, force: Option<&[Vec<f64>; 2]>, unit: Unit, g: f64) -> Result<Record, SamplesError> {
     let ground = given.clone().multiplied(unit.in_m_s2(g));
     match force {
         Some([times, F_t]) => ground.with_force(times, F_t),
@@ -78,25 +78,25 @@ fn unscaled(given: &Samples, force: Option<&[Vec<f64>; 2]>, unit: Unit, g: f64) 
 }
 
 /// Two records are equal if their files are.
-impl PartialEq for Record {
-    fn eq(&self, other: &Record) -> bool {
+impl PartialEq for PyRecord {
+    fn eq(&self, other: &PyRecord) -> bool {
         self.unit == other.unit && self.force == other.force && self.multiplied() == other.multiplied()
     }
 }
 
-impl Record {
-    fn new(given: Samples, force: Option<[Vec<f64>; 2]>, unit: Unit, scale: f64) -> PyResult<Record> {
+impl PyRecord {
+    fn new(given: Record, force: Option<[Vec<f64>; 2]>, unit: Unit, scale: f64) -> PyResult<PyRecord> {
         let usual = Arc::new(unscaled(&given, force.as_ref(), unit, G).map_err(refused)?.multiplied(scale));
-        Ok(Record { given, force: force.filter(|_| usual.force().is_some()), unit, scale, usual })
+        Ok(PyRecord { given, force: force.filter(|_| usual.force().is_some()), unit, scale, usual })
     }
 
     /// Of `samples` in m/s².
-    pub fn in_si(samples: Samples) -> PyResult<Record> {
-        Record::new(samples, None, Unit::MetrePerSecondSquared, 1.0)
+    pub fn in_si(samples: Record) -> PyResult<PyRecord> {
+        PyRecord::new(samples, None, Unit::MetrePerSecondSquared, 1.0)
     }
 
     /// The record in m/s² as it shakes a structure under `g` (m/s²).
-    pub fn under(&self, g: f64) -> Arc<Samples> {
+    pub fn under(&self, g: f64) -> Arc<Record> {
         if g == G || !self.is_in_g() {
             return Arc::clone(&self.usual);
         }
@@ -104,12 +104,12 @@ impl Record {
     }
 
     /// The record in m/s² under `g` (m/s²) with its force, before `scale` multiplies the accelerations.
-    pub fn unscaled(&self, g: f64) -> Result<Samples, SamplesError> {
+    pub fn unscaled(&self, g: f64) -> Result<Record, SamplesError> {
         unscaled(&self.given, self.force.as_ref(), self.unit, g)
     }
 
     /// The accelerations in its unit, as a file has them.
-    fn multiplied(&self) -> Samples {
+    fn multiplied(&self) -> Record {
         self.given.clone().multiplied(self.scale)
     }
 
@@ -166,27 +166,27 @@ fn ids(traces: &Bound<'_, PyAny>) -> PyResult<String> {
 }
 
 /// A Record that is asked for, as `record`, or the path of its file.
-pub struct Ground(pub Py<Record>);
+pub struct RecordArgument(pub Py<PyRecord>);
 
 pub fn no_record(value: &Bound<'_, PyAny>) -> PyErr {
     let needed = "is no Record and no path of a file: Record(time, a_g) makes one";
     PyTypeError::new_err(format!("record = {value:?} {needed}"))
 }
 
-impl<'a, 'py> FromPyObject<'a, 'py> for Ground {
+impl<'a, 'py> FromPyObject<'a, 'py> for RecordArgument {
     type Error = PyErr;
 
-    fn extract(value: Borrowed<'a, 'py, PyAny>) -> PyResult<Ground> {
-        if let Ok(of) = value.cast::<Record>() {
-            return Ok(Ground(of.to_owned().unbind()));
+    fn extract(value: Borrowed<'a, 'py, PyAny>) -> PyResult<RecordArgument> {
+        if let Ok(of) = value.cast::<PyRecord>() {
+            return Ok(RecordArgument(of.to_owned().unbind()));
         }
         let (py, path) = (value.py(), value.extract().map_err(|_| no_record(&value))?);
-        Ok(Ground(Py::new(py, Record::read(py, path, None, None, None, None, None, false, 1.0, 1.0)?)?))
+        Ok(RecordArgument(Py::new(py, PyRecord::read(py, path, None, None, None, None, None, false, 1.0, 1.0)?)?))
     }
 }
 
 #[pymethods]
-impl Record {
+impl PyRecord {
     /// The layouts of files that read() reads.
     #[classattr]
     const LAYOUTS: &str = rocking_records::LAYOUTS;
@@ -203,7 +203,7 @@ impl Record {
         #[pyo3(from_py_with = argument::time_scale)] time_scale: f64,
         #[pyo3(from_py_with = argument::scale)] scale: f64,
         title: Option<&str>,
-    ) -> PyResult<Record> {
+    ) -> PyResult<PyRecord> {
         let unit = unit.map(self::unit).transpose()?;
         let (time, a_g, unit, name) = match a_g {
             Some(a_g) => (time.clone(), a_g.clone(), unit.unwrap_or(Unit::MetrePerSecondSquared), "record".into()),
@@ -216,7 +216,7 @@ impl Record {
         };
         let title = title.unwrap_or(&name);
         let a_v = a_v.map(|a_v| (time.clone(), a_v.clone()));
-        let record = Record::_of(&time, &a_g, a_v, unit, scale, title, None)?.scaled(1.0, time_scale)?;
+        let record = PyRecord::_of(&time, &a_g, a_v, unit, scale, title, None)?.scaled(1.0, time_scale)?;
         warn(py, doubts(&record.usual, G).into_iter().map(|doubt| format!("{title}: {doubt}")), 1)?;
         Ok(record)
     }
@@ -231,7 +231,7 @@ impl Record {
         scale: f64,
         title: &str,
         force: Option<[Vec<f64>; 2]>,
-    ) -> PyResult<Record> {
+    ) -> PyResult<PyRecord> {
         let component = |time: &Bound<'_, PyAny>, name, samples: &Bound<'_, PyAny>| {
             let samples = numbers(name, samples)?;
             let times: Vec<f64> = match number("dt", time) {
@@ -242,14 +242,14 @@ impl Record {
                 }
                 Err(_) => numbers("time", time)?,
             };
-            Samples::from_samples(title, times, samples).map_err(refused)
+            Record::from_samples(title, times, samples).map_err(refused)
         };
         let mut samples = component(time, "a_g", a_g)?;
         if let Some((time, a_v)) = a_v {
             samples = samples.with_vertical(&component(&time, "a_v", &a_v)?).map_err(refused)?;
         }
         let (given, unit) = fixed(samples, [unit; 2])?;
-        Record::new(given, force, unit, 1.0)?.scaled(scale, 1.0)
+        PyRecord::new(given, force, unit, 1.0)?.scaled(scale, 1.0)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, RecordParts<'py>)> {
@@ -281,7 +281,7 @@ impl Record {
         ignore_npts: bool,
         #[pyo3(from_py_with = argument::time_scale)] time_scale: f64,
         #[pyo3(from_py_with = argument::scale)] scale: f64,
-    ) -> PyResult<Record> {
+    ) -> PyResult<PyRecord> {
         let unit = unit.map(self::unit).transpose()?;
         let dt = dt.map(|dt| number("dt", dt)).transpose()?;
         let named = |column: Bound<'_, PyAny>| -> PyResult<_> { Ok(Column::from(column.str()?.to_str()?)) };
@@ -301,7 +301,7 @@ impl Record {
             understood = understood.with_vertical(up, G, "column_v").map_err(refused)?;
         }
         let (given, unit) = fixed(understood.in_file_unit, understood.units)?;
-        Record::new(given, None, unit, 1.0)?.scaled(scale, time_scale)
+        PyRecord::new(given, None, unit, 1.0)?.scaled(scale, time_scale)
     }
 
     /// Times of the samples, s: an array (n,), a copy.
@@ -357,9 +357,9 @@ impl Record {
     ///
     /// The samples are then at the times of both. A sweep and `scaled` multiply accelerations, not the force. Raises ValueError for other
     /// shapes, NaN and infinity, times that do not increase, and another start. A structure without floors cannot be pushed.
-    fn with_force(&self, time: &Bound<'_, PyAny>, F_t: &Bound<'_, PyAny>) -> PyResult<Record> {
+    fn with_force(&self, time: &Bound<'_, PyAny>, F_t: &Bound<'_, PyAny>) -> PyResult<PyRecord> {
         let force = [numbers("time", time)?, numbers("F_t", F_t)?];
-        Record::new(self.given.clone(), Some(force), self.unit, self.scale)
+        PyRecord::new(self.given.clone(), Some(force), self.unit, self.scale)
     }
 
     /// This ground motion with its times multiplied by time_scale, its accelerations by scale.
@@ -368,11 +368,11 @@ impl Record {
         &self,
         #[pyo3(from_py_with = argument::scale)] scale: f64,
         #[pyo3(from_py_with = argument::time_scale)] time_scale: f64,
-    ) -> PyResult<Record> {
-        Samples::clone(&self.usual).scaled(time_scale, scale).map_err(refused)?;
+    ) -> PyResult<PyRecord> {
+        Record::clone(&self.usual).scaled(time_scale, scale).map_err(refused)?;
         let given = self.given.clone().scaled(time_scale, 1.0).map_err(refused)?;
         let later = |[times, F_t]: &[Vec<f64>; 2]| [times.iter().map(|time| time * time_scale).collect(), F_t.clone()];
-        Record::new(given, self.force.as_ref().map(later), self.unit, self.scale * scale)
+        PyRecord::new(given, self.force.as_ref().map(later), self.unit, self.scale * scale)
     }
 
     /// Absolute spectral accelerations S_a, m/s2, at `periods` (s), with the damping ratio zeta: a number, or of an array (n,) an
@@ -457,9 +457,9 @@ pub fn pulse(
     cycles: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = argument::phase)] phase: f64,
     #[pyo3(from_py_with = argument::error)] error: f64,
-    structure: Option<&Structure>,
+    structure: Option<&PyStructure>,
     #[pyo3(from_py_with = argument::g)] g: f64,
-) -> PyResult<Record> {
+) -> PyResult<PyRecord> {
     let shape = one_of("shape", shape, Shape::ALL.map(|of| (of.name(), of)))?;
     let (of_amplitude, of_frequency) = match structure {
         Some(structure) => units_of(structure.of.base()),
@@ -471,5 +471,5 @@ pub fn pulse(
     let record = pulse.record().map_err(refused)?;
     let g = structure.map_or(g, |structure| structure.of.base().g);
     warn(py, doubt_of_peak(&record, g).map(|doubt| format!("{}: {doubt}", record.title())), 1)?;
-    Record::in_si(record)
+    PyRecord::in_si(record)
 }

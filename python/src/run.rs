@@ -2,8 +2,8 @@
 
 use crate::arguments::{argument, conditions, numbers, refused, response, result};
 use crate::interruptible::interruptible;
-use crate::record::{Ground, Record};
-use crate::structure::{self, Structure};
+use crate::record::{PyRecord, RecordArgument};
+use crate::structure::{self, PyStructure};
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -13,7 +13,7 @@ use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::validity::Limits;
 use rocking::{Detail, Phase};
 use rocking_report::quantities::PrintedNumber;
-use rocking_report::run::{Event, NamedPeak, OF_FLOOR, RunReport, RunSetup as Followed, SampledMotion, usual_periods};
+use rocking_report::run::{Event, NamedPeak, OF_FLOOR, RunReport, RunSetup, SampledMotion, usual_periods};
 use rocking_report::validity::{Beyond, rows};
 use rocking_sweep::plan::Conditions;
 
@@ -22,15 +22,15 @@ use rocking_sweep::plan::Conditions;
 /// print(run) shows all of it; in a notebook a run is its animated view. A run stores its inputs and results, but not the
 /// motion. `at`, `plot`, `page` and `validity` compute the motion again, to the same bits, in about a millisecond. A pickle
 /// has the structure and the record, and runs again. Two runs with the same inputs are equal.
-#[pyclass(frozen, module = "flexible_rocking")]
-pub struct Run {
+#[pyclass(frozen, name = "Run", module = "flexible_rocking")]
+pub struct PyRun {
     /// The structure.
     #[pyo3(get)]
-    structure: Py<Structure>,
+    structure: Py<PyStructure>,
     /// The ground motion; of free vibration, ground at rest.
     #[pyo3(get)]
-    record: Py<Record>,
-    of: Followed,
+    record: Py<PyRecord>,
+    of: RunSetup,
     found: RunReport,
     /// The level of detail.
     #[pyo3(get)]
@@ -59,7 +59,7 @@ pub struct Run {
 }
 
 #[pymethods]
-impl Run {
+impl PyRun {
     /// The relative tolerance.
     #[getter]
     fn tolerance(&self) -> f64 {
@@ -96,7 +96,7 @@ impl Run {
     /// tension_max, R_v_min, mu_required, mu_impact, tension_impact, energy_gain_max, weight_min.
     #[getter]
     fn validity(slf: Py<Self>, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
-        Run::validity_within(slf, py, None, None, None, None)
+        PyRun::validity_within(slf, py, None, None, None, None)
     }
 
     /// The same as `validity` within limits of your own, each at least 0, or None for the usual one. friction: coefficient.
@@ -200,7 +200,7 @@ impl Run {
         let periods = periods.map_or_else(|| Ok(usual_periods()), |periods| numbers("periods", periods))?;
         let period = periods.clone();
         let S_a = interruptible(py, move |abandoned| {
-            let Run { of, found, .. } = slf.get();
+            let PyRun { of, found, .. } = slf.get();
             of.spectrum(found, below, &periods, zeta, abandoned)
         })?;
         response(py, [("period", "s", period), ("S_a", "m/s2", S_a)])
@@ -220,7 +220,7 @@ impl Run {
     }
 
     fn _repr_html_(slf: Py<Self>, py: Python<'_>) -> PyResult<String> {
-        let page = Run::page(slf, py)?.replace('&', "&amp;").replace('"', "&quot;");
+        let page = PyRun::page(slf, py)?.replace('&', "&amp;").replace('"', "&quot;");
         Ok(format!("<iframe srcdoc=\"{page}\" style=\"width: 100%; height: 640px; border: 0\"></iframe>"))
     }
 
@@ -231,7 +231,7 @@ impl Run {
 
     fn __str__(slf: Py<Self>, py: Python<'_>) -> PyResult<String> {
         interruptible(py, move |abandoned| -> anyhow::Result<_> {
-            let (Run { of, found, .. }, limits) = (slf.get(), Limits::default());
+            let (PyRun { of, found, .. }, limits) = (slf.get(), Limits::default());
             let mut found = found.clone();
             found.findings = Some(of.validity(limits, abandoned)?);
             Ok(format!("{}\n{}", of.ground.title(), of.text(&found, &limits)?))
@@ -239,7 +239,7 @@ impl Run {
     }
 
     /// Whether both have the same inputs, and therefore the same results.
-    fn __eq__(&self, other: &Run) -> bool {
+    fn __eq__(&self, other: &PyRun) -> bool {
         let are_same = self.structure.get() == other.structure.get() && self.of.ground == other.of.ground;
         are_same && self.of.conditions == other.of.conditions
     }
@@ -282,26 +282,26 @@ impl Run {
 #[pyo3(text_signature = "(structure, record=None, *, duration=None, detail='auto', tolerance=1e-09, **initial)")]
 pub fn simulate(
     py: Python<'_>,
-    #[pyo3(from_py_with = structure::argument)] structure: Py<Structure>,
-    record: Option<Ground>,
+    #[pyo3(from_py_with = structure::argument)] structure: Py<PyStructure>,
+    record: Option<RecordArgument>,
     duration: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = argument::detail)] detail: Detail,
     #[pyo3(from_py_with = argument::tolerance)] tolerance: f64,
     initial: Option<&Bound<'_, PyDict>>,
-) -> PyResult<Run> {
+) -> PyResult<PyRun> {
     let conditions = conditions(detail, tolerance, duration, initial)?;
     conditions.check(&structure.get().of).map_err(refused)?;
     let record = match (record, conditions.duration) {
-        (Some(Ground(record)), _) => record,
-        (None, Some(duration)) => Py::new(py, Record::in_si(rocking::run::record::Record::at_rest(duration))?)?,
+        (Some(RecordArgument(record)), _) => record,
+        (None, Some(duration)) => Py::new(py, PyRecord::in_si(rocking::run::record::Record::at_rest(duration))?)?,
         (None, None) => {
             return Err(PyValueError::new_err("record and duration are missing: free vibration needs a duration"));
         }
     };
     let ground = record.get().under(structure.get().of.base().g);
-    let of = Followed { structure: structure.get().of.clone(), ground, conditions };
+    let of = RunSetup { structure: structure.get().of.clone(), ground, conditions };
     let (of, found) = interruptible(py, move |abandoned| of.found(None, abandoned).map(|found| (of, found)))?;
     let (&RunReport { overturned, start, end, fall, work, .. }, ending) = (&found, found.ending.to_string());
     let (detail, Work { steps, evaluations }) = (detail.name(), work);
-    Ok(Run { structure, record, of, found, detail, overturned, ending, start, end, fall, steps, evaluations })
+    Ok(PyRun { structure, record, of, found, detail, overturned, ending, start, end, fall, steps, evaluations })
 }

@@ -47,32 +47,32 @@ use toml::Table;
 /// A Python warning begins with the name of a number that is usual in another unit: warnings.filterwarnings("ignore", "m_t = ")
 /// silences it. Raises ValueError where a number is unknown, missing, given twice in
 /// different ways or out of its range.
-#[pyclass(frozen, eq, module = "flexible_rocking")]
-pub struct Structure {
+#[pyclass(frozen, eq, name = "Structure", module = "flexible_rocking")]
+pub struct PyStructure {
     pub of: rocking::Structure,
 }
 
-pub fn argument(value: &Bound<'_, PyAny>) -> PyResult<Py<Structure>> {
+pub fn argument(value: &Bound<'_, PyAny>) -> PyResult<Py<PyStructure>> {
     let needed = || PyTypeError::new_err(format!("structure = {value:?} is no Structure: Structure(m=...) makes one"));
-    Ok(value.cast::<Structure>().map_err(|_| needed())?.clone().unbind())
+    Ok(value.cast::<PyStructure>().map_err(|_| needed())?.clone().unbind())
 }
 
-impl PartialEq for Structure {
-    fn eq(&self, other: &Structure) -> bool {
+impl PartialEq for PyStructure {
+    fn eq(&self, other: &PyStructure) -> bool {
         self.of == other.of
     }
 }
 
-impl Structure {
+impl PyStructure {
     /// The structure, with a Python warning for each doubtful number.
-    fn of(py: Python<'_>, of: anyhow::Result<rocking::Structure>) -> PyResult<Structure> {
+    fn of(py: Python<'_>, of: anyhow::Result<rocking::Structure>) -> PyResult<PyStructure> {
         let of = of.map_err(refused)?;
         warn(py, of.doubts(), 1)?;
-        Ok(Structure { of })
+        Ok(PyStructure { of })
     }
 
-    fn of_many(py: Python<'_>, keywords: Table) -> PyResult<Structure> {
-        Structure::of(py, of_table(with_base(keywords), None))
+    fn of_many(py: Python<'_>, keywords: Table) -> PyResult<PyStructure> {
+        PyStructure::of(py, of_table(with_base(keywords), None))
     }
 
     /// The structure of one mass, which `task` needs.
@@ -88,19 +88,19 @@ impl Structure {
 }
 
 #[pymethods]
-impl Structure {
+impl PyStructure {
     #[new]
     #[pyo3(signature = (*, preset=None, **numbers))]
     fn new<'py>(
         py: Python<'py>,
         preset: Option<&Bound<'py, PyAny>>,
         numbers: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Structure> {
+    ) -> PyResult<PyStructure> {
         let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
         let of_many = OF_MANY.iter().find(|name| numbers.contains(name).unwrap_or(false));
         let keywords = keywords(&numbers, of_many.is_some())?;
         match (preset, of_many) {
-            (None, Some(_)) => Structure::of_many(py, keywords),
+            (None, Some(_)) => PyStructure::of_many(py, keywords),
             (Some(_), Some(name)) => {
                 let message =
                     format!("preset is a structure of one mass, and {name} makes one of many: leave out one of them");
@@ -108,7 +108,7 @@ impl Structure {
             }
             (preset, None) => {
                 let base = preset.map(|preset| one_of("preset", preset, PRESETS)).transpose()?;
-                Structure::of(py, of_table(keywords, base.as_ref()))
+                PyStructure::of(py, of_table(keywords, base.as_ref()))
             }
         }
     }
@@ -128,9 +128,9 @@ impl Structure {
     ///
     /// Raises FileNotFoundError, and ValueError with the line.
     #[staticmethod]
-    fn read(py: Python<'_>, file: PathBuf) -> PyResult<Structure> {
+    fn read(py: Python<'_>, file: PathBuf) -> PyResult<PyStructure> {
         let read = input::text(&file).and_then(|text| structure_file::read(&text));
-        Structure::of(py, read.with_context(|| input::name(&file)))
+        PyStructure::of(py, read.with_context(|| input::name(&file)))
     }
 
     /// Writes the structure to `file`: TOML, each number with its unit and its range. `read` makes it again to the same bits.
@@ -148,13 +148,13 @@ impl Structure {
         heights: Bound<'py, PyAny>,
         K: Bound<'py, PyAny>,
         numbers: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Structure> {
+    ) -> PyResult<PyStructure> {
         let py = masses.py();
         let floors = rows(&[("m", "masses", Some(masses)), ("h", "heights", Some(heights))], "mass")?;
         let mut keywords = keywords(&numbers.map_or_else(|| PyDict::new(py), Bound::clone), true)?;
         let K = toml::Value::try_from(matrix("K", &K)?).map_err(refused)?;
         keywords.extend([("floors".to_owned(), floors.into()), ("K".to_owned(), K)]);
-        Structure::of_many(py, keywords)
+        PyStructure::of_many(py, keywords)
     }
 
     /// The structure of the modes of a fixed base that another program found, lowest first. Arrays with a number for each mode: f
@@ -168,7 +168,7 @@ impl Structure {
         text_signature = "(*, mass, zeta, f=None, period=None, height=None, moment=None, m_s=None, S_1=None, I_2=None, \
                              J_P=None, masses=None, heights=None, shapes=None, **base)"
     )]
-    fn from_modes<'py>(mass: Bound<'py, PyAny>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<Structure> {
+    fn from_modes<'py>(mass: Bound<'py, PyAny>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<PyStructure> {
         let py = mass.py();
         let left = numbers.map_or_else(|| Ok(PyDict::new(py)), |numbers| numbers.copy())?;
         let take = |name: &'static str| {
@@ -196,13 +196,13 @@ impl Structure {
         let mut keywords = keywords(&left, true)?;
         keywords.extend([("modes".to_owned(), modes.into()), ("floors".to_owned(), floors.into())]);
         keywords.extend(total.into_iter().map(|total| ("total".to_owned(), total.into())));
-        Structure::of_many(py, keywords)
+        PyStructure::of_many(py, keywords)
     }
 
     /// This structure with other numbers in the place of its own, by the same names as in Structure(...). None takes a number away:
     /// without r, momentum gives a coefficient; without ground, it is rigid.
     #[pyo3(signature = (**numbers))]
-    fn replace<'py>(&self, py: Python<'py>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<Structure> {
+    fn replace<'py>(&self, py: Python<'py>, numbers: Option<&Bound<'py, PyDict>>) -> PyResult<PyStructure> {
         let numbers = numbers.map_or_else(|| PyDict::new(py), Bound::clone);
         let mut own = structure_file::table(&self.of).map_err(refused)?;
         let new = keywords(&numbers, !self.of.is_one_mass())?;
@@ -211,7 +211,7 @@ impl Structure {
             own.extend(new);
             let mut base = self.of.parameters();
             base.r = if numbers.contains("r")? { f64::NAN } else { base.r };
-            return Structure::of(py, of_table(own, Some(&base)));
+            return PyStructure::of(py, of_table(own, Some(&base)));
         }
         if new.contains_key("units") {
             return Err(PyValueError::new_err("units: replace takes SI units, in which the other numbers are"));
@@ -222,7 +222,7 @@ impl Structure {
             own.remove(natural.map_or(&*name, |natural| natural.stands_for));
         }
         own.extend(new);
-        Structure::of_many(py, own)
+        PyStructure::of_many(py, own)
     }
 
     /// The numbers that make the structure, Structure(**parameters), in SI units: the tables of its file.

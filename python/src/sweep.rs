@@ -2,8 +2,8 @@
 
 use crate::arguments::{argument, conditions, numbers, one_of, refused};
 use crate::interruptible::{FAULT, MOMENT, interruptible};
-use crate::record::{G, Ground};
-use crate::structure::Structure;
+use crate::record::{G, RecordArgument};
+use crate::structure::PyStructure;
 use FlexibleRocking::BUILD;
 use anyhow::ensure;
 use numpy::{PyArray1, PyArray2};
@@ -42,8 +42,8 @@ type Columns<'py> = (Bound<'py, PyList>, Vec<(String, Bound<'py, PyAny>)>, Optio
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn sweep<'py>(
     py: Python<'py>,
-    structures: Vec<(String, Vec<Py<Structure>>)>,
-    records: Vec<(String, Ground)>,
+    structures: Vec<(String, Vec<Py<PyStructure>>)>,
+    records: Vec<(String, RecordArgument)>,
     scale: &Bound<'_, PyAny>,
     intensity: &str,
     path: Option<PathBuf>,
@@ -57,14 +57,14 @@ pub fn sweep<'py>(
 ) -> PyResult<Columns<'py>> {
     let scales = numbers("scale", scale)?;
     let intensity = measure(intensity).map_err(refused)?;
-    let population = |(name, of): &(String, Vec<Py<Structure>>)| {
+    let population = |(name, of): &(String, Vec<Py<PyStructure>>)| {
         Population::of(name, of.iter().map(|structure| structure.get().of.clone()).collect()).map_err(refused)
     };
     let populations = structures.iter().map(population).collect::<PyResult<_>>()?;
     let mut gs = structures.iter().flat_map(|(_, of)| of).map(|structure| structure.get().of.base().g);
     let g = gs.next().unwrap_or(G);
     let other = gs.find(|other| *other != g);
-    let motion = |(name, Ground(record)): &(String, Ground)| {
+    let motion = |(name, RecordArgument(record)): &(String, RecordArgument)| {
         let record = record.get();
         if let (true, Some(other)) = (record.is_in_g(), other) {
             let needed = "a sweep has one g, in which its records are given";
@@ -126,7 +126,7 @@ pub fn sweep<'py>(
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn overturning_map(
     py: Python<'_>,
-    structure: &Structure,
+    structure: &PyStructure,
     shape: &Bound<'_, PyAny>,
     frequency: &Bound<'_, PyAny>,
     amplitude: &Bound<'_, PyAny>,
@@ -193,16 +193,16 @@ pub fn heading_of(intensity: &str) -> PyResult<String> {
 type Sure = ([[f64; 2]; 2], f64);
 
 /// A lognormal fragility curve, and how sure it is.
-#[pyclass(frozen, module = "flexible_rocking")]
-pub struct Curve(FragilityCurve);
+#[pyclass(frozen, name = "Curve", module = "flexible_rocking")]
+pub struct PyCurve(FragilityCurve);
 
 #[pymethods]
-impl Curve {
+impl PyCurve {
     #[new]
     #[pyo3(signature = (median, dispersion, known=None))]
-    fn new(median: f64, dispersion: f64, known: Option<Sure>) -> Curve {
+    fn new(median: f64, dispersion: f64, known: Option<Sure>) -> PyCurve {
         let certainty = |(covariance, half_width): Sure| Certainty { covariance: covariance.into(), half_width };
-        Curve(FragilityCurve { median, dispersion, certainty: known.map(certainty) })
+        PyCurve(FragilityCurve { median, dispersion, certainty: known.map(certainty) })
     }
 
     fn __getnewargs__(&self) -> (f64, f64, Option<Sure>) {
@@ -287,12 +287,12 @@ pub fn fragility(
     groups: Vec<usize>,
     intensities: Vec<f64>,
     exceeds: Vec<Option<bool>>,
-) -> PyResult<(Curve, Vec<BinRow>)> {
+) -> PyResult<(PyCurve, Vec<BinRow>)> {
     let runs = groups.into_iter().zip(intensities).zip(exceeds);
     let runs: Vec<_> = runs.map(|((group, at), exceeds)| (group, at, exceeds)).collect();
     let (curve, bins) = py.detach(|| exceedances::of_runs(runs)).map_err(refused)?;
     let counts = |(of, tally): (Bin, Tally)| (of.lowest, of.mean, of.highest, of.runs, tally.known, tally.exceedances);
-    Ok((Curve(curve), bins.into_iter().map(counts).collect()))
+    Ok((PyCurve(curve), bins.into_iter().map(counts).collect()))
 }
 
 /// The columns of a sweep's table whose largest value `limit` compares; none if the limit is overturning.
