@@ -6,6 +6,7 @@ use anyhow::{Context, bail};
 use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource};
 use rocking::digits::short;
 use rocking::structure::derived::Derived;
+use rocking::structure::description::Description;
 use rocking::structure::doubts::{all_doubted, doubted};
 use rocking::structure::ground;
 use rocking::structure::natural_quantities::{NATURAL, Numbers, names};
@@ -58,11 +59,14 @@ impl StructureArgs {
             (Some(path), _) => {
                 let read = || structure_file::read(&input::text(path)?);
                 let structure = read().with_context(|| format!("parameters in {}", input::name(path)))?;
-                match structure.one() {
-                    Some(one) => numbers.structure(Some(one.parameters()))?.measured_in(structure.units()),
-                    None if numbers.is_empty() => structure,
-                    None => bail!(
-                        "{} replaces a number of one mass, and {} describes many masses or ground that gives: change it in the file",
+                match structure.description() {
+                    Some(Description { parameters, many: None, ground }) => {
+                        let changed = numbers.clone().on(ground.clone()).structure(Some(parameters))?;
+                        changed.measured_in(structure.units())
+                    }
+                    _ if numbers.is_empty() => structure,
+                    _ => bail!(
+                        "{} replaces a number of one mass, and {} describes many masses: change it in the file",
                         numbers.names().map(on_command_line).collect::<Vec<_>>().join(", "),
                         input::name(path)
                     ),

@@ -182,9 +182,9 @@ impl Numbers {
         Ok(structure.map_err(|error| error.in_units(self.units))?.measured_in(self.units))
     }
 
-    /// These numbers on `ground` that gives.
-    pub fn on(self, ground: Ground) -> Numbers {
-        Numbers { ground: Some(ground), ..self }
+    /// These numbers on `ground` that gives, or on rigid ground.
+    pub fn on(self, ground: impl Into<Option<Ground>>) -> Numbers {
+        Numbers { ground: ground.into(), ..self }
     }
 
     /// The parameters that these numbers determine on rigid ground, with default values for the rest. If some are missing, each number to

@@ -168,7 +168,7 @@
     small.textContent = unitOf(unit);
     range.addEventListener("input", () => {
       const value = scale(limits).value(Number(range.value));
-      number.value = String(["seed", "modes", "n_points"].includes(name) ? Math.round(value) : Number(value.toPrecision(3)));
+      number.value = String(["seed", "keep", "n_points"].includes(name) ? Math.round(value) : Number(value.toPrecision(3)));
       given(number.value);
     });
     number.addEventListener("input", () => {
@@ -208,8 +208,8 @@
     row("structure", { ...of, slider }, (value) => give(of.name, value));
   }
   for (const of of tables.numbers) {
-    const parent = { tolerance: "computed", zeta: "frame", modes: "frame" }[of.name] ?? "motion";
-    const slider = () => (of.name === "modes" ? [1, Math.max(2, storeys().length)] : of.slider);
+    const parent = { tolerance: "computed", zeta: "frame", keep: "frame" }[of.name] ?? "motion";
+    const slider = () => (of.name === "keep" ? [1, Math.max(2, storeys().length)] : of.slider);
     row(parent, { ...of, slider }, (value) => give(of.name, value));
   }
 
@@ -231,7 +231,7 @@
 
   /** Takes another ground motion. Fields that only the ground motion before it has are dropped. */
   function shake(name) {
-    const kept = ["tolerance", "zeta", "modes", ...numbersOf(name), ...(name === "record" ? tables.reading : [])];
+    const kept = ["tolerance", "zeta", "keep", ...numbersOf(name), ...(name === "record" ? tables.reading : [])];
     const numbers = [...tables.reading, ...tables.numbers.map((of) => of.name)];
     if (name !== record()) for (const of of numbers) if (!kept.includes(of)) delete fields[of];
     give("record", name);
@@ -239,7 +239,7 @@
 
   const ofStructure = [...tables.parameters, ...tables.natural].map(({ name }) => name);
   at("preset").addEventListener("change", ({ target }) => {
-    for (const name of [...ofStructure, ...tables.ground.map(({ name }) => name), "preset", "storeys", "zeta", "modes", "u_0"]) delete fields[name];
+    for (const name of [...ofStructure, ...tables.ground.map(({ name }) => name), "preset", "storeys", "zeta", "keep", "u_0"]) delete fields[name];
     if (target.value === "storeys" && fields.detail === "modal") delete fields.detail;
     Object.assign(fields, structures[target.value][1]);
     emptied = undefined;
@@ -260,7 +260,7 @@
   /** Takes other storeys, rows of m, h and k from below. */
   function build(rows) {
     fields.storeys = rows.map((row) => row.map((text) => text.replace(/\s/g, "").replaceAll(",", "?")).join(",")).join(" ");
-    if (Number(fields.modes) > rows.length) delete fields.modes;
+    if (Number(fields.keep) > rows.length) delete fields.keep;
     change();
   }
   at("add").addEventListener("click", () => {
@@ -330,10 +330,10 @@
     at("restraints").open ||= tables.ties.some((name) => name in fields);
     at("ignore_npts").checked = "ignore_npts" in fields;
     for (const id of ["unit", "dt", "column", "column_v"]) if (document.activeElement !== at(id)) at(id).value = fields[id] ?? "";
-    const own = [...numbersOf(record()), "tolerance", ...(isFrame() ? ["zeta", "modes"] : [])];
+    const own = [...numbersOf(record()), "tolerance", ...(isFrame() ? ["zeta", "keep"] : [])];
     const cycles = tables.shapes.find(({ name }) => name === record())?.cycles;
     for (const { name, usual } of tables.numbers) {
-      rows[name](Number(fields[name] ?? { cycles, modes: storeys().length }[name] ?? usual), name in fields);
+      rows[name](Number(fields[name] ?? { cycles, keep: storeys().length }[name] ?? usual), name in fields);
       rows[name].element.hidden = !own.includes(name) && !(name in fields);
     }
   }
@@ -398,7 +398,7 @@
   // ---- The run: shown to 1/100 of a peak while a control moves, and to 1/10000 when it rests
 
   let pinned;
-  /** @type {Map<string, { detail: string, modes?: number }>} */
+  /** @type {Map<string, { detail: string, keep?: number }>} */
   const beside = new Map([["fixed_base", { detail: "fixed_base" }]]);
   const colours = { fixed_base: "--orange", rigid: "--grey", modal: "--purple", linear: "--green", nonlinear: "--ink", auto: "--blue" };
 
@@ -410,7 +410,7 @@
       const others = [];
       if (tab === "compare") {
         for (const of of beside.values()) {
-          if (of.detail === (fields.detail ?? "auto") && (of.modes ?? fields.modes) === fields.modes) continue;
+          if (of.detail === (fields.detail ?? "auto") && (of.keep ?? fields.keep) === fields.keep) continue;
           others.push({ ...decode(JSON.parse(explorer.show(JSON.stringify({ ...fields, ...of }), part))), colour: colours[of.detail] });
         }
         if (pinned && !isFrame()) others.push({ ...pinned, colour: "--pinned" });
@@ -505,12 +505,12 @@
   function drawLevels({ levels, advised, rule, refused }) {
     const body = at("levels").tBodies[0];
     body.replaceChildren(
-      ...levels.map(({ level, detail, modes, errors, overturns, cost }) => {
-        const name = modes ? level : detail; // of all modes the detail alone, as of one mass
+      ...levels.map(({ level, detail, keep, errors, overturns, cost }) => {
+        const name = keep ? level : detail; // of all modes the detail alone, as of one mass
         const choice = Object.assign(document.createElement("input"), { type: "checkbox", checked: beside.has(name), name });
         choice.addEventListener("change", () => {
           beside.delete(name);
-          if (choice.checked) beside.set(name, modes ? { detail, modes } : { detail });
+          if (choice.checked) beside.set(name, keep ? { detail, keep } : { detail });
           update(1e-4);
         });
         const swatch = Object.assign(document.createElement("span"), { className: "swatch", style: `--colour: var(${colours[detail]})` });

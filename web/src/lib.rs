@@ -131,7 +131,7 @@ impl Explorer {
 
     /// Derived quantities of the structure, remarks on the record's file, and warnings about the parameters.
     pub fn about(&mut self, fields: &str) -> Result<String, String> {
-        let (fields, run, Understood { record, source, sentences, .. }) = self.load(fields)?;
+        let (_, run, Understood { record, source, sentences, .. }) = self.load(fields)?;
         let warnings: Vec<_> = sentences
             .into_iter()
             .skip(1)
@@ -140,13 +140,8 @@ impl Explorer {
             .collect();
         let of_file = |of: Origin| [format!("{}, {}", of.format, of.unit)].into_iter().chain(of.remarks);
         let remarks: Vec<_> = source.into_iter().flat_map(of_file).collect();
-        let structure = &run.structure;
-        let mut parameters = structure.parameters(); // of many masses those of the base
-        if let (false, [mass]) = (fields.is_frame(), structure.floors()) {
-            (parameters.m, parameters.H) = (mass.mass, mass.height);
-        }
         Ok(json!({
-            "parameters": parameters, "derived": describe::derived(&run.structure),
+            "parameters": run.structure.parameters(), "derived": describe::derived(&run.structure),
             "modes": describe::modes(&run.structure), "warnings": warnings, "remarks": remarks,
             "samples": record.times().len(), "pga": record.pga() / run.structure.base().g,
         })
@@ -185,7 +180,7 @@ impl Explorer {
         let row = |level: &LevelAdvice| {
             json!({
                 "level": level.choice.to_string(), "detail": level.choice.detail.name(),
-                "modes": level.choice.modes.filter(|[kept, all]| *kept > 0 && kept < all).map(|[kept, _]| kept.to_string()), "errors": level.errors.map(|error| error.to_string()),
+                "keep": level.choice.modes.filter(|[kept, all]| *kept > 0 && kept < all).map(|[kept, _]| kept.to_string()), "errors": level.errors.map(|error| error.to_string()),
                 "overturns": level.overturned, "transitions": level.transitions, "cost": level.cost,
             })
         };

@@ -37,7 +37,7 @@ pub const NUMBERS: [FieldRow; 13] = [
     ("time_scale", "1", "factor on the times", 1.0, [0.1, 10.0]),
     ("tolerance", "1", "relative tolerance of the results", DEFAULT_TOLERANCE, [1e-12, 1e-3]),
     ("zeta", "1", "damping ratio of each mode", 0.02, [0.0, 0.2]),
-    ("modes", "1", "modes kept; the mass of the others turns rigidly with the base", f64::NAN, [1.0, 24.0]),
+    ("keep", "1", "modes kept; the mass of the others turns rigidly with the base", f64::NAN, [1.0, 24.0]),
 ];
 
 /// The numbers of ground that gives, as [`Ground`] has them; without all of them the ground is rigid.
@@ -52,7 +52,7 @@ pub const OF_GROUND: [FieldRow; 4] = [
 const NO_PRESET: &str = "none";
 
 /// Numbers of a structure of many masses, beside its storeys and its base.
-const OF_STRUCTURE: [&str; 2] = ["zeta", "modes"];
+const OF_STRUCTURE: [&str; 2] = ["zeta", "keep"];
 
 /// The ground motion that the page contains, which it shows when it opens.
 pub const EL_CENTRO: &str = "el_centro";
@@ -172,19 +172,9 @@ impl Fields {
         !self.is_frame() && self.text("preset") != Some(NO_PRESET)
     }
 
-    /// Whether the structure has the names of a building.
-    pub fn is_many(&self) -> bool {
+    /// Whether the structure outside the page is a file: of storeys, or of ground that gives.
+    pub fn has_file(&self) -> bool {
         self.is_frame() || OF_GROUND.iter().any(|number| self.text(number.0).is_some())
-    }
-
-    /// The given numbers of the structure; on ground that gives, without storeys, all numbers of a specimen, which is rigid by name.
-    pub fn numbers(&self) -> Result<Vec<(&'static str, f64)>, String> {
-        let given = names().filter_map(|name| Some(self.given(name)?.map(|value| (name, value))));
-        let given = given.collect::<Result<Vec<_>, _>>()?;
-        let Some(preset) = self.preset()?.filter(|_| self.is_many()) else { return Ok(given) };
-        let all = Numbers::of(&given).and_then(|given| given.over(&preset)).map_err(says)?;
-        let needed = PARAMETERS.iter().filter(|of| of.name != "r" || self.text("r").is_some());
-        Ok(needed.map(|of| (of.name, (of.get)(&all))).collect())
     }
 
     fn preset(&self) -> Result<Option<Parameters>, String> {
@@ -193,7 +183,7 @@ impl Fields {
     }
 
     /// Ground that gives; none if it is rigid.
-    pub fn ground(&self) -> Result<Option<Ground>, String> {
+    fn ground(&self) -> Result<Option<Ground>, String> {
         let [f_v, k_v, zeta_v, n_points] = OF_GROUND.map(|number| self.given(number.0).transpose());
         let ground = Ground { f_v: f_v?, k_v: k_v?, zeta_v: zeta_v?, n_points: n_points?, ..Ground::default() };
         Ok((ground != Ground::default()).then_some(ground))
@@ -201,13 +191,16 @@ impl Fields {
 
     /// The structure: storeys on a base, a specimen with the given numbers in place of its own, or these numbers alone.
     pub fn structure(&self) -> Result<Structure, String> {
-        let given = Numbers::of(&self.numbers()?).map_err(says)?;
-        let ground = self.ground()?;
-        match (self.text("storeys"), ground) {
-            (Some(storeys), ground) => self.frame(&given, storeys, ground),
-            (None, Some(ground)) => given.on(ground).structure(None).map_err(says),
-            (None, None) => given.structure(self.preset()?.as_ref()).map_err(says),
+        let given = names().filter_map(|name| Some(self.given(name)?.map(|value| (name, value))));
+        let given = Numbers::of(&given.collect::<Result<Vec<_>, _>>()?).map_err(says)?;
+        let (ground, preset) = (self.ground()?, self.preset()?);
+        if let Some(storeys) = self.text("storeys") {
+            return self.frame(&given, storeys, ground);
         }
+        // the r of a specimen is of rigid ground
+        let r = |of: &Parameters| if ground.is_some() { f64::NAN } else { of.r };
+        let preset = preset.map(|of| Parameters { r: r(&of), ..of });
+        given.on(ground).structure(preset.as_ref()).map_err(says)
     }
 
     fn frame(&self, base: &Numbers, storeys: &str, ground: Option<Ground>) -> Result<Structure, String> {
@@ -215,18 +208,18 @@ impl Fields {
         let storeys = storeys.collect::<Result<Vec<_>, _>>()?;
         let frame = Structure::from_storeys(base, &Damping::All(self.number("zeta")?), &storeys).map_err(says)?;
         let frame = frame.on(&ground).map_err(says)?;
-        match self.modes()? {
+        match self.keep()? {
             None => Ok(frame),
             Some(count) => frame.keeping(count).map_err(says),
         }
     }
 
     /// The number of modes that are kept, if it is given.
-    pub fn modes(&self) -> Result<Option<usize>, String> {
-        match self.given("modes").transpose()? {
+    fn keep(&self) -> Result<Option<usize>, String> {
+        match self.given("keep").transpose()? {
             None => Ok(None),
             Some(count) if count >= 1.0 && count.fract() == 0.0 => Ok(Some(count as usize)),
-            Some(count) => Err(format!("modes = {count} is out of range: a whole number of at least 1 is needed")),
+            Some(count) => Err(format!("keep = {count} is out of range: a whole number of at least 1 is needed")),
         }
     }
 
@@ -330,7 +323,7 @@ pub fn number_of(name: &str, unit: &str, text: &str) -> Result<f64, String> {
 }
 
 /// The storey in `row`: m (kg), h (m) and k (N/m), with commas between them.
-pub fn storey(number: usize, row: &str) -> Result<Storey, String> {
+fn storey(number: usize, row: &str) -> Result<Storey, String> {
     let read = |((name, unit), text)| number_of(&format!("storey {number}: {name}"), unit, text);
     let numbers = [("m", "kg"), ("h", "m"), ("k", "N/m")]
         .into_iter()

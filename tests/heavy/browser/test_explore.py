@@ -33,7 +33,7 @@ FRAME = {"storeys": "4e4,3.5,6e7 4e4,7,5e7 3e4,10.5,4e7", "m0": "2e4", "J0": "3e
 PIER = {"preset": "none", "m": "1.2e6", "m0": "4e5", "H": "22", "B": "3.5", "f_fc": "0.8", "zeta_fc": "0.03", "r": "0.95"}
 #: The pier, a specimen and a frame on ground that gives.
 ON_GROUND = [{name: text for name, text in PIER.items() if name != "r"} | {"J0": "1.7e6", "k_v": "1.25e6 kN/m", "zeta_v": "0.3", "n_points": "5.0"},
-             {"preset": "mcmanus", "f_v": "40", "f_fc": "4"}, FRAME | {"f_v": "15", "modes": "2"}]
+             {"preset": "mcmanus", "f_v": "40", "f_fc": "4"}, FRAME | {"f_v": "15", "keep": "2"}]
 #: Another real pier, entered over McManus's.
 OWN = {"m": "1850000", "m0": "900000", "H": "31", "B": "4.5", "f_fc": "0.625"}
 
@@ -175,7 +175,7 @@ def random_scenes(count: int):
 def test_a_scene_is_the_same_by_its_command_and_by_its_script(opened, exporter, tmp_path):
     """For any link and any name of a record or column, a shell and Python find the page's peaks and run nothing else."""
     page = opened()
-    frame, pier = FRAME | {"modes": "2.0", "zeta": "0.03", "record": "ricker"}, PIER | {"record": "ricker"}
+    frame, pier = FRAME | {"keep": "2.0", "zeta": "0.03", "record": "ricker"}, PIER | {"record": "ricker"}
     time = np.arange(0, 3, 0.01)
     table = "".join(f"{t},{4 * np.sin(9 * t)},{2 * np.cos(20 * t)}\n" for t in time)
     shaken = PIER | {"m": "1200 t", "k_t": "20000 kN/m", "record": "record", "column": "2", "column_v": "3"}
@@ -288,7 +288,7 @@ def test_what_is_refused_is_said_as_everywhere_and_the_page_stays_alive(opened, 
     page = opened({"preset": "mcmanus"})
     for name, value in [("H", "NaN"), ("r", "1.5"), ("B", "-0.3"), ("H", "300")]:
         put(page, f"#field-{name}", value)
-        assert refusal(exporter, "simulate", "--preset=mcmanus", f"--{name}={value}", "--free=1").strip() == f"error: {problem(page)}"
+        assert refusal(exporter, "simulate", "--preset=mcmanus", f"--{name}={value}", "--duration=1").strip() == f"error: {problem(page)}"
         assert faulty(page) == [name]
         put(page, f"#field-{name}", "")
         assert problem(page) == ""
@@ -626,7 +626,7 @@ def test_a_frame_is_built_from_storeys(opened):
     assert lowest[:2] == [3.5, pytest.approx(peak_of(page, "a_t"), rel=5e-3)]
     put(page, "#add")
     assert text(page, "#about").startswith("4 floors, 140 t on a base of 20 t, H = 14 m") and page.locator("#floor").input_value() == "1"
-    put(page, "#field-modes", "2")
+    put(page, "#field-keep", "2")
     assert text(page, "#kept").startswith("2 of 4 modes carry 96.")
     kept, link = peak_of(page, "V_t"), page.url
     put(page, "[aria-label='Remove storey 1']")
