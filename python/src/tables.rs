@@ -67,7 +67,7 @@ fn value(path: &str, name: &str, of: &Bound<'_, PyAny>) -> PyResult<Value> {
             let row = |(i, row): (usize, PyResult<_>)| value(&format!("{path}[{i}]"), "", &row?);
             (1..).zip(rows.try_iter()?).map(row).collect::<PyResult<Vec<_>>>()?.into()
         }
-        _ if has_items => numbers(path, of)?.into(),
+        _ if has_items && !names().any(|known| known == name) => numbers(path, of)?.into(),
         _ => number(path, of)?.into(),
     })
 }

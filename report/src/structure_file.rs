@@ -112,9 +112,9 @@ pub fn write(structure: &Structure) -> anyhow::Result<String> {
                 # f_v = 10 # frequency of the bounce on the ground, Hz: or k_v, the vertical stiffness, N/m\n\
                 # zeta_v = 0.2 # damping ratio of the bounce\n# n_points = 2 # contact points from edge to edge\n";
     }
-    table.iter().try_for_each(|(key, value)| {
-        anyhow::Ok(out += &format!("\n{}", toml::to_string(&Table::from_iter([(key.clone(), value.clone())]))?))
-    })?;
+    if !table.is_empty() {
+        out += &format!("\n{}", toml::to_string(&table)?);
+    }
     Ok(out)
 }
 

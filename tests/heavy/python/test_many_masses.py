@@ -162,6 +162,7 @@ def test_a_structure_of_many_masses_is_a_value():
     (lambda: of_modes(p_delta=True), "p_delta = true needs storeys"),
     (lambda: of_storeys(keep=2.5), "keep = 2.5: a whole number is needed"),
     (lambda: of_storeys(preset="mcmanus"), "preset is a structure of one mass, and storeys makes one of many"),
+    (lambda: fr.Structure(preset="mcmanus", m=[1, 2]), "m = [1, 2]: it is no number"),
     (lambda: of_storeys(storeys=3), "expected a sequence; in `storeys`"),
     (lambda: of_storeys().replace(m0=20, units="kN, m, t"), "units: replace takes SI units"),
     (lambda: fr.Structure(preset="mcmanus", ground=40), "ground = 40: flexible_rocking.Ground(f_v=...) is needed"),
