@@ -60,11 +60,11 @@ impl StructureArgs {
                 let read = || structure_file::read(&input::text(path)?);
                 let structure = read().with_context(|| format!("parameters in {}", input::name(path)))?;
                 match structure.description() {
+                    _ if numbers.is_empty() => structure,
                     Some(Description { parameters, many: None, ground }) => {
                         let changed = numbers.clone().on(ground.clone()).structure(Some(parameters))?;
                         changed.measured_in(structure.units())
                     }
-                    _ if numbers.is_empty() => structure,
                     _ => bail!(
                         "{} replaces a number of one mass, and {} describes many masses: change it in the file",
                         numbers.names().map(on_command_line).collect::<Vec<_>>().join(", "),
