@@ -375,8 +375,10 @@ impl Structure {
         let Body { m_s, S_1, I_2, .. } = self.0.body;
         let body = Body::of(&parameters, Some(parameters.r).filter(|r| !r.is_nan()), [m_s, S_1, I_2]);
         let of_body = Structure::of_body(body, &self.0.modes, &self.0.floors)?;
-        let of_body =
-            Structure(of_body.0, self.1.clone()).redescribed(|description| description.parameters = parameters);
+        let of_body = Structure(of_body.0, self.1.clone()).redescribed(|Description { parameters: own, .. }| {
+            // those of one mass stay
+            *own = Parameters { m: own.m, H: own.H, f_fc: own.f_fc, zeta_fc: own.zeta_fc, ..parameters };
+        });
         self.on_own_ground(of_body)
     }
 

@@ -104,9 +104,9 @@ def options(**values) -> list[str]:
 
 def command_line(exporter: Path, scene: Scene, folder: Path) -> dict:
     """Every number, and the instant that decides it: peaks, worsts, transitions, and how the run ended."""
-    ground = options(record=scene.record, **scene.scales) if scene.record else options(free=scene.duration)
+    ground = options(record=scene.record, **scene.scales) if scene.record else []
     ground += options(**{name: of for name, of in (("record_v", scene.vertical), ("force", scene.force)) if of})
-    ground += options(duration=scene.duration) if scene.duration and scene.record else []
+    ground += options(duration=scene.duration) if scene.duration else []
     told = json.loads(output(exporter, "--quiet", "simulate", *ground, *options(**scene.structure, **scene.initial, **scene.how),
                              "--format", "json", "--events", "events.csv", cwd=folder))
     events = pd.read_csv(folder / "events.csv")

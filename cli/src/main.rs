@@ -68,7 +68,7 @@ enum Command {
   rocking-fmu simulate --record column.txt --dt 0.005 --unit gal --format json
   rocking-fmu simulate --record array.csv --column E-W
   rocking-fmu pulse sine --amplitude 0.6 --period 0.5 -o - | rocking-fmu simulate --record -
-  rocking-fmu simulate --preset evison --free 2 --theta-0 0.04 --events impacts.csv --picture wall.svg
+  rocking-fmu simulate --preset evison --duration 2 --theta-0 0.04 --events impacts.csv --picture wall.svg
   rocking-fmu simulate --parameters building.toml --record RSN77_SFERN_PUL164.AT2 --profile building.svg
   rocking-fmu simulate --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45 --detail modal")]
     Simulate(simulate::SimulateArgs),
@@ -78,7 +78,7 @@ enum Command {
     /// motion, and you can change it there.
     #[command(after_help = "Examples:
   rocking-fmu view --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
-  rocking-fmu view --preset evison --free 2 --theta-0 0.04 -o wall.html")]
+  rocking-fmu view --preset evison --duration 2 --theta-0 0.04 -o wall.html")]
     View(view::ViewArgs),
     /// Compare the levels of detail on a ground motion record, or free vibration, and recommend one
     ///
@@ -88,7 +88,7 @@ enum Command {
     #[command(after_help = "Examples:
   rocking-fmu advise --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
   rocking-fmu advise --record RSN77_SFERN_PUL164.AT2 --within 10% --of theta,a_t
-  rocking-fmu advise --preset evison --free 2 --theta-0 0.04 --within 0.1%")]
+  rocking-fmu advise --preset evison --duration 2 --theta-0 0.04 --within 0.1%")]
     Advise(advise::AdviseArgs),
     /// Show the parameters and the derived quantities
     #[command(after_help = "Examples:

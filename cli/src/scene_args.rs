@@ -28,7 +28,7 @@ impl MotionArgs {
     /// is read.
     pub fn load(&self, how: Conditions) -> anyhow::Result<RunSetup> {
         let structure = self.structure.load_any()?;
-        let conditions = Conditions { initial: self.initial.state(), duration: self.ground.duration(), ..how };
+        let conditions = Conditions { initial: self.initial.state(), duration: self.ground.duration, ..how };
         conditions.check(&structure)?;
         let ground = Arc::new(self.ground.load(structure.base().g)?);
         Ok(RunSetup { structure, ground, conditions })
@@ -41,21 +41,13 @@ impl MotionArgs {
 
 #[derive(clap::Args)]
 #[command(next_help_heading = "Ground motion")]
-#[command(group(ArgGroup::new("ground motion").args(["record", "free"]).required(true)))]
+#[command(group(ArgGroup::new("ground motion").args(["record", "duration"]).multiple(true).required(true)))]
 pub struct GroundArgs {
     #[command(flatten)]
     pub record: RecordArgs,
-    /// Simulated time; the ground is at rest after the record's end [default: until the base is down for good or the structure overturns, at the latest 100/p_l after the record]
+    /// Simulated time: free vibration without a record; the ground is at rest after the record's end [default: until the base is down for good or the structure overturns, at the latest 100/p_l after the record]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
-    duration: Option<f64>,
-    /// Free vibration over this time instead of a record
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        allow_hyphen_values = true,
-        conflicts_with_all = ["record_v", "unit", "dt", "column", "ignore_npts", "time_scale", "scale", "duration"]
-    )]
-    pub free: Option<f64>,
+    pub duration: Option<f64>,
     /// Table of a horizontal force on the top floor, with the columns time[s] and F_t[N]. The force is positive to the right and linear between rows; --scale and --time-scale do not change it
     #[arg(long, value_name = "FILE.csv")]
     pub force: Option<PathBuf>,
@@ -123,18 +115,18 @@ impl LevelArgs {
 impl GroundArgs {
     /// The ground motion; a record's g means `g` (m/s²).
     pub fn load(&self, g: f64) -> anyhow::Result<Record> {
-        let rest = || Record::at_rest(self.free.expect("clap asks for --record or --free"));
+        let rest = || Record::at_rest(self.free().expect("clap asks for --record or --duration"));
         let understood = self.record.load(g)?.map_or_else(|| Understood::made(rest(), [1.0; 2], g), Ok)?;
         with_force(understood, self.force.as_deref(), g)
     }
 
-    /// From the start to the end of the run, s, where that is asked for.
-    pub fn duration(&self) -> Option<f64> {
-        self.duration.or(self.free)
+    /// Duration of the free vibration, s, if there is no record.
+    pub fn free(&self) -> Option<f64> {
+        self.duration.filter(|_| self.record.record.is_none())
     }
 
     pub fn title(&self, ground: &Record) -> String {
-        match self.free {
+        match self.free() {
             Some(duration) => format!("none, free vibration over {} s", short(duration)),
             None => format!("{}, {} samples", ground.title(), ground.times().len()),
         }

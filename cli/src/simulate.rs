@@ -65,7 +65,7 @@ impl SimulateArgs {
     fn samples_and_interval<'a>(&self, ground: &'a Record) -> (&'a [f64], f64) {
         let samples = ground.times();
         let last = samples.len() - 1;
-        match self.results.interval.or(self.motion.ground.free.map(|_| 1e-3)) {
+        match self.results.interval.or(self.motion.ground.free().map(|_| 1e-3)) {
             Some(interval) => (&samples[..1], interval),
             None => (samples, samples[last] - samples[last - 1]),
         }

@@ -531,6 +531,13 @@ pub(crate) mod tests {
         Structure::from_storeys(&usual(), &Damping::All(0.02), &STOREYS).unwrap()
     }
 
+    #[test]
+    fn a_structure_whose_base_was_changed_can_be_made_of_its_numbers() {
+        let frame = three_storeys();
+        let wide = frame.with(Parameters { B: 2.0, ..frame.parameters() }).unwrap();
+        assert!(wide.description().unwrap().structure().unwrap() == wide);
+    }
+
     /// C = α M + β K through the ratios of its modes.
     #[test]
     fn rayleigh_damping_has_its_ratio_at_both_frequencies() {

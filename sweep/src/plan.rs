@@ -14,13 +14,14 @@ use rocking::run::fall::RunResult;
 use rocking::run::record::Record;
 use rocking::run::validity::{Findings, Limits};
 use rocking::run::{End, Run, RunError, Runs, found_each};
+use rocking::structure::description::{DescribedNumber, Description};
 use rocking::structure::doubts::doubted;
 use rocking::structure::parameters::{MAX_SLENDERNESS, OF_ONE_MASS, PARAMETERS};
 use rocking::{Detail, Modes, Parameters, Quantity, State, Structure};
 use serde::Serialize;
 use std::array;
 use std::borrow::Cow;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::sync::{LazyLock, OnceLock};
 
 /// More runs than this are refused: thousands of runs a second take hours for them.
@@ -39,9 +40,41 @@ const SLENDERNESS: Quantity<Parameters> = Quantity {
     set: |parameters, slenderness| parameters.H = slenderness * parameters.B,
 };
 
-/// Quantities that can vary. The slenderness is last and therefore uses the B of the same structure.
+/// Parameters that can vary. The slenderness is last and therefore uses the B of the same structure.
 pub static AXES: LazyLock<[&Quantity<Parameters>; PARAMETERS.len() + 1]> =
     LazyLock::new(|| array::from_fn(|i| PARAMETERS.get(i).unwrap_or(&SLENDERNESS)));
+
+/// Position of the quantity called `name` in [`AXES`], or their number.
+fn place(name: &str) -> usize {
+    AXES.iter().position(|axis| axis.name == name).unwrap_or(AXES.len())
+}
+
+/// The numbers of storeys and of ground that `structure` was made of.
+fn beyond_axes(structure: &Structure) -> impl Iterator<Item = DescribedNumber> + use<> {
+    let all = structure.description().map_or_else(Vec::new, Description::numbers);
+    all.into_iter().filter(|of| place(&of.name) == AXES.len())
+}
+
+/// Names and units of the numbers of storeys and of ground of all `structures`, beside [`AXES`].
+pub fn numbers_of<'a>(structures: impl IntoIterator<Item = &'a Structure>) -> Vec<Measure> {
+    let mut all = Vec::new();
+    for DescribedNumber { name, unit, .. } in structures.into_iter().flat_map(beyond_axes) {
+        let number = (name, unit.to_owned());
+        if !all.contains(&number) {
+            all.push(number);
+        }
+    }
+    all
+}
+
+/// The values of these `numbers` of `structure`; NaN if the structure has no such number.
+pub fn values_of(structure: &Structure, numbers: &[Measure]) -> Vec<f64> {
+    if numbers.is_empty() {
+        return Vec::new();
+    }
+    let own: HashMap<_, _> = beyond_axes(structure).map(|of| (of.name, of.value)).collect();
+    numbers.iter().map(|(name, _)| own.get(name).copied().unwrap_or(f64::NAN)).collect()
+}
 
 /// Structures that count together: one in which some numbers vary, in every combination, or several.
 #[derive(Clone, Debug)]
@@ -50,8 +83,8 @@ pub struct Population {
     pub name: String,
     /// One or more.
     bases: Vec<Structure>,
-    /// Positions in [`AXES`], increasing, and the values there.
-    varying: Vec<(usize, Vec<f64>)>,
+    /// Names of numbers, those of [`AXES`] first and in their order, and their values.
+    varying: Vec<(String, Vec<f64>)>,
 }
 
 /// A ground motion record under a name.
@@ -119,6 +152,8 @@ pub struct Plan {
     pub(crate) conditions: Conditions,
     /// Measures of all structures, each once.
     pub measures: Vec<Measure>,
+    /// Names and units of the numbers of storeys and of ground of all structures.
+    pub numbers: Vec<Measure>,
     layouts: Vec<MeasurePlaces>,
     /// A sentence for each number that is usual in another unit, once for each population.
     pub doubts: Vec<String>,
@@ -173,25 +208,26 @@ impl Population {
     }
 
     /// Every structure that there is so far with each of `values` of the parameter called `name`, or of `slenderness`,
-    /// which is H/B: H = slenderness × B, while B, m, m0, J0 and f_fc stay. Of a building, parameters of the base can vary.
+    /// which is H/B: H = slenderness × B, while B, m, m0, J0 and f_fc stay. Of a building, parameters of the base can vary. Numbers of
+    /// storeys and of ground have the names of [`Description::numbers`].
     pub fn vary(mut self, name: &str, values: Vec<f64>) -> Result<Population, Refused> {
         let is_building = self.bases.iter().any(|base| !base.is_one_mass());
         let can_vary = |name: &str| !is_building || !(OF_ONE_MASS.contains(&name) || name == SLENDERNESS.name);
-        let axis = AXES.iter().position(|axis| axis.name == name && can_vary(name));
-        let axis = axis.ok_or_else(|| {
-            let known = AXES.iter().map(|axis| axis.name).filter(|name| can_vary(name)).collect::<Vec<_>>().join(", ");
+        let axes = AXES.iter().map(|axis| axis.name.to_owned()).filter(|name| can_vary(name));
+        let known: Vec<_> = axes.chain(numbers_of(&self.bases).into_iter().map(|(name, _)| name)).collect();
+        ensure(known.iter().any(|known| known == name), || {
             let why = if can_vary(name) { "" } else { " in a building, whose modes determine it" };
-            Refused::by(format!("{name:?} cannot vary{why}: these can: {known}"))
+            format!("{name:?} cannot vary{why}: these can: {}", known.join(", "))
         })?;
         check_list(name, &values)?;
-        let varies = |name| self.varying.iter().any(|(axis, _)| AXES[*axis].name == name);
+        let varies = |name| self.varying.iter().any(|(varying, _)| varying == name);
         ensure(!varies(name), || is_there_twice(name))?;
         let sets_H = |name| [SLENDERNESS.name, "H"].contains(&name);
         ensure(!(sets_H(name) && (varies("H") || varies(SLENDERNESS.name))), || {
             "H and slenderness cannot both vary: slenderness sets H".into()
         })?;
-        self.varying.push((axis, values));
-        self.varying.sort_by_key(|(axis, _)| *axis);
+        self.varying.push((name.into(), values));
+        self.varying.sort_by_key(|(name, _)| place(name));
         Ok(self)
     }
 
@@ -200,12 +236,12 @@ impl Population {
         self.varying.iter().fold(self.bases.len(), |len, (_, values)| len.saturating_mul(values.len()))
     }
 
-    /// Varying quantities and their values in structure `member`. The last axis changes first.
-    fn values(&self, member: usize) -> impl Iterator<Item = (&'static Quantity<Parameters>, f64)> {
+    /// Names of varying numbers and their values in structure `member`. The last one changes first.
+    fn values(&self, member: usize) -> impl Iterator<Item = (&str, f64)> {
         let mut stride = self.len() / self.bases.len();
-        self.varying.iter().map(move |(axis, values)| {
+        self.varying.iter().map(move |(name, values)| {
             stride /= values.len();
-            (AXES[*axis], values[member / stride % values.len()])
+            (&**name, values[member / stride % values.len()])
         })
     }
 
@@ -214,10 +250,23 @@ impl Population {
         if self.varying.is_empty() {
             return Ok(base.clone());
         }
-        let mut parameters = base.parameters();
-        self.values(member).for_each(|(axis, value)| (axis.set)(&mut parameters, value));
-        let structure =
-            base.with(parameters).map_err(|problem| Refused::by(format!("structures {:?}: {problem}", self.name)));
+        let parameters = base.description().map_or_else(|| base.parameters(), |of| of.parameters);
+        let (mut parameters, mut others) = (parameters, HashMap::new());
+        for (name, value) in self.values(member) {
+            match AXES.get(place(name)) {
+                Some(axis) => (axis.set)(&mut parameters, value),
+                None => drop(others.insert(name, value)),
+            }
+        }
+        let structure = match base.description().filter(|_| !others.is_empty()) {
+            Some(of) => {
+                let of = Description { parameters, ..of.clone() };
+                let values = of.numbers().into_iter().map(|of| others.get(&*of.name).copied().unwrap_or(of.value));
+                of.with(&Vec::from_iter(values)).structure()
+            }
+            None => base.with(parameters),
+        };
+        let structure = structure.map_err(|problem| Refused::by(format!("structures {:?}: {problem}", self.name)));
         Ok(structure?.measured_in(base.units()))
     }
 }
@@ -294,7 +343,9 @@ impl Plan {
             *base = base.at(conditions.detail);
         }
         let (measures, layouts, spectral, doubts, widest) = (Vec::new(), Vec::new(), Vec::new(), Vec::new(), 0.0);
-        let mut plan = Plan { populations, motions, scales, conditions, measures, layouts, doubts, widest, spectral };
+        let numbers = numbers_of(populations.iter().flat_map(|of| &of.bases));
+        let mut plan =
+            Plan { populations, motions, scales, conditions, measures, numbers, layouts, doubts, widest, spectral };
         let [structures, motions, scales] = plan.size();
         ensure(structures.saturating_mul(motions).saturating_mul(scales) <= MAX_RUNS, || {
             format!(
@@ -484,7 +535,7 @@ impl Case<'_> {
 
     /// The structure's number on `axis`, one of [`AXES`], to the bit as it was given; NaN if a building has none.
     pub fn value(&self, axis: &Quantity<Parameters>) -> f64 {
-        let varying = self.population.values(self.member).find(|(varying, _)| varying.name == axis.name);
+        let varying = self.population.values(self.member).find(|(varying, _)| *varying == axis.name);
         varying.map_or_else(|| (axis.get)(&self.structure.parameters()), |(_, value)| value)
     }
 }

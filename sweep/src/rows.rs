@@ -3,7 +3,7 @@
 //! A run's key stands for names, parameters, samples, scale factors, conditions, the build of the program.
 
 use crate::outcome::{Measure, Outcome, Summary};
-use crate::plan::{AXES, Case, Conditions, NamedRecord, Plan};
+use crate::plan::{AXES, Case, Conditions, NamedRecord, Plan, values_of};
 use crate::row_file::{Digest, Known, Program, RowFile, do_runs, fixed, heading, line};
 use anyhow::{bail, ensure};
 use csv::StringRecord;
@@ -34,7 +34,7 @@ pub struct Sweep<'a> {
     /// Of every run, what stands for all that the run depends on.
     keys: Vec<Uuid>,
     /// Digest of the samples of each ground motion, whatever its file is called.
-    digests: Vec<String>,
+    digests: Vec<Uuid>,
     done: Vec<OnceLock<RunDone>>,
     file: Option<RowFile>,
     /// Number of rows of the file that are not of this sweep.
@@ -56,6 +56,8 @@ enum Cell<'a> {
     Ending(Ending),
     Number(f64),
     Count(u64),
+    /// The first half, of 16 digits.
+    Digest(Uuid),
     /// A number for each floor, as a text with spaces between them.
     Floors(&'a [f64]),
     Empty,
@@ -63,6 +65,10 @@ enum Cell<'a> {
 
 fn spaced(of: &[f64]) -> String {
     of.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
+}
+
+fn digits(of: Uuid) -> String {
+    format!("{:016x}", of.as_u64_pair().0)
 }
 
 impl Cell<'_> {
@@ -80,6 +86,7 @@ impl Cell<'_> {
             }
             Cell::Number(of) => row.extend(zmij::Buffer::new().format(of).as_bytes()),
             Cell::Count(count) => row.extend(itoa::Buffer::new().format(count).as_bytes()),
+            Cell::Digest(of) => row.extend(digits(of).as_bytes()),
             Cell::Floors(of) => row.extend(spaced(of).as_bytes()),
             Cell::Empty => {}
         }
@@ -111,7 +118,6 @@ impl<'a> Sweep<'a> {
         let digests: Vec<_> = plan.motions.iter().map(|motion| digest_of(&motion.record)).collect();
         check_records(&plan.motions)?;
         let keys = keys(plan, &digests, validity, program);
-        let digests = digests.iter().map(|digest| format!("{:016x}", digest.as_u64_pair().0)).collect();
         let mut seen = HashMap::new();
         for (run, key) in keys.iter().enumerate() {
             let number = run / (plan.len() / plan.size()[0]) + 1;
@@ -119,7 +125,7 @@ impl<'a> Sweep<'a> {
                 bail!("two runs are the same: structures {first} and {number} differ by rounding at most");
             }
         }
-        let (file, known) = path.map(|path| open(path, &plan.measures, validity)).transpose()?.unzip();
+        let (file, known) = path.map(|path| open(path, plan, validity)).transpose()?.unzip();
         let mut others: Known<RunDone> = known.unwrap_or_default();
         let known = |key| others.remove(key).map_or_else(OnceLock::new, OnceLock::from);
         let done = keys.iter().map(known).collect();
@@ -175,7 +181,7 @@ impl<'a> Sweep<'a> {
         let done = || (0..self.plan.len()).filter(|index| self.done[*index].get().is_some());
         let rows = done().count();
         let added = Some(measure).filter(|measure| !IntensityMeasure::COLUMNS.contains(measure));
-        let headings = headings(&self.plan.measures, self.validity).into_iter().skip(1);
+        let headings = headings(self.plan, self.validity).into_iter().skip(1);
         let headings = headings.chain(added.map(|of| heading(&of.name(), of.unit())));
         let mut columns: Vec<_> = headings.map(|of| (of, RowColumn::Counts(Vec::with_capacity(rows)))).collect();
         let mut texts = vec![HashMap::new(); columns.len()];
@@ -196,15 +202,18 @@ impl<'a> Sweep<'a> {
 
     /// The cells of a row that depend on its structure alone, without the key of the run.
     fn of_structure<'b>(&'b self, case: &Case<'b>) -> Vec<Cell<'b>> {
-        let names = [&case.population.name, &self.program.version].map(|text| Cell::Text(text));
-        names.into_iter().chain(AXES.map(|axis| Cell::Number(case.value(axis)))).collect()
+        let digest = Digest::new(&Uuid::NAMESPACE_OID).and(&case.structure.numbers()).uuid();
+        let names = [Cell::Text(&case.population.name), Cell::Digest(digest), Cell::Text(&self.program.version)];
+        let others = values_of(&case.structure, &self.plan.numbers);
+        let numbers = AXES.map(|axis| case.value(axis)).into_iter().chain(others);
+        names.into_iter().chain(numbers.map(Cell::Number)).collect()
     }
 
     /// The other cells of the row of a run that is done.
     fn of_run<'b>(&'b self, case: &Case<'b>, RunDone { outcome, beyond }: &'b RunDone) -> Vec<Cell<'b>> {
         let Conditions { initial, detail, tolerance, duration } = &self.plan.conditions;
         let mut row = Vec::with_capacity(64);
-        row.extend([&case.motion.name, &self.digests[case.motion_number()]].map(|text| Cell::Text(text)));
+        row.extend([Cell::Text(&case.motion.name), Cell::Digest(self.digests[case.motion_number()])]);
         row.extend([case.motion.scale, case.scale].map(Cell::Number));
         row.extend(IntensityMeasure::COLUMNS.map(|measure| Cell::Number(case.intensity(measure))));
         row.extend([Cell::Text(detail.name()), Cell::Number(*tolerance), duration.map_or(Cell::Empty, Cell::Number)]);
@@ -260,6 +269,7 @@ impl RowColumn {
                 }
             }
             (RowColumn::Texts(_, of), Cell::Empty) => of.push(u32::MAX),
+            (_, Cell::Digest(of)) => self.push(Cell::Text(&digits(of)), known),
             (_, Cell::Floors(of)) => self.push(Cell::Text(&spaced(of)), known),
             (_, Cell::Ending(ending)) => self.push(Cell::Text(&ending.to_string()), known),
             (RowColumn::Numbers(of), Cell::Text(_)) => {
@@ -322,8 +332,8 @@ fn keys(plan: &Plan, digests: &[Uuid], validity: bool, program: &Program) -> Vec
 }
 
 /// Opens the file at `path`, or begins it, and reads what its rows say.
-fn open(path: &Path, measures: &[Measure], validity: bool) -> anyhow::Result<(RowFile, Known<RunDone>)> {
-    let headings = headings(measures, validity);
+fn open(path: &Path, plan: &Plan, validity: bool) -> anyhow::Result<(RowFile, Known<RunDone>)> {
+    let headings = headings(plan, validity);
     let at = |heading: &str| headings.iter().position(|found| found == heading).expect("it is one of them");
     let (ending, counts, after, reason) = (at("ending"), at("transitions"), at("evaluations") + 1, at("reason"));
     RowFile::open(path, &headings, |row| {
@@ -340,17 +350,22 @@ fn open(path: &Path, measures: &[Measure], validity: bool) -> anyhow::Result<(Ro
     })
 }
 
+/// The headings of the parameters of a structure, and of these `numbers` of storeys and of ground.
+pub fn of_numbers(numbers: &[Measure]) -> Vec<String> {
+    let axes = AXES.iter().map(|axis| heading(axis.name, axis.unit));
+    axes.chain(numbers.iter().map(|(name, unit)| heading(name, unit))).collect()
+}
+
 /// Headings of the rows, with those of the check of validity if it is asked for.
-fn headings(measures: &[Measure], validity: bool) -> Vec<String> {
-    let quantities = AXES.map(|axis| heading(axis.name, axis.unit));
+fn headings(Plan { measures, numbers, .. }: &Plan, validity: bool) -> Vec<String> {
     let intensities = IntensityMeasure::COLUMNS.map(|measure| heading(&measure.name(), measure.unit()));
     let initial = INITIAL_VALUES.each_ref().map(|quantity| heading(quantity.name, quantity.unit));
     let peaks = measures.iter().map(|(name, unit)| heading(&format!("peak_{name}"), unit)).collect();
     let beyond = ASSUMPTIONS.iter().flat_map(|of| [of.name.to_owned(), heading(of.time_name, "s")]);
     let beyond = beyond.chain(fixed(&["energy_gains", "settlings"]));
     [
-        fixed(&["run", "structures", "version"]),
-        quantities.into(),
+        fixed(&["run", "structures", "structure_digest", "version"]),
+        of_numbers(numbers),
         fixed(&["record", "record_digest", "record_scale", "scale"]),
         intensities.into(),
         fixed(&["detail", "tolerance", "duration[s]"]),
@@ -368,6 +383,8 @@ fn headings(measures: &[Measure], validity: bool) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::plan::Population;
+    use rocking::structure::description::{Damping, Storey};
+    use rocking::structure::natural_quantities::Numbers;
     use rocking::{Ground, Parameters, Structure};
 
     /// Two files of one ground motion, in g and in m/s², differ in the last digits.
@@ -409,6 +426,50 @@ mod tests {
             keys[1]
         };
         assert_eq!((key(60.0) == key(60.0), key(60.0) == key(90.0)), (true, false));
+    }
+
+    /// Of a pier on ground and of a building, under one name each.
+    #[test]
+    fn a_column_has_each_number_that_varies_and_a_digest_tells_structures_apart() {
+        let program = Program { build: Uuid::nil(), version: "0".into() };
+        let stiff = |k_v: f64| Ground { k_v: Some(k_v), ..Ground::default() };
+        let wall = |k_v| Structure::new(Parameters { J0: 1.2, ..Parameters::EVISON }).unwrap().on(&stiff(k_v)).unwrap();
+        let core = |k| {
+            let base = Numbers::of(&[("m0", 20e3), ("J0", 3e4), ("B", 1.5)]).unwrap();
+            let storeys = [(3.5, 6e7), (7.0, k)].map(|(h, k)| Storey { m: 4e4, h, k });
+            Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap()
+        };
+        let walls = Population::new("walls", wall(1e7)).vary("k_v", vec![2e7, 3e7]).unwrap();
+        let cores = Population::new("cores", core(5e7)).vary("k[2]", vec![4e7, 3e7]).unwrap();
+        let record = Record::from_samples("", vec![0.0, 0.2, 0.4, 0.6], vec![0.0, 4.0, -4.0, 0.0]).unwrap();
+        let motion = NamedRecord::new("one", record, 1.0).unwrap();
+        let plan = Plan::new(vec![walls, cores], vec![motion.clone()], vec![1.0], Conditions::default()).unwrap();
+        for (case, expected) in plan.cases().zip([wall(2e7), wall(3e7), core(4e7), core(3e7)]) {
+            let alone = Population::new("alone", expected.clone());
+            let alone = Plan::new(vec![alone], vec![motion.clone()], vec![1.0], Conditions::default()).unwrap();
+            let [found, expected] = [case.outcome(), alone.case(0).outcome()].map(|of| {
+                let Outcome::Ended(Summary { mut peaks, steps, .. }) = of else { panic!("{of:?}") };
+                peaks.retain(|peak| !peak.is_nan());
+                peaks.sort_by(f64::total_cmp); // each plan has its own order
+                (peaks, steps)
+            });
+            assert_eq!(found, expected);
+        }
+        let sweep = Sweep::open(&plan, false, &program, None).unwrap();
+        sweep.finish(|| true).unwrap();
+        let columns: HashMap<_, _> = sweep.table(IntensityMeasure::Pga).1.into_iter().collect();
+        let nan = f64::NAN;
+        for (name, expected) in [
+            ("k_v[N/m]", [2e7, 3e7, nan, nan]),
+            ("m[kg]", [125.8, 125.8, nan, nan]),
+            ("k[2][N/m]", [nan, nan, 4e7, 3e7]),
+            ("k[1][N/m]", [nan, nan, 6e7, 6e7]),
+        ] {
+            let RowColumn::Numbers(found) = &columns[name] else { panic!("{name}") };
+            assert!(found.iter().zip(expected).all(|(a, b)| a.total_cmp(&b).is_eq()), "{name}: {found:?}");
+        }
+        let RowColumn::Texts(digests, _) = &columns["structure_digest"] else { panic!() };
+        assert_eq!(digests.len(), 4);
     }
 
     /// As the crate csv writes them, which finds the digits in another way.

@@ -105,8 +105,8 @@ enum RecordEntry {
 struct RecordTable {
     file: String,
     /// Path of the vertical component of the one file.
-    vertical: Option<String>,
-    vertical_column: Option<Column>,
+    record_v: Option<String>,
+    column_v: Option<Column>,
     /// Path of the force on the top floor.
     force: Option<String>,
     /// Options for reading each file.
@@ -177,7 +177,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<SweepContent
         let motions = motions(&tables, folder, |path, vertical, force, options| {
             let mut understood = understand(path, options)?;
             if let Some((vertical, of_vertical)) = vertical {
-                understood = understood.with_vertical(understand(vertical, of_vertical)?, g, "vertical_column")?;
+                understood = understood.with_vertical(understand(vertical, of_vertical)?, g, "column_v")?;
             }
             with_force(understood, force, g)
         });
@@ -311,11 +311,11 @@ fn motions(
     mut read: impl FnMut(&Path, Option<(&Path, &RecordOptions)>, Option<&Path>, &RecordOptions) -> anyhow::Result<Record>,
 ) -> anyhow::Result<Vec<NamedRecord>> {
     let (mut motions, mut bad) = (Vec::new(), Vec::<anyhow::Error>::new());
-    for RecordTable { file: pattern, vertical, vertical_column, force, options } in sources {
+    for RecordTable { file: pattern, record_v, column_v, force, options } in sources {
         let options = RecordOptions::deserialize(options.clone()).with_context(|| format!("records {pattern:?}"))?;
-        let of_vertical = options.with_column(vertical_column);
-        let has_vertical = vertical.is_some() || vertical_column.is_some();
-        let vertical = vertical.as_ref().filter(|up| *up != pattern);
+        let of_vertical = options.with_column(column_v);
+        let has_vertical = record_v.is_some() || column_v.is_some();
+        let vertical = record_v.as_ref().filter(|up| *up != pattern);
         let column = |options: &RecordOptions| {
             options.column.as_ref().map_or(String::new(), |column| format!(" column {}", column.as_asked()))
         };
@@ -333,7 +333,7 @@ fn motions(
             let path = path?;
             ensure!(
                 i == 0 || vertical.is_none(),
-                "records {pattern:?}: vertical goes with one file, and there are more"
+                "records {pattern:?}: record_v goes with one file, and there are more"
             );
             // The same on every system, so that a sweep can go on on another.
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace(MAIN_SEPARATOR, "/");

@@ -17,8 +17,10 @@ use rayon::{ThreadPool, prelude::*};
 use rocking::digits::short;
 use rocking::run::{LONGEST_REST, validity};
 use rocking_sweep::map::{CLASSES, Class, Fate, GridPlace, HEADINGS, Map, MapPoint};
-use rocking_sweep::plan::AXES;
-use rocking_sweep::row_file::{self, Digest, Known, Program, RowFile, fixed, heading};
+use rocking_sweep::outcome::Measure;
+use rocking_sweep::plan::{AXES, numbers_of, values_of};
+use rocking_sweep::row_file::{self, Digest, Known, Program, RowFile, fixed};
+use rocking_sweep::rows::of_numbers;
 use serde::Serialize;
 use std::{collections::HashMap, fmt::Write, path::Path, sync::Mutex};
 use uuid::Uuid;
@@ -40,7 +42,8 @@ pub fn run(
     output: &Path,
     picture: Picture,
 ) -> anyhow::Result<()> {
-    let (file, mut known) = open(output)?;
+    let numbers = numbers_of(maps.iter().map(|(_, map)| &map.structure));
+    let (file, mut known) = open(output, &numbers)?;
     for (name, map) in &maps {
         let structure = &map.structure;
         let warnings = structure.doubts().into_iter().chain(validity::of_structure(structure, map.detail));
@@ -50,7 +53,7 @@ pub fn run(
     for (name, map) in maps {
         let mut points = HashMap::new();
         map.complete(refinements, &mut points, |level, lacking, points| {
-            pool.install(|| do_points((&name, &map, points), level, lacking, &mut known, &file))
+            pool.install(|| do_points((&name, &map, points), level, lacking, &mut known, (&file, &numbers)))
         })?;
         spectra.push(PulseSpectrum { name, map, points });
     }
@@ -68,7 +71,7 @@ fn do_points(
     level: u32,
     places: Vec<GridPlace>,
     known: &mut Known<MapPoint>,
-    file: &RowFile,
+    (file, numbers): (&RowFile, &[Measure]),
 ) -> anyhow::Result<()> {
     let keys: Vec<_> = places.par_iter().map(|place| key_at(name, map, *place)).collect();
     let mut lacking = Vec::new();
@@ -81,7 +84,7 @@ fn do_points(
     let run = |lacking: &[(GridPlace, Uuid)], done: &mut dyn FnMut(_, &[u8]) -> bool| {
         let places: Vec<_> = lacking.iter().map(|(place, _)| *place).collect();
         map.run_each(&places, |at, point| {
-            let row = row(&lacking[at].1, name, map, (level, places[at]), &point);
+            let row = row((&lacking[at].1, name, numbers), map, (level, places[at]), &point);
             done((places[at], point), &row)
         });
     };
@@ -96,14 +99,8 @@ fn do_points(
 }
 
 /// Opens the file at `path`, or begins it, and reads the points of its rows.
-fn open(path: &Path) -> anyhow::Result<(RowFile, Known<MapPoint>)> {
-    let headings = [
-        fixed(&["run", "structures", "version"]),
-        AXES.map(|axis| heading(axis.name, axis.unit)).into(),
-        fixed(&["shape", "cycles", "phase[rad]", "error", "detail", "tolerance"]),
-        fixed(&HEADINGS),
-    ]
-    .concat();
+fn open(path: &Path, numbers: &[Measure]) -> anyhow::Result<(RowFile, Known<MapPoint>)> {
+    let headings = headings(numbers);
     let fate = headings.iter().position(|heading| heading == "fate").expect("it is one of them");
     RowFile::open(path, &headings, |row| Ok(row.iter().skip(fate).collect::<StringRecord>().deserialize(None)?))
 }
@@ -113,10 +110,26 @@ fn key_at(name: &str, map: &Map, place: GridPlace) -> Uuid {
     Digest::new(&Program::of(BUILD).build).and(&(name, map.structure.numbers(), map.pulse(place), of_map)).uuid()
 }
 
+fn headings(numbers: &[Measure]) -> Vec<String> {
+    [
+        fixed(&["run", "structures", "version"]),
+        of_numbers(numbers),
+        fixed(&["shape", "cycles", "phase[rad]", "error", "detail", "tolerance"]),
+        fixed(&HEADINGS),
+    ]
+    .concat()
+}
+
 /// The row of a point, which the refinement of this level has asked for; 0 is the grid.
-fn row(key: &Uuid, name: &str, map: &Map, (level, place): (u32, GridPlace), point: &MapPoint) -> Vec<u8> {
+fn row(
+    (key, name, numbers): (&Uuid, &str, &[Measure]),
+    map: &Map,
+    (level, place): (u32, GridPlace),
+    point: &MapPoint,
+) -> Vec<u8> {
     let pulse = map.pulse(place);
-    let of_structure = AXES.map(|axis| (axis.get)(&map.structure.parameters()));
+    let of_axes = AXES.map(|axis| (axis.get)(&map.structure.parameters()));
+    let of_structure = (of_axes, values_of(&map.structure, numbers));
     let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail.name(), map.tolerance);
     let of_program = (key.to_string(), name, Program::of(BUILD).version);
     row_file::line(&(of_program, of_structure, of_map, map.row(level, place, point)))

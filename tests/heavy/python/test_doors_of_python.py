@@ -133,7 +133,7 @@ def advised(door):
 
 
 def beside(door):
-    return ", vertical = 'up.csv'" * bool(door.scene.vertical) + ", force = 'force.csv'" * bool(door.scene.force)
+    return ", record_v = 'up.csv'" * bool(door.scene.vertical) + ", force = 'force.csv'" * bool(door.scene.force)
 
 
 PULSES = "[pulses]\nshape = 'sine'\nfrequency = [2.0, 5.0]\namplitude = [1.5, 6.0]\ndimensionless = true"

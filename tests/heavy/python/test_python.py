@@ -372,7 +372,7 @@ def test_a_table_in_memory_is_that_of_the_file_of_rows(tmp_path):
         in_memory = fr.sweep(structures, pulses, **options)
         rows = tmp_path / f"{len(options)}{len(structures)}.csv"
         written, read = (fr.sweep(structures, pulses, path=rows, **options) for _ in range(2))
-        by_pandas = pd.read_csv(rows, dtype={"record_digest": "str"})
+        by_pandas = pd.read_csv(rows, dtype={"structure_digest": "str", "record_digest": "str"})
         by_pandas = by_pandas.set_index("run").loc[in_memory["run"]].reset_index()
         for table in (written, read, by_pandas):
             pd.testing.assert_frame_equal(in_memory, table)
