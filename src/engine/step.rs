@@ -32,7 +32,7 @@ pub(crate) struct Branch {
 /// A guard of the present phase that has closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Closed {
-    /// Place of the guard in [`Rules::guards`](crate::engine::phases::Watched::guards).
+    /// Place of the guard in [`Rules::guards`](crate::engine::phases::Rules::guards).
     pub guard: u8,
     pub branch: Branch,
 }
