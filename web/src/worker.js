@@ -7,7 +7,7 @@ const work = {
   spectra: (fields, answer) => answer(JSON.parse(explorer.spectra(fields))),
 
   async map(fields, answer) {
-    const spectrum = new wasm_bindgen.Spectrum(fields);
+    const spectrum = new wasm_bindgen.MapComputation(fields);
     let going = await answer({ axes: JSON.parse(spectrum.axes()) });
     while (going) {
       const points = spectrum.next(24);
