@@ -61,6 +61,19 @@ impl Contents {
         self.structure.description().expect("an FMU is of a structure that was described")
     }
 
+    /// The values of the numbers of the structure that a host may set.
+    pub fn numbers(&self) -> Vec<f64> {
+        self.description().numbers().into_iter().map(|of| of.value).collect()
+    }
+
+    /// The structure with these values of its [`Contents::numbers`].
+    pub fn with(&self, numbers: &[f64]) -> Result<Structure, Refused> {
+        if self.numbers() == numbers {
+            return Ok(self.structure.clone()); // its modes have been found
+        }
+        Ok(self.description().with(numbers).structure()?.measured_in(self.structure.units()))
+    }
+
     /// The bytes of [`CONTENTS_FILE`]. As TOML they would take 200 kB of the library.
     pub fn to_bytes(&self) -> Vec<u8> {
         let Contents { structure, records, vertical, fixed } = self;

@@ -105,7 +105,7 @@ impl<Q: Runs> Scene<Q> {
         let (contents, g) = (&archive.contents, setup.g(&archive.contents));
         let source = archive.ground(&setup.record, &setup.record_v, g, kept)?;
         let ground = source.as_deref().map(|source| setup.scaled(source, g)).transpose()?;
-        let structure = contents.description().with(&setup.numbers).structure()?;
+        let structure = contents.with(&setup.numbers)?;
         let engine = setup.engine::<Q>(structure.clone(), setup.may_move_vertically(ground.as_ref()))?;
         let peaks = FallPeaks::since(setup.start_time, engine.structure(), setup.detail);
         let (validity, lateral) = (Findings::since(setup.start_time), lateral_states(&contents.structure));

@@ -43,7 +43,7 @@ impl Setup {
         let at_rest = vec![0.0; contents.structure.floors().len()];
         Setup {
             initial: State { u: at_rest.clone(), u_dot: at_rest, ..State::default() },
-            numbers: contents.description().numbers().into_iter().map(|of| of.value).collect(),
+            numbers: contents.numbers(),
             tolerance: DEFAULT_TOLERANCE,
             record: contents.default_record().into(),
             record_v: contents.default_vertical().into(),
